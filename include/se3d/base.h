@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Status codes, allocator, log, version: what every other header needs. */
+#ifndef SE3D_BASE_H
+#define SE3D_BASE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#if defined(SE3D_STATIC)
+#define SE3D_API
+#elif defined(SE3D_BUILD)
+#define SE3D_API __declspec(dllexport)
+#else
+#define SE3D_API __declspec(dllimport)
+#endif
+#elif defined(__GNUC__)
+#define SE3D_API __attribute__((visibility("default")))
+#else
+#define SE3D_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SE3D_VERSION_MAJOR 0
+#define SE3D_VERSION_MINOR 1
+#define SE3D_VERSION_PATCH 0
+
+/* 0 is success, < 0 failure, > 0 success with information. */
+#define SE3D_STATUS_LIST(X)                                                                        \
+    X(SE3D_OK, 0, "success")                                                                       \
+    X(SE3D_INFO_EVENT, 1, "an event stopped the run")                                              \
+    X(SE3D_INFO_REDUNDANT, 2, "redundant constraints: multipliers are the minimum-norm ones")      \
+    X(SE3D_INFO_UNSTABLE, 3, "the equilibrium is unstable")                                        \
+    X(SE3D_ERR_NO_MEMORY, -1, "out of memory")                                                     \
+    X(SE3D_ERR_INVALID_ARGUMENT, -2, "an argument is outside its allowed range")                   \
+    X(SE3D_ERR_NULL, -3, "a required pointer is NULL")                                             \
+    X(SE3D_ERR_STALE_HANDLE, -4, "handle does not name a live object of this system")              \
+    X(SE3D_ERR_IN_USE, -5, "the object is used by another one")                                    \
+    X(SE3D_ERR_STATE, -6, "the call is not allowed in this state")                                 \
+    X(SE3D_ERR_EXPRESSION, -7, "an expression is malformed")                                       \
+    X(SE3D_ERR_NOT_FINITE, -8, "a computed value is not finite")                                   \
+    X(SE3D_ERR_NO_CONVERGENCE, -9, "an iteration did not converge")                                \
+    X(SE3D_ERR_INCONSISTENT, -10, "constraints contradict each other")                             \
+    X(SE3D_ERR_SINGULAR, -11, "the equations do not determine the motion")                         \
+    X(SE3D_ERR_STEP_SIZE, -12, "the step became too small")                                        \
+    X(SE3D_ERR_IO, -13, "reading or writing failed")                                               \
+    X(SE3D_ERR_MODEL, -14, "the model is malformed")                                               \
+    X(SE3D_ERR_CALLBACK, -15, "a callback reported a failure")                                     \
+    X(SE3D_ERR_UNSUPPORTED, -16, "not supported in this combination")
+
+#define SE3D_STATUS_ENUMERATOR(name, value, text) name = value,
+/* What every fallible call returns. @since 0.1 */
+typedef enum se3d_status { SE3D_STATUS_LIST(SE3D_STATUS_ENUMERATOR) } se3d_status;
+#undef SE3D_STATUS_ENUMERATOR
+
+/* True where `call` failed; positive information counts as success. */
+#define SE3D_FAILED(call) ((call) < 0)
+
+/* Return the text of a status ("success", ...); never NULL. Safe. @since 0.1 */
+SE3D_API const char *se3d_status_get_text(se3d_status status);
+
+/* Return the version of the library that is linked, e.g. "0.1.0". Safe. @since 0.1 */
+SE3D_API const char *se3d_version_get_text(void);
+
+/* Memory functions of a system. `alloc` and `realloc` return NULL on failure; sizes are in bytes
+ * and `free` receives the size that was asked for. Memory must be aligned as malloc's is. @since
+ * 0.1 */
+typedef struct se3d_allocator {
+    void *(*alloc)(void *ctx, size_t size);
+    void *(*realloc)(void *ctx, void *memory, size_t old_size, size_t new_size);
+    void (*free)(void *ctx, void *memory, size_t size);
+    void *ctx;
+} se3d_allocator;
+
+/* Severity of a log message. */
+typedef enum se3d_log_level {
+    SE3D_LOG_INFO = 0,
+    SE3D_LOG_WARNING = 1,
+    SE3D_LOG_ERROR = 2
+} se3d_log_level;
+
+/* Receives every message of a system; the text is valid during the call only. @since 0.1 */
+typedef void (*se3d_log_callback)(void *ctx, se3d_log_level level, const char *message);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/error.h"
+
+#include <ctype.h>
+#include <locale.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* printf writes the host program's decimal separator; messages always have a point. */
+static void restore_decimal_point(char *text)
+{
+    const char *separator = localeconv()->decimal_point;
+    if (strlen(separator) != 1 || separator[0] == '.') {
+        return;
+    }
+    for (char *c = text; *c; ++c) {
+        int before = c > text && isdigit((unsigned char)c[-1]);
+        if (*c == separator[0] && before && isdigit((unsigned char)c[1])) {
+            *c = '.';
+        }
+    }
+}
+
+se3d_status se3di_error_set(se3di_error *error, se3d_status status, const char *format, ...)
+{
+    if (error) {
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(error->message, sizeof error->message, format, arguments);
+        va_end(arguments);
+        restore_decimal_point(error->message);
+        error->status = status;
+    }
+    return status;
+}
+
+void se3di_error_clear(se3di_error *error)
+{
+    error->status = SE3D_OK;
+    error->message[0] = '\0';
+}

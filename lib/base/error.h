@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The error record: one fixed-size message per owner, so that the error path never allocates. */
+#ifndef SE3DI_BASE_ERROR_H
+#define SE3DI_BASE_ERROR_H
+
+#include "se3d/base.h"
+
+#define SE3DI_ERROR_SIZE 512
+
+typedef struct se3di_error {
+    se3d_status status;
+    char message[SE3DI_ERROR_SIZE];
+} se3di_error;
+
+/* Record `status` with a printf-like message (cut to fit) and return `status`. `error` may be NULL.
+ * Numbers are written with a decimal point in every locale. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+se3d_status
+se3di_error_set(se3di_error *error, se3d_status status, const char *format, ...);
+
+/* Forget the last error. */
+void se3di_error_clear(se3di_error *error);
+
+/* Return from the calling function where `call` failed; information (> 0) passes. */
+#define SE3DI_TRY(call)                                                                            \
+    do {                                                                                           \
+        se3d_status se3di_try_status = (call);                                                     \
+        if (se3di_try_status < 0) {                                                                \
+            return se3di_try_status;                                                               \
+        }                                                                                          \
+    } while (0)
+
+#endif

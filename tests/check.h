@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The tests' own small harness: a test program lists its cases, each a sentence.
+ *
+ *     static void stale_handle_is_always_detected(void) { CHECK(...); CHECK_NEAR(a, b, tol); }
+ *     int main(void) { RUN(stale_handle_is_always_detected); return check_finish(); }
+ */
+#ifndef SE3D_TESTS_CHECK_H
+#define SE3D_TESTS_CHECK_H
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+static int check_failures;
+static int check_count;
+static const char *check_case = "";
+
+static inline void check_that(int holds, const char *text, const char *file, int line)
+{
+    ++check_count;
+    if (!holds) {
+        ++check_failures;
+        fprintf(stderr, "%s:%d: %s: failed: %s\n", file, line, check_case, text);
+    }
+}
+
+static inline void check_near(double actual, double expected, double tolerance, const char *text,
+                              const char *file, int line)
+{
+    ++check_count;
+    if (!(fabs(actual - expected) <= tolerance)) { /* NaN fails */
+        ++check_failures;
+        fprintf(stderr, "%s:%d: %s: %s is %.17g, expected %.17g within %.3g (off by %.3g)\n", file,
+                line, check_case, text, actual, expected, tolerance, fabs(actual - expected));
+    }
+}
+
+static inline void check_text(const char *actual, const char *part, const char *file, int line)
+{
+    ++check_count;
+    if (!actual || !strstr(actual, part)) {
+        ++check_failures;
+        fprintf(stderr, "%s:%d: %s: \"%s\" does not contain \"%s\"\n", file, line, check_case,
+                actual ? actual : "(null)", part);
+    }
+}
+
+static inline int check_finish(void)
+{
+    printf("%d checks, %d failed\n", check_count, check_failures);
+    return check_failures > 0 || check_count == 0;
+}
+
+/* A reproducible random number in [-1, 1): xorshift64*. */
+static inline double check_random(uint64_t *seed)
+{
+    *seed ^= *seed >> 12;
+    *seed ^= *seed << 25;
+    *seed ^= *seed >> 27;
+    return (double)((*seed * UINT64_C(2685821657736338717)) >> 11) * 0x1p-52 - 1.0;
+}
+
+#define CHECK(condition) check_that((condition) != 0, #condition, __FILE__, __LINE__)
+#define CHECK_NEAR(actual, expected, tolerance)                                                    \
+    check_near((actual), (expected), (tolerance), #actual, __FILE__, __LINE__)
+#define CHECK_CONTAINS(text, part) check_text((text), (part), __FILE__, __LINE__)
+#define RUN(test)                                                                                  \
+    do {                                                                                           \
+        check_case = #test;                                                                        \
+        test();                                                                                    \
+    } while (0)
+
+#endif
