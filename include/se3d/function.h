@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Functions of time (drivers) and of a force element's variables (actuators). */
+#ifndef SE3D_FUNCTION_H
+#define SE3D_FUNCTION_H
+
+#include "se3d/expression.h"
+#include "se3d/handles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SE3D_FUNCTION_VARIABLES_MAX 4
+
+/* Compute a function of x[0..variable_count): jet = {value, d/dx0, d2/dx0^2}; gradient (NULL or
+ * [variable_count]) = first derivatives. Return OK, or a negative status to stop the analysis. */
+typedef se3d_status (*se3d_function_callback)(void *ctx, const double *x, double jet[3],
+                                              double *gradient);
+
+/* What a function is made with: exactly one of `expression`, `callback`, a table, or the constant.
+ * @since 0.1 */
+typedef struct se3d_function_def {
+    size_t struct_size;
+    const char *expression;                /* text, copied; NULL: not an expression */
+    const char *const *variables;          /* names of x[0..variable_count); NULL: {"t"} */
+    size_t variable_count;                 /* default 1, at most SE3D_FUNCTION_VARIABLES_MAX */
+    const se3d_expression_symbol *symbols; /* named constants of the expression */
+    size_t symbol_count;
+    se3d_function_callback callback;
+    void *ctx;
+    const double
+        *table_x; /* increasing, [table_count], of x[0]; natural cubic spline (C2), copied */
+    const double *table_y;
+    size_t table_count; /* at least 2 */
+    double constant;    /* used where none of the above is given */
+} se3d_function_def;
+
+SE3D_API void se3d_function_def_init(se3d_function_def *def, size_t size);
+
+static inline se3d_function_def se3d_function_def_default(void)
+{
+    se3d_function_def def;
+    se3d_function_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Create a function. @return OK, NULL, INVALID_ARGUMENT, EXPRESSION (the message has the column),
+ * NO_MEMORY. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *def,
+                                          se3d_function *function);
+/* Create a function of time from a text in `t`. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_function_create_expression(se3d_system *system, const char *text,
+                                                     se3d_function *function);
+/* @return OK, STALE_HANDLE, IN_USE. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_function_destroy(se3d_system *system, se3d_function function);
+
+/* Compute value, first and second derivative with respect to variable 0 at x. Outside a table's
+ * range the spline goes on as a straight line. @return OK, NOT_FINITE, CALLBACK. Reader. @since 0.1
+ */
+SE3D_API se3d_status se3d_function_eval(const se3d_system *system, se3d_function function,
+                                        const double *x, double jet[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Solvers: one analysis of one system. */
+#ifndef SE3D_SOLVER_H
+#define SE3D_SOLVER_H
+
+#include "se3d/handles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum se3d_analysis {
+    SE3D_ANALYSIS_ASSEMBLY = 0,         /* consistent positions, velocities, accelerations */
+    SE3D_ANALYSIS_KINEMATICS = 1,       /* motion under drivers: no forces needed */
+    SE3D_ANALYSIS_INVERSE_DYNAMICS = 2, /* motion under drivers, with reactions and efforts */
+    SE3D_ANALYSIS_DYNAMICS = 3,         /* motion under forces */
+    SE3D_ANALYSIS_EQUILIBRIUM = 4       /* static position */
+} se3d_analysis;
+
+typedef enum se3d_method {
+    SE3D_METHOD_AUTO = 0,
+    SE3D_METHOD_GENERALIZED_ALPHA = 1,
+    SE3D_METHOD_HHT = 2,
+    SE3D_METHOD_DOP853 = 3,
+    SE3D_METHOD_RK45 = 4,
+    SE3D_METHOD_BDF = 5,
+    SE3D_METHOD_RADAU = 6,
+    SE3D_METHOD_RATTLE = 7,
+    SE3D_METHOD_VERLET = 8
+} se3d_method;
+
+/* What a solver is made with. @since 0.1 */
+typedef struct se3d_solver_def {
+    size_t struct_size;
+    int32_t analysis;    /* se3d_analysis, default DYNAMICS */
+    int32_t formulation; /* se3d_formulation, default ROMEGA */
+    int32_t method;      /* se3d_method, dynamics only, default AUTO */
+    int32_t order;       /* methods with several orders; 0: the default one */
+    double step;         /* fixed step, or the largest one of an adaptive method [s]; 0: chosen */
+    double tolerance;    /* relative error of adaptive methods; 0: 1e-6 */
+    double spectral_radius; /* generalized_alpha: at infinite frequency, 0..1, default 0.9 */
+    double alpha;           /* hht: -1/3..0, default -0.1 */
+    size_t iterations_max;  /* Newton iterations per step; 0: 25 */
+} se3d_solver_def;
+
+SE3D_API void se3d_solver_def_init(se3d_solver_def *def, size_t size);
+
+static inline se3d_solver_def se3d_solver_def_default(void)
+{
+    se3d_solver_def def;
+    se3d_solver_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Create a solver. The system must outlive it; it may be edited between steps.
+ * @return OK, NULL, INVALID_ARGUMENT, UNSUPPORTED, NO_MEMORY. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_solver_create(se3d_system *system, const se3d_solver_def *def,
+                                        se3d_solver **out);
+/* Destroy; NULL is fine. @since 0.1 */
+SE3D_API void se3d_solver_destroy(se3d_solver *solver);
+
+/* Run to `t_end` [s] (>= the present time). At t_end = now the state is only made consistent:
+ * positions and velocities are projected, accelerations and multipliers are computed. On failure
+ * the state is the last accepted step's. @return OK, INFO_*, INVALID_ARGUMENT, INCONSISTENT,
+ * NO_CONVERGENCE, SINGULAR, NOT_FINITE, STEP_SIZE, CALLBACK, NO_MEMORY; the message is the
+ * system's. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_solver_run(se3d_solver *solver, double t_end);
+
+/* Make one step of length h > 0 [s]. As se3d_solver_run. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_solver_step(se3d_solver *solver, double h);
+
+/* Counters since creation. @since 0.1 */
+typedef struct se3d_solver_stats {
+    uint64_t steps;          /* accepted */
+    uint64_t rejected;       /* rejected steps */
+    uint64_t iterations;     /* Newton iterations */
+    uint64_t evaluations;    /* acceleration evaluations */
+    uint64_t factorizations; /* of the linear solver */
+    uint64_t solves;
+} se3d_solver_stats;
+
+SE3D_API se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_solver_stats *stats);
+/* Get the method in use ("generalized_alpha", ...; what AUTO picked). Reader. @since 0.1 */
+SE3D_API se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name);
+
+/* What `se3d_system_check` finds; counts at the present state. @since 0.1 */
+typedef struct se3d_check_summary {
+    size_t struct_size;
+    size_t bodies;       /* movable */
+    size_t equations;    /* scalar constraint equations, without normalisation */
+    size_t rank;         /* independent ones */
+    size_t redundant;    /* equations - rank */
+    size_t freedoms;     /* 6 bodies - rank */
+    int64_t gruebler;    /* 6 bodies - equations */
+    size_t inconsistent; /* redundant equations that contradict the others */
+} se3d_check_summary;
+
+/* A report on the constraints. */
+typedef struct se3d_check se3d_check;
+
+/* Analyse the constraints at the present pose: rank, redundant equations with the ones they depend
+ * on, inconsistent ones, bodies that nothing holds. @return OK, INFO_REDUNDANT, NO_MEMORY,
+ * NOT_FINITE. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_check_create(se3d_system *system, se3d_check **out);
+SE3D_API void se3d_check_destroy(se3d_check *check);
+SE3D_API se3d_status se3d_check_get_summary(const se3d_check *check, se3d_check_summary *summary);
+/* Count the findings and get one as a sentence: "B.cd_z duplicates A.cd_z, C.cd_z". Reader. @since
+ * 0.1 */
+SE3D_API size_t se3d_check_count_messages(const se3d_check *check);
+SE3D_API se3d_status se3d_check_get_message(const se3d_check *check, size_t k, const char **text);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
