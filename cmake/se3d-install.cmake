@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Headers, libraries, CMake package `se3d`, se3d.pc and se3d-io.pc.
+include(CMakePackageConfigHelpers)
+
+set(se3d_cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/se3d")
+set(se3d_pc_dir "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/se3d" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+        FILES_MATCHING PATTERN "*.h")
+
+# Shared and static targets are exported apart: only the static ones need our dependencies.
+set(se3d_shared_targets se3d)
+set(se3d_static_targets se3d_static)
+if(TARGET se3d_io)
+    list(APPEND se3d_shared_targets se3d_io)
+    list(APPEND se3d_static_targets se3d_io_static)
+endif()
+foreach(kind shared static)
+    install(TARGETS ${se3d_${kind}_targets} EXPORT se3d-${kind}-targets
+            LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+            ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+            RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+    install(EXPORT se3d-${kind}-targets NAMESPACE se3d:: DESTINATION "${se3d_cmake_dir}")
+endforeach()
+
+configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/se3d-config.cmake.in"
+                              "${PROJECT_BINARY_DIR}/se3d-config.cmake"
+                              INSTALL_DESTINATION "${se3d_cmake_dir}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/se3d-config-version.cmake"
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/se3d-config.cmake"
+              "${PROJECT_BINARY_DIR}/se3d-config-version.cmake"
+              "${PROJECT_SOURCE_DIR}/cmake/se3d-dependencies.cmake"
+        DESTINATION "${se3d_cmake_dir}")
+
+# The prefix is taken from where the .pc file lies, so that an installed tree may be moved.
+if(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+    set(SE3D_PC_PREFIX "${CMAKE_INSTALL_PREFIX}")
+else()
+    file(RELATIVE_PATH se3d_pc_up "/root/${se3d_pc_dir}" "/root")
+    string(REGEX REPLACE "/$" "" se3d_pc_up "${se3d_pc_up}")
+    set(SE3D_PC_PREFIX "\${pcfiledir}/${se3d_pc_up}")
+endif()
+foreach(dir LIBDIR INCLUDEDIR)
+    if(IS_ABSOLUTE "${CMAKE_INSTALL_${dir}}")
+        set(SE3D_PC_${dir} "${CMAKE_INSTALL_${dir}}")
+    else()
+        set(SE3D_PC_${dir} "\${prefix}/${CMAKE_INSTALL_${dir}}")
+    endif()
+endforeach()
+foreach(pc se3d se3d-io)
+    if(pc STREQUAL "se3d" OR TARGET se3d_io)
+        configure_file("${PROJECT_SOURCE_DIR}/pkgconfig/${pc}.pc.in"
+                       "${PROJECT_BINARY_DIR}/${pc}.pc" @ONLY)
+        install(FILES "${PROJECT_BINARY_DIR}/${pc}.pc" DESTINATION "${se3d_pc_dir}")
+    endif()
+endforeach()

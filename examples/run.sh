@@ -1,0 +1,43 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# Build the `se3d` program and run the example models, from a clean clone on a bare Debian 12.
+# Missing packages are installed. The results are written to results/<model>/.
+set -eu
+cd "$(dirname "$0")/.."
+. tools/setup.sh
+# shellcheck disable=SC2086
+se3d_install $SE3D_BUILD_PACKAGES
+cmake --preset release -DSE3D_BUILD_TESTS=OFF -DSE3D_BUILD_EXAMPLES=OFF
+cmake --build --preset release -j "$(se3d_jobs)"
+program=build/release/bin/se3d
+
+# The first rows of a CSV file, wide lines cut.
+show() {
+    echo "The first rows of $1:"
+    head -n 4 "$1" | cut -c 1-110 | sed 's/^/    /'
+}
+
+failed=
+for model in examples/models/pendulum.yaml examples/models/*.yaml; do
+    name=$(basename "$model" .yaml)
+    # The pendulum goes first, and only once.
+    case $name in pendulum) [ -z "${pendulum_done:-}" ] || continue; pendulum_done=1 ;; esac
+    echo
+    echo "se3d run $model -o results/$name"
+    if "$program" run "$model" -o "results/$name"; then
+        echo "The results of $model are in results/$name:"
+        ls "results/$name" | sed 's/^/    /'
+        for csv in "results/$name"/*.csv; do
+            [ ! -f "$csv" ] || show "$csv"
+        done
+    else
+        failed="$failed $model"
+    fi
+done
+
+echo
+if [ -n "$failed" ]; then
+    echo "These models failed:$failed"
+    exit 1
+fi
+echo "All results are in $(pwd)/results; run another model with: $program run MODEL.yaml -o DIR"

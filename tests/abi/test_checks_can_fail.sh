@@ -1,0 +1,93 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# The checks of the binary interface must find what they are there for: each is given a fault.
+set -u
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+failed=0
+count=0
+
+# reject NAME COMMAND...: the command must fail and its output name the fault.
+reject() {
+    word=$1
+    shift
+    count=$((count + 1))
+    if "$@" >"$work/out" 2>&1; then
+        echo "passed, but must fail on '$word': $*"
+        failed=$((failed + 1))
+    elif ! grep -q "$word" "$work/out"; then
+        echo "'$word' is not named by: $*"
+        cat "$work/out"
+        failed=$((failed + 1))
+    fi
+}
+
+mkdir -p "$work/include/se3d" "$work/lib/base" "$work/lib/math" "$work/lib/io" "$work/tools"
+cp tools/*.py "$work/tools/"
+cp include/se3d/base.h "$work/include/se3d/"
+cd "$work" || exit 1
+abi="python3 tools/check_abi.py"
+cc=${CC:-cc}
+
+printf '%s\n' 'static int counter;' 'int *se3di_count(void);' \
+    'int *se3di_count(void) { counter++; return &counter; }' >lib/math/bad.c
+printf '%s\n' '#include <stdio.h>' 'void se3di_say(void);' \
+    'void se3di_say(void) { puts("x"); }' >lib/math/say.c
+"$cc" -c lib/math/bad.c -o bad.o && "$cc" -c lib/math/say.c -o say.o && ar rc libse3d.a bad.o say.o
+reject bss $abi globals libse3d.a
+reject puts $abi calls libse3d.a
+
+$abi update >update.log || { cat update.log; exit 1; }
+for name in se3d_status_get_text se3d_version_get_text; do
+    printf 'void %s(void);\nvoid %s(void) {}\n' $name $name >>public.c
+done
+"$cc" -shared -fPIC -Wl,-soname,libse3d.so -Wl,--version-script=lib/se3d.map public.c -o libse3d.so
+count=$((count + 1))
+$abi symbols libse3d.so || failed=$((failed + 1))
+reject "SONAME libse3d.so," $abi soname libse3d.so
+printf 'void se3d_extra(void);\nvoid se3d_extra(void) {}\n' >>public.c
+"$cc" -shared -fPIC public.c -o libse3d.so
+reject "se3d_extra: exported, but not declared" $abi symbols libse3d.so
+printf '%s\n' '#include "se3d/base.h"' 'SE3D_API const char *' 'se3d_lost(int (*f)(int));' \
+    'int se3d_plain(void);' 'typedef struct se3d_gap { char a; double b; } se3d_gap;' \
+    >include/se3d/lost.h
+reject "se3d_lost: declared, but not exported" $abi symbols libse3d.so
+reject "se3d_lost: declared, but not in the symbol map" $abi symbols libse3d.so
+reject "se3d_plain: declared without SE3D_API" $abi symbols libse3d.so
+reject "padding struct" $abi padding
+
+printf '%s\n' '#include "math/vec3.h"' >lib/base/up.c
+reject 'base/up.c' python3 tools/check_layers.py
+printf '%s\n' '#include "base/alloc.h"' >lib/io/inner.c
+reject 'io/inner.c' python3 tools/check_layers.py
+
+{
+    echo '/* SPDX-License-Identifier: BSD-3-Clause */'
+    echo 'int long_one(int a)'
+    echo '{'
+    i=0
+    while [ $i -lt 100 ]; do
+        echo '    a++;'
+        i=$((i + 1))
+    done
+    echo '    return a;'
+    echo '}'
+} >lib/math/long.c
+reject 'long_one: lines' python3 tools/check_size.py
+{
+    echo '/* SPDX-License-Identifier: BSD-3-Clause */'
+    echo 'int deep(int a, int b, int c, int d, int e, int f, int g, int h, int i)'
+    echo '{'
+    i=0
+    while [ $i -lt 20 ]; do
+        echo '    if (a) { b++; }'
+        i=$((i + 1))
+    done
+    echo '    return a + b + c + d + e + f + g + h + i;'
+    echo '}'
+} >lib/math/deep.c
+reject 'deep: complexity 21' python3 tools/check_size.py
+reject 'deep: parameters 9' python3 tools/check_size.py
+
+echo "$count checks, $failed failed"
+[ "$failed" -eq 0 ]

@@ -1,0 +1,89 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# test_install.sh tree | pkg_config | find_package (tests/install/CMakeLists.txt sets the environment)
+set -eu
+work=$SE3D_BUILD_DIR/tests/install/work
+prefix=$work/moved
+here=$SE3D_SOURCE_DIR/tests/install
+
+fail() {
+    echo "$*" >&2
+    exit 1
+}
+
+# Install to one folder and move it to another: nothing in the tree may depend on where it lies.
+tree() {
+    rm -rf "$work"
+    mkdir -p "$work"
+    "$CMAKE" --install "$SE3D_BUILD_DIR" --prefix "$work/installed" >/dev/null
+    mv "$work/installed" "$prefix"
+    for header in "$SE3D_SOURCE_DIR"/include/se3d/*.h; do
+        [ -f "$prefix/include/se3d/${header##*/}" ] || fail "not installed: ${header##*/}"
+    done
+    if grep -rl "$SE3D_SOURCE_DIR" "$prefix" --include=*.cmake --include=*.pc; then
+        fail "installed files name the source folder"
+    fi
+    if [ -n "${SE3D_PROGRAM:-}" ]; then
+        [ -x "$prefix/bin/se3d" ] || fail "the program is not installed"
+    fi
+}
+
+library_folder() {
+    pc=$(find "$prefix" -name se3d.pc)
+    [ -n "$pc" ] || fail "se3d.pc is not installed"
+    dirname "$(dirname "$pc")"
+}
+
+# build_and_run NAME STATIC-OPTION: consumer.c as C and as C++ by the flags of pkg-config.
+build_and_run() {
+    define=
+    [ "$1" = se3d ] || define=-DCONSUMER_IO
+    flags=$("$PKG_CONFIG" --cflags --libs $2 "$1")
+    strict="-Wall -Wextra -Wpedantic -Werror"
+    # shellcheck disable=SC2086
+    "$CC" -std=c11 $strict $define "$here/consumer.c" -o "$work/consumer_c" $flags
+    "$work/consumer_c"
+    # shellcheck disable=SC2086
+    "$CXX" -std=c++11 $strict $define -x c++ "$here/consumer.c" -x none -o "$work/consumer_cpp" $flags
+    "$work/consumer_cpp"
+}
+
+pkg_config() {
+    libraries=$(library_folder)
+    export PKG_CONFIG_PATH="$libraries/pkgconfig"
+    names=se3d
+    [ ! -f "$libraries/pkgconfig/se3d-io.pc" ] || names="se3d se3d-io"
+    for name in $names; do
+        LD_LIBRARY_PATH=$libraries build_and_run "$name" ""
+    done
+    # Static: the same tree without the shared libraries, so that -lse3d can only be the archive.
+    rm -rf "$work/static"
+    cp -r "$prefix" "$work/static"
+    find "$work/static" -name 'libse3d*.so*' -exec rm {} +
+    prefix=$work/static
+    PKG_CONFIG_PATH="$(library_folder)/pkgconfig"
+    for name in $names; do
+        build_and_run "$name" --static
+        if ldd "$work/consumer_c" | grep libse3d; then
+            fail "$name: the static consumer needs a shared libse3d"
+        fi
+    done
+}
+
+find_package() {
+    components="se3d;se3d_static"
+    [ ! -f "$(library_folder)/pkgconfig/se3d-io.pc" ] || components="$components;io;io_static"
+    rm -rf "$work/project"
+    mkdir -p "$work/project"
+    cp "$here/consumer.c" "$work/project/consumer.c"
+    cp "$here/consumer.c" "$work/project/consumer.cpp"
+    cp "$here/consumer_CMakeLists.txt" "$work/project/CMakeLists.txt"
+    "$CMAKE" -S "$work/project" -B "$work/project/build" -DCMAKE_PREFIX_PATH="$prefix" \
+        -DCMAKE_C_COMPILER="$CC" -DCMAKE_CXX_COMPILER="$CXX" "-DCOMPONENTS=$components" \
+        >"$work/project/log" 2>&1 || { cat "$work/project/log"; exit 1; }
+    "$CMAKE" --build "$work/project/build" >"$work/project/log" 2>&1 ||
+        { cat "$work/project/log"; exit 1; }
+    "$CMAKE" -E chdir "$work/project/build" ctest --output-on-failure --no-tests=error
+}
+
+"$1"

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Sourced by tests/run.sh, examples/run.sh and .ci/run: installs what is missing.
+#
+#     se3d_install PACKAGE...      on Debian and Ubuntu, as root or with sudo; does nothing where all
+#                                  is there, and only says what is needed on other systems
+#     se3d_jobs                    prints the number of processors
+
+SE3D_BUILD_PACKAGES="gcc libc6-dev make cmake pkg-config liblapacke-dev libopenblas-dev \
+libsuitesparse-dev libyaml-dev"
+SE3D_TEST_PACKAGES="$SE3D_BUILD_PACKAGES g++ binutils python3"
+SE3D_CI_PACKAGES="$SE3D_TEST_PACKAGES clang clang-format-14"
+
+se3d_jobs() {
+    nproc 2>/dev/null || getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2
+}
+
+se3d_missing() {
+    for se3d_package in "$@"; do
+        se3d_state=$(dpkg-query -W -f '${db:Status-Status}' "$se3d_package" 2>/dev/null) || se3d_state=
+        [ "$se3d_state" = installed ] || printf '%s ' "$se3d_package"
+    done
+}
+
+se3d_as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif command -v sudo >/dev/null 2>&1; then
+        sudo "$@"
+    else
+        echo "se3d: not root and no sudo; as root, run: $*" >&2
+        return 1
+    fi
+}
+
+se3d_install() {
+    if ! command -v apt-get >/dev/null 2>&1; then
+        echo "se3d: no apt-get here; the Debian names of what is needed: $*" >&2
+        return 0
+    fi
+    se3d_needed=$(se3d_missing "$@")
+    [ -n "$se3d_needed" ] || return 0
+    echo "se3d: installing $se3d_needed"
+    se3d_as_root apt-get update -q || return 1
+    # shellcheck disable=SC2086
+    se3d_as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q \
+        --no-install-recommends $se3d_needed
+}
