@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Adding and removing elements. Adding reserves first; nothing below the reservation can fail. */
+#include "math/quaternion.h"
+#include "model/function.h"
+#include "model/model.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Grow one typed array of the model. */
+#define RESERVE(model, array, capacity, needed, size)                                              \
+    do {                                                                                           \
+        void *reserve_data = (model)->array;                                                       \
+        se3d_status reserve_status = se3di_array_reserve(&(model)->allocator, &reserve_data,       \
+                                                         &(model)->capacity, (needed), (size));    \
+        (model)->array = reserve_data;                                                             \
+        if (reserve_status < 0) {                                                                  \
+            return reserve_status;                                                                 \
+        }                                                                                          \
+    } while (0)
+
+/* Close the gap of `removed` elements at `first` in an array of `count`. */
+static void close_gap(void *array, size_t count, size_t first, size_t removed, size_t size)
+{
+    char *bytes = array;
+    if (removed > 0 && first + removed < count) {
+        memmove(bytes + first * size, bytes + (first + removed) * size,
+                (count - first - removed) * size);
+    }
+}
+
+static se3d_status copy_name(se3di_model *model, const char *name, char **copy)
+{
+    *copy = NULL;
+    if (name) {
+        *copy = se3di_text_copy(&model->allocator, name);
+        return *copy ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    }
+    return SE3D_OK;
+}
+
+/* The structure has changed: what an integrator remembered no longer fits. */
+static void touch(se3di_model *model)
+{
+    ++model->topology_version;
+    ++model->state_version;
+    model->history_tag = 0;
+}
+
+se3d_status se3di_model_add_body(se3di_model *model, const se3di_body *body,
+                                 const se3di_frame *frame, se3di_handle *handle)
+{
+    size_t count = model->body_slots.count;
+    char *name;
+    RESERVE(model, bodies, body_capacity, count + 1, sizeof *model->bodies);
+    RESERVE(model, frames, frame_capacity, count + 1, sizeof *model->frames);
+    RESERVE(model, acceleration, acceleration_capacity, count + 1, 6 * sizeof *model->acceleration);
+    SE3DI_TRY(se3di_slots_reserve(&model->body_slots, &model->allocator));
+    SE3DI_TRY(copy_name(model, body->name, &name));
+    model->bodies[count] = *body;
+    model->bodies[count].name = name;
+    model->bodies[count].users = 0;
+    model->frames[count] = *frame;
+    memset(model->acceleration + 6 * count, 0, 6 * sizeof *model->acceleration);
+    *handle = se3di_slots_add(&model->body_slots);
+    touch(model);
+    return SE3D_OK;
+}
+
+static void lower(uint32_t *index, uint32_t removed)
+{
+    *index -= *index > removed;
+}
+
+static void lower_signed(int32_t *index, uint32_t removed)
+{
+    *index -= *index >= 0 && (uint32_t)*index > removed;
+}
+
+void se3di_model_remove_body(se3di_model *model, uint32_t body)
+{
+    size_t count = model->body_slots.count;
+    se3di_text_free(&model->allocator, model->bodies[body].name);
+    close_gap(model->bodies, count, body, 1, sizeof *model->bodies);
+    close_gap(model->frames, count, body, 1, sizeof *model->frames);
+    close_gap(model->acceleration, count, body, 1, 6 * sizeof *model->acceleration);
+    se3di_slots_remove(&model->body_slots, body);
+    for (size_t k = 0; k < model->marker_slots.count; ++k) {
+        lower(&model->markers[k].body, body);
+    }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        for (uint32_t b = 0; b < model->constraints[k].body_count; ++b) {
+            lower(&model->constraints[k].bodies[b], body);
+        }
+    }
+    for (size_t k = 0; k < model->term_count; ++k) {
+        lower(&model->terms[k].body_i, body);
+        lower(&model->terms[k].body_j, body);
+    }
+    for (size_t k = 0; k < model->angle_count; ++k) {
+        lower(&model->angles[k].term.body_i, body);
+        lower(&model->angles[k].term.body_j, body);
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        lower(&model->forces[k].body_i, body);
+        lower(&model->forces[k].body_j, body);
+    }
+    touch(model);
+}
+
+se3d_status se3di_model_add_marker(se3di_model *model, const se3di_marker *marker,
+                                   se3di_handle *handle)
+{
+    size_t count = model->marker_slots.count;
+    char *name;
+    RESERVE(model, markers, marker_capacity, count + 1, sizeof *model->markers);
+    SE3DI_TRY(se3di_slots_reserve(&model->marker_slots, &model->allocator));
+    SE3DI_TRY(copy_name(model, marker->name, &name));
+    model->markers[count] = *marker;
+    model->markers[count].name = name;
+    model->markers[count].users = 0;
+    ++model->bodies[marker->body].users;
+    *handle = se3di_slots_add(&model->marker_slots);
+    return SE3D_OK;
+}
+
+void se3di_model_remove_marker(se3di_model *model, uint32_t marker)
+{
+    --model->bodies[model->markers[marker].body].users;
+    se3di_text_free(&model->allocator, model->markers[marker].name);
+    close_gap(model->markers, model->marker_slots.count, marker, 1, sizeof *model->markers);
+    se3di_slots_remove(&model->marker_slots, marker);
+}
+
+se3d_status se3di_model_add_function(se3di_model *model, const se3di_function *function,
+                                     se3di_handle *handle)
+{
+    size_t count = model->function_slots.count;
+    RESERVE(model, functions, function_capacity, count + 1, sizeof *model->functions);
+    SE3DI_TRY(se3di_slots_reserve(&model->function_slots, &model->allocator));
+    model->functions[count] = *function;
+    model->functions[count].users = 0;
+    *handle = se3di_slots_add(&model->function_slots);
+    return SE3D_OK;
+}
+
+void se3di_model_remove_function(se3di_model *model, uint32_t function)
+{
+    se3di_function_release(&model->allocator, &model->functions[function]);
+    close_gap(model->functions, model->function_slots.count, function, 1, sizeof *model->functions);
+    se3di_slots_remove(&model->function_slots, function);
+    for (size_t k = 0; k < model->row_count; ++k) {
+        lower_signed(&model->rows[k].function, function);
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        for (int c = 0; c < 3; ++c) {
+            lower_signed(&model->forces[k].function[c], function);
+        }
+    }
+}
+
+/* Count (+1) or discount (-1) the elements that a constraint refers to. */
+static void count_constraint_users(se3di_model *model, const se3di_constraint *constraint,
+                                   uint32_t by)
+{
+    for (uint32_t k = 0; k < constraint->body_count; ++k) {
+        model->bodies[constraint->bodies[k]].users += by;
+    }
+    for (int k = 0; k < SE3D_COUPLER_TERMS_MAX; ++k) {
+        if (constraint->joints[k] >= 0) {
+            model->constraints[constraint->joints[k]].users += by;
+        }
+    }
+    for (uint32_t k = 0; k < constraint->row_count; ++k) {
+        int32_t function = model->rows[constraint->row_begin + k].function;
+        if (function >= 0) {
+            model->functions[function].users += by;
+        }
+    }
+}
+
+/* Angle terms of the joint's own rows (a screw) refer to the turn counter that is being made. */
+static void place_terms(se3di_model *model, const se3di_draft *draft, int32_t own_angle)
+{
+    memcpy(model->terms + model->term_count, draft->terms,
+           draft->term_count * sizeof *draft->terms);
+    for (uint32_t k = 0; k < draft->term_count; ++k) {
+        se3di_term *term = &model->terms[model->term_count + k];
+        if (draft->has_angle && term->type == SE3DI_PRIMITIVE_ANGLE && term->angle < 0) {
+            term->angle = own_angle;
+        }
+    }
+    for (uint32_t k = 0; k < draft->row_count; ++k) {
+        model->rows[model->row_count + k] = draft->rows[k];
+        model->rows[model->row_count + k].term_begin += (uint32_t)model->term_count;
+        model->lambda[model->row_count + k] = 0.0;
+    }
+}
+
+se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *draft,
+                                       se3di_handle *handle)
+{
+    size_t count = model->constraint_slots.count;
+    size_t rows = model->row_count + draft->row_count;
+    char *name;
+    RESERVE(model, constraints, constraint_capacity, count + 1, sizeof *model->constraints);
+    RESERVE(model, rows, row_capacity, rows, sizeof *model->rows);
+    RESERVE(model, lambda, lambda_capacity, rows, sizeof *model->lambda);
+    RESERVE(model, terms, term_capacity, model->term_count + draft->term_count,
+            sizeof *model->terms);
+    RESERVE(model, angles, angle_capacity, model->angle_count + 1, sizeof *model->angles);
+    SE3DI_TRY(se3di_slots_reserve(&model->constraint_slots, &model->allocator));
+    SE3DI_TRY(copy_name(model, draft->constraint.name, &name));
+    se3di_constraint *constraint = &model->constraints[count];
+    *constraint = draft->constraint;
+    constraint->name = name;
+    constraint->users = 0;
+    constraint->row_begin = (uint32_t)model->row_count;
+    constraint->row_count = draft->row_count;
+    constraint->term_begin = (uint32_t)model->term_count;
+    constraint->term_count = draft->term_count;
+    constraint->angle = draft->has_angle ? (int32_t)model->angle_count : -1;
+    place_terms(model, draft, constraint->angle);
+    if (draft->has_angle) {
+        model->angles[model->angle_count++] = draft->angle;
+    }
+    model->row_count += draft->row_count;
+    model->term_count += draft->term_count;
+    count_constraint_users(model, constraint, 1);
+    *handle = se3di_slots_add(&model->constraint_slots);
+    touch(model);
+    return SE3D_OK;
+}
+
+static void remove_angle(se3di_model *model, uint32_t angle)
+{
+    close_gap(model->angles, model->angle_count--, angle, 1, sizeof *model->angles);
+    for (size_t k = 0; k < model->term_count; ++k) {
+        lower_signed(&model->terms[k].angle, angle);
+    }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        lower_signed(&model->constraints[k].angle, angle);
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        lower_signed(&model->forces[k].angle, angle);
+    }
+}
+
+void se3di_model_remove_constraint(se3di_model *model, uint32_t index)
+{
+    se3di_constraint gone = model->constraints[index];
+    count_constraint_users(model, &gone, UINT32_MAX);
+    se3di_text_free(&model->allocator, gone.name);
+    close_gap(model->rows, model->row_count, gone.row_begin, gone.row_count, sizeof *model->rows);
+    close_gap(model->lambda, model->row_count, gone.row_begin, gone.row_count,
+              sizeof *model->lambda);
+    close_gap(model->terms, model->term_count, gone.term_begin, gone.term_count,
+              sizeof *model->terms);
+    close_gap(model->constraints, model->constraint_slots.count, index, 1,
+              sizeof *model->constraints);
+    se3di_slots_remove(&model->constraint_slots, index);
+    model->row_count -= gone.row_count;
+    model->term_count -= gone.term_count;
+    for (size_t k = index; k < model->constraint_slots.count; ++k) {
+        model->constraints[k].row_begin -= gone.row_count;
+        model->constraints[k].term_begin -= gone.term_count;
+    }
+    for (size_t k = gone.row_begin; k < model->row_count; ++k) {
+        model->rows[k].term_begin -= gone.term_count;
+    }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        for (int j = 0; j < SE3D_COUPLER_TERMS_MAX; ++j) {
+            lower_signed(&model->constraints[k].joints[j], index);
+        }
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        lower_signed(&model->forces[k].joint, index);
+    }
+    if (gone.angle >= 0) {
+        remove_angle(model, (uint32_t)gone.angle);
+    }
+    touch(model);
+}
+
+static void count_force_users(se3di_model *model, const se3di_force *force, uint32_t by)
+{
+    model->bodies[force->body_i].users += by;
+    model->bodies[force->body_j].users += by;
+    if (force->joint >= 0) {
+        model->constraints[force->joint].users += by;
+    }
+    for (int c = 0; c < 3; ++c) {
+        if (force->function[c] >= 0) {
+            model->functions[force->function[c]].users += by;
+        }
+    }
+}
+
+se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
+                                  se3di_handle *handle)
+{
+    size_t count = model->force_slots.count;
+    char *name;
+    RESERVE(model, forces, force_capacity, count + 1, sizeof *model->forces);
+    SE3DI_TRY(se3di_slots_reserve(&model->force_slots, &model->allocator));
+    SE3DI_TRY(copy_name(model, force->name, &name));
+    model->forces[count] = *force;
+    model->forces[count].name = name;
+    model->forces[count].users = 0;
+    count_force_users(model, force, 1);
+    *handle = se3di_slots_add(&model->force_slots);
+    touch(model);
+    return SE3D_OK;
+}
+
+void se3di_model_remove_force(se3di_model *model, uint32_t force)
+{
+    count_force_users(model, &model->forces[force], UINT32_MAX);
+    se3di_text_free(&model->allocator, model->forces[force].name);
+    close_gap(model->forces, model->force_slots.count, force, 1, sizeof *model->forces);
+    se3di_slots_remove(&model->force_slots, force);
+    touch(model);
+}

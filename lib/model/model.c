@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Life of a model: empty, destroyed, copied. */
+#include "model/model.h"
+
+#include "math/quaternion.h"
+#include "math/vec3.h"
+#include "model/function.h"
+
+#include <string.h>
+
+void se3di_frame_update(se3di_frame *frame)
+{
+    se3di_quat_to_matrix(frame->p, frame->A);
+    se3di_quat_rate(frame->p, frame->w, frame->pdot);
+}
+
+se3d_status se3di_model_init(se3di_model *model, const se3d_allocator *allocator, uint32_t salt)
+{
+    memset(model, 0, sizeof *model);
+    model->allocator = *allocator;
+    se3di_slots *slots[] = {&model->body_slots, &model->marker_slots, &model->function_slots,
+                            &model->constraint_slots, &model->force_slots};
+    for (size_t k = 0; k < sizeof slots / sizeof slots[0]; ++k) {
+        se3di_slots_init(slots[k], salt);
+    }
+    char name[] = "ground";
+    se3di_body ground = {.name = name, .fixed = 1};
+    se3di_frame frame = {.p = {1.0, 0.0, 0.0, 0.0}};
+    se3di_frame_update(&frame);
+    se3di_handle handle;
+    se3d_status status = se3di_model_add_body(model, &ground, &frame, &handle);
+    if (status < 0) {
+        se3di_model_destroy(model);
+    }
+    return status;
+}
+
+static void destroy_names(se3di_model *model)
+{
+    const se3d_allocator *allocator = &model->allocator;
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        se3di_text_free(allocator, model->bodies[k].name);
+    }
+    for (size_t k = 0; k < model->marker_slots.count; ++k) {
+        se3di_text_free(allocator, model->markers[k].name);
+    }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        se3di_text_free(allocator, model->constraints[k].name);
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        se3di_text_free(allocator, model->forces[k].name);
+    }
+}
+
+/* Every growing array of the model: where it is, its capacity and the size of an element. */
+typedef struct model_array {
+    void **data;
+    size_t *capacity;
+    size_t count, size;
+} model_array;
+
+#define MODEL_ARRAYS 12
+
+static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
+{
+    size_t bodies = m->body_slots.count;
+    model_array arrays[MODEL_ARRAYS] = {
+        {(void **)&m->bodies, &m->body_capacity, bodies, sizeof *m->bodies},
+        {(void **)&m->frames, &m->frame_capacity, bodies, sizeof *m->frames},
+        {(void **)&m->acceleration, &m->acceleration_capacity, bodies, 6 * sizeof *m->acceleration},
+        {(void **)&m->markers, &m->marker_capacity, m->marker_slots.count, sizeof *m->markers},
+        {(void **)&m->functions, &m->function_capacity, m->function_slots.count,
+         sizeof *m->functions},
+        {(void **)&m->constraints, &m->constraint_capacity, m->constraint_slots.count,
+         sizeof *m->constraints},
+        {(void **)&m->rows, &m->row_capacity, m->row_count, sizeof *m->rows},
+        {(void **)&m->terms, &m->term_capacity, m->term_count, sizeof *m->terms},
+        {(void **)&m->angles, &m->angle_capacity, m->angle_count, sizeof *m->angles},
+        {(void **)&m->lambda, &m->lambda_capacity, m->row_count, sizeof *m->lambda},
+        {(void **)&m->forces, &m->force_capacity, m->force_slots.count, sizeof *m->forces},
+        {(void **)&m->history, &m->history_capacity, m->history_count, sizeof *m->history},
+    };
+    memcpy(list, arrays, sizeof arrays);
+}
+
+static void destroy_slots(se3di_model *model)
+{
+    se3di_slots_destroy(&model->body_slots, &model->allocator);
+    se3di_slots_destroy(&model->marker_slots, &model->allocator);
+    se3di_slots_destroy(&model->function_slots, &model->allocator);
+    se3di_slots_destroy(&model->constraint_slots, &model->allocator);
+    se3di_slots_destroy(&model->force_slots, &model->allocator);
+}
+
+void se3di_model_destroy(se3di_model *model)
+{
+    const se3d_allocator *allocator = &model->allocator;
+    destroy_names(model);
+    for (size_t k = 0; k < model->function_slots.count; ++k) {
+        se3di_function_release(allocator, &model->functions[k]);
+    }
+    model_array arrays[MODEL_ARRAYS];
+    list_arrays(model, arrays);
+    for (int k = 0; k < MODEL_ARRAYS; ++k) {
+        se3di_free(allocator, *arrays[k].data, *arrays[k].capacity, arrays[k].size);
+    }
+    destroy_slots(model);
+    se3d_allocator kept = model->allocator;
+    memset(model, 0, sizeof *model);
+    model->allocator = kept;
+}
+
+/* Forget what a copied structure does not own yet, so that destroying it is safe at any moment. */
+static void disown(se3di_model *copy)
+{
+    model_array arrays[MODEL_ARRAYS];
+    list_arrays(copy, arrays);
+    for (int k = 0; k < MODEL_ARRAYS; ++k) {
+        *arrays[k].data = NULL;
+        *arrays[k].capacity = 0;
+    }
+    se3di_slots_init(&copy->body_slots, 0);
+    se3di_slots_init(&copy->marker_slots, 0);
+    se3di_slots_init(&copy->function_slots, 0);
+    se3di_slots_init(&copy->constraint_slots, 0);
+    se3di_slots_init(&copy->force_slots, 0);
+    copy->row_count = copy->term_count = copy->angle_count = copy->history_count = 0;
+}
+
+static se3d_status copy_name(const se3d_allocator *allocator, char **name)
+{
+    const char *original = *name;
+    *name = NULL;
+    if (original) {
+        *name = se3di_text_copy(allocator, original);
+    }
+    return original && !*name ? SE3D_ERR_NO_MEMORY : SE3D_OK;
+}
+
+/* The arrays hold the original's names: replace each by a copy; those not reached become NULL. */
+static se3d_status copy_names(se3di_model *copy)
+{
+    const se3d_allocator *allocator = &copy->allocator;
+    se3d_status status = SE3D_OK;
+    for (size_t k = 0; k < copy->body_slots.count; ++k) {
+        status = copy_name(allocator, &copy->bodies[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
+    }
+    for (size_t k = 0; k < copy->marker_slots.count; ++k) {
+        status = copy_name(allocator, &copy->markers[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
+    }
+    for (size_t k = 0; k < copy->constraint_slots.count; ++k) {
+        status = copy_name(allocator, &copy->constraints[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
+    }
+    for (size_t k = 0; k < copy->force_slots.count; ++k) {
+        status = copy_name(allocator, &copy->forces[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
+    }
+    for (size_t k = 0; k < copy->function_slots.count; ++k) {
+        status =
+            se3di_function_own(allocator, &copy->functions[k]) < 0 ? SE3D_ERR_NO_MEMORY : status;
+    }
+    return status;
+}
+
+static se3d_status clone_slots(const se3di_model *model, se3di_model *copy)
+{
+    const se3d_allocator *allocator = &copy->allocator;
+    SE3DI_TRY(se3di_slots_clone(&model->body_slots, allocator, &copy->body_slots));
+    SE3DI_TRY(se3di_slots_clone(&model->marker_slots, allocator, &copy->marker_slots));
+    SE3DI_TRY(se3di_slots_clone(&model->function_slots, allocator, &copy->function_slots));
+    SE3DI_TRY(se3di_slots_clone(&model->constraint_slots, allocator, &copy->constraint_slots));
+    SE3DI_TRY(se3di_slots_clone(&model->force_slots, allocator, &copy->force_slots));
+    return SE3D_OK;
+}
+
+static se3d_status clone_arrays(const se3di_model *model, se3di_model *copy)
+{
+    se3di_model original = *model; /* list_arrays only takes addresses of its members */
+    model_array from[MODEL_ARRAYS];
+    model_array to[MODEL_ARRAYS];
+    list_arrays(&original, from);
+    list_arrays(copy, to);
+    for (int k = 0; k < MODEL_ARRAYS; ++k) {
+        SE3DI_TRY(se3di_array_reserve(&copy->allocator, to[k].data, to[k].capacity, from[k].count,
+                                      from[k].size));
+    }
+    for (int k = 0; k < MODEL_ARRAYS; ++k) {
+        if (from[k].count > 0) {
+            memcpy(*to[k].data, *from[k].data, from[k].count * from[k].size);
+        }
+    }
+    copy->row_count = model->row_count;
+    copy->term_count = model->term_count;
+    copy->angle_count = model->angle_count;
+    copy->history_count = model->history_count;
+    return SE3D_OK;
+}
+
+se3d_status se3di_model_clone(const se3di_model *model, se3di_model *copy)
+{
+    *copy = *model;
+    disown(copy);
+    se3di_model slots = *copy; /* slot counts stay zero in `copy` until its arrays are filled */
+    se3d_status status = clone_slots(model, &slots);
+    if (status == SE3D_OK) {
+        status = clone_arrays(model, copy);
+    }
+    if (status < 0) {
+        destroy_slots(&slots);
+        se3di_model_destroy(copy);
+        return status;
+    }
+    copy->body_slots = slots.body_slots;
+    copy->marker_slots = slots.marker_slots;
+    copy->function_slots = slots.function_slots;
+    copy->constraint_slots = slots.constraint_slots;
+    copy->force_slots = slots.force_slots;
+    status = copy_names(copy);
+    if (status < 0) {
+        se3di_model_destroy(copy);
+    }
+    return status;
+}

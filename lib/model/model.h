@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The model: bodies, markers, functions of time, constraints and force elements with their state,
+ * in dense arrays in creation order. Data only: nothing here knows an equation of motion.
+ *
+ * A constraint (primitive, joint or driver) owns consecutive equations (rows), a row owns
+ * consecutive terms:
+ *
+ *     Phi_row = sum_k coefficient_k * value(term_k) - f(t)
+ *
+ * Dense indices move down when an element before them is destroyed; the owner of every index held
+ * here is counted in `users`, so that nothing in use can be destroyed. */
+#ifndef SE3DI_MODEL_H
+#define SE3DI_MODEL_H
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "base/slots.h"
+#include "primitive/primitive.h"
+#include "se3d/constraint.h"
+#include "se3d/expression.h"
+#include "se3d/force.h"
+#include "se3d/function.h"
+#include "se3d/joint.h"
+
+#define SE3DI_NODE_BODIES_MAX 8 /* bodies of one constraint: a coupler of four joints */
+
+typedef struct se3di_body {
+    char *name;     /* NULL: none */
+    double mass;    /* [kg] */
+    double J[6];    /* about the centre of mass, body frame: xx yy zz xy yz xz */
+    int32_t fixed;  /* the ground is */
+    uint32_t users; /* markers, constraints, forces on it */
+} se3di_body;
+
+typedef struct se3di_marker {
+    char *name;
+    uint32_t body;
+    uint32_t users;
+    double s[3]; /* body frame */
+    double p[4]; /* marker -> body */
+} se3di_marker;
+
+typedef struct se3di_function {
+    se3d_expression *expression; /* NULL: another kind */
+    se3d_function_callback callback;
+    void *ctx;
+    double *table; /* x [n], y [n], second derivative [n] */
+    size_t table_count;
+    double constant;
+    uint32_t variable_count;
+    uint32_t users;
+} se3di_function;
+
+typedef struct se3di_row {
+    const char *name; /* static: "cd_x" */
+    uint32_t term_begin, term_count;
+    int32_t function; /* dense index, -1: `value` */
+    int32_t wrap;     /* 1: one angle; Phi is taken modulo 2 pi into (-pi, pi] */
+    double value;     /* f where there is no function */
+} se3di_row;
+
+typedef struct se3di_joint_frames {
+    double point_i[3], point_j[3];          /* body frames */
+    double axis_i[3], ref_i[3], third_i[3]; /* right-handed orthonormal: ref, third, axis */
+    double axis_j[3], ref_j[3], third_j[3];
+} se3di_joint_frames;
+
+typedef struct se3di_constraint {
+    char *name;
+    const char *type; /* static: "dp1", "revolute", "driver" */
+    uint32_t row_begin, row_count;
+    uint32_t term_begin, term_count;
+    uint32_t body_count;                    /* that take part, fixed ones included; >= 2 */
+    uint32_t bodies[SE3DI_NODE_BODIES_MAX]; /* dense; 0: body i, 1: body j */
+    uint32_t users;
+    int32_t joints[SE3D_COUPLER_TERMS_MAX]; /* constraints this one refers to, -1: none */
+    int32_t angle;                          /* index of its turn counter, -1: no angle */
+    int32_t has_displacement;
+    se3di_joint_frames frames; /* joints: axes; all: the points where reactions are reported */
+    double angle0;
+} se3di_constraint;
+
+/* The turn counter of a joint angle. */
+typedef struct se3di_angle {
+    se3di_term term; /* ANGLE; value + offset is the joint angle up to whole turns */
+    double offset;   /* [rad] */
+    double theta;    /* joint angle of the last accepted state, counts turns */
+} se3di_angle;
+
+typedef enum se3di_force_type {
+    SE3DI_FORCE_TSDA = 0,
+    SE3DI_FORCE_RSDA = 1,
+    SE3DI_FORCE_LOAD = 2,
+    SE3DI_FORCE_TORQUE = 3
+} se3di_force_type;
+
+typedef struct se3di_force {
+    char *name;
+    int32_t type;
+    int32_t in_body_frame;
+    uint32_t body_i, body_j; /* loads: body_j */
+    double s_i[3], s_j[3];
+    double k, c, rest;   /* stiffness, damping, l0 or theta0 */
+    int32_t function[3]; /* h, or the components of a load; -1: none */
+    int32_t joint;       /* rsda */
+    int32_t angle;       /* rsda: turn counter */
+    uint32_t users;
+    double value[3];
+} se3di_force;
+
+typedef struct se3di_model {
+    se3d_allocator allocator;
+    double gravity[3];
+    double time;
+    uint64_t topology_version; /* changes when elements come, go or change */
+    uint64_t state_version;    /* changes when the user sets a state */
+
+    se3di_slots body_slots; /* count = bodies, [0] the ground */
+    se3di_body *bodies;
+    se3di_frame *frames;  /* state of the bodies */
+    double *acceleration; /* [bodies * 6]: a (ground frame), wdot (body frame) */
+    size_t body_capacity, frame_capacity, acceleration_capacity;
+
+    se3di_slots marker_slots;
+    se3di_marker *markers;
+    size_t marker_capacity;
+
+    se3di_slots function_slots;
+    se3di_function *functions;
+    size_t function_capacity;
+
+    se3di_slots constraint_slots;
+    se3di_constraint *constraints;
+    size_t constraint_capacity;
+    se3di_row *rows;
+    size_t row_count, row_capacity;
+    se3di_term *terms;
+    size_t term_count, term_capacity;
+    se3di_angle *angles;
+    size_t angle_count, angle_capacity;
+    double *lambda; /* [rows] multipliers of the last analysis */
+    size_t lambda_capacity;
+
+    se3di_slots force_slots;
+    se3di_force *forces;
+    size_t force_capacity;
+
+    double *history; /* what an integrator carries from step to step */
+    size_t history_count, history_capacity;
+    uint64_t history_tag; /* who wrote it; 0: nobody */
+} se3di_model;
+
+/* A constraint under construction: joints and primitives fill it, se3di_model_add_constraint copies
+ * it. */
+#define SE3DI_DRAFT_ROWS  8
+#define SE3DI_DRAFT_TERMS 8
+typedef struct se3di_draft {
+    se3di_constraint constraint;      /* its ranges are set by se3di_model_add_constraint */
+    se3di_row rows[SE3DI_DRAFT_ROWS]; /* term_begin counts from the first term of the draft */
+    se3di_term terms[SE3DI_DRAFT_TERMS];
+    uint32_t row_count, term_count;
+    int32_t has_angle; /* a turn counter is made from `angle` */
+    se3di_angle angle;
+} se3di_draft;
+
+/* Initialise an empty model with the ground; on failure nothing is held. */
+se3d_status se3di_model_init(se3di_model *model, const se3d_allocator *allocator, uint32_t salt);
+void se3di_model_destroy(se3di_model *model);
+/* Deep copy into the uninitialised `copy`; on failure nothing is held. */
+se3d_status se3di_model_clone(const se3di_model *model, se3di_model *copy);
+
+/* Add an element; names are copied. Either everything or nothing happens. NO_MEMORY is the only
+ * failure: the caller has validated. */
+se3d_status se3di_model_add_body(se3di_model *model, const se3di_body *body,
+                                 const se3di_frame *frame, se3di_handle *handle);
+se3d_status se3di_model_add_marker(se3di_model *model, const se3di_marker *marker,
+                                   se3di_handle *handle);
+se3d_status se3di_model_add_function(se3di_model *model, const se3di_function *function,
+                                     se3di_handle *handle); /* takes over expression and table */
+se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *draft,
+                                       se3di_handle *handle);
+se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
+                                  se3di_handle *handle);
+
+/* Remove an element that has no users. */
+void se3di_model_remove_body(se3di_model *model, uint32_t body);
+void se3di_model_remove_marker(se3di_model *model, uint32_t marker);
+void se3di_model_remove_function(se3di_model *model, uint32_t function);
+void se3di_model_remove_constraint(se3di_model *model, uint32_t constraint);
+void se3di_model_remove_force(se3di_model *model, uint32_t force);
+
+/* Complete a frame (A, pdot) from r, p, v, w. */
+void se3di_frame_update(se3di_frame *frame);
+
+/* Jet {f, f', f''} of a function at x (variable 0 is time); gradient [variable_count] or NULL. */
+se3d_status se3di_function_eval(const se3di_function *function, const double *x, double jet[3],
+                                double *gradient);
+/* Second derivatives of the natural cubic spline through x, y into m [n]; scratch [n]. */
+void se3di_spline_build(const double *x, const double *y, size_t n, double *m, double *scratch);
+
+/* Value of a term with its coefficient; angles are unwrapped by their turn counter. */
+double se3di_term_value(const se3di_model *model, const se3di_term *term);
+/* Joint angle of a turn counter at the present frames, nearest to its last accepted one. */
+double se3di_angle_value(const se3di_model *model, uint32_t angle);
+/* Take the present joint angles as accepted. */
+void se3di_angles_accept(se3di_model *model);
+
+#endif

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Checks of arguments at the public boundary. */
+#include "math/vec3.h"
+#include "system/system_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+se3d_status se3di_check_finite(se3d_system *system, const char *what, double value)
+{
+    if (isfinite(value)) {
+        return SE3D_OK;
+    }
+    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s = %g, must be finite", what, value);
+}
+
+se3d_status se3di_check_finites(se3d_system *system, const char *what, const double *values,
+                                int count)
+{
+    for (int k = 0; k < count; ++k) {
+        if (!isfinite(values[k])) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s[%d] = %g, must be finite",
+                              what, k, values[k]);
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_check_direction(se3d_system *system, const char *what, const double values[3],
+                                  double unit[3])
+{
+    SE3DI_TRY(se3di_check_finites(system, what, values, 3));
+    double largest = fmax(fabs(values[0]), fmax(fabs(values[1]), fabs(values[2])));
+    if (largest < 1e-150) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "%s = [%g, %g, %g], must be a direction (not zero)", what, values[0],
+                          values[1], values[2]);
+    }
+    double scaled[3];
+    se3di_scale(1.0 / largest, values, scaled);
+    se3di_scale(1.0 / se3di_norm(scaled), scaled, unit);
+    return SE3D_OK;
+}
+
+se3d_status se3di_check_orientation(se3d_system *system, const char *what, const double p[4],
+                                    double unit[4])
+{
+    SE3DI_TRY(se3di_check_finites(system, what, p, 4));
+    double norm = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+    if (!(fabs(norm - 1.0) <= 1e-6)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "%s = [%g, %g, %g, %g] has length %.9g, must be unit Euler parameters "
+                          "(length 1 within 1e-6)",
+                          what, p[0], p[1], p[2], p[3], norm);
+    }
+    for (int k = 0; k < 4; ++k) {
+        unit[k] = p[k] / norm;
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_check_pointer(se3d_system *system, const char *what, const void *pointer)
+{
+    return pointer ? SE3D_OK : SE3DI_FAIL(system, SE3D_ERR_NULL, "%s is NULL", what);
+}
+
+se3d_status se3di_check_def(se3d_system *system, const char *what, const void *def, void *copy,
+                            size_t full_size)
+{
+    SE3DI_TRY(se3di_check_pointer(system, what, def));
+    size_t size;
+    memcpy(&size, def, sizeof size);
+    if (size < sizeof size || size > full_size) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "%s.struct_size = %zu, must be set by its _default function (at most %zu "
+                          "in this version)",
+                          what, size, full_size);
+    }
+    memcpy(copy, def, size);
+    return SE3D_OK;
+}
+
+static se3d_status find(se3d_system *system, const se3di_slots *slots, const char *what,
+                        se3di_handle handle, uint32_t *index)
+{
+    *index = se3di_slots_find(slots, handle.index1, handle.generation);
+    if (*index != SE3DI_NO_INDEX) {
+        return SE3D_OK;
+    }
+    const char *reason =
+        handle.index1 == 0 ? "is the null handle" : "was destroyed or belongs to another system";
+    return SE3DI_FAIL(system, SE3D_ERR_STALE_HANDLE, "%s %s", what, reason);
+}
+
+se3d_status se3di_find_body(se3d_system *system, const char *what, se3d_body body, uint32_t *index)
+{
+    return find(system, &system->model.body_slots, what,
+                (se3di_handle){body.index1, body.generation}, index);
+}
+
+se3d_status se3di_find_marker(se3d_system *system, const char *what, se3d_marker marker,
+                              uint32_t *index)
+{
+    return find(system, &system->model.marker_slots, what,
+                (se3di_handle){marker.index1, marker.generation}, index);
+}
+
+se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_constraint constraint,
+                                  uint32_t *index)
+{
+    return find(system, &system->model.constraint_slots, what,
+                (se3di_handle){constraint.index1, constraint.generation}, index);
+}
+
+se3d_status se3di_find_force(se3d_system *system, const char *what, se3d_force force,
+                             uint32_t *index)
+{
+    return find(system, &system->model.force_slots, what,
+                (se3di_handle){force.index1, force.generation}, index);
+}
+
+se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_function function,
+                                uint32_t variables, int32_t *index)
+{
+    *index = -1;
+    if (function.index1 == 0 && function.generation == 0) {
+        return SE3D_OK;
+    }
+    uint32_t dense;
+    SE3DI_TRY(find(system, &system->model.function_slots, what,
+                   (se3di_handle){function.index1, function.generation}, &dense));
+    uint32_t count = system->model.functions[dense].variable_count;
+    if (count > variables) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "%s is a function of %u variables, at most %u are allowed here", what,
+                          count, variables);
+    }
+    *index = (int32_t)dense;
+    return SE3D_OK;
+}
+
+static se3d_status check_name(se3d_system *system, const char *name)
+{
+    int bad = name[0] == '\0';
+    for (const char *c = name; *c && !bad; ++c) {
+        bad = *c == '.' || (unsigned char)*c < 0x20 || *c == 0x7f;
+    }
+    if (bad) {
+        return SE3DI_FAIL(
+            system, SE3D_ERR_INVALID_ARGUMENT,
+            "name = \"%.64s\", must not be empty and have no '.' or control characters", name);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_check_body_name(se3d_system *system, const char *name)
+{
+    if (!name) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(check_name(system, name));
+    for (size_t k = 0; k < system->model.body_slots.count; ++k) {
+        const char *other = system->model.bodies[k].name;
+        if (other && strcmp(other, name) == 0) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "name = \"%.64s\" is taken by another body, must be unique", name);
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_check_marker_name(se3d_system *system, uint32_t body, const char *name)
+{
+    if (!name) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(check_name(system, name));
+    for (size_t k = 0; k < system->model.marker_slots.count; ++k) {
+        const se3di_marker *other = &system->model.markers[k];
+        if (other->body == body && other->name && strcmp(other->name, name) == 0) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "name = \"%.64s\" is taken by another marker of this body, must be "
+                              "unique",
+                              name);
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_check_constraint_name(se3d_system *system, const char *name)
+{
+    if (!name) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(check_name(system, name));
+    for (size_t k = 0; k < system->model.constraint_slots.count; ++k) {
+        const char *other = system->model.constraints[k].name;
+        if (other && strcmp(other, name) == 0) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "name = \"%.64s\" is taken by another constraint, must be unique",
+                              name);
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_check_force_name(se3d_system *system, const char *name)
+{
+    if (!name) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(check_name(system, name));
+    for (size_t k = 0; k < system->model.force_slots.count; ++k) {
+        const char *other = system->model.forces[k].name;
+        if (other && strcmp(other, name) == 0) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "name = \"%.64s\" is taken by another force, must be unique", name);
+        }
+    }
+    return SE3D_OK;
+}

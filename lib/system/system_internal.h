@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What the files of the public layer share: the system itself and the checks of arguments. Every
+ * check records a message that names the value, the place and what is allowed. */
+#ifndef SE3DI_SYSTEM_INTERNAL_H
+#define SE3DI_SYSTEM_INTERNAL_H
+
+#include "model/model.h"
+#include "se3d/se3d.h"
+
+struct se3d_system {
+    se3di_model model;
+    se3di_error error;
+    se3d_log_callback log;
+    void *log_ctx;
+};
+
+/* Record an error on the system and return its status. */
+#define SE3DI_FAIL(system, ...) se3di_error_set(&(system)->error, __VA_ARGS__)
+
+/* `value` is finite; `what` names it ("mass"). */
+se3d_status se3di_check_finite(se3d_system *system, const char *what, double value);
+/* All of `values` are finite: "position[1] = nan, must be finite". */
+se3d_status se3di_check_finites(se3d_system *system, const char *what, const double *values,
+                                int count);
+/* `values` is finite and not zero; writes the unit vector. */
+se3d_status se3di_check_direction(se3d_system *system, const char *what, const double values[3],
+                                  double unit[3]);
+/* `p` has unit length to 1e-6; writes it normalised. */
+se3d_status se3di_check_orientation(se3d_system *system, const char *what, const double p[4],
+                                    double unit[4]);
+/* `pointer` is not NULL. */
+se3d_status se3di_check_pointer(se3d_system *system, const char *what, const void *pointer);
+/* A def struct: copies `size` = its struct_size bytes (at most full_size) over the defaults already
+ * in `copy`; fails where def is NULL, struct_size is 0 or beyond what this library knows. */
+se3d_status se3di_check_def(se3d_system *system, const char *what, const void *def, void *copy,
+                            size_t full_size);
+
+/* Dense index of a handle; fails with STALE_HANDLE and a message. */
+se3d_status se3di_find_body(se3d_system *system, const char *what, se3d_body body, uint32_t *index);
+se3d_status se3di_find_marker(se3d_system *system, const char *what, se3d_marker marker,
+                              uint32_t *index);
+se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_constraint constraint,
+                                  uint32_t *index);
+se3d_status se3di_find_force(se3d_system *system, const char *what, se3d_force force,
+                             uint32_t *index);
+/* A null handle gives -1; a function of other than `variables` variables is an error. */
+se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_function function,
+                                uint32_t variables, int32_t *index);
+
+/* `name` is well formed and free among the constraints (bodies, forces); NULL always is. */
+se3d_status se3di_check_body_name(se3d_system *system, const char *name);
+se3d_status se3di_check_marker_name(se3d_system *system, uint32_t body, const char *name);
+se3d_status se3di_check_constraint_name(se3d_system *system, const char *name);
+se3d_status se3di_check_force_name(se3d_system *system, const char *name);
+
+#endif
