@@ -48,6 +48,15 @@ foreach(dir LIBDIR INCLUDEDIR)
         set(SE3D_PC_${dir} "\${prefix}/${CMAKE_INSTALL_${dir}}")
     endif()
 endforeach()
+# Those who link statically need -L for what does not lie in the compiler's own folders.
+set(SE3D_PC_LINK_FOLDERS "")
+foreach(library lapacke openblas amd yaml)
+    cmake_path(GET SE3D_${library}_LIBRARY PARENT_PATH folder)
+    if(folder AND NOT folder IN_LIST CMAKE_C_IMPLICIT_LINK_DIRECTORIES
+       AND NOT SE3D_PC_LINK_FOLDERS MATCHES "-L${folder}( |$)")
+        string(APPEND SE3D_PC_LINK_FOLDERS " -L${folder}")
+    endif()
+endforeach()
 foreach(pc se3d se3d-io)
     if(pc STREQUAL "se3d" OR TARGET se3d_io)
         configure_file("${PROJECT_SOURCE_DIR}/pkgconfig/${pc}.pc.in"
