@@ -8,6 +8,27 @@
 #include <stdio.h>
 #include <string.h>
 
+#ifdef CONSUMER_IO
+/* A model from text: pulls in the reader and libyaml. */
+static int read_model(void)
+{
+    const char *text = "se3d: 1\n"
+                       "bodies:\n"
+                       "  - {name: bar, mass: 1, inertia: [1, 1, 1], position: [0, 0, 0]}\n";
+    se3d_model_options options = se3d_model_options_default();
+    se3d_model *model = NULL;
+    se3d_status status =
+        se3d_model_read_text(text, strlen(text), "consumer", &options, &model, NULL);
+    se3d_model_destroy(model);
+    return SE3D_FAILED(status);
+}
+#else
+static int read_model(void)
+{
+    return 0;
+}
+#endif
+
 int main(void)
 {
     se3d_system *sys = NULL;
@@ -28,6 +49,9 @@ int main(void)
         return 3;
     }
     se3d_system_destroy(sys);
+    if (read_model() != 0) {
+        return 4;
+    }
     printf("consumer: se3d %s\n", expected);
     return 0;
 }
