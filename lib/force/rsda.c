@@ -8,6 +8,8 @@
  * docs/theory/springs.md */
 #include "force/force.h"
 #include "math/vec3.h"
+#include "primitive/primitive.h"
+#include "primitive/turn_counter.h"
 
 /* The rate belongs to the angle exactly, also where the axes of the two bodies differ. */
 static double angle_rate(const se3di_term *term, const se3di_frame *i, const se3di_frame *j)

@@ -12,6 +12,7 @@
 #define SE3DI_FORMULATION_H
 
 #include "model/model.h"
+#include "primitive/primitive.h"
 
 #define SE3DI_BLOCK_MAX 8
 

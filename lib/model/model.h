@@ -15,7 +15,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/slots.h"
-#include "primitive/primitive.h"
+#include "model/term.h"
 #include "se3d/constraint.h"
 #include "se3d/expression.h"
 #include "se3d/force.h"
@@ -197,12 +197,5 @@ se3d_status se3di_function_eval(const se3di_function *function, const double *x,
                                 double *gradient);
 /* Second derivatives of the natural cubic spline through x, y into m [n]; scratch [n]. */
 void se3di_spline_build(const double *x, const double *y, size_t n, double *m, double *scratch);
-
-/* Value of a term with its coefficient; angles are unwrapped by their turn counter. */
-double se3di_term_value(const se3di_model *model, const se3di_term *term);
-/* Joint angle of a turn counter at the present frames, nearest to its last accepted one. */
-double se3di_angle_value(const se3di_model *model, uint32_t angle);
-/* Take the present joint angles as accepted. */
-void se3di_angles_accept(se3di_model *model);
 
 #endif

@@ -18,37 +18,7 @@
 #ifndef SE3DI_PRIMITIVE_H
 #define SE3DI_PRIMITIVE_H
 
-#include <stdint.h>
-
-/* Position-level and velocity-level state of a body, with what follows from it. */
-typedef struct se3di_frame {
-    double r[3];    /* centre of mass, ground frame [m] */
-    double p[4];    /* Euler parameters */
-    double A[9];    /* body -> ground, row-major, A(p) */
-    double v[3];    /* velocity of the centre of mass, ground frame [m/s] */
-    double w[3];    /* angular velocity, body frame [rad/s] */
-    double pdot[4]; /* 1/2 G(p)^T w */
-} se3di_frame;
-
-typedef enum se3di_primitive_type {
-    SE3DI_PRIMITIVE_DP1 = 0,   /* a_i . a_j */
-    SE3DI_PRIMITIVE_DP2 = 1,   /* a_i . d_ij */
-    SE3DI_PRIMITIVE_D = 2,     /* d_ij . d_ij */
-    SE3DI_PRIMITIVE_CD = 3,    /* c . d_ij, c in the ground frame */
-    SE3DI_PRIMITIVE_ANGLE = 4, /* angle from a_i to a_j about b_i (right-handed), in (-pi, pi] */
-    SE3DI_PRIMITIVE_COUNT = 5
-} se3di_primitive_type;
-
-typedef struct se3di_term {
-    int32_t type;            /* se3di_primitive_type */
-    int32_t angle;           /* ANGLE: index of the turn counter (model), -1: none */
-    uint32_t body_i, body_j; /* dense indices, 0 = ground */
-    double coefficient;      /* factor of this term in its equation */
-    double a_i[3], a_j[3];   /* directions, body frames (ANGLE: unit) */
-    double b_i[3];           /* ANGLE: unit axis on body i, square to a_i */
-    double s_i[3], s_j[3];   /* points, body frames [m] */
-    double c[3];             /* CD: direction, ground frame */
-} se3di_term;
+#include "model/term.h"
 
 typedef struct se3di_primitive {
     const char *name; /* "dp1" */

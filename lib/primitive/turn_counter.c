@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Joint angles that count turns: the principal value of the angle primitive is taken nearest to the
  * angle of the last accepted state. */
-#include "model/model.h"
+#include "primitive/turn_counter.h"
+
+#include "primitive/primitive.h"
 
 #include <math.h>
 

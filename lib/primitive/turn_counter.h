@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Values of terms at the state of a model; joint angles that count turns. */
+#ifndef SE3DI_PRIMITIVE_TURN_COUNTER_H
+#define SE3DI_PRIMITIVE_TURN_COUNTER_H
+
+#include "model/model.h"
+
+/* Value of a term with its coefficient; angles are unwrapped by their turn counter. */
+double se3di_term_value(const se3di_model *model, const se3di_term *term);
+/* Joint angle of a turn counter at the present frames, nearest to its last accepted one. */
+double se3di_angle_value(const se3di_model *model, uint32_t angle);
+/* Take the present joint angles as accepted. */
+void se3di_angles_accept(se3di_model *model);
+
+#endif
