@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Revolute: body j turns about the common axis.
+ *
+ *     cd_x, cd_y, cd_z     d = 0
+ *     dp1_a, dp1_b         ref_i . axis_j = third_i . axis_j = 0
+ *
+ * 5 equations; freedom: the angle. Never degenerate; the rows hold also for opposite axes.
+ * docs/theory/joints.md */
+#include "joint/joint.h"
+#include "joint/rows.h"
+
+void se3di_revolute_build(const se3di_joint_frames *frames, const se3d_joint_def *def,
+                          se3di_draft *draft)
+{
+    (void)frames;
+    (void)def;
+    se3di_row_add_spherical(draft);
+    se3di_row_add_perpendicular1(draft);
+}
