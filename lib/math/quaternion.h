@@ -6,8 +6,8 @@
  *     G(p)   = [-e, -tilde(e) + e0 I]            w = 2 G pdot  (w in the body frame)
  *     E(p)   = [-e,  tilde(e) + e0 I]            A = E G^T
  *     B(p,a) = 2 [(e0 I + tilde(e)) a,  e a^T - (e0 I + tilde(e)) tilde(a)]     d(A a) = B(p,a) dp
- *     K(a,y) = 2 [a.y, (a x y)^T; a x y, a y^T + y a^T - (a.y) I]               B(p,a)^T y = K(a,y)
- * p
+ *     K(a,y) = 2 [a.y, (a x y)^T; a x y, a y^T + y a^T - (a.y) I]
+ *              B(p,a)^T y = K(a,y) p
  *
  * A is homogeneous of degree 2 in p, so that B(p,a) p = 2 A a for any p. */
 #ifndef SE3DI_MATH_QUATERNION_H

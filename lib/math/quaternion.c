@@ -1,0 +1,284 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Euler parameters and rotation kernels: the formulas are in the header.  docs/theory/rotations.md
+ */
+#include "math/quaternion.h"
+
+#include "math/vec3.h"
+
+/* Below this |theta|^2 the quotients of the exponential map's tangent lose digits and their power
+ * series are used; with eight terms these are exact to rounding there. */
+#define SERIES_LIMIT 0.25
+
+static inline double polynomial(const double coefficients[8], double x)
+{
+    double sum = coefficients[7];
+    for (int k = 6; k >= 0; --k) {
+        sum = sum * x + coefficients[k];
+    }
+    return sum;
+}
+
+/* sin(t/2)/t with x = t^2 */
+static double half_sinc(double x)
+{
+    if (x < 1e-4) {
+        return 0.5 - x * (1.0 / 48.0 - x * (1.0 / 3840.0));
+    }
+    const double t = sqrt(x);
+    return sin(0.5 * t) / t;
+}
+
+/* (t - sin t)/t^3 with x = t^2 */
+static double sine_defect(double x)
+{
+    static const double series[8] = {
+        1.0 / 6.0,        -1.0 / 120.0,        1.0 / 5040.0,          -1.0 / 362880.0,
+        1.0 / 39916800.0, -1.0 / 6227020800.0, 1.0 / 1307674368000.0, -1.0 / 355687428096000.0};
+    if (x < SERIES_LIMIT) {
+        return polynomial(series, x);
+    }
+    const double t = sqrt(x);
+    return (t - sin(t)) / (x * t);
+}
+
+/* (1 - (t/2) cot(t/2))/t^2 with x = t^2; the series' coefficients are |B_2k|/(2k)! */
+static double cotangent_defect(double x)
+{
+    static const double series[8] = {1.0 / 12.0,          1.0 / 720.0,
+                                     1.0 / 30240.0,       1.0 / 1209600.0,
+                                     1.0 / 47900160.0,    691.0 / 1307674368000.0,
+                                     1.0 / 74724249600.0, 3617.0 / 10670622842880000.0};
+    if (x < SERIES_LIMIT) {
+        return polynomial(series, x);
+    }
+    const double half = 0.5 * sqrt(x);
+    return (1.0 - half * cos(half) / sin(half)) / x;
+}
+
+/* out = I + first tilde(theta) + second tilde(theta)^2 */
+static void rotation_polynomial(const double theta[3], double first, double second, double out[9])
+{
+    const double diagonal = 1.0 - second * se3di_dot(theta, theta);
+    se3di_tilde(theta, out);
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) {
+            out[3 * r + c] = first * out[3 * r + c] + second * theta[r] * theta[c];
+        }
+        out[4 * r] += diagonal;
+    }
+}
+
+void se3di_quat_to_matrix(const double p[4], double A[9])
+{
+    const double s00 = p[0] * p[0];
+    const double s11 = p[1] * p[1];
+    const double s22 = p[2] * p[2];
+    const double s33 = p[3] * p[3];
+    A[0] = s00 + s11 - s22 - s33;
+    A[1] = 2.0 * (p[1] * p[2] - p[0] * p[3]);
+    A[2] = 2.0 * (p[1] * p[3] + p[0] * p[2]);
+    A[3] = 2.0 * (p[1] * p[2] + p[0] * p[3]);
+    A[4] = s00 - s11 + s22 - s33;
+    A[5] = 2.0 * (p[2] * p[3] - p[0] * p[1]);
+    A[6] = 2.0 * (p[1] * p[3] - p[0] * p[2]);
+    A[7] = 2.0 * (p[2] * p[3] + p[0] * p[1]);
+    A[8] = s00 - s11 - s22 + s33;
+}
+
+void se3di_quat_from_matrix(const double A[9], double p[4])
+{
+    /* 4 e_k^2; dividing by the largest component keeps all digits (Shepperd's choice). */
+    const double square[4] = {1.0 + A[0] + A[4] + A[8], 1.0 + A[0] - A[4] - A[8],
+                              1.0 - A[0] + A[4] - A[8], 1.0 - A[0] - A[4] + A[8]};
+    /* The symmetric matrix 4 e_k e_l. */
+    const double product[4][4] = {
+        {square[0], A[7] - A[5], A[2] - A[6], A[3] - A[1]},
+        {A[7] - A[5], square[1], A[1] + A[3], A[2] + A[6]},
+        {A[2] - A[6], A[1] + A[3], square[2], A[5] + A[7]},
+        {A[3] - A[1], A[2] + A[6], A[5] + A[7], square[3]},
+    };
+    int largest = 0;
+    for (int k = 1; k < 4; ++k) {
+        if (square[k] > square[largest]) {
+            largest = k;
+        }
+    }
+    const double sign = product[largest][0] < 0.0 ? -1.0 : 1.0;
+    double q[4];
+    for (int k = 0; k < 4; ++k) {
+        q[k] = sign * product[largest][k];
+    }
+    (void)se3di_quat_normalize(q, p);
+}
+
+void se3di_quat_from_axis_angle(const double axis[3], double angle, double p[4])
+{
+    const double s = sin(0.5 * angle);
+    p[0] = cos(0.5 * angle);
+    p[1] = s * axis[0];
+    p[2] = s * axis[1];
+    p[3] = s * axis[2];
+}
+
+void se3di_quat_mul(const double p[4], const double q[4], double out[4])
+{
+    const double product[4] = {
+        p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+        p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+        p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3],
+        p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1],
+    };
+    for (int k = 0; k < 4; ++k) {
+        out[k] = product[k];
+    }
+}
+
+double se3di_quat_normalize(const double p[4], double out[4])
+{
+    const double norm = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+    for (int k = 0; k < 4; ++k) {
+        out[k] = p[k] / norm;
+    }
+    return norm;
+}
+
+void se3di_quat_rotate(const double p[4], const double theta[3], double out[4])
+{
+    const double x = se3di_dot(theta, theta);
+    const double s = half_sinc(x);
+    const double turn[4] = {cos(0.5 * sqrt(x)), s * theta[0], s * theta[1], s * theta[2]};
+    se3di_quat_mul(p, turn, out);
+}
+
+void se3di_quat_log(const double p[4], const double q[4], double theta[3])
+{
+    const double inverse[4] = {p[0], -p[1], -p[2], -p[3]};
+    double turn[4];
+    se3di_quat_mul(inverse, q, turn);
+    const double sign = turn[0] < 0.0 ? -1.0 : 1.0; /* the shorter way round */
+    const double sine = se3di_norm(turn + 1);
+    const double cosine = fabs(turn[0]);
+    const double factor = sine > 0.0 ? 2.0 * atan2(sine, cosine) / sine : 2.0 / cosine;
+    se3di_scale(sign * factor, turn + 1, theta);
+}
+
+void se3di_quat_rate(const double p[4], const double w[3], double pdot[4])
+{
+    se3di_g_transposed_mul(p, w, pdot);
+    for (int k = 0; k < 4; ++k) {
+        pdot[k] *= 0.5;
+    }
+}
+
+void se3di_quat_angular_velocity(const double p[4], const double pdot[4], double w[3])
+{
+    se3di_g_mul(p, pdot, w);
+    se3di_scale(2.0, w, w);
+}
+
+void se3di_quat_acceleration(const double p[4], const double w[3], const double wdot[3],
+                             double pddot[4])
+{
+    const double quarter = 0.25 * se3di_dot(w, w);
+    se3di_g_transposed_mul(p, wdot, pddot);
+    for (int k = 0; k < 4; ++k) {
+        pddot[k] = 0.5 * pddot[k] - quarter * p[k];
+    }
+}
+
+void se3di_g_transposed_mul(const double p[4], const double y[3], double out[4])
+{
+    out[0] = -p[1] * y[0] - p[2] * y[1] - p[3] * y[2];
+    out[1] = p[0] * y[0] - p[3] * y[1] + p[2] * y[2];
+    out[2] = p[0] * y[1] - p[1] * y[2] + p[3] * y[0];
+    out[3] = p[0] * y[2] - p[2] * y[0] + p[1] * y[1];
+}
+
+void se3di_g_mul(const double p[4], const double x[4], double out[3])
+{
+    out[0] = p[0] * x[1] - p[1] * x[0] + p[3] * x[2] - p[2] * x[3];
+    out[1] = p[0] * x[2] - p[2] * x[0] + p[1] * x[3] - p[3] * x[1];
+    out[2] = p[0] * x[3] - p[3] * x[0] + p[2] * x[1] - p[1] * x[2];
+}
+
+/* B(p,a) x = 2 [x0 (e0 a + e x a) + e (a.x) - e0 (a x x) - e x (a x x)], x = (x0, x) */
+void se3di_b_mul(const double p[4], const double a[3], const double x[4], double out[3])
+{
+    const double along = se3di_dot(a, x + 1);
+    double u[3]; /* x0 a - a x x */
+    se3di_cross(x + 1, a, u);
+    se3di_add_scaled(x[0], a, u);
+    double turned[3];
+    se3di_cross(p + 1, u, turned);
+    for (int k = 0; k < 3; ++k) {
+        out[k] = 2.0 * (p[0] * u[k] + turned[k] + along * p[k + 1]);
+    }
+}
+
+/* B(p,a)^T y = K(a,y) p, term by term */
+void se3di_b_transposed_mul(const double p[4], const double a[3], const double y[3], double out[4])
+{
+    const double ay = se3di_dot(a, y);
+    const double ey = se3di_dot(p + 1, y);
+    const double ea = se3di_dot(p + 1, a);
+    double n[3];
+    se3di_cross(a, y, n);
+    out[0] = 2.0 * (ay * p[0] + se3di_dot(n, p + 1));
+    for (int k = 0; k < 3; ++k) {
+        out[k + 1] = 2.0 * (p[0] * n[k] + a[k] * ey + y[k] * ea - ay * p[k + 1]);
+    }
+}
+
+void se3di_b_matrix(const double p[4], const double a[3], double B[12])
+{
+    const double ea = se3di_dot(p + 1, a);
+    double turned[3];
+    double tilde[9];
+    se3di_cross(p + 1, a, turned);
+    se3di_tilde(a, tilde);
+    for (int r = 0; r < 3; ++r) {
+        B[4 * r] = 2.0 * (p[0] * a[r] + turned[r]);
+        for (int c = 0; c < 3; ++c) {
+            /* tilde(e) tilde(a) = a e^T - (e.a) I */
+            B[4 * r + 1 + c] = 2.0 * (p[r + 1] * a[c] - a[r] * p[c + 1] - p[0] * tilde[3 * r + c]);
+        }
+        B[4 * r + 1 + r] += 2.0 * ea;
+    }
+}
+
+void se3di_k_matrix(const double a[3], const double y[3], double K[16])
+{
+    const double ay = se3di_dot(a, y);
+    double n[3];
+    se3di_cross(a, y, n);
+    K[0] = 2.0 * ay;
+    for (int r = 0; r < 3; ++r) {
+        K[1 + r] = 2.0 * n[r];
+        K[4 * (r + 1)] = 2.0 * n[r];
+        for (int c = 0; c < 3; ++c) {
+            K[4 * (r + 1) + 1 + c] = 2.0 * (a[r] * y[c] + y[r] * a[c]);
+        }
+        K[5 * (r + 1)] -= 2.0 * ay;
+    }
+}
+
+void se3di_g_matrix(const double p[4], double G[12])
+{
+    const double rows[12] = {-p[1], p[0], p[3],  -p[2], -p[2], -p[3],
+                             p[0],  p[1], -p[3], p[2],  -p[1], p[0]};
+    for (int k = 0; k < 12; ++k) {
+        G[k] = rows[k];
+    }
+}
+
+void se3di_exp_tangent(const double theta[3], double T[9])
+{
+    const double x = se3di_dot(theta, theta);
+    const double s = half_sinc(x);
+    rotation_polynomial(theta, -2.0 * s * s, sine_defect(x), T); /* 1 - cos t = 2 sin^2(t/2) */
+}
+
+void se3di_exp_tangent_inverse(const double theta[3], double Tinv[9])
+{
+    rotation_polynomial(theta, 0.5, cotangent_defect(se3di_dot(theta, theta)), Tinv);
+}
