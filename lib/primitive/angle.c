@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* ANGLE: the angle from a_i to a_j about the axis b_i is prescribed.
+ *
+ *     Phi     = theta = atan2(s, c),  c = f.h,  s = g.h,  q = c^2 + s^2
+ *               f = A_i a_i,  g = A_i (b_i x a_i),  h = A_j a_j       (c and s are DP1)
+ *     With the complex logarithm rho + i theta = log(c + i s), rho = log(q)/2, and the vectors of
+ *     body i  m = (c (b_i x a_i) - s a_i)/q  and  n = (c a_i + s (b_i x a_i))/q  held fixed:
+ *     theta_q = Jacobian of DP1(m, a_j)             rho_q = Jacobian of DP1(n, a_j)
+ *     gamma   = gamma of DP1(m, a_j) + 2 (theta_q qdot) (rho_q qdot)
+ *     theta_qq = curvature of DP1(m, a_j) - theta_q^T rho_q - rho_q^T theta_q
+ *     in both formulations.
+ *
+ * Removes one rotational degree of freedom, at every angle; degenerate only where a_j is parallel
+ * to b_i (q = 0): all functions are NaN there.  docs/theory/angle.md */
+#include "primitive/dot.h"
+#include "primitive/table.h"
+
+typedef struct angle_vectors {
+    double m[3], n[3]; /* body i; NaN where q = 0 */
+} angle_vectors;
+
+/* c and s of the head. */
+static inline void cosine_and_sine(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                                   double g[3], double cs[2])
+{
+    double h[3];
+    double local[3]; /* A_i^T h */
+    se3di_cross(t->b_i, t->a_i, g);
+    se3di_mul(j->A, t->a_j, h);
+    se3di_mul_transposed(i->A, h, local);
+    cs[0] = se3di_dot(t->a_i, local);
+    cs[1] = se3di_dot(g, local);
+}
+
+static inline angle_vectors vectors_of(const se3di_term *t, const se3di_frame *i,
+                                       const se3di_frame *j)
+{
+    double g[3];
+    double cs[2];
+    cosine_and_sine(t, i, j, g, cs);
+    const double q = cs[0] * cs[0] + cs[1] * cs[1];
+    angle_vectors x;
+    for (int k = 0; k < 3; ++k) {
+        x.m[k] = (cs[0] * g[k] - cs[1] * t->a_i[k]) / q;
+        x.n[k] = (cs[0] * t->a_i[k] + cs[1] * g[k]) / q;
+    }
+    return x;
+}
+
+double se3di_angle_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+{
+    double g[3];
+    double cs[2];
+    cosine_and_sine(t, i, j, g, cs);
+    if (cs[0] * cs[0] + cs[1] * cs[1] == 0.0) {
+        return (double)NAN;
+    }
+    return atan2(cs[1] + 0.0, cs[0]); /* + 0.0: s = -0 is at pi, not -pi */
+}
+
+void se3di_angle_jacobian_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                                 double phi_i[6], double phi_j[6])
+{
+    const angle_vectors x = vectors_of(t, i, j);
+    for (int k = 0; k < 3; ++k) {
+        phi_i[k] = phi_j[k] = 0.0;
+    }
+    se3di_dot_gradient_romega(i, x.m, j, t->a_j, phi_i + 3, phi_j + 3);
+}
+
+void se3di_angle_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                             double phi_i[7], double phi_j[7])
+{
+    const angle_vectors x = vectors_of(t, i, j);
+    for (int k = 0; k < 3; ++k) {
+        phi_i[k] = phi_j[k] = 0.0;
+    }
+    se3di_dot_gradient_rp(i, x.m, j, t->a_j, phi_i + 3, phi_j + 3);
+}
+
+double se3di_angle_gamma_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+{
+    const angle_vectors x = vectors_of(t, i, j);
+    return se3di_dot_gamma_romega(i, x.m, j, t->a_j) +
+           2.0 * se3di_dot_rate_romega(i, x.m, j, t->a_j) *
+               se3di_dot_rate_romega(i, x.n, j, t->a_j);
+}
+
+double se3di_angle_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+{
+    const angle_vectors x = vectors_of(t, i, j);
+    return se3di_dot_gamma_rp(i, x.m, j, t->a_j) +
+           2.0 * se3di_dot_rate_rp(i, x.m, j, t->a_j) * se3di_dot_rate_rp(i, x.n, j, t->a_j);
+}
+
+/* H -= lambda (theta_q^T rho_q + rho_q^T theta_q), where theta_q and rho_q hold the `half`
+ * rotational entries of body i and then those of body j; H has n columns, 3 of translation before
+ * each half. */
+static inline void add_rank_two(double *H, int n, double lambda, const double *theta_q,
+                                const double *rho_q, int half)
+{
+    for (int r = 0; r < 2 * half; ++r) {
+        double *row = H + n * (r < half ? 3 + r : 6 + r);
+        const double a = lambda * theta_q[r];
+        const double b = lambda * rho_q[r];
+        for (int c = 0; c < half; ++c) {
+            row[3 + c] -= a * rho_q[c] + b * theta_q[c];
+            row[6 + half + c] -= a * rho_q[half + c] + b * theta_q[half + c];
+        }
+    }
+}
+
+void se3di_angle_curvature_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                                  double lambda, double H[144])
+{
+    const angle_vectors x = vectors_of(t, i, j);
+    double theta_q[6];
+    double rho_q[6];
+    se3di_dot_gradient_romega(i, x.m, j, t->a_j, theta_q, theta_q + 3);
+    se3di_dot_gradient_romega(i, x.n, j, t->a_j, rho_q, rho_q + 3);
+    se3di_dot_curvature_romega(i, x.m, j, t->a_j, lambda, H);
+    add_rank_two(H, SE3DI_ROMEGA_TOTAL, lambda, theta_q, rho_q, 3);
+}
+
+void se3di_angle_curvature_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                              double lambda, double H[196])
+{
+    const angle_vectors x = vectors_of(t, i, j);
+    double theta_q[8];
+    double rho_q[8];
+    se3di_dot_gradient_rp(i, x.m, j, t->a_j, theta_q, theta_q + 4);
+    se3di_dot_gradient_rp(i, x.n, j, t->a_j, rho_q, rho_q + 4);
+    se3di_dot_curvature_rp(i, x.m, j, t->a_j, lambda, H);
+    add_rank_two(H, SE3DI_RP_TOTAL, lambda, theta_q, rho_q, 4);
+}

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* DP2: the component of the distance between two points along a direction on body i is prescribed.
+ *
+ *     Phi     = u.d,  u = A_i a_i,  d = r_j + A_j s_j - r_i - A_i s_i
+ *     r-omega   phi_i = [-u, a_i x (A_i^T d + s_i)]            phi_j = [u, s_j x A_j^T u]
+ *     r-p       phi_i = [-u, B(p_i,a_i)^T d - B(p_i,s_i)^T u]  phi_j = [u, B(p_j,s_j)^T u]
+ *     gamma   = - d.u'' - 2 udot.ddot - u.d''
+ *     r-omega   u'' = A_i (w_i x (w_i x a_i)),  d'' = A_j (w_j x (w_j x s_j)) - A_i (w_i x (w_i x
+ * s_i)) r-p       u'' = B(pdot_i,a_i) pdot_i,     d'' = B(pdot_j,s_j) pdot_j - B(pdot_i,s_i) pdot_i
+ *
+ * Removes one degree of freedom: with f = 0 point j stays in the plane through point i normal to u.
+ * Never degenerate for a_i /= 0.  docs/theory/dp2.md */
+#include "primitive/kernel.h"
+#include "primitive/table.h"
+
+double se3di_dp2_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+{
+    double u[3];
+    double d[3];
+    se3di_mul(i->A, t->a_i, u);
+    se3di_term_distance(t, i, j, d);
+    return se3di_dot(u, d);
+}
+
+void se3di_dp2_jacobian_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                               double phi_i[6], double phi_j[6])
+{
+    double d[3];
+    double local[3]; /* A_i^T d + s_i */
+    se3di_term_distance(t, i, j, d);
+    se3di_mul_transposed(i->A, d, local);
+    se3di_add(local, t->s_i, local);
+    se3di_mul(i->A, t->a_i, phi_j);
+    se3di_scale(-1.0, phi_j, phi_i);
+    se3di_cross(t->a_i, local, phi_i + 3);
+    se3di_romega_gradient(j, t->s_j, phi_j, phi_j + 3);
+}
+
+void se3di_dp2_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                           double phi_i[7], double phi_j[7])
+{
+    double d[3];
+    double arm[4];
+    se3di_term_distance(t, i, j, d);
+    se3di_mul(i->A, t->a_i, phi_j);
+    se3di_scale(-1.0, phi_j, phi_i);
+    se3di_rp_gradient(i, t->a_i, d, phi_i + 3);
+    se3di_rp_gradient(i, t->s_i, phi_j, arm);
+    for (int k = 0; k < 4; ++k) {
+        phi_i[3 + k] -= arm[k];
+    }
+    se3di_rp_gradient(j, t->s_j, phi_j, phi_j + 3);
+}
+
+double se3di_dp2_gamma_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+{
+    double u[3];
+    double d[3];
+    double udot[3];
+    double ddot[3];
+    double u_term[3];
+    double d_term[3];
+    se3di_mul(i->A, t->a_i, u);
+    se3di_term_distance(t, i, j, d);
+    se3di_romega_rate(i, t->a_i, udot);
+    se3di_romega_distance_rate(t, i, j, ddot);
+    se3di_romega_velocity_term(i, t->a_i, u_term);
+    se3di_romega_distance_velocity_term(t, i, j, d_term);
+    return -se3di_dot(d, u_term) - 2.0 * se3di_dot(udot, ddot) - se3di_dot(u, d_term);
+}
+
+double se3di_dp2_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+{
+    double u[3];
+    double d[3];
+    double udot[3];
+    double ddot[3];
+    double u_term[3];
+    double d_term[3];
+    se3di_mul(i->A, t->a_i, u);
+    se3di_term_distance(t, i, j, d);
+    se3di_rp_rate(i, t->a_i, udot);
+    se3di_rp_distance_rate(t, i, j, ddot);
+    se3di_rp_velocity_term(i, t->a_i, u_term);
+    se3di_rp_distance_velocity_term(t, i, j, d_term);
+    return -se3di_dot(d, u_term) - 2.0 * se3di_dot(udot, ddot) - se3di_dot(u, d_term);
+}
+
+/* With U and D the derivatives of u and d: U^T D + D^T U, and the second derivatives of A_i a_i,
+ * A_i s_i and A_j s_j. */
+void se3di_dp2_curvature_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                                double lambda, double H[144])
+{
+    enum { N = SE3DI_ROMEGA_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_ROMEGA };
+    double u[3];
+    double d[3];
+    double U[9];
+    double D[3 * N];
+    se3di_mul(i->A, t->a_i, u);
+    se3di_term_distance(t, i, j, d);
+    se3di_romega_derivative(i, t->a_i, U);
+    se3di_romega_distance_derivative(t, i, j, D);
+    se3di_block_add_product(se3di_block(H, N, I, 0), N, lambda, U, 3, D, N);
+    se3di_block_add_product(se3di_block(H, N, 0, I), N, lambda, D, N, U, 3);
+    se3di_romega_add_curvature(se3di_block(H, N, I, I), i, lambda, t->a_i, d);
+    se3di_romega_add_curvature(se3di_block(H, N, I, I), i, -lambda, t->s_i, u);
+    se3di_romega_add_curvature(se3di_block(H, N, J, J), j, lambda, t->s_j, u);
+}
+
+void se3di_dp2_curvature_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                            double lambda, double H[196])
+{
+    enum { N = SE3DI_RP_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_RP };
+    double u[3];
+    double d[3];
+    double U[12];
+    double D[3 * N];
+    se3di_mul(i->A, t->a_i, u);
+    se3di_term_distance(t, i, j, d);
+    se3di_rp_derivative(i, t->a_i, U);
+    se3di_rp_distance_derivative(t, i, j, D);
+    se3di_block_add_product(se3di_block(H, N, I, 0), N, lambda, U, 4, D, N);
+    se3di_block_add_product(se3di_block(H, N, 0, I), N, lambda, D, N, U, 4);
+    se3di_rp_add_curvature(se3di_block(H, N, I, I), lambda, t->a_i, d);
+    se3di_rp_add_curvature(se3di_block(H, N, I, I), -lambda, t->s_i, u);
+    se3di_rp_add_curvature(se3di_block(H, N, J, J), lambda, t->s_j, u);
+}
