@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The two evaluators of bytecode.
+ *
+ * A jet carries a value and derivatives through every operation by the chain rule:
+ *
+ *     y = f(u):     y_i = f_u u_i,              y'' = f_u u'' + f_uu u'^2
+ *     y = f(a, b):  y_i = f_a a_i + f_b b_i,    y'' = f_a a'' + f_b b'' + f_aa a'^2 + 2 f_ab a' b'
+ *                                                     + f_bb b'^2
+ *
+ * with first derivatives along all variables (struct slope) or first and second along the first
+ * variable (struct jet). The masks of an instruction say on which variables an operand depends:
+ * a term that is zero for that reason stays zero also where f_u is infinite. */
+#include "expression/functions.h"
+#include "expression/program.h"
+#include "se3d/expression.h"
+
+#include <math.h>
+
+/* ---- value, first and second derivative with respect to variable 0 --------------------------*/
+
+typedef struct jet {
+    double f, t, tt;
+} jet;
+
+static inline jet jet_subtract(jet a, jet b)
+{
+    return (jet){a.f - b.f, a.t - b.t, a.tt - b.tt};
+}
+
+static inline jet jet_multiply(jet a, jet b)
+{
+    return (jet){a.f * b.f, a.t * b.f + a.f * b.t, a.tt * b.f + 2.0 * a.t * b.t + a.f * b.tt};
+}
+
+static inline jet jet_divide(jet a, jet b)
+{
+    jet q;
+    q.f = a.f / b.f;
+    q.t = (a.t - q.f * b.t) / b.f;
+    q.tt = (a.tt - 2.0 * q.t * b.t - q.f * b.tt) / b.f;
+    return q;
+}
+
+static inline void jet_chain(jet *u, const double d[3], unsigned mask)
+{
+    int depends = (mask & 1u) != 0;
+    u->tt = depends ? d[1] * u->tt + d[2] * u->t * u->t : 0.0;
+    u->t = depends ? d[1] * u->t : 0.0;
+    u->f = d[0];
+}
+
+static void jet_chain2(jet *a, jet b, const se3di_partials *d, const se3di_instruction *in)
+{
+    double t = 0.0, tt = 0.0;
+    if (in->mask_a & 1u) {
+        t = d->a * a->t;
+        tt = d->a * a->tt + d->aa * a->t * a->t;
+    }
+    if (in->mask_b & 1u) {
+        t += d->b * b.t;
+        tt += d->b * b.tt + d->bb * b.t * b.t;
+    }
+    if (in->mask_a & in->mask_b & 1u) {
+        tt += 2.0 * d->ab * a->t * b.t;
+    }
+    *a = (jet){d->f, t, tt};
+}
+
+/* s = x, x0, h0, x1, h1; the result replaces x. */
+static void jet_step(jet s[5])
+{
+    jet u = jet_divide(jet_subtract(s[0], s[1]), jet_subtract(s[3], s[1]));
+    if (!isfinite(u.f)) {
+        s[0] = (jet){(double)NAN, (double)NAN, (double)NAN};
+    } else if (u.f <= 0.0) {
+        s[0] = s[2];
+    } else if (u.f >= 1.0) {
+        s[0] = s[4];
+    } else {
+        double d[3];
+        se3di_function_smooth_step(u.f, d);
+        jet_chain(&u, d, 1u);
+        jet rise = jet_multiply(jet_subtract(s[4], s[2]), u);
+        s[0] = (jet){s[2].f + rise.f, s[2].t + rise.t, s[2].tt + rise.tt};
+    }
+}
+
+static void jet_binary(jet *a, const se3di_instruction *in)
+{
+    se3di_partials d;
+    se3di_functions[in->function].binary(a[0].f, a[1].f, &d);
+    jet_chain2(a, a[1], &d, in);
+}
+
+static void jet_select(jet *a, const se3di_instruction *in)
+{
+    se3di_partials d;
+    se3di_functions[in->function].binary(a[0].f, a[1].f, &d);
+    if (d.b != 0.0) {
+        a[0] = a[1];
+    }
+    a[0].f = d.f; /* NaN where either is */
+}
+
+/* A condition that is NaN takes no branch: the result becomes NaN. */
+static inline uint32_t branch(double condition, uint32_t jump, double *poison)
+{
+    if (isnan(condition)) {
+        *poison = condition;
+    }
+    return condition == 0.0 ? jump : 0;
+}
+
+void se3di_program_eval_time(const se3di_instruction *code, size_t count, const double *x,
+                             double out[3])
+{
+    jet stack[SE3DI_PROGRAM_STACK + 1]; /* values begin at stack[1] */
+    jet *top = stack;
+    double poison = 0.0, d[3];
+    for (const se3di_instruction *in = code, *end = code + count; in != end; ++in) {
+        switch ((se3di_op)in->op) {
+        case SE3DI_OP_CONSTANT:
+            *++top = (jet){in->value, 0.0, 0.0};
+            break;
+        case SE3DI_OP_VARIABLE:
+            *++top = (jet){x[in->function], in->mask_a & 1u, 0.0};
+            break;
+        case SE3DI_OP_ADD:
+            --top;
+            *top = (jet){top[0].f + top[1].f, top[0].t + top[1].t, top[0].tt + top[1].tt};
+            break;
+        case SE3DI_OP_SUBTRACT:
+            --top;
+            *top = jet_subtract(top[0], top[1]);
+            break;
+        case SE3DI_OP_MULTIPLY:
+            --top;
+            *top = jet_multiply(top[0], top[1]);
+            break;
+        case SE3DI_OP_DIVIDE:
+            --top;
+            *top = jet_divide(top[0], top[1]);
+            break;
+        case SE3DI_OP_SHIFT:
+            top->f += in->value;
+            break;
+        case SE3DI_OP_SCALE:
+            *top = (jet){top->f * in->value, top->t * in->value, top->tt * in->value};
+            break;
+        case SE3DI_OP_POWER:
+            se3di_function_power(top->f, in->value, d);
+            jet_chain(top, d, in->mask_a);
+            break;
+        case SE3DI_OP_UNARY:
+            se3di_functions[in->function].unary(top->f, d);
+            jet_chain(top, d, in->mask_a);
+            break;
+        case SE3DI_OP_BINARY:
+            jet_binary(--top, in);
+            break;
+        case SE3DI_OP_SELECT:
+            jet_select(--top, in);
+            break;
+        case SE3DI_OP_STEP:
+            jet_step(top -= 4);
+            break;
+        case SE3DI_OP_JUMP:
+            in += in->jump;
+            break;
+        case SE3DI_OP_JUMP_IF_ZERO:
+            in += branch((top--)->f, in->jump, &poison);
+            break;
+        }
+    }
+    out[0] = top->f + poison;
+    out[1] = top->t + poison;
+    out[2] = top->tt + poison;
+}
+
+/* ---- value and first derivatives with respect to all variables ------------------------------*/
+
+typedef struct slope {
+    double f, x[SE3D_EXPRESSION_VARIABLE_MAX];
+} slope;
+
+/* a_k = da a_k + db b_k */
+static inline void slope_combine(slope *a, const slope *b, double da, double db, size_t n)
+{
+    for (size_t k = 0; k < n; ++k) {
+        a->x[k] = da * a->x[k] + db * b->x[k];
+    }
+}
+
+static inline void slope_chain(slope *u, const double d[3], unsigned mask, size_t n)
+{
+    u->f = d[0];
+    for (size_t k = 0; k < n; ++k) {
+        u->x[k] = mask >> k & 1u ? d[1] * u->x[k] : 0.0;
+    }
+}
+
+static void slope_divide(slope *a, const slope *b, size_t n)
+{
+    a->f /= b->f;
+    for (size_t k = 0; k < n; ++k) {
+        a->x[k] = (a->x[k] - a->f * b->x[k]) / b->f;
+    }
+}
+
+static void slope_binary(slope *a, const se3di_instruction *in, size_t n)
+{
+    se3di_partials d;
+    se3di_functions[in->function].binary(a[0].f, a[1].f, &d);
+    a->f = d.f;
+    for (size_t k = 0; k < n; ++k) {
+        double y = in->mask_a >> k & 1u ? d.a * a[0].x[k] : 0.0;
+        a->x[k] = in->mask_b >> k & 1u ? y + d.b * a[1].x[k] : y;
+    }
+}
+
+static void slope_select(slope *a, const se3di_instruction *in)
+{
+    se3di_partials d;
+    se3di_functions[in->function].binary(a[0].f, a[1].f, &d);
+    if (d.b != 0.0) {
+        a[0] = a[1];
+    }
+    a[0].f = d.f;
+}
+
+/* As jet_step. */
+static void slope_step(slope s[5], size_t n)
+{
+    slope u = s[0], width = s[3], rise = s[4];
+    double d[3];
+    u.f -= s[1].f;
+    slope_combine(&u, &s[1], 1.0, -1.0, n);
+    width.f -= s[1].f;
+    slope_combine(&width, &s[1], 1.0, -1.0, n);
+    slope_divide(&u, &width, n);
+    if (!isfinite(u.f)) {
+        d[0] = d[1] = (double)NAN;
+        slope_chain(s, d, ~0u, n);
+    } else if (u.f <= 0.0) {
+        s[0] = s[2];
+    } else if (u.f >= 1.0) {
+        s[0] = s[4];
+    } else {
+        se3di_function_smooth_step(u.f, d);
+        slope_chain(&u, d, ~0u, n);
+        rise.f -= s[2].f;
+        slope_combine(&rise, &s[2], 1.0, -1.0, n);
+        slope_combine(&rise, &u, u.f, rise.f, n);
+        s[0].f = s[2].f + rise.f * u.f;
+        for (size_t k = 0; k < n; ++k) {
+            s[0].x[k] = s[2].x[k] + rise.x[k];
+        }
+    }
+}
+
+static inline void slope_push(slope *top, double f, unsigned mask, size_t n)
+{
+    top->f = f;
+    for (size_t k = 0; k < n; ++k) {
+        top->x[k] = mask >> k & 1u;
+    }
+}
+
+void se3di_program_eval(const se3di_instruction *code, size_t count, const double *x, size_t n,
+                        double *result)
+{
+    slope stack[SE3DI_PROGRAM_STACK + 1]; /* values begin at stack[1] */
+    slope *top = stack;
+    double poison = 0.0, d[3];
+    for (const se3di_instruction *in = code, *end = code + count; in != end; ++in) {
+        switch ((se3di_op)in->op) {
+        case SE3DI_OP_CONSTANT:
+            slope_push(++top, in->value, 0u, n);
+            break;
+        case SE3DI_OP_VARIABLE:
+            slope_push(++top, x[in->function], in->mask_a, n);
+            break;
+        case SE3DI_OP_ADD:
+            --top;
+            top->f += top[1].f;
+            slope_combine(top, top + 1, 1.0, 1.0, n);
+            break;
+        case SE3DI_OP_SUBTRACT:
+            --top;
+            top->f -= top[1].f;
+            slope_combine(top, top + 1, 1.0, -1.0, n);
+            break;
+        case SE3DI_OP_MULTIPLY:
+            --top;
+            slope_combine(top, top + 1, top[1].f, top[0].f, n);
+            top->f *= top[1].f;
+            break;
+        case SE3DI_OP_DIVIDE:
+            --top;
+            slope_divide(top, top + 1, n);
+            break;
+        case SE3DI_OP_SHIFT:
+            top->f += in->value;
+            break;
+        case SE3DI_OP_SCALE:
+            top->f *= in->value;
+            for (size_t k = 0; k < n; ++k) {
+                top->x[k] *= in->value;
+            }
+            break;
+        case SE3DI_OP_POWER:
+            se3di_function_power(top->f, in->value, d);
+            slope_chain(top, d, in->mask_a, n);
+            break;
+        case SE3DI_OP_UNARY:
+            se3di_functions[in->function].unary(top->f, d);
+            slope_chain(top, d, in->mask_a, n);
+            break;
+        case SE3DI_OP_BINARY:
+            slope_binary(--top, in, n);
+            break;
+        case SE3DI_OP_SELECT:
+            slope_select(--top, in);
+            break;
+        case SE3DI_OP_STEP:
+            slope_step(top -= 4, n);
+            break;
+        case SE3DI_OP_JUMP:
+            in += in->jump;
+            break;
+        case SE3DI_OP_JUMP_IF_ZERO:
+            in += branch((top--)->f, in->jump, &poison);
+            break;
+        }
+    }
+    result[0] = top->f + poison;
+    for (size_t k = 0; k < n; ++k) {
+        result[1 + k] = top->x[k] + poison;
+    }
+}

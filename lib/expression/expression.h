@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Expressions, for the layers above: the public interface and what only the library may do. */
+#ifndef SE3DI_EXPRESSION_EXPRESSION_H
+#define SE3DI_EXPRESSION_EXPRESSION_H
+
+#include "base/alloc.h"
+#include "se3d/expression.h"
+
+/* Deep copy with another allocator. On failure *out is NULL. */
+se3d_status se3di_expression_clone(const se3d_expression *expression,
+                                   const se3d_allocator *allocator, se3d_expression **out);
+
+/* Number of variables it was compiled for. */
+size_t se3di_expression_variable_count(const se3d_expression *expression);
+
+#endif
