@@ -47,7 +47,7 @@ static inline angle_vectors vectors_of(const se3di_term *t, const se3di_frame *i
     return x;
 }
 
-double se3di_angle_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_angle_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
 {
     double g[3];
     double cs[2];
@@ -58,8 +58,8 @@ double se3di_angle_value(const se3di_term *t, const se3di_frame *i, const se3di_
     return atan2(cs[1] + 0.0, cs[0]); /* + 0.0: s = -0 is at pi, not -pi */
 }
 
-void se3di_angle_jacobian_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                                 double phi_i[6], double phi_j[6])
+void se3di_primitive_angle_jacobian_romega(const se3di_term *t, const se3di_frame *i,
+                                           const se3di_frame *j, double phi_i[6], double phi_j[6])
 {
     const angle_vectors x = vectors_of(t, i, j);
     for (int k = 0; k < 3; ++k) {
@@ -68,8 +68,8 @@ void se3di_angle_jacobian_romega(const se3di_term *t, const se3di_frame *i, cons
     se3di_dot_gradient_romega(i, x.m, j, t->a_j, phi_i + 3, phi_j + 3);
 }
 
-void se3di_angle_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                             double phi_i[7], double phi_j[7])
+void se3di_primitive_angle_jacobian_rp(const se3di_term *t, const se3di_frame *i,
+                                       const se3di_frame *j, double phi_i[7], double phi_j[7])
 {
     const angle_vectors x = vectors_of(t, i, j);
     for (int k = 0; k < 3; ++k) {
@@ -78,7 +78,8 @@ void se3di_angle_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se
     se3di_dot_gradient_rp(i, x.m, j, t->a_j, phi_i + 3, phi_j + 3);
 }
 
-double se3di_angle_gamma_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_angle_gamma_romega(const se3di_term *t, const se3di_frame *i,
+                                          const se3di_frame *j)
 {
     const angle_vectors x = vectors_of(t, i, j);
     return se3di_dot_gamma_romega(i, x.m, j, t->a_j) +
@@ -86,7 +87,8 @@ double se3di_angle_gamma_romega(const se3di_term *t, const se3di_frame *i, const
                se3di_dot_rate_romega(i, x.n, j, t->a_j);
 }
 
-double se3di_angle_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_angle_gamma_rp(const se3di_term *t, const se3di_frame *i,
+                                      const se3di_frame *j)
 {
     const angle_vectors x = vectors_of(t, i, j);
     return se3di_dot_gamma_rp(i, x.m, j, t->a_j) +
@@ -110,8 +112,8 @@ static inline void add_rank_two(double *H, int n, double lambda, const double *t
     }
 }
 
-void se3di_angle_curvature_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                                  double lambda, double H[144])
+void se3di_primitive_angle_curvature_romega(const se3di_term *t, const se3di_frame *i,
+                                            const se3di_frame *j, double lambda, double H[144])
 {
     const angle_vectors x = vectors_of(t, i, j);
     double theta_q[6];
@@ -122,8 +124,8 @@ void se3di_angle_curvature_romega(const se3di_term *t, const se3di_frame *i, con
     add_rank_two(H, SE3DI_ROMEGA_TOTAL, lambda, theta_q, rho_q, 3);
 }
 
-void se3di_angle_curvature_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                              double lambda, double H[196])
+void se3di_primitive_angle_curvature_rp(const se3di_term *t, const se3di_frame *i,
+                                        const se3di_frame *j, double lambda, double H[196])
 {
     const angle_vectors x = vectors_of(t, i, j);
     double theta_q[8];

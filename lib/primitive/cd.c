@@ -12,15 +12,15 @@
 #include "primitive/kernel.h"
 #include "primitive/table.h"
 
-double se3di_cd_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_cd_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
 {
     double d[3];
     se3di_term_distance(t, i, j, d);
     return se3di_dot(t->c, d);
 }
 
-void se3di_cd_jacobian_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                              double phi_i[6], double phi_j[6])
+void se3di_primitive_cd_jacobian_romega(const se3di_term *t, const se3di_frame *i,
+                                        const se3di_frame *j, double phi_i[6], double phi_j[6])
 {
     se3di_copy(t->c, phi_j);
     se3di_scale(-1.0, t->c, phi_i);
@@ -28,8 +28,8 @@ void se3di_cd_jacobian_romega(const se3di_term *t, const se3di_frame *i, const s
     se3di_romega_gradient(j, t->s_j, phi_j, phi_j + 3);
 }
 
-void se3di_cd_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                          double phi_i[7], double phi_j[7])
+void se3di_primitive_cd_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                                    double phi_i[7], double phi_j[7])
 {
     se3di_copy(t->c, phi_j);
     se3di_scale(-1.0, t->c, phi_i);
@@ -37,22 +37,23 @@ void se3di_cd_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di
     se3di_rp_gradient(j, t->s_j, phi_j, phi_j + 3);
 }
 
-double se3di_cd_gamma_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_cd_gamma_romega(const se3di_term *t, const se3di_frame *i,
+                                       const se3di_frame *j)
 {
     double d_term[3];
     se3di_romega_distance_velocity_term(t, i, j, d_term);
     return -se3di_dot(t->c, d_term);
 }
 
-double se3di_cd_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_cd_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
 {
     double d_term[3];
     se3di_rp_distance_velocity_term(t, i, j, d_term);
     return -se3di_dot(t->c, d_term);
 }
 
-void se3di_cd_curvature_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                               double lambda, double H[144])
+void se3di_primitive_cd_curvature_romega(const se3di_term *t, const se3di_frame *i,
+                                         const se3di_frame *j, double lambda, double H[144])
 {
     enum { N = SE3DI_ROMEGA_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_ROMEGA };
     se3di_romega_add_curvature(se3di_block(H, N, I, I), i, -lambda, t->s_i, t->c);
@@ -60,8 +61,8 @@ void se3di_cd_curvature_romega(const se3di_term *t, const se3di_frame *i, const 
 }
 
 /* Independent of the pose: CD is quadratic in p. */
-void se3di_cd_curvature_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                           double lambda, double H[196])
+void se3di_primitive_cd_curvature_rp(const se3di_term *t, const se3di_frame *i,
+                                     const se3di_frame *j, double lambda, double H[196])
 {
     enum { N = SE3DI_RP_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_RP };
     (void)i;

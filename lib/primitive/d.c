@@ -13,15 +13,15 @@
 #include "primitive/kernel.h"
 #include "primitive/table.h"
 
-double se3di_d_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_d_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
 {
     double d[3];
     se3di_term_distance(t, i, j, d);
     return se3di_dot(d, d);
 }
 
-void se3di_d_jacobian_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                             double phi_i[6], double phi_j[6])
+void se3di_primitive_d_jacobian_romega(const se3di_term *t, const se3di_frame *i,
+                                       const se3di_frame *j, double phi_i[6], double phi_j[6])
 {
     se3di_term_distance(t, i, j, phi_j);
     se3di_scale(2.0, phi_j, phi_j);
@@ -30,8 +30,8 @@ void se3di_d_jacobian_romega(const se3di_term *t, const se3di_frame *i, const se
     se3di_romega_gradient(j, t->s_j, phi_j, phi_j + 3);
 }
 
-void se3di_d_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                         double phi_i[7], double phi_j[7])
+void se3di_primitive_d_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                                   double phi_i[7], double phi_j[7])
 {
     se3di_term_distance(t, i, j, phi_j);
     se3di_scale(2.0, phi_j, phi_j);
@@ -40,7 +40,8 @@ void se3di_d_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_
     se3di_rp_gradient(j, t->s_j, phi_j, phi_j + 3);
 }
 
-double se3di_d_gamma_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_d_gamma_romega(const se3di_term *t, const se3di_frame *i,
+                                      const se3di_frame *j)
 {
     double d[3];
     double ddot[3];
@@ -51,7 +52,7 @@ double se3di_d_gamma_romega(const se3di_term *t, const se3di_frame *i, const se3
     return -2.0 * (se3di_dot(ddot, ddot) + se3di_dot(d, d_term));
 }
 
-double se3di_d_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_d_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
 {
     double d[3];
     double ddot[3];
@@ -63,8 +64,8 @@ double se3di_d_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_f
 }
 
 /* With D the derivative of d: 2 D^T D, and the second derivatives of A_i s_i and A_j s_j. */
-void se3di_d_curvature_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                              double lambda, double H[144])
+void se3di_primitive_d_curvature_romega(const se3di_term *t, const se3di_frame *i,
+                                        const se3di_frame *j, double lambda, double H[144])
 {
     enum { N = SE3DI_ROMEGA_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_ROMEGA };
     double d[3];
@@ -76,8 +77,8 @@ void se3di_d_curvature_romega(const se3di_term *t, const se3di_frame *i, const s
     se3di_romega_add_curvature(se3di_block(H, N, J, J), j, 2.0 * lambda, t->s_j, d);
 }
 
-void se3di_d_curvature_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                          double lambda, double H[196])
+void se3di_primitive_d_curvature_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
+                                    double lambda, double H[196])
 {
     enum { N = SE3DI_RP_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_RP };
     double d[3];

@@ -14,13 +14,13 @@
 #include "primitive/dot.h"
 #include "primitive/table.h"
 
-double se3di_dp1_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_dp1_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
 {
     return se3di_dot_value(i, t->a_i, j, t->a_j);
 }
 
-void se3di_dp1_jacobian_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                               double phi_i[6], double phi_j[6])
+void se3di_primitive_dp1_jacobian_romega(const se3di_term *t, const se3di_frame *i,
+                                         const se3di_frame *j, double phi_i[6], double phi_j[6])
 {
     for (int k = 0; k < 3; ++k) {
         phi_i[k] = phi_j[k] = 0.0;
@@ -28,8 +28,8 @@ void se3di_dp1_jacobian_romega(const se3di_term *t, const se3di_frame *i, const 
     se3di_dot_gradient_romega(i, t->a_i, j, t->a_j, phi_i + 3, phi_j + 3);
 }
 
-void se3di_dp1_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                           double phi_i[7], double phi_j[7])
+void se3di_primitive_dp1_jacobian_rp(const se3di_term *t, const se3di_frame *i,
+                                     const se3di_frame *j, double phi_i[7], double phi_j[7])
 {
     for (int k = 0; k < 3; ++k) {
         phi_i[k] = phi_j[k] = 0.0;
@@ -37,24 +37,25 @@ void se3di_dp1_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3d
     se3di_dot_gradient_rp(i, t->a_i, j, t->a_j, phi_i + 3, phi_j + 3);
 }
 
-double se3di_dp1_gamma_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_dp1_gamma_romega(const se3di_term *t, const se3di_frame *i,
+                                        const se3di_frame *j)
 {
     return se3di_dot_gamma_romega(i, t->a_i, j, t->a_j);
 }
 
-double se3di_dp1_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_dp1_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
 {
     return se3di_dot_gamma_rp(i, t->a_i, j, t->a_j);
 }
 
-void se3di_dp1_curvature_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                                double lambda, double H[144])
+void se3di_primitive_dp1_curvature_romega(const se3di_term *t, const se3di_frame *i,
+                                          const se3di_frame *j, double lambda, double H[144])
 {
     se3di_dot_curvature_romega(i, t->a_i, j, t->a_j, lambda, H);
 }
 
-void se3di_dp1_curvature_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                            double lambda, double H[196])
+void se3di_primitive_dp1_curvature_rp(const se3di_term *t, const se3di_frame *i,
+                                      const se3di_frame *j, double lambda, double H[196])
 {
     se3di_dot_curvature_rp(i, t->a_i, j, t->a_j, lambda, H);
 }

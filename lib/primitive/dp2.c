@@ -13,7 +13,7 @@
 #include "primitive/kernel.h"
 #include "primitive/table.h"
 
-double se3di_dp2_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_dp2_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
 {
     double u[3];
     double d[3];
@@ -22,8 +22,8 @@ double se3di_dp2_value(const se3di_term *t, const se3di_frame *i, const se3di_fr
     return se3di_dot(u, d);
 }
 
-void se3di_dp2_jacobian_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                               double phi_i[6], double phi_j[6])
+void se3di_primitive_dp2_jacobian_romega(const se3di_term *t, const se3di_frame *i,
+                                         const se3di_frame *j, double phi_i[6], double phi_j[6])
 {
     double d[3];
     double local[3]; /* A_i^T d + s_i */
@@ -36,8 +36,8 @@ void se3di_dp2_jacobian_romega(const se3di_term *t, const se3di_frame *i, const 
     se3di_romega_gradient(j, t->s_j, phi_j, phi_j + 3);
 }
 
-void se3di_dp2_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                           double phi_i[7], double phi_j[7])
+void se3di_primitive_dp2_jacobian_rp(const se3di_term *t, const se3di_frame *i,
+                                     const se3di_frame *j, double phi_i[7], double phi_j[7])
 {
     double d[3];
     double arm[4];
@@ -52,7 +52,8 @@ void se3di_dp2_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3d
     se3di_rp_gradient(j, t->s_j, phi_j, phi_j + 3);
 }
 
-double se3di_dp2_gamma_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_dp2_gamma_romega(const se3di_term *t, const se3di_frame *i,
+                                        const se3di_frame *j)
 {
     double u[3];
     double d[3];
@@ -69,7 +70,7 @@ double se3di_dp2_gamma_romega(const se3di_term *t, const se3di_frame *i, const s
     return -se3di_dot(d, u_term) - 2.0 * se3di_dot(udot, ddot) - se3di_dot(u, d_term);
 }
 
-double se3di_dp2_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+double se3di_primitive_dp2_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
 {
     double u[3];
     double d[3];
@@ -88,8 +89,8 @@ double se3di_dp2_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di
 
 /* With U and D the derivatives of u and d: U^T D + D^T U, and the second derivatives of A_i a_i,
  * A_i s_i and A_j s_j. */
-void se3di_dp2_curvature_romega(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                                double lambda, double H[144])
+void se3di_primitive_dp2_curvature_romega(const se3di_term *t, const se3di_frame *i,
+                                          const se3di_frame *j, double lambda, double H[144])
 {
     enum { N = SE3DI_ROMEGA_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_ROMEGA };
     double u[3];
@@ -107,8 +108,8 @@ void se3di_dp2_curvature_romega(const se3di_term *t, const se3di_frame *i, const
     se3di_romega_add_curvature(se3di_block(H, N, J, J), j, lambda, t->s_j, u);
 }
 
-void se3di_dp2_curvature_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                            double lambda, double H[196])
+void se3di_primitive_dp2_curvature_rp(const se3di_term *t, const se3di_frame *i,
+                                      const se3di_frame *j, double lambda, double H[196])
 {
     enum { N = SE3DI_RP_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_RP };
     double u[3];

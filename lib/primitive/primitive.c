@@ -6,9 +6,10 @@
 
 #define ROW(name)                                                                                  \
     {                                                                                              \
-#name, se3di_##name##_value, se3di_##name##_jacobian_romega, se3di_##name##_jacobian_rp,   \
-            se3di_##name##_gamma_romega, se3di_##name##_gamma_rp, se3di_##name##_curvature_romega, \
-            se3di_##name##_curvature_rp                                                            \
+#name, se3di_primitive_##name##_value, se3di_primitive_##name##_jacobian_romega,           \
+            se3di_primitive_##name##_jacobian_rp, se3di_primitive_##name##_gamma_romega,           \
+            se3di_primitive_##name##_gamma_rp, se3di_primitive_##name##_curvature_romega,          \
+            se3di_primitive_##name##_curvature_rp                                                  \
     }
 
 const se3di_primitive se3di_primitives[SE3DI_PRIMITIVE_COUNT] = {

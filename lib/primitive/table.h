@@ -6,19 +6,24 @@
 #include "primitive/primitive.h"
 
 #define SE3DI_PRIMITIVE_DECLARE(name)                                                              \
-    double se3di_##name##_value(const se3di_term *t, const se3di_frame *i, const se3di_frame *j);  \
-    void se3di_##name##_jacobian_romega(const se3di_term *t, const se3di_frame *i,                 \
-                                        const se3di_frame *j, double phi_i[6], double phi_j[6]);   \
-    void se3di_##name##_jacobian_rp(const se3di_term *t, const se3di_frame *i,                     \
-                                    const se3di_frame *j, double phi_i[7], double phi_j[7]);       \
-    double se3di_##name##_gamma_romega(const se3di_term *t, const se3di_frame *i,                  \
-                                       const se3di_frame *j);                                      \
-    double se3di_##name##_gamma_rp(const se3di_term *t, const se3di_frame *i,                      \
-                                   const se3di_frame *j);                                          \
-    void se3di_##name##_curvature_romega(const se3di_term *t, const se3di_frame *i,                \
-                                         const se3di_frame *j, double lambda, double H[144]);      \
-    void se3di_##name##_curvature_rp(const se3di_term *t, const se3di_frame *i,                    \
-                                     const se3di_frame *j, double lambda, double H[196]);
+    double se3di_primitive_##name##_value(const se3di_term *t, const se3di_frame *i,               \
+                                          const se3di_frame *j);                                   \
+    void se3di_primitive_##name##_jacobian_romega(const se3di_term *t, const se3di_frame *i,       \
+                                                  const se3di_frame *j, double phi_i[6],           \
+                                                  double phi_j[6]);                                \
+    void se3di_primitive_##name##_jacobian_rp(const se3di_term *t, const se3di_frame *i,           \
+                                              const se3di_frame *j, double phi_i[7],               \
+                                              double phi_j[7]);                                    \
+    double se3di_primitive_##name##_gamma_romega(const se3di_term *t, const se3di_frame *i,        \
+                                                 const se3di_frame *j);                            \
+    double se3di_primitive_##name##_gamma_rp(const se3di_term *t, const se3di_frame *i,            \
+                                             const se3di_frame *j);                                \
+    void se3di_primitive_##name##_curvature_romega(const se3di_term *t, const se3di_frame *i,      \
+                                                   const se3di_frame *j, double lambda,            \
+                                                   double H[144]);                                 \
+    void se3di_primitive_##name##_curvature_rp(const se3di_term *t, const se3di_frame *i,          \
+                                               const se3di_frame *j, double lambda,                \
+                                               double H[196]);
 
 SE3DI_PRIMITIVE_DECLARE(dp1)
 SE3DI_PRIMITIVE_DECLARE(dp2)
