@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Numbering and pattern of the equations. */
+#include "assembly/assembly.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Dense body indices of a term; both are counted even where they are the same. */
+static int32_t free_of(const se3di_assembly *assembly, uint32_t dense)
+{
+    return assembly->free_index[dense];
+}
+
+static void number_bodies(se3di_assembly *assembly)
+{
+    for (uint32_t k = 0; k < assembly->dense_count; ++k) {
+        assembly->free_index[k] = -1;
+        if (!assembly->model->bodies[k].fixed) {
+            assembly->free_index[k] = (int32_t)assembly->body_count;
+            assembly->free_body[assembly->body_count++] = k;
+        }
+    }
+}
+
+/* Block of `free` within the joint that begins at `begin`; appended where it is new. */
+static int32_t place_body(se3di_assembly *assembly, uint32_t begin, int32_t free)
+{
+    if (free < 0) {
+        return -1;
+    }
+    for (uint32_t k = begin; k < assembly->joint_body_count; ++k) {
+        if (assembly->joint_body[k] == free) {
+            return (int32_t)(k - begin);
+        }
+    }
+    assembly->joint_body[assembly->joint_body_count++] = free;
+    return (int32_t)(assembly->joint_body_count - 1 - begin);
+}
+
+static void build_pattern(se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        const se3di_constraint *constraint = &model->constraints[k];
+        uint32_t begin = assembly->joint_body_count;
+        assembly->joint_rows[k] = (int32_t)constraint->row_count;
+        assembly->joint_begin[k] = (int32_t)begin;
+        for (uint32_t t = 0; t < constraint->term_count; ++t) {
+            const se3di_term *term = &model->terms[constraint->term_begin + t];
+            se3di_term_place *place = &assembly->places[constraint->term_begin + t];
+            place->slot_i = place_body(assembly, begin, free_of(assembly, term->body_i));
+            place->slot_j = place_body(assembly, begin, free_of(assembly, term->body_j));
+        }
+    }
+    assembly->joint_begin[assembly->constraint_count] = (int32_t)assembly->joint_body_count;
+}
+
+/* C is stored joint by joint, one block of rows x block for each body of the joint. */
+static void place_blocks(se3di_assembly *assembly)
+{
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        for (int32_t b = assembly->joint_begin[k]; b < assembly->joint_begin[k + 1]; ++b) {
+            assembly->block_offset[b] = assembly->joint_value_count;
+            assembly->joint_value_count +=
+                (size_t)(assembly->joint_rows[k] * assembly->formulation->block);
+        }
+    }
+}
+
+/* Sizes of every array, so that making and destroying agree. */
+typedef struct assembly_array {
+    void **data;
+    size_t count, size;
+} assembly_array;
+
+#define STRUCTURE_ARRAYS 6
+#define VALUE_ARRAYS     8
+
+static void list_structure(se3di_assembly *a, assembly_array list[STRUCTURE_ARRAYS])
+{
+    assembly_array arrays[STRUCTURE_ARRAYS] = {
+        {(void **)&a->free_body, a->dense_count, sizeof *a->free_body},
+        {(void **)&a->free_index, a->dense_count, sizeof *a->free_index},
+        {(void **)&a->joint_rows, a->constraint_count, sizeof *a->joint_rows},
+        {(void **)&a->joint_begin, a->constraint_count + 1, sizeof *a->joint_begin},
+        {(void **)&a->joint_body, 2 * (size_t)a->place_count, sizeof *a->joint_body},
+        {(void **)&a->places, a->place_count, sizeof *a->places},
+        {(void **)&a->block_offset, 2 * (size_t)a->place_count, sizeof *a->block_offset},
+    };
+    memcpy(list, arrays, sizeof arrays);
+}
+
+static void list_values(se3di_assembly *a, assembly_array list[VALUE_ARRAYS])
+{
+    size_t block = (size_t)a->formulation->block;
+    assembly_array arrays[VALUE_ARRAYS] = {
+        {(void **)&a->H, a->body_count * block * block, sizeof *a->H},
+        {(void **)&a->C, a->joint_value_count, sizeof *a->C},
+        {(void **)&a->f, 3 * (size_t)a->row_count, sizeof *a->f},
+        {(void **)&a->wrench, 6 * (size_t)a->dense_count, sizeof *a->wrench},
+    };
+    memcpy(list, arrays, sizeof arrays);
+}
+
+static se3d_status allocate(const se3d_allocator *allocator, assembly_array *arrays, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        *arrays[k].data = se3di_alloc(allocator, arrays[k].count, arrays[k].size);
+        if (!*arrays[k].data) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+    }
+    return SE3D_OK;
+}
+
+static void release(const se3d_allocator *allocator, assembly_array *arrays, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        se3di_free(allocator, *arrays[k].data, arrays[k].count, arrays[k].size);
+        *arrays[k].data = NULL;
+    }
+}
+
+static se3d_status build(se3di_assembly *assembly)
+{
+    const se3d_allocator *allocator = &assembly->model->allocator;
+    assembly_array structure[STRUCTURE_ARRAYS];
+    assembly_array values[VALUE_ARRAYS];
+    list_structure(assembly, structure);
+    SE3DI_TRY(allocate(allocator, structure, STRUCTURE_ARRAYS));
+    number_bodies(assembly);
+    build_pattern(assembly);
+    assembly->unknown_count = assembly->body_count * (uint32_t)assembly->formulation->block;
+    place_blocks(assembly);
+    list_values(assembly, values);
+    return allocate(allocator, values, VALUE_ARRAYS);
+}
+
+se3d_status se3di_assembly_init(se3di_assembly *assembly, se3di_model *model,
+                                const se3di_formulation *formulation, se3di_error *error)
+{
+    *assembly = (se3di_assembly){
+        .model = model,
+        .formulation = formulation,
+        .topology_version = model->topology_version,
+        .row_count = (uint32_t)model->row_count,
+        .constraint_count = (uint32_t)model->constraint_slots.count,
+        .place_count = (uint32_t)model->term_count,
+        .dense_count = (uint32_t)model->body_slots.count,
+    };
+    se3d_status status = build(assembly);
+    if (status < 0) {
+        se3di_assembly_destroy(assembly);
+        se3di_error_set(error, status, "no memory for the equations of %zu bodies",
+                        model->body_slots.count);
+    }
+    return status;
+}
+
+void se3di_assembly_destroy(se3di_assembly *assembly)
+{
+    if (!assembly->model) {
+        return;
+    }
+    const se3d_allocator *allocator = &assembly->model->allocator;
+    assembly_array structure[STRUCTURE_ARRAYS];
+    assembly_array values[VALUE_ARRAYS];
+    list_values(assembly, values);
+    release(allocator, values, VALUE_ARRAYS);
+    list_structure(assembly, structure);
+    release(allocator, structure, STRUCTURE_ARRAYS);
+    memset(assembly, 0, sizeof *assembly);
+}
+
+static uint32_t owner_of(const se3di_model *model, uint32_t row)
+{
+    uint32_t k = 0;
+    while (row >= model->constraints[k].row_begin + model->constraints[k].row_count) {
+        ++k;
+    }
+    return k;
+}
+
+void se3di_row_name(const se3di_model *model, uint32_t row, char *text, size_t size)
+{
+    uint32_t k = owner_of(model, row);
+    const se3di_constraint *constraint = &model->constraints[k];
+    if (constraint->name) {
+        snprintf(text, size, "%.80s.%s", constraint->name, model->rows[row].name);
+    } else {
+        snprintf(text, size, "%s %u.%s", constraint->type, k, model->rows[row].name);
+    }
+}

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The equations of a model in one formulation: numbering, the KKT pattern, and the evaluation of
+ *
+ *     [M   Phi_q^T] [qddot ]   [Q + velocity terms]
+ *     [Phi_q      ] [lambda] = [gamma             ]
+ *
+ * and of its position- and velocity-level relatives. Bodies that move are numbered 0 .. body_count
+ * - 1 ("free bodies"); every constraint of the model is a joint of the KKT pattern, so that
+ * equation rows are numbered as in the model. The forces of constraints on the bodies are -Phi_q^T
+ * lambda.
+ *
+ * Vectors over free bodies have `block` numbers per body (with normalisation).
+ * docs/theory/assembly.md */
+#ifndef SE3DI_ASSEMBLY_H
+#define SE3DI_ASSEMBLY_H
+
+#include "formulation/formulation.h"
+
+/* Where the blocks of a term go in the joint's row of the KKT matrix; -1: the body is fixed. */
+typedef struct se3di_term_place {
+    int32_t slot_i, slot_j; /* block within its joint */
+} se3di_term_place;
+
+typedef struct se3di_assembly {
+    se3di_model *model;
+    const se3di_formulation *formulation;
+    uint64_t topology_version; /* of the model this was built for */
+    uint32_t body_count;       /* free bodies */
+    uint32_t row_count;        /* constraint equations */
+    uint32_t unknown_count;    /* body_count * block */
+    uint32_t *free_body;       /* free -> dense */
+    int32_t *free_index;       /* dense -> free, -1: fixed */
+    int32_t *joint_rows;       /* equations of each constraint */
+    int32_t *joint_begin;      /* [constraints + 1] into joint_body */
+    int32_t *joint_body;       /* free bodies of each constraint, none twice */
+    size_t *block_offset;      /* of each block in C, indexed as joint_body */
+    size_t joint_value_count;  /* doubles of C */
+    se3di_term_place *places;  /* [terms] */
+    uint32_t constraint_count, place_count, dense_count, joint_body_count;
+    double *H;      /* body blocks */
+    double *C;      /* joint blocks */
+    double *f;      /* [rows * 3] jets of the functions of time */
+    double *wrench; /* [dense bodies * 6] */
+} se3di_assembly;
+
+/* Build the structure; on failure nothing is held. */
+se3d_status se3di_assembly_init(se3di_assembly *assembly, se3di_model *model,
+                                const se3di_formulation *formulation, se3di_error *error);
+void se3di_assembly_destroy(se3di_assembly *assembly);
+
+/* Functions of time at t, for all that follows. */
+se3d_status se3di_assembly_eval_functions(se3di_assembly *assembly, double t, se3di_error *error);
+/* Phi [rows]; with `functions` evaluated. */
+void se3di_assembly_eval_phi(const se3di_assembly *assembly, double *phi);
+/* Phi_q into C. */
+void se3di_assembly_eval_jacobian(se3di_assembly *assembly);
+/* gamma [rows]. */
+void se3di_assembly_eval_gamma(const se3di_assembly *assembly, double *gamma);
+/* Mass blocks into H. */
+void se3di_assembly_eval_mass(se3di_assembly *assembly);
+/* Applied forces and velocity terms into b [unknowns]. */
+se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, double *b,
+                                       se3di_error *error);
+
+/* out [rows] = C x, x [unknowns] */
+void se3di_assembly_mul(const se3di_assembly *assembly, const double *x, double *out);
+/* out [unknowns] += scale C^T l */
+void se3di_assembly_add_transposed(const se3di_assembly *assembly, double scale, const double *l,
+                                   double *out);
+
+/* Velocities and accelerations of the free bodies as vectors over unknowns (normalisation entry 0).
+ */
+void se3di_assembly_get_velocity(const se3di_assembly *assembly, double *qdot);
+void se3di_assembly_set_velocity(se3di_assembly *assembly, const double *qdot);
+void se3di_assembly_get_acceleration(const se3di_assembly *assembly, double *qddot);
+void se3di_assembly_set_acceleration(se3di_assembly *assembly, const double *qddot);
+
+/* Name of a row: "pin.cd_x", or "joint 3.cd_x" where the constraint has no name. */
+void se3di_row_name(const se3di_model *model, uint32_t row, char *text, size_t size);
+
+#endif

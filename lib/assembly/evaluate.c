@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Evaluation of the equations at the state of the model. */
+#include "assembly/assembly.h"
+
+#include "force/force.h"
+#include "primitive/turn_counter.h"
+
+#include <math.h>
+#include <string.h>
+
+#define TWO_PI 6.283185307179586476925286766559
+
+se3d_status se3di_assembly_eval_functions(se3di_assembly *assembly, double t, se3di_error *error)
+{
+    const se3di_model *model = assembly->model;
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        const se3di_row *row = &model->rows[k];
+        double *jet = assembly->f + 3 * k;
+        if (row->function < 0) {
+            jet[0] = row->value;
+            jet[1] = jet[2] = 0.0;
+            continue;
+        }
+        se3d_status status = se3di_function_eval(&model->functions[row->function], &t, jet, NULL);
+        if (status < 0) {
+            char name[128];
+            se3di_row_name(model, k, name, sizeof name);
+            return se3di_error_set(error, status,
+                                   "t = %g s: the function of %s is f = %g, f' = %g, f'' = %g, "
+                                   "must be finite",
+                                   t, name, jet[0], jet[1], jet[2]);
+        }
+    }
+    return SE3D_OK;
+}
+
+void se3di_assembly_eval_phi(const se3di_assembly *assembly, double *phi)
+{
+    const se3di_model *model = assembly->model;
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        const se3di_row *row = &model->rows[k];
+        double sum = -assembly->f[3 * k];
+        for (uint32_t t = 0; t < row->term_count; ++t) {
+            sum += se3di_term_value(model, &model->terms[row->term_begin + t]);
+        }
+        phi[k] = row->wrap ? sum - TWO_PI * nearbyint(sum / TWO_PI) : sum;
+    }
+}
+
+/* Add `size` numbers of a term's block to a row of the joint's blocks. */
+static void add_block(double *block, const double *phi, double coefficient, int32_t size)
+{
+    for (int32_t k = 0; k < size; ++k) {
+        block[k] += coefficient * phi[k];
+    }
+}
+
+static void eval_joint_jacobian(se3di_assembly *assembly, uint32_t joint)
+{
+    const se3di_model *model = assembly->model;
+    const se3di_formulation *formulation = assembly->formulation;
+    const se3di_constraint *constraint = &model->constraints[joint];
+    const size_t *offset = assembly->block_offset + assembly->joint_begin[joint];
+    size_t block = (size_t)formulation->block;
+    for (uint32_t r = 0; r < constraint->row_count; ++r) {
+        const se3di_row *row = &model->rows[constraint->row_begin + r];
+        for (uint32_t k = 0; k < row->term_count; ++k) {
+            uint32_t index = row->term_begin + k;
+            const se3di_term *term = &model->terms[index];
+            const se3di_term_place *place = &assembly->places[index];
+            double phi_i[SE3DI_BLOCK_MAX];
+            double phi_j[SE3DI_BLOCK_MAX];
+            formulation->jacobian(term, &model->frames[term->body_i], &model->frames[term->body_j],
+                                  phi_i, phi_j);
+            if (place->slot_i >= 0) {
+                add_block(assembly->C + offset[place->slot_i] + r * block, phi_i, term->coefficient,
+                          formulation->size);
+            }
+            if (place->slot_j >= 0) {
+                add_block(assembly->C + offset[place->slot_j] + r * block, phi_j, term->coefficient,
+                          formulation->size);
+            }
+        }
+    }
+}
+
+void se3di_assembly_eval_jacobian(se3di_assembly *assembly)
+{
+    memset(assembly->C, 0, assembly->joint_value_count * sizeof *assembly->C);
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        eval_joint_jacobian(assembly, k);
+    }
+}
+
+void se3di_assembly_eval_gamma(const se3di_assembly *assembly, double *gamma)
+{
+    const se3di_model *model = assembly->model;
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        const se3di_row *row = &model->rows[k];
+        gamma[k] = assembly->f[3 * k + 2];
+        for (uint32_t t = 0; t < row->term_count; ++t) {
+            const se3di_term *term = &model->terms[row->term_begin + t];
+            gamma[k] +=
+                term->coefficient * assembly->formulation->gamma(term, &model->frames[term->body_i],
+                                                                 &model->frames[term->body_j]);
+        }
+    }
+}
+
+void se3di_assembly_eval_mass(se3di_assembly *assembly)
+{
+    size_t block = (size_t)assembly->formulation->block;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        uint32_t body = assembly->free_body[k];
+        assembly->formulation->mass(&assembly->model->bodies[body], &assembly->model->frames[body],
+                                    assembly->H + k * block * block);
+    }
+}
+
+se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, double *b,
+                                       se3di_error *error)
+{
+    const se3di_model *model = assembly->model;
+    uint32_t failed = 0;
+    se3d_status status = se3di_forces_eval(model, t, assembly->wrench, &failed);
+    if (status < 0) {
+        const char *name = model->forces[failed].name;
+        return se3di_error_set(
+            error, status, "t = %g s: force element %s (%s): %s", t, name ? name : "without a name",
+            se3di_force_type_name(model->forces[failed].type),
+            status == SE3D_ERR_SINGULAR ? "its two points coincide, it has no direction"
+                                        : "its function is not finite or failed");
+    }
+    int32_t block = assembly->formulation->block;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        uint32_t body = assembly->free_body[k];
+        const double *wrench = assembly->wrench + 6 * body;
+        assembly->formulation->velocity_terms(&model->bodies[body], &model->frames[body],
+                                              b + k * (uint32_t)block);
+        assembly->formulation->add_wrench(&model->frames[body], wrench, wrench + 3,
+                                          b + k * (uint32_t)block);
+    }
+    return SE3D_OK;
+}
+
+void se3di_assembly_mul(const se3di_assembly *assembly, const double *x, double *out)
+{
+    size_t n = (size_t)assembly->formulation->block;
+    memset(out, 0, assembly->row_count * sizeof *out);
+    for (uint32_t joint = 0; joint < assembly->constraint_count; ++joint) {
+        double *rows = out + assembly->model->constraints[joint].row_begin;
+        for (int32_t k = assembly->joint_begin[joint]; k < assembly->joint_begin[joint + 1]; ++k) {
+            const double *block = assembly->C + assembly->block_offset[k];
+            const double *part = x + (size_t)assembly->joint_body[k] * n;
+            for (int32_t r = 0; r < assembly->joint_rows[joint]; ++r, block += n) {
+                for (size_t c = 0; c < n; ++c) {
+                    rows[r] += block[c] * part[c];
+                }
+            }
+        }
+    }
+}
+
+void se3di_assembly_add_transposed(const se3di_assembly *assembly, double scale, const double *l,
+                                   double *out)
+{
+    size_t n = (size_t)assembly->formulation->block;
+    for (uint32_t joint = 0; joint < assembly->constraint_count; ++joint) {
+        const double *rows = l + assembly->model->constraints[joint].row_begin;
+        for (int32_t k = assembly->joint_begin[joint]; k < assembly->joint_begin[joint + 1]; ++k) {
+            const double *block = assembly->C + assembly->block_offset[k];
+            double *part = out + (size_t)assembly->joint_body[k] * n;
+            for (int32_t r = 0; r < assembly->joint_rows[joint]; ++r, block += n) {
+                for (size_t c = 0; c < n; ++c) {
+                    part[c] += scale * rows[r] * block[c];
+                }
+            }
+        }
+    }
+}
+
+void se3di_assembly_get_velocity(const se3di_assembly *assembly, double *qdot)
+{
+    size_t block = (size_t)assembly->formulation->block;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        qdot[k * block + block - 1] = 0.0;
+        assembly->formulation->get_velocity(&assembly->model->frames[assembly->free_body[k]],
+                                            qdot + k * block);
+    }
+}
+
+void se3di_assembly_set_velocity(se3di_assembly *assembly, const double *qdot)
+{
+    size_t block = (size_t)assembly->formulation->block;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        assembly->formulation->set_velocity(&assembly->model->frames[assembly->free_body[k]],
+                                            qdot + k * block);
+    }
+}
+
+void se3di_assembly_get_acceleration(const se3di_assembly *assembly, double *qddot)
+{
+    size_t block = (size_t)assembly->formulation->block;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        uint32_t body = assembly->free_body[k];
+        qddot[k * block + block - 1] = 0.0;
+        assembly->formulation->set_acceleration(&assembly->model->frames[body],
+                                                assembly->model->acceleration + 6 * body,
+                                                qddot + k * block);
+    }
+}
+
+void se3di_assembly_set_acceleration(se3di_assembly *assembly, const double *qddot)
+{
+    size_t block = (size_t)assembly->formulation->block;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        uint32_t body = assembly->free_body[k];
+        assembly->formulation->get_acceleration(&assembly->model->frames[body], qddot + k * block,
+                                                assembly->model->acceleration + 6 * body);
+    }
+}

@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Equations with their linear solver: creation, velocities, accelerations. */
+#include "nonlinear/equations.h"
+
+#include <math.h>
+#include <string.h>
+
+static se3d_status create_kkt(se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    se3di_kkt_pattern pattern = {
+        .body_count = assembly->body_count,
+        .joint_count = assembly->constraint_count,
+        .joint_rows = assembly->joint_rows,
+        .joint_begin = assembly->joint_begin,
+        .joint_body = assembly->joint_body,
+        .body_size = assembly->formulation->block,
+        .symmetric = true,
+        .body_kind = SE3DI_KKT_BODY_FULL,
+    };
+    return se3di_kkt_create(&assembly->model->allocator, &pattern, SE3DI_KKT_STRUCTURED,
+                            &equations->kkt);
+}
+
+static double *alloc_doubles(const se3di_equations *equations, size_t count)
+{
+    return se3di_alloc(&equations->assembly.model->allocator, count, sizeof(double));
+}
+
+static se3d_status allocate(se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    SE3DI_TRY(create_kkt(equations));
+    equations->b = alloc_doubles(equations, assembly->unknown_count);
+    equations->x = alloc_doubles(equations, assembly->unknown_count);
+    equations->c = alloc_doubles(equations, assembly->row_count);
+    equations->l = alloc_doubles(equations, assembly->row_count);
+    equations->phi = alloc_doubles(equations, assembly->row_count);
+    equations->saved =
+        se3di_alloc(&assembly->model->allocator, assembly->dense_count, sizeof *equations->saved);
+    int complete = equations->b && equations->x && equations->c && equations->l && equations->phi &&
+                   equations->saved;
+    return complete ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+}
+
+se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
+                                 const se3di_formulation *formulation, se3di_error *error)
+{
+    *equations = (se3di_equations){.error = error, .iterations_max = 25};
+    SE3DI_TRY(se3di_assembly_init(&equations->assembly, model, formulation, error));
+    se3d_status status = allocate(equations);
+    if (status < 0) {
+        se3di_equations_destroy(equations);
+        se3di_error_set(error, status, "no memory for the linear solver");
+    }
+    return status;
+}
+
+void se3di_equations_destroy(se3di_equations *equations)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    if (!assembly->model) {
+        return;
+    }
+    const se3d_allocator *allocator = &assembly->model->allocator;
+    se3di_kkt_destroy(equations->kkt);
+    se3di_free(allocator, equations->b, assembly->unknown_count, sizeof(double));
+    se3di_free(allocator, equations->x, assembly->unknown_count, sizeof(double));
+    se3di_free(allocator, equations->c, assembly->row_count, sizeof(double));
+    se3di_free(allocator, equations->l, assembly->row_count, sizeof(double));
+    se3di_free(allocator, equations->phi, assembly->row_count, sizeof(double));
+    se3di_free(allocator, equations->saved, assembly->dense_count, sizeof *equations->saved);
+    se3di_assembly_destroy(assembly);
+    memset(equations, 0, sizeof *equations);
+}
+
+void se3di_equations_save(se3di_equations *equations)
+{
+    memcpy(equations->saved, equations->assembly.model->frames,
+           equations->assembly.dense_count * sizeof *equations->saved);
+}
+
+void se3di_equations_restore(se3di_equations *equations)
+{
+    memcpy(equations->assembly.model->frames, equations->saved,
+           equations->assembly.dense_count * sizeof *equations->saved);
+}
+
+se3d_status se3di_equations_factor(se3di_equations *equations)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    se3di_assembly_eval_mass(assembly);
+    se3di_assembly_eval_jacobian(assembly);
+    se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
+    ++equations->counters.factorizations;
+    se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
+    if (status == SE3D_ERR_NOT_FINITE) {
+        return se3di_error_set(equations->error, status,
+                               "t = %g s: the equations are not finite: an angle has no direction, "
+                               "or the state has run away",
+                               assembly->model->time);
+    }
+    if (status < 0) {
+        return se3di_error_set(equations->error, status,
+                               "t = %g s: the mass matrix of a body is singular",
+                               assembly->model->time);
+    }
+    return status;
+}
+
+se3d_status se3di_equations_solve(se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
+    ++equations->counters.solves;
+    se3d_status status = se3di_kkt_solve(equations->kkt, &values, equations->b, equations->c,
+                                         equations->x, equations->l, NULL);
+    if (status < 0) {
+        return se3di_error_set(equations->error, status, "t = %g s: %s", assembly->model->time,
+                               status == SE3D_ERR_NOT_FINITE
+                                   ? "the solution of the linear equations is not finite"
+                                   : "the linear equations could not be solved");
+    }
+    return status;
+}
+
+/* b = H qdot: the weights of the present velocities. */
+static void weigh_velocity(se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    size_t n = (size_t)assembly->formulation->block;
+    se3di_assembly_get_velocity(assembly, equations->x);
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const double *H = assembly->H + k * n * n;
+        for (size_t r = 0; r < n; ++r) {
+            double sum = 0.0;
+            for (size_t c = 0; c < n; ++c) {
+                sum += H[n * r + c] * equations->x[k * n + c];
+            }
+            equations->b[k * n + r] = sum;
+        }
+        if (n == 8) {
+            equations->b[k * n + 7] = 0.0; /* p . pdot = 0 */
+        }
+    }
+}
+
+/* The equations of a level hold: |C x - c| <= 1e-7 of the largest part. Dependent rows that
+ * contradict the others show here. */
+static se3d_status check_level(se3di_equations *equations, double t, const char *level)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    double scale = 0.0;
+    double worst = 0.0;
+    uint32_t where = 0;
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        scale = fmax(scale, fabs(equations->x[k]));
+    }
+    se3di_assembly_mul(assembly, equations->x, equations->l);
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        double gap = fabs(equations->l[k] - equations->c[k]);
+        scale = fmax(scale, fabs(equations->c[k]));
+        if (!(gap <= worst)) {
+            worst = gap;
+            where = k;
+        }
+    }
+    if (worst <= 1e-6 * scale + 1e-12) {
+        return SE3D_OK;
+    }
+    char name[128];
+    se3di_row_name(assembly->model, where, name, sizeof name);
+    return se3di_error_set(
+        equations->error, SE3D_ERR_INCONSISTENT,
+        "t = %g s: the constraints contradict each other: the %s equation of %s "
+        "cannot be met (off by %.3g); the mechanism is locked or over-constrained",
+        t, level, name, worst);
+}
+
+se3d_status se3di_velocity_solve(se3di_equations *equations, double t)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+    SE3DI_TRY(se3di_equations_factor(equations));
+    weigh_velocity(equations);
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        equations->c[k] = assembly->f[3 * k + 1];
+    }
+    SE3DI_TRY(se3di_equations_solve(equations));
+    SE3DI_TRY(check_level(equations, t, "velocity"));
+    se3di_assembly_set_velocity(assembly, equations->x);
+    return SE3D_OK;
+}
+
+se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+    SE3DI_TRY(se3di_equations_factor(equations));
+    SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
+    se3di_assembly_eval_gamma(assembly, equations->c);
+    se3d_status status = se3di_equations_solve(equations);
+    SE3DI_TRY(status);
+    ++equations->counters.evaluations;
+    equations->redundant = status == SE3D_INFO_REDUNDANT;
+    memcpy(assembly->model->lambda, equations->l, assembly->row_count * sizeof *equations->l);
+    SE3DI_TRY(check_level(equations, t, "acceleration"));
+    se3di_assembly_set_acceleration(assembly, equations->x);
+    return SE3D_OK;
+}
+
+se3d_status se3di_state_solve(se3di_equations *equations, double t)
+{
+    SE3DI_TRY(se3di_position_solve(equations, t));
+    SE3DI_TRY(se3di_velocity_solve(equations, t));
+    return se3di_acceleration_solve(equations, t);
+}
+
+/* The part of a pseudo-random vector that the constraints let pass is zero where they leave no
+ * freedom. */
+se3d_status se3di_equations_check_determined(se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    size_t n = (size_t)assembly->formulation->block;
+    uint64_t seed = 88172645463325252u;
+    SE3DI_TRY(se3di_equations_factor(equations));
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        double random = (double)(seed >> 11) * 0x1p-53 + 0.25;
+        size_t part = k % n;
+        const double *H = assembly->H + k / n * n * n;
+        equations->b[k] = part < 7 && !(n == 8 && part == 7) ? random * sqrt(H[(n + 1) * part]) : 0;
+    }
+    memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
+    SE3DI_TRY(se3di_equations_solve(equations));
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        size_t part = k % n;
+        const double *H = assembly->H + k / n * n * n;
+        if (part < 7 && fabs(equations->x[k]) * sqrt(H[(n + 1) * part]) > 1e-5) {
+            uint32_t body = assembly->free_body[k / n];
+            const char *name = assembly->model->bodies[body].name;
+            return se3di_error_set(
+                equations->error, SE3D_ERR_SINGULAR,
+                "the drivers and constraints do not determine the motion: body %s can still move; "
+                "add a driver for every degree of freedom, or use the dynamics analysis",
+                name ? name : "without a name");
+        }
+    }
+    return SE3D_OK;
+}

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The equations of a model with their linear solver: what every analysis works on.
+ *
+ * Each function brings one level of the state in order, at time t, by one KKT system with the mass
+ * matrix as weight, so that redundant constraints and underdetermined levels need no special case:
+ *
+ *     position      min |dq|_M  with  Phi(q + dq, t) = 0       (Newton, line search, damping)
+ *     velocity      min |qdot - qdot_0|_M  with  Phi_q qdot = nu
+ *     acceleration  M qddot + Phi_q^T lambda = Q,  Phi_q qddot = gamma docs/theory/consistency.md
+ */
+#ifndef SE3DI_EQUATIONS_H
+#define SE3DI_EQUATIONS_H
+
+#include "assembly/assembly.h"
+#include "linsol/kkt.h"
+
+typedef struct se3di_counters {
+    uint64_t steps, rejected, iterations, evaluations, factorizations, solves;
+} se3di_counters;
+
+typedef struct se3di_equations {
+    se3di_assembly assembly;
+    se3di_kkt *kkt;
+    se3di_counters counters;
+    se3di_error *error;     /* where failures are recorded */
+    double *b, *c;          /* right-hand sides [unknowns], [rows] */
+    double *x, *l;          /* solution */
+    double *phi;            /* [rows] */
+    se3di_frame *saved;     /* [dense bodies]: poses to come back to */
+    int32_t iterations_max; /* of the position Newton */
+    int32_t redundant;      /* the last acceleration met dependent rows */
+} se3di_equations;
+
+se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
+                                 const se3di_formulation *formulation, se3di_error *error);
+void se3di_equations_destroy(se3di_equations *equations);
+
+/* Evaluate mass and Jacobian at the present state and factor. */
+se3d_status se3di_equations_factor(se3di_equations *equations);
+/* Solve for b, c into x, l. */
+se3d_status se3di_equations_solve(se3di_equations *equations);
+
+/* Consistent levels of the state at t. Positions: @return OK, INCONSISTENT (stationary gap),
+ * NO_CONVERGENCE, NOT_FINITE; the poses are then the best ones found, the caller restores. */
+se3d_status se3di_position_solve(se3di_equations *equations, double t);
+se3d_status se3di_velocity_solve(se3di_equations *equations, double t);
+se3d_status se3di_acceleration_solve(se3di_equations *equations, double t);
+
+/* All three. */
+se3d_status se3di_state_solve(se3di_equations *equations, double t);
+
+/* Fails with SINGULAR where the constraints leave a freedom (motion not determined by the drivers).
+ */
+se3d_status se3di_equations_check_determined(se3di_equations *equations);
+
+/* Keep and restore the frames of all bodies. */
+void se3di_equations_save(se3di_equations *equations);
+void se3di_equations_restore(se3di_equations *equations);
+
+#endif
