@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "system/coordinate.h"
+
+#include "joint/rows.h"
+
+#include <string.h>
+
+void se3di_def_init(void *def, size_t size, const void *defaults, size_t full)
+{
+    if (def) {
+        memset(def, 0, size);
+        memcpy(def, defaults, size < full ? size : full);
+    }
+}
+
+int se3di_coordinate_term(const se3di_model *model, uint32_t joint, int32_t coordinate,
+                          se3di_term *term)
+{
+    const se3di_constraint *constraint = &model->constraints[joint];
+    if (coordinate == SE3D_COORDINATE_ANGLE && constraint->angle >= 0) {
+        *term = model->angles[constraint->angle].term;
+        term->angle = constraint->angle;
+        return 1;
+    }
+    if (coordinate == SE3D_COORDINATE_DISPLACEMENT && constraint->has_displacement) {
+        se3di_displacement_term_init(term, &constraint->frames, constraint->bodies);
+        return 1;
+    }
+    return 0;
+}
+
+se3d_status se3di_check_coordinate(se3d_system *system, const char *what, uint32_t joint,
+                                   int32_t coordinate, se3di_term *term)
+{
+    if (coordinate != SE3D_COORDINATE_ANGLE && coordinate != SE3D_COORDINATE_DISPLACEMENT) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "%s = %d, must be SE3D_COORDINATE_ANGLE or SE3D_COORDINATE_DISPLACEMENT",
+                          what, (int)coordinate);
+    }
+    if (se3di_coordinate_term(&system->model, joint, coordinate, term)) {
+        return SE3D_OK;
+    }
+    static const char *const has[4] = {"no coordinates", "an angle only", "a displacement only",
+                                       "both"};
+    const se3di_constraint *constraint = &system->model.constraints[joint];
+    int which = (constraint->angle >= 0) + 2 * (constraint->has_displacement != 0);
+    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s: '%.64s' (%s) has no %s, it has %s",
+                      what, constraint->name ? constraint->name : "", constraint->type,
+                      coordinate == SE3D_COORDINATE_ANGLE ? "angle" : "displacement", has[which]);
+}
+
+se3d_status se3di_check_distinct(se3d_system *system, const uint32_t bodies[2])
+{
+    if (bodies[0] != bodies[1]) {
+        return SE3D_OK;
+    }
+    const char *name = system->model.bodies[bodies[0]].name;
+    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                      "body_i and body_j are the same body '%.64s', must be two bodies",
+                      name ? name : "");
+}
+
+se3d_status se3di_check_prescribed(se3d_system *system, double value, int32_t function)
+{
+    return function >= 0 ? SE3D_OK : se3di_check_finite(system, "value", value);
+}
+
+se3d_status se3di_constraint_add(se3d_system *system, const se3di_draft *draft,
+                                 se3d_constraint *constraint)
+{
+    se3di_handle handle;
+    se3d_status status = se3di_model_add_constraint(&system->model, draft, &handle);
+    if (status < 0) {
+        return SE3DI_FAIL(system, status, "out of memory for a %s constraint",
+                          draft->constraint.type);
+    }
+    *constraint = (se3d_constraint){handle.index1, handle.generation};
+    return SE3D_OK;
+}
