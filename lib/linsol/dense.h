@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Small dense linear algebra on row-major arrays of the caller, without allocation.
+ *
+ * Below SE3DI_DENSE_SMALL unknowns own loops, whose bits do not depend on any library or its
+ * threads; above, LAPACK. */
+#ifndef SE3DI_LINSOL_DENSE_H
+#define SE3DI_LINSOL_DENSE_H
+
+#include "se3d/base.h"
+
+#define SE3DI_DENSE_SMALL 64
+
+/* P A = L U in place, row pivoting. pivot[n]. Returns SE3D_ERR_SINGULAR where a pivot is zero,
+ * SE3D_ERR_NOT_FINITE where A is not finite. */
+se3d_status se3di_dense_lu_factor(int32_t n, double *A, int32_t *pivot);
+/* Overwrite b[n] by A^-1 b. */
+void se3di_dense_lu_solve(int32_t n, const double *A, const int32_t *pivot, double *b);
+
+/* A = L L^T in place (lower triangle; the upper is not touched). SE3D_ERR_SINGULAR where A is not
+ * positive definite. */
+se3d_status se3di_dense_cholesky_factor(int32_t n, double *A);
+void se3di_dense_cholesky_solve(int32_t n, const double *L, double *b);
+
+/* A = L D L^T in place, no pivoting: unit L below, D on the diagonal. SE3D_ERR_SINGULAR where a
+ * pivot is zero or not finite. */
+se3d_status se3di_dense_ldl_factor(int32_t n, double *A);
+void se3di_dense_ldl_solve(int32_t n, const double *A, double *b);
+
+#endif

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The KKT kernels for x86-64 with AVX2 and FMA, chosen at run time.          docs/theory/kkt.md */
+#include "linsol/kkt_internal.h"
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
+
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2,fma")
+#endif
+
+typedef struct v8 {
+    __m256d low, high;
+} v8;
+
+#define V8_INLINE static inline __attribute__((always_inline))
+
+V8_INLINE v8 v8_zero(void)
+{
+    return (v8){_mm256_setzero_pd(), _mm256_setzero_pd()};
+}
+
+V8_INLINE v8 v8_load(const double *p)
+{
+    return (v8){_mm256_load_pd(p), _mm256_load_pd(p + 4)};
+}
+
+V8_INLINE void v8_store(double *p, v8 v)
+{
+    _mm256_store_pd(p, v.low);
+    _mm256_store_pd(p + 4, v.high);
+}
+
+V8_INLINE v8 v8_mul(v8 v, double s)
+{
+    __m256d f = _mm256_set1_pd(s);
+    return (v8){_mm256_mul_pd(v.low, f), _mm256_mul_pd(v.high, f)};
+}
+
+V8_INLINE v8 v8_fnma(v8 acc, v8 v, double s)
+{
+    __m256d f = _mm256_set1_pd(s);
+    return (v8){_mm256_fnmadd_pd(v.low, f, acc.low), _mm256_fnmadd_pd(v.high, f, acc.high)};
+}
+
+V8_INLINE v8 v8_madd(v8 acc, v8 u, v8 v)
+{
+    return (v8){_mm256_fmadd_pd(u.low, v.low, acc.low), _mm256_fmadd_pd(u.high, v.high, acc.high)};
+}
+
+V8_INLINE double v8_sum(v8 v)
+{
+    __m256d s = _mm256_add_pd(v.low, v.high);
+    __m128d t = _mm_add_pd(_mm256_castpd256_pd128(s), _mm256_extractf128_pd(s, 1));
+    return _mm_cvtsd_f64(_mm_add_sd(t, _mm_unpackhi_pd(t, t)));
+}
+
+V8_INLINE double s_fnma(double acc, double a, double b)
+{
+    return __builtin_fma(-a, b, acc);
+}
+
+#include "linsol/kkt_core.inc"
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+
+const se3di_kkt_core *se3di_kkt_core_avx2(void)
+{
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? &core_table : NULL;
+}
+
+#else
+
+const se3di_kkt_core *se3di_kkt_core_avx2(void)
+{
+    return NULL;
+}
+
+#endif

@@ -1,0 +1,296 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Factorisation with the regularisation that the system needs, and iterative refinement.
+ *
+ * E = eps w: uniform, w the geometric mean of the smallest and largest diag(C H^-1 B), so that the
+ * limit of the refined multipliers is the solution of least 2-norm; only a row whose own weight is
+ * more than 1e4 away from w gets a nearer E. The rounding of c is amplified by 1 / eps in the
+ * dependent directions of l; solving with the right-hand side (0, -E l) gives just that part, which
+ * is subtracted.                                                             docs/theory/kkt.md */
+#include <math.h>
+
+#include "linsol/kkt_internal.h"
+
+static const double pivot_vanishes = 1e-12; /* relative; then E = 0 is given up */
+static const double pivot_is_good = 1e-3;   /* relative; then a solve with E = 0 needs no check */
+static const double weight_range = 1e4;
+
+/* ---- factor ---- */
+
+static double middle_weight(const se3di_kkt *kkt)
+{
+    double low = HUGE_VAL, high = 0.0;
+    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
+        double w = kkt->weight[i];
+        low = w > 0.0 && w < low ? w : low;
+        high = w > high ? w : high;
+    }
+    return high > 0.0 && high < HUGE_VAL ? sqrt(low) * sqrt(high) : 1.0;
+}
+
+static void factor_once(se3di_kkt *kkt, const se3di_kkt_values *values, double eps, double middle)
+{
+    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
+        double w = kkt->weight[i], e = middle;
+        if (w > 0.0) {
+            e = e < w / weight_range ? w / weight_range : e;
+            e = e > w * weight_range ? w * weight_range : e;
+        }
+        kkt->e[i] = eps * e;
+    }
+    kkt->eps = eps;
+    kkt->finite = true;
+    kkt->min_pivot = kkt->min_sigma = 1.0;
+    kkt->dependent_rows = kkt->near_dependent = kkt->negative_pivots = 0;
+    ++kkt->factorisations;
+    if (kkt->kind == SE3DI_KKT_DENSE) {
+        se3di_kkt_dense_factor(kkt, values);
+    } else {
+        kkt->core->factor(kkt, values);
+    }
+}
+
+static bool plain_is_enough(const se3di_kkt *kkt)
+{
+    return kkt->finite && kkt->dependent_rows == 0 && kkt->min_pivot >= pivot_vanishes;
+}
+
+static void factor_suitably(se3di_kkt *kkt, const se3di_kkt_values *values)
+{
+    const se3di_kkt_settings *s = &kkt->settings;
+    double middle = middle_weight(kkt);
+    bool late = s->regularise == SE3DI_KKT_REGULARISE_LATE ||
+                (s->regularise == SE3DI_KKT_REGULARISE_AUTO && !kkt->has_loop);
+    if (late && kkt->kind == SE3DI_KKT_STRUCTURED) {
+        factor_once(kkt, values, 0.0, middle);
+        if (plain_is_enough(kkt)) {
+            return;
+        }
+    }
+    factor_once(kkt, values, s->eps, middle);
+    if (!kkt->finite || kkt->near_dependent == 0 || kkt->min_sigma > 1e3 * s->eps) {
+        return;
+    }
+    /* Nearly dependent rows: refinement gains eps / (eps + sigma) a step, rounding u / eps. */
+    double eps = sqrt(kkt->min_sigma * 2.2e-16);
+    eps = eps < s->eps_min ? s->eps_min : eps;
+    if (eps < 0.5 * s->eps) {
+        factor_once(kkt, values, eps, middle);
+    }
+}
+
+static bool all_finite(const double *values, size_t count)
+{
+    for (size_t i = 0; i < count; ++i) {
+        if (!isfinite(values[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool values_are_finite(const se3di_kkt *kkt, const se3di_kkt_values *v)
+{
+    const se3di_kkt_pattern *p = &kkt->pattern;
+    size_t block = (size_t)(p->body_size * p->body_size);
+    size_t stride = p->body_kind == SE3DI_KKT_BODY_MASS ? 10 : block;
+    bool finite = all_finite(v->body, p->body_count * stride) &&
+                  all_finite(v->coupling_upper, p->coupling_count * block) &&
+                  all_finite(v->joint, kkt->layout.joint_value_count);
+    if (finite && !p->symmetric) {
+        finite = all_finite(v->coupling_lower, p->coupling_count * block) &&
+                 all_finite(v->joint_b, kkt->layout.joint_value_count);
+    }
+    return finite;
+}
+
+se3d_status se3di_kkt_factor(se3di_kkt *kkt, const se3di_kkt_values *values,
+                             se3di_kkt_factor_info *info)
+{
+    kkt->factorisations = 0;
+    kkt->core->weigh(kkt, values);
+    factor_suitably(kkt, values);
+    if (info) {
+        *info = (se3di_kkt_factor_info){.factorisations = kkt->factorisations,
+                                        .dependent_rows = kkt->dependent_rows,
+                                        .near_dependent = kkt->near_dependent,
+                                        .negative_pivots = kkt->negative_pivots,
+                                        .eps = kkt->eps,
+                                        .min_pivot = kkt->min_pivot};
+    }
+    if (!kkt->finite) {
+        return values_are_finite(kkt, values) ? SE3D_ERR_SINGULAR : SE3D_ERR_NOT_FINITE;
+    }
+    return kkt->dependent_rows > 0 ? SE3D_INFO_REDUNDANT : SE3D_OK;
+}
+
+/* ---- solve ---- */
+
+/* Copy between (b, c) in the caller's order and kkt->z in the order of elimination. */
+static void scatter(se3di_kkt *kkt, const double *b, const double *c)
+{
+    int32_t n = kkt->pattern.body_size, bodies = (int32_t)kkt->pattern.body_count;
+    for (int32_t node = 0; node < kkt->node_count; ++node) {
+        double *z = kkt->z + (size_t)kkt->position_of[node] * KKT_LANES;
+        const double *from = b ? b + (size_t)node * (size_t)n : NULL;
+        if (node >= bodies) {
+            from = c ? c + kkt->row_offset[kkt->node_joint[node]] + kkt->node_row[node] : NULL;
+        }
+        for (int32_t r = 0; r < KKT_LANES; ++r) {
+            z[r] = from && r < kkt->node_size[node] ? from[r] : 0.0;
+        }
+    }
+}
+
+static void gather(const se3di_kkt *kkt, double *x, double *l)
+{
+    int32_t n = kkt->pattern.body_size, bodies = (int32_t)kkt->pattern.body_count;
+    for (int32_t node = 0; node < kkt->node_count; ++node) {
+        const double *z = kkt->z + (size_t)kkt->position_of[node] * KKT_LANES;
+        double *to = x + (size_t)node * (size_t)n;
+        if (node >= bodies) {
+            to = l + kkt->row_offset[kkt->node_joint[node]] + kkt->node_row[node];
+        }
+        for (int32_t r = 0; r < kkt->node_size[node]; ++r) {
+            to[r] = z[r];
+        }
+    }
+}
+
+/* One solve with the factored, regularised system. b or c may be NULL for zero. */
+static void solve_once(se3di_kkt *kkt, const double *b, const double *c, double *x, double *l)
+{
+    if (kkt->kind == SE3DI_KKT_DENSE) {
+        se3di_kkt_dense_solve(kkt, b, c, x, l);
+        return;
+    }
+    scatter(kkt, b, c);
+    kkt->core->solve(kkt);
+    gather(kkt, x, l);
+}
+
+static double largest_entry(const double *v, size_t count)
+{
+    double top = 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        double size = fabs(v[i]);
+        top = size > top || !(size <= HUGE_VAL) ? size : top; /* NaN stays */
+    }
+    return top;
+}
+
+/* The larger of both relative residuals. */
+static double measure(se3di_kkt *kkt, se3di_kkt_solve_info *info)
+{
+    double b = largest_entry(kkt->residual_b, kkt->layout.unknown_count);
+    double c = largest_entry(kkt->residual_c, kkt->layout.row_count);
+    info->residual_b = b > 0.0 ? b / kkt->scale_b : b;
+    info->residual_c = c > 0.0 ? c / kkt->scale_c : c;
+    info->checked = true;
+    return info->residual_b >= info->residual_c ? info->residual_b : info->residual_c;
+}
+
+static void add_correction(se3di_kkt *kkt, double sign, double *x, double *l)
+{
+    for (size_t i = 0; i < kkt->layout.unknown_count; ++i) {
+        x[i] += sign * kkt->correction_x[i];
+    }
+    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
+        l[i] += sign * kkt->correction_l[i];
+    }
+}
+
+typedef struct kkt_problem {
+    const se3di_kkt_values *values;
+    const double *b, *c;
+} kkt_problem;
+
+/* Refine until the residual is small or no longer falls. */
+static void refine(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
+                   se3di_kkt_solve_info *info)
+{
+    double before = 0.0;
+    for (int32_t step = 0;; ++step) {
+        kkt->core->residual(kkt, p->values, p->b, p->c, x, l);
+        se3di_kkt_solve_info previous = *info;
+        double now = measure(kkt, info);
+        if (step > 0) {
+            info->rate = before > 0.0 ? now / before : 0.0;
+        }
+        if (step > 0 && now > before) { /* take back what made it worse */
+            add_correction(kkt, -1.0, x, l);
+            info->residual_b = previous.residual_b;
+            info->residual_c = previous.residual_c;
+            return;
+        }
+        bool stagnates = step > 1 && info->rate > 0.5;
+        if (!(now > kkt->settings.tolerance) || stagnates ||
+            step >= kkt->settings.max_refinements) {
+            return;
+        }
+        solve_once(kkt, kkt->residual_b, kkt->residual_c, kkt->correction_x, kkt->correction_l);
+        add_correction(kkt, 1.0, x, l);
+        info->refinements = step + 1;
+        before = now;
+    }
+}
+
+/* Subtract the part of l in the dependent directions, and restore the balance of forces. */
+static void project(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l, int32_t times)
+{
+    size_t m = kkt->layout.row_count;
+    for (int32_t time = 0; time < times; ++time) {
+        for (size_t i = 0; i < m; ++i) {
+            kkt->residual_c[i] = -kkt->e[i] * l[i];
+        }
+        solve_once(kkt, NULL, kkt->residual_c, kkt->correction_x, kkt->correction_l);
+        for (size_t i = 0; i < m; ++i) {
+            l[i] -= kkt->correction_l[i];
+        }
+        kkt->core->residual(kkt, p->values, p->b, p->c, x, l);
+        solve_once(kkt, kkt->residual_b, NULL, kkt->correction_x, kkt->correction_l);
+        for (size_t i = 0; i < m; ++i) {
+            l[i] += kkt->correction_l[i];
+        }
+    }
+}
+
+static se3d_status judge(const se3di_kkt *kkt, const double *x, const double *l,
+                         se3di_kkt_solve_info *info)
+{
+    if (!all_finite(x, kkt->layout.unknown_count) || !all_finite(l, kkt->layout.row_count)) {
+        return SE3D_ERR_NOT_FINITE;
+    }
+    if (kkt->dependent_rows > 0) {
+        info->inconsistent = info->residual_c > 1e-8;
+        return SE3D_INFO_REDUNDANT;
+    }
+    bool failed = info->checked && (info->residual_b > 1e-6 || info->residual_c > 1e-6);
+    return failed ? SE3D_ERR_NO_CONVERGENCE : SE3D_OK;
+}
+
+se3d_status se3di_kkt_solve(se3di_kkt *kkt, const se3di_kkt_values *values, const double *b,
+                            const double *c, double *x, double *l, se3di_kkt_solve_info *info)
+{
+    se3di_kkt_solve_info own = {0};
+    const kkt_problem problem = {values, b, c};
+    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
+        l[i] = kkt->correction_l[i] = 0.0; /* also of joints without bodies */
+    }
+    solve_once(kkt, b, c, x, l);
+    bool sure = !(kkt->eps > 0.0) && kkt->min_pivot > pivot_is_good && kkt->negative_pivots == 0 &&
+                kkt->pattern.symmetric;
+    if (kkt->settings.always_check || !sure) {
+        refine(kkt, &problem, x, l, &own);
+    }
+    if (kkt->dependent_rows > 0) {
+        own.projected = true;
+        project(kkt, &problem, x, l, own.residual_c > 1e-8 ? 3 : 1);
+        kkt->core->residual(kkt, values, b, c, x, l);
+        measure(kkt, &own);
+    }
+    se3d_status status = judge(kkt, x, l, &own);
+    if (info) {
+        *info = own;
+    }
+    return status;
+}

@@ -1,0 +1,744 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The KKT solver on random mechanisms: structured = dense, redundancy, failures, allocation. */
+#include <stdlib.h>
+
+#include "check.h"
+#include "linsol/kkt.h"
+
+/* An allocator that counts, fails once from call `fail_at` on, and knows what is out. */
+typedef struct counter {
+    size_t calls, fail_at;
+    long bytes;
+} counter;
+
+static void *counted_alloc(void *ctx, size_t size)
+{
+    counter *c = ctx;
+    if (++c->calls >= c->fail_at) {
+        return NULL;
+    }
+    c->bytes += (long)size;
+    return malloc(size);
+}
+
+static void *counted_realloc(void *ctx, void *memory, size_t old_size, size_t new_size)
+{
+    counter *c = ctx;
+    if (++c->calls >= c->fail_at) {
+        return NULL;
+    }
+    c->bytes += (long)new_size - (long)old_size;
+    return realloc(memory, new_size);
+}
+
+static void counted_free(void *ctx, void *memory, size_t size)
+{
+    counter *c = ctx;
+    c->bytes -= (long)size;
+    free(memory);
+}
+
+static counter memory_counter = {0, SIZE_MAX, 0};
+static const se3d_allocator memory = {counted_alloc, counted_realloc, counted_free,
+                                      &memory_counter};
+
+/* ---- random mechanisms ---- */
+
+enum { MAX_BODIES = 64, MAX_JOINTS = 160, MAX_ENTRIES = 400, MAX_COUPLINGS = 64 };
+
+typedef struct mechanism {
+    se3di_kkt_pattern pattern;
+    int32_t rows[MAX_JOINTS], begin[MAX_JOINTS + 1], body_of[MAX_ENTRIES];
+    int32_t coupling[2 * MAX_COUPLINGS];
+    double body[MAX_BODIES * 64], upper[MAX_COUPLINGS * 64], lower[MAX_COUPLINGS * 64];
+    double joint[MAX_ENTRIES * 64 * 8], joint_b[MAX_ENTRIES * 64 * 8];
+    double b[MAX_BODIES * 8], c[MAX_JOINTS * 64], x[MAX_BODIES * 8], l[MAX_JOINTS * 64];
+    double exact_x[MAX_BODIES * 8], exact_l[MAX_JOINTS * 64];
+    se3di_kkt_values values;
+    size_t unknowns, row_count;
+    uint64_t seed;
+} mechanism;
+
+static mechanism m, other; /* too large for the stack */
+
+static void start(mechanism *s, size_t bodies, int32_t n, bool symmetric, uint64_t seed)
+{
+    memset(s, 0, sizeof *s);
+    s->pattern = (se3di_kkt_pattern){.body_count = bodies,
+                                     .joint_rows = s->rows,
+                                     .joint_begin = s->begin,
+                                     .joint_body = s->body_of,
+                                     .coupling = s->coupling,
+                                     .body_size = n,
+                                     .symmetric = symmetric};
+    s->values = (se3di_kkt_values){s->body, s->upper, s->lower, s->joint, s->joint_b};
+    s->seed = seed * UINT64_C(2654435761) + 88172645463325252;
+}
+
+static double uniform(mechanism *s)
+{
+    return check_random(&s->seed);
+}
+
+static void add_joint(mechanism *s, int32_t rows, int32_t i, int32_t j)
+{
+    size_t at = s->pattern.joint_count++;
+    int32_t end = s->begin[at];
+    s->rows[at] = rows;
+    if (i >= 0) {
+        s->body_of[end++] = i;
+    }
+    if (j >= 0) {
+        s->body_of[end++] = j;
+    }
+    s->begin[at + 1] = end;
+}
+
+static void add_coupling(mechanism *s, int32_t i, int32_t j)
+{
+    size_t at = s->pattern.coupling_count++;
+    s->coupling[2 * at] = i;
+    s->coupling[2 * at + 1] = j;
+}
+
+/* Body i hangs on a body before it, or on the ground. */
+static void add_tree(mechanism *s, int32_t rows)
+{
+    for (int32_t i = 0; i < (int32_t)s->pattern.body_count; ++i) {
+        int32_t parent = (int32_t)(fabs(uniform(s)) * (double)(i + 1)) - 1;
+        add_joint(s, rows > 0 ? rows : 1 + (int32_t)(fabs(uniform(s)) * 6.0), parent, i);
+    }
+}
+
+static void add_chain(mechanism *s, int32_t rows)
+{
+    for (int32_t i = 0; i < (int32_t)s->pattern.body_count; ++i) {
+        add_joint(s, rows, i - 1, i);
+    }
+}
+
+/* SPD of size k, with the scales of masses and inertias. */
+static void fill_definite(mechanism *s, int32_t k, int32_t n, double size, double *H)
+{
+    double F[64];
+    for (int32_t i = 0; i < k * k; ++i) {
+        F[i] = uniform(s);
+    }
+    for (int32_t r = 0; r < k; ++r) {
+        for (int32_t c = 0; c < k; ++c) {
+            double sum = r == c ? 1.0 : 0.0;
+            for (int32_t i = 0; i < k; ++i) {
+                sum += F[r * k + i] * F[c * k + i];
+            }
+            H[r * n + c] = size * sum;
+        }
+    }
+}
+
+/* [diag(mass), 4 G^T J G] and p, singular along p as in r-p. */
+static void fill_euler(mechanism *s, double *H)
+{
+    double p[4], G[12], norm = 0.0, mass = 1.0 + fabs(uniform(s));
+    for (int32_t i = 0; i < 4; ++i) {
+        p[i] = uniform(s);
+        norm += p[i] * p[i];
+    }
+    for (int32_t i = 0; i < 4; ++i) {
+        p[i] /= sqrt(norm);
+    }
+    const double rows[12] = {-p[1], p[0], p[3], -p[2], -p[2], -p[3],
+                             p[0],  p[1], -p[3], p[2], -p[1], p[0]};
+    memcpy(G, rows, sizeof G);
+    for (int32_t r = 0; r < 3; ++r) {
+        H[r * 8 + r] = mass;
+    }
+    for (int32_t r = 0; r < 4; ++r) {
+        H[(r + 3) * 8 + 7] = H[7 * 8 + r + 3] = p[r];
+        for (int32_t c = 0; c < 4; ++c) {
+            for (int32_t k = 0; k < 3; ++k) {
+                H[(r + 3) * 8 + c + 3] += (0.2 + 0.1 * k) * 4.0 * G[4 * k + r] * G[4 * k + c];
+            }
+        }
+    }
+}
+
+static void fill_bodies(mechanism *s)
+{
+    const int32_t n = s->pattern.body_size;
+    for (size_t i = 0; i < s->pattern.body_count; ++i) {
+        double *H = s->body + i * (size_t)(n * n);
+        if (s->pattern.body_kind == SE3DI_KKT_BODY_MASS) {
+            H = s->body + 10 * i;
+            H[0] = 1.0 + fabs(uniform(s));
+            fill_definite(s, 3, 3, 0.1, H + 1);
+        } else if (n == 8) {
+            fill_euler(s, H);
+        } else {
+            fill_definite(s, n, n, 1.0, H);
+        }
+        for (int32_t e = 0; e < n * n && !s->pattern.symmetric; ++e) {
+            H[e] += 0.2 * uniform(s);
+        }
+    }
+}
+
+static void fill_couplings(mechanism *s)
+{
+    const int32_t n = s->pattern.body_size, used = n == 8 ? 7 : n;
+    for (size_t e = 0; e < s->pattern.coupling_count; ++e) {
+        for (int32_t r = 0; r < used; ++r) {
+            for (int32_t c = 0; c < used; ++c) {
+                s->upper[e * (size_t)(n * n) + (size_t)(r * n + c)] = 0.05 * uniform(s);
+                s->lower[e * (size_t)(n * n) + (size_t)(r * n + c)] = 0.05 * uniform(s);
+            }
+        }
+    }
+}
+
+static void fill_joints(mechanism *s)
+{
+    const int32_t n = s->pattern.body_size;
+    size_t at = 0;
+    for (size_t j = 0; j < s->pattern.joint_count; ++j) {
+        s->row_count += (size_t)s->rows[j];
+        for (int32_t e = s->begin[j] * s->rows[j]; e < s->begin[j + 1] * s->rows[j]; ++e) {
+            for (int32_t c = 0; c < n; ++c, ++at) {
+                int32_t r = e % s->rows[j];
+                bool is_last = e / s->rows[j] == s->begin[j + 1] - 1; /* full rank on the last */
+                s->joint[at] = 0.4 * uniform(s) + (is_last && (r == c || r == c + n) ? 1.0 : 0.0);
+                s->joint[at] = n == 8 && c == 7 ? 0.0 : s->joint[at];
+                s->joint_b[at] = s->joint[at];
+                if (!s->pattern.symmetric) {
+                    s->joint_b[at] += 0.05 * uniform(s);
+                }
+            }
+        }
+    }
+}
+
+/* r += [H B; C 0] (x, l), from the definition. */
+static void multiply(const mechanism *s, const double *x, const double *l, double *rb, double *rc)
+{
+    const size_t n = (size_t)s->pattern.body_size;
+    for (size_t i = 0; i < s->pattern.body_count; ++i) {
+        for (size_t r = 0; r < n; ++r) {
+            for (size_t c = 0; c < n; ++c) {
+                double h = s->body[(i * n + r) * n + c];
+                if (s->pattern.body_kind == SE3DI_KKT_BODY_MASS) {
+                    const double *H = s->body + 10 * i;
+                    h = r < 3 || c < 3 ? (r == c ? H[0] : 0.0) : H[1 + 3 * (r - 3) + c - 3];
+                }
+                rb[i * n + r] += h * x[i * n + c];
+            }
+        }
+    }
+    for (size_t e = 0; e < s->pattern.coupling_count; ++e) {
+        size_t i = (size_t)s->coupling[2 * e] * n, j = (size_t)s->coupling[2 * e + 1] * n;
+        for (size_t r = 0; r < n; ++r) {
+            for (size_t c = 0; c < n; ++c) {
+                double low = s->pattern.symmetric ? s->upper[(e * n + c) * n + r]
+                                                  : s->lower[(e * n + r) * n + c];
+                rb[i + r] += s->upper[(e * n + r) * n + c] * x[j + c];
+                rb[j + r] += low * x[i + c];
+            }
+        }
+    }
+    size_t at = 0, row = 0;
+    for (size_t j = 0; j < s->pattern.joint_count; row += (size_t)s->rows[j++]) {
+        for (int32_t e = s->begin[j]; e < s->begin[j + 1]; ++e) {
+            size_t body = (size_t)s->body_of[e] * n;
+            for (size_t r = 0; r < (size_t)s->rows[j]; ++r) {
+                for (size_t c = 0; c < n; ++c, ++at) {
+                    rc[row + r] += s->joint[at] * x[body + c];
+                    rb[body + c] += s->joint_b[at] * l[row + r];
+                }
+            }
+        }
+    }
+}
+
+/* A right-hand side with a known solution. */
+static void fill_right_side(mechanism *s)
+{
+    s->unknowns = s->pattern.body_count * (size_t)s->pattern.body_size;
+    size_t row = 0;
+    for (size_t i = 0; i < s->unknowns; ++i) {
+        s->exact_x[i] = uniform(s);
+    }
+    for (size_t j = 0; j < s->pattern.joint_count; ++j) {
+        for (int32_t r = 0; r < s->rows[j]; ++r) {
+            s->exact_l[row++] = s->begin[j + 1] > s->begin[j] ? uniform(s) : 0.0;
+        }
+    }
+    multiply(s, s->exact_x, s->exact_l, s->b, s->c);
+}
+
+static void fill(mechanism *s)
+{
+    fill_bodies(s);
+    fill_couplings(s);
+    fill_joints(s);
+    fill_right_side(s);
+}
+
+static double distance(const double *a, const double *b, size_t count)
+{
+    double top = 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        double d = fabs(a[i] - b[i]);
+        top = d > top || !(d >= 0.0) ? d : top;
+        if (!(d >= 0.0)) {
+            return HUGE_VAL;
+        }
+    }
+    return top;
+}
+
+typedef struct outcome {
+    se3d_status factor, solve;
+    se3di_kkt_factor_info factor_info;
+    se3di_kkt_solve_info info;
+    double error_x, error_l;
+} outcome;
+
+static se3di_kkt *create(mechanism *s, se3di_kkt_kind kind)
+{
+    se3di_kkt *kkt = NULL;
+    CHECK(se3di_kkt_create(&memory, &s->pattern, kind, &kkt) == SE3D_OK);
+    return kkt;
+}
+
+static outcome solve_with(mechanism *s, se3di_kkt_kind kind, const se3di_kkt_settings *settings)
+{
+    outcome out = {.factor = SE3D_ERR_STATE, .solve = SE3D_ERR_STATE};
+    se3di_kkt *kkt = create(s, kind);
+    if (!kkt) {
+        return out;
+    }
+    if (settings) {
+        se3di_kkt_set_settings(kkt, settings);
+    }
+    out.factor = se3di_kkt_factor(kkt, &s->values, &out.factor_info);
+    out.solve = se3di_kkt_solve(kkt, &s->values, s->b, s->c, s->x, s->l, &out.info);
+    out.error_x = distance(s->x, s->exact_x, s->unknowns);
+    out.error_l = distance(s->l, s->exact_l, s->row_count);
+    se3di_kkt_destroy(kkt);
+    return out;
+}
+
+static const se3di_kkt_level levels[] = {SE3DI_KKT_LEVEL_PORTABLE, SE3DI_KKT_LEVEL_AVX2,
+                                         SE3DI_KKT_LEVEL_AVX512};
+
+/* Both kinds and all levels find the known solution. */
+static void check_all_kinds(mechanism *s, double tolerance)
+{
+    outcome dense = solve_with(s, SE3DI_KKT_DENSE, NULL);
+    CHECK(dense.factor == SE3D_OK && dense.solve == SE3D_OK);
+    CHECK_NEAR(dense.error_x, 0.0, tolerance);
+    CHECK_NEAR(dense.error_l, 0.0, tolerance);
+    for (size_t k = 0; k < 3; ++k) {
+        s->pattern.level = levels[k];
+        outcome out = solve_with(s, SE3DI_KKT_STRUCTURED, NULL);
+        CHECK(out.factor == SE3D_OK && out.solve == SE3D_OK);
+        CHECK(out.factor_info.dependent_rows == 0);
+        CHECK_NEAR(out.error_x, 0.0, tolerance);
+        CHECK_NEAR(out.error_l, 0.0, tolerance);
+    }
+}
+
+static void structured_and_dense_find_the_solution_of_trees(void)
+{
+    const size_t sizes[] = {1, 2, 7, 50};
+    for (size_t k = 0; k < 4; ++k) {
+        for (uint64_t seed = 1; seed <= 4; ++seed) {
+            for (int32_t n = 3; n <= 6; n += 3) {
+                start(&m, sizes[k], n, true, seed);
+                add_tree(&m, n == 3 ? 2 : (seed == 1 ? 5 : 0));
+                fill(&m);
+                check_all_kinds(&m, 1e-11);
+            }
+        }
+    }
+}
+
+static void structured_and_dense_find_the_solution_of_unsymmetric_trees(void)
+{
+    for (uint64_t seed = 1; seed <= 6; ++seed) {
+        start(&m, 3 * (size_t)seed, seed % 2 == 0 ? 6 : 8, false, seed);
+        add_tree(&m, 0);
+        add_coupling(&m, 0, 2);
+        add_coupling(&m, 1, 2);
+        fill(&m);
+        check_all_kinds(&m, 1e-10);
+    }
+}
+
+static void euler_parameter_blocks_are_solved(void)
+{
+    for (uint64_t seed = 1; seed <= 4; ++seed) {
+        start(&m, 5 * (size_t)seed, 8, true, seed);
+        add_tree(&m, 3);
+        add_coupling(&m, 0, 1);
+        add_coupling(&m, 1, 4);
+        fill(&m);
+        check_all_kinds(&m, 1e-11);
+    }
+}
+
+static void euler_parameter_blocks_at_the_identity_are_solved(void)
+{
+    start(&m, 1, 8, true, 3);
+    add_joint(&m, 3, 0, -1);
+    fill(&m);
+    memset(m.body, 0, sizeof m.body);
+    for (size_t r = 0; r < 3; ++r) {
+        m.body[9 * r] = 2.0;
+        m.body[9 * (r + 4)] = 0.3; /* 4 G^T J G at p = (1, 0, 0, 0) */
+    }
+    m.body[3 * 8 + 7] = m.body[7 * 8 + 3] = 1.0;
+    memset(m.b, 0, sizeof m.b);
+    memset(m.c, 0, sizeof m.c);
+    multiply(&m, m.exact_x, m.exact_l, m.b, m.c);
+    check_all_kinds(&m, 1e-12);
+}
+
+static void mass_blocks_give_what_full_blocks_give(void)
+{
+    start(&m, 20, 6, true, 5);
+    m.pattern.body_kind = SE3DI_KKT_BODY_MASS;
+    add_chain(&m, 5);
+    fill(&m);
+    check_all_kinds(&m, 1e-11);
+}
+
+static void couplings_and_loops_and_big_joints_are_solved(void)
+{
+    for (uint64_t seed = 1; seed <= 6; ++seed) {
+        start(&m, 12, 6, true, seed);
+        add_tree(&m, 3);
+        add_joint(&m, 2, 3, 9); /* closes a loop */
+        add_joint(&m, 1, 1, 11);
+        add_joint(&m, 1, 0, 5);
+        for (int32_t i = 0; i < 8; ++i) { /* a coupler of 10 rows on 8 bodies */
+            m.body_of[m.begin[m.pattern.joint_count] + i] = i;
+        }
+        m.rows[m.pattern.joint_count] = 10;
+        m.begin[m.pattern.joint_count + 1] = m.begin[m.pattern.joint_count] + 8;
+        ++m.pattern.joint_count;
+        add_joint(&m, 3, -1, -1); /* both ends on the ground: ignored */
+        add_coupling(&m, 0, 11);
+        add_coupling(&m, 2, 7);
+        fill(&m);
+        check_all_kinds(&m, 1e-10);
+    }
+}
+
+/* A hub with many loops through it, on the ground or floating. */
+static void a_hub_with_many_loops_is_solved(void)
+{
+    for (int32_t grounded = 0; grounded < 2; ++grounded) {
+        start(&m, 41, 6, true, 7);
+        for (int32_t k = 0; k < 20; ++k) {
+            add_joint(&m, 5, 0, 1 + 2 * k);
+            add_joint(&m, 3, 1 + 2 * k, 2 + 2 * k);
+            add_joint(&m, 3, 0, 2 + 2 * k);
+        }
+        if (grounded) {
+            add_joint(&m, 4, 0, -1);
+        }
+        fill(&m);
+        check_all_kinds(&m, 1e-10);
+    }
+}
+
+static void empty_systems_are_fine(void)
+{
+    for (int kind = 0; kind < 2; ++kind) {
+        start(&m, 0, 6, true, 1);
+        outcome out = solve_with(&m, (se3di_kkt_kind)kind, NULL);
+        CHECK(out.factor == SE3D_OK && out.solve == SE3D_OK);
+        start(&m, 0, 6, true, 1);
+        add_joint(&m, 5, -1, -1);
+        m.row_count = 5;
+        m.c[2] = 1.0;
+        m.l[2] = 9.0;
+        out = solve_with(&m, (se3di_kkt_kind)kind, NULL);
+        CHECK(out.factor == SE3D_OK && out.solve == SE3D_OK);
+        CHECK_NEAR(m.l[2], 0.0, 0.0);
+        start(&m, 3, 6, true, 1); /* no joints */
+        fill(&m);
+        out = solve_with(&m, (se3di_kkt_kind)kind, NULL);
+        CHECK(out.factor == SE3D_OK && out.solve == SE3D_OK);
+        CHECK_NEAR(out.error_x, 0.0, 1e-13);
+    }
+}
+
+/* ---- redundancy ---- */
+
+/* Repeat the last joint with its rows mixed by `factor`; exact_l is the least-norm solution. */
+static void make_redundant(mechanism *s, double factor)
+{
+    size_t last = s->pattern.joint_count - 1;
+    size_t rows = (size_t)s->rows[last], n = (size_t)s->pattern.body_size;
+    size_t count = (size_t)(s->begin[last + 1] - s->begin[last]);
+    add_joint(s, (int32_t)rows, s->body_of[s->begin[last]],
+              count > 1 ? s->body_of[s->begin[last] + 1] : -1);
+    size_t at = 0;
+    for (size_t j = 0; j < last; ++j) {
+        at += (size_t)(s->begin[j + 1] - s->begin[j]) * (size_t)s->rows[j] * n;
+    }
+    for (size_t i = 0; i < count * rows * n; ++i) {
+        s->joint[at + count * rows * n + i] = factor * s->joint[at + i];
+        s->joint_b[at + count * rows * n + i] = factor * s->joint_b[at + i];
+    }
+    /* l1 + f l2 = g with least |l|: l1 = g / (1 + f^2), l2 = f l1 */
+    size_t row = s->row_count - rows;
+    for (size_t r = 0; r < rows; ++r) {
+        s->exact_l[row + r] /= 1.0 + factor * factor;
+        s->exact_l[row + rows + r] = factor * s->exact_l[row + r];
+        s->c[row + rows + r] = factor * s->c[row + r];
+    }
+    s->row_count += rows;
+}
+
+static void redundant_rows_leave_x_exact_and_l_of_least_norm(void)
+{
+    const double factors[] = {1.0, -0.3, 7.0};
+    for (uint64_t seed = 1; seed <= 12; ++seed) {
+        for (int kind = 0; kind < 2; ++kind) {
+            start(&m, 1 + 2 * (size_t)seed, seed % 4 == 0 ? 8 : 6, seed % 3 != 0, seed);
+            add_tree(&m, seed % 4 == 0 ? 3 : 5);
+            fill(&m);
+            make_redundant(&m, factors[seed % 3]);
+            outcome out = solve_with(&m, (se3di_kkt_kind)kind, NULL);
+            CHECK(out.factor == SE3D_INFO_REDUNDANT && out.solve == SE3D_INFO_REDUNDANT);
+            CHECK(out.factor_info.dependent_rows == (seed % 4 == 0 ? 3 : 5));
+            CHECK(out.info.projected && !out.info.inconsistent);
+            CHECK(out.info.refinements <= 5);
+            CHECK_NEAR(out.error_x, 0.0, 1e-12);
+            CHECK_NEAR(out.error_l, 0.0, 1e-11);
+        }
+    }
+}
+
+static void redundancy_inside_a_tree_is_found_late(void)
+{
+    start(&m, 6, 6, true, 9);
+    add_tree(&m, 5);
+    fill(&m);
+    make_redundant(&m, 1.0);
+    se3di_kkt_settings settings;
+    se3di_kkt *kkt = create(&m, SE3DI_KKT_STRUCTURED);
+    settings = se3di_kkt_get_settings(kkt);
+    se3di_kkt_destroy(kkt);
+    settings.regularise = SE3DI_KKT_REGULARISE_LATE;
+    outcome out = solve_with(&m, SE3DI_KKT_STRUCTURED, &settings);
+    CHECK(out.factor_info.factorisations == 2);
+    CHECK(out.factor_info.dependent_rows == 5);
+    CHECK_NEAR(out.error_x, 0.0, 1e-12);
+    CHECK_NEAR(out.error_l, 0.0, 1e-11);
+    settings.regularise = SE3DI_KKT_REGULARISE_FIRST;
+    out = solve_with(&m, SE3DI_KKT_STRUCTURED, &settings);
+    CHECK(out.factor_info.factorisations == 1);
+    CHECK_NEAR(out.error_x, 0.0, 1e-12);
+}
+
+static void contradicting_rows_are_told(void)
+{
+    for (int kind = 0; kind < 2; ++kind) {
+        start(&m, 5, 6, true, 4);
+        add_tree(&m, 5);
+        fill(&m);
+        make_redundant(&m, 1.0);
+        m.c[m.row_count - 1] += 1e-3;
+        outcome out = solve_with(&m, (se3di_kkt_kind)kind, NULL);
+        CHECK(out.solve == SE3D_INFO_REDUNDANT);
+        CHECK(out.info.inconsistent);
+        CHECK(out.info.residual_c > 1e-5);
+        CHECK(out.error_x < 0.1); /* least squares: off by the size of the contradiction */
+        CHECK(out.error_l < 1.0);
+    }
+}
+
+static void nearly_dependent_rows_are_solved_as_regular(void)
+{
+    for (uint64_t seed = 1; seed <= 6; ++seed) {
+        for (int kind = 0; kind < 2; ++kind) {
+            start(&m, 6, 6, true, seed);
+            add_tree(&m, 4);
+            fill(&m);
+            make_redundant(&m, 1.0);
+            size_t last = 0; /* all blocks of the copy are perturbed by 1e-5 */
+            for (size_t j = 0; j < m.pattern.joint_count; ++j) {
+                last += (size_t)((m.begin[j + 1] - m.begin[j]) * m.rows[j] * 6);
+            }
+            for (size_t i = last - 24; i < last; ++i) {
+                m.joint[i] += 1e-5 * uniform(&m);
+                m.joint_b[i] = m.joint[i];
+            }
+            memset(m.b, 0, sizeof m.b);
+            memset(m.c, 0, sizeof m.c);
+            multiply(&m, m.exact_x, m.exact_l, m.b, m.c);
+            outcome out = solve_with(&m, (se3di_kkt_kind)kind, NULL);
+            CHECK(out.factor == SE3D_OK && out.solve == SE3D_OK);
+            CHECK(out.factor_info.near_dependent > 0);
+            CHECK_NEAR(out.error_x, 0.0, 1e-7);
+            CHECK(out.info.residual_b < 1e-13 && out.info.residual_c < 1e-13);
+        }
+    }
+}
+
+/* ---- failures, memory, repetition ---- */
+
+static void bad_values_are_refused(void)
+{
+    for (int kind = 0; kind < 2; ++kind) {
+        start(&m, 4, 6, true, 1);
+        add_tree(&m, 5);
+        fill(&m);
+        m.body[40] = NAN;
+        outcome out = solve_with(&m, (se3di_kkt_kind)kind, NULL);
+        CHECK(out.factor == SE3D_ERR_NOT_FINITE);
+        start(&m, 4, 6, true, 1);
+        add_tree(&m, 5);
+        fill(&m);
+        m.joint[7] = HUGE_VAL;
+        out = solve_with(&m, (se3di_kkt_kind)kind, NULL);
+        CHECK(out.factor == SE3D_ERR_NOT_FINITE);
+    }
+    start(&m, 2, 6, true, 1);
+    add_tree(&m, 5);
+    fill(&m);
+    memset(m.body, 0, sizeof m.body);
+    outcome out = solve_with(&m, SE3DI_KKT_STRUCTURED, NULL);
+    CHECK(out.factor == SE3D_ERR_SINGULAR);
+}
+
+static void bad_patterns_are_refused(void)
+{
+    se3di_kkt *kkt = NULL;
+    start(&m, 2, 9, true, 1);
+    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, &kkt) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    start(&m, 2, 6, true, 1);
+    add_joint(&m, 5, 0, 2);
+    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, &kkt) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    start(&m, 2, 6, true, 1);
+    add_joint(&m, 5, 1, 1);
+    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, &kkt) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    start(&m, 2, 6, true, 1);
+    add_joint(&m, 65, 0, 1);
+    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, &kkt) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    start(&m, 2, 6, true, 1);
+    add_coupling(&m, 1, 0);
+    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, &kkt) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(kkt == NULL);
+    CHECK(memory_counter.bytes == 0);
+}
+
+static void a_failing_allocation_leaves_nothing_behind(void)
+{
+    for (int kind = 0; kind < 2; ++kind) {
+        start(&m, 6, 6, kind == 0, 2);
+        add_tree(&m, 5);
+        add_joint(&m, 2, 1, 4);
+        fill(&m);
+        se3d_status status = SE3D_ERR_NO_MEMORY;
+        size_t at = 1;
+        for (; status < 0 && at < 10000; ++at) {
+            se3di_kkt *kkt = NULL;
+            memory_counter.calls = 0;
+            memory_counter.fail_at = at;
+            status = se3di_kkt_create(&memory, &m.pattern, (se3di_kkt_kind)kind, &kkt);
+            CHECK(status == SE3D_OK || (status == SE3D_ERR_NO_MEMORY && !kkt));
+            se3di_kkt_destroy(kkt);
+            CHECK(memory_counter.bytes == 0);
+        }
+        memory_counter.fail_at = SIZE_MAX;
+        CHECK(status == SE3D_OK && at > 20);
+    }
+}
+
+static void factor_and_solve_allocate_nothing_and_repeat_bit_for_bit(void)
+{
+    for (int kind = 0; kind < 2; ++kind) {
+        start(&m, 20, 6, true, 2);
+        add_tree(&m, 5);
+        fill(&m);
+        make_redundant(&m, 1.0);
+        se3di_kkt *kkt = create(&m, (se3di_kkt_kind)kind);
+        size_t calls = memory_counter.calls;
+        for (int step = 0; step < 3; ++step) {
+            CHECK(se3di_kkt_factor(kkt, &m.values, NULL) == SE3D_INFO_REDUNDANT);
+            CHECK(se3di_kkt_solve(kkt, &m.values, m.b, m.c, m.x, m.l, NULL) ==
+                  SE3D_INFO_REDUNDANT);
+            if (step == 0) {
+                memcpy(other.x, m.x, sizeof m.x);
+                memcpy(other.l, m.l, sizeof m.l);
+            }
+            CHECK(memcmp(other.x, m.x, sizeof m.x) == 0);
+            CHECK(memcmp(other.l, m.l, sizeof m.l) == 0);
+        }
+        CHECK(memory_counter.calls == calls);
+        se3di_kkt_destroy(kkt);
+    }
+}
+
+static void several_right_sides_use_one_factorisation(void)
+{
+    start(&m, 20, 6, true, 2);
+    add_tree(&m, 5);
+    fill(&m);
+    se3di_kkt *kkt = create(&m, SE3DI_KKT_STRUCTURED);
+    CHECK(se3di_kkt_factor(kkt, &m.values, NULL) == SE3D_OK);
+    for (int side = 0; side < 3; ++side) {
+        memset(m.b, 0, sizeof m.b);
+        memset(m.c, 0, sizeof m.c);
+        fill_right_side(&m);
+        CHECK(se3di_kkt_solve(kkt, &m.values, m.b, m.c, m.x, m.l, NULL) == SE3D_OK);
+        CHECK_NEAR(distance(m.x, m.exact_x, m.unknowns), 0.0, 1e-11);
+        CHECK_NEAR(distance(m.l, m.exact_l, m.row_count), 0.0, 1e-11);
+    }
+    se3di_kkt_destroy(kkt);
+}
+
+static void cost_of_a_chain_is_proportional_to_its_length(void)
+{
+    double cost[2];
+    for (size_t k = 0; k < 2; ++k) {
+        start(&m, k == 0 ? 25 : 50, 6, true, 1);
+        add_chain(&m, 5);
+        se3di_kkt *kkt = create(&m, SE3DI_KKT_STRUCTURED);
+        cost[k] = se3di_kkt_get_cost(kkt);
+        se3di_kkt_destroy(kkt);
+    }
+    CHECK(cost[1] < 2.1 * cost[0]);
+}
+
+int main(void)
+{
+    RUN(structured_and_dense_find_the_solution_of_trees);
+    RUN(structured_and_dense_find_the_solution_of_unsymmetric_trees);
+    RUN(euler_parameter_blocks_are_solved);
+    RUN(euler_parameter_blocks_at_the_identity_are_solved);
+    RUN(mass_blocks_give_what_full_blocks_give);
+    RUN(couplings_and_loops_and_big_joints_are_solved);
+    RUN(a_hub_with_many_loops_is_solved);
+    RUN(empty_systems_are_fine);
+    RUN(redundant_rows_leave_x_exact_and_l_of_least_norm);
+    RUN(redundancy_inside_a_tree_is_found_late);
+    RUN(contradicting_rows_are_told);
+    RUN(nearly_dependent_rows_are_solved_as_regular);
+    RUN(bad_values_are_refused);
+    RUN(bad_patterns_are_refused);
+    RUN(a_failing_allocation_leaves_nothing_behind);
+    RUN(factor_and_solve_allocate_nothing_and_repeat_bit_for_bit);
+    RUN(several_right_sides_use_one_factorisation);
+    RUN(cost_of_a_chain_is_proportional_to_its_length);
+    CHECK(memory_counter.bytes == 0);
+    return check_finish();
+}
