@@ -166,8 +166,7 @@ se3d_status se3di_program_step(se3di_program *program, se3di_operand arguments[5
     if (known && x0->value == x1->value && !program->dead) {
         return SE3D_ERR_NOT_FINITE;
     }
-    SE3DI_TRY(append(
-        program, (se3di_instruction){.op = SE3DI_OP_STEP, .mask_a = (uint8_t)arguments[0].mask}));
+    SE3DI_TRY(append(program, (se3di_instruction){.op = SE3DI_OP_STEP}));
     return constant ? fold(program, start) : SE3D_OK;
 }
 

@@ -291,6 +291,25 @@ static void gradients_are_exact_in_all_variables(void)
     se3d_expression_destroy(e);
 }
 
+static void four_variables_have_four_derivatives(void)
+{
+    static const char *const four[] = {"a", "b", "c", "d"};
+    se3d_expression_def def = define("3 + a*b - c/d + 2*(a + d^2)");
+    def.variables = four;
+    def.variable_count = 4;
+    se3d_expression *e = NULL;
+    double x[4] = {2, 3, 5, 0.5}, f, g[5] = {0, 0, 0, 0, 99};
+    CHECK(se3d_expression_create(&def, &e, NULL) == SE3D_OK);
+    CHECK(se3d_expression_eval_gradient(e, x, &f, g) == SE3D_OK);
+    CHECK_NEAR(f, 3.5, 1e-15);
+    CHECK_NEAR(g[0], 5, 1e-15);
+    CHECK_NEAR(g[1], 2, 1e-15);
+    CHECK_NEAR(g[2], -2, 1e-15);
+    CHECK_NEAR(g[3], 22, 1e-15);
+    CHECK(g[4] == 99.0);
+    se3d_expression_destroy(e);
+}
+
 static void integer_powers_are_exact_at_zero_and_below(void)
 {
     check_jet("t^2", 0, 0, 0, 2);
@@ -538,8 +557,15 @@ static void limits_are_kept(void)
     check_nesting("-", "", 4000, SE3D_OK, "");
     check_nesting("t+", "", 2047, SE3D_OK, "");
     check_nesting("t+", "", 2048, SE3D_ERR_EXPRESSION, "longer than 4096");
-    char *text = nest("1", "", "", 600);
     se3d_expression_error error = {0};
+    char *text = nest("t<t+t*(", "t+t", ")", 42); /* 3*42 + 2 = 128 values */
+    CHECK(try_text(text, &error) == SE3D_OK);
+    free(text);
+    text = nest("t<t+t*(", "t+t*t", ")", 42);
+    CHECK(try_text(text, &error) == SE3D_ERR_EXPRESSION);
+    CHECK_CONTAINS(error.message, "more than 128 values");
+    free(text);
+    text = nest("1", "", "", 600);
     CHECK(try_text(text, &error) == SE3D_ERR_EXPRESSION);
     CHECK_CONTAINS(error.message, "number of 600 characters");
     free(text);
@@ -595,6 +621,7 @@ static void check_symbol(const char *name, double value, se3d_status expected, c
 static void bad_definitions_are_rejected(void)
 {
     check_symbol("pi", 3, SE3D_ERR_INVALID_ARGUMENT, "symbol 'pi': the name is reserved");
+    check_symbol("deg", 3, SE3D_ERR_INVALID_ARGUMENT, "symbol 'deg': the name is reserved");
     check_symbol("if", 3, SE3D_ERR_INVALID_ARGUMENT, "reserved");
     check_symbol("t", 3, SE3D_ERR_INVALID_ARGUMENT, "'t': the name is that of a variable");
     check_symbol("2a", 3, SE3D_ERR_INVALID_ARGUMENT, "letters, digits");
@@ -780,6 +807,7 @@ int main(void)
     RUN(functions_of_two_arguments_have_their_closed_form_derivatives);
     RUN(a_step_is_a_cubic_with_all_its_arguments_differentiated);
     RUN(gradients_are_exact_in_all_variables);
+    RUN(four_variables_have_four_derivatives);
     RUN(integer_powers_are_exact_at_zero_and_below);
     RUN(kinks_follow_the_documented_conventions);
     RUN(singular_derivatives_along_other_variables_do_not_matter);
