@@ -682,6 +682,24 @@ static void half_a_turn_is_plus_pi(void)
     }
 }
 
+static void exact_eighths_of_a_turn_are_found(void)
+{
+    const se3di_frame ground = identity_frame();
+    se3di_term t = random_term(SE3DI_PRIMITIVE_ANGLE);
+    const double x[3] = {1, 0, 0};
+    const double z[3] = {0, 0, 1};
+    static const double c[8] = {1, 1, 0, -1, -1, -1, 0, 1};
+    se3di_copy(x, t.a_i);
+    se3di_copy(z, t.b_i);
+    for (int k = 0; k < 8; ++k) {
+        const double direction[3] = {c[k], c[(k + 6) % 8], 0.5};
+        const double expected = k <= 4 ? k * PI / 4 : (k - 8) * PI / 4;
+        se3di_copy(direction, t.a_j);
+        CHECK_NEAR(se3di_primitives[SE3DI_PRIMITIVE_ANGLE].value(&t, &ground, &ground), expected,
+                   1e-15);
+    }
+}
+
 static void an_angle_without_meaning_is_not_a_number(void)
 {
     const se3di_frame ground = identity_frame();
@@ -801,6 +819,7 @@ int main(void)
     RUN(curvature_of_rp_is_symmetric);
     RUN(the_angle_is_that_of_a_right_handed_turn);
     RUN(half_a_turn_is_plus_pi);
+    RUN(exact_eighths_of_a_turn_are_found);
     RUN(an_angle_without_meaning_is_not_a_number);
     RUN(the_pendulum_of_the_course_has_its_known_jacobian);
     RUN(the_normalisation_has_its_derivatives);

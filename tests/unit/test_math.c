@@ -474,6 +474,18 @@ static void principal_moments_are_found_in_any_frame(void)
     }
 }
 
+static void principal_moments_of_sparse_tensors_are_exact(void)
+{
+    const double root = sqrt(2.0);
+    const double J[3][6] = {{2, 2, 2, 1, 1, 0}, {2, 2, 2, 0, 1, 1}, {2, 2, 2, 1, 0, 1}};
+    const double expected[3] = {2 - root, 2, 2 + root};
+    for (int n = 0; n < 3; ++n) {
+        double moments[3];
+        se3di_inertia_principal(J[n], moments);
+        check_values(moments, expected, 3, 2e-15);
+    }
+}
+
 static void inertia_is_classified(void)
 {
     const struct {
@@ -532,6 +544,7 @@ int main(void)
     RUN(series_and_closed_form_meet_at_the_limit);
     RUN(the_inertia_matrix_has_its_elements_in_place);
     RUN(principal_moments_are_found_in_any_frame);
+    RUN(principal_moments_of_sparse_tensors_are_exact);
     RUN(inertia_is_classified);
     RUN(inertia_that_is_not_finite_is_not_physical);
     return check_finish();
