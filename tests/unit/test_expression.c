@@ -291,6 +291,18 @@ static void gradients_are_exact_in_all_variables(void)
     se3d_expression_destroy(e);
 }
 
+static void gradients_of_a_choice_are_those_of_the_argument_chosen(void)
+{
+    double x[3] = {2.0, 3.0, 5.0}, f, g[3];
+    se3d_expression *e = compile("max(t*l, l*ld, t) - min(7*t, 3*ld, t*t) + if(t > l, t, l^3)");
+    CHECK(se3d_expression_eval_gradient(e, x, &f, g) == SE3D_OK);
+    CHECK_NEAR(f, 15 - 4 + 27, 0);
+    CHECK_NEAR(g[0], -4, 0);
+    CHECK_NEAR(g[1], 5 + 27, 0);
+    CHECK_NEAR(g[2], 3, 0);
+    se3d_expression_destroy(e);
+}
+
 static void four_variables_have_four_derivatives(void)
 {
     static const char *const four[] = {"a", "b", "c", "d"};
@@ -807,6 +819,7 @@ int main(void)
     RUN(functions_of_two_arguments_have_their_closed_form_derivatives);
     RUN(a_step_is_a_cubic_with_all_its_arguments_differentiated);
     RUN(gradients_are_exact_in_all_variables);
+    RUN(gradients_of_a_choice_are_those_of_the_argument_chosen);
     RUN(four_variables_have_four_derivatives);
     RUN(integer_powers_are_exact_at_zero_and_below);
     RUN(kinks_follow_the_documented_conventions);
