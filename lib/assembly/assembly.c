@@ -73,8 +73,8 @@ typedef struct assembly_array {
     size_t count, size;
 } assembly_array;
 
-#define STRUCTURE_ARRAYS 6
-#define VALUE_ARRAYS     8
+#define STRUCTURE_ARRAYS 7
+#define VALUE_ARRAYS     4
 
 static void list_structure(se3di_assembly *a, assembly_array list[STRUCTURE_ARRAYS])
 {

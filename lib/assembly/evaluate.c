@@ -5,10 +5,7 @@
 #include "force/force.h"
 #include "primitive/turn_counter.h"
 
-#include <math.h>
 #include <string.h>
-
-#define TWO_PI 6.283185307179586476925286766559
 
 se3d_status se3di_assembly_eval_functions(se3di_assembly *assembly, double t, se3di_error *error)
 {
@@ -39,11 +36,7 @@ void se3di_assembly_eval_phi(const se3di_assembly *assembly, double *phi)
     const se3di_model *model = assembly->model;
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
         const se3di_row *row = &model->rows[k];
-        double sum = -assembly->f[3 * k];
-        for (uint32_t t = 0; t < row->term_count; ++t) {
-            sum += se3di_term_value(model, &model->terms[row->term_begin + t]);
-        }
-        phi[k] = row->wrap ? sum - TWO_PI * nearbyint(sum / TWO_PI) : sum;
+        phi[k] = se3di_row_violation(model, row, assembly->f[3 * k]);
     }
 }
 

@@ -39,12 +39,17 @@ static se3d_status copy_name(se3di_model *model, const char *name, char **copy)
     return SE3D_OK;
 }
 
-/* The structure has changed: what an integrator remembered no longer fits. */
+void se3di_model_touch_state(se3di_model *model)
+{
+    model->settled = 0;
+    model->history_tag = 0;
+}
+
+/* The structure has changed. */
 static void touch(se3di_model *model)
 {
     ++model->topology_version;
-    ++model->state_version;
-    model->history_tag = 0;
+    se3di_model_touch_state(model);
 }
 
 se3d_status se3di_model_add_body(se3di_model *model, const se3di_body *body,

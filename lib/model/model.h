@@ -113,7 +113,8 @@ typedef struct se3di_model {
     double gravity[3];
     double time;
     uint64_t topology_version; /* changes when elements come, go or change */
-    uint64_t state_version;    /* changes when the user sets a state */
+    int32_t settled;           /* the state is an analysis' own; 0 after the user set one */
+    int32_t reserved;
 
     se3di_slots body_slots; /* count = bodies, [0] the ground */
     se3di_body *bodies;
@@ -188,6 +189,9 @@ void se3di_model_remove_marker(se3di_model *model, uint32_t marker);
 void se3di_model_remove_function(se3di_model *model, uint32_t function);
 void se3di_model_remove_constraint(se3di_model *model, uint32_t constraint);
 void se3di_model_remove_force(se3di_model *model, uint32_t force);
+
+/* The user has set a state: nothing that an integrator or solver remembers of it holds. */
+void se3di_model_touch_state(se3di_model *model);
 
 /* Complete a frame (A, pdot) from r, p, v, w. */
 void se3di_frame_update(se3di_frame *frame);

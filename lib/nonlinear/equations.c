@@ -38,8 +38,13 @@ static se3d_status allocate(se3di_equations *equations)
     equations->phi = alloc_doubles(equations, assembly->row_count);
     equations->saved =
         se3di_alloc(&assembly->model->allocator, assembly->dense_count, sizeof *equations->saved);
-    int complete = equations->b && equations->x && equations->c && equations->l && equations->phi &&
-                   equations->saved;
+    equations->accepted = se3di_alloc(&assembly->model->allocator, assembly->dense_count,
+                                      sizeof *equations->accepted);
+    equations->accepted_acceleration = alloc_doubles(equations, 6 * (size_t)assembly->dense_count);
+    equations->accepted_lambda = alloc_doubles(equations, assembly->row_count);
+    int complete = equations->accepted && equations->accepted_acceleration &&
+                   equations->accepted_lambda && equations->b && equations->x && equations->c &&
+                   equations->l && equations->phi && equations->saved;
     return complete ? SE3D_OK : SE3D_ERR_NO_MEMORY;
 }
 
@@ -70,6 +75,10 @@ void se3di_equations_destroy(se3di_equations *equations)
     se3di_free(allocator, equations->l, assembly->row_count, sizeof(double));
     se3di_free(allocator, equations->phi, assembly->row_count, sizeof(double));
     se3di_free(allocator, equations->saved, assembly->dense_count, sizeof *equations->saved);
+    se3di_free(allocator, equations->accepted, assembly->dense_count, sizeof *equations->accepted);
+    se3di_free(allocator, equations->accepted_acceleration, 6 * (size_t)assembly->dense_count,
+               sizeof(double));
+    se3di_free(allocator, equations->accepted_lambda, assembly->row_count, sizeof(double));
     se3di_assembly_destroy(assembly);
     memset(equations, 0, sizeof *equations);
 }
@@ -84,6 +93,30 @@ void se3di_equations_restore(se3di_equations *equations)
 {
     memcpy(equations->assembly.model->frames, equations->saved,
            equations->assembly.dense_count * sizeof *equations->saved);
+}
+
+void se3di_state_accept(se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    const se3di_model *model = assembly->model;
+    memcpy(equations->accepted, model->frames, assembly->dense_count * sizeof *model->frames);
+    memcpy(equations->accepted_acceleration, model->acceleration,
+           6 * (size_t)assembly->dense_count * sizeof(double));
+    if (assembly->row_count > 0) {
+        memcpy(equations->accepted_lambda, model->lambda, assembly->row_count * sizeof(double));
+    }
+}
+
+void se3di_state_restore(se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    se3di_model *model = assembly->model;
+    memcpy(model->frames, equations->accepted, assembly->dense_count * sizeof *model->frames);
+    memcpy(model->acceleration, equations->accepted_acceleration,
+           6 * (size_t)assembly->dense_count * sizeof(double));
+    if (assembly->row_count > 0) {
+        memcpy(model->lambda, equations->accepted_lambda, assembly->row_count * sizeof(double));
+    }
 }
 
 se3d_status se3di_equations_factor(se3di_equations *equations)
@@ -203,7 +236,9 @@ se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
     SE3DI_TRY(status);
     ++equations->counters.evaluations;
     equations->redundant = status == SE3D_INFO_REDUNDANT;
-    memcpy(assembly->model->lambda, equations->l, assembly->row_count * sizeof *equations->l);
+    if (assembly->row_count > 0) {
+        memcpy(assembly->model->lambda, equations->l, assembly->row_count * sizeof *equations->l);
+    }
     SE3DI_TRY(check_level(equations, t, "acceleration"));
     se3di_assembly_set_acceleration(assembly, equations->x);
     return SE3D_OK;

@@ -22,13 +22,16 @@ typedef struct se3di_equations {
     se3di_assembly assembly;
     se3di_kkt *kkt;
     se3di_counters counters;
-    se3di_error *error;     /* where failures are recorded */
-    double *b, *c;          /* right-hand sides [unknowns], [rows] */
-    double *x, *l;          /* solution */
-    double *phi;            /* [rows] */
-    se3di_frame *saved;     /* [dense bodies]: poses to come back to */
-    int32_t iterations_max; /* of the position Newton */
-    int32_t redundant;      /* the last acceleration met dependent rows */
+    se3di_error *error;            /* where failures are recorded */
+    double *b, *c;                 /* right-hand sides [unknowns], [rows] */
+    double *x, *l;                 /* solution */
+    double *phi;                   /* [rows] */
+    se3di_frame *saved;            /* [dense bodies]: poses to come back to within a step */
+    se3di_frame *accepted;         /* the last accepted state: frames [dense bodies], */
+    double *accepted_acceleration; /* [dense bodies * 6], */
+    double *accepted_lambda;       /* [rows] */
+    int32_t iterations_max;        /* of the position Newton */
+    int32_t redundant;             /* the last acceleration met dependent rows */
 } se3di_equations;
 
 se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
@@ -56,5 +59,9 @@ se3d_status se3di_equations_check_determined(se3di_equations *equations);
 /* Keep and restore the frames of all bodies. */
 void se3di_equations_save(se3di_equations *equations);
 void se3di_equations_restore(se3di_equations *equations);
+
+/* Keep and restore the whole state: frames, accelerations, multipliers (not the time). */
+void se3di_state_accept(se3di_equations *equations);
+void se3di_state_restore(se3di_equations *equations);
 
 #endif

@@ -29,6 +29,15 @@ double se3di_term_value(const se3di_model *model, const se3di_term *term)
                                                                   &model->frames[term->body_j]);
 }
 
+double se3di_row_violation(const se3di_model *model, const se3di_row *row, double f)
+{
+    double sum = -f;
+    for (uint32_t k = 0; k < row->term_count; ++k) {
+        sum += se3di_term_value(model, &model->terms[row->term_begin + k]);
+    }
+    return row->wrap ? sum - TWO_PI * nearbyint(sum / TWO_PI) : sum;
+}
+
 void se3di_angles_accept(se3di_model *model)
 {
     for (size_t k = 0; k < model->angle_count; ++k) {

@@ -7,6 +7,8 @@
 
 /* Value of a term with its coefficient; angles are unwrapped by their turn counter. */
 double se3di_term_value(const se3di_model *model, const se3di_term *term);
+/* Phi of an equation whose function of time is f. */
+double se3di_row_violation(const se3di_model *model, const se3di_row *row, double f);
 /* Joint angle of a turn counter at the present frames, nearest to its last accepted one. */
 double se3di_angle_value(const se3di_model *model, uint32_t angle);
 /* Take the present joint angles as accepted. */

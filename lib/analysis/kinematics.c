@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Motion under drivers (kinematics and inverse dynamics): at each time the positions follow from a
+ * prediction by Newton, then velocities, accelerations and multipliers from one factorisation each
+ * (Haug 1989, ch. 3, 11). docs/theory/kinematics.md */
+#include "analysis/run.h"
+
+#include "primitive/turn_counter.h"
+
+#include <math.h>
+
+#define TURN_MAX     0.3 /* rad a body may turn in one step, so that the branch is kept */
+#define HALVINGS_MAX 6
+
+/* Poses at t + h on the parabola of the present velocities and accelerations. */
+static void predict(se3di_equations *equations, double h)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    size_t block = (size_t)assembly->formulation->block;
+    se3di_assembly_get_velocity(assembly, equations->x);
+    se3di_assembly_get_acceleration(assembly, equations->b);
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        equations->x[k] = h * (equations->x[k] + 0.5 * h * equations->b[k]);
+    }
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        assembly->formulation->move(frame, equations->x + k * block);
+    }
+}
+
+se3d_status se3di_kinematics_step(se3di_equations *equations, double h)
+{
+    se3di_model *model = equations->assembly.model;
+    double t = model->time + h;
+    predict(equations, h);
+    SE3DI_TRY(se3di_state_solve(equations, t));
+    model->time = t;
+    se3di_angles_accept(model);
+    ++equations->counters.steps;
+    return SE3D_OK;
+}
+
+/* Length of the next step: at most `step`, and no body turns by more than TURN_MAX. */
+static double choose_step(const se3di_equations *equations, double remaining, double step)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    double h = step > 0.0 ? remaining / ceil(remaining / step - 1e-9) : remaining;
+    double turn = 0.0;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        uint32_t body = assembly->free_body[k];
+        const double *w = assembly->model->frames[body].w;
+        const double *wdot = assembly->model->acceleration + 6 * body + 3;
+        for (int c = 0; c < 3; ++c) {
+            turn = fmax(turn, h * (fabs(w[c]) + 0.5 * h * fabs(wdot[c])));
+        }
+    }
+    return turn > TURN_MAX ? h / ceil(turn / TURN_MAX) : h;
+}
+
+se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, double step)
+{
+    se3di_model *model = equations->assembly.model;
+    while (model->time < t_end) {
+        double h = choose_step(equations, t_end - model->time, step);
+        se3di_state_accept(equations);
+        int last = model->time + h * (1.0 + 1e-9) >= t_end;
+        se3d_status status = SE3D_OK;
+        for (int k = 0; k <= HALVINGS_MAX; ++k, h *= 0.5, last = 0) {
+            if (last) {
+                h = t_end - model->time;
+            }
+            status = se3di_kinematics_step(equations, h);
+            if (status >= 0 || status == SE3D_ERR_CALLBACK) {
+                break;
+            }
+            ++equations->counters.rejected;
+            se3di_state_restore(equations);
+        }
+        SE3DI_TRY(status);
+        if (last) {
+            model->time = t_end;
+        }
+    }
+    return SE3D_OK;
+}

@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Preparation and control of a run. */
+#include "analysis/run.h"
+
+#include "primitive/turn_counter.h"
+
+#include <math.h>
+
+#define STEP_DEFAULT 1e-3 /* s, of fixed-step methods */
+
+void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error)
+{
+    run->model = model;
+    run->error = error;
+    run->prepared = 0;
+    run->determined = 0;
+}
+
+static void release(se3di_run *run)
+{
+    se3di_free(&run->model->allocator, run->integration.work, run->work_count, sizeof(double));
+    run->integration.work = NULL;
+    run->work_count = 0;
+    if (run->prepared) {
+        se3di_counters counters = run->equations.counters;
+        se3di_equations_destroy(&run->equations);
+        run->equations.counters = counters;
+    }
+    run->prepared = 0;
+}
+
+void se3di_run_destroy(se3di_run *run)
+{
+    release(run);
+}
+
+static se3d_status allocate_work(se3di_run *run)
+{
+    const se3di_integrator *method = run->integration.method;
+    se3di_model *model = run->model;
+    if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
+        return SE3D_OK;
+    }
+    size_t count = method->history_count(&run->equations.assembly);
+    void *history = model->history;
+    se3d_status status = se3di_array_reserve(&model->allocator, &history, &model->history_capacity,
+                                             count, sizeof(double));
+    model->history = history;
+    SE3DI_TRY(status);
+    run->work_count = method->work_count(&run->equations.assembly);
+    run->integration.work = se3di_alloc(&model->allocator, run->work_count, sizeof(double));
+    return run->integration.work ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+}
+
+/* Build what the model's structure decides. */
+static se3d_status prepare(se3di_run *run)
+{
+    if (run->prepared && run->equations.assembly.topology_version == run->model->topology_version) {
+        return SE3D_OK;
+    }
+    release(run);
+    se3di_counters counters = run->equations.counters;
+    SE3DI_TRY(se3di_equations_init(&run->equations, run->model, run->formulation, run->error));
+    run->equations.counters = counters;
+    run->equations.iterations_max = run->integration.settings.iterations_max;
+    run->integration.equations = &run->equations;
+    run->prepared = 1;
+    run->determined = 0;
+    se3d_status status = allocate_work(run);
+    if (status < 0) {
+        release(run);
+        return se3di_error_set(run->error, status, "no memory for the integrator");
+    }
+    return SE3D_OK;
+}
+
+/* A new state: positions, velocities, accelerations and multipliers made consistent at the model's
+ * time. */
+static se3d_status settle(se3di_run *run, double t)
+{
+    se3di_equations *equations = &run->equations;
+    se3di_state_accept(equations);
+    se3d_status status = se3di_state_solve(equations, t);
+    if (status >= 0 && !run->determined &&
+        (run->analysis == SE3D_ANALYSIS_KINEMATICS ||
+         run->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS)) {
+        status = se3di_equations_check_determined(equations);
+        run->determined = status >= 0;
+    }
+    if (status < 0) {
+        se3di_state_restore(equations);
+        return status;
+    }
+    run->model->time = t;
+    run->model->settled = 1;
+    se3di_angles_accept(run->model);
+    return SE3D_OK;
+}
+
+static uint64_t history_tag(const se3di_run *run)
+{
+    return 2 * run->integration.method->tag + (uint64_t)run->formulation->id;
+}
+
+/* Dynamics goes on from its own history, or starts from a consistent state. */
+static se3d_status begin_dynamics(se3di_run *run, double h)
+{
+    se3di_model *model = run->model;
+    if (model->history_tag == history_tag(run)) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(settle(run, model->time));
+    SE3DI_TRY(run->integration.method->start(&run->integration, h));
+    model->history_count = run->integration.method->history_count(&run->equations.assembly);
+    model->history_tag = history_tag(run);
+    return SE3D_OK;
+}
+
+static se3d_status run_dynamics(se3di_run *run, double t_end)
+{
+    se3di_integration *integration = &run->integration;
+    double step = integration->settings.step > 0.0 ? integration->settings.step : STEP_DEFAULT;
+    double remaining = t_end - run->model->time;
+    if (remaining <= 0.0) {
+        return run->model->history_tag == history_tag(run) ? SE3D_OK : settle(run, t_end);
+    }
+    double count = fmax(1.0, ceil(remaining / step - 1e-9));
+    SE3DI_TRY(begin_dynamics(run, remaining / count));
+    if (integration->method->run) {
+        return integration->method->run(integration, t_end);
+    }
+    for (double k = count; k > 0.0; k -= 1.0) {
+        SE3DI_TRY(integration->method->step(integration, (t_end - run->model->time) / k));
+    }
+    run->model->time = t_end;
+    return SE3D_OK;
+}
+
+static se3d_status run_kinematics(se3di_run *run, double t_end)
+{
+    if (!run->model->settled || !run->determined) {
+        SE3DI_TRY(settle(run, run->model->time));
+    }
+    return se3di_kinematics_run(&run->equations, t_end, run->integration.settings.step);
+}
+
+static se3d_status information(const se3di_run *run)
+{
+    return run->equations.redundant ? SE3D_INFO_REDUNDANT : SE3D_OK;
+}
+
+se3d_status se3di_run_to(se3di_run *run, double t_end)
+{
+    SE3DI_TRY(prepare(run));
+    switch (run->analysis) {
+    case SE3D_ANALYSIS_ASSEMBLY:
+        SE3DI_TRY(settle(run, t_end));
+        break;
+    case SE3D_ANALYSIS_DYNAMICS:
+        SE3DI_TRY(run_dynamics(run, t_end));
+        break;
+    default:
+        SE3DI_TRY(run_kinematics(run, t_end));
+        break;
+    }
+    return information(run);
+}
+
+se3d_status se3di_run_step(se3di_run *run, double h)
+{
+    SE3DI_TRY(prepare(run));
+    if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
+        return se3di_run_to(run, run->model->time + h);
+    }
+    SE3DI_TRY(begin_dynamics(run, h));
+    SE3DI_TRY(run->integration.method->step(&run->integration, h));
+    return information(run);
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A run: one analysis of one model, prepared again whenever the model's structure changes. */
+#ifndef SE3DI_RUN_H
+#define SE3DI_RUN_H
+
+#include "integrator/integrator.h"
+
+typedef struct se3di_run {
+    se3di_model *model;
+    se3di_error *error;
+    int32_t analysis; /* se3d_analysis */
+    const se3di_formulation *formulation;
+    se3di_integration integration; /* dynamics */
+    se3di_equations equations;
+    size_t work_count;
+    int32_t prepared;       /* the equations fit the model */
+    int32_t determined;     /* kinematics: the drivers determine the motion (checked once) */
+    uint64_t tag;           /* marks the history of this method and formulation */
+} se3di_run;
+
+/* Set up for an analysis; allocates nothing yet. */
+void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error);
+void se3di_run_destroy(se3di_run *run);
+
+/* Bring the model to t_end >= its time. @return OK or INFO_REDUNDANT, or an error with the model at
+ * the last accepted state. */
+se3d_status se3di_run_to(se3di_run *run, double t_end);
+/* One step of length h > 0. */
+se3d_status se3di_run_step(se3di_run *run, double h);
+
+/* One kinematic step of length h: prediction, then the three levels; on failure the old state. */
+se3d_status se3di_kinematics_step(se3di_equations *equations, double h);
+/* Kinematics to t_end in steps of at most `step` (0: any), shortened where the motion is fast. */
+se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, double step);
+
+#endif

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* generalized_alpha (Chung, Hulbert 1993; Lie group: Bruels, Cardona, Arnold 2012): order 2,
+ * numerical damping set by the spectral radius rho at infinite frequency,
+ *
+ *     alpha_m = (2 rho - 1)/(rho + 1)   alpha_f = rho/(rho + 1)
+ *     gamma = 1/2 + alpha_f - alpha_m   beta = (gamma + 1/2)^2 / 4          docs/theory/newmark.md
+ */
+#include "integrator/newmark.h"
+
+static se3di_newmark parameters(const se3di_integration *integration)
+{
+    double rho = integration->settings.spectral_radius;
+    se3di_newmark m = {.alpha_m = (2.0 * rho - 1.0) / (rho + 1.0), .alpha_f = rho / (rho + 1.0)};
+    m.gamma = 0.5 + m.alpha_f - m.alpha_m;
+    m.beta = 0.25 * (m.gamma + 0.5) * (m.gamma + 0.5);
+    return m;
+}
+
+static se3d_status start(se3di_integration *integration, double h)
+{
+    se3di_newmark m = parameters(integration);
+    return se3di_newmark_start(integration, &m, h);
+}
+
+static se3d_status step(se3di_integration *integration, double h)
+{
+    se3di_newmark m = parameters(integration);
+    return se3di_newmark_step(integration, &m, h);
+}
+
+const se3di_integrator se3di_integrator_generalized_alpha = {
+    .name = "generalized_alpha",
+    .tag = SE3D_METHOD_GENERALIZED_ALPHA,
+    .history_count = se3di_newmark_history_count,
+    .work_count = se3di_newmark_work_count,
+    .start = start,
+    .step = step,
+};
+
+const se3di_integrator *se3di_integrator_find(int32_t method)
+{
+    switch (method) {
+    case SE3D_METHOD_AUTO:
+    case SE3D_METHOD_GENERALIZED_ALPHA:
+        return &se3di_integrator_generalized_alpha;
+    case SE3D_METHOD_HHT:
+        return &se3di_integrator_hht;
+    default:
+        return NULL;
+    }
+}

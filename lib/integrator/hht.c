@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* hht (Hilber, Hughes, Taylor 1977; multibody index 3: Negrut, Rampalli, Ottarsson, Sajdak 2007):
+ * order 2, numerical damping set by alpha in [-1/3, 0],
+ *
+ *     gamma = (1 - 2 alpha)/2    beta = (1 - alpha)^2 / 4
+ *
+ * written as the Newmark family with alpha_m = 0, alpha_f = -alpha: a = (1 + alpha) vdot - alpha
+ * vdot_n, so that the equations of motion hold at the end of the step, not between its ends.
+ * docs/theory/newmark.md */
+#include "integrator/newmark.h"
+
+static se3di_newmark parameters(const se3di_integration *integration)
+{
+    double alpha = integration->settings.alpha;
+    return (se3di_newmark){.alpha_m = 0.0,
+                           .alpha_f = -alpha,
+                           .gamma = 0.5 - alpha,
+                           .beta = 0.25 * (1.0 - alpha) * (1.0 - alpha)};
+}
+
+static se3d_status start(se3di_integration *integration, double h)
+{
+    se3di_newmark m = parameters(integration);
+    return se3di_newmark_start(integration, &m, h);
+}
+
+static se3d_status step(se3di_integration *integration, double h)
+{
+    se3di_newmark m = parameters(integration);
+    return se3di_newmark_step(integration, &m, h);
+}
+
+const se3di_integrator se3di_integrator_hht = {
+    .name = "hht",
+    .tag = SE3D_METHOD_HHT,
+    .history_count = se3di_newmark_history_count,
+    .work_count = se3di_newmark_work_count,
+    .start = start,
+    .step = step,
+};

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Integrators behind one table, chosen once per run. A step starts from the model's state at
+ * model->time and, on success, leaves the accepted state at the new time; on failure the state of
+ * the last accepted step.
+ *
+ * What a method carries from step to step (beyond the state) is model->history, marked with the
+ * method's tag, so that clones and snapshots continue bit-identically. */
+#ifndef SE3DI_INTEGRATOR_H
+#define SE3DI_INTEGRATOR_H
+
+#include "nonlinear/equations.h"
+#include "se3d/solver.h"
+
+typedef struct se3di_integrator_settings {
+    double step;            /* fixed or largest step [s]; 0: chosen */
+    double tolerance;       /* of adaptive methods */
+    double spectral_radius; /* generalized_alpha */
+    double alpha;           /* hht */
+    int32_t iterations_max;
+    int32_t order;
+} se3di_integrator_settings;
+
+typedef struct se3di_integration se3di_integration;
+
+typedef struct se3di_integrator {
+    const char *name;
+    uint64_t tag;                                            /* of its history, not 0 */
+    size_t (*history_count)(const se3di_assembly *assembly); /* doubles of model->history */
+    size_t (*work_count)(const se3di_assembly *assembly);    /* doubles of integration->work */
+    /* Fill the history from a consistent state (accelerations included), for a first step of h. */
+    se3d_status (*start)(se3di_integration *integration, double h);
+    /* One step of length h. */
+    se3d_status (*step)(se3di_integration *integration, double h);
+    /* Several steps to t_end with own step control; NULL: steps of settings.step that end there
+     * exactly. */
+    se3d_status (*run)(se3di_integration *integration, double t_end);
+} se3di_integrator;
+
+struct se3di_integration {
+    const se3di_integrator *method;
+    se3di_equations *equations;
+    se3di_integrator_settings settings;
+    double *work;
+};
+
+extern const se3di_integrator se3di_integrator_generalized_alpha;
+extern const se3di_integrator se3di_integrator_hht;
+
+/* By se3d_method; NULL where there is none yet. */
+const se3di_integrator *se3di_integrator_find(int32_t method);
+
+#endif

@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "integrator/newmark.h"
+
+#include "primitive/turn_counter.h"
+
+#include <math.h>
+#include <string.h>
+
+/* memcpy where count may be zero and the pointers NULL. */
+static void copy(double *to, const double *from, size_t count)
+{
+    if (count > 0) {
+        memcpy(to, from, count * sizeof *to);
+    }
+}
+
+/* History: a_n [n], vdot_n [n], the step they belong to. */
+size_t se3di_newmark_history_count(const se3di_assembly *assembly)
+{
+    return 2 * (size_t)assembly->unknown_count + 1;
+}
+
+/* Work: v_n, vdot, a [n]; lambda [rows]; accelerations and multipliers to come back to. */
+size_t se3di_newmark_work_count(const se3di_assembly *assembly)
+{
+    return 3 * (size_t)assembly->unknown_count + assembly->row_count;
+}
+
+typedef struct newmark_step {
+    const se3di_newmark *method;
+    se3di_integration *integration;
+    se3di_equations *equations;
+    double h, t;
+    const double *a_n, *vdot_n;  /* history [n] */
+    double *v_n, *vdot, *a;      /* [n] */
+    double *lambda;              /* [rows] */
+    double beta_prime;           /* d vdot / d x: (1 - alpha_m) / (h^2 beta (1 - alpha_f)) */
+    double correction, previous; /* size of the last two Newton corrections of vdot */
+} newmark_step;
+
+/* The third derivative of the motion at the start, from accelerations at h/2 and h along the
+ * parabola; zero where they cannot be evaluated. */
+static void estimate_jerk(se3di_integration *integration, double h, const double *vdot,
+                          double *jerk)
+{
+    se3di_equations *equations = integration->equations;
+    se3di_assembly *assembly = &equations->assembly;
+    uint32_t n = assembly->unknown_count;
+    size_t block = (size_t)assembly->formulation->block;
+    double *v_n = integration->work;
+    double *v = integration->work + n;
+    double *dq = integration->work + 2 * (size_t)n;
+    double t = assembly->model->time;
+    const double weight[2] = {4.0, -1.0};
+    se3di_error ignored = {0};
+    se3di_error *error = equations->error;
+    equations->error = &ignored;
+    se3di_assembly_get_velocity(assembly, v_n);
+    se3di_equations_save(equations);
+    for (uint32_t k = 0; k < n; ++k) {
+        jerk[k] = -3.0 * vdot[k] / h;
+    }
+    for (int stage = 0; stage < 2; ++stage) {
+        double s = 0.5 * h * (stage + 1);
+        se3di_equations_restore(equations);
+        for (uint32_t k = 0; k < n; ++k) {
+            dq[k] = s * v_n[k] + 0.5 * s * s * vdot[k];
+            v[k] = v_n[k] + s * vdot[k];
+        }
+        for (uint32_t k = 0; k < assembly->body_count; ++k) {
+            assembly->formulation->move(&assembly->model->frames[assembly->free_body[k]],
+                                        dq + k * block);
+        }
+        se3di_assembly_set_velocity(assembly, v);
+        if (se3di_acceleration_solve(equations, t + s) < 0) {
+            memset(jerk, 0, n * sizeof *jerk);
+            break;
+        }
+        for (uint32_t k = 0; k < n; ++k) {
+            jerk[k] += weight[stage] * equations->x[k] / h;
+        }
+    }
+    se3di_equations_restore(equations);
+    equations->error = error;
+}
+
+se3d_status se3di_newmark_start(se3di_integration *integration, const se3di_newmark *method,
+                                double h)
+{
+    se3di_equations *equations = integration->equations;
+    se3di_assembly *assembly = &equations->assembly;
+    uint32_t n = assembly->unknown_count;
+    double *a = assembly->model->history;
+    double *vdot = a + n;
+    SE3DI_TRY(se3di_acceleration_solve(equations, assembly->model->time));
+    copy(vdot, equations->x, n);
+    memcpy(integration->work + 3 * (size_t)n, equations->l,
+           assembly->row_count * sizeof *equations->l);
+    estimate_jerk(integration, h, vdot, a);
+    for (uint32_t k = 0; k < n; ++k) {
+        a[k] = vdot[k] + (method->alpha_m - method->alpha_f) * h * a[k];
+    }
+    vdot[n] = h;
+    memcpy(assembly->model->lambda, integration->work + 3 * (size_t)n,
+           assembly->row_count * sizeof *equations->l);
+    se3di_assembly_set_acceleration(assembly, vdot);
+    return SE3D_OK;
+}
+
+/* q, v, a from the present vdot. */
+static void update_state(newmark_step *step)
+{
+    const se3di_newmark *m = step->method;
+    se3di_equations *equations = step->equations;
+    se3di_assembly *assembly = &equations->assembly;
+    size_t block = (size_t)assembly->formulation->block;
+    double h = step->h;
+    double *x = equations->x;
+    se3di_equations_restore(equations);
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        step->a[k] = ((1.0 - m->alpha_f) * step->vdot[k] + m->alpha_f * step->vdot_n[k] -
+                      m->alpha_m * step->a_n[k]) /
+                     (1.0 - m->alpha_m);
+        x[k] = h * step->v_n[k] + h * h * ((0.5 - m->beta) * step->a_n[k] + m->beta * step->a[k]);
+    }
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        assembly->formulation->move(&assembly->model->frames[assembly->free_body[k]],
+                                    x + k * block);
+    }
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        x[k] = step->v_n[k] + h * ((1.0 - m->gamma) * step->a_n[k] + m->gamma * step->a[k]);
+    }
+    se3di_assembly_set_velocity(assembly, x);
+}
+
+/* b = Q + velocity terms - M vdot - Phi_q^T lambda, c = -beta' Phi; needs M and Phi_q at the
+ * present state. */
+static se3d_status eval_residual(newmark_step *step)
+{
+    se3di_equations *equations = step->equations;
+    se3di_assembly *assembly = &equations->assembly;
+    size_t n = (size_t)assembly->formulation->block;
+    se3di_assembly_eval_mass(assembly);
+    se3di_assembly_eval_jacobian(assembly);
+    SE3DI_TRY(se3di_assembly_eval_forces(assembly, step->t, equations->b, equations->error));
+    se3di_assembly_add_transposed(assembly, -1.0, step->lambda, equations->b);
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const double *H = assembly->H + k * n * n;
+        for (size_t r = 0; r < n; ++r) {
+            for (size_t c = 0; c < n; ++c) {
+                equations->b[k * n + r] -= H[n * r + c] * step->vdot[k * n + c];
+            }
+        }
+        if (n == 8) {
+            equations->b[k * n + 7] =
+                step->beta_prime * assembly->formulation->normalisation(
+                                       &assembly->model->frames[assembly->free_body[k]]);
+        }
+    }
+    se3di_assembly_eval_phi(assembly, equations->c);
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        equations->c[k] *= -step->beta_prime;
+    }
+    return SE3D_OK;
+}
+
+static se3d_status factor(newmark_step *step)
+{
+    se3di_equations *equations = step->equations;
+    se3di_kkt_values values = {.body = equations->assembly.H, .joint = equations->assembly.C};
+    ++equations->counters.factorizations;
+    se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
+    return status < 0
+               ? se3di_error_set(equations->error, status,
+                                 "t = %g s: the Newton matrix is singular or not finite", step->t)
+               : SE3D_OK;
+}
+
+/* One Newton correction of vdot and lambda. */
+static se3d_status iterate(newmark_step *step, int refactor)
+{
+    se3di_equations *equations = step->equations;
+    const se3di_assembly *assembly = &equations->assembly;
+    size_t block = (size_t)assembly->formulation->block;
+    SE3DI_TRY(eval_residual(step));
+    if (refactor) {
+        SE3DI_TRY(factor(step));
+    }
+    SE3DI_TRY(se3di_equations_solve(equations));
+    ++equations->counters.iterations;
+    step->previous = step->correction;
+    step->correction = 0.0;
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        step->vdot[k] += equations->x[k];
+        if (k % block != 7) {
+            step->correction = fmax(step->correction, fabs(equations->x[k]));
+        }
+    }
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        step->lambda[k] += equations->l[k];
+    }
+    update_state(step);
+    return isfinite(step->correction)
+               ? SE3D_OK
+               : se3di_error_set(equations->error, SE3D_ERR_NOT_FINITE,
+                                 "t = %g s: the state is not finite, the step is too large",
+                                 step->t);
+}
+
+/* Corrections of vdot below their own rounding (that of positions, times beta') or below 1e-10 of
+ * it. */
+static int has_converged(const newmark_step *step)
+{
+    double scale = 0.0;
+    size_t block = (size_t)step->equations->assembly.formulation->block;
+    for (uint32_t k = 0; k < step->equations->assembly.unknown_count; ++k) {
+        scale = k % block == 7 ? scale : fmax(scale, fabs(step->vdot[k]));
+    }
+    double shift = step->correction / step->beta_prime;
+    return step->correction <= 1e-11 * (1.0 + scale) || shift <= 1e-15 ||
+           (shift <= 1e-11 && step->correction > 0.3 * step->previous);
+}
+
+static se3d_status solve_step(newmark_step *step)
+{
+    int32_t limit = step->integration->settings.iterations_max;
+    int refactor = 1;
+    for (int32_t k = 0; k < limit; ++k) {
+        SE3DI_TRY(iterate(step, refactor));
+        if (has_converged(step)) {
+            return SE3D_OK;
+        }
+        refactor = k > 0 && step->correction > 0.25 * step->previous;
+    }
+    return se3di_error_set(step->equations->error, SE3D_ERR_NO_CONVERGENCE,
+                           "t = %g s: Newton did not converge in %d iterations of a step of %g s; "
+                           "try a smaller step",
+                           step->t, (int)limit, step->h);
+}
+
+static void accept(newmark_step *step)
+{
+    se3di_assembly *assembly = &step->equations->assembly;
+    se3di_model *model = assembly->model;
+    uint32_t n = assembly->unknown_count;
+    copy(model->history, step->a, n);
+    copy(model->history + n, step->vdot, n);
+    model->history[2 * (size_t)n] = step->h;
+    copy(model->lambda, step->lambda, assembly->row_count);
+    se3di_assembly_set_acceleration(assembly, step->vdot);
+    model->time = step->t;
+    se3di_angles_accept(model);
+    ++step->equations->counters.steps;
+}
+
+/* a_n belongs to t_n + (alpha_m - alpha_f) h_old: move it to the new step's place. */
+static void rescale_history(double *history, uint32_t n, double h)
+{
+    double ratio = h / history[2 * (size_t)n];
+    if (fabs(ratio - 1.0) > 1e-9) {
+        for (uint32_t k = 0; k < n; ++k) {
+            history[k] = history[n + k] + ratio * (history[k] - history[n + k]);
+        }
+    }
+    history[2 * (size_t)n] = h;
+}
+
+se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newmark *method,
+                               double h)
+{
+    se3di_equations *equations = integration->equations;
+    se3di_assembly *assembly = &equations->assembly;
+    uint32_t n = assembly->unknown_count;
+    double *work = integration->work;
+    rescale_history(assembly->model->history, n, h);
+    newmark_step step = {
+        .method = method,
+        .integration = integration,
+        .equations = equations,
+        .h = h,
+        .t = assembly->model->time + h,
+        .a_n = assembly->model->history,
+        .vdot_n = assembly->model->history + n,
+        .v_n = work,
+        .vdot = work + n,
+        .a = work + 2 * (size_t)n,
+        .lambda = work + 3 * (size_t)n,
+        .beta_prime = (1.0 - method->alpha_m) / (h * h * method->beta * (1.0 - method->alpha_f)),
+    };
+    se3di_assembly_get_velocity(assembly, step.v_n);
+    memcpy(step.vdot, step.vdot_n, n * sizeof *step.vdot);
+    memcpy(step.lambda, assembly->model->lambda, assembly->row_count * sizeof *step.lambda);
+    se3di_equations_save(equations);
+    se3d_status status = se3di_assembly_eval_functions(assembly, step.t, equations->error);
+    if (status >= 0) {
+        update_state(&step);
+        status = solve_step(&step);
+    }
+    if (status < 0) {
+        se3di_equations_restore(equations);
+        return status;
+    }
+    accept(&step);
+    return SE3D_OK;
+}

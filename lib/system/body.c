@@ -1,0 +1,406 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Bodies: creation, mass, state. */
+#include "math/inertia.h"
+#include "math/quaternion.h"
+#include "math/vec3.h"
+#include "system/system_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+void se3d_body_def_init(se3d_body_def *def, size_t size)
+{
+    se3d_body_def defaults = {.struct_size = size, .orientation = {1.0, 0.0, 0.0, 0.0}};
+    if (def && size >= sizeof size) {
+        memset(def, 0, size);
+        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
+    }
+}
+
+static se3d_status check_mass(se3d_system *system, double mass, const double inertia[6])
+{
+    if (!(isfinite(mass) && mass > 0.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "mass = %g kg, must be finite and > 0",
+                          mass);
+    }
+    SE3DI_TRY(se3di_check_finites(system, "inertia", inertia, 6));
+    double moments[3];
+    se3di_inertia_principal(inertia, moments);
+    int verdict = se3di_inertia_is_physical(inertia);
+    if (verdict == SE3DI_INERTIA_NOT_TRIANGLE) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "inertia has principal moments %g, %g, %g kg m^2, the largest must not "
+                          "exceed the sum of the others",
+                          moments[0], moments[1], moments[2]);
+    }
+    if (verdict != SE3DI_INERTIA_PHYSICAL || !(moments[0] > 1e-14 * moments[2])) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "inertia has principal moments %g, %g, %g kg m^2, must be > 0",
+                          moments[0], moments[1], moments[2]);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_create(se3d_system *system, const se3d_body_def *def, se3d_body *body)
+{
+    if (body) {
+        *body = (se3d_body){0, 0};
+    }
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_pointer(system, "body", body));
+    se3d_body_def full = se3d_body_def_default();
+    SE3DI_TRY(se3di_check_def(system, "body def", def, &full, sizeof full));
+    SE3DI_TRY(se3di_check_body_name(system, full.name));
+    se3di_frame frame = {0};
+    if (!full.fixed) {
+        SE3DI_TRY(check_mass(system, full.mass, full.inertia));
+    }
+    SE3DI_TRY(se3di_check_finites(system, "position", full.position, 3));
+    SE3DI_TRY(se3di_check_orientation(system, "orientation", full.orientation, frame.p));
+    SE3DI_TRY(se3di_check_finites(system, "velocity", full.velocity, 3));
+    SE3DI_TRY(se3di_check_finites(system, "angular_velocity", full.angular_velocity, 3));
+    static const double none[3] = {0.0, 0.0, 0.0};
+    if (full.fixed && (memcmp(full.velocity, none, sizeof none) != 0 ||
+                       memcmp(full.angular_velocity, none, sizeof none) != 0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "velocity and angular_velocity of a fixed body must be zero");
+    }
+    se3di_copy(full.position, frame.r);
+    se3di_copy(full.velocity, frame.v);
+    se3di_copy(full.angular_velocity, frame.w);
+    se3di_frame_update(&frame);
+    char *name = NULL;
+    memcpy(&name, &full.name, sizeof name); /* copied by the model, never written through */
+    se3di_body data = {.name = name, .fixed = full.fixed != 0};
+    if (!data.fixed) {
+        data.mass = full.mass;
+        memcpy(data.J, full.inertia, sizeof data.J);
+    }
+    se3di_handle handle;
+    if (se3di_model_add_body(&system->model, &data, &frame, &handle) < 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a body");
+    }
+    *body = (se3d_body){handle.index1, handle.generation};
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_destroy(se3d_system *system, se3d_body body)
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    uint32_t index;
+    SE3DI_TRY(se3di_find_body(system, "body", body, &index));
+    if (index == 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "the ground cannot be destroyed");
+    }
+    const se3di_body *data = &system->model.bodies[index];
+    if (data->users > 0) {
+        return SE3DI_FAIL(
+            system, SE3D_ERR_IN_USE,
+            "body %s is used by %u markers, constraints or forces; destroy them first",
+            data->name ? data->name : "without a name", data->users);
+    }
+    se3di_model_remove_body(&system->model, index);
+    return SE3D_OK;
+}
+
+/* Index for a reader, which records no message. */
+static se3d_status find_reader(const se3d_system *system, se3d_body body, const void *out,
+                               uint32_t *index)
+{
+    if (!system || !out) {
+        return SE3D_ERR_NULL;
+    }
+    *index = se3di_slots_find(&system->model.body_slots, body.index1, body.generation);
+    return *index == SE3DI_NO_INDEX ? SE3D_ERR_STALE_HANDLE : SE3D_OK;
+}
+
+se3d_status se3d_body_find(const se3d_system *system, const char *name, se3d_body *body)
+{
+    if (body) {
+        *body = (se3d_body){0, 0};
+    }
+    if (!system || !name || !body) {
+        return SE3D_ERR_NULL;
+    }
+    for (size_t k = 0; k < system->model.body_slots.count; ++k) {
+        const char *other = system->model.bodies[k].name;
+        if (other && strcmp(other, name) == 0) {
+            return se3d_system_get_body(system, k, body);
+        }
+    }
+    return SE3D_ERR_INVALID_ARGUMENT;
+}
+
+se3d_status se3d_body_get_name(const se3d_system *system, se3d_body body, const char **name)
+{
+    if (name) {
+        *name = NULL;
+    }
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, name, &index));
+    const char *text = system->model.bodies[index].name;
+    *name = text ? text : "";
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_fixed(const se3d_system *system, se3d_body body, int32_t *fixed)
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, fixed, &index));
+    *fixed = system->model.bodies[index].fixed;
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_mass(const se3d_system *system, se3d_body body, double *mass,
+                               double inertia[6])
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, mass ? (const void *)mass : inertia, &index));
+    if (mass) {
+        *mass = system->model.bodies[index].mass;
+    }
+    if (inertia) {
+        memcpy(inertia, system->model.bodies[index].J, 6 * sizeof *inertia);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_set_mass(se3d_system *system, se3d_body body, double mass,
+                               const double inertia[6])
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    uint32_t index;
+    SE3DI_TRY(se3di_find_body(system, "body", body, &index));
+    SE3DI_TRY(se3di_check_pointer(system, "inertia", inertia));
+    if (system->model.bodies[index].fixed) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "a fixed body has no mass to set");
+    }
+    SE3DI_TRY(check_mass(system, mass, inertia));
+    system->model.bodies[index].mass = mass;
+    memcpy(system->model.bodies[index].J, inertia, 6 * sizeof *inertia);
+    se3di_model_touch_state(&system->model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_position(const se3d_system *system, se3d_body body, double r[3])
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, r, &index));
+    se3di_copy(system->model.frames[index].r, r);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_orientation(const se3d_system *system, se3d_body body, double p[4])
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, p, &index));
+    memcpy(p, system->model.frames[index].p, 4 * sizeof *p);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_velocity(const se3d_system *system, se3d_body body, double v[3])
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, v, &index));
+    se3di_copy(system->model.frames[index].v, v);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_angular_velocity(const se3d_system *system, se3d_body body, double w[3])
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, w, &index));
+    se3di_copy(system->model.frames[index].w, w);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_acceleration(const se3d_system *system, se3d_body body, double a[3])
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, a, &index));
+    se3di_copy(system->model.acceleration + 6 * (size_t)index, a);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_angular_acceleration(const se3d_system *system, se3d_body body,
+                                               double alpha[3])
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, alpha, &index));
+    se3di_copy(system->model.acceleration + 6 * (size_t)index + 3, alpha);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_point(const se3d_system *system, se3d_body body, const double local[3],
+                                double ground[3])
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, local ? (const void *)ground : NULL, &index));
+    double turned[3];
+    se3di_mul(system->model.frames[index].A, local, turned);
+    se3di_add(system->model.frames[index].r, turned, ground);
+    return SE3D_OK;
+}
+
+/* A vector to set on a movable body: everything checked. */
+static se3d_status find_writer(se3d_system *system, se3d_body body, const char *what,
+                               const double *values, uint32_t *index)
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_find_body(system, "body", body, index));
+    return se3di_check_pointer(system, what, values);
+}
+
+static se3d_status check_movable(se3d_system *system, uint32_t index, const char *what)
+{
+    if (index == 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s of the ground cannot be set",
+                          what);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_set_position(se3d_system *system, se3d_body body, const double r[3])
+{
+    uint32_t index;
+    SE3DI_TRY(find_writer(system, body, "position", r, &index));
+    SE3DI_TRY(check_movable(system, index, "position"));
+    SE3DI_TRY(se3di_check_finites(system, "position", r, 3));
+    se3di_copy(r, system->model.frames[index].r);
+    se3di_model_touch_state(&system->model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_set_orientation(se3d_system *system, se3d_body body, const double p[4])
+{
+    uint32_t index;
+    double unit[4];
+    SE3DI_TRY(find_writer(system, body, "orientation", p, &index));
+    SE3DI_TRY(check_movable(system, index, "orientation"));
+    SE3DI_TRY(se3di_check_orientation(system, "orientation", p, unit));
+    memcpy(system->model.frames[index].p, unit, sizeof unit);
+    se3di_frame_update(&system->model.frames[index]);
+    se3di_model_touch_state(&system->model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_set_velocity(se3d_system *system, se3d_body body, const double v[3])
+{
+    uint32_t index;
+    SE3DI_TRY(find_writer(system, body, "velocity", v, &index));
+    if (system->model.bodies[index].fixed) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "velocity of a fixed body cannot be set");
+    }
+    SE3DI_TRY(se3di_check_finites(system, "velocity", v, 3));
+    se3di_copy(v, system->model.frames[index].v);
+    se3di_model_touch_state(&system->model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_set_angular_velocity(se3d_system *system, se3d_body body, const double w[3])
+{
+    uint32_t index;
+    SE3DI_TRY(find_writer(system, body, "angular_velocity", w, &index));
+    if (system->model.bodies[index].fixed) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "angular_velocity of a fixed body cannot be set");
+    }
+    SE3DI_TRY(se3di_check_finites(system, "angular_velocity", w, 3));
+    se3di_copy(w, system->model.frames[index].w);
+    se3di_frame_update(&system->model.frames[index]);
+    se3di_model_touch_state(&system->model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_all(const se3d_system *system, size_t count, double *r, double *p,
+                              double *v, double *w)
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    if (count != system->model.body_slots.count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    for (size_t k = 0; k < count; ++k) {
+        const se3di_frame *frame = &system->model.frames[k];
+        if (r) {
+            se3di_copy(frame->r, r + 3 * k);
+        }
+        if (p) {
+            memcpy(p + 4 * k, frame->p, sizeof frame->p);
+        }
+        if (v) {
+            se3di_copy(frame->v, v + 3 * k);
+        }
+        if (w) {
+            se3di_copy(frame->w, w + 3 * k);
+        }
+    }
+    return SE3D_OK;
+}
+
+/* Everything is checked before anything is written. */
+static se3d_status check_all(se3d_system *system, const double *r, const double *p, const double *v,
+                             const double *w)
+{
+    for (size_t k = 0; k < system->model.body_slots.count; ++k) {
+        double unit[4];
+        if (system->model.bodies[k].fixed) {
+            continue;
+        }
+        int finite = (!r || se3di_is_finite(r + 3 * k, 3)) &&
+                     (!v || se3di_is_finite(v + 3 * k, 3)) && (!w || se3di_is_finite(w + 3 * k, 3));
+        if (!finite) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "the state of body %zu must be finite", k);
+        }
+        if (p) {
+            SE3DI_TRY(se3di_check_orientation(system, "orientation", p + 4 * k, unit));
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_set_all(se3d_system *system, size_t count, const double *r, const double *p,
+                              const double *v, const double *w)
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    if (count != system->model.body_slots.count) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "count = %zu, must be the number of bodies, %zu", count,
+                          system->model.body_slots.count);
+    }
+    SE3DI_TRY(check_all(system, r, p, v, w));
+    for (size_t k = 0; k < count; ++k) {
+        se3di_frame *frame = &system->model.frames[k];
+        if (system->model.bodies[k].fixed) {
+            continue;
+        }
+        if (r) {
+            se3di_copy(r + 3 * k, frame->r);
+        }
+        if (p) {
+            se3di_quat_normalize(p + 4 * k, frame->p);
+        }
+        if (v) {
+            se3di_copy(v + 3 * k, frame->v);
+        }
+        if (w) {
+            se3di_copy(w + 3 * k, frame->w);
+        }
+        se3di_frame_update(frame);
+    }
+    se3di_model_touch_state(&system->model);
+    return SE3D_OK;
+}

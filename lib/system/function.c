@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Functions of time and of force variables. */
+#include "model/function.h"
+#include "expression/expression.h"
+#include "system/system_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+void se3d_function_def_init(se3d_function_def *def, size_t size)
+{
+    se3d_function_def defaults = {.struct_size = size, .variable_count = 1};
+    if (def && size >= sizeof size) {
+        memset(def, 0, size);
+        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
+    }
+}
+
+static se3d_status check_kind(se3d_system *system, const se3d_function_def *def)
+{
+    int kinds = (def->expression != NULL) + (def->callback != NULL) + (def->table_x != NULL);
+    if (kinds > 1) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "a function is an expression, a callback, or a table: %d are given",
+                          kinds);
+    }
+    if (def->variable_count < 1 || def->variable_count > SE3D_FUNCTION_VARIABLES_MAX) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "variable_count = %zu, must be between 1 and %d", def->variable_count,
+                          SE3D_FUNCTION_VARIABLES_MAX);
+    }
+    if (def->variable_count > 1 && !def->variables && def->expression) {
+        return SE3DI_FAIL(system, SE3D_ERR_NULL, "variables is NULL, must name %zu variables",
+                          def->variable_count);
+    }
+    return se3di_check_finite(system, "constant", def->constant);
+}
+
+static se3d_status make_expression(se3d_system *system, const se3d_function_def *def,
+                                   se3di_function *function)
+{
+    static const char *const time[] = {"t"};
+    se3d_expression_error error = {0};
+    se3d_expression_def expression = se3d_expression_def_default();
+    expression.text = def->expression;
+    expression.variables = def->variables ? def->variables : time;
+    expression.variable_count = def->variable_count;
+    expression.symbols = def->symbols;
+    expression.symbol_count = def->symbol_count;
+    expression.allocator = &system->model.allocator;
+    se3d_status status = se3d_expression_create(&expression, &function->expression, &error);
+    if (status == SE3D_ERR_NO_MEMORY) {
+        return SE3DI_FAIL(system, status, "no memory for an expression");
+    }
+    if (status < 0) {
+        return SE3DI_FAIL(system, status, "expression \"%.120s\", column %zu: %s", def->expression,
+                          error.column, error.message);
+    }
+    return SE3D_OK;
+}
+
+static se3d_status check_table(se3d_system *system, const se3d_function_def *def)
+{
+    SE3DI_TRY(se3di_check_pointer(system, "table_y", def->table_y));
+    if (def->table_count < 2 || def->table_count > UINT32_MAX) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "table_count = %zu, must be at least 2", def->table_count);
+    }
+    for (size_t k = 0; k < def->table_count; ++k) {
+        if (!isfinite(def->table_x[k]) || !isfinite(def->table_y[k])) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "table point %zu = (%g, %g), must be finite", k, def->table_x[k],
+                              def->table_y[k]);
+        }
+        if (k > 0 && !(def->table_x[k] > def->table_x[k - 1])) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "table_x[%zu] = %g after %g, must increase", k, def->table_x[k],
+                              def->table_x[k - 1]);
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status make_table(se3d_system *system, const se3d_function_def *def,
+                              se3di_function *function)
+{
+    size_t n = def->table_count;
+    const se3d_allocator *allocator = &system->model.allocator;
+    SE3DI_TRY(check_table(system, def));
+    double *table = se3di_alloc(allocator, 3 * n, sizeof *table);
+    double *scratch = se3di_alloc(allocator, n, sizeof *scratch);
+    if (!table || !scratch) {
+        se3di_free(allocator, table, 3 * n, sizeof *table);
+        se3di_free(allocator, scratch, n, sizeof *scratch);
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a table of %zu points", n);
+    }
+    memcpy(table, def->table_x, n * sizeof *table);
+    memcpy(table + n, def->table_y, n * sizeof *table);
+    se3di_spline_build(table, table + n, n, table + 2 * n, scratch);
+    se3di_free(allocator, scratch, n, sizeof *scratch);
+    function->table = table;
+    function->table_count = n;
+    return SE3D_OK;
+}
+
+se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *def,
+                                 se3d_function *function)
+{
+    if (function) {
+        *function = (se3d_function){0, 0};
+    }
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_pointer(system, "function", function));
+    se3d_function_def full = se3d_function_def_default();
+    SE3DI_TRY(se3di_check_def(system, "function def", def, &full, sizeof full));
+    SE3DI_TRY(check_kind(system, &full));
+    se3di_function data = {.callback = full.callback,
+                           .ctx = full.ctx,
+                           .constant = full.constant,
+                           .variable_count = (uint32_t)full.variable_count};
+    if (full.expression) {
+        SE3DI_TRY(make_expression(system, &full, &data));
+    } else if (full.table_x) {
+        SE3DI_TRY(make_table(system, &full, &data));
+    }
+    se3di_handle handle;
+    if (se3di_model_add_function(&system->model, &data, &handle) < 0) {
+        se3di_function_release(&system->model.allocator, &data);
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a function");
+    }
+    *function = (se3d_function){handle.index1, handle.generation};
+    return SE3D_OK;
+}
+
+se3d_status se3d_function_create_expression(se3d_system *system, const char *text,
+                                            se3d_function *function)
+{
+    if (function) {
+        *function = (se3d_function){0, 0};
+    }
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_pointer(system, "text", text));
+    se3d_function_def def = se3d_function_def_default();
+    def.expression = text;
+    return se3d_function_create(system, &def, function);
+}
+
+se3d_status se3d_function_destroy(se3d_system *system, se3d_function function)
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    uint32_t index =
+        se3di_slots_find(&system->model.function_slots, function.index1, function.generation);
+    if (index == SE3DI_NO_INDEX) {
+        return SE3DI_FAIL(system, SE3D_ERR_STALE_HANDLE,
+                          "function is null, was destroyed or belongs to another system");
+    }
+    if (system->model.functions[index].users > 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_IN_USE, "the function is used by %u elements",
+                          system->model.functions[index].users);
+    }
+    se3di_model_remove_function(&system->model, index);
+    return SE3D_OK;
+}
+
+se3d_status se3d_function_eval(const se3d_system *system, se3d_function function, const double *x,
+                               double jet[3])
+{
+    if (!system || !x || !jet) {
+        return SE3D_ERR_NULL;
+    }
+    uint32_t index =
+        se3di_slots_find(&system->model.function_slots, function.index1, function.generation);
+    if (index == SE3DI_NO_INDEX) {
+        return SE3D_ERR_STALE_HANDLE;
+    }
+    return se3di_function_eval(&system->model.functions[index], x, jet, NULL);
+}

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Snapshots: everything that a step reads and writes, the integrator's history included. */
+#include "system/system_internal.h"
+
+#include <string.h>
+
+struct se3d_snapshot {
+    se3d_allocator allocator;
+    uint64_t topology_version;
+    uint64_t history_tag;
+    int32_t settled;
+    int32_t reserved;
+    double time;
+    size_t bodies, rows, angles, history;
+    se3di_frame *frames;
+    double *acceleration; /* [bodies * 6] */
+    double *lambda;       /* [rows] */
+    double *turns;        /* [angles] */
+    double *carried;      /* [history] */
+};
+
+static se3d_status allocate(se3d_snapshot *s)
+{
+    s->frames = se3di_alloc(&s->allocator, s->bodies, sizeof *s->frames);
+    s->acceleration = se3di_alloc(&s->allocator, 6 * s->bodies, sizeof(double));
+    s->lambda = se3di_alloc(&s->allocator, s->rows, sizeof(double));
+    s->turns = se3di_alloc(&s->allocator, s->angles, sizeof(double));
+    s->carried = se3di_alloc(&s->allocator, s->history, sizeof(double));
+    return s->frames && s->acceleration && s->lambda && s->turns && s->carried ? SE3D_OK
+                                                                               : SE3D_ERR_NO_MEMORY;
+}
+
+static void copy(void *to, const void *from, size_t size)
+{
+    if (size > 0) {
+        memcpy(to, from, size);
+    }
+}
+
+static void fill(se3d_snapshot *s, const se3di_model *model)
+{
+    copy(s->frames, model->frames, s->bodies * sizeof *s->frames);
+    copy(s->acceleration, model->acceleration, 6 * s->bodies * sizeof(double));
+    copy(s->lambda, model->lambda, s->rows * sizeof(double));
+    copy(s->carried, model->history, s->history * sizeof(double));
+    for (size_t k = 0; k < s->angles; ++k) {
+        s->turns[k] = model->angles[k].theta;
+    }
+}
+
+se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out)
+{
+    if (out) {
+        *out = NULL;
+    }
+    if (!system || !out) {
+        return SE3D_ERR_NULL;
+    }
+    const se3di_model *model = &system->model;
+    se3d_snapshot *snapshot = se3di_alloc(&model->allocator, 1, sizeof *snapshot);
+    if (!snapshot) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    *snapshot = (se3d_snapshot){
+        .allocator = model->allocator,
+        .topology_version = model->topology_version,
+        .history_tag = model->history_tag,
+        .settled = model->settled,
+        .time = model->time,
+        .bodies = model->body_slots.count,
+        .rows = model->row_count,
+        .angles = model->angle_count,
+        .history = model->history_tag ? model->history_count : 0,
+    };
+    if (allocate(snapshot) < 0) {
+        se3d_snapshot_destroy(snapshot);
+        return SE3D_ERR_NO_MEMORY;
+    }
+    fill(snapshot, model);
+    *out = snapshot;
+    return SE3D_OK;
+}
+
+se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *system)
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_pointer(system, "snapshot", snapshot));
+    se3di_model *model = &system->model;
+    if (snapshot->topology_version != model->topology_version ||
+        snapshot->bodies != model->body_slots.count || snapshot->rows != model->row_count ||
+        snapshot->angles != model->angle_count) {
+        return SE3DI_FAIL(system, SE3D_ERR_STATE,
+                          "the snapshot has %zu bodies and %zu equations at edit %llu, the system "
+                          "%zu and %zu at edit %llu; only the same model can be restored",
+                          snapshot->bodies, snapshot->rows,
+                          (unsigned long long)snapshot->topology_version, model->body_slots.count,
+                          model->row_count, (unsigned long long)model->topology_version);
+    }
+    void *history = model->history;
+    se3d_status status = se3di_array_reserve(&model->allocator, &history, &model->history_capacity,
+                                             snapshot->history, sizeof(double));
+    model->history = history;
+    if (status < 0) {
+        return SE3DI_FAIL(system, status, "no memory for the integrator's history");
+    }
+    copy(model->frames, snapshot->frames, snapshot->bodies * sizeof *model->frames);
+    copy(model->acceleration, snapshot->acceleration, 6 * snapshot->bodies * sizeof(double));
+    copy(model->lambda, snapshot->lambda, snapshot->rows * sizeof(double));
+    copy(model->history, snapshot->carried, snapshot->history * sizeof(double));
+    for (size_t k = 0; k < snapshot->angles; ++k) {
+        model->angles[k].theta = snapshot->turns[k];
+    }
+    model->settled = snapshot->settled;
+    model->history_count = snapshot->history;
+    model->history_tag = snapshot->history_tag;
+    model->time = snapshot->time;
+    return SE3D_OK;
+}
+
+void se3d_snapshot_destroy(se3d_snapshot *snapshot)
+{
+    if (snapshot) {
+        se3d_allocator allocator = snapshot->allocator;
+        se3di_free(&allocator, snapshot->frames, snapshot->bodies, sizeof *snapshot->frames);
+        se3di_free(&allocator, snapshot->acceleration, 6 * snapshot->bodies, sizeof(double));
+        se3di_free(&allocator, snapshot->lambda, snapshot->rows, sizeof(double));
+        se3di_free(&allocator, snapshot->turns, snapshot->angles, sizeof(double));
+        se3di_free(&allocator, snapshot->carried, snapshot->history, sizeof(double));
+        se3di_free(&allocator, snapshot, 1, sizeof *snapshot);
+    }
+}

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Solvers: validation and delegation to a run. */
+#include "analysis/run.h"
+#include "system/system_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+struct se3d_solver {
+    se3d_system *system;
+    se3di_run run;
+};
+
+void se3d_solver_def_init(se3d_solver_def *def, size_t size)
+{
+    se3d_solver_def defaults = {
+        .struct_size = size,
+        .analysis = SE3D_ANALYSIS_DYNAMICS,
+        .spectral_radius = 0.9,
+        .alpha = -0.1,
+    };
+    if (def && size >= sizeof size) {
+        memset(def, 0, size);
+        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
+    }
+}
+
+static se3d_status check_numbers(se3d_system *system, const se3d_solver_def *def)
+{
+    if (!(isfinite(def->step) && def->step >= 0.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "step = %g s, must be finite and >= 0 (0: chosen)", def->step);
+    }
+    if (!(def->tolerance >= 0.0 && def->tolerance < 1.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "tolerance = %g, must be >= 0 and < 1 (0: 1e-6)", def->tolerance);
+    }
+    if (!(def->spectral_radius >= 0.0 && def->spectral_radius <= 1.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "spectral_radius = %g, must be between 0 and 1", def->spectral_radius);
+    }
+    if (!(def->alpha >= -1.0 / 3.0 && def->alpha <= 0.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "alpha = %g, must be between -1/3 and 0", def->alpha);
+    }
+    if (def->iterations_max > 1000000) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "iterations_max = %zu, must be at most 1000000 (0: 25)",
+                          def->iterations_max);
+    }
+    return SE3D_OK;
+}
+
+static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def)
+{
+    if (def->analysis < SE3D_ANALYSIS_ASSEMBLY || def->analysis > SE3D_ANALYSIS_EQUILIBRIUM) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "analysis = %d, must be one of se3d_analysis", (int)def->analysis);
+    }
+    if (def->analysis == SE3D_ANALYSIS_EQUILIBRIUM) {
+        return SE3DI_FAIL(system, SE3D_ERR_UNSUPPORTED,
+                          "analysis equilibrium is not available in this version");
+    }
+    if (!se3di_formulation_find(def->formulation)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "formulation = %d, must be SE3D_FORMULATION_ROMEGA or _RP",
+                          (int)def->formulation);
+    }
+    if (def->method < SE3D_METHOD_AUTO || def->method > SE3D_METHOD_VERLET) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "method = %d, must be one of se3d_method", (int)def->method);
+    }
+    if (!se3di_integrator_find(def->method)) {
+        return SE3DI_FAIL(system, SE3D_ERR_UNSUPPORTED,
+                          "method %d is not available in this version; allowed are auto, "
+                          "generalized_alpha, hht",
+                          (int)def->method);
+    }
+    return SE3D_OK;
+}
+
+static void configure(se3di_run *run, const se3d_solver_def *def)
+{
+    run->analysis = def->analysis;
+    run->formulation = se3di_formulation_find(def->formulation);
+    run->integration.method = se3di_integrator_find(def->method);
+    run->integration.settings = (se3di_integrator_settings){
+        .step = def->step,
+        .tolerance = def->tolerance > 0.0 ? def->tolerance : 1e-6,
+        .spectral_radius = def->spectral_radius,
+        .alpha = def->alpha,
+        .iterations_max = def->iterations_max > 0 ? (int32_t)def->iterations_max : 25,
+        .order = def->order,
+    };
+}
+
+se3d_status se3d_solver_create(se3d_system *system, const se3d_solver_def *def, se3d_solver **out)
+{
+    if (out) {
+        *out = NULL;
+    }
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_pointer(system, "out", out));
+    se3d_solver_def full = se3d_solver_def_default();
+    SE3DI_TRY(se3di_check_def(system, "solver def", def, &full, sizeof full));
+    SE3DI_TRY(check_numbers(system, &full));
+    SE3DI_TRY(check_choices(system, &full));
+    se3d_solver *solver = se3di_alloc(&system->model.allocator, 1, sizeof *solver);
+    if (!solver) {
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a solver");
+    }
+    solver->system = system;
+    se3di_run_init(&solver->run, &system->model, &system->error);
+    configure(&solver->run, &full);
+    *out = solver;
+    return SE3D_OK;
+}
+
+void se3d_solver_destroy(se3d_solver *solver)
+{
+    if (solver) {
+        se3di_run_destroy(&solver->run);
+        se3di_free(&solver->system->model.allocator, solver, 1, sizeof *solver);
+    }
+}
+
+se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
+{
+    if (!solver) {
+        return SE3D_ERR_NULL;
+    }
+    se3d_system *system = solver->system;
+    if (!(isfinite(t_end) && t_end >= system->model.time)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "t_end = %g s, must be finite and not before the present time %g s",
+                          t_end, system->model.time);
+    }
+    return se3di_run_to(&solver->run, t_end);
+}
+
+se3d_status se3d_solver_step(se3d_solver *solver, double h)
+{
+    if (!solver) {
+        return SE3D_ERR_NULL;
+    }
+    if (!(isfinite(h) && h > 0.0)) {
+        return SE3DI_FAIL(solver->system, SE3D_ERR_INVALID_ARGUMENT,
+                          "h = %g s, must be finite and > 0", h);
+    }
+    return se3di_run_step(&solver->run, h);
+}
+
+se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_solver_stats *stats)
+{
+    if (!solver || !stats) {
+        return SE3D_ERR_NULL;
+    }
+    const se3di_counters *counters = &solver->run.equations.counters;
+    *stats = (se3d_solver_stats){
+        .steps = counters->steps,
+        .rejected = counters->rejected,
+        .iterations = counters->iterations,
+        .evaluations = counters->evaluations,
+        .factorizations = counters->factorizations,
+        .solves = counters->solves,
+    };
+    return SE3D_OK;
+}
+
+se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name)
+{
+    if (!solver || !name) {
+        return SE3D_ERR_NULL;
+    }
+    *name = solver->run.integration.method->name;
+    return SE3D_OK;
+}

@@ -1,0 +1,337 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Systems: creation, gravity, time, counts, energy, violation, hash. */
+#include "system/system_internal.h"
+
+#include "base/hash.h"
+#include "force/force.h"
+#include "math/vec3.h"
+#include "primitive/primitive.h"
+#include "primitive/turn_counter.h"
+
+#include <math.h>
+#include <string.h>
+
+void se3d_system_def_init(se3d_system_def *def, size_t size)
+{
+    se3d_system_def defaults = {.struct_size = size, .gravity = {0.0, 0.0, -9.81}};
+    if (def && size >= sizeof size) {
+        memset(def, 0, size);
+        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
+    }
+}
+
+/* Different for systems that live at the same time, so that handles of another system are detected.
+ */
+static uint32_t salt_of(const se3d_system *system)
+{
+    uint64_t bits = (uint64_t)(uintptr_t)system * UINT64_C(0x9E3779B97F4A7C15);
+    return (uint32_t)(bits >> 52);
+}
+
+static se3d_status read_def(const se3d_system_def *def, se3d_system_def *full)
+{
+    if (!def) {
+        return SE3D_OK;
+    }
+    if (def->struct_size < sizeof def->struct_size || def->struct_size > sizeof *full) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    memcpy(full, def, def->struct_size);
+    const se3d_allocator *allocator = full->allocator;
+    int complete = !allocator || (allocator->alloc && allocator->realloc && allocator->free);
+    int finite = se3di_is_finite(full->gravity, 3) && isfinite(full->time);
+    return complete && finite ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;
+}
+
+se3d_status se3d_system_create(const se3d_system_def *def, se3d_system **out)
+{
+    if (!out) {
+        return SE3D_ERR_NULL;
+    }
+    *out = NULL;
+    se3d_system_def full = se3d_system_def_default();
+    SE3DI_TRY(read_def(def, &full));
+    se3d_allocator allocator = full.allocator ? *full.allocator : se3di_alloc_default();
+    se3d_system *system = se3di_alloc(&allocator, 1, sizeof *system);
+    if (!system) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    se3d_status status = se3di_model_init(&system->model, &allocator, salt_of(system));
+    if (status < 0) {
+        se3di_free(&allocator, system, 1, sizeof *system);
+        return status;
+    }
+    se3di_copy(full.gravity, system->model.gravity);
+    system->model.time = full.time;
+    system->log = full.log;
+    system->log_ctx = full.log_ctx;
+    *out = system;
+    return SE3D_OK;
+}
+
+void se3d_system_destroy(se3d_system *system)
+{
+    if (system) {
+        se3d_allocator allocator = system->model.allocator;
+        se3di_model_destroy(&system->model);
+        se3di_free(&allocator, system, 1, sizeof *system);
+    }
+}
+
+se3d_status se3d_system_clone(const se3d_system *system, se3d_system **out)
+{
+    if (out) {
+        *out = NULL;
+    }
+    if (!system || !out) {
+        return SE3D_ERR_NULL;
+    }
+    se3d_system *copy = se3di_alloc(&system->model.allocator, 1, sizeof *copy);
+    if (!copy) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    se3d_status status = se3di_model_clone(&system->model, &copy->model);
+    if (status < 0) {
+        se3di_free(&system->model.allocator, copy, 1, sizeof *copy);
+        return status;
+    }
+    copy->log = system->log;
+    copy->log_ctx = system->log_ctx;
+    *out = copy;
+    return SE3D_OK;
+}
+
+const char *se3d_system_get_error(const se3d_system *system)
+{
+    return system ? system->error.message : "the system is NULL";
+}
+
+se3d_status se3d_system_get_error_status(const se3d_system *system)
+{
+    return system ? system->error.status : SE3D_ERR_NULL;
+}
+
+se3d_status se3d_system_set_gravity(se3d_system *system, const double gravity[3])
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_pointer(system, "gravity", gravity));
+    SE3DI_TRY(se3di_check_finites(system, "gravity", gravity, 3));
+    se3di_copy(gravity, system->model.gravity);
+    se3di_model_touch_state(&system->model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_get_gravity(const se3d_system *system, double gravity[3])
+{
+    if (!system || !gravity) {
+        return SE3D_ERR_NULL;
+    }
+    se3di_copy(system->model.gravity, gravity);
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_set_time(se3d_system *system, double time)
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_finite(system, "time", time));
+    system->model.time = time;
+    se3di_model_touch_state(&system->model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_get_time(const se3d_system *system, double *time)
+{
+    if (!system || !time) {
+        return SE3D_ERR_NULL;
+    }
+    *time = system->model.time;
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_get_ground(const se3d_system *system, se3d_body *ground)
+{
+    return se3d_system_get_body(system, 0, ground);
+}
+
+size_t se3d_system_count_bodies(const se3d_system *system)
+{
+    return system ? system->model.body_slots.count : 0;
+}
+
+size_t se3d_system_count_markers(const se3d_system *system)
+{
+    return system ? system->model.marker_slots.count : 0;
+}
+
+size_t se3d_system_count_constraints(const se3d_system *system)
+{
+    return system ? system->model.constraint_slots.count : 0;
+}
+
+size_t se3d_system_count_forces(const se3d_system *system)
+{
+    return system ? system->model.force_slots.count : 0;
+}
+
+/* Handle at `index`; null where there is none. */
+static se3d_status get_handle(const se3di_slots *slots, size_t index, se3di_handle *handle)
+{
+    *handle = (se3di_handle){0, 0};
+    if (index >= slots->count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    *handle = se3di_slots_handle(slots, (uint32_t)index);
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_get_body(const se3d_system *system, size_t index, se3d_body *body)
+{
+    if (body) {
+        *body = (se3d_body){0, 0};
+    }
+    if (!system || !body) {
+        return SE3D_ERR_NULL;
+    }
+    se3di_handle handle;
+    SE3DI_TRY(get_handle(&system->model.body_slots, index, &handle));
+    *body = (se3d_body){handle.index1, handle.generation};
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_get_marker(const se3d_system *system, size_t index, se3d_marker *marker)
+{
+    if (marker) {
+        *marker = (se3d_marker){0, 0};
+    }
+    if (!system || !marker) {
+        return SE3D_ERR_NULL;
+    }
+    se3di_handle handle;
+    SE3DI_TRY(get_handle(&system->model.marker_slots, index, &handle));
+    *marker = (se3d_marker){handle.index1, handle.generation};
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_get_constraint(const se3d_system *system, size_t index,
+                                       se3d_constraint *constraint)
+{
+    if (constraint) {
+        *constraint = (se3d_constraint){0, 0};
+    }
+    if (!system || !constraint) {
+        return SE3D_ERR_NULL;
+    }
+    se3di_handle handle;
+    SE3DI_TRY(get_handle(&system->model.constraint_slots, index, &handle));
+    *constraint = (se3d_constraint){handle.index1, handle.generation};
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_get_force(const se3d_system *system, size_t index, se3d_force *force)
+{
+    if (force) {
+        *force = (se3d_force){0, 0};
+    }
+    if (!system || !force) {
+        return SE3D_ERR_NULL;
+    }
+    se3di_handle handle;
+    SE3DI_TRY(get_handle(&system->model.force_slots, index, &handle));
+    *force = (se3d_force){handle.index1, handle.generation};
+    return SE3D_OK;
+}
+
+static double kinetic_energy(const se3di_model *model)
+{
+    double energy = 0.0;
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        const se3di_body *body = &model->bodies[k];
+        const se3di_frame *frame = &model->frames[k];
+        const double *J = body->J;
+        const double *w = frame->w;
+        if (!body->fixed) {
+            energy += 0.5 * body->mass * se3di_dot(frame->v, frame->v);
+            energy += 0.5 * (J[0] * w[0] * w[0] + J[1] * w[1] * w[1] + J[2] * w[2] * w[2]);
+            energy += J[3] * w[0] * w[1] + J[4] * w[1] * w[2] + J[5] * w[0] * w[2];
+        }
+    }
+    return energy;
+}
+
+se3d_status se3d_system_get_energy(const se3d_system *system, se3d_energy *energy)
+{
+    if (!system || !energy) {
+        return SE3D_ERR_NULL;
+    }
+    *energy = (se3d_energy){.kinetic = kinetic_energy(&system->model)};
+    SE3DI_TRY(se3di_forces_potential(&system->model, system->model.time, &energy->potential));
+    energy->total = energy->kinetic + energy->potential;
+    return SE3D_OK;
+}
+
+/* |Phi|, |Phi_q qdot - nu| and |Phi_q qddot - gamma| of one equation, in r-omega. */
+static se3d_status measure_row(const se3di_model *model, const se3di_row *row, double gap[3])
+{
+    double jet[3] = {row->value, 0.0, 0.0};
+    if (row->function >= 0) {
+        SE3DI_TRY(se3di_function_eval(&model->functions[row->function], &model->time, jet, NULL));
+    }
+    gap[0] = se3di_row_violation(model, row, jet[0]);
+    gap[1] = -jet[1];
+    gap[2] = -jet[2];
+    for (uint32_t k = 0; k < row->term_count; ++k) {
+        const se3di_term *term = &model->terms[row->term_begin + k];
+        const se3di_primitive *primitive = &se3di_primitives[term->type];
+        const se3di_frame *i = &model->frames[term->body_i];
+        const se3di_frame *j = &model->frames[term->body_j];
+        const double *a_i = model->acceleration + 6 * term->body_i;
+        const double *a_j = model->acceleration + 6 * term->body_j;
+        double phi_i[6];
+        double phi_j[6];
+        primitive->jacobian_romega(term, i, j, phi_i, phi_j);
+        gap[1] += term->coefficient * (se3di_dot(phi_i, i->v) + se3di_dot(phi_i + 3, i->w) +
+                                       se3di_dot(phi_j, j->v) + se3di_dot(phi_j + 3, j->w));
+        gap[2] += term->coefficient *
+                  (se3di_dot(phi_i, a_i) + se3di_dot(phi_i + 3, a_i + 3) + se3di_dot(phi_j, a_j) +
+                   se3di_dot(phi_j + 3, a_j + 3) - primitive->gamma_romega(term, i, j));
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_get_violation(const se3d_system *system, double violation[3])
+{
+    if (!system || !violation) {
+        return SE3D_ERR_NULL;
+    }
+    violation[0] = violation[1] = violation[2] = 0.0;
+    for (size_t k = 0; k < system->model.row_count; ++k) {
+        double gap[3];
+        SE3DI_TRY(measure_row(&system->model, &system->model.rows[k], gap));
+        for (int level = 0; level < 3; ++level) {
+            violation[level] = fmax(violation[level], fabs(gap[level]));
+        }
+    }
+    return SE3D_OK;
+}
+
+uint64_t se3d_system_hash(const se3d_system *system)
+{
+    if (!system) {
+        return 0;
+    }
+    const se3di_model *model = &system->model;
+    uint64_t hash = se3di_hash_bytes(SE3DI_HASH_START, &model->time, sizeof model->time);
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        const se3di_frame *frame = &model->frames[k];
+        hash = se3di_hash_bytes(hash, frame->r, sizeof frame->r);
+        hash = se3di_hash_bytes(hash, frame->p, sizeof frame->p);
+        hash = se3di_hash_bytes(hash, frame->v, sizeof frame->v);
+        hash = se3di_hash_bytes(hash, frame->w, sizeof frame->w);
+        hash = se3di_hash_bytes(hash, model->acceleration + 6 * k, 6 * sizeof(double));
+    }
+    return se3di_hash_bytes(hash, model->lambda, model->row_count * sizeof(double));
+}
