@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* libse3d-io: model files (YAML or JSON) and results (CSV). Link with -lse3d-io -lse3d.
+ *
+ * A model owns the system it was read into. The file format: docs/model-file/reference.md. */
+#ifndef SE3D_IO_H
+#define SE3D_IO_H
+
+#include "se3d/se3d.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A model file that was read; destroy with se3d_model_destroy. @since 0.1 */
+typedef struct se3d_model se3d_model;
+
+/* Why a file was rejected or a run failed: "file:line:column: path: what, and what is allowed".
+ * @since 0.1 */
+typedef struct se3d_model_error {
+    size_t line;   /* 1-based; 0 where no line is to blame */
+    size_t column; /* 1-based, in characters; 0 where unknown */
+    char message[1024];
+} se3d_model_error;
+
+/* One parameter to replace; both texts as on the command line, `value` is an expression. @since 0.1
+ */
+typedef struct se3d_model_setting {
+    const char *name;
+    const char *value;
+} se3d_model_setting;
+
+/* How to read a model. Texts are as in the file; NULL: as the file says. @since 0.1 */
+typedef struct se3d_model_options {
+    size_t struct_size;
+    const se3d_allocator *allocator; /* copied, also for the system; NULL: malloc */
+    const se3d_model_setting *settings;
+    size_t setting_count;
+    const char *analysis;    /* run this type only */
+    const char *formulation; /* of every analysis */
+    const char *method;
+    const char *step;      /* expression over the parameters [s] */
+    const char *duration;  /* expression over the parameters [s] */
+    int32_t mass_optional; /* not 0: bodies without mass get 1 kg, 1 kg m^2 (geometry only) */
+    int32_t reserved;      /* 0 */
+} se3d_model_options;
+
+SE3D_API void se3d_model_options_init(se3d_model_options *options, size_t size);
+
+static inline se3d_model_options se3d_model_options_default(void)
+{
+    se3d_model_options options;
+    se3d_model_options_init(&options, sizeof options);
+    return options;
+}
+
+/* Read a model file and build its system.
+ * @param[in]  options  NULL: the defaults
+ * @param[out] out      the model, NULL on failure
+ * @param[out] error    filled on failure, emptied on success; may be NULL
+ * @return OK, NULL, IO (cannot be read), MODEL (malformed; see the message), NO_MEMORY.
+ * Safe. @since 0.1 */
+SE3D_API se3d_status se3d_model_read_file(const char *path, const se3d_model_options *options,
+                                          se3d_model **out, se3d_model_error *error);
+/* Read a model from `length` bytes of UTF-8; `name` stands for the file in messages.
+ * As se3d_model_read_file. Safe. @since 0.1 */
+SE3D_API se3d_status se3d_model_read_text(const char *text, size_t length, const char *name,
+                                          const se3d_model_options *options, se3d_model **out,
+                                          se3d_model_error *error);
+/* Destroy a model and its system; solvers on that system must have been destroyed. NULL is fine.
+ * @since 0.1 */
+SE3D_API void se3d_model_destroy(se3d_model *model);
+
+/* Return the system, owned by the model; NULL for NULL. @since 0.1 */
+SE3D_API se3d_system *se3d_model_get_system(const se3d_model *model);
+/* Return the file's name without folder and extension; "" for NULL. Reader. @since 0.1 */
+SE3D_API const char *se3d_model_get_name(const se3d_model *model);
+/* Return the title, "" where there is none. Reader. @since 0.1 */
+SE3D_API const char *se3d_model_get_title(const se3d_model *model);
+/* Get the value of a parameter. @return OK, NULL, INVALID_ARGUMENT (no such parameter). Reader.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_model_get_parameter(const se3d_model *model, const char *name,
+                                              double *value);
+
+/* One entry of `analysis`. @since 0.1 */
+typedef struct se3d_model_analysis {
+    double start;     /* [s]; NaN: where the analysis before ended, 0 for the first */
+    double duration;  /* [s]; 0 for assembly and equilibrium */
+    const char *type; /* "dynamics", ...; owned by the model */
+} se3d_model_analysis;
+
+/* Count the analyses, to be run one after the other; 0 for NULL. Reader. @since 0.1 */
+SE3D_API size_t se3d_model_count_analyses(const se3d_model *model);
+/* Get one. @return OK, NULL, INVALID_ARGUMENT (index). Reader. @since 0.1 */
+SE3D_API se3d_status se3d_model_get_analysis(const se3d_model *model, size_t index,
+                                             se3d_model_analysis *analysis);
+/* Get the definition of its solver into `def`, which comes from se3d_solver_def_default.
+ * @return as se3d_model_get_analysis. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_model_get_solver(const se3d_model *model, size_t index,
+                                           se3d_solver_def *def);
+
+/* One results file. @since 0.1 */
+typedef struct se3d_model_output {
+    const char *file;     /* relative to the results' folder; owned by the model */
+    double every;         /* time between rows [s]; 0: the analysis's step */
+    size_t channel_count; /* without `time` */
+} se3d_model_output;
+
+SE3D_API size_t se3d_model_count_outputs(const se3d_model *model);
+SE3D_API se3d_status se3d_model_get_output(const se3d_model *model, size_t index,
+                                           se3d_model_output *output);
+/* Get the name of channel `k` of an output: "bar.position". @return OK, NULL, INVALID_ARGUMENT.
+ * Reader. @since 0.1 */
+SE3D_API se3d_status se3d_model_get_channel(const se3d_model *model, size_t output, size_t k,
+                                            const char **name);
+/* Compute channel `k` of an output at the present state, as many numbers as it has columns (at most
+ * 4). `stats` (NULL: zeros) feeds `steps` and `iterations`. @return OK, NULL, INVALID_ARGUMENT or
+ * what the system's getter returned. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_model_get_channel_value(const se3d_model *model, size_t output, size_t k,
+                                                  const se3d_solver_stats *stats, double value[4],
+                                                  size_t *width);
+
+typedef enum se3d_shape_type {
+    SE3D_SHAPE_SPHERE = 0,
+    SE3D_SHAPE_BOX = 1,
+    SE3D_SHAPE_CAPSULE = 2,
+    SE3D_SHAPE_CYLINDER = 3,
+    SE3D_SHAPE_PLANE = 4,
+    SE3D_SHAPE_MESH = 5
+} se3d_shape_type;
+
+/* A shape of a body, as the file describes it. @since 0.1 */
+typedef struct se3d_model_shape {
+    int32_t type;     /* se3d_shape_type */
+    int32_t reserved; /* 0 */
+    se3d_body body;
+    double size[3];        /* box: lengths of its edges [m] */
+    double radius;         /* sphere, capsule, cylinder [m] */
+    double length;         /* capsule (between its centres), cylinder, along the shape's z [m] */
+    double scale;          /* mesh */
+    double position[3];    /* of the shape's centre, body frame [m] */
+    double orientation[4]; /* shape -> body */
+    double color[3];       /* 0..1; -1 where none is given */
+    const char *file;      /* mesh; "" for the others; owned by the model */
+} se3d_model_shape;
+
+SE3D_API size_t se3d_model_count_shapes(const se3d_model *model);
+SE3D_API se3d_status se3d_model_get_shape(const se3d_model *model, size_t index,
+                                          se3d_model_shape *shape);
+
+/* Called during a run after each row; return not 0 to stop it. @since 0.1 */
+typedef int (*se3d_run_progress)(void *ctx, size_t analysis, double time, double fraction);
+
+/* How to run a model. @since 0.1 */
+typedef struct se3d_run_options {
+    size_t struct_size;
+    const char *directory;      /* for relative files, made if missing; NULL: "." */
+    se3d_run_progress progress; /* NULL: none */
+    void *ctx;
+} se3d_run_options;
+
+SE3D_API void se3d_run_options_init(se3d_run_options *options, size_t size);
+
+static inline se3d_run_options se3d_run_options_default(void)
+{
+    se3d_run_options options;
+    se3d_run_options_init(&options, sizeof options);
+    return options;
+}
+
+/* What a run did; destroy with se3d_run_destroy. @since 0.1 */
+typedef struct se3d_run se3d_run;
+
+/* Run every analysis of a model and write its results. A file is written under a temporary name and
+ * gets its own when the run is over; where an analysis fails, the rows so far are kept.
+ * @param[out] out    what was done, also where an analysis failed (NULL where nothing ran)
+ * @param[out] error  filled on failure: when, where, why and what to try; may be NULL
+ * @return OK or INFO_* of the last analysis, NULL, IO, NO_MEMORY, or the status of the analysis
+ * that failed. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options,
+                                    se3d_run **out, se3d_model_error *error);
+SE3D_API void se3d_run_destroy(se3d_run *run);
+
+/* What one analysis did. @since 0.1 */
+typedef struct se3d_run_analysis {
+    const char *type;        /* owned by the run, as all texts below */
+    const char *formulation; /* "rp", "romega" */
+    const char *method;      /* in use; "" where the analysis has none */
+    int32_t status;          /* se3d_status */
+    int32_t reserved;        /* 0 */
+    double start;            /* [s] */
+    double end;              /* time that was reached [s] */
+    double cpu_time;         /* [s] */
+    se3d_solver_stats stats;
+} se3d_run_analysis;
+
+SE3D_API size_t se3d_run_count_analyses(const se3d_run *run);
+SE3D_API se3d_status se3d_run_get_analysis(const se3d_run *run, size_t index,
+                                           se3d_run_analysis *analysis);
+
+/* A file that was written. @since 0.1 */
+typedef struct se3d_run_file {
+    const char *path;
+    uint64_t rows; /* without the header */
+    size_t columns;
+} se3d_run_file;
+
+SE3D_API size_t se3d_run_count_files(const se3d_run *run);
+SE3D_API se3d_status se3d_run_get_file(const se3d_run *run, size_t index, se3d_run_file *file);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

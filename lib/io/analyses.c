@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `analysis` and `output`. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/reader.h"
+
+static const char *const types[] = {"assembly", "kinematics",  "inverse_dynamics",
+                                    "dynamics", "equilibrium", NULL};
+static const char *const formulations[] = {"romega", "rp", NULL};
+static const char *const methods[] = {
+    "auto", "generalized_alpha", "hht", "dop853", "rk45", "bdf", "radau", "rattle", "verlet", NULL};
+
+/* A value that an option of the command line gives, in place of the file's. */
+static const se3di_node *replaced(se3di_reader *reader, const se3di_node *node, const char *option,
+                                  const char *text)
+{
+    if (!text) {
+        return node;
+    }
+    se3di_node *made = se3di_iopool_alloc(&reader->model->pool, sizeof *made);
+    if (made) {
+        made->kind = SE3DI_NODE_SCALAR;
+        made->key = option;
+        made->text = text;
+    }
+    return made;
+}
+
+static bool read_words(se3di_reader *reader, const se3di_node *node, se3d_solver_def *solver)
+{
+    const se3d_model_options *options = reader->options;
+    const se3di_node *type =
+        replaced(reader, se3di_node_get(node, "type"), "--analysis", options->analysis);
+    const se3di_node *formulation = replaced(reader, se3di_node_get(node, "formulation"),
+                                             "--formulation", options->formulation);
+    const se3di_node *method =
+        replaced(reader, se3di_node_get(node, "method"), "--method", options->method);
+    size_t word = SE3D_ANALYSIS_DYNAMICS;
+    if (node && !type) {
+        return se3di_reader_fail_key(reader, node, "type",
+                                     "is missing, must be one of: assembly, kinematics, "
+                                     "inverse_dynamics, dynamics, equilibrium");
+    }
+    if (type && !se3di_read_word(reader, type, types, &word)) {
+        return false;
+    }
+    solver->analysis = (int32_t)word;
+    word = 0;
+    if (formulation && !se3di_read_word(reader, formulation, formulations, &word)) {
+        return false;
+    }
+    solver->formulation = word == 0 ? SE3D_FORMULATION_ROMEGA : SE3D_FORMULATION_RP;
+    word = 0;
+    if (method && !se3di_read_word(reader, method, methods, &word)) {
+        return false;
+    }
+    solver->method =
+        solver->analysis == SE3D_ANALYSIS_DYNAMICS ? (int32_t)word : (int32_t)SE3D_METHOD_AUTO;
+    return true;
+}
+
+/* A whole number from 0 to `largest`. */
+static bool read_count(se3di_reader *reader, const se3di_node *node, const char *key,
+                       double largest, double *value)
+{
+    *value = 0.0;
+    if (!se3di_read_key_number(reader, node, key, SE3DI_NOT_NEGATIVE, value)) {
+        return false;
+    }
+    if (*value > largest || floor(*value) < *value) {
+        return se3di_reader_fail_key(reader, node, key,
+                                     "is %g, must be a whole number from 0 to %g", *value, largest);
+    }
+    return true;
+}
+
+static bool read_within(se3di_reader *reader, const se3di_node *node, const char *key,
+                        const double range[2], double *value)
+{
+    if (!se3di_read_key_number(reader, node, key, SE3DI_ANY, value)) {
+        return false;
+    }
+    if (!(*value >= range[0] && *value <= range[1])) {
+        return se3di_reader_fail_key(reader, node, key, "is %g, must be from %g to %g", *value,
+                                     range[0], range[1]);
+    }
+    return true;
+}
+
+static bool read_numbers(se3di_reader *reader, const se3di_node *node, se3d_solver_def *solver)
+{
+    static const double unit[2] = {0.0, 1.0};
+    static const double hht[2] = {-1.0 / 3.0, 0.0};
+    const se3di_node *step =
+        replaced(reader, se3di_node_get(node, "step"), "--step", reader->options->step);
+    double order = 0.0;
+    double iterations = 0.0;
+    if ((step && !se3di_read_number(reader, step, SE3DI_POSITIVE, &solver->step)) ||
+        !se3di_read_key_number(reader, node, "tolerance", SE3DI_POSITIVE, &solver->tolerance) ||
+        !read_within(reader, node, "spectral_radius", unit, &solver->spectral_radius) ||
+        !read_within(reader, node, "alpha", hht, &solver->alpha) ||
+        !read_count(reader, node, "order", 20.0, &order) ||
+        !read_count(reader, node, "iterations_max", 1e6, &iterations)) {
+        return false;
+    }
+    solver->order = (int32_t)order;
+    solver->iterations_max = (size_t)iterations;
+    return true;
+}
+
+static bool takes_time(const se3d_solver_def *solver)
+{
+    return solver->analysis == SE3D_ANALYSIS_KINEMATICS ||
+           solver->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS ||
+           solver->analysis == SE3D_ANALYSIS_DYNAMICS;
+}
+
+static bool read_times(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry)
+{
+    const se3di_node *duration =
+        replaced(reader, se3di_node_get(node, "duration"), "--duration", reader->options->duration);
+    entry->analysis.start = (double)NAN;
+    if (!se3di_read_key_number(reader, node, "start", SE3DI_ANY, &entry->analysis.start)) {
+        return false;
+    }
+    if (!duration && takes_time(&entry->solver)) {
+        return se3di_reader_fail_key(reader, node ? node : reader->model->root, "duration",
+                                     "is missing, must be finite and >= 0 [s]");
+    }
+    if (duration &&
+        !se3di_read_number(reader, duration, SE3DI_NOT_NEGATIVE, &entry->analysis.duration)) {
+        return false;
+    }
+    if (!takes_time(&entry->solver)) {
+        entry->analysis.duration = 0.0;
+    }
+    return true;
+}
+
+static bool read_analysis(se3di_reader *reader, const se3di_node *node)
+{
+    se3di_analysis_entry entry = {.node = node};
+    entry.solver = se3d_solver_def_default();
+    if ((node && !se3di_read_keys(reader, node, SE3DI_OBJECT_ANALYSIS)) ||
+        !read_words(reader, node, &entry.solver) || !read_numbers(reader, node, &entry.solver) ||
+        !read_times(reader, node, &entry)) {
+        return false;
+    }
+    entry.analysis.type = types[entry.solver.analysis];
+    reader->model->analyses[reader->model->analysis_count++] = entry;
+    return true;
+}
+
+/* With --analysis only entries of that type are run; where there is none, the last one is run as
+ * that type. */
+static bool is_wanted(const se3di_reader *reader, const se3di_node *list, const se3di_node *node)
+{
+    const char *wanted = reader->options->analysis;
+    bool found = false;
+    if (!wanted) {
+        return true;
+    }
+    for (const se3di_node *other = list->first; other; other = other->next) {
+        const se3di_node *type = se3di_node_get(other, "type");
+        const bool same = type && type->text && strcmp(type->text, wanted) == 0;
+        if (other == node && same) {
+            return true;
+        }
+        found = found || same;
+    }
+    return !found && node == list->last;
+}
+
+bool se3di_read_analyses(se3di_reader *reader, const se3di_node *root)
+{
+    se3d_model *model = reader->model;
+    const se3di_node *node = se3di_node_get(root, "analysis");
+    if (node && se3di_node_is_null(node)) {
+        node = NULL;
+    }
+    const size_t count = node && node->kind == SE3DI_NODE_LIST ? node->count : 1;
+    model->analyses = se3di_iopool_array(&model->pool, count, sizeof *model->analyses);
+    if (!model->analyses) {
+        return se3di_reader_fail_memory(reader);
+    }
+    if (!node) {
+        return !reader->options->analysis || read_analysis(reader, NULL);
+    }
+    if (node->kind != SE3DI_NODE_LIST) {
+        return read_analysis(reader, node);
+    }
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (is_wanted(reader, node, child) && !read_analysis(reader, child)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool read_channels(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
+{
+    se3d_model *model = reader->model;
+    const se3di_node *list = NULL;
+    if (!se3di_read_list(reader, node, "channels", &list)) {
+        return false;
+    }
+    if (!list) {
+        output->channels = se3di_channel_list_all(model, &output->count);
+        return output->channels ? true : se3di_reader_fail_memory(reader);
+    }
+    output->channels = se3di_iopool_array(&model->pool, list->count, sizeof *output->channels);
+    if (!output->channels) {
+        return se3di_reader_fail_memory(reader);
+    }
+    for (const se3di_node *child = list->first; child; child = child->next) {
+        char problem[480] = "";
+        const char *name = NULL;
+        if (!se3di_read_text(reader, child, &name)) {
+            return false;
+        }
+        if (strlen(name) > 310) {
+            return se3di_reader_fail(reader, child, "is longer than any channel's name");
+        }
+        if (!se3di_channel_find(model, name, &output->channels[output->count], problem,
+                                sizeof problem)) {
+            return se3di_reader_fail(reader, child, "%s", problem);
+        }
+        for (size_t k = 0; k < output->count; ++k) {
+            if (strcmp(output->channels[k].name, name) == 0) {
+                return se3di_reader_fail(reader, child, "`%s` is listed twice", name);
+            }
+        }
+        ++output->count;
+    }
+    return true;
+}
+
+static bool read_output(se3di_reader *reader, const se3di_node *node)
+{
+    se3d_model *model = reader->model;
+    se3di_output_entry *output = &model->outputs[model->output_count];
+    const se3di_node *file = NULL;
+    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_OUTPUT)) {
+        return false;
+    }
+    file = se3di_node_get(node, "file");
+    if (!file) {
+        return se3di_reader_fail_key(reader, node, "file", "is missing, such as results.csv");
+    }
+    if (!se3di_read_text(reader, file, &output->file)) {
+        return false;
+    }
+    const size_t length = strlen(output->file);
+    if (length == 0 || length > 1000 || output->file[length - 1] == '/') {
+        return se3di_reader_fail(reader, file, "`%.60s` is not a file name", output->file);
+    }
+    for (size_t k = 0; k < model->output_count; ++k) {
+        if (strcmp(model->outputs[k].file, output->file) == 0) {
+            return se3di_reader_fail(reader, file, "`%.60s` is written by two outputs",
+                                     output->file);
+        }
+    }
+    output->node = node;
+    if (!se3di_read_key_number(reader, node, "every", SE3DI_POSITIVE, &output->every) ||
+        !read_channels(reader, node, output)) {
+        return false;
+    }
+    ++model->output_count;
+    return true;
+}
+
+bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root)
+{
+    se3d_model *model = reader->model;
+    const se3di_node *list = NULL;
+    if (!se3di_read_list(reader, root, "output", &list)) {
+        return false;
+    }
+    const size_t count = list ? list->count : 1;
+    model->outputs = se3di_iopool_array(&model->pool, count, sizeof *model->outputs);
+    if (!model->outputs) {
+        return se3di_reader_fail_memory(reader);
+    }
+    if (!list) {
+        se3di_output_entry *output = &model->outputs[0];
+        output->file = "results.csv";
+        output->channels = se3di_channel_list_all(model, &output->count);
+        model->output_count = 1;
+        return output->channels ? true : se3di_reader_fail_memory(reader);
+    }
+    for (const se3di_node *node = list->first; node; node = node->next) {
+        if (!read_output(reader, node)) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,483 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Channels: names to quantities, columns and numbers. */
+#include "io/channel.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "io/keys.h"
+#include "io/model.h"
+
+enum { DEFAULT_ELEMENTS_MAX = 100 };
+
+typedef struct quantity_name {
+    const char *name;
+    se3di_quantity quantity;
+} quantity_name;
+
+static const quantity_name body_names[] = {
+    {"position", SE3DI_BODY_POSITION},
+    {"orientation", SE3DI_BODY_ORIENTATION},
+    {"velocity", SE3DI_BODY_VELOCITY},
+    {"angular_velocity", SE3DI_BODY_ANGULAR_VELOCITY},
+    {"acceleration", SE3DI_BODY_ACCELERATION},
+    {"angular_acceleration", SE3DI_BODY_ANGULAR_ACCELERATION},
+    {NULL, SE3DI_STEPS}};
+static const quantity_name marker_names[] = {{"position", SE3DI_MARKER_POSITION},
+                                             {"velocity", SE3DI_MARKER_VELOCITY},
+                                             {"acceleration", SE3DI_MARKER_ACCELERATION},
+                                             {NULL, SE3DI_STEPS}};
+static const quantity_name reaction_names[] = {
+    {"force", SE3DI_REACTION_FORCE}, {"torque", SE3DI_REACTION_TORQUE}, {NULL, SE3DI_STEPS}};
+static const quantity_name driver_names[] = {
+    {"value", SE3DI_DRIVER_VALUE}, {"effort", SE3DI_DRIVER_EFFORT}, {NULL, SE3DI_STEPS}};
+static const quantity_name tsda_names[] = {{"length", SE3DI_FORCE_COORDINATE},
+                                           {"rate", SE3DI_FORCE_RATE},
+                                           {"force", SE3DI_FORCE_VALUE},
+                                           {NULL, SE3DI_STEPS}};
+static const quantity_name rsda_names[] = {{"angle", SE3DI_FORCE_COORDINATE},
+                                           {"rate", SE3DI_FORCE_RATE},
+                                           {"torque", SE3DI_FORCE_VALUE},
+                                           {NULL, SE3DI_STEPS}};
+static const quantity_name system_names[] = {
+    {"energy.kinetic", SE3DI_ENERGY_KINETIC},
+    {"energy.potential", SE3DI_ENERGY_POTENTIAL},
+    {"energy.total", SE3DI_ENERGY_TOTAL},
+    {"energy.dissipated", SE3DI_ENERGY_DISSIPATED},
+    {"violation.position", SE3DI_VIOLATION_POSITION},
+    {"violation.velocity", SE3DI_VIOLATION_VELOCITY},
+    {"violation.acceleration", SE3DI_VIOLATION_ACCELERATION},
+    {"steps", SE3DI_STEPS},
+    {"iterations", SE3DI_ITERATIONS},
+    {NULL, SE3DI_STEPS}};
+
+enum { QUANTITIES_MAX = 12 };
+
+/* What one thing offers: at most QUANTITIES_MAX names. */
+typedef struct offer {
+    quantity_name list[QUANTITIES_MAX];
+    size_t count;
+} offer;
+
+static void offer_names(offer *o, const quantity_name *names)
+{
+    for (; names->name && o->count < QUANTITIES_MAX; ++names) {
+        o->list[o->count++] = *names;
+    }
+}
+
+static void offer_one(offer *o, const char *name, se3di_quantity quantity)
+{
+    const quantity_name names[] = {{name, quantity}, {NULL, SE3DI_STEPS}};
+    offer_names(o, names);
+}
+
+/* Coordinates of a joint; `rate` is that of the angle where it has both. */
+static void offer_coordinates(offer *o, const se3d_system *system, se3d_constraint joint)
+{
+    double value[3];
+    const bool angle = !SE3D_FAILED(se3d_joint_get_coordinate(system, joint, SE3D_COORDINATE_ANGLE,
+                                                              &value[0], &value[1], &value[2]));
+    const bool displacement = !SE3D_FAILED(se3d_joint_get_coordinate(
+        system, joint, SE3D_COORDINATE_DISPLACEMENT, &value[0], &value[1], &value[2]));
+    if (angle) {
+        offer_one(o, "angle", SE3DI_JOINT_ANGLE);
+    }
+    if (displacement) {
+        offer_one(o, "displacement", SE3DI_JOINT_DISPLACEMENT);
+    }
+    if (angle || displacement) {
+        offer_one(o, "rate", angle ? SE3DI_JOINT_ANGLE_RATE : SE3DI_JOINT_DISPLACEMENT_RATE);
+    }
+    if (angle && displacement) {
+        offer_one(o, "displacement_rate", SE3DI_JOINT_DISPLACEMENT_RATE);
+    }
+}
+
+static void offer_element(offer *o, const se3d_model *model, const se3di_element_entry *entry)
+{
+    const se3di_node *type = se3di_node_get(entry->node, "type");
+    const char *text = type ? type->text : "";
+    size_t equations = 0;
+    o->count = 0;
+    switch (entry->kind) {
+    case SE3DI_ELEMENT_JOINT:
+        if (!se3di_keys_contain(" gear rack_pinion coupler ", text)) {
+            offer_names(o, reaction_names);
+            offer_coordinates(o, model->system, entry->constraint);
+        }
+        break;
+    case SE3DI_ELEMENT_CONSTRAINT:
+        offer_names(o, reaction_names);
+        if (!SE3D_FAILED(
+                se3d_constraint_count_equations(model->system, entry->constraint, &equations)) &&
+            equations == 1) {
+            offer_names(o, driver_names);
+        }
+        break;
+    case SE3DI_ELEMENT_DRIVER:
+        offer_names(o, driver_names);
+        break;
+    case SE3DI_ELEMENT_FORCE:
+        if (strcmp(text, "tsda") == 0) {
+            offer_names(o, tsda_names);
+        } else if (strcmp(text, "rsda") == 0) {
+            offer_names(o, rsda_names);
+        }
+        break;
+    }
+}
+
+static bool pick(const offer *o, const char *name, se3di_quantity *quantity)
+{
+    for (size_t k = 0; k < o->count; ++k) {
+        if (strcmp(o->list[k].name, name) == 0) {
+            *quantity = o->list[k].quantity;
+            return true;
+        }
+    }
+    return false;
+}
+
+static void append(char *text, size_t size, const char *before, const char *word)
+{
+    const size_t used = strlen(text);
+    snprintf(text + used, size - used, "%s%s", before, word);
+}
+
+/* "`bar` has no channel `x`, allowed are: a, b". */
+static void explain(const offer *o, const char *owner, const char *name, char *problem, size_t size)
+{
+    se3di_guess guess = se3di_guess_begin(name);
+    for (size_t k = 0; k < o->count; ++k) {
+        se3di_guess_offer(&guess, o->list[k].name);
+    }
+    const char *meant = se3di_guess_get(&guess);
+    snprintf(problem, size, "`%.60s` has no channel `%.60s`, ", owner, name);
+    if (meant) {
+        append(problem, size, "did you mean `", meant);
+        append(problem, size, "`?", "");
+        return;
+    }
+    append(problem, size, o->count > 0 ? "it has: " : "it has none", "");
+    for (size_t k = 0; k < o->count; ++k) {
+        append(problem, size, k > 0 ? ", " : "", o->list[k].name);
+    }
+}
+
+static void explain_unknown(const se3d_model *model, const char *name, char *problem, size_t size)
+{
+    se3di_guess guess = se3di_guess_begin(name);
+    for (size_t k = 0; k < model->body_count; ++k) {
+        se3di_guess_offer(&guess, model->bodies[k].name);
+    }
+    for (size_t k = 0; k < model->element_count; ++k) {
+        se3di_guess_offer(&guess, model->elements[k].name);
+    }
+    for (const quantity_name *q = system_names; q->name; ++q) {
+        se3di_guess_offer(&guess, q->name);
+    }
+    const char *meant = se3di_guess_get(&guess);
+    snprintf(problem, size, "`%.60s` is unknown%s%s%s", name,
+             meant ? ", did you mean `"
+                   : ", must be a body, joint, driver, constraint, tsda or rsda, or one of energy, "
+                     "violation, steps, iterations",
+             meant ? meant : "", meant ? "`?" : "");
+}
+
+static bool find_system(const char *name, se3di_channel *channel)
+{
+    for (const quantity_name *q = system_names; q->name; ++q) {
+        if (strcmp(q->name, name) == 0) {
+            channel->quantity = q->quantity;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A name of the form energy.x or violation.x that find_system did not know. */
+static bool explain_system(const char *head, const char *name, char *problem, size_t size)
+{
+    offer o = {.count = 0};
+    if (strcmp(head, "contacts") == 0) {
+        snprintf(problem, size, "contacts are not supported yet");
+        return true;
+    }
+    if (strcmp(head, "energy") != 0 && strcmp(head, "violation") != 0) {
+        return false;
+    }
+    for (const quantity_name *q = system_names; q->name; ++q) {
+        if (strncmp(q->name, head, strlen(head)) == 0) {
+            offer_one(&o, q->name + strlen(head) + 1, q->quantity);
+        }
+    }
+    explain(&o, head, name, problem, size);
+    return true;
+}
+
+static bool find_marker(const se3d_model *model, const se3di_body_entry *body, char *tail,
+                        se3di_channel *channel, char *problem, size_t size)
+{
+    char *dot = strchr(tail, '.');
+    offer o = {.count = 0};
+    size_t index = 0;
+    *dot = '\0';
+    if (!se3di_names_find(&body->markers, tail, &index)) {
+        snprintf(problem, size, "`%.60s` has no marker named `%.60s`", body->name, tail);
+        return false;
+    }
+    offer_names(&o, marker_names);
+    channel->marker = model->markers[index].marker;
+    if (!pick(&o, dot + 1, &channel->quantity)) {
+        explain(&o, tail, dot + 1, problem, size);
+        return false;
+    }
+    return true;
+}
+
+static bool find_element(const se3d_model *model, const char *head, const char *tail,
+                         se3di_channel *channel, offer *offered)
+{
+    size_t index = 0;
+    if (!se3di_names_find(&model->element_names, head, &index)) {
+        return false;
+    }
+    const se3di_element_entry *entry = &model->elements[index];
+    offer_element(offered, model, entry);
+    channel->constraint = entry->constraint;
+    channel->force = entry->force;
+    return pick(offered, tail, &channel->quantity);
+}
+
+bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel *channel,
+                        char *problem, size_t problem_size)
+{
+    char head[320];
+    offer o = {.count = 0};
+    size_t index = 0;
+    memset(channel, 0, sizeof *channel);
+    channel->name = name;
+    if (find_system(name, channel)) {
+        return true;
+    }
+    snprintf(head, sizeof head, "%s", name);
+    char *tail = strchr(head, '.');
+    if (!tail) {
+        if (!explain_system(head, "", problem, problem_size)) {
+            explain_unknown(model, name, problem, problem_size);
+        }
+        return false;
+    }
+    *tail++ = '\0';
+    if (find_element(model, head, tail, channel, &o)) {
+        return true;
+    }
+    if (se3di_names_find(&model->body_names, head, &index)) {
+        const se3di_body_entry *body = &model->bodies[index];
+        channel->body = body->body;
+        if (strchr(tail, '.')) {
+            return find_marker(model, body, tail, channel, problem, problem_size);
+        }
+        offer_names(&o, body_names);
+        if (pick(&o, tail, &channel->quantity)) {
+            return true;
+        }
+    } else if (!se3di_names_find(&model->element_names, head, NULL)) {
+        if (!explain_system(head, tail, problem, problem_size)) {
+            explain_unknown(model, head, problem, problem_size);
+        }
+        return false;
+    }
+    explain(&o, head, tail, problem, problem_size);
+    return false;
+}
+
+/* A growing list of channels with names made up of two or three parts. */
+typedef struct channel_list {
+    se3d_model *model;
+    se3di_channel *list;
+    size_t count;
+    size_t capacity;
+    bool failed;
+} channel_list;
+
+static void list_one(channel_list *c, se3di_channel channel, const char *const parts[3])
+{
+    char name[320];
+    snprintf(name, sizeof name, "%s%s%s%s%s", parts[0], parts[1] ? "." : "",
+             parts[1] ? parts[1] : "", parts[2] ? "." : "", parts[2] ? parts[2] : "");
+    channel.name = se3di_iopool_copy(&c->model->pool, name, strlen(name));
+    se3di_channel *grown =
+        se3di_iopool_grow(&c->model->pool, c->list, c->count, &c->capacity, sizeof *grown);
+    if (!channel.name || !grown) {
+        c->failed = true;
+        return;
+    }
+    c->list = grown;
+    c->list[c->count++] = channel;
+}
+
+static void list_bodies(channel_list *c)
+{
+    const se3d_model *model = c->model;
+    for (size_t k = 1; k < model->body_count && k <= DEFAULT_ELEMENTS_MAX && !c->failed; ++k) {
+        for (const quantity_name *q = body_names; q->name && !c->failed; ++q) {
+            const char *const parts[3] = {model->bodies[k].name, q->name, NULL};
+            const se3di_channel channel = {.quantity = q->quantity, .body = model->bodies[k].body};
+            list_one(c, channel, parts);
+        }
+    }
+    for (size_t k = 0; k < model->marker_count && !c->failed; ++k) {
+        const se3di_marker_entry *marker = &model->markers[k];
+        if (marker->body == 0 || marker->body > DEFAULT_ELEMENTS_MAX) {
+            continue;
+        }
+        for (const quantity_name *q = marker_names; q->name && !c->failed; ++q) {
+            const char *const parts[3] = {model->bodies[marker->body].name, marker->name, q->name};
+            const se3di_channel channel = {.quantity = q->quantity, .marker = marker->marker};
+            list_one(c, channel, parts);
+        }
+    }
+}
+
+static void list_elements(channel_list *c)
+{
+    const se3d_model *model = c->model;
+    size_t listed[4] = {0, 0, 0, 0};
+    for (size_t k = 0; k < model->element_count && !c->failed; ++k) {
+        const se3di_element_entry *entry = &model->elements[k];
+        offer o;
+        if (++listed[entry->kind] > DEFAULT_ELEMENTS_MAX) {
+            continue;
+        }
+        offer_element(&o, model, entry);
+        for (size_t i = 0; i < o.count && !c->failed; ++i) {
+            const char *const parts[3] = {entry->name, o.list[i].name, NULL};
+            const se3di_channel channel = {.quantity = o.list[i].quantity,
+                                           .constraint = entry->constraint,
+                                           .force = entry->force};
+            list_one(c, channel, parts);
+        }
+    }
+}
+
+se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count)
+{
+    channel_list c = {.model = model};
+    list_bodies(&c);
+    list_elements(&c);
+    for (const quantity_name *q = system_names; q->name && !c.failed; ++q) {
+        const char *const parts[3] = {q->name, NULL, NULL};
+        const se3di_channel channel = {.quantity = q->quantity};
+        list_one(&c, channel, parts);
+    }
+    *count = c.failed ? 0 : c.count;
+    return c.failed ? NULL : c.list;
+}
+
+size_t se3di_channel_get_width(const se3di_channel *channel)
+{
+    if (channel->quantity == SE3DI_BODY_ORIENTATION) {
+        return 4;
+    }
+    return channel->quantity <= SE3DI_REACTION_TORQUE ? 3 : 1;
+}
+
+void se3di_channel_format_column(const se3di_channel *channel, size_t k, char *text, size_t size)
+{
+    static const char *const xyz[] = {".x", ".y", ".z"};
+    static const char *const euler[] = {".e0", ".e1", ".e2", ".e3"};
+    const size_t width = se3di_channel_get_width(channel);
+    snprintf(text, size, "%s%s", channel->name, width == 4 ? euler[k] : width == 3 ? xyz[k] : "");
+}
+
+static se3d_status eval_body(const se3di_channel *c, const se3d_system *system, double value[4])
+{
+    switch (c->quantity) {
+    case SE3DI_BODY_POSITION:
+        return se3d_body_get_position(system, c->body, value);
+    case SE3DI_BODY_ORIENTATION:
+        return se3d_body_get_orientation(system, c->body, value);
+    case SE3DI_BODY_VELOCITY:
+        return se3d_body_get_velocity(system, c->body, value);
+    case SE3DI_BODY_ANGULAR_VELOCITY:
+        return se3d_body_get_angular_velocity(system, c->body, value);
+    case SE3DI_BODY_ACCELERATION:
+        return se3d_body_get_acceleration(system, c->body, value);
+    case SE3DI_BODY_ANGULAR_ACCELERATION:
+        return se3d_body_get_angular_acceleration(system, c->body, value);
+    case SE3DI_MARKER_POSITION:
+        return se3d_marker_get_position(system, c->marker, value);
+    case SE3DI_MARKER_VELOCITY:
+        return se3d_marker_get_velocity(system, c->marker, value);
+    default:
+        return se3d_marker_get_acceleration(system, c->marker, value);
+    }
+}
+
+static se3d_status eval_element(const se3di_channel *c, const se3d_system *system, double value[4])
+{
+    double other[3];
+    se3d_status status;
+    switch (c->quantity) {
+    case SE3DI_REACTION_FORCE:
+        return se3d_constraint_get_reaction(system, c->constraint, value, other);
+    case SE3DI_REACTION_TORQUE:
+        return se3d_constraint_get_reaction(system, c->constraint, other, value);
+    case SE3DI_JOINT_ANGLE:
+    case SE3DI_JOINT_ANGLE_RATE:
+        status = se3d_joint_get_coordinate(system, c->constraint, SE3D_COORDINATE_ANGLE, &other[0],
+                                           &other[1], &other[2]);
+        value[0] = other[c->quantity == SE3DI_JOINT_ANGLE_RATE];
+        return status;
+    case SE3DI_JOINT_DISPLACEMENT:
+    case SE3DI_JOINT_DISPLACEMENT_RATE:
+        status = se3d_joint_get_coordinate(system, c->constraint, SE3D_COORDINATE_DISPLACEMENT,
+                                           &other[0], &other[1], &other[2]);
+        value[0] = other[c->quantity == SE3DI_JOINT_DISPLACEMENT_RATE];
+        return status;
+    case SE3DI_DRIVER_VALUE:
+        return se3d_driver_get_value(system, c->constraint, value);
+    case SE3DI_DRIVER_EFFORT:
+        return se3d_driver_get_effort(system, c->constraint, value);
+    default:
+        status = se3d_force_get_state(system, c->force, &other[0], &other[1], &other[2]);
+        value[0] = other[c->quantity - SE3DI_FORCE_COORDINATE];
+        return status;
+    }
+}
+
+static se3d_status eval_system(const se3di_channel *c, const se3d_system *system,
+                               const se3d_solver_stats *stats, double value[4])
+{
+    se3d_status status = SE3D_OK;
+    if (c->quantity <= SE3DI_ENERGY_DISSIPATED) {
+        se3d_energy energy = {0.0, 0.0, 0.0, 0.0};
+        status = se3d_system_get_energy(system, &energy);
+        const double all[4] = {energy.kinetic, energy.potential, energy.total, energy.dissipated};
+        value[0] = all[c->quantity - SE3DI_ENERGY_KINETIC];
+    } else if (c->quantity <= SE3DI_VIOLATION_ACCELERATION) {
+        double violation[3] = {0.0, 0.0, 0.0};
+        status = se3d_system_get_violation(system, violation);
+        value[0] = violation[c->quantity - SE3DI_VIOLATION_POSITION];
+    } else {
+        value[0] = !stats                       ? 0.0
+                   : c->quantity == SE3DI_STEPS ? (double)stats->steps
+                                                : (double)stats->iterations;
+    }
+    return status;
+}
+
+se3d_status se3di_channel_eval(const se3di_channel *channel, const se3d_system *system,
+                               const se3d_solver_stats *stats, double value[4])
+{
+    memset(value, 0, 4 * sizeof *value);
+    if (channel->quantity <= SE3DI_MARKER_ACCELERATION) {
+        return eval_body(channel, system, value);
+    }
+    if (channel->quantity <= SE3DI_FORCE_VALUE) {
+        return eval_element(channel, system, value);
+    }
+    return eval_system(channel, system, stats, value);
+}

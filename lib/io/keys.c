@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The keys of the model file and of each type in it, and the search for what was meant. */
+#include "io/keys.h"
+
+#include <stdint.h>
+#include <string.h>
+
+static const char *const model_keys[] = {
+    "se3d",    "title",       "parameters", "gravity",  "materials", "bodies", "joints",
+    "drivers", "constraints", "forces",     "analysis", "output",    NULL};
+static const char *const body_keys[] = {"name",        "fixed",    "mass",
+                                        "inertia",     "density",  "position",
+                                        "orientation", "velocity", "angular_velocity",
+                                        "shapes",      "markers",  NULL};
+static const char *const orientation_keys[] = {"matrix", "euler_parameters", "axis", "angle", "rpy",
+                                               NULL};
+static const char *const shape_keys[] = {"type",        "size",   "radius",  "length",   "file",
+                                         "scale",       "normal", "density", "material", "position",
+                                         "orientation", "color",  NULL};
+static const char *const marker_keys[] = {"name", "position", "orientation", NULL};
+static const char *const material_keys[] = {"name", "density", NULL};
+static const char *const joint_keys[] = {
+    "name",    "type",    "body_i", "body_j", "at",    "axis",   "ref",    "at_2",  "axis_2",
+    "point_i", "point_j", "axis_i", "axis_j", "ref_i", "ref_j",  "angle0", "pitch", "distance",
+    "joint_1", "joint_2", "ratio",  "pinion", "rack",  "radius", "terms",  "value", NULL};
+static const char *const term_keys[] = {"joint", "coordinate", "ratio", NULL};
+static const char *const driver_keys[] = {"name", "joint", "coordinate", "value", NULL};
+static const char *const constraint_keys[] = {
+    "name",  "type", "body_i", "body_j", "a_i",    "a_j",    "point_i", "point_j", "c",
+    "value", "at",   "axis",   "axis_i", "axis_j", "axis_2", "at_2",    NULL};
+static const char *const force_keys[] = {"name", "type",  "body_i", "body_j", "point_i", "point_j",
+                                         "k",    "c",     "l0",     "h",      "joint",   "theta0",
+                                         "body", "point", "frame",  "value",  NULL};
+static const char *const spline_keys[] = {"spline", NULL};
+static const char *const analysis_keys[] = {
+    "type",     "formulation", "method",          "order", "step",           "tolerance",
+    "duration", "start",       "spectral_radius", "alpha", "iterations_max", NULL};
+static const char *const output_keys[] = {"file", "every", "channels", NULL};
+
+#define FRAME  " at point_i point_j "
+#define AXES   " axis axis_i axis_j "
+#define ANGLE  " ref ref_i ref_j angle0 "
+#define BODIES " body_i body_j "
+
+static const se3di_type_keys joint_types[] = {
+    {"fixed", BODIES FRAME AXES ANGLE},
+    {"revolute", BODIES FRAME AXES ANGLE},
+    {"prismatic", BODIES FRAME AXES ANGLE},
+    {"cylindrical", BODIES FRAME AXES ANGLE},
+    {"spherical", BODIES FRAME AXES ANGLE},
+    {"universal", BODIES FRAME AXES ANGLE " axis_2 "},
+    {"planar", BODIES FRAME AXES ANGLE},
+    {"screw", BODIES FRAME AXES ANGLE " pitch "},
+    {"point_on_line", BODIES FRAME AXES ANGLE " at_2 "},
+    {"point_on_plane", BODIES FRAME AXES ANGLE " at_2 "},
+    {"distance", BODIES FRAME " at_2 distance "},
+    {"revolute_spherical", BODIES FRAME AXES ANGLE " at_2 distance "},
+    {"revolute_cylindrical", BODIES FRAME AXES ANGLE " at_2 axis_2 distance "},
+    {"parallel", BODIES FRAME AXES ANGLE},
+    {"perpendicular", BODIES FRAME AXES ANGLE " axis_2 "},
+    {"orientation", BODIES FRAME AXES ANGLE},
+    {"gear", " joint_1 joint_2 ratio "},
+    {"rack_pinion", " pinion rack radius "},
+    {"coupler", " terms value "},
+    {NULL, NULL}};
+static const se3di_type_keys constraint_types[] = {
+    {"dp1", BODIES " a_i a_j value "},
+    {"dp2", BODIES " a_i point_i point_j value "},
+    {"d", BODIES " point_i point_j value "},
+    {"cd", BODIES " c point_i point_j value "},
+    {"perpendicular1", BODIES FRAME AXES " axis_2 "},
+    {"perpendicular2", BODIES FRAME " axis axis_i at_2 "},
+    {NULL, NULL}};
+static const se3di_type_keys force_types[] = {{"tsda", BODIES " point_i point_j k c l0 h "},
+                                              {"rsda", " joint k c theta0 h "},
+                                              {"force", " body point frame value "},
+                                              {"torque", " body frame value "},
+                                              {NULL, NULL}};
+static const se3di_type_keys shape_types[] = {{"sphere", " radius density material "},
+                                              {"box", " size density material "},
+                                              {"capsule", " radius length density material "},
+                                              {"cylinder", " radius length density material "},
+                                              {"plane", " normal "},
+                                              {"mesh", " file scale "},
+                                              {NULL, NULL}};
+
+static const se3di_object_keys objects[SE3DI_OBJECT_COUNT] = {
+    {"model", model_keys, NULL, NULL, NULL},
+    {"body", body_keys, NULL, NULL, NULL},
+    {"orientation", orientation_keys, NULL, NULL, NULL},
+    {"shape", shape_keys, shape_types, " type position orientation color ", NULL},
+    {"marker", marker_keys, NULL, NULL, NULL},
+    {"material", material_keys, NULL, NULL, NULL},
+    {"joint", joint_keys, joint_types, " name type ", NULL},
+    {"term", term_keys, NULL, NULL, NULL},
+    {"driver", driver_keys, NULL, NULL, NULL},
+    {"constraint", constraint_keys, constraint_types, " name type ", NULL},
+    {"force", force_keys, force_types, " name type ", NULL},
+    {"spline", spline_keys, NULL, NULL, NULL},
+    {"analysis", analysis_keys, NULL, NULL, NULL},
+    {"output", output_keys, NULL, NULL, NULL},
+};
+
+const se3di_object_keys *se3di_keys_get(se3di_object object)
+{
+    return &objects[object];
+}
+
+int se3di_keys_contain(const char *list, const char *word)
+{
+    const size_t length = strlen(word);
+    for (const char *at = list; length > 0 && (at = strstr(at, word)) != NULL; ++at) {
+        if (at > list && at[-1] == ' ' && at[length] == ' ') {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+enum { GUESS_LENGTH_MAX = 63 };
+
+static size_t smallest(size_t a, size_t b, size_t c)
+{
+    const size_t ab = a < b ? a : b;
+    return ab < c ? ab : c;
+}
+
+/* Edit distance with swaps of neighbours counted as one; both texts at most GUESS_LENGTH_MAX. */
+static size_t edit_distance(const char *a, size_t na, const char *b, size_t nb)
+{
+    size_t rows[3][GUESS_LENGTH_MAX + 1];
+    for (size_t j = 0; j <= nb; ++j) {
+        rows[0][j] = j;
+        rows[1][j] = j;
+        rows[2][j] = j;
+    }
+    for (size_t i = 1; i <= na; ++i) {
+        size_t *now = rows[i % 3];
+        const size_t *above = rows[(i + 2) % 3];
+        const size_t *before = rows[(i + 1) % 3];
+        now[0] = i;
+        for (size_t j = 1; j <= nb; ++j) {
+            now[j] = smallest(above[j] + 1, now[j - 1] + 1, above[j - 1] + (a[i - 1] != b[j - 1]));
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
+                before[j - 2] + 1 < now[j]) {
+                now[j] = before[j - 2] + 1;
+            }
+        }
+    }
+    return rows[na % 3][nb];
+}
+
+se3di_guess se3di_guess_begin(const char *word)
+{
+    const se3di_guess guess = {word, NULL, SIZE_MAX};
+    return guess;
+}
+
+void se3di_guess_offer(se3di_guess *guess, const char *candidate)
+{
+    const size_t na = strlen(guess->word);
+    const size_t nb = strlen(candidate);
+    if (na > GUESS_LENGTH_MAX || nb > GUESS_LENGTH_MAX || na == 0) {
+        return;
+    }
+    const size_t distance = edit_distance(guess->word, na, candidate, nb);
+    if (distance < guess->distance) {
+        guess->distance = distance;
+        guess->best = candidate;
+    }
+}
+
+const char *se3di_guess_get(const se3di_guess *guess)
+{
+    const size_t length = strlen(guess->word);
+    const size_t allowed = length <= 3 ? 1 : length <= 6 ? 2 : length / 3;
+    return guess->best && guess->distance <= allowed ? guess->best : NULL;
+}

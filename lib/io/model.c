@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Models: reading a file, and what one can ask of the result. */
+#include "io/model.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/reader.h"
+
+void se3d_model_options_init(se3d_model_options *options, size_t size)
+{
+    if (options && size >= sizeof options->struct_size) {
+        memset(options, 0, size);
+        options->struct_size = size;
+    }
+}
+
+/* The file's name without folder and extension. */
+static const char *base_name(se3di_iopool *pool, const char *file)
+{
+    const char *start = file;
+    for (const char *c = file; *c; ++c) {
+        if (*c == '/' || *c == '\\') {
+            start = c + 1;
+        }
+    }
+    const char *dot = strrchr(start, '.');
+    const size_t length = dot && dot > start ? (size_t)(dot - start) : strlen(start);
+    return length > 0 ? se3di_iopool_copy(pool, start, length) : "model";
+}
+
+static bool read_head(se3di_reader *reader, const se3di_node *root)
+{
+    double version = 0.0;
+    if (root->kind != SE3DI_NODE_MAP) {
+        return se3di_reader_fail(reader, root, "is %s, must be a map that begins with `se3d: 1`",
+                                 se3di_node_describe(root));
+    }
+    const se3di_node *node = se3di_node_get(root, "se3d");
+    if (!node) {
+        return se3di_reader_fail_key(reader, root, "se3d",
+                                     "is missing, must be 1: the version of the file format");
+    }
+    if (!se3di_read_number(reader, node, SE3DI_ANY, &version)) {
+        return false;
+    }
+    if (version < 1.0 || version > 1.0) {
+        return se3di_reader_fail(reader, node, "is %s, must be 1: the version of the file format",
+                                 node->text);
+    }
+    static const char *const later[] = {"contact", "particles"};
+    for (size_t k = 0; k < sizeof later / sizeof *later; ++k) {
+        if (se3di_node_get(root, later[k])) {
+            return se3di_reader_fail_key(reader, root, later[k], "is not supported yet");
+        }
+    }
+    if (!se3di_read_keys(reader, root, SE3DI_OBJECT_MODEL)) {
+        return false;
+    }
+    const se3di_node *title = se3di_node_get(root, "title");
+    return !title || se3di_read_text(reader, title, &reader->model->title);
+}
+
+static bool create_system(se3di_reader *reader, const se3di_node *root)
+{
+    se3d_system_def def = se3d_system_def_default();
+    def.allocator = &reader->model->pool.allocator;
+    if (!se3di_read_key_vector(reader, root, "gravity", def.gravity)) {
+        return false;
+    }
+    if (SE3D_FAILED(se3d_system_create(&def, &reader->model->system))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    return true;
+}
+
+static bool read_model(se3di_reader *reader, const se3di_node *root)
+{
+    return read_head(reader, root) && se3di_read_parameters(reader, root) &&
+           create_system(reader, root) && se3di_read_materials(reader, root) &&
+           se3di_read_bodies(reader, root) && se3di_read_joints(reader, root) &&
+           se3di_read_constraints(reader, root) && se3di_read_drivers(reader, root) &&
+           se3di_read_forces(reader, root) && se3di_read_analyses(reader, root) &&
+           se3di_read_outputs(reader, root);
+}
+
+/* An empty model with its own memory. */
+static se3d_model *create_model(const se3d_allocator *allocator)
+{
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, allocator);
+    se3d_model *model = se3di_iopool_alloc(&pool, sizeof *model);
+    if (!model) {
+        se3di_iopool_destroy(&pool);
+        return NULL;
+    }
+    model->pool = pool;
+    model->title = "";
+    return model;
+}
+
+static se3d_status fail_early(se3d_model_error *error, se3d_status status, const char *path,
+                              const char *text)
+{
+    se3di_error_set(error, "", 0, 0, path, text);
+    return status;
+}
+
+static se3d_model_options options_of(const se3d_model_options *options)
+{
+    se3d_model_options copy = se3d_model_options_default();
+    if (options) {
+        const size_t size = options->struct_size < sizeof copy ? options->struct_size : sizeof copy;
+        memcpy(&copy, options, size);
+    }
+    return copy;
+}
+
+se3d_status se3d_model_read_text(const char *text, size_t length, const char *name,
+                                 const se3d_model_options *options, se3d_model **out,
+                                 se3d_model_error *error)
+{
+    const se3d_model_options used = options_of(options);
+    if (error) {
+        memset(error, 0, sizeof *error);
+    }
+    if (out) {
+        *out = NULL;
+    }
+    if (!text || !name || !out || (used.setting_count > 0 && !used.settings)) {
+        return fail_early(error, SE3D_ERR_NULL, "", "text, name or out is NULL");
+    }
+    se3d_model *model = create_model(used.allocator);
+    if (!model) {
+        return fail_early(error, SE3D_ERR_NO_MEMORY, "", "out of memory");
+    }
+    model->file = se3di_iopool_copy(&model->pool, name, strlen(name));
+    model->name = base_name(&model->pool, name);
+    se3d_status status = model->file && model->name ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    if (status < 0) {
+        fail_early(error, status, "", "out of memory");
+    } else {
+        status = se3di_document_parse(&model->pool, model->file, text, length, &model->root, error);
+    }
+    if (status >= 0) {
+        se3di_reader reader = {.model = model, .options = &used, .error = error};
+        if (!read_model(&reader, model->root)) {
+            status = reader.status < 0 ? reader.status : SE3D_ERR_MODEL;
+        }
+    }
+    if (status < 0) {
+        se3d_model_destroy(model);
+        return status;
+    }
+    *out = model;
+    return SE3D_OK;
+}
+
+/* Read a whole file into memory of `pool`. */
+static se3d_status read_bytes(se3di_iopool *pool, FILE *file, char **text, size_t *length)
+{
+    size_t capacity = 65536;
+    char *bytes = se3di_iopool_alloc(pool, capacity);
+    size_t used = 0;
+    while (bytes) {
+        used += fread(bytes + used, 1, capacity - used, file);
+        if (used < capacity || capacity > SE3DI_DOCUMENT_BYTES_MAX) {
+            *text = bytes;
+            *length = used;
+            return ferror(file) ? SE3D_ERR_IO : SE3D_OK;
+        }
+        char *larger = se3di_iopool_alloc(pool, 2 * capacity);
+        if (larger) {
+            memcpy(larger, bytes, used);
+        }
+        bytes = larger;
+        capacity *= 2;
+    }
+    return SE3D_ERR_NO_MEMORY;
+}
+
+se3d_status se3d_model_read_file(const char *path, const se3d_model_options *options,
+                                 se3d_model **out, se3d_model_error *error)
+{
+    const se3d_model_options used = options_of(options);
+    char *text = NULL;
+    size_t length = 0;
+    if (error) {
+        memset(error, 0, sizeof *error);
+    }
+    if (out) {
+        *out = NULL;
+    }
+    if (!path || !out) {
+        return fail_early(error, SE3D_ERR_NULL, "", "path or out is NULL");
+    }
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        return fail_early(error, SE3D_ERR_IO, path, strerror(errno));
+    }
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, used.allocator);
+    errno = 0;
+    se3d_status status = read_bytes(&pool, file, &text, &length);
+    if (status == SE3D_ERR_IO) {
+        fail_early(error, status, path, errno ? strerror(errno) : "cannot be read");
+    } else if (status < 0) {
+        fail_early(error, status, path, "out of memory");
+    } else {
+        status = se3d_model_read_text(text, length, path, options, out, error);
+    }
+    fclose(file);
+    se3di_iopool_destroy(&pool);
+    return status;
+}
+
+void se3d_model_destroy(se3d_model *model)
+{
+    if (model) {
+        se3di_iopool pool = model->pool; /* the model itself lies in it */
+        se3d_system_destroy(model->system);
+        se3di_iopool_destroy(&pool);
+    }
+}
+
+se3d_system *se3d_model_get_system(const se3d_model *model)
+{
+    return model ? model->system : NULL;
+}
+
+const char *se3d_model_get_name(const se3d_model *model)
+{
+    return model ? model->name : "";
+}
+
+const char *se3d_model_get_title(const se3d_model *model)
+{
+    return model ? model->title : "";
+}
+
+se3d_status se3d_model_get_parameter(const se3d_model *model, const char *name, double *value)
+{
+    if (!model || !name || !value) {
+        return SE3D_ERR_NULL;
+    }
+    for (size_t k = 0; k < model->symbol_count; ++k) {
+        if (strcmp(model->symbols[k].name, name) == 0) {
+            *value = model->symbols[k].value;
+            return SE3D_OK;
+        }
+    }
+    return SE3D_ERR_INVALID_ARGUMENT;
+}
+
+size_t se3d_model_count_analyses(const se3d_model *model)
+{
+    return model ? model->analysis_count : 0;
+}
+
+se3d_status se3d_model_get_analysis(const se3d_model *model, size_t index,
+                                    se3d_model_analysis *analysis)
+{
+    if (!model || !analysis) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= model->analysis_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    *analysis = model->analyses[index].analysis;
+    return SE3D_OK;
+}
+
+se3d_status se3d_model_get_solver(const se3d_model *model, size_t index, se3d_solver_def *def)
+{
+    if (!model || !def) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= model->analysis_count || def->struct_size < sizeof def->struct_size) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    const size_t size = def->struct_size;
+    memcpy(def, &model->analyses[index].solver, size < sizeof *def ? size : sizeof *def);
+    def->struct_size = size;
+    return SE3D_OK;
+}
+
+size_t se3d_model_count_outputs(const se3d_model *model)
+{
+    return model ? model->output_count : 0;
+}
+
+se3d_status se3d_model_get_output(const se3d_model *model, size_t index, se3d_model_output *output)
+{
+    if (!model || !output) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= model->output_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    output->file = model->outputs[index].file;
+    output->every = model->outputs[index].every;
+    output->channel_count = model->outputs[index].count;
+    return SE3D_OK;
+}
+
+se3d_status se3d_model_get_channel(const se3d_model *model, size_t output, size_t k,
+                                   const char **name)
+{
+    if (!model || !name) {
+        return SE3D_ERR_NULL;
+    }
+    if (output >= model->output_count || k >= model->outputs[output].count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    *name = model->outputs[output].channels[k].name;
+    return SE3D_OK;
+}
+
+se3d_status se3d_model_get_channel_value(const se3d_model *model, size_t output, size_t k,
+                                         const se3d_solver_stats *stats, double value[4],
+                                         size_t *width)
+{
+    if (!model || !value || !width) {
+        return SE3D_ERR_NULL;
+    }
+    if (output >= model->output_count || k >= model->outputs[output].count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    const se3di_channel *channel = &model->outputs[output].channels[k];
+    *width = se3di_channel_get_width(channel);
+    return se3di_channel_eval(channel, model->system, stats, value);
+}
+
+size_t se3d_model_count_shapes(const se3d_model *model)
+{
+    return model ? model->shape_count : 0;
+}
+
+se3d_status se3d_model_get_shape(const se3d_model *model, size_t index, se3d_model_shape *shape)
+{
+    if (!model || !shape) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= model->shape_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    *shape = model->shapes[index];
+    return SE3D_OK;
+}

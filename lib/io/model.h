@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a model file became. */
+#ifndef SE3D_IO_MODEL_H
+#define SE3D_IO_MODEL_H
+
+#include "io/channel.h"
+#include "io/document.h"
+
+typedef struct se3di_body_entry {
+    const char *name;
+    const se3di_node *node; /* NULL: the ground */
+    se3d_body body;
+    se3di_names markers; /* to indices of se3d_model.markers */
+} se3di_body_entry;
+
+typedef struct se3di_marker_entry {
+    const char *name;
+    size_t body; /* index of the body's entry */
+    se3d_marker marker;
+    double position[3]; /* body frame */
+} se3di_marker_entry;
+
+typedef enum se3di_element_kind {
+    SE3DI_ELEMENT_JOINT = 0,
+    SE3DI_ELEMENT_CONSTRAINT = 1,
+    SE3DI_ELEMENT_DRIVER = 2,
+    SE3DI_ELEMENT_FORCE = 3
+} se3di_element_kind;
+
+/* A joint, constraint, driver or force: their names are unique together. */
+typedef struct se3di_element_entry {
+    const char *name;
+    const se3di_node *node;
+    se3di_element_kind kind;
+    se3d_constraint constraint;
+    se3d_force force;
+} se3di_element_entry;
+
+typedef struct se3di_analysis_entry {
+    se3d_model_analysis analysis;
+    se3d_solver_def solver;
+    const se3di_node *node;
+} se3di_analysis_entry;
+
+typedef struct se3di_output_entry {
+    const char *file;
+    double every; /* 0: the analysis's step */
+    se3di_channel *channels;
+    size_t count;
+    const se3di_node *node; /* NULL: the default output */
+} se3di_output_entry;
+
+struct se3d_model {
+    se3di_iopool pool;
+    se3d_system *system;
+    const char *file;
+    const char *name;
+    const char *title;
+    se3di_node *root;
+    const se3d_expression_symbol *symbols; /* the parameters */
+    size_t symbol_count;
+    se3di_body_entry *bodies; /* [0] is the ground */
+    size_t body_count, body_capacity;
+    se3di_names body_names;
+    se3di_marker_entry *markers;
+    size_t marker_count, marker_capacity;
+    se3di_element_entry *elements;
+    size_t element_count, element_capacity;
+    se3di_names element_names;
+    se3d_model_shape *shapes;
+    size_t shape_count, shape_capacity;
+    se3di_analysis_entry *analyses;
+    size_t analysis_count;
+    se3di_output_entry *outputs;
+    size_t output_count;
+};
+
+#endif
