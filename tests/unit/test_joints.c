@@ -317,16 +317,16 @@ static void joints_reject_what_makes_no_sense(void)
         se3di_scale(2.0, def.axis_j, def.ref_j);
         rejects(&w, create, &def, invalid, "ref_j");
         def = good;
-        def.point_i[1] = NAN;
+        def.point_i[1] = (double)NAN;
         rejects(&w, create, &def, invalid, "point_i[1]");
         def = good;
-        def.point_j[2] = INFINITY;
+        def.point_j[2] = (double)INFINITY;
         rejects(&w, create, &def, invalid, "point_j[2]");
         def = good;
-        def.axis_i[0] = NAN;
+        def.axis_i[0] = (double)NAN;
         rejects(&w, create, &def, invalid, "axis_i[0]");
         def = good;
-        def.angle0 = NAN;
+        def.angle0 = (double)NAN;
         rejects(&w, create, &def, invalid, "angle0");
         def = good;
         def.name = "a.b";
@@ -345,13 +345,13 @@ static void parameters_of_joints_are_checked(void)
     def.body_i = w.body[0];
     def.body_j = w.body[1];
     rejects(&w, se3d_joint_create_screw, &def, invalid, "pitch = 0");
-    def.pitch = INFINITY;
+    def.pitch = (double)INFINITY;
     rejects(&w, se3d_joint_create_screw, &def, invalid, "pitch");
     def.pitch = 0.0;
     def.distance = -1.0;
     rejects(&w, se3d_joint_create_distance, &def, invalid, "distance = -1 m");
     rejects(&w, se3d_joint_create_revolute_spherical, &def, invalid, "distance = -1 m");
-    def.distance = NAN;
+    def.distance = (double)NAN;
     rejects(&w, se3d_joint_create_distance, &def, invalid, "distance");
     world_destroy(&w);
 }
@@ -362,7 +362,7 @@ static void set_frame_rejects_bad_frames(void)
     world_init(&w, 14);
     world_init(&other, 15);
     se3d_joint_def def = se3d_joint_def_default();
-    const double nan3[3] = {0.0, NAN, 0.0};
+    const double nan3[3] = {0.0, (double)NAN, 0.0};
     def.body_i = w.body[0];
     def.body_j = w.body[1];
     const se3d_joint_def before = def;
@@ -404,7 +404,7 @@ static void drivers_need_a_coordinate_of_a_live_joint(void)
         {slide, SE3D_COORDINATE_ANGLE, 0, SE3D_ERR_INVALID_ARGUMENT, "a displacement only"},
         {pin, 2, 0, SE3D_ERR_INVALID_ARGUMENT, "coordinate = 2"},
         {pin, -1, 0, SE3D_ERR_INVALID_ARGUMENT, "coordinate = -1"},
-        {pin, SE3D_COORDINATE_ANGLE, NAN, SE3D_ERR_INVALID_ARGUMENT, "value"},
+        {pin, SE3D_COORDINATE_ANGLE, (double)NAN, SE3D_ERR_INVALID_ARGUMENT, "value"},
         {null, SE3D_COORDINATE_ANGLE, 0, SE3D_ERR_STALE_HANDLE, "joint"},
         {foreign, SE3D_COORDINATE_ANGLE, 0, SE3D_ERR_STALE_HANDLE, "joint"},
     };
@@ -453,7 +453,8 @@ static void couplers_check_their_terms(void)
     CHECK(se3d_joint_create_coupler(w.system, &def, &out) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK_CONTAINS(se3d_system_get_error(w.system), "ratio[0]");
     CHECK(se3d_joint_create_gear(w.system, NULL, pin, pin, 0.0, &out) == SE3D_ERR_INVALID_ARGUMENT);
-    CHECK(se3d_joint_create_gear(w.system, NULL, pin, pin, NAN, &out) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_joint_create_gear(w.system, NULL, pin, pin, (double)NAN, &out) ==
+          SE3D_ERR_INVALID_ARGUMENT);
     CHECK(se3d_joint_create_rack_pinion(w.system, NULL, pin, pin, 1.0, &out) ==
           SE3D_ERR_INVALID_ARGUMENT);
     CHECK_CONTAINS(se3d_system_get_error(w.system), "coordinate[1]");
@@ -484,7 +485,7 @@ static void primitives_check_what_they_use(void)
         CHECK(se3d_primitive_create(w.system, &def, &out) == SE3D_ERR_INVALID_ARGUMENT);
         CHECK_CONTAINS(se3d_system_get_error(w.system), "type");
         def.type = type;
-        def.value = NAN;
+        def.value = (double)NAN;
         CHECK(se3d_primitive_create(w.system, &def, &out) == SE3D_ERR_INVALID_ARGUMENT);
         CHECK_CONTAINS(se3d_system_get_error(w.system), "value");
     }
