@@ -26,6 +26,7 @@ typedef struct se3di_equations {
     double *b, *c;                 /* right-hand sides [unknowns], [rows] */
     double *x, *l;                 /* solution */
     double *phi;                   /* [rows] */
+    double *probe;                 /* [unknowns] */
     se3di_frame *saved;            /* [dense bodies]: poses to come back to within a step */
     se3di_frame *accepted;         /* the last accepted state: frames [dense bodies], */
     double *accepted_acceleration; /* [dense bodies * 6], */
