@@ -252,6 +252,8 @@ static se3d_status take_vectors(se3di_kkt *kkt)
     size_t n = kkt->layout.unknown_count, m = kkt->layout.row_count;
     kkt->mobility = se3di_kkt_take_aligned(kkt, kkt->pattern.body_count * KKT_LANES);
     kkt->weight = se3di_kkt_take_aligned(kkt, m);
+    kkt->saved_l = se3di_kkt_take_aligned(kkt, m);
+    kkt->ratio = se3di_kkt_take_aligned(kkt, m);
     kkt->e = se3di_kkt_take_aligned(kkt, m);
     kkt->residual_b = se3di_kkt_take_aligned(kkt, n);
     kkt->residual_c = se3di_kkt_take_aligned(kkt, m);

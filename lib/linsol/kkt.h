@@ -63,7 +63,8 @@ typedef struct se3di_kkt_pattern {
  * A symmetric body block of size 8 is [M p; p^T 0], M of size 7 with M + p p^T positive definite
  * (r-p: the last unknown is the multiplier of the normalisation); the last column of C and the last
  * row and column of couplings must then be zero. Other symmetric body blocks are positive definite.
- * Unsymmetric blocks are arbitrary; rows are pivoted inside a block. */
+ * Of each only the lower triangle is factored. Unsymmetric blocks are arbitrary; rows are pivoted
+ * inside a block. */
 typedef struct se3di_kkt_values {
     const double *body;           /* see se3di_kkt_body_kind */
     const double *coupling_upper; /* H_ij, n x n each */

@@ -13,6 +13,10 @@
 
 #define KKT_LANES 8 /* columns of every block in the solver's own storage */
 
+/* A dependent row's pivot is E / n^2, n the row's entry in the unit vector of the dependence; below
+ * this multiple of E a pivot is taken to have vanished. */
+#define KKT_VANISHED 1e4
+
 /* Arrays of the caller's values. */
 enum {
     KKT_BASE_BODY = 0,
@@ -102,12 +106,14 @@ struct se3di_kkt {
     double *mobility;  /* [8 body_count]: 1 / H_cc */
     double *weight;    /* [row_count]: diag(C H^-1 B) */
     double *e;         /* [row_count]: E of the last factorisation */
-    double *residual_b, *residual_c, *correction_x, *correction_l;
+    double *residual_b, *residual_c, *correction_x, *correction_l, *saved_l;
     double *magnitude; /* [unknown_count]: work of the residual */
     double scale_b, scale_c;
+    double *ratio; /* [row_count]: before a factorisation, a bound that pivots of dependent
+                      rows are below; then each pivot relative to its weight */
 
     /* outcome of a factorisation */
-    double eps; /* of the last factorisation */
+    double eps, middle; /* of the last factorisation: E = eps middle, nearly */
     int32_t factorisations;
     double min_pivot; /* relative, with E */
     double min_sigma; /* smallest relative pivot without E above 1e-13 */

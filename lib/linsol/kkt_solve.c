@@ -27,8 +27,10 @@ static double middle_weight(const se3di_kkt *kkt)
     return high > 0.0 && high < HUGE_VAL ? sqrt(low) * sqrt(high) : 1.0;
 }
 
-static void factor_once(se3di_kkt *kkt, const se3di_kkt_values *values, double eps, double middle)
+/* `again`: after a factorisation of the same values with a larger eps > 0. */
+static void factor_once(se3di_kkt *kkt, const se3di_kkt_values *values, double eps, bool again)
 {
+    const double middle = kkt->middle;
     for (size_t i = 0; i < kkt->layout.row_count; ++i) {
         double w = kkt->weight[i], e = middle;
         if (w > 0.0) {
@@ -36,6 +38,8 @@ static void factor_once(se3di_kkt *kkt, const se3di_kkt_values *values, double e
             e = e > w * weight_range ? w * weight_range : e;
         }
         kkt->e[i] = eps * e;
+        /* the pivot of a dependent row is proportional to eps, another one is not */
+        kkt->ratio[i] = again ? 30.0 * eps / kkt->eps * kkt->ratio[i] : HUGE_VAL;
     }
     kkt->eps = eps;
     kkt->finite = true;
@@ -57,16 +61,16 @@ static bool plain_is_enough(const se3di_kkt *kkt)
 static void factor_suitably(se3di_kkt *kkt, const se3di_kkt_values *values)
 {
     const se3di_kkt_settings *s = &kkt->settings;
-    double middle = middle_weight(kkt);
+    kkt->middle = middle_weight(kkt);
     bool late = s->regularise == SE3DI_KKT_REGULARISE_LATE ||
                 (s->regularise == SE3DI_KKT_REGULARISE_AUTO && !kkt->has_loop);
     if (late && kkt->kind == SE3DI_KKT_STRUCTURED) {
-        factor_once(kkt, values, 0.0, middle);
+        factor_once(kkt, values, 0.0, false);
         if (plain_is_enough(kkt)) {
             return;
         }
     }
-    factor_once(kkt, values, s->eps, middle);
+    factor_once(kkt, values, s->eps, false);
     if (!kkt->finite || kkt->near_dependent == 0 || kkt->min_sigma > 1e3 * s->eps) {
         return;
     }
@@ -74,7 +78,7 @@ static void factor_suitably(se3di_kkt *kkt, const se3di_kkt_values *values)
     double eps = sqrt(kkt->min_sigma * 2.2e-16);
     eps = eps < s->eps_min ? s->eps_min : eps;
     if (eps < 0.5 * s->eps) {
-        factor_once(kkt, values, eps, middle);
+        factor_once(kkt, values, eps, true);
     }
 }
 
@@ -204,9 +208,11 @@ typedef struct kkt_problem {
     const double *b, *c;
 } kkt_problem;
 
+typedef enum kkt_ending { KKT_CONVERGED, KKT_STAGNATED, KKT_EXHAUSTED } kkt_ending;
+
 /* Refine until the residual is small or no longer falls. */
-static void refine(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
-                   se3di_kkt_solve_info *info)
+static kkt_ending refine(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
+                         se3di_kkt_solve_info *info)
 {
     double before = 0.0;
     for (int32_t step = 0;; ++step) {
@@ -216,41 +222,98 @@ static void refine(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
         if (step > 0) {
             info->rate = before > 0.0 ? now / before : 0.0;
         }
+        if (!(now > kkt->settings.tolerance)) {
+            return KKT_CONVERGED;
+        }
         if (step > 0 && now > before) { /* take back what made it worse */
             add_correction(kkt, -1.0, x, l);
             info->residual_b = previous.residual_b;
             info->residual_c = previous.residual_c;
-            return;
+            return KKT_STAGNATED;
         }
-        bool stagnates = step > 1 && info->rate > 0.5;
-        if (!(now > kkt->settings.tolerance) || stagnates ||
-            step >= kkt->settings.max_refinements) {
-            return;
+        if (step > 1 && info->rate > 0.3) {
+            return KKT_STAGNATED;
+        }
+        if (info->refinements >= kkt->settings.max_refinements) {
+            return KKT_EXHAUSTED;
         }
         solve_once(kkt, kkt->residual_b, kkt->residual_c, kkt->correction_x, kkt->correction_l);
         add_correction(kkt, 1.0, x, l);
-        info->refinements = step + 1;
+        ++info->refinements;
         before = now;
     }
 }
 
-/* Subtract the part of l in the dependent directions, and restore the balance of forces. */
-static void project(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l, int32_t times)
+static void clear_multipliers(se3di_kkt *kkt, double *l)
 {
-    size_t m = kkt->layout.row_count;
-    for (int32_t time = 0; time < times; ++time) {
-        for (size_t i = 0; i < m; ++i) {
-            kkt->residual_c[i] = -kkt->e[i] * l[i];
-        }
-        solve_once(kkt, NULL, kkt->residual_c, kkt->correction_x, kkt->correction_l);
-        for (size_t i = 0; i < m; ++i) {
-            l[i] -= kkt->correction_l[i];
-        }
+    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
+        l[i] = kkt->correction_l[i] = 0.0; /* also of joints without bodies */
+    }
+}
+
+/* Rows that are dependent at eps may be nearly dependent only; then refinement is slow, and a
+ * smaller eps tells them apart and is fast. */
+static void refine_suitably(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
+                            se3di_kkt_solve_info *info)
+{
+    kkt_ending ending = refine(kkt, p, x, l, info);
+    double residual = info->residual_b > info->residual_c ? info->residual_b : info->residual_c;
+    double eps = 1e-3 * kkt->eps > kkt->settings.eps_min ? 1e-3 * kkt->eps : kkt->settings.eps_min;
+    if (ending == KKT_CONVERGED || residual < 1e-14 || !(eps < 0.5 * kkt->eps)) {
+        return;
+    }
+    factor_once(kkt, p->values, eps, true);
+    clear_multipliers(kkt, l);
+    solve_once(kkt, p->b, p->c, x, l);
+    (void)refine(kkt, p, x, l, info);
+}
+
+/* Returns whether once more is needed: the part itself is known to about u / eps. */
+static bool project_once(se3di_kkt *kkt, double *l)
+{
+    const size_t m = kkt->layout.row_count;
+    for (size_t i = 0; i < m; ++i) {
+        kkt->residual_c[i] = -kkt->e[i] * l[i];
+    }
+    solve_once(kkt, NULL, kkt->residual_c, kkt->correction_x, kkt->correction_l);
+    for (size_t i = 0; i < m; ++i) {
+        l[i] -= kkt->correction_l[i];
+    }
+    return largest_entry(kkt->correction_l, m) * 2.2e-16 / kkt->eps > 1e-12 * largest_entry(l, m);
+}
+
+/* Subtract the part of l in the dependent directions, and restore the balance of forces. */
+static void project(se3di_kkt *kkt, const kkt_problem *p, const double *x, double *l,
+                    se3di_kkt_solve_info *info)
+{
+    double before = HUGE_VAL;
+    const se3di_kkt_solve_info unprojected = *info;
+    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
+        kkt->saved_l[i] = l[i];
+    }
+    info->projected = true;
+    for (int32_t step = 0; step < 8 && project_once(kkt, l); ++step) {
+    }
+    for (int32_t step = 0;; ++step) {
         kkt->core->residual(kkt, p->values, p->b, p->c, x, l);
+        (void)measure(kkt, info);
+        if (!(info->residual_b > kkt->settings.tolerance) || info->residual_b > 0.3 * before ||
+            step == 4) {
+            break;
+        }
+        before = info->residual_b;
         solve_once(kkt, kkt->residual_b, NULL, kkt->correction_x, kkt->correction_l);
-        for (size_t i = 0; i < m; ++i) {
+        for (size_t i = 0; i < kkt->layout.row_count; ++i) {
             l[i] += kkt->correction_l[i];
         }
+    }
+    /* Where the balance is lost, the rows were nearly dependent only: keep the refined l. */
+    double limit = 1e-14 + 10.0 * unprojected.residual_b;
+    if (info->residual_b > limit && !(unprojected.residual_c > 1e-8)) {
+        for (size_t i = 0; i < kkt->layout.row_count; ++i) {
+            l[i] = kkt->saved_l[i];
+        }
+        *info = unprojected;
     }
 }
 
@@ -260,7 +323,7 @@ static se3d_status judge(const se3di_kkt *kkt, const double *x, const double *l,
     if (!all_finite(x, kkt->layout.unknown_count) || !all_finite(l, kkt->layout.row_count)) {
         return SE3D_ERR_NOT_FINITE;
     }
-    if (kkt->dependent_rows > 0) {
+    if (info->projected) {
         info->inconsistent = info->residual_c > 1e-8;
         return SE3D_INFO_REDUNDANT;
     }
@@ -273,20 +336,15 @@ se3d_status se3di_kkt_solve(se3di_kkt *kkt, const se3di_kkt_values *values, cons
 {
     se3di_kkt_solve_info own = {0};
     const kkt_problem problem = {values, b, c};
-    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
-        l[i] = kkt->correction_l[i] = 0.0; /* also of joints without bodies */
-    }
+    clear_multipliers(kkt, l);
     solve_once(kkt, b, c, x, l);
     bool sure = !(kkt->eps > 0.0) && kkt->min_pivot > pivot_is_good && kkt->negative_pivots == 0 &&
                 kkt->pattern.symmetric;
     if (kkt->settings.always_check || !sure) {
-        refine(kkt, &problem, x, l, &own);
+        refine_suitably(kkt, &problem, x, l, &own);
     }
     if (kkt->dependent_rows > 0) {
-        own.projected = true;
-        project(kkt, &problem, x, l, own.residual_c > 1e-8 ? 3 : 1);
-        kkt->core->residual(kkt, values, b, c, x, l);
-        measure(kkt, &own);
+        project(kkt, &problem, x, l, &own);
     }
     se3d_status status = judge(kkt, x, l, &own);
     if (info) {
