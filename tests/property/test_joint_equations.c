@@ -139,6 +139,14 @@ static void check_constraint(world *w, se3d_constraint c)
     motion_set(w, motions, 0.7, 0.0);
 }
 
+/* The function of time is the given one (at the time of check_constraint, 0.7 s). */
+static void check_prescribed(const world *w, se3d_constraint c, double expected)
+{
+    double f;
+    CHECK(se3d_driver_get_value(w->system, c, &f) == SE3D_OK);
+    CHECK_NEAR(f, expected, 1e-15);
+}
+
 /* A def with nothing aligned: the equations hold nowhere near. */
 static se3d_joint_def random_def(world *w, se3d_body body_i, se3d_body body_j)
 {
@@ -189,9 +197,7 @@ static void equations_of_drivers_match_finite_differences(void)
               SE3D_OK);
         CHECK(se3d_driver_create(w.system, &drive, &driver) == SE3D_OK);
         check_constraint(&w, driver);
-        double f;
-        CHECK(se3d_driver_get_value(w.system, driver, &f) == SE3D_OK);
-        CHECK_NEAR(f, 0.3 * sin(1.4) + 0.343, 1e-15);
+        check_prescribed(&w, driver, 0.3 * sin(1.4) + 0.343);
         world_destroy(&w);
     }
 }
@@ -216,6 +222,7 @@ static void equations_of_primitives_match_finite_differences(void)
                   SE3D_OK);
             CHECK(se3d_primitive_create(w.system, &def, &primitive) == SE3D_OK);
             check_constraint(&w, primitive);
+            check_prescribed(&w, primitive, 1.0 + 0.5 * cos(2.1));
             world_destroy(&w);
         }
     }
@@ -246,6 +253,7 @@ static void equations_of_couplers_match_finite_differences(void)
         check_constraint(&w, gear);
         check_constraint(&w, rack);
         check_constraint(&w, coupler);
+        check_prescribed(&w, coupler, sin(0.7));
         world_destroy(&w);
     }
 }
