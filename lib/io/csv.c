@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* CSV files: buffered rows, completed by renaming. */
+#include "io/csv.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+enum { BUFFER_SIZE = 1 << 16, NUMBER_SIZE = 40 };
+
+size_t se3di_number_format(double value, char *text)
+{
+    const char *const special = isnan(value) ? "nan" : value < 0.0 ? "-inf" : "inf";
+    if (!isfinite(value)) {
+        strcpy(text, special);
+        return strlen(text);
+    }
+    const int length = snprintf(text, NUMBER_SIZE, "%.17g", value);
+    const size_t head = strspn(text, "-0123456789");
+    const size_t point = strcspn(text + head, "0123456789e"); /* bytes of the decimal point */
+    if (text[head] == 'e' || text[head] == '\0') {
+        return (size_t)length;
+    }
+    text[head] = '.';
+    memmove(text + head + 1, text + head + point, (size_t)length - head - point + 1);
+    return (size_t)length - point + 1;
+}
+
+static void remember(se3di_csv *csv)
+{
+    if (csv->failure == 0) {
+        csv->failure = errno ? errno : EIO;
+    }
+}
+
+static void flush(se3di_csv *csv)
+{
+    errno = 0;
+    if (csv->failure == 0 && csv->used > 0 &&
+        fwrite(csv->buffer, 1, csv->used, csv->file) != csv->used) {
+        remember(csv);
+    }
+    csv->used = 0;
+}
+
+static void put(se3di_csv *csv, const char *text, size_t length)
+{
+    while (length > 0) {
+        if (csv->used == BUFFER_SIZE) {
+            flush(csv);
+        }
+        const size_t room = BUFFER_SIZE - csv->used;
+        const size_t part = length < room ? length : room;
+        memcpy(csv->buffer + csv->used, text, part);
+        csv->used += part;
+        text += part;
+        length -= part;
+    }
+}
+
+se3d_status se3di_csv_open(se3di_csv *csv, se3di_iopool *pool, const char *path, size_t columns)
+{
+    const size_t length = strlen(path);
+    memset(csv, 0, sizeof *csv);
+    csv->columns = columns;
+    csv->path = se3di_iopool_copy(pool, path, length);
+    csv->temporary = se3di_iopool_alloc(pool, length + sizeof ".partial");
+    csv->buffer = se3di_iopool_alloc(pool, BUFFER_SIZE);
+    csv->pending = se3di_iopool_array(pool, columns, sizeof *csv->pending);
+    if (!csv->path || !csv->temporary || !csv->buffer || !csv->pending) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    memcpy(csv->temporary, path, length);
+    memcpy(csv->temporary + length, ".partial", sizeof ".partial");
+    errno = 0;
+    if (!se3di_file_make_folders(path)) {
+        remember(csv);
+        return SE3D_ERR_IO;
+    }
+    csv->file = fopen(csv->temporary, "wb");
+    if (!csv->file) {
+        remember(csv);
+        return SE3D_ERR_IO;
+    }
+    setvbuf(csv->file, NULL, _IONBF, 0);
+    return SE3D_OK;
+}
+
+/* Names with commas or quotes cannot occur: the reader does not allow them. */
+void se3di_csv_put_name(se3di_csv *csv, const char *name, bool last)
+{
+    put(csv, name, strlen(name));
+    put(csv, last ? "\n" : ",", 1);
+}
+
+static void write_pending(se3di_csv *csv)
+{
+    char text[NUMBER_SIZE + 1];
+    if (!csv->has_pending) {
+        return;
+    }
+    for (size_t k = 0; k < csv->columns; ++k) {
+        size_t length = se3di_number_format(csv->pending[k], text);
+        text[length++] = k + 1 < csv->columns ? ',' : '\n';
+        put(csv, text, length);
+    }
+    csv->has_pending = false;
+    ++csv->rows;
+}
+
+void se3di_csv_put_row(se3di_csv *csv, const double *row)
+{
+    const bool again =
+        csv->has_pending && !(row[0] < csv->pending[0]) && !(row[0] > csv->pending[0]);
+    if (!again) {
+        write_pending(csv);
+    }
+    memcpy(csv->pending, row, csv->columns * sizeof *row);
+    csv->has_pending = true;
+}
+
+se3d_status se3di_csv_close(se3di_csv *csv)
+{
+    write_pending(csv);
+    flush(csv);
+    errno = 0;
+    if (fclose(csv->file) != 0) {
+        remember(csv);
+    }
+    csv->file = NULL;
+#if defined(_WIN32)
+    remove(csv->path); /* rename does not replace there */
+#endif
+    errno = 0;
+    if (csv->failure == 0 && rename(csv->temporary, csv->path) != 0) {
+        remember(csv);
+    }
+    if (csv->failure != 0) {
+        remove(csv->temporary);
+        return SE3D_ERR_IO;
+    }
+    return SE3D_OK;
+}
+
+void se3di_csv_abandon(se3di_csv *csv)
+{
+    if (csv->file) {
+        fclose(csv->file);
+        csv->file = NULL;
+        remove(csv->temporary);
+    }
+}

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One results file: written under a temporary name, buffered, renamed when complete. */
+#ifndef SE3D_IO_CSV_H
+#define SE3D_IO_CSV_H
+
+#include <stdio.h>
+
+#include "io/pool.h"
+
+typedef struct se3di_csv {
+    const char *path;
+    char *temporary; /* the name while it is being written */
+    FILE *file;
+    char *buffer;
+    size_t used;
+    size_t columns;
+    uint64_t rows;
+    double *pending; /* the last row, not written yet */
+    bool has_pending;
+    int failure; /* errno of the first failure, 0 for none */
+} se3di_csv;
+
+/* Open for `columns` numbers a row. @return OK, IO, NO_MEMORY. */
+se3d_status se3di_csv_open(se3di_csv *csv, se3di_iopool *pool, const char *path, size_t columns);
+/* Write one name of the header; the last one ends the line. */
+void se3di_csv_put_name(se3di_csv *csv, const char *name, bool last);
+/* Write one row; row[0] is the time. A row at the time of the one before takes its place. */
+void se3di_csv_put_row(se3di_csv *csv, const double *row);
+/* Complete the file and give it its name. @return OK or IO (nothing is left then). */
+se3d_status se3di_csv_close(se3di_csv *csv);
+/* Close without keeping anything. */
+void se3di_csv_abandon(se3di_csv *csv);
+
+/* Write a number as "%.17g" with a point in every locale; `text` has at least 40 bytes. @return its
+ * length. */
+size_t se3di_number_format(double value, char *text);
+
+/* Make the folders that a path of a file needs. @return false: errno says why. */
+bool se3di_file_make_folders(const char *path);
+
+#endif

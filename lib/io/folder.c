@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Folders of results, on POSIX systems and on Windows. */
+#if !defined(_WIN32)
+#define _POSIX_C_SOURCE 200809L
+#endif
+
+#include <errno.h>
+#include <string.h>
+
+#include "io/csv.h"
+
+#if defined(_WIN32)
+#include <direct.h>
+static int make_folder(const char *path)
+{
+    return _mkdir(path);
+}
+#else
+#include <sys/stat.h>
+static int make_folder(const char *path)
+{
+    return mkdir(path, 0777);
+}
+#endif
+
+static bool is_separator(char c)
+{
+#if defined(_WIN32)
+    return c == '/' || c == '\\';
+#else
+    return c == '/';
+#endif
+}
+
+bool se3di_file_make_folders(const char *path)
+{
+    char part[4096];
+    const size_t length = strlen(path);
+    if (length >= sizeof part) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    for (size_t k = 0; k < length; ++k) {
+        part[k] = path[k];
+        if (k == 0 || !is_separator(path[k]) || is_separator(path[k - 1])) {
+            continue;
+        }
+        part[k] = '\0';
+        if (make_folder(part) != 0 && errno != EEXIST && errno != EISDIR && errno != EACCES) {
+            return false; /* a folder without permission is reported when the file is opened */
+        }
+        part[k] = path[k];
+    }
+    return true;
+}

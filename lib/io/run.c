@@ -1,0 +1,469 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Running a model: its analyses one after the other, the rows of its results files on the way.
+ *
+ * Output k of an analysis has a row at start + i * every, i = 0, 1, ..., and one at the end. The
+ * solver is run from one time at which any file wants a row to the next; times are computed from
+ * their number, never summed up, and the last one is start + duration exactly. Where an analysis
+ * begins at the time at which the one before ended, its first row takes the place of the last one.
+ */
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "io/csv.h"
+#include "io/model.h"
+
+typedef struct output_file {
+    const se3di_output_entry *entry;
+    se3di_csv csv;
+    double *row;
+    double every; /* in this analysis */
+    double count; /* number of the last row, the one at the end */
+    double next;  /* number of the next row */
+} output_file;
+
+struct se3d_run {
+    se3di_iopool pool;
+    se3d_run_analysis *analyses;
+    size_t analysis_count;
+    se3d_run_file *files;
+    size_t file_count;
+};
+
+typedef struct runner {
+    se3d_model *model;
+    const se3d_run_options *options;
+    se3d_run *run;
+    se3d_model_error *error;
+    output_file *files;
+    size_t file_count; /* open ones */
+    se3d_solver *solver;
+    double time; /* where the analysis before ended */
+    bool stopped;
+} runner;
+
+void se3d_run_options_init(se3d_run_options *options, size_t size)
+{
+    if (options && size >= sizeof options->struct_size) {
+        memset(options, 0, size);
+        options->struct_size = size;
+    }
+}
+
+static se3d_status fail(runner *r, se3d_status status, const char *text)
+{
+    se3di_error_set(r->error, "", 0, 0, "", text);
+    return status;
+}
+
+static se3d_status fail_file(runner *r, const output_file *file)
+{
+    char text[800];
+    snprintf(text, sizeof text, "%.500s: cannot be written: %s", file->csv.path,
+             file->csv.failure ? strerror(file->csv.failure) : "out of memory");
+    return fail(r, file->csv.failure ? SE3D_ERR_IO : SE3D_ERR_NO_MEMORY, text);
+}
+
+static bool is_absolute(const char *path)
+{
+#if defined(_WIN32)
+    return path[0] == '/' || path[0] == '\\' || (path[0] && path[1] == ':');
+#else
+    return path[0] == '/';
+#endif
+}
+
+static se3d_status open_file(runner *r, const se3di_output_entry *entry)
+{
+    output_file *file = &r->files[r->file_count];
+    char path[4096];
+    char name[400];
+    size_t columns = 1;
+    const char *folder = r->options->directory ? r->options->directory : ".";
+    const int length = is_absolute(entry->file)
+                           ? snprintf(path, sizeof path, "%s", entry->file)
+                           : snprintf(path, sizeof path, "%s/%s", folder, entry->file);
+    if (length < 0 || (size_t)length >= sizeof path) {
+        return fail(r, SE3D_ERR_IO, "the path of the results is too long");
+    }
+    for (size_t k = 0; k < entry->count; ++k) {
+        columns += se3di_channel_get_width(&entry->channels[k]);
+    }
+    file->entry = entry;
+    file->row = se3di_iopool_array(&r->run->pool, columns, sizeof *file->row);
+    const se3d_status status = se3di_csv_open(&file->csv, &r->run->pool, path, columns);
+    if (status < 0 || !file->row) {
+        const se3d_status result = fail_file(r, file);
+        se3di_csv_abandon(&file->csv);
+        return result;
+    }
+    ++r->file_count;
+    se3di_csv_put_name(&file->csv, "time", columns == 1);
+    size_t column = 1;
+    for (size_t k = 0; k < entry->count; ++k) {
+        const size_t width = se3di_channel_get_width(&entry->channels[k]);
+        for (size_t i = 0; i < width; ++i) {
+            se3di_channel_format_column(&entry->channels[k], i, name, sizeof name);
+            se3di_csv_put_name(&file->csv, name, ++column == columns);
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status open_files(runner *r)
+{
+    se3d_model *model = r->model;
+    r->files = se3di_iopool_array(&r->run->pool, model->output_count, sizeof *r->files);
+    if (!r->files) {
+        return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    for (size_t k = 0; k < model->output_count; ++k) {
+        const se3d_status status = open_file(r, &model->outputs[k]);
+        if (status < 0) {
+            return status;
+        }
+    }
+    return SE3D_OK;
+}
+
+/* Number of rows of each file in this analysis; `every` is the analysis's step where the output has
+ * none, and a 500th of the duration where there is no step either. */
+static se3d_status plan(runner *r, const se3di_analysis_entry *entry)
+{
+    const double duration = entry->analysis.duration;
+    for (size_t k = 0; k < r->file_count; ++k) {
+        output_file *file = &r->files[k];
+        file->every = file->entry->every;
+        if (!(file->every > 0.0)) {
+            file->every = entry->solver.step > 0.0 ? entry->solver.step : duration / 500.0;
+        }
+        file->next = 0.0;
+        file->count = duration > 0.0 ? ceil(duration / file->every - 1e-6) : 0.0;
+        if (!(file->count <= 1e9)) {
+            return fail(r, SE3D_ERR_INVALID_ARGUMENT,
+                        "more than 1e9 rows: choose a larger `every` or `step`");
+        }
+    }
+    return SE3D_OK;
+}
+
+/* The time of row `number` of a file. */
+static double row_time(const output_file *file, double number, double start, double duration)
+{
+    return number < file->count ? start + number * file->every : start + duration;
+}
+
+static se3d_status sample(runner *r, output_file *file, double time)
+{
+    se3d_solver_stats stats;
+    double *row = file->row;
+    memset(&stats, 0, sizeof stats);
+    se3d_solver_get_stats(r->solver, &stats);
+    *row++ = time;
+    for (size_t k = 0; k < file->entry->count; ++k) {
+        const se3di_channel *channel = &file->entry->channels[k];
+        double value[4];
+        const se3d_status status = se3di_channel_eval(channel, r->model->system, &stats, value);
+        if (status < 0) {
+            char text[600];
+            snprintf(text, sizeof text, "the channel `%.300s` cannot be computed at t = %.9g: %s",
+                     channel->name, time, se3d_status_get_text(status));
+            return fail(r, status, text);
+        }
+        const size_t width = se3di_channel_get_width(channel);
+        memcpy(row, value, width * sizeof *row);
+        row += width;
+    }
+    se3di_csv_put_row(&file->csv, file->row);
+    return file->csv.failure ? fail_file(r, file) : SE3D_OK;
+}
+
+/* The advice that fits a failure. */
+static const char *advice(se3d_status status)
+{
+    switch (status) {
+    case SE3D_ERR_INCONSISTENT:
+        return "look for constraints and drivers that contradict each other with `se3d check`, and "
+               "check the positions at the start";
+    case SE3D_ERR_SINGULAR:
+        return "the mechanism may be at a dead point or not fully driven: see `se3d check`";
+    case SE3D_ERR_NO_CONVERGENCE:
+    case SE3D_ERR_STEP_SIZE:
+        return "try a smaller --step, another --method, or `se3d check` at this position";
+    case SE3D_ERR_NOT_FINITE:
+        return "look for a function that is not finite at this time, or try a smaller --step";
+    case SE3D_ERR_UNSUPPORTED:
+        return "choose another --method, --formulation or --analysis";
+    default:
+        return "see the message above";
+    }
+}
+
+static se3d_status fail_analysis(runner *r, const se3di_analysis_entry *entry, se3d_status status,
+                                 double target)
+{
+    char text[1000];
+    char way[80] = "";
+    const char *why = se3d_system_get_error(r->model->system);
+    double now = r->time;
+    se3d_system_get_time(r->model->system, &now);
+    if (target > now) {
+        snprintf(way, sizeof way, " on the way to t = %.9g", target);
+    }
+    snprintf(text, sizeof text, "the %s analysis failed at t = %.9g s%s: %.500s. What to try: %s",
+             entry->analysis.type, now, way, why[0] ? why : se3d_status_get_text(status),
+             advice(status));
+    return fail(r, status, text);
+}
+
+/* The earliest time at which a file wants its next row; false: all have theirs. */
+static bool next_time(const runner *r, double start, double duration, double *time)
+{
+    bool found = false;
+    for (size_t k = 0; k < r->file_count; ++k) {
+        const output_file *file = &r->files[k];
+        if (file->next <= file->count) {
+            const double wanted = row_time(file, file->next, start, duration);
+            *time = found ? fmin(*time, wanted) : wanted;
+            found = true;
+        }
+    }
+    return found;
+}
+
+static se3d_status sample_files(runner *r, double start, double duration, double time)
+{
+    for (size_t k = 0; k < r->file_count; ++k) {
+        output_file *file = &r->files[k];
+        if (file->next > file->count) {
+            continue;
+        }
+        const double wanted = row_time(file, file->next, start, duration);
+        if (wanted - time <= 1e-9 * file->every) {
+            const se3d_status status = sample(r, file, time);
+            if (status < 0) {
+                return status;
+            }
+            file->next += 1.0;
+        }
+    }
+    return SE3D_OK;
+}
+
+/* Times of two files that differ by rounding only are one time: the later is asked for first. */
+static double merge_times(const runner *r, double start, double duration, double time)
+{
+    double merged = time;
+    for (size_t k = 0; k < r->file_count; ++k) {
+        const output_file *file = &r->files[k];
+        if (file->next <= file->count) {
+            const double wanted = row_time(file, file->next, start, duration);
+            if (wanted - time <= 1e-9 * file->every && wanted > merged) {
+                merged = wanted;
+            }
+        }
+    }
+    return merged;
+}
+
+static se3d_status run_rows(runner *r, size_t index, const se3di_analysis_entry *entry,
+                            double start)
+{
+    const double duration = entry->analysis.duration;
+    se3d_status last = SE3D_OK;
+    double time = start;
+    while (next_time(r, start, duration, &time) && !r->stopped) {
+        time = merge_times(r, start, duration, time);
+        last = se3d_solver_run(r->solver, time);
+        if (last < 0) {
+            return fail_analysis(r, entry, last, time);
+        }
+        const se3d_status status = sample_files(r, start, duration, time);
+        if (status < 0) {
+            return status;
+        }
+        if (r->options->progress &&
+            r->options->progress(r->options->ctx, index, time,
+                                 duration > 0.0 ? (time - start) / duration : 1.0)) {
+            r->stopped = true;
+        }
+    }
+    return last;
+}
+
+static const char *copy_text(runner *r, const char *text)
+{
+    const char *copy = se3di_iopool_copy(&r->run->pool, text, strlen(text));
+    return copy ? copy : "";
+}
+
+/* What the solver did, for the summary. */
+static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analysis *done,
+                   clock_t begin)
+{
+    const char *method = "";
+    se3d_system_get_time(r->model->system, &r->time);
+    done->end = r->time;
+    done->cpu_time = (double)(clock() - begin) / (double)CLOCKS_PER_SEC;
+    if (r->solver) {
+        se3d_solver_get_stats(r->solver, &done->stats);
+        if (entry->solver.analysis == SE3D_ANALYSIS_DYNAMICS) {
+            se3d_solver_get_method(r->solver, &method);
+        }
+    }
+    done->method = copy_text(r, method ? method : "");
+}
+
+static se3d_status run_analysis(runner *r, size_t index)
+{
+    const se3di_analysis_entry *entry = &r->model->analyses[index];
+    se3d_run_analysis *done = &r->run->analyses[r->run->analysis_count++];
+    const double start = isnan(entry->analysis.start) ? r->time : entry->analysis.start;
+    const clock_t begin = clock();
+    done->type = copy_text(r, entry->analysis.type);
+    done->formulation = entry->solver.formulation == SE3D_FORMULATION_RP ? "rp" : "romega";
+    done->method = "";
+    done->start = start;
+    done->end = start;
+    se3d_status status = plan(r, entry);
+    if (status >= 0) {
+        status = se3d_system_set_time(r->model->system, start);
+        if (status >= 0) {
+            status = se3d_solver_create(r->model->system, &entry->solver, &r->solver);
+        }
+        status =
+            status < 0 ? fail_analysis(r, entry, status, start) : run_rows(r, index, entry, start);
+    }
+    record(r, entry, done, begin);
+    done->status = (int32_t)status;
+    se3d_solver_destroy(r->solver);
+    r->solver = NULL;
+    return status;
+}
+
+/* Complete every file, also after a failure: the rows so far are kept. */
+static se3d_status close_files(runner *r, se3d_status status)
+{
+    se3d_run *run = r->run;
+    run->files = se3di_iopool_array(&run->pool, r->file_count, sizeof *run->files);
+    for (size_t k = 0; k < r->file_count; ++k) {
+        se3di_csv *csv = &r->files[k].csv;
+        const bool good = se3di_csv_close(csv) >= 0;
+        if (!good && status >= 0) {
+            status = fail_file(r, &r->files[k]);
+        }
+        if (good && run->files) {
+            se3d_run_file *file = &run->files[run->file_count++];
+            file->path = csv->path;
+            file->rows = csv->rows;
+            file->columns = csv->columns;
+        }
+    }
+    return status;
+}
+
+static se3d_run *create_run(const se3d_model *model)
+{
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &model->pool.allocator);
+    se3d_run *run = se3di_iopool_alloc(&pool, sizeof *run);
+    if (run) {
+        run->analyses = se3di_iopool_array(&pool, model->analysis_count, sizeof *run->analyses);
+    }
+    if (!run || !run->analyses) {
+        se3di_iopool_destroy(&pool);
+        return NULL;
+    }
+    run->pool = pool;
+    return run;
+}
+
+static se3d_status run_all(runner *r)
+{
+    se3d_status status = open_files(r);
+    if (status < 0) {
+        for (size_t k = 0; k < r->file_count; ++k) {
+            se3di_csv_abandon(&r->files[k].csv);
+        }
+        return status;
+    }
+    se3d_system_get_time(r->model->system, &r->time);
+    for (size_t k = 0; k < r->model->analysis_count && status >= 0 && !r->stopped; ++k) {
+        status = run_analysis(r, k);
+    }
+    return close_files(r, status);
+}
+
+se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, se3d_run **out,
+                           se3d_model_error *error)
+{
+    se3d_run_options used = se3d_run_options_default();
+    runner r = {.model = model, .options = &used, .error = error};
+    if (out) {
+        *out = NULL;
+    }
+    if (error) {
+        memset(error, 0, sizeof *error);
+    }
+    if (!model || !out) {
+        return fail(&r, SE3D_ERR_NULL, "model or out is NULL");
+    }
+    if (options) {
+        const size_t size = options->struct_size < sizeof used ? options->struct_size : sizeof used;
+        memcpy(&used, options, size);
+    }
+    if (model->analysis_count == 0) {
+        return fail(&r, SE3D_ERR_STATE, "the model has no `analysis`");
+    }
+    r.run = create_run(model);
+    if (!r.run) {
+        return fail(&r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    const se3d_status status = run_all(&r);
+    *out = r.run;
+    return status;
+}
+
+void se3d_run_destroy(se3d_run *run)
+{
+    if (run) {
+        se3di_iopool pool = run->pool; /* the run itself lies in it */
+        se3di_iopool_destroy(&pool);
+    }
+}
+
+size_t se3d_run_count_analyses(const se3d_run *run)
+{
+    return run ? run->analysis_count : 0;
+}
+
+se3d_status se3d_run_get_analysis(const se3d_run *run, size_t index, se3d_run_analysis *analysis)
+{
+    if (!run || !analysis) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= run->analysis_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    *analysis = run->analyses[index];
+    return SE3D_OK;
+}
+
+size_t se3d_run_count_files(const se3d_run *run)
+{
+    return run ? run->file_count : 0;
+}
+
+se3d_status se3d_run_get_file(const se3d_run *run, size_t index, se3d_run_file *file)
+{
+    if (!run || !file) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= run->file_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    *file = run->files[index];
+    return SE3D_OK;
+}
