@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* se3d check MODEL: bodies, equations, freedoms, redundant and inconsistent constraints. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "options.h"
+
+static const char help[] =
+    "se3d check MODEL [--set NAME=VALUE]... [--json]\n"
+    "\n"
+    "Reads a model and says how many bodies, equations and degrees of freedom it has at its "
+    "present\n"
+    "pose, and names redundant and inconsistent constraints and bodies that nothing holds.\n"
+    "\n"
+    "Exit code: 0 done; 1 constraints contradict each other; 2 bad usage or model.\n";
+
+static void print_text(const se3d_model *model, const se3d_check_summary *s,
+                       const se3d_check *check)
+{
+    const char *title = se3d_model_get_title(model);
+    printf("%s%s%s\n", se3d_model_get_name(model), title[0] ? ": " : "", title);
+    printf("%zu bodies, %zu constraints and drivers, %zu forces\n", s->bodies,
+           se3d_system_count_constraints(se3d_model_get_system(model)),
+           se3d_system_count_forces(se3d_model_get_system(model)));
+    printf("%zu equations, rank %zu, %zu redundant, %zu inconsistent\n", s->equations, s->rank,
+           s->redundant, s->inconsistent);
+    printf("%zu degrees of freedom (Gruebler count %" PRId64 ")\n", s->freedoms, s->gruebler);
+    for (size_t k = 0; k < se3d_check_count_messages(check); ++k) {
+        const char *text = NULL;
+        if (!SE3D_FAILED(se3d_check_get_message(check, k, &text))) {
+            printf("- %s\n", text);
+        }
+    }
+}
+
+static void print_json(const options *o, const se3d_check_summary *s, const se3d_check *check)
+{
+    fputs("{\"status\": \"done\", \"model\": ", stdout);
+    json_put_text(o->model);
+    printf(", \"bodies\": %zu, \"equations\": %zu, \"rank\": %zu, \"redundant\": %zu, "
+           "\"inconsistent\": %zu, \"freedoms\": %zu, \"gruebler\": %" PRId64 ", \"messages\": [",
+           s->bodies, s->equations, s->rank, s->redundant, s->inconsistent, s->freedoms,
+           s->gruebler);
+    for (size_t k = 0; k < se3d_check_count_messages(check); ++k) {
+        const char *text = NULL;
+        if (!SE3D_FAILED(se3d_check_get_message(check, k, &text))) {
+            fputs(k > 0 ? ", " : "", stdout);
+            json_put_text(text);
+        }
+    }
+    fputs("]}\n", stdout);
+}
+
+static int check_model(const options *o, se3d_model *model)
+{
+    se3d_system *system = se3d_model_get_system(model);
+    se3d_check *check = NULL;
+    se3d_check_summary summary = {.struct_size = sizeof summary};
+    if (SE3D_FAILED(se3d_check_create(system, &check)) ||
+        SE3D_FAILED(se3d_check_get_summary(check, &summary))) {
+        report_failure(o, o->model, se3d_system_get_error(system));
+        se3d_check_destroy(check);
+        return EXIT_FAILED;
+    }
+    if (o->json) {
+        print_json(o, &summary, check);
+    } else if (!o->quiet) {
+        print_text(model, &summary, check);
+    }
+    se3d_check_destroy(check);
+    return summary.inconsistent > 0 ? EXIT_FAILED : EXIT_DONE;
+}
+
+int command_check(int count, char *const *words)
+{
+    options o;
+    se3d_model *model = NULL;
+    int code = options_read(&o, "check", " --set --quiet -q --json ", count, words);
+    if (code != EXIT_DONE || o.help) {
+        fputs(o.help ? help : "", stdout);
+        return code;
+    }
+    const se3d_model_options how = options_get_model(&o);
+    code = options_read_model(&o, &how, &model);
+    if (code == EXIT_DONE) {
+        code = check_model(&o, model);
+    }
+    se3d_model_destroy(model);
+    return code;
+}

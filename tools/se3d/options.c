@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Reading the command line. */
+#include "options.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static int usage_error(const char *command, const char *what, const char *word)
+{
+    fprintf(stderr, "se3d %s: %s `%s`; see `se3d %s --help`\n", command, what, word, command);
+    return EXIT_USAGE;
+}
+
+static int is_allowed(const char *allowed, const char *name)
+{
+    char word[40];
+    const int length = snprintf(word, sizeof word, " %s ", name);
+    return length > 0 && (size_t)length < sizeof word && strstr(allowed, word) != NULL;
+}
+
+static int add_setting(options *o, const char *command, const char *text)
+{
+    const char *equals = strchr(text, '=');
+    if (!equals || equals == text || !equals[1]) {
+        return usage_error(command, "--set needs NAME=VALUE, not", text);
+    }
+    const size_t length = (size_t)(equals - text);
+    if (length >= sizeof o->names[0]) {
+        return usage_error(command, "this name is too long:", text);
+    }
+    if (o->setting_count == SETTINGS_MAX) {
+        return usage_error(command, "too many --set, no room for", text);
+    }
+    memcpy(o->names[o->setting_count], text, length);
+    o->names[o->setting_count][length] = '\0';
+    o->settings[o->setting_count].name = o->names[o->setting_count];
+    o->settings[o->setting_count].value = equals + 1;
+    ++o->setting_count;
+    return EXIT_DONE;
+}
+
+/* Where the value of an option goes; NULL: it has none or is unknown. */
+static const char **value_target(options *o, const char *name)
+{
+    const struct {
+        const char *name;
+        const char **target;
+    } table[] = {{"-o", &o->directory},        {"--output", &o->directory},
+                 {"--analysis", &o->analysis}, {"--formulation", &o->formulation},
+                 {"--method", &o->method},     {"--step", &o->step},
+                 {"--duration", &o->duration}, {"--time", &o->time}};
+    for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+        if (strcmp(table[k].name, name) == 0) {
+            return table[k].target;
+        }
+    }
+    return NULL;
+}
+
+static int *flag_target(options *o, const char *name)
+{
+    if (strcmp(name, "--quiet") == 0 || strcmp(name, "-q") == 0) {
+        return &o->quiet;
+    }
+    if (strcmp(name, "--json") == 0) {
+        return &o->json;
+    }
+    if (strcmp(name, "--csv") == 0) {
+        return &o->csv;
+    }
+    return strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 ? &o->help : NULL;
+}
+
+/* An option with a value: "--name VALUE" or "--name=VALUE". @return words used, 0: an error. */
+static int read_valued(options *o, const char *command, const char *name, const char *value,
+                       int used)
+{
+    const char **target = value_target(o, name);
+    if (!value || (!value[0] && target)) {
+        usage_error(command, "a value is missing after", name);
+        return 0;
+    }
+    if (strcmp(name, "--set") == 0) {
+        return add_setting(o, command, value) == EXIT_DONE ? used : 0;
+    }
+    *target = value;
+    return used;
+}
+
+/* @return words used, 0: an error that was reported. */
+static int read_option(options *o, const char *command, const char *allowed, int count,
+                       char *const *words)
+{
+    char name[40];
+    const char *word = words[0];
+    const char *equals = strncmp(word, "--", 2) == 0 ? strchr(word, '=') : NULL;
+    const size_t length = equals ? (size_t)(equals - word) : strlen(word);
+    if (length >= sizeof name) {
+        usage_error(command, "unknown option", word);
+        return 0;
+    }
+    memcpy(name, word, length);
+    name[length] = '\0';
+    int *flag = flag_target(o, name);
+    if (flag == &o->help || (flag && !equals && is_allowed(allowed, name))) {
+        *flag = 1;
+        return 1;
+    }
+    if (flag || !is_allowed(allowed, name)) {
+        usage_error(command, "unknown option", word);
+        return 0;
+    }
+    if (equals) {
+        return read_valued(o, command, name, equals + 1, 1);
+    }
+    return read_valued(o, command, name, count > 1 ? words[1] : NULL, 2);
+}
+
+int options_read(options *o, const char *command, const char *allowed, int count,
+                 char *const *words)
+{
+    int options_end = 0;
+    memset(o, 0, sizeof *o);
+    for (int k = 0; k < count;) {
+        const char *word = words[k];
+        if (!options_end && strcmp(word, "--") == 0) {
+            options_end = 1;
+            ++k;
+        } else if (!options_end && word[0] == '-' && word[1]) {
+            const int used = read_option(o, command, allowed, count - k, words + k);
+            if (used == 0) {
+                return EXIT_USAGE;
+            }
+            k += used;
+        } else if (o->model) {
+            return usage_error(command, "one model at a time, what is", word);
+        } else {
+            o->model = word;
+            ++k;
+        }
+    }
+    if (!o->model && !o->help) {
+        fprintf(stderr, "se3d %s: which model? Give a file, see `se3d %s --help`\n", command,
+                command);
+        return EXIT_USAGE;
+    }
+    return EXIT_DONE;
+}
+
+se3d_model_options options_get_model(const options *o)
+{
+    se3d_model_options how = se3d_model_options_default();
+    how.settings = o->settings;
+    how.setting_count = o->setting_count;
+    how.analysis = o->analysis;
+    how.formulation = o->formulation;
+    how.method = o->method;
+    how.step = o->step;
+    how.duration = o->duration;
+    return how;
+}
+
+int options_read_model(const options *o, const se3d_model_options *how, se3d_model **model)
+{
+    se3d_model_error error;
+    if (SE3D_FAILED(se3d_model_read_file(o->model, how, model, &error))) {
+        report_failure(o, "", error.message);
+        return EXIT_USAGE;
+    }
+    return EXIT_DONE;
+}

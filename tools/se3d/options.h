@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The command line of the `se3d` program. */
+#ifndef SE3D_TOOL_OPTIONS_H
+#define SE3D_TOOL_OPTIONS_H
+
+#include "se3d/io.h"
+
+enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
+enum { SETTINGS_MAX = 256 };
+
+typedef struct options {
+    const char *model;
+    const char *directory; /* -o */
+    const char *analysis;
+    const char *formulation;
+    const char *method;
+    const char *step;
+    const char *duration;
+    const char *time;
+    se3d_model_setting settings[SETTINGS_MAX];
+    char names[SETTINGS_MAX][64];
+    size_t setting_count;
+    int quiet;
+    int json;
+    int csv;
+    int help;
+} options;
+
+/* Read the words after the command. `allowed` lists its options, separated by blanks, with a blank
+ * at each end. @return EXIT_DONE, or EXIT_USAGE after a message. */
+int options_read(options *o, const char *command, const char *allowed, int count,
+                 char *const *words);
+
+/* The model options that the command line asks for. */
+se3d_model_options options_get_model(const options *o);
+
+/* Read the model. @return EXIT_DONE, or EXIT_USAGE after a message. */
+int options_read_model(const options *o, const se3d_model_options *how, se3d_model **model);
+
+/* Print a failure as text or, with --json, as an object. */
+void report_failure(const options *o, const char *command, const char *message);
+
+/* Commands: the arguments after the command's name; the exit code. */
+int command_run(int count, char *const *words);
+int command_check(int count, char *const *words);
+int command_evaluate(int count, char *const *words);
+
+/* Write a text as a JSON string, a number as JSON (null where it is not finite). */
+void json_put_text(const char *text);
+void json_put_number(double value);
+
+/* A progress bar on standard error, shown on a terminal only. */
+typedef struct progress {
+    int active;
+    int percent;  /* shown last; -1: none */
+    size_t count; /* of analyses */
+} progress;
+
+void progress_begin(progress *p, int quiet, size_t count);
+int progress_show(void *ctx, size_t analysis, double time, double fraction);
+void progress_end(progress *p);
+
+#endif

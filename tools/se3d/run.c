@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* se3d run MODEL: every analysis of a model, results into files. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "options.h"
+
+static const char help[] =
+    "se3d run MODEL [options]\n"
+    "\n"
+    "Runs the analyses of a model file one after the other and writes its results as CSV files.\n"
+    "\n"
+    "  -o DIR                 folder for the results, made if missing (default: results/<model>)\n"
+    "  --set NAME=VALUE       replace a parameter; VALUE is an expression; may be repeated\n"
+    "  --analysis T           assembly, kinematics, inverse_dynamics, dynamics, equilibrium\n"
+    "  --formulation F        romega, rp\n"
+    "  --method M             auto, generalized_alpha, hht, dop853, rk45, bdf, radau, rattle, "
+    "verlet\n"
+    "  --step H               step [s]\n"
+    "  --duration T           duration [s]\n"
+    "  --quiet                print nothing but errors\n"
+    "  --json                 print the summary as JSON\n"
+    "\n"
+    "Exit code: 0 done; 1 the analysis failed (results so far are on disk); 2 bad usage or "
+    "model.\n";
+
+static void print_analysis(const se3d_run_analysis *a)
+{
+    printf("%s, %s%s%s: %s\n", a->type, a->formulation, a->method[0] ? ", " : "", a->method,
+           a->status < 0 ? "FAILED" : se3d_status_get_text((se3d_status)a->status));
+    printf("  from %.9g s to %.9g s, %" PRIu64 " steps (%" PRIu64 " rejected), %" PRIu64
+           " iterations, CPU time %.3g s\n",
+           a->start, a->end, a->stats.steps, a->stats.rejected, a->stats.iterations, a->cpu_time);
+}
+
+static void print_text(const se3d_run *run)
+{
+    for (size_t k = 0; k < se3d_run_count_analyses(run); ++k) {
+        se3d_run_analysis analysis;
+        if (!SE3D_FAILED(se3d_run_get_analysis(run, k, &analysis))) {
+            print_analysis(&analysis);
+        }
+    }
+    for (size_t k = 0; k < se3d_run_count_files(run); ++k) {
+        se3d_run_file file;
+        if (!SE3D_FAILED(se3d_run_get_file(run, k, &file))) {
+            printf("wrote %s: %" PRIu64 " rows, %zu columns\n", file.path, file.rows, file.columns);
+        }
+    }
+}
+
+static void json_put_count(const char *name, uint64_t value)
+{
+    printf(", \"%s\": %" PRIu64, name, value);
+}
+
+static void json_put_analysis(const se3d_run_analysis *a)
+{
+    fputs("{\"type\": ", stdout);
+    json_put_text(a->type);
+    fputs(", \"formulation\": ", stdout);
+    json_put_text(a->formulation);
+    fputs(", \"method\": ", stdout);
+    json_put_text(a->method);
+    printf(", \"status\": %d, \"text\": ", (int)a->status);
+    json_put_text(se3d_status_get_text((se3d_status)a->status));
+    fputs(", \"start\": ", stdout);
+    json_put_number(a->start);
+    fputs(", \"end\": ", stdout);
+    json_put_number(a->end);
+    fputs(", \"cpu_time\": ", stdout);
+    json_put_number(a->cpu_time);
+    json_put_count("steps", a->stats.steps);
+    json_put_count("rejected", a->stats.rejected);
+    json_put_count("iterations", a->stats.iterations);
+    json_put_count("evaluations", a->stats.evaluations);
+    json_put_count("factorizations", a->stats.factorizations);
+    json_put_count("solves", a->stats.solves);
+    putchar('}');
+}
+
+static void print_json(const options *o, const se3d_run *run, const char *message)
+{
+    printf("{\"status\": \"%s\", \"model\": ", message[0] ? "failed" : "done");
+    json_put_text(o->model);
+    fputs(", \"message\": ", stdout);
+    json_put_text(message);
+    fputs(", \"analyses\": [", stdout);
+    for (size_t k = 0; k < se3d_run_count_analyses(run); ++k) {
+        se3d_run_analysis analysis;
+        if (!SE3D_FAILED(se3d_run_get_analysis(run, k, &analysis))) {
+            fputs(k > 0 ? ", " : "", stdout);
+            json_put_analysis(&analysis);
+        }
+    }
+    fputs("], \"files\": [", stdout);
+    for (size_t k = 0; k < se3d_run_count_files(run); ++k) {
+        se3d_run_file file;
+        if (!SE3D_FAILED(se3d_run_get_file(run, k, &file))) {
+            fputs(k > 0 ? ", {\"path\": " : "{\"path\": ", stdout);
+            json_put_text(file.path);
+            printf(", \"rows\": %" PRIu64 ", \"columns\": %zu}", file.rows, file.columns);
+        }
+    }
+    fputs("]}\n", stdout);
+}
+
+/* The folder for the results; free it. */
+static char *results_folder(const options *o, const se3d_model *model)
+{
+    const char *name = se3d_model_get_name(model);
+    const size_t size = strlen("results/") + strlen(name) + 1;
+    char *folder = o->directory ? NULL : malloc(size);
+    if (folder) {
+        snprintf(folder, size, "results/%s", name);
+    }
+    return folder;
+}
+
+static int run_model(const options *o, se3d_model *model)
+{
+    se3d_run_options how = se3d_run_options_default();
+    se3d_run *run = NULL;
+    se3d_model_error error;
+    progress bar;
+    char *folder = results_folder(o, model);
+    if (!o->directory && !folder) {
+        report_failure(o, o->model, "out of memory");
+        return EXIT_FAILED;
+    }
+    progress_begin(&bar, o->quiet || o->json, se3d_model_count_analyses(model));
+    how.directory = o->directory ? o->directory : folder;
+    how.progress = progress_show;
+    how.ctx = &bar;
+    const se3d_status status = se3d_model_run(model, &how, &run, &error);
+    progress_end(&bar);
+    if (o->json) {
+        print_json(o, run, error.message);
+    } else if (!o->quiet) {
+        print_text(run);
+    }
+    if (SE3D_FAILED(status)) {
+        fflush(stdout);
+        fprintf(stderr, "%s: %s\n", o->model, error.message);
+    }
+    se3d_run_destroy(run);
+    free(folder);
+    if (status == SE3D_ERR_UNSUPPORTED) {
+        return EXIT_USAGE;
+    }
+    return SE3D_FAILED(status) ? EXIT_FAILED : EXIT_DONE;
+}
+
+int command_run(int count, char *const *words)
+{
+    static const char allowed[] = " -o --output --set --analysis --formulation --method --step "
+                                  "--duration --quiet -q --json ";
+    options o;
+    se3d_model *model = NULL;
+    int code = options_read(&o, "run", allowed, count, words);
+    if (code != EXIT_DONE || o.help) {
+        fputs(o.help ? help : "", stdout);
+        return code;
+    }
+    const se3d_model_options how = options_get_model(&o);
+    code = options_read_model(&o, &how, &model);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    if (se3d_model_count_analyses(model) == 0) {
+        report_failure(&o, o.model,
+                       "there is nothing to run: add `analysis: {type: dynamics, duration: 1}` to "
+                       "the model, or give --analysis and --duration");
+        code = EXIT_USAGE;
+    } else {
+        code = run_model(&o, model);
+    }
+    se3d_model_destroy(model);
+    return code;
+}
