@@ -34,7 +34,7 @@ static void add_bodies(se3di_constraint *constraint, const se3di_constraint *joi
 static se3d_status check_term(se3d_system *system, const se3d_coupler_def *def, size_t k,
                               se3di_draft *draft)
 {
-    char what[32];
+    char what[48];
     uint32_t joint;
     se3di_term term;
     snprintf(what, sizeof what, "joint[%zu]", k);
