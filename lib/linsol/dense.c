@@ -3,6 +3,7 @@
 
 #include <lapacke.h>
 #include <math.h>
+#include <stdbool.h>
 
 static void swap_rows(int32_t n, double *a, double *b)
 {
@@ -84,8 +85,12 @@ void se3di_dense_lu_solve(int32_t n, const double *A, const int32_t *pivot, doub
 se3d_status se3di_dense_cholesky_factor(int32_t n, double *A)
 {
     if (n >= SE3DI_DENSE_SMALL) { /* the lower triangle is the upper one to LAPACK */
-        return LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'U', n, A, n) != 0 ? SE3D_ERR_SINGULAR
-                                                                        : SE3D_OK;
+        lapack_int result = LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'U', n, A, n);
+        bool is_fine = result == 0;
+        for (int32_t i = 0; i < n; ++i) {
+            is_fine = is_fine && isfinite(A[(size_t)i * (size_t)n + (size_t)i]);
+        }
+        return is_fine ? SE3D_OK : SE3D_ERR_SINGULAR;
     }
     for (int32_t r = 0; r < n; ++r) {
         for (int32_t c = 0; c <= r; ++c) {

@@ -151,8 +151,7 @@ se3d_status se3di_kkt_solve(se3di_kkt *kkt, const se3di_kkt_values *values, cons
  * below `tolerance` (1e-10 is a good choice) after scaling to unit length. *rank may be NULL. The
  * only function here that allocates.
  * @return SE3D_OK, SE3D_ERR_NO_MEMORY, SE3D_ERR_NOT_FINITE */
-se3d_status se3di_kkt_min_norm(const se3di_kkt *kkt, const se3di_kkt_values *values,
-                               const double *b, const double *x, double tolerance, double *l,
-                               int32_t *rank);
+se3d_status se3di_kkt_min_norm(se3di_kkt *kkt, const se3di_kkt_values *values, const double *b,
+                               const double *x, double tolerance, double *l, int32_t *rank);
 
 #endif

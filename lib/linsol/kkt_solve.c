@@ -11,7 +11,7 @@
 #include "linsol/kkt_internal.h"
 
 static const double pivot_vanishes = 1e-12; /* relative; then E = 0 is given up */
-static const double pivot_is_good = 1e-3;   /* relative; then a solve with E = 0 needs no check */
+static const double pivot_is_good = 1e-4;   /* relative; then a solve with E = 0 needs no check */
 static const double weight_range = 1e4;
 
 /* ---- factor ---- */
@@ -338,8 +338,7 @@ se3d_status se3di_kkt_solve(se3di_kkt *kkt, const se3di_kkt_values *values, cons
     const kkt_problem problem = {values, b, c};
     clear_multipliers(kkt, l);
     solve_once(kkt, b, c, x, l);
-    bool sure = !(kkt->eps > 0.0) && kkt->min_pivot > pivot_is_good && kkt->negative_pivots == 0 &&
-                kkt->pattern.symmetric;
+    bool sure = !(kkt->eps > 0.0) && kkt->min_pivot > pivot_is_good && kkt->negative_pivots == 0;
     if (kkt->settings.always_check || !sure) {
         refine_suitably(kkt, &problem, x, l, &own);
     }

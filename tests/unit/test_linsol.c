@@ -521,6 +521,22 @@ static void redundant_rows_leave_x_exact_and_l_of_least_norm(void)
     }
 }
 
+static void exact_least_norm_agrees_with_the_refined_one(void)
+{
+    for (uint64_t seed = 1; seed <= 6; ++seed) {
+        start(&m, 9, seed % 2 == 0 ? 8 : 6, seed % 3 != 0, seed);
+        add_tree(&m, 3);
+        fill(&m);
+        make_redundant(&m, 0.5);
+        int32_t rank = 0;
+        se3di_kkt *kkt = create(&m, SE3DI_KKT_STRUCTURED);
+        CHECK(se3di_kkt_min_norm(kkt, &m.values, m.b, m.exact_x, 1e-10, m.l, &rank) == SE3D_OK);
+        se3di_kkt_destroy(kkt);
+        CHECK(rank == 27);
+        CHECK_NEAR(distance(m.l, m.exact_l, m.row_count), 0.0, 1e-12);
+    }
+}
+
 static void redundancy_inside_a_tree_is_found_late(void)
 {
     start(&m, 6, 6, true, 9);
@@ -740,6 +756,7 @@ int main(void)
     RUN(a_hub_with_many_loops_is_solved);
     RUN(empty_systems_are_fine);
     RUN(redundant_rows_leave_x_exact_and_l_of_least_norm);
+    RUN(exact_least_norm_agrees_with_the_refined_one);
     RUN(redundancy_inside_a_tree_is_found_late);
     RUN(contradicting_rows_are_told);
     RUN(nearly_dependent_rows_are_solved_as_regular);
