@@ -42,6 +42,16 @@ static const char *guess_symbol(const se3d_expression_def *def, size_t column, c
     return guess.distance > 0 ? se3di_guess_get(&guess) : NULL;
 }
 
+/* A plain text in a flow list or map ends at a comma: hypot(a, b) becomes two values. */
+static bool is_cut(const se3di_node *node)
+{
+    int open = 0;
+    for (const char *c = node->text; *c; ++c) {
+        open += (*c == '(') - (*c == ')');
+    }
+    return node->plain && open != 0;
+}
+
 static bool fail_expression(se3di_reader *reader, const se3di_node *node,
                             const se3d_expression_def *def, const se3d_expression_error *why)
 {
@@ -49,7 +59,9 @@ static bool fail_expression(se3di_reader *reader, const se3di_node *node,
     char hint[96] = "";
     se3di_node place = *node;
     const char *meant = guess_symbol(def, why->column, word);
-    if (meant) {
+    if (is_cut(node)) {
+        snprintf(hint, sizeof hint, " (inside [ ] and { } an expression with a comma needs quotes)");
+    } else if (meant) {
         snprintf(hint, sizeof hint, ", did you mean `%.63s`?", meant);
     }
     if (node->one_line && why->column > 0) {
@@ -155,6 +167,14 @@ bool se3di_read_vector(se3di_reader *reader, const se3di_node *node, size_t size
                                  se3di_node_describe(node), size);
     }
     if (node->count != size) {
+        for (const se3di_node *child = node->first; child; child = child->next) {
+            if (child->text && is_cut(child)) {
+                return se3di_reader_fail(reader, child,
+                                         "`%.80s` was cut at a comma: inside [ ] an expression "
+                                         "with a comma needs quotes",
+                                         child->text);
+            }
+        }
         return se3di_reader_fail(reader, node, "has %zu entries, must be a list of %zu numbers",
                                  node->count, size);
     }

@@ -219,7 +219,7 @@ static se3d_status print_norm(const options *o, const se3d_system *system, se3d_
         return status;
     }
     const double phi = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3] - 1.0;
-    const double gamma = -0.5 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) * (phi + 1.0);
+    const double gamma = 0.0 - 0.5 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) * (phi + 1.0);
     for (int k = 0; k < 4; ++k) {
         row[k] = 2.0 * p[k];
     }
