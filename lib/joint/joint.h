@@ -17,7 +17,7 @@
 #define SE3DI_JOINT_DISPLACEMENT 2  /* coordinate: axis_i . d */
 #define SE3DI_JOINT_DISTANCE     4  /* def.distance > 0, or 0 for the one at the present pose */
 #define SE3DI_JOINT_PITCH        8  /* def.pitch != 0; its last row holds at the present pose */
-#define SE3DI_JOINT_OFFSET       16 /* def.distance is a distance of axes, may be 0 */
+#define SE3DI_JOINT_OFFSET       16 /* def.distance >= 0 is that of the axes (last row) */
 
 #define SE3DI_JOINT_LIST(X)                                                                        \
     X(fixed, 0)                                                                                    \

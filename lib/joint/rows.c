@@ -61,6 +61,16 @@ void se3di_row_add_dp2(se3di_draft *draft, const char *name, const double a_i[3]
     se3di_draft_add_term(draft, &term, 1.0);
 }
 
+void se3di_row_add_triple(se3di_draft *draft, const char *name, const double a_i[3],
+                          const double a_j[3])
+{
+    se3di_term term = term_between(draft, SE3DI_PRIMITIVE_TRIPLE);
+    se3di_copy(a_i, term.a_i);
+    se3di_copy(a_j, term.a_j);
+    se3di_draft_add_row(draft, name, 0.0);
+    se3di_draft_add_term(draft, &term, 1.0);
+}
+
 void se3di_row_add_d(se3di_draft *draft, double distance)
 {
     se3di_term term = term_between(draft, SE3DI_PRIMITIVE_D);

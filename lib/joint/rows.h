@@ -19,6 +19,9 @@ void se3di_row_add_dp1(se3di_draft *draft, const char *name, const double a_i[3]
                        const double a_j[3]);
 /* a_i . d = 0 */
 void se3di_row_add_dp2(se3di_draft *draft, const char *name, const double a_i[3]);
+/* d . (a_i x a_j) = 0 */
+void se3di_row_add_triple(se3di_draft *draft, const char *name, const double a_i[3],
+                          const double a_j[3]);
 /* d . d = distance^2 */
 void se3di_row_add_d(se3di_draft *draft, double distance);
 

@@ -17,12 +17,13 @@ typedef struct se3di_frame {
 } se3di_frame;
 
 typedef enum se3di_primitive_type {
-    SE3DI_PRIMITIVE_DP1 = 0,   /* a_i . a_j */
-    SE3DI_PRIMITIVE_DP2 = 1,   /* a_i . d_ij */
-    SE3DI_PRIMITIVE_D = 2,     /* d_ij . d_ij */
-    SE3DI_PRIMITIVE_CD = 3,    /* c . d_ij, c in the ground frame */
-    SE3DI_PRIMITIVE_ANGLE = 4, /* angle from a_i to a_j about b_i (right-handed), in (-pi, pi] */
-    SE3DI_PRIMITIVE_COUNT = 5
+    SE3DI_PRIMITIVE_DP1 = 0,    /* a_i . a_j */
+    SE3DI_PRIMITIVE_DP2 = 1,    /* a_i . d_ij */
+    SE3DI_PRIMITIVE_D = 2,      /* d_ij . d_ij */
+    SE3DI_PRIMITIVE_CD = 3,     /* c . d_ij, c in the ground frame */
+    SE3DI_PRIMITIVE_ANGLE = 4,  /* angle from a_i to a_j about b_i (right-handed), in (-pi, pi] */
+    SE3DI_PRIMITIVE_TRIPLE = 5, /* d_ij . (a_i x a_j) */
+    SE3DI_PRIMITIVE_COUNT = 6
 } se3di_primitive_type;
 
 typedef struct se3di_term {

@@ -15,5 +15,5 @@
 const se3di_primitive se3di_primitives[SE3DI_PRIMITIVE_COUNT] = {
     [SE3DI_PRIMITIVE_DP1] = ROW(dp1),     [SE3DI_PRIMITIVE_DP2] = ROW(dp2),
     [SE3DI_PRIMITIVE_D] = ROW(d),         [SE3DI_PRIMITIVE_CD] = ROW(cd),
-    [SE3DI_PRIMITIVE_ANGLE] = ROW(angle),
+    [SE3DI_PRIMITIVE_ANGLE] = ROW(angle), [SE3DI_PRIMITIVE_TRIPLE] = ROW(triple),
 };

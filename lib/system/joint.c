@@ -90,20 +90,16 @@ static se3d_status check_parameters(se3d_system *system, uint32_t flags, const u
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "pitch = 0 m, must not be 0 (a screw without advance is a revolute)");
     }
-    if ((flags & SE3DI_JOINT_OFFSET) && def->distance != 0.0) {
-        return SE3DI_FAIL(system, SE3D_ERR_UNSUPPORTED,
-                          "distance = %g m, must be 0: axes that do not meet are not supported",
-                          def->distance);
-    }
-    if (!(flags & SE3DI_JOINT_DISTANCE)) {
+    if (!(flags & (SE3DI_JOINT_DISTANCE | SE3DI_JOINT_OFFSET))) {
         return SE3D_OK;
     }
     if (def->distance < 0.0) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "distance = %g m, must be > 0 (or 0: as at the present pose)",
-                          def->distance);
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "distance = %g m, must be %s",
+                          def->distance,
+                          flags & SE3DI_JOINT_OFFSET ? ">= 0 (0: the axes meet)"
+                                                     : "> 0 (or 0: as at the present pose)");
     }
-    if (def->distance == 0.0) {
+    if ((flags & SE3DI_JOINT_DISTANCE) && def->distance == 0.0) {
         double scale;
         const se3di_frame *frames = system->model.frames;
         def->distance = present_distance(f, &frames[bodies[0]], &frames[bodies[1]], &scale);
@@ -148,6 +144,11 @@ static void draft_build(const se3di_model *model, const se3di_joint_type *type,
     type->build(f, def, draft);
     if (type->flags & SE3DI_JOINT_PITCH) {
         close_last_row(draft, model->frames);
+    }
+    if (type->flags & SE3DI_JOINT_OFFSET) {
+        se3di_row *row = &draft->rows[draft->row_count - 1];
+        close_last_row(draft, model->frames);
+        row->value = copysign(def->distance, row->value); /* the side of the present pose */
     }
 }
 

@@ -800,7 +800,8 @@ static void the_normalisation_has_its_derivatives(void)
 
 static void the_table_has_a_name_for_every_primitive(void)
 {
-    static const char *const names[SE3DI_PRIMITIVE_COUNT] = {"dp1", "dp2", "d", "cd", "angle"};
+    static const char *const names[SE3DI_PRIMITIVE_COUNT] = {"dp1", "dp2",   "d",
+                                                             "cd",  "angle", "triple"};
     for (int k = 0; k < SE3DI_PRIMITIVE_COUNT; ++k) {
         CHECK(strcmp(se3di_primitives[k].name, names[k]) == 0);
     }

@@ -92,8 +92,8 @@ typedef struct joint_case {
     int rows;
     int angle, displacement; /* has the coordinate */
     int square;              /* axis_j is square to axis_i */
-    char place; /* P_j: i at P_i, a slid along axis_i, b along axis_j, p in the plane square to
-                   axis_i, f anywhere */
+    char place; /* P_j: i at P_i, a slid along axis_i, b along axis_j, c the same beside P_i, p in
+                   the plane square to axis_i, f anywhere */
     const char *row_names;
     freedom freedoms[6];
 } joint_case;
@@ -207,8 +207,8 @@ static const joint_case joint_cases[] = {
      0,
      0,
      1,
-     'b',
-     "dp1 dp2_a dp2_b",
+     'c',
+     "dp1 dp2 triple",
      {{'r', 'b', 'j'}, {'t', 'b', 0}, {'r', 'a', 'i'}}},
     {"parallel",
      se3d_joint_create_parallel,
@@ -286,7 +286,11 @@ static inline void world_joint_def(world *w, const joint_case *c, se3d_body body
     if (c->place == 'a' || c->place == 'f') {
         se3di_add_scaled(0.3 + u[0], axis, shift);
     }
-    if (c->place == 'b') {
+    if (c->place == 'c') { /* def.distance away along the common normal */
+        se3di_add_scaled(-0.7, other, shift);
+        def->distance = 0.7;
+    }
+    if (c->place == 'b' || c->place == 'c') {
         se3di_add_scaled(0.3 + u[0], third, shift);
     }
     if (c->place == 'p' || c->place == 'f') {

@@ -351,6 +351,7 @@ static void parameters_of_joints_are_checked(void)
     def.distance = -1.0;
     rejects(&w, se3d_joint_create_distance, &def, invalid, "distance = -1 m");
     rejects(&w, se3d_joint_create_revolute_spherical, &def, invalid, "distance = -1 m");
+    rejects(&w, se3d_joint_create_revolute_cylindrical, &def, invalid, "distance = -1 m");
     def.distance = (double)NAN;
     rejects(&w, se3d_joint_create_distance, &def, invalid, "distance");
     world_destroy(&w);
