@@ -22,8 +22,8 @@ typedef struct builder {
     se3d_status status;
 } builder;
 
-void se3di_error_set(se3d_model_error *error, const char *file, size_t line, size_t column,
-                     const char *path, const char *text)
+void se3di_document_report(se3d_model_error *error, const char *file, size_t line, size_t column,
+                           const char *path, const char *text)
 {
     if (!error) {
         return;
@@ -50,14 +50,14 @@ static bool fail_at(builder *b, yaml_mark_t mark, const se3di_node *where, const
     if (where) {
         se3di_node_format_path(where, path, sizeof path);
     }
-    se3di_error_set(b->error, b->file, mark.line + 1, mark.column + 1, path, text);
+    se3di_document_report(b->error, b->file, mark.line + 1, mark.column + 1, path, text);
     b->status = SE3D_ERR_MODEL;
     return false;
 }
 
 static bool fail_memory(builder *b)
 {
-    se3di_error_set(b->error, b->file, 0, 0, "", "out of memory");
+    se3di_document_report(b->error, b->file, 0, 0, "", "out of memory");
     b->status = SE3D_ERR_NO_MEMORY;
     return false;
 }

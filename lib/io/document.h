@@ -50,7 +50,7 @@ void se3di_node_format_path(const se3di_node *node, char *path, size_t size);
 
 /* Fill `error` with "file:line:column: path: text"; line 0 leaves the place out, an empty path is
  * left out. */
-void se3di_error_set(se3d_model_error *error, const char *file, size_t line, size_t column,
-                     const char *path, const char *text);
+void se3di_document_report(se3d_model_error *error, const char *file, size_t line, size_t column,
+                           const char *path, const char *text);
 
 #endif

@@ -103,7 +103,7 @@ static se3d_model *create_model(const se3d_allocator *allocator)
 static se3d_status fail_early(se3d_model_error *error, se3d_status status, const char *path,
                               const char *text)
 {
-    se3di_error_set(error, "", 0, 0, path, text);
+    se3di_document_report(error, "", 0, 0, path, text);
     return status;
 }
 

@@ -10,7 +10,7 @@ static bool fail_at(se3di_reader *reader, size_t line, size_t column, const char
                     const char *text)
 {
     reader->status = SE3D_ERR_MODEL;
-    se3di_error_set(reader->error, reader->model->file, line, column, path, text);
+    se3di_document_report(reader->error, reader->model->file, line, column, path, text);
     return false;
 }
 
@@ -49,7 +49,7 @@ bool se3di_reader_fail_key(se3di_reader *reader, const se3di_node *map, const ch
 bool se3di_reader_fail_memory(se3di_reader *reader)
 {
     reader->status = SE3D_ERR_NO_MEMORY;
-    se3di_error_set(reader->error, "", 0, 0, "", "out of memory");
+    se3di_document_report(reader->error, "", 0, 0, "", "out of memory");
     return false;
 }
 

@@ -54,7 +54,7 @@ void se3d_run_options_init(se3d_run_options *options, size_t size)
 
 static se3d_status fail(runner *r, se3d_status status, const char *text)
 {
-    se3di_error_set(r->error, "", 0, 0, "", text);
+    se3di_document_report(r->error, "", 0, 0, "", text);
     return status;
 }
 

@@ -60,7 +60,8 @@ static bool fail_expression(se3di_reader *reader, const se3di_node *node,
     se3di_node place = *node;
     const char *meant = guess_symbol(def, why->column, word);
     if (is_cut(node)) {
-        snprintf(hint, sizeof hint, " (inside [ ] and { } an expression with a comma needs quotes)");
+        snprintf(hint, sizeof hint,
+                 " (inside [ ] and { } an expression with a comma needs quotes)");
     } else if (meant) {
         snprintf(hint, sizeof hint, ", did you mean `%.63s`?", meant);
     }
