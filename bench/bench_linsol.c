@@ -73,7 +73,8 @@ static void chain_init(chain *s, int32_t links, int32_t rows, int32_t n, bool ma
     }
     for (size_t i = 0; i < entries * (size_t)rows * size; ++i) {
         size_t c = i % size, r = i / size % (size_t)rows;
-        s->joint[i] = c == 7 ? 0.0 : 0.3 * uniform() + (r == c);
+        size_t free = n == 8 && r >= 3 ? r + 1 : r; /* r-p: not along p */
+        s->joint[i] = c == 7 ? 0.0 : 0.3 * uniform() + (c == free);
     }
     for (size_t i = 0; i < count * size; ++i) {
         s->b[i] = uniform();

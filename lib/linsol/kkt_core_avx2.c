@@ -34,6 +34,32 @@ V8_INLINE void v8_store(double *p, v8 v)
     _mm256_store_pd(p + 4, v.high);
 }
 
+/* The first n (a constant) of 8, zeros behind; any alignment. */
+V8_INLINE v8 v8_load_part(const int n, const double *p)
+{
+    const __m256i lane = _mm256_set_epi64x(3, 2, 1, 0);
+    const __m256i low = _mm256_cmpgt_epi64(_mm256_set1_epi64x(n), lane);
+    const __m256i high = _mm256_cmpgt_epi64(_mm256_set1_epi64x(n - 4), lane);
+    v8 v = {_mm256_maskload_pd(p, low), _mm256_setzero_pd()};
+    if (n > 4) {
+        v.high = _mm256_maskload_pd(p + 4, high);
+    }
+    return v;
+}
+
+/* The larger of acc and |v|, lane by lane. */
+V8_INLINE v8 v8_largest(v8 acc, v8 v)
+{
+    const __m256d sign = _mm256_set1_pd(-0.0);
+    return (v8){_mm256_max_pd(_mm256_andnot_pd(sign, v.low), acc.low),
+                _mm256_max_pd(_mm256_andnot_pd(sign, v.high), acc.high)};
+}
+
+V8_INLINE v8 v8_add(v8 u, v8 v)
+{
+    return (v8){_mm256_add_pd(u.low, v.low), _mm256_add_pd(u.high, v.high)};
+}
+
 V8_INLINE v8 v8_mul(v8 v, double s)
 {
     __m256d f = _mm256_set1_pd(s);

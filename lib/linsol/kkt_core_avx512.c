@@ -32,6 +32,23 @@ V8_INLINE void v8_store(double *p, v8 v)
     _mm512_store_pd(p, v);
 }
 
+/* The first n (a constant) of 8, zeros behind; any alignment. */
+V8_INLINE v8 v8_load_part(const int n, const double *p)
+{
+    return _mm512_maskz_loadu_pd((__mmask8)((1 << n) - 1), p);
+}
+
+/* The larger of acc and |v|, lane by lane. */
+V8_INLINE v8 v8_largest(v8 acc, v8 v)
+{
+    return _mm512_max_pd(_mm512_abs_pd(v), acc);
+}
+
+V8_INLINE v8 v8_add(v8 u, v8 v)
+{
+    return _mm512_add_pd(u, v);
+}
+
 V8_INLINE v8 v8_mul(v8 v, double s)
 {
     return _mm512_mul_pd(v, _mm512_set1_pd(s));

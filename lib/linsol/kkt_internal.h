@@ -27,12 +27,13 @@ enum {
     KKT_BASE_COUNT = 5
 };
 
-/* One block to copy: dest[8 r + c] = base[source + r row_stride + c column_stride]. */
+/* One block of the caller's, of `rows` rows and body_size columns, to copy. */
 typedef struct se3di_kkt_source {
     int32_t base;
-    int32_t lower; /* 1: into `lower` */
-    int32_t rows, columns;
-    int32_t row_stride, column_stride;
+    int32_t rows;
+    bool lower;     /* into `lower` */
+    bool is_turned; /* the transpose */
+    bool is_mass;   /* diag(m, m, m, J) from m, J */
     size_t source, dest;
 } se3di_kkt_source;
 

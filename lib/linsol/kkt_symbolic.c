@@ -123,58 +123,61 @@ static void add_body_sources(const source_list *list)
     bool mass = kkt->pattern.body_kind == SE3DI_KKT_BODY_MASS;
     for (size_t i = 0; i < kkt->pattern.body_count; ++i) {
         int32_t k = kkt->position_of[i];
-        size_t stride = mass ? 10 : (size_t)(n * n);
         add_source(list, k,
-                   (se3di_kkt_source){KKT_BASE_BODY, 0, n, n, n, 1, i * stride, kkt->panel[k]});
+                   (se3di_kkt_source){.base = KKT_BASE_BODY,
+                                      .rows = n,
+                                      .is_mass = mass,
+                                      .source = i * (mass ? 10 : (size_t)(n * n)),
+                                      .dest = kkt->panel[k]});
     }
 }
 
+/* `upper` receives H_ij where i goes first, else H_ji; `lower` the transpose of the other one. */
 static void add_coupling_sources(const source_list *list)
 {
     const se3di_kkt *kkt = list->kkt;
+    const bool symmetric = kkt->pattern.symmetric;
     int32_t n = kkt->pattern.body_size;
     for (size_t e = 0; e < kkt->pattern.coupling_count; ++e) {
         int32_t i = kkt->position_of[kkt->pattern.coupling[2 * e]];
         int32_t j = kkt->position_of[kkt->pattern.coupling[2 * e + 1]];
         int32_t first = i < j ? i : j;
-        size_t at = e * (size_t)(n * n), dest = block_at(kkt, first, i < j ? j : i);
-        /* upper block of the order: H_ij where i goes first, else H_ji = H_ij^T if symmetric */
-        se3di_kkt_source plain = {KKT_BASE_COUPLING_UPPER, i > j, n, n, n, 1, at, dest};
-        se3di_kkt_source turned = {KKT_BASE_COUPLING_LOWER, i < j, n, n, 1, n, at, dest};
-        if (i > j) { /* the array that is stored as it is goes to `upper`, the other to `lower` */
-            plain = (se3di_kkt_source){KKT_BASE_COUPLING_LOWER, 0, n, n, n, 1, at, dest};
-            turned = (se3di_kkt_source){KKT_BASE_COUPLING_UPPER, 1, n, n, 1, n, at, dest};
-            if (kkt->pattern.symmetric) {
-                plain = turned;
-                plain.lower = 0;
-            }
-        }
-        add_source(list, first, plain);
-        if (!kkt->pattern.symmetric) {
+        se3di_kkt_source own = {.base = KKT_BASE_COUPLING_UPPER,
+                                .rows = n,
+                                .source = e * (size_t)(n * n),
+                                .dest = block_at(kkt, first, i < j ? j : i)};
+        se3di_kkt_source turned = own;
+        turned.is_turned = true;
+        if (symmetric) {
+            add_source(list, first, i < j ? own : turned);
+        } else {
+            own.base = i < j ? KKT_BASE_COUPLING_UPPER : KKT_BASE_COUPLING_LOWER;
+            turned.base = i < j ? KKT_BASE_COUPLING_LOWER : KKT_BASE_COUPLING_UPPER;
+            turned.lower = true;
+            add_source(list, first, own);
             add_source(list, first, turned);
         }
     }
 }
 
-/* One node of a joint against one body. */
+/* One node of a joint against one body: whichever goes first owns the block; `upper` receives the
+ * joint's C or the body's B, `lower` the other one, transposed alike. */
 static void add_block_sources(const source_list *list, int32_t node, int32_t body, size_t at)
 {
     const se3di_kkt *kkt = list->kkt;
-    int32_t n = kkt->pattern.body_size, rows = kkt->node_size[node];
     int32_t j = kkt->position_of[node], i = kkt->position_of[body];
-    at += (size_t)(kkt->node_row[node] * n);
-    se3di_kkt_source source = {KKT_BASE_JOINT, 0, rows, n, n, 1, at, 0};
-    int32_t first = j;
-    if (i < j) { /* the body goes first: B is in its row, C in its column */
-        first = i;
-        source = (se3di_kkt_source){KKT_BASE_JOINT_B, 0, n, rows, 1, n, at, 0};
-        source.base = kkt->pattern.symmetric ? KKT_BASE_JOINT : KKT_BASE_JOINT_B;
-    }
-    source.dest = block_at(kkt, first, i < j ? j : i);
+    int32_t first = i < j ? i : j;
+    bool is_b = i < j && !kkt->pattern.symmetric;
+    at += (size_t)(kkt->node_row[node] * kkt->pattern.body_size);
+    se3di_kkt_source source = {.base = is_b ? KKT_BASE_JOINT_B : KKT_BASE_JOINT,
+                               .rows = kkt->node_size[node],
+                               .is_turned = i < j,
+                               .source = at,
+                               .dest = block_at(kkt, first, i < j ? j : i)};
     add_source(list, first, source);
     if (!kkt->pattern.symmetric) {
-        source.base = i < j ? KKT_BASE_JOINT : KKT_BASE_JOINT_B;
-        source.lower = 1;
+        source.base = is_b ? KKT_BASE_JOINT : KKT_BASE_JOINT_B;
+        source.lower = true;
         add_source(list, first, source);
     }
 }
