@@ -78,7 +78,7 @@ bool se3di_reader_fail_system(se3di_reader *reader, const se3di_node *map, se3d_
     if (strncmp(rest, " = ", 3) == 0) {
         return se3di_reader_fail_key(reader, map, key, "is %s", rest + 3);
     }
-    return se3di_reader_fail_key(reader, map, key, "%s", message);
+    return se3di_reader_fail_key(reader, map, key, "%s", rest[0] == ' ' ? rest + 1 : message);
 }
 
 /* Append "a, b, c" to `text`. */
