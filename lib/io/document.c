@@ -49,6 +49,10 @@ static bool fail_at(builder *b, yaml_mark_t mark, const se3di_node *where, const
     va_end(arguments);
     if (where) {
         se3di_node_format_path(where, path, sizeof path);
+        if (where == b->open && b->key) {
+            const size_t used = strlen(path);
+            snprintf(path + used, sizeof path - used, "%s%.80s", used > 0 ? "." : "", b->key);
+        }
     }
     se3di_document_report(b->error, b->file, mark.line + 1, mark.column + 1, path, text);
     b->status = SE3D_ERR_MODEL;

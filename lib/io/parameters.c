@@ -55,6 +55,11 @@ static bool check_name(se3di_reader *reader, const se3di_node *node)
         se3di_node place = *node;
         place.line = node->key_line;
         place.column = node->key_column;
+        if (strpbrk(node->key, "()")) {
+            return se3di_reader_fail(reader, &place,
+                                     "is the rest of an expression that was cut at a comma: inside "
+                                     "{ } an expression with a comma needs quotes");
+        }
         return se3di_reader_fail(reader, &place,
                                  "the name is not allowed: letters, digits and _, not beginning "
                                  "with a digit, and not t or the name of a constant or function");

@@ -57,7 +57,7 @@ static const model_row model_table[] = {
     {"pendulum_rsda", "pendulum_rsda", NULL, NULL, NULL, "0.001", 4e-5,
      "pin.angle=theta pin.rate=dtheta bar.velocity.y=b1_vy pin.force.y=RQy pin.force.z=RQz "
      "spring.torque=-Trsda_x"},
-    {"double_pendulum", "double_pendulum", NULL, NULL, NULL, "0.0001", 1e-6,
+    {"double_pendulum", "double_pendulum", NULL, NULL, NULL, "0.0001", 6e-6,
      "shoulder.angle=theta1 shoulder.angle+elbow.angle=theta2 shoulder.rate=dtheta1 "
      "upper.position.y=b1_y lower.position.y=b2_y lower.velocity.z=b2_vz "
      "upper.acceleration.y=b1_ay "

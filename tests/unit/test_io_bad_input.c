@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Malformed models: each is rejected with one message that has the place, the path, the value and
+ * what is allowed. */
+#include "check.h"
+#include "se3d/io.h"
+
+#define BAR "bodies: [{name: bar, mass: 1, inertia: [1, 1, 1]}]\n"
+#define PIN                                                                                        \
+    "joints: [{name: pin, type: revolute, body_i: ground, body_j: bar, at: [0, 0, 0], axis: "      \
+    "[0, 0, 1]}]\n"
+#define RUN_IT  "analysis: {type: dynamics, duration: 1}\n"
+#define BODY(x) "se3d: 1\nbodies:\n  - {name: bar, " x "}\n"
+#define WITH(x) "se3d: 1\n" BAR PIN x "\n"
+
+typedef struct bad_input {
+    const char *text;
+    size_t line, column; /* 0: not checked */
+    const char *parts[4];
+} bad_input;
+
+static const bad_input table[] = {
+    /* syntax and limits */
+    {"", 1, 1, {"is empty", "se3d: 1"}},
+    {"# nothing\n", 1, 1, {"is empty"}},
+    {"se3d: 1\nbodies: [\n", 3, 1, {"syntax error"}},
+    {"se3d: 1\n\tbodies: []\n", 2, 1, {"syntax error", "tab"}},
+    {"se3d: 1\nse3d: 1\n", 2, 1, {"`se3d` is given twice"}},
+    {"se3d: 1\nbodies: &a []\n", 2, 9, {"bodies", "anchors", "not allowed"}},
+    {"se3d: 1\nbodies: *a\n", 2, 9, {"aliases", "not allowed"}},
+    {"se3d: !!int 1\n", 1, 7, {"tags", "not allowed"}},
+    {"se3d: 1\n---\nse3d: 1\n", 2, 1, {"second document"}},
+    {"se3d: 1\n? [a]\n: b\n", 2, 3, {"a key must be a plain text"}},
+    {"se3d: 1\ntitle: \"a\\0b\"\n", 2, 8, {"NUL"}},
+    {"se3d: 1\ntitle: \xff\xfe\n", 2, 0, {"not a text in UTF-8"}},
+    {"- 1\n", 1, 1, {"is a list", "must be a map"}},
+    {"just text\n", 1, 1, {"must be a map"}},
+    /* head */
+    {"title: x\n", 1, 1, {"se3d: is missing", "must be 1"}},
+    {"se3d: 2\n", 1, 7, {"se3d: is 2", "must be 1"}},
+    {"se3d: one\n", 1, 7, {"se3d: `one`"}},
+    {"se3d: 1\nbodys: []\n", 2, 1, {"the key `bodys` is unknown", "did you mean `bodies`"}},
+    {"se3d: 1\nzzz: 1\n", 2, 1, {"`zzz` is unknown", "allowed are", "gravity"}},
+    {"se3d: 1\ncontact: {}\n", 2, 10, {"contact: is not supported yet"}},
+    {"se3d: 1\ngravity: [0, 0]\n", 2, 10, {"gravity: has 2 entries", "list of 3 numbers"}},
+    {"se3d: 1\ngravity: -9.81\n", 2, 10, {"gravity: is a single value", "list of 3 numbers"}},
+    /* parameters and expressions */
+    {"se3d: 1\nparameters: {a: b, b: a}\n", 2, 17, {"parameters.a", "a -> b -> a", "circle"}},
+    {"se3d: 1\nparameters: {a: a+1}\n", 2, 17, {"depends on itself"}},
+    {"se3d: 1\nparameters: {a: 1/0}\n", 2, 0, {"parameters.a", "1/0"}},
+    {"se3d: 1\nparameters: {a: 2*}\n", 2, 0, {"parameters.a", "2*"}},
+    {"se3d: 1\nparameters: {t: 1}\n", 2, 14, {"name is not allowed"}},
+    {"se3d: 1\nparameters: {sin: 1}\n", 2, 14, {"name is not allowed"}},
+    {"se3d: 1\nparameters: {2a: 1}\n", 2, 14, {"name is not allowed"}},
+    {"se3d: 1\nparameters: {len: 1, b: 2*lem}\n", 2, 27, {"parameters.b", "did you mean `len`"}},
+    {"se3d: 1\nparameters: {b: \"2*(3\"}\n", 2, 0, {"parameters.b"}},
+    {"se3d: 1\nparameters: {h: hypot(3, 4)}\n", 0, 0, {"needs quotes"}},
+    {"se3d: 1\nparameters: [1]\n", 2, 13, {"parameters: is a list", "must be a map"}},
+    /* bodies */
+    {"se3d: 1\nbodies: 3\n", 2, 9, {"bodies: is a single value", "must be a list"}},
+    {"se3d: 1\nbodies: [bar]\n", 2, 10, {"bodies[0]", "must be a map"}},
+    {"se3d: 1\nbodies: [{mass: 1}]\n", 2, 10, {"bodies[0].name: is missing"}},
+    {BODY("inertia: [1, 1, 1]"), 3, 5, {"bodies[0].mass: is missing", "must be finite and > 0"}},
+    {BODY("mass: 1"), 3, 5, {"bodies[0].inertia: is missing"}},
+    {BODY("mass: -1, inertia: [1, 1, 1]"), 3, 23, {"bodies[0].mass: is -1", "finite and > 0"}},
+    {BODY("mass: 0, inertia: [1, 1, 1]"), 3, 23, {"bodies[0].mass: is 0", "finite and > 0"}},
+    {BODY("mass: .nan, inertia: [1, 1, 1]"), 3, 23, {"mass: is .nan", "finite"}},
+    {BODY("mass: nan, inertia: [1, 1, 1]"), 3, 23, {"mass: is nan", "finite"}},
+    {BODY("mass: .inf, inertia: [1, 1, 1]"), 3, 23, {"mass: is .inf", "finite"}},
+    {BODY("mass: 1e400, inertia: [1, 1, 1]"), 3, 0, {"bodies[0].mass"}},
+    {BODY("mass: heavy, inertia: [1, 1, 1]"), 3, 23, {"bodies[0].mass: `heavy`"}},
+    {BODY("mass: [1], inertia: [1, 1, 1]"), 3, 23, {"mass: is a list", "must be a number"}},
+    {BODY("mass: , inertia: [1, 1, 1]"), 3, 0, {"mass: is empty"}},
+    {BODY("mass: 1, inertia: [1, 1, 5]"), 3, 35, {"bodies[0].inertia", "principal moments"}},
+    {BODY("mass: 1, inertia: [1, 1, -1]"), 3, 35, {"bodies[0].inertia"}},
+    {BODY("mass: 1, inertia: [1, 1]"), 3, 35, {"bodies[0].inertia: must be [Ixx, Iyy, Izz]"}},
+    {BODY("mass: 1, inertia: [[1, 0, 0], [1, 1, 0], [0, 0, 1]]"), 3, 35, {"not symmetric"}},
+    {BODY("mas: 1"), 3, 17, {"bodies[0]: the key `mas` is unknown", "did you mean `mass`"}},
+    {BODY("mass: 1, inertia: [1, 1, 1], orientation: {euler_parameters: [1, 1, 0, 0]}"),
+     3,
+     0,
+     {"orientation.euler_parameters: has the length 1.41421356", "unit"}},
+    {BODY("mass: 1, inertia: [1, 1, 1], orientation: {matrix: [[1,0,0],[0,1,0],[0,0,-1]]}"),
+     3,
+     0,
+     {"reflection", "right-handed"}},
+    {BODY("mass: 1, inertia: [1, 1, 1], orientation: {matrix: [[2,0,0],[0,1,0],[0,0,1]]}"),
+     3,
+     0,
+     {"is not a rotation"}},
+    {BODY("mass: 1, inertia: [1, 1, 1], orientation: {axis: [0,0,0], angle: 1}"),
+     3,
+     0,
+     {"orientation.axis: is [0, 0, 0]", "not zero"}},
+    {BODY("mass: 1, inertia: [1, 1, 1], orientation: {axis: [0,0,1]}"),
+     3,
+     0,
+     {"angle: is missing"}},
+    {BODY("mass: 1, inertia: [1, 1, 1], orientation: {}"), 3, 0, {"exactly one of"}},
+    {BODY("mass: 1, inertia: [1, 1, 1], fixed: maybe"),
+     3,
+     0,
+     {"fixed: is `maybe`", "true or false"}},
+    {BODY("shapes: [{type: ball, radius: 1}]"), 3, 0, {"`ball` is not supported", "sphere"}},
+    {BODY("density: 1, shapes: [{type: sphere}]"), 3, 0, {"shapes[0].radius: is missing"}},
+    {BODY("density: 1, shapes: [{type: box, size: [1, 0, 1]}]"), 3, 0, {"each edge must be > 0"}},
+    {BODY("density: 1, shapes: [{type: sphere, radius: 1, position: [1, 0, 0]}]"),
+     3,
+     0,
+     {"centre of mass at [1, 0, 0]", "origin"}},
+    {BODY("shapes: [{type: sphere, radius: 1, material: steel}]"), 3, 0, {"no material is named"}},
+    {BODY("shapes: [{type: sphere, radius: 1, length: 2}]"), 3, 0, {"`sphere` has no such key"}},
+    {"se3d: 1\nbodies:\n  - {name: a.b, mass: 1}\n", 3, 12, {"the name `a.b` is not allowed"}},
+    {"se3d: 1\nbodies:\n  - {name: energy, mass: 1}\n", 3, 12, {"taken by a channel"}},
+    {"se3d: 1\nbodies: [{name: a, fixed: true}, {name: a, fixed: true}]\n",
+     2,
+     41,
+     {"the name of two bodies"}},
+    {"se3d: 1\nbodies: [{name: ground, mass: 1}]\n", 2, 31, {"ground can only have markers"}},
+    /* joints */
+    {"se3d: 1\n" BAR "joints: [{type: hinge}]\n", 3, 17, {"`hinge` is not supported", "revolute"}},
+    {"se3d: 1\n" BAR "joints: [{type: revolut}]\n", 3, 17, {"did you mean `revolute`"}},
+    {"se3d: 1\n" BAR "joints: [{name: a}]\n", 3, 10, {"joints[0].type: is missing"}},
+    {"se3d: 1\n" BAR "joints: [{type: revolute, body_i: ground, body_j: baz, at: [0,0,0]}]\n",
+     3,
+     51,
+     {"joints[0].body_j: no body is named `baz`", "did you mean `bar`"}},
+    {"se3d: 1\n" BAR "joints: [{type: revolute, body_i: bar, body_j: bar, at: [0,0,0]}]\n",
+     3,
+     48,
+     {"two different bodies"}},
+    {"se3d: 1\n" BAR "joints: [{type: revolute, body_i: ground, body_j: bar, at: [0, 0, 0]}]\n",
+     3,
+     10,
+     {"joints[0].axis: is missing"}},
+    {"se3d: 1\n" BAR
+     "joints: [{type: revolute, body_i: ground, body_j: bar, at: [0, 0, 0], axis: [0, 0, 0]}]\n",
+     3,
+     77,
+     {"joints[0].axis: is [0, 0, 0]", "not zero"}},
+    {"se3d: 1\n" BAR "joints: [{type: revolute, body_i: ground, body_j: bar, at: [0, 0, 0], axis: "
+     "[0, 0, 1], point_i: [0, 0, 0]}]\n",
+     3,
+     0,
+     {"joints[0].at", "cannot stand beside"}},
+    {"se3d: 1\n" BAR "joints: [{type: spherical, body_i: ground, body_j: bar}]\n",
+     3,
+     10,
+     {"joints[0].at: is missing"}},
+    {"se3d: 1\n" BAR "joints: [{type: spherical, body_i: ground, body_j: bar, point_i: tip}]\n",
+     3,
+     66,
+     {"`tip` is not a marker of `ground`"}},
+    {"se3d: 1\n" BAR "joints: [{type: spherical, body_i: ground, body_j: bar, at: [0,0,0], pitch: "
+     "1}]\n",
+     3,
+     0,
+     {"joints[0].pitch: `spherical` has no such key"}},
+    {WITH("drivers: [{joint: pim, value: t}]"), 4, 19, {"no joint is named `pim`", "mean `pin`"}},
+    {WITH("drivers: [{joint: pin}]"), 4, 11, {"drivers[0].value: is missing"}},
+    {WITH("drivers: [{joint: pin, coordinate: displacement, value: t}]"),
+     4,
+     36,
+     {"which this joint has not"}},
+    {WITH("drivers: [{joint: pin, value: \"sin(tt)\"}]"), 4, 36, {"drivers[0].value", "tt"}},
+    {WITH("drivers: [{joint: pin, value: {spline: [[0, 0], [0, 1]]}}]"), 4, 0, {"must increase"}},
+    {WITH("drivers: [{name: pin, joint: pin, value: t}]"), 4, 18, {"name of two elements"}},
+    /* constraints */
+    {WITH("constraints: [{type: dp3, body_i: bar}]"), 4, 22, {"`dp3` is not supported", "dp1"}},
+    {WITH("constraints: [{type: dp1, body_i: bar, body_j: ground, a_i: [1, 0, 0]}]"),
+     4,
+     15,
+     {"constraints[0].a_j: is missing"}},
+    {WITH("constraints: [{type: d, body_i: bar, body_j: ground, value: 0}]"),
+     4,
+     61,
+     {"constraints[0].value: is 0", "must be > 0"}},
+    /* forces */
+    {WITH("forces: [{type: bushing}]"), 4, 17, {"`bushing` is not supported", "tsda"}},
+    {WITH("forces: [{type: tsda, body_i: ground, body_j: bar, l0: -1}]"),
+     4,
+     56,
+     {"forces[0].l0: is -1", ">= 0"}},
+    {WITH("forces: [{type: force, body: bar, value: [1, 2]}]"), 4, 42, {"list of 3 numbers"}},
+    {WITH("forces: [{type: force, body: bar, value: [1, 2, \"u\"]}]"), 4, 0, {"value[2]", "u"}},
+    {WITH("forces: [{type: torque, body: bar, frame: world, value: [1, 2, 3]}]"),
+     4,
+     43,
+     {"is `world`", "ground, body"}},
+    /* analysis and output */
+    {WITH("analysis: {duration: 1}"), 4, 11, {"analysis.type: is missing"}},
+    {WITH("analysis: {type: dynamic, duration: 1}"), 4, 18, {"did you mean `dynamics`"}},
+    {WITH("analysis: {type: modes, duration: 1}"), 4, 18, {"must be one of"}},
+    {WITH("analysis: {type: dynamics}"), 4, 11, {"analysis.duration: is missing"}},
+    {WITH("analysis: {type: dynamics, duration: -1}"), 4, 38, {"duration: is -1", ">= 0"}},
+    {WITH("analysis: {type: dynamics, duration: 1, step: 0}"), 4, 47, {"step: is 0", "> 0"}},
+    {WITH("analysis: {type: dynamics, duration: 1, method: euler}"), 4, 49, {"generalized_alpha"}},
+    {WITH("analysis: {type: dynamics, duration: 1, alpha: 1}"), 4, 48, {"alpha: is 1", "from"}},
+    {WITH("analysis: [{type: dynamics, duration: 1}, {type: assembly, step: x}]"),
+     4,
+     0,
+     {"analysis[1].step"}},
+    {WITH("output: [{file: a.csv, channels: [bar.pos]}]"), 4, 35, {"`bar` has no channel `pos`"}},
+    {WITH("output: [{file: a.csv, channels: [baz.position]}]"), 4, 35, {"did you mean `bar`"}},
+    {WITH("output: [{file: a.csv, channels: [bar.tip.position]}]"), 4, 35, {"no marker named"}},
+    {WITH("output: [{file: a.csv, channels: [energy.all]}]"), 4, 35, {"kinetic"}},
+    {WITH("output: [{file: a.csv, channels: [pin.displacement]}]"), 4, 35, {"it has:", "angle"}},
+    {WITH("output: [{file: a.csv, every: 0}]"), 4, 31, {"every: is 0", "> 0"}},
+    {WITH("output: [{channels: []}]"), 4, 10, {"output[0].file: is missing"}},
+    {WITH("output: [{file: a.csv}, {file: a.csv}]"), 4, 32, {"written by two outputs"}},
+};
+
+static void every_bad_model_is_rejected_with_place_and_reason(void)
+{
+    for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+        const bad_input *bad = &table[k];
+        char place[64];
+        se3d_model *model = NULL;
+        se3d_model_error error;
+        const se3d_status status =
+            se3d_model_read_text(bad->text, strlen(bad->text), "bad.yaml", NULL, &model, &error);
+        if (status != SE3D_ERR_MODEL) {
+            fprintf(stderr, "accepted (%d): %s\n", (int)status, bad->text);
+        }
+        CHECK(status == SE3D_ERR_MODEL);
+        CHECK(model == NULL);
+        snprintf(place, sizeof place,
+                 bad->column ? "bad.yaml:%zu:%zu: " : "bad.yaml:%zu:", bad->line, bad->column);
+        CHECK_CONTAINS(error.message, bad->line ? place : "bad.yaml:");
+        for (size_t i = 0; i < 4 && bad->parts[i]; ++i) {
+            CHECK_CONTAINS(error.message, bad->parts[i]);
+        }
+        CHECK(strchr(error.message, '\n') == NULL);
+        se3d_model_destroy(model);
+    }
+}
+
+static void options_are_checked_like_the_file(void)
+{
+    static const char text[] = "se3d: 1\nparameters: {L: 1}\n" BAR RUN_IT;
+    static const struct {
+        se3d_model_setting setting;
+        const char *step, *duration, *method, *formulation, *analysis, *part;
+    } cases[] = {
+        {{"M", "1"}, NULL, NULL, NULL, NULL, NULL, "M: the model has no such parameter"},
+        {{"L", "1/"}, NULL, NULL, NULL, NULL, NULL, "L: `1/`"},
+        {{"L", "1"}, "-1", NULL, NULL, NULL, NULL, "--step: is -1, must be finite and > 0"},
+        {{"L", "1"}, NULL, "x", NULL, NULL, NULL, "--duration: `x`"},
+        {{"L", "1"}, NULL, NULL, "euler", NULL, NULL, "--method: is `euler`"},
+        {{"L", "1"}, NULL, NULL, NULL, "rq", NULL, "--formulation: is `rq`"},
+        {{"L", "1"}, NULL, NULL, NULL, NULL, "kinematic", "did you mean `kinematics`"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+        se3d_model *model = NULL;
+        se3d_model_error error;
+        se3d_model_options options = se3d_model_options_default();
+        options.settings = &cases[k].setting;
+        options.setting_count = 1;
+        options.step = cases[k].step;
+        options.duration = cases[k].duration;
+        options.method = cases[k].method;
+        options.formulation = cases[k].formulation;
+        options.analysis = cases[k].analysis;
+        CHECK(se3d_model_read_text(text, strlen(text), "m.yaml", &options, &model, &error) ==
+              SE3D_ERR_MODEL);
+        CHECK_CONTAINS(error.message, cases[k].part);
+        se3d_model_destroy(model);
+    }
+}
+
+static void missing_arguments_are_named(void)
+{
+    se3d_model *model = NULL;
+    se3d_model_error error;
+    CHECK(se3d_model_read_text(NULL, 0, "x", NULL, &model, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_model_read_text("a", 1, NULL, NULL, &model, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_model_read_text("a", 1, "x", NULL, NULL, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_model_read_file(NULL, NULL, &model, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_model_read_file("/nonexistent/x.yaml", NULL, &model, &error) == SE3D_ERR_IO);
+    CHECK_CONTAINS(error.message, "/nonexistent/x.yaml: ");
+    CHECK(se3d_model_read_text("", 0, "x", NULL, &model, NULL) == SE3D_ERR_MODEL);
+    se3d_model_destroy(NULL);
+}
+
+int main(void)
+{
+    RUN(every_bad_model_is_rejected_with_place_and_reason);
+    RUN(options_are_checked_like_the_file);
+    RUN(missing_arguments_are_named);
+    return check_finish();
+}
