@@ -4,6 +4,8 @@
 #include "linsol/kkt_internal.h"
 
 typedef double v2 __attribute__((vector_size(16)));
+typedef double v2_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
+typedef int64_t i2 __attribute__((vector_size(16)));
 typedef struct v8 {
     v2 part[4];
 } v8;
@@ -30,19 +32,27 @@ V8_INLINE void v8_store(double *p, v8 v)
     q[3] = v.part[3];
 }
 
+V8_INLINE v2 v2_load_part(const int n, const double *p)
+{
+    if (n >= 2) {
+        return *(const v2_anywhere *)(const void *)p;
+    }
+    return (v2){n > 0 ? p[0] : 0.0, 0.0};
+}
+
 /* The first n (a constant) of 8, zeros behind; any alignment. */
 V8_INLINE v8 v8_load_part(const int n, const double *p)
 {
-    return (v8){{{p[0], n > 1 ? p[1] : 0.0},
-                 {n > 2 ? p[2] : 0.0, n > 3 ? p[3] : 0.0},
-                 {n > 4 ? p[4] : 0.0, n > 5 ? p[5] : 0.0},
-                 {n > 6 ? p[6] : 0.0, n > 7 ? p[7] : 0.0}}};
+    return (v8){{v2_load_part(n, p), v2_load_part(n - 2, p + 2), v2_load_part(n - 4, p + 4),
+                 v2_load_part(n - 6, p + 6)}};
 }
 
 V8_INLINE v2 v2_largest(v2 acc, v2 v)
 {
-    double a = v[0] < 0.0 ? -v[0] : v[0], b = v[1] < 0.0 ? -v[1] : v[1];
-    return (v2){a > acc[0] ? a : acc[0], b > acc[1] ? b : acc[1]};
+    const i2 magnitude = {INT64_MAX, INT64_MAX};
+    v2 size = (v2)((i2)v & magnitude);
+    i2 is_larger = size > acc;
+    return (v2)((is_larger & (i2)size) | (~is_larger & (i2)acc));
 }
 
 /* The larger of acc and |v|, lane by lane. */

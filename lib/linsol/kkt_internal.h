@@ -71,6 +71,7 @@ struct se3di_kkt {
     int32_t *row_offset;
     size_t *block_offset;
     bool has_loop;
+    bool has_zero_weight; /* of a row of a joint with bodies */
     double cost;
 
     /* graph: nodes 0 .. body_count - 1 are bodies, the others pieces of joints */
@@ -86,6 +87,8 @@ struct se3di_kkt {
     int32_t *node_at;      /* position -> node */
     int32_t *position_of;  /* node -> position */
     int32_t *size_at;      /* position -> size */
+    int32_t *row_at;       /* position -> first row of a joint's node, -1 for a body */
+    bool *is_mass_at;      /* position -> whether its block is diag(m, m, m, J) when eliminated */
     int32_t *near_begin;   /* [node_count + 1] into near */
     int32_t *near;         /* positions > k, ascending */
     size_t *panel;         /* [node_count + 1]: offset of each panel */

@@ -109,11 +109,26 @@ static se3d_status postorder(const se3di_kkt *kkt, const se3di_kkt_fill *fill, i
     for (int32_t k = 0; k < n; ++k) {
         child[k] = -1;
     }
-    for (int32_t k = n - 1; k >= 0; --k) { /* children in ascending order */
+    /* The largest subtree first, the others just before they are needed. */
+    int32_t *size = stack, *heavy = order;
+    for (int32_t k = 0; k < n; ++k) {
+        size[k] = 1;
+        heavy[k] = -1;
+    }
+    for (int32_t k = 0; k < n; ++k) {
         int32_t parent = fill->parent[k];
         if (parent >= 0) {
-            sibling[k] = child[parent];
-            child[parent] = k;
+            size[parent] += size[k];
+            heavy[parent] = heavy[parent] < 0 || size[k] > size[heavy[parent]] ? k : heavy[parent];
+        }
+    }
+    for (int32_t pass = 0; pass < 2; ++pass) {
+        for (int32_t k = n - 1; k >= 0; --k) {
+            int32_t parent = fill->parent[k];
+            if (parent >= 0 && (heavy[parent] == k) == (pass == 1)) {
+                sibling[k] = child[parent];
+                child[parent] = k;
+            }
         }
     }
     for (int32_t root = 0; root < n; ++root) {

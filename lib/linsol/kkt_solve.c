@@ -16,11 +16,13 @@ static const double weight_range = 1e4;
 
 /* ---- factor ---- */
 
-static double middle_weight(const se3di_kkt *kkt)
+static double middle_weight(se3di_kkt *kkt)
 {
     double low = HUGE_VAL, high = 0.0;
+    kkt->has_zero_weight = false;
     for (size_t i = 0; i < kkt->layout.row_count; ++i) {
         double w = kkt->weight[i];
+        kkt->has_zero_weight = kkt->has_zero_weight || !(w > 0.0);
         low = w > 0.0 && w < low ? w : low;
         high = w > high ? w : high;
     }

@@ -11,6 +11,8 @@ static se3d_status take_structure(se3di_kkt *kkt, const se3di_kkt_fill *fill)
     size_t near_count = (size_t)fill->begin[n];
     kkt->position_of = se3di_kkt_take(kkt, n, sizeof(int32_t));
     kkt->size_at = se3di_kkt_take(kkt, n, sizeof(int32_t));
+    kkt->row_at = se3di_kkt_take(kkt, n, sizeof(int32_t));
+    kkt->is_mass_at = se3di_kkt_take(kkt, n, sizeof(bool));
     kkt->near_begin = se3di_kkt_take(kkt, n + 1, sizeof(int32_t));
     kkt->near = se3di_kkt_take(kkt, near_count, sizeof(int32_t));
     kkt->panel = se3di_kkt_take(kkt, n + 1, sizeof(size_t));
@@ -27,11 +29,18 @@ static se3d_status take_structure(se3di_kkt *kkt, const se3di_kkt_fill *fill)
         size_t degree = (size_t)(fill->begin[k + 1] - fill->begin[k]);
         kkt->position_of[kkt->node_at[k]] = (int32_t)k;
         kkt->size_at[k] = (int32_t)size;
+        int32_t node = kkt->node_at[k], joint = kkt->node_joint[node];
+        kkt->row_at[k] = joint < 0 ? -1 : kkt->row_offset[joint] + kkt->node_row[node];
+        kkt->is_mass_at[k] =
+            joint < 0 && kkt->pattern.symmetric && kkt->pattern.body_kind == SE3DI_KKT_BODY_MASS;
         kkt->panel[k + 1] = kkt->panel[k] + size * KKT_LANES * (1 + degree);
         kkt->update_begin[k + 1] = kkt->update_begin[k] + degree * (degree + 1) / 2;
         if ((int32_t)degree > kkt->max_degree) {
             kkt->max_degree = (int32_t)degree;
         }
+    }
+    for (size_t i = 0; i < near_count; ++i) { /* it receives fill-in */
+        kkt->is_mass_at[kkt->near[i]] = false;
     }
     return SE3D_OK;
 }
