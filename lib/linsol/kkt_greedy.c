@@ -49,24 +49,22 @@ static int32_t join_anchors(int32_t a, int32_t b)
 }
 
 /* Anchor of the component that eliminating joint `node` would make; ANCHOR_MANY where it may not
- * go, also while none of its bodies is eliminated. */
+ * go. So it never goes before all its bodies: it has two, or one and the ground. */
 static int32_t joint_anchor(const greedy *g, int32_t node)
 {
     const se3di_kkt_pattern *p = &g->kkt->pattern;
     int32_t joint = g->kkt->node_joint[node];
     int32_t begin = p->joint_begin[joint], end = p->joint_begin[joint + 1];
     int32_t anchor = end - begin < 2 ? ANCHOR_GROUND : ANCHOR_NONE;
-    bool has_eliminated = false;
     for (int32_t e = begin; e < end; ++e) {
         int32_t body = p->joint_body[e];
         if (g->gone[body]) {
             anchor = join_anchors(anchor, g->anchor[find_root(g, body)]);
-            has_eliminated = true;
         } else {
             anchor = join_anchors(anchor, body);
         }
     }
-    return has_eliminated ? anchor : ANCHOR_MANY;
+    return anchor;
 }
 
 static double node_key(greedy *g, int32_t node)

@@ -332,6 +332,8 @@ static const se3di_kkt_level levels[] = {SE3DI_KKT_LEVEL_PORTABLE, SE3DI_KKT_LEV
 /* Both kinds and all levels find the known solution. */
 static void check_all_kinds(mechanism *s, double tolerance)
 {
+    bool is_tree =
+        s->pattern.joint_count <= s->pattern.body_count; /* one factorisation is enough */
     outcome dense = solve_with(s, SE3DI_KKT_DENSE, NULL);
     CHECK(dense.factor == SE3D_OK && dense.solve == SE3D_OK);
     CHECK_NEAR(dense.error_x, 0.0, tolerance);
@@ -340,7 +342,8 @@ static void check_all_kinds(mechanism *s, double tolerance)
         s->pattern.level = levels[k];
         outcome out = solve_with(s, SE3DI_KKT_STRUCTURED, NULL);
         CHECK(out.factor == SE3D_OK && out.solve == SE3D_OK);
-        CHECK(out.factor_info.dependent_rows == 0);
+        CHECK(out.factor_info.dependent_rows == 0 && out.factor_info.negative_pivots == 0);
+        CHECK(!is_tree || out.factor_info.factorisations == 1);
         CHECK_NEAR(out.error_x, 0.0, tolerance);
         CHECK_NEAR(out.error_l, 0.0, tolerance);
     }
@@ -409,6 +412,43 @@ static void mass_blocks_give_what_full_blocks_give(void)
     add_chain(&m, 5);
     fill(&m);
     check_all_kinds(&m, 1e-11);
+}
+
+static void mass_blocks_with_couplings_and_loops_are_solved(void)
+{
+    start(&m, 12, 6, true, 6);
+    m.pattern.body_kind = SE3DI_KKT_BODY_MASS;
+    add_tree(&m, 3);
+    add_coupling(&m, 0, 1);
+    add_coupling(&m, 4, 9);
+    fill(&m);
+    for (size_t i = 0; i < sizeof m.upper / sizeof *m.upper; ++i) {
+        m.upper[i] *= 0.2; /* H stays positive definite */
+    }
+    memset(m.b, 0, sizeof m.b);
+    memset(m.c, 0, sizeof m.c);
+    multiply(&m, m.exact_x, m.exact_l, m.b, m.c);
+    check_all_kinds(&m, 1e-11);
+}
+
+static void unsymmetric_blocks_are_pivoted(void)
+{
+    start(&m, 5, 6, false, 2);
+    add_tree(&m, 3);
+    fill(&m);
+    for (size_t i = 0; i < 5; ++i) { /* rows 0 and 1 swapped, the first pivot zero */
+        double *H = m.body + 36 * i;
+        for (size_t c = 0; c < 6; ++c) {
+            double t = H[c];
+            H[c] = H[6 + c];
+            H[6 + c] = t;
+        }
+        H[0] = 0.0;
+    }
+    memset(m.b, 0, sizeof m.b);
+    memset(m.c, 0, sizeof m.c);
+    multiply(&m, m.exact_x, m.exact_l, m.b, m.c);
+    check_all_kinds(&m, 1e-10);
 }
 
 static void couplings_and_loops_and_big_joints_are_solved(void)
@@ -752,6 +792,8 @@ int main(void)
     RUN(euler_parameter_blocks_are_solved);
     RUN(euler_parameter_blocks_at_the_identity_are_solved);
     RUN(mass_blocks_give_what_full_blocks_give);
+    RUN(mass_blocks_with_couplings_and_loops_are_solved);
+    RUN(unsymmetric_blocks_are_pivoted);
     RUN(couplings_and_loops_and_big_joints_are_solved);
     RUN(a_hub_with_many_loops_is_solved);
     RUN(empty_systems_are_fine);
