@@ -48,6 +48,11 @@ SE3D_API se3d_status se3d_body_find(const se3d_system *system, const char *name,
 SE3D_API se3d_status se3d_body_get_name(const se3d_system *system, se3d_body body,
                                         const char **name);
 SE3D_API se3d_status se3d_body_get_fixed(const se3d_system *system, se3d_body body, int32_t *fixed);
+/* Hold a body (not 0) or not (0, the default): the assembly analysis leaves the pose and velocity
+ * of held bodies as they are and moves the others. @return OK, NULL, STALE_HANDLE. Exclusive.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_body_set_held(se3d_system *system, se3d_body body, int32_t held);
+SE3D_API se3d_status se3d_body_get_held(const se3d_system *system, se3d_body body, int32_t *held);
 SE3D_API se3d_status se3d_body_get_mass(const se3d_system *system, se3d_body body, double *mass,
                                         double inertia[6]);
 SE3D_API se3d_status se3d_body_set_mass(se3d_system *system, se3d_body body, double mass,

@@ -83,7 +83,7 @@ SE3D_API se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_solve
 /* Get the method in use ("generalized_alpha", ...; what AUTO picked). Reader. @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name);
 
-/* What `se3d_system_check` finds; counts at the present state. @since 0.1 */
+/* What a report on the constraints counts. Set struct_size before the call. @since 0.1 */
 typedef struct se3d_check_summary {
     size_t struct_size;
     size_t bodies;       /* movable */
@@ -98,9 +98,11 @@ typedef struct se3d_check_summary {
 /* A report on the constraints. */
 typedef struct se3d_check se3d_check;
 
-/* Analyse the constraints at the present pose: rank, redundant equations with the ones they depend
- * on, inconsistent ones, bodies that nothing holds. @return OK, INFO_REDUNDANT, NO_MEMORY,
- * NOT_FINITE. Exclusive. @since 0.1 */
+/* Analyse the constraints: rank, redundant equations with the ones they depend on, contradictions,
+ * freedoms, bodies that nothing holds. Poses that do not fit are assembled for the analysis (where
+ * that is impossible, the poses of least violation are analysed), and a message says so; the state
+ * of the system does not change. Destroy the report before the allocator goes.
+ * @return OK, INFO_REDUNDANT, NULL, NO_MEMORY, NOT_FINITE, CALLBACK. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_check_create(se3d_system *system, se3d_check **out);
 SE3D_API void se3d_check_destroy(se3d_check *check);
 SE3D_API se3d_status se3d_check_get_summary(const se3d_check *check, se3d_check_summary *summary);

@@ -80,6 +80,7 @@ static se3d_status settle(se3di_run *run, double t)
 {
     se3di_equations *equations = &run->equations;
     se3di_state_accept(equations);
+    equations->hold = run->analysis == SE3D_ANALYSIS_ASSEMBLY;
     se3d_status status = se3di_state_solve(equations, t);
     if (status >= 0 && !run->determined &&
         (run->analysis == SE3D_ANALYSIS_KINEMATICS ||

@@ -30,6 +30,8 @@ typedef struct se3di_body {
     double J[6];    /* about the centre of mass, body frame: xx yy zz xy yz xz */
     int32_t fixed;  /* the ground is */
     uint32_t users; /* markers, constraints, forces on it */
+    int32_t held;   /* the assembly analysis leaves its pose and velocity alone */
+    int32_t reserved;
 } se3di_body;
 
 typedef struct se3di_marker {

@@ -121,11 +121,30 @@ void se3di_state_restore(se3di_equations *equations)
     }
 }
 
+/* Held bodies do not move: nothing reaches them through their constraints. */
+static void release_held(se3di_equations *equations)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    size_t n = (size_t)assembly->formulation->block;
+    for (uint32_t joint = 0; joint < assembly->constraint_count; ++joint) {
+        for (int32_t k = assembly->joint_begin[joint]; k < assembly->joint_begin[joint + 1]; ++k) {
+            uint32_t body = assembly->free_body[assembly->joint_body[k]];
+            if (se3di_equations_holds(equations, body)) {
+                memset(assembly->C + assembly->block_offset[k], 0,
+                       (size_t)assembly->joint_rows[joint] * n * sizeof *assembly->C);
+            }
+        }
+    }
+}
+
 se3d_status se3di_equations_factor(se3di_equations *equations)
 {
     se3di_assembly *assembly = &equations->assembly;
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_jacobian(assembly);
+    if (equations->hold) {
+        release_held(equations);
+    }
     se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
     ++equations->counters.factorizations;
     se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
@@ -216,14 +235,33 @@ static se3d_status check_level(se3di_equations *equations, double t, const char 
         t, level, name, worst);
 }
 
+/* phi = Phi_q qdot of the held bodies, which their neighbours have to follow. */
+static void take_held_rates(se3di_equations *equations)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    size_t n = (size_t)assembly->formulation->block;
+    se3di_assembly_eval_jacobian(assembly);
+    se3di_assembly_get_velocity(assembly, equations->x);
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        if (!se3di_equations_holds(equations, assembly->free_body[k])) {
+            memset(equations->x + k * n, 0, n * sizeof *equations->x);
+        }
+    }
+    se3di_assembly_mul(assembly, equations->x, equations->phi);
+}
+
 se3d_status se3di_velocity_solve(se3di_equations *equations, double t)
 {
     se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+    memset(equations->phi, 0, assembly->row_count * sizeof *equations->phi);
+    if (equations->hold) {
+        take_held_rates(equations);
+    }
     SE3DI_TRY(se3di_equations_factor(equations));
     weigh_velocity(equations);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        equations->c[k] = assembly->f[3 * k + 1];
+        equations->c[k] = assembly->f[3 * k + 1] - equations->phi[k];
     }
     SE3DI_TRY(se3di_equations_solve(equations));
     SE3DI_TRY(check_level(equations, t, "velocity"));
@@ -254,7 +292,11 @@ se3d_status se3di_state_solve(se3di_equations *equations, double t)
 {
     SE3DI_TRY(se3di_position_solve(equations, t));
     SE3DI_TRY(se3di_velocity_solve(equations, t));
-    return se3di_acceleration_solve(equations, t);
+    int32_t hold = equations->hold;
+    equations->hold = 0; /* held bodies accelerate like all others */
+    se3d_status status = se3di_acceleration_solve(equations, t);
+    equations->hold = hold;
+    return status;
 }
 
 /* r-p: velocities along p are none. */

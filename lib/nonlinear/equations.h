@@ -33,6 +33,8 @@ typedef struct se3di_equations {
     double *accepted_lambda;       /* [rows] */
     int32_t iterations_max;        /* of the position Newton */
     int32_t redundant;             /* the last acceleration met dependent rows */
+    int32_t hold;                  /* positions and velocities of held bodies stay (assembly) */
+    int32_t reserved;
 } se3di_equations;
 
 se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
@@ -49,6 +51,23 @@ se3d_status se3di_equations_solve(se3di_equations *equations);
 se3d_status se3di_position_solve(se3di_equations *equations, double t);
 se3d_status se3di_velocity_solve(se3di_equations *equations, double t);
 se3d_status se3di_acceleration_solve(se3di_equations *equations, double t);
+
+/* The largest violation of a position equation relative to its scale, with what is open in words;
+ * functions of time evaluated. */
+double se3di_position_measure(se3di_equations *equations, char *text, size_t size);
+
+/* A length of the model [m]: how far its joints are from its bodies' centres. */
+double se3di_model_get_size(const se3di_model *model);
+/* What a violation of a row is measured by: 1 for angles and cosines, `size` for lengths, its
+ * square for squared lengths; and its unit with a space before it ("" for cosines). */
+double se3di_row_get_scale(const se3di_model *model, uint32_t row, double size);
+const char *se3di_row_get_unit(const se3di_model *model, uint32_t row);
+
+/* Whether a body (dense index) stays where it is. */
+static inline int se3di_equations_holds(const se3di_equations *equations, uint32_t body)
+{
+    return equations->hold && equations->assembly.model->bodies[body].held;
+}
 
 /* All three. */
 se3d_status se3di_state_solve(se3di_equations *equations, double t);

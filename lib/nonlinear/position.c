@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Positions: min |dq|_M with Phi(q, t) = 0, by Newton with line search; where that stalls (far from
  * a solution, or where there is none) by damped Gauss-Newton (Levenberg-Marquardt: the KKT system
- * with a large regularisation), which ends in the least violation. A stationary violation means
- * that the constraints cannot be met from here: the gap is named.  docs/theory/consistency.md */
+ * with a large regularisation), which ends in the least sum of squared violations. A stationary
+ * violation means that the constraints cannot be met from here: the gap is named.
+ * docs/theory/assembly.md */
 #include "nonlinear/equations.h"
 
+#include "math/quaternion.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -16,12 +18,13 @@
 typedef struct position_problem {
     se3di_equations *equations;
     double size;    /* of the mechanism [m] */
-    double merit;   /* sum of squared scaled violations */
+    double merit;   /* sum of squared violations: scaled, or as they are while `damped` */
     double worst;   /* largest scaled violation */
     uint32_t where; /* its row */
+    int32_t damped; /* the damped step descends in the plain sum */
 } position_problem;
 
-static double model_size(const se3di_model *model)
+double se3di_model_get_size(const se3di_model *model)
 {
     double size = 1e-6;
     for (size_t k = 0; k < model->row_count; ++k) {
@@ -36,19 +39,40 @@ static double model_size(const se3di_model *model)
     return size;
 }
 
-/* What a violation of a row is measured by: 1 for angles and cosines, lengths, squared lengths. */
-static double row_scale(const position_problem *problem, uint32_t row)
+/* Type of the first term of a row; ANGLE where it has none. */
+static int32_t row_type(const se3di_model *model, uint32_t row)
 {
-    const se3di_model *model = problem->equations->assembly.model;
-    const se3di_term *term = &model->terms[model->rows[row].term_begin];
-    switch (term->type) {
+    const se3di_row *r = &model->rows[row];
+    return r->term_count > 0 ? model->terms[r->term_begin].type : (int32_t)SE3DI_PRIMITIVE_ANGLE;
+}
+
+double se3di_row_get_scale(const se3di_model *model, uint32_t row, double size)
+{
+    switch (row_type(model, row)) {
     case SE3DI_PRIMITIVE_D:
-        return problem->size * problem->size;
+        return size * size;
     case SE3DI_PRIMITIVE_DP2:
     case SE3DI_PRIMITIVE_CD:
-        return problem->size;
+    case SE3DI_PRIMITIVE_TRIPLE:
+        return size;
     default:
         return 1.0;
+    }
+}
+
+const char *se3di_row_get_unit(const se3di_model *model, uint32_t row)
+{
+    switch (row_type(model, row)) {
+    case SE3DI_PRIMITIVE_D:
+        return " m^2";
+    case SE3DI_PRIMITIVE_DP2:
+    case SE3DI_PRIMITIVE_CD:
+    case SE3DI_PRIMITIVE_TRIPLE:
+        return " m";
+    case SE3DI_PRIMITIVE_ANGLE:
+        return " rad";
+    default:
+        return "";
     }
 }
 
@@ -61,8 +85,10 @@ static void measure(position_problem *problem)
     problem->worst = 0.0;
     problem->where = 0;
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        double scaled = fabs(equations->phi[k]) / row_scale(problem, k);
-        problem->merit += scaled * scaled;
+        double scaled =
+            fabs(equations->phi[k]) / se3di_row_get_scale(assembly->model, k, problem->size);
+        double part = problem->damped ? equations->phi[k] : scaled;
+        problem->merit += part * part;
         if (!(scaled <= problem->worst)) {
             problem->worst = scaled;
             problem->where = k;
@@ -112,10 +138,16 @@ static void move(const position_problem *problem, double fraction)
     double dq[SE3DI_BLOCK_MAX];
     se3di_equations_restore(equations);
     for (size_t k = 0; k < assembly->body_count; ++k) {
+        if (se3di_equations_holds(equations, assembly->free_body[k])) {
+            continue;
+        }
         for (size_t c = 0; c < n; ++c) {
             dq[c] = fraction * equations->x[k * n + c];
         }
-        assembly->formulation->move(&assembly->model->frames[assembly->free_body[k]], dq);
+        se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        assembly->formulation->move(frame, dq);
+        se3di_quat_normalize(frame->p, frame->p); /* a damped step must only fight the violation */
+        se3di_frame_update(frame);
     }
 }
 
@@ -166,9 +198,9 @@ static se3d_status run_newton(position_problem *problem, int *converged)
     return SE3D_OK;
 }
 
-/* Damped steps: the regularised system without refinement. Ends at a solution or at the least
- * violation. */
-static se3d_status run_damped(position_problem *problem, int *stationary)
+/* Damped steps: the regularised system without refinement. Ends where the violation is below
+ * `target`, or at the least violation. */
+static se3d_status run_damped(position_problem *problem, double target, int *stationary)
 {
     se3di_equations *equations = problem->equations;
     se3di_kkt_settings exact = se3di_kkt_get_settings(equations->kkt);
@@ -178,8 +210,11 @@ static se3d_status run_damped(position_problem *problem, int *stationary)
     damped.regularise = SE3DI_KKT_REGULARISE_FIRST;
     double damping = 1e-2;
     double length = 1.0;
+    int slow = 0;
     *stationary = 0;
-    for (int k = 0; k < DAMPED_ITERATIONS && problem->worst > 1e-4 && !*stationary; ++k) {
+    problem->damped = 1;
+    measure(problem);
+    for (int k = 0; k < DAMPED_ITERATIONS && problem->worst > target && !*stationary; ++k) {
         double before = problem->merit;
         damped.eps = damping;
         damped.eps_min = damping;
@@ -190,57 +225,138 @@ static se3d_status run_damped(position_problem *problem, int *stationary)
         }
         int fell = search_line(problem, length);
         damping = fell ? fmax(damping * 0.3, 1e-6) : damping * 10.0;
-        *stationary = (fell && before - problem->merit < 1e-9 * before) || damping > 1e6;
+        slow = fell && before - problem->merit < 1e-9 * before ? slow + 1 : 0;
+        *stationary = slow > 1 || damping > 1e6;
     }
+    problem->damped = 0;
+    measure(problem);
     se3di_kkt_set_settings(equations->kkt, &exact);
     return status;
 }
 
-/* Lengths by which the constraint of a row is open, or its largest angle. */
+/* ---- what is open ---- */
+
+typedef struct open_joint {
+    double length; /* [m] */
+    double angle;  /* [rad], or a cosine */
+} open_joint;
+
+/* By how much a constraint is open. */
+static open_joint measure_joint(const se3di_equations *equations,
+                                const se3di_constraint *constraint)
+{
+    const se3di_model *model = equations->assembly.model;
+    open_joint open = {0.0, 0.0};
+    for (uint32_t k = 0; k < constraint->row_count; ++k) {
+        uint32_t row = constraint->row_begin + k;
+        double phi = equations->phi[row];
+        switch (row_type(model, row)) {
+        case SE3DI_PRIMITIVE_D: {
+            double f = equations->assembly.f[3 * row];
+            phi = sqrt(fmax(phi + f, 0.0)) - sqrt(fmax(f, 0.0));
+            open.length = hypot(open.length, phi);
+            break;
+        }
+        case SE3DI_PRIMITIVE_CD:
+        case SE3DI_PRIMITIVE_DP2:
+        case SE3DI_PRIMITIVE_TRIPLE:
+            open.length = hypot(open.length, phi);
+            break;
+        default:
+            open.angle = fmax(open.angle, fabs(phi));
+            break;
+        }
+    }
+    return open;
+}
+
+static void name_constraint(const se3di_model *model, uint32_t k, char *text, size_t size)
+{
+    const se3di_constraint *constraint = &model->constraints[k];
+    if (constraint->name) {
+        snprintf(text, size, "%.80s", constraint->name);
+    } else {
+        snprintf(text, size, "%s %u", constraint->type, k);
+    }
+}
+
+/* The joint that is open the widest (of equal ones the last, which closes the loop), and the sum of
+ * all gaps: around a loop whose links do not reach, the length that is missing. */
+static uint32_t find_widest(const se3di_equations *equations, double *widest, double *total)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    uint32_t where = assembly->constraint_count;
+    *widest = *total = 0.0;
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        double length = measure_joint(equations, &assembly->model->constraints[k]).length;
+        *total += length;
+        if (length > 0.0 && length >= 0.999 * *widest) {
+            where = k;
+            *widest = fmax(*widest, length);
+        }
+    }
+    return where;
+}
+
+/* " (A 0.25 m, B 0.25 m)": the joints with a part in the gap. */
+static void list_open(const se3di_equations *equations, double widest, char *text, size_t size)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    size_t count = 0;
+    text[0] = '\0';
+    for (uint32_t k = 0; k < assembly->constraint_count && count < 6; ++k) {
+        double length = measure_joint(equations, &assembly->model->constraints[k]).length;
+        if (length > 1e-3 * widest) {
+            char name[100];
+            size_t used = strlen(text);
+            name_constraint(assembly->model, k, name, sizeof name);
+            snprintf(text + used, size - used, "%s%.40s %.3g m", count > 0 ? ", " : "", name,
+                     length);
+            ++count;
+        }
+    }
+}
+
+/* What is open: lengths, or where there are none the worst angle. */
 static void describe_gap(const position_problem *problem, char *text, size_t size)
 {
     const se3di_equations *equations = problem->equations;
     const se3di_model *model = equations->assembly.model;
+    double widest, total;
     char name[128];
-    se3di_row_name(model, problem->where, name, sizeof name);
-    const se3di_row *row = &model->rows[problem->where];
-    const se3di_term *term = &model->terms[row->term_begin];
-    double phi = equations->phi[problem->where];
-    double sum = 0.0;
-    uint32_t owner = 0;
-    while (problem->where >=
-           model->constraints[owner].row_begin + model->constraints[owner].row_count) {
-        ++owner;
-    }
-    switch (term->type) {
-    case SE3DI_PRIMITIVE_D: {
-        double f = equations->assembly.f[3 * problem->where];
-        snprintf(text, size, "%s is open by %.6g m", name, sqrt(fmax(phi + f, 0.0)) - sqrt(f));
-        break;
-    }
-    case SE3DI_PRIMITIVE_CD:
-    case SE3DI_PRIMITIVE_DP2:
-        for (uint32_t k = 0; k < model->constraints[owner].row_count; ++k) {
-            uint32_t r = model->constraints[owner].row_begin + k;
-            int32_t type = model->terms[model->rows[r].term_begin].type;
-            if (type == SE3DI_PRIMITIVE_CD || type == SE3DI_PRIMITIVE_DP2) {
-                sum += equations->phi[r] * equations->phi[r];
-            }
+    uint32_t joint = find_widest(equations, &widest, &total);
+    if (joint == equations->assembly.constraint_count || widest < 1e-3 * problem->worst) {
+        if (equations->assembly.row_count == 0) {
+            snprintf(text, size, "no constraint is open");
+            return;
         }
-        snprintf(text, size, "%s is open by %.6g m (equation %s)",
-                 model->constraints[owner].name ? model->constraints[owner].name
-                                                : model->constraints[owner].type,
-                 sqrt(sum), name);
-        break;
-    default:
-        snprintf(text, size, "%s is off by %.6g", name, phi);
-        break;
+        se3di_row_name(model, problem->where, name, sizeof name);
+        snprintf(text, size, "%s is off by %.6g%s", name, equations->phi[problem->where],
+                 se3di_row_get_unit(model, problem->where));
+        return;
     }
+    name_constraint(model, joint, name, sizeof name);
+    if (total < 1.001 * widest) {
+        snprintf(text, size, "%s is open by %.6g m", name, total);
+        return;
+    }
+    char list[200];
+    list_open(equations, widest, list, sizeof list);
+    snprintf(text, size, "%s is open by %.6g m, spread over its loop (%s)", name, total, list);
+}
+
+double se3di_position_measure(se3di_equations *equations, char *text, size_t size)
+{
+    position_problem problem = {.equations = equations};
+    problem.size = se3di_model_get_size(equations->assembly.model);
+    measure(&problem);
+    describe_gap(&problem, text, size);
+    return problem.worst;
 }
 
 static se3d_status report_gap(const position_problem *problem, double t, int stationary)
 {
-    char gap[320];
+    char gap[400];
     describe_gap(problem, gap, sizeof gap);
     if (stationary) {
         return se3di_error_set(
@@ -261,12 +377,12 @@ se3d_status se3di_position_solve(se3di_equations *equations, double t)
     position_problem problem = {.equations = equations};
     int converged;
     int stationary = 0;
-    problem.size = model_size(equations->assembly.model);
+    problem.size = se3di_model_get_size(equations->assembly.model);
     SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
     measure(&problem);
     SE3DI_TRY(run_newton(&problem, &converged));
     for (int round = 0; round < 3 && !converged && !stationary; ++round) {
-        SE3DI_TRY(run_damped(&problem, &stationary));
+        SE3DI_TRY(run_damped(&problem, round == 0 ? 1e-4 : 1e-11, &stationary));
         if (problem.worst < 1e-2) {
             SE3DI_TRY(run_newton(&problem, &converged));
         }

@@ -155,6 +155,25 @@ se3d_status se3d_body_get_fixed(const se3d_system *system, se3d_body body, int32
     return SE3D_OK;
 }
 
+se3d_status se3d_body_set_held(se3d_system *system, se3d_body body, int32_t held)
+{
+    uint32_t index;
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_find_body(system, "body", body, &index));
+    system->model.bodies[index].held = held != 0;
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_held(const se3d_system *system, se3d_body body, int32_t *held)
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, held, &index));
+    *held = system->model.bodies[index].held;
+    return SE3D_OK;
+}
+
 se3d_status se3d_body_get_mass(const se3d_system *system, se3d_body body, double *mass,
                                double inertia[6])
 {
