@@ -211,8 +211,12 @@ static se3d_status check_level(se3di_equations *equations, double t, const char 
     double scale = 0.0;
     double worst = 0.0;
     uint32_t where = 0;
-    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
-        scale = fmax(scale, fabs(equations->x[k]));
+    size_t n = (size_t)assembly->formulation->block;
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        /* What the right-hand side would do to the free body counts too: x may be all rounding. */
+        double diagonal = assembly->H[k / n * n * n + (n + 1) * (k % n)];
+        double alone = diagonal > 0.0 ? fabs(equations->b[k] / diagonal) : 0.0;
+        scale = fmax(scale, fmax(fabs(equations->x[k]), alone));
     }
     se3di_assembly_mul(assembly, equations->x, equations->l);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
