@@ -36,16 +36,3 @@ const se3di_integrator se3di_integrator_generalized_alpha = {
     .start = start,
     .step = step,
 };
-
-const se3di_integrator *se3di_integrator_find(int32_t method)
-{
-    switch (method) {
-    case SE3D_METHOD_AUTO:
-    case SE3D_METHOD_GENERALIZED_ALPHA:
-        return &se3di_integrator_generalized_alpha;
-    case SE3D_METHOD_HHT:
-        return &se3di_integrator_hht;
-    default:
-        return NULL;
-    }
-}

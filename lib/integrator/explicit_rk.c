@@ -1,0 +1,417 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "integrator/explicit_rk.h"
+
+#include "integrator/state.h"
+#include "math/vec3.h"
+#include "primitive/turn_counter.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The history: this header, then y_1, y'_1, y_0 and the coefficients of the interpolation. */
+enum {
+    RK_T1,       /* the forward state's time */
+    RK_T0,       /* begin of the last step */
+    RK_NEXT,     /* the next step */
+    RK_ERROR,    /* error of the last step, relative to the tolerance */
+    RK_DENSE,    /* 1: the interpolation is ready */
+    RK_REJECTED, /* 1: the last attempt was rejected */
+    RK_LENGTH,   /* scales */
+    RK_SPEED,
+    RK_SPIN,
+    RK_HEADER
+};
+
+#define RK_FORMS   (3 + SE3DI_RK_DENSE_MAX)
+#define RK_VECTORS (3 + RK_FORMS)
+
+#define ROUNDING 1e-13 /* relative violation of constraints that does not matter */
+
+size_t se3di_rk_history_count(const se3di_assembly *assembly)
+{
+    return RK_HEADER + RK_VECTORS * se3di_state_count(assembly);
+}
+
+/* Work: the stages and the state of a stage. */
+size_t se3di_rk_work_count(const se3di_assembly *assembly)
+{
+    return (SE3DI_RK_MAX + 3) * se3di_state_count(assembly);
+}
+
+typedef struct rk {
+    const se3di_rk_tableau *tableau;
+    se3di_integration *integration;
+    se3di_equations *equations;
+    se3di_assembly *assembly;
+    size_t count;   /* numbers of a state */
+    double *header; /* history */
+    double *y1, *f1, *y0, *forms;
+    double *K;          /* [total][count] */
+    double *y;          /* state of a stage */
+    double *sum, *sum3; /* error estimates */
+    double tolerance;
+} rk;
+
+static rk open(se3di_integration *integration, const se3di_rk_tableau *tableau)
+{
+    se3di_assembly *assembly = &integration->equations->assembly;
+    size_t count = se3di_state_count(assembly);
+    double *history = assembly->model->history;
+    rk m = {
+        .tableau = tableau,
+        .integration = integration,
+        .equations = integration->equations,
+        .assembly = assembly,
+        .count = count,
+        .header = history,
+        .y1 = history + RK_HEADER,
+        .f1 = history + RK_HEADER + count,
+        .y0 = history + RK_HEADER + 2 * count,
+        .forms = history + RK_HEADER + 3 * count,
+        .K = integration->work,
+        .y = integration->work + SE3DI_RK_MAX * count,
+        .sum = integration->work + (SE3DI_RK_MAX + 1) * count,
+        .sum3 = integration->work + (SE3DI_RK_MAX + 2) * count,
+        .tolerance = integration->settings.tolerance,
+    };
+    return m;
+}
+
+static se3di_state_scale get_scale(const rk *m)
+{
+    return (se3di_state_scale){m->header[RK_LENGTH], m->header[RK_SPEED], m->header[RK_SPIN]};
+}
+
+static void grow_scale(rk *m, const double *derivative)
+{
+    se3di_state_scale scale = get_scale(m);
+    se3di_state_scale_grow(m->assembly, derivative, &scale);
+    m->header[RK_SPEED] = scale.speed;
+    m->header[RK_SPIN] = scale.spin;
+}
+
+/* out = base + h sum_k coefficients_k K_k; base may be NULL. */
+static void combine(const rk *m, const double *base, double h, const double *coefficients,
+                    double *out)
+{
+    const double *stage[SE3DI_RK_MAX + 3];
+    double factor[SE3DI_RK_MAX + 3] = {0.0};
+    int used = 0;
+    for (int k = 0; k < m->tableau->total; ++k) {
+        if (coefficients[k] != 0.0) {
+            stage[used] = m->K + (size_t)k * m->count;
+            factor[used++] = h * coefficients[k];
+        }
+    }
+    for (; used % 4 != 0 || used == 0; ++used) {
+        stage[used] = m->K;
+    }
+    for (int k = 0; k < used; k += 4) {
+        const double *k0 = stage[k], *k1 = stage[k + 1], *k2 = stage[k + 2], *k3 = stage[k + 3];
+        const double a0 = factor[k], a1 = factor[k + 1], a2 = factor[k + 2], a3 = factor[k + 3];
+        for (size_t c = 0; c < m->count; ++c) {
+            double sum = base ? base[c] : 0.0;
+            out[c] = sum + ((a0 * k0[c] + a1 * k1[c]) + (a2 * k2[c] + a3 * k3[c]));
+        }
+        base = out;
+    }
+}
+
+/* Derivative at the frames, into K[stage]. */
+static se3d_status evaluate(rk *m, double t, double *derivative)
+{
+    SE3DI_TRY(se3di_state_evaluate(m->equations, t));
+    se3di_state_derivative(m->assembly, m->equations->x, derivative);
+    return SE3D_OK;
+}
+
+static se3d_status evaluate_stage(rk *m, double t, double h, int stage)
+{
+    combine(m, m->y0, h, m->tableau->a[stage], m->y);
+    se3di_state_set(m->assembly, m->y);
+    return evaluate(m, t + m->tableau->c[stage] * h, m->K + (size_t)stage * m->count);
+}
+
+/* The largest part of an error vector, relative to tolerance and scales. */
+static double measure(const rk *m, const double *error)
+{
+    double r = 0.0, p = 0.0, v = 0.0, w = 0.0;
+    for (size_t k = 0; k < m->count; k += SE3DI_STATE_SIZE) {
+        const double *e = error + k;
+        double turn = e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6];
+        double parts[4] = {se3di_dot(e, e), turn, se3di_dot(e + 7, e + 7),
+                           se3di_dot(e + 10, e + 10)};
+        r = parts[0] <= r ? r : parts[0]; /* NaN stays */
+        p = parts[1] <= p ? p : parts[1];
+        v = parts[2] <= v ? v : parts[2];
+        w = parts[3] <= w ? w : parts[3];
+    }
+    r = sqrt(r) / m->header[RK_LENGTH] + 2.0 * sqrt(p);
+    v = sqrt(v) / m->header[RK_SPEED] + sqrt(w) / m->header[RK_SPIN];
+    return (r + v) / m->tolerance;
+}
+
+/* The error of the step, relative to the tolerance. */
+static double estimate_error(rk *m, double h)
+{
+    const se3di_rk_tableau *tableau = m->tableau;
+    combine(m, NULL, h, tableau->error, m->sum);
+    double error = measure(m, m->sum);
+    if (tableau->error3) {
+        combine(m, NULL, h, tableau->error3, m->sum3);
+        double error3 = measure(m, m->sum3);
+        error = error > 0.0 ? error * error / sqrt(error * error + 0.01 * error3 * error3) : error;
+    }
+    return error;
+}
+
+/* From (t_1, y_1, y'_1) by h: stages, projection, error; the history is changed only by accept.
+ * *error is infinite where the step cannot be made at all. */
+static se3d_status attempt(rk *m, double h, double *error)
+{
+    const se3di_rk_tableau *tableau = m->tableau;
+    double t = m->header[RK_T1];
+    double moved;
+    memcpy(m->y0, m->y1, m->count * sizeof *m->y0);
+    memcpy(m->K, m->f1, m->count * sizeof *m->K);
+    *error = HUGE_VAL;
+    for (int k = 1; k < tableau->stages; ++k) {
+        SE3DI_TRY(evaluate_stage(m, t, h, k));
+    }
+    if (!tableau->uses_end) {
+        *error = estimate_error(m, h);
+        if (!(*error <= 1.0) && isfinite(m->tolerance)) {
+            return SE3D_OK;
+        }
+    }
+    combine(m, m->y0, h, tableau->a[tableau->stages], m->y);
+    se3di_state_set(m->assembly, m->y);
+    se3di_state_scale scale = get_scale(m);
+    SE3DI_TRY(se3di_state_project(m->equations, t + h, &scale, ROUNDING, &moved));
+    SE3DI_TRY(evaluate(m, t + h, m->K + (size_t)tableau->stages * m->count));
+    if (tableau->uses_end) {
+        *error = estimate_error(m, h);
+    }
+    return SE3D_OK;
+}
+
+/* The frames hold the projected y_1. */
+static void accept(rk *m, double h)
+{
+    m->header[RK_T0] = m->header[RK_T1];
+    m->header[RK_T1] += h;
+    m->header[RK_DENSE] = 0.0;
+    se3di_state_get(m->assembly, m->y1);
+    memcpy(m->f1, m->K + (size_t)m->tableau->stages * m->count, m->count * sizeof *m->f1);
+    grow_scale(m, m->f1);
+    se3di_angles_accept(m->assembly->model);
+    ++m->equations->counters.steps;
+}
+
+/* Turn counters must see every angle move by less than half a turn. */
+static double limit_turn(const rk *m, double h)
+{
+    const se3di_model *model = m->assembly->model;
+    for (size_t k = 0; k < model->angle_count; ++k) {
+        const se3di_term *term = &model->angles[k].term;
+        double rate =
+            se3di_norm(model->frames[term->body_i].w) + se3di_norm(model->frames[term->body_j].w);
+        h = h * rate > 2.0 ? 2.0 / rate : h;
+    }
+    return h;
+}
+
+static se3d_status fail_small(rk *m, double h, se3d_status cause)
+{
+    double t = m->header[RK_T1];
+    if (cause < 0) {
+        return cause;
+    }
+    return se3di_error_set(
+        m->equations->error, SE3D_ERR_STEP_SIZE,
+        "t = %g s: the step fell to %.3g s: the tolerance %g cannot be met here; "
+        "the motion is not smooth, or stiff (try generalized_alpha or radau)",
+        t, h, m->tolerance);
+}
+
+/* The next step: PI control of the error (Gustafsson 1991). */
+static double next_step(const rk *m, double h, double error)
+{
+    double exponent = 1.0 / m->tableau->order;
+    double before = fmax(m->header[RK_ERROR], 1e-4);
+    double e = fmax(error, 1e-10);
+    double factor = 0.9 * pow(e, -0.8 * exponent) * pow(e / before, -0.2 * exponent);
+    double largest = m->header[RK_REJECTED] != 0.0 ? 1.0 : 6.0;
+    h *= fmin(largest, fmax(0.2, factor));
+    double limit = m->integration->settings.step;
+    return limit > 0.0 && h > limit ? limit : h;
+}
+
+/* One accepted step with error control. */
+static se3d_status advance(rk *m)
+{
+    double t = m->header[RK_T1];
+    double h = m->header[RK_NEXT];
+    se3di_state_set(m->assembly, m->y1);
+    h = limit_turn(m, h);
+    for (;;) {
+        double error;
+        se3d_status status = attempt(m, h, &error);
+        if (status >= 0 && error <= 1.0) {
+            accept(m, h);
+            m->header[RK_NEXT] = next_step(m, h, error);
+            m->header[RK_ERROR] = error;
+            m->header[RK_REJECTED] = 0.0;
+            return SE3D_OK;
+        }
+        ++m->equations->counters.rejected;
+        m->header[RK_REJECTED] = 1.0;
+        double exponent = 1.0 / m->tableau->order;
+        double factor = status < 0 || !isfinite(error) ? 0.25 : 0.9 * pow(error, -exponent);
+        h *= fmax(0.2, fmin(0.9, factor));
+        if (!(h > 1e-12 * fmax(1e-3, fabs(t)))) {
+            return fail_small(m, h, status);
+        }
+        m->header[RK_NEXT] = h;
+    }
+}
+
+/* The interpolation of the last step; K still holds its stages. */
+static se3d_status build_dense(rk *m)
+{
+    const se3di_rk_tableau *tableau = m->tableau;
+    double h = m->header[RK_T1] - m->header[RK_T0];
+    for (int k = tableau->stages + 1; k < tableau->total; ++k) {
+        SE3DI_TRY(evaluate_stage(m, m->header[RK_T0], h, k));
+    }
+    const double *f0 = m->K;
+    double *F0 = m->forms, *F1 = F0 + m->count, *F2 = F1 + m->count;
+    for (size_t k = 0; k < m->count; ++k) {
+        F0[k] = m->y1[k] - m->y0[k];
+        F1[k] = h * f0[k] - F0[k];
+        F2[k] = 2.0 * F0[k] - h * (f0[k] + m->f1[k]);
+    }
+    for (int row = 0; row < tableau->dense_rows; ++row) {
+        combine(m, NULL, h, tableau->d[row], F2 + (size_t)(row + 1) * m->count);
+    }
+    m->header[RK_DENSE] = 1.0;
+    return SE3D_OK;
+}
+
+static void interpolate(const rk *m, double t, double *y)
+{
+    double s = (t - m->header[RK_T0]) / (m->header[RK_T1] - m->header[RK_T0]);
+    int forms = 3 + m->tableau->dense_rows;
+    for (size_t k = 0; k < m->count; ++k) {
+        double sum = 0.0;
+        for (int row = forms - 1; row >= 0; --row) {
+            sum = (row % 2 == 0 ? s : 1.0 - s) * (m->forms[(size_t)row * m->count + k] + sum);
+        }
+        y[k] = m->y0[k] + sum;
+    }
+}
+
+/* The forward state is the model's own. */
+static void adopt(rk *m)
+{
+    se3di_assembly *assembly = m->assembly;
+    m->header[RK_T1] = m->header[RK_T0] = assembly->model->time;
+    m->header[RK_DENSE] = 0.0;
+    se3di_state_get(assembly, m->y1);
+    se3di_assembly_get_acceleration(assembly, m->equations->x);
+    se3di_state_derivative(assembly, m->equations->x, m->f1);
+    grow_scale(m, m->f1);
+}
+
+/* Hairer, Norsett, Wanner 1993, sec. II.4: from the derivative and its change over a small step. */
+static double choose_first(rk *m)
+{
+    double d1 = measure(m, m->f1);
+    double limit = m->integration->settings.step;
+    double h0 = 0.01 / (fmax(d1 * m->tolerance, 1e-5));
+    h0 = limit > 0.0 ? fmin(h0, limit) : h0;
+    se3di_error ignored = {0};
+    se3di_error *error = m->equations->error;
+    m->equations->error = &ignored;
+    for (size_t k = 0; k < m->count; ++k) {
+        m->y[k] = m->y1[k] + h0 * m->f1[k];
+    }
+    se3di_state_set(m->assembly, m->y);
+    double d2 = 0.0;
+    if (evaluate(m, m->header[RK_T1] + h0, m->K) >= 0) {
+        for (size_t k = 0; k < m->count; ++k) {
+            m->K[k] -= m->f1[k];
+        }
+        d2 = measure(m, m->K) / h0;
+    }
+    se3di_state_set(m->assembly, m->y1);
+    m->equations->error = error;
+    double d = fmax(d1 * m->tolerance, 1e-3 / h0);
+    double h1 = pow(0.01 / (fmax(d, sqrt(fmax(d2, 0.0) * m->tolerance)) / m->tolerance),
+                    1.0 / m->tableau->order);
+    double h = isfinite(h1) && h1 > 0.0 ? fmin(100.0 * h0, h1) : h0;
+    return limit > 0.0 ? fmin(h, limit) : h;
+}
+
+se3d_status se3di_rk_start(se3di_integration *integration, const se3di_rk_tableau *tableau)
+{
+    rk m = open(integration, tableau);
+    se3di_state_prepare(m.equations);
+    memset(m.header, 0, RK_HEADER * sizeof *m.header);
+    memset(m.y0, 0, (RK_FORMS + 1) * m.count * sizeof *m.y0);
+    m.header[RK_LENGTH] = se3di_state_length(m.assembly->model);
+    m.header[RK_ERROR] = 1e-2;
+    adopt(&m);
+    m.header[RK_NEXT] = choose_first(&m);
+    return SE3D_OK;
+}
+
+se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau *tableau, double h)
+{
+    rk m = open(integration, tableau);
+    double error;
+    se3di_state_prepare(m.equations);
+    if (m.header[RK_T1] != m.assembly->model->time) {
+        adopt(&m);
+    }
+    m.tolerance = HUGE_VAL; /* no error control */
+    se3d_status status = attempt(&m, h, &error);
+    if (status >= 0) {
+        accept(&m, h);
+        m.tolerance = 1.0;
+        return se3di_state_publish(m.equations, m.y1, m.header[RK_T1], &(se3di_state_scale){0}, 0);
+    }
+    se3di_state_set(m.assembly, m.y1);
+    return status;
+}
+
+/* The model's state is the forward one. */
+static se3d_status publish_forward(rk *m)
+{
+    return se3di_state_publish(m->equations, m->y1, m->header[RK_T1], &(se3di_state_scale){0}, 0);
+}
+
+se3d_status se3di_rk_run(se3di_integration *integration, const se3di_rk_tableau *tableau,
+                         double t_end)
+{
+    rk m = open(integration, tableau);
+    se3di_state_prepare(m.equations);
+    while (m.header[RK_T1] < t_end) {
+        se3d_status status = advance(&m);
+        if (status < 0) {
+            se3di_error cause = *m.equations->error;
+            (void)publish_forward(&m);
+            *m.equations->error = cause;
+            return status;
+        }
+    }
+    if (m.header[RK_T1] == t_end) {
+        return publish_forward(&m);
+    }
+    if (m.header[RK_DENSE] == 0.0) {
+        SE3DI_TRY(build_dense(&m));
+    }
+    interpolate(&m, t_end, m.y);
+    se3di_state_scale scale = get_scale(&m);
+    return se3di_state_publish(m.equations, m.y, t_end, &scale, 1);
+}

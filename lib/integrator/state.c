@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "integrator/state.h"
+
+#include "math/quaternion.h"
+#include "math/vec3.h"
+#include "primitive/turn_counter.h"
+
+#include <math.h>
+#include <string.h>
+
+size_t se3di_state_count(const se3di_assembly *assembly)
+{
+    return SE3DI_STATE_SIZE * (size_t)assembly->body_count;
+}
+
+void se3di_state_get(const se3di_assembly *assembly, double *y)
+{
+    for (uint32_t k = 0; k < assembly->body_count; ++k, y += SE3DI_STATE_SIZE) {
+        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        memcpy(y, frame->r, 3 * sizeof *y);
+        memcpy(y + 3, frame->p, 4 * sizeof *y);
+        memcpy(y + 7, frame->v, 3 * sizeof *y);
+        memcpy(y + 10, frame->w, 3 * sizeof *y);
+    }
+}
+
+void se3di_state_set(se3di_assembly *assembly, const double *y)
+{
+    for (uint32_t k = 0; k < assembly->body_count; ++k, y += SE3DI_STATE_SIZE) {
+        se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        memcpy(frame->r, y, 3 * sizeof *y);
+        se3di_quat_normalize(y + 3, frame->p);
+        memcpy(frame->v, y + 7, 3 * sizeof *y);
+        memcpy(frame->w, y + 10, 3 * sizeof *y);
+        se3di_frame_update(frame);
+    }
+}
+
+void se3di_state_derivative(const se3di_assembly *assembly, const double *qddot, double *derivative)
+{
+    size_t block = (size_t)assembly->formulation->block;
+    double *out = derivative;
+    for (uint32_t k = 0; k < assembly->body_count; ++k, out += SE3DI_STATE_SIZE) {
+        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        memcpy(out, frame->v, 3 * sizeof *out);
+        memcpy(out + 3, frame->pdot, 4 * sizeof *out);
+        assembly->formulation->get_acceleration(frame, qddot + k * block, out + 7);
+    }
+}
+
+void se3di_state_prepare(se3di_equations *equations)
+{
+    if (equations->assembly.formulation->block == 6) {
+        se3di_assembly_eval_mass(&equations->assembly);
+    }
+}
+
+static se3d_status factor(se3di_equations *equations, double t)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    if (assembly->formulation->block != 6) {
+        se3di_assembly_eval_mass(assembly);
+    }
+    se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
+    ++equations->counters.factorizations;
+    se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
+    return status < 0 ? se3di_error_set(equations->error, status,
+                                        "t = %g s: the equations are singular or not finite", t)
+                      : SE3D_OK;
+}
+
+se3d_status se3di_state_evaluate(se3di_equations *equations, double t)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+    se3di_assembly_eval_jacobian(assembly);
+    SE3DI_TRY(factor(equations, t));
+    SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
+    se3di_assembly_eval_gamma(assembly, equations->c);
+    ++equations->counters.evaluations;
+    return se3di_equations_solve(equations);
+}
+
+/* What a violation of an equation is measured by. */
+static double row_scale(const se3di_model *model, uint32_t row, double length)
+{
+    const se3di_term *term = &model->terms[model->rows[row].term_begin];
+    switch (term->type) {
+    case SE3DI_PRIMITIVE_D:
+        return length * length;
+    case SE3DI_PRIMITIVE_DP2:
+    case SE3DI_PRIMITIVE_CD:
+        return length;
+    default:
+        return 1.0;
+    }
+}
+
+/* c = -Phi; returns the largest relative violation. */
+static double eval_gap(se3di_equations *equations, double length)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    double worst = 0.0;
+    se3di_assembly_eval_phi(assembly, equations->c);
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        double gap = fabs(equations->c[k]) / row_scale(assembly->model, k, length);
+        worst = gap <= worst ? worst : gap;
+        equations->c[k] = -equations->c[k];
+    }
+    return worst;
+}
+
+/* c = nu - Phi_q qdot; returns its largest part relative to the scales. */
+static double eval_rate_gap(se3di_equations *equations, const se3di_state_scale *scale)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    double rate = fmax(scale->speed / scale->length, scale->spin);
+    double worst = 0.0;
+    se3di_assembly_get_velocity(assembly, equations->x);
+    se3di_assembly_mul(assembly, equations->x, equations->c);
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        equations->c[k] = assembly->f[3 * k + 1] - equations->c[k];
+        double gap = fabs(equations->c[k]) / (rate * row_scale(assembly->model, k, scale->length));
+        worst = gap <= worst ? worst : gap;
+    }
+    return worst;
+}
+
+static void move(se3di_equations *equations)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    size_t block = (size_t)assembly->formulation->block;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        assembly->formulation->move(frame, equations->x + k * block);
+        se3di_quat_normalize(frame->p, frame->p);
+        se3di_frame_update(frame);
+    }
+}
+
+static double largest_shift(const se3di_equations *equations, double length)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    size_t block = (size_t)assembly->formulation->block;
+    double largest = 0.0;
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        double size = fabs(equations->x[k]) / (k % block < 3 ? length : 1.0);
+        largest = k % block == 7 || size <= largest ? largest : size;
+    }
+    return largest;
+}
+
+static se3d_status project_positions(se3di_equations *equations, double t,
+                                     const se3di_state_scale *scale, double accuracy,
+                                     int *is_factored, double *moved)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    double gap = eval_gap(equations, scale->length);
+    for (int k = 0; k < 6 && gap > accuracy; ++k) {
+        double before = gap;
+        if (!*is_factored) {
+            se3di_assembly_eval_jacobian(assembly);
+            SE3DI_TRY(factor(equations, t));
+            *is_factored = 1;
+        }
+        memset(equations->b, 0, assembly->unknown_count * sizeof *equations->b);
+        SE3DI_TRY(se3di_equations_solve(equations));
+        *moved = fmax(*moved, largest_shift(equations, scale->length));
+        if (!(*moved < 0.5)) {
+            return se3di_error_set(equations->error, SE3D_ERR_NO_CONVERGENCE,
+                                   "t = %g s: the step leaves the constraints, it is too large", t);
+        }
+        move(equations);
+        gap = eval_gap(equations, scale->length);
+        *is_factored = gap < 1e-2 * before; /* else with a new Jacobian */
+        if (!(gap < before)) {
+            break;
+        }
+    }
+    if (gap > 1e-8) {
+        return se3di_error_set(equations->error, SE3D_ERR_NO_CONVERGENCE,
+                               "t = %g s: the positions did not converge: the constraints are off "
+                               "by %.3g; the step is too large or the mechanism is locked",
+                               t, gap);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_state_project(se3di_equations *equations, double t,
+                                const se3di_state_scale *scale, double accuracy, double *moved)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    int is_factored = 0;
+    *moved = 0.0;
+    if (assembly->row_count == 0) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+    SE3DI_TRY(project_positions(equations, t, scale, accuracy, &is_factored, moved));
+    se3di_assembly_eval_jacobian(assembly);
+    for (int k = 0; k < 3 && eval_rate_gap(equations, scale) > accuracy; ++k) {
+        if (!is_factored) {
+            SE3DI_TRY(factor(equations, t));
+            is_factored = 1;
+        }
+        memset(equations->b, 0, assembly->unknown_count * sizeof *equations->b);
+        SE3DI_TRY(se3di_equations_solve(equations));
+        se3di_assembly_get_velocity(assembly, equations->b);
+        for (uint32_t c = 0; c < assembly->unknown_count; ++c) {
+            equations->b[c] += equations->x[c];
+        }
+        se3di_assembly_set_velocity(assembly, equations->b);
+    }
+    return SE3D_OK;
+}
+
+/* Between points that belong to one body. */
+double se3di_state_length(const se3di_model *model)
+{
+    double length = 0.0;
+    for (size_t k = 0; k < model->term_count; ++k) {
+        const se3di_term *term = &model->terms[k];
+        length = fmax(length, term->body_i > 0 ? se3di_norm(term->s_i) : 0.0);
+        length = fmax(length, term->body_j > 0 ? se3di_norm(term->s_j) : 0.0);
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force *force = &model->forces[k];
+        length = fmax(length, force->body_i > 0 ? se3di_norm(force->s_i) : 0.0);
+        length = fmax(length, force->body_j > 0 ? se3di_norm(force->s_j) : 0.0);
+    }
+    for (size_t k = 0; k < model->body_slots.count && length == 0.0; ++k) {
+        length = se3di_norm(model->frames[k].r);
+    }
+    return length > 1e-9 ? length : 1.0;
+}
+
+void se3di_state_scale_grow(const se3di_assembly *assembly, const double *derivative,
+                            se3di_state_scale *scale)
+{
+    double a = 0.0, wdot = 0.0, v = 1e-12, w = 1e-12;
+    for (uint32_t k = 0; k < assembly->body_count; ++k, derivative += SE3DI_STATE_SIZE) {
+        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        v = fmax(v, se3di_dot(frame->v, frame->v));
+        w = fmax(w, se3di_dot(frame->w, frame->w));
+        a = fmax(a, se3di_dot(derivative + 7, derivative + 7));
+        wdot = fmax(wdot, se3di_dot(derivative + 10, derivative + 10));
+    }
+    v = fmax(sqrt(v), sqrt(sqrt(a) * scale->length));
+    w = fmax(sqrt(w), sqrt(sqrt(wdot)));
+    scale->speed = fmax(0.95 * scale->speed, v);
+    scale->spin = fmax(0.95 * scale->spin, w);
+}
+
+se3d_status se3di_state_publish(se3di_equations *equations, const double *y, double t,
+                                const se3di_state_scale *scale, int project)
+{
+    double moved;
+    se3di_state_set(&equations->assembly, y);
+    if (project) {
+        SE3DI_TRY(se3di_state_project(equations, t, scale, 1e-13, &moved));
+    }
+    SE3DI_TRY(se3di_acceleration_solve(equations, t));
+    se3di_angles_accept(equations->assembly.model);
+    equations->assembly.model->time = t;
+    return SE3D_OK;
+}

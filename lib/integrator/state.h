@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The state of the free bodies as one vector, and what integrators of first-order form need:
+ *
+ *     y = (r, p, v, w) of every free body, 13 numbers each        y' = (v, 1/2 G(p)^T w, a, wdot)
+ *
+ * the same in both formulations; these differ in the equations that give a and wdot. */
+#ifndef SE3DI_STATE_H
+#define SE3DI_STATE_H
+
+#include "integrator/integrator.h"
+
+#define SE3DI_STATE_SIZE 13 /* numbers per body */
+
+/* Characteristic sizes that errors are measured by. */
+typedef struct se3di_state_scale {
+    double length, speed, spin; /* [m], [m/s], [rad/s] */
+} se3di_state_scale;
+
+size_t se3di_state_count(const se3di_assembly *assembly);
+void se3di_state_get(const se3di_assembly *assembly, double *y);
+/* Sets the frames; p is normalised on the way. */
+void se3di_state_set(se3di_assembly *assembly, const double *y);
+/* y' from the frames and the accelerations `qddot` [unknowns]. */
+void se3di_state_derivative(const se3di_assembly *assembly, const double *qddot,
+                            double *derivative);
+
+/* Mass, where it is constant: once before a series of evaluations. */
+void se3di_state_prepare(se3di_equations *equations);
+/* Accelerations at the present frames into equations->x, multipliers into equations->l; without the
+ * checks and records of se3di_acceleration_solve. */
+se3d_status se3di_state_evaluate(se3di_equations *equations, double t);
+/* Positions and velocities onto their constraints at t, mass-weighted. `accuracy` is the relative
+ * violation that does not matter. *moved: the largest relative correction of positions. */
+se3d_status se3di_state_project(se3di_equations *equations, double t,
+                                const se3di_state_scale *scale, double accuracy, double *moved);
+
+/* Length of the mechanism's parts. */
+double se3di_state_length(const se3di_model *model);
+/* Grow speed and spin to those of the present state with derivative `derivative`. */
+void se3di_state_scale_grow(const se3di_assembly *assembly, const double *derivative,
+                            se3di_state_scale *scale);
+
+/* The model's state from y at t, with accelerations and multipliers: an accepted or an interpolated
+ * one. */
+se3d_status se3di_state_publish(se3di_equations *equations, const double *y, double t,
+                                const se3di_state_scale *scale, int project);
+
+#endif
