@@ -61,6 +61,17 @@ static bool joint_is_valid(const se3di_kkt_pattern *p, size_t j)
     return true;
 }
 
+static bool couplings_are_valid(const se3di_kkt_pattern *p)
+{
+    for (size_t e = 0; e < p->coupling_count; ++e) {
+        int32_t i = p->coupling[2 * e], j = p->coupling[2 * e + 1];
+        if (i < 0 || i >= j || (size_t)j >= p->body_count) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool pattern_is_valid(const se3di_kkt_pattern *p)
 {
     bool mass = p->body_kind == SE3DI_KKT_BODY_MASS;
@@ -73,13 +84,7 @@ static bool pattern_is_valid(const se3di_kkt_pattern *p)
             return false;
         }
     }
-    for (size_t e = 0; e < p->coupling_count; ++e) {
-        int32_t i = p->coupling[2 * e], j = p->coupling[2 * e + 1];
-        if (i < 0 || i >= j || (size_t)j >= p->body_count) {
-            return false;
-        }
-    }
-    return true;
+    return couplings_are_valid(p);
 }
 
 static const int32_t *copy_ints(se3di_kkt *kkt, const int32_t *from, size_t count)

@@ -95,25 +95,14 @@ static se3d_status bodies_first_order(const se3di_kkt *kkt, int32_t *node_at)
     return status;
 }
 
-/* Reorder node_at into a postorder of its elimination tree; the fill-in stays the same. */
-static se3d_status postorder(const se3di_kkt *kkt, const se3di_kkt_fill *fill, int32_t *node_at)
+/* Lists of the children of each node, the largest subtree first, the others just before their
+ * parent needs them. size and heavy are work arrays. */
+static void link_children(const se3di_kkt_fill *fill, int32_t n, int32_t *child, int32_t *sibling,
+                          int32_t *size, int32_t *heavy)
 {
-    int32_t n = kkt->node_count;
-    int32_t *memory = se3di_alloc(&kkt->allocator, 4 * (size_t)n, sizeof(int32_t));
-    if (!memory) {
-        return SE3D_ERR_NO_MEMORY;
-    }
-    int32_t *child = memory, *sibling = memory + n, *stack = memory + 2 * n,
-            *order = memory + 3 * n;
-    int32_t depth = 0, count = 0;
-    for (int32_t k = 0; k < n; ++k) {
-        child[k] = -1;
-    }
-    /* The largest subtree first, the others just before they are needed. */
-    int32_t *size = stack, *heavy = order;
     for (int32_t k = 0; k < n; ++k) {
         size[k] = 1;
-        heavy[k] = -1;
+        heavy[k] = child[k] = -1;
     }
     for (int32_t k = 0; k < n; ++k) {
         int32_t parent = fill->parent[k];
@@ -131,6 +120,20 @@ static se3d_status postorder(const se3di_kkt *kkt, const se3di_kkt_fill *fill, i
             }
         }
     }
+}
+
+/* Reorder node_at into a postorder of its elimination tree; the fill-in stays the same. */
+static se3d_status postorder(const se3di_kkt *kkt, const se3di_kkt_fill *fill, int32_t *node_at)
+{
+    int32_t n = kkt->node_count;
+    int32_t *memory = se3di_alloc(&kkt->allocator, 4 * (size_t)n, sizeof(int32_t));
+    if (!memory) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    int32_t *child = memory, *sibling = memory + n, *stack = memory + 2 * n,
+            *order = memory + 3 * n;
+    int32_t depth = 0, count = 0;
+    link_children(fill, n, child, sibling, stack, order);
     for (int32_t root = 0; root < n; ++root) {
         if (fill->parent[root] >= 0) {
             continue;
