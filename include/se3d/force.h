@@ -18,10 +18,13 @@ typedef struct se3d_tsda_def {
     se3d_body body_j;
     double point_i[3]; /* body frames [m] */
     double point_j[3];
-    double k;        /* [N/m] */
-    double c;        /* [N s/m] */
-    double l0;       /* free length [m], >= 0 */
-    se3d_function h; /* actuator of (t, l, ldot) [N], or null */
+    double k;             /* [N/m] */
+    double c;             /* [N s/m] */
+    double l0;            /* free length [m], >= 0 */
+    se3d_function h;      /* actuator of (t, l, ldot) [N], or null */
+    se3d_function spring; /* one variable: elastic force [N] of l - l0, added to k; or null */
+    se3d_function damper; /* one variable: damping force [N] of ldot, added to c; or null */
+    double preload;       /* f at l = l0 and rest [N]: with l0 the installed length, its load */
 } se3d_tsda_def;
 
 SE3D_API void se3d_tsda_def_init(se3d_tsda_def *def, size_t size);
@@ -36,17 +39,26 @@ static inline se3d_tsda_def se3d_tsda_def_default(void)
 SE3D_API se3d_status se3d_force_create_tsda(se3d_system *system, const se3d_tsda_def *def,
                                             se3d_force *force);
 
-/* Rotational spring-damper-actuator about the axis of a joint with an angle:
- * n = k (theta - theta0) + c thetadot + h(t, theta, thetadot), acts on j as -n about the axis.
- * @since 0.1 */
+/* Rotational spring-damper-actuator about the axis of a joint with an angle, or (joint null) about
+ * axes on two bodies: n = k (theta - theta0) + c thetadot + h(t, theta, thetadot), acts on j as -n
+ * about the axis; theta counts turns. @since 0.1 */
 typedef struct se3d_rsda_def {
     size_t struct_size;
     const char *name;
-    se3d_constraint joint; /* a joint with an angle */
+    se3d_constraint joint; /* a joint with an angle, or null: the fields after h */
     double k;              /* [N m/rad] */
     double c;              /* [N m s/rad] */
     double theta0;         /* [rad] */
     se3d_function h;       /* actuator of (t, theta, thetadot) [N m], or null */
+    se3d_function spring;  /* one variable: elastic torque [N m] of theta - theta0; or null */
+    se3d_function damper;  /* one variable: damping torque [N m] of thetadot; or null */
+    double preload;        /* n at theta = theta0 and rest [N m] */
+    se3d_body body_i;      /* without a joint: the bodies, */
+    se3d_body body_j;
+    double axis_i[3]; /* the axis, frame of body i, */
+    double ref_i[3];  /* where the angle counts from, frame of body i; 0: chosen, */
+    double ref_j[3];  /* and to, frame of body j; 0: so that the angle is angle0 now */
+    double angle0;    /* [rad] at creation; given ref_j: the nearest whole turns */
 } se3d_rsda_def;
 
 SE3D_API void se3d_rsda_def_init(se3d_rsda_def *def, size_t size);
@@ -87,16 +99,156 @@ SE3D_API se3d_status se3d_force_create_load(se3d_system *system, const se3d_load
 SE3D_API se3d_status se3d_force_create_torque(se3d_system *system, const se3d_load_def *def,
                                               se3d_force *force);
 
+/* Elastic and viscous connection of two frames (a rubber mount). With u the displacement of point j
+ * from point i and theta the rotation vector of frame j from frame i, both in frame i, the
+ * potential is 1/2 z^T K z, z = (u, theta), and the force on it -(K z + C zdot). |theta| < pi.
+ * @since 0.1 */
+typedef struct se3d_bushing_def {
+    size_t struct_size;
+    const char *name;
+    se3d_body body_i;
+    se3d_body body_j;
+    double point_i[3]; /* body frames [m] */
+    double point_j[3];
+    double orientation_i[4]; /* frame -> body, Euler parameters; default the body's */
+    double orientation_j[4];
+    double K[36]; /* row-major, symmetric, [N/m, N, N m/rad] */
+    double C[36]; /* row-major, [N s/m, N s, N m s/rad] */
+} se3d_bushing_def;
+
+SE3D_API void se3d_bushing_def_init(se3d_bushing_def *def, size_t size);
+
+static inline se3d_bushing_def se3d_bushing_def_default(void)
+{
+    se3d_bushing_def def;
+    se3d_bushing_def_init(&def, sizeof def);
+    return def;
+}
+
+SE3D_API se3d_status se3d_force_create_bushing(se3d_system *system, const se3d_bushing_def *def,
+                                               se3d_force *force);
+
+/* Friction on a coordinate of a joint: sliding against the rate with mu N + limit, plus viscous
+ * times the rate; sticking by a spring that gives at most `presliding`. N is the joint's reaction
+ * square to its axis; on an angle the moment is radius mu N + limit. @since 0.1 */
+typedef struct se3d_friction_def {
+    size_t struct_size;
+    const char *name;
+    se3d_constraint joint;
+    int32_t coordinate; /* se3d_coordinate */
+    int32_t reserved;
+    double mu;         /* of sliding, >= 0 */
+    double mu_static;  /* of sticking, >= mu; 0: mu */
+    double radius;     /* of the bearing, on an angle [m] */
+    double limit;      /* friction without load [N, N m] */
+    double viscous;    /* [N s/m, N m s/rad] */
+    double presliding; /* [m, rad]; 0: 1e-9 */
+} se3d_friction_def;
+
+SE3D_API void se3d_friction_def_init(se3d_friction_def *def, size_t size);
+
+static inline se3d_friction_def se3d_friction_def_default(void)
+{
+    se3d_friction_def def;
+    se3d_friction_def_init(&def, sizeof def);
+    return def;
+}
+
+SE3D_API se3d_status se3d_force_create_friction(se3d_system *system, const se3d_friction_def *def,
+                                                se3d_force *force);
+
+/* One-sided spring-damper at the ends of the range of a joint coordinate, or (joint null) of the
+ * distance of two points; it pushes only. The damping gives the coefficient of restitution at every
+ * impact speed above 1 mm/s (or mrad/s). @since 0.1 */
+typedef struct se3d_stop_def {
+    size_t struct_size;
+    const char *name;
+    se3d_constraint joint; /* or null: the two points */
+    int32_t coordinate;    /* se3d_coordinate */
+    int32_t reserved;
+    se3d_body body_i;
+    se3d_body body_j;
+    double point_i[3]; /* body frames [m] */
+    double point_j[3];
+    double lower;       /* default -infinity: none */
+    double upper;       /* default +infinity: none */
+    double k;           /* > 0 [N/m, N m/rad] */
+    double restitution; /* 0.01 .. 1, default 1 */
+} se3d_stop_def;
+
+SE3D_API void se3d_stop_def_init(se3d_stop_def *def, size_t size);
+
+static inline se3d_stop_def se3d_stop_def_default(void)
+{
+    se3d_stop_def def;
+    se3d_stop_def_init(&def, sizeof def);
+    return def;
+}
+
+SE3D_API se3d_status se3d_force_create_stop(se3d_system *system, const se3d_stop_def *def,
+                                            se3d_force *force);
+
+/* What a force callback sees of a body. */
+typedef struct se3d_body_motion {
+    double r[3]; /* centre of mass, ground frame [m] */
+    double p[4]; /* Euler parameters */
+    double v[3]; /* ground frame [m/s] */
+    double w[3]; /* body frame [rad/s] */
+} se3d_body_motion;
+
+/* Compute what an element of the user's does to its bodies i and j: wrench = {force on i (ground
+ * frame, at the centre of mass), torque on i (body frame), force on j, torque on j}. K and D are
+ * NULL, or [144], row-major and zeroed: the derivatives of wrench to (dr_i, dtheta_i, dr_j,
+ * dtheta_j), dtheta virtual rotations in the body frame, and to (v_i, w_i, v_j, w_j). Must be a
+ * pure function of its arguments. Return OK, or a negative status to stop the analysis. @since 0.1
+ */
+typedef se3d_status (*se3d_force_callback)(void *ctx, double t, const se3d_body_motion motion[2],
+                                           double wrench[12], double *K, double *D);
+
+typedef struct se3d_force_callback_def {
+    size_t struct_size;
+    const char *name;
+    se3d_body body_i; /* the ground where there is only one body */
+    se3d_body body_j;
+    se3d_force_callback callback;
+    void *ctx;
+    int32_t has_jacobian; /* not 0: the callback fills K and D; else differences are used */
+    int32_t reserved;
+} se3d_force_callback_def;
+
+SE3D_API void se3d_force_callback_def_init(se3d_force_callback_def *def, size_t size);
+
+static inline se3d_force_callback_def se3d_force_callback_def_default(void)
+{
+    se3d_force_callback_def def;
+    se3d_force_callback_def_init(&def, sizeof def);
+    return def;
+}
+
+SE3D_API se3d_status se3d_force_create_callback(se3d_system *system,
+                                                const se3d_force_callback_def *def,
+                                                se3d_force *force);
+
+/* Get what an element does to its body i (side 0) or j (side 1): force at the centre of mass and
+ * torque about it, ground frame. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_force_get_wrench(const se3d_system *system, se3d_force force, size_t side,
+                                           double wrench[6]);
+/* Get potential energy [J], dissipated power and power fed in by an actuator, a load or a callback
+ * [W] at the present state. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_force_get_power(const se3d_system *system, se3d_force force,
+                                          double *potential, double *dissipated, double *actuator);
+
 SE3D_API se3d_status se3d_force_destroy(se3d_system *system, se3d_force force);
 SE3D_API se3d_status se3d_force_find(const se3d_system *system, const char *name,
                                      se3d_force *force);
 SE3D_API se3d_status se3d_force_get_name(const se3d_system *system, se3d_force force,
                                          const char **name);
-/* Get the type as in the model file: "tsda", "rsda", "force", "torque". Reader. @since 0.1 */
+/* Get the type as in the model file: "tsda", "rsda", "force", "torque", "bushing", "friction",
+ * "stop", "callback". Reader. @since 0.1 */
 SE3D_API se3d_status se3d_force_get_type(const se3d_system *system, se3d_force force,
                                          const char **type);
-/* Get length or angle, its rate and the force f or torque n of a tsda or rsda. Reader. @since 0.1
- */
+/* Get the coordinate (length, angle, displacement), its rate and the force f or torque n against it
+ * of a tsda, rsda, friction or stop. Reader. @since 0.1 */
 SE3D_API se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force,
                                           double *coordinate, double *rate, double *value);
 

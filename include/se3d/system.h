@@ -52,6 +52,11 @@ SE3D_API se3d_status se3d_system_get_error_status(const se3d_system *system);
 SE3D_API se3d_status se3d_system_set_gravity(se3d_system *system, const double gravity[3]);
 SE3D_API se3d_status se3d_system_get_gravity(const se3d_system *system, double gravity[3]);
 
+/* Make components of the gravitational acceleration functions of time; a null function keeps the
+ * component of se3d_system_set_gravity. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_system_set_gravity_function(se3d_system *system,
+                                                      const se3d_function gravity[3]);
+
 /* Set the time [s] at which functions of time are evaluated. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_system_set_time(se3d_system *system, double time);
 SE3D_API se3d_status se3d_system_get_time(const se3d_system *system, double *time);
@@ -84,6 +89,17 @@ typedef struct se3d_energy {
 } se3d_energy;
 
 SE3D_API se3d_status se3d_system_get_energy(const se3d_system *system, se3d_energy *energy);
+
+/* Work since the start of the run [J]: kinetic + potential + dissipated - actuators - drivers is
+ * constant to the integrator's order. Gravity that changes in time counts as an actuator. @since
+ * 0.1 */
+typedef struct se3d_work {
+    double dissipated;
+    double actuators; /* h of springs, loads, callbacks */
+    double drivers;
+} se3d_work;
+
+SE3D_API se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work);
 
 /* Get the largest violation over all equations: [0] |Phi|, [1] |Phi_q qdot - nu|,
  * [2] |Phi_q qddot - gamma|, at the present state. Reader. @since 0.1 */

@@ -117,10 +117,11 @@ se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, doubl
     uint32_t failed = 0;
     se3d_status status = se3di_forces_eval(model, t, assembly->wrench, &failed);
     if (status < 0) {
-        const char *name = model->forces[failed].name;
+        int is_gravity = failed >= model->force_slots.count;
+        const char *name = is_gravity ? "gravity" : model->forces[failed].name;
         return se3di_error_set(
             error, status, "t = %g s: force element %s (%s): %s", t, name ? name : "without a name",
-            se3di_force_type_name(model->forces[failed].type),
+            is_gravity ? "gravity" : se3di_force_type_name(model->forces[failed].type),
             status == SE3D_ERR_SINGULAR ? "its two points coincide, it has no direction"
                                         : "its function is not finite or failed");
     }

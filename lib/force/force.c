@@ -4,70 +4,155 @@
 
 #include "math/vec3.h"
 
+#include <stddef.h>
 #include <string.h>
 
-void se3di_wrench_add_at(const se3di_frame *frame, const double s[3], const double F[3],
-                         double wrench[6])
-{
-    double local[3];
-    double moment[3];
-    se3di_add(wrench, F, wrench);
-    se3di_mul_transposed(frame->A, F, local);
-    se3di_cross(s, local, moment);
-    se3di_add(wrench + 3, moment, wrench + 3);
-}
+typedef se3d_status (*element_eval)(const se3di_model *model, const se3di_force *force, double t,
+                                    se3di_effect *effect);
 
-void se3di_gravity_add(const se3di_model *model, double *wrench)
-{
-    for (size_t b = 0; b < model->body_slots.count; ++b) {
-        se3di_add_scaled(model->bodies[b].mass, model->gravity, wrench + 6 * b);
-    }
-}
+typedef struct element {
+    const char *name; /* as in the model file */
+    element_eval eval;
+} element;
 
-static se3d_status add(const se3di_model *model, const se3di_force *force, double t, double *wrench)
+static const element elements[SE3DI_FORCE_COUNT] = {
+    [SE3DI_FORCE_TSDA] = {"tsda", se3di_tsda_eval},
+    [SE3DI_FORCE_RSDA] = {"rsda", se3di_rsda_eval},
+    [SE3DI_FORCE_LOAD] = {"force", se3di_load_eval},
+    [SE3DI_FORCE_TORQUE] = {"torque", se3di_torque_eval},
+    [SE3DI_FORCE_BUSHING] = {"bushing", se3di_bushing_eval},
+    [SE3DI_FORCE_FRICTION] = {"friction", se3di_friction_eval},
+    [SE3DI_FORCE_STOP] = {"stop", se3di_stop_eval},
+    [SE3DI_FORCE_CALLBACK] = {"callback", se3di_callback_eval},
+};
+
+se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force, double t,
+                             se3di_effect *effect)
 {
-    switch (force->type) {
-    case SE3DI_FORCE_TSDA:
-        return se3di_tsda_add(model, force, t, wrench);
-    case SE3DI_FORCE_RSDA:
-        return se3di_rsda_add(model, force, t, wrench);
-    default:
-        return se3di_load_add(model, force, t, wrench);
-    }
+    size_t size = effect->wants_derivative ? sizeof *effect : offsetof(se3di_effect, K);
+    int32_t wants = effect->wants_derivative;
+    memset(effect, 0, size);
+    effect->wants_derivative = wants;
+    return elements[force->type].eval(model, force, t, effect);
 }
 
 se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed)
 {
+    double g[3];
+    se3di_effect effect;
+    effect.wants_derivative = 0;
     memset(wrench, 0, 6 * model->body_slots.count * sizeof *wrench);
-    se3di_gravity_add(model, wrench);
+    *failed = (uint32_t)model->force_slots.count;
+    SE3DI_TRY(se3di_gravity_eval(model, t, g, NULL));
+    for (size_t b = 0; b < model->body_slots.count; ++b) {
+        se3di_add_scaled(model->bodies[b].mass, g, wrench + 6 * b);
+    }
     for (uint32_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force *force = &model->forces[k];
         *failed = k;
-        SE3DI_TRY(add(model, &model->forces[k], t, wrench));
+        SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
+        for (int c = 0; c < 6; ++c) {
+            wrench[6 * force->body_i + (uint32_t)c] += effect.wrench[c];
+            wrench[6 * force->body_j + (uint32_t)c] += effect.wrench[6 + c];
+        }
     }
     return SE3D_OK;
 }
 
 se3d_status se3di_forces_potential(const se3di_model *model, double t, double *potential)
 {
+    double g[3];
+    se3di_effect effect;
+    effect.wants_derivative = 0;
     *potential = 0.0;
+    SE3DI_TRY(se3di_gravity_eval(model, t, g, NULL));
     for (size_t b = 0; b < model->body_slots.count; ++b) {
-        *potential -= model->bodies[b].mass * se3di_dot(model->gravity, model->frames[b].r);
+        *potential -= model->bodies[b].mass * se3di_dot(g, model->frames[b].r);
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        const se3di_force *force = &model->forces[k];
-        se3di_spring_state state = {0};
-        if (force->type == SE3DI_FORCE_TSDA) {
-            SE3DI_TRY(se3di_tsda_state(model, force, t, &state));
-        } else if (force->type == SE3DI_FORCE_RSDA) {
-            SE3DI_TRY(se3di_rsda_state(model, force, t, &state));
-        }
-        *potential += state.potential;
+        SE3DI_TRY(se3di_force_eval(model, &model->forces[k], t, &effect));
+        *potential += effect.potential;
     }
     return SE3D_OK;
 }
 
+/* -lambda . nu: the power of constraints that change in time. */
+static se3d_status driver_power(const se3di_model *model, double t, double *power)
+{
+    for (size_t k = 0; k < model->row_count; ++k) {
+        double jet[3];
+        if (model->rows[k].function >= 0) {
+            SE3DI_TRY(
+                se3di_function_eval(&model->functions[model->rows[k].function], &t, jet, NULL));
+            *power -= model->lambda[k] * jet[1];
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_power_eval(const se3di_model *model, double t, double power[3])
+{
+    double g[3];
+    double g_t[3];
+    se3di_effect effect;
+    effect.wants_derivative = 0;
+    power[0] = power[1] = power[2] = 0.0;
+    SE3DI_TRY(se3di_gravity_eval(model, t, g, g_t));
+    for (size_t b = 0; b < model->body_slots.count; ++b) {
+        if (!model->bodies[b].fixed) {
+            power[1] -= model->bodies[b].mass * se3di_dot(g_t, model->frames[b].r);
+        }
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        SE3DI_TRY(se3di_force_eval(model, &model->forces[k], t, &effect));
+        power[0] += effect.power[0];
+        power[1] += effect.power[1];
+    }
+    return driver_power(model, t, &power[2]);
+}
+
+se3d_status se3di_work_accept(se3di_model *model, double h)
+{
+    double power[3];
+    SE3DI_TRY(se3di_power_eval(model, model->time, power));
+    for (int k = 0; k < 3; ++k) {
+        if (model->work_valid) {
+            model->work[k] += 0.5 * h * (model->power[k] + power[k]);
+        }
+        model->power[k] = power[k];
+    }
+    model->work_valid = 1;
+    return SE3D_OK;
+}
+
+int se3di_force_is_history_dependent(const se3di_force *force)
+{
+    return force->type == SE3DI_FORCE_FRICTION || force->type == SE3DI_FORCE_STOP;
+}
+
+uint32_t se3di_forces_revise(se3di_model *model)
+{
+    uint32_t changes = 0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (model->forces[k].type == SE3DI_FORCE_FRICTION) {
+            changes += se3di_friction_revise(model, &model->forces[k]);
+        }
+    }
+    return changes;
+}
+
+void se3di_forces_accept(se3di_model *model)
+{
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (model->forces[k].type == SE3DI_FORCE_FRICTION) {
+            se3di_friction_accept(model, &model->forces[k]);
+        } else if (model->forces[k].type == SE3DI_FORCE_STOP) {
+            se3di_stop_accept(model, &model->forces[k]);
+        }
+    }
+}
+
 const char *se3di_force_type_name(int32_t type)
 {
-    static const char *const names[] = {"tsda", "rsda", "force", "torque"};
-    return names[type];
+    return elements[type].name;
 }

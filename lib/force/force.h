@@ -1,50 +1,82 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Force elements: what they do to the bodies, one file per type. A wrench is a force at the centre
- * of mass in the ground frame [N] and a torque in the body frame [N m], 6 numbers per body, indexed
- * by dense body. */
+/* Force elements: what they do to the bodies, one file per type, each with the same function.
+ *
+ * A wrench is a force at the centre of mass in the ground frame [N] and a torque in the body frame
+ * [N m]: 6 numbers per body. An element acts on two bodies, i and j: its wrench has 12 numbers and
+ * its Jacobians are 12 x 12 (row-major), to the virtual displacements (dr, dtheta: rotations in the
+ * body frame, A -> A exp(tilde(dtheta))) and to the velocities (v ground, w body frame).
+ * docs/theory/energy.md */
 #ifndef SE3DI_FORCE_H
 #define SE3DI_FORCE_H
 
 #include "model/model.h"
 
-/* State of a spring element. */
-typedef struct se3di_spring_state {
-    double coordinate; /* length [m] or angle [rad] */
-    double rate;
-    double value;        /* f [N] or n [N m] */
-    double potential;    /* of k [J] */
-    double direction[3]; /* tsda: from i to j, unit; rsda: axis; ground frame */
-    double pull[3];      /* tsda: the force on point i, ground frame */
-} se3di_spring_state;
+/* An element at the state of the model. */
+typedef struct se3di_effect {
+    double wrench[12];
+    double potential;         /* [J] */
+    double power[2];          /* dissipated, fed in by an actuator or load [W] */
+    double coordinate, rate;  /* of springs, friction and stops */
+    double value;             /* force against the coordinate: f [N] or n [N m] */
+    int32_t wants_derivative; /* set by the caller: K and D are computed */
+    double K[144];            /* d wrench / d (dr, dtheta) */
+    double D[144];            /* d wrench / d (v, w) */
+} se3di_effect;
 
-/* Evaluate a tsda or rsda. @return OK, SINGULAR (the points of a tsda with a free length or an
- * actuator coincide), NOT_FINITE, CALLBACK */
-se3d_status se3di_tsda_state(const se3di_model *model, const se3di_force *force, double t,
-                             se3di_spring_state *state);
-se3d_status se3di_rsda_state(const se3di_model *model, const se3di_force *force, double t,
-                             se3di_spring_state *state);
+/* Evaluate one element. `effect` needs no initialisation but wants_derivative. @return OK, SINGULAR
+ * (the points of a tsda with a free length coincide), NOT_FINITE, CALLBACK */
+se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force, double t,
+                             se3di_effect *effect);
 
-/* Add the element's wrenches. */
-se3d_status se3di_tsda_add(const se3di_model *model, const se3di_force *force, double t,
-                           double *wrench);
-se3d_status se3di_rsda_add(const se3di_model *model, const se3di_force *force, double t,
-                           double *wrench);
-se3d_status se3di_load_add(const se3di_model *model, const se3di_force *force, double t,
-                           double *wrench);
-void se3di_gravity_add(const se3di_model *model, double *wrench);
+/* The elements; `effect` comes zeroed. */
+se3d_status se3di_tsda_eval(const se3di_model *model, const se3di_force *force, double t,
+                            se3di_effect *effect);
+se3d_status se3di_rsda_eval(const se3di_model *model, const se3di_force *force, double t,
+                            se3di_effect *effect);
+se3d_status se3di_load_eval(const se3di_model *model, const se3di_force *force, double t,
+                            se3di_effect *effect);
+se3d_status se3di_torque_eval(const se3di_model *model, const se3di_force *force, double t,
+                              se3di_effect *effect);
+se3d_status se3di_bushing_eval(const se3di_model *model, const se3di_force *force, double t,
+                               se3di_effect *effect);
+se3d_status se3di_friction_eval(const se3di_model *model, const se3di_force *force, double t,
+                                se3di_effect *effect);
+se3d_status se3di_stop_eval(const se3di_model *model, const se3di_force *force, double t,
+                            se3di_effect *effect);
+se3d_status se3di_callback_eval(const se3di_model *model, const se3di_force *force, double t,
+                                se3di_effect *effect);
+
+/* Gravity at t and its rate (NULL: not wanted). */
+se3d_status se3di_gravity_eval(const se3di_model *model, double t, double g[3], double *g_t);
 
 /* Wrenches of gravity and all elements on all bodies, [bodies * 6]. On failure *failed is the
- * element. */
+ * element (the count of elements: gravity). */
 se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed);
 
-/* Potential energy of gravity (zero at the ground origin) and springs [J]. */
+/* Potential energy of gravity (zero at the ground origin) and elements [J]. */
 se3d_status se3di_forces_potential(const se3di_model *model, double t, double *potential);
+
+/* Power at the state of the model [W]: {dissipated, fed in by actuators, loads and gravity that
+ * changes, fed in by drivers (from model->lambda)}. */
+se3d_status se3di_power_eval(const se3di_model *model, double t, double power[3]);
+/* Add the work since the last accepted state, over a step h, by the trapezoidal rule to model->work
+ * (h = 0: only note the present power). */
+se3d_status se3di_work_accept(se3di_model *model, double h);
+
+/* Elements with a memory (friction, stops). After a trial step from the last accepted state:
+ * compare what they assumed with what came out, correct it and return how many changed; the step is
+ * repeated until none does. */
+uint32_t se3di_forces_revise(se3di_model *model);
+/* The state of the model is accepted. */
+void se3di_forces_accept(se3di_model *model);
+/* The element has a memory. */
+int se3di_force_is_history_dependent(const se3di_force *force);
+
+uint32_t se3di_friction_revise(const se3di_model *model, se3di_force *force);
+void se3di_friction_accept(const se3di_model *model, se3di_force *force);
+void se3di_stop_accept(const se3di_model *model, se3di_force *force);
 
 /* The name of an element's type as in the model file. */
 const char *se3di_force_type_name(int32_t type);
-
-/* Add force F (ground frame) at point s (body frame) of a body. */
-void se3di_wrench_add_at(const se3di_frame *frame, const double s[3], const double F[3],
-                         double wrench[6]);
 
 #endif

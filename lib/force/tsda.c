@@ -1,70 +1,55 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* TSDA: translational spring-damper-actuator between point s_i of body i and s_j of body j,
  *
- *     d = r_j + A_j s_j - r_i - A_i s_i,  l = |d|,  u = d / l,  ldot = u . ddot
- *     f = k (l - l0) + c ldot + h(t, l, ldot)      F_i = f u,  F_j = -f u
+ *     d = r_j + A_j s_j - r_i - A_i s_i,  l = |d|,  ldot = d . ddot / l
+ *     f = k (l - l0) + c ldot + h(t, l, ldot)      F_i = f d/l,  F_j = -f d/l
  *
- * (Haug 1989, sec. 11.4.) At l = 0 the direction is lost; with l0 = 0 and no actuator the force k d
- * + c ddot is still regular.  docs/theory/springs.md */
-#include "force/force.h"
-#include "math/vec3.h"
+ * (Haug 1989, sec. 11.4.) At l = 0 the direction is lost; with l0 = 0 and neither preload, curve
+ * nor actuator the force is k d + c ddot, whose limit is regular in k.  docs/theory/springs.md */
+#include "force/measure.h"
+#include "primitive/primitive.h"
 
-static void point_motion(const se3di_frame *frame, const double s[3], double position[3],
-                         double velocity[3])
+#include <string.h>
+
+/* Coinciding points: the potential k D / 2, and c against the relative velocity in every direction.
+ */
+static void eval_at_zero(const se3di_model *model, const se3di_force *force, se3di_effect *effect)
 {
-    double turned[3];
-    se3di_mul(frame->A, s, turned);
-    se3di_add(frame->r, turned, position);
-    se3di_cross(frame->w, s, turned);
-    se3di_mul(frame->A, turned, velocity);
-    se3di_add(velocity, frame->v, velocity);
+    se3di_term term;
+    se3di_measure d;
+    double H[144] = {0.0};
+    double rate[12] = {0.0};
+    se3di_length_term(force, &term);
+    se3di_measure_term(model, &term, 1, &d);
+    memcpy(H, d.H, sizeof H);
+    for (int r = 0; r < 12; ++r) {
+        for (int c = 0; c < 12; ++c) {
+            rate[r] += 0.5 * H[12 * r + c] * d.u[c]; /* at d = 0, D_qq / 2 = d_q^T d_q */
+        }
+        effect->wrench[r] = -0.5 * force->k * d.g[r] - force->c * rate[r];
+        effect->power[0] += force->c * d.u[r] * rate[r];
+    }
+    for (int k = 0; effect->wants_derivative && k < 144; ++k) {
+        effect->K[k] = -0.5 * force->k * H[k];
+        effect->D[k] = -0.5 * force->c * H[k];
+    }
 }
 
-se3d_status se3di_tsda_state(const se3di_model *model, const se3di_force *force, double t,
-                             se3di_spring_state *state)
+se3d_status se3di_tsda_eval(const se3di_model *model, const se3di_force *force, double t,
+                            se3di_effect *effect)
 {
-    double d[3];
-    double ddot[3];
-    double from[3];
-    double from_rate[3];
-    point_motion(&model->frames[force->body_i], force->s_i, from, from_rate);
-    point_motion(&model->frames[force->body_j], force->s_j, d, ddot);
-    se3di_sub(d, from, d);
-    se3di_sub(ddot, from_rate, ddot);
-    double l = se3di_norm(d);
-    *state = (se3di_spring_state){.coordinate = l};
-    if (l < 1e-14 * (1.0 + se3di_norm(from))) {
-        if (force->rest > 0.0 || force->function[0] >= 0) {
+    se3di_measure measure;
+    se3di_law law;
+    if (!se3di_measure_length(model, force, effect->wants_derivative, &measure)) {
+        int directed = force->rest > 0.0 || force->preload != 0.0 || force->function[0] >= 0 ||
+                       force->function[3] >= 0 || force->function[4] >= 0;
+        if (directed) {
             return SE3D_ERR_SINGULAR;
         }
-        for (int k = 0; k < 3; ++k) {
-            state->pull[k] = force->k * d[k] + force->c * ddot[k];
-        }
+        eval_at_zero(model, force, effect);
         return SE3D_OK;
     }
-    se3di_scale(1.0 / l, d, state->direction);
-    double x[3] = {t, l, se3di_dot(state->direction, ddot)};
-    double jet[3] = {0.0, 0.0, 0.0};
-    if (force->function[0] >= 0) {
-        SE3DI_TRY(se3di_function_eval(&model->functions[force->function[0]], x, jet, NULL));
-    }
-    state->rate = x[2];
-    state->value = force->k * (l - force->rest) + force->c * x[2] + jet[0];
-    state->potential = 0.5 * force->k * (l - force->rest) * (l - force->rest);
-    se3di_scale(state->value, state->direction, state->pull);
-    return SE3D_OK;
-}
-
-se3d_status se3di_tsda_add(const se3di_model *model, const se3di_force *force, double t,
-                           double *wrench)
-{
-    se3di_spring_state state;
-    SE3DI_TRY(se3di_tsda_state(model, force, t, &state));
-    double push[3];
-    se3di_scale(-1.0, state.pull, push);
-    se3di_wrench_add_at(&model->frames[force->body_i], force->s_i, state.pull,
-                        wrench + 6 * force->body_i);
-    se3di_wrench_add_at(&model->frames[force->body_j], force->s_j, push,
-                        wrench + 6 * force->body_j);
+    SE3DI_TRY(se3di_spring_law(model, force, t, &measure, effect, &law));
+    se3di_effect_add(effect, &measure, &law);
     return SE3D_OK;
 }

@@ -43,6 +43,7 @@ void se3di_model_touch_state(se3di_model *model)
 {
     model->settled = 0;
     model->history_tag = 0;
+    model->work_valid = 0;
 }
 
 /* The structure has changed. */
@@ -158,9 +159,12 @@ void se3di_model_remove_function(se3di_model *model, uint32_t function)
         lower_signed(&model->rows[k].function, function);
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        for (int c = 0; c < 3; ++c) {
+        for (int c = 0; c < SE3DI_FORCE_FUNCTIONS; ++c) {
             lower_signed(&model->forces[k].function[c], function);
         }
+    }
+    for (int c = 0; c < 3; ++c) {
+        lower_signed(&model->gravity_function[c], function);
     }
 }
 
@@ -294,7 +298,7 @@ static void count_force_users(se3di_model *model, const se3di_force *force, uint
     if (force->joint >= 0) {
         model->constraints[force->joint].users += by;
     }
-    for (int c = 0; c < 3; ++c) {
+    for (int c = 0; c < SE3DI_FORCE_FUNCTIONS; ++c) {
         if (force->function[c] >= 0) {
             model->functions[force->function[c]].users += by;
         }
@@ -318,11 +322,27 @@ se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
     return SE3D_OK;
 }
 
+se3d_status se3di_model_add_force_with_angle(se3di_model *model, const se3di_force *force,
+                                             const se3di_angle *angle, se3di_handle *handle)
+{
+    se3di_force owner = *force;
+    RESERVE(model, angles, angle_capacity, model->angle_count + 1, sizeof *model->angles);
+    owner.angle = (int32_t)model->angle_count;
+    owner.owns_angle = 1;
+    SE3DI_TRY(se3di_model_add_force(model, &owner, handle));
+    model->angles[model->angle_count++] = *angle;
+    return SE3D_OK;
+}
+
 void se3di_model_remove_force(se3di_model *model, uint32_t force)
 {
+    int32_t own = model->forces[force].owns_angle ? model->forces[force].angle : -1;
     count_force_users(model, &model->forces[force], UINT32_MAX);
     se3di_text_free(&model->allocator, model->forces[force].name);
     close_gap(model->forces, model->force_slots.count, force, 1, sizeof *model->forces);
     se3di_slots_remove(&model->force_slots, force);
+    if (own >= 0) {
+        remove_angle(model, (uint32_t)own);
+    }
     touch(model);
 }

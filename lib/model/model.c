@@ -18,6 +18,7 @@ se3d_status se3di_model_init(se3di_model *model, const se3d_allocator *allocator
 {
     memset(model, 0, sizeof *model);
     model->allocator = *allocator;
+    model->gravity_function[0] = model->gravity_function[1] = model->gravity_function[2] = -1;
     se3di_slots *slots[] = {&model->body_slots, &model->marker_slots, &model->function_slots,
                             &model->constraint_slots, &model->force_slots};
     for (size_t k = 0; k < sizeof slots / sizeof slots[0]; ++k) {

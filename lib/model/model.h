@@ -93,27 +93,53 @@ typedef enum se3di_force_type {
     SE3DI_FORCE_TSDA = 0,
     SE3DI_FORCE_RSDA = 1,
     SE3DI_FORCE_LOAD = 2,
-    SE3DI_FORCE_TORQUE = 3
+    SE3DI_FORCE_TORQUE = 3,
+    SE3DI_FORCE_BUSHING = 4,
+    SE3DI_FORCE_FRICTION = 5,
+    SE3DI_FORCE_STOP = 6,
+    SE3DI_FORCE_CALLBACK = 7,
+    SE3DI_FORCE_COUNT = 8
 } se3di_force_type;
+
+#define SE3DI_FORCE_FUNCTIONS 5 /* h or the components of a load (0, 1, 2), spring (3), damper (4) */
+#define SE3DI_FORCE_STATES    4 /* what an element remembers of the accepted states */
 
 typedef struct se3di_force {
     char *name;
     int32_t type;
-    int32_t in_body_frame;
+    int32_t in_body_frame; /* loads */
+    int32_t has_jacobian;  /* callbacks */
     uint32_t body_i, body_j; /* loads: body_j */
     double s_i[3], s_j[3];
     double k, c, rest;   /* stiffness, damping, l0 or theta0 */
-    int32_t function[3]; /* h, or the components of a load; -1: none */
-    int32_t joint;       /* rsda */
-    int32_t angle;       /* rsda: turn counter */
+    double preload;      /* of springs: value at rest */
+    int32_t function[SE3DI_FORCE_FUNCTIONS]; /* -1: none */
+    int32_t joint;                           /* rsda, friction, stop: whose coordinate; -1: none */
+    int32_t angle;                           /* its turn counter; -1: none */
+    int32_t owns_angle;                      /* the turn counter is the element's own */
+    int32_t coordinate; /* friction, stop: se3d_coordinate, SE3DI_FORCE_LENGTH: of two points */
     uint32_t users;
-    double value[3];
+    double value[3];    /* loads */
+    double low, high;   /* stop: free between; infinite: none */
+    double restitution; /* stop */
+    double mu, mu_static, radius, limit, viscous, presliding; /* friction */
+    double p_i[4], p_j[4];                                    /* bushing: frames -> bodies */
+    double K[36], C[36];                                      /* bushing, in frame i */
+    se3d_force_callback callback;
+    void *ctx;
+    double state[SE3DI_FORCE_STATES]; /* friction, stop: see their files */
 } se3di_force;
+
+#define SE3DI_FORCE_LENGTH 2 /* se3di_force.coordinate */
 
 typedef struct se3di_model {
     se3d_allocator allocator;
     double gravity[3];
+    int32_t gravity_function[3]; /* of time, -1: `gravity` */
+    int32_t work_valid;          /* `power` belongs to the present state */
     double time;
+    double work[3];  /* done since the start: dissipated, by actuators, by drivers [J] */
+    double power[3]; /* the same, of the last accepted state [W] */
     uint64_t topology_version; /* changes when elements come, go or change */
     int32_t settled;           /* the state is an analysis' own; 0 after the user set one */
     int32_t reserved;
@@ -184,6 +210,10 @@ se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *dr
                                        se3di_handle *handle);
 se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
                                   se3di_handle *handle);
+
+/* The same with a turn counter of its own. */
+se3d_status se3di_model_add_force_with_angle(se3di_model *model, const se3di_force *force,
+                                             const se3di_angle *angle, se3di_handle *handle);
 
 /* Remove an element that has no users. */
 void se3di_model_remove_body(se3di_model *model, uint32_t body);

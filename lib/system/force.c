@@ -2,8 +2,9 @@
 /* Force elements: creation and queries. */
 #include "force/force.h"
 
+#include "joint/joint.h"
 #include "math/vec3.h"
-#include "system/system_internal.h"
+#include "system/force_internal.h"
 
 #include <string.h>
 
@@ -35,7 +36,7 @@ void se3d_load_def_init(se3d_load_def *def, size_t size)
 }
 
 /* What every creation starts with. */
-static se3d_status begin(se3d_system *system, se3d_force *force)
+se3d_status se3di_force_begin(se3d_system *system, se3d_force *force)
 {
     if (force) {
         *force = (se3d_force){0, 0};
@@ -43,14 +44,14 @@ static se3d_status begin(se3d_system *system, se3d_force *force)
     return system ? se3di_check_pointer(system, "force", force) : SE3D_ERR_NULL;
 }
 
-static se3di_force blank(int32_t type, const char *name)
+se3di_force se3di_force_blank(int32_t type, const char *name)
 {
-    se3di_force data = {.type = type, .function = {-1, -1, -1}, .joint = -1, .angle = -1};
+    se3di_force data = {.type = type, .function = {-1, -1, -1, -1, -1}, .joint = -1, .angle = -1};
     memcpy(&data.name, &name, sizeof data.name); /* copied by the model */
     return data;
 }
 
-static se3d_status add(se3d_system *system, const se3di_force *data, se3d_force *force)
+se3d_status se3di_force_add(se3d_system *system, const se3di_force *data, se3d_force *force)
 {
     se3di_handle handle;
     if (se3di_model_add_force(&system->model, data, &handle) < 0) {
@@ -62,11 +63,11 @@ static se3d_status add(se3d_system *system, const se3di_force *data, se3d_force 
 
 se3d_status se3d_force_create_tsda(se3d_system *system, const se3d_tsda_def *def, se3d_force *force)
 {
-    SE3DI_TRY(begin(system, force));
+    SE3DI_TRY(se3di_force_begin(system, force));
     se3d_tsda_def full = se3d_tsda_def_default();
     SE3DI_TRY(se3di_check_def(system, "tsda def", def, &full, sizeof full));
     SE3DI_TRY(se3di_check_force_name(system, full.name));
-    se3di_force data = blank(SE3DI_FORCE_TSDA, full.name);
+    se3di_force data = se3di_force_blank(SE3DI_FORCE_TSDA, full.name);
     SE3DI_TRY(se3di_find_body(system, "body_i", full.body_i, &data.body_i));
     SE3DI_TRY(se3di_find_body(system, "body_j", full.body_j, &data.body_j));
     SE3DI_TRY(se3di_check_finites(system, "point_i", full.point_i, 3));
@@ -75,58 +76,123 @@ se3d_status se3d_force_create_tsda(se3d_system *system, const se3d_tsda_def *def
     SE3DI_TRY(se3di_check_finite(system, "c", full.c));
     SE3DI_TRY(se3di_check_finite(system, "l0", full.l0));
     SE3DI_TRY(se3di_find_function(system, "h", full.h, 3, &data.function[0]));
+    SE3DI_TRY(se3di_find_function(system, "spring", full.spring, 1, &data.function[3]));
+    SE3DI_TRY(se3di_find_function(system, "damper", full.damper, 1, &data.function[4]));
+    SE3DI_TRY(se3di_check_finite(system, "preload", full.preload));
     if (full.l0 < 0.0) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "l0 = %g m, must be >= 0", full.l0);
     }
-    if (data.body_i == data.body_j) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "body_i and body_j are the same body, must differ");
-    }
+    SE3DI_TRY(se3di_force_check_pair(system, &data));
+    data.preload = full.preload;
+    data.coordinate = SE3DI_FORCE_LENGTH;
     data.k = full.k;
     data.c = full.c;
     data.rest = full.l0;
     se3di_copy(full.point_i, data.s_i);
     se3di_copy(full.point_j, data.s_j);
-    return add(system, &data, force);
+    return se3di_force_add(system, &data, force);
 }
 
-se3d_status se3d_force_create_rsda(se3d_system *system, const se3d_rsda_def *def, se3d_force *force)
+/* The axes and the turn counter of an rsda without a joint. */
+static se3d_status make_angle(se3d_system *system, const se3d_rsda_def *def, se3di_force *data,
+                              se3di_angle *angle)
 {
-    SE3DI_TRY(begin(system, force));
-    se3d_rsda_def full = se3d_rsda_def_default();
-    SE3DI_TRY(se3di_check_def(system, "rsda def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_force_name(system, full.name));
-    se3di_force data = blank(SE3DI_FORCE_RSDA, full.name);
+    se3di_joint_frames frames = {.point_i = {0.0, 0.0, 0.0}};
+    const double none[3] = {0.0, 0.0, 0.0};
+    SE3DI_TRY(se3di_find_body(system, "body_i", def->body_i, &data->body_i));
+    SE3DI_TRY(se3di_find_body(system, "body_j", def->body_j, &data->body_j));
+    SE3DI_TRY(se3di_force_check_pair(system, data));
+    SE3DI_TRY(se3di_check_direction(system, "axis_i", def->axis_i, frames.axis_i));
+    SE3DI_TRY(se3di_check_finites(system, "ref_i", def->ref_i, 3));
+    SE3DI_TRY(se3di_check_finites(system, "ref_j", def->ref_j, 3));
+    SE3DI_TRY(se3di_check_finite(system, "angle0", def->angle0));
+    int chosen = memcmp(def->ref_i, none, sizeof none) == 0;
+    if (!se3di_joint_triad_build(frames.axis_i, chosen ? NULL : def->ref_i, frames.ref_i,
+                                 frames.third_i)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "ref_i = [%g, %g, %g] is parallel to axis_i, must not be", def->ref_i[0],
+                          def->ref_i[1], def->ref_i[2]);
+    }
+    const se3di_frame *i = &system->model.frames[data->body_i];
+    const se3di_frame *j = &system->model.frames[data->body_j];
+    double axis[3];
+    se3di_mul(i->A, frames.axis_i, axis);
+    se3di_mul_transposed(j->A, axis, frames.axis_j);
+    if (memcmp(def->ref_j, none, sizeof none) == 0) {
+        se3di_joint_ref_match(&frames, def->angle0, i, j, frames.ref_j);
+    } else {
+        SE3DI_TRY(se3di_check_direction(system, "ref_j", def->ref_j, frames.ref_j));
+    }
+    const uint32_t bodies[2] = {data->body_i, data->body_j};
+    se3di_joint_angle_init(&frames, bodies, 0.0, angle);
+    angle->theta = se3di_joint_angle_start(angle, i, j, def->angle0);
+    return SE3D_OK;
+}
+
+/* The joint of an rsda. */
+static se3d_status use_angle(se3d_system *system, const se3d_rsda_def *def, se3di_force *data)
+{
     uint32_t joint;
-    SE3DI_TRY(se3di_find_constraint(system, "joint", full.joint, &joint));
-    SE3DI_TRY(se3di_check_finite(system, "k", full.k));
-    SE3DI_TRY(se3di_check_finite(system, "c", full.c));
-    SE3DI_TRY(se3di_check_finite(system, "theta0", full.theta0));
-    SE3DI_TRY(se3di_find_function(system, "h", full.h, 3, &data.function[0]));
+    SE3DI_TRY(se3di_find_constraint(system, "joint", def->joint, &joint));
     const se3di_constraint *constraint = &system->model.constraints[joint];
     if (constraint->angle < 0) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "joint %s is a %s joint, must be one with an angle",
                           constraint->name ? constraint->name : "without a name", constraint->type);
     }
-    data.joint = (int32_t)joint;
-    data.angle = constraint->angle;
-    data.body_i = constraint->bodies[0];
-    data.body_j = constraint->bodies[1];
+    data->joint = (int32_t)joint;
+    data->angle = constraint->angle;
+    data->body_i = constraint->bodies[0];
+    data->body_j = constraint->bodies[1];
+    return SE3D_OK;
+}
+
+static se3d_status add_with_angle(se3d_system *system, const se3di_force *data,
+                                  const se3di_angle *angle, se3d_force *force)
+{
+    se3di_handle handle;
+    if (se3di_model_add_force_with_angle(&system->model, data, angle, &handle) < 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a force element");
+    }
+    *force = (se3d_force){handle.index1, handle.generation};
+    return SE3D_OK;
+}
+
+se3d_status se3d_force_create_rsda(se3d_system *system, const se3d_rsda_def *def, se3d_force *force)
+{
+    SE3DI_TRY(se3di_force_begin(system, force));
+    se3d_rsda_def full = se3d_rsda_def_default();
+    SE3DI_TRY(se3di_check_def(system, "rsda def", def, &full, sizeof full));
+    SE3DI_TRY(se3di_check_force_name(system, full.name));
+    se3di_force data = se3di_force_blank(SE3DI_FORCE_RSDA, full.name);
+    se3di_angle angle;
+    SE3DI_TRY(se3di_check_finite(system, "k", full.k));
+    SE3DI_TRY(se3di_check_finite(system, "c", full.c));
+    SE3DI_TRY(se3di_check_finite(system, "theta0", full.theta0));
+    SE3DI_TRY(se3di_check_finite(system, "preload", full.preload));
+    SE3DI_TRY(se3di_find_function(system, "h", full.h, 3, &data.function[0]));
+    SE3DI_TRY(se3di_find_function(system, "spring", full.spring, 1, &data.function[3]));
+    SE3DI_TRY(se3di_find_function(system, "damper", full.damper, 1, &data.function[4]));
     data.k = full.k;
     data.c = full.c;
     data.rest = full.theta0;
-    return add(system, &data, force);
+    data.preload = full.preload;
+    if (full.joint.index1 == 0 && full.joint.generation == 0 && full.body_j.index1 != 0) {
+        SE3DI_TRY(make_angle(system, &full, &data, &angle));
+        return add_with_angle(system, &data, &angle, force);
+    }
+    SE3DI_TRY(use_angle(system, &full, &data));
+    return se3di_force_add(system, &data, force);
 }
 
 static se3d_status create_load(se3d_system *system, const se3d_load_def *def, int32_t type,
                                se3d_force *force)
 {
-    SE3DI_TRY(begin(system, force));
+    SE3DI_TRY(se3di_force_begin(system, force));
     se3d_load_def full = se3d_load_def_default();
     SE3DI_TRY(se3di_check_def(system, "load def", def, &full, sizeof full));
     SE3DI_TRY(se3di_check_force_name(system, full.name));
-    se3di_force data = blank(type, full.name);
+    se3di_force data = se3di_force_blank(type, full.name);
     SE3DI_TRY(se3di_find_body(system, "body", full.body, &data.body_j));
     SE3DI_TRY(se3di_check_finites(system, "point", full.point, 3));
     SE3DI_TRY(se3di_check_finites(system, "value", full.value, 3));
@@ -137,7 +203,7 @@ static se3d_status create_load(se3d_system *system, const se3d_load_def *def, in
     data.in_body_frame = full.in_body_frame != 0;
     se3di_copy(full.point, data.s_j);
     se3di_copy(full.value, data.value);
-    return add(system, &data, force);
+    return se3di_force_add(system, &data, force);
 }
 
 se3d_status se3d_force_create_load(se3d_system *system, const se3d_load_def *def, se3d_force *force)
@@ -215,28 +281,72 @@ se3d_status se3d_force_get_type(const se3d_system *system, se3d_force force, con
     return SE3D_OK;
 }
 
+/* The element at the present state. */
+static se3d_status eval_reader(const se3d_system *system, se3d_force force, const void *out,
+                               se3di_effect *effect)
+{
+    const se3di_force *data;
+    SE3DI_TRY(find_reader(system, force, out, &data));
+    effect->wants_derivative = 0;
+    return se3di_force_eval(&system->model, data, system->model.time, effect);
+}
+
 se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force, double *coordinate,
                                  double *rate, double *value)
 {
     const se3di_force *data;
-    se3di_spring_state state;
+    se3di_effect effect;
     SE3DI_TRY(find_reader(system, force, system, &data));
-    const se3di_model *model = &system->model;
-    if (data->type == SE3DI_FORCE_TSDA) {
-        SE3DI_TRY(se3di_tsda_state(model, data, model->time, &state));
-    } else if (data->type == SE3DI_FORCE_RSDA) {
-        SE3DI_TRY(se3di_rsda_state(model, data, model->time, &state));
-    } else {
+    int scalar = data->type == SE3DI_FORCE_TSDA || data->type == SE3DI_FORCE_RSDA ||
+                 data->type == SE3DI_FORCE_FRICTION || data->type == SE3DI_FORCE_STOP;
+    if (!scalar) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
+    SE3DI_TRY(eval_reader(system, force, system, &effect));
     if (coordinate) {
-        *coordinate = state.coordinate;
+        *coordinate = effect.coordinate;
     }
     if (rate) {
-        *rate = state.rate;
+        *rate = effect.rate;
     }
     if (value) {
-        *value = state.value;
+        *value = effect.value;
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_force_get_wrench(const se3d_system *system, se3d_force force, size_t side,
+                                  double wrench[6])
+{
+    const se3di_force *data;
+    se3di_effect effect;
+    for (int k = 0; wrench && k < 6; ++k) {
+        wrench[k] = 0.0;
+    }
+    SE3DI_TRY(find_reader(system, force, wrench, &data));
+    if (side > 1) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    SE3DI_TRY(eval_reader(system, force, wrench, &effect));
+    uint32_t body = side == 0 ? data->body_i : data->body_j;
+    se3di_copy(effect.wrench + 6 * side, wrench);
+    se3di_mul(system->model.frames[body].A, effect.wrench + 6 * side + 3, wrench + 3);
+    return SE3D_OK;
+}
+
+se3d_status se3d_force_get_power(const se3d_system *system, se3d_force force, double *potential,
+                                 double *dissipated, double *actuator)
+{
+    se3di_effect effect;
+    SE3DI_TRY(eval_reader(system, force, system, &effect));
+    if (potential) {
+        *potential = effect.potential;
+    }
+    if (dissipated) {
+        *dissipated = effect.power[0];
+    }
+    if (actuator) {
+        *actuator = effect.power[1];
     }
     return SE3D_OK;
 }

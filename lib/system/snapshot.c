@@ -11,11 +11,15 @@ struct se3d_snapshot {
     int32_t settled;
     int32_t reserved;
     double time;
-    size_t bodies, rows, angles, history;
+    double work[3], power[3];
+    int32_t work_valid;
+    int32_t reserved2;
+    size_t bodies, rows, angles, forces, history;
     se3di_frame *frames;
     double *acceleration; /* [bodies * 6] */
     double *lambda;       /* [rows] */
     double *turns;        /* [angles] */
+    double *memory;       /* [forces * SE3DI_FORCE_STATES] */
     double *carried;      /* [history] */
 };
 
@@ -25,9 +29,10 @@ static se3d_status allocate(se3d_snapshot *s)
     s->acceleration = se3di_alloc(&s->allocator, 6 * s->bodies, sizeof(double));
     s->lambda = se3di_alloc(&s->allocator, s->rows, sizeof(double));
     s->turns = se3di_alloc(&s->allocator, s->angles, sizeof(double));
+    s->memory = se3di_alloc(&s->allocator, SE3DI_FORCE_STATES * s->forces, sizeof(double));
     s->carried = se3di_alloc(&s->allocator, s->history, sizeof(double));
-    return s->frames && s->acceleration && s->lambda && s->turns && s->carried ? SE3D_OK
-                                                                               : SE3D_ERR_NO_MEMORY;
+    int complete = s->frames && s->acceleration && s->lambda && s->turns && s->memory && s->carried;
+    return complete ? SE3D_OK : SE3D_ERR_NO_MEMORY;
 }
 
 static void copy(void *to, const void *from, size_t size)
@@ -46,6 +51,13 @@ static void fill(se3d_snapshot *s, const se3di_model *model)
     for (size_t k = 0; k < s->angles; ++k) {
         s->turns[k] = model->angles[k].theta;
     }
+    for (size_t k = 0; k < s->forces; ++k) {
+        copy(s->memory + SE3DI_FORCE_STATES * k, model->forces[k].state,
+             sizeof model->forces[k].state);
+    }
+    copy(s->work, model->work, sizeof s->work);
+    copy(s->power, model->power, sizeof s->power);
+    s->work_valid = model->work_valid;
 }
 
 se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out)
@@ -70,6 +82,7 @@ se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out)
         .bodies = model->body_slots.count,
         .rows = model->row_count,
         .angles = model->angle_count,
+        .forces = model->force_slots.count,
         .history = model->history_tag ? model->history_count : 0,
     };
     if (allocate(snapshot) < 0) {
@@ -90,7 +103,7 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
     se3di_model *model = &system->model;
     if (snapshot->topology_version != model->topology_version ||
         snapshot->bodies != model->body_slots.count || snapshot->rows != model->row_count ||
-        snapshot->angles != model->angle_count) {
+        snapshot->angles != model->angle_count || snapshot->forces != model->force_slots.count) {
         return SE3DI_FAIL(system, SE3D_ERR_STATE,
                           "the snapshot has %zu bodies and %zu equations at edit %llu, the system "
                           "%zu and %zu at edit %llu; only the same model can be restored",
@@ -112,6 +125,13 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
     for (size_t k = 0; k < snapshot->angles; ++k) {
         model->angles[k].theta = snapshot->turns[k];
     }
+    for (size_t k = 0; k < snapshot->forces; ++k) {
+        copy(model->forces[k].state, snapshot->memory + SE3DI_FORCE_STATES * k,
+             sizeof model->forces[k].state);
+    }
+    copy(model->work, snapshot->work, sizeof model->work);
+    copy(model->power, snapshot->power, sizeof model->power);
+    model->work_valid = snapshot->work_valid;
     model->settled = snapshot->settled;
     model->history_count = snapshot->history;
     model->history_tag = snapshot->history_tag;
@@ -127,6 +147,8 @@ void se3d_snapshot_destroy(se3d_snapshot *snapshot)
         se3di_free(&allocator, snapshot->acceleration, 6 * snapshot->bodies, sizeof(double));
         se3di_free(&allocator, snapshot->lambda, snapshot->rows, sizeof(double));
         se3di_free(&allocator, snapshot->turns, snapshot->angles, sizeof(double));
+        se3di_free(&allocator, snapshot->memory, SE3DI_FORCE_STATES * snapshot->forces,
+                   sizeof(double));
         se3di_free(&allocator, snapshot->carried, snapshot->history, sizeof(double));
         se3di_free(&allocator, snapshot, 1, sizeof *snapshot);
     }

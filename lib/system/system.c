@@ -123,6 +123,30 @@ se3d_status se3d_system_set_gravity(se3d_system *system, const double gravity[3]
     return SE3D_OK;
 }
 
+se3d_status se3d_system_set_gravity_function(se3d_system *system, const se3d_function gravity[3])
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_pointer(system, "gravity", gravity));
+    int32_t function[3];
+    for (int c = 0; c < 3; ++c) {
+        SE3DI_TRY(se3di_find_function(system, "gravity", gravity[c], 1, &function[c]));
+    }
+    se3di_model *model = &system->model;
+    for (int c = 0; c < 3; ++c) {
+        if (function[c] >= 0) {
+            ++model->functions[function[c]].users;
+        }
+        if (model->gravity_function[c] >= 0) {
+            --model->functions[model->gravity_function[c]].users;
+        }
+        model->gravity_function[c] = function[c];
+    }
+    se3di_model_touch_state(model);
+    return SE3D_OK;
+}
+
 se3d_status se3d_system_get_gravity(const se3d_system *system, double gravity[3])
 {
     if (!system || !gravity) {
@@ -270,6 +294,17 @@ se3d_status se3d_system_get_energy(const se3d_system *system, se3d_energy *energ
     *energy = (se3d_energy){.kinetic = kinetic_energy(&system->model)};
     SE3DI_TRY(se3di_forces_potential(&system->model, system->model.time, &energy->potential));
     energy->total = energy->kinetic + energy->potential;
+    energy->dissipated = system->model.work[0];
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work)
+{
+    if (!system || !work) {
+        return SE3D_ERR_NULL;
+    }
+    const double *done = system->model.work;
+    *work = (se3d_work){.dissipated = done[0], .actuators = done[1], .drivers = done[2]};
     return SE3D_OK;
 }
 

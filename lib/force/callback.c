@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Force callbacks: a wrench of the user's on two bodies. Without a Jacobian of the user's, central
+ * differences stand in: enough for Newton, not for an exact linearisation.  docs/theory/loads.md */
+#include "force/measure.h"
+#include "math/quaternion.h"
+#include "math/vec3.h"
+
+#include <string.h>
+
+#define STEP 1e-6
+
+static void get_motion(const se3di_frame *frame, se3d_body_motion *motion)
+{
+    se3di_copy(frame->r, motion->r);
+    memcpy(motion->p, frame->p, sizeof motion->p);
+    se3di_copy(frame->v, motion->v);
+    se3di_copy(frame->w, motion->w);
+}
+
+/* Displace coordinate k (0..5 body i, 6..11 body j) or velocity k - 12. */
+static void displace(se3d_body_motion motion[2], int k, double by)
+{
+    se3d_body_motion *m = &motion[k % 12 / 6];
+    int part = k % 6;
+    if (k >= 12) {
+        double *velocity = part < 3 ? m->v : m->w;
+        velocity[part % 3] += by;
+    } else if (part < 3) {
+        m->r[part] += by;
+    } else {
+        double theta[3] = {0.0, 0.0, 0.0};
+        theta[part - 3] = by;
+        se3di_quat_rotate(m->p, theta, m->p);
+    }
+}
+
+static se3d_status call(const se3di_force *force, double t, const se3d_body_motion motion[2],
+                        double wrench[12], double *derivatives)
+{
+    memset(wrench, 0, 12 * sizeof *wrench);
+    se3d_status status = force->callback(force->ctx, t, motion, wrench, derivatives,
+                                         derivatives ? derivatives + 144 : NULL);
+    if (status < 0) {
+        return SE3D_ERR_CALLBACK;
+    }
+    return se3di_is_finite(wrench, 12) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
+}
+
+static se3d_status difference(const se3di_force *force, double t, const se3d_body_motion motion[2],
+                              se3di_effect *effect)
+{
+    for (int k = 0; k < 24; ++k) {
+        double *matrix = k < 12 ? effect->K : effect->D;
+        double plus[12];
+        double minus[12];
+        se3d_body_motion moved[2] = {motion[0], motion[1]};
+        displace(moved, k, STEP);
+        SE3DI_TRY(call(force, t, moved, plus, NULL));
+        moved[0] = motion[0];
+        moved[1] = motion[1];
+        displace(moved, k, -STEP);
+        SE3DI_TRY(call(force, t, moved, minus, NULL));
+        for (int r = 0; r < 12; ++r) {
+            matrix[12 * r + k % 12] = (plus[r] - minus[r]) / (2.0 * STEP);
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_callback_eval(const se3di_model *model, const se3di_force *force, double t,
+                                se3di_effect *effect)
+{
+    se3d_body_motion motion[2];
+    double u[12];
+    double derivatives[288] = {0.0};
+    int own = effect->wants_derivative && force->has_jacobian;
+    get_motion(&model->frames[force->body_i], &motion[0]);
+    get_motion(&model->frames[force->body_j], &motion[1]);
+    SE3DI_TRY(call(force, t, motion, effect->wrench, own ? derivatives : NULL));
+    if (own) {
+        memcpy(effect->K, derivatives, sizeof effect->K);
+        memcpy(effect->D, derivatives + 144, sizeof effect->D);
+    } else if (effect->wants_derivative) {
+        SE3DI_TRY(difference(force, t, motion, effect));
+    }
+    se3di_velocity_pair(model, force, u);
+    for (int k = 0; k < 12; ++k) {
+        effect->power[1] += effect->wrench[k] * u[k];
+    }
+    return SE3D_OK;
+}

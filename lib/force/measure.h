@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A scalar coordinate x of two bodies (length, angle, displacement) with its derivatives, and what
+ * a force n against it does:
+ *
+ *     wrench = -n g,  g = dx/dq       K = -g (n_x g + n_xdot u^T H) - n H       D = -n_xdot g g^T
+ *
+ * with H = dg/dq and u the velocities (xdot = g . u).  docs/theory/springs.md */
+#ifndef SE3DI_FORCE_MEASURE_H
+#define SE3DI_FORCE_MEASURE_H
+
+#include "force/force.h"
+
+typedef struct se3di_measure {
+    double value, rate;
+    double g[12];
+    double u[12];  /* v, w of i and j */
+    double H[144]; /* where wanted */
+} se3di_measure;
+
+/* A force law at one state: n and its slopes. */
+typedef struct se3di_law {
+    double n, n_x, n_rate;
+} se3di_law;
+
+/* Evaluate the coordinate of a term. */
+void se3di_measure_term(const se3di_model *model, const se3di_term *term, int wants_H,
+                        se3di_measure *measure);
+/* The distance of two points. Returns 0 where they coincide: g is then zero, the value exact. */
+int se3di_measure_length(const se3di_model *model, const se3di_force *force, int wants_H,
+                         se3di_measure *measure);
+/* The coordinate that a friction, stop or rsda acts on. Returns 0 as above. */
+int se3di_measure_force(const se3di_model *model, const se3di_force *force, int wants_H,
+                        se3di_measure *measure);
+
+/* Velocities of bodies i and j. */
+void se3di_velocity_pair(const se3di_model *model, const se3di_force *force, double u[12]);
+
+/* Add what the law does to the effect; also sets coordinate, rate and value. */
+void se3di_effect_add(se3di_effect *effect, const se3di_measure *measure, const se3di_law *law);
+
+/* The D primitive between the points of an element. */
+void se3di_length_term(const se3di_force *force, se3di_term *term);
+
+/* The spring law k x + preload + spring(x) + c xdot + damper(xdot) + h(t, value, rate), x = value -
+ * rest; fills potential and power of the effect too. */
+se3d_status se3di_spring_law(const se3di_model *model, const se3di_force *force, double t,
+                             const se3di_measure *measure, se3di_effect *effect, se3di_law *law);
+
+#endif

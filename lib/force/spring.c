@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The law of TSDA and RSDA, with x = value - rest,
+ *
+ *     n = preload + k x + spring(x) + c xdot + damper(xdot) + h(t, value, rate)
+ *     potential = preload x + k x^2 / 2 + integral of spring from 0 to x
+ *     dissipated power = (c xdot + damper) xdot,  actuator power = -h xdot
+ *
+ * docs/theory/springs.md */
+#include "force/measure.h"
+
+#include <math.h>
+
+#define PANELS 16
+
+/* Nodes and weights of Gauss-Legendre, 5 points, on [-1, 1]. */
+static const double gauss_node[5] = {-0.9061798459386640, -0.5384693101056831, 0.0,
+                                     0.5384693101056831, 0.9061798459386640};
+static const double gauss_weight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889,
+                                       0.4786286704993665, 0.2369268850561891};
+
+static se3d_status integrate_panel(const se3di_function *function, double a, double b, double *sum)
+{
+    for (int k = 0; k < 5; ++k) {
+        double x = 0.5 * (a + b) + 0.5 * (b - a) * gauss_node[k];
+        double jet[3] = {0.0, 0.0, 0.0};
+        SE3DI_TRY(se3di_function_eval(function, &x, jet, NULL));
+        *sum += 0.5 * (b - a) * gauss_weight[k] * jet[0];
+    }
+    return SE3D_OK;
+}
+
+/* The integral from 0 to x: exact for tables (cubic between their points). */
+static se3d_status integrate(const se3di_function *function, double x, double *sum)
+{
+    double low = fmin(x, 0.0);
+    double high = fmax(x, 0.0);
+    double total = 0.0;
+    double from = low;
+    for (size_t k = 0; k < function->table_count; ++k) {
+        double knot = function->table[k];
+        if (knot > from && knot < high) {
+            SE3DI_TRY(integrate_panel(function, from, knot, &total));
+            from = knot;
+        }
+    }
+    int panels = function->table ? 1 : PANELS;
+    double width = (high - from) / panels;
+    for (int k = 0; k < panels; ++k) {
+        SE3DI_TRY(integrate_panel(function, from + k * width, from + (k + 1) * width, &total));
+    }
+    *sum = x < 0.0 ? -total : total;
+    return SE3D_OK;
+}
+
+/* Spring and damper curves. */
+static se3d_status add_curves(const se3di_model *model, const se3di_force *force, double x,
+                              double rate, se3di_effect *effect, se3di_law *law)
+{
+    if (force->function[3] >= 0) {
+        const se3di_function *spring = &model->functions[force->function[3]];
+        double jet[3] = {0.0, 0.0, 0.0};
+        double energy = 0.0;
+        SE3DI_TRY(se3di_function_eval(spring, &x, jet, NULL));
+        SE3DI_TRY(integrate(spring, x, &energy));
+        law->n += jet[0];
+        law->n_x += jet[1];
+        effect->potential += energy;
+    }
+    if (force->function[4] >= 0) {
+        double jet[3] = {0.0, 0.0, 0.0};
+        SE3DI_TRY(se3di_function_eval(&model->functions[force->function[4]], &rate, jet, NULL));
+        law->n += jet[0];
+        law->n_rate += jet[1];
+        effect->power[0] += jet[0] * rate;
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_spring_law(const se3di_model *model, const se3di_force *force, double t,
+                             const se3di_measure *measure, se3di_effect *effect, se3di_law *law)
+{
+    double x = measure->value - force->rest;
+    double rate = measure->rate;
+    *law = (se3di_law){
+        .n = force->preload + force->k * x + force->c * rate, .n_x = force->k, .n_rate = force->c};
+    effect->potential = (force->preload + 0.5 * force->k * x) * x;
+    effect->power[0] = force->c * rate * rate;
+    SE3DI_TRY(add_curves(model, force, x, rate, effect, law));
+    if (force->function[0] >= 0) {
+        const se3di_function *h = &model->functions[force->function[0]];
+        const double variables[3] = {t, measure->value, rate};
+        double jet[3] = {0.0, 0.0, 0.0};
+        double gradient[SE3D_FUNCTION_VARIABLES_MAX] = {0.0, 0.0, 0.0, 0.0};
+        SE3DI_TRY(
+            se3di_function_eval(h, variables, jet, effect->wants_derivative ? gradient : NULL));
+        law->n += jet[0];
+        law->n_x += gradient[1];
+        law->n_rate += gradient[2];
+        effect->power[1] -= jet[0] * rate;
+    }
+    return SE3D_OK;
+}

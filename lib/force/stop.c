@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Stop: a one-sided spring-damper at the ends of the range of a coordinate. With the penetration
+ * delta >= 0,
+ *
+ *     n = k delta (1 + d(e) deltadot / v0), at least 0          against the penetration
+ *
+ * v0 is the speed of the impact (that of the last accepted state outside). Under this law alone a
+ * mass leaves with exactly e v0, whatever its mass and k: v dv / (1 + d v/v0) = -(k/m) delta ddelta
+ * from v0 to -e v0 gives  d (1 + e) = ln((1 + d)/(1 - d e)).  state: [0] v0.  docs/theory/stop.md
+ */
+#include "force/stop.h"
+#include "force/measure.h"
+
+#include <math.h>
+
+#define SPEED_MIN 1e-3 /* slower impacts are damped as this one */
+
+double se3di_stop_damping(double e)
+{
+    double low = 0.0;
+    double high = 1.0 / e;
+    if (e >= 1.0) {
+        return 0.0;
+    }
+    for (int k = 0; k < 200; ++k) {
+        double d = 0.5 * (low + high);
+        double gap = log1p(d) - log1p(-d * e) - d * (1.0 + e);
+        if (gap < 0.0) {
+            low = d;
+        } else {
+            high = d;
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+/* The signed penetration: positive beyond the upper end, negative below the lower one. */
+static double penetration(const se3di_force *force, double x)
+{
+    if (x > force->high) {
+        return x - force->high;
+    }
+    return x < force->low ? x - force->low : 0.0;
+}
+
+se3d_status se3di_stop_eval(const se3di_model *model, const se3di_force *force, double t,
+                            se3di_effect *effect)
+{
+    (void)t;
+    se3di_measure measure;
+    int regular = se3di_measure_force(model, force, effect->wants_derivative, &measure);
+    double delta = penetration(force, measure.value);
+    double damping = force->c / fmax(force->state[0], SPEED_MIN);
+    se3di_law law = {0};
+    if (fabs(delta) > 0.0) {
+        if (!regular) {
+            return SE3D_ERR_SINGULAR;
+        }
+        double inward = delta > 0.0 ? measure.rate : -measure.rate;
+        double factor = 1.0 + damping * inward;
+        if (factor > 0.0) {
+            law.n = force->k * delta * factor;
+            law.n_x = force->k * factor;
+            law.n_rate = force->k * fabs(delta) * damping;
+        }
+        effect->potential = 0.5 * force->k * delta * delta;
+        effect->power[0] = (law.n - force->k * delta) * measure.rate;
+    }
+    se3di_effect_add(effect, &measure, &law);
+    return SE3D_OK;
+}
+
+void se3di_stop_accept(const se3di_model *model, se3di_force *force)
+{
+    se3di_measure measure;
+    (void)se3di_measure_force(model, force, 0, &measure);
+    if (!(fabs(penetration(force, measure.value)) > 0.0)) {
+        force->state[0] = fabs(measure.rate);
+    } else if (!(force->state[0] > 0.0)) { /* it begins inside */
+        force->state[0] = fmax(fabs(measure.rate), SPEED_MIN);
+    }
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What the creation of force elements has in common. */
+#ifndef SE3DI_SYSTEM_FORCE_INTERNAL_H
+#define SE3DI_SYSTEM_FORCE_INTERNAL_H
+
+#include "system/system_internal.h"
+
+/* What every creation starts with: nulls the handle. */
+se3d_status se3di_force_begin(se3d_system *system, se3d_force *force);
+/* An element without functions and joints; the name is the caller's. */
+se3di_force se3di_force_blank(int32_t type, const char *name);
+/* body_i and body_j differ. */
+se3d_status se3di_force_check_pair(se3d_system *system, const se3di_force *data);
+/* Add the validated element. */
+se3d_status se3di_force_add(se3d_system *system, const se3di_force *data, se3d_force *force);
+
+#endif

@@ -1,0 +1,459 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The Jacobians of every force element against central differences at random states with every term
+ * active: the error must fall with the square of the step, and be small. The wrench of a
+ * conservative element is minus the derivative of its potential, its power that of its wrench. */
+#include "check.h"
+
+#include "force/force.h"
+#include "math/quaternion.h"
+#include "math/vec3.h"
+#include "se3d/se3d.h"
+#include "system/system_internal.h"
+
+static uint64_t seed = 88172645463325252u;
+
+typedef struct world {
+    se3d_system *system;
+    se3d_body i, j;
+    se3d_constraint joint; /* cylindrical: an angle and a displacement */
+    const se3di_force *force;
+    se3di_model *model;
+} world;
+
+static void random_vector(double *v, int count, double scale)
+{
+    for (int k = 0; k < count; ++k) {
+        v[k] = scale * check_random(&seed);
+    }
+}
+
+static se3d_body add_body(world *w, const double *r, const double *p)
+{
+    se3d_body body;
+    se3d_body_def def = se3d_body_def_default();
+    def.mass = 1.0;
+    def.inertia[0] = def.inertia[1] = def.inertia[2] = 1.0;
+    memcpy(def.position, r, sizeof def.position);
+    memcpy(def.orientation, p, sizeof def.orientation);
+    random_vector(def.velocity, 3, 2.0);
+    random_vector(def.angular_velocity, 3, 2.0);
+    CHECK(se3d_body_create(w->system, &def, &body) == SE3D_OK);
+    return body;
+}
+
+static void build(world *w)
+{
+    double r[3], p[4], turn[3];
+    CHECK(se3d_system_create(NULL, &w->system) == SE3D_OK);
+    random_vector(r, 3, 1.0);
+    random_vector(p, 4, 1.0);
+    p[0] += 1.5;
+    (void)se3di_quat_normalize(p, p);
+    w->i = add_body(w, r, p);
+    r[0] += 1.5;
+    random_vector(turn, 3, 0.5);
+    se3di_quat_rotate(p, turn, p);
+    w->j = add_body(w, r, p);
+    se3d_joint_def def = se3d_joint_def_default();
+    double at[3] = {r[0] - 0.7, r[1] + 0.2, r[2] - 0.1};
+    double axis[3] = {0.3, 0.4, 0.8};
+    def.body_i = w->i;
+    def.body_j = w->j;
+    def.angle0 = 0.3;
+    CHECK(se3d_joint_def_set_frame(w->system, &def, at, axis, NULL) == SE3D_OK);
+    CHECK(se3d_joint_create_cylindrical(w->system, &def, &w->joint) == SE3D_OK);
+    w->model = &w->system->model;
+    /* leave the assembled pose: every derivative counts */
+    se3di_frame *frame = &w->model->frames[2];
+    random_vector(turn, 3, 0.3);
+    se3di_quat_rotate(frame->p, turn, frame->p);
+    random_vector(turn, 3, 0.2);
+    se3di_add(frame->r, turn, frame->r);
+    se3di_frame_update(frame);
+}
+
+static void finish(world *w, se3d_status status)
+{
+    CHECK(status == SE3D_OK);
+    if (status != SE3D_OK) {
+        fprintf(stderr, "%s\n", se3d_system_get_error(w->system));
+    }
+    w->force = &w->model->forces[0];
+}
+
+static se3d_function make(world *w, const char *text, const char *x1, const char *x2)
+{
+    const char *const three[3] = {"t", x1, x2};
+    const char *const one[1] = {"t"};
+    se3d_function function;
+    se3d_function_def def = se3d_function_def_default();
+    def.expression = text;
+    def.variables = x1 ? three : one;
+    def.variable_count = x1 ? 3 : 1;
+    CHECK(se3d_function_create(w->system, &def, &function) == SE3D_OK);
+    return function;
+}
+
+static void create_tsda(world *w)
+{
+    se3d_force force;
+    se3d_tsda_def def = se3d_tsda_def_default();
+    def.body_i = w->i;
+    def.body_j = w->j;
+    random_vector(def.point_i, 3, 0.5);
+    random_vector(def.point_j, 3, 0.5);
+    def.k = 30.0;
+    def.c = 2.0;
+    def.l0 = 0.7;
+    def.preload = 3.0;
+    def.h = make(w, "sin(3*t) + 2*l^2 + l*ldot + 0.3*ldot^2", "l", "ldot");
+    def.spring = make(w, "5*t^3", NULL, NULL);
+    def.damper = make(w, "0.7*t^3", NULL, NULL);
+    finish(w, se3d_force_create_tsda(w->system, &def, &force));
+}
+
+static void create_rsda(world *w)
+{
+    se3d_force force;
+    se3d_rsda_def def = se3d_rsda_def_default();
+    def.joint = w->joint;
+    def.k = 30.0;
+    def.c = 2.0;
+    def.theta0 = 0.7;
+    def.preload = 3.0;
+    def.h = make(w, "sin(3*t) + 2*a^2 + a*adot + 0.3*adot^2", "a", "adot");
+    def.spring = make(w, "5*t^3", NULL, NULL);
+    def.damper = make(w, "0.7*t^3", NULL, NULL);
+    finish(w, se3d_force_create_rsda(w->system, &def, &force));
+}
+
+static void create_rsda_on_axes(world *w)
+{
+    se3d_force force;
+    se3d_rsda_def def = se3d_rsda_def_default();
+    def.body_i = w->i;
+    def.body_j = w->j;
+    def.axis_i[0] = 0.6;
+    def.axis_i[1] = 0.8;
+    def.angle0 = 0.4;
+    def.k = 11.0;
+    def.c = 2.0;
+    finish(w, se3d_force_create_rsda(w->system, &def, &force));
+}
+
+static void create_load(world *w, int torque, int in_body)
+{
+    se3d_force force;
+    se3d_load_def def = se3d_load_def_default();
+    def.body = w->j;
+    random_vector(def.point, 3, 0.5);
+    random_vector(def.value, 3, 10.0);
+    def.function[1] = make(w, "3*cos(t)", NULL, NULL);
+    def.in_body_frame = in_body;
+    finish(w, torque ? se3d_force_create_torque(w->system, &def, &force)
+                     : se3d_force_create_load(w->system, &def, &force));
+}
+
+static void create_ground_load(world *w)
+{
+    create_load(w, 0, 0);
+}
+
+static void create_follower_load(world *w)
+{
+    create_load(w, 0, 1);
+}
+
+static void create_ground_torque(world *w)
+{
+    create_load(w, 1, 0);
+}
+
+static void create_follower_torque(world *w)
+{
+    create_load(w, 1, 1);
+}
+
+static void create_bushing(world *w)
+{
+    se3d_force force;
+    se3d_bushing_def def = se3d_bushing_def_default();
+    def.body_i = w->i;
+    def.body_j = w->j;
+    random_vector(def.point_i, 3, 0.5);
+    random_vector(def.point_j, 3, 0.5);
+    random_vector(def.orientation_i, 4, 1.0);
+    (void)se3di_quat_normalize(def.orientation_i, def.orientation_i);
+    memcpy(def.orientation_j, def.orientation_i, sizeof def.orientation_j);
+    double turn[3];
+    random_vector(turn, 3, 0.4);
+    se3di_quat_rotate(def.orientation_j, turn, def.orientation_j);
+    for (int r = 0; r < 6; ++r) {
+        for (int c = 0; c <= r; ++c) {
+            def.K[6 * r + c] = def.K[6 * c + r] = 20.0 * check_random(&seed);
+            def.C[6 * r + c] = 3.0 * check_random(&seed);
+            def.C[6 * c + r] = 3.0 * check_random(&seed);
+        }
+    }
+    finish(w, se3d_force_create_bushing(w->system, &def, &force));
+}
+
+static void create_friction(world *w, int32_t coordinate, double mode)
+{
+    se3d_force force;
+    se3d_friction_def def = se3d_friction_def_default();
+    def.joint = w->joint;
+    def.coordinate = coordinate;
+    def.mu = 0.3;
+    def.radius = 0.2;
+    def.limit = 4.0;
+    def.viscous = 2.0;
+    def.presliding = 0.5;
+    finish(w, se3d_force_create_friction(w->system, &def, &force));
+    double *state = w->model->forces[0].state;
+    state[0] = 0.1;
+    state[1] = 20.0;
+    state[2] = mode;
+    state[3] = 1.0;
+}
+
+static void create_sticking_hinge(world *w)
+{
+    create_friction(w, SE3D_COORDINATE_ANGLE, 0.0);
+}
+
+static void create_slipping_slide(world *w)
+{
+    create_friction(w, SE3D_COORDINATE_DISPLACEMENT, -1.0);
+}
+
+static void create_stop(world *w, double lower, double upper)
+{
+    se3d_force force;
+    se3d_stop_def def = se3d_stop_def_default();
+    def.body_i = w->i;
+    def.body_j = w->j;
+    random_vector(def.point_i, 3, 0.3);
+    random_vector(def.point_j, 3, 0.3);
+    def.lower = lower;
+    def.upper = upper;
+    def.k = 50.0;
+    def.restitution = 0.8;
+    finish(w, se3d_force_create_stop(w->system, &def, &force));
+    w->model->forces[0].state[0] = 6.0;
+}
+
+static void create_upper_stop(world *w)
+{
+    create_stop(w, 0.1, 0.2);
+}
+
+static void create_lower_stop(world *w)
+{
+    create_stop(w, 9.0, 10.0);
+}
+
+/* A drag that depends on everything. */
+static se3d_status drag(void *ctx, double t, const se3d_body_motion motion[2], double wrench[12],
+                        double *K, double *D)
+{
+    (void)ctx;
+    (void)K;
+    (void)D;
+    for (int k = 0; k < 3; ++k) {
+        double v = motion[1].v[k] - motion[0].v[k];
+        wrench[6 + k] = -0.3 * v * (1.0 + motion[1].r[k] * motion[1].r[k]) + sin(t);
+        wrench[9 + k] = -0.2 * motion[1].w[k] * motion[1].p[1] * motion[1].p[k];
+        wrench[k] = -wrench[6 + k];
+    }
+    return SE3D_OK;
+}
+
+static void create_callback(world *w)
+{
+    se3d_force force;
+    se3d_force_callback_def def = se3d_force_callback_def_default();
+    def.body_i = w->i;
+    def.body_j = w->j;
+    def.callback = drag;
+    finish(w, se3d_force_create_callback(w->system, &def, &force));
+}
+
+/* Displace coordinate k of 12, or velocity k - 12. */
+static void displace(world *w, int k, double by)
+{
+    se3di_frame *frame = &w->model->frames[1 + k % 12 / 6];
+    int part = k % 6;
+    if (k >= 12) {
+        double *velocity = part < 3 ? frame->v : frame->w;
+        velocity[part % 3] += by;
+    } else if (part < 3) {
+        frame->r[part] += by;
+    } else {
+        double turn[3] = {0.0, 0.0, 0.0};
+        turn[part - 3] = by;
+        se3di_quat_rotate(frame->p, turn, frame->p);
+    }
+    se3di_frame_update(frame);
+}
+
+/* The largest error of K and D by central differences of step h. */
+static double jacobian_error(world *w, const se3di_effect *exact, double h)
+{
+    double worst = 0.0;
+    se3di_frame kept[3];
+    memcpy(kept, w->model->frames, sizeof kept);
+    for (int k = 0; k < 24; ++k) {
+        se3di_effect plus = {.wants_derivative = 0};
+        se3di_effect minus = {.wants_derivative = 0};
+        displace(w, k, h);
+        CHECK(se3di_force_eval(w->model, w->force, 0.3, &plus) == SE3D_OK);
+        memcpy(w->model->frames, kept, sizeof kept);
+        displace(w, k, -h);
+        CHECK(se3di_force_eval(w->model, w->force, 0.3, &minus) == SE3D_OK);
+        memcpy(w->model->frames, kept, sizeof kept);
+        for (int r = 0; r < 12; ++r) {
+            double slope = (plus.wrench[r] - minus.wrench[r]) / (2.0 * h);
+            double given = (k < 12 ? exact->K : exact->D)[12 * r + k % 12];
+            worst = fmax(worst, fabs(slope - given));
+        }
+    }
+    return worst;
+}
+
+static double largest(const se3di_effect *effect)
+{
+    double size = 0.0;
+    for (int k = 0; k < 144; ++k) {
+        size = fmax(size, fmax(fabs(effect->K[k]), fabs(effect->D[k])));
+    }
+    return size;
+}
+
+static void jacobians_agree_with_differences(void (*create)(world *), double floor_error)
+{
+    for (int trial = 0; trial < 20; ++trial) {
+        world w = {0};
+        static se3di_effect exact;
+        build(&w);
+        create(&w);
+        exact.wants_derivative = 1;
+        CHECK(se3di_force_eval(w.model, w.force, 0.3, &exact) == SE3D_OK);
+        double size = fmax(1.0, largest(&exact));
+        double coarse = jacobian_error(&w, &exact, 1e-3);
+        double fine = jacobian_error(&w, &exact, 2.5e-4);
+        CHECK(coarse <= 2e-3 * size);
+        CHECK(fine <= coarse / 12.0 || fine <= floor_error * size);
+        se3d_system_destroy(w.system);
+    }
+}
+
+static void jacobians_of_every_element(void)
+{
+    void (*const create[])(world *) = {
+        create_tsda,           create_rsda,           create_rsda_on_axes,    create_ground_load,
+        create_follower_load,  create_ground_torque,  create_follower_torque, create_bushing,
+        create_sticking_hinge, create_slipping_slide, create_upper_stop,      create_lower_stop,
+    };
+    for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
+        jacobians_agree_with_differences(create[k], 1e-10);
+    }
+}
+
+static void a_callback_without_jacobian_is_differenced(void)
+{
+    jacobians_agree_with_differences(create_callback, 1e-8);
+}
+
+/* Conservative elements: wrench = -dV/dq, at rest. */
+static void the_wrench_is_minus_the_gradient_of_the_potential(void)
+{
+    void (*const create[])(world *) = {create_rsda_on_axes, create_bushing, create_sticking_hinge};
+    for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
+        for (int trial = 0; trial < 20; ++trial) {
+            world w = {0};
+            build(&w);
+            create[k](&w);
+            for (int b = 1; b < 3; ++b) {
+                memset(w.model->frames[b].v, 0, sizeof w.model->frames[b].v);
+                memset(w.model->frames[b].w, 0, sizeof w.model->frames[b].w);
+            }
+            se3di_effect effect = {.wants_derivative = 0};
+            CHECK(se3di_force_eval(w.model, w.force, 0.3, &effect) == SE3D_OK);
+            for (int c = 0; c < 12; ++c) {
+                const double h = 1e-5;
+                se3di_effect plus = {.wants_derivative = 0};
+                se3di_effect minus = {.wants_derivative = 0};
+                displace(&w, c, h);
+                CHECK(se3di_force_eval(w.model, w.force, 0.3, &plus) == SE3D_OK);
+                displace(&w, c, -2.0 * h);
+                CHECK(se3di_force_eval(w.model, w.force, 0.3, &minus) == SE3D_OK);
+                displace(&w, c, h);
+                double slope = (plus.potential - minus.potential) / (2.0 * h);
+                CHECK_NEAR(effect.wrench[c], -slope, 1e-7 * (1.0 + fabs(slope)));
+            }
+            se3d_system_destroy(w.system);
+        }
+    }
+}
+
+/* wrench . u = -dV/dt - dissipated + actuator, for every element. */
+static void power_balances_for_every_element(void)
+{
+    void (*const create[])(world *) = {create_tsda,
+                                       create_rsda,
+                                       create_rsda_on_axes,
+                                       create_ground_load,
+                                       create_follower_torque,
+                                       create_bushing,
+                                       create_sticking_hinge,
+                                       create_slipping_slide,
+                                       create_upper_stop,
+                                       create_lower_stop,
+                                       create_callback};
+    for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
+        for (int trial = 0; trial < 10; ++trial) {
+            world w = {0};
+            build(&w);
+            create[k](&w);
+            se3di_effect e = {.wants_derivative = 0};
+            CHECK(se3di_force_eval(w.model, w.force, 0.3, &e) == SE3D_OK);
+            double power = 0.0;
+            double potential_rate = 0.0;
+            const double h = 1e-5;
+            for (int b = 0; b < 2; ++b) {
+                power += se3di_dot(e.wrench + 6 * b, w.model->frames[1 + b].v);
+                power += se3di_dot(e.wrench + 6 * b + 3, w.model->frames[1 + b].w);
+            }
+            for (int side = 1; side >= -1; side -= 2) {
+                se3di_frame kept[3];
+                se3di_effect moved = {.wants_derivative = 0};
+                memcpy(kept, w.model->frames, sizeof kept);
+                for (int b = 1; b < 3; ++b) {
+                    for (int c = 0; c < 3; ++c) {
+                        displace(&w, 6 * (b - 1) + c, side * h * kept[b].v[c]);
+                    }
+                    double turn[3];
+                    se3di_scale(side * h, kept[b].w, turn);
+                    se3di_quat_rotate(w.model->frames[b].p, turn, w.model->frames[b].p);
+                    se3di_frame_update(&w.model->frames[b]);
+                }
+                CHECK(se3di_force_eval(w.model, w.force, 0.3, &moved) == SE3D_OK);
+                potential_rate += side * moved.potential / (2.0 * h);
+                memcpy(w.model->frames, kept, sizeof kept);
+            }
+            double expected = -potential_rate - e.power[0] + e.power[1];
+            CHECK_NEAR(power, expected, 1e-6 * (1.0 + fabs(power) + fabs(potential_rate)));
+            se3d_system_destroy(w.system);
+        }
+    }
+}
+
+int main(void)
+{
+    RUN(jacobians_of_every_element);
+    RUN(a_callback_without_jacobian_is_differenced);
+    RUN(the_wrench_is_minus_the_gradient_of_the_potential);
+    RUN(power_balances_for_every_element);
+    return check_finish();
+}
