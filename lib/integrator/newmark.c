@@ -133,8 +133,7 @@ static void update_state(newmark_step *step)
     se3di_assembly_set_velocity(assembly, x);
 }
 
-/* b = Q + velocity terms - M vdot - Phi_q^T lambda, c = -beta' Phi; needs M and Phi_q at the
- * present state. */
+/* b = Q + velocity terms - M vdot, c = -beta' Phi, with M and Phi_q at the present state. */
 static se3d_status eval_residual(newmark_step *step)
 {
     se3di_equations *equations = step->equations;
@@ -143,7 +142,6 @@ static se3d_status eval_residual(newmark_step *step)
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_jacobian(assembly);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, step->t, equations->b, equations->error));
-    se3di_assembly_add_transposed(assembly, -1.0, step->lambda, equations->b);
     for (size_t k = 0; k < assembly->body_count; ++k) {
         const double *H = assembly->H + k * n * n;
         for (size_t r = 0; r < n; ++r) {
@@ -176,7 +174,8 @@ static se3d_status factor(newmark_step *step)
                : SE3D_OK;
 }
 
-/* One Newton correction of vdot and lambda. */
+/* One Newton correction of vdot, with all of lambda: corrections of it would add up rounding in the
+ * directions of redundant rows. */
 static se3d_status iterate(newmark_step *step, int refactor)
 {
     se3di_equations *equations = step->equations;
@@ -197,7 +196,7 @@ static se3d_status iterate(newmark_step *step, int refactor)
         }
     }
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        step->lambda[k] += equations->l[k];
+        step->lambda[k] = equations->l[k];
     }
     update_state(step);
     return isfinite(step->correction)
@@ -221,7 +220,7 @@ static int has_converged(const newmark_step *step)
            (shift <= 1e-11 && step->correction > 0.3 * step->previous);
 }
 
-static se3d_status solve_step(newmark_step *step)
+static se3d_status iterate_to_convergence(newmark_step *step)
 {
     int32_t limit = step->integration->settings.iterations_max;
     int refactor = 1;
@@ -236,6 +235,23 @@ static se3d_status solve_step(newmark_step *step)
                            "t = %g s: Newton did not converge in %d iterations of a step of %g s; "
                            "try a smaller step",
                            step->t, (int)limit, step->h);
+}
+
+/* The rounding of beta' Phi contradicts itself in dependent rows: a smaller regularisation, which
+ * tells nearly dependent rows from dependent ones, would only amplify it. */
+static se3d_status solve_step(newmark_step *step)
+{
+    se3di_kkt *kkt = step->equations->kkt;
+    se3di_kkt_settings settings = se3di_kkt_get_settings(kkt);
+    double eps_min = settings.eps_min;
+    if (step->equations->redundant) {
+        settings.eps_min = settings.eps;
+        se3di_kkt_set_settings(kkt, &settings);
+    }
+    se3d_status status = iterate_to_convergence(step);
+    settings.eps_min = eps_min;
+    se3di_kkt_set_settings(kkt, &settings);
+    return status;
 }
 
 static void accept(newmark_step *step)
