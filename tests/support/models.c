@@ -128,7 +128,7 @@ static void plan_double_pendulum(support_plan *plan, const char *drive)
     add_joint(plan, se3d_joint_create_revolute, 0, 1, elbow, X);
 }
 
-/* A heavy symmetric top, 0.5 m above its ball joint, leaning by 0.4 rad, spinning at 60 rad/s. */
+/* A heavy symmetric top, 0.5 m above its ball joint, leaning by 0.4 rad, spinning at 20 rad/s. */
 static void plan_heavy_top(support_plan *plan)
 {
     const double O[3] = {0.0, 0.0, 0.0}, Z[3] = {0.0, 0.0, 1.0};
@@ -136,7 +136,7 @@ static void plan_heavy_top(support_plan *plan)
     support_body *top = plan->bodies;
     plan->body_count = 1;
     const double lean[4] = {cos(0.2), sin(0.2), 0.0, 0.0};
-    const double centre[3] = {0.0, 0.0, 0.5}, w[3] = {0.0, 0.8, 60.0};
+    const double centre[3] = {0.0, 0.0, 0.5}, w[3] = {0.0, 0.8, 20.0};
     double w_ground[3];
     *top = (support_body){.mass = 5.0, .inertia = {0.08, 0.08, 0.05}};
     memcpy(top->orientation, lean, sizeof lean);
