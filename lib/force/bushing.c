@@ -18,9 +18,9 @@
 typedef struct bushing_frames {
     double R_i[9], R_j[9]; /* frame -> body */
     double theta[3];
-    double Tinv[9];
-    double curve;       /* a: Tinv = I + tilde/2 + a tilde^2 */
-    double curve_slope; /* (da/dphi)/phi */
+    double Tinv[9], Tinv_t[9]; /* and its transpose */
+    double curve;              /* a: Tinv = I + tilde/2 + a tilde^2 */
+    double curve_slope;        /* (da/dphi)/phi */
 } bushing_frames;
 
 static void read_frames(const se3di_model *model, const se3di_force *force, bushing_frames *f)
@@ -32,6 +32,9 @@ static void read_frames(const se3di_model *model, const se3di_force *force, bush
     se3di_quat_mul(model->frames[force->body_j].p, force->p_j, p_j);
     se3di_quat_log(p_i, p_j, f->theta);
     se3di_exp_tangent_inverse(f->theta, f->Tinv);
+    for (int k = 0; k < 9; ++k) {
+        f->Tinv_t[k] = f->Tinv[3 * (k % 3) + k / 3];
+    }
     double square = se3di_dot(f->theta, f->theta);
     if (square < 0.01) { /* series of a = (1 - (phi/2) cot(phi/2))/phi^2 */
         f->curve =
@@ -64,23 +67,17 @@ static void differentiate(const bushing_frames *f, const double y[3], double sig
     }
 }
 
-/* H block (row, column) = scale R M T B^T, T the transpose of Tinv where `transposed`. */
+/* H block (row, column) = scale R M T B^T */
 static void set_block(double *H, int row, int column, double scale, const double R[9],
-                      const double M[9], const double T[9], int transposed, const double B[9])
+                      const double M[9], const double T[9], const double B[9])
 {
-    double RM[9], turned[9], product[9];
+    double RM[9], RMT[9];
     se3di_mat_mul(R, M, RM);
-    for (int r = 0; r < 3; ++r) { /* T B^T */
+    se3di_mat_mul(RM, T, RMT);
+    for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c) {
-            turned[3 * r + c] = 0.0;
-            for (int k = 0; k < 3; ++k) {
-                turned[3 * r + c] += (transposed ? T[3 * k + r] : T[3 * r + k]) * B[3 * c + k];
-            }
+            H[12 * (row + r) + column + c] = scale * se3di_dot(RMT + 3 * r, B + 3 * c);
         }
-    }
-    se3di_mat_mul(RM, turned, product);
-    for (int k = 0; k < 9; ++k) {
-        H[12 * (row + k / 3) + column + k % 3] = scale * product[k];
     }
 }
 
@@ -103,11 +100,11 @@ static void measure_rotation(const bushing_frames *f, int axis, int wants_H, se3
     if (wants_H) {
         memset(measure->H, 0, sizeof measure->H);
         differentiate(f, y, 1.0, M);
-        set_block(measure->H, 3, 3, 1.0, f->R_i, M, f->Tinv, 1, f->R_i);
-        set_block(measure->H, 3, 9, -1.0, f->R_i, M, f->Tinv, 0, f->R_j);
+        set_block(measure->H, 3, 3, 1.0, f->R_i, M, f->Tinv_t, f->R_i);
+        set_block(measure->H, 3, 9, -1.0, f->R_i, M, f->Tinv, f->R_j);
         differentiate(f, y, -1.0, M);
-        set_block(measure->H, 9, 3, -1.0, f->R_j, M, f->Tinv, 1, f->R_i);
-        set_block(measure->H, 9, 9, 1.0, f->R_j, M, f->Tinv, 0, f->R_j);
+        set_block(measure->H, 9, 3, -1.0, f->R_j, M, f->Tinv_t, f->R_i);
+        set_block(measure->H, 9, 9, 1.0, f->R_j, M, f->Tinv, f->R_j);
     }
 }
 

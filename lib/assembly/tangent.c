@@ -1,0 +1,372 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "assembly/tangent.h"
+
+#include "force/force.h"
+#include "math/inertia.h"
+#include "math/quaternion.h"
+#include "math/vec3.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Couplings: every pair of free bodies that a force element or a term of a constraint joins. */
+
+static void note_pair(se3di_tangent *tangent, uint32_t dense_a, uint32_t dense_b, size_t *count)
+{
+    int32_t a = tangent->assembly->free_index[dense_a];
+    int32_t b = tangent->assembly->free_index[dense_b];
+    if (a < 0 || b < 0 || a == b) {
+        return;
+    }
+    if (tangent->coupling) {
+        tangent->coupling[2 * *count] = a < b ? a : b;
+        tangent->coupling[2 * *count + 1] = a < b ? b : a;
+    }
+    ++*count;
+}
+
+/* Count the pairs, and write them where there is room. */
+static size_t list_pairs(se3di_tangent *tangent)
+{
+    const se3di_model *model = tangent->assembly->model;
+    size_t count = 0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        note_pair(tangent, model->forces[k].body_i, model->forces[k].body_j, &count);
+    }
+    for (size_t k = 0; k < model->term_count; ++k) {
+        note_pair(tangent, model->terms[k].body_i, model->terms[k].body_j, &count);
+    }
+    return count;
+}
+
+static int compare_pairs(const void *a, const void *b)
+{
+    const int32_t *x = a;
+    const int32_t *y = b;
+    int first = (x[0] > y[0]) - (x[0] < y[0]);
+    return first ? first : (x[1] > y[1]) - (x[1] < y[1]);
+}
+
+static size_t remove_duplicates(int32_t *pairs, size_t count)
+{
+    size_t kept = 0;
+    qsort(pairs, count, 2 * sizeof *pairs, compare_pairs);
+    for (size_t k = 0; k < count; ++k) {
+        if (kept == 0 || compare_pairs(pairs + 2 * k, pairs + 2 * (kept - 1)) != 0) {
+            memmove(pairs + 2 * kept, pairs + 2 * k, 2 * sizeof *pairs);
+            ++kept;
+        }
+    }
+    return kept;
+}
+
+#define TANGENT_ARRAYS 7
+
+static void list_arrays(se3di_tangent *t, double **list[TANGENT_ARRAYS],
+                        size_t count[TANGENT_ARRAYS])
+{
+    size_t block = (size_t)t->assembly->formulation->block;
+    double **arrays[TANGENT_ARRAYS] = {&t->M,       &t->K,       &t->D,      &t->K_upper,
+                                       &t->K_lower, &t->D_upper, &t->D_lower};
+    for (int k = 0; k < TANGENT_ARRAYS; ++k) {
+        list[k] = arrays[k];
+        count[k] = (k < 3 ? t->assembly->body_count : t->coupling_count) * block * block;
+    }
+}
+
+static se3d_status allocate(se3di_tangent *tangent)
+{
+    const se3d_allocator *allocator = &tangent->assembly->model->allocator;
+    double **arrays[TANGENT_ARRAYS];
+    size_t counts[TANGENT_ARRAYS];
+    tangent->coupling_capacity = list_pairs(tangent);
+    tangent->coupling =
+        se3di_alloc(allocator, 2 * tangent->coupling_capacity, sizeof *tangent->coupling);
+    if (!tangent->coupling) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    (void)list_pairs(tangent);
+    tangent->coupling_count = remove_duplicates(tangent->coupling, tangent->coupling_capacity);
+    list_arrays(tangent, arrays, counts);
+    for (int k = 0; k < TANGENT_ARRAYS; ++k) {
+        *arrays[k] = se3di_alloc(allocator, counts[k], sizeof(double));
+        if (!*arrays[k]) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_tangent_init(se3di_tangent *tangent, const se3di_assembly *assembly)
+{
+    *tangent = (se3di_tangent){.assembly = assembly};
+    se3d_status status = allocate(tangent);
+    if (status < 0) {
+        se3di_tangent_destroy(tangent);
+    }
+    return status;
+}
+
+void se3di_tangent_destroy(se3di_tangent *tangent)
+{
+    if (!tangent->assembly) {
+        return;
+    }
+    const se3d_allocator *allocator = &tangent->assembly->model->allocator;
+    double **arrays[TANGENT_ARRAYS];
+    size_t counts[TANGENT_ARRAYS];
+    list_arrays(tangent, arrays, counts);
+    for (int k = 0; k < TANGENT_ARRAYS; ++k) {
+        se3di_free(allocator, *arrays[k], counts[k], sizeof(double));
+    }
+    se3di_free(allocator, tangent->coupling, 2 * tangent->coupling_capacity,
+               sizeof *tangent->coupling);
+    memset(tangent, 0, sizeof *tangent);
+}
+
+/* Where the block of (row body, column body) of K (which = 0) or D is; NULL: a body is fixed. */
+static double *find_block(const se3di_tangent *tangent, int which, int32_t row, int32_t column)
+{
+    size_t n = (size_t)tangent->assembly->formulation->block;
+    if (row < 0 || column < 0) {
+        return NULL;
+    }
+    if (row == column) {
+        return (which ? tangent->D : tangent->K) + (size_t)row * n * n;
+    }
+    int32_t pair[2] = {row < column ? row : column, row < column ? column : row};
+    const int32_t *found =
+        bsearch(pair, tangent->coupling, tangent->coupling_count, sizeof pair, compare_pairs);
+    size_t index = (size_t)(found - tangent->coupling) / 2;
+    double *upper = which ? tangent->D_upper : tangent->K_upper;
+    double *lower = which ? tangent->D_lower : tangent->K_lower;
+    return (row < column ? upper : lower) + index * n * n;
+}
+
+/* block += s (6 x 6 of a 12 x 12) */
+static void add_six(double *block, double s, const double *from)
+{
+    for (int r = 0; r < 6; ++r) {
+        for (int c = 0; c < 6; ++c) {
+            block[6 * r + c] += s * from[12 * r + c];
+        }
+    }
+}
+
+/* rows of torques turned to r-p by 2 G^T: out[7 x 6] */
+static void turn_rows(const se3di_frame *frame, const double *from, double out[42])
+{
+    double G[12];
+    se3di_g_matrix(frame->p, G);
+    for (int c = 0; c < 6; ++c) {
+        for (int r = 0; r < 3; ++r) {
+            out[6 * r + c] = from[12 * r + c];
+        }
+        for (int r = 0; r < 4; ++r) {
+            out[6 * (3 + r) + c] = 2.0 * (G[r] * from[12 * 3 + c] + G[4 + r] * from[12 * 4 + c] +
+                                          G[8 + r] * from[12 * 5 + c]);
+        }
+    }
+}
+
+/* block[7 x 7 of 8 x 8] += s rows * diag(I, X), X 3 x 4; `translations`: the identity part too */
+static void add_turned(double *block, double s, const double rows[42], const double X[12],
+                       int translations)
+{
+    for (int r = 0; r < 7; ++r) {
+        for (int c = 0; c < 3 && translations; ++c) {
+            block[8 * r + c] += s * rows[6 * r + c];
+        }
+        for (int c = 0; c < 4; ++c) {
+            block[8 * r + 3 + c] += s * (rows[6 * r + 3] * X[c] + rows[6 * r + 4] * X[4 + c] +
+                                         rows[6 * r + 5] * X[8 + c]);
+        }
+    }
+}
+
+static void scaled_g(const double p[4], double s, double X[12])
+{
+    se3di_g_matrix(p, X);
+    for (int k = 0; k < 12; ++k) {
+        X[k] *= s;
+    }
+}
+
+/* Minus the derivative of one body's wrench to another's coordinates. In r-p dtheta = 2 G dp and
+ * dw = 2 G dpdot - 2 G(pdot) dp. */
+static void add_force_block(se3di_tangent *tangent, uint32_t row, uint32_t column, const double *K,
+                            const double *D)
+{
+    const se3di_assembly *assembly = tangent->assembly;
+    const se3di_frame *frames = assembly->model->frames;
+    int32_t r = assembly->free_index[row];
+    int32_t c = assembly->free_index[column];
+    double *block_K = find_block(tangent, 0, r, c);
+    double *block_D = find_block(tangent, 1, r, c);
+    if (!block_K) {
+        return;
+    }
+    if (assembly->formulation->block == 6) {
+        add_six(block_K, -1.0, K);
+        add_six(block_D, -1.0, D);
+        return;
+    }
+    double rows[42], X[12], Xdot[12];
+    scaled_g(frames[column].p, 2.0, X);
+    scaled_g(frames[column].pdot, -2.0, Xdot);
+    turn_rows(&frames[row], K, rows);
+    add_turned(block_K, -1.0, rows, X, 1);
+    turn_rows(&frames[row], D, rows);
+    add_turned(block_K, -1.0, rows, Xdot, 0);
+    add_turned(block_D, -1.0, rows, X, 1);
+}
+
+/* block[4 x 4 at (3, 3) of 8 x 8] += s N(y), where G(p)^T y = N(y) p */
+static void add_turned_torque(double *block, double s, const double y[3])
+{
+    const double N[16] = {0.0,  -y[0], -y[1], -y[2], y[0], 0.0,  y[2],  -y[1],
+                          y[1], -y[2], 0.0,   y[0],  y[2], y[1], -y[0], 0.0};
+    for (int k = 0; k < 16; ++k) {
+        block[8 * (3 + k / 4) + 3 + k % 4] += s * N[k];
+    }
+}
+
+static se3d_status add_forces(se3di_tangent *tangent, double t)
+{
+    const se3di_model *model = tangent->assembly->model;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force *force = &model->forces[k];
+        const uint32_t bodies[2] = {force->body_i, force->body_j};
+        se3di_effect effect;
+        effect.wants_derivative = 1;
+        SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
+        for (int row = 0; row < 2; ++row) {
+            for (int column = 0; column < 2; ++column) {
+                size_t offset = (size_t)(72 * row + 6 * column);
+                add_force_block(tangent, bodies[row], bodies[column], effect.K + offset,
+                                effect.D + offset);
+            }
+            double *block = find_block(tangent, 0, tangent->assembly->free_index[bodies[row]],
+                                       tangent->assembly->free_index[bodies[row]]);
+            if (block && tangent->assembly->formulation->block == 8) {
+                add_turned_torque(block, -2.0, effect.wrench + 6 * row + 3);
+            }
+        }
+    }
+    return SE3D_OK;
+}
+
+static void add_quadrant(double *block, int32_t block_size, const double *H, int32_t size, int row,
+                         int column)
+{
+    if (!block) {
+        return;
+    }
+    for (int r = 0; r < size; ++r) {
+        for (int c = 0; c < size; ++c) {
+            block[block_size * r + c] += H[2 * size * (size * row + r) + size * column + c];
+        }
+    }
+}
+
+static void add_curvature(se3di_tangent *tangent, const double *lambda)
+{
+    const se3di_assembly *assembly = tangent->assembly;
+    const se3di_model *model = assembly->model;
+    const se3di_formulation *formulation = assembly->formulation;
+    for (size_t k = 0; k < model->row_count; ++k) {
+        const se3di_row *row = &model->rows[k];
+        for (uint32_t e = 0; e < row->term_count; ++e) {
+            const se3di_term *term = &model->terms[row->term_begin + e];
+            const uint32_t bodies[2] = {term->body_i, term->body_j};
+            double H[196] = {0.0};
+            formulation->curvature(term, &model->frames[bodies[0]], &model->frames[bodies[1]],
+                                   lambda[k] * term->coefficient, H);
+            for (int q = 0; q < 4; ++q) {
+                double *block = find_block(tangent, 0, assembly->free_index[bodies[q / 2]],
+                                           assembly->free_index[bodies[q % 2]]);
+                add_quadrant(block, formulation->block, H, formulation->size, q / 2, q % 2);
+            }
+        }
+    }
+}
+
+/* r-omega: w x J w  ->  tilde(w) J - tilde(J w) */
+static void add_gyroscopic(const se3di_body *body, const se3di_frame *frame, double *D)
+{
+    double J[9], momentum[3], W[9], L[9], WJ[9];
+    se3di_inertia_matrix(body->J, J);
+    se3di_mul(J, frame->w, momentum);
+    se3di_tilde(frame->w, W);
+    se3di_tilde(momentum, L);
+    se3di_mat_mul(W, J, WJ);
+    for (int k = 0; k < 9; ++k) {
+        D[6 * (3 + k / 3) + 3 + k % 3] += WJ[k] - L[k];
+    }
+}
+
+/* block[4 x 4] += s G(a)^T J G(b) */
+static void add_gjg(double *block, double s, const double a[4], const double J[9],
+                    const double b[4])
+{
+    double G_a[12], G_b[12], JG[12];
+    se3di_g_matrix(a, G_a);
+    se3di_g_matrix(b, G_b);
+    for (int k = 0; k < 12; ++k) {
+        int r = k / 4;
+        int c = k % 4;
+        JG[k] = J[3 * r] * G_b[c] + J[3 * r + 1] * G_b[4 + c] + J[3 * r + 2] * G_b[8 + c];
+    }
+    for (int r = 0; r < 4; ++r) {
+        for (int c = 0; c < 4; ++c) {
+            block[8 * (3 + r) + 3 + c] +=
+                s * (G_a[r] * JG[c] + G_a[4 + r] * JG[4 + c] + G_a[8 + r] * JG[8 + c]);
+        }
+    }
+}
+
+/* r-p: 4 G^T J G pddot + 8 Gdot^T J G pdot + p lambda_p, with G(a) b = -G(b) a */
+static void add_rp_terms(const se3di_body *body, const se3di_frame *frame, const double *vdot,
+                         double *K, double *D)
+{
+    double J[9], turn[3], y[3];
+    se3di_inertia_matrix(body->J, J);
+    se3di_g_mul(frame->p, vdot + 3, turn);
+    se3di_mul(J, turn, y);
+    add_turned_torque(K, 4.0, y);
+    add_gjg(K, -4.0, frame->p, J, vdot + 3);
+    add_gjg(K, -8.0, frame->pdot, J, frame->pdot);
+    se3di_g_mul(frame->p, frame->pdot, turn);
+    se3di_mul(J, turn, y);
+    add_turned_torque(D, 8.0, y);
+    add_gjg(D, 8.0, frame->pdot, J, frame->p);
+    for (int r = 0; r < 4; ++r) {
+        K[9 * (3 + r)] += vdot[7];
+    }
+}
+
+se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *vdot,
+                               const double *lambda)
+{
+    const se3di_assembly *assembly = tangent->assembly;
+    const se3di_model *model = assembly->model;
+    size_t n = (size_t)assembly->formulation->block;
+    double **arrays[TANGENT_ARRAYS];
+    size_t counts[TANGENT_ARRAYS];
+    list_arrays(tangent, arrays, counts);
+    for (int k = 0; k < TANGENT_ARRAYS; ++k) {
+        memset(*arrays[k], 0, counts[k] * sizeof(double));
+    }
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const se3di_body *body = &model->bodies[assembly->free_body[k]];
+        const se3di_frame *frame = &model->frames[assembly->free_body[k]];
+        assembly->formulation->mass(body, frame, tangent->M + k * n * n);
+        if (n == 6) {
+            add_gyroscopic(body, frame, tangent->D + k * n * n);
+        } else {
+            add_rp_terms(body, frame, vdot + n * k, tangent->K + k * n * n, tangent->D + k * n * n);
+        }
+    }
+    add_curvature(tangent, lambda);
+    return add_forces(tangent, t);
+}

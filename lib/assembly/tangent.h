@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The derivatives of the equations of motion, in the pattern of the KKT matrix with couplings: with
+ *
+ *     R = M(q) vdot + Phi_q^T lambda - Q(q, qdot, t) - velocity terms
+ *     K = dR/dq,  D = dR/dqdot,  M
+ *
+ * at given vdot and lambda; in r-omega to virtual rotations in the body frame, in r-p to p (on the
+ * tangent of |p| = 1; the normalisation keeps dp there). K holds the Jacobians of the force
+ * elements, the curvature of the constraints and, in r-p, of the mass terms; D those of forces and
+ * gyroscopic terms.  docs/theory/tangent.md */
+#ifndef SE3DI_TANGENT_H
+#define SE3DI_TANGENT_H
+
+#include "assembly/assembly.h"
+
+typedef struct se3di_tangent {
+    const se3di_assembly *assembly;
+    size_t coupling_count;
+    size_t coupling_capacity;
+    int32_t *coupling; /* [2 * couplings] free bodies i < j, increasing */
+    /* Blocks [block * block]: of the bodies; of the couplings: rows of i, columns of j, and rows of
+     * j, columns of i. */
+    double *M; /* bodies only */
+    double *K, *K_upper, *K_lower;
+    double *D, *D_upper, *D_lower;
+} se3di_tangent;
+
+/* Analyse the couplings and allocate; on failure nothing is held. */
+se3d_status se3di_tangent_init(se3di_tangent *tangent, const se3di_assembly *assembly);
+void se3di_tangent_destroy(se3di_tangent *tangent);
+
+/* Evaluate M, K and D at the state of the model. vdot [unknowns] (r-p: with the multipliers of the
+ * normalisation), lambda [rows]. @return OK, SINGULAR, NOT_FINITE, CALLBACK of a force element */
+se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *vdot,
+                               const double *lambda);
+
+#endif

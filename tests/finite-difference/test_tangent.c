@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The derivatives of the equations of motion (lib/assembly/tangent.h) of a whole model against
+ * central differences of their residual, in both formulations; the error falls with the square of
+ * the step. Newton with them converges quadratically. */
+#include "check.h"
+
+#include "assembly/tangent.h"
+#include "math/quaternion.h"
+#include "math/vec3.h"
+#include "se3d/se3d.h"
+#include "system/system_internal.h"
+
+#define BODIES 3
+
+static uint64_t seed = 1234567891234567u;
+
+static void random_vector(double *v, int count, double scale)
+{
+    for (int k = 0; k < count; ++k) {
+        v[k] = scale * check_random(&seed);
+    }
+}
+
+static void add_elements(se3d_system *system, const se3d_body body[BODIES + 1])
+{
+    se3d_force force;
+    se3d_tsda_def spring = se3d_tsda_def_default();
+    spring.body_i = body[1];
+    spring.body_j = body[3];
+    random_vector(spring.point_i, 3, 0.5);
+    random_vector(spring.point_j, 3, 0.5);
+    spring.k = 40.0;
+    spring.c = 3.0;
+    spring.l0 = 1.0;
+    CHECK(se3d_force_create_tsda(system, &spring, &force) == SE3D_OK);
+    se3d_bushing_def bushing = se3d_bushing_def_default();
+    bushing.body_i = body[2];
+    bushing.body_j = body[3];
+    for (int k = 0; k < 6; ++k) {
+        bushing.K[7 * k] = 10.0 + k;
+        bushing.C[7 * k] = 2.0 + k;
+    }
+    CHECK(se3d_force_create_bushing(system, &bushing, &force) == SE3D_OK);
+    se3d_load_def load = se3d_load_def_default();
+    load.body = body[2];
+    random_vector(load.point, 3, 0.5);
+    random_vector(load.value, 3, 10.0);
+    CHECK(se3d_force_create_load(system, &load, &force) == SE3D_OK);
+    load.in_body_frame = 1;
+    CHECK(se3d_force_create_torque(system, &load, &force) == SE3D_OK);
+}
+
+static void add_joints(se3d_system *system, const se3d_body body[BODIES + 1])
+{
+    se3d_constraint joint;
+    double at[3] = {0.3, 0.2, 0.1};
+    double axis[3] = {0.2, 0.9, 0.3};
+    se3d_joint_def def = se3d_joint_def_default();
+    def.body_i = body[0];
+    def.body_j = body[1];
+    CHECK(se3d_joint_def_set_frame(system, &def, at, axis, NULL) == SE3D_OK);
+    CHECK(se3d_joint_create_revolute(system, &def, &joint) == SE3D_OK);
+    se3d_driver_def driver = se3d_driver_def_default();
+    driver.joint = joint;
+    driver.value = 0.3;
+    CHECK(se3d_driver_create(system, &driver, &joint) == SE3D_OK);
+    def.body_i = body[1];
+    def.body_j = body[2];
+    CHECK(se3d_joint_def_set_frame(system, &def, at, axis, NULL) == SE3D_OK);
+    CHECK(se3d_joint_create_cylindrical(system, &def, &joint) == SE3D_OK);
+    def.body_i = body[3];
+    def.body_j = body[1];
+    CHECK(se3d_joint_def_set_frame(system, &def, at, axis, NULL) == SE3D_OK);
+    def.distance = 1.0;
+    CHECK(se3d_joint_create_distance(system, &def, &joint) == SE3D_OK);
+}
+
+static se3d_system *build(void)
+{
+    se3d_system *system;
+    se3d_body body[BODIES + 1];
+    CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
+    CHECK(se3d_system_get_ground(system, &body[0]) == SE3D_OK);
+    for (int k = 1; k <= BODIES; ++k) {
+        se3d_body_def def = se3d_body_def_default();
+        def.mass = 1.0 + k;
+        random_vector(def.inertia, 6, 0.2);
+        for (int c = 0; c < 3; ++c) {
+            def.inertia[c] = 1.0 + 0.1 * c;
+        }
+        random_vector(def.position, 3, 2.0);
+        random_vector(def.orientation, 4, 1.0);
+        def.orientation[0] += 2.0;
+        (void)se3di_quat_normalize(def.orientation, def.orientation);
+        random_vector(def.velocity, 3, 2.0);
+        random_vector(def.angular_velocity, 3, 2.0);
+        CHECK(se3d_body_create(system, &def, &body[k]) == SE3D_OK);
+    }
+    add_joints(system, body);
+    add_elements(system, body);
+    /* leave the pose at which the joints were made: every curvature counts */
+    for (int k = 1; k <= BODIES; ++k) {
+        double turn[3];
+        se3di_frame *frame = &system->model.frames[k];
+        random_vector(turn, 3, 0.4);
+        se3di_quat_rotate(frame->p, turn, frame->p);
+        se3di_frame_update(frame);
+    }
+    return system;
+}
+
+/* R = M vdot + C^T lambda - Q - velocity terms */
+static void residual(se3di_assembly *assembly, const double *vdot, const double *lambda, double *R)
+{
+    size_t n = (size_t)assembly->formulation->block;
+    se3di_error error = {0};
+    double b[8 * BODIES] = {0.0};
+    se3di_assembly_eval_mass(assembly);
+    se3di_assembly_eval_jacobian(assembly);
+    CHECK(se3di_assembly_eval_forces(assembly, 0.3, b, &error) == SE3D_OK);
+    se3di_assembly_add_transposed(assembly, -1.0, lambda, b);
+    for (size_t k = 0; k < BODIES * n; ++k) {
+        R[k] = -b[k];
+        for (size_t c = 0; c < n; ++c) {
+            R[k] += assembly->H[k / n * n * n + (k % n) * n + c] * vdot[k / n * n + c];
+        }
+        if (k % n == 7) {
+            R[k] = 0.0; /* the normalisation is not part of the tangent */
+        }
+    }
+}
+
+/* Move body k along direction c of 12: six of position, six of velocity, by s. In r-p a tangent of
+ * p, or pdot. */
+static void displace(se3di_assembly *assembly, int k, int c, double s)
+{
+    se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+    const se3di_formulation *formulation = assembly->formulation;
+    double dq[8] = {0.0};
+    double qdot[8];
+    int part = c % 6;
+    if (formulation->block == 6 || part < 3) {
+        dq[part] = s;
+    } else {
+        double e[3] = {0.0, 0.0, 0.0};
+        e[part - 3] = 0.5 * s;
+        se3di_g_transposed_mul(frame->p, e, dq + 3);
+    }
+    formulation->get_velocity(frame, qdot);
+    if (c < 6) {
+        formulation->move(frame, dq);
+    } else {
+        for (int e = 0; e < formulation->size; ++e) {
+            qdot[e] += dq[e];
+        }
+    }
+    formulation->set_velocity(frame, qdot);
+}
+
+/* The derivative along that direction by the tangent: out = K d or D d. */
+static void multiply(const se3di_tangent *tangent, int k, int c, double *out)
+{
+    const se3di_assembly *assembly = tangent->assembly;
+    size_t n = (size_t)assembly->formulation->block;
+    const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+    double d[8] = {0.0};
+    int part = c % 6;
+    if (n == 6 || part < 3) {
+        d[part] = 1.0;
+    } else {
+        double e[3] = {0.0, 0.0, 0.0};
+        e[part - 3] = 0.5;
+        se3di_g_transposed_mul(frame->p, e, d + 3);
+    }
+    for (size_t r = 0; r < n * BODIES; ++r) {
+        const double *block = NULL;
+        int32_t row = (int32_t)(r / n);
+        if (row == k) {
+            block = (c < 6 ? tangent->K : tangent->D) + n * n * (size_t)k;
+        }
+        for (size_t e = 0; e < tangent->coupling_count; ++e) {
+            const int32_t *pair = tangent->coupling + 2 * e;
+            if (pair[0] == row && pair[1] == k) {
+                block = (c < 6 ? tangent->K_upper : tangent->D_upper) + n * n * e;
+            } else if (pair[1] == row && pair[0] == k) {
+                block = (c < 6 ? tangent->K_lower : tangent->D_lower) + n * n * e;
+            }
+        }
+        out[r] = 0.0;
+        for (size_t e = 0; e < n && block; ++e) {
+            out[r] += block[n * (r % n) + e] * d[e];
+        }
+    }
+}
+
+static double tangent_error(se3di_assembly *assembly, const se3di_tangent *tangent,
+                            const double *vdot, const double *lambda, double h)
+{
+    double worst = 0.0;
+    size_t n = (size_t)assembly->formulation->block;
+    se3di_frame kept[BODIES + 1];
+    memcpy(kept, assembly->model->frames, sizeof kept);
+    for (int k = 0; k < BODIES; ++k) {
+        for (int c = 0; c < 12; ++c) {
+            double plus[8 * BODIES], minus[8 * BODIES], given[8 * BODIES];
+            displace(assembly, k, c, h);
+            residual(assembly, vdot, lambda, plus);
+            memcpy(assembly->model->frames, kept, sizeof kept);
+            displace(assembly, k, c, -h);
+            residual(assembly, vdot, lambda, minus);
+            memcpy(assembly->model->frames, kept, sizeof kept);
+            multiply(tangent, k, c, given);
+            for (size_t r = 0; r < n * BODIES; ++r) {
+                worst = fmax(worst, fabs((plus[r] - minus[r]) / (2.0 * h) - given[r]));
+            }
+        }
+    }
+    return worst;
+}
+
+static void check_formulation(const se3di_formulation *formulation)
+{
+    for (int trial = 0; trial < 5; ++trial) {
+        se3d_system *system = build();
+        se3di_assembly assembly;
+        se3di_tangent tangent;
+        double vdot[8 * BODIES];
+        double lambda[64];
+        CHECK(se3di_assembly_init(&assembly, &system->model, formulation, NULL) == SE3D_OK);
+        CHECK(se3di_tangent_init(&tangent, &assembly) == SE3D_OK);
+        CHECK(tangent.coupling_count == 3);
+        random_vector(vdot, 8 * BODIES, 5.0);
+        random_vector(lambda, 64, 10.0);
+        CHECK(se3di_tangent_eval(&tangent, 0.3, vdot, lambda) == SE3D_OK);
+        double coarse = tangent_error(&assembly, &tangent, vdot, lambda, 1e-3);
+        double fine = tangent_error(&assembly, &tangent, vdot, lambda, 2.5e-4);
+        CHECK(coarse < 2e-2);
+        CHECK(fine < coarse / 12.0);
+        se3di_tangent_destroy(&tangent);
+        se3di_assembly_destroy(&assembly);
+        se3d_system_destroy(system);
+    }
+}
+
+static void the_tangent_of_romega_agrees_with_differences(void)
+{
+    check_formulation(&se3di_formulation_romega);
+}
+
+static void the_tangent_of_rp_agrees_with_differences(void)
+{
+    check_formulation(&se3di_formulation_rp);
+}
+
+int main(void)
+{
+    RUN(the_tangent_of_romega_agrees_with_differences);
+    RUN(the_tangent_of_rp_agrees_with_differences);
+    return check_finish();
+}
