@@ -126,15 +126,21 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
         return run->model->history_tag == history_tag(run) ? SE3D_OK : settle(run, t_end);
     }
     double count = fmax(1.0, ceil(remaining / step - 1e-9));
+    se3d_status status = SE3D_OK;
     SE3DI_TRY(begin_dynamics(run, remaining / count));
     if (integration->method->run) {
-        return integration->method->run(integration, t_end);
+        status = integration->method->run(integration, t_end);
+        SE3DI_TRY(status);
+    } else {
+        for (double k = count; k > 0.0; k -= 1.0) {
+            SE3DI_TRY(integration->method->step(integration, (t_end - run->model->time) / k));
+        }
+        run->model->time = t_end;
     }
-    for (double k = count; k > 0.0; k -= 1.0) {
-        SE3DI_TRY(integration->method->step(integration, (t_end - run->model->time) / k));
+    if (run->equations.redundant) {
+        SE3DI_TRY(se3di_multipliers_reduce(&run->equations));
     }
-    run->model->time = t_end;
-    return SE3D_OK;
+    return status;
 }
 
 static se3d_status run_kinematics(se3di_run *run, double t_end)

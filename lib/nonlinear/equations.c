@@ -292,6 +292,21 @@ se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
     return SE3D_OK;
 }
 
+se3d_status se3di_multipliers_reduce(se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    SE3DI_TRY(se3di_equations_factor(equations));
+    memset(equations->b, 0, assembly->unknown_count * sizeof *equations->b);
+    memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
+    se3di_assembly_add_transposed(assembly, 1.0, assembly->model->lambda, equations->b);
+    se3d_status status = se3di_equations_solve(equations);
+    SE3DI_TRY(status);
+    if (status == SE3D_INFO_REDUNDANT) {
+        memcpy(assembly->model->lambda, equations->l, assembly->row_count * sizeof *equations->l);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3di_state_solve(se3di_equations *equations, double t)
 {
     SE3DI_TRY(se3di_position_solve(equations, t));

@@ -52,6 +52,10 @@ se3d_status se3di_position_solve(se3di_equations *equations, double t);
 se3d_status se3di_velocity_solve(se3di_equations *equations, double t);
 se3d_status se3di_acceleration_solve(se3di_equations *equations, double t);
 
+/* Replace the model's multipliers by those of least 2-norm with the same forces on the bodies,
+ * where rows are dependent: those of an integrator hold at a configuration of its own. */
+se3d_status se3di_multipliers_reduce(se3di_equations *equations);
+
 /* The largest violation of a position equation relative to its scale, with what is open in words;
  * functions of time evaluated. */
 double se3di_position_measure(se3di_equations *equations, char *text, size_t size);
