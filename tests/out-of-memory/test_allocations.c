@@ -1,0 +1,502 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The k-th allocation fails, once or for ever, for every k until the operation succeeds: the
+ * failure is reported, nothing changed, nothing leaks, and a second attempt succeeds. */
+#include "check.h"
+#include "support/analyses.h"
+#include "support/counting.h"
+#include "support/models.h"
+
+/* A small model with one element of everything that others are attached to. */
+typedef struct workshop {
+    support_counting counting;
+    se3d_allocator allocator;
+    se3d_system *system;
+    se3d_body ground, body[2];
+    se3d_constraint pin, slide;
+    se3d_function of_time;
+} workshop;
+
+static se3d_joint_def joint_between(const workshop *w, se3d_body i, se3d_body j)
+{
+    se3d_joint_def def = se3d_joint_def_default();
+    def.name = "joint";
+    def.body_i = i;
+    def.body_j = j;
+    (void)w;
+    return def;
+}
+
+static void workshop_open(workshop *w)
+{
+    *w = (workshop){0};
+    w->allocator = support_counting_allocator(&w->counting);
+    se3d_system_def def = se3d_system_def_default();
+    def.allocator = &w->allocator;
+    CHECK(se3d_system_create(&def, &w->system) == SE3D_OK);
+    CHECK(se3d_system_get_ground(w->system, &w->ground) == SE3D_OK);
+    for (int k = 0; k < 2; ++k) {
+        se3d_body_def body = se3d_body_def_default();
+        body.mass = 1.0 + k;
+        body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+        CHECK(se3d_body_create(w->system, &body, &w->body[k]) == SE3D_OK);
+    }
+    se3d_joint_def pin = joint_between(w, w->ground, w->body[0]);
+    pin.name = "pin";
+    CHECK(se3d_joint_create_revolute(w->system, &pin, &w->pin) == SE3D_OK);
+    se3d_joint_def slide = joint_between(w, w->ground, w->body[1]);
+    slide.name = "slide";
+    CHECK(se3d_joint_create_prismatic(w->system, &slide, &w->slide) == SE3D_OK);
+    CHECK(se3d_function_create_expression(w->system, "sin(t)", &w->of_time) == SE3D_OK);
+}
+
+static void workshop_close(workshop *w)
+{
+    se3d_system_destroy(w->system);
+    CHECK(w->counting.live == 0 && w->counting.bytes == 0 && w->counting.wrong == 0);
+}
+
+/* Operations on a workshop; each leaves nothing behind where it fails. */
+typedef se3d_status (*operation)(workshop *w);
+
+#define JOINT_OPERATION(type)                                                                      \
+    static se3d_status make_##type(workshop *w)                                                    \
+    {                                                                                              \
+        se3d_joint_def def = joint_between(w, w->body[0], w->body[1]);                             \
+        se3d_constraint joint;                                                                     \
+        def.distance = 1.0;                                                                        \
+        def.pitch = 0.1;                                                                           \
+        def.point_j[0] = 1.0;                                                                      \
+        def.axis_j[0] = CROSSED_##type;                                                            \
+        def.axis_j[2] = 1.0 - CROSSED_##type;                                                      \
+        return se3d_joint_create_##type(w->system, &def, &joint);                                  \
+    }
+#define CROSSED_fixed                0.0
+#define CROSSED_revolute             0.0
+#define CROSSED_prismatic            0.0
+#define CROSSED_cylindrical          0.0
+#define CROSSED_spherical            0.0
+#define CROSSED_universal            1.0
+#define CROSSED_planar               0.0
+#define CROSSED_screw                0.0
+#define CROSSED_point_on_line        0.0
+#define CROSSED_point_on_plane       0.0
+#define CROSSED_distance             0.0
+#define CROSSED_revolute_spherical   0.0
+#define CROSSED_revolute_cylindrical 1.0
+#define CROSSED_parallel             0.0
+#define CROSSED_perpendicular        1.0
+#define CROSSED_orientation          0.0
+#define CROSSED_perpendicular1       1.0
+#define CROSSED_perpendicular2       0.0
+#define JOINT_LIST(X)                                                                              \
+    X(fixed)                                                                                       \
+    X(revolute)                                                                                    \
+    X(prismatic)                                                                                   \
+    X(cylindrical)                                                                                 \
+    X(spherical)                                                                                   \
+    X(universal)                                                                                   \
+    X(planar)                                                                                      \
+    X(screw)                                                                                       \
+    X(point_on_line)                                                                               \
+    X(point_on_plane)                                                                              \
+    X(distance)                                                                                    \
+    X(revolute_spherical)                                                                          \
+    X(revolute_cylindrical)                                                                        \
+    X(parallel)                                                                                    \
+    X(perpendicular)                                                                               \
+    X(orientation)                                                                                 \
+    X(perpendicular1)                                                                              \
+    X(perpendicular2)
+JOINT_LIST(JOINT_OPERATION)
+
+static se3d_status make_body(workshop *w)
+{
+    se3d_body_def def = se3d_body_def_default();
+    se3d_body body;
+    def.name = "third";
+    def.mass = 1.0;
+    def.inertia[0] = def.inertia[1] = def.inertia[2] = 1.0;
+    return se3d_body_create(w->system, &def, &body);
+}
+
+static se3d_status make_marker(workshop *w)
+{
+    se3d_marker_def def = se3d_marker_def_default();
+    se3d_marker marker;
+    def.name = "tip";
+    def.body = w->body[0];
+    return se3d_marker_create(w->system, &def, &marker);
+}
+
+static se3d_status make_primitive(workshop *w, int32_t type)
+{
+    se3d_primitive_def def = se3d_primitive_def_default();
+    se3d_constraint constraint;
+    def.name = "primitive";
+    def.type = type;
+    def.body_i = w->body[0];
+    def.body_j = w->body[1];
+    def.a_i[0] = def.a_j[1] = def.c[2] = 1.0;
+    def.point_j[0] = 1.0;
+    def.value = 1.0;
+    def.function = w->of_time;
+    return se3d_primitive_create(w->system, &def, &constraint);
+}
+
+static se3d_status make_dp1(workshop *w)
+{
+    return make_primitive(w, SE3D_PRIMITIVE_DP1);
+}
+
+static se3d_status make_dp2(workshop *w)
+{
+    return make_primitive(w, SE3D_PRIMITIVE_DP2);
+}
+
+static se3d_status make_d(workshop *w)
+{
+    return make_primitive(w, SE3D_PRIMITIVE_D);
+}
+
+static se3d_status make_cd(workshop *w)
+{
+    return make_primitive(w, SE3D_PRIMITIVE_CD);
+}
+
+static se3d_status make_driver(workshop *w)
+{
+    se3d_driver_def def = se3d_driver_def_default();
+    se3d_constraint driver;
+    def.name = "drive";
+    def.joint = w->pin;
+    def.function = w->of_time;
+    return se3d_driver_create(w->system, &def, &driver);
+}
+
+static se3d_status make_coupler(workshop *w)
+{
+    se3d_coupler_def def = se3d_coupler_def_default();
+    se3d_constraint coupler;
+    def.name = "coupler";
+    def.joint[0] = w->pin;
+    def.joint[1] = w->slide;
+    def.coordinate[1] = SE3D_COORDINATE_DISPLACEMENT;
+    def.ratio[0] = def.ratio[1] = 1.0;
+    def.count = 2;
+    return se3d_joint_create_coupler(w->system, &def, &coupler);
+}
+
+static se3d_status make_rack_pinion(workshop *w)
+{
+    se3d_constraint joint;
+    return se3d_joint_create_rack_pinion(w->system, "rack", w->pin, w->slide, 0.1, &joint);
+}
+
+static se3d_status make_tsda(workshop *w)
+{
+    se3d_tsda_def def = se3d_tsda_def_default();
+    se3d_force force;
+    def.name = "spring";
+    def.body_i = w->body[0];
+    def.body_j = w->body[1];
+    def.point_j[0] = 1.0;
+    def.k = 1.0;
+    return se3d_force_create_tsda(w->system, &def, &force);
+}
+
+static se3d_status make_rsda(workshop *w)
+{
+    se3d_rsda_def def = se3d_rsda_def_default();
+    se3d_force force;
+    def.name = "spring";
+    def.joint = w->pin;
+    return se3d_force_create_rsda(w->system, &def, &force);
+}
+
+static se3d_status make_load(workshop *w)
+{
+    se3d_load_def def = se3d_load_def_default();
+    se3d_force force;
+    def.name = "push";
+    def.body = w->body[0];
+    def.function[1] = w->of_time;
+    return se3d_force_create_load(w->system, &def, &force);
+}
+
+static se3d_status make_torque(workshop *w)
+{
+    se3d_load_def def = se3d_load_def_default();
+    se3d_force force;
+    def.name = "turn";
+    def.body = w->body[0];
+    return se3d_force_create_torque(w->system, &def, &force);
+}
+
+static se3d_status make_expression(workshop *w)
+{
+    const char *const names[3] = {"t", "l", "v"};
+    const se3d_expression_symbol symbol = {"k", 2.0};
+    se3d_function_def def = se3d_function_def_default();
+    se3d_function function;
+    def.expression = "if(t > 1, k*sin(l)^2, max(v, 3)) + step(t, 0, 0, 1, 1)";
+    def.variables = names;
+    def.variable_count = 3;
+    def.symbols = &symbol;
+    def.symbol_count = 1;
+    return se3d_function_create(w->system, &def, &function);
+}
+
+static se3d_status make_table(workshop *w)
+{
+    const double x[4] = {0.0, 1.0, 2.0, 4.0}, y[4] = {1.0, 0.0, 3.0, 2.0};
+    se3d_function_def def = se3d_function_def_default();
+    se3d_function function;
+    def.table_x = x;
+    def.table_y = y;
+    def.table_count = 4;
+    return se3d_function_create(w->system, &def, &function);
+}
+
+static se3d_status make_clone(workshop *w)
+{
+    se3d_system *clone = NULL;
+    se3d_status status = se3d_system_clone(w->system, &clone);
+    CHECK((status >= 0) == (clone != NULL));
+    if (status >= 0) {
+        CHECK(se3d_system_hash(clone) == se3d_system_hash(w->system));
+    }
+    se3d_system_destroy(clone);
+    return status;
+}
+
+static se3d_status make_snapshot(workshop *w)
+{
+    se3d_snapshot *snapshot = NULL;
+    se3d_status status = se3d_snapshot_create(w->system, &snapshot);
+    CHECK((status >= 0) == (snapshot != NULL));
+    if (status >= 0) {
+        status = se3d_snapshot_restore(snapshot, w->system);
+    }
+    se3d_snapshot_destroy(snapshot);
+    return status;
+}
+
+static se3d_status make_check(workshop *w)
+{
+    se3d_check *check = NULL;
+    se3d_status status = se3d_check_create(w->system, &check);
+    CHECK((status >= 0) == (check != NULL));
+    se3d_check_destroy(check);
+    return status;
+}
+
+typedef struct operation_row {
+    const char *name;
+    operation run;
+} operation_row;
+
+#define JOINT_ROW(type) {#type, make_##type},
+static const operation_row operations[] = {
+    JOINT_LIST(JOINT_ROW){"body", make_body},
+    {"marker", make_marker},
+    {"dp1", make_dp1},
+    {"dp2", make_dp2},
+    {"d", make_d},
+    {"cd", make_cd},
+    {"driver", make_driver},
+    {"coupler", make_coupler},
+    {"rack_pinion", make_rack_pinion},
+    {"tsda", make_tsda},
+    {"rsda", make_rsda},
+    {"load", make_load},
+    {"torque", make_torque},
+    {"expression", make_expression},
+    {"table", make_table},
+    {"clone", make_clone},
+    {"snapshot", make_snapshot},
+    {"check", make_check},
+};
+
+typedef struct census {
+    size_t bodies, markers, constraints, forces;
+    uint64_t hash;
+} census;
+
+static census census_of(const se3d_system *system)
+{
+    return (census){se3d_system_count_bodies(system), se3d_system_count_markers(system),
+                    se3d_system_count_constraints(system), se3d_system_count_forces(system),
+                    se3d_system_hash(system)};
+}
+
+static int census_equal(const census *a, const census *b)
+{
+    return a->bodies == b->bodies && a->markers == b->markers && a->constraints == b->constraints &&
+           a->forces == b->forces && a->hash == b->hash;
+}
+
+/* Returns whether allocation k was reached. */
+static int fail_one(const operation_row *row, size_t k, int for_ever)
+{
+    workshop w;
+    workshop_open(&w);
+    census before = census_of(w.system);
+    w.counting.calls = 0;
+    w.counting.fail_at = k;
+    w.counting.for_ever = for_ever;
+    se3d_status status = row->run(&w);
+    int reached = w.counting.failed > 0;
+    w.counting.fail_at = 0;
+    if (reached) {
+        census after = census_of(w.system);
+        if (status != SE3D_ERR_NO_MEMORY || !census_equal(&before, &after)) {
+            fprintf(stderr, "%s, allocation %zu: %s\n", row->name, k, se3d_status_get_text(status));
+        }
+        CHECK(status == SE3D_ERR_NO_MEMORY);
+        CHECK(census_equal(&before, &after));
+        status = row->run(&w);
+    }
+    if (status < 0) {
+        fprintf(stderr, "%s: %s\n", row->name, se3d_system_get_error(w.system));
+    }
+    CHECK(status >= 0);
+    workshop_close(&w);
+    return reached;
+}
+
+static void every_edit_survives_every_failed_allocation(void)
+{
+    size_t failures = 0;
+    for (size_t r = 0; r < sizeof operations / sizeof operations[0]; ++r) {
+        for (int for_ever = 0; for_ever < 2; ++for_ever) {
+            size_t k = 1;
+            while (k < 1000 && fail_one(&operations[r], k, for_ever)) {
+                ++k;
+            }
+            CHECK(k < 1000);
+            failures += k - 1;
+        }
+    }
+    CHECK(failures > 100); /* the sweep is not empty */
+}
+
+static int fail_system(size_t k, int for_ever)
+{
+    support_counting counting = {.fail_at = k, .for_ever = for_ever};
+    se3d_allocator allocator = support_counting_allocator(&counting);
+    se3d_system_def def = se3d_system_def_default();
+    se3d_system *system = NULL;
+    def.allocator = &allocator;
+    se3d_status status = se3d_system_create(&def, &system);
+    CHECK(status == (counting.failed ? SE3D_ERR_NO_MEMORY : SE3D_OK));
+    CHECK((status < 0) == (system == NULL));
+    se3d_system_destroy(system);
+    CHECK(counting.live == 0 && counting.wrong == 0);
+    return counting.failed > 0;
+}
+
+static void creating_a_system_survives_every_failed_allocation(void)
+{
+    for (int for_ever = 0; for_ever < 2; ++for_ever) {
+        size_t k = 1;
+        while (k < 100 && fail_system(k, for_ever)) {
+            ++k;
+        }
+        CHECK(k > 1 && k < 100);
+    }
+}
+
+/* One analysis: create, run, on failure run again with memory. Returns whether k was reached. */
+static int fail_analysis(const support_analysis *row, int32_t formulation, size_t k, int for_ever,
+                         uint64_t *hash)
+{
+    support_counting counting = {0};
+    se3d_allocator allocator = support_counting_allocator(&counting);
+    support_plan plan;
+    support_model model;
+    se3d_solver *solver = NULL;
+    support_plan_make(&plan, row->mechanism, row->count);
+    CHECK(support_model_create(&model, &plan, &allocator, 0) == SE3D_OK);
+    support_plan_destroy(&plan);
+    uint64_t before = se3d_system_hash(model.system);
+    counting.calls = 0;
+    counting.fail_at = k;
+    counting.for_ever = for_ever;
+    se3d_status status = support_solver_create(model.system, row, formulation, &solver);
+    CHECK((status < 0) == (solver == NULL));
+    if (status >= 0) {
+        status = se3d_solver_run(solver, row->step);
+    }
+    int reached = counting.failed > 0;
+    counting.fail_at = 0;
+    if (reached) {
+        CHECK(status == SE3D_ERR_NO_MEMORY);
+        CHECK(se3d_system_hash(model.system) == before);
+        CHECK_CONTAINS(se3d_system_get_error(model.system), "memory");
+        if (!solver) {
+            CHECK(support_solver_create(model.system, row, formulation, &solver) == SE3D_OK);
+        }
+        status = se3d_solver_run(solver, row->step);
+    }
+    CHECK(status >= 0);
+    *hash = se3d_system_hash(model.system);
+    se3d_solver_destroy(solver);
+    support_model_destroy(&model);
+    CHECK(counting.live == 0 && counting.wrong == 0);
+    return reached;
+}
+
+static void every_analysis_survives_every_failed_allocation(void)
+{
+    for (size_t r = 0; r < 2 * SUPPORT_ANALYSES; ++r) {
+        const support_analysis *row = &support_analyses[r / 2];
+        uint64_t expected, hash;
+        CHECK(!fail_analysis(row, (int32_t)(r % 2), 0, 0, &expected));
+        for (int for_ever = 0; for_ever < 2; ++for_ever) {
+            size_t k = 1;
+            while (k < 1000 && fail_analysis(row, (int32_t)(r % 2), k, for_ever, &hash)) {
+                CHECK(hash == expected); /* the retry gives the same bits */
+                ++k;
+            }
+            CHECK(k > 5 && k < 1000);
+        }
+    }
+}
+
+static void thousand_steady_steps_allocate_nothing(void)
+{
+    for (size_t r = 0; r < 2 * SUPPORT_ANALYSES; ++r) {
+        const support_analysis *row = &support_analyses[r / 2];
+        support_counting counting = {0};
+        se3d_allocator allocator = support_counting_allocator(&counting);
+        support_plan plan;
+        support_model model;
+        se3d_solver *solver = NULL;
+        support_plan_make(&plan, row->mechanism, row->count);
+        CHECK(support_model_create(&model, &plan, &allocator, 0) == SE3D_OK);
+        support_plan_destroy(&plan);
+        CHECK(!support_solver_create(model.system, row, (int32_t)(r % 2), &solver));
+        CHECK(!SE3D_FAILED(se3d_solver_step(solver, 1e-3)));
+        counting.calls = 0;
+        se3d_status status = SE3D_OK;
+        for (int k = 0; k < 1000 && status >= 0; ++k) {
+            status = se3d_solver_step(solver, 1e-3);
+        }
+        if (status < 0) {
+            fprintf(stderr, "%s: %s\n", row->mechanism, se3d_system_get_error(model.system));
+        }
+        CHECK(status >= 0);
+        CHECK(counting.calls == 0);
+        se3d_solver_destroy(solver);
+        support_model_destroy(&model);
+    }
+}
+
+int main(void)
+{
+    RUN(creating_a_system_survives_every_failed_allocation);
+    RUN(every_edit_survives_every_failed_allocation);
+    RUN(every_analysis_survives_every_failed_allocation);
+    RUN(thousand_steady_steps_allocate_nothing);
+    return check_finish();
+}
