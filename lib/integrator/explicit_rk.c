@@ -50,9 +50,23 @@ typedef struct rk {
     double *y;          /* state of a stage */
     double *sum, *sum3; /* error estimates */
     double tolerance;
+    se3di_kkt_settings kkt; /* of the model's linear solver, to come back to */
 } rk;
 
-static rk open(se3di_integration *integration, const se3di_rk_tableau *tableau)
+/* Local errors add up; what the user asks for is about the error of a run of some ten motions. Not
+ * below what rounding allows. */
+static double inner_tolerance(double tolerance)
+{
+    return fmax(0.03 * tolerance, 2e-13);
+}
+
+/* Tighter tolerances need accelerations with less noise near singular positions. */
+static double regularisation(double tolerance)
+{
+    return fmin(1e-8, fmax(1e-10, 1e-10 * pow(1e-10 / tolerance, 0.8)));
+}
+
+static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
     size_t count = se3di_state_count(assembly);
@@ -72,8 +86,9 @@ static rk open(se3di_integration *integration, const se3di_rk_tableau *tableau)
         .y = integration->work + SE3DI_RK_MAX * count,
         .sum = integration->work + (SE3DI_RK_MAX + 1) * count,
         .sum3 = integration->work + (SE3DI_RK_MAX + 2) * count,
-        .tolerance = integration->settings.tolerance,
+        .tolerance = inner_tolerance(integration->settings.tolerance),
     };
+    m.kkt = se3di_state_begin(m.equations, regularisation(m.tolerance));
     return m;
 }
 
@@ -323,6 +338,13 @@ static void adopt(rk *m)
     grow_scale(m, m->f1);
 }
 
+/* The model's state is the forward one. */
+static se3d_status publish(rk *m)
+{
+    se3di_state_scale scale = get_scale(m);
+    return se3di_state_publish(m->equations, m->y1, m->header[RK_T1], &scale, 0);
+}
+
 /* Hairer, Norsett, Wanner 1993, sec. II.4: from the derivative and its change over a small step. */
 static double choose_first(rk *m)
 {
@@ -355,22 +377,21 @@ static double choose_first(rk *m)
 
 se3d_status se3di_rk_start(se3di_integration *integration, const se3di_rk_tableau *tableau)
 {
-    rk m = open(integration, tableau);
-    se3di_state_prepare(m.equations);
+    rk m = begin(integration, tableau);
     memset(m.header, 0, RK_HEADER * sizeof *m.header);
     memset(m.y0, 0, (RK_FORMS + 1) * m.count * sizeof *m.y0);
     m.header[RK_LENGTH] = se3di_state_length(m.assembly->model);
     m.header[RK_ERROR] = 1e-2;
     adopt(&m);
     m.header[RK_NEXT] = choose_first(&m);
+    se3di_state_end(m.equations, &m.kkt);
     return SE3D_OK;
 }
 
 se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau *tableau, double h)
 {
-    rk m = open(integration, tableau);
+    rk m = begin(integration, tableau);
     double error;
-    se3di_state_prepare(m.equations);
     if (m.header[RK_T1] != m.assembly->model->time) {
         adopt(&m);
     }
@@ -378,38 +399,35 @@ se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau
     se3d_status status = attempt(&m, h, &error);
     if (status >= 0) {
         accept(&m, h);
-        m.tolerance = 1.0;
-        return se3di_state_publish(m.equations, m.y1, m.header[RK_T1], &(se3di_state_scale){0}, 0);
     }
-    se3di_state_set(m.assembly, m.y1);
-    return status;
+    se3di_state_end(m.equations, &m.kkt);
+    se3d_status published = publish(&m);
+    return status < 0 ? status : published;
 }
 
-/* The model's state is the forward one. */
-static se3d_status publish_forward(rk *m)
+/* Forward steps until t_end is reached, and the interpolation where it is passed. */
+static se3d_status advance_to(rk *m, double t_end)
 {
-    return se3di_state_publish(m->equations, m->y1, m->header[RK_T1], &(se3di_state_scale){0}, 0);
+    while (m->header[RK_T1] < t_end) {
+        SE3DI_TRY(advance(m));
+    }
+    return m->header[RK_T1] > t_end && m->header[RK_DENSE] == 0.0 ? build_dense(m) : SE3D_OK;
 }
 
 se3d_status se3di_rk_run(se3di_integration *integration, const se3di_rk_tableau *tableau,
                          double t_end)
 {
-    rk m = open(integration, tableau);
-    se3di_state_prepare(m.equations);
-    while (m.header[RK_T1] < t_end) {
-        se3d_status status = advance(&m);
-        if (status < 0) {
-            se3di_error cause = *m.equations->error;
-            (void)publish_forward(&m);
-            *m.equations->error = cause;
-            return status;
-        }
+    rk m = begin(integration, tableau);
+    se3d_status status = advance_to(&m, t_end);
+    se3di_state_end(m.equations, &m.kkt);
+    if (status < 0) {
+        se3di_error cause = *m.equations->error;
+        (void)publish(&m);
+        *m.equations->error = cause;
+        return status;
     }
     if (m.header[RK_T1] == t_end) {
-        return publish_forward(&m);
-    }
-    if (m.header[RK_DENSE] == 0.0) {
-        SE3DI_TRY(build_dense(&m));
+        return publish(&m);
     }
     interpolate(&m, t_end, m.y);
     se3di_state_scale scale = get_scale(&m);

@@ -35,4 +35,5 @@ const se3di_integrator se3di_integrator_generalized_alpha = {
     .work_count = se3di_newmark_work_count,
     .start = start,
     .step = step,
+    .is_implicit = 1,
 };

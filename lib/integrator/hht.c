@@ -37,4 +37,5 @@ const se3di_integrator se3di_integrator_hht = {
     .work_count = se3di_newmark_work_count,
     .start = start,
     .step = step,
+    .is_implicit = 1,
 };

@@ -9,6 +9,7 @@
 #define SE3DI_INTEGRATOR_H
 
 #include "nonlinear/equations.h"
+#include "nonlinear/newton.h"
 #include "se3d/solver.h"
 
 typedef struct se3di_integrator_settings {
@@ -34,6 +35,7 @@ typedef struct se3di_integrator {
     /* Several steps to t_end with own step control; NULL: steps of settings.step that end there
      * exactly. */
     se3d_status (*run)(se3di_integration *integration, double t_end);
+    int32_t is_implicit; /* not 0: integration->newton is made */
 } se3di_integrator;
 
 struct se3di_integration {
@@ -41,6 +43,7 @@ struct se3di_integration {
     se3di_equations *equations;
     se3di_integrator_settings settings;
     double *work;
+    se3di_newton newton; /* of implicit methods */
 };
 
 extern const se3di_integrator se3di_integrator_generalized_alpha;

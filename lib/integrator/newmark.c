@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/newmark.h"
 
+#include "force/force.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
 #include <string.h>
+
+#define PLAIN_ITERATIONS 5  /* with the mass matrix alone */
+#define REVISIONS_MAX    30 /* of elements with a memory, per step */
 
 /* memcpy where count may be zero and the pointers NULL. */
 static void copy(double *to, const double *from, size_t count)
@@ -20,10 +24,10 @@ size_t se3di_newmark_history_count(const se3di_assembly *assembly)
     return 2 * (size_t)assembly->unknown_count + 1;
 }
 
-/* Work: v_n, vdot, a [n]; lambda [rows]; accelerations and multipliers to come back to. */
+/* Work: v_n, vdot, a, x [n]; lambda [rows]. */
 size_t se3di_newmark_work_count(const se3di_assembly *assembly)
 {
-    return 3 * (size_t)assembly->unknown_count + assembly->row_count;
+    return 4 * (size_t)assembly->unknown_count + assembly->row_count;
 }
 
 typedef struct newmark_step {
@@ -33,9 +37,12 @@ typedef struct newmark_step {
     double h, t;
     const double *a_n, *vdot_n;  /* history [n] */
     double *v_n, *vdot, *a;      /* [n] */
+    double *x;                   /* [n] displacement of the step */
     double *lambda;              /* [rows] */
     double beta_prime;           /* d vdot / d x: (1 - alpha_m) / (h^2 beta (1 - alpha_f)) */
+    double gamma_prime;          /* d v / d vdot: h gamma (1 - alpha_f) / (1 - alpha_m) */
     double correction, previous; /* size of the last two Newton corrections of vdot */
+    int exact;                   /* the Newton matrix has stiffness, damping and curvature */
 } newmark_step;
 
 /* The third derivative of the motion at the start, from accelerations at h/2 and h along the
@@ -115,7 +122,7 @@ static void update_state(newmark_step *step)
     se3di_assembly *assembly = &equations->assembly;
     size_t block = (size_t)assembly->formulation->block;
     double h = step->h;
-    double *x = equations->x;
+    double *x = step->x;
     se3di_equations_restore(equations);
     for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
         step->a[k] = ((1.0 - m->alpha_f) * step->vdot[k] + m->alpha_f * step->vdot_n[k] -
@@ -128,9 +135,10 @@ static void update_state(newmark_step *step)
                                     x + k * block);
     }
     for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
-        x[k] = step->v_n[k] + h * ((1.0 - m->gamma) * step->a_n[k] + m->gamma * step->a[k]);
+        equations->x[k] =
+            step->v_n[k] + h * ((1.0 - m->gamma) * step->a_n[k] + m->gamma * step->a[k]);
     }
-    se3di_assembly_set_velocity(assembly, x);
+    se3di_assembly_set_velocity(assembly, equations->x);
 }
 
 /* b = Q + velocity terms - M vdot, c = -beta' Phi, with M and Phi_q at the present state. */
@@ -165,6 +173,12 @@ static se3d_status eval_residual(newmark_step *step)
 static se3d_status factor(newmark_step *step)
 {
     se3di_equations *equations = step->equations;
+    if (step->exact) {
+        const se3di_newton_weights weights = {.velocity = step->gamma_prime,
+                                              .position = 1.0 / step->beta_prime};
+        return se3di_newton_factor(&step->integration->newton, step->t, step->vdot, step->lambda,
+                                   step->x, &weights);
+    }
     se3di_kkt_values values = {.body = equations->assembly.H, .joint = equations->assembly.C};
     ++equations->counters.factorizations;
     se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
@@ -185,7 +199,8 @@ static se3d_status iterate(newmark_step *step, int refactor)
     if (refactor) {
         SE3DI_TRY(factor(step));
     }
-    SE3DI_TRY(se3di_equations_solve(equations));
+    SE3DI_TRY(step->exact ? se3di_newton_solve(&step->integration->newton)
+                          : se3di_equations_solve(equations));
     ++equations->counters.iterations;
     step->previous = step->correction;
     step->correction = 0.0;
@@ -220,6 +235,8 @@ static int has_converged(const newmark_step *step)
            (shift <= 1e-11 && step->correction > 0.3 * step->previous);
 }
 
+/* Newton with the mass matrix alone where there are no force elements; with the exact matrix where
+ * there are, or where the other one does not do. */
 static se3d_status iterate_to_convergence(newmark_step *step)
 {
     int32_t limit = step->integration->settings.iterations_max;
@@ -229,7 +246,10 @@ static se3d_status iterate_to_convergence(newmark_step *step)
         if (has_converged(step)) {
             return SE3D_OK;
         }
-        refactor = k > 0 && step->correction > 0.25 * step->previous;
+        refactor = k > 0 && step->correction > (step->exact ? 0.05 : 0.25) * step->previous;
+        if (k == PLAIN_ITERATIONS && !step->exact) {
+            step->exact = refactor = 1;
+        }
     }
     return se3di_error_set(step->equations->error, SE3D_ERR_NO_CONVERGENCE,
                            "t = %g s: Newton did not converge in %d iterations of a step of %g s; "
@@ -237,18 +257,32 @@ static se3d_status iterate_to_convergence(newmark_step *step)
                            step->t, (int)limit, step->h);
 }
 
+/* Elements with a memory may have assumed wrong what comes out: again until none has. */
+static se3d_status iterate_with_memory(newmark_step *step)
+{
+    se3di_model *model = step->equations->assembly.model;
+    for (int round = 0; round < REVISIONS_MAX; ++round) {
+        SE3DI_TRY(iterate_to_convergence(step));
+        copy(model->lambda, step->lambda, step->equations->assembly.row_count);
+        if (se3di_forces_revise(model) == 0) {
+            return SE3D_OK;
+        }
+    }
+    return SE3D_OK; /* the last one stands */
+}
+
 /* The rounding of beta' Phi contradicts itself in dependent rows: a smaller regularisation, which
  * tells nearly dependent rows from dependent ones, would only amplify it. */
 static se3d_status solve_step(newmark_step *step)
 {
-    se3di_kkt *kkt = step->equations->kkt;
+    se3di_kkt *kkt = step->exact ? step->integration->newton.kkt : step->equations->kkt;
     se3di_kkt_settings settings = se3di_kkt_get_settings(kkt);
     double eps_min = settings.eps_min;
     if (step->equations->redundant) {
         settings.eps_min = settings.eps;
         se3di_kkt_set_settings(kkt, &settings);
     }
-    se3d_status status = iterate_to_convergence(step);
+    se3d_status status = iterate_with_memory(step);
     settings.eps_min = eps_min;
     se3di_kkt_set_settings(kkt, &settings);
     return status;
@@ -266,6 +300,7 @@ static void accept(newmark_step *step)
     se3di_assembly_set_acceleration(assembly, step->vdot);
     model->time = step->t;
     se3di_angles_accept(model);
+    se3di_forces_accept(model);
     ++step->equations->counters.steps;
 }
 
@@ -300,13 +335,17 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
         .v_n = work,
         .vdot = work + n,
         .a = work + 2 * (size_t)n,
-        .lambda = work + 3 * (size_t)n,
+        .x = work + 3 * (size_t)n,
+        .lambda = work + 4 * (size_t)n,
+        .gamma_prime = h * method->gamma * (1.0 - method->alpha_f) / (1.0 - method->alpha_m),
+        .exact = assembly->model->force_slots.count > 0,
         .beta_prime = (1.0 - method->alpha_m) / (h * h * method->beta * (1.0 - method->alpha_f)),
     };
     se3di_assembly_get_velocity(assembly, step.v_n);
     memcpy(step.vdot, step.vdot_n, n * sizeof *step.vdot);
     memcpy(step.lambda, assembly->model->lambda, assembly->row_count * sizeof *step.lambda);
     se3di_equations_save(equations);
+    se3di_newton_save_memory(&integration->newton);
     se3d_status status = se3di_assembly_eval_functions(assembly, step.t, equations->error);
     if (status >= 0) {
         update_state(&step);
@@ -314,8 +353,9 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
     }
     if (status < 0) {
         se3di_equations_restore(equations);
+        se3di_newton_restore_memory(&integration->newton);
         return status;
     }
     accept(&step);
-    return SE3D_OK;
+    return se3di_work_accept(assembly->model, h);
 }

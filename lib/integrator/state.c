@@ -48,11 +48,23 @@ void se3di_state_derivative(const se3di_assembly *assembly, const double *qddot,
     }
 }
 
-void se3di_state_prepare(se3di_equations *equations)
+se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps)
 {
+    se3di_kkt_settings before = se3di_kkt_get_settings(equations->kkt);
+    se3di_kkt_settings settings = before;
+    settings.eps = settings.eps_min = eps;
+    settings.max_refinements = 2;
+    settings.always_check = false;
+    se3di_kkt_set_settings(equations->kkt, &settings);
     if (equations->assembly.formulation->block == 6) {
         se3di_assembly_eval_mass(&equations->assembly);
     }
+    return before;
+}
+
+void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *settings)
+{
+    se3di_kkt_set_settings(equations->kkt, settings);
 }
 
 static se3d_status factor(se3di_equations *equations, double t)

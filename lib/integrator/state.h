@@ -24,8 +24,13 @@ void se3di_state_set(se3di_assembly *assembly, const double *y);
 void se3di_state_derivative(const se3di_assembly *assembly, const double *qddot,
                             double *derivative);
 
-/* Mass, where it is constant: once before a series of evaluations. */
-void se3di_state_prepare(se3di_equations *equations);
+/* Before a series of evaluations: the mass where it is constant, and the linear solver's settings
+ * for the regularisation `eps`; after it: the settings as they were. Near singular positions an
+ * acceleration is then a smooth function of the state: eps and the two refinements act as a filter,
+ * (eps / (eps + sigma^2))^3 of a constraint direction of relative size sigma is not enforced, where
+ * its multiplier has no leverage anyway; errors are amplified by eps^(-1/2) at most. */
+se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps);
+void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *settings);
 /* Accelerations at the present frames into equations->x, multipliers into equations->l; without the
  * checks and records of se3di_acceleration_solve. */
 se3d_status se3di_state_evaluate(se3di_equations *equations, double t);
