@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The observed order of every method, in positions, orientations, velocities, angular velocities
+ * and reactions, with both formulations, on a heavy top (ball joint, fast spin), a spatial closed
+ * loop and a driven chain. Steps of h and h/2 are compared with a reference of order 8 at a step so
+ * small that its error does not show; the slope must be that of the method within the tolerance of
+ * a slope measured at finite steps (0.35 per doubling), up to a floor of rounding. */
+#include "check.h"
+#include "se3d/se3d.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BODIES_MAX 3
+#define GROUPS     5 /* r, p, v, w, reactions */
+
+typedef struct world {
+    se3d_system *system;
+    se3d_body bodies[BODIES_MAX];
+    se3d_constraint joints[BODIES_MAX + 1];
+    int body_count, joint_count;
+} world;
+
+typedef struct sample {
+    double values[GROUPS][6 * (BODIES_MAX + 1)];
+    int counts[GROUPS];
+} sample;
+
+static void must(const world *w, se3d_status status)
+{
+    if (status < 0) {
+        fprintf(stderr, "%s: %s\n", check_case, se3d_system_get_error(w->system));
+        exit(1);
+    }
+    CHECK(status >= 0);
+}
+
+static void add_body(world *w, const double r[3], const double J[3], double mass)
+{
+    se3d_body_def def = se3d_body_def_default();
+    def.mass = mass;
+    memcpy(def.position, r, 3 * sizeof *r);
+    memcpy(def.inertia, J, 3 * sizeof *J);
+    must(w, se3d_body_create(w->system, &def, &w->bodies[w->body_count++]));
+}
+
+/* A joint at a point; i = -1 is the ground. */
+static void add_joint(world *w, int i, int j, const double at[3], const double axis[3])
+{
+    se3d_joint_def def = se3d_joint_def_default();
+    se3d_body ground;
+    must(w, se3d_system_get_ground(w->system, &ground));
+    def.body_i = i < 0 ? ground : w->bodies[i];
+    def.body_j = j < 0 ? ground : w->bodies[j];
+    const double upward[3] = {0.0, 0.0, 1.0};
+    must(w, se3d_joint_def_set_frame(w->system, &def, at, axis ? axis : upward, NULL));
+    se3d_constraint *joint = &w->joints[w->joint_count++];
+    must(w, axis ? se3d_joint_create_revolute(w->system, &def, joint)
+                 : se3d_joint_create_spherical(w->system, &def, joint));
+}
+
+static void set_spin(const world *w, int body, double x, double y, double z)
+{
+    const double spin[3] = {x, y, z};
+    must(w, se3d_body_set_angular_velocity(w->system, w->bodies[body], spin));
+}
+
+static void build_top(world *w)
+{
+    const double r[3] = {0.0, 1.0, 0.0}, J[3] = {0.234375, 0.46875, 0.234375};
+    const double origin[3] = {0.0, 0.0, 0.0}, v[3] = {4.61538, 0.0, 0.0};
+    add_body(w, r, J, 15.0);
+    add_joint(w, -1, 0, origin, NULL);
+    set_spin(w, 0, 0.0, 150.0, -4.61538);
+    must(w, se3d_body_set_velocity(w->system, w->bodies[0], v));
+}
+
+/* Three bars with four ball joints between two points of the ground. */
+static void build_loop(world *w)
+{
+    const double points[4][3] = {{0, 0, 0}, {0.6, 0.2, -0.9}, {1.5, -0.3, -1.1}, {2.0, 0.1, 0.0}};
+    const double J[3] = {0.1, 0.16, 0.23};
+    for (int k = 0; k < 3; ++k) {
+        double r[3];
+        for (int c = 0; c < 3; ++c) {
+            r[c] = 0.5 * (points[k][c] + points[k + 1][c]);
+        }
+        add_body(w, r, J, 1.0 + k);
+    }
+    for (int k = 0; k < 4; ++k) {
+        add_joint(w, k - 1, k < 3 ? k : -1, points[k], NULL);
+    }
+    set_spin(w, 0, 0.5, -0.2, 0.4);
+    set_spin(w, 1, -0.3, 0.6, 0.8);
+    set_spin(w, 2, 0.2, 0.7, -0.5);
+}
+
+/* A crank whose angle is a function of time, with a bar on a ball joint. */
+static void build_driven(world *w)
+{
+    const double r0[3] = {0.5, 0.0, 0.0}, r1[3] = {1.4, 0.0, 0.1}, J[3] = {0.15, 0.2, 0.3};
+    const double origin[3] = {0.0, 0.0, 0.0}, end[3] = {1.0, 0.0, 0.0}, axis[3] = {0.0, 0.6, 0.8};
+    se3d_driver_def def = se3d_driver_def_default();
+    se3d_constraint drive;
+    add_body(w, r0, J, 1.0);
+    add_body(w, r1, J, 2.0);
+    add_joint(w, -1, 0, origin, axis);
+    add_joint(w, 0, 1, end, NULL);
+    must(w, se3d_function_create_expression(w->system, "0.8*sin(3*t) + t^2", &def.function));
+    def.joint = w->joints[0];
+    must(w, se3d_driver_create(w->system, &def, &drive));
+    set_spin(w, 1, 1.0, -2.0, 0.5);
+}
+
+typedef void (*builder)(world *w);
+
+static void append(sample *s, int group, const double *values, int count)
+{
+    memcpy(s->values[group] + s->counts[group], values, (size_t)count * sizeof *values);
+    s->counts[group] += count;
+}
+
+static sample take(const world *w)
+{
+    sample s = {.counts = {0}};
+    double x[4], torque[3];
+    for (int k = 0; k < w->body_count; ++k) {
+        must(w, se3d_body_get_position(w->system, w->bodies[k], x));
+        append(&s, 0, x, 3);
+        must(w, se3d_body_get_orientation(w->system, w->bodies[k], x));
+        append(&s, 1, x, 4);
+        must(w, se3d_body_get_velocity(w->system, w->bodies[k], x));
+        append(&s, 2, x, 3);
+        must(w, se3d_body_get_angular_velocity(w->system, w->bodies[k], x));
+        append(&s, 3, x, 3);
+    }
+    for (int k = 0; k < w->joint_count; ++k) {
+        must(w, se3d_constraint_get_reaction(w->system, w->joints[k], x, torque));
+        append(&s, 4, x, 3);
+    }
+    return s;
+}
+
+typedef struct method_row {
+    int32_t method, order_option;
+    double order;     /* of positions and velocities */
+    double reactions; /* of multipliers */
+    int steps[3];     /* coarse steps for top, loop, driven */
+    double floor;     /* relative error that rounding leaves */
+} method_row;
+
+static sample run(builder build, const method_row *row, int32_t formulation, double duration,
+                  int steps)
+{
+    world w = {.body_count = 0};
+    se3d_solver *solver;
+    se3d_solver_def def = se3d_solver_def_default();
+    def.method = row->method;
+    def.formulation = formulation;
+    def.order = row->order_option;
+    def.step = duration / steps;
+    must(&w, se3d_system_create(NULL, &w.system));
+    build(&w);
+    must(&w, se3d_solver_create(w.system, &def, &solver));
+    must(&w, se3d_solver_run(solver, 0.0));
+    for (int k = 0; k < steps; ++k) {
+        must(&w, se3d_solver_step(solver, duration / steps));
+    }
+    sample s = take(&w);
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(w.system);
+    return s;
+}
+
+static double difference(const sample *a, const sample *b, int group)
+{
+    double worst = 0.0, size = 1e-3, sign = 1.0;
+    for (int k = 0; k < b->counts[group]; ++k) {
+        size = fmax(size, fabs(b->values[group][k]));
+    }
+    for (int k = 0; k < b->counts[group]; ++k) {
+        if (group == 1 && k % 4 == 0) { /* p and -p are the same orientation */
+            double dot = 0.0;
+            for (int c = 0; c < 4; ++c) {
+                dot += a->values[1][k + c] * b->values[1][k + c];
+            }
+            sign = dot < 0.0 ? -1.0 : 1.0;
+        }
+        worst = fmax(worst, fabs(sign * a->values[group][k] - b->values[group][k]));
+    }
+    return worst / size;
+}
+
+static const struct {
+    const char *name;
+    builder build;
+    double duration;
+    int reference_steps;
+} problems[3] = {{"top", build_top, 0.1, 256},
+                 {"loop", build_loop, 0.6, 192},
+                 {"driven", build_driven, 1.0, 256}};
+
+static void check_method(const method_row *row)
+{
+    static const char *const names[GROUPS] = {"r", "p", "v", "w", "reactions"};
+    const method_row exact = {.method = SE3D_METHOD_DOP853};
+    for (int p = 0; p < 3; ++p) {
+        sample reference = run(problems[p].build, &exact, SE3D_FORMULATION_ROMEGA,
+                               problems[p].duration, problems[p].reference_steps);
+        for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_RP; ++f) {
+            sample coarse = run(problems[p].build, row, f, problems[p].duration, row->steps[p]);
+            sample fine = run(problems[p].build, row, f, problems[p].duration, 2 * row->steps[p]);
+            for (int group = 0; group < GROUPS; ++group) {
+                double e1 = difference(&coarse, &reference, group);
+                double e2 = difference(&fine, &reference, group);
+                double order = group == 4 ? row->reactions : row->order;
+                double slope = log2(e1 / e2);
+                int holds = slope > order - 0.35 || e2 < row->floor;
+                CHECK(e1 < 0.2 && e1 > e2);
+                CHECK(holds);
+                if (!holds || !(e1 < 0.2)) {
+                    fprintf(stderr, "%s, %s, formulation %d, %s: errors %.3e %.3e, order %.2f\n",
+                            check_case, problems[p].name, (int)f, names[group], e1, e2, slope);
+                }
+            }
+        }
+    }
+}
+
+static void dop853_is_of_order_8(void)
+{
+    const method_row row = {SE3D_METHOD_DOP853, 0, 8.0, 8.0, {12, 6, 10}, 2e-12};
+    check_method(&row);
+}
+
+static void rk45_is_of_order_5(void)
+{
+    const method_row row = {SE3D_METHOD_RK45, 0, 5.0, 5.0, {48, 24, 96}, 1e-12};
+    check_method(&row);
+}
+
+static void generalized_alpha_is_of_order_2(void)
+{
+    const method_row row = {SE3D_METHOD_GENERALIZED_ALPHA, 0, 2.0, 2.0, {400, 100, 100}, 1e-12};
+    check_method(&row);
+}
+
+static void hht_is_of_order_2(void)
+{
+    const method_row row = {SE3D_METHOD_HHT, 0, 2.0, 2.0, {400, 100, 100}, 1e-12};
+    check_method(&row);
+}
+
+int main(void)
+{
+    RUN(dop853_is_of_order_8);
+    RUN(rk45_is_of_order_5);
+    RUN(generalized_alpha_is_of_order_2);
+    RUN(hht_is_of_order_2);
+    return check_finish();
+}
