@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The se3d program: exit codes, messages, files. Run with SE3D_PROGRAM and SE3D_SOURCE_DIR set.
+set -u
+program=${SE3D_PROGRAM:?the path of the se3d program}
+models=${SE3D_SOURCE_DIR:-.}/examples/models
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+failures=0
+checks=0
+
+# expect NAME CODE COMMAND...: run, keep the output in out and err
+expect() {
+    name=$1
+    code=$2
+    shift 2
+    "$@" >"$dir/out" 2>"$dir/err"
+    actual=$?
+    checks=$((checks + 1))
+    if [ $actual -ne "$code" ]; then
+        echo "$name: exit code $actual, expected $code" >&2
+        sed 's/^/    /' "$dir/err" >&2
+        failures=$((failures + 1))
+    fi
+}
+
+# has FILE TEXT: the file contains the text
+has() {
+    checks=$((checks + 1))
+    if ! grep -qF -e "$2" "$1"; then
+        echo "$name: \`$2\` not found in:" >&2
+        head -5 "$1" | sed 's/^/    /' >&2
+        failures=$((failures + 1))
+    fi
+}
+
+is() {
+    checks=$((checks + 1))
+    if [ "$1" != "$2" ]; then
+        echo "$name: \`$1\`, expected \`$2\`" >&2
+        failures=$((failures + 1))
+    fi
+}
+
+expect 'no arguments' 2 "$program"
+expect 'help' 0 "$program" --help
+has "$dir/out" 'se3d run MODEL'
+expect 'version' 0 "$program" --version
+has "$dir/out" 'se3d '
+expect 'unknown command' 2 "$program" fly
+has "$dir/err" 'unknown command `fly`; there are: run, check, evaluate'
+for command in run check evaluate; do
+    expect "$command --help" 0 "$program" $command --help
+    has "$dir/out" "se3d $command MODEL"
+    expect "$command without a model" 2 "$program" $command
+    has "$dir/err" 'which model?'
+    expect "$command with an unknown option" 2 "$program" $command --wings x.yaml
+    has "$dir/err" 'unknown option `--wings`'
+    expect "$command with a missing file" 2 "$program" $command "$dir/none.yaml"
+    has "$dir/err" "$dir/none.yaml: "
+done
+expect 'two models' 2 "$program" run a.yaml b.yaml
+expect 'an option without its value' 2 "$program" run a.yaml --step
+expect '--set without a value' 2 "$program" run a.yaml --set L
+expect '--time is not an option of run' 2 "$program" run a.yaml --time 1
+
+expect 'pendulum' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p"
+has "$dir/out" 'inverse_dynamics, romega: success'
+has "$dir/out" "wrote $dir/p/pendulum.csv: 1001 rows, 28 columns"
+is "$(wc -c <"$dir/err" | tr -d ' ')" 0
+is "$(wc -l <"$dir/p/pendulum.csv" | tr -d ' ')" 1002
+is "$(head -1 "$dir/p/pendulum.csv" | cut -d, -f1-9)" \
+    'time,bar.position.x,bar.position.y,bar.position.z,bar.orientation.e0,bar.orientation.e1,bar.orientation.e2,bar.orientation.e3,bar.velocity.x'
+is "$(tail -1 "$dir/p/pendulum.csv" | cut -d, -f1)" 10
+is "$(ls "$dir/p")" pendulum.csv
+
+expect 'quiet' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p2" --quiet --duration 0.1
+is "$(cat "$dir/out" "$dir/err")" ''
+expect 'the same bits on every run' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p3" -q
+is "$(cksum <"$dir/p/pendulum.csv")" "$(cksum <"$dir/p3/pendulum.csv")"
+expect 'json' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p4" --json --duration=0.1 --formulation rp
+has "$dir/out" '"status": "done"'
+has "$dir/out" '"formulation": "rp"'
+has "$dir/out" '"rows": 11'
+if command -v python3 >/dev/null 2>&1; then
+    cp "$dir/out" "$dir/summary.json"
+    expect 'json is json' 0 python3 -c 'import json,sys; json.load(open(sys.argv[1]))' "$dir/summary.json"
+fi
+(cd "$dir" && expect 'default folder' 0 "$program" run "$models/pendulum.yaml" -q --duration 0.1)
+is "$(ls "$dir/results/pendulum")" pendulum.csv
+
+expect 'parameters' 0 "$program" run "$models/pendulum_free.yaml" -o "$dir/f" \
+    --set theta0=30*deg --set L=1 --step 0.01 --duration 0.055
+is "$(sed -n 2p "$dir/f/pendulum_free.csv" | cut -d, -f2)" 0.5235987755982987
+is "$(tail -1 "$dir/f/pendulum_free.csv" | cut -d, -f1)" 0.055
+expect 'an unknown parameter' 2 "$program" run "$models/pendulum_free.yaml" --set theta=1
+has "$dir/err" 'did you mean `theta0`?'
+expect 'another analysis' 0 "$program" run "$models/pendulum_free.yaml" -o "$dir/a" --analysis assembly
+is "$(wc -l <"$dir/a/pendulum_free.csv" | tr -d ' ')" 2
+
+cat >"$dir/plain.yaml" <<'END'
+se3d: 1
+bodies: [{name: ball, mass: 1, inertia: [1, 1, 1], velocity: [1, 0, 0]}]
+END
+expect 'nothing to run' 2 "$program" run "$dir/plain.yaml"
+has "$dir/err" 'there is nothing to run'
+expect 'default output' 0 "$program" run "$dir/plain.yaml" -o "$dir/d" --analysis dynamics \
+    --duration 1 --step 0.1
+is "$(head -1 "$dir/d/results.csv" | cut -d, -f1-4)" 'time,ball.position.x,ball.position.y,ball.position.z'
+is "$(wc -l <"$dir/d/results.csv" | tr -d ' ')" 12
+
+cat >"$dir/two.yaml" <<'END'
+se3d: 1
+gravity: [0, 0, 0]
+bodies: [{name: ball, mass: 1, inertia: [1, 1, 1], velocity: [1, 0, 0]}]
+analysis:
+  - {type: dynamics, duration: 1, step: 0.1}
+  - {type: dynamics, duration: 1, step: 0.2}
+output:
+  - {file: sub/a.csv, channels: [ball.position]}
+  - {file: b.csv, every: 0.3, channels: [ball.velocity]}
+END
+expect 'two analyses, two files' 0 "$program" run "$dir/two.yaml" -o "$dir/t"
+is "$(cut -d, -f1 "$dir/t/sub/a.csv" | wc -l | tr -d ' ')" 17
+is "$(tail -1 "$dir/t/sub/a.csv" | cut -c1-2)" '2,'
+is "$(awk -F, 'NR > 1 { printf "%.6g ", $1 }' "$dir/t/b.csv")" '0 0.3 0.6 0.9 1 1.3 1.6 1.9 2 '
+
+cat >"$dir/bad.yaml" <<'END'
+se3d: 1
+bodies:
+  - name: bar
+    mass: -1
+END
+expect 'a bad model' 2 "$program" run "$dir/bad.yaml"
+is "$(cat "$dir/err")" "$dir/bad.yaml:4:11: bodies[0].mass: is -1, must be finite and > 0"
+
+# From t = 0.95 s on the constraint asks for more than the rod can reach.
+cat >"$dir/reach.yaml" <<'END'
+se3d: 1
+bodies: [{name: rod, mass: 1, inertia: [1, 1, 1], position: [0.5, 0, 0]}]
+joints: [{name: pin, type: revolute, body_i: ground, body_j: rod, at: [0, 0, 0], axis: [0, 0, 1]}]
+constraints:
+  - {name: height, type: cd, body_i: ground, body_j: rod, c: [0, 1, 0], value: "if(t > 0.95, 2, 0)"}
+analysis: {type: kinematics, duration: 4, step: 0.1}
+output: [{file: r.csv, channels: [rod.position]}]
+END
+expect 'a locked position' 1 "$program" run "$dir/reach.yaml" -o "$dir/r"
+has "$dir/err" 'the kinematics analysis failed at t = '
+has "$dir/err" 'What to try: '
+has "$dir/out" "wrote $dir/r/r.csv: "
+is "$(ls "$dir/r")" r.csv
+
+expect 'a folder that cannot be made' 1 "$program" run "$models/pendulum.yaml" -o "$dir/bad.yaml/x"
+has "$dir/err" 'cannot be written'
+# A full disk, played by a limit on the size of files.
+expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 8; exec "$@"' sh \
+    "$program" run "$models/pendulum.yaml" -o "$dir/full"
+has "$dir/err" 'pendulum.csv: cannot be written'
+is "$(ls "$dir/full")" ''
+
+expect 'evaluate' 0 "$program" evaluate "$models/me751_jacobian.yaml" --csv
+is "$(wc -l <"$dir/out" | tr -d ' ')" 8
+has "$dir/out" 'bar,normalization,euler_norm,'
+cat >"$dir/jacobian.awk" <<'END'
+# Columns of the ME751 notes: Phi_r and Phi_p of the bar.
+BEGIN {
+    split("-1 0 0 2.613126 1.082392 -2.613126 -1.082392 " \
+          "0 -1 0 1.082392 2.613126 1.082392 2.613126 " \
+          "0 0 -1 -2.613126 1.082392 -2.613126 1.082392 " \
+          "0 0 0 1.306563 0.541196 -1.306563 -0.541196 " \
+          "0 0 0 -0.541196 1.306563 0.541196 -1.306563 " \
+          "0 0 0 -0.541196 -1.306563 -0.541196 -1.306563 " \
+          "0 0 0 1.306563 0.541196 1.306563 0.541196", want, " ")
+}
+NR > 1 {
+    for (k = 1; k <= 7; ++k) {
+        off = $(8 + k) - want[(NR - 2) * 7 + k]
+        if (off > 5e-7 || off < -5e-7) {
+            print "row " NR - 1 ", column " k ": " $(8 + k); bad = 1
+        }
+    }
+    if ($4 > 1e-14 || $4 < -1e-14 || $5 != 0) { print "row " NR - 1 ": Phi " $4 ", nu " $5; bad = 1 }
+    gamma = NR == 7 ? 2.2214415 : 0
+    if ($6 - gamma > 5e-8 || $6 - gamma < -5e-8) { print "row " NR - 1 ": gamma " $6; bad = 1 }
+}
+END { exit bad || NR != 8 }
+END
+cp "$dir/out" "$dir/jacobian.csv"
+expect 'the ME751 Jacobian' 0 awk -F, -f "$dir/jacobian.awk" "$dir/jacobian.csv"
+is "$(cat "$dir/out")" ''
+expect 'evaluate at another time' 0 "$program" evaluate "$models/me751_jacobian.yaml" --csv --time 0.5
+expect 'the Jacobian test can fail' 1 awk -F, -f "$dir/jacobian.awk" "$dir/out"
+expect 'evaluate at no time' 2 "$program" evaluate "$models/me751_jacobian.yaml" --time soon
+expect 'evaluate as a table' 0 "$program" evaluate "$models/pendulum.yaml"
+has "$dir/out" 'Phi_pi'
+
+expect 'check' 0 "$program" check "$models/fourbar.yaml"
+has "$dir/out" '3 redundant'
+has "$dir/out" '1 degrees of freedom'
+expect 'check --json' 0 "$program" check "$models/fourbar.yaml" --json
+has "$dir/out" '"freedoms": 1'
+
+echo "$checks checks, $failures failed"
+[ $failures -eq 0 ]
