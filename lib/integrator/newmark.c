@@ -141,7 +141,9 @@ static void update_state(newmark_step *step)
     se3di_assembly_set_velocity(assembly, equations->x);
 }
 
-/* b = Q + velocity terms - M vdot, c = -beta' Phi, with M and Phi_q at the present state. */
+/* b = Q + velocity terms - M vdot - Phi_q^T lambda, c = -beta' Phi, with M and Phi_q at the present
+ * state. With redundant rows the iteration finds all of lambda anew: corrections of it would add up
+ * rounding in the dependent directions. */
 static se3d_status eval_residual(newmark_step *step)
 {
     se3di_equations *equations = step->equations;
@@ -150,6 +152,10 @@ static se3d_status eval_residual(newmark_step *step)
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_jacobian(assembly);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, step->t, equations->b, equations->error));
+    if (equations->redundant) {
+        memset(step->lambda, 0, assembly->row_count * sizeof *step->lambda);
+    }
+    se3di_assembly_add_transposed(assembly, -1.0, step->lambda, equations->b);
     for (size_t k = 0; k < assembly->body_count; ++k) {
         const double *H = assembly->H + k * n * n;
         for (size_t r = 0; r < n; ++r) {
@@ -188,8 +194,7 @@ static se3d_status factor(newmark_step *step)
                : SE3D_OK;
 }
 
-/* One Newton correction of vdot, with all of lambda: corrections of it would add up rounding in the
- * directions of redundant rows. */
+/* One Newton correction of vdot and lambda. */
 static se3d_status iterate(newmark_step *step, int refactor)
 {
     se3di_equations *equations = step->equations;
@@ -211,7 +216,7 @@ static se3d_status iterate(newmark_step *step, int refactor)
         }
     }
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        step->lambda[k] = equations->l[k];
+        step->lambda[k] += equations->l[k];
     }
     update_state(step);
     return isfinite(step->correction)
@@ -246,7 +251,8 @@ static se3d_status iterate_to_convergence(newmark_step *step)
         if (has_converged(step)) {
             return SE3D_OK;
         }
-        refactor = k > 0 && step->correction > (step->exact ? 0.05 : 0.25) * step->previous;
+        refactor = step->equations->redundant ||
+                   (k > 0 && step->correction > (step->exact ? 0.05 : 0.25) * step->previous);
         if (k == PLAIN_ITERATIONS && !step->exact) {
             step->exact = refactor = 1;
         }
