@@ -2,9 +2,12 @@
 /* Preparation and control of a run. */
 #include "analysis/run.h"
 
+#include "analysis/friction_start.h"
+#include "force/force.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
+#include <string.h>
 
 #define STEP_DEFAULT 1e-3 /* s, of fixed-step methods */
 
@@ -21,6 +24,7 @@ static void release(se3di_run *run)
     se3di_free(&run->model->allocator, run->integration.work, run->work_count, sizeof(double));
     run->integration.work = NULL;
     run->work_count = 0;
+    se3di_newton_destroy(&run->integration.newton);
     if (run->prepared) {
         se3di_counters counters = run->equations.counters;
         se3di_equations_destroy(&run->equations);
@@ -49,7 +53,11 @@ static se3d_status allocate_work(se3di_run *run)
     SE3DI_TRY(status);
     run->work_count = method->work_count(&run->equations.assembly);
     run->integration.work = se3di_alloc(&model->allocator, run->work_count, sizeof(double));
-    return run->integration.work ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    if (!run->integration.work) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    return method->is_implicit ? se3di_newton_init(&run->integration.newton, &run->equations)
+                               : SE3D_OK;
 }
 
 /* Build what the model's structure decides. */
@@ -103,6 +111,15 @@ static uint64_t history_tag(const se3di_run *run)
     return 2 * run->integration.method->tag + (uint64_t)run->formulation->id;
 }
 
+/* The audit of energy begins with the first run after a change of the user's. */
+static se3d_status start_work(se3di_model *model)
+{
+    if (!model->work_valid) {
+        memset(model->work, 0, sizeof model->work);
+    }
+    return se3di_work_accept(model, 0.0);
+}
+
 /* Dynamics goes on from its own history, or starts from a consistent state. */
 static se3d_status begin_dynamics(se3di_run *run, double h)
 {
@@ -111,6 +128,8 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
         return SE3D_OK;
     }
     SE3DI_TRY(settle(run, model->time));
+    SE3DI_TRY(se3di_friction_start(&run->equations));
+    SE3DI_TRY(start_work(model));
     SE3DI_TRY(run->integration.method->start(&run->integration, h));
     model->history_count = run->integration.method->history_count(&run->equations.assembly);
     model->history_tag = history_tag(run);

@@ -72,6 +72,8 @@ void se3di_forces_accept(se3di_model *model);
 /* The element has a memory. */
 int se3di_force_is_history_dependent(const se3di_force *force);
 
+/* Stiffness of sticking: the limit of sticking over the presliding. */
+double se3di_friction_stiffness(const se3di_force *force);
 uint32_t se3di_friction_revise(const se3di_model *model, se3di_force *force);
 void se3di_friction_accept(const se3di_model *model, se3di_force *force);
 void se3di_stop_accept(const se3di_model *model, se3di_force *force);

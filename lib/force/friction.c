@@ -30,6 +30,11 @@ static friction_limits limits_of(const se3di_force *force)
     return l;
 }
 
+double se3di_friction_stiffness(const se3di_force *force)
+{
+    return limits_of(force).stiffness;
+}
+
 se3d_status se3di_friction_eval(const se3di_model *model, const se3di_force *force, double t,
                                 se3di_effect *effect)
 {

@@ -44,6 +44,9 @@ void se3di_model_touch_state(se3di_model *model)
     model->settled = 0;
     model->history_tag = 0;
     model->work_valid = 0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        memset(model->forces[k].state, 0, sizeof model->forces[k].state);
+    }
 }
 
 /* The structure has changed. */

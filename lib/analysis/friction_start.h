@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#ifndef SE3DI_FRICTION_START_H
+#define SE3DI_FRICTION_START_H
+
+#include "nonlinear/equations.h"
+
+/* Elements with a memory at the start of a run, at a consistent state: friction at rest holds with
+ * the force that keeps its coordinate at rest (at most what it can), so that nothing moves when the
+ * run starts. Ends with the accelerations and multipliers of that. docs/theory/friction.md */
+se3d_status se3di_friction_start(se3di_equations *equations);
+
+#endif

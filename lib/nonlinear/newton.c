@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "nonlinear/newton.h"
+
+#include "math/quaternion.h"
+#include "math/vec3.h"
+
+#include <string.h>
+
+static se3d_status create_kkt(se3di_newton *newton)
+{
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    se3di_kkt_pattern pattern = {
+        .body_count = assembly->body_count,
+        .joint_count = assembly->constraint_count,
+        .coupling_count = newton->tangent.coupling_count,
+        .joint_rows = assembly->joint_rows,
+        .joint_begin = assembly->joint_begin,
+        .joint_body = assembly->joint_body,
+        .coupling = newton->tangent.coupling,
+        .body_size = assembly->formulation->block,
+        .symmetric = false,
+        .body_kind = SE3DI_KKT_BODY_FULL,
+    };
+    return se3di_kkt_create(&assembly->model->allocator, &pattern, SE3DI_KKT_STRUCTURED,
+                            &newton->kkt);
+}
+
+static se3d_status build(se3di_newton *newton)
+{
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    const se3d_allocator *allocator = &assembly->model->allocator;
+    SE3DI_TRY(se3di_tangent_init(&newton->tangent, assembly));
+    SE3DI_TRY(create_kkt(newton));
+    newton->force_count = assembly->model->force_slots.count;
+    newton->Tinv = se3di_alloc(allocator, 9 * (size_t)assembly->body_count, sizeof(double));
+    newton->memory =
+        se3di_alloc(allocator, SE3DI_FORCE_STATES * newton->force_count, sizeof(double));
+    return newton->Tinv && newton->memory ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+}
+
+se3d_status se3di_newton_init(se3di_newton *newton, se3di_equations *equations)
+{
+    *newton = (se3di_newton){.equations = equations};
+    se3d_status status = build(newton);
+    if (status < 0) {
+        se3di_newton_destroy(newton);
+    }
+    return status;
+}
+
+void se3di_newton_destroy(se3di_newton *newton)
+{
+    if (!newton->equations) {
+        return;
+    }
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    const se3d_allocator *allocator = &assembly->model->allocator;
+    se3di_free(allocator, newton->Tinv, 9 * (size_t)assembly->body_count, sizeof(double));
+    se3di_free(allocator, newton->memory, SE3DI_FORCE_STATES * newton->force_count, sizeof(double));
+    se3di_kkt_destroy(newton->kkt);
+    se3di_tangent_destroy(&newton->tangent);
+    memset(newton, 0, sizeof *newton);
+}
+
+/* Right three columns of a 6 x 6 block times Tinv. */
+static void turn_columns(double *block, const double *Tinv)
+{
+    for (int r = 0; r < 6; ++r) {
+        double row[3];
+        se3di_mul_transposed(Tinv, block + 6 * r + 3, row);
+        se3di_copy(row, block + 6 * r + 3);
+    }
+}
+
+/* D <- (M + velocity D) T^-1 + position K, block by block. */
+static void combine(double *D, const double *M, const double *K, const double *Tinv,
+                    const se3di_newton_weights *weights, size_t n)
+{
+    for (size_t k = 0; k < n * n; ++k) {
+        D[k] = weights->velocity * D[k] + (M ? M[k] : 0.0);
+    }
+    if (n == 6) {
+        turn_columns(D, Tinv);
+    }
+    for (size_t k = 0; k < n * n; ++k) {
+        D[k] += weights->position * K[k];
+    }
+}
+
+static void combine_all(se3di_newton *newton, const double *step,
+                        const se3di_newton_weights *weights)
+{
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    se3di_tangent *tangent = &newton->tangent;
+    size_t n = (size_t)assembly->formulation->block;
+    size_t size = n * n;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        if (n == 6) {
+            se3di_exp_tangent_inverse(step + n * k + 3, newton->Tinv + 9 * k);
+        }
+        combine(tangent->D + k * size, tangent->M + k * size, tangent->K + k * size,
+                newton->Tinv + 9 * k, weights, n);
+    }
+    for (size_t k = 0; k < tangent->coupling_count; ++k) {
+        const int32_t *pair = tangent->coupling + 2 * k;
+        combine(tangent->D_upper + k * size, NULL, tangent->K_upper + k * size,
+                newton->Tinv + 9 * (size_t)pair[1], weights, n);
+        combine(tangent->D_lower + k * size, NULL, tangent->K_lower + k * size,
+                newton->Tinv + 9 * (size_t)pair[0], weights, n);
+    }
+}
+
+static se3di_kkt_values values_of(const se3di_newton *newton)
+{
+    return (se3di_kkt_values){.body = newton->tangent.D,
+                              .coupling_upper = newton->tangent.D_upper,
+                              .coupling_lower = newton->tangent.D_lower,
+                              .joint = newton->equations->assembly.C,
+                              .joint_b = newton->equations->assembly.C};
+}
+
+se3d_status se3di_newton_factor(se3di_newton *newton, double t, const double *vdot,
+                                const double *lambda, const double *step,
+                                const se3di_newton_weights *weights)
+{
+    se3di_equations *equations = newton->equations;
+    se3d_status status = se3di_tangent_eval(&newton->tangent, t, vdot, lambda);
+    if (status >= 0) {
+        combine_all(newton, step, weights);
+        se3di_kkt_values values = values_of(newton);
+        ++equations->counters.factorizations;
+        status = se3di_kkt_factor(newton->kkt, &values, NULL);
+    }
+    return status < 0 ? se3di_error_set(equations->error, status,
+                                        "t = %g s: the Newton matrix is singular or not finite", t)
+                      : status;
+}
+
+se3d_status se3di_newton_solve(se3di_newton *newton)
+{
+    se3di_equations *equations = newton->equations;
+    const se3di_assembly *assembly = &equations->assembly;
+    size_t n = (size_t)assembly->formulation->block;
+    se3di_kkt_values values = values_of(newton);
+    se3di_kkt_solve_info info = {0};
+    ++equations->counters.solves;
+    se3d_status status = se3di_kkt_solve(newton->kkt, &values, equations->b, equations->c,
+                                         equations->x, equations->l, &info);
+    if (status == SE3D_ERR_NO_CONVERGENCE && !(info.residual_b > 1e-6)) {
+        status = SE3D_OK; /* Newton goes on with what there is */
+    }
+    if (status < 0) {
+        return se3di_error_set(equations->error, status, "t = %g s: %s", assembly->model->time,
+                               status == SE3D_ERR_NOT_FINITE
+                                   ? "the solution of the linear equations is not finite"
+                                   : "the linear equations could not be solved");
+    }
+    for (size_t k = 0; n == 6 && k < assembly->body_count; ++k) {
+        double turned[3];
+        se3di_mul(newton->Tinv + 9 * k, equations->x + 6 * k + 3, turned);
+        se3di_copy(turned, equations->x + 6 * k + 3);
+    }
+    return status;
+}
+
+void se3di_newton_save_memory(se3di_newton *newton)
+{
+    const se3di_model *model = newton->equations->assembly.model;
+    for (size_t k = 0; k < newton->force_count; ++k) {
+        memcpy(newton->memory + SE3DI_FORCE_STATES * k, model->forces[k].state,
+               sizeof model->forces[k].state);
+    }
+}
+
+void se3di_newton_restore_memory(se3di_newton *newton)
+{
+    se3di_model *model = newton->equations->assembly.model;
+    for (size_t k = 0; k < newton->force_count; ++k) {
+        memcpy(model->forces[k].state, newton->memory + SE3DI_FORCE_STATES * k,
+               sizeof model->forces[k].state);
+    }
+}

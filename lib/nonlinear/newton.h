@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The exact Newton matrix of an implicit step, with its linear solver: for a step whose unknown
+ * vdot moves positions by x(vdot) and velocities by v(vdot),
+ *
+ *     H = (M + (dv/dvdot) D) T^-1 + (dx/dvdot) K,     [H C^T; C 0] [z; l] = [b; c],    dvdot = T^-1
+ * z
+ *
+ * with M, D, K of assembly/tangent.h and T the tangent of the exponential map at the rotation of
+ * the step (r-omega; I in r-p): a change dx of the step turns the body by T dx.
+ * docs/theory/tangent.md */
+#ifndef SE3DI_NEWTON_H
+#define SE3DI_NEWTON_H
+
+#include "assembly/tangent.h"
+#include "linsol/kkt.h"
+#include "nonlinear/equations.h"
+
+typedef struct se3di_newton {
+    se3di_equations *equations;
+    se3di_tangent tangent;
+    se3di_kkt *kkt;
+    double *Tinv;   /* [free bodies * 9], r-omega */
+    double *memory; /* [forces * SE3DI_FORCE_STATES]: what force elements remembered */
+    size_t force_count;
+} se3di_newton;
+
+typedef struct se3di_newton_weights {
+    double velocity; /* dv/dvdot */
+    double position; /* dx/dvdot */
+} se3di_newton_weights;
+
+/* On failure nothing is held. */
+se3d_status se3di_newton_init(se3di_newton *newton, se3di_equations *equations);
+void se3di_newton_destroy(se3di_newton *newton);
+
+/* Evaluate and factor at the state of the model, whose constraint Jacobian is in the assembly.
+ * `step` [unknowns]: displacement of the step. */
+se3d_status se3di_newton_factor(se3di_newton *newton, double t, const double *vdot,
+                                const double *lambda, const double *step,
+                                const se3di_newton_weights *weights);
+/* Solve for equations->b, ->c into equations->x (dvdot) and ->l. */
+se3d_status se3di_newton_solve(se3di_newton *newton);
+
+/* Keep and restore the memory of the force elements. */
+void se3di_newton_save_memory(se3di_newton *newton);
+void se3di_newton_restore_memory(se3di_newton *newton);
+
+#endif
