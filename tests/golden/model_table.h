@@ -62,6 +62,16 @@ static const model_row model_table[] = {
      "upper.position.y=b1_y lower.position.y=b2_y lower.velocity.z=b2_vz "
      "upper.acceleration.y=b1_ay "
      "shoulder.force.y=R1y shoulder.force.z=R1z elbow.force.z=R2z energy.total=E"},
+    {"double_pendulum", "double_pendulum", NULL, "rp", "hht", "0.0001", 6e-6,
+     "shoulder.angle=theta1 shoulder.angle+elbow.angle=theta2 shoulder.rate=dtheta1 "
+     "upper.position.y=b1_y lower.position.y=b2_y lower.velocity.z=b2_vz "
+     "upper.acceleration.y=b1_ay "
+     "shoulder.force.y=R1y shoulder.force.z=R1z elbow.force.z=R2z energy.total=E"},
+    {"double_pendulum", "double_pendulum", NULL, "romega", "generalized_alpha", "0.0001", 6e-6,
+     "shoulder.angle=theta1 shoulder.angle+elbow.angle=theta2 shoulder.rate=dtheta1 "
+     "upper.position.y=b1_y lower.position.y=b2_y lower.velocity.z=b2_vz "
+     "upper.acceleration.y=b1_ay "
+     "shoulder.force.y=R1y shoulder.force.z=R1z elbow.force.z=R2z energy.total=E"},
     {"planar_slider_crank", "planar_slider_crank", NULL, NULL, NULL, "0.0005", 5e-3,
      "O.angle=theta O.rate=omega slider.position.x=slider_x slider.velocity.x=slider_vx"},
     {"fourbar", "A02_fourbar_N1", NULL, "romega", NULL, "0.001", 5e-4,
