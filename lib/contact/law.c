@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "contact/law.h"
+
+#include "contact/restitution.h"
+
+#include <math.h>
+
+#define PI 3.1415926535897932384626433832795
+
+/* Damping of rolling: about critical for a sphere on a sphere, above for one on a wall. */
+#define ROLLING_DAMPING 1.2
+
+static double choose(double given, double mixed)
+{
+    return given < 0.0 ? mixed : given;
+}
+
+static void hooke(const se3di_material *a, const se3di_material *b, double stiffness, double e,
+                  se3di_pair *pair)
+{
+    double zeta = se3di_restitution_hooke_damping(e);
+    double ratio = sqrt(a->tangential_ratio * b->tangential_ratio);
+    pair->kn = choose(stiffness, 2.0 * a->stiffness * b->stiffness / (a->stiffness + b->stiffness));
+    pair->kt = ratio * pair->kn;
+    pair->dn = 2.0 * zeta * sqrt(pair->kn);
+    pair->dt = ratio * pair->dn; /* with 2/7: the same damping ratio as the normal direction */
+}
+
+static void hertz(const se3di_material *a, const se3di_material *b, double e, se3di_pair *pair)
+{
+    double compliance =
+        (1.0 - a->poisson * a->poisson) / a->young + (1.0 - b->poisson * b->poisson) / b->young;
+    double shear = 2.0 * (2.0 - a->poisson) * (1.0 + a->poisson) / a->young +
+                   2.0 * (2.0 - b->poisson) * (1.0 + b->poisson) / b->young;
+    pair->kn = 4.0 / (3.0 * compliance);
+    pair->kt = 8.0 / shear;
+    pair->dn = se3di_restitution_hertz_damping(e) * sqrt(pair->kn);
+    /* The damping ratio of the tangent stiffnesses, 3/2 kn s and kt s. */
+    pair->dt = pair->dn * sqrt(pair->kt / (1.5 * pair->kn));
+}
+
+void se3di_pair_mix(se3di_law law, const se3di_material *a, const se3di_material *b,
+                    const se3di_override *over, se3di_pair *pair)
+{
+    const se3di_override none = {-1.0, -1.0, -1.0, -1.0, -1.0};
+    const se3di_override *o = over ? over : &none;
+    double e = choose(o->restitution, sqrt(a->restitution * b->restitution));
+    if (law == SE3DI_LAW_HOOKE) {
+        hooke(a, b, o->stiffness, e, pair);
+    } else {
+        hertz(a, b, e, pair);
+    }
+    pair->friction = choose(o->friction, sqrt(a->friction * b->friction));
+    pair->rolling = choose(o->rolling_friction, sqrt(a->rolling_friction * b->rolling_friction));
+    pair->torsion =
+        choose(o->torsional_friction, sqrt(a->torsional_friction * b->torsional_friction));
+    pair->dr = ROLLING_DAMPING * sqrt(pair->kt);
+}
+
+double se3di_pair_step(se3di_law law, const se3di_material *a, const se3di_pair *pair,
+                       double radius, double mass, double reduced_mass)
+{
+    if (law == SE3DI_LAW_HOOKE) {
+        double rate = sqrt(pair->kn / reduced_mass);
+        return 0.02 * PI / (rate + pair->dn / sqrt(reduced_mass));
+    }
+    double density = mass / (4.0 / 3.0 * PI * radius * radius * radius);
+    double shear_modulus = a->young / (2.0 * (1.0 + a->poisson));
+    double rayleigh = PI * radius * sqrt(density / shear_modulus) / (0.1631 * a->poisson + 0.8766);
+    return 0.1 * rayleigh;
+}

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The force kernels for x86-64 with AVX2 and FMA, chosen at run time.  docs/theory/particles.md */
+#include "contact/particle_set.h"
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
+
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2,fma")
+#endif
+
+#define LANES    4
+#define V_INLINE static inline __attribute__((always_inline))
+
+typedef __m256d V;
+typedef __m256d M;
+
+#define V_SET(s)          _mm256_set1_pd(s)
+#define V_LOAD(p)         _mm256_load_pd(p)
+#define V_STORE(p, v)     _mm256_store_pd(p, v)
+#define V_LOAD_ANY(p)     _mm256_loadu_pd(p)
+#define V_STORE_ANY(p, v) _mm256_storeu_pd(p, v)
+#define V_FMA(a, b, c)    _mm256_fmadd_pd(a, b, c)
+#define V_FNMA(a, b, c)   _mm256_fnmadd_pd(a, b, c)
+#define V_SQRT(a)         _mm256_sqrt_pd(a)
+#define V_MAX(a, b)       _mm256_max_pd(a, b)
+#define V_MIN(a, b)       _mm256_min_pd(a, b)
+#define V_ROUND(a)        _mm256_round_pd(a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
+#define V_LESS(a, b)      _mm256_cmp_pd(a, b, _CMP_LT_OQ)
+#define V_PICK(m, a, b)   _mm256_blendv_pd(b, a, m)
+#define V_KEEP(m, a)      _mm256_and_pd(m, a)
+#define M_ANY(m)          (_mm256_movemask_pd(m) != 0)
+#define M_COUNT(m)        ((uint64_t)__builtin_popcount((unsigned)_mm256_movemask_pd(m)))
+
+V_INLINE double V_SUM(V a)
+{
+    __m128d s = _mm_add_pd(_mm256_castpd256_pd128(a), _mm256_extractf128_pd(a, 1));
+    return _mm_cvtsd_f64(_mm_add_sd(s, _mm_unpackhi_pd(s, s)));
+}
+
+V_INLINE double V_LARGEST(V a)
+{
+    __m128d s = _mm_max_pd(_mm256_castpd256_pd128(a), _mm256_extractf128_pd(a, 1));
+    return _mm_cvtsd_f64(_mm_max_sd(s, _mm_unpackhi_pd(s, s)));
+}
+
+V_INLINE M lanes_used(M m, const uint32_t *i, const uint32_t *j)
+{
+    __m128i a = _mm_loadu_si128((const __m128i *)(const void *)i);
+    __m128i b = _mm_loadu_si128((const __m128i *)(const void *)j);
+    __m256i same = _mm256_cvtepi32_epi64(_mm_cmpeq_epi32(a, b));
+    return _mm256_andnot_pd(_mm256_castsi256_pd(same), m);
+}
+
+V_INLINE M lanes_real(M m, V radius)
+{
+    return _mm256_and_pd(m, _mm256_cmp_pd(radius, _mm256_setzero_pd(), _CMP_GT_OQ));
+}
+
+V_INLINE void transpose(const V in[4], V out[4])
+{
+    V a = _mm256_unpacklo_pd(in[0], in[1]);
+    V b = _mm256_unpackhi_pd(in[0], in[1]);
+    V c = _mm256_unpacklo_pd(in[2], in[3]);
+    V d = _mm256_unpackhi_pd(in[2], in[3]);
+    out[0] = _mm256_permute2f128_pd(a, c, 0x20);
+    out[1] = _mm256_permute2f128_pd(b, d, 0x20);
+    out[2] = _mm256_permute2f128_pd(a, c, 0x31);
+    out[3] = _mm256_permute2f128_pd(b, d, 0x31);
+}
+
+V_INLINE void load_grains(const se3di_grain *grains, const uint32_t *i, V out[8])
+{
+    V low[4], high[4];
+    for (int k = 0; k < 4; ++k) {
+        low[k] = _mm256_load_pd(grains[i[k]].x);
+        high[k] = _mm256_load_pd(grains[i[k]].v);
+    }
+    transpose(low, out);
+    transpose(high, out + 4);
+}
+
+V_INLINE void load_spins(const se3di_spin *spins, const uint32_t *i, V out[3])
+{
+    V rows[4], columns[4];
+    for (int k = 0; k < 4; ++k) {
+        rows[k] = _mm256_load_pd(spins[i[k]].w);
+    }
+    transpose(rows, columns);
+    out[0] = columns[0];
+    out[1] = columns[1];
+    out[2] = columns[2];
+}
+
+V_INLINE void add_loads(se3di_load *loads, const uint32_t *i, const V force[3], const V torque[3])
+{
+    V f[4] = {force[0], force[1], force[2], _mm256_setzero_pd()};
+    V t[4] = {torque[0], torque[1], torque[2], _mm256_setzero_pd()};
+    transpose(f, f);
+    transpose(t, t);
+    for (int k = 0; k < 4; ++k) {
+        se3di_load *load = &loads[i[k]];
+        _mm256_store_pd(load->force, _mm256_add_pd(_mm256_load_pd(load->force), f[k]));
+        _mm256_store_pd(load->torque, _mm256_add_pd(_mm256_load_pd(load->torque), t[k]));
+    }
+}
+
+#include "contact/particle_force.inc"
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+
+const se3di_kernels *se3di_particle_kernels_avx2(void)
+{
+    static const se3di_kernels table = {"avx2", pairs, walls};
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? &table : NULL;
+}
+
+#else
+
+const se3di_kernels *se3di_particle_kernels_avx2(void)
+{
+    return NULL;
+}
+
+#endif

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The force kernels for x86-64 with AVX-512, chosen at run time.       docs/theory/particles.md */
+#include "contact/particle_set.h"
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
+
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512dq,avx2,fma"))),        \
+                             apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512vl,avx512dq,avx2,fma,prefer-vector-width=512")
+#endif
+
+#define LANES    8
+#define V_INLINE static inline __attribute__((always_inline))
+
+typedef __m512d V;
+typedef __mmask8 M;
+
+#define V_SET(s)          _mm512_set1_pd(s)
+#define V_LOAD(p)         _mm512_load_pd(p)
+#define V_STORE(p, v)     _mm512_store_pd(p, v)
+#define V_LOAD_ANY(p)     _mm512_loadu_pd(p)
+#define V_STORE_ANY(p, v) _mm512_storeu_pd(p, v)
+#define V_FMA(a, b, c)    _mm512_fmadd_pd(a, b, c)
+#define V_FNMA(a, b, c)   _mm512_fnmadd_pd(a, b, c)
+#define V_SQRT(a)         _mm512_sqrt_pd(a)
+#define V_MAX(a, b)       _mm512_max_pd(a, b)
+#define V_MIN(a, b)       _mm512_min_pd(a, b)
+#define V_ROUND(a)        _mm512_roundscale_pd(a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)
+#define V_LESS(a, b)      _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ)
+#define V_PICK(m, a, b)   _mm512_mask_blend_pd(m, b, a)
+#define V_KEEP(m, a)      _mm512_maskz_mov_pd(m, a)
+#define M_ANY(m)          ((m) != 0)
+#define M_COUNT(m)        ((uint64_t)__builtin_popcount(m))
+
+V_INLINE double V_SUM(V a)
+{
+    __m256d h = _mm256_add_pd(_mm512_castpd512_pd256(a), _mm512_extractf64x4_pd(a, 1));
+    __m128d s = _mm_add_pd(_mm256_castpd256_pd128(h), _mm256_extractf128_pd(h, 1));
+    return _mm_cvtsd_f64(_mm_add_sd(s, _mm_unpackhi_pd(s, s)));
+}
+
+V_INLINE double V_LARGEST(V a)
+{
+    __m256d h = _mm256_max_pd(_mm512_castpd512_pd256(a), _mm512_extractf64x4_pd(a, 1));
+    __m128d s = _mm_max_pd(_mm256_castpd256_pd128(h), _mm256_extractf128_pd(h, 1));
+    return _mm_cvtsd_f64(_mm_max_sd(s, _mm_unpackhi_pd(s, s)));
+}
+
+V_INLINE M lanes_used(M m, const uint32_t *i, const uint32_t *j)
+{
+    __m256i a = _mm256_loadu_si256((const __m256i *)(const void *)i);
+    __m256i b = _mm256_loadu_si256((const __m256i *)(const void *)j);
+    return (M)(m & _mm256_cmpneq_epi32_mask(a, b));
+}
+
+V_INLINE M lanes_real(M m, V radius)
+{
+    return (M)(m & _mm512_cmp_pd_mask(radius, _mm512_setzero_pd(), _CMP_GT_OQ));
+}
+
+/* Rows become columns. */
+V_INLINE void transpose(const V in[8], V out[8])
+{
+    V t[8];
+    for (int k = 0; k < 8; k += 2) {
+        t[k] = _mm512_unpacklo_pd(in[k], in[k + 1]);
+        t[k + 1] = _mm512_unpackhi_pd(in[k], in[k + 1]);
+    }
+    for (int k = 0; k < 2; ++k) {
+        V a = _mm512_shuffle_f64x2(t[k], t[2 + k], 0x88);
+        V b = _mm512_shuffle_f64x2(t[4 + k], t[6 + k], 0x88);
+        V c = _mm512_shuffle_f64x2(t[k], t[2 + k], 0xdd);
+        V d = _mm512_shuffle_f64x2(t[4 + k], t[6 + k], 0xdd);
+        out[k] = _mm512_shuffle_f64x2(a, b, 0x88);
+        out[4 + k] = _mm512_shuffle_f64x2(a, b, 0xdd);
+        out[2 + k] = _mm512_shuffle_f64x2(c, d, 0x88);
+        out[6 + k] = _mm512_shuffle_f64x2(c, d, 0xdd);
+    }
+}
+
+V_INLINE void load_grains(const se3di_grain *grains, const uint32_t *i, V out[8])
+{
+    V rows[8];
+    for (int k = 0; k < 8; ++k) {
+        rows[k] = _mm512_load_pd(&grains[i[k]]);
+    }
+    transpose(rows, out);
+}
+
+/* Halves of two rows side by side make one transposition of four do for eight. */
+V_INLINE void load_spins(const se3di_spin *spins, const uint32_t *i, V out[3])
+{
+    V rows[4];
+    for (int k = 0; k < 4; ++k) {
+        V low = _mm512_castpd256_pd512(_mm256_load_pd(spins[i[k]].w));
+        rows[k] = _mm512_insertf64x4(low, _mm256_load_pd(spins[i[4 + k]].w), 1);
+    }
+    V a = _mm512_unpacklo_pd(rows[0], rows[1]);
+    V b = _mm512_unpackhi_pd(rows[0], rows[1]);
+    V c = _mm512_unpacklo_pd(rows[2], rows[3]);
+    V d = _mm512_unpackhi_pd(rows[2], rows[3]);
+    const __m512i first = _mm512_set_epi64(13, 12, 5, 4, 9, 8, 1, 0);
+    const __m512i third = _mm512_set_epi64(15, 14, 7, 6, 11, 10, 3, 2);
+    /* [0 1 | 8 9 | 4 5 | 12 13]: lanes 0..3 come from the low halves, 4..7 from the high ones */
+    V x = _mm512_permutex2var_pd(a, first, c);
+    V y = _mm512_permutex2var_pd(b, first, d);
+    V z = _mm512_permutex2var_pd(a, third, c);
+    out[0] = x;
+    out[1] = y;
+    out[2] = z;
+}
+
+V_INLINE void add_loads(se3di_load *loads, const uint32_t *i, const V force[3], const V torque[3])
+{
+    V zero = _mm512_setzero_pd();
+    V rows[8] = {force[0], force[1], force[2], zero, torque[0], torque[1], torque[2], zero};
+    V out[8];
+    transpose(rows, out);
+    for (int k = 0; k < 8; ++k) {
+        se3di_load *load = &loads[i[k]];
+        _mm512_store_pd(load, _mm512_add_pd(_mm512_load_pd(load), out[k]));
+    }
+}
+
+#include "contact/particle_force.inc"
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+
+const se3di_kernels *se3di_particle_kernels_avx512(void)
+{
+    static const se3di_kernels table = {"avx512", pairs, walls};
+    int has = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+              __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("fma");
+    return has ? &table : NULL;
+}
+
+#else
+
+const se3di_kernels *se3di_particle_kernels_avx512(void)
+{
+    return NULL;
+}
+
+#endif

@@ -1,0 +1,415 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The neighbour list: particles sorted by slab, size class and cell, and for each the partners
+ * nearer than the skin.
+ *
+ * Every size class has cells of its own size, whose layers along the main axis divide a slab, so
+ * that a slab is a range of cells in every class and sorting by cell sorts by slab. A particle
+ * looks into the cells of every class within its reach, of its own slab (behind itself) and of the
+ * next one: every pair is found once and belongs to the lower slab.   docs/theory/particles.md */
+#include "contact/particle_set.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct grid_class {
+    double radius;  /* largest of the class; 0: empty */
+    double size[3]; /* of a cell, along fast, slow, main */
+    int cells[2];   /* along fast, slow */
+    int layers;     /* of a slab, along main */
+    uint32_t offset;
+} grid_class;
+
+typedef struct grid {
+    int axis[3]; /* fast, slow, main */
+    int periodic[3];
+    double low[3], extent[3]; /* by fast, slow, main */
+    double thickness;
+    int slabs;
+    uint32_t per_slab; /* cells */
+    grid_class classes[SE3DI_GRAIN_CLASSES];
+} grid;
+
+void se3di_particles_wrap(const se3di_particles *set, double d[3])
+{
+    for (int a = 0; a < 3; ++a) {
+        if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
+            double length = set->upper[a] - set->lower[a];
+            d[a] -= length * nearbyint(d[a] / length);
+        }
+    }
+}
+
+/* Size class: 0 holds radii in (largest/2, largest], each next one half of that. */
+static int class_of(double radius, double largest)
+{
+    int c = 0;
+    for (double limit = 0.5 * largest; radius <= limit && c < SE3DI_GRAIN_CLASSES - 1;
+         limit *= 0.5) {
+        ++c;
+    }
+    return c;
+}
+
+/* Periodic positions back into the period; particles beyond a sink are marked in order[]. */
+static size_t leave(se3di_particles *set)
+{
+    size_t gone = 0;
+    for (size_t k = 0; k < set->count; ++k) {
+        double *x = set->grains[k].x;
+        set->order[k] = 1;
+        for (int a = 0; a < 3; ++a) {
+            double length = set->upper[a] - set->lower[a];
+            if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
+                x[a] -= length * floor((x[a] - set->lower[a]) / length);
+            } else if (set->boundary[a] == SE3DI_BOUNDARY_SINK &&
+                       !(x[a] >= set->lower[a] && x[a] <= set->upper[a])) {
+                set->order[k] = 0;
+            }
+        }
+        gone += set->order[k] == 0;
+    }
+    return gone;
+}
+
+static void remove_gone(se3di_particles *set)
+{
+    size_t gone = leave(set);
+    if (gone > 0) {
+        unsigned char *keep = (unsigned char *)set->key; /* scratch */
+        for (size_t k = 0; k < set->count; ++k) {
+            keep[k] = (unsigned char)set->order[k];
+        }
+        se3di_particles_filter(set, keep);
+        set->lost += gone;
+    }
+}
+
+/* Box of all centres, largest and mean radius, uniformity, classes in use. */
+static double measure(se3di_particles *set, grid *g)
+{
+    double largest = 0.0;
+    double sum = 0.0;
+    set->uniform = set->material_slots.count == 1;
+    for (size_t k = 0; k < set->count; ++k) {
+        const se3di_grain *grain = &set->grains[k];
+        largest = fmax(largest, grain->radius);
+        sum += grain->radius;
+        set->uniform = set->uniform && grain->radius == set->grains[0].radius;
+        for (int a = 0; a < 3; ++a) {
+            set->low[a] = k == 0 ? grain->x[a] : fmin(set->low[a], grain->x[a]);
+            set->high[a] = k == 0 ? grain->x[a] : fmax(set->high[a], grain->x[a]);
+        }
+    }
+    set->skin = set->count > 0 ? set->skin_ratio * 2.0 * sum / (double)set->count : 0.0;
+    for (size_t k = 0; k < set->count; ++k) {
+        double radius = set->grains[k].radius;
+        grid_class *c = &g->classes[class_of(radius, largest)];
+        c->radius = fmax(c->radius, radius);
+    }
+    return largest;
+}
+
+/* The longest axis that is not periodic is the main one. */
+static void choose_axes(const se3di_particles *set, grid *g)
+{
+    int main_axis = 0;
+    double best = -1.0;
+    for (int a = 0; a < 3; ++a) {
+        double length = set->high[a] - set->low[a];
+        int open = set->boundary[a] != SE3DI_BOUNDARY_PERIODIC;
+        if (open && length > best) {
+            best = length;
+            main_axis = a;
+        }
+    }
+    g->axis[2] = main_axis;
+    g->axis[0] = main_axis == 0 ? 1 : 0;
+    g->axis[1] = main_axis == 2 ? 1 : 2;
+    for (int k = 0; k < 3; ++k) {
+        int a = g->axis[k];
+        g->periodic[k] = set->boundary[a] == SE3DI_BOUNDARY_PERIODIC;
+        g->low[k] = g->periodic[k] ? set->lower[a] : set->low[a];
+        g->extent[k] = g->periodic[k] ? set->upper[a] - set->lower[a] : set->high[a] - set->low[a];
+    }
+}
+
+static int division(double length, double size, double most)
+{
+    double parts = floor(length / size);
+    return parts < 1.0 ? 1 : (int)fmin(parts, most);
+}
+
+/* Cells of all classes at `scale` times the least size. */
+static double divide(const se3di_particles *set, grid *g, double largest, double scale)
+{
+    double reach = 2.0 * largest + set->skin;
+    g->slabs = division(g->extent[2], reach, SE3DI_GRAIN_SLABS_MAX);
+    if (g->periodic[2]) { /* all axes are */
+        g->slabs = g->slabs < 4 ? 1 : g->slabs - g->slabs % 2;
+    }
+    g->thickness = fmax(g->extent[2], reach) / g->slabs;
+    if (g->periodic[2]) {
+        g->thickness = g->extent[2] / g->slabs;
+    }
+    double total = 0.0;
+    for (int c = 0; c < SE3DI_GRAIN_CLASSES; ++c) {
+        grid_class *here = &g->classes[c];
+        if (here->radius <= 0.0) {
+            continue;
+        }
+        double size = scale * (2.0 * here->radius + set->skin);
+        here->offset = (uint32_t)fmin(total, 4e9);
+        for (int k = 0; k < 2; ++k) {
+            here->cells[k] = division(g->extent[k], size, 1e6);
+            here->size[k] = fmax(g->extent[k], 1e-3 * size) / here->cells[k];
+        }
+        here->layers = division(g->thickness, size, 1e6);
+        here->size[2] = g->thickness / here->layers;
+        total += (double)here->cells[0] * here->cells[1] * here->layers;
+    }
+    g->per_slab = (uint32_t)fmin(total, 4e9);
+    return total * g->slabs;
+}
+
+static int clamp_index(double x, int count)
+{
+    return x <= 0.0 ? 0 : x >= count - 1 ? count - 1 : (int)x;
+}
+
+static uint32_t cell_of(const grid *g, const double x[3], int c)
+{
+    const grid_class *here = &g->classes[c];
+    double z = x[g->axis[2]] - g->low[2];
+    int slab = clamp_index(z / g->thickness, g->slabs);
+    int layer = clamp_index((z - slab * g->thickness) / here->size[2], here->layers);
+    int slow = clamp_index((x[g->axis[1]] - g->low[1]) / here->size[1], here->cells[1]);
+    int fast = clamp_index((x[g->axis[0]] - g->low[0]) / here->size[0], here->cells[0]);
+    return (uint32_t)slab * g->per_slab + here->offset +
+           ((uint32_t)(layer * here->cells[1] + slow)) * (uint32_t)here->cells[0] + (uint32_t)fast;
+}
+
+/* Put the records in the order of order[] (new -> old), through the memory of the loads, which are
+ * zero afterwards; then order[] is old -> new. */
+static void permute(se3di_particles *set)
+{
+    size_t n = set->count;
+    se3di_grain *grains = set->load_memory.data;
+    memcpy(grains, set->grains, n * sizeof *grains);
+    for (size_t k = 0; k < n; ++k) {
+        set->grains[k] = grains[set->order[k]];
+    }
+    se3di_spin *spins = set->load_memory.data;
+    memcpy(spins, set->spins, n * sizeof *spins);
+    for (size_t k = 0; k < n; ++k) {
+        set->spins[k] = spins[set->order[k]];
+        set->index_of[set->spins[k].id] = (uint32_t)k;
+    }
+    memset(set->load_memory.data, 0, (n + 1) * sizeof(se3di_load));
+    for (size_t k = 0; k < n; ++k) {
+        set->key[set->order[k]] = (uint32_t)k;
+    }
+    uint32_t *swap = set->order;
+    set->order = set->key;
+    set->key = swap;
+}
+
+/* Sort by cell, stably; cells[] becomes the first particle of each. */
+static se3d_status sort(se3di_particles *set, const grid *g, double largest, size_t total)
+{
+    SE3DI_TRY(se3di_particles_grow(set, &set->cells, &set->cell_capacity, total + 2));
+    memset(set->cells, 0, (total + 2) * sizeof *set->cells);
+    for (size_t k = 0; k < set->count; ++k) {
+        int c = class_of(set->grains[k].radius, largest);
+        set->key[k] = cell_of(g, set->grains[k].x, c);
+        ++set->cells[set->key[k] + 2];
+    }
+    for (size_t k = 1; k <= total; ++k) {
+        set->cells[k + 1] += set->cells[k];
+    }
+    for (size_t k = 0; k < set->count; ++k) {
+        set->order[set->cells[set->key[k] + 1]++] = (uint32_t)k;
+    }
+    permute(set);
+    se3di_particles_remap(set, set->order);
+    set->slab_count = (uint32_t)g->slabs;
+    for (int s = 0; s < g->slabs; ++s) {
+        memset(&set->slabs[s], 0, sizeof set->slabs[s]);
+        set->slabs[s].begin = set->cells[(size_t)s * g->per_slab];
+        set->slabs[s].end = set->cells[(size_t)(s + 1) * g->per_slab];
+    }
+    return SE3D_OK;
+}
+
+/* One search: what particle i sees of one class. */
+typedef struct search {
+    const grid *g;
+    const grid_class *c;
+    uint32_t i;
+    double x[3]; /* relative to the grid, by fast, slow, main */
+    double reach;
+} search;
+
+/* Append those of cells [begin, end) of the sorted particles that are near. */
+static void append(se3di_particles *set, const search *q, uint32_t begin, uint32_t end)
+{
+    const se3di_grain *gi = &set->grains[q->i];
+    double border = gi->radius + set->skin;
+    int wraps = q->g->periodic[0] || q->g->periodic[1] || q->g->periodic[2];
+    for (uint32_t j = begin; j < end; ++j) {
+        const se3di_grain *gj = &set->grains[j];
+        double d[3] = {gi->x[0] - gj->x[0], gi->x[1] - gj->x[1], gi->x[2] - gj->x[2]};
+        if (wraps) {
+            se3di_particles_wrap(set, d);
+        }
+        double reach = border + gj->radius;
+        if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach) {
+            set->list[set->list_count++] = j;
+        }
+    }
+}
+
+/* Indices of cells within reach along an axis; on a periodic one they may be beyond the ends, but
+ * never name a cell twice. */
+static void window(const search *q, int k, int *from, int *to)
+{
+    double size = q->c->size[k];
+    int count = q->c->cells[k];
+    double low = floor((q->x[k] - q->reach) / size);
+    double high = floor((q->x[k] + q->reach) / size);
+    if (q->g->periodic[k]) {
+        *from = (int)low;
+        *to = high - low >= count ? *from + count - 1 : (int)high;
+    } else {
+        *from = clamp_index(low, count);
+        *to = clamp_index(high, count);
+    }
+}
+
+static int wrapped(int index, int count)
+{
+    int rest = index % count;
+    return rest < 0 ? rest + count : rest;
+}
+
+/* Rows of cells of one layer: `row0` is the layer's first cell, `least` the first particle allowed.
+ */
+static se3d_status search_layer(se3di_particles *set, const search *q, uint32_t row0,
+                                uint32_t least)
+{
+    int from[2], to[2];
+    window(q, 0, &from[0], &to[0]);
+    window(q, 1, &from[1], &to[1]);
+    const int across = q->c->cells[0];
+    for (int y = from[1]; y <= to[1]; ++y) {
+        uint32_t row = row0 + (uint32_t)(wrapped(y, q->c->cells[1]) * across);
+        int x = from[0];
+        while (x <= to[0]) { /* in pieces where the window wraps */
+            int begin = wrapped(x, across);
+            int length = to[0] - x + 1;
+            length = begin + length > across ? across - begin : length;
+            uint32_t first = set->cells[row + (uint32_t)begin];
+            uint32_t end = set->cells[row + (uint32_t)(begin + length)];
+            first = first < least ? least : first;
+            if (first < end) {
+                SE3DI_TRY(se3di_particles_grow(set, &set->list, &set->list_capacity,
+                                               set->list_count + (end - first)));
+                append(set, q, first, end);
+            }
+            x += length;
+        }
+    }
+    return SE3D_OK;
+}
+
+/* The layers of slab `s` (its position without wrapping `at`) within reach. */
+static se3d_status search_slab(se3di_particles *set, const search *q, int s, int at, uint32_t least)
+{
+    const grid *g = q->g;
+    double z = q->x[2] - at * g->thickness;
+    double size = q->c->size[2];
+    double low = floor((z - q->reach) / size);
+    double high = floor((z + q->reach) / size);
+    int from = low <= 0.0 ? 0 : low >= q->c->layers ? q->c->layers : (int)low;
+    int to = high < 0.0 ? -1 : high >= q->c->layers ? q->c->layers - 1 : (int)high;
+    if (g->slabs == 1 && g->periodic[2]) {
+        from = 0; /* a short period: everything, distances tell */
+        to = q->c->layers - 1;
+    }
+    for (int layer = from; layer <= to; ++layer) {
+        uint32_t row0 = (uint32_t)s * g->per_slab + q->c->offset +
+                        (uint32_t)(layer * q->c->cells[1] * q->c->cells[0]);
+        SE3DI_TRY(search_layer(set, q, row0, least));
+    }
+    return SE3D_OK;
+}
+
+/* Partners of particle i of slab s. */
+static se3d_status search_particle(se3di_particles *set, const grid *g, int s, uint32_t i)
+{
+    const se3di_grain *grain = &set->grains[i];
+    search q = {.g = g, .i = i};
+    for (int k = 0; k < 3; ++k) {
+        q.x[k] = grain->x[g->axis[k]] - g->low[k];
+    }
+    for (int c = 0; c < SE3DI_GRAIN_CLASSES; ++c) {
+        q.c = &g->classes[c];
+        if (q.c->radius <= 0.0) {
+            continue;
+        }
+        q.reach = grain->radius + q.c->radius + set->skin;
+        SE3DI_TRY(search_slab(set, &q, s, s, i + 1));
+        if (s + 1 < g->slabs) {
+            SE3DI_TRY(search_slab(set, &q, s + 1, s + 1, 0));
+        } else if (g->periodic[2] && g->slabs > 1) {
+            SE3DI_TRY(search_slab(set, &q, 0, s + 1, 0));
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status search_all(se3di_particles *set, const grid *g)
+{
+    SE3DI_TRY(se3di_particles_grow(set, &set->first, &set->first_capacity, set->count + 1));
+    set->list_count = 0;
+    for (int s = 0; s < g->slabs; ++s) {
+        for (uint32_t i = set->slabs[s].begin; i < set->slabs[s].end; ++i) {
+            set->first[i] = (uint32_t)set->list_count;
+            SE3DI_TRY(search_particle(set, g, s, i));
+        }
+    }
+    set->first[set->count] = (uint32_t)set->list_count;
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_rebuild(se3di_particles *set)
+{
+    SE3DI_TRY(se3di_particles_collect(set));
+    remove_gone(set);
+    grid g = {.slabs = 1};
+    double largest = measure(set, &g);
+    set->slab_count = 0;
+    if (set->count > 0) {
+        choose_axes(set, &g);
+        double total = divide(set, &g, largest, 1.0);
+        /* Few particles in a large space: larger cells, so that there are not many more cells than
+         * particles. */
+        for (double scale = 1.25; total > 4.0 * (double)set->count + 1e4 && scale < 1e30;
+             scale *= 1.25) {
+            total = divide(set, &g, largest, scale);
+        }
+        SE3DI_TRY(sort(set, &g, largest, (size_t)total));
+        SE3DI_TRY(search_all(set, &g));
+    }
+    SE3DI_TRY(se3di_particles_list_walls(set));
+    for (size_t k = 0; k < set->count; ++k) {
+        memcpy(set->origin + 3 * k, set->grains[k].x, sizeof set->grains[k].x);
+    }
+    for (size_t k = 0; k < set->wall_slots.count; ++k) {
+        se3di_wall *wall = &set->walls[k];
+        memcpy(wall->old_x, wall->x, sizeof wall->x);
+        memcpy(wall->old_R, wall->R, sizeof wall->R);
+    }
+    set->moved = 0.0;
+    ++set->rebuilds;
+    return se3di_particles_activate(set);
+}

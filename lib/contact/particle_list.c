@@ -1,0 +1,326 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* From the neighbour list to the blocks of active pairs, with the history of their springs.
+ *
+ * History waits in `carry` while lists change: entries {i, j, xi}, chained by i through key[] (the
+ * first) and carry_next[]. Where memory fails it stays there, and nothing is lost. */
+#include "contact/particle_set.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Active pairs are expected to last about this many steps. */
+#define NEAR_STEPS 24.0
+/* ... and are wider than touching by this part of the skin. */
+#define NEAR_LEAST 0.02
+
+se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, size_t *capacity,
+                                 size_t needed)
+{
+    if (needed <= *capacity) {
+        return SE3D_OK;
+    }
+    size_t grown = needed + needed / 8 + 16;
+    uint32_t *memory = se3di_alloc(&set->allocator, grown, sizeof *memory);
+    if (!memory) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    if (*capacity > 0) {
+        memcpy(memory, *data, *capacity * sizeof *memory);
+    }
+    se3di_free(&set->allocator, *data, *capacity, sizeof *memory);
+    *data = memory;
+    *capacity = grown;
+    return SE3D_OK;
+}
+
+static int lane_moved(const se3di_particles *set, uint32_t b, int lane)
+{
+    const se3di_block *block = &set->blocks[b];
+    int moved = block->xi[0][lane] != 0.0 || block->xi[1][lane] != 0.0 || block->xi[2][lane] != 0.0;
+    for (int a = 0; set->rolls && !moved && a < 4; ++a) {
+        moved = set->rolls[b].rho[a][lane] != 0.0;
+    }
+    return moved && block->i[lane] != set->capacity;
+}
+
+static se3d_status reserve_carry(se3di_particles *set, size_t count)
+{
+    const se3d_allocator *a = &set->allocator;
+    if (count > set->carry_capacity) {
+        size_t grown = count + count / 8 + 16;
+        se3di_carry *carry = se3di_alloc(a, grown, sizeof *carry);
+        if (!carry) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+        se3di_free(a, set->carry, set->carry_capacity, sizeof *carry);
+        set->carry = carry;
+        set->carry_capacity = grown;
+    }
+    if (set->rolls && 4 * count > set->carry_roll_capacity) {
+        size_t grown = 4 * (count + count / 8 + 16);
+        double *rolls = se3di_alloc(a, grown, sizeof *rolls);
+        if (!rolls) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+        se3di_free(a, set->carry_roll, set->carry_roll_capacity, sizeof *rolls);
+        set->carry_roll = rolls;
+        set->carry_roll_capacity = grown;
+    }
+    return se3di_particles_grow(set, &set->carry_next, &set->carry_next_capacity, count);
+}
+
+static void collect_lane(se3di_particles *set, uint32_t b, int lane, int wall)
+{
+    const se3di_block *block = &set->blocks[b];
+    size_t k = set->carry_count++;
+    uint32_t j = wall ? SE3DI_CARRY_WALL | block->j[0] : block->j[lane];
+    set->carry[k] = (se3di_carry){
+        block->i[lane], j, {block->xi[0][lane], block->xi[1][lane], block->xi[2][lane]}};
+    for (int a = 0; set->rolls && a < 4; ++a) {
+        set->carry_roll[4 * k + (size_t)a] = set->rolls[b].rho[a][lane];
+    }
+}
+
+se3d_status se3di_particles_collect(se3di_particles *set)
+{
+    if (!set->list_valid) {
+        return SE3D_OK;
+    }
+    size_t count = 0;
+    for (uint32_t b = 0; b < set->block_count; ++b) {
+        for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
+            count += (size_t)lane_moved(set, b, lane);
+        }
+    }
+    SE3DI_TRY(reserve_carry(set, count));
+    set->carry_count = 0;
+    set->carry_rolling = set->rolls != NULL;
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        const se3di_slab *slab = &set->slabs[s];
+        for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
+            for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
+                if (lane_moved(set, b, lane)) {
+                    collect_lane(set, b, lane, b >= slab->wall_begin);
+                }
+            }
+        }
+    }
+    set->list_valid = 0;
+    set->block_count = 0;
+    return SE3D_OK;
+}
+
+void se3di_particles_remap(se3di_particles *set, const uint32_t *new_index)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < set->carry_count; ++k) {
+        se3di_carry entry = set->carry[k];
+        entry.i = new_index[entry.i];
+        entry.j = entry.j >= SE3DI_CARRY_WALL ? entry.j : new_index[entry.j];
+        if (entry.i == SE3DI_NO_INDEX || entry.j == SE3DI_NO_INDEX) {
+            continue;
+        }
+        set->carry[kept] = entry;
+        if (set->carry_rolling) {
+            memmove(set->carry_roll + 4 * kept, set->carry_roll + 4 * k, 4 * sizeof(double));
+        }
+        ++kept;
+    }
+    set->carry_count = kept;
+}
+
+/* Chains by the particle that will own the pair: either of the two may, so both are searched. */
+static void chain(se3di_particles *set)
+{
+    for (size_t k = 0; k < set->count; ++k) {
+        set->key[k] = SE3DI_NO_INDEX;
+    }
+    for (size_t k = set->carry_count; k-- > 0;) {
+        uint32_t i = set->carry[k].i;
+        set->carry_next[k] = set->key[i];
+        set->key[i] = (uint32_t)k;
+    }
+}
+
+static uint32_t find(const se3di_particles *set, uint32_t i, uint32_t j)
+{
+    uint32_t k = set->key[i];
+    while (k != SE3DI_NO_INDEX && set->carry[k].j != j) {
+        k = set->carry_next[k];
+    }
+    return k;
+}
+
+static se3d_status open_block(se3di_particles *set)
+{
+    size_t needed = (size_t)set->block_count + 1;
+    const se3d_allocator *a = &set->allocator;
+    if (needed * sizeof(se3di_block) > set->block_memory.bytes) {
+        size_t grown = needed + needed / 8 + 16;
+        grown = grown < set->list_count / 12 ? set->list_count / 12 : grown;
+        se3d_status status =
+            se3di_aligned_reserve(a, &set->block_memory, grown * sizeof(se3di_block),
+                                  set->block_count * sizeof(se3di_block));
+        set->blocks = set->block_memory.data;
+        SE3DI_TRY(status);
+    }
+    if (set->rolling) {
+        size_t grown = set->block_memory.bytes / sizeof(se3di_block);
+        SE3DI_TRY(se3di_aligned_reserve(a, &set->roll_memory, grown * sizeof(se3di_roll),
+                                        set->block_count * sizeof(se3di_roll)));
+        set->rolls = set->roll_memory.data;
+        memset(&set->rolls[set->block_count], 0, sizeof(se3di_roll));
+    }
+    se3di_block *block = &set->blocks[set->block_count++];
+    memset(block, 0, sizeof *block);
+    for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
+        block->i[k] = block->j[k] = (uint32_t)set->capacity;
+    }
+    return SE3D_OK;
+}
+
+/* Add a pair to the last block, with its history. */
+static se3d_status push(se3di_particles *set, uint32_t i, uint32_t j, int *lane)
+{
+    if (*lane == SE3DI_GRAIN_LANES) {
+        SE3DI_TRY(open_block(set));
+        *lane = 0;
+    }
+    se3di_block *block = &set->blocks[set->block_count - 1];
+    int at = (*lane)++;
+    block->i[at] = i;
+    if (j < SE3DI_CARRY_WALL) {
+        block->j[at] = j;
+    }
+    double sign = 1.0;
+    uint32_t k = find(set, i, j);
+    if (k == SE3DI_NO_INDEX && j < SE3DI_CARRY_WALL) {
+        k = find(set, j, i);
+        sign = -1.0;
+    }
+    if (k == SE3DI_NO_INDEX) {
+        return SE3D_OK;
+    }
+    for (int a = 0; a < 3; ++a) {
+        block->xi[a][at] = sign * set->carry[k].xi[a];
+    }
+    for (size_t a = 0; set->rolling && set->carry_rolling && a < 4; ++a) {
+        /* the twist is about the normal, which turns with the order of the two */
+        set->rolls[set->block_count - 1].rho[a][at] =
+            (a < 3 ? sign : 1.0) * set->carry_roll[4 * (size_t)k + a];
+    }
+    return SE3D_OK;
+}
+
+static se3d_status activate_pairs(se3di_particles *set, se3di_slab *slab)
+{
+    int lane = SE3DI_GRAIN_LANES;
+    int periodic = 0;
+    for (int a = 0; a < 3; ++a) {
+        periodic |= set->boundary[a] == SE3DI_BOUNDARY_PERIODIC;
+    }
+    slab->pair_begin = set->block_count;
+    for (uint32_t i = slab->begin; i < slab->end; ++i) {
+        const se3di_grain *gi = &set->grains[i];
+        for (uint32_t k = set->first[i]; k < set->first[i + 1]; ++k) {
+            const se3di_grain *gj = &set->grains[set->list[k]];
+            double d[3] = {gi->x[0] - gj->x[0], gi->x[1] - gj->x[1], gi->x[2] - gj->x[2]};
+            if (periodic) {
+                se3di_particles_wrap(set, d);
+            }
+            double reach = gi->radius + gj->radius + set->near;
+            if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach) {
+                SE3DI_TRY(push(set, i, set->list[k], &lane));
+            }
+        }
+    }
+    slab->pair_end = set->block_count;
+    return SE3D_OK;
+}
+
+static se3d_status activate_walls(se3di_particles *set, se3di_slab *slab)
+{
+    int lane = SE3DI_GRAIN_LANES;
+    uint32_t last = SE3DI_NO_INDEX;
+    slab->wall_begin = set->block_count;
+    for (uint32_t k = slab->near_begin; k < slab->near_end; ++k) {
+        uint32_t i = set->near_walls[2 * k];
+        uint32_t w = set->near_walls[2 * k + 1];
+        const se3di_grain *g = &set->grains[i];
+        if (se3di_wall_distance(&set->walls[w], g->x) < g->radius + set->near) {
+            lane = w == last ? lane : SE3DI_GRAIN_LANES; /* one wall per block */
+            last = w;
+            SE3DI_TRY(push(set, i, SE3DI_CARRY_WALL | w, &lane));
+            set->blocks[set->block_count - 1].j[0] = w;
+        }
+    }
+    slab->wall_end = set->block_count;
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_activate(se3di_particles *set)
+{
+    chain(set);
+    set->near = fmin(set->skin, fmax(NEAR_LEAST * set->skin, 2.0 * NEAR_STEPS * set->pace));
+    set->block_count = 0;
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        SE3DI_TRY(activate_pairs(set, &set->slabs[s]));
+        SE3DI_TRY(activate_walls(set, &set->slabs[s]));
+    }
+    for (size_t k = 0; k < set->wall_slots.count; ++k) {
+        se3di_wall *wall = &set->walls[k];
+        memcpy(wall->near_x, wall->x, sizeof wall->x);
+        memcpy(wall->near_R, wall->R, sizeof wall->R);
+    }
+    set->moved_near = set->moved;
+    set->carry_count = 0;
+    set->list_valid = 1;
+    ++set->refreshes;
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_refresh(se3di_particles *set)
+{
+    SE3DI_TRY(se3di_particles_collect(set));
+    return se3di_particles_activate(set);
+}
+
+double se3di_wall_distance(const se3di_wall *wall, const double x[3])
+{
+    const double *R = wall->R;
+    double d[3] = {x[0] - wall->x[0], x[1] - wall->x[1], x[2] - wall->x[2]};
+    if (wall->kind == SE3DI_WALL_PLANE) {
+        return d[0] * R[2] + d[1] * R[5] + d[2] * R[8];
+    }
+    double sum = 0.0;
+    for (int a = 0; a < 3; ++a) {
+        double along = d[0] * R[a] + d[1] * R[3 + a] + d[2] * R[6 + a];
+        double beyond = fabs(along) - wall->half[a];
+        sum += beyond > 0.0 ? beyond * beyond : 0.0;
+    }
+    return sqrt(sum);
+}
+
+se3d_status se3di_particles_list_walls(se3di_particles *set)
+{
+    set->near_count = 0;
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        se3di_slab *slab = &set->slabs[s];
+        slab->near_begin = (uint32_t)set->near_count;
+        for (uint32_t w = 0; w < set->wall_slots.count; ++w) {
+            for (uint32_t i = slab->begin; i < slab->end; ++i) {
+                const se3di_grain *g = &set->grains[i];
+                if (se3di_wall_distance(&set->walls[w], g->x) >= g->radius + set->skin) {
+                    continue;
+                }
+                SE3DI_TRY(se3di_particles_grow(set, &set->near_walls, &set->near_capacity,
+                                               2 * set->near_count + 2));
+                set->near_walls[2 * set->near_count] = i;
+                set->near_walls[2 * set->near_count + 1] = w;
+                ++set->near_count;
+            }
+        }
+        slab->near_end = (uint32_t)set->near_count;
+    }
+    return SE3D_OK;
+}

@@ -1,0 +1,426 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Life time and editing of particle sets; nothing here moves a particle. */
+#include "contact/particle_set.h"
+
+#include <math.h>
+#include <string.h>
+
+#define ALIGNMENT 64
+
+se3d_status se3di_aligned_reserve(const se3d_allocator *allocator, se3di_aligned *memory,
+                                  size_t bytes, size_t keep)
+{
+    if (bytes <= memory->bytes) {
+        return SE3D_OK;
+    }
+    if (bytes > SIZE_MAX - 2 * ALIGNMENT) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    void *raw = se3di_alloc(allocator, bytes + ALIGNMENT, 1);
+    if (!raw) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    size_t offset = (size_t)((uintptr_t)raw % ALIGNMENT);
+    void *data = (char *)raw + (ALIGNMENT - offset);
+    if (keep > 0) {
+        memcpy(data, memory->data, keep);
+    }
+    if (memory->raw) {
+        se3di_free(allocator, memory->raw, memory->bytes + ALIGNMENT, 1);
+    }
+    *memory = (se3di_aligned){data, raw, bytes};
+    return SE3D_OK;
+}
+
+static void aligned_free(const se3d_allocator *allocator, se3di_aligned *memory)
+{
+    if (memory->raw) {
+        se3di_free(allocator, memory->raw, memory->bytes + ALIGNMENT, 1);
+    }
+    *memory = (se3di_aligned){NULL, NULL, 0};
+}
+
+void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator, uint32_t salt)
+{
+    memset(set, 0, sizeof *set);
+    set->allocator = *allocator;
+    set->threads = 1;
+    set->skin_ratio = 0.1;
+    set->overlap_limit = 0.2;
+    se3di_slots_init(&set->material_slots, salt);
+    se3di_slots_init(&set->wall_slots, salt);
+    set->kernels = se3di_particle_kernels_portable();
+}
+
+void se3di_particles_destroy(se3di_particles *set)
+{
+    const se3d_allocator *a = &set->allocator;
+    se3di_slots_destroy(&set->material_slots, a);
+    se3di_slots_destroy(&set->wall_slots, a);
+    se3di_free(a, set->materials, set->material_capacity, sizeof *set->materials);
+    se3di_free(a, set->overrides, set->override_capacity, sizeof *set->overrides);
+    se3di_free(a, set->pairs, set->pair_capacity, sizeof *set->pairs);
+    se3di_free(a, set->walls, set->wall_capacity, sizeof *set->walls);
+    aligned_free(a, &set->grain_memory);
+    aligned_free(a, &set->spin_memory);
+    aligned_free(a, &set->load_memory);
+    aligned_free(a, &set->block_memory);
+    aligned_free(a, &set->roll_memory);
+    se3di_free(a, set->origin, 3 * set->capacity, sizeof(double));
+    se3di_free(a, set->order, set->capacity, sizeof *set->order);
+    se3di_free(a, set->key, set->capacity, sizeof *set->key);
+    se3di_free(a, set->index_of, set->index_capacity, sizeof *set->index_of);
+    se3di_free(a, set->cells, set->cell_capacity, sizeof *set->cells);
+    se3di_free(a, set->first, set->first_capacity, sizeof *set->first);
+    se3di_free(a, set->list, set->list_capacity, sizeof *set->list);
+    se3di_free(a, set->near_walls, set->near_capacity, sizeof *set->near_walls);
+    se3di_free(a, set->carry, set->carry_capacity, sizeof *set->carry);
+    se3di_free(a, set->carry_roll, set->carry_roll_capacity, sizeof(double));
+    se3di_free(a, set->carry_next, set->carry_next_capacity, sizeof *set->carry_next);
+    se3di_free(a, set->wall_sums, set->wall_sum_capacity, sizeof(double));
+    se3d_allocator allocator = set->allocator;
+    memset(set, 0, sizeof *set);
+    set->allocator = allocator;
+}
+
+static size_t block_bytes(const se3di_particles *set)
+{
+    return set->block_count * sizeof *set->blocks;
+}
+
+static size_t roll_bytes(const se3di_particles *set)
+{
+    return set->roll_memory.bytes > 0 ? set->block_count * sizeof *set->rolls : 0;
+}
+
+size_t se3di_particles_memory(const se3di_particles *set)
+{
+    return set->grain_memory.bytes + set->spin_memory.bytes + set->load_memory.bytes +
+           set->block_memory.bytes + set->roll_memory.bytes +
+           set->capacity * (3 * sizeof(double) + 2 * sizeof(uint32_t)) +
+           sizeof(uint32_t) * (set->index_capacity + set->cell_capacity + set->first_capacity +
+                               set->list_capacity + set->near_capacity + set->carry_next_capacity) +
+           set->carry_capacity * sizeof *set->carry +
+           sizeof(double) * (set->carry_roll_capacity + set->wall_sum_capacity) +
+           set->wall_capacity * sizeof *set->walls + sizeof *set;
+}
+
+/* An array of exactly `count` elements of which `keep` stay in *to; on failure *to is NULL. */
+static se3d_status resize(const se3d_allocator *a, void **to, const void *old, size_t keep,
+                          size_t count, size_t size)
+{
+    *to = NULL;
+    if (count == 0) {
+        return SE3D_OK;
+    }
+    *to = se3di_alloc(a, count, size);
+    if (!*to) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    if (keep > 0) {
+        memcpy(*to, old, keep * size);
+    }
+    return SE3D_OK;
+}
+
+static void set_dummy(se3di_particles *set)
+{
+    set->grains[set->capacity] = (se3di_grain){.inverse_mass = 1.0};
+}
+
+static se3d_status reserve_records(se3di_particles *set, size_t count)
+{
+    const se3d_allocator *a = &set->allocator;
+    size_t n = set->count;
+    se3d_status status = se3di_aligned_reserve(
+        a, &set->grain_memory, (count + 1) * sizeof(se3di_grain), n * sizeof(se3di_grain));
+    set->grains = set->grain_memory.data;
+    SE3DI_TRY(status);
+    status = se3di_aligned_reserve(a, &set->spin_memory, (count + 1) * sizeof(se3di_spin),
+                                   n * sizeof(se3di_spin));
+    set->spins = set->spin_memory.data;
+    SE3DI_TRY(status);
+    status = se3di_aligned_reserve(a, &set->load_memory, (count + 1) * sizeof(se3di_load),
+                                   n * sizeof(se3di_load));
+    set->loads = set->load_memory.data;
+    return status;
+}
+
+static se3d_status reserve_arrays(se3di_particles *set, size_t count)
+{
+    const se3d_allocator *a = &set->allocator;
+    void *origin = NULL;
+    void *order = NULL;
+    void *key = NULL;
+    int failed = resize(a, &origin, NULL, 0, 3 * count, sizeof(double)) < 0 ||
+                 resize(a, &order, NULL, 0, count, sizeof(uint32_t)) < 0 ||
+                 resize(a, &key, NULL, 0, count, sizeof(uint32_t)) < 0 ||
+                 reserve_records(set, count) < 0;
+    if (failed) {
+        se3di_free(a, origin, 3 * count, sizeof(double));
+        se3di_free(a, order, count, sizeof(uint32_t));
+        se3di_free(a, key, count, sizeof(uint32_t));
+        return SE3D_ERR_NO_MEMORY;
+    }
+    se3di_free(a, set->origin, 3 * set->capacity, sizeof(double));
+    se3di_free(a, set->order, set->capacity, sizeof(uint32_t));
+    se3di_free(a, set->key, set->capacity, sizeof(uint32_t));
+    set->origin = origin;
+    set->order = order;
+    set->key = key;
+    set->capacity = count;
+    set_dummy(set);
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_reserve(se3di_particles *set, size_t count)
+{
+    if (count >= SE3DI_CARRY_WALL) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    size_t fresh = count > set->count ? count - set->count : 0;
+    size_t ids = set->id_count + fresh;
+    if (ids > set->index_capacity) {
+        void *index_of;
+        SE3DI_TRY(resize(&set->allocator, &index_of, set->index_of, set->id_count, ids,
+                         sizeof *set->index_of));
+        se3di_free(&set->allocator, set->index_of, set->index_capacity, sizeof *set->index_of);
+        set->index_of = index_of;
+        set->index_capacity = ids;
+    }
+    SE3DI_TRY(se3di_particles_collect(set));
+    return count <= set->capacity ? SE3D_OK : reserve_arrays(set, count);
+}
+
+uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double radius,
+                                const double x[3], const double v[3], const double w[3])
+{
+    static const double rest[3] = {0.0, 0.0, 0.0};
+    const double pi = 3.1415926535897932384626433832795;
+    double mass = set->materials[material].density * (4.0 / 3.0 * pi * radius * radius * radius);
+    size_t k = set->count++;
+    uint32_t id = (uint32_t)set->id_count++;
+    set->grains[k] = (se3di_grain){.radius = radius, .inverse_mass = 1.0 / mass};
+    memcpy(set->grains[k].x, x, sizeof set->grains[k].x);
+    memcpy(set->grains[k].v, v ? v : rest, sizeof set->grains[k].v);
+    set->spins[k] = (se3di_spin){.material = material, .id = id};
+    memcpy(set->spins[k].w, w ? w : rest, sizeof set->spins[k].w);
+    set->loads[k] = (se3di_load){{0.0}, {0.0}};
+    set->index_of[id] = (uint32_t)k;
+    set->force_valid = 0;
+    return id;
+}
+
+void se3di_particles_filter(se3di_particles *set, const unsigned char *keep)
+{
+    size_t to = 0;
+    for (size_t k = 0; k < set->count; ++k) {
+        if (!keep[k]) {
+            set->index_of[set->spins[k].id] = SE3DI_NO_INDEX;
+            set->order[k] = SE3DI_NO_INDEX;
+            continue;
+        }
+        set->order[k] = (uint32_t)to;
+        set->grains[to] = set->grains[k];
+        set->spins[to] = set->spins[k];
+        set->loads[to] = set->loads[k];
+        set->index_of[set->spins[to].id] = (uint32_t)to;
+        ++to;
+    }
+    set->count = to;
+    se3di_particles_remap(set, set->order);
+}
+
+/* Fill the table of pairs from the materials and what the user said of pairs. */
+static void mix(se3di_particles *set)
+{
+    size_t n = set->material_slots.count;
+    set->rolling = 0;
+    for (size_t a = 0; a < n; ++a) {
+        for (size_t b = 0; b <= a; ++b) {
+            se3di_pair *pair = &set->pairs[a * n + b];
+            se3di_pair_mix(set->law, &set->materials[a], &set->materials[b],
+                           &set->overrides[a * n + b], pair);
+            set->pairs[b * n + a] = *pair;
+            set->rolling |= pair->rolling > 0.0 || pair->torsion > 0.0;
+        }
+    }
+    set->force_valid = 0;
+}
+
+se3d_status se3di_particles_add_material(se3di_particles *set, const se3di_material *material,
+                                         se3di_handle *handle)
+{
+    const se3d_allocator *a = &set->allocator;
+    size_t n = set->material_slots.count;
+    size_t m = n + 1;
+    void *memory = set->materials;
+    SE3DI_TRY(se3di_particles_collect(set)); /* rolling may begin */
+    SE3DI_TRY(se3di_slots_reserve(&set->material_slots, a));
+    se3d_status status =
+        se3di_array_reserve(a, &memory, &set->material_capacity, m, sizeof *set->materials);
+    set->materials = memory;
+    SE3DI_TRY(status);
+    memory = set->pairs;
+    status = se3di_array_reserve(a, &memory, &set->pair_capacity, m * m, sizeof *set->pairs);
+    set->pairs = memory;
+    SE3DI_TRY(status);
+    memory = set->overrides;
+    status =
+        se3di_array_reserve(a, &memory, &set->override_capacity, m * m, sizeof *set->overrides);
+    set->overrides = memory;
+    SE3DI_TRY(status);
+    for (size_t k = m * m; k-- > 0;) { /* rows become longer, from the last one on */
+        const se3di_override none = {-1.0, -1.0, -1.0, -1.0, -1.0};
+        size_t row = k / m;
+        size_t column = k % m;
+        set->overrides[k] = row < n && column < n ? set->overrides[row * n + column] : none;
+    }
+    *handle = se3di_slots_add(&set->material_slots);
+    set->materials[n] = *material;
+    mix(set);
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_set_override(se3di_particles *set, uint32_t a, uint32_t b,
+                                         const se3di_override *over)
+{
+    SE3DI_TRY(se3di_particles_collect(set));
+    size_t n = set->material_slots.count;
+    set->overrides[a * n + b] = *over;
+    set->overrides[b * n + a] = *over;
+    mix(set);
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_add_wall(se3di_particles *set, const se3di_wall *wall,
+                                     se3di_handle *handle)
+{
+    SE3DI_TRY(se3di_slots_reserve(&set->wall_slots, &set->allocator));
+    void *memory = set->walls;
+    se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->wall_capacity,
+                                             set->wall_slots.count + 1, sizeof *set->walls);
+    set->walls = memory;
+    SE3DI_TRY(status);
+    SE3DI_TRY(se3di_particles_collect(set));
+    *handle = se3di_slots_add(&set->wall_slots);
+    set->walls[set->wall_slots.count - 1] = *wall;
+    set->force_valid = 0;
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_remove_wall(se3di_particles *set, uint32_t wall)
+{
+    SE3DI_TRY(se3di_particles_collect(set));
+    size_t kept = 0;
+    for (size_t k = 0; k < set->carry_count; ++k) {
+        se3di_carry entry = set->carry[k];
+        if (entry.j == (SE3DI_CARRY_WALL | wall)) {
+            continue;
+        }
+        entry.j -= entry.j > (SE3DI_CARRY_WALL | wall) ? 1u : 0u;
+        set->carry[kept] = entry;
+        if (set->carry_rolling) {
+            memmove(set->carry_roll + 4 * kept, set->carry_roll + 4 * k, 4 * sizeof(double));
+        }
+        ++kept;
+    }
+    set->carry_count = kept;
+    size_t count = set->wall_slots.count;
+    memmove(set->walls + wall, set->walls + wall + 1, (count - wall - 1) * sizeof *set->walls);
+    se3di_slots_remove(&set->wall_slots, wall);
+    set->force_valid = 0;
+    return SE3D_OK;
+}
+
+/* Copies of all arrays, so that the copy continues with the same bits. */
+static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
+{
+    const struct {
+        void *to;
+        const void *from;
+        size_t count, size;
+    } parts[] = {
+        {&to->origin, from->origin, 3 * from->capacity, sizeof(double)},
+        {&to->order, from->order, from->capacity, sizeof(uint32_t)},
+        {&to->key, from->key, from->capacity, sizeof(uint32_t)},
+        {&to->index_of, from->index_of, from->index_capacity, sizeof(uint32_t)},
+        {&to->cells, from->cells, from->cell_capacity, sizeof(uint32_t)},
+        {&to->first, from->first, from->first_capacity, sizeof(uint32_t)},
+        {&to->list, from->list, from->list_capacity, sizeof(uint32_t)},
+        {&to->near_walls, from->near_walls, from->near_capacity, sizeof(uint32_t)},
+        {&to->carry, from->carry, from->carry_capacity, sizeof(se3di_carry)},
+        {&to->carry_next, from->carry_next, from->carry_next_capacity, sizeof(uint32_t)},
+        {&to->carry_roll, from->carry_roll, from->carry_roll_capacity, sizeof(double)},
+        {&to->wall_sums, from->wall_sums, from->wall_sum_capacity, sizeof(double)},
+        {&to->materials, from->materials, from->material_capacity, sizeof(se3di_material)},
+        {&to->overrides, from->overrides, from->override_capacity, sizeof(se3di_override)},
+        {&to->pairs, from->pairs, from->pair_capacity, sizeof(se3di_pair)},
+        {&to->walls, from->walls, from->wall_capacity, sizeof(se3di_wall)},
+    };
+    se3d_status status = SE3D_OK;
+    for (size_t k = 0; k < sizeof parts / sizeof parts[0]; ++k) {
+        void *memory;
+        se3d_status here = resize(&from->allocator, &memory, parts[k].from, parts[k].count,
+                                  parts[k].count, parts[k].size);
+        memcpy(parts[k].to, &memory, sizeof memory); /* every pointer is written, NULL included */
+        status = here < 0 ? here : status;
+    }
+    return status;
+}
+
+static se3d_status copy_aligned(const se3di_particles *from, se3di_particles *to)
+{
+    const struct {
+        const se3di_aligned *from;
+        se3di_aligned *to;
+        size_t used;
+    } parts[] = {
+        {&from->grain_memory, &to->grain_memory, from->count * sizeof *from->grains},
+        {&from->spin_memory, &to->spin_memory, from->count * sizeof *from->spins},
+        {&from->load_memory, &to->load_memory, from->count * sizeof *from->loads},
+        {&from->block_memory, &to->block_memory, block_bytes(from)},
+        {&from->roll_memory, &to->roll_memory, roll_bytes(from)},
+    };
+    for (size_t k = 0; k < sizeof parts / sizeof parts[0]; ++k) {
+        SE3DI_TRY(se3di_aligned_reserve(&from->allocator, parts[k].to, parts[k].from->bytes, 0));
+        if (parts[k].used > 0) {
+            memcpy(parts[k].to->data, parts[k].from->data, parts[k].used);
+        }
+    }
+    to->grains = to->grain_memory.data;
+    to->spins = to->spin_memory.data;
+    to->loads = to->load_memory.data;
+    to->blocks = to->block_memory.data;
+    to->rolls = to->roll_memory.data;
+    if (to->grains) {
+        set_dummy(to);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *copy)
+{
+    const se3di_aligned none = {NULL, NULL, 0};
+    *copy = *set;
+    copy->material_slots = copy->wall_slots = (se3di_slots){.salt = 0};
+    copy->grain_memory = copy->spin_memory = copy->load_memory = none;
+    copy->block_memory = copy->roll_memory = none;
+    copy->grains = NULL;
+    copy->spins = NULL;
+    copy->loads = NULL;
+    se3d_status status = copy_arrays(set, copy);
+    if (status == SE3D_OK) {
+        status = copy_aligned(set, copy);
+    }
+    if (status == SE3D_OK) {
+        status = se3di_slots_clone(&set->material_slots, &set->allocator, &copy->material_slots);
+    }
+    if (status == SE3D_OK) {
+        status = se3di_slots_clone(&set->wall_slots, &set->allocator, &copy->wall_slots);
+    }
+    if (status < 0) {
+        se3di_particles_destroy(copy);
+    }
+    return status;
+}

@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Particles: spheres in bulk, their walls, neighbours and contacts.        docs/theory/particles.md
+ *
+ * Particles are sorted by slab (a slice along the longest axis), size class and cell. A slab's
+ * contacts touch particles of this and of the next slab only, so that all even slabs, then all odd
+ * slabs, may be worked on at the same time: every particle receives its forces in the same order
+ * for any number of threads.
+ *
+ * Two lists: `list`, per particle the partners nearer than `skin`, rebuilt when something may have
+ * moved by half of it; and blocks of active pairs, those nearer than `near` (a small part of
+ * the skin, chosen by the speed), which carry the history of the tangential springs beside the
+ * indices, and are what the force kernels read. */
+#ifndef SE3DI_CONTACT_PARTICLE_SET_H
+#define SE3DI_CONTACT_PARTICLE_SET_H
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "base/slots.h"
+#include "contact/law.h"
+#include "model/model.h"
+
+#define SE3DI_GRAIN_LANES     8  /* pairs of a block */
+#define SE3DI_GRAIN_CLASSES   12 /* size classes: each twice the radius of the one before */
+#define SE3DI_GRAIN_SLABS_MAX 64
+
+/* One cache line: what nearly every pass reads. */
+typedef struct se3di_grain {
+    double x[3], radius;
+    double v[3], inverse_mass;
+} se3di_grain;
+
+typedef struct se3di_spin {
+    double w[3]; /* ground frame: the same as the body frame for a sphere */
+    uint32_t material;
+    uint32_t id;
+} se3di_spin;
+
+typedef struct se3di_load {
+    double force[4], torque[4]; /* [3]: unused */
+} se3di_load;
+
+/* Pairs i, j (force on i along x_i - x_j); unused lanes are i = j = capacity, a particle that
+ * nothing touches. Walls: j[0] is the wall. */
+typedef struct se3di_block {
+    uint32_t i[SE3DI_GRAIN_LANES], j[SE3DI_GRAIN_LANES];
+    double xi[3][SE3DI_GRAIN_LANES]; /* displacement of i relative to j while touching */
+} se3di_block;
+
+/* Rolling displacement [0..2] and twist [3], beside a block where a material resists rolling. */
+typedef struct se3di_roll {
+    double rho[4][SE3DI_GRAIN_LANES];
+} se3di_roll;
+
+/* History on its way from one list to the next. */
+typedef struct se3di_carry {
+    uint32_t i, j; /* j >= SE3DI_CARRY_WALL: a wall */
+    double xi[3];
+} se3di_carry; /* of i, in a chain that starts at carry_first[i] */
+
+#define SE3DI_CARRY_WALL 0x80000000u
+
+typedef enum se3di_wall_kind { SE3DI_WALL_PLANE = 0, SE3DI_WALL_BOX = 1 } se3di_wall_kind;
+
+typedef struct se3di_wall {
+    int32_t kind;
+    uint32_t material;
+    uint32_t body;             /* dense index in the model */
+    uint32_t user;             /* free for the public layer */
+    double point[3];           /* body frame; box: its centre */
+    double A[9];               /* wall -> body; a plane's normal is the third column */
+    double half[3];            /* box */
+    double x[3], R[9];         /* present pose, ground frame */
+    double v[3], w[3], c[3];   /* velocity of its body, ground frame; the body's centre of mass */
+    double old_x[3], old_R[9]; /* pose where the list was built */
+    double near_x[3], near_R[9];
+    double force[3], torque[3]; /* on the body, about its centre of mass, last evaluation */
+} se3di_wall;
+
+typedef struct se3di_slab {
+    uint32_t begin, end;           /* particles */
+    uint32_t pair_begin, pair_end; /* blocks */
+    uint32_t wall_begin, wall_end; /* blocks of walls */
+    uint32_t near_begin, near_end; /* candidates of walls */
+    double overlap;                /* largest excess over what is allowed */
+    uint64_t touching;
+} se3di_slab;
+
+/* Memory with an address that is a multiple of 64. */
+typedef struct se3di_aligned {
+    void *data;
+    void *raw;
+    size_t bytes;
+} se3di_aligned;
+
+typedef enum se3di_boundary {
+    SE3DI_BOUNDARY_OPEN = 0,
+    SE3DI_BOUNDARY_PERIODIC = 1,
+    SE3DI_BOUNDARY_SINK = 2
+} se3di_boundary;
+
+typedef struct se3di_kernels se3di_kernels;
+
+typedef struct se3di_particles {
+    se3d_allocator allocator;
+    se3di_law law;
+    int32_t threads; /* 0: all */
+    int32_t portable;
+    int32_t boundary[3];
+    int32_t rolling;     /* any material resists */
+    int32_t list_valid;  /* the lists belong to the particles */
+    int32_t force_valid; /* the forces belong to the state */
+    double lower[3], upper[3];
+    double skin_ratio;    /* of the mean diameter */
+    double overlap_limit; /* of the smaller radius */
+    double step;          /* 0: automatic */
+    double time;
+    double gravity[3];
+
+    se3di_slots material_slots;
+    se3di_material *materials;
+    size_t material_capacity;
+    se3di_override *overrides; /* [materials * materials] */
+    se3di_pair *pairs;         /* [materials * materials] */
+    size_t pair_capacity, override_capacity;
+
+    se3di_slots wall_slots;
+    se3di_wall *walls;
+    size_t wall_capacity;
+
+    size_t count, capacity; /* capacity + 1 records: the last is the unused lane's partner */
+    se3di_aligned grain_memory, spin_memory, load_memory;
+    se3di_grain *grains;
+    se3di_spin *spins;
+    se3di_load *loads;
+    double *origin;     /* [3 * capacity] positions where the list was built */
+    uint32_t *index_of; /* id -> index, SE3DI_NO_INDEX: gone */
+    size_t id_count, index_capacity;
+    uint32_t *order; /* [capacity] scratch of sorting */
+    uint32_t *key;   /* [capacity] */
+
+    /* grid and lists */
+    double skin, near;
+    double low[3], high[3]; /* the box of all centres where the list was built */
+    uint32_t *cells;        /* first particle of each cell, over all slabs and classes */
+    size_t cell_capacity;
+    uint32_t *first; /* [count + 1] into list */
+    size_t first_capacity;
+    uint32_t *list;
+    size_t list_count, list_capacity;
+    se3di_slab slabs[SE3DI_GRAIN_SLABS_MAX];
+    uint32_t slab_count;
+    se3di_aligned block_memory, roll_memory;
+    se3di_block *blocks;
+    se3di_roll *rolls;
+    uint32_t block_count;
+    uint32_t *near_walls; /* pairs (particle, wall): candidates, by slab and wall */
+    size_t near_count, near_capacity;
+    se3di_carry *carry;
+    double *carry_roll; /* [4 * carry] where rolling */
+    uint32_t *carry_next;
+    size_t carry_count, carry_capacity, carry_roll_capacity, carry_next_capacity;
+    int32_t carry_rolling; /* carry_roll has been filled */
+    int32_t uniform;       /* one material, one radius */
+    double *wall_sums;     /* [slabs * walls * 6] */
+    size_t wall_sum_capacity;
+
+    /* motion since the lists were built */
+    double pace;       /* largest distance of the last drift */
+    double moved;      /* bound on what a particle moved since the list was built */
+    double moved_near; /* the same at the building of the active blocks */
+
+    /* what is told */
+    uint64_t steps, rebuilds, refreshes, lost;
+    uint64_t touching;
+    uint32_t failed;      /* id of the particle that a failure names */
+    double failed_amount; /* its overlap over the smaller radius */
+    const se3di_kernels *kernels;
+} se3di_particles;
+
+/* What a force kernel works on. */
+typedef struct se3di_force_task {
+    const se3di_grain *grains;
+    const se3di_spin *spins;
+    se3di_load *loads;
+    se3di_block *blocks;
+    se3di_roll *rolls; /* NULL: no rolling resistance */
+    const se3di_pair *pairs;
+    const se3di_wall *walls;
+    uint32_t materials;
+    uint32_t begin, end; /* blocks */
+    int32_t law, periodic, uniform;
+    double h;                  /* what the springs advance by */
+    double length[3], rate[3]; /* of the period and its inverse; 0: none */
+    double limit;              /* allowed overlap over the smaller radius */
+    double overlap;            /* out: largest excess, starts at the caller's value */
+    uint64_t touching;         /* out: added to */
+    double *wall_sums;         /* walls: [walls * 6], added to */
+} se3di_force_task;
+
+struct se3di_kernels {
+    const char *name;
+    void (*pairs)(se3di_force_task *task);
+    void (*walls)(se3di_force_task *task);
+};
+
+/* NULL where the machine has not these instructions. */
+const se3di_kernels *se3di_particle_kernels_portable(void);
+const se3di_kernels *se3di_particle_kernels_avx2(void);
+const se3di_kernels *se3di_particle_kernels_avx512(void);
+
+/* particle_set.c: life time and editing. All-or-nothing; NO_MEMORY is the only failure. */
+void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator, uint32_t salt);
+void se3di_particles_destroy(se3di_particles *set);
+/* Deep copy into the uninitialised `copy`; on failure nothing is held. */
+se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *copy);
+se3d_status se3di_particles_reserve(se3di_particles *set, size_t count);
+/* Append; room must have been reserved. Returns the id. */
+uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double radius,
+                                const double x[3], const double v[3], const double w[3]);
+/* Remove where keep[index] is 0; the order of the others stays. The history must have been
+ * collected. */
+void se3di_particles_filter(se3di_particles *set, const unsigned char *keep);
+se3d_status se3di_particles_add_material(se3di_particles *set, const se3di_material *material,
+                                         se3di_handle *handle);
+se3d_status se3di_particles_set_override(se3di_particles *set, uint32_t a, uint32_t b,
+                                         const se3di_override *over);
+se3d_status se3di_particles_add_wall(se3di_particles *set, const se3di_wall *wall,
+                                     se3di_handle *handle);
+se3d_status se3di_particles_remove_wall(se3di_particles *set, uint32_t wall);
+/* Grow an aligned block to hold `bytes`, keeping the first `keep` bytes. */
+se3d_status se3di_aligned_reserve(const se3d_allocator *allocator, se3di_aligned *memory,
+                                  size_t bytes, size_t keep);
+size_t se3di_particles_memory(const se3di_particles *set);
+
+/* particle_grid.c, particle_list.c: neighbours. */
+se3d_status se3di_particles_rebuild(se3di_particles *set); /* sort, list, active blocks */
+se3d_status se3di_particles_refresh(se3di_particles *set); /* active blocks from the list */
+/* Take the history out of the blocks; the lists are invalid then. */
+se3d_status se3di_particles_collect(se3di_particles *set);
+/* What was collected now belongs to particles of other indices (SE3DI_NO_INDEX: gone). */
+void se3di_particles_remap(se3di_particles *set, const uint32_t *new_index);
+/* Active blocks from the list and what was collected. */
+se3d_status se3di_particles_activate(se3di_particles *set);
+/* Candidates of walls. */
+se3d_status se3di_particles_list_walls(se3di_particles *set);
+/* Grow an array to hold `needed` elements, by an eighth at least. */
+se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, size_t *capacity,
+                                 size_t needed);
+/* The vector between centres, to the nearest image. */
+void se3di_particles_wrap(const se3di_particles *set, double d[3]);
+double se3di_wall_distance(const se3di_wall *wall, const double x[3]);
+
+/* particle_step.c: motion. frames may be NULL where no wall is on a body that moves. */
+void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames);
+/* Half kick of duration h/2 from the present forces and gravity. */
+void se3di_particles_kick(se3di_particles *set, double h);
+void se3di_particles_drift(se3di_particles *set, double h);
+/* Bring the lists up to date, evaluate all forces; springs advance by h (0: they stay). */
+se3d_status se3di_particles_forces(se3di_particles *set, double h);
+/* The automatic step. Infinite where there is nothing to resolve. */
+double se3di_particles_safe_step(const se3di_particles *set);
+/* One step of velocity Verlet; frames move the walls (NULL: they stay). */
+se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps,
+                                    const se3di_frame *frames);
+uint64_t se3di_particles_hash(const se3di_particles *set);
+
+#endif

@@ -1,0 +1,397 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Motion of particles: velocity Verlet with kick and drift in one pass, and the evaluation of all
+ * forces, slab by slab. Every particle gets its forces in the same order for any number of threads:
+ * from an even slab before an odd one.                                 docs/theory/particles.md */
+#include "contact/particle_set.h"
+
+#include "base/hash.h"
+
+#include <math.h>
+#include <string.h>
+
+void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames)
+{
+    for (size_t k = 0; k < set->wall_slots.count; ++k) {
+        se3di_wall *wall = &set->walls[k];
+        const se3di_frame *frame = &frames[wall->body];
+        const double *A = frame->A;
+        for (int a = 0; a < 3; ++a) {
+            const double *row = A + 3 * a;
+            wall->c[a] = frame->r[a];
+            wall->v[a] = frame->v[a];
+            wall->x[a] = frame->r[a] + row[0] * wall->point[0] + row[1] * wall->point[1] +
+                         row[2] * wall->point[2];
+            wall->w[a] = row[0] * frame->w[0] + row[1] * frame->w[1] + row[2] * frame->w[2];
+            for (int b = 0; b < 3; ++b) {
+                wall->R[3 * a + b] =
+                    row[0] * wall->A[b] + row[1] * wall->A[3 + b] + row[2] * wall->A[6 + b];
+            }
+        }
+    }
+}
+
+/* One pass over particles [begin, end): `kicks` half kicks of h/2 (0, 1 or 2), then a drift by
+ * `drift`; a drift zeroes the loads. Returns the largest squared speed, NaN where one is NaN. */
+static double pass_range(se3di_particles *set, size_t begin, size_t end, int kicks,
+                         const double h[2])
+{
+    double fastest = 0.0;
+    for (size_t k = begin; k < end; ++k) {
+        se3di_grain *grain = &set->grains[k];
+        se3di_spin *spin = &set->spins[k];
+        se3di_load *load = &set->loads[k];
+        double turn = 2.5 * grain->inverse_mass / (grain->radius * grain->radius);
+        double v2 = 0.0;
+        for (int a = 0; a < 3; ++a) {
+            double dv = h[0] * (load->force[a] * grain->inverse_mass + set->gravity[a]);
+            double dw = h[0] * (load->torque[a] * turn);
+            for (int n = 0; n < kicks; ++n) {
+                grain->v[a] += dv;
+                spin->w[a] += dw;
+            }
+            v2 += grain->v[a] * grain->v[a];
+            grain->x[a] += h[1] * grain->v[a];
+        }
+        fastest = v2 <= fastest ? fastest : v2; /* NaN stays */
+        if (h[1] != 0.0) {
+            *load = (se3di_load){{0.0}, {0.0}};
+        }
+    }
+    return fastest;
+}
+
+static double larger(double a, double b)
+{
+    return b <= a || a != a ? a : b; /* NaN stays */
+}
+
+#define PASS_CHUNK 1024
+
+static void pass(se3di_particles *set, int kicks, double h, double drift)
+{
+    const double steps[2] = {0.5 * h, drift};
+    long chunks = (long)((set->count + PASS_CHUNK - 1) / PASS_CHUNK);
+    double fastest = 0.0;
+#ifdef _OPENMP
+#pragma omp parallel for if (set->threads > 1) num_threads(set->threads) schedule(static)
+#endif
+    for (long c = 0; c < chunks; ++c) {
+        size_t begin = (size_t)c * PASS_CHUNK;
+        size_t end = begin + PASS_CHUNK < set->count ? begin + PASS_CHUNK : set->count;
+        double here = pass_range(set, begin, end, kicks, steps);
+#ifdef _OPENMP
+#pragma omp critical(se3di_particles_pass)
+#endif
+        fastest = larger(fastest, here);
+    }
+    if (drift != 0.0) {
+        set->pace = sqrt(fastest) * fabs(drift);
+        set->moved += set->pace;
+        set->force_valid = 0;
+    }
+}
+
+void se3di_particles_kick(se3di_particles *set, double h)
+{
+    pass(set, 1, h, 0.0);
+}
+
+void se3di_particles_drift(se3di_particles *set, double h)
+{
+    pass(set, 0, 0.0, h);
+}
+
+/* The farthest that a wall's surface is from where it was, where particles may touch it. */
+static double wall_shift(const se3di_particles *set, const se3di_wall *wall, const double x[3],
+                         const double R[9])
+{
+    if (memcmp(x, wall->x, sizeof wall->x) == 0 && memcmp(R, wall->R, sizeof wall->R) == 0) {
+        return 0.0;
+    }
+    double most = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        double sum = 0.0;
+        double change = 0.0;
+        for (int a = 0; a < 3; ++a) {
+            double shift = wall->x[a] - x[a];
+            double p = corner >> a & 1 ? set->high[a] + set->skin : set->low[a] - set->skin;
+            change += wall->R[3 * a + 2] * (p - wall->x[a]) - R[3 * a + 2] * (p - x[a]);
+            for (int b = 0; b < 3; ++b) {
+                double half = corner >> b & 1 ? wall->half[b] : -wall->half[b];
+                shift += (wall->R[3 * a + b] - R[3 * a + b]) * half;
+            }
+            sum += shift * shift;
+        }
+        most = fmax(most, wall->kind == SE3DI_WALL_PLANE ? fabs(change) : sqrt(sum));
+    }
+    return most;
+}
+
+/* How much of the skin (of near) may have been used up: two particles, or one and a wall. */
+static void motion(const se3di_particles *set, double *since_list, double *since_near)
+{
+    double near = set->moved - set->moved_near;
+    *since_list = 2.0 * set->moved;
+    *since_near = 2.0 * near;
+    for (size_t k = 0; k < set->wall_slots.count; ++k) {
+        const se3di_wall *wall = &set->walls[k];
+        double far = wall_shift(set, wall, wall->old_x, wall->old_R);
+        double close = wall_shift(set, wall, wall->near_x, wall->near_R);
+        *since_list = larger(*since_list, set->moved + far);
+        *since_near = larger(*since_near, near + close);
+    }
+}
+
+/* The bound on the motion, replaced by the motion itself. */
+static void measure_motion(se3di_particles *set)
+{
+    double most = 0.0;
+    for (size_t k = 0; k < set->count; ++k) {
+        const double *x = set->grains[k].x;
+        const double *o = set->origin + 3 * k;
+        double d[3] = {x[0] - o[0], x[1] - o[1], x[2] - o[2]};
+        most = larger(most, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    }
+    set->moved = sqrt(most);
+}
+
+/* Lists that hold every pair that touches. */
+static se3d_status update_lists(se3di_particles *set)
+{
+    if (!set->list_valid) {
+        return se3di_particles_rebuild(set);
+    }
+    double since_list, since_near;
+    motion(set, &since_list, &since_near);
+    if (!(since_list < set->skin)) {
+        measure_motion(set);
+        motion(set, &since_list, &since_near);
+        return since_list < 0.8 * set->skin ? se3di_particles_refresh(set)
+                                            : se3di_particles_rebuild(set);
+    }
+    return since_near < set->near ? SE3D_OK : se3di_particles_refresh(set);
+}
+
+static void evaluate_slab(se3di_particles *set, se3di_force_task task, uint32_t s)
+{
+    se3di_slab *slab = &set->slabs[s];
+    size_t walls = set->wall_slots.count;
+    task.begin = slab->pair_begin;
+    task.end = slab->pair_end;
+    task.touching = 0;
+    set->kernels->pairs(&task);
+    task.begin = slab->wall_begin;
+    task.end = slab->wall_end;
+    task.wall_sums = set->wall_sums + 6 * walls * s;
+    if (walls > 0) {
+        memset(task.wall_sums, 0, 6 * walls * sizeof(double));
+        set->kernels->walls(&task);
+    }
+    slab->overlap = task.overlap;
+    slab->touching = task.touching;
+}
+
+/* All even slabs, then all odd ones; or, on one thread, in an order with the same results that
+ * passes memory once: 0 2 1 4 3 ... */
+static void evaluate_slabs(se3di_particles *set, const se3di_force_task *task)
+{
+    long slabs = (long)set->slab_count;
+    if (set->threads <= 1) {
+        for (long s = 0; s < slabs; s += 2) {
+            evaluate_slab(set, *task, (uint32_t)s);
+            if (s > 0) {
+                evaluate_slab(set, *task, (uint32_t)(s - 1));
+            }
+        }
+        if (slabs % 2 == 0 && slabs > 0) {
+            evaluate_slab(set, *task, (uint32_t)(slabs - 1));
+        }
+        return;
+    }
+    for (int odd = 0; odd < 2; ++odd) {
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(set->threads) schedule(dynamic)
+#endif
+        for (long s = odd; s < slabs; s += 2) {
+            evaluate_slab(set, *task, (uint32_t)s);
+        }
+    }
+}
+
+/* Which particle overlaps most, for the message of a failure. */
+static void find_overlap(se3di_particles *set)
+{
+    set->failed_amount = -1.0;
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        const se3di_slab *slab = &set->slabs[s];
+        for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
+            const se3di_block *block = &set->blocks[b];
+            for (int k = 0; k < SE3DI_GRAIN_LANES && block->i[k] < set->count; ++k) {
+                const se3di_grain *i = &set->grains[block->i[k]];
+                double amount;
+                if (b >= slab->wall_begin) {
+                    amount = 1.0 - se3di_wall_distance(&set->walls[block->j[0]], i->x) / i->radius;
+                } else {
+                    const se3di_grain *j = &set->grains[block->j[k]];
+                    double d[3] = {i->x[0] - j->x[0], i->x[1] - j->x[1], i->x[2] - j->x[2]};
+                    se3di_particles_wrap(set, d);
+                    double distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+                    amount = (i->radius + j->radius - distance) / fmin(i->radius, j->radius);
+                }
+                if (amount > set->failed_amount) {
+                    set->failed_amount = amount;
+                    set->failed = set->spins[block->i[k]].id;
+                }
+            }
+        }
+    }
+}
+
+static se3d_status find_not_finite(se3di_particles *set)
+{
+    for (size_t k = 0; k < set->count; ++k) {
+        const se3di_grain *g = &set->grains[k];
+        double sum = g->x[0] + g->x[1] + g->x[2] + g->v[0] + g->v[1] + g->v[2];
+        if (!isfinite(sum)) {
+            set->failed = set->spins[k].id;
+            set->failed_amount = 0.0;
+            return SE3D_ERR_NOT_FINITE;
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status reserve_sums(se3di_particles *set)
+{
+    size_t needed = 6 * set->wall_slots.count * SE3DI_GRAIN_SLABS_MAX;
+    void *memory = set->wall_sums;
+    se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->wall_sum_capacity,
+                                             needed, sizeof(double));
+    set->wall_sums = memory;
+    return status;
+}
+
+static void sum_walls(se3di_particles *set)
+{
+    size_t walls = set->wall_slots.count;
+    for (size_t w = 0; w < walls; ++w) {
+        double sum[6] = {0.0};
+        for (size_t s = 0; s < set->slab_count; ++s) {
+            for (int a = 0; a < 6; ++a) {
+                sum[a] += set->wall_sums[6 * (walls * s + w) + (size_t)a];
+            }
+        }
+        memcpy(set->walls[w].force, sum, 3 * sizeof(double));
+        memcpy(set->walls[w].torque, sum + 3, 3 * sizeof(double));
+    }
+}
+
+static se3di_force_task prepare(se3di_particles *set, double h)
+{
+    se3di_force_task task = {
+        .grains = set->grains,
+        .spins = set->spins,
+        .loads = set->loads,
+        .blocks = set->blocks,
+        .rolls = set->rolling ? set->rolls : NULL,
+        .pairs = set->pairs,
+        .walls = set->walls,
+        .materials = (uint32_t)set->material_slots.count,
+        .law = (int32_t)set->law,
+        .uniform = set->uniform,
+        .h = h,
+        .limit = set->overlap_limit,
+    };
+    for (int a = 0; a < 3; ++a) {
+        if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
+            task.periodic = 1;
+            task.length[a] = set->upper[a] - set->lower[a];
+            task.rate[a] = 1.0 / task.length[a];
+        }
+    }
+    return task;
+}
+
+se3d_status se3di_particles_forces(se3di_particles *set, double h)
+{
+    if (!isfinite(set->moved)) {
+        SE3DI_TRY(find_not_finite(set));
+    }
+    SE3DI_TRY(reserve_sums(set));
+    SE3DI_TRY(update_lists(set));
+    set->touching = 0;
+    set->force_valid = 1;
+    if (set->count == 0) {
+        return SE3D_OK;
+    }
+    se3di_force_task task = prepare(set, h);
+    evaluate_slabs(set, &task);
+    sum_walls(set);
+    double excess = 0.0;
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        excess = larger(excess, set->slabs[s].overlap);
+        set->touching += set->slabs[s].touching;
+    }
+    if (excess > 0.0) {
+        find_overlap(set);
+        return SE3D_ERR_STEP_SIZE;
+    }
+    return SE3D_OK;
+}
+
+double se3di_particles_safe_step(const se3di_particles *set)
+{
+    double step = HUGE_VAL;
+    size_t n = set->material_slots.count;
+    for (size_t a = 0; a < n; ++a) {
+        double lightest = HUGE_VAL;
+        double smallest = HUGE_VAL;
+        for (size_t k = 0; k < set->count; ++k) {
+            if (set->spins[k].material == a) {
+                lightest = fmin(lightest, 1.0 / set->grains[k].inverse_mass);
+                smallest = fmin(smallest, set->grains[k].radius);
+            }
+        }
+        for (size_t b = 0; b < n && smallest < HUGE_VAL; ++b) {
+            /* the other one may be as light: half of the mass */
+            step = fmin(step, se3di_pair_step(set->law, &set->materials[a], &set->pairs[a * n + b],
+                                              smallest, lightest, 0.5 * lightest));
+        }
+    }
+    return step;
+}
+
+se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps,
+                                    const se3di_frame *frames)
+{
+    if (frames) {
+        se3di_particles_move_walls(set, frames);
+    }
+    if (!set->force_valid) {
+        memset(set->load_memory.data, 0, set->count * sizeof(se3di_load));
+        SE3DI_TRY(se3di_particles_forces(set, 0.0));
+    }
+    for (size_t k = 0; k < steps; ++k) {
+        pass(set, k == 0 ? 1 : 2, h, h);
+        set->time += h;
+        ++set->steps;
+        SE3DI_TRY(se3di_particles_forces(set, h));
+    }
+    if (steps > 0) {
+        pass(set, 1, h, 0.0);
+    }
+    return find_not_finite(set);
+}
+
+uint64_t se3di_particles_hash(const se3di_particles *set)
+{
+    uint64_t hash = se3di_hash_bytes(SE3DI_HASH_START, &set->time, sizeof set->time);
+    for (size_t id = 0; id < set->id_count; ++id) {
+        uint32_t k = set->index_of[id];
+        if (k != SE3DI_NO_INDEX) {
+            hash = se3di_hash_bytes(hash, &set->grains[k], sizeof set->grains[k]);
+            hash = se3di_hash_bytes(hash, set->spins[k].w, sizeof set->spins[k].w);
+        }
+    }
+    return hash;
+}
