@@ -10,6 +10,7 @@
 
 #define TURN_MAX     0.3 /* rad a body may turn in one step, so that the branch is kept */
 #define HALVINGS_MAX 6
+#define STEPS_MAX    2e4 /* of one run; a motion that asks for more runs into a locked position */
 
 /* Poses at t + h on the parabola of the present velocities and accelerations. */
 static void predict(se3di_equations *equations, double h)
@@ -39,8 +40,10 @@ se3d_status se3di_kinematics_step(se3di_equations *equations, double h)
     return SE3D_OK;
 }
 
-/* Length of the next step: at most `step`, and no body turns by more than TURN_MAX. */
-static double choose_step(const se3di_equations *equations, double remaining, double step)
+/* Length of the next step: at most `step`, at least `shortest`, and no body turns by more than
+ * TURN_MAX. */
+static double choose_step(const se3di_equations *equations, double remaining, double step,
+                          double shortest)
 {
     const se3di_assembly *assembly = &equations->assembly;
     double h = step > 0.0 ? remaining / ceil(remaining / step - 1e-9) : remaining;
@@ -53,14 +56,16 @@ static double choose_step(const se3di_equations *equations, double remaining, do
             turn = fmax(turn, h * (fabs(w[c]) + 0.5 * h * fabs(wdot[c])));
         }
     }
-    return turn > TURN_MAX ? h / ceil(turn / TURN_MAX) : h;
+    double slow = turn > TURN_MAX ? h / ceil(turn / TURN_MAX) : h;
+    return fmin(remaining, fmax(slow, shortest));
 }
 
 se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, double step)
 {
     se3di_model *model = equations->assembly.model;
+    double shortest = (t_end - model->time) / STEPS_MAX;
     while (model->time < t_end) {
-        double h = choose_step(equations, t_end - model->time, step);
+        double h = choose_step(equations, t_end - model->time, step, shortest);
         se3di_state_accept(equations);
         int last = model->time + h * (1.0 + 1e-9) >= t_end;
         se3d_status status = SE3D_OK;
