@@ -2,6 +2,8 @@
 /* Numbering and pattern of the equations. */
 #include "assembly/assembly.h"
 
+#include "assembly/fused.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -73,7 +75,7 @@ typedef struct assembly_array {
     size_t count, size;
 } assembly_array;
 
-#define STRUCTURE_ARRAYS 7
+#define STRUCTURE_ARRAYS 9
 #define VALUE_ARRAYS     4
 
 static void list_structure(se3di_assembly *a, assembly_array list[STRUCTURE_ARRAYS])
@@ -86,6 +88,8 @@ static void list_structure(se3di_assembly *a, assembly_array list[STRUCTURE_ARRA
         {(void **)&a->joint_body, 2 * (size_t)a->place_count, sizeof *a->joint_body},
         {(void **)&a->places, a->place_count, sizeof *a->places},
         {(void **)&a->block_offset, 2 * (size_t)a->place_count, sizeof *a->block_offset},
+        {(void **)&a->is_fused, a->constraint_count, sizeof *a->is_fused},
+        {(void **)&a->timed_rows, a->row_count, sizeof *a->timed_rows},
     };
     memcpy(list, arrays, sizeof arrays);
 }
@@ -121,6 +125,21 @@ static void release(const se3d_allocator *allocator, assembly_array *arrays, int
     }
 }
 
+/* Rows that change with time, the values of the others, and joints that are evaluated as one. */
+static void sort_rows(se3di_assembly *assembly)
+{
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        const se3di_row *row = &assembly->model->rows[k];
+        assembly->f[3 * (size_t)k] = row->value;
+        if (row->function >= 0) {
+            assembly->timed_rows[assembly->timed_count++] = k;
+        }
+    }
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        assembly->is_fused[k] = (int8_t)se3di_fused_fits(assembly, k);
+    }
+}
+
 static se3d_status build(se3di_assembly *assembly)
 {
     const se3d_allocator *allocator = &assembly->model->allocator;
@@ -133,7 +152,9 @@ static se3d_status build(se3di_assembly *assembly)
     assembly->unknown_count = assembly->body_count * (uint32_t)assembly->formulation->block;
     place_blocks(assembly);
     list_values(assembly, values);
-    return allocate(allocator, values, VALUE_ARRAYS);
+    SE3DI_TRY(allocate(allocator, values, VALUE_ARRAYS));
+    sort_rows(assembly);
+    return SE3D_OK;
 }
 
 se3d_status se3di_assembly_init(se3di_assembly *assembly, se3di_model *model,

@@ -36,6 +36,9 @@ typedef struct se3di_assembly {
     size_t *block_offset;      /* of each block in C, indexed as joint_body */
     size_t joint_value_count;  /* doubles of C */
     se3di_term_place *places;  /* [terms] */
+    int8_t *is_fused;          /* [constraints]: evaluated by assembly/fused.h */
+    uint32_t *timed_rows;      /* rows with a function of time */
+    uint32_t timed_count;
     uint32_t constraint_count, place_count, dense_count, joint_body_count;
     double *H;      /* body blocks */
     double *C;      /* joint blocks */
@@ -56,6 +59,8 @@ void se3di_assembly_eval_phi(const se3di_assembly *assembly, double *phi);
 void se3di_assembly_eval_jacobian(se3di_assembly *assembly);
 /* gamma [rows]. */
 void se3di_assembly_eval_gamma(const se3di_assembly *assembly, double *gamma);
+/* Both, in one pass. */
+void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma);
 /* Mass blocks into H. */
 void se3di_assembly_eval_mass(se3di_assembly *assembly);
 /* Applied forces and velocity terms into b [unknowns]. */

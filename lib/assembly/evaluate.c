@@ -2,6 +2,7 @@
 /* Evaluation of the equations at the state of the model. */
 #include "assembly/assembly.h"
 
+#include "assembly/fused.h"
 #include "force/force.h"
 #include "primitive/turn_counter.h"
 
@@ -10,14 +11,10 @@
 se3d_status se3di_assembly_eval_functions(se3di_assembly *assembly, double t, se3di_error *error)
 {
     const se3di_model *model = assembly->model;
-    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+    for (uint32_t timed = 0; timed < assembly->timed_count; ++timed) {
+        uint32_t k = assembly->timed_rows[timed];
         const se3di_row *row = &model->rows[k];
-        double *jet = assembly->f + 3 * k;
-        if (row->function < 0) {
-            jet[0] = row->value;
-            jet[1] = jet[2] = 0.0;
-            continue;
-        }
+        double *jet = assembly->f + 3 * (size_t)k;
         se3d_status status = se3di_function_eval(&model->functions[row->function], &t, jet, NULL);
         if (status < 0) {
             char name[128];
@@ -77,25 +74,61 @@ static void eval_joint_jacobian(se3di_assembly *assembly, uint32_t joint)
     }
 }
 
+/* Blocks of one joint, term by term. */
+static void eval_joint(se3di_assembly *assembly, uint32_t joint)
+{
+    size_t begin = assembly->block_offset[assembly->joint_begin[joint]];
+    size_t count = (size_t)(assembly->joint_begin[joint + 1] - assembly->joint_begin[joint]) *
+                   (size_t)(assembly->joint_rows[joint] * assembly->formulation->block);
+    if (count > 0) {
+        memset(assembly->C + begin, 0, count * sizeof *assembly->C);
+    }
+    eval_joint_jacobian(assembly, joint);
+}
+
 void se3di_assembly_eval_jacobian(se3di_assembly *assembly)
 {
-    memset(assembly->C, 0, assembly->joint_value_count * sizeof *assembly->C);
     for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
-        eval_joint_jacobian(assembly, k);
+        if (assembly->is_fused[k]) {
+            se3di_fused_eval(assembly, k, NULL);
+        } else {
+            eval_joint(assembly, k);
+        }
     }
+}
+
+static double eval_row_gamma(const se3di_assembly *assembly, uint32_t k)
+{
+    const se3di_model *model = assembly->model;
+    const se3di_row *row = &model->rows[k];
+    double gamma = assembly->f[3 * (size_t)k + 2];
+    for (uint32_t t = 0; t < row->term_count; ++t) {
+        const se3di_term *term = &model->terms[row->term_begin + t];
+        gamma +=
+            term->coefficient * assembly->formulation->gamma(term, &model->frames[term->body_i],
+                                                             &model->frames[term->body_j]);
+    }
+    return gamma;
 }
 
 void se3di_assembly_eval_gamma(const se3di_assembly *assembly, double *gamma)
 {
-    const se3di_model *model = assembly->model;
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        const se3di_row *row = &model->rows[k];
-        gamma[k] = assembly->f[3 * k + 2];
-        for (uint32_t t = 0; t < row->term_count; ++t) {
-            const se3di_term *term = &model->terms[row->term_begin + t];
-            gamma[k] +=
-                term->coefficient * assembly->formulation->gamma(term, &model->frames[term->body_i],
-                                                                 &model->frames[term->body_j]);
+        gamma[k] = eval_row_gamma(assembly, k);
+    }
+}
+
+void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma)
+{
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        const se3di_constraint *constraint = &assembly->model->constraints[k];
+        if (assembly->is_fused[k]) {
+            se3di_fused_eval(assembly, k, gamma + constraint->row_begin);
+            continue;
+        }
+        eval_joint(assembly, k);
+        for (uint32_t r = 0; r < constraint->row_count; ++r) {
+            gamma[constraint->row_begin + r] = eval_row_gamma(assembly, constraint->row_begin + r);
         }
     }
 }

@@ -88,7 +88,8 @@ static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
         .sum3 = integration->work + (SE3DI_RK_MAX + 2) * count,
         .tolerance = inner_tolerance(integration->settings.tolerance),
     };
-    m.kkt = se3di_state_begin(m.equations, regularisation(m.tolerance));
+    m.kkt = se3di_state_begin(m.equations, regularisation(m.tolerance),
+                              fmin(1e-12, 1e-5 * m.tolerance));
     return m;
 }
 

@@ -18,10 +18,10 @@ static void copy(double *to, const double *from, size_t count)
     }
 }
 
-/* History: a_n [n], vdot_n [n], the step they belong to. */
+/* History: a_n [n], vdot_n [n], the step they belong to, whether rows are redundant. */
 size_t se3di_newmark_history_count(const se3di_assembly *assembly)
 {
-    return 2 * (size_t)assembly->unknown_count + 1;
+    return 2 * (size_t)assembly->unknown_count + 2;
 }
 
 /* Work: v_n, vdot, a, x [n]; lambda [rows]. */
@@ -108,6 +108,7 @@ se3d_status se3di_newmark_start(se3di_integration *integration, const se3di_newm
         a[k] = vdot[k] + (method->alpha_m - method->alpha_f) * h * a[k];
     }
     vdot[n] = h;
+    vdot[n + 1] = equations->redundant ? 1.0 : 0.0;
     memcpy(assembly->model->lambda, integration->work + 3 * (size_t)n,
            assembly->row_count * sizeof *equations->l);
     se3di_assembly_set_acceleration(assembly, vdot);
@@ -142,8 +143,7 @@ static void update_state(newmark_step *step)
 }
 
 /* b = Q + velocity terms - M vdot - Phi_q^T lambda, c = -beta' Phi, with M and Phi_q at the present
- * state. With redundant rows the iteration finds all of lambda anew: corrections of it would add up
- * rounding in the dependent directions. */
+ * state. */
 static se3d_status eval_residual(newmark_step *step)
 {
     se3di_equations *equations = step->equations;
@@ -152,9 +152,6 @@ static se3d_status eval_residual(newmark_step *step)
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_jacobian(assembly);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, step->t, equations->b, equations->error));
-    if (equations->redundant) {
-        memset(step->lambda, 0, assembly->row_count * sizeof *step->lambda);
-    }
     se3di_assembly_add_transposed(assembly, -1.0, step->lambda, equations->b);
     for (size_t k = 0; k < assembly->body_count; ++k) {
         const double *H = assembly->H + k * n * n;
@@ -246,6 +243,9 @@ static se3d_status iterate_to_convergence(newmark_step *step)
 {
     int32_t limit = step->integration->settings.iterations_max;
     int refactor = 1;
+    if (step->equations->redundant) { /* else rounding adds up in the dependent directions */
+        memset(step->lambda, 0, step->equations->assembly.row_count * sizeof *step->lambda);
+    }
     for (int32_t k = 0; k < limit; ++k) {
         SE3DI_TRY(iterate(step, refactor));
         if (has_converged(step)) {
@@ -330,6 +330,7 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
     uint32_t n = assembly->unknown_count;
     double *work = integration->work;
     rescale_history(assembly->model->history, n, h);
+    equations->redundant = assembly->model->history[2 * (size_t)n + 1] > 0.0;
     newmark_step step = {
         .method = method,
         .integration = integration,

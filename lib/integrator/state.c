@@ -48,11 +48,12 @@ void se3di_state_derivative(const se3di_assembly *assembly, const double *qddot,
     }
 }
 
-se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps)
+se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, double accuracy)
 {
     se3di_kkt_settings before = se3di_kkt_get_settings(equations->kkt);
     se3di_kkt_settings settings = before;
     settings.eps = settings.eps_min = eps;
+    settings.tolerance = fmax(settings.tolerance, accuracy);
     settings.max_refinements = 2;
     settings.always_check = false;
     se3di_kkt_set_settings(equations->kkt, &settings);
@@ -85,10 +86,9 @@ se3d_status se3di_state_evaluate(se3di_equations *equations, double t)
 {
     se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
-    se3di_assembly_eval_jacobian(assembly);
+    se3di_assembly_eval_rows(assembly, equations->c);
     SE3DI_TRY(factor(equations, t));
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
-    se3di_assembly_eval_gamma(assembly, equations->c);
     ++equations->counters.evaluations;
     return se3di_equations_solve(equations);
 }

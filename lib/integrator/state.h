@@ -29,7 +29,7 @@ void se3di_state_derivative(const se3di_assembly *assembly, const double *qddot,
  * acceleration is then a smooth function of the state: eps and the two refinements act as a filter,
  * (eps / (eps + sigma^2))^3 of a constraint direction of relative size sigma is not enforced, where
  * its multiplier has no leverage anyway; errors are amplified by eps^(-1/2) at most. */
-se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps);
+se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, double accuracy);
 void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *settings);
 /* Accelerations at the present frames into equations->x, multipliers into equations->l; without the
  * checks and records of se3di_acceleration_solve. */
