@@ -354,16 +354,38 @@ double se3di_position_measure(se3di_equations *equations, char *text, size_t siz
     return problem.worst;
 }
 
+/* ", the driver push locks", where a driver has a part in the gap. */
+static void describe_lock(const se3di_equations *equations, char *text, size_t size)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    double widest, total;
+    text[0] = '\0';
+    (void)find_widest(equations, &widest, &total);
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        const se3di_constraint *constraint = &assembly->model->constraints[k];
+        open_joint open = measure_joint(equations, constraint);
+        int takes_part = open.length > 1e-3 * widest && open.length > 0.0;
+        if (strcmp(constraint->type, "driver") == 0 && (takes_part || open.angle > 1e-9)) {
+            char name[100];
+            name_constraint(assembly->model, k, name, sizeof name);
+            snprintf(text, size, ", the driver %s asks for more than the mechanism reaches", name);
+            return;
+        }
+    }
+}
+
 static se3d_status report_gap(const position_problem *problem, double t, int stationary)
 {
     char gap[400];
     describe_gap(problem, gap, sizeof gap);
     if (stationary) {
+        char lock[180];
+        describe_lock(problem->equations, lock, sizeof lock);
         return se3di_error_set(
             problem->equations->error, SE3D_ERR_INCONSISTENT,
-            "t = %g s: the constraints cannot be met: %s at the least violation; "
+            "t = %g s: the constraints cannot be met: %s at the least violation%s; "
             "the mechanism is locked, over-constrained, or its parts do not reach",
-            t, gap);
+            t, gap, lock);
     }
     return se3di_error_set(
         problem->equations->error, SE3D_ERR_NO_CONVERGENCE,
