@@ -9,7 +9,11 @@ static void run_to(se3d_system *system, const support_analysis *row, int32_t for
 {
     se3d_solver *solver = NULL;
     CHECK(support_solver_create(system, row, formulation, &solver) == SE3D_OK);
-    CHECK(!SE3D_FAILED(se3d_solver_run(solver, t)));
+    se3d_status status = se3d_solver_run(solver, t);
+    if (status < 0) {
+        fprintf(stderr, "%s: %s\n", row->mechanism, se3d_system_get_error(system));
+    }
+    CHECK(status >= 0);
     se3d_solver_destroy(solver);
 }
 
