@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/explicit_rk.h"
 
+#include "force/force.h"
 #include "integrator/state.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -137,8 +138,7 @@ static void combine(const rk *m, const double *base, double h, const double *coe
 static se3d_status evaluate(rk *m, double t, double *derivative)
 {
     SE3DI_TRY(se3di_state_evaluate(m->equations, t));
-    se3di_state_derivative(m->assembly, m->equations->x, derivative);
-    return SE3D_OK;
+    return se3di_state_derivative(m->assembly, t, m->equations->x, m->equations->l, derivative);
 }
 
 static se3d_status evaluate_stage(rk *m, double t, double h, int stage)
@@ -152,7 +152,7 @@ static se3d_status evaluate_stage(rk *m, double t, double h, int stage)
 static double measure(const rk *m, const double *error)
 {
     double r = 0.0, p = 0.0, v = 0.0, w = 0.0;
-    for (size_t k = 0; k < m->count; k += SE3DI_STATE_SIZE) {
+    for (size_t k = 0; k + SE3DI_STATE_WORK < m->count; k += SE3DI_STATE_SIZE) {
         const double *e = error + k;
         double turn = e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6];
         double parts[4] = {se3di_dot(e, e), turn, se3di_dot(e + 7, e + 7),
@@ -217,10 +217,14 @@ static void accept(rk *m, double h)
     m->header[RK_T0] = m->header[RK_T1];
     m->header[RK_T1] += h;
     m->header[RK_DENSE] = 0.0;
+    size_t work = m->count - SE3DI_STATE_WORK;
+    memcpy(m->y, m->y + work, SE3DI_STATE_WORK * sizeof *m->y); /* y_1 before the projection */
     se3di_state_get(m->assembly, m->y1);
+    memcpy(m->y1 + work, m->y, SE3DI_STATE_WORK * sizeof *m->y);
     memcpy(m->f1, m->K + (size_t)m->tableau->stages * m->count, m->count * sizeof *m->f1);
     grow_scale(m, m->f1);
     se3di_angles_accept(m->assembly->model);
+    se3di_forces_accept(m->assembly->model);
     ++m->equations->counters.steps;
 }
 
@@ -328,15 +332,17 @@ static void interpolate(const rk *m, double t, double *y)
 }
 
 /* The forward state is the model's own. */
-static void adopt(rk *m)
+static se3d_status adopt(rk *m)
 {
     se3di_assembly *assembly = m->assembly;
     m->header[RK_T1] = m->header[RK_T0] = assembly->model->time;
     m->header[RK_DENSE] = 0.0;
     se3di_state_get(assembly, m->y1);
     se3di_assembly_get_acceleration(assembly, m->equations->x);
-    se3di_state_derivative(assembly, m->equations->x, m->f1);
+    SE3DI_TRY(se3di_state_derivative(assembly, assembly->model->time, m->equations->x,
+                                     assembly->model->lambda, m->f1));
     grow_scale(m, m->f1);
+    return SE3D_OK;
 }
 
 /* The model's state is the forward one. */
@@ -383,21 +389,24 @@ se3d_status se3di_rk_start(se3di_integration *integration, const se3di_rk_tablea
     memset(m.y0, 0, (RK_FORMS + 1) * m.count * sizeof *m.y0);
     m.header[RK_LENGTH] = se3di_state_length(m.assembly->model);
     m.header[RK_ERROR] = 1e-2;
-    adopt(&m);
-    m.header[RK_NEXT] = choose_first(&m);
+    se3d_status status = adopt(&m);
+    if (status >= 0) {
+        m.header[RK_NEXT] = choose_first(&m);
+    }
     se3di_state_end(m.equations, &m.kkt);
-    return SE3D_OK;
+    return status;
 }
 
 se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau *tableau, double h)
 {
     rk m = begin(integration, tableau);
     double error;
+    se3d_status status = SE3D_OK;
     if (m.header[RK_T1] != m.assembly->model->time) {
-        adopt(&m);
+        status = adopt(&m);
     }
     m.tolerance = HUGE_VAL; /* no error control */
-    se3d_status status = attempt(&m, h, &error);
+    status = status < 0 ? status : attempt(&m, h, &error);
     if (status >= 0) {
         accept(&m, h);
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/state.h"
 
+#include "force/force.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -10,7 +11,7 @@
 
 size_t se3di_state_count(const se3di_assembly *assembly)
 {
-    return SE3DI_STATE_SIZE * (size_t)assembly->body_count;
+    return SE3DI_STATE_SIZE * (size_t)assembly->body_count + SE3DI_STATE_WORK;
 }
 
 void se3di_state_get(const se3di_assembly *assembly, double *y)
@@ -22,6 +23,7 @@ void se3di_state_get(const se3di_assembly *assembly, double *y)
         memcpy(y + 7, frame->v, 3 * sizeof *y);
         memcpy(y + 10, frame->w, 3 * sizeof *y);
     }
+    memcpy(y, assembly->model->work, SE3DI_STATE_WORK * sizeof *y);
 }
 
 void se3di_state_set(se3di_assembly *assembly, const double *y)
@@ -36,16 +38,34 @@ void se3di_state_set(se3di_assembly *assembly, const double *y)
     }
 }
 
-void se3di_state_derivative(const se3di_assembly *assembly, const double *qddot, double *derivative)
+static int has_power(const se3di_assembly *assembly)
 {
+    const se3di_model *model = assembly->model;
+    return model->force_slots.count > 0 || assembly->timed_count > 0 ||
+           model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
+           model->gravity_function[2] >= 0;
+}
+
+se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const double *qddot,
+                                   const double *l, double *derivative)
+{
+    se3di_model *model = assembly->model;
     size_t block = (size_t)assembly->formulation->block;
     double *out = derivative;
     for (uint32_t k = 0; k < assembly->body_count; ++k, out += SE3DI_STATE_SIZE) {
-        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        const se3di_frame *frame = &model->frames[assembly->free_body[k]];
         memcpy(out, frame->v, 3 * sizeof *out);
         memcpy(out + 3, frame->pdot, 4 * sizeof *out);
         assembly->formulation->get_acceleration(frame, qddot + k * block, out + 7);
     }
+    memset(out, 0, SE3DI_STATE_WORK * sizeof *out);
+    if (!has_power(assembly)) {
+        return SE3D_OK;
+    }
+    if (assembly->row_count > 0 && l != model->lambda) {
+        memcpy(model->lambda, l, assembly->row_count * sizeof *l);
+    }
+    return se3di_power_eval(model, t, out);
 }
 
 se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, double accuracy)
@@ -272,7 +292,11 @@ se3d_status se3di_state_publish(se3di_equations *equations, const double *y, dou
         SE3DI_TRY(se3di_state_project(equations, t, scale, 1e-13, &moved));
     }
     SE3DI_TRY(se3di_acceleration_solve(equations, t));
-    se3di_angles_accept(equations->assembly.model);
-    equations->assembly.model->time = t;
-    return SE3D_OK;
+    se3di_model *model = equations->assembly.model;
+    se3di_angles_accept(model);
+    model->time = t;
+    memcpy(model->work, y + SE3DI_STATE_SIZE * (size_t)equations->assembly.body_count,
+           sizeof model->work);
+    model->work_valid = 1;
+    return se3di_power_eval(model, t, model->power);
 }

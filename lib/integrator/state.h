@@ -3,13 +3,15 @@
  *
  *     y = (r, p, v, w) of every free body, 13 numbers each        y' = (v, 1/2 G(p)^T w, a, wdot)
  *
- * the same in both formulations; these differ in the equations that give a and wdot. */
+ * the same in both formulations, which differ in the equations that give a and wdot; and three last
+ * numbers: the work dissipated, of actuators and of drivers, whose derivatives are powers. */
 #ifndef SE3DI_STATE_H
 #define SE3DI_STATE_H
 
 #include "integrator/integrator.h"
 
 #define SE3DI_STATE_SIZE 13 /* numbers per body */
+#define SE3DI_STATE_WORK 3  /* after those of the bodies */
 
 /* Characteristic sizes that errors are measured by. */
 typedef struct se3di_state_scale {
@@ -20,9 +22,10 @@ size_t se3di_state_count(const se3di_assembly *assembly);
 void se3di_state_get(const se3di_assembly *assembly, double *y);
 /* Sets the frames; p is normalised on the way. */
 void se3di_state_set(se3di_assembly *assembly, const double *y);
-/* y' from the frames and the accelerations `qddot` [unknowns]. */
-void se3di_state_derivative(const se3di_assembly *assembly, const double *qddot,
-                            double *derivative);
+/* y' at t from the frames, the accelerations `qddot` [unknowns] and the multipliers l [rows], which
+ * become those of the model where powers depend on them. */
+se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const double *qddot,
+                                   const double *l, double *derivative);
 
 /* Before a series of evaluations: the mass where it is constant, and the linear solver's settings
  * for the regularisation `eps`; after it: the settings as they were. Near singular positions an
