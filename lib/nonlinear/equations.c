@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#define MIN_NORM_ROWS_MAX 600 /* for a dense solution */
+
 static se3d_status create_kkt(se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
@@ -283,7 +285,7 @@ se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
     se3d_status status = se3di_equations_solve(equations);
     SE3DI_TRY(status);
     ++equations->counters.evaluations;
-    equations->redundant = status == SE3D_INFO_REDUNDANT;
+    equations->redundant |= status == SE3D_INFO_REDUNDANT;
     if (assembly->row_count > 0) {
         memcpy(assembly->model->lambda, equations->l, assembly->row_count * sizeof *equations->l);
     }
@@ -301,6 +303,14 @@ se3d_status se3di_multipliers_reduce(se3di_equations *equations)
     se3di_assembly_add_transposed(assembly, 1.0, assembly->model->lambda, equations->b);
     se3d_status status = se3di_equations_solve(equations);
     SE3DI_TRY(status);
+    if (status != SE3D_INFO_REDUNDANT && assembly->row_count <= MIN_NORM_ROWS_MAX) {
+        /* near a singular position the fast solver does not tell dependent rows apart */
+        se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
+        memset(equations->x, 0, assembly->unknown_count * sizeof *equations->x);
+        SE3DI_TRY(se3di_kkt_min_norm(equations->kkt, &values, equations->b, equations->x, 1e-10,
+                                     equations->l, NULL));
+        status = SE3D_INFO_REDUNDANT;
+    }
     if (status == SE3D_INFO_REDUNDANT) {
         memcpy(assembly->model->lambda, equations->l, assembly->row_count * sizeof *equations->l);
     }

@@ -32,7 +32,7 @@ typedef struct se3di_equations {
     double *accepted_acceleration; /* [dense bodies * 6], */
     double *accepted_lambda;       /* [rows] */
     int32_t iterations_max;        /* of the position Newton */
-    int32_t redundant;             /* the last acceleration met dependent rows */
+    int32_t redundant;             /* an acceleration met dependent rows */
     int32_t hold;                  /* positions and velocities of held bodies stay (assembly) */
     int32_t reserved;
 } se3di_equations;

@@ -3,7 +3,7 @@
  * a solution, or where there is none) by damped Gauss-Newton (Levenberg-Marquardt: the KKT system
  * with a large regularisation), which ends in the least sum of squared violations. A stationary
  * violation means that the constraints cannot be met from here: the gap is named.
- * docs/theory/assembly.md */
+ * docs/theory/consistency.md */
 #include "nonlinear/equations.h"
 
 #include "math/quaternion.h"
