@@ -14,7 +14,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "se3d/se3d.h"
+#include "mechanisms.h"
 
 typedef struct bench_case {
     char kind;
@@ -42,131 +42,36 @@ static double cpu_time(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static se3d_body add_bar(bench_case *c, const double at[3], double turn, double mass,
-                         const double inertia[3])
-{
-    se3d_body_def def = se3d_body_def_default();
-    se3d_body body;
-    def.mass = mass;
-    memcpy(def.inertia, inertia, 3 * sizeof *inertia);
-    memcpy(def.position, at, 3 * sizeof *at);
-    def.orientation[0] = cos(0.5 * turn);
-    def.orientation[3] = sin(0.5 * turn);
-    must(c, se3d_body_create(c->system, &def, &body), "body");
-    return body;
-}
-
-static void add_joint(bench_case *c, se3d_body i, se3d_body j, const double at[3], int ball)
-{
-    const double axis[3] = {0.0, 0.0, 1.0};
-    se3d_joint_def def = se3d_joint_def_default();
-    se3d_constraint joint;
-    def.body_i = i;
-    def.body_j = j;
-    must(c, se3d_joint_def_set_frame(c->system, &def, at, axis, NULL), "frame");
-    must(c,
-         ball ? se3d_joint_create_spherical(c->system, &def, &joint)
-              : se3d_joint_create_revolute(c->system, &def, &joint),
-         "joint");
-}
-
-static void build_chain(bench_case *c)
-{
-    static const double exact[5][3] = {{-0.980009892555, -0.198948763489, 0.0},
-                                       {5.18365835706, -4.87899149535, 0.0},
-                                       {30.5302553705, -4.90500000005, 0.0},
-                                       {-0.980008964342, -0.198948832257, -0.00133863856},
-                                       {5.18365835455, -4.87899147099, -1.7493042e-5}};
-    const double inertia[3] = {0.008125, 1.6290625, 1.6290625};
-    se3d_body last;
-    must(c, se3d_system_get_ground(c->system, &last), "ground");
-    for (int k = 0; k < c->n; ++k) {
-        const double at[3] = {k + 0.5, 0.0, 0.0};
-        const double pin[3] = {k, 0.0, 0.0};
-        se3d_body bar = add_bar(c, at, 0.0, 19.5, inertia);
-        add_joint(c, last, bar, pin, c->kind == 'b');
-        if (c->kind == 'b') {
-            const double w[3] = {1.0, 0.0, 0.0};
-            must(c, se3d_body_set_angular_velocity(c->system, bar, w), "spin");
-        }
-        last = bar;
-    }
-    c->tip = last;
-    c->point[0] = 0.5;
-    c->duration = c->n == 1 ? 5.0 : 1.0;
-    int row = (c->n == 1                      ? 0
-               : c->n == 8                    ? 1
-               : c->n == 32 && c->kind == 'a' ? 2
-                                              : -4) +
-              (c->kind == 'b' ? 3 : 0);
-    c->has_exact = row >= 0;
-    memcpy(c->exact, exact[row < 0 ? 0 : row], sizeof c->exact);
-}
-
-static void build_fourbars(bench_case *c)
-{
-    const double inertia[3] = {1e-3, 1.0 / 12.0, 1.0 / 12.0};
-    const double right = 1.5707963267948966;
-    se3d_body ground, left = {0, 0}, first = {0, 0};
-    must(c, se3d_system_get_ground(c->system, &ground), "ground");
-    for (int k = 0; k <= c->n; ++k) {
-        const double at[3] = {k, 0.5, 0.0};
-        const double pin[3] = {k, 0.0, 0.0};
-        const double top[3] = {k, 1.0, 0.0};
-        const double w[3] = {0.0, 0.0, -1.0};
-        const double v[3] = {0.5, 0.0, 0.0};
-        se3d_body bar = add_bar(c, at, right, 1.0, inertia);
-        must(c, se3d_body_set_velocity(c->system, bar, v), "velocity");
-        must(c, se3d_body_set_angular_velocity(c->system, bar, w), "spin");
-        add_joint(c, ground, bar, pin, 0);
-        if (k > 0) {
-            const double before[3] = {k - 1, 1.0, 0.0};
-            const double middle[3] = {k - 0.5, 1.0, 0.0};
-            const double vc[3] = {1.0, 0.0, 0.0};
-            se3d_body coupler = add_bar(c, middle, 0.0, 1.0, inertia);
-            must(c, se3d_body_set_velocity(c->system, coupler, vc), "velocity");
-            add_joint(c, left, coupler, before, 0);
-            add_joint(c, coupler, bar, top, 0);
-        } else {
-            first = bar;
-        }
-        left = bar;
-    }
-    c->tip = first;
-    c->point[0] = 0.5;
-    /* all bars turn alike: theta'' = g ((n + 1)/2 + n)/((n + 1)/3 + n) sin theta */
-    const double exact[3][2] = {{0.47838505776097056, 0.8781501787912093},
-                                {0.23578913584525585, 0.97180424130446533},
-                                {0.18051222668672839, 0.98357274058231157}};
-    int row = c->n == 1 ? 0 : c->n == 5 ? 1 : 2;
-    c->has_exact = c->n == 1 || c->n == 5 || c->n == 40;
-    memcpy(c->exact, exact[row], sizeof exact[row]);
-    c->duration = 10.0;
-}
-
-static void build_pendulum(bench_case *c)
-{
-    const double at[3] = {-1.0, 0.0, 0.0};
-    const double pin[3] = {0.0, 0.0, 0.0};
-    const double inertia[3] = {1e-6, 1e-6, 1e-6};
-    se3d_body ground;
-    must(c, se3d_system_get_ground(c->system, &ground), "ground");
-    c->tip = add_bar(c, at, 0.0, 1.0, inertia);
-    add_joint(c, ground, c->tip, pin, 0);
-    c->duration = 10.0;
-}
+/* The tip at the end of the run; four-bars: all bars turn alike,
+ * theta'' = g ((n + 1)/2 + n)/((n + 1)/3 + n) sin theta. */
+static const struct {
+    char kind;
+    int n;
+    double tip[3];
+} exact_tips[] = {
+    {'a', 1, {-0.980009892555, -0.198948763489, 0.0}},
+    {'a', 8, {5.18365835706, -4.87899149535, 0.0}},
+    {'a', 32, {30.5302553705, -4.90500000005, 0.0}},
+    {'b', 1, {-0.980008964342, -0.198948832257, -0.00133863856}},
+    {'b', 8, {5.18365835455, -4.87899147099, -1.7493042e-5}},
+    {'f', 1, {0.47838505776097056, 0.8781501787912093, 0.0}},
+    {'f', 5, {0.23578913584525585, 0.97180424130446533, 0.0}},
+    {'f', 40, {0.18051222668672839, 0.98357274058231157, 0.0}},
+};
 
 static void build(bench_case *c)
 {
-    const double gravity[3] = {0.0, -9.81, 0.0};
-    must(c, se3d_system_create(NULL, &c->system), "system");
-    must(c, se3d_system_set_gravity(c->system, gravity), "gravity");
-    if (c->kind == 'f') {
-        build_fourbars(c);
-    } else if (c->kind == 'p') {
-        build_pendulum(c);
-    } else {
-        build_chain(c);
+    bench_mechanism m = bench_build(c->kind, c->n);
+    c->system = m.system;
+    must(c, m.status, "mechanism");
+    c->tip = m.tip;
+    memcpy(c->point, m.point, sizeof c->point);
+    c->duration = c->kind == 'f' || c->kind == 'p' ? 10.0 : c->n == 1 ? 5.0 : 1.0;
+    for (size_t k = 0; k < sizeof exact_tips / sizeof exact_tips[0]; ++k) {
+        if (exact_tips[k].kind == c->kind && exact_tips[k].n == c->n) {
+            c->has_exact = 1;
+            memcpy(c->exact, exact_tips[k].tip, sizeof c->exact);
+        }
     }
 }
 
