@@ -2,6 +2,7 @@
 /* Preparation and control of a run. */
 #include "analysis/run.h"
 
+#include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
 #include "force/force.h"
 #include "primitive/turn_counter.h"
@@ -170,6 +171,27 @@ static se3d_status run_kinematics(se3di_run *run, double t_end)
     return se3di_kinematics_run(&run->equations, t_end, run->integration.settings.step);
 }
 
+/* A static position at t_end; on failure the old state. */
+static se3d_status run_equilibrium(se3di_run *run, double t_end)
+{
+    se3di_model *model = run->model;
+    size_t bytes = run->equations.assembly.dense_count * sizeof *model->frames;
+    se3di_frame *kept =
+        se3di_alloc(&model->allocator, run->equations.assembly.dense_count, sizeof *kept);
+    if (!kept) {
+        return se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for the equilibrium");
+    }
+    memcpy(kept, model->frames, bytes);
+    se3d_status status = se3di_equilibrium_solve(&run->equations, t_end);
+    if (status < 0) {
+        memcpy(model->frames, kept, bytes);
+    }
+    se3di_free(&model->allocator, kept, run->equations.assembly.dense_count, sizeof *kept);
+    se3di_angles_accept(model);
+    se3di_model_touch_state(model);
+    return status;
+}
+
 static se3d_status information(const se3di_run *run)
 {
     return run->equations.redundant ? SE3D_INFO_REDUNDANT : SE3D_OK;
@@ -177,8 +199,13 @@ static se3d_status information(const se3di_run *run)
 
 se3d_status se3di_run_to(se3di_run *run, double t_end)
 {
+    se3d_status status = SE3D_OK;
     SE3DI_TRY(prepare(run));
     switch (run->analysis) {
+    case SE3D_ANALYSIS_EQUILIBRIUM:
+        status = run_equilibrium(run, t_end);
+        SE3DI_TRY(status);
+        break;
     case SE3D_ANALYSIS_ASSEMBLY:
         SE3DI_TRY(settle(run, t_end));
         break;
@@ -189,7 +216,7 @@ se3d_status se3di_run_to(se3di_run *run, double t_end)
         SE3DI_TRY(run_kinematics(run, t_end));
         break;
     }
-    return information(run);
+    return status > 0 ? status : information(run);
 }
 
 se3d_status se3di_run_step(se3di_run *run, double h)

@@ -57,10 +57,6 @@ static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "analysis = %d, must be one of se3d_analysis", (int)def->analysis);
     }
-    if (def->analysis == SE3D_ANALYSIS_EQUILIBRIUM) {
-        return SE3DI_FAIL(system, SE3D_ERR_UNSUPPORTED,
-                          "analysis equilibrium is not available in this version");
-    }
     if (!se3di_formulation_find(def->formulation)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "formulation = %d, must be SE3D_FORMULATION_ROMEGA or _RP",
@@ -73,7 +69,7 @@ static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def
     if (!se3di_integrator_find(def->method)) {
         return SE3DI_FAIL(system, SE3D_ERR_UNSUPPORTED,
                           "method %d is not available in this version; allowed are auto, "
-                          "dop853, rk45, generalized_alpha, hht",
+                          "dop853, rk45, generalized_alpha, hht, rattle",
                           (int)def->method);
     }
     return SE3D_OK;
@@ -82,7 +78,9 @@ static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def
 static void configure(se3di_run *run, const se3d_solver_def *def)
 {
     run->analysis = def->analysis;
-    run->formulation = se3di_formulation_find(def->formulation);
+    run->formulation = def->analysis == SE3D_ANALYSIS_EQUILIBRIUM /* it knows no velocities */
+                           ? &se3di_formulation_romega
+                           : se3di_formulation_find(def->formulation);
     run->integration.method = se3di_integrator_find(def->method);
     run->integration.settings = (se3di_integrator_settings){
         .step = def->step,

@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "analysis/linearise.h"
+
+#include "linsol/eigen.h"
+#include "linsol/rank.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define RANK_TOLERANCE 1e-9
+#define LINEAR_ARRAYS  13
+
+typedef struct linear_array {
+    double **data;
+    size_t count;
+} linear_array;
+
+static void list_arrays(se3di_linear *l, linear_array list[LINEAR_ARRAYS])
+{
+    size_t n = (size_t)l->n;
+    size_t rows = (size_t)l->rows;
+    const linear_array arrays[LINEAR_ARRAYS] = {
+        {&l->M, n * n},         {&l->D, n * n},
+        {&l->K, n * n},         {&l->Z, n * n},
+        {&l->Mr, n * n},        {&l->Dr, n * n},
+        {&l->Kr, n * n},        {&l->C, rows * n},
+        {&l->row_scale, rows},  {&l->work, n * n + rows * n},
+        {&l->load, n},          {&l->lambda, rows},
+        {&l->buffer, n + rows},
+    };
+    memcpy(list, arrays, sizeof arrays);
+}
+
+se3d_status se3di_linear_init(se3di_linear *linear, se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    linear_array arrays[LINEAR_ARRAYS];
+    *linear = (se3di_linear){.equations = equations,
+                             .n = (int32_t)assembly->unknown_count,
+                             .rows = (int32_t)assembly->row_count};
+    list_arrays(linear, arrays);
+    se3d_status status = se3di_tangent_init(&linear->tangent, assembly);
+    for (int k = 0; k < LINEAR_ARRAYS && status >= 0; ++k) {
+        *arrays[k].data = se3di_alloc(&assembly->model->allocator, arrays[k].count, sizeof(double));
+        status = *arrays[k].data ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    }
+    if (status < 0) {
+        se3di_linear_destroy(linear);
+        return se3di_error_set(equations->error, status, "no memory for dense matrices of %d",
+                               (int)assembly->unknown_count);
+    }
+    return status;
+}
+
+void se3di_linear_destroy(se3di_linear *linear)
+{
+    if (!linear->equations) {
+        return;
+    }
+    const se3d_allocator *allocator = &linear->equations->assembly.model->allocator;
+    linear_array arrays[LINEAR_ARRAYS];
+    list_arrays(linear, arrays);
+    for (int k = 0; k < LINEAR_ARRAYS; ++k) {
+        se3di_free(allocator, *arrays[k].data, arrays[k].count, sizeof(double));
+    }
+    se3di_tangent_destroy(&linear->tangent);
+    memset(linear, 0, sizeof *linear);
+}
+
+static const double *rotation_of(const se3di_linear *linear, size_t body)
+{
+    const se3di_assembly *assembly = &linear->equations->assembly;
+    return assembly->model->frames[assembly->free_body[body]].A;
+}
+
+/* The translational part of each body of a vector over unknowns turned by A^T. */
+static void to_body_axes(const se3di_linear *linear, double *x)
+{
+    for (size_t k = 0; k < (size_t)linear->n / 6; ++k) {
+        double local[3];
+        se3di_mul_transposed(rotation_of(linear, k), x + 6 * k, local);
+        se3di_copy(local, x + 6 * k);
+    }
+}
+
+/* Phi_q, dense, in body axes. */
+static void fill_constraints(se3di_linear *linear)
+{
+    se3di_assembly *assembly = &linear->equations->assembly;
+    size_t n = (size_t)linear->n;
+    memset(linear->C, 0, (size_t)linear->rows * n * sizeof *linear->C);
+    se3di_assembly_eval_jacobian(assembly);
+    for (uint32_t joint = 0; joint < assembly->constraint_count; ++joint) {
+        size_t first = assembly->model->constraints[joint].row_begin;
+        for (int32_t b = assembly->joint_begin[joint]; b < assembly->joint_begin[joint + 1]; ++b) {
+            const double *block = assembly->C + assembly->block_offset[b];
+            size_t column = 6 * (size_t)assembly->joint_body[b];
+            for (size_t r = 0; r < (size_t)assembly->joint_rows[joint]; ++r) {
+                memcpy(linear->C + (first + r) * n + column, block + 6 * r, 6 * sizeof *block);
+            }
+        }
+    }
+    for (size_t r = 0; r < (size_t)linear->rows; ++r) {
+        double *row = linear->C + r * n;
+        double sum = 0.0;
+        to_body_axes(linear, row);
+        for (size_t c = 0; c < n; ++c) {
+            sum += row[c] * row[c];
+        }
+        linear->row_scale[r] = sum > 0.0 ? 1.0 / sqrt(sum) : 1.0;
+        for (size_t c = 0; c < n; ++c) {
+            row[c] *= linear->row_scale[r];
+        }
+    }
+}
+
+static se3d_status find_freedoms(se3di_linear *linear)
+{
+    const se3d_allocator *allocator = &linear->equations->assembly.model->allocator;
+    size_t n = (size_t)linear->n;
+    se3di_rank rank = {0};
+    if (linear->rows == 0) {
+        memset(linear->Z, 0, n * n * sizeof *linear->Z);
+        for (size_t k = 0; k < n; ++k) {
+            linear->Z[k * n + k] = 1.0;
+        }
+        linear->freedoms = linear->n;
+        return SE3D_OK;
+    }
+    se3d_status status =
+        se3di_rank_analyse(allocator, linear->rows, linear->n, linear->C, RANK_TOLERANCE, &rank);
+    if (status >= 0) {
+        linear->freedoms = rank.freedom_count;
+        memcpy(linear->Z, rank.freedom, (size_t)rank.freedom_count * n * sizeof *linear->Z);
+        se3di_rank_destroy(allocator, &rank);
+    }
+    return status;
+}
+
+static se3d_status balance(se3di_linear *linear)
+{
+    const se3d_allocator *allocator = &linear->equations->assembly.model->allocator;
+    size_t n = (size_t)linear->n;
+    size_t rows = (size_t)linear->rows;
+    if (rows == 0) {
+        return SE3D_OK;
+    }
+    for (size_t r = 0; r < rows; ++r) { /* the multipliers of the unscaled rows */
+        for (size_t c = 0; c < n; ++c) {
+            linear->work[r * n + c] = linear->C[r * n + c] / linear->row_scale[r];
+        }
+    }
+    memcpy(linear->buffer, linear->load, n * sizeof *linear->load);
+    return se3di_rank_least_norm(allocator, linear->n, linear->rows, linear->work, linear->buffer,
+                                 RANK_TOLERANCE, linear->lambda, NULL);
+}
+
+se3d_status se3di_linear_eval_statics(se3di_linear *linear, double t)
+{
+    se3di_equations *equations = linear->equations;
+    fill_constraints(linear);
+    SE3DI_TRY(find_freedoms(linear));
+    SE3DI_TRY(se3di_assembly_eval_forces(&equations->assembly, t, linear->load, equations->error));
+    to_body_axes(linear, linear->load);
+    return balance(linear);
+}
+
+/* A block of the tangent into a dense matrix. */
+static void place_block(double *dense, size_t n, size_t row, size_t column, const double *block)
+{
+    for (size_t r = 0; r < 6; ++r) {
+        memcpy(dense + (6 * row + r) * n + 6 * column, block + 6 * r, 6 * sizeof *block);
+    }
+}
+
+static void fill_dense(const se3di_linear *linear, double *dense, const double *body,
+                       const double *upper, const double *lower)
+{
+    const se3di_tangent *tangent = &linear->tangent;
+    size_t n = (size_t)linear->n;
+    memset(dense, 0, n * n * sizeof *dense);
+    for (size_t k = 0; k < n / 6; ++k) {
+        place_block(dense, n, k, k, body + 36 * k);
+    }
+    for (size_t k = 0; upper && k < tangent->coupling_count; ++k) {
+        size_t i = (size_t)tangent->coupling[2 * k];
+        size_t j = (size_t)tangent->coupling[2 * k + 1];
+        place_block(dense, n, i, j, upper + 36 * k);
+        place_block(dense, n, j, i, lower + 36 * k);
+    }
+}
+
+/* X <- E^T X E */
+static void turn_matrix(const se3di_linear *linear, double *X)
+{
+    size_t n = (size_t)linear->n;
+    for (size_t r = 0; r < n; ++r) {
+        to_body_axes(linear, X + r * n);
+    }
+    for (size_t k = 0; k < n / 6; ++k) {
+        const double *A = rotation_of(linear, k);
+        for (size_t c = 0; c < n; ++c) {
+            const double column[3] = {X[6 * k * n + c], X[(6 * k + 1) * n + c],
+                                      X[(6 * k + 2) * n + c]};
+            double local[3];
+            se3di_mul_transposed(A, column, local);
+            for (size_t r = 0; r < 3; ++r) {
+                X[(6 * k + r) * n + c] = local[r];
+            }
+        }
+    }
+}
+
+/* Y columns of a body += s X columns of the body times B (3 x 3), for both halves or the first. */
+static void add_columns(const se3di_linear *linear, double *Y, const double *X, size_t column,
+                        double s, const double B[9])
+{
+    size_t n = (size_t)linear->n;
+    for (size_t r = 0; r < n; ++r) {
+        double product[3];
+        se3di_mul_transposed(B, X + r * n + column, product);
+        se3di_add_scaled(s, product, Y + r * n + column);
+    }
+}
+
+/* The rates of the body axes: K first (it needs the old D), then D. */
+static void add_motion(se3di_linear *linear)
+{
+    const se3di_assembly *assembly = &linear->equations->assembly;
+    for (size_t k = 0; k < (size_t)linear->n / 6; ++k) {
+        uint32_t body = assembly->free_body[k];
+        double W[9], Wdot[9], WW[9];
+        se3di_tilde(assembly->model->frames[body].w, W);
+        se3di_tilde(assembly->model->acceleration + 6 * body + 3, Wdot);
+        se3di_mat_mul(W, W, WW);
+        for (size_t half = 0; half < 2; ++half) {
+            size_t column = 6 * k + 3 * half;
+            add_columns(linear, linear->K, linear->D, column, 1.0, W);
+            add_columns(linear, linear->K, linear->M, column, 1.0, Wdot);
+            add_columns(linear, linear->D, linear->M, column, half == 0 ? 2.0 : 1.0, W);
+        }
+        add_columns(linear, linear->K, linear->M, 6 * k, 1.0, WW);
+    }
+}
+
+/* out [f f] = Z X Z^T */
+static void reduce(const se3di_linear *linear, const double *X, double *work, double *out)
+{
+    size_t n = (size_t)linear->n;
+    size_t f = (size_t)linear->freedoms;
+    for (size_t r = 0; r < n; ++r) { /* work [n f] = X Z^T */
+        for (size_t c = 0; c < f; ++c) {
+            double sum = 0.0;
+            for (size_t k = 0; k < n; ++k) {
+                sum += X[r * n + k] * linear->Z[c * n + k];
+            }
+            work[r * f + c] = sum;
+        }
+    }
+    memset(out, 0, f * f * sizeof *out);
+    for (size_t r = 0; r < f; ++r) {
+        for (size_t k = 0; k < n; ++k) {
+            double z = linear->Z[r * n + k];
+            for (size_t c = 0; c < f; ++c) {
+                out[r * f + c] += z * work[k * f + c];
+            }
+        }
+    }
+}
+
+se3d_status se3di_linear_eval_matrices(se3di_linear *linear, double t, const double *vdot,
+                                       const double *lambda)
+{
+    se3di_tangent *tangent = &linear->tangent;
+    SE3DI_TRY(se3di_tangent_eval(tangent, t, vdot, lambda));
+    fill_dense(linear, linear->M, tangent->M, NULL, NULL);
+    fill_dense(linear, linear->D, tangent->D, tangent->D_upper, tangent->D_lower);
+    fill_dense(linear, linear->K, tangent->K, tangent->K_upper, tangent->K_lower);
+    turn_matrix(linear, linear->M);
+    turn_matrix(linear, linear->D);
+    turn_matrix(linear, linear->K);
+    add_motion(linear);
+    reduce(linear, linear->M, linear->work, linear->Mr);
+    reduce(linear, linear->D, linear->work, linear->Dr);
+    reduce(linear, linear->K, linear->work, linear->Kr);
+    return SE3D_OK;
+}
+
+void se3di_linear_project(const se3di_linear *linear, const double *x, double *out)
+{
+    size_t n = (size_t)linear->n;
+    for (size_t r = 0; r < (size_t)linear->freedoms; ++r) {
+        out[r] = 0.0;
+        for (size_t c = 0; c < n; ++c) {
+            out[r] += linear->Z[r * n + c] * x[c];
+        }
+    }
+}
+
+void se3di_linear_expand(const se3di_linear *linear, const double *y, double *out)
+{
+    size_t n = (size_t)linear->n;
+    memset(out, 0, n * sizeof *out);
+    for (size_t r = 0; r < (size_t)linear->freedoms; ++r) {
+        for (size_t c = 0; c < n; ++c) {
+            out[c] += linear->Z[r * n + c] * y[r];
+        }
+    }
+}
+
+se3d_status se3di_linear_eigen(const se3di_linear *linear, double *w, double *V)
+{
+    size_t f = (size_t)linear->freedoms;
+    for (size_t r = 0; r < f; ++r) {
+        for (size_t c = 0; c < f; ++c) {
+            V[r * f + c] = 0.5 * (linear->Kr[r * f + c] + linear->Kr[c * f + r]);
+        }
+    }
+    return se3di_symmetric_eigen(&linear->equations->assembly.model->allocator, linear->freedoms, V,
+                                 w);
+}

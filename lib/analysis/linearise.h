@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The linearised equations on the freedoms that the constraints leave, dense, in r-omega.
+ *
+ * With Z an orthonormal basis of the null space of Phi_q in body axes (E = diag(A, I) turns body
+ * axes to the unknowns), small motions about the present one are dq = E Z y with
+ *
+ *     Mr y'' + Dr y' + Kr y = Z^T E^T (applied forces)
+ *
+ * At rest Mr = Z^T E^T M E Z and so on. About a steady motion (v, w constant in body axes) the
+ * rates of the body axes add, with W = tilde(w):  dv = E (s' + W s),  dvdot_r = A (s'' + 2 W s' +
+ * (W W + Wdot) s),  dwdot = s'' + W s' + Wdot s.  docs/theory/modes.md */
+#ifndef SE3DI_LINEARISE_H
+#define SE3DI_LINEARISE_H
+
+#include "assembly/tangent.h"
+#include "nonlinear/equations.h"
+
+typedef struct se3di_linear {
+    se3di_equations *equations;
+    se3di_tangent tangent;
+    int32_t n;               /* 6 per free body */
+    int32_t rows;            /* constraint equations */
+    int32_t freedoms;        /* f */
+    double *M, *D, *K;       /* [n n] row-major, body axes */
+    double *Z;               /* [n n]: the first f rows are the basis */
+    double *Mr, *Dr, *Kr;    /* [n n], used f x f, row-major */
+    double *C;               /* [rows n] Phi_q, body axes, rows of unit length */
+    double *row_scale;       /* [rows] 1 / length of the rows */
+    double *work;            /* [n n] */
+    double *load;            /* [n] applied forces and velocity terms, body axes */
+    double *lambda, *buffer; /* [rows], [n] */
+} se3di_linear;
+
+/* For equations in r-omega. On failure nothing is held. */
+se3d_status se3di_linear_init(se3di_linear *linear, se3di_equations *equations);
+void se3di_linear_destroy(se3di_linear *linear);
+
+/* C, Z, the load and the multipliers that balance it (minimum norm, least squares: statics), at the
+ * present state. */
+se3d_status se3di_linear_eval_statics(se3di_linear *linear, double t);
+/* M, D, K and their reduction, with Z and the given accelerations [n, ground and body axes as the
+ * unknowns] and multipliers [rows]. */
+se3d_status se3di_linear_eval_matrices(se3di_linear *linear, double t, const double *vdot,
+                                       const double *lambda);
+
+/* out [f] = Z x, out [n] = Z^T y */
+void se3di_linear_project(const se3di_linear *linear, const double *x, double *out);
+void se3di_linear_expand(const se3di_linear *linear, const double *y, double *out);
+
+/* Eigenvalues w [f], ascending, of the symmetric part of Kr; its eigenvectors are the rows of V
+ * [f f]. */
+se3d_status se3di_linear_eigen(const se3di_linear *linear, double *w, double *V);
+
+#endif

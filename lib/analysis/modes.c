@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "analysis/modes.h"
+
+#include "base/error.h"
+#include "linsol/dense.h"
+#include "linsol/eigen.h"
+
+#include <math.h>
+#include <string.h>
+
+static double largest(const double *A, size_t count)
+{
+    double size = 0.0;
+    for (size_t k = 0; k < count; ++k) {
+        size = fmax(size, fabs(A[k]));
+    }
+    return size;
+}
+
+static int is_conservative(size_t f, const double *D, const double *K)
+{
+    double size = largest(K, f * f);
+    double skew = 0.0;
+    for (size_t r = 0; r < f; ++r) {
+        for (size_t c = 0; c < r; ++c) {
+            skew = fmax(skew, fabs(K[r * f + c] - K[c * f + r]));
+        }
+    }
+    return !(largest(D, f * f) > 0.0) && skew <= 1e-11 * size;
+}
+
+static void add_mode(se3di_eigen *e, double re, double im, const double *y_re, const double *y_im)
+{
+    size_t f = (size_t)e->f;
+    size_t k = (size_t)e->count++;
+    while (k > 0 && hypot(e->re[k - 1], e->im[k - 1]) > hypot(re, im)) {
+        e->re[k] = e->re[k - 1];
+        e->im[k] = e->im[k - 1];
+        memcpy(e->y_re + k * f, e->y_re + (k - 1) * f, f * sizeof *y_re);
+        memcpy(e->y_im + k * f, e->y_im + (k - 1) * f, f * sizeof *y_re);
+        --k;
+    }
+    e->re[k] = re;
+    e->im[k] = im;
+    memcpy(e->y_re + k * f, y_re, f * sizeof *y_re);
+    memset(e->y_im + k * f, 0, f * sizeof *y_re);
+    if (y_im) {
+        memcpy(e->y_im + k * f, y_im, f * sizeof *y_re);
+    }
+}
+
+/* X <- L^-1 X on the columns of a row-major X [f f]. */
+static void solve_lower(size_t f, const double *L, double *X)
+{
+    for (size_t r = 0; r < f; ++r) {
+        for (size_t k = 0; k < r; ++k) {
+            for (size_t c = 0; c < f; ++c) {
+                X[r * f + c] -= L[r * f + k] * X[k * f + c];
+            }
+        }
+        for (size_t c = 0; c < f; ++c) {
+            X[r * f + c] /= L[r * f + r];
+        }
+    }
+}
+
+static void transpose(size_t f, double *X)
+{
+    for (size_t r = 0; r < f; ++r) {
+        for (size_t c = 0; c < r; ++c) {
+            double kept = X[r * f + c];
+            X[r * f + c] = X[c * f + r];
+            X[c * f + r] = kept;
+        }
+    }
+}
+
+/* x <- L^-T x */
+static void solve_upper(size_t f, const double *L, double *x)
+{
+    for (size_t r = f; r-- > 0;) {
+        for (size_t k = r + 1; k < f; ++k) {
+            x[r] -= L[k * f + r] * x[k];
+        }
+        x[r] /= L[r * f + r];
+    }
+}
+
+/* s^2 = -mu: L^-1 K L^-T v = mu v with M = L L^T, y = L^-T v. */
+static se3d_status solve_conservative(const se3d_allocator *allocator, const double *M,
+                                      const double *K, double *work, se3di_eigen *e)
+{
+    size_t f = (size_t)e->f;
+    double *L = work;
+    double *S = work + f * f;
+    double *mu = work + 2 * f * f;
+    memcpy(L, M, f * f * sizeof *L);
+    memcpy(S, K, f * f * sizeof *S);
+    SE3DI_TRY(se3di_dense_cholesky_factor(e->f, L));
+    if (f >= SE3DI_DENSE_SMALL) {
+        for (size_t r = 0; r < f; ++r) { /* only the lower triangle is the factor */
+            memset(L + r * f + r + 1, 0, (f - r - 1) * sizeof *L);
+        }
+    }
+    solve_lower(f, L, S);
+    transpose(f, S);
+    solve_lower(f, L, S);
+    SE3DI_TRY(se3di_symmetric_eigen(allocator, e->f, S, mu));
+    double noise = 4e-16 * (double)f * fmax(fabs(mu[0]), fabs(mu[f - 1]));
+    for (size_t k = 0; k < f; ++k) {
+        double *y = S + k * f;
+        solve_upper(f, L, y);
+        double root = fabs(mu[k]) > noise ? sqrt(fabs(mu[k])) : 0.0;
+        if (mu[k] < -noise) {
+            add_mode(e, -root, 0.0, y, NULL);
+            add_mode(e, root, 0.0, y, NULL);
+        } else {
+            add_mode(e, 0.0, root, y, NULL);
+        }
+    }
+    return SE3D_OK;
+}
+
+/* With y' = w z and m, w the sizes of M and of the frequencies, all blocks are of size one:
+ *
+ *     [0          w I ] [y]     [I  0  ] [y]
+ *     [-K/(m w)  -D/m ] [z] = s [0  M/m] [z] */
+static void fill_pencil(size_t f, const double *M, const double *D, const double *K, double *A,
+                        double *B)
+{
+    double m = largest(M, f * f);
+    double w = sqrt(largest(K, f * f) / m);
+    w = w > 0.0 ? w : fmax(largest(D, f * f) / m, 1e-300);
+    memset(A, 0, 4 * f * f * sizeof *A);
+    memset(B, 0, 4 * f * f * sizeof *B);
+    for (size_t r = 0; r < f; ++r) {
+        A[r * 2 * f + f + r] = w;
+        B[r * 2 * f + r] = 1.0;
+        for (size_t c = 0; c < f; ++c) {
+            A[(f + r) * 2 * f + c] = -K[r * f + c] / (m * w);
+            A[(f + r) * 2 * f + f + c] = -D[r * f + c] / m;
+            B[(f + r) * 2 * f + f + c] = M[r * f + c] / m;
+        }
+    }
+}
+
+static se3d_status solve_damped(const se3d_allocator *allocator, const double *M, const double *D,
+                                const double *K, double *work, se3di_eigen *e)
+{
+    size_t f = (size_t)e->f;
+    double *A = work;
+    double *B = work + 4 * f * f;
+    double *V = work + 8 * f * f;
+    double *re = work + 12 * f * f;
+    double *im = re + 2 * f;
+    fill_pencil(f, M, D, K, A, B);
+    SE3DI_TRY(se3di_general_eigen(allocator, 2 * e->f, A, B, re, im, V));
+    for (size_t k = 0; k < 2 * f; ++k) {
+        if (!isfinite(re[k]) || !isfinite(im[k]) || im[k] < 0.0) {
+            continue;
+        }
+        add_mode(e, re[k], im[k], V + k * 2 * f, im[k] > 0.0 ? V + (k + 1) * 2 * f : NULL);
+    }
+    return SE3D_OK;
+}
+
+void se3di_eigen_destroy(const se3d_allocator *allocator, se3di_eigen *e)
+{
+    size_t f = (size_t)e->f;
+    se3di_free(allocator, e->re, 4 * f + 4 * f * f, sizeof(double));
+    memset(e, 0, sizeof *e);
+}
+
+se3d_status se3di_eigen_solve(const se3d_allocator *allocator, int32_t freedoms, const double *M,
+                              const double *D, const double *K, se3di_eigen *e)
+{
+    size_t f = (size_t)freedoms;
+    *e = (se3di_eigen){.f = freedoms};
+    if (f == 0) {
+        return SE3D_OK;
+    }
+    size_t work_count = 12 * f * f + 4 * f;
+    double *work = se3di_alloc(allocator, work_count, sizeof *work);
+    e->re = se3di_alloc(allocator, 4 * f + 4 * f * f, sizeof *e->re);
+    se3d_status status = work && e->re ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    if (status >= 0) {
+        e->im = e->re + 2 * f;
+        e->y_re = e->re + 4 * f;
+        e->y_im = e->y_re + 2 * f * f;
+        status = is_conservative(f, D, K) ? solve_conservative(allocator, M, K, work, e)
+                                          : solve_damped(allocator, M, D, K, work, e);
+    }
+    se3di_free(allocator, work, work_count, sizeof *work);
+    if (status < 0) {
+        se3di_eigen_destroy(allocator, e);
+    }
+    return status;
+}
