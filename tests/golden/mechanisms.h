@@ -113,7 +113,7 @@ static inline se3d_constraint add_driver(world *w, const char *name, se3d_constr
     se3d_driver_def def = se3d_driver_def_default();
     def.name = name;
     def.joint = joint;
-    def.coordinate = coordinate;
+    def.coordinate = (int32_t)coordinate;
     MUST(w, se3d_function_create_expression(w->system, text, &def.function));
     MUST(w, se3d_driver_create(w->system, &def, &driver));
     return driver;
@@ -123,8 +123,8 @@ static inline void use_solver(world *w, se3d_analysis analysis, se3d_formulation
 {
     se3d_solver_def def = se3d_solver_def_default();
     se3d_solver_destroy(w->solver);
-    def.analysis = analysis;
-    def.formulation = formulation;
+    def.analysis = (int32_t)analysis;
+    def.formulation = (int32_t)formulation;
     MUST(w, se3d_solver_create(w->system, &def, &w->solver));
 }
 

@@ -247,13 +247,12 @@ static void a_driver_that_locks_is_named_with_its_time(void)
 {
     for (int f = 0; f < 2; ++f) {
         world w = world_create();
-        const double O[2] = {0.0, 0.0}, A[2] = {0.2, 0.0}, C[2] = {0.6, 0.0};
+        const double O[2] = {0.0, 0.0}, C[2] = {0.6, 0.0};
         const double x[3] = {1.0, 0.0, 0.0}, at[3] = {0.0, 0.0, 0.0};
         se3d_body crank = add_bar(&w, "crank", O, 0.5 * PI, 0.2, 1.0);
         const double top[2] = {0.0, 0.2};
         se3d_body rod = add_bar(&w, "rod", top, -asin(0.4), 0.5, 2.0);
         se3d_body slider = add_bar(&w, "slider", C, 0.0, 0.2, 3.0);
-        (void)A;
         double reach = 0.5 * cos(asin(0.4));
         const double r[3] = {reach, 0.0, 0.0};
         MUST(&w, se3d_body_set_position(w.system, slider, r));
@@ -282,6 +281,20 @@ static void a_driver_that_locks_is_named_with_its_time(void)
     }
 }
 
+static void misuse_of_holding_is_refused(void)
+{
+    world w = create_windows(1, se3d_joint_create_revolute);
+    const se3d_body nobody = {0, 0};
+    int32_t held = 5;
+    CHECK(se3d_body_set_held(NULL, w.ground, 1) == SE3D_ERR_NULL);
+    CHECK(se3d_body_set_held(w.system, nobody, 1) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_body_get_held(NULL, w.ground, &held) == SE3D_ERR_NULL);
+    CHECK(se3d_body_get_held(w.system, w.ground, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_body_get_held(w.system, nobody, &held) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_body_set_held(w.system, w.ground, 1) == SE3D_OK);
+    world_destroy(&w);
+}
+
 int main(void)
 {
     RUN(twenty_scattered_bodies_assemble_in_a_handful_of_steps);
@@ -292,5 +305,6 @@ int main(void)
     RUN(a_bar_that_is_long_enough_assembles_from_the_same_guess);
     RUN(a_small_contradiction_is_not_taken_for_a_poor_guess);
     RUN(a_driver_that_locks_is_named_with_its_time);
+    RUN(misuse_of_holding_is_refused);
     return check_finish();
 }
