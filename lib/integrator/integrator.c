@@ -13,6 +13,8 @@ const se3di_integrator *se3di_integrator_find(int32_t method)
         return &se3di_integrator_generalized_alpha;
     case SE3D_METHOD_HHT:
         return &se3di_integrator_hht;
+    case SE3D_METHOD_RATTLE:
+        return &se3di_integrator_rattle;
     default:
         return NULL;
     }

@@ -50,6 +50,7 @@ extern const se3di_integrator se3di_integrator_generalized_alpha;
 extern const se3di_integrator se3di_integrator_hht;
 extern const se3di_integrator se3di_integrator_dop853;
 extern const se3di_integrator se3di_integrator_rk45;
+extern const se3di_integrator se3di_integrator_rattle;
 
 /* By se3d_method; NULL where there is none yet. */
 const se3di_integrator *se3di_integrator_find(int32_t method);

@@ -251,8 +251,22 @@ static void hht_is_of_order_2(void)
     check_method(&row);
 }
 
+static void rattle_is_of_order_2(void)
+{
+    const method_row row = {SE3D_METHOD_RATTLE, 0, 2.0, 2.0, {400, 100, 100}, 1e-12};
+    check_method(&row);
+}
+
+static void rattle_is_of_order_4_by_composition(void)
+{
+    const method_row row = {SE3D_METHOD_RATTLE, 4, 4.0, 4.0, {100, 24, 40}, 1e-11};
+    check_method(&row);
+}
+
 int main(void)
 {
+    RUN(rattle_is_of_order_2);
+    RUN(rattle_is_of_order_4_by_composition);
     RUN(dop853_is_of_order_8);
     RUN(rk45_is_of_order_5);
     RUN(generalized_alpha_is_of_order_2);
