@@ -148,8 +148,10 @@ static void a_long_chain_is_taken_off_link_by_link(void)
         add_pin(&w, NULL, before, link, k, 0.0);
         before = link;
     }
-    se3d_check_destroy(check_world(&w, SE3D_OK));
+    se3d_check *check = check_world(&w, SE3D_OK);
     CHECK(summary.rank == 4000 && summary.freedoms == 800);
+    CHECK(se3d_check_count_messages(check) == 0);
+    se3d_check_destroy(check);
     world_destroy(&w);
 }
 
