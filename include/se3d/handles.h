@@ -9,6 +9,8 @@
 typedef struct se3d_system se3d_system;
 /* An analysis of one system; destroy with se3d_solver_destroy before its system. */
 typedef struct se3d_solver se3d_solver;
+/* The particles of a system; destroy with se3d_particles_destroy before its system. */
+typedef struct se3d_particles se3d_particles;
 
 /* Elements: all zero is null. A handle of a destroyed element, or of another system, is always
  * detected. */
@@ -40,6 +42,18 @@ typedef struct se3d_force {
     uint32_t index1;
     uint32_t generation;
 } se3d_force;
+
+/* What particles and walls are made of: an element of se3d_particles. */
+typedef struct se3d_material {
+    uint32_t index1;
+    uint32_t generation;
+} se3d_material;
+
+/* A wall that particles touch: an element of se3d_particles. */
+typedef struct se3d_wall {
+    uint32_t index1;
+    uint32_t generation;
+} se3d_wall;
 
 /* The two formulations; both give the same motion. */
 typedef enum se3d_formulation {

@@ -23,6 +23,7 @@
 #include "se3d/handles.h"
 #include "se3d/joint.h"
 #include "se3d/modes.h"
+#include "se3d/particles.h"
 #include "se3d/solver.h"
 #include "se3d/system.h"
 

@@ -390,6 +390,11 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
     set->slab_count = 0;
     if (set->count > 0) {
         choose_axes(set, &g);
+        for (int k = 0; k < 3; ++k) {
+            if (g.periodic[k] && g.extent[k] < 2.0 * (2.0 * largest + set->skin)) {
+                return SE3D_ERR_UNSUPPORTED; /* a pair would meet twice */
+            }
+        }
         double total = divide(set, &g, largest, 1.0);
         /* Few particles in a large space: larger cells, so that there are not many more cells than
          * particles. */

@@ -18,6 +18,7 @@
 #include "base/slots.h"
 #include "contact/law.h"
 #include "model/model.h"
+#include "se3d/particles.h"
 
 #define SE3DI_GRAIN_LANES     8  /* pairs of a block */
 #define SE3DI_GRAIN_CLASSES   12 /* size classes: each twice the radius of the one before */
@@ -64,12 +65,12 @@ typedef enum se3di_wall_kind { SE3DI_WALL_PLANE = 0, SE3DI_WALL_BOX = 1 } se3di_
 typedef struct se3di_wall {
     int32_t kind;
     uint32_t material;
-    uint32_t body;             /* dense index in the model */
-    uint32_t user;             /* free for the public layer */
-    double point[3];           /* body frame; box: its centre */
-    double A[9];               /* wall -> body; a plane's normal is the third column */
-    double half[3];            /* box */
-    double x[3], R[9];         /* present pose, ground frame */
+    uint32_t body; /* dense index in the model, looked up by the public layer */
+    uint32_t body_index1, body_generation; /* its handle */
+    double point[3];                       /* body frame; box: its centre */
+    double A[9];                           /* wall -> body; a plane's normal is the third column */
+    double half[3];                        /* box */
+    double x[3], R[9];                     /* present pose, ground frame */
     double v[3], w[3], c[3];   /* velocity of its body, ground frame; the body's centre of mass */
     double old_x[3], old_R[9]; /* pose where the list was built */
     double near_x[3], near_R[9];
@@ -103,8 +104,7 @@ typedef struct se3di_kernels se3di_kernels;
 typedef struct se3di_particles {
     se3d_allocator allocator;
     se3di_law law;
-    int32_t threads; /* 0: all */
-    int32_t portable;
+    int32_t threads;
     int32_t boundary[3];
     int32_t rolling;     /* any material resists */
     int32_t list_valid;  /* the lists belong to the particles */
@@ -248,6 +248,8 @@ se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, si
                                  size_t needed);
 /* The vector between centres, to the nearest image. */
 void se3di_particles_wrap(const se3di_particles *set, double d[3]);
+/* The point of a wall's surface nearest to x. */
+void se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3]);
 double se3di_wall_distance(const se3di_wall *wall, const double x[3]);
 
 /* particle_step.c: motion. frames may be NULL where no wall is on a body that moves. */
@@ -262,6 +264,10 @@ double se3di_particles_safe_step(const se3di_particles *set);
 /* One step of velocity Verlet; frames move the walls (NULL: they stay). */
 se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps,
                                     const se3di_frame *frames);
+/* particle_contacts.c: contacts of the present lists as they are now; nothing changes. Counts all,
+ * writes the first `capacity`. */
+se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity,
+                                     se3d_contact *contacts, size_t *count);
 uint64_t se3di_particles_hash(const se3di_particles *set);
 
 #endif

@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Particles: spheres in bulk with penalty contact and friction, materials, walls on bodies.
+ *
+ * A se3d_particles belongs to one system: it takes its gravity, its allocator and the poses of the
+ * bodies that its walls are on, and records failures there (se3d_system_get_error). Functions that
+ * take it without `const` need exclusive access to both. Particles have ids, counted from 0 in the
+ * order of creation and never used again; arrays are in ascending order of the ids that live. */
+#ifndef SE3D_PARTICLES_H
+#define SE3D_PARTICLES_H
+
+#include "se3d/handles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Force laws. Fn never pulls; Ft is a spring with history and a damper, capped at friction * Fn.
+ * @since 0.1 */
+typedef enum se3d_law {
+    SE3D_LAW_HOOKE = 0,        /* linear: stiffness, tangential_ratio */
+    SE3D_LAW_HERTZ_MINDLIN = 1 /* Hertz with Tsuji-type damping, Mindlin: young, poisson */
+} se3d_law;
+
+/* What is at `lower` and `upper` along an axis. @since 0.1 */
+typedef enum se3d_boundary {
+    SE3D_BOUNDARY_OPEN = 0,
+    SE3D_BOUNDARY_PERIODIC = 1,
+    SE3D_BOUNDARY_SINK = 2 /* particles beyond it are removed and counted as lost */
+} se3d_boundary;
+
+/* What particles are made with. @since 0.1 */
+typedef struct se3d_particles_def {
+    size_t struct_size;
+    int32_t law;               /* se3d_law */
+    int32_t threads;           /* 1: default; results do not depend on it */
+    int32_t portable;          /* not 0: the same bits on every machine, slower */
+    int32_t boundary[3];       /* se3d_boundary along x, y, z */
+    double lower[3], upper[3]; /* of the domain, where a boundary is not open [m] */
+    double step;               /* [s]; 0: automatic, from the stiffness */
+    double skin;               /* of the neighbour list, over the mean diameter; default 0.1 */
+    double overlap_limit;      /* allowed overlap over the smaller radius; default 0.2 */
+} se3d_particles_def;
+
+SE3D_API void se3d_particles_def_init(se3d_particles_def *def, size_t size);
+
+static inline se3d_particles_def se3d_particles_def_default(void)
+{
+    se3d_particles_def def;
+    se3d_particles_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Create an empty set of particles for `system`, which must outlive it. `def` may be NULL.
+ * @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def *def,
+                                           se3d_particles **out);
+/* Destroy; NULL is fine. @since 0.1 */
+SE3D_API void se3d_particles_destroy(se3d_particles *particles);
+/* Make an independent copy for the same system; it continues with the same bits, and so is a
+ * snapshot. Handles and ids are valid on both. @since 0.1 */
+SE3D_API se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles **out);
+/* Make `particles` what `saved`, a clone of it, is. @return OK, NULL, NO_MEMORY (nothing changed).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_particles_restore(se3d_particles *particles, const se3d_particles *saved);
+
+/* What a material is made with. The restitution given is the one obtained, at any velocity; pairs
+ * of materials mix: geometric means of friction and restitution, springs in series. @since 0.1 */
+typedef struct se3d_material_def {
+    size_t struct_size;
+    double density;            /* [kg/m^3] > 0, required */
+    double friction;           /* >= 0, default 0.5 */
+    double restitution;        /* 0.01 .. 1, default 0.5 */
+    double rolling_friction;   /* >= 0: resisting moment over R* Fn */
+    double torsional_friction; /* >= 0: the same about the normal */
+    double stiffness;          /* [N/m] > 0, required for hooke: of two spheres of this material */
+    double tangential_ratio;   /* kt/kn >= 0, default 2/7 */
+    double young;              /* [Pa] > 0, required for hertz_mindlin */
+    double poisson;            /* 0 .. 0.5, default 0.3 */
+} se3d_material_def;
+
+SE3D_API void se3d_material_def_init(se3d_material_def *def, size_t size);
+
+static inline se3d_material_def se3d_material_def_default(void)
+{
+    se3d_material_def def;
+    se3d_material_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Create a material. @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
+SE3D_API se3d_status se3d_material_create(se3d_particles *particles, const se3d_material_def *def,
+                                          se3d_material *material);
+
+/* What holds for a pair of materials instead of the mixing rules; negative: the rule, the default.
+ * @since 0.1 */
+typedef struct se3d_material_pair_def {
+    size_t struct_size;
+    double friction, restitution, rolling_friction, torsional_friction;
+    double stiffness; /* hooke [N/m] */
+} se3d_material_pair_def;
+
+SE3D_API void se3d_material_pair_def_init(se3d_material_pair_def *def, size_t size);
+
+static inline se3d_material_pair_def se3d_material_pair_def_default(void)
+{
+    se3d_material_pair_def def;
+    se3d_material_pair_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Say what holds between two materials (which may be the same). @since 0.1 */
+SE3D_API se3d_status se3d_material_set_pair(se3d_particles *particles, se3d_material a,
+                                            se3d_material b, const se3d_material_pair_def *def);
+
+/* A wall: an infinite plane, solid behind its normal, or a solid box. @since 0.1 */
+typedef struct se3d_wall_def {
+    size_t struct_size;
+    se3d_body body; /* null: the ground */
+    se3d_material material;
+    double point[3];       /* on the plane, or the centre of the box; body frame [m] */
+    double normal[3];      /* plane: towards the particles, body frame; default z */
+    double orientation[4]; /* box -> body, Euler parameters; default (1,0,0,0) */
+    double size[3];        /* box: full lengths [m] > 0 */
+} se3d_wall_def;
+
+SE3D_API void se3d_wall_def_init(se3d_wall_def *def, size_t size);
+
+static inline se3d_wall_def se3d_wall_def_default(void)
+{
+    se3d_wall_def def;
+    se3d_wall_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Create a wall. It moves with its body. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT,
+ * NO_MEMORY. @since 0.1 */
+SE3D_API se3d_status se3d_wall_create_plane(se3d_particles *particles, const se3d_wall_def *def,
+                                            se3d_wall *wall);
+SE3D_API se3d_status se3d_wall_create_box(se3d_particles *particles, const se3d_wall_def *def,
+                                          se3d_wall *wall);
+SE3D_API se3d_status se3d_wall_destroy(se3d_particles *particles, se3d_wall wall);
+/* Get the force of the particles on the wall [N] and its moment about the centre of mass of the
+ * wall's body [N m], ground frame, of the last step. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_wall_get_force(const se3d_particles *particles, se3d_wall wall,
+                                         double force[3], double torque[3]);
+/* The same, summed over all walls of a body. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_particles_get_wrench(const se3d_particles *particles, se3d_body body,
+                                               double force[3], double torque[3]);
+
+/* Add `count` particles: r [count * 3], radius [count], v [count * 3] and w [count * 3] (ground
+ * frame) or NULL: at rest. They get the ids *first, *first + 1, ...; `first` may be NULL.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
+SE3D_API se3d_status se3d_particles_add(se3d_particles *particles, se3d_material material,
+                                        size_t count, const double *r, const double *radius,
+                                        const double *v, const double *w, uint32_t *first);
+
+/* A region filled with particles. @since 0.1 */
+typedef struct se3d_fill_def {
+    size_t struct_size;
+    se3d_material material;
+    size_t count;                  /* lattice: at most; 0: all that fit */
+    double lower[3], upper[3];     /* region: no part of a particle is outside [m] */
+    double radius_min, radius_max; /* uniformly distributed [m] */
+    double spacing;                /* lattice [m]; 0: 1.1 times the largest diameter */
+    double jitter;                 /* lattice: largest displacement along each axis [m] */
+    double velocity[3];            /* [m/s] */
+    uint64_t seed;
+} se3d_fill_def;
+
+SE3D_API void se3d_fill_def_init(se3d_fill_def *def, size_t size);
+
+static inline se3d_fill_def se3d_fill_def_default(void)
+{
+    se3d_fill_def def;
+    se3d_fill_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Fill a region with a cubic lattice, layer by layer along z, from the lower corner. `added` may be
+ * NULL. @since 0.1 */
+SE3D_API se3d_status se3d_particles_fill_lattice(se3d_particles *particles,
+                                                 const se3d_fill_def *def, size_t *added);
+/* Fill a region at random without overlaps, also with particles that are there. @return OK, ...,
+ * NO_CONVERGENCE (there was no room for all; nothing changed). @since 0.1 */
+SE3D_API se3d_status se3d_particles_fill_random(se3d_particles *particles,
+                                                const se3d_fill_def *def);
+
+/* Remove `count` particles by id. @return OK, INVALID_ARGUMENT (an id that does not live; nothing
+ * changed). @since 0.1 */
+SE3D_API se3d_status se3d_particles_remove(se3d_particles *particles, size_t count,
+                                           const uint32_t *ids);
+
+/* Count the particles. Zero for NULL. Reader. @since 0.1 */
+SE3D_API size_t se3d_particles_count(const se3d_particles *particles);
+
+/* Bulk access: arrays of `count` = se3d_particles_count particles; NULL arrays are skipped.
+ * r, v, w, force and torque are [count * 3]. @since 0.1 */
+SE3D_API se3d_status se3d_particles_get_ids(const se3d_particles *particles, size_t count,
+                                            uint32_t *ids);
+SE3D_API se3d_status se3d_particles_get_radii(const se3d_particles *particles, size_t count,
+                                              double *radius);
+SE3D_API se3d_status se3d_particles_get_all(const se3d_particles *particles, size_t count,
+                                            double *r, double *v, double *w);
+SE3D_API se3d_status se3d_particles_set_all(se3d_particles *particles, size_t count,
+                                            const double *r, const double *v, const double *w);
+/* Contact forces and torques of the last step, without gravity. @since 0.1 */
+SE3D_API se3d_status se3d_particles_get_forces(const se3d_particles *particles, size_t count,
+                                               double *force, double *torque);
+
+/* A contact as it is now. @since 0.1 */
+typedef struct se3d_contact {
+    uint32_t i, j;   /* ids of the particles */
+    se3d_wall wall;  /* null: with particle j */
+    double point[3]; /* [m] */
+    double force[3]; /* on i [N] */
+} se3d_contact;
+
+/* Count the contacts of the last step, and list them (`count` must be that number).
+ * @return OK, NULL, INVALID_ARGUMENT. Reader. @since 0.1 */
+SE3D_API size_t se3d_particles_count_contacts(const se3d_particles *particles);
+SE3D_API se3d_status se3d_particles_get_contacts(const se3d_particles *particles, size_t count,
+                                                 se3d_contact *contacts);
+
+/* Advance by `steps` steps of velocity Verlet; bodies are where the system has them.
+ * @return OK, STEP_SIZE (an overlap beyond the limit or a step beyond stability: the message names
+ * the particle and the time), NOT_FINITE, NO_MEMORY. @since 0.1 */
+SE3D_API se3d_status se3d_particles_step(se3d_particles *particles, size_t steps);
+/* Advance to `time` in equal steps, none longer than the step. @since 0.1 */
+SE3D_API se3d_status se3d_particles_run(se3d_particles *particles, double time);
+/* Get the step: the one that was set, or the automatic one (0 where there is nothing to resolve).
+ * Reader. @since 0.1 */
+SE3D_API se3d_status se3d_particles_get_step(const se3d_particles *particles, double *step);
+SE3D_API se3d_status se3d_particles_set_step(se3d_particles *particles, double step);
+SE3D_API se3d_status se3d_particles_get_time(const se3d_particles *particles, double *time);
+
+/* Energies [J]; potential: of gravity, zero at the ground origin. @since 0.1 */
+typedef struct se3d_particles_energy {
+    double translation;
+    double rotation;
+    double potential;
+} se3d_particles_energy;
+
+SE3D_API se3d_status se3d_particles_get_energy(const se3d_particles *particles,
+                                               se3d_particles_energy *energy);
+
+/* What a run did. @since 0.1 */
+typedef struct se3d_particles_stats {
+    uint64_t steps;
+    uint64_t rebuilds; /* of the neighbour list */
+    uint64_t contacts; /* at the last step */
+    uint64_t lost;     /* particles that left through a sink */
+    uint64_t bytes;    /* memory held */
+} se3d_particles_stats;
+
+SE3D_API se3d_status se3d_particles_get_stats(const se3d_particles *particles,
+                                              se3d_particles_stats *stats);
+
+/* A hash of time, positions and velocities: equal bits, equal hash. Zero for NULL. @since 0.1 */
+SE3D_API uint64_t se3d_particles_hash(const se3d_particles *particles);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

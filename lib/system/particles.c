@@ -1,0 +1,582 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Particles: creation, bulk access, stepping. */
+#include "system/particles.h"
+
+#include "base/hash.h"
+#include "force/force.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Beyond this many automatic steps a contact is not resolved and may gain energy. */
+#define STEP_LIMIT  15.0
+#define THREADS_MAX 1024
+
+void se3d_particles_def_init(se3d_particles_def *def, size_t size)
+{
+    se3d_particles_def defaults = {
+        .struct_size = size, .threads = 1, .skin = 0.1, .overlap_limit = 0.2};
+    if (def && size >= sizeof size) {
+        memset(def, 0, size);
+        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
+    }
+}
+
+se3d_status se3di_check_range(se3d_particles *particles, const char *what, double value, double low,
+                              double high)
+{
+    if (isfinite(value) && value >= low && value <= high) {
+        return SE3D_OK;
+    }
+    return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
+                      "%s = %g, must be finite, >= %g and <= %g", what, value, low, high);
+}
+
+static se3d_status check_domain(se3d_system *system, const se3d_particles_def *def)
+{
+    for (int a = 0; a < 3; ++a) {
+        if (def->boundary[a] < SE3D_BOUNDARY_OPEN || def->boundary[a] > SE3D_BOUNDARY_SINK) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "boundary[%d] = %d, must be an se3d_boundary", a, def->boundary[a]);
+        }
+        int used = def->boundary[a] != SE3D_BOUNDARY_OPEN;
+        int finite = isfinite(def->lower[a]) && isfinite(def->upper[a]);
+        if (used && !(finite && def->upper[a] > def->lower[a])) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "lower[%d] = %g and upper[%d] = %g, must be finite and increasing "
+                              "where the boundary is not open",
+                              a, def->lower[a], a, def->upper[a]);
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status check_particles_def(se3d_system *system, const se3d_particles_def *def)
+{
+    if (def->law != SE3D_LAW_HOOKE && def->law != SE3D_LAW_HERTZ_MINDLIN) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "law = %d, must be an se3d_law",
+                          def->law);
+    }
+    if (def->threads < 1 || def->threads > THREADS_MAX) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "threads = %d, must be at least 1 and at most %d", def->threads,
+                          THREADS_MAX);
+    }
+    if (!(isfinite(def->step) && def->step >= 0.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "step = %g s, must be finite and >= 0 (0: automatic)", def->step);
+    }
+    if (!(def->skin > 0.0 && def->skin <= 10.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "skin = %g, must be > 0 and <= 10",
+                          def->skin);
+    }
+    if (!(def->overlap_limit > 0.0 && def->overlap_limit <= 1.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "overlap_limit = %g, must be > 0 and <= 1", def->overlap_limit);
+    }
+    return check_domain(system, def);
+}
+
+static const se3di_kernels *choose_kernels(int32_t portable)
+{
+    const se3di_kernels *best = portable ? NULL : se3di_particle_kernels_avx512();
+    if (!best && !portable) {
+        best = se3di_particle_kernels_avx2();
+    }
+    return best ? best : se3di_particle_kernels_portable();
+}
+
+se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def *def,
+                                  se3d_particles **out)
+{
+    if (out) {
+        *out = NULL;
+    }
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_pointer(system, "out", out));
+    se3d_particles_def full = se3d_particles_def_default();
+    if (def) {
+        SE3DI_TRY(se3di_check_def(system, "particles def", def, &full, sizeof full));
+    }
+    SE3DI_TRY(check_particles_def(system, &full));
+    const se3d_allocator *allocator = &system->model.allocator;
+    se3d_particles *particles = se3di_alloc(allocator, 1, sizeof *particles);
+    if (!particles) {
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for particles");
+    }
+    uint64_t bits = (uint64_t)(uintptr_t)particles * UINT64_C(0x9E3779B97F4A7C15);
+    se3di_particles *set = &particles->set;
+    se3di_particles_init(set, allocator, (uint32_t)(bits >> 52));
+    particles->system = system;
+    set->law = (se3di_law)full.law;
+    set->threads = full.threads;
+    set->kernels = choose_kernels(full.portable);
+    memcpy(set->boundary, full.boundary, sizeof set->boundary);
+    memcpy(set->lower, full.lower, sizeof set->lower);
+    memcpy(set->upper, full.upper, sizeof set->upper);
+    set->step = full.step;
+    set->skin_ratio = full.skin;
+    set->overlap_limit = full.overlap_limit;
+    set->time = system->model.time;
+    *out = particles;
+    return SE3D_OK;
+}
+
+/* Bodies know how many walls are on them. */
+static void count_users(se3d_particles *particles, int add)
+{
+    se3di_model *model = &particles->system->model;
+    for (size_t k = 0; k < particles->set.wall_slots.count; ++k) {
+        const se3di_wall *wall = &particles->set.walls[k];
+        uint32_t body =
+            se3di_slots_find(&model->body_slots, wall->body_index1, wall->body_generation);
+        model->bodies[body].users += add ? 1u : UINT32_MAX;
+    }
+}
+
+void se3d_particles_destroy(se3d_particles *particles)
+{
+    if (particles) {
+        se3d_allocator allocator = particles->set.allocator;
+        count_users(particles, 0);
+        se3di_particles_destroy(&particles->set);
+        se3di_free(&allocator, particles, 1, sizeof *particles);
+    }
+}
+
+se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles **out)
+{
+    if (out) {
+        *out = NULL;
+    }
+    if (!particles || !out) {
+        return SE3D_ERR_NULL;
+    }
+    const se3d_allocator *allocator = &particles->set.allocator;
+    se3d_particles *copy = se3di_alloc(allocator, 1, sizeof *copy);
+    if (!copy) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    se3d_status status = se3di_particles_clone(&particles->set, &copy->set);
+    if (status < 0) {
+        se3di_free(allocator, copy, 1, sizeof *copy);
+        return status;
+    }
+    copy->system = particles->system;
+    count_users(copy, 1);
+    *out = copy;
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_restore(se3d_particles *particles, const se3d_particles *saved)
+{
+    if (!particles) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_pointer(particles->system, "saved", saved));
+    if (saved->system != particles->system) {
+        return SE3DI_FAIL(particles->system, SE3D_ERR_STATE,
+                          "the saved particles belong to another system");
+    }
+    se3di_particles copy;
+    if (se3di_particles_clone(&saved->set, &copy) < 0) {
+        return SE3DI_FAIL(particles->system, SE3D_ERR_NO_MEMORY,
+                          "no memory to restore %zu particles", saved->set.count);
+    }
+    count_users(particles, 0);
+    se3di_particles_destroy(&particles->set);
+    particles->set = copy;
+    count_users(particles, 1);
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_make_room(se3d_particles *particles, size_t count)
+{
+    se3di_particles *set = &particles->set;
+    if (count > SE3DI_CARRY_WALL - set->id_count - 1 || count > SE3DI_CARRY_WALL - set->count - 1) {
+        return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
+                          "count = %zu, at most 2^31 particles can be made", count);
+    }
+    if (se3di_particles_reserve(set, set->count + count) < 0) {
+        return SE3DI_FAIL(particles->system, SE3D_ERR_NO_MEMORY, "no memory for %zu particles",
+                          count);
+    }
+    return SE3D_OK;
+}
+
+static se3d_status check_finite_array(se3d_particles *particles, const char *what,
+                                      const double *values, size_t count)
+{
+    for (size_t k = 0; values && k < count; ++k) {
+        if (!isfinite(values[k])) {
+            return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
+                              "%s[%zu] = %g, must be finite", what, k, values[k]);
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_add(se3d_particles *particles, se3d_material material, size_t count,
+                               const double *r, const double *radius, const double *v,
+                               const double *w, uint32_t *first)
+{
+    if (!particles) {
+        return SE3D_ERR_NULL;
+    }
+    uint32_t index;
+    SE3DI_TRY(se3di_find_material(particles, "material", material, &index));
+    SE3DI_TRY(se3di_check_pointer(particles->system, "r", r));
+    SE3DI_TRY(se3di_check_pointer(particles->system, "radius", radius));
+    for (size_t k = 0; k < count; ++k) {
+        if (!(isfinite(radius[k]) && radius[k] > 0.0)) {
+            return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
+                              "radius[%zu] = %g m, must be finite and > 0", k, radius[k]);
+        }
+    }
+    SE3DI_TRY(check_finite_array(particles, "r", r, 3 * count));
+    SE3DI_TRY(check_finite_array(particles, "v", v, 3 * count));
+    SE3DI_TRY(check_finite_array(particles, "w", w, 3 * count));
+    SE3DI_TRY(se3di_particles_make_room(particles, count));
+    if (first) {
+        *first = (uint32_t)particles->set.id_count;
+    }
+    for (size_t k = 0; k < count; ++k) {
+        (void)se3di_particles_append(&particles->set, index, radius[k], r + 3 * k,
+                                     v ? v + 3 * k : NULL, w ? w + 3 * k : NULL);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_remove(se3d_particles *particles, size_t count, const uint32_t *ids)
+{
+    if (!particles) {
+        return SE3D_ERR_NULL;
+    }
+    se3di_particles *set = &particles->set;
+    if (count == 0) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_check_pointer(particles->system, "ids", ids));
+    for (size_t k = 0; k < count; ++k) {
+        if (ids[k] >= set->id_count || set->index_of[ids[k]] == SE3DI_NO_INDEX) {
+            return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
+                              "ids[%zu] = %u does not name a live particle", k, ids[k]);
+        }
+    }
+    size_t size = set->count;
+    unsigned char *keep = se3di_alloc(&set->allocator, size, 1);
+    if (!keep || se3di_particles_collect(set) < 0) {
+        se3di_free(&set->allocator, keep, size, 1);
+        return SE3DI_FAIL(particles->system, SE3D_ERR_NO_MEMORY, "no memory to remove particles");
+    }
+    memset(keep, 1, size);
+    for (size_t k = 0; k < count; ++k) {
+        keep[set->index_of[ids[k]]] = 0;
+    }
+    se3di_particles_filter(set, keep);
+    se3di_free(&set->allocator, keep, size, 1);
+    set->force_valid = 0;
+    return SE3D_OK;
+}
+
+size_t se3d_particles_count(const se3d_particles *particles)
+{
+    return particles ? particles->set.count : 0;
+}
+
+/* The size that arrays must have. */
+static se3d_status check_count(const se3d_particles *particles, size_t count)
+{
+    if (!particles) {
+        return SE3D_ERR_NULL;
+    }
+    return count == particles->set.count ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;
+}
+
+/* The next live particle at or after *id; its index. */
+static size_t next(const se3di_particles *set, size_t *id)
+{
+    while (set->index_of[*id] == SE3DI_NO_INDEX) {
+        ++*id;
+    }
+    return set->index_of[(*id)++];
+}
+
+se3d_status se3d_particles_get_ids(const se3d_particles *particles, size_t count, uint32_t *ids)
+{
+    SE3DI_TRY(check_count(particles, count));
+    if (!ids) {
+        return SE3D_ERR_NULL;
+    }
+    size_t id = 0;
+    for (size_t k = 0; k < count; ++k) {
+        ids[k] = particles->set.spins[next(&particles->set, &id)].id;
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_get_radii(const se3d_particles *particles, size_t count, double *radius)
+{
+    SE3DI_TRY(check_count(particles, count));
+    if (!radius) {
+        return SE3D_ERR_NULL;
+    }
+    size_t id = 0;
+    for (size_t k = 0; k < count; ++k) {
+        radius[k] = particles->set.grains[next(&particles->set, &id)].radius;
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_get_all(const se3d_particles *particles, size_t count, double *r,
+                                   double *v, double *w)
+{
+    SE3DI_TRY(check_count(particles, count));
+    size_t id = 0;
+    for (size_t k = 0; k < count; ++k) {
+        size_t index = next(&particles->set, &id);
+        const se3di_grain *grain = &particles->set.grains[index];
+        if (r) {
+            se3di_copy(grain->x, r + 3 * k);
+        }
+        if (v) {
+            se3di_copy(grain->v, v + 3 * k);
+        }
+        if (w) {
+            se3di_copy(particles->set.spins[index].w, w + 3 * k);
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_set_all(se3d_particles *particles, size_t count, const double *r,
+                                   const double *v, const double *w)
+{
+    if (!particles) {
+        return SE3D_ERR_NULL;
+    }
+    se3di_particles *set = &particles->set;
+    if (count != set->count) {
+        return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
+                          "count = %zu, must be the number of particles, %zu", count, set->count);
+    }
+    SE3DI_TRY(check_finite_array(particles, "r", r, 3 * count));
+    SE3DI_TRY(check_finite_array(particles, "v", v, 3 * count));
+    SE3DI_TRY(check_finite_array(particles, "w", w, 3 * count));
+    if (r && se3di_particles_collect(set) < 0) {
+        return SE3DI_FAIL(particles->system, SE3D_ERR_NO_MEMORY, "no memory to move particles");
+    }
+    size_t id = 0;
+    for (size_t k = 0; k < count; ++k) {
+        size_t index = next(set, &id);
+        if (r) {
+            se3di_copy(r + 3 * k, set->grains[index].x);
+        }
+        if (v) {
+            se3di_copy(v + 3 * k, set->grains[index].v);
+        }
+        if (w) {
+            se3di_copy(w + 3 * k, set->spins[index].w);
+        }
+    }
+    set->force_valid = 0;
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_get_forces(const se3d_particles *particles, size_t count, double *force,
+                                      double *torque)
+{
+    SE3DI_TRY(check_count(particles, count));
+    size_t id = 0;
+    for (size_t k = 0; k < count; ++k) {
+        const se3di_load *load = &particles->set.loads[next(&particles->set, &id)];
+        if (force) {
+            se3di_copy(load->force, force + 3 * k);
+        }
+        if (torque) {
+            se3di_copy(load->torque, torque + 3 * k);
+        }
+    }
+    return SE3D_OK;
+}
+
+/* The step in use; 0 where there is nothing to resolve. */
+static double step_of(const se3d_particles *particles)
+{
+    if (particles->set.step > 0.0) {
+        return particles->set.step;
+    }
+    double safe = se3di_particles_safe_step(&particles->set);
+    return isfinite(safe) ? safe : 0.0;
+}
+
+static se3d_status check_step(se3d_particles *particles, double h)
+{
+    double safe = se3di_particles_safe_step(&particles->set);
+    if (h > STEP_LIMIT * safe) {
+        return SE3DI_FAIL(particles->system, SE3D_ERR_STEP_SIZE,
+                          "step = %g s at time %g s is too large, the contacts need at most %g s "
+                          "(automatic: %g s)",
+                          h, particles->set.time, STEP_LIMIT * safe, safe);
+    }
+    return SE3D_OK;
+}
+
+static se3d_status explain(se3d_particles *particles, se3d_status status)
+{
+    const se3di_particles *set = &particles->set;
+    if (status == SE3D_ERR_STEP_SIZE) {
+        return SE3DI_FAIL(particles->system, status,
+                          "particle %u overlaps by %g of the smaller radius at time %g s (allowed: "
+                          "%g); try a smaller step or a stiffer material",
+                          set->failed, set->failed_amount, set->time, set->overlap_limit);
+    }
+    if (status == SE3D_ERR_NOT_FINITE) {
+        return SE3DI_FAIL(particles->system, status,
+                          "the state of particle %u is not finite at time %g s; try a smaller step",
+                          set->failed, set->time);
+    }
+    if (status == SE3D_ERR_UNSUPPORTED) {
+        return SE3DI_FAIL(particles->system, status,
+                          "the domain is shorter along a periodic axis than four of the largest "
+                          "radii and two skins");
+    }
+    return SE3DI_FAIL(particles->system, status, "no memory for contacts at time %g s", set->time);
+}
+
+/* Poses of the walls' bodies now. */
+static void place_walls(se3d_particles *particles)
+{
+    const se3di_model *model = &particles->system->model;
+    for (size_t k = 0; k < particles->set.wall_slots.count; ++k) {
+        se3di_wall *wall = &particles->set.walls[k];
+        wall->body = se3di_slots_find(&model->body_slots, wall->body_index1, wall->body_generation);
+    }
+    se3di_particles_move_walls(&particles->set, model->frames);
+}
+
+static se3d_status advance(se3d_particles *particles, double h, size_t steps)
+{
+    const se3di_model *model = &particles->system->model;
+    se3di_particles *set = &particles->set;
+    place_walls(particles);
+    int varies = model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
+                 model->gravity_function[2] >= 0;
+    size_t done = 0;
+    do {
+        size_t now = varies ? 1 : steps;
+        SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
+        se3d_status status = se3di_particles_advance(set, h, now, NULL);
+        if (status < 0) {
+            return explain(particles, status);
+        }
+        done += now;
+    } while (done < steps);
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_step(se3d_particles *particles, size_t steps)
+{
+    if (!particles) {
+        return SE3D_ERR_NULL;
+    }
+    double h = step_of(particles);
+    if (steps == 0 || particles->set.count == 0) {
+        particles->set.time += h * (double)steps;
+        return SE3D_OK;
+    }
+    SE3DI_TRY(check_step(particles, h));
+    return advance(particles, h, steps);
+}
+
+se3d_status se3d_particles_run(se3d_particles *particles, double time)
+{
+    if (!particles) {
+        return SE3D_ERR_NULL;
+    }
+    se3di_particles *set = &particles->set;
+    if (!(isfinite(time) && time >= set->time)) {
+        return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
+                          "time = %g s, must be finite and not before %g s", time, set->time);
+    }
+    double h = step_of(particles);
+    double steps = h > 0.0 ? ceil((time - set->time) / h - 1e-9) : 0.0;
+    if (steps > 0.0 && set->count > 0) {
+        SE3DI_TRY(check_step(particles, h));
+        SE3DI_TRY(advance(particles, (time - set->time) / steps, (size_t)steps));
+    }
+    set->time = time;
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_get_step(const se3d_particles *particles, double *step)
+{
+    if (!particles || !step) {
+        return SE3D_ERR_NULL;
+    }
+    *step = step_of(particles);
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_set_step(se3d_particles *particles, double step)
+{
+    if (!particles) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_range(particles, "step", step, 0.0, 1e30));
+    particles->set.step = step;
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_get_time(const se3d_particles *particles, double *time)
+{
+    if (!particles || !time) {
+        return SE3D_ERR_NULL;
+    }
+    *time = particles->set.time;
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_get_energy(const se3d_particles *particles,
+                                      se3d_particles_energy *energy)
+{
+    if (!particles || !energy) {
+        return SE3D_ERR_NULL;
+    }
+    *energy = (se3d_particles_energy){0.0, 0.0, 0.0};
+    double g[3];
+    SE3DI_TRY(se3di_gravity_eval(&particles->system->model, particles->set.time, g, NULL));
+    size_t id = 0;
+    for (size_t k = 0; k < particles->set.count; ++k) {
+        size_t index = next(&particles->set, &id);
+        const se3di_grain *grain = &particles->set.grains[index];
+        const double *w = particles->set.spins[index].w;
+        double mass = 1.0 / grain->inverse_mass;
+        energy->translation += 0.5 * mass * se3di_dot(grain->v, grain->v);
+        energy->rotation += 0.2 * mass * grain->radius * grain->radius * se3di_dot(w, w);
+        energy->potential -= mass * se3di_dot(g, grain->x);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_get_stats(const se3d_particles *particles, se3d_particles_stats *stats)
+{
+    if (!particles || !stats) {
+        return SE3D_ERR_NULL;
+    }
+    const se3di_particles *set = &particles->set;
+    *stats = (se3d_particles_stats){.steps = set->steps,
+                                    .rebuilds = set->rebuilds,
+                                    .contacts = set->touching,
+                                    .lost = set->lost,
+                                    .bytes = se3di_particles_memory(set)};
+    return SE3D_OK;
+}
+
+uint64_t se3d_particles_hash(const se3d_particles *particles)
+{
+    return particles ? se3di_particles_hash(&particles->set) : 0;
+}

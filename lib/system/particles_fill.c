@@ -1,0 +1,253 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Regions filled with particles: a lattice, or at random without overlaps. */
+#include "math/vec3.h"
+#include "system/particles.h"
+
+#include <math.h>
+#include <string.h>
+
+#define TRIES 2000 /* to find room for one particle */
+
+void se3d_fill_def_init(se3d_fill_def *def, size_t size)
+{
+    se3d_fill_def defaults = {.struct_size = size};
+    if (def && size >= sizeof size) {
+        memset(def, 0, size);
+        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
+    }
+}
+
+/* splitmix64: uniform in [0, 1). */
+static double uniform(uint64_t *state)
+{
+    uint64_t z = (*state += UINT64_C(0x9E3779B97F4A7C15));
+    z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+static se3d_status check_fill(se3d_particles *p, const se3d_fill_def *def, se3d_fill_def *full,
+                              uint32_t *material)
+{
+    SE3DI_TRY(se3di_check_def(p->system, "fill def", def, full, sizeof *full));
+    SE3DI_TRY(se3di_find_material(p, "material", full->material, material));
+    SE3DI_TRY(se3di_check_finites(p->system, "velocity", full->velocity, 3));
+    SE3DI_TRY(se3di_check_range(p, "radius_min", full->radius_min, 1e-30, 1e30));
+    SE3DI_TRY(se3di_check_range(p, "radius_max", full->radius_max, full->radius_min, 1e30));
+    SE3DI_TRY(se3di_check_range(p, "jitter", full->jitter, 0.0, 1e30));
+    SE3DI_TRY(se3di_check_range(p, "spacing", full->spacing, 0.0, 1e30));
+    for (int a = 0; a < 3; ++a) {
+        SE3DI_TRY(se3di_check_range(p, "lower", full->lower[a], -1e30, 1e30));
+        SE3DI_TRY(se3di_check_range(p, "upper", full->upper[a],
+                                    full->lower[a] + 2.0 * full->radius_max, 1e30));
+    }
+    return SE3D_OK;
+}
+
+static double draw_radius(const se3d_fill_def *def, uint64_t *state)
+{
+    return def->radius_min + (def->radius_max - def->radius_min) * uniform(state);
+}
+
+static void append(se3d_particles *p, uint32_t material, const se3d_fill_def *def, double radius,
+                   const double x[3])
+{
+    (void)se3di_particles_append(&p->set, material, radius, x, def->velocity, NULL);
+}
+
+se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fill_def *def,
+                                        size_t *added)
+{
+    if (!particles) {
+        return SE3D_ERR_NULL;
+    }
+    uint32_t material;
+    se3d_fill_def full = se3d_fill_def_default();
+    SE3DI_TRY(check_fill(particles, def, &full, &material));
+    double spacing = full.spacing > 0.0 ? full.spacing : 2.2 * full.radius_max;
+    double margin = fmax(0.5 * spacing, full.radius_max + full.jitter);
+    double total = 1.0;
+    double n[3];
+    for (int a = 0; a < 3; ++a) {
+        double room = full.upper[a] - full.lower[a] - 2.0 * margin;
+        n[a] = room < -1e-9 * spacing ? 0.0 : floor(room / spacing + 1e-9) + 1.0;
+        total *= n[a];
+    }
+    double wanted = full.count > 0 ? fmin(total, (double)full.count) : total;
+    SE3DI_TRY(se3di_check_range(particles, "count of the lattice", wanted, 0.0, 2e9));
+    SE3DI_TRY(se3di_particles_make_room(particles, (size_t)wanted));
+    uint64_t state = full.seed;
+    for (size_t k = 0; k < (size_t)wanted; ++k) {
+        const size_t at[3] = {k % (size_t)n[0], k / (size_t)n[0] % (size_t)n[1],
+                              k / ((size_t)n[0] * (size_t)n[1])};
+        double radius = draw_radius(&full, &state);
+        double x[3];
+        for (int a = 0; a < 3; ++a) {
+            x[a] = full.lower[a] + margin + spacing * (double)at[a] +
+                   full.jitter * (2.0 * uniform(&state) - 1.0);
+        }
+        append(particles, material, &full, radius, x);
+    }
+    if (added) {
+        *added = (size_t)wanted;
+    }
+    return SE3D_OK;
+}
+
+/* Cells over the region with chains of the particles in them. */
+typedef struct packing {
+    se3di_particles *set;
+    const se3d_fill_def *def;
+    double size;
+    int cells[3];
+    uint32_t *head; /* [cells] particle, SE3DI_NO_INDEX: none */
+    uint32_t *next; /* [room] */
+    size_t head_count, room;
+} packing;
+
+static int cell_along(const packing *p, double x, int a)
+{
+    double at = (x - p->def->lower[a]) / p->size;
+    return at <= 0.0 ? 0 : at >= p->cells[a] - 1 ? p->cells[a] - 1 : (int)at;
+}
+
+static void enter(packing *p, size_t k)
+{
+    const double *x = p->set->grains[k].x;
+    for (int a = 0; a < 3; ++a) {
+        if (x[a] < p->def->lower[a] - p->size || x[a] > p->def->upper[a] + p->size) {
+            return; /* too far to matter; those just outside are in the border cells */
+        }
+    }
+    size_t cell =
+        ((size_t)cell_along(p, x[2], 2) * (size_t)p->cells[1] + (size_t)cell_along(p, x[1], 1)) *
+            (size_t)p->cells[0] +
+        (size_t)cell_along(p, x[0], 0);
+    p->next[k] = p->head[cell];
+    p->head[cell] = (uint32_t)k;
+}
+
+static int cell_is_free(const packing *p, size_t cell, const double x[3], double radius)
+{
+    for (uint32_t k = p->head[cell]; k != SE3DI_NO_INDEX; k = p->next[k]) {
+        const se3di_grain *g = &p->set->grains[k];
+        double d[3];
+        se3di_sub(g->x, x, d);
+        se3di_particles_wrap(p->set, d);
+        if (se3di_dot(d, d) < (g->radius + radius) * (g->radius + radius)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int is_free(const packing *p, const double x[3], double radius)
+{
+    int low[3], high[3];
+    for (int a = 0; a < 3; ++a) {
+        low[a] = cell_along(p, x[a] - p->size, a);
+        high[a] = cell_along(p, x[a] + p->size, a);
+        if (p->set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
+            /* images are in the border cells of the other side: a whole row is searched there */
+            int border = low[a] == 0 || high[a] == p->cells[a] - 1;
+            low[a] = border ? 0 : low[a];
+            high[a] = border ? p->cells[a] - 1 : high[a];
+        }
+    }
+    for (int z = low[2]; z <= high[2]; ++z) {
+        for (int y = low[1]; y <= high[1]; ++y) {
+            for (int c = low[0]; c <= high[0]; ++c) {
+                size_t cell =
+                    ((size_t)z * (size_t)p->cells[1] + (size_t)y) * (size_t)p->cells[0] + (size_t)c;
+                if (!cell_is_free(p, cell, x, radius)) {
+                    return 0;
+                }
+            }
+        }
+    }
+    return 1;
+}
+
+static se3d_status packing_init(packing *p, se3di_particles *set, const se3d_fill_def *def)
+{
+    double largest = def->radius_max;
+    for (size_t k = 0; k < set->count; ++k) {
+        largest = fmax(largest, set->grains[k].radius);
+    }
+    *p = (packing){.set = set, .def = def, .size = 2.0 * largest, .head_count = 1};
+    p->room = set->count + def->count;
+    for (int a = 0; a < 3; ++a) {
+        double parts = floor((def->upper[a] - def->lower[a]) / p->size);
+        p->cells[a] = parts < 1.0 ? 1 : (int)fmin(parts, 400.0);
+        p->size = fmax(p->size, (def->upper[a] - def->lower[a]) / p->cells[a]);
+    }
+    for (int a = 0; a < 3; ++a) {
+        p->head_count *= (size_t)p->cells[a];
+    }
+    p->head = se3di_alloc(&set->allocator, p->head_count, sizeof *p->head);
+    p->next = se3di_alloc(&set->allocator, p->room, sizeof *p->next);
+    if (!p->head || !p->next) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    for (size_t k = 0; k < p->head_count; ++k) {
+        p->head[k] = SE3DI_NO_INDEX;
+    }
+    for (size_t k = 0; k < set->count; ++k) {
+        enter(p, k);
+    }
+    return SE3D_OK;
+}
+
+static int place(packing *p, se3d_particles *particles, uint32_t material, uint64_t *state)
+{
+    const se3d_fill_def *def = p->def;
+    double radius = draw_radius(def, state);
+    for (int try = 0; try < TRIES; ++try) {
+        double x[3];
+        for (int a = 0; a < 3; ++a) {
+            double room = def->upper[a] - def->lower[a] - 2.0 * radius;
+            x[a] = def->lower[a] + radius + room * uniform(state);
+        }
+        if (is_free(p, x, radius)) {
+            append(particles, material, def, radius, x);
+            enter(p, p->set->count - 1);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+se3d_status se3d_particles_fill_random(se3d_particles *particles, const se3d_fill_def *def)
+{
+    if (!particles) {
+        return SE3D_ERR_NULL;
+    }
+    uint32_t material;
+    se3d_fill_def full = se3d_fill_def_default();
+    SE3DI_TRY(check_fill(particles, def, &full, &material));
+    SE3DI_TRY(se3di_particles_make_room(particles, full.count));
+    se3di_particles *set = &particles->set;
+    const size_t count = set->count;
+    const size_t ids = set->id_count;
+    packing p;
+    se3d_status status = packing_init(&p, set, &full);
+    if (status < 0) {
+        (void)SE3DI_FAIL(particles->system, status, "no memory to pack %zu particles", full.count);
+    }
+    uint64_t state = full.seed;
+    for (size_t k = 0; k < full.count && status == SE3D_OK; ++k) {
+        if (!place(&p, particles, material, &state)) {
+            status = SE3DI_FAIL(particles->system, SE3D_ERR_NO_CONVERGENCE,
+                                "only %zu of %zu particles found room at random; use a larger "
+                                "region or a lattice",
+                                k, full.count);
+        }
+    }
+    if (status < 0) { /* nothing changed */
+        set->count = count;
+        set->id_count = ids;
+    }
+    se3di_free(&set->allocator, p.head, p.head_count, sizeof *p.head);
+    se3di_free(&set->allocator, p.next, p.room, sizeof *p.next);
+    return status;
+}
