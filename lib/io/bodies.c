@@ -211,7 +211,7 @@ static bool read_ground(se3di_reader *reader, const se3di_node *node)
 
 static bool read_body_name(se3di_reader *reader, const se3di_node *node, const char **name)
 {
-    static const char words[] = " energy violation contacts steps iterations time ";
+    static const char words[] = " energy work violation contacts steps iterations time ";
     const se3di_node *child = se3di_node_get(node, "name");
     if (!child) {
         return se3di_reader_fail_key(reader, node, "name", "is missing, every body needs one");
@@ -240,7 +240,10 @@ static bool read_body(se3di_reader *reader, const se3di_node *node)
         return read_ground(reader, node);
     }
     const se3di_node *fixed = se3di_node_get(node, "fixed");
-    if ((fixed && !se3di_read_bool(reader, fixed, &def.fixed)) ||
+    const se3di_node *held = se3di_node_get(node, "held");
+    int32_t is_held = 0;
+    if ((held && !se3di_read_bool(reader, held, &is_held)) ||
+        (fixed && !se3di_read_bool(reader, fixed, &def.fixed)) ||
         !se3di_read_key_vector(reader, node, "position", def.position) ||
         !se3di_read_key_orientation(reader, node, def.orientation) ||
         !se3di_read_key_vector(reader, node, "velocity", def.velocity) ||
@@ -249,7 +252,10 @@ static bool read_body(se3di_reader *reader, const se3di_node *node)
         return false;
     }
     def.name = name;
-    const se3d_status status = se3d_body_create(reader->model->system, &def, &body);
+    se3d_status status = se3d_body_create(reader->model->system, &def, &body);
+    if (status >= 0 && is_held) {
+        status = se3d_body_set_held(reader->model->system, body, is_held);
+    }
     if (status < 0) {
         return se3di_reader_fail_system(reader, node, status);
     }

@@ -39,11 +39,26 @@ static const quantity_name rsda_names[] = {{"angle", SE3DI_FORCE_COORDINATE},
                                            {"rate", SE3DI_FORCE_RATE},
                                            {"torque", SE3DI_FORCE_VALUE},
                                            {NULL, SE3DI_STEPS}};
+static const quantity_name range_names[] = {{"coordinate", SE3DI_FORCE_COORDINATE},
+                                            {"rate", SE3DI_FORCE_RATE},
+                                            {"force", SE3DI_FORCE_VALUE},
+                                            {NULL, SE3DI_STEPS}};
+static const quantity_name wrench_names[] = {
+    {"force", SE3DI_WRENCH_FORCE}, {"torque", SE3DI_WRENCH_TORQUE}, {NULL, SE3DI_STEPS}};
+static const struct {
+    const char *type;
+    const quantity_name *names;
+} force_names[] = {{"tsda", tsda_names},    {"rsda", rsda_names},      {"friction", range_names},
+                   {"stop", range_names},   {"bushing", wrench_names}, {"force", wrench_names},
+                   {"torque", wrench_names}};
 static const quantity_name system_names[] = {
     {"energy.kinetic", SE3DI_ENERGY_KINETIC},
     {"energy.potential", SE3DI_ENERGY_POTENTIAL},
     {"energy.total", SE3DI_ENERGY_TOTAL},
     {"energy.dissipated", SE3DI_ENERGY_DISSIPATED},
+    {"energy.balance", SE3DI_ENERGY_BALANCE},
+    {"work.actuators", SE3DI_WORK_ACTUATORS},
+    {"work.drivers", SE3DI_WORK_DRIVERS},
     {"violation.position", SE3DI_VIOLATION_POSITION},
     {"violation.velocity", SE3DI_VIOLATION_VELOCITY},
     {"violation.acceleration", SE3DI_VIOLATION_ACCELERATION},
@@ -119,10 +134,10 @@ static void offer_element(offer *o, const se3d_model *model, const se3di_element
         offer_names(o, driver_names);
         break;
     case SE3DI_ELEMENT_FORCE:
-        if (strcmp(text, "tsda") == 0) {
-            offer_names(o, tsda_names);
-        } else if (strcmp(text, "rsda") == 0) {
-            offer_names(o, rsda_names);
+        for (size_t k = 0; k < sizeof force_names / sizeof *force_names; ++k) {
+            if (strcmp(text, force_names[k].type) == 0) {
+                offer_names(o, force_names[k].names);
+            }
         }
         break;
     }
@@ -179,9 +194,10 @@ static void explain_unknown(const se3d_model *model, const char *name, char *pro
     }
     const char *meant = se3di_guess_get(&guess);
     snprintf(problem, size, "`%.60s` is unknown%s%s%s", name,
-             meant ? ", did you mean `"
-                   : ", must be a body, joint, driver, constraint, tsda or rsda, or one of energy, "
-                     "violation, steps, iterations",
+             meant
+                 ? ", did you mean `"
+                 : ", must be a body, joint, driver, constraint or force, or one of energy, work, "
+                   "violation, steps, iterations",
              meant ? meant : "", meant ? "`?" : "");
 }
 
@@ -204,7 +220,8 @@ static bool explain_system(const char *head, const char *name, char *problem, si
         snprintf(problem, size, "contacts are not supported yet");
         return true;
     }
-    if (strcmp(head, "energy") != 0 && strcmp(head, "violation") != 0) {
+    if (strcmp(head, "energy") != 0 && strcmp(head, "violation") != 0 &&
+        strcmp(head, "work") != 0) {
         return false;
     }
     for (const quantity_name *q = system_names; q->name; ++q) {
@@ -247,6 +264,8 @@ static bool find_element(const se3d_model *model, const char *head, const char *
     offer_element(offered, model, entry);
     channel->constraint = entry->constraint;
     channel->force = entry->force;
+    channel->body = entry->body;
+    memcpy(channel->point, entry->point, sizeof channel->point);
     return pick(offered, tail, &channel->quantity);
 }
 
@@ -354,9 +373,11 @@ static void list_elements(channel_list *c)
         offer_element(&o, model, entry);
         for (size_t i = 0; i < o.count && !c->failed; ++i) {
             const char *const parts[3] = {entry->name, o.list[i].name, NULL};
-            const se3di_channel channel = {.quantity = o.list[i].quantity,
-                                           .constraint = entry->constraint,
-                                           .force = entry->force};
+            se3di_channel channel = {.quantity = o.list[i].quantity,
+                                     .constraint = entry->constraint,
+                                     .force = entry->force,
+                                     .body = entry->body};
+            memcpy(channel.point, entry->point, sizeof channel.point);
             list_one(c, channel, parts);
         }
     }
@@ -390,94 +411,4 @@ void se3di_channel_format_column(const se3di_channel *channel, size_t k, char *t
     static const char *const euler[] = {".e0", ".e1", ".e2", ".e3"};
     const size_t width = se3di_channel_get_width(channel);
     snprintf(text, size, "%s%s", channel->name, width == 4 ? euler[k] : width == 3 ? xyz[k] : "");
-}
-
-static se3d_status eval_body(const se3di_channel *c, const se3d_system *system, double value[4])
-{
-    switch (c->quantity) {
-    case SE3DI_BODY_POSITION:
-        return se3d_body_get_position(system, c->body, value);
-    case SE3DI_BODY_ORIENTATION:
-        return se3d_body_get_orientation(system, c->body, value);
-    case SE3DI_BODY_VELOCITY:
-        return se3d_body_get_velocity(system, c->body, value);
-    case SE3DI_BODY_ANGULAR_VELOCITY:
-        return se3d_body_get_angular_velocity(system, c->body, value);
-    case SE3DI_BODY_ACCELERATION:
-        return se3d_body_get_acceleration(system, c->body, value);
-    case SE3DI_BODY_ANGULAR_ACCELERATION:
-        return se3d_body_get_angular_acceleration(system, c->body, value);
-    case SE3DI_MARKER_POSITION:
-        return se3d_marker_get_position(system, c->marker, value);
-    case SE3DI_MARKER_VELOCITY:
-        return se3d_marker_get_velocity(system, c->marker, value);
-    default:
-        return se3d_marker_get_acceleration(system, c->marker, value);
-    }
-}
-
-static se3d_status eval_element(const se3di_channel *c, const se3d_system *system, double value[4])
-{
-    double other[3];
-    se3d_status status;
-    switch (c->quantity) {
-    case SE3DI_REACTION_FORCE:
-        return se3d_constraint_get_reaction(system, c->constraint, value, other);
-    case SE3DI_REACTION_TORQUE:
-        return se3d_constraint_get_reaction(system, c->constraint, other, value);
-    case SE3DI_JOINT_ANGLE:
-    case SE3DI_JOINT_ANGLE_RATE:
-        status = se3d_joint_get_coordinate(system, c->constraint, SE3D_COORDINATE_ANGLE, &other[0],
-                                           &other[1], &other[2]);
-        value[0] = other[c->quantity == SE3DI_JOINT_ANGLE_RATE];
-        return status;
-    case SE3DI_JOINT_DISPLACEMENT:
-    case SE3DI_JOINT_DISPLACEMENT_RATE:
-        status = se3d_joint_get_coordinate(system, c->constraint, SE3D_COORDINATE_DISPLACEMENT,
-                                           &other[0], &other[1], &other[2]);
-        value[0] = other[c->quantity == SE3DI_JOINT_DISPLACEMENT_RATE];
-        return status;
-    case SE3DI_DRIVER_VALUE:
-        return se3d_driver_get_value(system, c->constraint, value);
-    case SE3DI_DRIVER_EFFORT:
-        return se3d_driver_get_effort(system, c->constraint, value);
-    default:
-        status = se3d_force_get_state(system, c->force, &other[0], &other[1], &other[2]);
-        value[0] = other[c->quantity - SE3DI_FORCE_COORDINATE];
-        return status;
-    }
-}
-
-static se3d_status eval_system(const se3di_channel *c, const se3d_system *system,
-                               const se3d_solver_stats *stats, double value[4])
-{
-    se3d_status status = SE3D_OK;
-    if (c->quantity <= SE3DI_ENERGY_DISSIPATED) {
-        se3d_energy energy = {0.0, 0.0, 0.0, 0.0};
-        status = se3d_system_get_energy(system, &energy);
-        const double all[4] = {energy.kinetic, energy.potential, energy.total, energy.dissipated};
-        value[0] = all[c->quantity - SE3DI_ENERGY_KINETIC];
-    } else if (c->quantity <= SE3DI_VIOLATION_ACCELERATION) {
-        double violation[3] = {0.0, 0.0, 0.0};
-        status = se3d_system_get_violation(system, violation);
-        value[0] = violation[c->quantity - SE3DI_VIOLATION_POSITION];
-    } else {
-        value[0] = !stats                       ? 0.0
-                   : c->quantity == SE3DI_STEPS ? (double)stats->steps
-                                                : (double)stats->iterations;
-    }
-    return status;
-}
-
-se3d_status se3di_channel_eval(const se3di_channel *channel, const se3d_system *system,
-                               const se3d_solver_stats *stats, double value[4])
-{
-    memset(value, 0, 4 * sizeof *value);
-    if (channel->quantity <= SE3DI_MARKER_ACCELERATION) {
-        return eval_body(channel, system, value);
-    }
-    if (channel->quantity <= SE3DI_FORCE_VALUE) {
-        return eval_element(channel, system, value);
-    }
-    return eval_system(channel, system, stats, value);
 }

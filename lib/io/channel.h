@@ -16,6 +16,8 @@ typedef enum se3di_quantity {
     SE3DI_MARKER_POSITION,
     SE3DI_MARKER_VELOCITY,
     SE3DI_MARKER_ACCELERATION,
+    SE3DI_WRENCH_FORCE,
+    SE3DI_WRENCH_TORQUE,
     SE3DI_REACTION_FORCE,
     SE3DI_REACTION_TORQUE,
     SE3DI_JOINT_ANGLE,
@@ -31,6 +33,9 @@ typedef enum se3di_quantity {
     SE3DI_ENERGY_POTENTIAL,
     SE3DI_ENERGY_TOTAL,
     SE3DI_ENERGY_DISSIPATED,
+    SE3DI_ENERGY_BALANCE,
+    SE3DI_WORK_ACTUATORS,
+    SE3DI_WORK_DRIVERS,
     SE3DI_VIOLATION_POSITION,
     SE3DI_VIOLATION_VELOCITY,
     SE3DI_VIOLATION_ACCELERATION,
@@ -45,6 +50,7 @@ typedef struct se3di_channel {
     se3d_marker marker;
     se3d_constraint constraint;
     se3d_force force;
+    double point[3]; /* of `body`, where a wrench acts */
 } se3di_channel;
 
 /* Find what `name` means. Where it means nothing, `problem` gets what is allowed. */

@@ -7,9 +7,8 @@
 static const char *const coordinates[] = {"angle", "displacement", NULL};
 static const char *const time_only[] = {"t", NULL};
 
-/* The coordinate under `coordinate`, or the only one that the joint has. */
-static bool read_coordinate(se3di_reader *reader, const se3di_node *node, se3d_constraint joint,
-                            int32_t *coordinate)
+bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3d_constraint joint,
+                               int32_t *coordinate)
 {
     const se3d_system *system = reader->model->system;
     const se3di_node *child = se3di_node_get(node, "coordinate");
@@ -102,7 +101,8 @@ static bool read_coupler(se3di_reader *reader, const se3di_node *node, se3di_ele
         def.ratio[def.count] = 1.0;
         if (!se3di_read_keys(reader, term, SE3DI_OBJECT_TERM) ||
             !se3di_read_key_joint(reader, term, "joint", &def.joint[def.count]) ||
-            !read_coordinate(reader, term, def.joint[def.count], &def.coordinate[def.count]) ||
+            !se3di_read_key_coordinate(reader, term, def.joint[def.count],
+                                       &def.coordinate[def.count]) ||
             !se3di_read_key_number(reader, term, "ratio", SE3DI_ANY, &def.ratio[def.count])) {
             return false;
         }
@@ -164,7 +164,7 @@ static bool read_driver(se3di_reader *reader, const se3di_node *node)
     if (!se3di_read_keys(reader, node, SE3DI_OBJECT_DRIVER) ||
         !se3di_read_element(reader, node, SE3DI_ELEMENT_DRIVER, &entry) ||
         !se3di_read_key_joint(reader, node, "joint", &def.joint) ||
-        !read_coordinate(reader, node, def.joint, &def.coordinate)) {
+        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate)) {
         return false;
     }
     if (!value) {

@@ -8,10 +8,10 @@
 static const char *const model_keys[] = {
     "se3d",    "title",       "parameters", "gravity",  "materials", "bodies", "joints",
     "drivers", "constraints", "forces",     "analysis", "output",    NULL};
-static const char *const body_keys[] = {"name",        "fixed",    "mass",
-                                        "inertia",     "density",  "position",
-                                        "orientation", "velocity", "angular_velocity",
-                                        "shapes",      "markers",  NULL};
+static const char *const body_keys[] = {
+    "name",    "fixed",    "held",        "mass",     "inertia",
+    "density", "position", "orientation", "velocity", "angular_velocity",
+    "shapes",  "markers",  NULL};
 static const char *const orientation_keys[] = {"matrix", "euler_parameters", "axis", "angle", "rpy",
                                                NULL};
 static const char *const shape_keys[] = {"type",        "size",   "radius",  "length",   "file",
@@ -28,9 +28,48 @@ static const char *const driver_keys[] = {"name", "joint", "coordinate", "value"
 static const char *const constraint_keys[] = {
     "name",  "type", "body_i", "body_j", "a_i",    "a_j",    "point_i", "point_j", "c",
     "value", "at",   "axis",   "axis_i", "axis_j", "axis_2", "at_2",    NULL};
-static const char *const force_keys[] = {"name", "type",  "body_i", "body_j", "point_i", "point_j",
-                                         "k",    "c",     "l0",     "h",      "joint",   "theta0",
-                                         "body", "point", "frame",  "value",  NULL};
+static const char *const force_keys[] = {"name",
+                                         "type",
+                                         "body_i",
+                                         "body_j",
+                                         "point_i",
+                                         "point_j",
+                                         "k",
+                                         "c",
+                                         "l0",
+                                         "h",
+                                         "spring",
+                                         "damper",
+                                         "preload",
+                                         "joint",
+                                         "theta0",
+                                         "axis",
+                                         "ref",
+                                         "axis_i",
+                                         "ref_i",
+                                         "ref_j",
+                                         "angle0",
+                                         "at",
+                                         "orientation",
+                                         "orientation_i",
+                                         "orientation_j",
+                                         "K",
+                                         "C",
+                                         "coordinate",
+                                         "mu",
+                                         "mu_static",
+                                         "radius",
+                                         "limit",
+                                         "viscous",
+                                         "presliding",
+                                         "lower",
+                                         "upper",
+                                         "restitution",
+                                         "body",
+                                         "point",
+                                         "frame",
+                                         "value",
+                                         NULL};
 static const char *const spline_keys[] = {"spline", NULL};
 static const char *const analysis_keys[] = {
     "type",     "formulation", "method",          "order", "step",           "tolerance",
@@ -71,11 +110,16 @@ static const se3di_type_keys constraint_types[] = {
     {"perpendicular1", BODIES FRAME AXES " axis_2 "},
     {"perpendicular2", BODIES FRAME " axis axis_i at_2 "},
     {NULL, NULL}};
-static const se3di_type_keys force_types[] = {{"tsda", BODIES " point_i point_j k c l0 h "},
-                                              {"rsda", " joint k c theta0 h "},
-                                              {"force", " body point frame value "},
-                                              {"torque", " body frame value "},
-                                              {NULL, NULL}};
+static const se3di_type_keys force_types[] = {
+    {"tsda", BODIES " point_i point_j k c l0 h spring damper preload "},
+    {"rsda",
+     " joint " BODIES " axis ref axis_i ref_i ref_j angle0 k c theta0 h spring damper preload "},
+    {"bushing", BODIES " at orientation point_i point_j orientation_i orientation_j K C "},
+    {"friction", " joint coordinate mu mu_static radius limit viscous presliding "},
+    {"stop", " joint coordinate " BODIES " point_i point_j lower upper k restitution "},
+    {"force", " body point frame value "},
+    {"torque", " body frame value "},
+    {NULL, NULL}};
 static const se3di_type_keys shape_types[] = {{"sphere", " radius density material "},
                                               {"box", " size density material "},
                                               {"capsule", " radius length density material "},

@@ -62,17 +62,41 @@ static bool read_head(se3di_reader *reader, const se3di_node *root)
     return !title || se3di_read_text(reader, title, &reader->model->title);
 }
 
+/* Three components, each a number or a function of time. */
+static bool read_gravity(se3di_reader *reader, const se3di_node *root)
+{
+    static const char *const time_only[] = {"t", NULL};
+    const se3di_node *node = se3di_node_get(root, "gravity");
+    se3d_system *system = reader->model->system;
+    se3d_function function[3] = {{0, 0}, {0, 0}, {0, 0}};
+    double value[3] = {0.0, 0.0, 0.0};
+    size_t k = 0;
+    if (!node) {
+        return true;
+    }
+    if (node->kind != SE3DI_NODE_LIST || node->count != 3) {
+        return se3di_read_vector(reader, node, 3, value); /* says why not */
+    }
+    for (const se3di_node *part = node->first; part; part = part->next, ++k) {
+        if (!se3di_read_function(reader, part, time_only, &value[k], &function[k])) {
+            return false;
+        }
+    }
+    se3d_status status = se3d_system_set_gravity(system, value);
+    if (status >= 0) {
+        status = se3d_system_set_gravity_function(system, function);
+    }
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
 static bool create_system(se3di_reader *reader, const se3di_node *root)
 {
     se3d_system_def def = se3d_system_def_default();
     def.allocator = &reader->model->pool.allocator;
-    if (!se3di_read_key_vector(reader, root, "gravity", def.gravity)) {
-        return false;
-    }
     if (SE3D_FAILED(se3d_system_create(&def, &reader->model->system))) {
         return se3di_reader_fail_memory(reader);
     }
-    return true;
+    return read_gravity(reader, root);
 }
 
 static bool read_model(se3di_reader *reader, const se3di_node *root)

@@ -34,6 +34,8 @@ typedef struct se3di_element_entry {
     se3di_element_kind kind;
     se3d_constraint constraint;
     se3d_force force;
+    se3d_body body;  /* bushing, force, torque: the body acted on, */
+    double point[3]; /* where */
 } se3di_element_entry;
 
 typedef struct se3di_analysis_entry {

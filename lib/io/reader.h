@@ -60,6 +60,8 @@ bool se3di_read_key_direction(se3di_reader *reader, const se3di_node *map, const
                               double value[3]);
 /* The Euler parameters under `orientation`, left alone where there is none. */
 bool se3di_read_key_orientation(se3di_reader *reader, const se3di_node *map, double p[4]);
+/* The Euler parameters that a map says; NULL: left alone. */
+bool se3di_read_orientation(se3di_reader *reader, const se3di_node *node, double p[4]);
 /* A number, or a function of `variables` (NULL at the end, the first is the time): then *function
  * is not null. */
 bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const char *const *variables,
@@ -71,6 +73,12 @@ bool se3di_read_key_body(se3di_reader *reader, const se3di_node *map, const char
 /* The joint whose name stands under `key`. */
 bool se3di_read_key_joint(se3di_reader *reader, const se3di_node *map, const char *key,
                           se3d_constraint *joint);
+/* The coordinate of `joint` under `coordinate`, or the only one that it has. */
+bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *map, se3d_constraint joint,
+                               int32_t *coordinate);
+/* body_i and body_j, which must differ; `what` is "a spring", ... */
+bool se3di_read_bodies_ij(se3di_reader *reader, const se3di_node *node, const char *what,
+                          const se3di_body_entry *bodies[2]);
 /* A point of a body: three coordinates or the name of one of its markers; left alone where there is
  * none. */
 bool se3di_read_key_point(se3di_reader *reader, const se3di_node *map, const char *key,
@@ -96,6 +104,11 @@ bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_elem
 /* One that a pair of bodies carries: used for joints and two of the constraints. */
 bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *type,
                      se3di_element_entry *entry);
+
+/* Force elements of one type each. */
+bool se3di_read_bushing(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry);
+bool se3di_read_friction(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry);
+bool se3di_read_stop(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry);
 
 /* Compile the text of `node`; def->symbols NULL: the parameters. */
 bool se3di_read_compile(se3di_reader *reader, const se3di_node *node, se3d_expression_def *def,

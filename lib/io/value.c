@@ -280,7 +280,11 @@ static bool read_axis_angle(se3di_reader *reader, const se3di_node *map, double 
 
 bool se3di_read_key_orientation(se3di_reader *reader, const se3di_node *map, double p[4])
 {
-    const se3di_node *node = se3di_node_get(map, "orientation");
+    return se3di_read_orientation(reader, se3di_node_get(map, "orientation"), p);
+}
+
+bool se3di_read_orientation(se3di_reader *reader, const se3di_node *node, double p[4])
+{
     if (!node) {
         return true;
     }
