@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The bench's driver of this library. METHOD: dop853, rk45, generalized_alpha, hht, bdf, radau,
- * rattle, with /rp behind it for Euler parameters; `evaluation` measures single accelerations:
- * SECONDS is then for the number of evaluations in EVALUATIONS. */
+ * rattle, with /rp behind it for Euler parameters. */
 #define _POSIX_C_SOURCE 200809L
 #include "driver.h"
 #include "mechanisms.h"
-
-#include <stdlib.h>
-
-#include "integrator/state.h"
-#include "system/system_internal.h"
 
 static int find_method(const char *text, se3d_solver_def *def)
 {
@@ -74,34 +68,6 @@ static void run_solver(const bench_request *request, const bench_mechanism *m, s
     }
 }
 
-/* Internal functions: what one acceleration costs inside an explicit method. */
-static void run_evaluation(const bench_request *request, const bench_mechanism *m,
-                           bench_answer *answer)
-{
-    se3di_model *model = &m->system->model;
-    se3di_equations equations;
-    const se3di_formulation *formulation = se3di_formulation_find(
-        strchr(request->method, '/') ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA);
-    if (se3di_equations_init(&equations, model, formulation, &m->system->error) < 0) {
-        bench_fail(answer, "no memory");
-        return;
-    }
-    (void)se3di_state_solve(&equations, 0.0);
-    se3di_kkt_settings settings = se3di_state_begin(&equations, 1e-12);
-    int evaluations = 20 + 20000 / request->n, rounds = 10;
-    answer->seconds = 1e300;
-    for (int round = 0; round < rounds; ++round) {
-        double begin = bench_clock();
-        for (int k = 0; k < evaluations; ++k) {
-            (void)se3di_state_evaluate(&equations, 0.0);
-        }
-        answer->seconds = fmin(answer->seconds, bench_clock() - begin);
-    }
-    answer->evaluations = evaluations;
-    se3di_state_end(&equations, &settings);
-    se3di_equations_destroy(&equations);
-}
-
 static void run(const bench_request *request, bench_answer *answer)
 {
     bench_mechanism m = bench_build(request->kind, request->n);
@@ -109,8 +75,6 @@ static void run(const bench_request *request, bench_answer *answer)
     se3d_solver *solver = NULL;
     if (m.status < 0) {
         bench_fail(answer, se3d_system_get_error(m.system));
-    } else if (strncmp(request->method, "evaluation", 10) == 0) {
-        run_evaluation(request, &m, answer);
     } else {
         int fixed = find_method(request->method, &def);
         def.step = fixed == 1 ? request->setting : 0.0;

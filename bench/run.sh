@@ -27,7 +27,7 @@ mkdir -p "$build" || exit 1
 {
     cd "$root" && cmake --preset release -B "$build" -DSE3D_BUILD_BENCH=ON \
         -DSE3D_BUILD_TESTS=OFF -DSE3D_BUILD_EXAMPLES=OFF &&
-        cmake --build "$build" --target bench_bench_serve -j "$(se3d_jobs)"
+        cmake --build "$build" --target bench_bench_serve bench_bench_evaluation -j "$(se3d_jobs)"
 } >"$build/build.log" 2>&1 || {
     cat "$build/build.log" >&2
     exit 1
