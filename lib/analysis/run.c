@@ -61,6 +61,20 @@ static se3d_status allocate_work(se3di_run *run)
                                : SE3D_OK;
 }
 
+/* auto: friction sticks by a spring that only an implicit method can follow. */
+static void choose_method(se3di_run *run)
+{
+    int32_t method = SE3D_METHOD_DOP853;
+    for (size_t k = 0; run->automatic && k < run->model->force_slots.count; ++k) {
+        if (run->model->forces[k].type == SE3DI_FORCE_FRICTION) {
+            method = SE3D_METHOD_GENERALIZED_ALPHA;
+        }
+    }
+    if (run->automatic) {
+        run->integration.method = se3di_integrator_find(method);
+    }
+}
+
 /* Build what the model's structure decides. */
 static se3d_status prepare(se3di_run *run)
 {
@@ -68,6 +82,7 @@ static se3d_status prepare(se3di_run *run)
         return SE3D_OK;
     }
     release(run);
+    choose_method(run);
     se3di_counters counters = run->equations.counters;
     SE3DI_TRY(se3di_equations_init(&run->equations, run->model, run->formulation, run->error));
     run->equations.counters = counters;

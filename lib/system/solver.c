@@ -81,6 +81,7 @@ static void configure(se3di_run *run, const se3d_solver_def *def)
     run->formulation = def->analysis == SE3D_ANALYSIS_EQUILIBRIUM /* it knows no velocities */
                            ? &se3di_formulation_romega
                            : se3di_formulation_find(def->formulation);
+    run->automatic = def->method == SE3D_METHOD_AUTO;
     run->integration.method = se3di_integrator_find(def->method);
     run->integration.settings = (se3di_integrator_settings){
         .step = def->step,

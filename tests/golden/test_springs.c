@@ -163,8 +163,8 @@ static se3d_solver *make_solver(problem *p, int32_t method, int32_t formulation,
 }
 
 /* The largest error of coordinate, rate and acceleration over the table's first `rows` rows. */
-static double trajectory_error(build_problem build, int32_t coordinate, int columns, int32_t method,
-                               int32_t formulation, double step)
+static double trajectory_error(build_problem build, se3d_coordinate coordinate, int columns,
+                               int32_t method, int32_t formulation, double step)
 {
     problem p = {0};
     double worst = 0.0;
@@ -188,7 +188,7 @@ static double trajectory_error(build_problem build, int32_t coordinate, int colu
     return worst;
 }
 
-static void check_order(build_problem build, int32_t coordinate, int columns, double size)
+static void check_order(build_problem build, se3d_coordinate coordinate, int columns, double size)
 {
     for (int32_t formulation = 0; formulation < 2; ++formulation) {
         for (int32_t method = SE3D_METHOD_GENERALIZED_ALPHA; method <= SE3D_METHOD_HHT; ++method) {
