@@ -5,6 +5,7 @@
     check_abi.py symbols LIBRARY.so   headers, symbol map and exports agree
     check_abi.py globals ARCHIVE.a..  no writable global or thread-local data
     check_abi.py calls ARCHIVE.a..    nothing that prints, aborts, or allocates past the allocator
+    check_abi.py duplicates ARCHIVE.a..  no symbol defined twice, within or across archives
     check_abi.py padding              no padding in public structs (compiler's -Wpadded)
     check_abi.py soname LIBRARY.so..  the shared object's name has the major version only
     check_abi.py update               write the symbol maps from the headers
@@ -173,6 +174,20 @@ def global_data(paths):
     return problems
 
 
+def duplicates(paths):
+    """A program that links both archives must not depend on their order."""
+    defined, problems = {}, []
+    for path in paths:
+        for line in run("nm", "-A", "-g", "--defined-only", path).splitlines():
+            place, _, rest = line.rpartition(":")
+            kind, name = rest.split()[-2:]
+            member = f"{Path(path).name}({place.split(':')[-1]})"
+            if name in defined:
+                problems.append(f"{name} ({kind}) is defined by {defined[name]} and {member}")
+            defined.setdefault(name, member)
+    return problems
+
+
 FORBIDDEN = ("abort exit _exit _Exit quick_exit atexit signal raise longjmp printf vprintf puts "
              "putchar putc perror stdout stderr stdin setlocale getenv setenv rand srand random time "
              "system popen").split()
@@ -229,6 +244,7 @@ def soname(paths):
 
 def main():
     checks = {"symbols": lambda p: symbols(p[0]), "globals": global_data, "calls": calls,
+              "duplicates": duplicates,
               "padding": lambda p: padding(), "soname": soname, "update": lambda p: update()}
     if len(sys.argv) < 2 or sys.argv[1] not in checks:
         sys.exit(__doc__)

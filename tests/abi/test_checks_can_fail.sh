@@ -36,6 +36,10 @@ printf '%s\n' '#include <stdio.h>' 'void se3di_say(void);' \
 "$cc" -c lib/math/bad.c -o bad.o && "$cc" -c lib/math/say.c -o say.o && ar rc libse3d.a bad.o say.o
 reject bss $abi globals libse3d.a
 reject puts $abi calls libse3d.a
+printf '%s\n' 'void se3di_say(void);' 'void se3di_say(void) {}' >lib/io/say.c
+"$cc" -c lib/io/say.c -o say_io.o && ar rc libse3d-io.a say_io.o
+reject 'se3di_say (T) is defined by libse3d.a(say.o) and libse3d-io.a(say_io.o)' \
+    $abi duplicates libse3d.a libse3d-io.a
 
 $abi update >update.log || { cat update.log; exit 1; }
 for name in se3d_status_get_text se3d_version_get_text; do

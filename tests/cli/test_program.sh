@@ -196,6 +196,8 @@ has "$dir/out" 'Phi_pi'
 expect 'check' 0 "$program" check "$models/fourbar.yaml"
 has "$dir/out" '3 redundant'
 has "$dir/out" '1 degrees of freedom'
+expect 'check without masses' 0 "$program" check "$models/me751_jacobian.yaml"
+has "$dir/out" '6 equations, rank 6'
 expect 'check --json' 0 "$program" check "$models/fourbar.yaml" --json
 has "$dir/out" '"freedoms": 1'
 

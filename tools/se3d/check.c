@@ -80,7 +80,8 @@ int command_check(int count, char *const *words)
         fputs(o.help ? help : "", stdout);
         return code;
     }
-    const se3d_model_options how = options_get_model(&o);
+    se3d_model_options how = options_get_model(&o);
+    how.mass_optional = 1; /* constraints know no mass */
     code = options_read_model(&o, &how, &model);
     if (code == EXIT_DONE) {
         code = check_model(&o, model);
