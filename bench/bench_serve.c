@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The bench's driver of this library. METHOD: dop853, rk45, generalized_alpha, hht, bdf, radau,
- * rattle, with /rp behind it for Euler parameters. */
+ * rattle, with /rp behind it for Euler parameters; step_dop853 and step_rk45 make equal steps
+ * without error control, as the other engines' RK4 does. */
 #define _POSIX_C_SOURCE 200809L
 #include "driver.h"
 #include "mechanisms.h"
@@ -12,10 +13,11 @@ static int find_method(const char *text, se3d_solver_def *def)
         int32_t method;
         int32_t fixed; /* SETTING is the step */
     } methods[] = {
-        {"dop853", SE3D_METHOD_DOP853, 0}, {"rk45", SE3D_METHOD_RK45, 0},
-        {"bdf", SE3D_METHOD_BDF, 0},       {"radau", SE3D_METHOD_RADAU, 0},
-        {"rattle", SE3D_METHOD_RATTLE, 1}, {"generalized_alpha", SE3D_METHOD_GENERALIZED_ALPHA, 1},
-        {"hht", SE3D_METHOD_HHT, 1},
+        {"dop853", SE3D_METHOD_DOP853, 0},  {"rk45", SE3D_METHOD_RK45, 0},
+        {"bdf", SE3D_METHOD_BDF, 0},        {"radau", SE3D_METHOD_RADAU, 0},
+        {"rattle", SE3D_METHOD_RATTLE, 1},  {"generalized_alpha", SE3D_METHOD_GENERALIZED_ALPHA, 1},
+        {"hht", SE3D_METHOD_HHT, 1},        {"step_dop853", SE3D_METHOD_DOP853, 1},
+        {"step_rk45", SE3D_METHOD_RK45, 1},
     };
     size_t length = strcspn(text, "/");
     def->formulation = text[length] ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA;
@@ -48,6 +50,20 @@ static void count(const se3d_solver *solver, const se3d_solver_stats *before, be
     answer->factorizations = (double)(stats.factorizations - before->factorizations);
 }
 
+static se3d_status advance(const bench_request *request, se3d_solver *solver, int part)
+{
+    if (strncmp(request->method, "step_", 5) != 0) {
+        return se3d_solver_run(solver, request->duration * part / request->samples);
+    }
+    long steps = bench_steps(request->duration, request->setting);
+    long end = steps * part / request->samples;
+    se3d_status status = SE3D_OK;
+    for (long k = steps * (part - 1) / request->samples; k < end && status >= 0; ++k) {
+        status = se3d_solver_step(solver, request->duration / (double)steps);
+    }
+    return status;
+}
+
 static void run_solver(const bench_request *request, const bench_mechanism *m, se3d_solver *solver,
                        bench_answer *answer)
 {
@@ -58,7 +74,7 @@ static void run_solver(const bench_request *request, const bench_mechanism *m, s
     (void)se3d_solver_get_stats(solver, &before);
     for (int k = 1; k <= request->samples && status >= 0; ++k) {
         double begin = bench_clock();
-        status = se3d_solver_run(solver, request->duration * k / request->samples);
+        status = advance(request, solver, k);
         answer->seconds += bench_clock() - begin;
         look(m, start.total, answer);
     }
