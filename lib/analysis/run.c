@@ -152,6 +152,12 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
     return SE3D_OK;
 }
 
+static int has_step_control(const se3di_integration *integration)
+{
+    return integration->method->run && (!integration->method->controls_if_asked ||
+                                        integration->settings.controls_error);
+}
+
 static se3d_status run_dynamics(se3di_run *run, double t_end)
 {
     se3di_integration *integration = &run->integration;
@@ -163,7 +169,7 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
     double count = fmax(1.0, ceil(remaining / step - 1e-9));
     se3d_status status = SE3D_OK;
     SE3DI_TRY(begin_dynamics(run, remaining / count));
-    if (integration->method->run) {
+    if (has_step_control(integration)) {
         status = integration->method->run(integration, t_end);
         SE3DI_TRY(status);
     } else {

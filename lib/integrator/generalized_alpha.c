@@ -28,6 +28,13 @@ static se3d_status step(se3di_integration *integration, double h)
     return se3di_newmark_step(integration, &m, h);
 }
 
+static se3d_status run(se3di_integration *integration, double t_end)
+{
+    se3di_newmark m = parameters(integration);
+    m.tolerance = integration->settings.tolerance;
+    return se3di_newmark_run(integration, &m, t_end);
+}
+
 const se3di_integrator se3di_integrator_generalized_alpha = {
     .name = "generalized_alpha",
     .tag = SE3D_METHOD_GENERALIZED_ALPHA,
@@ -35,5 +42,7 @@ const se3di_integrator se3di_integrator_generalized_alpha = {
     .work_count = se3di_newmark_work_count,
     .start = start,
     .step = step,
+    .run = run,
+    .controls_if_asked = 1,
     .is_implicit = 1,
 };

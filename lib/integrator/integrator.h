@@ -19,6 +19,8 @@ typedef struct se3di_integrator_settings {
     double alpha;           /* hht */
     int32_t iterations_max;
     int32_t order;
+    int32_t controls_error; /* the user gave a tolerance and no step */
+    int32_t reserved;
 } se3di_integrator_settings;
 
 typedef struct se3di_integration se3di_integration;
@@ -32,10 +34,11 @@ typedef struct se3di_integrator {
     se3d_status (*start)(se3di_integration *integration, double h);
     /* One step of length h. */
     se3d_status (*step)(se3di_integration *integration, double h);
-    /* Several steps to t_end with own step control; NULL: steps of settings.step that end there
-     * exactly. */
+    /* Several steps to t_end with own step control; NULL, or step control not wanted: steps of
+     * settings.step that end there exactly. */
     se3d_status (*run)(se3di_integration *integration, double t_end);
-    int32_t is_implicit; /* not 0: integration->newton is made */
+    int32_t is_implicit;       /* not 0: integration->newton is made */
+    int32_t controls_if_asked; /* not 0: `run` only where settings.controls_error */
 } se3di_integrator;
 
 struct se3di_integration {
@@ -43,6 +46,7 @@ struct se3di_integration {
     se3di_equations *equations;
     se3di_integrator_settings settings;
     double *work;
+    double error;        /* of the last step, relative to the tolerance, where it is controlled */
     se3di_newton newton; /* of implicit methods */
 };
 

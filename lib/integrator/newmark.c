@@ -2,6 +2,7 @@
 #include "integrator/newmark.h"
 
 #include "force/force.h"
+#include "integrator/state.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
@@ -18,10 +19,11 @@ static void copy(double *to, const double *from, size_t count)
     }
 }
 
-/* History: a_n [n], vdot_n [n], the step they belong to, whether rows are redundant. */
+/* History: a_n [n], vdot_n [n], the step they belong to, whether rows are redundant, the next step
+ * of step control (0: none yet). */
 size_t se3di_newmark_history_count(const se3di_assembly *assembly)
 {
-    return 2 * (size_t)assembly->unknown_count + 2;
+    return 2 * (size_t)assembly->unknown_count + 3;
 }
 
 /* Work: v_n, vdot, a, x [n]; lambda [rows]. */
@@ -322,6 +324,23 @@ static void rescale_history(double *history, uint32_t n, double h)
     history[2 * (size_t)n] = h;
 }
 
+/* The local error of positions, relative to the tolerance. */
+static double estimate_error(const newmark_step *step)
+{
+    const se3di_assembly *assembly = &step->equations->assembly;
+    size_t block = (size_t)assembly->formulation->block;
+    double length = se3di_state_length(assembly->model);
+    double factor = step->h * step->h * (fabs(step->method->beta - 1.0 / 6.0) + 1.0 / 24.0);
+    double worst = 0.0;
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        size_t part = k % block;
+        double size = fabs(step->vdot[k] - step->vdot_n[k]);
+        size *= part < 3 ? 1.0 / length : block == 8 ? 2.0 : 1.0;
+        worst = part == 7 || size <= worst ? worst : size;
+    }
+    return factor * worst / step->method->tolerance;
+}
+
 se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newmark *method,
                                double h)
 {
@@ -358,6 +377,11 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
         update_state(&step);
         status = solve_step(&step);
     }
+    integration->error = HUGE_VAL;
+    if (status >= 0 && method->tolerance > 0.0) {
+        integration->error = estimate_error(&step);
+        status = integration->error <= 1.0 ? SE3D_OK : SE3D_ERR_STEP_SIZE;
+    }
     if (status < 0) {
         se3di_equations_restore(equations);
         se3di_newton_restore_memory(&integration->newton);
@@ -365,4 +389,44 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
     }
     accept(&step);
     return se3di_work_accept(assembly->model, h);
+}
+
+/* From the error of a step; a rejected one is at least halved. */
+static double next_step(double h, double error)
+{
+    double factor = isfinite(error) ? 0.85 / cbrt(fmax(error, 1e-6)) : 0.25;
+    return h * (error <= 1.0 ? fmin(2.0, factor) : fmin(0.5, fmax(0.1, factor)));
+}
+
+se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmark *method,
+                              double t_end)
+{
+    se3di_equations *equations = integration->equations;
+    se3di_model *model = equations->assembly.model;
+    double *next = model->history + 2 * (size_t)equations->assembly.unknown_count + 2;
+    *next = *next > 0.0 ? *next : 1e-4;
+    while (model->time < t_end) {
+        double t = model->time;
+        double remaining = t_end - t;
+        double h = *next < remaining ? fmin(*next, 0.5 * remaining) : remaining;
+        double smallest = 1e-12 * fmax(1e-3, fabs(t));
+        se3d_status status = se3di_newmark_step(integration, method, h);
+        if (status >= 0) {
+            double wanted = next_step(h, integration->error);
+            *next = h < *next ? fmax(*next, wanted) : wanted; /* shortened only for t_end */
+            continue;
+        }
+        ++equations->counters.rejected;
+        *next = next_step(h, integration->error);
+        if (!(*next > smallest)) {
+            return status == SE3D_ERR_STEP_SIZE
+                       ? se3di_error_set(equations->error, status,
+                                         "t = %g s: the step fell to %.3g s: the tolerance %g "
+                                         "cannot be met here; the motion is not smooth",
+                                         t, *next, integration->settings.tolerance)
+                       : status;
+        }
+    }
+    model->time = t_end;
+    return SE3D_OK;
 }

@@ -18,13 +18,20 @@
 
 typedef struct se3di_newmark {
     double alpha_m, alpha_f, beta, gamma;
+    double tolerance; /* of the local error of positions; 0: any */
 } se3di_newmark;
 
 size_t se3di_newmark_history_count(const se3di_assembly *assembly);
 size_t se3di_newmark_work_count(const se3di_assembly *assembly);
 se3d_status se3di_newmark_start(se3di_integration *integration, const se3di_newmark *method,
                                 double h);
+/* One step. A step whose local error of positions,
+ *     h^2 (|beta - 1/6| + 1/24) (vdot - vdot_n),
+ * exceeds method->tolerance is undone: STEP_SIZE, and integration->error > 1. */
 se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newmark *method,
                                double h);
+/* Steps of controlled error that end at t_end. */
+se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmark *method,
+                              double t_end);
 
 #endif
