@@ -1,0 +1,808 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The rows of the misuse table: calls, definitions and their members. A new public function is a
+ * CALL and a row; a new def a define_ function and a list of members. */
+#ifndef SE3D_TESTS_MISUSE_CALLS_H
+#define SE3D_TESTS_MISUSE_CALLS_H
+
+#include "misuse/misuse_world.h"
+
+#define MEMBER(kind, type, name, count)                                                            \
+    {                                                                                              \
+        (kind), offsetof(type, name), (count)                                                      \
+    }
+#define END                                                                                        \
+    {                                                                                              \
+        0, 0, 0                                                                                    \
+    }
+
+/* Copy `def` into the arguments' storage. */
+#define STORE(def) memcpy(&a->storage, &(def), sizeof(def))
+
+static se3d_body ground_of(const arguments *a)
+{
+    se3d_body ground;
+    CHECK(!se3d_system_get_ground(a->system, &ground));
+    return ground;
+}
+
+static void define_body(arguments *a)
+{
+    se3d_body_def def = body_def("new");
+    STORE(def);
+}
+static const field body_fields[] = {MEMBER('N', se3d_body_def, name, 1),
+                                    MEMBER('n', se3d_body_def, mass, 1),
+                                    MEMBER('n', se3d_body_def, inertia, 6),
+                                    MEMBER('n', se3d_body_def, position, 3),
+                                    MEMBER('n', se3d_body_def, orientation, 4),
+                                    MEMBER('n', se3d_body_def, velocity, 3),
+                                    MEMBER('n', se3d_body_def, angular_velocity, 3),
+                                    END};
+
+static void define_marker(arguments *a)
+{
+    se3d_marker_def def = se3d_marker_def_default();
+    def.body = a->use.body;
+    STORE(def);
+}
+static const field marker_fields[] = {
+    MEMBER('N', se3d_marker_def, name, 1), MEMBER('b', se3d_marker_def, body, 1),
+    MEMBER('n', se3d_marker_def, position, 3), MEMBER('n', se3d_marker_def, orientation, 4), END};
+
+static void define_primitive(arguments *a)
+{
+    se3d_primitive_def def = se3d_primitive_def_default();
+    def.type = SE3D_PRIMITIVE_CD;
+    def.body_i = ground_of(a);
+    def.body_j = a->use.body;
+    def.a_i[0] = def.a_j[1] = def.c[2] = 1.0;
+    def.function = a->use.function;
+    STORE(def);
+}
+static const field primitive_fields[] = {
+    MEMBER('N', se3d_primitive_def, name, 1),     MEMBER('b', se3d_primitive_def, body_i, 1),
+    MEMBER('b', se3d_primitive_def, body_j, 1),   MEMBER('n', se3d_primitive_def, point_i, 3),
+    MEMBER('n', se3d_primitive_def, point_j, 3),  MEMBER('n', se3d_primitive_def, c, 3),
+    MEMBER('f', se3d_primitive_def, function, 1), END};
+
+static void define_driver(arguments *a)
+{
+    se3d_driver_def def = se3d_driver_def_default();
+    def.joint = a->use.pin;
+    STORE(def);
+}
+static const field driver_fields[] = {
+    MEMBER('N', se3d_driver_def, name, 1), MEMBER('c', se3d_driver_def, joint, 1),
+    MEMBER('n', se3d_driver_def, value, 1), MEMBER('f', se3d_driver_def, function, 1), END};
+
+static void define_joint(arguments *a)
+{
+    se3d_joint_def def = se3d_joint_def_default();
+    def.body_i = ground_of(a);
+    def.body_j = a->use.body;
+    def.point_j[0] = def.distance = def.pitch = 1.0;
+    STORE(def);
+}
+static void define_crossed(arguments *a)
+{
+    define_joint(a);
+    const double across[3] = {1.0, 0.0, 0.0};
+    memcpy((char *)&a->storage + offsetof(se3d_joint_def, axis_j), across, sizeof across);
+}
+static const field joint_fields[] = {MEMBER('N', se3d_joint_def, name, 1),
+                                     MEMBER('b', se3d_joint_def, body_i, 1),
+                                     MEMBER('b', se3d_joint_def, body_j, 1),
+                                     MEMBER('n', se3d_joint_def, point_i, 3),
+                                     MEMBER('n', se3d_joint_def, point_j, 3),
+                                     MEMBER('n', se3d_joint_def, axis_i, 3),
+                                     MEMBER('n', se3d_joint_def, axis_j, 3),
+                                     MEMBER('n', se3d_joint_def, angle0, 1),
+                                     END};
+
+static void define_coupler(arguments *a)
+{
+    se3d_coupler_def def = se3d_coupler_def_default();
+    def.joint[0] = a->use.pin;
+    def.joint[1] = a->use.slide;
+    def.coordinate[1] = SE3D_COORDINATE_DISPLACEMENT;
+    def.ratio[0] = def.ratio[1] = 1.0;
+    def.count = 2;
+    STORE(def);
+}
+static const field coupler_fields[] = {
+    MEMBER('N', se3d_coupler_def, name, 1),     MEMBER('c', se3d_coupler_def, joint, 1),
+    MEMBER('n', se3d_coupler_def, ratio, 2),    MEMBER('n', se3d_coupler_def, value, 1),
+    MEMBER('f', se3d_coupler_def, function, 1), END};
+
+static void define_tsda(arguments *a)
+{
+    se3d_tsda_def def = se3d_tsda_def_default();
+    def.body_i = ground_of(a);
+    def.body_j = a->use.body;
+    def.point_j[0] = 1.0;
+    STORE(def);
+}
+static const field tsda_fields[] = {
+    MEMBER('N', se3d_tsda_def, name, 1),    MEMBER('b', se3d_tsda_def, body_i, 1),
+    MEMBER('b', se3d_tsda_def, body_j, 1),  MEMBER('n', se3d_tsda_def, point_i, 3),
+    MEMBER('n', se3d_tsda_def, point_j, 3), MEMBER('n', se3d_tsda_def, k, 1),
+    MEMBER('n', se3d_tsda_def, c, 1),       MEMBER('n', se3d_tsda_def, l0, 1),
+    MEMBER('f', se3d_tsda_def, h, 1),       END};
+
+static void define_rsda(arguments *a)
+{
+    se3d_rsda_def def = se3d_rsda_def_default();
+    def.joint = a->use.pin;
+    STORE(def);
+}
+static const field rsda_fields[] = {MEMBER('N', se3d_rsda_def, name, 1),
+                                    MEMBER('c', se3d_rsda_def, joint, 1),
+                                    MEMBER('n', se3d_rsda_def, k, 1),
+                                    MEMBER('n', se3d_rsda_def, c, 1),
+                                    MEMBER('n', se3d_rsda_def, theta0, 1),
+                                    MEMBER('f', se3d_rsda_def, h, 1),
+                                    END};
+
+static void define_load(arguments *a)
+{
+    se3d_load_def def = se3d_load_def_default();
+    def.body = a->use.body;
+    STORE(def);
+}
+static const field load_fields[] = {
+    MEMBER('N', se3d_load_def, name, 1),     MEMBER('b', se3d_load_def, body, 1),
+    MEMBER('n', se3d_load_def, point, 3),    MEMBER('n', se3d_load_def, value, 3),
+    MEMBER('f', se3d_load_def, function, 3), END};
+static const field torque_fields[] = {
+    MEMBER('N', se3d_load_def, name, 1), MEMBER('b', se3d_load_def, body, 1),
+    MEMBER('n', se3d_load_def, value, 3), MEMBER('f', se3d_load_def, function, 3), END};
+
+static void define_bushing(arguments *a)
+{
+    se3d_bushing_def def = se3d_bushing_def_default();
+    def.body_i = ground_of(a);
+    def.body_j = a->use.body;
+    STORE(def);
+}
+static const field bushing_fields[] = {MEMBER('N', se3d_bushing_def, name, 1),
+                                       MEMBER('b', se3d_bushing_def, body_i, 1),
+                                       MEMBER('b', se3d_bushing_def, body_j, 1),
+                                       MEMBER('n', se3d_bushing_def, point_i, 3),
+                                       MEMBER('n', se3d_bushing_def, point_j, 3),
+                                       MEMBER('n', se3d_bushing_def, orientation_i, 4),
+                                       MEMBER('n', se3d_bushing_def, orientation_j, 4),
+                                       MEMBER('n', se3d_bushing_def, K, 36),
+                                       MEMBER('n', se3d_bushing_def, C, 36),
+                                       END};
+
+static void define_friction(arguments *a)
+{
+    se3d_friction_def def = se3d_friction_def_default();
+    def.joint = a->use.pin;
+    def.mu = 0.1;
+    def.radius = 0.01;
+    STORE(def);
+}
+static const field friction_fields[] = {MEMBER('N', se3d_friction_def, name, 1),
+                                        MEMBER('c', se3d_friction_def, joint, 1),
+                                        MEMBER('n', se3d_friction_def, mu, 1),
+                                        MEMBER('n', se3d_friction_def, mu_static, 1),
+                                        MEMBER('n', se3d_friction_def, radius, 1),
+                                        MEMBER('n', se3d_friction_def, limit, 1),
+                                        MEMBER('n', se3d_friction_def, viscous, 1),
+                                        MEMBER('n', se3d_friction_def, presliding, 1),
+                                        END};
+
+/* Infinite bounds are allowed (none), a joint that is null too. */
+static void define_stop(arguments *a)
+{
+    se3d_stop_def def = se3d_stop_def_default();
+    def.body_i = ground_of(a);
+    def.body_j = a->use.body;
+    def.point_j[0] = 1.0;
+    def.upper = 2.0;
+    def.k = 1e5;
+    STORE(def);
+}
+static const field stop_fields[] = {
+    MEMBER('N', se3d_stop_def, name, 1),        MEMBER('b', se3d_stop_def, body_i, 1),
+    MEMBER('b', se3d_stop_def, body_j, 1),      MEMBER('n', se3d_stop_def, point_i, 3),
+    MEMBER('n', se3d_stop_def, point_j, 3),     MEMBER('n', se3d_stop_def, k, 1),
+    MEMBER('n', se3d_stop_def, restitution, 1), END};
+
+static se3d_status no_force(void *ctx, double t, const se3d_body_motion motion[2],
+                            double wrench[12], double *K, double *D)
+{
+    (void)ctx, (void)t, (void)motion, (void)K, (void)D;
+    memset(wrench, 0, 12 * sizeof *wrench);
+    return SE3D_OK;
+}
+static void define_callback(arguments *a)
+{
+    se3d_force_callback_def def = se3d_force_callback_def_default();
+    def.body_i = ground_of(a);
+    def.body_j = a->use.body;
+    def.callback = no_force;
+    STORE(def);
+}
+static const field callback_fields[] = {MEMBER('N', se3d_force_callback_def, name, 1),
+                                        MEMBER('b', se3d_force_callback_def, body_i, 1),
+                                        MEMBER('b', se3d_force_callback_def, body_j, 1), END};
+
+static void define_function(arguments *a)
+{
+    se3d_function_def def = se3d_function_def_default();
+    STORE(def);
+}
+static const field function_fields[] = {MEMBER('n', se3d_function_def, constant, 1), END};
+
+static void define_solver(arguments *a)
+{
+    se3d_solver_def def = se3d_solver_def_default();
+    STORE(def);
+}
+static const field solver_fields[] = {
+    MEMBER('n', se3d_solver_def, step, 1), MEMBER('n', se3d_solver_def, tolerance, 1),
+    MEMBER('n', se3d_solver_def, spectral_radius, 1), MEMBER('n', se3d_solver_def, alpha, 1), END};
+
+static void define_summary(arguments *a)
+{
+    a->storage.struct_size = sizeof(se3d_check_summary);
+}
+
+CALL(body_get_position, a->system, a->use.body, a->out[0])
+CALL(body_get_velocity, a->system, a->use.body, a->out[0])
+CALL(body_get_angular_velocity, a->system, a->use.body, a->out[0])
+CALL(body_get_acceleration, a->system, a->use.body, a->out[0])
+CALL(body_get_angular_acceleration, a->system, a->use.body, a->out[0])
+CALL(body_get_orientation, a->system, a->use.body, a->out[0])
+CALL(body_set_position, a->system, a->use.body, a->in)
+CALL(body_set_velocity, a->system, a->use.body, a->in)
+CALL(body_set_angular_velocity, a->system, a->use.body, a->in)
+CALL(body_set_orientation, a->system, a->use.body, a->in)
+CALL(body_create, a->system, a->def, a->out[0])
+CALL(body_find, a->system, a->text, a->out[0])
+CALL(body_get_name, a->system, a->use.body, a->out[0])
+CALL(body_get_fixed, a->system, a->use.body, a->out[0])
+CALL(body_get_held, a->system, a->use.body, a->out[0])
+CALL(body_set_held, a->system, a->use.body, 1)
+CALL(body_get_point, a->system, a->use.body, a->in, a->out[0])
+CALL(body_get_mass, a->system, a->use.body, a->out[0], a->out[1])
+CALL(marker_create, a->system, a->def, a->out[0])
+CALL(marker_destroy, a->system, a->use.marker)
+CALL(marker_get_name, a->system, a->use.marker, a->out[0])
+CALL(marker_get_position, a->system, a->use.marker, a->out[0])
+CALL(marker_get_velocity, a->system, a->use.marker, a->out[0])
+CALL(marker_get_acceleration, a->system, a->use.marker, a->out[0])
+CALL(marker_get_orientation, a->system, a->use.marker, a->out[0])
+CALL(marker_get_body, a->system, a->use.marker, a->out[0])
+CALL(primitive_create, a->system, a->def, a->out[0])
+CALL(constraint_destroy, a->system, a->use.driver)
+CALL(constraint_find, a->system, a->text, a->out[0])
+CALL(constraint_get_name, a->system, a->use.pin, a->out[0])
+CALL(constraint_get_type, a->system, a->use.pin, a->out[0])
+CALL(constraint_count_equations, a->system, a->use.pin, a->out[0])
+CALL(constraint_count_bodies, a->system, a->use.pin, a->out[0])
+CALL(constraint_get_multipliers, a->system, a->use.pin, a->out[0])
+CALL(constraint_get_equation_name, a->system, a->use.pin, a->index, a->out[0])
+CALL(constraint_get_body, a->system, a->use.pin, a->index, a->out[0])
+CALL(constraint_eval, a->system, a->use.pin, SE3D_FORMULATION_RP, a->out[0], a->out[1], a->out[2])
+CALL(constraint_eval_jacobian, a->system, a->use.pin, SE3D_FORMULATION_RP, a->index, a->out[0],
+     a->out[1])
+CALL(constraint_get_reaction, a->system, a->use.pin, a->out[0], a->out[1])
+CALL(constraint_get_reaction_at, a->system, a->use.pin, a->index, a->in, (se3d_marker){0, 0},
+     a->out[0])
+CALL(driver_get_value, a->system, a->use.driver, a->out[0])
+CALL(driver_get_effort, a->system, a->use.driver, a->out[0])
+CALL(driver_create, a->system, a->def, a->out[0])
+CALL(joint_create_fixed, a->system, a->def, a->out[0])
+CALL(joint_create_revolute, a->system, a->def, a->out[0])
+CALL(joint_create_prismatic, a->system, a->def, a->out[0])
+CALL(joint_create_cylindrical, a->system, a->def, a->out[0])
+CALL(joint_create_spherical, a->system, a->def, a->out[0])
+CALL(joint_create_universal, a->system, a->def, a->out[0])
+CALL(joint_create_planar, a->system, a->def, a->out[0])
+CALL(joint_create_screw, a->system, a->def, a->out[0])
+CALL(joint_create_point_on_line, a->system, a->def, a->out[0])
+CALL(joint_create_point_on_plane, a->system, a->def, a->out[0])
+CALL(joint_create_distance, a->system, a->def, a->out[0])
+CALL(joint_create_revolute_spherical, a->system, a->def, a->out[0])
+CALL(joint_create_revolute_cylindrical, a->system, a->def, a->out[0])
+CALL(joint_create_parallel, a->system, a->def, a->out[0])
+CALL(joint_create_perpendicular, a->system, a->def, a->out[0])
+CALL(joint_create_orientation, a->system, a->def, a->out[0])
+CALL(joint_create_perpendicular1, a->system, a->def, a->out[0])
+CALL(joint_create_perpendicular2, a->system, a->def, a->out[0])
+CALL(joint_get_coordinate, a->system, a->use.pin, SE3D_COORDINATE_ANGLE, a->out[0], a->out[1],
+     a->out[2])
+CALL(joint_create_coupler, a->system, a->def, a->out[0])
+CALL(joint_create_rack_pinion, a->system, NULL, a->use.pin, a->use.slide, a->number, a->out[0])
+CALL(force_create_tsda, a->system, a->def, a->out[0])
+CALL(force_create_rsda, a->system, a->def, a->out[0])
+CALL(force_create_load, a->system, a->def, a->out[0])
+CALL(force_create_torque, a->system, a->def, a->out[0])
+CALL(force_create_bushing, a->system, a->def, a->out[0])
+CALL(force_create_friction, a->system, a->def, a->out[0])
+CALL(force_create_stop, a->system, a->def, a->out[0])
+CALL(force_create_callback, a->system, a->def, a->out[0])
+CALL(force_destroy, a->system, a->use.force)
+CALL(force_find, a->system, a->text, a->out[0])
+CALL(force_get_name, a->system, a->use.force, a->out[0])
+CALL(force_get_type, a->system, a->use.force, a->out[0])
+CALL(force_get_state, a->system, a->use.force, a->out[0], a->out[1], a->out[2])
+CALL(force_get_power, a->system, a->use.force, a->out[0], a->out[1], a->out[2])
+CALL(force_get_wrench, a->system, a->use.force, a->index, a->out[0])
+CALL(function_create, a->system, a->def, a->out[0])
+CALL(function_create_expression, a->system, "2*t", a->out[0])
+CALL(function_destroy, a->system, a->use.function)
+CALL(function_eval, a->system, a->use.function, a->in, a->out[0])
+static se3d_status call_solver_create(arguments *a)
+{
+    se3d_status status = se3d_solver_create(a->system, a->def, a->out[0]);
+    se3d_solver *made = NULL;
+    if (status >= 0) {
+        memcpy(&made, a->out[0], sizeof made);
+        se3d_solver_destroy(made);
+    }
+    return status;
+}
+CALL(solver_run, a->solver, a->number)
+CALL(solver_step, a->solver, a->number)
+CALL(solver_get_stats, a->solver, a->out[0])
+CALL(solver_get_method, a->solver, a->out[0])
+static se3d_status call_check_create(arguments *a)
+{
+    se3d_status status = se3d_check_create(a->system, a->out[0]);
+    se3d_check *made = NULL;
+    if (status >= 0) {
+        memcpy(&made, a->out[0], sizeof made);
+        se3d_check_destroy(made);
+    }
+    return status;
+}
+CALL(check_get_summary, a->check, (void *)&a->storage)
+CALL(check_get_message, a->check, a->index, a->out[0])
+static se3d_status call_snapshot_create(arguments *a)
+{
+    se3d_status status = se3d_snapshot_create(a->system, a->out[0]);
+    se3d_snapshot *made = NULL;
+    if (status >= 0) {
+        memcpy(&made, a->out[0], sizeof made);
+        se3d_snapshot_destroy(made);
+    }
+    return status;
+}
+CALL(snapshot_restore, a->snapshot, a->system)
+static se3d_status call_system_clone(arguments *a)
+{
+    se3d_status status = se3d_system_clone(a->system, a->out[0]);
+    se3d_system *made = NULL;
+    if (status >= 0) {
+        memcpy(&made, a->out[0], sizeof made);
+        se3d_system_destroy(made);
+    }
+    return status;
+}
+CALL(system_set_gravity, a->system, a->in)
+CALL(system_get_gravity, a->system, a->out[0])
+CALL(system_set_time, a->system, a->number)
+CALL(system_get_time, a->system, a->out[0])
+CALL(system_get_ground, a->system, a->out[0])
+CALL(system_get_body, a->system, a->index, a->out[0])
+CALL(system_get_marker, a->system, a->index, a->out[0])
+CALL(system_get_constraint, a->system, a->index, a->out[0])
+CALL(system_get_force, a->system, a->index, a->out[0])
+CALL(system_get_energy, a->system, a->out[0])
+CALL(system_get_violation, a->system, a->out[0])
+CALL(expression_eval, a->expression, a->in, a->out[0])
+CALL(expression_eval_time, a->expression, a->in, a->out[0])
+CALL(expression_eval_gradient, a->expression, a->in, a->out[0], a->out[1])
+
+/* ---- functions whose cases do not fit the letters ---- */
+
+static se3d_status check_body_destroy(arguments *a)
+{
+    CHECK(se3d_body_destroy(NULL, a->use.body) == SE3D_ERR_NULL);
+    CHECK(se3d_body_destroy(a->system, a->use.body) == SE3D_ERR_IN_USE);
+    CHECK(se3d_body_destroy(a->system, ground_of(a)) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_body_destroy(a->system, (se3d_body){0, 0}) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_constraint_destroy(a->system, a->use.pin) == SE3D_ERR_IN_USE);
+    se3d_body_def def = body_def("short-lived");
+    se3d_body body;
+    CHECK(!se3d_body_create(a->system, &def, &body));
+    CHECK(!se3d_body_destroy(a->system, body));
+    CHECK(se3d_body_destroy(a->system, body) == SE3D_ERR_STALE_HANDLE);
+    return SE3D_OK;
+}
+
+static se3d_status check_body_set_mass(arguments *a)
+{
+    const double good[6] = {1.0, 1.0, 1.0, 0.0, 0.0, 0.0}, flat[6] = {1.0, 1.0, 5.0, 0.0, 0.0, 0.0};
+    const double masses[4] = {0.0, -1.0, (double)NAN, (double)INFINITY};
+    CHECK(se3d_body_set_mass(NULL, a->use.body, 1.0, good) == SE3D_ERR_NULL);
+    CHECK(se3d_body_set_mass(a->system, a->use.body, 1.0, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_body_set_mass(a->system, (se3d_body){0, 0}, 1.0, good) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_body_set_mass(a->system, a->use.body, 1.0, flat) == SE3D_ERR_INVALID_ARGUMENT);
+    for (int k = 0; k < 4; ++k) {
+        CHECK(se3d_body_set_mass(a->system, a->use.body, masses[k], good) ==
+              SE3D_ERR_INVALID_ARGUMENT);
+    }
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "mass = inf");
+    double mass = 0.0;
+    CHECK(!se3d_body_get_mass(a->system, a->use.body, &mass, NULL) && mass == 2.0);
+    return se3d_body_set_mass(a->system, a->use.body, 3.0, good);
+}
+
+static se3d_status check_body_get_all(arguments *a)
+{
+    size_t count = se3d_system_count_bodies(a->system);
+    CHECK(se3d_body_get_all(NULL, count, a->out[0], NULL, NULL, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_body_get_all(a->system, count + 1, a->out[0], NULL, NULL, NULL) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    return se3d_body_get_all(a->system, count, a->out[0], a->out[1], a->out[2], a->out[3]);
+}
+
+static se3d_status check_body_set_all(arguments *a)
+{
+    size_t count = se3d_system_count_bodies(a->system);
+    double r[6] = {0.0}, bad[6] = {0.0, 0.0, 0.0, 0.0, (double)NAN, 0.0};
+    uint64_t hash = se3d_system_hash(a->system);
+    CHECK(se3d_body_set_all(NULL, count, r, NULL, NULL, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_body_set_all(a->system, count - 1, r, NULL, NULL, NULL) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_body_set_all(a->system, count, bad, NULL, NULL, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_body_set_all(a->system, count, NULL, NULL, bad, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_body_set_all(a->system, count, NULL, NULL, NULL, bad) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "finite");
+    CHECK(se3d_system_hash(a->system) == hash);
+    return se3d_body_set_all(a->system, count, r, NULL, NULL, NULL);
+}
+
+static se3d_status check_joint_def_set_frame(arguments *a)
+{
+    const double at[3] = {0.0, 0.0, 0.0}, z[3] = {0.0, 0.0, 1.0}, bad[3] = {0.0, (double)NAN, 1.0};
+    se3d_joint_def def = se3d_joint_def_default();
+    const se3d_system *s = a->system;
+    CHECK(se3d_joint_def_set_frame(s, &def, at, z, NULL) == SE3D_ERR_STALE_HANDLE);
+    def.body_i = ground_of(a);
+    def.body_j = a->use.body;
+    CHECK(se3d_joint_def_set_frame(NULL, &def, at, z, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_joint_def_set_frame(s, NULL, at, z, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_joint_def_set_frame(s, &def, NULL, z, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_joint_def_set_frame(s, &def, at, NULL, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_joint_def_set_frame(s, &def, bad, z, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_joint_def_set_frame(s, &def, at, bad, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_joint_def_set_frame(s, &def, at, at, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_joint_def_set_frame(s, &def, at, z, bad) == SE3D_ERR_INVALID_ARGUMENT);
+    return se3d_joint_def_set_frame(s, &def, at, z, NULL);
+}
+
+static se3d_status check_joint_create_gear(arguments *a)
+{
+    se3d_constraint second, gear = {7, 7};
+    se3d_joint_def def = se3d_joint_def_default();
+    def.body_i = ground_of(a);
+    def.body_j = a->use.body;
+    CHECK(!se3d_joint_create_revolute(a->system, &def, &second));
+    size_t count = se3d_system_count_constraints(a->system);
+    CHECK(se3d_joint_create_gear(NULL, NULL, a->use.pin, second, 2.0, &gear) == SE3D_ERR_NULL);
+    CHECK(gear.index1 == 0 && gear.generation == 0);
+    CHECK(se3d_joint_create_gear(a->system, NULL, a->use.pin, second, 2.0, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_joint_create_gear(a->system, NULL, (se3d_constraint){0, 0}, second, 2.0, &gear) ==
+          SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_joint_create_gear(a->system, NULL, a->use.slide, second, 2.0, &gear) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_joint_create_gear(a->system, NULL, a->use.pin, second, (double)NAN, &gear) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_joint_create_gear(a->system, "taken", a->use.pin, second, 2.0, &gear) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_system_count_constraints(a->system) == count);
+    return se3d_joint_create_gear(a->system, NULL, a->use.pin, second, 2.0, &gear);
+}
+
+static se3d_status check_system_create(arguments *a)
+{
+    se3d_system *system = a->system;
+    se3d_system_def def = se3d_system_def_default();
+    CHECK(se3d_system_create(NULL, NULL) == SE3D_ERR_NULL);
+    def.time = (double)NAN;
+    CHECK(se3d_system_create(&def, &system) == SE3D_ERR_INVALID_ARGUMENT && !system);
+    def = se3d_system_def_default();
+    def.gravity[1] = (double)INFINITY;
+    CHECK(se3d_system_create(&def, &system) == SE3D_ERR_INVALID_ARGUMENT && !system);
+    def = se3d_system_def_default();
+    def.struct_size = 0;
+    CHECK(se3d_system_create(&def, &system) == SE3D_ERR_INVALID_ARGUMENT && !system);
+    CHECK(!se3d_system_create(NULL, &system));
+    se3d_system_destroy(system);
+    return SE3D_OK;
+}
+
+static se3d_status check_system_get_work(arguments *a)
+{
+    se3d_work work;
+    memset(&work, 0, sizeof work);
+    CHECK(se3d_system_get_work(NULL, &work) == SE3D_ERR_NULL);
+    CHECK(se3d_system_get_work(a->system, NULL) == SE3D_ERR_NULL);
+    return SE3D_OK;
+}
+
+static se3d_status check_system_set_gravity_function(arguments *a)
+{
+    se3d_function g[3] = {{0, 0}, {0, 0}, a->use.function};
+    CHECK(se3d_system_set_gravity_function(NULL, g) == SE3D_ERR_NULL);
+    CHECK(se3d_system_set_gravity_function(a->system, NULL) == SE3D_ERR_NULL);
+    CHECK(!se3d_system_set_gravity_function(a->system, g));
+    CHECK(se3d_function_destroy(a->system, g[2]) == SE3D_ERR_IN_USE);
+    g[1].index1 = 77;
+    CHECK(se3d_system_set_gravity_function(a->system, g) == SE3D_ERR_STALE_HANDLE);
+    return SE3D_OK;
+}
+
+static se3d_status check_expression_create(arguments *a)
+{
+    se3d_expression *expression = a->expression;
+    se3d_expression_error error;
+    se3d_expression_def def = se3d_expression_def_default();
+    CHECK(se3d_expression_create(NULL, &expression, &error) == SE3D_ERR_NULL && !expression);
+    CHECK(se3d_expression_create(&def, &expression, &error) == SE3D_ERR_NULL && !expression);
+    def.text = "1+";
+    CHECK(se3d_expression_create(&def, NULL, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_expression_create(&def, &expression, &error) == SE3D_ERR_EXPRESSION && !expression);
+    CHECK(error.column == 3 && error.message[0]);
+    def.struct_size = 0;
+    CHECK(se3d_expression_create(&def, &expression, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    return SE3D_OK;
+}
+
+static se3d_status destroying_null_is_fine(arguments *a)
+{
+    (void)a;
+    se3d_system_destroy(NULL);
+    se3d_solver_destroy(NULL);
+    se3d_snapshot_destroy(NULL);
+    se3d_check_destroy(NULL);
+    se3d_expression_destroy(NULL);
+    return SE3D_OK;
+}
+
+static se3d_status counting_null_gives_zero(arguments *a)
+{
+    CHECK(se3d_system_count_bodies(NULL) == 0 && se3d_system_count_bodies(a->system) == 2);
+    CHECK(se3d_system_count_markers(NULL) == 0 && se3d_system_count_markers(a->system) == 1);
+    CHECK(se3d_system_count_constraints(NULL) == 0 &&
+          se3d_system_count_constraints(a->system) == 4);
+    CHECK(se3d_system_count_forces(NULL) == 0 && se3d_system_count_forces(a->system) == 1);
+    CHECK(se3d_check_count_messages(NULL) == 0 && se3d_check_count_messages(a->check) > 0);
+    CHECK(se3d_system_hash(NULL) == 0 && se3d_system_hash(a->system) != 0);
+    CHECK(se3d_expression_is_constant(NULL) == 0);
+    return SE3D_OK;
+}
+
+static se3d_status texts_are_never_null(arguments *a)
+{
+    CHECK_CONTAINS(se3d_status_get_text(SE3D_OK), "success");
+    CHECK(se3d_status_get_text((se3d_status)-99) && se3d_status_get_text((se3d_status)99));
+    CHECK_CONTAINS(se3d_version_get_text(), ".");
+    CHECK(se3d_system_get_error(NULL) != NULL);
+    CHECK(se3d_system_get_error_status(NULL) == SE3D_ERR_NULL ||
+          se3d_system_get_error_status(NULL) == SE3D_OK);
+    CHECK(strcmp(se3d_expression_get_text(NULL), "") == 0);
+    CHECK(strcmp(se3d_expression_get_text(a->expression), "2*t") == 0);
+    return SE3D_OK;
+}
+
+/* An older caller's def is smaller, a newer one's larger: exactly `size` bytes are written. */
+#define CHECK_INIT(type)                                                                           \
+    do {                                                                                           \
+        unsigned char bytes[1600];                                                                 \
+        se3d_##type##_def def;                                                                     \
+        se3d_##type##_def_init(NULL, sizeof def);                                                  \
+        for (size_t size = 16; size < sizeof def + 64; size += 8) {                                \
+            memset(bytes, 0x5A, sizeof bytes);                                                     \
+            memset(&def, 0, sizeof def);                                                           \
+            se3d_##type##_def_init((void *)bytes, size);                                           \
+            CHECK(memcmp(bytes, &size, sizeof size) == 0);                                         \
+            size_t beyond = size;                                                                  \
+            while (beyond < sizeof bytes && bytes[beyond] == 0x5A) {                               \
+                ++beyond;                                                                          \
+            }                                                                                      \
+            CHECK(beyond == sizeof bytes);                                                         \
+        }                                                                                          \
+    } while (0)
+
+static se3d_status definitions_are_never_overrun(arguments *a)
+{
+    (void)a;
+    CHECK_INIT(system);
+    CHECK_INIT(body);
+    CHECK_INIT(marker);
+    CHECK_INIT(primitive);
+    CHECK_INIT(joint);
+    CHECK_INIT(coupler);
+    CHECK_INIT(driver);
+    CHECK_INIT(tsda);
+    CHECK_INIT(rsda);
+    CHECK_INIT(load);
+    CHECK_INIT(bushing);
+    CHECK_INIT(friction);
+    CHECK_INIT(stop);
+    CHECK_INIT(force_callback);
+    CHECK_INIT(function);
+    CHECK_INIT(solver);
+    CHECK_INIT(expression);
+    return SE3D_OK;
+}
+
+static const row rows[] = {
+    {"se3d_body_get_position", call_body_get_position, "sbo0", NULL, NULL},
+    {"se3d_body_get_velocity", call_body_get_velocity, "sbo0", NULL, NULL},
+    {"se3d_body_get_angular_velocity", call_body_get_angular_velocity, "sbo0", NULL, NULL},
+    {"se3d_body_get_acceleration", call_body_get_acceleration, "sbo0", NULL, NULL},
+    {"se3d_body_get_angular_acceleration", call_body_get_angular_acceleration, "sbo0", NULL, NULL},
+    {"se3d_body_get_orientation", call_body_get_orientation, "sbo0", NULL, NULL},
+    {"se3d_body_set_position", call_body_set_position, "Sbi3", NULL, NULL},
+    {"se3d_body_set_velocity", call_body_set_velocity, "Sbi3", NULL, NULL},
+    {"se3d_body_set_angular_velocity", call_body_set_angular_velocity, "Sbi3", NULL, NULL},
+    {"se3d_body_set_orientation", call_body_set_orientation, "Sbi4", NULL, NULL},
+    {"se3d_body_create", call_body_create, "SDh0", define_body, body_fields},
+    {"se3d_body_find", call_body_find, "sth0", NULL, NULL},
+    {"se3d_body_get_name", call_body_get_name, "sbo0", NULL, NULL},
+    {"se3d_body_get_fixed", call_body_get_fixed, "sbo0", NULL, NULL},
+    {"se3d_body_get_held", call_body_get_held, "sbo0", NULL, NULL},
+    {"se3d_body_set_held", call_body_set_held, "Sb", NULL, NULL},
+    {"se3d_body_get_point", call_body_get_point, "sbjo0", NULL, NULL},
+    {"se3d_body_get_mass", call_body_get_mass, "sb", NULL, NULL},
+    {"se3d_marker_create", call_marker_create, "SDh0", define_marker, marker_fields},
+    {"se3d_marker_destroy", call_marker_destroy, "Sm", NULL, NULL},
+    {"se3d_marker_get_name", call_marker_get_name, "smo0", NULL, NULL},
+    {"se3d_marker_get_position", call_marker_get_position, "smo0", NULL, NULL},
+    {"se3d_marker_get_velocity", call_marker_get_velocity, "smo0", NULL, NULL},
+    {"se3d_marker_get_acceleration", call_marker_get_acceleration, "smo0", NULL, NULL},
+    {"se3d_marker_get_orientation", call_marker_get_orientation, "smo0", NULL, NULL},
+    {"se3d_marker_get_body", call_marker_get_body, "smh0", NULL, NULL},
+    {"se3d_primitive_create", call_primitive_create, "SDh0", define_primitive, primitive_fields},
+    {"se3d_constraint_destroy", call_constraint_destroy, "Sc", NULL, NULL},
+    {"se3d_constraint_find", call_constraint_find, "sth0", NULL, NULL},
+    {"se3d_constraint_get_name", call_constraint_get_name, "sco0", NULL, NULL},
+    {"se3d_constraint_get_type", call_constraint_get_type, "sco0", NULL, NULL},
+    {"se3d_constraint_count_equations", call_constraint_count_equations, "sco0", NULL, NULL},
+    {"se3d_constraint_count_bodies", call_constraint_count_bodies, "sco0", NULL, NULL},
+    {"se3d_constraint_get_multipliers", call_constraint_get_multipliers, "sco0", NULL, NULL},
+    {"se3d_constraint_get_equation_name", call_constraint_get_equation_name, "scxo0", NULL, NULL},
+    {"se3d_constraint_get_body", call_constraint_get_body, "scxh0", NULL, NULL},
+    {"se3d_constraint_eval", call_constraint_eval, "sc", NULL, NULL},
+    {"se3d_constraint_eval_jacobian", call_constraint_eval_jacobian, "scx", NULL, NULL},
+    {"se3d_constraint_get_reaction", call_constraint_get_reaction, "sc", NULL, NULL},
+    {"se3d_constraint_get_reaction_at", call_constraint_get_reaction_at, "scxjo0", NULL, NULL},
+    {"se3d_driver_get_value", call_driver_get_value, "sco0", NULL, NULL},
+    {"se3d_driver_get_effort", call_driver_get_effort, "sco0", NULL, NULL},
+    {"se3d_driver_create", call_driver_create, "SDh0", define_driver, driver_fields},
+    {"se3d_joint_create_fixed", call_joint_create_fixed, "SDh0", define_joint, joint_fields},
+    {"se3d_joint_create_revolute", call_joint_create_revolute, "SDh0", define_joint, joint_fields},
+    {"se3d_joint_create_prismatic", call_joint_create_prismatic, "SDh0", define_joint,
+     joint_fields},
+    {"se3d_joint_create_cylindrical", call_joint_create_cylindrical, "SDh0", define_joint,
+     joint_fields},
+    {"se3d_joint_create_spherical", call_joint_create_spherical, "SDh0", define_joint,
+     joint_fields},
+    {"se3d_joint_create_universal", call_joint_create_universal, "SDh0", define_crossed,
+     joint_fields},
+    {"se3d_joint_create_planar", call_joint_create_planar, "SDh0", define_joint, joint_fields},
+    {"se3d_joint_create_screw", call_joint_create_screw, "SDh0", define_joint, joint_fields},
+    {"se3d_joint_create_point_on_line", call_joint_create_point_on_line, "SDh0", define_joint,
+     joint_fields},
+    {"se3d_joint_create_point_on_plane", call_joint_create_point_on_plane, "SDh0", define_joint,
+     joint_fields},
+    {"se3d_joint_create_distance", call_joint_create_distance, "SDh0", define_joint, joint_fields},
+    {"se3d_joint_create_revolute_spherical", call_joint_create_revolute_spherical, "SDh0",
+     define_joint, joint_fields},
+    {"se3d_joint_create_revolute_cylindrical", call_joint_create_revolute_cylindrical, "SDh0",
+     define_crossed, joint_fields},
+    {"se3d_joint_create_parallel", call_joint_create_parallel, "SDh0", define_joint, joint_fields},
+    {"se3d_joint_create_perpendicular", call_joint_create_perpendicular, "SDh0", define_crossed,
+     joint_fields},
+    {"se3d_joint_create_orientation", call_joint_create_orientation, "SDh0", define_joint,
+     joint_fields},
+    {"se3d_joint_create_perpendicular1", call_joint_create_perpendicular1, "SDh0", define_crossed,
+     joint_fields},
+    {"se3d_joint_create_perpendicular2", call_joint_create_perpendicular2, "SDh0", define_joint,
+     joint_fields},
+    {"se3d_joint_get_coordinate", call_joint_get_coordinate, "sc", NULL, NULL},
+    {"se3d_joint_create_coupler", call_joint_create_coupler, "SDh0", define_coupler,
+     coupler_fields},
+    {"se3d_joint_create_rack_pinion", call_joint_create_rack_pinion, "Scdnh0", NULL, NULL},
+    {"se3d_force_create_tsda", call_force_create_tsda, "SDh0", define_tsda, tsda_fields},
+    {"se3d_force_create_rsda", call_force_create_rsda, "SDh0", define_rsda, rsda_fields},
+    {"se3d_force_create_load", call_force_create_load, "SDh0", define_load, load_fields},
+    {"se3d_force_create_torque", call_force_create_torque, "SDh0", define_load, torque_fields},
+    {"se3d_force_create_bushing", call_force_create_bushing, "SDh0", define_bushing,
+     bushing_fields},
+    {"se3d_force_create_friction", call_force_create_friction, "SDh0", define_friction,
+     friction_fields},
+    {"se3d_force_create_stop", call_force_create_stop, "SDh0", define_stop, stop_fields},
+    {"se3d_force_create_callback", call_force_create_callback, "SDh0", define_callback,
+     callback_fields},
+    {"se3d_force_destroy", call_force_destroy, "SF", NULL, NULL},
+    {"se3d_force_find", call_force_find, "sth0", NULL, NULL},
+    {"se3d_force_get_name", call_force_get_name, "sFo0", NULL, NULL},
+    {"se3d_force_get_type", call_force_get_type, "sFo0", NULL, NULL},
+    {"se3d_force_get_state", call_force_get_state, "sF", NULL, NULL},
+    {"se3d_force_get_power", call_force_get_power, "sF", NULL, NULL},
+    {"se3d_force_get_wrench", call_force_get_wrench, "sFxo0", NULL, NULL},
+    {"se3d_function_create", call_function_create, "SDh0", define_function, function_fields},
+    {"se3d_function_create_expression", call_function_create_expression, "Sh0", NULL, NULL},
+    {"se3d_function_destroy", call_function_destroy, "Sf", NULL, NULL},
+    {"se3d_function_eval", call_function_eval, "sfjo0", NULL, NULL},
+    {"se3d_solver_create", call_solver_create, "SDh0", define_solver, solver_fields},
+    {"se3d_solver_run", call_solver_run, "vn", NULL, NULL},
+    {"se3d_solver_step", call_solver_step, "vn", NULL, NULL},
+    {"se3d_solver_get_stats", call_solver_get_stats, "vo0", NULL, NULL},
+    {"se3d_solver_get_method", call_solver_get_method, "vo0", NULL, NULL},
+    {"se3d_check_create", call_check_create, "Sh0", NULL, NULL},
+    {"se3d_check_get_summary", call_check_get_summary, "k", define_summary, NULL},
+    {"se3d_check_get_message", call_check_get_message, "ko0", NULL, NULL},
+    {"se3d_snapshot_create", call_snapshot_create, "sh0", NULL, NULL},
+    {"se3d_snapshot_restore", call_snapshot_restore, "Sp", NULL, NULL},
+    {"se3d_system_clone", call_system_clone, "sh0", NULL, NULL},
+    {"se3d_system_set_gravity", call_system_set_gravity, "Si3", NULL, NULL},
+    {"se3d_system_get_gravity", call_system_get_gravity, "so0", NULL, NULL},
+    {"se3d_system_set_time", call_system_set_time, "Sn", NULL, NULL},
+    {"se3d_system_get_time", call_system_get_time, "so0", NULL, NULL},
+    {"se3d_system_get_ground", call_system_get_ground, "sh0", NULL, NULL},
+    {"se3d_system_get_body", call_system_get_body, "sxh0", NULL, NULL},
+    {"se3d_system_get_marker", call_system_get_marker, "sxh0", NULL, NULL},
+    {"se3d_system_get_constraint", call_system_get_constraint, "sxh0", NULL, NULL},
+    {"se3d_system_get_force", call_system_get_force, "sxh0", NULL, NULL},
+    {"se3d_system_get_energy", call_system_get_energy, "so0", NULL, NULL},
+    {"se3d_system_get_violation", call_system_get_violation, "so0", NULL, NULL},
+    {"se3d_expression_eval", call_expression_eval, "ejo0", NULL, NULL},
+    {"se3d_expression_eval_time", call_expression_eval_time, "ejo0", NULL, NULL},
+    {"se3d_expression_eval_gradient", call_expression_eval_gradient, "ejo0o1", NULL, NULL},
+    {"se3d_body_destroy", check_body_destroy, "", NULL, NULL},
+    {"se3d_body_set_mass", check_body_set_mass, "", NULL, NULL},
+    {"se3d_body_get_all", check_body_get_all, "", NULL, NULL},
+    {"se3d_body_set_all", check_body_set_all, "", NULL, NULL},
+    {"se3d_joint_def_set_frame", check_joint_def_set_frame, "", NULL, NULL},
+    {"se3d_joint_create_gear", check_joint_create_gear, "", NULL, NULL},
+    {"se3d_system_create", check_system_create, "", NULL, NULL},
+    {"se3d_system_get_work", check_system_get_work, "", NULL, NULL},
+    {"se3d_system_set_gravity_function", check_system_set_gravity_function, "", NULL, NULL},
+    {"se3d_expression_create", check_expression_create, "", NULL, NULL},
+    {"se3d_system_destroy", destroying_null_is_fine, "", NULL, NULL},
+    {"se3d_solver_destroy", destroying_null_is_fine, "", NULL, NULL},
+    {"se3d_snapshot_destroy", destroying_null_is_fine, "", NULL, NULL},
+    {"se3d_check_destroy", destroying_null_is_fine, "", NULL, NULL},
+    {"se3d_expression_destroy", destroying_null_is_fine, "", NULL, NULL},
+    {"se3d_system_count_bodies", counting_null_gives_zero, "", NULL, NULL},
+    {"se3d_system_count_markers", counting_null_gives_zero, "", NULL, NULL},
+    {"se3d_system_count_constraints", counting_null_gives_zero, "", NULL, NULL},
+    {"se3d_system_count_forces", counting_null_gives_zero, "", NULL, NULL},
+    {"se3d_check_count_messages", counting_null_gives_zero, "", NULL, NULL},
+    {"se3d_system_hash", counting_null_gives_zero, "", NULL, NULL},
+    {"se3d_expression_is_constant", counting_null_gives_zero, "", NULL, NULL},
+    {"se3d_status_get_text", texts_are_never_null, "", NULL, NULL},
+    {"se3d_version_get_text", texts_are_never_null, "", NULL, NULL},
+    {"se3d_system_get_error", texts_are_never_null, "", NULL, NULL},
+    {"se3d_system_get_error_status", texts_are_never_null, "", NULL, NULL},
+    {"se3d_expression_get_text", texts_are_never_null, "", NULL, NULL},
+    {"se3d_system_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_body_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_marker_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_primitive_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_joint_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_coupler_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_driver_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_tsda_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_rsda_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_load_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_bushing_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_friction_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_stop_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_force_callback_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_function_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_solver_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_expression_def_init", definitions_are_never_overrun, "", NULL, NULL},
+};
+
+#endif
