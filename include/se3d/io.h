@@ -84,7 +84,7 @@ SE3D_API se3d_status se3d_model_get_parameter(const se3d_model *model, const cha
 /* One entry of `analysis`. @since 0.1 */
 typedef struct se3d_model_analysis {
     double start;     /* [s]; NaN: where the analysis before ended, 0 for the first */
-    double duration;  /* [s]; 0 for assembly and equilibrium */
+    double duration;  /* [s]; 0 for assembly, equilibrium, modes */
     const char *type; /* "dynamics", ...; owned by the model */
 } se3d_model_analysis;
 
@@ -94,7 +94,7 @@ SE3D_API size_t se3d_model_count_analyses(const se3d_model *model);
 SE3D_API se3d_status se3d_model_get_analysis(const se3d_model *model, size_t index,
                                              se3d_model_analysis *analysis);
 /* Get the definition of its solver into `def`, which comes from se3d_solver_def_default.
- * @return as se3d_model_get_analysis. Reader. @since 0.1 */
+ * @return as se3d_model_get_analysis; UNSUPPORTED for modes, which has none. Reader. @since 0.1 */
 SE3D_API se3d_status se3d_model_get_solver(const se3d_model *model, size_t index,
                                            se3d_solver_def *def);
 

@@ -6,8 +6,9 @@
 
 #include "io/reader.h"
 
-static const char *const types[] = {"assembly", "kinematics",  "inverse_dynamics",
-                                    "dynamics", "equilibrium", NULL};
+static const char *const types[] = {
+    "assembly", "kinematics", "inverse_dynamics", "dynamics", "equilibrium", "modes", NULL};
+enum { TYPE_MODES = 5 }; /* the others are se3d_analysis */
 static const char *const formulations[] = {"romega", "rp", NULL};
 static const char *const methods[] = {
     "auto", "generalized_alpha", "hht", "dop853", "rk45", "bdf", "radau", "rattle", "verlet", NULL};
@@ -28,8 +29,9 @@ static const se3di_node *replaced(se3di_reader *reader, const se3di_node *node, 
     return made;
 }
 
-static bool read_words(se3di_reader *reader, const se3di_node *node, se3d_solver_def *solver)
+static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry)
 {
+    se3d_solver_def *solver = &entry->solver;
     const se3d_model_options *options = reader->options;
     const se3di_node *type =
         replaced(reader, se3di_node_get(node, "type"), "--analysis", options->analysis);
@@ -41,12 +43,13 @@ static bool read_words(se3di_reader *reader, const se3di_node *node, se3d_solver
     if (node && !type) {
         return se3di_reader_fail_key(reader, node, "type",
                                      "is missing, must be one of: assembly, kinematics, "
-                                     "inverse_dynamics, dynamics, equilibrium");
+                                     "inverse_dynamics, dynamics, equilibrium, modes");
     }
     if (type && !se3di_read_word(reader, type, types, &word)) {
         return false;
     }
-    solver->analysis = (int32_t)word;
+    entry->analysis.type = types[word];
+    solver->analysis = word == TYPE_MODES ? SE3D_ANALYSIS_EQUILIBRIUM : (int32_t)word;
     word = 0;
     if (formulation && !se3di_read_word(reader, formulation, formulations, &word)) {
         return false;
@@ -144,11 +147,10 @@ static bool read_analysis(se3di_reader *reader, const se3di_node *node)
     se3di_analysis_entry entry = {.node = node};
     entry.solver = se3d_solver_def_default();
     if ((node && !se3di_read_keys(reader, node, SE3DI_OBJECT_ANALYSIS)) ||
-        !read_words(reader, node, &entry.solver) || !read_numbers(reader, node, &entry.solver) ||
-        !read_times(reader, node, &entry)) {
+        !read_words(reader, node, &entry) || !read_numbers(reader, node, &entry.solver) ||
+        !read_times(reader, node, &entry) || !se3di_read_modes(reader, node, &entry)) {
         return false;
     }
-    entry.analysis.type = types[entry.solver.analysis];
     reader->model->analyses[reader->model->analysis_count++] = entry;
     return true;
 }
@@ -260,6 +262,12 @@ static bool read_output(se3di_reader *reader, const se3di_node *node)
         if (strcmp(model->outputs[k].file, output->file) == 0) {
             return se3di_reader_fail(reader, file, "`%.60s` is written by two outputs",
                                      output->file);
+        }
+    }
+    for (size_t k = 0; k < model->analysis_count; ++k) {
+        const char *other = model->analyses[k].modes.file;
+        if (other && strcmp(other, output->file) == 0) {
+            return se3di_reader_fail(reader, file, "`%.60s` is written by the modes", output->file);
         }
     }
     output->node = node;

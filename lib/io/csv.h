@@ -35,6 +35,9 @@ void se3di_csv_abandon(se3di_csv *csv);
  * length. */
 size_t se3di_number_format(double value, char *text);
 
+/* The path of `file` in `folder`, of the file alone where it is absolute. @return false: too long.
+ */
+bool se3di_file_join(const char *folder, const char *file, char *path, size_t size);
 /* Make the folders that a path of a file needs. @return false: errno says why. */
 bool se3di_file_make_folders(const char *path);
 

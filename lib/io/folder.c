@@ -53,3 +53,20 @@ bool se3di_file_make_folders(const char *path)
     }
     return true;
 }
+
+static bool is_absolute(const char *path)
+{
+#if defined(_WIN32)
+    return path[0] == '/' || path[0] == '\\' || (path[0] && path[1] == ':');
+#else
+    return path[0] == '/';
+#endif
+}
+
+bool se3di_file_join(const char *folder, const char *file, char *path, size_t size)
+{
+    const int length = is_absolute(file)
+                           ? snprintf(path, size, "%s", file)
+                           : snprintf(path, size, "%s/%s", folder ? folder : ".", file);
+    return length >= 0 && (size_t)length < size;
+}

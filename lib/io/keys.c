@@ -73,7 +73,11 @@ static const char *const force_keys[] = {"name",
 static const char *const spline_keys[] = {"spline", NULL};
 static const char *const analysis_keys[] = {
     "type",     "formulation", "method",          "order", "step",           "tolerance",
-    "duration", "start",       "spectral_radius", "alpha", "iterations_max", NULL};
+    "duration", "start",       "spectral_radius", "alpha", "iterations_max", "file",
+    "inputs",   "outputs",     "frequencies",     NULL};
+static const char *const modes_input_keys[] = {"body", "point", "direction", "torque", NULL};
+static const char *const modes_output_keys[] = {"body", "point", "direction", "quantity", NULL};
+static const char *const frequency_keys[] = {"from", "to", "count", NULL};
 static const char *const output_keys[] = {"file", "every", "channels", NULL};
 
 #define FRAME  " at point_i point_j "
@@ -143,6 +147,9 @@ static const se3di_object_keys objects[SE3DI_OBJECT_COUNT] = {
     {"spline", spline_keys, NULL, NULL, NULL},
     {"analysis", analysis_keys, NULL, NULL, NULL},
     {"output", output_keys, NULL, NULL, NULL},
+    {"modes_input", modes_input_keys, NULL, NULL, NULL},
+    {"modes_output", modes_output_keys, NULL, NULL, NULL},
+    {"frequencies", frequency_keys, NULL, NULL, NULL},
 };
 
 const se3di_object_keys *se3di_keys_get(se3di_object object)

@@ -20,7 +20,10 @@ typedef enum se3di_object {
     SE3DI_OBJECT_SPLINE = 11,
     SE3DI_OBJECT_ANALYSIS = 12,
     SE3DI_OBJECT_OUTPUT = 13,
-    SE3DI_OBJECT_COUNT = 14
+    SE3DI_OBJECT_MODES_INPUT = 14,
+    SE3DI_OBJECT_MODES_OUTPUT = 15,
+    SE3DI_OBJECT_FREQUENCIES = 16,
+    SE3DI_OBJECT_COUNT = 17
 } se3di_object;
 
 /* Keys of a type that not all objects of its kind have. */

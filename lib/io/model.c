@@ -303,6 +303,9 @@ se3d_status se3d_model_get_solver(const se3d_model *model, size_t index, se3d_so
     if (index >= model->analysis_count || def->struct_size < sizeof def->struct_size) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
+    if (model->analyses[index].modes.file) {
+        return SE3D_ERR_UNSUPPORTED;
+    }
     const size_t size = def->struct_size;
     memcpy(def, &model->analyses[index].solver, size < sizeof *def ? size : sizeof *def);
     def->struct_size = size;

@@ -38,9 +38,21 @@ typedef struct se3di_element_entry {
     double point[3]; /* where */
 } se3di_element_entry;
 
+/* What `modes` writes. */
+typedef struct se3di_modes_entry {
+    const char *file; /* NULL: the analysis is another one */
+    se3d_modes_input *inputs;
+    size_t input_count;
+    se3d_modes_output *outputs;
+    size_t output_count;
+    double from, to; /* frequencies of the transfer functions [Hz] */
+    size_t frequency_count;
+} se3di_modes_entry;
+
 typedef struct se3di_analysis_entry {
     se3d_model_analysis analysis;
     se3d_solver_def solver;
+    se3di_modes_entry modes;
     const se3di_node *node;
 } se3di_analysis_entry;
 

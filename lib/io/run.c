@@ -14,6 +14,7 @@
 
 #include "io/csv.h"
 #include "io/model.h"
+#include "io/run_modes.h"
 
 typedef struct output_file {
     const se3di_output_entry *entry;
@@ -29,7 +30,7 @@ struct se3d_run {
     se3d_run_analysis *analyses;
     size_t analysis_count;
     se3d_run_file *files;
-    size_t file_count;
+    size_t file_count, file_capacity;
 };
 
 typedef struct runner {
@@ -66,26 +67,13 @@ static se3d_status fail_file(runner *r, const output_file *file)
     return fail(r, file->csv.failure ? SE3D_ERR_IO : SE3D_ERR_NO_MEMORY, text);
 }
 
-static bool is_absolute(const char *path)
-{
-#if defined(_WIN32)
-    return path[0] == '/' || path[0] == '\\' || (path[0] && path[1] == ':');
-#else
-    return path[0] == '/';
-#endif
-}
-
 static se3d_status open_file(runner *r, const se3di_output_entry *entry)
 {
     output_file *file = &r->files[r->file_count];
     char path[4096];
     char name[400];
     size_t columns = 1;
-    const char *folder = r->options->directory ? r->options->directory : ".";
-    const int length = is_absolute(entry->file)
-                           ? snprintf(path, sizeof path, "%s", entry->file)
-                           : snprintf(path, sizeof path, "%s/%s", folder, entry->file);
-    if (length < 0 || (size_t)length >= sizeof path) {
+    if (!se3di_file_join(r->options->directory, entry->file, path, sizeof path)) {
         return fail(r, SE3D_ERR_IO, "the path of the results is too long");
     }
     for (size_t k = 0; k < entry->count; ++k) {
@@ -316,6 +304,29 @@ static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analys
     done->method = copy_text(r, method ? method : "");
 }
 
+/* The files of the modes, and the state at which they are. */
+static se3d_status run_modes(runner *r, const se3di_analysis_entry *entry, double start)
+{
+    se3di_modes_run modes = {.model = r->model,
+                             .entry = &entry->modes,
+                             .folder = r->options->directory,
+                             .pool = &r->run->pool};
+    se3d_status status = se3di_modes_run_write(&modes);
+    for (size_t k = 0; k < modes.file_count; ++k) {
+        se3d_run_file *grown = se3di_iopool_grow(&r->run->pool, r->run->files, r->run->file_count,
+                                                 &r->run->file_capacity, sizeof *grown);
+        if (!grown) {
+            return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+        }
+        r->run->files = grown;
+        r->run->files[r->run->file_count++] = modes.files[k];
+    }
+    if (status < 0 && modes.problem[0]) {
+        return fail(r, status, modes.problem);
+    }
+    return status < 0 ? fail_analysis(r, entry, status, start) : sample_files(r, start, 0.0, start);
+}
+
 static se3d_status run_analysis(runner *r, size_t index)
 {
     const se3di_analysis_entry *entry = &r->model->analyses[index];
@@ -330,11 +341,12 @@ static se3d_status run_analysis(runner *r, size_t index)
     se3d_status status = plan(r, entry);
     if (status >= 0) {
         status = se3d_system_set_time(r->model->system, start);
-        if (status >= 0) {
+        if (status >= 0 && !entry->modes.file) {
             status = se3d_solver_create(r->model->system, &entry->solver, &r->solver);
         }
-        status =
-            status < 0 ? fail_analysis(r, entry, status, start) : run_rows(r, index, entry, start);
+        status = status < 0          ? fail_analysis(r, entry, status, start)
+                 : entry->modes.file ? run_modes(r, entry, start)
+                                     : run_rows(r, index, entry, start);
     }
     record(r, entry, done, begin);
     done->status = (int32_t)status;
@@ -347,18 +359,21 @@ static se3d_status run_analysis(runner *r, size_t index)
 static se3d_status close_files(runner *r, se3d_status status)
 {
     se3d_run *run = r->run;
-    run->files = se3di_iopool_array(&run->pool, r->file_count, sizeof *run->files);
     for (size_t k = 0; k < r->file_count; ++k) {
         se3di_csv *csv = &r->files[k].csv;
         const bool good = se3di_csv_close(csv) >= 0;
         if (!good && status >= 0) {
             status = fail_file(r, &r->files[k]);
         }
-        if (good && run->files) {
-            se3d_run_file *file = &run->files[run->file_count++];
-            file->path = csv->path;
-            file->rows = csv->rows;
-            file->columns = csv->columns;
+        se3d_run_file *grown = se3di_iopool_grow(&run->pool, run->files, run->file_count,
+                                                 &run->file_capacity, sizeof *grown);
+        if (grown) {
+            const se3d_run_file file = {csv->path, csv->rows, csv->columns};
+            run->files = grown;
+            run->files[run->file_count] = file;
+            run->file_count += good;
+        } else if (status >= 0) {
+            status = fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
         }
     }
     return status;

@@ -14,7 +14,8 @@ static const char help[] =
     "\n"
     "  -o DIR                 folder for the results, made if missing (default: results/<model>)\n"
     "  --set NAME=VALUE       replace a parameter; VALUE is an expression; may be repeated\n"
-    "  --analysis T           assembly, kinematics, inverse_dynamics, dynamics, equilibrium\n"
+    "  --analysis T           assembly, kinematics, inverse_dynamics, dynamics, equilibrium,\n"
+    "                         modes\n"
     "  --formulation F        romega, rp\n"
     "  --method M             auto, generalized_alpha, hht, dop853, rk45, bdf, radau, rattle, "
     "verlet\n"
@@ -26,10 +27,21 @@ static const char help[] =
     "Exit code: 0 done; 1 the analysis failed (results so far are on disk); 2 bad usage or "
     "model.\n";
 
+static const char *outcome(const se3d_run_analysis *a)
+{
+    if (a->status < 0) {
+        return "FAILED";
+    }
+    if (strcmp(a->type, "equilibrium") == 0 && a->status != SE3D_INFO_UNSTABLE) {
+        return "the equilibrium is stable or neutral";
+    }
+    return se3d_status_get_text((se3d_status)a->status);
+}
+
 static void print_analysis(const se3d_run_analysis *a)
 {
     printf("%s, %s%s%s: %s\n", a->type, a->formulation, a->method[0] ? ", " : "", a->method,
-           a->status < 0 ? "FAILED" : se3d_status_get_text((se3d_status)a->status));
+           outcome(a));
     printf("  from %.9g s to %.9g s, %" PRIu64 " steps (%" PRIu64 " rejected), %" PRIu64
            " iterations, CPU time %.3g s\n",
            a->start, a->end, a->stats.steps, a->stats.rejected, a->stats.iterations, a->cpu_time);
