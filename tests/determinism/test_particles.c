@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Particles give the same bits for any number of threads, on every run, and from a copy in the
+ * middle. */
+#include "check.h"
+#include "se3d/se3d.h"
+
+typedef struct bed {
+    se3d_system *system;
+    se3d_particles *particles;
+} bed;
+
+/* An avalanche in a box: two sizes, two materials, rolling resistance, tilted gravity. */
+static void bed_init(bed *b, int32_t threads, int32_t portable, int32_t law)
+{
+    se3d_system_def system = se3d_system_def_default();
+    system.gravity[0] = system.gravity[2] = -9.81 * sqrt(0.5);
+    CHECK(se3d_system_create(&system, &b->system) == SE3D_OK);
+    se3d_particles_def def = se3d_particles_def_default();
+    def.threads = threads;
+    def.portable = portable;
+    def.law = law;
+    CHECK(se3d_particles_create(b->system, &def, &b->particles) == SE3D_OK);
+    se3d_material material[2];
+    for (int k = 0; k < 2; ++k) {
+        se3d_material_def stuff = se3d_material_def_default();
+        stuff.density = 2500.0 + 500.0 * k;
+        stuff.stiffness = 2e4 + 1e4 * k;
+        stuff.young = 1e8;
+        stuff.rolling_friction = 0.02 * k;
+        stuff.restitution = 0.6;
+        CHECK(se3d_material_create(b->particles, &stuff, &material[k]) == SE3D_OK);
+    }
+    static const double normals[5][3] = {
+        {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}};
+    for (int k = 0; k < 5; ++k) {
+        se3d_wall_def wall = se3d_wall_def_default();
+        se3d_wall handle;
+        wall.material = material[0];
+        memcpy(wall.normal, normals[k], sizeof wall.normal);
+        wall.point[0] = k == 2 ? 0.3 : 0.0;
+        wall.point[1] = k == 4 ? 0.06 : 0.0;
+        CHECK(se3d_wall_create_plane(b->particles, &wall, &handle) == SE3D_OK);
+    }
+    for (int k = 0; k < 2; ++k) {
+        se3d_fill_def fill = se3d_fill_def_default();
+        fill.material = material[k];
+        fill.lower[0] = 0.12 * k;
+        fill.upper[0] = 0.12 * k + 0.12;
+        fill.upper[1] = 0.06;
+        fill.upper[2] = 0.12;
+        fill.radius_min = 0.003;
+        fill.radius_max = 0.005;
+        fill.jitter = 0.0003;
+        fill.seed = 11;
+        CHECK(se3d_particles_fill_lattice(b->particles, &fill, NULL) == SE3D_OK);
+    }
+    CHECK(se3d_particles_count(b->particles) > 500);
+    CHECK(se3d_particles_set_step(b->particles, 1e-5) == SE3D_OK);
+}
+
+static void bed_destroy(bed *b)
+{
+    se3d_particles_destroy(b->particles);
+    se3d_system_destroy(b->system);
+}
+
+static uint64_t run(int32_t threads, int32_t portable, int32_t law)
+{
+    bed b;
+    bed_init(&b, threads, portable, law);
+    CHECK(se3d_particles_step(b.particles, 6000) == SE3D_OK);
+    se3d_particles_stats stats;
+    CHECK(se3d_particles_get_stats(b.particles, &stats) == SE3D_OK);
+    CHECK(stats.rebuilds > 2 && stats.contacts > 500 && stats.lost == 0);
+    uint64_t hash = se3d_particles_hash(b.particles);
+    bed_destroy(&b);
+    return hash;
+}
+
+static void bits_do_not_depend_on_the_number_of_threads(void)
+{
+    for (int32_t k = 0; k < 4; ++k) {
+        uint64_t one = run(1, k & 1, k >> 1);
+        for (int32_t threads = 2; threads <= 4; ++threads) {
+            CHECK(run(threads, k & 1, k >> 1) == one);
+        }
+    }
+}
+
+static void bits_do_not_depend_on_how_a_run_is_cut(void)
+{
+    bed a, b;
+    bed_init(&a, 1, 0, SE3D_LAW_HOOKE);
+    bed_init(&b, 1, 0, SE3D_LAW_HOOKE);
+    CHECK(se3d_particles_step(a.particles, 3000) == SE3D_OK);
+    for (size_t k = 0; k < 3000; k += 1 + k % 7) {
+        size_t steps = 1 + k % 7;
+        CHECK(se3d_particles_step(b.particles, k + steps > 3000 ? 3000 - k : steps) == SE3D_OK);
+    }
+    CHECK(se3d_particles_hash(a.particles) == se3d_particles_hash(b.particles));
+    bed_destroy(&a);
+    bed_destroy(&b);
+}
+
+static void copies_and_restored_states_continue_with_the_same_bits(void)
+{
+    bed b;
+    bed_init(&b, 1, 0, SE3D_LAW_HERTZ_MINDLIN);
+    se3d_particles *copy;
+    CHECK(se3d_particles_step(b.particles, 2345) == SE3D_OK);
+    CHECK(se3d_particles_clone(b.particles, &copy) == SE3D_OK);
+    CHECK(se3d_particles_hash(copy) == se3d_particles_hash(b.particles));
+    CHECK(se3d_particles_step(b.particles, 2000) == SE3D_OK);
+    uint64_t hash = se3d_particles_hash(b.particles);
+    CHECK(hash != se3d_particles_hash(copy));
+    CHECK(se3d_particles_restore(b.particles, copy) == SE3D_OK);
+    CHECK(hash != se3d_particles_hash(b.particles));
+    CHECK(se3d_particles_step(copy, 2000) == SE3D_OK);
+    CHECK(se3d_particles_hash(copy) == hash);
+    CHECK(se3d_particles_step(b.particles, 2000) == SE3D_OK);
+    CHECK(se3d_particles_hash(b.particles) == hash);
+    se3d_particles_destroy(copy);
+    bed_destroy(&b);
+}
+
+static void queries_change_nothing(void)
+{
+    bed a, b;
+    bed_init(&a, 1, 0, SE3D_LAW_HOOKE);
+    bed_init(&b, 1, 0, SE3D_LAW_HOOKE);
+    static se3d_contact contacts[20000];
+    for (int k = 0; k < 20; ++k) {
+        CHECK(se3d_particles_step(a.particles, 150) == SE3D_OK);
+        CHECK(se3d_particles_step(b.particles, 150) == SE3D_OK);
+        se3d_particles_energy energy;
+        size_t count = se3d_particles_count_contacts(b.particles);
+        CHECK(se3d_particles_get_energy(b.particles, &energy) == SE3D_OK);
+        CHECK(se3d_particles_get_contacts(b.particles, count, contacts) == SE3D_OK);
+    }
+    CHECK(se3d_particles_hash(a.particles) == se3d_particles_hash(b.particles));
+    bed_destroy(&a);
+    bed_destroy(&b);
+}
+
+int main(void)
+{
+    RUN(bits_do_not_depend_on_the_number_of_threads);
+    RUN(bits_do_not_depend_on_how_a_run_is_cut);
+    RUN(copies_and_restored_states_continue_with_the_same_bits);
+    RUN(queries_change_nothing);
+    return check_finish();
+}

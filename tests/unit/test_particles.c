@@ -1,0 +1,505 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Particles: editing, neighbours against a search of all pairs, conservation, walls, failures. */
+#include "check.h"
+#include "contact/restitution.h"
+#include "se3d/se3d.h"
+#include "system/particles.h"
+
+#include <stdlib.h>
+
+#define PI 3.1415926535897932384626433832795
+
+typedef struct bed {
+    se3d_system *system;
+    se3d_particles *particles;
+    se3d_material material;
+} bed;
+
+static se3d_material_def stuff(void)
+{
+    se3d_material_def def = se3d_material_def_default();
+    def.density = 2500.0;
+    def.stiffness = 2.5e4;
+    def.young = 1e8;
+    def.friction = 0.5;
+    def.restitution = 0.7;
+    return def;
+}
+
+static void bed_init(bed *b, const se3d_particles_def *def, const double g[3],
+                     const se3d_material_def *material)
+{
+    se3d_system_def system = se3d_system_def_default();
+    memcpy(system.gravity, g, sizeof system.gravity);
+    CHECK(se3d_system_create(&system, &b->system) == SE3D_OK);
+    CHECK(se3d_particles_create(b->system, def, &b->particles) == SE3D_OK);
+    CHECK(se3d_material_create(b->particles, material, &b->material) == SE3D_OK);
+}
+
+static void bed_destroy(bed *b)
+{
+    se3d_particles_destroy(b->particles);
+    se3d_system_destroy(b->system);
+}
+
+static const double none[3] = {0.0, 0.0, 0.0}, down[3] = {0.0, 0.0, -9.81};
+
+static se3d_wall plane_at(bed *b, double x, double y, double z, double nx, double ny, double nz)
+{
+    se3d_wall_def def = se3d_wall_def_default();
+    se3d_wall wall;
+    def.material = b->material;
+    const double point[3] = {x, y, z}, normal[3] = {nx, ny, nz};
+    memcpy(def.point, point, sizeof point);
+    memcpy(def.normal, normal, sizeof normal);
+    CHECK(se3d_wall_create_plane(b->particles, &def, &wall) == SE3D_OK);
+    return wall;
+}
+
+static void box_around(bed *b, double width)
+{
+    plane_at(b, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+    plane_at(b, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
+    plane_at(b, width, 0.0, 0.0, -1.0, 0.0, 0.0);
+    plane_at(b, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+    plane_at(b, 0.0, width, 0.0, 0.0, -1.0, 0.0);
+}
+
+static se3d_fill_def region(const bed *b, double width, double height, double small, double large)
+{
+    se3d_fill_def def = se3d_fill_def_default();
+    def.material = b->material;
+    def.radius_min = small;
+    def.radius_max = large;
+    def.upper[0] = def.upper[1] = width;
+    def.upper[2] = height;
+    def.seed = 7;
+    return def;
+}
+
+static void restitution_and_damping_are_inverse(void)
+{
+    /* Clipped values of Tsuji's formula: data of the literature. */
+    static const double typed[4] = {0.3, 0.5, 0.7, 0.9},
+                        obtained[4] = {0.397141, 0.550283, 0.718201, 0.902026};
+    for (int k = 0; k < 4; ++k) {
+        double l = log(typed[k]);
+        double alpha = -sqrt(5.0) * l / sqrt(PI * PI + l * l);
+        CHECK_NEAR(se3di_restitution_hertz(alpha), obtained[k], 1e-6);
+    }
+    for (double e = 0.01; e <= 1.0; e += 0.0099) {
+        CHECK_NEAR(se3di_restitution_hertz(se3di_restitution_hertz_damping(e)), e, 1e-8);
+        CHECK_NEAR(se3di_restitution_hooke(se3di_restitution_hooke_damping(e)), e, 1e-8);
+    }
+    CHECK_NEAR(se3di_restitution_hooke(1.0), exp(-2.0), 1e-12);
+}
+
+/* Every pair nearer than the skin is in the list, once, and owned by a slab as it must be. */
+static void check_list(const se3di_particles *set)
+{
+    size_t expected = 0, found = 0;
+    for (size_t i = 0; i < set->count; ++i) {
+        for (size_t j = i + 1; j < set->count; ++j) {
+            double d[3];
+            for (int a = 0; a < 3; ++a) {
+                d[a] = set->grains[i].x[a] - set->grains[j].x[a];
+            }
+            se3di_particles_wrap(set, d);
+            double reach = set->grains[i].radius + set->grains[j].radius + set->skin;
+            expected += d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach;
+        }
+    }
+    unsigned char *slab = calloc(set->count, 1);
+    for (uint32_t s = 0; slab && s < set->slab_count; ++s) {
+        for (uint32_t k = set->slabs[s].begin; k < set->slabs[s].end; ++k) {
+            slab[k] = (unsigned char)s;
+        }
+    }
+    for (size_t i = 0; slab && i < set->count; ++i) {
+        for (uint32_t k = set->first[i]; k < set->first[i + 1]; ++k) {
+            uint32_t j = set->list[k];
+            uint32_t ahead = (slab[j] + set->slab_count - slab[i]) % set->slab_count;
+            CHECK(ahead == 1 || (ahead == 0 && j > i));
+            for (uint32_t m = set->first[i]; m < k; ++m) {
+                CHECK(set->list[m] != j);
+            }
+            ++found;
+        }
+    }
+    free(slab);
+    CHECK(found == expected && expected > 0);
+}
+
+static void neighbours_are_those_of_a_search_of_all_pairs(void)
+{
+    for (int k = 0; k < 24; ++k) {
+        se3d_particles_def def = se3d_particles_def_default();
+        bed b;
+        se3d_material_def material = stuff();
+        for (int a = 0; a < 3; ++a) {
+            def.boundary[a] = k >> a & 1 ? SE3D_BOUNDARY_PERIODIC : SE3D_BOUNDARY_OPEN;
+            def.upper[a] = a == 2 ? 1.2 : 0.5;
+        }
+        bed_init(&b, &def, none, &material);
+        double ratio = k < 8 ? 1.0 : k < 16 ? 3.0 : 25.0;
+        se3d_fill_def fill = region(&b, 0.5, 1.2, 0.05 / ratio, 0.05);
+        fill.count = k < 8 ? 60 : 100;
+        CHECK(se3d_particles_fill_random(b.particles, &fill) == SE3D_OK);
+        if (k >= 16) {
+            fill.radius_max = 0.004;
+            fill.count = 600;
+            CHECK(se3d_particles_fill_random(b.particles, &fill) == SE3D_OK);
+        }
+        CHECK(se3d_particles_step(b.particles, 1) == SE3D_OK);
+        CHECK(se3d_particles_count_contacts(b.particles) == 0); /* nothing overlaps */
+        check_list(&b.particles->set);
+        bed_destroy(&b);
+    }
+}
+
+/* A cloud that shrinks into collisions: sums of momentum about the origin. */
+static void sum(const bed *b, double momentum[3], double angular[3], double *kinetic)
+{
+    size_t n = se3d_particles_count(b->particles);
+    double *r = malloc(9 * n * sizeof *r), *radius = malloc(n * sizeof *radius);
+    double *v = r + 3 * n, *w = r + 6 * n;
+    CHECK(se3d_particles_get_all(b->particles, n, r, v, w) == SE3D_OK);
+    CHECK(se3d_particles_get_radii(b->particles, n, radius) == SE3D_OK);
+    memset(momentum, 0, 3 * sizeof *momentum);
+    memset(angular, 0, 3 * sizeof *angular);
+    for (size_t k = 0; k < n; ++k) {
+        double m = 2500.0 * 4.0 / 3.0 * PI * radius[k] * radius[k] * radius[k];
+        double spin = 0.4 * m * radius[k] * radius[k];
+        for (int a = 0; a < 3; ++a) {
+            int p = (a + 1) % 3, q = (a + 2) % 3;
+            momentum[a] += m * v[3 * k + (size_t)a];
+            angular[a] +=
+                spin * w[3 * k + (size_t)a] + m * (r[3 * k + (size_t)p] * v[3 * k + (size_t)q] -
+                                                   r[3 * k + (size_t)q] * v[3 * k + (size_t)p]);
+        }
+    }
+    se3d_particles_energy energy;
+    CHECK(se3d_particles_get_energy(b->particles, &energy) == SE3D_OK);
+    *kinetic = energy.translation + energy.rotation;
+    free(r);
+    free(radius);
+}
+
+static void free_cloud(se3d_law law, double restitution, double rolling, int portable, double ratio)
+{
+    se3d_particles_def def = se3d_particles_def_default();
+    def.law = law;
+    def.portable = portable;
+    se3d_material_def material = stuff();
+    material.restitution = restitution;
+    material.rolling_friction = material.torsional_friction = rolling;
+    bed b;
+    bed_init(&b, &def, none, &material);
+    se3d_fill_def fill = region(&b, 0.12, 0.12, 0.005 / ratio, 0.005);
+    fill.count = 500;
+    CHECK(se3d_particles_fill_random(b.particles, &fill) == SE3D_OK);
+    double state[9 * 500];
+    double *v = state + 1500, *w = state + 3000;
+    uint64_t seed = 5;
+    CHECK(se3d_particles_get_all(b.particles, 500, state, NULL, NULL) == SE3D_OK);
+    for (size_t k = 0; k < 1500; ++k) {
+        v[k] = 0.3 * check_random(&seed) - 5.0 * (state[k] - 0.06);
+        w[k] = 30.0 * check_random(&seed);
+    }
+    CHECK(se3d_particles_set_all(b.particles, 500, NULL, v, w) == SE3D_OK);
+    double p0[3], l0[3], e0, p1[3], l1[3], e1;
+    sum(&b, p0, l0, &e0);
+    uint64_t contacts = 0;
+    for (int k = 0; k < 20; ++k) {
+        se3d_particles_stats stats;
+        CHECK(se3d_particles_step(b.particles, 100) == SE3D_OK);
+        CHECK(se3d_particles_get_stats(b.particles, &stats) == SE3D_OK);
+        contacts += stats.contacts;
+    }
+    CHECK(contacts > 20);
+    sum(&b, p1, l1, &e1);
+    for (int a = 0; a < 3; ++a) {
+        CHECK_NEAR(p1[a], p0[a], 1e-14); /* of 0.3 kg m/s exchanged */
+        CHECK_NEAR(l1[a], l0[a], 1e-15);
+    }
+    CHECK(e1 < e0 * (restitution < 1.0 ? 0.95 : 1.001));
+    bed_destroy(&b);
+}
+
+static void free_cloud_conserves_momentum_and_angular_momentum(void)
+{
+    for (int k = 0; k < 16; ++k) {
+        free_cloud(k & 1 ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE, k & 2 ? 0.6 : 1.0,
+                   k & 4 ? 0.1 : 0.0, (k & 8) != 0, k & 2 ? 1.0 : 4.0);
+    }
+}
+
+static void frictionless_elastic_cloud_keeps_its_energy(void)
+{
+    se3d_material_def material = stuff();
+    material.friction = 0.0;
+    material.restitution = 1.0;
+    double drift[2];
+    for (int fine = 0; fine < 2; ++fine) {
+        bed b;
+        bed_init(&b, NULL, none, &material);
+        const double r[6] = {0.0, 0.0, 0.0, 0.0099, 0.002, 0.0}, radius[2] = {0.005, 0.005};
+        const double v[6] = {0.5, 0.0, 0.0, -0.5, 0.0, 0.0};
+        CHECK(se3d_particles_add(b.particles, b.material, 2, r, radius, v, NULL, NULL) == SE3D_OK);
+        double p[3], l[3], e0, e1, step;
+        sum(&b, p, l, &e0);
+        CHECK(se3d_particles_get_step(b.particles, &step) == SE3D_OK);
+        CHECK(se3d_particles_set_step(b.particles, fine ? step / 4.0 : step) == SE3D_OK);
+        CHECK(se3d_particles_step(b.particles, 1000) == SE3D_OK);
+        CHECK(se3d_particles_count_contacts(b.particles) == 0);
+        sum(&b, p, l, &e1);
+        /* They start overlapped: that energy is known. */
+        double d = sqrt(0.0099 * 0.0099 + 0.002 * 0.002);
+        double overlap = 0.01 - d > 0.0 ? 0.01 - d : 0.0;
+        drift[fine] = fabs(e1 / (e0 + 0.5 * 2.5e4 * overlap * overlap) - 1.0);
+        bed_destroy(&b);
+    }
+    CHECK(drift[0] < 2e-3);
+    CHECK(drift[1] < drift[0] / 3.0 + 1e-12);
+}
+
+static void settled_box_weighs_what_it_holds(void)
+{
+    se3d_material_def material = stuff();
+    material.restitution = 0.3;
+    bed b;
+    bed_init(&b, NULL, down, &material);
+    box_around(&b, 0.055);
+    se3d_fill_def fill = region(&b, 0.055, 0.22, 0.004, 0.005);
+    fill.jitter = 0.0004;
+    size_t count;
+    CHECK(se3d_particles_fill_lattice(b.particles, &fill, &count) == SE3D_OK);
+    CHECK(count == 5 * 5 * 20);
+    CHECK(se3d_particles_run(b.particles, 1.6) == SE3D_OK);
+    double force[3], torque[3], weight = 0.0, radius[500];
+    CHECK(se3d_particles_get_radii(b.particles, count, radius) == SE3D_OK);
+    for (size_t k = 0; k < count; ++k) {
+        weight += 2500.0 * 4.0 / 3.0 * PI * radius[k] * radius[k] * radius[k] * 9.81;
+    }
+    se3d_body ground;
+    CHECK(se3d_system_get_ground(b.system, &ground) == SE3D_OK);
+    CHECK(se3d_particles_get_wrench(b.particles, ground, force, torque) == SE3D_OK);
+    CHECK_NEAR(force[2] / weight, -1.0, 1e-6);
+    CHECK_NEAR(force[0] / weight, 0.0, 1e-6);
+    /* contacts as exported are those forces */
+    size_t contacts = se3d_particles_count_contacts(b.particles);
+    se3d_contact *list = malloc(contacts * sizeof *list);
+    CHECK(se3d_particles_get_contacts(b.particles, contacts, list) == SE3D_OK);
+    double on_walls = 0.0;
+    size_t walls = 0;
+    for (size_t k = 0; k < contacts; ++k) {
+        on_walls += list[k].wall.index1 ? list[k].force[2] : 0.0;
+        walls += list[k].wall.index1 != 0;
+    }
+    CHECK(walls > 25 && contacts - walls > 800);
+    CHECK_NEAR(on_walls / weight, 1.0, 1e-5);
+    free(list);
+    bed_destroy(&b);
+}
+
+static void pile_does_not_creep(void)
+{
+    se3d_material_def material = stuff();
+    material.restitution = 0.2;
+    material.rolling_friction = 0.02; /* one that lies alone would roll for ever */
+    bed b;
+    bed_init(&b, NULL, down, &material);
+    box_around(&b, 0.044);
+    se3d_fill_def fill = region(&b, 0.044, 0.1, 0.005, 0.005);
+    fill.jitter = 0.0004;
+    CHECK(se3d_particles_fill_lattice(b.particles, &fill, NULL) == SE3D_OK);
+    CHECK(se3d_particles_run(b.particles, 2.5) == SE3D_OK);
+    size_t n = se3d_particles_count(b.particles);
+    double *r = malloc(6 * n * sizeof *r);
+    CHECK(se3d_particles_get_all(b.particles, n, r, NULL, NULL) == SE3D_OK);
+    CHECK(se3d_particles_run(b.particles, 4.5) == SE3D_OK);
+    CHECK(se3d_particles_get_all(b.particles, n, r + 3 * n, NULL, NULL) == SE3D_OK);
+    for (size_t k = 0; k < 3 * n; ++k) {
+        CHECK_NEAR(r[3 * n + k], r[k], 1e-9);
+    }
+    free(r);
+    bed_destroy(&b);
+}
+
+static void body_with_a_wall_carries_the_particles_and_feels_them(void)
+{
+    se3d_material_def material = stuff();
+    material.restitution = 0.1;
+    bed b;
+    bed_init(&b, NULL, down, &material);
+    se3d_body_def body = se3d_body_def_default();
+    se3d_body tray;
+    body.mass = 1.0;
+    body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+    body.position[0] = 1.0;
+    CHECK(se3d_body_create(b.system, &body, &tray) == SE3D_OK);
+    se3d_wall_def def = se3d_wall_def_default();
+    se3d_wall wall;
+    def.body = tray;
+    def.material = b.material;
+    def.size[0] = def.size[1] = 0.2;
+    def.size[2] = 0.02;
+    CHECK(se3d_wall_create_box(b.particles, &def, &wall) == SE3D_OK);
+    CHECK(se3d_body_destroy(b.system, tray) == SE3D_ERR_IN_USE);
+    const double r[3] = {1.05, 0.02, 0.015}, radius = 0.005;
+    CHECK(se3d_particles_add(b.particles, b.material, 1, r, &radius, NULL, NULL, NULL) == SE3D_OK);
+    CHECK(se3d_particles_run(b.particles, 0.5) == SE3D_OK);
+    double weight = 2500.0 * 4.0 / 3.0 * PI * 1.25e-7 * 9.81, force[3], torque[3];
+    CHECK(se3d_wall_get_force(b.particles, wall, force, torque) == SE3D_OK);
+    CHECK_NEAR(force[2] / weight, -1.0, 1e-6);
+    CHECK_NEAR(torque[0] / weight, -0.02, 1e-6);
+    CHECK_NEAR(torque[1] / weight, 0.05, 1e-6);
+    /* Move the tray up slowly by more than the skin: the particle goes with it. */
+    const double v[3] = {0.0, 0.0, 0.1};
+    double at[3] = {1.0, 0.0, 0.0}, x[3], step;
+    CHECK(se3d_body_set_velocity(b.system, tray, v) == SE3D_OK);
+    CHECK(se3d_particles_get_step(b.particles, &step) == SE3D_OK);
+    for (int k = 0; k < 10000; ++k) {
+        at[2] += v[2] * step;
+        CHECK(se3d_body_set_position(b.system, tray, at) == SE3D_OK);
+        CHECK(se3d_particles_step(b.particles, 1) == SE3D_OK);
+    }
+    CHECK(se3d_particles_get_all(b.particles, 1, x, NULL, NULL) == SE3D_OK);
+    CHECK_NEAR(x[2] - at[2], 0.015, 2e-6);
+    CHECK(at[2] > 0.003);
+    CHECK(se3d_wall_destroy(b.particles, wall) == SE3D_OK);
+    CHECK(se3d_wall_destroy(b.particles, wall) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_particles_run(b.particles, 2.0) == SE3D_OK);
+    CHECK(se3d_particles_get_all(b.particles, 1, x, NULL, NULL) == SE3D_OK);
+    CHECK(x[2] < -1.0); /* nothing holds it */
+    CHECK(se3d_body_destroy(b.system, tray) == SE3D_OK);
+    bed_destroy(&b);
+}
+
+static void particles_are_added_and_removed_while_others_touch(void)
+{
+    se3d_material_def material = stuff();
+    bed b;
+    bed_init(&b, NULL, down, &material);
+    plane_at(&b, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+    const double r[6] = {0.0, 0.0, 0.0049, 0.0, 0.0, 0.0148}, radius[2] = {0.005, 0.005};
+    uint32_t first, ids[3];
+    CHECK(se3d_particles_add(b.particles, b.material, 2, r, radius, NULL, NULL, &first) == SE3D_OK);
+    CHECK(first == 0);
+    CHECK(se3d_particles_run(b.particles, 0.3) == SE3D_OK);
+    double before[6], after[9];
+    CHECK(se3d_particles_get_all(b.particles, 2, before, NULL, NULL) == SE3D_OK);
+    const double far[3] = {1.0, 0.0, 0.005};
+    CHECK(se3d_particles_add(b.particles, b.material, 1, far, radius, NULL, NULL, &first) ==
+          SE3D_OK);
+    CHECK(first == 2 && se3d_particles_count(b.particles) == 3);
+    CHECK(se3d_particles_run(b.particles, 0.4) == SE3D_OK);
+    CHECK(se3d_particles_get_all(b.particles, 3, after, NULL, NULL) == SE3D_OK);
+    for (int k = 0; k < 6; ++k) {
+        CHECK_NEAR(after[k], before[k], 1e-8);
+    }
+    const uint32_t gone = 1;
+    CHECK(se3d_particles_remove(b.particles, 1, &gone) == SE3D_OK);
+    CHECK(se3d_particles_remove(b.particles, 1, &gone) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_count(b.particles) == 2);
+    CHECK(se3d_particles_get_ids(b.particles, 2, ids) == SE3D_OK);
+    CHECK(ids[0] == 0 && ids[1] == 2);
+    CHECK(se3d_particles_run(b.particles, 0.6) == SE3D_OK);
+    CHECK(se3d_particles_get_all(b.particles, 2, after, NULL, NULL) == SE3D_OK);
+    CHECK(after[2] > before[2]); /* relieved */
+    CHECK(se3d_particles_get_all(b.particles, 3, after, NULL, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    bed_destroy(&b);
+}
+
+static void particles_that_leave_are_counted(void)
+{
+    se3d_particles_def def = se3d_particles_def_default();
+    def.boundary[2] = SE3D_BOUNDARY_SINK;
+    def.lower[2] = -0.5;
+    def.upper[2] = 10.0;
+    se3d_material_def material = stuff();
+    bed b;
+    bed_init(&b, &def, down, &material);
+    se3d_fill_def fill = region(&b, 0.1, 0.1, 0.005, 0.005);
+    size_t count;
+    CHECK(se3d_particles_fill_lattice(b.particles, &fill, &count) == SE3D_OK);
+    CHECK(count == 729);
+    CHECK(se3d_particles_run(b.particles, 0.3) == SE3D_OK);
+    CHECK(se3d_particles_count(b.particles) == 729);
+    CHECK(se3d_particles_run(b.particles, 0.6) == SE3D_OK);
+    se3d_particles_stats stats;
+    CHECK(se3d_particles_get_stats(b.particles, &stats) == SE3D_OK);
+    CHECK(stats.lost == 729 && se3d_particles_count(b.particles) == 0);
+    CHECK(se3d_particles_step(b.particles, 10) == SE3D_OK); /* an empty set is fine */
+    bed_destroy(&b);
+}
+
+static void pair_overrides_hold(void)
+{
+    se3d_material_def material = stuff();
+    bed b;
+    bed_init(&b, NULL, none, &material);
+    se3d_material_pair_def pair = se3d_material_pair_def_default();
+    pair.restitution = 0.3;
+    CHECK(se3d_material_set_pair(b.particles, b.material, b.material, &pair) == SE3D_OK);
+    const double r[6] = {0.0, 0.0, 0.0, 0.0105, 0.0, 0.0}, radius[2] = {0.005, 0.005};
+    const double v[6] = {0.1, 0.0, 0.0, -0.1, 0.0, 0.0};
+    CHECK(se3d_particles_add(b.particles, b.material, 2, r, radius, v, NULL, NULL) == SE3D_OK);
+    double u[6], step;
+    CHECK(se3d_particles_get_step(b.particles, &step) == SE3D_OK);
+    CHECK(se3d_particles_set_step(b.particles, step / 8.0) == SE3D_OK);
+    CHECK(se3d_particles_step(b.particles, 8 * 600) == SE3D_OK);
+    CHECK(se3d_particles_get_all(b.particles, 2, NULL, u, NULL) == SE3D_OK);
+    CHECK_NEAR((u[3] - u[0]) / 0.2, 0.3, 1e-3);
+    bed_destroy(&b);
+}
+
+static void too_much_overlap_names_particle_and_time(void)
+{
+    se3d_material_def material = stuff();
+    bed b;
+    bed_init(&b, NULL, none, &material);
+    const double r[9] = {1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.012, 0.0, 0.0};
+    const double radius[3] = {0.005, 0.005, 0.005};
+    const double v[9] = {0.0, 0.0, 0.0, 50.0, 0.0, 0.0, -50.0, 0.0, 0.0};
+    CHECK(se3d_particles_add(b.particles, b.material, 3, r, radius, v, NULL, NULL) == SE3D_OK);
+    CHECK(se3d_particles_run(b.particles, 0.1) == SE3D_ERR_STEP_SIZE);
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "particle ");
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "at time ");
+    CHECK(se3d_particles_set_step(b.particles, 1.0) == SE3D_OK);
+    CHECK(se3d_particles_step(b.particles, 1) == SE3D_ERR_STEP_SIZE);
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "step = 1 s");
+    bed_destroy(&b);
+}
+
+static void packing_that_cannot_fit_changes_nothing(void)
+{
+    se3d_material_def material = stuff();
+    bed b;
+    bed_init(&b, NULL, none, &material);
+    se3d_fill_def fill = region(&b, 0.05, 0.05, 0.005, 0.005);
+    fill.count = 200;
+    CHECK(se3d_particles_fill_random(b.particles, &fill) == SE3D_ERR_NO_CONVERGENCE);
+    CHECK(se3d_particles_count(b.particles) == 0);
+    fill.count = 30;
+    CHECK(se3d_particles_fill_random(b.particles, &fill) == SE3D_OK);
+    CHECK(se3d_particles_count(b.particles) == 30);
+    bed_destroy(&b);
+}
+
+int main(void)
+{
+    RUN(restitution_and_damping_are_inverse);
+    RUN(neighbours_are_those_of_a_search_of_all_pairs);
+    RUN(free_cloud_conserves_momentum_and_angular_momentum);
+    RUN(frictionless_elastic_cloud_keeps_its_energy);
+    RUN(settled_box_weighs_what_it_holds);
+    RUN(pile_does_not_creep);
+    RUN(body_with_a_wall_carries_the_particles_and_feels_them);
+    RUN(particles_are_added_and_removed_while_others_touch);
+    RUN(particles_that_leave_are_counted);
+    RUN(pair_overrides_hold);
+    RUN(too_much_overlap_names_particle_and_time);
+    RUN(packing_that_cannot_fit_changes_nothing);
+    return check_finish();
+}
