@@ -274,6 +274,66 @@ static void the_energy_audit_closes_to_the_order_of_the_method(void)
     double fine = audit_gap(SE3D_METHOD_GENERALIZED_ALPHA, 1e-3);
     CHECK(fine < 2e-4);
     CHECK_NEAR(coarse / fine, 4.0, 0.5);
+    CHECK(audit_gap(SE3D_METHOD_DOP853, 0.0) < 1e-8);
+}
+
+/* A driven, loaded, damped pendulum in gravity that changes: every account is in use. */
+static void the_energy_audit_closes_with_drivers_loads_and_actuators(void)
+{
+    problem p = {0};
+    se3d_force force;
+    se3d_energy start, end;
+    se3d_work work;
+    const char *const variables[3] = {"t", "theta", "rate"};
+    se3d_function gravity[3] = {{0, 0}, {0, 0}, {0, 0}};
+    build_pendulum(&p);
+    CHECK(se3d_function_create_expression(p.system, "-9.81 - 3*sin(2*t)", &gravity[2]) == SE3D_OK);
+    CHECK(se3d_system_set_gravity_function(p.system, gravity) == SE3D_OK);
+    se3d_load_def load = se3d_load_def_default();
+    load.body = p.body;
+    load.point[0] = 1.0;
+    CHECK(se3d_function_create_expression(p.system, "50*cos(3*t)", &load.function[1]) == SE3D_OK);
+    CHECK(se3d_force_create_load(p.system, &load, &force) == SE3D_OK);
+    se3d_rsda_def motor = se3d_rsda_def_default();
+    se3d_function_def h = se3d_function_def_default();
+    h.expression = "20*sin(t) + rate*theta";
+    h.variables = variables;
+    h.variable_count = 3;
+    motor.joint = p.joint;
+    CHECK(se3d_function_create(p.system, &h, &motor.h) == SE3D_OK);
+    CHECK(se3d_force_create_rsda(p.system, &motor, &force) == SE3D_OK);
+    /* a second bar at the tip, driven */
+    se3d_body_def body = se3d_body_def_default();
+    se3d_body tip;
+    const double at[3] = {0.0, 2.0 * sqrt(2.0), -2.0 * sqrt(2.0)};
+    const double axis[3] = {1.0, 0.0, 0.0};
+    body.mass = 20.0;
+    body.inertia[0] = body.inertia[1] = body.inertia[2] = 2.0;
+    memcpy(body.position, at, sizeof at);
+    body.position[1] += 1.0;
+    CHECK(se3d_body_create(p.system, &body, &tip) == SE3D_OK);
+    se3d_joint_def joint = se3d_joint_def_default();
+    se3d_constraint elbow, drive;
+    joint.body_i = p.body;
+    joint.body_j = tip;
+    CHECK(se3d_joint_def_set_frame(p.system, &joint, at, axis, NULL) == SE3D_OK);
+    CHECK(se3d_joint_create_revolute(p.system, &joint, &elbow) == SE3D_OK);
+    se3d_driver_def driver = se3d_driver_def_default();
+    driver.joint = elbow;
+    CHECK(se3d_function_create_expression(p.system, "0.5*(1 - cos(2*t))", &driver.function) ==
+          SE3D_OK);
+    CHECK(se3d_driver_create(p.system, &driver, &drive) == SE3D_OK);
+    se3d_solver *solver = make_solver(&p, SE3D_METHOD_DOP853, 0, 0.0);
+    CHECK(se3d_solver_run(solver, 0.0) == SE3D_OK);
+    CHECK(se3d_system_get_energy(p.system, &start) == SE3D_OK);
+    CHECK(se3d_solver_run(solver, 2.0) == SE3D_OK);
+    CHECK(se3d_system_get_energy(p.system, &end) == SE3D_OK);
+    CHECK(se3d_system_get_work(p.system, &work) == SE3D_OK);
+    CHECK(fabs(work.drivers) > 1.0 && fabs(work.actuators) > 1.0 && work.dissipated > 1.0);
+    double gap = end.total - start.total + work.dissipated - work.actuators - work.drivers;
+    CHECK_NEAR(gap, 0.0, 1e-8 * fabs(start.total));
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(p.system);
 }
 
 int main(void)
@@ -283,5 +343,6 @@ int main(void)
     RUN(a_pendulum_with_rsda_moves_as_the_reference);
     RUN(tsda_force_and_rsda_torque_follow_their_definition);
     RUN(the_energy_audit_closes_to_the_order_of_the_method);
+    RUN(the_energy_audit_closes_with_drivers_loads_and_actuators);
     return check_finish();
 }
