@@ -103,16 +103,14 @@ se3d_status se3di_newmark_start(se3di_integration *integration, const se3di_newm
     double *vdot = a + n;
     SE3DI_TRY(se3di_acceleration_solve(equations, assembly->model->time));
     copy(vdot, equations->x, n);
-    memcpy(integration->work + 3 * (size_t)n, equations->l,
-           assembly->row_count * sizeof *equations->l);
+    copy(integration->work + 3 * (size_t)n, equations->l, assembly->row_count);
     estimate_jerk(integration, h, vdot, a);
     for (uint32_t k = 0; k < n; ++k) {
         a[k] = vdot[k] + (method->alpha_m - method->alpha_f) * h * a[k];
     }
     vdot[n] = h;
     vdot[n + 1] = equations->redundant ? 1.0 : 0.0;
-    memcpy(assembly->model->lambda, integration->work + 3 * (size_t)n,
-           assembly->row_count * sizeof *equations->l);
+    copy(assembly->model->lambda, integration->work + 3 * (size_t)n, assembly->row_count);
     se3di_assembly_set_acceleration(assembly, vdot);
     return SE3D_OK;
 }
@@ -369,7 +367,7 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
     };
     se3di_assembly_get_velocity(assembly, step.v_n);
     memcpy(step.vdot, step.vdot_n, n * sizeof *step.vdot);
-    memcpy(step.lambda, assembly->model->lambda, assembly->row_count * sizeof *step.lambda);
+    copy(step.lambda, assembly->model->lambda, assembly->row_count);
     se3di_equations_save(equations);
     se3di_newton_save_memory(&integration->newton);
     se3d_status status = se3di_assembly_eval_functions(assembly, step.t, equations->error);
