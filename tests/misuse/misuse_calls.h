@@ -4,6 +4,7 @@
 #ifndef SE3D_TESTS_MISUSE_CALLS_H
 #define SE3D_TESTS_MISUSE_CALLS_H
 
+#include "misuse/misuse_particles.h"
 #include "misuse/misuse_world.h"
 
 #define MEMBER(kind, type, name, count)                                                            \
@@ -631,6 +632,12 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(function);
     CHECK_INIT(solver);
     CHECK_INIT(expression);
+    CHECK_INIT(particles);
+    CHECK_INIT(material);
+    CHECK_INIT(material_pair);
+    CHECK_INIT(wall);
+    CHECK_INIT(fill);
+    CHECK_INIT(modes);
     return SE3D_OK;
 }
 
@@ -803,6 +810,51 @@ static const row rows[] = {
     {"se3d_function_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_solver_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_expression_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_particles_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_material_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_material_pair_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_wall_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_fill_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_modes_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_modes_create", modes_reject_misuse, "", NULL, NULL},
+    {"se3d_modes_destroy", modes_reject_misuse, "", NULL, NULL},
+    {"se3d_modes_count", modes_reject_misuse, "", NULL, NULL},
+    {"se3d_modes_count_freedoms", modes_reject_misuse, "", NULL, NULL},
+    {"se3d_modes_get_eigenvalue", modes_reject_misuse, "", NULL, NULL},
+    {"se3d_modes_get_shape", modes_reject_misuse, "", NULL, NULL},
+    {"se3d_modes_get_matrix", modes_reject_misuse, "", NULL, NULL},
+    {"se3d_modes_get_transfer", modes_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_create", particles_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_destroy", particles_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_clone", particles_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_restore", particles_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_add", particles_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_remove", particles_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_set_all", particles_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_step", particles_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_run", particles_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_set_step", particles_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_hash", particles_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_count", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_count_contacts", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_ids", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_radii", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_all", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_forces", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_contacts", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_step", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_time", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_energy", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_stats", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_wrench", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_material_create", walls_and_materials_reject_misuse, "", NULL, NULL},
+    {"se3d_material_set_pair", walls_and_materials_reject_misuse, "", NULL, NULL},
+    {"se3d_wall_create_plane", walls_and_materials_reject_misuse, "", NULL, NULL},
+    {"se3d_wall_create_box", walls_and_materials_reject_misuse, "", NULL, NULL},
+    {"se3d_wall_destroy", walls_and_materials_reject_misuse, "", NULL, NULL},
+    {"se3d_wall_get_force", walls_and_materials_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_fill_lattice", fills_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_fill_random", fills_reject_misuse, "", NULL, NULL},
 };
 
 #endif

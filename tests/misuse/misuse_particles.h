@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Misuse of modes and particles: owners beside the system, with their own cases. */
+#ifndef SE3D_TESTS_MISUSE_PARTICLES_H
+#define SE3D_TESTS_MISUSE_PARTICLES_H
+
+#include "misuse/misuse_world.h"
+
+/* `call` fails with `status`, and a message says so. */
+#define REJECTED(call, status)                                                                     \
+    do {                                                                                           \
+        CHECK((call) == (status));                                                                 \
+        CHECK(se3d_system_get_error_status(a->system) == (status));                                \
+        CHECK(se3d_system_get_error(a->system)[0] != 0);                                           \
+    } while (0)
+
+static se3d_status modes_reject_misuse(arguments *a)
+{
+    se3d_modes *modes = NULL;
+    se3d_eigenvalue s;
+    double x = 0.0, y = 0.0;
+    size_t rows = 0, columns = 0;
+    se3d_modes_def def = se3d_modes_def_default();
+    se3d_modes_input input = {.body = a->use.body, .direction = {0.0, 0.0, (double)NAN}};
+    CHECK(se3d_modes_create(NULL, NULL, &modes) == SE3D_ERR_NULL && !modes);
+    REJECTED(se3d_modes_create(a->system, NULL, NULL), SE3D_ERR_NULL);
+    def.input_count = 1;
+    REJECTED(se3d_modes_create(a->system, &def, &modes), SE3D_ERR_NULL);
+    def.inputs = &input;
+    REJECTED(se3d_modes_create(a->system, &def, &modes), SE3D_ERR_INVALID_ARGUMENT);
+    input.direction[2] = 1.0;
+    input.body.generation ^= 1;
+    REJECTED(se3d_modes_create(a->system, &def, &modes), SE3D_ERR_STALE_HANDLE);
+    def.struct_size = 0;
+    REJECTED(se3d_modes_create(a->system, &def, &modes), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!modes);
+    CHECK(se3d_modes_count(NULL) == 0 && se3d_modes_count_freedoms(NULL) == 0);
+    CHECK(se3d_modes_get_eigenvalue(NULL, 0, &s) == SE3D_ERR_NULL);
+    CHECK(se3d_modes_get_shape(NULL, 0, 0, NULL, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_modes_get_matrix(NULL, SE3D_MODES_A, &rows, &columns, NULL, 0) == SE3D_ERR_NULL);
+    CHECK(se3d_modes_get_transfer(NULL, 0, 0, 1.0, &x, &y) == SE3D_ERR_NULL);
+    se3d_modes_destroy(NULL);
+    se3d_modes_def_init(NULL, sizeof def);
+
+    /* A pendulum that hangs. */
+    se3d_system *system = NULL;
+    se3d_body_def body = body_def("bob");
+    se3d_joint_def pin = se3d_joint_def_default();
+    se3d_constraint joint;
+    CHECK(!se3d_system_create(NULL, &system));
+    CHECK(!se3d_system_get_ground(system, &pin.body_i));
+    CHECK(!se3d_body_create(system, &body, &pin.body_j));
+    pin.axis_i[0] = pin.axis_j[0] = pin.point_j[2] = pin.point_i[2] = 1.0;
+    pin.axis_i[2] = pin.axis_j[2] = 0.0;
+    CHECK(!se3d_joint_create_revolute(system, &pin, &joint));
+    CHECK(!se3d_modes_create(system, NULL, &modes));
+    CHECK(se3d_modes_count(modes) == 1 && se3d_modes_count_freedoms(modes) == 1);
+    CHECK(!se3d_modes_get_eigenvalue(modes, 0, &s) && s.imaginary > 0.0);
+    CHECK(se3d_modes_get_eigenvalue(modes, 0, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_modes_get_eigenvalue(modes, 1, &s) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_modes_get_shape(modes, 1, 0, NULL, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_modes_get_shape(modes, 0, 9, NULL, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_modes_get_matrix(modes, 99, &rows, &columns, NULL, 0) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_modes_get_matrix(modes, SE3D_MODES_A, &rows, &columns, &x, 1) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_modes_get_transfer(modes, 0, 0, 1.0, &x, &y) == SE3D_ERR_INVALID_ARGUMENT);
+    se3d_modes_destroy(modes);
+    se3d_system_destroy(system);
+    return SE3D_OK;
+}
+
+static se3d_particles *particles_open(arguments *a, se3d_material *material)
+{
+    se3d_particles *particles = NULL;
+    se3d_material_def def = se3d_material_def_default();
+    const double r[6] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0}, radius[2] = {0.1, 0.1};
+    def.density = 1000.0;
+    def.stiffness = 1e5;
+    CHECK(!se3d_particles_create(a->system, NULL, &particles));
+    CHECK(!se3d_material_create(particles, &def, material));
+    CHECK(!se3d_particles_add(particles, *material, 2, r, radius, NULL, NULL, NULL));
+    return particles;
+}
+
+static se3d_status particles_reject_misuse(arguments *a)
+{
+    se3d_material material;
+    const double nan = (double)NAN;
+    double r[6] = {0.0, 2.0, 0.0, nan, 0.0, 0.0}, radius[2] = {0.1, -0.1};
+    const uint32_t gone = 77;
+    se3d_particles *p = particles_open(a, &material), *other = p;
+    uint64_t hash = se3d_particles_hash(p);
+    se3d_particles_def def = se3d_particles_def_default();
+    CHECK(se3d_particles_create(NULL, NULL, &other) == SE3D_ERR_NULL && !other);
+    REJECTED(se3d_particles_create(a->system, NULL, NULL), SE3D_ERR_NULL);
+    def.step = nan;
+    REJECTED(se3d_particles_create(a->system, &def, &other), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "nan");
+    CHECK(se3d_particles_clone(NULL, &other) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_clone(p, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_restore(NULL, p) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_restore(p, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_add(NULL, material, 1, r, radius, NULL, NULL, NULL) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add(p, material, 1, NULL, radius, NULL, NULL, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add(p, material, 1, r, NULL, NULL, NULL, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add(p, material, 2, r, radius, NULL, NULL, NULL),
+             SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_add(p, (se3d_material){0, 0}, 1, r, radius, NULL, NULL, NULL),
+             SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_particles_remove(NULL, 1, &gone) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_remove(p, 1, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_remove(p, 1, &gone), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_set_all(NULL, 2, r, NULL, NULL) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_set_all(p, 3, r, NULL, NULL), SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_set_all(p, 2, r, NULL, NULL), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_step(NULL, 1) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_run(NULL, 1.0) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_run(p, nan), SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_run(p, -1.0), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_set_step(NULL, 1e-3) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_set_step(p, nan), SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_set_step(p, -1.0), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_hash(p) == hash && se3d_particles_count(p) == 2);
+    CHECK(se3d_particles_hash(NULL) == 0);
+    se3d_particles_destroy(NULL);
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
+static se3d_status particle_readers_reject_misuse(arguments *a)
+{
+    se3d_material material;
+    double x[6];
+    uint32_t ids[2];
+    se3d_contact contact;
+    se3d_particles_energy energy;
+    se3d_particles_stats stats;
+    se3d_particles *p = particles_open(a, &material);
+    CHECK(se3d_particles_count(NULL) == 0 && se3d_particles_count_contacts(NULL) == 0);
+    CHECK(se3d_particles_get_ids(NULL, 2, ids) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_ids(p, 3, ids) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_particles_get_ids(p, 2, ids) && ids[1] == 1);
+    CHECK(se3d_particles_get_radii(NULL, 2, x) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_radii(p, 1, x) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_all(NULL, 2, x, NULL, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_all(p, 1, x, NULL, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_forces(NULL, 2, x, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_forces(p, 1, x, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_contacts(NULL, 1, &contact) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_contacts(p, 1, &contact) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_step(NULL, x) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_step(p, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_time(NULL, x) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_time(p, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_energy(NULL, &energy) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_energy(p, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_stats(NULL, &stats) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_stats(p, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_wrench(NULL, a->use.body, x, x + 3) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_wrench(p, (se3d_body){0, 0}, x, x + 3) == SE3D_ERR_STALE_HANDLE);
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
+static se3d_status walls_and_materials_reject_misuse(arguments *a)
+{
+    se3d_material material, made = {7, 7};
+    se3d_wall wall = {7, 7};
+    double x[6];
+    se3d_particles *p = particles_open(a, &material);
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_material_pair_def pair = se3d_material_pair_def_default();
+    se3d_wall_def def = se3d_wall_def_default();
+    CHECK(se3d_material_create(NULL, &stuff, &made) == SE3D_ERR_NULL && made.index1 == 0);
+    REJECTED(se3d_material_create(p, NULL, &made), SE3D_ERR_NULL);
+    REJECTED(se3d_material_create(p, &stuff, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_material_create(p, &stuff, &made), SE3D_ERR_INVALID_ARGUMENT); /* density */
+    stuff.density = (double)NAN;
+    REJECTED(se3d_material_create(p, &stuff, &made), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "nan");
+    CHECK(se3d_material_set_pair(NULL, material, material, &pair) == SE3D_ERR_NULL);
+    REJECTED(se3d_material_set_pair(p, material, material, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_material_set_pair(p, material, made, &pair), SE3D_ERR_STALE_HANDLE);
+    pair.friction = (double)NAN;
+    REJECTED(se3d_material_set_pair(p, material, material, &pair), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_wall_create_plane(NULL, &def, &wall) == SE3D_ERR_NULL && wall.index1 == 0);
+    CHECK(se3d_wall_create_box(NULL, &def, &wall) == SE3D_ERR_NULL);
+    REJECTED(se3d_wall_create_plane(p, NULL, &wall), SE3D_ERR_NULL);
+    REJECTED(se3d_wall_create_box(p, NULL, &wall), SE3D_ERR_NULL);
+    REJECTED(se3d_wall_create_plane(p, &def, &wall), SE3D_ERR_STALE_HANDLE); /* no material */
+    def.material = material;
+    def.normal[2] = 0.0;
+    REJECTED(se3d_wall_create_plane(p, &def, &wall), SE3D_ERR_INVALID_ARGUMENT);
+    def.size[0] = (double)INFINITY;
+    REJECTED(se3d_wall_create_box(p, &def, &wall), SE3D_ERR_INVALID_ARGUMENT);
+    def.normal[2] = 1.0;
+    def.body = a->use.body;
+    CHECK(!se3d_wall_create_plane(p, &def, &wall));
+    CHECK(se3d_wall_get_force(NULL, wall, x, x + 3) == SE3D_ERR_NULL);
+    CHECK(!se3d_wall_get_force(p, wall, x, x + 3));
+    CHECK(se3d_wall_destroy(NULL, wall) == SE3D_ERR_NULL);
+    CHECK(!se3d_wall_destroy(p, wall));
+    CHECK(se3d_wall_get_force(p, wall, x, x + 3) == SE3D_ERR_STALE_HANDLE);
+    REJECTED(se3d_wall_destroy(p, wall), SE3D_ERR_STALE_HANDLE);
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
+static se3d_status fills_reject_misuse(arguments *a)
+{
+    se3d_material material;
+    size_t added = 0;
+    se3d_particles *p = particles_open(a, &material);
+    se3d_fill_def def = se3d_fill_def_default();
+    uint64_t hash = se3d_particles_hash(p);
+    CHECK(se3d_particles_fill_lattice(NULL, &def, &added) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_fill_random(NULL, &def) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_fill_lattice(p, NULL, &added), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_fill_random(p, NULL), SE3D_ERR_NULL);
+    def.upper[0] = def.upper[1] = def.upper[2] = 1.0;
+    def.count = 10;
+    def.radius_min = def.radius_max = 0.1;
+    REJECTED(se3d_particles_fill_lattice(p, &def, &added), SE3D_ERR_STALE_HANDLE);
+    def.material = material;
+    def.radius_max = (double)NAN;
+    REJECTED(se3d_particles_fill_lattice(p, &def, &added), SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_fill_random(p, &def), SE3D_ERR_INVALID_ARGUMENT);
+    def.radius_max = def.radius_min = 0.3; /* no room for ten */
+    REJECTED(se3d_particles_fill_random(p, &def), SE3D_ERR_NO_CONVERGENCE);
+    CHECK(se3d_particles_hash(p) == hash && se3d_particles_count(p) == 2);
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
+#endif
