@@ -11,6 +11,7 @@ static const char help[] =
     "  se3d run MODEL        run a model's analyses, write results as CSV\n"
     "  se3d check MODEL      count equations and freedoms, name redundant constraints\n"
     "  se3d evaluate MODEL   print Phi, nu, gamma and the Jacobian of every constraint\n"
+    "  se3d plot FILE.csv    draw results as SVG and PNG\n"
     "  se3d --version        print the version\n"
     "\n"
     "`se3d COMMAND --help` says more. The model file: docs/model-file/reference.md.\n"
@@ -21,8 +22,10 @@ typedef struct command {
     int (*run)(int count, char *const *words);
 } command;
 
-static const command commands[] = {
-    {"run", command_run}, {"check", command_check}, {"evaluate", command_evaluate}};
+static const command commands[] = {{"run", command_run},
+                                   {"check", command_check},
+                                   {"evaluate", command_evaluate},
+                                   {"plot", command_plot}};
 
 static int dispatch(int count, char *const *words)
 {

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# se3d plot: pictures, units, messages. Run with SE3D_PROGRAM and SE3D_SOURCE_DIR set.
+set -u
+program=${SE3D_PROGRAM:?the path of the se3d program}
+case $program in /*) ;; *) program=$PWD/$program ;; esac
+models=${SE3D_SOURCE_DIR:-.}/examples/models
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+failures=0
+checks=0
+
+fail() {
+    echo "$name: $1" >&2
+    failures=$((failures + 1))
+}
+
+# expect NAME CODE COMMAND...
+expect() {
+    name=$1
+    code=$2
+    shift 2
+    "$@" >"$dir/out" 2>"$dir/err"
+    actual=$?
+    checks=$((checks + 1))
+    [ $actual -eq "$code" ] || fail "exit code $actual, expected $code: $(head -3 "$dir/err")"
+}
+
+has() {
+    checks=$((checks + 1))
+    grep -qF -e "$2" "$1" || fail "\`$2\` not found in $1"
+}
+
+expect 'help' 0 "$program" plot --help
+expect 'no file' 2 "$program" plot
+expect 'unknown option' 2 "$program" plot --wings a.csv
+expect '-y without a value' 2 "$program" plot a.csv -y
+expect 'missing file' 1 "$program" plot "$dir/none.csv"
+has "$dir/err" "$dir/none.csv: No such file"
+printf 'time,bar.position.x\n' >"$dir/empty.csv"
+expect 'no rows' 1 "$program" plot "$dir/empty.csv"
+has "$dir/err" 'has no rows'
+: >"$dir/nothing.csv"
+expect 'no header' 1 "$program" plot "$dir/nothing.csv"
+has "$dir/err" 'is empty'
+printf 'time,a.position\n0,1\n' >"$dir/a.csv"
+expect 'missing tool' 1 env PATH="$dir" "$program" plot "$dir/a.csv"
+has "$dir/err" 'apt-get install --no-install-recommends gnuplot-nox'
+expect 'unknown channel' 2 "$program" plot "$dir/a.csv" -y a.velocity
+has "$dir/err" 'has no channel `a.velocity`, it has: time, a.position'
+
+if ! command -v gnuplot >/dev/null 2>&1; then
+    echo "SKIPPED: gnuplot is not installed (apt-get install gnuplot-nox): no picture was tested" >&2
+    echo "$checks checks, $failures failed"
+    [ $failures -eq 0 ]
+    exit
+fi
+
+for model in pendulum spatial_slider_crank tsda_mass; do
+    "$program" run -q "$models/$model.yaml" -o "$dir" --duration 1
+    expect "$model" 0 "$program" plot "$dir/$model.csv"
+    has "$dir/out" "wrote $dir/$model.svg"
+    has "$dir/$model.svg" '</svg>'
+    has "$dir/$model.svg" 'time [s]'
+    has "$dir/$model.svg" 'position [m]'
+    has "$dir/$model.svg" 'velocity [m/s]'
+    has "$dir/$model.svg" 'acceleration [m/s^2]'
+    has "$dir/$model.png" 'PNG'
+    [ ! -s "$dir/err" ] || [ $model = spatial_slider_crank ] || fail "$(cat "$dir/err")"
+    (cd "$dir" && rm "$model.svg" && gnuplot "$model.gp") || fail 'the script does not run by itself'
+    has "$dir/$model.svg" '</svg>'
+done
+has "$dir/pendulum.svg" 'force [N]' # the title of an axis, from the script as it was kept
+! ls "$dir"/*.partial 2>/dev/null || fail 'something is left'
+
+expect 'phase plot' 0 "$program" plot "$dir/tsda_mass.csv" -x block.position.x -y block.velocity.x -o "$dir/phase.png"
+has "$dir/phase.svg" 'block.position.x [m]'
+cp "$dir/tsda_mass.csv" "$dir/other.csv"
+expect 'compare files' 0 "$program" plot "$dir/tsda_mass.csv" "$dir/other.csv" -y block.position.x -o "$dir/two.svg"
+has "$dir/two.svg" 'block.position.x (other)'
+
+# A sine of amplitude 3 at 5 Hz has a peak of 3 at 5 Hz.
+awk 'BEGIN { print "time,a.position"; for (k = 0; k <= 2000; ++k) printf "%.17g,%.17g\n", k / 100, 1 + 3 * sin(2 * 3.14159265358979 * 5 * k / 100) }' >"$dir/sine.csv"
+expect 'spectrum' 0 "$program" plot "$dir/sine.csv" --fft -o "$dir/spectrum"
+has "$dir/spectrum.svg" 'frequency [Hz]'
+awk -F, 'NR > 1 && $2 > m { m = $2; f = $1 } END { exit !(f > 4.95 && f < 5.05 && m > 2.9 && m < 3.02) }' "$dir/spectrum.fft.csv" ||
+    fail 'the peak of a sine is at the wrong place'
+awk 'BEGIN { print "time,a.position"; for (k = 0; k < 1000000; ++k) print k / 1000 "," k % 100 }' >"$dir/long.csv"
+expect 'a million rows' 0 "$program" plot "$dir/long.csv"
+[ "$(wc -c <"$dir/long.svg")" -lt 1000000 ] || fail 'the picture is too large'
+expect 'a folder that cannot be written' 1 "$program" plot "$dir/a.csv" -o "$dir/none/a.svg"
+has "$dir/err" 'cannot be written'
+expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 4; exec "$@"' sh "$program" plot "$dir/pendulum.csv" -o "$dir/full"
+[ ! -e "$dir/full.svg" ] && [ ! -e "$dir/full.svg.partial" ] || fail 'a broken picture is left'
+
+echo "$checks checks, $failures failed"
+[ $failures -eq 0 ]

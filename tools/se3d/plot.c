@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* se3d plot FILE.csv...: results as SVG and PNG, by way of gnuplot. */
+#include "plot.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "options.h"
+#include "process.h"
+
+static const char help[] =
+    "se3d plot FILE.csv... [-x CHANNEL] [-y CHANNEL]... [-o FILE] [--fft]\n"
+    "\n"
+    "Draws results as FILE.svg and FILE.png, beside the first CSV file; the gnuplot script is "
+    "kept\n"
+    "as FILE.gp. Curves of one quantity share a frame; several files are compared in it. A "
+    "channel\n"
+    "is a column (pin.force.z), all components of one (pin.force) or all of an element (pin).\n"
+    "\n"
+    "  -x CHANNEL   horizontal axis (default time); a channel makes a phase plot\n"
+    "  -y CHANNEL   what to draw; may be repeated (default: position, velocity, acceleration and\n"
+    "               the reactions)\n"
+    "  -o FILE      name of the picture; .svg or .png is replaced by each\n"
+    "  --fft        amplitude over frequency; the spectrum is kept as FILE.fft.csv\n"
+    "  --quiet      print nothing but errors\n"
+    "\n"
+    "Exit code: 0 done; 1 a file or program failed; 2 bad usage.\n";
+
+static int take_value(plot *p, const char *name, const char *value)
+{
+    if (!value) {
+        fprintf(stderr, "se3d plot: a value is missing after `%s`; see `se3d plot --help`\n", name);
+        return EXIT_USAGE;
+    }
+    if (strcmp(name, "-x") == 0) {
+        p->x = value;
+    } else if (strcmp(name, "-y") != 0) {
+        p->output = value;
+    } else if (p->channel_count < PLOT_CHANNELS_MAX) {
+        p->channels[p->channel_count++] = value;
+    } else {
+        fprintf(stderr, "se3d plot: more than %d channels\n", PLOT_CHANNELS_MAX);
+        return EXIT_USAGE;
+    }
+    return EXIT_DONE;
+}
+
+static int read_word(plot *p, const char *word)
+{
+    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
+        p->help = 1;
+    } else if (strcmp(word, "--fft") == 0) {
+        p->fft = 1;
+    } else if (strcmp(word, "--quiet") == 0 || strcmp(word, "-q") == 0) {
+        p->quiet = 1;
+    } else if (word[0] == '-') {
+        fprintf(stderr, "se3d plot: unknown option `%s`; see `se3d plot --help`\n", word);
+        return EXIT_USAGE;
+    } else if (p->file_count == PLOT_FILES_MAX) {
+        fprintf(stderr, "se3d plot: more than %d files\n", PLOT_FILES_MAX);
+        return EXIT_USAGE;
+    } else {
+        p->files[p->file_count++] = word;
+    }
+    return EXIT_DONE;
+}
+
+static int read_words(plot *p, int count, char *const *words)
+{
+    for (int k = 0; k < count; ++k) {
+        int code = EXIT_DONE;
+        if (strcmp(words[k], "-x") == 0 || strcmp(words[k], "-y") == 0 ||
+            strcmp(words[k], "-o") == 0) {
+            code = take_value(p, words[k], k + 1 < count ? words[k + 1] : NULL);
+            ++k;
+        } else {
+            code = read_word(p, words[k]);
+        }
+        if (code != EXIT_DONE) {
+            return code;
+        }
+    }
+    if (p->file_count == 0 && !p->help) {
+        fputs("se3d plot: which results? Give a CSV file, see `se3d plot --help`\n", stderr);
+        return EXIT_USAGE;
+    }
+    return EXIT_DONE;
+}
+
+static int name_output(plot *p)
+{
+    static const char *const endings[] = {".svg", ".png", ".gp"};
+    if (!path_cut(p->output ? p->output : p->files[0], p->output ? "" : ".csv", p->base,
+                  sizeof p->base - 64)) {
+        fputs("se3d plot: the name of the picture is too long\n", stderr);
+        return 0;
+    }
+    for (size_t k = 0; p->output && k < sizeof endings / sizeof *endings; ++k) {
+        path_cut(p->base, endings[k], p->base, sizeof p->base);
+    }
+    return 1;
+}
+
+/* Give the pictures their names. */
+static int finish(const plot *p)
+{
+    static const char *const endings[] = {".svg", ".png"};
+    char partial[4300];
+    char name[4200];
+    for (size_t k = 0; k < 2; ++k) {
+        snprintf(name, sizeof name, "%s%s", p->base, endings[k]);
+        snprintf(partial, sizeof partial, "%s.partial", name);
+        FILE *file = fopen(partial, "rb");
+        const int empty = !file || fgetc(file) == EOF;
+        if (file) {
+            fclose(file);
+        }
+        if (empty || rename(partial, name) != 0) {
+            fprintf(stderr, "se3d plot: %s: cannot be written\n", name);
+            return 0;
+        }
+        if (!p->quiet) {
+            printf("wrote %s\n", name);
+        }
+    }
+    return 1;
+}
+
+static void remove_partial(const plot *p)
+{
+    char name[4200];
+    snprintf(name, sizeof name, "%s.svg.partial", p->base);
+    remove(name);
+    snprintf(name, sizeof name, "%s.png.partial", p->base);
+    remove(name);
+}
+
+static int draw(const plot *p)
+{
+    char script[4200];
+    char folder[4096];
+    snprintf(script, sizeof script, "%s.gp", p->base);
+    if (!plot_write_script(p, script) || !path_get_folder(script, folder, sizeof folder)) {
+        fprintf(stderr, "se3d plot: %s: cannot be written: %s\n", script, strerror(errno));
+        return EXIT_FAILED;
+    }
+    const char *const words[] = {"gnuplot", "-e", "partial='.partial'", path_get_name(script),
+                                 NULL};
+    const int code = process_run(folder, words);
+    if (code != 0) {
+        fprintf(stderr, "se3d plot: gnuplot failed on %s\n", script);
+    }
+    if (code != 0 || !finish(p)) {
+        remove_partial(p);
+        return EXIT_FAILED;
+    }
+    return EXIT_DONE;
+}
+
+static int plot_all(plot *p)
+{
+    for (size_t k = 0; k < p->file_count; ++k) {
+        if (!table_read(&p->tables[k], "plot", p->files[k])) {
+            return EXIT_FAILED;
+        }
+    }
+    if (!name_output(p) || !plot_choose(p)) {
+        return EXIT_USAGE;
+    }
+    if (!process_is_found("gnuplot")) {
+        return process_report_missing("plot", "gnuplot", "gnuplot-nox");
+    }
+    if (p->fft && !plot_transform(p)) {
+        return EXIT_FAILED;
+    }
+    return draw(p);
+}
+
+int command_plot(int count, char *const *words)
+{
+    plot *p = calloc(1, sizeof *p);
+    if (!p) {
+        fputs("se3d plot: out of memory\n", stderr);
+        return EXIT_FAILED;
+    }
+    int code = read_words(p, count, words);
+    if (code == EXIT_DONE && p->help) {
+        fputs(help, stdout);
+    } else if (code == EXIT_DONE) {
+        code = plot_all(p);
+        for (size_t k = 0; k < p->file_count; ++k) {
+            table_destroy(&p->tables[k]);
+        }
+    }
+    free(p);
+    return code;
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What `se3d plot` draws, and the gnuplot script for it. */
+#ifndef SE3D_TOOL_PLOT_H
+#define SE3D_TOOL_PLOT_H
+
+#include "table.h"
+
+enum { PLOT_FILES_MAX = 8, PLOT_CHANNELS_MAX = 64, PLOT_PANELS_MAX = 6, PLOT_CURVES_MAX = 9 };
+
+/* Curves of one unit and quantity, in one frame. */
+typedef struct plot_panel {
+    char title[160]; /* of the y axis, with its unit */
+    const char *names[PLOT_CURVES_MAX];
+    size_t count;
+    size_t dropped; /* curves that had no room */
+} plot_panel;
+
+typedef struct plot {
+    table tables[PLOT_FILES_MAX];
+    const char *files[PLOT_FILES_MAX];
+    size_t file_count;
+    const char *channels[PLOT_CHANNELS_MAX];
+    size_t channel_count;
+    const char *x;
+    const char *output;
+    plot_panel panels[PLOT_PANELS_MAX];
+    size_t panel_count;
+    char x_title[160];
+    char base[4096];                    /* of the files written, without extension */
+    char spectra[PLOT_FILES_MAX][4200]; /* files of --fft */
+    int fft;
+    int quiet;
+    int help;
+} plot;
+
+/* Choose the curves of every panel. @return false after a message. */
+int plot_choose(plot *p);
+/* Replace the tables by their amplitude spectra, in files beside the picture. */
+int plot_transform(plot *p);
+/* Write the script. @return false: errno says why. */
+int plot_write_script(const plot *p, const char *path);
+
+#endif

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Running other programs, and paths. */
+#if !defined(_WIN32)
+#define _XOPEN_SOURCE 700
+#endif
+
+#include "process.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "options.h"
+
+enum { PATH_SIZE = 4096 };
+
+#if defined(_WIN32)
+#include <direct.h>
+#include <io.h>
+#include <process.h>
+
+static int is_executable(const char *path)
+{
+    return _access(path, 0) == 0;
+}
+
+int process_run(const char *folder, const char *const *words)
+{
+    if (folder && _chdir(folder) != 0) {
+        return -1;
+    }
+    return (int)_spawnvp(_P_WAIT, words[0], words);
+}
+
+int path_get_absolute(const char *path, char *out, size_t size)
+{
+    return _fullpath(out, path, size) != NULL;
+}
+#else
+#include <sys/wait.h>
+#include <unistd.h>
+
+static int is_executable(const char *path)
+{
+    return access(path, X_OK) == 0;
+}
+
+int process_run(const char *folder, const char *const *words)
+{
+    char *copy[64] = {NULL}; /* execvp takes them without const and leaves them alone */
+    size_t count = 0;
+    for (; words[count] && count < 63; ++count) {
+        copy[count] = strdup(words[count]);
+    }
+    fflush(NULL);
+    const pid_t child = count > 0 ? fork() : -1;
+    if (child == 0) {
+        if (!folder || chdir(folder) == 0) {
+            execvp(copy[0], copy);
+        }
+        _exit(127);
+    }
+    for (size_t k = 0; k < count; ++k) {
+        free(copy[k]);
+    }
+    int status = 0;
+    if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) {
+        return -1;
+    }
+    return WEXITSTATUS(status);
+}
+
+int path_get_absolute(const char *path, char *out, size_t size)
+{
+    char *found = realpath(path, NULL);
+    const int fits = found && strlen(found) < size;
+    if (fits) {
+        strcpy(out, found);
+    }
+    free(found);
+    return fits;
+}
+#endif
+
+static int is_separator(char c)
+{
+#if defined(_WIN32)
+    return c == '/' || c == '\\' || c == ':';
+#else
+    return c == '/';
+#endif
+}
+
+int process_is_found(const char *name)
+{
+#if defined(_WIN32)
+    const char *between = ";";
+#else
+    const char *between = ":";
+#endif
+    const char *at = getenv("PATH");
+    char path[PATH_SIZE];
+    if (strchr(name, '/')) {
+        return is_executable(name);
+    }
+    while (at && *at) {
+        const size_t length = strcspn(at, between);
+        const int used = snprintf(path, sizeof path, "%.*s/%s", (int)length, at, name);
+        if (used > 0 && (size_t)used < sizeof path && is_executable(path)) {
+            return 1;
+        }
+        at += length;
+        at += *at ? 1 : 0;
+    }
+    return 0;
+}
+
+int process_report_missing(const char *command, const char *name, const char *package)
+{
+    fprintf(stderr,
+            "se3d %s: the program `%s` is not installed; on Debian and Ubuntu:\n"
+            "    apt-get install --no-install-recommends %s\n",
+            command, name, package);
+    return EXIT_FAILED;
+}
+
+const char *path_get_name(const char *path)
+{
+    const char *name = path;
+    for (const char *c = path; *c; ++c) {
+        name = is_separator(*c) ? c + 1 : name;
+    }
+    return name;
+}
+
+int path_get_folder(const char *path, char *folder, size_t size)
+{
+    const size_t length = (size_t)(path_get_name(path) - path);
+    const int used = length == 0   ? snprintf(folder, size, ".")
+                     : length == 1 ? snprintf(folder, size, "%.1s", path)
+                                   : snprintf(folder, size, "%.*s", (int)(length - 1), path);
+    return used >= 0 && (size_t)used < size;
+}
+
+int path_cut(const char *path, const char *extension, char *out, size_t size)
+{
+    size_t length = strlen(path);
+    const size_t tail = strlen(extension);
+    if (length > tail && strcmp(path + length - tail, extension) == 0) {
+        length -= tail;
+    }
+    if (length >= size) {
+        return 0;
+    }
+    memmove(out, path, length);
+    out[length] = '\0';
+    return 1;
+}
+
+int path_is_absolute(const char *path)
+{
+    return is_separator(path[0]) || (path[0] && path[1] == ':');
+}
