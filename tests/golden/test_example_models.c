@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Example models whose end state or modes have a closed form: each is run to its files, then its
+ * channels are compared at the end. */
+#include <stdlib.h>
+
+#include "check.h"
+#include "se3d/io.h"
+
+typedef struct example {
+    se3d_model *model;
+    se3d_run *run;
+    se3d_status status;
+} example;
+
+static example run_example(const char *name, const char *setting, const char *value,
+                           const char *formulation)
+{
+    example e = {NULL, NULL, SE3D_OK};
+    char path[800];
+    char folder[800];
+    se3d_model_error error;
+    const se3d_model_setting settings[] = {{setting, value}};
+    se3d_model_options options = se3d_model_options_default();
+    se3d_run_options how = se3d_run_options_default();
+    const char *source = getenv("SE3D_SOURCE_DIR");
+    const char *build = getenv("SE3D_BUILD_DIR");
+    options.settings = settings;
+    options.setting_count = setting ? 1 : 0;
+    options.formulation = formulation;
+    snprintf(path, sizeof path, "%s/examples/models/%s.yaml", source ? source : ".", name);
+    snprintf(folder, sizeof folder, "%s/golden/%s", build ? build : "/tmp", name);
+    how.directory = folder;
+    e.status = se3d_model_read_file(path, &options, &e.model, &error);
+    if (e.status >= 0) {
+        e.status = se3d_model_run(e.model, &how, &e.run, &error);
+    }
+    if (e.status < 0) {
+        fprintf(stderr, "%s: %s\n", name, error.message);
+    }
+    CHECK(e.status >= 0);
+    return e;
+}
+
+static void close_example(example *e)
+{
+    se3d_run_destroy(e->run);
+    se3d_model_destroy(e->model);
+}
+
+/* Component `part` of a channel of the first output, at the end. */
+static double channel_of(const example *e, const char *wanted, size_t part)
+{
+    const char *name = "";
+    double value[4] = {0.0, 0.0, 0.0, 0.0};
+    size_t width = 0;
+    for (size_t k = 0; se3d_model_get_channel(e->model, 0, k, &name) == SE3D_OK; ++k) {
+        if (strcmp(name, wanted) == 0) {
+            CHECK(se3d_model_get_channel_value(e->model, 0, k, NULL, value, &width) == SE3D_OK);
+            CHECK(part < width);
+            return value[part];
+        }
+    }
+    fprintf(stderr, "no channel %s\n", wanted);
+    const int channel_exists = 0;
+    CHECK(channel_exists);
+    return 0.0;
+}
+
+/* Number `column` of row `row` (both from 0, without the header) of the file that ends in `suffix`.
+ */
+static double file_number(const example *e, const char *suffix, size_t row, size_t column)
+{
+    char line[8000] = "";
+    double value = (double)NAN;
+    se3d_run_file file;
+    for (size_t k = 0; se3d_run_get_file(e->run, k, &file) == SE3D_OK; ++k) {
+        const size_t length = strlen(file.path);
+        if (length < strlen(suffix) || strcmp(file.path + length - strlen(suffix), suffix) != 0) {
+            continue;
+        }
+        FILE *stream = fopen(file.path, "rb");
+        for (size_t i = 0; stream && i < row + 2; ++i) {
+            if (!fgets(line, sizeof line, stream)) {
+                line[0] = '\0';
+            }
+        }
+        const char *at = line;
+        for (size_t i = 0; at && i < column; ++i) {
+            at = strchr(at, ',');
+            at = at ? at + 1 : NULL;
+        }
+        value = at && *at ? strtod(at, NULL) : value;
+        if (stream) {
+            fclose(stream);
+        }
+    }
+    return value;
+}
+
+static const char *const formulations[] = {"romega", "rp"};
+
+/* x = 1/2 g (sin - mu cos) t^2; sliding begins within the first step, and the load follows
+ * from step to step. */
+static void block_above_the_friction_angle_slides_as_coulomb_says(void)
+{
+    for (int f = 0; f < 2; ++f) {
+        example e = run_example("incline_friction", NULL, NULL, formulations[f]);
+        const double slope = acos(-1.0) / 6.0;
+        const double a = 9.81 * (sin(slope) - 0.3 * cos(slope));
+        CHECK_NEAR(channel_of(&e, "guide.displacement", 0), 2.0 * a, 1e-4);
+        CHECK_NEAR(channel_of(&e, "block.acceleration", 0), a * cos(slope), 1e-6);
+        CHECK_NEAR(channel_of(&e, "block.acceleration", 2), -a * sin(slope), 1e-6);
+        /* Against the motion, with mu times m g cos. */
+        CHECK_NEAR(channel_of(&e, "friction.force", 0), 0.3 * 2.0 * 9.81 * cos(slope), 1e-6);
+        CHECK_NEAR(channel_of(&e, "energy.dissipated", 0),
+                   0.3 * 2.0 * 9.81 * cos(slope) * channel_of(&e, "guide.displacement", 0), 1e-6);
+        CHECK_NEAR(channel_of(&e, "energy.balance", 0), 0.0, 1e-6);
+        close_example(&e);
+    }
+}
+
+static void block_below_the_friction_angle_does_not_creep(void)
+{
+    example e = run_example("incline_friction", "slope", "15*deg", NULL);
+    CHECK_NEAR(channel_of(&e, "guide.displacement", 0), 0.0, 1e-9);
+    CHECK_NEAR(channel_of(&e, "friction.force", 0), 2.0 * 9.81 * sin(acos(-1.0) / 12.0), 1e-6);
+    close_example(&e);
+}
+
+/* The moment about the pin, positive turns the bar up, by its definition. */
+static double bar_moment(double angle)
+{
+    const double tip[2] = {cos(angle), sin(angle)};
+    const double d[2] = {1.5 - tip[0], 0.5 - tip[1]};
+    const double l = hypot(d[0], d[1]);
+    const double f = 300.0 * (l - 0.8);
+    return -20.0 * angle - 10.0 * 9.81 * 0.5 * cos(angle) + f * (tip[0] * d[1] - tip[1] * d[0]) / l;
+}
+
+static void bar_comes_to_rest_where_its_moments_balance(void)
+{
+    example e = run_example("bar_equilibrium", NULL, NULL, NULL);
+    const double h = 1e-5;
+    double low = -0.5;
+    double high = 0.0;
+    for (int k = 0; k < 100; ++k) {
+        const double middle = 0.5 * (low + high);
+        *(bar_moment(middle) > 0.0 ? &low : &high) = middle;
+    }
+    const double angle = channel_of(&e, "pin.angle", 0);
+    CHECK_NEAR(angle, low, 1e-12);
+    CHECK_NEAR(channel_of(&e, "torsion.torque", 0), 20.0 * low, 1e-10);
+    /* Frequency and damping from the stiffness K, the damper's lever and the inertia about the pin.
+     */
+    const double inertia = 10.0 / 12.0 + 10.0 * 0.25;
+    const double K = -(bar_moment(low + h) - bar_moment(low - h)) / (2.0 * h);
+    const double d[2] = {1.5 - cos(low), 0.5 - sin(low)};
+    const double lever = (cos(low) * d[1] - sin(low) * d[0]) / hypot(d[0], d[1]);
+    const double w = sqrt(K / inertia);
+    const double zeta = (1.5 + 5.0 * lever * lever) / (2.0 * inertia * w);
+    CHECK_NEAR(file_number(&e, "modes.csv", 0, 3), w / (2.0 * acos(-1.0)), 1e-7);
+    CHECK_NEAR(file_number(&e, "modes.csv", 0, 4), zeta, 1e-8);
+    CHECK_NEAR(file_number(&e, "modes.csv", 0, 1), -zeta * w, 1e-7);
+    /* A and B of the one freedom; the static answer of the tip to 1 N is cos^2/K. */
+    CHECK_NEAR(file_number(&e, "modes_A.csv", 1, 1), -w * w, 1e-5);
+    CHECK_NEAR(file_number(&e, "modes_A.csv", 1, 2), -2.0 * zeta * w, 1e-7);
+    CHECK_NEAR(file_number(&e, "modes_D.csv", 0, 1), 0.0, 0.0);
+    const double s = 2.0 * acos(-1.0) * 0.1;
+    const double re = w * w - s * s;
+    const double im = 2.0 * zeta * w * s;
+    const double answer = cos(low) * cos(low) / inertia / (re * re + im * im);
+    CHECK_NEAR(file_number(&e, "modes_transfer.csv", 0, 1), answer * re, 1e-9);
+    CHECK_NEAR(file_number(&e, "modes_transfer.csv", 0, 2), -answer * im, 1e-9);
+    CHECK_NEAR(file_number(&e, "modes_transfer.csv", 99, 0), 10.0, 0.0);
+    CHECK(file_number(&e, "modes_B.csv", 1, 1) * file_number(&e, "modes_C.csv", 0, 1) > 0.0);
+    CHECK(e.status == SE3D_OK);
+    close_example(&e);
+}
+
+/* 0.2 T0 of load: w = 0.8 w0, and w^2 as in the head of the file. */
+static void governor_finds_its_steady_motion(void)
+{
+    for (int f = 0; f < 2; ++f) {
+        example e = run_example("flyball_governor", NULL, NULL, formulations[f]);
+        const double w = channel_of(&e, "bearing.rate", 0);
+        const double alpha = channel_of(&e, "pivot_right.angle", 0);
+        CHECK_NEAR(w, 9.6, 2e-5);
+        CHECK_NEAR(channel_of(&e, "pivot_left.angle", 0), alpha, 1e-6);
+        const double balance = (1.5 * 0.3 + 3.0 * 0.2) * 9.81 * sin(alpha) /
+                               (1.5 * 0.3 * cos(alpha) * (0.03 + 0.3 * sin(alpha)));
+        CHECK_NEAR(w * w, balance, 2e-4);
+        CHECK_NEAR(channel_of(&e, "slide.displacement", 0),
+                   0.4 * (cos(acos(-1.0) / 6.0) - cos(alpha)), 1e-6);
+        CHECK(file_number(&e, "modes.csv", 1, 1) < -0.5); /* it hunts not */
+        CHECK(file_number(&e, "modes.csv", 2, 4) > 0.3);
+        close_example(&e);
+    }
+}
+
+/* After the bump everything is as before, the forces are the weights; the tyre never pulled. */
+static void quarter_car_settles_and_its_tyre_never_pulls(void)
+{
+    example e = run_example("quarter_car", NULL, NULL, NULL);
+    double largest = -1e9;
+    double blocks = 0.0;
+    for (size_t k = 0; k < 301; ++k) {
+        largest = fmax(largest, file_number(&e, "quarter_car.csv", k, 9));
+        blocks = fmin(blocks, file_number(&e, "quarter_car.csv", k, 10));
+    }
+    CHECK(!(largest > 0.0));
+    CHECK_NEAR(largest, 0.0, 1e-12); /* it leaves the road */
+    CHECK(blocks < -100.0);
+    CHECK_NEAR(channel_of(&e, "strut.displacement", 0), 0.0, 1e-5);
+    CHECK_NEAR(channel_of(&e, "spring.force", 0), -300.0 * 9.81, 1.0);
+    CHECK_NEAR(channel_of(&e, "tyre.force", 0), -340.0 * 9.81, 1.0);
+    close_example(&e);
+}
+
+int main(void)
+{
+    RUN(block_above_the_friction_angle_slides_as_coulomb_says);
+    RUN(block_below_the_friction_angle_does_not_creep);
+    RUN(bar_comes_to_rest_where_its_moments_balance);
+    RUN(governor_finds_its_steady_motion);
+    RUN(quarter_car_settles_and_its_tyre_never_pulls);
+    return check_finish();
+}
