@@ -7,6 +7,7 @@
 #include "assembly/tangent.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
+#include "nonlinear/newton.h"
 #include "se3d/se3d.h"
 #include "system/system_internal.h"
 
@@ -252,9 +253,104 @@ static void the_tangent_of_rp_agrees_with_differences(void)
     check_formulation(&se3di_formulation_rp);
 }
 
+/* One implicit step x = h v + h^2/4 vdot, v = v_n + h/2 vdot of the equations of motion: set the
+ * state of vdot and return the residual in b and c. */
+static void implicit_state(se3di_equations *equations, const double *v_n, const double *vdot,
+                           double h, double *x)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    size_t n = (size_t)assembly->formulation->block;
+    double v[8 * BODIES], lambda[64] = {0.0};
+    double R[8 * BODIES];
+    se3di_equations_restore(equations);
+    for (size_t k = 0; k < n * BODIES; ++k) {
+        x[k] = h * v_n[k] + 0.25 * h * h * vdot[k];
+        v[k] = v_n[k] + 0.5 * h * vdot[k];
+    }
+    for (size_t k = 0; k < BODIES; ++k) {
+        assembly->formulation->move(&assembly->model->frames[assembly->free_body[k]], x + n * k);
+    }
+    se3di_assembly_set_velocity(assembly, v);
+    residual(assembly, vdot, lambda, R);
+    for (size_t k = 0; k < n * BODIES; ++k) {
+        equations->b[k] = -R[k];
+        if (k % n == 7) {
+            equations->b[k] = 4.0 / (h * h) *
+                              assembly->formulation->normalisation(
+                                  &assembly->model->frames[assembly->free_body[k / n]]);
+        }
+    }
+    se3di_assembly_eval_phi(assembly, equations->c);
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        equations->c[k] *= -4.0 / (h * h);
+    }
+}
+
+/* Corrections e_k of Newton with the exact matrix: e_{k+1} ~ e_k^2. Returns the best exponent seen
+ * once the corrections are small. */
+static double newton_exponent(const se3di_formulation *formulation, double e[12])
+{
+    se3d_system *system = build();
+    se3di_error error = {0};
+    se3di_equations equations;
+    se3di_newton newton;
+    double v_n[8 * BODIES], vdot[8 * BODIES] = {0.0}, x[8 * BODIES], lambda[64] = {0.0};
+    const double h = 0.1;
+    memset(e, 0, 12 * sizeof *e);
+    const se3di_newton_weights weights = {.velocity = 0.5 * h, .position = 0.25 * h * h};
+    CHECK(se3di_equations_init(&equations, &system->model, formulation, &error) == SE3D_OK);
+    CHECK(se3di_newton_init(&newton, &equations) == SE3D_OK);
+    CHECK(se3di_position_solve(&equations, 0.0) == SE3D_OK);
+    CHECK(se3di_velocity_solve(&equations, 0.0) == SE3D_OK);
+    se3di_assembly_get_velocity(&equations.assembly, v_n);
+    se3di_equations_save(&equations);
+    double exponent = 0.0;
+    for (int k = 0; k < 12; ++k) {
+        implicit_state(&equations, v_n, vdot, h, x);
+        CHECK(se3di_newton_factor(&newton, 0.3, vdot, lambda, x, &weights) >= 0);
+        CHECK(se3di_newton_solve(&newton) >= 0);
+        for (uint32_t c = 0; c < equations.assembly.unknown_count; ++c) {
+            vdot[c] += equations.x[c];
+            int counts = formulation->block == 6 || c % 8 < 7;
+            e[k] = counts ? fmax(e[k], fabs(equations.x[c])) : e[k];
+        }
+        memcpy(lambda, equations.l, equations.assembly.row_count * sizeof *lambda);
+        if (k > 1 && e[k] > 1e-9 && e[k] < e[k - 1] && e[k - 1] < e[k - 2]) {
+            exponent = log(e[k] / e[k - 1]) / log(e[k - 1] / e[k - 2]);
+        }
+    }
+    CHECK(e[11] < 1e-8);
+    se3di_newton_destroy(&newton);
+    se3di_equations_destroy(&equations);
+    se3d_system_destroy(system);
+    return exponent;
+}
+
+static void newton_of_an_implicit_step_converges_quadratically(void)
+{
+    for (int trial = 0; trial < 10; ++trial) {
+        double e[12];
+        CHECK(newton_exponent(&se3di_formulation_romega, e) > 1.7);
+        CHECK(e[4] < 1e-11);
+    }
+}
+
+/* K leaves out what a change of |p| does, which is of second order: a little slower. */
+static void newton_in_rp_converges_superlinearly(void)
+{
+    for (int trial = 0; trial < 10; ++trial) {
+        double e[12];
+        (void)newton_exponent(&se3di_formulation_rp, e);
+        CHECK(e[4] < 1e-7);
+        CHECK(e[5] < 1e-11);
+    }
+}
+
 int main(void)
 {
     RUN(the_tangent_of_romega_agrees_with_differences);
     RUN(the_tangent_of_rp_agrees_with_differences);
+    RUN(newton_of_an_implicit_step_converges_quadratically);
+    RUN(newton_in_rp_converges_superlinearly);
     return check_finish();
 }
