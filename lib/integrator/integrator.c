@@ -15,6 +15,8 @@ const se3di_integrator *se3di_integrator_find(int32_t method)
         return &se3di_integrator_hht;
     case SE3D_METHOD_RATTLE:
         return &se3di_integrator_rattle;
+    case SE3D_METHOD_BDF:
+        return &se3di_integrator_bdf;
     default:
         return NULL;
     }

@@ -55,6 +55,7 @@ extern const se3di_integrator se3di_integrator_hht;
 extern const se3di_integrator se3di_integrator_dop853;
 extern const se3di_integrator se3di_integrator_rk45;
 extern const se3di_integrator se3di_integrator_rattle;
+extern const se3di_integrator se3di_integrator_bdf;
 
 /* By se3d_method; NULL where there is none yet. */
 const se3di_integrator *se3di_integrator_find(int32_t method);

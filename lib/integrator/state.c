@@ -116,6 +116,9 @@ se3d_status se3di_state_evaluate(se3di_equations *equations, double t)
 /* What a violation of an equation is measured by. */
 static double row_scale(const se3di_model *model, uint32_t row, double length)
 {
+    if (model->rows[row].term_count == 0) {
+        return 1.0; /* a callback's: unknown */
+    }
     const se3di_term *term = &model->terms[model->rows[row].term_begin];
     switch (term->type) {
     case SE3DI_PRIMITIVE_D:

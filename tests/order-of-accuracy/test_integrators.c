@@ -263,8 +263,87 @@ static void rattle_is_of_order_4_by_composition(void)
     check_method(&row);
 }
 
+/* A run with error control to the end of a problem; counts its steps. */
+static sample run_controlled(builder build, int32_t method, int32_t formulation, double duration,
+                             double tolerance, uint64_t *steps)
+{
+    world w = {.body_count = 0};
+    se3d_solver *solver;
+    se3d_solver_stats stats;
+    se3d_solver_def def = se3d_solver_def_default();
+    def.method = method;
+    def.formulation = formulation;
+    def.tolerance = tolerance;
+    must(&w, se3d_system_create(NULL, &w.system));
+    build(&w);
+    must(&w, se3d_solver_create(w.system, &def, &solver));
+    must(&w, se3d_solver_run(solver, duration));
+    sample s = take(&w);
+    must(&w, se3d_solver_get_stats(solver, &stats));
+    *steps = stats.steps;
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(w.system);
+    return s;
+}
+
+/* The errors of two tolerances, against steps: at least `order` between them (the method's, less
+ * what the start at low order and the changes of the step cost). */
+static void check_control(int32_t method, double order, const double tolerance[2], double factor)
+{
+    const method_row exact = {.method = SE3D_METHOD_DOP853};
+    for (int p = 0; p < 3; ++p) {
+        sample reference = run(problems[p].build, &exact, SE3D_FORMULATION_ROMEGA,
+                               problems[p].duration, problems[p].reference_steps);
+        for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_RP; ++f) {
+            double errors[2] = {0.0, 0.0};
+            uint64_t steps[2];
+            for (int k = 0; k < 2; ++k) {
+                sample s = run_controlled(problems[p].build, method, f, problems[p].duration,
+                                          tolerance[k], &steps[k]);
+                for (int group = 0; group < 4; ++group) {
+                    errors[k] = fmax(errors[k], difference(&s, &reference, group));
+                }
+            }
+            double slope = log(errors[0] / errors[1]) / log((double)steps[1] / (double)steps[0]);
+            int holds = slope > order && errors[0] < factor * tolerance[0] &&
+                        errors[1] < factor * tolerance[1];
+            CHECK(holds);
+            if (!holds) {
+                fprintf(stderr,
+                        "%s, %s, formulation %d: errors %.3e %.3e, steps %d %d, order %.2f\n",
+                        check_case, problems[p].name, (int)f, errors[0], errors[1], (int)steps[0],
+                        (int)steps[1], slope);
+            }
+        }
+    }
+}
+
+static void bdf_controls_its_error_at_high_order(void)
+{
+    check_control(SE3D_METHOD_BDF, 3.5, (const double[2]){1e-5, 1e-9}, 30.0);
+}
+
+static void dop853_controls_its_error_at_high_order(void)
+{
+    check_control(SE3D_METHOD_DOP853, 6.0, (const double[2]){1e-3, 1e-8}, 3.0);
+}
+
+static void rk45_controls_its_error(void)
+{
+    check_control(SE3D_METHOD_RK45, 4.0, (const double[2]){1e-4, 1e-8}, 3.0);
+}
+
+static void generalized_alpha_controls_its_error(void)
+{
+    check_control(SE3D_METHOD_GENERALIZED_ALPHA, 1.6, (const double[2]){1e-6, 1e-8}, 1e4);
+}
+
 int main(void)
 {
+    RUN(bdf_controls_its_error_at_high_order);
+    RUN(dop853_controls_its_error_at_high_order);
+    RUN(rk45_controls_its_error);
+    RUN(generalized_alpha_controls_its_error);
     RUN(rattle_is_of_order_2);
     RUN(rattle_is_of_order_4_by_composition);
     RUN(dop853_is_of_order_8);
