@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The k-th allocation of reading and running a model fails, once or for ever, for every k until all
+ * goes well: the failure is reported with a message and nothing leaks. */
+#include <stdlib.h>
+
+#include "check.h"
+#include "se3d/io.h"
+#include "support/counting.h"
+
+#define HEAD                                                                                       \
+    "se3d: 1\n"                                                                                    \
+    "gravity: [0, \"0*t\", -9.81]\n"                                                               \
+    "bodies:\n"                                                                                    \
+    "  - {name: a, mass: 1, inertia: [1, 1, 1], position: [0.5, 0, 0], held: true}\n"              \
+    "  - {name: b, mass: 1, inertia: [1, 1, 1], position: [1.5, 0, 0]}\n"                          \
+    "joints:\n"                                                                                    \
+    "  - {name: pin, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, 0]}\n" \
+    "  - {name: slide, type: cylindrical, body_i: a, body_j: b, at: [1, 0, 0], axis: [1, 0, 0]}\n" \
+    "forces:\n"                                                                                    \
+    "  - {type: rsda, joint: pin, k: 100, c: 1}\n"                                                 \
+    "  - {type: rsda, joint: slide, k: {spline: [[-1, -9], [1, 9]]}, damper: 0.1*v}\n"             \
+    "  - {type: tsda, body_i: a, body_j: b, k: 50, c: 1, l0: 1, spring: 5*x^3, h: \"0*t\"}\n"      \
+    "  - {type: bushing, body_i: ground, body_j: b, at: [1.5, 0, 0], K: [1, 1, 1, 1, 1, 1]}\n"     \
+    "  - {type: stop, joint: slide, coordinate: displacement, upper: 1, k: 1e3}\n"
+
+static const char *const texts[] = {
+    HEAD "  - {type: friction, joint: pin, limit: 0.1}\n"
+         "analysis:\n"
+         "  - {type: assembly}\n"
+         "  - {type: dynamics, duration: 0.01, step: 0.005}\n"
+         "  - {type: dynamics, duration: 0.01, method: generalized_alpha, step: 0.005}\n",
+    HEAD
+    "analysis:\n"
+    "  - {type: equilibrium}\n"
+    "  - {type: modes, inputs: [{body: b, direction: [0, 0, 1]}],\n"
+    "     outputs: [{body: b, direction: [0, 0, 1]}], frequencies: {from: 1, to: 2, count: 3}}\n"
+    "output:\n"
+    "  - {file: state.csv, channels: [a.position, pin.angle, energy.balance]}\n",
+};
+
+typedef struct attempt {
+    se3d_status status;
+    int reached; /* whether allocation k was asked for */
+    size_t files;
+} attempt;
+
+static attempt try_once(const char *text, size_t k, int for_ever)
+{
+    static const char *fallback = "/tmp";
+    support_counting counting = {.fail_at = k, .for_ever = for_ever};
+    const se3d_allocator allocator = support_counting_allocator(&counting);
+    const char *build = getenv("SE3D_BUILD_DIR");
+    char folder[800];
+    se3d_model *model = NULL;
+    se3d_run *run = NULL;
+    se3d_model_error error = {0, 0, ""};
+    se3d_model_options options = se3d_model_options_default();
+    se3d_run_options how = se3d_run_options_default();
+    snprintf(folder, sizeof folder, "%s/out-of-memory", build ? build : fallback);
+    options.allocator = &allocator;
+    how.directory = folder;
+    attempt a = {SE3D_OK, 0, 0};
+    a.status = se3d_model_read_text(text, strlen(text), "m.yaml", &options, &model, &error);
+    if (a.status >= 0) {
+        a.status = se3d_model_run(model, &how, &run, &error);
+        a.files = se3d_run_count_files(run);
+    }
+    a.reached = counting.failed > 0;
+    if (a.status < 0) {
+        CHECK(error.message[0] != '\0');
+        if (a.status != SE3D_ERR_NO_MEMORY) {
+            fprintf(stderr, "allocation %zu: %s\n", k, error.message);
+        }
+    }
+    se3d_run_destroy(run);
+    se3d_model_destroy(model);
+    CHECK(counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);
+    return a;
+}
+
+static void reading_and_running_survives_every_failed_allocation(void)
+{
+    for (size_t m = 0; m < sizeof texts / sizeof *texts; ++m) {
+        const attempt whole = try_once(texts[m], 0, 0);
+        CHECK(whole.status >= 0 && whole.files > 0);
+        for (int for_ever = 0; for_ever < 2; ++for_ever) {
+            size_t k = 1;
+            attempt a = {SE3D_OK, 1, 0};
+            for (; k < 5000 && a.reached; ++k) {
+                a = try_once(texts[m], k, for_ever);
+                /* The search for an equilibrium may go another way round a failed trial. */
+                const int done = a.status >= 0 && a.files == whole.files;
+                CHECK(a.status == SE3D_ERR_NO_MEMORY || (done && (!a.reached || m == 1)));
+            }
+            CHECK(k > 50 && k < 5000);
+            CHECK(a.files == whole.files);
+        }
+    }
+}
+
+int main(void)
+{
+    RUN(reading_and_running_survives_every_failed_allocation);
+    return check_finish();
+}
