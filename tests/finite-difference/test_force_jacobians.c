@@ -198,6 +198,20 @@ static void create_bushing(world *w)
     finish(w, se3d_force_create_bushing(w->system, &def, &force));
 }
 
+/* Frames that almost coincide: the series. */
+static void create_small_bushing(world *w)
+{
+    create_bushing(w);
+    se3di_force *force = &w->model->forces[0];
+    const double *p = w->model->frames[2].p;
+    const double conjugate[4] = {p[0], -p[1], -p[2], -p[3]};
+    double frame_i[4], turn[3];
+    se3di_quat_mul(w->model->frames[1].p, force->p_i, frame_i);
+    random_vector(turn, 3, 0.05);
+    se3di_quat_rotate(frame_i, turn, frame_i);
+    se3di_quat_mul(conjugate, frame_i, force->p_j);
+}
+
 static void create_friction(world *w, int32_t coordinate, double mode)
 {
     se3d_force force;
@@ -351,9 +365,10 @@ static void jacobians_agree_with_differences(void (*create)(world *), double flo
 static void jacobians_of_every_element(void)
 {
     void (*const create[])(world *) = {
-        create_tsda,           create_rsda,           create_rsda_on_axes,    create_ground_load,
-        create_follower_load,  create_ground_torque,  create_follower_torque, create_bushing,
-        create_sticking_hinge, create_slipping_slide, create_upper_stop,      create_lower_stop,
+        create_tsda,          create_rsda,           create_rsda_on_axes,    create_ground_load,
+        create_follower_load, create_ground_torque,  create_follower_torque, create_bushing,
+        create_small_bushing, create_sticking_hinge, create_slipping_slide,  create_upper_stop,
+        create_lower_stop,
     };
     for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
         jacobians_agree_with_differences(create[k], 1e-10);
