@@ -171,6 +171,8 @@ static void bar_comes_to_rest_where_its_moments_balance(void)
     const double answer = cos(low) * cos(low) / inertia / (re * re + im * im);
     CHECK_NEAR(file_number(&e, "modes_transfer.csv", 0, 1), answer * re, 1e-9);
     CHECK_NEAR(file_number(&e, "modes_transfer.csv", 0, 2), -answer * im, 1e-9);
+    CHECK_NEAR(file_number(&e, "modes_transfer.csv", 0, 3), answer / cos(low) * re, 1e-9);
+    CHECK_NEAR(file_number(&e, "modes_transfer.csv", 0, 4), -answer / cos(low) * im, 1e-9);
     CHECK_NEAR(file_number(&e, "modes_transfer.csv", 99, 0), 10.0, 0.0);
     CHECK(file_number(&e, "modes_B.csv", 1, 1) * file_number(&e, "modes_C.csv", 0, 1) > 0.0);
     CHECK(e.status == SE3D_OK);
@@ -191,6 +193,9 @@ static void governor_finds_its_steady_motion(void)
         CHECK_NEAR(w * w, balance, 2e-4);
         CHECK_NEAR(channel_of(&e, "slide.displacement", 0),
                    0.4 * (cos(acos(-1.0) / 6.0) - cos(alpha)), 1e-6);
+        /* The motor has put in what the load took, the dashpot turned to heat or is stored. */
+        CHECK_NEAR(channel_of(&e, "energy.balance", 0),
+                   file_number(&e, "flyball_governor.csv", 0, 10), 1e-5);
         CHECK(file_number(&e, "modes.csv", 1, 1) < -0.5); /* it hunts not */
         CHECK(file_number(&e, "modes.csv", 2, 4) > 0.3);
         close_example(&e);
