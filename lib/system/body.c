@@ -367,6 +367,19 @@ se3d_status se3d_body_get_all(const se3d_system *system, size_t count, double *r
     return SE3D_OK;
 }
 
+/* The three numbers of body k in an array over all bodies, or NULL. */
+static se3d_status check_of_body(se3d_system *system, size_t k, const char *what,
+                                 const double *values)
+{
+    for (size_t c = 3 * k; values && c < 3 * k + 3; ++c) {
+        if (!isfinite(values[c])) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "%s[%zu] = %g (body %zu), must be finite", what, c, values[c], k);
+        }
+    }
+    return SE3D_OK;
+}
+
 /* Everything is checked before anything is written. */
 static se3d_status check_all(se3d_system *system, const double *r, const double *p, const double *v,
                              const double *w)
@@ -376,12 +389,9 @@ static se3d_status check_all(se3d_system *system, const double *r, const double 
         if (system->model.bodies[k].fixed) {
             continue;
         }
-        int finite = (!r || se3di_is_finite(r + 3 * k, 3)) &&
-                     (!v || se3di_is_finite(v + 3 * k, 3)) && (!w || se3di_is_finite(w + 3 * k, 3));
-        if (!finite) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "the state of body %zu must be finite", k);
-        }
+        SE3DI_TRY(check_of_body(system, k, "position", r));
+        SE3DI_TRY(check_of_body(system, k, "velocity", v));
+        SE3DI_TRY(check_of_body(system, k, "angular_velocity", w));
         if (p) {
             SE3DI_TRY(se3di_check_orientation(system, "orientation", p + 4 * k, unit));
         }
