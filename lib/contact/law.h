@@ -37,7 +37,7 @@ void se3di_pair_mix(se3di_law law, const se3di_material *a, const se3di_material
                     const se3di_override *over, se3di_pair *pair);
 
 /* The longest time of a step that resolves a contact of two spheres (a wall: radius_b and mass_b
- * infinite): 1/50 of the contact's time (hooke), 1/10 of Rayleigh's time (hertz_mindlin). */
+ * infinite): 1/50 of the contact's time (hooke), 1/20 of Rayleigh's time (hertz_mindlin). */
 double se3di_pair_step(se3di_law law, const se3di_material *a, const se3di_pair *pair,
                        double radius, double mass, double reduced_mass);
 
