@@ -207,6 +207,21 @@ typedef struct se3d_run_file {
 SE3D_API size_t se3d_run_count_files(const se3d_run *run);
 SE3D_API se3d_status se3d_run_get_file(const se3d_run *run, size_t index, se3d_run_file *file);
 
+/* The motion of a model as a 3-D scene: bodies, joints, springs. Make it, record during a run
+ * (for example from the progress callback), write it. @since 0.1 */
+typedef struct se3d_scene se3d_scene;
+
+/* Create an empty scene of a model, which must outlive it. @return OK, NULL, NO_MEMORY. Safe.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_scene_create(se3d_model *model, se3d_scene **out);
+SE3D_API void se3d_scene_destroy(se3d_scene *scene);
+/* Record the present poses. Times at or before the last one are skipped; a long motion is thinned
+ * out evenly to at most 2048 samples. @return OK, NULL. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_scene_record(se3d_scene *scene);
+/* Write the scene as binary glTF 2.0 (.glb), under a temporary name first. @return OK, NULL, IO
+ * (see the message), NO_MEMORY. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_scene_write(se3d_scene *scene, const char *path, se3d_model_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -90,6 +90,11 @@ static bool read_tsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
     def.h = v.h;
     def.spring = v.spring;
     def.damper = v.damper;
+    entry->body_i = def.body_i;
+    entry->body_j = def.body_j;
+    entry->drawn = 3;
+    memcpy(entry->point_i, def.point_i, sizeof def.point_i);
+    memcpy(entry->point_j, def.point_j, sizeof def.point_j);
     const se3d_status status = se3d_force_create_tsda(reader->model->system, &def, &entry->force);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }

@@ -36,6 +36,14 @@ typedef struct se3di_element_entry {
     se3d_force force;
     se3d_body body;  /* bushing, force, torque: the body acted on, */
     double point[3]; /* where */
+    /* How it is drawn: a pair with points (1), also with an axis (2), a spring (3); 0: not. */
+    int32_t drawn;
+    int32_t reserved;
+    se3d_body body_i;
+    se3d_body body_j;
+    double point_i[3]; /* body frames */
+    double point_j[3];
+    double axis_j[3];
 } se3di_element_entry;
 
 /* What `modes` writes. */

@@ -71,7 +71,7 @@ is "$(wc -l <"$dir/p/pendulum.csv" | tr -d ' ')" 1002
 is "$(head -1 "$dir/p/pendulum.csv" | cut -d, -f1-9)" \
     'time,bar.position.x,bar.position.y,bar.position.z,bar.orientation.e0,bar.orientation.e1,bar.orientation.e2,bar.orientation.e3,bar.velocity.x'
 is "$(tail -1 "$dir/p/pendulum.csv" | cut -d, -f1)" 10
-is "$(ls "$dir/p")" pendulum.csv
+is "$(ls "$dir/p" | tr '\n' ' ')" 'pendulum.csv scene.glb '
 
 expect 'quiet' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p2" --quiet --duration 0.1
 is "$(cat "$dir/out" "$dir/err")" ''
@@ -86,7 +86,7 @@ if command -v python3 >/dev/null 2>&1; then
     expect 'json is json' 0 python3 -c 'import json,sys; json.load(open(sys.argv[1]))' "$dir/summary.json"
 fi
 (cd "$dir" && expect 'default folder' 0 "$program" run "$models/pendulum.yaml" -q --duration 0.1)
-is "$(ls "$dir/results/pendulum")" pendulum.csv
+is "$(ls "$dir/results/pendulum" | tr '\n' ' ')" 'pendulum.csv scene.glb '
 
 expect 'parameters' 0 "$program" run "$models/pendulum_free.yaml" -o "$dir/f" \
     --set theta0=30*deg --set L=1 --step 0.01 --duration 0.055
@@ -147,7 +147,7 @@ expect 'a locked position' 1 "$program" run "$dir/reach.yaml" -o "$dir/r"
 has "$dir/err" 'the kinematics analysis failed at t = '
 has "$dir/err" 'What to try: '
 has "$dir/out" "wrote $dir/r/r.csv: "
-is "$(ls "$dir/r")" r.csv
+is "$(ls "$dir/r" | tr '\n' ' ')" 'r.csv scene.glb '
 
 expect 'a folder that cannot be made' 1 "$program" run "$models/pendulum.yaml" -o "$dir/bad.yaml/x"
 has "$dir/err" 'cannot be written'

@@ -131,6 +131,35 @@ static char *results_folder(const options *o, const se3d_model *model)
     return folder;
 }
 
+/* Shows the progress and records the motion. */
+typedef struct watcher {
+    progress *bar;
+    se3d_scene *scene;
+} watcher;
+
+static int watch(void *ctx, size_t analysis, double time, double fraction)
+{
+    const watcher *w = ctx;
+    se3d_scene_record(w->scene);
+    return progress_show(w->bar, analysis, time, fraction);
+}
+
+/* The scene is left beside the results. @return false after a message. */
+static int write_scene(const options *o, se3d_scene *scene, const char *folder)
+{
+    char path[4200];
+    se3d_model_error error;
+    const int length = snprintf(path, sizeof path, "%s/scene.glb", folder);
+    if (!scene || length < 0 || (size_t)length >= sizeof path) {
+        return 1;
+    }
+    if (SE3D_FAILED(se3d_scene_write(scene, path, &error))) {
+        fprintf(stderr, "%s: %s\n", o->model, error.message);
+        return 0;
+    }
+    return 1;
+}
+
 static int run_model(const options *o, se3d_model *model)
 {
     se3d_run_options how = se3d_run_options_default();
@@ -144,8 +173,10 @@ static int run_model(const options *o, se3d_model *model)
     }
     progress_begin(&bar, o->quiet || o->json, se3d_model_count_analyses(model));
     how.directory = o->directory ? o->directory : folder;
-    how.progress = progress_show;
-    how.ctx = &bar;
+    watcher w = {&bar, NULL};
+    se3d_scene_create(model, &w.scene); /* without memory there is no scene */
+    how.progress = watch;
+    how.ctx = &w;
     const se3d_status status = se3d_model_run(model, &how, &run, &error);
     progress_end(&bar);
     if (o->json) {
@@ -157,12 +188,14 @@ static int run_model(const options *o, se3d_model *model)
         fflush(stdout);
         fprintf(stderr, "%s: %s\n", o->model, error.message);
     }
+    const int drawn = se3d_run_count_files(run) == 0 || write_scene(o, w.scene, how.directory);
+    se3d_scene_destroy(w.scene);
     se3d_run_destroy(run);
     free(folder);
     if (status == SE3D_ERR_UNSUPPORTED) {
         return EXIT_USAGE;
     }
-    return SE3D_FAILED(status) ? EXIT_FAILED : EXIT_DONE;
+    return SE3D_FAILED(status) || !drawn ? EXIT_FAILED : EXIT_DONE;
 }
 
 int command_run(int count, char *const *words)

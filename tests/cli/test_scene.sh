@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The scene that se3d run leaves: a glTF file whose poses are those of the CSV file.
+set -eu
+program=${SE3D_PROGRAM:?the path of the se3d program}
+models=${SE3D_SOURCE_DIR:-.}/examples/models
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+"$program" run -q "$models/pendulum.yaml" -o "$dir/pendulum"
+"$program" run -q "$models/spatial_slider_crank.yaml" -o "$dir/spatial_slider_crank"
+"$program" run -q "$models/tsda_mass.yaml" -o "$dir/tsda_mass"
+cat >"$dir/check.py" <<'END_OF_PYTHON'
+import csv, json, struct, sys
+def load(path):
+    data = open(path, "rb").read()
+    magic, version, size, length, kind = struct.unpack("<4sIII4s", data[:20])
+    assert (magic, version, size, kind) == (b"glTF", 2, len(data), b"JSON"), path
+    return json.loads(data[20:20 + length]), data[28 + length:]
+def values(doc, binary, index):
+    a = doc["accessors"][index]
+    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[a["type"]]
+    code, scale = {5126: ("f", 1.0), 5122: ("h", 1 / 32767)}[a["componentType"]]
+    start = doc["bufferViews"][a["bufferView"]]["byteOffset"]
+    flat = struct.unpack_from("<%d%s" % (a["count"] * width, code), binary, start)
+    return [[v * scale for v in flat[k:k + width]] for k in range(0, len(flat), width)]
+checks = 0
+for folder, bodies in (("pendulum", ["bar"]), ("spatial_slider_crank", ["crank", "rod"]), ("tsda_mass", ["block"])):
+    name = folder.split("/")[-1]
+    base = sys.argv[1] + "/" + folder + "/"
+    doc, binary = load(base + "scene.glb")
+    rows = list(csv.DictReader(open(base + name + ".csv")))
+    samplers = doc["animations"][0]["samplers"]
+    seen = set()
+    for channel in doc["animations"][0]["channels"]:
+        node = doc["nodes"][channel["target"]["node"]]["name"]
+        sampler = samplers[channel["sampler"]]
+        times = values(doc, binary, sampler["input"])
+        out = values(doc, binary, sampler["output"])
+        path = channel["target"]["path"]
+        seen.add((node, path))
+        for row, time, value in zip(rows, times, out):
+            assert abs(float(row["time"]) - time[0]) < 1e-5
+            if path == "translation" and node in bodies:
+                want = [float(row[node + ".position." + c]) for c in "xyz"]
+                assert max(abs(a - b) for a, b in zip(want, value)) < 1e-5, (node, time, want, value)
+            elif path == "rotation" and node + ".orientation.e0" in row:
+                e = [float(row[node + ".orientation.e%d" % k]) for k in (1, 2, 3, 0)]
+                sign = 1 if sum(a * b for a, b in zip(e, value)) > 0 else -1
+                assert max(abs(sign * a - b) for a, b in zip(e, value)) < 2e-5, (node, time, e, value)
+            elif path == "scale" and node == "spring":
+                assert abs(value[2] - float(row["spring.length"])) < 1e-5
+        assert len(out) == len(rows)
+        checks += 1
+    assert all((body, "translation") in seen for body in bodies), seen
+    if folder == "tsda_mass":
+        assert ("spring", "scale") in seen
+    names = [node["name"] for node in doc["nodes"]]
+    assert "ground" in names and "grid" in names
+print(checks, "checks, 0 failed")
+END_OF_PYTHON
+python3 "$dir/check.py" "$dir"
+if "$program" run -q "$models/pendulum.yaml" -o "$dir" --duration 1 && rm "$dir/scene.glb" && mkdir "$dir/scene.glb" &&
+    "$program" run -q "$models/pendulum.yaml" -o "$dir" --duration 1 2>"$dir/err"; then
+    echo 'a scene that cannot be written went unnoticed' >&2
+    exit 1
+fi
+grep -q 'scene.glb: cannot be written' "$dir/err"
+[ ! -e "$dir/scene.glb.partial" ]
