@@ -5,6 +5,7 @@
  *
  * writes the settled state to FILE as a LAMMPS data file, so that others start from the same;
  * TILT in degrees turns gravity for the measured steps: an avalanche. See granular/README.md. */
+#define _POSIX_C_SOURCE 200809L
 #include "se3d/se3d.h"
 
 #include <math.h>

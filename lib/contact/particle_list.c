@@ -19,7 +19,7 @@ se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, si
     if (needed <= *capacity) {
         return SE3D_OK;
     }
-    size_t grown = needed + needed / 16 + 16;
+    size_t grown = needed + needed / 32 + 16;
     uint32_t *memory = se3di_alloc(&set->allocator, grown, sizeof *memory);
     if (!memory) {
         return SE3D_ERR_NO_MEMORY;
@@ -47,7 +47,7 @@ static se3d_status reserve_carry(se3di_particles *set, size_t count)
 {
     const se3d_allocator *a = &set->allocator;
     if (count > set->carry_capacity) {
-        size_t grown = count + count / 16 + 16;
+        size_t grown = count + count / 32 + 16;
         se3di_carry *carry = se3di_alloc(a, grown, sizeof *carry);
         if (!carry) {
             return SE3D_ERR_NO_MEMORY;
@@ -57,7 +57,7 @@ static se3d_status reserve_carry(se3di_particles *set, size_t count)
         set->carry_capacity = grown;
     }
     if (set->rolls && 4 * count > set->carry_roll_capacity) {
-        size_t grown = 4 * (count + count / 16 + 16);
+        size_t grown = 4 * (count + count / 32 + 16);
         double *rolls = se3di_alloc(a, grown, sizeof *rolls);
         if (!rolls) {
             return SE3D_ERR_NO_MEMORY;
@@ -156,7 +156,7 @@ static se3d_status open_block(se3di_particles *set)
     size_t needed = (size_t)set->block_count + 1;
     const se3d_allocator *a = &set->allocator;
     if (needed * sizeof(se3di_block) > set->block_memory.bytes) {
-        size_t grown = needed + needed / 16 + 16;
+        size_t grown = needed + needed / 32 + 16;
         grown = grown < set->list_count / 12 ? set->list_count / 12 : grown;
         se3d_status status =
             se3di_aligned_reserve(a, &set->block_memory, grown * sizeof(se3di_block),

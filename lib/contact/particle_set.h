@@ -243,7 +243,7 @@ void se3di_particles_remap(se3di_particles *set, const uint32_t *new_index);
 se3d_status se3di_particles_activate(se3di_particles *set);
 /* Candidates of walls. */
 se3d_status se3di_particles_list_walls(se3di_particles *set);
-/* Grow an array to hold `needed` elements, by an eighth at least. */
+/* Grow an array to hold `needed` elements, a little more. */
 se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, size_t *capacity,
                                  size_t needed);
 /* The vector between centres, to the nearest image. */

@@ -19,7 +19,7 @@ static void bed_init(bed *b, se3d_law law, double g, const se3d_material_def *ma
     def.gravity[2] = -g;
     CHECK(se3d_system_create(&def, &b->system) == SE3D_OK);
     se3d_particles_def particles = se3d_particles_def_default();
-    particles.law = law;
+    particles.law = (int32_t)law;
     CHECK(se3d_particles_create(b->system, &particles, &b->particles) == SE3D_OK);
     CHECK(se3d_material_create(b->particles, material, &b->material) == SE3D_OK);
 }

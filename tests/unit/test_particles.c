@@ -188,7 +188,7 @@ static void sum(const bed *b, double momentum[3], double angular[3], double *kin
 static void free_cloud(se3d_law law, double restitution, double rolling, int portable, double ratio)
 {
     se3d_particles_def def = se3d_particles_def_default();
-    def.law = law;
+    def.law = (int32_t)law;
     def.portable = portable;
     se3d_material_def material = stuff();
     material.restitution = restitution;
