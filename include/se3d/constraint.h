@@ -3,6 +3,7 @@
 #ifndef SE3D_CONSTRAINT_H
 #define SE3D_CONSTRAINT_H
 
+#include "se3d/force.h" /* se3d_body_motion */
 #include "se3d/handles.h"
 
 #ifdef __cplusplus
@@ -46,6 +47,59 @@ static inline se3d_primitive_def se3d_primitive_def_default(void)
 
 SE3D_API se3d_status se3d_primitive_create(se3d_system *system, const se3d_primitive_def *def,
                                            se3d_constraint *constraint);
+
+/* ---- Constraints of the user's. ---- */
+
+#define SE3D_USER_BODIES_MAX    4
+#define SE3D_USER_EQUATIONS_MAX 6
+
+/* Compute the equations Phi(q, t) = 0 of a constraint at time t and the motion of its bodies:
+ *
+ *     phi       Phi [equations]
+ *     jacobian  [equations * bodies * 6], row-major: the derivatives of an equation to r (ground
+ *               frame) and to the virtual rotation in the body frame, A -> A exp(tilde(dtheta)), of
+ *               each body in the order of the def: the rate of Phi is jacobian (v, w) + Phi_t
+ *     nu        -Phi_t [equations]: jacobian (v, w) = nu
+ *     gamma     [equations]: jacobian (a, wdot) = gamma, minus all terms of the second derivative
+ * of Phi that have no acceleration
+ *
+ * Arrays that are not wanted are NULL, the others are zeroed. phi, jacobian and nu must not depend
+ * on velocities. Must be a pure function of its arguments. Return OK, or a negative status to stop
+ * the analysis with CALLBACK; numbers that are not finite end it with NOT_FINITE, unless a shorter
+ * step avoids them. @since 0.1 */
+typedef se3d_status (*se3d_constraint_callback)(void *ctx, double t, const se3d_body_motion *bodies,
+                                                double *phi, double *jacobian, double *nu,
+                                                double *gamma);
+
+/* With one body, body i is the ground and the body is j; else bodies[0] is i and bodies[1] is j.
+ * Reactions are reported at the centre of body j. Methods that need the second derivative of Phi
+ * (generalized_alpha, hht, modes, equilibria) take central differences of `jacobian`.
+ * @since 0.1 */
+typedef struct se3d_user_constraint_def {
+    size_t struct_size;
+    const char *name;
+    se3d_constraint_callback callback;
+    void *ctx;
+    se3d_body bodies[SE3D_USER_BODIES_MAX]; /* different ones, not only the ground */
+    int32_t body_count;                     /* 1 to SE3D_USER_BODIES_MAX, default 1 */
+    int32_t equation_count;                 /* 1 to SE3D_USER_EQUATIONS_MAX, default 1 */
+} se3d_user_constraint_def;
+
+SE3D_API void se3d_user_constraint_def_init(se3d_user_constraint_def *def, size_t size);
+
+static inline se3d_user_constraint_def se3d_user_constraint_def_default(void)
+{
+    se3d_user_constraint_def def;
+    se3d_user_constraint_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Create a constraint whose equations a callback computes; its type is "user", its equations are
+ * named "user_0", "user_1", ... @return OK, NULL, INVALID_ARGUMENT, STALE_HANDLE, NO_MEMORY.
+ * Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_user_constraint_create(se3d_system *system,
+                                                 const se3d_user_constraint_def *def,
+                                                 se3d_constraint *constraint);
 
 /* Destroy a primitive, joint or driver. @return OK, STALE_HANDLE, IN_USE. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_constraint_destroy(se3d_system *system, se3d_constraint constraint);

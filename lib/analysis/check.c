@@ -12,6 +12,7 @@
  * docs/theory/redundancy.md */
 #include "analysis/check.h"
 
+#include "assembly/user.h"
 #include "linsol/rank.h"
 
 #include <inttypes.h>
@@ -502,6 +503,7 @@ static se3d_status inspect_model(inspection *in)
     SE3DI_TRY(settle_poses(in));
     se3di_assembly_eval_phi(&in->equations->assembly, in->equations->phi);
     se3di_assembly_eval_jacobian(&in->equations->assembly);
+    SE3DI_TRY(se3di_user_report(in->equations->assembly.model, in->equations->error));
     SE3DI_TRY(inspect(in));
     if (in->violated && !in->lost && in->check->inconsistent == 0) {
         in->check->inconsistent = 1;

@@ -4,6 +4,7 @@
 
 #include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
+#include "assembly/user.h"
 #include "force/force.h"
 #include "primitive/turn_counter.h"
 
@@ -154,8 +155,8 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
 
 static int has_step_control(const se3di_integration *integration)
 {
-    return integration->method->run && (!integration->method->controls_if_asked ||
-                                        integration->settings.controls_error);
+    return integration->method->run &&
+           (!integration->method->controls_if_asked || integration->settings.controls_error);
 }
 
 static se3d_status run_dynamics(se3di_run *run, double t_end)
@@ -218,10 +219,9 @@ static se3d_status information(const se3di_run *run)
     return run->equations.redundant ? SE3D_INFO_REDUNDANT : SE3D_OK;
 }
 
-se3d_status se3di_run_to(se3di_run *run, double t_end)
+static se3d_status run_to(se3di_run *run, double t_end)
 {
     se3d_status status = SE3D_OK;
-    SE3DI_TRY(prepare(run));
     switch (run->analysis) {
     case SE3D_ANALYSIS_EQUILIBRIUM:
         status = run_equilibrium(run, t_end);
@@ -240,13 +240,39 @@ se3d_status se3di_run_to(se3di_run *run, double t_end)
     return status > 0 ? status : information(run);
 }
 
-se3d_status se3di_run_step(se3di_run *run, double h)
+static se3d_status run_step(se3di_run *run, double h)
 {
-    SE3DI_TRY(prepare(run));
-    if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
-        return se3di_run_to(run, run->model->time + h);
-    }
     SE3DI_TRY(begin_dynamics(run, h));
     SE3DI_TRY(run->integration.method->step(&run->integration, h));
     return information(run);
+}
+
+/* A callback that failed is the reason for whatever else did. */
+static se3d_status explain(se3di_run *run, se3d_status status)
+{
+    se3di_model *model = run->model;
+    if (status == SE3D_ERR_CALLBACK && model->user_failure.status >= 0) {
+        se3di_user_find_failure(model); /* the one that failed as the power was computed */
+    }
+    if (status < 0 && model->user_failure.status == SE3D_ERR_CALLBACK) {
+        return se3di_user_report(model, run->error);
+    }
+    return status;
+}
+
+se3d_status se3di_run_to(se3di_run *run, double t_end)
+{
+    SE3DI_TRY(prepare(run));
+    se3di_user_begin(run->model);
+    return explain(run, run_to(run, t_end));
+}
+
+se3d_status se3di_run_step(se3di_run *run, double h)
+{
+    if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
+        return se3di_run_to(run, run->model->time + h);
+    }
+    SE3DI_TRY(prepare(run));
+    se3di_user_begin(run->model);
+    return explain(run, run_step(run, h));
 }

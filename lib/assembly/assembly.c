@@ -3,6 +3,7 @@
 #include "assembly/assembly.h"
 
 #include "assembly/fused.h"
+#include "joint/user.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -52,6 +53,10 @@ static void build_pattern(se3di_assembly *assembly)
             se3di_term_place *place = &assembly->places[constraint->term_begin + t];
             place->slot_i = place_body(assembly, begin, free_of(assembly, term->body_i));
             place->slot_j = place_body(assembly, begin, free_of(assembly, term->body_j));
+        }
+        for (uint32_t b = constraint->user_first;
+             se3di_is_user(constraint) && b < constraint->body_count; ++b) {
+            (void)place_body(assembly, begin, free_of(assembly, constraint->bodies[b]));
         }
     }
     assembly->joint_begin[assembly->constraint_count] = (int32_t)assembly->joint_body_count;
@@ -140,11 +145,21 @@ static void sort_rows(se3di_assembly *assembly)
     }
 }
 
+/* Room for the bodies of a user constraint is counted in places, two bodies each. */
+static void count_users(se3di_assembly *assembly)
+{
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        assembly->user_count += (uint32_t)se3di_is_user(&assembly->model->constraints[k]);
+    }
+    assembly->place_count += assembly->user_count * (SE3D_USER_BODIES_MAX / 2);
+}
+
 static se3d_status build(se3di_assembly *assembly)
 {
     const se3d_allocator *allocator = &assembly->model->allocator;
     assembly_array structure[STRUCTURE_ARRAYS];
     assembly_array values[VALUE_ARRAYS];
+    count_users(assembly);
     list_structure(assembly, structure);
     SE3DI_TRY(allocate(allocator, structure, STRUCTURE_ARRAYS));
     number_bodies(assembly);
@@ -168,7 +183,9 @@ se3d_status se3di_assembly_init(se3di_assembly *assembly, se3di_model *model,
         .constraint_count = (uint32_t)model->constraint_slots.count,
         .place_count = (uint32_t)model->term_count,
         .dense_count = (uint32_t)model->body_slots.count,
+        .time = model->time,
     };
+    model->user_failure = (se3di_user_failure){0};
     se3d_status status = build(assembly);
     if (status < 0) {
         se3di_assembly_destroy(assembly);

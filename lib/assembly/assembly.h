@@ -40,10 +40,13 @@ typedef struct se3di_assembly {
     uint32_t *timed_rows;      /* rows with a function of time */
     uint32_t timed_count;
     uint32_t constraint_count, place_count, dense_count, joint_body_count;
-    double *H;      /* body blocks */
-    double *C;      /* joint blocks */
-    double *f;      /* [rows * 3] jets of the functions of time */
-    double *wrench; /* [dense bodies * 6] */
+    double *H;           /* body blocks */
+    double *C;           /* joint blocks */
+    double *f;           /* [rows * 3] jets of the functions of time */
+    double *wrench;      /* [dense bodies * 6] */
+    double time;         /* of the last functions of time */
+    uint32_t user_count; /* constraints with a callback */
+    uint32_t reserved;
 } se3di_assembly;
 
 /* Build the structure; on failure nothing is held. */

@@ -3,6 +3,7 @@
 #include "assembly/assembly.h"
 
 #include "assembly/fused.h"
+#include "assembly/user.h"
 #include "force/force.h"
 #include "primitive/turn_counter.h"
 
@@ -11,6 +12,8 @@
 se3d_status se3di_assembly_eval_functions(se3di_assembly *assembly, double t, se3di_error *error)
 {
     const se3di_model *model = assembly->model;
+    assembly->time = t;
+    SE3DI_TRY(se3di_user_report(assembly->model, error));
     for (uint32_t timed = 0; timed < assembly->timed_count; ++timed) {
         uint32_t k = assembly->timed_rows[timed];
         const se3di_row *row = &model->rows[k];
@@ -35,6 +38,7 @@ void se3di_assembly_eval_phi(const se3di_assembly *assembly, double *phi)
         const se3di_row *row = &model->rows[k];
         phi[k] = se3di_row_violation(model, row, assembly->f[3 * k]);
     }
+    se3di_user_eval_phi(assembly, phi);
 }
 
 /* Add `size` numbers of a term's block to a row of the joint's blocks. */
@@ -95,6 +99,7 @@ void se3di_assembly_eval_jacobian(se3di_assembly *assembly)
             eval_joint(assembly, k);
         }
     }
+    se3di_user_eval_jacobian(assembly);
 }
 
 static double eval_row_gamma(const se3di_assembly *assembly, uint32_t k)
@@ -116,6 +121,7 @@ void se3di_assembly_eval_gamma(const se3di_assembly *assembly, double *gamma)
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
         gamma[k] = eval_row_gamma(assembly, k);
     }
+    se3di_user_eval_gamma(assembly, gamma);
 }
 
 void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma)
@@ -131,6 +137,8 @@ void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma)
             gamma[constraint->row_begin + r] = eval_row_gamma(assembly, constraint->row_begin + r);
         }
     }
+    se3di_user_eval_jacobian(assembly);
+    se3di_user_eval_gamma(assembly, gamma);
 }
 
 void se3di_assembly_eval_mass(se3di_assembly *assembly)

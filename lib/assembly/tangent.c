@@ -2,6 +2,7 @@
 #include "assembly/tangent.h"
 
 #include "force/force.h"
+#include "joint/user.h"
 #include "math/inertia.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -35,6 +36,14 @@ static size_t list_pairs(se3di_tangent *tangent)
     }
     for (size_t k = 0; k < model->term_count; ++k) {
         note_pair(tangent, model->terms[k].body_i, model->terms[k].body_j, &count);
+    }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *constraint = &model->constraints[k];
+        for (uint32_t b = 1; se3di_is_user(constraint) && b < constraint->body_count; ++b) {
+            for (uint32_t a = 0; a < b; ++a) {
+                note_pair(tangent, constraint->bodies[a], constraint->bodies[b], &count);
+            }
+        }
     }
     return count;
 }
@@ -291,6 +300,45 @@ static void add_curvature(se3di_tangent *tangent, const double *lambda)
     }
 }
 
+/* K += the curvature of one user constraint: minus the derivative of its wrenches -Phi_q^T lambda.
+ */
+static se3d_status add_user_curvature(se3di_tangent *tangent, const se3di_constraint *constraint,
+                                      double t, const double *lambda)
+{
+    enum { NUMBERS = 6 * SE3D_USER_BODIES_MAX };
+    const double zero[72] = {0.0};
+    double H[NUMBERS * NUMBERS], g[NUMBERS], K[72];
+    const uint32_t *bodies = constraint->bodies + constraint->user_first;
+    uint32_t count = se3di_user_body_count(constraint);
+    SE3DI_TRY(se3di_user_curvature(tangent->assembly->model, constraint, t,
+                                   lambda + constraint->row_begin, H, g));
+    for (uint32_t row = 0; row < count; ++row) {
+        for (uint32_t column = 0; column < count; ++column) {
+            for (size_t k = 0; k < 36; ++k) { /* rows of twelve, as those of force elements */
+                K[12 * (k / 6) + k % 6] = -H[6 * count * (6 * row + k / 6) + 6 * column + k % 6];
+            }
+            add_force_block(tangent, bodies[row], bodies[column], K, zero);
+        }
+        int32_t free = tangent->assembly->free_index[bodies[row]];
+        double *block = find_block(tangent, 0, free, free);
+        if (block && tangent->assembly->formulation->block == 8) {
+            add_turned_torque(block, 2.0, g + 6 * row + 3);
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status add_user_curvatures(se3di_tangent *tangent, double t, const double *lambda)
+{
+    const se3di_model *model = tangent->assembly->model;
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        if (se3di_is_user(&model->constraints[k])) {
+            SE3DI_TRY(add_user_curvature(tangent, &model->constraints[k], t, lambda));
+        }
+    }
+    return SE3D_OK;
+}
+
 /* r-omega: w x J w  ->  tilde(w) J - tilde(J w) */
 static void add_gyroscopic(const se3di_body *body, const se3di_frame *frame, double *D)
 {
@@ -368,5 +416,6 @@ se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *v
         }
     }
     add_curvature(tangent, lambda);
+    SE3DI_TRY(add_user_curvatures(tangent, t, lambda));
     return add_forces(tangent, t);
 }

@@ -2,6 +2,7 @@
 /* All force elements of a model together, and gravity. */
 #include "force/force.h"
 
+#include "joint/user.h"
 #include "math/vec3.h"
 
 #include <stddef.h>
@@ -76,6 +77,21 @@ se3d_status se3di_forces_potential(const se3di_model *model, double t, double *p
     return SE3D_OK;
 }
 
+static se3d_status user_power(const se3di_model *model, double t, double *power)
+{
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *constraint = &model->constraints[k];
+        se3di_user_values values;
+        if (se3di_is_user(constraint)) {
+            SE3DI_TRY(se3di_user_eval(model, constraint, t, SE3DI_USER_NU, &values));
+            for (uint32_t r = 0; r < constraint->row_count; ++r) {
+                *power -= model->lambda[constraint->row_begin + r] * values.nu[r];
+            }
+        }
+    }
+    return SE3D_OK;
+}
+
 /* -lambda . nu: the power of constraints that change in time. */
 static se3d_status driver_power(const se3di_model *model, double t, double *power)
 {
@@ -87,7 +103,7 @@ static se3d_status driver_power(const se3di_model *model, double t, double *powe
             *power -= model->lambda[k] * jet[1];
         }
     }
-    return SE3D_OK;
+    return user_power(model, t, power);
 }
 
 se3d_status se3di_power_eval(const se3di_model *model, double t, double power[3])

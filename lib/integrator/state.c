@@ -41,7 +41,7 @@ void se3di_state_set(se3di_assembly *assembly, const double *y)
 static int has_power(const se3di_assembly *assembly)
 {
     const se3di_model *model = assembly->model;
-    return model->force_slots.count > 0 || assembly->timed_count > 0 ||
+    return model->force_slots.count > 0 || assembly->timed_count > 0 || assembly->user_count > 0 ||
            model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
            model->gravity_function[2] >= 0;
 }

@@ -80,7 +80,18 @@ typedef struct se3di_constraint {
     int32_t has_displacement;
     se3di_joint_frames frames; /* joints: axes; all: the points where reactions are reported */
     double angle0;
+    se3d_constraint_callback callback; /* user constraints; their rows have no terms */
+    void *ctx;
+    uint32_t user_first; /* the callback's bodies begin here in `bodies` */
+    uint32_t reserved;
 } se3di_constraint;
+
+/* The first callback of a user constraint that failed since an analysis began. */
+typedef struct se3di_user_failure {
+    double time;
+    int32_t status; /* se3d_status; 0: none */
+    uint32_t constraint;
+} se3di_user_failure;
 
 /* The turn counter of a joint angle. */
 typedef struct se3di_angle {
@@ -101,18 +112,19 @@ typedef enum se3di_force_type {
     SE3DI_FORCE_COUNT = 8
 } se3di_force_type;
 
-#define SE3DI_FORCE_FUNCTIONS 5 /* h or the components of a load (0, 1, 2), spring (3), damper (4) */
-#define SE3DI_FORCE_STATES    4 /* what an element remembers of the accepted states */
+#define SE3DI_FORCE_FUNCTIONS                                                                      \
+    5                        /* h or the components of a load (0, 1, 2), spring (3), damper (4) */
+#define SE3DI_FORCE_STATES 4 /* what an element remembers of the accepted states */
 
 typedef struct se3di_force {
     char *name;
     int32_t type;
-    int32_t in_body_frame; /* loads */
-    int32_t has_jacobian;  /* callbacks */
+    int32_t in_body_frame;   /* loads */
+    int32_t has_jacobian;    /* callbacks */
     uint32_t body_i, body_j; /* loads: body_j */
     double s_i[3], s_j[3];
-    double k, c, rest;   /* stiffness, damping, l0 or theta0 */
-    double preload;      /* of springs: value at rest */
+    double k, c, rest;                       /* stiffness, damping, l0 or theta0 */
+    double preload;                          /* of springs: value at rest */
     int32_t function[SE3DI_FORCE_FUNCTIONS]; /* -1: none */
     int32_t joint;                           /* rsda, friction, stop: whose coordinate; -1: none */
     int32_t angle;                           /* its turn counter; -1: none */
@@ -138,8 +150,8 @@ typedef struct se3di_model {
     int32_t gravity_function[3]; /* of time, -1: `gravity` */
     int32_t work_valid;          /* `power` belongs to the present state */
     double time;
-    double work[3];  /* done since the start: dissipated, by actuators, by drivers [J] */
-    double power[3]; /* the same, of the last accepted state [W] */
+    double work[3];            /* done since the start: dissipated, by actuators, by drivers [J] */
+    double power[3];           /* the same, of the last accepted state [W] */
     uint64_t topology_version; /* changes when elements come, go or change */
     int32_t settled;           /* the state is an analysis' own; 0 after the user set one */
     int32_t reserved;
@@ -177,6 +189,8 @@ typedef struct se3di_model {
     double *history; /* what an integrator carries from step to step */
     size_t history_count, history_capacity;
     uint64_t history_tag; /* who wrote it; 0: nobody */
+
+    se3di_user_failure user_failure; /* see assembly/user.h */
 } se3di_model;
 
 /* A constraint under construction: joints and primitives fill it, se3di_model_add_constraint copies

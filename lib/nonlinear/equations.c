@@ -2,6 +2,8 @@
 /* Equations with their linear solver: creation, velocities, accelerations. */
 #include "nonlinear/equations.h"
 
+#include "assembly/user.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -144,6 +146,7 @@ se3d_status se3di_equations_factor(se3di_equations *equations)
     se3di_assembly *assembly = &equations->assembly;
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_jacobian(assembly);
+    SE3DI_TRY(se3di_user_report(assembly->model, equations->error));
     if (equations->hold) {
         release_held(equations);
     }

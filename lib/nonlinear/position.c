@@ -39,11 +39,11 @@ double se3di_model_get_size(const se3di_model *model)
     return size;
 }
 
-/* Type of the first term of a row; ANGLE where it has none. */
+/* Type of the first term of a row; -1 where it has none (a callback's). */
 static int32_t row_type(const se3di_model *model, uint32_t row)
 {
     const se3di_row *r = &model->rows[row];
-    return r->term_count > 0 ? model->terms[r->term_begin].type : (int32_t)SE3DI_PRIMITIVE_ANGLE;
+    return r->term_count > 0 ? model->terms[r->term_begin].type : -1;
 }
 
 double se3di_row_get_scale(const se3di_model *model, uint32_t row, double size)

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Public layer: what primitives, joints and drivers have in common: names, counts, values and
  * Jacobians of their equations. */
+#include "joint/user.h"
+#include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/primitive.h"
 #include "primitive/turn_counter.h"
 #include "system/coordinate.h"
 #include "system/system_internal.h"
 
+#include <math.h>
 #include <string.h>
 
 #define PI     3.1415926535897932384626433832795
@@ -182,6 +185,22 @@ static se3d_status row_eval(const se3di_model *model, const se3di_row *row,
     return se3di_is_finite(result, 3) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
+/* The same of row r of a constraint. */
+static se3d_status equation_eval(const se3di_model *model, const se3di_constraint *constraint,
+                                 uint32_t r, se3d_formulation formulation, double result[3])
+{
+    if (!se3di_is_user(constraint)) {
+        return row_eval(model, &model->rows[constraint->row_begin + r], formulation, result);
+    }
+    se3di_user_values values;
+    SE3DI_TRY(se3di_user_eval(model, constraint, model->time,
+                              SE3DI_USER_PHI | SE3DI_USER_NU | SE3DI_USER_GAMMA, &values));
+    result[0] = values.phi[r];
+    result[1] = values.nu[r];
+    result[2] = values.gamma[r];
+    return SE3D_OK;
+}
+
 static void null_numbers(double *values, size_t count)
 {
     for (size_t k = 0; values && k < count; ++k) {
@@ -210,8 +229,7 @@ se3d_status se3d_constraint_eval(const se3d_system *system, se3d_constraint cons
     se3d_status status = SE3D_OK;
     for (uint32_t r = 0; r < found->row_count && status == SE3D_OK; ++r) {
         double result[3];
-        status = row_eval(&system->model, &system->model.rows[found->row_begin + r], formulation,
-                          result);
+        status = equation_eval(&system->model, found, r, formulation, result);
         for (int k = 0; k < 3 && status == SE3D_OK; ++k) {
             if (outputs[k]) {
                 outputs[k][r] = result[k];
@@ -245,6 +263,41 @@ static void row_jacobian(const se3di_model *model, const se3di_row *row,
     }
 }
 
+/* The same of row r of a user constraint. */
+static se3d_status user_jacobian(const se3di_model *model, const se3di_constraint *constraint,
+                                 uint32_t r, se3d_formulation formulation, uint32_t body,
+                                 double out[7])
+{
+    se3di_user_values values;
+    null_numbers(out, 7);
+    SE3DI_TRY(se3di_user_eval(model, constraint, model->time, SE3DI_USER_JACOBIAN, &values));
+    for (uint32_t k = constraint->user_first; k < constraint->body_count; ++k) {
+        const double *row = se3di_user_row(constraint, &values, r, k - constraint->user_first);
+        if (constraint->bodies[k] != body) {
+            continue;
+        }
+        memcpy(out, row, 6 * sizeof *out);
+        if (formulation == SE3D_FORMULATION_RP) {
+            se3di_g_transposed_mul(model->frames[body].p, row + 3, out + 3);
+            for (int c = 3; c < 7; ++c) {
+                out[c] *= 2.0;
+            }
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status equation_jacobian(const se3di_model *model, const se3di_constraint *constraint,
+                                     uint32_t r, se3d_formulation formulation, uint32_t body,
+                                     double out[7])
+{
+    if (se3di_is_user(constraint)) {
+        return user_jacobian(model, constraint, r, formulation, body, out);
+    }
+    row_jacobian(model, &model->rows[constraint->row_begin + r], formulation, body, out);
+    return se3di_is_finite(out, 7) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
+}
+
 se3d_status se3d_constraint_eval_jacobian(const se3d_system *system, se3d_constraint constraint,
                                           se3d_formulation formulation, size_t slot, double *phi_r,
                                           double *phi_rotation)
@@ -260,12 +313,10 @@ se3d_status se3d_constraint_eval_jacobian(const se3d_system *system, se3d_constr
     if (slot >= found->body_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    int finite = 1;
-    for (uint32_t r = 0; r < found->row_count; ++r) {
+    se3d_status status = SE3D_OK;
+    for (uint32_t r = 0; r < found->row_count && status == SE3D_OK; ++r) {
         double row[7];
-        row_jacobian(&system->model, &system->model.rows[found->row_begin + r], formulation,
-                     found->bodies[slot], row);
-        finite = finite && se3di_is_finite(row, 7);
+        status = equation_jacobian(&system->model, found, r, formulation, found->bodies[slot], row);
         if (phi_r) {
             memcpy(phi_r + 3 * r, row, 3 * sizeof *row);
         }
@@ -273,11 +324,11 @@ se3d_status se3d_constraint_eval_jacobian(const se3d_system *system, se3d_constr
             memcpy(phi_rotation + width * r, row + 3, width * sizeof *row);
         }
     }
-    if (!finite) {
+    if (status < 0) {
         null_numbers(phi_r, found->row_count * 3);
         null_numbers(phi_rotation, found->row_count * width);
     }
-    return finite ? SE3D_OK : SE3D_ERR_NOT_FINITE;
+    return status;
 }
 
 se3d_status se3d_constraint_get_multipliers(const se3d_system *system, se3d_constraint constraint,
@@ -294,12 +345,14 @@ void se3di_constraint_wrench(const se3di_model *model, const se3di_constraint *c
 {
     double moment[3] = {0.0, 0.0, 0.0}; /* body frame */
     null_numbers(force, 3);
-    for (uint32_t r = constraint->row_begin; r < constraint->row_begin + constraint->row_count;
-         ++r) {
+    for (uint32_t r = 0; r < constraint->row_count; ++r) {
         double row[7];
-        row_jacobian(model, &model->rows[r], SE3D_FORMULATION_ROMEGA, body, row);
-        se3di_add_scaled(-model->lambda[r], row, force);
-        se3di_add_scaled(-model->lambda[r], row + 3, moment);
+        double lambda = model->lambda[constraint->row_begin + r];
+        if (equation_jacobian(model, constraint, r, SE3D_FORMULATION_ROMEGA, body, row) < 0) {
+            row[0] = row[3] = NAN; /* the caller reports NOT_FINITE */
+        }
+        se3di_add_scaled(-lambda, row, force);
+        se3di_add_scaled(-lambda, row + 3, moment);
     }
     se3di_mul(model->frames[body].A, moment, torque);
 }

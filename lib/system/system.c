@@ -4,6 +4,7 @@
 
 #include "base/hash.h"
 #include "force/force.h"
+#include "joint/user.h"
 #include "math/vec3.h"
 #include "primitive/primitive.h"
 #include "primitive/turn_counter.h"
@@ -337,17 +338,52 @@ static se3d_status measure_row(const se3di_model *model, const se3di_row *row, d
     return SE3D_OK;
 }
 
+static void take_largest(const double gap[3], double violation[3])
+{
+    for (int level = 0; level < 3; ++level) {
+        violation[level] = fmax(violation[level], fabs(gap[level]));
+    }
+}
+
+/* The same of the equations of a user constraint, into `violation`. */
+static se3d_status measure_user(const se3di_model *model, const se3di_constraint *constraint,
+                                double violation[3])
+{
+    se3di_user_values values;
+    SE3DI_TRY(se3di_user_eval(model, constraint, model->time,
+                              SE3DI_USER_PHI | SE3DI_USER_JACOBIAN | SE3DI_USER_NU |
+                                  SE3DI_USER_GAMMA,
+                              &values));
+    for (uint32_t r = 0; r < constraint->row_count; ++r) {
+        double gap[3] = {values.phi[r], -values.nu[r], -values.gamma[r]};
+        for (uint32_t k = 0; k < se3di_user_body_count(constraint); ++k) {
+            uint32_t body = constraint->bodies[constraint->user_first + k];
+            const double *row = se3di_user_row(constraint, &values, r, k);
+            const double *a = model->acceleration + 6 * body;
+            const se3di_frame *frame = &model->frames[body];
+            gap[1] += se3di_dot(row, frame->v) + se3di_dot(row + 3, frame->w);
+            gap[2] += se3di_dot(row, a) + se3di_dot(row + 3, a + 3);
+        }
+        take_largest(gap, violation);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3d_system_get_violation(const se3d_system *system, double violation[3])
 {
     if (!system || !violation) {
         return SE3D_ERR_NULL;
     }
+    const se3di_model *model = &system->model;
     violation[0] = violation[1] = violation[2] = 0.0;
-    for (size_t k = 0; k < system->model.row_count; ++k) {
+    for (size_t k = 0; k < model->row_count; ++k) {
         double gap[3];
-        SE3DI_TRY(measure_row(&system->model, &system->model.rows[k], gap));
-        for (int level = 0; level < 3; ++level) {
-            violation[level] = fmax(violation[level], fabs(gap[level]));
+        SE3DI_TRY(measure_row(model, &model->rows[k], gap));
+        take_largest(gap, violation);
+    }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        if (se3di_is_user(&model->constraints[k])) {
+            SE3DI_TRY(measure_user(model, &model->constraints[k], violation));
         }
     }
     return SE3D_OK;

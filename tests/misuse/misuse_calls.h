@@ -230,6 +230,33 @@ static const field callback_fields[] = {MEMBER('N', se3d_force_callback_def, nam
                                         MEMBER('b', se3d_force_callback_def, body_i, 1),
                                         MEMBER('b', se3d_force_callback_def, body_j, 1), END};
 
+static se3d_status no_equation(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
+                               double *jacobian, double *nu, double *gamma)
+{
+    (void)ctx;
+    (void)t;
+    (void)bodies;
+    (void)phi;
+    (void)jacobian;
+    (void)nu;
+    (void)gamma;
+    return SE3D_OK;
+}
+
+static void define_user_constraint(arguments *a)
+{
+    se3d_user_constraint_def def = se3d_user_constraint_def_default();
+    def.bodies[0] = ground_of(a);
+    def.bodies[1] = a->use.body;
+    def.body_count = 2;
+    def.callback = no_equation;
+    STORE(def);
+}
+static const field user_constraint_fields[] = {MEMBER('N', se3d_user_constraint_def, name, 1),
+                                               MEMBER('b', se3d_user_constraint_def, bodies[0], 1),
+                                               MEMBER('b', se3d_user_constraint_def, bodies[1], 1),
+                                               END};
+
 static void define_function(arguments *a)
 {
     se3d_function_def def = se3d_function_def_default();
@@ -278,6 +305,7 @@ CALL(marker_get_acceleration, a->system, a->use.marker, a->out[0])
 CALL(marker_get_orientation, a->system, a->use.marker, a->out[0])
 CALL(marker_get_body, a->system, a->use.marker, a->out[0])
 CALL(primitive_create, a->system, a->def, a->out[0])
+CALL(user_constraint_create, a->system, a->def, a->out[0])
 CALL(constraint_destroy, a->system, a->use.driver)
 CALL(constraint_find, a->system, a->text, a->out[0])
 CALL(constraint_get_name, a->system, a->use.pin, a->out[0])
@@ -619,6 +647,7 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(body);
     CHECK_INIT(marker);
     CHECK_INIT(primitive);
+    CHECK_INIT(user_constraint);
     CHECK_INIT(joint);
     CHECK_INIT(coupler);
     CHECK_INIT(driver);
@@ -669,6 +698,8 @@ static const row rows[] = {
     {"se3d_marker_get_orientation", call_marker_get_orientation, "smo0", NULL, NULL},
     {"se3d_marker_get_body", call_marker_get_body, "smh0", NULL, NULL},
     {"se3d_primitive_create", call_primitive_create, "SDh0", define_primitive, primitive_fields},
+    {"se3d_user_constraint_create", call_user_constraint_create, "SDh0", define_user_constraint,
+     user_constraint_fields},
     {"se3d_constraint_destroy", call_constraint_destroy, "Sc", NULL, NULL},
     {"se3d_constraint_find", call_constraint_find, "sth0", NULL, NULL},
     {"se3d_constraint_get_name", call_constraint_get_name, "sco0", NULL, NULL},
@@ -797,6 +828,7 @@ static const row rows[] = {
     {"se3d_body_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_marker_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_primitive_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_user_constraint_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_joint_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_coupler_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_driver_def_init", definitions_are_never_overrun, "", NULL, NULL},

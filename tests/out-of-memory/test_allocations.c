@@ -163,6 +163,32 @@ static se3d_status make_cd(workshop *w)
     return make_primitive(w, SE3D_PRIMITIVE_CD);
 }
 
+static se3d_status no_equation(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
+                               double *jacobian, double *nu, double *gamma)
+{
+    (void)ctx;
+    (void)t;
+    (void)bodies;
+    (void)phi;
+    (void)jacobian;
+    (void)nu;
+    (void)gamma;
+    return SE3D_OK;
+}
+
+static se3d_status make_user_constraint(workshop *w)
+{
+    se3d_user_constraint_def def = se3d_user_constraint_def_default();
+    se3d_constraint constraint;
+    def.name = "user";
+    def.callback = no_equation;
+    def.bodies[0] = w->body[0];
+    def.bodies[1] = w->body[1];
+    def.body_count = 2;
+    def.equation_count = 3;
+    return se3d_user_constraint_create(w->system, &def, &constraint);
+}
+
 static se3d_status make_driver(workshop *w)
 {
     se3d_driver_def def = se3d_driver_def_default();
@@ -303,6 +329,7 @@ static const operation_row operations[] = {
     {"dp2", make_dp2},
     {"d", make_d},
     {"cd", make_cd},
+    {"user constraint", make_user_constraint},
     {"driver", make_driver},
     {"coupler", make_coupler},
     {"rack_pinion", make_rack_pinion},
