@@ -473,7 +473,12 @@ static double measure(const se3d_scene *scene, double *floor_height)
 static void add_grid(drawing *d, double height, se3di_bytes *roots)
 {
     static const double color[4] = {0.55, 0.58, 0.62, 1.0};
-    const double step = pow(10.0, floor(log10(0.5 * d->extent)));
+    const double least = d->extent / 5.0;
+    const double ten = pow(10.0, floor(log10(least)));
+    const double step = least <= ten         ? ten
+                        : least <= 2.0 * ten ? 2.0 * ten
+                        : least <= 5.0 * ten ? 5.0 * ten
+                                             : 10.0 * ten; /* 1, 2 or 5 */
     thing t = make_thing("grid", 0, step, step, step);
     t.position[2] = step * floor(height / step);
     t.mesh = (long)se3di_glb_add_mesh(&d->glb, SE3DI_GLB_GRID, color);

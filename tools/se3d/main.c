@@ -12,6 +12,7 @@ static const char help[] =
     "  se3d check MODEL      count equations and freedoms, name redundant constraints\n"
     "  se3d evaluate MODEL   print Phi, nu, gamma and the Jacobian of every constraint\n"
     "  se3d plot FILE.csv    draw results as SVG and PNG\n"
+    "  se3d view DIR         make one HTML file that shows results in 3-D\n"
     "  se3d --version        print the version\n"
     "\n"
     "`se3d COMMAND --help` says more. The model file: docs/model-file/reference.md.\n"
@@ -25,7 +26,8 @@ typedef struct command {
 static const command commands[] = {{"run", command_run},
                                    {"check", command_check},
                                    {"evaluate", command_evaluate},
-                                   {"plot", command_plot}};
+                                   {"plot", command_plot},
+                                   {"view", command_view}};
 
 static int dispatch(int count, char *const *words)
 {

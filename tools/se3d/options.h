@@ -45,6 +45,7 @@ int command_run(int count, char *const *words);
 int command_check(int count, char *const *words);
 int command_evaluate(int count, char *const *words);
 int command_plot(int count, char *const *words);
+int command_view(int count, char *const *words);
 
 /* Write a text as a JSON string, a number as JSON (null where it is not finite). */
 void json_put_text(const char *text);

@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* se3d view DIR: one HTML file with the scene, its results and all that shows them. */
+#define _XOPEN_SOURCE 700
+
+#include "view.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "options.h"
+#include "process.h"
+#include "table.h"
+
+enum { RESULTS_SIZE = 200 * 1024, PATH_SIZE = 4096 };
+
+static const char help[] =
+    "se3d view DIR [-o FILE.html]\n"
+    "\n"
+    "Writes one HTML file (default DIR/scene.html) that shows the results in DIR, as `se3d run`\n"
+    "left them, in any browser and without a network: the motion in 3-D beside a plot of a\n"
+    "channel. Keys: space plays, arrows step, + and - change the speed, b follows a body, f shows\n"
+    "frames, r reactions, t traces, d is for dark; drag turns, shift-drag moves, the wheel "
+    "zooms.\n";
+
+static char *read_whole(const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "rb");
+    char *data = NULL;
+    *size = 0;
+    if (file && fseek(file, 0, SEEK_END) == 0) {
+        const long length = ftell(file);
+        rewind(file);
+        data = length >= 0 ? malloc((size_t)length + 1) : NULL;
+        if (data) {
+            *size = fread(data, 1, (size_t)length, file);
+            data[*size] = '\0';
+        }
+    }
+    if (file) {
+        fclose(file);
+    }
+    return data;
+}
+
+static void put_base64(FILE *file, const void *data, size_t size)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const unsigned char *at = data;
+    for (size_t k = 0; k < size; k += 3) {
+        const size_t left = size - k;
+        const uint32_t bits = (uint32_t)at[k] << 16 | (left > 1 ? (uint32_t)at[k + 1] << 8 : 0) |
+                              (left > 2 ? (uint32_t)at[k + 2] : 0);
+        fputc(digits[bits >> 18], file);
+        fputc(digits[bits >> 12 & 63], file);
+        fputc(left > 1 ? digits[bits >> 6 & 63] : '=', file);
+        fputc(left > 2 ? digits[bits & 63] : '=', file);
+    }
+}
+
+/* Texts in scripts: `<` could end them. */
+static void put_json(FILE *file, const char *text)
+{
+    fputc('"', file);
+    for (; *text; ++text) {
+        if (*text == '"' || *text == '\\' || *text == '<' || (unsigned char)*text < ' ') {
+            fprintf(file, "\\u%04x", (unsigned)(unsigned char)*text);
+        } else {
+            fputc(*text, file);
+        }
+    }
+    fputc('"', file);
+}
+
+/* The first results file of a folder, by name; spectra of plots left out. */
+static int find_results(const char *folder, char *path, size_t size)
+{
+    char best[300] = "";
+    DIR *list = opendir(folder);
+    for (const struct dirent *d; list && (d = readdir(list)) != NULL;) {
+        const size_t length = strlen(d->d_name);
+        if (length > 4 && length < sizeof best && strcmp(d->d_name + length - 4, ".csv") == 0 &&
+            !strstr(d->d_name, ".fft.csv") && (!best[0] || strcmp(d->d_name, best) < 0)) {
+            strcpy(best, d->d_name);
+        }
+    }
+    if (list) {
+        closedir(list);
+    }
+    snprintf(path, size, "%s/%s", folder, best);
+    return best[0] != '\0';
+}
+
+static int put_table(FILE *file, const table *t)
+{
+    char unit[60];
+    const size_t room = RESULTS_SIZE / (4 * t->count);
+    const size_t most = room < 50 ? 50 : room;
+    const size_t stride = (t->rows + most - 1) / most;
+    double *values = malloc((most + 1) * t->count * sizeof *values);
+    float *single = malloc((most + 1) * t->count * sizeof *single);
+    const size_t rows = values && single ? table_read_rows(t, stride, values, most) : 0;
+    for (size_t k = 0; k < rows * t->count; ++k) {
+        single[k] = (float)values[k];
+    }
+    fputs("{\"names\":[", file);
+    for (size_t k = 0; k < t->count; ++k) {
+        fputs(k > 0 ? "," : "", file);
+        put_json(file, t->names[k]);
+    }
+    fputs("],\"units\":[", file);
+    for (size_t k = 0; k < t->count; ++k) {
+        fputs(k > 0 ? "," : "", file);
+        put_json(file, table_get_unit(t, t->names[k], unit, sizeof unit));
+    }
+    fputs("],\"data\":\"", file);
+    if (rows > 0) {
+        put_base64(file, single, rows * t->count * sizeof *single);
+    }
+    fputs("\"}", file);
+    free(values);
+    free(single);
+    return rows > 0;
+}
+
+/* Where the page's parts are: SE3D_VIEWER, beside an installed program, or in the source tree. */
+static int find_viewer(char *folder, size_t size)
+{
+    static const char *const places[] = {"../share/se3d/viewer", "../../../tools/viewer",
+                                         "../../tools/viewer"};
+    char program[PATH_SIZE];
+    char self[PATH_SIZE];
+    char file[PATH_SIZE + 64];
+    const char *given = getenv("SE3D_VIEWER");
+    if (given) {
+        snprintf(folder, size, "%s", given);
+        return 1;
+    }
+    if (!path_get_absolute("/proc/self/exe", self, sizeof self) ||
+        !path_get_folder(self, program, sizeof program)) {
+        return 0;
+    }
+    for (size_t k = 0; k < sizeof places / sizeof *places; ++k) {
+        const int used = snprintf(folder, size, "%s/%s", program, places[k]);
+        snprintf(file, sizeof file, "%.4000s/viewer.js", folder);
+        if (used > 0 && (size_t)used < size && access(file, R_OK) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static int find_cache(char *folder, size_t size)
+{
+    const char *given = getenv("SE3D_CACHE");
+    const char *user = getenv("XDG_CACHE_HOME");
+    const char *home = getenv("HOME");
+    const int used = given               ? snprintf(folder, size, "%s", given)
+                     : (user && user[0]) ? snprintf(folder, size, "%s/se3d", user)
+                     : (home && home[0]) ? snprintf(folder, size, "%s/.cache/se3d", home)
+                                         : snprintf(folder, size, "/tmp/se3d-viewer");
+    return used > 0 && (size_t)used < size;
+}
+
+static int put_file(FILE *out, const char *folder, const char *name)
+{
+    char path[PATH_SIZE + 64];
+    size_t size = 0;
+    snprintf(path, sizeof path, "%.4000s/%s", folder, name);
+    char *data = read_whole(path, &size);
+    if (!data) {
+        fprintf(stderr, "se3d view: %s: cannot be read\n", path);
+        return 0;
+    }
+    fwrite(data, 1, size, out);
+    free(data);
+    return 1;
+}
+
+typedef struct page {
+    char viewer[PATH_SIZE];
+    char cache[PATH_SIZE];
+    char *glb;
+    size_t glb_size;
+    table results;
+} page;
+
+static int put_page(FILE *file, const page *p)
+{
+    fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width\">"
+          "<link rel=\"icon\" href=\"data:,\">\n<title>se3d</title>\n<style>\n",
+          file);
+    int good = put_file(file, p->viewer, "viewer.css");
+    fputs("</style></head><body>\n", file);
+    good = good && put_file(file, p->viewer, "viewer.html");
+    fputs("<script type=\"text/plain\" id=\"glb\">", file);
+    put_base64(file, p->glb, p->glb_size);
+    fputs("</script>\n<script type=\"application/json\" id=\"results\">", file);
+    good = good && put_table(file, &p->results);
+    fputs("</script>\n<script>\n", file);
+    good = good && put_file(file, p->cache, "three.js");
+    fputs("\n</script>\n<script>\n", file);
+    good = good && put_file(file, p->viewer, "viewer.js");
+    fputs("</script>\n</body></html>\n", file);
+    return good;
+}
+
+static int write_page(const page *p, const char *path)
+{
+    char partial[PATH_SIZE + 64];
+    snprintf(partial, sizeof partial, "%.4000s.partial", path);
+    errno = 0;
+    FILE *file = fopen(partial, "wb");
+    int good = file && put_page(file, p);
+    if (file) {
+        good = !ferror(file) && good;
+        good = fclose(file) == 0 && good;
+    }
+    if (!good || rename(partial, path) != 0) {
+        fprintf(stderr, "se3d view: %s: cannot be written: %s\n", path, strerror(errno));
+        remove(partial);
+        return EXIT_FAILED;
+    }
+    return EXIT_DONE;
+}
+
+static int prepare(page *p, const char *command)
+{
+    char script[PATH_SIZE + 64];
+    if (!find_viewer(p->viewer, sizeof p->viewer) || !find_cache(p->cache, sizeof p->cache)) {
+        fprintf(stderr,
+                "se3d %s: the parts of the page are not found; set SE3D_VIEWER to the folder "
+                "tools/viewer of the source\n",
+                command);
+        return EXIT_FAILED;
+    }
+    snprintf(script, sizeof script, "%.4000s/build.sh", p->viewer);
+    const char *const words[] = {"sh", script, p->cache, NULL};
+    if (process_run(NULL, words) != 0) {
+        fprintf(stderr, "se3d %s: three.js could not be made, see above\n", command);
+        return EXIT_FAILED;
+    }
+    return EXIT_DONE;
+}
+
+int view_write(const char *command, const char *folder, const char *path)
+{
+    char name[PATH_SIZE + 64];
+    page *p = calloc(1, sizeof *p);
+    int code = EXIT_FAILED;
+    if (!p) {
+        return EXIT_FAILED;
+    }
+    snprintf(name, sizeof name, "%.4000s/scene.glb", folder);
+    p->glb = read_whole(name, &p->glb_size);
+    if (!p->glb || p->glb_size < 28) {
+        fprintf(stderr, "se3d %s: %s: cannot be read; `se3d run MODEL -o %s` makes it\n", command,
+                name, folder);
+    } else if (!find_results(folder, name, sizeof name)) {
+        fprintf(stderr, "se3d %s: there is no CSV file in %s\n", command, folder);
+    } else if (table_read(&p->results, command, name)) {
+        code = prepare(p, command);
+        code = code == EXIT_DONE ? write_page(p, path) : code;
+        table_destroy(&p->results);
+    }
+    free(p->glb);
+    free(p);
+    return code;
+}
+
+int command_view(int count, char *const *words)
+{
+    char path[PATH_SIZE + 64];
+    options o;
+    int code = options_read(&o, "view", " -o --output --quiet -q ", count, words);
+    if (code != EXIT_DONE || o.help) {
+        fputs(o.help ? help : "", stdout);
+        return code;
+    }
+    snprintf(path, sizeof path, "%.4000s/scene.html", o.model);
+    code = view_write("view", o.model, o.directory ? o.directory : path);
+    if (code == EXIT_DONE && !o.quiet) {
+        printf("wrote %s\n", o.directory ? o.directory : path);
+    }
+    return code;
+}
