@@ -239,6 +239,24 @@ static bool read_channels(se3di_reader *reader, const se3di_node *node, se3di_ou
     return true;
 }
 
+static bool read_snapshots(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
+{
+    const se3di_node *child = se3di_node_get(node, "particles");
+    int32_t wanted = 0;
+    if (child && !se3di_read_bool(reader, child, &wanted)) {
+        return false;
+    }
+    if (wanted && !reader->model->grains) {
+        return se3di_reader_fail(reader, child, "is true, but the model has no `particles`");
+    }
+    if (wanted && se3di_node_get(node, "channels")) {
+        return se3di_reader_fail_key(reader, node, "channels",
+                                     "cannot stand beside `particles`: give each its own file");
+    }
+    output->particles = wanted != 0;
+    return true;
+}
+
 static bool read_output(se3di_reader *reader, const se3di_node *node)
 {
     se3d_model *model = reader->model;
@@ -272,7 +290,8 @@ static bool read_output(se3di_reader *reader, const se3di_node *node)
     }
     output->node = node;
     if (!se3di_read_key_number(reader, node, "every", SE3DI_POSITIVE, &output->every) ||
-        !read_channels(reader, node, output)) {
+        !read_snapshots(reader, node, output) ||
+        (!output->particles && !read_channels(reader, node, output))) {
         return false;
     }
     ++model->output_count;

@@ -211,7 +211,7 @@ static bool read_ground(se3di_reader *reader, const se3di_node *node)
 
 static bool read_body_name(se3di_reader *reader, const se3di_node *node, const char **name)
 {
-    static const char words[] = " energy work violation contacts steps iterations time ";
+    static const char words[] = " energy work violation contacts particles steps iterations time ";
     const se3di_node *child = se3di_node_get(node, "name");
     if (!child) {
         return se3di_reader_fail_key(reader, node, "name", "is missing, every body needs one");

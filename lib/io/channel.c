@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/grains.h"
 #include "io/keys.h"
 #include "io/model.h"
 
@@ -65,6 +66,12 @@ static const quantity_name system_names[] = {
     {"steps", SE3DI_STEPS},
     {"iterations", SE3DI_ITERATIONS},
     {NULL, SE3DI_STEPS}};
+
+static const quantity_name particle_names[] = {{"contacts.count", SE3DI_CONTACTS_COUNT},
+                                               {"particles.count", SE3DI_PARTICLES_COUNT},
+                                               {"particles.lost", SE3DI_PARTICLES_LOST},
+                                               {"particles.energy", SE3DI_PARTICLES_ENERGY},
+                                               {NULL, SE3DI_STEPS}};
 
 enum { QUANTITIES_MAX = 12 };
 
@@ -201,6 +208,18 @@ static void explain_unknown(const se3d_model *model, const char *name, char *pro
              meant ? meant : "", meant ? "`?" : "");
 }
 
+static bool find_particles(const se3d_model *model, const char *name, se3di_channel *channel)
+{
+    for (const quantity_name *q = particle_names; model->grains && q->name; ++q) {
+        if (strcmp(q->name, name) == 0) {
+            channel->quantity = q->quantity;
+            channel->particles = model->grains->set;
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool find_system(const char *name, se3di_channel *channel)
 {
     for (const quantity_name *q = system_names; q->name; ++q) {
@@ -216,8 +235,12 @@ static bool find_system(const char *name, se3di_channel *channel)
 static bool explain_system(const char *head, const char *name, char *problem, size_t size)
 {
     offer o = {.count = 0};
-    if (strcmp(head, "contacts") == 0) {
-        snprintf(problem, size, "contacts are not supported yet");
+    if (strcmp(head, "contacts") == 0 || strcmp(head, "particles") == 0) {
+        snprintf(problem, size,
+                 "`%.60s.%.60s` is unknown, a model with `particles` has "
+                 "contacts.count, "
+                 "particles.count, particles.lost, particles.energy",
+                 head, name);
         return true;
     }
     if (strcmp(head, "energy") != 0 && strcmp(head, "violation") != 0 &&
@@ -277,7 +300,7 @@ bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel
     size_t index = 0;
     memset(channel, 0, sizeof *channel);
     channel->name = name;
-    if (find_system(name, channel)) {
+    if (find_system(name, channel) || find_particles(model, name, channel)) {
         return true;
     }
     snprintf(head, sizeof head, "%s", name);
@@ -391,6 +414,11 @@ se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count)
     for (const quantity_name *q = system_names; q->name && !c.failed; ++q) {
         const char *const parts[3] = {q->name, NULL, NULL};
         const se3di_channel channel = {.quantity = q->quantity};
+        list_one(&c, channel, parts);
+    }
+    for (const quantity_name *q = particle_names; model->grains && q->name && !c.failed; ++q) {
+        const char *const parts[3] = {q->name, NULL, NULL};
+        const se3di_channel channel = {.quantity = q->quantity, .particles = model->grains->set};
         list_one(&c, channel, parts);
     }
     *count = c.failed ? 0 : c.count;

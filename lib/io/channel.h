@@ -39,6 +39,10 @@ typedef enum se3di_quantity {
     SE3DI_VIOLATION_POSITION,
     SE3DI_VIOLATION_VELOCITY,
     SE3DI_VIOLATION_ACCELERATION,
+    SE3DI_CONTACTS_COUNT,
+    SE3DI_PARTICLES_COUNT,
+    SE3DI_PARTICLES_LOST,
+    SE3DI_PARTICLES_ENERGY,
     SE3DI_STEPS,
     SE3DI_ITERATIONS
 } se3di_quantity;
@@ -50,6 +54,7 @@ typedef struct se3di_channel {
     se3d_marker marker;
     se3d_constraint constraint;
     se3d_force force;
+    const se3d_particles *particles;
     double point[3]; /* of `body`, where a wrench acts */
 } se3di_channel;
 

@@ -106,6 +106,21 @@ static se3d_status eval_work(const se3di_channel *c, const se3d_system *system, 
     return status;
 }
 
+static se3d_status eval_particles(const se3di_channel *c, double value[4])
+{
+    se3d_particles_stats stats = {0, 0, 0, 0, 0};
+    se3d_particles_energy energy = {0.0, 0.0, 0.0};
+    se3d_status status = se3d_particles_get_stats(c->particles, &stats);
+    if (status >= 0) {
+        status = se3d_particles_get_energy(c->particles, &energy);
+    }
+    const double all[4] = {(double)stats.contacts, (double)se3d_particles_count(c->particles),
+                           (double)stats.lost,
+                           energy.translation + energy.rotation + energy.potential};
+    value[0] = all[c->quantity - SE3DI_CONTACTS_COUNT];
+    return status;
+}
+
 static se3d_status eval_system(const se3di_channel *c, const se3d_system *system,
                                const se3d_solver_stats *stats, double value[4])
 {
@@ -121,6 +136,8 @@ static se3d_status eval_system(const se3di_channel *c, const se3d_system *system
         double violation[3] = {0.0, 0.0, 0.0};
         status = se3d_system_get_violation(system, violation);
         value[0] = violation[c->quantity - SE3DI_VIOLATION_POSITION];
+    } else if (c->quantity <= SE3DI_PARTICLES_ENERGY) {
+        status = eval_particles(c, value);
     } else {
         value[0] = !stats                       ? 0.0
                    : c->quantity == SE3DI_STEPS ? (double)stats->steps

@@ -119,6 +119,14 @@ void se3di_csv_put_row(se3di_csv *csv, const double *row)
     csv->has_pending = true;
 }
 
+void se3di_csv_put_line(se3di_csv *csv, const double *row)
+{
+    write_pending(csv);
+    memcpy(csv->pending, row, csv->columns * sizeof *row);
+    csv->has_pending = true;
+    write_pending(csv);
+}
+
 se3d_status se3di_csv_close(se3di_csv *csv)
 {
     write_pending(csv);

@@ -26,6 +26,8 @@ se3d_status se3di_csv_open(se3di_csv *csv, se3di_iopool *pool, const char *path,
 void se3di_csv_put_name(se3di_csv *csv, const char *name, bool last);
 /* Write one row; row[0] is the time. A row at the time of the one before takes its place. */
 void se3di_csv_put_row(se3di_csv *csv, const double *row);
+/* Write one row as it is, whatever its time. */
+void se3di_csv_put_line(se3di_csv *csv, const double *row);
 /* Complete the file and give it its name. @return OK or IO (nothing is left then). */
 se3d_status se3di_csv_close(se3di_csv *csv);
 /* Close without keeping anything. */

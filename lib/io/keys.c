@@ -6,8 +6,8 @@
 #include <string.h>
 
 static const char *const model_keys[] = {
-    "se3d",    "title",       "parameters", "gravity",  "materials", "bodies", "joints",
-    "drivers", "constraints", "forces",     "analysis", "output",    NULL};
+    "se3d",        "title",  "parameters", "gravity",   "materials", "bodies", "joints", "drivers",
+    "constraints", "forces", "contact",    "particles", "analysis",  "output", NULL};
 static const char *const body_keys[] = {
     "name",    "fixed",    "held",        "mass",     "inertia",
     "density", "position", "orientation", "velocity", "angular_velocity",
@@ -18,7 +18,25 @@ static const char *const shape_keys[] = {"type",        "size",   "radius",  "le
                                          "scale",       "normal", "density", "material", "position",
                                          "orientation", "color",  NULL};
 static const char *const marker_keys[] = {"name", "position", "orientation", NULL};
-static const char *const material_keys[] = {"name", "density", NULL};
+static const char *const material_keys[] = {"name",
+                                            "density",
+                                            "friction",
+                                            "restitution",
+                                            "rolling_friction",
+                                            "torsional_friction",
+                                            "stiffness",
+                                            "tangential_ratio",
+                                            "young",
+                                            "poisson",
+                                            NULL};
+static const char *const contact_keys[] = {"law",      "step",  "threads", "skin",  "overlap_limit",
+                                           "boundary", "lower", "upper",   "pairs", NULL};
+static const char *const pair_keys[] = {
+    "material_1",       "material_2",         "friction",  "restitution",
+    "rolling_friction", "torsional_friction", "stiffness", NULL};
+static const char *const particles_keys[] = {"material", "packing", "count",   "radius",
+                                             "lower",    "upper",   "spacing", "jitter",
+                                             "velocity", "seed",    NULL};
 static const char *const joint_keys[] = {
     "name",    "type",    "body_i", "body_j", "at",    "axis",   "ref",    "at_2",  "axis_2",
     "point_i", "point_j", "axis_i", "axis_j", "ref_i", "ref_j",  "angle0", "pitch", "distance",
@@ -78,7 +96,7 @@ static const char *const analysis_keys[] = {
 static const char *const modes_input_keys[] = {"body", "point", "direction", "torque", NULL};
 static const char *const modes_output_keys[] = {"body", "point", "direction", "quantity", NULL};
 static const char *const frequency_keys[] = {"from", "to", "count", NULL};
-static const char *const output_keys[] = {"file", "every", "channels", NULL};
+static const char *const output_keys[] = {"file", "every", "channels", "particles", NULL};
 
 #define FRAME  " at point_i point_j "
 #define AXES   " axis axis_i axis_j "
@@ -128,7 +146,7 @@ static const se3di_type_keys shape_types[] = {{"sphere", " radius density materi
                                               {"box", " size density material "},
                                               {"capsule", " radius length density material "},
                                               {"cylinder", " radius length density material "},
-                                              {"plane", " normal "},
+                                              {"plane", " normal material "},
                                               {"mesh", " file scale "},
                                               {NULL, NULL}};
 
@@ -150,6 +168,9 @@ static const se3di_object_keys objects[SE3DI_OBJECT_COUNT] = {
     {"modes_input", modes_input_keys, NULL, NULL, NULL},
     {"modes_output", modes_output_keys, NULL, NULL, NULL},
     {"frequencies", frequency_keys, NULL, NULL, NULL},
+    {"contact", contact_keys, NULL, NULL, NULL},
+    {"pair", pair_keys, NULL, NULL, NULL},
+    {"particles", particles_keys, NULL, NULL, NULL},
 };
 
 const se3di_object_keys *se3di_keys_get(se3di_object object)

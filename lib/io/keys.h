@@ -23,7 +23,10 @@ typedef enum se3di_object {
     SE3DI_OBJECT_MODES_INPUT = 14,
     SE3DI_OBJECT_MODES_OUTPUT = 15,
     SE3DI_OBJECT_FREQUENCIES = 16,
-    SE3DI_OBJECT_COUNT = 17
+    SE3DI_OBJECT_CONTACT = 17,
+    SE3DI_OBJECT_PAIR = 18,
+    SE3DI_OBJECT_PARTICLES = 19,
+    SE3DI_OBJECT_COUNT = 20
 } se3di_object;
 
 /* Keys of a type that not all objects of its kind have. */

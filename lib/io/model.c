@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/grains.h"
 #include "io/reader.h"
 
 void se3d_model_options_init(se3d_model_options *options, size_t size)
@@ -48,12 +49,6 @@ static bool read_head(se3di_reader *reader, const se3di_node *root)
     if (version < 1.0 || version > 1.0) {
         return se3di_reader_fail(reader, node, "is %s, must be 1: the version of the file format",
                                  node->text);
-    }
-    static const char *const later[] = {"contact", "particles"};
-    for (size_t k = 0; k < sizeof later / sizeof *later; ++k) {
-        if (se3di_node_get(root, later[k])) {
-            return se3di_reader_fail_key(reader, root, later[k], "is not supported yet");
-        }
     }
     if (!se3di_read_keys(reader, root, SE3DI_OBJECT_MODEL)) {
         return false;
@@ -106,7 +101,7 @@ static bool read_model(se3di_reader *reader, const se3di_node *root)
            se3di_read_bodies(reader, root) && se3di_read_joints(reader, root) &&
            se3di_read_constraints(reader, root) && se3di_read_drivers(reader, root) &&
            se3di_read_forces(reader, root) && se3di_read_analyses(reader, root) &&
-           se3di_read_outputs(reader, root);
+           se3di_read_particles(reader, root) && se3di_read_outputs(reader, root);
 }
 
 /* An empty model with its own memory. */
@@ -243,6 +238,9 @@ void se3d_model_destroy(se3d_model *model)
 {
     if (model) {
         se3di_iopool pool = model->pool; /* the model itself lies in it */
+        if (model->grains) {
+            se3d_particles_destroy(model->grains->set);
+        }
         se3d_system_destroy(model->system);
         se3di_iopool_destroy(&pool);
     }

@@ -66,11 +66,14 @@ typedef struct se3di_analysis_entry {
 
 typedef struct se3di_output_entry {
     const char *file;
-    double every; /* 0: the analysis's step */
+    bool particles; /* snapshots of them, no channels */
+    double every;   /* 0: the analysis's step */
     se3di_channel *channels;
     size_t count;
     const se3di_node *node; /* NULL: the default output */
 } se3di_output_entry;
+
+typedef struct se3di_grains se3di_grains;
 
 struct se3d_model {
     se3di_iopool pool;
@@ -93,6 +96,7 @@ struct se3d_model {
     size_t shape_count, shape_capacity;
     se3di_analysis_entry *analyses;
     size_t analysis_count;
+    se3di_grains *grains; /* NULL: no particles */
     se3di_output_entry *outputs;
     size_t output_count;
 };

@@ -98,6 +98,8 @@ bool se3di_read_forces(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_analyses(se3di_reader *reader, const se3di_node *root);
 /* The keys that only an analysis of type modes has. */
 bool se3di_read_modes(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry);
+/* `contact` and `particles`, after the analyses. */
+bool se3di_read_particles(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root);
 
 /* Begin an element: its name, given or made up, is added to the model. */

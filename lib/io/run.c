@@ -13,6 +13,7 @@
 #include <time.h>
 
 #include "io/csv.h"
+#include "io/grains.h"
 #include "io/model.h"
 #include "io/run_modes.h"
 
@@ -76,6 +77,7 @@ static se3d_status open_file(runner *r, const se3di_output_entry *entry)
     if (!se3di_file_join(r->options->directory, entry->file, path, sizeof path)) {
         return fail(r, SE3D_ERR_IO, "the path of the results is too long");
     }
+    columns = entry->particles ? (size_t)SE3DI_GRAIN_COLUMNS : columns;
     for (size_t k = 0; k < entry->count; ++k) {
         columns += se3di_channel_get_width(&entry->channels[k]);
     }
@@ -88,6 +90,12 @@ static se3d_status open_file(runner *r, const se3di_output_entry *entry)
         return result;
     }
     ++r->file_count;
+    for (size_t k = 0; k < SE3DI_GRAIN_COLUMNS && entry->particles; ++k) {
+        se3di_csv_put_name(&file->csv, se3di_grains_get_column(k), k + 1 == SE3DI_GRAIN_COLUMNS);
+    }
+    if (entry->particles) {
+        return SE3D_OK;
+    }
     se3di_csv_put_name(&file->csv, "time", columns == 1);
     size_t column = 1;
     for (size_t k = 0; k < entry->count; ++k) {
@@ -143,10 +151,31 @@ static double row_time(const output_file *file, double number, double start, dou
     return number < file->count ? start + number * file->every : start + duration;
 }
 
+/* One row for each particle. */
+static se3d_status sample_particles(runner *r, output_file *file)
+{
+    se3di_iopool pool;
+    double *rows = NULL;
+    size_t count = 0;
+    se3di_iopool_init(&pool, &r->model->pool.allocator);
+    const se3d_status status = se3di_grains_get_rows(r->model->grains, &pool, &rows, &count);
+    for (size_t k = 0; k < count; ++k) {
+        se3di_csv_put_line(&file->csv, rows + SE3DI_GRAIN_COLUMNS * k);
+    }
+    se3di_iopool_destroy(&pool);
+    if (status < 0) {
+        return fail(r, status, se3d_status_get_text(status));
+    }
+    return file->csv.failure ? fail_file(r, file) : SE3D_OK;
+}
+
 static se3d_status sample(runner *r, output_file *file, double time)
 {
     se3d_solver_stats stats;
     double *row = file->row;
+    if (file->entry->particles) {
+        return sample_particles(r, file);
+    }
     memset(&stats, 0, sizeof stats);
     se3d_solver_get_stats(r->solver, &stats);
     *row++ = time;
@@ -264,7 +293,8 @@ static se3d_status run_rows(runner *r, size_t index, const se3di_analysis_entry 
     double time = start;
     while (next_time(r, start, duration, &time) && !r->stopped) {
         time = merge_times(r, start, duration, time);
-        last = se3d_solver_run(r->solver, time);
+        last = r->model->grains ? se3di_grains_advance(r->model->grains, r->solver, time)
+                                : se3d_solver_run(r->solver, time);
         if (last < 0) {
             return fail_analysis(r, entry, last, time);
         }

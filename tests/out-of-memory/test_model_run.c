@@ -36,6 +36,13 @@ static const char *const texts[] = {
     "     outputs: [{body: b, direction: [0, 0, 1]}], frequencies: {from: 1, to: 2, count: 3}}\n"
     "output:\n"
     "  - {file: state.csv, channels: [a.position, pin.angle, energy.balance]}\n",
+    "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1e3}]\ncontact: {pairs: [{material_1: "
+    "m, "
+    "material_2: m, friction: 0.1}]}\nparticles: [{material: m, radius: 0.1, lower: [0, 0, 0], "
+    "upper: "
+    "[0.5, 0.5, 0.5]}]\nbodies: [{name: ground, shapes: [{type: plane, material: m}]}]\n"
+    "analysis: {type: dynamics, duration: 0.01}\noutput: [{file: s.csv, every: 0.01, channels: "
+    "[contacts.count]}, {file: g.csv, every: 0.01, particles: true}]\n",
 };
 
 typedef struct attempt {

@@ -12,6 +12,10 @@
 #define BODY(x) "se3d: 1\nbodies:\n  - {name: bar, " x "}\n"
 #define WITH(x) "se3d: 1\n" BAR PIN x "\n"
 
+#define GRAINS(x)                                                                                  \
+    "se3d: 1\nmaterials: [{name: glass, density: 2500, stiffness: 1e5}]\nparticles: [{" x "}]\n"
+#define GLASS GRAINS("material: glass, radius: 0.1, upper: [1, 1, 1]")
+
 typedef struct bad_input {
     const char *text;
     size_t line, column; /* 0: not checked */
@@ -40,7 +44,29 @@ static const bad_input table[] = {
     {"se3d: one\n", 1, 7, {"se3d: `one`"}},
     {"se3d: 1\nbodys: []\n", 2, 1, {"the key `bodys` is unknown", "did you mean `bodies`"}},
     {"se3d: 1\nzzz: 1\n", 2, 1, {"`zzz` is unknown", "allowed are", "gravity"}},
-    {"se3d: 1\ncontact: {}\n", 2, 10, {"contact: is not supported yet"}},
+    {"se3d: 1\ncontact: {}\n", 2, 10, {"contact: needs `particles`"}},
+    {GRAINS("material: sand, radius: 0.1"), 3, 24, {"particles[0].material: no material is named"}},
+    {GRAINS("radius: 0.1"), 3, 13, {"particles[0].material: is missing"}},
+    {GRAINS("material: glass, lower: [0, 0, 0]"), 3, 13, {"particles[0].radius: is missing"}},
+    {GRAINS("material: glass, radius: 0"), 3, 0, {"radius: is 0", "> 0"}},
+    {GRAINS("material: glass, radius: 1, upper: [9, 9, 9], count: 1.5"), 3, 0, {"whole number"}},
+    {GRAINS("material: glass, radius: 1, packing: dense"), 3, 0, {"lattice, random"}},
+    {GLASS "contact: {law: herz}\n", 4, 16, {"contact.law: is `herz`", "hertz_mindlin"}},
+    {GLASS "contact: {boundary: [open, sink]}\n", 4, 21, {"contact.boundary: must be a list of 3"}},
+    {GLASS "contact: {pairs: [{material_1: glass}]}\n", 4, 0, {"pairs[0].material_2: is missing"}},
+    {GLASS "contact: {law: hertz_mindlin}\n", 2, 0, {"materials[0]", "young"}},
+    {GLASS
+     "bodies: [{name: b, fixed: true, shapes: [{type: sphere, radius: 1, material: glass}]}]\n",
+     4,
+     0,
+     {"shapes[0].material", "not supported yet"}},
+    {GLASS "bodies: [{name: b, mass: 1, inertia: [1, 1, 1], shapes: [{type: plane, material: "
+           "glass}]}]\nanalysis: {type: dynamics, duration: 1}\n",
+     5,
+     18,
+     {"analysis.type: is `dynamics`", "must be kinematics"}},
+    {"se3d: 1\noutput: [{file: a.csv, particles: true}]\n", 2, 0, {"has no `particles`"}},
+    {"se3d: 1\noutput: [{file: a.csv, channels: [contacts.count]}]\n", 2, 0, {"is unknown"}},
     {"se3d: 1\ngravity: [0, 0]\n", 2, 10, {"gravity: has 2 entries", "list of 3 numbers"}},
     {"se3d: 1\ngravity: -9.81\n", 2, 10, {"gravity: is a single value", "list of 3 numbers"}},
     /* parameters and expressions */
