@@ -4,13 +4,16 @@
  * (Haug 1989, ch. 3, 11). docs/theory/kinematics.md */
 #include "analysis/run.h"
 
+#include "analysis/singular.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
 
 #define TURN_MAX     0.3 /* rad a body may turn in one step, so that the branch is kept */
 #define HALVINGS_MAX 6
-#define STEPS_MAX    2e4 /* of one run; a motion that asks for more runs into a locked position */
+#define NEAR         1e-8 /* probe: velocities are no longer exact */
+#define AT           1e-5 /* probe: they do not follow from the constraints */
+#define STEPS_MAX    2e4  /* of one run; a motion that asks for more runs into a locked position */
 
 /* Poses at t + h on the parabola of the present velocities and accelerations. */
 static void predict(se3di_equations *equations, double h)
@@ -28,14 +31,56 @@ static void predict(se3di_equations *equations, double h)
     }
 }
 
-se3d_status se3di_kinematics_step(se3di_equations *equations, double h)
+se3d_status se3di_kinematics_advance(se3di_equations *equations, double t)
+{
+    predict(equations, t - equations->assembly.model->time);
+    SE3DI_TRY(se3di_state_solve(equations, t));
+    equations->assembly.model->time = t;
+    return SE3D_OK;
+}
+
+/* The state at t by the motion on both sides; on failure that of before. */
+static se3d_status pass(se3di_equations *equations, double t)
 {
     se3di_model *model = equations->assembly.model;
-    double t = model->time + h;
-    predict(equations, h);
-    SE3DI_TRY(se3di_state_solve(equations, t));
-    model->time = t;
-    se3di_angles_accept(model);
+    double start = model->time;
+    se3di_state_restore(equations);
+    se3d_status status = se3di_singular_pass(equations, t);
+    if (status < 0) {
+        se3di_state_restore(equations);
+        model->time = start;
+    }
+    return status;
+}
+
+/* The state at t from the accepted one; where the constraints lose rank by another way. */
+static se3d_status reach(se3di_equations *equations, double t)
+{
+    se3di_model *model = equations->assembly.model;
+    double start = model->time;
+    double off = 0.0;
+    uint32_t body;
+    se3d_status status = se3di_kinematics_advance(equations, t);
+    if (status >= 0) {
+        status = se3di_equations_probe(equations, &off, &body);
+    }
+    if (status == SE3D_ERR_CALLBACK || (status >= 0 && off <= NEAR)) {
+        return status;
+    }
+    se3di_error reason = *equations->error;
+    model->time = start;
+    se3d_status passed = pass(equations, t);
+    if (passed >= 0 || off > AT) {
+        return passed;
+    }
+    *equations->error = reason;
+    return status < 0 ? status : se3di_kinematics_advance(equations, t);
+}
+
+se3d_status se3di_kinematics_step(se3di_equations *equations, double h)
+{
+    SE3DI_TRY(reach(equations, equations->assembly.model->time + h));
+    se3di_angles_accept(equations->assembly.model);
     ++equations->counters.steps;
     return SE3D_OK;
 }
@@ -74,7 +119,7 @@ se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, doubl
                 h = t_end - model->time;
             }
             status = se3di_kinematics_step(equations, h);
-            if (status >= 0 || status == SE3D_ERR_CALLBACK) {
+            if (status >= 0 || status == SE3D_ERR_CALLBACK || status == SE3D_ERR_SINGULAR) {
                 break;
             }
             ++equations->counters.rejected;

@@ -106,13 +106,15 @@ static se3d_status settle(se3di_run *run, double t)
     se3di_equations *equations = &run->equations;
     se3di_state_accept(equations);
     equations->hold = run->analysis == SE3D_ANALYSIS_ASSEMBLY;
-    se3d_status status = se3di_state_solve(equations, t);
-    if (status >= 0 && !run->determined &&
-        (run->analysis == SE3D_ANALYSIS_KINEMATICS ||
-         run->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS)) {
-        status = se3di_equations_check_determined(equations);
+    int driven = run->analysis == SE3D_ANALYSIS_KINEMATICS ||
+                 run->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS;
+    se3d_status status = SE3D_OK;
+    if (driven && !run->determined) { /* before levels that may have no solution there */
+        status = se3di_position_solve(equations, t);
+        status = status < 0 ? status : se3di_equations_check_determined(equations);
         run->determined = status >= 0;
     }
+    status = status < 0 ? status : se3di_state_solve(equations, t);
     if (status < 0) {
         se3di_state_restore(equations);
         return status;

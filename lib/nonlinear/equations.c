@@ -350,12 +350,13 @@ static void make_tangent(const se3di_equations *equations, double *qdot)
 }
 
 /* Any velocity y is recovered from C x = C y where the constraints leave no freedom. */
-se3d_status se3di_equations_check_determined(se3di_equations *equations)
+se3d_status se3di_equations_probe(se3di_equations *equations, double *worst, uint32_t *body)
 {
     const se3di_assembly *assembly = &equations->assembly;
     size_t n = (size_t)assembly->formulation->block;
     uint64_t seed = 88172645463325252u;
-    SE3DI_TRY(se3di_equations_factor(equations));
+    *worst = 0.0;
+    *body = 0;
     for (size_t k = 0; k < assembly->unknown_count; ++k) {
         seed ^= seed << 13;
         seed ^= seed >> 7;
@@ -368,15 +369,29 @@ se3d_status se3di_equations_check_determined(se3di_equations *equations)
     memcpy(equations->probe, equations->x, assembly->unknown_count * sizeof *equations->x);
     SE3DI_TRY(se3di_equations_solve(equations));
     for (size_t k = 0; k < assembly->unknown_count; ++k) {
-        if (k % n < 7 && fabs(equations->x[k] - equations->probe[k]) > 1e-5) {
-            uint32_t body = assembly->free_body[k / n];
-            const char *name = assembly->model->bodies[body].name;
-            return se3di_error_set(
-                equations->error, SE3D_ERR_SINGULAR,
-                "the drivers and constraints do not determine the motion: body %s can still move; "
-                "add a driver for every degree of freedom, or use the dynamics analysis",
-                name ? name : "without a name");
+        double off = k % n < 7 ? fabs(equations->x[k] - equations->probe[k]) : 0.0;
+        if (!(off <= *worst)) {
+            *worst = off;
+            *body = assembly->free_body[k / n];
         }
     }
     return SE3D_OK;
+}
+
+se3d_status se3di_equations_check_determined(se3di_equations *equations)
+{
+    double worst;
+    uint32_t body;
+    SE3DI_TRY(se3di_equations_factor(equations));
+    SE3DI_TRY(se3di_equations_probe(equations, &worst, &body));
+    if (worst <= 1e-5) {
+        return SE3D_OK;
+    }
+    const char *name = equations->assembly.model->bodies[body].name;
+    return se3di_error_set(
+        equations->error, SE3D_ERR_SINGULAR,
+        "the drivers and constraints do not determine the motion: body %s can still move; add a "
+        "driver for every degree of freedom, start away from a singular position, or use the "
+        "dynamics analysis",
+        name ? name : "without a name");
 }

@@ -76,6 +76,10 @@ static inline int se3di_equations_holds(const se3di_equations *equations, uint32
 /* All three. */
 se3d_status se3di_state_solve(se3di_equations *equations, double t);
 
+/* How far the constraints with the present factorisation are from telling all velocities apart: 0
+ * to rounding where they do; *body (dense) is the one that can move most. */
+se3d_status se3di_equations_probe(se3di_equations *equations, double *worst, uint32_t *body);
+
 /* Fails with SINGULAR where the constraints leave a freedom (motion not determined by the drivers).
  */
 se3d_status se3di_equations_check_determined(se3di_equations *equations);
