@@ -349,7 +349,7 @@ void se3di_constraint_wrench(const se3di_model *model, const se3di_constraint *c
         double row[7];
         double lambda = model->lambda[constraint->row_begin + r];
         if (equation_jacobian(model, constraint, r, SE3D_FORMULATION_ROMEGA, body, row) < 0) {
-            row[0] = row[3] = NAN; /* the caller reports NOT_FINITE */
+            row[0] = row[3] = (double)NAN; /* the caller reports NOT_FINITE */
         }
         se3di_add_scaled(-lambda, row, force);
         se3di_add_scaled(-lambda, row + 3, moment);

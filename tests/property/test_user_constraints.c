@@ -77,7 +77,7 @@ static se3d_status distance_eval(void *ctx, double t, const se3d_body_motion *bo
         }
     }
     if (phi) {
-        phi[0] = c->wrong_number ? NAN : dot(d, d) - f * f;
+        phi[0] = c->wrong_number ? (double)NAN : dot(d, d) - f * f;
     }
     if (nu) {
         nu[0] = 2.0 * f * f1;
