@@ -194,8 +194,10 @@ static void count_constraint_users(se3di_model *model, const se3di_constraint *c
 /* Angle terms of the joint's own rows (a screw) refer to the turn counter that is being made. */
 static void place_terms(se3di_model *model, const se3di_draft *draft, int32_t own_angle)
 {
-    memcpy(model->terms + model->term_count, draft->terms,
-           draft->term_count * sizeof *draft->terms);
+    if (draft->term_count > 0) { /* a callback's rows have none */
+        memcpy(model->terms + model->term_count, draft->terms,
+               draft->term_count * sizeof *draft->terms);
+    }
     for (uint32_t k = 0; k < draft->term_count; ++k) {
         se3di_term *term = &model->terms[model->term_count + k];
         if (draft->has_angle && term->type == SE3DI_PRIMITIVE_ANGLE && term->angle < 0) {

@@ -350,10 +350,9 @@ static se3d_status measure_user(const se3di_model *model, const se3di_constraint
                                 double violation[3])
 {
     se3di_user_values values;
-    SE3DI_TRY(se3di_user_eval(model, constraint, model->time,
-                              SE3DI_USER_PHI | SE3DI_USER_JACOBIAN | SE3DI_USER_NU |
-                                  SE3DI_USER_GAMMA,
-                              &values));
+    SE3DI_TRY(se3di_user_eval(
+        model, constraint, model->time,
+        SE3DI_USER_PHI | SE3DI_USER_JACOBIAN | SE3DI_USER_NU | SE3DI_USER_GAMMA, &values));
     for (uint32_t r = 0; r < constraint->row_count; ++r) {
         double gap[3] = {values.phi[r], -values.nu[r], -values.gamma[r]};
         for (uint32_t k = 0; k < se3di_user_body_count(constraint); ++k) {

@@ -30,7 +30,7 @@ static se3d_status find_bodies(se3d_system *system, const se3d_user_constraint_d
                                uint32_t bodies[SE3D_USER_BODIES_MAX])
 {
     for (int32_t k = 0; k < def->body_count; ++k) {
-        char what[16];
+        char what[24];
         snprintf(what, sizeof what, "bodies[%d]", (int)k);
         SE3DI_TRY(se3di_find_body(system, what, def->bodies[k], &bodies[k]));
         for (int32_t other = 0; other < k; ++other) {
