@@ -26,7 +26,7 @@ static se3d_status build(se3d_system *system, se3d_particles **particles)
     }
     se3d_material_def stuff = se3d_material_def_default();
     stuff.density = 1100.0;
-    stuff.young = 2e7; /* rubber */
+    stuff.young = 4e8; /* hard rubber: its own weight hardly matters in a bounce */
     stuff.poisson = 0.45;
     stuff.restitution = RESTITUTION;
     se3d_material rubber;

@@ -13,11 +13,11 @@ typedef struct se3di_run {
     se3di_integration integration; /* dynamics */
     se3di_equations equations;
     size_t work_count;
-    int32_t prepared;       /* the equations fit the model */
-    int32_t determined;     /* kinematics: the drivers determine the motion (checked once) */
-    int32_t automatic;      /* the method is chosen from what the model holds */
+    int32_t prepared;   /* the equations fit the model */
+    int32_t determined; /* kinematics: the drivers determine the motion (checked once) */
+    int32_t automatic;  /* the method is chosen from what the model holds */
     int32_t reserved;
-    uint64_t tag;           /* marks the history of this method and formulation */
+    uint64_t tag; /* marks the history of this method and formulation */
 } se3di_run;
 
 /* Set up for an analysis; allocates nothing yet. */

@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* Beyond this many automatic steps a contact is not resolved and may gain energy. */
-#define STEP_LIMIT  15.0
+#define STEP_LIMIT  30.0
 #define THREADS_MAX 1024
 
 void se3d_particles_def_init(se3d_particles_def *def, size_t size)

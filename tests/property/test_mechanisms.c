@@ -82,7 +82,11 @@ static void check_same_reactions(const support_model *a, const support_model *b,
         CHECK(!se3d_constraint_get_reaction(a->system, a->joints[k], force[0], torque[0]));
         CHECK(!se3d_constraint_get_reaction(b->system, b->joints[k], force[1], torque[1]));
         check_same(force[0], force[1], tolerance);
-        check_same(torque[0], torque[1], tolerance);
+        /* a torque is the moment of forces on arms of about 1 m, and as accurate as they are */
+        for (int c = 0; c < 3; ++c) {
+            double scale = fmax(scale_of(force[1]), scale_of(torque[1]));
+            CHECK_NEAR(torque[0][c], torque[1][c], tolerance * scale);
+        }
     }
 }
 
