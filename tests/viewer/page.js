@@ -74,7 +74,13 @@ const key = (name) => call("Input.dispatchKeyEvent", { type: "keyDown", key: nam
   check(problems.length === 0, "no error on the console: " + problems.join("; "));
 })().catch((e) => { console.error(e); ++failures; }).finally(() => {
   chromium.kill();
-  chromium.on("exit", () => { fs.rmSync(profile, { recursive: true, force: true, maxRetries: 5, retryDelay: 200 });
-    console.log(`${checks} checks, ${failures} failed`); process.exit(failures ? 1 : 0); });
+  chromium.on("exit", () => {
+    try { // its children may still write there for a moment
+      fs.rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 200 });
+    } catch (e) {
+      console.log(`left behind: ${profile} (${e.code})`);
+    }
+    console.log(`${checks} checks, ${failures} failed`); process.exit(failures ? 1 : 0);
+  });
 });
 setTimeout(() => { console.error("no answer from Chromium"); chromium.kill(); process.exit(1); }, 120000).unref();
