@@ -10,8 +10,9 @@
 #include <string.h>
 
 /* Beyond this many automatic steps a contact is not resolved and may gain energy. */
-#define STEP_LIMIT  30.0
-#define THREADS_MAX 1024
+#define STEP_LIMIT_HOOKE 15.0
+#define STEP_LIMIT_HERTZ 30.0
+#define THREADS_MAX      1024
 
 void se3d_particles_def_init(se3d_particles_def *def, size_t size)
 {
@@ -416,11 +417,13 @@ static double step_of(const se3d_particles *particles)
 static se3d_status check_step(se3d_particles *particles, double h)
 {
     double safe = se3di_particles_safe_step(&particles->set);
-    if (h > STEP_LIMIT * safe) {
+    int is_hooke = particles->set.law == SE3DI_LAW_HOOKE;
+    double limit = safe * (is_hooke ? STEP_LIMIT_HOOKE : STEP_LIMIT_HERTZ);
+    if (h > limit) {
         return SE3DI_FAIL(particles->system, SE3D_ERR_STEP_SIZE,
                           "step = %g s at time %g s is too large, the contacts need at most %g s "
                           "(automatic: %g s)",
-                          h, particles->set.time, STEP_LIMIT * safe, safe);
+                          h, particles->set.time, limit, safe);
     }
     return SE3D_OK;
 }
