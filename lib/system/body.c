@@ -11,10 +11,7 @@
 void se3d_body_def_init(se3d_body_def *def, size_t size)
 {
     se3d_body_def defaults = {.struct_size = size, .orientation = {1.0, 0.0, 0.0, 0.0}};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 static se3d_status check_mass(se3d_system *system, double mass, const double inertia[6])

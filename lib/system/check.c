@@ -6,6 +6,14 @@
 #include <math.h>
 #include <string.h>
 
+void se3di_def_init(void *def, size_t size, const void *defaults, size_t full)
+{
+    if (def && size >= sizeof size) {
+        memset(def, 0, size);
+        memcpy(def, defaults, size < full ? size : full);
+    }
+}
+
 se3d_status se3di_check_finite(se3d_system *system, const char *what, double value)
 {
     if (isfinite(value)) {

@@ -5,14 +5,6 @@
 
 #include <string.h>
 
-void se3di_def_init(void *def, size_t size, const void *defaults, size_t full)
-{
-    if (def) {
-        memset(def, 0, size);
-        memcpy(def, defaults, size < full ? size : full);
-    }
-}
-
 int se3di_coordinate_term(const se3di_model *model, uint32_t joint, int32_t coordinate,
                           se3di_term *term)
 {

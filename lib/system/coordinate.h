@@ -6,9 +6,6 @@
 
 #include "system/system_internal.h"
 
-/* Write the first `size` bytes of `defaults` to `def` (zeros beyond `full`); def may be NULL. */
-void se3di_def_init(void *def, size_t size, const void *defaults, size_t full);
-
 /* The term of a joint coordinate (se3d_coordinate), coefficient 1, angles with their turn counter.
  * Returns 0 where the constraint has no such coordinate. */
 int se3di_coordinate_term(const se3di_model *model, uint32_t joint, int32_t coordinate,

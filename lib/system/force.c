@@ -11,28 +11,19 @@
 void se3d_tsda_def_init(se3d_tsda_def *def, size_t size)
 {
     se3d_tsda_def defaults = {.struct_size = size};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 void se3d_rsda_def_init(se3d_rsda_def *def, size_t size)
 {
     se3d_rsda_def defaults = {.struct_size = size};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 void se3d_load_def_init(se3d_load_def *def, size_t size)
 {
     se3d_load_def defaults = {.struct_size = size};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 /* What every creation starts with. */

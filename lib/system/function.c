@@ -10,10 +10,7 @@
 void se3d_function_def_init(se3d_function_def *def, size_t size)
 {
     se3d_function_def defaults = {.struct_size = size, .variable_count = 1};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 static se3d_status check_kind(se3d_system *system, const se3d_function_def *def)

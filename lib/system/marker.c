@@ -9,10 +9,7 @@
 void se3d_marker_def_init(se3d_marker_def *def, size_t size)
 {
     se3d_marker_def defaults = {.struct_size = size, .orientation = {1.0, 0.0, 0.0, 0.0}};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 se3d_status se3d_marker_create(se3d_system *system, const se3d_marker_def *def, se3d_marker *marker)

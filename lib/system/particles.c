@@ -18,10 +18,7 @@ void se3d_particles_def_init(se3d_particles_def *def, size_t size)
 {
     se3d_particles_def defaults = {
         .struct_size = size, .threads = 1, .skin = 0.1, .overlap_limit = 0.2};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 se3d_status se3di_check_range(se3d_particles *particles, const char *what, double value, double low,

@@ -11,10 +11,7 @@
 void se3d_fill_def_init(se3d_fill_def *def, size_t size)
 {
     se3d_fill_def defaults = {.struct_size = size};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 /* splitmix64: uniform in [0, 1). */

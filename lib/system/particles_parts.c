@@ -15,29 +15,20 @@ void se3d_material_def_init(se3d_material_def *def, size_t size)
                                   .restitution = 0.5,
                                   .tangential_ratio = 2.0 / 7.0,
                                   .poisson = 0.3};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 void se3d_material_pair_def_init(se3d_material_pair_def *def, size_t size)
 {
     se3d_material_pair_def defaults = {size, -1.0, -1.0, -1.0, -1.0, -1.0};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 void se3d_wall_def_init(se3d_wall_def *def, size_t size)
 {
     se3d_wall_def defaults = {
         .struct_size = size, .normal = {0.0, 0.0, 1.0}, .orientation = {1.0, 0.0, 0.0, 0.0}};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 se3d_status se3di_find_material(se3d_particles *particles, const char *what, se3d_material material,

@@ -19,10 +19,7 @@ void se3d_solver_def_init(se3d_solver_def *def, size_t size)
         .spectral_radius = 0.9,
         .alpha = -0.1,
     };
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 static se3d_status check_numbers(se3d_system *system, const se3d_solver_def *def)

@@ -15,10 +15,7 @@
 void se3d_system_def_init(se3d_system_def *def, size_t size)
 {
     se3d_system_def defaults = {.struct_size = size, .gravity = {0.0, 0.0, -9.81}};
-    if (def && size >= sizeof size) {
-        memset(def, 0, size);
-        memcpy(def, &defaults, size < sizeof defaults ? size : sizeof defaults);
-    }
+    se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
 /* Different for systems that live at the same time, so that handles of another system are detected.

@@ -35,6 +35,10 @@ se3d_status se3di_check_pointer(se3d_system *system, const char *what, const voi
 se3d_status se3di_check_def(se3d_system *system, const char *what, const void *def, void *copy,
                             size_t full_size);
 
+/* What every public _def_init does: the first `size` bytes of `defaults` (of `full` bytes), zeros
+ * beyond them. Nothing happens where def is NULL or too small for its struct_size. */
+void se3di_def_init(void *def, size_t size, const void *defaults, size_t full);
+
 /* Dense index of a handle; fails with STALE_HANDLE and a message. */
 se3d_status se3di_find_body(se3d_system *system, const char *what, se3d_body body, uint32_t *index);
 se3d_status se3di_find_marker(se3d_system *system, const char *what, se3d_marker marker,
