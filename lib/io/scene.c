@@ -512,7 +512,12 @@ static void draw(drawing *d)
     se3di_glb_put(&d->glb, &d->nodes, ",\"children\":[");
     se3di_glb_put_bytes(&d->glb, &d->nodes, roots.data, roots.count);
     se3di_glb_put(&d->glb, &d->nodes, "]}");
-    se3di_glb_put(&d->glb, &d->rest, ",\"scene\":0,\"scenes\":[{\"nodes\":[%zu]}],\"nodes\":[",
+    const char *title = scene->model->title;
+    se3di_glb_put(&d->glb, &d->rest, ",\"scene\":0,\"scenes\":[{\"name\":");
+    se3di_glb_put_text(&d->glb, &d->rest, title[0] ? title : scene->model->name);
+    se3di_glb_put(&d->glb, &d->rest,
+                  ",\"extras\":{\"units\":{\"length\":\"m\",\"time\":\"s\"}},\"nodes\":[%zu]}],"
+                  "\"nodes\":[",
                   node);
     se3di_glb_put_bytes(&d->glb, &d->rest, d->nodes.data, d->nodes.count);
     se3di_glb_put(&d->glb, &d->rest, "]");

@@ -13,6 +13,7 @@ static const char help[] =
     "  se3d evaluate MODEL   print Phi, nu, gamma and the Jacobian of every constraint\n"
     "  se3d plot FILE.csv    draw results as SVG and PNG\n"
     "  se3d view DIR         make one HTML file that shows results in 3-D\n"
+    "  se3d video DIR        make an MP4 film of results in 3-D\n"
     "  se3d --version        print the version\n"
     "\n"
     "`se3d COMMAND --help` says more. The model file: docs/model-file/reference.md.\n"
@@ -27,7 +28,8 @@ static const command commands[] = {{"run", command_run},
                                    {"check", command_check},
                                    {"evaluate", command_evaluate},
                                    {"plot", command_plot},
-                                   {"view", command_view}};
+                                   {"view", command_view},
+                                   {"video", command_video}};
 
 static int dispatch(int count, char *const *words)
 {

@@ -48,7 +48,8 @@ static const char **value_target(options *o, const char *name)
     } table[] = {{"-o", &o->directory},        {"--output", &o->directory},
                  {"--analysis", &o->analysis}, {"--formulation", &o->formulation},
                  {"--method", &o->method},     {"--step", &o->step},
-                 {"--duration", &o->duration}, {"--time", &o->time}};
+                 {"--duration", &o->duration}, {"--time", &o->time},
+                 {"--speed", &o->speed}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;

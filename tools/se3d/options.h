@@ -17,6 +17,7 @@ typedef struct options {
     const char *step;
     const char *duration;
     const char *time;
+    const char *speed;
     se3d_model_setting settings[SETTINGS_MAX];
     char names[SETTINGS_MAX][64];
     size_t setting_count;
@@ -46,6 +47,7 @@ int command_check(int count, char *const *words);
 int command_evaluate(int count, char *const *words);
 int command_plot(int count, char *const *words);
 int command_view(int count, char *const *words);
+int command_video(int count, char *const *words);
 
 /* Write a text as a JSON string, a number as JSON (null where it is not finite). */
 void json_put_text(const char *text);

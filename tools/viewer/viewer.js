@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The viewer: reads the embedded glTF (as libse3d-io writes it) and results; z is upwards inside.
 "use strict";
+addEventListener("error", (e) => { window.se3dProblem = String(e.message).replace(/["\\]/g, "'"); });
 (() => {
   const $ = (id) => document.getElementById(id);
   const decode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
@@ -50,6 +51,7 @@
     return o;
   });
   gltf.nodes.forEach((n, k) => (n.children || []).forEach((c) => nodes[k].add(nodes[c])));
+  document.title = $("title").textContent = gltf.scenes[0].name || "se3d";
   const root = nodes[gltf.scenes[0].nodes[0]];
   root.quaternion.set(0, 0, 0, 1); // our z is this camera's up
   const bodies = gltf.nodes.map((n, k) => (n.extras && n.extras.body !== undefined ? nodes[k] : null)).filter(Boolean);
@@ -96,6 +98,7 @@
   const camera = new THREE.PerspectiveCamera(40, 1, 0.001, 1000);
   camera.up.set(0, 0, 1);
   const renderer = new THREE.WebGLRenderer({ canvas: $("view"), antialias: true, preserveDrawingBuffer: true });
+  renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
 
   // What the camera looks at: the box around the bodies at a few times.
   const low = new THREE.Vector3(1, 1, 1).multiplyScalar(1e9), high = low.clone().negate();
@@ -147,8 +150,9 @@
     });
   };
 
+  let film = null; // width and height of the pictures of a film
   const draw = () => {
-    const width = innerWidth, height = innerHeight;
+    const [width, height] = film || [innerWidth, innerHeight];
     if (renderer.domElement.width !== Math.round(width * renderer.getPixelRatio()) || camera.aspect !== width / height) {
       renderer.setSize(width, height, false); camera.aspect = width / height; camera.updateProjectionMatrix();
     }
@@ -257,7 +261,7 @@
   view.onwheel = (e) => { orbit.distance *= Math.exp(0.001 * e.deltaY); e.preventDefault(); };
 
   set({ dark: matchMedia("(prefers-color-scheme: dark)").matches });
-  let before = performance.now(), film = false;
+  let before = performance.now();
   const frame = (now) => {
     const passed = Math.min(0.25, (now - before) / 1000);
     before = now;
@@ -273,8 +277,23 @@
   window.se3d = {
     state, start, end, orbit, set,
     show: (t) => { set({ time: t, playing: false }); draw(); },
-    film: () => { film = true; document.body.classList.add("film"); set({ playing: false, dark: false }); },
-    picture: (t) => { set({ time: t }); draw(); return renderer.domElement.toDataURL("image/jpeg", 0.95); },
+    // Pictures of this size from now on; begin and end of the motion.
+    film: (width, height) => {
+      film = [width, height]; renderer.setPixelRatio(1);
+      set({ playing: false, dark: false });
+      return `${start} ${end}`;
+    },
+    // What is seen at a time: the scene, title, clock and plot.
+    picture: (t) => {
+      set({ time: t, playing: false }); draw();
+      const sheet = document.createElement("canvas"), w = sheet.width = renderer.domElement.width, h = sheet.height = renderer.domElement.height;
+      const brush = sheet.getContext("2d"), style = getComputedStyle(document.body);
+      brush.drawImage(renderer.domElement, 0, 0);
+      brush.fillStyle = style.color; brush.font = "bold 18px sans-serif"; brush.fillText($("title").textContent, 16, 30);
+      brush.font = "18px sans-serif"; brush.fillText($("clock").textContent, 16, h - 18);
+      if (n > 1) { brush.fillStyle = style.getPropertyValue("--panel"); brush.fillRect(w - 388, 8, 380, 190); brush.drawImage(canvas, w - 388, 8, 380, 190); }
+      return sheet.toDataURL("image/jpeg", 0.93);
+    },
     position: (name) => bodies.find((b) => b.name === name).position.toArray(),
   };
 })();

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# se3d video: messages, and films that ffprobe and the pixels approve of, where the tools are there.
+set -u
+program=${SE3D_PROGRAM:?the path of the se3d program}
+source=${SE3D_SOURCE_DIR:-.}
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+mkdir "$dir/tmp"
+export SE3D_VIEWER="$source/tools/viewer" SE3D_CACHE="${SE3D_BUILD_DIR:-$dir}/viewer" TMPDIR="$dir/tmp"
+failures=0
+checks=0
+expect() {
+    name=$1
+    code=$2
+    shift 2
+    "$@" >"$dir/out" 2>"$dir/err"
+    actual=$?
+    holds "exit code $actual, expected $code: $(head -3 "$dir/err")" [ $actual -eq "$code" ]
+}
+holds() {
+    text=$1
+    shift
+    checks=$((checks + 1))
+    "$@" || { echo "$name: $text" >&2; failures=$((failures + 1)); }
+}
+says() {
+    holds "\`$1\` not in $(cat "$dir/err")" grep -qF -e "$1" "$dir/err"
+}
+nothing_left() {
+    holds 'an unfinished film is left' [ ! -e "$1" -a ! -e "$1.partial" ]
+    holds "left in the temporary folder: $(ls "$dir/tmp")" [ -z "$(ls "$dir/tmp")" ]
+}
+expect 'help' 0 "$program" video --help
+expect 'no folder' 2 "$program" video
+expect 'a speed of 0' 2 "$program" video "$dir" --speed 0
+says 'the speed is `0`, must be a number > 0'
+expect 'a speed in words' 2 "$program" video "$dir" --speed 2x
+mkdir "$dir/bin"
+printf '#!/bin/sh\nexit 3\n' >"$dir/bin/chromium"
+chmod +x "$dir/bin/chromium"
+expect 'no Chromium' 1 env PATH="$dir/none" SE3D_CHROMIUM= "$program" video "$dir"
+says 'apt-get install --no-install-recommends chromium'
+expect 'no ffmpeg' 1 env PATH="$dir/bin" SE3D_CHROMIUM= "$program" video "$dir"
+says 'apt-get install --no-install-recommends ffmpeg'
+finish() {
+    echo "$checks checks, $failures failed"
+    [ $failures -eq 0 ]
+    exit
+}
+for tool in chromium ffmpeg ffprobe python3; do
+    command -v $tool >/dev/null 2>&1 || { echo "SKIPPED: no $tool: no film was made" >&2; finish; }
+done
+if ! command -v npm >/dev/null 2>&1 && [ ! -f /usr/share/javascript/three/three.min.js ]; then
+    echo 'SKIPPED: neither npm nor libjs-three: no film was made' >&2
+    finish
+fi
+expect 'no scene' 1 "$program" video "$dir"
+says 'scene.glb: cannot be read'
+nothing_left "$dir/motion.mp4"
+# From its largest deflection on one side (t = 0) to the other (t = pi / 2) and back.
+"$program" run -q "$source/examples/models/pendulum.yaml" --duration pi -o "$dir/run"
+film=$dir/run/motion.mp4
+expect 'a film' 0 "$program" video "$dir/run"
+holds "no word of it in $(cat "$dir/out")" grep -qF "wrote $film: 94 pictures" "$dir/out"
+ffprobe -v error -count_frames -of default=nw=1 -show_entries \
+    stream=codec_name,width,height,pix_fmt,r_frame_rate,nb_read_frames,duration "$film" >"$dir/probe"
+for wanted in codec_name=h264 width=1280 height=720 pix_fmt=yuv420p r_frame_rate=30/1 nb_read_frames=94 duration=3.133; do
+    holds "no $wanted in $(cat "$dir/probe")" grep -q "^$wanted" "$dir/probe"
+done
+for frame in 0 47; do
+    ffmpeg -v error -i "$film" -vf "select=eq(n\\,$frame)" -frames:v 1 -f rawvideo -pix_fmt rgb24 "$dir/frame$frame"
+done
+cat >"$dir/look.py" <<'END_OF_PYTHON'
+# Where the bar is: coloured pixels, in a picture of greys, away from the plot.
+import sys
+centers = []
+for frame in ("0", "47"):
+    data = open(sys.argv[1] + "/frame" + frame, "rb").read()
+    assert len(data) == 1280 * 720 * 3
+    xs, ys = [], []
+    for y in range(60, 680):
+        row = data[y * 3840:y * 3840 + 3840]
+        for x in range(1280):
+            r, b = row[3 * x], row[3 * x + 2]
+            if b - r > 40 and not (x > 880 and y < 205):
+                xs.append(x)
+                ys.append(y)
+    assert len(xs) > 600, ("the bar is not seen", frame, len(xs))
+    assert max(ys) - min(ys) > 150, ("the bar is too short", min(ys), max(ys))
+    centers.append(sum(xs) / len(xs))
+# It hangs from the middle of the picture.
+assert centers[0] > 640 + 30 and centers[1] < 640 - 30 or centers[0] < 640 - 30 and centers[1] > 640 + 30, centers
+END_OF_PYTHON
+name='the pictures'
+holds 'do not show the bar on its two sides' python3 "$dir/look.py" "$dir"
+nothing_left "$dir/none.mp4"
+expect 'four times as fast' 0 "$program" video "$dir/run" -q --speed 4 -o "$dir/fast.mp4"
+holds 'quiet, but it speaks' [ ! -s "$dir/out" ]
+holds 'not 24 pictures' [ "$(ffprobe -v error -count_frames -of csv=p=0 -show_entries stream=nb_read_frames "$dir/fast.mp4")" = 24 ]
+expect 'too long' 1 "$program" video "$dir/run" --speed 1e-6 -o "$dir/long.mp4"
+says 'more than an hour'
+nothing_left "$dir/long.mp4"
+expect 'a folder that is not there' 1 "$program" video "$dir/run" -o "$dir/none/film.mp4"
+says 'cannot be written: No such file'
+expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 100; exec "$@"' sh "$program" video "$dir/run" -o "$dir/full.mp4"
+nothing_left "$dir/full.mp4"
+expect 'a Chromium that ends at once' 1 env SE3D_CHROMIUM="$dir/bin/chromium" "$program" video "$dir/run" -o "$dir/dead.mp4"
+says 'Chromium does not answer'
+nothing_left "$dir/dead.mp4"
+mkdir "$dir/viewer"
+cp "$source"/tools/viewer/* "$dir/viewer"
+echo 'throw new Error("broken on purpose");' >>"$dir/viewer/viewer.js"
+sed -i 's/window.se3d = {/window.other = {/' "$dir/viewer/viewer.js"
+expect 'a page with a problem' 1 env SE3D_VIEWER="$dir/viewer" "$program" video "$dir/run" -o "$dir/broken.mp4"
+says 'broken on purpose'
+nothing_left "$dir/broken.mp4"
+name='an interrupt'
+"$program" video "$dir/run" --speed 0.05 -o "$dir/stopped.mp4" 2>"$dir/err" &
+sleep 3
+kill -TERM $!
+wait $!
+holds 'exit code of an interrupt' [ $? -eq 1 ]
+says 'interrupted'
+nothing_left "$dir/stopped.mp4"
+finish

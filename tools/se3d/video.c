@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* se3d video DIR: the page of `se3d view`, picture by picture, from headless Chromium into ffmpeg.
+ */
+#include <errno.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "devtools.h"
+#include "options.h"
+#include "process.h"
+#include "view.h"
+
+enum { RATE = 30, FRAMES_MAX = 60 * 60 * RATE, PATH_SIZE = 4096, START_SECONDS = 60 };
+
+static const char help[] =
+    "se3d video DIR [-o FILE.mp4] [--speed S]\n"
+    "\n"
+    "Makes a film (default DIR/motion.mp4; 1280 x 720, 30 pictures a second, H.264) of the "
+    "results\n"
+    "in DIR, as `se3d run` left them: what `se3d view` shows. It needs chromium and ffmpeg.\n"
+    "\n"
+    "  -o FILE.mp4   where to (default: DIR/motion.mp4)\n"
+    "  --speed S     seconds of motion in a second of film (default 1: real time)\n"
+    "  --quiet       print nothing but errors, show no progress\n";
+
+typedef struct film {
+    const char *path;
+    char partial[PATH_SIZE + 64];
+    char folder[PATH_SIZE]; /* temporary: the page, Chromium's profile */
+    char page[PATH_SIZE + 64];
+    double start, end; /* of the motion [s] */
+    double speed;
+    size_t count; /* of pictures */
+    devtools browser;
+    child encoder;
+} film;
+
+static int fail(const char *text, const char *detail)
+{
+    if (!child_was_interrupted()) {
+        fprintf(stderr, "se3d video: %s%s\n", text, detail);
+    }
+    return 0;
+}
+
+/* Wait until the page is there; learn when its motion begins and ends. */
+static int meet_page(film *f)
+{
+    for (int k = 0; k < 10 * START_SECONDS && !child_was_interrupted(); ++k) {
+        const char *text = devtools_evaluate(
+            &f->browser, "window.se3d ? se3d.film(1280, 720) : 'no ' + (window.se3dProblem || '')");
+        if (!text) {
+            return fail("Chromium does not answer", "");
+        }
+        if (strncmp(text, "no", 2) != 0) {
+            char *rest = NULL;
+            f->start = strtod(text, &rest);
+            f->end = strtod(rest, NULL);
+            return 1;
+        }
+        if (text[2] == ' ' && text[3]) {
+            return fail("the page has a problem: ", text + 3);
+        }
+        child_pause(100);
+    }
+    return fail("the page does not start in Chromium", "");
+}
+
+/* Real time over speed; a motion that lasts no time is shown for a second. */
+static int plan(film *f)
+{
+    const double frames = f->end > f->start ? round((f->end - f->start) / f->speed * RATE) : RATE;
+    if (!(frames <= FRAMES_MAX)) {
+        fprintf(stderr,
+                "se3d video: %g s of motion at speed %g make a film of more than an hour; choose a "
+                "larger --speed\n",
+                f->end - f->start, f->speed);
+        return 0;
+    }
+    f->count = frames >= 1.0 ? (size_t)frames : 1;
+    return 1;
+}
+
+static int start_encoder(film *f)
+{
+    const char *const words[] = {"ffmpeg",   "-v",         "error",      "-y",
+                                 "-f",       "image2pipe", "-framerate", "30",
+                                 "-c:v",     "mjpeg",      "-i",         "pipe:0",
+                                 "-c:v",     "libx264",    "-preset",    "veryfast",
+                                 "-crf",     "20",         "-vf",        "scale=out_range=tv",
+                                 "-pix_fmt", "yuv420p",    "-movflags",  "+faststart",
+                                 "-f",       "mp4",        f->partial,   NULL};
+    return child_start(&f->encoder, words, 0, -1, 0) ||
+           fail("ffmpeg cannot be started: ", strerror(errno));
+}
+
+static int digit(char c)
+{
+    return c >= 'A' && c <= 'Z'   ? c - 'A'
+           : c >= 'a' && c <= 'z' ? c - 'a' + 26
+           : c >= '0' && c <= '9' ? c - '0' + 52
+           : c == '+'             ? 62
+           : c == '/'             ? 63
+                                  : -1;
+}
+
+/* Decode base64 in place. @return bytes. */
+static size_t decode(char *text)
+{
+    unsigned char *out = (unsigned char *)text;
+    size_t used = 0;
+    uint32_t bits = 0;
+    int count = 0;
+    for (const char *c = text; digit(*c) >= 0; ++c) {
+        bits = bits << 6 | (uint32_t)digit(*c);
+        count += 6;
+        if (count >= 8) {
+            count -= 8;
+            out[used++] = (unsigned char)(bits >> count);
+        }
+    }
+    return used;
+}
+
+static int put_picture(film *f, size_t k)
+{
+    static const char head[] = "data:image/jpeg;base64,";
+    char expression[80];
+    const double time = f->start + (double)k * f->speed / RATE;
+    snprintf(expression, sizeof expression, "se3d.picture(%.9g)", time < f->end ? time : f->end);
+    char *text = devtools_evaluate(&f->browser, expression);
+    if (!text || strncmp(text, head, strlen(head)) != 0) {
+        return fail("Chromium gave no picture", "");
+    }
+    text += strlen(head);
+    return child_write(&f->encoder, text, decode(text)) ||
+           fail("ffmpeg has stopped, see above", "");
+}
+
+static int put_pictures(film *f, int quiet)
+{
+    progress bar;
+    int good = 1;
+    progress_begin(&bar, quiet, 1);
+    for (size_t k = 0; k < f->count && good; ++k) {
+        good = !child_was_interrupted() && put_picture(f, k);
+        progress_show(&bar, 0, f->start + (double)k * f->speed / RATE,
+                      (double)(k + 1) / (double)f->count);
+    }
+    progress_end(&bar);
+    return good;
+}
+
+/* Give the film its name, if it is whole. */
+static int finish(film *f, int good)
+{
+    const int code = f->encoder.id != 0 ? child_finish(&f->encoder, good ? 600 : 1) : 0;
+    if (good && code != 0) {
+        good = fail("ffmpeg failed, see above: ", f->path);
+    }
+    if (good && rename(f->partial, f->path) != 0) {
+        fprintf(stderr, "se3d video: %s: cannot be written: %s\n", f->path, strerror(errno));
+        good = 0;
+    }
+    if (!good) {
+        remove(f->partial);
+    }
+    return good;
+}
+
+/* The temporary name: tried out, so that the message comes before the work. */
+static int try_path(film *f)
+{
+    snprintf(f->partial, sizeof f->partial, "%.4000s.partial", f->path);
+    errno = 0;
+    FILE *file = fopen(f->partial, "wb");
+    if (!file) {
+        fprintf(stderr, "se3d video: %s: cannot be written: %s\n", f->path, strerror(errno));
+        return 0;
+    }
+    fclose(file);
+    return 1;
+}
+
+static int make_film(film *f, const char *chromium, const char *results, int quiet)
+{
+    if (!try_path(f)) {
+        return EXIT_FAILED;
+    }
+    if (!folder_make_temporary(f->folder, sizeof f->folder)) {
+        fprintf(stderr, "se3d video: no temporary folder: %s\n", strerror(errno));
+        remove(f->partial);
+        return EXIT_FAILED;
+    }
+    snprintf(f->page, sizeof f->page, "%s/page.html", f->folder);
+    child_watch_interrupts();
+    int good = view_write("video", results, f->page) == EXIT_DONE;
+    if (good) {
+        good = (devtools_open(&f->browser, chromium, f->folder, f->page) ||
+                fail("Chromium does not answer: ", chromium)) &&
+               meet_page(f) && plan(f) && start_encoder(f) && put_pictures(f, quiet);
+        devtools_close(&f->browser);
+    }
+    good = finish(f, good);
+    folder_remove(f->folder);
+    if (!good && child_was_interrupted()) {
+        fputs("se3d video: interrupted\n", stderr);
+    }
+    return good ? EXIT_DONE : EXIT_FAILED;
+}
+
+int video_write(const char *results, const char *path, double speed, int quiet)
+{
+    const char *chromium = devtools_find_chromium();
+    film *f = calloc(1, sizeof *f);
+    int code = EXIT_FAILED;
+    if (!f) {
+        fputs("se3d video: out of memory\n", stderr);
+    } else if (!chromium) {
+        process_report_missing("video", "chromium", "chromium");
+    } else if (!process_is_found("ffmpeg")) {
+        process_report_missing("video", "ffmpeg", "ffmpeg");
+    } else {
+        f->path = path;
+        f->speed = speed;
+        code = make_film(f, chromium, results, quiet);
+    }
+    if (code == EXIT_DONE && !quiet) {
+        printf("wrote %s: %zu pictures\n", path, f->count);
+    }
+    free(f);
+    return code;
+}
+
+int command_video(int count, char *const *words)
+{
+    char path[PATH_SIZE + 64];
+    char *rest = NULL;
+    options o;
+    const int code = options_read(&o, "video", " -o --output --speed --quiet -q ", count, words);
+    if (code != EXIT_DONE || o.help) {
+        fputs(o.help ? help : "", stdout);
+        return code;
+    }
+    const double speed = o.speed ? strtod(o.speed, &rest) : 1.0;
+    if (!(speed > 0.0 && speed <= 1e12) || (rest && *rest)) {
+        fprintf(stderr, "se3d video: the speed is `%s`, must be a number > 0\n", o.speed);
+        return EXIT_USAGE;
+    }
+    snprintf(path, sizeof path, "%.4000s/motion.mp4", o.model);
+    return video_write(o.model, o.directory ? o.directory : path, speed, o.quiet);
+}
