@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The step of rattle (Andersen 1983) on the group of rigid motions, in parts: translation is
+ * Stoermer-Verlet; rotation is the variational Lie-Verlet step with the Cayley map (Bou-Rabee,
+ * Marsden 2009), for the body-frame momentum L = J w, with xi the mean angular velocity of the
+ * step:
+ *
+ *     drift   m v_h                                  = m v_0 + h/2 (F_0 - G_0^T lambda_0)
+ *             J xi + h/2 xi x J xi + h^2/4 xi (xi.J xi) = L_0 + h/2 (n_0 - C_0^T lambda_0)
+ *             r_1 = r_0 + h v_h,   p_1 = p_0 (1, h xi/2)/|.|,     lambda_0 from Phi(q_1, t_1) = 0
+ *     kick    L_1 = J xi - h/2 xi x J xi + h^2/4 xi (xi.J xi) + h/2 (n_1 - C_1^T lambda_1)
+ *             m v_1 = m v_h + h/2 (F_1 - G_1^T lambda_1),         lambda_1 from Phi_q qdot_1 =
+ * nu(t_1) finish  accelerations and multipliers of the end state, which is accepted
+ *
+ * The drift keeps linear and angular momentum of a free body to rounding. docs/theory/rattle.md */
+#ifndef SE3DI_LIE_VERLET_H
+#define SE3DI_LIE_VERLET_H
+
+#include "integrator/integrator.h"
+
+typedef struct se3di_lie_verlet {
+    se3di_equations *equations;
+    se3di_assembly *assembly;
+    double h, t1;
+    int force_iterations; /* of forces that depend on velocities: 1 is explicit, of order 2 */
+    double *wrench;       /* applied at the start [dense bodies * 6] */
+    double *lambda;       /* [rows] */
+    double *half;         /* half-step velocity and momentum at its end [free bodies * 6] */
+    double *last;         /* [unknowns] */
+} se3di_lie_verlet;
+
+/* For the table of a method. */
+size_t se3di_lie_verlet_history_count(const se3di_assembly *assembly);
+size_t se3di_lie_verlet_work_count(const se3di_assembly *assembly);
+se3d_status se3di_lie_verlet_start(se3di_integration *integration, double h);
+
+/* On the work arrays of the integration; h and t1 are set by the caller for each step. */
+se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int force_iterations);
+/* From the model's state to the positions at t1; the frames hold the mean velocities of the step.
+ */
+se3d_status se3di_lie_verlet_drift(se3di_lie_verlet *m);
+/* The velocities at t1. */
+se3d_status se3di_lie_verlet_kick(se3di_lie_verlet *m);
+se3d_status se3di_lie_verlet_finish(se3di_lie_verlet *m);
+
+#endif
