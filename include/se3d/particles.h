@@ -250,6 +250,7 @@ typedef struct se3d_particles_stats {
     uint64_t contacts; /* at the last step */
     uint64_t lost;     /* particles that left through a sink */
     uint64_t bytes;    /* memory held */
+    uint64_t threads;  /* that worked on the last step: 1 where the library knows no OpenMP */
 } se3d_particles_stats;
 
 SE3D_API se3d_status se3d_particles_get_stats(const se3d_particles *particles,

@@ -105,6 +105,7 @@ typedef struct se3di_particles {
     se3d_allocator allocator;
     se3di_law law;
     int32_t threads;
+    int32_t team; /* threads that evaluated the last forces */
     int32_t boundary[3];
     int32_t rolling;     /* any material resists */
     int32_t list_valid;  /* the lists belong to the particles */

@@ -9,6 +9,10 @@
 #include <math.h>
 #include <string.h>
 
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
 void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames)
 {
     for (size_t k = 0; k < set->wall_slots.count; ++k) {
@@ -65,24 +69,24 @@ static double larger(double a, double b)
     return b <= a || a != a ? a : b; /* NaN stays */
 }
 
-#define PASS_CHUNK 1024
+#define PASS_PARTS 64 /* the same for any number of threads */
 
 static void pass(se3di_particles *set, int kicks, double h, double drift)
 {
     const double steps[2] = {0.5 * h, drift};
-    long chunks = (long)((set->count + PASS_CHUNK - 1) / PASS_CHUNK);
-    double fastest = 0.0;
+    double fastest_of[PASS_PARTS];
+    size_t part = set->count / PASS_PARTS + 1;
 #ifdef _OPENMP
 #pragma omp parallel for if (set->threads > 1) num_threads(set->threads) schedule(static)
 #endif
-    for (long c = 0; c < chunks; ++c) {
-        size_t begin = (size_t)c * PASS_CHUNK;
-        size_t end = begin + PASS_CHUNK < set->count ? begin + PASS_CHUNK : set->count;
-        double here = pass_range(set, begin, end, kicks, steps);
-#ifdef _OPENMP
-#pragma omp critical(se3di_particles_pass)
-#endif
-        fastest = larger(fastest, here);
+    for (size_t c = 0; c < PASS_PARTS; ++c) {
+        size_t begin = c * part < set->count ? c * part : set->count;
+        size_t end = begin + part < set->count ? begin + part : set->count;
+        fastest_of[c] = pass_range(set, begin, end, kicks, steps);
+    }
+    double fastest = 0.0;
+    for (size_t c = 0; c < PASS_PARTS; ++c) {
+        fastest = larger(fastest, fastest_of[c]);
     }
     if (drift != 0.0) {
         set->pace = sqrt(fastest) * fabs(drift);
@@ -196,6 +200,7 @@ static void evaluate_slab(se3di_particles *set, se3di_force_task task, uint32_t 
 static void evaluate_slabs(se3di_particles *set, const se3di_force_task *task)
 {
     long slabs = (long)set->slab_count;
+    set->team = 1;
     if (set->threads <= 1) {
         for (long s = 0; s < slabs; s += 2) {
             evaluate_slab(set, *task, (uint32_t)s);
@@ -208,9 +213,14 @@ static void evaluate_slabs(se3di_particles *set, const se3di_force_task *task)
         }
         return;
     }
-    for (int odd = 0; odd < 2; ++odd) {
 #ifdef _OPENMP
-#pragma omp parallel for num_threads(set->threads) schedule(dynamic)
+#pragma omp parallel num_threads(set->threads)
+#endif
+    for (int odd = 0; odd < 2; ++odd) { /* every thread: both loops, with a barrier between */
+#ifdef _OPENMP
+#pragma omp single nowait
+        set->team = omp_get_num_threads();
+#pragma omp for schedule(dynamic)
 #endif
         for (long s = odd; s < slabs; s += 2) {
             evaluate_slab(set, *task, (uint32_t)s);

@@ -108,7 +108,7 @@ static se3d_status eval_work(const se3di_channel *c, const se3d_system *system, 
 
 static se3d_status eval_particles(const se3di_channel *c, double value[4])
 {
-    se3d_particles_stats stats = {0, 0, 0, 0, 0};
+    se3d_particles_stats stats = {.steps = 0};
     se3d_particles_energy energy = {0.0, 0.0, 0.0};
     se3d_status status = se3d_particles_get_stats(c->particles, &stats);
     if (status >= 0) {

@@ -572,7 +572,8 @@ se3d_status se3d_particles_get_stats(const se3d_particles *particles, se3d_parti
                                     .rebuilds = set->rebuilds,
                                     .contacts = set->touching,
                                     .lost = set->lost,
-                                    .bytes = se3di_particles_memory(set)};
+                                    .bytes = se3di_particles_memory(set),
+                                    .threads = (uint64_t)set->team};
     return SE3D_OK;
 }
 
