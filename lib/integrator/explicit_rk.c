@@ -23,10 +23,10 @@ enum {
     RK_HEADER
 };
 
+#define REGULARISATION 1e-8 /* see se3di_state_begin */
+
 #define RK_FORMS   (3 + SE3DI_RK_DENSE_MAX)
 #define RK_VECTORS (3 + RK_FORMS)
-
-#define ROUNDING 1e-13 /* relative violation of constraints that does not matter */
 
 size_t se3di_rk_history_count(const se3di_assembly *assembly)
 {
@@ -61,10 +61,11 @@ static double inner_tolerance(double tolerance)
     return fmax(0.03 * tolerance, 2e-13);
 }
 
-/* Tighter tolerances need accelerations with less noise near singular positions. */
-static double regularisation(double tolerance)
+/* The violation of constraints that does not matter: near a singular position velocities magnify it
+ * by the inverse of the distance, accelerations by its cube. */
+static double projection_accuracy(double tolerance)
 {
-    return fmin(1e-8, fmax(1e-10, 1e-10 * pow(1e-10 / tolerance, 0.8)));
+    return fmin(1e-13, fmax(1e-15, 1e-6 * tolerance));
 }
 
 static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
@@ -89,8 +90,7 @@ static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
         .sum3 = integration->work + (SE3DI_RK_MAX + 2) * count,
         .tolerance = inner_tolerance(integration->settings.tolerance),
     };
-    m.kkt = se3di_state_begin(m.equations, regularisation(m.tolerance),
-                              fmin(1e-12, 1e-5 * m.tolerance));
+    m.kkt = se3di_state_begin(m.equations, REGULARISATION, fmin(1e-12, 1e-5 * m.tolerance));
     return m;
 }
 
@@ -203,7 +203,8 @@ static se3d_status attempt(rk *m, double h, double *error)
     combine(m, m->y0, h, tableau->a[tableau->stages], m->y);
     se3di_state_set(m->assembly, m->y);
     se3di_state_scale scale = get_scale(m);
-    SE3DI_TRY(se3di_state_project(m->equations, t + h, &scale, ROUNDING, &moved));
+    double accuracy = projection_accuracy(m->tolerance);
+    SE3DI_TRY(se3di_state_project(m->equations, t + h, &scale, accuracy, &moved));
     SE3DI_TRY(evaluate(m, t + h, m->K + (size_t)tableau->stages * m->count));
     if (tableau->uses_end) {
         *error = estimate_error(m, h);

@@ -292,7 +292,7 @@ se3d_status se3di_state_publish(se3di_equations *equations, const double *y, dou
     double moved;
     se3di_state_set(&equations->assembly, y);
     if (project) {
-        SE3DI_TRY(se3di_state_project(equations, t, scale, 1e-13, &moved));
+        SE3DI_TRY(se3di_state_project(equations, t, scale, 1e-15, &moved));
     }
     SE3DI_TRY(se3di_acceleration_solve(equations, t));
     se3di_model *model = equations->assembly.model;
