@@ -221,6 +221,25 @@ static void quarter_car_settles_and_its_tyre_never_pulls(void)
     close_example(&e);
 }
 
+/* Wheel and contact point at t = 0.3 s, from the distances between the ball joints alone: eleven
+ * equations for the angles of the arms and three points of the upright, by a program of its own. */
+static void suspension_steers_and_travels_as_its_distances_say(void)
+{
+    static const double wheel[] = {-0.00957547201023548, 0.606452650033026, 0.2564663452836};
+    static const double contact[] = {-0.00420306653600744, 0.607418404850378, 0.0285316954888546};
+    for (int f = 0; f < 2; ++f) {
+        example e = run_example("suspension", "end", "0.3", formulations[f]);
+        for (size_t k = 0; k < 3; ++k) {
+            CHECK_NEAR(channel_of(&e, "upright.wheel_centre.position", k), wheel[k], 1e-13);
+            CHECK_NEAR(channel_of(&e, "upright.contact.position", k), contact[k], 1e-13);
+        }
+        /* The road's push sideways and the rig's upwards press the pushrod. */
+        CHECK(channel_of(&e, "push_lower.force", 1) < -500.0);
+        CHECK(channel_of(&e, "push_lower.force", 2) > 500.0);
+        close_example(&e);
+    }
+}
+
 int main(void)
 {
     RUN(block_above_the_friction_angle_slides_as_coulomb_says);
@@ -228,5 +247,6 @@ int main(void)
     RUN(bar_comes_to_rest_where_its_moments_balance);
     RUN(governor_finds_its_steady_motion);
     RUN(quarter_car_settles_and_its_tyre_never_pulls);
+    RUN(suspension_steers_and_travels_as_its_distances_say);
     return check_finish();
 }
