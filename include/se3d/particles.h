@@ -203,7 +203,8 @@ SE3D_API se3d_status se3d_particles_get_all(const se3d_particles *particles, siz
                                             double *r, double *v, double *w);
 SE3D_API se3d_status se3d_particles_set_all(se3d_particles *particles, size_t count,
                                             const double *r, const double *v, const double *w);
-/* Contact forces and torques of the last step, without gravity. @since 0.1 */
+/* Contact forces and torques of the last step, without gravity; zero after particles, materials or
+ * walls were edited, until the next step. @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_forces(const se3d_particles *particles, size_t count,
                                                double *force, double *torque);
 

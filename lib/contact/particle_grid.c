@@ -188,29 +188,35 @@ static uint32_t cell_of(const grid *g, const double x[3], int c)
            ((uint32_t)(layer * here->cells[1] + slow)) * (uint32_t)here->cells[0] + (uint32_t)fast;
 }
 
-/* Put the records in the order of order[] (new -> old), through the memory of the loads, which are
- * zero afterwards; then order[] is old -> new. */
+/* Put the records in the order of order[] (new -> old), cycle by cycle; then order[] is old -> new.
+ */
 static void permute(se3di_particles *set)
 {
     size_t n = set->count;
-    se3di_grain *grains = set->load_memory.data;
-    memcpy(grains, set->grains, n * sizeof *grains);
+    uint32_t *order = set->order;
     for (size_t k = 0; k < n; ++k) {
-        set->grains[k] = grains[set->order[k]];
+        set->key[order[k]] = (uint32_t)k;
     }
-    se3di_spin *spins = set->load_memory.data;
-    memcpy(spins, set->spins, n * sizeof *spins);
+    for (size_t start = 0; start < n; ++start) {
+        se3di_grain grain = set->grains[start];
+        se3di_spin spin = set->spins[start];
+        size_t k = start;
+        while (order[k] != start) {
+            size_t from = order[k];
+            set->grains[k] = set->grains[from];
+            set->spins[k] = set->spins[from];
+            order[k] = (uint32_t)k; /* done */
+            k = from;
+        }
+        set->grains[k] = grain;
+        set->spins[k] = spin;
+        order[k] = (uint32_t)k;
+    }
     for (size_t k = 0; k < n; ++k) {
-        set->spins[k] = spins[set->order[k]];
         set->index_of[set->spins[k].id] = (uint32_t)k;
     }
-    memset(set->load_memory.data, 0, (n + 1) * sizeof(se3di_load));
-    for (size_t k = 0; k < n; ++k) {
-        set->key[set->order[k]] = (uint32_t)k;
-    }
-    uint32_t *swap = set->order;
     set->order = set->key;
-    set->key = swap;
+    set->key = order;
 }
 
 /* Sort by cell, stably; cells[] becomes the first particle of each. */

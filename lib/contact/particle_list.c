@@ -2,7 +2,8 @@
 /* From the neighbour list to the blocks of active pairs, with the history of their springs.
  *
  * History waits in `carry` while lists change: entries {i, j, xi}, chained by i through key[] (the
- * first) and carry_next[]. Where memory fails it stays there, and nothing is lost. */
+ * first) and carry_next[]. They lie in the memory of the loads, which hold nothing while there are
+ * no valid lists. Where memory fails they stay there, and nothing is lost. */
 #include "contact/particle_set.h"
 
 #include <math.h>
@@ -46,16 +47,6 @@ static int lane_moved(const se3di_particles *set, uint32_t b, int lane)
 static se3d_status reserve_carry(se3di_particles *set, size_t count)
 {
     const se3d_allocator *a = &set->allocator;
-    if (count > set->carry_capacity) {
-        size_t grown = count + count / 32 + 16;
-        se3di_carry *carry = se3di_alloc(a, grown, sizeof *carry);
-        if (!carry) {
-            return SE3D_ERR_NO_MEMORY;
-        }
-        se3di_free(a, set->carry, set->carry_capacity, sizeof *carry);
-        set->carry = carry;
-        set->carry_capacity = grown;
-    }
     if (set->rolls && 4 * count > set->carry_roll_capacity) {
         size_t grown = 4 * (count + count / 32 + 16);
         double *rolls = se3di_alloc(a, grown, sizeof *rolls);
@@ -66,7 +57,14 @@ static se3d_status reserve_carry(se3di_particles *set, size_t count)
         set->carry_roll = rolls;
         set->carry_roll_capacity = grown;
     }
-    return se3di_particles_grow(set, &set->carry_next, &set->carry_next_capacity, count);
+    SE3DI_TRY(se3di_particles_grow(set, &set->carry_next, &set->carry_next_capacity, count));
+    if (count * sizeof(se3di_carry) > set->load_memory.bytes) {
+        size_t grown = count + count / 32 + 16; /* the last that may fail: the loads go */
+        SE3DI_TRY(se3di_aligned_reserve(a, &set->load_memory, grown * sizeof(se3di_carry), 0));
+        set->loads = set->load_memory.data;
+    }
+    set->carry = set->load_memory.data;
+    return SE3D_OK;
 }
 
 static void collect_lane(se3di_particles *set, uint32_t b, int lane, int wall)
@@ -275,6 +273,9 @@ se3d_status se3di_particles_activate(se3di_particles *set)
     set->moved_near = set->moved;
     set->carry_count = 0;
     set->list_valid = 1;
+    if (set->count > 0) {
+        memset(set->load_memory.data, 0, (set->count + 1) * sizeof *set->loads);
+    }
     ++set->refreshes;
     return SE3D_OK;
 }

@@ -74,7 +74,6 @@ void se3di_particles_destroy(se3di_particles *set)
     se3di_free(a, set->first, set->first_capacity, sizeof *set->first);
     se3di_free(a, set->list, set->list_capacity, sizeof *set->list);
     se3di_free(a, set->near_walls, set->near_capacity, sizeof *set->near_walls);
-    se3di_free(a, set->carry, set->carry_capacity, sizeof *set->carry);
     se3di_free(a, set->carry_roll, set->carry_roll_capacity, sizeof(double));
     se3di_free(a, set->carry_next, set->carry_next_capacity, sizeof *set->carry_next);
     se3di_free(a, set->wall_sums, set->wall_sum_capacity, sizeof(double));
@@ -100,7 +99,6 @@ size_t se3di_particles_memory(const se3di_particles *set)
            set->capacity * (3 * sizeof(double) + 2 * sizeof(uint32_t)) +
            sizeof(uint32_t) * (set->index_capacity + set->cell_capacity + set->first_capacity +
                                set->list_capacity + set->near_capacity + set->carry_next_capacity) +
-           set->carry_capacity * sizeof *set->carry +
            sizeof(double) * (set->carry_roll_capacity + set->wall_sum_capacity) +
            set->wall_capacity * sizeof *set->walls + sizeof *set;
 }
@@ -141,8 +139,9 @@ static se3d_status reserve_records(se3di_particles *set, size_t count)
     set->spins = set->spin_memory.data;
     SE3DI_TRY(status);
     status = se3di_aligned_reserve(a, &set->load_memory, (count + 1) * sizeof(se3di_load),
-                                   n * sizeof(se3di_load));
+                                   set->carry_count * sizeof *set->carry);
     set->loads = set->load_memory.data;
+    set->carry = set->load_memory.data;
     return status;
 }
 
@@ -205,7 +204,6 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
     memcpy(set->grains[k].v, v ? v : rest, sizeof set->grains[k].v);
     set->spins[k] = (se3di_spin){.material = material, .id = id};
     memcpy(set->spins[k].w, w ? w : rest, sizeof set->spins[k].w);
-    set->loads[k] = (se3di_load){{0.0}, {0.0}};
     set->index_of[id] = (uint32_t)k;
     set->force_valid = 0;
     return id;
@@ -223,7 +221,6 @@ void se3di_particles_filter(se3di_particles *set, const unsigned char *keep)
         set->order[k] = (uint32_t)to;
         set->grains[to] = set->grains[k];
         set->spins[to] = set->spins[k];
-        set->loads[to] = set->loads[k];
         set->index_of[set->spins[to].id] = (uint32_t)to;
         ++to;
     }
@@ -349,7 +346,6 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         {&to->first, from->first, from->first_capacity, sizeof(uint32_t)},
         {&to->list, from->list, from->list_capacity, sizeof(uint32_t)},
         {&to->near_walls, from->near_walls, from->near_capacity, sizeof(uint32_t)},
-        {&to->carry, from->carry, from->carry_capacity, sizeof(se3di_carry)},
         {&to->carry_next, from->carry_next, from->carry_next_capacity, sizeof(uint32_t)},
         {&to->carry_roll, from->carry_roll, from->carry_roll_capacity, sizeof(double)},
         {&to->wall_sums, from->wall_sums, from->wall_sum_capacity, sizeof(double)},
@@ -378,7 +374,9 @@ static se3d_status copy_aligned(const se3di_particles *from, se3di_particles *to
     } parts[] = {
         {&from->grain_memory, &to->grain_memory, from->count * sizeof *from->grains},
         {&from->spin_memory, &to->spin_memory, from->count * sizeof *from->spins},
-        {&from->load_memory, &to->load_memory, from->count * sizeof *from->loads},
+        {&from->load_memory, &to->load_memory,
+         from->list_valid ? from->count * sizeof *from->loads
+                          : from->carry_count * sizeof *from->carry},
         {&from->block_memory, &to->block_memory, block_bytes(from)},
         {&from->roll_memory, &to->roll_memory, roll_bytes(from)},
     };
@@ -391,6 +389,7 @@ static se3d_status copy_aligned(const se3di_particles *from, se3di_particles *to
     to->grains = to->grain_memory.data;
     to->spins = to->spin_memory.data;
     to->loads = to->load_memory.data;
+    to->carry = to->load_memory.data;
     to->blocks = to->block_memory.data;
     to->rolls = to->roll_memory.data;
     if (to->grains) {
@@ -409,6 +408,7 @@ se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *c
     copy->grains = NULL;
     copy->spins = NULL;
     copy->loads = NULL;
+    copy->carry = NULL;
     se3d_status status = copy_arrays(set, copy);
     if (status == SE3D_OK) {
         status = copy_aligned(set, copy);

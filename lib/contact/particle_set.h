@@ -132,7 +132,7 @@ typedef struct se3di_particles {
     se3di_aligned grain_memory, spin_memory, load_memory;
     se3di_grain *grains;
     se3di_spin *spins;
-    se3di_load *loads;
+    se3di_load *loads;  /* hold nothing while list_valid is 0 */
     double *origin;     /* [3 * capacity] positions where the list was built */
     uint32_t *index_of; /* id -> index, SE3DI_NO_INDEX: gone */
     size_t id_count, index_capacity;
@@ -156,10 +156,10 @@ typedef struct se3di_particles {
     uint32_t block_count;
     uint32_t *near_walls; /* pairs (particle, wall): candidates, by slab and wall */
     size_t near_count, near_capacity;
-    se3di_carry *carry;
+    se3di_carry *carry; /* in the memory of the loads, while list_valid is 0 */
     double *carry_roll; /* [4 * carry] where rolling */
     uint32_t *carry_next;
-    size_t carry_count, carry_capacity, carry_roll_capacity, carry_next_capacity;
+    size_t carry_count, carry_roll_capacity, carry_next_capacity;
     int32_t carry_rolling; /* carry_roll has been filled */
     int32_t uniform;       /* one material, one radius */
     double *wall_sums;     /* [slabs * walls * 6] */

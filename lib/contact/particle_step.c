@@ -378,7 +378,9 @@ se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps
         se3di_particles_move_walls(set, frames);
     }
     if (!set->force_valid) {
-        memset(set->load_memory.data, 0, set->count * sizeof(se3di_load));
+        if (set->list_valid) {
+            memset(set->load_memory.data, 0, set->count * sizeof(se3di_load));
+        }
         SE3DI_TRY(se3di_particles_forces(set, 0.0));
     }
     for (size_t k = 0; k < steps; ++k) {

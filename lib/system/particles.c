@@ -390,7 +390,9 @@ se3d_status se3d_particles_get_forces(const se3d_particles *particles, size_t co
     SE3DI_TRY(check_count(particles, count));
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
-        const se3di_load *load = &particles->set.loads[next(&particles->set, &id)];
+        static const se3di_load none; /* after an edit there are no forces yet */
+        size_t index = next(&particles->set, &id);
+        const se3di_load *load = particles->set.list_valid ? &particles->set.loads[index] : &none;
         if (force) {
             se3di_copy(load->force, force + 3 * k);
         }
