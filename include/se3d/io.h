@@ -207,6 +207,27 @@ typedef struct se3d_run_file {
 SE3D_API size_t se3d_run_count_files(const se3d_run *run);
 SE3D_API se3d_status se3d_run_get_file(const se3d_run *run, size_t index, se3d_run_file *file);
 
+/* A picture that the `output` of a model asks for. libse3d-io describes it only; the program `se3d`
+ * makes it after the run, from the files that the run leaves. @since 0.1 */
+typedef struct se3d_model_picture {
+    const char *type;    /* "plot", "scene", "video"; owned by the model, as all texts here */
+    const char *file;    /* to make; relative to the folder of the results */
+    const char *results; /* plot: the CSV file it shows */
+    const char *x;       /* plot: the channel of the horizontal axis; NULL: time */
+    const char *const *channels; /* plot: [channel_count]; none: the usual ones */
+    size_t channel_count;
+    double speed;     /* video: seconds of motion in one of film */
+    int32_t fft;      /* plot: not 0: amplitudes over frequency */
+    int32_t reserved; /* 0 */
+} se3d_model_picture;
+
+/* Reader. @since 0.1 */
+SE3D_API size_t se3d_model_count_pictures(const se3d_model *model);
+/* Get picture `index`, from 0. @return OK, NULL, INVALID_ARGUMENT (no such picture). Reader. @since
+ * 0.1 */
+SE3D_API se3d_status se3d_model_get_picture(const se3d_model *model, size_t index,
+                                            se3d_model_picture *picture);
+
 /* The motion of a model as a 3-D scene: bodies, joints, springs. Make it, record during a run
  * (for example from the progress callback), write it. @since 0.1 */
 typedef struct se3d_scene se3d_scene;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* `analysis` and `output`. */
+/* `analysis`. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "io/reader.h"
@@ -195,130 +194,6 @@ bool se3di_read_analyses(se3di_reader *reader, const se3di_node *root)
     }
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (is_wanted(reader, node, child) && !read_analysis(reader, child)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static bool read_channels(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
-{
-    se3d_model *model = reader->model;
-    const se3di_node *list = NULL;
-    if (!se3di_read_list(reader, node, "channels", &list)) {
-        return false;
-    }
-    if (!list) {
-        output->channels = se3di_channel_list_all(model, &output->count);
-        return output->channels ? true : se3di_reader_fail_memory(reader);
-    }
-    output->channels = se3di_iopool_array(&model->pool, list->count, sizeof *output->channels);
-    if (!output->channels) {
-        return se3di_reader_fail_memory(reader);
-    }
-    for (const se3di_node *child = list->first; child; child = child->next) {
-        char problem[480] = "";
-        const char *name = NULL;
-        if (!se3di_read_text(reader, child, &name)) {
-            return false;
-        }
-        if (strlen(name) > 310) {
-            return se3di_reader_fail(reader, child, "is longer than any channel's name");
-        }
-        if (!se3di_channel_find(model, name, &output->channels[output->count], problem,
-                                sizeof problem)) {
-            return se3di_reader_fail(reader, child, "%s", problem);
-        }
-        for (size_t k = 0; k < output->count; ++k) {
-            if (strcmp(output->channels[k].name, name) == 0) {
-                return se3di_reader_fail(reader, child, "`%s` is listed twice", name);
-            }
-        }
-        ++output->count;
-    }
-    return true;
-}
-
-static bool read_snapshots(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
-{
-    const se3di_node *child = se3di_node_get(node, "particles");
-    int32_t wanted = 0;
-    if (child && !se3di_read_bool(reader, child, &wanted)) {
-        return false;
-    }
-    if (wanted && !reader->model->grains) {
-        return se3di_reader_fail(reader, child, "is true, but the model has no `particles`");
-    }
-    if (wanted && se3di_node_get(node, "channels")) {
-        return se3di_reader_fail_key(reader, node, "channels",
-                                     "cannot stand beside `particles`: give each its own file");
-    }
-    output->particles = wanted != 0;
-    return true;
-}
-
-static bool read_output(se3di_reader *reader, const se3di_node *node)
-{
-    se3d_model *model = reader->model;
-    se3di_output_entry *output = &model->outputs[model->output_count];
-    const se3di_node *file = NULL;
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_OUTPUT)) {
-        return false;
-    }
-    file = se3di_node_get(node, "file");
-    if (!file) {
-        return se3di_reader_fail_key(reader, node, "file", "is missing, such as results.csv");
-    }
-    if (!se3di_read_text(reader, file, &output->file)) {
-        return false;
-    }
-    const size_t length = strlen(output->file);
-    if (length == 0 || length > 1000 || output->file[length - 1] == '/') {
-        return se3di_reader_fail(reader, file, "`%.60s` is not a file name", output->file);
-    }
-    for (size_t k = 0; k < model->output_count; ++k) {
-        if (strcmp(model->outputs[k].file, output->file) == 0) {
-            return se3di_reader_fail(reader, file, "`%.60s` is written by two outputs",
-                                     output->file);
-        }
-    }
-    for (size_t k = 0; k < model->analysis_count; ++k) {
-        const char *other = model->analyses[k].modes.file;
-        if (other && strcmp(other, output->file) == 0) {
-            return se3di_reader_fail(reader, file, "`%.60s` is written by the modes", output->file);
-        }
-    }
-    output->node = node;
-    if (!se3di_read_key_number(reader, node, "every", SE3DI_POSITIVE, &output->every) ||
-        !read_snapshots(reader, node, output) ||
-        (!output->particles && !read_channels(reader, node, output))) {
-        return false;
-    }
-    ++model->output_count;
-    return true;
-}
-
-bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root)
-{
-    se3d_model *model = reader->model;
-    const se3di_node *list = NULL;
-    if (!se3di_read_list(reader, root, "output", &list)) {
-        return false;
-    }
-    const size_t count = list ? list->count : 1;
-    model->outputs = se3di_iopool_array(&model->pool, count, sizeof *model->outputs);
-    if (!model->outputs) {
-        return se3di_reader_fail_memory(reader);
-    }
-    if (!list) {
-        se3di_output_entry *output = &model->outputs[0];
-        output->file = "results.csv";
-        output->channels = se3di_channel_list_all(model, &output->count);
-        model->output_count = 1;
-        return output->channels ? true : se3di_reader_fail_memory(reader);
-    }
-    for (const se3di_node *node = list->first; node; node = node->next) {
-        if (!read_output(reader, node)) {
             return false;
         }
     }

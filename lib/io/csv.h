@@ -42,5 +42,9 @@ size_t se3di_number_format(double value, char *text);
 bool se3di_file_join(const char *folder, const char *file, char *path, size_t size);
 /* Make the folders that a path of a file needs. @return false: errno says why. */
 bool se3di_file_make_folders(const char *path);
+/* Open a file under a temporary name; complete it and give it its name. @return NULL, false: errno
+ * says why, and nothing is left. */
+FILE *se3di_partial_open(const char *path);
+bool se3di_partial_close(FILE *file, const char *path);
 
 #endif

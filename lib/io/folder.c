@@ -70,3 +70,34 @@ bool se3di_file_join(const char *folder, const char *file, char *path, size_t si
                            : snprintf(path, size, "%s/%s", folder ? folder : ".", file);
     return length >= 0 && (size_t)length < size;
 }
+
+FILE *se3di_partial_open(const char *path)
+{
+    char partial[4200];
+    errno = 0;
+    const int length = snprintf(partial, sizeof partial, "%s.partial", path);
+    if (length < 0 || (size_t)length >= sizeof partial) {
+        errno = ENAMETOOLONG;
+        return NULL;
+    }
+    return fopen(partial, "wb");
+}
+
+bool se3di_partial_close(FILE *file, const char *path)
+{
+    char partial[4200];
+    errno = 0;
+    bool good = !ferror(file);
+    snprintf(partial, sizeof partial, "%s.partial", path);
+    good = fclose(file) == 0 && good;
+#if defined(_WIN32)
+    remove(path); /* rename does not replace there */
+#endif
+    if (good && rename(partial, path) == 0) {
+        return true;
+    }
+    const int why = errno ? errno : ENOSPC; /* a write before has failed */
+    remove(partial);
+    errno = why;
+    return false;
+}

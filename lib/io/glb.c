@@ -16,7 +16,7 @@ void se3di_glb_init(se3di_glb *glb, se3di_iopool *pool)
 {
     memset(glb, 0, sizeof *glb);
     glb->pool = pool;
-    for (size_t k = 0; k < SE3DI_GLB_MESH_COUNT; ++k) {
+    for (size_t k = 0; k < SE3DI_UNIT_COUNT; ++k) {
         glb->unit[k][0] = glb->unit[k][1] = glb->unit[k][2] = -1;
     }
 }
@@ -155,135 +155,14 @@ long se3di_glb_add_rotations(se3di_glb *glb, const double *values, size_t count)
     return view;
 }
 
-enum { VERTICES_MAX = 1024, AROUND = 32, RINGS = 16, TURNS = 8 };
-
-typedef struct unit_mesh {
-    double points[3 * VERTICES_MAX];
-    double normals[3 * VERTICES_MAX];
-    uint16_t indices[6 * VERTICES_MAX];
-    size_t points_count;
-    size_t indices_count;
-} unit_mesh;
-
-static const double pi = 3.14159265358979323846;
-
-static void put_vertex(unit_mesh *m, double x, double y, double z, const double n[3])
+static void add_unit(se3di_glb *glb, se3di_unit mesh)
 {
-    const double p[3] = {x, y, z};
-    memcpy(&m->points[3 * m->points_count], p, sizeof p);
-    if (n) {
-        memcpy(&m->normals[3 * m->points_count], n, 3 * sizeof *n);
-    }
-    ++m->points_count;
-}
-
-static void put_triangle(unit_mesh *m, size_t a, size_t b, size_t c)
-{
-    m->indices[m->indices_count++] = (uint16_t)a;
-    m->indices[m->indices_count++] = (uint16_t)b;
-    m->indices[m->indices_count++] = (uint16_t)c;
-}
-
-static void make_box(unit_mesh *m)
-{
-    for (int axis = 0; axis < 3; ++axis) {
-        for (int side = -1; side <= 1; side += 2) {
-            const size_t first = m->points_count;
-            double n[3] = {0.0, 0.0, 0.0};
-            n[axis] = side;
-            for (int k = 0; k < 4; ++k) {
-                double p[3];
-                p[axis] = 0.5 * side;
-                p[(axis + 1) % 3] = (k == 1 || k == 2) ? 0.5 : -0.5;
-                p[(axis + 2) % 3] = k >= 2 ? 0.5 : -0.5;
-                put_vertex(m, p[0], p[1], p[2], n);
-            }
-            const size_t flip = side > 0 ? 0 : 1;
-            put_triangle(m, first, first + 1 + flip, first + 2 - flip);
-            put_triangle(m, first, first + 2 + flip, first + 3 - flip);
-        }
-    }
-}
-
-static void put_quads(unit_mesh *m, size_t first, size_t rings)
-{
-    for (size_t i = 0; i < rings; ++i) {
-        for (size_t k = 0; k < AROUND; ++k) {
-            const size_t a = first + i * (AROUND + 1) + k;
-            const size_t b = a + AROUND + 1;
-            put_triangle(m, a, a + 1, b + 1);
-            put_triangle(m, a, b + 1, b);
-        }
-    }
-}
-
-static void make_sphere(unit_mesh *m)
-{
-    for (int i = 0; i <= RINGS; ++i) {
-        for (int k = 0; k <= AROUND; ++k) {
-            const double polar = pi - pi * i / RINGS;
-            const double turn = 2.0 * pi * k / AROUND;
-            const double n[3] = {sin(polar) * cos(turn), sin(polar) * sin(turn), cos(polar)};
-            put_vertex(m, n[0], n[1], n[2], n);
-        }
-    }
-    put_quads(m, 0, RINGS);
-}
-
-static void make_cylinder(unit_mesh *m)
-{
-    for (int i = 0; i < 2; ++i) {
-        for (int k = 0; k <= AROUND; ++k) {
-            const double turn = 2.0 * pi * k / AROUND;
-            const double n[3] = {cos(turn), sin(turn), 0.0};
-            put_vertex(m, n[0], n[1], i - 0.5, n);
-        }
-    }
-    put_quads(m, 0, 1);
-    for (int i = 0; i < 2; ++i) {
-        const size_t first = m->points_count;
-        const double n[3] = {0.0, 0.0, i == 0 ? -1.0 : 1.0};
-        for (int k = 0; k < AROUND; ++k) {
-            const double turn = 2.0 * pi * k / AROUND;
-            put_vertex(m, cos(turn), sin(turn), i - 0.5, n);
-        }
-        for (size_t k = 1; k + 1 < AROUND; ++k) {
-            put_triangle(m, first, first + k + (i == 0), first + k + (i == 1));
-        }
-    }
-}
-
-static void make_spring(unit_mesh *m)
-{
-    const int count = TURNS * 24;
-    put_vertex(m, 0.0, 0.0, -0.5, NULL);
-    for (int k = 0; k <= count; ++k) {
-        const double turn = 2.0 * pi * TURNS * k / count;
-        put_vertex(m, cos(turn), sin(turn), -0.4 + 0.8 * k / count, NULL);
-    }
-    put_vertex(m, 0.0, 0.0, 0.5, NULL);
-}
-
-static void make_grid(unit_mesh *m)
-{
-    for (int k = -10; k <= 10; ++k) {
-        put_vertex(m, k, -10.0, 0.0, NULL);
-        put_vertex(m, k, 10.0, 0.0, NULL);
-        put_vertex(m, -10.0, k, 0.0, NULL);
-        put_vertex(m, 10.0, k, 0.0, NULL);
-    }
-}
-
-static void add_unit(se3di_glb *glb, se3di_glb_mesh mesh)
-{
-    static void (*const make[])(unit_mesh *) = {make_box, make_sphere, make_cylinder, make_spring,
-                                                make_grid};
-    unit_mesh *m = se3di_iopool_alloc(glb->pool, sizeof *m);
+    se3di_unit_mesh *m = se3di_iopool_alloc(glb->pool, sizeof *m);
     if (!m) {
         glb->failed = true;
         return;
     }
-    make[mesh](m);
+    se3di_unit_mesh_make(m, mesh);
     glb->unit[mesh][0] =
         se3di_glb_add_floats(glb, m->points, m->points_count, SE3DI_GLB_VEC3, 34962);
     if (m->indices_count > 0) {
@@ -298,7 +177,7 @@ static void add_unit(se3di_glb *glb, se3di_glb_mesh mesh)
     }
 }
 
-size_t se3di_glb_add_mesh(se3di_glb *glb, se3di_glb_mesh mesh, const double color[4])
+size_t se3di_glb_add_mesh(se3di_glb *glb, se3di_unit mesh, const double color[4])
 {
     const size_t index = glb->mesh_count++;
     if (glb->unit[mesh][0] < 0) {
@@ -310,7 +189,7 @@ size_t se3di_glb_add_mesh(se3di_glb *glb, se3di_glb_mesh mesh, const double colo
         se3di_glb_put(glb, &glb->meshes, ",\"NORMAL\":%ld},\"indices\":%ld", glb->unit[mesh][1],
                       glb->unit[mesh][2]);
     } else {
-        se3di_glb_put(glb, &glb->meshes, "},\"mode\":%d", mesh == SE3DI_GLB_GRID ? 1 : 3);
+        se3di_glb_put(glb, &glb->meshes, "},\"mode\":%d", mesh == SE3DI_UNIT_GRID ? 1 : 3);
     }
     se3di_glb_put(glb, &glb->meshes, ",\"material\":%zu}]}", index);
     se3di_glb_put(glb, &glb->materials,
@@ -333,40 +212,28 @@ static void put_head(unsigned char *at, uint32_t value)
     }
 }
 
-static bool write_chunk(FILE *file, const se3di_bytes *bytes, const char *type)
+static void write_chunk(FILE *file, const se3di_bytes *bytes, const char *type)
 {
     unsigned char head[8];
     put_head(head, (uint32_t)bytes->count);
     memcpy(head + 4, type, 4);
-    return fwrite(head, 1, 8, file) == 8 &&
-           fwrite(bytes->data, 1, bytes->count, file) == bytes->count;
+    fwrite(head, 1, 8, file);
+    fwrite(bytes->data, 1, bytes->count, file);
 }
 
 static bool write_file(const char *path, const se3di_bytes *json, const se3di_bytes *binary)
 {
     unsigned char head[12] = {'g', 'l', 'T', 'F'};
-    char partial[4200];
-    errno = 0;
-    const int length = snprintf(partial, sizeof partial, "%s.partial", path);
-    FILE *file = length > 0 && (size_t)length < sizeof partial ? fopen(partial, "wb") : NULL;
+    FILE *file = se3di_partial_open(path);
     if (!file) {
         return false;
     }
     put_head(head + 4, 2);
     put_head(head + 8, (uint32_t)(28 + json->count + binary->count));
-    bool good = fwrite(head, 1, sizeof head, file) == sizeof head &&
-                write_chunk(file, json, "JSON") && write_chunk(file, binary, "BIN\0");
-    good = fclose(file) == 0 && good;
-#if defined(_WIN32)
-    remove(path); /* rename does not replace there */
-#endif
-    if (!good || rename(partial, path) != 0) {
-        const int why = errno;
-        remove(partial);
-        errno = why ? why : EIO;
-        return false;
-    }
-    return true;
+    fwrite(head, 1, sizeof head, file);
+    write_chunk(file, json, "JSON");
+    write_chunk(file, binary, "BIN\0");
+    return se3di_partial_close(file, path);
 }
 
 bool se3di_glb_write(se3di_glb *glb, const se3di_bytes *rest, const char *path)

@@ -4,6 +4,7 @@
 #define SE3D_IO_GLB_H
 
 #include "io/pool.h"
+#include "io/unit_mesh.h"
 
 typedef struct se3di_bytes {
     char *data;
@@ -17,15 +18,6 @@ typedef enum se3di_glb_type {
     SE3DI_GLB_VEC4 = 4
 } se3di_glb_type;
 
-typedef enum se3di_glb_mesh {
-    SE3DI_GLB_BOX = 0,
-    SE3DI_GLB_SPHERE = 1,
-    SE3DI_GLB_CYLINDER = 2,
-    SE3DI_GLB_SPRING = 3,
-    SE3DI_GLB_GRID = 4,
-    SE3DI_GLB_MESH_COUNT = 5
-} se3di_glb_mesh;
-
 typedef struct se3di_glb {
     se3di_iopool *pool;
     se3di_bytes binary;
@@ -36,7 +28,7 @@ typedef struct se3di_glb {
     size_t accessor_count;
     size_t mesh_count;
     /* accessors of the unit meshes: positions, normals, indices; -1: not made yet or none */
-    long unit[SE3DI_GLB_MESH_COUNT][3];
+    long unit[SE3DI_UNIT_COUNT][3];
     bool failed; /* out of memory */
 } se3di_glb;
 
@@ -55,9 +47,8 @@ long se3di_glb_add_floats(se3di_glb *glb, const double *values, size_t count, se
                           int target);
 /* Add unit quaternions (x, y, z, w) as normalised 16-bit integers. */
 long se3di_glb_add_rotations(se3di_glb *glb, const double *values, size_t count);
-/* Add a coloured copy of a unit mesh (box 1 x 1 x 1, sphere of radius 1, cylinder and spring of
- * radius 1 and length 1 along z, grid of 20 x 20 squares of 1). @return its index. */
-size_t se3di_glb_add_mesh(se3di_glb *glb, se3di_glb_mesh mesh, const double color[4]);
+/* Add a coloured copy of a unit mesh. @return its index. */
+size_t se3di_glb_add_mesh(se3di_glb *glb, se3di_unit mesh, const double color[4]);
 
 /* Write the file: `rest` is the JSON besides buffers, meshes and materials, beginning with a comma.
  * @return false: errno says why. */

@@ -96,7 +96,9 @@ static const char *const analysis_keys[] = {
 static const char *const modes_input_keys[] = {"body", "point", "direction", "torque", NULL};
 static const char *const modes_output_keys[] = {"body", "point", "direction", "quantity", NULL};
 static const char *const frequency_keys[] = {"from", "to", "count", NULL};
-static const char *const output_keys[] = {"file", "every", "channels", "particles", NULL};
+static const char *const output_keys[] = {"file",  "every", "channels", "particles", "vtk",
+                                          "plot",  "from",  "x",        "fft",       "scene",
+                                          "video", "speed", NULL};
 
 #define FRAME  " at point_i point_j "
 #define AXES   " axis axis_i axis_j "

@@ -373,3 +373,21 @@ se3d_status se3d_model_get_shape(const se3d_model *model, size_t index, se3d_mod
     *shape = model->shapes[index];
     return SE3D_OK;
 }
+
+size_t se3d_model_count_pictures(const se3d_model *model)
+{
+    return model ? model->picture_count : 0;
+}
+
+se3d_status se3d_model_get_picture(const se3d_model *model, size_t index,
+                                   se3d_model_picture *picture)
+{
+    if (!model || !picture) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= model->picture_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    *picture = model->pictures[index];
+    return SE3D_OK;
+}

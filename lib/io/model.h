@@ -67,6 +67,7 @@ typedef struct se3di_analysis_entry {
 typedef struct se3di_output_entry {
     const char *file;
     bool particles; /* snapshots of them, no channels */
+    bool vtk;       /* a series for ParaView, no channels */
     double every;   /* 0: the analysis's step */
     se3di_channel *channels;
     size_t count;
@@ -99,6 +100,8 @@ struct se3d_model {
     se3di_grains *grains; /* NULL: no particles */
     se3di_output_entry *outputs;
     size_t output_count;
+    se3d_model_picture *pictures;
+    size_t picture_count;
 };
 
 #endif

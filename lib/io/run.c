@@ -16,10 +16,12 @@
 #include "io/grains.h"
 #include "io/model.h"
 #include "io/run_modes.h"
+#include "io/vtk.h"
 
 typedef struct output_file {
     const se3di_output_entry *entry;
     se3di_csv csv;
+    se3di_vtk *vtk; /* NULL: it is a CSV file */
     double *row;
     double every; /* in this analysis */
     double count; /* number of the last row, the one at the end */
@@ -60,12 +62,31 @@ static se3d_status fail(runner *r, se3d_status status, const char *text)
     return status;
 }
 
-static se3d_status fail_file(runner *r, const output_file *file)
+/* `why`: errno, 0 where memory is missing. */
+static se3d_status fail_path(runner *r, const char *path, int why)
 {
     char text[800];
-    snprintf(text, sizeof text, "%.500s: cannot be written: %s", file->csv.path,
-             file->csv.failure ? strerror(file->csv.failure) : "out of memory");
-    return fail(r, file->csv.failure ? SE3D_ERR_IO : SE3D_ERR_NO_MEMORY, text);
+    const bool memory = why == 0 || why == ENOMEM;
+    snprintf(text, sizeof text, "%.500s: cannot be written: %s", path,
+             memory ? "out of memory" : strerror(why));
+    return fail(r, memory ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO, text);
+}
+
+static se3d_status fail_file(runner *r, const output_file *file)
+{
+    return fail_path(r, file->csv.path, file->csv.failure);
+}
+
+static se3d_status open_vtk(runner *r, const se3di_output_entry *entry, const char *path)
+{
+    output_file *file = &r->files[r->file_count];
+    file->entry = entry;
+    file->vtk = se3di_vtk_open(r->model, &r->run->pool, path);
+    if (!file->vtk) {
+        return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    ++r->file_count;
+    return SE3D_OK;
 }
 
 static se3d_status open_file(runner *r, const se3di_output_entry *entry)
@@ -76,6 +97,9 @@ static se3d_status open_file(runner *r, const se3di_output_entry *entry)
     size_t columns = 1;
     if (!se3di_file_join(r->options->directory, entry->file, path, sizeof path)) {
         return fail(r, SE3D_ERR_IO, "the path of the results is too long");
+    }
+    if (entry->vtk) {
+        return open_vtk(r, entry, path);
     }
     columns = entry->particles ? (size_t)SE3DI_GRAIN_COLUMNS : columns;
     for (size_t k = 0; k < entry->count; ++k) {
@@ -173,6 +197,10 @@ static se3d_status sample(runner *r, output_file *file, double time)
 {
     se3d_solver_stats stats;
     double *row = file->row;
+    if (file->vtk) {
+        se3di_vtk_record(file->vtk, time); /* a failure is reported at the end: others go on */
+        return SE3D_OK;
+    }
     if (file->entry->particles) {
         return sample_particles(r, file);
     }
@@ -385,26 +413,45 @@ static se3d_status run_analysis(runner *r, size_t index)
     return status;
 }
 
-/* Complete every file, also after a failure: the rows so far are kept. */
+/* Complete one file. @return false after a message. */
+static se3d_status close_file(runner *r, output_file *file, se3d_run_file *about)
+{
+    se3di_csv *csv = &file->csv;
+    int why = 0;
+    if (file->vtk) {
+        const se3d_status status = se3di_vtk_close(file->vtk, &why);
+        about->path = se3di_vtk_get_path(file->vtk);
+        about->rows = se3di_vtk_count(file->vtk);
+        return status < 0 ? fail_path(r, about->path, why) : SE3D_OK;
+    }
+    about->path = csv->path;
+    about->columns = csv->columns;
+    const se3d_status status = se3di_csv_close(csv);
+    about->rows = csv->rows;
+    return status < 0 ? fail_file(r, file) : SE3D_OK;
+}
+
+/* Complete every file, also after a failure: the rows so far are kept. The first failure is
+ * reported. */
 static se3d_status close_files(runner *r, se3d_status status)
 {
     se3d_run *run = r->run;
     for (size_t k = 0; k < r->file_count; ++k) {
-        se3di_csv *csv = &r->files[k].csv;
-        const bool good = se3di_csv_close(csv) >= 0;
-        if (!good && status >= 0) {
-            status = fail_file(r, &r->files[k]);
-        }
+        se3d_model_error *reported = r->error;
+        se3d_run_file file = {NULL, 0, 0};
+        r->error = status < 0 ? NULL : reported;
+        const se3d_status closed = close_file(r, &r->files[k], &file);
         se3d_run_file *grown = se3di_iopool_grow(&run->pool, run->files, run->file_count,
                                                  &run->file_capacity, sizeof *grown);
         if (grown) {
-            const se3d_run_file file = {csv->path, csv->rows, csv->columns};
             run->files = grown;
             run->files[run->file_count] = file;
-            run->file_count += good;
-        } else if (status >= 0) {
+            run->file_count += closed >= 0;
+        } else if (status >= 0 && closed >= 0) {
             status = fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
         }
+        status = status < 0 ? status : closed < 0 ? closed : status;
+        r->error = reported;
     }
     return status;
 }

@@ -35,7 +35,10 @@ static const char *const texts[] = {
     "  - {type: modes, inputs: [{body: b, direction: [0, 0, 1]}],\n"
     "     outputs: [{body: b, direction: [0, 0, 1]}], frequencies: {from: 1, to: 2, count: 3}}\n"
     "output:\n"
-    "  - {file: state.csv, channels: [a.position, pin.angle, energy.balance]}\n",
+    "  - {file: state.csv, channels: [a.position, pin.angle, energy.balance]}\n"
+    "  - {vtk: motion.pvd}\n"
+    "  - {plot: state.svg, x: pin.angle, channels: [a.position.x]}\n"
+    "  - {video: state.mp4, speed: 2}\n",
     "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1e3}]\ncontact: {pairs: [{material_1: "
     "m, "
     "material_2: m, friction: 0.1}]}\nparticles: [{material: m, radius: 0.1, lower: [0, 0, 0], "
@@ -51,6 +54,17 @@ typedef struct attempt {
     size_t files;
 } attempt;
 
+/* The scene of where the run has ended. */
+static se3d_status draw(se3d_model *model, const char *folder, se3d_scene **scene,
+                        se3d_model_error *error)
+{
+    char path[900];
+    snprintf(path, sizeof path, "%s/scene.glb", folder);
+    snprintf(error->message, sizeof error->message, "no scene");
+    const se3d_status status = se3d_scene_create(model, scene);
+    return status < 0 ? status : se3d_scene_write(*scene, path, error);
+}
+
 static attempt try_once(const char *text, size_t k, int for_ever)
 {
     static const char *fallback = "/tmp";
@@ -59,6 +73,7 @@ static attempt try_once(const char *text, size_t k, int for_ever)
     const char *build = getenv("SE3D_BUILD_DIR");
     char folder[800];
     se3d_model *model = NULL;
+    se3d_scene *scene = NULL;
     se3d_run *run = NULL;
     se3d_model_error error = {0, 0, ""};
     se3d_model_options options = se3d_model_options_default();
@@ -72,6 +87,9 @@ static attempt try_once(const char *text, size_t k, int for_ever)
         a.status = se3d_model_run(model, &how, &run, &error);
         a.files = se3d_run_count_files(run);
     }
+    if (a.status >= 0) {
+        a.status = draw(model, folder, &scene, &error);
+    }
     a.reached = counting.failed > 0;
     if (a.status < 0) {
         CHECK(error.message[0] != '\0');
@@ -79,6 +97,7 @@ static attempt try_once(const char *text, size_t k, int for_ever)
             fprintf(stderr, "allocation %zu: %s\n", k, error.message);
         }
     }
+    se3d_scene_destroy(scene);
     se3d_run_destroy(run);
     se3d_model_destroy(model);
     CHECK(counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);

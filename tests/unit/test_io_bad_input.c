@@ -311,6 +311,20 @@ static const bad_input table[] = {
     {WITH("output: [{file: a.csv, every: 0}]"), 4, 31, {"every: is 0", "> 0"}},
     {WITH("output: [{channels: []}]"), 4, 10, {"output[0].file: is missing"}},
     {WITH("output: [{file: a.csv}, {file: a.csv}]"), 4, 32, {"written by two outputs"}},
+    {WITH("output: [{file: a.csv, vtk: a.pvd}]"), 4, 29, {"cannot stand beside `file`"}},
+    {WITH("output: [{vtk: a.vtp}]"), 4, 16, {"`a.vtp` must end with .pvd"}},
+    {WITH("output: [{vtk: a.pvd, speed: 2}]"), 4, 30, {"no meaning beside `vtk`", "every"}},
+    {WITH("output: [{plot: a.svg, every: 1}]"), 4, 31, {"no meaning beside `plot`"}},
+    {WITH("output: [{plot: a.pdf}]"), 4, 17, {"must end with .svg or .png"}},
+    {WITH("output: [{file: a.csv, channels: [bar.position]}, {plot: a.svg, channels: [bar.pos]}]"),
+     4,
+     76,
+     {"`bar.pos` is no channel of a.csv"}},
+    {WITH("output: [{plot: a.svg, x: bar.weight}]"), 4, 27, {"is no channel of results.csv"}},
+    {WITH("output: [{plot: a.svg, from: b.csv}]"), 4, 30, {"names no results"}},
+    {WITH("output: [{plot: a.svg}, {plot: a.svg}]"), 4, 32, {"written by two outputs"}},
+    {WITH("output: [{scene: a.htm}]"), 4, 18, {"must end with .html or .glb"}},
+    {WITH("output: [{video: a.mp4, speed: 0}]"), 4, 32, {"speed: is 0", "> 0"}},
 };
 
 static void every_bad_model_is_rejected_with_place_and_reason(void)

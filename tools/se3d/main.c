@@ -24,12 +24,9 @@ typedef struct command {
     int (*run)(int count, char *const *words);
 } command;
 
-static const command commands[] = {{"run", command_run},
-                                   {"check", command_check},
-                                   {"evaluate", command_evaluate},
-                                   {"plot", command_plot},
-                                   {"view", command_view},
-                                   {"video", command_video}};
+static const command commands[] = {{"run", command_run},           {"check", command_check},
+                                   {"evaluate", command_evaluate}, {"plot", command_plot},
+                                   {"view", command_view},         {"video", command_video}};
 
 static int dispatch(int count, char *const *words)
 {

@@ -11,13 +11,16 @@
 #include "process.h"
 
 static const char help[] =
-    "se3d plot FILE.csv... [-x CHANNEL] [-y CHANNEL]... [-o FILE] [--fft]\n"
+    "se3d plot FILE.csv|MODEL... [-x CHANNEL] [-y CHANNEL]... [-o FILE] [--fft]\n"
     "\n"
     "Draws results as FILE.svg and FILE.png, beside the first CSV file; the gnuplot script is "
     "kept\n"
     "as FILE.gp. Curves of one quantity share a frame; several files are compared in it. A "
     "channel\n"
     "is a column (pin.force.z), all components of one (pin.force) or all of an element (pin).\n"
+    "A model is run first, into results/<model>; without options, the plots that its `output` "
+    "asks\n"
+    "for are drawn.\n"
     "\n"
     "  -x CHANNEL   horizontal axis (default time); a channel makes a phase plot\n"
     "  -y CHANNEL   what to draw; may be repeated (default: position, velocity, acceleration and\n"
@@ -67,7 +70,7 @@ static int read_word(plot *p, const char *word)
     return EXIT_DONE;
 }
 
-static int read_words(plot *p, int count, char *const *words)
+static int read_words(plot *p, int count, const char *const *words)
 {
     for (int k = 0; k < count; ++k) {
         int code = EXIT_DONE;
@@ -178,7 +181,37 @@ static int plot_all(plot *p)
     return draw(p);
 }
 
-int command_plot(int count, char *const *words)
+static int is_model(const char *path)
+{
+    static const char *const endings[] = {".yaml", ".yml", ".json"};
+    char without[4096];
+    for (size_t k = 0; k < sizeof endings / sizeof *endings; ++k) {
+        if (path_cut(path, endings[k], without, sizeof without) && strcmp(path, without) != 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Models are run, and their results drawn. */
+static int run_models(plot *p)
+{
+    for (size_t k = 0; k < p->file_count; ++k) {
+        if (is_model(p->files[k])) {
+            const int alone = p->file_count == 1 && p->channel_count == 0 && !p->x && !p->fft;
+            const int code =
+                run_for_plots(p->files[k], p->quiet, alone, p->csv[k], sizeof p->csv[k]);
+            if (code != EXIT_DONE) {
+                return code;
+            }
+            p->done = p->csv[k][0] == '\0';
+            p->files[k] = p->csv[k];
+        }
+    }
+    return EXIT_DONE;
+}
+
+int plot_files(int count, const char *const *words)
 {
     plot *p = calloc(1, sizeof *p);
     if (!p) {
@@ -189,11 +222,19 @@ int command_plot(int count, char *const *words)
     if (code == EXIT_DONE && p->help) {
         fputs(help, stdout);
     } else if (code == EXIT_DONE) {
-        code = plot_all(p);
+        code = run_models(p);
+        if (code == EXIT_DONE && !p->done) {
+            code = plot_all(p);
+        }
         for (size_t k = 0; k < p->file_count; ++k) {
             table_destroy(&p->tables[k]);
         }
     }
     free(p);
     return code;
+}
+
+int command_plot(int count, char *const *words)
+{
+    return plot_files(count, (const char *const *)words);
 }

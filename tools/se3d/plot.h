@@ -28,9 +28,11 @@ typedef struct plot {
     char x_title[160];
     char base[4096];                    /* of the files written, without extension */
     char spectra[PLOT_FILES_MAX][4200]; /* files of --fft */
+    char csv[PLOT_FILES_MAX][4096];     /* results of models that were run */
     int fft;
     int quiet;
     int help;
+    int done; /* the model's own plots are drawn */
 } plot;
 
 /* Choose the curves of every panel. @return false after a message. */

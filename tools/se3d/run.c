@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "options.h"
+#include "pictures.h"
 
 static const char help[] =
     "se3d run MODEL [options]\n"
@@ -58,7 +59,9 @@ static void print_text(const se3d_run *run)
     for (size_t k = 0; k < se3d_run_count_files(run); ++k) {
         se3d_run_file file;
         if (!SE3D_FAILED(se3d_run_get_file(run, k, &file))) {
-            printf("wrote %s: %" PRIu64 " rows, %zu columns\n", file.path, file.rows, file.columns);
+            printf(file.columns > 0 ? "wrote %s: %" PRIu64 " rows, %zu columns\n"
+                                    : "wrote %s: %" PRIu64 " times\n",
+                   file.path, file.rows, file.columns);
         }
     }
 }
@@ -93,7 +96,20 @@ static void json_put_analysis(const se3d_run_analysis *a)
     putchar('}');
 }
 
-static void print_json(const options *o, const se3d_run *run, const char *message)
+/* The pictures that come afterwards. */
+static void json_put_pictures(const se3d_model *model)
+{
+    fputs("], \"pictures\": [", stdout);
+    for (size_t k = 0; k < se3d_model_count_pictures(model); ++k) {
+        se3d_model_picture picture;
+        se3d_model_get_picture(model, k, &picture);
+        fputs(k > 0 ? ", " : "", stdout);
+        json_put_text(picture.file);
+    }
+}
+
+static void print_json(const options *o, const se3d_model *model, const se3d_run *run,
+                       const char *message)
 {
     printf("{\"status\": \"%s\", \"model\": ", message[0] ? "failed" : "done");
     json_put_text(o->model);
@@ -116,6 +132,7 @@ static void print_json(const options *o, const se3d_run *run, const char *messag
             printf(", \"rows\": %" PRIu64 ", \"columns\": %zu}", file.rows, file.columns);
         }
     }
+    json_put_pictures(model);
     fputs("]}\n", stdout);
 }
 
@@ -160,27 +177,23 @@ static int write_scene(const options *o, se3d_scene *scene, const char *folder)
     return 1;
 }
 
-static int run_model(const options *o, se3d_model *model)
+/* Run, and leave the results and the scene in `folder`. */
+static int run_into(const options *o, se3d_model *model, const char *folder, se3d_scene **scene)
 {
     se3d_run_options how = se3d_run_options_default();
     se3d_run *run = NULL;
     se3d_model_error error;
     progress bar;
-    char *folder = results_folder(o, model);
-    if (!o->directory && !folder) {
-        report_failure(o, o->model, "out of memory");
-        return EXIT_FAILED;
-    }
     progress_begin(&bar, o->quiet || o->json, se3d_model_count_analyses(model));
-    how.directory = o->directory ? o->directory : folder;
-    watcher w = {&bar, NULL};
-    se3d_scene_create(model, &w.scene); /* without memory there is no scene */
+    how.directory = folder;
+    se3d_scene_create(model, scene); /* without memory there is no scene */
+    watcher w = {&bar, *scene};
     how.progress = watch;
     how.ctx = &w;
     const se3d_status status = se3d_model_run(model, &how, &run, &error);
     progress_end(&bar);
     if (o->json) {
-        print_json(o, run, error.message);
+        print_json(o, model, run, error.message);
     } else if (!o->quiet) {
         print_text(run);
     }
@@ -188,14 +201,82 @@ static int run_model(const options *o, se3d_model *model)
         fflush(stdout);
         fprintf(stderr, "%s: %s\n", o->model, error.message);
     }
-    const int drawn = se3d_run_count_files(run) == 0 || write_scene(o, w.scene, how.directory);
-    se3d_scene_destroy(w.scene);
+    const int drawn = se3d_run_count_files(run) == 0 || write_scene(o, *scene, folder);
+    const int nothing = se3d_run_count_files(run) == 0;
     se3d_run_destroy(run);
-    free(folder);
-    if (status == SE3D_ERR_UNSUPPORTED) {
-        return EXIT_USAGE;
+    if (status == SE3D_ERR_UNSUPPORTED || (SE3D_FAILED(status) && nothing)) {
+        se3d_scene_destroy(*scene); /* no pictures of nothing */
+        *scene = NULL;
     }
-    return SE3D_FAILED(status) || !drawn ? EXIT_FAILED : EXIT_DONE;
+    return status == SE3D_ERR_UNSUPPORTED  ? EXIT_USAGE
+           : SE3D_FAILED(status) || !drawn ? EXIT_FAILED
+                                           : EXIT_DONE;
+}
+
+/* `pictures`: the type of those to make, "" for none, NULL for all. */
+static int run_model(const options *o, se3d_model *model, const char *pictures)
+{
+    char *made = results_folder(o, model);
+    const char *folder = o->directory ? o->directory : made;
+    se3d_scene *scene = NULL;
+    if (!folder) {
+        report_failure(o, o->model, "out of memory");
+        return EXIT_FAILED;
+    }
+    int code = run_into(o, model, folder, &scene);
+    if (scene && pictures_make(model, scene, folder, pictures, o->quiet || o->json) != EXIT_DONE) {
+        code = code == EXIT_DONE ? EXIT_FAILED : code;
+    }
+    se3d_scene_destroy(scene);
+    free(made);
+    return code;
+}
+
+/* The first results that have channels. */
+static int find_csv(const options *o, const se3d_model *model, char *csv, size_t size)
+{
+    for (size_t k = 0; k < se3d_model_count_outputs(model); ++k) {
+        se3d_model_output output;
+        se3d_model_get_output(model, k, &output);
+        if (output.channel_count > 0) {
+            char *folder = results_folder(o, model);
+            const int length = folder ? snprintf(csv, size, "%s/%s", folder, output.file) : -1;
+            free(folder);
+            return length > 0 && (size_t)length < size;
+        }
+    }
+    return 0;
+}
+
+int run_for_plots(const char *path, int quiet, int draw, char *csv, size_t size)
+{
+    options o;
+    se3d_model *model = NULL;
+    memset(&o, 0, sizeof o);
+    o.model = path;
+    o.quiet = quiet;
+    const se3d_model_options how = options_get_model(&o);
+    int code = options_read_model(&o, &how, &model);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    int asked = 0;
+    for (size_t k = 0; k < se3d_model_count_pictures(model); ++k) {
+        se3d_model_picture picture;
+        se3d_model_get_picture(model, k, &picture);
+        asked = asked || strcmp(picture.type, "plot") == 0;
+    }
+    if (se3d_model_count_analyses(model) == 0 || !find_csv(&o, model, csv, size)) {
+        fprintf(stderr, "se3d plot: %s: there is nothing to run and draw\n", path);
+        code = EXIT_USAGE;
+    } else {
+        code = run_model(&o, model, draw && asked ? "plot" : "");
+    }
+    if (draw && asked) {
+        csv[0] = '\0'; /* drawn already */
+    }
+    se3d_model_destroy(model);
+    return code;
 }
 
 int command_run(int count, char *const *words)
@@ -220,7 +301,7 @@ int command_run(int count, char *const *words)
                        "the model, or give --analysis and --duration");
         code = EXIT_USAGE;
     } else {
-        code = run_model(&o, model);
+        code = run_model(&o, model, NULL);
     }
     se3d_model_destroy(model);
     return code;

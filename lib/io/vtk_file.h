@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One .vtp file: points with numbers, and cells made of them; the numbers follow the XML as raw
+ * bytes, little-endian. */
+#ifndef SE3D_IO_VTK_FILE_H
+#define SE3D_IO_VTK_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef enum se3di_vtk_section {
+    SE3DI_VTK_POINT_DATA = 0,
+    SE3DI_VTK_CELL_DATA = 1,
+    SE3DI_VTK_POINTS = 2,
+    SE3DI_VTK_VERTS = 3,
+    SE3DI_VTK_LINES = 4,
+    SE3DI_VTK_POLYS = 5,
+    SE3DI_VTK_SECTION_COUNT = 6
+} se3di_vtk_section;
+
+/* values[k * stride + i], i < width; without values: first + k * step. */
+typedef struct se3di_vtk_array {
+    se3di_vtk_section section;
+    const char *name;
+    const double *values;
+    size_t count, width, stride;
+    double first, step;
+    bool whole; /* 32-bit integers, else 32-bit floats */
+} se3di_vtk_array;
+
+typedef struct se3di_vtk_file {
+    size_t points, verts, lines, polys; /* how many */
+    const se3di_vtk_array *arrays;      /* in the order of their sections */
+    size_t array_count;
+} se3di_vtk_file;
+
+/* Write it under a temporary name, then rename. @return false: errno says why. */
+bool se3di_vtk_file_write(const se3di_vtk_file *file, const char *path);
+
+#endif

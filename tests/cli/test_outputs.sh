@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What the `output` of a model asks for: VTK series that VTK itself reads, plots, scenes; one that fails does not
+# lose the others.
+set -u
+program=${SE3D_PROGRAM:?the path of the se3d program}
+source=${SE3D_SOURCE_DIR:-.}
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+export SE3D_VIEWER="$source/tools/viewer" SE3D_CACHE="${SE3D_BUILD_DIR:-$dir}/viewer" SE3D_CHROMIUM="$dir/none"
+failures=0
+checks=0
+expect() {
+    name=$1
+    code=$2
+    shift 2
+    "$@" >"$dir/out" 2>"$dir/err"
+    actual=$?
+    holds "exit code $actual, expected $code: $(head -3 "$dir/err")" [ $actual -eq "$code" ]
+}
+holds() {
+    text=$1
+    shift
+    checks=$((checks + 1))
+    "$@" || { echo "$name: $text" >&2; failures=$((failures + 1)); }
+}
+says() {
+    holds "\`$1\` not in $(cat "$dir/err")" grep -qF -e "$1" "$dir/err"
+}
+cat >"$dir/head.yaml" <<'END_OF_YAML'
+se3d: 1
+title: A bar, a block on a spring
+bodies:
+  - name: bar
+    mass: 2
+    inertia: [0.1, 1, 1]
+    position: [1, 0, 0]
+    shapes: [{type: box, size: [2, 0.1, 0.2]}, {type: sphere, radius: 0.2, position: [1, 0, 0]}]
+  - {name: block, mass: 1, inertia: [1, 1, 1], position: [0, 2, -1], shapes: [{type: box, size: [0.5, 0.5, 0.5]}]}
+joints:
+  - {name: pin, type: revolute, body_i: ground, body_j: bar, at: [0, 0, 0], axis: [0, 1, 0]}
+  - {name: slide, type: prismatic, body_i: ground, body_j: block, at: [0, 2, 0], axis: [0, 0, 1]}
+forces:
+  - {name: spring, type: tsda, body_i: ground, body_j: block, point_i: [0, 2, 0], k: 100, l0: 1}
+END_OF_YAML
+model() { { cat "$dir/head.yaml"; echo 'analysis: {type: dynamics, duration: 1, step: 0.01}'; echo 'output:'; cat; } >"$dir/$1.yaml"; }
+
+model vtk <<'END_OF_YAML'
+  - {file: all.csv, channels: [bar.position, bar.orientation, bar.velocity, block.position, spring.length]}
+  - {vtk: motion.pvd, every: 0.125}
+END_OF_YAML
+expect 'a series' 0 "$program" run "$dir/vtk.yaml" -o "$dir/vtk"
+holds "no word of it in $(cat "$dir/out")" grep -qF "wrote $dir/vtk/motion.pvd: 9 times" "$dir/out"
+holds 'something unfinished is left' [ -z "$(find "$dir/vtk" -name '*.partial')" ]
+"$program" run -q "$source/examples/models/pushed_grains.yaml" -o "$dir/grains.csv.run"
+sed 's/^output:/output:\n  - {vtk: "g\&1.pvd", every: 0.25}/' "$source/examples/models/pushed_grains.yaml" >"$dir/grains.yaml"
+expect 'grains' 0 "$program" run "$dir/grains.yaml" -o "$dir/grains"
+cat >"$dir/read.py" <<'END_OF_PYTHON'
+import csv, os, sys, vtk
+import xml.etree.ElementTree as xml
+folder = sys.argv[1]
+def read(path):
+    reader = vtk.vtkXMLPolyDataReader()
+    problems = []
+    reader.AddObserver("ErrorEvent", lambda *_: problems.append(path))
+    reader.SetFileName(path)
+    reader.Update()
+    assert not problems, problems
+    return reader.GetOutput()
+def sets(path):
+    return [(float(d.get("timestep")), d.get("name"), os.path.join(os.path.dirname(path), d.get("file")))
+            for d in xml.parse(path).getroot().iter("DataSet")]
+series = sets(folder + "/vtk/motion.pvd")
+assert [s[0] for s in series] == [k * 0.125 for k in range(9)], series
+rows = {round(float(r["time"]), 9): r for r in csv.DictReader(open(folder + "/vtk/all.csv"))}
+sphere, box, cylinder, spring = 17 * 33, 24, 2 * 33 + 2 * 32, 195
+checks = 0
+for time, name, path in series:
+    data = read(path)
+    # bar: box, sphere, pin; block: box, slide; the spring: one line
+    assert data.GetNumberOfPoints() == 2 * box + sphere + 2 * cylinder + spring, data.GetNumberOfPoints()
+    assert data.GetNumberOfLines() == 1 and data.GetNumberOfVerts() == 0
+    assert data.GetNumberOfPolys() == 2 * 12 + 2 * 16 * 32 + 2 * (2 * 32 + 2 * 30), data.GetNumberOfPolys()
+    bodies = [data.GetCellData().GetArray("body").GetValue(k) for k in range(data.GetNumberOfCells())]
+    assert bodies[0] == -1 and set(bodies[1:]) == {1, 2} and bodies.count(2) == 12 + 124
+    points = data.GetPoints()
+    near = [r for t, r in rows.items() if abs(t - time) < 1e-9]
+    if near:  # the bar's box is first: its corners' middle is the bar's origin, its first corner turns with it
+        r = {k: float(v) for k, v in near[0].items()}
+        middle = [sum(points.GetPoint(k)[i] for k in range(box)) / box for i in range(3)]
+        assert max(abs(a - r["bar.position." + c]) for a, c in zip(middle, "xyz")) < 1e-5, (time, middle)
+        speed = data.GetPointData().GetArray("velocity")
+        mean = [sum(speed.GetTuple(k)[i] for k in range(box)) / box for i in range(3)]
+        assert max(abs(a - r["bar.velocity." + c]) for a, c in zip(mean, "xyz")) < 1e-5, (time, mean)
+        pin = range(box + sphere, box + sphere + cylinder)  # it stands still
+        assert all(abs(sum(speed.GetTuple(k)[i] for k in pin)) / cylinder < 0.02 for i in range(3)), time
+        ends = [points.GetPoint(data.GetNumberOfPoints() - k) for k in (spring, 1)]
+        length = sum((a - b) ** 2 for a, b in zip(*ends)) ** 0.5
+        assert abs(length - r["spring.length"]) < 1e-5, (time, length)
+        checks += 3
+assert checks >= 9, checks
+series = sets(folder + "/grains/g&1.pvd")
+snapshots = [n for n in os.listdir(folder + "/grains") if n.endswith(".csv")]
+table = next(list(csv.DictReader(open(folder + "/grains/" + n))) for n in sorted(snapshots)
+             if open(folder + "/grains/" + n).readline().startswith("time,id,radius"))
+for time, name, path in series:
+    if name != "grains":
+        continue
+    data = read(path)
+    now = [r for r in table if abs(float(r["time"]) - time) < 1e-9]
+    if now:
+        assert data.GetNumberOfPoints() == data.GetNumberOfVerts() == len(now), (time, len(now))
+        for k in range(0, len(now), 7):
+            place = data.GetPoints().GetPoint(k)
+            assert max(abs(a - float(now[k][c])) for a, c in zip(place, "xyz")) < 1e-6
+            assert abs(data.GetPointData().GetArray("radius").GetValue(k) - float(now[k]["radius"])) < 1e-8
+            assert data.GetPointData().GetArray("id").GetValue(k) == int(now[k]["id"])
+            w = data.GetPointData().GetArray("angular_velocity").GetTuple(k)
+            assert max(abs(a - float(now[k]["w" + c])) for a, c in zip(w, "xyz")) < 1e-4
+            checks += 4
+assert checks > 30, checks
+END_OF_PYTHON
+name='VTK'
+python=
+for candidate in python3 /usr/bin/python3; do
+    "$candidate" -c 'import vtk' 2>/dev/null && python=$candidate
+done
+if [ -n "$python" ]; then
+    holds 'does not read it back as it was' "$python" "$dir/read.py" "$dir"
+else
+    echo 'SKIPPED: no python3-vtk9: the series were not read back' >&2
+fi
+mkdir "$dir/blocked"
+: >"$dir/blocked/motion"
+expect 'a folder of a series that cannot be made' 1 "$program" run "$dir/vtk.yaml" -o "$dir/blocked"
+says 'blocked/motion.pvd: cannot be written: Not a directory'
+holds 'the CSV file is lost' [ "$(wc -l <"$dir/blocked/all.csv")" -eq 102 ]
+holds 'a list of nothing' [ ! -e "$dir/blocked/motion.pvd" ]
+expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 30; exec "$@"' sh "$program" run "$dir/vtk.yaml" -o "$dir/full"
+says 'File too large'
+holds 'something unfinished is left' [ -z "$(find "$dir/full" -name '*.partial')" ]
+
+model plots <<'END_OF_YAML'
+  - {plot: angle.svg, from: b.csv}
+  - {file: a.csv, channels: [bar.position, pin.force]}
+  - {file: b.csv, channels: [pin.angle, pin.rate]}
+  - {plot: phase.png, from: b.csv, x: pin.angle, channels: [pin.rate]}
+  - {plot: parts.svg, channels: [pin, bar.position.z]}
+  - {scene: motion.glb}
+  - {video: motion.mp4, speed: 4}
+END_OF_YAML
+if command -v gnuplot >/dev/null 2>&1; then
+    expect 'a film that cannot be made' 1 "$program" run "$dir/plots.yaml" -o "$dir/plots"
+    says 'apt-get install --no-install-recommends chromium'
+    for file in angle.svg angle.png phase.svg phase.png parts.svg parts.png motion.glb scene.glb a.csv b.csv; do
+        holds "no $file" [ -s "$dir/plots/$file" ]
+    done
+    holds 'the phase plot has another axis' grep -qF "set xlabel 'pin.angle [rad]'" "$dir/plots/phase.gp"
+    holds 'the default results are not the first' grep -qF "'a.csv'" "$dir/plots/parts.gp"
+    holds 'not all of the pin' grep -qF 'pin.force.y' "$dir/plots/parts.gp"
+    holds 'a film is left' [ ! -e "$dir/plots/motion.mp4" ]
+    (cd "$dir" && "$program" plot -q plots.yaml >out 2>err)
+    name='a plot straight from a model'
+    holds 'fails' [ $? -eq 0 ]
+    holds 'lacks what the model asks for' [ -s "$dir/results/plots/parts.svg" ]
+    (cd "$dir" && "$program" plot -q vtk.yaml -y spring.length -o direct.svg >out 2>err)
+    holds 'with a channel fails' [ -s "$dir/direct.png" ]
+else
+    echo 'SKIPPED: no gnuplot: no plots were drawn' >&2
+fi
+model only <<'END_OF_YAML'
+  - {scene: motion.glb}
+END_OF_YAML
+expect 'a scene alone' 0 "$program" run --json "$dir/only.yaml" -o "$dir/only"
+holds 'has no results beside it' [ -s "$dir/only/results.csv" -a -s "$dir/only/motion.glb" ]
+holds "JSON says otherwise: $(cat "$dir/out")" grep -qF '"pictures": ["motion.glb"]' "$dir/out"
+echo "$checks checks, $failures failed"
+[ $failures -eq 0 ]
