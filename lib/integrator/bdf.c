@@ -75,7 +75,9 @@ static bdf begin(se3di_integration *integration)
 
 static se3di_state_scale get_scale(const bdf *m)
 {
-    return (se3di_state_scale){m->header[BDF_LENGTH], m->header[BDF_SPEED], m->header[BDF_SPIN]};
+    return (se3di_state_scale){.length = m->header[BDF_LENGTH],
+                               .speed = m->header[BDF_SPEED],
+                               .spin = m->header[BDF_SPIN]};
 }
 
 /* The largest part of an error vector, relative to tolerance and scales. */

@@ -20,10 +20,14 @@ enum {
     RK_LENGTH,   /* scales */
     RK_SPEED,
     RK_SPIN,
+    RK_ENERGY,
+    RK_ENERGY_MIN, /* what the potential at the start says of the size of energies */
     RK_HEADER
 };
 
 #define REGULARISATION 1e-8 /* see se3di_state_begin */
+
+#define WORK_WEIGHT 0.1 /* of the error of works: it disturbs nothing but the audit of energy */
 
 #define RK_FORMS   (3 + SE3DI_RK_DENSE_MAX)
 #define RK_VECTORS (3 + RK_FORMS)
@@ -96,7 +100,8 @@ static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
 
 static se3di_state_scale get_scale(const rk *m)
 {
-    return (se3di_state_scale){m->header[RK_LENGTH], m->header[RK_SPEED], m->header[RK_SPIN]};
+    return (se3di_state_scale){m->header[RK_LENGTH], m->header[RK_SPEED], m->header[RK_SPIN],
+                               m->header[RK_ENERGY]};
 }
 
 static void grow_scale(rk *m, const double *derivative)
@@ -105,6 +110,7 @@ static void grow_scale(rk *m, const double *derivative)
     se3di_state_scale_grow(m->assembly, derivative, &scale);
     m->header[RK_SPEED] = scale.speed;
     m->header[RK_SPIN] = scale.spin;
+    m->header[RK_ENERGY] = fmax(scale.energy, m->header[RK_ENERGY_MIN]);
 }
 
 /* out = base + h sum_k coefficients_k K_k; base may be NULL. */
@@ -164,7 +170,9 @@ static double measure(const rk *m, const double *error)
     }
     r = sqrt(r) / m->header[RK_LENGTH] + 2.0 * sqrt(p);
     v = sqrt(v) / m->header[RK_SPEED] + sqrt(w) / m->header[RK_SPIN];
-    return (r + v) / m->tolerance;
+    const double *work = error + m->count - SE3DI_STATE_WORK;
+    double e = se3di_norm(work) / m->header[RK_ENERGY];
+    return (r + v + WORK_WEIGHT * e) / m->tolerance;
 }
 
 /* The error of the step, relative to the tolerance. */
@@ -390,7 +398,13 @@ se3d_status se3di_rk_start(se3di_integration *integration, const se3di_rk_tablea
     memset(m.y0, 0, (RK_FORMS + 1) * m.count * sizeof *m.y0);
     m.header[RK_LENGTH] = se3di_state_length(m.assembly->model);
     m.header[RK_ERROR] = 1e-2;
-    se3d_status status = adopt(&m);
+    double potential;
+    const se3di_model *model = m.assembly->model;
+    se3d_status status = se3di_forces_potential(model, model->time, &potential);
+    if (status >= 0) {
+        m.header[RK_ENERGY_MIN] = 1e-3 * fabs(potential);
+        status = adopt(&m);
+    }
     if (status >= 0) {
         m.header[RK_NEXT] = choose_first(&m);
     }

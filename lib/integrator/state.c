@@ -269,21 +269,38 @@ double se3di_state_length(const se3di_model *model)
     return length > 1e-9 ? length : 1.0;
 }
 
+/* Kinetic energy, what the acceleration makes of it on the way `length` and a turn of 1 rad, and a
+ * little of what the applied forces could. */
+static double body_energy(const se3di_assembly *assembly, uint32_t body, const double *derivative,
+                          double length)
+{
+    const se3di_body *b = &assembly->model->bodies[body];
+    const se3di_frame *frame = &assembly->model->frames[body];
+    const double *wrench = assembly->wrench + 6 * (size_t)body;
+    double J = fmax(b->J[0], fmax(b->J[1], b->J[2]));
+    double v2 = se3di_dot(frame->v, frame->v) + se3di_norm(derivative + 7) * length;
+    double w2 = se3di_dot(frame->w, frame->w) + se3di_norm(derivative + 10);
+    double applied = se3di_norm(wrench) * length + se3di_norm(wrench + 3);
+    return 0.5 * (b->mass * v2 + J * w2) + 1e-3 * applied;
+}
+
 void se3di_state_scale_grow(const se3di_assembly *assembly, const double *derivative,
                             se3di_state_scale *scale)
 {
-    double a = 0.0, wdot = 0.0, v = 1e-12, w = 1e-12;
+    double a = 0.0, wdot = 0.0, v = 1e-12, w = 1e-12, energy = 1e-24;
     for (uint32_t k = 0; k < assembly->body_count; ++k, derivative += SE3DI_STATE_SIZE) {
         const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
         v = fmax(v, se3di_dot(frame->v, frame->v));
         w = fmax(w, se3di_dot(frame->w, frame->w));
         a = fmax(a, se3di_dot(derivative + 7, derivative + 7));
         wdot = fmax(wdot, se3di_dot(derivative + 10, derivative + 10));
+        energy += body_energy(assembly, assembly->free_body[k], derivative, scale->length);
     }
     v = fmax(sqrt(v), sqrt(sqrt(a) * scale->length));
     w = fmax(sqrt(w), sqrt(sqrt(wdot)));
     scale->speed = fmax(0.95 * scale->speed, v);
     scale->spin = fmax(0.95 * scale->spin, w);
+    scale->energy = fmax(0.95 * scale->energy, energy);
 }
 
 se3d_status se3di_state_publish(se3di_equations *equations, const double *y, double t,

@@ -15,7 +15,7 @@
 
 /* Characteristic sizes that errors are measured by. */
 typedef struct se3di_state_scale {
-    double length, speed, spin; /* [m], [m/s], [rad/s] */
+    double length, speed, spin, energy; /* [m], [m/s], [rad/s], [J] */
 } se3di_state_scale;
 
 size_t se3di_state_count(const se3di_assembly *assembly);
@@ -44,7 +44,7 @@ se3d_status se3di_state_project(se3di_equations *equations, double t,
 
 /* Length of the mechanism's parts. */
 double se3di_state_length(const se3di_model *model);
-/* Grow speed and spin to those of the present state with derivative `derivative`. */
+/* Grow speed, spin and energy to those of the present state with derivative `derivative`. */
 void se3di_state_scale_grow(const se3di_assembly *assembly, const double *derivative,
                             se3di_state_scale *scale);
 

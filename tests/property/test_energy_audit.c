@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The audit of energy closes on every example model under dynamics with dop853, in both
+ * formulations:
+ *
+ *     kinetic + potential + dissipated - actuators - drivers = constant
+ *
+ * to 1e-8 of the largest of these at tolerance 1e-9, and to 1e-6 at the default tolerance. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <dirent.h>
+#include <stdlib.h>
+
+#include "check.h"
+#include "se3d/io.h"
+
+enum { SAMPLES = 200 };
+
+typedef struct audit {
+    double balance, largest; /* [J] */
+} audit;
+
+static audit measure(const se3d_system *system)
+{
+    se3d_energy energy;
+    se3d_work work;
+    CHECK(!se3d_system_get_energy(system, &energy));
+    CHECK(!se3d_system_get_work(system, &work));
+    audit a = {.balance = energy.kinetic + energy.potential + work.dissipated - work.actuators -
+                          work.drivers,
+               .largest = fmax(fabs(energy.kinetic), fabs(energy.potential))};
+    a.largest = fmax(a.largest, fmax(fabs(work.dissipated), fabs(work.actuators)));
+    a.largest = fmax(a.largest, fabs(work.drivers));
+    return a;
+}
+
+/* The largest gap of the balance over a run, relative to the largest part. */
+static double audit_run(se3d_system *system, const se3d_solver_def *def, double duration)
+{
+    se3d_solver *solver = NULL;
+    double gap = 0.0, largest = 1e-12, first = 0.0;
+    CHECK(!se3d_solver_create(system, def, &solver));
+    for (int k = 0; k <= SAMPLES; ++k) {
+        se3d_status status = se3d_solver_run(solver, duration * k / SAMPLES);
+        if (status < 0) {
+            printf("%s\n", se3d_system_get_error(system));
+        }
+        CHECK(status >= 0);
+        audit a = measure(system);
+        first = k == 0 ? a.balance : first;
+        gap = fmax(gap, fabs(a.balance - first));
+        largest = fmax(largest, a.largest);
+    }
+    se3d_solver_destroy(solver);
+    return gap / largest;
+}
+
+/* Run analysis `index` with a tolerance of its own. */
+static double audit_analysis(const char *path, size_t index, int32_t formulation, double tolerance)
+{
+    se3d_model *model = NULL;
+    se3d_model_error error;
+    se3d_model_analysis analysis;
+    se3d_solver_def def = se3d_solver_def_default();
+    CHECK(!se3d_model_read_file(path, NULL, &model, &error));
+    CHECK(!se3d_model_get_analysis(model, index, &analysis));
+    CHECK(!se3d_model_get_solver(model, index, &def));
+    def.formulation = formulation;
+    def.method = SE3D_METHOD_DOP853;
+    def.step = 0.0;
+    def.tolerance = tolerance;
+    double gap = audit_run(se3d_model_get_system(model), &def, analysis.duration);
+    se3d_model_destroy(model);
+    return gap;
+}
+
+static int audit_model(const char *path, const char *name)
+{
+    se3d_model *model = NULL;
+    se3d_model_error error;
+    int audited = 0;
+    if (se3d_model_read_file(path, NULL, &model, &error) < 0) {
+        return 0; /* no model of motion */
+    }
+    for (size_t k = 0; k < se3d_model_count_analyses(model); ++k) {
+        se3d_model_analysis analysis;
+        CHECK(!se3d_model_get_analysis(model, k, &analysis));
+        if (strcmp(analysis.type, "dynamics") == 0) {
+            double romega = audit_analysis(path, k, SE3D_FORMULATION_ROMEGA, 1e-9);
+            double rp = audit_analysis(path, k, SE3D_FORMULATION_RP, 1e-9);
+            double usual = audit_analysis(path, k, SE3D_FORMULATION_ROMEGA, 1e-6);
+            printf("%-30s %.1e (rp %.1e, at the default tolerance %.1e)\n", name, romega, rp,
+                   usual);
+            CHECK(romega <= 1e-8);
+            CHECK(rp <= 1e-8);
+            CHECK(usual <= 1e-6);
+            ++audited;
+        }
+    }
+    se3d_model_destroy(model);
+    return audited;
+}
+
+static void energy_audit_closes_on_every_example(void)
+{
+    const char *root = getenv("SE3D_SOURCE_DIR");
+    char folder[600], path[900];
+    int audited = 0;
+    snprintf(folder, sizeof folder, "%.500s/examples/models", root ? root : ".");
+    DIR *directory = opendir(folder);
+    CHECK(directory != NULL);
+    for (struct dirent *entry; directory && (entry = readdir(directory));) {
+        size_t length = strlen(entry->d_name);
+        if (length > 5 && strcmp(entry->d_name + length - 5, ".yaml") == 0) {
+            snprintf(path, sizeof path, "%s/%.255s", folder, entry->d_name);
+            audited += audit_model(path, entry->d_name);
+        }
+    }
+    if (directory) {
+        closedir(directory);
+    }
+    CHECK(audited >= 10);
+}
+
+int main(void)
+{
+    RUN(energy_audit_closes_on_every_example);
+    return check_finish();
+}
