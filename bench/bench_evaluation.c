@@ -19,6 +19,9 @@ static void measure(const bench_request *request, se3di_equations *equations, be
     for (int round = 0; round < ROUNDS; ++round) {
         double begin = bench_clock();
         for (int k = 0; k < evaluations; ++k) {
+            if (k % 12 == 0) { /* as in a step of dop853 */
+                se3di_state_begin_step(equations, 0.0);
+            }
             (void)se3di_state_evaluate(equations, 0.0);
         }
         answer->seconds = fmin(answer->seconds, bench_clock() - begin);

@@ -62,11 +62,10 @@ static void chain_init(chain *s, int32_t links, int32_t rows, int32_t n, bool ma
         }
         s->body_of[end++] = i;
         s->begin[i + 1] = end;
-        double *H = s->body + (mass ? 10 : n * n) * i;
-        for (int32_t r = 0; r < (mass ? 3 : n == 8 ? 7 : n); ++r) {
-            H[mass ? 1 + 4 * r : r * (n + 1)] = 1.0 + 0.2 * r;
+        double *H = s->body + n * n * i;
+        for (int32_t r = 0; r < (n == 8 ? 7 : n); ++r) {
+            H[r * (n + 1)] = mass && r < 3 ? 1.0 : 1.0 + 0.2 * r;
         }
-        H[0] = 1.0;
         if (n == 8) {
             H[3 * 8 + 7] = H[7 * 8 + 3] = 1.0;
         }

@@ -22,6 +22,7 @@ enum {
     RK_SPIN,
     RK_ENERGY,
     RK_ENERGY_MIN, /* what the potential at the start says of the size of energies */
+    RK_REDUNDANT, /* the fewest dependent rows so far */
     RK_HEADER
 };
 
@@ -94,7 +95,7 @@ static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
         .sum3 = integration->work + (SE3DI_RK_MAX + 2) * count,
         .tolerance = inner_tolerance(integration->settings.tolerance),
     };
-    m.kkt = se3di_state_begin(m.equations, REGULARISATION, fmin(1e-12, 1e-5 * m.tolerance));
+    m.kkt = se3di_state_begin(m.equations, REGULARISATION, fmin(1e-6, 1e-3 * m.tolerance));
     return m;
 }
 
@@ -199,6 +200,7 @@ static se3d_status attempt(rk *m, double h, double *error)
     memcpy(m->y0, m->y1, m->count * sizeof *m->y0);
     memcpy(m->K, m->f1, m->count * sizeof *m->K);
     *error = HUGE_VAL;
+    se3di_state_begin_step(m->equations, m->header[RK_REDUNDANT]);
     for (int k = 1; k < tableau->stages; ++k) {
         SE3DI_TRY(evaluate_stage(m, t, h, k));
     }
@@ -232,6 +234,8 @@ static void accept(rk *m, double h)
     memcpy(m->y1 + work, m->y, SE3DI_STATE_WORK * sizeof *m->y);
     memcpy(m->f1, m->K + (size_t)m->tableau->stages * m->count, m->count * sizeof *m->f1);
     grow_scale(m, m->f1);
+    double dependent = se3di_kkt_get_dependent_rows(m->equations->kkt);
+    m->header[RK_REDUNDANT] = fmin(m->header[RK_REDUNDANT], dependent);
     se3di_angles_accept(m->assembly->model);
     se3di_forces_accept(m->assembly->model);
     ++m->equations->counters.steps;
@@ -398,6 +402,7 @@ se3d_status se3di_rk_start(se3di_integration *integration, const se3di_rk_tablea
     memset(m.y0, 0, (RK_FORMS + 1) * m.count * sizeof *m.y0);
     m.header[RK_LENGTH] = se3di_state_length(m.assembly->model);
     m.header[RK_ERROR] = 1e-2;
+    m.header[RK_REDUNDANT] = (double)m.assembly->row_count;
     double potential;
     const se3di_model *model = m.assembly->model;
     se3d_status status = se3di_forces_potential(model, model->time, &potential);

@@ -76,6 +76,7 @@ se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, dou
     settings.tolerance = fmax(settings.tolerance, accuracy);
     settings.max_refinements = 2;
     settings.always_check = false;
+    settings.any_multipliers = !has_power(&equations->assembly);
     se3di_kkt_set_settings(equations->kkt, &settings);
     if (equations->assembly.formulation->block == 6) {
         se3di_assembly_eval_mass(&equations->assembly);
@@ -83,8 +84,17 @@ se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, dou
     return before;
 }
 
+void se3di_state_begin_step(se3di_equations *equations, double redundant)
+{
+    se3di_kkt_settings settings = se3di_kkt_get_settings(equations->kkt);
+    settings.redundant_rows = (int32_t)redundant;
+    se3di_kkt_set_settings(equations->kkt, &settings);
+    se3di_kkt_hold(equations->kkt, equations->assembly.formulation->block == 6);
+}
+
 void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *settings)
 {
+    se3di_kkt_hold(equations->kkt, false);
     se3di_kkt_set_settings(equations->kkt, settings);
 }
 

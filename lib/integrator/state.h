@@ -33,6 +33,10 @@ se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const dou
  * (eps / (eps + sigma^2))^3 of a constraint direction of relative size sigma is not enforced, where
  * its multiplier has no leverage anyway; errors are amplified by eps^(-1/2) at most. */
 se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, double accuracy);
+/* Before the evaluations of one step: what changes little within it (and must not depend on the
+ * steps before) is kept. `redundant`: rows that have been dependent all along; where there are
+ * more, the position is nearly singular. */
+void se3di_state_begin_step(se3di_equations *equations, double redundant);
 void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *settings);
 /* Accelerations at the present frames into equations->x, multipliers into equations->l; without the
  * checks and records of se3di_acceleration_solve. */

@@ -347,6 +347,11 @@ se3di_kkt_level se3di_kkt_get_level(const se3di_kkt *kkt)
     return kkt->level;
 }
 
+int32_t se3di_kkt_get_dependent_rows(const se3di_kkt *kkt)
+{
+    return kkt->dependent_rows;
+}
+
 double se3di_kkt_get_cost(const se3di_kkt *kkt)
 {
     return kkt->cost;

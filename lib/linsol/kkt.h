@@ -31,8 +31,8 @@ typedef enum se3di_kkt_kind {
 } se3di_kkt_kind;
 
 typedef enum se3di_kkt_body_kind {
-    SE3DI_KKT_BODY_FULL = 0, /* values.body: n x n a body, row-major */
-    SE3DI_KKT_BODY_MASS = 1  /* n = 6, H = diag(m, m, m, J): values.body is m, J[9]: 10 a body */
+    SE3DI_KKT_BODY_FULL = 0,
+    SE3DI_KKT_BODY_MASS = 1 /* n = 6 and every H = diag(m, m, m, J), J 3 x 3 */
 } se3di_kkt_body_kind;
 
 /* Instruction level of the kernels. PORTABLE gives the same bits on every machine. */
@@ -66,7 +66,7 @@ typedef struct se3di_kkt_pattern {
  * Of each only the lower triangle is factored. Unsymmetric blocks are arbitrary; rows are pivoted
  * inside a block. */
 typedef struct se3di_kkt_values {
-    const double *body;           /* see se3di_kkt_body_kind */
+    const double *body;           /* H: n x n a body, row-major */
     const double *coupling_upper; /* H_ij, n x n each */
     const double *coupling_lower; /* H_ji, n x n each; unsymmetric mode only */
     const double *joint;          /* C: m x n for each entry of joint_body, see layout */
@@ -94,7 +94,9 @@ typedef struct se3di_kkt_settings {
     double tolerance; /* of the relative residual; 1e-15 */
     int32_t max_refinements;
     se3di_kkt_regularise regularise;
-    bool always_check; /* compute the residual also where the pivots promise full accuracy */
+    bool always_check;      /* compute the residual also where the pivots promise the tolerance */
+    bool any_multipliers;   /* of dependent rows: they need not be those of least norm */
+    int32_t redundant_rows; /* with any_multipliers: rows known to depend on the others */
 } se3di_kkt_settings;
 
 typedef struct se3di_kkt_factor_info {
@@ -130,7 +132,13 @@ void se3di_kkt_set_settings(se3di_kkt *kkt, const se3di_kkt_settings *settings);
 se3di_kkt_level se3di_kkt_get_level(const se3di_kkt *kkt); /* that is really used */
 
 /* Estimated cost of factor and one solve, in vector operations; for the choice of orders. */
+int32_t se3di_kkt_get_dependent_rows(const se3di_kkt *kkt); /* of the last factorisation */
 double se3di_kkt_get_cost(const se3di_kkt *kkt);
+
+/* Promise that body blocks stay as they are from the next factorisation on: what follows from them
+ * alone is then kept, and so are the weights that pivots are measured by. `hold` false, or another
+ * call: from then on everything is new. */
+void se3di_kkt_hold(se3di_kkt *kkt, bool hold);
 
 /* Factor. `info` may be NULL.
  * @return SE3D_OK, SE3D_INFO_REDUNDANT (dependent rows), SE3D_ERR_NOT_FINITE (values),

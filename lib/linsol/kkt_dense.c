@@ -48,14 +48,7 @@ static void put_bodies(se3di_kkt *kkt, const se3di_kkt_values *v, size_t total)
     size_t block = (size_t)(n * n);
     for (size_t i = 0; i < p->body_count; ++i) {
         double *A = kkt->dense + i * (size_t)n * (total + 1);
-        if (p->body_kind == SE3DI_KKT_BODY_MASS) {
-            for (size_t c = 0; c < 3; ++c) {
-                A[c * (total + 1)] = v->body[10 * i];
-            }
-            put_block(A + 3 * (total + 1), total, v->body + 10 * i + 1, 3, 3, false);
-        } else {
-            put_block(A, total, v->body + i * block, n, n, false);
-        }
+        put_block(A, total, v->body + i * block, n, n, false);
     }
     for (size_t e = 0; e < p->coupling_count; ++e) {
         size_t i = (size_t)(p->coupling[2 * e] * n), j = (size_t)(p->coupling[2 * e + 1] * n);

@@ -16,6 +16,8 @@
 /* A dependent row's pivot is E / n^2, n the row's entry in the unit vector of the dependence; below
  * this multiple of E a pivot is taken to have vanished. */
 #define KKT_VANISHED 1e4
+/* Of dependent rows it is some 30 to 100 E; one above this multiple is of its own size. */
+#define KKT_CLEARLY_DEPENDENT 300.0
 
 /* Arrays of the caller's values. */
 enum {
@@ -33,7 +35,6 @@ typedef struct se3di_kkt_source {
     int32_t rows;
     bool lower;     /* into `lower` */
     bool is_turned; /* the transpose */
-    bool is_mass;   /* diag(m, m, m, J) from m, J */
     size_t source, dest;
 } se3di_kkt_source;
 
@@ -48,6 +49,9 @@ typedef struct se3di_kkt_core {
     /* mobility and kkt->weight = diag(C H^-1 B) with the diagonal of H only. */
     void (*weigh)(se3di_kkt *kkt, const se3di_kkt_values *values);
 } se3di_kkt_core;
+
+/* Whether body blocks and weights are those of the factorisation before, see se3di_kkt_hold. */
+typedef enum kkt_hold { KKT_FREE = 0, KKT_HOLD_NEXT = 1, KKT_HELD = 2 } kkt_hold;
 
 typedef struct se3di_kkt_block_list {
     void *memory;
@@ -88,7 +92,7 @@ struct se3di_kkt {
     int32_t *position_of;  /* node -> position */
     int32_t *size_at;      /* position -> size */
     int32_t *row_at;       /* position -> first row of a joint's node, -1 for a body */
-    bool *is_mass_at;      /* position -> whether its block is diag(m, m, m, J) when eliminated */
+    bool *is_untouched_at; /* position -> a body whose block no elimination before it changes */
     int32_t *near_begin;   /* [node_count + 1] into near */
     int32_t *near;         /* positions > k, ascending */
     size_t *panel;         /* [node_count + 1]: offset of each panel */
@@ -113,14 +117,19 @@ struct se3di_kkt {
     double *residual_b, *residual_c, *correction_x, *correction_l, *saved_l;
     double *magnitude; /* [unknown_count]: work of the residual */
     double scale_b, scale_c;
-    double *ratio; /* [row_count]: before a factorisation, a bound that pivots of dependent
-                      rows are below; then each pivot relative to its weight */
+    double *ratio; /* [row_count]: where some pivot is small, each relative to its weight */
+    double
+        ratio_bound; /* pivots of dependent rows are below this multiple of `ratio`; 0: unknown */
+    kkt_hold hold;
+    bool has_ratio;    /* `ratio` is of the last factorisation */
+    bool bodies_first; /* no body is changed by eliminating joints: S = C H^-1 C^T is factored */
 
     /* outcome of a factorisation */
     double eps, middle; /* of the last factorisation: E = eps middle, nearly */
     int32_t factorisations;
-    double min_pivot; /* relative, with E */
-    double min_sigma; /* smallest relative pivot without E above 1e-13 */
+    double min_pivot;   /* relative, with E */
+    double min_sigma;   /* smallest relative pivot without E above 1e-13 */
+    double least_clear; /* smallest relative pivot that is not clearly a dependent row's */
     int32_t dependent_rows, near_dependent, negative_pivots;
     bool finite;
 

@@ -12,6 +12,7 @@
 
 static const double pivot_vanishes = 1e-12; /* relative; then E = 0 is given up */
 static const double pivot_is_good = 1e-4;   /* relative; then a solve with E = 0 needs no check */
+static const double pivot_is_safe = 1e-11;  /* the same where bodies go before their joints */
 static const double weight_range = 1e4;
 
 /* ---- factor ---- */
@@ -40,12 +41,12 @@ static void factor_once(se3di_kkt *kkt, const se3di_kkt_values *values, double e
             e = e > w * weight_range ? w * weight_range : e;
         }
         kkt->e[i] = eps * e;
-        /* the pivot of a dependent row is proportional to eps, another one is not */
-        kkt->ratio[i] = again ? 30.0 * eps / kkt->eps * kkt->ratio[i] : HUGE_VAL;
     }
+    /* the pivot of a dependent row is proportional to eps, another one is not */
+    kkt->ratio_bound = again && kkt->has_ratio ? 30.0 * eps / kkt->eps : 0.0;
     kkt->eps = eps;
     kkt->finite = true;
-    kkt->min_pivot = kkt->min_sigma = 1.0;
+    kkt->min_pivot = kkt->min_sigma = kkt->least_clear = 1.0;
     kkt->dependent_rows = kkt->near_dependent = kkt->negative_pivots = 0;
     ++kkt->factorisations;
     if (kkt->kind == SE3DI_KKT_DENSE) {
@@ -63,7 +64,6 @@ static bool plain_is_enough(const se3di_kkt *kkt)
 static void factor_suitably(se3di_kkt *kkt, const se3di_kkt_values *values)
 {
     const se3di_kkt_settings *s = &kkt->settings;
-    kkt->middle = middle_weight(kkt);
     bool late = s->regularise == SE3DI_KKT_REGULARISE_LATE ||
                 (s->regularise == SE3DI_KKT_REGULARISE_AUTO && !kkt->has_loop);
     if (late && kkt->kind == SE3DI_KKT_STRUCTURED) {
@@ -98,8 +98,7 @@ static bool values_are_finite(const se3di_kkt *kkt, const se3di_kkt_values *v)
 {
     const se3di_kkt_pattern *p = &kkt->pattern;
     size_t block = (size_t)(p->body_size * p->body_size);
-    size_t stride = p->body_kind == SE3DI_KKT_BODY_MASS ? 10 : block;
-    bool finite = all_finite(v->body, p->body_count * stride) &&
+    bool finite = all_finite(v->body, p->body_count * block) &&
                   all_finite(v->coupling_upper, p->coupling_count * block) &&
                   all_finite(v->joint, kkt->layout.joint_value_count);
     if (finite && !p->symmetric) {
@@ -109,12 +108,21 @@ static bool values_are_finite(const se3di_kkt *kkt, const se3di_kkt_values *v)
     return finite;
 }
 
+void se3di_kkt_hold(se3di_kkt *kkt, bool hold)
+{
+    kkt->hold = hold ? KKT_HOLD_NEXT : KKT_FREE;
+}
+
 se3d_status se3di_kkt_factor(se3di_kkt *kkt, const se3di_kkt_values *values,
                              se3di_kkt_factor_info *info)
 {
     kkt->factorisations = 0;
-    kkt->core->weigh(kkt, values);
+    if (kkt->hold != KKT_HELD) {
+        kkt->core->weigh(kkt, values);
+        kkt->middle = middle_weight(kkt);
+    }
     factor_suitably(kkt, values);
+    kkt->hold = kkt->hold != KKT_FREE && kkt->finite ? KKT_HELD : kkt->hold;
     if (info) {
         *info = (se3di_kkt_factor_info){.factorisations = kkt->factorisations,
                                         .dependent_rows = kkt->dependent_rows,
@@ -253,6 +261,34 @@ static void clear_multipliers(se3di_kkt *kkt, double *l)
     }
 }
 
+/* How many refinements reach the tolerance for certain, -1 where only a look at the residual can
+ * tell. With E = 0 and bodies before their joints, S = C H^-1 C^T is factored as Cholesky does: the
+ * residual is at rounding whatever the pivots. With E > 0 a solution leaves eps / sigma of the
+ * error. A row that is not known to be redundant and seems dependent is nearly so: sigma is small.
+ */
+static int32_t count_refinements(const se3di_kkt *kkt)
+{
+    const se3di_kkt_settings *s = &kkt->settings;
+    if (s->always_check || kkt->negative_pivots > 0 || kkt->kind == SE3DI_KKT_DENSE) {
+        return -1;
+    }
+    if (!(kkt->eps > 0.0)) {
+        bool is_safe = kkt->bodies_first && kkt->pattern.symmetric;
+        return kkt->min_pivot > (is_safe ? pivot_is_safe : pivot_is_good) ? 0 : -1;
+    }
+    if (!s->any_multipliers || kkt->dependent_rows + kkt->near_dependent > s->redundant_rows) {
+        return -1;
+    }
+    double rate = kkt->eps / kkt->least_clear, error = rate;
+    for (int32_t count = 0; count <= s->max_refinements; ++count) {
+        if (error <= s->tolerance) {
+            return count;
+        }
+        error *= rate;
+    }
+    return -1;
+}
+
 /* Rows that are dependent at eps may be nearly dependent only; then refinement is slow, and a
  * smaller eps tells them apart and is fast. */
 static void refine_suitably(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
@@ -340,11 +376,16 @@ se3d_status se3di_kkt_solve(se3di_kkt *kkt, const se3di_kkt_values *values, cons
     const kkt_problem problem = {values, b, c};
     clear_multipliers(kkt, l);
     solve_once(kkt, b, c, x, l);
-    bool sure = !(kkt->eps > 0.0) && kkt->min_pivot > pivot_is_good && kkt->negative_pivots == 0;
-    if (kkt->settings.always_check || !sure) {
+    const int32_t count = count_refinements(kkt);
+    for (; own.refinements < count; ++own.refinements) {
+        kkt->core->residual(kkt, values, b, c, x, l);
+        solve_once(kkt, kkt->residual_b, kkt->residual_c, kkt->correction_x, kkt->correction_l);
+        add_correction(kkt, 1.0, x, l);
+    }
+    if (count < 0) {
         refine_suitably(kkt, &problem, x, l, &own);
     }
-    if (kkt->dependent_rows > 0) {
+    if (kkt->dependent_rows > 0 && !kkt->settings.any_multipliers) {
         project(kkt, &problem, x, l, &own);
     }
     se3d_status status = judge(kkt, x, l, &own);

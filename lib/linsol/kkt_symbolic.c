@@ -12,7 +12,7 @@ static se3d_status take_structure(se3di_kkt *kkt, const se3di_kkt_fill *fill)
     kkt->position_of = se3di_kkt_take(kkt, n, sizeof(int32_t));
     kkt->size_at = se3di_kkt_take(kkt, n, sizeof(int32_t));
     kkt->row_at = se3di_kkt_take(kkt, n, sizeof(int32_t));
-    kkt->is_mass_at = se3di_kkt_take(kkt, n, sizeof(bool));
+    kkt->is_untouched_at = se3di_kkt_take(kkt, n, sizeof(bool));
     kkt->near_begin = se3di_kkt_take(kkt, n + 1, sizeof(int32_t));
     kkt->near = se3di_kkt_take(kkt, near_count, sizeof(int32_t));
     kkt->panel = se3di_kkt_take(kkt, n + 1, sizeof(size_t));
@@ -31,8 +31,7 @@ static se3d_status take_structure(se3di_kkt *kkt, const se3di_kkt_fill *fill)
         kkt->size_at[k] = (int32_t)size;
         int32_t node = kkt->node_at[k], joint = kkt->node_joint[node];
         kkt->row_at[k] = joint < 0 ? -1 : kkt->row_offset[joint] + kkt->node_row[node];
-        kkt->is_mass_at[k] =
-            joint < 0 && kkt->pattern.symmetric && kkt->pattern.body_kind == SE3DI_KKT_BODY_MASS;
+        kkt->is_untouched_at[k] = joint < 0 && kkt->pattern.symmetric;
         kkt->panel[k + 1] = kkt->panel[k] + size * KKT_LANES * (1 + degree);
         kkt->update_begin[k + 1] = kkt->update_begin[k] + degree * (degree + 1) / 2;
         if ((int32_t)degree > kkt->max_degree) {
@@ -40,7 +39,11 @@ static se3d_status take_structure(se3di_kkt *kkt, const se3di_kkt_fill *fill)
         }
     }
     for (size_t i = 0; i < near_count; ++i) { /* it receives fill-in */
-        kkt->is_mass_at[kkt->near[i]] = false;
+        kkt->is_untouched_at[kkt->near[i]] = false;
+    }
+    kkt->bodies_first = true;
+    for (size_t k = 0; k < n; ++k) {
+        kkt->bodies_first = kkt->bodies_first && (kkt->is_untouched_at[k] || kkt->row_at[k] >= 0);
     }
     return SE3D_OK;
 }
@@ -129,14 +132,12 @@ static void add_body_sources(const source_list *list)
 {
     const se3di_kkt *kkt = list->kkt;
     int32_t n = kkt->pattern.body_size;
-    bool mass = kkt->pattern.body_kind == SE3DI_KKT_BODY_MASS;
     for (size_t i = 0; i < kkt->pattern.body_count; ++i) {
         int32_t k = kkt->position_of[i];
         add_source(list, k,
                    (se3di_kkt_source){.base = KKT_BASE_BODY,
                                       .rows = n,
-                                      .is_mass = mass,
-                                      .source = i * (mass ? 10 : (size_t)(n * n)),
+                                      .source = i * (size_t)(n * n),
                                       .dest = kkt->panel[k]});
     }
 }

@@ -168,9 +168,8 @@ static void fill_bodies(mechanism *s)
     for (size_t i = 0; i < s->pattern.body_count; ++i) {
         double *H = s->body + i * (size_t)(n * n);
         if (s->pattern.body_kind == SE3DI_KKT_BODY_MASS) {
-            H = s->body + 10 * i;
-            H[0] = 1.0 + fabs(uniform(s));
-            fill_definite(s, 3, 3, 0.1, H + 1);
+            H[0] = H[7] = H[14] = 1.0 + fabs(uniform(s));
+            fill_definite(s, 3, 6, 0.1, H + 21);
         } else if (n == 8) {
             fill_euler(s, H);
         } else {
@@ -224,10 +223,6 @@ static void multiply(const mechanism *s, const double *x, const double *l, doubl
         for (size_t r = 0; r < n; ++r) {
             for (size_t c = 0; c < n; ++c) {
                 double h = s->body[(i * n + r) * n + c];
-                if (s->pattern.body_kind == SE3DI_KKT_BODY_MASS) {
-                    const double *H = s->body + 10 * i;
-                    h = r < 3 || c < 3 ? (r == c ? H[0] : 0.0) : H[1 + 3 * (r - 3) + c - 3];
-                }
                 rb[i * n + r] += h * x[i * n + c];
             }
         }
@@ -772,6 +767,75 @@ static void several_right_sides_use_one_factorisation(void)
     se3di_kkt_destroy(kkt);
 }
 
+/* The body blocks and weights of the first factorisation serve the second, of other joint blocks.
+ */
+static void held_body_blocks_serve_other_joint_blocks(void)
+{
+    for (int mass = 0; mass < 2; ++mass) {
+        for (int chain = 0; chain < 2; ++chain) {
+            start(&m, 12, 6, true, 17);
+            m.pattern.body_kind = mass ? SE3DI_KKT_BODY_MASS : SE3DI_KKT_BODY_FULL;
+            if (chain) {
+                add_chain(&m, 5);
+            } else {
+                add_tree(&m, 3);
+            }
+            fill(&m);
+            se3di_kkt *kkt = create(&m, SE3DI_KKT_STRUCTURED);
+            CHECK(kkt != NULL);
+            se3di_kkt_hold(kkt, true);
+            CHECK(se3di_kkt_factor(kkt, &m.values, NULL) == SE3D_OK);
+            fill_joints(&m); /* counts the rows once more */
+            m.row_count /= 2;
+            memset(m.b, 0, sizeof m.b);
+            memset(m.c, 0, sizeof m.c);
+            multiply(&m, m.exact_x, m.exact_l, m.b, m.c);
+            CHECK(se3di_kkt_factor(kkt, &m.values, NULL) == SE3D_OK);
+            CHECK(se3di_kkt_solve(kkt, &m.values, m.b, m.c, m.x, m.l, NULL) == SE3D_OK);
+            CHECK_NEAR(distance(m.x, m.exact_x, m.unknowns), 0.0, 1e-12);
+            CHECK_NEAR(distance(m.l, m.exact_l, m.row_count), 0.0, 1e-11);
+            m.body[0] += 1.0; /* not read: a body goes before its joints */
+            CHECK(se3di_kkt_factor(kkt, &m.values, NULL) == SE3D_OK);
+            m.body[0] -= 1.0;
+            CHECK(se3di_kkt_solve(kkt, &m.values, m.b, m.c, m.x, m.l, NULL) == SE3D_OK);
+            CHECK(!mass || !chain || distance(m.x, m.exact_x, m.unknowns) < 1e-12);
+            se3di_kkt_hold(kkt, false);
+            m.body[0] += 1.0; /* from now on it is */
+            CHECK(se3di_kkt_factor(kkt, &m.values, NULL) == SE3D_OK);
+            CHECK(se3di_kkt_solve(kkt, &m.values, m.b, m.c, m.x, m.l, NULL) == SE3D_OK);
+            CHECK(distance(m.x, m.exact_x, m.unknowns) > 1e-6);
+            se3di_kkt_destroy(kkt);
+        }
+    }
+}
+
+/* Known redundancy needs no look at the residual; one row more does. */
+static void known_redundancy_is_solved_to_the_tolerance_without_a_check(void)
+{
+    for (uint64_t seed = 1; seed <= 6; ++seed) {
+        start(&m, 1 + 2 * (size_t)seed, 6, true, seed);
+        add_tree(&m, 5);
+        fill(&m);
+        make_redundant(&m, 0.5);
+        se3di_kkt_settings settings = {.eps = 1e-10,
+                                       .eps_min = 1e-10,
+                                       .tolerance = 1e-6,
+                                       .max_refinements = 2,
+                                       .any_multipliers = true,
+                                       .redundant_rows = 5};
+        outcome once = solve_with(&m, SE3DI_KKT_STRUCTURED, &settings);
+        CHECK(once.solve == SE3D_OK && !once.info.checked && !once.info.projected);
+        CHECK(once.info.refinements == 0 && once.error_x < 1e-6);
+        settings.tolerance = 1e-12;
+        outcome twice = solve_with(&m, SE3DI_KKT_STRUCTURED, &settings);
+        CHECK(twice.info.refinements > 0 && !twice.info.checked && twice.error_x < 1e-12);
+        CHECK(twice.error_x < once.error_x);
+        settings.redundant_rows = 4;
+        outcome checked = solve_with(&m, SE3DI_KKT_STRUCTURED, &settings);
+        CHECK(checked.info.checked && checked.error_x < 1e-12);
+    }
+}
+
 static void cost_of_a_chain_is_proportional_to_its_length(void)
 {
     double cost[2];
@@ -807,6 +871,8 @@ int main(void)
     RUN(a_failing_allocation_leaves_nothing_behind);
     RUN(factor_and_solve_allocate_nothing_and_repeat_bit_for_bit);
     RUN(several_right_sides_use_one_factorisation);
+    RUN(held_body_blocks_serve_other_joint_blocks);
+    RUN(known_redundancy_is_solved_to_the_tolerance_without_a_check);
     RUN(cost_of_a_chain_is_proportional_to_its_length);
     CHECK(memory_counter.bytes == 0);
     return check_finish();
