@@ -26,8 +26,6 @@ enum {
     RK_HEADER
 };
 
-#define REGULARISATION 1e-8 /* see se3di_state_begin */
-
 #define WORK_WEIGHT 0.1 /* of the error of works: it disturbs nothing but the audit of energy */
 
 #define RK_FORMS   (3 + SE3DI_RK_DENSE_MAX)
@@ -66,6 +64,13 @@ static double inner_tolerance(double tolerance)
     return fmax(0.03 * tolerance, 2e-13);
 }
 
+/* See se3di_state_begin. Tight tolerances need accelerations with less noise near singular
+ * positions; at loose ones a wide filter costs more steps than noise does. */
+static double regularisation(double tolerance)
+{
+    return fmin(1e-8, fmax(1e-10, 1e-10 * (1e-8 / tolerance)));
+}
+
 /* The violation of constraints that does not matter: near a singular position velocities magnify it
  * by the inverse of the distance, accelerations by its cube. */
 static double projection_accuracy(double tolerance)
@@ -95,7 +100,8 @@ static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
         .sum3 = integration->work + (SE3DI_RK_MAX + 2) * count,
         .tolerance = inner_tolerance(integration->settings.tolerance),
     };
-    m.kkt = se3di_state_begin(m.equations, REGULARISATION, fmin(1e-6, 1e-3 * m.tolerance));
+    m.kkt =
+        se3di_state_begin(m.equations, regularisation(m.tolerance), fmin(1e-6, 1e-3 * m.tolerance));
     return m;
 }
 
