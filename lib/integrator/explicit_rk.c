@@ -22,7 +22,7 @@ enum {
     RK_SPIN,
     RK_ENERGY,
     RK_ENERGY_MIN, /* what the potential at the start says of the size of energies */
-    RK_REDUNDANT, /* the fewest dependent rows so far */
+    RK_REDUNDANT,  /* the fewest dependent rows so far */
     RK_HEADER
 };
 
