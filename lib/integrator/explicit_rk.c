@@ -17,6 +17,7 @@ enum {
     RK_ERROR,    /* error of the last step, relative to the tolerance */
     RK_DENSE,    /* 1: the interpolation is ready */
     RK_REJECTED, /* 1: the last attempt was rejected */
+    RK_FORCED,   /* steps that only a jump of the accelerations explained */
     RK_LENGTH,   /* scales */
     RK_SPEED,
     RK_SPIN,
@@ -26,6 +27,7 @@ enum {
     RK_HEADER
 };
 
+#define FORCED_MAX  3
 #define WORK_WEIGHT 0.1 /* of the error of works: it disturbs nothing but the audit of energy */
 
 #define RK_FORMS   (3 + SE3DI_RK_DENSE_MAX)
@@ -260,17 +262,20 @@ static double limit_turn(const rk *m, double h)
     return h;
 }
 
-static se3d_status fail_small(rk *m, double h, se3d_status cause)
+static se3d_status fail_small(rk *m, double h)
 {
     double t = m->header[RK_T1];
-    if (cause < 0) {
-        return cause;
-    }
     return se3di_error_set(
         m->equations->error, SE3D_ERR_STEP_SIZE,
         "t = %g s: the step fell to %.3g s: the tolerance %g cannot be met here; "
         "the motion is not smooth, or stiff (try generalized_alpha or radau)",
         t, h, m->tolerance);
+}
+
+static double limit_step(const rk *m, double h)
+{
+    double limit = m->integration->settings.step;
+    return limit > 0.0 && h > limit ? limit : h;
 }
 
 /* The next step: PI control of the error (Gustafsson 1991). */
@@ -282,14 +287,39 @@ static double next_step(const rk *m, double h, double error)
     double factor = 0.9 * pow(e, -0.8 * exponent) * pow(e / before, -0.2 * exponent);
     double largest = m->header[RK_REJECTED] != 0.0 ? 1.0 : 6.0;
     h *= fmin(largest, fmax(0.2, factor));
-    double limit = m->integration->settings.step;
-    return limit > 0.0 && h > limit ? limit : h;
+    return limit_step(m, h);
+}
+
+/* Below this a step is no longer shortened. */
+static double least_step(const rk *m)
+{
+    return 3e-14 * fmax(1e-3, fabs(m->header[RK_T1]));
+}
+
+/* Where the accelerations jump, as under a driver or a load that is switched, no step is short
+ * enough for a tight tolerance. One of the least length crosses the jump; what it makes of error is
+ * the jump times h. If no ordinary step follows, it was no jump. */
+static se3d_status cross_jump(rk *m, double h, double error)
+{
+    double tolerance = m->tolerance;
+    if (!(error * tolerance < 1e-3) || m->header[RK_FORCED] >= FORCED_MAX) {
+        return fail_small(m, h);
+    }
+    m->tolerance = HUGE_VAL; /* no error control */
+    se3d_status status = attempt(m, h, &error);
+    m->tolerance = tolerance;
+    SE3DI_TRY(status);
+    accept(m, h);
+    m->header[RK_FORCED] += 1.0;
+    m->header[RK_NEXT] = limit_step(m, 1e6 * h);
+    m->header[RK_ERROR] = 1e-2;
+    m->header[RK_REJECTED] = 0.0;
+    return SE3D_OK;
 }
 
 /* One accepted step with error control. */
 static se3d_status advance(rk *m)
 {
-    double t = m->header[RK_T1];
     double h = m->header[RK_NEXT];
     se3di_state_set(m->assembly, m->y1);
     h = limit_turn(m, h);
@@ -301,15 +331,17 @@ static se3d_status advance(rk *m)
             m->header[RK_NEXT] = next_step(m, h, error);
             m->header[RK_ERROR] = error;
             m->header[RK_REJECTED] = 0.0;
+            m->header[RK_FORCED] = h > 1e3 * least_step(m) ? 0.0 : m->header[RK_FORCED];
             return SE3D_OK;
         }
         ++m->equations->counters.rejected;
         m->header[RK_REJECTED] = 1.0;
         double exponent = 1.0 / m->tableau->order;
         double factor = status < 0 || !isfinite(error) ? 0.25 : 0.9 * pow(error, -exponent);
+        const double before = h;
         h *= fmax(0.2, fmin(0.9, factor));
-        if (!(h > 1e-12 * fmax(1e-3, fabs(t)))) {
-            return fail_small(m, h, status);
+        if (!(h > least_step(m))) {
+            return status < 0 ? status : cross_jump(m, before, error);
         }
         m->header[RK_NEXT] = h;
     }
