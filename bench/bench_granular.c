@@ -46,9 +46,11 @@ static void build(bench *b, int hertz, int32_t threads)
     double width = (double)b->edge * SPACING;
     must(b, se3d_system_create(NULL, &b->system));
     se3d_particles_def def = se3d_particles_def_default();
-    def.law = hertz ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE;
     def.threads = threads;
     def.step = 1e-5;
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    contact.law = hertz ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE;
+    must(b, se3d_system_set_contact(b->system, &contact));
     must(b, se3d_particles_create(b->system, &def, &b->particles));
     se3d_material_def stuff = se3d_material_def_default();
     stuff.density = 2500.0;
@@ -56,15 +58,15 @@ static void build(bench *b, int hertz, int32_t threads)
     stuff.young = 1e8;
     stuff.restitution = 0.7;
     se3d_material material;
-    must(b, se3d_material_create(b->particles, &stuff, &material));
+    must(b, se3d_material_create(b->system, &stuff, &material));
     for (int k = 0; k < 5; ++k) {
-        se3d_wall_def wall = se3d_wall_def_default();
-        se3d_wall handle;
+        se3d_shape_def wall = se3d_shape_def_default();
+        se3d_shape handle;
         wall.material = material;
         memcpy(wall.normal, normals[k], sizeof wall.normal);
-        wall.point[0] = k == 2 ? width : 0.0;
-        wall.point[1] = k == 4 ? width : 0.0;
-        must(b, se3d_wall_create_plane(b->particles, &wall, &handle));
+        wall.position[0] = k == 2 ? width : 0.0;
+        wall.position[1] = k == 4 ? width : 0.0;
+        must(b, se3d_shape_create_plane(b->system, &wall, &handle));
     }
     se3d_fill_def fill = se3d_fill_def_default();
     fill.material = material;

@@ -18,9 +18,13 @@ static int fail(se3d_system *system, const char *what)
 /* Ball, floor and material. */
 static se3d_status build(se3d_system *system, se3d_particles **particles)
 {
-    se3d_particles_def def = se3d_particles_def_default();
-    def.law = SE3D_LAW_HERTZ_MINDLIN;
-    se3d_status status = se3d_particles_create(system, &def, particles);
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    contact.law = SE3D_LAW_HERTZ_MINDLIN;
+    se3d_status status = se3d_system_set_contact(system, &contact);
+    if (SE3D_FAILED(status)) {
+        return status;
+    }
+    status = se3d_particles_create(system, NULL, particles);
     if (SE3D_FAILED(status)) {
         return status;
     }
@@ -30,14 +34,14 @@ static se3d_status build(se3d_system *system, se3d_particles **particles)
     stuff.poisson = 0.45;
     stuff.restitution = RESTITUTION;
     se3d_material rubber;
-    status = se3d_material_create(*particles, &stuff, &rubber);
+    status = se3d_material_create(system, &stuff, &rubber);
     if (SE3D_FAILED(status)) {
         return status;
     }
-    se3d_wall_def floor = se3d_wall_def_default(); /* through the origin, normal z, on the ground */
+    se3d_shape_def floor = se3d_shape_def_default(); /* through the origin, normal z, on ground */
     floor.material = rubber;
-    se3d_wall wall;
-    status = se3d_wall_create_plane(*particles, &floor, &wall);
+    se3d_shape plane;
+    status = se3d_shape_create_plane(system, &floor, &plane);
     if (SE3D_FAILED(status)) {
         return status;
     }

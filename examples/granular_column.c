@@ -15,19 +15,19 @@ static int fail(se3d_system *system, const char *what)
 }
 
 /* A floor and four walls of planes, all on the ground. */
-static se3d_status build_box(se3d_particles *particles, se3d_material material, se3d_wall walls[5])
+static se3d_status build_box(se3d_system *system, se3d_material material, se3d_shape walls[5])
 {
     static const double normals[5][3] = {
         {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}};
     for (int k = 0; k < 5; ++k) {
-        se3d_wall_def wall = se3d_wall_def_default();
+        se3d_shape_def wall = se3d_shape_def_default();
         wall.material = material;
         for (int a = 0; a < 3; ++a) {
             wall.normal[a] = normals[k][a];
         }
-        wall.point[0] = k == 2 ? WIDTH : 0.0;
-        wall.point[1] = k == 4 ? WIDTH : 0.0;
-        se3d_status status = se3d_wall_create_plane(particles, &wall, &walls[k]);
+        wall.position[0] = k == 2 ? WIDTH : 0.0;
+        wall.position[1] = k == 4 ? WIDTH : 0.0;
+        se3d_status status = se3d_shape_create_plane(system, &wall, &walls[k]);
         if (SE3D_FAILED(status)) {
             return status;
         }
@@ -35,7 +35,7 @@ static se3d_status build_box(se3d_particles *particles, se3d_material material, 
     return SE3D_OK;
 }
 
-static se3d_status build(se3d_system *system, se3d_particles **particles, se3d_wall walls[5])
+static se3d_status build(se3d_system *system, se3d_particles **particles, se3d_shape walls[5])
 {
     se3d_status status = se3d_particles_create(system, NULL, particles); /* Hooke's law */
     if (SE3D_FAILED(status)) {
@@ -46,7 +46,7 @@ static se3d_status build(se3d_system *system, se3d_particles **particles, se3d_w
     stuff.stiffness = 2.5e4;
     stuff.restitution = 0.3;
     se3d_material glass;
-    status = se3d_material_create(*particles, &stuff, &glass);
+    status = se3d_material_create(system, &stuff, &glass);
     if (SE3D_FAILED(status)) {
         return status;
     }
@@ -57,14 +57,14 @@ static se3d_status build(se3d_system *system, se3d_particles **particles, se3d_w
     fill.jitter = 0.0004;
     fill.seed = 1;
     status = se3d_particles_fill_lattice(*particles, &fill, NULL);
-    return SE3D_FAILED(status) ? status : build_box(*particles, glass, walls);
+    return SE3D_FAILED(status) ? status : build_box(system, glass, walls);
 }
 
 int main(void)
 {
     se3d_system *system = NULL;
     se3d_particles *particles = NULL;
-    se3d_wall walls[5];
+    se3d_shape walls[5];
     if (SE3D_FAILED(se3d_system_create(NULL, &system))) {
         return 1;
     }
@@ -84,7 +84,7 @@ int main(void)
         }
         held = 0.0;
         for (int w = 0; w < 5; ++w) {
-            (void)se3d_wall_get_force(particles, walls[w], force, torque);
+            (void)se3d_shape_get_wrench(system, walls[w], force, torque);
             floor = w == 0 ? -force[2] : floor;
             held -= force[2];
         }

@@ -43,17 +43,17 @@ typedef struct se3d_force {
     uint32_t generation;
 } se3d_force;
 
-/* What particles and walls are made of: an element of se3d_particles. */
+/* What shapes and particles are made of. */
 typedef struct se3d_material {
     uint32_t index1;
     uint32_t generation;
 } se3d_material;
 
-/* A wall that particles touch: an element of se3d_particles. */
-typedef struct se3d_wall {
+/* A shape on a body, for contact. */
+typedef struct se3d_shape {
     uint32_t index1;
     uint32_t generation;
-} se3d_wall;
+} se3d_shape;
 
 /* The two formulations; both give the same motion. */
 typedef enum se3d_formulation {

@@ -1,25 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Particles: spheres in bulk with penalty contact and friction, materials, walls on bodies.
+/* Particles: spheres in bulk with penalty contact and friction (se3d/contact.h).
  *
- * A se3d_particles belongs to one system: it takes its gravity, its allocator and the poses of the
- * bodies that its walls are on, and records failures there (se3d_system_get_error). Functions that
+ * A se3d_particles belongs to one system: it takes its gravity, its allocator, its materials, law
+ * and shapes, and records failures there (se3d_system_get_error). Functions that
  * take it without `const` need exclusive access to both. Particles have ids, counted from 0 in the
  * order of creation and never used again; arrays are in ascending order of the ids that live. */
 #ifndef SE3D_PARTICLES_H
 #define SE3D_PARTICLES_H
 
-#include "se3d/handles.h"
+#include "se3d/contact.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* Force laws. Fn never pulls; Ft is a spring with history and a damper, capped at friction * Fn.
- * @since 0.1 */
-typedef enum se3d_law {
-    SE3D_LAW_HOOKE = 0,        /* linear: stiffness, tangential_ratio */
-    SE3D_LAW_HERTZ_MINDLIN = 1 /* Hertz with Tsuji-type damping, Mindlin: young, poisson */
-} se3d_law;
 
 /* What is at `lower` and `upper` along an axis. @since 0.1 */
 typedef enum se3d_boundary {
@@ -31,14 +24,14 @@ typedef enum se3d_boundary {
 /* What particles are made with. @since 0.1 */
 typedef struct se3d_particles_def {
     size_t struct_size;
-    int32_t law;               /* se3d_law */
-    int32_t threads;           /* 1: default; results do not depend on it */
-    int32_t portable;          /* not 0: the same bits on every machine, slower */
-    int32_t boundary[3];       /* se3d_boundary along x, y, z */
+    int32_t threads;     /* 1: default; results do not depend on it */
+    int32_t portable;    /* not 0: the same bits on every machine, slower */
+    int32_t boundary[3]; /* se3d_boundary along x, y, z */
+    int32_t reserved;
     double lower[3], upper[3]; /* of the domain, where a boundary is not open [m] */
-    double step;               /* [s]; 0: automatic, from the stiffness */
+    double step;               /* [s]; 0: that of the system's contact settings */
     double skin;               /* of the neighbour list, over the mean diameter; default 0.1 */
-    double overlap_limit;      /* allowed overlap over the smaller radius; default 0.2 */
+    uint32_t group, mask;      /* as of se3d_shape_def */
 } se3d_particles_def;
 
 SE3D_API void se3d_particles_def_init(se3d_particles_def *def, size_t size);
@@ -63,87 +56,8 @@ SE3D_API se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_
  * @since 0.1 */
 SE3D_API se3d_status se3d_particles_restore(se3d_particles *particles, const se3d_particles *saved);
 
-/* What a material is made with. The restitution given is the one obtained, at any velocity; pairs
- * of materials mix: geometric means of friction and restitution, springs in series. @since 0.1 */
-typedef struct se3d_material_def {
-    size_t struct_size;
-    double density;            /* [kg/m^3] > 0, required */
-    double friction;           /* >= 0, default 0.5 */
-    double restitution;        /* 0.01 .. 1, default 0.5 */
-    double rolling_friction;   /* >= 0: resisting moment over R* Fn */
-    double torsional_friction; /* >= 0: the same about the normal */
-    double stiffness;          /* [N/m] > 0, required for hooke: of two spheres of this material */
-    double tangential_ratio;   /* kt/kn >= 0, default 2/7 */
-    double young;              /* [Pa] > 0, required for hertz_mindlin */
-    double poisson;            /* 0 .. 0.5, default 0.3 */
-} se3d_material_def;
-
-SE3D_API void se3d_material_def_init(se3d_material_def *def, size_t size);
-
-static inline se3d_material_def se3d_material_def_default(void)
-{
-    se3d_material_def def;
-    se3d_material_def_init(&def, sizeof def);
-    return def;
-}
-
-/* Create a material. @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
-SE3D_API se3d_status se3d_material_create(se3d_particles *particles, const se3d_material_def *def,
-                                          se3d_material *material);
-
-/* What holds for a pair of materials instead of the mixing rules; negative: the rule, the default.
- * @since 0.1 */
-typedef struct se3d_material_pair_def {
-    size_t struct_size;
-    double friction, restitution, rolling_friction, torsional_friction;
-    double stiffness; /* hooke [N/m] */
-} se3d_material_pair_def;
-
-SE3D_API void se3d_material_pair_def_init(se3d_material_pair_def *def, size_t size);
-
-static inline se3d_material_pair_def se3d_material_pair_def_default(void)
-{
-    se3d_material_pair_def def;
-    se3d_material_pair_def_init(&def, sizeof def);
-    return def;
-}
-
-/* Say what holds between two materials (which may be the same). @since 0.1 */
-SE3D_API se3d_status se3d_material_set_pair(se3d_particles *particles, se3d_material a,
-                                            se3d_material b, const se3d_material_pair_def *def);
-
-/* A wall: an infinite plane, solid behind its normal, or a solid box. @since 0.1 */
-typedef struct se3d_wall_def {
-    size_t struct_size;
-    se3d_body body; /* null: the ground */
-    se3d_material material;
-    double point[3];       /* on the plane, or the centre of the box; body frame [m] */
-    double normal[3];      /* plane: towards the particles, body frame; default z */
-    double orientation[4]; /* box -> body, Euler parameters; default (1,0,0,0) */
-    double size[3];        /* box: full lengths [m] > 0 */
-} se3d_wall_def;
-
-SE3D_API void se3d_wall_def_init(se3d_wall_def *def, size_t size);
-
-static inline se3d_wall_def se3d_wall_def_default(void)
-{
-    se3d_wall_def def;
-    se3d_wall_def_init(&def, sizeof def);
-    return def;
-}
-
-/* Create a wall. It moves with its body. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT,
- * NO_MEMORY. @since 0.1 */
-SE3D_API se3d_status se3d_wall_create_plane(se3d_particles *particles, const se3d_wall_def *def,
-                                            se3d_wall *wall);
-SE3D_API se3d_status se3d_wall_create_box(se3d_particles *particles, const se3d_wall_def *def,
-                                          se3d_wall *wall);
-SE3D_API se3d_status se3d_wall_destroy(se3d_particles *particles, se3d_wall wall);
-/* Get the force of the particles on the wall [N] and its moment about the centre of mass of the
- * wall's body [N m], ground frame, of the last step. Reader. @since 0.1 */
-SE3D_API se3d_status se3d_wall_get_force(const se3d_particles *particles, se3d_wall wall,
-                                         double force[3], double torque[3]);
-/* The same, summed over all walls of a body. Reader. @since 0.1 */
+/* Get the force of the particles on a body [N] and its moment about the centre of mass [N m],
+ * ground frame, of the last step, summed over the shapes of the body. Reader. @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_wrench(const se3d_particles *particles, se3d_body body,
                                                double force[3], double torque[3]);
 
@@ -209,18 +123,18 @@ SE3D_API se3d_status se3d_particles_get_forces(const se3d_particles *particles, 
                                                double *force, double *torque);
 
 /* A contact as it is now. @since 0.1 */
-typedef struct se3d_contact {
-    uint32_t i, j;   /* ids of the particles */
-    se3d_wall wall;  /* null: with particle j */
-    double point[3]; /* [m] */
-    double force[3]; /* on i [N] */
-} se3d_contact;
+typedef struct se3d_particles_contact {
+    uint32_t i, j;    /* ids of the particles */
+    se3d_shape shape; /* null: with particle j */
+    double point[3];  /* [m] */
+    double force[3];  /* on i [N] */
+} se3d_particles_contact;
 
 /* Count the contacts of the last step, and list them (`count` must be that number).
  * @return OK, NULL, INVALID_ARGUMENT. Reader. @since 0.1 */
 SE3D_API size_t se3d_particles_count_contacts(const se3d_particles *particles);
 SE3D_API se3d_status se3d_particles_get_contacts(const se3d_particles *particles, size_t count,
-                                                 se3d_contact *contacts);
+                                                 se3d_particles_contact *contacts);
 
 /* Advance by `steps` steps of velocity Verlet; bodies are where the system has them.
  * @return OK, STEP_SIZE (an overlap beyond the limit or a step beyond stability: the message names

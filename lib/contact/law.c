@@ -39,7 +39,7 @@ static void hertz(const se3di_material *a, const se3di_material *b, double e, se
     pair->dt = pair->dn * sqrt(pair->kt / (1.5 * pair->kn));
 }
 
-void se3di_pair_mix(se3di_law law, const se3di_material *a, const se3di_material *b,
+void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_material *b,
                     const se3di_override *over, se3di_pair *pair)
 {
     const se3di_override none = {-1.0, -1.0, -1.0, -1.0, -1.0};
@@ -57,7 +57,20 @@ void se3di_pair_mix(se3di_law law, const se3di_material *a, const se3di_material
     pair->dr = ROLLING_DAMPING * sqrt(pair->kt);
 }
 
-double se3di_pair_step(se3di_law law, const se3di_material *a, const se3di_pair *pair,
+void se3di_pair_mix_all(se3di_model *model)
+{
+    size_t n = model->material_slots.count;
+    for (size_t a = 0; a < n; ++a) {
+        for (size_t b = 0; b <= a; ++b) {
+            se3di_pair *pair = &model->pairs[a * n + b];
+            se3di_pair_mix((se3di_contact_law)model->contact.law, &model->materials[a],
+                           &model->materials[b], &model->overrides[a * n + b], pair);
+            model->pairs[b * n + a] = *pair;
+        }
+    }
+}
+
+double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3di_pair *pair,
                        double radius, double mass, double reduced_mass)
 {
     if (law == SE3DI_LAW_HOOKE) {

@@ -45,7 +45,7 @@ static se3di_force_task task_of(const se3di_particles *set, couple *c)
         .rolls = set->rolling && set->rolls ? &c->roll : NULL,
         .pairs = set->pairs,
         .walls = &c->wall,
-        .materials = (uint32_t)set->material_slots.count,
+        .materials = (uint32_t)set->stuff_count,
         .end = 1,
         .law = (int32_t)set->law,
         .limit = 1e30,
@@ -54,7 +54,8 @@ static se3di_force_task task_of(const se3di_particles *set, couple *c)
 }
 
 /* The contact of a lane; returns 0 where the two do not touch. */
-static int pair_contact(const se3di_particles *set, uint32_t b, int lane, se3d_contact *out)
+static int pair_contact(const se3di_particles *set, uint32_t b, int lane,
+                        se3d_particles_contact *out)
 {
     couple c;
     copy_lane(set, b, lane, &c);
@@ -80,12 +81,13 @@ static int pair_contact(const se3di_particles *set, uint32_t b, int lane, se3d_c
     se3di_particle_kernels_portable()->pairs(&task);
     out->i = c.spins[0].id;
     out->j = c.spins[1].id;
-    out->wall = (se3d_wall){0, 0};
+    out->shape = (se3d_shape){0, 0};
     memcpy(out->force, c.loads[0].force, sizeof out->force);
     return 1;
 }
 
-static int wall_contact(const se3di_particles *set, uint32_t b, int lane, se3d_contact *out)
+static int wall_contact(const se3di_particles *set, uint32_t b, int lane,
+                        se3d_particles_contact *out)
 {
     couple c;
     copy_lane(set, b, lane, &c);
@@ -97,17 +99,17 @@ static int wall_contact(const se3di_particles *set, uint32_t b, int lane, se3d_c
     }
     se3di_force_task task = task_of(set, &c);
     se3di_particle_kernels_portable()->walls(&task);
-    se3di_handle handle = se3di_slots_handle(&set->wall_slots, index);
     out->i = c.spins[0].id;
     out->j = 0;
-    out->wall = (se3d_wall){handle.index1, handle.generation};
+    out->shape = (se3d_shape){c.wall.handle.index1, c.wall.handle.generation};
     memcpy(out->force, c.loads[0].force, sizeof out->force);
-    se3di_wall_nearest(&c.wall, c.grains[0].x, out->point);
+    double normal[3];
+    (void)se3di_wall_nearest(&c.wall, c.grains[0].x, out->point, normal);
     return 1;
 }
 
 se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity,
-                                     se3d_contact *contacts, size_t *count)
+                                     se3d_particles_contact *contacts, size_t *count)
 {
     *count = 0;
     if (!set || !set->list_valid) {
@@ -117,7 +119,7 @@ se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity
         const se3di_slab *slab = &set->slabs[s];
         for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
             for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
-                se3d_contact contact;
+                se3d_particles_contact contact;
                 if (set->blocks[b].i[lane] >= set->count) {
                     continue;
                 }

@@ -89,7 +89,7 @@ static double measure(se3di_particles *set, grid *g)
 {
     double largest = 0.0;
     double sum = 0.0;
-    set->uniform = set->material_slots.count == 1;
+    set->uniform = set->stuff_count == 1;
     for (size_t k = 0; k < set->count; ++k) {
         const se3di_grain *grain = &set->grains[k];
         largest = fmax(largest, grain->radius);
@@ -415,10 +415,10 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
     for (size_t k = 0; k < set->count; ++k) {
         memcpy(set->origin + 3 * k, set->grains[k].x, sizeof set->grains[k].x);
     }
-    for (size_t k = 0; k < set->wall_slots.count; ++k) {
+    for (size_t k = 0; k < set->wall_count; ++k) {
         se3di_wall *wall = &set->walls[k];
-        memcpy(wall->old_x, wall->x, sizeof wall->x);
-        memcpy(wall->old_R, wall->R, sizeof wall->R);
+        memcpy(wall->old_x, wall->pose.x, sizeof wall->old_x);
+        memcpy(wall->old_R, wall->pose.R, sizeof wall->old_R);
     }
     set->moved = 0.0;
     ++set->rebuilds;

@@ -6,6 +6,8 @@
  * no valid lists. Where memory fails they stay there, and nothing is lost. */
 #include "contact/particle_set.h"
 
+#include "math/vec3.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -265,10 +267,10 @@ se3d_status se3di_particles_activate(se3di_particles *set)
         SE3DI_TRY(activate_pairs(set, &set->slabs[s]));
         SE3DI_TRY(activate_walls(set, &set->slabs[s]));
     }
-    for (size_t k = 0; k < set->wall_slots.count; ++k) {
+    for (size_t k = 0; k < set->wall_count; ++k) {
         se3di_wall *wall = &set->walls[k];
-        memcpy(wall->near_x, wall->x, sizeof wall->x);
-        memcpy(wall->near_R, wall->R, sizeof wall->R);
+        se3di_copy(wall->pose.x, wall->near_x);
+        memcpy(wall->near_R, wall->pose.R, sizeof wall->near_R);
     }
     set->moved_near = set->moved;
     set->carry_count = 0;
@@ -286,37 +288,32 @@ se3d_status se3di_particles_refresh(se3di_particles *set)
     return se3di_particles_activate(set);
 }
 
-double se3di_wall_distance(const se3di_wall *wall, const double x[3])
+double se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3],
+                          double normal[3])
 {
-    const double *R = wall->R;
-    double d[3] = {x[0] - wall->x[0], x[1] - wall->x[1], x[2] - wall->x[2]};
-    if (wall->kind == SE3DI_WALL_PLANE) {
-        return d[0] * R[2] + d[1] * R[5] + d[2] * R[8];
-    }
-    double sum = 0.0;
-    for (int a = 0; a < 3; ++a) {
-        double along = d[0] * R[a] + d[1] * R[3 + a] + d[2] * R[6 + a];
-        double beyond = fabs(along) - wall->half[a];
-        sum += beyond > 0.0 ? beyond * beyond : 0.0;
-    }
-    return sqrt(sum);
+    const double *R = wall->pose.R;
+    double d[3], local[3], at[3], n[3], distance;
+    se3di_sub(x, wall->pose.x, d);
+    se3di_mul_transposed(R, d, local);
+    se3di_shape_nearest(&wall->shape, local, at, n, &distance);
+    se3di_mul(R, n, normal);
+    se3di_copy(x, point);
+    se3di_add_scaled(-distance, normal, point);
+    return distance;
 }
 
-void se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3])
+double se3di_wall_distance(const se3di_wall *wall, const double x[3])
 {
-    const double *R = wall->R;
-    double d[3] = {x[0] - wall->x[0], x[1] - wall->x[1], x[2] - wall->x[2]};
-    double local[3];
-    for (int a = 0; a < 3; ++a) {
-        local[a] = d[0] * R[a] + d[1] * R[3 + a] + d[2] * R[6 + a];
-        local[a] = wall->kind == SE3DI_WALL_BOX
-                       ? fmax(-wall->half[a], fmin(wall->half[a], local[a]))
-                       : (a == 2 ? 0.0 : local[a]);
-    }
-    for (int a = 0; a < 3; ++a) {
-        point[a] =
-            wall->x[a] + R[3 * a] * local[0] + R[3 * a + 1] * local[1] + R[3 * a + 2] * local[2];
-    }
+    double point[3], normal[3];
+    return se3di_wall_nearest(wall, x, point, normal);
+}
+
+/* Cheaper than the distance, and never more. */
+static double least_distance(const se3di_wall *wall, const double x[3])
+{
+    double d[3];
+    se3di_sub(x, wall->pose.x, d);
+    return se3di_norm(d) - wall->shape.bound;
 }
 
 se3d_status se3di_particles_list_walls(se3di_particles *set)
@@ -325,10 +322,12 @@ se3d_status se3di_particles_list_walls(se3di_particles *set)
     for (uint32_t s = 0; s < set->slab_count; ++s) {
         se3di_slab *slab = &set->slabs[s];
         slab->near_begin = (uint32_t)set->near_count;
-        for (uint32_t w = 0; w < set->wall_slots.count; ++w) {
+        for (uint32_t w = 0; w < set->wall_count; ++w) {
             for (uint32_t i = slab->begin; i < slab->end; ++i) {
                 const se3di_grain *g = &set->grains[i];
-                if (se3di_wall_distance(&set->walls[w], g->x) >= g->radius + set->skin) {
+                double reach = g->radius + set->skin;
+                if (least_distance(&set->walls[w], g->x) >= reach ||
+                    se3di_wall_distance(&set->walls[w], g->x) >= reach) {
                     continue;
                 }
                 SE3DI_TRY(se3di_particles_grow(set, &set->near_walls, &set->near_capacity,

@@ -40,25 +40,22 @@ static void aligned_free(const se3d_allocator *allocator, se3di_aligned *memory)
     *memory = (se3di_aligned){NULL, NULL, 0};
 }
 
-void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator, uint32_t salt)
+void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator)
 {
     memset(set, 0, sizeof *set);
     set->allocator = *allocator;
     set->threads = 1;
     set->skin_ratio = 0.1;
     set->overlap_limit = 0.2;
-    se3di_slots_init(&set->material_slots, salt);
-    se3di_slots_init(&set->wall_slots, salt);
+    set->group = 1;
+    set->mask = UINT32_MAX;
     set->kernels = se3di_particle_kernels_portable();
 }
 
 void se3di_particles_destroy(se3di_particles *set)
 {
     const se3d_allocator *a = &set->allocator;
-    se3di_slots_destroy(&set->material_slots, a);
-    se3di_slots_destroy(&set->wall_slots, a);
-    se3di_free(a, set->materials, set->material_capacity, sizeof *set->materials);
-    se3di_free(a, set->overrides, set->override_capacity, sizeof *set->overrides);
+    se3di_free(a, set->stuffs, set->stuff_capacity, sizeof *set->stuffs);
     se3di_free(a, set->pairs, set->pair_capacity, sizeof *set->pairs);
     se3di_free(a, set->walls, set->wall_capacity, sizeof *set->walls);
     aligned_free(a, &set->grain_memory);
@@ -196,7 +193,8 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
 {
     static const double rest[3] = {0.0, 0.0, 0.0};
     const double pi = 3.1415926535897932384626433832795;
-    double mass = set->materials[material].density * (4.0 / 3.0 * pi * radius * radius * radius);
+    double mass =
+        set->stuffs[material].material.density * (4.0 / 3.0 * pi * radius * radius * radius);
     size_t k = set->count++;
     uint32_t id = (uint32_t)set->id_count++;
     set->grains[k] = (se3di_grain){.radius = radius, .inverse_mass = 1.0 / mass};
@@ -228,108 +226,6 @@ void se3di_particles_filter(se3di_particles *set, const unsigned char *keep)
     se3di_particles_remap(set, set->order);
 }
 
-/* Fill the table of pairs from the materials and what the user said of pairs. */
-static void mix(se3di_particles *set)
-{
-    size_t n = set->material_slots.count;
-    set->rolling = 0;
-    for (size_t a = 0; a < n; ++a) {
-        for (size_t b = 0; b <= a; ++b) {
-            se3di_pair *pair = &set->pairs[a * n + b];
-            se3di_pair_mix(set->law, &set->materials[a], &set->materials[b],
-                           &set->overrides[a * n + b], pair);
-            set->pairs[b * n + a] = *pair;
-            set->rolling |= pair->rolling > 0.0 || pair->torsion > 0.0;
-        }
-    }
-    set->force_valid = 0;
-}
-
-se3d_status se3di_particles_add_material(se3di_particles *set, const se3di_material *material,
-                                         se3di_handle *handle)
-{
-    const se3d_allocator *a = &set->allocator;
-    size_t n = set->material_slots.count;
-    size_t m = n + 1;
-    void *memory = set->materials;
-    SE3DI_TRY(se3di_particles_collect(set)); /* rolling may begin */
-    SE3DI_TRY(se3di_slots_reserve(&set->material_slots, a));
-    se3d_status status =
-        se3di_array_reserve(a, &memory, &set->material_capacity, m, sizeof *set->materials);
-    set->materials = memory;
-    SE3DI_TRY(status);
-    memory = set->pairs;
-    status = se3di_array_reserve(a, &memory, &set->pair_capacity, m * m, sizeof *set->pairs);
-    set->pairs = memory;
-    SE3DI_TRY(status);
-    memory = set->overrides;
-    status =
-        se3di_array_reserve(a, &memory, &set->override_capacity, m * m, sizeof *set->overrides);
-    set->overrides = memory;
-    SE3DI_TRY(status);
-    for (size_t k = m * m; k-- > 0;) { /* rows become longer, from the last one on */
-        const se3di_override none = {-1.0, -1.0, -1.0, -1.0, -1.0};
-        size_t row = k / m;
-        size_t column = k % m;
-        set->overrides[k] = row < n && column < n ? set->overrides[row * n + column] : none;
-    }
-    *handle = se3di_slots_add(&set->material_slots);
-    set->materials[n] = *material;
-    mix(set);
-    return SE3D_OK;
-}
-
-se3d_status se3di_particles_set_override(se3di_particles *set, uint32_t a, uint32_t b,
-                                         const se3di_override *over)
-{
-    SE3DI_TRY(se3di_particles_collect(set));
-    size_t n = set->material_slots.count;
-    set->overrides[a * n + b] = *over;
-    set->overrides[b * n + a] = *over;
-    mix(set);
-    return SE3D_OK;
-}
-
-se3d_status se3di_particles_add_wall(se3di_particles *set, const se3di_wall *wall,
-                                     se3di_handle *handle)
-{
-    SE3DI_TRY(se3di_slots_reserve(&set->wall_slots, &set->allocator));
-    void *memory = set->walls;
-    se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->wall_capacity,
-                                             set->wall_slots.count + 1, sizeof *set->walls);
-    set->walls = memory;
-    SE3DI_TRY(status);
-    SE3DI_TRY(se3di_particles_collect(set));
-    *handle = se3di_slots_add(&set->wall_slots);
-    set->walls[set->wall_slots.count - 1] = *wall;
-    set->force_valid = 0;
-    return SE3D_OK;
-}
-
-se3d_status se3di_particles_remove_wall(se3di_particles *set, uint32_t wall)
-{
-    SE3DI_TRY(se3di_particles_collect(set));
-    size_t kept = 0;
-    for (size_t k = 0; k < set->carry_count; ++k) {
-        se3di_carry entry = set->carry[k];
-        if (entry.j == (SE3DI_CARRY_WALL | wall)) {
-            continue;
-        }
-        entry.j -= entry.j > (SE3DI_CARRY_WALL | wall) ? 1u : 0u;
-        set->carry[kept] = entry;
-        if (set->carry_rolling) {
-            memmove(set->carry_roll + 4 * kept, set->carry_roll + 4 * k, 4 * sizeof(double));
-        }
-        ++kept;
-    }
-    set->carry_count = kept;
-    size_t count = set->wall_slots.count;
-    memmove(set->walls + wall, set->walls + wall + 1, (count - wall - 1) * sizeof *set->walls);
-    se3di_slots_remove(&set->wall_slots, wall);
-    set->force_valid = 0;
-    return SE3D_OK;
-}
-
 /* Copies of all arrays, so that the copy continues with the same bits. */
 static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
 {
@@ -349,8 +245,7 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         {&to->carry_next, from->carry_next, from->carry_next_capacity, sizeof(uint32_t)},
         {&to->carry_roll, from->carry_roll, from->carry_roll_capacity, sizeof(double)},
         {&to->wall_sums, from->wall_sums, from->wall_sum_capacity, sizeof(double)},
-        {&to->materials, from->materials, from->material_capacity, sizeof(se3di_material)},
-        {&to->overrides, from->overrides, from->override_capacity, sizeof(se3di_override)},
+        {&to->stuffs, from->stuffs, from->stuff_capacity, sizeof(se3di_stuff)},
         {&to->pairs, from->pairs, from->pair_capacity, sizeof(se3di_pair)},
         {&to->walls, from->walls, from->wall_capacity, sizeof(se3di_wall)},
     };
@@ -402,7 +297,6 @@ se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *c
 {
     const se3di_aligned none = {NULL, NULL, 0};
     *copy = *set;
-    copy->material_slots = copy->wall_slots = (se3di_slots){.salt = 0};
     copy->grain_memory = copy->spin_memory = copy->load_memory = none;
     copy->block_memory = copy->roll_memory = none;
     copy->grains = NULL;
@@ -412,12 +306,6 @@ se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *c
     se3d_status status = copy_arrays(set, copy);
     if (status == SE3D_OK) {
         status = copy_aligned(set, copy);
-    }
-    if (status == SE3D_OK) {
-        status = se3di_slots_clone(&set->material_slots, &set->allocator, &copy->material_slots);
-    }
-    if (status == SE3D_OK) {
-        status = se3di_slots_clone(&set->wall_slots, &set->allocator, &copy->wall_slots);
     }
     if (status < 0) {
         se3di_particles_destroy(copy);

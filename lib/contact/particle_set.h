@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "base/slots.h"
 #include "contact/law.h"
+#include "contact/shape.h"
 #include "model/model.h"
 #include "se3d/particles.h"
 
@@ -60,18 +61,22 @@ typedef struct se3di_carry {
 
 #define SE3DI_CARRY_WALL 0x80000000u
 
-typedef enum se3di_wall_kind { SE3DI_WALL_PLANE = 0, SE3DI_WALL_BOX = 1 } se3di_wall_kind;
+/* What the set has taken from the model: a material of particles or walls. */
+typedef struct se3di_stuff {
+    se3di_material material;
+    se3di_handle handle; /* null: no longer used */
+    int32_t held;        /* particles are made of it: stays, and counts as a user */
+    int32_t reserved;
+} se3di_stuff;
 
+/* A shape that the particles touch, with its pose. */
 typedef struct se3di_wall {
-    int32_t kind;
-    uint32_t material;
-    uint32_t body; /* dense index in the model, looked up by the public layer */
-    uint32_t body_index1, body_generation; /* its handle */
-    double point[3];                       /* body frame; box: its centre */
-    double A[9];                           /* wall -> body; a plane's normal is the third column */
-    double half[3];                        /* box */
-    double x[3], R[9];                     /* present pose, ground frame */
-    double v[3], w[3], c[3];   /* velocity of its body, ground frame; the body's centre of mass */
+    se3di_shape shape; /* name, vertices, triangles and tree are the model's */
+    se3di_handle handle;
+    se3di_handle body; /* the handle of shape.body */
+    uint32_t material; /* in the set's table */
+    uint32_t reserved;
+    se3di_shape_pose pose;
     double old_x[3], old_R[9]; /* pose where the list was built */
     double near_x[3], near_R[9];
     double force[3], torque[3]; /* on the body, about its centre of mass, last evaluation */
@@ -103,7 +108,7 @@ typedef struct se3di_kernels se3di_kernels;
 
 typedef struct se3di_particles {
     se3d_allocator allocator;
-    se3di_law law;
+    se3di_contact_law law;
     int32_t threads;
     int32_t team; /* threads that evaluated the last forces */
     int32_t boundary[3];
@@ -117,16 +122,14 @@ typedef struct se3di_particles {
     double time;
     double gravity[3];
 
-    se3di_slots material_slots;
-    se3di_material *materials;
-    size_t material_capacity;
-    se3di_override *overrides; /* [materials * materials] */
-    se3di_pair *pairs;         /* [materials * materials] */
-    size_t pair_capacity, override_capacity;
-
-    se3di_slots wall_slots;
+    uint64_t topology_version; /* of the model whose materials and shapes these are; 0: none */
+    uint32_t group, mask;
+    se3di_stuff *stuffs;
+    size_t stuff_count, stuff_capacity;
+    se3di_pair *pairs; /* [stuffs * stuffs] */
+    size_t pair_capacity;
     se3di_wall *walls;
-    size_t wall_capacity;
+    size_t wall_count, wall_capacity;
 
     size_t count, capacity; /* capacity + 1 records: the last is the unused lane's partner */
     se3di_aligned grain_memory, spin_memory, load_memory;
@@ -210,7 +213,7 @@ const se3di_kernels *se3di_particle_kernels_avx2(void);
 const se3di_kernels *se3di_particle_kernels_avx512(void);
 
 /* particle_set.c: life time and editing. All-or-nothing; NO_MEMORY is the only failure. */
-void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator, uint32_t salt);
+void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator);
 void se3di_particles_destroy(se3di_particles *set);
 /* Deep copy into the uninitialised `copy`; on failure nothing is held. */
 se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *copy);
@@ -221,13 +224,12 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
 /* Remove where keep[index] is 0; the order of the others stays. The history must have been
  * collected. */
 void se3di_particles_filter(se3di_particles *set, const unsigned char *keep);
-se3d_status se3di_particles_add_material(se3di_particles *set, const se3di_material *material,
-                                         se3di_handle *handle);
-se3d_status se3di_particles_set_override(se3di_particles *set, uint32_t a, uint32_t b,
-                                         const se3di_override *over);
-se3d_status se3di_particles_add_wall(se3di_particles *set, const se3di_wall *wall,
-                                     se3di_handle *handle);
-se3d_status se3di_particles_remove_wall(se3di_particles *set, uint32_t wall);
+/* Take materials, shapes and settings from the model where it was edited since. */
+se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model);
+/* The index in the set's table of a material of the model, which is held from now on. Its users
+ * must be counted where *first is 1. */
+se3d_status se3di_particles_hold(se3di_particles *set, const se3di_model *model, uint32_t material,
+                                 uint32_t *index, int *first);
 /* Grow an aligned block to hold `bytes`, keeping the first `keep` bytes. */
 se3d_status se3di_aligned_reserve(const se3d_allocator *allocator, se3di_aligned *memory,
                                   size_t bytes, size_t keep);
@@ -249,26 +251,27 @@ se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, si
                                  size_t needed);
 /* The vector between centres, to the nearest image. */
 void se3di_particles_wrap(const se3di_particles *set, double d[3]);
-/* The point of a wall's surface nearest to x. */
-void se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3]);
+/* The point of a wall's surface nearest to x, the normal there; the distance. */
+double se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3],
+                          double normal[3]);
 double se3di_wall_distance(const se3di_wall *wall, const double x[3]);
 
-/* particle_step.c: motion. frames may be NULL where no wall is on a body that moves. */
+/* particle_step.c: motion. */
 void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames);
 /* Half kick of duration h/2 from the present forces and gravity. */
 void se3di_particles_kick(se3di_particles *set, double h);
 void se3di_particles_drift(se3di_particles *set, double h);
 /* Bring the lists up to date, evaluate all forces; springs advance by h (0: they stay). */
 se3d_status se3di_particles_forces(se3di_particles *set, double h);
-/* The automatic step. Infinite where there is nothing to resolve. */
-double se3di_particles_safe_step(const se3di_particles *set);
+/* The automatic step with the model's materials. Infinite where there is nothing to resolve. */
+double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *model);
 /* One step of velocity Verlet; frames move the walls (NULL: they stay). */
 se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps,
                                     const se3di_frame *frames);
 /* particle_contacts.c: contacts of the present lists as they are now; nothing changes. Counts all,
  * writes the first `capacity`. */
 se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity,
-                                     se3d_contact *contacts, size_t *count);
+                                     se3d_particles_contact *contacts, size_t *count);
 uint64_t se3di_particles_hash(const se3di_particles *set);
 
 #endif

@@ -5,6 +5,7 @@
 #include "contact/particle_set.h"
 
 #include "base/hash.h"
+#include "math/vec3.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,22 +16,9 @@
 
 void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames)
 {
-    for (size_t k = 0; k < set->wall_slots.count; ++k) {
+    for (size_t k = 0; k < set->wall_count; ++k) {
         se3di_wall *wall = &set->walls[k];
-        const se3di_frame *frame = &frames[wall->body];
-        const double *A = frame->A;
-        for (int a = 0; a < 3; ++a) {
-            const double *row = A + 3 * a;
-            wall->c[a] = frame->r[a];
-            wall->v[a] = frame->v[a];
-            wall->x[a] = frame->r[a] + row[0] * wall->point[0] + row[1] * wall->point[1] +
-                         row[2] * wall->point[2];
-            wall->w[a] = row[0] * frame->w[0] + row[1] * frame->w[1] + row[2] * frame->w[2];
-            for (int b = 0; b < 3; ++b) {
-                wall->R[3 * a + b] =
-                    row[0] * wall->A[b] + row[1] * wall->A[3 + b] + row[2] * wall->A[6 + b];
-            }
-        }
+        se3di_shape_place(&wall->shape, &frames[wall->shape.body], &wall->pose);
     }
 }
 
@@ -105,28 +93,32 @@ void se3di_particles_drift(se3di_particles *set, double h)
     pass(set, 0, 0.0, h);
 }
 
-/* The farthest that a wall's surface is from where it was, where particles may touch it. */
+/* The farthest that a wall's surface is from where it was, where particles may touch it: of a plane
+ * at the corners of the box of all particles, of others at most |shift| + angle * bound. */
 static double wall_shift(const se3di_particles *set, const se3di_wall *wall, const double x[3],
                          const double R[9])
 {
-    if (memcmp(x, wall->x, sizeof wall->x) == 0 && memcmp(R, wall->R, sizeof wall->R) == 0) {
+    const se3di_shape_pose *now = &wall->pose;
+    if (memcmp(x, now->x, sizeof now->x) == 0 && memcmp(R, now->R, sizeof now->R) == 0) {
         return 0.0;
+    }
+    double shift[3];
+    se3di_sub(now->x, x, shift);
+    if (wall->shape.kind != SE3DI_SHAPE_PLANE) {
+        double turn = 0.0;
+        for (int k = 0; k < 9; ++k) {
+            turn += (now->R[k] - R[k]) * (now->R[k] - R[k]);
+        }
+        return se3di_norm(shift) + sqrt(0.5 * turn) * wall->shape.bound;
     }
     double most = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
-        double sum = 0.0;
         double change = 0.0;
         for (int a = 0; a < 3; ++a) {
-            double shift = wall->x[a] - x[a];
             double p = corner >> a & 1 ? set->high[a] + set->skin : set->low[a] - set->skin;
-            change += wall->R[3 * a + 2] * (p - wall->x[a]) - R[3 * a + 2] * (p - x[a]);
-            for (int b = 0; b < 3; ++b) {
-                double half = corner >> b & 1 ? wall->half[b] : -wall->half[b];
-                shift += (wall->R[3 * a + b] - R[3 * a + b]) * half;
-            }
-            sum += shift * shift;
+            change += now->R[3 * a + 2] * (p - now->x[a]) - R[3 * a + 2] * (p - x[a]);
         }
-        most = fmax(most, wall->kind == SE3DI_WALL_PLANE ? fabs(change) : sqrt(sum));
+        most = fmax(most, fabs(change));
     }
     return most;
 }
@@ -137,7 +129,7 @@ static void motion(const se3di_particles *set, double *since_list, double *since
     double near = set->moved - set->moved_near;
     *since_list = 2.0 * set->moved;
     *since_near = 2.0 * near;
-    for (size_t k = 0; k < set->wall_slots.count; ++k) {
+    for (size_t k = 0; k < set->wall_count; ++k) {
         const se3di_wall *wall = &set->walls[k];
         double far = wall_shift(set, wall, wall->old_x, wall->old_R);
         double close = wall_shift(set, wall, wall->near_x, wall->near_R);
@@ -179,7 +171,7 @@ static se3d_status update_lists(se3di_particles *set)
 static void evaluate_slab(se3di_particles *set, se3di_force_task task, uint32_t s)
 {
     se3di_slab *slab = &set->slabs[s];
-    size_t walls = set->wall_slots.count;
+    size_t walls = set->wall_count;
     task.begin = slab->pair_begin;
     task.end = slab->pair_end;
     task.touching = 0;
@@ -273,7 +265,7 @@ static se3d_status find_not_finite(se3di_particles *set)
 
 static se3d_status reserve_sums(se3di_particles *set)
 {
-    size_t needed = 6 * set->wall_slots.count * SE3DI_GRAIN_SLABS_MAX;
+    size_t needed = 6 * set->wall_count * SE3DI_GRAIN_SLABS_MAX;
     void *memory = set->wall_sums;
     se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->wall_sum_capacity,
                                              needed, sizeof(double));
@@ -283,7 +275,7 @@ static se3d_status reserve_sums(se3di_particles *set)
 
 static void sum_walls(se3di_particles *set)
 {
-    size_t walls = set->wall_slots.count;
+    size_t walls = set->wall_count;
     for (size_t w = 0; w < walls; ++w) {
         double sum[6] = {0.0};
         for (size_t s = 0; s < set->slab_count; ++s) {
@@ -306,7 +298,7 @@ static se3di_force_task prepare(se3di_particles *set, double h)
         .rolls = set->rolling ? set->rolls : NULL,
         .pairs = set->pairs,
         .walls = set->walls,
-        .materials = (uint32_t)set->material_slots.count,
+        .materials = (uint32_t)set->stuff_count,
         .law = (int32_t)set->law,
         .uniform = set->uniform,
         .h = h,
@@ -349,23 +341,39 @@ se3d_status se3di_particles_forces(se3di_particles *set, double h)
     return SE3D_OK;
 }
 
-double se3di_particles_safe_step(const se3di_particles *set)
+/* Over the pairs of a material with all that are in use. */
+static double pair_steps(const se3di_model *model, size_t a, double radius, double mass)
 {
     double step = HUGE_VAL;
-    size_t n = set->material_slots.count;
-    for (size_t a = 0; a < n; ++a) {
+    size_t n = model->material_slots.count;
+    for (size_t b = 0; b < n; ++b) {
+        if (model->materials[b].users > 0) {
+            /* the other one may be as light: half of the mass */
+            step = fmin(step,
+                        se3di_pair_step((se3di_contact_law)model->contact.law, &model->materials[a],
+                                        &model->pairs[a * n + b], radius, mass, 0.5 * mass));
+        }
+    }
+    return step;
+}
+
+double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *model)
+{
+    double step = HUGE_VAL;
+    for (size_t s = 0; s < set->stuff_count; ++s) {
         double lightest = HUGE_VAL;
         double smallest = HUGE_VAL;
-        for (size_t k = 0; k < set->count; ++k) {
-            if (set->spins[k].material == a) {
+        const se3di_stuff *stuff = &set->stuffs[s];
+        for (size_t k = 0; stuff->held && k < set->count; ++k) {
+            if (set->spins[k].material == s) {
                 lightest = fmin(lightest, 1.0 / set->grains[k].inverse_mass);
                 smallest = fmin(smallest, set->grains[k].radius);
             }
         }
-        for (size_t b = 0; b < n && smallest < HUGE_VAL; ++b) {
-            /* the other one may be as light: half of the mass */
-            step = fmin(step, se3di_pair_step(set->law, &set->materials[a], &set->pairs[a * n + b],
-                                              smallest, lightest, 0.5 * lightest));
+        if (smallest < HUGE_VAL) {
+            uint32_t a = se3di_slots_find(&model->material_slots, stuff->handle.index1,
+                                          stuff->handle.generation);
+            step = fmin(step, pair_steps(model, a, smallest, lightest));
         }
     }
     return step;

@@ -6,7 +6,6 @@
 
 #include "io/grains.h"
 #include "io/reader.h"
-#include "io/rotation.h"
 
 /* The material under `key`, made where it is needed first. */
 static bool read_material(se3di_reader *reader, const se3di_node *map, const char *key,
@@ -53,7 +52,8 @@ static bool read_material(se3di_reader *reader, const se3di_node *map, const cha
                 return false;
             }
         }
-        const se3d_status status = se3d_material_create(grains->set, &def, &grains->materials[k]);
+        const se3d_status status =
+            se3d_material_create(reader->model->system, &def, &grains->materials[k]);
         if (status < 0) {
             return se3di_reader_fail_system(reader, entry, status);
         }
@@ -99,7 +99,9 @@ static bool read_boundaries(se3di_reader *reader, const se3di_node *map, se3d_pa
 static bool create_set(se3di_reader *reader, const se3di_node *contact)
 {
     static const char *const laws[] = {"hooke", "hertz_mindlin", NULL};
+    se3d_system *system = reader->model->system;
     se3d_particles_def def = se3d_particles_def_default();
+    se3d_contact_settings settings = se3d_contact_settings_default();
     double threads = 1.0;
     size_t law = 0;
     if (contact) {
@@ -107,18 +109,20 @@ static bool create_set(se3di_reader *reader, const se3di_node *contact)
         if (!se3di_read_keys(reader, contact, SE3DI_OBJECT_CONTACT) ||
             (word && !se3di_read_word(reader, word, laws, &law)) ||
             !read_count(reader, contact, "threads", 1024.0, &threads) ||
-            !se3di_read_key_number(reader, contact, "step", SE3DI_POSITIVE, &def.step) ||
+            !se3di_read_key_number(reader, contact, "step", SE3DI_POSITIVE, &settings.step) ||
             !se3di_read_key_number(reader, contact, "skin", SE3DI_POSITIVE, &def.skin) ||
             !se3di_read_key_number(reader, contact, "overlap_limit", SE3DI_POSITIVE,
-                                   &def.overlap_limit) ||
+                                   &settings.overlap_limit) ||
             !read_boundaries(reader, contact, &def)) {
             return false;
         }
     }
-    def.law = (int32_t)law;
+    settings.law = (int32_t)law;
     def.threads = (int32_t)threads;
-    const se3d_status status =
-        se3d_particles_create(reader->model->system, &def, &reader->model->grains->set);
+    se3d_status status = se3d_system_set_contact(system, &settings);
+    if (status >= 0) {
+        status = se3d_particles_create(system, &def, &reader->model->grains->set);
+    }
     return status < 0
                ? se3di_reader_fail_system(reader, contact ? contact : reader->model->root, status)
                : true;
@@ -126,34 +130,26 @@ static bool create_set(se3di_reader *reader, const se3di_node *contact)
 
 static bool add_wall(se3di_reader *reader, const se3di_node *node, const se3d_model_shape *shape)
 {
-    se3di_grains *grains = reader->model->grains;
-    se3d_wall_def def = se3d_wall_def_default();
-    se3d_wall wall;
-    double A[9];
+    static se3d_status (*const create[])(se3d_system *, const se3d_shape_def *, se3d_shape *) = {
+        se3d_shape_create_sphere, se3d_shape_create_box, se3d_shape_create_capsule,
+        se3d_shape_create_cylinder, se3d_shape_create_plane};
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape made;
     int32_t fixed = 0;
-    if (shape->type != SE3D_SHAPE_PLANE && shape->type != SE3D_SHAPE_BOX) {
-        return se3di_reader_fail_key(reader, node, "material",
-                                     "is for planes and boxes where there are particles: contact "
-                                     "with other shapes is not supported yet");
-    }
     if (!read_material(reader, node, "material", &def.material)) {
         return false;
     }
-    se3di_rotation_to_matrix(shape->orientation, A);
-    for (size_t k = 0; k < 3; ++k) {
-        def.normal[k] = A[3 * k + 2];
-    }
     def.body = shape->body;
-    memcpy(def.point, shape->position, sizeof def.point);
+    def.radius = shape->radius;
+    def.length = shape->length;
+    memcpy(def.position, shape->position, sizeof def.position);
     memcpy(def.orientation, shape->orientation, sizeof def.orientation);
     memcpy(def.size, shape->size, sizeof def.size);
-    se3d_status status = shape->type == SE3D_SHAPE_PLANE
-                             ? se3d_wall_create_plane(grains->set, &def, &wall)
-                             : se3d_wall_create_box(grains->set, &def, &wall);
+    se3d_status status = create[shape->type](reader->model->system, &def, &made);
     if (status >= 0) {
         status = se3d_body_get_fixed(reader->model->system, shape->body, &fixed);
     }
-    grains->moving_walls = grains->moving_walls || !fixed;
+    reader->model->grains->moving_walls = reader->model->grains->moving_walls || !fixed;
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
@@ -196,7 +192,7 @@ static bool read_pairs(se3di_reader *reader, const se3di_node *contact)
             !se3di_read_key_number(reader, node, "stiffness", SE3DI_POSITIVE, &def.stiffness)) {
             return false;
         }
-        const se3d_status status = se3d_material_set_pair(reader->model->grains->set, a, b, &def);
+        const se3d_status status = se3d_material_set_pair(reader->model->system, a, b, &def);
         if (status < 0) {
             return se3di_reader_fail_system(reader, node, status);
         }

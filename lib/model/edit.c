@@ -49,8 +49,7 @@ void se3di_model_touch_state(se3di_model *model)
     }
 }
 
-/* The structure has changed. */
-static void touch(se3di_model *model)
+void se3di_model_touch(se3di_model *model)
 {
     ++model->topology_version;
     se3di_model_touch_state(model);
@@ -72,7 +71,7 @@ se3d_status se3di_model_add_body(se3di_model *model, const se3di_body *body,
     model->frames[count] = *frame;
     memset(model->acceleration + 6 * count, 0, 6 * sizeof *model->acceleration);
     *handle = se3di_slots_add(&model->body_slots);
-    touch(model);
+    se3di_model_touch(model);
     return SE3D_OK;
 }
 
@@ -114,7 +113,10 @@ void se3di_model_remove_body(se3di_model *model, uint32_t body)
         lower(&model->forces[k].body_i, body);
         lower(&model->forces[k].body_j, body);
     }
-    touch(model);
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        lower(&model->shapes[k].body, body);
+    }
+    se3di_model_touch(model);
 }
 
 se3d_status se3di_model_add_marker(se3di_model *model, const se3di_marker *marker,
@@ -242,7 +244,7 @@ se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *dr
     model->term_count += draft->term_count;
     count_constraint_users(model, constraint, 1);
     *handle = se3di_slots_add(&model->constraint_slots);
-    touch(model);
+    se3di_model_touch(model);
     return SE3D_OK;
 }
 
@@ -293,7 +295,7 @@ void se3di_model_remove_constraint(se3di_model *model, uint32_t index)
     if (gone.angle >= 0) {
         remove_angle(model, (uint32_t)gone.angle);
     }
-    touch(model);
+    se3di_model_touch(model);
 }
 
 static void count_force_users(se3di_model *model, const se3di_force *force, uint32_t by)
@@ -323,7 +325,7 @@ se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
     model->forces[count].users = 0;
     count_force_users(model, force, 1);
     *handle = se3di_slots_add(&model->force_slots);
-    touch(model);
+    se3di_model_touch(model);
     return SE3D_OK;
 }
 
@@ -349,5 +351,5 @@ void se3di_model_remove_force(se3di_model *model, uint32_t force)
     if (own >= 0) {
         remove_angle(model, (uint32_t)own);
     }
-    touch(model);
+    se3di_model_touch(model);
 }

@@ -19,11 +19,13 @@ se3d_status se3di_model_init(se3di_model *model, const se3d_allocator *allocator
     memset(model, 0, sizeof *model);
     model->allocator = *allocator;
     model->gravity_function[0] = model->gravity_function[1] = model->gravity_function[2] = -1;
-    se3di_slots *slots[] = {&model->body_slots, &model->marker_slots, &model->function_slots,
-                            &model->constraint_slots, &model->force_slots};
+    se3di_slots *slots[] = {&model->body_slots,       &model->marker_slots, &model->function_slots,
+                            &model->constraint_slots, &model->force_slots,  &model->material_slots,
+                            &model->shape_slots};
     for (size_t k = 0; k < sizeof slots / sizeof slots[0]; ++k) {
         se3di_slots_init(slots[k], salt);
     }
+    model->contact.overlap_limit = 0.2;
     char name[] = "ground";
     se3di_body ground = {.name = name, .fixed = 1};
     se3di_frame frame = {.p = {1.0, 0.0, 0.0, 0.0}};
@@ -60,11 +62,12 @@ typedef struct model_array {
     size_t count, size;
 } model_array;
 
-#define MODEL_ARRAYS 12
+#define MODEL_ARRAYS 16
 
 static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
 {
     size_t bodies = m->body_slots.count;
+    size_t materials = m->material_slots.count;
     model_array arrays[MODEL_ARRAYS] = {
         {(void **)&m->bodies, &m->body_capacity, bodies, sizeof *m->bodies},
         {(void **)&m->frames, &m->frame_capacity, bodies, sizeof *m->frames},
@@ -79,6 +82,11 @@ static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
         {(void **)&m->angles, &m->angle_capacity, m->angle_count, sizeof *m->angles},
         {(void **)&m->lambda, &m->lambda_capacity, m->row_count, sizeof *m->lambda},
         {(void **)&m->forces, &m->force_capacity, m->force_slots.count, sizeof *m->forces},
+        {(void **)&m->materials, &m->material_capacity, materials, sizeof *m->materials},
+        {(void **)&m->overrides, &m->override_capacity, materials * materials,
+         sizeof *m->overrides},
+        {(void **)&m->pairs, &m->pair_capacity, materials * materials, sizeof *m->pairs},
+        {(void **)&m->shapes, &m->shape_capacity, m->shape_slots.count, sizeof *m->shapes},
         {(void **)&m->history, &m->history_capacity, m->history_count, sizeof *m->history},
     };
     memcpy(list, arrays, sizeof arrays);
@@ -91,6 +99,8 @@ static void destroy_slots(se3di_model *model)
     se3di_slots_destroy(&model->function_slots, &model->allocator);
     se3di_slots_destroy(&model->constraint_slots, &model->allocator);
     se3di_slots_destroy(&model->force_slots, &model->allocator);
+    se3di_slots_destroy(&model->material_slots, &model->allocator);
+    se3di_slots_destroy(&model->shape_slots, &model->allocator);
 }
 
 void se3di_model_destroy(se3di_model *model)
@@ -99,6 +109,9 @@ void se3di_model_destroy(se3di_model *model)
     destroy_names(model);
     for (size_t k = 0; k < model->function_slots.count; ++k) {
         se3di_function_release(allocator, &model->functions[k]);
+    }
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        se3di_shape_release(allocator, &model->shapes[k]);
     }
     model_array arrays[MODEL_ARRAYS];
     list_arrays(model, arrays);
@@ -125,6 +138,8 @@ static void disown(se3di_model *copy)
     se3di_slots_init(&copy->function_slots, 0);
     se3di_slots_init(&copy->constraint_slots, 0);
     se3di_slots_init(&copy->force_slots, 0);
+    se3di_slots_init(&copy->material_slots, 0);
+    se3di_slots_init(&copy->shape_slots, 0);
     copy->row_count = copy->term_count = copy->angle_count = copy->history_count = 0;
 }
 
@@ -159,6 +174,9 @@ static se3d_status copy_names(se3di_model *copy)
         status =
             se3di_function_own(allocator, &copy->functions[k]) < 0 ? SE3D_ERR_NO_MEMORY : status;
     }
+    for (size_t k = 0; k < copy->shape_slots.count; ++k) {
+        status = se3di_shape_own(allocator, &copy->shapes[k]) < 0 ? SE3D_ERR_NO_MEMORY : status;
+    }
     return status;
 }
 
@@ -170,6 +188,8 @@ static se3d_status clone_slots(const se3di_model *model, se3di_model *copy)
     SE3DI_TRY(se3di_slots_clone(&model->function_slots, allocator, &copy->function_slots));
     SE3DI_TRY(se3di_slots_clone(&model->constraint_slots, allocator, &copy->constraint_slots));
     SE3DI_TRY(se3di_slots_clone(&model->force_slots, allocator, &copy->force_slots));
+    SE3DI_TRY(se3di_slots_clone(&model->material_slots, allocator, &copy->material_slots));
+    SE3DI_TRY(se3di_slots_clone(&model->shape_slots, allocator, &copy->shape_slots));
     return SE3D_OK;
 }
 
@@ -215,6 +235,8 @@ se3d_status se3di_model_clone(const se3di_model *model, se3di_model *copy)
     copy->function_slots = slots.function_slots;
     copy->constraint_slots = slots.constraint_slots;
     copy->force_slots = slots.force_slots;
+    copy->material_slots = slots.material_slots;
+    copy->shape_slots = slots.shape_slots;
     status = copy_names(copy);
     if (status < 0) {
         se3di_model_destroy(copy);

@@ -15,6 +15,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/slots.h"
+#include "model/shape.h"
 #include "model/term.h"
 #include "se3d/constraint.h"
 #include "se3d/expression.h"
@@ -186,6 +187,16 @@ typedef struct se3di_model {
     se3di_force *forces;
     size_t force_capacity;
 
+    se3di_contact_settings contact;
+    se3di_slots material_slots;
+    se3di_material *materials;
+    se3di_override *overrides; /* [materials * materials], symmetric */
+    se3di_pair *pairs;         /* the same: what they give, see contact/law.h */
+    size_t material_capacity, override_capacity, pair_capacity;
+    se3di_slots shape_slots;
+    se3di_shape *shapes;
+    size_t shape_capacity;
+
     double *history; /* what an integrator carries from step to step */
     size_t history_count, history_capacity;
     uint64_t history_tag; /* who wrote it; 0: nobody */
@@ -225,6 +236,12 @@ se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *dr
 se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
                                   se3di_handle *handle);
 
+/* Name, vertices, triangles and tree are copied. */
+se3d_status se3di_model_add_shape(se3di_model *model, const se3di_shape *shape,
+                                  se3di_handle *handle);
+se3d_status se3di_model_add_material(se3di_model *model, const se3di_material *material,
+                                     se3di_handle *handle);
+
 /* The same with a turn counter of its own. */
 se3d_status se3di_model_add_force_with_angle(se3di_model *model, const se3di_force *force,
                                              const se3di_angle *angle, se3di_handle *handle);
@@ -235,7 +252,20 @@ void se3di_model_remove_marker(se3di_model *model, uint32_t marker);
 void se3di_model_remove_function(se3di_model *model, uint32_t function);
 void se3di_model_remove_constraint(se3di_model *model, uint32_t constraint);
 void se3di_model_remove_force(se3di_model *model, uint32_t force);
+void se3di_model_remove_shape(se3di_model *model, uint32_t shape);
+void se3di_model_remove_material(se3di_model *model, uint32_t material);
 
+/* What holds between two materials, and for all contacts. */
+void se3di_model_set_override(se3di_model *model, uint32_t a, uint32_t b,
+                              const se3di_override *over);
+void se3di_model_set_contact(se3di_model *model, const se3di_contact_settings *settings);
+
+/* Give a shape copies of its own of all that it points to; on failure it points to nothing. */
+se3d_status se3di_shape_own(const se3d_allocator *allocator, se3di_shape *shape);
+void se3di_shape_release(const se3d_allocator *allocator, se3di_shape *shape);
+
+/* The structure has changed. */
+void se3di_model_touch(se3di_model *model);
 /* The user has set a state: nothing that an integrator or solver remembers of it holds. */
 void se3di_model_touch_state(se3di_model *model);
 

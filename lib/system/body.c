@@ -97,7 +97,7 @@ se3d_status se3d_body_destroy(se3d_system *system, se3d_body body)
     if (data->users > 0) {
         return SE3DI_FAIL(
             system, SE3D_ERR_IN_USE,
-            "body %s is used by %u markers, constraints or forces; destroy them first",
+            "body %s is used by %u markers, constraints, forces or shapes; destroy them first",
             data->name ? data->name : "without a name", data->users);
     }
     se3di_model_remove_body(&system->model, index);

@@ -14,6 +14,16 @@ void se3di_def_init(void *def, size_t size, const void *defaults, size_t full)
     }
 }
 
+se3d_status se3di_check_range(se3d_system *system, const char *what, double value, double low,
+                              double high)
+{
+    if (isfinite(value) && value >= low && value <= high) {
+        return SE3D_OK;
+    }
+    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s = %g, must be finite, >= %g and <= %g",
+                      what, value, low, high);
+}
+
 se3d_status se3di_check_finite(se3d_system *system, const char *what, double value)
 {
     if (isfinite(value)) {
@@ -111,6 +121,13 @@ se3d_status se3di_find_marker(se3d_system *system, const char *what, se3d_marker
 {
     return find(system, &system->model.marker_slots, what,
                 (se3di_handle){marker.index1, marker.generation}, index);
+}
+
+se3d_status se3di_find_material(se3d_system *system, const char *what, se3d_material material,
+                                uint32_t *index)
+{
+    return find(system, &system->model.material_slots, what,
+                (se3di_handle){material.index1, material.generation}, index);
 }
 
 se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_constraint constraint,
@@ -223,6 +240,22 @@ se3d_status se3di_check_force_name(se3d_system *system, const char *name)
         if (other && strcmp(other, name) == 0) {
             return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                               "name = \"%.64s\" is taken by another force, must be unique", name);
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_check_shape_name(se3d_system *system, const char *name)
+{
+    if (!name) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(check_name(system, name));
+    for (size_t k = 0; k < system->model.shape_slots.count; ++k) {
+        const char *other = system->model.shapes[k].name;
+        if (other && strcmp(other, name) == 0) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "name = \"%.64s\" is taken by another shape, must be unique", name);
         }
     }
     return SE3D_OK;

@@ -17,18 +17,8 @@
 void se3d_particles_def_init(se3d_particles_def *def, size_t size)
 {
     se3d_particles_def defaults = {
-        .struct_size = size, .threads = 1, .skin = 0.1, .overlap_limit = 0.2};
+        .struct_size = size, .threads = 1, .skin = 0.1, .group = 1, .mask = UINT32_MAX};
     se3di_def_init(def, size, &defaults, sizeof defaults);
-}
-
-se3d_status se3di_check_range(se3d_particles *particles, const char *what, double value, double low,
-                              double high)
-{
-    if (isfinite(value) && value >= low && value <= high) {
-        return SE3D_OK;
-    }
-    return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
-                      "%s = %g, must be finite, >= %g and <= %g", what, value, low, high);
 }
 
 static se3d_status check_domain(se3d_system *system, const se3d_particles_def *def)
@@ -52,10 +42,6 @@ static se3d_status check_domain(se3d_system *system, const se3d_particles_def *d
 
 static se3d_status check_particles_def(se3d_system *system, const se3d_particles_def *def)
 {
-    if (def->law != SE3D_LAW_HOOKE && def->law != SE3D_LAW_HERTZ_MINDLIN) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "law = %d, must be an se3d_law",
-                          def->law);
-    }
     if (def->threads < 1 || def->threads > THREADS_MAX) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "threads = %d, must be at least 1 and at most %d", def->threads,
@@ -68,10 +54,6 @@ static se3d_status check_particles_def(se3d_system *system, const se3d_particles
     if (!(def->skin > 0.0 && def->skin <= 10.0)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "skin = %g, must be > 0 and <= 10",
                           def->skin);
-    }
-    if (!(def->overlap_limit > 0.0 && def->overlap_limit <= 1.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "overlap_limit = %g, must be > 0 and <= 1", def->overlap_limit);
     }
     return check_domain(system, def);
 }
@@ -105,11 +87,11 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
     if (!particles) {
         return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for particles");
     }
-    uint64_t bits = (uint64_t)(uintptr_t)particles * UINT64_C(0x9E3779B97F4A7C15);
     se3di_particles *set = &particles->set;
-    se3di_particles_init(set, allocator, (uint32_t)(bits >> 52));
+    se3di_particles_init(set, allocator);
     particles->system = system;
-    set->law = (se3di_law)full.law;
+    particles->next = system->particles;
+    system->particles = particles;
     set->threads = full.threads;
     set->kernels = choose_kernels(full.portable);
     memcpy(set->boundary, full.boundary, sizeof set->boundary);
@@ -117,21 +99,48 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
     memcpy(set->upper, full.upper, sizeof set->upper);
     set->step = full.step;
     set->skin_ratio = full.skin;
-    set->overlap_limit = full.overlap_limit;
+    set->group = full.group;
+    set->mask = full.mask;
     set->time = system->model.time;
     *out = particles;
     return SE3D_OK;
 }
 
-/* Bodies know how many walls are on them. */
+/* Materials know how many sets hold them. */
 static void count_users(se3d_particles *particles, int add)
 {
     se3di_model *model = &particles->system->model;
-    for (size_t k = 0; k < particles->set.wall_slots.count; ++k) {
-        const se3di_wall *wall = &particles->set.walls[k];
-        uint32_t body =
-            se3di_slots_find(&model->body_slots, wall->body_index1, wall->body_generation);
-        model->bodies[body].users += add ? 1u : UINT32_MAX;
+    for (size_t k = 0; k < particles->set.stuff_count; ++k) {
+        const se3di_stuff *stuff = &particles->set.stuffs[k];
+        if (stuff->held) {
+            uint32_t material = se3di_slots_find(&model->material_slots, stuff->handle.index1,
+                                                 stuff->handle.generation);
+            model->materials[material].users += add ? 1u : UINT32_MAX;
+        }
+    }
+}
+
+se3d_status se3di_particles_use(se3d_particles *particles, se3d_material material, uint32_t *index)
+{
+    se3d_system *system = particles->system;
+    uint32_t dense;
+    int first = 0;
+    SE3DI_TRY(se3di_find_material(system, "material", material, &dense));
+    if (se3di_particles_hold(&particles->set, &system->model, dense, index, &first) < 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a material");
+    }
+    system->model.materials[dense].users += first ? 1u : 0u;
+    return SE3D_OK;
+}
+
+static void unlink_set(se3d_particles *particles)
+{
+    se3d_particles **link = &particles->system->particles;
+    while (*link && *link != particles) {
+        link = &(*link)->next;
+    }
+    if (*link) {
+        *link = particles->next;
     }
 }
 
@@ -140,6 +149,7 @@ void se3d_particles_destroy(se3d_particles *particles)
     if (particles) {
         se3d_allocator allocator = particles->set.allocator;
         count_users(particles, 0);
+        unlink_set(particles);
         se3di_particles_destroy(&particles->set);
         se3di_free(&allocator, particles, 1, sizeof *particles);
     }
@@ -225,7 +235,6 @@ se3d_status se3d_particles_add(se3d_particles *particles, se3d_material material
         return SE3D_ERR_NULL;
     }
     uint32_t index;
-    SE3DI_TRY(se3di_find_material(particles, "material", material, &index));
     SE3DI_TRY(se3di_check_pointer(particles->system, "r", r));
     SE3DI_TRY(se3di_check_pointer(particles->system, "radius", radius));
     for (size_t k = 0; k < count; ++k) {
@@ -237,6 +246,7 @@ se3d_status se3d_particles_add(se3d_particles *particles, se3d_material material
     SE3DI_TRY(check_finite_array(particles, "r", r, 3 * count));
     SE3DI_TRY(check_finite_array(particles, "v", v, 3 * count));
     SE3DI_TRY(check_finite_array(particles, "w", w, 3 * count));
+    SE3DI_TRY(se3di_particles_use(particles, material, &index));
     SE3DI_TRY(se3di_particles_make_room(particles, count));
     if (first) {
         *first = (uint32_t)particles->set.id_count;
@@ -406,17 +416,19 @@ se3d_status se3d_particles_get_forces(const se3d_particles *particles, size_t co
 /* The step in use; 0 where there is nothing to resolve. */
 static double step_of(const se3d_particles *particles)
 {
-    if (particles->set.step > 0.0) {
-        return particles->set.step;
+    double given = particles->system->model.contact.step;
+    if (particles->set.step > 0.0 || given > 0.0) {
+        return particles->set.step > 0.0 ? particles->set.step : given;
     }
-    double safe = se3di_particles_safe_step(&particles->set);
+    double safe = se3di_particles_safe_step(&particles->set, &particles->system->model);
     return isfinite(safe) ? safe : 0.0;
 }
 
 static se3d_status check_step(se3d_particles *particles, double h)
 {
-    double safe = se3di_particles_safe_step(&particles->set);
-    int is_hooke = particles->set.law == SE3DI_LAW_HOOKE;
+    const se3di_model *model = &particles->system->model;
+    double safe = se3di_particles_safe_step(&particles->set, model);
+    int is_hooke = model->contact.law == SE3DI_LAW_HOOKE;
     double limit = safe * (is_hooke ? STEP_LIMIT_HOOKE : STEP_LIMIT_HERTZ);
     if (h > limit) {
         return SE3DI_FAIL(particles->system, SE3D_ERR_STEP_SIZE,
@@ -449,22 +461,15 @@ static se3d_status explain(se3d_particles *particles, se3d_status status)
     return SE3DI_FAIL(particles->system, status, "no memory for contacts at time %g s", set->time);
 }
 
-/* Poses of the walls' bodies now. */
-static void place_walls(se3d_particles *particles)
-{
-    const se3di_model *model = &particles->system->model;
-    for (size_t k = 0; k < particles->set.wall_slots.count; ++k) {
-        se3di_wall *wall = &particles->set.walls[k];
-        wall->body = se3di_slots_find(&model->body_slots, wall->body_index1, wall->body_generation);
-    }
-    se3di_particles_move_walls(&particles->set, model->frames);
-}
-
 static se3d_status advance(se3d_particles *particles, double h, size_t steps)
 {
     const se3di_model *model = &particles->system->model;
     se3di_particles *set = &particles->set;
-    place_walls(particles);
+    se3d_status synced = se3di_particles_sync(set, model);
+    if (synced < 0) {
+        return explain(particles, synced);
+    }
+    se3di_particles_move_walls(set, model->frames);
     int varies = model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
                  model->gravity_function[2] >= 0;
     size_t done = 0;
@@ -528,7 +533,7 @@ se3d_status se3d_particles_set_step(se3d_particles *particles, double step)
     if (!particles) {
         return SE3D_ERR_NULL;
     }
-    SE3DI_TRY(se3di_check_range(particles, "step", step, 0.0, 1e30));
+    SE3DI_TRY(se3di_check_range(particles->system, "step", step, 0.0, 1e30));
     particles->set.step = step;
     return SE3D_OK;
 }

@@ -9,14 +9,11 @@
 struct se3d_particles {
     se3di_particles set;
     se3d_system *system;
+    se3d_particles *next; /* of the same system */
 };
 
-/* Dense index of a material; fails with STALE_HANDLE and a message. */
-se3d_status se3di_find_material(se3d_particles *particles, const char *what, se3d_material material,
-                                uint32_t *index);
-/* `value` is finite and in [low, high]. */
-se3d_status se3di_check_range(se3d_particles *particles, const char *what, double value, double low,
-                              double high);
+/* The index of a material in the set's table, which it gets and is counted in where it has none. */
+se3d_status se3di_particles_use(se3d_particles *particles, se3d_material material, uint32_t *index);
 /* Room for `count` more particles. */
 se3d_status se3di_particles_make_room(se3d_particles *particles, size_t count);
 

@@ -27,18 +27,17 @@ static se3d_status check_fill(se3d_particles *p, const se3d_fill_def *def, se3d_
                               uint32_t *material)
 {
     SE3DI_TRY(se3di_check_def(p->system, "fill def", def, full, sizeof *full));
-    SE3DI_TRY(se3di_find_material(p, "material", full->material, material));
     SE3DI_TRY(se3di_check_finites(p->system, "velocity", full->velocity, 3));
-    SE3DI_TRY(se3di_check_range(p, "radius_min", full->radius_min, 1e-30, 1e30));
-    SE3DI_TRY(se3di_check_range(p, "radius_max", full->radius_max, full->radius_min, 1e30));
-    SE3DI_TRY(se3di_check_range(p, "jitter", full->jitter, 0.0, 1e30));
-    SE3DI_TRY(se3di_check_range(p, "spacing", full->spacing, 0.0, 1e30));
+    SE3DI_TRY(se3di_check_range(p->system, "radius_min", full->radius_min, 1e-30, 1e30));
+    SE3DI_TRY(se3di_check_range(p->system, "radius_max", full->radius_max, full->radius_min, 1e30));
+    SE3DI_TRY(se3di_check_range(p->system, "jitter", full->jitter, 0.0, 1e30));
+    SE3DI_TRY(se3di_check_range(p->system, "spacing", full->spacing, 0.0, 1e30));
     for (int a = 0; a < 3; ++a) {
-        SE3DI_TRY(se3di_check_range(p, "lower", full->lower[a], -1e30, 1e30));
-        SE3DI_TRY(se3di_check_range(p, "upper", full->upper[a],
+        SE3DI_TRY(se3di_check_range(p->system, "lower", full->lower[a], -1e30, 1e30));
+        SE3DI_TRY(se3di_check_range(p->system, "upper", full->upper[a],
                                     full->lower[a] + 2.0 * full->radius_max, 1e30));
     }
-    return SE3D_OK;
+    return se3di_particles_use(p, full->material, material);
 }
 
 static double draw_radius(const se3d_fill_def *def, uint64_t *state)
@@ -71,7 +70,7 @@ se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fi
         total *= n[a];
     }
     double wanted = full.count > 0 ? fmin(total, (double)full.count) : total;
-    SE3DI_TRY(se3di_check_range(particles, "count of the lattice", wanted, 0.0, 2e9));
+    SE3DI_TRY(se3di_check_range(particles->system, "count of the lattice", wanted, 0.0, 2e9));
     SE3DI_TRY(se3di_particles_make_room(particles, (size_t)wanted));
     uint64_t state = full.seed;
     for (size_t k = 0; k < (size_t)wanted; ++k) {

@@ -9,6 +9,7 @@
 
 struct se3d_system {
     se3di_model model;
+    se3d_particles *particles; /* the first of its sets, see system/particles.h; copies are not */
     se3di_error error;
     se3d_log_callback log;
     void *log_ctx;
@@ -22,6 +23,9 @@ se3d_status se3di_check_finite(se3d_system *system, const char *what, double val
 /* All of `values` are finite: "position[1] = nan, must be finite". */
 se3d_status se3di_check_finites(se3d_system *system, const char *what, const double *values,
                                 int count);
+/* `value` is finite and in [low, high]. */
+se3d_status se3di_check_range(se3d_system *system, const char *what, double value, double low,
+                              double high);
 /* `values` is finite and not zero; writes the unit vector. */
 se3d_status se3di_check_direction(se3d_system *system, const char *what, const double values[3],
                                   double unit[3]);
@@ -47,6 +51,8 @@ se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_co
                                   uint32_t *index);
 se3d_status se3di_find_force(se3d_system *system, const char *what, se3d_force force,
                              uint32_t *index);
+se3d_status se3di_find_material(se3d_system *system, const char *what, se3d_material material,
+                                uint32_t *index);
 /* A null handle gives -1; a function of other than `variables` variables is an error. */
 se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_function function,
                                 uint32_t variables, int32_t *index);
@@ -56,5 +62,6 @@ se3d_status se3di_check_body_name(se3d_system *system, const char *name);
 se3d_status se3di_check_marker_name(se3d_system *system, uint32_t body, const char *name);
 se3d_status se3di_check_constraint_name(se3d_system *system, const char *name);
 se3d_status se3di_check_force_name(se3d_system *system, const char *name);
+se3d_status se3di_check_shape_name(se3d_system *system, const char *name);
 
 #endif

@@ -18,7 +18,9 @@ static void bed_init(bed *b, int32_t threads, int32_t portable, int32_t law)
     se3d_particles_def def = se3d_particles_def_default();
     def.threads = threads;
     def.portable = portable;
-    def.law = law;
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    contact.law = law;
+    CHECK(se3d_system_set_contact(b->system, &contact) == SE3D_OK);
     CHECK(se3d_particles_create(b->system, &def, &b->particles) == SE3D_OK);
     se3d_material material[2];
     for (int k = 0; k < 2; ++k) {
@@ -28,18 +30,18 @@ static void bed_init(bed *b, int32_t threads, int32_t portable, int32_t law)
         stuff.young = 1e8;
         stuff.rolling_friction = 0.02 * k;
         stuff.restitution = 0.6;
-        CHECK(se3d_material_create(b->particles, &stuff, &material[k]) == SE3D_OK);
+        CHECK(se3d_material_create(b->system, &stuff, &material[k]) == SE3D_OK);
     }
     static const double normals[5][3] = {
         {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}};
     for (int k = 0; k < 5; ++k) {
-        se3d_wall_def wall = se3d_wall_def_default();
-        se3d_wall handle;
+        se3d_shape_def wall = se3d_shape_def_default();
+        se3d_shape handle;
         wall.material = material[0];
         memcpy(wall.normal, normals[k], sizeof wall.normal);
-        wall.point[0] = k == 2 ? 0.3 : 0.0;
-        wall.point[1] = k == 4 ? 0.06 : 0.0;
-        CHECK(se3d_wall_create_plane(b->particles, &wall, &handle) == SE3D_OK);
+        wall.position[0] = k == 2 ? 0.3 : 0.0;
+        wall.position[1] = k == 4 ? 0.06 : 0.0;
+        CHECK(se3d_shape_create_plane(b->system, &wall, &handle) == SE3D_OK);
     }
     for (int k = 0; k < 2; ++k) {
         se3d_fill_def fill = se3d_fill_def_default();
@@ -111,7 +113,7 @@ static uint64_t run_box(int32_t threads)
     stuff.density = 2500.0;
     stuff.stiffness = 2e4;
     se3d_fill_def fill = se3d_fill_def_default();
-    CHECK(se3d_material_create(b.particles, &stuff, &fill.material) == SE3D_OK);
+    CHECK(se3d_material_create(b.system, &stuff, &fill.material) == SE3D_OK);
     fill.radius_min = fill.radius_max = 0.005;
     fill.spacing = 0.0101;
     fill.jitter = 0.0004;
@@ -174,7 +176,7 @@ static void queries_change_nothing(void)
     bed a, b;
     bed_init(&a, 1, 0, SE3D_LAW_HOOKE);
     bed_init(&b, 1, 0, SE3D_LAW_HOOKE);
-    static se3d_contact contacts[20000];
+    static se3d_particles_contact contacts[20000];
     for (int k = 0; k < 20; ++k) {
         CHECK(se3d_particles_step(a.particles, 150) == SE3D_OK);
         CHECK(se3d_particles_step(b.particles, 150) == SE3D_OK);

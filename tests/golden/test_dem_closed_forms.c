@@ -18,10 +18,11 @@ static void bed_init(bed *b, se3d_law law, double g, const se3d_material_def *ma
     se3d_system_def def = se3d_system_def_default();
     def.gravity[2] = -g;
     CHECK(se3d_system_create(&def, &b->system) == SE3D_OK);
-    se3d_particles_def particles = se3d_particles_def_default();
-    particles.law = (int32_t)law;
-    CHECK(se3d_particles_create(b->system, &particles, &b->particles) == SE3D_OK);
-    CHECK(se3d_material_create(b->particles, material, &b->material) == SE3D_OK);
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    contact.law = (int32_t)law;
+    CHECK(se3d_system_set_contact(b->system, &contact) == SE3D_OK);
+    CHECK(se3d_particles_create(b->system, NULL, &b->particles) == SE3D_OK);
+    CHECK(se3d_material_create(b->system, material, &b->material) == SE3D_OK);
 }
 
 static void bed_destroy(bed *b)
@@ -30,15 +31,15 @@ static void bed_destroy(bed *b)
     se3d_system_destroy(b->system);
 }
 
-static se3d_wall floor_at(bed *b, double z, double nx, double nz)
+static se3d_shape floor_at(bed *b, double z, double nx, double nz)
 {
-    se3d_wall_def def = se3d_wall_def_default();
-    se3d_wall wall;
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape wall;
     def.material = b->material;
-    def.point[2] = z;
+    def.position[2] = z;
     def.normal[0] = nx;
     def.normal[2] = nz;
-    CHECK(se3d_wall_create_plane(b->particles, &def, &wall) == SE3D_OK);
+    CHECK(se3d_shape_create_plane(b->system, &def, &wall) == SE3D_OK);
     return wall;
 }
 
@@ -176,7 +177,7 @@ static void impact_on_a_rigid_wall_is_that_of_hertz(void)
     const double v[3] = {0.0, 0.0, -0.2};
     se3d_material rigid;
     def.young = 70e18;
-    CHECK(se3d_material_create(b.particles, &def, &rigid) == SE3D_OK);
+    CHECK(se3d_material_create(b.system, &def, &rigid) == SE3D_OK);
     add(&b, 0.0, 0.1, 0.1, v, NULL);
     se3d_material soft = b.material;
     b.material = rigid;
@@ -312,7 +313,7 @@ static void two_spheres_squeezed_between_walls_balance(void)
     bed_init(&b, SE3D_LAW_HOOKE, G, &def);
     add(&b, 0.0, 0.45e-3, 0.5e-3, NULL, NULL);
     def.density = 10000.0;
-    CHECK(se3d_material_create(b.particles, &def, &b.material) == SE3D_OK);
+    CHECK(se3d_material_create(b.system, &def, &b.material) == SE3D_OK);
     add(&b, 0.0, 1.35e-3, 0.5e-3, NULL, NULL);
     floor_at(&b, 0.0, 0.0, 1.0);
     floor_at(&b, 1.8e-3, 0.0, -1.0);
@@ -343,7 +344,7 @@ static void chain_stands_as_it_must(se3d_law law)
         expected[k] = (k == 0 ? R : expected[k - 1] + 2.0 * R) - overlap;
         add(&b, 0.0, (2.0 * k + 1.0) * R, R, NULL, NULL);
     }
-    se3d_wall bottom = floor_at(&b, 0.0, 0.0, 1.0);
+    se3d_shape bottom = floor_at(&b, 0.0, 0.0, 1.0);
     CHECK(se3d_particles_run(b.particles, 2.0) == SE3D_OK);
     double r[30], force[3], torque[3];
     CHECK(se3d_particles_get_all(b.particles, 10, r, NULL, NULL) == SE3D_OK);
@@ -351,7 +352,7 @@ static void chain_stands_as_it_must(se3d_law law)
         CHECK_NEAR(r[3 * k + 2], expected[k], 1e-11);
         CHECK_NEAR(r[3 * k], 0.0, 1e-15);
     }
-    CHECK(se3d_wall_get_force(b.particles, bottom, force, torque) == SE3D_OK);
+    CHECK(se3d_shape_get_wrench(b.system, bottom, force, torque) == SE3D_OK);
     CHECK_NEAR(force[2] / (n * weight), -1.0, 1e-7);
     bed_destroy(&b);
 }

@@ -622,15 +622,16 @@ static se3d_status texts_are_never_null(arguments *a)
 }
 
 /* An older caller's def is smaller, a newer one's larger: exactly `size` bytes are written. */
-#define CHECK_INIT(type)                                                                           \
+#define CHECK_INIT(type) CHECK_INIT_OF(se3d_##type##_def)
+#define CHECK_INIT_OF(type)                                                                        \
     do {                                                                                           \
         unsigned char bytes[1600];                                                                 \
-        se3d_##type##_def def;                                                                     \
-        se3d_##type##_def_init(NULL, sizeof def);                                                  \
+        type def;                                                                                  \
+        type##_init(NULL, sizeof def);                                                             \
         for (size_t size = 16; size < sizeof def + 64; size += 8) {                                \
             memset(bytes, 0x5A, sizeof bytes);                                                     \
             memset(&def, 0, sizeof def);                                                           \
-            se3d_##type##_def_init((void *)bytes, size);                                           \
+            type##_init((void *)bytes, size);                                                      \
             CHECK(memcmp(bytes, &size, sizeof size) == 0);                                         \
             size_t beyond = size;                                                                  \
             while (beyond < sizeof bytes && bytes[beyond] == 0x5A) {                               \
@@ -664,7 +665,8 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(particles);
     CHECK_INIT(material);
     CHECK_INIT(material_pair);
-    CHECK_INIT(wall);
+    CHECK_INIT(shape);
+    CHECK_INIT_OF(se3d_contact_settings);
     CHECK_INIT(fill);
     CHECK_INIT(modes);
     return SE3D_OK;
@@ -845,7 +847,8 @@ static const row rows[] = {
     {"se3d_particles_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_material_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_material_pair_def_init", definitions_are_never_overrun, "", NULL, NULL},
-    {"se3d_wall_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_shape_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_contact_settings_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_fill_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_modes_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_modes_create", modes_reject_misuse, "", NULL, NULL},
@@ -879,12 +882,24 @@ static const row rows[] = {
     {"se3d_particles_get_energy", particle_readers_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_stats", particle_readers_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_wrench", particle_readers_reject_misuse, "", NULL, NULL},
-    {"se3d_material_create", walls_and_materials_reject_misuse, "", NULL, NULL},
-    {"se3d_material_set_pair", walls_and_materials_reject_misuse, "", NULL, NULL},
-    {"se3d_wall_create_plane", walls_and_materials_reject_misuse, "", NULL, NULL},
-    {"se3d_wall_create_box", walls_and_materials_reject_misuse, "", NULL, NULL},
-    {"se3d_wall_destroy", walls_and_materials_reject_misuse, "", NULL, NULL},
-    {"se3d_wall_get_force", walls_and_materials_reject_misuse, "", NULL, NULL},
+    {"se3d_system_set_contact", materials_reject_misuse, "", NULL, NULL},
+    {"se3d_system_get_contact", materials_reject_misuse, "", NULL, NULL},
+    {"se3d_material_create", materials_reject_misuse, "", NULL, NULL},
+    {"se3d_material_destroy", materials_reject_misuse, "", NULL, NULL},
+    {"se3d_material_set_pair", materials_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_create_sphere", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_create_box", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_create_capsule", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_create_cylinder", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_create_plane", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_create_hull", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_destroy", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_find", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_get_name", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_get_body", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_get_wrench", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_get_nearest", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_body_get_contact_wrench", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_particles_fill_lattice", fills_reject_misuse, "", NULL, NULL},
     {"se3d_particles_fill_random", fills_reject_misuse, "", NULL, NULL},
 };

@@ -76,7 +76,7 @@ static se3d_particles *particles_open(arguments *a, se3d_material *material)
     def.density = 1000.0;
     def.stiffness = 1e5;
     CHECK(!se3d_particles_create(a->system, NULL, &particles));
-    CHECK(!se3d_material_create(particles, &def, material));
+    CHECK(!se3d_material_create(a->system, &def, material));
     CHECK(!se3d_particles_add(particles, *material, 2, r, radius, NULL, NULL, NULL));
     return particles;
 }
@@ -131,7 +131,7 @@ static se3d_status particle_readers_reject_misuse(arguments *a)
     se3d_material material;
     double x[6];
     uint32_t ids[2];
-    se3d_contact contact;
+    se3d_particles_contact contact;
     se3d_particles_energy energy;
     se3d_particles_stats stats;
     se3d_particles *p = particles_open(a, &material);
@@ -161,47 +161,120 @@ static se3d_status particle_readers_reject_misuse(arguments *a)
     return SE3D_OK;
 }
 
-static se3d_status walls_and_materials_reject_misuse(arguments *a)
+static se3d_status materials_reject_misuse(arguments *a)
 {
     se3d_material material, made = {7, 7};
-    se3d_wall wall = {7, 7};
-    double x[6];
     se3d_particles *p = particles_open(a, &material);
     se3d_material_def stuff = se3d_material_def_default();
     se3d_material_pair_def pair = se3d_material_pair_def_default();
-    se3d_wall_def def = se3d_wall_def_default();
+    se3d_contact_settings contact = se3d_contact_settings_default();
     CHECK(se3d_material_create(NULL, &stuff, &made) == SE3D_ERR_NULL && made.index1 == 0);
-    REJECTED(se3d_material_create(p, NULL, &made), SE3D_ERR_NULL);
-    REJECTED(se3d_material_create(p, &stuff, NULL), SE3D_ERR_NULL);
-    REJECTED(se3d_material_create(p, &stuff, &made), SE3D_ERR_INVALID_ARGUMENT); /* density */
+    REJECTED(se3d_material_create(a->system, NULL, &made), SE3D_ERR_NULL);
+    REJECTED(se3d_material_create(a->system, &stuff, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_material_create(a->system, &stuff, &made), SE3D_ERR_INVALID_ARGUMENT);
     stuff.density = (double)NAN;
-    REJECTED(se3d_material_create(p, &stuff, &made), SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_material_create(a->system, &stuff, &made), SE3D_ERR_INVALID_ARGUMENT);
     CHECK_CONTAINS(se3d_system_get_error(a->system), "nan");
+    stuff.density = 1.0; /* hooke needs a stiffness */
+    REJECTED(se3d_material_create(a->system, &stuff, &made), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "stiffness");
     CHECK(se3d_material_set_pair(NULL, material, material, &pair) == SE3D_ERR_NULL);
-    REJECTED(se3d_material_set_pair(p, material, material, NULL), SE3D_ERR_NULL);
-    REJECTED(se3d_material_set_pair(p, material, made, &pair), SE3D_ERR_STALE_HANDLE);
+    REJECTED(se3d_material_set_pair(a->system, material, material, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_material_set_pair(a->system, material, made, &pair), SE3D_ERR_STALE_HANDLE);
     pair.friction = (double)NAN;
-    REJECTED(se3d_material_set_pair(p, material, material, &pair), SE3D_ERR_INVALID_ARGUMENT);
-    CHECK(se3d_wall_create_plane(NULL, &def, &wall) == SE3D_ERR_NULL && wall.index1 == 0);
-    CHECK(se3d_wall_create_box(NULL, &def, &wall) == SE3D_ERR_NULL);
-    REJECTED(se3d_wall_create_plane(p, NULL, &wall), SE3D_ERR_NULL);
-    REJECTED(se3d_wall_create_box(p, NULL, &wall), SE3D_ERR_NULL);
-    REJECTED(se3d_wall_create_plane(p, &def, &wall), SE3D_ERR_STALE_HANDLE); /* no material */
-    def.material = material;
-    def.normal[2] = 0.0;
-    REJECTED(se3d_wall_create_plane(p, &def, &wall), SE3D_ERR_INVALID_ARGUMENT);
-    def.size[0] = (double)INFINITY;
-    REJECTED(se3d_wall_create_box(p, &def, &wall), SE3D_ERR_INVALID_ARGUMENT);
-    def.normal[2] = 1.0;
-    def.body = a->use.body;
-    CHECK(!se3d_wall_create_plane(p, &def, &wall));
-    CHECK(se3d_wall_get_force(NULL, wall, x, x + 3) == SE3D_ERR_NULL);
-    CHECK(!se3d_wall_get_force(p, wall, x, x + 3));
-    CHECK(se3d_wall_destroy(NULL, wall) == SE3D_ERR_NULL);
-    CHECK(!se3d_wall_destroy(p, wall));
-    CHECK(se3d_wall_get_force(p, wall, x, x + 3) == SE3D_ERR_STALE_HANDLE);
-    REJECTED(se3d_wall_destroy(p, wall), SE3D_ERR_STALE_HANDLE);
+    REJECTED(se3d_material_set_pair(a->system, material, material, &pair),
+             SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_material_destroy(NULL, material) == SE3D_ERR_NULL);
+    REJECTED(se3d_material_destroy(a->system, made), SE3D_ERR_STALE_HANDLE);
+    REJECTED(se3d_material_destroy(a->system, material), SE3D_ERR_IN_USE);
+    CHECK(se3d_system_set_contact(NULL, &contact) == SE3D_ERR_NULL);
+    REJECTED(se3d_system_set_contact(a->system, NULL), SE3D_ERR_NULL);
+    contact.law = 7;
+    REJECTED(se3d_system_set_contact(a->system, &contact), SE3D_ERR_INVALID_ARGUMENT);
+    contact.law = SE3D_LAW_HERTZ_MINDLIN; /* the material has no modulus */
+    REJECTED(se3d_system_set_contact(a->system, &contact), SE3D_ERR_INVALID_ARGUMENT);
+    contact.law = SE3D_LAW_HOOKE;
+    contact.step = (double)NAN;
+    REJECTED(se3d_system_set_contact(a->system, &contact), SE3D_ERR_INVALID_ARGUMENT);
+    contact.step = 0.0;
+    contact.overlap_limit = 0.0;
+    REJECTED(se3d_system_set_contact(a->system, &contact), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_system_get_contact(NULL, &contact) == SE3D_ERR_NULL);
+    CHECK(se3d_system_get_contact(a->system, NULL) == SE3D_ERR_NULL);
+    CHECK(!se3d_system_get_contact(a->system, &contact));
+    CHECK(contact.law == SE3D_LAW_HOOKE && contact.overlap_limit > 0.0);
+    contact.struct_size = 4096;
+    CHECK(se3d_system_get_contact(a->system, &contact) == SE3D_ERR_INVALID_ARGUMENT);
     se3d_particles_destroy(p);
+    CHECK(!se3d_material_destroy(a->system, material));
+    return SE3D_OK;
+}
+
+static se3d_status shapes_reject_misuse(arguments *a)
+{
+    se3d_status (*const create[])(se3d_system *, const se3d_shape_def *, se3d_shape *) = {
+        se3d_shape_create_sphere,   se3d_shape_create_box,   se3d_shape_create_capsule,
+        se3d_shape_create_cylinder, se3d_shape_create_plane, se3d_shape_create_hull};
+    const double corners[12] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+    const double flat[12] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0};
+    se3d_shape shape, other;
+    se3d_body body;
+    const char *name;
+    double x[6], distance;
+    for (size_t k = 0; k < sizeof create / sizeof *create; ++k) {
+        se3d_shape_def def = se3d_shape_def_default();
+        def.name = "pad";
+        def.body = a->use.body;
+        def.radius = def.length = def.size[0] = def.size[1] = def.size[2] = 1.0;
+        def.vertices = corners;
+        def.vertex_count = 4;
+        CHECK(create[k](NULL, &def, &shape) == SE3D_ERR_NULL);
+        REJECTED(create[k](a->system, NULL, &shape), SE3D_ERR_NULL);
+        REJECTED(create[k](a->system, &def, NULL), SE3D_ERR_NULL);
+        se3d_shape_def bad = def;
+        bad.position[1] = (double)NAN;
+        REJECTED(create[k](a->system, &bad, &shape), SE3D_ERR_INVALID_ARGUMENT);
+        CHECK_CONTAINS(se3d_system_get_error(a->system), "nan");
+        bad = def;
+        bad.body.generation ^= 1;
+        REJECTED(create[k](a->system, &bad, &shape), SE3D_ERR_STALE_HANDLE);
+        bad = def;
+        bad.material.index1 = 77;
+        REJECTED(create[k](a->system, &bad, &shape), SE3D_ERR_STALE_HANDLE);
+        bad = def;
+        bad.radius = bad.size[2] = bad.normal[0] = (double)INFINITY;
+        bad.vertices = flat;
+        REJECTED(create[k](a->system, &bad, &shape), SE3D_ERR_INVALID_ARGUMENT);
+        CHECK(shape.index1 == 0);
+        CHECK(!create[k](a->system, &def, &shape));
+        REJECTED(create[k](a->system, &def, &other), SE3D_ERR_INVALID_ARGUMENT); /* name */
+        CHECK(!se3d_shape_get_nearest(a->system, shape, corners, x, x + 3, &distance));
+        CHECK(se3d_shape_get_nearest(a->system, shape, NULL, x, x + 3, &distance) == SE3D_ERR_NULL);
+        x[0] = (double)NAN;
+        CHECK(se3d_shape_get_nearest(a->system, shape, x, x, x + 3, &distance) ==
+              SE3D_ERR_INVALID_ARGUMENT);
+        CHECK(!se3d_shape_find(a->system, "pad", &shape));
+        CHECK(!se3d_shape_get_name(a->system, shape, &name) && strcmp(name, "pad") == 0);
+        CHECK(!se3d_shape_get_body(a->system, shape, &body) && body.index1 == def.body.index1);
+        CHECK(!se3d_shape_get_wrench(a->system, shape, x, x + 3) && !(fabs(x[0]) > 0.0));
+        CHECK(!se3d_shape_destroy(a->system, shape));
+        REJECTED(se3d_shape_destroy(a->system, shape), SE3D_ERR_STALE_HANDLE);
+    }
+    CHECK(se3d_shape_destroy(NULL, shape) == SE3D_ERR_NULL);
+    CHECK(se3d_shape_find(NULL, "pad", &shape) == SE3D_ERR_NULL);
+    CHECK(se3d_shape_find(a->system, "pad", &shape) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_shape_get_name(NULL, shape, &name) == SE3D_ERR_NULL);
+    CHECK(se3d_shape_get_name(a->system, shape, &name) == SE3D_ERR_STALE_HANDLE && !name);
+    CHECK(se3d_shape_get_body(NULL, shape, &body) == SE3D_ERR_NULL);
+    CHECK(se3d_shape_get_body(a->system, shape, &body) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_shape_get_wrench(NULL, shape, x, x + 3) == SE3D_ERR_NULL);
+    CHECK(se3d_shape_get_wrench(a->system, shape, x, x + 3) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_shape_get_nearest(a->system, shape, corners, x, x + 3, &distance) ==
+          SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_body_get_contact_wrench(NULL, a->use.body, x, x + 3) == SE3D_ERR_NULL);
+    CHECK(se3d_body_get_contact_wrench(a->system, (se3d_body){0, 0}, x, x + 3) ==
+          SE3D_ERR_STALE_HANDLE);
+    CHECK(!se3d_body_get_contact_wrench(a->system, a->use.body, x, x + 3));
     return SE3D_OK;
 }
 

@@ -55,11 +55,6 @@ static const bad_input table[] = {
     {GLASS "contact: {boundary: [open, sink]}\n", 4, 21, {"contact.boundary: must be a list of 3"}},
     {GLASS "contact: {pairs: [{material_1: glass}]}\n", 4, 0, {"pairs[0].material_2: is missing"}},
     {GLASS "contact: {law: hertz_mindlin}\n", 2, 0, {"materials[0]", "young"}},
-    {GLASS
-     "bodies: [{name: b, fixed: true, shapes: [{type: sphere, radius: 1, material: glass}]}]\n",
-     4,
-     0,
-     {"shapes[0].material", "not supported yet"}},
     {GLASS "bodies: [{name: b, mass: 1, inertia: [1, 1, 1], shapes: [{type: plane, material: "
            "glass}]}]\nanalysis: {type: dynamics, duration: 1}\n",
      5,

@@ -33,7 +33,7 @@ static void bed_init(bed *b, const se3d_particles_def *def, const double g[3],
     memcpy(system.gravity, g, sizeof system.gravity);
     CHECK(se3d_system_create(&system, &b->system) == SE3D_OK);
     CHECK(se3d_particles_create(b->system, def, &b->particles) == SE3D_OK);
-    CHECK(se3d_material_create(b->particles, material, &b->material) == SE3D_OK);
+    CHECK(se3d_material_create(b->system, material, &b->material) == SE3D_OK);
 }
 
 static void bed_destroy(bed *b)
@@ -44,15 +44,15 @@ static void bed_destroy(bed *b)
 
 static const double none[3] = {0.0, 0.0, 0.0}, down[3] = {0.0, 0.0, -9.81};
 
-static se3d_wall plane_at(bed *b, double x, double y, double z, double nx, double ny, double nz)
+static se3d_shape plane_at(bed *b, double x, double y, double z, double nx, double ny, double nz)
 {
-    se3d_wall_def def = se3d_wall_def_default();
-    se3d_wall wall;
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape wall;
     def.material = b->material;
     const double point[3] = {x, y, z}, normal[3] = {nx, ny, nz};
-    memcpy(def.point, point, sizeof point);
+    memcpy(def.position, point, sizeof point);
     memcpy(def.normal, normal, sizeof normal);
-    CHECK(se3d_wall_create_plane(b->particles, &def, &wall) == SE3D_OK);
+    CHECK(se3d_shape_create_plane(b->system, &def, &wall) == SE3D_OK);
     return wall;
 }
 
@@ -188,13 +188,15 @@ static void sum(const bed *b, double momentum[3], double angular[3], double *kin
 static void free_cloud(se3d_law law, double restitution, double rolling, int portable, double ratio)
 {
     se3d_particles_def def = se3d_particles_def_default();
-    def.law = (int32_t)law;
     def.portable = portable;
     se3d_material_def material = stuff();
     material.restitution = restitution;
     material.rolling_friction = material.torsional_friction = rolling;
     bed b;
     bed_init(&b, &def, none, &material);
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    contact.law = (int32_t)law;
+    CHECK(se3d_system_set_contact(b.system, &contact) == SE3D_OK);
     se3d_fill_def fill = region(&b, 0.12, 0.12, 0.005 / ratio, 0.005);
     fill.count = 500;
     CHECK(se3d_particles_fill_random(b.particles, &fill) == SE3D_OK);
@@ -288,13 +290,13 @@ static void settled_box_weighs_what_it_holds(void)
     CHECK_NEAR(force[0] / weight, 0.0, 1e-6);
     /* contacts as exported are those forces */
     size_t contacts = se3d_particles_count_contacts(b.particles);
-    se3d_contact *list = malloc(contacts * sizeof *list);
+    se3d_particles_contact *list = malloc(contacts * sizeof *list);
     CHECK(se3d_particles_get_contacts(b.particles, contacts, list) == SE3D_OK);
     double on_walls = 0.0;
     size_t walls = 0;
     for (size_t k = 0; k < contacts; ++k) {
-        on_walls += list[k].wall.index1 ? list[k].force[2] : 0.0;
-        walls += list[k].wall.index1 != 0;
+        on_walls += list[k].shape.index1 ? list[k].force[2] : 0.0;
+        walls += list[k].shape.index1 != 0;
     }
     CHECK(walls > 25 && contacts - walls > 800);
     CHECK_NEAR(on_walls / weight, 1.0, 1e-5);
@@ -338,19 +340,19 @@ static void body_with_a_wall_carries_the_particles_and_feels_them(void)
     body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
     body.position[0] = 1.0;
     CHECK(se3d_body_create(b.system, &body, &tray) == SE3D_OK);
-    se3d_wall_def def = se3d_wall_def_default();
-    se3d_wall wall;
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape wall;
     def.body = tray;
     def.material = b.material;
     def.size[0] = def.size[1] = 0.2;
     def.size[2] = 0.02;
-    CHECK(se3d_wall_create_box(b.particles, &def, &wall) == SE3D_OK);
+    CHECK(se3d_shape_create_box(b.system, &def, &wall) == SE3D_OK);
     CHECK(se3d_body_destroy(b.system, tray) == SE3D_ERR_IN_USE);
     const double r[3] = {1.05, 0.02, 0.015}, radius = 0.005;
     CHECK(se3d_particles_add(b.particles, b.material, 1, r, &radius, NULL, NULL, NULL) == SE3D_OK);
     CHECK(se3d_particles_run(b.particles, 0.5) == SE3D_OK);
     double weight = 2500.0 * 4.0 / 3.0 * PI * 1.25e-7 * 9.81, force[3], torque[3];
-    CHECK(se3d_wall_get_force(b.particles, wall, force, torque) == SE3D_OK);
+    CHECK(se3d_shape_get_wrench(b.system, wall, force, torque) == SE3D_OK);
     CHECK_NEAR(force[2] / weight, -1.0, 1e-6);
     CHECK_NEAR(torque[0] / weight, -0.02, 1e-6);
     CHECK_NEAR(torque[1] / weight, 0.05, 1e-6);
@@ -367,8 +369,8 @@ static void body_with_a_wall_carries_the_particles_and_feels_them(void)
     CHECK(se3d_particles_get_all(b.particles, 1, x, NULL, NULL) == SE3D_OK);
     CHECK_NEAR(x[2] - at[2], 0.015, 2e-6);
     CHECK(at[2] > 0.003);
-    CHECK(se3d_wall_destroy(b.particles, wall) == SE3D_OK);
-    CHECK(se3d_wall_destroy(b.particles, wall) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_shape_destroy(b.system, wall) == SE3D_OK);
+    CHECK(se3d_shape_destroy(b.system, wall) == SE3D_ERR_STALE_HANDLE);
     CHECK(se3d_particles_run(b.particles, 2.0) == SE3D_OK);
     CHECK(se3d_particles_get_all(b.particles, 1, x, NULL, NULL) == SE3D_OK);
     CHECK(x[2] < -1.0); /* nothing holds it */
@@ -441,7 +443,7 @@ static void pair_overrides_hold(void)
     bed_init(&b, NULL, none, &material);
     se3d_material_pair_def pair = se3d_material_pair_def_default();
     pair.restitution = 0.3;
-    CHECK(se3d_material_set_pair(b.particles, b.material, b.material, &pair) == SE3D_OK);
+    CHECK(se3d_material_set_pair(b.system, b.material, b.material, &pair) == SE3D_OK);
     const double r[6] = {0.0, 0.0, 0.0, 0.0105, 0.0, 0.0}, radius[2] = {0.005, 0.005};
     const double v[6] = {0.1, 0.0, 0.0, -0.1, 0.0, 0.0};
     CHECK(se3d_particles_add(b.particles, b.material, 2, r, radius, v, NULL, NULL) == SE3D_OK);

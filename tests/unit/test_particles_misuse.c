@@ -13,7 +13,7 @@ typedef struct bed {
     se3d_system *system;
     se3d_particles *particles;
     se3d_material material;
-    se3d_wall wall;
+    se3d_shape wall;
 } bed;
 
 static se3d_material_def stuff(void)
@@ -35,10 +35,10 @@ static void bed_init(bed *b)
     CHECK(se3d_system_create(&def, &b->system) == SE3D_OK);
     CHECK(se3d_particles_create(b->system, NULL, &b->particles) == SE3D_OK);
     se3d_material_def material = stuff();
-    CHECK(se3d_material_create(b->particles, &material, &b->material) == SE3D_OK);
-    se3d_wall_def wall = se3d_wall_def_default();
+    CHECK(se3d_material_create(b->system, &material, &b->material) == SE3D_OK);
+    se3d_shape_def wall = se3d_shape_def_default();
     wall.material = b->material;
-    CHECK(se3d_wall_create_plane(b->particles, &wall, &b->wall) == SE3D_OK);
+    CHECK(se3d_shape_create_plane(b->system, &wall, &b->wall) == SE3D_OK);
 }
 
 static void bed_destroy(bed *b)
@@ -83,19 +83,19 @@ static void bad_materials_are_refused(void)
         se3d_material material = {1, 1};
         double bad = k % 3 == 0 ? -1.0 : k % 3 == 1 ? strtod("nan", NULL) : HUGE_VAL;
         memcpy((char *)&def + fields[k / 3], &bad, sizeof bad);
-        refused(&b, se3d_material_create(b.particles, &def, &material), SE3D_ERR_INVALID_ARGUMENT,
+        refused(&b, se3d_material_create(b.system, &def, &material), SE3D_ERR_INVALID_ARGUMENT,
                 "must be finite");
         CHECK(material.index1 == 0 && material.generation == 0);
     }
     se3d_material_def def = stuff();
     se3d_material material;
     def.restitution = 0.0;
-    refused(&b, se3d_material_create(b.particles, &def, &material), SE3D_ERR_INVALID_ARGUMENT,
+    refused(&b, se3d_material_create(b.system, &def, &material), SE3D_ERR_INVALID_ARGUMENT,
             "restitution = 0");
     def.struct_size = 0;
-    refused(&b, se3d_material_create(b.particles, &def, &material), SE3D_ERR_INVALID_ARGUMENT,
+    refused(&b, se3d_material_create(b.system, &def, &material), SE3D_ERR_INVALID_ARGUMENT,
             "struct_size");
-    refused(&b, se3d_material_create(b.particles, NULL, &material), SE3D_ERR_NULL, "NULL");
+    refused(&b, se3d_material_create(b.system, NULL, &material), SE3D_ERR_NULL, "NULL");
     CHECK(se3d_material_create(NULL, &def, &material) == SE3D_ERR_NULL);
     bed_destroy(&b);
 }
@@ -107,11 +107,11 @@ static void bad_sets_are_refused(void)
     for (int k = 0; k < 8; ++k) {
         se3d_particles_def def = se3d_particles_def_default();
         se3d_particles *out = b.particles;
-        def.law = k == 0 ? 7 : def.law;
+        def.threads = k == 0 ? 1 << 20 : def.threads;
         def.threads = k == 1 ? 0 : def.threads;
         def.step = k == 2 ? -1.0 : def.step;
         def.skin = k == 3 ? 0.0 : def.skin;
-        def.overlap_limit = k == 4 ? strtod("nan", NULL) : def.overlap_limit;
+        def.skin = k == 4 ? strtod("nan", NULL) : def.skin;
         def.boundary[1] = k == 5 ? 3 : def.boundary[1];
         def.boundary[2] = k == 6 ? SE3D_BOUNDARY_SINK : def.boundary[2]; /* lower = upper */
         def.struct_size = k == 7 ? 4096 : def.struct_size;
@@ -132,24 +132,24 @@ static void stale_and_foreign_handles_are_detected(void)
     double force[3], torque[3];
     refused(&a, se3d_particles_add(a.particles, b.material, 1, r, &radius, NULL, NULL, NULL),
             SE3D_ERR_STALE_HANDLE, "material");
-    refused(&a, se3d_wall_destroy(a.particles, b.wall), SE3D_ERR_STALE_HANDLE, "wall");
-    CHECK(se3d_wall_get_force(a.particles, b.wall, force, torque) == SE3D_ERR_STALE_HANDLE);
-    CHECK(se3d_wall_destroy(a.particles, a.wall) == SE3D_OK);
-    CHECK(se3d_wall_get_force(a.particles, a.wall, force, torque) == SE3D_ERR_STALE_HANDLE);
-    se3d_wall_def wall = se3d_wall_def_default();
-    refused(&a, se3d_wall_create_plane(a.particles, &wall, &a.wall), SE3D_ERR_STALE_HANDLE,
-            "material is the null handle");
+    refused(&a, se3d_shape_destroy(a.system, b.wall), SE3D_ERR_STALE_HANDLE, "shape");
+    CHECK(se3d_shape_get_wrench(a.system, b.wall, force, torque) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_shape_destroy(a.system, a.wall) == SE3D_OK);
+    CHECK(se3d_shape_get_wrench(a.system, a.wall, force, torque) == SE3D_ERR_STALE_HANDLE);
+    se3d_shape_def wall = se3d_shape_def_default();
+    wall.material = b.material;
+    refused(&a, se3d_shape_create_plane(a.system, &wall, &a.wall), SE3D_ERR_STALE_HANDLE,
+            "material");
     wall.material = a.material;
-    wall.normal[2] = 0.0;
-    refused(&a, se3d_wall_create_plane(a.particles, &wall, &a.wall), SE3D_ERR_INVALID_ARGUMENT,
+    wall.normal[2] = strtod("nan", NULL);
+    refused(&a, se3d_shape_create_plane(a.system, &wall, &a.wall), SE3D_ERR_INVALID_ARGUMENT,
             "normal");
-    refused(&a, se3d_wall_create_box(a.particles, &wall, &a.wall), SE3D_ERR_INVALID_ARGUMENT,
-            "size");
+    refused(&a, se3d_shape_create_box(a.system, &wall, &a.wall), SE3D_ERR_INVALID_ARGUMENT, "size");
     se3d_material_pair_def pair = se3d_material_pair_def_default();
-    refused(&a, se3d_material_set_pair(a.particles, a.material, b.material, &pair),
+    refused(&a, se3d_material_set_pair(a.system, a.material, b.material, &pair),
             SE3D_ERR_STALE_HANDLE, "material b");
     pair.restitution = 2.0;
-    refused(&a, se3d_material_set_pair(a.particles, a.material, a.material, &pair),
+    refused(&a, se3d_material_set_pair(a.system, a.material, a.material, &pair),
             SE3D_ERR_INVALID_ARGUMENT, "restitution = 2");
     refused(&a, se3d_particles_restore(a.particles, b.particles), SE3D_ERR_STATE, "another system");
     bed_destroy(&a);
@@ -235,16 +235,16 @@ static se3d_status do_material(bed *b)
 {
     se3d_material_def def = stuff();
     se3d_material material;
-    return se3d_material_create(b->particles, &def, &material);
+    return se3d_material_create(b->system, &def, &material);
 }
 
 static se3d_status do_wall(bed *b)
 {
-    se3d_wall_def def = se3d_wall_def_default();
-    se3d_wall wall;
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape wall;
     def.material = b->material;
-    def.point[2] = -0.1;
-    return se3d_wall_create_plane(b->particles, &def, &wall);
+    def.position[2] = -0.1;
+    return se3d_shape_create_plane(b->system, &def, &wall);
 }
 
 static se3d_status do_clone(bed *b)

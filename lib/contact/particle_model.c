@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a set of particles takes from the model: materials and shapes. It keeps copies, and looks
+ * again where the model was edited; the history of contacts goes along. */
+#include "contact/particle_set.h"
+
+#include <string.h>
+
+static int same(se3di_handle a, se3di_handle b)
+{
+    return a.index1 == b.index1 && a.generation == b.generation;
+}
+
+static se3d_status reserve(const se3di_particles *set, void **data, size_t *capacity, size_t needed,
+                           size_t size)
+{
+    return se3di_array_reserve(&set->allocator, data, capacity, needed, size);
+}
+
+/* The index of a material in the set's table, where it gets a place if it has none. */
+static se3d_status use(se3di_particles *set, const se3di_model *model, uint32_t material,
+                       uint32_t *index)
+{
+    se3di_handle handle = se3di_slots_handle(&model->material_slots, material);
+    size_t place = set->stuff_count;
+    for (size_t k = set->stuff_count; k-- > 0;) {
+        if (same(set->stuffs[k].handle, handle)) {
+            *index = (uint32_t)k;
+            return SE3D_OK;
+        }
+        place = set->stuffs[k].handle.index1 == 0 ? k : place;
+    }
+    size_t count = place + 1 > set->stuff_count ? place + 1 : set->stuff_count;
+    void *memory = set->stuffs;
+    se3d_status status = reserve(set, &memory, &set->stuff_capacity, count, sizeof *set->stuffs);
+    set->stuffs = memory;
+    SE3DI_TRY(status);
+    set->stuffs[place] = (se3di_stuff){.material = model->materials[material], .handle = handle};
+    set->stuff_count = count;
+    *index = (uint32_t)place;
+    return SE3D_OK;
+}
+
+/* Copies of the model's materials and pairs. */
+static se3d_status mix(se3di_particles *set, const se3di_model *model)
+{
+    size_t n = set->stuff_count;
+    size_t m = model->material_slots.count;
+    void *memory = set->pairs;
+    se3d_status status = reserve(set, &memory, &set->pair_capacity, n * n, sizeof *set->pairs);
+    set->pairs = memory;
+    SE3DI_TRY(status);
+    set->rolling = 0;
+    for (size_t k = 0; k < n * n; ++k) {
+        se3di_handle a = set->stuffs[k / n].handle;
+        se3di_handle b = set->stuffs[k % n].handle;
+        uint32_t row = se3di_slots_find(&model->material_slots, a.index1, a.generation);
+        uint32_t column = se3di_slots_find(&model->material_slots, b.index1, b.generation);
+        if (row != SE3DI_NO_INDEX && column != SE3DI_NO_INDEX) {
+            set->stuffs[k / n].material = model->materials[row];
+            set->pairs[k] = model->pairs[row * m + column];
+            set->rolling |= set->pairs[k].rolling > 0.0 || set->pairs[k].torsion > 0.0;
+        }
+    }
+    return SE3D_OK;
+}
+
+static int touches(const se3di_particles *set, const se3di_shape *shape)
+{
+    return shape->material >= 0 && (shape->group & set->mask) != 0 &&
+           (set->group & shape->mask) != 0;
+}
+
+/* History of walls follows them to their new places; that of walls which are gone is dropped. */
+static void remap_walls(se3di_particles *set, const uint32_t *place)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < set->carry_count; ++k) {
+        se3di_carry entry = set->carry[k];
+        if (entry.j >= SE3DI_CARRY_WALL) {
+            uint32_t wall = place[entry.j - SE3DI_CARRY_WALL];
+            if (wall == SE3DI_NO_INDEX) {
+                continue;
+            }
+            entry.j = SE3DI_CARRY_WALL | wall;
+        }
+        set->carry[kept] = entry;
+        if (set->carry_rolling) {
+            memmove(set->carry_roll + 4 * kept, set->carry_roll + 4 * k, 4 * sizeof(double));
+        }
+        ++kept;
+    }
+    set->carry_count = kept;
+}
+
+static uint32_t find_wall(const se3di_particles *set, se3di_handle handle)
+{
+    for (size_t k = 0; k < set->wall_count; ++k) {
+        if (same(set->walls[k].handle, handle)) {
+            return (uint32_t)k;
+        }
+    }
+    return SE3DI_NO_INDEX;
+}
+
+/* The new walls, with the forces of the old ones; place[old] is the new index. */
+static size_t fill_walls(const se3di_particles *set, const se3di_model *model, se3di_wall *walls,
+                         uint32_t *place)
+{
+    size_t count = 0;
+    for (uint32_t k = 0; k < model->shape_slots.count; ++k) {
+        const se3di_shape *shape = &model->shapes[k];
+        if (!touches(set, shape)) {
+            continue;
+        }
+        se3di_handle handle = se3di_slots_handle(&model->shape_slots, k);
+        uint32_t old = find_wall(set, handle);
+        se3di_wall *wall = &walls[count];
+        *wall = old == SE3DI_NO_INDEX ? (se3di_wall){.handle = handle} : set->walls[old];
+        wall->shape = *shape;
+        wall->body = se3di_slots_handle(&model->body_slots, shape->body);
+        se3di_shape_place(shape, &model->frames[shape->body], &wall->pose);
+        se3di_handle material =
+            se3di_slots_handle(&model->material_slots, (uint32_t)shape->material);
+        for (size_t s = 0; s < set->stuff_count; ++s) {
+            wall->material = same(set->stuffs[s].handle, material) ? (uint32_t)s : wall->material;
+        }
+        if (old != SE3DI_NO_INDEX) {
+            place[old] = (uint32_t)count;
+        }
+        ++count;
+    }
+    return count;
+}
+
+static se3d_status replace_walls(se3di_particles *set, const se3di_model *model)
+{
+    size_t room = 0;
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        room += (size_t)touches(set, &model->shapes[k]);
+    }
+    const se3d_allocator *a = &set->allocator;
+    size_t old = set->wall_count;
+    se3di_wall *walls = se3di_alloc(a, room, sizeof *walls);
+    uint32_t *place = se3di_alloc(a, old, sizeof *place);
+    if (!walls || !place) {
+        se3di_free(a, walls, room, sizeof *walls);
+        se3di_free(a, place, old, sizeof *place);
+        return SE3D_ERR_NO_MEMORY;
+    }
+    memset(place, 0xff, old * sizeof *place); /* SE3DI_NO_INDEX */
+    size_t count = fill_walls(set, model, walls, place);
+    remap_walls(set, place);
+    se3di_free(a, place, old, sizeof *place);
+    se3di_free(a, set->walls, set->wall_capacity, sizeof *set->walls);
+    set->walls = walls;
+    set->wall_count = count;
+    set->wall_capacity = room;
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model)
+{
+    if (set->topology_version == model->topology_version) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_particles_collect(set)); /* rolling may begin */
+    for (size_t k = 0; k < set->stuff_count; ++k) {
+        se3di_stuff *stuff = &set->stuffs[k];
+        if (!stuff->held) { /* only walls are made of it: see which still are */
+            stuff->handle = (se3di_handle){0, 0};
+        }
+    }
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        uint32_t index;
+        if (touches(set, &model->shapes[k])) {
+            SE3DI_TRY(use(set, model, (uint32_t)model->shapes[k].material, &index));
+        }
+    }
+    SE3DI_TRY(mix(set, model));
+    SE3DI_TRY(replace_walls(set, model));
+    set->law = (se3di_contact_law)model->contact.law;
+    set->overlap_limit = model->contact.overlap_limit;
+    set->topology_version = model->topology_version;
+    set->force_valid = 0;
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_hold(se3di_particles *set, const se3di_model *model, uint32_t material,
+                                 uint32_t *index, int *first)
+{
+    SE3DI_TRY(use(set, model, material, index));
+    *first = !set->stuffs[*index].held;
+    set->stuffs[*index].held = 1;
+    set->topology_version = *first ? 0 : set->topology_version; /* pairs are missing */
+    return SE3D_OK;
+}

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Adding and removing materials and shapes. */
+#include "model/model.h"
+
+#include <string.h>
+
+static se3d_status own_block(const se3d_allocator *allocator, const void *original, size_t count,
+                             size_t size, void **copy)
+{
+    *copy = NULL;
+    if (count == 0) {
+        return SE3D_OK;
+    }
+    *copy = se3di_alloc(allocator, count, size);
+    if (!*copy) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    memcpy(*copy, original, count * size);
+    return SE3D_OK;
+}
+
+void se3di_shape_release(const se3d_allocator *allocator, se3di_shape *shape)
+{
+    se3di_text_free(allocator, shape->name);
+    se3di_free(allocator, shape->vertices, 3 * shape->vertex_count, sizeof(double));
+    se3di_free(allocator, shape->triangles, 3 * shape->triangle_count, sizeof(uint32_t));
+    se3di_free(allocator, shape->tree, shape->tree_bytes, 1);
+    shape->name = NULL;
+    shape->vertices = NULL;
+    shape->triangles = NULL;
+    shape->tree = NULL;
+    shape->vertex_count = shape->triangle_count = shape->tree_bytes = 0;
+}
+
+se3d_status se3di_shape_own(const se3d_allocator *allocator, se3di_shape *shape)
+{
+    const se3di_shape from = *shape;
+    void *vertices, *triangles, *tree;
+    shape->name = from.name ? se3di_text_copy(allocator, from.name) : NULL;
+    se3d_status status = from.name && !shape->name ? SE3D_ERR_NO_MEMORY : SE3D_OK;
+    /* every pointer is written, so that a release is safe */
+    if (own_block(allocator, from.vertices, 3 * from.vertex_count, sizeof(double), &vertices) < 0 ||
+        status < 0) {
+        status = SE3D_ERR_NO_MEMORY;
+    }
+    if (own_block(allocator, from.triangles, 3 * from.triangle_count, sizeof(uint32_t),
+                  &triangles) < 0) {
+        status = SE3D_ERR_NO_MEMORY;
+    }
+    if (own_block(allocator, from.tree, from.tree_bytes, 1, &tree) < 0) {
+        status = SE3D_ERR_NO_MEMORY;
+    }
+    shape->vertices = vertices;
+    shape->triangles = triangles;
+    shape->tree = tree;
+    if (status < 0) {
+        se3di_shape_release(allocator, shape);
+    }
+    return status;
+}
+
+static se3d_status reserve(se3di_model *model, void **data, size_t *capacity, size_t needed,
+                           size_t size)
+{
+    return se3di_array_reserve(&model->allocator, data, capacity, needed, size);
+}
+
+se3d_status se3di_model_add_shape(se3di_model *model, const se3di_shape *shape,
+                                  se3di_handle *handle)
+{
+    size_t count = model->shape_slots.count;
+    void *memory = model->shapes;
+    se3d_status status =
+        reserve(model, &memory, &model->shape_capacity, count + 1, sizeof *model->shapes);
+    model->shapes = memory;
+    SE3DI_TRY(status);
+    SE3DI_TRY(se3di_slots_reserve(&model->shape_slots, &model->allocator));
+    se3di_shape copy = *shape;
+    SE3DI_TRY(se3di_shape_own(&model->allocator, &copy));
+    copy.users = 0;
+    model->shapes[count] = copy;
+    ++model->bodies[copy.body].users;
+    if (copy.material >= 0) {
+        ++model->materials[copy.material].users;
+    }
+    *handle = se3di_slots_add(&model->shape_slots);
+    se3di_model_touch(model);
+    return SE3D_OK;
+}
+
+void se3di_model_remove_shape(se3di_model *model, uint32_t shape)
+{
+    se3di_shape *gone = &model->shapes[shape];
+    --model->bodies[gone->body].users;
+    if (gone->material >= 0) {
+        --model->materials[gone->material].users;
+    }
+    se3di_shape_release(&model->allocator, gone);
+    memmove(gone, gone + 1, (model->shape_slots.count - shape - 1) * sizeof *gone);
+    se3di_slots_remove(&model->shape_slots, shape);
+    se3di_model_touch(model);
+}
+
+se3d_status se3di_model_add_material(se3di_model *model, const se3di_material *material,
+                                     se3di_handle *handle)
+{
+    static const se3di_override none = {-1.0, -1.0, -1.0, -1.0, -1.0};
+    size_t n = model->material_slots.count;
+    size_t m = n + 1;
+    void *memory = model->materials;
+    se3d_status status =
+        reserve(model, &memory, &model->material_capacity, m, sizeof *model->materials);
+    model->materials = memory;
+    SE3DI_TRY(status);
+    memory = model->overrides;
+    status = reserve(model, &memory, &model->override_capacity, m * m, sizeof *model->overrides);
+    model->overrides = memory;
+    SE3DI_TRY(status);
+    memory = model->pairs;
+    status = reserve(model, &memory, &model->pair_capacity, m * m, sizeof *model->pairs);
+    model->pairs = memory;
+    SE3DI_TRY(status);
+    SE3DI_TRY(se3di_slots_reserve(&model->material_slots, &model->allocator));
+    for (size_t k = m * m; k-- > 0;) { /* rows become longer, from the last one on */
+        size_t row = k / m;
+        size_t column = k % m;
+        model->overrides[k] = row < n && column < n ? model->overrides[row * n + column] : none;
+    }
+    model->materials[n] = *material;
+    model->materials[n].users = 0;
+    *handle = se3di_slots_add(&model->material_slots);
+    return SE3D_OK;
+}
+
+void se3di_model_remove_material(se3di_model *model, uint32_t material)
+{
+    size_t n = model->material_slots.count;
+    size_t to = 0;
+    for (size_t k = 0; k < n * n; ++k) {
+        if (k / n != material && k % n != material) {
+            model->overrides[to++] = model->overrides[k];
+        }
+    }
+    memmove(model->materials + material, model->materials + material + 1,
+            (n - material - 1) * sizeof *model->materials);
+    se3di_slots_remove(&model->material_slots, material);
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        model->shapes[k].material -= model->shapes[k].material > (int32_t)material;
+    }
+}
+
+void se3di_model_set_override(se3di_model *model, uint32_t a, uint32_t b,
+                              const se3di_override *over)
+{
+    size_t n = model->material_slots.count;
+    model->overrides[a * n + b] = *over;
+    model->overrides[b * n + a] = *over;
+    se3di_model_touch(model);
+}
+
+void se3di_model_set_contact(se3di_model *model, const se3di_contact_settings *settings)
+{
+    model->contact = *settings;
+    se3di_model_touch(model);
+}

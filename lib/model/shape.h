@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What bodies touch with: materials and shapes. Data only; see contact/. */
+#ifndef SE3DI_MODEL_SHAPE_H
+#define SE3DI_MODEL_SHAPE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum se3di_contact_law {
+    SE3DI_LAW_HOOKE = 0,
+    SE3DI_LAW_HERTZ_MINDLIN = 1
+} se3di_contact_law;
+
+typedef struct se3di_material {
+    double density;
+    double young, poisson; /* hertz_mindlin */
+    double friction;
+    double restitution;
+    double rolling_friction, torsional_friction; /* times R*: the arm of the resisting moment */
+    double stiffness, tangential_ratio;          /* hooke: kn of two spheres of it, kt/kn */
+    uint32_t users;                              /* shapes and sets of particles */
+    uint32_t reserved;
+} se3di_material;
+
+/* What a user may say of a pair of materials; negative: by the mixing rules. */
+typedef struct se3di_override {
+    double friction, restitution, rolling_friction, torsional_friction, stiffness;
+} se3di_override;
+
+/* Coefficients of one pair of materials; with s = 1 (hooke) or sqrt(R* delta) (hertz_mindlin):
+ *
+ *     Fn = max(0, kn s delta - dn sqrt(m* s) vn)      Ft = -kt s xi - dt sqrt(m* s) vt
+ *
+ * dr: damping of rolling and torsion, like dt. */
+typedef struct se3di_pair {
+    double kn, kt, dn, dt;
+    double friction, rolling, torsion, dr;
+} se3di_pair;
+
+#define SE3DI_PAIR_SIZE 8 /* doubles in an se3di_pair */
+
+typedef struct se3di_contact_settings {
+    int32_t law; /* se3di_contact_law */
+    int32_t reserved;
+    double step;          /* [s]; 0: automatic */
+    double overlap_limit; /* of the smaller radius */
+} se3di_contact_settings;
+
+typedef enum se3di_shape_kind {
+    SE3DI_SHAPE_SPHERE = 0,
+    SE3DI_SHAPE_BOX = 1,
+    SE3DI_SHAPE_CAPSULE = 2,
+    SE3DI_SHAPE_CYLINDER = 3,
+    SE3DI_SHAPE_PLANE = 4,
+    SE3DI_SHAPE_MESH = 5,
+    SE3DI_SHAPE_HULL = 6
+} se3di_shape_kind;
+
+typedef struct se3di_shape {
+    char *name; /* NULL: none */
+    int32_t kind;
+    uint32_t body;
+    int32_t material; /* -1: nothing touches it */
+    uint32_t group, mask;
+    uint32_t users;
+    double x[3];                /* origin, body frame */
+    double A[9];                /* shape -> body, row-major */
+    double half[3];             /* box: half lengths */
+    double radius, half_length; /* round ones, along z; capsule: of its cylinder */
+    double bound;               /* radius about the origin that holds it; infinite: plane */
+    double *vertices;           /* mesh, hull: [3 * vertex_count], shape frame */
+    uint32_t *triangles;        /* [3 * triangle_count]; hull: its faces, seen from outside */
+    size_t vertex_count, triangle_count;
+    void *tree; /* mesh: bounding volumes, see contact/mesh.h */
+    size_t tree_bytes;
+    double force[3], torque[3]; /* of bodies, on its body about the centre of mass, last accepted */
+} se3di_shape;
+
+#endif

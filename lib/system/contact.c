@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Materials and the law between them. */
+#include "contact/law.h"
+#include "contact/restitution.h"
+#include "system/system_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+void se3d_contact_settings_init(se3d_contact_settings *settings, size_t size)
+{
+    se3d_contact_settings defaults = {.struct_size = size, .overlap_limit = 0.2};
+    se3di_def_init(settings, size, &defaults, sizeof defaults);
+}
+
+void se3d_material_def_init(se3d_material_def *def, size_t size)
+{
+    se3d_material_def defaults = {.struct_size = size,
+                                  .friction = 0.5,
+                                  .restitution = 0.5,
+                                  .tangential_ratio = 2.0 / 7.0,
+                                  .poisson = 0.3};
+    se3di_def_init(def, size, &defaults, sizeof defaults);
+}
+
+void se3d_material_pair_def_init(se3d_material_pair_def *def, size_t size)
+{
+    se3d_material_pair_def defaults = {size, -1.0, -1.0, -1.0, -1.0, -1.0};
+    se3di_def_init(def, size, &defaults, sizeof defaults);
+}
+
+/* What the law needs of a material. */
+static se3d_status check_law(se3d_system *system, int32_t law, double stiffness, double young)
+{
+    if (law == SE3D_LAW_HOOKE && !(stiffness > 0.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "stiffness = %g N/m of a material, must be > 0 with the law hooke "
+                          "(se3d_system_set_contact)",
+                          stiffness);
+    }
+    if (law == SE3D_LAW_HERTZ_MINDLIN && !(young > 0.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "young = %g Pa of a material, must be > 0 with the law hertz_mindlin "
+                          "(se3d_system_set_contact)",
+                          young);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_settings *settings)
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    se3di_model *model = &system->model;
+    se3d_contact_settings full = se3d_contact_settings_default();
+    SE3DI_TRY(se3di_check_def(system, "contact settings", settings, &full, sizeof full));
+    if (full.law != SE3D_LAW_HOOKE && full.law != SE3D_LAW_HERTZ_MINDLIN) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "law = %d, must be an se3d_law",
+                          full.law);
+    }
+    if (!(isfinite(full.step) && full.step >= 0.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "step = %g s, must be finite and >= 0 (0: automatic)", full.step);
+    }
+    if (!(full.overlap_limit > 0.0 && full.overlap_limit <= 1.0)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "overlap_limit = %g, must be > 0 and <= 1", full.overlap_limit);
+    }
+    for (size_t k = 0; k < model->material_slots.count; ++k) {
+        SE3DI_TRY(
+            check_law(system, full.law, model->materials[k].stiffness, model->materials[k].young));
+    }
+    se3di_model_set_contact(model, &(se3di_contact_settings){.law = full.law,
+                                                             .step = full.step,
+                                                             .overlap_limit = full.overlap_limit});
+    se3di_pair_mix_all(model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_get_contact(const se3d_system *system, se3d_contact_settings *settings)
+{
+    if (!system || !settings) {
+        return SE3D_ERR_NULL;
+    }
+    size_t size = settings->struct_size;
+    if (size < sizeof size || size > sizeof *settings) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    const se3di_contact_settings *now = &system->model.contact;
+    se3d_contact_settings full = {.struct_size = size,
+                                  .law = now->law,
+                                  .step = now->step,
+                                  .overlap_limit = now->overlap_limit};
+    memcpy(settings, &full, size);
+    return SE3D_OK;
+}
+
+static se3d_status check_material(se3d_system *system, const se3d_material_def *def)
+{
+    const double most = 1e30;
+    SE3DI_TRY(se3di_check_range(system, "density", def->density, 1e-30, most));
+    SE3DI_TRY(se3di_check_range(system, "friction", def->friction, 0.0, most));
+    SE3DI_TRY(
+        se3di_check_range(system, "restitution", def->restitution, SE3DI_RESTITUTION_MIN, 1.0));
+    SE3DI_TRY(se3di_check_range(system, "rolling_friction", def->rolling_friction, 0.0, most));
+    SE3DI_TRY(se3di_check_range(system, "torsional_friction", def->torsional_friction, 0.0, most));
+    SE3DI_TRY(se3di_check_range(system, "stiffness", def->stiffness, 0.0, most));
+    SE3DI_TRY(se3di_check_range(system, "tangential_ratio", def->tangential_ratio, 0.0, 10.0));
+    SE3DI_TRY(se3di_check_range(system, "young", def->young, 0.0, most));
+    SE3DI_TRY(se3di_check_range(system, "poisson", def->poisson, 0.0, 0.5));
+    return check_law(system, system->model.contact.law, def->stiffness, def->young);
+}
+
+se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *def,
+                                 se3d_material *material)
+{
+    if (material) {
+        *material = (se3d_material){0, 0};
+    }
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_check_pointer(system, "material", material));
+    se3d_material_def full = se3d_material_def_default();
+    SE3DI_TRY(se3di_check_def(system, "material def", def, &full, sizeof full));
+    SE3DI_TRY(check_material(system, &full));
+    se3di_material data = {.density = full.density,
+                           .young = full.young,
+                           .poisson = full.poisson,
+                           .friction = full.friction,
+                           .restitution = full.restitution,
+                           .rolling_friction = full.rolling_friction,
+                           .torsional_friction = full.torsional_friction,
+                           .stiffness = full.stiffness,
+                           .tangential_ratio = full.tangential_ratio};
+    se3di_handle handle;
+    if (se3di_model_add_material(&system->model, &data, &handle) < 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a material");
+    }
+    se3di_pair_mix_all(&system->model);
+    *material = (se3d_material){handle.index1, handle.generation};
+    return SE3D_OK;
+}
+
+se3d_status se3d_material_destroy(se3d_system *system, se3d_material material)
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    uint32_t index;
+    SE3DI_TRY(se3di_find_material(system, "material", material, &index));
+    uint32_t users = system->model.materials[index].users;
+    if (users > 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_IN_USE,
+                          "the material is used by %u shapes or sets of particles; destroy them "
+                          "first",
+                          users);
+    }
+    se3di_model_remove_material(&system->model, index);
+    se3di_pair_mix_all(&system->model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_material b,
+                                   const se3d_material_pair_def *def)
+{
+    if (!system) {
+        return SE3D_ERR_NULL;
+    }
+    uint32_t index_a, index_b;
+    SE3DI_TRY(se3di_find_material(system, "material a", a, &index_a));
+    SE3DI_TRY(se3di_find_material(system, "material b", b, &index_b));
+    se3d_material_pair_def full = se3d_material_pair_def_default();
+    SE3DI_TRY(se3di_check_def(system, "pair def", def, &full, sizeof full));
+    const double values[5] = {full.friction, full.restitution, full.rolling_friction,
+                              full.torsional_friction, full.stiffness};
+    static const char *const names[5] = {"friction", "restitution", "rolling_friction",
+                                         "torsional_friction", "stiffness"};
+    for (int k = 0; k < 5; ++k) {
+        const double least = k == 1 ? SE3DI_RESTITUTION_MIN : k == 4 ? 1e-30 : 0.0;
+        if (!(values[k] < 0.0)) {
+            SE3DI_TRY(se3di_check_range(system, names[k], values[k], least, k == 1 ? 1.0 : 1e30));
+        }
+    }
+    const se3di_override over = {full.friction, full.restitution, full.rolling_friction,
+                                 full.torsional_friction, full.stiffness};
+    se3di_model_set_override(&system->model, index_a, index_b, &over);
+    se3di_pair_mix_all(&system->model);
+    return SE3D_OK;
+}
