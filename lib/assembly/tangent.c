@@ -419,3 +419,29 @@ se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *v
     SE3DI_TRY(add_user_curvatures(tangent, t, lambda));
     return add_forces(tangent, t);
 }
+
+static void add_block(const double *block, size_t n, double s, const double *x, double *out)
+{
+    for (size_t r = 0; r < n; ++r) {
+        double sum = 0.0;
+        for (size_t c = 0; c < n; ++c) {
+            sum += block[r * n + c] * x[c];
+        }
+        out[r] += s * sum;
+    }
+}
+
+void se3di_tangent_add_stiffness(const se3di_tangent *tangent, double s, const double *x,
+                                 double *out)
+{
+    size_t n = (size_t)tangent->assembly->formulation->block;
+    for (size_t k = 0; k < tangent->assembly->body_count; ++k) {
+        add_block(tangent->K + k * n * n, n, s, x + k * n, out + k * n);
+    }
+    for (size_t k = 0; k < tangent->coupling_count; ++k) {
+        size_t i = (size_t)tangent->coupling[2 * k];
+        size_t j = (size_t)tangent->coupling[2 * k + 1];
+        add_block(tangent->K_upper + k * n * n, n, s, x + j * n, out + i * n);
+        add_block(tangent->K_lower + k * n * n, n, s, x + i * n, out + j * n);
+    }
+}

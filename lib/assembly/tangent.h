@@ -33,5 +33,8 @@ void se3di_tangent_destroy(se3di_tangent *tangent);
  * normalisation), lambda [rows]. @return OK, SINGULAR, NOT_FINITE, CALLBACK of a force element */
 se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *vdot,
                                const double *lambda);
+/* out += s K x */
+void se3di_tangent_add_stiffness(const se3di_tangent *tangent, double s, const double *x,
+                                 double *out);
 
 #endif

@@ -249,19 +249,6 @@ static void accept(rk *m, double h)
     ++m->equations->counters.steps;
 }
 
-/* Turn counters must see every angle move by less than half a turn. */
-static double limit_turn(const rk *m, double h)
-{
-    const se3di_model *model = m->assembly->model;
-    for (size_t k = 0; k < model->angle_count; ++k) {
-        const se3di_term *term = &model->angles[k].term;
-        double rate =
-            se3di_norm(model->frames[term->body_i].w) + se3di_norm(model->frames[term->body_j].w);
-        h = h * rate > 2.0 ? 2.0 / rate : h;
-    }
-    return h;
-}
-
 static se3d_status fail_small(rk *m, double h)
 {
     double t = m->header[RK_T1];
@@ -322,7 +309,7 @@ static se3d_status advance(rk *m)
 {
     double h = m->header[RK_NEXT];
     se3di_state_set(m->assembly, m->y1);
-    h = limit_turn(m, h);
+    h = se3di_state_limit_turn(m->assembly->model, h);
     for (;;) {
         double error;
         se3d_status status = attempt(m, h, &error);

@@ -17,6 +17,8 @@ const se3di_integrator *se3di_integrator_find(int32_t method)
         return &se3di_integrator_rattle;
     case SE3D_METHOD_BDF:
         return &se3di_integrator_bdf;
+    case SE3D_METHOD_RADAU:
+        return &se3di_integrator_radau;
     default:
         return NULL;
     }

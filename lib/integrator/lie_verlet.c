@@ -2,6 +2,7 @@
 #include "integrator/lie_verlet.h"
 
 #include "force/force.h"
+#include "integrator/state.h"
 #include "math/inertia.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -44,20 +45,6 @@ se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int forc
     return m;
 }
 
-/* x = a^-1 b, a 3 x 3 row-major. */
-static void solve3(const double a[9], const double b[3], double x[3])
-{
-    double c0[3], c1[3], c2[3];
-    const double r0[3] = {a[0], a[3], a[6]}, r1[3] = {a[1], a[4], a[7]}, r2[3] = {a[2], a[5], a[8]};
-    se3di_cross(r1, r2, c0);
-    se3di_cross(r2, r0, c1);
-    se3di_cross(r0, r1, c2);
-    const double scale = 1.0 / se3di_dot(r0, c0);
-    const double solution[3] = {scale * se3di_dot(c0, b), scale * se3di_dot(c1, b),
-                                scale * se3di_dot(c2, b)};
-    se3di_copy(solution, x);
-}
-
 /* J xi + s h/2 xi x J xi + h^2/4 xi (xi.J xi) */
 static void trivialised_momentum(const double J[9], const double xi[3], double h, double s,
                                  double out[3])
@@ -75,7 +62,7 @@ static void trivialised_momentum(const double J[9], const double xi[3], double h
 static se3d_status solve_mean_rate(const double J[9], const double momentum[3], double h,
                                    double xi[3])
 {
-    solve3(J, momentum, xi);
+    se3di_solve3(J, momentum, xi);
     double before = HUGE_VAL;
     for (int iteration = 0; iteration < 50; ++iteration) {
         double f[3], m[3], D[9], dxi[3];
@@ -92,7 +79,7 @@ static se3d_status solve_mean_rate(const double J[9], const double momentum[3], 
                                (r == c ? along : 0.0) + 0.5 * h * h * xi[r] * m[c];
             }
         }
-        solve3(D, f, dxi);
+        se3di_solve3(D, f, dxi);
         se3di_add(xi, dxi, xi);
         double size = se3di_norm(dxi), scale = se3di_norm(xi);
         if (!isfinite(size)) {
@@ -104,19 +91,6 @@ static se3d_status solve_mean_rate(const double J[9], const double momentum[3], 
         before = size;
     }
     return SE3D_ERR_NO_CONVERGENCE;
-}
-
-/* Force and torque (body frame) of a generalised force on a body. */
-static void split_force(const se3di_assembly *assembly, const se3di_frame *frame,
-                        const double *generalised, double force[3], double torque[3])
-{
-    se3di_copy(generalised, force);
-    if (assembly->formulation->block == 6) {
-        se3di_copy(generalised + 3, torque);
-        return;
-    }
-    se3di_g_mul(frame->p, generalised + 3, torque); /* 2 G^T n is the force of a torque n */
-    se3di_scale(0.5, torque, torque);
 }
 
 /* q_1, v_h and L_1 without its last half kick, for the multipliers `lambda`; the frames hold q_0
@@ -136,7 +110,7 @@ static se3d_status drift(se3di_lie_verlet *m)
         se3di_frame *frame = &model->frames[body];
         double force[3], torque[3], momentum[3], J[9], xi[3];
         double *half = m->half + 6 * (size_t)k;
-        split_force(assembly, from, equations->b + k * block, force, torque);
+        se3di_state_split_force(assembly, from, equations->b + k * block, force, torque);
         se3di_inertia_matrix(model->bodies[body].J, J);
         se3di_mul(J, from->w, momentum);
         for (int c = 0; c < 3; ++c) {
@@ -204,7 +178,7 @@ static void kick(se3di_lie_verlet *m)
             momentum[c] = half[3 + c] + 0.5 * m->h * applied[3 + c];
         }
         se3di_inertia_matrix(model->bodies[body].J, J);
-        solve3(J, momentum, frame->w);
+        se3di_solve3(J, momentum, frame->w);
         se3di_quat_rate(frame->p, frame->w, frame->pdot);
     }
 }

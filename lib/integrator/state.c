@@ -2,6 +2,7 @@
 #include "integrator/state.h"
 
 #include "force/force.h"
+#include "math/inertia.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -257,6 +258,41 @@ se3d_status se3di_state_project(se3di_equations *equations, double t,
         se3di_assembly_set_velocity(assembly, equations->b);
     }
     return SE3D_OK;
+}
+
+void se3di_state_split_force(const se3di_assembly *assembly, const se3di_frame *frame,
+                             const double *generalised, double force[3], double torque[3])
+{
+    se3di_copy(generalised, force);
+    if (assembly->formulation->block == 6) {
+        se3di_copy(generalised + 3, torque);
+        return;
+    }
+    se3di_g_mul(frame->p, generalised + 3, torque); /* 2 G^T n is the force of a torque n */
+    se3di_scale(0.5, torque, torque);
+}
+
+void se3di_state_mass_solve(const se3di_assembly *assembly, uint32_t free_body,
+                            const double *generalised, double rate[6])
+{
+    const uint32_t dense = assembly->free_body[free_body];
+    const se3di_body *body = &assembly->model->bodies[dense];
+    double torque[3], J[9];
+    se3di_state_split_force(assembly, &assembly->model->frames[dense], generalised, rate, torque);
+    se3di_scale(1.0 / body->mass, rate, rate);
+    se3di_inertia_matrix(body->J, J);
+    se3di_solve3(J, torque, rate + 3);
+}
+
+double se3di_state_limit_turn(const se3di_model *model, double h)
+{
+    for (size_t k = 0; k < model->angle_count; ++k) {
+        const se3di_term *term = &model->angles[k].term;
+        double rate =
+            se3di_norm(model->frames[term->body_i].w) + se3di_norm(model->frames[term->body_j].w);
+        h = h * rate > 2.0 ? 2.0 / rate : h;
+    }
+    return h;
 }
 
 /* Between points that belong to one body. */

@@ -46,6 +46,16 @@ se3d_status se3di_state_evaluate(se3di_equations *equations, double t);
 se3d_status se3di_state_project(se3di_equations *equations, double t,
                                 const se3di_state_scale *scale, double accuracy, double *moved);
 
+/* Force and torque (body frame) of a generalised force on a body with the orientation of `frame`;
+ * and the same divided by the body's mass and inertia. */
+void se3di_state_split_force(const se3di_assembly *assembly, const se3di_frame *frame,
+                             const double *generalised, double force[3], double torque[3]);
+void se3di_state_mass_solve(const se3di_assembly *assembly, uint32_t free_body,
+                            const double *generalised, double rate[6]);
+
+/* A step of at most h in which no joint angle turns by as much as its counter cannot follow. */
+double se3di_state_limit_turn(const se3di_model *model, double h);
+
 /* Length of the mechanism's parts. */
 double se3di_state_length(const se3di_model *model);
 /* Grow speed, spin and energy to those of the present state with derivative `derivative`. */

@@ -99,6 +99,20 @@ static inline void se3di_mat_mul_transposed(const double A[9], const double B[9]
 }
 
 /* The cross product matrix: tilde(a) b = a x b. */
+/* x = A^-1 b, A row-major. */
+static inline void se3di_solve3(const double A[9], const double b[3], double x[3])
+{
+    double c0[3], c1[3], c2[3];
+    const double r0[3] = {A[0], A[3], A[6]}, r1[3] = {A[1], A[4], A[7]}, r2[3] = {A[2], A[5], A[8]};
+    se3di_cross(r1, r2, c0);
+    se3di_cross(r2, r0, c1);
+    se3di_cross(r0, r1, c2);
+    const double scale = 1.0 / se3di_dot(r0, c0);
+    const double solution[3] = {scale * se3di_dot(c0, b), scale * se3di_dot(c1, b),
+                                scale * se3di_dot(c2, b)};
+    se3di_copy(solution, x);
+}
+
 static inline void se3di_tilde(const double a[3], double out[9])
 {
     out[0] = 0.0;

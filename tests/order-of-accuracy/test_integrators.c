@@ -218,7 +218,7 @@ static void check_method(const method_row *row)
                 int holds = slope > order - 0.35 || e2 < row->floor;
                 CHECK(e1 < 0.2 && e1 > e2);
                 CHECK(holds);
-                if (!holds || !(e1 < 0.2)) {
+                if (!holds || !(e1 < 0.2) || getenv("SE3D_TEST_VERBOSE")) {
                     fprintf(stderr, "%s, %s, formulation %d, %s: errors %.3e %.3e, order %.2f\n",
                             check_case, problems[p].name, (int)f, names[group], e1, e2, slope);
                 }
@@ -260,6 +260,12 @@ static void rattle_is_of_order_2(void)
 static void rattle_is_of_order_4_by_composition(void)
 {
     const method_row row = {SE3D_METHOD_RATTLE, 4, 4.0, 4.0, {100, 24, 40}, 1e-11};
+    check_method(&row);
+}
+
+static void radau_is_of_order_5(void)
+{
+    const method_row row = {SE3D_METHOD_RADAU, 0, 5.0, 5.0, {24, 12, 24}, 1e-11};
     check_method(&row);
 }
 
@@ -308,7 +314,7 @@ static void check_control(int32_t method, double order, const double tolerance[2
             int holds = slope > order && errors[0] < factor * tolerance[0] &&
                         errors[1] < factor * tolerance[1];
             CHECK(holds);
-            if (!holds) {
+            if (!holds || getenv("SE3D_TEST_VERBOSE")) {
                 fprintf(stderr,
                         "%s, %s, formulation %d: errors %.3e %.3e, steps %d %d, order %.2f\n",
                         check_case, problems[p].name, (int)f, errors[0], errors[1], (int)steps[0],
@@ -328,6 +334,11 @@ static void dop853_controls_its_error_at_high_order(void)
     check_control(SE3D_METHOD_DOP853, 6.0, (const double[2]){1e-3, 1e-8}, 3.0);
 }
 
+static void radau_controls_its_error_at_high_order(void)
+{
+    check_control(SE3D_METHOD_RADAU, 4.0, (const double[2]){1e-5, 1e-9}, 30.0);
+}
+
 static void rk45_controls_its_error(void)
 {
     check_control(SE3D_METHOD_RK45, 4.0, (const double[2]){1e-4, 1e-8}, 3.0);
@@ -341,6 +352,8 @@ static void generalized_alpha_controls_its_error(void)
 int main(void)
 {
     RUN(bdf_controls_its_error_at_high_order);
+    RUN(radau_is_of_order_5);
+    RUN(radau_controls_its_error_at_high_order);
     RUN(dop853_controls_its_error_at_high_order);
     RUN(rk45_controls_its_error);
     RUN(generalized_alpha_controls_its_error);

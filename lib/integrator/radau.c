@@ -1,0 +1,394 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* radau: Radau IIA with three stages, order 5, L-stable, for stiff motions that are wanted
+ * accurately. The equations are of index 2, stabilised (Gear, Gupta, Leimkuhler 1985):
+ *
+ *     qdot = T(q) (v + M^-1 Phi_q^T mu),   M vdot + Phi_q^T lambda = Q + velocity terms,
+ *     Phi(q, t) = 0,   Phi_q v = nu(t)
+ *
+ * so that every stage, and with the last one the end of the step, fulfils both levels of the
+ * constraints. The step is controlled by an embedded formula of order 3 whose error is filtered by
+ * the Newton matrix (Hairer, Wanner 1996, sec. IV.8). Outputs are interpolated by the quartic that
+ * has the derivatives of the stages and of the start of the step.  docs/theory/radau.md */
+#include "integrator/radau.h"
+
+#include "force/force.h"
+#include "math/quaternion.h"
+#include "primitive/turn_counter.h"
+
+#include <math.h>
+#include <string.h>
+
+#define STAGES SE3DI_RADAU_STAGES
+
+/* The history: this header, the accepted state, then of the last step: its start, the increments of
+ * the stages, d = h f_0 - h u'(0), the multipliers of the stages. */
+enum {
+    RADAU_TIME,     /* of the accepted state */
+    RADAU_NEXT,     /* the next step */
+    RADAU_LAST,     /* the last one; 0: none */
+    RADAU_ERROR,    /* of the last step, relative to the tolerance */
+    RADAU_REJECTED, /* 1: the last attempt was rejected */
+    RADAU_LENGTH,   /* scales */
+    RADAU_SPEED,
+    RADAU_SPIN,
+    RADAU_HEADER
+};
+
+typedef struct history {
+    double *header, *y1, *start, *Z, *d, *lambda;
+} history;
+
+static size_t multiplier_count(const se3di_assembly *assembly)
+{
+    return (size_t)assembly->row_count + assembly->body_count;
+}
+
+static size_t history_count(const se3di_assembly *assembly)
+{
+    return RADAU_HEADER + (3 + STAGES) * se3di_state_count(assembly) +
+           STAGES * multiplier_count(assembly);
+}
+
+static history get_history(const se3di_assembly *assembly)
+{
+    size_t count = se3di_state_count(assembly);
+    history past = {.header = assembly->model->history};
+    past.y1 = past.header + RADAU_HEADER;
+    past.start = past.y1 + count;
+    past.Z = past.start + count;
+    past.d = past.Z + STAGES * count;
+    past.lambda = past.d + count;
+    return past;
+}
+
+/* The estimate is of order 3, the result of order 5 (Hairer, Wanner 1996, sec. IV.8). */
+static double inner_tolerance(double tolerance)
+{
+    return 0.1 * pow(fmax(tolerance, 1e-13), 2.0 / 3.0);
+}
+
+/* The iteration stops where it does not show in the result. */
+static double iteration_tolerance(double inner)
+{
+    return inner * fmin(0.03, 0.3 * sqrt(inner));
+}
+
+/* l_j(s): the polynomial of degree 3 that is 1 at node j and 0 at the others and at 0. */
+static void eval_basis(double s, double l[STAGES])
+{
+    for (int j = 0; j < STAGES; ++j) {
+        l[j] = s / se3di_radau_c[j];
+        for (int k = 0; k < STAGES; ++k) {
+            l[j] *= k == j ? 1.0 : (s - se3di_radau_c[k]) / (se3di_radau_c[j] - se3di_radau_c[k]);
+        }
+    }
+}
+
+/* The integral of (x - c_1)(x - c_2)(x - 1) from 0 to s over its integrand at 0: degree 4, its
+ * derivative is 1 at 0 and 0 at the nodes. */
+static double eval_quartic(double s)
+{
+    const double *c = se3di_radau_c;
+    const double e1 = c[0] + c[1] + 1.0;
+    const double e2 = c[0] * c[1] + c[0] + c[1];
+    const double e3 = c[0] * c[1];
+    return -s * (s * (s * (0.25 * s - e1 / 3.0) + 0.5 * e2) - e3) / e3;
+}
+
+static void interpolate(const history *past, size_t count, double s, double *y)
+{
+    double l[STAGES];
+    const double quartic = eval_quartic(s);
+    eval_basis(s, l);
+    for (size_t k = 0; k < count; ++k) {
+        y[k] = past->start[k] + l[0] * past->Z[k] + l[1] * past->Z[count + k] +
+               l[2] * past->Z[2 * count + k] + quartic * past->d[k];
+    }
+}
+
+/* Velocities and multipliers of the stages: by the polynomials of the last step, or constant
+ * accelerations. */
+static void predict(se3di_radau *m, const history *past)
+{
+    const se3di_assembly *assembly = m->assembly;
+    const double last = past->header[RADAU_LAST];
+    const size_t count = m->count;
+    const double *c = se3di_radau_c;
+    for (int i = 0; i < STAGES; ++i) {
+        double *y = m->Y + (size_t)i * count;
+        double *lambda = m->lambda + (size_t)i * m->multipliers;
+        double l[STAGES];
+        const double s = 1.0 + c[i] * m->h / (last > 0.0 ? last : m->h);
+        eval_basis(s, l);
+        for (size_t k = 0; k < count; ++k) {
+            y[k] = last > 0.0 ? m->y0[k] + l[0] * past->Z[k] + l[1] * past->Z[count + k] +
+                                    (l[2] - 1.0) * past->Z[2 * count + k]
+                              : m->y0[k] + c[i] * m->h * m->f0[k];
+        }
+        for (int j = 0; j < STAGES; ++j) { /* without the node at 0 */
+            l[j] *= c[j] / s;
+        }
+        const double *known = past->lambda;
+        for (size_t k = 0; k < m->multipliers; ++k) {
+            lambda[k] = l[0] * known[k] + l[1] * known[m->multipliers + k] +
+                        l[2] * known[2 * m->multipliers + k];
+        }
+        if (last == 0.0 || m->redundant) { /* extrapolation would grow in dependent directions */
+            memset(lambda, 0, m->multipliers * sizeof *lambda);
+            memcpy(lambda, m->lambda0, assembly->row_count * sizeof *lambda);
+        }
+    }
+}
+
+/* d = h f_0 - h u'(0) of the solved stages. */
+static void set_defect(const se3di_radau *m, double *d)
+{
+    static const double omega[STAGES] = {10.048809399827415562, -1.3821427331607488957,
+                                         0.33333333333333333333}; /* l_j'(0) */
+    const size_t count = m->count;
+    for (size_t k = 0; k < count; ++k) {
+        d[k] = m->h * m->f0[k];
+        for (size_t i = 0; i < STAGES; ++i) {
+            d[k] -= omega[i] * (m->Y[i * count + k] - m->y0[k]);
+        }
+    }
+}
+
+/* The work done, as a part of the states of the stages. */
+static se3d_status add_work(se3di_radau *m)
+{
+    se3di_model *model = m->assembly->model;
+    const size_t place = m->count - SE3DI_STATE_WORK;
+    double power[STAGES][SE3DI_STATE_WORK];
+    for (int i = 0; i < STAGES; ++i) {
+        se3di_state_set(m->assembly, m->Y + (size_t)i * m->count);
+        if (m->assembly->row_count > 0) {
+            memcpy(model->lambda, m->lambda + (size_t)i * m->multipliers,
+                   m->assembly->row_count * sizeof *model->lambda);
+        }
+        SE3DI_TRY(se3di_power_eval(model, m->t + se3di_radau_c[i] * m->h, power[i]));
+    }
+    for (int i = 0; i < STAGES; ++i) {
+        for (size_t k = 0; k < SE3DI_STATE_WORK; ++k) {
+            double *work = m->Y + (size_t)i * m->count + place + k;
+            *work = m->y0[place + k];
+            for (int j = 0; j < STAGES; ++j) {
+                *work += m->h * se3di_radau_a[i][j] * power[j][k];
+            }
+        }
+    }
+    return SE3D_OK;
+}
+
+/* The step is solved: project its end to rounding, and take it. */
+static se3d_status accept(se3di_radau *m, const history *past)
+{
+    se3di_model *model = m->assembly->model;
+    const size_t bodies = m->count - SE3DI_STATE_WORK;
+    const double *end = m->Y + (STAGES - 1) * m->count;
+    double moved;
+    SE3DI_TRY(add_work(m));
+    SE3DI_TRY(se3di_state_project(m->equations, m->t + m->h, &m->scale, 1e-13, &moved));
+    memcpy(past->start, m->y0, m->count * sizeof *m->y0);
+    set_defect(m, past->d);
+    for (size_t k = 0; k < STAGES * m->count; ++k) {
+        past->Z[k] = m->Y[k] - m->y0[k % m->count];
+    }
+    memcpy(past->lambda, m->lambda, STAGES * m->multipliers * sizeof *m->lambda);
+    se3di_state_get(m->assembly, past->y1);
+    memcpy(past->y1 + bodies, end + bodies, SE3DI_STATE_WORK * sizeof *end);
+    past->header[RADAU_TIME] = m->t + m->h;
+    past->header[RADAU_LAST] = m->h;
+    se3di_state_scale_grow(m->assembly, m->f0, &m->scale);
+    past->header[RADAU_SPEED] = m->scale.speed;
+    past->header[RADAU_SPIN] = m->scale.spin;
+    se3di_angles_accept(model);
+    se3di_forces_accept(model);
+    ++m->equations->counters.steps;
+    return SE3D_OK;
+}
+
+/* From (TIME, y1). */
+static se3d_status begin_step(se3di_radau *m, se3di_integration *integration, const history *past)
+{
+    se3di_radau_begin(m, integration);
+    m->t = past->header[RADAU_TIME];
+    m->y0 = past->y1;
+    m->scale = (se3di_state_scale){past->header[RADAU_LENGTH], past->header[RADAU_SPEED],
+                                   past->header[RADAU_SPIN]};
+    se3di_state_set(m->assembly, m->y0);
+    return se3di_radau_prepare(m);
+}
+
+/* A step of h from the prepared start; *error relative to the inner tolerance (0: as exact as it
+ * can be). */
+static se3d_status attempt(se3di_radau *m, const history *past, double inner, double h,
+                           double *error)
+{
+    m->h = h;
+    m->tolerance = inner > 0.0 ? iteration_tolerance(inner) : 1e-12;
+    m->iterations_max = inner > 0.0 ? 12 : 50;
+    *error = HUGE_VAL;
+    predict(m, past);
+    SE3DI_TRY(se3di_radau_solve(m));
+    set_defect(m, m->d);
+    SE3DI_TRY(se3di_radau_filter(m, m->d, error));
+    *error /= inner;
+    return inner == 0.0 || isfinite(*error) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
+}
+
+/* Predictive control (Gustafsson 1994). */
+static double next_step(const se3di_radau *m, const history *past, double error)
+{
+    const double *header = past->header;
+    const double e = fmax(error, 1e-8);
+    const double safety = 0.9 * 11.0 / (10.0 + m->iterations);
+    double factor = safety * pow(e, -0.25);
+    if (header[RADAU_LAST] > 0.0 && header[RADAU_ERROR] > 0.0) {
+        const double predicted =
+            0.9 * m->h / header[RADAU_LAST] * pow(header[RADAU_ERROR] / (e * e), 0.25);
+        factor = fmin(factor, predicted);
+    }
+    factor = fmin(header[RADAU_REJECTED] > 0.0 ? 1.0 : 8.0, fmax(0.2, factor));
+    const double limit = m->integration->settings.step;
+    const double h = factor * m->h;
+    return limit > 0.0 && h > limit ? limit : h;
+}
+
+static se3d_status fail_small(const se3di_radau *m, double h, se3d_status cause)
+{
+    return cause < 0 ? cause
+                     : se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
+                                       "t = %g s: the step fell to %.3g s: the tolerance %g cannot "
+                                       "be met here; the motion is not smooth",
+                                       m->t, h, m->integration->settings.tolerance);
+}
+
+/* One accepted step with error control. */
+static se3d_status advance(se3di_integration *integration)
+{
+    se3di_radau m;
+    const history past = get_history(&integration->equations->assembly);
+    double *header = past.header;
+    const double inner = inner_tolerance(integration->settings.tolerance);
+    SE3DI_TRY(begin_step(&m, integration, &past));
+    double h = se3di_state_limit_turn(m.assembly->model, header[RADAU_NEXT]);
+    for (;;) {
+        double error;
+        se3d_status status = attempt(&m, &past, inner, h, &error);
+        if (status >= 0 && error <= 1.0) {
+            const double next = next_step(&m, &past, error);
+            status = accept(&m, &past);
+            if (status >= 0) {
+                header[RADAU_NEXT] = next;
+                header[RADAU_ERROR] = fmax(error, 1e-2);
+                header[RADAU_REJECTED] = 0.0;
+                return SE3D_OK;
+            }
+        }
+        ++m.equations->counters.rejected;
+        header[RADAU_REJECTED] = 1.0;
+        h *= status < 0 ? 0.5 : fmin(0.9, fmax(0.1, 0.9 * pow(error, -0.25)));
+        header[RADAU_NEXT] = h;
+        if (!(h > 1e-12 * fmax(1e-3, fabs(m.t)))) {
+            return fail_small(&m, h, status);
+        }
+    }
+}
+
+/* The accepted state is the model's own. */
+static se3d_status adopt(se3di_integration *integration)
+{
+    se3di_equations *equations = integration->equations;
+    se3di_assembly *assembly = &equations->assembly;
+    const history past = get_history(assembly);
+    double *f1 = past.d; /* no use yet */
+    se3di_state_scale scale = {.length = se3di_state_length(assembly->model)};
+    memset(past.header, 0, history_count(assembly) * sizeof *past.header);
+    se3di_state_get(assembly, past.y1);
+    se3di_assembly_get_acceleration(assembly, equations->x);
+    SE3DI_TRY(se3di_state_derivative(assembly, assembly->model->time, equations->x,
+                                     assembly->model->lambda, f1));
+    se3di_state_scale_grow(assembly, f1, &scale);
+    past.header[RADAU_TIME] = assembly->model->time;
+    past.header[RADAU_LENGTH] = scale.length;
+    past.header[RADAU_SPEED] = scale.speed;
+    past.header[RADAU_SPIN] = scale.spin;
+    return SE3D_OK;
+}
+
+static se3d_status start(se3di_integration *integration, double h)
+{
+    const history past = get_history(&integration->equations->assembly);
+    const double limit = integration->settings.step;
+    (void)h;
+    SE3DI_TRY(adopt(integration));
+    const double first = fmin(1e-3, sqrt(inner_tolerance(integration->settings.tolerance)));
+    past.header[RADAU_NEXT] = limit > 0.0 ? fmin(limit, first) : first;
+    return SE3D_OK;
+}
+
+static se3d_status publish(se3di_integration *integration, double t)
+{
+    se3di_assembly *assembly = &integration->equations->assembly;
+    const history past = get_history(assembly);
+    const double *header = past.header;
+    se3di_state_scale scale = {header[RADAU_LENGTH], header[RADAU_SPEED], header[RADAU_SPIN]};
+    if (!(t < header[RADAU_TIME])) {
+        return se3di_state_publish(integration->equations, past.y1, header[RADAU_TIME], &scale, 0);
+    }
+    const double last = header[RADAU_LAST];
+    interpolate(&past, se3di_state_count(assembly), (t - header[RADAU_TIME]) / last + 1.0,
+                integration->work);
+    return se3di_state_publish(integration->equations, integration->work, t, &scale, 1);
+}
+
+/* One step of length h, solved to rounding. */
+static se3d_status step(se3di_integration *integration, double h)
+{
+    se3di_radau m;
+    const history past = get_history(&integration->equations->assembly);
+    double error;
+    const double t0 = integration->equations->assembly.model->time;
+    se3d_status status = past.header[RADAU_TIME] == t0 ? SE3D_OK : adopt(integration);
+    status = status < 0 ? status : begin_step(&m, integration, &past);
+    if (status >= 0) {
+        status = attempt(&m, &past, 0.0, h, &error);
+        status = status < 0 ? status : accept(&m, &past);
+    }
+    if (status >= 0) {
+        past.header[RADAU_TIME] = t0 + h;
+        return publish(integration, t0 + h);
+    }
+    se3di_error cause = *integration->equations->error;
+    (void)publish(integration, t0);
+    *integration->equations->error = cause;
+    return status;
+}
+
+static se3d_status run(se3di_integration *integration, double t_end)
+{
+    const history past = get_history(&integration->equations->assembly);
+    se3d_status status = SE3D_OK;
+    while (past.header[RADAU_TIME] < t_end && status >= 0) {
+        status = advance(integration);
+    }
+    if (status >= 0) {
+        return publish(integration, t_end);
+    }
+    se3di_error cause = *integration->equations->error;
+    (void)publish(integration, past.header[RADAU_TIME]);
+    *integration->equations->error = cause;
+    return status;
+}
+
+const se3di_integrator se3di_integrator_radau = {
+    .name = "radau",
+    .tag = SE3D_METHOD_RADAU,
+    .history_count = history_count,
+    .work_count = se3di_radau_work_count,
+    .start = start,
+    .step = step,
+    .run = run,
+    .is_implicit = 1,
+};

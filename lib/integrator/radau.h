@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Parts of radau: the stage equations and their Newton iteration (radau_stages.c); the step, its
+ * error and its control (radau.c). docs/theory/radau.md */
+#ifndef SE3DI_RADAU_H
+#define SE3DI_RADAU_H
+
+#include "integrator/state.h"
+
+#define SE3DI_RADAU_STAGES 3
+
+/* Nodes, coefficients and their inverse. */
+extern const double se3di_radau_c[3];
+extern const double se3di_radau_a[3][3];
+extern const double se3di_radau_inverse[3][3];
+extern const double se3di_radau_gamma; /* the Newton matrix is that of a step gamma h */
+
+typedef struct se3di_radau {
+    se3di_integration *integration;
+    se3di_equations *equations;
+    se3di_assembly *assembly;
+    se3di_state_scale scale;
+    size_t count;       /* numbers of a state */
+    size_t multipliers; /* of a stage: rows, then the normalisations of the bodies (r-p) */
+    double t, h;        /* of the step */
+    double tolerance;   /* of the iteration: relative size of what may be missing */
+    double *y0;         /* the state at t */
+    double *f0;         /* its derivative */
+    double *lambda0;    /* its multipliers [rows] */
+    double *d;          /* h f0 less what the stages' polynomial has there */
+    /* Of the stages, three of each: */
+    double *Y;       /* states [count] */
+    double *lambda;  /* [multipliers] */
+    double *shift;   /* onto the constraints of positions [6 a body] */
+    double *b;       /* minus the residual of the equations of motion [unknowns] */
+    double *g;       /* Phi_q qdot - nu [rows] */
+    double *gap;     /* -Phi [rows] */
+    double *u, *uq;  /* corrections of velocities and positions, transformed [unknowns] */
+    double *ul;      /* of multipliers, transformed [multipliers] */
+    double *C1, *p1; /* constraints of the Newton matrix, and the orientations it belongs to */
+    double *qddot, *none, *sum, *sum_q;
+    double size, before; /* of the last two corrections, relative to the tolerance */
+    int iterations, iterations_max, redundant;
+} se3di_radau;
+
+size_t se3di_radau_work_count(const se3di_assembly *assembly);
+/* Point into integration->work; history is the caller's. */
+void se3di_radau_begin(se3di_radau *m, se3di_integration *integration);
+
+/* f0. The frames are set. */
+se3d_status se3di_radau_prepare(se3di_radau *m);
+/* The stages, from the predictions of Y (velocities) and lambda. */
+se3d_status se3di_radau_solve(se3di_radau *m);
+/* The error estimate of the solved step, filtered by the Newton matrix, from d = h f_0 - h u'(0):
+ * relative to the scales. */
+se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error);
+
+#endif

@@ -1,0 +1,584 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The three stages of a step of radau:
+ *
+ *     r_i = r_0 + h sum_j a_ij v_j + s_i,   P_i = p_0 + h sum_j a_ij 1/2 P_j o w_j  (linear in P)
+ *     p_i = P_i o exp(s_i),   s_i = H^-1 Phi_q^T mu_i,   Phi(q_i, t_i) = 0
+ *     M vdot_i + Phi_q^T lambda_i = Q + velocity terms,   h sum_j a_ij vdot_j = v_i - v_0
+ *     Phi_q qdot_i = nu(t_i)
+ *
+ * Unknowns are v_i, lambda_i and mu_i; H is the Newton matrix, so that one factorisation serves
+ * all. In it the coefficients A are replaced by P = gamma S (I - N)^-1 S^-1, N strictly lower
+ * triangular: the stages are solved one after the other with one real matrix, that of a step
+ * gamma h; the errors that A - P leaves fall by 0.37 or better in every iteration, however stiff
+ * the motion.  docs/theory/radau.md */
+#include "integrator/radau.h"
+#include "math/quaternion.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define STAGES         SE3DI_RADAU_STAGES
+#define REGULARISATION 1e-8 /* of dependent rows */
+#define NOISE                                                                                      \
+    1e-8 /* a correction of this size that does not fall is rounding: it is amplified near         \
+            singular positions */
+
+const double se3di_radau_c[3] = {0.15505102572168219, 0.64494897427831781, 1.0};
+const double se3di_radau_a[3][3] = {
+    {0.19681547722366042586, -0.0655354258501983881, 0.02377097434822015242},
+    {0.39442431473908727699, 0.29207341166522846302, -0.0415487521259979301},
+    {0.37640306270046727505, 0.51248582618842161383, 0.11111111111111111111},
+};
+const double se3di_radau_inverse[3][3] = {
+    {3.22474487139158904909, 1.16784008469040549492, -0.2531972647421808261},
+    {-3.5678400846904054949, 0.77525512860841095090, 1.05319726474218082618},
+    {5.53197264742180826185, -7.5319726474218082618, 5.0},
+};
+const double se3di_radau_gamma = 0.235991;
+
+/* P: found by a search for the least |M(z)^3|^(1/3) on the negative real axis, the imaginary axis
+ * and between, M(z) = z (I - z P)^-1 (A - P). */
+static const double N[3][3] = {{0.0}, {1.33667, 0.0}, {-1.631173, 2.208706, 0.0}};
+static const double S[3][3] = {{1.0, -0.098781, -0.081871}, {0.0, 1.0, 0.092697}, {0.0, 0.0, 1.0}};
+
+/* A vector of stage i. */
+static double *at(double *values, int i, size_t size)
+{
+    return values + (size_t)i * size;
+}
+
+size_t se3di_radau_work_count(const se3di_assembly *assembly)
+{
+    size_t n = assembly->unknown_count;
+    size_t rows = assembly->row_count;
+    size_t bodies = assembly->body_count;
+    size_t count = se3di_state_count(assembly);
+    return STAGES * (count + 2 * rows + 2 * (rows + bodies) + 6 * bodies + 3 * n) + 2 * count +
+           rows + 4 * n + assembly->joint_value_count + 4 * bodies;
+}
+
+void se3di_radau_begin(se3di_radau *m, se3di_integration *integration)
+{
+    se3di_assembly *assembly = &integration->equations->assembly;
+    size_t n = assembly->unknown_count;
+    size_t rows = assembly->row_count;
+    size_t bodies = assembly->body_count;
+    size_t count = se3di_state_count(assembly);
+    double *work = integration->work;
+    *m = (se3di_radau){.integration = integration,
+                       .equations = integration->equations,
+                       .assembly = assembly,
+                       .count = count,
+                       .multipliers = rows + bodies};
+    struct {
+        double **place;
+        size_t size;
+    } const parts[] = {
+        {&m->Y, STAGES * count},
+        {&m->lambda, STAGES * m->multipliers},
+        {&m->ul, STAGES * m->multipliers},
+        {&m->g, STAGES * rows},
+        {&m->gap, STAGES * rows},
+        {&m->shift, STAGES * 6 * bodies},
+        {&m->b, STAGES * n},
+        {&m->u, STAGES * n},
+        {&m->uq, STAGES * n},
+        {&m->f0, count},
+        {&m->d, count},
+        {&m->lambda0, rows},
+        {&m->qddot, n},
+        {&m->none, n},
+        {&m->sum, n},
+        {&m->sum_q, n},
+        {&m->C1, assembly->joint_value_count},
+        {&m->p1, 4 * bodies},
+    };
+    for (size_t k = 0; k < sizeof parts / sizeof parts[0]; ++k) {
+        *parts[k].place = work;
+        work += parts[k].size;
+    }
+}
+
+static void copy(double *to, const double *from, size_t count)
+{
+    if (count > 0) {
+        memcpy(to, from, count * sizeof *to);
+    }
+}
+
+/* Six numbers (linear, angular in the body frame) of a rate of the unknowns, and back, with the
+ * orientation p. */
+static void to_six(const se3di_assembly *assembly, const double *p, const double *x, double six[6])
+{
+    se3di_copy(x, six);
+    if (assembly->formulation->block == 6) {
+        se3di_copy(x + 3, six + 3);
+    } else {
+        se3di_quat_angular_velocity(p, x + 3, six + 3);
+    }
+}
+
+static void from_six(const se3di_assembly *assembly, const double *p, const double six[6],
+                     double *x)
+{
+    se3di_copy(six, x);
+    if (assembly->formulation->block == 6) {
+        se3di_copy(six + 3, x + 3);
+    } else {
+        se3di_quat_rate(p, six + 3, x + 3);
+        x[7] = 0.0;
+    }
+}
+
+se3d_status se3di_radau_prepare(se3di_radau *m)
+{
+    se3di_equations *equations = m->equations;
+    se3di_assembly *assembly = m->assembly;
+    se3di_kkt_settings settings = se3di_state_begin(equations, REGULARISATION, 1e-15);
+    se3d_status status = se3di_state_evaluate(equations, m->t);
+    se3di_state_end(equations, &settings);
+    SE3DI_TRY(status);
+    copy(m->lambda0, equations->l, assembly->row_count);
+    m->redundant = status == SE3D_INFO_REDUNDANT;
+    SE3DI_TRY(se3di_state_derivative(assembly, m->t, equations->x, equations->l, m->f0));
+    return SE3D_OK;
+}
+
+/* P_i - (h/2) sum_j a_ij P_j o w_j = p_0, by elimination in the quaternions: coefficients multiply
+ * from the right. */
+static void solve_turn(const double p0[4], double h, double w[STAGES][3], double P[STAGES][4])
+{
+    double q[STAGES][STAGES][4], f[4], part[4], inverse[STAGES][4];
+    for (int i = 0; i < STAGES; ++i) {
+        memcpy(P[i], p0, 4 * sizeof(double));
+        for (int j = 0; j < STAGES; ++j) {
+            q[i][j][0] = i == j ? 1.0 : 0.0;
+            for (int c = 0; c < 3; ++c) {
+                q[i][j][1 + c] = -0.5 * h * se3di_radau_a[i][j] * w[j][c];
+            }
+        }
+    }
+    for (int k = 0; k < STAGES; ++k) {
+        const double *d = q[k][k];
+        const double norm = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[3] * d[3];
+        for (int c = 0; c < 4; ++c) {
+            inverse[k][c] = (c == 0 ? d[c] : -d[c]) / norm;
+        }
+        for (int i = k + 1; i < STAGES; ++i) {
+            se3di_quat_mul(inverse[k], q[i][k], f);
+            for (int j = k + 1; j < STAGES; ++j) {
+                se3di_quat_mul(q[k][j], f, part);
+                for (int c = 0; c < 4; ++c) {
+                    q[i][j][c] -= part[c];
+                }
+            }
+            se3di_quat_mul(P[k], f, part);
+            for (int c = 0; c < 4; ++c) {
+                P[i][c] -= part[c];
+            }
+        }
+    }
+    for (int k = STAGES - 1; k >= 0; --k) {
+        for (int j = k + 1; j < STAGES; ++j) {
+            se3di_quat_mul(P[j], q[k][j], part);
+            for (int c = 0; c < 4; ++c) {
+                P[k][c] -= part[c];
+            }
+        }
+        se3di_quat_mul(P[k], inverse[k], P[k]);
+    }
+}
+
+/* Positions of the stages from their velocities. */
+static void update_positions(se3di_radau *m)
+{
+    const size_t bodies = m->assembly->body_count;
+    for (size_t k = 0; k < bodies; ++k) {
+        const double *y0 = m->y0 + k * SE3DI_STATE_SIZE;
+        double v[STAGES][3], w[STAGES][3], P[STAGES][4];
+        for (int j = 0; j < STAGES; ++j) {
+            const double *y = at(m->Y, j, m->count) + k * SE3DI_STATE_SIZE;
+            se3di_copy(y + 7, v[j]);
+            se3di_copy(y + 10, w[j]);
+        }
+        solve_turn(y0 + 3, m->h, w, P);
+        for (int i = 0; i < STAGES; ++i) {
+            double *y = at(m->Y, i, m->count) + k * SE3DI_STATE_SIZE;
+            const double *shift = at(m->shift, i, 6 * bodies) + 6 * k;
+            se3di_add(y0, shift, y);
+            for (int j = 0; j < STAGES; ++j) {
+                se3di_add_scaled(m->h * se3di_radau_a[i][j], v[j], y);
+            }
+            se3di_quat_rotate(P[i], shift + 3, y + 3);
+        }
+    }
+}
+
+/* qddot of a stage, in the unknowns. */
+static void set_qddot(se3di_radau *m, int i)
+{
+    const se3di_assembly *assembly = m->assembly;
+    const size_t n = (size_t)assembly->formulation->block;
+    const double *kappa = at(m->lambda, i, m->multipliers) + assembly->row_count;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const size_t place = k * SE3DI_STATE_SIZE + 7;
+        double acceleration[6] = {0.0};
+        for (int j = 0; j < STAGES; ++j) {
+            const double factor = se3di_radau_inverse[i][j] / m->h;
+            for (size_t c = 0; c < 6; ++c) {
+                acceleration[c] += factor * (at(m->Y, j, m->count)[place + c] - m->y0[place + c]);
+            }
+        }
+        m->qddot[k * n + n - 1] = n == 8 ? kappa[k] : 0.0;
+        assembly->formulation->set_acceleration(&assembly->model->frames[assembly->free_body[k]],
+                                                acceleration, m->qddot + k * n);
+    }
+}
+
+/* r-p: the equations of a stage, in coordinates along p and G(p), to those of p1. */
+static void turn_residual(se3di_radau *m, double *b)
+{
+    const se3di_assembly *assembly = m->assembly;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const double *p = assembly->model->frames[assembly->free_body[k]].p;
+        const double back[4] = {p[0], -p[1], -p[2], -p[3]};
+        double turn[4];
+        se3di_quat_mul(m->p1 + 4 * k, back, turn);
+        se3di_quat_mul(turn, b + 8 * k + 3, b + 8 * k + 3);
+    }
+}
+
+static se3d_status eval_stage(se3di_radau *m, int i)
+{
+    se3di_equations *equations = m->equations;
+    se3di_assembly *assembly = m->assembly;
+    const size_t n = (size_t)assembly->formulation->block;
+    const size_t rows = assembly->row_count;
+    const double t = m->t + se3di_radau_c[i] * m->h;
+    double *b = at(m->b, i, assembly->unknown_count);
+    se3di_state_set(assembly, at(m->Y, i, m->count));
+    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+    se3di_assembly_eval_mass(assembly);
+    se3di_assembly_eval_jacobian(assembly);
+    SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, b, equations->error));
+    se3di_assembly_add_transposed(assembly, -1.0, at(m->lambda, i, m->multipliers), b);
+    set_qddot(m, i);
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const double *H = assembly->H + k * n * n;
+        for (size_t r = 0; r < n; ++r) {
+            for (size_t c = 0; c < n; ++c) {
+                b[k * n + r] -= H[n * r + c] * m->qddot[k * n + c];
+            }
+        }
+    }
+    if (n == 8) {
+        turn_residual(m, b);
+    }
+    se3di_assembly_get_velocity(assembly, m->sum);
+    se3di_assembly_mul(assembly, m->sum, at(m->g, i, rows));
+    se3di_assembly_eval_phi(assembly, at(m->gap, i, rows));
+    for (size_t k = 0; k < rows; ++k) {
+        at(m->g, i, rows)[k] -= assembly->f[3 * k + 1];
+        at(m->gap, i, rows)[k] *= -1.0;
+    }
+    return SE3D_OK;
+}
+
+/* At the state of the second stage, which was evaluated last. */
+static se3d_status factor(se3di_radau *m)
+{
+    const double c = se3di_radau_gamma * m->h;
+    const se3di_newton_weights weights = {.velocity = c, .position = c * c};
+    copy(m->C1, m->assembly->C, m->assembly->joint_value_count);
+    return se3di_newton_factor(&m->integration->newton, m->t + se3di_radau_c[1] * m->h, m->qddot,
+                               at(m->lambda, 1, m->multipliers), m->none, &weights);
+}
+
+/* out += M x */
+static void add_mass(const se3di_radau *m, const double *x, double *out)
+{
+    const se3di_assembly *assembly = m->assembly;
+    const double *M = m->integration->newton.tangent.M;
+    const size_t n = (size_t)assembly->formulation->block;
+    const size_t size = (size_t)assembly->formulation->size;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        for (size_t r = 0; r < size; ++r) {
+            for (size_t c = 0; c < size; ++c) {
+                out[k * n + r] += M[k * n * n + r * n + c] * x[k * n + c];
+            }
+        }
+    }
+}
+
+/* One stage of the transformed system: u, uq and ul. */
+static se3d_status solve_stage(se3di_radau *m, int i, double W[STAGES][STAGES])
+{
+    se3di_equations *equations = m->equations;
+    const se3di_assembly *assembly = m->assembly;
+    const size_t n = assembly->unknown_count;
+    const size_t rows = assembly->row_count;
+    const size_t block = (size_t)assembly->formulation->block;
+    const double c = se3di_radau_gamma * m->h;
+    for (size_t k = 0; k < n; ++k) {
+        equations->b[k] =
+            m->h * (W[i][0] * m->b[k] + W[i][1] * m->b[n + k] + W[i][2] * m->b[2 * n + k]);
+        m->sum[k] = m->sum_q[k] = 0.0;
+        for (int j = 0; j < i; ++j) {
+            m->sum[k] += N[i][j] * at(m->u, j, n)[k];
+            m->sum_q[k] += N[i][j] * at(m->uq, j, n)[k];
+        }
+    }
+    add_mass(m, m->sum, equations->b);
+    se3di_tangent_add_stiffness(&m->integration->newton.tangent, -c, m->sum_q, equations->b);
+    for (size_t k = 0; k < rows; ++k) { /* -S^-1 g */
+        const double g0 = m->g[k], g1 = m->g[rows + k], g2 = m->g[2 * rows + k];
+        const double h1 = g1 - S[1][2] * g2;
+        equations->c[k] = i == 2 ? -g2 : i == 1 ? -h1 : -(g0 - S[0][1] * h1 - S[0][2] * g2);
+    }
+    SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
+    double *ul = at(m->ul, i, m->multipliers);
+    for (size_t k = 0; k < n; ++k) {
+        const int is_multiplier = block == 8 && k % 8 == 7;
+        const double x = is_multiplier ? 0.0 : equations->x[k];
+        at(m->u, i, n)[k] = x;
+        at(m->uq, i, n)[k] = c * x + m->sum_q[k];
+        if (is_multiplier) {
+            ul[rows + k / 8] = equations->x[k];
+        }
+    }
+    for (size_t k = 0; k < rows; ++k) {
+        ul[k] = equations->l[k];
+    }
+    return SE3D_OK;
+}
+
+/* The size of a change of position and velocity of a body. */
+static double measure(const se3di_radau *m, const double q[6], const double v[6])
+{
+    const se3di_state_scale *scale = &m->scale;
+    return se3di_norm(q) / scale->length + se3di_norm(q + 3) + se3di_norm(v) / scale->speed +
+           se3di_norm(v + 3) / scale->spin;
+}
+
+/* Take the transformed corrections to the stages. */
+static void apply_corrections(se3di_radau *m)
+{
+    const se3di_assembly *assembly = m->assembly;
+    const size_t n = assembly->unknown_count;
+    const size_t block = (size_t)assembly->formulation->block;
+    for (int i = 0; i < STAGES; ++i) {
+        for (size_t k = 0; k < assembly->body_count; ++k) {
+            double x[8] = {0.0}, q[8] = {0.0}, v[6], turn[6];
+            for (int j = i; j < STAGES; ++j) {
+                for (size_t c = 0; c < block; ++c) {
+                    x[c] += S[i][j] * at(m->u, j, n)[k * block + c];
+                    q[c] += S[i][j] * at(m->uq, j, n)[k * block + c];
+                }
+            }
+            to_six(assembly, m->p1 + 4 * k, x, v);
+            to_six(assembly, m->p1 + 4 * k, q, turn);
+            double *y = at(m->Y, i, m->count) + k * SE3DI_STATE_SIZE;
+            se3di_add(y + 7, v, y + 7);
+            se3di_add(y + 10, v + 3, y + 10);
+            const double part = measure(m, turn, v) / m->tolerance;
+            m->size = part <= m->size ? m->size : part;
+        }
+    }
+}
+
+/* lambda += A^-1 S (I - N)^-1 (transformed multipliers) / h: they enter the equations linearly and
+ * not through P. */
+static void apply_multipliers(se3di_radau *m)
+{
+    double *u0 = m->ul, *u1 = u0 + m->multipliers, *u2 = u1 + m->multipliers;
+    for (size_t k = 0; k < m->multipliers; ++k) {
+        const double x0 = u0[k];
+        const double x1 = u1[k] + N[1][0] * x0;
+        const double x2 = u2[k] + N[2][0] * x0 + N[2][1] * x1;
+        const double x[STAGES] = {x0 + S[0][1] * x1 + S[0][2] * x2, x1 + S[1][2] * x2, x2};
+        for (int i = 0; i < STAGES; ++i) {
+            for (int j = 0; j < STAGES; ++j) {
+                at(m->lambda, i, m->multipliers)[k] += se3di_radau_inverse[i][j] / m->h * x[j];
+            }
+        }
+    }
+}
+
+static double largest_gap(const se3di_radau *m)
+{
+    const size_t rows = m->assembly->row_count;
+    double largest = 0.0;
+    for (size_t k = 0; k < STAGES * rows; ++k) {
+        const double gap =
+            fabs(m->gap[k]) /
+            se3di_row_get_scale(m->assembly->model, (uint32_t)(k % rows), m->scale.length);
+        largest = gap <= largest ? largest : gap;
+    }
+    return largest;
+}
+
+/* Shift the stages onto the constraints of positions. */
+static se3d_status correct_positions(se3di_radau *m)
+{
+    se3di_equations *equations = m->equations;
+    const se3di_assembly *assembly = m->assembly;
+    const size_t rows = assembly->row_count;
+    const size_t bodies = assembly->body_count;
+    const size_t block = (size_t)assembly->formulation->block;
+    if (!(largest_gap(m) > 1e-2 * m->tolerance)) {
+        return SE3D_OK;
+    }
+    for (int i = 0; i < STAGES; ++i) {
+        memset(equations->b, 0, assembly->unknown_count * sizeof *equations->b);
+        copy(equations->c, at(m->gap, i, rows), rows);
+        SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
+        for (size_t k = 0; k < bodies; ++k) {
+            const double none[6] = {0.0};
+            double six[6];
+            double *shift = at(m->shift, i, 6 * bodies) + 6 * k;
+            to_six(assembly, m->p1 + 4 * k, equations->x + k * block, six);
+            const double part = measure(m, six, none) / m->tolerance;
+            m->size = part <= m->size ? m->size : part;
+            se3di_add(shift, six, shift);
+            se3di_add(shift + 3, six + 3, shift + 3);
+        }
+    }
+    return SE3D_OK;
+}
+
+/* (I - N) S^-1 A */
+static void set_weights(double W[STAGES][STAGES])
+{
+    for (int j = 0; j < STAGES; ++j) {
+        const double a2 = se3di_radau_a[2][j];
+        const double a1 = se3di_radau_a[1][j] - S[1][2] * a2;
+        const double a0 = se3di_radau_a[0][j] - S[0][1] * a1 - S[0][2] * a2;
+        W[0][j] = a0;
+        W[1][j] = a1 - N[1][0] * a0;
+        W[2][j] = a2 - N[2][0] * a0 - N[2][1] * a1;
+    }
+}
+
+static se3d_status iterate(se3di_radau *m, int refactor)
+{
+    static const int order[STAGES] = {0, 2, 1};
+    double W[STAGES][STAGES];
+    set_weights(W);
+    for (int k = 0; k < STAGES; ++k) {
+        SE3DI_TRY(eval_stage(m, order[k]));
+    }
+    if (refactor) {
+        SE3DI_TRY(factor(m));
+    }
+    copy(m->assembly->C, m->C1, m->assembly->joint_value_count);
+    for (int i = 0; i < STAGES; ++i) {
+        SE3DI_TRY(solve_stage(m, i, W));
+    }
+    ++m->equations->counters.iterations;
+    ++m->iterations;
+    m->before = m->size;
+    m->size = 0.0;
+    apply_corrections(m);
+    apply_multipliers(m);
+    SE3DI_TRY(correct_positions(m));
+    update_positions(m);
+    return isfinite(m->size) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
+}
+
+static void set_orientations(se3di_radau *m)
+{
+    for (size_t k = 0; k < m->assembly->body_count; ++k) {
+        (void)se3di_quat_normalize(at(m->Y, 1, m->count) + k * SE3DI_STATE_SIZE + 3, m->p1 + 4 * k);
+    }
+}
+
+static int has_converged(const se3di_radau *m, double rate)
+{
+    if (rate > 0.8) {
+        return m->size <= 0.1 || (m->iterations > 1 && m->size * m->tolerance <= NOISE);
+    }
+    return m->size * rate / (1.0 - rate) <= 1.0;
+}
+
+static se3d_status iterate_to_convergence(se3di_radau *m)
+{
+    memset(m->shift, 0, STAGES * 6 * (size_t)m->assembly->body_count * sizeof *m->shift);
+    update_positions(m);
+    set_orientations(m);
+    m->size = HUGE_VAL;
+    m->iterations = 0;
+    for (int k = 0; k < m->iterations_max; ++k) {
+        SE3DI_TRY(iterate(m, k == 0));
+        const double rate = k == 0 ? 1.0 : m->size / m->before;
+        if (has_converged(m, rate)) {
+            return SE3D_OK;
+        }
+        if (k > 3 && rate > 1.0) {
+            break;
+        }
+    }
+    return se3di_error_set(m->equations->error, SE3D_ERR_NO_CONVERGENCE,
+                           "t = %g s: Newton did not converge in a step of %g s; try a smaller "
+                           "step or tolerance",
+                           m->t, m->h);
+}
+
+/* Rounding and curvature contradict themselves in dependent rows: a smaller regularisation, which
+ * tells nearly dependent rows from dependent ones, would only amplify it. Near singular positions
+ * see se3di_state_begin. */
+se3d_status se3di_radau_solve(se3di_radau *m)
+{
+    se3di_kkt *kkt = m->integration->newton.kkt;
+    const se3di_kkt_settings before = se3di_kkt_get_settings(kkt);
+    se3di_kkt_settings settings = before;
+    settings.eps = settings.eps_min = REGULARISATION;
+    settings.max_refinements = 2;
+    se3di_kkt_set_settings(kkt, &settings);
+    se3d_status status = iterate_to_convergence(m);
+    se3di_kkt_set_settings(kkt, &before);
+    return status;
+}
+
+se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error)
+{
+    se3di_equations *equations = m->equations;
+    se3di_assembly *assembly = m->assembly;
+    const size_t n = assembly->unknown_count;
+    const size_t block = (size_t)assembly->formulation->block;
+    const double gamma = se3di_radau_gamma;
+    const double c = gamma * m->h;
+    memset(equations->b, 0, n * sizeof *equations->b);
+    memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const double *raw = d + k * SE3DI_STATE_SIZE;
+        const double *p0 = m->y0 + k * SE3DI_STATE_SIZE + 3;
+        double q[6];
+        se3di_copy(raw, q);
+        se3di_quat_angular_velocity(p0, raw + 3, q + 3);
+        for (size_t j = 0; j < 6; ++j) {
+            q[j] *= gamma;
+        }
+        from_six(assembly, m->p1 + 4 * k, q, m->sum_q + k * block);
+        from_six(assembly, m->p1 + 4 * k, raw + 7, m->sum + k * block);
+    }
+    for (size_t k = 0; k < n; ++k) {
+        m->sum[k] *= gamma;
+    }
+    add_mass(m, m->sum, equations->b);
+    se3di_tangent_add_stiffness(&m->integration->newton.tangent, -c, m->sum_q, equations->b);
+    copy(assembly->C, m->C1, assembly->joint_value_count);
+    SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
+    *error = 0.0;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        double q[6], v[6];
+        for (size_t j = 0; j < block; ++j) {
+            m->sum_q[k * block + j] += c * equations->x[k * block + j];
+        }
+        to_six(assembly, m->p1 + 4 * k, m->sum_q + k * block, q);
+        to_six(assembly, m->p1 + 4 * k, equations->x + k * block, v);
+        const double part = measure(m, q, v);
+        *error = part <= *error ? *error : part;
+    }
+    return SE3D_OK;
+}

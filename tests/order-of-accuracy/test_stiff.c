@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Stiff motions: a bar on a pin with a torsion spring and a spring to a wall. With stiffnesses and
+ * dampings a million times larger it creeps into its equilibrium; a method for stiff motions must
+ * not need more steps for that. */
+#include "check.h"
+#include "se3d/se3d.h"
+
+#include <math.h>
+
+typedef struct outcome {
+    double angle;
+    uint64_t steps;
+} outcome;
+
+static void build(se3d_system *system, double stiffness, se3d_body *bar, se3d_constraint *pin)
+{
+    const double gravity[3] = {0.0, -9.81, 0.0}, at[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 1.0};
+    se3d_body_def body = se3d_body_def_default();
+    se3d_joint_def joint = se3d_joint_def_default();
+    se3d_rsda_def torsion = se3d_rsda_def_default();
+    se3d_tsda_def spring = se3d_tsda_def_default();
+    se3d_force force;
+    CHECK(se3d_system_set_gravity(system, gravity) == SE3D_OK);
+    body.mass = 10.0;
+    body.inertia[0] = 0.01;
+    body.inertia[1] = body.inertia[2] = 10.0 / 12.0;
+    body.position[0] = 0.5;
+    CHECK(se3d_body_create(system, &body, bar) == SE3D_OK);
+    CHECK(se3d_system_get_ground(system, &joint.body_i) == SE3D_OK);
+    joint.body_j = *bar;
+    CHECK(se3d_joint_def_set_frame(system, &joint, at, axis, NULL) == SE3D_OK);
+    CHECK(se3d_joint_create_revolute(system, &joint, pin) == SE3D_OK);
+    torsion.joint = *pin;
+    torsion.k = 20.0 * stiffness;
+    torsion.c = 1.5 * stiffness;
+    CHECK(se3d_force_create_rsda(system, &torsion, &force) == SE3D_OK);
+    spring.body_i = joint.body_i;
+    spring.body_j = *bar;
+    spring.point_i[0] = 1.5;
+    spring.point_i[1] = 0.5;
+    spring.point_j[0] = 0.5;
+    spring.k = 300.0 * stiffness;
+    spring.c = 5.0 * stiffness;
+    spring.l0 = 0.8;
+    CHECK(se3d_force_create_tsda(system, &spring, &force) == SE3D_OK);
+}
+
+static outcome run(int32_t method, int32_t formulation, double stiffness, double tolerance)
+{
+    outcome out = {0};
+    se3d_system *system = NULL;
+    se3d_solver *solver = NULL;
+    se3d_solver_stats stats;
+    se3d_body bar;
+    se3d_constraint pin;
+    se3d_solver_def def = se3d_solver_def_default();
+    CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
+    build(system, stiffness, &bar, &pin);
+    def.method = method;
+    def.formulation = formulation;
+    def.tolerance = tolerance;
+    CHECK(se3d_solver_create(system, &def, &solver) == SE3D_OK);
+    se3d_status status = se3d_solver_run(solver, 5.0);
+    if (status < 0) {
+        fprintf(stderr, "method %d: %s\n", (int)method, se3d_system_get_error(system));
+    }
+    CHECK(status >= 0);
+    CHECK(se3d_joint_get_coordinate(system, pin, SE3D_COORDINATE_ANGLE, &out.angle) == SE3D_OK);
+    CHECK(se3d_solver_get_stats(solver, &stats) == SE3D_OK);
+    out.steps = stats.steps;
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(system);
+    return out;
+}
+
+static void check_stiff(int32_t method)
+{
+    for (int32_t formulation = 0; formulation < 2; ++formulation) {
+        outcome soft = run(method, formulation, 1.0, 1e-6);
+        outcome stiff = run(method, formulation, 1e6, 1e-6);
+        if (stiff.steps > 2 * soft.steps) {
+            fprintf(stderr, "method %d: %d steps, %d where stiff\n", (int)method, (int)soft.steps,
+                    (int)stiff.steps);
+        }
+        CHECK(stiff.steps <= 2 * soft.steps);
+        /* References: dop853 at a tolerance of 1e-10; stiff: bdf, radau and generalized_alpha at
+         * 1e-10, which agree to 1e-11. */
+        CHECK_NEAR(soft.angle, -0.28131039, 2e-6);
+        CHECK_NEAR(stiff.angle, -0.10868414051, 2e-6);
+    }
+}
+
+static void radau_takes_no_more_steps_where_stiff(void)
+{
+    check_stiff(SE3D_METHOD_RADAU);
+}
+
+static void bdf_takes_no_more_steps_where_stiff(void)
+{
+    check_stiff(SE3D_METHOD_BDF);
+}
+
+static void generalized_alpha_takes_no_more_steps_where_stiff(void)
+{
+    outcome soft = run(SE3D_METHOD_GENERALIZED_ALPHA, 0, 1.0, 1e-6);
+    outcome stiff = run(SE3D_METHOD_GENERALIZED_ALPHA, 0, 1e6, 1e-6);
+    CHECK(stiff.steps <= 2 * soft.steps);
+    CHECK_NEAR(stiff.angle, -0.10868414051, 1e-8);
+}
+
+int main(void)
+{
+    RUN(radau_takes_no_more_steps_where_stiff);
+    RUN(bdf_takes_no_more_steps_where_stiff);
+    RUN(generalized_alpha_takes_no_more_steps_where_stiff);
+    return check_finish();
+}
