@@ -61,6 +61,13 @@ static history get_history(const se3di_assembly *assembly)
     return past;
 }
 
+static se3di_state_scale get_scale(const history *past)
+{
+    return (se3di_state_scale){.length = past->header[RADAU_LENGTH],
+                               .speed = past->header[RADAU_SPEED],
+                               .spin = past->header[RADAU_SPIN]};
+}
+
 /* The estimate is of order 3, the result of order 5 (Hairer, Wanner 1996, sec. IV.8). */
 static double inner_tolerance(double tolerance)
 {
@@ -214,8 +221,7 @@ static se3d_status begin_step(se3di_radau *m, se3di_integration *integration, co
     se3di_radau_begin(m, integration);
     m->t = past->header[RADAU_TIME];
     m->y0 = past->y1;
-    m->scale = (se3di_state_scale){past->header[RADAU_LENGTH], past->header[RADAU_SPEED],
-                                   past->header[RADAU_SPIN]};
+    m->scale = get_scale(past);
     se3di_state_set(m->assembly, m->y0);
     return se3di_radau_prepare(m);
 }
@@ -333,7 +339,7 @@ static se3d_status publish(se3di_integration *integration, double t)
     se3di_assembly *assembly = &integration->equations->assembly;
     const history past = get_history(assembly);
     const double *header = past.header;
-    se3di_state_scale scale = {header[RADAU_LENGTH], header[RADAU_SPEED], header[RADAU_SPIN]};
+    se3di_state_scale scale = get_scale(&past);
     if (!(t < header[RADAU_TIME])) {
         return se3di_state_publish(integration->equations, past.y1, header[RADAU_TIME], &scale, 0);
     }

@@ -65,7 +65,8 @@ static outcome run(int32_t method, int32_t formulation, double stiffness, double
         fprintf(stderr, "method %d: %s\n", (int)method, se3d_system_get_error(system));
     }
     CHECK(status >= 0);
-    CHECK(se3d_joint_get_coordinate(system, pin, SE3D_COORDINATE_ANGLE, &out.angle) == SE3D_OK);
+    CHECK(se3d_joint_get_coordinate(system, pin, SE3D_COORDINATE_ANGLE, &out.angle, NULL, NULL) ==
+          SE3D_OK);
     CHECK(se3d_solver_get_stats(solver, &stats) == SE3D_OK);
     out.steps = stats.steps;
     se3d_solver_destroy(solver);
