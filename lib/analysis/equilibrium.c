@@ -195,7 +195,7 @@ static se3d_status search_line(statics *s, double length)
         move(s, fraction);
         se3d_status status = evaluate(s);
         int good = status >= 0 && (length < 1e-6 || work_of_step(s) >= -0.9 * fabs(before));
-        if (good || halvings >= 20) {
+        if (good || status == SE3D_ERR_NO_MEMORY || halvings >= 20) {
             return status;
         }
         memcpy(assembly->model->frames, s->equations->accepted, bytes);

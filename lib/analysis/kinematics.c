@@ -70,7 +70,7 @@ static se3d_status reach(se3di_equations *equations, double t)
     se3di_error reason = *equations->error;
     model->time = start;
     se3d_status passed = pass(equations, t);
-    if (passed >= 0 || off > AT) {
+    if (passed >= 0 || passed == SE3D_ERR_NO_MEMORY || off > AT) {
         return passed;
     }
     *equations->error = reason;
@@ -105,6 +105,12 @@ static double choose_step(const se3di_equations *equations, double remaining, do
     return fmin(remaining, fmax(slow, shortest));
 }
 
+static int shorter_may_help(se3d_status status)
+{
+    return status < 0 && status != SE3D_ERR_CALLBACK && status != SE3D_ERR_SINGULAR &&
+           status != SE3D_ERR_NO_MEMORY;
+}
+
 se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, double step)
 {
     se3di_model *model = equations->assembly.model;
@@ -119,7 +125,7 @@ se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, doubl
                 h = t_end - model->time;
             }
             status = se3di_kinematics_step(equations, h);
-            if (status >= 0 || status == SE3D_ERR_CALLBACK || status == SE3D_ERR_SINGULAR) {
+            if (!shorter_may_help(status)) {
                 break;
             }
             ++equations->counters.rejected;

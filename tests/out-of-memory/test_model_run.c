@@ -39,6 +39,21 @@ static const char *const texts[] = {
     "  - {vtk: motion.pvd}\n"
     "  - {plot: state.svg, x: pin.angle, channels: [a.position.x]}\n"
     "  - {video: state.mp4, speed: 2}\n",
+    /* A parallelogram that is flat at 1 s, where only the motion on both sides tells how it goes
+       on. */
+    "se3d: 1\n"
+    "bodies:\n"
+    "  - {name: crank, mass: 1, inertia: [1, 1, 1], position: [0, 0.5, 0]}\n"
+    "  - {name: coupler, mass: 1, inertia: [1, 1, 1], position: [1, 1, 0]}\n"
+    "  - {name: rocker, mass: 1, inertia: [1, 1, 1], position: [2, 0.5, 0]}\n"
+    "joints:\n"
+    "  - {name: O, type: revolute, body_i: ground, body_j: crank, at: [0, 0, 0], axis: [0, 0, 1]}\n"
+    "  - {type: revolute, body_i: crank, body_j: coupler, at: [0, 1, 0], axis: [0, 0, 1]}\n"
+    "  - {type: revolute, body_i: coupler, body_j: rocker, at: [2, 1, 0], axis: [0, 0, 1]}\n"
+    "  - {type: revolute, body_i: ground, body_j: rocker, at: [2, 0, 0], axis: [0, 0, 1]}\n"
+    "drivers: [{joint: O, coordinate: angle, value: pi/2*t}]\n"
+    "analysis: {type: kinematics, duration: 1, step: 0.25}\n"
+    "output: [{file: flat.csv, channels: [rocker.position]}]\n",
     "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1e3}]\ncontact: {pairs: [{material_1: "
     "m, "
     "material_2: m, friction: 0.1}]}\nparticles: [{material: m, radius: 0.1, lower: [0, 0, 0], "
@@ -114,9 +129,8 @@ static void reading_and_running_survives_every_failed_allocation(void)
             attempt a = {SE3D_OK, 1, 0};
             for (; k < 5000 && a.reached; ++k) {
                 a = try_once(texts[m], k, for_ever);
-                /* The search for an equilibrium may go another way round a failed trial. */
                 const int done = a.status >= 0 && a.files == whole.files;
-                CHECK(a.status == SE3D_ERR_NO_MEMORY || (done && (!a.reached || m == 1)));
+                CHECK(a.status == SE3D_ERR_NO_MEMORY || (done && !a.reached));
             }
             CHECK(k > 50 && k < 5000);
             CHECK(a.files == whole.files);
