@@ -258,6 +258,7 @@ static se3d_status take_vectors(se3di_kkt *kkt)
     kkt->mobility = se3di_kkt_take_aligned(kkt, kkt->pattern.body_count * KKT_LANES);
     kkt->weight = se3di_kkt_take_aligned(kkt, m);
     kkt->saved_l = se3di_kkt_take_aligned(kkt, m);
+    kkt->saved_x = se3di_kkt_take_aligned(kkt, kkt->pattern.body_count);
     kkt->ratio = se3di_kkt_take_aligned(kkt, m);
     kkt->e = se3di_kkt_take_aligned(kkt, m);
     kkt->residual_b = se3di_kkt_take_aligned(kkt, n);

@@ -114,8 +114,9 @@ struct se3di_kkt {
     double *mobility;  /* [8 body_count]: 1 / H_cc */
     double *weight;    /* [row_count]: diag(C H^-1 B) */
     double *e;         /* [row_count]: E of the last factorisation */
-    double *residual_b, *residual_c, *correction_x, *correction_l, *saved_l;
-    double *magnitude; /* [unknown_count]: work of the residual */
+    double *residual_b, *residual_c, *correction_x, *correction_l;
+    double *saved_l, *saved_x; /* multipliers of rows and of normalisations */
+    double *magnitude;         /* [unknown_count]: work of the residual */
     double scale_b, scale_c;
     double *ratio; /* [row_count]: where some pivot is small, each relative to its weight */
     double

@@ -306,32 +306,73 @@ static void refine_suitably(se3di_kkt *kkt, const kkt_problem *p, double *x, dou
     (void)refine(kkt, p, x, l, info);
 }
 
+/* In r-p the multipliers of the normalisations belong to l: a dependence of rows involves them. */
+static void add_to_multipliers(se3di_kkt *kkt, double sign, double *x, double *l)
+{
+    const size_t n = (size_t)kkt->pattern.body_size;
+    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
+        l[i] += sign * kkt->correction_l[i];
+    }
+    for (size_t i = 7; n == 8 && i < kkt->layout.unknown_count; i += 8) {
+        x[i] += sign * kkt->correction_x[i];
+    }
+}
+
 /* Returns whether once more is needed: the part itself is known to about u / eps. */
-static bool project_once(se3di_kkt *kkt, double *l)
+static bool project_once(se3di_kkt *kkt, double *x, double *l)
 {
     const size_t m = kkt->layout.row_count;
     for (size_t i = 0; i < m; ++i) {
         kkt->residual_c[i] = -kkt->e[i] * l[i];
     }
     solve_once(kkt, NULL, kkt->residual_c, kkt->correction_x, kkt->correction_l);
-    for (size_t i = 0; i < m; ++i) {
-        l[i] -= kkt->correction_l[i];
-    }
+    add_to_multipliers(kkt, -1.0, x, l);
     return largest_entry(kkt->correction_l, m) * 2.2e-16 / kkt->eps > 1e-12 * largest_entry(l, m);
 }
 
+static void save_multipliers(se3di_kkt *kkt, const double *x, const double *l)
+{
+    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
+        kkt->saved_l[i] = l[i];
+    }
+    for (size_t i = 7; kkt->pattern.body_size == 8 && i < kkt->layout.unknown_count; i += 8) {
+        kkt->saved_x[i / 8] = x[i];
+    }
+}
+
+static void restore_multipliers(const se3di_kkt *kkt, double *x, double *l)
+{
+    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
+        l[i] = kkt->saved_l[i];
+    }
+    for (size_t i = 7; kkt->pattern.body_size == 8 && i < kkt->layout.unknown_count; i += 8) {
+        x[i] = kkt->saved_x[i / 8];
+    }
+}
+
+/* What rounding leaves of a dependent part that was subtracted, over what remains; a part in the
+ * direction of nearly dependent rows, sigma >= 1e-14, leaves 1e-7 of itself and more. */
+static double allowed_imbalance(const se3di_kkt *kkt, const double *l)
+{
+    double subtracted = 0.0;
+    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
+        subtracted = fmax(subtracted, fabs(kkt->saved_l[i] - l[i]));
+    }
+    const double part = 1e-12 * subtracted, rest = largest_entry(l, kkt->layout.row_count);
+    return part < 1e-8 * rest ? part / rest : 1e-8;
+}
+
 /* Subtract the part of l in the dependent directions, and restore the balance of forces. */
-static void project(se3di_kkt *kkt, const kkt_problem *p, const double *x, double *l,
+static void project(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
                     se3di_kkt_solve_info *info)
 {
     double before = HUGE_VAL;
     const se3di_kkt_solve_info unprojected = *info;
-    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
-        kkt->saved_l[i] = l[i];
-    }
+    save_multipliers(kkt, x, l);
     info->projected = true;
-    for (int32_t step = 0; step < 8 && project_once(kkt, l); ++step) {
+    for (int32_t step = 0; step < 8 && project_once(kkt, x, l); ++step) {
     }
+    const double limit = 1e-14 + 10.0 * unprojected.residual_b + allowed_imbalance(kkt, l);
     for (int32_t step = 0;; ++step) {
         kkt->core->residual(kkt, p->values, p->b, p->c, x, l);
         (void)measure(kkt, info);
@@ -341,16 +382,11 @@ static void project(se3di_kkt *kkt, const kkt_problem *p, const double *x, doubl
         }
         before = info->residual_b;
         solve_once(kkt, kkt->residual_b, NULL, kkt->correction_x, kkt->correction_l);
-        for (size_t i = 0; i < kkt->layout.row_count; ++i) {
-            l[i] += kkt->correction_l[i];
-        }
+        add_to_multipliers(kkt, 1.0, x, l);
     }
     /* Where the balance is lost, the rows were nearly dependent only: keep the refined l. */
-    double limit = 1e-14 + 10.0 * unprojected.residual_b;
     if (info->residual_b > limit && !(unprojected.residual_c > 1e-8)) {
-        for (size_t i = 0; i < kkt->layout.row_count; ++i) {
-            l[i] = kkt->saved_l[i];
-        }
+        restore_multipliers(kkt, x, l);
         *info = unprojected;
     }
 }
