@@ -237,7 +237,7 @@ typedef struct se3d_scene se3d_scene;
 SE3D_API se3d_status se3d_scene_create(se3d_model *model, se3d_scene **out);
 SE3D_API void se3d_scene_destroy(se3d_scene *scene);
 /* Record the present poses. Times at or before the last one are skipped; a long motion is thinned
- * out evenly to at most 2048 samples. @return OK, NULL. Exclusive. @since 0.1 */
+ * out evenly to at most 1250 samples. @return OK, NULL. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_scene_record(se3d_scene *scene);
 /* Write the scene as binary glTF 2.0 (.glb), under a temporary name first. @return OK, NULL, IO
  * (see the message), NO_MEMORY. Exclusive. @since 0.1 */

@@ -27,10 +27,10 @@ se3d_status se3di_drawing_get_poses(const se3d_model *model, double *pose)
 void se3di_drawing_to_ground(const double pose[SE3DI_POSE], const double local[3], double ground[3])
 {
     double A[9];
+    const double s[3] = {local[0], local[1], local[2]}; /* ground may be local */
     se3di_rotation_to_matrix(pose + 3, A);
     for (int i = 0; i < 3; ++i) {
-        ground[i] =
-            pose[i] + A[3 * i] * local[0] + A[3 * i + 1] * local[1] + A[3 * i + 2] * local[2];
+        ground[i] = pose[i] + A[3 * i] * s[0] + A[3 * i + 1] * s[1] + A[3 * i + 2] * s[2];
     }
 }
 
@@ -52,32 +52,74 @@ static void widen(const double at[3], double low[3], double high[3])
     }
 }
 
+typedef struct box {
+    double low[3];
+    double high[3];
+} box;
+
+/* The box around a shape's own box, in the ground frame. */
+static void widen_shape(const se3d_model_shape *s, const double *pose, box *b)
+{
+    double half[3] = {s->radius, s->radius, s->radius};
+    double turned[SE3DI_POSE];
+    memcpy(turned, s->position, 3 * sizeof *turned);
+    memcpy(turned + 3, s->orientation, 4 * sizeof *turned);
+    if (s->type == SE3D_SHAPE_PLANE || s->type == SE3D_SHAPE_MESH) {
+        return;
+    }
+    for (int i = 0; i < 3 && s->type == SE3D_SHAPE_BOX; ++i) {
+        half[i] = 0.5 * s->size[i];
+    }
+    if (s->type == SE3D_SHAPE_CYLINDER || s->type == SE3D_SHAPE_CAPSULE) {
+        half[2] = 0.5 * s->length + (s->type == SE3D_SHAPE_CAPSULE ? s->radius : 0.0);
+    }
+    for (int k = 0; k < 8; ++k) {
+        double at[3];
+        const double corner[3] = {k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1],
+                                  k & 4 ? half[2] : -half[2]};
+        se3di_drawing_to_ground(turned, corner, at);
+        se3di_drawing_to_ground(pose, at, at);
+        widen(at, b->low, b->high);
+    }
+}
+
+/* The box around all at one time. */
+static void widen_all(const se3d_model *model, const double *poses, box *b)
+{
+    double at[3];
+    for (size_t e = 0; e < model->element_count; ++e) {
+        const se3di_element_entry *entry = &model->elements[e];
+        if (entry->drawn > 0) {
+            const size_t i = se3di_drawing_find_body(model, entry->body_i);
+            const size_t j = se3di_drawing_find_body(model, entry->body_j);
+            se3di_drawing_to_ground(poses + SE3DI_POSE * i, entry->point_i, at);
+            widen(at, b->low, b->high);
+            se3di_drawing_to_ground(poses + SE3DI_POSE * j, entry->point_j, at);
+            widen(at, b->low, b->high);
+        }
+    }
+    for (size_t k = 0; k < model->body_count; ++k) {
+        widen(poses + SE3DI_POSE * k, b->low, b->high);
+    }
+    for (size_t k = 0; k < model->shape_count; ++k) {
+        const size_t body = se3di_drawing_find_body(model, model->shapes[k].body);
+        widen_shape(&model->shapes[k], poses + SE3DI_POSE * body, b);
+    }
+}
+
 /* Half the diagonal of the box around all points. */
 double se3di_drawing_measure(const se3d_model *model, const se3di_poses *poses, double *floor)
 {
-    double low[3] = {0.0, 0.0, 0.0};
-    double high[3] = {0.0, 0.0, 0.0};
+    box b = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
     double sum = 0.0;
     for (size_t s = 0; s < poses->count; s += 1 + poses->count / 64) {
-        const double *pose = poses->values + s * poses->bodies * SE3DI_POSE;
-        for (size_t e = 0; e < model->element_count; ++e) {
-            const se3di_element_entry *entry = &model->elements[e];
-            double at[3];
-            if (entry->drawn > 0) {
-                const size_t j = se3di_drawing_find_body(model, entry->body_j);
-                se3di_drawing_to_ground(pose + SE3DI_POSE * j, entry->point_j, at);
-                widen(at, low, high);
-            }
-        }
-        for (size_t k = 0; k < poses->bodies; ++k) {
-            widen(pose + SE3DI_POSE * k, low, high);
-        }
+        widen_all(model, poses->values + s * poses->bodies * SE3DI_POSE, &b);
     }
     for (int i = 0; i < 3; ++i) {
-        sum += (high[i] - low[i]) * (high[i] - low[i]);
+        sum += (b.high[i] - b.low[i]) * (b.high[i] - b.low[i]);
     }
     const double extent = 0.5 * sqrt(sum);
-    *floor = low[2] - 0.3 * extent;
+    *floor = b.low[2] - 0.1 * extent;
     return extent > 1e-9 ? extent : 1.0;
 }
 

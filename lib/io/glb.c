@@ -189,7 +189,7 @@ size_t se3di_glb_add_mesh(se3di_glb *glb, se3di_unit mesh, const double color[4]
         se3di_glb_put(glb, &glb->meshes, ",\"NORMAL\":%ld},\"indices\":%ld", glb->unit[mesh][1],
                       glb->unit[mesh][2]);
     } else {
-        se3di_glb_put(glb, &glb->meshes, "},\"mode\":%d", mesh == SE3DI_UNIT_GRID ? 1 : 3);
+        se3di_glb_put(glb, &glb->meshes, "},\"mode\":1");
     }
     se3di_glb_put(glb, &glb->meshes, ",\"material\":%zu}]}", index);
     se3di_glb_put(glb, &glb->materials,

@@ -11,7 +11,7 @@
 #include "io/drawing.h"
 #include "io/glb.h"
 
-enum { SAMPLES_MAX = 2048 };
+enum { SAMPLES_MAX = 1250 }; /* a page of 20 bodies stays below 1.5 MB */
 
 struct se3d_scene {
     se3di_iopool pool;

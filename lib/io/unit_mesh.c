@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { AROUND = 32, RINGS = 16, TURNS = 8 };
+enum { AROUND = 32, RINGS = 16, TURNS = 8, STEPS = 16, WIRE = 6 };
 
 static const double pi = 3.14159265358979323846;
 
@@ -95,15 +95,34 @@ static void make_cylinder(se3di_unit_mesh *m)
     }
 }
 
+/* A ring of the wire around a point of its middle line. */
+static void put_ring(se3di_unit_mesh *m, double radius, double z, double turn)
+{
+    const double thick[2] = {0.12, 0.02}; /* across and along: it will be stretched along z */
+    for (int k = 0; k < WIRE; ++k) {
+        const double angle = 2.0 * pi * k / WIRE;
+        const double out = radius + thick[0] * cos(angle);
+        const double n[3] = {cos(angle) * cos(turn), cos(angle) * sin(turn), sin(angle)};
+        put_vertex(m, out * cos(turn), out * sin(turn), z + thick[1] * sin(angle), n);
+    }
+}
+
 static void make_spring(se3di_unit_mesh *m)
 {
-    const int count = TURNS * 24;
-    put_vertex(m, 0.0, 0.0, -0.5, NULL);
+    const int count = TURNS * STEPS;
+    put_ring(m, 0.0, -0.5, 0.0);
     for (int k = 0; k <= count; ++k) {
-        const double turn = 2.0 * pi * TURNS * k / count;
-        put_vertex(m, cos(turn), sin(turn), -0.4 + 0.8 * k / count, NULL);
+        put_ring(m, 1.0, -0.45 + 0.9 * k / count, 2.0 * pi * TURNS * k / count);
     }
-    put_vertex(m, 0.0, 0.0, 0.5, NULL);
+    put_ring(m, 0.0, 0.5, 0.0);
+    for (size_t i = 0; i < (size_t)count + 2; ++i) {
+        for (size_t k = 0; k < WIRE; ++k) {
+            const size_t a = i * WIRE + k;
+            const size_t b = i * WIRE + (k + 1) % WIRE;
+            put_triangle(m, a, a + WIRE, b + WIRE);
+            put_triangle(m, a, b + WIRE, b);
+        }
+    }
 }
 
 static void make_grid(se3di_unit_mesh *m)

@@ -10,7 +10,7 @@ typedef enum se3di_unit {
     SE3DI_UNIT_BOX = 0,      /* 1 x 1 x 1 */
     SE3DI_UNIT_SPHERE = 1,   /* of radius 1 */
     SE3DI_UNIT_CYLINDER = 2, /* of radius 1 and length 1 along z */
-    SE3DI_UNIT_SPRING = 3,   /* a coil of radius 1 and length 1 along z: one line */
+    SE3DI_UNIT_SPRING = 3,   /* a coil of radius 1 and length 1 along z */
     SE3DI_UNIT_GRID = 4,     /* 20 x 20 squares of 1: lines of two points each */
     SE3DI_UNIT_COUNT = 5
 } se3di_unit;
@@ -22,7 +22,7 @@ typedef struct se3di_unit_mesh {
     double normals[3 * SE3DI_UNIT_VERTICES_MAX];
     uint16_t indices[6 * SE3DI_UNIT_VERTICES_MAX]; /* of triangles */
     size_t points_count;
-    size_t indices_count; /* 0: lines, without normals */
+    size_t indices_count; /* 0: lines, without normals (grid) */
 } se3di_unit_mesh;
 
 /* `mesh` is zeroed memory. */

@@ -29,11 +29,10 @@ struct se3di_vtk {
     size_t piece_count, piece_capacity;
     const se3di_unit_mesh *units; /* [SE3DI_UNIT_COUNT] */
     double *poses;                /* of all bodies */
-    size_t points_count, lines_count, lines_points, triangles_count;
+    size_t points_count, triangles_count;
     double *points, *velocities; /* [points_count][3] */
-    double *lines, *ends;        /* points of the lines; where each one ends */
     double *triangles;           /* [triangles_count][3] */
-    double *bodies;              /* of every cell; -1: a spring */
+    double *bodies;              /* of every triangle; -1: a spring */
     double *times;
     size_t count, capacity;
     int failure; /* errno of the first failure; ENOMEM also where memory is missing */
@@ -54,8 +53,6 @@ static bool list_pieces(se3di_vtk *vtk, const se3di_part *parts, size_t count, s
         vtk->pieces[vtk->piece_count++] = added;
         vtk->points_count += mesh->points_count;
         vtk->triangles_count += mesh->indices_count / 3;
-        vtk->lines_count += mesh->indices_count == 0;
-        vtk->lines_points += mesh->indices_count == 0 ? mesh->points_count : 0;
     }
     return true;
 }
@@ -82,26 +79,16 @@ static bool list_all(se3di_vtk *vtk)
     return true;
 }
 
-/* The cells: lines first, then triangles, as VTK counts them. */
 static void connect(se3di_vtk *vtk)
 {
     size_t first = 0;
-    size_t line = 0;
-    size_t line_point = 0;
     size_t corner = 0;
     for (size_t k = 0; k < vtk->piece_count; ++k) {
         const piece *p = &vtk->pieces[k];
         const se3di_unit_mesh *mesh = &vtk->units[p->part.unit];
         for (size_t i = 0; i < mesh->indices_count; ++i) {
             vtk->triangles[corner] = (double)(first + mesh->indices[i]);
-            vtk->bodies[vtk->lines_count + corner++ / 3] = (double)p->body;
-        }
-        if (mesh->indices_count == 0) {
-            for (size_t i = 0; i < mesh->points_count; ++i) {
-                vtk->lines[line_point++] = (double)(first + i);
-            }
-            vtk->bodies[line] = p->spring ? -1.0 : (double)p->body;
-            vtk->ends[line++] = (double)line_point;
+            vtk->bodies[corner++ / 3] = p->spring ? -1.0 : (double)p->body;
         }
         first += mesh->points_count;
     }
@@ -128,13 +115,9 @@ static bool prepare(se3di_vtk *vtk)
     }
     vtk->points = se3di_iopool_array(pool, vtk->points_count + 1, 3 * sizeof(double));
     vtk->velocities = se3di_iopool_array(pool, vtk->points_count + 1, 3 * sizeof(double));
-    vtk->lines = se3di_iopool_array(pool, vtk->lines_points + 1, sizeof(double));
-    vtk->ends = se3di_iopool_array(pool, vtk->lines_count + 1, sizeof(double));
     vtk->triangles = se3di_iopool_array(pool, vtk->triangles_count + 1, 3 * sizeof(double));
-    vtk->bodies =
-        se3di_iopool_array(pool, vtk->lines_count + vtk->triangles_count + 1, sizeof(double));
-    if (!vtk->points || !vtk->velocities || !vtk->lines || !vtk->ends || !vtk->triangles ||
-        !vtk->bodies) {
+    vtk->bodies = se3di_iopool_array(pool, vtk->triangles_count + 1, sizeof(double));
+    if (!vtk->points || !vtk->velocities || !vtk->triangles || !vtk->bodies) {
         return false;
     }
     connect(vtk);
@@ -236,17 +219,14 @@ static bool name_file(const se3di_vtk *vtk, const char *what, size_t number, boo
 static bool write_bodies(se3di_vtk *vtk, const char *path)
 {
     const size_t n = vtk->points_count;
-    const size_t lines = vtk->lines_count;
     const size_t polys = vtk->triangles_count;
     const se3di_vtk_array arrays[] = {
         {SE3DI_VTK_POINT_DATA, "velocity", vtk->velocities, n, 3, 3, 0.0, 0.0, false},
-        {SE3DI_VTK_CELL_DATA, "body", vtk->bodies, lines + polys, 1, 1, 0.0, 0.0, true},
+        {SE3DI_VTK_CELL_DATA, "body", vtk->bodies, polys, 1, 1, 0.0, 0.0, true},
         {SE3DI_VTK_POINTS, "points", vtk->points, n, 3, 3, 0.0, 0.0, false},
-        {SE3DI_VTK_LINES, "connectivity", vtk->lines, vtk->lines_points, 1, 1, 0.0, 0.0, true},
-        {SE3DI_VTK_LINES, "offsets", vtk->ends, lines, 1, 1, 0.0, 0.0, true},
         {SE3DI_VTK_POLYS, "connectivity", vtk->triangles, 3 * polys, 1, 1, 0.0, 0.0, true},
         {SE3DI_VTK_POLYS, "offsets", NULL, polys, 1, 1, 3.0, 3.0, true}};
-    const se3di_vtk_file file = {n, 0, lines, polys, arrays, sizeof arrays / sizeof *arrays};
+    const se3di_vtk_file file = {n, 0, polys, arrays, sizeof arrays / sizeof *arrays};
     se3di_drawing_get_poses(vtk->model, vtk->poses);
     move_points(vtk);
     return se3di_vtk_file_write(&file, path);
@@ -271,7 +251,7 @@ static bool write_grains(const se3di_vtk *vtk, const char *path)
             {SE3DI_VTK_POINTS, "points", rows + 3, n, 3, W, 0.0, 0.0, false},
             {SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true},
             {SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true}};
-        const se3di_vtk_file file = {n, n, 0, 0, arrays, sizeof arrays / sizeof *arrays};
+        const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
         good = se3di_vtk_file_write(&file, path);
     }
     const int why = errno;

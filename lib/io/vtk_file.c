@@ -47,16 +47,15 @@ static void put_data(FILE *file, const se3di_vtk_array *a)
 
 static void put_head(FILE *file, const se3di_vtk_file *f)
 {
-    static const char *const names[] = {"PointData", "CellData", "Points",
-                                        "Verts",     "Lines",    "Polys"};
+    static const char *const names[] = {"PointData", "CellData", "Points", "Verts", "Polys"};
     size_t offset = 0;
     size_t k = 0;
     fprintf(file,
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
             "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n"
-            "<Piece NumberOfPoints=\"%zu\" NumberOfVerts=\"%zu\" NumberOfLines=\"%zu\" "
+            "<Piece NumberOfPoints=\"%zu\" NumberOfVerts=\"%zu\" NumberOfLines=\"0\" "
             "NumberOfStrips=\"0\" NumberOfPolys=\"%zu\">\n",
-            f->points, f->verts, f->lines, f->polys);
+            f->points, f->verts, f->polys);
     for (size_t s = 0; s < SE3DI_VTK_SECTION_COUNT; ++s) {
         fprintf(file, "<%s>\n", names[s]);
         for (; k < f->array_count && (size_t)f->arrays[k].section == s; ++k) {

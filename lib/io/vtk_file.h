@@ -12,9 +12,8 @@ typedef enum se3di_vtk_section {
     SE3DI_VTK_CELL_DATA = 1,
     SE3DI_VTK_POINTS = 2,
     SE3DI_VTK_VERTS = 3,
-    SE3DI_VTK_LINES = 4,
-    SE3DI_VTK_POLYS = 5,
-    SE3DI_VTK_SECTION_COUNT = 6
+    SE3DI_VTK_POLYS = 4,
+    SE3DI_VTK_SECTION_COUNT = 5
 } se3di_vtk_section;
 
 /* values[k * stride + i], i < width; without values: first + k * step. */
@@ -28,8 +27,8 @@ typedef struct se3di_vtk_array {
 } se3di_vtk_array;
 
 typedef struct se3di_vtk_file {
-    size_t points, verts, lines, polys; /* how many */
-    const se3di_vtk_array *arrays;      /* in the order of their sections */
+    size_t points, verts, polys;   /* how many */
+    const se3di_vtk_array *arrays; /* in the order of their sections */
     size_t array_count;
 } se3di_vtk_file;
 

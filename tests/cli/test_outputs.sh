@@ -72,16 +72,16 @@ def sets(path):
 series = sets(folder + "/vtk/motion.pvd")
 assert [s[0] for s in series] == [k * 0.125 for k in range(9)], series
 rows = {round(float(r["time"]), 9): r for r in csv.DictReader(open(folder + "/vtk/all.csv"))}
-sphere, box, cylinder, spring = 17 * 33, 24, 2 * 33 + 2 * 32, 195
+sphere, box, cylinder, spring = 17 * 33, 24, 2 * 33 + 2 * 32, 131 * 6
 checks = 0
 for time, name, path in series:
     data = read(path)
-    # bar: box, sphere, pin; block: box, slide; the spring: one line
+    # bar: box, sphere, pin; block: box, slide; the spring: a wire of rings of 6
     assert data.GetNumberOfPoints() == 2 * box + sphere + 2 * cylinder + spring, data.GetNumberOfPoints()
-    assert data.GetNumberOfLines() == 1 and data.GetNumberOfVerts() == 0
-    assert data.GetNumberOfPolys() == 2 * 12 + 2 * 16 * 32 + 2 * (2 * 32 + 2 * 30), data.GetNumberOfPolys()
+    assert data.GetNumberOfLines() == data.GetNumberOfVerts() == 0
+    assert data.GetNumberOfPolys() == 2 * 12 + 2 * 16 * 32 + 2 * (2 * 32 + 2 * 30) + 130 * 12, data.GetNumberOfPolys()
     bodies = [data.GetCellData().GetArray("body").GetValue(k) for k in range(data.GetNumberOfCells())]
-    assert bodies[0] == -1 and set(bodies[1:]) == {1, 2} and bodies.count(2) == 12 + 124
+    assert set(bodies) == {-1, 1, 2} and bodies.count(2) == 12 + 124 and bodies.count(-1) == 130 * 12
     points = data.GetPoints()
     near = [r for t, r in rows.items() if abs(t - time) < 1e-9]
     if near:  # the bar's box is first: its corners' middle is the bar's origin, its first corner turns with it
@@ -93,7 +93,8 @@ for time, name, path in series:
         assert max(abs(a - r["bar.velocity." + c]) for a, c in zip(mean, "xyz")) < 1e-5, (time, mean)
         pin = range(box + sphere, box + sphere + cylinder)  # it stands still
         assert all(abs(sum(speed.GetTuple(k)[i] for k in pin)) / cylinder < 0.02 for i in range(3)), time
-        ends = [points.GetPoint(data.GetNumberOfPoints() - k) for k in (spring, 1)]
+        ends = [[sum(points.GetPoint(data.GetNumberOfPoints() - spring + k + i)[c] for i in range(6)) / 6 for c in range(3)]
+                for k in (0, 130 * 6)]
         length = sum((a - b) ** 2 for a, b in zip(*ends)) ** 0.5
         assert abs(length - r["spring.length"]) < 1e-5, (time, length)
         checks += 3

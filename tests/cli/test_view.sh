@@ -34,18 +34,58 @@ if ! command -v npm >/dev/null 2>&1 && [ ! -f /usr/share/javascript/three/three.
     [ $failures -eq 0 ]
     exit
 fi
+opens() {
+    if command -v chromium >/dev/null 2>&1 && command -v node >/dev/null 2>&1; then
+        expect "$1 in Chromium" 0 node "$source/tests/viewer/page.js" "$2" "$3" "$4"
+        grep ' grains: ' "$dir/out"
+    else
+        echo "SKIPPED: no chromium or no node: the page of $1 was not opened" >&2
+    fi
+}
 for pair in pendulum:bar spatial_slider_crank:rod tsda_mass:block; do
     model=${pair%:*}
     "$program" run -q "$source/examples/models/$model.yaml" -o "$dir/$model"
     expect "$model" 0 "$program" view "$dir/$model"
     has "$dir/$model/scene.html" 'Copyright © 2010-20'
     [ "$(wc -c <"$dir/$model/scene.html")" -lt 1000000 ] || { echo "$model: too large" >&2; failures=$((failures + 1)); }
-    if command -v chromium >/dev/null 2>&1 && command -v node >/dev/null 2>&1; then
-        expect "$model in Chromium" 0 node "$source/tests/viewer/page.js" "$dir/$model/scene.html" "$dir/$model/$model.csv" "${pair#*:}"
-    else
-        echo "SKIPPED: no chromium or no node: the page of $model was not opened" >&2
-    fi
+    [ "$model" = pendulum ] || opens "$model" "$dir/$model/scene.html" "$dir/$model/$model.csv" "${pair#*:}"
 done
+# 20 bodies over 10 s, more rows than a scene has samples: still exact, still small.
+{
+    printf 'se3d: 1\ntitle: <script>alert("x")</script> & \047twenty\047\nbodies:\n'
+    for k in $(seq 20); do echo "  - {name: b$k, mass: 1, inertia: [1, 1, 1], position: [1, $k, 0]}"; done
+    echo 'joints:'
+    for k in $(seq 20); do echo "  - {name: j$k, type: revolute, body_i: ground, body_j: b$k, at: [0, $k, 0], axis: [0, 1, 0]}"; done
+    echo 'drivers:'
+    for k in $(seq 20); do echo "  - {name: d$k, joint: j$k, coordinate: angle, value: \"sin($k*t)\"}"; done
+    echo 'analysis: {type: kinematics, duration: 10, step: 0.005}'
+} >"$dir/twenty.yaml"
+expect 'a run of 20 bodies' 0 "$program" run -q "$dir/twenty.yaml" -o "$dir/twenty"
+expect '20 bodies' 0 "$program" view -q "$dir/twenty"
+size=$(wc -c <"$dir/twenty/scene.html")
+echo "20 bodies over 10 s: $size bytes"
+checks=$((checks + 1))
+[ "$size" -lt 1500000 ] || { echo "20 bodies: $size bytes" >&2; failures=$((failures + 1)); }
+opens '20 bodies' "$dir/twenty/scene.html" "$dir/twenty/results.csv" b2
+# 10,000 grains: some come late, some leave early.
+"$program" run -q "$source/examples/models/pushed_grains.yaml" -o "$dir/grains"
+opens_grains() {
+    expect "$1" 0 "$program" view -q "$dir/grains"
+    opens "$1" "$dir/grains/scene.html" "$dir/grains/grains.csv" grains
+}
+opens_grains 'few grains'
+awk 'BEGIN {
+    print "time,id,radius,x,y,z,vx,vy,vz,wx,wy,wz"
+    for (s = 0; s < 5; ++s) for (k = 0; k < 10000; ++k)
+        if (!(s == 1 && k < 3) && !(s == 4 && k > 9990))
+            printf "%.17g,%d,0.006,%.17g,%.17g,%.17g,0,0,0,0,0,0\n", 0.15 * s, k + 7, 0.012 * (k % 25) + 0.01 * s, 0.012 * (int(k / 25) % 20), 0.012 * int(k / 500) - 0.002 * s
+}' >"$dir/grains/grains.csv"
+opens_grains 'very many grains'
+expect 'a scene alone' 0 sh -c 'mkdir "$2" && cp "$1/scene.glb" "$2" && "$0" view -q "$2"' "$program" "$dir/pendulum" "$dir/alone"
+opens 'a scene alone' "$dir/alone/scene.html" none none
+echo 'time,bar.position.x' >"$dir/alone/empty.csv"
+expect 'a CSV file without rows' 1 "$program" view "$dir/alone"
+has "$dir/err" 'has no rows'
 expect 'a folder that cannot be written' 1 "$program" view "$dir/pendulum" -o "$dir/none/scene.html"
 has "$dir/err" 'cannot be written'
 expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 64; exec "$@"' sh "$program" view "$dir/pendulum" -o "$dir/full.html"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Opens a page of `se3d view` in headless Chromium and checks it: node page.js PAGE CSV BODY [PICTURE]
+// Opens a page of `se3d view` in headless Chromium and checks it:
+//     node page.js PAGE CSV BODY [PICTURE]        a mechanism, whose results are in CSV
+//     node page.js PAGE CSV grains                particles: snapshots in CSV; the time of a picture is reported
+//     node page.js PAGE none                      that it loads
 "use strict";
 const fs = require("fs"), os = require("os"), path = require("path"), { spawn } = require("child_process");
 const [page, csv, body, picture] = process.argv.slice(2);
@@ -31,6 +34,147 @@ const check = (holds, text) => { ++checks; if (!holds) { ++failures; console.err
 const wait = (ms) => new Promise((done) => setTimeout(done, ms));
 const key = (name) => call("Input.dispatchKeyEvent", { type: "keyDown", key: name, text: name.length === 1 ? name : undefined });
 
+const press = (type, x, y, more = {}) => call("Input.dispatchMouseEvent", { type, x, y, button: "left", buttons: 1, clickCount: 1, ...more });
+const click = async (id) => {
+  const [x, y] = await evaluate(`(() => { const r = document.getElementById("${id}").getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()`);
+  for (const type of ["mousePressed", "mouseReleased"]) await press(type, x, y);
+};
+const drag = async (from, to, more) => {
+  await press("mousePressed", from[0], from[1], more);
+  await press("mouseMoved", to[0], to[1], more);
+  await press("mouseReleased", to[0], to[1], { ...more, buttons: 0 });
+};
+const choose = (id, value) => evaluate(`(() => { const s = document.getElementById("${id}"); s.value = "${value}"; s.dispatchEvent(new Event("change")); })()`);
+// The colour of a pixel of a canvas, 0 to 255.
+const pixel = (id, x, y) => evaluate(`(() => {
+  const from = document.getElementById("${id}"), to = document.createElement("canvas"), k = from.width / from.clientWidth;
+  to.width = to.height = 1;
+  const pen = to.getContext("2d");
+  pen.drawImage(from, ${x} * k, ${y} * k, 1, 1, 0, 0, 1, 1);
+  return Array.from(pen.getImageData(0, 0, 1, 1).data);
+})()`);
+const apart = (a, b) => Math.max(...a.map((v, k) => Math.abs(v - b[k])));
+const read = (path) => {
+  const rows = fs.readFileSync(path, "utf8").trim().split("\n").map((line) => line.split(","));
+  return { names: rows[0], rows: rows.slice(1).map((row) => row.map(Number)) };
+};
+const checkMotion = async ({ names, rows }) => {
+  const column = names.indexOf(body + ".position.x");
+  for (const part of [0, 0.1, 0.37, 0.5, 0.73, 1]) {
+    const row = rows[Math.round(part * (rows.length - 1))];
+    await evaluate(`se3d.show(${row[0]})`);
+    const off = apart(await evaluate(`se3d.position(${JSON.stringify(body)})`), row.slice(column, column + 3));
+    check(off < 1e-4, `at t = ${row[0]} the body is ${off} away`);
+    const length = names.indexOf("spring.length");
+    if (length > 0) check(Math.abs((await evaluate('se3d.scale("spring")'))[2] - row[length]) < 1e-4, "the spring stretches");
+    // The marker of the plot is at the time.
+    const x = 62 + 308 * (row[0] - rows[0][0]) / (rows[rows.length - 1][0] - rows[0][0]);
+    const shades = await Promise.all([0, -1, 1].map((d) => pixel("plot", x + d, 30)));
+    check(shades.some((c) => c[0] > c[2] + 25), `the plot shows t = ${row[0]}: ${shades}`);
+  }
+  const first = await evaluate("se3d.picture(se3d.start)");
+  check(first !== (await evaluate("se3d.picture((se3d.start + 0.4 * (se3d.end - se3d.start)))")), "the picture moves");
+};
+const checkKeys = async () => {
+  const time = () => evaluate("(se3d.state.time - se3d.start) / (se3d.end - se3d.start)");
+  await key("Home");
+  check((await time()) === 0, "Home goes to the start");
+  await key("ArrowRight"); await key("ArrowRight");
+  check(Math.abs((await time()) - 0.02) < 1e-9, "the right arrow steps");
+  await key("ArrowLeft");
+  check(Math.abs((await time()) - 0.01) < 1e-9, "the left arrow steps back");
+  await key("End");
+  check((await time()) === 1, "End goes to the end");
+  await key("+");
+  check((await evaluate("se3d.state.speed")) === 2 && (await evaluate('document.getElementById("speed").value')) === "2", "+ doubles the speed");
+  await key("-"); await key("-");
+  check((await evaluate("se3d.state.speed")) === 0.5, "- halves it");
+  await evaluate("se3d.set({speed: 1})");
+  await key("b");
+  check((await evaluate("se3d.state.follow")) === 1, "b follows a body");
+  await evaluate("se3d.show(se3d.start + 0.6 * (se3d.end - se3d.start))");
+  check((await evaluate("Math.hypot(...['x', 'y', 'z'].map((c, k) => se3d.orbit.target[c] - se3d.position(document.getElementById('follow').selectedOptions[0].text)[k]))")) < 1e-9, "the view follows it");
+  await choose("follow", "-1");
+  check((await evaluate("se3d.state.follow")) === -1, "nothing is followed any more");
+  for (const [name, state] of [["f", "frames"], ["r", "reactions"], ["t", "traces"], ["d", "dark"], [" ", "playing"]]) {
+    const picture = "se3d.picture(se3d.start + 0.3 * (se3d.end - se3d.start))";
+    const before = await evaluate("se3d.state." + state), seen = await evaluate(picture);
+    await evaluate(`se3d.set({${state}: ${before}})`);
+    await key(name);
+    check((await evaluate("se3d.state." + state)) === !before, `key ${name} changes ${state}`);
+    if (state !== "playing" && !(state === "reactions" && (await evaluate("document.getElementById('reactions').disabled")))) {
+      await wait(60);
+      check(seen !== (await evaluate(picture)), `${state} are seen`);
+    }
+  }
+  await wait(300);
+  const now = await time();
+  await wait(300);
+  check((await evaluate("se3d.state.playing")) && (await time()) !== now, "it plays");
+  check((await evaluate("document.body.className")) === "dark", "dark is dark");
+  await evaluate("se3d.set({playing: false, frames: false, traces: false, dark: false})");
+};
+// Arrows point where the CSV says, from where the joint is.
+const checkReactions = async ({ names, rows }) => {
+  const row = rows[Math.round(0.3 * (rows.length - 1))];
+  await evaluate(`se3d.set({reactions: true}); se3d.show(${row[0]})`);
+  for (const arrow of await evaluate("se3d.arrows()")) {
+    const column = names.indexOf(arrow.joint + ".force.x"), force = row.slice(column, column + 3), size = Math.hypot(...force);
+    check(apart(arrow.along, force.map((f) => f / size)) < 0.05, `the reaction of ${arrow.joint} points along its force`);
+  }
+  const some = await evaluate("se3d.arrows().length");
+  check(some > 0 || !names.some((name) => name.endsWith(".force.x") && !name.startsWith("spring")), "there are arrows");
+  await evaluate("se3d.set({reactions: false})");
+};
+const checkMouse = async () => {
+  const orbit = () => evaluate("[se3d.orbit.azimuth, se3d.orbit.height, se3d.orbit.distance, ...se3d.orbit.target.toArray()]");
+  const first = await orbit();
+  await drag([500, 400], [600, 430]);
+  const turned = await orbit();
+  check(Math.abs(turned[0] - first[0] + 0.8) < 0.01 && Math.abs(turned[1] - first[1] - 0.24) < 0.01, "dragging turns the view");
+  await drag([500, 400], [560, 400], { modifiers: 8 });
+  const moved = await orbit();
+  check(apart(moved.slice(3), turned.slice(3)) > 1e-3 * first[2] && moved[0] === turned[0], "shift-drag moves it");
+  await call("Input.dispatchMouseEvent", { type: "mouseWheel", x: 500, y: 400, deltaX: 0, deltaY: 200 });
+  await wait(100);
+  check(Math.abs((await orbit())[2] / moved[2] - Math.exp(0.2)) < 1e-6, "the wheel zooms");
+  for (const state of ["frames", "traces", "dark"]) {
+    const before = await evaluate("se3d.state." + state);
+    await click(state);
+    check((await evaluate("se3d.state." + state)) === !before, `the button ${state} works`);
+    await click(state);
+  }
+  await click("play");
+  check((await evaluate("se3d.state.playing")) === true, "the button plays");
+  await click("play");
+  await click("time"); // in its middle
+  check(Math.abs((await evaluate("(se3d.state.time - se3d.start) / (se3d.end - se3d.start)")) - 0.5) < 0.02, "the slider scrubs");
+  await choose("speed", "0.25");
+  check((await evaluate("se3d.state.speed")) === 0.25, "the speed is chosen");
+  const plotted = await evaluate('document.getElementById("plot").toDataURL()');
+  await choose("channel", await evaluate('(Number(document.getElementById("channel").value) % (document.getElementById("channel").options.length)) + 1'));
+  check(plotted !== (await evaluate('document.getElementById("plot").toDataURL()')), "another channel is plotted");
+};
+// Where the body is, the picture differs from the same picture's corner of sky.
+const checkSeen = async () => {
+  await evaluate("se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))");
+  const [x, y] = await evaluate(`se3d.project(se3d.position(${JSON.stringify(body)}))`);
+  const there = await pixel("view", x, y), sky = await pixel("view", 5, 60);
+  check(apart(there, sky) > 40, `the body is seen at ${x}, ${y}: ${there}, beside ${sky}`);
+};
+const checkGrains = async ({ rows }) => {
+  const ids = rows.map((row) => row[1]), first = ids.reduce((a, b) => Math.min(a, b));
+  for (const part of [0, 0.3, 0.61, 1]) {
+    const row = rows[Math.round(part * (rows.length - 1))];
+    await evaluate(`se3d.show(${row[0]})`);
+    const grain = await evaluate(`se3d.grain(${row[1] - first})`);
+    check(apart(grain.slice(0, 3), row.slice(3, 6)) < 1e-4 && Math.abs(grain[3] - row[2]) < 1e-6, `at t = ${row[0]} grain ${row[1]} is at ${grain}, not ${row.slice(2, 6)}`);
+  }
+  const time = await evaluate("se3d.measure(20)");
+  console.log(`${new Set(ids).size} grains: ${time.toFixed(1)} ms a picture, drawn by the processor alone`);
+  check(time < 2000, "grains stay interactive");
+};
+
 (async () => {
   const { targetInfos } = await call("Target.getTargets");
   const attached = await call("Target.attachToTarget", { targetId: targetInfos.find((t) => t.type === "page").targetId, flatten: true });
@@ -38,34 +182,18 @@ const key = (name) => call("Input.dispatchKeyEvent", { type: "keyDown", key: nam
   for (const domain of ["Page", "Runtime", "Log"]) await call(domain + ".enable");
   await call("Page.navigate", { url: "file://" + path.resolve(page) });
   let ready = false;
-  for (let k = 0; k < 100 && !ready; ++k) { await wait(100); ready = await evaluate("!!window.se3d"); }
+  for (let k = 0; k < 200 && !ready; ++k) { await wait(100); ready = await evaluate("!!window.se3d"); }
   check(ready, "the page starts");
-  const rows = fs.readFileSync(csv, "utf8").trim().split("\n").map((line) => line.split(","));
-  const column = rows[0].indexOf(body + ".position.x");
-  for (const part of [0.1, 0.37, 0.73, 1]) {
-    const row = rows[Math.max(1, Math.round(part * (rows.length - 1)))];
-    await evaluate(`se3d.show(${row[0]})`);
-    const r = (await evaluate(`se3d.position(${JSON.stringify(body)})`)) || [];
-    const off = Math.max(...[0, 1, 2].map((k) => Math.abs(r[k] - Number(row[column + k]))));
-    check(off < 1e-4, `at t = ${row[0]} the body is ${off} away`);
+  if (body === "grains") {
+    await checkGrains(read(csv));
+  } else if (csv !== "none") {
+    const results = read(csv);
+    await checkMotion(results);
+    await checkSeen();
+    await checkReactions(results);
+    await checkKeys();
+    await checkMouse();
   }
-  await evaluate("se3d.show(se3d.start)");
-  const first = await evaluate("se3d.picture(se3d.start)");
-  check(first !== (await evaluate("se3d.picture((se3d.start + 0.4 * (se3d.end - se3d.start)))")), "the picture moves");
-  await evaluate("se3d.show(se3d.start)");
-  await key("ArrowRight");
-  check((await evaluate("se3d.state.time > se3d.start")) === true, "the arrow key steps");
-  for (const [name, state] of [["f", "frames"], ["r", "reactions"], ["t", "traces"], ["d", "dark"], [" ", "playing"]]) {
-    const before = await evaluate("se3d.state." + state);
-    await key(name);
-    check((await evaluate("se3d.state." + state)) === !before, `key ${name} changes ${state}`);
-  }
-  await wait(500);
-  const turn = await evaluate("se3d.orbit.azimuth");
-  for (const [type, x] of [["mousePressed", 500], ["mouseMoved", 600], ["mouseReleased", 600]]) {
-    await call("Input.dispatchMouseEvent", { type, x, y: 400, button: "left", buttons: 1, clickCount: 1 });
-  }
-  check(Math.abs((await evaluate("se3d.orbit.azimuth")) - turn) > 0.1, "dragging turns the view");
   await evaluate("se3d.set({dark: false}); se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))");
   if (picture) {
     const shot = await call("Page.captureScreenshot", { format: "png" });

@@ -160,7 +160,8 @@ size_t table_find(const table *t, const char *name)
     return k;
 }
 
-/* Go through the rows; `values` gets column `only`, or all of them where that is `count`. */
+/* Go through the rows, every `stride`-th and the last; `values` gets column `only`, or all of them
+ * where that is `count`. */
 static size_t read_numbers(const table *t, size_t only, size_t stride, double *values, size_t size)
 {
     FILE *file = fopen(t->path, "rb");
@@ -169,7 +170,8 @@ static size_t read_numbers(const table *t, size_t only, size_t stride, double *v
     for (size_t row = 0; line && rows < size; ++row) {
         free(line);
         line = read_line(file);
-        if (!line || row % stride != 0 || line[0] == '\0') {
+        const int taken = row % stride == 0 || row + 1 == t->rows;
+        if (!line || !taken || line[0] == '\0') {
             continue;
         }
         const char *at = line;

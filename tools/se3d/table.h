@@ -22,9 +22,10 @@ void table_destroy(table *t);
 /* The number of a column, or `count` where there is none of that name. */
 size_t table_find(const table *t, const char *name);
 
-/* Read one column, at most `size` numbers, every `stride`-th row. @return how many. */
+/* Read one column, at most `size` numbers, every `stride`-th row and the last. @return how many. */
 size_t table_read_column(const table *t, size_t column, size_t stride, double *values, size_t size);
-/* Read all columns of every `stride`-th row: values[row * count + column]. @return rows. */
+/* Read all columns of every `stride`-th row and the last: values[row * count + column]. @return
+ * rows. */
 size_t table_read_rows(const table *t, size_t stride, double *values, size_t rows);
 
 /* What a column is: "position", "effort", ...; its last word but the component. */

@@ -6,7 +6,6 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,9 +13,10 @@
 
 #include "options.h"
 #include "process.h"
+#include "snapshots.h"
 #include "table.h"
 
-enum { RESULTS_SIZE = 200 * 1024, PATH_SIZE = 4096 };
+enum { RESULTS_SIZE = 120 * 1024, PATH_SIZE = 4096 };
 
 static const char help[] =
     "se3d view DIR [-o FILE.html]\n"
@@ -47,21 +47,6 @@ static char *read_whole(const char *path, size_t *size)
     return data;
 }
 
-static void put_base64(FILE *file, const void *data, size_t size)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const unsigned char *at = data;
-    for (size_t k = 0; k < size; k += 3) {
-        const size_t left = size - k;
-        const uint32_t bits = (uint32_t)at[k] << 16 | (left > 1 ? (uint32_t)at[k + 1] << 8 : 0) |
-                              (left > 2 ? (uint32_t)at[k + 2] : 0);
-        fputc(digits[bits >> 18], file);
-        fputc(digits[bits >> 12 & 63], file);
-        fputc(left > 1 ? digits[bits >> 6 & 63] : '=', file);
-        fputc(left > 2 ? digits[bits & 63] : '=', file);
-    }
-}
-
 /* Texts in scripts: `<` could end them. */
 static void put_json(FILE *file, const char *text)
 {
@@ -76,15 +61,32 @@ static void put_json(FILE *file, const char *text)
     fputc('"', file);
 }
 
-/* The first results file of a folder, by name; spectra of plots left out. */
-static int find_results(const char *folder, char *path, size_t size)
+/* True where a file begins with a column of times. */
+static int has_times(const char *path)
+{
+    char head[5] = "";
+    FILE *file = fopen(path, "rb");
+    const int has = file && fread(head, 1, 5, file) == 5 && memcmp(head, "time,", 5) == 0;
+    if (file) {
+        fclose(file);
+    }
+    return has;
+}
+
+/* The first results file of a folder, by name: of channels over time (spectra of plots left out),
+ * or of particles. */
+static int find_results(const char *folder, int particles, char *path, size_t size)
 {
     char best[300] = "";
     DIR *list = opendir(folder);
     for (const struct dirent *d; list && (d = readdir(list)) != NULL;) {
         const size_t length = strlen(d->d_name);
-        if (length > 4 && length < sizeof best && strcmp(d->d_name + length - 4, ".csv") == 0 &&
-            !strstr(d->d_name, ".fft.csv") && (!best[0] || strcmp(d->d_name, best) < 0)) {
+        if (length <= 4 || length >= sizeof best || strcmp(d->d_name + length - 4, ".csv") != 0 ||
+            strstr(d->d_name, ".fft.csv") || (best[0] && strcmp(d->d_name, best) > 0)) {
+            continue;
+        }
+        snprintf(path, size, "%s/%s", folder, d->d_name);
+        if (has_times(path) && snapshots_is(path) == particles) {
             strcpy(best, d->d_name);
         }
     }
@@ -98,12 +100,16 @@ static int find_results(const char *folder, char *path, size_t size)
 static int put_table(FILE *file, const table *t)
 {
     char unit[60];
+    if (t->count == 0) {
+        fputs("{\"names\":[],\"units\":[],\"data\":\"\"}", file);
+        return 1;
+    }
     const size_t room = RESULTS_SIZE / (4 * t->count);
     const size_t most = room < 50 ? 50 : room;
     const size_t stride = (t->rows + most - 1) / most;
     double *values = malloc((most + 1) * t->count * sizeof *values);
     float *single = malloc((most + 1) * t->count * sizeof *single);
-    const size_t rows = values && single ? table_read_rows(t, stride, values, most) : 0;
+    const size_t rows = values && single ? table_read_rows(t, stride, values, most + 1) : 0;
     for (size_t k = 0; k < rows * t->count; ++k) {
         single[k] = (float)values[k];
     }
@@ -119,7 +125,7 @@ static int put_table(FILE *file, const table *t)
     }
     fputs("],\"data\":\"", file);
     if (rows > 0) {
-        put_base64(file, single, rows * t->count * sizeof *single);
+        base64_put(file, single, rows * t->count * sizeof *single);
     }
     fputs("\"}", file);
     free(values);
@@ -173,7 +179,7 @@ static int put_file(FILE *out, const char *folder, const char *name)
     snprintf(path, sizeof path, "%.4000s/%s", folder, name);
     char *data = read_whole(path, &size);
     if (!data) {
-        fprintf(stderr, "se3d view: %s: cannot be read\n", path);
+        fprintf(stderr, "se3d: %s: cannot be read\n", path);
         return 0;
     }
     fwrite(data, 1, size, out);
@@ -186,7 +192,9 @@ typedef struct page {
     char cache[PATH_SIZE];
     char *glb;
     size_t glb_size;
-    table results;
+    table results;                /* empty: there are none */
+    char grains[PATH_SIZE + 300]; /* file of snapshots; "": none */
+    const char *command;
 } page;
 
 static int put_page(FILE *file, const page *p)
@@ -199,9 +207,15 @@ static int put_page(FILE *file, const page *p)
     fputs("</style></head><body>\n", file);
     good = good && put_file(file, p->viewer, "viewer.html");
     fputs("<script type=\"text/plain\" id=\"glb\">", file);
-    put_base64(file, p->glb, p->glb_size);
+    base64_put(file, p->glb, p->glb_size);
     fputs("</script>\n<script type=\"application/json\" id=\"results\">", file);
     good = good && put_table(file, &p->results);
+    fputs("</script>\n<script type=\"application/json\" id=\"grains\">", file);
+    if (p->grains[0]) {
+        good = good && snapshots_put(file, p->command, p->grains);
+    } else {
+        fputs("null", file);
+    }
     fputs("</script>\n<script>\n", file);
     good = good && put_file(file, p->cache, "three.js");
     fputs("\n</script>\n<script>\n", file);
@@ -222,7 +236,8 @@ static int write_page(const page *p, const char *path)
         good = fclose(file) == 0 && good;
     }
     if (!good || rename(partial, path) != 0) {
-        fprintf(stderr, "se3d view: %s: cannot be written: %s\n", path, strerror(errno));
+        fprintf(stderr, "se3d %s: %s: cannot be written: %s\n", p->command, path,
+                strerror(errno ? errno : ENOSPC));
         remove(partial);
         return EXIT_FAILED;
     }
@@ -239,6 +254,11 @@ static int prepare(page *p, const char *command)
                 command);
         return EXIT_FAILED;
     }
+    snprintf(script, sizeof script, "%.4000s/three.js", p->viewer);
+    if (access(script, R_OK) == 0) { /* installed with the program */
+        strcpy(p->cache, p->viewer);
+        return EXIT_DONE;
+    }
     snprintf(script, sizeof script, "%.4000s/build.sh", p->viewer);
     const char *const words[] = {"sh", script, p->cache, NULL};
     if (process_run(NULL, words) != 0) {
@@ -250,20 +270,23 @@ static int prepare(page *p, const char *command)
 
 int view_write(const char *command, const char *folder, const char *path)
 {
-    char name[PATH_SIZE + 64];
+    char name[PATH_SIZE + 300];
     page *p = calloc(1, sizeof *p);
     int code = EXIT_FAILED;
     if (!p) {
         return EXIT_FAILED;
     }
+    p->command = command;
     snprintf(name, sizeof name, "%.4000s/scene.glb", folder);
     p->glb = read_whole(name, &p->glb_size);
     if (!p->glb || p->glb_size < 28) {
         fprintf(stderr, "se3d %s: %s: cannot be read; `se3d run MODEL -o %s` makes it\n", command,
                 name, folder);
-    } else if (!find_results(folder, name, sizeof name)) {
-        fprintf(stderr, "se3d %s: there is no CSV file in %s\n", command, folder);
-    } else if (table_read(&p->results, command, name)) {
+    } else if (!find_results(folder, 0, name, sizeof name) ||
+               table_read(&p->results, command, name)) {
+        if (!find_results(folder, 1, p->grains, sizeof p->grains)) {
+            p->grains[0] = '\0';
+        }
         code = prepare(p, command);
         code = code == EXIT_DONE ? write_page(p, path) : code;
         table_destroy(&p->results);

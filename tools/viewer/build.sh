@@ -15,7 +15,7 @@ trap 'rm -rf "$work"' EXIT
 if command -v npm >/dev/null 2>&1; then
     echo "making the viewer's three.js once (npm: three 0.187, esbuild)" >&2
     cp "$here/three_entry.js" "$work/"
-    (cd "$work" && npm install --silent --no-audit --no-fund --no-save three@0.187 esbuild >&2 &&
+    (cd "$work" && npm install --fetch-retries=1 --silent --no-audit --no-fund --no-save three@0.187 esbuild >&2 &&
         npx --no-install esbuild three_entry.js --bundle --minify --format=iife --global-name=THREE \
             --legal-comments=none --log-level=error --outfile=bundle.js)
     { echo '/*'; cat "$work/node_modules/three/LICENSE"; echo '*/'; cat "$work/bundle.js"; } >"$work/three.js"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the viewer uses of three.js: only this is bundled.
 export {
-  AmbientLight, AnimationClip, AxesHelper, ArrowHelper, BufferAttribute, BufferGeometry, Color, DirectionalLight, Group,
-  HemisphereLight, Line, LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshStandardMaterial, PerspectiveCamera,
-  Quaternion, Scene, Vector3, WebGLRenderer,
+  AxesHelper, ArrowHelper, BufferAttribute, BufferGeometry, Color, DirectionalLight, Group,
+  HemisphereLight, InstancedBufferAttribute, InstancedBufferGeometry, Line, LineBasicMaterial, LineSegments, Mesh,
+  MeshStandardMaterial, PerspectiveCamera, Quaternion, Scene, ShaderMaterial, Vector3, WebGLRenderer,
 } from "three";

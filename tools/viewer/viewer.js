@@ -63,8 +63,24 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   const tracks = motion.channels.map((c) => ({
     node: nodes[c.target.node], path: c.target.path, values: accessor(motion.samplers[c.sampler].output).values,
   }));
-  const start = times[0], end = times[times.length - 1];
+  const packed = JSON.parse($("grains").textContent);
+  const grainTimes = packed ? packed.times : [];
+  const start = Math.min(times[0], ...grainTimes.slice(0, 1)), end = Math.max(times[times.length - 1], ...grainTimes.slice(-1));
   const qa = new THREE.Quaternion(), qb = new THREE.Quaternion(), va = new THREE.Vector3(), vb = new THREE.Vector3();
+  // A long motion was thinned out to more than half of the most samples: then a curve through its points.
+  const curved = times.length > 625;
+  const tangent = (values, k, i) => {
+    const a = Math.max(0, k - 1), b = Math.min(times.length - 1, k + 1);
+    return (values[3 * b + i] - values[3 * a + i]) / (times[b] - times[a]);
+  };
+  const curve = (values, a, b, part, out) => {
+    const h = times[b] - times[a], p = part * part * (3 - 2 * part);
+    for (let i = 0; i < 3; ++i) {
+      const from = values[3 * a + i], to = values[3 * b + i];
+      out[i] = from + p * (to - from) + h * part * (1 - part) * ((1 - part) * tangent(values, a, i) - part * tangent(values, b, i));
+    }
+    return out;
+  };
   const locate = (list, count, t) => {
     let low = 0, high = count - 1;
     while (high - low > 1) { const mid = (low + high) >> 1; if (list(mid) <= t) low = mid; else high = mid; }
@@ -77,13 +93,15 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
       if (path === "rotation") {
         node.quaternion.copy(qa.fromArray(values, 4 * a).normalize()).slerp(qb.fromArray(values, 4 * b).normalize(), part);
       } else {
-        node[path === "scale" ? "scale" : "position"].copy(va.fromArray(values, 3 * a)).lerp(vb.fromArray(values, 3 * b), part);
+        const target = node[path === "scale" ? "scale" : "position"];
+        if (curved && a < b) target.fromArray(curve(values, a, b, part, []));
+        else target.copy(va.fromArray(values, 3 * a)).lerp(vb.fromArray(values, 3 * b), part);
       }
     }
   };
 
   // Results beside the motion.
-  const n = results.names.length, rows = results.values.length / n;
+  const n = results.names.length, rows = n > 0 ? results.values.length / n : 0;
   const at = (row, column) => results.values[row * n + column];
   const value = (column, t) => {
     const [a, b, part] = locate((k) => at(k, 0), rows, t);
@@ -100,19 +118,70 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   const renderer = new THREE.WebGLRenderer({ canvas: $("view"), antialias: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
 
+  // Grains: one quad each, drawn as a sphere that faces the camera.
+  let grains = null;
+  if (packed) {
+    const { count, low, high } = packed;
+    const place = new Float32Array(4 * count), shade = new Float32Array(count), radii = new Float32Array(decode(packed.radii));
+    const frames = packed.frames.map((text) => new Uint16Array(decode(text)));
+    const shape = new THREE.InstancedBufferGeometry();
+    shape.setAttribute("position", new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
+    shape.setIndex([0, 1, 2, 0, 2, 3]);
+    for (let k = 0; k < count; ++k) shade[k] = 0.8 + 0.2 * ((k * 0.618034) % 1);
+    const places = new THREE.InstancedBufferAttribute(place, 4);
+    shape.setAttribute("place", places);
+    shape.setAttribute("shade", new THREE.InstancedBufferAttribute(shade, 1));
+    shape.instanceCount = shape.maxInstancedCount = count;
+    const cloud = new THREE.Mesh(shape, new THREE.ShaderMaterial({
+      vertexShader: `attribute vec4 place; attribute float shade; varying vec2 corner; varying float tone;
+        void main() {
+          corner = position.xy; tone = shade;
+          vec4 at = modelViewMatrix * vec4(place.xyz, 1.0);
+          at.xy += place.w * corner;
+          gl_Position = projectionMatrix * at;
+        }`,
+      fragmentShader: `varying vec2 corner; varying float tone;
+        void main() {
+          float d = dot(corner, corner);
+          if (d > 1.0) discard;
+          float light = 0.4 + 0.6 * max(0.0, dot(vec3(corner, sqrt(1.0 - d)), vec3(0.42, 0.52, 0.74)));
+          gl_FragColor = vec4(light * tone * vec3(0.93, 0.72, 0.42), 1.0);
+        }`,
+    }));
+    cloud.frustumCulled = false;
+    scene.add(cloud);
+    const scale = [0, 1, 2].map((i) => (high[i] - low[i]) / 65534);
+    // A grain that is missing has the radius 0; one that goes stays where it was until then.
+    const move = (t) => {
+      const [a, b, part] = locate((k) => grainTimes[k], grainTimes.length, t);
+      const from = frames[part < 1 ? a : b], to = frames[part > 0 ? b : a];
+      for (let k = 0; k < count; ++k) {
+        place[4 * k + 3] = from[3 * k] === 65535 ? 0 : radii[k];
+        const way = to[3 * k] === 65535 ? 0 : part;
+        for (let i = 0; i < 3; ++i) place[4 * k + i] = low[i] + scale[i] * (from[3 * k + i] + way * (to[3 * k + i] - from[3 * k + i]));
+      }
+      places.needsUpdate = true;
+    };
+    grains = { move, place, count };
+  }
+
   // What the camera looks at: the box around the bodies at a few times.
   const low = new THREE.Vector3(1, 1, 1).multiplyScalar(1e9), high = low.clone().negate();
   for (let k = 0; k < 24; ++k) {
     pose(start + (end - start) * k / 23);
     root.updateMatrixWorld(true);
     root.traverse((o) => {
-      if (o.isMesh && o.material.opacity === 1) {
-        for (const s of [-0.5, 0.5]) for (const q of [-0.5, 0.5]) for (const r of [-0.5, 0.5]) {
-          va.set(s, q, r).applyMatrix4(o.matrixWorld); low.min(va); high.max(va);
-        }
+      if (!o.isMesh || o.material.opacity < 1) return;
+      if (!o.geometry.boundingBox) o.geometry.computeBoundingBox();
+      const { min, max } = o.geometry.boundingBox;
+      for (let k = 0; k < 8; ++k) {
+        va.set(k & 1 ? min.x : max.x, k & 2 ? min.y : max.y, k & 4 ? min.z : max.z).applyMatrix4(o.matrixWorld);
+        low.min(va); high.max(va);
       }
     });
   }
+  if (packed) { low.min(va.fromArray(packed.low)); high.max(va.fromArray(packed.high)); }
+  if (!(high.x >= low.x)) { low.set(-1, -1, -1); high.set(1, 1, 1); }
   const center = low.clone().add(high).multiplyScalar(0.5);
   const size = Math.max(1e-6, high.distanceTo(low));
   const orbit = { azimuth: -0.9, height: 0.35, distance: 1.35 * size, target: center.clone() };
@@ -145,7 +214,8 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     points.forEach((p) => {
       const g = new THREE.BufferGeometry();
       g.setAttribute("position", new THREE.BufferAttribute(p, 3));
-      const line = new THREE.Line(g, new THREE.LineBasicMaterial({ color: 0xe08e0b }));
+      const line = new THREE.Line(g, new THREE.LineBasicMaterial({ color: 0xe08e0b, depthTest: false, transparent: true }));
+      line.renderOrder = 1; // seen through the bodies
       scene.add(line); traces.push(line);
     });
   };
@@ -157,6 +227,7 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
       renderer.setSize(width, height, false); camera.aspect = width / height; camera.updateProjectionMatrix();
     }
     pose(state.time);
+    if (grains) grains.move(state.time);
     if (state.follow > 0) orbit.target.copy(bodies[state.follow].position);
     root.updateMatrixWorld(true);
     const c = Math.cos(orbit.height);
@@ -181,6 +252,7 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
 
   const canvas = $("plot"), pen = canvas.getContext("2d");
   const plot = () => {
+    if (n < 2) return;
     const scale = devicePixelRatio || 1, w = 380, h = 190, left = 62, right = 10, top = 24, bottom = 24;
     if (canvas.width !== w * scale) { canvas.width = w * scale; canvas.height = h * scale; }
     pen.setTransform(scale, 0, 0, scale, 0, 0);
@@ -221,8 +293,10 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   for (let k = 1; k < n; ++k) {
     let least = Infinity, most = -Infinity;
     for (let r = 0; r < rows; ++r) { least = Math.min(least, at(r, k)); most = Math.max(most, at(r, k)); }
-    if (most - least > 1e-9) { $("channel").value = String(k); break; }
+    if (most - least > 1e-9 && !results.names[k].includes(".orientation.")) { $("channel").value = String(k); break; }
   }
+  if (n < 2) canvas.style.display = $("channel").parentElement.style.display = "none";
+  $("reactions").disabled = !arrows.length;
   $("time").min = start; $("time").max = end; $("time").step = "any";
   $("time").oninput = () => { set({ time: Number($("time").value), playing: false }); draw(); };
   $("play").onclick = () => set({ playing: !state.playing, time: state.time >= end ? start : state.time });
@@ -294,6 +368,25 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
       if (n > 1) { brush.fillStyle = style.getPropertyValue("--panel"); brush.fillRect(w - 388, 8, 380, 190); brush.drawImage(canvas, w - 388, 8, 380, 190); }
       return sheet.toDataURL("image/jpeg", 0.93);
     },
+    // Where grain k (from 0 in the order of ids) is, and its radius.
+    grain: (k) => Array.from(grains.place.subarray(4 * k, 4 * k + 4)),
+    // Milliseconds a picture takes, all of it drawn, over some times of the motion.
+    measure: (count) => {
+      const gl = renderer.getContext(), pixel = new Uint8Array(4), begin = performance.now();
+      for (let k = 0; k < count; ++k) {
+        set({ time: start + (end - start) * k / count, playing: false }); draw();
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      }
+      return (performance.now() - begin) / count;
+    },
+    // Where a point of the ground frame is in the picture.
+    project: (r) => {
+      va.fromArray(r).project(camera);
+      return [(va.x + 1) / 2 * (film ? film[0] : innerWidth), (1 - va.y) / 2 * (film ? film[1] : innerHeight)];
+    },
+    arrows: () => arrows.filter((a) => a.arrow.visible).map((a) => ({ joint: a.joint.name, at: a.arrow.position.toArray(),
+      along: new THREE.Vector3(0, 1, 0).applyQuaternion(a.arrow.quaternion).toArray() })),
+    scale: (name) => nodes.find((o) => o.name === name).scale.toArray(),
     position: (name) => bodies.find((b) => b.name === name).position.toArray(),
   };
 })();
