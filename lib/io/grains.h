@@ -7,8 +7,7 @@
 
 struct se3di_grains {
     se3d_particles *set;
-    se3d_material *materials; /* in the order of the file; null: not needed yet */
-    bool moving_walls;        /* some wall is on a body that is not fixed */
+    bool moving_walls; /* some shape is on a body that is not fixed */
 };
 
 enum { SE3DI_GRAIN_COLUMNS = 12 };

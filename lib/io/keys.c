@@ -14,9 +14,9 @@ static const char *const body_keys[] = {
     "shapes",  "markers",  NULL};
 static const char *const orientation_keys[] = {"matrix", "euler_parameters", "axis", "angle", "rpy",
                                                NULL};
-static const char *const shape_keys[] = {"type",        "size",   "radius",  "length",   "file",
-                                         "scale",       "normal", "density", "material", "position",
-                                         "orientation", "color",  NULL};
+static const char *const shape_keys[] = {
+    "name",  "group",  "mask",    "contact",  "type",     "size",        "radius", "length", "file",
+    "scale", "normal", "density", "material", "position", "orientation", "color",  NULL};
 static const char *const marker_keys[] = {"name", "position", "orientation", NULL};
 static const char *const material_keys[] = {"name",
                                             "density",
@@ -144,11 +144,12 @@ static const se3di_type_keys force_types[] = {
     {"force", " body point frame value "},
     {"torque", " body frame value "},
     {NULL, NULL}};
-static const se3di_type_keys shape_types[] = {{"sphere", " radius density material "},
-                                              {"box", " size density material "},
-                                              {"capsule", " radius length density material "},
-                                              {"cylinder", " radius length density material "},
-                                              {"plane", " normal material "},
+#define TOUCH " material group mask contact "
+static const se3di_type_keys shape_types[] = {{"sphere", " radius density" TOUCH},
+                                              {"box", " size density" TOUCH},
+                                              {"capsule", " radius length density" TOUCH},
+                                              {"cylinder", " radius length density" TOUCH},
+                                              {"plane", " normal" TOUCH},
                                               {"mesh", " file scale "},
                                               {NULL, NULL}};
 
@@ -156,7 +157,7 @@ static const se3di_object_keys objects[SE3DI_OBJECT_COUNT] = {
     {"model", model_keys, NULL, NULL, NULL},
     {"body", body_keys, NULL, NULL, NULL},
     {"orientation", orientation_keys, NULL, NULL, NULL},
-    {"shape", shape_keys, shape_types, " type position orientation color ", NULL},
+    {"shape", shape_keys, shape_types, " type name position orientation color ", NULL},
     {"marker", marker_keys, NULL, NULL, NULL},
     {"material", material_keys, NULL, NULL, NULL},
     {"joint", joint_keys, joint_types, " name type ", NULL},

@@ -97,7 +97,9 @@ struct se3d_model {
     size_t shape_count, shape_capacity;
     se3di_analysis_entry *analyses;
     size_t analysis_count;
-    se3di_grains *grains; /* NULL: no particles */
+    se3d_material *materials; /* in the order of the file; null: not needed yet */
+    bool moving_shapes;       /* some shape that touches is on a body that is not fixed */
+    se3di_grains *grains;     /* NULL: no particles */
     se3di_output_entry *outputs;
     size_t output_count;
     se3d_model_picture *pictures;

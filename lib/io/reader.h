@@ -52,6 +52,12 @@ bool se3di_read_number(se3di_reader *reader, const se3di_node *node, se3di_range
 /* The number under `key`, left alone where there is none. */
 bool se3di_read_key_number(se3di_reader *reader, const se3di_node *map, const char *key,
                            se3di_range range, double *value);
+/* The same for a whole number from 0 to `largest`. */
+bool se3di_read_key_count(se3di_reader *reader, const se3di_node *map, const char *key,
+                          double largest, double *value);
+/* The material that the value of `key` names, which is made where it is needed first. */
+bool se3di_read_key_material(se3di_reader *reader, const se3di_node *map, const char *key,
+                             se3d_material *material);
 bool se3di_read_vector(se3di_reader *reader, const se3di_node *node, size_t size, double *value);
 bool se3di_read_key_vector(se3di_reader *reader, const se3di_node *map, const char *key,
                            double value[3]);
@@ -99,6 +105,7 @@ bool se3di_read_analyses(se3di_reader *reader, const se3di_node *root);
 /* The keys that only an analysis of type modes has. */
 bool se3di_read_modes(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry);
 /* `contact` and `particles`, after the analyses. */
+bool se3di_read_contact(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_particles(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root);
 

@@ -14,6 +14,9 @@
 
 #define GRAINS(x)                                                                                  \
     "se3d: 1\nmaterials: [{name: glass, density: 2500, stiffness: 1e5}]\nparticles: [{" x "}]\n"
+#define SHAPES(x)                                                                                  \
+    "se3d: 1\ncontact: {}\nmaterials: [{name: glass, density: 2500, stiffness: 1e5}]\n"            \
+    "bodies: [{name: b, fixed: true, shapes: [{type: sphere, " x "}]}]\n"
 #define GLASS GRAINS("material: glass, radius: 0.1, upper: [1, 1, 1]")
 
 typedef struct bad_input {
@@ -44,13 +47,26 @@ static const bad_input table[] = {
     {"se3d: one\n", 1, 7, {"se3d: `one`"}},
     {"se3d: 1\nbodys: []\n", 2, 1, {"the key `bodys` is unknown", "did you mean `bodies`"}},
     {"se3d: 1\nzzz: 1\n", 2, 1, {"`zzz` is unknown", "allowed are", "gravity"}},
-    {"se3d: 1\ncontact: {}\n", 2, 10, {"contact: needs `particles`"}},
     {GRAINS("material: sand, radius: 0.1"), 3, 24, {"particles[0].material: no material is named"}},
     {GRAINS("radius: 0.1"), 3, 13, {"particles[0].material: is missing"}},
     {GRAINS("material: glass, lower: [0, 0, 0]"), 3, 13, {"particles[0].radius: is missing"}},
     {GRAINS("material: glass, radius: 0"), 3, 0, {"radius: is 0", "> 0"}},
     {GRAINS("material: glass, radius: 1, upper: [9, 9, 9], count: 1.5"), 3, 0, {"whole number"}},
     {GRAINS("material: glass, radius: 1, packing: dense"), 3, 0, {"lattice, random"}},
+    {SHAPES("radius: 1, material: glass, group: 1.5"), 4, 0, {"group: is 1.5", "whole number"}},
+    {SHAPES("radius: 1, material: glass, mask: -1"), 4, 0, {"mask: is -1"}},
+    {SHAPES("radius: 1, material: glass, contact: 3"), 4, 0, {"shapes[0].contact"}},
+    {SHAPES("radius: 1, material: steel"), 4, 0, {"shapes[0].material", "steel"}},
+    {SHAPES("radius: 1, name: a}, {type: sphere, radius: 1, material: glass, name: b}, {type: "
+            "sphere, radius: 1, material: glass, name: b"),
+     4,
+     0,
+     {"shapes[2]", "taken by another shape"}},
+    {"se3d: 1\ncontact: {law: hooke}\nmaterials: [{name: m, density: 1}]\n"
+     "bodies: [{name: b, fixed: true, shapes: [{type: plane, material: m}]}]\n",
+     3,
+     0,
+     {"stiffness = 0"}},
     {GLASS "contact: {law: herz}\n", 4, 16, {"contact.law: is `herz`", "hertz_mindlin"}},
     {GLASS "contact: {boundary: [open, sink]}\n", 4, 21, {"contact.boundary: must be a list of 3"}},
     {GLASS "contact: {pairs: [{material_1: glass}]}\n", 4, 0, {"pairs[0].material_2: is missing"}},
