@@ -36,6 +36,17 @@ se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, si
     return SE3D_OK;
 }
 
+void se3di_particles_each_slab(se3di_particles *set, void (*work)(se3di_particles *, uint32_t))
+{
+    const long slabs = (long)set->slab_count;
+#ifdef _OPENMP
+#pragma omp parallel for if (set->threads > 1) num_threads(set->threads) schedule(dynamic)
+#endif
+    for (long s = 0; s < slabs; ++s) {
+        work(set, (uint32_t)s);
+    }
+}
+
 static int lane_moved(const se3di_particles *set, uint32_t b, int lane)
 {
     const se3di_block *block = &set->blocks[b];
@@ -69,10 +80,9 @@ static se3d_status reserve_carry(se3di_particles *set, size_t count)
     return SE3D_OK;
 }
 
-static void collect_lane(se3di_particles *set, uint32_t b, int lane, int wall)
+static void collect_lane(se3di_particles *set, size_t k, uint32_t b, int lane, int wall)
 {
     const se3di_block *block = &set->blocks[b];
-    size_t k = set->carry_count++;
     uint32_t j = wall ? SE3DI_CARRY_WALL | block->j[0] : block->j[lane];
     set->carry[k] = (se3di_carry){
         block->i[lane], j, {block->xi[0][lane], block->xi[1][lane], block->xi[2][lane]}};
@@ -81,30 +91,46 @@ static void collect_lane(se3di_particles *set, uint32_t b, int lane, int wall)
     }
 }
 
+static void count_slab(se3di_particles *set, uint32_t s)
+{
+    se3di_slab *slab = &set->slabs[s];
+    slab->moved = 0;
+    for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
+        for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
+            slab->moved += (size_t)lane_moved(set, b, lane);
+        }
+    }
+}
+
+/* slab->moved: where its entries begin, afterwards where they end. */
+static void collect_slab(se3di_particles *set, uint32_t s)
+{
+    se3di_slab *slab = &set->slabs[s];
+    for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
+        for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
+            if (lane_moved(set, b, lane)) {
+                collect_lane(set, slab->moved++, b, lane, b >= slab->wall_begin);
+            }
+        }
+    }
+}
+
 se3d_status se3di_particles_collect(se3di_particles *set)
 {
     if (!set->list_valid) {
         return SE3D_OK;
     }
+    se3di_particles_each_slab(set, count_slab);
     size_t count = 0;
-    for (uint32_t b = 0; b < set->block_count; ++b) {
-        for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
-            count += (size_t)lane_moved(set, b, lane);
-        }
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        size_t here = set->slabs[s].moved;
+        set->slabs[s].moved = count;
+        count += here;
     }
     SE3DI_TRY(reserve_carry(set, count));
-    set->carry_count = 0;
+    set->carry_count = count;
     set->carry_rolling = set->rolls != NULL;
-    for (uint32_t s = 0; s < set->slab_count; ++s) {
-        const se3di_slab *slab = &set->slabs[s];
-        for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
-            for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
-                if (lane_moved(set, b, lane)) {
-                    collect_lane(set, b, lane, b >= slab->wall_begin);
-                }
-            }
-        }
-    }
+    se3di_particles_each_slab(set, collect_slab);
     set->list_valid = 0;
     set->block_count = 0;
     return SE3D_OK;
@@ -151,43 +177,51 @@ static uint32_t find(const se3di_particles *set, uint32_t i, uint32_t j)
     return k;
 }
 
-static se3d_status open_block(se3di_particles *set)
+static se3d_status reserve_blocks(se3di_particles *set, size_t count)
 {
-    size_t needed = (size_t)set->block_count + 1;
     const se3d_allocator *a = &set->allocator;
-    if (needed * sizeof(se3di_block) > set->block_memory.bytes) {
-        size_t grown = needed + needed / 32 + 16;
+    if (count * sizeof(se3di_block) > set->block_memory.bytes) {
+        size_t grown = count + count / 32 + 16;
         grown = grown < set->list_count / 12 ? set->list_count / 12 : grown;
-        se3d_status status =
-            se3di_aligned_reserve(a, &set->block_memory, grown * sizeof(se3di_block),
-                                  set->block_count * sizeof(se3di_block));
+        SE3DI_TRY(se3di_aligned_reserve(a, &set->block_memory, grown * sizeof(se3di_block), 0));
         set->blocks = set->block_memory.data;
-        SE3DI_TRY(status);
     }
     if (set->rolling) {
-        size_t grown = set->block_memory.bytes / sizeof(se3di_block);
-        SE3DI_TRY(se3di_aligned_reserve(a, &set->roll_memory, grown * sizeof(se3di_roll),
-                                        set->block_count * sizeof(se3di_roll)));
+        size_t room = set->block_memory.bytes / sizeof(se3di_block);
+        SE3DI_TRY(se3di_aligned_reserve(a, &set->roll_memory, room * sizeof(se3di_roll), 0));
         set->rolls = set->roll_memory.data;
-        memset(&set->rolls[set->block_count], 0, sizeof(se3di_roll));
-    }
-    se3di_block *block = &set->blocks[set->block_count++];
-    memset(block, 0, sizeof *block);
-    for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
-        block->i[k] = block->j[k] = (uint32_t)set->capacity;
     }
     return SE3D_OK;
 }
 
-/* Add a pair to the last block, with its history. */
-static se3d_status push(se3di_particles *set, uint32_t i, uint32_t j, int *lane)
+/* Where the next pair of a slab goes. */
+typedef struct cursor {
+    uint32_t next; /* block */
+    int lane;      /* of the block before `next` */
+} cursor;
+
+static void open_block(se3di_particles *set, cursor *at)
 {
-    if (*lane == SE3DI_GRAIN_LANES) {
-        SE3DI_TRY(open_block(set));
-        *lane = 0;
+    se3di_block *block = &set->blocks[at->next];
+    memset(block, 0, sizeof *block);
+    for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
+        block->i[k] = block->j[k] = (uint32_t)set->capacity;
     }
-    se3di_block *block = &set->blocks[set->block_count - 1];
-    int at = (*lane)++;
+    if (set->rolling) {
+        memset(&set->rolls[at->next], 0, sizeof(se3di_roll));
+    }
+    ++at->next;
+    at->lane = 0;
+}
+
+/* Add a pair with its history. */
+static void push(se3di_particles *set, uint32_t i, uint32_t j, cursor *where)
+{
+    if (where->lane == SE3DI_GRAIN_LANES) {
+        open_block(set, where);
+    }
+    se3di_block *block = &set->blocks[where->next - 1];
+    int at = where->lane++;
     block->i[at] = i;
     if (j < SE3DI_CARRY_WALL) {
         block->j[at] = j;
@@ -199,74 +233,126 @@ static se3d_status push(se3di_particles *set, uint32_t i, uint32_t j, int *lane)
         sign = -1.0;
     }
     if (k == SE3DI_NO_INDEX) {
-        return SE3D_OK;
+        return;
     }
     for (int a = 0; a < 3; ++a) {
         block->xi[a][at] = sign * set->carry[k].xi[a];
     }
     for (size_t a = 0; set->rolling && set->carry_rolling && a < 4; ++a) {
         /* the twist is about the normal, which turns with the order of the two */
-        set->rolls[set->block_count - 1].rho[a][at] =
+        set->rolls[where->next - 1].rho[a][at] =
             (a < 3 ? sign : 1.0) * set->carry_roll[4 * (size_t)k + a];
     }
-    return SE3D_OK;
 }
 
-static se3d_status activate_pairs(se3di_particles *set, se3di_slab *slab)
+static uint32_t blocks_of(size_t pairs)
 {
-    int lane = SE3DI_GRAIN_LANES;
+    return (uint32_t)((pairs + SE3DI_GRAIN_LANES - 1) / SE3DI_GRAIN_LANES);
+}
+
+/* Returns how many blocks the pairs of a slab need. */
+static uint32_t mark_pairs(se3di_particles *set, const se3di_slab *slab)
+{
     int periodic = 0;
+    size_t count = 0;
     for (int a = 0; a < 3; ++a) {
         periodic |= set->boundary[a] == SE3DI_BOUNDARY_PERIODIC;
     }
-    slab->pair_begin = set->block_count;
     for (uint32_t i = slab->begin; i < slab->end; ++i) {
         const se3di_grain *gi = &set->grains[i];
         for (uint32_t k = set->first[i]; k < set->first[i + 1]; ++k) {
-            const se3di_grain *gj = &set->grains[set->list[k]];
+            uint32_t j = set->list[k] & ~SE3DI_LIST_ACTIVE;
+            const se3di_grain *gj = &set->grains[j];
             double d[3] = {gi->x[0] - gj->x[0], gi->x[1] - gj->x[1], gi->x[2] - gj->x[2]};
             if (periodic) {
                 se3di_particles_wrap(set, d);
             }
             double reach = gi->radius + gj->radius + set->near;
-            if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach) {
-                SE3DI_TRY(push(set, i, set->list[k], &lane));
+            int active = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach;
+            set->list[k] = active ? j | SE3DI_LIST_ACTIVE : j;
+            count += (size_t)active;
+        }
+    }
+    return blocks_of(count);
+}
+
+/* The same for walls: one wall per block. */
+static uint32_t mark_walls(se3di_particles *set, const se3di_slab *slab)
+{
+    uint32_t blocks = 0;
+    size_t count = 0;
+    uint32_t last = SE3DI_NO_INDEX;
+    for (uint32_t k = slab->near_begin; k < slab->near_end; ++k) {
+        uint32_t *entry = &set->near_walls[2 * k];
+        uint32_t i = entry[0] & ~SE3DI_LIST_ACTIVE;
+        const se3di_grain *g = &set->grains[i];
+        int active = se3di_wall_distance(&set->walls[entry[1]], g->x) < g->radius + set->near;
+        entry[0] = active ? i | SE3DI_LIST_ACTIVE : i;
+        if (entry[1] != last) {
+            blocks += blocks_of(count);
+            count = 0;
+            last = entry[1];
+        }
+        count += (size_t)active;
+    }
+    return blocks + blocks_of(count);
+}
+
+/* Leaves the numbers of blocks in pair_end and wall_end. */
+static void mark_slab(se3di_particles *set, uint32_t s)
+{
+    set->slabs[s].pair_end = mark_pairs(set, &set->slabs[s]);
+    set->slabs[s].wall_end = mark_walls(set, &set->slabs[s]);
+}
+
+static void fill_slab(se3di_particles *set, uint32_t s)
+{
+    const se3di_slab *slab = &set->slabs[s];
+    cursor at = {slab->pair_begin, SE3DI_GRAIN_LANES};
+    for (uint32_t i = slab->begin; i < slab->end; ++i) {
+        for (uint32_t k = set->first[i]; k < set->first[i + 1]; ++k) {
+            if (set->list[k] & SE3DI_LIST_ACTIVE) {
+                push(set, i, set->list[k] & ~SE3DI_LIST_ACTIVE, &at);
             }
         }
     }
-    slab->pair_end = set->block_count;
-    return SE3D_OK;
-}
-
-static se3d_status activate_walls(se3di_particles *set, se3di_slab *slab)
-{
-    int lane = SE3DI_GRAIN_LANES;
     uint32_t last = SE3DI_NO_INDEX;
-    slab->wall_begin = set->block_count;
     for (uint32_t k = slab->near_begin; k < slab->near_end; ++k) {
         uint32_t i = set->near_walls[2 * k];
         uint32_t w = set->near_walls[2 * k + 1];
-        const se3di_grain *g = &set->grains[i];
-        if (se3di_wall_distance(&set->walls[w], g->x) < g->radius + set->near) {
-            lane = w == last ? lane : SE3DI_GRAIN_LANES; /* one wall per block */
+        if (i & SE3DI_LIST_ACTIVE) {
+            at.lane = w == last ? at.lane : SE3DI_GRAIN_LANES;
             last = w;
-            SE3DI_TRY(push(set, i, SE3DI_CARRY_WALL | w, &lane));
-            set->blocks[set->block_count - 1].j[0] = w;
+            push(set, i & ~SE3DI_LIST_ACTIVE, SE3DI_CARRY_WALL | w, &at);
+            set->blocks[at.next - 1].j[0] = w;
         }
     }
-    slab->wall_end = set->block_count;
-    return SE3D_OK;
+}
+
+/* Numbers of blocks become places. */
+static size_t place_slabs(se3di_particles *set)
+{
+    size_t count = 0;
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        se3di_slab *slab = &set->slabs[s];
+        slab->pair_begin = (uint32_t)count;
+        count += slab->pair_end;
+        slab->pair_end = slab->wall_begin = (uint32_t)count;
+        count += slab->wall_end;
+        slab->wall_end = (uint32_t)count;
+    }
+    return count;
 }
 
 se3d_status se3di_particles_activate(se3di_particles *set)
 {
     chain(set);
     set->near = fmin(set->skin, fmax(NEAR_LEAST * set->skin, 2.0 * NEAR_STEPS * set->pace));
-    set->block_count = 0;
-    for (uint32_t s = 0; s < set->slab_count; ++s) {
-        SE3DI_TRY(activate_pairs(set, &set->slabs[s]));
-        SE3DI_TRY(activate_walls(set, &set->slabs[s]));
-    }
+    se3di_particles_each_slab(set, mark_slab);
+    size_t count = place_slabs(set);
+    SE3DI_TRY(reserve_blocks(set, count));
+    set->block_count = (uint32_t)count;
+    se3di_particles_each_slab(set, fill_slab);
     for (size_t k = 0; k < set->wall_count; ++k) {
         se3di_wall *wall = &set->walls[k];
         se3di_copy(wall->pose.x, wall->near_x);

@@ -59,7 +59,8 @@ typedef struct se3di_carry {
     double xi[3];
 } se3di_carry; /* of i, in a chain that starts at carry_first[i] */
 
-#define SE3DI_CARRY_WALL 0x80000000u
+#define SE3DI_CARRY_WALL  0x80000000u
+#define SE3DI_LIST_ACTIVE 0x80000000u /* in entries of list and near_walls: nearer than `near` */
 
 /* What the set has taken from the model: a material of particles or walls. */
 typedef struct se3di_stuff {
@@ -87,6 +88,7 @@ typedef struct se3di_slab {
     uint32_t pair_begin, pair_end; /* blocks */
     uint32_t wall_begin, wall_end; /* blocks of walls */
     uint32_t near_begin, near_end; /* candidates of walls */
+    size_t moved;                  /* springs that hold something */
     double overlap;                /* largest excess over what is allowed */
     uint64_t touching;
 } se3di_slab;
@@ -246,6 +248,8 @@ void se3di_particles_remap(se3di_particles *set, const uint32_t *new_index);
 se3d_status se3di_particles_activate(se3di_particles *set);
 /* Candidates of walls. */
 se3d_status se3di_particles_list_walls(se3di_particles *set);
+/* Do something for every slab, on all threads at a time. */
+void se3di_particles_each_slab(se3di_particles *set, void (*work)(se3di_particles *, uint32_t));
 /* Grow an array to hold `needed` elements, a little more. */
 se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, size_t *capacity,
                                  size_t needed);

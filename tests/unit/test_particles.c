@@ -117,11 +117,11 @@ static void check_list(const se3di_particles *set)
     }
     for (size_t i = 0; slab && i < set->count; ++i) {
         for (uint32_t k = set->first[i]; k < set->first[i + 1]; ++k) {
-            uint32_t j = set->list[k];
+            uint32_t j = set->list[k] & ~SE3DI_LIST_ACTIVE;
             uint32_t ahead = (slab[j] + set->slab_count - slab[i]) % set->slab_count;
             CHECK(ahead == 1 || (ahead == 0 && j > i));
             for (uint32_t m = set->first[i]; m < k; ++m) {
-                CHECK(set->list[m] != j);
+                CHECK((set->list[m] & ~SE3DI_LIST_ACTIVE) != j);
             }
             ++found;
         }
