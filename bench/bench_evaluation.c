@@ -34,8 +34,8 @@ static void run(const bench_request *request, bench_answer *answer)
 {
     bench_mechanism m = bench_build(request->kind, request->n);
     se3di_equations equations;
-    const se3di_formulation *formulation = se3di_formulation_find(
-        strchr(request->method, '/') ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA);
+    const se3di_formulation *formulation = se3di_formulation_reduce(se3di_formulation_find(
+        strchr(request->method, '/') ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA));
     if (m.status < 0 ||
         se3di_equations_init(&equations, &m.system->model, formulation, &m.system->error) < 0) {
         bench_fail(answer, se3d_system_get_error(m.system));

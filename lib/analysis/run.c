@@ -85,7 +85,10 @@ static se3d_status prepare(se3di_run *run)
     release(run);
     choose_method(run);
     se3di_counters counters = run->equations.counters;
-    SE3DI_TRY(se3di_equations_init(&run->equations, run->model, run->formulation, run->error));
+    int reduces = run->analysis == SE3D_ANALYSIS_DYNAMICS && run->integration.method->is_explicit;
+    const se3di_formulation *formulation =
+        reduces ? se3di_formulation_reduce(run->formulation) : run->formulation;
+    SE3DI_TRY(se3di_equations_init(&run->equations, run->model, formulation, run->error));
     run->equations.counters = counters;
     run->equations.iterations_max = run->integration.settings.iterations_max;
     run->integration.equations = &run->equations;

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "assembly/fused.h"
 
+#include "math/quaternion.h"
 #include "math/vec3.h"
 
 #include <string.h>
 
-#define BLOCK 6 /* r-omega */
+#define BLOCK 6 /* of both formulations that are covered */
 
 static int same(const double a[3], const double b[3])
 {
@@ -63,52 +64,172 @@ static inline void put_point(double *restrict block, const se3di_frame *frame, c
     }
 }
 
-/* w x (w x p) = w (w.p) - p (w.w) */
-static inline void turn_twice(const double w[3], const double p[3], double out[3])
+/* A joint as the kernels see it. */
+typedef struct fused_joint {
+    const se3di_term *terms;
+    const se3di_frame *i, *j;
+    double *block_i, *block_j; /* NULL: the body is fixed */
+    const double *f;           /* jets of the functions of time */
+    double *gamma;             /* NULL: not wanted */
+} fused_joint;
+
+/* ---- r-omega ---- */
+
+/* W (W.S) - S (W.W) with S = A s */
+static inline void centripetal(const se3di_frame *frame, const double W[3], const double s[3],
+                               double out[3])
 {
-    const double along = se3di_dot(w, p), square = se3di_dot(w, w);
+    double S[3];
+    se3di_mul(frame->A, s, S);
+    const double along = se3di_dot(W, S), square = se3di_dot(W, W);
     for (int k = 0; k < 3; ++k) {
-        out[k] = w[k] * along - p[k] * square;
+        out[k] = W[k] * along - S[k] * square;
     }
 }
 
-static inline void put_direction(double *block, const double a[3], const double l[3])
+static inline void put_direction(double *block, const double A[9], const double n[3])
 {
     block[0] = block[1] = block[2] = 0.0;
-    se3di_cross(a, l, block + 3);
+    se3di_mul_transposed(A, n, block + 3);
 }
 
-static void eval_directions(const se3di_term *terms, const se3di_frame *i, const se3di_frame *j,
-                            double *block_i, double *block_j, double *gamma)
+static inline void romega_directions(const fused_joint *joint, const double W_i[3],
+                                     const double W_j[3])
 {
-    double world[3], rate[3], rate_rate[3], turned[3];
-    double l[3], l1[3], l2[3];
-    const double *a_j = terms[0].a_j;
-    se3di_mul(j->A, a_j, world);
-    se3di_mul_transposed(i->A, world, l);
-    if (gamma) {
-        se3di_cross(j->w, a_j, rate);
-        turn_twice(j->w, a_j, rate_rate);
-        se3di_mul(j->A, rate, turned);
-        se3di_mul_transposed(i->A, turned, l1);
-        se3di_mul(j->A, rate_rate, turned);
-        se3di_mul_transposed(i->A, turned, l2);
+    const se3di_frame *i = joint->i, *j = joint->j;
+    double u[3], D[3], across[3];
+    se3di_mul(j->A, joint->terms[3].a_j, u);
+    se3di_sub(W_i, W_j, D);
+    se3di_cross(W_i, W_j, across);
+    const double square = se3di_dot(D, D), along = se3di_dot(D, u);
+    for (int k = 3; k < 5; ++k) {
+        double v[3], n[3], minus_n[3];
+        se3di_mul(i->A, joint->terms[k].a_i, v);
+        se3di_cross(v, u, n);
+        if (joint->block_i) {
+            put_direction(joint->block_i + k * BLOCK, i->A, n);
+        }
+        if (joint->block_j) {
+            se3di_cross(u, v, minus_n);
+            put_direction(joint->block_j + k * BLOCK, j->A, minus_n);
+        }
+        if (joint->gamma) {
+            joint->gamma[k] = joint->f[3 * k + 2] - se3di_dot(n, across) +
+                              square * se3di_dot(u, v) - along * se3di_dot(D, v);
+        }
     }
-    for (int k = 0; k < 2; ++k) {
-        const double *a_i = terms[k].a_i;
-        if (block_i) {
-            put_direction(block_i + k * BLOCK, a_i, l);
+}
+
+static void romega_eval(const fused_joint *joint, int has_directions)
+{
+    const se3di_frame *i = joint->i, *j = joint->j;
+    double W_i[3] = {0.0}, W_j[3] = {0.0}, arm_i[3], arm_j[3];
+    if (joint->block_i) {
+        put_point(joint->block_i, i, joint->terms[0].s_i, -1.0);
+    }
+    if (joint->block_j) {
+        put_point(joint->block_j, j, joint->terms[0].s_j, 1.0);
+    }
+    if (joint->gamma) {
+        se3di_mul(i->A, i->w, W_i);
+        se3di_mul(j->A, j->w, W_j);
+        centripetal(i, W_i, joint->terms[0].s_i, arm_i);
+        centripetal(j, W_j, joint->terms[0].s_j, arm_j);
+        for (int k = 0; k < 3; ++k) {
+            joint->gamma[k] = joint->f[3 * k + 2] + arm_i[k] - arm_j[k];
         }
-        if (block_j) {
-            se3di_mul(i->A, a_i, world);
-            se3di_mul_transposed(j->A, world, turned);
-            put_direction(block_j + k * BLOCK, a_j, turned);
+    }
+    if (has_directions) {
+        romega_directions(joint, W_i, W_j);
+    }
+}
+
+/* ---- r-p, on the tangent ---- */
+
+static inline void put_half(double *block, const double p[4], double s, const double x[4])
+{
+    double turned[3];
+    se3di_g_mul(p, x, turned);
+    se3di_scale(0.5 * s, turned, block + 3);
+}
+
+static inline void rp_point(double *block, const se3di_frame *frame, const double s[3], double sign)
+{
+    double B[12];
+    se3di_b_matrix(frame->p, s, B);
+    for (int k = 0; k < 3; ++k, block += BLOCK) {
+        block[0] = block[1] = block[2] = 0.0;
+        block[k] = sign;
+        put_half(block, frame->p, sign, B + 4 * k);
+    }
+}
+
+/* Z = 2 A(pdot) - 2 (pdot.pdot) A(p) */
+static inline void velocity_matrix(const se3di_frame *frame, double Z[9])
+{
+    const double *q = frame->pdot;
+    const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    se3di_quat_to_matrix(q, Z);
+    for (int k = 0; k < 9; ++k) {
+        Z[k] = 2.0 * (Z[k] - square * frame->A[k]);
+    }
+}
+
+static inline void rp_directions(const fused_joint *joint, const double Z_i[9], const double Z_j[9])
+{
+    const se3di_frame *i = joint->i, *j = joint->j;
+    const double *a_j = joint->terms[3].a_j;
+    double u[3], u_rate[3], u_term[3];
+    se3di_mul(j->A, a_j, u);
+    se3di_b_mul(j->p, a_j, j->pdot, u_rate);
+    se3di_mul(Z_j, a_j, u_term);
+    for (int k = 3; k < 5; ++k) {
+        const double *a_i = joint->terms[k].a_i;
+        double v[3], gradient[4];
+        se3di_mul(i->A, a_i, v);
+        if (joint->block_i) {
+            double *block = joint->block_i + k * BLOCK;
+            block[0] = block[1] = block[2] = 0.0;
+            se3di_b_transposed_mul(i->p, a_i, u, gradient);
+            put_half(block, i->p, 1.0, gradient);
         }
-        if (gamma) {
-            se3di_cross(i->w, a_i, rate);
-            turn_twice(i->w, a_i, rate_rate);
-            gamma[k] -= se3di_dot(l, rate_rate) + se3di_dot(a_i, l2) + 2.0 * se3di_dot(rate, l1);
+        if (joint->block_j) {
+            double *block = joint->block_j + k * BLOCK;
+            block[0] = block[1] = block[2] = 0.0;
+            se3di_b_transposed_mul(j->p, a_j, v, gradient);
+            put_half(block, j->p, 1.0, gradient);
         }
+        if (joint->gamma) {
+            double v_rate[3], v_term[3];
+            se3di_b_mul(i->p, a_i, i->pdot, v_rate);
+            se3di_mul(Z_i, a_i, v_term);
+            joint->gamma[k] = joint->f[3 * k + 2] - se3di_dot(u, v_term) - se3di_dot(v, u_term) -
+                              2.0 * se3di_dot(u_rate, v_rate);
+        }
+    }
+}
+
+static void rp_eval(const fused_joint *joint, int has_directions)
+{
+    const se3di_frame *i = joint->i, *j = joint->j;
+    double Z_i[9] = {0.0}, Z_j[9] = {0.0}, arm_i[3], arm_j[3];
+    if (joint->block_i) {
+        rp_point(joint->block_i, i, joint->terms[0].s_i, -1.0);
+    }
+    if (joint->block_j) {
+        rp_point(joint->block_j, j, joint->terms[0].s_j, 1.0);
+    }
+    if (joint->gamma) {
+        velocity_matrix(i, Z_i);
+        velocity_matrix(j, Z_j);
+        se3di_mul(Z_i, joint->terms[0].s_i, arm_i);
+        se3di_mul(Z_j, joint->terms[0].s_j, arm_j);
+        for (int k = 0; k < 3; ++k) {
+            joint->gamma[k] = joint->f[3 * k + 2] + arm_i[k] - arm_j[k];
+        }
+    }
+    if (has_directions) {
+        rp_directions(joint, Z_i, Z_j);
     }
 }
 
@@ -119,29 +240,18 @@ void se3di_fused_eval(se3di_assembly *assembly, uint32_t joint, double *gamma)
     const se3di_term *terms = model->terms + constraint->term_begin;
     const se3di_term_place *place = &assembly->places[constraint->term_begin];
     const size_t *offset = assembly->block_offset + assembly->joint_begin[joint];
-    const se3di_frame *i = &model->frames[terms[0].body_i];
-    const se3di_frame *j = &model->frames[terms[0].body_j];
-    double *block_i = place->slot_i >= 0 ? assembly->C + offset[place->slot_i] : NULL;
-    double *block_j = place->slot_j >= 0 ? assembly->C + offset[place->slot_j] : NULL;
-    if (block_i) {
-        put_point(block_i, i, terms[0].s_i, -1.0);
-    }
-    if (block_j) {
-        put_point(block_j, j, terms[0].s_j, 1.0);
-    }
-    if (gamma) {
-        double local[3], arm_i[3], arm_j[3];
-        const double *f = assembly->f + 3 * (size_t)constraint->row_begin;
-        turn_twice(i->w, terms[0].s_i, local);
-        se3di_mul(i->A, local, arm_i);
-        turn_twice(j->w, terms[0].s_j, local);
-        se3di_mul(j->A, local, arm_j);
-        for (uint32_t k = 0; k < constraint->row_count; ++k) {
-            gamma[k] = f[3 * k + 2] + (k < 3 ? arm_i[k] - arm_j[k] : 0.0);
-        }
-    }
-    if (constraint->row_count == 5) {
-        eval_directions(terms + 3, i, j, block_i ? block_i + 3 * BLOCK : NULL,
-                        block_j ? block_j + 3 * BLOCK : NULL, gamma ? gamma + 3 : NULL);
+    const fused_joint seen = {
+        .terms = terms,
+        .i = &model->frames[terms[0].body_i],
+        .j = &model->frames[terms[0].body_j],
+        .block_i = place->slot_i >= 0 ? assembly->C + offset[place->slot_i] : NULL,
+        .block_j = place->slot_j >= 0 ? assembly->C + offset[place->slot_j] : NULL,
+        .f = assembly->f + 3 * (size_t)constraint->row_begin,
+        .gamma = gamma,
+    };
+    if (assembly->formulation->id == SE3D_FORMULATION_RP) {
+        rp_eval(&seen, constraint->row_count == 5);
+    } else {
+        romega_eval(&seen, constraint->row_count == 5);
     }
 }

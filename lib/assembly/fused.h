@@ -1,13 +1,22 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Joints whose equations are evaluated together, in r-omega: a point on two bodies (three CD along
- * the ground axes), alone or followed by two DP1 that share their direction on body j. This covers
- * spherical and revolute joints; all others are evaluated term by term.
+/* Joints whose equations are evaluated together: a point on two bodies (three CD along the ground
+ * axes), alone or followed by two DP1 that share their direction on body j. This covers spherical
+ * and revolute joints; all others are evaluated term by term. With S = A s, W = A w, u = A_j a_j,
+ * v = A_i a_i, n = v x u, D = W_i - W_j:
  *
- *     CD k:  phi_j = [ e_k,  s_j x (row k of A_j)]    phi_i = [-e_k, -s_i x (row k of A_i)]
- *            gamma = f_tt + (A_i (w_i x (w_i x s_i)) - A_j (w_j x (w_j x s_j)))_k
- *     DP1:   with l, l', l'' = A_i^T A_j applied to a_j, w_j x a_j, w_j x (w_j x a_j):
- *            phi_i = [0, a_i x l]    phi_j = [0, a_j x (A_j^T A_i a_i)]
- *            gamma = f_tt - l . (w_i x (w_i x a_i)) - a_i . l'' - 2 (w_i x a_i) . l'
+ *     r-omega   CD k:  phi_j = [ e_k,  s_j x (row k of A_j)]    phi_i = [-e_k, -s_i x (row k of
+ * A_i)] gamma = f_tt + (W_i (W_i.S_i) - S_i (W_i.W_i) - the same of j)_k DP1:   Phi' = n . D, so
+ *                      phi_i = [0, A_i^T n]    phi_j = [0, -A_j^T n]
+ *                      gamma = f_tt - n . (W_i x W_j) + (D.D) (u.v) - (D.u) (D.v)
+ *
+ *     r-p on the tangent of |p| = 1 (formulation/rp_tangent.c), with B = B(p,s) and
+ *     Z = 2 A(pdot) - (pdot.pdot) 2 A(p), for which Z s = B(pdot,s) pdot - (pdot.pdot) B(p,s) p:
+ *
+ *               CD k:  phi_j = [ e_k,  1/2 G_j (row k of B_j)]    phi_i = [-e_k, -1/2 G_i (...)]
+ *                      gamma = f_tt - (Z_j s_j - Z_i s_i)_k
+ *               DP1:   phi_i = [0, 1/2 G_i B(p_i,a_i)^T u]    phi_j = [0, 1/2 G_j B(p_j,a_j)^T v]
+ *                      gamma = f_tt - u . Z_i a_i - v . Z_j a_j
+ *                              - 2 B(p_i,a_i) pdot_i . B(p_j,a_j) pdot_j
  *
  * docs/theory/assembly.md */
 #ifndef SE3DI_ASSEMBLY_FUSED_H

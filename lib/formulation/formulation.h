@@ -51,8 +51,12 @@ typedef struct se3di_formulation {
 
 extern const se3di_formulation se3di_formulation_romega;
 extern const se3di_formulation se3di_formulation_rp;
+/* r-p with the normalisation eliminated: 6 unknowns per body and no curvature of its own. */
+extern const se3di_formulation se3di_formulation_rp_tangent;
 
 /* By se3d_formulation; NULL where there is none. */
 const se3di_formulation *se3di_formulation_find(int32_t id);
+/* The same formulation in the fewest unknowns, for explicit methods. */
+const se3di_formulation *se3di_formulation_reduce(const se3di_formulation *formulation);
 
 #endif

@@ -133,3 +133,8 @@ const se3di_formulation *se3di_formulation_find(int32_t id)
         return NULL;
     }
 }
+
+const se3di_formulation *se3di_formulation_reduce(const se3di_formulation *formulation)
+{
+    return formulation == &se3di_formulation_rp ? &se3di_formulation_rp_tangent : formulation;
+}

@@ -197,4 +197,5 @@ const se3di_integrator se3di_integrator_dop853 = {
     .start = start,
     .step = step,
     .run = run,
+    .is_explicit = 1,
 };

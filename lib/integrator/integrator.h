@@ -39,6 +39,8 @@ typedef struct se3di_integrator {
     se3d_status (*run)(se3di_integration *integration, double t_end);
     int32_t is_implicit;       /* not 0: integration->newton is made */
     int32_t controls_if_asked; /* not 0: `run` only where settings.controls_error */
+    int32_t is_explicit;       /* not 0: works with formulations in the fewest unknowns */
+    int32_t reserved;
 } se3di_integrator;
 
 struct se3di_integration {

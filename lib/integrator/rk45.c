@@ -59,4 +59,5 @@ const se3di_integrator se3di_integrator_rk45 = {
     .start = start,
     .step = step,
     .run = run,
+    .is_explicit = 1,
 };

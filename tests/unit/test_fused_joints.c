@@ -25,7 +25,7 @@ static void build(se3d_system *system)
             w[c] = 3.0 * check_random(&seed);
             v[c] = check_random(&seed);
             def.position[c] = check_random(&seed);
-            def.inertia[c] = 1.0;
+            def.inertia[c] = 1.0 + 0.2 * c;
         }
         def.mass = 1.0;
         CHECK(se3d_body_create(system, &def, &bodies[k]) == SE3D_OK);
@@ -43,15 +43,14 @@ static void build(se3d_system *system)
     }
 }
 
-static void one_pass_equals_term_by_term(void)
+static void compare(const se3di_formulation *formulation)
 {
     se3d_system *system = NULL;
     se3di_assembly assembly;
     double together[16], apart[16], C[200];
     CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
     build(system);
-    CHECK(se3di_assembly_init(&assembly, &system->model, &se3di_formulation_romega,
-                              &system->error) == SE3D_OK);
+    CHECK(se3di_assembly_init(&assembly, &system->model, formulation, &system->error) == SE3D_OK);
     CHECK(assembly.row_count == 16 && assembly.joint_value_count <= 200);
     se3di_assembly_eval_rows(&assembly, together);
     memcpy(C, assembly.C, assembly.joint_value_count * sizeof *C);
@@ -71,8 +70,46 @@ static void one_pass_equals_term_by_term(void)
     se3d_system_destroy(system);
 }
 
+static void one_pass_equals_term_by_term(void)
+{
+    compare(&se3di_formulation_romega);
+    compare(&se3di_formulation_rp_tangent);
+}
+
+/* The rows that r-p leaves on the tangent are those of r-omega, by other formulas. */
+static void tangent_of_r_p_has_the_equations_of_r_omega(void)
+{
+    se3d_system *system = NULL;
+    se3di_assembly romega, tangent;
+    double gamma[16], gamma_p[16];
+    CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
+    build(system);
+    CHECK(se3di_assembly_init(&romega, &system->model, &se3di_formulation_romega, &system->error) ==
+          SE3D_OK);
+    CHECK(se3di_assembly_init(&tangent, &system->model, &se3di_formulation_rp_tangent,
+                              &system->error) == SE3D_OK);
+    se3di_assembly_eval_rows(&romega, gamma);
+    se3di_assembly_eval_rows(&tangent, gamma_p);
+    for (int k = 0; k < 16; ++k) {
+        CHECK_NEAR(gamma[k], gamma_p[k], 1e-13);
+    }
+    for (size_t k = 0; k < romega.joint_value_count; ++k) {
+        CHECK_NEAR(romega.C[k], tangent.C[k], 1e-14);
+    }
+    double b[12], b_p[12];
+    CHECK(se3di_assembly_eval_forces(&romega, 0.0, b, &system->error) == SE3D_OK);
+    CHECK(se3di_assembly_eval_forces(&tangent, 0.0, b_p, &system->error) == SE3D_OK);
+    for (int k = 0; k < 12; ++k) {
+        CHECK_NEAR(b[k], b_p[k], 1e-13);
+    }
+    se3di_assembly_destroy(&romega);
+    se3di_assembly_destroy(&tangent);
+    se3d_system_destroy(system);
+}
+
 int main(void)
 {
     RUN(one_pass_equals_term_by_term);
+    RUN(tangent_of_r_p_has_the_equations_of_r_omega);
     return check_finish();
 }
