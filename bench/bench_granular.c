@@ -1,10 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The settled column: N^3 spheres in a box, particle-steps per CPU second, rebuilds included.
+/* Granular beds: million particle-steps per second, rebuilds of the lists included.
  *
- *     granular [EDGE] [hooke|hertz] [STEPS] [SETTLE] [THREADS] [FILE] [TILT]
+ *     bench_granular NAME=VALUE...
  *
- * writes the settled state to FILE as a LAMMPS data file, so that others start from the same;
- * TILT in degrees turns gravity for the measured steps: an avalanche. See granular/README.md. */
+ *     edge=20       edge^3 spheres          law=hooke|hertz        threads=1
+ *     settle=60000  steps until they lie    lead=300               steps before the clock starts
+ *     steps=3000    steps that are timed    repeats=1              so often, the best is told
+ *     tilt=0        degrees that gravity turns by before the lead: an avalanche
+ *     drum=0        rad/s: the box is a drum of 24 planes about the y axis instead
+ *     state=FILE    the settled state as a LAMMPS data file: read where there is one, written
+ *                   otherwise, so that others start from the same
+ *
+ * A last line tells bytes and flops per particle-step and the share of what the memory can do; see
+ * granular/README.md. */
 #define _POSIX_C_SOURCE 200809L
 #include "se3d/se3d.h"
 
@@ -17,11 +25,20 @@
 #define DIAMETER 0.01
 #define SPACING  (1.1 * DIAMETER)
 
+#define DRUM_PLANES 24
+#define DRUM_RADIUS 0.75 /* of the width: the box fits in */
+#define PI          3.14159265358979323846
+
 typedef struct bench {
     se3d_system *system;
     se3d_particles *particles;
+    se3d_body drum;
     size_t edge, count;
     double *state; /* r, v, w [count * 3] each */
+    double turned; /* angle of the drum */
+    int hertz, reserved;
+    double threads, settle, lead, steps, repeats, tilt, drum_rate;
+    const char *file;
 } bench;
 
 static double clock_of(clockid_t id)
@@ -39,18 +56,61 @@ static void must(const bench *b, se3d_status status)
     }
 }
 
-static void build(bench *b, int hertz, int32_t threads)
+static double width_of(const bench *b)
+{
+    return (double)b->edge * SPACING;
+}
+
+/* A floor and four sides; or planes around the y axis through the middle, on a body that turns,
+ * and two ends. */
+static void add_plane(bench *b, se3d_body body, se3d_material material, const double point[3],
+                      const double normal[3])
+{
+    se3d_shape_def wall = se3d_shape_def_default();
+    se3d_shape handle;
+    wall.body = body;
+    wall.material = material;
+    memcpy(wall.normal, normal, sizeof wall.normal);
+    memcpy(wall.position, point, sizeof wall.position);
+    must(b, se3d_shape_create_plane(b->system, &wall, &handle));
+}
+
+static void add_walls(bench *b, se3d_material material)
 {
     static const double normals[5][3] = {
-        {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}};
-    double width = (double)b->edge * SPACING;
+        {0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
+    double width = width_of(b);
+    const se3d_body ground = {0, 0};
+    for (int k = 0; k < (b->drum_rate != 0.0 ? 2 : 5); ++k) {
+        const double point[3] = {k == 3 ? width : 0.0, k == 1 ? width : 0.0, 0.0};
+        add_plane(b, ground, material, point, normals[k]);
+    }
+    if (b->drum_rate == 0.0) {
+        return;
+    }
+    se3d_body_def def = se3d_body_def_default();
+    def.mass = def.inertia[0] = def.inertia[1] = def.inertia[2] = 1.0;
+    def.position[0] = def.position[2] = 0.5 * width;
+    def.angular_velocity[1] = b->drum_rate;
+    must(b, se3d_body_create(b->system, &def, &b->drum));
+    for (int k = 0; k < DRUM_PLANES; ++k) {
+        double angle = 2.0 * PI * k / DRUM_PLANES;
+        const double normal[3] = {-cos(angle), 0.0, -sin(angle)};
+        const double point[3] = {-DRUM_RADIUS * width * normal[0], 0.0,
+                                 -DRUM_RADIUS * width * normal[2]};
+        add_plane(b, b->drum, material, point, normal);
+    }
+}
+
+static void build(bench *b)
+{
     must(b, se3d_system_create(NULL, &b->system));
     se3d_particles_def def = se3d_particles_def_default();
-    def.threads = threads;
-    def.step = 1e-5;
     se3d_contact_settings contact = se3d_contact_settings_default();
-    contact.law = hertz ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE;
+    contact.law = b->hertz ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE;
     must(b, se3d_system_set_contact(b->system, &contact));
+    def.threads = (int32_t)b->threads;
+    def.step = 1e-5;
     must(b, se3d_particles_create(b->system, &def, &b->particles));
     se3d_material_def stuff = se3d_material_def_default();
     stuff.density = 2500.0;
@@ -59,45 +119,52 @@ static void build(bench *b, int hertz, int32_t threads)
     stuff.restitution = 0.7;
     se3d_material material;
     must(b, se3d_material_create(b->system, &stuff, &material));
-    for (int k = 0; k < 5; ++k) {
-        se3d_shape_def wall = se3d_shape_def_default();
-        se3d_shape handle;
-        wall.material = material;
-        memcpy(wall.normal, normals[k], sizeof wall.normal);
-        wall.position[0] = k == 2 ? width : 0.0;
-        wall.position[1] = k == 4 ? width : 0.0;
-        must(b, se3d_shape_create_plane(b->system, &wall, &handle));
-    }
+    add_walls(b, material);
     se3d_fill_def fill = se3d_fill_def_default();
     fill.material = material;
-    fill.upper[0] = fill.upper[1] = fill.upper[2] = width;
+    fill.upper[0] = fill.upper[1] = fill.upper[2] = width_of(b);
     fill.radius_min = fill.radius_max = 0.5 * DIAMETER;
     fill.jitter = 0.045 * DIAMETER;
     fill.spacing = SPACING;
     fill.seed = 1;
     must(b, se3d_particles_fill_lattice(b->particles, &fill, &b->count));
-    b->state = malloc(9 * b->count * sizeof *b->state);
+    b->state = calloc(9 * b->count, sizeof *b->state);
 }
 
-/* Let it fall, with velocities that decay. */
-static void settle(bench *b, size_t steps)
+/* Steps; a drum turns a little every 20 of them. */
+static void go(bench *b, size_t steps)
 {
-    for (size_t k = 0; k < steps; k += 50) {
-        must(b, se3d_particles_step(b->particles, 50));
-        must(b, se3d_particles_get_all(b->particles, b->count, NULL, b->state,
-                                       b->state + 3 * b->count));
-        for (size_t n = 0; n < 6 * b->count; ++n) {
-            b->state[n] *= 0.995;
+    size_t batch = b->drum_rate != 0.0 ? 20 : steps;
+    for (size_t done = 0; done < steps; done += batch) {
+        if (b->drum_rate != 0.0) {
+            b->turned += b->drum_rate * 20 * 1e-5;
+            const double p[4] = {cos(0.5 * b->turned), 0.0, sin(0.5 * b->turned), 0.0};
+            const double w[3] = {0.0, b->drum_rate, 0.0};
+            must(b, se3d_body_set_orientation(b->system, b->drum, p));
+            must(b, se3d_body_set_angular_velocity(b->system, b->drum, w));
         }
-        must(b, se3d_particles_set_all(b->particles, b->count, NULL, b->state,
-                                       b->state + 3 * b->count));
+        must(b, se3d_particles_step(b->particles, batch));
     }
 }
 
-static void write_state(bench *b, const char *path)
+/* Let it fall, with velocities that decay. */
+static void settle(bench *b)
 {
-    FILE *file = fopen(path, "w");
-    double width = (double)b->edge * SPACING;
+    double *v = b->state + 3 * b->count;
+    for (double k = 0; k < b->settle; k += 50) {
+        must(b, se3d_particles_step(b->particles, 50));
+        must(b, se3d_particles_get_all(b->particles, b->count, NULL, v, v + 3 * b->count));
+        for (size_t n = 0; n < 6 * b->count; ++n) {
+            v[n] *= 0.995;
+        }
+        must(b, se3d_particles_set_all(b->particles, b->count, NULL, v, v + 3 * b->count));
+    }
+}
+
+static void write_state(bench *b)
+{
+    FILE *file = fopen(b->file, "w");
+    double width = width_of(b);
     if (!file) {
         return;
     }
@@ -112,42 +179,150 @@ static void write_state(bench *b, const char *path)
     fclose(file);
 }
 
-static void measure(bench *b, size_t steps, const char *law)
+/* Returns 0 where there is no such file. */
+static int read_state(bench *b)
+{
+    FILE *file = b->file ? fopen(b->file, "r") : NULL;
+    char line[256];
+    size_t k = 0;
+    while (file && k < b->count && fgets(line, sizeof line, file)) {
+        unsigned long id;
+        double *x = b->state + 3 * k;
+        int found = sscanf(line, "%lu %*d %*f %*f %lf %lf %lf", &id, &x[0], &x[1], &x[2]);
+        k += found == 4;
+    }
+    if (file) {
+        fclose(file);
+    }
+    if (k == b->count && k > 0) {
+        must(b, se3d_particles_set_all(b->particles, b->count, b->state, NULL, NULL));
+        return 1;
+    }
+    return 0;
+}
+
+static void tilt(bench *b)
+{
+    double angle = b->tilt * PI / 180.0;
+    const double g[3] = {9.81 * sin(angle), 0.0, -9.81 * cos(angle)};
+    must(b, se3d_system_set_gravity(b->system, g));
+}
+
+/* Bytes per second of a[k] = b[k] + s c[k] over arrays that no cache holds. */
+static double triad(void)
+{
+    const size_t n = (size_t)1 << 24;
+    double *a = calloc(3 * n, sizeof *a);
+    double best = 0.0;
+    for (int turn = 0; a && turn < 6; ++turn) {
+        double start = clock_of(CLOCK_PROCESS_CPUTIME_ID);
+        for (size_t k = 0; k < n; ++k) {
+            a[k] = a[n + k] + 3.0 * a[2 * n + k];
+        }
+        double rate = 24.0 * (double)n / (clock_of(CLOCK_PROCESS_CPUTIME_ID) - start);
+        best = turn > 0 && rate > best ? rate : best; /* the first one touches the pages */
+        a[n] = a[0];
+    }
+    free(a);
+    return best;
+}
+
+/* What passes between processor and memory where nothing stays in a cache, and what is computed,
+ * for each particle and step: the records of a particle twice, once to move it and once for its
+ * forces; the blocks of its pairs (8 of 256 bytes), of which the springs are written. */
+static void roofline(double contacts, double rate)
+{
+    const double move = 2.0 * (64.0 + 32.0 + 64.0); /* grain, spin and load, read and written */
+    const double force = 64.0 + 32.0 + 2.0 * 64.0;
+    const double pair = (256.0 + 192.0) / 8.0;
+    double bytes = move + force + contacts * pair;
+    double flops = 44.0 + contacts * 148.0; /* a root is one */
+    double limit = triad();
+    printf(
+        "  %.0f bytes and %.0f flops per particle-step: %.1f GB/s of %.1f GB/s (triad), %.0f %%; "
+        "%.1f Gflop/s\n",
+        bytes, flops, 1e-9 * rate * bytes, 1e-9 * limit, 100.0 * rate * bytes / limit,
+        1e-9 * rate * flops);
+}
+
+static void measure(bench *b)
 {
     se3d_particles_stats before, after;
-    must(b, se3d_particles_step(b->particles, 200));
-    must(b, se3d_particles_get_stats(b->particles, &before));
-    double cpu = clock_of(CLOCK_PROCESS_CPUTIME_ID);
-    double wall = clock_of(CLOCK_MONOTONIC);
-    must(b, se3d_particles_step(b->particles, steps));
-    cpu = clock_of(CLOCK_PROCESS_CPUTIME_ID) - cpu;
-    wall = clock_of(CLOCK_MONOTONIC) - wall;
-    must(b, se3d_particles_get_stats(b->particles, &after));
-    double work = 1e-6 * (double)b->count * (double)steps;
-    printf("%s %zu: %.1f M particle-steps per CPU second, %.1f per second; %.2f contacts and %.0f "
-           "bytes per sphere, %llu rebuilds\n",
-           law, b->count, work / cpu, work / wall, (double)after.contacts / (double)b->count,
-           (double)after.bytes / (double)b->count,
-           (unsigned long long)(after.rebuilds - before.rebuilds));
+    double work = (double)b->count * b->steps;
+    double cpu_rate = 0.0;
+    double rate = 0.0;
+    uint64_t rebuilds = 0;
+    go(b, (size_t)b->lead);
+    for (double turn = 0; turn < b->repeats; ++turn) {
+        must(b, se3d_particles_get_stats(b->particles, &before));
+        double cpu = clock_of(CLOCK_PROCESS_CPUTIME_ID);
+        double wall = clock_of(CLOCK_MONOTONIC);
+        go(b, (size_t)b->steps);
+        cpu_rate = fmax(cpu_rate, work / (clock_of(CLOCK_PROCESS_CPUTIME_ID) - cpu));
+        rate = fmax(rate, work / (clock_of(CLOCK_MONOTONIC) - wall));
+        must(b, se3d_particles_get_stats(b->particles, &after));
+        rebuilds = after.rebuilds - before.rebuilds;
+    }
+    double contacts = (double)after.contacts / (double)b->count;
+    printf("se3d %s %zu, %d threads: %.2f M particle-steps per CPU second, %.2f per second; %.2f "
+           "contacts and %.0f bytes per sphere, %llu rebuilds, %llu lost\n",
+           b->hertz ? "hertz" : "hooke", b->count, (int)after.threads, 1e-6 * cpu_rate, 1e-6 * rate,
+           contacts, (double)after.bytes / (double)b->count, (unsigned long long)rebuilds,
+           (unsigned long long)after.lost);
+    if (after.threads == 1) {
+        roofline(contacts, cpu_rate);
+    }
+}
+
+static int parse(bench *b, const char *text)
+{
+    const struct {
+        const char *name;
+        double *value;
+    } numbers[] = {{"threads", &b->threads}, {"settle", &b->settle},   {"lead", &b->lead},
+                   {"steps", &b->steps},     {"repeats", &b->repeats}, {"tilt", &b->tilt},
+                   {"drum", &b->drum_rate}};
+    const char *equals = strchr(text, '=');
+    size_t length = equals ? (size_t)(equals - text) : 0;
+    for (size_t k = 0; equals && k < sizeof numbers / sizeof numbers[0]; ++k) {
+        if (strlen(numbers[k].name) == length && strncmp(text, numbers[k].name, length) == 0) {
+            *numbers[k].value = atof(equals + 1);
+            return 1;
+        }
+    }
+    if (strncmp(text, "edge=", 5) == 0) {
+        b->edge = (size_t)atol(text + 5);
+    } else if (strncmp(text, "law=", 4) == 0) {
+        b->hertz = strcmp(text, "law=hertz") == 0;
+    } else if (strncmp(text, "state=", 6) == 0) {
+        b->file = text + 6;
+    } else {
+        fprintf(stderr, "what is %s?\n", text);
+        return 0;
+    }
+    return 1;
 }
 
 int main(int argc, char **argv)
 {
-    bench b = {.edge = argc > 1 ? (size_t)atoi(argv[1]) : 20};
-    int hertz = argc > 2 && strcmp(argv[2], "hertz") == 0;
-    size_t steps = argc > 3 ? (size_t)atol(argv[3]) : 2000;
-    build(&b, hertz, argc > 5 ? atoi(argv[5]) : 1);
-    settle(&b, argc > 4 ? (size_t)atol(argv[4]) : 60000);
-    if (argc > 6 && argv[6][0]) {
-        write_state(&b, argv[6]);
+    bench b = {.edge = 20, .threads = 1, .settle = 60000, .lead = 300, .steps = 3000, .repeats = 1};
+    for (int k = 1; k < argc; ++k) {
+        if (!parse(&b, argv[k])) {
+            return 2;
+        }
     }
-    if (argc > 7) {
-        double angle = atof(argv[7]) * 3.14159265358979 / 180.0;
-        const double g[3] = {9.81 * sin(angle), 0.0, -9.81 * cos(angle)};
-        must(&b, se3d_system_set_gravity(b.system, g));
-        must(&b, se3d_particles_step(b.particles, 10000));
+    double start = clock_of(CLOCK_MONOTONIC);
+    build(&b);
+    must(&b, se3d_particles_step(b.particles, 1));
+    printf("ready after %.2f s\n", clock_of(CLOCK_MONOTONIC) - start);
+    if (!read_state(&b)) {
+        settle(&b);
+        if (b.file) {
+            write_state(&b);
+        }
     }
-    measure(&b, steps, hertz ? "hertz" : "hooke");
+    tilt(&b);
+    measure(&b);
     free(b.state);
     se3d_particles_destroy(b.particles);
     se3d_system_destroy(b.system);

@@ -1,22 +1,19 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# usage: run.sh GRANULAR [EDGE]...: our bench and LAMMPS (lmp) in turn, from the same settled state.
-bench=$1
-shift
+# usage: sh bench/granular/run.sh [options of compare.py]
+# Builds bench_granular, installs LAMMPS and LIGGGHTS where that may be done (Debian, root; without
+# them only our own figures are told), and compares.
+set -eu
 here=$(dirname "$0")
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-export OMP_NUM_THREADS=1
-for edge in "${@:-20}"; do
-    width=$(awk "BEGIN { printf \"%.17g\", $edge * 0.011 }")
-    steps=$(awk "BEGIN { printf \"%d\", 24e6 / ($edge * $edge * $edge) }")
-    for law in hooke hertz; do
-        "$bench" "$edge" "$law" "$((steps * 3))" "${SETTLE:-60000}" 1 "$work/column.data"
-        lmp -in "$here/lammps_$law.in" -var data "$work/column.data" -var w "$width" \
-            -var steps "$steps" -log none > "$work/out"
-        awk -v n="$((edge * edge * edge))" '/^Loop time/ { t = $4; s = $9 }
-            /CPU use/ { c = $1 + 0 } END {
-            printf "  LAMMPS %.2f M particle-steps per CPU second (%.0f %% CPU)\n",
-                   1e-6 * n * s / (t * c / 100), c }' "$work/out"
-    done
+source=$here/../..
+for program in lmp:lammps liggghts:liggghts; do
+    command -v "${program%:*}" >/dev/null || { [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null &&
+        apt-get install -y -qq "${program#*:}" >/dev/null 2>&1; } ||
+        echo "${program#*:} is not here; going on without"
 done
+cmake -S "$source" -B "$source/build/bench" -DCMAKE_BUILD_TYPE=Release -DSE3D_BUILD_BENCH=ON \
+    -DSE3D_BUILD_TESTS=OFF -DSE3D_BUILD_EXAMPLES=OFF >/dev/null
+cmake --build "$source/build/bench" --target bench_bench_granular -j2 >/dev/null
+program=$source/build/bench/bench/bench_granular
+python3 "$here/compare.py" "$program" "$@"
+"$program" edge=20 settle=20000 drum=3 lead=30000 repeats=3
