@@ -208,8 +208,54 @@ static void both_formulations_agree_on_every_example(void)
     CHECK(compared >= 16);
 }
 
+/* The four-bar that folds flat: a parallelogram, so that the angle alpha of its links obeys
+ * alpha'' = -11.772 cos(alpha) /s^2. At the distance s = |sin alpha| from flat, rounding u of the
+ * positions is u/s across the motion, u/s^2 in the velocities, u/s^3 in the accelerations and u/s^4
+ * in the reactions of whoever computes them from positions: the bounds follow that. */
+static double measure_flat(const se3d_system *system, double *speed, double *acceleration)
+{
+    const se3di_frame *left = &system->model.frames[1];
+    double s = fabs(left->r[1]) / hypot(left->r[0], left->r[1]);
+    *speed = 1.0 + 2.0 * 11.772 * (1.0 - left->r[1] / 0.5) - left->w[2] * left->w[2];
+    *acceleration = system->model.acceleration[6 + 5] + 11.772 * left->r[0] / 0.5;
+    return s;
+}
+
+static void near_flat_positions_only_rounding_is_magnified(void)
+{
+    const char *root = getenv("SE3D_SOURCE_DIR");
+    char path[700];
+    snprintf(path, sizeof path, "%.500s/examples/models/fourbar.yaml", root ? root : ".");
+    for (int32_t formulation = 0; formulation < 2; ++formulation) {
+        se3d_model *model = NULL;
+        se3d_model_error error;
+        se3d_solver *solver = NULL;
+        se3d_solver_def def = se3d_solver_def_default();
+        int near = 0;
+        def.analysis = SE3D_ANALYSIS_DYNAMICS;
+        def.formulation = formulation ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA;
+        def.method = SE3D_METHOD_DOP853;
+        def.tolerance = 1e-12;
+        CHECK(se3d_model_read_file(path, NULL, &model, &error) == SE3D_OK);
+        se3d_system *system = se3d_model_get_system(model);
+        CHECK(!se3d_solver_create(system, &def, &solver));
+        for (int k = 1; k <= 1000; ++k) {
+            double speed, acceleration;
+            CHECK(se3d_solver_run(solver, 0.01 * k) >= 0);
+            double s = measure_flat(system, &speed, &acceleration);
+            CHECK_NEAR(speed, 0.0, 1e-10 + 3e-14 / (s * s));
+            CHECK_NEAR(acceleration, 0.0, 1e-10 + 1e-13 / (s * s * s));
+            near += s < 0.1;
+        }
+        CHECK(near > 20);
+        se3d_solver_destroy(solver);
+        se3d_model_destroy(model);
+    }
+}
+
 int main(void)
 {
+    RUN(near_flat_positions_only_rounding_is_magnified);
     RUN(both_formulations_agree_on_every_example);
     return check_finish();
 }
