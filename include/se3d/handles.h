@@ -9,7 +9,8 @@
 typedef struct se3d_system se3d_system;
 /* An analysis of one system; destroy with se3d_solver_destroy before its system. */
 typedef struct se3d_solver se3d_solver;
-/* The particles of a system; destroy with se3d_particles_destroy before its system. */
+/* Particles of a system, which destroys them with itself unless se3d_particles_destroy did before.
+ */
 typedef struct se3d_particles se3d_particles;
 
 /* Elements: all zero is null. A handle of a destroyed element, or of another system, is always

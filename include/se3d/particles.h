@@ -32,6 +32,7 @@ typedef struct se3d_particles_def {
     double step;               /* [s]; 0: that of the system's contact settings */
     double skin;               /* of the neighbour list, over the mean diameter; default 0.1 */
     uint32_t group, mask;      /* as of se3d_shape_def */
+    const char *name;          /* copied; NULL or unique among the sets of the system */
 } se3d_particles_def;
 
 SE3D_API void se3d_particles_def_init(se3d_particles_def *def, size_t size);
@@ -43,14 +44,28 @@ static inline se3d_particles_def se3d_particles_def_default(void)
     return def;
 }
 
-/* Create an empty set of particles for `system`, which must outlive it. `def` may be NULL.
+/* Create an empty set of particles in `system`. `def` may be NULL. The system's clones, snapshots
+ * and hash include it, `verlet` moves it, and se3d_system_destroy destroys what is left of its
+ * sets.
  * @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def *def,
                                            se3d_particles **out);
 /* Destroy; NULL is fine. @since 0.1 */
 SE3D_API void se3d_particles_destroy(se3d_particles *particles);
-/* Make an independent copy for the same system; it continues with the same bits, and so is a
- * snapshot. Handles and ids are valid on both. @since 0.1 */
+/* Find a set by its name. @return OK, NULL, INVALID_ARGUMENT (no such set). Reader. @since 0.1 */
+SE3D_API se3d_status se3d_particles_find(const se3d_system *system, const char *name,
+                                         se3d_particles **particles);
+/* Get the name, "" where it has none; the system's. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_particles_get_name(const se3d_particles *particles, const char **name);
+/* Count the sets of a system and get one, in the order of creation: how the sets of a clone are
+ * reached. @return OK, NULL, INVALID_ARGUMENT (index). Reader. @since 0.1 */
+SE3D_API size_t se3d_system_count_particles(const se3d_system *system);
+SE3D_API se3d_status se3d_system_get_particles(const se3d_system *system, size_t index,
+                                               se3d_particles **particles);
+/* Make an independent copy beside the sets of the same system, to be destroyed before it: no step
+ * of the system moves it. It continues with the same bits, and so is a snapshot. Ids are valid on
+ * both.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles **out);
 /* Make `particles` what `saved`, a clone of it, is. @return OK, NULL, NO_MEMORY (nothing changed).
  * @since 0.1 */

@@ -62,7 +62,8 @@ static se3d_status allocate_work(se3di_run *run)
                                : SE3D_OK;
 }
 
-/* auto: friction sticks by a spring that only an implicit method can follow. */
+/* auto: particles move by verlet only; friction sticks by a spring that only an implicit method can
+ * follow. */
 static void choose_method(se3di_run *run)
 {
     int32_t method = SE3D_METHOD_DOP853;
@@ -70,6 +71,9 @@ static void choose_method(se3di_run *run)
         if (run->model->forces[k].type == SE3DI_FORCE_FRICTION) {
             method = SE3D_METHOD_GENERALIZED_ALPHA;
         }
+    }
+    if (run->model->sets) {
+        method = SE3D_METHOD_VERLET;
     }
     if (run->automatic) {
         run->integration.method = se3di_integrator_find(method);

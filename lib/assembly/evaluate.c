@@ -166,6 +166,9 @@ se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, doubl
             status == SE3D_ERR_SINGULAR ? "its two points coincide, it has no direction"
                                         : "its function is not finite or failed");
     }
+    for (size_t k = 0; assembly->push && k < 6 * (size_t)assembly->dense_count; ++k) {
+        assembly->wrench[k] += assembly->push[k];
+    }
     int32_t block = assembly->formulation->block;
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         uint32_t body = assembly->free_body[k];

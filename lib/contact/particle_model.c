@@ -158,6 +158,20 @@ static se3d_status replace_walls(se3di_particles *set, const se3di_model *model)
     return SE3D_OK;
 }
 
+void se3di_particles_adopt(se3di_particles *set, const se3di_model *model)
+{
+    for (size_t k = 0; k < set->wall_count; ++k) {
+        se3di_wall *wall = &set->walls[k];
+        uint32_t shape =
+            se3di_slots_find(&model->shape_slots, wall->handle.index1, wall->handle.generation);
+        if (shape == SE3DI_NO_INDEX) { /* destroyed since: the next step looks again */
+            wall->shape = (se3di_shape){.material = -1};
+        } else {
+            wall->shape = model->shapes[shape];
+        }
+    }
+}
+
 se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model)
 {
     if (set->topology_version == model->topology_version) {

@@ -55,6 +55,7 @@ void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator)
 void se3di_particles_destroy(se3di_particles *set)
 {
     const se3d_allocator *a = &set->allocator;
+    se3di_text_free(a, set->name);
     se3di_free(a, set->stuffs, set->stuff_capacity, sizeof *set->stuffs);
     se3di_free(a, set->pairs, set->pair_capacity, sizeof *set->pairs);
     se3di_free(a, set->walls, set->wall_capacity, sizeof *set->walls);
@@ -297,6 +298,8 @@ se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *c
 {
     const se3di_aligned none = {NULL, NULL, 0};
     *copy = *set;
+    copy->next = NULL;
+    copy->name = NULL;
     copy->grain_memory = copy->spin_memory = copy->load_memory = none;
     copy->block_memory = copy->roll_memory = none;
     copy->grains = NULL;
@@ -311,4 +314,15 @@ se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *c
         se3di_particles_destroy(copy);
     }
     return status;
+}
+
+void se3di_particles_replace(se3di_particles *set, const se3di_particles *other)
+{
+    struct se3di_particles *next = set->next;
+    char *name = set->name;
+    set->name = NULL;
+    se3di_particles_destroy(set);
+    *set = *other;
+    set->next = next;
+    set->name = name;
 }

@@ -109,6 +109,8 @@ typedef enum se3di_boundary {
 typedef struct se3di_kernels se3di_kernels;
 
 typedef struct se3di_particles {
+    struct se3di_particles *next; /* of the model's sets */
+    char *name;                   /* NULL: none; a clone has none */
     se3d_allocator allocator;
     se3di_contact_law law;
     int32_t threads;
@@ -219,6 +221,8 @@ void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator)
 void se3di_particles_destroy(se3di_particles *set);
 /* Deep copy into the uninitialised `copy`; on failure nothing is held. */
 se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *copy);
+/* Take over what `other` holds; name and place in the model stay. */
+void se3di_particles_replace(se3di_particles *set, const se3di_particles *other);
 se3d_status se3di_particles_reserve(se3di_particles *set, size_t count);
 /* Append; room must have been reserved. Returns the id. */
 uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double radius,
@@ -226,6 +230,8 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
 /* Remove where keep[index] is 0; the order of the others stays. The history must have been
  * collected. */
 void se3di_particles_filter(se3di_particles *set, const unsigned char *keep);
+/* A clone goes with a clone of the model, whose shapes its walls are from now on. */
+void se3di_particles_adopt(se3di_particles *set, const se3di_model *model);
 /* Take materials, shapes and settings from the model where it was edited since. */
 se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model);
 /* The index in the set's table of a material of the model, which is held from now on. Its users
@@ -265,8 +271,12 @@ void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames)
 /* Half kick of duration h/2 from the present forces and gravity. */
 void se3di_particles_kick(se3di_particles *set, double h);
 void se3di_particles_drift(se3di_particles *set, double h);
+/* One or two half kicks of duration h/2 each and a drift by h, in one pass. */
+void se3di_particles_move(se3di_particles *set, int kicks, double h);
 /* Bring the lists up to date, evaluate all forces; springs advance by h (0: they stay). */
 se3d_status se3di_particles_forces(se3di_particles *set, double h);
+/* Forces that belong to the state, with springs as they are. */
+se3d_status se3di_particles_prepare(se3di_particles *set);
 /* The automatic step with the model's materials. Infinite where there is nothing to resolve. */
 double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *model);
 /* One step of velocity Verlet; frames move the walls (NULL: they stay). */

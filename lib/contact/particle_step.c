@@ -93,6 +93,11 @@ void se3di_particles_drift(se3di_particles *set, double h)
     pass(set, 0, 0.0, h);
 }
 
+void se3di_particles_move(se3di_particles *set, int kicks, double h)
+{
+    pass(set, kicks, h, h);
+}
+
 /* The farthest that a wall's surface is from where it was, where particles may touch it: of a plane
  * at the corners of the box of all particles, of others at most |shift| + angle * bound. */
 static double wall_shift(const se3di_particles *set, const se3di_wall *wall, const double x[3],
@@ -379,18 +384,24 @@ double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *
     return step;
 }
 
+se3d_status se3di_particles_prepare(se3di_particles *set)
+{
+    if (set->force_valid) {
+        return SE3D_OK;
+    }
+    if (set->list_valid) {
+        memset(set->load_memory.data, 0, set->count * sizeof(se3di_load));
+    }
+    return se3di_particles_forces(set, 0.0);
+}
+
 se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps,
                                     const se3di_frame *frames)
 {
     if (frames) {
         se3di_particles_move_walls(set, frames);
     }
-    if (!set->force_valid) {
-        if (set->list_valid) {
-            memset(set->load_memory.data, 0, set->count * sizeof(se3di_load));
-        }
-        SE3DI_TRY(se3di_particles_forces(set, 0.0));
-    }
+    SE3DI_TRY(se3di_particles_prepare(set));
     for (size_t k = 0; k < steps; ++k) {
         pass(set, k == 0 ? 1 : 2, h, h);
         set->time += h;

@@ -19,6 +19,8 @@ const se3di_integrator *se3di_integrator_find(int32_t method)
         return &se3di_integrator_bdf;
     case SE3D_METHOD_RADAU:
         return &se3di_integrator_radau;
+    case SE3D_METHOD_VERLET:
+        return &se3di_integrator_verlet;
     default:
         return NULL;
     }

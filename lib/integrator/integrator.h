@@ -59,6 +59,7 @@ extern const se3di_integrator se3di_integrator_rk45;
 extern const se3di_integrator se3di_integrator_rattle;
 extern const se3di_integrator se3di_integrator_bdf;
 extern const se3di_integrator se3di_integrator_radau;
+extern const se3di_integrator se3di_integrator_verlet;
 
 /* By se3d_method; NULL where there is none yet. */
 const se3di_integrator *se3di_integrator_find(int32_t method);

@@ -140,6 +140,7 @@ static void disown(se3di_model *copy)
     se3di_slots_init(&copy->force_slots, 0);
     se3di_slots_init(&copy->material_slots, 0);
     se3di_slots_init(&copy->shape_slots, 0);
+    copy->sets = NULL;
     copy->row_count = copy->term_count = copy->angle_count = copy->history_count = 0;
 }
 

@@ -202,6 +202,9 @@ typedef struct se3di_model {
     uint64_t history_tag; /* who wrote it; 0: nobody */
 
     se3di_user_failure user_failure; /* see assembly/user.h */
+
+    struct se3di_particles *sets; /* particle sets in creation order, see contact/particle_sets.h;
+                                     not copied by se3di_model_clone */
 } se3di_model;
 
 /* A constraint under construction: joints and primitives fill it, se3di_model_add_constraint copies

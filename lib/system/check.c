@@ -164,7 +164,7 @@ se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_func
     return SE3D_OK;
 }
 
-static se3d_status check_name(se3d_system *system, const char *name)
+se3d_status se3di_check_name(se3d_system *system, const char *name)
 {
     int bad = name[0] == '\0';
     for (const char *c = name; *c && !bad; ++c) {
@@ -183,7 +183,7 @@ se3d_status se3di_check_body_name(se3d_system *system, const char *name)
     if (!name) {
         return SE3D_OK;
     }
-    SE3DI_TRY(check_name(system, name));
+    SE3DI_TRY(se3di_check_name(system, name));
     for (size_t k = 0; k < system->model.body_slots.count; ++k) {
         const char *other = system->model.bodies[k].name;
         if (other && strcmp(other, name) == 0) {
@@ -199,7 +199,7 @@ se3d_status se3di_check_marker_name(se3d_system *system, uint32_t body, const ch
     if (!name) {
         return SE3D_OK;
     }
-    SE3DI_TRY(check_name(system, name));
+    SE3DI_TRY(se3di_check_name(system, name));
     for (size_t k = 0; k < system->model.marker_slots.count; ++k) {
         const se3di_marker *other = &system->model.markers[k];
         if (other->body == body && other->name && strcmp(other->name, name) == 0) {
@@ -217,7 +217,7 @@ se3d_status se3di_check_constraint_name(se3d_system *system, const char *name)
     if (!name) {
         return SE3D_OK;
     }
-    SE3DI_TRY(check_name(system, name));
+    SE3DI_TRY(se3di_check_name(system, name));
     for (size_t k = 0; k < system->model.constraint_slots.count; ++k) {
         const char *other = system->model.constraints[k].name;
         if (other && strcmp(other, name) == 0) {
@@ -234,7 +234,7 @@ se3d_status se3di_check_force_name(se3d_system *system, const char *name)
     if (!name) {
         return SE3D_OK;
     }
-    SE3DI_TRY(check_name(system, name));
+    SE3DI_TRY(se3di_check_name(system, name));
     for (size_t k = 0; k < system->model.force_slots.count; ++k) {
         const char *other = system->model.forces[k].name;
         if (other && strcmp(other, name) == 0) {
@@ -250,7 +250,7 @@ se3d_status se3di_check_shape_name(se3d_system *system, const char *name)
     if (!name) {
         return SE3D_OK;
     }
-    SE3DI_TRY(check_name(system, name));
+    SE3DI_TRY(se3di_check_name(system, name));
     for (size_t k = 0; k < system->model.shape_slots.count; ++k) {
         const char *other = system->model.shapes[k].name;
         if (other && strcmp(other, name) == 0) {

@@ -9,10 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Beyond this many automatic steps a contact is not resolved and may gain energy. */
-#define STEP_LIMIT_HOOKE 15.0
-#define STEP_LIMIT_HERTZ 30.0
-#define THREADS_MAX      1024
+#define THREADS_MAX 1024
 
 void se3d_particles_def_init(se3d_particles_def *def, size_t size)
 {
@@ -82,6 +79,7 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
         SE3DI_TRY(se3di_check_def(system, "particles def", def, &full, sizeof full));
     }
     SE3DI_TRY(check_particles_def(system, &full));
+    SE3DI_TRY(se3di_check_particles_name(system, full.name));
     const se3d_allocator *allocator = &system->model.allocator;
     se3d_particles *particles = se3di_alloc(allocator, 1, sizeof *particles);
     if (!particles) {
@@ -90,8 +88,6 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
     se3di_particles *set = &particles->set;
     se3di_particles_init(set, allocator);
     particles->system = system;
-    particles->next = system->particles;
-    system->particles = particles;
     set->threads = full.threads;
     set->kernels = choose_kernels(full.portable);
     memcpy(set->boundary, full.boundary, sizeof set->boundary);
@@ -102,6 +98,14 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
     set->group = full.group;
     set->mask = full.mask;
     set->time = system->model.time;
+    if (full.name) {
+        set->name = se3di_text_copy(allocator, full.name);
+        if (!set->name) {
+            se3di_free(allocator, particles, 1, sizeof *particles);
+            return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for the name of particles");
+        }
+    }
+    se3di_sets_link(particles);
     *out = particles;
     return SE3D_OK;
 }
@@ -133,23 +137,12 @@ se3d_status se3di_particles_use(se3d_particles *particles, se3d_material materia
     return SE3D_OK;
 }
 
-static void unlink_set(se3d_particles *particles)
-{
-    se3d_particles **link = &particles->system->particles;
-    while (*link && *link != particles) {
-        link = &(*link)->next;
-    }
-    if (*link) {
-        *link = particles->next;
-    }
-}
-
 void se3d_particles_destroy(se3d_particles *particles)
 {
     if (particles) {
         se3d_allocator allocator = particles->set.allocator;
         count_users(particles, 0);
-        unlink_set(particles);
+        se3di_sets_unlink(particles);
         se3di_particles_destroy(&particles->set);
         se3di_free(&allocator, particles, 1, sizeof *particles);
     }
@@ -195,8 +188,7 @@ se3d_status se3d_particles_restore(se3d_particles *particles, const se3d_particl
                           "no memory to restore %zu particles", saved->set.count);
     }
     count_users(particles, 0);
-    se3di_particles_destroy(&particles->set);
-    particles->set = copy;
+    se3di_particles_replace(&particles->set, &copy);
     count_users(particles, 1);
     return SE3D_OK;
 }
@@ -413,63 +405,11 @@ se3d_status se3d_particles_get_forces(const se3d_particles *particles, size_t co
     return SE3D_OK;
 }
 
-/* The step in use; 0 where there is nothing to resolve. */
-static double step_of(const se3d_particles *particles)
-{
-    double given = particles->system->model.contact.step;
-    if (particles->set.step > 0.0 || given > 0.0) {
-        return particles->set.step > 0.0 ? particles->set.step : given;
-    }
-    double safe = se3di_particles_safe_step(&particles->set, &particles->system->model);
-    return isfinite(safe) ? safe : 0.0;
-}
-
-static se3d_status check_step(se3d_particles *particles, double h)
-{
-    const se3di_model *model = &particles->system->model;
-    double safe = se3di_particles_safe_step(&particles->set, model);
-    int is_hooke = model->contact.law == SE3DI_LAW_HOOKE;
-    double limit = safe * (is_hooke ? STEP_LIMIT_HOOKE : STEP_LIMIT_HERTZ);
-    if (h > limit) {
-        return SE3DI_FAIL(particles->system, SE3D_ERR_STEP_SIZE,
-                          "step = %g s at time %g s is too large, the contacts need at most %g s "
-                          "(automatic: %g s)",
-                          h, particles->set.time, limit, safe);
-    }
-    return SE3D_OK;
-}
-
-static se3d_status explain(se3d_particles *particles, se3d_status status)
-{
-    const se3di_particles *set = &particles->set;
-    if (status == SE3D_ERR_STEP_SIZE) {
-        return SE3DI_FAIL(particles->system, status,
-                          "particle %u overlaps by %g of the smaller radius at time %g s (allowed: "
-                          "%g); try a smaller step or a stiffer material",
-                          set->failed, set->failed_amount, set->time, set->overlap_limit);
-    }
-    if (status == SE3D_ERR_NOT_FINITE) {
-        return SE3DI_FAIL(particles->system, status,
-                          "the state of particle %u is not finite at time %g s; try a smaller step",
-                          set->failed, set->time);
-    }
-    if (status == SE3D_ERR_UNSUPPORTED) {
-        return SE3DI_FAIL(particles->system, status,
-                          "the domain is shorter along a periodic axis than four of the largest "
-                          "radii and two skins");
-    }
-    return SE3DI_FAIL(particles->system, status, "no memory for contacts at time %g s", set->time);
-}
-
 static se3d_status advance(se3d_particles *particles, double h, size_t steps)
 {
     const se3di_model *model = &particles->system->model;
     se3di_particles *set = &particles->set;
-    se3d_status synced = se3di_particles_sync(set, model);
-    if (synced < 0) {
-        return explain(particles, synced);
-    }
-    se3di_particles_move_walls(set, model->frames);
+    SE3DI_TRY(se3di_particles_place(set, model, &particles->system->error));
     int varies = model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
                  model->gravity_function[2] >= 0;
     size_t done = 0;
@@ -478,7 +418,7 @@ static se3d_status advance(se3d_particles *particles, double h, size_t steps)
         SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
         se3d_status status = se3di_particles_advance(set, h, now, NULL);
         if (status < 0) {
-            return explain(particles, status);
+            return se3di_particles_report(set, status, &particles->system->error);
         }
         done += now;
     } while (done < steps);
@@ -490,12 +430,13 @@ se3d_status se3d_particles_step(se3d_particles *particles, size_t steps)
     if (!particles) {
         return SE3D_ERR_NULL;
     }
-    double h = step_of(particles);
+    double h = se3di_particles_want_step(&particles->set, &particles->system->model);
     if (steps == 0 || particles->set.count == 0) {
         particles->set.time += h * (double)steps;
         return SE3D_OK;
     }
-    SE3DI_TRY(check_step(particles, h));
+    SE3DI_TRY(se3di_particles_check_step(&particles->set, &particles->system->model, h,
+                                         &particles->system->error));
     return advance(particles, h, steps);
 }
 
@@ -509,10 +450,11 @@ se3d_status se3d_particles_run(se3d_particles *particles, double time)
         return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
                           "time = %g s, must be finite and not before %g s", time, set->time);
     }
-    double h = step_of(particles);
+    double h = se3di_particles_want_step(&particles->set, &particles->system->model);
     double steps = h > 0.0 ? ceil((time - set->time) / h - 1e-9) : 0.0;
     if (steps > 0.0 && set->count > 0) {
-        SE3DI_TRY(check_step(particles, h));
+        SE3DI_TRY(se3di_particles_check_step(&particles->set, &particles->system->model, h,
+                                             &particles->system->error));
         SE3DI_TRY(advance(particles, (time - set->time) / steps, (size_t)steps));
     }
     set->time = time;
@@ -524,7 +466,7 @@ se3d_status se3d_particles_get_step(const se3d_particles *particles, double *ste
     if (!particles || !step) {
         return SE3D_ERR_NULL;
     }
-    *step = step_of(particles);
+    *step = se3di_particles_want_step(&particles->set, &particles->system->model);
     return SE3D_OK;
 }
 

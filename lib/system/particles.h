@@ -3,17 +3,33 @@
 #ifndef SE3DI_SYSTEM_PARTICLES_H
 #define SE3DI_SYSTEM_PARTICLES_H
 
-#include "contact/particle_set.h"
+#include "contact/particle_sets.h"
 #include "system/system_internal.h"
 
 struct se3d_particles {
-    se3di_particles set;
+    se3di_particles set; /* first: a set of the model is the particles it lies in */
     se3d_system *system;
-    se3d_particles *next; /* of the same system */
 };
 
 /* The index of a material in the set's table, which it gets and is counted in where it has none. */
 se3d_status se3di_particles_use(se3d_particles *particles, se3d_material material, uint32_t *index);
+
+/* `name` is well formed and free among the sets; NULL always is. */
+se3d_status se3di_check_particles_name(se3d_system *system, const char *name);
+
+/* particle_sets.c: the sets that a system owns. */
+void se3di_sets_link(se3d_particles *particles);
+void se3di_sets_unlink(se3d_particles *particles);
+void se3di_sets_destroy(se3di_model *model);
+/* Copies of all sets of `system` for its clone `copy`; on failure `copy` may hold some. */
+se3d_status se3di_sets_clone(const se3d_system *system, se3d_system *copy);
+/* Copies of all sets as a chain; NO_MEMORY: none is held. */
+se3d_status se3di_sets_save(const se3di_particles *sets, const se3d_allocator *allocator,
+                            se3di_particles **saved);
+void se3di_sets_forget(se3di_particles *saved, const se3d_allocator *allocator);
+/* Give the model's sets what a chain of as many copies holds, and free the chain. */
+void se3di_sets_take(se3di_model *model, se3di_particles *saved);
+
 /* Room for `count` more particles. */
 se3d_status se3di_particles_make_room(se3d_particles *particles, size_t count);
 

@@ -261,9 +261,9 @@ se3d_status se3d_shape_get_body(const se3d_system *system, se3d_shape shape, se3
 static void add_particles(const se3d_system *system, se3d_shape shape, double force[3],
                           double torque[3])
 {
-    for (const se3d_particles *p = system->particles; p; p = p->next) {
-        for (size_t k = 0; k < p->set.wall_count; ++k) {
-            const se3di_wall *wall = &p->set.walls[k];
+    for (const se3di_particles *set = system->model.sets; set; set = set->next) {
+        for (size_t k = 0; k < set->wall_count; ++k) {
+            const se3di_wall *wall = &set->walls[k];
             if (wall->handle.index1 == shape.index1 &&
                 wall->handle.generation == shape.generation) {
                 se3di_add(force, wall->force, force);

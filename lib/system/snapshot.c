@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Snapshots: everything that a step reads and writes, the integrator's history included. */
-#include "system/system_internal.h"
+#include "system/particles.h"
 
 #include <string.h>
 
@@ -16,11 +16,12 @@ struct se3d_snapshot {
     int32_t reserved2;
     size_t bodies, rows, angles, forces, history;
     se3di_frame *frames;
-    double *acceleration; /* [bodies * 6] */
-    double *lambda;       /* [rows] */
-    double *turns;        /* [angles] */
-    double *memory;       /* [forces * SE3DI_FORCE_STATES] */
-    double *carried;      /* [history] */
+    double *acceleration;  /* [bodies * 6] */
+    double *lambda;        /* [rows] */
+    double *turns;         /* [angles] */
+    double *memory;        /* [forces * SE3DI_FORCE_STATES] */
+    double *carried;       /* [history] */
+    se3di_particles *sets; /* copies of the particle sets */
 };
 
 static se3d_status allocate(se3d_snapshot *s)
@@ -85,7 +86,8 @@ se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out)
         .forces = model->force_slots.count,
         .history = model->history_tag ? model->history_count : 0,
     };
-    if (allocate(snapshot) < 0) {
+    if (allocate(snapshot) < 0 ||
+        se3di_sets_save(model->sets, &model->allocator, &snapshot->sets) < 0) {
         se3d_snapshot_destroy(snapshot);
         return SE3D_ERR_NO_MEMORY;
     }
@@ -118,6 +120,11 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
     if (status < 0) {
         return SE3DI_FAIL(system, status, "no memory for the integrator's history");
     }
+    se3di_particles *sets;
+    if (se3di_sets_save(snapshot->sets, &model->allocator, &sets) < 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for the snapshot's particles");
+    }
+    se3di_sets_take(model, sets);
     copy(model->frames, snapshot->frames, snapshot->bodies * sizeof *model->frames);
     copy(model->acceleration, snapshot->acceleration, 6 * snapshot->bodies * sizeof(double));
     copy(model->lambda, snapshot->lambda, snapshot->rows * sizeof(double));
@@ -149,6 +156,7 @@ void se3d_snapshot_destroy(se3d_snapshot *snapshot)
         se3di_free(&allocator, snapshot->turns, snapshot->angles, sizeof(double));
         se3di_free(&allocator, snapshot->memory, SE3DI_FORCE_STATES * snapshot->forces,
                    sizeof(double));
+        se3di_sets_forget(snapshot->sets, &allocator);
         se3di_free(&allocator, snapshot->carried, snapshot->history, sizeof(double));
         se3di_free(&allocator, snapshot, 1, sizeof *snapshot);
     }

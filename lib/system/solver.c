@@ -63,12 +63,6 @@ static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "method = %d, must be one of se3d_method", (int)def->method);
     }
-    if (!se3di_integrator_find(def->method)) {
-        return SE3DI_FAIL(system, SE3D_ERR_UNSUPPORTED,
-                          "method %d is not available in this version; allowed are auto, "
-                          "dop853, rk45, generalized_alpha, hht, rattle, bdf, radau",
-                          (int)def->method);
-    }
     return SE3D_OK;
 }
 

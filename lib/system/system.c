@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Systems: creation, gravity, time, counts, energy, violation, hash. */
-#include "system/system_internal.h"
+#include "system/particles.h"
 
 #include "base/hash.h"
 #include "force/force.h"
@@ -71,6 +71,7 @@ void se3d_system_destroy(se3d_system *system)
 {
     if (system) {
         se3d_allocator allocator = system->model.allocator;
+        se3di_sets_destroy(&system->model);
         se3di_model_destroy(&system->model);
         se3di_free(&allocator, system, 1, sizeof *system);
     }
@@ -91,6 +92,11 @@ se3d_status se3d_system_clone(const se3d_system *system, se3d_system **out)
     se3d_status status = se3di_model_clone(&system->model, &copy->model);
     if (status < 0) {
         se3di_free(&system->model.allocator, copy, 1, sizeof *copy);
+        return status;
+    }
+    status = se3di_sets_clone(system, copy);
+    if (status < 0) {
+        se3d_system_destroy(copy);
         return status;
     }
     copy->log = system->log;
@@ -400,5 +406,10 @@ uint64_t se3d_system_hash(const se3d_system *system)
         hash = se3di_hash_bytes(hash, frame->w, sizeof frame->w);
         hash = se3di_hash_bytes(hash, model->acceleration + 6 * k, 6 * sizeof(double));
     }
-    return se3di_hash_bytes(hash, model->lambda, model->row_count * sizeof(double));
+    hash = se3di_hash_bytes(hash, model->lambda, model->row_count * sizeof(double));
+    for (const se3di_particles *set = model->sets; set; set = set->next) {
+        const uint64_t particles = se3di_particles_hash(set);
+        hash = se3di_hash_bytes(hash, &particles, sizeof particles);
+    }
+    return hash;
 }

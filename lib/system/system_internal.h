@@ -9,7 +9,6 @@
 
 struct se3d_system {
     se3di_model model;
-    se3d_particles *particles; /* the first of its sets, see system/particles.h; copies are not */
     se3di_error error;
     se3d_log_callback log;
     void *log_ctx;
@@ -57,6 +56,8 @@ se3d_status se3di_find_material(se3d_system *system, const char *what, se3d_mate
 se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_function function,
                                 uint32_t variables, int32_t *index);
 
+/* `name` (not NULL) is well formed. */
+se3d_status se3di_check_name(se3d_system *system, const char *name);
 /* `name` is well formed and free among the constraints (bodies, forces); NULL always is. */
 se3d_status se3di_check_body_name(se3d_system *system, const char *name);
 se3d_status se3di_check_marker_name(se3d_system *system, uint32_t body, const char *name);

@@ -900,6 +900,10 @@ static const row rows[] = {
     {"se3d_shape_get_wrench", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_get_nearest", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_body_get_contact_wrench", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_find", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_name", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_system_count_particles", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_system_get_particles", particle_readers_reject_misuse, "", NULL, NULL},
     {"se3d_particles_fill_lattice", fills_reject_misuse, "", NULL, NULL},
     {"se3d_particles_fill_random", fills_reject_misuse, "", NULL, NULL},
 };

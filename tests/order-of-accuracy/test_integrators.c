@@ -257,6 +257,12 @@ static void rattle_is_of_order_2(void)
     check_method(&row);
 }
 
+static void verlet_is_of_order_2(void)
+{
+    const method_row row = {SE3D_METHOD_VERLET, 0, 2.0, 2.0, {400, 100, 100}, 1e-12};
+    check_method(&row);
+}
+
 static void rattle_is_of_order_4_by_composition(void)
 {
     const method_row row = {SE3D_METHOD_RATTLE, 4, 4.0, 4.0, {100, 24, 40}, 1e-11};
@@ -358,6 +364,7 @@ int main(void)
     RUN(rk45_controls_its_error);
     RUN(generalized_alpha_controls_its_error);
     RUN(rattle_is_of_order_2);
+    RUN(verlet_is_of_order_2);
     RUN(rattle_is_of_order_4_by_composition);
     RUN(dop853_is_of_order_8);
     RUN(rk45_is_of_order_5);

@@ -307,6 +307,24 @@ static se3d_status make_snapshot(workshop *w)
     return status;
 }
 
+/* A set with a name, and copies of it in a clone and a snapshot. */
+static se3d_status make_particles(workshop *w)
+{
+    se3d_particles *set = NULL;
+    se3d_particles_def def = se3d_particles_def_default();
+    def.name = "sand";
+    se3d_status status = se3d_particles_create(w->system, &def, &set);
+    CHECK((status >= 0) == (set != NULL));
+    if (status >= 0) {
+        status = make_clone(w);
+    }
+    if (status >= 0) {
+        status = make_snapshot(w);
+    }
+    se3d_particles_destroy(set);
+    return status;
+}
+
 static se3d_status make_check(workshop *w)
 {
     se3d_check *check = NULL;
@@ -341,6 +359,7 @@ static const operation_row operations[] = {
     {"table", make_table},
     {"clone", make_clone},
     {"snapshot", make_snapshot},
+    {"particles", make_particles},
     {"check", make_check},
 };
 

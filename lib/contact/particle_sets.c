@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "contact/particle_sets.h"
+
+#include "force/force.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Beyond this many automatic steps a contact is not resolved and may gain energy. */
+#define STEP_LIMIT_HOOKE 15.0
+#define STEP_LIMIT_HERTZ 30.0
+
+/* The set in a message: " of ", "sand". */
+static const char *set_name(const se3di_particles *set, const char **of)
+{
+    *of = set->name ? " of " : "";
+    return set->name ? set->name : "";
+}
+
+se3d_status se3di_particles_check_step(const se3di_particles *set, const se3di_model *model,
+                                       double h, se3di_error *error)
+{
+    const char *of;
+    const char *name = set_name(set, &of);
+    double safe = se3di_particles_safe_step(set, model);
+    double limit =
+        safe * (model->contact.law == SE3DI_LAW_HOOKE ? STEP_LIMIT_HOOKE : STEP_LIMIT_HERTZ);
+    if (h > limit) {
+        return se3di_error_set(error, SE3D_ERR_STEP_SIZE,
+                               "step = %g s at time %g s is too large, the contacts%s%.80s need at "
+                               "most %g s (automatic: %g s)",
+                               h, set->time, of, name, limit, safe);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_report(const se3di_particles *set, se3d_status status,
+                                   se3di_error *error)
+{
+    const char *of;
+    const char *name = set_name(set, &of);
+    switch (status) {
+    case SE3D_ERR_STEP_SIZE:
+        return se3di_error_set(error, status,
+                               "particle %u%s%.80s overlaps by %g of the smaller radius at time %g "
+                               "s (allowed: %g); try a smaller step or a stiffer material",
+                               set->failed, of, name, set->failed_amount, set->time,
+                               set->overlap_limit);
+    case SE3D_ERR_NOT_FINITE:
+        return se3di_error_set(error, status,
+                               "the state of particle %u%s%.80s is not finite at time %g s; try a "
+                               "smaller step",
+                               set->failed, of, name, set->time);
+    case SE3D_ERR_UNSUPPORTED:
+        return se3di_error_set(error, status,
+                               "the domain%s%.80s is shorter along a periodic axis than four of "
+                               "the largest radii and two skins",
+                               of, name);
+    default:
+        return se3di_error_set(error, status, "no memory for contacts%s%.80s at time %g s", of,
+                               name, set->time);
+    }
+}
+
+se3d_status se3di_particles_place(se3di_particles *set, const se3di_model *model,
+                                  se3di_error *error)
+{
+    se3d_status status = se3di_particles_sync(set, model);
+    if (status < 0) {
+        return se3di_particles_report(set, status, error);
+    }
+    se3di_particles_move_walls(set, model->frames);
+    return SE3D_OK;
+}
+
+double se3di_particles_want_step(const se3di_particles *set, const se3di_model *model)
+{
+    if (set->step > 0.0 || model->contact.step > 0.0) {
+        return set->step > 0.0 ? set->step : model->contact.step;
+    }
+    double safe = se3di_particles_safe_step(set, model);
+    return isfinite(safe) ? safe : 0.0;
+}
+
+static se3d_status begin(se3di_particles *set, const se3di_model *model, double h,
+                         se3di_error *error)
+{
+    set->time = model->time;
+    if (set->count == 0) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_particles_check_step(set, model, h, error));
+    SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
+    SE3DI_TRY(se3di_particles_place(set, model, error));
+    se3d_status status = se3di_particles_prepare(set);
+    return status < 0 ? se3di_particles_report(set, status, error) : SE3D_OK;
+}
+
+se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error)
+{
+    for (se3di_particles *set = model->sets; set; set = set->next) {
+        SE3DI_TRY(begin(set, model, h, error));
+    }
+    return SE3D_OK;
+}
+
+void se3di_sets_move(se3di_model *model, int kicks, double h)
+{
+    for (se3di_particles *set = model->sets; set; set = set->next) {
+        se3di_particles_move(set, kicks, h);
+    }
+}
+
+se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_error *error)
+{
+    se3d_status failure = SE3D_OK;
+    for (se3di_particles *set = model->sets; set; set = set->next) {
+        set->time = t;
+        ++set->steps;
+        if (set->count == 0) {
+            continue;
+        }
+        SE3DI_TRY(se3di_gravity_eval(model, t, set->gravity, NULL));
+        se3di_particles_move_walls(set, model->frames);
+        se3d_status status = se3di_particles_forces(set, h);
+        if (status < 0 && failure != SE3D_ERR_STEP_SIZE) {
+            failure = se3di_particles_report(set, status, error);
+        }
+        if (status < 0 && status != SE3D_ERR_STEP_SIZE) {
+            return failure;
+        }
+    }
+    return failure;
+}
+
+void se3di_sets_kick(se3di_model *model, double h)
+{
+    for (se3di_particles *set = model->sets; set; set = set->next) {
+        se3di_particles_kick(set, h);
+    }
+}
+
+void se3di_sets_push(const se3di_model *model, double *push)
+{
+    memset(push, 0, 6 * model->body_slots.count * sizeof *push);
+    for (const se3di_particles *set = model->sets; set; set = set->next) {
+        for (size_t k = 0; k < set->wall_count && set->count > 0; ++k) {
+            const se3di_wall *wall = &set->walls[k];
+            double torque[3];
+            se3di_mul_transposed(model->frames[wall->shape.body].A, wall->torque, torque);
+            se3di_add(push + 6 * wall->shape.body, wall->force, push + 6 * wall->shape.body);
+            se3di_add(push + 6 * wall->shape.body + 3, torque, push + 6 * wall->shape.body + 3);
+        }
+    }
+}
+
+double se3di_sets_step(const se3di_model *model)
+{
+    double step = 0.0;
+    for (const se3di_particles *set = model->sets; set; set = set->next) {
+        double wanted = se3di_particles_want_step(set, model);
+        step = wanted > 0.0 && !(step > 0.0 && step < wanted) ? wanted : step;
+    }
+    return step;
+}

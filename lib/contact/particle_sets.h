@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* All particle sets of a model, as a method that moves bodies and particles in one loop sees them.
+ *
+ * A step of length h: se3di_sets_begin; se3di_sets_move with 1 (or, between two steps of one loop,
+ * 2) half kicks; with the bodies at their new positions se3di_sets_forces; se3di_sets_kick at the
+ * end of the loop. docs/theory/verlet.md */
+#ifndef SE3DI_CONTACT_PARTICLE_SETS_H
+#define SE3DI_CONTACT_PARTICLE_SETS_H
+
+#include "contact/particle_set.h"
+
+/* What a set touches, where the model has it now. */
+se3d_status se3di_particles_place(se3di_particles *set, const se3di_model *model,
+                                  se3di_error *error);
+/* The step that a set wants; 0: any. */
+double se3di_particles_want_step(const se3di_particles *set, const se3di_model *model);
+/* A step beyond stability fails with STEP_SIZE. */
+se3d_status se3di_particles_check_step(const se3di_particles *set, const se3di_model *model,
+                                       double h, se3di_error *error);
+/* Record why a step of particles failed; returns `status`. */
+se3d_status se3di_particles_report(const se3di_particles *set, se3d_status status,
+                                   se3di_error *error);
+
+/* The sets at the model's time, with forces that belong to the state. */
+se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error);
+void se3di_sets_move(se3di_model *model, int kicks, double h);
+/* Forces at t. STEP_SIZE (too large an overlap): they are complete all the same. */
+se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_error *error);
+void se3di_sets_kick(se3di_model *model, double h);
+/* What the particles do to the bodies [bodies * 6]: force (ground frame), torque (body frame). */
+void se3di_sets_push(const se3di_model *model, double *push);
+/* The step that the particles want; 0: any. */
+double se3di_sets_step(const se3di_model *model);
+
+#endif

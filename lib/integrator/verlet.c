@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* verlet: explicit, order 2, for contact and particles. Bodies move by the step of rattle with the
+ * forces at predicted velocities (lie_verlet.h): positions and velocities meet their constraints at
+ * every step. Particles move by velocity Verlet in the same loop: their contact forces are
+ * evaluated once, with all positions at t_1 and all velocities in the middle of the step, and act
+ * on the bodies with the same weights h/2 as on the particles, so that the momentum of all is kept.
+ *
+ * Between two steps of one run the half kicks of the particles are one pass.
+ * docs/theory/verlet.md */
+#include "contact/particle_sets.h"
+#include "integrator/lie_verlet.h"
+
+#include <math.h>
+
+#define STEP_DEFAULT 1e-3 /* s, where nothing asks for less */
+
+static size_t work_count(const se3di_assembly *assembly)
+{
+    return se3di_lie_verlet_work_count(assembly) + 6 * (size_t)assembly->dense_count;
+}
+
+typedef struct verlet {
+    se3di_lie_verlet bodies;
+    se3di_model *model;
+    se3di_error *error;
+    double *push; /* of the particles on the bodies [dense bodies * 6] */
+    double h;     /* of the last step, whose second half kick of the particles is `open` */
+    int32_t open;
+    int32_t reserved;
+} verlet;
+
+static verlet begin(se3di_integration *integration)
+{
+    se3di_assembly *assembly = &integration->equations->assembly;
+    verlet m = {.bodies = se3di_lie_verlet_begin(integration, 1),
+                .model = assembly->model,
+                .error = integration->equations->error,
+                .push = integration->work + se3di_lie_verlet_work_count(assembly)};
+    if (m.model->sets) {
+        se3di_sets_push(m.model, m.push);
+        assembly->push = m.push;
+    }
+    return m;
+}
+
+/* The particles have their velocities at the model's time. */
+static void close_kick(verlet *m)
+{
+    if (m->open) {
+        se3di_sets_kick(m->model, m->h);
+        m->open = 0;
+    }
+}
+
+/* One step to t1 that leaves the last half kick of the particles open. */
+static se3d_status advance(verlet *m, double t1)
+{
+    se3di_lie_verlet *bodies = &m->bodies;
+    double t0 = m->model->time;
+    bodies->h = t1 - t0;
+    bodies->t1 = t1;
+    se3di_state_accept(bodies->equations);
+    se3d_status status = se3di_lie_verlet_drift(bodies);
+    se3d_status contact = SE3D_OK;
+    if (status >= 0 && m->model->sets) {
+        se3di_sets_move(m->model, m->open ? 2 : 1, bodies->h);
+        m->open = 1;
+        m->h = bodies->h;
+        contact = se3di_sets_forces(m->model, t1, bodies->h, m->error);
+        status = contact == SE3D_ERR_STEP_SIZE ? SE3D_OK : contact;
+        se3di_sets_push(m->model, m->push);
+    }
+    status = status < 0 ? status : se3di_lie_verlet_kick(bodies);
+    status = status < 0 ? status : se3di_lie_verlet_finish(bodies);
+    if (status < 0) {
+        se3di_state_restore(bodies->equations);
+        m->model->time = t0;
+        return status;
+    }
+    ++bodies->equations->counters.steps;
+    return contact; /* too large an overlap: the step is complete, and the last one */
+}
+
+static se3d_status run_steps(se3di_integration *integration, double t_end, double count)
+{
+    verlet m = begin(integration);
+    se3d_status status = SE3D_OK;
+    for (double k = count; k > 0.0 && status >= 0; k -= 1.0) {
+        double t0 = m.model->time;
+        status = advance(&m, k > 1.0 ? t0 + (t_end - t0) / k : t_end);
+    }
+    close_kick(&m);
+    integration->equations->assembly.push = NULL;
+    return status;
+}
+
+/* Accelerations and multipliers with the forces of the particles. */
+static se3d_status start(se3di_integration *integration, double h)
+{
+    (void)h;
+    se3di_equations *equations = integration->equations;
+    se3di_model *model = equations->assembly.model;
+    model->history[0] = 0.0;
+    if (!model->sets) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_sets_begin(model, 0.0, equations->error)); /* any step */
+    (void)begin(integration);
+    se3d_status status = se3di_acceleration_solve(equations, model->time);
+    equations->assembly.push = NULL;
+    return status;
+}
+
+static se3d_status step(se3di_integration *integration, double h)
+{
+    se3di_model *model = integration->equations->assembly.model;
+    SE3DI_TRY(se3di_sets_begin(model, h, integration->equations->error));
+    return run_steps(integration, model->time + h, 1.0);
+}
+
+static se3d_status run(se3di_integration *integration, double t_end)
+{
+    se3di_model *model = integration->equations->assembly.model;
+    double h = integration->settings.step > 0.0 ? integration->settings.step : STEP_DEFAULT;
+    double wanted = se3di_sets_step(model);
+    h = wanted > 0.0 ? fmin(h, wanted) : h;
+    double count = fmax(1.0, ceil((t_end - model->time) / h - 1e-9));
+    SE3DI_TRY(
+        se3di_sets_begin(model, (t_end - model->time) / count, integration->equations->error));
+    return run_steps(integration, t_end, count);
+}
+
+const se3di_integrator se3di_integrator_verlet = {
+    .name = "verlet",
+    .tag = SE3D_METHOD_VERLET,
+    .history_count = se3di_lie_verlet_history_count,
+    .work_count = work_count,
+    .start = start,
+    .step = step,
+    .run = run,
+};

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The particle sets that a system owns: found by name, cloned, saved and destroyed with it. */
+#include "system/particles.h"
+
+#include <string.h>
+
+static se3d_particles *owner_of(se3di_particles *set)
+{
+    return (se3d_particles *)(void *)set;
+}
+
+void se3di_sets_link(se3d_particles *particles)
+{
+    se3di_model *model = &particles->system->model;
+    se3di_particles **last = &model->sets;
+    while (*last) {
+        last = &(*last)->next;
+    }
+    *last = &particles->set;
+    ++model->topology_version; /* the method may depend on it, and snapshots do */
+}
+
+void se3di_sets_unlink(se3d_particles *particles)
+{
+    se3di_model *model = &particles->system->model;
+    for (se3di_particles **link = &model->sets; *link; link = &(*link)->next) {
+        if (*link == &particles->set) {
+            *link = particles->set.next;
+            ++model->topology_version;
+            return;
+        }
+    }
+}
+
+void se3di_sets_destroy(se3di_model *model)
+{
+    while (model->sets) {
+        se3d_particles *particles = owner_of(model->sets);
+        model->sets = particles->set.next;
+        se3di_particles_destroy(&particles->set);
+        se3di_free(&model->allocator, particles, 1, sizeof *particles);
+    }
+}
+
+se3d_status se3di_sets_clone(const se3d_system *system, se3d_system *copy)
+{
+    const se3d_allocator *allocator = &copy->model.allocator;
+    se3di_particles **last = &copy->model.sets;
+    for (const se3di_particles *set = system->model.sets; set; set = set->next) {
+        se3d_particles *particles = se3di_alloc(allocator, 1, sizeof *particles);
+        if (!particles) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+        if (se3di_particles_clone(set, &particles->set) < 0) {
+            se3di_free(allocator, particles, 1, sizeof *particles);
+            return SE3D_ERR_NO_MEMORY;
+        }
+        particles->system = copy;
+        se3di_particles_adopt(&particles->set, &copy->model);
+        *last = &particles->set;
+        last = &particles->set.next;
+        if (set->name) {
+            particles->set.name = se3di_text_copy(allocator, set->name);
+            if (!particles->set.name) {
+                return SE3D_ERR_NO_MEMORY;
+            }
+        }
+    }
+    return SE3D_OK;
+}
+
+void se3di_sets_forget(se3di_particles *saved, const se3d_allocator *allocator)
+{
+    while (saved) {
+        se3di_particles *set = saved;
+        saved = set->next;
+        se3di_particles_destroy(set);
+        se3di_free(allocator, set, 1, sizeof *set);
+    }
+}
+
+se3d_status se3di_sets_save(const se3di_particles *sets, const se3d_allocator *allocator,
+                            se3di_particles **saved)
+{
+    se3di_particles **last = saved;
+    *saved = NULL;
+    for (const se3di_particles *set = sets; set; set = set->next) {
+        se3di_particles *copy = se3di_alloc(allocator, 1, sizeof *copy);
+        if (!copy || se3di_particles_clone(set, copy) < 0) {
+            se3di_free(allocator, copy, 1, sizeof *copy);
+            se3di_sets_forget(*saved, allocator);
+            *saved = NULL;
+            return SE3D_ERR_NO_MEMORY;
+        }
+        *last = copy;
+        last = &copy->next;
+    }
+    return SE3D_OK;
+}
+
+void se3di_sets_take(se3di_model *model, se3di_particles *saved)
+{
+    for (se3di_particles *set = model->sets; set; set = set->next) {
+        se3di_particles *from = saved;
+        saved = from->next;
+        se3di_particles_replace(set, from);
+        se3di_free(&model->allocator, from, 1, sizeof *from);
+    }
+}
+
+static se3di_particles *find(const se3di_model *model, const char *name)
+{
+    for (se3di_particles *set = model->sets; set; set = set->next) {
+        if (set->name && strcmp(set->name, name) == 0) {
+            return set;
+        }
+    }
+    return NULL;
+}
+
+se3d_status se3di_check_particles_name(se3d_system *system, const char *name)
+{
+    if (!name) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_check_name(system, name));
+    if (find(&system->model, name)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "name = \"%.64s\" is taken by other particles, must be unique", name);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_find(const se3d_system *system, const char *name,
+                                se3d_particles **particles)
+{
+    if (particles) {
+        *particles = NULL;
+    }
+    if (!system || !name || !particles) {
+        return SE3D_ERR_NULL;
+    }
+    se3di_particles *set = find(&system->model, name);
+    *particles = set ? owner_of(set) : NULL;
+    return set ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;
+}
+
+se3d_status se3d_particles_get_name(const se3d_particles *particles, const char **name)
+{
+    if (name) {
+        *name = NULL;
+    }
+    if (!particles || !name) {
+        return SE3D_ERR_NULL;
+    }
+    *name = particles->set.name ? particles->set.name : "";
+    return SE3D_OK;
+}
+
+size_t se3d_system_count_particles(const se3d_system *system)
+{
+    size_t count = 0;
+    for (const se3di_particles *set = system ? system->model.sets : NULL; set; set = set->next) {
+        ++count;
+    }
+    return count;
+}
+
+se3d_status se3d_system_get_particles(const se3d_system *system, size_t index,
+                                      se3d_particles **particles)
+{
+    if (particles) {
+        *particles = NULL;
+    }
+    if (!system || !particles) {
+        return SE3D_ERR_NULL;
+    }
+    se3di_particles *set = system->model.sets;
+    for (; set && index > 0; --index) {
+        set = set->next;
+    }
+    *particles = set ? owner_of(set) : NULL;
+    return set ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;
+}
