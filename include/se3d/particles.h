@@ -83,6 +83,14 @@ SE3D_API se3d_status se3d_particles_add(se3d_particles *particles, se3d_material
                                         size_t count, const double *r, const double *radius,
                                         const double *v, const double *w, uint32_t *first);
 
+/* The shape of a region within its box: the whole box, the cylinder along an axis with the box's
+ * height, or the sphere about its centre; both have the largest radius that fits. @since 0.1 */
+typedef enum se3d_region {
+    SE3D_REGION_BOX = 0,
+    SE3D_REGION_CYLINDER = 1,
+    SE3D_REGION_SPHERE = 2
+} se3d_region;
+
 /* A region filled with particles. @since 0.1 */
 typedef struct se3d_fill_def {
     size_t struct_size;
@@ -94,6 +102,11 @@ typedef struct se3d_fill_def {
     double jitter;                 /* lattice: largest displacement along each axis [m] */
     double velocity[3];            /* [m/s] */
     uint64_t seed;
+    int32_t region;        /* se3d_region, in the box from lower to upper */
+    int32_t axis;          /* of a cylinder: 0, 1 or 2 */
+    const double *radii;   /* [radius_count] radii to draw from instead of the range [m], */
+    const double *weights; /* [radius_count] with frequencies like these; NULL: all alike */
+    size_t radius_count;
 } se3d_fill_def;
 
 SE3D_API void se3d_fill_def_init(se3d_fill_def *def, size_t size);

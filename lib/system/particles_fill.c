@@ -23,32 +23,136 @@ static double uniform(uint64_t *state)
     return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
+/* The range of the radii of a table. */
+static se3d_status check_radii(se3d_particles *p, se3d_fill_def *def)
+{
+    double sum = 0.0;
+    SE3DI_TRY(se3di_check_pointer(p->system, "radii", def->radii));
+    def->radius_min = HUGE_VAL;
+    def->radius_max = 0.0;
+    for (size_t k = 0; k < def->radius_count; ++k) {
+        double weight = def->weights ? def->weights[k] : 1.0;
+        SE3DI_TRY(se3di_check_range(p->system, "radii", def->radii[k], 1e-30, 1e30));
+        SE3DI_TRY(se3di_check_range(p->system, "weights", weight, 0.0, 1e30));
+        sum += weight;
+        if (weight > 0.0) {
+            def->radius_min = fmin(def->radius_min, def->radii[k]);
+            def->radius_max = fmax(def->radius_max, def->radii[k]);
+        }
+    }
+    return se3di_check_range(p->system, "sum of the weights", sum, 1e-30, 1e300);
+}
+
+static se3d_status check_region(se3d_particles *p, const se3d_fill_def *def)
+{
+    if (def->region < SE3D_REGION_BOX || def->region > SE3D_REGION_SPHERE) {
+        return SE3DI_FAIL(p->system, SE3D_ERR_INVALID_ARGUMENT,
+                          "region = %d, must be an se3d_region", def->region);
+    }
+    if (def->axis < 0 || def->axis > 2) {
+        return SE3DI_FAIL(p->system, SE3D_ERR_INVALID_ARGUMENT, "axis = %d, must be 0, 1 or 2",
+                          def->axis);
+    }
+    for (int a = 0; a < 3; ++a) {
+        SE3DI_TRY(se3di_check_range(p->system, "lower", def->lower[a], -1e30, 1e30));
+        SE3DI_TRY(se3di_check_range(p->system, "upper", def->upper[a],
+                                    def->lower[a] + 2.0 * def->radius_max, 1e30));
+    }
+    return SE3D_OK;
+}
+
 static se3d_status check_fill(se3d_particles *p, const se3d_fill_def *def, se3d_fill_def *full,
                               uint32_t *material)
 {
     SE3DI_TRY(se3di_check_def(p->system, "fill def", def, full, sizeof *full));
     SE3DI_TRY(se3di_check_finites(p->system, "velocity", full->velocity, 3));
+    if (full->radius_count > 0) {
+        SE3DI_TRY(check_radii(p, full));
+    }
     SE3DI_TRY(se3di_check_range(p->system, "radius_min", full->radius_min, 1e-30, 1e30));
     SE3DI_TRY(se3di_check_range(p->system, "radius_max", full->radius_max, full->radius_min, 1e30));
     SE3DI_TRY(se3di_check_range(p->system, "jitter", full->jitter, 0.0, 1e30));
     SE3DI_TRY(se3di_check_range(p->system, "spacing", full->spacing, 0.0, 1e30));
-    for (int a = 0; a < 3; ++a) {
-        SE3DI_TRY(se3di_check_range(p->system, "lower", full->lower[a], -1e30, 1e30));
-        SE3DI_TRY(se3di_check_range(p->system, "upper", full->upper[a],
-                                    full->lower[a] + 2.0 * full->radius_max, 1e30));
-    }
+    SE3DI_TRY(check_region(p, full));
     return se3di_particles_use(p, full->material, material);
 }
 
 static double draw_radius(const se3d_fill_def *def, uint64_t *state)
 {
-    return def->radius_min + (def->radius_max - def->radius_min) * uniform(state);
+    double u = uniform(state);
+    if (def->radius_count == 0) {
+        return def->radius_min + (def->radius_max - def->radius_min) * u;
+    }
+    double sum = 0.0;
+    for (size_t k = 0; k < def->radius_count; ++k) {
+        sum += def->weights ? def->weights[k] : 1.0;
+    }
+    u *= sum;
+    size_t k = 0;
+    for (; k + 1 < def->radius_count; ++k) {
+        double weight = def->weights ? def->weights[k] : 1.0;
+        if (u < weight) {
+            break;
+        }
+        u -= weight;
+    }
+    while (def->weights && !(def->weights[k] > 0.0)) {
+        --k; /* rounding reached behind the last one that occurs */
+    }
+    return def->radii[k];
+}
+
+/* A sphere of radius `margin` about x is in the region; its box is known to hold it. */
+static int region_holds(const se3d_fill_def *def, const double x[3], double margin)
+{
+    double square = 0.0;
+    double radius = HUGE_VAL;
+    if (def->region == SE3D_REGION_BOX) {
+        return 1;
+    }
+    for (int a = 0; a < 3; ++a) {
+        double d = x[a] - 0.5 * (def->lower[a] + def->upper[a]);
+        if (def->region == SE3D_REGION_SPHERE || a != def->axis) {
+            square += d * d;
+            radius = fmin(radius, 0.5 * (def->upper[a] - def->lower[a]));
+        }
+    }
+    return sqrt(square) + margin <= radius * (1.0 + 1e-12);
 }
 
 static void append(se3d_particles *p, uint32_t material, const se3d_fill_def *def, double radius,
                    const double x[3])
 {
     (void)se3di_particles_append(&p->set, material, radius, x, def->velocity, NULL);
+}
+
+typedef struct lattice {
+    double spacing, margin; /* margin: from the walls of the box */
+    size_t n[3];
+} lattice;
+
+static double lattice_init(lattice *l, const se3d_fill_def *def)
+{
+    double total = 1.0;
+    l->spacing = def->spacing > 0.0 ? def->spacing : 2.2 * def->radius_max;
+    l->margin = fmax(0.5 * l->spacing, def->radius_max + def->jitter);
+    for (int a = 0; a < 3; ++a) {
+        double room = def->upper[a] - def->lower[a] - 2.0 * l->margin;
+        double n = room < -1e-9 * l->spacing ? 0.0 : floor(room / l->spacing + 1e-9) + 1.0;
+        l->n[a] = n < 2e9 ? (size_t)n : (size_t)2e9;
+        total *= n;
+    }
+    return total;
+}
+
+/* Point k of the lattice; returns whether the region holds whatever may be there. */
+static int lattice_point(const lattice *l, const se3d_fill_def *def, size_t k, double x[3])
+{
+    const size_t at[3] = {k % l->n[0], k / l->n[0] % l->n[1], k / (l->n[0] * l->n[1])};
+    for (int a = 0; a < 3; ++a) {
+        x[a] = def->lower[a] + l->margin + l->spacing * (double)at[a];
+    }
+    return region_holds(def, x, def->radius_max + sqrt(3.0) * def->jitter);
 }
 
 se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fill_def *def,
@@ -58,34 +162,32 @@ se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fi
         return SE3D_ERR_NULL;
     }
     uint32_t material;
+    lattice l;
+    double x[3];
     se3d_fill_def full = se3d_fill_def_default();
     SE3DI_TRY(check_fill(particles, def, &full, &material));
-    double spacing = full.spacing > 0.0 ? full.spacing : 2.2 * full.radius_max;
-    double margin = fmax(0.5 * spacing, full.radius_max + full.jitter);
-    double total = 1.0;
-    double n[3];
-    for (int a = 0; a < 3; ++a) {
-        double room = full.upper[a] - full.lower[a] - 2.0 * margin;
-        n[a] = room < -1e-9 * spacing ? 0.0 : floor(room / spacing + 1e-9) + 1.0;
-        total *= n[a];
+    double total = lattice_init(&l, &full);
+    if (full.count == 0) {
+        SE3DI_TRY(se3di_check_range(particles->system, "points of the lattice", total, 0.0, 2e9));
     }
-    double wanted = full.count > 0 ? fmin(total, (double)full.count) : total;
-    SE3DI_TRY(se3di_check_range(particles->system, "count of the lattice", wanted, 0.0, 2e9));
-    SE3DI_TRY(se3di_particles_make_room(particles, (size_t)wanted));
+    size_t wanted = 0, points = 0;
+    for (; points < (size_t)fmin(total, 1e18) && (full.count == 0 || wanted < full.count);
+         ++points) {
+        wanted += lattice_point(&l, &full, points, x) ? 1 : 0;
+    }
+    SE3DI_TRY(se3di_particles_make_room(particles, wanted));
     uint64_t state = full.seed;
-    for (size_t k = 0; k < (size_t)wanted; ++k) {
-        const size_t at[3] = {k % (size_t)n[0], k / (size_t)n[0] % (size_t)n[1],
-                              k / ((size_t)n[0] * (size_t)n[1])};
-        double radius = draw_radius(&full, &state);
-        double x[3];
-        for (int a = 0; a < 3; ++a) {
-            x[a] = full.lower[a] + margin + spacing * (double)at[a] +
-                   full.jitter * (2.0 * uniform(&state) - 1.0);
+    for (size_t k = 0; k < points; ++k) {
+        if (lattice_point(&l, &full, k, x)) {
+            double radius = draw_radius(&full, &state);
+            for (int a = 0; a < 3; ++a) {
+                x[a] += full.jitter * (2.0 * uniform(&state) - 1.0);
+            }
+            append(particles, material, &full, radius, x);
         }
-        append(particles, material, &full, radius, x);
     }
     if (added) {
-        *added = (size_t)wanted;
+        *added = wanted;
     }
     return SE3D_OK;
 }
@@ -204,7 +306,7 @@ static int place(packing *p, se3d_particles *particles, uint32_t material, uint6
             double room = def->upper[a] - def->lower[a] - 2.0 * radius;
             x[a] = def->lower[a] + radius + room * uniform(state);
         }
-        if (is_free(p, x, radius)) {
+        if (region_holds(def, x, radius) && is_free(p, x, radius)) {
             append(particles, material, def, radius, x);
             enter(p, p->set->count - 1);
             return 1;

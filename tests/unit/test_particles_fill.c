@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Regions filled with particles: no part of one is outside, and radii come as often as asked for.
+ */
+#include "check.h"
+#include "se3d/se3d.h"
+
+#include <math.h>
+
+#define MOST 5000
+
+typedef struct bed {
+    se3d_system *system;
+    se3d_particles *particles;
+    se3d_fill_def fill;
+    double r[3 * MOST], radius[MOST];
+    size_t count;
+} bed;
+
+static void open_bed(bed *b)
+{
+    se3d_material_def stuff = se3d_material_def_default();
+    CHECK(se3d_system_create(NULL, &b->system) == SE3D_OK);
+    CHECK(se3d_particles_create(b->system, NULL, &b->particles) == SE3D_OK);
+    stuff.density = 2500.0;
+    stuff.stiffness = 1e4;
+    b->fill = se3d_fill_def_default();
+    CHECK(se3d_material_create(b->system, &stuff, &b->fill.material) == SE3D_OK);
+    b->fill.seed = 5;
+}
+
+static void close_bed(bed *b)
+{
+    se3d_system_destroy(b->system);
+}
+
+static void read_bed(bed *b)
+{
+    b->count = se3d_particles_count(b->particles);
+    CHECK(b->count <= MOST);
+    CHECK(se3d_particles_get_all(b->particles, b->count, b->r, NULL, NULL) == SE3D_OK);
+    CHECK(se3d_particles_get_radii(b->particles, b->count, b->radius) == SE3D_OK);
+}
+
+/* The largest distance of any point of a particle from the axis (or the centre: axis -1). */
+static double reach(const bed *b, const double centre[3], int axis)
+{
+    double most = 0.0;
+    for (size_t k = 0; k < b->count; ++k) {
+        double square = 0.0;
+        for (int a = 0; a < 3; ++a) {
+            double d = b->r[3 * k + (size_t)a] - centre[a];
+            square += a == axis ? 0.0 : d * d;
+        }
+        most = fmax(most, sqrt(square) + b->radius[k]);
+    }
+    return most;
+}
+
+static bed b; /* large */
+
+static void regions_hold_every_part_of_their_particles(void)
+{
+    const double centre[3] = {1.0, 2.0, 3.0};
+    for (int packing = 0; packing < 2; ++packing) {
+        for (int32_t axis = -1; axis < 3; ++axis) {
+            open_bed(&b);
+            for (int a = 0; a < 3; ++a) {
+                double half = a == axis ? 0.1 : 0.2;
+                b.fill.lower[a] = centre[a] - half;
+                b.fill.upper[a] = centre[a] + half;
+            }
+            b.fill.region = axis < 0 ? SE3D_REGION_SPHERE : SE3D_REGION_CYLINDER;
+            b.fill.axis = axis < 0 ? 0 : axis;
+            b.fill.radius_min = 0.008;
+            b.fill.radius_max = 0.012;
+            b.fill.jitter = packing ? 0.0 : 0.001;
+            b.fill.count = packing ? 700 : 0;
+            size_t added = 700;
+            CHECK((packing ? se3d_particles_fill_random(b.particles, &b.fill)
+                           : se3d_particles_fill_lattice(b.particles, &b.fill, &added)) == SE3D_OK);
+            read_bed(&b);
+            CHECK(b.count == added);
+            CHECK(b.count > 500); /* the volume is used: boxes hold 5832 or 2592 on the lattice */
+            double most = reach(&b, centre, axis);
+            CHECK(most <= 0.2 * (1.0 + 1e-12) && most > 0.19);
+            close_bed(&b);
+        }
+    }
+}
+
+static void radii_of_a_table_come_as_often_as_asked_for(void)
+{
+    const double radii[4] = {0.004, 0.006, 0.009, 0.02}, weights[4] = {1.0, 2.0, 1.0, 0.0};
+    open_bed(&b);
+    for (int a = 0; a < 3; ++a) {
+        b.fill.upper[a] = 0.32;
+    }
+    b.fill.radii = radii;
+    b.fill.weights = weights;
+    b.fill.radius_count = 4;
+    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_OK);
+    read_bed(&b);
+    size_t seen[4] = {0, 0, 0, 0};
+    for (size_t k = 0; k < b.count; ++k) {
+        for (int i = 0; i < 4; ++i) {
+            seen[i] += b.radius[k] == radii[i];
+        }
+    }
+    double n = (double)b.count, deviation = sqrt(n * 0.25 * 0.75);
+    CHECK(seen[0] + seen[1] + seen[2] == b.count && seen[3] == 0);
+    CHECK_NEAR((double)seen[0], 0.25 * n, 4.0 * deviation);
+    CHECK_NEAR((double)seen[1], 0.5 * n, 4.0 * deviation);
+    b.fill.weights = NULL;
+    b.fill.radius_count = 2;
+    b.fill.lower[0] = 1.0;
+    b.fill.upper[0] = 1.32;
+    size_t added = 0;
+    b.fill.count = 1000;
+    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, &added) == SE3D_OK && added == 1000);
+    close_bed(&b);
+}
+
+static void tables_and_regions_are_checked(void)
+{
+    const double radii[2] = {0.01, -0.01}, weights[2] = {0.0, 0.0};
+    open_bed(&b);
+    for (int a = 0; a < 3; ++a) {
+        b.fill.upper[a] = 0.1;
+    }
+    b.fill.radius_count = 2;
+    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_ERR_NULL);
+    b.fill.radii = radii;
+    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "radii = -0.01");
+    b.fill.radius_count = 1;
+    b.fill.weights = weights;
+    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "weights");
+    b.fill.weights = NULL;
+    b.fill.region = 3;
+    CHECK(se3d_particles_fill_random(b.particles, &b.fill) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "region = 3");
+    b.fill.region = SE3D_REGION_CYLINDER;
+    b.fill.axis = -1;
+    CHECK(se3d_particles_fill_random(b.particles, &b.fill) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "axis = -1");
+    CHECK(se3d_particles_count(b.particles) == 0);
+    close_bed(&b);
+}
+
+int main(void)
+{
+    RUN(regions_hold_every_part_of_their_particles);
+    RUN(radii_of_a_table_come_as_often_as_asked_for);
+    RUN(tables_and_regions_are_checked);
+    return check_finish();
+}
