@@ -71,3 +71,20 @@ foreach(pc se3d se3d-io)
         install(FILES "${PROJECT_BINARY_DIR}/${pc}.pc" DESTINATION "${se3d_pc_dir}")
     endif()
 endforeach()
+
+# What `se3d view` and `se3d video` make their page of. three.js comes from npm or libjs-three when it is installed; where
+# neither is there, the page's first user makes it.
+if(TARGET se3d_program)
+    option(SE3D_BUNDLE_VIEWER "Install three.js with the viewer" ${PROJECT_IS_TOP_LEVEL})
+    set(se3d_viewer_dir "${CMAKE_INSTALL_DATADIR}/se3d/viewer")
+    install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/viewer/" DESTINATION "${se3d_viewer_dir}")
+    if(SE3D_BUNDLE_VIEWER AND UNIX)
+        install(CODE "
+            execute_process(COMMAND sh \"${PROJECT_SOURCE_DIR}/tools/viewer/build.sh\" \"${PROJECT_BINARY_DIR}/viewer\"
+                            RESULT_VARIABLE se3d_viewer_failed)
+            if(se3d_viewer_failed)
+                message(STATUS \"three.js is not installed with the viewer; it will be made at its first use\")
+            endif()")
+        install(FILES "${PROJECT_BINARY_DIR}/viewer/three.js" DESTINATION "${se3d_viewer_dir}" OPTIONAL)
+    endif()
+endif()

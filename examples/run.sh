@@ -11,6 +11,26 @@ cmake --preset release -DSE3D_BUILD_TESTS=OFF -DSE3D_BUILD_EXAMPLES=OFF
 cmake --build --preset release -j "$(se3d_jobs)"
 program=build/release/bin/se3d
 
+# The main job: one model, all that it leaves; the plot and the page where their tools are there.
+show_main() {
+    name=$1
+    folder=results/$name
+    echo "== $name: se3d run examples/models/$name.yaml -o $folder"
+    "$program" run "examples/models/$name.yaml" -o "$folder"
+    echo "results: $(pwd)/$folder/$name.csv"
+    echo "scene:   $(pwd)/$folder/scene.glb (Blender, any glTF viewer)"
+    if command -v gnuplot >/dev/null 2>&1; then
+        "$program" plot -q "$folder/$name.csv" && echo "plot:    $(pwd)/$folder/$name.svg and .png"
+    else
+        echo "plot:    se3d plot $folder/$name.csv (after: apt-get install --no-install-recommends gnuplot-nox)"
+    fi
+    if command -v npm >/dev/null 2>&1 || [ -f /usr/share/javascript/three/three.min.js ]; then
+        SE3D_CACHE=build/release/viewer "$program" view -q "$folder" && echo "page:    $(pwd)/$folder/scene.html (any browser)"
+    else
+        echo "page:    se3d view $folder (after: apt-get install --no-install-recommends npm)"
+    fi
+}
+
 # The first rows of a CSV file, wide lines cut.
 show() {
     echo "The first rows of $1:"
@@ -18,6 +38,7 @@ show() {
 }
 
 failed=
+show_main suspension || failed=" suspension"
 for model in examples/models/pendulum.yaml examples/models/*.yaml; do
     name=$(basename "$model" .yaml)
     # The pendulum goes first, and only once.

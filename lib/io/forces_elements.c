@@ -159,6 +159,7 @@ bool se3di_read_friction(se3di_reader *reader, const se3di_node *node, se3di_ele
                                      "of the bearing [m] > 0");
     }
     def.name = entry->name;
+    entry->coordinate = def.coordinate;
     const se3d_status status =
         se3d_force_create_friction(reader->model->system, &def, &entry->force);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
@@ -207,6 +208,8 @@ bool se3di_read_stop(se3di_reader *reader, const se3di_node *node, se3di_element
                                      "is missing, a stop needs its stiffness > 0");
     }
     def.name = entry->name;
+    entry->coordinate =
+        se3di_node_get(node, "joint") ? def.coordinate : SE3D_COORDINATE_DISPLACEMENT;
     const se3d_status status = se3d_force_create_stop(reader->model->system, &def, &entry->force);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }

@@ -10,6 +10,7 @@
 
 #include "io/drawing.h"
 #include "io/glb.h"
+#include "io/keys.h"
 
 enum { SAMPLES_MAX = 1250 }; /* a page of 20 bodies stays below 1.5 MB */
 
@@ -292,16 +293,60 @@ static void add_grid(drawing *d, double height, se3di_bytes *roots)
     add_child(d, roots, add_part(d, &grid));
 }
 
+/* ',"<element>.<channel>":"<unit>"'. */
+static void put_unit(drawing *d, const se3di_element_entry *entry, const char *channel,
+                     const char *unit)
+{
+    char name[500];
+    snprintf(name, sizeof name, "%.400s.%s", entry->name, channel);
+    se3di_glb_put(&d->glb, &d->rest, ",");
+    se3di_glb_put_text(&d->glb, &d->rest, name);
+    se3di_glb_put(&d->glb, &d->rest, ":\"%s\"", unit);
+}
+
+/* Units of the channels whose names do not tell them: those of angles and displacements. */
+static void put_units(drawing *d)
+{
+    const se3d_model *model = d->scene->model;
+    se3di_glb_put(&d->glb, &d->rest, "{\"length\":\"m\",\"time\":\"s\"");
+    for (size_t k = 0; k < model->element_count; ++k) {
+        const se3di_element_entry *entry = &model->elements[k];
+        const se3di_node *type = se3di_node_get(entry->node, "type");
+        const char *text = type ? type->text : "";
+        double value[3];
+        bool turns = entry->coordinate == SE3D_COORDINATE_ANGLE;
+        if (entry->kind == SE3DI_ELEMENT_DRIVER) {
+            put_unit(d, entry, "value", turns ? "rad" : "m");
+            put_unit(d, entry, "effort", turns ? "N m" : "N");
+        } else if (entry->kind == SE3DI_ELEMENT_JOINT) {
+            turns = !SE3D_FAILED(se3d_joint_get_coordinate(model->system, entry->constraint,
+                                                           SE3D_COORDINATE_ANGLE, &value[0],
+                                                           &value[1], &value[2]));
+        } else if (se3di_keys_contain(" friction stop ", text)) {
+            put_unit(d, entry, "coordinate", turns ? "rad" : "m");
+            put_unit(d, entry, "force", turns ? "N m" : "N");
+        } else if (se3di_keys_contain(" dp2 cd ", text)) {
+            put_unit(d, entry, "value", "m");
+            put_unit(d, entry, "effort", "N");
+        } else if (entry->kind == SE3DI_ELEMENT_FORCE) {
+            turns = strcmp(text, "rsda") == 0;
+        }
+        if (entry->kind != SE3DI_ELEMENT_DRIVER && entry->kind != SE3DI_ELEMENT_CONSTRAINT) {
+            put_unit(d, entry, "rate", turns ? "rad/s" : "m/s");
+        }
+    }
+    se3di_glb_put(&d->glb, &d->rest, "}");
+}
+
 /* All that comes after the nodes. */
 static void put_rest(drawing *d, size_t root)
 {
     const se3d_model *model = d->scene->model;
     se3di_glb_put(&d->glb, &d->rest, ",\"scene\":0,\"scenes\":[{\"name\":");
     se3di_glb_put_text(&d->glb, &d->rest, model->title[0] ? model->title : model->name);
-    se3di_glb_put(&d->glb, &d->rest,
-                  ",\"extras\":{\"units\":{\"length\":\"m\",\"time\":\"s\"}},\"nodes\":[%zu]}],"
-                  "\"nodes\":[",
-                  root);
+    se3di_glb_put(&d->glb, &d->rest, ",\"extras\":{\"units\":");
+    put_units(d);
+    se3di_glb_put(&d->glb, &d->rest, "},\"nodes\":[%zu]}],\"nodes\":[", root);
     se3di_glb_put_bytes(&d->glb, &d->rest, d->nodes.data, d->nodes.count);
     se3di_glb_put(&d->glb, &d->rest, "]");
     if (d->sampler_count > 0) {

@@ -35,6 +35,8 @@ expect 'no folder' 2 "$program" video
 expect 'a speed of 0' 2 "$program" video "$dir" --speed 0
 says 'the speed is `0`, must be a number > 0'
 expect 'a speed in words' 2 "$program" video "$dir" --speed 2x
+expect 'a view in words' 2 "$program" video "$dir" --view above
+says 'the view is `above`, must be AZIMUTH,ELEVATION in degrees'
 mkdir "$dir/bin"
 printf '#!/bin/sh\nexit 3\n' >"$dir/bin/chromium"
 chmod +x "$dir/bin/chromium"
@@ -94,7 +96,7 @@ END_OF_PYTHON
 name='the pictures'
 holds 'do not show the bar on its two sides' python3 "$dir/look.py" "$dir"
 nothing_left "$dir/none.mp4"
-expect 'four times as fast' 0 "$program" video "$dir/run" -q --speed 4 -o "$dir/fast.mp4"
+expect 'four times as fast' 0 "$program" video "$dir/run" -q --speed 4 --view 120,-20 -o "$dir/fast.mp4"
 holds 'quiet, but it speaks' [ ! -s "$dir/out" ]
 holds 'not 24 pictures' [ "$(ffprobe -v error -count_frames -of csv=p=0 -show_entries stream=nb_read_frames "$dir/fast.mp4")" = 24 ]
 expect 'too long' 1 "$program" video "$dir/run" --speed 1e-6 -o "$dir/long.mp4"

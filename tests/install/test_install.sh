@@ -25,7 +25,22 @@ tree() {
     fi
     if [ -n "${SE3D_PROGRAM:-}" ]; then
         [ -x "$prefix/bin/se3d" ] || fail "the program is not installed"
+        view
     fi
+}
+
+# An installed program finds the parts of its page, and needs nothing else where three.js lies beside them.
+view() {
+    for part in viewer.js viewer.html viewer.css build.sh; do
+        [ -f "$prefix/share/se3d/viewer/$part" ] || fail "not installed: $part of the viewer"
+    done
+    if [ ! -f "$prefix/share/se3d/viewer/three.js" ]; then
+        echo 'SKIPPED: neither npm nor libjs-three: the viewer has no three.js' >&2
+        return
+    fi
+    "$prefix/bin/se3d" run -q "$SE3D_SOURCE_DIR/examples/models/pendulum.yaml" -o "$work/pendulum"
+    (unset SE3D_VIEWER; PATH=/none SE3D_CACHE=/none "$prefix/bin/se3d" view -q "$work/pendulum")
+    grep -q 'Permission is hereby granted\|MIT licen' "$work/pendulum/scene.html" || fail "a page without the licence of three.js"
 }
 
 library_folder() {

@@ -49,7 +49,7 @@ static const char **value_target(options *o, const char *name)
                  {"--analysis", &o->analysis}, {"--formulation", &o->formulation},
                  {"--method", &o->method},     {"--step", &o->step},
                  {"--duration", &o->duration}, {"--time", &o->time},
-                 {"--speed", &o->speed}};
+                 {"--speed", &o->speed},       {"--view", &o->view}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;

@@ -18,6 +18,7 @@ typedef struct options {
     const char *duration;
     const char *time;
     const char *speed;
+    const char *view;
     se3d_model_setting settings[SETTINGS_MAX];
     char names[SETTINGS_MAX][64];
     size_t setting_count;

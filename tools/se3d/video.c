@@ -16,7 +16,7 @@
 enum { RATE = 30, FRAMES_MAX = 60 * 60 * RATE, PATH_SIZE = 4096, START_SECONDS = 60 };
 
 static const char help[] =
-    "se3d video DIR [-o FILE.mp4] [--speed S]\n"
+    "se3d video DIR [-o FILE.mp4] [--speed S] [--view A,E]\n"
     "\n"
     "Makes a film (default DIR/motion.mp4; 1280 x 720, 30 pictures a second, H.264) of the "
     "results\n"
@@ -24,6 +24,7 @@ static const char help[] =
     "\n"
     "  -o FILE.mp4   where to (default: DIR/motion.mp4)\n"
     "  --speed S     seconds of motion in a second of film (default 1: real time)\n"
+    "  --view A,E    from where: azimuth from x to y and elevation [degrees] (default -52,20)\n"
     "  --quiet       print nothing but errors, show no progress\n";
 
 typedef struct film {
@@ -33,7 +34,8 @@ typedef struct film {
     char page[PATH_SIZE + 64];
     double start, end; /* of the motion [s] */
     double speed;
-    size_t count; /* of pictures */
+    double view[2]; /* azimuth, elevation [degrees] */
+    size_t count;   /* of pictures */
     devtools browser;
     child encoder;
 } film;
@@ -49,9 +51,12 @@ static int fail(const char *text, const char *detail)
 /* Wait until the page is there; learn when its motion begins and ends. */
 static int meet_page(film *f)
 {
+    char expression[200];
+    snprintf(expression, sizeof expression,
+             "window.se3d ? se3d.film(1280, 720, %.9g, %.9g) : 'no ' + (window.se3dProblem || '')",
+             f->view[0], f->view[1]);
     for (int k = 0; k < 10 * START_SECONDS && !child_was_interrupted(); ++k) {
-        const char *text = devtools_evaluate(
-            &f->browser, "window.se3d ? se3d.film(1280, 720) : 'no ' + (window.se3dProblem || '')");
+        const char *text = devtools_evaluate(&f->browser, expression);
         if (!text) {
             return fail("Chromium does not answer", "");
         }
@@ -212,7 +217,8 @@ static int make_film(film *f, const char *chromium, const char *results, int qui
     return good ? EXIT_DONE : EXIT_FAILED;
 }
 
-int video_write(const char *results, const char *path, double speed, int quiet)
+static int write_film(const char *results, const char *path, double speed, const double view[2],
+                      int quiet)
 {
     const char *chromium = devtools_find_chromium();
     film *f = calloc(1, sizeof *f);
@@ -226,6 +232,8 @@ int video_write(const char *results, const char *path, double speed, int quiet)
     } else {
         f->path = path;
         f->speed = speed;
+        f->view[0] = view[0];
+        f->view[1] = view[1];
         code = make_film(f, chromium, results, quiet);
     }
     if (code == EXIT_DONE && !quiet) {
@@ -235,12 +243,40 @@ int video_write(const char *results, const char *path, double speed, int quiet)
     return code;
 }
 
+static const double usual_view[2] = {-52.0, 20.0};
+
+int video_write(const char *results, const char *path, double speed, int quiet)
+{
+    return write_film(results, path, speed, usual_view, quiet);
+}
+
+/* "AZIMUTH,ELEVATION"; NULL: left alone. */
+static int read_view(const char *text, double view[2])
+{
+    char *rest = NULL;
+    if (!text) {
+        return 1;
+    }
+    view[0] = strtod(text, &rest);
+    const int good = rest != text && *rest == ',';
+    const char *second = good ? rest + 1 : "";
+    view[1] = strtod(second, &rest);
+    if (!good || rest == second || *rest || !(fabs(view[0]) <= 360.0 && fabs(view[1]) < 90.0)) {
+        fprintf(stderr, "se3d video: the view is `%s`, must be AZIMUTH,ELEVATION in degrees\n",
+                text);
+        return 0;
+    }
+    return 1;
+}
+
 int command_video(int count, char *const *words)
 {
+    double view[2] = {usual_view[0], usual_view[1]};
     char path[PATH_SIZE + 64];
     char *rest = NULL;
     options o;
-    const int code = options_read(&o, "video", " -o --output --speed --quiet -q ", count, words);
+    const int code =
+        options_read(&o, "video", " -o --output --speed --view --quiet -q ", count, words);
     if (code != EXIT_DONE || o.help) {
         fputs(o.help ? help : "", stdout);
         return code;
@@ -250,6 +286,9 @@ int command_video(int count, char *const *words)
         fprintf(stderr, "se3d video: the speed is `%s`, must be a number > 0\n", o.speed);
         return EXIT_USAGE;
     }
+    if (!read_view(o.view, view)) {
+        return EXIT_USAGE;
+    }
     snprintf(path, sizeof path, "%.4000s/motion.mp4", o.model);
-    return video_write(o.model, o.directory ? o.directory : path, speed, o.quiet);
+    return write_film(o.model, o.directory ? o.directory : path, speed, view, o.quiet);
 }

@@ -351,9 +351,10 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   window.se3d = {
     state, start, end, orbit, set,
     show: (t) => { set({ time: t, playing: false }); draw(); },
-    // Pictures of this size from now on; begin and end of the motion.
-    film: (width, height) => {
+    // Pictures of this size from now on, seen from there [degrees]; begin and end of the motion.
+    film: (width, height, azimuth, elevation) => {
       film = [width, height]; renderer.setPixelRatio(1);
+      Object.assign(orbit, { azimuth: azimuth * Math.PI / 180, height: elevation * Math.PI / 180 });
       set({ playing: false, dark: false });
       return `${start} ${end}`;
     },
