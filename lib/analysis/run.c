@@ -5,7 +5,7 @@
 #include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
 #include "assembly/user.h"
-#include "force/force.h"
+#include "contact/loads.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
@@ -137,13 +137,15 @@ static uint64_t history_tag(const se3di_run *run)
     return 2 * run->integration.method->tag + (uint64_t)run->formulation->id;
 }
 
-/* The audit of energy begins with the first run after a change of the user's. */
-static se3d_status start_work(se3di_model *model)
+/* Contacts are taken up as they are, and the audit of energy begins with the first run after a
+ * change of the user's. */
+static se3d_status start_contacts(se3di_run *run)
 {
-    if (!model->work_valid) {
-        memset(model->work, 0, sizeof model->work);
-    }
-    return se3di_work_accept(model, 0.0);
+    se3di_model *model = run->model;
+    se3di_contacts_begin(model, 0.0);
+    SE3DI_TRY(se3di_loads_prepare(model, model->time, run->error));
+    se3di_contacts_accept(model);
+    return SE3D_OK;
 }
 
 /* Dynamics goes on from its own history, or starts from a consistent state. */
@@ -155,7 +157,8 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
     }
     SE3DI_TRY(settle(run, model->time));
     SE3DI_TRY(se3di_friction_start(&run->equations));
-    SE3DI_TRY(start_work(model));
+    SE3DI_TRY(start_contacts(run));
+    SE3DI_TRY(se3di_work_accept(model, 0.0));
     SE3DI_TRY(run->integration.method->start(&run->integration, h));
     model->history_count = run->integration.method->history_count(&run->equations.assembly);
     model->history_tag = history_tag(run);
@@ -220,6 +223,9 @@ static se3d_status run_equilibrium(se3di_run *run, double t_end)
     se3di_free(&model->allocator, kept, run->equations.assembly.dense_count, sizeof *kept);
     se3di_angles_accept(model);
     se3di_model_touch_state(model);
+    if (status >= 0) { /* contacts are as they are there */
+        SE3DI_TRY(start_contacts(run));
+    }
     return status;
 }
 

@@ -4,7 +4,7 @@
 
 #include "assembly/fused.h"
 #include "assembly/user.h"
-#include "force/force.h"
+#include "contact/loads.h"
 #include "primitive/turn_counter.h"
 
 #include <string.h>
@@ -156,7 +156,7 @@ se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, doubl
 {
     const se3di_model *model = assembly->model;
     uint32_t failed = 0;
-    se3d_status status = se3di_forces_eval(model, t, assembly->wrench, &failed);
+    se3d_status status = se3di_loads_eval(model, t, assembly->wrench, &failed);
     if (status < 0) {
         int is_gravity = failed >= model->force_slots.count;
         const char *name = is_gravity ? "gravity" : model->forces[failed].name;

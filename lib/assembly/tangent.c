@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "assembly/tangent.h"
 
-#include "force/force.h"
+#include "contact/loads.h"
 #include "joint/user.h"
 #include "math/inertia.h"
 #include "math/quaternion.h"
@@ -9,6 +9,8 @@
 
 #include <stdlib.h>
 #include <string.h>
+
+#define COUPLED_SHAPES 64
 
 /* Couplings: every pair of free bodies that a force element or a term of a constraint joins. */
 
@@ -26,11 +28,27 @@ static void note_pair(se3di_tangent *tangent, uint32_t dense_a, uint32_t dense_b
     ++*count;
 }
 
+/* Free bodies that may touch. Beyond so many the coupling is left out of the Newton matrix, which
+ * then converges more slowly: it would not be sparse. */
+static void list_contacts(se3di_tangent *tangent, size_t *count)
+{
+    const se3di_model *model = tangent->assembly->model;
+    uint32_t shapes = (uint32_t)model->shape_slots.count;
+    for (uint32_t b = 1; shapes <= COUPLED_SHAPES && b < shapes; ++b) {
+        for (uint32_t a = 0; a < b; ++a) {
+            if (se3di_shapes_may_touch(model, a, b)) {
+                note_pair(tangent, model->shapes[a].body, model->shapes[b].body, count);
+            }
+        }
+    }
+}
+
 /* Count the pairs, and write them where there is room. */
 static size_t list_pairs(se3di_tangent *tangent)
 {
     const se3di_model *model = tangent->assembly->model;
     size_t count = 0;
+    list_contacts(tangent, &count);
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         note_pair(tangent, model->forces[k].body_i, model->forces[k].body_j, &count);
     }
@@ -146,6 +164,9 @@ static double *find_block(const se3di_tangent *tangent, int which, int32_t row, 
     int32_t pair[2] = {row < column ? row : column, row < column ? column : row};
     const int32_t *found =
         bsearch(pair, tangent->coupling, tangent->coupling_count, sizeof pair, compare_pairs);
+    if (!found) { /* a contact of one of very many bodies */
+        return NULL;
+    }
     size_t index = (size_t)(found - tangent->coupling) / 2;
     double *upper = which ? tangent->D_upper : tangent->K_upper;
     double *lower = which ? tangent->D_lower : tangent->K_lower;
@@ -240,6 +261,24 @@ static void add_turned_torque(double *block, double s, const double y[3])
     }
 }
 
+/* What acts on two bodies: its wrench [12] and derivatives. */
+static void add_load(se3di_tangent *tangent, const uint32_t bodies[2], const double *wrench,
+                     const double *K, const double *D)
+{
+    const se3di_assembly *assembly = tangent->assembly;
+    for (int row = 0; row < 2; ++row) {
+        int32_t free = assembly->free_index[bodies[row]];
+        for (int column = 0; column < 2; ++column) {
+            size_t offset = (size_t)(72 * row + 6 * column);
+            add_force_block(tangent, bodies[row], bodies[column], K + offset, D + offset);
+        }
+        double *block = find_block(tangent, 0, free, free);
+        if (block && assembly->formulation->block == 8) {
+            add_turned_torque(block, -2.0, wrench + 6 * row + 3);
+        }
+    }
+}
+
 static se3d_status add_forces(se3di_tangent *tangent, double t)
 {
     const se3di_model *model = tangent->assembly->model;
@@ -249,19 +288,17 @@ static se3d_status add_forces(se3di_tangent *tangent, double t)
         se3di_effect effect;
         effect.wants_derivative = 1;
         SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
-        for (int row = 0; row < 2; ++row) {
-            for (int column = 0; column < 2; ++column) {
-                size_t offset = (size_t)(72 * row + 6 * column);
-                add_force_block(tangent, bodies[row], bodies[column], effect.K + offset,
-                                effect.D + offset);
-            }
-            double *block = find_block(tangent, 0, tangent->assembly->free_index[bodies[row]],
-                                       tangent->assembly->free_index[bodies[row]]);
-            if (block && tangent->assembly->formulation->block == 8) {
-                add_turned_torque(block, -2.0, effect.wrench + 6 * row + 3);
-            }
-        }
+        add_load(tangent, bodies, effect.wrench, effect.K, effect.D);
     }
+    return SE3D_OK;
+}
+
+static se3d_status add_contact(void *ctx, const se3di_encounter *encounter)
+{
+    double wrench[12], K[144], D[144];
+    se3di_encounter_wrench(encounter, wrench);
+    se3di_encounter_derivative(encounter, K, D);
+    add_load(ctx, encounter->body, wrench, K, D);
     return SE3D_OK;
 }
 
@@ -417,7 +454,8 @@ se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *v
     }
     add_curvature(tangent, lambda);
     SE3DI_TRY(add_user_curvatures(tangent, t, lambda));
-    return add_forces(tangent, t);
+    SE3DI_TRY(add_forces(tangent, t));
+    return se3di_contacts_visit(model, add_contact, tangent);
 }
 
 static void add_block(const double *block, size_t n, double s, const double *x, double *out)

@@ -127,20 +127,6 @@ se3d_status se3di_power_eval(const se3di_model *model, double t, double power[3]
     return driver_power(model, t, &power[2]);
 }
 
-se3d_status se3di_work_accept(se3di_model *model, double h)
-{
-    double power[3];
-    SE3DI_TRY(se3di_power_eval(model, model->time, power));
-    for (int k = 0; k < 3; ++k) {
-        if (model->work_valid) {
-            model->work[k] += 0.5 * h * (model->power[k] + power[k]);
-        }
-        model->power[k] = power[k];
-    }
-    model->work_valid = 1;
-    return SE3D_OK;
-}
-
 int se3di_force_is_history_dependent(const se3di_force *force)
 {
     return force->type == SE3DI_FORCE_FRICTION || force->type == SE3DI_FORCE_STOP;

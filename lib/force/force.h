@@ -56,13 +56,9 @@ se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench
 /* Potential energy of gravity (zero at the ground origin) and elements [J]. */
 se3d_status se3di_forces_potential(const se3di_model *model, double t, double *potential);
 
-/* Power at the state of the model [W]: {dissipated, fed in by actuators, loads and gravity that
- * changes, fed in by drivers (from model->lambda)}. */
+/* Power of elements at the state of the model [W]: {dissipated, fed in by actuators, loads and
+ * gravity that changes, fed in by drivers (from model->lambda)}. */
 se3d_status se3di_power_eval(const se3di_model *model, double t, double power[3]);
-/* Add the work since the last accepted state, over a step h, by the trapezoidal rule to model->work
- * (h = 0: only note the present power). */
-se3d_status se3di_work_accept(se3di_model *model, double h);
-
 /* Elements with a memory (friction, stops). After a trial step from the last accepted state:
  * compare what they assumed with what came out, correct it and return how many changed; the step is
  * repeated until none does. */

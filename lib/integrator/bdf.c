@@ -10,7 +10,7 @@
  * is explicit. Velocities, and positions to rounding, are then projected onto their constraints
  * (stabilisation of index 2). The local error is d/(k + 1), d = y_1 - y_P; the order follows the
  * estimates of its neighbours (Shampine, Reichelt 1997).  docs/theory/bdf.md */
-#include "force/force.h"
+#include "contact/loads.h"
 #include "integrator/state.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -261,6 +261,7 @@ static se3d_status solve_step(bdf *m, double t)
     if (m->equations->redundant && m->assembly->row_count > 0) {
         memset(m->lambda, 0, m->assembly->row_count * sizeof *m->lambda);
     }
+    se3di_contacts_begin(m->assembly->model, m->header[BDF_STEP]);
     SE3DI_TRY(se3di_assembly_eval_functions(m->assembly, t, m->equations->error));
     update_state(m);
     for (int k = 0; k < 10; ++k) {
@@ -294,7 +295,8 @@ static se3d_status accept(bdf *m, double t)
         memcpy(model->lambda, m->lambda, m->assembly->row_count * sizeof *m->lambda);
     }
     SE3DI_TRY(se3di_state_project(m->equations, t, &scale, 1e-13, &moved));
-    SE3DI_TRY(se3di_power_eval(model, t, power));
+    SE3DI_TRY(se3di_loads_prepare(model, t, m->equations->error));
+    SE3DI_TRY(se3di_loads_power(model, t, power));
     for (int k = 0; k < SE3DI_STATE_WORK; ++k) {
         m->y[bodies + (size_t)k] = m->base[bodies + (size_t)k] + m->c * power[k];
     }
@@ -314,7 +316,7 @@ static se3d_status accept(bdf *m, double t)
     m->header[BDF_TIME] = t;
     m->header[BDF_EQUAL] += 1.0;
     se3di_angles_accept(model);
-    se3di_forces_accept(model);
+    se3di_loads_accept(model);
     ++m->equations->counters.steps;
     return SE3D_OK;
 }

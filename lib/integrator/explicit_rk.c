@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/explicit_rk.h"
 
-#include "force/force.h"
+#include "contact/loads.h"
 #include "integrator/state.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -102,6 +102,7 @@ static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
         .sum3 = integration->work + (SE3DI_RK_MAX + 2) * count,
         .tolerance = inner_tolerance(integration->settings.tolerance),
     };
+    se3di_contacts_begin(assembly->model, 0.0);
     m.kkt =
         se3di_state_begin(m.equations, regularisation(m.tolerance), fmin(1e-6, 1e-3 * m.tolerance));
     return m;
@@ -230,6 +231,12 @@ static se3d_status attempt(rk *m, double h, double *error)
     return SE3D_OK;
 }
 
+/* All that can fail before `accept`. */
+static se3d_status prepare(rk *m, double h)
+{
+    return se3di_loads_prepare(m->assembly->model, m->header[RK_T1] + h, m->equations->error);
+}
+
 /* The frames hold the projected y_1. */
 static void accept(rk *m, double h)
 {
@@ -245,7 +252,7 @@ static void accept(rk *m, double h)
     double dependent = se3di_kkt_get_dependent_rows(m->equations->kkt);
     m->header[RK_REDUNDANT] = fmin(m->header[RK_REDUNDANT], dependent);
     se3di_angles_accept(m->assembly->model);
-    se3di_forces_accept(m->assembly->model);
+    se3di_loads_accept(m->assembly->model);
     ++m->equations->counters.steps;
 }
 
@@ -296,6 +303,7 @@ static se3d_status cross_jump(rk *m, double h, double error)
     se3d_status status = attempt(m, h, &error);
     m->tolerance = tolerance;
     SE3DI_TRY(status);
+    SE3DI_TRY(prepare(m, h));
     accept(m, h);
     m->header[RK_FORCED] += 1.0;
     m->header[RK_NEXT] = limit_step(m, 1e6 * h);
@@ -304,18 +312,29 @@ static se3d_status cross_jump(rk *m, double h, double error)
     return SE3D_OK;
 }
 
-/* One accepted step with error control. */
-static se3d_status advance(rk *m)
+/* One accepted step with error control. What contacts remember belongs to the end of a step, and
+ * cannot be interpolated: where shapes are near each other steps end at t_end. */
+static se3d_status advance(rk *m, double t_end)
 {
     double h = m->header[RK_NEXT];
     se3di_state_set(m->assembly, m->y1);
     h = se3di_state_limit_turn(m->assembly->model, h);
+    double rest = t_end - m->header[RK_T1];
+    double longer = m->assembly->model->contacts.pair_count > 0 && h > rest ? h : 0.0;
+    h = longer > 0.0 ? rest : h;
     for (;;) {
         double error;
         se3d_status status = attempt(m, h, &error);
         if (status >= 0 && error <= 1.0) {
+            status = prepare(m, h);
+        }
+        if (status == SE3D_ERR_NO_MEMORY) {
+            return status;
+        }
+        if (status >= 0 && error <= 1.0) {
             accept(m, h);
-            m->header[RK_NEXT] = next_step(m, h, error);
+            m->header[RK_NEXT] = fmax(longer, next_step(m, h, error));
+            m->header[RK_T1] = longer > 0.0 ? t_end : m->header[RK_T1];
             m->header[RK_ERROR] = error;
             m->header[RK_REJECTED] = 0.0;
             m->header[RK_FORCED] = h > 1e3 * least_step(m) ? 0.0 : m->header[RK_FORCED];
@@ -331,6 +350,7 @@ static se3d_status advance(rk *m)
             return status < 0 ? status : cross_jump(m, before, error);
         }
         m->header[RK_NEXT] = h;
+        longer = 0.0;
     }
 }
 
@@ -430,7 +450,7 @@ se3d_status se3di_rk_start(se3di_integration *integration, const se3di_rk_tablea
     m.header[RK_REDUNDANT] = (double)m.assembly->row_count;
     double potential;
     const se3di_model *model = m.assembly->model;
-    se3d_status status = se3di_forces_potential(model, model->time, &potential);
+    se3d_status status = se3di_loads_potential(model, model->time, &potential);
     if (status >= 0) {
         m.header[RK_ENERGY_MIN] = 1e-3 * fabs(potential);
         status = adopt(&m);
@@ -452,6 +472,7 @@ se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau
     }
     m.tolerance = HUGE_VAL; /* no error control */
     status = status < 0 ? status : attempt(&m, h, &error);
+    status = status < 0 ? status : prepare(&m, h);
     if (status >= 0) {
         accept(&m, h);
     }
@@ -464,7 +485,7 @@ se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau
 static se3d_status advance_to(rk *m, double t_end)
 {
     while (m->header[RK_T1] < t_end) {
-        SE3DI_TRY(advance(m));
+        SE3DI_TRY(advance(m, t_end));
     }
     return m->header[RK_T1] > t_end && m->header[RK_DENSE] == 0.0 ? build_dense(m) : SE3D_OK;
 }

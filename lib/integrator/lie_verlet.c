@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/lie_verlet.h"
 
-#include "force/force.h"
+#include "contact/loads.h"
 #include "integrator/state.h"
 #include "math/inertia.h"
 #include "math/quaternion.h"
@@ -224,7 +224,7 @@ static se3d_status solve_velocities(se3di_lie_verlet *m)
             change = fmax(change, fabs(equations->x[k] - m->last[k]));
             size = fmax(size, fabs(equations->x[k]));
         }
-        if (assembly->model->force_slots.count == 0 || change <= 1e-13 * size) {
+        if (!se3di_loads_are_stiff(assembly->model) || change <= 1e-13 * size) {
             break;
         }
     }
@@ -289,8 +289,9 @@ se3d_status se3di_lie_verlet_finish(se3di_lie_verlet *m)
     if (assembly->row_count > 0) {
         memcpy(model->lambda, equations->l, assembly->row_count * sizeof *equations->l);
     }
+    SE3DI_TRY(se3di_loads_prepare(model, m->t1, equations->error));
     model->time = m->t1;
     se3di_angles_accept(model);
-    se3di_forces_accept(model);
+    se3di_loads_accept(model);
     return se3di_work_accept(model, m->h);
 }

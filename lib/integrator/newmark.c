@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/newmark.h"
 
-#include "force/force.h"
+#include "contact/loads.h"
 #include "integrator/state.h"
 #include "primitive/turn_counter.h"
 
@@ -306,7 +306,7 @@ static void accept(newmark_step *step)
     se3di_assembly_set_acceleration(assembly, step->vdot);
     model->time = step->t;
     se3di_angles_accept(model);
-    se3di_forces_accept(model);
+    se3di_loads_accept(model);
     ++step->equations->counters.steps;
 }
 
@@ -362,12 +362,13 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
         .x = work + 3 * (size_t)n,
         .lambda = work + 4 * (size_t)n,
         .gamma_prime = h * method->gamma * (1.0 - method->alpha_f) / (1.0 - method->alpha_m),
-        .exact = assembly->model->force_slots.count > 0,
+        .exact = se3di_loads_are_stiff(assembly->model),
         .beta_prime = (1.0 - method->alpha_m) / (h * h * method->beta * (1.0 - method->alpha_f)),
     };
     se3di_assembly_get_velocity(assembly, step.v_n);
     memcpy(step.vdot, step.vdot_n, n * sizeof *step.vdot);
     copy(step.lambda, assembly->model->lambda, assembly->row_count);
+    se3di_contacts_begin(assembly->model, h);
     se3di_equations_save(equations);
     se3di_newton_save_memory(&integration->newton);
     se3d_status status = se3di_assembly_eval_functions(assembly, step.t, equations->error);
@@ -379,6 +380,10 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
     if (status >= 0 && method->tolerance > 0.0) {
         integration->error = estimate_error(&step);
         status = integration->error <= 1.0 ? SE3D_OK : SE3D_ERR_STEP_SIZE;
+    }
+    if (status >= 0) {
+        status = se3di_loads_prepare(assembly->model, step.t, equations->error);
+        integration->error = status < 0 ? HUGE_VAL : integration->error;
     }
     if (status < 0) {
         se3di_equations_restore(equations);
@@ -417,7 +422,7 @@ se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmar
         ++equations->counters.rejected;
         *next = next_step(h, integration->error);
         if (!(*next > smallest)) {
-            return status == SE3D_ERR_STEP_SIZE
+            return status == SE3D_ERR_STEP_SIZE && isfinite(integration->error)
                        ? se3di_error_set(equations->error, status,
                                          "t = %g s: the step fell to %.3g s: the tolerance %g "
                                          "cannot be met here; the motion is not smooth",

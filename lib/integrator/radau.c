@@ -11,7 +11,7 @@
  * has the derivatives of the stages and of the start of the step.  docs/theory/radau.md */
 #include "integrator/radau.h"
 
-#include "force/force.h"
+#include "contact/loads.h"
 #include "math/quaternion.h"
 #include "primitive/turn_counter.h"
 
@@ -173,7 +173,7 @@ static se3d_status add_work(se3di_radau *m)
             memcpy(model->lambda, m->lambda + (size_t)i * m->multipliers,
                    m->assembly->row_count * sizeof *model->lambda);
         }
-        SE3DI_TRY(se3di_power_eval(model, m->t + se3di_radau_c[i] * m->h, power[i]));
+        SE3DI_TRY(se3di_loads_power(model, m->t + se3di_radau_c[i] * m->h, power[i]));
     }
     for (int i = 0; i < STAGES; ++i) {
         for (size_t k = 0; k < SE3DI_STATE_WORK; ++k) {
@@ -196,6 +196,7 @@ static se3d_status accept(se3di_radau *m, const history *past)
     double moved;
     SE3DI_TRY(add_work(m));
     SE3DI_TRY(se3di_state_project(m->equations, m->t + m->h, &m->scale, 1e-13, &moved));
+    SE3DI_TRY(se3di_loads_prepare(model, m->t + m->h, m->equations->error));
     memcpy(past->start, m->y0, m->count * sizeof *m->y0);
     set_defect(m, past->d);
     for (size_t k = 0; k < STAGES * m->count; ++k) {
@@ -210,7 +211,7 @@ static se3d_status accept(se3di_radau *m, const history *past)
     past->header[RADAU_SPEED] = m->scale.speed;
     past->header[RADAU_SPIN] = m->scale.spin;
     se3di_angles_accept(model);
-    se3di_forces_accept(model);
+    se3di_loads_accept(model);
     ++m->equations->counters.steps;
     return SE3D_OK;
 }
@@ -235,6 +236,7 @@ static se3d_status attempt(se3di_radau *m, const history *past, double inner, do
     m->tolerance = inner > 0.0 ? iteration_tolerance(inner) : 1e-12;
     m->iterations_max = inner > 0.0 ? 12 : 50;
     *error = HUGE_VAL;
+    se3di_contacts_begin(m->assembly->model, h);
     predict(m, past);
     SE3DI_TRY(se3di_radau_solve(m));
     set_defect(m, m->d);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/state.h"
 
-#include "force/force.h"
+#include "contact/loads.h"
 #include "math/inertia.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -42,7 +42,8 @@ void se3di_state_set(se3di_assembly *assembly, const double *y)
 static int has_power(const se3di_assembly *assembly)
 {
     const se3di_model *model = assembly->model;
-    return model->force_slots.count > 0 || assembly->timed_count > 0 || assembly->user_count > 0 ||
+    return model->force_slots.count > 0 || model->shape_slots.count > 1 ||
+           assembly->timed_count > 0 || assembly->user_count > 0 ||
            model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
            model->gravity_function[2] >= 0;
 }
@@ -66,7 +67,7 @@ se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const dou
     if (assembly->row_count > 0 && l != model->lambda) {
         memcpy(model->lambda, l, assembly->row_count * sizeof *l);
     }
-    return se3di_power_eval(model, t, out);
+    return se3di_loads_power(model, t, out);
 }
 
 se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, double accuracy)
@@ -364,5 +365,5 @@ se3d_status se3di_state_publish(se3di_equations *equations, const double *y, dou
     memcpy(model->work, y + SE3DI_STATE_SIZE * (size_t)equations->assembly.body_count,
            sizeof model->work);
     model->work_valid = 1;
-    return se3di_power_eval(model, t, model->power);
+    return se3di_loads_power(model, t, model->power);
 }

@@ -47,6 +47,12 @@ void se3di_model_touch_state(se3di_model *model)
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         memset(model->forces[k].state, 0, sizeof model->forces[k].state);
     }
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        memset(model->shapes[k].force, 0, sizeof model->shapes[k].force);
+        memset(model->shapes[k].torque, 0, sizeof model->shapes[k].torque);
+    }
+    model->contacts.count = 0;
+    model->contacts.step = 0.0;
 }
 
 void se3di_model_touch(se3di_model *model)

@@ -62,11 +62,12 @@ typedef struct model_array {
     size_t count, size;
 } model_array;
 
-#define MODEL_ARRAYS 16
+#define MODEL_ARRAYS 21
 
 static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
 {
     size_t bodies = m->body_slots.count;
+    se3di_body_contacts *c = &m->contacts;
     size_t materials = m->material_slots.count;
     model_array arrays[MODEL_ARRAYS] = {
         {(void **)&m->bodies, &m->body_capacity, bodies, sizeof *m->bodies},
@@ -87,6 +88,11 @@ static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
          sizeof *m->overrides},
         {(void **)&m->pairs, &m->pair_capacity, materials * materials, sizeof *m->pairs},
         {(void **)&m->shapes, &m->shape_capacity, m->shape_slots.count, sizeof *m->shapes},
+        {(void **)&c->list, &c->capacity, c->count, sizeof *c->list},
+        {(void **)&c->next, &c->next_capacity, 0, sizeof *c->next},
+        {(void **)&c->pairs, &c->pair_capacity, 0, 2 * sizeof *c->pairs},
+        {(void **)&c->reference, &c->reference_capacity, 0, 3 * sizeof *c->reference},
+        {(void **)&c->order, &c->order_capacity, 0, sizeof *c->order},
         {(void **)&m->history, &m->history_capacity, m->history_count, sizeof *m->history},
     };
     memcpy(list, arrays, sizeof arrays);
@@ -142,6 +148,8 @@ static void disown(se3di_model *copy)
     se3di_slots_init(&copy->shape_slots, 0);
     copy->sets = NULL;
     copy->row_count = copy->term_count = copy->angle_count = copy->history_count = 0;
+    copy->contacts.count = 0;
+    copy->contacts.version = 0; /* its pairs are listed anew */
 }
 
 static se3d_status copy_name(const se3d_allocator *allocator, char **name)
@@ -214,6 +222,7 @@ static se3d_status clone_arrays(const se3di_model *model, se3di_model *copy)
     copy->term_count = model->term_count;
     copy->angle_count = model->angle_count;
     copy->history_count = model->history_count;
+    copy->contacts.count = model->contacts.count;
     return SE3D_OK;
 }
 

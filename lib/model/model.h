@@ -15,6 +15,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/slots.h"
+#include "model/body_contact.h"
 #include "model/shape.h"
 #include "model/term.h"
 #include "se3d/constraint.h"
@@ -196,6 +197,8 @@ typedef struct se3di_model {
     se3di_slots shape_slots;
     se3di_shape *shapes;
     size_t shape_capacity;
+
+    se3di_body_contacts contacts;
 
     double *history; /* what an integrator carries from step to step */
     size_t history_count, history_capacity;

@@ -14,7 +14,7 @@ struct se3d_snapshot {
     double work[3], power[3];
     int32_t work_valid;
     int32_t reserved2;
-    size_t bodies, rows, angles, forces, history;
+    size_t bodies, rows, angles, forces, history, contacts;
     se3di_frame *frames;
     double *acceleration;  /* [bodies * 6] */
     double *lambda;        /* [rows] */
@@ -22,6 +22,10 @@ struct se3d_snapshot {
     double *memory;        /* [forces * SE3DI_FORCE_STATES] */
     double *carried;       /* [history] */
     se3di_particles *sets; /* copies of the particle sets */
+    se3di_body_contact *touching;
+    double *wrench; /* [6 * shapes] */
+    size_t shapes;
+    double contact_step;
 };
 
 static se3d_status allocate(se3d_snapshot *s)
@@ -32,7 +36,10 @@ static se3d_status allocate(se3d_snapshot *s)
     s->turns = se3di_alloc(&s->allocator, s->angles, sizeof(double));
     s->memory = se3di_alloc(&s->allocator, SE3DI_FORCE_STATES * s->forces, sizeof(double));
     s->carried = se3di_alloc(&s->allocator, s->history, sizeof(double));
-    int complete = s->frames && s->acceleration && s->lambda && s->turns && s->memory && s->carried;
+    s->touching = se3di_alloc(&s->allocator, s->contacts, sizeof *s->touching);
+    s->wrench = se3di_alloc(&s->allocator, 6 * s->shapes, sizeof(double));
+    int complete = s->touching && s->wrench && s->frames && s->acceleration && s->lambda &&
+                   s->turns && s->memory && s->carried;
     return complete ? SE3D_OK : SE3D_ERR_NO_MEMORY;
 }
 
@@ -56,6 +63,12 @@ static void fill(se3d_snapshot *s, const se3di_model *model)
         copy(s->memory + SE3DI_FORCE_STATES * k, model->forces[k].state,
              sizeof model->forces[k].state);
     }
+    copy(s->touching, model->contacts.list, s->contacts * sizeof *s->touching);
+    for (size_t k = 0; k < s->shapes; ++k) {
+        copy(s->wrench + 6 * k, model->shapes[k].force, 3 * sizeof(double));
+        copy(s->wrench + 6 * k + 3, model->shapes[k].torque, 3 * sizeof(double));
+    }
+    s->contact_step = model->contacts.step;
     copy(s->work, model->work, sizeof s->work);
     copy(s->power, model->power, sizeof s->power);
     s->work_valid = model->work_valid;
@@ -84,6 +97,8 @@ se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out)
         .rows = model->row_count,
         .angles = model->angle_count,
         .forces = model->force_slots.count,
+        .contacts = model->contacts.count,
+        .shapes = model->shape_slots.count,
         .history = model->history_tag ? model->history_count : 0,
     };
     if (allocate(snapshot) < 0 ||
@@ -105,7 +120,8 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
     se3di_model *model = &system->model;
     if (snapshot->topology_version != model->topology_version ||
         snapshot->bodies != model->body_slots.count || snapshot->rows != model->row_count ||
-        snapshot->angles != model->angle_count || snapshot->forces != model->force_slots.count) {
+        snapshot->angles != model->angle_count || snapshot->forces != model->force_slots.count ||
+        snapshot->shapes != model->shape_slots.count) {
         return SE3DI_FAIL(system, SE3D_ERR_STATE,
                           "the snapshot has %zu bodies and %zu equations at edit %llu, the system "
                           "%zu and %zu at edit %llu; only the same model can be restored",
@@ -117,6 +133,12 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
     se3d_status status = se3di_array_reserve(&model->allocator, &history, &model->history_capacity,
                                              snapshot->history, sizeof(double));
     model->history = history;
+    void *touching = model->contacts.list;
+    status = status < 0
+                 ? status
+                 : se3di_array_reserve(&model->allocator, &touching, &model->contacts.capacity,
+                                       snapshot->contacts, sizeof *snapshot->touching);
+    model->contacts.list = touching;
     if (status < 0) {
         return SE3DI_FAIL(system, status, "no memory for the integrator's history");
     }
@@ -135,6 +157,13 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
     for (size_t k = 0; k < snapshot->forces; ++k) {
         copy(model->forces[k].state, snapshot->memory + SE3DI_FORCE_STATES * k,
              sizeof model->forces[k].state);
+    }
+    copy(model->contacts.list, snapshot->touching, snapshot->contacts * sizeof *snapshot->touching);
+    model->contacts.count = snapshot->contacts;
+    model->contacts.step = snapshot->contact_step;
+    for (size_t k = 0; k < snapshot->shapes; ++k) {
+        copy(model->shapes[k].force, snapshot->wrench + 6 * k, 3 * sizeof(double));
+        copy(model->shapes[k].torque, snapshot->wrench + 6 * k + 3, 3 * sizeof(double));
     }
     copy(model->work, snapshot->work, sizeof model->work);
     copy(model->power, snapshot->power, sizeof model->power);
@@ -158,6 +187,8 @@ void se3d_snapshot_destroy(se3d_snapshot *snapshot)
                    sizeof(double));
         se3di_sets_forget(snapshot->sets, &allocator);
         se3di_free(&allocator, snapshot->carried, snapshot->history, sizeof(double));
+        se3di_free(&allocator, snapshot->touching, snapshot->contacts, sizeof *snapshot->touching);
+        se3di_free(&allocator, snapshot->wrench, 6 * snapshot->shapes, sizeof(double));
         se3di_free(&allocator, snapshot, 1, sizeof *snapshot);
     }
 }

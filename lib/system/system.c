@@ -3,7 +3,7 @@
 #include "system/particles.h"
 
 #include "base/hash.h"
-#include "force/force.h"
+#include "contact/loads.h"
 #include "joint/user.h"
 #include "math/vec3.h"
 #include "primitive/primitive.h"
@@ -296,9 +296,9 @@ se3d_status se3d_system_get_energy(const se3d_system *system, se3d_energy *energ
         return SE3D_ERR_NULL;
     }
     *energy = (se3d_energy){.kinetic = kinetic_energy(&system->model)};
-    SE3DI_TRY(se3di_forces_potential(&system->model, system->model.time, &energy->potential));
+    SE3DI_TRY(se3di_loads_potential(&system->model, system->model.time, &energy->potential));
     energy->total = energy->kinetic + energy->potential;
-    energy->dissipated = system->model.work[0];
+    energy->dissipated = se3di_work_lost(&system->model);
     return SE3D_OK;
 }
 
@@ -308,7 +308,8 @@ se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work)
         return SE3D_ERR_NULL;
     }
     const double *done = system->model.work;
-    *work = (se3d_work){.dissipated = done[0], .actuators = done[1], .drivers = done[2]};
+    *work = (se3d_work){
+        .dissipated = se3di_work_lost(&system->model), .actuators = done[1], .drivers = done[2]};
     return SE3D_OK;
 }
 

@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Contacts of bodies, evaluated and remembered. */
+#include "contact/body_contacts.h"
+
+#include "contact/broad.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The first remembered point of a pair of shapes; the list is in order of the pairs. */
+static size_t find_pair(const se3di_body_contacts *contacts, uint32_t i, uint32_t j)
+{
+    size_t low = 0, high = contacts->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        const se3di_body_contact *c = &contacts->list[middle];
+        if (c->shape_i < i || (c->shape_i == i && c->shape_j < j)) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+static const se3di_body_contact *find_memory(const se3di_body_contacts *contacts, size_t at,
+                                             uint32_t i, uint32_t j, uint32_t feature)
+{
+    for (; at < contacts->count; ++at) {
+        const se3di_body_contact *c = &contacts->list[at];
+        if (c->shape_i != i || c->shape_j != j) {
+            return NULL;
+        }
+        if (c->feature == feature) {
+            return c;
+        }
+    }
+    return NULL;
+}
+
+typedef struct visit {
+    const se3di_model *model;
+    se3di_contact_visitor visitor;
+    void *ctx;
+} visit;
+
+/* Both shapes are near enough for a closer look. */
+static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
+{
+    const visit *v = ctx;
+    const se3di_model *model = v->model;
+    const se3di_shape *a = &model->shapes[i];
+    const se3di_shape *b = &model->shapes[j];
+    se3di_shape_pose at_a, at_b;
+    se3di_manifold manifold;
+    se3di_shape_place(a, &model->frames[a->body], &at_a);
+    se3di_shape_place(b, &model->frames[b->body], &at_b);
+    se3di_narrow_find(a, &at_a, b, &at_b, &manifold);
+    size_t memory = manifold.count > 0 ? find_pair(&model->contacts, i, j) : 0;
+    for (uint32_t k = 0; k < manifold.count; ++k) {
+        se3di_encounter e = {.model = model, .at = &manifold.points[k], .shape_i = i, .shape_j = j};
+        e.memory = find_memory(&model->contacts, memory, i, j, manifold.points[k].feature);
+        se3di_encounter_eval(&e);
+        SE3DI_TRY(v->visitor(v->ctx, &e));
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_contacts_visit(const se3di_model *model, se3di_contact_visitor visitor, void *ctx)
+{
+    visit v = {model, visitor, ctx};
+    return se3di_broad_visit(model, visit_pair, &v);
+}
+
+int se3di_contacts_possible(const se3di_model *model)
+{
+    for (uint32_t b = 1; b < model->shape_slots.count; ++b) {
+        for (uint32_t a = 0; a < b; ++a) {
+            if (se3di_shapes_may_touch(model, a, b)) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+static se3d_status add_wrench(void *ctx, const se3di_encounter *e)
+{
+    double *wrench = ctx;
+    double both[12];
+    se3di_encounter_wrench(e, both);
+    for (int k = 0; k < 12; ++k) {
+        wrench[6 * (size_t)e->body[k / 6] + (size_t)(k % 6)] += both[k];
+    }
+    return SE3D_OK;
+}
+
+void se3di_contacts_add_wrenches(const se3di_model *model, double *wrench)
+{
+    (void)se3di_contacts_visit(model, add_wrench, wrench);
+}
+
+static se3d_status add_energy(void *ctx, const se3di_encounter *e)
+{
+    *(double *)ctx += se3di_encounter_energy(e);
+    return SE3D_OK;
+}
+
+double se3di_contacts_potential(const se3di_model *model)
+{
+    double sum = 0.0;
+    (void)se3di_contacts_visit(model, add_energy, &sum);
+    return sum;
+}
+
+static se3d_status add_power(void *ctx, const se3di_encounter *e)
+{
+    *(double *)ctx += se3di_encounter_power(e);
+    return SE3D_OK;
+}
+
+double se3di_contacts_power(const se3di_model *model)
+{
+    double sum = 0.0;
+    (void)se3di_contacts_visit(model, add_power, &sum);
+    return sum;
+}
+
+void se3di_contacts_begin(se3di_model *model, double h)
+{
+    model->contacts.step = h;
+}
+
+typedef struct preparation {
+    se3di_model *model;
+    double t;
+    se3di_error *error;
+} preparation;
+
+static const char *name_of(const se3di_model *model, uint32_t shape)
+{
+    const se3di_shape *s = &model->shapes[shape];
+    const char *body = model->bodies[s->body].name;
+    return s->name ? s->name : body ? body : "without a name";
+}
+
+static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
+{
+    const se3di_model *model = p->model;
+    double size = fmin(se3di_shape_contact_size(&model->shapes[e->shape_i]),
+                       se3di_shape_contact_size(&model->shapes[e->shape_j]));
+    if (e->at->overlap <= model->contact.overlap_limit * size) {
+        return SE3D_OK;
+    }
+    return se3di_error_set(
+        p->error, SE3D_ERR_STEP_SIZE,
+        "t = %g s: the shapes %.60s and %.60s overlap by %.3g m, more than %g of their size "
+        "%.3g m; try a smaller step or a stiffer material",
+        p->t, name_of(model, e->shape_i), name_of(model, e->shape_j), e->at->overlap,
+        model->contact.overlap_limit, size);
+}
+
+static se3d_status note(void *ctx, const se3di_encounter *e)
+{
+    const preparation *p = ctx;
+    se3di_body_contacts *contacts = &p->model->contacts;
+    void *next = contacts->next;
+    SE3DI_TRY(check_overlap(p, e));
+    se3d_status status = se3di_array_reserve(&p->model->allocator, &next, &contacts->next_capacity,
+                                             contacts->next_count + 1, sizeof *contacts->next);
+    contacts->next = next;
+    if (status < 0) {
+        return se3di_error_set(p->error, status, "t = %g s: no memory for %zu contacts", p->t,
+                               contacts->next_count + 1);
+    }
+    se3di_encounter_record(e, &contacts->next[contacts->next_count++]);
+    return SE3D_OK;
+}
+
+se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *error)
+{
+    preparation p = {model, t, error};
+    model->contacts.next_count = 0;
+    if (model->shape_slots.count < 2) {
+        return SE3D_OK;
+    }
+    if (se3di_broad_update(model) < 0) {
+        return se3di_error_set(error, SE3D_ERR_NO_MEMORY, "t = %g s: no memory for contacts", t);
+    }
+    return se3di_contacts_visit(model, note, &p);
+}
+
+/* What the contact does to one of its shapes, about the centre of its body. */
+static void add_to_shape(se3di_model *model, const se3di_body_contact *c, uint32_t shape,
+                         double sign)
+{
+    se3di_shape *s = &model->shapes[shape];
+    double arm[3], torque[3];
+    se3di_sub(c->point, model->frames[s->body].r, arm);
+    se3di_cross(arm, c->force, torque);
+    se3di_add(torque, c->torque, torque);
+    se3di_add_scaled(sign, c->force, s->force);
+    se3di_add_scaled(sign, torque, s->torque);
+}
+
+static void sum_shapes(se3di_model *model)
+{
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        memset(model->shapes[k].force, 0, sizeof model->shapes[k].force);
+        memset(model->shapes[k].torque, 0, sizeof model->shapes[k].torque);
+    }
+    for (size_t k = 0; k < model->contacts.count; ++k) {
+        const se3di_body_contact *c = &model->contacts.list[k];
+        add_to_shape(model, c, c->shape_i, -1.0);
+        add_to_shape(model, c, c->shape_j, 1.0);
+    }
+}
+
+void se3di_contacts_accept(se3di_model *model)
+{
+    se3di_body_contacts *c = &model->contacts;
+    se3di_body_contact *list = c->list;
+    size_t capacity = c->capacity;
+    c->list = c->next;
+    c->count = c->next_count;
+    c->capacity = c->next_capacity;
+    c->next = list;
+    c->next_count = 0;
+    c->next_capacity = capacity;
+    sum_shapes(model);
+}

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Pairs of shapes whose bounds, larger by a margin, overlap are listed by sweep and prune along x;
+ * the list holds as long as no shape has moved by half the margin. A visit that finds more movement
+ * (a long step, or no list) looks at all pairs instead, in the same order, with the same result. */
+#include "contact/broad.h"
+
+#include "contact/body_contacts.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MARGIN 0.3 /* of the smallest bound */
+
+static void center_of(const se3di_model *model, uint32_t shape, double x[3])
+{
+    const se3di_shape *s = &model->shapes[shape];
+    const se3di_frame *frame = &model->frames[s->body];
+    se3di_mul(frame->A, s->x, x);
+    se3di_add(frame->r, x, x);
+}
+
+static int joined(const se3di_model *model, uint32_t a, uint32_t b)
+{
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *c = &model->constraints[k];
+        int has_a = 0, has_b = 0;
+        for (uint32_t n = 0; n < c->body_count; ++n) {
+            has_a |= c->bodies[n] == a;
+            has_b |= c->bodies[n] == b;
+        }
+        if (has_a && has_b) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Kinds that have no contact with each other. */
+static int strangers(const se3di_shape *a, const se3di_shape *b)
+{
+    int surface_a = a->kind == SE3DI_SHAPE_PLANE || a->kind == SE3DI_SHAPE_MESH;
+    int surface_b = b->kind == SE3DI_SHAPE_PLANE || b->kind == SE3DI_SHAPE_MESH;
+    int mesh = a->kind == SE3DI_SHAPE_MESH || b->kind == SE3DI_SHAPE_MESH;
+    int sphere = a->kind == SE3DI_SHAPE_SPHERE || b->kind == SE3DI_SHAPE_SPHERE;
+    return (surface_a && surface_b) || (mesh && !sphere);
+}
+
+int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b)
+{
+    const se3di_shape *s = &model->shapes[a];
+    const se3di_shape *t = &model->shapes[b];
+    return s->body != t->body && s->material >= 0 && t->material >= 0 && (s->group & t->mask) &&
+           (t->group & s->mask) && !strangers(s, t) &&
+           !(model->bodies[s->body].fixed && model->bodies[t->body].fixed) &&
+           !joined(model, s->body, t->body);
+}
+
+/* Whether the bounds of two shapes, at these centres, are nearer than `margin`. */
+static int near(const se3di_model *model, uint32_t i, uint32_t j, double margin)
+{
+    const se3di_shape *s[2] = {&model->shapes[i], &model->shapes[j]};
+    double x[2][3], d[3];
+    center_of(model, i, x[0]);
+    center_of(model, j, x[1]);
+    se3di_sub(x[1], x[0], d);
+    for (int k = 0; k < 2; ++k) {
+        const se3di_shape *plane = s[k];
+        if (plane->kind == SE3DI_SHAPE_PLANE) {
+            const double up[3] = {plane->A[2], plane->A[5], plane->A[8]};
+            double n[3];
+            se3di_mul(model->frames[plane->body].A, up, n);
+            return (k ? -1.0 : 1.0) * se3di_dot(n, d) < s[1 - k]->bound + margin;
+        }
+    }
+    double reach = s[0]->bound + s[1]->bound + margin;
+    return se3di_dot(d, d) < reach * reach;
+}
+
+/* The list of pairs covers the present poses. */
+static int list_holds(const se3di_model *model)
+{
+    const se3di_body_contacts *c = &model->contacts;
+    double room = 0.25 * c->margin * c->margin;
+    if (c->version != model->topology_version) {
+        return 0;
+    }
+    for (uint32_t k = 0; k < model->shape_slots.count; ++k) {
+        double x[3], d[3];
+        int plane = model->shapes[k].kind == SE3DI_SHAPE_PLANE;
+        if (plane && model->bodies[model->shapes[k].body].fixed) {
+            continue;
+        }
+        center_of(model, k, x);
+        se3di_sub(x, c->reference + 3 * (size_t)k, d);
+        if (plane || !(se3di_dot(d, d) < room)) { /* planes that move are looked at always */
+            return 0;
+        }
+    }
+    return 1;
+}
+
+se3d_status se3di_broad_visit(const se3di_model *model, se3di_pair_visitor visitor, void *ctx)
+{
+    const se3di_body_contacts *c = &model->contacts;
+    uint32_t shapes = (uint32_t)model->shape_slots.count;
+    if (shapes < 2) {
+        return SE3D_OK;
+    }
+    if (list_holds(model)) {
+        for (size_t k = 0; k < c->pair_count; ++k) {
+            if (near(model, c->pairs[2 * k], c->pairs[2 * k + 1], 0.0)) {
+                SE3DI_TRY(visitor(ctx, c->pairs[2 * k], c->pairs[2 * k + 1]));
+            }
+        }
+        return SE3D_OK;
+    }
+    for (uint32_t i = 0; i < shapes; ++i) {
+        for (uint32_t j = i + 1; j < shapes; ++j) {
+            if (near(model, i, j, 0.0) && se3di_shapes_may_touch(model, i, j)) {
+                SE3DI_TRY(visitor(ctx, i, j));
+            }
+        }
+    }
+    return SE3D_OK;
+}
+
+/* The lower end of a shape along x, with the margin. */
+static double lower_end(const se3di_model *model, uint32_t shape)
+{
+    const se3di_shape *s = &model->shapes[shape];
+    return s->kind == SE3DI_SHAPE_PLANE ? -HUGE_VAL
+                                        : model->contacts.reference[3 * (size_t)shape] - s->bound;
+}
+
+static double upper_end(const se3di_model *model, uint32_t shape)
+{
+    const se3di_shape *s = &model->shapes[shape];
+    return s->kind == SE3DI_SHAPE_PLANE ? HUGE_VAL
+                                        : model->contacts.reference[3 * (size_t)shape] + s->bound;
+}
+
+/* Nearly sorted from the last time. */
+static void sort_order(se3di_model *model, int fresh)
+{
+    uint32_t *order = model->contacts.order;
+    uint32_t shapes = (uint32_t)model->shape_slots.count;
+    for (uint32_t k = 0; k < shapes; ++k) {
+        uint32_t at = k;
+        uint32_t shape = fresh ? k : order[k];
+        double low = lower_end(model, shape);
+        for (; at > 0 && lower_end(model, order[at - 1]) > low; --at) {
+            order[at] = order[at - 1];
+        }
+        order[at] = shape;
+    }
+}
+
+static int is_before(const uint32_t *a, const uint32_t *b)
+{
+    return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]);
+}
+
+/* Let the pair at `root` sink in the heap of `count`. */
+static void sink(uint32_t *pairs, size_t root, size_t count)
+{
+    for (size_t child = 2 * root + 1; child < count; child = 2 * root + 1) {
+        child += child + 1 < count && is_before(pairs + 2 * child, pairs + 2 * (child + 1));
+        if (!is_before(pairs + 2 * root, pairs + 2 * child)) {
+            return;
+        }
+        for (size_t k = 0; k < 2; ++k) {
+            uint32_t t = pairs[2 * root + k];
+            pairs[2 * root + k] = pairs[2 * child + k];
+            pairs[2 * child + k] = t;
+        }
+        root = child;
+    }
+}
+
+/* In place: the library's qsort may allocate. */
+static void sort_pairs(uint32_t *pairs, size_t count)
+{
+    for (size_t k = count / 2; k > 0; --k) {
+        sink(pairs, k - 1, count);
+    }
+    for (size_t last = count; last > 1; --last) {
+        for (size_t k = 0; k < 2; ++k) {
+            uint32_t t = pairs[k];
+            pairs[k] = pairs[2 * (last - 1) + k];
+            pairs[2 * (last - 1) + k] = t;
+        }
+        sink(pairs, 0, last - 1);
+    }
+}
+
+static se3d_status add_pair(se3di_model *model, uint32_t a, uint32_t b)
+{
+    se3di_body_contacts *c = &model->contacts;
+    void *pairs = c->pairs;
+    se3d_status status = se3di_array_reserve(&model->allocator, &pairs, &c->pair_capacity,
+                                             c->pair_count + 1, 2 * sizeof *c->pairs);
+    c->pairs = pairs;
+    SE3DI_TRY(status);
+    c->pairs[2 * c->pair_count] = a < b ? a : b;
+    c->pairs[2 * c->pair_count++ + 1] = a < b ? b : a;
+    return SE3D_OK;
+}
+
+static se3d_status sweep(se3di_model *model)
+{
+    se3di_body_contacts *c = &model->contacts;
+    uint32_t shapes = (uint32_t)model->shape_slots.count;
+    c->pair_count = 0;
+    for (uint32_t k = 0; k < shapes; ++k) {
+        double high = upper_end(model, c->order[k]) + c->margin;
+        for (uint32_t m = k + 1; m < shapes && !(lower_end(model, c->order[m]) > high); ++m) {
+            if (near(model, c->order[k], c->order[m], c->margin) &&
+                se3di_shapes_may_touch(model, c->order[k], c->order[m])) {
+                SE3DI_TRY(add_pair(model, c->order[k], c->order[m]));
+            }
+        }
+    }
+    sort_pairs(c->pairs, c->pair_count);
+    return SE3D_OK;
+}
+
+static se3d_status reserve(se3di_model *model)
+{
+    se3di_body_contacts *c = &model->contacts;
+    size_t shapes = model->shape_slots.count;
+    void *reference = c->reference;
+    void *order = c->order;
+    se3d_status status = se3di_array_reserve(&model->allocator, &reference, &c->reference_capacity,
+                                             shapes, 3 * sizeof *c->reference);
+    c->reference = reference;
+    SE3DI_TRY(status);
+    status = se3di_array_reserve(&model->allocator, &order, &c->order_capacity, shapes,
+                                 sizeof *c->order);
+    c->order = order;
+    return status;
+}
+
+se3d_status se3di_broad_update(se3di_model *model)
+{
+    se3di_body_contacts *c = &model->contacts;
+    int fresh = c->version != model->topology_version;
+    if (list_holds(model)) {
+        return SE3D_OK;
+    }
+    c->version = 0;
+    SE3DI_TRY(reserve(model));
+    double least = HUGE_VAL;
+    for (uint32_t k = 0; k < model->shape_slots.count; ++k) {
+        center_of(model, k, c->reference + 3 * (size_t)k);
+        least = model->shapes[k].bound > 0.0 ? fmin(least, model->shapes[k].bound) : least;
+    }
+    c->margin = least < HUGE_VAL ? MARGIN * least : 0.0;
+    sort_order(model, fresh);
+    SE3DI_TRY(sweep(model));
+    c->version = model->topology_version;
+    return SE3D_OK;
+}

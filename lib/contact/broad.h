@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Broad phase: pairs of shapes near enough for a closer look. */
+#ifndef SE3DI_CONTACT_BROAD_H
+#define SE3DI_CONTACT_BROAD_H
+
+#include "model/model.h"
+
+/* Visit the pairs i < j whose bounds overlap, in ascending order. */
+typedef se3d_status (*se3di_pair_visitor)(void *ctx, uint32_t i, uint32_t j);
+se3d_status se3di_broad_visit(const se3di_model *model, se3di_pair_visitor visitor, void *ctx);
+
+/* Renew the list of pairs if the shapes have moved too far since it was made. On failure it is
+ * void, and visits look at all pairs. @return OK, NO_MEMORY */
+se3d_status se3di_broad_update(se3di_model *model);
+
+#endif

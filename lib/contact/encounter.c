@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The law at one point, the same as that of particles (docs/theory/contact-laws.md): with v the
+ * velocity of j relative to i at the point, n from i to j, s = 1 (hooke) or sqrt(R* delta),
+ *
+ *     Fn = max(0, kn s delta - dn sqrt(m* s) vn)        on j along n
+ *     Ft = -kt s xi - dt sqrt(m* s) vt,                 |Ft| <= mu Fn
+ *     xi = xj - xi of two points that were one when contact began, in the tangent plane
+ *     1/m* = sum over free bodies of 1/m + (a x n) . J^-1 (a x n)
+ *
+ * so that sticking is elastic and does not creep, whatever the method. In the step in which contact
+ * begins the damping grows with the share of the step that is spent in contact: forces are
+ * continuous where implicit methods look for a solution.              docs/theory/body-contact.md
+ */
+#include "contact/encounter.h"
+
+#include "math/inertia.h"
+#include "math/quaternion.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+double se3di_shape_contact_radius(const se3di_shape *shape)
+{
+    int round = shape->kind == SE3DI_SHAPE_SPHERE || shape->kind == SE3DI_SHAPE_CAPSULE ||
+                shape->kind == SE3DI_SHAPE_CYLINDER;
+    return round ? shape->radius : HUGE_VAL;
+}
+
+double se3di_shape_contact_size(const se3di_shape *shape)
+{
+    switch (shape->kind) {
+    case SE3DI_SHAPE_BOX:
+        return fmin(shape->half[0], fmin(shape->half[1], shape->half[2]));
+    case SE3DI_SHAPE_CYLINDER:
+        return fmin(shape->radius, shape->half_length);
+    case SE3DI_SHAPE_HULL:
+        return 0.5 * shape->bound;
+    case SE3DI_SHAPE_PLANE:
+    case SE3DI_SHAPE_MESH:
+        return HUGE_VAL;
+    default:
+        return shape->radius;
+    }
+}
+
+/* R* of two round shapes in series; of two flat ones the smaller size. */
+static double reduced_radius(const se3di_shape *i, const se3di_shape *j)
+{
+    double curvature = 1.0 / se3di_shape_contact_radius(i) + 1.0 / se3di_shape_contact_radius(j);
+    return curvature > 0.0 ? 1.0 / curvature
+                           : fmin(se3di_shape_contact_size(i), se3di_shape_contact_size(j));
+}
+
+void se3di_encounter_turn_by(const se3di_body *body, const se3di_frame *frame, const double a[3],
+                             double out[3])
+{
+    double J[9], local[3], x[3];
+    se3di_inertia_matrix(body->J, J);
+    se3di_mul_transposed(frame->A, a, local);
+    const double c0[3] = {J[0], J[3], J[6]}, c1[3] = {J[1], J[4], J[7]}, c2[3] = {J[2], J[5], J[8]};
+    double c12[3], c20[3], c01[3];
+    se3di_cross(c1, c2, c12);
+    se3di_cross(c2, c0, c20);
+    se3di_cross(c0, c1, c01);
+    double det = se3di_dot(c0, c12);
+    if (!(det > 0.0)) {
+        memset(out, 0, 3 * sizeof *out);
+        return;
+    }
+    x[0] = se3di_dot(c12, local) / det;
+    x[1] = se3di_dot(c20, local) / det;
+    x[2] = se3di_dot(c01, local) / det;
+    se3di_mul(frame->A, x, out);
+}
+
+static void eval_mass(se3di_encounter *e)
+{
+    e->inverse_mass = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        const se3di_body *body = &e->model->bodies[e->body[k]];
+        double a[3], q[3];
+        if (body->fixed) {
+            continue;
+        }
+        se3di_cross(e->arm[k], e->at->normal, a);
+        se3di_encounter_turn_by(body, &e->model->frames[e->body[k]], a, q);
+        e->inverse_mass += 1.0 / body->mass + se3di_dot(a, q);
+    }
+    e->root_mass = 1.0 / sqrt(e->inverse_mass);
+}
+
+static void eval_velocity(se3di_encounter *e)
+{
+    const double *n = e->at->normal;
+    double at[2][3];
+    for (int k = 0; k < 2; ++k) {
+        const se3di_frame *frame = &e->model->frames[e->body[k]];
+        se3di_sub(e->at->point, frame->r, e->arm[k]);
+        se3di_mul(frame->A, frame->w, e->w[k]);
+        se3di_cross(e->w[k], e->arm[k], at[k]);
+        se3di_add(frame->v, at[k], at[k]);
+    }
+    se3di_sub(at[1], at[0], e->v);
+    e->vn = se3di_dot(e->v, n);
+    se3di_copy(e->v, e->vt);
+    se3di_add_scaled(-e->vn, n, e->vt);
+}
+
+/* Time since a new contact began, within the step; 0 where the step is not known. */
+static double time_since(const se3di_encounter *e)
+{
+    double step = e->model->contacts.step;
+    return e->vn * step < -e->at->overlap ? -e->at->overlap / e->vn : step;
+}
+
+/* What is left square to the normal. */
+static void project(const double n[3], double x[3])
+{
+    se3di_add_scaled(-se3di_dot(n, x), n, x);
+}
+
+static void eval_anchors(const se3di_encounter *e, int k, double out[3])
+{
+    const double *anchor = k ? e->memory->anchor_j : e->memory->anchor_i;
+    se3di_mul(e->model->frames[e->body[k]].A, anchor, out);
+}
+
+/* The rotation of j relative to i since the last accepted state, ground frame. */
+static void eval_turn(const se3di_encounter *e, double out[3])
+{
+    const double *pi = e->model->frames[e->body[0]].p;
+    const double back[4] = {pi[0], -pi[1], -pi[2], -pi[3]};
+    const double *m = e->memory->turn;
+    const double before[4] = {m[0], -m[1], -m[2], -m[3]};
+    double now[4], turn[4], local[3];
+    se3di_quat_mul(back, e->model->frames[e->body[1]].p, now);
+    se3di_quat_mul(now, before, turn); /* in the frame of i */
+    double size = sqrt(turn[1] * turn[1] + turn[2] * turn[2] + turn[3] * turn[3]);
+    double angle = 2.0 * atan2(turn[0] < 0.0 ? -size : size, fabs(turn[0]));
+    se3di_scale(size > 0.0 ? angle / size : 2.0, turn + 1, local);
+    se3di_mul(e->model->frames[e->body[0]].A, local, out);
+}
+
+static void eval_memory(se3di_encounter *e)
+{
+    const double *n = e->at->normal;
+    double time = time_since(e);
+    double step = e->model->contacts.step;
+    e->onset = 1.0;
+    e->twist = 0.0;
+    memset(e->rho, 0, sizeof e->rho);
+    if (!e->memory) {
+        e->onset = step > 0.0 ? time / step : 1.0;
+        se3di_scale(time, e->vt, e->xi);
+        return;
+    }
+    double x[2][3], turn[3];
+    for (int k = 0; k < 2; ++k) {
+        eval_anchors(e, k, x[k]);
+        se3di_add(e->model->frames[e->body[k]].r, x[k], x[k]);
+    }
+    se3di_sub(x[1], x[0], e->xi);
+    project(n, e->xi);
+    if (e->pair.rolling > 0.0 || e->pair.torsion > 0.0) {
+        eval_turn(e, turn);
+        se3di_copy(e->memory->roll, e->rho);
+        se3di_add_scaled(e->radius, turn, e->rho);
+        project(n, e->rho);
+        e->twist = e->memory->twist + e->radius * se3di_dot(turn, n);
+    }
+}
+
+/* The factor that brings a size down to its cap. */
+static double cap_factor(double size, double cap)
+{
+    return size > cap ? cap / size : 1.0;
+}
+
+static void eval_rolling(se3di_encounter *e)
+{
+    const double *n = e->at->normal;
+    double spin[3];
+    memset(e->moment, 0, sizeof e->moment);
+    memset(e->bend, 0, sizeof e->bend);
+    e->wring = 0.0;
+    e->yield = e->slack = 1.0;
+    if (!(e->pair.rolling > 0.0 || e->pair.torsion > 0.0)) {
+        return;
+    }
+    double k = e->pair.kt * e->s;
+    double c = e->pair.dr * e->root_mass * e->root;
+    se3di_sub(e->w[1], e->w[0], spin);
+    double turn = se3di_dot(spin, n);
+    project(n, spin);
+    se3di_add_scaled(-k, e->rho, e->bend);
+    se3di_add_scaled(-c * e->radius, spin, e->bend);
+    e->wring = -k * e->twist - c * e->radius * turn;
+    e->yield = cap_factor(se3di_norm(e->bend), e->pair.rolling * e->normal);
+    e->slack = cap_factor(fabs(e->wring), e->pair.torsion * e->normal);
+    se3di_add_scaled(e->radius * e->yield, e->bend, e->moment);
+    se3di_add_scaled(e->radius * e->slack * e->wring, n, e->moment);
+}
+
+void se3di_encounter_eval(se3di_encounter *e)
+{
+    const se3di_model *model = e->model;
+    const se3di_shape *i = &model->shapes[e->shape_i];
+    const se3di_shape *j = &model->shapes[e->shape_j];
+    double delta = e->at->overlap;
+    e->body[0] = i->body;
+    e->body[1] = j->body;
+    e->law = model->contact.law;
+    e->pair = model->pairs[(size_t)i->material * model->material_slots.count + (size_t)j->material];
+    e->radius = reduced_radius(i, j);
+    eval_velocity(e);
+    eval_mass(e);
+    e->s = e->law == SE3DI_LAW_HERTZ_MINDLIN ? sqrt(e->radius * delta) : 1.0;
+    e->root = sqrt(e->s);
+    eval_memory(e);
+    e->elastic = e->pair.kn * e->s * delta;
+    e->normal = fmax(0.0, e->elastic - e->onset * e->pair.dn * e->root_mass * e->root * e->vn);
+    for (int a = 0; a < 3; ++a) {
+        e->pull[a] = -e->pair.kt * e->s * e->xi[a] - e->pair.dt * e->root_mass * e->root * e->vt[a];
+    }
+    e->give = cap_factor(se3di_norm(e->pull), e->pair.friction * e->normal);
+    se3di_scale(e->give, e->pull, e->force);
+    se3di_add_scaled(e->normal, e->at->normal, e->force);
+    eval_rolling(e);
+}
+
+void se3di_encounter_wrench(const se3di_encounter *e, double wrench[12])
+{
+    for (int k = 0; k < 2; ++k) {
+        double torque[3];
+        double sign = k ? 1.0 : -1.0;
+        se3di_cross(e->arm[k], e->force, torque);
+        se3di_add(torque, e->moment, torque);
+        se3di_scale(sign, torque, torque);
+        se3di_scale(sign, e->force, wrench + 6 * k);
+        se3di_mul_transposed(e->model->frames[e->body[k]].A, torque, wrench + 6 * k + 3);
+    }
+}
+
+/* The stretch that the capped force belongs to. */
+static void settled(double k, double c, double factor, const double pull[3], const double v[3],
+                    const double x[3], double out[3])
+{
+    se3di_copy(x, out);
+    if (factor < 1.0 && k > 0.0) {
+        se3di_scale(-factor / k, pull, out);
+        se3di_add_scaled(-c / k, v, out);
+    }
+}
+
+static void settled_xi(const se3di_encounter *e, double xi[3])
+{
+    settled(e->pair.kt * e->s, e->pair.dt * e->root_mass * e->root, e->give, e->pull, e->vt, e->xi,
+            xi);
+}
+
+/* Rolling and torsion as the caps leave them. */
+static void settled_roll(const se3di_encounter *e, double rho[3], double *twist)
+{
+    double spin[3], out[3];
+    double k = e->pair.kt * e->s;
+    double c = e->pair.dr * e->root_mass * e->root;
+    se3di_sub(e->w[1], e->w[0], spin);
+    se3di_scale(e->radius, spin, spin);
+    double turn[3] = {se3di_dot(spin, e->at->normal), 0.0, 0.0};
+    project(e->at->normal, spin);
+    settled(k, c, e->yield, e->bend, spin, e->rho, rho);
+    const double wring[3] = {e->wring, 0.0, 0.0};
+    const double now[3] = {e->twist, 0.0, 0.0};
+    settled(k, c, e->slack, wring, turn, now, out);
+    *twist = out[0];
+}
+
+double se3di_encounter_energy(const se3di_encounter *e)
+{
+    double xi[3], rho[3], twist;
+    settled_xi(e, xi);
+    settled_roll(e, rho, &twist);
+    double share = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 0.4 : 0.5;
+    double springs = se3di_dot(xi, xi);
+    if (e->pair.rolling > 0.0 || e->pair.torsion > 0.0) {
+        springs += se3di_dot(rho, rho) + twist * twist;
+    }
+    return share * e->elastic * e->at->overlap + 0.5 * e->pair.kt * e->s * springs;
+}
+
+double se3di_encounter_power(const se3di_encounter *e)
+{
+    double spin[3];
+    se3di_sub(e->w[1], e->w[0], spin);
+    return -se3di_dot(e->force, e->v) - se3di_dot(e->moment, spin);
+}
+
+void se3di_encounter_record(const se3di_encounter *e, se3di_body_contact *record)
+{
+    double xi[3], at[3];
+    memset(record, 0, sizeof *record);
+    record->shape_i = e->shape_i;
+    record->shape_j = e->shape_j;
+    record->feature = e->at->feature;
+    settled_xi(e, xi);
+    settled_roll(e, record->roll, &record->twist);
+    for (int k = 0; k < 2; ++k) {
+        se3di_copy(e->arm[k], at);
+        se3di_add_scaled(k ? 0.5 : -0.5, xi, at);
+        se3di_mul_transposed(e->model->frames[e->body[k]].A, at,
+                             k ? record->anchor_j : record->anchor_i);
+    }
+    const double *pi = e->model->frames[e->body[0]].p;
+    const double back[4] = {pi[0], -pi[1], -pi[2], -pi[3]};
+    se3di_quat_mul(back, e->model->frames[e->body[1]].p, record->turn);
+    se3di_copy(e->at->point, record->point);
+    se3di_copy(e->at->normal, record->normal);
+    record->overlap = e->at->overlap;
+    se3di_copy(e->force, record->force);
+    se3di_copy(e->moment, record->torque);
+}

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One point where two bodies touch: velocities, forces and their derivatives.
+ * docs/theory/body-contact.md */
+#ifndef SE3DI_CONTACT_ENCOUNTER_H
+#define SE3DI_CONTACT_ENCOUNTER_H
+
+#include "contact/narrow.h"
+#include "model/model.h"
+
+typedef struct se3di_encounter {
+    const se3di_model *model;
+    const se3di_contact_point *at;
+    const se3di_body_contact *memory; /* NULL: they did not touch at the last accepted state */
+    uint32_t shape_i, shape_j, body[2];
+    int32_t law;
+    se3di_pair pair;
+    double radius;              /* R* */
+    double arm[2][3];           /* from the bodies' centres to the point */
+    double w[2][3];             /* of the bodies, ground frame */
+    double v[3], vn, vt[3];     /* of j relative to i at the point */
+    double inverse_mass;        /* along the normal */
+    double root_mass;           /* sqrt(m*) */
+    double s, root;             /* 1 or sqrt(R* overlap); sqrt(s) */
+    double onset;               /* share of the step since they touch, of a new contact */
+    double xi[3];               /* stretch, in the tangent plane */
+    double rho[3], twist;       /* rolling and torsion, lengths */
+    double elastic, normal;     /* normal force without and with damping, >= 0 */
+    double pull[3];             /* -k xi - c vt */
+    double bend[3], wring;      /* the same for rolling and torsion */
+    double give, yield, slack;  /* factors <= 1 of Coulomb's caps on these */
+    double force[3], moment[3]; /* on j */
+} se3di_encounter;
+
+/* A change of the poses or velocities of the two bodies, ground frame. */
+typedef struct se3di_encounter_change {
+    double r[2][3], turn[2][3]; /* displacements of the centres, rotations */
+    double v[2][3], w[2][3];
+} se3di_encounter_change;
+
+/* The radius of a shape where it touches; infinite: flat. */
+double se3di_shape_contact_radius(const se3di_shape *shape);
+/* A length of the shape that overlaps are measured by. */
+double se3di_shape_contact_size(const se3di_shape *shape);
+
+/* Complete an encounter of which model, at, memory, shape_i and shape_j are set. */
+void se3di_encounter_eval(se3di_encounter *e);
+/* Forces at the centres (ground frame) and torques (body frames) on i and j. */
+void se3di_encounter_wrench(const se3di_encounter *e, double wrench[12]);
+/* d wrench / d (dr, dtheta) and / d (v, w), as those of force elements. */
+void se3di_encounter_derivative(const se3di_encounter *e, double K[144], double D[144]);
+/* Energy in its springs; power that goes into it. */
+double se3di_encounter_energy(const se3di_encounter *e);
+double se3di_encounter_power(const se3di_encounter *e);
+/* J^-1 a of a body, ground frame; zero where it has no inertia. */
+void se3di_encounter_turn_by(const se3di_body *body, const se3di_frame *frame, const double a[3],
+                             double out[3]);
+/* What is remembered of it. */
+void se3di_encounter_record(const se3di_encounter *e, se3di_body_contact *record);
+
+#endif

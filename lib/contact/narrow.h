@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Two shapes with their poses: where and how deep they touch. docs/theory/body-contact.md
+ *
+ * The normal points from the first shape to the second. Overlaps change continuously with the
+ * poses. The point of a pair of round shapes is half way between the two surfaces; on a plane, and
+ * of a sphere on anything that is none, it is on the surface of the other shape. */
+#ifndef SE3DI_CONTACT_NARROW_H
+#define SE3DI_CONTACT_NARROW_H
+
+#include "contact/shape.h"
+
+#define SE3DI_MANIFOLD_POINTS 16
+
+/* How a surface itself bends where it is touched: moving on by a length l along `u` turns its
+ * normal by l / r[0], along n x u by l / r[1]. 0: a corner or edge; infinite: flat. */
+typedef struct se3di_bend {
+    double u[3]; /* unit, square to the normal */
+    double r[2];
+} se3di_bend;
+
+typedef struct se3di_contact_point {
+    double point[3];  /* ground frame */
+    double normal[3]; /* from the first shape to the second, ground frame */
+    double overlap;   /* > 0 */
+    double share;     /* where the point is from the surface of i (0) to that of j (1) */
+    uint32_t feature; /* the same for the same parts of the shapes from step to step */
+    uint32_t reserved;
+    se3di_bend bend_i, bend_j;
+} se3di_contact_point;
+
+typedef struct se3di_manifold {
+    uint32_t count;
+    uint32_t reserved;
+    se3di_contact_point points[SE3DI_MANIFOLD_POINTS];
+} se3di_manifold;
+
+/* The points where shapes i and j touch; none where they are apart, or are a plane or mesh and
+ * another one. */
+void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
+                       const se3di_shape_pose *at_j, se3di_manifold *manifold);
+
+#endif

@@ -1,0 +1,455 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Distance and least penetration of two convex cores by their difference
+ *
+ *     D = { a - b : a in core i, b in core j },
+ *
+ * which holds the origin where they overlap. Apart: the point of D nearest to the origin, by a
+ * simplex that walks towards it (Gilbert, Johnson, Keerthi 1988); the nearest point of a simplex is
+ * the best of those of all its parts. Overlapping: the boundary of D nearest to the origin, by a
+ * polytope inside D that grows where it is nearest (van den Bergen 2001). For polyhedra both end
+ * exactly, for round bodies when a step gains less than 1e-12 of their size. */
+#include "contact/narrow_internal.h"
+
+#include "math/vec3.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#define WALKS       64
+#define VERTICES    160
+#define FACES       (4 * VERTICES) /* twice what lives, for a step's new ones */
+#define GAIN        1e-12          /* relative; smaller ones end a search */
+#define PLANE_SLACK 1e-13          /* relative; a face is not seen from closer to its plane */
+
+typedef struct vertex {
+    double p[3], a[3], b[3]; /* p = a - b */
+} vertex;
+
+typedef struct difference {
+    const se3di_solid *i, *j;
+    double size;
+} difference;
+
+static void support(const difference *D, const double d[3], vertex *v)
+{
+    double back[3];
+    se3di_scale(-1.0, d, back);
+    se3di_core_support(D->i, d, v->a);
+    se3di_core_support(D->j, back, v->b);
+    se3di_sub(v->a, v->b, v->p);
+}
+
+typedef struct simplex {
+    int count;
+    vertex v[4];
+    double weight[4];
+} simplex;
+
+/* Solve the n <= 3 symmetric equations G x = b; 0 where they are singular. */
+static int solve_gram(int n, double G[3][3], double b[3], double x[3])
+{
+    for (int k = 0; k < n; ++k) {
+        int pivot = k;
+        for (int r = k + 1; r < n; ++r) {
+            pivot = fabs(G[r][k]) > fabs(G[pivot][k]) ? r : pivot;
+        }
+        if (!(fabs(G[pivot][k]) > 0.0)) {
+            return 0;
+        }
+        for (int c = 0; c < n; ++c) {
+            double t = G[k][c];
+            G[k][c] = G[pivot][c];
+            G[pivot][c] = t;
+        }
+        double t = b[k];
+        b[k] = b[pivot];
+        b[pivot] = t;
+        for (int r = k + 1; r < n; ++r) {
+            double f = G[r][k] / G[k][k];
+            for (int c = k; c < n; ++c) {
+                G[r][c] -= f * G[k][c];
+            }
+            b[r] -= f * b[k];
+        }
+    }
+    for (int k = n - 1; k >= 0; --k) {
+        x[k] = b[k];
+        for (int c = k + 1; c < n; ++c) {
+            x[k] -= G[k][c] * x[c];
+        }
+        x[k] /= G[k][k];
+    }
+    return 1;
+}
+
+/* The point of the affine hull of some corners nearest to the origin: weights, all positive, and
+ * the point; 0 where it is not between them. */
+static int nearest_of_part(const simplex *s, const int *part, int count, double weight[4],
+                           double point[3])
+{
+    double e[3][3], G[3][3], b[3], x[3] = {0.0, 0.0, 0.0};
+    const double *base = s->v[part[0]].p;
+    for (int k = 1; k < count; ++k) {
+        se3di_sub(s->v[part[k]].p, base, e[k - 1]);
+    }
+    for (int r = 0; r < count - 1; ++r) {
+        b[r] = -se3di_dot(e[r], base);
+        for (int c = 0; c < count - 1; ++c) {
+            G[r][c] = se3di_dot(e[r], e[c]);
+        }
+    }
+    if (!solve_gram(count - 1, G, b, x)) {
+        return 0;
+    }
+    double first = 1.0;
+    se3di_copy(base, point);
+    for (int k = 0; k < count - 1; ++k) {
+        first -= x[k];
+        se3di_add_scaled(x[k], e[k], point);
+        weight[part[k + 1]] = x[k];
+        if (!(x[k] > 0.0)) {
+            return 0;
+        }
+    }
+    weight[part[0]] = first;
+    return first > 0.0;
+}
+
+/* Reduce the simplex to the part whose nearest point is the nearest of all. */
+static void reduce(simplex *s, double point[3])
+{
+    double least = HUGE_VAL, best_weight[4] = {0.0, 0.0, 0.0, 0.0};
+    int best = 1;
+    for (int mask = 1; mask < 1 << s->count; ++mask) {
+        int part[4] = {0, 0, 0, 0}, count = 0;
+        double weight[4] = {0.0, 0.0, 0.0, 0.0}, here[3];
+        for (int k = 0; k < s->count; ++k) {
+            part[count] = k;
+            count += mask >> k & 1;
+        }
+        if (!nearest_of_part(s, part, count, weight, here)) {
+            continue;
+        }
+        double square = se3di_dot(here, here);
+        if (square < least) {
+            least = square;
+            best = mask;
+            se3di_copy(here, point);
+            memcpy(best_weight, weight, sizeof weight);
+        }
+    }
+    int kept = 0;
+    for (int k = 0; k < s->count; ++k) {
+        if (best >> k & 1) {
+            s->v[kept] = s->v[k];
+            s->weight[kept++] = best_weight[k];
+        }
+    }
+    s->count = kept;
+}
+
+static int holds(const simplex *s, const vertex *v)
+{
+    for (int k = 0; k < s->count; ++k) {
+        double d[3];
+        se3di_sub(s->v[k].p, v->p, d);
+        if (!(se3di_norm(d) > 0.0)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* The distance; 0 where the origin is within rounding of the simplex. */
+static double walk(const difference *D, simplex *s, double point[3])
+{
+    double d[3];
+    se3di_sub(D->j->at->x, D->i->at->x, d);
+    if (!(se3di_norm(d) > 0.0)) {
+        d[0] = 1.0;
+    }
+    support(D, d, &s->v[0]);
+    s->count = 1;
+    s->weight[0] = 1.0;
+    se3di_copy(s->v[0].p, point);
+    for (int k = 0; k < WALKS; ++k) {
+        vertex next;
+        double square = se3di_dot(point, point);
+        if (!(square > GAIN * GAIN * D->size * D->size) || s->count == 4) {
+            return 0.0;
+        }
+        se3di_scale(-1.0 / sqrt(square), point, d);
+        support(D, d, &next);
+        double distance = sqrt(square);
+        if (distance + se3di_dot(next.p, d) <= GAIN * D->size || holds(s, &next)) {
+            return distance;
+        }
+        s->v[s->count++] = next;
+        reduce(s, point);
+        if (!(se3di_dot(point, point) < square)) {
+            return sqrt(se3di_dot(point, point));
+        }
+    }
+    return se3di_norm(point);
+}
+
+static void witness(const vertex *v, const double *weight, int count, double a[3], double b[3])
+{
+    memset(a, 0, 3 * sizeof *a);
+    memset(b, 0, 3 * sizeof *b);
+    for (int k = 0; k < count; ++k) {
+        se3di_add_scaled(weight[k], v[k].a, a);
+        se3di_add_scaled(weight[k], v[k].b, b);
+    }
+}
+
+typedef struct polytope_face {
+    int v[3];
+    int alive;
+    double n[3]; /* outward */
+    double distance;
+} polytope_face;
+
+typedef struct polytope {
+    const difference *D;
+    int vertex_count, face_count;
+    vertex v[VERTICES];
+    polytope_face face[FACES];
+} polytope;
+
+static void add_face(polytope *P, int a, int b, int c)
+{
+    if (P->face_count >= FACES) {
+        return;
+    }
+    double ab[3], ac[3];
+    polytope_face *f = &P->face[P->face_count++];
+    *f = (polytope_face){.v = {a, b, c}, .alive = 1, .distance = HUGE_VAL};
+    se3di_sub(P->v[b].p, P->v[a].p, ab);
+    se3di_sub(P->v[c].p, P->v[a].p, ac);
+    se3di_cross(ab, ac, f->n);
+    double size = se3di_norm(f->n);
+    if (size > DBL_EPSILON * se3di_norm(ab) * se3di_norm(ac)) {
+        se3di_scale(1.0 / size, f->n, f->n);
+        f->distance = se3di_dot(f->n, P->v[a].p);
+    }
+}
+
+static double height_over(const polytope *P, const polytope_face *f, const double p[3])
+{
+    double d[3];
+    se3di_sub(p, P->v[f->v[0]].p, d);
+    return f->distance < HUGE_VAL ? se3di_dot(d, f->n) : 0.0;
+}
+
+/* Complete a simplex that holds the origin to a tetrahedron; 0 where D is flat. */
+static int complete(const difference *D, simplex *s)
+{
+    static const double way[6][3] = {{1.0, 0.0, 0.0},  {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0},
+                                     {0.0, -1.0, 0.0}, {0.0, 0.0, 1.0},  {0.0, 0.0, -1.0}};
+    double e[3], f[3], n[3];
+    for (int k = 0; s->count == 1 && k < 6; ++k) {
+        support(D, way[k], &s->v[1]);
+        se3di_sub(s->v[1].p, s->v[0].p, e);
+        s->count += se3di_norm(e) > 1e-9 * D->size;
+    }
+    for (int k = 0; s->count == 2 && k < 6; ++k) {
+        se3di_sub(s->v[1].p, s->v[0].p, e);
+        se3di_cross(e, way[k], f);
+        support(D, f, &s->v[2]);
+        se3di_sub(s->v[2].p, s->v[0].p, f);
+        se3di_cross(e, f, n);
+        s->count += se3di_norm(n) > 1e-9 * D->size * se3di_norm(e);
+    }
+    for (int k = 0; s->count == 3 && k < 2; ++k) {
+        se3di_sub(s->v[1].p, s->v[0].p, e);
+        se3di_sub(s->v[2].p, s->v[0].p, f);
+        se3di_cross(e, f, n);
+        double size = se3di_norm(n);
+        se3di_scale((k ? -1.0 : 1.0) / size, n, n);
+        support(D, n, &s->v[3]);
+        se3di_sub(s->v[3].p, s->v[0].p, f);
+        s->count += fabs(se3di_dot(f, n)) > 1e-9 * D->size;
+    }
+    return s->count == 4;
+}
+
+static void begin(polytope *P, const simplex *s)
+{
+    static const int faces[4][3] = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+    double e[3], f[3], g[3], n[3];
+    P->vertex_count = 4;
+    P->face_count = 0;
+    memcpy(P->v, s->v, sizeof s->v);
+    se3di_sub(s->v[1].p, s->v[0].p, e);
+    se3di_sub(s->v[2].p, s->v[0].p, f);
+    se3di_sub(s->v[3].p, s->v[0].p, g);
+    se3di_cross(e, f, n);
+    int inward = se3di_dot(n, g) > 0.0; /* the fourth is above 0, 1, 2 */
+    for (int k = 0; k < 4; ++k) {
+        add_face(P, faces[k][0], faces[k][inward ? 2 : 1], faces[k][inward ? 1 : 2]);
+    }
+}
+
+static polytope_face *nearest_face(polytope *P)
+{
+    polytope_face *best = NULL;
+    for (int k = 0; k < P->face_count; ++k) {
+        polytope_face *f = &P->face[k];
+        if (f->alive && f->distance < HUGE_VAL && (!best || f->distance < best->distance)) {
+            best = f;
+        }
+    }
+    return best;
+}
+
+/* The edge a -> b of a dead face is on the horizon where the face beyond it lives. */
+static int is_horizon(const polytope *P, int faces, int a, int b)
+{
+    for (int k = 0; k < faces; ++k) {
+        const polytope_face *f = &P->face[k];
+        for (int e = 0; e < 3 && f->alive == 2; ++e) {
+            if (f->v[e] == b && f->v[(e + 1) % 3] == a) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+/* Faces that the new vertex sees give way to a cone from it. Returns 0 where there is no room. */
+static int grow(polytope *P, int vertex_index)
+{
+    int faces = P->face_count, seen = 0;
+    const double *p = P->v[vertex_index].p;
+    for (int k = 0; k < faces; ++k) {
+        polytope_face *f = &P->face[k];
+        if (f->alive && height_over(P, f, p) > PLANE_SLACK * P->D->size) {
+            f->alive = 2; /* dying */
+            ++seen;
+        }
+    }
+    for (int k = 0; k < faces; ++k) {
+        for (int e = 0; e < 3 && P->face[k].alive == 2; ++e) {
+            int a = P->face[k].v[e];
+            int b = P->face[k].v[(e + 1) % 3];
+            if (is_horizon(P, faces, a, b)) {
+                add_face(P, a, b, vertex_index);
+            }
+        }
+    }
+    int kept = 0;
+    for (int k = 0; k < P->face_count; ++k) {
+        if (P->face[k].alive == 1) {
+            P->face[kept++] = P->face[k];
+        }
+    }
+    int full = P->face_count >= FACES;
+    P->face_count = kept;
+    return seen > 0 && !full;
+}
+
+/* Of the faces in the plane of the nearest one, that with the point nearest to the origin. */
+static void find_witness(const polytope *P, const polytope_face *nearest, double a[3], double b[3])
+{
+    double least = HUGE_VAL;
+    for (int k = -1; k < P->face_count; ++k) {
+        const polytope_face *f = k < 0 ? nearest : &P->face[k];
+        double point[3] = {0.0, 0.0, 0.0};
+        if (f->distance > nearest->distance + 1e-9 * P->D->size) {
+            continue;
+        }
+        simplex s = {.count = 3, .v = {P->v[f->v[0]], P->v[f->v[1]], P->v[f->v[2]]}};
+        reduce(&s, point);
+        if (se3di_norm(point) < least) {
+            least = se3di_norm(point);
+            witness(s.v, s.weight, s.count, a, b);
+        }
+    }
+}
+
+/* The normal with the least reach of D that a nearest face has had; the reach is the overlap. Where
+ * rounding has spoilt the polytope (it no longer grows) the search ends. */
+static double expand(polytope *P, double normal[3], double a[3], double b[3])
+{
+    polytope_face best = {.distance = 0.0};
+    double least = HUGE_VAL, bound = -HUGE_VAL;
+    for (;;) {
+        polytope_face *f = nearest_face(P);
+        if (!f || P->vertex_count == VERTICES || f->distance < bound - 1e-9 * P->D->size) {
+            break;
+        }
+        vertex *v = &P->v[P->vertex_count];
+        support(P->D, f->n, v);
+        double reach = se3di_dot(v->p, f->n);
+        bound = f->distance;
+        if (reach < least) {
+            least = reach;
+            best = *f;
+            find_witness(P, &best, a, b);
+        }
+        if (reach - f->distance <= GAIN * P->D->size) {
+            break;
+        }
+        ++P->vertex_count;
+        if (!grow(P, P->vertex_count - 1)) {
+            break;
+        }
+    }
+    se3di_copy(best.n, normal);
+    return least < HUGE_VAL ? fmax(least, 0.0) : 0.0;
+}
+
+/* Cores without volume in their difference (crossing lines): square to both. */
+static double flat_normal(const difference *D, const simplex *s, double normal[3])
+{
+    double e[3], f[3];
+    se3di_copy((const double[3]){0.0, 0.0, 1.0}, normal);
+    if (s->count > 2) {
+        se3di_sub(s->v[1].p, s->v[0].p, e);
+        se3di_sub(s->v[2].p, s->v[0].p, f);
+        se3di_cross(e, f, normal);
+    } else if (s->count == 2) {
+        se3di_sub(s->v[1].p, s->v[0].p, e);
+        double size = se3di_norm(e);
+        se3di_scale(size > 0.0 ? 1.0 / size : 0.0, e, e);
+        se3di_perpendicular(e, normal);
+    }
+    se3di_sub(D->j->at->x, D->i->at->x, e);
+    double size = se3di_norm(normal);
+    double sign = se3di_dot(e, normal) < 0.0 ? -1.0 : 1.0;
+    if (size > 0.0) {
+        se3di_scale(sign / size, normal, normal);
+    } else {
+        se3di_copy((const double[3]){0.0, 0.0, 1.0}, normal);
+    }
+    return 0.0;
+}
+
+static double size_of(const se3di_solid *solid)
+{
+    return solid->shape->bound;
+}
+
+double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],
+                             double on_i[3], double on_j[3])
+{
+    difference D = {i, j, size_of(i) + size_of(j)};
+    simplex s;
+    double point[3];
+    memset(&s, 0, sizeof s);
+    double distance = walk(&D, &s, point);
+    witness(s.v, s.weight, s.count, on_i, on_j);
+    if (distance > 1e-9 * D.size) {
+        se3di_scale(-1.0 / distance, point, normal); /* point = a - b, from j to i */
+        return -distance;
+    }
+    if (!complete(&D, &s)) {
+        return flat_normal(&D, &s, normal);
+    }
+    polytope P;
+    P.D = &D;
+    begin(&P, &s);
+    return expand(&P, normal, on_i, on_j);
+}

@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Supports and faces of convex shapes. A capsule is a line with a radius about it, the others are
+ * what they are. */
+#include "contact/narrow_internal.h"
+
+#include "math/vec3.h"
+
+#include <math.h>
+
+#define CAP_COSINE  0.9 /* a cylinder seen along less than this shows its side */
+#define CAP_CORNERS 8
+
+double se3di_core_radius(const se3di_shape *shape)
+{
+    return shape->kind == SE3DI_SHAPE_SPHERE || shape->kind == SE3DI_SHAPE_CAPSULE ? shape->radius
+                                                                                   : 0.0;
+}
+
+static void to_ground(const se3di_solid *solid, const double local[3], double out[3])
+{
+    se3di_mul(solid->at->R, local, out);
+    se3di_add(solid->at->x, out, out);
+}
+
+static uint32_t highest_vertex(const se3di_shape *s, const double d[3])
+{
+    uint32_t best = 0;
+    double most = -HUGE_VAL;
+    for (uint32_t k = 0; k < s->vertex_count; ++k) {
+        double height = se3di_dot(s->vertices + 3 * (size_t)k, d);
+        if (height > most) {
+            most = height;
+            best = k;
+        }
+    }
+    return best;
+}
+
+static void local_support(const se3di_shape *s, const double d[3], double out[3])
+{
+    double rho = hypot(d[0], d[1]);
+    out[0] = out[1] = out[2] = 0.0;
+    switch (s->kind) {
+    case SE3DI_SHAPE_BOX:
+        for (int a = 0; a < 3; ++a) {
+            out[a] = d[a] < 0.0 ? -s->half[a] : s->half[a];
+        }
+        break;
+    case SE3DI_SHAPE_CYLINDER:
+        out[0] = rho > 0.0 ? s->radius * d[0] / rho : 0.0;
+        out[1] = rho > 0.0 ? s->radius * d[1] / rho : 0.0;
+        out[2] = d[2] < 0.0 ? -s->half_length : s->half_length;
+        break;
+    case SE3DI_SHAPE_CAPSULE:
+        out[2] = d[2] < 0.0 ? -s->half_length : s->half_length;
+        break;
+    case SE3DI_SHAPE_HULL:
+        se3di_copy(s->vertices + 3 * (size_t)highest_vertex(s, d), out);
+        break;
+    default:
+        break;
+    }
+}
+
+void se3di_core_support(const se3di_solid *solid, const double d[3], double point[3])
+{
+    double local_d[3], local[3];
+    se3di_mul_transposed(solid->at->R, d, local_d);
+    local_support(solid->shape, local_d, local);
+    to_ground(solid, local, point);
+}
+
+static void box_face(const se3di_solid *solid, const double d[3], se3di_face *face)
+{
+    static const double turn[4][2] = {{1.0, 1.0}, {-1.0, 1.0}, {-1.0, -1.0}, {1.0, -1.0}};
+    const double *half = solid->shape->half;
+    int a = fabs(d[0]) >= fabs(d[1]) ? 0 : 1;
+    a = fabs(d[2]) > fabs(d[a]) ? 2 : a;
+    int b = (a + 1) % 3;
+    int c = (a + 2) % 3;
+    double sign = d[a] < 0.0 ? -1.0 : 1.0;
+    double n[3] = {0.0, 0.0, 0.0};
+    n[a] = sign;
+    se3di_mul(solid->at->R, n, face->normal);
+    face->count = 4;
+    face->id = (uint32_t)(2 * a + (sign < 0.0));
+    for (int k = 0; k < 4; ++k) {
+        double local[3];
+        local[a] = sign * half[a];
+        local[b] = turn[k][0] * half[b];
+        local[c] = sign * turn[k][1] * half[c];
+        to_ground(solid, local, face->corner[k]);
+    }
+}
+
+static void cylinder_cap(const se3di_solid *solid, const double d[3], se3di_face *face)
+{
+    static const double cosine[CAP_CORNERS] = {
+        1.0,  0.70710678118654752,  0.0, -0.70710678118654752,
+        -1.0, -0.70710678118654752, 0.0, 0.70710678118654752};
+    const se3di_shape *s = solid->shape;
+    double sign = d[2] < 0.0 ? -1.0 : 1.0;
+    double tilt = hypot(d[0], d[1]);
+    double bias = tilt < 1e-2 ? 1e-4 * (1.0 - tilt / 1e-2) : 0.0; /* as on planes */
+    double lean[2] = {d[0] + bias, d[1]};
+    double size = hypot(lean[0], lean[1]);
+    double x = size > 0.0 ? lean[0] / size : 1.0;
+    double y = size > 0.0 ? lean[1] / size : 0.0;
+    double n[3] = {0.0, 0.0, sign};
+    se3di_mul(solid->at->R, n, face->normal);
+    face->count = CAP_CORNERS;
+    face->id = sign < 0.0;
+    for (int k = 0; k < CAP_CORNERS; ++k) {
+        double c = cosine[k];
+        double w = sign * cosine[(k + 6) % CAP_CORNERS]; /* the sine */
+        double local[3] = {s->radius * (c * x - w * y), s->radius * (c * y + w * x),
+                           sign * s->half_length};
+        to_ground(solid, local, face->corner[k]);
+    }
+}
+
+/* A line on the side of a cylinder, or that of a capsule. */
+static void side_line(const se3di_solid *solid, const double d[3], se3di_face *face)
+{
+    const se3di_shape *s = solid->shape;
+    double rho = hypot(d[0], d[1]);
+    double radius = s->kind == SE3DI_SHAPE_CYLINDER && rho > 0.0 ? s->radius / rho : 0.0;
+    double n[3] = {rho > 0.0 ? d[0] / rho : 1.0, rho > 0.0 ? d[1] / rho : 0.0, 0.0};
+    se3di_mul(solid->at->R, n, face->normal);
+    face->count = 2;
+    face->id = 2;
+    for (int k = 0; k < 2; ++k) {
+        double local[3] = {radius * d[0], radius * d[1], k ? s->half_length : -s->half_length};
+        to_ground(solid, local, face->corner[k]);
+    }
+}
+
+static void triangle_normal(const se3di_shape *s, size_t triangle, double n[3])
+{
+    const double *corner[3];
+    double ab[3], ac[3];
+    for (size_t k = 0; k < 3; ++k) {
+        corner[k] = s->vertices + 3 * (size_t)s->triangles[3 * triangle + k];
+    }
+    se3di_sub(corner[1], corner[0], ab);
+    se3di_sub(corner[2], corner[0], ac);
+    se3di_cross(ab, ac, n);
+    double size = se3di_norm(n);
+    se3di_scale(size > 0.0 ? 1.0 / size : 0.0, n, n);
+}
+
+/* Insert a corner of the polygon about `center` by its angle from u. */
+static void insert_corner(const se3di_shape *s, double frame[3][3], uint32_t vertex, uint32_t *list,
+                          double *angle, int *count)
+{
+    double d[3];
+    se3di_sub(s->vertices + 3 * (size_t)vertex, frame[2], d);
+    double turn = atan2(se3di_dot(d, frame[1]), se3di_dot(d, frame[0]));
+    int at = *count;
+    if (at == SE3DI_FACE_CORNERS) {
+        return;
+    }
+    for (; at > 0 && angle[at - 1] > turn; --at) {
+        angle[at] = angle[at - 1];
+        list[at] = list[at - 1];
+    }
+    angle[at] = turn;
+    list[at] = vertex;
+    ++*count;
+}
+
+/* All vertices in the plane of the triangle that looks along d best. */
+static void hull_face(const se3di_solid *solid, const double d[3], se3di_face *face)
+{
+    const se3di_shape *s = solid->shape;
+    double n[3] = {0.0, 0.0, 1.0}, best = -HUGE_VAL;
+    size_t triangle = 0;
+    for (size_t k = 0; k < s->triangle_count; ++k) {
+        double here[3];
+        triangle_normal(s, k, here);
+        if (se3di_dot(here, d) > best + 1e-9) { /* of equal ones the first */
+            best = se3di_dot(here, d);
+            triangle = k;
+            se3di_copy(here, n);
+        }
+    }
+    double frame[3][3] = {{0.0}}; /* u, w, centre */
+    double level = se3di_dot(s->vertices + 3 * (size_t)s->triangles[3 * triangle], n);
+    uint32_t list[SE3DI_FACE_CORNERS];
+    double angle[SE3DI_FACE_CORNERS];
+    for (size_t k = 0; k < 3; ++k) {
+        se3di_add_scaled(1.0 / 3.0, s->vertices + 3 * (size_t)s->triangles[3 * triangle + k],
+                         frame[2]);
+    }
+    se3di_perpendicular(n, frame[0]);
+    se3di_cross(n, frame[0], frame[1]);
+    face->count = 0;
+    for (uint32_t k = 0; k < s->vertex_count; ++k) {
+        if (se3di_dot(s->vertices + 3 * (size_t)k, n) > level - 1e-9 * s->bound) {
+            insert_corner(s, frame, k, list, angle, &face->count);
+        }
+    }
+    face->id = (uint32_t)triangle;
+    se3di_mul(solid->at->R, n, face->normal);
+    for (int k = 0; k < face->count; ++k) {
+        to_ground(solid, s->vertices + 3 * (size_t)list[k], face->corner[k]);
+    }
+}
+
+void se3di_face_find(const se3di_solid *solid, const double d[3], se3di_face *face)
+{
+    double local[3];
+    se3di_mul_transposed(solid->at->R, d, local);
+    switch (solid->shape->kind) {
+    case SE3DI_SHAPE_BOX:
+        box_face(solid, local, face);
+        return;
+    case SE3DI_SHAPE_HULL:
+        hull_face(solid, local, face);
+        return;
+    case SE3DI_SHAPE_CYLINDER:
+        if (fabs(local[2]) > CAP_COSINE) {
+            cylinder_cap(solid, local, face);
+            return;
+        }
+        side_line(solid, local, face);
+        return;
+    default:
+        side_line(solid, local, face);
+        return;
+    }
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What contacts between bodies remember of the last accepted state. Data only; see
+ * contact/body_contacts.h. */
+#ifndef SE3DI_MODEL_BODY_CONTACT_H
+#define SE3DI_MODEL_BODY_CONTACT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* A point of contact, named by (shape_i, shape_j, feature). */
+typedef struct se3di_body_contact {
+    uint32_t shape_i, shape_j; /* dense, i < j */
+    uint32_t feature;
+    uint32_t reserved;
+    double anchor_i[3], anchor_j[3]; /* body frames; j's minus i's is the stretch of the spring */
+    double roll[3], twist;           /* R* times the angle of rolling (ground frame), of torsion */
+    double turn[4];                  /* orientation of body j in body i */
+    double point[3], normal[3];      /* ground frame, the normal from i to j */
+    double overlap;
+    double force[3], torque[3]; /* on j: at the point, of rolling and torsion; ground frame */
+} se3di_body_contact;
+
+typedef struct se3di_body_contacts {
+    se3di_body_contact *list; /* of the last accepted state, by shapes and as found */
+    size_t count, capacity;
+    se3di_body_contact *next; /* of the state that is about to be accepted */
+    size_t next_count, next_capacity;
+    /* Pairs of shapes that may touch as long as no shape has moved by more than `margin` / 2 from
+     * `reference`; of edit `version` of the model. */
+    uint32_t *pairs; /* [2 * pairs], ascending */
+    size_t pair_count, pair_capacity;
+    double *reference; /* [3 * shapes] */
+    uint32_t *order;   /* [shapes] by their lower ends along an axis */
+    size_t reference_capacity, order_capacity;
+    double margin;
+    uint64_t version; /* 0: none */
+    double step;      /* of an implicit or fixed-step method under way; 0: not known */
+} se3di_body_contacts;
+
+#endif
