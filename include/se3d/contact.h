@@ -13,7 +13,8 @@
 extern "C" {
 #endif
 
-/* Force laws. Fn never pulls; Ft is a spring with history and a damper, capped at friction * Fn.
+/* Force laws. Fn never pulls but by cohesion; Ft is a spring with history and a damper, capped at
+ * friction * Fn.
  * @since 0.1 */
 typedef enum se3d_law {
     SE3D_LAW_HOOKE = 0,        /* linear: stiffness, tangential_ratio */
@@ -59,6 +60,8 @@ typedef struct se3d_material_def {
     double tangential_ratio;   /* kt/kn >= 0, default 2/7 */
     double young;              /* [Pa] > 0, required for hertz_mindlin */
     double poisson;            /* 0 .. 0.5, default 0.3 */
+    double cohesion;           /* >= 0 [J/m^3]: attraction per area of contact, 2 pi R* overlap */
+    double adhesion; /* >= 0 [J/m^2]: work of adhesion; pull-off force 3/2 pi R* adhesion */
 } se3d_material_def;
 
 SE3D_API void se3d_material_def_init(se3d_material_def *def, size_t size);
@@ -84,6 +87,7 @@ typedef struct se3d_material_pair_def {
     size_t struct_size;
     double friction, restitution, rolling_friction, torsional_friction;
     double stiffness; /* hooke [N/m] */
+    double cohesion, adhesion;
 } se3d_material_pair_def;
 
 SE3D_API void se3d_material_pair_def_init(se3d_material_pair_def *def, size_t size);

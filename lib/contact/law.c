@@ -42,7 +42,7 @@ static void hertz(const se3di_material *a, const se3di_material *b, double e, se
 void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_material *b,
                     const se3di_override *over, se3di_pair *pair)
 {
-    const se3di_override none = {-1.0, -1.0, -1.0, -1.0, -1.0};
+    const se3di_override none = SE3DI_OVERRIDE_NONE;
     const se3di_override *o = over ? over : &none;
     double e = choose(o->restitution, sqrt(a->restitution * b->restitution));
     if (law == SE3DI_LAW_HOOKE) {
@@ -54,6 +54,8 @@ void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_
     pair->rolling = choose(o->rolling_friction, sqrt(a->rolling_friction * b->rolling_friction));
     pair->torsion =
         choose(o->torsional_friction, sqrt(a->torsional_friction * b->torsional_friction));
+    pair->cohesion = 2.0 * PI * choose(o->cohesion, sqrt(a->cohesion * b->cohesion));
+    pair->pull_off = 1.5 * PI * choose(o->adhesion, sqrt(a->adhesion * b->adhesion));
     pair->dr = ROLLING_DAMPING * sqrt(pair->kt);
 }
 

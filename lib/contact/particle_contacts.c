@@ -49,6 +49,7 @@ static se3di_force_task task_of(const se3di_particles *set, couple *c)
         .end = 1,
         .law = (int32_t)set->law,
         .limit = 1e30,
+        .cohesive = set->cohesive,
         .wall_sums = c->sums,
     };
 }

@@ -50,6 +50,7 @@ static se3d_status mix(se3di_particles *set, const se3di_model *model)
     set->pairs = memory;
     SE3DI_TRY(status);
     set->rolling = 0;
+    set->cohesive = 0;
     for (size_t k = 0; k < n * n; ++k) {
         se3di_handle a = set->stuffs[k / n].handle;
         se3di_handle b = set->stuffs[k % n].handle;
@@ -59,6 +60,7 @@ static se3d_status mix(se3di_particles *set, const se3di_model *model)
             set->stuffs[k / n].material = model->materials[row];
             set->pairs[k] = model->pairs[row * m + column];
             set->rolling |= set->pairs[k].rolling > 0.0 || set->pairs[k].torsion > 0.0;
+            set->cohesive |= set->pairs[k].cohesion > 0.0 || set->pairs[k].pull_off > 0.0;
         }
     }
     return SE3D_OK;

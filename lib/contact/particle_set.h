@@ -116,7 +116,9 @@ typedef struct se3di_particles {
     int32_t threads;
     int32_t team; /* threads that evaluated the last forces */
     int32_t boundary[3];
-    int32_t rolling;     /* any material resists */
+    int32_t rolling;  /* any material resists */
+    int32_t cohesive; /* any pair attracts */
+    int32_t reserved;
     int32_t list_valid;  /* the lists belong to the particles */
     int32_t force_valid; /* the forces belong to the state */
     double lower[3], upper[3];
@@ -196,7 +198,7 @@ typedef struct se3di_force_task {
     const se3di_wall *walls;
     uint32_t materials;
     uint32_t begin, end; /* blocks */
-    int32_t law, periodic, uniform;
+    int32_t law, periodic, uniform, cohesive;
     double h;                  /* what the springs advance by */
     double length[3], rate[3]; /* of the period and its inverse; 0: none */
     double limit;              /* allowed overlap over the smaller radius */

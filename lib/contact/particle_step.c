@@ -306,6 +306,7 @@ static se3di_force_task prepare(se3di_particles *set, double h)
         .materials = (uint32_t)set->stuff_count,
         .law = (int32_t)set->law,
         .uniform = set->uniform,
+        .cohesive = set->cohesive,
         .h = h,
         .limit = set->overlap_limit,
     };

@@ -33,7 +33,9 @@ static bool create_material(se3di_reader *reader, const se3di_node *entry, se3d_
                    {"stiffness", &def.stiffness},
                    {"tangential_ratio", &def.tangential_ratio},
                    {"young", &def.young},
-                   {"poisson", &def.poisson}};
+                   {"poisson", &def.poisson},
+                   {"cohesion", &def.cohesion},
+                   {"adhesion", &def.adhesion}};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i) {
         if (!se3di_read_key_number(reader, entry, numbers[i].key, SE3DI_NOT_NEGATIVE,
                                    numbers[i].value)) {
@@ -112,7 +114,9 @@ static bool read_pairs(se3di_reader *reader, const se3di_node *contact)
                                    &def.rolling_friction) ||
             !se3di_read_key_number(reader, node, "torsional_friction", SE3DI_NOT_NEGATIVE,
                                    &def.torsional_friction) ||
-            !se3di_read_key_number(reader, node, "stiffness", SE3DI_POSITIVE, &def.stiffness)) {
+            !se3di_read_key_number(reader, node, "stiffness", SE3DI_POSITIVE, &def.stiffness) ||
+            !se3di_read_key_number(reader, node, "cohesion", SE3DI_NOT_NEGATIVE, &def.cohesion) ||
+            !se3di_read_key_number(reader, node, "adhesion", SE3DI_NOT_NEGATIVE, &def.adhesion)) {
             return false;
         }
         const se3d_status status = se3d_material_set_pair(reader->model->system, a, b, &def);

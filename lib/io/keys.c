@@ -18,22 +18,16 @@ static const char *const shape_keys[] = {
     "name",  "group",  "mask",    "contact",  "type",     "size",        "radius", "length", "file",
     "scale", "normal", "density", "material", "position", "orientation", "color",  NULL};
 static const char *const marker_keys[] = {"name", "position", "orientation", NULL};
-static const char *const material_keys[] = {"name",
-                                            "density",
-                                            "friction",
-                                            "restitution",
-                                            "rolling_friction",
-                                            "torsional_friction",
-                                            "stiffness",
-                                            "tangential_ratio",
-                                            "young",
-                                            "poisson",
+static const char *const material_keys[] = {"name",        "density",          "friction",
+                                            "restitution", "rolling_friction", "torsional_friction",
+                                            "stiffness",   "tangential_ratio", "young",
+                                            "poisson",     "cohesion",         "adhesion",
                                             NULL};
 static const char *const contact_keys[] = {"law",      "step",  "threads", "skin",  "overlap_limit",
                                            "boundary", "lower", "upper",   "pairs", NULL};
 static const char *const pair_keys[] = {
-    "material_1",       "material_2",         "friction",  "restitution",
-    "rolling_friction", "torsional_friction", "stiffness", NULL};
+    "material_1",         "material_2", "friction", "restitution", "rolling_friction",
+    "torsional_friction", "stiffness",  "cohesion", "adhesion",    NULL};
 static const char *const particles_keys[] = {"material", "packing", "count",   "radius",
                                              "lower",    "upper",   "spacing", "jitter",
                                              "velocity", "seed",    NULL};

@@ -104,7 +104,7 @@ void se3di_model_remove_shape(se3di_model *model, uint32_t shape)
 se3d_status se3di_model_add_material(se3di_model *model, const se3di_material *material,
                                      se3di_handle *handle)
 {
-    static const se3di_override none = {-1.0, -1.0, -1.0, -1.0, -1.0};
+    static const se3di_override none = SE3DI_OVERRIDE_NONE;
     size_t n = model->material_slots.count;
     size_t m = n + 1;
     void *memory = model->materials;

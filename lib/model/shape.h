@@ -18,6 +18,7 @@ typedef struct se3di_material {
     double restitution;
     double rolling_friction, torsional_friction; /* times R*: the arm of the resisting moment */
     double stiffness, tangential_ratio;          /* hooke: kn of two spheres of it, kt/kn */
+    double cohesion, adhesion;                   /* [J/m^3], [J/m^2] */
     uint32_t users;                              /* shapes and sets of particles */
     uint32_t reserved;
 } se3di_material;
@@ -25,19 +26,29 @@ typedef struct se3di_material {
 /* What a user may say of a pair of materials; negative: by the mixing rules. */
 typedef struct se3di_override {
     double friction, restitution, rolling_friction, torsional_friction, stiffness;
+    double cohesion, adhesion;
 } se3di_override;
+
+#define SE3DI_OVERRIDE_NONE                                                                        \
+    {                                                                                              \
+        -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0                                                   \
+    }
 
 /* Coefficients of one pair of materials; with s = 1 (hooke) or sqrt(R* delta) (hertz_mindlin):
  *
  *     Fn = max(0, kn s delta - dn sqrt(m* s) vn)      Ft = -kt s xi - dt sqrt(m* s) vt
  *
- * dr: damping of rolling and torsion, like dt. */
+ * dr: damping of rolling and torsion, like dt. Attraction, taken from Fn after friction has seen
+ * it:
+ *
+ *     R* cohesion delta + 2 sqrt(R* pull_off kn s delta) */
 typedef struct se3di_pair {
     double kn, kt, dn, dt;
     double friction, rolling, torsion, dr;
+    double cohesion, pull_off;
 } se3di_pair;
 
-#define SE3DI_PAIR_SIZE 8 /* doubles in an se3di_pair */
+#define SE3DI_PAIR_SIZE 10 /* doubles in an se3di_pair */
 
 typedef struct se3di_contact_settings {
     int32_t law; /* se3di_contact_law */

@@ -25,7 +25,7 @@ void se3d_material_def_init(se3d_material_def *def, size_t size)
 
 void se3d_material_pair_def_init(se3d_material_pair_def *def, size_t size)
 {
-    se3d_material_pair_def defaults = {size, -1.0, -1.0, -1.0, -1.0, -1.0};
+    se3d_material_pair_def defaults = {size, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0};
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
@@ -105,6 +105,8 @@ static se3d_status check_material(se3d_system *system, const se3d_material_def *
         se3di_check_range(system, "restitution", def->restitution, SE3DI_RESTITUTION_MIN, 1.0));
     SE3DI_TRY(se3di_check_range(system, "rolling_friction", def->rolling_friction, 0.0, most));
     SE3DI_TRY(se3di_check_range(system, "torsional_friction", def->torsional_friction, 0.0, most));
+    SE3DI_TRY(se3di_check_range(system, "cohesion", def->cohesion, 0.0, most));
+    SE3DI_TRY(se3di_check_range(system, "adhesion", def->adhesion, 0.0, most));
     SE3DI_TRY(se3di_check_range(system, "stiffness", def->stiffness, 0.0, most));
     SE3DI_TRY(se3di_check_range(system, "tangential_ratio", def->tangential_ratio, 0.0, 10.0));
     SE3DI_TRY(se3di_check_range(system, "young", def->young, 0.0, most));
@@ -133,7 +135,9 @@ se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *d
                            .rolling_friction = full.rolling_friction,
                            .torsional_friction = full.torsional_friction,
                            .stiffness = full.stiffness,
-                           .tangential_ratio = full.tangential_ratio};
+                           .tangential_ratio = full.tangential_ratio,
+                           .cohesion = full.cohesion,
+                           .adhesion = full.adhesion};
     se3di_handle handle;
     if (se3di_model_add_material(&system->model, &data, &handle) < 0) {
         return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a material");
@@ -173,18 +177,21 @@ se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_ma
     SE3DI_TRY(se3di_find_material(system, "material b", b, &index_b));
     se3d_material_pair_def full = se3d_material_pair_def_default();
     SE3DI_TRY(se3di_check_def(system, "pair def", def, &full, sizeof full));
-    const double values[5] = {full.friction, full.restitution, full.rolling_friction,
-                              full.torsional_friction, full.stiffness};
-    static const char *const names[5] = {"friction", "restitution", "rolling_friction",
-                                         "torsional_friction", "stiffness"};
-    for (int k = 0; k < 5; ++k) {
+    const double values[7] = {
+        full.friction,  full.restitution, full.rolling_friction, full.torsional_friction,
+        full.stiffness, full.cohesion,    full.adhesion};
+    static const char *const names[7] = {
+        "friction",  "restitution", "rolling_friction", "torsional_friction",
+        "stiffness", "cohesion",    "adhesion"};
+    for (int k = 0; k < 7; ++k) {
         const double least = k == 1 ? SE3DI_RESTITUTION_MIN : k == 4 ? 1e-30 : 0.0;
         if (!(values[k] < 0.0)) {
             SE3DI_TRY(se3di_check_range(system, names[k], values[k], least, k == 1 ? 1.0 : 1e30));
         }
     }
-    const se3di_override over = {full.friction, full.restitution, full.rolling_friction,
-                                 full.torsional_friction, full.stiffness};
+    const se3di_override over = {
+        full.friction,  full.restitution, full.rolling_friction, full.torsional_friction,
+        full.stiffness, full.cohesion,    full.adhesion};
     se3di_model_set_override(&system->model, index_a, index_b, &over);
     se3di_pair_mix_all(&system->model);
     return SE3D_OK;

@@ -67,18 +67,20 @@ static void refused(const bed *b, se3d_status actual, se3d_status expected, cons
 
 static void bad_materials_are_refused(void)
 {
-    static const size_t fields[9] = {offsetof(se3d_material_def, density),
-                                     offsetof(se3d_material_def, friction),
-                                     offsetof(se3d_material_def, restitution),
-                                     offsetof(se3d_material_def, rolling_friction),
-                                     offsetof(se3d_material_def, torsional_friction),
-                                     offsetof(se3d_material_def, stiffness),
-                                     offsetof(se3d_material_def, tangential_ratio),
-                                     offsetof(se3d_material_def, young),
-                                     offsetof(se3d_material_def, poisson)};
+    static const size_t fields[11] = {offsetof(se3d_material_def, density),
+                                      offsetof(se3d_material_def, friction),
+                                      offsetof(se3d_material_def, restitution),
+                                      offsetof(se3d_material_def, rolling_friction),
+                                      offsetof(se3d_material_def, torsional_friction),
+                                      offsetof(se3d_material_def, stiffness),
+                                      offsetof(se3d_material_def, tangential_ratio),
+                                      offsetof(se3d_material_def, young),
+                                      offsetof(se3d_material_def, poisson),
+                                      offsetof(se3d_material_def, cohesion),
+                                      offsetof(se3d_material_def, adhesion)};
     bed b;
     bed_init(&b);
-    for (int k = 0; k < 27; ++k) {
+    for (int k = 0; k < 33; ++k) {
         se3d_material_def def = stuff();
         se3d_material material = {1, 1};
         double bad = k % 3 == 0 ? -1.0 : k % 3 == 1 ? strtod("nan", NULL) : HUGE_VAL;
