@@ -3,5 +3,5 @@
 export {
   AxesHelper, ArrowHelper, BufferAttribute, BufferGeometry, Color, DirectionalLight, Group,
   HemisphereLight, InstancedBufferAttribute, InstancedBufferGeometry, Line, LineBasicMaterial, LineSegments, Mesh,
-  MeshStandardMaterial, PerspectiveCamera, Quaternion, Scene, ShaderMaterial, Vector3, WebGLRenderer,
+  MeshStandardMaterial, PerspectiveCamera, Quaternion, REVISION, Scene, ShaderMaterial, Vector3, WebGLRenderer,
 } from "three";

@@ -109,13 +109,15 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   };
 
   const scene = new THREE.Scene();
-  scene.add(root, new THREE.HemisphereLight(0xffffff, 0x777788, 1.6));
-  const sun = new THREE.DirectionalLight(0xffffff, 2.2);
+  const old = parseInt(THREE.REVISION, 10) < 155, unit = old ? 1 / Math.PI : 1; // Debian's: other units of light, no gamma
+  scene.add(root, new THREE.HemisphereLight(0xffffff, 0x777788, 1.6 * unit));
+  const sun = new THREE.DirectionalLight(0xffffff, 2.2 * unit);
   sun.position.set(3, -5, 8);
   scene.add(sun);
   const camera = new THREE.PerspectiveCamera(40, 1, 0.001, 1000);
   camera.up.set(0, 0, 1);
   const renderer = new THREE.WebGLRenderer({ canvas: $("view"), antialias: true, preserveDrawingBuffer: true });
+  if (old) renderer.gammaOutput = true;
   renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
 
   // Grains: one quad each, drawn as a sphere that faces the camera.
