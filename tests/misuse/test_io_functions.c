@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One row for every function of libse3d-io: what it does with NULL, a wrong index and what cannot
+ * be written. A failure leaves outputs NULL and a message where there is one to leave. */
+#include <stdlib.h>
+
+#include "check.h"
+#include "se3d/io.h"
+
+static const char text[] =
+    "se3d: 1\ntitle: A block\nparameters: {m: 2}\n"
+    "bodies: [{name: block, mass: m, inertia: [1, 1, 1], shapes: [{type: sphere, radius: 1}]}]\n"
+    "analysis: [{type: dynamics, duration: 0.01}, {type: modes}]\n"
+    "output: [{file: a.csv, channels: [block.position]}, {plot: a.svg}]\n";
+
+/* A model that was read, and its run. */
+typedef struct world {
+    se3d_model *model;
+    se3d_run *run;
+    se3d_scene *scene;
+    char folder[800];
+} world;
+
+static world open_world(void)
+{
+    world w = {NULL, NULL, NULL, ""};
+    se3d_run_options how = se3d_run_options_default();
+    const char *build = getenv("SE3D_BUILD_DIR");
+    snprintf(w.folder, sizeof w.folder, "%s/misuse", build ? build : "/tmp");
+    how.directory = w.folder;
+    CHECK(se3d_model_read_text(text, strlen(text), "a.yaml", NULL, &w.model, NULL) == SE3D_OK);
+    CHECK(se3d_scene_create(w.model, &w.scene) == SE3D_OK);
+    CHECK(se3d_model_run(w.model, &how, &w.run, NULL) >= 0);
+    return w;
+}
+
+static void close_world(world *w)
+{
+    se3d_scene_destroy(w->scene);
+    se3d_run_destroy(w->run);
+    se3d_model_destroy(w->model);
+}
+
+#define IS(call, status) CHECK((call) == (status))
+
+static void model_read_file(const world *w)
+{
+    se3d_model *model = w->model;
+    se3d_model_error error;
+    IS(se3d_model_read_file(NULL, NULL, &model, &error), SE3D_ERR_NULL);
+    CHECK(model == NULL && error.message[0]);
+    IS(se3d_model_read_file("a.yaml", NULL, NULL, &error), SE3D_ERR_NULL);
+    model = w->model;
+    IS(se3d_model_read_file("/no/such/file", NULL, &model, &error), SE3D_ERR_IO);
+    CHECK(model == NULL);
+    CHECK_CONTAINS(error.message, "/no/such/file: No such file");
+    IS(se3d_model_read_file("/", NULL, &model, NULL), SE3D_ERR_IO);
+}
+
+static void model_read_text(const world *w)
+{
+    se3d_model *model = w->model;
+    se3d_model_error error;
+    se3d_model_options options = se3d_model_options_default();
+    IS(se3d_model_read_text(NULL, 1, "a", NULL, &model, &error), SE3D_ERR_NULL);
+    CHECK(model == NULL && error.message[0]);
+    IS(se3d_model_read_text(text, 8, NULL, NULL, &model, &error), SE3D_ERR_NULL);
+    IS(se3d_model_read_text(text, 8, "a", NULL, NULL, &error), SE3D_ERR_NULL);
+    options.setting_count = 1; /* and settings NULL */
+    IS(se3d_model_read_text(text, 8, "a", &options, &model, NULL), SE3D_ERR_NULL);
+    model = w->model;
+    IS(se3d_model_read_text(text, 0, "a", NULL, &model, &error), SE3D_ERR_MODEL);
+    CHECK(model == NULL && error.message[0]);
+}
+
+static void model_options_init(const world *w)
+{
+    se3d_model_options options = {.setting_count = 9};
+    (void)w;
+    se3d_model_options_init(NULL, sizeof options);
+    se3d_model_options_init(&options, 0);
+    CHECK(options.setting_count == 9);
+    se3d_model_options_init(&options, sizeof options);
+    CHECK(options.struct_size == sizeof options && options.setting_count == 0);
+}
+
+static void run_options_init(const world *w)
+{
+    se3d_run_options options = {.directory = "here"};
+    (void)w;
+    se3d_run_options_init(NULL, sizeof options);
+    se3d_run_options_init(&options, 1);
+    CHECK(options.directory != NULL);
+    se3d_run_options_init(&options, sizeof options);
+    CHECK(options.struct_size == sizeof options && options.directory == NULL);
+}
+
+static void destroyers(const world *w)
+{
+    (void)w;
+    se3d_model_destroy(NULL);
+    se3d_run_destroy(NULL);
+    se3d_scene_destroy(NULL);
+}
+
+static void model_texts(const world *w)
+{
+    CHECK(se3d_model_get_system(NULL) == NULL && se3d_model_get_system(w->model) != NULL);
+    CHECK_CONTAINS(se3d_model_get_name(w->model), "a");
+    CHECK(se3d_model_get_name(NULL)[0] == '\0' && se3d_model_get_title(NULL)[0] == '\0');
+    CHECK_CONTAINS(se3d_model_get_title(w->model), "A block");
+}
+
+static void counters(const world *w)
+{
+    CHECK(se3d_model_count_analyses(NULL) == 0 && se3d_model_count_analyses(w->model) == 2);
+    CHECK(se3d_model_count_outputs(NULL) == 0 && se3d_model_count_outputs(w->model) == 1);
+    CHECK(se3d_model_count_pictures(NULL) == 0 && se3d_model_count_pictures(w->model) == 1);
+    CHECK(se3d_model_count_shapes(NULL) == 0 && se3d_model_count_shapes(w->model) == 1);
+    CHECK(se3d_run_count_analyses(NULL) == 0 && se3d_run_count_analyses(w->run) == 2);
+    CHECK(se3d_run_count_files(NULL) == 0 && se3d_run_count_files(w->run) >= 2);
+}
+
+static void model_get_parameter(const world *w)
+{
+    double value = 0.0;
+    IS(se3d_model_get_parameter(NULL, "m", &value), SE3D_ERR_NULL);
+    IS(se3d_model_get_parameter(w->model, NULL, &value), SE3D_ERR_NULL);
+    IS(se3d_model_get_parameter(w->model, "m", NULL), SE3D_ERR_NULL);
+    IS(se3d_model_get_parameter(w->model, "n", &value), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_model_get_parameter(w->model, "m", &value), SE3D_OK);
+    CHECK_NEAR(value, 2.0, 0.0);
+}
+
+/* Getters (owner, index, out): NULL of both, an index that is too large, and one that is right. */
+#define GETTER(function, owner, type, count)                                                       \
+    static void check_##function(const world *w)                                                   \
+    {                                                                                              \
+        type out;                                                                                  \
+        memset(&out, 0, sizeof out);                                                               \
+        IS(se3d_##function(NULL, 0, &out), SE3D_ERR_NULL);                                         \
+        IS(se3d_##function(w->owner, 0, NULL), SE3D_ERR_NULL);                                     \
+        IS(se3d_##function(w->owner, (count), &out), SE3D_ERR_INVALID_ARGUMENT);                   \
+        IS(se3d_##function(w->owner, SIZE_MAX, &out), SE3D_ERR_INVALID_ARGUMENT);                  \
+        IS(se3d_##function(w->owner, 0, &out), SE3D_OK);                                           \
+    }
+
+GETTER(model_get_analysis, model, se3d_model_analysis, 2)
+GETTER(model_get_output, model, se3d_model_output, 1)
+GETTER(model_get_picture, model, se3d_model_picture, 1)
+GETTER(model_get_shape, model, se3d_model_shape, 1)
+GETTER(run_get_analysis, run, se3d_run_analysis, 2)
+GETTER(run_get_file, run, se3d_run_file, se3d_run_count_files(w->run))
+
+static void model_get_solver(const world *w)
+{
+    se3d_solver_def def = se3d_solver_def_default();
+    IS(se3d_model_get_solver(NULL, 0, &def), SE3D_ERR_NULL);
+    IS(se3d_model_get_solver(w->model, 0, NULL), SE3D_ERR_NULL);
+    IS(se3d_model_get_solver(w->model, 2, &def), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_model_get_solver(w->model, 1, &def), SE3D_ERR_UNSUPPORTED);
+    IS(se3d_model_get_solver(w->model, 0, &def), SE3D_OK);
+    def.struct_size = 0;
+    IS(se3d_model_get_solver(w->model, 0, &def), SE3D_ERR_INVALID_ARGUMENT);
+}
+
+static void model_get_channel(const world *w)
+{
+    const char *name = NULL;
+    IS(se3d_model_get_channel(NULL, 0, 0, &name), SE3D_ERR_NULL);
+    IS(se3d_model_get_channel(w->model, 0, 0, NULL), SE3D_ERR_NULL);
+    IS(se3d_model_get_channel(w->model, 1, 0, &name), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_model_get_channel(w->model, 0, 1, &name), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_model_get_channel(w->model, 0, 0, &name), SE3D_OK);
+    CHECK_CONTAINS(name, "block.position");
+}
+
+static void model_get_channel_value(const world *w)
+{
+    double value[4];
+    size_t width = 0;
+    IS(se3d_model_get_channel_value(NULL, 0, 0, NULL, value, &width), SE3D_ERR_NULL);
+    IS(se3d_model_get_channel_value(w->model, 0, 0, NULL, NULL, &width), SE3D_ERR_NULL);
+    IS(se3d_model_get_channel_value(w->model, 0, 0, NULL, value, NULL), SE3D_ERR_NULL);
+    IS(se3d_model_get_channel_value(w->model, 1, 0, NULL, value, &width),
+       SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_model_get_channel_value(w->model, 0, 1, NULL, value, &width),
+       SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_model_get_channel_value(w->model, 0, 0, NULL, value, &width), SE3D_OK);
+    CHECK(width == 3);
+}
+
+static void model_run(const world *w)
+{
+    se3d_run *run = w->run;
+    se3d_model_error error;
+    se3d_run_options how = se3d_run_options_default();
+    IS(se3d_model_run(NULL, NULL, &run, &error), SE3D_ERR_NULL);
+    CHECK(run == NULL && error.message[0]);
+    IS(se3d_model_run(w->model, NULL, NULL, &error), SE3D_ERR_NULL);
+    how.directory = "/dev/null/folder";
+    IS(se3d_model_run(w->model, &how, &run, &error), SE3D_ERR_IO);
+    CHECK_CONTAINS(error.message, "/dev/null/folder/a.csv: cannot be written");
+    CHECK(se3d_run_count_files(run) == 0);
+    se3d_run_destroy(run);
+}
+
+static void scene_create(const world *w)
+{
+    se3d_scene *scene = w->scene;
+    IS(se3d_scene_create(NULL, &scene), SE3D_ERR_NULL);
+    CHECK(scene == NULL);
+    IS(se3d_scene_create(w->model, NULL), SE3D_ERR_NULL);
+}
+
+static void scene_record(const world *w)
+{
+    IS(se3d_scene_record(NULL), SE3D_ERR_NULL);
+    IS(se3d_scene_record(w->scene), SE3D_OK);
+    IS(se3d_scene_record(w->scene), SE3D_OK); /* the same time again */
+}
+
+static void scene_write(const world *w)
+{
+    char path[900];
+    se3d_model_error error;
+    IS(se3d_scene_write(NULL, "a.glb", &error), SE3D_ERR_NULL);
+    IS(se3d_scene_write(w->scene, NULL, &error), SE3D_ERR_NULL);
+    IS(se3d_scene_write(w->scene, "/dev/null/a.glb", &error), SE3D_ERR_IO);
+    CHECK_CONTAINS(error.message, "/dev/null/a.glb: cannot be written");
+    IS(se3d_scene_write(w->scene, "/dev/null/a.glb", NULL), SE3D_ERR_IO);
+    snprintf(path, sizeof path, "%s/a.glb", w->folder);
+    IS(se3d_scene_write(w->scene, path, &error), SE3D_OK);
+    CHECK(error.message[0] == '\0');
+}
+
+static const struct {
+    const char *names; /* with a blank at each end */
+    void (*check)(const world *w);
+} rows[] = {
+    {" se3d_model_read_file ", model_read_file},
+    {" se3d_model_read_text ", model_read_text},
+    {" se3d_model_options_init ", model_options_init},
+    {" se3d_run_options_init ", run_options_init},
+    {" se3d_model_destroy se3d_run_destroy se3d_scene_destroy ", destroyers},
+    {" se3d_model_get_system se3d_model_get_name se3d_model_get_title ", model_texts},
+    {" se3d_model_count_analyses se3d_model_count_outputs se3d_model_count_pictures "
+     "se3d_model_count_shapes se3d_run_count_analyses se3d_run_count_files ",
+     counters},
+    {" se3d_model_get_parameter ", model_get_parameter},
+    {" se3d_model_get_analysis ", check_model_get_analysis},
+    {" se3d_model_get_output ", check_model_get_output},
+    {" se3d_model_get_picture ", check_model_get_picture},
+    {" se3d_model_get_shape ", check_model_get_shape},
+    {" se3d_run_get_analysis ", check_run_get_analysis},
+    {" se3d_run_get_file ", check_run_get_file},
+    {" se3d_model_get_solver ", model_get_solver},
+    {" se3d_model_get_channel ", model_get_channel},
+    {" se3d_model_get_channel_value ", model_get_channel_value},
+    {" se3d_model_run ", model_run},
+    {" se3d_scene_create ", scene_create},
+    {" se3d_scene_record ", scene_record},
+    {" se3d_scene_write ", scene_write},
+};
+
+static void every_function_rejects_bad_arguments(void)
+{
+    world w = open_world();
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        rows[k].check(&w);
+    }
+    close_world(&w);
+}
+
+static void every_function_of_the_map_has_a_row(void)
+{
+    const char *folder = getenv("SE3D_SOURCE_DIR");
+    char path[1024];
+    char line[256];
+    int count = 0;
+    snprintf(path, sizeof path, "%s/lib/io/se3d-io.map", folder ? folder : ".");
+    FILE *map = fopen(path, "r");
+    CHECK(map != NULL);
+    while (map && fgets(line, sizeof line, map)) {
+        char word[260];
+        const char *name = strstr(line, "se3d_");
+        char *end = name ? strchr(name, ';') : NULL;
+        int found = 0;
+        if (!end) {
+            continue;
+        }
+        *end = '\0';
+        snprintf(word, sizeof word, " %s ", name);
+        for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+            found = found || strstr(rows[k].names, word) != NULL;
+        }
+        if (!found) {
+            fprintf(stderr, "%s has no row in tests/misuse\n", name);
+        }
+        CHECK(found);
+        ++count;
+    }
+    CHECK(count >= 30);
+    if (map) {
+        fclose(map);
+    }
+}
+
+int main(void)
+{
+    RUN(every_function_of_the_map_has_a_row);
+    RUN(every_function_rejects_bad_arguments);
+    return check_finish();
+}
