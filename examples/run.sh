@@ -16,16 +16,18 @@ show_main() {
     name=$1
     folder=results/$name
     echo "== $name: se3d run examples/models/$name.yaml -o $folder"
-    "$program" run "examples/models/$name.yaml" -o "$folder"
+    "$program" run "examples/models/$name.yaml" -o "$folder" || return 1
     echo "results: $(pwd)/$folder/$name.csv"
     echo "scene:   $(pwd)/$folder/scene.glb (Blender, any glTF viewer)"
     if command -v gnuplot >/dev/null 2>&1; then
-        "$program" plot -q "$folder/$name.csv" && echo "plot:    $(pwd)/$folder/$name.svg and .png"
+        "$program" plot -q "$folder/$name.csv" && echo "plot:    $(pwd)/$folder/$name.svg and .png" ||
+            echo "plot:    not made, see above"
     else
         echo "plot:    se3d plot $folder/$name.csv (after: apt-get install --no-install-recommends gnuplot-nox)"
     fi
     if command -v npm >/dev/null 2>&1 || [ -f /usr/share/javascript/three/three.min.js ]; then
-        SE3D_CACHE=build/release/viewer "$program" view -q "$folder" && echo "page:    $(pwd)/$folder/scene.html (any browser)"
+        SE3D_CACHE=build/release/viewer "$program" view -q "$folder" &&
+            echo "page:    $(pwd)/$folder/scene.html (any browser)" || echo "page:    not made, see above"
     else
         echo "page:    se3d view $folder (after: apt-get install --no-install-recommends npm)"
     fi

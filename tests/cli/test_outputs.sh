@@ -139,6 +139,15 @@ holds 'a list of nothing' [ ! -e "$dir/blocked/motion.pvd" ]
 expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 30; exec "$@"' sh "$program" run "$dir/vtk.yaml" -o "$dir/full"
 says 'File too large'
 holds 'something unfinished is left' [ -z "$(find "$dir/full" -name '*.partial')" ]
+mkdir "$dir/small"
+if mount -t tmpfs -o size=100k tmpfs "$dir/small" 2>/dev/null; then
+    trap 'umount "$dir/small"; rm -rf "$dir"' EXIT
+    expect 'a full file system' 1 "$program" run "$dir/vtk.yaml" -o "$dir/small/run"
+    says 'No space left on device'
+    holds 'something unfinished is left' [ -z "$(find "$dir/small" -name '*.partial')" ]
+else
+    echo 'SKIPPED: no file system can be mounted: only limits of files were tested' >&2
+fi
 
 model plots <<'END_OF_YAML'
   - {plot: angle.svg, from: b.csv}

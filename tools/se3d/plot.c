@@ -140,7 +140,7 @@ static void remove_partial(const plot *p)
     remove(name);
 }
 
-static int draw(const plot *p)
+static int draw(plot *p)
 {
     char script[4200];
     char folder[4096];

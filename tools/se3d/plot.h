@@ -12,7 +12,8 @@ typedef struct plot_panel {
     char title[160]; /* of the y axis, with its unit */
     const char *names[PLOT_CURVES_MAX];
     size_t count;
-    size_t dropped; /* curves that had no room */
+    size_t dropped;  /* curves that had no room */
+    double range[2]; /* of all its numbers */
 } plot_panel;
 
 typedef struct plot {
@@ -40,6 +41,6 @@ int plot_choose(plot *p);
 /* Replace the tables by their amplitude spectra, in files beside the picture. */
 int plot_transform(plot *p);
 /* Write the script. @return false: errno says why. */
-int plot_write_script(const plot *p, const char *path);
+int plot_write_script(plot *p, const char *path);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Which curves go into which frame, and the gnuplot script that draws them. */
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -187,8 +188,64 @@ static void put_curve(const plot *p, FILE *file, const plot_panel *panel, size_t
     put_text(file, "", title, ", \\\n");
 }
 
+/* The least and the largest number of a column, widened. */
+static void widen(const table *t, size_t column, double range[2])
+{
+    const size_t stride = (t->rows + POINTS_MAX - 1) / POINTS_MAX;
+    double *values = malloc((POINTS_MAX + 1) * sizeof *values);
+    const size_t count = values && column < t->count
+                             ? table_read_column(t, column, stride, values, POINTS_MAX + 1)
+                             : 0;
+    for (size_t k = 0; k < count; ++k) {
+        if (isfinite(values[k])) {
+            range[0] = fmin(range[0], values[k]);
+            range[1] = fmax(range[1], values[k]);
+        }
+    }
+    free(values);
+}
+
+static void find_range(const plot *p, plot_panel *panel)
+{
+    panel->range[0] = HUGE_VAL;
+    panel->range[1] = -HUGE_VAL;
+    for (size_t k = 0; k < p->file_count; ++k) {
+        for (size_t curve = 0; curve < panel->count; ++curve) {
+            widen(&p->tables[k], table_find(&p->tables[k], panel->names[curve]), panel->range);
+        }
+    }
+}
+
+/* Digits that tell the marks of an axis apart. */
+static int count_digits(const double range[2])
+{
+    const double size = fmax(fabs(range[0]), fabs(range[1]));
+    const double width = range[1] - range[0];
+    const int more = width > 0.0 && isfinite(width) ? (int)ceil(log10(size / width)) : 0;
+    return more < 1 ? 4 : more < 11 ? 3 + more : 14;
+}
+
+static int is_constant(const double range[2])
+{
+    return range[1] - range[0] <= 1e-14 * fabs(range[0]);
+}
+
+/* What is constant, or a single point, has no width of its own to draw. */
+static void put_range(FILE *file, const char *axis, const double range[2])
+{
+    if (is_constant(range) && isfinite(range[0])) {
+        const double around = range[0] < 0.0 || range[0] > 0.0 ? 0.1 * fabs(range[0]) : 1.0;
+        fprintf(file, "    set %srange [%.15g:%.15g]\n", axis, range[0] - around,
+                range[0] + around);
+    } else {
+        fprintf(file, "    set autoscale %s%s\n", axis, axis[0] == 'x' ? "fix" : "");
+    }
+}
+
 static void put_panel(const plot *p, FILE *file, const plot_panel *panel, int last)
 {
+    put_range(file, "y", panel->range);
+    fprintf(file, "    set format y '%%.%dg'\n", count_digits(panel->range));
     put_text(file, "    set ylabel ", panel->title, "\n");
     if (last) {
         put_text(file, "    set xlabel ", p->x_title, "\n");
@@ -222,14 +279,35 @@ static size_t key_width(const plot *p)
     return width + file;
 }
 
-int plot_write_script(const plot *p, const char *path)
+/* What comes before every frame: margins that all share. */
+static void put_margins(const plot *p, FILE *file)
+{
+    int digits = 4;
+    double range[2] = {HUGE_VAL, -HUGE_VAL};
+    for (size_t k = 0; k < p->panel_count; ++k) {
+        const int needed = count_digits(p->panels[k].range);
+        digits = needed > digits ? needed : digits;
+    }
+    for (size_t k = 0; k < p->file_count; ++k) {
+        widen(&p->tables[k], table_find(&p->tables[k], p->x), range);
+    }
+    put_range(file, "x", range);
+    fprintf(file, "    set lmargin %d\n    set rmargin %zu\n%s", digits + 7, key_width(p) + 6,
+            p->fft ? "    set logscale x\n" : "");
+}
+
+int plot_write_script(plot *p, const char *path)
 {
     const size_t columns = p->panel_count > 3 ? 2 : 1;
     const size_t rows = (p->panel_count + columns - 1) / columns;
-    const int width = columns == 2 ? 1280 : 860;
+    const size_t key = 8 * (key_width(p) + 6);
+    const int width = (int)(columns * ((columns == 2 ? 480 : 600) + (key < 1000 ? key : 1000)));
     const int height = (int)(rows == 1 ? 440 : 270 * rows);
     char partial[4300];
     snprintf(partial, sizeof partial, "%s.partial", path);
+    for (size_t k = 0; k < p->panel_count; ++k) {
+        find_range(p, &p->panels[k]);
+    }
     errno = 0;
     FILE *file = fopen(partial, "w");
     if (!file) {
@@ -246,9 +324,7 @@ int plot_write_script(const plot *p, const char *path)
           "set border lc rgb '#404040'\n"
           "set xlabel noenhanced\nset ylabel noenhanced\n"
           "set tics nomirror out\n"
-          "set format y '%.4g'\n"
           "set offsets 0, 0, graph 0.05, graph 0.05\n"
-          "set autoscale xfix\n"
           "do for [picture in 'svg png'] {\n",
           file);
     fprintf(file,
@@ -261,8 +337,7 @@ int plot_write_script(const plot *p, const char *path)
             "    set output base.'.'.picture.partial\n"
             "    set multiplot layout %zu,%zu columnsfirst\n",
             width, height, width, height, rows, columns);
-    fprintf(file, "    set lmargin 11\n    set rmargin %zu\n%s", key_width(p) + 6,
-            p->fft ? "    set logscale x\n" : "");
+    put_margins(p, file);
     for (size_t k = 0; k < p->panel_count; ++k) {
         const int last = k + 1 == p->panel_count || (k + 1) % rows == 0;
         put_panel(p, file, &p->panels[k], last);
