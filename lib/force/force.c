@@ -132,6 +132,16 @@ int se3di_force_is_history_dependent(const se3di_force *force)
     return force->type == SE3DI_FORCE_FRICTION || force->type == SE3DI_FORCE_STOP;
 }
 
+int se3di_forces_have_memory(const se3di_model *model)
+{
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (se3di_force_is_history_dependent(&model->forces[k])) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 uint32_t se3di_forces_revise(se3di_model *model)
 {
     uint32_t changes = 0;

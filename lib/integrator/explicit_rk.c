@@ -38,10 +38,11 @@ size_t se3di_rk_history_count(const se3di_assembly *assembly)
     return RK_HEADER + RK_VECTORS * se3di_state_count(assembly);
 }
 
-/* Work: the stages and the state of a stage. */
+/* Work: the stages, the state of a stage, and what the force elements remember. */
 size_t se3di_rk_work_count(const se3di_assembly *assembly)
 {
-    return (SE3DI_RK_MAX + 3) * se3di_state_count(assembly);
+    size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
+    return (SE3DI_RK_MAX + 3) * se3di_state_count(assembly) + memories;
 }
 
 typedef struct rk {
@@ -55,6 +56,7 @@ typedef struct rk {
     double *K;          /* [total][count] */
     double *y;          /* state of a stage */
     double *sum, *sum3; /* error estimates */
+    double *memory;     /* [forces * SE3DI_FORCE_STATES] */
     double tolerance;
     se3di_kkt_settings kkt; /* of the model's linear solver, to come back to */
 } rk;
@@ -100,6 +102,7 @@ static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
         .y = integration->work + SE3DI_RK_MAX * count,
         .sum = integration->work + (SE3DI_RK_MAX + 1) * count,
         .sum3 = integration->work + (SE3DI_RK_MAX + 2) * count,
+        .memory = integration->work + (SE3DI_RK_MAX + 3) * count,
         .tolerance = inner_tolerance(integration->settings.tolerance),
     };
     se3di_contacts_begin(assembly->model, 0.0);
@@ -230,13 +233,6 @@ static se3d_status attempt(rk *m, double h, double *error)
     }
     return SE3D_OK;
 }
-
-/* All that can fail before `accept`. */
-static se3d_status prepare(rk *m, double h)
-{
-    return se3di_loads_prepare(m->assembly->model, m->header[RK_T1] + h, m->equations->error);
-}
-
 /* The frames hold the projected y_1. */
 static void accept(rk *m, double h)
 {
@@ -252,8 +248,67 @@ static void accept(rk *m, double h)
     double dependent = se3di_kkt_get_dependent_rows(m->equations->kkt);
     m->header[RK_REDUNDANT] = fmin(m->header[RK_REDUNDANT], dependent);
     se3di_angles_accept(m->assembly->model);
-    se3di_loads_accept(m->assembly->model);
+    se3di_contacts_accept(m->assembly->model); /* force elements: settle_memory */
     ++m->equations->counters.steps;
+}
+
+/* What the force elements remember, as it was before the step, or saved. */
+static void restore_memory(rk *m)
+{
+    se3di_model *model = m->assembly->model;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        memcpy(model->forces[k].state, m->memory + SE3DI_FORCE_STATES * k,
+               sizeof model->forces[k].state);
+    }
+}
+
+static void save_memory(rk *m)
+{
+    const se3di_model *model = m->assembly->model;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        memcpy(m->memory + SE3DI_FORCE_STATES * k, model->forces[k].state,
+               sizeof model->forces[k].state);
+    }
+}
+
+/* Elements with a memory (stick or slip, the load of friction) change it between steps. The change
+ * of the derivative times h is part of the error: *error is raised to it, and the memory stays as
+ * it was if that is too much. */
+static se3d_status settle_memory(rk *m, double h, double *error)
+{
+    se3di_model *model = m->assembly->model;
+    double *end = m->K + (size_t)m->tableau->stages * m->count;
+    if (!se3di_forces_have_memory(model)) {
+        return SE3D_OK;
+    }
+    save_memory(m);
+    se3di_forces_accept(model);
+    SE3DI_TRY(evaluate(m, m->header[RK_T1] + h, m->sum3));
+    for (size_t k = 0; k < m->count; ++k) {
+        m->sum[k] = h * (m->sum3[k] - end[k]);
+    }
+    *error = fmax(*error, measure(m, m->sum));
+    if (*error <= 1.0) {
+        memcpy(end, m->sum3, m->count * sizeof *end);
+    } else {
+        restore_memory(m);
+    }
+    return SE3D_OK;
+}
+
+/* All that may fail before the state is accepted; *error as from settle_memory. */
+static se3d_status prepare(rk *m, double h, double *error)
+{
+    se3di_model *model = m->assembly->model;
+    SE3DI_TRY(settle_memory(m, h, error));
+    if (!(*error <= 1.0)) {
+        return SE3D_OK;
+    }
+    se3d_status status = se3di_loads_prepare(model, m->header[RK_T1] + h, m->equations->error);
+    if (status < 0 && se3di_forces_have_memory(model)) {
+        restore_memory(m);
+    }
+    return status;
 }
 
 static se3d_status fail_small(rk *m, double h)
@@ -301,9 +356,9 @@ static se3d_status cross_jump(rk *m, double h, double error)
     }
     m->tolerance = HUGE_VAL; /* no error control */
     se3d_status status = attempt(m, h, &error);
+    status = status < 0 ? status : prepare(m, h, &error);
     m->tolerance = tolerance;
     SE3DI_TRY(status);
-    SE3DI_TRY(prepare(m, h));
     accept(m, h);
     m->header[RK_FORCED] += 1.0;
     m->header[RK_NEXT] = limit_step(m, 1e6 * h);
@@ -326,7 +381,7 @@ static se3d_status advance(rk *m, double t_end)
         double error;
         se3d_status status = attempt(m, h, &error);
         if (status >= 0 && error <= 1.0) {
-            status = prepare(m, h);
+            status = prepare(m, h, &error);
         }
         if (status == SE3D_ERR_NO_MEMORY) {
             return status;
@@ -472,7 +527,7 @@ se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau
     }
     m.tolerance = HUGE_VAL; /* no error control */
     status = status < 0 ? status : attempt(&m, h, &error);
-    status = status < 0 ? status : prepare(&m, h);
+    status = status < 0 ? status : prepare(&m, h, &error);
     if (status >= 0) {
         accept(&m, h);
     }
