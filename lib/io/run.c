@@ -396,7 +396,8 @@ static se3d_status run_analysis(runner *r, size_t index)
     done->method = "";
     done->start = start;
     done->end = start;
-    se3d_status status = plan(r, entry);
+    se3d_status status =
+        done->type[0] != '\0' ? plan(r, entry) : fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
     if (status >= 0) {
         status = se3d_system_set_time(r->model->system, start);
         if (status >= 0 && !entry->modes.file) {
