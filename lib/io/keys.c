@@ -28,9 +28,10 @@ static const char *const contact_keys[] = {"law",      "step",  "threads", "skin
 static const char *const pair_keys[] = {
     "material_1",         "material_2", "friction", "restitution", "rolling_friction",
     "torsional_friction", "stiffness",  "cohesion", "adhesion",    NULL};
-static const char *const particles_keys[] = {"material", "packing", "count",   "radius",
-                                             "lower",    "upper",   "spacing", "jitter",
-                                             "velocity", "seed",    NULL};
+static const char *const particles_keys[] = {"material", "packing", "count",  "radius",   "lower",
+                                             "upper",    "spacing", "jitter", "velocity", "seed",
+                                             "region",   "axis",    NULL};
+static const char *const radius_keys[] = {"table", NULL};
 static const char *const joint_keys[] = {
     "name",    "type",    "body_i", "body_j", "at",    "axis",   "ref",    "at_2",  "axis_2",
     "point_i", "point_j", "axis_i", "axis_j", "ref_i", "ref_j",  "angle0", "pitch", "distance",
@@ -168,6 +169,7 @@ static const se3di_object_keys objects[SE3DI_OBJECT_COUNT] = {
     {"contact", contact_keys, NULL, NULL, NULL},
     {"pair", pair_keys, NULL, NULL, NULL},
     {"particles", particles_keys, NULL, NULL, NULL},
+    {"radius", radius_keys, NULL, NULL, NULL},
 };
 
 const se3di_object_keys *se3di_keys_get(se3di_object object)

@@ -26,7 +26,8 @@ typedef enum se3di_object {
     SE3DI_OBJECT_CONTACT = 17,
     SE3DI_OBJECT_PAIR = 18,
     SE3DI_OBJECT_PARTICLES = 19,
-    SE3DI_OBJECT_COUNT = 20
+    SE3DI_OBJECT_RADIUS = 20,
+    SE3DI_OBJECT_COUNT = 21
 } se3di_object;
 
 /* Keys of a type that not all objects of its kind have. */

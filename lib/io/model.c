@@ -239,9 +239,6 @@ void se3d_model_destroy(se3d_model *model)
 {
     if (model) {
         se3di_iopool pool = model->pool; /* the model itself lies in it */
-        if (model->grains) {
-            se3d_particles_destroy(model->grains->set);
-        }
         se3d_system_destroy(model->system);
         se3di_iopool_destroy(&pool);
     }

@@ -37,6 +37,7 @@ static bool create_set(se3di_reader *reader, const se3di_node *contact)
         return false;
     }
     def.threads = (int32_t)threads;
+    def.name = "particles";
     const se3d_status status =
         se3d_particles_create(reader->model->system, &def, &reader->model->grains->set);
     return status < 0
@@ -44,14 +45,70 @@ static bool create_set(se3di_reader *reader, const se3di_node *contact)
                : true;
 }
 
-/* One radius, or [smallest, largest]. */
+/* {table: [[radius, frequency], ...]} */
+static bool read_radius_table(se3di_reader *reader, const se3di_node *radius, se3d_fill_def *def)
+{
+    const se3di_node *table = se3di_node_get(radius, "table");
+    if (!se3di_read_keys(reader, radius, SE3DI_OBJECT_RADIUS)) {
+        return false;
+    }
+    if (!table || table->kind != SE3DI_NODE_LIST || table->count == 0) {
+        return se3di_reader_fail(
+            reader, table ? table : radius,
+            "must be {table: [[radius, frequency], ...]} with one pair or more");
+    }
+    double *numbers = se3di_iopool_array(&reader->model->pool, 2 * table->count, sizeof *numbers);
+    if (!numbers) {
+        return se3di_reader_fail_memory(reader);
+    }
+    size_t k = 0;
+    for (const se3di_node *pair = table->first; pair; pair = pair->next, ++k) {
+        double values[2];
+        if (!se3di_read_vector(reader, pair, 2, values)) {
+            return false;
+        }
+        numbers[k] = values[0];
+        numbers[table->count + k] = values[1];
+    }
+    def->radii = numbers;
+    def->weights = numbers + table->count;
+    def->radius_count = table->count;
+    return true;
+}
+
+/* The part of the box from `lower` to `upper` that is filled. */
+static bool read_region(se3di_reader *reader, const se3di_node *node, se3d_fill_def *def)
+{
+    static const char *const regions[] = {"box", "cylinder", "sphere", NULL};
+    static const char *const axes[] = {"x", "y", "z", NULL};
+    const se3di_node *region = se3di_node_get(node, "region");
+    const se3di_node *axis = se3di_node_get(node, "axis");
+    size_t kind = 0;
+    size_t along = 2;
+    if ((region && !se3di_read_word(reader, region, regions, &kind)) ||
+        (axis && !se3di_read_word(reader, axis, axes, &along))) {
+        return false;
+    }
+    if (axis && kind != SE3D_REGION_CYLINDER) {
+        return se3di_reader_fail(reader, axis, "is of `region: cylinder` only");
+    }
+    def->region = (int32_t)kind;
+    def->axis = (int32_t)along;
+    return true;
+}
+
+/* One radius, [smallest, largest], or a table. */
 static bool read_radius(se3di_reader *reader, const se3di_node *node, se3d_fill_def *def)
 {
     const se3di_node *radius = se3di_node_get(node, "radius");
     double range[2];
     if (!radius) {
         return se3di_reader_fail_key(reader, node, "radius",
-                                     "is missing, must be a number or [smallest, largest] [m]");
+                                     "is missing, must be a number, [smallest, largest] or {table: "
+                                     "[[radius, frequency], ...]} [m]");
+    }
+    if (radius->kind == SE3DI_NODE_MAP) {
+        return read_radius_table(reader, radius, def);
     }
     if (radius->kind != SE3DI_NODE_LIST) {
         if (!se3di_read_number(reader, radius, SE3DI_POSITIVE, &def->radius_min)) {
@@ -81,7 +138,7 @@ static bool read_fill(se3di_reader *reader, const se3di_node *node)
         (packing && !se3di_read_word(reader, packing, packings, &word)) ||
         !se3di_read_key_material(reader, node, "material", &def.material) ||
         !se3di_read_key_count(reader, node, "count", 1e8, &count) ||
-        !read_radius(reader, node, &def) ||
+        !read_radius(reader, node, &def) || !read_region(reader, node, &def) ||
         !se3di_read_key_vector(reader, node, "lower", def.lower) ||
         !se3di_read_key_vector(reader, node, "upper", def.upper) ||
         !se3di_read_key_vector(reader, node, "velocity", def.velocity) ||
@@ -97,18 +154,27 @@ static bool read_fill(se3di_reader *reader, const se3di_node *node)
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
-/* The particles feel the bodies, but not yet the bodies the particles. */
+/* Particles push bodies in `verlet` only; in kinematics the motion of the bodies is given. */
 static bool check_analyses(se3di_reader *reader)
 {
     const se3d_model *model = reader->model;
-    for (size_t k = 0; k < model->analysis_count && model->moving_shapes; ++k) {
+    for (size_t k = 0; k < model->analysis_count; ++k) {
         const se3di_analysis_entry *entry = &model->analyses[k];
-        if (strcmp(entry->analysis.type, "kinematics") != 0) {
-            return se3di_reader_fail_key(reader, entry->node ? entry->node : model->root, "type",
-                                         "is `%s`, must be kinematics where walls of particles "
-                                         "move: the force of the particles does not go back to "
-                                         "the bodies yet",
-                                         entry->analysis.type);
+        const se3di_node *node = entry->node ? entry->node : model->root;
+        const char *type = entry->analysis.type;
+        int32_t method = entry->solver.method;
+        if (strcmp(type, "dynamics") != 0 && strcmp(type, "kinematics") != 0 &&
+            model->moving_shapes) {
+            return se3di_reader_fail_key(reader, node, "type",
+                                         "is `%s`, must be dynamics or kinematics where particles "
+                                         "touch bodies that move",
+                                         type);
+        }
+        if (strcmp(type, "dynamics") == 0 && method != SE3D_METHOD_AUTO &&
+            method != SE3D_METHOD_VERLET) {
+            return se3di_reader_fail_key(reader, node, "method",
+                                         "must be verlet (or auto, which picks it) where there are "
+                                         "particles");
         }
     }
     return true;

@@ -321,8 +321,9 @@ static se3d_status run_rows(runner *r, size_t index, const se3di_analysis_entry 
     double time = start;
     while (next_time(r, start, duration, &time) && !r->stopped) {
         time = merge_times(r, start, duration, time);
-        last = r->model->grains ? se3di_grains_advance(r->model->grains, r->solver, time)
-                                : se3d_solver_run(r->solver, time);
+        last = r->model->grains
+                   ? se3di_grains_advance(r->model->grains, &entry->solver, r->solver, time)
+                   : se3d_solver_run(r->solver, time);
         if (last < 0) {
             return fail_analysis(r, entry, last, time);
         }

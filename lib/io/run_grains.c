@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Particles during a run. They feel the bodies; bodies that move do so as
- * drivers say (the reader sees to that), so that nothing has to go back to
- * them. */
+/* Particles during a run. In dynamics the solver moves them with the bodies; in
+ * kinematics they follow the bodies, whose motion is given. */
 #include <math.h>
 #include <string.h>
 
 #include "io/grains.h"
 
-se3d_status se3di_grains_advance(const se3di_grains *grains, se3d_solver *solver, double time)
+se3d_status se3di_grains_advance(const se3di_grains *grains, const se3d_solver_def *def,
+                                 se3d_solver *solver, double time)
 {
+    if (def->analysis == SE3D_ANALYSIS_DYNAMICS) {
+        return se3d_solver_run(solver, time);
+    }
     double now = 0.0;
     double step = 0.0;
     se3d_status status = se3d_particles_get_time(grains->set, &now);

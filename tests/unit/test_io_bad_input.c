@@ -72,10 +72,26 @@ static const bad_input table[] = {
     {GLASS "contact: {pairs: [{material_1: glass}]}\n", 4, 0, {"pairs[0].material_2: is missing"}},
     {GLASS "contact: {law: hertz_mindlin}\n", 2, 0, {"materials[0]", "young"}},
     {GLASS "bodies: [{name: b, mass: 1, inertia: [1, 1, 1], shapes: [{type: plane, material: "
-           "glass}]}]\nanalysis: {type: dynamics, duration: 1}\n",
+           "glass}]}]\nanalysis: {type: equilibrium}\n",
      5,
      18,
-     {"analysis.type: is `dynamics`", "must be kinematics"}},
+     {"analysis.type: is `equilibrium`", "must be dynamics or kinematics"}},
+    {GRAINS("material: glass, radius: 0.1, lower: [0, 0, 0], upper: [1, 1, 1]") "analysis: {type: "
+                                                                                "dynamics, "
+                                                                                "duration: 1, "
+                                                                                "method: hht}\n",
+     4,
+     49,
+     {"analysis.method: must be verlet"}},
+    {GRAINS("material: glass, radius: {tables: []}"), 3, 0, {"unknown", "table"}},
+    {GRAINS("material: glass, radius: {table: []}"), 3, 0, {"[[radius, frequency], ...]"}},
+    {GRAINS("material: glass, radius: {table: [[0.1]]}"), 3, 0, {"radius.table[0]"}},
+    {GRAINS("material: glass, radius: 0.1, region: cone"), 3, 0, {"region: ", "cylinder"}},
+    {GRAINS("material: glass, radius: 0.1, axis: x"), 3, 0, {"axis: is of `region: cylinder`"}},
+    {GRAINS("material: glass, radius: {table: [[0.1, 0]]}, lower: [0, 0, 0], upper: [1, 1, 1]"),
+     3,
+     0,
+     {"weights"}},
     {"se3d: 1\noutput: [{file: a.csv, particles: true}]\n", 2, 0, {"has no `particles`"}},
     {"se3d: 1\noutput: [{file: a.csv, channels: [contacts.count]}]\n", 2, 0, {"is unknown"}},
     {"se3d: 1\ngravity: [0, 0]\n", 2, 10, {"gravity: has 2 entries", "list of 3 numbers"}},
