@@ -140,6 +140,10 @@ double se3di_kkt_get_cost(const se3di_kkt *kkt);
  * call: from then on everything is new. */
 void se3di_kkt_hold(se3di_kkt *kkt, bool hold);
 
+/* Tell before se3di_kkt_factor that the first solution after it will be for this b and c, which do
+ * not change in between: half of it is then done on the way. */
+void se3di_kkt_expect(se3di_kkt *kkt, const double *b, const double *c);
+
 /* Factor. `info` may be NULL.
  * @return SE3D_OK, SE3D_INFO_REDUNDANT (dependent rows), SE3D_ERR_NOT_FINITE (values),
  *         SE3D_ERR_SINGULAR (a body block) */

@@ -39,9 +39,12 @@ typedef struct se3di_kkt_source {
 } se3di_kkt_source;
 
 typedef struct se3di_kkt_core {
-    /* Gather the values and eliminate all nodes. */
+    /* Gather the values and eliminate all nodes; where a right-hand side is expected, also the
+     * forward half of its solution, in kkt->z. */
     void (*factor)(se3di_kkt *kkt, const se3di_kkt_values *values);
-    /* Overwrite the right-hand side in kkt->z by the solution. */
+    /* Overwrite the right-hand side in kkt->z by the solution (of an expected one: the second
+     * half).
+     */
     void (*solve)(se3di_kkt *kkt);
     /* residual_b = b - H x - B l, residual_c = c - C x, kkt->scale_b and scale_c. */
     void (*residual)(se3di_kkt *kkt, const se3di_kkt_values *values, const double *b,
@@ -122,7 +125,9 @@ struct se3di_kkt {
     double
         ratio_bound; /* pivots of dependent rows are below this multiple of `ratio`; 0: unknown */
     kkt_hold hold;
-    bool has_ratio;    /* `ratio` is of the last factorisation */
+    const double *expected;   /* not NULL: factoring also does the forward half for this b, */
+    const double *expected_c; /* and this c */
+    bool has_ratio;           /* `ratio` is of the last factorisation */
     bool bodies_first; /* no body is changed by eliminating joints: S = C H^-1 C^T is factored */
 
     /* outcome of a factorisation */

@@ -30,6 +30,22 @@ static double middle_weight(se3di_kkt *kkt)
     return high > 0.0 && high < HUGE_VAL ? sqrt(low) * sqrt(high) : 1.0;
 }
 
+/* (b, c) in the caller's order into kkt->z in the order of elimination; gather: back. */
+static void scatter(se3di_kkt *kkt, const double *b, const double *c)
+{
+    int32_t n = kkt->pattern.body_size, bodies = (int32_t)kkt->pattern.body_count;
+    for (int32_t node = 0; node < kkt->node_count; ++node) {
+        double *z = kkt->z + (size_t)kkt->position_of[node] * KKT_LANES;
+        const double *from = b ? b + (size_t)node * (size_t)n : NULL;
+        if (node >= bodies) {
+            from = c ? c + kkt->row_offset[kkt->node_joint[node]] + kkt->node_row[node] : NULL;
+        }
+        for (int32_t r = 0; r < KKT_LANES; ++r) {
+            z[r] = from && r < kkt->node_size[node] ? from[r] : 0.0;
+        }
+    }
+}
+
 /* `again`: after a factorisation of the same values with a larger eps > 0. */
 static void factor_once(se3di_kkt *kkt, const se3di_kkt_values *values, double eps, bool again)
 {
@@ -52,6 +68,9 @@ static void factor_once(se3di_kkt *kkt, const se3di_kkt_values *values, double e
     if (kkt->kind == SE3DI_KKT_DENSE) {
         se3di_kkt_dense_factor(kkt, values);
     } else {
+        if (kkt->expected) {
+            scatter(kkt, kkt->expected, kkt->expected_c);
+        }
         kkt->core->factor(kkt, values);
     }
 }
@@ -113,6 +132,15 @@ void se3di_kkt_hold(se3di_kkt *kkt, bool hold)
     kkt->hold = hold ? KKT_HOLD_NEXT : KKT_FREE;
 }
 
+void se3di_kkt_expect(se3di_kkt *kkt, const double *b, const double *c)
+{
+    /* blocks of r-p shift the right-hand side, unsymmetric ones pivot: these solve in one go */
+    bool fits =
+        kkt->pattern.symmetric && kkt->pattern.body_size != 8 && kkt->kind == SE3DI_KKT_STRUCTURED;
+    kkt->expected = fits ? b : NULL;
+    kkt->expected_c = c;
+}
+
 se3d_status se3di_kkt_factor(se3di_kkt *kkt, const se3di_kkt_values *values,
                              se3di_kkt_factor_info *info)
 {
@@ -132,28 +160,13 @@ se3d_status se3di_kkt_factor(se3di_kkt *kkt, const se3di_kkt_values *values,
                                         .min_pivot = kkt->min_pivot};
     }
     if (!kkt->finite) {
+        kkt->expected = NULL;
         return values_are_finite(kkt, values) ? SE3D_ERR_SINGULAR : SE3D_ERR_NOT_FINITE;
     }
     return kkt->dependent_rows > 0 ? SE3D_INFO_REDUNDANT : SE3D_OK;
 }
 
 /* ---- solve ---- */
-
-/* Copy between (b, c) in the caller's order and kkt->z in the order of elimination. */
-static void scatter(se3di_kkt *kkt, const double *b, const double *c)
-{
-    int32_t n = kkt->pattern.body_size, bodies = (int32_t)kkt->pattern.body_count;
-    for (int32_t node = 0; node < kkt->node_count; ++node) {
-        double *z = kkt->z + (size_t)kkt->position_of[node] * KKT_LANES;
-        const double *from = b ? b + (size_t)node * (size_t)n : NULL;
-        if (node >= bodies) {
-            from = c ? c + kkt->row_offset[kkt->node_joint[node]] + kkt->node_row[node] : NULL;
-        }
-        for (int32_t r = 0; r < KKT_LANES; ++r) {
-            z[r] = from && r < kkt->node_size[node] ? from[r] : 0.0;
-        }
-    }
-}
 
 static void gather(const se3di_kkt *kkt, double *x, double *l)
 {
@@ -180,6 +193,19 @@ static void solve_once(se3di_kkt *kkt, const double *b, const double *c, double 
     scatter(kkt, b, c);
     kkt->core->solve(kkt);
     gather(kkt, x, l);
+}
+
+/* The same for the first right-hand side after a factorisation, which may have been expected. */
+static void solve_first(se3di_kkt *kkt, const double *b, const double *c, double *x, double *l)
+{
+    if (kkt->expected && kkt->expected == b && kkt->expected_c == c) {
+        kkt->core->solve(kkt);
+        gather(kkt, x, l);
+        kkt->expected = NULL;
+    } else {
+        kkt->expected = NULL;
+        solve_once(kkt, b, c, x, l);
+    }
 }
 
 static double largest_entry(const double *v, size_t count)
@@ -411,7 +437,7 @@ se3d_status se3di_kkt_solve(se3di_kkt *kkt, const se3di_kkt_values *values, cons
     se3di_kkt_solve_info own = {0};
     const kkt_problem problem = {values, b, c};
     clear_multipliers(kkt, l);
-    solve_once(kkt, b, c, x, l);
+    solve_first(kkt, b, c, x, l);
     const int32_t count = count_refinements(kkt);
     for (; own.refinements < count; ++own.refinements) {
         kkt->core->residual(kkt, values, b, c, x, l);

@@ -809,6 +809,38 @@ static void held_body_blocks_serve_other_joint_blocks(void)
     }
 }
 
+static void an_expected_right_side_is_solved_as_any_other(void)
+{
+    for (int kind = 0; kind < 4; ++kind) { /* chain, tree with redundant rows, r-p, unsymmetric */
+        start(&m, 9, kind == 2 ? 8 : 6, kind != 3, 23);
+        if (kind == 0) {
+            add_chain(&m, 5);
+        } else {
+            add_tree(&m, 3);
+        }
+        fill(&m);
+        if (kind == 1) {
+            make_redundant(&m, 0.5);
+        }
+        static double other_b[MAX_BODIES * 8], x[MAX_BODIES * 8], l[MAX_JOINTS * 64];
+        memcpy(other_b, m.b, sizeof other_b);
+        se3di_kkt *kkt = create(&m, SE3DI_KKT_STRUCTURED);
+        CHECK(kkt != NULL);
+        se3di_kkt_expect(kkt, m.b, m.c);
+        CHECK(se3di_kkt_factor(kkt, &m.values, NULL) >= 0);
+        CHECK(se3di_kkt_solve(kkt, &m.values, m.b, m.c, m.x, m.l, NULL) >= 0);
+        CHECK(distance(m.x, m.exact_x, m.unknowns) < 1e-11);
+        m.b[0] += 1.0; /* the second solution is of what is in b now */
+        CHECK(se3di_kkt_solve(kkt, &m.values, m.b, m.c, x, l, NULL) >= 0);
+        CHECK(distance(x, m.exact_x, m.unknowns) > 1e-3);
+        se3di_kkt_expect(kkt, m.b, m.c); /* but another one comes */
+        CHECK(se3di_kkt_factor(kkt, &m.values, NULL) >= 0);
+        CHECK(se3di_kkt_solve(kkt, &m.values, other_b, m.c, x, l, NULL) >= 0);
+        CHECK(distance(x, m.exact_x, m.unknowns) < 1e-11);
+        se3di_kkt_destroy(kkt);
+    }
+}
+
 /* Known redundancy needs no look at the residual; one row more does. */
 static void known_redundancy_is_solved_to_the_tolerance_without_a_check(void)
 {
@@ -872,6 +904,7 @@ int main(void)
     RUN(factor_and_solve_allocate_nothing_and_repeat_bit_for_bit);
     RUN(several_right_sides_use_one_factorisation);
     RUN(held_body_blocks_serve_other_joint_blocks);
+    RUN(an_expected_right_side_is_solved_as_any_other);
     RUN(known_redundancy_is_solved_to_the_tolerance_without_a_check);
     RUN(cost_of_a_chain_is_proportional_to_its_length);
     CHECK(memory_counter.bytes == 0);
