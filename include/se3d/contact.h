@@ -152,6 +152,10 @@ SE3D_API se3d_status se3d_shape_create_plane(se3d_system *system, const se3d_sha
 SE3D_API se3d_status se3d_shape_create_hull(se3d_system *system, const se3d_shape_def *def,
                                             se3d_shape *shape);
 
+/* A surface of triangles, with two sides: spheres touch it. @since 0.1 */
+SE3D_API se3d_status se3d_shape_create_mesh(se3d_system *system, const se3d_shape_def *def,
+                                            se3d_shape *shape);
+
 /* Destroy. @return OK, NULL, STALE_HANDLE. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_shape_destroy(se3d_system *system, se3d_shape shape);
 /* Find by name. @return OK, NULL, NOT_FOUND (*shape is null). Reader. @since 0.1 */

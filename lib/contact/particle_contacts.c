@@ -16,9 +16,9 @@ typedef struct couple {
     se3di_wall wall;
 } couple;
 
-static void copy_lane(const se3di_particles *set, uint32_t b, int lane, couple *c)
+static void copy_lane(const se3di_particles *set, const se3di_block *block, const se3di_roll *roll,
+                      int lane, couple *c)
 {
-    const se3di_block *block = &set->blocks[b];
     memset(c, 0, sizeof *c);
     for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
         c->block.i[k] = c->block.j[k] = 2;
@@ -30,8 +30,8 @@ static void copy_lane(const se3di_particles *set, uint32_t b, int lane, couple *
     for (int a = 0; a < 3; ++a) {
         c->block.xi[a][0] = block->xi[a][lane];
     }
-    for (int a = 0; set->rolls && a < 4; ++a) {
-        c->roll.rho[a][0] = set->rolls[b].rho[a][lane];
+    for (int a = 0; roll && a < 4; ++a) {
+        c->roll.rho[a][0] = roll->rho[a][lane];
     }
 }
 
@@ -54,12 +54,17 @@ static se3di_force_task task_of(const se3di_particles *set, couple *c)
     };
 }
 
+static const se3di_roll *roll_of(const se3di_particles *set, uint32_t b)
+{
+    return set->rolls ? &set->rolls[b] : NULL;
+}
+
 /* The contact of a lane; returns 0 where the two do not touch. */
 static int pair_contact(const se3di_particles *set, uint32_t b, int lane,
                         se3d_particles_contact *out)
 {
     couple c;
-    copy_lane(set, b, lane, &c);
+    copy_lane(set, &set->blocks[b], roll_of(set, b), lane, &c);
     c.block.j[0] = 1;
     c.grains[1] = set->grains[set->blocks[b].j[lane]];
     c.spins[1] = set->spins[set->blocks[b].j[lane]];
@@ -87,51 +92,94 @@ static int pair_contact(const se3di_particles *set, uint32_t b, int lane,
     return 1;
 }
 
-static int wall_contact(const se3di_particles *set, uint32_t b, int lane,
+/* Distance and normal are those of the shape, or of the lane in `given`. */
+static int wall_contact(const se3di_particles *set, couple *c, const se3di_given *given, int lane,
                         se3d_particles_contact *out)
 {
-    couple c;
-    copy_lane(set, b, lane, &c);
-    uint32_t index = set->blocks[b].j[0];
-    c.wall = set->walls[index];
-    c.block.j[0] = 0;
-    if (!(se3di_wall_distance(&c.wall, c.grains[0].x) < c.grains[0].radius)) {
+    const double *x = c->grains[0].x;
+    double normal[3];
+    double distance = se3di_wall_nearest(&c->wall, x, out->point, normal);
+    se3di_given here = {.distance = {distance}};
+    for (int a = 0; a < 3; ++a) {
+        here.normal[a][0] = given ? given->normal[a][lane] : normal[a];
+    }
+    if (given) {
+        here.distance[0] = given->distance[lane];
+        for (int a = 0; a < 3; ++a) {
+            out->point[a] = x[a] - here.distance[0] * here.normal[a][0];
+        }
+    }
+    if (!(here.distance[0] < c->grains[0].radius)) {
         return 0;
     }
-    se3di_force_task task = task_of(set, &c);
+    c->block.j[0] = 0;
+    se3di_force_task task = task_of(set, c);
+    task.given = &here;
     se3di_particle_kernels_portable()->walls(&task);
-    out->i = c.spins[0].id;
+    out->i = c->spins[0].id;
     out->j = 0;
-    out->shape = (se3d_shape){c.wall.handle.index1, c.wall.handle.generation};
-    memcpy(out->force, c.loads[0].force, sizeof out->force);
-    double normal[3];
-    (void)se3di_wall_nearest(&c.wall, c.grains[0].x, out->point, normal);
+    out->shape = (se3d_shape){c->wall.handle.index1, c->wall.handle.generation};
+    memcpy(out->force, c->loads[0].force, sizeof out->force);
     return 1;
+}
+
+typedef struct contact_list {
+    se3d_particles_contact *contacts;
+    size_t capacity, count;
+} contact_list;
+
+static void append(contact_list *list, int touches, const se3d_particles_contact *contact)
+{
+    if (touches && list->contacts && list->count < list->capacity) {
+        list->contacts[list->count] = *contact;
+    }
+    list->count += (size_t)touches;
+}
+
+static void list_blocks(const se3di_particles *set, const se3di_slab *slab, contact_list *list)
+{
+    for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
+        const se3di_block *block = &set->blocks[b];
+        for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
+            se3d_particles_contact contact;
+            if (block->i[lane] >= set->count) {
+                continue;
+            }
+            if (b < slab->wall_begin) {
+                append(list, pair_contact(set, b, lane, &contact), &contact);
+            } else {
+                couple c;
+                copy_lane(set, block, roll_of(set, b), lane, &c);
+                c.wall = set->walls[block->j[0]];
+                append(list, wall_contact(set, &c, NULL, lane, &contact), &contact);
+            }
+        }
+    }
+}
+
+static void list_meshes(const se3di_particles *set, const se3di_slab *slab, contact_list *list)
+{
+    for (uint32_t k = slab->mesh_begin; k < slab->mesh_end; ++k) {
+        se3di_mesh_batch batch;
+        se3di_mesh_pair_open(set, &set->mesh_pairs[k], &batch);
+        for (int lane = 0; lane < (int)batch.count; ++lane) {
+            couple c;
+            se3d_particles_contact contact;
+            copy_lane(set, &batch.block, &batch.roll, lane, &c);
+            c.wall = set->walls[set->mesh_pairs[k].wall];
+            append(list, wall_contact(set, &c, &batch.given, lane, &contact), &contact);
+        }
+    }
 }
 
 se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity,
                                      se3d_particles_contact *contacts, size_t *count)
 {
-    *count = 0;
-    if (!set || !set->list_valid) {
-        return SE3D_OK;
+    contact_list list = {contacts, capacity, 0};
+    for (uint32_t s = 0; set && set->list_valid && s < set->slab_count; ++s) {
+        list_blocks(set, &set->slabs[s], &list);
+        list_meshes(set, &set->slabs[s], &list);
     }
-    for (uint32_t s = 0; s < set->slab_count; ++s) {
-        const se3di_slab *slab = &set->slabs[s];
-        for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
-            for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
-                se3d_particles_contact contact;
-                if (set->blocks[b].i[lane] >= set->count) {
-                    continue;
-                }
-                int touches = b < slab->wall_begin ? pair_contact(set, b, lane, &contact)
-                                                   : wall_contact(set, b, lane, &contact);
-                if (touches && contacts && *count < capacity) {
-                    contacts[*count] = contact;
-                }
-                *count += (size_t)touches;
-            }
-        }
-    }
+    *count = list.count;
     return SE3D_OK;
 }

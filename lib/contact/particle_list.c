@@ -131,6 +131,7 @@ se3d_status se3di_particles_collect(se3di_particles *set)
     set->carry_count = count;
     set->carry_rolling = set->rolls != NULL;
     se3di_particles_each_slab(set, collect_slab);
+    se3di_particles_mesh_collect(set);
     set->list_valid = 0;
     set->block_count = 0;
     return SE3D_OK;
@@ -153,6 +154,7 @@ void se3di_particles_remap(se3di_particles *set, const uint32_t *new_index)
         ++kept;
     }
     set->carry_count = kept;
+    se3di_particles_mesh_remap(set, new_index, NULL);
 }
 
 /* Chains by the particle that will own the pair: either of the two may, so both are searched. */
@@ -286,7 +288,9 @@ static uint32_t mark_walls(se3di_particles *set, const se3di_slab *slab)
         uint32_t *entry = &set->near_walls[2 * k];
         uint32_t i = entry[0] & ~SE3DI_LIST_ACTIVE;
         const se3di_grain *g = &set->grains[i];
-        int active = se3di_wall_distance(&set->walls[entry[1]], g->x) < g->radius + set->near;
+        const se3di_wall *wall = &set->walls[entry[1]];
+        int active = wall->shape.kind != SE3DI_SHAPE_MESH && /* they have pairs of their own */
+                     se3di_wall_distance(wall, g->x) < g->radius + set->near;
         entry[0] = active ? i | SE3DI_LIST_ACTIVE : i;
         if (entry[1] != last) {
             blocks += blocks_of(count);
@@ -353,6 +357,7 @@ se3d_status se3di_particles_activate(se3di_particles *set)
     SE3DI_TRY(reserve_blocks(set, count));
     set->block_count = (uint32_t)count;
     se3di_particles_each_slab(set, fill_slab);
+    SE3DI_TRY(se3di_particles_mesh_activate(set));
     for (size_t k = 0; k < set->wall_count; ++k) {
         se3di_wall *wall = &set->walls[k];
         se3di_copy(wall->pose.x, wall->near_x);

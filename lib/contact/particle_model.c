@@ -92,6 +92,7 @@ static void remap_walls(se3di_particles *set, const uint32_t *place)
         ++kept;
     }
     set->carry_count = kept;
+    se3di_particles_mesh_remap(set, NULL, place);
 }
 
 static uint32_t find_wall(const se3di_particles *set, se3di_handle handle)

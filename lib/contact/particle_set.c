@@ -74,6 +74,8 @@ void se3di_particles_destroy(se3di_particles *set)
     se3di_free(a, set->near_walls, set->near_capacity, sizeof *set->near_walls);
     se3di_free(a, set->carry_roll, set->carry_roll_capacity, sizeof(double));
     se3di_free(a, set->carry_next, set->carry_next_capacity, sizeof *set->carry_next);
+    se3di_free(a, set->mesh_pairs, set->mesh_capacity, sizeof *set->mesh_pairs);
+    se3di_free(a, set->mesh_old, set->mesh_old_capacity, sizeof *set->mesh_old);
     se3di_free(a, set->wall_sums, set->wall_sum_capacity, sizeof(double));
     se3d_allocator allocator = set->allocator;
     memset(set, 0, sizeof *set);
@@ -98,6 +100,7 @@ size_t se3di_particles_memory(const se3di_particles *set)
            sizeof(uint32_t) * (set->index_capacity + set->cell_capacity + set->first_capacity +
                                set->list_capacity + set->near_capacity + set->carry_next_capacity) +
            sizeof(double) * (set->carry_roll_capacity + set->wall_sum_capacity) +
+           (set->mesh_capacity + set->mesh_old_capacity) * sizeof *set->mesh_pairs +
            set->wall_capacity * sizeof *set->walls + sizeof *set;
 }
 
@@ -247,6 +250,8 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         {&to->carry_roll, from->carry_roll, from->carry_roll_capacity, sizeof(double)},
         {&to->wall_sums, from->wall_sums, from->wall_sum_capacity, sizeof(double)},
         {&to->stuffs, from->stuffs, from->stuff_capacity, sizeof(se3di_stuff)},
+        {&to->mesh_pairs, from->mesh_pairs, from->mesh_capacity, sizeof(se3di_mesh_pair)},
+        {&to->mesh_old, from->mesh_old, from->mesh_old_capacity, sizeof(se3di_mesh_pair)},
         {&to->pairs, from->pairs, from->pair_capacity, sizeof(se3di_pair)},
         {&to->walls, from->walls, from->wall_capacity, sizeof(se3di_wall)},
     };

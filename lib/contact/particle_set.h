@@ -83,12 +83,42 @@ typedef struct se3di_wall {
     double force[3], torque[3]; /* on the body, about its centre of mass, last evaluation */
 } se3di_wall;
 
+/* Where a particle touches a mesh. */
+typedef struct se3di_mesh_touch {
+    double normal[3]; /* mesh frame */
+    double xi[3], rho[4];
+} se3di_mesh_touch;
+
+#define SE3DI_MESH_TOUCHES 6
+
+/* A particle near a mesh. */
+typedef struct se3di_mesh_pair {
+    uint32_t i, wall;
+    uint32_t count, next;
+    se3di_mesh_touch touches[SE3DI_MESH_TOUCHES];
+} se3di_mesh_pair;
+
+/* Distances and normals (towards the particles, ground frame) of the lanes of a block. */
+typedef struct se3di_given {
+    double normal[3][SE3DI_GRAIN_LANES], distance[SE3DI_GRAIN_LANES];
+} se3di_given;
+
+/* The touches of a pair as they are now, for a kernel. */
+typedef struct se3di_mesh_batch {
+    _Alignas(64) se3di_block block;
+    _Alignas(64) se3di_given given;
+    se3di_roll roll;
+    double local[SE3DI_MESH_TOUCHES][3]; /* normals, mesh frame */
+    uint32_t count, reserved;
+} se3di_mesh_batch;
+
 typedef struct se3di_slab {
     uint32_t begin, end;           /* particles */
     uint32_t pair_begin, pair_end; /* blocks */
     uint32_t wall_begin, wall_end; /* blocks of walls */
     uint32_t near_begin, near_end; /* candidates of walls */
     size_t moved;                  /* springs that hold something */
+    uint32_t mesh_begin, mesh_end; /* pairs with meshes */
     double overlap;                /* largest excess over what is allowed */
     uint64_t touching;
 } se3di_slab;
@@ -169,9 +199,13 @@ typedef struct se3di_particles {
     double *carry_roll; /* [4 * carry] where rolling */
     uint32_t *carry_next;
     size_t carry_count, carry_roll_capacity, carry_next_capacity;
-    int32_t carry_rolling; /* carry_roll has been filled */
-    int32_t uniform;       /* one material, one radius */
-    double *wall_sums;     /* [slabs * walls * 6] */
+    int32_t carry_rolling;       /* carry_roll has been filled */
+    int32_t uniform;             /* one material, one radius */
+    se3di_mesh_pair *mesh_pairs; /* active, by slab */
+    size_t mesh_count, mesh_capacity;
+    se3di_mesh_pair *mesh_old; /* their history while list_valid is 0 */
+    size_t mesh_old_count, mesh_old_capacity;
+    double *wall_sums; /* [slabs * walls * 6] */
     size_t wall_sum_capacity;
 
     /* motion since the lists were built */
@@ -196,6 +230,7 @@ typedef struct se3di_force_task {
     se3di_roll *rolls; /* NULL: no rolling resistance */
     const se3di_pair *pairs;
     const se3di_wall *walls;
+    const se3di_given *given; /* walls: of every block, instead of the shape; NULL: none */
     uint32_t materials;
     uint32_t begin, end; /* blocks */
     int32_t law, periodic, uniform, cohesive;
@@ -258,6 +293,17 @@ se3d_status se3di_particles_activate(se3di_particles *set);
 se3d_status se3di_particles_list_walls(se3di_particles *set);
 /* Do something for every slab, on all threads at a time. */
 void se3di_particles_each_slab(se3di_particles *set, void (*work)(se3di_particles *, uint32_t));
+/* particle_mesh.c: the same for pairs with meshes. */
+void se3di_particles_mesh_collect(se3di_particles *set);
+/* NULL: particles (walls) are as they were. */
+void se3di_particles_mesh_remap(se3di_particles *set, const uint32_t *new_index,
+                                const uint32_t *new_wall);
+se3d_status se3di_particles_mesh_activate(se3di_particles *set);
+void se3di_particles_mesh_forces(se3di_particles *set, const se3di_slab *slab,
+                                 se3di_force_task *task);
+/* Where the two touch now, with the history. */
+void se3di_mesh_pair_open(const se3di_particles *set, const se3di_mesh_pair *pair,
+                          se3di_mesh_batch *batch);
 /* Grow an array to hold `needed` elements, a little more. */
 se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, size_t *capacity,
                                  size_t needed);

@@ -187,6 +187,7 @@ static void evaluate_slab(se3di_particles *set, se3di_force_task task, uint32_t 
     if (walls > 0) {
         memset(task.wall_sums, 0, 6 * walls * sizeof(double));
         set->kernels->walls(&task);
+        se3di_particles_mesh_forces(set, slab, &task);
     }
     slab->overlap = task.overlap;
     slab->touching = task.touching;
@@ -225,6 +226,27 @@ static void evaluate_slabs(se3di_particles *set, const se3di_force_task *task)
     }
 }
 
+static void note_overlap(se3di_particles *set, uint32_t i, double amount)
+{
+    if (amount > set->failed_amount) {
+        set->failed_amount = amount;
+        set->failed = set->spins[i].id;
+    }
+}
+
+static double pair_overlap(const se3di_particles *set, const se3di_grain *i, const se3di_grain *j)
+{
+    double d[3];
+    se3di_sub(i->x, j->x, d);
+    se3di_particles_wrap(set, d);
+    return (i->radius + j->radius - se3di_norm(d)) / fmin(i->radius, j->radius);
+}
+
+static double wall_overlap(const se3di_particles *set, uint32_t wall, const se3di_grain *i)
+{
+    return 1.0 - se3di_wall_distance(&set->walls[wall], i->x) / i->radius;
+}
+
 /* Which particle overlaps most, for the message of a failure. */
 static void find_overlap(se3di_particles *set)
 {
@@ -235,21 +257,15 @@ static void find_overlap(se3di_particles *set)
             const se3di_block *block = &set->blocks[b];
             for (int k = 0; k < SE3DI_GRAIN_LANES && block->i[k] < set->count; ++k) {
                 const se3di_grain *i = &set->grains[block->i[k]];
-                double amount;
-                if (b >= slab->wall_begin) {
-                    amount = 1.0 - se3di_wall_distance(&set->walls[block->j[0]], i->x) / i->radius;
-                } else {
-                    const se3di_grain *j = &set->grains[block->j[k]];
-                    double d[3] = {i->x[0] - j->x[0], i->x[1] - j->x[1], i->x[2] - j->x[2]};
-                    se3di_particles_wrap(set, d);
-                    double distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-                    amount = (i->radius + j->radius - distance) / fmin(i->radius, j->radius);
-                }
-                if (amount > set->failed_amount) {
-                    set->failed_amount = amount;
-                    set->failed = set->spins[block->i[k]].id;
-                }
+                note_overlap(set, block->i[k],
+                             b >= slab->wall_begin
+                                 ? wall_overlap(set, block->j[0], i)
+                                 : pair_overlap(set, i, &set->grains[block->j[k]]));
             }
+        }
+        for (uint32_t k = slab->mesh_begin; k < slab->mesh_end; ++k) {
+            const se3di_mesh_pair *pair = &set->mesh_pairs[k];
+            note_overlap(set, pair->i, wall_overlap(set, pair->wall, &set->grains[pair->i]));
         }
     }
 }

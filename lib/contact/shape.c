@@ -6,6 +6,7 @@
  * coincide that of the surface.                                           docs/theory/shapes.md */
 #include "contact/shape.h"
 
+#include "contact/mesh.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -200,12 +201,11 @@ static void face_normal(const double *const corner[3], double normal[3])
     se3di_scale(length > 0.0 ? 1.0 / length : 0.0, normal, normal);
 }
 
-/* Of all triangles; returns the nearest one. */
-static size_t nearest_triangle(const se3di_shape *s, const double local[3], double point[3],
-                               double *distance)
+/* Of all triangles. */
+static void nearest_triangle(const se3di_shape *s, const double local[3], double point[3],
+                             double *distance)
 {
     double least = HUGE_VAL;
-    size_t nearest = 0;
     for (size_t k = 0; k < s->triangle_count; ++k) {
         const double *corner[3];
         double here[3];
@@ -213,18 +213,16 @@ static size_t nearest_triangle(const se3di_shape *s, const double local[3], doub
         double square = se3di_triangle_nearest(corner, local, here, NULL);
         if (square < least) {
             least = square;
-            nearest = k;
             se3di_copy(here, point);
         }
     }
     *distance = sqrt(least);
-    return nearest;
 }
 
 static void nearest_mesh(const se3di_shape *s, const double local[3], double point[3],
                          double normal[3], double *distance)
 {
-    size_t triangle = nearest_triangle(s, local, point, distance);
+    size_t triangle = se3di_mesh_nearest(s, local, point, distance);
     if (*distance > 0.0) {
         se3di_sub(local, point, normal);
         se3di_scale(1.0 / *distance, normal, normal);
@@ -253,7 +251,7 @@ static void nearest_hull(const se3di_shape *s, const double local[3], double poi
         }
     }
     if (depth > 0.0) {
-        (void)nearest_triangle(s, local, point, distance);
+        nearest_triangle(s, local, point, distance);
         if (*distance > 1e-12 * s->bound) {
             se3di_sub(local, point, normal);
             se3di_scale(1.0 / *distance, normal, normal);

@@ -3,6 +3,7 @@
 #include "contact/shape.h"
 
 #include "contact/hull.h"
+#include "contact/mesh.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "system/particles.h"
@@ -142,6 +143,32 @@ static se3d_status read_hull(se3d_system *system, const se3d_shape_def *def, se3
     return status < 0 ? SE3DI_FAIL(system, status, "no memory for a hull") : SE3D_OK;
 }
 
+static se3d_status read_mesh(se3d_system *system, const se3d_shape_def *def, se3di_shape *shape)
+{
+    SE3DI_TRY(read_vertices(system, def, shape));
+    SE3DI_TRY(se3di_check_pointer(system, "triangles", def->triangles));
+    if (def->triangle_count < 1 || def->triangle_count > UINT32_MAX / 16) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "triangle_count = %zu, must be at least 1 and at most %u",
+                          def->triangle_count, UINT32_MAX / 16);
+    }
+    for (size_t k = 0; k < 3 * def->triangle_count; ++k) {
+        if (def->triangles[k] >= def->vertex_count) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "triangles[%zu] = %u, must be less than vertex_count = %zu", k,
+                              def->triangles[k], def->vertex_count);
+        }
+    }
+    se3d_status status =
+        se3di_mesh_build(&system->model.allocator, def->vertices, def->vertex_count, def->triangles,
+                         def->triangle_count, shape);
+    if (status == SE3D_ERR_INVALID_ARGUMENT) {
+        return SE3DI_FAIL(system, status, "none of the %zu triangles has an area",
+                          def->triangle_count);
+    }
+    return status < 0 ? SE3DI_FAIL(system, status, "no memory for a mesh") : SE3D_OK;
+}
+
 typedef se3d_status (*shape_reader)(se3d_system *system, const se3d_shape_def *def,
                                     se3di_shape *shape);
 
@@ -163,7 +190,7 @@ static se3d_status create(se3d_system *system, const se3d_shape_def *def, se3di_
     shape.bound = se3di_shape_bound(&shape);
     se3di_handle handle;
     se3d_status status = se3di_model_add_shape(&system->model, &shape, &handle);
-    if (kind == SE3DI_SHAPE_HULL) {
+    if (kind == SE3DI_SHAPE_HULL || kind == SE3DI_SHAPE_MESH) {
         shape.name = NULL; /* the caller's */
         se3di_shape_release(&system->model.allocator, &shape);
     }
@@ -187,6 +214,7 @@ SHAPE_CREATE(capsule, CAPSULE)
 SHAPE_CREATE(cylinder, CYLINDER)
 SHAPE_CREATE(plane, PLANE)
 SHAPE_CREATE(hull, HULL)
+SHAPE_CREATE(mesh, MESH)
 
 se3d_status se3d_shape_destroy(se3d_system *system, se3d_shape shape)
 {

@@ -892,6 +892,7 @@ static const row rows[] = {
     {"se3d_shape_create_capsule", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_create_cylinder", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_create_plane", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_create_mesh", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_create_hull", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_destroy", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_find", shapes_reject_misuse, "", NULL, NULL},

@@ -231,9 +231,11 @@ static se3d_status shapes_reject_misuse(arguments *a)
 {
     se3d_status (*const create[])(se3d_system *, const se3d_shape_def *, se3d_shape *) = {
         se3d_shape_create_sphere,   se3d_shape_create_box,   se3d_shape_create_capsule,
-        se3d_shape_create_cylinder, se3d_shape_create_plane, se3d_shape_create_hull};
+        se3d_shape_create_cylinder, se3d_shape_create_plane, se3d_shape_create_hull,
+        se3d_shape_create_mesh};
     const double corners[12] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const double flat[12] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0};
+    const uint32_t faces[6] = {0, 1, 2, 0, 1, 3}, beyond[6] = {0, 1, 2, 0, 1, 4};
     se3d_shape shape, other;
     se3d_body body;
     const char *name;
@@ -245,6 +247,8 @@ static se3d_status shapes_reject_misuse(arguments *a)
         def.radius = def.length = def.size[0] = def.size[1] = def.size[2] = 1.0;
         def.vertices = corners;
         def.vertex_count = 4;
+        def.triangles = faces;
+        def.triangle_count = 2;
         CHECK(create[k](NULL, &def, &shape) == SE3D_ERR_NULL);
         REJECTED(create[k](a->system, NULL, &shape), SE3D_ERR_NULL);
         REJECTED(create[k](a->system, &def, NULL), SE3D_ERR_NULL);
@@ -261,6 +265,7 @@ static se3d_status shapes_reject_misuse(arguments *a)
         bad = def;
         bad.radius = bad.size[2] = bad.normal[0] = (double)INFINITY;
         bad.vertices = flat;
+        bad.triangles = beyond;
         REJECTED(create[k](a->system, &bad, &shape), SE3D_ERR_INVALID_ARGUMENT);
         CHECK(shape.index1 == 0);
         CHECK(!create[k](a->system, &def, &shape));

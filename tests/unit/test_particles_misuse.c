@@ -249,6 +249,60 @@ static se3d_status do_wall(bed *b)
     return se3d_shape_create_plane(b->system, &def, &wall);
 }
 
+static se3d_status do_mesh(bed *b)
+{
+    static const double points[12] = {0.0, 0.0, -0.1, 0.1, 0.0, -0.1,
+                                      0.0, 0.1, -0.1, 0.1, 0.1, 0.0};
+    static const uint32_t faces[6] = {0, 1, 2, 1, 3, 2};
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape shape, hull;
+    def.material = b->material;
+    def.vertices = points;
+    def.vertex_count = 4;
+    def.triangles = faces;
+    def.triangle_count = 2;
+    def.name = "ramp";
+    se3d_status status = se3d_shape_create_mesh(b->system, &def, &shape);
+    if (status == SE3D_OK) {
+        def.name = NULL;
+        def.material = (se3d_material){0, 0};
+        status = se3d_shape_create_hull(b->system, &def, &hull);
+        if (status < 0) {
+            CHECK(se3d_shape_destroy(b->system, shape) == SE3D_OK);
+        }
+    }
+    return status;
+}
+
+/* A step after a mesh has come under the particles. */
+static se3d_status do_step_on_a_mesh(bed *b)
+{
+    se3d_shape shape;
+    if (se3d_shape_find(b->system, "ramp", &shape) != SE3D_OK) {
+        se3d_status status = do_mesh(b);
+        if (status < 0) {
+            return status;
+        }
+    }
+    return se3d_particles_step(b->particles, 5);
+}
+
+static se3d_status do_clone_system(bed *b)
+{
+    se3d_system *copy = NULL;
+    se3d_status status = do_mesh(b);
+    if (status == SE3D_OK) {
+        status = se3d_system_clone(b->system, &copy);
+        se3d_shape shape;
+        CHECK(se3d_shape_find(b->system, "ramp", &shape) == SE3D_OK);
+        if (status < 0) {
+            CHECK(se3d_shape_destroy(b->system, shape) == SE3D_OK);
+        }
+        se3d_system_destroy(copy);
+    }
+    return status;
+}
+
 static se3d_status do_clone(bed *b)
 {
     se3d_particles *copy;
@@ -302,6 +356,9 @@ static void every_failing_allocation_is_survived(void)
     sweep(do_remove, 50, 0);
     sweep(do_material, 50, 0);
     sweep(do_wall, 50, 0);
+    sweep(do_mesh, 50, 0);
+    sweep(do_step_on_a_mesh, 50, 1);
+    sweep(do_clone_system, 0, 0);
     sweep(do_clone, 50, 0);
     sweep(do_first_step, 0, 0);
     sweep(do_step, 0, 1);

@@ -1,0 +1,328 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Triangles in a tree of boxes, and how a sphere touches them.
+ *
+ * The distance to the mesh has a minimum where the sphere touches. A triangle's nearest point is
+ * such a minimum unless it lies on another triangle that comes nearer: then the way down leads
+ * there. So triangles are visited from the nearest on, and one whose point lies on an earlier one
+ * is left out: on the edge between coplanar triangles a sphere has one contact, in a corner as many
+ * as there are faces, on a convex edge or vertex one.                      docs/theory/shapes.md */
+#include "contact/mesh.h"
+
+#include "contact/shape.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define LEAF_SIZE       4
+#define STACK_SIZE      64    /* median splits: the depth is at most 32 */
+#define CANDIDATES      128   /* triangles within reach of one sphere that are told apart */
+#define ON_TRIANGLE     1e-8  /* of the radius: a point is on a triangle */
+#define NEARLY_COPLANAR 0.999 /* cosine of the angle of normals that are one contact */
+
+typedef struct mesh_node {
+    double low[3], high[3];
+    uint32_t begin, count; /* triangles of a leaf; count 0: its children are the next node and */
+    uint32_t right, reserved;
+} mesh_node;
+
+typedef struct builder {
+    const double *vertices;
+    uint32_t *triangles;
+    mesh_node *nodes;
+    uint32_t node_count;
+} builder;
+
+static double middle(const builder *b, uint32_t triangle, int axis)
+{
+    const uint32_t *t = b->triangles + 3 * (size_t)triangle;
+    return b->vertices[3 * (size_t)t[0] + (size_t)axis] +
+           b->vertices[3 * (size_t)t[1] + (size_t)axis] +
+           b->vertices[3 * (size_t)t[2] + (size_t)axis];
+}
+
+static void swap(builder *b, uint32_t i, uint32_t j)
+{
+    for (int k = 0; k < 3; ++k) {
+        uint32_t here = b->triangles[3 * (size_t)i + (size_t)k];
+        b->triangles[3 * (size_t)i + (size_t)k] = b->triangles[3 * (size_t)j + (size_t)k];
+        b->triangles[3 * (size_t)j + (size_t)k] = here;
+    }
+}
+
+/* Order [begin, end) such that the `half` smallest along the axis come first. */
+static void split(builder *b, uint32_t begin, uint32_t end, uint32_t half, int axis)
+{
+    uint32_t target = begin + half;
+    while (end - begin > 1) {
+        double pivot = middle(b, begin + (end - begin) / 2, axis);
+        uint32_t low = begin;
+        uint32_t at = begin;
+        uint32_t high = end;
+        while (at < high) { /* smaller, equal, larger */
+            double here = middle(b, at, axis);
+            if (here < pivot) {
+                swap(b, low++, at++);
+            } else if (here > pivot) {
+                swap(b, at, --high);
+            } else {
+                ++at;
+            }
+        }
+        if (target < low) {
+            end = low;
+        } else if (target >= high) {
+            begin = high;
+        } else {
+            return;
+        }
+    }
+}
+
+static void bound(const builder *b, uint32_t begin, uint32_t count, mesh_node *node)
+{
+    for (int a = 0; a < 3; ++a) {
+        node->low[a] = HUGE_VAL;
+        node->high[a] = -HUGE_VAL;
+    }
+    for (size_t k = 3 * (size_t)begin; k < 3 * ((size_t)begin + count); ++k) {
+        const double *p = b->vertices + 3 * (size_t)b->triangles[k];
+        for (int a = 0; a < 3; ++a) {
+            node->low[a] = fmin(node->low[a], p[a]);
+            node->high[a] = fmax(node->high[a], p[a]);
+        }
+    }
+}
+
+/* Recursion: the depth is the logarithm of the number of triangles. */
+static void build(builder *b, uint32_t begin, uint32_t count)
+{
+    uint32_t at = b->node_count++;
+    mesh_node node = {.begin = begin, .count = count};
+    bound(b, begin, count, &node);
+    b->nodes[at] = node;
+    if (count <= LEAF_SIZE) {
+        return;
+    }
+    int axis = 0;
+    for (int a = 1; a < 3; ++a) {
+        axis = node.high[a] - node.low[a] > node.high[axis] - node.low[axis] ? a : axis;
+    }
+    uint32_t half = count / 2;
+    split(b, begin, begin + count, half, axis);
+    build(b, begin, half);
+    b->nodes[at].count = 0;
+    b->nodes[at].right = b->node_count;
+    build(b, begin + half, count - half);
+}
+
+static int has_area(const double *vertices, const uint32_t *triangle)
+{
+    double u[3], v[3], n[3];
+    const double *a = vertices + 3 * (size_t)triangle[0];
+    se3di_sub(vertices + 3 * (size_t)triangle[1], a, u);
+    se3di_sub(vertices + 3 * (size_t)triangle[2], a, v);
+    se3di_cross(u, v, n);
+    return se3di_dot(n, n) > 0.0;
+}
+
+static se3d_status fill(const se3d_allocator *allocator, const double *vertices,
+                        const uint32_t *triangles, size_t triangle_count, se3di_shape *shape)
+{
+    uint32_t kept = (uint32_t)shape->triangle_count;
+    memcpy(shape->vertices, vertices, 3 * shape->vertex_count * sizeof(double));
+    for (size_t k = 0, to = 0; k < triangle_count; ++k) {
+        if (has_area(vertices, triangles + 3 * k)) {
+            memcpy(shape->triangles + 3 * to++, triangles + 3 * k, 3 * sizeof *triangles);
+        }
+    }
+    size_t most = 2 * (size_t)kept;
+    mesh_node *nodes = se3di_alloc(allocator, most, sizeof *nodes);
+    if (!nodes) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    builder b = {vertices, shape->triangles, nodes, 0};
+    build(&b, 0, kept);
+    shape->tree = se3di_alloc(allocator, b.node_count * sizeof *nodes, 1);
+    if (shape->tree) {
+        shape->tree_bytes = b.node_count * sizeof *nodes;
+        memcpy(shape->tree, nodes, shape->tree_bytes);
+    }
+    se3di_free(allocator, nodes, most, sizeof *nodes);
+    return shape->tree ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+}
+
+se3d_status se3di_mesh_build(const se3d_allocator *allocator, const double *vertices,
+                             size_t vertex_count, const uint32_t *triangles, size_t triangle_count,
+                             se3di_shape *shape)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < triangle_count; ++k) {
+        kept += (size_t)has_area(vertices, triangles + 3 * k);
+    }
+    shape->tree = NULL;
+    shape->tree_bytes = shape->vertex_count = shape->triangle_count = 0;
+    shape->vertices = NULL;
+    shape->triangles = NULL;
+    if (kept == 0) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    shape->vertices = se3di_alloc(allocator, 3 * vertex_count, sizeof(double));
+    shape->vertex_count = shape->vertices ? vertex_count : 0;
+    shape->triangles = se3di_alloc(allocator, 3 * kept, sizeof *triangles);
+    shape->triangle_count = shape->triangles ? kept : 0;
+    se3d_status status = SE3D_ERR_NO_MEMORY;
+    if (shape->vertices && shape->triangles) {
+        status = fill(allocator, vertices, triangles, triangle_count, shape);
+    }
+    if (status < 0) {
+        char *name = shape->name; /* the caller's */
+        shape->name = NULL;
+        se3di_shape_release(allocator, shape);
+        shape->name = name;
+    }
+    return status;
+}
+
+/* The squared distance of a box. */
+static double box_distance(const mesh_node *node, const double p[3])
+{
+    double sum = 0.0;
+    for (int a = 0; a < 3; ++a) {
+        double beyond = fmax(fmax(node->low[a] - p[a], p[a] - node->high[a]), 0.0);
+        sum += beyond * beyond;
+    }
+    return sum;
+}
+
+static double triangle_distance(const se3di_shape *s, uint32_t triangle, const double p[3],
+                                double point[3])
+{
+    const double *corner[3];
+    for (int k = 0; k < 3; ++k) {
+        corner[k] = s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle + (size_t)k];
+    }
+    return se3di_triangle_nearest(corner, p, point, NULL);
+}
+
+size_t se3di_mesh_nearest(const se3di_shape *shape, const double local[3], double point[3],
+                          double *distance)
+{
+    const mesh_node *nodes = shape->tree;
+    uint32_t stack[STACK_SIZE] = {0};
+    int depth = 1;
+    double least = HUGE_VAL;
+    size_t nearest = 0;
+    while (depth > 0) {
+        uint32_t at = stack[--depth];
+        const mesh_node *node = &nodes[at];
+        if (!(box_distance(node, local) < least)) {
+            continue;
+        }
+        if (node->count == 0) { /* the nearer child on top */
+            int first =
+                box_distance(&nodes[at + 1], local) <= box_distance(&nodes[node->right], local);
+            stack[depth++] = first ? node->right : at + 1;
+            stack[depth++] = first ? at + 1 : node->right;
+        }
+        for (uint32_t k = node->begin; k < node->begin + node->count; ++k) {
+            double here[3];
+            double square = triangle_distance(shape, k, local, here);
+            if (square < least) {
+                least = square;
+                nearest = k;
+                se3di_copy(here, point);
+            }
+        }
+    }
+    *distance = sqrt(least);
+    return nearest;
+}
+
+typedef struct candidate {
+    double point[3], square;
+    uint32_t triangle, reserved;
+} candidate;
+
+/* Insert by distance; beyond the room the farthest is forgotten. */
+static size_t insert(candidate *list, size_t count, const candidate *new)
+{
+    size_t at = count < CANDIDATES ? count : CANDIDATES - 1;
+    if (count == CANDIDATES && !(new->square < list[at].square)) {
+        return count;
+    }
+    for (; at > 0 && new->square < list[at - 1].square; --at) {
+        list[at] = list[at - 1];
+    }
+    list[at] = *new;
+    return count < CANDIDATES ? count + 1 : count;
+}
+
+/* The triangles within the radius, the nearest first. */
+static size_t gather(const se3di_shape *s, const double local[3], double radius, candidate *list)
+{
+    const mesh_node *nodes = s->tree;
+    uint32_t stack[STACK_SIZE] = {0};
+    int depth = 1;
+    size_t count = 0;
+    double reach = radius * radius;
+    while (depth > 0) {
+        uint32_t at = stack[--depth];
+        const mesh_node *node = &nodes[at];
+        if (!(box_distance(node, local) < reach)) {
+            continue;
+        }
+        if (node->count == 0) {
+            stack[depth++] = node->right;
+            stack[depth++] = at + 1;
+        }
+        for (uint32_t k = node->begin; k < node->begin + node->count; ++k) {
+            candidate here = {.triangle = k};
+            here.square = triangle_distance(s, k, local, here.point);
+            if (here.square < reach) {
+                count = insert(list, count, &here);
+            }
+        }
+    }
+    return count;
+}
+
+/* The point of candidate k lies on a triangle before it. */
+static int leads_on(const se3di_shape *s, const candidate *list, size_t k, double tolerance)
+{
+    for (size_t other = 0; other < k; ++other) {
+        double point[3];
+        if (triangle_distance(s, list[other].triangle, list[k].point, point) <=
+            tolerance * tolerance) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+size_t se3di_mesh_contacts(const se3di_shape *shape, const double local[3], double radius,
+                           size_t capacity, se3di_touch *touch)
+{
+    candidate list[CANDIDATES];
+    size_t found = gather(shape, local, radius, list);
+    size_t count = 0;
+    for (size_t k = 0; k < found && count < capacity; ++k) {
+        if (leads_on(shape, list, k, ON_TRIANGLE * radius)) {
+            continue;
+        }
+        se3di_touch *t = &touch[count];
+        se3di_copy(list[k].point, t->point);
+        t->distance = sqrt(list[k].square);
+        se3di_sub(local, t->point, t->normal);
+        if (!(t->distance > 0.0)) {
+            continue; /* the centre is on the surface: no side is the right one */
+        }
+        se3di_scale(1.0 / t->distance, t->normal, t->normal);
+        int again = 0;
+        for (size_t other = 0; other < count; ++other) {
+            again = again || se3di_dot(touch[other].normal, t->normal) > NEARLY_COPLANAR;
+        }
+        count += again ? 0 : 1;
+    }
+    return count;
+}

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Meshes: surfaces of triangles with two sides, found through a tree of boxes.
+ *                                                                          docs/theory/shapes.md */
+#ifndef SE3DI_CONTACT_MESH_H
+#define SE3DI_CONTACT_MESH_H
+
+#include "model/model.h"
+
+/* A place where a sphere touches: a point of the surface, shape frame. */
+typedef struct se3di_touch {
+    double point[3], normal[3]; /* the normal points to the sphere's centre */
+    double distance;            /* of the centre */
+} se3di_touch;
+
+/* Fill vertices, triangles (without those that have no area, in the order of the tree) and tree of
+ * the shape; they are the caller's, see se3di_shape_release.
+ * @return OK, NO_MEMORY, INVALID_ARGUMENT (no triangle has an area). */
+se3d_status se3di_mesh_build(const se3d_allocator *allocator, const double *vertices,
+                             size_t vertex_count, const uint32_t *triangles, size_t triangle_count,
+                             se3di_shape *shape);
+
+/* The nearest triangle; its point and distance. */
+size_t se3di_mesh_nearest(const se3di_shape *shape, const double local[3], double point[3],
+                          double *distance);
+
+/* All separate contacts of a sphere, the nearest first, at most `capacity`: one where neighbours
+ * are in a plane or nearly so, also on their common edge. Returns their number. */
+size_t se3di_mesh_contacts(const se3di_shape *shape, const double local[3], double radius,
+                           size_t capacity, se3di_touch *touch);
+
+#endif

@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Particles on meshes: a sphere may touch one mesh in several places. A pair of a particle and a
+ * mesh carries the history of all of them; from step to step a place is known by its normal, which
+ * turns little (a rolling sphere's in the mesh's frame, also over an edge). */
+#include "contact/mesh.h"
+#include "contact/particle_set.h"
+#include "math/vec3.h"
+
+#include <string.h>
+
+#define SAME_PLACE 0.7 /* cosine of the angle by which a normal may turn in a step */
+
+static int is_mesh(const se3di_wall *wall)
+{
+    return wall->shape.kind == SE3DI_SHAPE_MESH;
+}
+
+/* The touch of the pair with the nearest normal that is not taken; -1: none. */
+static int match(const se3di_mesh_pair *pair, const double normal[3], unsigned taken)
+{
+    double best = SAME_PLACE;
+    int found = -1;
+    for (int k = 0; k < (int)pair->count; ++k) {
+        double cosine = se3di_dot(pair->touches[k].normal, normal);
+        if (!(taken >> k & 1u) && cosine > best) {
+            best = cosine;
+            found = k;
+        }
+    }
+    return found;
+}
+
+void se3di_mesh_pair_open(const se3di_particles *set, const se3di_mesh_pair *pair,
+                          se3di_mesh_batch *batch)
+{
+    const se3di_wall *wall = &set->walls[pair->wall];
+    const se3di_grain *grain = &set->grains[pair->i];
+    se3di_touch touches[SE3DI_MESH_TOUCHES];
+    double d[3], local[3];
+    memset(batch, 0, sizeof *batch);
+    for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
+        batch->block.i[k] = batch->block.j[k] = (uint32_t)set->capacity;
+        batch->given.distance[k] = 1e300;
+    }
+    batch->block.j[0] = pair->wall;
+    se3di_sub(grain->x, wall->pose.x, d);
+    se3di_mul_transposed(wall->pose.R, d, local);
+    batch->count = (uint32_t)se3di_mesh_contacts(&wall->shape, local, grain->radius,
+                                                 SE3DI_MESH_TOUCHES, touches);
+    unsigned taken = 0;
+    for (uint32_t k = 0; k < batch->count; ++k) {
+        double normal[3];
+        se3di_copy(touches[k].normal, batch->local[k]);
+        se3di_mul(wall->pose.R, touches[k].normal, normal);
+        batch->block.i[k] = pair->i;
+        batch->given.distance[k] = touches[k].distance;
+        int old = match(pair, touches[k].normal, taken);
+        for (int a = 0; a < 3; ++a) {
+            batch->given.normal[a][k] = normal[a];
+            batch->block.xi[a][k] = old < 0 ? 0.0 : pair->touches[old].xi[a];
+        }
+        for (int a = 0; a < 4; ++a) {
+            batch->roll.rho[a][k] = old < 0 ? 0.0 : pair->touches[old].rho[a];
+        }
+        taken |= old < 0 ? 0u : 1u << old;
+    }
+}
+
+/* What the kernel made of the history. */
+static void close_pair(const se3di_mesh_batch *batch, se3di_mesh_pair *pair)
+{
+    pair->count = batch->count;
+    for (uint32_t k = 0; k < batch->count; ++k) {
+        se3di_mesh_touch *touch = &pair->touches[k];
+        se3di_copy(batch->local[k], touch->normal);
+        for (int a = 0; a < 3; ++a) {
+            touch->xi[a] = batch->block.xi[a][k];
+        }
+        for (int a = 0; a < 4; ++a) {
+            touch->rho[a] = batch->roll.rho[a][k];
+        }
+    }
+}
+
+void se3di_particles_mesh_forces(se3di_particles *set, const se3di_slab *slab,
+                                 se3di_force_task *task)
+{
+    se3di_force_task local = *task;
+    se3di_mesh_batch batch;
+    local.begin = 0;
+    local.end = 1;
+    local.blocks = &batch.block;
+    local.rolls = task->rolls ? &batch.roll : NULL;
+    local.given = &batch.given;
+    for (uint32_t k = slab->mesh_begin; k < slab->mesh_end; ++k) {
+        se3di_mesh_pair *pair = &set->mesh_pairs[k];
+        se3di_mesh_pair_open(set, pair, &batch);
+        if (batch.count > 0) {
+            set->kernels->walls(&local);
+        }
+        close_pair(&batch, pair);
+    }
+    task->overlap = local.overlap;
+    task->touching = local.touching;
+}
+
+void se3di_particles_mesh_collect(se3di_particles *set)
+{
+    se3di_mesh_pair *pairs = set->mesh_pairs;
+    size_t capacity = set->mesh_capacity;
+    set->mesh_old_count = 0;
+    for (size_t k = 0; k < set->mesh_count; ++k) {
+        if (pairs[k].count > 0) {
+            pairs[set->mesh_old_count++] = pairs[k];
+        }
+    }
+    set->mesh_pairs = set->mesh_old;
+    set->mesh_capacity = set->mesh_old_capacity;
+    set->mesh_count = 0;
+    set->mesh_old = pairs;
+    set->mesh_old_capacity = capacity;
+}
+
+void se3di_particles_mesh_remap(se3di_particles *set, const uint32_t *new_index,
+                                const uint32_t *new_wall)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < set->mesh_old_count; ++k) {
+        se3di_mesh_pair pair = set->mesh_old[k];
+        pair.i = new_index ? new_index[pair.i] : pair.i;
+        pair.wall = new_wall ? new_wall[pair.wall] : pair.wall;
+        if (pair.i != SE3DI_NO_INDEX && pair.wall != SE3DI_NO_INDEX) {
+            set->mesh_old[kept++] = pair;
+        }
+    }
+    set->mesh_old_count = kept;
+}
+
+/* Chains of the old pairs by particle, through key[]. */
+static void chain(se3di_particles *set)
+{
+    for (size_t k = 0; k < set->count; ++k) {
+        set->key[k] = SE3DI_NO_INDEX;
+    }
+    for (size_t k = set->mesh_old_count; k-- > 0;) {
+        se3di_mesh_pair *pair = &set->mesh_old[k];
+        pair->next = set->key[pair->i];
+        set->key[pair->i] = (uint32_t)k;
+    }
+}
+
+static se3d_status push(se3di_particles *set, uint32_t i, uint32_t wall)
+{
+    void *memory = set->mesh_pairs;
+    se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->mesh_capacity,
+                                             set->mesh_count + 1, sizeof *set->mesh_pairs);
+    set->mesh_pairs = memory;
+    SE3DI_TRY(status);
+    uint32_t old = set->key[i];
+    while (old != SE3DI_NO_INDEX && set->mesh_old[old].wall != wall) {
+        old = set->mesh_old[old].next;
+    }
+    se3di_mesh_pair *pair = &set->mesh_pairs[set->mesh_count++];
+    *pair = (se3di_mesh_pair){.i = i, .wall = wall};
+    if (old != SE3DI_NO_INDEX) {
+        *pair = set->mesh_old[old];
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_mesh_activate(se3di_particles *set)
+{
+    set->mesh_count = 0;
+    int any = 0;
+    for (size_t k = 0; k < set->wall_count; ++k) {
+        any = any || is_mesh(&set->walls[k]);
+    }
+    if (any) {
+        chain(set);
+    }
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        se3di_slab *slab = &set->slabs[s];
+        slab->mesh_begin = (uint32_t)set->mesh_count;
+        for (uint32_t k = slab->near_begin; any && k < slab->near_end; ++k) {
+            uint32_t i = set->near_walls[2 * k] & ~SE3DI_LIST_ACTIVE;
+            uint32_t w = set->near_walls[2 * k + 1];
+            const se3di_grain *g = &set->grains[i];
+            if (is_mesh(&set->walls[w]) &&
+                se3di_wall_distance(&set->walls[w], g->x) < g->radius + set->near) {
+                SE3DI_TRY(push(set, i, w));
+            }
+        }
+        slab->mesh_end = (uint32_t)set->mesh_count;
+    }
+    set->mesh_old_count = 0;
+    return SE3D_OK;
+}
