@@ -118,7 +118,11 @@ says 'broken on purpose'
 nothing_left "$dir/broken.mp4"
 name='an interrupt'
 "$program" video "$dir/run" --speed 0.05 -o "$dir/stopped.mp4" 2>"$dir/err" &
-sleep 3
+for k in $(seq 100); do
+    [ ! -e "$dir/stopped.mp4.partial" ] || break
+    sleep 0.1
+done
+sleep 1
 kill -TERM $!
 wait $!
 holds 'exit code of an interrupt' [ $? -eq 1 ]

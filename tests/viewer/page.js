@@ -211,4 +211,4 @@ const checkGrains = async ({ rows }) => {
     console.log(`${checks} checks, ${failures} failed`); process.exit(failures ? 1 : 0);
   });
 });
-setTimeout(() => { console.error("no answer from Chromium"); chromium.kill(); process.exit(1); }, 120000).unref();
+setTimeout(() => { console.error("no answer from Chromium"); chromium.kill(); process.exit(1); }, 400000).unref();

@@ -8,7 +8,7 @@
 
 #include "process.h"
 
-enum { ANSWER_SECONDS = 60, MESSAGE_MAX = 1 << 28 };
+enum { ANSWER_SECONDS = 120, MESSAGE_MAX = 1 << 28 };
 
 const char *devtools_find_chromium(void)
 {

@@ -192,6 +192,7 @@ static int try_path(film *f)
 
 static int make_film(film *f, const char *chromium, const char *results, int quiet)
 {
+    child_watch_interrupts();
     if (!try_path(f)) {
         return EXIT_FAILED;
     }
@@ -201,7 +202,6 @@ static int make_film(film *f, const char *chromium, const char *results, int qui
         return EXIT_FAILED;
     }
     snprintf(f->page, sizeof f->page, "%s/page.html", f->folder);
-    child_watch_interrupts();
     int good = view_write("video", results, f->page) == EXIT_DONE;
     if (good) {
         good = (devtools_open(&f->browser, chromium, f->folder, f->page) ||
