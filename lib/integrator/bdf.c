@@ -62,7 +62,7 @@ static bdf begin(se3di_integration *integration)
              .count = count,
              .header = assembly->model->history,
              .base = integration->work,
-             .tolerance = fmax(0.1 * integration->settings.tolerance, 1e-11)};
+             .tolerance = fmax(0.1 * integration->settings.tolerance, 1e-10)};
     m.D = m.header + BDF_HEADER;
     m.lambda = m.D + DIFFERENCES * count;
     m.predicted = m.base + count;
@@ -254,7 +254,7 @@ static se3d_status iterate(bdf *m, double t, int refactor, double *size)
     return isfinite(*size) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
-static se3d_status solve_step(bdf *m, double t)
+static se3d_status iterate_to_convergence(bdf *m, double t)
 {
     double before = HUGE_VAL, size = HUGE_VAL;
     int refactor = 1;
@@ -266,7 +266,8 @@ static se3d_status solve_step(bdf *m, double t)
     update_state(m);
     for (int k = 0; k < 10; ++k) {
         SE3DI_TRY(iterate(m, t, refactor, &size));
-        if (size <= 1e-3 || (k > 0 && size * size / before <= 1e-4)) {
+        if (size <= 1e-3 || (k > 0 && size * size / before <= 1e-4) ||
+            (k > 1 && size > 0.8 * before && size * m->tolerance <= SE3DI_STATE_NOISE)) {
             return SE3D_OK;
         }
         if (k > 1 && size > 2.0 * before) {
@@ -281,6 +282,15 @@ static se3d_status solve_step(bdf *m, double t)
                                  "t = %g s: Newton did not converge in a step of %g s; try a "
                                  "smaller step or tolerance",
                                  t, m->header[BDF_STEP]);
+}
+
+static se3d_status solve_step(bdf *m, double t)
+{
+    se3di_kkt *kkt = m->integration->newton.kkt;
+    const se3di_kkt_settings before = se3di_state_regularise(kkt);
+    se3d_status status = iterate_to_convergence(m, t);
+    se3di_kkt_set_settings(kkt, &before);
+    return status;
 }
 
 /* Project, and take y_1 into the differences. */

@@ -21,7 +21,7 @@
 #define STAGES SE3DI_RADAU_STAGES
 
 /* The history: this header, the accepted state, then of the last step: its start, the increments of
- * the stages, d = h f_0 - h u'(0), the multipliers of the stages. */
+ * the stages, d = h f_0 - h u'(0). */
 enum {
     RADAU_TIME,     /* of the accepted state */
     RADAU_NEXT,     /* the next step */
@@ -35,18 +35,12 @@ enum {
 };
 
 typedef struct history {
-    double *header, *y1, *start, *Z, *d, *lambda;
+    double *header, *y1, *start, *Z, *d;
 } history;
-
-static size_t multiplier_count(const se3di_assembly *assembly)
-{
-    return (size_t)assembly->row_count + assembly->body_count;
-}
 
 static size_t history_count(const se3di_assembly *assembly)
 {
-    return RADAU_HEADER + (3 + STAGES) * se3di_state_count(assembly) +
-           STAGES * multiplier_count(assembly);
+    return RADAU_HEADER + (3 + STAGES) * se3di_state_count(assembly);
 }
 
 static history get_history(const se3di_assembly *assembly)
@@ -57,7 +51,6 @@ static history get_history(const se3di_assembly *assembly)
     past.start = past.y1 + count;
     past.Z = past.start + count;
     past.d = past.Z + STAGES * count;
-    past.lambda = past.d + count;
     return past;
 }
 
@@ -113,11 +106,10 @@ static void interpolate(const history *past, size_t count, double s, double *y)
     }
 }
 
-/* Velocities and multipliers of the stages: by the polynomials of the last step, or constant
- * accelerations. */
+/* Velocities of the stages by the polynomial of the last step, or constant accelerations;
+ * multipliers those of the start: extrapolated, they would grow in dependent directions. */
 static void predict(se3di_radau *m, const history *past)
 {
-    const se3di_assembly *assembly = m->assembly;
     const double last = past->header[RADAU_LAST];
     const size_t count = m->count;
     const double *c = se3di_radau_c;
@@ -132,17 +124,9 @@ static void predict(se3di_radau *m, const history *past)
                                     (l[2] - 1.0) * past->Z[2 * count + k]
                               : m->y0[k] + c[i] * m->h * m->f0[k];
         }
-        for (int j = 0; j < STAGES; ++j) { /* without the node at 0 */
-            l[j] *= c[j] / s;
-        }
-        const double *known = past->lambda;
-        for (size_t k = 0; k < m->multipliers; ++k) {
-            lambda[k] = l[0] * known[k] + l[1] * known[m->multipliers + k] +
-                        l[2] * known[2 * m->multipliers + k];
-        }
-        if (last == 0.0 || m->redundant) { /* extrapolation would grow in dependent directions */
-            memset(lambda, 0, m->multipliers * sizeof *lambda);
-            memcpy(lambda, m->lambda0, assembly->row_count * sizeof *lambda);
+        memset(lambda, 0, m->multipliers * sizeof *lambda);
+        if (m->assembly->row_count > 0) {
+            memcpy(lambda, m->lambda0, m->assembly->row_count * sizeof *lambda);
         }
     }
 }
@@ -202,7 +186,6 @@ static se3d_status accept(se3di_radau *m, const history *past)
     for (size_t k = 0; k < STAGES * m->count; ++k) {
         past->Z[k] = m->Y[k] - m->y0[k % m->count];
     }
-    memcpy(past->lambda, m->lambda, STAGES * m->multipliers * sizeof *m->lambda);
     se3di_state_get(m->assembly, past->y1);
     memcpy(past->y1 + bodies, end + bodies, SE3DI_STATE_WORK * sizeof *end);
     past->header[RADAU_TIME] = m->t + m->h;

@@ -39,7 +39,7 @@ typedef struct se3di_radau {
     double *C1, *p1; /* constraints of the Newton matrix, and the orientations it belongs to */
     double *qddot, *none, *sum, *sum_q;
     double size, before; /* of the last two corrections, relative to the tolerance */
-    int iterations, iterations_max, redundant;
+    int iterations, iterations_max;
 } se3di_radau;
 
 size_t se3di_radau_work_count(const se3di_assembly *assembly);

@@ -18,12 +18,7 @@
 #include <math.h>
 #include <string.h>
 
-#define STAGES         SE3DI_RADAU_STAGES
-#define REGULARISATION 1e-8 /* of dependent rows */
-#define NOISE                                                                                      \
-    1e-8 /* a correction of this size that does not fall is rounding: it is amplified near         \
-            singular positions */
-
+#define STAGES SE3DI_RADAU_STAGES
 const double se3di_radau_c[3] = {0.15505102572168219, 0.64494897427831781, 1.0};
 const double se3di_radau_a[3][3] = {
     {0.19681547722366042586, -0.0655354258501983881, 0.02377097434822015242},
@@ -135,12 +130,11 @@ se3d_status se3di_radau_prepare(se3di_radau *m)
 {
     se3di_equations *equations = m->equations;
     se3di_assembly *assembly = m->assembly;
-    se3di_kkt_settings settings = se3di_state_begin(equations, REGULARISATION, 1e-15);
-    se3d_status status = se3di_state_evaluate(equations, m->t);
+    se3di_kkt_settings settings = se3di_state_begin(equations, 1e-8, 1e-15);
+    const se3d_status status = se3di_state_evaluate(equations, m->t);
     se3di_state_end(equations, &settings);
     SE3DI_TRY(status);
     copy(m->lambda0, equations->l, assembly->row_count);
-    m->redundant = status == SE3D_INFO_REDUNDANT;
     SE3DI_TRY(se3di_state_derivative(assembly, m->t, equations->x, equations->l, m->f0));
     return SE3D_OK;
 }
@@ -496,7 +490,7 @@ static void set_orientations(se3di_radau *m)
 static int has_converged(const se3di_radau *m, double rate)
 {
     if (rate > 0.8) {
-        return m->size <= 0.1 || (m->iterations > 1 && m->size * m->tolerance <= NOISE);
+        return m->size <= 0.1 || (m->iterations > 1 && m->size * m->tolerance <= SE3DI_STATE_NOISE);
     }
     return m->size * rate / (1.0 - rate) <= 1.0;
 }
@@ -524,17 +518,10 @@ static se3d_status iterate_to_convergence(se3di_radau *m)
                            m->t, m->h);
 }
 
-/* Rounding and curvature contradict themselves in dependent rows: a smaller regularisation, which
- * tells nearly dependent rows from dependent ones, would only amplify it. Near singular positions
- * see se3di_state_begin. */
 se3d_status se3di_radau_solve(se3di_radau *m)
 {
     se3di_kkt *kkt = m->integration->newton.kkt;
-    const se3di_kkt_settings before = se3di_kkt_get_settings(kkt);
-    se3di_kkt_settings settings = before;
-    settings.eps = settings.eps_min = REGULARISATION;
-    settings.max_refinements = 2;
-    se3di_kkt_set_settings(kkt, &settings);
+    const se3di_kkt_settings before = se3di_state_regularise(kkt);
     se3d_status status = iterate_to_convergence(m);
     se3di_kkt_set_settings(kkt, &before);
     return status;

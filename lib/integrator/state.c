@@ -76,7 +76,7 @@ se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, dou
     se3di_kkt_settings settings = before;
     settings.eps = settings.eps_min = eps;
     settings.tolerance = fmax(settings.tolerance, accuracy);
-    settings.max_refinements = 2;
+
     settings.always_check = false;
     settings.any_multipliers = !has_power(&equations->assembly);
     se3di_kkt_set_settings(equations->kkt, &settings);
@@ -92,6 +92,17 @@ void se3di_state_begin_step(se3di_equations *equations, double redundant)
     settings.redundant_rows = (int32_t)redundant;
     se3di_kkt_set_settings(equations->kkt, &settings);
     se3di_kkt_hold(equations->kkt, equations->assembly.formulation->block == 6);
+}
+
+se3di_kkt_settings se3di_state_regularise(se3di_kkt *kkt)
+{
+    const se3di_kkt_settings before = se3di_kkt_get_settings(kkt);
+    se3di_kkt_settings settings = before;
+    settings.eps = settings.eps_min = SE3DI_STATE_REGULARISATION;
+    settings.max_refinements = 4;
+
+    se3di_kkt_set_settings(kkt, &settings);
+    return before;
 }
 
 void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *settings)
