@@ -165,6 +165,9 @@ SE3D_API se3d_status se3d_particles_get_contacts(const se3d_particles *particles
                                                  se3d_particles_contact *contacts);
 
 /* Advance by `steps` steps of velocity Verlet; bodies are where the system has them.
+ * Where an overlap is beyond the limit, the step that ends with it is complete and the last one;
+ * the run may go on from there, with a smaller step or a larger limit. A state that is not finite
+ * cannot be repaired: restore a clone.
  * @return OK, STEP_SIZE (an overlap beyond the limit or a step beyond stability: the message names
  * the particle and the time), NOT_FINITE, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_particles_step(se3d_particles *particles, size_t steps);

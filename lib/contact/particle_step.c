@@ -423,7 +423,11 @@ se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps
         pass(set, k == 0 ? 1 : 2, h, h);
         set->time += h;
         ++set->steps;
-        SE3DI_TRY(se3di_particles_forces(set, h));
+        se3d_status status = se3di_particles_forces(set, h);
+        if (status == SE3D_ERR_STEP_SIZE) { /* the forces are complete: so is the step */
+            pass(set, 1, h, 0.0);
+        }
+        SE3DI_TRY(status);
     }
     if (steps > 0) {
         pass(set, 1, h, 0.0);

@@ -474,6 +474,47 @@ static void too_much_overlap_names_particle_and_time(void)
     bed_destroy(&b);
 }
 
+/* An overlap beyond the limit is told when the step that ends with it is complete: the state is
+ * the one of a run that allows it, and goes on like that one. */
+static void run_goes_on_after_too_much_overlap(void)
+{
+    se3d_material_def material = stuff();
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    const double r[6] = {0.0, 0.0, 0.0, 0.0101, 0.001, 0.0}, radius[2] = {0.005, 0.005};
+    const double v[6] = {3.0, 0.0, 0.0, -3.0, 0.0, 0.0};
+    bed strict, free;
+    material.stiffness = 1e5;
+    bed_init(&strict, NULL, none, &material);
+    bed_init(&free, NULL, none, &material);
+    contact.overlap_limit = 0.05;
+    CHECK(se3d_system_set_contact(strict.system, &contact) == SE3D_OK);
+    contact.overlap_limit = 1.0;
+    CHECK(se3d_system_set_contact(free.system, &contact) == SE3D_OK);
+    for (int k = 0; k < 2; ++k) {
+        bed *b = k ? &free : &strict;
+        CHECK(se3d_particles_add(b->particles, b->material, 2, r, radius, v, NULL, NULL) ==
+              SE3D_OK);
+    }
+    CHECK(se3d_particles_step(strict.particles, 100000) == SE3D_ERR_STEP_SIZE);
+    se3d_particles_stats stats;
+    CHECK(se3d_particles_get_stats(strict.particles, &stats) == SE3D_OK);
+    CHECK(stats.steps > 5 && stats.steps < 1000);
+    CHECK(se3d_particles_step(free.particles, (size_t)stats.steps) == SE3D_OK);
+    CHECK(se3d_particles_hash(strict.particles) == se3d_particles_hash(free.particles));
+    for (int k = 0; k < 2; ++k) {
+        bed *b = k ? &free : &strict;
+        double step;
+        CHECK(se3d_system_set_contact(b->system, &contact) == SE3D_OK);
+        CHECK(se3d_particles_get_step(b->particles, &step) == SE3D_OK);
+        CHECK(se3d_particles_set_step(b->particles, 0.5 * step) == SE3D_OK);
+        CHECK(se3d_particles_step(b->particles, 400) == SE3D_OK);
+        CHECK(se3d_particles_count_contacts(b->particles) == 0);
+    }
+    CHECK(se3d_particles_hash(strict.particles) == se3d_particles_hash(free.particles));
+    bed_destroy(&strict);
+    bed_destroy(&free);
+}
+
 static void packing_that_cannot_fit_changes_nothing(void)
 {
     se3d_material_def material = stuff();
@@ -502,6 +543,7 @@ int main(void)
     RUN(particles_that_leave_are_counted);
     RUN(pair_overrides_hold);
     RUN(too_much_overlap_names_particle_and_time);
+    RUN(run_goes_on_after_too_much_overlap);
     RUN(packing_that_cannot_fit_changes_nothing);
     return check_finish();
 }
