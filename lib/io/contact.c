@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/reader.h"
+#include "io/mesh.h"
 
 bool se3di_read_key_count(se3di_reader *reader, const se3di_node *map, const char *key,
                           double largest, double *value)
@@ -148,8 +148,8 @@ static bool create_shape(se3di_reader *reader, const se3di_node *node,
                          const se3d_model_shape *shape)
 {
     static se3d_status (*const create[])(se3d_system *, const se3d_shape_def *, se3d_shape *) = {
-        se3d_shape_create_sphere, se3d_shape_create_box, se3d_shape_create_capsule,
-        se3d_shape_create_cylinder, se3d_shape_create_plane};
+        se3d_shape_create_sphere,   se3d_shape_create_box,   se3d_shape_create_capsule,
+        se3d_shape_create_cylinder, se3d_shape_create_plane, se3d_shape_create_mesh};
     se3d_shape_def def = se3d_shape_def_default();
     se3d_shape made;
     int32_t fixed = 0;
@@ -162,6 +162,16 @@ static bool create_shape(se3di_reader *reader, const se3di_node *node,
     memcpy(def.position, shape->position, sizeof def.position);
     memcpy(def.orientation, shape->orientation, sizeof def.orientation);
     memcpy(def.size, shape->size, sizeof def.size);
+    if (shape->type == SE3D_SHAPE_MESH) {
+        se3di_mesh mesh;
+        if (!se3di_read_mesh(reader, node, shape->file, shape->scale, &mesh)) {
+            return false;
+        }
+        def.vertices = mesh.points;
+        def.vertex_count = mesh.point_count;
+        def.triangles = mesh.triangles;
+        def.triangle_count = mesh.triangle_count;
+    }
     se3d_status status = create[shape->type](reader->model->system, &def, &made);
     if (status >= 0) {
         status = se3d_body_get_fixed(reader->model->system, shape->body, &fixed);

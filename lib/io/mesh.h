@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Meshes in files: STL, binary and ASCII, and OBJ. */
+#ifndef SE3D_IO_MESH_H
+#define SE3D_IO_MESH_H
+
+#include "io/reader.h"
+
+typedef struct se3di_mesh {
+    double *points; /* [3 * point_count], scaled */
+    size_t point_count, point_capacity;
+    uint32_t *triangles; /* [3 * triangle_count] */
+    size_t triangle_count, triangle_capacity;
+} se3di_mesh;
+
+/* Read the file that `file` of a shape names, relative to the model file; its memory is the
+ * model's. Fails with the place in the model file and in the mesh. */
+bool se3di_read_mesh(se3di_reader *reader, const se3di_node *shape, const char *file, double scale,
+                     se3di_mesh *mesh);
+
+#endif

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Meshes of model files: STL in both forms and OBJ give the same surface; broken files are refused
+ * with the place. */
+#include "check.h"
+#include "se3d/io.h"
+#include "se3d/se3d.h"
+
+#define FOLDER "/tmp/"
+#define MODEL(file)                                                                                \
+    "se3d: 1\ncontact: {}\nmaterials: [{name: m, density: 1, stiffness: 1}]\n"                     \
+    "bodies: [{name: b, fixed: true, shapes: [{type: mesh, name: s, material: m, scale: 0.5, "     \
+    "file: " file "}]}]\n"
+
+static void write_file(const char *name, const void *bytes, size_t size)
+{
+    char path[200];
+    snprintf(path, sizeof path, FOLDER "%s", name);
+    FILE *file = fopen(path, "wb");
+    CHECK(file && fwrite(bytes, 1, size, file) == size);
+    if (file) {
+        fclose(file);
+    }
+}
+
+static void remove_file(const char *name)
+{
+    char path[200];
+    snprintf(path, sizeof path, FOLDER "%s", name);
+    remove(path);
+}
+
+static se3d_model *read_model(const char *text, se3d_model_error *error)
+{
+    se3d_model *model = NULL;
+    se3d_status status =
+        se3d_model_read_text(text, strlen(text), FOLDER "se3d_test_mesh.yaml", NULL, &model, error);
+    CHECK((status == SE3D_OK) == (model != NULL));
+    return model;
+}
+
+static const char ascii[] =
+    "solid part\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 2\n   vertex 2.0e0 0 2\n"
+    "   vertex 0 20E-1 +2.0\n  endloop\n endfacet\n facet normal 0 0 1\r\n  outer loop\n"
+    "   vertex 2 0 2\n   vertex 2 2 2\n   vertex 0 2 2\n  endloop\n endfacet\nendsolid part\n";
+static const char obj[] = "# a square\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2\nvn 0 0 1\nvt 0 0\n"
+                          "f 1//1 2/1/1 -2 4/1\n";
+
+static size_t binary(unsigned char *bytes, float x)
+{
+    const float points[18] = {0, 0, 2, 2, 0, 2, 0, 2, 2, 2, 0, 2, x, 2, 2, 0, 2, 2};
+    memset(bytes, 0, 184);
+    bytes[80] = 2;
+    for (int k = 0; k < 2; ++k) {
+        memcpy(bytes + 84 + 50 * k + 12, points + 9 * k, 36);
+    }
+    return 184;
+}
+
+static void stl_and_obj_give_the_same_surface(void)
+{
+    unsigned char bytes[200];
+    const char *const texts[3] = {MODEL("se3d_test_mesh.stl"), MODEL("se3d_test_mesh_b.STL"),
+                                  MODEL("se3d_test_mesh.obj")};
+    write_file("se3d_test_mesh.stl", ascii, sizeof ascii - 1);
+    write_file("se3d_test_mesh_b.STL", bytes, binary(bytes, 2.0f));
+    write_file("se3d_test_mesh.obj", obj, sizeof obj - 1);
+    for (int k = 0; k < 3; ++k) {
+        se3d_model_error error = {0, 0, ""};
+        se3d_model *model = read_model(texts[k], &error);
+        if (!model) {
+            fprintf(stderr, "%s\n", error.message);
+            CHECK(model != NULL);
+            continue;
+        }
+        se3d_system *system = se3d_model_get_system(model);
+        se3d_shape shape;
+        const double above[3] = {0.3, 0.8, 1.25}, beside[3] = {1.5, 1.0, 1.0};
+        double point[3], normal[3], distance;
+        CHECK(se3d_shape_find(system, "s", &shape) == SE3D_OK);
+        CHECK(se3d_shape_get_nearest(system, shape, above, point, normal, &distance) == SE3D_OK);
+        CHECK_NEAR(distance, 0.25, 1e-15);
+        CHECK_NEAR(normal[2], 1.0, 1e-15);
+        CHECK(se3d_shape_get_nearest(system, shape, beside, point, normal, &distance) == SE3D_OK);
+        CHECK_NEAR(distance, 0.5, 1e-15);
+        CHECK_NEAR(point[0], 1.0, 1e-15);
+        se3d_model_destroy(model);
+    }
+    remove_file("se3d_test_mesh.stl");
+    remove_file("se3d_test_mesh_b.STL");
+    remove_file("se3d_test_mesh.obj");
+}
+
+static void refuse(const char *name, const char *text, const void *bytes, size_t size,
+                   const char *part)
+{
+    se3d_model_error error = {0, 0, ""};
+    if (bytes) {
+        write_file(name, bytes, size);
+    }
+    se3d_model *model = read_model(text, &error);
+    CHECK(!model);
+    CHECK(error.line == 4);
+    CHECK_CONTAINS(error.message, "shapes[0]");
+    CHECK_CONTAINS(error.message, part);
+    se3d_model_destroy(model);
+    remove_file(name);
+}
+
+static void broken_files_are_refused_with_their_place(void)
+{
+    static const struct {
+        const char *text, *part;
+    } objects[] = {{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "line 4: a face must name"},
+                   {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n", "line 4"},
+                   {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", "line 4"},
+                   {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", "line 4"},
+                   {"v 0 0 0\nv 1 0\nv 0 1 0\n", "line 2: must have three numbers"},
+                   {"v 0 0 nan\n", "line 1: must have three numbers"},
+                   {"v 0 0 1e999\n", "line 1: a coordinate is not a finite"},
+                   {"v 0 0 0\nf 1 1\n", "line 2: a face must have three"},
+                   {"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "area"},
+                   {"# nothing\n", "no triangles"}};
+    const char *model = MODEL("se3d_test_bad.obj");
+    for (size_t k = 0; k < sizeof objects / sizeof *objects; ++k) {
+        refuse("se3d_test_bad.obj", model, objects[k].text, strlen(objects[k].text),
+               objects[k].part);
+    }
+    refuse("se3d_test_bad.obj", model, NULL, 0, "cannot be opened");
+    refuse("se3d_test_bad.obj", model, "", 0, "is empty");
+    model = MODEL("se3d_test_bad.stl");
+    refuse("se3d_test_bad.stl", model, ascii, 100, "ends in a facet");
+    refuse("se3d_test_bad.stl", model, "solid\nvertex 1 2 3\nendloop\n", 27, "line 3: a facet");
+    refuse("se3d_test_bad.stl", model, "something", 9, "neither");
+    unsigned char bytes[200];
+    size_t size = binary(bytes, 2.0f);
+    refuse("se3d_test_bad.stl", model, bytes, size - 1, "neither"); /* truncated */
+    memset(bytes + 80, 0xff, 4);
+    refuse("se3d_test_bad.stl", model, bytes, size, "neither"); /* a huge count */
+    size = binary(bytes, HUGE_VALF);
+    refuse("se3d_test_bad.stl", model, bytes, size, "line 2: a coordinate is not a finite");
+    refuse("se3d_test_bad.txt", MODEL("se3d_test_bad.txt"), "v", 1, "must end in .stl or .obj");
+}
+
+int main(void)
+{
+    RUN(stl_and_obj_give_the_same_surface);
+    RUN(broken_files_are_refused_with_their_place);
+    return check_finish();
+}
