@@ -4,6 +4,7 @@
 
 #include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
+#include "analysis/stiffness.h"
 #include "assembly/user.h"
 #include "contact/loads.h"
 #include "primitive/turn_counter.h"
@@ -63,10 +64,13 @@ static se3d_status allocate_work(se3di_run *run)
 }
 
 /* auto: particles move by verlet only; friction sticks by a spring that only an implicit method can
- * follow. */
+ * follow; strong dampers hold explicit methods to small steps. */
 static void choose_method(se3di_run *run)
 {
-    int32_t method = SE3D_METHOD_DOP853;
+    int32_t method = run->automatic && run->analysis == SE3D_ANALYSIS_DYNAMICS &&
+                             se3di_stiffness_is_stiff(run->model)
+                         ? SE3D_METHOD_RADAU
+                         : SE3D_METHOD_DOP853;
     for (size_t k = 0; run->automatic && k < run->model->force_slots.count; ++k) {
         if (run->model->forces[k].type == SE3DI_FORCE_FRICTION) {
             method = SE3D_METHOD_GENERALIZED_ALPHA;

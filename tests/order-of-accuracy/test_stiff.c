@@ -6,6 +6,7 @@
 #include "se3d/se3d.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct outcome {
     double angle;
@@ -45,6 +46,8 @@ static void build(se3d_system *system, double stiffness, se3d_body *bar, se3d_co
     CHECK(se3d_force_create_tsda(system, &spring, &force) == SE3D_OK);
 }
 
+static const char *picked = ""; /* the method of the last run */
+
 static outcome run(int32_t method, int32_t formulation, double stiffness, double tolerance)
 {
     outcome out = {0};
@@ -69,6 +72,7 @@ static outcome run(int32_t method, int32_t formulation, double stiffness, double
           SE3D_OK);
     CHECK(se3d_solver_get_stats(solver, &stats) == SE3D_OK);
     out.steps = stats.steps;
+    CHECK(se3d_solver_get_method(solver, &picked) == SE3D_OK);
     se3d_solver_destroy(solver);
     se3d_system_destroy(system);
     return out;
@@ -109,8 +113,22 @@ static void generalized_alpha_takes_no_more_steps_where_stiff(void)
     CHECK_NEAR(stiff.angle, -0.10868414051, 1e-8);
 }
 
+static void auto_looks_at_stiffness_and_says_what_it_picked(void)
+{
+    for (int32_t formulation = 0; formulation < 2; ++formulation) {
+        outcome soft = run(SE3D_METHOD_AUTO, formulation, 1.0, 1e-6);
+        CHECK(strcmp(picked, "dop853") == 0);
+        outcome stiff = run(SE3D_METHOD_AUTO, formulation, 1e6, 1e-6);
+        CHECK(strcmp(picked, "radau") == 0);
+        CHECK_NEAR(soft.angle, -0.28131039, 2e-6);
+        CHECK_NEAR(stiff.angle, -0.10868414051, 2e-6);
+        CHECK(stiff.steps <= 2 * soft.steps);
+    }
+}
+
 int main(void)
 {
+    RUN(auto_looks_at_stiffness_and_says_what_it_picked);
     RUN(radau_takes_no_more_steps_where_stiff);
     RUN(bdf_takes_no_more_steps_where_stiff);
     RUN(generalized_alpha_takes_no_more_steps_where_stiff);
