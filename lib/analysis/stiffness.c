@@ -8,7 +8,8 @@
 
 #include <math.h>
 
-#define STIFF_RATIO 1e3 /* of the rates; dop853 then takes some hundred steps for a motion */
+#define STIFF_RATIO                                                                                \
+    2e4 /* of the rates: bodies that are held by joints decay more slowly than free ones */
 
 /* tr(M^-1 D) of one body of an element, D 6 x 6 of 12 x 12 (minus the derivative of its wrench). */
 static double body_rate(const se3di_body *body, const double *D)
