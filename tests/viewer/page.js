@@ -10,7 +10,9 @@ const profile = fs.mkdtempSync(path.join(os.tmpdir(), "se3d-"));
 const chromium = spawn(process.env.SE3D_CHROMIUM || "chromium", ["--headless", "--no-sandbox", "--disable-gpu",
   "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
   "--enable-unsafe-swiftshader", "--window-size=1280,720", "--hide-scrollbars", "--user-data-dir=" + profile,
-  "--remote-debugging-pipe", "about:blank"], { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
+  "--remote-debugging-pipe", "about:blank"],
+  { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"], env: { ...process.env, TMPDIR: profile }, detached: true });
+const end = () => { try { process.kill(-chromium.pid, "SIGKILL"); } catch (e) { /* it has ended */ } }; // with all it started
 const waiting = new Map(), problems = [];
 let number = 0, rest = "", checks = 0, failures = 0;
 chromium.stdio[4].on("data", (chunk) => {
@@ -201,14 +203,14 @@ const checkGrains = async ({ rows }) => {
   }
   check(problems.length === 0, "no error on the console: " + problems.join("; "));
 })().catch((e) => { console.error(e); ++failures; }).finally(() => {
-  chromium.kill();
-  chromium.on("exit", () => {
-    try { // its children may still write there for a moment
-      fs.rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 200 });
-    } catch (e) {
-      console.log(`left behind: ${profile} (${e.code})`);
+  chromium.on("exit", async () => {
+    end();
+    for (let k = 0; k < 100 && fs.existsSync(profile); ++k) { // its children may still write there for a moment
+      try { fs.rmSync(profile, { recursive: true, force: true }); } catch (e) { await wait(100); }
     }
     console.log(`${checks} checks, ${failures} failed`); process.exit(failures ? 1 : 0);
   });
+  call("Browser.close");
+  setTimeout(end, 5000).unref();
 });
-setTimeout(() => { console.error("no answer from Chromium"); chromium.kill(); process.exit(1); }, 400000).unref();
+setTimeout(() => { console.error("no answer from Chromium"); end(); fs.rmSync(profile, { recursive: true, force: true }); process.exit(1); }, 400000).unref();

@@ -133,9 +133,13 @@ static int attach(devtools *d, const char *page)
 int devtools_open(devtools *d, const char *program, const char *folder, const char *page)
 {
     char profile[4200];
+    char temporary[4200];
+    snprintf(temporary, sizeof temporary, "TMPDIR=%.4000s", folder);
     snprintf(profile, sizeof profile, "--user-data-dir=%.4000s/profile", folder);
     /* The page is ours and opens nothing: it needs no sandbox, which containers often refuse. */
-    const char *const words[] = {program,
+    const char *const words[] = {"env",
+                                 temporary, /* what it leaves goes with the folder */
+                                 program,
                                  "--headless",
                                  "--no-sandbox",
                                  "--disable-gpu",
