@@ -174,6 +174,24 @@ SE3D_API se3d_status se3d_shape_get_wrench(const se3d_system *system, se3d_shape
 /* The same, summed over all shapes of a body. Reader. @since 0.1 */
 SE3D_API se3d_status se3d_body_get_contact_wrench(const se3d_system *system, se3d_body body,
                                                   double force[3], double torque[3]);
+/* A point where shapes of two bodies touch. @since 0.1 */
+typedef struct se3d_contact {
+    se3d_shape shape_i, shape_j;
+    double point[3];  /* ground frame [m] */
+    double normal[3]; /* from i to j, ground frame */
+    double overlap;   /* [m] > 0 */
+    double force[3];  /* on j at the point, ground frame [N] */
+} se3d_contact;
+
+/* Count the points of contact between bodies at the last accepted state, and list them (`count`
+ * must be that number). Those of particles: se3d_particles_get_contacts.
+ * @return OK, NULL, INVALID_ARGUMENT. Reader. @since 0.1 */
+SE3D_API size_t se3d_system_count_contacts(const se3d_system *system);
+SE3D_API se3d_status se3d_system_get_contacts(const se3d_system *system, size_t count,
+                                              se3d_contact *contacts);
+/* Get the largest force at one point of contact, of bodies and of particles [N]. Reader.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_system_get_contact_force_max(const se3d_system *system, double *force);
 /* Get the point of a shape's surface nearest to `position`, the outward normal there, and the
  * distance [m], negative inside; ground frame. Reader. @since 0.1 */
 SE3D_API se3d_status se3d_shape_get_nearest(const se3d_system *system, se3d_shape shape,

@@ -2,6 +2,8 @@
 /* Contacts as they are: each is evaluated by itself, on copies, with springs that stay. */
 #include "contact/particle_set.h"
 
+#include "math/vec3.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -126,6 +128,7 @@ static int wall_contact(const se3di_particles *set, couple *c, const se3di_given
 typedef struct contact_list {
     se3d_particles_contact *contacts;
     size_t capacity, count;
+    double force_max;
 } contact_list;
 
 static void append(contact_list *list, int touches, const se3d_particles_contact *contact)
@@ -133,6 +136,7 @@ static void append(contact_list *list, int touches, const se3d_particles_contact
     if (touches && list->contacts && list->count < list->capacity) {
         list->contacts[list->count] = *contact;
     }
+    list->force_max = touches ? fmax(list->force_max, se3di_norm(contact->force)) : list->force_max;
     list->count += (size_t)touches;
 }
 
@@ -173,13 +177,17 @@ static void list_meshes(const se3di_particles *set, const se3di_slab *slab, cont
 }
 
 se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity,
-                                     se3d_particles_contact *contacts, size_t *count)
+                                     se3d_particles_contact *contacts, size_t *count,
+                                     double *force_max)
 {
-    contact_list list = {contacts, capacity, 0};
+    contact_list list = {contacts, capacity, 0, 0.0};
     for (uint32_t s = 0; set && set->list_valid && s < set->slab_count; ++s) {
         list_blocks(set, &set->slabs[s], &list);
         list_meshes(set, &set->slabs[s], &list);
     }
     *count = list.count;
+    if (force_max) {
+        *force_max = fmax(*force_max, list.force_max);
+    }
     return SE3D_OK;
 }

@@ -333,7 +333,8 @@ se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps
 /* particle_contacts.c: contacts of the present lists as they are now; nothing changes. Counts all,
  * writes the first `capacity`. */
 se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity,
-                                     se3d_particles_contact *contacts, size_t *count);
+                                     se3d_particles_contact *contacts, size_t *count,
+                                     double *force_max);
 uint64_t se3di_particles_hash(const se3di_particles *set);
 
 #endif

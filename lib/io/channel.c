@@ -23,6 +23,7 @@ static const quantity_name body_names[] = {
     {"angular_velocity", SE3DI_BODY_ANGULAR_VELOCITY},
     {"acceleration", SE3DI_BODY_ACCELERATION},
     {"angular_acceleration", SE3DI_BODY_ANGULAR_ACCELERATION},
+    {"contact_force", SE3DI_BODY_CONTACT_FORCE},
     {NULL, SE3DI_STEPS}};
 static const quantity_name marker_names[] = {{"position", SE3DI_MARKER_POSITION},
                                              {"velocity", SE3DI_MARKER_VELOCITY},
@@ -67,8 +68,10 @@ static const quantity_name system_names[] = {
     {"iterations", SE3DI_ITERATIONS},
     {NULL, SE3DI_STEPS}};
 
-static const quantity_name particle_names[] = {{"contacts.count", SE3DI_CONTACTS_COUNT},
-                                               {"particles.count", SE3DI_PARTICLES_COUNT},
+static const quantity_name contact_names[] = {{"contacts.count", SE3DI_CONTACTS_COUNT},
+                                              {"contacts.force_max", SE3DI_CONTACTS_FORCE_MAX},
+                                              {NULL, SE3DI_STEPS}};
+static const quantity_name particle_names[] = {{"particles.count", SE3DI_PARTICLES_COUNT},
                                                {"particles.lost", SE3DI_PARTICLES_LOST},
                                                {"particles.energy", SE3DI_PARTICLES_ENERGY},
                                                {NULL, SE3DI_STEPS}};
@@ -208,6 +211,19 @@ static void explain_unknown(const se3d_model *model, const char *name, char *pro
              meant ? meant : "", meant ? "`?" : "");
 }
 
+/* Of bodies, and of particles where there are any. */
+static bool find_contacts(const se3d_model *model, const char *name, se3di_channel *channel)
+{
+    for (const quantity_name *q = contact_names; q->name; ++q) {
+        if (strcmp(q->name, name) == 0) {
+            channel->quantity = q->quantity;
+            channel->particles = model->grains ? model->grains->set : NULL;
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool find_particles(const se3d_model *model, const char *name, se3di_channel *channel)
 {
     for (const quantity_name *q = particle_names; model->grains && q->name; ++q) {
@@ -237,9 +253,8 @@ static bool explain_system(const char *head, const char *name, char *problem, si
     offer o = {.count = 0};
     if (strcmp(head, "contacts") == 0 || strcmp(head, "particles") == 0) {
         snprintf(problem, size,
-                 "`%.60s.%.60s` is unknown, a model with `particles` has "
-                 "contacts.count, "
-                 "particles.count, particles.lost, particles.energy",
+                 "`%.60s.%.60s` is unknown, there are contacts.count, contacts.force_max and, with "
+                 "`particles`, particles.count, particles.lost, particles.energy",
                  head, name);
         return true;
     }
@@ -300,7 +315,8 @@ bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel
     size_t index = 0;
     memset(channel, 0, sizeof *channel);
     channel->name = name;
-    if (find_system(name, channel) || find_particles(model, name, channel)) {
+    if (find_system(name, channel) || find_contacts(model, name, channel) ||
+        find_particles(model, name, channel)) {
         return true;
     }
     snprintf(head, sizeof head, "%s", name);
@@ -360,11 +376,19 @@ static void list_one(channel_list *c, se3di_channel channel, const char *const p
     c->list[c->count++] = channel;
 }
 
+static bool has_contacts(const se3d_model *model)
+{
+    return se3di_node_get(model->root, "contact") || model->grains;
+}
+
 static void list_bodies(channel_list *c)
 {
     const se3d_model *model = c->model;
     for (size_t k = 1; k < model->body_count && k <= DEFAULT_ELEMENTS_MAX && !c->failed; ++k) {
         for (const quantity_name *q = body_names; q->name && !c->failed; ++q) {
+            if (q->quantity == SE3DI_BODY_CONTACT_FORCE && !has_contacts(model)) {
+                continue;
+            }
             const char *const parts[3] = {model->bodies[k].name, q->name, NULL};
             const se3di_channel channel = {.quantity = q->quantity, .body = model->bodies[k].body};
             list_one(c, channel, parts);
@@ -414,6 +438,12 @@ se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count)
     for (const quantity_name *q = system_names; q->name && !c.failed; ++q) {
         const char *const parts[3] = {q->name, NULL, NULL};
         const se3di_channel channel = {.quantity = q->quantity};
+        list_one(&c, channel, parts);
+    }
+    for (const quantity_name *q = contact_names; has_contacts(model) && q->name && !c.failed; ++q) {
+        const char *const parts[3] = {q->name, NULL, NULL};
+        const se3di_channel channel = {.quantity = q->quantity,
+                                       .particles = model->grains ? model->grains->set : NULL};
         list_one(&c, channel, parts);
     }
     for (const quantity_name *q = particle_names; model->grains && q->name && !c.failed; ++q) {

@@ -6,6 +6,7 @@
 
 static se3d_status eval_body(const se3di_channel *c, const se3d_system *system, double value[4])
 {
+    double torque[3];
     switch (c->quantity) {
     case SE3DI_BODY_POSITION:
         return se3d_body_get_position(system, c->body, value);
@@ -19,6 +20,8 @@ static se3d_status eval_body(const se3di_channel *c, const se3d_system *system, 
         return se3d_body_get_acceleration(system, c->body, value);
     case SE3DI_BODY_ANGULAR_ACCELERATION:
         return se3d_body_get_angular_acceleration(system, c->body, value);
+    case SE3DI_BODY_CONTACT_FORCE:
+        return se3d_body_get_contact_wrench(system, c->body, value, torque);
     case SE3DI_MARKER_POSITION:
         return se3d_marker_get_position(system, c->marker, value);
     case SE3DI_MARKER_VELOCITY:
@@ -114,10 +117,24 @@ static se3d_status eval_particles(const se3di_channel *c, double value[4])
     if (status >= 0) {
         status = se3d_particles_get_energy(c->particles, &energy);
     }
-    const double all[4] = {(double)stats.contacts, (double)se3d_particles_count(c->particles),
-                           (double)stats.lost,
+    const double all[3] = {(double)se3d_particles_count(c->particles), (double)stats.lost,
                            energy.translation + energy.rotation + energy.potential};
-    value[0] = all[c->quantity - SE3DI_CONTACTS_COUNT];
+    value[0] = all[c->quantity - SE3DI_PARTICLES_COUNT];
+    return status;
+}
+
+/* The number of points, or the largest force at one. */
+static se3d_status eval_contacts(const se3di_channel *c, const se3d_system *system, double value[4])
+{
+    se3d_particles_stats stats = {.steps = 0};
+    se3d_status status = SE3D_OK;
+    if (c->quantity == SE3DI_CONTACTS_FORCE_MAX) {
+        return se3d_system_get_contact_force_max(system, value);
+    }
+    if (c->particles) {
+        status = se3d_particles_get_stats(c->particles, &stats);
+    }
+    value[0] = (double)(se3d_system_count_contacts(system) + stats.contacts);
     return status;
 }
 
@@ -136,6 +153,8 @@ static se3d_status eval_system(const se3di_channel *c, const se3d_system *system
         double violation[3] = {0.0, 0.0, 0.0};
         status = se3d_system_get_violation(system, violation);
         value[0] = violation[c->quantity - SE3DI_VIOLATION_POSITION];
+    } else if (c->quantity <= SE3DI_CONTACTS_FORCE_MAX) {
+        status = eval_contacts(c, system, value);
     } else if (c->quantity <= SE3DI_PARTICLES_ENERGY) {
         status = eval_particles(c, value);
     } else {

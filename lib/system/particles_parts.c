@@ -37,7 +37,7 @@ size_t se3d_particles_count_contacts(const se3d_particles *particles)
 {
     size_t count = 0;
     if (particles && is_current(particles)) {
-        (void)se3di_particles_contacts(&particles->set, SIZE_MAX, NULL, &count);
+        (void)se3di_particles_contacts(&particles->set, SIZE_MAX, NULL, &count, NULL);
     }
     return count;
 }
@@ -53,5 +53,5 @@ se3d_status se3d_particles_get_contacts(const se3d_particles *particles, size_t 
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     return count == 0 ? SE3D_OK
-                      : se3di_particles_contacts(&particles->set, count, contacts, &found);
+                      : se3di_particles_contacts(&particles->set, count, contacts, &found, NULL);
 }

@@ -227,6 +227,21 @@ static se3d_status materials_reject_misuse(arguments *a)
     return SE3D_OK;
 }
 
+static se3d_status contacts_reject_misuse(arguments *a)
+{
+    se3d_contact contact;
+    double force = 1.0;
+    CHECK(se3d_system_count_contacts(NULL) == 0 && se3d_system_count_contacts(a->system) == 0);
+    CHECK(se3d_system_get_contacts(NULL, 0, &contact) == SE3D_ERR_NULL);
+    CHECK(se3d_system_get_contacts(a->system, 1, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_system_get_contacts(a->system, 1, &contact) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_system_get_contacts(a->system, 0, NULL));
+    CHECK(se3d_system_get_contact_force_max(NULL, &force) == SE3D_ERR_NULL);
+    CHECK(se3d_system_get_contact_force_max(a->system, NULL) == SE3D_ERR_NULL);
+    CHECK(!se3d_system_get_contact_force_max(a->system, &force) && !(force > 0.0));
+    return SE3D_OK;
+}
+
 static se3d_status shapes_reject_misuse(arguments *a)
 {
     se3d_status (*const create[])(se3d_system *, const se3d_shape_def *, se3d_shape *) = {

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Contacts between bodies, read. */
+#include "contact/particle_set.h"
+#include "math/vec3.h"
+#include "se3d/contact.h"
+#include "system/system_internal.h"
+
+#include <math.h>
+
+size_t se3d_system_count_contacts(const se3d_system *system)
+{
+    return system ? system->model.contacts.count : 0;
+}
+
+static se3d_shape shape_at(const se3di_model *model, uint32_t index)
+{
+    se3di_handle handle = se3di_slots_handle(&model->shape_slots, index);
+    return (se3d_shape){handle.index1, handle.generation};
+}
+
+se3d_status se3d_system_get_contact_force_max(const se3d_system *system, double *force)
+{
+    if (!system || !force) {
+        return SE3D_ERR_NULL;
+    }
+    const se3di_model *model = &system->model;
+    *force = 0.0;
+    for (size_t k = 0; k < model->contacts.count; ++k) {
+        *force = fmax(*force, se3di_norm(model->contacts.list[k].force));
+    }
+    for (const se3di_particles *set = model->sets; set; set = set->next) {
+        size_t count;
+        SE3DI_TRY(se3di_particles_contacts(set, 0, NULL, &count, force));
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_get_contacts(const se3d_system *system, size_t count,
+                                     se3d_contact *contacts)
+{
+    if (!system || (!contacts && count > 0)) {
+        return SE3D_ERR_NULL;
+    }
+    const se3di_model *model = &system->model;
+    if (count != model->contacts.count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    for (size_t k = 0; k < count; ++k) {
+        const se3di_body_contact *from = &model->contacts.list[k];
+        se3d_contact *to = &contacts[k];
+        to->shape_i = shape_at(model, from->shape_i);
+        to->shape_j = shape_at(model, from->shape_j);
+        to->overlap = from->overlap;
+        se3di_copy(from->point, to->point);
+        se3di_copy(from->normal, to->normal);
+        se3di_copy(from->force, to->force);
+    }
+    return SE3D_OK;
+}
