@@ -93,7 +93,7 @@ static const bad_input table[] = {
      0,
      {"weights"}},
     {"se3d: 1\noutput: [{file: a.csv, particles: true}]\n", 2, 0, {"has no `particles`"}},
-    {"se3d: 1\noutput: [{file: a.csv, channels: [contacts.count]}]\n", 2, 0, {"is unknown"}},
+    {"se3d: 1\noutput: [{file: a.csv, channels: [particles.count]}]\n", 2, 0, {"is unknown"}},
     {"se3d: 1\ngravity: [0, 0]\n", 2, 10, {"gravity: has 2 entries", "list of 3 numbers"}},
     {"se3d: 1\ngravity: -9.81\n", 2, 10, {"gravity: is a single value", "list of 3 numbers"}},
     /* parameters and expressions */
