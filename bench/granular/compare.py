@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Granular beds here, in LAMMPS and in LIGGGHTS, in turn, from the same settled states.
 
-    compare.py BENCH [--edges 20 32 50] [--laws hooke hertz] [--repeats 3] [--keep FOLDER]
+    compare.py BENCH [--edges 20 32 50] [--laws hooke hertz] [--repeats 3] [--processes 1 2]
+               [--keep FOLDER]
 
 BENCH is bench_granular of a release build. Every round runs each program once; the least CPU time
 of all rounds counts. A peer's time is that of lead and steps less that of the lead alone, so that
@@ -38,7 +39,7 @@ class Case:
     def __init__(self, options, edge, law, tilt):
         self.edge, self.law, self.tilt = edge, law, tilt
         self.count = edge ** 3
-        self.lead = 300 if tilt == 0 else 10000
+        self.lead = 10000 if tilt else 300 if edge < 30 else 50
         self.steps = max(100, round(options.work / self.count))
         self.state = os.path.join(options.keep, f"column_{edge}_{law}.data")
         self.bench = options.bench
@@ -82,7 +83,7 @@ def measure(case, programs, options):
     """Best rates by (program, processes); column 0: per CPU second, 1: per second."""
     best = {}
     for _ in range(options.repeats):
-        for processes in (1, 2):
+        for processes in options.processes:
             for program in programs:
                 result = (case.ours(processes) if program == "se3d"
                           else case.peer(program, processes))
@@ -92,19 +93,22 @@ def measure(case, programs, options):
     return best
 
 
-def report(case, best, programs):
+def report(case, best, programs, processes):
     name = "avalanche" if case.tilt else "column"
     print(f"| {name} {case.count} {case.law} |", end="")
-    for processes, column in ((1, 0), (2, 1)):
+    for number in processes:
+        column = 0 if number == 1 else 1
         for program in programs:
-            rate = best[program, processes][column]
-            ratio = best["se3d", processes][column] / rate
+            rate = best[program, number][column]
+            ratio = best["se3d", number][column] / rate
             print(f" {rate:.1f}" + (f" ({ratio:.1f}) |" if program != "se3d" else " |"), end="")
-    print(f" {best['se3d', 2][1] / best['se3d', 1][1]:.2f} |", flush=True)
-    words = best["se3d", 1][2].splitlines()
+    if 1 in processes and 2 in processes:
+        print(f" {best['se3d', 2][1] / best['se3d', 1][1]:.2f} |", end="")
+    print()
+    words = best["se3d", processes[0]][2].splitlines()
     for program in programs:
-        if program != "se3d" and best[program, 1][2] != "0 lost":
-            words.append(f"{program}: {best[program, 1][2]}")
+        if program != "se3d" and best[program, processes[0]][2] != "0 lost":
+            words.append(f"{program}: {best[program, processes[0]][2]}")
     print("\n".join("    " + line.strip() for line in words[1:]), flush=True)
 
 
@@ -117,22 +121,25 @@ def main():
     parser.add_argument("--avalanche", type=int, nargs="*", default=[20], help="edges")
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--work", type=float, default=24e6, help="particle-steps of a peer")
+    parser.add_argument("--processes", type=int, nargs="*", default=[1, 2],
+                        help="1 and 2: two are threads here, ranks there")
     parser.add_argument("--keep", help="folder of the settled states")
     options = parser.parse_args()
     options.bench = os.path.abspath(options.bench)
     options.keep = os.path.abspath(options.keep or tempfile.mkdtemp())
     programs = ["se3d"] + [p for p in ("lmp", "liggghts") if shutil.which(p)]
-    heads = [f"{p} x{n}" for n in (1, 2) for p in programs]
+    heads = [f"{p} x{n}" for n in options.processes for p in programs]
+    both = int(1 in options.processes and 2 in options.processes)
     print("M particle-steps per CPU second on one core, per second on two (threads or MPI ranks); "
           "in brackets: how many times as many here")
-    print("| bed | " + " | ".join(heads) + " | x2 over x1 |")
-    print("|---" * (len(heads) + 2) + "|")
+    print("| bed | " + " | ".join(heads) + " |" + " x2 over x1 |" * both)
+    print("|---" * (len(heads) + 1 + both) + "|", flush=True)
     cases = [(e, l, 0.0) for e in options.edges for l in options.laws]
     cases += [(e, l, 45.0) for e in options.avalanche for l in options.laws]
     for edge, law, tilt in cases:
         case = Case(options, edge, law, tilt)
         case.settle()
-        report(case, measure(case, programs, options), programs)
+        report(case, measure(case, programs, options), programs, options.processes)
 
 
 if __name__ == "__main__":
