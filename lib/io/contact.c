@@ -145,8 +145,10 @@ static bool read_shape_keys(se3di_reader *reader, const se3di_node *node, se3d_s
 }
 
 static bool create_shape(se3di_reader *reader, const se3di_node *node,
-                         const se3d_model_shape *shape)
+                         const se3di_shape_entry *entry)
 {
+    const se3d_model_shape *shape = &entry->shape;
+    const se3di_mesh *mesh = entry->mesh;
     static se3d_status (*const create[])(se3d_system *, const se3d_shape_def *, se3d_shape *) = {
         se3d_shape_create_sphere,   se3d_shape_create_box,   se3d_shape_create_capsule,
         se3d_shape_create_cylinder, se3d_shape_create_plane, se3d_shape_create_mesh};
@@ -162,15 +164,11 @@ static bool create_shape(se3di_reader *reader, const se3di_node *node,
     memcpy(def.position, shape->position, sizeof def.position);
     memcpy(def.orientation, shape->orientation, sizeof def.orientation);
     memcpy(def.size, shape->size, sizeof def.size);
-    if (shape->type == SE3D_SHAPE_MESH) {
-        se3di_mesh mesh;
-        if (!se3di_read_mesh(reader, node, shape->file, shape->scale, &mesh)) {
-            return false;
-        }
-        def.vertices = mesh.points;
-        def.vertex_count = mesh.point_count;
-        def.triangles = mesh.triangles;
-        def.triangle_count = mesh.triangle_count;
+    if (mesh) {
+        def.vertices = mesh->points;
+        def.vertex_count = mesh->point_count;
+        def.triangles = mesh->triangles;
+        def.triangle_count = mesh->triangle_count;
     }
     se3d_status status = create[shape->type](reader->model->system, &def, &made);
     if (status >= 0) {
@@ -188,13 +186,13 @@ static bool create_shapes(se3di_reader *reader, const se3di_node *root)
     for (const se3di_node *body = bodies ? bodies->first : NULL; body; body = body->next) {
         const se3di_node *shapes = se3di_node_get(body, "shapes");
         for (const se3di_node *node = shapes ? shapes->first : NULL; node; node = node->next) {
-            const se3d_model_shape *shape = &reader->model->shapes[index++];
+            const se3di_shape_entry *entry = &reader->model->shapes[index++];
             const se3di_node *word = se3di_node_get(node, "contact");
             int32_t wanted = 1;
             if (word && !se3di_read_bool(reader, word, &wanted)) {
                 return false;
             }
-            if (wanted && se3di_node_get(node, "material") && !create_shape(reader, node, shape)) {
+            if (wanted && se3di_node_get(node, "material") && !create_shape(reader, node, entry)) {
                 return false;
             }
         }

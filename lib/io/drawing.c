@@ -58,13 +58,14 @@ typedef struct box {
 } box;
 
 /* The box around a shape's own box, in the ground frame. */
-static void widen_shape(const se3d_model_shape *s, const double *pose, box *b)
+static void widen_shape(const se3di_shape_entry *entry, const double *pose, box *b)
 {
+    const se3d_model_shape *s = &entry->shape;
     double half[3] = {s->radius, s->radius, s->radius};
     double turned[SE3DI_POSE];
     memcpy(turned, s->position, 3 * sizeof *turned);
     memcpy(turned + 3, s->orientation, 4 * sizeof *turned);
-    if (s->type == SE3D_SHAPE_PLANE || s->type == SE3D_SHAPE_MESH) {
+    if (s->type == SE3D_SHAPE_PLANE) {
         return;
     }
     for (int i = 0; i < 3 && s->type == SE3D_SHAPE_BOX; ++i) {
@@ -75,8 +76,11 @@ static void widen_shape(const se3d_model_shape *s, const double *pose, box *b)
     }
     for (int k = 0; k < 8; ++k) {
         double at[3];
-        const double corner[3] = {k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1],
-                                  k & 4 ? half[2] : -half[2]};
+        double corner[3];
+        for (int i = 0; i < 3; ++i) {
+            const double low = entry->mesh ? entry->mesh->low[i] : -half[i];
+            corner[i] = !(k & 1 << i) ? low : entry->mesh ? entry->mesh->high[i] : half[i];
+        }
         se3di_drawing_to_ground(turned, corner, at);
         se3di_drawing_to_ground(pose, at, at);
         widen(at, b->low, b->high);
@@ -102,7 +106,7 @@ static void widen_all(const se3d_model *model, const double *poses, box *b)
         widen(poses + SE3DI_POSE * k, b->low, b->high);
     }
     for (size_t k = 0; k < model->shape_count; ++k) {
-        const size_t body = se3di_drawing_find_body(model, model->shapes[k].body);
+        const size_t body = se3di_drawing_find_body(model, model->shapes[k].shape.body);
         widen_shape(&model->shapes[k], poses + SE3DI_POSE * body, b);
     }
 }
@@ -205,13 +209,11 @@ static void add_capsule(lister *l, const se3d_model_shape *s, se3di_part part)
     }
 }
 
-static void add_shape(lister *l, const se3d_model_shape *s)
+static void add_shape(lister *l, const se3di_shape_entry *entry)
 {
-    static const se3di_unit units[] = {SE3DI_UNIT_SPHERE, SE3DI_UNIT_BOX, SE3DI_UNIT_CYLINDER,
-                                       SE3DI_UNIT_CYLINDER, SE3DI_UNIT_BOX};
-    if (s->type == SE3D_SHAPE_MESH) {
-        return; /* see docs/scene.md */
-    }
+    const se3d_model_shape *s = &entry->shape;
+    static const se3di_unit units[] = {SE3DI_UNIT_SPHERE,   SE3DI_UNIT_BOX, SE3DI_UNIT_CYLINDER,
+                                       SE3DI_UNIT_CYLINDER, SE3DI_UNIT_BOX, SE3DI_UNIT_BOX};
     se3di_part part = make_part("shape", units[s->type], s->color[0] < 0.0 ? l->usual : s->color);
     memcpy(part.position, s->position, sizeof part.position);
     memcpy(part.orientation, s->orientation, sizeof part.orientation);
@@ -220,7 +222,10 @@ static void add_shape(lister *l, const se3d_model_shape *s)
         add_capsule(l, s, part);
         return;
     }
-    if (s->type == SE3D_SHAPE_BOX) {
+    if (entry->mesh) {
+        part.mesh = entry->mesh;
+        stretch(&part, 1.0, 1.0, 1.0);
+    } else if (s->type == SE3D_SHAPE_BOX) {
         memcpy(part.scale, s->size, sizeof part.scale);
     } else if (s->type == SE3D_SHAPE_CYLINDER) {
         part.scale[2] = s->length;
@@ -272,9 +277,9 @@ bool se3di_drawing_list(const se3d_model *model, size_t k, double extent, se3di_
     lister l = {model, pool, parts, extent, palette[(k + 6) % 7], false};
     bool bare = k > 0;
     for (size_t s = 0; s < model->shape_count; ++s) {
-        if (se3di_drawing_find_body(model, model->shapes[s].body) == k) {
+        if (se3di_drawing_find_body(model, model->shapes[s].shape.body) == k) {
             add_shape(&l, &model->shapes[s]);
-            bare = bare && model->shapes[s].type == SE3D_SHAPE_MESH;
+            bare = false;
         }
     }
     add_joints(&l, k, bare);

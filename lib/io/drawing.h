@@ -4,15 +4,16 @@
 #ifndef SE3D_IO_DRAWING_H
 #define SE3D_IO_DRAWING_H
 
-#include "io/model.h"
+#include "io/mesh.h"
 #include "io/unit_mesh.h"
 
-/* A unit mesh, stretched, turned and moved. */
+/* A mesh, stretched, turned and moved. */
 typedef struct se3di_part {
     const char *name;
     se3di_unit unit;
-    double position[3];    /* body frame */
-    double orientation[4]; /* Euler parameters, to the body frame */
+    const se3di_mesh *mesh; /* in place of the unit; NULL: none */
+    double position[3];     /* body frame */
+    double orientation[4];  /* Euler parameters, to the body frame */
     double scale[3];
     double color[4]; /* red, green, blue, opacity: 0 to 1 */
 } se3di_part;

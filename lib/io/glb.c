@@ -3,6 +3,7 @@
 #include "io/glb.h"
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -101,14 +102,20 @@ static long begin(se3di_glb *glb, size_t size, int target)
     return (long)glb->accessor_count;
 }
 
+/* The nearest 32-bit number; 0 where it is none. */
+static float to_float(double value)
+{
+    return isfinite(value) ? (float)fmax(-(double)FLT_MAX, fmin((double)FLT_MAX, value)) : 0.0F;
+}
+
 static void put_range(se3di_glb *glb, const double *values, size_t count, size_t width)
 {
     for (int largest = 0; largest < 2; ++largest) {
         se3di_glb_put(glb, &glb->accessors, largest ? "],\"max\":[" : ",\"min\":[");
         for (size_t i = 0; i < width; ++i) {
-            float best = (float)values[i];
+            float best = to_float(values[i]);
             for (size_t k = 1; k < count; ++k) {
-                const float value = (float)values[k * width + i];
+                const float value = to_float(values[k * width + i]);
                 best = (largest ? value > best : value < best) ? value : best;
             }
             se3di_glb_put(glb, &glb->accessors, i > 0 ? "," : "");
@@ -132,7 +139,7 @@ long se3di_glb_add_floats(se3di_glb *glb, const double *values, size_t count, se
     const size_t width = (size_t)type;
     const long view = begin(glb, count * width * 4, target);
     for (size_t k = 0; k < count * width; ++k) {
-        const float value = isfinite(values[k]) ? (float)values[k] : 0.0F;
+        const float value = to_float(values[k]);
         uint32_t bits = 0;
         memcpy(&bits, &value, sizeof bits);
         put_little(glb, bits, 4);
@@ -177,17 +184,95 @@ static void add_unit(se3di_glb *glb, se3di_unit mesh)
     }
 }
 
-size_t se3di_glb_add_mesh(se3di_glb *glb, se3di_unit mesh, const double color[4])
+/* The unit normal of a triangle; z where it has no area. */
+static void get_normal(const double *const p[3], double n[3])
 {
-    const size_t index = glb->mesh_count++;
-    if (glb->unit[mesh][0] < 0) {
-        add_unit(glb, mesh);
+    double a[3];
+    double b[3];
+    double largest = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        a[i] = p[1][i] - p[0][i];
+        b[i] = p[2][i] - p[0][i];
+        largest = fmax(largest, fmax(fabs(a[i]), fabs(b[i])));
     }
+    for (int i = 0; i < 3 && largest > 0.0; ++i) { /* no square overflows or vanishes */
+        a[i] /= largest;
+        b[i] /= largest;
+    }
+    n[0] = a[1] * b[2] - a[2] * b[1];
+    n[1] = a[2] * b[0] - a[0] * b[2];
+    n[2] = a[0] * b[1] - a[1] * b[0];
+    const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    const bool flat = length > 0.0 && isfinite(length);
+    for (int i = 0; i < 3; ++i) {
+        n[i] = flat ? n[i] / length : (double)(i == 2);
+    }
+}
+
+/* Edges are sharp: every triangle has points and a normal of its own, and no indices. */
+static void add_surface(se3di_glb *glb, const se3di_mesh *mesh, long accessors[3])
+{
+    const size_t count = 3 * mesh->triangle_count;
+    double *points = se3di_iopool_array(glb->pool, count, 3 * sizeof *points);
+    double *normals = se3di_iopool_array(glb->pool, count, 3 * sizeof *normals);
+    if (!points || !normals) {
+        glb->failed = true;
+        return;
+    }
+    for (size_t k = 0; k < count; k += 3) {
+        const double *corners[3];
+        double n[3];
+        for (size_t c = 0; c < 3; ++c) {
+            corners[c] = mesh->points + 3 * (size_t)mesh->triangles[k + c];
+        }
+        get_normal(corners, n);
+        for (size_t c = 0; c < 3; ++c) {
+            memcpy(points + 3 * (k + c), corners[c], sizeof n);
+            memcpy(normals + 3 * (k + c), n, sizeof n);
+        }
+    }
+    accessors[0] = se3di_glb_add_floats(glb, points, count, SE3DI_GLB_VEC3, 34962);
+    accessors[1] = se3di_glb_add_floats(glb, normals, count, SE3DI_GLB_VEC3, 34962);
+}
+
+/* Accessors of positions, normals and indices, made when they are first asked for. */
+static const long *find_surface(se3di_glb *glb, const se3di_part *part)
+{
+    if (!part->mesh) {
+        if (glb->unit[part->unit][0] < 0) {
+            add_unit(glb, part->unit);
+        }
+        return glb->unit[part->unit];
+    }
+    for (size_t k = 0; k < glb->surface_count; ++k) {
+        if (glb->surfaces[k].mesh == part->mesh) {
+            return glb->surfaces[k].accessors;
+        }
+    }
+    struct se3di_glb_surface made = {part->mesh, {-1, -1, -1}};
+    struct se3di_glb_surface *grown = se3di_iopool_grow(
+        glb->pool, glb->surfaces, glb->surface_count, &glb->surface_capacity, sizeof *grown);
+    if (!grown) {
+        glb->failed = true;
+        return glb->unit[part->unit];
+    }
+    add_surface(glb, part->mesh, made.accessors);
+    glb->surfaces = grown;
+    glb->surfaces[glb->surface_count] = made;
+    return glb->surfaces[glb->surface_count++].accessors;
+}
+
+size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part)
+{
+    const long *surface = find_surface(glb, part);
+    const size_t index = glb->mesh_count++;
     se3di_glb_put(glb, &glb->meshes, "%s{\"primitives\":[{\"attributes\":{\"POSITION\":%ld",
-                  index > 0 ? "," : "", glb->unit[mesh][0]);
-    if (glb->unit[mesh][1] >= 0) {
-        se3di_glb_put(glb, &glb->meshes, ",\"NORMAL\":%ld},\"indices\":%ld", glb->unit[mesh][1],
-                      glb->unit[mesh][2]);
+                  index > 0 ? "," : "", surface[0]);
+    if (surface[2] >= 0) {
+        se3di_glb_put(glb, &glb->meshes, ",\"NORMAL\":%ld},\"indices\":%ld", surface[1],
+                      surface[2]);
+    } else if (surface[1] >= 0) {
+        se3di_glb_put(glb, &glb->meshes, ",\"NORMAL\":%ld}", surface[1]);
     } else {
         se3di_glb_put(glb, &glb->meshes, "},\"mode\":1");
     }
@@ -198,10 +283,10 @@ size_t se3di_glb_add_mesh(se3di_glb *glb, se3di_unit mesh, const double color[4]
                   index > 0 ? "," : "");
     for (size_t k = 0; k < 4; ++k) {
         se3di_glb_put(glb, &glb->materials, k > 0 ? "," : "");
-        se3di_glb_put_number(glb, &glb->materials, color[k]);
+        se3di_glb_put_number(glb, &glb->materials, part->color[k]);
     }
     se3di_glb_put(glb, &glb->materials, "]},\"doubleSided\":true%s}",
-                  color[3] < 1.0 ? ",\"alphaMode\":\"BLEND\"" : "");
+                  part->color[3] < 1.0 ? ",\"alphaMode\":\"BLEND\"" : "");
     return index;
 }
 
@@ -262,6 +347,10 @@ bool se3di_glb_write(se3di_glb *glb, const se3di_bytes *rest, const char *path)
     }
     if (glb->failed) {
         errno = ENOMEM;
+        return false;
+    }
+    if (json.count > UINT32_MAX / 2 || glb->binary.count > UINT32_MAX / 2) { /* sizes are 32 bits */
+        errno = EFBIG;
         return false;
     }
     return write_file(path, &json, &glb->binary);

@@ -3,8 +3,8 @@
 #ifndef SE3D_IO_GLB_H
 #define SE3D_IO_GLB_H
 
+#include "io/drawing.h"
 #include "io/pool.h"
-#include "io/unit_mesh.h"
 
 typedef struct se3di_bytes {
     char *data;
@@ -29,6 +29,11 @@ typedef struct se3di_glb {
     size_t mesh_count;
     /* accessors of the unit meshes: positions, normals, indices; -1: not made yet or none */
     long unit[SE3DI_UNIT_COUNT][3];
+    struct se3di_glb_surface {
+        const se3di_mesh *mesh;
+        long accessors[3]; /* as of a unit mesh */
+    } * surfaces;
+    size_t surface_count, surface_capacity;
     bool failed; /* out of memory */
 } se3di_glb;
 
@@ -47,8 +52,8 @@ long se3di_glb_add_floats(se3di_glb *glb, const double *values, size_t count, se
                           int target);
 /* Add unit quaternions (x, y, z, w) as normalised 16-bit integers. */
 long se3di_glb_add_rotations(se3di_glb *glb, const double *values, size_t count);
-/* Add a coloured copy of a unit mesh. @return its index. */
-size_t se3di_glb_add_mesh(se3di_glb *glb, se3di_unit mesh, const double color[4]);
+/* Add a part's mesh in its colour. @return its index. */
+size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part);
 
 /* Write the file: `rest` is the JSON besides buffers, meshes and materials, beginning with a comma.
  * @return false: errno says why. */

@@ -27,7 +27,8 @@ static bool fail(const scanner *s, const char *what)
 static bool add_point(scanner *s, const double p[3])
 {
     se3di_mesh *m = s->mesh;
-    if (!(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))) {
+    const double q[3] = {s->scale * p[0], s->scale * p[1], s->scale * p[2]};
+    if (!(isfinite(q[0]) && isfinite(q[1]) && isfinite(q[2]))) {
         return fail(s, "a coordinate is not a finite number");
     }
     double *grown = se3di_iopool_grow(&s->reader->model->pool, m->points, m->point_count,
@@ -37,7 +38,9 @@ static bool add_point(scanner *s, const double p[3])
     }
     m->points = grown;
     for (int a = 0; a < 3; ++a) {
-        m->points[3 * m->point_count + (size_t)a] = s->scale * p[a];
+        m->points[3 * m->point_count + (size_t)a] = q[a];
+        m->low[a] = m->point_count > 0 ? fmin(m->low[a], q[a]) : q[a];
+        m->high[a] = m->point_count > 0 ? fmax(m->high[a], q[a]) : q[a];
     }
     ++m->point_count;
     return true;
@@ -301,12 +304,12 @@ static bool read_text(scanner *s, size_t bytes)
 }
 
 /* The path beside the model file; absolute ones stay. */
-static const char *find(se3di_reader *reader, const char *file)
+static const char *find(se3di_reader *reader, se3di_iopool *pool, const char *file)
 {
     const char *model = reader->model->file;
     const char *slash = model ? strrchr(model, '/') : NULL;
     const size_t folder = slash && file[0] != '/' ? (size_t)(slash - model) + 1 : 0;
-    char *path = se3di_iopool_array(&reader->model->pool, folder + strlen(file) + 1, 1);
+    char *path = se3di_iopool_array(pool, folder + strlen(file) + 1, 1);
     if (path) {
         memcpy(path, model ? model : "", folder);
         memcpy(path + folder, file, strlen(file) + 1);
@@ -314,31 +317,65 @@ static const char *find(se3di_reader *reader, const char *file)
     return path;
 }
 
-bool se3di_read_mesh(se3di_reader *reader, const se3di_node *shape, const char *file, double scale,
-                     se3di_mesh *mesh)
+static bool read_stream(scanner *s, FILE *stream, se3di_iopool *pool)
 {
-    scanner s = {.reader = reader, .shape = shape, .file = file, .scale = scale, .mesh = mesh};
-    const char *path = find(reader, file);
-    FILE *stream = path ? fopen(path, "rb") : NULL;
-    memset(mesh, 0, sizeof *mesh);
-    s.line = 1;
-    if (!stream) {
-        return fail(&s, path ? "the file cannot be opened" : "no memory");
-    }
     const long size = fseek(stream, 0, SEEK_END) == 0 ? ftell(stream) : -1;
-    char *text = size > 0 && size <= FILE_BYTES_MAX
-                     ? se3di_iopool_array(&reader->model->pool, (size_t)size, 1)
-                     : NULL;
-    const bool whole = text && fseek(stream, 0, SEEK_SET) == 0 &&
-                       fread(text, 1, (size_t)size, stream) == (size_t)size;
-    fclose(stream);
-    if (!whole) {
-        return fail(&s, "the file is empty, too large or cannot be read");
+    if (size <= 0 || size > FILE_BYTES_MAX || fseek(stream, 0, SEEK_SET) != 0) {
+        return fail(s, "the file is empty, too large or cannot be read");
     }
-    s.at = text;
-    s.end = text + size;
-    if (!read_text(&s, (size_t)size)) {
-        return false;
+    char *text = se3di_iopool_array(pool, (size_t)size, 1);
+    if (!text) {
+        return se3di_reader_fail_memory(s->reader);
     }
-    return mesh->triangle_count > 0 || fail(&s, "the file has no triangles");
+    if (fread(text, 1, (size_t)size, stream) != (size_t)size) {
+        return fail(s, "the file is empty, too large or cannot be read");
+    }
+    s->at = text;
+    s->end = text + size;
+    return read_text(s, (size_t)size) &&
+           (s->mesh->triangle_count > 0 || fail(s, "the file has no triangles"));
+}
+
+static bool read_file(scanner *s)
+{
+    se3di_iopool pool; /* of the text */
+    se3di_iopool_init(&pool, &s->reader->model->pool.allocator);
+    const char *path = find(s->reader, &pool, s->file);
+    FILE *stream = path ? fopen(path, "rb") : NULL;
+    const bool good = !path     ? se3di_reader_fail_memory(s->reader)
+                      : !stream ? fail(s, "the file cannot be opened")
+                                : read_stream(s, stream, &pool);
+    if (stream) {
+        fclose(stream);
+    }
+    se3di_iopool_destroy(&pool);
+    return good;
+}
+
+const se3di_mesh *se3di_read_mesh(se3di_reader *reader, const se3di_node *shape, const char *file,
+                                  double scale)
+{
+    se3d_model *model = reader->model;
+    se3di_mesh *mesh = model->meshes;
+    while (mesh && (strcmp(mesh->file, file) != 0 || mesh->scale < scale || mesh->scale > scale)) {
+        mesh = mesh->next;
+    }
+    if (mesh) {
+        return mesh;
+    }
+    mesh = se3di_iopool_alloc(&model->pool, sizeof *mesh);
+    if (!mesh) {
+        se3di_reader_fail_memory(reader);
+        return NULL;
+    }
+    scanner s = {
+        .reader = reader, .shape = shape, .file = file, .line = 1, .scale = scale, .mesh = mesh};
+    if (!read_file(&s)) {
+        return NULL;
+    }
+    mesh->file = file;
+    mesh->scale = scale;
+    mesh->next = model->meshes;
+    model->meshes = mesh;
+    return mesh;
 }

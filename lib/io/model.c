@@ -368,7 +368,7 @@ se3d_status se3d_model_get_shape(const se3d_model *model, size_t index, se3d_mod
     if (index >= model->shape_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    *shape = model->shapes[index];
+    *shape = model->shapes[index].shape;
     return SE3D_OK;
 }
 

@@ -74,6 +74,13 @@ typedef struct se3di_output_entry {
     const se3di_node *node; /* NULL: the default output */
 } se3di_output_entry;
 
+typedef struct se3di_mesh se3di_mesh;
+
+typedef struct se3di_shape_entry {
+    se3d_model_shape shape;
+    const se3di_mesh *mesh; /* NULL: the shape is another one */
+} se3di_shape_entry;
+
 typedef struct se3di_grains se3di_grains;
 
 struct se3d_model {
@@ -93,8 +100,9 @@ struct se3d_model {
     se3di_element_entry *elements;
     size_t element_count, element_capacity;
     se3di_names element_names;
-    se3d_model_shape *shapes;
+    se3di_shape_entry *shapes;
     size_t shape_count, shape_capacity;
+    se3di_mesh *meshes; /* that have been read */
     se3di_analysis_entry *analyses;
     size_t analysis_count;
     se3d_material *materials; /* in the order of the file; null: not needed yet */

@@ -138,8 +138,7 @@ static size_t add_part(drawing *d, const se3di_part *part)
 {
     const size_t node = open_node(d, part->name, part->position, part->orientation);
     put_list(d, "scale", part->scale, 3);
-    se3di_glb_put(&d->glb, &d->nodes, ",\"mesh\":%zu}",
-                  se3di_glb_add_mesh(&d->glb, part->unit, part->color));
+    se3di_glb_put(&d->glb, &d->nodes, ",\"mesh\":%zu}", se3di_glb_add_mesh(&d->glb, part));
     return node;
 }
 

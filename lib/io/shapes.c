@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/reader.h"
+#include "io/mesh.h"
 #include "io/rotation.h"
 
 static const double pi = 3.14159265358979323846;
@@ -58,8 +58,21 @@ static bool read_plane(se3di_reader *reader, const se3di_node *node, se3d_model_
     return true;
 }
 
-static bool read_dimensions(se3di_reader *reader, const se3di_node *node, se3d_model_shape *shape)
+static bool read_triangles(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
 {
+    se3d_model_shape *shape = &entry->shape;
+    if (!require(reader, node, "file") ||
+        !se3di_read_text(reader, se3di_node_get(node, "file"), &shape->file) ||
+        !se3di_read_key_number(reader, node, "scale", SE3DI_POSITIVE, &shape->scale)) {
+        return false;
+    }
+    entry->mesh = se3di_read_mesh(reader, node, shape->file, shape->scale);
+    return entry->mesh != NULL;
+}
+
+static bool read_dimensions(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
+{
+    se3d_model_shape *shape = &entry->shape;
     switch (shape->type) {
     case SE3D_SHAPE_SPHERE:
         return read_positive(reader, node, "radius", &shape->radius);
@@ -72,9 +85,7 @@ static bool read_dimensions(se3di_reader *reader, const se3di_node *node, se3d_m
     case SE3D_SHAPE_PLANE:
         return read_plane(reader, node, shape);
     default:
-        return require(reader, node, "file") &&
-               se3di_read_text(reader, se3di_node_get(node, "file"), &shape->file) &&
-               se3di_read_key_number(reader, node, "scale", SE3DI_POSITIVE, &shape->scale);
+        return read_triangles(reader, node, entry);
     }
 }
 
@@ -93,8 +104,9 @@ static bool read_color(se3di_reader *reader, const se3di_node *node, double colo
     return true;
 }
 
-static bool read_shape(se3di_reader *reader, const se3di_node *node, se3d_model_shape *shape)
+static bool read_shape(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
 {
+    se3d_model_shape *shape = &entry->shape;
     static const char *const types[] = {"sphere", "box", "capsule", "cylinder", "plane", "mesh"};
     static const se3d_model_shape standard = {
         .scale = 1.0, .orientation = {1.0, 0.0, 0.0, 0.0}, .color = {-1.0, -1.0, -1.0}, .file = ""};
@@ -102,13 +114,14 @@ static bool read_shape(se3di_reader *reader, const se3di_node *node, se3d_model_
     if (!se3di_read_type(reader, node, SE3DI_OBJECT_SHAPE, &type)) {
         return false;
     }
+    entry->mesh = NULL;
     *shape = standard;
     while (strcmp(types[shape->type], type) != 0) {
         ++shape->type;
     }
     return se3di_read_key_vector(reader, node, "position", shape->position) &&
            se3di_read_key_orientation(reader, node, shape->orientation) &&
-           read_dimensions(reader, node, shape) && read_color(reader, node, shape->color);
+           read_dimensions(reader, node, entry) && read_color(reader, node, shape->color);
 }
 
 bool se3di_read_shapes(se3di_reader *reader, const se3di_node *body, size_t entry)
@@ -119,18 +132,18 @@ bool se3di_read_shapes(se3di_reader *reader, const se3di_node *body, size_t entr
         return false;
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        se3d_model_shape shape;
-        if (!read_shape(reader, node, &shape)) {
+        se3di_shape_entry made;
+        if (!read_shape(reader, node, &made)) {
             return false;
         }
-        shape.body = model->bodies[entry].body;
-        se3d_model_shape *grown = se3di_iopool_grow(&model->pool, model->shapes, model->shape_count,
-                                                    &model->shape_capacity, sizeof *grown);
+        made.shape.body = model->bodies[entry].body;
+        se3di_shape_entry *grown = se3di_iopool_grow(
+            &model->pool, model->shapes, model->shape_count, &model->shape_capacity, sizeof *grown);
         if (!grown) {
             return se3di_reader_fail_memory(reader);
         }
         model->shapes = grown;
-        model->shapes[model->shape_count++] = shape;
+        model->shapes[model->shape_count++] = made;
     }
     return true;
 }
@@ -276,20 +289,21 @@ bool se3di_read_shape_mass(se3di_reader *reader, const se3di_node *body, se3d_bo
         return false;
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        se3d_model_shape shape;
+        se3di_shape_entry entry;
         double density = 0.0;
         double J[3];
-        if (!read_shape(reader, node, &shape) || !read_density(reader, body, node, &density)) {
+        if (!read_shape(reader, node, &entry) || !read_density(reader, body, node, &density)) {
             return false;
         }
-        const double part = solid_moments(&shape, density, J);
-        add_inertia(&shape, part, J, inertia);
+        const se3d_model_shape *shape = &entry.shape;
+        const double part = solid_moments(shape, density, J);
+        add_inertia(shape, part, J, inertia);
         mass += part;
         for (int k = 0; k < 3; ++k) {
-            moment[k] += part * shape.position[k];
-            extent += fabs(shape.position[k]) + shape.size[k];
+            moment[k] += part * shape->position[k];
+            extent += fabs(shape->position[k]) + shape->size[k];
         }
-        extent += shape.radius + shape.length;
+        extent += shape->radius + shape->length;
     }
     if (!(mass > 0.0)) {
         return true;

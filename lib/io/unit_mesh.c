@@ -21,9 +21,9 @@ static void put_vertex(se3di_unit_mesh *m, double x, double y, double z, const d
 
 static void put_triangle(se3di_unit_mesh *m, size_t a, size_t b, size_t c)
 {
-    m->indices[m->indices_count++] = (uint16_t)a;
-    m->indices[m->indices_count++] = (uint16_t)b;
-    m->indices[m->indices_count++] = (uint16_t)c;
+    m->indices[m->indices_count++] = (uint32_t)a;
+    m->indices[m->indices_count++] = (uint32_t)b;
+    m->indices[m->indices_count++] = (uint32_t)c;
 }
 
 static void make_box(se3di_unit_mesh *m)

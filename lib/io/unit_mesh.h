@@ -20,7 +20,7 @@ enum { SE3DI_UNIT_VERTICES_MAX = 1024 };
 typedef struct se3di_unit_mesh {
     double points[3 * SE3DI_UNIT_VERTICES_MAX];
     double normals[3 * SE3DI_UNIT_VERTICES_MAX];
-    uint16_t indices[6 * SE3DI_UNIT_VERTICES_MAX]; /* of triangles */
+    uint32_t indices[6 * SE3DI_UNIT_VERTICES_MAX]; /* of triangles */
     size_t points_count;
     size_t indices_count; /* 0: lines, without normals (grid) */
 } se3di_unit_mesh;

@@ -13,6 +13,12 @@
 
 enum { PATH_SIZE = 4096, EXTENSION = 4 };
 
+typedef struct surface {
+    const double *points;
+    const uint32_t *indices; /* of triangles */
+    size_t points_count, indices_count;
+} surface;
+
 /* A part, and whose it is: a body's, or a spring. */
 typedef struct piece {
     se3di_part part;
@@ -38,11 +44,21 @@ struct se3di_vtk {
     int failure; /* errno of the first failure; ENOMEM also where memory is missing */
 };
 
+static surface surface_of(const se3di_vtk *vtk, const se3di_part *part)
+{
+    const se3di_unit_mesh *unit = &vtk->units[part->unit];
+    const se3di_mesh *mesh = part->mesh;
+    const surface s = {mesh ? mesh->points : unit->points, mesh ? mesh->triangles : unit->indices,
+                       mesh ? mesh->point_count : unit->points_count,
+                       mesh ? 3 * mesh->triangle_count : unit->indices_count};
+    return s;
+}
+
 static bool list_pieces(se3di_vtk *vtk, const se3di_part *parts, size_t count, size_t body,
                         const se3di_element_entry *spring)
 {
     for (size_t k = 0; k < count; ++k) {
-        const se3di_unit_mesh *mesh = &vtk->units[parts[k].unit];
+        const surface s = surface_of(vtk, &parts[k]);
         piece *grown = se3di_iopool_grow(vtk->pool, vtk->pieces, vtk->piece_count,
                                          &vtk->piece_capacity, sizeof *grown);
         if (!grown) {
@@ -51,8 +67,8 @@ static bool list_pieces(se3di_vtk *vtk, const se3di_part *parts, size_t count, s
         vtk->pieces = grown;
         const piece added = {parts[k], body, spring};
         vtk->pieces[vtk->piece_count++] = added;
-        vtk->points_count += mesh->points_count;
-        vtk->triangles_count += mesh->indices_count / 3;
+        vtk->points_count += s.points_count;
+        vtk->triangles_count += s.indices_count / 3;
     }
     return true;
 }
@@ -85,12 +101,12 @@ static void connect(se3di_vtk *vtk)
     size_t corner = 0;
     for (size_t k = 0; k < vtk->piece_count; ++k) {
         const piece *p = &vtk->pieces[k];
-        const se3di_unit_mesh *mesh = &vtk->units[p->part.unit];
-        for (size_t i = 0; i < mesh->indices_count; ++i) {
-            vtk->triangles[corner] = (double)(first + mesh->indices[i]);
+        const surface s = surface_of(vtk, &p->part);
+        for (size_t i = 0; i < s.indices_count; ++i) {
+            vtk->triangles[corner] = (double)(first + s.indices[i]);
             vtk->bodies[corner++ / 3] = p->spring ? -1.0 : (double)p->body;
         }
-        first += mesh->points_count;
+        first += s.points_count;
     }
 }
 
@@ -183,7 +199,7 @@ static void move_points(se3di_vtk *vtk)
     size_t point = 0;
     for (size_t k = 0; k < vtk->piece_count; ++k) {
         const piece *p = &vtk->pieces[k];
-        const se3di_unit_mesh *mesh = &vtk->units[p->part.unit];
+        const surface s = surface_of(vtk, &p->part);
         motion m = {{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
         const se3di_part part =
             p->spring ? se3di_drawing_get_spring(model, p->spring, vtk->extent, vtk->poses)
@@ -194,9 +210,9 @@ static void move_points(se3di_vtk *vtk)
             se3d_body_get_velocity(model->system, body, m.v);
             se3d_body_get_angular_velocity(model->system, body, m.w);
         }
-        for (size_t i = 0; i < mesh->points_count; ++i, ++point) {
+        for (size_t i = 0; i < s.points_count; ++i, ++point) {
             double local[3];
-            place(&part, mesh->points + 3 * i, local);
+            place(&part, s.points + 3 * i, local);
             carry(&m, local, vtk->points + 3 * point, vtk->velocities + 3 * point);
         }
     }

@@ -8,6 +8,11 @@ trap 'rm -rf "$dir"' EXIT
 "$program" run -q "$models/pendulum.yaml" -o "$dir/pendulum"
 "$program" run -q "$models/spatial_slider_crank.yaml" -o "$dir/spatial_slider_crank"
 "$program" run -q "$models/tsda_mass.yaml" -o "$dir/tsda_mass"
+sed "s/^  - {file: bracket.csv/  - {vtk: motion.pvd, every: 0.1}\n&/
+s/^joints:/  - {name: twin, fixed: true, position: [0, 1, 0], shapes: [{type: mesh, file: bracket.obj, scale: 0.001},\n     {type: mesh, file: bracket.obj, scale: 0.01, position: [0, 0, 1]}]}\n&/" \
+    "$models/bracket.yaml" >"$dir/bracket.yaml"
+cp "$models/bracket.obj" "$dir"
+"$program" run -q "$dir/bracket.yaml" -o "$dir/bracket"
 cat >"$dir/check.py" <<'END_OF_PYTHON'
 import csv, json, struct, sys
 def load(path):
@@ -55,9 +60,45 @@ for folder, bodies in (("pendulum", ["bar"]), ("spatial_slider_crank", ["crank",
         assert ("spring", "scale") in seen
     names = [node["name"] for node in doc["nodes"]]
     assert "ground" in names and "grid" in names
+# A mesh: points of its own for every triangle, with unit normals that point out; shapes of one file
+# and scale share them.
+doc, binary = load(sys.argv[1] + "/bracket/scene.glb")
+def drawn(body):
+    node = next(n for n in doc["nodes"] if n["name"] == body)
+    shapes = [doc["nodes"][k] for k in node["children"] if doc["nodes"][k]["name"] == "shape"]
+    return [doc["meshes"][n["mesh"]]["primitives"][0] for n in shapes], shapes
+(first,), nodes = drawn("bracket")
+(second, third), _ = drawn("twin")
+assert nodes[0]["scale"] == [1, 1, 1] and "indices" not in first and "mode" not in first
+assert first["attributes"] == second["attributes"] != third["attributes"]
+points = values(doc, binary, first["attributes"]["POSITION"])
+normals = values(doc, binary, first["attributes"]["NORMAL"])
+assert len(points) == len(normals) == 60
+volume = 0.0
+for k in range(0, 60, 3):
+    a, b, c = points[k:k + 3]
+    n = normals[k]
+    assert normals[k + 1] == normals[k + 2] == n and abs(sum(v * v for v in n) - 1) < 1e-6
+    u, v = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
+    cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    area = sum(p * p for p in cross) ** 0.5
+    assert abs(sum(p * q for p, q in zip(cross, n)) - area) < 1e-6 * area
+    volume += sum(p * q for p, q in zip(a, cross)) / 6
+    checks += 1
+assert abs(volume - 8e-5) < 1e-10, volume
+box = doc["accessors"][first["attributes"]["POSITION"]]
+assert max(abs(a - b) for a, b in zip(box["min"] + box["max"], [-.022, -.02, -.022, .038, .02, .038])) < 1e-8
+# What is seen reaches up to the large twin: from 0 to 1.38 m.
+grid = next(n for n in doc["nodes"] if n["name"] == "grid")
+assert abs(grid["scale"][0] - 0.2) < 1e-6, grid
 print(checks, "checks, 0 failed")
 END_OF_PYTHON
 python3 "$dir/check.py" "$dir"
+# Three times 12 points and 20 triangles, and the pin.
+grep -aq 'NumberOfPoints="166".*NumberOfPolys="184"' "$dir/bracket/motion/bodies_00000.vtp" || {
+    grep -a NumberOf "$dir/bracket/motion/bodies_00000.vtp" >&2
+    exit 1
+}
 if "$program" run -q "$models/pendulum.yaml" -o "$dir" --duration 1 && rm "$dir/scene.glb" && mkdir "$dir/scene.glb" &&
     "$program" run -q "$models/pendulum.yaml" -o "$dir" --duration 1 2>"$dir/err"; then
     echo 'a scene that cannot be written went unnoticed' >&2

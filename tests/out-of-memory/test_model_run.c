@@ -7,12 +7,14 @@
 #include "se3d/io.h"
 #include "support/counting.h"
 
+#define MESH "/tmp/se3d_test_model_run.obj"
 #define HEAD                                                                                       \
     "se3d: 1\n"                                                                                    \
     "gravity: [0, \"0*t\", -9.81]\n"                                                               \
     "bodies:\n"                                                                                    \
     "  - {name: a, mass: 1, inertia: [1, 1, 1], position: [0.5, 0, 0], held: true}\n"              \
-    "  - {name: b, mass: 1, inertia: [1, 1, 1], position: [1.5, 0, 0]}\n"                          \
+    "  - {name: b, mass: 1, inertia: [1, 1, 1], position: [1.5, 0, 0],\n"                          \
+    "     shapes: [{type: mesh, file: " MESH "}]}\n"                                               \
     "joints:\n"                                                                                    \
     "  - {name: pin, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, 0]}\n" \
     "  - {name: slide, type: cylindrical, body_i: a, body_j: b, at: [1, 0, 0], axis: [1, 0, 0]}\n" \
@@ -121,6 +123,11 @@ static attempt try_once(const char *text, size_t k, int for_ever)
 
 static void reading_and_running_survives_every_failed_allocation(void)
 {
+    FILE *mesh = fopen(MESH, "wb");
+    CHECK(mesh && fputs("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n", mesh) >= 0);
+    if (mesh) {
+        fclose(mesh);
+    }
     for (size_t m = 0; m < sizeof texts / sizeof *texts; ++m) {
         const attempt whole = try_once(texts[m], 0, 0);
         CHECK(whole.status >= 0 && whole.files > 0);
@@ -136,6 +143,7 @@ static void reading_and_running_survives_every_failed_allocation(void)
             CHECK(a.files == whole.files);
         }
     }
+    remove(MESH);
 }
 
 int main(void)

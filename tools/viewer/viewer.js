@@ -26,9 +26,9 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     if (!geometries.has(key)) {
       const made = new THREE.BufferGeometry();
       made.setAttribute("position", new THREE.BufferAttribute(accessor(key).values, 3));
-      if (primitive.indices !== undefined) {
+      if (primitive.attributes.NORMAL !== undefined) {
         made.setAttribute("normal", new THREE.BufferAttribute(accessor(primitive.attributes.NORMAL).values, 3));
-        made.setIndex(new THREE.BufferAttribute(accessor(primitive.indices).values, 1));
+        if (primitive.indices !== undefined) made.setIndex(new THREE.BufferAttribute(accessor(primitive.indices).values, 1));
       }
       geometries.set(key, made);
     }
