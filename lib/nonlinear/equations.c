@@ -20,8 +20,7 @@ static se3d_status create_kkt(se3di_equations *equations)
         .joint_body = assembly->joint_body,
         .body_size = assembly->formulation->block,
         .symmetric = true,
-        .body_kind =
-            assembly->formulation->block == 6 ? SE3DI_KKT_BODY_MASS : SE3DI_KKT_BODY_FULL,
+        .body_kind = assembly->formulation->block == 6 ? SE3DI_KKT_BODY_MASS : SE3DI_KKT_BODY_FULL,
     };
     return se3di_kkt_create(&assembly->model->allocator, &pattern, SE3DI_KKT_STRUCTURED,
                             &equations->kkt);
