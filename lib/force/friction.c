@@ -89,7 +89,8 @@ uint32_t se3di_friction_revise(const se3di_model *model, se3di_force *force)
     (void)se3di_measure_force(model, force, 0, &measure);
     double n = limits.stiffness * (measure.value - force->state[0]);
     double mode = force->state[2];
-    if (mode * n < limits.slip && fabs(mode) > 0.0) {
+    double rounding = 2e-15 * limits.stiffness * fabs(measure.value) + 1e-12 * limits.slip;
+    if (mode * n < limits.slip - rounding && fabs(mode) > 0.0) {
         mode = 0.0;
     } else if (!(fabs(mode) > 0.0) && fabs(n) > limits.stick) {
         mode = n > 0.0 ? 1.0 : -1.0;

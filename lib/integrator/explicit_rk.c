@@ -367,13 +367,23 @@ static se3d_status cross_jump(rk *m, double h, double error)
     return SE3D_OK;
 }
 
+/* Bound on how fast a relative angular velocity grows at the forward state. */
+static double largest_growth(const rk *m)
+{
+    double largest = 0.0;
+    for (size_t k = 0; k < m->assembly->body_count; ++k) {
+        largest = fmax(largest, se3di_norm(m->f1 + SE3DI_STATE_SIZE * k + 10));
+    }
+    return 2.0 * largest;
+}
+
 /* One accepted step with error control. What contacts remember belongs to the end of a step, and
  * cannot be interpolated: where shapes are near each other steps end at t_end. */
 static se3d_status advance(rk *m, double t_end)
 {
     double h = m->header[RK_NEXT];
     se3di_state_set(m->assembly, m->y1);
-    h = se3di_state_limit_turn(m->assembly->model, h);
+    h = se3di_state_limit_turn(m->assembly->model, largest_growth(m), h);
     double rest = t_end - m->header[RK_T1];
     double longer = m->assembly->model->contacts.pair_count > 0 && h > rest ? h : 0.0;
     h = longer > 0.0 ? rest : h;
@@ -539,6 +549,10 @@ se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau
 /* Forward steps until t_end is reached, and the interpolation where it is passed. */
 static se3d_status advance_to(rk *m, double t_end)
 {
+    if (m->header[RK_T1] < t_end) { /* turns are counted from step to step, not from an output */
+        se3di_state_set(m->assembly, m->y1);
+        se3di_angles_accept(m->assembly->model);
+    }
     while (m->header[RK_T1] < t_end) {
         SE3DI_TRY(advance(m, t_end));
     }

@@ -263,7 +263,7 @@ static se3d_status advance(se3di_integration *integration)
     double *header = past.header;
     const double inner = inner_tolerance(integration->settings.tolerance);
     SE3DI_TRY(begin_step(&m, integration, &past));
-    double h = se3di_state_limit_turn(m.assembly->model, header[RADAU_NEXT]);
+    double h = se3di_state_limit_turn(m.assembly->model, 0.0, header[RADAU_NEXT]);
     for (;;) {
         double error;
         se3d_status status = attempt(&m, &past, inner, h, &error);

@@ -297,13 +297,14 @@ void se3di_state_mass_solve(const se3di_assembly *assembly, uint32_t free_body,
     se3di_solve3(J, torque, rate + 3);
 }
 
-double se3di_state_limit_turn(const se3di_model *model, double h)
+double se3di_state_limit_turn(const se3di_model *model, double growth, double h)
 {
     for (size_t k = 0; k < model->angle_count; ++k) {
         const se3di_term *term = &model->angles[k].term;
         double rate =
             se3di_norm(model->frames[term->body_i].w) + se3di_norm(model->frames[term->body_j].w);
-        h = h * rate > 2.0 ? 2.0 / rate : h;
+        double least = 4.0 / (rate + sqrt(rate * rate + 4.0 * growth)); /* 2 rad */
+        h = h > least ? least : h;
     }
     return h;
 }

@@ -60,8 +60,9 @@ void se3di_state_split_force(const se3di_assembly *assembly, const se3di_frame *
 void se3di_state_mass_solve(const se3di_assembly *assembly, uint32_t free_body,
                             const double *generalised, double rate[6]);
 
-/* A step of at most h in which no joint angle turns by as much as its counter cannot follow. */
-double se3di_state_limit_turn(const se3di_model *model, double h);
+/* A step of at most h in which no joint angle turns by as much as its counter cannot follow, where
+ * rates grow by at most `growth` [rad/s^2]. */
+double se3di_state_limit_turn(const se3di_model *model, double growth, double h);
 
 /* Length of the mechanism's parts. */
 double se3di_state_length(const se3di_model *model);

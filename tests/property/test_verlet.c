@@ -292,7 +292,7 @@ static void auto_is_verlet_where_there_are_particles(void)
 static void too_large_an_overlap_is_named_and_leaves_one_time_for_all(void)
 {
     world w;
-    double t, time;
+    double t = -1.0, time = -2.0;
     const double x[3] = {0.0, 0.0, 0.2}, v[3] = {0.0, 0.0, -80.0}, radius = 0.01;
     open_world(&w, (double[3]){0.0, 0.0, 0.0});
     add_floor(&w, 0.0);
