@@ -71,6 +71,10 @@ void se3di_assembly_eval_mass(se3di_assembly *assembly);
 se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, double *b,
                                        se3di_error *error);
 
+/* out [unknowns] = H x */
+void se3di_assembly_mul_mass(const se3di_assembly *assembly, const double *x, double *out);
+/* out [unknowns] -= H x */
+void se3di_assembly_subtract_mass(const se3di_assembly *assembly, const double *x, double *out);
 /* out [rows] = C x, x [unknowns] */
 void se3di_assembly_mul(const se3di_assembly *assembly, const double *x, double *out);
 /* out [unknowns] += scale C^T l */

@@ -181,6 +181,34 @@ se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, doubl
     return SE3D_OK;
 }
 
+void se3di_assembly_mul_mass(const se3di_assembly *assembly, const double *x, double *out)
+{
+    size_t n = (size_t)assembly->formulation->block;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const double *H = assembly->H + k * n * n;
+        for (size_t r = 0; r < n; ++r) {
+            double sum = 0.0;
+            for (size_t c = 0; c < n; ++c) {
+                sum += H[n * r + c] * x[k * n + c];
+            }
+            out[k * n + r] = sum;
+        }
+    }
+}
+
+void se3di_assembly_subtract_mass(const se3di_assembly *assembly, const double *x, double *out)
+{
+    size_t n = (size_t)assembly->formulation->block;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const double *H = assembly->H + k * n * n;
+        for (size_t r = 0; r < n; ++r) {
+            for (size_t c = 0; c < n; ++c) {
+                out[k * n + r] -= H[n * r + c] * x[k * n + c];
+            }
+        }
+    }
+}
+
 void se3di_assembly_mul(const se3di_assembly *assembly, const double *x, double *out)
 {
     size_t n = (size_t)assembly->formulation->block;

@@ -196,17 +196,12 @@ static se3d_status eval_residual(bdf *m, double t)
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
     se3di_assembly_add_transposed(assembly, -1.0, m->lambda, equations->b);
     for (size_t k = 0; k < assembly->body_count; ++k) {
-        const double *H = assembly->H + k * n * n;
         double *qddot = m->qddot + k * n;
         qddot[n - 1] = n == 8 ? m->acceleration[7 * k + 6] : 0.0;
         assembly->formulation->set_acceleration(&assembly->model->frames[assembly->free_body[k]],
                                                 m->acceleration + 7 * k, qddot);
-        for (size_t r = 0; r < n; ++r) {
-            for (size_t c = 0; c < n; ++c) {
-                equations->b[k * n + r] -= H[n * r + c] * qddot[c];
-            }
-        }
     }
+    se3di_assembly_subtract_mass(assembly, m->qddot, equations->b);
     se3di_assembly_get_velocity(assembly, equations->x);
     se3di_assembly_mul(assembly, equations->x, equations->c);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {

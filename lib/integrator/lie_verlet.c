@@ -188,18 +188,8 @@ static se3d_status project_velocities(se3di_lie_verlet *m)
 {
     se3di_equations *equations = m->equations;
     se3di_assembly *assembly = m->assembly;
-    size_t n = (size_t)assembly->formulation->block;
     se3di_assembly_get_velocity(assembly, equations->x);
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        const double *H = assembly->H + k * n * n;
-        for (size_t r = 0; r < n; ++r) {
-            double sum = 0.0;
-            for (size_t c = 0; c < n; ++c) {
-                sum += H[n * r + c] * equations->x[k * n + c];
-            }
-            equations->b[k * n + r] = sum;
-        }
-    }
+    se3di_assembly_mul_mass(assembly, equations->x, equations->b);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
         equations->c[k] = assembly->f[3 * (size_t)k + 1];
     }

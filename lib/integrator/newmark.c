@@ -153,18 +153,11 @@ static se3d_status eval_residual(newmark_step *step)
     se3di_assembly_eval_jacobian(assembly);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, step->t, equations->b, equations->error));
     se3di_assembly_add_transposed(assembly, -1.0, step->lambda, equations->b);
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        const double *H = assembly->H + k * n * n;
-        for (size_t r = 0; r < n; ++r) {
-            for (size_t c = 0; c < n; ++c) {
-                equations->b[k * n + r] -= H[n * r + c] * step->vdot[k * n + c];
-            }
-        }
-        if (n == 8) {
-            equations->b[k * n + 7] =
-                step->beta_prime * assembly->formulation->normalisation(
-                                       &assembly->model->frames[assembly->free_body[k]]);
-        }
+    se3di_assembly_subtract_mass(assembly, step->vdot, equations->b);
+    for (size_t k = 0; n == 8 && k < assembly->body_count; ++k) {
+        equations->b[8 * k + 7] =
+            step->beta_prime *
+            assembly->formulation->normalisation(&assembly->model->frames[assembly->free_body[k]]);
     }
     se3di_assembly_eval_phi(assembly, equations->c);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {

@@ -258,14 +258,7 @@ static se3d_status eval_stage(se3di_radau *m, int i)
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, b, equations->error));
     se3di_assembly_add_transposed(assembly, -1.0, at(m->lambda, i, m->multipliers), b);
     set_qddot(m, i);
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        const double *H = assembly->H + k * n * n;
-        for (size_t r = 0; r < n; ++r) {
-            for (size_t c = 0; c < n; ++c) {
-                b[k * n + r] -= H[n * r + c] * m->qddot[k * n + c];
-            }
-        }
-    }
+    se3di_assembly_subtract_mass(assembly, m->qddot, b);
     if (n == 8) {
         turn_residual(m, b);
     }

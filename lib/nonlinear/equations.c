@@ -193,18 +193,9 @@ static void weigh_velocity(se3di_equations *equations)
     const se3di_assembly *assembly = &equations->assembly;
     size_t n = (size_t)assembly->formulation->block;
     se3di_assembly_get_velocity(assembly, equations->x);
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        const double *H = assembly->H + k * n * n;
-        for (size_t r = 0; r < n; ++r) {
-            double sum = 0.0;
-            for (size_t c = 0; c < n; ++c) {
-                sum += H[n * r + c] * equations->x[k * n + c];
-            }
-            equations->b[k * n + r] = sum;
-        }
-        if (n == 8) {
-            equations->b[k * n + 7] = 0.0; /* p . pdot = 0 */
-        }
+    se3di_assembly_mul_mass(assembly, equations->x, equations->b);
+    for (size_t k = 0; n == 8 && k < assembly->body_count; ++k) {
+        equations->b[8 * k + 7] = 0.0; /* p . pdot = 0 */
     }
 }
 
