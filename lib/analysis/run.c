@@ -67,11 +67,13 @@ static se3d_status allocate_work(se3di_run *run)
  * follow; strong dampers hold explicit methods to small steps. */
 static void choose_method(se3di_run *run)
 {
-    int32_t method = run->automatic && run->analysis == SE3D_ANALYSIS_DYNAMICS &&
-                             se3di_stiffness_is_stiff(run->model)
+    if (!run->automatic) {
+        return;
+    }
+    int32_t method = run->analysis == SE3D_ANALYSIS_DYNAMICS && se3di_stiffness_is_stiff(run->model)
                          ? SE3D_METHOD_RADAU
                          : SE3D_METHOD_DOP853;
-    for (size_t k = 0; run->automatic && k < run->model->force_slots.count; ++k) {
+    for (size_t k = 0; k < run->model->force_slots.count; ++k) {
         if (run->model->forces[k].type == SE3DI_FORCE_FRICTION) {
             method = SE3D_METHOD_GENERALIZED_ALPHA;
         }
@@ -79,9 +81,7 @@ static void choose_method(se3di_run *run)
     if (run->model->sets) {
         method = SE3D_METHOD_VERLET;
     }
-    if (run->automatic) {
-        run->integration.method = se3di_integrator_find(method);
-    }
+    run->integration.method = se3di_integrator_find(method);
 }
 
 /* Build what the model's structure decides. */

@@ -56,6 +56,13 @@ extern const se3di_formulation se3di_formulation_rp_tangent;
 
 /* By se3d_formulation; NULL where there is none. */
 const se3di_formulation *se3di_formulation_find(int32_t id);
+/* What formulations with unknowns (v, w) or their equal share: no normalisation, accelerations that
+ * are the unknowns' own. */
+double se3di_formulation_no_normalisation(const se3di_frame *frame);
+void se3di_formulation_get_plain(const se3di_frame *frame, const double *qddot,
+                                 double acceleration[6]);
+void se3di_formulation_set_plain(const se3di_frame *frame, const double acceleration[6],
+                                 double *qddot);
 /* The same formulation in the fewest unknowns, for explicit methods. */
 const se3di_formulation *se3di_formulation_reduce(const se3di_formulation *formulation);
 

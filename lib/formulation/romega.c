@@ -72,12 +72,6 @@ static void move(se3di_frame *frame, const double *dq)
     se3di_frame_update(frame);
 }
 
-static double normalisation(const se3di_frame *frame)
-{
-    (void)frame;
-    return 0.0;
-}
-
 static void get_velocity(const se3di_frame *frame, double *qdot)
 {
     se3di_copy(frame->v, qdot);
@@ -91,13 +85,21 @@ static void set_velocity(se3di_frame *frame, const double *qdot)
     se3di_quat_rate(frame->p, frame->w, frame->pdot);
 }
 
-static void get_acceleration(const se3di_frame *frame, const double *qddot, double acceleration[6])
+double se3di_formulation_no_normalisation(const se3di_frame *frame)
+{
+    (void)frame;
+    return 0.0;
+}
+
+void se3di_formulation_get_plain(const se3di_frame *frame, const double *qddot,
+                                 double acceleration[6])
 {
     (void)frame;
     memcpy(acceleration, qddot, 6 * sizeof *qddot);
 }
 
-static void set_acceleration(const se3di_frame *frame, const double acceleration[6], double *qddot)
+void se3di_formulation_set_plain(const se3di_frame *frame, const double acceleration[6],
+                                 double *qddot)
 {
     (void)frame;
     memcpy(qddot, acceleration, 6 * sizeof *qddot);
@@ -115,11 +117,11 @@ const se3di_formulation se3di_formulation_romega = {
     .gamma = gamma_of,
     .curvature = curvature,
     .move = move,
-    .normalisation = normalisation,
+    .normalisation = se3di_formulation_no_normalisation,
     .get_velocity = get_velocity,
     .set_velocity = set_velocity,
-    .get_acceleration = get_acceleration,
-    .set_acceleration = set_acceleration,
+    .get_acceleration = se3di_formulation_get_plain,
+    .set_acceleration = se3di_formulation_set_plain,
 };
 
 const se3di_formulation *se3di_formulation_find(int32_t id)

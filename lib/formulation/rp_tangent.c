@@ -97,12 +97,6 @@ static void move(se3di_frame *frame, const double *dq)
     se3di_frame_update(frame);
 }
 
-static double normalisation(const se3di_frame *frame)
-{
-    (void)frame;
-    return 0.0;
-}
-
 static void get_velocity(const se3di_frame *frame, double *qdot)
 {
     se3di_copy(frame->v, qdot);
@@ -114,18 +108,6 @@ static void set_velocity(se3di_frame *frame, const double *qdot)
     se3di_copy(qdot, frame->v);
     se3di_quat_rate(frame->p, qdot + 3, frame->pdot);
     se3di_quat_angular_velocity(frame->p, frame->pdot, frame->w);
-}
-
-static void get_acceleration(const se3di_frame *frame, const double *qddot, double acceleration[6])
-{
-    (void)frame;
-    memcpy(acceleration, qddot, 6 * sizeof *qddot);
-}
-
-static void set_acceleration(const se3di_frame *frame, const double acceleration[6], double *qddot)
-{
-    (void)frame;
-    memcpy(qddot, acceleration, 6 * sizeof *qddot);
 }
 
 const se3di_formulation se3di_formulation_rp_tangent = {
@@ -140,9 +122,9 @@ const se3di_formulation se3di_formulation_rp_tangent = {
     .gamma = gamma_of,
     .curvature = curvature,
     .move = move,
-    .normalisation = normalisation,
+    .normalisation = se3di_formulation_no_normalisation,
     .get_velocity = get_velocity,
     .set_velocity = set_velocity,
-    .get_acceleration = get_acceleration,
-    .set_acceleration = set_acceleration,
+    .get_acceleration = se3di_formulation_get_plain,
+    .set_acceleration = se3di_formulation_set_plain,
 };

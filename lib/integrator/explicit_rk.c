@@ -252,25 +252,6 @@ static void accept(rk *m, double h)
     ++m->equations->counters.steps;
 }
 
-/* What the force elements remember, as it was before the step, or saved. */
-static void restore_memory(rk *m)
-{
-    se3di_model *model = m->assembly->model;
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        memcpy(model->forces[k].state, m->memory + SE3DI_FORCE_STATES * k,
-               sizeof model->forces[k].state);
-    }
-}
-
-static void save_memory(rk *m)
-{
-    const se3di_model *model = m->assembly->model;
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        memcpy(m->memory + SE3DI_FORCE_STATES * k, model->forces[k].state,
-               sizeof model->forces[k].state);
-    }
-}
-
 /* Elements with a memory (stick or slip, the load of friction) change it between steps. The change
  * of the derivative times h is part of the error: *error is raised to it, and the memory stays as
  * it was if that is too much. */
@@ -281,7 +262,7 @@ static se3d_status settle_memory(rk *m, double h, double *error)
     if (!se3di_forces_have_memory(model)) {
         return SE3D_OK;
     }
-    save_memory(m);
+    se3di_model_save_memory(model, m->memory);
     se3di_forces_accept(model);
     SE3DI_TRY(evaluate(m, m->header[RK_T1] + h, m->sum3));
     for (size_t k = 0; k < m->count; ++k) {
@@ -291,7 +272,7 @@ static se3d_status settle_memory(rk *m, double h, double *error)
     if (*error <= 1.0) {
         memcpy(end, m->sum3, m->count * sizeof *end);
     } else {
-        restore_memory(m);
+        se3di_model_restore_memory(model, m->memory);
     }
     return SE3D_OK;
 }
@@ -306,7 +287,7 @@ static se3d_status prepare(rk *m, double h, double *error)
     }
     se3d_status status = se3di_loads_prepare(model, m->header[RK_T1] + h, m->equations->error);
     if (status < 0 && se3di_forces_have_memory(model)) {
-        restore_memory(m);
+        se3di_model_restore_memory(model, m->memory);
     }
     return status;
 }
@@ -383,6 +364,7 @@ static se3d_status advance(rk *m, double t_end)
 {
     double h = m->header[RK_NEXT];
     se3di_state_set(m->assembly, m->y1);
+    se3di_angles_accept(m->assembly->model); /* turns count from step to step, not from an output */
     h = se3di_state_limit_turn(m->assembly->model, largest_growth(m), h);
     double rest = t_end - m->header[RK_T1];
     double longer = m->assembly->model->contacts.pair_count > 0 && h > rest ? h : 0.0;
@@ -549,10 +531,6 @@ se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau
 /* Forward steps until t_end is reached, and the interpolation where it is passed. */
 static se3d_status advance_to(rk *m, double t_end)
 {
-    if (m->header[RK_T1] < t_end) { /* turns are counted from step to step, not from an output */
-        se3di_state_set(m->assembly, m->y1);
-        se3di_angles_accept(m->assembly->model);
-    }
     while (m->header[RK_T1] < t_end) {
         SE3DI_TRY(advance(m, t_end));
     }

@@ -363,7 +363,7 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
     copy(step.lambda, assembly->model->lambda, assembly->row_count);
     se3di_contacts_begin(assembly->model, h);
     se3di_equations_save(equations);
-    se3di_newton_save_memory(&integration->newton);
+    se3di_model_save_memory(assembly->model, integration->newton.memory);
     se3d_status status = se3di_assembly_eval_functions(assembly, step.t, equations->error);
     if (status >= 0) {
         update_state(&step);
@@ -380,7 +380,7 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
     }
     if (status < 0) {
         se3di_equations_restore(equations);
-        se3di_newton_restore_memory(&integration->newton);
+        se3di_model_restore_memory(assembly->model, integration->newton.memory);
         return status;
     }
     accept(&step);

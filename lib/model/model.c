@@ -253,3 +253,17 @@ se3d_status se3di_model_clone(const se3di_model *model, se3di_model *copy)
     }
     return status;
 }
+
+void se3di_model_save_memory(const se3di_model *model, double *memory)
+{
+    for (size_t k = 0; k < model->force_slots.count; ++k, memory += SE3DI_FORCE_STATES) {
+        memcpy(memory, model->forces[k].state, sizeof model->forces[k].state);
+    }
+}
+
+void se3di_model_restore_memory(se3di_model *model, const double *memory)
+{
+    for (size_t k = 0; k < model->force_slots.count; ++k, memory += SE3DI_FORCE_STATES) {
+        memcpy(model->forces[k].state, memory, sizeof model->forces[k].state);
+    }
+}

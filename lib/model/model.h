@@ -270,6 +270,9 @@ void se3di_model_set_contact(se3di_model *model, const se3di_contact_settings *s
 se3d_status se3di_shape_own(const se3d_allocator *allocator, se3di_shape *shape);
 void se3di_shape_release(const se3d_allocator *allocator, se3di_shape *shape);
 
+/* Keep, put back what force elements remember: memory [forces * SE3DI_FORCE_STATES]. */
+void se3di_model_save_memory(const se3di_model *model, double *memory);
+void se3di_model_restore_memory(se3di_model *model, const double *memory);
 /* The structure has changed. */
 void se3di_model_touch(se3di_model *model);
 /* The user has set a state: nothing that an integrator or solver remembers of it holds. */

@@ -162,21 +162,3 @@ se3d_status se3di_newton_solve(se3di_newton *newton)
     }
     return status;
 }
-
-void se3di_newton_save_memory(se3di_newton *newton)
-{
-    const se3di_model *model = newton->equations->assembly.model;
-    for (size_t k = 0; k < newton->force_count; ++k) {
-        memcpy(newton->memory + SE3DI_FORCE_STATES * k, model->forces[k].state,
-               sizeof model->forces[k].state);
-    }
-}
-
-void se3di_newton_restore_memory(se3di_newton *newton)
-{
-    se3di_model *model = newton->equations->assembly.model;
-    for (size_t k = 0; k < newton->force_count; ++k) {
-        memcpy(model->forces[k].state, newton->memory + SE3DI_FORCE_STATES * k,
-               sizeof model->forces[k].state);
-    }
-}

@@ -41,8 +41,4 @@ se3d_status se3di_newton_factor(se3di_newton *newton, double t, const double *vd
 /* Solve for equations->b, ->c into equations->x (dvdot) and ->l. */
 se3d_status se3di_newton_solve(se3di_newton *newton);
 
-/* Keep and restore the memory of the force elements. */
-void se3di_newton_save_memory(se3di_newton *newton);
-void se3di_newton_restore_memory(se3di_newton *newton);
-
 #endif

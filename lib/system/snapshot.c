@@ -59,10 +59,7 @@ static void fill(se3d_snapshot *s, const se3di_model *model)
     for (size_t k = 0; k < s->angles; ++k) {
         s->turns[k] = model->angles[k].theta;
     }
-    for (size_t k = 0; k < s->forces; ++k) {
-        copy(s->memory + SE3DI_FORCE_STATES * k, model->forces[k].state,
-             sizeof model->forces[k].state);
-    }
+    se3di_model_save_memory(model, s->memory);
     copy(s->touching, model->contacts.list, s->contacts * sizeof *s->touching);
     for (size_t k = 0; k < s->shapes; ++k) {
         copy(s->wrench + 6 * k, model->shapes[k].force, 3 * sizeof(double));
@@ -154,10 +151,7 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
     for (size_t k = 0; k < snapshot->angles; ++k) {
         model->angles[k].theta = snapshot->turns[k];
     }
-    for (size_t k = 0; k < snapshot->forces; ++k) {
-        copy(model->forces[k].state, snapshot->memory + SE3DI_FORCE_STATES * k,
-             sizeof model->forces[k].state);
-    }
+    se3di_model_restore_memory(model, snapshot->memory);
     copy(model->contacts.list, snapshot->touching, snapshot->contacts * sizeof *snapshot->touching);
     model->contacts.count = snapshot->contacts;
     model->contacts.step = snapshot->contact_step;
