@@ -12,6 +12,9 @@
 #include <string.h>
 
 #define POSITION_ITERATIONS 60
+#define TURN_MAX            3.0   /* rad, of a body in a step */
+#define GAP_ROUNDING        1e-12 /* relative violation of a position equation */
+#define GAP_CLOSED          1e-6  /* the largest that may be closed at the end of a step */
 
 size_t se3di_lie_verlet_history_count(const se3di_assembly *assembly)
 {
@@ -21,7 +24,7 @@ size_t se3di_lie_verlet_history_count(const se3di_assembly *assembly)
 
 size_t se3di_lie_verlet_work_count(const se3di_assembly *assembly)
 {
-    return 6 * (size_t)assembly->dense_count + assembly->row_count +
+    return 6 * (size_t)assembly->dense_count + 2 * (size_t)assembly->row_count +
            6 * (size_t)assembly->body_count + assembly->unknown_count;
 }
 
@@ -40,57 +43,118 @@ se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int forc
                           .force_iterations = force_iterations,
                           .wrench = integration->work};
     m.lambda = m.wrench + 6 * (size_t)assembly->dense_count;
-    m.half = m.lambda + assembly->row_count;
+    m.best = m.lambda + assembly->row_count;
+    m.half = m.best + assembly->row_count;
     m.last = m.half + 6 * (size_t)assembly->body_count;
     return m;
 }
 
-/* J xi + s h/2 xi x J xi + h^2/4 xi (xi.J xi) */
-static void trivialised_momentum(const double J[9], const double xi[3], double h, double s,
-                                 double out[3])
+/* The transpose of the inverse derivative of exp at the turn x (length y^(1/2) < 2 pi):
+ *
+ *     m + s/2 x x m + c x x (x x m),   c(y) = (1 - z cot z)/y,  z = y^(1/2)/2
+ *
+ * Its c and dc/dy; by series where the difference cancels. */
+static void turn_coefficients(double y, double *c, double *c_y)
 {
-    double momentum[3], gyro[3];
-    se3di_mul(J, xi, momentum);
-    se3di_cross(xi, momentum, gyro);
-    const double along = 0.25 * h * h * se3di_dot(xi, momentum);
+    if (y < 0.06) {
+        *c = 1.0 / 12 +
+             y * (1.0 / 720 + y * (1.0 / 30240 + y * (1.0 / 1209600 + y * (1.0 / 47900160))));
+        *c_y = 1.0 / 720 + y * (1.0 / 15120 + y * (1.0 / 403200 + y * (1.0 / 11975040)));
+        return;
+    }
+    const double z = 0.5 * sqrt(y), cot = 1.0 / tan(z);
+    *c = (1.0 - z * cot) / y;
+    *c_y = (0.125 * (1.0 + cot * cot - cot / z) - *c) / y;
+}
+
+/* The momentum at the start (s = 1) or end (s = -1) of a turn x in which it is m in the mean. */
+static void trivialised_momentum(const double m[3], const double x[3], double s, double out[3])
+{
+    double gyro[3], twice[3], c, c_y;
+    turn_coefficients(se3di_dot(x, x), &c, &c_y);
+    se3di_cross(x, m, gyro);
+    se3di_cross(x, gyro, twice);
     for (int k = 0; k < 3; ++k) {
-        out[k] = momentum[k] + 0.5 * s * h * gyro[k] + along * xi[k];
+        out[k] = m[k] + 0.5 * s * gyro[k] + c * twice[k];
     }
 }
 
-/* xi of a momentum, by Newton. */
-static se3d_status solve_mean_rate(const double J[9], const double momentum[3], double h,
-                                   double xi[3])
+/* d momentum(J x, x, 1) / d x */
+static void momentum_derivative(const double J[9], const double m[3], const double x[3],
+                                double D[9])
 {
-    se3di_solve3(J, momentum, xi);
-    double before = HUGE_VAL;
-    for (int iteration = 0; iteration < 50; ++iteration) {
-        double f[3], m[3], D[9], dxi[3];
-        trivialised_momentum(J, xi, h, 1.0, f);
-        se3di_sub(momentum, f, f);
-        se3di_mul(J, xi, m);
-        const double along = 0.25 * h * h * se3di_dot(xi, m);
-        const double X[9] = {0, -xi[2], xi[1], xi[2], 0, -xi[0], -xi[1], xi[0], 0};
-        const double P[9] = {0, -m[2], m[1], m[2], 0, -m[0], -m[1], m[0], 0};
-        for (int r = 0; r < 3; ++r) {
-            for (int c = 0; c < 3; ++c) {
-                double XJ = X[3 * r] * J[c] + X[3 * r + 1] * J[3 + c] + X[3 * r + 2] * J[6 + c];
-                D[3 * r + c] = J[3 * r + c] + 0.5 * h * (XJ - P[3 * r + c]) +
-                               (r == c ? along : 0.0) + 0.5 * h * h * xi[r] * m[c];
-            }
+    double c, c_y, gyro[3], twice[3];
+    const double y = se3di_dot(x, x), along = se3di_dot(x, m);
+    const double X[9] = {0, -x[2], x[1], x[2], 0, -x[0], -x[1], x[0], 0};
+    const double P[9] = {0, -m[2], m[1], m[2], 0, -m[0], -m[1], m[0], 0};
+    double Jx[3];
+    turn_coefficients(y, &c, &c_y);
+    se3di_cross(x, m, gyro);
+    se3di_cross(x, gyro, twice);
+    se3di_mul(J, x, Jx); /* J is symmetric */
+    for (int r = 0; r < 3; ++r) {
+        for (int k = 0; k < 3; ++k) {
+            double XJ = X[3 * r] * J[k] + X[3 * r + 1] * J[3 + k] + X[3 * r + 2] * J[6 + k];
+            double XXJ = x[r] * Jx[k] - y * J[3 * r + k];
+            D[3 * r + k] = J[3 * r + k] + 0.5 * (XJ - P[3 * r + k]) +
+                           c * (XXJ + (r == k ? along : 0.0) + x[r] * m[k] - 2.0 * m[r] * x[k]) +
+                           2.0 * c_y * twice[r] * x[k];
         }
-        se3di_solve3(D, f, dxi);
-        se3di_add(xi, dxi, xi);
-        double size = se3di_norm(dxi), scale = se3di_norm(xi);
+    }
+}
+
+/* The turn x = h xi of a momentum h L at its start, and the mean momentum m = J x, by Newton. */
+static se3d_status solve_turn(const double J[9], const double momentum[3], double x[3], double m[3])
+{
+    double before = HUGE_VAL;
+    se3di_solve3(J, momentum, x);
+    for (int iteration = 0; iteration < 50; ++iteration) {
+        double f[3], D[9], dx[3];
+        se3di_mul(J, x, m);
+        if (!(se3di_dot(x, x) < TURN_MAX * TURN_MAX)) {
+            return SE3D_ERR_NO_CONVERGENCE;
+        }
+        trivialised_momentum(m, x, 1.0, f);
+        se3di_sub(momentum, f, f);
+        momentum_derivative(J, m, x, D);
+        se3di_solve3(D, f, dx);
+        se3di_add(x, dx, x);
+        double size = se3di_norm(dx), scale = se3di_norm(x);
         if (!isfinite(size)) {
             return SE3D_ERR_NOT_FINITE;
         }
         if (size <= 1e-15 * scale || (size <= 1e-12 * scale && size >= 0.5 * before)) {
+            se3di_mul(J, x, m);
             return SE3D_OK;
         }
         before = size;
     }
     return SE3D_ERR_NO_CONVERGENCE;
+}
+
+/* The middle of the step of a free body, with the velocity that its frame has and the turn of the
+ * step: its velocities, and what is kept for the end. */
+static void set_half(se3di_lie_verlet *m, uint32_t free_body, const double turn[3],
+                     const double mean[3])
+{
+    double *half = m->half + 6 * (size_t)free_body;
+    se3di_frame *frame = &m->assembly->model->frames[m->assembly->free_body[free_body]];
+    se3di_copy(frame->v, half);
+    trivialised_momentum(mean, turn, -1.0, half + 3);
+    se3di_scale(1.0 / m->h, half + 3, half + 3);
+    se3di_scale(1.0 / m->h, turn, frame->w);
+    se3di_frame_update(frame);
+}
+
+static se3d_status report_turn(const se3di_lie_verlet *m, uint32_t body, se3d_status status)
+{
+    const char *name = m->assembly->model->bodies[body].name;
+    const double rate = se3di_norm(m->equations->saved[body].w);
+    return se3di_error_set(m->equations->error, status,
+                           "t = %g s: body %s turns too far in a step of %g s at %.3g rad/s; try a "
+                           "step of at most %.3g s",
+                           m->t1, name ? name : "without a name", m->h, rate,
+                           fmin(1.0 / rate, 0.5 * fabs(m->h)));
 }
 
 /* q_1, v_h and L_1 without its last half kick, for the multipliers `lambda`; the frames hold q_0
@@ -108,25 +172,63 @@ static se3d_status drift(se3di_lie_verlet *m)
         uint32_t body = assembly->free_body[k];
         const se3di_frame *from = &equations->saved[body];
         se3di_frame *frame = &model->frames[body];
-        double force[3], torque[3], momentum[3], J[9], xi[3];
-        double *half = m->half + 6 * (size_t)k;
+        double force[3], torque[3], momentum[3], J[9], turn[3], mean[3];
         se3di_state_split_force(assembly, from, equations->b + k * block, force, torque);
         se3di_inertia_matrix(model->bodies[body].J, J);
         se3di_mul(J, from->w, momentum);
         for (int c = 0; c < 3; ++c) {
             const double *applied = m->wrench + 6 * (size_t)body;
-            half[c] = from->v[c] + 0.5 * h * (applied[c] - force[c]) / model->bodies[body].mass;
-            momentum[c] += 0.5 * h * (applied[3 + c] - torque[c]);
-            frame->r[c] = from->r[c] + h * half[c];
+            frame->v[c] = from->v[c] + 0.5 * h * (applied[c] - force[c]) / model->bodies[body].mass;
+            momentum[c] = h * (momentum[c] + 0.5 * h * (applied[3 + c] - torque[c]));
+            frame->r[c] = from->r[c] + h * frame->v[c];
         }
-        SE3DI_TRY(solve_mean_rate(J, momentum, h, xi));
-        trivialised_momentum(J, xi, h, -1.0, half + 3);
-        const double turn[4] = {1.0, 0.5 * h * xi[0], 0.5 * h * xi[1], 0.5 * h * xi[2]};
-        se3di_copy(half, frame->v);
-        se3di_copy(xi, frame->w);
-        se3di_quat_mul(from->p, turn, frame->p);
+        se3d_status status = solve_turn(J, momentum, turn, mean);
+        if (status < 0) {
+            return report_turn(m, body, status);
+        }
+        se3di_quat_rotate(from->p, turn, frame->p);
         se3di_quat_normalize(frame->p, frame->p);
-        se3di_frame_update(frame);
+        set_half(m, k, turn, mean);
+    }
+    return SE3D_OK;
+}
+
+/* The largest relative violation of the positions; `c` is what the multipliers have to change. */
+static double eval_gap(se3di_lie_verlet *m)
+{
+    se3di_equations *equations = m->equations;
+    const se3di_assembly *assembly = m->assembly;
+    double worst = 0.0;
+    se3di_assembly_eval_phi(assembly, equations->c);
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        double gap = fabs(equations->c[k]) / se3di_row_get_scale(assembly->model, k, m->size);
+        worst = gap <= worst ? worst : gap;
+        equations->c[k] *= 2.0 / (m->h * m->h);
+    }
+    return worst;
+}
+
+/* Near a singular position the constraint forces of q_0 have no leverage on some constraints at
+ * q_1, or the opposite one where the step goes through it: what gap they leave there is closed
+ * along the constraint forces of q_1, and the velocities follow the displacements. */
+static se3d_status close_gap(se3di_lie_verlet *m)
+{
+    const se3di_model *model = m->assembly->model;
+    const se3di_state_scale scale = {.length = m->size};
+    SE3DI_TRY(drift(m));
+    SE3DI_TRY(se3di_state_project_positions(m->equations, m->t1, &scale, GAP_ROUNDING));
+    for (uint32_t k = 0; k < m->assembly->body_count; ++k) {
+        uint32_t body = m->assembly->free_body[k];
+        const se3di_frame *from = &m->equations->saved[body];
+        se3di_frame *frame = &model->frames[body];
+        double turn[3], J[9], mean[3];
+        for (int c = 0; c < 3; ++c) {
+            frame->v[c] = (frame->r[c] - from->r[c]) / m->h;
+        }
+        se3di_quat_log(from->p, frame->p, turn);
+        se3di_inertia_matrix(model->bodies[body].J, J);
+        se3di_mul(J, turn, mean);
+        set_half(m, k, turn, mean);
     }
     return SE3D_OK;
 }
@@ -139,27 +241,30 @@ static se3d_status solve_positions(se3di_lie_verlet *m)
     double before = HUGE_VAL;
     for (int iteration = 0; iteration < POSITION_ITERATIONS; ++iteration) {
         SE3DI_TRY(drift(m));
-        se3di_assembly_eval_phi(assembly, equations->c);
-        double worst = 0.0;
-        for (uint32_t k = 0; k < assembly->row_count; ++k) {
-            worst = fmax(worst, fabs(equations->c[k]));
-            equations->c[k] *= 2.0 / (m->h * m->h);
-        }
-        if (!isfinite(worst) || worst > 1e3 * before) {
-            return SE3D_ERR_NO_CONVERGENCE;
-        }
-        if (worst <= 1e-15 || (worst <= 1e-12 && worst >= 0.5 * before)) {
+        double gap = eval_gap(m);
+        if (gap <= 1e-15 || (gap <= GAP_ROUNDING && gap >= 0.5 * before)) {
             return SE3D_OK;
         }
-        before = worst;
+        if (!(gap < before)) {
+            break;
+        }
+        before = gap;
         memset(equations->b, 0, assembly->unknown_count * sizeof *equations->b);
         SE3DI_TRY(se3di_equations_solve(equations));
         ++equations->counters.iterations;
+        memcpy(m->best, m->lambda, assembly->row_count * sizeof *m->best);
         for (uint32_t k = 0; k < assembly->row_count; ++k) {
             m->lambda[k] -= equations->l[k];
         }
     }
-    return before <= 1e-9 ? SE3D_OK : SE3D_ERR_NO_CONVERGENCE;
+    if (!(before <= GAP_CLOSED)) {
+        return se3di_error_set(equations->error, SE3D_ERR_NO_CONVERGENCE,
+                               "t = %g s: the positions did not converge in a step of %g s; try a "
+                               "smaller step",
+                               m->t1, m->h);
+    }
+    memcpy(m->lambda, m->best, assembly->row_count * sizeof *m->best);
+    return close_gap(m);
 }
 
 /* The last half kick with the applied wrench of the present velocities. */
@@ -230,18 +335,15 @@ se3d_status se3di_lie_verlet_drift(se3di_lie_verlet *m)
     if (assembly->row_count > 0) {
         memcpy(m->lambda, model->lambda, assembly->row_count * sizeof *m->lambda);
     }
-    SE3DI_TRY(se3di_equations_factor(equations));
+    m->size = se3di_model_get_size(model);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, model->time, equations->b, equations->error));
     memcpy(m->wrench, assembly->wrench, 6 * (size_t)assembly->dense_count * sizeof *m->wrench);
-    SE3DI_TRY(se3di_assembly_eval_functions(assembly, m->t1, equations->error));
-    se3d_status status = solve_positions(m);
-    if (status < 0) {
-        return se3di_error_set(equations->error, status,
-                               "t = %g s: the positions did not converge in a step of %g s; try a "
-                               "smaller step",
-                               m->t1, m->h);
-    }
-    return SE3D_OK;
+    const se3di_kkt_settings before = se3di_state_regularise(equations->kkt);
+    se3d_status status = se3di_equations_factor(equations);
+    status = status < 0 ? status : se3di_assembly_eval_functions(assembly, m->t1, equations->error);
+    status = status < 0 ? status : solve_positions(m);
+    se3di_kkt_set_settings(equations->kkt, &before);
+    return status;
 }
 
 /* From the velocities in the middle of the step to those that they lead to at its end. */

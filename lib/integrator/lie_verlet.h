@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The step of rattle (Andersen 1983) on the group of rigid motions, in parts: translation is
- * Stoermer-Verlet; rotation is the variational Lie-Verlet step with the Cayley map (Bou-Rabee,
- * Marsden 2009), for the body-frame momentum L = J w, with xi the mean angular velocity of the
- * step:
+ * Stoermer-Verlet; rotation is the variational Lie-Verlet step with the exponential map (Bou-Rabee,
+ * Marsden 2009), for the body-frame momentum L = J w and the turn x of the step, with
+ * T(x) m = m + 1/2 x x m + c(x.x) x x (x x m), the transpose of the inverse derivative of exp:
  *
- *     drift   m v_h                                  = m v_0 + h/2 (F_0 - G_0^T lambda_0)
- *             J xi + h/2 xi x J xi + h^2/4 xi (xi.J xi) = L_0 + h/2 (n_0 - C_0^T lambda_0)
- *             r_1 = r_0 + h v_h,   p_1 = p_0 (1, h xi/2)/|.|,     lambda_0 from Phi(q_1, t_1) = 0
- *     kick    L_1 = J xi - h/2 xi x J xi + h^2/4 xi (xi.J xi) + h/2 (n_1 - C_1^T lambda_1)
- *             m v_1 = m v_h + h/2 (F_1 - G_1^T lambda_1),         lambda_1 from Phi_q qdot_1 =
- * nu(t_1) finish  accelerations and multipliers of the end state, which is accepted
+ *     drift   m v_h      = m v_0 + h/2 (F_0 - G_0^T lambda_0)
+ *             T(x) J x/h = L_0 + h/2 (n_0 - C_0^T lambda_0)
+ *             r_1 = r_0 + h v_h,   p_1 = p_0 exp(x),           lambda_0 from Phi(q_1, t_1) = 0
+ *     kick    L_1   = T(-x) J x/h + h/2 (n_1 - C_1^T lambda_1)
+ *             m v_1 = m v_h + h/2 (F_1 - G_1^T lambda_1),      lambda_1 from Phi_q qdot_1 = nu(t_1)
+ *     finish  accelerations and multipliers of the end state, which is accepted
  *
- * The drift keeps linear and angular momentum of a free body to rounding. docs/theory/rattle.md */
+ * The drift keeps linear and angular momentum of a free body to rounding, and turns it about a
+ * principal axis exactly. docs/theory/rattle.md */
 #ifndef SE3DI_LIE_VERLET_H
 #define SE3DI_LIE_VERLET_H
 
@@ -21,9 +22,11 @@ typedef struct se3di_lie_verlet {
     se3di_equations *equations;
     se3di_assembly *assembly;
     double h, t1;
+    double size;          /* of the mechanism [m] */
     int force_iterations; /* of forces that depend on velocities: 1 is explicit, of order 2 */
     double *wrench;       /* applied at the start [dense bodies * 6] */
     double *lambda;       /* [rows] */
+    double *best;         /* [rows]: with the smallest gap yet */
     double *half;         /* half-step velocity and momentum at its end [free bodies * 6] */
     double *last;         /* [unknowns] */
 } se3di_lie_verlet;

@@ -137,24 +137,6 @@ se3d_status se3di_state_evaluate(se3di_equations *equations, double t)
     return se3di_equations_solve(equations);
 }
 
-/* What a violation of an equation is measured by. */
-static double row_scale(const se3di_model *model, uint32_t row, double length)
-{
-    if (model->rows[row].term_count == 0) {
-        return 1.0; /* a callback's: unknown */
-    }
-    const se3di_term *term = &model->terms[model->rows[row].term_begin];
-    switch (term->type) {
-    case SE3DI_PRIMITIVE_D:
-        return length * length;
-    case SE3DI_PRIMITIVE_DP2:
-    case SE3DI_PRIMITIVE_CD:
-        return length;
-    default:
-        return 1.0;
-    }
-}
-
 /* c = -Phi; returns the largest relative violation. */
 static double eval_gap(se3di_equations *equations, double length)
 {
@@ -162,7 +144,7 @@ static double eval_gap(se3di_equations *equations, double length)
     double worst = 0.0;
     se3di_assembly_eval_phi(assembly, equations->c);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        double gap = fabs(equations->c[k]) / row_scale(assembly->model, k, length);
+        double gap = fabs(equations->c[k]) / se3di_row_get_scale(assembly->model, k, length);
         worst = gap <= worst ? worst : gap;
         equations->c[k] = -equations->c[k];
     }
@@ -179,7 +161,8 @@ static double eval_rate_gap(se3di_equations *equations, const se3di_state_scale 
     se3di_assembly_mul(assembly, equations->x, equations->c);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
         equations->c[k] = assembly->f[3 * k + 1] - equations->c[k];
-        double gap = fabs(equations->c[k]) / (rate * row_scale(assembly->model, k, scale->length));
+        double gap =
+            fabs(equations->c[k]) / (rate * se3di_row_get_scale(assembly->model, k, scale->length));
         worst = gap <= worst ? worst : gap;
     }
     return worst;
@@ -209,6 +192,7 @@ static double largest_shift(const se3di_equations *equations, double length)
     return largest;
 }
 
+/* *is_factored: the Jacobian of the present positions is factored; and is it in the end. */
 static se3d_status project_positions(se3di_equations *equations, double t,
                                      const se3di_state_scale *scale, double accuracy,
                                      int *is_factored, double *moved)
@@ -243,6 +227,14 @@ static se3d_status project_positions(se3di_equations *equations, double t,
                                t, gap);
     }
     return SE3D_OK;
+}
+
+se3d_status se3di_state_project_positions(se3di_equations *equations, double t,
+                                          const se3di_state_scale *scale, double accuracy)
+{
+    int is_factored = 0;
+    double moved = 0.0;
+    return project_positions(equations, t, scale, accuracy, &is_factored, &moved);
 }
 
 se3d_status se3di_state_project(se3di_equations *equations, double t,

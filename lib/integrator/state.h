@@ -52,6 +52,9 @@ se3d_status se3di_state_evaluate(se3di_equations *equations, double t);
  * violation that does not matter. *moved: the largest relative correction of positions. */
 se3d_status se3di_state_project(se3di_equations *equations, double t,
                                 const se3di_state_scale *scale, double accuracy, double *moved);
+/* The positions alone, where functions of time and (in r-omega) mass blocks are evaluated. */
+se3d_status se3di_state_project_positions(se3di_equations *equations, double t,
+                                          const se3di_state_scale *scale, double accuracy);
 
 /* Force and torque (body frame) of a generalised force on a body with the orientation of `frame`;
  * and the same divided by the body's mass and inertia. */
