@@ -35,9 +35,10 @@ typedef struct se3d_solver_def {
     int32_t analysis;    /* se3d_analysis, default DYNAMICS */
     int32_t formulation; /* se3d_formulation, default ROMEGA */
     int32_t method;      /* se3d_method, dynamics only, default AUTO */
-    int32_t order;       /* methods with several orders; 0: the default one */
-    double step;         /* fixed step, or the largest one of an adaptive method [s]; 0: chosen */
-    double tolerance;    /* relative error of adaptive methods; 0: 1e-6 */
+    int32_t order;       /* bdf: 1..5, rattle: 2, 4, others: the one they have; 0: the default */
+    double step;         /* fixed step, or the largest one of an adaptive method, >= 1e-15 [s]; 0:
+                            chosen */
+    double tolerance;    /* relative error of adaptive methods, 1e-14..0.1; 0: 1e-6 */
     double spectral_radius; /* generalized_alpha: at infinite frequency, 0..1, default 0.9 */
     double alpha;           /* hht: -1/3..0, default -0.1 */
     size_t iterations_max;  /* Newton iterations per step; 0: 25 */
@@ -60,13 +61,14 @@ SE3D_API se3d_status se3d_solver_create(se3d_system *system, const se3d_solver_d
 SE3D_API void se3d_solver_destroy(se3d_solver *solver);
 
 /* Run to `t_end` [s] (>= the present time). At t_end = now the state is only made consistent:
- * positions and velocities are projected, accelerations and multipliers are computed. On failure
- * the state is the last accepted step's. @return OK, INFO_*, INVALID_ARGUMENT, INCONSISTENT,
+ * positions and velocities are projected, accelerations and multipliers are computed. More than 1e9
+ * steps of def.step are refused. On failure the state is the last accepted step's. @return OK, INFO_*, INVALID_ARGUMENT, INCONSISTENT,
  * NO_CONVERGENCE, SINGULAR, NOT_FINITE, STEP_SIZE, CALLBACK, NO_MEMORY; the message is the
  * system's. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_solver_run(se3d_solver *solver, double t_end);
 
-/* Make one step of length h > 0 [s]. As se3d_solver_run. Exclusive. @since 0.1 */
+/* Make one step of length h >= 1e-15 [s] that moves the time on. As se3d_solver_run. Exclusive.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_solver_step(se3d_solver *solver, double h);
 
 /* Counters since creation. @since 0.1 */

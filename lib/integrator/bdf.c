@@ -502,4 +502,5 @@ const se3di_integrator se3di_integrator_bdf = {
     .step = step,
     .run = run,
     .is_implicit = 1,
+    .orders = 0x3E, /* 1 to 5 */
 };

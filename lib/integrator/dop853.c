@@ -198,4 +198,5 @@ const se3di_integrator se3di_integrator_dop853 = {
     .step = step,
     .run = run,
     .is_explicit = 1,
+    .orders = 1u << 8,
 };

@@ -45,4 +45,5 @@ const se3di_integrator se3di_integrator_generalized_alpha = {
     .run = run,
     .controls_if_asked = 1,
     .is_implicit = 1,
+    .orders = 1u << 2,
 };

@@ -47,4 +47,5 @@ const se3di_integrator se3di_integrator_hht = {
     .run = run,
     .controls_if_asked = 1,
     .is_implicit = 1,
+    .orders = 1u << 2,
 };

@@ -382,4 +382,5 @@ const se3di_integrator se3di_integrator_radau = {
     .step = step,
     .run = run,
     .is_implicit = 1,
+    .orders = 1u << 5,
 };

@@ -50,4 +50,5 @@ const se3di_integrator se3di_integrator_rattle = {
     .work_count = se3di_lie_verlet_work_count,
     .start = se3di_lie_verlet_start,
     .step = step,
+    .orders = 1u << 2 | 1u << 4,
 };

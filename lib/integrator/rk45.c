@@ -60,4 +60,5 @@ const se3di_integrator se3di_integrator_rk45 = {
     .step = step,
     .run = run,
     .is_explicit = 1,
+    .orders = 1u << 5,
 };

@@ -138,4 +138,5 @@ const se3di_integrator se3di_integrator_verlet = {
     .start = start,
     .step = step,
     .run = run,
+    .orders = 1u << 2,
 };

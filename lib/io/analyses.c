@@ -7,6 +7,11 @@
 
 static const char *const types[] = {
     "assembly", "kinematics", "inverse_dynamics", "dynamics", "equilibrium", "modes", NULL};
+#define STEP_MIN     1e-15 /* s */
+#define STEP_DEFAULT 1e-3  /* s, of methods with fixed steps */
+#define STEPS_MAX    1e9
+#define TIME_MAX     1e9 /* s, thirty years */
+
 enum { TYPE_MODES = 5 }; /* the others are se3d_analysis */
 static const char *const formulations[] = {"romega", "rp", NULL};
 static const char *const methods[] = {
@@ -28,7 +33,8 @@ static const se3di_node *replaced(se3di_reader *reader, const se3di_node *node, 
     return made;
 }
 
-static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry)
+static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry,
+                       int32_t *chosen)
 {
     se3d_solver_def *solver = &entry->solver;
     const se3d_model_options *options = reader->options;
@@ -58,56 +64,53 @@ static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analy
     if (method && !se3di_read_word(reader, method, methods, &word)) {
         return false;
     }
+    *chosen = (int32_t)word;
     solver->method =
         solver->analysis == SE3D_ANALYSIS_DYNAMICS ? (int32_t)word : (int32_t)SE3D_METHOD_AUTO;
     return true;
 }
 
-/* A whole number from 0 to `largest`. */
-static bool read_count(se3di_reader *reader, const se3di_node *node, const char *key,
-                       double largest, double *value)
+/* What the library says of the settings; `method` is the one of the file or of an option, which
+ * analyses other than dynamics do not use. */
+static bool check_solver(se3di_reader *reader, const se3di_node *node,
+                         const se3d_solver_def *solver, int32_t method)
 {
-    *value = 0.0;
-    if (!se3di_read_key_number(reader, node, key, SE3DI_NOT_NEGATIVE, value)) {
-        return false;
+    se3d_solver_def tried = *solver;
+    se3d_solver *made = NULL;
+    tried.method = method;
+    const se3d_status status = se3d_solver_create(reader->model->system, &tried, &made);
+    se3d_solver_destroy(made);
+    if (status < 0 && node) {
+        return se3di_reader_fail_system(reader, node, status);
     }
-    if (*value > largest || floor(*value) < *value) {
-        return se3di_reader_fail_key(reader, node, key,
-                                     "is %g, must be a whole number from 0 to %g", *value, largest);
-    }
-    return true;
-}
-
-static bool read_within(se3di_reader *reader, const se3di_node *node, const char *key,
-                        const double range[2], double *value)
-{
-    if (!se3di_read_key_number(reader, node, key, SE3DI_ANY, value)) {
-        return false;
-    }
-    if (!(*value >= range[0] && *value <= range[1])) {
-        return se3di_reader_fail_key(reader, node, key, "is %g, must be from %g to %g", *value,
-                                     range[0], range[1]);
-    }
-    return true;
+    return status >= 0 || se3di_reader_fail(reader, reader->model->root, "%s",
+                                            se3d_system_get_error(reader->model->system));
 }
 
 static bool read_numbers(se3di_reader *reader, const se3di_node *node, se3d_solver_def *solver)
 {
-    static const double unit[2] = {0.0, 1.0};
-    static const double hht[2] = {-1.0 / 3.0, 0.0};
     const se3di_node *step =
         replaced(reader, se3di_node_get(node, "step"), "--step", reader->options->step);
     double order = 0.0;
-    double iterations = 0.0;
+    double iterations = 25.0;
     if ((step && !se3di_read_number(reader, step, SE3DI_POSITIVE, &solver->step)) ||
         !se3di_read_key_number(reader, node, "tolerance", SE3DI_POSITIVE, &solver->tolerance) ||
-        !read_within(reader, node, "spectral_radius", unit, &solver->spectral_radius) ||
-        !read_within(reader, node, "alpha", hht, &solver->alpha) ||
-        !read_count(reader, node, "order", 20.0, &order) ||
-        !read_count(reader, node, "iterations_max", 1e6, &iterations)) {
+        !se3di_read_key_number(reader, node, "spectral_radius", SE3DI_ANY,
+                               &solver->spectral_radius) ||
+        !se3di_read_key_number(reader, node, "alpha", SE3DI_ANY, &solver->alpha) ||
+        !se3di_read_key_count(reader, node, "order", 20.0, &order) ||
+        !se3di_read_key_count(reader, node, "iterations_max", 1e6, &iterations)) {
         return false;
     }
-    solver->order = (int32_t)order;
+    if (iterations < 1.0) {
+        return se3di_reader_fail_key(reader, node, "iterations_max",
+                                     "is 0, must be a whole number from 1 to 1000000");
+    }
+    if (step && solver->step < STEP_MIN) {
+        return se3di_reader_fail(reader, step, "is %g, must be at least %g [s]", solver->step,
+                                 STEP_MIN);
+    }
+    solver->order = reader->options->method ? 0 : (int32_t)order; /* the order of another method */
     solver->iterations_max = (size_t)iterations;
     return true;
 }
@@ -119,6 +122,38 @@ static bool takes_time(const se3d_solver_def *solver)
            solver->analysis == SE3D_ANALYSIS_DYNAMICS;
 }
 
+static bool has_fixed_steps(int32_t method)
+{
+    return method == SE3D_METHOD_GENERALIZED_ALPHA || method == SE3D_METHOD_HHT ||
+           method == SE3D_METHOD_RATTLE || method == SE3D_METHOD_VERLET;
+}
+
+/* Times that are too long, too fine or too many. */
+static bool check_times(se3di_reader *reader, const se3di_node *node, const se3di_node *duration,
+                        const se3di_analysis_entry *entry)
+{
+    const double length = entry->analysis.duration;
+    const double step = entry->solver.step > 0.0                ? entry->solver.step
+                        : has_fixed_steps(entry->solver.method) ? STEP_DEFAULT
+                                                                : 0.0;
+    const double end = length + (isnan(entry->analysis.start) ? 0.0 : entry->analysis.start);
+    if (length > TIME_MAX) {
+        return se3di_reader_fail(reader, duration, "is %g, must be at most %g [s]", length,
+                                 TIME_MAX);
+    }
+    if (step > 0.0 && length / step > STEPS_MAX) {
+        return se3di_reader_fail(reader, duration,
+                                 "is %g s, which takes %.3g steps of %g s, must take at most %g: "
+                                 "choose a larger `step`",
+                                 length, length / step, step, STEPS_MAX);
+    }
+    if (length > 0.0 && step > 0.0 && step < 1e-14 * fabs(end)) {
+        return se3di_reader_fail_key(reader, node ? node : reader->model->root, "step",
+                                     "is %g s, which does not move the time %g s on", step, end);
+    }
+    return true;
+}
+
 static bool read_times(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry)
 {
     const se3di_node *duration =
@@ -126,6 +161,10 @@ static bool read_times(se3di_reader *reader, const se3di_node *node, se3di_analy
     entry->analysis.start = (double)NAN;
     if (!se3di_read_key_number(reader, node, "start", SE3DI_ANY, &entry->analysis.start)) {
         return false;
+    }
+    if (fabs(entry->analysis.start) > TIME_MAX) {
+        return se3di_reader_fail_key(reader, node, "start", "is %g, must be from %g to %g [s]",
+                                     entry->analysis.start, -TIME_MAX, TIME_MAX);
     }
     if (!duration && takes_time(&entry->solver)) {
         return se3di_reader_fail_key(reader, node ? node : reader->model->root, "duration",
@@ -138,16 +177,18 @@ static bool read_times(se3di_reader *reader, const se3di_node *node, se3di_analy
     if (!takes_time(&entry->solver)) {
         entry->analysis.duration = 0.0;
     }
-    return true;
+    return check_times(reader, node, duration, entry);
 }
 
 static bool read_analysis(se3di_reader *reader, const se3di_node *node)
 {
     se3di_analysis_entry entry = {.node = node};
+    int32_t method = SE3D_METHOD_AUTO;
     entry.solver = se3d_solver_def_default();
     if ((node && !se3di_read_keys(reader, node, SE3DI_OBJECT_ANALYSIS)) ||
-        !read_words(reader, node, &entry) || !read_numbers(reader, node, &entry.solver) ||
-        !read_times(reader, node, &entry) || !se3di_read_modes(reader, node, &entry)) {
+        !read_words(reader, node, &entry, &method) || !read_numbers(reader, node, &entry.solver) ||
+        !check_solver(reader, node, &entry.solver, method) || !read_times(reader, node, &entry) ||
+        !se3di_read_modes(reader, node, &entry)) {
         return false;
     }
     reader->model->analyses[reader->model->analysis_count++] = entry;

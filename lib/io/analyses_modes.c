@@ -114,12 +114,8 @@ static bool read_file(se3di_reader *reader, const se3di_node *node, se3di_modes_
     const se3d_model *model = reader->model;
     const se3di_node *file = se3di_node_get(node, "file");
     modes->file = "modes.csv";
-    if (file && !se3di_read_text(reader, file, &modes->file)) {
+    if (file && !se3di_read_file_name(reader, file, &modes->file)) {
         return false;
-    }
-    const size_t length = strlen(modes->file);
-    if (length == 0 || length > 1000 || modes->file[length - 1] == '/') {
-        return se3di_reader_fail(reader, file, "`%.60s` is not a file name", modes->file);
     }
     for (size_t k = 0; k < model->analysis_count; ++k) {
         const char *other = model->analyses[k].modes.file;

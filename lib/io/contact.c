@@ -37,8 +37,7 @@ static bool create_material(se3di_reader *reader, const se3di_node *entry, se3d_
                    {"cohesion", &def.cohesion},
                    {"adhesion", &def.adhesion}};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i) {
-        if (!se3di_read_key_number(reader, entry, numbers[i].key, SE3DI_NOT_NEGATIVE,
-                                   numbers[i].value)) {
+        if (!se3di_read_key_number(reader, entry, numbers[i].key, SE3DI_ANY, numbers[i].value)) {
             return false;
         }
     }
@@ -109,7 +108,7 @@ static bool read_pairs(se3di_reader *reader, const se3di_node *contact)
             !se3di_read_key_material(reader, node, "material_1", &a) ||
             !se3di_read_key_material(reader, node, "material_2", &b) ||
             !se3di_read_key_number(reader, node, "friction", SE3DI_NOT_NEGATIVE, &def.friction) ||
-            !se3di_read_key_number(reader, node, "restitution", SE3DI_POSITIVE, &def.restitution) ||
+            !se3di_read_key_restitution(reader, node, &def.restitution) ||
             !se3di_read_key_number(reader, node, "rolling_friction", SE3DI_NOT_NEGATIVE,
                                    &def.rolling_friction) ||
             !se3di_read_key_number(reader, node, "torsional_friction", SE3DI_NOT_NEGATIVE,

@@ -60,24 +60,16 @@ static void put(se3di_csv *csv, const char *text, size_t length)
 
 se3d_status se3di_csv_open(se3di_csv *csv, se3di_iopool *pool, const char *path, size_t columns)
 {
-    const size_t length = strlen(path);
     memset(csv, 0, sizeof *csv);
     csv->columns = columns;
-    csv->path = se3di_iopool_copy(pool, path, length);
-    csv->temporary = se3di_iopool_alloc(pool, length + sizeof ".partial");
+    csv->path = se3di_iopool_copy(pool, path, strlen(path));
     csv->buffer = se3di_iopool_alloc(pool, BUFFER_SIZE);
     csv->pending = se3di_iopool_array(pool, columns, sizeof *csv->pending);
-    if (!csv->path || !csv->temporary || !csv->buffer || !csv->pending) {
+    if (!csv->path || !csv->buffer || !csv->pending) {
         return SE3D_ERR_NO_MEMORY;
     }
-    memcpy(csv->temporary, path, length);
-    memcpy(csv->temporary + length, ".partial", sizeof ".partial");
     errno = 0;
-    if (!se3di_file_make_folders(path)) {
-        remember(csv);
-        return SE3D_ERR_IO;
-    }
-    csv->file = fopen(csv->temporary, "wb");
+    csv->file = se3di_file_make_folders(path) ? se3di_partial_open(path) : NULL;
     if (!csv->file) {
         remember(csv);
         return SE3D_ERR_IO;
@@ -131,20 +123,14 @@ se3d_status se3di_csv_close(se3di_csv *csv)
 {
     write_pending(csv);
     flush(csv);
-    errno = 0;
-    if (fclose(csv->file) != 0) {
-        remember(csv);
-    }
+    FILE *file = csv->file;
     csv->file = NULL;
-#if defined(_WIN32)
-    remove(csv->path); /* rename does not replace there */
-#endif
-    errno = 0;
-    if (csv->failure == 0 && rename(csv->temporary, csv->path) != 0) {
-        remember(csv);
-    }
     if (csv->failure != 0) {
-        remove(csv->temporary);
+        se3di_partial_abandon(file, csv->path);
+        return SE3D_ERR_IO;
+    }
+    if (!se3di_partial_close(file, csv->path)) {
+        remember(csv);
         return SE3D_ERR_IO;
     }
     return SE3D_OK;
@@ -153,8 +139,7 @@ se3d_status se3di_csv_close(se3di_csv *csv)
 void se3di_csv_abandon(se3di_csv *csv)
 {
     if (csv->file) {
-        fclose(csv->file);
+        se3di_partial_abandon(csv->file, csv->path);
         csv->file = NULL;
-        remove(csv->temporary);
     }
 }

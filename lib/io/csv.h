@@ -9,7 +9,6 @@
 
 typedef struct se3di_csv {
     const char *path;
-    char *temporary; /* the name while it is being written */
     FILE *file;
     char *buffer;
     size_t used;
@@ -37,8 +36,8 @@ void se3di_csv_abandon(se3di_csv *csv);
  * length. */
 size_t se3di_number_format(double value, char *text);
 
-/* The path of `file` in `folder`, of the file alone where it is absolute. @return false: too long.
- */
+/* The path of `file`, which is relative, in `folder`. @return false: errno says why: too long, or
+ * ELOOP where a symbolic link leads out of the folder. */
 bool se3di_file_join(const char *folder, const char *file, char *path, size_t size);
 /* Make the folders that a path of a file needs. @return false: errno says why. */
 bool se3di_file_make_folders(const char *path);
@@ -46,5 +45,7 @@ bool se3di_file_make_folders(const char *path);
  * says why, and nothing is left. */
 FILE *se3di_partial_open(const char *path);
 bool se3di_partial_close(FILE *file, const char *path);
+/* Close without keeping anything. */
+void se3di_partial_abandon(FILE *file, const char *path);
 
 #endif

@@ -22,6 +22,37 @@ typedef struct builder {
     se3d_status status;
 } builder;
 
+/* Bytes of the UTF-8 character at `text`, 0 where it is cut or none. */
+static size_t character_length(const char *text)
+{
+    const unsigned char first = (unsigned char)text[0];
+    const size_t length = first < 0x80   ? 1
+                          : first < 0xC2 ? 0
+                          : first < 0xE0 ? 2
+                          : first < 0xF0 ? 3
+                          : first < 0xF5 ? 4
+                                         : 0;
+    for (size_t k = 1; k < length; ++k) {
+        if (((unsigned char)text[k] & 0xC0) != 0x80) {
+            return 0;
+        }
+    }
+    return length;
+}
+
+/* Messages quote what is in a file: control characters and cut ones become '?'. */
+static void make_printable(char *text)
+{
+    for (char *c = text; *c;) {
+        const size_t length = character_length(c);
+        if (length == 0 || (unsigned char)*c < ' ' || *c == 0x7F) {
+            *c++ = '?';
+        } else {
+            c += length;
+        }
+    }
+}
+
 void se3di_document_report(se3d_model_error *error, const char *file, size_t line, size_t column,
                            const char *path, const char *text)
 {
@@ -36,6 +67,7 @@ void se3di_document_report(se3d_model_error *error, const char *file, size_t lin
     error->column = column;
     snprintf(error->message, sizeof error->message, "%s%s%s%.300s%s%s", line > 0 ? file : "", place,
              line > 0 ? ": " : "", path, path[0] ? ": " : "", text);
+    make_printable(error->message);
 }
 
 SE3DI_IO_FORMAT(4, 5)

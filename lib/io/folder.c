@@ -11,12 +11,24 @@
 
 #if defined(_WIN32)
 #include <direct.h>
+static bool is_link(const char *path)
+{
+    (void)path;
+    return false;
+}
+
 static int make_folder(const char *path)
 {
     return _mkdir(path);
 }
 #else
 #include <sys/stat.h>
+static bool is_link(const char *path)
+{
+    struct stat about;
+    return lstat(path, &about) == 0 && S_ISLNK(about.st_mode);
+}
+
 static int make_folder(const char *path)
 {
     return mkdir(path, 0777);
@@ -54,33 +66,47 @@ bool se3di_file_make_folders(const char *path)
     return true;
 }
 
-static bool is_absolute(const char *path)
-{
-#if defined(_WIN32)
-    return path[0] == '/' || path[0] == '\\' || (path[0] && path[1] == ':');
-#else
-    return path[0] == '/';
-#endif
-}
-
 bool se3di_file_join(const char *folder, const char *file, char *path, size_t size)
 {
-    const int length = is_absolute(file)
-                           ? snprintf(path, size, "%s", file)
-                           : snprintf(path, size, "%s/%s", folder ? folder : ".", file);
-    return length >= 0 && (size_t)length < size;
+    const char *const in = folder ? folder : ".";
+    const int length = snprintf(path, size, "%s/%s", in, file);
+    if (length < 0 || (size_t)length >= size) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    for (size_t k = strlen(in) + 1; k <= (size_t)length; ++k) {
+        const char c = path[k];
+        if (c != '\0' && !is_separator(c)) {
+            continue;
+        }
+        path[k] = '\0';
+        const bool leads_away = is_link(path);
+        path[k] = c;
+        if (leads_away) {
+            errno = ELOOP;
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Where a file is written before it has its name. @return false: the path is too long. */
+static bool format_partial(const char *path, char partial[4200])
+{
+    const int length = snprintf(partial, 4200, "%s.partial", path);
+    return length >= 0 && length < 4200;
 }
 
 FILE *se3di_partial_open(const char *path)
 {
     char partial[4200];
-    errno = 0;
-    const int length = snprintf(partial, sizeof partial, "%s.partial", path);
-    if (length < 0 || (size_t)length >= sizeof partial) {
+    if (!format_partial(path, partial)) {
         errno = ENAMETOOLONG;
         return NULL;
     }
-    return fopen(partial, "wb");
+    remove(partial); /* of a run that was ended; or a link, which must not be followed */
+    errno = 0;
+    return fopen(partial, "wbx");
 }
 
 bool se3di_partial_close(FILE *file, const char *path)
@@ -88,7 +114,7 @@ bool se3di_partial_close(FILE *file, const char *path)
     char partial[4200];
     errno = 0;
     bool good = !ferror(file);
-    snprintf(partial, sizeof partial, "%s.partial", path);
+    format_partial(path, partial);
     good = fclose(file) == 0 && good;
 #if defined(_WIN32)
     remove(path); /* rename does not replace there */
@@ -100,4 +126,13 @@ bool se3di_partial_close(FILE *file, const char *path)
     remove(partial);
     errno = why;
     return false;
+}
+
+void se3di_partial_abandon(FILE *file, const char *path)
+{
+    char partial[4200];
+    fclose(file);
+    if (format_partial(path, partial)) {
+        remove(partial);
+    }
 }

@@ -196,7 +196,7 @@ bool se3di_read_stop(se3di_reader *reader, const se3di_node *node, se3di_element
         !se3di_read_key_number(reader, node, "lower", SE3DI_ANY, &def.lower) ||
         !se3di_read_key_number(reader, node, "upper", SE3DI_ANY, &def.upper) ||
         !se3di_read_key_number(reader, node, "k", SE3DI_POSITIVE, &def.k) ||
-        !se3di_read_key_number(reader, node, "restitution", SE3DI_POSITIVE, &def.restitution)) {
+        !se3di_read_key_restitution(reader, node, &def.restitution)) {
         return false;
     }
     if (!se3di_node_get(node, "lower") && !se3di_node_get(node, "upper")) {

@@ -74,6 +74,11 @@ typedef struct se3di_output_entry {
     const se3di_node *node; /* NULL: the default output */
 } se3di_output_entry;
 
+/* How many rows an output has in an analysis beside the first, *every [s] apart: its own `every`,
+ * else the step, else a 500th of the duration. */
+double se3di_output_count_rows(const se3di_output_entry *output,
+                               const se3di_analysis_entry *analysis, double *every);
+
 typedef struct se3di_mesh se3di_mesh;
 
 typedef struct se3di_shape_entry {

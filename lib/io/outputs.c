@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `output`: results files, and the pictures that are made of them. */
+#include <math.h>
 #include <string.h>
 
 #include "io/reader.h"
@@ -91,15 +92,11 @@ static bool read_file_name(se3di_reader *reader, const se3di_node *node, const o
                            const char **file)
 {
     const se3d_model *model = reader->model;
-    if (!se3di_read_text(reader, node, file)) {
+    if (!se3di_read_file_name(reader, node, file)) {
         return false;
     }
     const char *name = *file;
-    const size_t length = strlen(name);
-    bool taken = false;
-    if (length == 0 || length > 1000 || name[length - 1] == '/') {
-        return se3di_reader_fail(reader, node, "`%.60s` is not a file name", name);
-    }
+    bool taken = strcmp(name, "scene.glb") == 0 && strcmp(kind->key, "scene") != 0;
     if (kind->ending && !ends_with(name, kind->ending) &&
         !(kind->ending2 && ends_with(name, kind->ending2))) {
         return se3di_reader_fail(reader, node, "`%.60s` must end with %s%s%s, such as %s", name,
@@ -260,6 +257,41 @@ static bool read_picture(se3di_reader *reader, const se3di_node *node, size_t ki
     return true;
 }
 
+double se3di_output_count_rows(const se3di_output_entry *output,
+                               const se3di_analysis_entry *analysis, double *every)
+{
+    const double duration = analysis->analysis.duration;
+    *every = output->every > 0.0           ? output->every
+             : analysis->solver.step > 0.0 ? analysis->solver.step
+                                           : duration / 500.0;
+    return duration > 0.0 ? ceil(duration / *every - 1e-6) : 0.0;
+}
+
+/* So many rows that they would fill the disk are a slip. */
+static bool check_rows(se3di_reader *reader)
+{
+    const se3d_model *model = reader->model;
+    for (size_t k = 0; k < model->output_count; ++k) {
+        const se3di_output_entry *output = &model->outputs[k];
+        const double most = output->vtk ? 1e5 : 1e8;
+        for (size_t i = 0; i < model->analysis_count; ++i) {
+            const se3di_analysis_entry *analysis = &model->analyses[i];
+            double every;
+            const double count = se3di_output_count_rows(output, analysis, &every);
+            if (count > most) {
+                const bool own = output->every > 0.0;
+                const se3di_node *node = own || !analysis->node ? output->node : analysis->node;
+                return se3di_reader_fail_key(
+                    reader, node ? node : model->root, own ? "every" : "step",
+                    "is %g s, which asks for %.3g %s of `%.60s`, must ask for at most %g%s", every,
+                    count, output->vtk ? "files" : "rows", output->file, most,
+                    own ? "" : ": give the output an `every`");
+            }
+        }
+    }
+    return true;
+}
+
 /* Without a list of results: every channel. */
 static bool add_default(se3di_reader *reader)
 {
@@ -306,5 +338,6 @@ bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root)
     for (size_t k = 0; k < model->output_count; ++k) {
         results = results || !model->outputs[k].vtk;
     }
-    return (results || add_default(reader)) && read_entries(reader, list, true);
+    return (results || add_default(reader)) && check_rows(reader) &&
+           read_entries(reader, list, true);
 }

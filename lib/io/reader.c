@@ -276,6 +276,52 @@ bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **
     return true;
 }
 
+/* Parts between '/' are not empty, "." or "..". */
+static bool stays_inside(const char *name)
+{
+    for (const char *part = name;; ++part) {
+        const size_t length = strcspn(part, "/");
+        if (length == 0 || (length == 1 && part[0] == '.') ||
+            (length == 2 && part[0] == '.' && part[1] == '.')) {
+            return false;
+        }
+        part += length;
+        if (*part == '\0') {
+            return true;
+        }
+    }
+}
+
+bool se3di_read_file_name(se3di_reader *reader, const se3di_node *node, const char **name)
+{
+    static const char tail[] = ".partial";
+    if (!se3di_read_text(reader, node, name)) {
+        return false;
+    }
+    const char *text = *name;
+    const size_t length = strlen(text);
+    bool good = length > 0 && length <= 1000;
+    for (const char *c = text; *c; ++c) {
+        good = good && (unsigned char)*c >= ' ' && *c != 0x7F && *c != '\\';
+    }
+    if (!good) {
+        return se3di_reader_fail(reader, node,
+                                 "`%.60s` is not a file name: 1 to 1000 characters, no \\ and no "
+                                 "control characters",
+                                 text);
+    }
+    if (!stays_inside(text) || (length > 1 && text[1] == ':')) {
+        return se3di_reader_fail(reader, node,
+                                 "`%.60s` must be a file inside the folder of the results: a "
+                                 "relative path without `..`, `.` and `//`",
+                                 text);
+    }
+    if (length >= sizeof tail - 1 && strcmp(text + length - (sizeof tail - 1), tail) == 0) {
+        return se3di_reader_fail(reader, node, "`%.60s` must not end with %s", text, tail);
+    }
+    return true;
+}
+
 bool se3di_text_is_identifier(const char *text)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";

@@ -47,11 +47,16 @@ bool se3di_read_bool(se3di_reader *reader, const se3di_node *node, int32_t *valu
 /* A name that other things refer to: not empty, without blanks at its ends, dots, commas, ... */
 bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **name);
 
+/* The name of a file inside the folder of the results: relative, without "..", "." and "//". */
+bool se3di_read_file_name(se3di_reader *reader, const se3di_node *node, const char **name);
+
 bool se3di_read_number(se3di_reader *reader, const se3di_node *node, se3di_range range,
                        double *value);
 /* The number under `key`, left alone where there is none. */
 bool se3di_read_key_number(se3di_reader *reader, const se3di_node *map, const char *key,
                            se3di_range range, double *value);
+/* A coefficient of restitution, 0.01 to 1, left alone where there is none. */
+bool se3di_read_key_restitution(se3di_reader *reader, const se3di_node *map, double *value);
 /* The same for a whole number from 0 to `largest`. */
 bool se3di_read_key_count(se3di_reader *reader, const se3di_node *map, const char *key,
                           double largest, double *value);

@@ -89,14 +89,28 @@ static se3d_status open_vtk(runner *r, const se3di_output_entry *entry, const ch
     return SE3D_OK;
 }
 
+/* The path of a file of the results, which lies in their folder. */
+static se3d_status join(runner *r, const char *file, char *path, size_t size)
+{
+    char text[800];
+    if (se3di_file_join(r->options->directory, file, path, size)) {
+        return SE3D_OK;
+    }
+    snprintf(text, sizeof text, "%.500s: cannot be written: %s", file,
+             errno == ELOOP ? "a symbolic link leads out of the folder of the results"
+                            : strerror(errno));
+    return fail(r, SE3D_ERR_IO, text);
+}
+
 static se3d_status open_file(runner *r, const se3di_output_entry *entry)
 {
     output_file *file = &r->files[r->file_count];
     char path[4096];
     char name[400];
     size_t columns = 1;
-    if (!se3di_file_join(r->options->directory, entry->file, path, sizeof path)) {
-        return fail(r, SE3D_ERR_IO, "the path of the results is too long");
+    const se3d_status joined = join(r, entry->file, path, sizeof path);
+    if (joined < 0) {
+        return joined;
     }
     if (entry->vtk) {
         return open_vtk(r, entry, path);
@@ -145,28 +159,24 @@ static se3d_status open_files(runner *r)
             return status;
         }
     }
-    return SE3D_OK;
-}
-
-/* Number of rows of each file in this analysis; `every` is the analysis's step where the output has
- * none, and a 500th of the duration where there is no step either. */
-static se3d_status plan(runner *r, const se3di_analysis_entry *entry)
-{
-    const double duration = entry->analysis.duration;
-    for (size_t k = 0; k < r->file_count; ++k) {
-        output_file *file = &r->files[k];
-        file->every = file->entry->every;
-        if (!(file->every > 0.0)) {
-            file->every = entry->solver.step > 0.0 ? entry->solver.step : duration / 500.0;
-        }
-        file->next = 0.0;
-        file->count = duration > 0.0 ? ceil(duration / file->every - 1e-6) : 0.0;
-        if (!(file->count <= 1e9)) {
-            return fail(r, SE3D_ERR_INVALID_ARGUMENT,
-                        "more than 1e9 rows: choose a larger `every` or `step`");
+    for (size_t k = 0; k < model->picture_count; ++k) { /* they are made later, by others */
+        char path[4096];
+        const se3d_status status = join(r, model->pictures[k].file, path, sizeof path);
+        if (status < 0) {
+            return status;
         }
     }
     return SE3D_OK;
+}
+
+/* Number of rows of each file in this analysis. */
+static void plan(runner *r, const se3di_analysis_entry *entry)
+{
+    for (size_t k = 0; k < r->file_count; ++k) {
+        output_file *file = &r->files[k];
+        file->next = 0.0;
+        file->count = se3di_output_count_rows(file->entry, entry, &file->every);
+    }
 }
 
 /* The time of row `number` of a file. */
@@ -398,7 +408,8 @@ static se3d_status run_analysis(runner *r, size_t index)
     done->start = start;
     done->end = start;
     se3d_status status =
-        done->type[0] != '\0' ? plan(r, entry) : fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+        done->type[0] != '\0' ? SE3D_OK : fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    plan(r, entry);
     if (status >= 0) {
         status = se3d_system_set_time(r->model->system, start);
         if (status >= 0 && !entry->modes.file) {

@@ -161,6 +161,22 @@ bool se3di_read_key_number(se3di_reader *reader, const se3di_node *map, const ch
     return !node || se3di_read_number(reader, node, range, value);
 }
 
+bool se3di_read_key_restitution(se3di_reader *reader, const se3di_node *map, double *value)
+{
+    double read = 1.0;
+    if (!se3di_read_key_number(reader, map, "restitution", SE3DI_ANY, &read)) {
+        return false;
+    }
+    if (!(read >= 0.01 && read <= 1.0)) {
+        return se3di_reader_fail_key(reader, map, "restitution", "is %g, must be from 0.01 to 1",
+                                     read);
+    }
+    if (se3di_node_get(map, "restitution")) {
+        *value = read;
+    }
+    return true;
+}
+
 bool se3di_read_vector(se3di_reader *reader, const se3di_node *node, size_t size, double *value)
 {
     if (node->kind != SE3DI_NODE_LIST) {

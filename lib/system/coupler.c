@@ -46,6 +46,15 @@ static se3d_status check_term(se3d_system *system, const se3d_coupler_def *def, 
     if (def->ratio[k] == 0.0) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s = 0, must not be 0", what);
     }
+    for (size_t i = 0; i < k; ++i) {
+        if (def->joint[i].index1 == def->joint[k].index1 &&
+            def->coordinate[i] == def->coordinate[k]) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "joint[%zu] and joint[%zu] are the same coordinate of one joint, "
+                              "must be different",
+                              i, k);
+        }
+    }
     const se3di_constraint *source = &system->model.constraints[joint];
     if (k == 0) {
         draft->constraint.frames = source->frames;

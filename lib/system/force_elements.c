@@ -161,7 +161,7 @@ static se3d_status check_range(se3d_system *system, const se3d_stop_def *def)
     }
     if (!(def->restitution >= 0.01 && def->restitution <= 1.0)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "restitution = %g, must be between 0.01 and 1", def->restitution);
+                          "restitution = %g, must be from 0.01 to 1", def->restitution);
     }
     return SE3D_OK;
 }

@@ -4,7 +4,13 @@
 #include "system/system_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+#define STEP_MIN      1e-15 /* s; its square still divides */
+#define TOLERANCE_MIN 1e-14 /* what doubles can hold */
+#define TOLERANCE_MAX 0.1
+#define STEPS_MAX     1e9 /* of one run with fixed steps */
 
 struct se3d_solver {
     se3d_system *system;
@@ -24,28 +30,51 @@ void se3d_solver_def_init(se3d_solver_def *def, size_t size)
 
 static se3d_status check_numbers(se3d_system *system, const se3d_solver_def *def)
 {
-    if (!(isfinite(def->step) && def->step >= 0.0)) {
+    if (!(def->step == 0.0 || (def->step >= STEP_MIN && isfinite(def->step)))) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "step = %g s, must be finite and >= 0 (0: chosen)", def->step);
+                          "step = %g s, must be finite and at least %g (0: chosen)", def->step,
+                          STEP_MIN);
     }
-    if (!(def->tolerance >= 0.0 && def->tolerance < 1.0)) {
+    if (!(def->tolerance == 0.0 ||
+          (def->tolerance >= TOLERANCE_MIN && def->tolerance <= TOLERANCE_MAX))) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "tolerance = %g, must be >= 0 and < 1 (0: 1e-6)", def->tolerance);
+                          "tolerance = %g, must be from %g to %g (0: 1e-6)", def->tolerance,
+                          TOLERANCE_MIN, TOLERANCE_MAX);
     }
     if (!(def->spectral_radius >= 0.0 && def->spectral_radius <= 1.0)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "spectral_radius = %g, must be between 0 and 1", def->spectral_radius);
+                          "spectral_radius = %g, must be from 0 to 1", def->spectral_radius);
     }
     if (!(def->alpha >= -1.0 / 3.0 && def->alpha <= 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "alpha = %g, must be between -1/3 and 0", def->alpha);
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "alpha = %g, must be from -1/3 to 0",
+                          def->alpha);
     }
     if (def->iterations_max > 1000000) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "iterations_max = %zu, must be at most 1000000 (0: 25)",
+                          "iterations_max = %zu, must be from 1 to 1000000 (0: 25)",
                           def->iterations_max);
     }
     return SE3D_OK;
+}
+
+/* The order must be one that the method has. */
+static se3d_status check_order(se3d_system *system, const se3d_solver_def *def)
+{
+    const se3di_integrator *method = se3di_integrator_find(def->method);
+    const uint32_t orders = def->method == SE3D_METHOD_AUTO ? 0 : method->orders;
+    char list[64] = "";
+    size_t used = 0;
+    if (def->order == 0 || (def->order > 0 && def->order < 32 && orders >> def->order & 1u)) {
+        return SE3D_OK;
+    }
+    for (int k = 1; k < 32; ++k) {
+        if (orders >> k & 1u) {
+            used += (size_t)snprintf(list + used, sizeof list - used, ", %d", k);
+        }
+    }
+    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "order = %d, must be 0%s with method %s",
+                      (int)def->order, list,
+                      def->method == SE3D_METHOD_AUTO ? "auto" : method->name);
 }
 
 static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def)
@@ -63,7 +92,7 @@ static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "method = %d, must be one of se3d_method", (int)def->method);
     }
-    return SE3D_OK;
+    return check_order(system, def);
 }
 
 static void configure(se3di_run *run, const se3d_solver_def *def)
@@ -128,6 +157,12 @@ se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
                           "t_end = %g s, must be finite and not before the present time %g s",
                           t_end, system->model.time);
     }
+    const double steps = (t_end - system->model.time) / solver->run.integration.settings.step;
+    if (isfinite(steps) && steps > STEPS_MAX) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "t_end = %g s takes %g steps of %g s, must take at most %g", t_end, steps,
+                          solver->run.integration.settings.step, STEPS_MAX);
+    }
     return se3di_run_to(&solver->run, t_end);
 }
 
@@ -136,9 +171,12 @@ se3d_status se3d_solver_step(se3d_solver *solver, double h)
     if (!solver) {
         return SE3D_ERR_NULL;
     }
-    if (!(isfinite(h) && h > 0.0)) {
+    const double now = solver->system->model.time;
+    if (!(isfinite(h) && h >= STEP_MIN && now + h > now)) {
         return SE3DI_FAIL(solver->system, SE3D_ERR_INVALID_ARGUMENT,
-                          "h = %g s, must be finite and > 0", h);
+                          "h = %g s, must be finite, at least %g and large enough to move the "
+                          "time %.17g s on",
+                          h, STEP_MIN, now);
     }
     return se3di_run_step(&solver->run, h);
 }

@@ -157,6 +157,23 @@ expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 8; exec "$@"' sh \
 has "$dir/err" 'pendulum.csv: cannot be written'
 is "$(ls "$dir/full")" ''
 
+# Files of the results stay in their folder.
+mkdir -p "$dir/links/away" "$dir/links/r"
+ln -s ../away "$dir/links/r/sub"
+ln -s ../away/b.csv "$dir/links/r/b.csv.partial"
+sed 's/a.csv/sub\/a.csv/' >"$dir/away.yaml" <<'END'
+se3d: 1
+bodies: [{name: ball, mass: 1, inertia: [1, 1, 1]}]
+analysis: {type: dynamics, duration: 0.1}
+output: [{file: b.csv, channels: [ball.position]}, {file: a.csv, channels: [ball.position]}]
+END
+expect 'a folder that is a link' 1 "$program" run "$dir/away.yaml" -o "$dir/links/r"
+has "$dir/err" 'sub/a.csv: cannot be written: a symbolic link leads out'
+is "$(ls "$dir/links/away")" ''
+rm "$dir/links/r/sub"
+expect 'a link in the place of a file' 0 "$program" run "$dir/away.yaml" -o "$dir/links/r"
+is "$(ls "$dir/links/away")" ''
+
 expect 'evaluate' 0 "$program" evaluate "$models/me751_jacobian.yaml" --csv
 is "$(wc -l <"$dir/out" | tr -d ' ')" 8
 has "$dir/out" 'bar,normalization,euler_norm,'
