@@ -62,9 +62,9 @@ SE3D_API void se3d_solver_destroy(se3d_solver *solver);
 
 /* Run to `t_end` [s] (>= the present time). At t_end = now the state is only made consistent:
  * positions and velocities are projected, accelerations and multipliers are computed. More than 1e9
- * steps of def.step are refused. On failure the state is the last accepted step's. @return OK, INFO_*, INVALID_ARGUMENT, INCONSISTENT,
- * NO_CONVERGENCE, SINGULAR, NOT_FINITE, STEP_SIZE, CALLBACK, NO_MEMORY; the message is the
- * system's. Exclusive. @since 0.1 */
+ * steps of def.step are refused. On failure the state is the last accepted step's. @return OK,
+ * INFO_*, INVALID_ARGUMENT, INCONSISTENT, NO_CONVERGENCE, SINGULAR, NOT_FINITE, STEP_SIZE,
+ * CALLBACK, NO_MEMORY; the message is the system's. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_solver_run(se3d_solver *solver, double t_end);
 
 /* Make one step of length h >= 1e-15 [s] that moves the time on. As se3d_solver_run. Exclusive.
