@@ -2,8 +2,6 @@
 #include "analysis/friction_start.h"
 
 #include "force/measure.h"
-#include "joint/rows.h"
-#include "primitive/primitive.h"
 
 #include <math.h>
 
@@ -14,61 +12,33 @@ static int is_fresh(const se3di_force *force)
     return force->type == SE3DI_FORCE_FRICTION && !(force->state[3] > 0.0);
 }
 
-/* Second derivative of the coordinate at the present accelerations. */
-static double coordinate_acceleration(const se3di_model *model, const se3di_force *force)
-{
-    se3di_term term;
-    se3di_measure measure;
-    if (force->coordinate == SE3D_COORDINATE_ANGLE) {
-        term = model->angles[force->angle].term;
-    } else {
-        const se3di_constraint *joint = &model->constraints[force->joint];
-        se3di_displacement_term_init(&term, &joint->frames, joint->bodies);
-    }
-    (void)se3di_measure_force(model, force, 0, &measure);
-    double sum = -se3di_primitives[term.type].gamma_romega(&term, &model->frames[term.body_i],
-                                                           &model->frames[term.body_j]);
-    for (int k = 0; k < 6; ++k) {
-        sum += measure.g[k] * model->acceleration[6 * term.body_i + (uint32_t)k];
-        sum += measure.g[6 + k] * model->acceleration[6 * term.body_j + (uint32_t)k];
-    }
-    return sum;
-}
-
 /* Let the element hold with force n against its coordinate and solve for the accelerations. */
-static se3d_status hold(se3di_equations *equations, se3di_force *force, double n)
+static se3d_status hold(se3di_equations *equations, se3di_force *force, double mode, double n)
 {
     se3di_model *model = equations->assembly.model;
-    se3di_measure measure;
-    double stiffness = se3di_friction_stiffness(force);
-    (void)se3di_measure_force(model, force, 0, &measure);
-    force->state[0] = measure.value - (stiffness > 0.0 ? n / stiffness : 0.0);
-    SE3DI_TRY(se3di_acceleration_solve(equations, model->time));
-    return SE3D_OK;
+    se3di_friction_set(model, force, mode, n);
+    return se3di_acceleration_solve(equations, model->time);
 }
 
 /* One element, the others as they are: the coordinate's acceleration is linear in n. */
 static se3d_status balance(se3di_equations *equations, se3di_force *force, double *change)
 {
     se3di_model *model = equations->assembly.model;
-    se3di_measure measure;
-    double limit = se3di_friction_stiffness(force) * force->presliding;
-    (void)se3di_measure_force(model, force, 0, &measure);
-    double n = se3di_friction_stiffness(force) * (measure.value - force->state[0]);
+    const double limit = se3di_friction_limit(force, 0);
+    double n = se3di_friction_get(model, force);
     if (!(limit > 0.0)) {
         return SE3D_OK;
     }
-    SE3DI_TRY(hold(equations, force, n));
-    double before = coordinate_acceleration(model, force);
+    SE3DI_TRY(hold(equations, force, 0.0, n));
+    double before = se3di_measure_acceleration(model, force);
     double trial = n > 0.0 ? n - limit : n + limit;
-    SE3DI_TRY(hold(equations, force, trial));
-    double slope = (coordinate_acceleration(model, force) - before) / (trial - n);
+    SE3DI_TRY(hold(equations, force, 0.0, trial));
+    double slope = (se3di_measure_acceleration(model, force) - before) / (trial - n);
     double wanted = fabs(slope) > 0.0 ? n - before / slope : n;
-    force->state[2] = fabs(wanted) > limit ? (wanted > 0.0 ? 1.0 : -1.0) : 0.0;
+    const double mode = fabs(wanted) > limit ? copysign(1.0, wanted) : 0.0;
     wanted = fmin(fmax(wanted, -limit), limit);
     *change = fmax(*change, fabs(wanted - n) / limit);
-    SE3DI_TRY(hold(equations, force, wanted));
-    return SE3D_OK;
+    return hold(equations, force, mode, wanted);
 }
 
 se3d_status se3di_friction_start(se3di_equations *equations)

@@ -72,6 +72,14 @@ int se3di_force_is_history_dependent(const se3di_force *force);
 
 /* Stiffness of sticking: the limit of sticking over the presliding. */
 double se3di_friction_stiffness(const se3di_force *force);
+/* The largest force while it sticks, or slips. */
+double se3di_friction_limit(const se3di_force *force, int slips);
+/* The force against the coordinate without its viscous part; and remember that it is n, sticking
+ * (mode 0) or slipping. */
+double se3di_friction_get(const se3di_model *model, const se3di_force *force);
+void se3di_friction_set(const se3di_model *model, se3di_force *force, double mode, double n);
+/* The load follows from the multipliers of the model. */
+void se3di_friction_take_load(const se3di_model *model, se3di_force *force);
 uint32_t se3di_friction_revise(const se3di_model *model, se3di_force *force);
 void se3di_friction_accept(const se3di_model *model, se3di_force *force);
 void se3di_stop_accept(const se3di_model *model, se3di_force *force);

@@ -35,6 +35,33 @@ double se3di_friction_stiffness(const se3di_force *force)
     return limits_of(force).stiffness;
 }
 
+double se3di_friction_limit(const se3di_force *force, int slips)
+{
+    const friction_limits limits = limits_of(force);
+    return slips ? limits.slip : limits.stick;
+}
+
+double se3di_friction_get(const se3di_model *model, const se3di_force *force)
+{
+    const friction_limits limits = limits_of(force);
+    se3di_measure measure;
+    if (fabs(force->state[2]) > 0.0) {
+        return force->state[2] * limits.slip;
+    }
+    (void)se3di_measure_force(model, force, 0, &measure);
+    return force->state[3] > 0.0 ? limits.stiffness * (measure.value - force->state[0]) : 0.0;
+}
+
+void se3di_friction_set(const se3di_model *model, se3di_force *force, double mode, double n)
+{
+    const friction_limits limits = limits_of(force);
+    se3di_measure measure;
+    (void)se3di_measure_force(model, force, 0, &measure);
+    force->state[0] = measure.value - (limits.stiffness > 0.0 ? n / limits.stiffness : 0.0);
+    force->state[2] = mode;
+    force->state[3] = 1.0;
+}
+
 se3d_status se3di_friction_eval(const se3di_model *model, const se3di_force *force, double t,
                                 se3di_effect *effect)
 {
@@ -76,12 +103,17 @@ static double load_of(const se3di_model *model, const se3di_force *force)
     return se3di_norm(F);
 }
 
+void se3di_friction_take_load(const se3di_model *model, se3di_force *force)
+{
+    force->state[1] = force->mu_static > 0.0 ? load_of(model, force) : 0.0;
+}
+
 uint32_t se3di_friction_revise(const se3di_model *model, se3di_force *force)
 {
     se3di_measure measure;
-    double load = force->mu_static > 0.0 ? load_of(model, force) : 0.0;
-    uint32_t changes = fabs(load - force->state[1]) > 1e-9 * load;
-    force->state[1] = load;
+    const double before = force->state[1];
+    se3di_friction_take_load(model, force);
+    uint32_t changes = fabs(force->state[1] - before) > 1e-9 * force->state[1];
     if (!(force->state[3] > 0.0)) {
         return changes;
     }
@@ -103,7 +135,7 @@ uint32_t se3di_friction_revise(const se3di_model *model, se3di_force *force)
 void se3di_friction_accept(const se3di_model *model, se3di_force *force)
 {
     se3di_measure measure;
-    force->state[1] = force->mu_static > 0.0 ? load_of(model, force) : 0.0;
+    se3di_friction_take_load(model, force);
     friction_limits limits = limits_of(force);
     (void)se3di_measure_force(model, force, 0, &measure);
     if (!(force->state[3] > 0.0)) {

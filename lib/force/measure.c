@@ -82,6 +82,18 @@ int se3di_measure_length(const se3di_model *model, const se3di_force *force, int
     return 1;
 }
 
+static void init_term(const se3di_model *model, const se3di_force *force, se3di_term *term)
+{
+    if (force->coordinate == SE3D_COORDINATE_ANGLE) {
+        *term = model->angles[force->angle].term;
+        term->angle = force->angle;
+        term->coefficient = 1.0;
+    } else {
+        const se3di_constraint *joint = &model->constraints[force->joint];
+        se3di_displacement_term_init(term, &joint->frames, joint->bodies);
+    }
+}
+
 int se3di_measure_force(const se3di_model *model, const se3di_force *force, int wants_H,
                         se3di_measure *measure)
 {
@@ -89,16 +101,24 @@ int se3di_measure_force(const se3di_model *model, const se3di_force *force, int 
     if (force->coordinate == SE3DI_FORCE_LENGTH) {
         return se3di_measure_length(model, force, wants_H, measure);
     }
-    if (force->coordinate == SE3D_COORDINATE_ANGLE) {
-        term = model->angles[force->angle].term;
-        term.angle = force->angle;
-        term.coefficient = 1.0;
-    } else {
-        const se3di_constraint *joint = &model->constraints[force->joint];
-        se3di_displacement_term_init(&term, &joint->frames, joint->bodies);
-    }
+    init_term(model, force, &term);
     se3di_measure_term(model, &term, wants_H, measure);
     return 1;
+}
+
+double se3di_measure_acceleration(const se3di_model *model, const se3di_force *force)
+{
+    se3di_term term;
+    se3di_measure measure;
+    init_term(model, force, &term);
+    se3di_measure_term(model, &term, 0, &measure);
+    double sum = -se3di_primitives[term.type].gamma_romega(&term, &model->frames[term.body_i],
+                                                           &model->frames[term.body_j]);
+    for (int k = 0; k < 6; ++k) {
+        sum += measure.g[k] * model->acceleration[6 * term.body_i + (uint32_t)k];
+        sum += measure.g[6 + k] * model->acceleration[6 * term.body_j + (uint32_t)k];
+    }
+    return sum;
 }
 
 void se3di_effect_add(se3di_effect *effect, const se3di_measure *measure, const se3di_law *law)

@@ -32,6 +32,10 @@ int se3di_measure_length(const se3di_model *model, const se3di_force *force, int
 int se3di_measure_force(const se3di_model *model, const se3di_force *force, int wants_H,
                         se3di_measure *measure);
 
+/* Second derivative of the coordinate of a friction or stop on a joint, at the accelerations of the
+ * model. */
+double se3di_measure_acceleration(const se3di_model *model, const se3di_force *force);
+
 /* Velocities of bodies i and j. */
 void se3di_velocity_pair(const se3di_model *model, const se3di_force *force, double u[12]);
 

@@ -18,20 +18,22 @@
 
 size_t se3di_lie_verlet_history_count(const se3di_assembly *assembly)
 {
-    (void)assembly;
-    return 1; /* nothing but its mark: the state is all */
+    return 1 + se3di_lie_friction_history_count(assembly->model);
 }
 
 size_t se3di_lie_verlet_work_count(const se3di_assembly *assembly)
 {
     return 6 * (size_t)assembly->dense_count + 2 * (size_t)assembly->row_count +
-           6 * (size_t)assembly->body_count + assembly->unknown_count;
+           6 * (size_t)assembly->body_count + assembly->unknown_count +
+           se3di_lie_friction_work_count(assembly->model);
 }
 
 se3d_status se3di_lie_verlet_start(se3di_integration *integration, double h)
 {
     (void)h;
-    integration->equations->assembly.model->history[0] = 0.0;
+    se3di_model *model = integration->equations->assembly.model;
+    model->history[0] = 0.0; /* not empty */
+    se3di_lie_friction_start(model, model->history + 1);
     return SE3D_OK;
 }
 
@@ -46,6 +48,8 @@ se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int forc
     m.best = m.lambda + assembly->row_count;
     m.half = m.best + assembly->row_count;
     m.last = m.half + 6 * (size_t)assembly->body_count;
+    m.friction = se3di_lie_friction_begin(m.equations, m.last + assembly->unknown_count,
+                                          assembly->model->history + 1);
     return m;
 }
 
@@ -314,6 +318,12 @@ static se3d_status solve_velocities(se3di_lie_verlet *m)
         se3di_assembly_get_velocity(assembly, m->last);
         kick(m);
         SE3DI_TRY(project_velocities(m));
+        if (m->friction.count > 0) {
+            se3di_lie_friction_solve_velocities(&m->friction, m->h);
+            se3di_lie_friction_add_wrenches(&m->friction);
+            kick(m);
+            SE3DI_TRY(project_velocities(m));
+        }
         double change = 0.0, size = 0.0;
         for (size_t k = 0; k < unknowns; ++k) {
             change = fmax(change, fabs(equations->x[k] - m->last[k]));
@@ -336,7 +346,9 @@ se3d_status se3di_lie_verlet_drift(se3di_lie_verlet *m)
         memcpy(m->lambda, model->lambda, assembly->row_count * sizeof *m->lambda);
     }
     m->size = se3di_model_get_size(model);
+    se3di_lie_friction_take(&m->friction);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, model->time, equations->b, equations->error));
+    se3di_lie_friction_add_wrenches(&m->friction);
     memcpy(m->wrench, assembly->wrench, 6 * (size_t)assembly->dense_count * sizeof *m->wrench);
     const se3di_kkt_settings before = se3di_state_regularise(equations->kkt);
     se3d_status status = se3di_equations_factor(equations);
@@ -361,29 +373,50 @@ static void predict_velocities(se3di_lie_verlet *m)
     }
 }
 
+static se3d_status solve_accelerations(se3di_lie_verlet *m)
+{
+    se3di_equations *equations = m->equations;
+    SE3DI_TRY(se3di_assembly_eval_forces(m->assembly, m->t1, equations->b, equations->error));
+    se3di_assembly_eval_gamma(m->assembly, equations->c);
+    ++equations->counters.evaluations;
+    return se3di_lie_friction_solve_accelerations(&m->friction);
+}
+
 se3d_status se3di_lie_verlet_kick(se3di_lie_verlet *m)
 {
     predict_velocities(m);
     SE3DI_TRY(se3di_equations_factor(m->equations));
-    return solve_velocities(m);
+    SE3DI_TRY(se3di_lie_friction_prepare(&m->friction));
+    for (int iteration = 0; iteration < m->force_iterations + 1; ++iteration) {
+        SE3DI_TRY(solve_velocities(m));
+        SE3DI_TRY(solve_accelerations(m));
+        if (se3di_lie_friction_change(&m->friction) <= 1e-12) {
+            break;
+        }
+    }
+    return SE3D_OK;
 }
 
 se3d_status se3di_lie_verlet_finish(se3di_lie_verlet *m)
 {
-    se3di_equations *equations = m->equations;
-    se3di_assembly *assembly = m->assembly;
-    se3di_model *model = assembly->model;
-    SE3DI_TRY(se3di_assembly_eval_forces(assembly, m->t1, equations->b, equations->error));
-    se3di_assembly_eval_gamma(assembly, equations->c);
-    SE3DI_TRY(se3di_equations_solve(equations));
-    ++equations->counters.evaluations;
-    se3di_assembly_set_acceleration(assembly, equations->x);
-    if (assembly->row_count > 0) {
-        memcpy(model->lambda, equations->l, assembly->row_count * sizeof *equations->l);
-    }
-    SE3DI_TRY(se3di_loads_prepare(model, m->t1, equations->error));
+    se3di_model *model = m->assembly->model;
+    SE3DI_TRY(se3di_loads_prepare(model, m->t1, m->equations->error));
+    se3di_lie_friction_accept(&m->friction);
     model->time = m->t1;
     se3di_angles_accept(model);
     se3di_loads_accept(model);
     return se3di_work_accept(model, m->h);
+}
+
+void se3di_lie_verlet_keep(se3di_lie_verlet *m)
+{
+    se3di_state_accept(m->equations);
+    se3di_lie_friction_keep(&m->friction);
+}
+
+void se3di_lie_verlet_restore(se3di_lie_verlet *m, double t0)
+{
+    se3di_state_restore(m->equations);
+    se3di_lie_friction_restore(&m->friction);
+    m->assembly->model->time = t0;
 }

@@ -17,6 +17,7 @@
 #define SE3DI_LIE_VERLET_H
 
 #include "integrator/integrator.h"
+#include "integrator/lie_friction.h"
 
 typedef struct se3di_lie_verlet {
     se3di_equations *equations;
@@ -29,6 +30,7 @@ typedef struct se3di_lie_verlet {
     double *best;         /* [rows]: with the smallest gap yet */
     double *half;         /* half-step velocity and momentum at its end [free bodies * 6] */
     double *last;         /* [unknowns] */
+    se3di_lie_friction friction;
 } se3di_lie_verlet;
 
 /* For the table of a method. */
@@ -41,8 +43,11 @@ se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int forc
 /* From the model's state to the positions at t1; the frames hold the mean velocities of the step.
  */
 se3d_status se3di_lie_verlet_drift(se3di_lie_verlet *m);
-/* The velocities at t1. */
+/* The velocities at t1, accelerations and multipliers. */
 se3d_status se3di_lie_verlet_kick(se3di_lie_verlet *m);
 se3d_status se3di_lie_verlet_finish(se3di_lie_verlet *m);
+/* Before steps that may have to be undone; undo them: the state is that at t0 again. */
+void se3di_lie_verlet_keep(se3di_lie_verlet *m);
+void se3di_lie_verlet_restore(se3di_lie_verlet *m, double t0);
 
 #endif

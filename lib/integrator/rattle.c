@@ -25,7 +25,13 @@ static se3d_status step(se3di_integration *integration, double h)
     int parts = integration->settings.order == 4 ? 5 : 1;
     const double *weights = parts == 5 ? compose4 : compose2;
     se3di_lie_verlet m = se3di_lie_verlet_begin(integration, FORCE_ITERATIONS);
-    se3di_state_accept(integration->equations);
+    if (parts == 5 && m.friction.count > 0) {
+        return se3di_error_set(
+            integration->equations->error, SE3D_ERR_UNSUPPORTED,
+            "rattle of order 4 steps back in time, which friction does not allow; "
+            "use order 2");
+    }
+    se3di_lie_verlet_keep(&m);
     se3d_status status = SE3D_OK;
     double sum = 0.0;
     for (int k = 0; k < parts && status >= 0; ++k) {
@@ -35,8 +41,7 @@ static se3d_status step(se3di_integration *integration, double h)
         status = advance(&m);
     }
     if (status < 0) {
-        se3di_state_restore(integration->equations);
-        assembly->model->time = t0;
+        se3di_lie_verlet_restore(&m, t0);
         return status;
     }
     ++integration->equations->counters.steps;

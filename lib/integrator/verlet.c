@@ -59,7 +59,7 @@ static se3d_status advance(verlet *m, double t1)
     double t0 = m->model->time;
     bodies->h = t1 - t0;
     bodies->t1 = t1;
-    se3di_state_accept(bodies->equations);
+    se3di_lie_verlet_keep(bodies);
     se3d_status status = se3di_lie_verlet_drift(bodies);
     se3d_status contact = SE3D_OK;
     if (status >= 0 && m->model->sets) {
@@ -73,8 +73,7 @@ static se3d_status advance(verlet *m, double t1)
     status = status < 0 ? status : se3di_lie_verlet_kick(bodies);
     status = status < 0 ? status : se3di_lie_verlet_finish(bodies);
     if (status < 0) {
-        se3di_state_restore(bodies->equations);
-        m->model->time = t0;
+        se3di_lie_verlet_restore(bodies, t0);
         return status;
     }
     ++bodies->equations->counters.steps;
@@ -97,10 +96,9 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
 /* Accelerations and multipliers with the forces of the particles. */
 static se3d_status start(se3di_integration *integration, double h)
 {
-    (void)h;
     se3di_equations *equations = integration->equations;
     se3di_model *model = equations->assembly.model;
-    model->history[0] = 0.0;
+    SE3DI_TRY(se3di_lie_verlet_start(integration, h));
     if (!model->sets) {
         return SE3D_OK;
     }
