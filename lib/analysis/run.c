@@ -279,10 +279,16 @@ static se3d_status explain(se3di_run *run, se3d_status status)
     return status;
 }
 
+static void begin(se3di_model *model)
+{
+    model->remembers = 1;
+    se3di_user_begin(model);
+}
+
 se3d_status se3di_run_to(se3di_run *run, double t_end)
 {
     SE3DI_TRY(prepare(run));
-    se3di_user_begin(run->model);
+    begin(run->model);
     return explain(run, run_to(run, t_end));
 }
 
@@ -292,6 +298,6 @@ se3d_status se3di_run_step(se3di_run *run, double h)
         return se3di_run_to(run, run->model->time + h);
     }
     SE3DI_TRY(prepare(run));
-    se3di_user_begin(run->model);
+    begin(run->model);
     return explain(run, run_step(run, h));
 }

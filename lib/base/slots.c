@@ -16,6 +16,7 @@ void se3di_slots_destroy(se3di_slots *slots, const se3d_allocator *allocator)
     se3di_free(allocator, slots->slots, slots->slot_capacity, sizeof *slots->slots);
     se3di_free(allocator, slots->slot_of, slots->slot_of_capacity, sizeof *slots->slot_of);
     se3di_free(allocator, slots->free_list, slots->free_capacity, sizeof *slots->free_list);
+    se3di_names_destroy(&slots->names, allocator);
     *slots = (se3di_slots){.salt = slots->salt};
 }
 
@@ -79,6 +80,17 @@ void se3di_slots_remove(se3di_slots *slots, uint32_t dense)
     slots->free_list[slots->free_count++] = slot;
 }
 
+void se3di_slots_name(se3di_slots *slots, uint32_t dense, uint32_t owner, const char *name)
+{
+    se3di_names_add(&slots->names, owner, name, slots->slot_of[dense]);
+}
+
+uint32_t se3di_slots_find_name(const se3di_slots *slots, uint32_t owner, const char *name)
+{
+    const uint32_t slot = se3di_names_find(&slots->names, owner, name);
+    return slot == SE3DI_NO_INDEX ? slot : slots->slots[slot].dense;
+}
+
 uint32_t se3di_slots_find(const se3di_slots *slots, uint32_t index1, uint32_t generation)
 {
     if (index1 == 0 || index1 > slots->slot_count) {
@@ -101,6 +113,9 @@ se3d_status se3di_slots_clone(const se3di_slots *slots, const se3d_allocator *al
     copy->salt = slots->salt;
     if (slots->slot_capacity > 0) {
         se3d_status status = reserve(copy, allocator, slots->slot_count + 1);
+        if (status == SE3D_OK && slots->names.count > 0) {
+            status = se3di_names_reserve(&copy->names, allocator, slots->names.count);
+        }
         if (status != SE3D_OK) {
             se3di_slots_destroy(copy, allocator);
             return status;

@@ -8,6 +8,7 @@
 #define SE3DI_BASE_SLOTS_H
 
 #include "base/alloc.h"
+#include "base/names.h"
 
 typedef struct se3di_handle {
     uint32_t index1;     /* slot + 1; 0 = null */
@@ -26,10 +27,9 @@ typedef struct se3di_slots {
     size_t count, slot_of_capacity;
     uint32_t *free_list;
     size_t free_count, free_capacity;
+    se3di_names names; /* of objects that have one: slots */
     uint32_t salt;
 } se3di_slots;
-
-#define SE3DI_NO_INDEX UINT32_MAX
 
 void se3di_slots_init(se3di_slots *slots, uint32_t salt);
 void se3di_slots_destroy(se3di_slots *slots, const se3d_allocator *allocator);
@@ -40,7 +40,13 @@ se3d_status se3di_slots_reserve(se3di_slots *slots, const se3d_allocator *alloca
 /* Handle of a new object whose dense index is the present count. */
 se3di_handle se3di_slots_add(se3di_slots *slots);
 
-/* Remove object `dense`; the objects behind it move down by one. */
+/* Give the object `dense` (< count) a name, unique among those of `owner`, for which there is room
+ * (se3di_names_reserve); the text stays the caller's, and must live as long as the entry. */
+void se3di_slots_name(se3di_slots *slots, uint32_t dense, uint32_t owner, const char *name);
+/* Dense index of the object of that name, SE3DI_NO_INDEX where there is none. */
+uint32_t se3di_slots_find_name(const se3di_slots *slots, uint32_t owner, const char *name);
+
+/* Remove object `dense`, whose name has been taken out; the objects behind it move down by one. */
 void se3di_slots_remove(se3di_slots *slots, uint32_t dense);
 
 /* Dense index of a handle, SE3DI_NO_INDEX where it is null, stale or foreign. */
@@ -49,7 +55,8 @@ uint32_t se3di_slots_find(const se3di_slots *slots, uint32_t index1, uint32_t ge
 /* Handle of the object `dense` (< count). */
 se3di_handle se3di_slots_handle(const se3di_slots *slots, uint32_t dense);
 
-/* Deep copy into `copy` (uninitialised); on failure `copy` is empty. */
+/* Deep copy into `copy` (uninitialised) without the names, for which there is room; on failure
+ * `copy` is empty. */
 se3d_status se3di_slots_clone(const se3di_slots *slots, const se3d_allocator *allocator,
                               se3di_slots *copy);
 

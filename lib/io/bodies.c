@@ -33,7 +33,7 @@ bool se3di_read_key_body(se3di_reader *reader, const se3di_node *map, const char
     if (!se3di_read_text(reader, node, &name)) {
         return false;
     }
-    if (!se3di_names_find(&reader->model->body_names, name, &index)) {
+    if (!se3di_ionames_find(&reader->model->body_names, name, &index)) {
         return fail_unknown_body(reader, node);
     }
     *entry = &reader->model->bodies[index];
@@ -48,7 +48,7 @@ bool se3di_read_key_point(se3di_reader *reader, const se3di_node *map, const cha
     if (!node || node->kind != SE3DI_NODE_SCALAR) {
         return !node || se3di_read_vector(reader, node, 3, point);
     }
-    if (!se3di_names_find(&body->markers, node->text, &index)) {
+    if (!se3di_ionames_find(&body->markers, node->text, &index)) {
         return se3di_reader_fail(reader, node,
                                  "`%.60s` is not a marker of `%.60s`, must be a list of 3 numbers "
                                  "or the name of a marker of that body",
@@ -154,7 +154,7 @@ static bool read_markers(se3di_reader *reader, const se3di_node *body, size_t en
             return false;
         }
         se3di_body_entry *owner = &model->bodies[entry];
-        if (se3di_names_find(&owner->markers, marker.name, NULL)) {
+        if (se3di_ionames_find(&owner->markers, marker.name, NULL)) {
             return se3di_reader_fail(reader, name, "`%.60s` is the name of two markers",
                                      marker.name);
         }
@@ -169,7 +169,7 @@ static bool read_markers(se3di_reader *reader, const se3di_node *body, size_t en
             se3di_iopool_grow(&model->pool, model->markers, model->marker_count,
                               &model->marker_capacity, sizeof *grown);
         if (!grown ||
-            !se3di_names_add(&owner->markers, &model->pool, marker.name, model->marker_count)) {
+            !se3di_ionames_add(&owner->markers, &model->pool, marker.name, model->marker_count)) {
             return se3di_reader_fail_memory(reader);
         }
         model->markers = grown;
@@ -183,7 +183,7 @@ static bool add_body(se3di_reader *reader, const char *name, const se3di_node *n
     se3d_model *model = reader->model;
     se3di_body_entry *grown = se3di_iopool_grow(&model->pool, model->bodies, model->body_count,
                                                 &model->body_capacity, sizeof *grown);
-    if (!grown || !se3di_names_add(&model->body_names, &model->pool, name, model->body_count)) {
+    if (!grown || !se3di_ionames_add(&model->body_names, &model->pool, name, model->body_count)) {
         return se3di_reader_fail_memory(reader);
     }
     model->bodies = grown;
@@ -222,7 +222,8 @@ static bool read_body_name(se3di_reader *reader, const se3di_node *node, const c
     if (se3di_keys_contain(words, *name)) {
         return se3di_reader_fail(reader, child, "the name `%s` is taken by a channel", *name);
     }
-    if (strcmp(*name, "ground") != 0 && se3di_names_find(&reader->model->body_names, *name, NULL)) {
+    if (strcmp(*name, "ground") != 0 &&
+        se3di_ionames_find(&reader->model->body_names, *name, NULL)) {
         return se3di_reader_fail(reader, child, "`%.60s` is the name of two bodies", *name);
     }
     return true;

@@ -278,7 +278,7 @@ static bool find_marker(const se3d_model *model, const se3di_body_entry *body, c
     offer o = {.count = 0};
     size_t index = 0;
     *dot = '\0';
-    if (!se3di_names_find(&body->markers, tail, &index)) {
+    if (!se3di_ionames_find(&body->markers, tail, &index)) {
         snprintf(problem, size, "`%.60s` has no marker named `%.60s`", body->name, tail);
         return false;
     }
@@ -295,7 +295,7 @@ static bool find_element(const se3d_model *model, const char *head, const char *
                          se3di_channel *channel, offer *offered)
 {
     size_t index = 0;
-    if (!se3di_names_find(&model->element_names, head, &index)) {
+    if (!se3di_ionames_find(&model->element_names, head, &index)) {
         return false;
     }
     const se3di_element_entry *entry = &model->elements[index];
@@ -331,7 +331,7 @@ bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel
     if (find_element(model, head, tail, channel, &o)) {
         return true;
     }
-    if (se3di_names_find(&model->body_names, head, &index)) {
+    if (se3di_ionames_find(&model->body_names, head, &index)) {
         const se3di_body_entry *body = &model->bodies[index];
         channel->body = body->body;
         if (strchr(tail, '.')) {
@@ -341,7 +341,7 @@ bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel
         if (pick(&o, tail, &channel->quantity)) {
             return true;
         }
-    } else if (!se3di_names_find(&model->element_names, head, NULL)) {
+    } else if (!se3di_ionames_find(&model->element_names, head, NULL)) {
         if (!explain_system(head, tail, problem, problem_size)) {
             explain_unknown(model, head, problem, problem_size);
         }

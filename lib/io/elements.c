@@ -24,7 +24,7 @@ bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_elem
             return se3di_reader_fail_memory(reader);
         }
     }
-    if (se3di_names_find(&model->element_names, name, NULL)) {
+    if (se3di_ionames_find(&model->element_names, name, NULL)) {
         return se3di_reader_fail_key(reader, node, "name",
                                      "`%.60s` is the name of two elements: joints, constraints, "
                                      "drivers and forces must have different names",
@@ -34,7 +34,7 @@ bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_elem
         se3di_iopool_grow(&model->pool, model->elements, model->element_count,
                           &model->element_capacity, sizeof *grown);
     if (!grown ||
-        !se3di_names_add(&model->element_names, &model->pool, name, model->element_count)) {
+        !se3di_ionames_add(&model->element_names, &model->pool, name, model->element_count)) {
         return se3di_reader_fail_memory(reader);
     }
     model->elements = grown;
@@ -59,7 +59,7 @@ bool se3di_read_key_joint(se3di_reader *reader, const se3di_node *map, const cha
     if (!se3di_read_text(reader, node, &name)) {
         return false;
     }
-    if (se3di_names_find(&model->element_names, name, &index) &&
+    if (se3di_ionames_find(&model->element_names, name, &index) &&
         model->elements[index].kind == SE3DI_ELEMENT_JOINT) {
         *joint = model->elements[index].constraint;
         return true;

@@ -10,7 +10,7 @@ typedef struct se3di_body_entry {
     const char *name;
     const se3di_node *node; /* NULL: the ground */
     se3d_body body;
-    se3di_names markers; /* to indices of se3d_model.markers */
+    se3di_ionames markers; /* to indices of se3d_model.markers */
 } se3di_body_entry;
 
 typedef struct se3di_marker_entry {
@@ -99,12 +99,12 @@ struct se3d_model {
     size_t symbol_count;
     se3di_body_entry *bodies; /* [0] is the ground */
     size_t body_count, body_capacity;
-    se3di_names body_names;
+    se3di_ionames body_names;
     se3di_marker_entry *markers;
     size_t marker_count, marker_capacity;
     se3di_element_entry *elements;
     size_t element_count, element_capacity;
-    se3di_names element_names;
+    se3di_ionames element_names;
     se3di_shape_entry *shapes;
     size_t shape_count, shape_capacity;
     se3di_mesh *meshes; /* that have been read */

@@ -20,7 +20,7 @@ typedef struct resolver {
     se3di_reader *reader;
     parameter *list;
     size_t count;
-    se3di_names names;
+    se3di_ionames names;
     size_t *stack;
     size_t depth;
     se3d_expression_symbol *symbols; /* of those that are done */
@@ -83,7 +83,7 @@ static bool next_name(const resolver *r, const char **text, size_t *index)
         if (strspn(at, letters) > 0 && length < sizeof word) {
             memcpy(word, at, length);
             word[length] = '\0';
-            if (se3di_names_find(&r->names, word, index)) {
+            if (se3di_ionames_find(&r->names, word, index)) {
                 *text = at + length;
                 return true;
             }
@@ -169,7 +169,7 @@ static bool apply_settings(resolver *r)
         if (!node) {
             return se3di_reader_fail_memory(reader);
         }
-        if (!se3di_names_find(&r->names, setting->name, &index)) {
+        if (!se3di_ionames_find(&r->names, setting->name, &index)) {
             char list[400] = "";
             se3di_guess guess = se3di_guess_begin(setting->name);
             for (size_t i = 0; i < r->count; ++i) {
@@ -202,7 +202,7 @@ static bool collect(resolver *r, const se3di_node *map)
         }
         r->list[r->count].node = node;
         r->list[r->count].text = node->text ? node->text : "";
-        if (!se3di_names_add(&r->names, &r->reader->model->pool, node->key, r->count++)) {
+        if (!se3di_ionames_add(&r->names, &r->reader->model->pool, node->key, r->count++)) {
             return se3di_reader_fail_memory(r->reader);
         }
     }

@@ -122,7 +122,7 @@ static size_t name_hash(const char *name)
 }
 
 /* The entry of `name`, or the free one where it belongs; capacity > count. */
-static struct se3di_names_entry *name_slot(const se3di_names *names, const char *name)
+static struct se3di_ionames_entry *name_slot(const se3di_ionames *names, const char *name)
 {
     size_t k = name_hash(name) & (names->capacity - 1);
     while (names->entries[k].name && strcmp(names->entries[k].name, name) != 0) {
@@ -131,10 +131,10 @@ static struct se3di_names_entry *name_slot(const se3di_names *names, const char 
     return &names->entries[k];
 }
 
-bool se3di_names_add(se3di_names *names, se3di_iopool *pool, const char *name, size_t index)
+bool se3di_ionames_add(se3di_ionames *names, se3di_iopool *pool, const char *name, size_t index)
 {
     if (names->count * 2 >= names->capacity) {
-        se3di_names larger = {0};
+        se3di_ionames larger = {0};
         larger.capacity = names->capacity ? names->capacity * 2 : 16;
         larger.entries = se3di_iopool_array(pool, larger.capacity, sizeof *larger.entries);
         if (!larger.entries) {
@@ -148,19 +148,19 @@ bool se3di_names_add(se3di_names *names, se3di_iopool *pool, const char *name, s
         names->entries = larger.entries;
         names->capacity = larger.capacity;
     }
-    struct se3di_names_entry *slot = name_slot(names, name);
+    struct se3di_ionames_entry *slot = name_slot(names, name);
     slot->name = name;
     slot->index = index;
     ++names->count;
     return true;
 }
 
-bool se3di_names_find(const se3di_names *names, const char *name, size_t *index)
+bool se3di_ionames_find(const se3di_ionames *names, const char *name, size_t *index)
 {
     if (names->capacity == 0) {
         return false;
     }
-    const struct se3di_names_entry *slot = name_slot(names, name);
+    const struct se3di_ionames_entry *slot = name_slot(names, name);
     if (slot->name && index) {
         *index = slot->index;
     }

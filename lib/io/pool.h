@@ -32,17 +32,17 @@ void *se3di_iopool_grow(se3di_iopool *pool, void *array, size_t count, size_t *c
                         size_t size);
 
 /* Names to indices: open addressing over texts that the caller keeps. */
-typedef struct se3di_names {
-    struct se3di_names_entry {
+typedef struct se3di_ionames {
+    struct se3di_ionames_entry {
         const char *name;
         size_t index;
     } * entries;
     size_t capacity; /* 0 or a power of two */
     size_t count;
-} se3di_names;
+} se3di_ionames;
 
 /* Add a name that is not there yet. @return false: out of memory. */
-bool se3di_names_add(se3di_names *names, se3di_iopool *pool, const char *name, size_t index);
-bool se3di_names_find(const se3di_names *names, const char *name, size_t *index);
+bool se3di_ionames_add(se3di_ionames *names, se3di_iopool *pool, const char *name, size_t index);
+bool se3di_ionames_find(const se3di_ionames *names, const char *name, size_t *index);
 
 #endif

@@ -29,14 +29,36 @@ static void close_gap(void *array, size_t count, size_t first, size_t removed, s
     }
 }
 
-static se3d_status copy_name(se3di_model *model, const char *name, char **copy)
+/* A copy of a name, and room for it among those of its kind. */
+static se3d_status copy_name(se3di_model *model, se3di_slots *slots, const char *name, char **copy)
 {
     *copy = NULL;
     if (name) {
+        SE3DI_TRY(se3di_names_reserve(&slots->names, &model->allocator, slots->names.count + 1));
         *copy = se3di_text_copy(&model->allocator, name);
         return *copy ? SE3D_OK : SE3D_ERR_NO_MEMORY;
     }
     return SE3D_OK;
+}
+
+static se3di_handle add_named(se3di_slots *slots, uint32_t owner, const char *name)
+{
+    const se3di_handle handle = se3di_slots_add(slots);
+    if (name) {
+        se3di_slots_name(slots, (uint32_t)slots->count - 1, owner, name);
+    }
+    return handle;
+}
+
+/* Take the object `dense` out, and its name. */
+static void remove_named(se3di_model *model, se3di_slots *slots, uint32_t dense, uint32_t owner,
+                         char *name)
+{
+    if (name) {
+        se3di_names_remove(&slots->names, owner, name);
+        se3di_text_free(&model->allocator, name);
+    }
+    se3di_slots_remove(slots, dense);
 }
 
 void se3di_model_touch_state(se3di_model *model)
@@ -44,6 +66,10 @@ void se3di_model_touch_state(se3di_model *model)
     model->settled = 0;
     model->history_tag = 0;
     model->work_valid = 0;
+    if (!model->remembers) {
+        return;
+    }
+    model->remembers = 0;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         memset(model->forces[k].state, 0, sizeof model->forces[k].state);
     }
@@ -70,13 +96,13 @@ se3d_status se3di_model_add_body(se3di_model *model, const se3di_body *body,
     RESERVE(model, frames, frame_capacity, count + 1, sizeof *model->frames);
     RESERVE(model, acceleration, acceleration_capacity, count + 1, 6 * sizeof *model->acceleration);
     SE3DI_TRY(se3di_slots_reserve(&model->body_slots, &model->allocator));
-    SE3DI_TRY(copy_name(model, body->name, &name));
+    SE3DI_TRY(copy_name(model, &model->body_slots, body->name, &name));
     model->bodies[count] = *body;
     model->bodies[count].name = name;
     model->bodies[count].users = 0;
     model->frames[count] = *frame;
     memset(model->acceleration + 6 * count, 0, 6 * sizeof *model->acceleration);
-    *handle = se3di_slots_add(&model->body_slots);
+    *handle = add_named(&model->body_slots, 0, name);
     se3di_model_touch(model);
     return SE3D_OK;
 }
@@ -94,11 +120,11 @@ static void lower_signed(int32_t *index, uint32_t removed)
 void se3di_model_remove_body(se3di_model *model, uint32_t body)
 {
     size_t count = model->body_slots.count;
-    se3di_text_free(&model->allocator, model->bodies[body].name);
+    char *name = model->bodies[body].name;
     close_gap(model->bodies, count, body, 1, sizeof *model->bodies);
     close_gap(model->frames, count, body, 1, sizeof *model->frames);
     close_gap(model->acceleration, count, body, 1, 6 * sizeof *model->acceleration);
-    se3di_slots_remove(&model->body_slots, body);
+    remove_named(model, &model->body_slots, body, 0, name);
     for (size_t k = 0; k < model->marker_slots.count; ++k) {
         lower(&model->markers[k].body, body);
     }
@@ -132,21 +158,22 @@ se3d_status se3di_model_add_marker(se3di_model *model, const se3di_marker *marke
     char *name;
     RESERVE(model, markers, marker_capacity, count + 1, sizeof *model->markers);
     SE3DI_TRY(se3di_slots_reserve(&model->marker_slots, &model->allocator));
-    SE3DI_TRY(copy_name(model, marker->name, &name));
+    SE3DI_TRY(copy_name(model, &model->marker_slots, marker->name, &name));
     model->markers[count] = *marker;
     model->markers[count].name = name;
     model->markers[count].users = 0;
     ++model->bodies[marker->body].users;
-    *handle = se3di_slots_add(&model->marker_slots);
+    *handle = add_named(&model->marker_slots, se3di_model_owner(model, marker->body), name);
     return SE3D_OK;
 }
 
 void se3di_model_remove_marker(se3di_model *model, uint32_t marker)
 {
     --model->bodies[model->markers[marker].body].users;
-    se3di_text_free(&model->allocator, model->markers[marker].name);
+    char *name = model->markers[marker].name;
+    const uint32_t owner = se3di_model_owner(model, model->markers[marker].body);
     close_gap(model->markers, model->marker_slots.count, marker, 1, sizeof *model->markers);
-    se3di_slots_remove(&model->marker_slots, marker);
+    remove_named(model, &model->marker_slots, marker, owner, name);
 }
 
 se3d_status se3di_model_add_function(se3di_model *model, const se3di_function *function,
@@ -232,7 +259,7 @@ se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *dr
             sizeof *model->terms);
     RESERVE(model, angles, angle_capacity, model->angle_count + 1, sizeof *model->angles);
     SE3DI_TRY(se3di_slots_reserve(&model->constraint_slots, &model->allocator));
-    SE3DI_TRY(copy_name(model, draft->constraint.name, &name));
+    SE3DI_TRY(copy_name(model, &model->constraint_slots, draft->constraint.name, &name));
     se3di_constraint *constraint = &model->constraints[count];
     *constraint = draft->constraint;
     constraint->name = name;
@@ -249,7 +276,7 @@ se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *dr
     model->row_count += draft->row_count;
     model->term_count += draft->term_count;
     count_constraint_users(model, constraint, 1);
-    *handle = se3di_slots_add(&model->constraint_slots);
+    *handle = add_named(&model->constraint_slots, 0, name);
     se3di_model_touch(model);
     return SE3D_OK;
 }
@@ -272,7 +299,6 @@ void se3di_model_remove_constraint(se3di_model *model, uint32_t index)
 {
     se3di_constraint gone = model->constraints[index];
     count_constraint_users(model, &gone, UINT32_MAX);
-    se3di_text_free(&model->allocator, gone.name);
     close_gap(model->rows, model->row_count, gone.row_begin, gone.row_count, sizeof *model->rows);
     close_gap(model->lambda, model->row_count, gone.row_begin, gone.row_count,
               sizeof *model->lambda);
@@ -280,7 +306,7 @@ void se3di_model_remove_constraint(se3di_model *model, uint32_t index)
               sizeof *model->terms);
     close_gap(model->constraints, model->constraint_slots.count, index, 1,
               sizeof *model->constraints);
-    se3di_slots_remove(&model->constraint_slots, index);
+    remove_named(model, &model->constraint_slots, index, 0, gone.name);
     model->row_count -= gone.row_count;
     model->term_count -= gone.term_count;
     for (size_t k = index; k < model->constraint_slots.count; ++k) {
@@ -325,12 +351,12 @@ se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
     char *name;
     RESERVE(model, forces, force_capacity, count + 1, sizeof *model->forces);
     SE3DI_TRY(se3di_slots_reserve(&model->force_slots, &model->allocator));
-    SE3DI_TRY(copy_name(model, force->name, &name));
+    SE3DI_TRY(copy_name(model, &model->force_slots, force->name, &name));
     model->forces[count] = *force;
     model->forces[count].name = name;
     model->forces[count].users = 0;
     count_force_users(model, force, 1);
-    *handle = se3di_slots_add(&model->force_slots);
+    *handle = add_named(&model->force_slots, 0, name);
     se3di_model_touch(model);
     return SE3D_OK;
 }
@@ -351,9 +377,9 @@ void se3di_model_remove_force(se3di_model *model, uint32_t force)
 {
     int32_t own = model->forces[force].owns_angle ? model->forces[force].angle : -1;
     count_force_users(model, &model->forces[force], UINT32_MAX);
-    se3di_text_free(&model->allocator, model->forces[force].name);
+    char *name = model->forces[force].name;
     close_gap(model->forces, model->force_slots.count, force, 1, sizeof *model->forces);
-    se3di_slots_remove(&model->force_slots, force);
+    remove_named(model, &model->force_slots, force, 0, name);
     if (own >= 0) {
         remove_angle(model, (uint32_t)own);
     }

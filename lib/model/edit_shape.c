@@ -75,6 +75,7 @@ se3d_status se3di_model_add_shape(se3di_model *model, const se3di_shape *shape,
     model->shapes = memory;
     SE3DI_TRY(status);
     SE3DI_TRY(se3di_slots_reserve(&model->shape_slots, &model->allocator));
+    SE3DI_TRY(se3di_names_reserve(&model->shape_slots.names, &model->allocator, count + 1));
     se3di_shape copy = *shape;
     SE3DI_TRY(se3di_shape_own(&model->allocator, &copy));
     copy.users = 0;
@@ -84,6 +85,9 @@ se3d_status se3di_model_add_shape(se3di_model *model, const se3di_shape *shape,
         ++model->materials[copy.material].users;
     }
     *handle = se3di_slots_add(&model->shape_slots);
+    if (copy.name) {
+        se3di_slots_name(&model->shape_slots, (uint32_t)count, 0, copy.name);
+    }
     se3di_model_touch(model);
     return SE3D_OK;
 }
@@ -94,6 +98,9 @@ void se3di_model_remove_shape(se3di_model *model, uint32_t shape)
     --model->bodies[gone->body].users;
     if (gone->material >= 0) {
         --model->materials[gone->material].users;
+    }
+    if (gone->name) {
+        se3di_names_remove(&model->shape_slots.names, 0, gone->name);
     }
     se3di_shape_release(&model->allocator, gone);
     memmove(gone, gone + 1, (model->shape_slots.count - shape - 1) * sizeof *gone);

@@ -162,6 +162,11 @@ static se3d_status copy_name(const se3d_allocator *allocator, char **name)
     return original && !*name ? SE3D_ERR_NO_MEMORY : SE3D_OK;
 }
 
+uint32_t se3di_model_owner(const se3di_model *model, uint32_t body)
+{
+    return se3di_slots_handle(&model->body_slots, body).index1;
+}
+
 /* The arrays hold the original's names: replace each by a copy; those not reached become NULL. */
 static se3d_status copy_names(se3di_model *copy)
 {
@@ -187,6 +192,34 @@ static se3d_status copy_names(se3di_model *copy)
         status = se3di_shape_own(allocator, &copy->shapes[k]) < 0 ? SE3D_ERR_NO_MEMORY : status;
     }
     return status;
+}
+
+static void list_name(se3di_slots *slots, size_t dense, uint32_t owner, const char *name)
+{
+    if (name) {
+        se3di_slots_name(slots, (uint32_t)dense, owner, name);
+    }
+}
+
+/* A copy has its names, and room to find them. */
+static void list_names(se3di_model *copy)
+{
+    for (size_t k = 0; k < copy->body_slots.count; ++k) {
+        list_name(&copy->body_slots, k, 0, copy->bodies[k].name);
+    }
+    for (size_t k = 0; k < copy->marker_slots.count; ++k) {
+        list_name(&copy->marker_slots, k, se3di_model_owner(copy, copy->markers[k].body),
+                  copy->markers[k].name);
+    }
+    for (size_t k = 0; k < copy->constraint_slots.count; ++k) {
+        list_name(&copy->constraint_slots, k, 0, copy->constraints[k].name);
+    }
+    for (size_t k = 0; k < copy->force_slots.count; ++k) {
+        list_name(&copy->force_slots, k, 0, copy->forces[k].name);
+    }
+    for (size_t k = 0; k < copy->shape_slots.count; ++k) {
+        list_name(&copy->shape_slots, k, 0, copy->shapes[k].name);
+    }
 }
 
 static se3d_status clone_slots(const se3di_model *model, se3di_model *copy)
@@ -250,8 +283,10 @@ se3d_status se3di_model_clone(const se3di_model *model, se3di_model *copy)
     status = copy_names(copy);
     if (status < 0) {
         se3di_model_destroy(copy);
+        return status;
     }
-    return status;
+    list_names(copy);
+    return SE3D_OK;
 }
 
 void se3di_model_save_memory(const se3di_model *model, double *memory)

@@ -156,7 +156,7 @@ typedef struct se3di_model {
     double power[3];           /* the same, of the last accepted state [W] */
     uint64_t topology_version; /* changes when elements come, go or change */
     int32_t settled;           /* the state is an analysis' own; 0 after the user set one */
-    int32_t reserved;
+    int32_t remembers;         /* an analysis may have left something in forces, shapes, contacts */
 
     se3di_slots body_slots; /* count = bodies, [0] the ground */
     se3di_body *bodies;
@@ -269,6 +269,9 @@ void se3di_model_set_contact(se3di_model *model, const se3di_contact_settings *s
 /* Give a shape copies of its own of all that it points to; on failure it points to nothing. */
 se3d_status se3di_shape_own(const se3d_allocator *allocator, se3di_shape *shape);
 void se3di_shape_release(const se3d_allocator *allocator, se3di_shape *shape);
+
+/* Whose name a marker's is: names of markers are unique on their body. */
+uint32_t se3di_model_owner(const se3di_model *model, uint32_t body);
 
 /* Keep, put back what force elements remember: memory [forces * SE3DI_FORCE_STATES]. */
 void se3di_model_save_memory(const se3di_model *model, double *memory);

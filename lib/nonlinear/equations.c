@@ -57,6 +57,7 @@ se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
                                  const se3di_formulation *formulation, se3di_error *error)
 {
     *equations = (se3di_equations){.error = error, .iterations_max = 25};
+    model->remembers = 1;
     SE3DI_TRY(se3di_assembly_init(&equations->assembly, model, formulation, error));
     se3d_status status = allocate(equations);
     if (status < 0) {

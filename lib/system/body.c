@@ -49,7 +49,7 @@ se3d_status se3d_body_create(se3d_system *system, const se3d_body_def *def, se3d
     SE3DI_TRY(se3di_check_pointer(system, "body", body));
     se3d_body_def full = se3d_body_def_default();
     SE3DI_TRY(se3di_check_def(system, "body def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_body_name(system, full.name));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.body_slots, 0, "body", full.name));
     se3di_frame frame = {0};
     if (!full.fixed) {
         SE3DI_TRY(check_mass(system, full.mass, full.inertia));
@@ -123,13 +123,10 @@ se3d_status se3d_body_find(const se3d_system *system, const char *name, se3d_bod
     if (!system || !name || !body) {
         return SE3D_ERR_NULL;
     }
-    for (size_t k = 0; k < system->model.body_slots.count; ++k) {
-        const char *other = system->model.bodies[k].name;
-        if (other && strcmp(other, name) == 0) {
-            return se3d_system_get_body(system, k, body);
-        }
-    }
-    return SE3D_ERR_INVALID_ARGUMENT;
+    se3di_handle handle = {0, 0};
+    SE3DI_TRY(se3di_find_named(&system->model.body_slots, name, &handle));
+    *body = (se3d_body){handle.index1, handle.generation};
+    return SE3D_OK;
 }
 
 se3d_status se3d_body_get_name(const se3d_system *system, se3d_body body, const char **name)

@@ -178,85 +178,26 @@ se3d_status se3di_check_name(se3d_system *system, const char *name)
     return SE3D_OK;
 }
 
-se3d_status se3di_check_body_name(se3d_system *system, const char *name)
+se3d_status se3di_check_new_name(se3d_system *system, const se3di_slots *slots, uint32_t owner,
+                                 const char *what, const char *name)
 {
     if (!name) {
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_check_name(system, name));
-    for (size_t k = 0; k < system->model.body_slots.count; ++k) {
-        const char *other = system->model.bodies[k].name;
-        if (other && strcmp(other, name) == 0) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "name = \"%.64s\" is taken by another body, must be unique", name);
-        }
+    if (se3di_slots_find_name(slots, owner, name) != SE3DI_NO_INDEX) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "name = \"%.64s\" is taken by another %s, must be unique", name, what);
     }
     return SE3D_OK;
 }
 
-se3d_status se3di_check_marker_name(se3d_system *system, uint32_t body, const char *name)
+se3d_status se3di_find_named(const se3di_slots *slots, const char *name, se3di_handle *handle)
 {
-    if (!name) {
-        return SE3D_OK;
+    const uint32_t index = se3di_slots_find_name(slots, 0, name);
+    if (index == SE3DI_NO_INDEX) {
+        return SE3D_ERR_INVALID_ARGUMENT;
     }
-    SE3DI_TRY(se3di_check_name(system, name));
-    for (size_t k = 0; k < system->model.marker_slots.count; ++k) {
-        const se3di_marker *other = &system->model.markers[k];
-        if (other->body == body && other->name && strcmp(other->name, name) == 0) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "name = \"%.64s\" is taken by another marker of this body, must be "
-                              "unique",
-                              name);
-        }
-    }
-    return SE3D_OK;
-}
-
-se3d_status se3di_check_constraint_name(se3d_system *system, const char *name)
-{
-    if (!name) {
-        return SE3D_OK;
-    }
-    SE3DI_TRY(se3di_check_name(system, name));
-    for (size_t k = 0; k < system->model.constraint_slots.count; ++k) {
-        const char *other = system->model.constraints[k].name;
-        if (other && strcmp(other, name) == 0) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "name = \"%.64s\" is taken by another constraint, must be unique",
-                              name);
-        }
-    }
-    return SE3D_OK;
-}
-
-se3d_status se3di_check_force_name(se3d_system *system, const char *name)
-{
-    if (!name) {
-        return SE3D_OK;
-    }
-    SE3DI_TRY(se3di_check_name(system, name));
-    for (size_t k = 0; k < system->model.force_slots.count; ++k) {
-        const char *other = system->model.forces[k].name;
-        if (other && strcmp(other, name) == 0) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "name = \"%.64s\" is taken by another force, must be unique", name);
-        }
-    }
-    return SE3D_OK;
-}
-
-se3d_status se3di_check_shape_name(se3d_system *system, const char *name)
-{
-    if (!name) {
-        return SE3D_OK;
-    }
-    SE3DI_TRY(se3di_check_name(system, name));
-    for (size_t k = 0; k < system->model.shape_slots.count; ++k) {
-        const char *other = system->model.shapes[k].name;
-        if (other && strcmp(other, name) == 0) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "name = \"%.64s\" is taken by another shape, must be unique", name);
-        }
-    }
+    *handle = se3di_slots_handle(slots, index);
     return SE3D_OK;
 }

@@ -49,15 +49,10 @@ se3d_status se3d_constraint_find(const se3d_system *system, const char *name,
     if (!system || !name || !constraint) {
         return SE3D_ERR_NULL;
     }
-    const se3di_model *model = &system->model;
-    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
-        if (model->constraints[k].name && strcmp(model->constraints[k].name, name) == 0) {
-            se3di_handle handle = se3di_slots_handle(&model->constraint_slots, (uint32_t)k);
-            *constraint = (se3d_constraint){handle.index1, handle.generation};
-            return SE3D_OK;
-        }
-    }
-    return SE3D_ERR_INVALID_ARGUMENT;
+    se3di_handle handle = {0, 0};
+    SE3DI_TRY(se3di_find_named(&system->model.constraint_slots, name, &handle));
+    *constraint = (se3d_constraint){handle.index1, handle.generation};
+    return SE3D_OK;
 }
 
 /* Find a constraint for a getter with one output. */

@@ -69,7 +69,8 @@ static se3d_status check_term(se3d_system *system, const se3d_coupler_def *def, 
 static se3d_status draft_build(se3d_system *system, const char *type, const se3d_coupler_def *def,
                                se3di_draft *draft)
 {
-    SE3DI_TRY(se3di_check_constraint_name(system, def->name));
+    SE3DI_TRY(
+        se3di_check_new_name(system, &system->model.constraint_slots, 0, "constraint", def->name));
     if (def->count < 1 || def->count > SE3D_COUPLER_TERMS_MAX) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "count = %zu, must be 1 to %d",
                           def->count, SE3D_COUPLER_TERMS_MAX);

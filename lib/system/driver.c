@@ -29,7 +29,8 @@ se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_def *user,
     se3di_term term;
     int32_t function;
     SE3DI_TRY(se3di_check_def(system, "def", user, &def, sizeof def));
-    SE3DI_TRY(se3di_check_constraint_name(system, def.name));
+    SE3DI_TRY(
+        se3di_check_new_name(system, &system->model.constraint_slots, 0, "constraint", def.name));
     SE3DI_TRY(se3di_find_constraint(system, "joint", def.joint, &joint));
     SE3DI_TRY(se3di_check_coordinate(system, "coordinate", joint, def.coordinate, &term));
     SE3DI_TRY(se3di_find_function(system, "function", def.function, 1, &function));

@@ -57,7 +57,7 @@ se3d_status se3d_force_create_tsda(se3d_system *system, const se3d_tsda_def *def
     SE3DI_TRY(se3di_force_begin(system, force));
     se3d_tsda_def full = se3d_tsda_def_default();
     SE3DI_TRY(se3di_check_def(system, "tsda def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_force_name(system, full.name));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
     se3di_force data = se3di_force_blank(SE3DI_FORCE_TSDA, full.name);
     SE3DI_TRY(se3di_find_body(system, "body_i", full.body_i, &data.body_i));
     SE3DI_TRY(se3di_find_body(system, "body_j", full.body_j, &data.body_j));
@@ -154,7 +154,7 @@ se3d_status se3d_force_create_rsda(se3d_system *system, const se3d_rsda_def *def
     SE3DI_TRY(se3di_force_begin(system, force));
     se3d_rsda_def full = se3d_rsda_def_default();
     SE3DI_TRY(se3di_check_def(system, "rsda def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_force_name(system, full.name));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
     se3di_force data = se3di_force_blank(SE3DI_FORCE_RSDA, full.name);
     se3di_angle angle;
     SE3DI_TRY(se3di_check_finite(system, "k", full.k));
@@ -182,7 +182,7 @@ static se3d_status create_load(se3d_system *system, const se3d_load_def *def, in
     SE3DI_TRY(se3di_force_begin(system, force));
     se3d_load_def full = se3d_load_def_default();
     SE3DI_TRY(se3di_check_def(system, "load def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_force_name(system, full.name));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
     se3di_force data = se3di_force_blank(type, full.name);
     SE3DI_TRY(se3di_find_body(system, "body", full.body, &data.body_j));
     SE3DI_TRY(se3di_check_finites(system, "point", full.point, 3));
@@ -227,13 +227,10 @@ se3d_status se3d_force_find(const se3d_system *system, const char *name, se3d_fo
     if (!system || !name || !force) {
         return SE3D_ERR_NULL;
     }
-    for (size_t k = 0; k < system->model.force_slots.count; ++k) {
-        const char *other = system->model.forces[k].name;
-        if (other && strcmp(other, name) == 0) {
-            return se3d_system_get_force(system, k, force);
-        }
-    }
-    return SE3D_ERR_INVALID_ARGUMENT;
+    se3di_handle handle = {0, 0};
+    SE3DI_TRY(se3di_find_named(&system->model.force_slots, name, &handle));
+    *force = (se3d_force){handle.index1, handle.generation};
+    return SE3D_OK;
 }
 
 static se3d_status find_reader(const se3d_system *system, se3d_force force, const void *out,

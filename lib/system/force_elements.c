@@ -76,7 +76,7 @@ se3d_status se3d_force_create_bushing(se3d_system *system, const se3d_bushing_de
     SE3DI_TRY(se3di_force_begin(system, force));
     se3d_bushing_def full = se3d_bushing_def_default();
     SE3DI_TRY(se3di_check_def(system, "bushing def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_force_name(system, full.name));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
     se3di_force data = se3di_force_blank(SE3DI_FORCE_BUSHING, full.name);
     SE3DI_TRY(find_pair(system, full.body_i, full.body_j, &data));
     SE3DI_TRY(se3di_check_finites(system, "point_i", full.point_i, 3));
@@ -125,7 +125,7 @@ se3d_status se3d_force_create_friction(se3d_system *system, const se3d_friction_
     SE3DI_TRY(se3di_force_begin(system, force));
     se3d_friction_def full = se3d_friction_def_default();
     SE3DI_TRY(se3di_check_def(system, "friction def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_force_name(system, full.name));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
     se3di_force data = se3di_force_blank(SE3DI_FORCE_FRICTION, full.name);
     SE3DI_TRY(find_coordinate(system, full.joint, full.coordinate, &data));
     SE3DI_TRY(check_not_negative(system, "mu", full.mu));
@@ -171,7 +171,7 @@ se3d_status se3d_force_create_stop(se3d_system *system, const se3d_stop_def *def
     SE3DI_TRY(se3di_force_begin(system, force));
     se3d_stop_def full = se3d_stop_def_default();
     SE3DI_TRY(se3di_check_def(system, "stop def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_force_name(system, full.name));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
     se3di_force data = se3di_force_blank(SE3DI_FORCE_STOP, full.name);
     if (full.joint.index1 == 0 && full.joint.generation == 0 && full.body_j.index1 != 0) {
         data.coordinate = SE3DI_FORCE_LENGTH;
@@ -198,7 +198,7 @@ se3d_status se3d_force_create_callback(se3d_system *system, const se3d_force_cal
     SE3DI_TRY(se3di_force_begin(system, force));
     se3d_force_callback_def full = se3d_force_callback_def_default();
     SE3DI_TRY(se3di_check_def(system, "callback def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_force_name(system, full.name));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
     se3di_force data = se3di_force_blank(SE3DI_FORCE_CALLBACK, full.name);
     SE3DI_TRY(find_pair(system, full.body_i, full.body_j, &data));
     if (!full.callback) {

@@ -167,7 +167,8 @@ static se3d_status joint_create(se3d_system *system, se3di_joint_type_id id,
     uint32_t bodies[2];
     se3di_draft draft;
     SE3DI_TRY(se3di_check_def(system, "def", user, &def, sizeof def));
-    SE3DI_TRY(se3di_check_constraint_name(system, def.name));
+    SE3DI_TRY(
+        se3di_check_new_name(system, &system->model.constraint_slots, 0, "constraint", def.name));
     SE3DI_TRY(se3di_find_body(system, "body_i", def.body_i, &bodies[0]));
     SE3DI_TRY(se3di_find_body(system, "body_j", def.body_j, &bodies[1]));
     SE3DI_TRY(se3di_check_distinct(system, bodies));

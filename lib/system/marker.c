@@ -25,7 +25,9 @@ se3d_status se3d_marker_create(se3d_system *system, const se3d_marker_def *def, 
     se3di_marker data = {0};
     SE3DI_TRY(se3di_check_def(system, "marker def", def, &full, sizeof full));
     SE3DI_TRY(se3di_find_body(system, "body", full.body, &data.body));
-    SE3DI_TRY(se3di_check_marker_name(system, data.body, full.name));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.marker_slots,
+                                   se3di_model_owner(&system->model, data.body),
+                                   "marker of this body", full.name));
     SE3DI_TRY(se3di_check_finites(system, "position", full.position, 3));
     SE3DI_TRY(se3di_check_orientation(system, "orientation", full.orientation, data.p));
     se3di_copy(full.position, data.s);

@@ -68,7 +68,8 @@ se3d_status se3d_primitive_create(se3d_system *system, const se3d_primitive_def 
     int32_t function;
     se3di_draft draft;
     SE3DI_TRY(se3di_check_def(system, "def", user, &def, sizeof def));
-    SE3DI_TRY(se3di_check_constraint_name(system, def.name));
+    SE3DI_TRY(
+        se3di_check_new_name(system, &system->model.constraint_slots, 0, "constraint", def.name));
     if (def.type < SE3D_PRIMITIVE_DP1 || def.type > SE3D_PRIMITIVE_CD) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "type = %d, must be one of se3d_primitive_type (0 to 3)", (int)def.type);

@@ -55,7 +55,7 @@ static se3d_status read_common(se3d_system *system, const se3d_shape_def *def, s
         SE3DI_TRY(se3di_find_material(system, "material", def->material, &material));
         shape->material = (int32_t)material;
     }
-    SE3DI_TRY(se3di_check_shape_name(system, def->name));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.shape_slots, 0, "shape", def->name));
     SE3DI_TRY(se3di_check_finites(system, "position", def->position, 3));
     SE3DI_TRY(se3di_check_orientation(system, "orientation", def->orientation, p));
     memcpy(&shape->name, &def->name, sizeof shape->name); /* copied by the model */
@@ -253,15 +253,10 @@ se3d_status se3d_shape_find(const se3d_system *system, const char *name, se3d_sh
     if (!system || !name || !shape) {
         return SE3D_ERR_NULL;
     }
-    for (uint32_t k = 0; k < system->model.shape_slots.count; ++k) {
-        const char *other = system->model.shapes[k].name;
-        if (other && strcmp(other, name) == 0) {
-            se3di_handle handle = se3di_slots_handle(&system->model.shape_slots, k);
-            *shape = (se3d_shape){handle.index1, handle.generation};
-            return SE3D_OK;
-        }
-    }
-    return SE3D_ERR_INVALID_ARGUMENT;
+    se3di_handle handle = {0, 0};
+    SE3DI_TRY(se3di_find_named(&system->model.shape_slots, name, &handle));
+    *shape = (se3d_shape){handle.index1, handle.generation};
+    return SE3D_OK;
 }
 
 se3d_status se3d_shape_get_name(const se3d_system *system, se3d_shape shape, const char **name)

@@ -163,6 +163,7 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
     copy(model->power, snapshot->power, sizeof model->power);
     model->work_valid = snapshot->work_valid;
     model->settled = snapshot->settled;
+    model->remembers = 1;
     model->history_count = snapshot->history;
     model->history_tag = snapshot->history_tag;
     model->time = snapshot->time;

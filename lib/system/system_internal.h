@@ -58,11 +58,11 @@ se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_func
 
 /* `name` (not NULL) is well formed. */
 se3d_status se3di_check_name(se3d_system *system, const char *name);
-/* `name` is well formed and free among the constraints (bodies, forces); NULL always is. */
-se3d_status se3di_check_body_name(se3d_system *system, const char *name);
-se3d_status se3di_check_marker_name(se3d_system *system, uint32_t body, const char *name);
-se3d_status se3di_check_constraint_name(se3d_system *system, const char *name);
-se3d_status se3di_check_force_name(se3d_system *system, const char *name);
-se3d_status se3di_check_shape_name(se3d_system *system, const char *name);
+/* `name` is well formed and free among the elements of `slots`, of which it would be another
+ * `what`; markers: among those of `owner`, others: 0. NULL always is. */
+se3d_status se3di_check_new_name(se3d_system *system, const se3di_slots *slots, uint32_t owner,
+                                 const char *what, const char *name);
+/* The handle of an element by its name; left alone where there is none. */
+se3d_status se3di_find_named(const se3di_slots *slots, const char *name, se3di_handle *handle);
 
 #endif

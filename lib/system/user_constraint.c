@@ -65,7 +65,8 @@ se3d_status se3d_user_constraint_create(se3d_system *system, const se3d_user_con
     uint32_t bodies[SE3D_USER_BODIES_MAX] = {0};
     se3di_draft draft;
     SE3DI_TRY(se3di_check_def(system, "def", user, &def, sizeof def));
-    SE3DI_TRY(se3di_check_constraint_name(system, def.name));
+    SE3DI_TRY(
+        se3di_check_new_name(system, &system->model.constraint_slots, 0, "constraint", def.name));
     SE3DI_TRY(check_counts(system, &def));
     SE3DI_TRY(find_bodies(system, &def, bodies));
     se3di_draft_init(&draft, "user", 0, bodies[0]);
