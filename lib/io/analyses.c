@@ -137,6 +137,10 @@ static bool check_times(se3di_reader *reader, const se3di_node *node, const se3d
                         : has_fixed_steps(entry->solver.method) ? STEP_DEFAULT
                                                                 : 0.0;
     const double end = length + (isnan(entry->analysis.start) ? 0.0 : entry->analysis.start);
+    if (length > 0.0 && length < STEP_MIN) {
+        return se3di_reader_fail(reader, duration, "is %g, must be 0 or at least %g [s]", length,
+                                 STEP_MIN);
+    }
     if (length > TIME_MAX) {
         return se3di_reader_fail(reader, duration, "is %g, must be at most %g [s]", length,
                                  TIME_MAX);
@@ -146,6 +150,10 @@ static bool check_times(se3di_reader *reader, const se3di_node *node, const se3d
                                  "is %g s, which takes %.3g steps of %g s, must take at most %g: "
                                  "choose a larger `step`",
                                  length, length / step, step, STEPS_MAX);
+    }
+    if (length > 0.0 && length < 1e-14 * fabs(end)) {
+        return se3di_reader_fail(reader, duration, "is %g s, which does not move the time %g s on",
+                                 length, end);
     }
     if (length > 0.0 && step > 0.0 && step < 1e-14 * fabs(end)) {
         return se3di_reader_fail_key(reader, node ? node : reader->model->root, "step",

@@ -125,10 +125,38 @@ static void steps_that_do_not_move_the_time_or_are_too_many_are_refused(void)
     se3d_system_destroy(system);
 }
 
+/* A spring of 1e24 N/m: 1e11 oscillations a second. */
+static void a_motion_that_would_take_billions_of_steps_is_given_up(void)
+{
+    se3d_system *system = open_system();
+    se3d_solver *solver = NULL;
+    se3d_body body;
+    se3d_body ground;
+    se3d_force force;
+    se3d_tsda_def spring = se3d_tsda_def_default();
+    const double r[3] = {1.0, 0.0, 0.0};
+    CHECK(se3d_system_get_body(system, 1, &body) == SE3D_OK);
+    CHECK(se3d_system_get_ground(system, &ground) == SE3D_OK);
+    CHECK(se3d_body_set_position(system, body, r) == SE3D_OK);
+    spring.body_i = ground;
+    spring.body_j = body;
+    spring.k = 1e24;
+    spring.l0 = 0.5;
+    CHECK(se3d_force_create_tsda(system, &spring, &force) == SE3D_OK);
+    se3d_solver_def def = se3d_solver_def_default();
+    def.method = SE3D_METHOD_DOP853;
+    CHECK(se3d_solver_create(system, &def, &solver) == SE3D_OK);
+    CHECK(se3d_solver_run(solver, 1.0) == SE3D_ERR_STEP_SIZE);
+    CHECK_CONTAINS(se3d_system_get_error(system), "of them to t = 1 s");
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(system);
+}
+
 int main(void)
 {
     RUN(numbers_out_of_range_are_refused);
     RUN(a_method_takes_only_the_orders_it_has);
+    RUN(a_motion_that_would_take_billions_of_steps_is_given_up);
     RUN(steps_that_do_not_move_the_time_or_are_too_many_are_refused);
     return check_finish();
 }
