@@ -295,11 +295,11 @@ static se3d_status accept(bdf *m, double t)
     se3di_state_scale scale = get_scale(m);
     size_t bodies = m->count - SE3DI_STATE_WORK;
     int order = (int)m->header[BDF_ORDER];
-    double moved, power[SE3DI_STATE_WORK];
+    double power[SE3DI_STATE_WORK];
     if (m->assembly->row_count > 0) {
         memcpy(model->lambda, m->lambda, m->assembly->row_count * sizeof *m->lambda);
     }
-    SE3DI_TRY(se3di_state_project(m->equations, t, &scale, 1e-13, &moved));
+    SE3DI_TRY(se3di_state_project(m->equations, t, &scale, 1e-13, 0));
     SE3DI_TRY(se3di_loads_prepare(model, t, m->equations->error));
     SE3DI_TRY(se3di_loads_power(model, t, power));
     for (int k = 0; k < SE3DI_STATE_WORK; ++k) {

@@ -30,6 +30,8 @@ enum {
 #define STEPS_MAX      1e9 /* of one run, by the pace of the first STEPS_ASSESSED */
 #define STEPS_ASSESSED 5000.0
 #define FORCED_MAX     3
+#define SAFETY         0.8 /* a rejected step costs more than several that are this much shorter */
+#define GROWTH         3.0 /* largest, of a step: one small error may be chance */
 #define WORK_WEIGHT    0.1 /* of the error of works: it disturbs nothing but the audit of energy */
 
 #define RK_FORMS   (3 + SE3DI_RK_DENSE_MAX)
@@ -204,13 +206,14 @@ static double estimate_error(rk *m, double h)
     return error;
 }
 
-/* From (t_1, y_1, y'_1) by h: stages, projection, error; the history is changed only by accept.
+/* From (t_1, y_1, y'_1) by h: stages, error, projection; the history is changed only by accept. The
+ * derivative at the end is that before the projection, which moves the state by its error, and with
+ * its factorisation: the order is the same.
  * *error is infinite where the step cannot be made at all. */
 static se3d_status attempt(rk *m, double h, double *error)
 {
     const se3di_rk_tableau *tableau = m->tableau;
     double t = m->header[RK_T1];
-    double moved;
     memcpy(m->y0, m->y1, m->count * sizeof *m->y0);
     memcpy(m->K, m->f1, m->count * sizeof *m->K);
     *error = HUGE_VAL;
@@ -226,15 +229,18 @@ static se3d_status attempt(rk *m, double h, double *error)
     }
     combine(m, m->y0, h, tableau->a[tableau->stages], m->y);
     se3di_state_set(m->assembly, m->y);
-    se3di_state_scale scale = get_scale(m);
-    double accuracy = projection_accuracy(m->tolerance);
-    SE3DI_TRY(se3di_state_project(m->equations, t + h, &scale, accuracy, &moved));
     SE3DI_TRY(evaluate(m, t + h, m->K + (size_t)tableau->stages * m->count));
     if (tableau->uses_end) {
         *error = estimate_error(m, h);
+        if (!(*error <= 1.0) && isfinite(m->tolerance)) {
+            return SE3D_OK;
+        }
     }
-    return SE3D_OK;
+    se3di_state_scale scale = get_scale(m);
+    double accuracy = projection_accuracy(m->tolerance);
+    return se3di_state_project(m->equations, t + h, &scale, accuracy, 1);
 }
+
 /* The frames hold the projected y_1. */
 static void accept(rk *m, double h)
 {
@@ -316,8 +322,8 @@ static double next_step(const rk *m, double h, double error)
     double exponent = 1.0 / m->tableau->order;
     double before = fmax(m->header[RK_ERROR], 1e-4);
     double e = fmax(error, 1e-10);
-    double factor = 0.9 * pow(e, -0.8 * exponent) * pow(e / before, -0.2 * exponent);
-    double largest = m->header[RK_REJECTED] != 0.0 ? 1.0 : 6.0;
+    double factor = SAFETY * pow(e, -0.8 * exponent) * pow(e / before, -0.2 * exponent);
+    double largest = m->header[RK_REJECTED] != 0.0 ? 1.0 : GROWTH;
     h *= fmin(largest, fmax(0.2, factor));
     return limit_step(m, h);
 }
@@ -392,7 +398,7 @@ static se3d_status advance(rk *m, double t_end)
         ++m->equations->counters.rejected;
         m->header[RK_REJECTED] = 1.0;
         double exponent = 1.0 / m->tableau->order;
-        double factor = status < 0 || !isfinite(error) ? 0.25 : 0.9 * pow(error, -exponent);
+        double factor = status < 0 || !isfinite(error) ? 0.25 : SAFETY * pow(error, -exponent);
         const double before = h;
         h *= fmax(0.2, fmin(0.9, factor));
         if (!(h > least_step(m))) {

@@ -177,9 +177,8 @@ static se3d_status accept(se3di_radau *m, const history *past)
     se3di_model *model = m->assembly->model;
     const size_t bodies = m->count - SE3DI_STATE_WORK;
     const double *end = m->Y + (STAGES - 1) * m->count;
-    double moved;
     SE3DI_TRY(add_work(m));
-    SE3DI_TRY(se3di_state_project(m->equations, m->t + m->h, &m->scale, 1e-13, &moved));
+    SE3DI_TRY(se3di_state_project(m->equations, m->t + m->h, &m->scale, 1e-13, 0));
     SE3DI_TRY(se3di_loads_prepare(model, m->t + m->h, m->equations->error));
     memcpy(past->start, m->y0, m->count * sizeof *m->y0);
     set_defect(m, past->d);

@@ -195,9 +195,10 @@ static double largest_shift(const se3di_equations *equations, double length)
 /* *is_factored: the Jacobian of the present positions is factored; and is it in the end. */
 static se3d_status project_positions(se3di_equations *equations, double t,
                                      const se3di_state_scale *scale, double accuracy,
-                                     int *is_factored, double *moved)
+                                     int *is_factored)
 {
     se3di_assembly *assembly = &equations->assembly;
+    double moved = 0.0;
     double gap = eval_gap(equations, scale->length);
     for (int k = 0; k < 6 && gap > accuracy; ++k) {
         double before = gap;
@@ -208,8 +209,8 @@ static se3d_status project_positions(se3di_equations *equations, double t,
         }
         memset(equations->b, 0, assembly->unknown_count * sizeof *equations->b);
         SE3DI_TRY(se3di_equations_solve(equations));
-        *moved = fmax(*moved, largest_shift(equations, scale->length));
-        if (!(*moved < 0.5)) {
+        moved = fmax(moved, largest_shift(equations, scale->length));
+        if (!(moved < 0.5)) {
             return se3di_error_set(equations->error, SE3D_ERR_NO_CONVERGENCE,
                                    "t = %g s: the step leaves the constraints, it is too large", t);
         }
@@ -233,21 +234,18 @@ se3d_status se3di_state_project_positions(se3di_equations *equations, double t,
                                           const se3di_state_scale *scale, double accuracy)
 {
     int is_factored = 0;
-    double moved = 0.0;
-    return project_positions(equations, t, scale, accuracy, &is_factored, &moved);
+    return project_positions(equations, t, scale, accuracy, &is_factored);
 }
 
 se3d_status se3di_state_project(se3di_equations *equations, double t,
-                                const se3di_state_scale *scale, double accuracy, double *moved)
+                                const se3di_state_scale *scale, double accuracy, int is_factored)
 {
     se3di_assembly *assembly = &equations->assembly;
-    int is_factored = 0;
-    *moved = 0.0;
     if (assembly->row_count == 0) {
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
-    SE3DI_TRY(project_positions(equations, t, scale, accuracy, &is_factored, moved));
+    SE3DI_TRY(project_positions(equations, t, scale, accuracy, &is_factored));
     se3di_assembly_eval_jacobian(assembly);
     for (int k = 0; k < 3 && eval_rate_gap(equations, scale) > accuracy; ++k) {
         if (!is_factored) {
@@ -358,10 +356,9 @@ void se3di_state_scale_grow(const se3di_assembly *assembly, const double *deriva
 se3d_status se3di_state_publish(se3di_equations *equations, const double *y, double t,
                                 const se3di_state_scale *scale, int project)
 {
-    double moved;
     se3di_state_set(&equations->assembly, y);
     if (project) {
-        SE3DI_TRY(se3di_state_project(equations, t, scale, 1e-15, &moved));
+        SE3DI_TRY(se3di_state_project(equations, t, scale, 1e-15, 0));
     }
     SE3DI_TRY(se3di_acceleration_solve(equations, t));
     se3di_model *model = equations->assembly.model;

@@ -49,9 +49,10 @@ se3di_kkt_settings se3di_state_regularise(se3di_kkt *kkt);
  * checks and records of se3di_acceleration_solve. */
 se3d_status se3di_state_evaluate(se3di_equations *equations, double t);
 /* Positions and velocities onto their constraints at t, mass-weighted. `accuracy` is the relative
- * violation that does not matter. *moved: the largest relative correction of positions. */
+ * violation that does not matter. `is_factored`: the last evaluation was here, and its
+ * factorisation serves. */
 se3d_status se3di_state_project(se3di_equations *equations, double t,
-                                const se3di_state_scale *scale, double accuracy, double *moved);
+                                const se3di_state_scale *scale, double accuracy, int is_factored);
 /* The positions alone, where functions of time and (in r-omega) mass blocks are evaluated. */
 se3d_status se3di_state_project_positions(se3di_equations *equations, double t,
                                           const se3di_state_scale *scale, double accuracy);
