@@ -119,6 +119,7 @@ se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, doubl
         double h = choose_step(equations, t_end - model->time, step, shortest);
         se3di_state_accept(equations);
         int last = model->time + h * (1.0 + 1e-9) >= t_end;
+        SE3DI_TRY(se3di_watch_begin(equations));
         se3d_status status = SE3D_OK;
         for (int k = 0; k <= HALVINGS_MAX; ++k, h *= 0.5, last = 0) {
             if (last) {
@@ -134,6 +135,10 @@ se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, doubl
         SE3DI_TRY(status);
         if (last) {
             model->time = t_end;
+        }
+        status = se3di_watch_end(equations);
+        if (status != SE3D_OK) {
+            return status;
         }
     }
     return SE3D_OK;

@@ -14,12 +14,14 @@
 
 #define STEP_DEFAULT 1e-3 /* s, of fixed-step methods */
 
-void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error)
+void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error, se3d_system *system)
 {
     run->model = model;
     run->error = error;
     run->prepared = 0;
     run->determined = 0;
+    run->watch = (se3di_watch){&run->events, se3di_events_begin_step, se3di_events_end_step};
+    se3di_events_init(&run->events, run, system, (uint32_t)model->body_slots.salt);
 }
 
 static void release(se3di_run *run)
@@ -39,6 +41,7 @@ static void release(se3di_run *run)
 void se3di_run_destroy(se3di_run *run)
 {
     release(run);
+    se3di_events_destroy(&run->events);
 }
 
 static se3d_status allocate_work(se3di_run *run)
@@ -85,7 +88,7 @@ static void choose_method(se3di_run *run)
 }
 
 /* Build what the model's structure decides. */
-static se3d_status prepare(se3di_run *run)
+static se3d_status prepare_equations(se3di_run *run)
 {
     if (run->prepared && run->equations.assembly.topology_version == run->model->topology_version) {
         return SE3D_OK;
@@ -102,12 +105,22 @@ static se3d_status prepare(se3di_run *run)
     run->integration.equations = &run->equations;
     run->prepared = 1;
     run->determined = 0;
+    se3di_assembly_eval_mass(&run->equations.assembly); /* steps may rely on constant blocks */
     se3d_status status = allocate_work(run);
     if (status < 0) {
         release(run);
         return se3di_error_set(run->error, status, "no memory for the integrator");
     }
     return SE3D_OK;
+}
+
+static se3d_status prepare(se3di_run *run)
+{
+    SE3DI_TRY(prepare_equations(run));
+    run->equations.watch = run->events.slots.count > 0 ? &run->watch : NULL;
+    return se3di_events_prepare(&run->events) < 0
+               ? se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for events")
+               : SE3D_OK;
 }
 
 /* A new state: positions, velocities, accelerations and multipliers made consistent at the model's
@@ -166,6 +179,7 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
     SE3DI_TRY(run->integration.method->start(&run->integration, h));
     model->history_count = run->integration.method->history_count(&run->equations.assembly);
     model->history_tag = history_tag(run);
+    ++model->history_stamp;
     return SE3D_OK;
 }
 
@@ -173,6 +187,29 @@ static int has_step_control(const se3di_integration *integration)
 {
     return integration->method->run &&
            (!integration->method->controls_if_asked || integration->settings.controls_error);
+}
+
+static se3d_status watched_step(se3di_run *run, double h)
+{
+    SE3DI_TRY(se3di_watch_begin(&run->equations));
+    SE3DI_TRY(se3di_run_make_step(run, h));
+    return se3di_watch_end(&run->equations);
+}
+
+/* Steps of one length, `count` of them, that end at t_end. */
+static se3d_status run_fixed_steps(se3di_run *run, double t_end, double count)
+{
+    se3di_model *model = run->model;
+    for (double k = count; k > 0.0; k -= 1.0) {
+        SE3DI_TRY(se3di_watch_begin(&run->equations));
+        SE3DI_TRY(run->integration.method->step(&run->integration, (t_end - model->time) / k));
+        model->time = k > 1.0 ? model->time : t_end;
+        const se3d_status status = se3di_watch_end(&run->equations);
+        if (status != SE3D_OK) {
+            return status;
+        }
+    }
+    return SE3D_OK;
 }
 
 static se3d_status run_dynamics(se3di_run *run, double t_end)
@@ -184,21 +221,19 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
         return run->model->history_tag == history_tag(run) ? SE3D_OK : settle(run, t_end);
     }
     double count = fmax(1.0, ceil(remaining / step - 1e-9));
-    se3d_status status = SE3D_OK;
+    se3d_status status;
     SE3DI_TRY(begin_dynamics(run, remaining / count));
-    if (has_step_control(integration)) {
-        status = integration->method->run(integration, t_end);
-        SE3DI_TRY(status);
+    if (!has_step_control(integration)) {
+        status = run_fixed_steps(run, t_end, count);
+    } else if (run->equations.watch && integration->method->advance) {
+        status = se3di_events_run(&run->events, t_end);
     } else {
-        for (double k = count; k > 0.0; k -= 1.0) {
-            SE3DI_TRY(integration->method->step(integration, (t_end - run->model->time) / k));
-        }
-        run->model->time = t_end;
+        status = integration->method->run(integration, t_end);
     }
-    if (run->equations.redundant) {
-        SE3DI_TRY(se3di_multipliers_reduce(&run->equations));
+    if (status < 0 || status == SE3D_INFO_EVENT) { /* whose callback may have changed the model */
+        return status;
     }
-    return status;
+    return run->equations.redundant ? se3di_multipliers_reduce(&run->equations) : SE3D_OK;
 }
 
 static se3d_status run_kinematics(se3di_run *run, double t_end)
@@ -250,20 +285,34 @@ static se3d_status run_to(se3di_run *run, double t_end)
         SE3DI_TRY(settle(run, t_end));
         break;
     case SE3D_ANALYSIS_DYNAMICS:
-        SE3DI_TRY(run_dynamics(run, t_end));
+        status = run_dynamics(run, t_end);
+        SE3DI_TRY(status);
         break;
     default:
-        SE3DI_TRY(run_kinematics(run, t_end));
+        status = run_kinematics(run, t_end);
+        SE3DI_TRY(status);
         break;
     }
-    return status > 0 ? status : information(run);
+    return status == SE3D_INFO_EVENT || status == SE3D_INFO_UNSTABLE ? status : information(run);
 }
 
 static se3d_status run_step(se3di_run *run, double h)
 {
     SE3DI_TRY(begin_dynamics(run, h));
-    SE3DI_TRY(run->integration.method->step(&run->integration, h));
-    return information(run);
+    const se3d_status status = watched_step(run, h);
+    return status < 0 || status == SE3D_INFO_EVENT ? status : information(run);
+}
+
+se3d_status se3di_run_make_step(se3di_run *run, double h)
+{
+    se3di_equations *equations = &run->equations;
+    const se3di_watch *watch = equations->watch;
+    equations->watch = NULL;
+    const se3d_status status = run->analysis == SE3D_ANALYSIS_DYNAMICS
+                                   ? run->integration.method->step(&run->integration, h)
+                                   : se3di_kinematics_step(equations, h);
+    equations->watch = watch;
+    return status;
 }
 
 /* A callback that failed is the reason for whatever else did. */
@@ -287,9 +336,14 @@ static void begin(se3di_model *model)
 
 se3d_status se3di_run_to(se3di_run *run, double t_end)
 {
-    SE3DI_TRY(prepare(run));
-    begin(run->model);
-    return explain(run, run_to(run, t_end));
+    se3d_status status;
+    do { /* again from what the callback of an event has left */
+        run->events.goes_on = 0;
+        SE3DI_TRY(prepare(run));
+        begin(run->model);
+        status = explain(run, run_to(run, t_end));
+    } while (status == SE3D_INFO_EVENT && run->events.goes_on);
+    return status;
 }
 
 se3d_status se3di_run_step(se3di_run *run, double h)
@@ -297,7 +351,10 @@ se3d_status se3di_run_step(se3di_run *run, double h)
     if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
         return se3di_run_to(run, run->model->time + h);
     }
+    run->events.goes_on = 0;
     SE3DI_TRY(prepare(run));
     begin(run->model);
-    return explain(run, run_step(run, h));
+    const double t_end = run->model->time + h;
+    const se3d_status status = explain(run, run_step(run, h));
+    return status == SE3D_INFO_EVENT && run->events.goes_on ? se3di_run_to(run, t_end) : status;
 }

@@ -3,6 +3,7 @@
 #ifndef SE3DI_RUN_H
 #define SE3DI_RUN_H
 
+#include "analysis/events.h"
 #include "integrator/integrator.h"
 
 typedef struct se3di_run {
@@ -17,11 +18,12 @@ typedef struct se3di_run {
     int32_t determined; /* kinematics: the drivers determine the motion (checked once) */
     int32_t automatic;  /* the method is chosen from what the model holds */
     int32_t reserved;
-    uint64_t tag; /* marks the history of this method and formulation */
+    se3di_watch watch; /* what the events are told of the steps */
+    se3di_events events;
 } se3di_run;
 
-/* Set up for an analysis; allocates nothing yet. */
-void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error);
+/* Set up for an analysis; allocates nothing yet. `system`: for the callbacks of events. */
+void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error, se3d_system *system);
 void se3di_run_destroy(se3di_run *run);
 
 /* Bring the model to t_end >= its time. @return OK or INFO_REDUNDANT, or an error with the model at
@@ -29,6 +31,10 @@ void se3di_run_destroy(se3di_run *run);
 se3d_status se3di_run_to(se3di_run *run, double t_end);
 /* One step of length h > 0. */
 se3d_status se3di_run_step(se3di_run *run, double h);
+
+/* The bare step of length h of the analysis' method, which nobody watches; on failure the old
+ * state. */
+se3d_status se3di_run_make_step(se3di_run *run, double h);
 
 /* One kinematic step of length h: prediction, then the three levels; on failure the old state. */
 se3d_status se3di_kinematics_step(se3di_equations *equations, double h);

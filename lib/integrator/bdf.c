@@ -22,15 +22,26 @@
 #define ORDER_MAX   5
 #define DIFFERENCES (ORDER_MAX + 3)
 
-/* The history: this header, the differences, the multipliers. */
-enum { BDF_TIME, BDF_STEP, BDF_ORDER, BDF_EQUAL, BDF_LENGTH, BDF_SPEED, BDF_SPIN, BDF_HEADER };
+/* The history: this header, the differences, the state at the begin of the last step, the
+ * multipliers. */
+enum {
+    BDF_TIME = SE3DI_HISTORY_TIME,
+    BDF_BEGIN = SE3DI_HISTORY_BEGIN, /* of the last step */
+    BDF_STEP,                        /* the next one */
+    BDF_ORDER,
+    BDF_EQUAL,
+    BDF_LENGTH,
+    BDF_SPEED,
+    BDF_SPIN,
+    BDF_HEADER
+};
 
 typedef struct bdf {
     se3di_integration *integration;
     se3di_equations *equations;
     se3di_assembly *assembly;
     size_t count; /* numbers of y */
-    double *header, *D, *lambda;
+    double *header, *D, *y0, *lambda;
     double *base;      /* y_P - psi */
     double *predicted; /* y_P */
     double *y;
@@ -43,7 +54,7 @@ typedef struct bdf {
 
 static size_t history_count(const se3di_assembly *assembly)
 {
-    return BDF_HEADER + DIFFERENCES * se3di_state_count(assembly) + assembly->row_count;
+    return BDF_HEADER + (DIFFERENCES + 1) * se3di_state_count(assembly) + assembly->row_count;
 }
 
 static size_t work_count(const se3di_assembly *assembly)
@@ -52,24 +63,32 @@ static size_t work_count(const se3di_assembly *assembly)
            2 * (size_t)assembly->unknown_count;
 }
 
-static bdf begin(se3di_integration *integration)
+/* The parts of history and work. */
+static bdf point(const se3di_integration *integration)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
     size_t count = se3di_state_count(assembly);
-    bdf m = {.integration = integration,
-             .equations = integration->equations,
+    bdf m = {.equations = integration->equations,
              .assembly = assembly,
              .count = count,
              .header = assembly->model->history,
              .base = integration->work,
              .tolerance = fmax(0.1 * integration->settings.tolerance, 1e-10)};
     m.D = m.header + BDF_HEADER;
-    m.lambda = m.D + DIFFERENCES * count;
+    m.y0 = m.D + DIFFERENCES * count;
+    m.lambda = m.y0 + count;
     m.predicted = m.base + count;
     m.y = m.predicted + count;
     m.acceleration = m.y + count;
     m.qddot = m.acceleration + 7 * (size_t)assembly->body_count;
     m.none = m.qddot + assembly->unknown_count;
+    return m;
+}
+
+static bdf begin(se3di_integration *integration)
+{
+    bdf m = point(integration);
+    m.integration = integration;
     return m;
 }
 
@@ -305,6 +324,7 @@ static se3d_status accept(bdf *m, double t)
     for (int k = 0; k < SE3DI_STATE_WORK; ++k) {
         m->y[bodies + (size_t)k] = m->base[bodies + (size_t)k] + m->c * power[k];
     }
+    memcpy(m->y0, m->D, m->count * sizeof *m->y0);
     for (size_t k = 0; k < m->count; ++k) {
         double *D = m->D + k;
         double d = m->y[k] - m->predicted[k];
@@ -318,6 +338,7 @@ static se3d_status accept(bdf *m, double t)
     memcpy(work, m->D + bodies, sizeof work);
     se3di_state_get(m->assembly, m->D); /* projected */
     memcpy(m->D + bodies, work, sizeof work);
+    m->header[BDF_BEGIN] = m->header[BDF_TIME];
     m->header[BDF_TIME] = t;
     m->header[BDF_EQUAL] += 1.0;
     se3di_angles_accept(model);
@@ -419,7 +440,7 @@ static se3d_status adopt(bdf *m, double h)
     for (size_t k = 0; k < m->count; ++k) {
         m->D[m->count + k] *= h;
     }
-    m->header[BDF_TIME] = model->time;
+    m->header[BDF_TIME] = m->header[BDF_BEGIN] = model->time;
     m->header[BDF_STEP] = h;
     m->header[BDF_ORDER] = 1.0;
     m->header[BDF_LENGTH] = scale.length;
@@ -440,9 +461,9 @@ static se3d_status start(se3di_integration *integration, double h)
     return adopt(&m, limit > 0.0 ? fmin(limit, first) : first);
 }
 
-static se3d_status publish(bdf *m, double t, int project)
+/* The polynomial of the differences at t. */
+static void eval_polynomial(const bdf *m, double t, double *y)
 {
-    se3di_state_scale scale = get_scale(m);
     int order = (int)m->header[BDF_ORDER];
     double s = (t - m->header[BDF_TIME]) / m->header[BDF_STEP];
     for (size_t k = 0; k < m->count; ++k) {
@@ -451,8 +472,14 @@ static se3d_status publish(bdf *m, double t, int project)
             weight *= (s + j - 1.0) / j;
             sum += weight * m->D[(size_t)j * m->count + k];
         }
-        m->y[k] = sum;
+        y[k] = sum;
     }
+}
+
+static se3d_status publish(bdf *m, double t, int project)
+{
+    se3di_state_scale scale = get_scale(m);
+    eval_polynomial(m, t, m->y);
     return se3di_state_publish(m->equations, m->y, t, &scale, project);
 }
 
@@ -475,6 +502,23 @@ static se3d_status step(se3di_integration *integration, double h)
     }
     se3d_status published = publish(&m, m.header[BDF_TIME], 0);
     return status < 0 ? status : published;
+}
+
+static se3d_status advance_one(se3di_integration *integration, double t_end)
+{
+    bdf m = begin(integration);
+    (void)t_end;
+    return advance(&m, 1);
+}
+
+static void interpolate(const se3di_integration *integration, double t, double *y)
+{
+    const bdf m = point(integration);
+    if (t > m.header[BDF_BEGIN]) {
+        eval_polynomial(&m, t, y);
+    } else { /* which the polynomial meets to the error only */
+        memcpy(y, m.y0, m.count * sizeof *y);
+    }
 }
 
 static se3d_status run(se3di_integration *integration, double t_end)
@@ -501,6 +545,8 @@ const se3di_integrator se3di_integrator_bdf = {
     .start = start,
     .step = step,
     .run = run,
+    .advance = advance_one,
+    .interpolate = interpolate,
     .is_implicit = 1,
     .orders = 0x3E, /* 1 to 5 */
 };

@@ -189,6 +189,16 @@ static se3d_status run(se3di_integration *integration, double t_end)
     return se3di_rk_run(integration, &tableau, t_end);
 }
 
+static se3d_status advance(se3di_integration *integration, double t_end)
+{
+    return se3di_rk_advance(integration, &tableau, t_end);
+}
+
+static void interpolate(const se3di_integration *integration, double t, double *y)
+{
+    se3di_rk_interpolate(integration, &tableau, t, y);
+}
+
 const se3di_integrator se3di_integrator_dop853 = {
     .name = "dop853",
     .tag = SE3D_METHOD_DOP853,
@@ -197,6 +207,8 @@ const se3di_integrator se3di_integrator_dop853 = {
     .start = start,
     .step = step,
     .run = run,
+    .advance = advance,
+    .interpolate = interpolate,
     .is_explicit = 1,
     .orders = 1u << 8,
 };

@@ -11,14 +11,14 @@
 
 /* The history: this header, then y_1, y'_1, y_0 and the coefficients of the interpolation. */
 enum {
-    RK_T1,       /* the forward state's time */
-    RK_T0,       /* begin of the last step */
-    RK_NEXT,     /* the next step */
-    RK_ERROR,    /* error of the last step, relative to the tolerance */
-    RK_DENSE,    /* 1: the interpolation is ready */
-    RK_REJECTED, /* 1: the last attempt was rejected */
-    RK_FORCED,   /* steps that only a jump of the accelerations explained */
-    RK_LENGTH,   /* scales */
+    RK_T1 = SE3DI_HISTORY_TIME,  /* the forward state's time */
+    RK_T0 = SE3DI_HISTORY_BEGIN, /* begin of the last step */
+    RK_NEXT,                     /* the next step */
+    RK_ERROR,                    /* error of the last step, relative to the tolerance */
+    RK_DENSE,                    /* 1: the interpolation is ready */
+    RK_REJECTED,                 /* 1: the last attempt was rejected */
+    RK_FORCED,                   /* steps that only a jump of the accelerations explained */
+    RK_LENGTH,                   /* scales */
     RK_SPEED,
     RK_SPIN,
     RK_ENERGY,
@@ -86,14 +86,14 @@ static double projection_accuracy(double tolerance)
     return fmin(1e-13, fmax(1e-15, 1e-6 * tolerance));
 }
 
-static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
+/* The parts of history and work. */
+static rk point(const se3di_integration *integration, const se3di_rk_tableau *tableau)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
     size_t count = se3di_state_count(assembly);
     double *history = assembly->model->history;
-    rk m = {
+    return (rk){
         .tableau = tableau,
-        .integration = integration,
         .equations = integration->equations,
         .assembly = assembly,
         .count = count,
@@ -109,7 +109,13 @@ static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
         .memory = integration->work + (SE3DI_RK_MAX + 3) * count,
         .tolerance = inner_tolerance(integration->settings.tolerance),
     };
-    se3di_contacts_begin(assembly->model, 0.0);
+}
+
+static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
+{
+    rk m = point(integration, tableau);
+    m.integration = integration;
+    se3di_contacts_begin(m.assembly->model, 0.0);
     m.kkt =
         se3di_state_begin(m.equations, regularisation(m.tolerance), fmin(1e-6, 1e-3 * m.tolerance));
     return m;
@@ -562,6 +568,28 @@ static se3d_status advance_to(rk *m, double t_end)
         }
     }
     return m->header[RK_T1] > t_end && m->header[RK_DENSE] == 0.0 ? build_dense(m) : SE3D_OK;
+}
+
+se3d_status se3di_rk_advance(se3di_integration *integration, const se3di_rk_tableau *tableau,
+                             double t_end)
+{
+    rk m = begin(integration, tableau);
+    se3d_status status = advance(&m, t_end);
+    status = status < 0 ? status : build_dense(&m);
+    se3di_state_end(m.equations, &m.kkt);
+    return status;
+}
+
+void se3di_rk_interpolate(const se3di_integration *integration, const se3di_rk_tableau *tableau,
+                          double t, double *y)
+{
+    const se3di_assembly *assembly = &integration->equations->assembly;
+    const rk m = point(integration, tableau);
+    if (t < m.header[RK_T1]) {
+        interpolate(&m, t, y);
+    } else {
+        memcpy(y, m.y1, se3di_state_count(assembly) * sizeof *y);
+    }
 }
 
 se3d_status se3di_rk_run(se3di_integration *integration, const se3di_rk_tableau *tableau,

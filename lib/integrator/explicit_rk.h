@@ -44,5 +44,10 @@ se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau
 /* To t_end with step control. */
 se3d_status se3di_rk_run(se3di_integration *integration, const se3di_rk_tableau *tableau,
                          double t_end);
+/* For the table of a method, see integrator.h. */
+se3d_status se3di_rk_advance(se3di_integration *integration, const se3di_rk_tableau *tableau,
+                             double t_end);
+void se3di_rk_interpolate(const se3di_integration *integration, const se3di_rk_tableau *tableau,
+                          double t, double *y);
 
 #endif

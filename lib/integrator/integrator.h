@@ -25,6 +25,9 @@ typedef struct se3di_integrator_settings {
 
 typedef struct se3di_integration se3di_integration;
 
+/* Where methods with `advance` keep the end and the begin of their last step. */
+enum { SE3DI_HISTORY_TIME = 0, SE3DI_HISTORY_BEGIN = 1 };
+
 typedef struct se3di_integrator {
     const char *name;
     uint64_t tag;                                            /* of its history, not 0 */
@@ -37,6 +40,12 @@ typedef struct se3di_integrator {
     /* Several steps to t_end with own step control; NULL, or step control not wanted: steps of
      * settings.step that end there exactly. */
     se3d_status (*run)(se3di_integration *integration, double t_end);
+    /* Of methods that step ahead of the model's time and interpolate, others NULL. One accepted
+     * step (towards t_end) after the one that is there; `run` to a time within it makes no step, it
+     * gives the model the state there. History [0] is its end, [1] its begin. */
+    se3d_status (*advance)(se3di_integration *integration, double t_end);
+    /* The state at t within the step, y [se3di_state_count], as the interpolation has it. */
+    void (*interpolate)(const se3di_integration *integration, double t, double *y);
     int32_t is_implicit;       /* not 0: integration->newton is made */
     int32_t controls_if_asked; /* not 0: `run` only where settings.controls_error */
     int32_t is_explicit;       /* not 0: works with formulations in the fewest unknowns */

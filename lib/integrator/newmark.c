@@ -406,10 +406,16 @@ se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmar
         double remaining = t_end - t;
         double h = *next < remaining ? fmin(*next, 0.5 * remaining) : remaining;
         double smallest = 1e-12 * fmax(1e-3, fabs(t));
+        SE3DI_TRY(se3di_watch_begin(equations));
         se3d_status status = se3di_newmark_step(integration, method, h);
         if (status >= 0) {
             double wanted = next_step(h, integration->error);
             *next = h < *next ? fmax(*next, wanted) : wanted; /* shortened only for t_end */
+            model->time = h < remaining ? model->time : t_end;
+            status = se3di_watch_end(equations);
+            if (status != SE3D_OK) {
+                return status;
+            }
             continue;
         }
         ++equations->counters.rejected;
@@ -423,6 +429,5 @@ se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmar
                        : status;
         }
     }
-    model->time = t_end;
     return SE3D_OK;
 }

@@ -23,12 +23,13 @@
 /* The history: this header, the accepted state, then of the last step: its start, the increments of
  * the stages, d = h f_0 - h u'(0). */
 enum {
-    RADAU_TIME,     /* of the accepted state */
-    RADAU_NEXT,     /* the next step */
-    RADAU_LAST,     /* the last one; 0: none */
-    RADAU_ERROR,    /* of the last step, relative to the tolerance */
-    RADAU_REJECTED, /* 1: the last attempt was rejected */
-    RADAU_LENGTH,   /* scales */
+    RADAU_TIME = SE3DI_HISTORY_TIME,   /* of the accepted state */
+    RADAU_BEGIN = SE3DI_HISTORY_BEGIN, /* of the last step */
+    RADAU_NEXT,                        /* the next step */
+    RADAU_LAST,                        /* the last one; 0: none */
+    RADAU_ERROR,                       /* of the last step, relative to the tolerance */
+    RADAU_REJECTED,                    /* 1: the last attempt was rejected */
+    RADAU_LENGTH,                      /* scales */
     RADAU_SPEED,
     RADAU_SPIN,
     RADAU_HEADER
@@ -95,9 +96,10 @@ static double eval_quartic(double s)
     return -s * (s * (s * (0.25 * s - e1 / 3.0) + 0.5 * e2) - e3) / e3;
 }
 
-static void interpolate(const history *past, size_t count, double s, double *y)
+static void eval_polynomial(const history *past, size_t count, double t, double *y)
 {
     double l[STAGES];
+    const double s = (t - past->header[RADAU_TIME]) / past->header[RADAU_LAST] + 1.0;
     const double quartic = eval_quartic(s);
     eval_basis(s, l);
     for (size_t k = 0; k < count; ++k) {
@@ -187,6 +189,7 @@ static se3d_status accept(se3di_radau *m, const history *past)
     }
     se3di_state_get(m->assembly, past->y1);
     memcpy(past->y1 + bodies, end + bodies, SE3DI_STATE_WORK * sizeof *end);
+    past->header[RADAU_BEGIN] = m->t;
     past->header[RADAU_TIME] = m->t + m->h;
     past->header[RADAU_LAST] = m->h;
     se3di_state_scale_grow(m->assembly, m->f0, &m->scale);
@@ -300,7 +303,7 @@ static se3d_status adopt(se3di_integration *integration)
     SE3DI_TRY(se3di_state_derivative(assembly, assembly->model->time, equations->x,
                                      assembly->model->lambda, f1));
     se3di_state_scale_grow(assembly, f1, &scale);
-    past.header[RADAU_TIME] = assembly->model->time;
+    past.header[RADAU_TIME] = past.header[RADAU_BEGIN] = assembly->model->time;
     past.header[RADAU_LENGTH] = scale.length;
     past.header[RADAU_SPEED] = scale.speed;
     past.header[RADAU_SPIN] = scale.spin;
@@ -327,9 +330,7 @@ static se3d_status publish(se3di_integration *integration, double t)
     if (!(t < header[RADAU_TIME])) {
         return se3di_state_publish(integration->equations, past.y1, header[RADAU_TIME], &scale, 0);
     }
-    const double last = header[RADAU_LAST];
-    interpolate(&past, se3di_state_count(assembly), (t - header[RADAU_TIME]) / last + 1.0,
-                integration->work);
+    eval_polynomial(&past, se3di_state_count(assembly), t, integration->work);
     return se3di_state_publish(integration->equations, integration->work, t, &scale, 1);
 }
 
@@ -356,6 +357,24 @@ static se3d_status step(se3di_integration *integration, double h)
     return status;
 }
 
+static se3d_status advance_one(se3di_integration *integration, double t_end)
+{
+    (void)t_end;
+    return advance(integration);
+}
+
+static void interpolate(const se3di_integration *integration, double t, double *y)
+{
+    const se3di_assembly *assembly = &integration->equations->assembly;
+    const history past = get_history(assembly);
+    const size_t count = se3di_state_count(assembly);
+    if (t > past.header[RADAU_BEGIN] && t < past.header[RADAU_TIME]) {
+        eval_polynomial(&past, count, t, y);
+    } else { /* the ends are the projected ones, to the bit */
+        memcpy(y, t < past.header[RADAU_TIME] ? past.start : past.y1, count * sizeof *y);
+    }
+}
+
 static se3d_status run(se3di_integration *integration, double t_end)
 {
     const history past = get_history(&integration->equations->assembly);
@@ -380,6 +399,8 @@ const se3di_integrator se3di_integrator_radau = {
     .start = start,
     .step = step,
     .run = run,
+    .advance = advance_one,
+    .interpolate = interpolate,
     .is_implicit = 1,
     .orders = 1u << 5,
 };

@@ -84,9 +84,12 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
 {
     verlet m = begin(integration);
     se3d_status status = SE3D_OK;
-    for (double k = count; k > 0.0 && status >= 0; k -= 1.0) {
+    const se3di_equations *equations = integration->equations;
+    for (double k = count; k > 0.0 && status >= 0 && status != SE3D_INFO_EVENT; k -= 1.0) {
         double t0 = m.model->time;
-        status = advance(&m, k > 1.0 ? t0 + (t_end - t0) / k : t_end);
+        status = se3di_watch_begin(equations);
+        status = status < 0 ? status : advance(&m, k > 1.0 ? t0 + (t_end - t0) / k : t_end);
+        status = status < 0 ? status : se3di_watch_end(equations);
     }
     close_kick(&m);
     integration->equations->assembly.push = NULL;

@@ -65,6 +65,7 @@ void se3di_model_touch_state(se3di_model *model)
 {
     model->settled = 0;
     model->history_tag = 0;
+    ++model->history_stamp;
     model->work_valid = 0;
     if (!model->remembers) {
         return;

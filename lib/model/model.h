@@ -202,7 +202,8 @@ typedef struct se3di_model {
 
     double *history; /* what an integrator carries from step to step */
     size_t history_count, history_capacity;
-    uint64_t history_tag; /* who wrote it; 0: nobody */
+    uint64_t history_tag;   /* who wrote it; 0: nobody */
+    uint64_t history_stamp; /* changes where it does other than by steps forward */
 
     se3di_user_failure user_failure; /* see assembly/user.h */
 

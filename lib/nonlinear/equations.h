@@ -18,6 +18,14 @@ typedef struct se3di_counters {
     uint64_t steps, rejected, iterations, evaluations, factorizations, solves;
 } se3di_counters;
 
+/* What is told of the steps of a run: before one begins, at the model's state, and when it was
+ * accepted. INFO_EVENT ends the run at the state that the model is then in. */
+typedef struct se3di_watch {
+    void *ctx;
+    se3d_status (*begin_step)(void *ctx);
+    se3d_status (*end_step)(void *ctx);
+} se3di_watch;
+
 typedef struct se3di_equations {
     se3di_assembly assembly;
     se3di_kkt *kkt;
@@ -31,6 +39,7 @@ typedef struct se3di_equations {
     se3di_frame *accepted;         /* the last accepted state: frames [dense bodies], */
     double *accepted_acceleration; /* [dense bodies * 6], */
     double *accepted_lambda;       /* [rows] */
+    const se3di_watch *watch;      /* NULL: nobody */
     int32_t iterations_max;        /* of the position Newton */
     int32_t redundant;             /* an acceleration met dependent rows */
     int32_t hold;                  /* positions and velocities of held bodies stay (assembly) */
@@ -83,6 +92,16 @@ se3d_status se3di_equations_probe(se3di_equations *equations, double *worst, uin
 /* Fails with SINGULAR where the constraints leave a freedom (motion not determined by the drivers).
  */
 se3d_status se3di_equations_check_determined(se3di_equations *equations);
+
+static inline se3d_status se3di_watch_begin(const se3di_equations *equations)
+{
+    return equations->watch ? equations->watch->begin_step(equations->watch->ctx) : SE3D_OK;
+}
+
+static inline se3d_status se3di_watch_end(const se3di_equations *equations)
+{
+    return equations->watch ? equations->watch->end_step(equations->watch->ctx) : SE3D_OK;
+}
 
 /* Keep and restore the frames of all bodies. */
 void se3di_equations_save(se3di_equations *equations);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Solvers: validation and delegation to a run. */
-#include "analysis/run.h"
-#include "system/system_internal.h"
+#include "system/solver.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -11,11 +10,6 @@
 #define TOLERANCE_MIN 1e-14 /* what doubles can hold */
 #define TOLERANCE_MAX 0.1
 #define STEPS_MAX     1e9 /* of one run with fixed steps */
-
-struct se3d_solver {
-    se3d_system *system;
-    se3di_run run;
-};
 
 void se3d_solver_def_init(se3d_solver_def *def, size_t size)
 {
@@ -132,7 +126,7 @@ se3d_status se3d_solver_create(se3d_system *system, const se3d_solver_def *def, 
         return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a solver");
     }
     solver->system = system;
-    se3di_run_init(&solver->run, &system->model, &system->error);
+    se3di_run_init(&solver->run, &system->model, &system->error, system);
     configure(&solver->run, &full);
     *out = solver;
     return SE3D_OK;

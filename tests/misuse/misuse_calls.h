@@ -4,6 +4,7 @@
 #ifndef SE3D_TESTS_MISUSE_CALLS_H
 #define SE3D_TESTS_MISUSE_CALLS_H
 
+#include "misuse/misuse_events.h"
 #include "misuse/misuse_particles.h"
 #include "misuse/misuse_world.h"
 
@@ -661,6 +662,7 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(force_callback);
     CHECK_INIT(function);
     CHECK_INIT(solver);
+    CHECK_INIT(event);
     CHECK_INIT(expression);
     CHECK_INIT(particles);
     CHECK_INIT(material);
@@ -851,6 +853,13 @@ static const row rows[] = {
     {"se3d_contact_settings_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_fill_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_modes_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_event_create", events_reject_misuse, "", NULL, NULL},
+    {"se3d_event_destroy", events_reject_misuse, "", NULL, NULL},
+    {"se3d_event_get_name", events_reject_misuse, "", NULL, NULL},
+    {"se3d_solver_count_event_records", events_reject_misuse, "", NULL, NULL},
+    {"se3d_solver_get_event_record", events_reject_misuse, "", NULL, NULL},
+    {"se3d_solver_clear_event_records", events_reject_misuse, "", NULL, NULL},
+    {"se3d_event_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_modes_create", modes_reject_misuse, "", NULL, NULL},
     {"se3d_modes_destroy", modes_reject_misuse, "", NULL, NULL},
     {"se3d_modes_count", modes_reject_misuse, "", NULL, NULL},

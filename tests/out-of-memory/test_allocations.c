@@ -509,6 +509,89 @@ static void every_analysis_survives_every_failed_allocation(void)
     }
 }
 
+static se3d_status get_drop(void *ctx, const se3d_system *system, double *value)
+{
+    se3d_body body;
+    double r[3];
+    (void)ctx;
+    se3d_status status = se3d_system_get_body(system, 1, &body);
+    status = status < 0 ? status : se3d_body_get_position(system, body, r);
+    *value = r[2];
+    return status;
+}
+
+/* Events created, met and removed. */
+static se3d_status run_with_events(se3d_solver *solver, double level, double t_end)
+{
+    se3d_event_def def = se3d_event_def_default();
+    se3d_event event;
+    def.name = "level";
+    def.value = get_drop;
+    def.level = level;
+    se3d_status status = se3d_event_create(solver, &def, &event);
+    CHECK((status < 0) == (event.index1 == 0));
+    if (status >= 0) {
+        status = se3d_solver_run(solver, t_end);
+        CHECK(status < 0 || se3d_solver_count_event_records(solver) == 1);
+        CHECK(se3d_event_destroy(solver, event) == SE3D_OK);
+        CHECK(se3d_solver_count_event_records(solver) == 0);
+    }
+    return status;
+}
+
+/* As fail_analysis: the chain falls from rest, its first link by about a millimetre. */
+static int fail_events(int32_t method, size_t k, int for_ever)
+{
+    support_counting counting = {0};
+    se3d_allocator allocator = support_counting_allocator(&counting);
+    se3d_solver_def def = se3d_solver_def_default();
+    support_plan plan;
+    support_model model;
+    se3d_solver *solver = NULL;
+    double level = 0.0;
+    support_plan_make(&plan, "chain_revolute", 2);
+    CHECK(support_model_create(&model, &plan, &allocator, 0) == SE3D_OK);
+    support_plan_destroy(&plan);
+    get_drop(NULL, model.system, &level);
+    level -= 1e-3;
+    def.method = method;
+    def.step = 0.01;
+    CHECK(se3d_solver_create(model.system, &def, &solver) == SE3D_OK);
+    counting.calls = 0;
+    counting.fail_at = k;
+    counting.for_ever = for_ever;
+    se3d_status status = run_with_events(solver, level, 0.05);
+    const int reached = counting.failed > 0;
+    counting.fail_at = 0;
+    if (reached) {
+        CHECK(status == SE3D_ERR_NO_MEMORY);
+        CHECK_CONTAINS(se3d_system_get_error(model.system), "memory");
+        double t;
+        se3d_system_get_time(model.system, &t);
+        se3d_system_set_time(model.system, t); /* from the state it was left in */
+        CHECK(!SE3D_FAILED(se3d_solver_run(solver, 0.05)));
+    } else {
+        CHECK(status >= 0);
+    }
+    se3d_solver_destroy(solver);
+    support_model_destroy(&model);
+    CHECK(counting.live == 0 && counting.wrong == 0);
+    return reached;
+}
+
+static void events_survive_every_failed_allocation(void)
+{
+    const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_GENERALIZED_ALPHA, SE3D_METHOD_RADAU,
+                               SE3D_METHOD_VERLET};
+    for (size_t m = 0; m < 2 * sizeof methods / sizeof *methods; ++m) {
+        size_t k = 1;
+        while (k < 1000 && fail_events(methods[m / 2], k, (int)(m % 2))) {
+            ++k;
+        }
+        CHECK(k > 5 && k < 1000);
+    }
+}
+
 static void thousand_steady_steps_allocate_nothing(void)
 {
     for (size_t r = 0; r < 2 * SUPPORT_ANALYSES; ++r) {
@@ -543,6 +626,7 @@ int main(void)
     RUN(creating_a_system_survives_every_failed_allocation);
     RUN(every_edit_survives_every_failed_allocation);
     RUN(every_analysis_survives_every_failed_allocation);
+    RUN(events_survive_every_failed_allocation);
     RUN(thousand_steady_steps_allocate_nothing);
     return check_finish();
 }

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Events: where a quantity crosses a level during a run of a solver. docs/theory/events.md */
+#ifndef SE3D_EVENT_H
+#define SE3D_EVENT_H
+
+#include "se3d/handles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* An event of one solver; all zero is null. */
+typedef struct se3d_event {
+    uint32_t index1;
+    uint32_t generation;
+} se3d_event;
+
+/* Which crossings count: from below the level to it (or beyond), from above, or both. */
+typedef enum se3d_event_direction {
+    SE3D_EVENT_FALLING = -1,
+    SE3D_EVENT_ANY = 0,
+    SE3D_EVENT_RISING = 1
+} se3d_event_direction;
+
+typedef enum se3d_event_action {
+    SE3D_EVENT_RECORD = 0, /* note it and go on: the motion is the same as without */
+    SE3D_EVENT_STOP = 1    /* the run ends there with SE3D_INFO_EVENT */
+} se3d_event_action;
+
+/* Compute the quantity at the system's present state; it must be continuous in time.
+ * @return OK, or < 0: the run fails with CALLBACK. @since 0.1 */
+typedef se3d_status (*se3d_event_value)(void *ctx, const se3d_system *system, double *value);
+
+/* An event that happened. The state of the system was then consistent: constraints, accelerations
+ * and multipliers are those of `time`. @since 0.1 */
+typedef struct se3d_event_record {
+    double time;       /* [s] */
+    double value;      /* of the quantity: the level, to rounding, or just beyond it */
+    const char *name;  /* of the event, "" for none; owned by the event */
+    se3d_event event;  /* which one */
+    int32_t direction; /* RISING or FALLING */
+    int32_t action;    /* STOP where the run ended there */
+} se3d_event_record;
+
+/* Called at every event with the system in its state there. It may change the state or the model
+ * (the run then goes on from what it left), but not run, create or destroy a solver or an event.
+ * @return OK: go on as the event's action says; SE3D_INFO_EVENT: stop the run; < 0: the run fails
+ * with CALLBACK. @since 0.1 */
+typedef se3d_status (*se3d_event_callback)(void *ctx, se3d_system *system,
+                                           const se3d_event_record *record);
+
+/* What an event is made with. @since 0.1 */
+typedef struct se3d_event_def {
+    size_t struct_size;
+    const char *name;             /* copied; NULL: none */
+    se3d_event_value value;       /* required */
+    void *ctx;                    /* of `value` */
+    se3d_event_callback callback; /* NULL: none */
+    void *callback_ctx;
+    double level;        /* the crossing that is looked for, in the unit of the value; default 0 */
+    int32_t direction;   /* se3d_event_direction, default ANY */
+    int32_t action;      /* se3d_event_action, default RECORD */
+    int32_t motion_only; /* not 0: the value follows from time, positions and velocities alone
+                            (not from accelerations, reactions or forces): cheaper to look for */
+    int32_t reserved;    /* 0 */
+} se3d_event_def;
+
+SE3D_API void se3d_event_def_init(se3d_event_def *def, size_t size);
+
+static inline se3d_event_def se3d_event_def_default(void)
+{
+    se3d_event_def def;
+    se3d_event_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Add an event to a solver of dynamics, kinematics or inverse dynamics. Crossings are looked for in
+ * every step from then on, also several in one step, and located to the rounding of time. What is
+ * at the level when a run begins has not crossed it. With particle sets, which cannot be moved
+ * back, a run stops at the end of the step that holds the event.
+ * @return OK, NULL, INVALID_ARGUMENT, UNSUPPORTED (the analysis has no motion), NO_MEMORY.
+ * Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_event_create(se3d_solver *solver, const se3d_event_def *def,
+                                       se3d_event *out);
+/* Remove an event and its records. @return OK, NULL, STALE_HANDLE. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_event_destroy(se3d_solver *solver, se3d_event event);
+/* Get the name, "" for none, owned by the event. Exclusive (a failure leaves a message). @since 0.1
+ */
+SE3D_API se3d_status se3d_event_get_name(se3d_solver *solver, se3d_event event, const char **name);
+
+/* Count the events that happened, in the order in which they did; 0 for NULL. Reader. @since 0.1 */
+SE3D_API size_t se3d_solver_count_event_records(const se3d_solver *solver);
+/* Get one. @return OK, NULL, INVALID_ARGUMENT (index). Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_solver_get_event_record(se3d_solver *solver, size_t index,
+                                                  se3d_event_record *record);
+/* Forget them all. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_solver_clear_event_records(se3d_solver *solver);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

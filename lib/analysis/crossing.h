@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Where a function of time reaches zero within one step: numbers only, no mechanics.
+ *
+ * The function is known in two ways: `rough` values, cheap, of the nodes and of points between
+ * them, and `exact` ones, which count. docs/theory/events.md */
+#ifndef SE3DI_CROSSING_H
+#define SE3DI_CROSSING_H
+
+#include "se3d/base.h"
+
+#include <stdint.h>
+
+#define SE3DI_CROSSING_NODES 8
+#define SE3DI_CROSSINGS_MAX  (2 * SE3DI_CROSSING_NODES)
+
+typedef se3d_status (*se3di_crossing_eval)(void *ctx, double t, double *value);
+
+typedef struct se3di_crossing_function {
+    se3di_crossing_eval rough, exact;
+    void *ctx;
+    const double *t;   /* nodes, ascending: from the begin to the end of the step */
+    const double *g;   /* rough values there */
+    int count;         /* of nodes */
+    int32_t direction; /* +1: rising, -1: falling, 0: both */
+} se3di_crossing_function;
+
+typedef struct se3di_crossing {
+    double t;          /* the first time, to rounding, at which zero is reached or passed */
+    int32_t direction; /* +1: from below */
+    int32_t reserved;
+} se3di_crossing;
+
+/* All crossings after the begin of the step, in order of time, into `found`
+ * [SE3DI_CROSSINGS_MAX]. What begins at zero has not crossed it; what ends at zero has. */
+se3d_status se3di_crossings_find(const se3di_crossing_function *function, se3di_crossing *found,
+                                 int *count);
+
+#endif

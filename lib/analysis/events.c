@@ -1,0 +1,524 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "analysis/events.h"
+
+#include "analysis/run.h"
+#include "integrator/state.h"
+#include "math/quaternion.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Where a step is sampled; more finely after its begin where a value begins at its level, which it
+ * may reach again soon. */
+static const double plain_nodes[] = {0.0, 0.25, 0.5, 0.75, 1.0};
+static const double fine_nodes[] = {0.0, 1e-4, 1e-2, 0.1, 0.25, 0.5, 0.75, 1.0};
+
+void se3di_events_init(se3di_events *events, struct se3di_run *run, se3d_system *system,
+                       uint32_t salt)
+{
+    events->run = run;
+    events->system = system;
+    se3di_slots_init(&events->slots, salt);
+}
+
+void se3di_events_destroy(se3di_events *events)
+{
+    const se3d_allocator *allocator = &events->run->model->allocator;
+    for (size_t k = 0; k < events->slots.count; ++k) {
+        se3di_text_free(allocator, events->list[k].name);
+    }
+    se3di_free(allocator, events->list, events->capacity, sizeof *events->list);
+    se3di_free(allocator, events->records, events->record_capacity, sizeof *events->records);
+    se3di_free(allocator, events->hits, events->hit_capacity, sizeof *events->hits);
+    se3di_free(allocator, events->g, events->g_capacity, sizeof *events->g);
+    se3di_free(allocator, events->y, events->y_capacity, sizeof *events->y);
+    se3di_saved_destroy(&events->from, allocator);
+    se3di_saved_destroy(&events->to, allocator);
+    se3di_slots_destroy(&events->slots, allocator);
+}
+
+se3d_status se3di_events_add(se3di_events *events, const char *name, const se3di_event *event,
+                             se3di_handle *handle)
+{
+    const se3d_allocator *allocator = &events->run->model->allocator;
+    const size_t count = events->slots.count;
+    void *list = events->list;
+    SE3DI_TRY(se3di_slots_reserve(&events->slots, allocator));
+    se3d_status status =
+        se3di_array_reserve(allocator, &list, &events->capacity, count + 1, sizeof *events->list);
+    events->list = list;
+    SE3DI_TRY(status);
+    char *copy = name ? se3di_text_copy(allocator, name) : NULL;
+    if (name && !copy) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    events->list[count] = *event;
+    events->list[count].name = copy;
+    *handle = se3di_slots_add(&events->slots);
+    events->looked = 0;
+    return SE3D_OK;
+}
+
+void se3di_events_remove(se3di_events *events, uint32_t event)
+{
+    const se3di_handle handle = se3di_slots_handle(&events->slots, event);
+    size_t kept = 0;
+    for (size_t k = 0; k < events->record_count; ++k) {
+        const se3d_event_record *record = &events->records[k];
+        if (record->event.index1 != handle.index1) {
+            events->records[kept++] = *record;
+        }
+    }
+    events->record_count = kept;
+    se3di_text_free(&events->run->model->allocator, events->list[event].name);
+    memmove(&events->list[event], &events->list[event + 1],
+            (events->slots.count - event - 1) * sizeof *events->list);
+    se3di_slots_remove(&events->slots, event);
+    events->looked = 0;
+}
+
+static se3d_status reserve(se3di_events *events, double **data, size_t *capacity, size_t count)
+{
+    void *grown = *data;
+    const se3d_status status =
+        se3di_array_reserve(&events->run->model->allocator, &grown, capacity, count, sizeof **data);
+    *data = grown;
+    return status;
+}
+
+se3d_status se3di_events_prepare(se3di_events *events)
+{
+    const size_t count = events->slots.count;
+    const se3di_model *model = events->run->model;
+    const size_t states = se3di_state_count(&events->run->equations.assembly);
+    void *hits = events->hits;
+    if (count == 0) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(reserve(events, &events->g, &events->g_capacity, SE3DI_CROSSING_NODES * count));
+    SE3DI_TRY(reserve(events, &events->y, &events->y_capacity, states));
+    const se3d_status status =
+        se3di_array_reserve(&model->allocator, &hits, &events->hit_capacity,
+                            SE3DI_CROSSINGS_MAX * count, sizeof *events->hits);
+    events->hits = hits;
+    return status;
+}
+
+static const char *name_of(const se3di_event *event)
+{
+    return event->name ? event->name : "without a name";
+}
+
+/* The value at the model's state, less the level. */
+static se3d_status eval(se3di_events *events, uint32_t k, double *g)
+{
+    const se3di_event *event = &events->list[k];
+    const double t = events->run->model->time;
+    double value = 0.0;
+    if (event->value(event->ctx, events->system, &value) < 0) {
+        return se3di_error_set(events->run->error, SE3D_ERR_CALLBACK,
+                               "t = %g s: the value of the event %.100s could not be computed", t,
+                               name_of(event));
+    }
+    if (!isfinite(value)) {
+        return se3di_error_set(events->run->error, SE3D_ERR_NOT_FINITE,
+                               "t = %g s: the value of the event %.100s is not finite", t,
+                               name_of(event));
+    }
+    *g = value - event->level;
+    return SE3D_OK;
+}
+
+/* Hermite's interpolation of n numbers: values a, b and derivatives da, db at the ends of h. */
+static void hermite(const double *ends[4], double h, double s, int n, double *out)
+{
+    const double u = 1.0 - s;
+    for (int k = 0; k < n; ++k) {
+        out[k] = u * u * (1.0 + 2.0 * s) * ends[0][k] + s * s * (1.0 + 2.0 * u) * ends[1][k] +
+                 h * s * u * (u * ends[2][k] - s * ends[3][k]);
+    }
+}
+
+/* Positions to order 5: what the accelerations at the ends add to the cubic. */
+static void add_quintic(const double *ends[6], double h, double s, double out[3])
+{
+    const double u = 1.0 - s;
+    for (int k = 0; k < 3; ++k) {
+        const double d = (ends[1][k] - ends[0][k]) / h;                        /* mean slope */
+        const double a0 = (6.0 * d - 4.0 * ends[2][k] - 2.0 * ends[3][k]) / h; /* of the cubic */
+        const double a1 = (2.0 * ends[2][k] + 4.0 * ends[3][k] - 6.0 * d) / h;
+        const double e0 = ends[4][k] - a0, e1 = ends[5][k] - a1;
+        out[k] += 0.5 * h * h * s * s * u * u * (u * e0 + s * e1);
+    }
+}
+
+/* The model's state at t between the ends of the watched step, without its constraints. */
+static void interpolate_watched(se3di_events *events, double t)
+{
+    se3di_model *model = events->run->model;
+    const double h = events->to.time - events->from.time;
+    const double s = (t - events->from.time) / h;
+    const se3di_frame *from = events->from.frames.data, *to = events->to.frames.data;
+    const double *acceleration[2] = {events->from.acceleration.data, events->to.acceleration.data};
+    const double *lambda[2] = {events->from.lambda.data, events->to.lambda.data};
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        const double *a = acceleration[0] + 6 * k, *b = acceleration[1] + 6 * k;
+        const se3di_frame *p = &from[k], *q = &to[k];
+        se3di_frame *frame = &model->frames[k];
+        double turn[4];
+        if (model->bodies[k].fixed) {
+            continue;
+        }
+        hermite((const double *[4]){p->r, q->r, p->v, q->v}, h, s, 3, frame->r);
+        add_quintic((const double *[6]){p->r, q->r, p->v, q->v, a, b}, h, s, frame->r);
+        hermite((const double *[4]){p->v, q->v, a, b}, h, s, 3, frame->v);
+        hermite((const double *[4]){p->p, q->p, p->pdot, q->pdot}, h, s, 4, turn);
+        hermite((const double *[4]){p->w, q->w, a + 3, b + 3}, h, s, 3, frame->w);
+        se3di_quat_normalize(turn, frame->p);
+        se3di_frame_update(frame);
+        for (size_t c = 0; c < 6; ++c) {
+            model->acceleration[6 * k + c] = (1.0 - s) * a[c] + s * b[c];
+        }
+    }
+    for (size_t k = 0; k < model->row_count; ++k) {
+        model->lambda[k] = (1.0 - s) * lambda[0][k] + s * lambda[1][k];
+    }
+    for (int k = 0; k < 3; ++k) {
+        model->work[k] = (1.0 - s) * events->from.work[k] + s * events->to.work[k];
+    }
+    model->time = t;
+}
+
+static se3d_status go_back(se3di_events *events, const se3di_saved *saved)
+{
+    se3di_model *model = events->run->model;
+    SE3DI_TRY(se3di_saved_reserve(saved, model));
+    se3di_saved_restore(saved, model);
+    return SE3D_OK;
+}
+
+/* A rough state at t, at least good enough to see where a value changes its sign. */
+static se3d_status set_rough(se3di_events *events, double t)
+{
+    const se3di_integration *integration = &events->run->integration;
+    se3di_assembly *assembly = &events->run->equations.assembly;
+    if (!events->dense) {
+        interpolate_watched(events, t);
+        return SE3D_OK;
+    }
+    integration->method->interpolate(integration, t, events->y);
+    se3di_state_set(assembly, events->y);
+    memcpy(assembly->model->work, events->y + se3di_state_count(assembly) - SE3DI_STATE_WORK,
+           sizeof assembly->model->work);
+    assembly->model->time = t;
+    return SE3D_OK;
+}
+
+/* Particles cannot: their sets are too large to be kept in every step. */
+static int can_go_back(const se3di_events *events)
+{
+    return !events->run->model->sets || events->run->analysis != SE3D_ANALYSIS_DYNAMICS;
+}
+
+/* The state at t as the method gives it: consistent in all levels. */
+static se3d_status set_exact(se3di_events *events, double t)
+{
+    se3di_run *run = events->run;
+    if (events->dense) {
+        SE3DI_TRY(run->integration.method->run(&run->integration, t));
+    } else if (t >= events->to.time) {
+        SE3DI_TRY(go_back(events, &events->to));
+    } else if (!can_go_back(events)) {
+        return set_rough(events, t);
+    } else {
+        SE3DI_TRY(go_back(events, &events->from));
+        if (t > events->from.time) {
+            SE3DI_TRY(se3di_run_make_step(run, t - events->from.time));
+            run->model->time = t;
+        }
+    }
+    return run->equations.redundant ? se3di_multipliers_reduce(&run->equations) : SE3D_OK;
+}
+
+static se3d_status eval_rough(void *ctx, double t, double *g)
+{
+    se3di_events *events = ctx;
+    const int exact = events->dense && !events->list[events->looking_for].motion_only;
+    SE3DI_TRY(exact ? set_exact(events, t) : set_rough(events, t));
+    return eval(events, events->looking_for, g);
+}
+
+static se3d_status eval_exact(void *ctx, double t, double *g)
+{
+    se3di_events *events = ctx;
+    SE3DI_TRY(set_exact(events, t));
+    return eval(events, events->looking_for, g);
+}
+
+/* The event is on record at t: what it does from there is new. */
+static int has_happened_at(const se3di_events *events, uint32_t k, double t)
+{
+    const se3di_handle handle = se3di_slots_handle(&events->slots, k);
+    for (size_t n = events->record_count; n > 0 && events->records[n - 1].time >= t; --n) {
+        const se3d_event_record *record = &events->records[n - 1];
+        if (!(record->time > t) && record->event.index1 == handle.index1) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Values of all events at node `node`, which is the state of the model. */
+static se3d_status eval_node(se3di_events *events, int node)
+{
+    for (uint32_t k = 0; k < events->slots.count; ++k) {
+        SE3DI_TRY(eval(events, k, &events->g[SE3DI_CROSSING_NODES * k + (size_t)node]));
+    }
+    return SE3D_OK;
+}
+
+/* The values at the first node are there: those that begin at their level, and the nodes. */
+static void choose_nodes(se3di_events *events, double begin, double end)
+{
+    int fine = 0;
+    for (uint32_t k = 0; k < events->slots.count; ++k) {
+        double *g = &events->g[SE3DI_CROSSING_NODES * k];
+        *g = has_happened_at(events, k, begin) ? 0.0 : *g;
+        fine |= !(fabs(*g) > 0.0);
+    }
+    const double *s = fine ? fine_nodes : plain_nodes;
+    events->node_count = fine ? (int)(sizeof fine_nodes / sizeof *fine_nodes)
+                              : (int)(sizeof plain_nodes / sizeof *plain_nodes);
+    for (int k = 0; k < events->node_count; ++k) {
+        events->t[k] = begin + s[k] * (end - begin);
+    }
+    events->t[events->node_count - 1] = end;
+}
+
+/* Crossings of one event, into the list of hits. */
+static se3d_status find_hits(se3di_events *events, uint32_t k)
+{
+    se3di_crossing found[SE3DI_CROSSINGS_MAX];
+    int count = 0;
+    const se3di_crossing_function function = {.rough = eval_rough,
+                                              .exact = eval_exact,
+                                              .ctx = events,
+                                              .t = events->t,
+                                              .g = &events->g[SE3DI_CROSSING_NODES * k],
+                                              .count = events->node_count,
+                                              .direction = events->list[k].direction};
+    events->looking_for = k;
+    SE3DI_TRY(se3di_crossings_find(&function, found, &count));
+    for (int n = 0; n < count; ++n) {
+        size_t at = events->hit_count++;
+        for (; at > 0 && events->hits[at - 1].time > found[n].t; --at) {
+            events->hits[at] = events->hits[at - 1];
+        }
+        events->hits[at] = (se3di_event_hit){found[n].t, k, found[n].direction};
+    }
+    return SE3D_OK;
+}
+
+static se3d_status find_all_hits(se3di_events *events)
+{
+    events->hit_count = 0;
+    for (uint32_t k = 0; k < events->slots.count; ++k) {
+        SE3DI_TRY(find_hits(events, k));
+    }
+    return SE3D_OK;
+}
+
+/* Looking for events is not counted as steps and iterations of the run. */
+static void keep_counters(se3di_events *events, const se3di_counters *before)
+{
+    se3di_counters *now = &events->run->equations.counters;
+    now->steps = before->steps;
+    now->rejected = before->rejected;
+    now->iterations = before->iterations;
+}
+
+static se3d_status add_record(se3di_events *events, const se3di_event_hit *hit,
+                              se3d_event_record **record)
+{
+    const se3di_event *event = &events->list[hit->event];
+    const se3di_handle handle = se3di_slots_handle(&events->slots, hit->event);
+    void *records = events->records;
+    double g;
+    se3d_status status =
+        se3di_array_reserve(&events->run->model->allocator, &records, &events->record_capacity,
+                            events->record_count + 1, sizeof *events->records);
+    events->records = records;
+    if (status < 0) {
+        return se3di_error_set(events->run->error, status, "no memory for an event");
+    }
+    SE3DI_TRY(set_exact(events, hit->time));
+    SE3DI_TRY(eval(events, hit->event, &g));
+    *record = &events->records[events->record_count++];
+    **record = (se3d_event_record){.time = hit->time,
+                                   .value = g + event->level,
+                                   .name = event->name ? event->name : "",
+                                   .event = {handle.index1, handle.generation},
+                                   .direction = hit->direction,
+                                   .action = event->action};
+    return SE3D_OK;
+}
+
+/* Record a hit; the model is in the state there. *stop: the run ends; *changed: the callback has
+ * changed the state. */
+static se3d_status happen(se3di_events *events, const se3di_event_hit *hit, int *stop, int *changed)
+{
+    se3d_event_record *record = NULL;
+    const se3di_event *event = &events->list[hit->event];
+    SE3DI_TRY(add_record(events, hit, &record));
+    if (event->callback) {
+        const uint64_t stamp = events->run->model->history_stamp;
+        const se3d_event_record shown = *record;
+        const se3d_status status = event->callback(event->callback_ctx, events->system, &shown);
+        if (status < 0) {
+            return se3di_error_set(events->run->error, SE3D_ERR_CALLBACK,
+                                   "t = %g s: the callback of the event %.100s failed", hit->time,
+                                   name_of(event));
+        }
+        record->action = status == SE3D_INFO_EVENT ? SE3D_EVENT_STOP : record->action;
+        *changed = events->run->model->history_stamp != stamp;
+    }
+    *stop |= record->action == SE3D_EVENT_STOP;
+    return SE3D_OK;
+}
+
+/* Report the hits after t0 and not after t_end. @return INFO_EVENT: the run ends at the last of
+ * them, where the model is. */
+static se3d_status report(se3di_events *events, double t0, double t_end)
+{
+    int stop = 0, changed = 0;
+    double last = t_end;
+    for (size_t k = 0; k < events->hit_count && !changed; ++k) {
+        const se3di_event_hit *hit = &events->hits[k];
+        if (hit->time > t0 && hit->time <= last) {
+            SE3DI_TRY(happen(events, hit, &stop, &changed));
+            last = stop ? hit->time : last; /* what happens at the same time does so too */
+        }
+    }
+    events->goes_on = changed && !stop;
+    return stop || changed ? SE3D_INFO_EVENT : SE3D_OK;
+}
+
+/* The hits of the step of dense output that is ahead. */
+static se3d_status look_ahead(se3di_events *events)
+{
+    const se3di_model *model = events->run->model;
+    const double begin = model->history[SE3DI_HISTORY_BEGIN];
+    const double end = model->history[SE3DI_HISTORY_TIME];
+    if (events->looked && events->looked_stamp == model->history_stamp &&
+        !(events->looked_time < end) && !(events->looked_time > end)) {
+        return SE3D_OK;
+    }
+    events->looked = 0;
+    for (uint32_t k = 0; k < events->slots.count; ++k) {
+        events->looking_for = k;
+        SE3DI_TRY(eval_rough(events, begin, &events->g[SE3DI_CROSSING_NODES * k]));
+    }
+    choose_nodes(events, begin, end);
+    for (int node = 1; node < events->node_count; ++node) {
+        int is_set = 0;
+        for (uint32_t k = 0; k < events->slots.count; ++k) {
+            double *g = &events->g[SE3DI_CROSSING_NODES * k + (size_t)node];
+            events->looking_for = k;
+            const int shares = is_set && events->list[k].motion_only;
+            SE3DI_TRY(shares ? eval(events, k, g) : eval_rough(events, events->t[node], g));
+            is_set = 1;
+        }
+    }
+    SE3DI_TRY(find_all_hits(events));
+    events->looked = 1;
+    events->looked_stamp = model->history_stamp;
+    events->looked_time = end;
+    return SE3D_OK;
+}
+
+/* After a failure: the model at t, and the message of the failure. */
+static se3d_status come_back(se3di_events *events, double t, se3d_status status)
+{
+    se3di_run *run = events->run;
+    const se3di_error cause = *run->error;
+    (void)run->integration.method->run(&run->integration, t);
+    *run->error = cause;
+    return status;
+}
+
+se3d_status se3di_events_run(se3di_events *events, double t_end)
+{
+    se3di_run *run = events->run;
+    const se3di_integrator *method = run->integration.method;
+    const double *history = run->model->history;
+    double t = run->model->time;
+    events->dense = 1;
+    while (t < t_end) {
+        if (!(history[SE3DI_HISTORY_TIME] > t)) {
+            const se3d_status status = method->advance(&run->integration, t_end);
+            if (status < 0) {
+                return come_back(events, history[SE3DI_HISTORY_TIME], status);
+            }
+        }
+        const se3di_counters before = run->equations.counters;
+        se3d_status status = look_ahead(events);
+        status = status < 0 ? status : report(events, t, t_end);
+        keep_counters(events, &before);
+        if (status < 0) {
+            return come_back(events, t, status);
+        }
+        if (status == SE3D_INFO_EVENT) {
+            return status;
+        }
+        t = fmin(t_end, history[SE3DI_HISTORY_TIME]);
+    }
+    return method->run(&run->integration, t_end);
+}
+
+se3d_status se3di_events_begin_step(void *ctx)
+{
+    se3di_events *events = ctx;
+    const se3di_model *model = events->run->model;
+    if (events->slots.count == 0) {
+        return SE3D_OK;
+    }
+    events->dense = 0;
+    if (se3di_saved_fill(&events->from, model, &model->allocator) < 0) {
+        return se3di_error_set(events->run->error, SE3D_ERR_NO_MEMORY, "no memory for events");
+    }
+    return eval_node(events, 0);
+}
+
+static se3d_status look_back(se3di_events *events)
+{
+    choose_nodes(events, events->from.time, events->to.time);
+    SE3DI_TRY(eval_node(events, events->node_count - 1));
+    for (int node = 1; node + 1 < events->node_count; ++node) {
+        SE3DI_TRY(set_rough(events, events->t[node]));
+        SE3DI_TRY(eval_node(events, node));
+    }
+    return find_all_hits(events);
+}
+
+se3d_status se3di_events_end_step(void *ctx)
+{
+    se3di_events *events = ctx;
+    se3di_run *run = events->run;
+    const se3di_model *model = run->model;
+    if (events->slots.count == 0) {
+        return SE3D_OK;
+    }
+    if (se3di_saved_fill(&events->to, model, &model->allocator) < 0) {
+        return se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for events");
+    }
+    const se3di_counters before = run->equations.counters;
+    se3d_status status = look_back(events);
+    status = status < 0 ? status : report(events, events->from.time, events->to.time);
+    keep_counters(events, &before);
+    const int stays = status == SE3D_INFO_EVENT && (can_go_back(events) || events->goes_on);
+    if (!stays) {
+        SE3DI_TRY(go_back(events, &events->to));
+    }
+    return status;
+}

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Events of a run: crossings of levels, found in every step, located, recorded.
+ *
+ * A step is looked at in one of two ways. Methods with dense output (integrator `advance`) make
+ * their step ahead of the model's time and are asked for states within it. All others, and time
+ * driven analyses, are watched: from the state at the begin of an accepted step a shorter one leads
+ * to any time within it, and the state at its end is put back. Neither changes the motion.
+ * docs/theory/events.md */
+#ifndef SE3DI_EVENTS_H
+#define SE3DI_EVENTS_H
+
+#include "analysis/crossing.h"
+#include "integrator/integrator.h"
+#include "model/saved.h"
+#include "se3d/event.h"
+
+struct se3di_run;
+
+typedef struct se3di_event {
+    char *name;
+    se3d_event_value value;
+    void *ctx;
+    se3d_event_callback callback;
+    void *callback_ctx;
+    double level;
+    int32_t direction, action; /* se3d_event_direction, se3d_event_action */
+    int32_t motion_only;
+    int32_t reserved;
+} se3di_event;
+
+/* A crossing in the step that was looked at last. */
+typedef struct se3di_event_hit {
+    double time;
+    uint32_t event; /* dense */
+    int32_t direction;
+} se3di_event_hit;
+
+typedef struct se3di_events {
+    struct se3di_run *run;
+    se3d_system *system; /* for callbacks */
+    se3di_slots slots;
+    se3di_event *list;
+    size_t capacity;
+    se3d_event_record *records;
+    size_t record_count, record_capacity;
+
+    se3di_event_hit *hits; /* in order of time */
+    size_t hit_count, hit_capacity;
+    double t[SE3DI_CROSSING_NODES]; /* nodes of the step */
+    double *g;                      /* values at them [events * NODES] */
+    size_t g_capacity;
+    double *y; /* an interpolated state */
+    size_t y_capacity;
+    se3di_saved from, to; /* a watched step */
+    int32_t node_count;
+    int32_t dense;        /* the step is one of dense output */
+    uint32_t looking_for; /* dense index of the event whose crossing is being located */
+    int32_t goes_on;      /* a callback changed the state: the run goes on from there */
+    int32_t looked;       /* the hits are those of the step that ends at looked_time, */
+    int32_t reserved;
+    double looked_time;
+    uint64_t looked_stamp; /* in this history */
+} se3di_events;
+
+void se3di_events_init(se3di_events *events, struct se3di_run *run, se3d_system *system,
+                       uint32_t salt);
+void se3di_events_destroy(se3di_events *events);
+
+/* Events by dense index. The name is copied. @return OK, NO_MEMORY (then nothing has changed) */
+se3d_status se3di_events_add(se3di_events *events, const char *name, const se3di_event *event,
+                             se3di_handle *handle);
+void se3di_events_remove(se3di_events *events, uint32_t event);
+
+/* Before a run: room for what a step needs. @return OK, NO_MEMORY */
+se3d_status se3di_events_prepare(se3di_events *events);
+/* Steps of a method with dense output to t_end. @return OK, INFO_EVENT (the model is at the event),
+ * or an error as from the method's run. */
+se3d_status se3di_events_run(se3di_events *events, double t_end);
+/* Around a watched step, see se3di_watch. */
+se3d_status se3di_events_begin_step(void *events);
+se3d_status se3di_events_end_step(void *events);
+
+#endif
