@@ -117,8 +117,9 @@ SE3D_API se3d_status se3d_joint_get_coordinate(const se3d_system *system, se3d_c
 
 #define SE3D_COUPLER_TERMS_MAX 4
 
-/* A linear relation of joint coordinates: sum_k ratio[k] coordinate[k] = value (or f(t)). @since
- * 0.1 */
+/* A linear relation of joint coordinates: sum_k ratio[k] coordinate[k] = value (or f(t)). What it
+ * does to bodies: se3d_driver_get_effort, and the reactions of se3d_constraint_get_reaction on body
+ * j of the first joint, at its point there. @since 0.1 */
 typedef struct se3d_coupler_def {
     size_t struct_size;
     const char *name;
@@ -176,7 +177,9 @@ SE3D_API se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_d
                                         se3d_constraint *driver);
 /* Get f at the present time, and the effort: the torque about the joint axis [N m] or the force
  * along it [N] with which the driver acts on body j. Also for any constraint of one equation (value
- * - f = 0): the generalised force -lambda. Reader. @since 0.1 */
+ * - f = 0): the generalised force -lambda. A coupler, gear or rack acts with ratio[k] times its
+ * effort on coordinate k: on body j of that joint about or along its axis, on its body i with the
+ * opposite. Reader. @since 0.1 */
 SE3D_API se3d_status se3d_driver_get_value(const se3d_system *system, se3d_constraint driver,
                                            double *value);
 SE3D_API se3d_status se3d_driver_get_effort(const se3d_system *system, se3d_constraint driver,

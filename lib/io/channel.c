@@ -127,8 +127,10 @@ static void offer_element(offer *o, const se3d_model *model, const se3di_element
     o->count = 0;
     switch (entry->kind) {
     case SE3DI_ELEMENT_JOINT:
-        if (!se3di_keys_contain(" gear rack_pinion coupler ", text)) {
-            offer_names(o, reaction_names);
+        offer_names(o, reaction_names);
+        if (se3di_keys_contain(" gear rack_pinion coupler ", text)) {
+            offer_names(o, driver_names);
+        } else {
             offer_coordinates(o, model->system, entry->constraint);
         }
         break;

@@ -52,6 +52,10 @@ static bool read_gear(se3di_reader *reader, const se3di_node *node, se3di_elemen
         !se3di_read_key_joint(reader, node, "joint_2", &second)) {
         return false;
     }
+    if (first.index1 == second.index1) {
+        return se3di_reader_fail_key(reader, node, "joint_2",
+                                     "is the same as joint_1, must be another joint");
+    }
     if (!se3di_node_get(node, "ratio")) {
         return se3di_reader_fail_key(reader, node, "ratio",
                                      "is missing: ratio * angle 1 + angle 2 = constant");

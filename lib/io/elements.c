@@ -62,7 +62,9 @@ bool se3di_read_key_joint(se3di_reader *reader, const se3di_node *map, const cha
     if (se3di_ionames_find(&model->element_names, name, &index) &&
         model->elements[index].kind == SE3DI_ELEMENT_JOINT) {
         *joint = model->elements[index].constraint;
-        return true;
+        return joint->index1 != 0 ||
+               se3di_reader_fail(reader, node,
+                                 "is `%.60s` itself, must be the name of another joint", name);
     }
     se3di_guess guess = se3di_guess_begin(name);
     for (size_t k = 0; k < model->element_count; ++k) {

@@ -6,6 +6,8 @@
 #include "check.h"
 #include "se3d/io.h"
 
+#include <stdlib.h>
+
 typedef struct text_model {
     se3d_model *model;
     se3d_system *system;
@@ -23,6 +25,9 @@ static inline text_model text_model_open(const char *text, int32_t method, int32
         fprintf(stderr, "%s\n", error.message);
     }
     CHECK(m.model != NULL);
+    if (!m.model) {
+        exit(check_finish());
+    }
     m.system = se3d_model_get_system(m.model);
     CHECK(!se3d_model_get_solver(m.model, 0, &def));
     def.method = method >= 0 ? method : def.method;

@@ -223,8 +223,8 @@ static const bad_input table[] = {
     {"se3d: 1\n" BAR "joints: [{name: pin, type: revolute, body_i: ground, body_j: bar, at: [0, 0, "
      "0], axis: [0, 0, 1]}, {type: gear, joint_1: pin, joint_2: pin, ratio: 2}]\n",
      3,
-     100,
-     {"joints[1]: joint[0] and joint[1] are the same coordinate"}},
+     136,
+     {"joints[1].joint_2: is the same as joint_1"}},
     {WITH("drivers: [{joint: pim, value: t}]"), 4, 19, {"no joint is named `pim`", "mean `pin`"}},
     {WITH("drivers: [{joint: pin}]"), 4, 11, {"drivers[0].value: is missing"}},
     {WITH("drivers: [{joint: pin, coordinate: displacement, value: t}]"),

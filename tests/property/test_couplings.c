@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What gears, racks and couplers do to bodies: effort and reactions against closed forms. */
+#include "support/text_model.h"
+
+/* Two discs, 2:1; the first is driven by 6 N m: (J1 + 4 J2) theta1'' = 6, and so on. */
+static void a_gear_reports_its_torque_on_both_discs(void)
+{
+    static const char *const text =
+        "se3d: 1\ngravity: [0, 0, 0]\nbodies:\n"
+        "  - {name: a, mass: 1, inertia: [1, 1, 2]}\n"
+        "  - {name: b, mass: 1, inertia: [2, 2, 3], position: [1, 0, 0]}\njoints:\n"
+        "  - {name: ja, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, "
+        "1]}\n"
+        "  - {name: jb, type: revolute, body_i: ground, body_j: b, at: [1, 0, 0], axis: [0, 0, "
+        "1]}\n"
+        "  - {name: g, type: gear, joint_1: ja, joint_2: jb, ratio: 2}\n"
+        "forces: [{type: torque, body: a, value: [0, 0, 6]}]\n"
+        "analysis: {type: dynamics, duration: 1}\n"
+        "output: [{file: r.csv, channels: [g.effort, g.torque, g.force, g.value, "
+        "a.angular_acceleration, b.angular_acceleration, energy.balance]}]\n";
+    for (int rp = 0; rp < 2; ++rp) {
+        text_model m = text_model_open(text, SE3D_METHOD_DOP853, rp, 0.0);
+        CHECK(text_model_run(&m, 1.0));
+        const double a = 6.0 / (2.0 + 4.0 * 3.0);
+        CHECK_NEAR(text_model_get(&m, 4, 2), a, 1e-12);
+        CHECK_NEAR(text_model_get(&m, 5, 2), -2.0 * a, 1e-12);
+        CHECK_NEAR(text_model_get(&m, 0, 0), 3.0 * -2.0 * a, 1e-11); /* on b about its axis */
+        CHECK_NEAR(text_model_get(&m, 1, 2), 2.0 * a - 6.0, 1e-11);  /* on a: twice the effort */
+        CHECK_NEAR(text_model_get(&m, 1, 0), 0.0, 1e-12);
+        CHECK_NEAR(text_model_get(&m, 2, 0), 0.0, 1e-12);
+        CHECK_NEAR(text_model_get(&m, 3, 0), 0.0, 1e-12);
+        text_model_close(&m);
+    }
+}
+
+/* A rack of 4 kg pushed by 10 N turns a pinion of J = 0.5, radius 0.25: (4 + J/r^2) x'' = 10. */
+static void a_rack_reports_the_force_on_the_rack_and_the_torque_on_the_pinion(void)
+{
+    static const char *const text =
+        "se3d: 1\ngravity: [0, 0, 0]\nbodies:\n"
+        "  - {name: p, mass: 1, inertia: [1, 1, 0.5]}\n"
+        "  - {name: r, mass: 4, inertia: [1, 1, 1], position: [0, -0.25, 0]}\njoints:\n"
+        "  - {name: jr, type: prismatic, body_i: ground, body_j: r, at: [0, -0.25, 0], axis: [1, "
+        "0, "
+        "0]}\n"
+        "  - {name: jp, type: revolute, body_i: ground, body_j: p, at: [0, 0, 0], axis: [0, 0, 1], "
+        "angle0: 0.5}\n"
+        "  - {name: k, type: rack_pinion, rack: jr, pinion: jp, radius: 0.25}\n"
+        "forces: [{type: force, body: r, value: [10, 0, 0]}]\n"
+        "analysis: {type: dynamics, duration: 0.5}\n"
+        "output: [{file: r.csv, channels: [k.effort, k.torque, k.force, k.value, "
+        "r.acceleration]}]\n";
+    for (int rp = 0; rp < 2; ++rp) {
+        text_model m = text_model_open(text, SE3D_METHOD_DOP853, rp, 0.0);
+        CHECK(text_model_run(&m, 0.5));
+        const double a = 10.0 / (4.0 + 0.5 / 0.0625), effort = 4.0 * a - 10.0;
+        CHECK_NEAR(text_model_get(&m, 4, 0), a, 1e-12);
+        CHECK_NEAR(text_model_get(&m, 0, 0), effort, 1e-11);
+        CHECK_NEAR(text_model_get(&m, 1, 2), -0.25 * effort, 1e-11);
+        CHECK_NEAR(text_model_get(&m, 1, 2), 0.5 * a / 0.25, 1e-11);
+        CHECK_NEAR(text_model_get(&m, 2, 0), 0.0, 1e-11);
+        CHECK_NEAR(text_model_get(&m, 3, 0), -0.25 * 0.5, 1e-12);
+        text_model_close(&m);
+    }
+}
+
+/* x1 - 2 x2 = t^2 between two sliders: m1 x1'' = e, m2 x2'' = -2 e. */
+static void a_coupler_that_moves_reports_value_force_and_effort(void)
+{
+    static const char *const text =
+        "se3d: 1\ngravity: [0, 0, 0]\nbodies:\n"
+        "  - {name: a, mass: 3, inertia: [1, 1, 1]}\n"
+        "  - {name: b, mass: 5, inertia: [1, 1, 1], position: [0, 1, 0]}\njoints:\n"
+        "  - {name: ja, type: prismatic, body_i: ground, body_j: a, at: [0, 0, 0], axis: [1, 0, "
+        "0]}\n"
+        "  - {name: jb, type: prismatic, body_i: ground, body_j: b, at: [0, 1, 0], axis: [0, 0, "
+        "1]}\n"
+        "  - {name: c, type: coupler, terms: [{joint: ja}, {joint: jb, ratio: -2}], value: t^2}\n"
+        "analysis: {type: dynamics, duration: 0.5}\n"
+        "output: [{file: r.csv, channels: [c.effort, c.force, c.value, ja.displacement, "
+        "jb.displacement, energy.balance, work.drivers]}]\n";
+    const double e = 2.0 / (1.0 / 3.0 + 4.0 / 5.0);
+    text_model m = text_model_open(text, SE3D_METHOD_DOP853, 0, 0.0);
+    CHECK(text_model_run(&m, 0.5));
+    CHECK_NEAR(text_model_get(&m, 0, 0), e, 1e-11);
+    CHECK_NEAR(text_model_get(&m, 1, 0), e, 1e-11);
+    CHECK_NEAR(text_model_get(&m, 2, 0), 0.25, 1e-15);
+    CHECK_NEAR(text_model_get(&m, 3, 0), 0.125 * e / 3.0, 1e-11);
+    CHECK_NEAR(text_model_get(&m, 4, 0), 0.125 * -2.0 * e / 5.0, 1e-11);
+    CHECK_NEAR(text_model_get(&m, 6, 0), e * 0.25, 1e-9); /* effort times the change of value */
+    text_model_close(&m);
+}
+
+/* The message of a gear `g` of joint `j` and `other`. */
+static void check_refused(const char *other, const char *why)
+{
+    char text[600];
+    se3d_model *model = NULL;
+    se3d_model_error error = {0};
+    snprintf(text, sizeof text,
+             "se3d: 1\nbodies: [{name: a, mass: 1, inertia: [1, 1, 1]}]\njoints:\n"
+             "  - {name: j, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, "
+             "1]}\n  - {name: g, type: gear, joint_1: j, joint_2: %s, ratio: 1}\n",
+             other);
+    CHECK(se3d_model_read_text(text, strlen(text), "m.yaml", NULL, &model, &error) < 0);
+    CHECK_CONTAINS(error.message, why);
+    se3d_model_destroy(model);
+}
+
+static void a_gear_of_itself_is_refused_with_its_reason(void)
+{
+    check_refused("g", "m.yaml:5:48: joints[1].joint_2: is `g` itself");
+    check_refused("j", "joints[1].joint_2: is the same as joint_1, must be another joint");
+}
+
+int main(void)
+{
+    RUN(a_gear_reports_its_torque_on_both_discs);
+    RUN(a_rack_reports_the_force_on_the_rack_and_the_torque_on_the_pinion);
+    RUN(a_coupler_that_moves_reports_value_force_and_effort);
+    RUN(a_gear_of_itself_is_refused_with_its_reason);
+    return check_finish();
+}
