@@ -96,7 +96,9 @@ static se3d_status prepare_equations(se3di_run *run)
     release(run);
     choose_method(run);
     se3di_counters counters = run->equations.counters;
-    int reduces = run->analysis == SE3D_ANALYSIS_DYNAMICS && run->integration.method->is_explicit;
+    const se3di_integrator *method = run->integration.method;
+    int reduces =
+        run->analysis == SE3D_ANALYSIS_DYNAMICS && (method->is_explicit || method->is_reduced);
     const se3di_formulation *formulation =
         reduces ? se3di_formulation_reduce(run->formulation) : run->formulation;
     SE3DI_TRY(se3di_equations_init(&run->equations, run->model, formulation, run->error));

@@ -255,3 +255,79 @@ void se3di_fused_eval(se3di_assembly *assembly, uint32_t joint, double *gamma)
         romega_eval(&seen, constraint->row_count == 5);
     }
 }
+
+/* ---- curvature ---- */
+
+/* block += s ~a ~b = s (b a^T - (a.b) I), in the rotational part of a 6 x 6 block */
+static inline void add_double_tilde(double *block, double s, const double a[3], const double b[3])
+{
+    const double along = s * se3di_dot(a, b);
+    for (int r = 0; r < 3; ++r) {
+        double *row = block + BLOCK * (3 + r) + 3;
+        for (int c = 0; c < 3; ++c) {
+            row[c] += s * b[r] * a[c];
+        }
+        row[r] -= along;
+    }
+}
+
+/* K_ij = -~alpha R ~a_j with R = A_i^T A_j, and its transpose. */
+static void add_couplings(const se3di_frame *i, const se3di_frame *j, const double alpha[3],
+                          const double a_j[3], const se3di_fused_blocks *blocks)
+{
+    double R[9], left[9], right[9], tilde[9];
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) {
+            R[3 * r + c] =
+                i->A[r] * j->A[c] + i->A[3 + r] * j->A[3 + c] + i->A[6 + r] * j->A[6 + c];
+        }
+    }
+    se3di_tilde(alpha, tilde);
+    se3di_mat_mul(tilde, R, left);
+    se3di_tilde(a_j, tilde);
+    se3di_mat_mul(left, tilde, right);
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) {
+            blocks->ij[BLOCK * (3 + r) + 3 + c] -= right[3 * r + c];
+            blocks->ji[BLOCK * (3 + c) + 3 + r] -= right[3 * r + c];
+        }
+    }
+}
+
+void se3di_fused_add_curvature(const se3di_assembly *assembly, uint32_t joint, const double *lambda,
+                               const se3di_fused_blocks *blocks)
+{
+    const se3di_model *model = assembly->model;
+    const se3di_constraint *constraint = &model->constraints[joint];
+    const se3di_term *terms = model->terms + constraint->term_begin;
+    const se3di_frame *i = &model->frames[terms[0].body_i], *j = &model->frames[terms[0].body_j];
+    double force[3], alpha[3], world[3], turned[3];
+    if (blocks->ii) {
+        se3di_mul_transposed(i->A, lambda, force);
+        add_double_tilde(blocks->ii, -1.0, terms[0].s_i, force);
+    }
+    if (blocks->jj) {
+        se3di_mul_transposed(j->A, lambda, force);
+        add_double_tilde(blocks->jj, 1.0, terms[0].s_j, force);
+    }
+    if (constraint->row_count != 5) {
+        return;
+    }
+    const double *a_j = terms[3].a_j;
+    for (int k = 0; k < 3; ++k) {
+        alpha[k] = lambda[3] * terms[3].a_i[k] + lambda[4] * terms[4].a_i[k];
+    }
+    if (blocks->ii) {
+        se3di_mul(j->A, a_j, world);
+        se3di_mul_transposed(i->A, world, turned);
+        add_double_tilde(blocks->ii, 1.0, alpha, turned);
+    }
+    if (blocks->jj) {
+        se3di_mul(i->A, alpha, world);
+        se3di_mul_transposed(j->A, world, turned);
+        add_double_tilde(blocks->jj, 1.0, a_j, turned);
+    }
+    if (blocks->ij) {
+        add_couplings(i, j, alpha, a_j, blocks);
+    }
+}

@@ -18,15 +18,30 @@
  *                      gamma = f_tt - u . Z_i a_i - v . Z_j a_j
  *                              - 2 B(p_i,a_i) pdot_i . B(p_j,a_j) pdot_j
  *
+ * The curvature, in both (turns in the body frame), with L = A^T (lambda_0, lambda_1, lambda_2) of
+ * either body, alpha = sum of lambda_k a_i of the DP1, u and A_i alpha turned into the other body:
+ *
+ *     K_jj = ~s_j ~L_j + ~a_j ~(A_j^T A_i alpha)     K_ij = -~alpha A_i^T A_j ~a_j = K_ji^T
+ *     K_ii = -~s_i ~L_i + ~alpha ~(A_i^T u)
+ *
  * docs/theory/assembly.md */
 #ifndef SE3DI_ASSEMBLY_FUSED_H
 #define SE3DI_ASSEMBLY_FUSED_H
 
 #include "assembly/assembly.h"
 
+/* Rotational parts (3 x 3 of the 6 x 6) of the body blocks that the curvature of a joint adds to;
+ * NULL: a body is fixed. */
+typedef struct se3di_fused_blocks {
+    double *ii, *jj, *ij, *ji;
+} se3di_fused_blocks;
+
 /* Whether a constraint of the model can be evaluated so. */
 int se3di_fused_fits(const se3di_assembly *assembly, uint32_t joint);
 /* Jacobian of a fitting joint into C; gamma (its rows; NULL: not wanted). */
 void se3di_fused_eval(se3di_assembly *assembly, uint32_t joint, double *gamma);
+/* Add the derivative of Phi_q^T lambda to turns of the body frames; lambda: of its rows. */
+void se3di_fused_add_curvature(const se3di_assembly *assembly, uint32_t joint, const double *lambda,
+                               const se3di_fused_blocks *blocks);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "assembly/tangent.h"
 
+#include "assembly/fused.h"
 #include "contact/loads.h"
 #include "joint/user.h"
 #include "math/inertia.h"
@@ -12,7 +13,8 @@
 
 #define COUPLED_SHAPES 64
 
-/* Couplings: every pair of free bodies that a force element or a term of a constraint joins. */
+/* Couplings: every pair of free bodies that a force element or a term of a constraint joins; the
+ * curvature of CD does not couple its bodies. */
 
 static void note_pair(se3di_tangent *tangent, uint32_t dense_a, uint32_t dense_b, size_t *count)
 {
@@ -53,7 +55,9 @@ static size_t list_pairs(se3di_tangent *tangent)
         note_pair(tangent, model->forces[k].body_i, model->forces[k].body_j, &count);
     }
     for (size_t k = 0; k < model->term_count; ++k) {
-        note_pair(tangent, model->terms[k].body_i, model->terms[k].body_j, &count);
+        if (model->terms[k].type != SE3DI_PRIMITIVE_CD) {
+            note_pair(tangent, model->terms[k].body_i, model->terms[k].body_j, &count);
+        }
     }
     for (size_t k = 0; k < model->constraint_slots.count; ++k) {
         const se3di_constraint *constraint = &model->constraints[k];
@@ -101,6 +105,26 @@ static void list_arrays(se3di_tangent *t, double **list[TANGENT_ARRAYS],
     }
 }
 
+/* The coupling of two free bodies, -1: there is none. */
+static int32_t find_pair(const se3di_tangent *tangent, int32_t a, int32_t b)
+{
+    const int32_t pair[2] = {a < b ? a : b, a < b ? b : a};
+    const int32_t *found =
+        bsearch(pair, tangent->coupling, tangent->coupling_count, sizeof pair, compare_pairs);
+    return found ? (int32_t)((found - tangent->coupling) / 2) : -1;
+}
+
+static void find_joint_pairs(se3di_tangent *tangent)
+{
+    const se3di_assembly *assembly = tangent->assembly;
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        const int32_t *body = assembly->joint_body + assembly->joint_begin[k];
+        const int is_pair = assembly->joint_begin[k + 1] - assembly->joint_begin[k] == 2;
+        tangent->joint_pair[k] =
+            assembly->is_fused[k] && is_pair ? find_pair(tangent, body[0], body[1]) : -1;
+    }
+}
+
 static se3d_status allocate(se3di_tangent *tangent)
 {
     const se3d_allocator *allocator = &tangent->assembly->model->allocator;
@@ -109,11 +133,14 @@ static se3d_status allocate(se3di_tangent *tangent)
     tangent->coupling_capacity = list_pairs(tangent);
     tangent->coupling =
         se3di_alloc(allocator, 2 * tangent->coupling_capacity, sizeof *tangent->coupling);
-    if (!tangent->coupling) {
+    tangent->joint_pair =
+        se3di_alloc(allocator, tangent->assembly->constraint_count, sizeof *tangent->joint_pair);
+    if (!tangent->coupling || !tangent->joint_pair) {
         return SE3D_ERR_NO_MEMORY;
     }
     (void)list_pairs(tangent);
     tangent->coupling_count = remove_duplicates(tangent->coupling, tangent->coupling_capacity);
+    find_joint_pairs(tangent);
     list_arrays(tangent, arrays, counts);
     for (int k = 0; k < TANGENT_ARRAYS; ++k) {
         *arrays[k] = se3di_alloc(allocator, counts[k], sizeof(double));
@@ -148,6 +175,8 @@ void se3di_tangent_destroy(se3di_tangent *tangent)
     }
     se3di_free(allocator, tangent->coupling, 2 * tangent->coupling_capacity,
                sizeof *tangent->coupling);
+    se3di_free(allocator, tangent->joint_pair, tangent->assembly->constraint_count,
+               sizeof *tangent->joint_pair);
     memset(tangent, 0, sizeof *tangent);
 }
 
@@ -161,16 +190,13 @@ static double *find_block(const se3di_tangent *tangent, int which, int32_t row, 
     if (row == column) {
         return (which ? tangent->D : tangent->K) + (size_t)row * n * n;
     }
-    int32_t pair[2] = {row < column ? row : column, row < column ? column : row};
-    const int32_t *found =
-        bsearch(pair, tangent->coupling, tangent->coupling_count, sizeof pair, compare_pairs);
-    if (!found) { /* a contact of one of very many bodies */
+    const int32_t pair = find_pair(tangent, row, column);
+    if (pair < 0) { /* CD, or a contact of one of very many bodies */
         return NULL;
     }
-    size_t index = (size_t)(found - tangent->coupling) / 2;
     double *upper = which ? tangent->D_upper : tangent->K_upper;
     double *lower = which ? tangent->D_lower : tangent->K_lower;
-    return (row < column ? upper : lower) + index * n * n;
+    return (row < column ? upper : lower) + (size_t)pair * n * n;
 }
 
 /* block += s (6 x 6 of a 12 x 12) */
@@ -315,24 +341,56 @@ static void add_quadrant(double *block, int32_t block_size, const double *H, int
     }
 }
 
-static void add_curvature(se3di_tangent *tangent, const double *lambda)
+static void add_row_curvature(se3di_tangent *tangent, const se3di_row *row, double lambda)
 {
     const se3di_assembly *assembly = tangent->assembly;
     const se3di_model *model = assembly->model;
     const se3di_formulation *formulation = assembly->formulation;
-    for (size_t k = 0; k < model->row_count; ++k) {
-        const se3di_row *row = &model->rows[k];
-        for (uint32_t e = 0; e < row->term_count; ++e) {
-            const se3di_term *term = &model->terms[row->term_begin + e];
-            const uint32_t bodies[2] = {term->body_i, term->body_j};
-            double H[196] = {0.0};
-            formulation->curvature(term, &model->frames[bodies[0]], &model->frames[bodies[1]],
-                                   lambda[k] * term->coefficient, H);
-            for (int q = 0; q < 4; ++q) {
-                double *block = find_block(tangent, 0, assembly->free_index[bodies[q / 2]],
-                                           assembly->free_index[bodies[q % 2]]);
-                add_quadrant(block, formulation->block, H, formulation->size, q / 2, q % 2);
-            }
+    for (uint32_t e = 0; e < row->term_count; ++e) {
+        const se3di_term *term = &model->terms[row->term_begin + e];
+        const uint32_t bodies[2] = {term->body_i, term->body_j};
+        double H[196] = {0.0};
+        formulation->curvature(term, &model->frames[bodies[0]], &model->frames[bodies[1]],
+                               lambda * term->coefficient, H);
+        for (int q = 0; q < 4; ++q) {
+            double *block = find_block(tangent, 0, assembly->free_index[bodies[q / 2]],
+                                       assembly->free_index[bodies[q % 2]]);
+            add_quadrant(block, formulation->block, H, formulation->size, q / 2, q % 2);
+        }
+    }
+}
+
+static void add_fused_curvature(se3di_tangent *tangent, uint32_t joint, const double *lambda)
+{
+    const se3di_assembly *assembly = tangent->assembly;
+    const se3di_model *model = assembly->model;
+    const se3di_term *term = model->terms + model->constraints[joint].term_begin;
+    const int32_t i = assembly->free_index[term->body_i];
+    const int32_t j = assembly->free_index[term->body_j];
+    se3di_fused_blocks blocks = {.ii = find_block(tangent, 0, i, i),
+                                 .jj = find_block(tangent, 0, j, j)};
+    if (tangent->joint_pair[joint] >= 0) {
+        double *upper = tangent->K_upper + 36 * (size_t)tangent->joint_pair[joint];
+        double *lower = tangent->K_lower + 36 * (size_t)tangent->joint_pair[joint];
+        blocks.ij = i < j ? upper : lower;
+        blocks.ji = i < j ? lower : upper;
+    }
+    se3di_fused_add_curvature(assembly, joint, lambda, &blocks);
+}
+
+static void add_curvature(se3di_tangent *tangent, const double *lambda)
+{
+    const se3di_assembly *assembly = tangent->assembly;
+    const se3di_model *model = assembly->model;
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        const se3di_constraint *constraint = &model->constraints[k];
+        if (assembly->is_fused[k]) {
+            add_fused_curvature(tangent, k, lambda + constraint->row_begin);
+            continue;
+        }
+        for (uint32_t r = constraint->row_begin; r < constraint->row_begin + constraint->row_count;
+             ++r) {
+            add_row_curvature(tangent, &model->rows[r], lambda[r]);
         }
     }
 }

@@ -17,7 +17,8 @@ typedef struct se3di_tangent {
     const se3di_assembly *assembly;
     size_t coupling_count;
     size_t coupling_capacity;
-    int32_t *coupling; /* [2 * couplings] free bodies i < j, increasing */
+    int32_t *coupling;   /* [2 * couplings] free bodies i < j, increasing */
+    int32_t *joint_pair; /* [constraints] coupling of the bodies of a fused joint, -1: none */
     /* Blocks [block * block]: of the bodies; of the couplings: rows of i, columns of j, and rows of
      * j, columns of i. */
     double *M; /* bodies only */

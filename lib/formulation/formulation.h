@@ -51,7 +51,7 @@ typedef struct se3di_formulation {
 
 extern const se3di_formulation se3di_formulation_romega;
 extern const se3di_formulation se3di_formulation_rp;
-/* r-p with the normalisation eliminated: 6 unknowns per body and no curvature of its own. */
+/* r-p with the normalisation eliminated: 6 unknowns per body, and the curvature of r-omega. */
 extern const se3di_formulation se3di_formulation_rp_tangent;
 
 /* By se3d_formulation; NULL where there is none. */
@@ -63,7 +63,7 @@ void se3di_formulation_get_plain(const se3di_frame *frame, const double *qddot,
                                  double acceleration[6]);
 void se3di_formulation_set_plain(const se3di_frame *frame, const double acceleration[6],
                                  double *qddot);
-/* The same formulation in the fewest unknowns, for explicit methods. */
+/* The same formulation in the fewest unknowns, for methods whose state is (r, p, v, w). */
 const se3di_formulation *se3di_formulation_reduce(const se3di_formulation *formulation);
 
 #endif

@@ -77,8 +77,7 @@ static double gamma_of(const se3di_term *term, const se3di_frame *i, const se3di
            dot4(j->pdot, j->pdot) * dot4(phi_j + 3, j->p);
 }
 
-/* No method that needs the curvature uses these unknowns with p; in theirs it is that of r-omega.
- */
+/* The derivative of Phi_q^T lambda to a turn of the body frame, which is what it is in r-omega. */
 static void curvature(const se3di_term *term, const se3di_frame *i, const se3di_frame *j,
                       double lambda, double *H)
 {

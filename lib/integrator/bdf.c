@@ -45,10 +45,8 @@ typedef struct bdf {
     double *base;      /* y_P - psi */
     double *predicted; /* y_P */
     double *y;
-    double
-        *acceleration; /* a, wdot of each free body, and the multiplier of the normalisation [7] */
-    double *qddot;     /* [unknowns] */
-    double *none;      /* [unknowns], zero */
+    double *acceleration; /* a, wdot of each free body [6] */
+    double *none;         /* [unknowns], zero */
     double tolerance, c;
 } bdf;
 
@@ -59,8 +57,7 @@ static size_t history_count(const se3di_assembly *assembly)
 
 static size_t work_count(const se3di_assembly *assembly)
 {
-    return 3 * se3di_state_count(assembly) + 7 * (size_t)assembly->body_count +
-           2 * (size_t)assembly->unknown_count;
+    return 3 * se3di_state_count(assembly) + 2 * (size_t)assembly->unknown_count;
 }
 
 /* The parts of history and work. */
@@ -80,8 +77,7 @@ static bdf point(const se3di_integration *integration)
     m.predicted = m.base + count;
     m.y = m.predicted + count;
     m.acceleration = m.y + count;
-    m.qddot = m.acceleration + 7 * (size_t)assembly->body_count;
-    m.none = m.qddot + assembly->unknown_count;
+    m.none = m.acceleration + assembly->unknown_count;
     return m;
 }
 
@@ -175,9 +171,8 @@ static void predict(bdf *m)
     for (size_t k = 0; k < m->assembly->body_count; ++k) {
         for (size_t i = 0; i < 6; ++i) {
             size_t at = k * SE3DI_STATE_SIZE + 7 + i;
-            m->acceleration[7 * k + i] = (m->predicted[at] - m->base[at]) / m->c;
+            m->acceleration[6 * k + i] = (m->predicted[at] - m->base[at]) / m->c;
         }
-        m->acceleration[7 * k + 6] = 0.0;
     }
 }
 
@@ -190,7 +185,7 @@ static void update_state(bdf *m)
         double *y = m->y + k * SE3DI_STATE_SIZE;
         double rate[4];
         for (int i = 0; i < 6; ++i) {
-            y[7 + i] = base[7 + i] + c * m->acceleration[7 * k + (size_t)i];
+            y[7 + i] = base[7 + i] + c * m->acceleration[6 * k + (size_t)i];
         }
         for (int i = 0; i < 3; ++i) {
             y[i] = base[i] + c * y[7 + i];
@@ -209,18 +204,11 @@ static se3d_status eval_residual(bdf *m, double t)
 {
     se3di_equations *equations = m->equations;
     se3di_assembly *assembly = m->assembly;
-    size_t n = (size_t)assembly->formulation->block;
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_jacobian(assembly);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
     se3di_assembly_add_transposed(assembly, -1.0, m->lambda, equations->b);
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        double *qddot = m->qddot + k * n;
-        qddot[n - 1] = n == 8 ? m->acceleration[7 * k + 6] : 0.0;
-        assembly->formulation->set_acceleration(&assembly->model->frames[assembly->free_body[k]],
-                                                m->acceleration + 7 * k, qddot);
-    }
-    se3di_assembly_subtract_mass(assembly, m->qddot, equations->b);
+    se3di_assembly_subtract_mass(assembly, m->acceleration, equations->b);
     se3di_assembly_get_velocity(assembly, equations->x);
     se3di_assembly_mul(assembly, equations->x, equations->c);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
@@ -232,15 +220,15 @@ static se3d_status eval_residual(bdf *m, double t)
 static se3d_status factor(bdf *m, double t)
 {
     const se3di_newton_weights weights = {.velocity = m->c, .position = m->c * m->c};
-    return se3di_newton_factor(&m->integration->newton, t, m->qddot, m->lambda, m->none, &weights);
+    return se3di_newton_factor(&m->integration->newton, t, m->acceleration, m->lambda, m->none,
+                               &weights);
 }
 
 /* One correction; its size relative to the tolerance. */
 static se3d_status iterate(bdf *m, double t, int refactor, double *size)
 {
     se3di_equations *equations = m->equations;
-    se3di_assembly *assembly = m->assembly;
-    size_t n = (size_t)assembly->formulation->block;
+    const se3di_assembly *assembly = m->assembly;
     SE3DI_TRY(eval_residual(m, t));
     if (refactor) {
         SE3DI_TRY(factor(m, t));
@@ -249,17 +237,14 @@ static se3d_status iterate(bdf *m, double t, int refactor, double *size)
     ++equations->counters.iterations;
     *size = 0.0;
     for (size_t k = 0; k < assembly->body_count; ++k) {
-        double change[6];
-        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
-        assembly->formulation->get_acceleration(frame, equations->x + k * n, change);
+        const double *change = equations->x + 6 * k;
         for (size_t i = 0; i < 6; ++i) {
             double scale = i < 3 ? 1.0 / m->header[BDF_SPEED] + m->c / m->header[BDF_LENGTH]
                                  : 1.0 / m->header[BDF_SPIN] + m->c;
             double part = m->c * fabs(change[i]) * scale / m->tolerance;
             *size = part <= *size ? *size : part;
-            m->acceleration[7 * k + i] += change[i];
+            m->acceleration[6 * k + i] += change[i];
         }
-        m->acceleration[7 * k + 6] += n == 8 ? equations->x[k * n + 7] : 0.0;
     }
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
         m->lambda[k] += equations->l[k];
@@ -301,7 +286,7 @@ static se3d_status iterate_to_convergence(bdf *m, double t)
 static se3d_status solve_step(bdf *m, double t)
 {
     se3di_kkt *kkt = m->integration->newton.kkt;
-    const se3di_kkt_settings before = se3di_state_regularise(kkt);
+    const se3di_kkt_settings before = se3di_state_regularise(m->assembly, kkt);
     se3d_status status = iterate_to_convergence(m, t);
     se3di_kkt_set_settings(kkt, &before);
     return status;
@@ -403,7 +388,7 @@ static se3d_status advance(bdf *m, int is_controlled)
         }
         if (status == SE3D_OK) {
             se3di_state_scale scale = get_scale(m);
-            se3di_state_derivative(m->assembly, t, m->qddot, m->lambda, m->y);
+            se3di_state_derivative(m->assembly, t, m->acceleration, m->lambda, m->y);
             se3di_state_scale_grow(m->assembly, m->y, &scale);
             m->header[BDF_SPEED] = scale.speed;
             m->header[BDF_SPIN] = scale.spin;
@@ -433,9 +418,9 @@ static se3d_status adopt(bdf *m, double h)
     se3di_state_scale scale = {.length = se3di_state_length(model)};
     memset(m->header, 0, history_count(m->assembly) * sizeof *m->header);
     se3di_state_get(m->assembly, m->D);
-    se3di_assembly_get_acceleration(m->assembly, m->qddot);
-    SE3DI_TRY(
-        se3di_state_derivative(m->assembly, model->time, m->qddot, model->lambda, m->D + m->count));
+    se3di_assembly_get_acceleration(m->assembly, m->acceleration);
+    SE3DI_TRY(se3di_state_derivative(m->assembly, model->time, m->acceleration, model->lambda,
+                                     m->D + m->count));
     se3di_state_scale_grow(m->assembly, m->D + m->count, &scale);
     for (size_t k = 0; k < m->count; ++k) {
         m->D[m->count + k] *= h;
@@ -548,5 +533,6 @@ const se3di_integrator se3di_integrator_bdf = {
     .advance = advance_one,
     .interpolate = interpolate,
     .is_implicit = 1,
+    .is_reduced = 1,
     .orders = 0x3E, /* 1 to 5 */
 };

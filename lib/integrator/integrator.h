@@ -48,8 +48,10 @@ typedef struct se3di_integrator {
     void (*interpolate)(const se3di_integration *integration, double t, double *y);
     int32_t is_implicit;       /* not 0: integration->newton is made */
     int32_t controls_if_asked; /* not 0: `run` only where settings.controls_error */
-    int32_t is_explicit;       /* not 0: works with formulations in the fewest unknowns */
+    int32_t is_explicit;       /* not 0: works with formulations in the fewest unknowns, */
+    int32_t is_reduced;        /* and so do these implicit ones */
     uint32_t orders;           /* bit k: settings.order may be k; 0, the default one, always may */
+    int32_t reserved;
 } se3di_integrator;
 
 struct se3di_integration {

@@ -117,7 +117,7 @@ static void predict(se3di_radau *m, const history *past)
     const double *c = se3di_radau_c;
     for (int i = 0; i < STAGES; ++i) {
         double *y = m->Y + (size_t)i * count;
-        double *lambda = m->lambda + (size_t)i * m->multipliers;
+        double *lambda = m->lambda + (size_t)i * m->assembly->row_count;
         double l[STAGES];
         const double s = 1.0 + c[i] * m->h / (last > 0.0 ? last : m->h);
         eval_basis(s, l);
@@ -126,7 +126,6 @@ static void predict(se3di_radau *m, const history *past)
                                     (l[2] - 1.0) * past->Z[2 * count + k]
                               : m->y0[k] + c[i] * m->h * m->f0[k];
         }
-        memset(lambda, 0, m->multipliers * sizeof *lambda);
         if (m->assembly->row_count > 0) {
             memcpy(lambda, m->lambda0, m->assembly->row_count * sizeof *lambda);
         }
@@ -156,7 +155,7 @@ static se3d_status add_work(se3di_radau *m)
     for (int i = 0; i < STAGES; ++i) {
         se3di_state_set(m->assembly, m->Y + (size_t)i * m->count);
         if (m->assembly->row_count > 0) {
-            memcpy(model->lambda, m->lambda + (size_t)i * m->multipliers,
+            memcpy(model->lambda, m->lambda + (size_t)i * m->assembly->row_count,
                    m->assembly->row_count * sizeof *model->lambda);
         }
         SE3DI_TRY(se3di_loads_power(model, m->t + se3di_radau_c[i] * m->h, power[i]));
@@ -402,5 +401,6 @@ const se3di_integrator se3di_integrator_radau = {
     .advance = advance_one,
     .interpolate = interpolate,
     .is_implicit = 1,
+    .is_reduced = 1,
     .orders = 1u << 5,
 };

@@ -19,25 +19,24 @@ typedef struct se3di_radau {
     se3di_equations *equations;
     se3di_assembly *assembly;
     se3di_state_scale scale;
-    size_t count;       /* numbers of a state */
-    size_t multipliers; /* of a stage: rows, then the normalisations of the bodies (r-p) */
-    double t, h;        /* of the step */
-    double tolerance;   /* of the iteration: relative size of what may be missing */
-    double *y0;         /* the state at t */
-    double *f0;         /* its derivative */
-    double *lambda0;    /* its multipliers [rows] */
-    double *d;          /* h f0 less what the stages' polynomial has there */
+    size_t count;     /* numbers of a state */
+    double t, h;      /* of the step */
+    double tolerance; /* of the iteration: relative size of what may be missing */
+    double *y0;       /* the state at t */
+    double *f0;       /* its derivative */
+    double *lambda0;  /* its multipliers [rows] */
+    double *d;        /* h f0 less what the stages' polynomial has there */
     /* Of the stages, three of each: */
-    double *Y;       /* states [count] */
-    double *lambda;  /* [multipliers] */
-    double *shift;   /* onto the constraints of positions [6 a body] */
-    double *b;       /* minus the residual of the equations of motion [unknowns] */
-    double *g;       /* Phi_q qdot - nu [rows] */
-    double *gap;     /* -Phi [rows] */
-    double *u, *uq;  /* corrections of velocities and positions, transformed [unknowns] */
-    double *ul;      /* of multipliers, transformed [multipliers] */
-    double *C1, *p1; /* constraints of the Newton matrix, and the orientations it belongs to */
-    double *qddot, *none, *sum, *sum_q;
+    double *Y;      /* states [count] */
+    double *lambda; /* [rows] */
+    double *shift;  /* onto the constraints of positions [6 a body] */
+    double *b;      /* minus the residual of the equations of motion [unknowns] */
+    double *g;      /* Phi_q qdot - nu [rows] */
+    double *gap;    /* -Phi [rows] */
+    double *u, *uq; /* corrections of velocities and positions, transformed [unknowns] */
+    double *ul;     /* of multipliers, transformed [rows] */
+    double *C1;     /* constraints of the Newton matrix */
+    double *vdot, *none, *sum, *sum_q;
     double size, before; /* of the last two corrections, relative to the tolerance */
     int iterations, iterations_max;
 } se3di_radau;

@@ -47,10 +47,9 @@ size_t se3di_radau_work_count(const se3di_assembly *assembly)
 {
     size_t n = assembly->unknown_count;
     size_t rows = assembly->row_count;
-    size_t bodies = assembly->body_count;
     size_t count = se3di_state_count(assembly);
-    return STAGES * (count + 2 * rows + 2 * (rows + bodies) + 6 * bodies + 3 * n) + 2 * count +
-           rows + 4 * n + assembly->joint_value_count + 4 * bodies;
+    return STAGES * (count + 4 * rows + 4 * n) + 2 * count + rows + 4 * n +
+           assembly->joint_value_count;
 }
 
 void se3di_radau_begin(se3di_radau *m, se3di_integration *integration)
@@ -58,36 +57,33 @@ void se3di_radau_begin(se3di_radau *m, se3di_integration *integration)
     se3di_assembly *assembly = &integration->equations->assembly;
     size_t n = assembly->unknown_count;
     size_t rows = assembly->row_count;
-    size_t bodies = assembly->body_count;
     size_t count = se3di_state_count(assembly);
     double *work = integration->work;
     *m = (se3di_radau){.integration = integration,
                        .equations = integration->equations,
                        .assembly = assembly,
-                       .count = count,
-                       .multipliers = rows + bodies};
+                       .count = count};
     struct {
         double **place;
         size_t size;
     } const parts[] = {
         {&m->Y, STAGES * count},
-        {&m->lambda, STAGES * m->multipliers},
-        {&m->ul, STAGES * m->multipliers},
+        {&m->lambda, STAGES * rows},
+        {&m->ul, STAGES * rows},
         {&m->g, STAGES * rows},
         {&m->gap, STAGES * rows},
-        {&m->shift, STAGES * 6 * bodies},
+        {&m->shift, STAGES * n},
         {&m->b, STAGES * n},
         {&m->u, STAGES * n},
         {&m->uq, STAGES * n},
         {&m->f0, count},
         {&m->d, count},
         {&m->lambda0, rows},
-        {&m->qddot, n},
+        {&m->vdot, n},
         {&m->none, n},
         {&m->sum, n},
         {&m->sum_q, n},
         {&m->C1, assembly->joint_value_count},
-        {&m->p1, 4 * bodies},
     };
     for (size_t k = 0; k < sizeof parts / sizeof parts[0]; ++k) {
         *parts[k].place = work;
@@ -99,30 +95,6 @@ static void copy(double *to, const double *from, size_t count)
 {
     if (count > 0) {
         memcpy(to, from, count * sizeof *to);
-    }
-}
-
-/* Six numbers (linear, angular in the body frame) of a rate of the unknowns, and back, with the
- * orientation p. */
-static void to_six(const se3di_assembly *assembly, const double *p, const double *x, double six[6])
-{
-    se3di_copy(x, six);
-    if (assembly->formulation->block == 6) {
-        se3di_copy(x + 3, six + 3);
-    } else {
-        se3di_quat_angular_velocity(p, x + 3, six + 3);
-    }
-}
-
-static void from_six(const se3di_assembly *assembly, const double *p, const double six[6],
-                     double *x)
-{
-    se3di_copy(six, x);
-    if (assembly->formulation->block == 6) {
-        se3di_copy(six + 3, x + 3);
-    } else {
-        se3di_quat_rate(p, six + 3, x + 3);
-        x[7] = 0.0;
     }
 }
 
@@ -209,37 +181,20 @@ static void update_positions(se3di_radau *m)
     }
 }
 
-/* qddot of a stage, in the unknowns. */
-static void set_qddot(se3di_radau *m, int i)
+/* Accelerations of a stage. */
+static void set_acceleration(se3di_radau *m, int i)
 {
-    const se3di_assembly *assembly = m->assembly;
-    const size_t n = (size_t)assembly->formulation->block;
-    const double *kappa = at(m->lambda, i, m->multipliers) + assembly->row_count;
-    for (size_t k = 0; k < assembly->body_count; ++k) {
+    for (size_t k = 0; k < m->assembly->body_count; ++k) {
         const size_t place = k * SE3DI_STATE_SIZE + 7;
-        double acceleration[6] = {0.0};
-        for (int j = 0; j < STAGES; ++j) {
-            const double factor = se3di_radau_inverse[i][j] / m->h;
-            for (size_t c = 0; c < 6; ++c) {
-                acceleration[c] += factor * (at(m->Y, j, m->count)[place + c] - m->y0[place + c]);
+        double *vdot = m->vdot + 6 * k;
+        for (size_t c = 0; c < 6; ++c) {
+            const double v0 = m->y0[place + c];
+            vdot[c] = 0.0;
+            for (int j = 0; j < STAGES; ++j) {
+                vdot[c] +=
+                    se3di_radau_inverse[i][j] / m->h * (at(m->Y, j, m->count)[place + c] - v0);
             }
         }
-        m->qddot[k * n + n - 1] = n == 8 ? kappa[k] : 0.0;
-        assembly->formulation->set_acceleration(&assembly->model->frames[assembly->free_body[k]],
-                                                acceleration, m->qddot + k * n);
-    }
-}
-
-/* r-p: the equations of a stage, in coordinates along p and G(p), to those of p1. */
-static void turn_residual(se3di_radau *m, double *b)
-{
-    const se3di_assembly *assembly = m->assembly;
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        const double *p = assembly->model->frames[assembly->free_body[k]].p;
-        const double back[4] = {p[0], -p[1], -p[2], -p[3]};
-        double turn[4];
-        se3di_quat_mul(m->p1 + 4 * k, back, turn);
-        se3di_quat_mul(turn, b + 8 * k + 3, b + 8 * k + 3);
     }
 }
 
@@ -247,21 +202,16 @@ static se3d_status eval_stage(se3di_radau *m, int i)
 {
     se3di_equations *equations = m->equations;
     se3di_assembly *assembly = m->assembly;
-    const size_t n = (size_t)assembly->formulation->block;
     const size_t rows = assembly->row_count;
     const double t = m->t + se3di_radau_c[i] * m->h;
     double *b = at(m->b, i, assembly->unknown_count);
     se3di_state_set(assembly, at(m->Y, i, m->count));
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
-    se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_jacobian(assembly);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, b, equations->error));
-    se3di_assembly_add_transposed(assembly, -1.0, at(m->lambda, i, m->multipliers), b);
-    set_qddot(m, i);
-    se3di_assembly_subtract_mass(assembly, m->qddot, b);
-    if (n == 8) {
-        turn_residual(m, b);
-    }
+    se3di_assembly_add_transposed(assembly, -1.0, at(m->lambda, i, rows), b);
+    set_acceleration(m, i);
+    se3di_assembly_subtract_mass(assembly, m->vdot, b);
     se3di_assembly_get_velocity(assembly, m->sum);
     se3di_assembly_mul(assembly, m->sum, at(m->g, i, rows));
     se3di_assembly_eval_phi(assembly, at(m->gap, i, rows));
@@ -278,24 +228,8 @@ static se3d_status factor(se3di_radau *m)
     const double c = se3di_radau_gamma * m->h;
     const se3di_newton_weights weights = {.velocity = c, .position = c * c};
     copy(m->C1, m->assembly->C, m->assembly->joint_value_count);
-    return se3di_newton_factor(&m->integration->newton, m->t + se3di_radau_c[1] * m->h, m->qddot,
-                               at(m->lambda, 1, m->multipliers), m->none, &weights);
-}
-
-/* out += M x */
-static void add_mass(const se3di_radau *m, const double *x, double *out)
-{
-    const se3di_assembly *assembly = m->assembly;
-    const double *M = m->integration->newton.tangent.M;
-    const size_t n = (size_t)assembly->formulation->block;
-    const size_t size = (size_t)assembly->formulation->size;
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        for (size_t r = 0; r < size; ++r) {
-            for (size_t c = 0; c < size; ++c) {
-                out[k * n + r] += M[k * n * n + r * n + c] * x[k * n + c];
-            }
-        }
-    }
+    return se3di_newton_factor(&m->integration->newton, m->t + se3di_radau_c[1] * m->h, m->vdot,
+                               at(m->lambda, 1, m->assembly->row_count), m->none, &weights);
 }
 
 /* One stage of the transformed system: u, uq and ul. */
@@ -305,38 +239,31 @@ static se3d_status solve_stage(se3di_radau *m, int i, double W[STAGES][STAGES])
     const se3di_assembly *assembly = m->assembly;
     const size_t n = assembly->unknown_count;
     const size_t rows = assembly->row_count;
-    const size_t block = (size_t)assembly->formulation->block;
     const double c = se3di_radau_gamma * m->h;
     for (size_t k = 0; k < n; ++k) {
         equations->b[k] =
             m->h * (W[i][0] * m->b[k] + W[i][1] * m->b[n + k] + W[i][2] * m->b[2 * n + k]);
         m->sum[k] = m->sum_q[k] = 0.0;
-        for (int j = 0; j < i; ++j) {
-            m->sum[k] += N[i][j] * at(m->u, j, n)[k];
+        for (int j = 0; j < i; ++j) { /* minus, as what is to be subtracted */
+            m->sum[k] -= N[i][j] * at(m->u, j, n)[k];
             m->sum_q[k] += N[i][j] * at(m->uq, j, n)[k];
         }
     }
-    add_mass(m, m->sum, equations->b);
-    se3di_tangent_add_stiffness(&m->integration->newton.tangent, -c, m->sum_q, equations->b);
+    if (i > 0) {
+        se3di_assembly_subtract_mass(assembly, m->sum, equations->b);
+        se3di_tangent_add_stiffness(&m->integration->newton.tangent, -c, m->sum_q, equations->b);
+    }
     for (size_t k = 0; k < rows; ++k) { /* -S^-1 g */
         const double g0 = m->g[k], g1 = m->g[rows + k], g2 = m->g[2 * rows + k];
         const double h1 = g1 - S[1][2] * g2;
         equations->c[k] = i == 2 ? -g2 : i == 1 ? -h1 : -(g0 - S[0][1] * h1 - S[0][2] * g2);
     }
     SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
-    double *ul = at(m->ul, i, m->multipliers);
     for (size_t k = 0; k < n; ++k) {
-        const int is_multiplier = block == 8 && k % 8 == 7;
-        const double x = is_multiplier ? 0.0 : equations->x[k];
-        at(m->u, i, n)[k] = x;
-        at(m->uq, i, n)[k] = c * x + m->sum_q[k];
-        if (is_multiplier) {
-            ul[rows + k / 8] = equations->x[k];
-        }
+        at(m->u, i, n)[k] = equations->x[k];
+        at(m->uq, i, n)[k] = c * equations->x[k] + m->sum_q[k];
     }
-    for (size_t k = 0; k < rows; ++k) {
-        ul[k] = equations->l[k];
-    }
+    copy(at(m->ul, i, rows), equations->l, rows);
     return SE3D_OK;
 }
 
@@ -353,22 +280,19 @@ static void apply_corrections(se3di_radau *m)
 {
     const se3di_assembly *assembly = m->assembly;
     const size_t n = assembly->unknown_count;
-    const size_t block = (size_t)assembly->formulation->block;
     for (int i = 0; i < STAGES; ++i) {
         for (size_t k = 0; k < assembly->body_count; ++k) {
-            double x[8] = {0.0}, q[8] = {0.0}, v[6], turn[6];
+            double v[6] = {0.0}, q[6] = {0.0};
             for (int j = i; j < STAGES; ++j) {
-                for (size_t c = 0; c < block; ++c) {
-                    x[c] += S[i][j] * at(m->u, j, n)[k * block + c];
-                    q[c] += S[i][j] * at(m->uq, j, n)[k * block + c];
+                for (size_t c = 0; c < 6; ++c) {
+                    v[c] += S[i][j] * at(m->u, j, n)[6 * k + c];
+                    q[c] += S[i][j] * at(m->uq, j, n)[6 * k + c];
                 }
             }
-            to_six(assembly, m->p1 + 4 * k, x, v);
-            to_six(assembly, m->p1 + 4 * k, q, turn);
             double *y = at(m->Y, i, m->count) + k * SE3DI_STATE_SIZE;
             se3di_add(y + 7, v, y + 7);
             se3di_add(y + 10, v + 3, y + 10);
-            const double part = measure(m, turn, v) / m->tolerance;
+            const double part = measure(m, q, v) / m->tolerance;
             m->size = part <= m->size ? m->size : part;
         }
     }
@@ -378,15 +302,16 @@ static void apply_corrections(se3di_radau *m)
  * not through P. */
 static void apply_multipliers(se3di_radau *m)
 {
-    double *u0 = m->ul, *u1 = u0 + m->multipliers, *u2 = u1 + m->multipliers;
-    for (size_t k = 0; k < m->multipliers; ++k) {
+    const size_t rows = m->assembly->row_count;
+    const double *u0 = m->ul, *u1 = u0 + rows, *u2 = u1 + rows;
+    for (size_t k = 0; k < rows; ++k) {
         const double x0 = u0[k];
         const double x1 = u1[k] + N[1][0] * x0;
         const double x2 = u2[k] + N[2][0] * x0 + N[2][1] * x1;
         const double x[STAGES] = {x0 + S[0][1] * x1 + S[0][2] * x2, x1 + S[1][2] * x2, x2};
         for (int i = 0; i < STAGES; ++i) {
             for (int j = 0; j < STAGES; ++j) {
-                at(m->lambda, i, m->multipliers)[k] += se3di_radau_inverse[i][j] / m->h * x[j];
+                at(m->lambda, i, rows)[k] += se3di_radau_inverse[i][j] / m->h * x[j];
             }
         }
     }
@@ -412,7 +337,6 @@ static se3d_status correct_positions(se3di_radau *m)
     const se3di_assembly *assembly = m->assembly;
     const size_t rows = assembly->row_count;
     const size_t bodies = assembly->body_count;
-    const size_t block = (size_t)assembly->formulation->block;
     if (!(largest_gap(m) > 1e-2 * m->tolerance)) {
         return SE3D_OK;
     }
@@ -422,9 +346,8 @@ static se3d_status correct_positions(se3di_radau *m)
         SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
         for (size_t k = 0; k < bodies; ++k) {
             const double none[6] = {0.0};
-            double six[6];
+            const double *six = equations->x + 6 * k;
             double *shift = at(m->shift, i, 6 * bodies) + 6 * k;
-            to_six(assembly, m->p1 + 4 * k, equations->x + k * block, six);
             const double part = measure(m, six, none) / m->tolerance;
             m->size = part <= m->size ? m->size : part;
             se3di_add(shift, six, shift);
@@ -473,13 +396,6 @@ static se3d_status iterate(se3di_radau *m, int refactor)
     return isfinite(m->size) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
-static void set_orientations(se3di_radau *m)
-{
-    for (size_t k = 0; k < m->assembly->body_count; ++k) {
-        (void)se3di_quat_normalize(at(m->Y, 1, m->count) + k * SE3DI_STATE_SIZE + 3, m->p1 + 4 * k);
-    }
-}
-
 static int has_converged(const se3di_radau *m, double rate)
 {
     if (rate > 0.8) {
@@ -491,8 +407,8 @@ static int has_converged(const se3di_radau *m, double rate)
 static se3d_status iterate_to_convergence(se3di_radau *m)
 {
     memset(m->shift, 0, STAGES * 6 * (size_t)m->assembly->body_count * sizeof *m->shift);
+    se3di_assembly_eval_mass(m->assembly); /* constant in the unknowns of this method */
     update_positions(m);
-    set_orientations(m);
     m->size = HUGE_VAL;
     m->iterations = 0;
     for (int k = 0; k < m->iterations_max; ++k) {
@@ -514,7 +430,7 @@ static se3d_status iterate_to_convergence(se3di_radau *m)
 se3d_status se3di_radau_solve(se3di_radau *m)
 {
     se3di_kkt *kkt = m->integration->newton.kkt;
-    const se3di_kkt_settings before = se3di_state_regularise(kkt);
+    const se3di_kkt_settings before = se3di_state_regularise(m->assembly, kkt);
     se3d_status status = iterate_to_convergence(m);
     se3di_kkt_set_settings(kkt, &before);
     return status;
@@ -525,7 +441,6 @@ se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error)
     se3di_equations *equations = m->equations;
     se3di_assembly *assembly = m->assembly;
     const size_t n = assembly->unknown_count;
-    const size_t block = (size_t)assembly->formulation->block;
     const double gamma = se3di_radau_gamma;
     const double c = gamma * m->h;
     memset(equations->b, 0, n * sizeof *equations->b);
@@ -533,30 +448,25 @@ se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error)
     for (size_t k = 0; k < assembly->body_count; ++k) {
         const double *raw = d + k * SE3DI_STATE_SIZE;
         const double *p0 = m->y0 + k * SE3DI_STATE_SIZE + 3;
-        double q[6];
+        double *q = m->sum_q + 6 * k;
         se3di_copy(raw, q);
         se3di_quat_angular_velocity(p0, raw + 3, q + 3);
         for (size_t j = 0; j < 6; ++j) {
             q[j] *= gamma;
+            m->sum[6 * k + j] = -gamma * raw[7 + j];
         }
-        from_six(assembly, m->p1 + 4 * k, q, m->sum_q + k * block);
-        from_six(assembly, m->p1 + 4 * k, raw + 7, m->sum + k * block);
     }
-    for (size_t k = 0; k < n; ++k) {
-        m->sum[k] *= gamma;
-    }
-    add_mass(m, m->sum, equations->b);
+    se3di_assembly_subtract_mass(assembly, m->sum, equations->b);
     se3di_tangent_add_stiffness(&m->integration->newton.tangent, -c, m->sum_q, equations->b);
     copy(assembly->C, m->C1, assembly->joint_value_count);
     SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
     *error = 0.0;
     for (size_t k = 0; k < assembly->body_count; ++k) {
-        double q[6], v[6];
-        for (size_t j = 0; j < block; ++j) {
-            m->sum_q[k * block + j] += c * equations->x[k * block + j];
+        double *q = m->sum_q + 6 * k;
+        const double *v = equations->x + 6 * k;
+        for (size_t j = 0; j < 6; ++j) {
+            q[j] += c * v[j];
         }
-        to_six(assembly, m->p1 + 4 * k, m->sum_q + k * block, q);
-        to_six(assembly, m->p1 + 4 * k, equations->x + k * block, v);
         const double part = measure(m, q, v);
         *error = part <= *error ? *error : part;
     }

@@ -40,11 +40,12 @@ void se3di_state_begin_step(se3di_equations *equations, double redundant);
 void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *settings);
 /* The same filter for the Newton matrices of implicit methods; @return the settings before.
  * Rounding and curvature contradict themselves in dependent rows: a smaller regularisation would
- * amplify that; four refinements and those of the Newton iteration itself make up for its size. A
- * correction of relative size SE3DI_STATE_NOISE that does not fall any more is such rounding. */
+ * amplify that, and so would many refinements: one, and those of the Newton iteration itself, make
+ * up for its size. A correction of relative size SE3DI_STATE_NOISE that does not fall any more is
+ * such rounding. */
 #define SE3DI_STATE_REGULARISATION 1e-5
 #define SE3DI_STATE_NOISE          1e-8
-se3di_kkt_settings se3di_state_regularise(se3di_kkt *kkt);
+se3di_kkt_settings se3di_state_regularise(const se3di_assembly *assembly, se3di_kkt *kkt);
 /* Accelerations at the present frames into equations->x, multipliers into equations->l; without the
  * checks and records of se3di_acceleration_solve. */
 se3d_status se3di_state_evaluate(se3di_equations *equations, double t);

@@ -96,6 +96,8 @@ typedef struct se3di_kkt_settings {
     se3di_kkt_regularise regularise;
     bool always_check;      /* compute the residual also where the pivots promise the tolerance */
     bool any_multipliers;   /* of dependent rows: they need not be those of least norm */
+    bool iterated;          /* the caller iterates on the exact residual (Newton): where E = 0, that
+                               corrects what a solution leaves, and it is not looked at */
     int32_t redundant_rows; /* with any_multipliers: rows known to depend on the others */
 } se3di_kkt_settings;
 

@@ -84,6 +84,13 @@ V8_INLINE double v8_sum(v8 v)
     return _mm_cvtsd_f64(_mm_add_sd(t, _mm_unpackhi_pd(t, t)));
 }
 
+V8_INLINE double v8_lane(v8 v, const int r)
+{
+    const __m256d half = r < 4 ? v.low : v.high;
+    const __m128d pair = r % 4 < 2 ? _mm256_castpd256_pd128(half) : _mm256_extractf128_pd(half, 1);
+    return _mm_cvtsd_f64(r % 2 == 0 ? pair : _mm_unpackhi_pd(pair, pair));
+}
+
 V8_INLINE double s_fnma(double acc, double a, double b)
 {
     return __builtin_fma(-a, b, acc);

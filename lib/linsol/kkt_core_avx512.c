@@ -71,6 +71,11 @@ V8_INLINE double v8_sum(v8 v)
     return _mm_cvtsd_f64(_mm_add_sd(t, _mm_unpackhi_pd(t, t)));
 }
 
+V8_INLINE double v8_lane(v8 v, const int r)
+{
+    return _mm512_cvtsd_f64(_mm512_permutexvar_pd(_mm512_set1_epi64(r), v));
+}
+
 V8_INLINE double s_fnma(double acc, double a, double b)
 {
     return __builtin_fma(-a, b, acc);

@@ -93,6 +93,11 @@ V8_INLINE double v8_sum(v8 v)
     return s[0] + s[1];
 }
 
+V8_INLINE double v8_lane(v8 v, const int r)
+{
+    return v.part[r / 2][r % 2];
+}
+
 V8_INLINE double s_fnma(double acc, double a, double b)
 {
     return acc - a * b;

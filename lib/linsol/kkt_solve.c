@@ -134,9 +134,9 @@ void se3di_kkt_hold(se3di_kkt *kkt, bool hold)
 
 void se3di_kkt_expect(se3di_kkt *kkt, const double *b, const double *c)
 {
-    /* blocks of r-p shift the right-hand side, unsymmetric ones pivot: these solve in one go */
-    bool fits =
-        kkt->pattern.symmetric && kkt->pattern.body_size != 8 && kkt->kind == SE3DI_KKT_STRUCTURED;
+    /* symmetric blocks of r-p shift the right-hand side: these solve in one go */
+    bool fits = !(kkt->pattern.symmetric && kkt->pattern.body_size == 8) &&
+                kkt->kind == SE3DI_KKT_STRUCTURED;
     kkt->expected = fits ? b : NULL;
     kkt->expected_c = c;
 }
@@ -299,7 +299,7 @@ static int32_t count_refinements(const se3di_kkt *kkt)
         return -1;
     }
     if (!(kkt->eps > 0.0)) {
-        bool is_safe = kkt->bodies_first && kkt->pattern.symmetric;
+        bool is_safe = s->iterated || (kkt->bodies_first && kkt->pattern.symmetric);
         return kkt->min_pivot > (is_safe ? pivot_is_safe : pivot_is_good) ? 0 : -1;
     }
     if (!s->any_multipliers || kkt->dependent_rows + kkt->near_dependent > s->redundant_rows) {
