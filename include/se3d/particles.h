@@ -21,6 +21,10 @@ typedef enum se3d_boundary {
     SE3D_BOUNDARY_SINK = 2 /* particles beyond it are removed and counted as lost */
 } se3d_boundary;
 
+/* Particles carry a tag from 0 to this less 1 (default 0), by which they can be told apart: what is
+ * a set to the user may be a tag here, so that all sets touch each other. */
+#define SE3D_PARTICLES_TAGS 256
+
 /* What particles are made with. @since 0.1 */
 typedef struct se3d_particles_def {
     size_t struct_size;
@@ -28,7 +32,7 @@ typedef struct se3d_particles_def {
     int32_t portable;    /* not 0: the same bits on every machine, slower */
     int32_t boundary[3]; /* se3d_boundary along x, y, z */
     int32_t reserved;
-    double lower[3], upper[3]; /* of the domain, where a boundary is not open [m] */
+    double lower[3], upper[3]; /* of the domain [m]; where an open boundary has none: unbounded */
     double step;               /* [s]; 0: that of the system's contact settings */
     double skin;               /* of the neighbour list, over the mean diameter; default 0.1 */
     uint32_t group, mask;      /* as of se3d_shape_def */
@@ -107,6 +111,8 @@ typedef struct se3d_fill_def {
     const double *radii;   /* [radius_count] radii to draw from instead of the range [m], */
     const double *weights; /* [radius_count] with frequencies like these; NULL: all alike */
     size_t radius_count;
+    uint32_t tag;
+    uint32_t reserved;
 } se3d_fill_def;
 
 SE3D_API void se3d_fill_def_init(se3d_fill_def *def, size_t size);
@@ -127,6 +133,98 @@ SE3D_API se3d_status se3d_particles_fill_lattice(se3d_particles *particles,
 SE3D_API se3d_status se3d_particles_fill_random(se3d_particles *particles,
                                                 const se3d_fill_def *def);
 
+/* A source of particles: where and of what is said by `fill` (copied; lower, upper, region, axis,
+ * radius_min, radius_max, radii, weights, velocity, material, seed and tag; count is the largest
+ * number, 0: no limit). The rate is a constant or a function of time, negative values count as 0.
+ * @since 0.1 */
+typedef struct se3d_source_def {
+    size_t struct_size;
+    const se3d_fill_def *fill;
+    double rate;            /* particles [1/s] or mass [kg/s], >= 0 */
+    se3d_function function; /* null: `rate` */
+    double start, stop;     /* [s]; stop 0: never */
+    double every;           /* least time between insertions [s]; each rebuilds neighbour lists */
+    int32_t per_mass;       /* not 0: the rate is [kg/s] */
+    int32_t reserved;
+} se3d_source_def;
+
+SE3D_API void se3d_source_def_init(se3d_source_def *def, size_t size);
+
+static inline se3d_source_def se3d_source_def_default(void)
+{
+    se3d_source_def def;
+    se3d_source_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Add a source, numbered from 0. During steps it inserts what is due where it overlaps with
+ * nothing; what finds no place waits. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY.
+ * Exclusive.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_particles_add_source(se3d_particles *particles,
+                                               const se3d_source_def *def, uint32_t *source);
+
+/* What a source has done. @since 0.1 */
+typedef struct se3d_source_stats {
+    uint64_t inserted;
+    uint64_t deferred; /* of all so far, those that had to wait for room */
+    double mass;       /* inserted [kg] */
+    double waiting;    /* what is owed now: particles, or [kg] */
+} se3d_source_stats;
+
+/* @return OK, NULL, INVALID_ARGUMENT (no such source). Reader. @since 0.1 */
+SE3D_API se3d_status se3d_particles_get_source_stats(const se3d_particles *particles,
+                                                     uint32_t source, se3d_source_stats *stats);
+/* Stop a source for good; the numbers of the others stay. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_particles_remove_source(se3d_particles *particles, uint32_t source);
+
+/* A sink: particles whose centre is in the region, or behind the plane, are removed and counted as
+ * lost, at the latest when they have moved by half of the skin. @since 0.1 */
+typedef struct se3d_sink_def {
+    size_t struct_size;
+    double lower[3], upper[3]; /* [m], without a plane */
+    int32_t region;            /* se3d_region */
+    int32_t axis;              /* of a cylinder: 0, 1 or 2 */
+    double point[3];           /* of the plane [m] */
+    double normal[3];          /* of the plane; zero: the region */
+} se3d_sink_def;
+
+SE3D_API void se3d_sink_def_init(se3d_sink_def *def, size_t size);
+
+static inline se3d_sink_def se3d_sink_def_default(void)
+{
+    se3d_sink_def def;
+    se3d_sink_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Add a sink, numbered from 0; get how many particles it has removed; remove it.
+ * @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY. Exclusive (the count: Reader). @since 0.1 */
+SE3D_API se3d_status se3d_particles_add_sink(se3d_particles *particles, const se3d_sink_def *def,
+                                             uint32_t *sink);
+SE3D_API se3d_status se3d_particles_get_sink_count(const se3d_particles *particles, uint32_t sink,
+                                                   uint64_t *count);
+SE3D_API se3d_status se3d_particles_remove_sink(se3d_particles *particles, uint32_t sink);
+
+/* Give particles, named by their ids, a tag. @return OK, NULL, INVALID_ARGUMENT (an id that does
+ * not live, a tag that is too large; nothing changed). Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_particles_set_tags(se3d_particles *particles, size_t count,
+                                             const uint32_t *ids, uint32_t tag);
+
+/* The particles of a tag. @since 0.1 */
+typedef struct se3d_particles_tally {
+    uint64_t count;   /* that are there */
+    uint64_t lost;    /* removed by sinks */
+    uint64_t outside; /* of those that are there: beyond the domain; where there is none: below
+                         everything, falling without end */
+    double mass;      /* of those that are there [kg] */
+    double energy;    /* kinetic and potential of those [J] */
+} se3d_particles_tally;
+
+/* @return OK, NULL, INVALID_ARGUMENT (tag). Reader. @since 0.1 */
+SE3D_API se3d_status se3d_particles_get_tally(const se3d_particles *particles, uint32_t tag,
+                                              se3d_particles_tally *tally);
+
 /* Remove `count` particles by id. @return OK, INVALID_ARGUMENT (an id that does not live; nothing
  * changed). @since 0.1 */
 SE3D_API se3d_status se3d_particles_remove(se3d_particles *particles, size_t count,
@@ -139,6 +237,10 @@ SE3D_API size_t se3d_particles_count(const se3d_particles *particles);
  * r, v, w, force and torque are [count * 3]. @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_ids(const se3d_particles *particles, size_t count,
                                             uint32_t *ids);
+SE3D_API se3d_status se3d_particles_get_tags(const se3d_particles *particles, size_t count,
+                                             uint32_t *tags);
+SE3D_API se3d_status se3d_particles_get_materials(const se3d_particles *particles, size_t count,
+                                                  se3d_material *materials);
 SE3D_API se3d_status se3d_particles_get_radii(const se3d_particles *particles, size_t count,
                                               double *radius);
 SE3D_API se3d_status se3d_particles_get_all(const se3d_particles *particles, size_t count,
@@ -169,7 +271,8 @@ SE3D_API se3d_status se3d_particles_get_contacts(const se3d_particles *particles
  * the run may go on from there, with a smaller step or a larger limit. A state that is not finite
  * cannot be repaired: restore a clone.
  * @return OK, STEP_SIZE (an overlap beyond the limit or a step beyond stability: the message names
- * the particle and the time), NOT_FINITE, NO_MEMORY. @since 0.1 */
+ * the particle and the time), NOT_FINITE, NO_MEMORY (lists could not grow: they are made shorter,
+ * the step is complete, and the run may go on), CALLBACK (the rate of a source). @since 0.1 */
 SE3D_API se3d_status se3d_particles_step(se3d_particles *particles, size_t steps);
 /* Advance to `time` in equal steps, none longer than the step. @since 0.1 */
 SE3D_API se3d_status se3d_particles_run(se3d_particles *particles, double time);
@@ -197,6 +300,7 @@ typedef struct se3d_particles_stats {
     uint64_t lost;     /* particles that left through a sink */
     uint64_t bytes;    /* memory held */
     uint64_t threads;  /* that worked on the last step: 1 where the library knows no OpenMP */
+    uint64_t left;     /* lost, and those that are there but outside, as in se3d_particles_tally */
 } se3d_particles_stats;
 
 SE3D_API se3d_status se3d_particles_get_stats(const se3d_particles *particles,

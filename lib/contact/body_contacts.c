@@ -178,6 +178,24 @@ static se3d_status note(void *ctx, const se3di_encounter *e)
     return SE3D_OK;
 }
 
+se3d_status se3di_contacts_reserve(se3di_model *model, double t, se3di_error *error)
+{
+    se3di_body_contacts *contacts = &model->contacts;
+    void *next = contacts->next;
+    if (model->shape_slots.count < 2) {
+        return SE3D_OK;
+    }
+    se3d_status status = se3di_broad_update(model);
+    if (status == SE3D_OK) {
+        status = se3di_array_reserve(&model->allocator, &next, &contacts->next_capacity,
+                                     2 * contacts->count + 16, sizeof *contacts->next);
+        contacts->next = next;
+    }
+    return status < 0
+               ? se3di_error_set(error, SE3D_ERR_NO_MEMORY, "t = %g s: no memory for contacts", t)
+               : SE3D_OK;
+}
+
 se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *error)
 {
     preparation p = {model, t, error};

@@ -30,6 +30,9 @@ double se3di_contacts_power(const se3di_model *model);
 
 /* A step of length h begins (0: not known, or control of the error finds where contact begins). */
 void se3di_contacts_begin(se3di_model *model, double h);
+/* Memory that the state at t will need, where it has not many more contacts than the last one: for
+ * methods that cannot go back once they have moved something. */
+se3d_status se3di_contacts_reserve(se3di_model *model, double t, se3di_error *error);
 /* The state of the model at t is about to be accepted. On failure nothing is remembered of it.
  * @return OK, NO_MEMORY, STEP_SIZE (two shapes overlap too much: the message names them) */
 se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *error);

@@ -11,6 +11,8 @@
 #include <math.h>
 #include <string.h>
 
+#define CELLS_LEAST 1024 /* what even a few particles may need when they spread */
+
 typedef struct grid_class {
     double radius;  /* largest of the class; 0: empty */
     double size[3]; /* of a cell, along fast, slow, main */
@@ -66,7 +68,15 @@ static size_t leave(se3di_particles *set)
                 set->order[k] = 0;
             }
         }
-        gone += set->order[k] == 0;
+        uint32_t sink = set->order[k] ? se3di_sinks_find(set, x) : SE3DI_NO_INDEX;
+        if (sink != SE3DI_NO_INDEX) {
+            ++set->sinks[sink].count;
+            set->order[k] = 0;
+        }
+        if (set->order[k] == 0) {
+            ++set->lost_of[set->spins[k].tag];
+            ++gone;
+        }
     }
     return gone;
 }
@@ -220,9 +230,8 @@ static void permute(se3di_particles *set)
 }
 
 /* Sort by cell, stably; cells[] becomes the first particle of each. */
-static se3d_status sort(se3di_particles *set, const grid *g, double largest, size_t total)
+static void sort(se3di_particles *set, const grid *g, double largest, size_t total)
 {
-    SE3DI_TRY(se3di_particles_grow(set, &set->cells, &set->cell_capacity, total + 2));
     memset(set->cells, 0, (total + 2) * sizeof *set->cells);
     for (size_t k = 0; k < set->count; ++k) {
         int c = class_of(set->grains[k].radius, largest);
@@ -243,7 +252,6 @@ static se3d_status sort(se3di_particles *set, const grid *g, double largest, siz
         set->slabs[s].begin = set->cells[(size_t)s * g->per_slab];
         set->slabs[s].end = set->cells[(size_t)(s + 1) * g->per_slab];
     }
-    return SE3D_OK;
 }
 
 /* One search: what particle i sees of one class. */
@@ -375,7 +383,6 @@ static se3d_status search_particle(se3di_particles *set, const grid *g, int s, u
 
 static se3d_status search_all(se3di_particles *set, const grid *g)
 {
-    SE3DI_TRY(se3di_particles_grow(set, &set->first, &set->first_capacity, set->count + 1));
     set->list_count = 0;
     for (int s = 0; s < g->slabs; ++s) {
         for (uint32_t i = set->slabs[s].begin; i < set->slabs[s].end; ++i) {
@@ -387,6 +394,43 @@ static se3d_status search_all(se3di_particles *set, const grid *g)
     return SE3D_OK;
 }
 
+/* Few particles in a large space: larger cells, so that there are not many more cells than
+ * particles; also where there is no memory for so many. */
+static se3d_status divide_all(se3di_particles *set, grid *g, double largest, size_t *cells)
+{
+    double total = divide(set, g, largest, 1.0);
+    for (double scale = 1.25; scale < 1e30; scale *= 1.25) {
+        if (total <= 4.0 * (double)set->count + 1e4) {
+            *cells = (size_t)total;
+            size_t needed = *cells + 2 < CELLS_LEAST ? CELLS_LEAST : *cells + 2;
+            if (se3di_particles_grow(set, &set->cells, &set->cell_capacity, needed) == SE3D_OK) {
+                return SE3D_OK;
+            }
+            set->starved = 1;
+        }
+        total = divide(set, g, largest, scale);
+    }
+    return SE3D_ERR_NO_MEMORY;
+}
+
+/* Where memory is missing, a smaller skin makes shorter lists: at last of those that touch, which
+ * were in the list before. */
+static se3d_status list_all(se3di_particles *set, const grid *g)
+{
+    const double least = 1e-3 * set->skin;
+    for (;;) {
+        se3d_status status = set->count > 0 ? search_all(set, g) : SE3D_OK;
+        if (status == SE3D_OK) {
+            status = se3di_particles_list_walls(set);
+        }
+        if (status != SE3D_ERR_NO_MEMORY || !(set->skin > 0.0)) {
+            return status;
+        }
+        set->starved = 1;
+        set->skin = set->skin > least ? 0.5 * set->skin : 0.0;
+    }
+}
+
 se3d_status se3di_particles_rebuild(se3di_particles *set)
 {
     SE3DI_TRY(se3di_particles_collect(set));
@@ -395,23 +439,17 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
     double largest = measure(set, &g);
     set->slab_count = 0;
     if (set->count > 0) {
+        size_t cells = 0;
         choose_axes(set, &g);
         for (int k = 0; k < 3; ++k) {
             if (g.periodic[k] && g.extent[k] < 2.0 * (2.0 * largest + set->skin)) {
                 return SE3D_ERR_UNSUPPORTED; /* a pair would meet twice */
             }
         }
-        double total = divide(set, &g, largest, 1.0);
-        /* Few particles in a large space: larger cells, so that there are not many more cells than
-         * particles. */
-        for (double scale = 1.25; total > 4.0 * (double)set->count + 1e4 && scale < 1e30;
-             scale *= 1.25) {
-            total = divide(set, &g, largest, scale);
-        }
-        SE3DI_TRY(sort(set, &g, largest, (size_t)total));
-        SE3DI_TRY(search_all(set, &g));
+        SE3DI_TRY(divide_all(set, &g, largest, &cells));
+        sort(set, &g, largest, cells);
     }
-    SE3DI_TRY(se3di_particles_list_walls(set));
+    SE3DI_TRY(list_all(set, &g));
     for (size_t k = 0; k < set->count; ++k) {
         memcpy(set->origin + 3 * k, set->grains[k].x, sizeof set->grains[k].x);
     }

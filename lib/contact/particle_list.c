@@ -57,23 +57,28 @@ static int lane_moved(const se3di_particles *set, uint32_t b, int lane)
     return moved && block->i[lane] != set->capacity;
 }
 
+/* Room for the history of `count` pairs; what waits there stays. */
 static se3d_status reserve_carry(se3di_particles *set, size_t count)
 {
     const se3d_allocator *a = &set->allocator;
+    size_t grown = count + count / 32 + 16;
+    size_t waiting = set->carry_count;
     if (set->rolls && 4 * count > set->carry_roll_capacity) {
-        size_t grown = 4 * (count + count / 32 + 16);
-        double *rolls = se3di_alloc(a, grown, sizeof *rolls);
+        double *rolls = se3di_alloc(a, 4 * grown, sizeof *rolls);
         if (!rolls) {
             return SE3D_ERR_NO_MEMORY;
         }
+        if (waiting > 0 && set->carry_rolling) {
+            memcpy(rolls, set->carry_roll, 4 * waiting * sizeof *rolls);
+        }
         se3di_free(a, set->carry_roll, set->carry_roll_capacity, sizeof *rolls);
         set->carry_roll = rolls;
-        set->carry_roll_capacity = grown;
+        set->carry_roll_capacity = 4 * grown;
     }
     SE3DI_TRY(se3di_particles_grow(set, &set->carry_next, &set->carry_next_capacity, count));
     if (count * sizeof(se3di_carry) > set->load_memory.bytes) {
-        size_t grown = count + count / 32 + 16; /* the last that may fail: the loads go */
-        SE3DI_TRY(se3di_aligned_reserve(a, &set->load_memory, grown * sizeof(se3di_carry), 0));
+        SE3DI_TRY(se3di_aligned_reserve(a, &set->load_memory, grown * sizeof(se3di_carry),
+                                        waiting * sizeof(se3di_carry))); /* the loads go */
         set->loads = set->load_memory.data;
     }
     set->carry = set->load_memory.data;
@@ -182,16 +187,16 @@ static uint32_t find(const se3di_particles *set, uint32_t i, uint32_t j)
 static se3d_status reserve_blocks(se3di_particles *set, size_t count)
 {
     const se3d_allocator *a = &set->allocator;
+    size_t grown = count + count / 32 + 16;
+    size_t first = set->list_count / 12 + set->count / 16; /* most contacts are still to come */
+    grown = grown < first ? first : grown;
+    if ((set->rolling || set->rolls) && count * sizeof(se3di_roll) > set->roll_memory.bytes) {
+        SE3DI_TRY(se3di_aligned_reserve(a, &set->roll_memory, grown * sizeof(se3di_roll), 0));
+        set->rolls = set->roll_memory.data;
+    }
     if (count * sizeof(se3di_block) > set->block_memory.bytes) {
-        size_t grown = count + count / 32 + 16;
-        grown = grown < set->list_count / 12 ? set->list_count / 12 : grown;
         SE3DI_TRY(se3di_aligned_reserve(a, &set->block_memory, grown * sizeof(se3di_block), 0));
         set->blocks = set->block_memory.data;
-    }
-    if (set->rolling) {
-        size_t room = set->block_memory.bytes / sizeof(se3di_block);
-        SE3DI_TRY(se3di_aligned_reserve(a, &set->roll_memory, room * sizeof(se3di_roll), 0));
-        set->rolls = set->roll_memory.data;
     }
     return SE3D_OK;
 }
@@ -209,7 +214,7 @@ static void open_block(se3di_particles *set, cursor *at)
     for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
         block->i[k] = block->j[k] = (uint32_t)set->capacity;
     }
-    if (set->rolling) {
+    if (set->rolls) {
         memset(&set->rolls[at->next], 0, sizeof(se3di_roll));
     }
     ++at->next;
@@ -252,8 +257,8 @@ static uint32_t blocks_of(size_t pairs)
     return (uint32_t)((pairs + SE3DI_GRAIN_LANES - 1) / SE3DI_GRAIN_LANES);
 }
 
-/* Returns how many blocks the pairs of a slab need. */
-static uint32_t mark_pairs(se3di_particles *set, const se3di_slab *slab)
+/* Returns how many blocks the pairs of a slab need, and adds how many there are. */
+static uint32_t mark_pairs(se3di_particles *set, const se3di_slab *slab, size_t *pairs)
 {
     int periodic = 0;
     size_t count = 0;
@@ -275,11 +280,12 @@ static uint32_t mark_pairs(se3di_particles *set, const se3di_slab *slab)
             count += (size_t)active;
         }
     }
+    *pairs += count;
     return blocks_of(count);
 }
 
 /* The same for walls: one wall per block. */
-static uint32_t mark_walls(se3di_particles *set, const se3di_slab *slab)
+static uint32_t mark_walls(se3di_particles *set, const se3di_slab *slab, size_t *pairs)
 {
     uint32_t blocks = 0;
     size_t count = 0;
@@ -298,15 +304,18 @@ static uint32_t mark_walls(se3di_particles *set, const se3di_slab *slab)
             last = entry[1];
         }
         count += (size_t)active;
+        *pairs += (size_t)active;
     }
     return blocks + blocks_of(count);
 }
 
-/* Leaves the numbers of blocks in pair_end and wall_end. */
+/* Leaves the numbers of blocks in pair_end and wall_end, of pairs in moved. */
 static void mark_slab(se3di_particles *set, uint32_t s)
 {
-    set->slabs[s].pair_end = mark_pairs(set, &set->slabs[s]);
-    set->slabs[s].wall_end = mark_walls(set, &set->slabs[s]);
+    se3di_slab *slab = &set->slabs[s];
+    slab->moved = 0;
+    slab->pair_end = mark_pairs(set, slab, &slab->moved);
+    slab->wall_end = mark_walls(set, slab, &slab->moved);
 }
 
 static void fill_slab(se3di_particles *set, uint32_t s)
@@ -334,9 +343,10 @@ static void fill_slab(se3di_particles *set, uint32_t s)
 }
 
 /* Numbers of blocks become places. */
-static size_t place_slabs(se3di_particles *set)
+static size_t place_slabs(se3di_particles *set, size_t *pairs)
 {
     size_t count = 0;
+    *pairs = 0;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
         se3di_slab *slab = &set->slabs[s];
         slab->pair_begin = (uint32_t)count;
@@ -344,20 +354,43 @@ static size_t place_slabs(se3di_particles *set)
         slab->pair_end = slab->wall_begin = (uint32_t)count;
         count += slab->wall_end;
         slab->wall_end = (uint32_t)count;
+        *pairs += slab->moved;
     }
     return count;
 }
 
+/* Mark the active pairs, reserve blocks for them and what it takes to collect their history, so
+ * that this cannot fail; fewer where memory is missing. */
+static se3d_status choose_active(se3di_particles *set)
+{
+    const double least = 1e-3 * set->near;
+    for (;;) {
+        se3di_particles_each_slab(set, mark_slab);
+        size_t pairs;
+        size_t count = place_slabs(set, &pairs);
+        se3d_status status = reserve_blocks(set, count);
+        if (status == SE3D_OK) {
+            status = reserve_carry(set, pairs + set->count / 2);
+        }
+        if (status == SE3D_OK) {
+            status = se3di_particles_mesh_activate(set);
+        }
+        set->block_count = status == SE3D_OK ? (uint32_t)count : 0;
+        if (status == SE3D_OK || !(set->near > 0.0)) {
+            return status;
+        }
+        set->starved = 1;
+        set->near = set->near > least ? 0.5 * set->near : 0.0;
+    }
+}
+
 se3d_status se3di_particles_activate(se3di_particles *set)
 {
-    chain(set);
     set->near = fmin(set->skin, fmax(NEAR_LEAST * set->skin, 2.0 * NEAR_STEPS * set->pace));
-    se3di_particles_each_slab(set, mark_slab);
-    size_t count = place_slabs(set);
-    SE3DI_TRY(reserve_blocks(set, count));
-    set->block_count = (uint32_t)count;
+    SE3DI_TRY(choose_active(set));
+    chain(set);
     se3di_particles_each_slab(set, fill_slab);
-    SE3DI_TRY(se3di_particles_mesh_activate(set));
+    set->mesh_old_count = 0;
     for (size_t k = 0; k < set->wall_count; ++k) {
         se3di_wall *wall = &set->walls[k];
         se3di_copy(wall->pose.x, wall->near_x);

@@ -192,6 +192,9 @@ se3d_status se3di_particles_mesh_activate(se3di_particles *set)
         }
         slab->mesh_end = (uint32_t)set->mesh_count;
     }
-    set->mesh_old_count = 0;
-    return SE3D_OK;
+    void *memory = set->mesh_old; /* the next time they change places */
+    se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->mesh_old_capacity,
+                                             set->mesh_count, sizeof *set->mesh_old);
+    set->mesh_old = memory;
+    return status;
 }

@@ -175,6 +175,16 @@ void se3di_particles_adopt(se3di_particles *set, const se3di_model *model)
     }
 }
 
+/* Where the kernels add up what the walls get. */
+static se3d_status reserve_sums(se3di_particles *set)
+{
+    void *memory = set->wall_sums;
+    se3d_status status = reserve(set, &memory, &set->wall_sum_capacity,
+                                 6 * set->wall_count * SE3DI_GRAIN_SLABS_MAX, sizeof(double));
+    set->wall_sums = memory;
+    return status;
+}
+
 se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model)
 {
     if (set->topology_version == model->topology_version) {
@@ -195,6 +205,7 @@ se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model)
     }
     SE3DI_TRY(mix(set, model));
     SE3DI_TRY(replace_walls(set, model));
+    SE3DI_TRY(reserve_sums(set));
     set->law = (se3di_contact_law)model->contact.law;
     set->overlap_limit = model->contact.overlap_limit;
     set->topology_version = model->topology_version;

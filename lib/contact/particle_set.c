@@ -77,6 +77,11 @@ void se3di_particles_destroy(se3di_particles *set)
     se3di_free(a, set->mesh_pairs, set->mesh_capacity, sizeof *set->mesh_pairs);
     se3di_free(a, set->mesh_old, set->mesh_old_capacity, sizeof *set->mesh_old);
     se3di_free(a, set->wall_sums, set->wall_sum_capacity, sizeof(double));
+    for (size_t k = 0; k < set->source_count; ++k) {
+        se3di_free(a, set->sources[k].table, 2 * set->sources[k].radii.count, sizeof(double));
+    }
+    se3di_free(a, set->sources, set->source_capacity, sizeof *set->sources);
+    se3di_free(a, set->sinks, set->sink_capacity, sizeof *set->sinks);
     se3d_allocator allocator = set->allocator;
     memset(set, 0, sizeof *set);
     set->allocator = allocator;
@@ -101,7 +106,8 @@ size_t se3di_particles_memory(const se3di_particles *set)
                                set->list_capacity + set->near_capacity + set->carry_next_capacity) +
            sizeof(double) * (set->carry_roll_capacity + set->wall_sum_capacity) +
            (set->mesh_capacity + set->mesh_old_capacity) * sizeof *set->mesh_pairs +
-           set->wall_capacity * sizeof *set->walls + sizeof *set;
+           set->wall_capacity * sizeof *set->walls + set->source_capacity * sizeof *set->sources +
+           set->sink_capacity * sizeof *set->sinks + sizeof *set;
 }
 
 /* An array of exactly `count` elements of which `keep` stay in *to; on failure *to is NULL. */
@@ -189,6 +195,7 @@ se3d_status se3di_particles_reserve(se3di_particles *set, size_t count)
         set->index_capacity = ids;
     }
     SE3DI_TRY(se3di_particles_collect(set));
+    SE3DI_TRY(se3di_particles_grow(set, &set->first, &set->first_capacity, count + 1));
     return count <= set->capacity ? SE3D_OK : reserve_arrays(set, count);
 }
 
@@ -204,9 +211,13 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
     set->grains[k] = (se3di_grain){.radius = radius, .inverse_mass = 1.0 / mass};
     memcpy(set->grains[k].x, x, sizeof set->grains[k].x);
     memcpy(set->grains[k].v, v ? v : rest, sizeof set->grains[k].v);
-    set->spins[k] = (se3di_spin){.material = material, .id = id};
+    set->spins[k] = (se3di_spin){.material = (uint16_t)material, .id = id};
     memcpy(set->spins[k].w, w ? w : rest, sizeof set->spins[k].w);
     set->index_of[id] = (uint32_t)k;
+    for (int a = 0; a < 3; ++a) {
+        set->home_low[a] = id == 0 ? x[a] : fmin(set->home_low[a], x[a]);
+        set->home_high[a] = id == 0 ? x[a] : fmax(set->home_high[a], x[a]);
+    }
     set->force_valid = 0;
     return id;
 }
@@ -254,6 +265,8 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         {&to->mesh_old, from->mesh_old, from->mesh_old_capacity, sizeof(se3di_mesh_pair)},
         {&to->pairs, from->pairs, from->pair_capacity, sizeof(se3di_pair)},
         {&to->walls, from->walls, from->wall_capacity, sizeof(se3di_wall)},
+        {&to->sources, from->sources, from->source_capacity, sizeof(se3di_source)},
+        {&to->sinks, from->sinks, from->sink_capacity, sizeof(se3di_sink)},
     };
     se3d_status status = SE3D_OK;
     for (size_t k = 0; k < sizeof parts / sizeof parts[0]; ++k) {
@@ -263,6 +276,26 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         memcpy(parts[k].to, &memory, sizeof memory); /* every pointer is written, NULL included */
         status = here < 0 ? here : status;
     }
+    return status;
+}
+
+/* The tables of the sources, which are copies that still point to those of the others. */
+static se3d_status copy_tables(se3di_particles *to)
+{
+    se3d_status status = SE3D_OK;
+    for (size_t k = 0; to->sources && k < to->source_count; ++k) {
+        se3di_source *source = &to->sources[k];
+        size_t size = 2 * source->radii.count;
+        void *memory;
+        se3d_status here =
+            resize(&to->allocator, &memory, source->table, size, size, sizeof(double));
+        source->table = memory;
+        source->radii.radii = memory;
+        source->radii.weights = memory ? source->table + source->radii.count : NULL;
+        source->radii.count = memory ? source->radii.count : 0;
+        status = here < 0 ? here : status;
+    }
+    to->source_count = to->sources ? to->source_count : 0;
     return status;
 }
 
@@ -312,6 +345,8 @@ se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *c
     copy->loads = NULL;
     copy->carry = NULL;
     se3d_status status = copy_arrays(set, copy);
+    se3d_status tables = copy_tables(copy);
+    status = status < 0 ? status : tables;
     if (status == SE3D_OK) {
         status = copy_aligned(set, copy);
     }

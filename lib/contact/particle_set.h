@@ -33,7 +33,8 @@ typedef struct se3di_grain {
 
 typedef struct se3di_spin {
     double w[3]; /* ground frame: the same as the body frame for a sphere */
-    uint32_t material;
+    uint16_t material;
+    uint16_t tag; /* < SE3D_PARTICLES_TAGS */
     uint32_t id;
 } se3di_spin;
 
@@ -138,6 +139,54 @@ typedef enum se3di_boundary {
 
 typedef struct se3di_kernels se3di_kernels;
 
+/* A box, and what of it is meant: all, or the largest cylinder or sphere in it. */
+typedef struct se3di_region {
+    double lower[3], upper[3];
+    int32_t kind; /* se3d_region */
+    int32_t axis; /* of a cylinder */
+} se3di_region;
+
+/* Radii to draw from: uniformly in a range, or from a table. */
+typedef struct se3di_radii {
+    double smallest, largest;
+    const double *radii, *weights; /* [count]; weights NULL: all alike */
+    size_t count;                  /* 0: the range */
+} se3di_radii;
+
+/* Inserts particles during a run.                                      particle_flow.c */
+typedef struct se3di_source {
+    se3di_region region;
+    se3di_radii radii; /* in `table` */
+    double *table;     /* [2 * radii.count]; NULL: none */
+    double velocity[3];
+    uint32_t material; /* in the set's table */
+    uint32_t tag;
+    se3di_handle function; /* null: `rate` */
+    double rate;           /* [1/s] or [kg/s], of the step under way */
+    int32_t per_mass;
+    int32_t stopped; /* by the user, or 0 */
+    double start, stop, every;
+    uint64_t maximum;
+    /* what it has done */
+    uint64_t seed; /* state of the random numbers */
+    double owed;   /* particles or kilograms that are due */
+    double next;   /* radius of the next one; 0: not drawn */
+    double due;    /* no insertion before */
+    uint64_t inserted, deferred;
+    double mass;     /* inserted */
+    int32_t waiting; /* the next one was put off already */
+    int32_t reserved;
+} se3di_source;
+
+/* Removes particles whose centre is in it. */
+typedef struct se3di_sink {
+    se3di_region region;
+    double point[3], normal[3]; /* a plane: what is behind it */
+    int32_t plane;
+    int32_t stopped;
+    uint64_t count;
+} se3di_sink;
+
 typedef struct se3di_particles {
     struct se3di_particles *next; /* of the model's sets */
     char *name;                   /* NULL: none; a clone has none */
@@ -215,7 +264,15 @@ typedef struct se3di_particles {
 
     /* what is told */
     uint64_t steps, rebuilds, refreshes, lost;
+    uint64_t lost_of[SE3D_PARTICLES_TAGS];
+    double home_low[3], home_high[3]; /* the box of all places where particles were added */
+    se3di_source *sources;
+    size_t source_count, source_capacity;
+    se3di_sink *sinks;
+    size_t sink_count, sink_capacity;
     uint64_t touching;
+    int32_t starved; /* memory was missing in the last evaluation of the forces */
+    int32_t reserved2;
     uint32_t failed;      /* id of the particle that a failure names */
     double failed_amount; /* its overlap over the smaller radius */
     const se3di_kernels *kernels;
@@ -321,8 +378,13 @@ void se3di_particles_kick(se3di_particles *set, double h);
 void se3di_particles_drift(se3di_particles *set, double h);
 /* One or two half kicks of duration h/2 each and a drift by h, in one pass. */
 void se3di_particles_move(se3di_particles *set, int kicks, double h);
-/* Bring the lists up to date, evaluate all forces; springs advance by h (0: they stay). */
+/* Nothing moves and nothing will. */
+int se3di_particles_is_idle(const se3di_particles *set);
+/* Bring the lists up to date, evaluate all forces; springs advance by h (0: they stay). Where
+ * memory is missing, lists are made with a smaller skin, which needs none. */
 se3d_status se3di_particles_forces(se3di_particles *set, double h);
+/* After a failure: the forces are complete all the same. */
+int se3di_particles_is_complete(const se3di_particles *set, se3d_status status);
 /* Forces that belong to the state, with springs as they are. */
 se3d_status se3di_particles_prepare(se3di_particles *set);
 /* The automatic step with the model's materials. Infinite where there is nothing to resolve. */
@@ -330,6 +392,22 @@ double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *
 /* One step of velocity Verlet; frames move the walls (NULL: they stay). */
 se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps,
                                     const se3di_frame *frames);
+/* particle_flow.c: sources, sinks, what has left. */
+/* What the sources give in the step to come, of duration h. */
+se3d_status se3di_sources_aim(se3di_particles *set, const se3di_model *model, double h);
+/* Insert what is due at the end of a step of duration h, between drift and forces. */
+se3d_status se3di_sources_feed(se3di_particles *set, double h);
+/* The sink that holds x, SE3DI_NO_INDEX: none. */
+uint32_t se3di_sinks_find(const se3di_particles *set, const double x[3]);
+/* Whether a particle is beyond the domain or falls without end. */
+int se3di_particles_is_out(const se3di_particles *set, size_t k);
+/* particle_draw.c: splitmix64, uniform in [0, 1); a radius; a point such that a sphere of that
+ * radius is within the box of a region; whether the region holds it. */
+double se3di_random_draw(uint64_t *state);
+double se3di_radii_draw(const se3di_radii *radii, uint64_t *state);
+void se3di_region_draw(const se3di_region *region, double radius, uint64_t *state, double x[3]);
+int se3di_region_holds(const se3di_region *region, const double x[3], double radius);
+
 /* particle_contacts.c: contacts of the present lists as they are now; nothing changes. Counts all,
  * writes the first `capacity`. */
 se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity,

@@ -74,6 +74,20 @@ se3d_status se3di_particles_place(se3di_particles *set, const se3di_model *model
     return SE3D_OK;
 }
 
+se3d_status se3di_particles_aim(se3di_particles *set, const se3di_model *model, double h,
+                                se3di_error *error)
+{
+    se3d_status status = se3di_sources_aim(set, model, h);
+    if (status < 0) {
+        const char *of;
+        const char *name = set_name(set, &of);
+        return se3di_error_set(error, status,
+                               "the rate of a source%s%.80s cannot be computed at time %g s", of,
+                               name, set->time + 0.5 * h);
+    }
+    return SE3D_OK;
+}
+
 double se3di_particles_want_step(const se3di_particles *set, const se3di_model *model)
 {
     if (set->step > 0.0 || model->contact.step > 0.0) {
@@ -87,7 +101,7 @@ static se3d_status begin(se3di_particles *set, const se3di_model *model, double 
                          se3di_error *error)
 {
     set->time = model->time;
-    if (set->count == 0) {
+    if (se3di_particles_is_idle(set)) {
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_particles_check_step(set, model, h, error));
@@ -112,26 +126,35 @@ void se3di_sets_move(se3di_model *model, int kicks, double h)
     }
 }
 
-se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_error *error)
+se3d_status se3di_sets_aim(se3di_model *model, double h, se3di_error *error)
 {
-    se3d_status failure = SE3D_OK;
+    for (se3di_particles *set = model->sets; set; set = set->next) {
+        SE3DI_TRY(se3di_particles_aim(set, model, h, error));
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_error *error,
+                              se3d_status *late)
+{
+    *late = SE3D_OK;
     for (se3di_particles *set = model->sets; set; set = set->next) {
         set->time = t;
         ++set->steps;
-        if (set->count == 0) {
+        if (se3di_particles_is_idle(set)) {
             continue;
         }
         SE3DI_TRY(se3di_gravity_eval(model, t, set->gravity, NULL));
         se3di_particles_move_walls(set, model->frames);
         se3d_status status = se3di_particles_forces(set, h);
-        if (status < 0 && failure != SE3D_ERR_STEP_SIZE) {
-            failure = se3di_particles_report(set, status, error);
+        if (status < 0 && !se3di_particles_is_complete(set, status)) {
+            return se3di_particles_report(set, status, error);
         }
-        if (status < 0 && status != SE3D_ERR_STEP_SIZE) {
-            return failure;
+        if (status < 0 && *late == SE3D_OK) {
+            *late = se3di_particles_report(set, status, error);
         }
     }
-    return failure;
+    return SE3D_OK;
 }
 
 void se3di_sets_kick(se3di_model *model, double h)
@@ -145,7 +168,7 @@ void se3di_sets_push(const se3di_model *model, double *push)
 {
     memset(push, 0, 6 * model->body_slots.count * sizeof *push);
     for (const se3di_particles *set = model->sets; set; set = set->next) {
-        for (size_t k = 0; k < set->wall_count && set->count > 0; ++k) {
+        for (size_t k = 0; k < set->wall_count && !se3di_particles_is_idle(set); ++k) {
             const se3di_wall *wall = &set->walls[k];
             double torque[3];
             se3di_mul_transposed(model->frames[wall->shape.body].A, wall->torque, torque);

@@ -24,8 +24,14 @@ se3d_status se3di_particles_report(const se3di_particles *set, se3d_status statu
 /* The sets at the model's time, with forces that belong to the state. */
 se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error);
 void se3di_sets_move(se3di_model *model, int kicks, double h);
-/* Forces at t. STEP_SIZE (too large an overlap): they are complete all the same. */
-se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_error *error);
+/* Before a step of length h begins: what its sources give. */
+se3d_status se3di_particles_aim(se3di_particles *set, const se3di_model *model, double h,
+                                se3di_error *error);
+se3d_status se3di_sets_aim(se3di_model *model, double h, se3di_error *error);
+/* Forces at t. *late: the first failure in spite of which they are complete (too large an overlap,
+ * memory for longer lists). */
+se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_error *error,
+                              se3d_status *late);
 void se3di_sets_kick(se3di_model *model, double h);
 /* What the particles do to the bodies [bodies * 6]: force (ground frame), torque (body frame). */
 void se3di_sets_push(const se3di_model *model, double *push);

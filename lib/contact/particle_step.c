@@ -284,14 +284,14 @@ static se3d_status find_not_finite(se3di_particles *set)
     return SE3D_OK;
 }
 
-static se3d_status reserve_sums(se3di_particles *set)
+int se3di_particles_is_idle(const se3di_particles *set)
 {
-    size_t needed = 6 * set->wall_count * SE3DI_GRAIN_SLABS_MAX;
-    void *memory = set->wall_sums;
-    se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->wall_sum_capacity,
-                                             needed, sizeof(double));
-    set->wall_sums = memory;
-    return status;
+    return set->count == 0 && set->source_count == 0;
+}
+
+int se3di_particles_is_complete(const se3di_particles *set, se3d_status status)
+{
+    return status == SE3D_ERR_STEP_SIZE || (status == SE3D_ERR_NO_MEMORY && set->force_valid);
 }
 
 static void sum_walls(se3di_particles *set)
@@ -341,12 +341,15 @@ se3d_status se3di_particles_forces(se3di_particles *set, double h)
     if (!isfinite(set->moved)) {
         SE3DI_TRY(find_not_finite(set));
     }
-    SE3DI_TRY(reserve_sums(set));
+    set->starved = 0;
+    if (h > 0.0 && set->source_count > 0 && se3di_sources_feed(set, h) < 0) {
+        set->starved = 1; /* what could not be inserted waits */
+    }
     SE3DI_TRY(update_lists(set));
     set->touching = 0;
     set->force_valid = 1;
     if (set->count == 0) {
-        return SE3D_OK;
+        return set->starved ? SE3D_ERR_NO_MEMORY : SE3D_OK;
     }
     se3di_force_task task = prepare(set, h);
     evaluate_slabs(set, &task);
@@ -360,7 +363,7 @@ se3d_status se3di_particles_forces(se3di_particles *set, double h)
         find_overlap(set);
         return SE3D_ERR_STEP_SIZE;
     }
-    return SE3D_OK;
+    return set->starved ? SE3D_ERR_NO_MEMORY : SE3D_OK;
 }
 
 /* Over the pairs of a material with all that are in use. */
@@ -381,6 +384,7 @@ static double pair_steps(const se3di_model *model, size_t a, double radius, doub
 
 double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *model)
 {
+    const double pi = 3.1415926535897932384626433832795;
     double step = HUGE_VAL;
     for (size_t s = 0; s < set->stuff_count; ++s) {
         double lightest = HUGE_VAL;
@@ -390,6 +394,14 @@ double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *
             if (set->spins[k].material == s) {
                 lightest = fmin(lightest, 1.0 / set->grains[k].inverse_mass);
                 smallest = fmin(smallest, set->grains[k].radius);
+            }
+        }
+        for (size_t k = 0; stuff->held && k < set->source_count; ++k) {
+            double radius = set->sources[k].radii.smallest;
+            if (set->sources[k].material == s && !set->sources[k].stopped) {
+                smallest = fmin(smallest, radius);
+                lightest = fmin(lightest, stuff->material.density * 4.0 / 3.0 * pi * radius *
+                                              radius * radius);
             }
         }
         if (smallest < HUGE_VAL) {
@@ -424,7 +436,7 @@ se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps
         set->time += h;
         ++set->steps;
         se3d_status status = se3di_particles_forces(set, h);
-        if (status == SE3D_ERR_STEP_SIZE) { /* the forces are complete: so is the step */
+        if (status < 0 && se3di_particles_is_complete(set, status)) { /* so is the step */
             pass(set, 1, h, 0.0);
         }
         SE3DI_TRY(status);

@@ -7,6 +7,7 @@
  *
  * Between two steps of one run the half kicks of the particles are one pass.
  * docs/theory/verlet.md */
+#include "contact/body_contacts.h"
 #include "contact/particle_sets.h"
 #include "integrator/lie_verlet.h"
 
@@ -59,15 +60,18 @@ static se3d_status advance(verlet *m, double t1)
     double t0 = m->model->time;
     bodies->h = t1 - t0;
     bodies->t1 = t1;
+    SE3DI_TRY(se3di_sets_aim(m->model, bodies->h, m->error));
     se3di_lie_verlet_keep(bodies);
     se3d_status status = se3di_lie_verlet_drift(bodies);
     se3d_status contact = SE3D_OK;
+    if (status >= 0 && m->model->sets) { /* particles do not go back: no failure for memory below */
+        status = se3di_contacts_reserve(m->model, t1, m->error);
+    }
     if (status >= 0 && m->model->sets) {
         se3di_sets_move(m->model, m->open ? 2 : 1, bodies->h);
         m->open = 1;
         m->h = bodies->h;
-        contact = se3di_sets_forces(m->model, t1, bodies->h, m->error);
-        status = contact == SE3D_ERR_STEP_SIZE ? SE3D_OK : contact;
+        status = se3di_sets_forces(m->model, t1, bodies->h, m->error, &contact);
         se3di_sets_push(m->model, m->push);
     }
     status = status < 0 ? status : se3di_lie_verlet_kick(bodies);
@@ -77,7 +81,7 @@ static se3d_status advance(verlet *m, double t1)
         return status;
     }
     ++bodies->equations->counters.steps;
-    return contact; /* too large an overlap: the step is complete, and the last one */
+    return contact; /* the step is complete, and the last one */
 }
 
 static se3d_status run_steps(se3di_integration *integration, double t_end, double count)

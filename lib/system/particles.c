@@ -110,8 +110,8 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
     return SE3D_OK;
 }
 
-/* Materials know how many sets hold them. */
-static void count_users(se3d_particles *particles, int add)
+/* Materials and functions know how many sets hold them. */
+void se3di_particles_count_users(se3d_particles *particles, int add)
 {
     se3di_model *model = &particles->system->model;
     for (size_t k = 0; k < particles->set.stuff_count; ++k) {
@@ -120,6 +120,14 @@ static void count_users(se3d_particles *particles, int add)
             uint32_t material = se3di_slots_find(&model->material_slots, stuff->handle.index1,
                                                  stuff->handle.generation);
             model->materials[material].users += add ? 1u : UINT32_MAX;
+        }
+    }
+    for (size_t k = 0; k < particles->set.source_count; ++k) {
+        se3di_handle handle = particles->set.sources[k].function;
+        uint32_t function =
+            se3di_slots_find(&model->function_slots, handle.index1, handle.generation);
+        if (function != SE3DI_NO_INDEX) {
+            model->functions[function].users += add ? 1u : UINT32_MAX;
         }
     }
 }
@@ -141,7 +149,7 @@ void se3d_particles_destroy(se3d_particles *particles)
 {
     if (particles) {
         se3d_allocator allocator = particles->set.allocator;
-        count_users(particles, 0);
+        se3di_particles_count_users(particles, 0);
         se3di_sets_unlink(particles);
         se3di_particles_destroy(&particles->set);
         se3di_free(&allocator, particles, 1, sizeof *particles);
@@ -167,7 +175,7 @@ se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles
         return status;
     }
     copy->system = particles->system;
-    count_users(copy, 1);
+    se3di_particles_count_users(copy, 1);
     *out = copy;
     return SE3D_OK;
 }
@@ -187,9 +195,9 @@ se3d_status se3d_particles_restore(se3d_particles *particles, const se3d_particl
         return SE3DI_FAIL(particles->system, SE3D_ERR_NO_MEMORY,
                           "no memory to restore %zu particles", saved->set.count);
     }
-    count_users(particles, 0);
+    se3di_particles_count_users(particles, 0);
     se3di_particles_replace(&particles->set, &copy);
-    count_users(particles, 1);
+    se3di_particles_count_users(particles, 1);
     return SE3D_OK;
 }
 
@@ -250,6 +258,18 @@ se3d_status se3d_particles_add(se3d_particles *particles, se3d_material material
     return SE3D_OK;
 }
 
+static se3d_status check_ids(se3d_particles *particles, size_t count, const uint32_t *ids)
+{
+    const se3di_particles *set = &particles->set;
+    for (size_t k = 0; k < count; ++k) {
+        if (ids[k] >= set->id_count || set->index_of[ids[k]] == SE3DI_NO_INDEX) {
+            return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
+                              "ids[%zu] = %u does not name a live particle", k, ids[k]);
+        }
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3d_particles_remove(se3d_particles *particles, size_t count, const uint32_t *ids)
 {
     if (!particles) {
@@ -260,12 +280,7 @@ se3d_status se3d_particles_remove(se3d_particles *particles, size_t count, const
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_check_pointer(particles->system, "ids", ids));
-    for (size_t k = 0; k < count; ++k) {
-        if (ids[k] >= set->id_count || set->index_of[ids[k]] == SE3DI_NO_INDEX) {
-            return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
-                              "ids[%zu] = %u does not name a live particle", k, ids[k]);
-        }
-    }
+    SE3DI_TRY(check_ids(particles, count, ids));
     size_t size = set->count;
     unsigned char *keep = se3di_alloc(&set->allocator, size, 1);
     if (!keep || se3di_particles_collect(set) < 0) {
@@ -285,6 +300,23 @@ se3d_status se3d_particles_remove(se3d_particles *particles, size_t count, const
 size_t se3d_particles_count(const se3d_particles *particles)
 {
     return particles ? particles->set.count : 0;
+}
+
+se3d_status se3d_particles_set_tags(se3d_particles *particles, size_t count, const uint32_t *ids,
+                                    uint32_t tag)
+{
+    if (!particles) {
+        return SE3D_ERR_NULL;
+    }
+    if (count > 0) {
+        SE3DI_TRY(se3di_check_pointer(particles->system, "ids", ids));
+    }
+    SE3DI_TRY(se3di_check_tag(particles, tag));
+    SE3DI_TRY(check_ids(particles, count, ids));
+    for (size_t k = 0; k < count; ++k) {
+        particles->set.spins[particles->set.index_of[ids[k]]].tag = (uint16_t)tag;
+    }
+    return SE3D_OK;
 }
 
 /* The size that arrays must have. */
@@ -314,6 +346,35 @@ se3d_status se3d_particles_get_ids(const se3d_particles *particles, size_t count
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
         ids[k] = particles->set.spins[next(&particles->set, &id)].id;
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_get_tags(const se3d_particles *particles, size_t count, uint32_t *tags)
+{
+    SE3DI_TRY(check_count(particles, count));
+    if (!tags) {
+        return SE3D_ERR_NULL;
+    }
+    size_t id = 0;
+    for (size_t k = 0; k < count; ++k) {
+        tags[k] = particles->set.spins[next(&particles->set, &id)].tag;
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_get_materials(const se3d_particles *particles, size_t count,
+                                         se3d_material *materials)
+{
+    SE3DI_TRY(check_count(particles, count));
+    if (!materials) {
+        return SE3D_ERR_NULL;
+    }
+    size_t id = 0;
+    for (size_t k = 0; k < count; ++k) {
+        uint32_t material = particles->set.spins[next(&particles->set, &id)].material;
+        se3di_handle handle = particles->set.stuffs[material].handle;
+        materials[k] = (se3d_material){handle.index1, handle.generation};
     }
     return SE3D_OK;
 }
@@ -410,12 +471,13 @@ static se3d_status advance(se3d_particles *particles, double h, size_t steps)
     const se3di_model *model = &particles->system->model;
     se3di_particles *set = &particles->set;
     SE3DI_TRY(se3di_particles_place(set, model, &particles->system->error));
-    int varies = model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
-                 model->gravity_function[2] >= 0;
+    int varies = set->source_count > 0 || model->gravity_function[0] >= 0 ||
+                 model->gravity_function[1] >= 0 || model->gravity_function[2] >= 0;
     size_t done = 0;
     do {
         size_t now = varies ? 1 : steps;
         SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
+        SE3DI_TRY(se3di_particles_aim(set, model, h, &particles->system->error));
         se3d_status status = se3di_particles_advance(set, h, now, NULL);
         if (status < 0) {
             return se3di_particles_report(set, status, &particles->system->error);
@@ -431,7 +493,7 @@ se3d_status se3d_particles_step(se3d_particles *particles, size_t steps)
         return SE3D_ERR_NULL;
     }
     double h = se3di_particles_want_step(&particles->set, &particles->system->model);
-    if (steps == 0 || particles->set.count == 0) {
+    if (steps == 0 || se3di_particles_is_idle(&particles->set)) {
         particles->set.time += h * (double)steps;
         return SE3D_OK;
     }
@@ -452,7 +514,7 @@ se3d_status se3d_particles_run(se3d_particles *particles, double time)
     }
     double h = se3di_particles_want_step(&particles->set, &particles->system->model);
     double steps = h > 0.0 ? ceil((time - set->time) / h - 1e-9) : 0.0;
-    if (steps > 0.0 && set->count > 0) {
+    if (steps > 0.0 && !se3di_particles_is_idle(set)) {
         SE3DI_TRY(se3di_particles_check_step(&particles->set, &particles->system->model, h,
                                              &particles->system->error));
         SE3DI_TRY(advance(particles, (time - set->time) / steps, (size_t)steps));
@@ -489,6 +551,17 @@ se3d_status se3d_particles_get_time(const se3d_particles *particles, double *tim
     return SE3D_OK;
 }
 
+void se3di_particles_energy(const se3di_particles *set, size_t k, const double g[3],
+                            double energy[3])
+{
+    const se3di_grain *grain = &set->grains[k];
+    const double *w = set->spins[k].w;
+    double mass = 1.0 / grain->inverse_mass;
+    energy[0] = 0.5 * mass * se3di_dot(grain->v, grain->v);
+    energy[1] = 0.2 * mass * grain->radius * grain->radius * se3di_dot(w, w);
+    energy[2] = -mass * se3di_dot(g, grain->x);
+}
+
 se3d_status se3d_particles_get_energy(const se3d_particles *particles,
                                       se3d_particles_energy *energy)
 {
@@ -501,12 +574,11 @@ se3d_status se3d_particles_get_energy(const se3d_particles *particles,
     size_t id = 0;
     for (size_t k = 0; k < particles->set.count; ++k) {
         size_t index = next(&particles->set, &id);
-        const se3di_grain *grain = &particles->set.grains[index];
-        const double *w = particles->set.spins[index].w;
-        double mass = 1.0 / grain->inverse_mass;
-        energy->translation += 0.5 * mass * se3di_dot(grain->v, grain->v);
-        energy->rotation += 0.2 * mass * grain->radius * grain->radius * se3di_dot(w, w);
-        energy->potential -= mass * se3di_dot(g, grain->x);
+        double share[3];
+        se3di_particles_energy(&particles->set, index, g, share);
+        energy->translation += share[0];
+        energy->rotation += share[1];
+        energy->potential += share[2];
     }
     return SE3D_OK;
 }
@@ -522,7 +594,11 @@ se3d_status se3d_particles_get_stats(const se3d_particles *particles, se3d_parti
                                     .contacts = set->touching,
                                     .lost = set->lost,
                                     .bytes = se3di_particles_memory(set),
-                                    .threads = (uint64_t)set->team};
+                                    .threads = (uint64_t)set->team,
+                                    .left = set->lost};
+    for (size_t k = 0; k < set->count; ++k) {
+        stats->left += (uint64_t)se3di_particles_is_out(set, k);
+    }
     return SE3D_OK;
 }
 

@@ -14,15 +14,6 @@ void se3d_fill_def_init(se3d_fill_def *def, size_t size)
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
-/* splitmix64: uniform in [0, 1). */
-static double uniform(uint64_t *state)
-{
-    uint64_t z = (*state += UINT64_C(0x9E3779B97F4A7C15));
-    z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
 /* The range of the radii of a table. */
 static se3d_status check_radii(se3d_particles *p, se3d_fill_def *def)
 {
@@ -43,26 +34,26 @@ static se3d_status check_radii(se3d_particles *p, se3d_fill_def *def)
     return se3di_check_range(p->system, "sum of the weights", sum, 1e-30, 1e300);
 }
 
-static se3d_status check_region(se3d_particles *p, const se3d_fill_def *def)
+se3d_status se3di_check_region(se3d_particles *p, const double lower[3], const double upper[3],
+                               int32_t region, int32_t axis, double size)
 {
-    if (def->region < SE3D_REGION_BOX || def->region > SE3D_REGION_SPHERE) {
+    if (region < SE3D_REGION_BOX || region > SE3D_REGION_SPHERE) {
         return SE3DI_FAIL(p->system, SE3D_ERR_INVALID_ARGUMENT,
-                          "region = %d, must be an se3d_region", def->region);
+                          "region = %d, must be an se3d_region", region);
     }
-    if (def->axis < 0 || def->axis > 2) {
+    if (axis < 0 || axis > 2) {
         return SE3DI_FAIL(p->system, SE3D_ERR_INVALID_ARGUMENT, "axis = %d, must be 0, 1 or 2",
-                          def->axis);
+                          axis);
     }
     for (int a = 0; a < 3; ++a) {
-        SE3DI_TRY(se3di_check_range(p->system, "lower", def->lower[a], -1e30, 1e30));
-        SE3DI_TRY(se3di_check_range(p->system, "upper", def->upper[a],
-                                    def->lower[a] + 2.0 * def->radius_max, 1e30));
+        SE3DI_TRY(se3di_check_range(p->system, "lower", lower[a], -1e30, 1e30));
+        SE3DI_TRY(se3di_check_range(p->system, "upper", upper[a], lower[a] + size, 1e30));
     }
     return SE3D_OK;
 }
 
-static se3d_status check_fill(se3d_particles *p, const se3d_fill_def *def, se3d_fill_def *full,
-                              uint32_t *material)
+se3d_status se3di_check_fill(se3d_particles *p, const se3d_fill_def *def, se3d_fill_def *full,
+                             uint32_t *material)
 {
     SE3DI_TRY(se3di_check_def(p->system, "fill def", def, full, sizeof *full));
     SE3DI_TRY(se3di_check_finites(p->system, "velocity", full->velocity, 3));
@@ -73,57 +64,31 @@ static se3d_status check_fill(se3d_particles *p, const se3d_fill_def *def, se3d_
     SE3DI_TRY(se3di_check_range(p->system, "radius_max", full->radius_max, full->radius_min, 1e30));
     SE3DI_TRY(se3di_check_range(p->system, "jitter", full->jitter, 0.0, 1e30));
     SE3DI_TRY(se3di_check_range(p->system, "spacing", full->spacing, 0.0, 1e30));
-    SE3DI_TRY(check_region(p, full));
+    SE3DI_TRY(se3di_check_region(p, full->lower, full->upper, full->region, full->axis,
+                                 2.0 * full->radius_max));
+    SE3DI_TRY(se3di_check_tag(p, full->tag));
     return se3di_particles_use(p, full->material, material);
 }
 
-static double draw_radius(const se3d_fill_def *def, uint64_t *state)
+se3di_radii se3di_fill_radii(const se3d_fill_def *def)
 {
-    double u = uniform(state);
-    if (def->radius_count == 0) {
-        return def->radius_min + (def->radius_max - def->radius_min) * u;
-    }
-    double sum = 0.0;
-    for (size_t k = 0; k < def->radius_count; ++k) {
-        sum += def->weights ? def->weights[k] : 1.0;
-    }
-    u *= sum;
-    size_t k = 0;
-    for (; k + 1 < def->radius_count; ++k) {
-        double weight = def->weights ? def->weights[k] : 1.0;
-        if (u < weight) {
-            break;
-        }
-        u -= weight;
-    }
-    while (def->weights && !(def->weights[k] > 0.0)) {
-        --k; /* rounding reached behind the last one that occurs */
-    }
-    return def->radii[k];
+    return (se3di_radii){def->radius_min, def->radius_max, def->radii, def->weights,
+                         def->radius_count};
 }
 
-/* A sphere of radius `margin` about x is in the region; its box is known to hold it. */
-static int region_holds(const se3d_fill_def *def, const double x[3], double margin)
+se3di_region se3di_fill_region(const se3d_fill_def *def)
 {
-    double square = 0.0;
-    double radius = HUGE_VAL;
-    if (def->region == SE3D_REGION_BOX) {
-        return 1;
-    }
-    for (int a = 0; a < 3; ++a) {
-        double d = x[a] - 0.5 * (def->lower[a] + def->upper[a]);
-        if (def->region == SE3D_REGION_SPHERE || a != def->axis) {
-            square += d * d;
-            radius = fmin(radius, 0.5 * (def->upper[a] - def->lower[a]));
-        }
-    }
-    return sqrt(square) + margin <= radius * (1.0 + 1e-12);
+    se3di_region region = {.kind = def->region, .axis = def->axis};
+    memcpy(region.lower, def->lower, sizeof region.lower);
+    memcpy(region.upper, def->upper, sizeof region.upper);
+    return region;
 }
 
 static void append(se3d_particles *p, uint32_t material, const se3d_fill_def *def, double radius,
                    const double x[3])
 {
     (void)se3di_particles_append(&p->set, material, radius, x, def->velocity, NULL);
+    p->set.spins[p->set.count - 1].tag = (uint16_t)def->tag;
 }
 
 typedef struct lattice {
@@ -152,7 +117,8 @@ static int lattice_point(const lattice *l, const se3d_fill_def *def, size_t k, d
     for (int a = 0; a < 3; ++a) {
         x[a] = def->lower[a] + l->margin + l->spacing * (double)at[a];
     }
-    return region_holds(def, x, def->radius_max + sqrt(3.0) * def->jitter);
+    const se3di_region region = se3di_fill_region(def);
+    return se3di_region_holds(&region, x, def->radius_max + sqrt(3.0) * def->jitter);
 }
 
 se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fill_def *def,
@@ -165,7 +131,7 @@ se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fi
     lattice l;
     double x[3];
     se3d_fill_def full = se3d_fill_def_default();
-    SE3DI_TRY(check_fill(particles, def, &full, &material));
+    SE3DI_TRY(se3di_check_fill(particles, def, &full, &material));
     double total = lattice_init(&l, &full);
     if (full.count == 0) {
         SE3DI_TRY(se3di_check_range(particles->system, "points of the lattice", total, 0.0, 2e9));
@@ -177,11 +143,12 @@ se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fi
     }
     SE3DI_TRY(se3di_particles_make_room(particles, wanted));
     uint64_t state = full.seed;
+    const se3di_radii radii = se3di_fill_radii(&full);
     for (size_t k = 0; k < points; ++k) {
         if (lattice_point(&l, &full, k, x)) {
-            double radius = draw_radius(&full, &state);
+            double radius = se3di_radii_draw(&radii, &state);
             for (int a = 0; a < 3; ++a) {
-                x[a] += full.jitter * (2.0 * uniform(&state) - 1.0);
+                x[a] += full.jitter * (2.0 * se3di_random_draw(&state) - 1.0);
             }
             append(particles, material, &full, radius, x);
         }
@@ -299,14 +266,13 @@ static se3d_status packing_init(packing *p, se3di_particles *set, const se3d_fil
 static int place(packing *p, se3d_particles *particles, uint32_t material, uint64_t *state)
 {
     const se3d_fill_def *def = p->def;
-    double radius = draw_radius(def, state);
+    const se3di_radii radii = se3di_fill_radii(def);
+    const se3di_region region = se3di_fill_region(def);
+    double radius = se3di_radii_draw(&radii, state);
     for (int try = 0; try < TRIES; ++try) {
         double x[3];
-        for (int a = 0; a < 3; ++a) {
-            double room = def->upper[a] - def->lower[a] - 2.0 * radius;
-            x[a] = def->lower[a] + radius + room * uniform(state);
-        }
-        if (region_holds(def, x, radius) && is_free(p, x, radius)) {
+        se3di_region_draw(&region, radius, state, x);
+        if (se3di_region_holds(&region, x, radius) && is_free(p, x, radius)) {
             append(particles, material, def, radius, x);
             enter(p, p->set->count - 1);
             return 1;
@@ -322,7 +288,7 @@ se3d_status se3d_particles_fill_random(se3d_particles *particles, const se3d_fil
     }
     uint32_t material;
     se3d_fill_def full = se3d_fill_def_default();
-    SE3DI_TRY(check_fill(particles, def, &full, &material));
+    SE3DI_TRY(se3di_check_fill(particles, def, &full, &material));
     SE3DI_TRY(se3di_particles_make_room(particles, full.count));
     se3di_particles *set = &particles->set;
     const size_t count = set->count;

@@ -665,6 +665,8 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(event);
     CHECK_INIT(expression);
     CHECK_INIT(particles);
+    CHECK_INIT(source);
+    CHECK_INIT(sink);
     CHECK_INIT(material);
     CHECK_INIT(material_pair);
     CHECK_INIT(shape);
@@ -917,6 +919,18 @@ static const row rows[] = {
     {"se3d_particles_get_name", particle_readers_reject_misuse, "", NULL, NULL},
     {"se3d_system_count_particles", particle_readers_reject_misuse, "", NULL, NULL},
     {"se3d_system_get_particles", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_add_source", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_source_stats", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_remove_source", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_add_sink", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_sink_count", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_remove_sink", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_set_tags", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_tags", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_materials", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_tally", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_source_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_sink_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_particles_fill_lattice", fills_reject_misuse, "", NULL, NULL},
     {"se3d_particles_fill_random", fills_reject_misuse, "", NULL, NULL},
 };

@@ -341,4 +341,76 @@ static se3d_status fills_reject_misuse(arguments *a)
     return SE3D_OK;
 }
 
+static se3d_status flows_reject_misuse(arguments *a)
+{
+    se3d_material material;
+    uint32_t number = 7, ids[2] = {0, 1}, tags[2];
+    uint64_t count;
+    se3d_material made[2];
+    se3d_source_stats stats;
+    se3d_particles_tally tally;
+    se3d_particles *p = particles_open(a, &material);
+    se3d_source_def source = se3d_source_def_default();
+    se3d_sink_def sink = se3d_sink_def_default();
+    se3d_fill_def fill = se3d_fill_def_default();
+    CHECK(se3d_particles_add_source(NULL, &source, &number) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_source(p, NULL, &number), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_source(p, &source, &number), SE3D_ERR_NULL);
+    source.fill = &fill;
+    REJECTED(se3d_particles_add_source(p, &source, &number), SE3D_ERR_INVALID_ARGUMENT);
+    fill.upper[0] = fill.upper[1] = fill.upper[2] = 1.0;
+    fill.radius_min = fill.radius_max = 0.1;
+    REJECTED(se3d_particles_add_source(p, &source, &number), SE3D_ERR_STALE_HANDLE);
+    fill.material = material;
+    fill.tag = SE3D_PARTICLES_TAGS;
+    REJECTED(se3d_particles_add_source(p, &source, &number), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "256");
+    fill.tag = 0;
+    source.rate = -1.0;
+    REJECTED(se3d_particles_add_source(p, &source, &number), SE3D_ERR_INVALID_ARGUMENT);
+    source.rate = 1.0;
+    source.stop = (double)NAN;
+    REJECTED(se3d_particles_add_source(p, &source, &number), SE3D_ERR_INVALID_ARGUMENT);
+    source.stop = 0.0;
+    source.function.index1 = 77;
+    REJECTED(se3d_particles_add_source(p, &source, &number), SE3D_ERR_STALE_HANDLE);
+    CHECK(number == 7);
+    CHECK(se3d_particles_get_source_stats(NULL, 0, &stats) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_source_stats(p, 0, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_source_stats(p, 0, &stats) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_remove_source(NULL, 0) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_remove_source(p, 0), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_add_sink(NULL, &sink, &number) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_sink(p, NULL, &number), SE3D_ERR_NULL);
+    sink.normal[0] = (double)NAN;
+    REJECTED(se3d_particles_add_sink(p, &sink, &number), SE3D_ERR_INVALID_ARGUMENT);
+    sink.normal[0] = 0.0;
+    sink.lower[0] = 1.0;
+    REJECTED(se3d_particles_add_sink(p, &sink, &number), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_sink_count(NULL, 0, &count) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_sink_count(p, 0, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_sink_count(p, 0, &count) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_remove_sink(NULL, 0) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_remove_sink(p, 0), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_set_tags(NULL, 2, ids, 1) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_set_tags(p, 2, NULL, 1), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_set_tags(p, 2, ids, 256), SE3D_ERR_INVALID_ARGUMENT);
+    ids[1] = 99;
+    REJECTED(se3d_particles_set_tags(p, 2, ids, 1), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_tags(NULL, 2, tags) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_tags(p, 2, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_tags(p, 1, tags) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_particles_get_tags(p, 2, tags) && tags[0] == 0);
+    CHECK(se3d_particles_get_materials(NULL, 2, made) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_materials(p, 2, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_materials(p, 3, made) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_particles_get_materials(p, 2, made) && made[1].index1 == material.index1);
+    CHECK(se3d_particles_get_tally(NULL, 0, &tally) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_tally(p, 0, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_tally(p, 256, &tally) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_particles_get_tally(p, 0, &tally) && tally.count == 2);
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
 #endif

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What particles are drawn from: random numbers, radii, places in a region. */
+#include "contact/particle_set.h"
+
+#include <math.h>
+
+double se3di_random_draw(uint64_t *state)
+{
+    uint64_t z = (*state += UINT64_C(0x9E3779B97F4A7C15));
+    z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+static double weight_of(const se3di_radii *radii, size_t k)
+{
+    return radii->weights ? radii->weights[k] : 1.0;
+}
+
+double se3di_radii_draw(const se3di_radii *radii, uint64_t *state)
+{
+    double u = se3di_random_draw(state);
+    if (radii->count == 0) {
+        return radii->smallest + (radii->largest - radii->smallest) * u;
+    }
+    double sum = 0.0;
+    for (size_t k = 0; k < radii->count; ++k) {
+        sum += weight_of(radii, k);
+    }
+    u *= sum;
+    size_t k = 0;
+    for (; k + 1 < radii->count && !(u < weight_of(radii, k)); ++k) {
+        u -= weight_of(radii, k);
+    }
+    while (!(weight_of(radii, k) > 0.0)) {
+        --k; /* rounding reached behind the last one that occurs */
+    }
+    return radii->radii[k];
+}
+
+void se3di_region_draw(const se3di_region *region, double radius, uint64_t *state, double x[3])
+{
+    for (int a = 0; a < 3; ++a) {
+        double room = region->upper[a] - region->lower[a] - 2.0 * radius;
+        x[a] = region->lower[a] + radius + room * se3di_random_draw(state);
+    }
+}
+
+int se3di_region_holds(const se3di_region *region, const double x[3], double radius)
+{
+    double square = 0.0;
+    double reach = HUGE_VAL;
+    if (region->kind == SE3D_REGION_BOX) {
+        return 1;
+    }
+    for (int a = 0; a < 3; ++a) {
+        double d = x[a] - 0.5 * (region->lower[a] + region->upper[a]);
+        if (region->kind == SE3D_REGION_SPHERE || a != region->axis) {
+            square += d * d;
+            reach = fmin(reach, 0.5 * (region->upper[a] - region->lower[a]));
+        }
+    }
+    return sqrt(square) + radius <= reach * (1.0 + 1e-12);
+}
