@@ -4,6 +4,7 @@
  * (Haug 1989, ch. 3, 11). docs/theory/kinematics.md */
 #include "analysis/run.h"
 
+#include "analysis/jump.h"
 #include "analysis/singular.h"
 #include "primitive/turn_counter.h"
 
@@ -117,6 +118,7 @@ se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, doubl
     double shortest = (t_end - model->time) / STEPS_MAX;
     while (model->time < t_end) {
         double h = choose_step(equations, t_end - model->time, step, shortest);
+        SE3DI_TRY(se3di_jump_refuse(&equations->assembly, model->time + h, h, equations->error));
         se3di_state_accept(equations);
         int last = model->time + h * (1.0 + 1e-9) >= t_end;
         SE3DI_TRY(se3di_watch_begin(equations));

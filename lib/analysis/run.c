@@ -4,6 +4,7 @@
 
 #include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
+#include "analysis/jump.h"
 #include "analysis/stiffness.h"
 #include "assembly/user.h"
 #include "contact/loads.h"
@@ -224,6 +225,7 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
     }
     double count = fmax(1.0, ceil(remaining / step - 1e-9));
     se3d_status status;
+    SE3DI_TRY(se3di_jump_refuse(&run->equations.assembly, t_end, step, run->error));
     SE3DI_TRY(begin_dynamics(run, remaining / count));
     if (!has_step_control(integration)) {
         status = run_fixed_steps(run, t_end, count);
@@ -317,8 +319,23 @@ se3d_status se3di_run_make_step(se3di_run *run, double h)
     return status;
 }
 
+/* Where dynamics fails near a prescribed value or rate that jumps, that is why. */
+static void blame_jump(const se3di_run *run, double t_end)
+{
+    const double now = run->model->time;
+    const double near = fmax(2.0 * run->integration.settings.step, t_end - now);
+    const double range[2] = {now - 1e-9 * fabs(now), now + near}; /* steps may pass t_end */
+    se3di_jump jump;
+    char text[300];
+    if (se3di_jump_find(&run->equations.assembly, range, 16, 1, &jump)) {
+        const se3di_error before = *run->error;
+        se3di_jump_format(run->model, &jump, text, sizeof text);
+        se3di_error_set(run->error, before.status, "%s (%.200s)", text, before.message);
+    }
+}
+
 /* A callback that failed is the reason for whatever else did. */
-static se3d_status explain(se3di_run *run, se3d_status status)
+static se3d_status explain(se3di_run *run, se3d_status status, double t_end)
 {
     se3di_model *model = run->model;
     if (status == SE3D_ERR_CALLBACK && model->user_failure.status >= 0) {
@@ -326,6 +343,11 @@ static se3d_status explain(se3di_run *run, se3d_status status)
     }
     if (status < 0 && model->user_failure.status == SE3D_ERR_CALLBACK) {
         return se3di_user_report(model, run->error);
+    }
+    if (status < 0 && status != SE3D_ERR_NO_MEMORY && status != SE3D_ERR_CALLBACK &&
+        run->analysis == SE3D_ANALYSIS_DYNAMICS &&
+        run->equations.assembly.topology_version == model->topology_version) {
+        blame_jump(run, t_end);
     }
     return status;
 }
@@ -343,7 +365,7 @@ se3d_status se3di_run_to(se3di_run *run, double t_end)
         run->events.goes_on = 0;
         SE3DI_TRY(prepare(run));
         begin(run->model);
-        status = explain(run, run_to(run, t_end));
+        status = explain(run, run_to(run, t_end), t_end);
     } while (status == SE3D_INFO_EVENT && run->events.goes_on);
     return status;
 }
@@ -357,6 +379,6 @@ se3d_status se3di_run_step(se3di_run *run, double h)
     SE3DI_TRY(prepare(run));
     begin(run->model);
     const double t_end = run->model->time + h;
-    const se3d_status status = explain(run, run_step(run, h));
+    const se3d_status status = explain(run, run_step(run, h), t_end);
     return status == SE3D_INFO_EVENT && run->events.goes_on ? se3di_run_to(run, t_end) : status;
 }

@@ -149,11 +149,93 @@ static void what_runs_away_is_no_jump(void)
     }
 }
 
+/* A driven rod: what became of it, and the message. */
+static se3d_status drive(const char *value, int32_t analysis, int32_t method, int outputs,
+                         char message[512], double *time)
+{
+    char text[600];
+    se3d_model *model = NULL;
+    se3d_solver *solver = NULL;
+    se3d_status status = SE3D_OK;
+    se3d_solver_def def = se3d_solver_def_default();
+    snprintf(text, sizeof text,
+             "{se3d: 1, bodies: [{name: rod, mass: 1, inertia: [1, 1, 1], position: [0.5, 0, 0]}],"
+             " joints: [{name: pin, type: revolute, body_i: ground, body_j: rod, at: [0, 0, 0],"
+             "           axis: [0, 0, 1]}],"
+             " drivers: [{name: steady, joint: pin, value: \"%s\"}]}",
+             value);
+    CHECK(!se3d_model_read_text(text, strlen(text), "text", NULL, &model, NULL));
+    se3d_system *system = se3d_model_get_system(model);
+    def.analysis = analysis;
+    def.method = method;
+    def.step = 0.01;
+    CHECK(!se3d_solver_create(system, &def, &solver));
+    for (int k = 1; k <= outputs && status >= 0; ++k) {
+        status = se3d_solver_run(solver, 2.0 * k / outputs);
+    }
+    snprintf(message, 512, "%s", se3d_system_get_error(system));
+    CHECK(!se3d_system_get_time(system, time));
+    se3d_solver_destroy(solver);
+    se3d_model_destroy(model);
+    return status;
+}
+
+static const struct {
+    int32_t analysis, method;
+} ways[] = {{SE3D_ANALYSIS_KINEMATICS, 0},
+            {SE3D_ANALYSIS_INVERSE_DYNAMICS, 0},
+            {SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_DOP853},
+            {SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_GENERALIZED_ALPHA},
+            {SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_RATTLE},
+            {SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_BDF}};
+
+static void a_prescribed_value_that_jumps_is_named_with_its_time(void)
+{
+    static const struct {
+        const char *value, *said;
+    } rows[] = {{"floor(t)", "from 0 to 1 at t = 1 s"},
+                {"0.1*mod(t, 0.7)", "from 0.07 to 0 at t = 0.7 s"},
+                {"sign(t - 0.5)", "at t = 0.5 s"},
+                {"if(t > 0.95, 2, 0)", "from 0 to 2 at t = 0.95 s"},
+                {"t + if(t < 1.37, 0, 1e-3)", "from 1.37 to 1.371 at t = 1.37 s"},
+                {"sin(5*t) + round(0.4*t)", "at t = 1.25 s"}};
+    char message[512];
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        for (size_t way = 0; way < sizeof ways / sizeof *ways; ++way) {
+            for (int outputs = 1; outputs <= 200; outputs += 199) {
+                double time = 0.0;
+                CHECK(drive(rows[k].value, ways[way].analysis, ways[way].method, outputs, message,
+                            &time) < 0);
+                CHECK_CONTAINS(message, "the value of steady.");
+                CHECK_CONTAINS(message, rows[k].said);
+                CHECK(time < 1.4 && (outputs == 1 || time > 0.45)); /* the last good state */
+            }
+        }
+    }
+}
+
+static void steep_and_fast_values_and_whole_turns_are_no_jumps(void)
+{
+    static const char *const values[] = {
+        "tanh(30*(t - 1))", "sin(40*t)",      "mod(3*t, 2*pi)",       "abs(t - 0.3)",
+        "max(0, t - 1)^2",  "1e-12*floor(t)", "0.1*abs(t - 0.31)^0.7"};
+    char message[512];
+    for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
+        for (size_t way = 0; way < 2; ++way) {
+            double time = 0.0;
+            CHECK(drive(values[k], ways[way].analysis, ways[way].method, 20, message, &time) >= 0);
+            CHECK_NEAR(time, 2.0, 0.0);
+        }
+    }
+}
+
 int main(void)
 {
     RUN(drivers_may_jump_in_their_second_derivative);
     RUN(loads_may_be_switched);
     RUN(friction_turns_with_the_motion);
     RUN(what_runs_away_is_no_jump);
+    RUN(a_prescribed_value_that_jumps_is_named_with_its_time);
+    RUN(steep_and_fast_values_and_whole_turns_are_no_jumps);
     return check_finish();
 }

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A smooth f obeys f1 - f0 = h/2 (f0' + f1') + O(h^3). Where it does not, the interval is halved,
+ * always towards the half that misses more; f jumps if it still changes in the last one, as short
+ * as the times are resolved. */
+#include "analysis/jump.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define LEAST     1e-6  /* relative: smaller ones are no jump */
+#define RESOLVED  4e-16 /* relative length of the last interval */
+#define PARTS_MAX 64.0  /* of one run */
+#define TWO_PI    6.283185307179586
+
+typedef struct point {
+    double t, f, d; /* time, value, derivative */
+} point;
+
+typedef struct search {
+    const se3di_function *function;
+    int derivative;
+    int wraps; /* whole turns are no jump */
+} search;
+
+/* A value that cannot be computed ends the search. */
+static int eval(const search *s, double t, point *p)
+{
+    double jet[3];
+    if (se3di_function_eval(s->function, &t, jet, NULL) < 0) {
+        return 0;
+    }
+    *p = (point){t, jet[s->derivative], jet[s->derivative + 1]};
+    return 1;
+}
+
+static double change(const search *s, const point *a, const point *b)
+{
+    const double d = b->f - a->f;
+    return s->wraps && s->derivative == 0 ? d - TWO_PI * nearbyint(d / TWO_PI) : d;
+}
+
+static double miss(const search *s, const point *a, const point *b)
+{
+    return fabs(change(s, a, b) - 0.5 * (b->t - a->t) * (a->d + b->d));
+}
+
+/* `scale`: smaller ones are no jump. */
+static int look_between(const search *s, point a, point b, double scale, se3di_jump *jump)
+{
+    const double shortest = RESOLVED * fmax(fmax(fabs(a.t), fabs(b.t)), b.t - a.t);
+    while (miss(s, &a, &b) > scale && b.t - a.t > shortest) {
+        point middle;
+        const double t = a.t + 0.5 * (b.t - a.t);
+        if (!(t > a.t && t < b.t) || !eval(s, t, &middle)) {
+            break;
+        }
+        if (miss(s, &a, &middle) >= miss(s, &middle, &b)) {
+            b = middle;
+        } else {
+            a = middle;
+        }
+    }
+    *jump = (se3di_jump){.t = b.t, .before = a.f, .after = b.f};
+    return b.t - a.t <= 4.0 * shortest && fabs(change(s, &a, &b)) > scale;
+}
+
+static int look(const search *s, const double range[2], int parts, se3di_jump *jump)
+{
+    point a;
+    point b;
+    if (!eval(s, range[0], &a)) {
+        return 0;
+    }
+    for (int k = 1; k <= parts; ++k, a = b) {
+        const double t = k < parts ? range[0] + (range[1] - range[0]) * k / parts : range[1];
+        if (!eval(s, t, &b)) {
+            return 0;
+        }
+        const double scale = LEAST * fmax(fmax(fabs(a.f), fabs(b.f)), 1e-3);
+        if (look_between(s, a, b, scale, jump)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int se3di_jump_find(const se3di_assembly *assembly, const double range[2], int parts, int highest,
+                    se3di_jump *jump)
+{
+    const se3di_model *model = assembly->model;
+    for (int derivative = 0; derivative <= highest; ++derivative) {
+        for (uint32_t timed = 0; timed < assembly->timed_count; ++timed) {
+            const uint32_t row = assembly->timed_rows[timed];
+            const search s = {&model->functions[model->rows[row].function], derivative,
+                              model->rows[row].wrap};
+            if (look(&s, range, parts, jump)) {
+                jump->row = row;
+                jump->derivative = derivative;
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+void se3di_jump_format(const se3di_model *model, const se3di_jump *jump, char *text, size_t size)
+{
+    char name[128];
+    se3di_row_name(model, jump->row, name, sizeof name);
+    snprintf(text, size,
+             "the %s of %s jumps from %.6g to %.6g at t = %.9g s; no motion does: "
+             "smooth it, for example with step(t, t0, f0, t1, f1)",
+             jump->derivative > 0 ? "rate" : "value", name, jump->before, jump->after, jump->t);
+}
+
+se3d_status se3di_jump_refuse(const se3di_assembly *assembly, double t_end, double step,
+                              se3di_error *error)
+{
+    const double range[2] = {assembly->model->time, t_end};
+    const int parts = (int)fmin(PARTS_MAX, fmax(1.0, ceil((t_end - range[0]) / step - 1e-9)));
+    se3di_jump jump;
+    char text[300];
+    if (assembly->timed_count == 0 || !se3di_jump_find(assembly, range, parts, 0, &jump)) {
+        return SE3D_OK;
+    }
+    se3di_jump_format(assembly->model, &jump, text, sizeof text);
+    return se3di_error_set(error, SE3D_ERR_INCONSISTENT, "%s", text);
+}
