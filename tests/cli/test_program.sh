@@ -174,6 +174,65 @@ rm "$dir/links/r/sub"
 expect 'a link in the place of a file' 0 "$program" run "$dir/away.yaml" -o "$dir/links/r"
 is "$(ls "$dir/links/away")" ''
 
+# Ended in the middle: the rows so far are on disk.
+cat >"$dir/long.yaml" <<'END'
+se3d: 1
+bodies: [{name: ball, mass: 1, inertia: [1, 1, 1]}]
+analysis: {type: dynamics, duration: 1e6, step: 0.01, method: rattle}
+output: [{file: l.csv, channels: [ball.position]}]
+END
+"$program" run "$dir/long.yaml" -o "$dir/l" >/dev/null 2>"$dir/err.long" &
+child=$!
+until [ -s "$dir/l/l.csv.partial" ]; do kill -0 $child || break; done
+kill -TERM $child
+expect 'ended by a signal' 1 wait $child
+has "$dir/err.long" 'ended by the user at t = '
+is "$(ls "$dir/l" | tr '\n' ' ')" 'l.csv scene.glb '
+is "$(awk -F, 'NF != 4 { print "cut" }' "$dir/l/l.csv")" ''
+# Nobody reads what is printed.
+name='a reader that goes away'
+(sleep 1; "$program" run "$models/pendulum.yaml" -o "$dir/gone" --duration 0.1 2>"$dir/err"; echo $? >"$dir/code") | :
+is "$(cat "$dir/code")" 1
+has "$dir/err" 'standard output cannot be written'
+is "$(ls "$dir/gone" | tr '\n' ' ')" 'pendulum.csv scene.glb '
+
+# Names with blanks and letters of any script become headers and names of files as they are.
+cat >"$dir/names.yaml" <<'END'
+se3d: 1
+bodies: [{name: 'Körper 1 ☃', mass: 1, inertia: [1, 1, 1]}]
+analysis: {type: dynamics, duration: 0.1}
+output: [{file: 'Ordner mit Platz/Lauf ☃ (1).csv', channels: ['Körper 1 ☃.position']}]
+END
+expect 'names of any script' 0 "$program" run "$dir/names.yaml" -o "$dir/n n"
+is "$(head -1 "$dir/n n/Ordner mit Platz/Lauf ☃ (1).csv")" \
+    'time,Körper 1 ☃.position.x,Körper 1 ☃.position.y,Körper 1 ☃.position.z'
+# A mark of the byte order, CR LF.
+{ printf '\357\273\277'; sed 's/$/\r/' "$dir/long.yaml"; } >"$dir/crlf.yaml"
+expect 'a byte order mark and CR LF' 0 "$program" run "$dir/crlf.yaml" -o "$dir/crlf" -q --duration 0.1
+# Rubbish, too deep, too long.
+head -c 100000 "$program" >"$dir/rubbish.yaml"
+expect 'binary rubbish' 2 "$program" run "$dir/rubbish.yaml"
+awk 'BEGIN { printf "se3d: 1\nbodies: "; for (k = 0; k < 100000; ++k) printf "[" }' >"$dir/deep.yaml"
+expect 'deep nesting' 2 "$program" run "$dir/deep.yaml"
+has "$dir/err" 'deep.yaml:2:'
+awk 'BEGIN { print "se3d: 1"; for (k = 0; k < 2000000; ++k) print "# 0123456789012345678901234567890" }' \
+    >"$dir/large.yaml"
+expect 'a file of 72 MB' 2 "$program" run "$dir/large.yaml"
+has "$dir/err" 'large.yaml'
+rm "$dir/large.yaml"
+# A folder that cannot be written; what is there already.
+if [ "$(id -u)" -ne 0 ]; then
+    mkdir -m 500 "$dir/locked"
+    expect 'a folder without permission' 1 "$program" run "$models/pendulum.yaml" -o "$dir/locked"
+    has "$dir/err" 'cannot be written'
+fi
+echo kept >"$dir/p/notes.txt"
+cp "$dir/p/pendulum.csv" "$dir/before.csv"
+expect 'a failure before the run' 1 sh -c 'trap "" XFSZ; ulimit -f 8; exec "$@"' sh \
+    "$program" run "$models/pendulum.yaml" -o "$dir/p"
+expect 'old results stay where new ones fail' 0 cmp "$dir/before.csv" "$dir/p/pendulum.csv"
+is "$(cat "$dir/p/notes.txt")" kept
+
 expect 'evaluate' 0 "$program" evaluate "$models/me751_jacobian.yaml" --csv
 is "$(wc -l <"$dir/out" | tr -d ' ')" 8
 has "$dir/out" 'bar,normalization,euler_norm,'

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interrupt.h"
 #include "options.h"
 #include "pictures.h"
 
@@ -25,8 +26,9 @@ static const char help[] =
     "  --quiet                print nothing but errors\n"
     "  --json                 print the summary as JSON\n"
     "\n"
-    "Exit code: 0 done; 1 the analysis failed (results so far are on disk); 2 bad usage or "
-    "model.\n";
+    "Exit code: 0 done; 1 the analysis failed or was ended by Ctrl-C (results so far are on "
+    "disk);\n"
+    "2 bad usage or model.\n";
 
 static const char *outcome(const se3d_run_analysis *a)
 {
@@ -152,13 +154,15 @@ static char *results_folder(const options *o, const se3d_model *model)
 typedef struct watcher {
     progress *bar;
     se3d_scene *scene;
+    double time;
 } watcher;
 
 static int watch(void *ctx, size_t analysis, double time, double fraction)
 {
-    const watcher *w = ctx;
+    watcher *w = ctx;
+    w->time = time;
     se3d_scene_record(w->scene);
-    return progress_show(w->bar, analysis, time, fraction);
+    return progress_show(w->bar, analysis, time, fraction) || interrupt_came();
 }
 
 /* The scene is left beside the results. @return false after a message. */
@@ -187,30 +191,37 @@ static int run_into(const options *o, se3d_model *model, const char *folder, se3
     progress_begin(&bar, o->quiet || o->json, se3d_model_count_analyses(model));
     how.directory = folder;
     se3d_scene_create(model, scene); /* without memory there is no scene */
-    watcher w = {&bar, *scene};
+    watcher w = {&bar, *scene, 0.0};
+    interrupt_begin();
     how.progress = watch;
     how.ctx = &w;
     const se3d_status status = se3d_model_run(model, &how, &run, &error);
+    const int ended = !SE3D_FAILED(status) && interrupt_came();
     progress_end(&bar);
+    if (ended) {
+        snprintf(error.message, sizeof error.message,
+                 "ended by the user at t = %.9g s; the results so far are in %.200s", w.time,
+                 folder);
+    }
     if (o->json) {
         print_json(o, model, run, error.message);
     } else if (!o->quiet) {
         print_text(run);
     }
-    if (SE3D_FAILED(status)) {
+    if (SE3D_FAILED(status) || ended) {
         fflush(stdout);
         fprintf(stderr, "%s: %s\n", o->model, error.message);
     }
     const int drawn = se3d_run_count_files(run) == 0 || write_scene(o, *scene, folder);
     const int nothing = se3d_run_count_files(run) == 0;
     se3d_run_destroy(run);
-    if (status == SE3D_ERR_UNSUPPORTED || (SE3D_FAILED(status) && nothing)) {
-        se3d_scene_destroy(*scene); /* no pictures of nothing */
+    if (status == SE3D_ERR_UNSUPPORTED || (SE3D_FAILED(status) && nothing) || ended) {
+        se3d_scene_destroy(*scene); /* no pictures of nothing, or nobody waits for them */
         *scene = NULL;
     }
-    return status == SE3D_ERR_UNSUPPORTED  ? EXIT_USAGE
-           : SE3D_FAILED(status) || !drawn ? EXIT_FAILED
-                                           : EXIT_DONE;
+    return status == SE3D_ERR_UNSUPPORTED           ? EXIT_USAGE
+           : SE3D_FAILED(status) || ended || !drawn ? EXIT_FAILED
+                                                    : EXIT_DONE;
 }
 
 /* `pictures`: the type of those to make, "" for none, NULL for all. */
