@@ -8,6 +8,10 @@
 
 #include "io/rotation.h"
 
+/* Beyond these the squares and products of mechanics leave what doubles hold. */
+#define LARGEST  1e40
+#define SMALLEST 1e-40
+
 static const char *const range_texts[] = {"finite", "finite and > 0", "finite and >= 0"};
 
 /* The identifier that begins at `text`, in `word`. */
@@ -144,6 +148,13 @@ bool se3di_read_number(se3di_reader *reader, const se3di_node *node, se3di_range
     if (!se3di_read_expression(reader, node, reader->model->symbols, reader->model->symbol_count,
                                value)) {
         return false;
+    }
+    if (fabs(*value) > LARGEST || (range == SE3DI_POSITIVE && *value > 0.0 && *value < SMALLEST)) {
+        char text[200];
+        format_value(node, *value, text, sizeof text);
+        return se3di_reader_fail(reader, node, "is %s, must be %s%g in magnitude", text,
+                                 fabs(*value) > LARGEST ? "at most " : "at least ",
+                                 fabs(*value) > LARGEST ? LARGEST : SMALLEST);
     }
     if ((range == SE3DI_POSITIVE && !(*value > 0.0)) ||
         (range == SE3DI_NOT_NEGATIVE && !(*value >= 0.0))) {
