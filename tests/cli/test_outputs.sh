@@ -2,30 +2,8 @@
 # What the `output` of a model asks for: VTK series that VTK itself reads, plots, scenes; one that fails does not
 # lose the others.
 set -u
-program=${SE3D_PROGRAM:?the path of the se3d program}
-source=${SE3D_SOURCE_DIR:-.}
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
+. "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
 export SE3D_VIEWER="$source/tools/viewer" SE3D_CACHE="${SE3D_BUILD_DIR:-$dir}/viewer" SE3D_CHROMIUM="$dir/none"
-failures=0
-checks=0
-expect() {
-    name=$1
-    code=$2
-    shift 2
-    "$@" >"$dir/out" 2>"$dir/err"
-    actual=$?
-    holds "exit code $actual, expected $code: $(head -3 "$dir/err")" [ $actual -eq "$code" ]
-}
-holds() {
-    text=$1
-    shift
-    checks=$((checks + 1))
-    "$@" || { echo "$name: $text" >&2; failures=$((failures + 1)); }
-}
-says() {
-    holds "\`$1\` not in $(cat "$dir/err")" grep -qF -e "$1" "$dir/err"
-}
 cat >"$dir/head.yaml" <<'END_OF_YAML'
 se3d: 1
 title: A bar, a block on a spring
@@ -183,5 +161,4 @@ END_OF_YAML
 expect 'a scene alone' 0 "$program" run --json "$dir/only.yaml" -o "$dir/only"
 holds 'has no results beside it' [ -s "$dir/only/results.csv" -a -s "$dir/only/motion.glb" ]
 holds "JSON says otherwise: $(cat "$dir/out")" grep -qF '"pictures": ["motion.glb"]' "$dir/out"
-echo "$checks checks, $failures failed"
-[ $failures -eq 0 ]
+finish

@@ -1,34 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # se3d plot: pictures, units, messages. Run with SE3D_PROGRAM and SE3D_SOURCE_DIR set.
 set -u
-program=${SE3D_PROGRAM:?the path of the se3d program}
-case $program in /*) ;; *) program=$PWD/$program ;; esac
-models=${SE3D_SOURCE_DIR:-.}/examples/models
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-failures=0
-checks=0
-
-fail() {
-    echo "$name: $1" >&2
-    failures=$((failures + 1))
-}
-
-# expect NAME CODE COMMAND...
-expect() {
-    name=$1
-    code=$2
-    shift 2
-    "$@" >"$dir/out" 2>"$dir/err"
-    actual=$?
-    checks=$((checks + 1))
-    [ $actual -eq "$code" ] || fail "exit code $actual, expected $code: $(head -3 "$dir/err")"
-}
-
-has() {
-    checks=$((checks + 1))
-    grep -qF -e "$2" "$1" || fail "\`$2\` not found in $1"
-}
+. "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
 
 expect 'help' 0 "$program" plot --help
 expect 'no file' 2 "$program" plot
@@ -50,9 +23,7 @@ has "$dir/err" 'has no channel `a.velocity`, it has: time, a.position'
 
 if ! command -v gnuplot >/dev/null 2>&1; then
     echo "SKIPPED: gnuplot is not installed (apt-get install gnuplot-nox): no picture was tested" >&2
-    echo "$checks checks, $failures failed"
-    [ $failures -eq 0 ]
-    exit
+    finish
 fi
 
 for model in pendulum spatial_slider_crank tsda_mass; do
@@ -92,5 +63,4 @@ has "$dir/err" 'cannot be written'
 expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 4; exec "$@"' sh "$program" plot "$dir/pendulum.csv" -o "$dir/full"
 [ ! -e "$dir/full.svg" ] && [ ! -e "$dir/full.svg.partial" ] || fail 'a broken picture is left'
 
-echo "$checks checks, $failures failed"
-[ $failures -eq 0 ]
+finish

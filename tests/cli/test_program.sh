@@ -1,45 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The se3d program: exit codes, messages, files. Run with SE3D_PROGRAM and SE3D_SOURCE_DIR set.
 set -u
-program=${SE3D_PROGRAM:?the path of the se3d program}
-models=${SE3D_SOURCE_DIR:-.}/examples/models
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-failures=0
-checks=0
-
-# expect NAME CODE COMMAND...: run, keep the output in out and err
-expect() {
-    name=$1
-    code=$2
-    shift 2
-    "$@" >"$dir/out" 2>"$dir/err"
-    actual=$?
-    checks=$((checks + 1))
-    if [ $actual -ne "$code" ]; then
-        echo "$name: exit code $actual, expected $code" >&2
-        sed 's/^/    /' "$dir/err" >&2
-        failures=$((failures + 1))
-    fi
-}
-
-# has FILE TEXT: the file contains the text
-has() {
-    checks=$((checks + 1))
-    if ! grep -qF -e "$2" "$1"; then
-        echo "$name: \`$2\` not found in:" >&2
-        head -5 "$1" | sed 's/^/    /' >&2
-        failures=$((failures + 1))
-    fi
-}
-
-is() {
-    checks=$((checks + 1))
-    if [ "$1" != "$2" ]; then
-        echo "$name: \`$1\`, expected \`$2\`" >&2
-        failures=$((failures + 1))
-    fi
-}
+. "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
 
 expect 'no arguments' 2 "$program"
 expect 'help' 0 "$program" --help
@@ -277,5 +239,4 @@ has "$dir/out" '6 equations, rank 6'
 expect 'check --json' 0 "$program" check "$models/fourbar.yaml" --json
 has "$dir/out" '"freedoms": 1'
 
-echo "$checks checks, $failures failed"
-[ $failures -eq 0 ]
+finish

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The scene that se3d run leaves: a glTF file whose poses are those of the CSV file.
 set -eu
-program=${SE3D_PROGRAM:?the path of the se3d program}
-models=${SE3D_SOURCE_DIR:-.}/examples/models
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
+. "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
 "$program" run -q "$models/pendulum.yaml" -o "$dir/pendulum"
 "$program" run -q "$models/spatial_slider_crank.yaml" -o "$dir/spatial_slider_crank"
 "$program" run -q "$models/tsda_mass.yaml" -o "$dir/tsda_mass"

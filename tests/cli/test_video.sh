@@ -1,31 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # se3d video: messages, and films that ffprobe and the pixels approve of, where the tools are there.
 set -u
-program=${SE3D_PROGRAM:?the path of the se3d program}
-source=${SE3D_SOURCE_DIR:-.}
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
+. "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
 mkdir "$dir/tmp"
 export SE3D_VIEWER="$source/tools/viewer" SE3D_CACHE="${SE3D_BUILD_DIR:-$dir}/viewer" TMPDIR="$dir/tmp"
-failures=0
-checks=0
-expect() {
-    name=$1
-    code=$2
-    shift 2
-    "$@" >"$dir/out" 2>"$dir/err"
-    actual=$?
-    holds "exit code $actual, expected $code: $(head -3 "$dir/err")" [ $actual -eq "$code" ]
-}
-holds() {
-    text=$1
-    shift
-    checks=$((checks + 1))
-    "$@" || { echo "$name: $text" >&2; failures=$((failures + 1)); }
-}
-says() {
-    holds "\`$1\` not in $(cat "$dir/err")" grep -qF -e "$1" "$dir/err"
-}
 nothing_left() {
     holds 'an unfinished film is left' [ ! -e "$1" -a ! -e "$1.partial" ]
     holds "left in the temporary folder: $(ls "$dir/tmp")" [ -z "$(ls "$dir/tmp")" ]
@@ -44,11 +22,6 @@ expect 'no Chromium' 1 env PATH="$dir/none" SE3D_CHROMIUM= "$program" video "$di
 says 'apt-get install --no-install-recommends chromium'
 expect 'no ffmpeg' 1 env PATH="$dir/bin" SE3D_CHROMIUM= "$program" video "$dir"
 says 'apt-get install --no-install-recommends ffmpeg'
-finish() {
-    echo "$checks checks, $failures failed"
-    [ $failures -eq 0 ]
-    exit
-}
 for tool in chromium ffmpeg ffprobe python3; do
     command -v $tool >/dev/null 2>&1 || { echo "SKIPPED: no $tool: no film was made" >&2; finish; }
 done

@@ -1,38 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # se3d view: messages, and the page in a real browser where Chromium and node are installed.
 set -u
-program=${SE3D_PROGRAM:?the path of the se3d program}
-source=${SE3D_SOURCE_DIR:-.}
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
+. "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
 export SE3D_VIEWER="$source/tools/viewer" SE3D_CACHE="${SE3D_BUILD_DIR:-$dir}/viewer"
-failures=0
-checks=0
-expect() {
-    name=$1
-    code=$2
-    shift 2
-    "$@" >"$dir/out" 2>"$dir/err"
-    actual=$?
-    checks=$((checks + 1))
-    if [ $actual -ne "$code" ]; then
-        echo "$name: exit code $actual, expected $code: $(head -3 "$dir/err")" >&2
-        failures=$((failures + 1))
-    fi
-}
-has() {
-    checks=$((checks + 1))
-    grep -qF -e "$2" "$1" || { echo "$name: \`$2\` not found in $1" >&2; failures=$((failures + 1)); }
-}
 expect 'help' 0 "$program" view --help
 expect 'no folder' 2 "$program" view
 expect 'no scene' 1 "$program" view "$dir"
 has "$dir/err" 'scene.glb: cannot be read; `se3d run MODEL -o '
 if ! command -v npm >/dev/null 2>&1 && [ ! -f /usr/share/javascript/three/three.min.js ]; then
     echo 'SKIPPED: neither npm nor libjs-three: no page was tested' >&2
-    echo "$checks checks, $failures failed"
-    [ $failures -eq 0 ]
-    exit
+    finish
 fi
 opens() {
     if command -v chromium >/dev/null 2>&1 && command -v node >/dev/null 2>&1; then
@@ -47,7 +24,7 @@ for pair in pendulum:bar spatial_slider_crank:rod tsda_mass:block; do
     "$program" run -q "$source/examples/models/$model.yaml" -o "$dir/$model"
     expect "$model" 0 "$program" view "$dir/$model"
     has "$dir/$model/scene.html" 'Copyright © 2010-20'
-    [ "$(wc -c <"$dir/$model/scene.html")" -lt 1000000 ] || { echo "$model: too large" >&2; failures=$((failures + 1)); }
+    [ "$(wc -c <"$dir/$model/scene.html")" -lt 1000000 ] || fail "$model is too large"
     [ "$model" = pendulum ] || opens "$model" "$dir/$model/scene.html" "$dir/$model/$model.csv" "${pair#*:}"
 done
 # 20 bodies over 10 s, more rows than a scene has samples: still exact, still small.
@@ -65,7 +42,7 @@ expect '20 bodies' 0 "$program" view -q "$dir/twenty"
 size=$(wc -c <"$dir/twenty/scene.html")
 echo "20 bodies over 10 s: $size bytes"
 checks=$((checks + 1))
-[ "$size" -lt 1500000 ] || { echo "20 bodies: $size bytes" >&2; failures=$((failures + 1)); }
+[ "$size" -lt 1500000 ] || fail "20 bodies: $size bytes"
 opens '20 bodies' "$dir/twenty/scene.html" "$dir/twenty/results.csv" b2
 # 10,000 grains: some come late, some leave early.
 "$program" run -q "$source/examples/models/pushed_grains.yaml" -o "$dir/grains"
@@ -89,6 +66,5 @@ has "$dir/err" 'has no rows'
 expect 'a folder that cannot be written' 1 "$program" view "$dir/pendulum" -o "$dir/none/scene.html"
 has "$dir/err" 'cannot be written'
 expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 64; exec "$@"' sh "$program" view "$dir/pendulum" -o "$dir/full.html"
-[ ! -e "$dir/full.html" ] && [ ! -e "$dir/full.html.partial" ] || { echo 'a broken page is left' >&2; failures=$((failures + 1)); }
-echo "$checks checks, $failures failed"
-[ $failures -eq 0 ]
+[ ! -e "$dir/full.html" ] && [ ! -e "$dir/full.html.partial" ] || fail 'a broken page is left'
+finish

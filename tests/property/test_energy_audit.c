@@ -7,11 +7,8 @@
  * to 1e-8 of the largest of these at tolerance 1e-9, and to 1e-6 at the default tolerance. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <dirent.h>
-#include <stdlib.h>
-
-#include "check.h"
 #include "se3d/io.h"
+#include "support/examples.h"
 
 enum { SAMPLES = 200 };
 
@@ -106,23 +103,7 @@ static int audit_model(const char *path, const char *name)
 
 static void energy_audit_closes_on_every_example(void)
 {
-    const char *root = getenv("SE3D_SOURCE_DIR");
-    char folder[600], path[900];
-    int audited = 0;
-    snprintf(folder, sizeof folder, "%.500s/examples/models", root ? root : ".");
-    DIR *directory = opendir(folder);
-    CHECK(directory != NULL);
-    for (struct dirent *entry; directory && (entry = readdir(directory));) {
-        size_t length = strlen(entry->d_name);
-        if (length > 5 && strcmp(entry->d_name + length - 5, ".yaml") == 0) {
-            snprintf(path, sizeof path, "%s/%.255s", folder, entry->d_name);
-            audited += audit_model(path, entry->d_name);
-        }
-    }
-    if (directory) {
-        closedir(directory);
-    }
-    CHECK(audited >= 10);
+    CHECK(support_visit_examples(audit_model) >= 10);
 }
 
 int main(void)

@@ -4,12 +4,9 @@
  * with a tight tolerance; where bodies touch, with 1e-7 and to 1e-5. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <dirent.h>
-#include <stdlib.h>
-
-#include "check.h"
 #include "model/model.h"
 #include "se3d/io.h"
+#include "support/examples.h"
 #include "system/system_internal.h"
 
 enum { SAMPLES = 25, PER_BODY = 19, PER_CONSTRAINT = 6 };
@@ -196,23 +193,7 @@ static int compare_model(const char *path, const char *name)
 
 static void both_formulations_agree_on_every_example(void)
 {
-    const char *root = getenv("SE3D_SOURCE_DIR");
-    char folder[600], path[900];
-    int compared = 0;
-    snprintf(folder, sizeof folder, "%.500s/examples/models", root ? root : ".");
-    DIR *directory = opendir(folder);
-    CHECK(directory != NULL);
-    for (struct dirent *entry; directory && (entry = readdir(directory));) {
-        size_t length = strlen(entry->d_name);
-        if (length > 5 && strcmp(entry->d_name + length - 5, ".yaml") == 0) {
-            snprintf(path, sizeof path, "%s/%.255s", folder, entry->d_name);
-            compared += compare_model(path, entry->d_name);
-        }
-    }
-    if (directory) {
-        closedir(directory);
-    }
-    CHECK(compared >= 16);
+    CHECK(support_visit_examples(compare_model) >= 16);
 }
 
 /* The four-bar that folds flat: a parallelogram, so that the angle alpha of its links obeys
