@@ -10,6 +10,8 @@
  *     drum=0        rad/s: the box is a drum of 24 planes about the y axis instead
  *     state=FILE    the settled state as a LAMMPS data file: read where there is one, written
  *                   otherwise, so that others start from the same
+ *     tiles=1       the state is one of (edge/tiles)^3 spheres, put side by side and on top of each
+ *                   other so many times, and settles from there: for sets that would take hours
  *
  * A last line tells bytes and flops per particle-step and the share of what the memory can do; see
  * granular/README.md. */
@@ -37,7 +39,7 @@ typedef struct bench {
     double *state; /* r, v, w [count * 3] each */
     double turned; /* angle of the drum */
     int hertz, reserved;
-    double threads, settle, lead, steps, repeats, tilt, drum_rate;
+    double threads, settle, lead, steps, repeats, tilt, drum_rate, tiles;
     const char *file;
 } bench;
 
@@ -179,13 +181,29 @@ static void write_state(bench *b)
     fclose(file);
 }
 
+/* Copies of the first `n` spheres fill the other places. */
+static void copy_tiles(bench *b, size_t n)
+{
+    double pitch[3] = {width_of(b) / b->tiles, width_of(b) / b->tiles, 0.0};
+    for (size_t k = 0; k < n; ++k) {
+        pitch[2] = fmax(pitch[2], b->state[3 * k + 2] + 0.5 * DIAMETER);
+    }
+    size_t across = (size_t)b->tiles;
+    for (size_t tile = 1; tile < across * across * across; ++tile) {
+        const size_t at[3] = {tile % across, tile / across % across, tile / across / across};
+        for (size_t k = 0; k < 3 * n; ++k) {
+            b->state[3 * n * tile + k] = b->state[k] + (double)at[k % 3] * pitch[k % 3];
+        }
+    }
+}
+
 /* Returns 0 where there is no such file. */
 static int read_state(bench *b)
 {
     FILE *file = b->file ? fopen(b->file, "r") : NULL;
     char line[256];
-    size_t k = 0;
-    while (file && k < b->count && fgets(line, sizeof line, file)) {
+    size_t k = 0, n = b->count / (size_t)(b->tiles * b->tiles * b->tiles);
+    while (file && k < n && fgets(line, sizeof line, file)) {
         unsigned long id;
         double *x = b->state + 3 * k;
         int found = sscanf(line, "%lu %*d %*f %*f %lf %lf %lf", &id, &x[0], &x[1], &x[2]);
@@ -194,7 +212,8 @@ static int read_state(bench *b)
     if (file) {
         fclose(file);
     }
-    if (k == b->count && k > 0) {
+    if (k == n && k > 0) {
+        copy_tiles(b, n);
         must(b, se3d_particles_set_all(b->particles, b->count, b->state, NULL, NULL));
         return 1;
     }
@@ -281,7 +300,7 @@ static int parse(bench *b, const char *text)
         double *value;
     } numbers[] = {{"threads", &b->threads}, {"settle", &b->settle},   {"lead", &b->lead},
                    {"steps", &b->steps},     {"repeats", &b->repeats}, {"tilt", &b->tilt},
-                   {"drum", &b->drum_rate}};
+                   {"drum", &b->drum_rate},  {"tiles", &b->tiles}};
     const char *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : 0;
     for (size_t k = 0; equals && k < sizeof numbers / sizeof numbers[0]; ++k) {
@@ -305,7 +324,13 @@ static int parse(bench *b, const char *text)
 
 int main(int argc, char **argv)
 {
-    bench b = {.edge = 20, .threads = 1, .settle = 60000, .lead = 300, .steps = 3000, .repeats = 1};
+    bench b = {.edge = 20,
+               .threads = 1,
+               .settle = 60000,
+               .lead = 300,
+               .steps = 3000,
+               .repeats = 1,
+               .tiles = 1};
     for (int k = 1; k < argc; ++k) {
         if (!parse(&b, argv[k])) {
             return 2;
@@ -315,11 +340,12 @@ int main(int argc, char **argv)
     build(&b);
     must(&b, se3d_particles_step(b.particles, 1));
     printf("ready after %.2f s\n", clock_of(CLOCK_MONOTONIC) - start);
-    if (!read_state(&b)) {
+    int found = read_state(&b);
+    if (!found || b.tiles > 1) {
         settle(&b);
-        if (b.file) {
-            write_state(&b);
-        }
+    }
+    if (!found && b.file) {
+        write_state(&b);
     }
     tilt(&b);
     measure(&b);

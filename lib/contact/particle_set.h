@@ -121,7 +121,10 @@ typedef struct se3di_slab {
     size_t moved;                  /* springs that hold something */
     uint32_t mesh_begin, mesh_end; /* pairs with meshes */
     double overlap;                /* largest excess over what is allowed */
+    double fastest;                /* squared speed after the last motion */
     uint64_t touching;
+    int32_t done; /* in this sweep its forces have been evaluated */
+    int32_t reserved;
 } se3di_slab;
 
 /* Memory with an address that is a multiple of 64. */
@@ -274,7 +277,8 @@ typedef struct se3di_particles {
     int32_t starved; /* memory was missing in the last evaluation of the forces */
     int32_t reserved2;
     uint32_t failed;      /* id of the particle that a failure names */
-    double failed_amount; /* its overlap over the smaller radius */
+    double failed_amount; /* its overlap over the smaller radius, */
+    double failed_time;   /* then */
     const se3di_kernels *kernels;
 } se3di_particles;
 
@@ -298,6 +302,13 @@ typedef struct se3di_force_task {
     uint64_t touching;         /* out: added to */
     double *wall_sums;         /* walls: [walls * 6], added to */
 } se3di_force_task;
+
+/* `kicks` half kicks (0, 1 or 2) of h/2 from the loads and gravity, then a drift. */
+typedef struct se3di_motion {
+    int kicks;
+    double h;
+    double drift; /* 0: none; else the loads become zero */
+} se3di_motion;
 
 struct se3di_kernels {
     const char *name;
@@ -371,13 +382,21 @@ double se3di_wall_nearest(const se3di_wall *wall, const double x[3], double poin
                           double normal[3]);
 double se3di_wall_distance(const se3di_wall *wall, const double x[3]);
 
-/* particle_step.c: motion. */
-void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames);
+/* particle_sweep.c: forces and motion. */
 /* Half kick of duration h/2 from the present forces and gravity. */
 void se3di_particles_kick(se3di_particles *set, double h);
 void se3di_particles_drift(se3di_particles *set, double h);
 /* One or two half kicks of duration h/2 each and a drift by h, in one pass. */
 void se3di_particles_move(se3di_particles *set, int kicks, double h);
+/* The forces of all slabs, and for every slab, as soon as its forces are complete and nobody looks
+ * at where it was, its motion. */
+void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
+                           const se3di_motion *motion);
+/* The larger one; NaN where one is NaN. */
+double se3di_larger(double a, double b);
+
+/* particle_step.c: steps. */
+void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames);
 /* Nothing moves and nothing will. */
 int se3di_particles_is_idle(const se3di_particles *set);
 /* Bring the lists up to date, evaluate all forces; springs advance by h (0: they stay). Where

@@ -45,7 +45,7 @@ se3d_status se3di_particles_report(const se3di_particles *set, se3d_status statu
         return se3di_error_set(error, status,
                                "particle %u%s%.80s overlaps by %g of the smaller radius at time %g "
                                "s (allowed: %g); try a smaller step or a stiffer material",
-                               set->failed, of, name, set->failed_amount, set->time,
+                               set->failed, of, name, set->failed_amount, set->failed_time,
                                set->overlap_limit);
     case SE3D_ERR_NOT_FINITE:
         return se3di_error_set(error, status,

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Motion of particles: velocity Verlet with kick and drift in one pass, and the evaluation of all
- * forces, slab by slab. Every particle gets its forces in the same order for any number of threads:
- * from an even slab before an odd one.                                 docs/theory/particles.md */
+/* Steps of particles: lists that hold what touches, forces, velocity Verlet, and what may fail.
+ *                                                                      docs/theory/particles.md */
 #include "contact/particle_set.h"
 
 #include "base/hash.h"
@@ -10,92 +9,12 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames)
 {
     for (size_t k = 0; k < set->wall_count; ++k) {
         se3di_wall *wall = &set->walls[k];
         se3di_shape_place(&wall->shape, &frames[wall->shape.body], &wall->pose);
     }
-}
-
-/* One pass over particles [begin, end): `kicks` half kicks of h/2 (0, 1 or 2), then a drift by
- * `drift`; a drift zeroes the loads. Returns the largest squared speed, NaN where one is NaN. */
-static double pass_range(se3di_particles *set, size_t begin, size_t end, int kicks,
-                         const double h[2])
-{
-    double fastest = 0.0;
-    for (size_t k = begin; k < end; ++k) {
-        se3di_grain *grain = &set->grains[k];
-        se3di_spin *spin = &set->spins[k];
-        se3di_load *load = &set->loads[k];
-        double turn = 2.5 * grain->inverse_mass / (grain->radius * grain->radius);
-        double v2 = 0.0;
-        for (int a = 0; a < 3; ++a) {
-            double dv = h[0] * (load->force[a] * grain->inverse_mass + set->gravity[a]);
-            double dw = h[0] * (load->torque[a] * turn);
-            for (int n = 0; n < kicks; ++n) {
-                grain->v[a] += dv;
-                spin->w[a] += dw;
-            }
-            v2 += grain->v[a] * grain->v[a];
-            grain->x[a] += h[1] * grain->v[a];
-        }
-        fastest = v2 <= fastest ? fastest : v2; /* NaN stays */
-        if (h[1] != 0.0) {
-            *load = (se3di_load){{0.0}, {0.0}};
-        }
-    }
-    return fastest;
-}
-
-static double larger(double a, double b)
-{
-    return b <= a || a != a ? a : b; /* NaN stays */
-}
-
-#define PASS_PARTS 64 /* the same for any number of threads */
-
-static void pass(se3di_particles *set, int kicks, double h, double drift)
-{
-    const double steps[2] = {0.5 * h, drift};
-    double fastest_of[PASS_PARTS];
-    size_t part = set->count / PASS_PARTS + 1;
-#ifdef _OPENMP
-#pragma omp parallel for if (set->threads > 1) num_threads(set->threads) schedule(static)
-#endif
-    for (size_t c = 0; c < PASS_PARTS; ++c) {
-        size_t begin = c * part < set->count ? c * part : set->count;
-        size_t end = begin + part < set->count ? begin + part : set->count;
-        fastest_of[c] = pass_range(set, begin, end, kicks, steps);
-    }
-    double fastest = 0.0;
-    for (size_t c = 0; c < PASS_PARTS; ++c) {
-        fastest = larger(fastest, fastest_of[c]);
-    }
-    if (drift != 0.0) {
-        set->pace = sqrt(fastest) * fabs(drift);
-        set->moved += set->pace;
-        set->force_valid = 0;
-    }
-}
-
-void se3di_particles_kick(se3di_particles *set, double h)
-{
-    pass(set, 1, h, 0.0);
-}
-
-void se3di_particles_drift(se3di_particles *set, double h)
-{
-    pass(set, 0, 0.0, h);
-}
-
-void se3di_particles_move(se3di_particles *set, int kicks, double h)
-{
-    pass(set, kicks, h, h);
 }
 
 /* The farthest that a wall's surface is from where it was, where particles may touch it: of a plane
@@ -138,8 +57,8 @@ static void motion(const se3di_particles *set, double *since_list, double *since
         const se3di_wall *wall = &set->walls[k];
         double far = wall_shift(set, wall, wall->old_x, wall->old_R);
         double close = wall_shift(set, wall, wall->near_x, wall->near_R);
-        *since_list = larger(*since_list, set->moved + far);
-        *since_near = larger(*since_near, near + close);
+        *since_list = se3di_larger(*since_list, set->moved + far);
+        *since_near = se3di_larger(*since_near, near + close);
     }
 }
 
@@ -151,7 +70,7 @@ static void measure_motion(se3di_particles *set)
         const double *x = set->grains[k].x;
         const double *o = set->origin + 3 * k;
         double d[3] = {x[0] - o[0], x[1] - o[1], x[2] - o[2]};
-        most = larger(most, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        most = se3di_larger(most, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     }
     set->moved = sqrt(most);
 }
@@ -173,59 +92,6 @@ static se3d_status update_lists(se3di_particles *set)
     return since_near < set->near ? SE3D_OK : se3di_particles_refresh(set);
 }
 
-static void evaluate_slab(se3di_particles *set, se3di_force_task task, uint32_t s)
-{
-    se3di_slab *slab = &set->slabs[s];
-    size_t walls = set->wall_count;
-    task.begin = slab->pair_begin;
-    task.end = slab->pair_end;
-    task.touching = 0;
-    set->kernels->pairs(&task);
-    task.begin = slab->wall_begin;
-    task.end = slab->wall_end;
-    task.wall_sums = set->wall_sums + 6 * walls * s;
-    if (walls > 0) {
-        memset(task.wall_sums, 0, 6 * walls * sizeof(double));
-        set->kernels->walls(&task);
-        se3di_particles_mesh_forces(set, slab, &task);
-    }
-    slab->overlap = task.overlap;
-    slab->touching = task.touching;
-}
-
-/* All even slabs, then all odd ones; or, on one thread, in an order with the same results that
- * passes memory once: 0 2 1 4 3 ... */
-static void evaluate_slabs(se3di_particles *set, const se3di_force_task *task)
-{
-    long slabs = (long)set->slab_count;
-    set->team = 1;
-    if (set->threads <= 1) {
-        for (long s = 0; s < slabs; s += 2) {
-            evaluate_slab(set, *task, (uint32_t)s);
-            if (s > 0) {
-                evaluate_slab(set, *task, (uint32_t)(s - 1));
-            }
-        }
-        if (slabs % 2 == 0 && slabs > 0) {
-            evaluate_slab(set, *task, (uint32_t)(slabs - 1));
-        }
-        return;
-    }
-#ifdef _OPENMP
-#pragma omp parallel num_threads(set->threads)
-#endif
-    for (int odd = 0; odd < 2; ++odd) { /* every thread: both loops, with a barrier between */
-#ifdef _OPENMP
-#pragma omp single nowait
-        set->team = omp_get_num_threads();
-#pragma omp for schedule(dynamic)
-#endif
-        for (long s = odd; s < slabs; s += 2) {
-            evaluate_slab(set, *task, (uint32_t)s);
-        }
-    }
-}
-
 static void note_overlap(se3di_particles *set, uint32_t i, double amount)
 {
     if (amount > set->failed_amount) {
@@ -234,23 +100,38 @@ static void note_overlap(se3di_particles *set, uint32_t i, double amount)
     }
 }
 
-static double pair_overlap(const se3di_particles *set, const se3di_grain *i, const se3di_grain *j)
+/* Where it was a drift of length `back` ago. */
+static void place_before(const se3di_grain *g, double back, double x[3])
 {
-    double d[3];
-    se3di_sub(i->x, j->x, d);
+    se3di_copy(g->x, x);
+    se3di_add_scaled(-back, g->v, x);
+}
+
+static double pair_overlap(const se3di_particles *set, const se3di_grain *i, const se3di_grain *j,
+                           double back)
+{
+    double d[3], at[3];
+    place_before(i, back, d);
+    place_before(j, back, at);
+    se3di_sub(d, at, d);
     se3di_particles_wrap(set, d);
     return (i->radius + j->radius - se3di_norm(d)) / fmin(i->radius, j->radius);
 }
 
-static double wall_overlap(const se3di_particles *set, uint32_t wall, const se3di_grain *i)
+static double wall_overlap(const se3di_particles *set, uint32_t wall, const se3di_grain *i,
+                           double back)
 {
-    return 1.0 - se3di_wall_distance(&set->walls[wall], i->x) / i->radius;
+    double at[3];
+    place_before(i, back, at);
+    return 1.0 - se3di_wall_distance(&set->walls[wall], at) / i->radius;
 }
 
-/* Which particle overlaps most, for the message of a failure. */
-static void find_overlap(se3di_particles *set)
+/* Which particle overlapped most when the last forces were evaluated, a drift of length `back` ago:
+ * for the message of a failure. */
+static void find_overlap(se3di_particles *set, double back)
 {
     set->failed_amount = -1.0;
+    set->failed_time = set->time;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
         const se3di_slab *slab = &set->slabs[s];
         for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
@@ -259,13 +140,13 @@ static void find_overlap(se3di_particles *set)
                 const se3di_grain *i = &set->grains[block->i[k]];
                 note_overlap(set, block->i[k],
                              b >= slab->wall_begin
-                                 ? wall_overlap(set, block->j[0], i)
-                                 : pair_overlap(set, i, &set->grains[block->j[k]]));
+                                 ? wall_overlap(set, block->j[0], i, back)
+                                 : pair_overlap(set, i, &set->grains[block->j[k]], back));
             }
         }
         for (uint32_t k = slab->mesh_begin; k < slab->mesh_end; ++k) {
             const se3di_mesh_pair *pair = &set->mesh_pairs[k];
-            note_overlap(set, pair->i, wall_overlap(set, pair->wall, &set->grains[pair->i]));
+            note_overlap(set, pair->i, wall_overlap(set, pair->wall, &set->grains[pair->i], back));
         }
     }
 }
@@ -336,7 +217,9 @@ static se3di_force_task prepare(se3di_particles *set, double h)
     return task;
 }
 
-se3d_status se3di_particles_forces(se3di_particles *set, double h)
+/* Forces with lists that hold everything, and then the motion; without its drift where memory is
+ * missing. STEP_SIZE: an overlap is too large, but all is done. */
+static se3d_status evaluate(se3di_particles *set, double h, se3di_motion *motion)
 {
     if (!isfinite(set->moved)) {
         SE3DI_TRY(find_not_finite(set));
@@ -346,24 +229,36 @@ se3d_status se3di_particles_forces(se3di_particles *set, double h)
         set->starved = 1; /* what could not be inserted waits */
     }
     SE3DI_TRY(update_lists(set));
+    if (set->starved && motion->drift != 0.0) {
+        *motion = (se3di_motion){1, h, 0.0};
+    }
     set->touching = 0;
     set->force_valid = 1;
     if (set->count == 0) {
         return set->starved ? SE3D_ERR_NO_MEMORY : SE3D_OK;
     }
     se3di_force_task task = prepare(set, h);
-    evaluate_slabs(set, &task);
+    se3di_particles_sweep(set, &task, motion);
     sum_walls(set);
     double excess = 0.0;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
-        excess = larger(excess, set->slabs[s].overlap);
+        excess = se3di_larger(excess, set->slabs[s].overlap);
         set->touching += set->slabs[s].touching;
     }
     if (excess > 0.0) {
-        find_overlap(set);
         return SE3D_ERR_STEP_SIZE;
     }
     return set->starved ? SE3D_ERR_NO_MEMORY : SE3D_OK;
+}
+
+se3d_status se3di_particles_forces(se3di_particles *set, double h)
+{
+    se3di_motion none = {0, 0.0, 0.0};
+    se3d_status status = evaluate(set, h, &none);
+    if (status == SE3D_ERR_STEP_SIZE) {
+        find_overlap(set, 0.0);
+    }
+    return status;
 }
 
 /* Over the pairs of a material with all that are in use. */
@@ -431,20 +326,29 @@ se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps
         se3di_particles_move_walls(set, frames);
     }
     SE3DI_TRY(se3di_particles_prepare(set));
-    for (size_t k = 0; k < steps; ++k) {
-        pass(set, k == 0 ? 1 : 2, h, h);
+    if (steps > 0) {
+        se3di_particles_move(set, 1, h);
+    }
+    se3d_status failure = SE3D_OK;
+    while (steps > 0) {
+        --steps;
         set->time += h;
         ++set->steps;
-        se3d_status status = se3di_particles_forces(set, h);
-        if (status < 0 && se3di_particles_is_complete(set, status)) { /* so is the step */
-            pass(set, 1, h, 0.0);
+        int on = steps > 0 && failure == SE3D_OK;
+        se3di_motion motion = {on ? 2 : 1, h, on ? h : 0.0};
+        se3d_status status = evaluate(set, h, &motion);
+        if (status < 0 && !se3di_particles_is_complete(set, status)) {
+            return status;
         }
-        SE3DI_TRY(status);
+        if (status < 0 && failure == SE3D_OK) {
+            failure = status;
+            if (status == SE3D_ERR_STEP_SIZE) {
+                find_overlap(set, motion.drift);
+            }
+            steps = motion.drift != 0.0 ? 1 : 0; /* the step that has begun */
+        }
     }
-    if (steps > 0) {
-        pass(set, 1, h, 0.0);
-    }
-    return find_not_finite(set);
+    return failure < 0 ? failure : find_not_finite(set);
 }
 
 uint64_t se3di_particles_hash(const se3di_particles *set)

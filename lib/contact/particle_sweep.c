@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Forces and motion of all particles in one sweep over the slabs, on any number of threads.
+ *
+ * Every particle gets its forces in the same order: from an even slab before an odd one. So the
+ * forces of an odd slab wait for those of the two even slabs beside it; and a slab's particles may
+ * be moved when its own forces and those of the slab before it have been evaluated. Each thread has
+ * a range of slabs of about the same work, the same from step to step, and takes them in the order
+ * 0 2 1 4 3 ..., so that what it moves is still near it.            docs/theory/particles.md */
+#include "contact/particle_set.h"
+
+#include <math.h>
+#include <string.h>
+
+#ifdef _OPENMP
+#include <omp.h>
+#ifndef __STDC_NO_THREADS__
+#include <threads.h>
+#endif
+#endif
+
+double se3di_larger(double a, double b)
+{
+    return b <= a || a != a ? a : b;
+}
+
+/* Returns the largest squared speed of particles [begin, end), NaN where one is NaN. */
+static double move_range(se3di_particles *set, size_t begin, size_t end, const se3di_motion *motion)
+{
+    const double half = 0.5 * motion->h;
+    double fastest = 0.0;
+    for (size_t k = begin; k < end; ++k) {
+        se3di_grain *grain = &set->grains[k];
+        se3di_spin *spin = &set->spins[k];
+        se3di_load *load = &set->loads[k];
+        double turn = 2.5 * grain->inverse_mass / (grain->radius * grain->radius);
+        double v2 = 0.0;
+        for (int a = 0; a < 3; ++a) {
+            double dv = half * (load->force[a] * grain->inverse_mass + set->gravity[a]);
+            double dw = half * (load->torque[a] * turn);
+            for (int n = 0; n < motion->kicks; ++n) {
+                grain->v[a] += dv;
+                spin->w[a] += dw;
+            }
+            v2 += grain->v[a] * grain->v[a];
+            grain->x[a] += motion->drift * grain->v[a];
+        }
+        fastest = v2 <= fastest ? fastest : v2; /* NaN stays */
+        if (motion->drift != 0.0) {
+            *load = (se3di_load){{0.0}, {0.0}};
+        }
+    }
+    return fastest;
+}
+
+/* What the lists and forces must know of a drift. */
+static void note_motion(se3di_particles *set, const se3di_motion *motion, double fastest)
+{
+    if (motion->drift != 0.0) {
+        set->pace = sqrt(fastest) * fabs(motion->drift);
+        set->moved += set->pace;
+        set->force_valid = 0;
+    }
+}
+
+#define PASS_PARTS 64
+
+static void pass(se3di_particles *set, const se3di_motion *motion)
+{
+    double fastest_of[PASS_PARTS];
+    size_t part = set->count / PASS_PARTS + 1;
+#ifdef _OPENMP
+#pragma omp parallel for if (set->threads > 1) num_threads(set->threads) schedule(static)
+#endif
+    for (size_t c = 0; c < PASS_PARTS; ++c) {
+        size_t begin = c * part < set->count ? c * part : set->count;
+        size_t end = begin + part < set->count ? begin + part : set->count;
+        fastest_of[c] = move_range(set, begin, end, motion);
+    }
+    double fastest = 0.0;
+    for (size_t c = 0; c < PASS_PARTS; ++c) {
+        fastest = se3di_larger(fastest, fastest_of[c]);
+    }
+    note_motion(set, motion, fastest);
+}
+
+void se3di_particles_kick(se3di_particles *set, double h)
+{
+    pass(set, &(se3di_motion){1, h, 0.0});
+}
+
+void se3di_particles_drift(se3di_particles *set, double h)
+{
+    pass(set, &(se3di_motion){0, 0.0, h});
+}
+
+void se3di_particles_move(se3di_particles *set, int kicks, double h)
+{
+    pass(set, &(se3di_motion){kicks, h, h});
+}
+
+typedef struct sweep {
+    se3di_particles *set;
+    const se3di_force_task *task;
+    const se3di_motion *motion;
+} sweep;
+
+/* Until another thread has evaluated the forces of slab s. */
+static void await(se3di_particles *set, uint32_t s)
+{
+#ifdef _OPENMP
+    for (int tries = 0;; ++tries) {
+        int32_t done;
+#pragma omp atomic read seq_cst
+        done = set->slabs[s].done;
+        if (done) {
+            return;
+        }
+#ifndef __STDC_NO_THREADS__
+        if (tries > 1000) { /* that thread may want this processor */
+            thrd_yield();
+        }
+#endif
+    }
+#else
+    (void)set;
+    (void)s;
+#endif
+}
+
+static void evaluate_forces(const sweep *w, uint32_t s)
+{
+    se3di_particles *set = w->set;
+    se3di_slab *slab = &set->slabs[s];
+    se3di_force_task task = *w->task;
+    size_t walls = set->wall_count;
+    task.begin = slab->pair_begin;
+    task.end = slab->pair_end;
+    set->kernels->pairs(&task);
+    task.begin = slab->wall_begin;
+    task.end = slab->wall_end;
+    task.wall_sums = set->wall_sums + 6 * walls * s;
+    if (walls > 0) {
+        memset(task.wall_sums, 0, 6 * walls * sizeof(double));
+        set->kernels->walls(&task);
+        se3di_particles_mesh_forces(set, slab, &task);
+    }
+    slab->overlap = task.overlap;
+    slab->touching = task.touching;
+}
+
+static void forces(const sweep *w, uint32_t s)
+{
+    se3di_particles *set = w->set;
+    if (s % 2 == 1) {
+        await(set, s - 1);
+        await(set, s + 1 < set->slab_count ? s + 1 : 0); /* across a period, or done long ago */
+    }
+    evaluate_forces(w, s);
+#ifdef _OPENMP
+#pragma omp atomic write seq_cst
+#endif
+    set->slabs[s].done = 1;
+}
+
+static void move(const sweep *w, uint32_t s)
+{
+    se3di_particles *set = w->set;
+    if (w->motion->kicks == 0) {
+        return;
+    }
+    await(set, s > 0 ? s - 1 : set->slab_count - 1);
+    se3di_slab *slab = &set->slabs[s];
+    slab->fastest = move_range(set, slab->begin, slab->end, w->motion);
+}
+
+/* What others wait for comes first, what waits for others last. */
+static void sweep_range(const sweep *w, uint32_t begin, uint32_t end)
+{
+    if (begin % 2 == 0) {
+        forces(w, begin);
+    }
+    if (end % 2 == 1 && end - 1 > begin) {
+        forces(w, end - 1);
+    }
+    for (uint32_t s = begin | 1U; s < end; s += 2) {
+        if (s + 2 < end) {
+            forces(w, s + 1);
+        }
+        forces(w, s);
+        if (s > begin) {
+            move(w, s);
+        }
+        if (s + 1 < end) {
+            move(w, s + 1);
+        }
+    }
+    move(w, begin);
+}
+
+/* About what a slab costs: a block of pairs as much as the motion of nine particles. */
+static double work_of(const se3di_slab *slab)
+{
+    return 9.0 * (slab->wall_end - slab->pair_begin) + (slab->end - slab->begin) +
+           30.0 * (slab->mesh_end - slab->mesh_begin);
+}
+
+/* The first slab of thread `rank` of `team`: where its share of the work begins. */
+static uint32_t first_slab(const se3di_particles *set, int rank, int team)
+{
+    double total = 0.0;
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        total += work_of(&set->slabs[s]);
+    }
+    double before = 0.0;
+    uint32_t s = 0;
+    while (s < set->slab_count) {
+        double here = work_of(&set->slabs[s]);
+        if ((before + 0.5 * here) * team >= total * rank) {
+            break;
+        }
+        before += here;
+        ++s;
+    }
+    return rank < team ? s : set->slab_count;
+}
+
+static void sweep_share(const sweep *w, int rank, int team)
+{
+    uint32_t begin = first_slab(w->set, rank, team), end = first_slab(w->set, rank + 1, team);
+    if (begin < end) {
+        sweep_range(w, begin, end);
+    }
+}
+
+static void sweep_together(const sweep *w)
+{
+#ifdef _OPENMP
+#pragma omp parallel num_threads(w->set->threads)
+    {
+        int team = omp_get_num_threads();
+        sweep_share(w, omp_get_thread_num(), team);
+#pragma omp master
+        w->set->team = team;
+    }
+#else
+    sweep_share(w, 0, 1);
+#endif
+}
+
+void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
+                           const se3di_motion *motion)
+{
+    const sweep w = {set, task, motion};
+    set->team = 1;
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        set->slabs[s].done = 0;
+    }
+    if (set->threads > 1) {
+        sweep_together(&w);
+    } else {
+        sweep_share(&w, 0, 1);
+    }
+    double fastest = 0.0;
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        fastest = se3di_larger(fastest, set->slabs[s].fastest);
+    }
+    note_motion(set, motion, fastest);
+}
