@@ -115,6 +115,7 @@ static void build_layout(se3di_kkt *kkt)
     const se3di_kkt_pattern *p = &kkt->pattern;
     size_t values = 0;
     for (size_t j = 0; j < p->joint_count; ++j) {
+        kkt->has_unbound = kkt->has_unbound || p->joint_begin[j + 1] == p->joint_begin[j];
         kkt->row_offset[j + 1] = kkt->row_offset[j] + p->joint_rows[j];
         for (int32_t e = p->joint_begin[j]; e < p->joint_begin[j + 1]; ++e) {
             kkt->block_offset[e] = values;

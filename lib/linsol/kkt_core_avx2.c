@@ -91,6 +91,30 @@ V8_INLINE double v8_lane(v8 v, const int r)
     return _mm_cvtsd_f64(r % 2 == 0 ? pair : _mm_unpackhi_pd(pair, pair));
 }
 
+/* Columns 0 .. 3 of the 4 x 4 block whose rows are a, b, c, d. */
+V8_INLINE void turn_four(__m256d a, __m256d b, __m256d c, __m256d d, __m256d out[4])
+{
+    const __m256d ab_even = _mm256_unpacklo_pd(a, b), ab_odd = _mm256_unpackhi_pd(a, b);
+    const __m256d cd_even = _mm256_unpacklo_pd(c, d), cd_odd = _mm256_unpackhi_pd(c, d);
+    out[0] = _mm256_permute2f128_pd(ab_even, cd_even, 0x20);
+    out[1] = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x20);
+    out[2] = _mm256_permute2f128_pd(ab_even, cd_even, 0x31);
+    out[3] = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x31);
+}
+
+V8_INLINE void v8_transpose(v8 v[8])
+{
+    __m256d first[4], second[4], third[4], fourth[4];
+    turn_four(v[0].low, v[1].low, v[2].low, v[3].low, first);
+    turn_four(v[4].low, v[5].low, v[6].low, v[7].low, second);
+    turn_four(v[0].high, v[1].high, v[2].high, v[3].high, third);
+    turn_four(v[4].high, v[5].high, v[6].high, v[7].high, fourth);
+    for (int c = 0; c < 4; ++c) {
+        v[c] = (v8){first[c], second[c]};
+        v[4 + c] = (v8){third[c], fourth[c]};
+    }
+}
+
 V8_INLINE double s_fnma(double acc, double a, double b)
 {
     return __builtin_fma(-a, b, acc);

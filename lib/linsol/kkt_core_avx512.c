@@ -76,6 +76,25 @@ V8_INLINE double v8_lane(v8 v, const int r)
     return _mm512_cvtsd_f64(_mm512_permutexvar_pd(_mm512_set1_epi64(r), v));
 }
 
+V8_INLINE void v8_transpose(v8 v[8])
+{
+    v8 pair[8], four[8];
+    for (int r = 0; r < 8; r += 2) { /* columns 0 2 4 6 and 1 3 5 7 of two rows */
+        pair[r] = _mm512_unpacklo_pd(v[r], v[r + 1]);
+        pair[r + 1] = _mm512_unpackhi_pd(v[r], v[r + 1]);
+    }
+    for (int c = 0; c < 2; ++c) { /* columns (0 4) and (2 6) of four rows, and so on */
+        four[c] = _mm512_shuffle_f64x2(pair[c], pair[2 + c], 0x88);
+        four[2 + c] = _mm512_shuffle_f64x2(pair[c], pair[2 + c], 0xDD);
+        four[4 + c] = _mm512_shuffle_f64x2(pair[4 + c], pair[6 + c], 0x88);
+        four[6 + c] = _mm512_shuffle_f64x2(pair[4 + c], pair[6 + c], 0xDD);
+    }
+    for (int c = 0; c < 4; ++c) {
+        v[c] = _mm512_shuffle_f64x2(four[c], four[4 + c], 0x88);
+        v[4 + c] = _mm512_shuffle_f64x2(four[c], four[4 + c], 0xDD);
+    }
+}
+
 V8_INLINE double s_fnma(double acc, double a, double b)
 {
     return __builtin_fma(-a, b, acc);

@@ -98,6 +98,21 @@ V8_INLINE double v8_lane(v8 v, const int r)
     return v.part[r / 2][r % 2];
 }
 
+V8_INLINE void v8_transpose(v8 v[8])
+{
+    v8 t[8];
+    for (int c = 0; c < 4; ++c) {
+        for (int r = 0; r < 4; ++r) {
+            v2 a = v[2 * r].part[c], b = v[2 * r + 1].part[c];
+            t[2 * c].part[r] = (v2){a[0], b[0]};
+            t[2 * c + 1].part[r] = (v2){a[1], b[1]};
+        }
+    }
+    for (int c = 0; c < 8; ++c) {
+        v[c] = t[c];
+    }
+}
+
 V8_INLINE double s_fnma(double acc, double a, double b)
 {
     return acc - a * b;

@@ -78,6 +78,7 @@ struct se3di_kkt {
     int32_t *row_offset;
     size_t *block_offset;
     bool has_loop;
+    bool has_unbound;     /* a joint without bodies */
     bool has_zero_weight; /* of a row of a joint with bodies */
     double cost;
 
@@ -96,6 +97,7 @@ struct se3di_kkt {
     int32_t *size_at;      /* position -> size */
     int32_t *row_at;       /* position -> first row of a joint's node, -1 for a body */
     bool *is_untouched_at; /* position -> a body whose block no elimination before it changes */
+    bool *is_full_at;      /* position -> every block of its panel has a source */
     int32_t *near_begin;   /* [node_count + 1] into near */
     int32_t *near;         /* positions > k, ascending */
     size_t *panel;         /* [node_count + 1]: offset of each panel */

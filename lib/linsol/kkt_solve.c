@@ -46,18 +46,26 @@ static void scatter(se3di_kkt *kkt, const double *b, const double *c)
     }
 }
 
-/* `again`: after a factorisation of the same values with a larger eps > 0. */
-static void factor_once(se3di_kkt *kkt, const se3di_kkt_values *values, double eps, bool again)
+/* E = eps w */
+static void set_regularisation(se3di_kkt *kkt, double eps)
 {
-    const double middle = kkt->middle;
+    if (!(eps > 0.0) && !(kkt->eps > 0.0)) { /* it was zero already, as when it was allocated */
+        return;
+    }
     for (size_t i = 0; i < kkt->layout.row_count; ++i) {
-        double w = kkt->weight[i], e = middle;
+        double w = kkt->weight[i], e = kkt->middle;
         if (w > 0.0) {
             e = e < w / weight_range ? w / weight_range : e;
             e = e > w * weight_range ? w * weight_range : e;
         }
         kkt->e[i] = eps * e;
     }
+}
+
+/* `again`: after a factorisation of the same values with a larger eps > 0. */
+static void factor_once(se3di_kkt *kkt, const se3di_kkt_values *values, double eps, bool again)
+{
+    set_regularisation(kkt, eps);
     /* the pivot of a dependent row is proportional to eps, another one is not */
     kkt->ratio_bound = again && kkt->has_ratio ? 30.0 * eps / kkt->eps : 0.0;
     kkt->eps = eps;
@@ -280,10 +288,11 @@ static kkt_ending refine(se3di_kkt *kkt, const kkt_problem *p, double *x, double
     }
 }
 
+/* Those of joints without bodies, which no solution touches. */
 static void clear_multipliers(se3di_kkt *kkt, double *l)
 {
-    for (size_t i = 0; i < kkt->layout.row_count; ++i) {
-        l[i] = kkt->correction_l[i] = 0.0; /* also of joints without bodies */
+    for (size_t i = 0; i < kkt->layout.row_count && kkt->has_unbound; ++i) {
+        l[i] = kkt->correction_l[i] = 0.0;
     }
 }
 

@@ -13,6 +13,7 @@ static se3d_status take_structure(se3di_kkt *kkt, const se3di_kkt_fill *fill)
     kkt->size_at = se3di_kkt_take(kkt, n, sizeof(int32_t));
     kkt->row_at = se3di_kkt_take(kkt, n, sizeof(int32_t));
     kkt->is_untouched_at = se3di_kkt_take(kkt, n, sizeof(bool));
+    kkt->is_full_at = se3di_kkt_take(kkt, n, sizeof(bool));
     kkt->near_begin = se3di_kkt_take(kkt, n + 1, sizeof(int32_t));
     kkt->near = se3di_kkt_take(kkt, near_count, sizeof(int32_t));
     kkt->panel = se3di_kkt_take(kkt, n + 1, sizeof(size_t));
@@ -212,6 +213,16 @@ static void add_all_sources(const source_list *list)
     add_joint_sources(list);
 }
 
+/* Blocks are sourced once at most, and by the whole of their rows. */
+static void find_full_panels(se3di_kkt *kkt)
+{
+    for (int32_t k = 0; k < kkt->node_count; ++k) {
+        int32_t degree = kkt->near_begin[k + 1] - kkt->near_begin[k];
+        int32_t blocks = 1 + (kkt->pattern.symmetric ? degree : 2 * degree);
+        kkt->is_full_at[k] = kkt->source_begin[k + 1] - kkt->source_begin[k] == blocks;
+    }
+}
+
 static se3d_status build_sources(se3di_kkt *kkt)
 {
     size_t n = (size_t)kkt->node_count;
@@ -229,6 +240,7 @@ static se3d_status build_sources(se3di_kkt *kkt)
     kkt->source = se3di_kkt_take(kkt, (size_t)kkt->source_begin[n], sizeof(se3di_kkt_source));
     if (kkt->source) {
         add_all_sources(&list);
+        find_full_panels(kkt);
     }
     se3di_free(&kkt->allocator, list.count, n, sizeof(int32_t));
     return kkt->source ? SE3D_OK : SE3D_ERR_NO_MEMORY;
