@@ -119,6 +119,16 @@ SE3D_API se3d_status se3d_model_get_channel_value(const se3d_model *model, size_
                                                   const se3d_solver_stats *stats, double value[4],
                                                   size_t *width);
 
+/* Add an event to a solver on the model's system: `def` with the value of `channel`, one number of
+ * the model file's channels ("pin.angle", "bar.position.z"), in place of its own value and ctx. The
+ * model must outlive the solver.
+ * @param[out] error  filled on failure; may be NULL
+ * @return OK, NULL, INVALID_ARGUMENT (no such channel, not one number, a count), UNSUPPORTED,
+ * NO_MEMORY. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_model_create_event(se3d_model *model, se3d_solver *solver,
+                                             const char *channel, const se3d_event_def *def,
+                                             se3d_event *out, se3d_model_error *error);
+
 typedef enum se3d_shape_type {
     SE3D_SHAPE_SPHERE = 0,
     SE3D_SHAPE_BOX = 1,
@@ -196,6 +206,20 @@ typedef struct se3d_run_analysis {
 SE3D_API size_t se3d_run_count_analyses(const se3d_run *run);
 SE3D_API se3d_status se3d_run_get_analysis(const se3d_run *run, size_t index,
                                            se3d_run_analysis *analysis);
+
+/* An event that happened. @since 0.1 */
+typedef struct se3d_run_event {
+    const char *name;
+    const char *channel; /* with its component; both owned by the model */
+    double time;         /* [s] */
+    double value;        /* of the channel then */
+    size_t analysis;     /* index */
+    int32_t direction;   /* SE3D_EVENT_RISING or _FALLING */
+    int32_t stopped;     /* not 0: it ended the analysis */
+} se3d_run_event;
+
+SE3D_API size_t se3d_run_count_events(const se3d_run *run);
+SE3D_API se3d_status se3d_run_get_event(const se3d_run *run, size_t index, se3d_run_event *event);
 
 /* A file that was written. @since 0.1 */
 typedef struct se3d_run_file {

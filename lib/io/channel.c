@@ -353,6 +353,82 @@ bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel
     return false;
 }
 
+/* The length of `name` without a component at its end, 0 where there is none. */
+static size_t find_component(const char *name)
+{
+    static const char *const components[] = {"x", "y", "z", "e0", "e1", "e2", "e3"};
+    const char *dot = strrchr(name, '.');
+    for (size_t k = 0; dot && k < sizeof components / sizeof *components; ++k) {
+        if (strcmp(dot + 1, components[k]) == 0) {
+            return (size_t)(dot - name);
+        }
+    }
+    return 0;
+}
+
+bool se3di_channel_find_number(se3d_model *model, const char *name, se3di_channel *channel,
+                               size_t *component, char *problem, size_t problem_size)
+{
+    const size_t length = find_component(name);
+    const char *whole = length > 0 ? se3di_iopool_copy(&model->pool, name, length) : name;
+    char column[400];
+    *component = 0;
+    if (!whole) {
+        snprintf(problem, problem_size, "out of memory");
+        return false;
+    }
+    if (!se3di_channel_find(model, whole, channel, problem, problem_size)) {
+        return false;
+    }
+    const size_t width = se3di_channel_get_width(channel);
+    for (size_t k = 0; k < width; ++k) {
+        se3di_channel_format_column(channel, k, column, sizeof column);
+        if (strcmp(column, name) == 0) {
+            *component = k;
+            return true;
+        }
+    }
+    if (width == 1) {
+        snprintf(problem, problem_size, "`%.200s` has no components", whole);
+    } else {
+        se3di_channel_format_column(channel, width - 1, column, sizeof column);
+        snprintf(problem, problem_size,
+                 "`%.200s` is no single number, name a component such as `%.200s`", name, column);
+    }
+    return false;
+}
+
+bool se3di_channel_is_continuous(const se3di_channel *channel)
+{
+    const se3di_quantity q = channel->quantity;
+    return q != SE3DI_STEPS && q != SE3DI_ITERATIONS && q != SE3DI_CONTACTS_COUNT &&
+           !(q >= SE3DI_PARTICLES_COUNT && q <= SE3DI_PARTICLES_ENERGY);
+}
+
+bool se3di_channel_is_of_motion(const se3di_channel *channel)
+{
+    switch (channel->quantity) {
+    case SE3DI_BODY_POSITION:
+    case SE3DI_BODY_ORIENTATION:
+    case SE3DI_BODY_VELOCITY:
+    case SE3DI_BODY_ANGULAR_VELOCITY:
+    case SE3DI_MARKER_POSITION:
+    case SE3DI_MARKER_VELOCITY:
+    case SE3DI_JOINT_ANGLE:
+    case SE3DI_JOINT_ANGLE_RATE:
+    case SE3DI_JOINT_DISPLACEMENT:
+    case SE3DI_JOINT_DISPLACEMENT_RATE:
+    case SE3DI_FORCE_COORDINATE:
+    case SE3DI_FORCE_RATE:
+    case SE3DI_ENERGY_KINETIC:
+    case SE3DI_ENERGY_POTENTIAL:
+    case SE3DI_ENERGY_TOTAL:
+        return true;
+    default:
+        return false;
+    }
+}
+
 /* A growing list of channels with names made up of two or three parts. */
 typedef struct channel_list {
     se3d_model *model;

@@ -63,6 +63,15 @@ typedef struct se3di_channel {
 /* Find what `name` means. Where it means nothing, `problem` gets what is allowed. */
 bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel *channel,
                         char *problem, size_t problem_size);
+/* The same for one number: a channel of one column, or a component of another as in
+ * "bar.position.z".
+ */
+bool se3di_channel_find_number(se3d_model *model, const char *name, se3di_channel *channel,
+                               size_t *component, char *problem, size_t problem_size);
+/* Whether its numbers change in time continuously, unlike counts. */
+bool se3di_channel_is_continuous(const se3di_channel *channel);
+/* Whether they follow from time, positions and velocities. */
+bool se3di_channel_is_of_motion(const se3di_channel *channel);
 /* Every channel of the first 100 bodies, constraints and forces. @return NULL: out of memory. */
 se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count);
 

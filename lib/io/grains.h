@@ -12,11 +12,12 @@ struct se3di_grains {
 
 enum { SE3DI_GRAIN_COLUMNS = 12 };
 
-/* Bring the particles to `time` with `solver`, which is made from `def` and
+/* Bring the particles of a model to `time` with `solver`, which is made from `def` and
  * moves the bodies, in dynamics the particles too; otherwise walls
- * that move are followed at every step of the particles. @return as
+ * that move are followed at every step of the particles. Ends before where an event
+ * stops the bodies. @return as
  * se3d_solver_run and se3d_particles_run. */
-se3d_status se3di_grains_advance(const se3di_grains *grains, const se3d_solver_def *def,
+se3d_status se3di_grains_advance(const se3d_model *model, const se3d_solver_def *def,
                                  se3d_solver *solver, double time);
 /* Names of the columns of a snapshot. */
 const char *se3di_grains_get_column(size_t k);

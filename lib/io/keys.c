@@ -7,7 +7,7 @@
 
 static const char *const model_keys[] = {
     "se3d",        "title",  "parameters", "gravity",   "materials", "bodies", "joints", "drivers",
-    "constraints", "forces", "contact",    "particles", "analysis",  "output", NULL};
+    "constraints", "forces", "contact",    "particles", "analysis",  "events", "output", NULL};
 static const char *const body_keys[] = {
     "name",    "fixed",    "held",        "mass",     "inertia",
     "density", "position", "orientation", "velocity", "angular_velocity",
@@ -91,6 +91,7 @@ static const char *const analysis_keys[] = {
 static const char *const modes_input_keys[] = {"body", "point", "direction", "torque", NULL};
 static const char *const modes_output_keys[] = {"body", "point", "direction", "quantity", NULL};
 static const char *const frequency_keys[] = {"from", "to", "count", NULL};
+static const char *const event_keys[] = {"name", "channel", "value", "direction", "action", NULL};
 static const char *const output_keys[] = {"file",  "every", "channels", "particles", "vtk",
                                           "plot",  "from",  "x",        "fft",       "scene",
                                           "video", "speed", NULL};
@@ -170,6 +171,7 @@ static const se3di_object_keys objects[SE3DI_OBJECT_COUNT] = {
     {"pair", pair_keys, NULL, NULL, NULL},
     {"particles", particles_keys, NULL, NULL, NULL},
     {"radius", radius_keys, NULL, NULL, NULL},
+    {"event", event_keys, NULL, NULL, NULL},
 };
 
 const se3di_object_keys *se3di_keys_get(se3di_object object)

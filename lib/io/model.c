@@ -102,7 +102,7 @@ static bool read_model(se3di_reader *reader, const se3di_node *root)
            se3di_read_constraints(reader, root) && se3di_read_drivers(reader, root) &&
            se3di_read_forces(reader, root) && se3di_read_analyses(reader, root) &&
            se3di_read_contact(reader, root) && se3di_read_particles(reader, root) &&
-           se3di_read_outputs(reader, root);
+           se3di_read_outputs(reader, root) && se3di_read_events(reader, root);
 }
 
 /* An empty model with its own memory. */

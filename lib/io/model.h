@@ -79,6 +79,22 @@ typedef struct se3di_output_entry {
 double se3di_output_count_rows(const se3di_output_entry *output,
                                const se3di_analysis_entry *analysis, double *every);
 
+/* What an event looks at: a number of a channel. */
+typedef struct se3di_event_source {
+    se3di_channel channel;
+    size_t component;
+    const se3d_model *model;
+} se3di_event_source;
+
+typedef struct se3di_event_entry {
+    const char *name;
+    const char *channel; /* with its component */
+    se3di_event_source source;
+    double level;
+    int32_t direction; /* se3d_event_direction */
+    int32_t action;    /* se3d_event_action */
+} se3di_event_entry;
+
 typedef struct se3di_mesh se3di_mesh;
 
 typedef struct se3di_shape_entry {
@@ -115,6 +131,8 @@ struct se3d_model {
     se3di_grains *grains;     /* NULL: no particles */
     se3di_output_entry *outputs;
     size_t output_count;
+    se3di_event_entry *events;
+    size_t event_count;
     se3d_model_picture *pictures;
     size_t picture_count;
 };

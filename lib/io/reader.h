@@ -113,6 +113,7 @@ bool se3di_read_modes(se3di_reader *reader, const se3di_node *node, se3di_analys
 bool se3di_read_contact(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_particles(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_events(se3di_reader *reader, const se3di_node *root);
 
 /* Begin an element: its name, given or made up, is added to the model. */
 bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_element_kind kind,

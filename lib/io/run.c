@@ -5,6 +5,7 @@
  * solver is run from one time at which any file wants a row to the next; times are computed from
  * their number, never summed up, and the last one is start + duration exactly. Where an analysis
  * begins at the time at which the one before ended, its first row takes the place of the last one.
+ * Where an event stops an analysis the last row is that of the event; others are in their own file.
  */
 #include <errno.h>
 #include <math.h>
@@ -15,6 +16,7 @@
 #include "io/csv.h"
 #include "io/grains.h"
 #include "io/model.h"
+#include "io/run_events.h"
 #include "io/run_modes.h"
 #include "io/vtk.h"
 
@@ -34,6 +36,7 @@ struct se3d_run {
     size_t analysis_count;
     se3d_run_file *files;
     size_t file_count, file_capacity;
+    se3di_event_list events;
 };
 
 typedef struct runner {
@@ -146,6 +149,18 @@ static se3d_status open_file(runner *r, const se3di_output_entry *entry)
     return SE3D_OK;
 }
 
+static se3d_status open_events(runner *r)
+{
+    char path[4096];
+    se3di_event_list *events = &r->run->events;
+    const se3d_status joined = join(r, se3di_events_file, path, sizeof path);
+    if (joined < 0) {
+        return joined;
+    }
+    const se3d_status status = se3di_event_list_open(events, &r->run->pool, path);
+    return status < 0 ? fail_path(r, path, events->csv.failure) : SE3D_OK;
+}
+
 static se3d_status open_files(runner *r)
 {
     se3d_model *model = r->model;
@@ -166,7 +181,7 @@ static se3d_status open_files(runner *r)
             return status;
         }
     }
-    return SE3D_OK;
+    return model->event_count > 0 ? open_events(r) : SE3D_OK;
 }
 
 /* Number of rows of each file in this analysis. */
@@ -323,6 +338,25 @@ static double merge_times(const runner *r, double start, double duration, double
     return merged;
 }
 
+/* Rows of all files where an event has stopped the analysis. */
+static se3d_status sample_stop(runner *r, double time)
+{
+    se3d_status status = SE3D_OK;
+    for (size_t k = 0; k < r->file_count && status >= 0; ++k) {
+        status = sample(r, &r->files[k], time);
+    }
+    return status;
+}
+
+static void show_progress(runner *r, size_t index, double time, double start, double duration)
+{
+    if (r->options->progress &&
+        r->options->progress(r->options->ctx, index, time,
+                             duration > 0.0 ? (time - start) / duration : 1.0)) {
+        r->stopped = true;
+    }
+}
+
 static se3d_status run_rows(runner *r, size_t index, const se3di_analysis_entry *entry,
                             double start)
 {
@@ -331,20 +365,23 @@ static se3d_status run_rows(runner *r, size_t index, const se3di_analysis_entry 
     double time = start;
     while (next_time(r, start, duration, &time) && !r->stopped) {
         time = merge_times(r, start, duration, time);
-        last = r->model->grains
-                   ? se3di_grains_advance(r->model->grains, &entry->solver, r->solver, time)
-                   : se3d_solver_run(r->solver, time);
+        last = r->model->grains ? se3di_grains_advance(r->model, &entry->solver, r->solver, time)
+                                : se3d_solver_run(r->solver, time);
         if (last < 0) {
             return fail_analysis(r, entry, last, time);
         }
-        const se3d_status status = sample_files(r, start, duration, time);
+        const bool event = last == SE3D_INFO_EVENT;
+        if (event) {
+            se3d_system_get_time(r->model->system, &time);
+        }
+        const se3d_status status =
+            event ? sample_stop(r, time) : sample_files(r, start, duration, time);
         if (status < 0) {
             return status;
         }
-        if (r->options->progress &&
-            r->options->progress(r->options->ctx, index, time,
-                                 duration > 0.0 ? (time - start) / duration : 1.0)) {
-            r->stopped = true;
+        show_progress(r, index, time, start, duration);
+        if (event) {
+            break;
         }
     }
     return last;
@@ -396,6 +433,21 @@ static se3d_status run_modes(runner *r, const se3di_analysis_entry *entry, doubl
     return status < 0 ? fail_analysis(r, entry, status, start) : sample_files(r, start, 0.0, start);
 }
 
+static bool has_motion(const se3di_analysis_entry *entry)
+{
+    const int32_t analysis = entry->solver.analysis;
+    return !entry->modes.file && analysis != SE3D_ANALYSIS_ASSEMBLY &&
+           analysis != SE3D_ANALYSIS_EQUILIBRIUM;
+}
+
+static se3d_status collect_events(runner *r, size_t index, se3d_status status)
+{
+    se3d_run *run = r->run;
+    const se3d_status collected =
+        se3di_event_list_collect(&run->events, &run->pool, r->model, r->solver, index);
+    return collected < 0 && status >= 0 ? fail(r, collected, "out of memory") : status;
+}
+
 static se3d_status run_analysis(runner *r, size_t index)
 {
     const se3di_analysis_entry *entry = &r->model->analyses[index];
@@ -415,9 +467,15 @@ static se3d_status run_analysis(runner *r, size_t index)
         if (status >= 0 && !entry->modes.file) {
             status = se3d_solver_create(r->model->system, &entry->solver, &r->solver);
         }
+        if (status >= 0 && has_motion(entry)) {
+            status = se3di_events_create(r->model, r->solver);
+        }
         status = status < 0          ? fail_analysis(r, entry, status, start)
                  : entry->modes.file ? run_modes(r, entry, start)
                                      : run_rows(r, index, entry, start);
+    }
+    if (r->run->events.is_open && r->solver) {
+        status = collect_events(r, index, status);
     }
     record(r, entry, done, begin);
     done->status = (int32_t)status;
@@ -426,10 +484,18 @@ static se3d_status run_analysis(runner *r, size_t index)
     return status;
 }
 
-/* Complete one file. @return false after a message. */
+static se3d_status close_csv(runner *r, se3di_csv *csv, se3d_run_file *about)
+{
+    about->path = csv->path;
+    about->columns = csv->columns;
+    const se3d_status status = se3di_csv_close(csv);
+    about->rows = csv->rows;
+    return status < 0 ? fail_path(r, csv->path, csv->failure) : SE3D_OK;
+}
+
+/* Complete one file. */
 static se3d_status close_file(runner *r, output_file *file, se3d_run_file *about)
 {
-    se3di_csv *csv = &file->csv;
     int why = 0;
     if (file->vtk) {
         const se3d_status status = se3di_vtk_close(file->vtk, &why);
@@ -437,33 +503,38 @@ static se3d_status close_file(runner *r, output_file *file, se3d_run_file *about
         about->rows = se3di_vtk_count(file->vtk);
         return status < 0 ? fail_path(r, about->path, why) : SE3D_OK;
     }
-    about->path = csv->path;
-    about->columns = csv->columns;
-    const se3d_status status = se3di_csv_close(csv);
-    about->rows = csv->rows;
-    return status < 0 ? fail_file(r, file) : SE3D_OK;
+    return close_csv(r, &file->csv, about);
+}
+
+/* One more file of the results, which `closed` says is complete; the first failure is reported. */
+static se3d_status list_file(runner *r, const se3d_run_file *file, se3d_status closed,
+                             se3d_status status)
+{
+    se3d_run *run = r->run;
+    se3d_run_file *grown = se3di_iopool_grow(&run->pool, run->files, run->file_count,
+                                             &run->file_capacity, sizeof *grown);
+    if (grown) {
+        run->files = grown;
+        run->files[run->file_count] = *file;
+        run->file_count += closed >= 0;
+    } else if (status >= 0 && closed >= 0) {
+        return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    return status < 0 ? status : closed < 0 ? closed : status;
 }
 
 /* Complete every file, also after a failure: the rows so far are kept. The first failure is
  * reported. */
 static se3d_status close_files(runner *r, se3d_status status)
 {
-    se3d_run *run = r->run;
-    for (size_t k = 0; k < r->file_count; ++k) {
-        se3d_model_error *reported = r->error;
+    se3d_model_error *reported = r->error;
+    const size_t count = r->file_count + (r->run->events.is_open ? 1 : 0);
+    for (size_t k = 0; k < count; ++k) {
         se3d_run_file file = {NULL, 0, 0};
         r->error = status < 0 ? NULL : reported;
-        const se3d_status closed = close_file(r, &r->files[k], &file);
-        se3d_run_file *grown = se3di_iopool_grow(&run->pool, run->files, run->file_count,
-                                                 &run->file_capacity, sizeof *grown);
-        if (grown) {
-            run->files = grown;
-            run->files[run->file_count] = file;
-            run->file_count += closed >= 0;
-        } else if (status >= 0 && closed >= 0) {
-            status = fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
-        }
-        status = status < 0 ? status : closed < 0 ? closed : status;
+        const se3d_status closed = k < r->file_count ? close_file(r, &r->files[k], &file)
+                                                     : close_csv(r, &r->run->events.csv, &file);
+        status = list_file(r, &file, closed, status);
         r->error = reported;
     }
     return status;
@@ -492,6 +563,7 @@ static se3d_status run_all(runner *r)
         for (size_t k = 0; k < r->file_count; ++k) {
             se3di_csv_abandon(&r->files[k].csv);
         }
+        se3di_csv_abandon(&r->run->events.csv);
         return status;
     }
     se3d_system_get_time(r->model->system, &r->time);
@@ -570,5 +642,22 @@ se3d_status se3d_run_get_file(const se3d_run *run, size_t index, se3d_run_file *
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     *file = run->files[index];
+    return SE3D_OK;
+}
+
+size_t se3d_run_count_events(const se3d_run *run)
+{
+    return run ? run->events.count : 0;
+}
+
+se3d_status se3d_run_get_event(const se3d_run *run, size_t index, se3d_run_event *event)
+{
+    if (!run || !event) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= run->events.count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    *event = run->events.list[index];
     return SE3D_OK;
 }

@@ -6,9 +6,10 @@
 
 #include "io/grains.h"
 
-se3d_status se3di_grains_advance(const se3di_grains *grains, const se3d_solver_def *def,
+se3d_status se3di_grains_advance(const se3d_model *model, const se3d_solver_def *def,
                                  se3d_solver *solver, double time)
 {
+    const se3di_grains *grains = model->grains;
     if (def->analysis == SE3D_ANALYSIS_DYNAMICS) {
         return se3d_solver_run(solver, time);
     }
@@ -24,7 +25,17 @@ se3d_status se3di_grains_advance(const se3di_grains *grains, const se3d_solver_d
     for (double k = 1.0; k <= whole && status >= 0; k += 1.0) {
         const double target = k < whole ? now + (time - now) * (k / whole) : time;
         last = se3d_solver_run(solver, target);
-        status = last < 0 || !(target > now) ? last : se3d_particles_run(grains->set, target);
+        status = last;
+        double reached = target; /* less where an event has stopped the bodies */
+        if (status >= 0) {
+            status = se3d_system_get_time(model->system, &reached);
+        }
+        if (status >= 0 && reached > now) {
+            status = se3d_particles_run(grains->set, reached);
+        }
+        if (last == SE3D_INFO_EVENT) {
+            break;
+        }
     }
     return status < 0 ? status : last;
 }

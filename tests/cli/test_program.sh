@@ -56,6 +56,23 @@ is "$(sed -n 2p "$dir/f/pendulum_free.csv" | cut -d, -f2)" 0.5235987755982987
 is "$(tail -1 "$dir/f/pendulum_free.csv" | cut -d, -f1)" 0.055
 expect 'an unknown parameter' 2 "$program" run "$models/pendulum_free.yaml" --set theta=1
 has "$dir/err" 'did you mean `theta0`?'
+expect 'an event stops' 0 "$program" run "$models/pendulum_events.yaml" -o "$dir/e"
+has "$dir/out" 'stopped by event tired at t = 17.41005'
+has "$dir/out" '20 events, see events.csv'
+is "$(head -1 "$dir/e/events.csv")" 'time,event,channel,value,direction'
+is "$(tail -1 "$dir/e/events.csv" | cut -d, -f2,3,5)" 'tired,energy.total,falling'
+is "$(tail -1 "$dir/e/events.csv" | cut -d, -f1)" "$(tail -1 "$dir/e/pendulum_events.csv" | cut -d, -f1)"
+expect 'events in json' 0 "$program" run "$models/pendulum_events.yaml" -o "$dir/e" --json
+has "$dir/out" '"event": "tired", "channel": "energy.total", "value": '
+has "$dir/out" '"direction": "falling", "stopped": true}'
+sed '/^events:/,/name: tired/d' "$models/pendulum_events.yaml" >"$dir/plain.yaml"
+grep -v 'name: tired' "$models/pendulum_events.yaml" >"$dir/recorded.yaml"
+expect 'without events' 0 "$program" run "$dir/plain.yaml" -o "$dir/plain" --duration 5
+expect 'with recorded events' 0 "$program" run "$dir/recorded.yaml" -o "$dir/recorded" --duration 5
+expect 'recording changes no bit' 0 cmp "$dir/plain/pendulum_events.csv" \
+    "$dir/recorded/pendulum_events.csv"
+is "$(ls "$dir/plain" "$dir/recorded" | grep -c events.csv)" 3
+
 expect 'another analysis' 0 "$program" run "$models/pendulum_free.yaml" -o "$dir/a" --analysis assembly
 is "$(wc -l <"$dir/a/pendulum_free.csv" | tr -d ' ')" 2
 

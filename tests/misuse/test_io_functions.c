@@ -10,6 +10,7 @@ static const char text[] =
     "se3d: 1\ntitle: A block\nparameters: {m: 2}\n"
     "bodies: [{name: block, mass: m, inertia: [1, 1, 1], shapes: [{type: sphere, radius: 1}]}]\n"
     "analysis: [{type: dynamics, duration: 0.01}, {type: modes}]\n"
+    "events: [{name: low, channel: block.position.z, value: -1e-4}]\n"
     "output: [{file: a.csv, channels: [block.position]}, {plot: a.svg}]\n";
 
 /* A model that was read, and its run. */
@@ -118,6 +119,7 @@ static void counters(const world *w)
     CHECK(se3d_model_count_shapes(NULL) == 0 && se3d_model_count_shapes(w->model) == 1);
     CHECK(se3d_run_count_analyses(NULL) == 0 && se3d_run_count_analyses(w->run) == 2);
     CHECK(se3d_run_count_files(NULL) == 0 && se3d_run_count_files(w->run) >= 2);
+    CHECK(se3d_run_count_events(NULL) == 0 && se3d_run_count_events(w->run) == 1);
 }
 
 static void model_get_parameter(const world *w)
@@ -150,6 +152,42 @@ GETTER(model_get_picture, model, se3d_model_picture, 1)
 GETTER(model_get_shape, model, se3d_model_shape, 1)
 GETTER(run_get_analysis, run, se3d_run_analysis, 2)
 GETTER(run_get_file, run, se3d_run_file, se3d_run_count_files(w->run))
+GETTER(run_get_event, run, se3d_run_event, 1)
+
+static void model_create_event(const world *w)
+{
+    se3d_solver_def how = se3d_solver_def_default();
+    se3d_event_def def = se3d_event_def_default();
+    se3d_event event = {7, 7};
+    se3d_solver *solver = NULL;
+    se3d_model_error error;
+    const char *channel = "block.velocity.z";
+    IS(se3d_solver_create(se3d_model_get_system(w->model), &how, &solver), SE3D_OK);
+    IS(se3d_model_create_event(NULL, solver, channel, &def, &event, &error), SE3D_ERR_NULL);
+    CHECK(event.index1 == 0 && error.message[0]);
+    IS(se3d_model_create_event(w->model, NULL, channel, &def, &event, &error), SE3D_ERR_NULL);
+    IS(se3d_model_create_event(w->model, solver, NULL, &def, &event, &error), SE3D_ERR_NULL);
+    IS(se3d_model_create_event(w->model, solver, channel, NULL, &event, &error), SE3D_ERR_NULL);
+    IS(se3d_model_create_event(w->model, solver, channel, &def, NULL, NULL), SE3D_ERR_NULL);
+    const char *const wrong[] = {"blok.velocity.z", "block.velocity", "block.speed", "steps", ""};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+        IS(se3d_model_create_event(w->model, solver, wrong[k], &def, &event, &error),
+           SE3D_ERR_INVALID_ARGUMENT);
+        CHECK(event.index1 == 0 && error.message[0]);
+    }
+    def.direction = 5;
+    IS(se3d_model_create_event(w->model, solver, channel, &def, &event, &error),
+       SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(error.message, "direction = 5");
+    def = se3d_event_def_default();
+    def.struct_size = 4096;
+    IS(se3d_model_create_event(w->model, solver, channel, &def, &event, &error),
+       SE3D_ERR_INVALID_ARGUMENT);
+    def = se3d_event_def_default();
+    IS(se3d_model_create_event(w->model, solver, channel, &def, &event, &error), SE3D_OK);
+    CHECK(event.index1 != 0 && !error.message[0]);
+    se3d_solver_destroy(solver);
+}
 
 static void model_get_solver(const world *w)
 {
@@ -244,7 +282,7 @@ static const struct {
     {" se3d_model_destroy se3d_run_destroy se3d_scene_destroy ", destroyers},
     {" se3d_model_get_system se3d_model_get_name se3d_model_get_title ", model_texts},
     {" se3d_model_count_analyses se3d_model_count_outputs se3d_model_count_pictures "
-     "se3d_model_count_shapes se3d_run_count_analyses se3d_run_count_files ",
+     "se3d_model_count_shapes se3d_run_count_analyses se3d_run_count_files se3d_run_count_events ",
      counters},
     {" se3d_model_get_parameter ", model_get_parameter},
     {" se3d_model_get_analysis ", check_model_get_analysis},
@@ -253,6 +291,8 @@ static const struct {
     {" se3d_model_get_shape ", check_model_get_shape},
     {" se3d_run_get_analysis ", check_run_get_analysis},
     {" se3d_run_get_file ", check_run_get_file},
+    {" se3d_run_get_event ", check_run_get_event},
+    {" se3d_model_create_event ", model_create_event},
     {" se3d_model_get_solver ", model_get_solver},
     {" se3d_model_get_channel ", model_get_channel},
     {" se3d_model_get_channel_value ", model_get_channel_value},

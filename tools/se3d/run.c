@@ -41,6 +41,31 @@ static const char *outcome(const se3d_run_analysis *a)
     return se3d_status_get_text((se3d_status)a->status);
 }
 
+static const char *direction(const se3d_run_event *event)
+{
+    return event->direction > 0 ? "rising" : "falling";
+}
+
+/* The events of analysis `index`. */
+static void print_events(const se3d_run *run, size_t index)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < se3d_run_count_events(run); ++k) {
+        se3d_run_event event;
+        if (SE3D_FAILED(se3d_run_get_event(run, k, &event)) || event.analysis != index) {
+            continue;
+        }
+        ++count;
+        if (event.stopped) {
+            printf("  stopped by event %s at t = %.12g s: %s = %.9g, %s\n", event.name, event.time,
+                   event.channel, event.value, direction(&event));
+        }
+    }
+    if (count > 0) {
+        printf("  %zu event%s, see events.csv\n", count, count > 1 ? "s" : "");
+    }
+}
+
 static void print_analysis(const se3d_run_analysis *a)
 {
     printf("%s, %s%s%s: %s\n", a->type, a->formulation, a->method[0] ? ", " : "", a->method,
@@ -56,6 +81,7 @@ static void print_text(const se3d_run *run)
         se3d_run_analysis analysis;
         if (!SE3D_FAILED(se3d_run_get_analysis(run, k, &analysis))) {
             print_analysis(&analysis);
+            print_events(run, k);
         }
     }
     for (size_t k = 0; k < se3d_run_count_files(run); ++k) {
@@ -98,6 +124,27 @@ static void json_put_analysis(const se3d_run_analysis *a)
     putchar('}');
 }
 
+static void json_put_events(const se3d_run *run)
+{
+    fputs("], \"events\": [", stdout);
+    for (size_t k = 0; k < se3d_run_count_events(run); ++k) {
+        se3d_run_event event;
+        if (SE3D_FAILED(se3d_run_get_event(run, k, &event))) {
+            continue;
+        }
+        printf("%s{\"analysis\": %zu, \"time\": ", k > 0 ? ", " : "", event.analysis);
+        json_put_number(event.time);
+        fputs(", \"event\": ", stdout);
+        json_put_text(event.name);
+        fputs(", \"channel\": ", stdout);
+        json_put_text(event.channel);
+        fputs(", \"value\": ", stdout);
+        json_put_number(event.value);
+        printf(", \"direction\": \"%s\", \"stopped\": %s}", direction(&event),
+               event.stopped ? "true" : "false");
+    }
+}
+
 /* The pictures that come afterwards. */
 static void json_put_pictures(const se3d_model *model)
 {
@@ -134,6 +181,7 @@ static void print_json(const options *o, const se3d_model *model, const se3d_run
             printf(", \"rows\": %" PRIu64 ", \"columns\": %zu}", file.rows, file.columns);
         }
     }
+    json_put_events(run);
     json_put_pictures(model);
     fputs("]}\n", stdout);
 }

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `events`: reading them, and their values from channels. */
+#include <stdio.h>
+#include <string.h>
+
+#include "io/reader.h"
+#include "io/run_events.h"
+
+static se3d_status eval_source(void *ctx, const se3d_system *system, double *value)
+{
+    const se3di_event_source *source = ctx;
+    double numbers[4];
+    const se3d_status status = se3di_channel_eval(&source->channel, system, NULL, numbers);
+    *value = numbers[source->component];
+    return status;
+}
+
+static bool find_source(se3d_model *model, const char *channel, se3di_event_source *source,
+                        char *problem, size_t size)
+{
+    source->model = model;
+    if (strlen(channel) > 310) {
+        snprintf(problem, size, "is longer than any channel's name");
+        return false;
+    }
+    if (!se3di_channel_find_number(model, channel, &source->channel, &source->component, problem,
+                                   size)) {
+        return false;
+    }
+    if (!se3di_channel_is_continuous(&source->channel)) {
+        snprintf(problem, size, "`%.200s` is a count, an event needs what changes continuously",
+                 channel);
+        return false;
+    }
+    return true;
+}
+
+static se3d_status create_event(se3d_solver *solver, se3di_event_source *source,
+                                const se3d_event_def *def, se3d_event *out)
+{
+    se3d_event_def used = *def;
+    used.value = eval_source;
+    used.ctx = source;
+    used.motion_only = se3di_channel_is_of_motion(&source->channel);
+    return se3d_event_create(solver, &used, out);
+}
+
+static se3d_status report(se3d_model_error *error, const se3d_model *model, const char *text,
+                          se3d_status status)
+{
+    se3di_document_report(error, model ? model->file : "", 0, 0, "", text);
+    return status;
+}
+
+se3d_status se3d_model_create_event(se3d_model *model, se3d_solver *solver, const char *channel,
+                                    const se3d_event_def *def, se3d_event *out,
+                                    se3d_model_error *error)
+{
+    char problem[480] = "";
+    if (error) {
+        memset(error, 0, sizeof *error);
+    }
+    if (out) {
+        *out = (se3d_event){0, 0};
+    }
+    if (!model || !solver || !channel || !def || !out) {
+        return report(error, model, "model, solver, channel, def or out is NULL", SE3D_ERR_NULL);
+    }
+    se3d_event_def full = se3d_event_def_default();
+    if (def->struct_size < sizeof def->struct_size || def->struct_size > sizeof full) {
+        return report(error, model, "def.struct_size is not one of this library",
+                      SE3D_ERR_INVALID_ARGUMENT);
+    }
+    memcpy(&full, def, def->struct_size);
+    full.struct_size = sizeof full;
+    se3di_event_source *source = se3di_iopool_alloc(&model->pool, sizeof *source);
+    const char *name = se3di_iopool_copy(&model->pool, channel, strlen(channel));
+    if (!source || !name) {
+        return report(error, model, "out of memory", SE3D_ERR_NO_MEMORY);
+    }
+    if (!find_source(model, name, source, problem, sizeof problem)) {
+        return report(error, model, problem, SE3D_ERR_INVALID_ARGUMENT);
+    }
+    const se3d_status status = create_event(solver, source, &full, out);
+    return status < 0 ? report(error, model, se3d_system_get_error(model->system), status) : status;
+}
+
+se3d_status se3di_events_create(const se3d_model *model, se3d_solver *solver)
+{
+    se3d_status status = SE3D_OK;
+    for (size_t k = 0; k < model->event_count && status >= 0; ++k) {
+        se3di_event_entry *entry = &model->events[k];
+        se3d_event_def def = se3d_event_def_default();
+        se3d_event event;
+        def.name = entry->name;
+        def.level = entry->level;
+        def.direction = entry->direction;
+        def.action = entry->action;
+        status = create_event(solver, &entry->source, &def, &event);
+    }
+    return status;
+}
+
+static bool read_choices(se3di_reader *reader, const se3di_node *node, se3di_event_entry *event)
+{
+    static const char *const directions[] = {"any", "rising", "falling", NULL};
+    static const char *const actions[] = {"record", "stop", NULL};
+    static const int32_t values[] = {SE3D_EVENT_ANY, SE3D_EVENT_RISING, SE3D_EVENT_FALLING};
+    const se3di_node *direction = se3di_node_get(node, "direction");
+    const se3di_node *action = se3di_node_get(node, "action");
+    size_t which = 0;
+    size_t what = SE3D_EVENT_RECORD;
+    if ((direction && !se3di_read_word(reader, direction, directions, &which)) ||
+        (action && !se3di_read_word(reader, action, actions, &what))) {
+        return false;
+    }
+    event->direction = values[which];
+    event->action = (int32_t)what;
+    return true;
+}
+
+static bool read_event(se3di_reader *reader, const se3di_node *node, se3di_event_entry *event)
+{
+    se3d_model *model = reader->model;
+    char problem[480] = "";
+    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_EVENT)) {
+        return false;
+    }
+    const se3di_node *name = se3di_node_get(node, "name");
+    const se3di_node *channel = se3di_node_get(node, "channel");
+    if (!name) {
+        return se3di_reader_fail_key(reader, node, "name", "is missing");
+    }
+    if (!channel) {
+        return se3di_reader_fail_key(reader, node, "channel",
+                                     "is missing, must be a channel such as pin.angle");
+    }
+    if (!se3di_read_name(reader, name, &event->name) ||
+        !se3di_read_text(reader, channel, &event->channel)) {
+        return false;
+    }
+    for (size_t k = 0; k < model->event_count; ++k) {
+        if (strcmp(model->events[k].name, event->name) == 0) {
+            return se3di_reader_fail(reader, name, "there is an event named `%s` already",
+                                     event->name);
+        }
+    }
+    if (!find_source(model, event->channel, &event->source, problem, sizeof problem)) {
+        return se3di_reader_fail(reader, channel, "%s", problem);
+    }
+    return se3di_read_key_number(reader, node, "value", SE3DI_ANY, &event->level) &&
+           read_choices(reader, node, event);
+}
+
+/* The file of the events is not another one's. */
+static bool check_file(se3di_reader *reader, const se3di_node *list)
+{
+    const se3d_model *model = reader->model;
+    for (size_t k = 0; k < model->output_count; ++k) {
+        if (strcmp(model->outputs[k].file, se3di_events_file) == 0) {
+            return se3di_reader_fail(reader, list, "are written to `%s`, which is also an output",
+                                     se3di_events_file);
+        }
+    }
+    return true;
+}
+
+bool se3di_read_events(se3di_reader *reader, const se3di_node *root)
+{
+    se3d_model *model = reader->model;
+    const se3di_node *list = NULL;
+    if (!se3di_read_list(reader, root, "events", &list)) {
+        return false;
+    }
+    const size_t count = list ? list->count : 0;
+    if (count == 0) {
+        return true;
+    }
+    model->events = se3di_iopool_array(&model->pool, count, sizeof *model->events);
+    if (!model->events) {
+        return se3di_reader_fail_memory(reader);
+    }
+    for (const se3di_node *node = list->first; node; node = node->next) {
+        if (!read_event(reader, node, &model->events[model->event_count])) {
+            return false;
+        }
+        ++model->event_count;
+    }
+    return check_file(reader, list);
+}
