@@ -258,6 +258,8 @@ typedef struct se3d_particles_contact {
     se3d_shape shape; /* null: with particle j */
     double point[3];  /* [m] */
     double force[3];  /* on i [N] */
+    double normal[3]; /* towards i */
+    double overlap;   /* [m] > 0 */
 } se3d_particles_contact;
 
 /* Count the contacts of the last step, and list them (`count` must be that number).

@@ -57,7 +57,8 @@ SE3D_API se3d_status se3d_system_get_gravity(const se3d_system *system, double g
 SE3D_API se3d_status se3d_system_set_gravity_function(se3d_system *system,
                                                       const se3d_function gravity[3]);
 
-/* Set the time [s] at which functions of time are evaluated. Exclusive. @since 0.1 */
+/* Set the time [s] at which functions of time are evaluated, also of the system's particle sets.
+ * Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_system_set_time(se3d_system *system, double time);
 SE3D_API se3d_status se3d_system_get_time(const se3d_system *system, double *time);
 

@@ -83,8 +83,10 @@ static int pair_contact(const se3di_particles *set, uint32_t b, int lane,
     double arm = c.grains[0].radius - 0.5 * overlap;
     for (int a = 0; a < 3; ++a) {
         c.grains[1].x[a] = c.grains[0].x[a] - d[a];
+        out->normal[a] = d[a] / distance;
         out->point[a] = c.grains[0].x[a] - d[a] * (arm / distance);
     }
+    out->overlap = overlap;
     se3di_force_task task = task_of(set, &c);
     se3di_particle_kernels_portable()->pairs(&task);
     out->i = c.spins[0].id;
@@ -114,6 +116,10 @@ static int wall_contact(const se3di_particles *set, couple *c, const se3di_given
     if (!(here.distance[0] < c->grains[0].radius)) {
         return 0;
     }
+    for (int a = 0; a < 3; ++a) {
+        out->normal[a] = here.normal[a][0];
+    }
+    out->overlap = c->grains[0].radius - here.distance[0];
     c->block.j[0] = 0;
     se3di_force_task task = task_of(set, c);
     task.given = &here;

@@ -2,6 +2,7 @@
 /* Channels: names to quantities, columns and numbers. */
 #include "io/channel.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -74,7 +75,19 @@ static const quantity_name contact_names[] = {{"contacts.count", SE3DI_CONTACTS_
 static const quantity_name particle_names[] = {{"particles.count", SE3DI_PARTICLES_COUNT},
                                                {"particles.lost", SE3DI_PARTICLES_LOST},
                                                {"particles.energy", SE3DI_PARTICLES_ENERGY},
+                                               {"particles.left", SE3DI_PARTICLES_LEFT},
                                                {NULL, SE3DI_STEPS}};
+
+static const quantity_name set_names[] = {{"count", SE3DI_SET_COUNT},
+                                          {"lost", SE3DI_SET_LOST},
+                                          {"left", SE3DI_SET_LEFT},
+                                          {"mass", SE3DI_SET_MASS},
+                                          {"energy", SE3DI_SET_ENERGY},
+                                          {"inserted", SE3DI_SET_INSERTED},
+                                          {"deferred", SE3DI_SET_DEFERRED},
+                                          {"waiting", SE3DI_SET_WAITING},
+                                          {NULL, SE3DI_STEPS}};
+static const quantity_name sink_names[] = {{"count", SE3DI_SINK_COUNT}, {NULL, SE3DI_STEPS}};
 
 enum { QUANTITIES_MAX = 12 };
 
@@ -256,7 +269,7 @@ static bool explain_system(const char *head, const char *name, char *problem, si
     if (strcmp(head, "contacts") == 0 || strcmp(head, "particles") == 0) {
         snprintf(problem, size,
                  "`%.60s.%.60s` is unknown, there are contacts.count, contacts.force_max and, with "
-                 "`particles`, particles.count, particles.lost, particles.energy",
+                 "`particles`, particles.count, particles.lost, particles.energy, particles.left",
                  head, name);
         return true;
     }
@@ -290,6 +303,21 @@ static bool find_marker(const se3d_model *model, const se3di_body_entry *body, c
         explain(&o, tail, dot + 1, problem, size);
         return false;
     }
+    return true;
+}
+
+/* A set of particles or a sink; returns whether there is one of that name. */
+static bool find_flow(const se3d_model *model, const char *head, se3di_channel *channel, offer *o)
+{
+    const size_t set = se3di_grains_find_set(model->grains, head);
+    const size_t sink = se3di_grains_find_sink(model->grains, head);
+    if (set == SIZE_MAX && sink == SIZE_MAX) {
+        return false;
+    }
+    channel->grains = model->grains;
+    channel->particles = model->grains->set;
+    channel->index = (uint32_t)(set != SIZE_MAX ? set : sink);
+    offer_names(o, set != SIZE_MAX ? set_names : sink_names);
     return true;
 }
 
@@ -331,6 +359,13 @@ bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel
     }
     *tail++ = '\0';
     if (find_element(model, head, tail, channel, &o)) {
+        return true;
+    }
+    if (find_flow(model, head, channel, &o)) {
+        if (!pick(&o, tail, &channel->quantity)) {
+            explain(&o, head, tail, problem, problem_size);
+            return false;
+        }
         return true;
     }
     if (se3di_ionames_find(&model->body_names, head, &index)) {

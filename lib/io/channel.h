@@ -45,6 +45,16 @@ typedef enum se3di_quantity {
     SE3DI_PARTICLES_COUNT,
     SE3DI_PARTICLES_LOST,
     SE3DI_PARTICLES_ENERGY,
+    SE3DI_PARTICLES_LEFT,
+    SE3DI_SET_COUNT,
+    SE3DI_SET_LOST,
+    SE3DI_SET_LEFT,
+    SE3DI_SET_MASS,
+    SE3DI_SET_ENERGY,
+    SE3DI_SET_INSERTED,
+    SE3DI_SET_DEFERRED,
+    SE3DI_SET_WAITING,
+    SE3DI_SINK_COUNT,
     SE3DI_STEPS,
     SE3DI_ITERATIONS
 } se3di_quantity;
@@ -57,6 +67,9 @@ typedef struct se3di_channel {
     se3d_constraint constraint;
     se3d_force force;
     const se3d_particles *particles;
+    const struct se3di_grains *grains; /* of sets and sinks */
+    uint32_t index;                    /* tag of a set, number of a sink */
+    uint32_t reserved;
     double point[3]; /* of `body`, where a wrench acts */
 } se3di_channel;
 

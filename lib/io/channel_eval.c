@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "io/channel.h"
+#include "io/grains.h"
 
 static se3d_status eval_body(const se3di_channel *c, const se3d_system *system, double value[4])
 {
@@ -117,8 +118,9 @@ static se3d_status eval_particles(const se3di_channel *c, double value[4])
     if (status >= 0) {
         status = se3d_particles_get_energy(c->particles, &energy);
     }
-    const double all[3] = {(double)se3d_particles_count(c->particles), (double)stats.lost,
-                           energy.translation + energy.rotation + energy.potential};
+    const double all[4] = {(double)se3d_particles_count(c->particles), (double)stats.lost,
+                           energy.translation + energy.rotation + energy.potential,
+                           (double)stats.left};
     value[0] = all[c->quantity - SE3DI_PARTICLES_COUNT];
     return status;
 }
@@ -155,8 +157,10 @@ static se3d_status eval_system(const se3di_channel *c, const se3d_system *system
         value[0] = violation[c->quantity - SE3DI_VIOLATION_POSITION];
     } else if (c->quantity <= SE3DI_CONTACTS_FORCE_MAX) {
         status = eval_contacts(c, system, value);
-    } else if (c->quantity <= SE3DI_PARTICLES_ENERGY) {
+    } else if (c->quantity <= SE3DI_PARTICLES_LEFT) {
         status = eval_particles(c, value);
+    } else if (c->quantity <= SE3DI_SINK_COUNT) {
+        status = se3di_grains_eval(c, value);
     } else {
         value[0] = !stats                       ? 0.0
                    : c->quantity == SE3DI_STEPS ? (double)stats->steps

@@ -45,35 +45,40 @@ static bool create_material(se3di_reader *reader, const se3di_node *entry, se3d_
     return status < 0 ? se3di_reader_fail_system(reader, entry, status) : true;
 }
 
+bool se3di_reader_find_material(se3di_reader *reader, const char *name, se3d_material *material)
+{
+    se3d_material *materials = reader->model->materials;
+    const se3di_node *list = se3di_node_get(reader->model->root, "materials");
+    const se3di_node *entry = list ? list->first : NULL;
+    size_t k = 0;
+    for (; entry && strcmp(se3di_node_get(entry, "name")->text, name) != 0; entry = entry->next) {
+        ++k;
+    }
+    if (!entry || (materials[k].index1 == 0 && !create_material(reader, entry, &materials[k]))) {
+        return false;
+    }
+    *material = materials[k];
+    return true;
+}
+
 bool se3di_read_key_material(se3di_reader *reader, const se3di_node *map, const char *key,
                              se3d_material *material)
 {
-    se3d_material *materials = reader->model->materials;
     const se3di_node *node = se3di_node_get(map, key);
-    const se3di_node *list = se3di_node_get(reader->model->root, "materials");
-    const se3di_node *entry = list ? list->first : NULL;
     const char *name = NULL;
-    size_t k = 0;
     if (!node) {
         return se3di_reader_fail_key(reader, map, key, "is missing, must be one of `materials`");
     }
     if (!se3di_read_text(reader, node, &name)) {
         return false;
     }
-    for (; entry && strcmp(se3di_node_get(entry, "name")->text, name) != 0; entry = entry->next) {
-        ++k;
+    if (se3di_reader_find_material(reader, name, material)) {
+        return true;
     }
-    if (!entry) {
-        return se3di_reader_fail(reader, node,
-                                 "no material is named `%.60s`; list it under "
-                                 "`materials`",
-                                 name);
-    }
-    if (materials[k].index1 == 0 && !create_material(reader, entry, &materials[k])) {
-        return false;
-    }
-    *material = materials[k];
-    return true;
+    return reader->status < 0
+               ? false
+               : se3di_reader_fail(reader, node,
+                                   "no material is named `%.60s`; list it under `materials`", name);
 }
 
 static bool read_settings(se3di_reader *reader, const se3di_node *contact)
@@ -204,7 +209,7 @@ bool se3di_read_contact(se3di_reader *reader, const se3di_node *root)
     se3d_model *model = reader->model;
     const se3di_node *contact = se3di_node_get(root, "contact");
     const se3di_node *materials = se3di_node_get(root, "materials");
-    if (!contact && !se3di_node_get(root, "particles")) {
+    if (!contact && !se3di_node_get(root, "particles") && !se3di_node_get(root, "sinks")) {
         return true;
     }
     model->materials = se3di_iopool_array(&model->pool, materials ? materials->count : 1,

@@ -111,12 +111,19 @@ void se3di_csv_put_row(se3di_csv *csv, const double *row)
     csv->has_pending = true;
 }
 
-void se3di_csv_put_line(se3di_csv *csv, const double *row)
+void se3di_csv_put_cells(se3di_csv *csv, const se3di_csv_cell *cells, size_t count)
 {
+    char text[NUMBER_SIZE + 1];
     write_pending(csv);
-    memcpy(csv->pending, row, csv->columns * sizeof *row);
-    csv->has_pending = true;
-    write_pending(csv);
+    for (size_t k = 0; k < count; ++k) {
+        if (cells[k].text) {
+            put(csv, cells[k].text, strlen(cells[k].text));
+        } else {
+            put(csv, text, se3di_number_format(cells[k].number, text));
+        }
+        put(csv, k + 1 < count ? "," : "\n", 1);
+    }
+    ++csv->rows;
 }
 
 se3d_status se3di_csv_close(se3di_csv *csv)

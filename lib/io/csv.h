@@ -25,8 +25,14 @@ se3d_status se3di_csv_open(se3di_csv *csv, se3di_iopool *pool, const char *path,
 void se3di_csv_put_name(se3di_csv *csv, const char *name, bool last);
 /* Write one row; row[0] is the time. A row at the time of the one before takes its place. */
 void se3di_csv_put_row(se3di_csv *csv, const double *row);
+/* A number, or a text without commas and quotes. */
+typedef struct se3di_csv_cell {
+    const char *text; /* NULL: the number */
+    double number;
+} se3di_csv_cell;
+
 /* Write one row as it is, whatever its time. */
-void se3di_csv_put_line(se3di_csv *csv, const double *row);
+void se3di_csv_put_cells(se3di_csv *csv, const se3di_csv_cell *cells, size_t count);
 /* Complete the file and give it its name. @return OK or IO (nothing is left then). */
 se3d_status se3di_csv_close(se3di_csv *csv);
 /* Close without keeping anything. */

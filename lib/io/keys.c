@@ -6,8 +6,9 @@
 #include <string.h>
 
 static const char *const model_keys[] = {
-    "se3d",        "title",  "parameters", "gravity",   "materials", "bodies", "joints", "drivers",
-    "constraints", "forces", "contact",    "particles", "analysis",  "events", "output", NULL};
+    "se3d",   "title",    "parameters",  "gravity", "materials", "bodies",
+    "joints", "drivers",  "constraints", "forces",  "contact",   "particles",
+    "sinks",  "analysis", "events",      "output",  NULL};
 static const char *const body_keys[] = {
     "name",    "fixed",    "held",        "mass",     "inertia",
     "density", "position", "orientation", "velocity", "angular_velocity",
@@ -28,9 +29,13 @@ static const char *const contact_keys[] = {"law",      "step",  "threads", "skin
 static const char *const pair_keys[] = {
     "material_1",         "material_2", "friction", "restitution", "rolling_friction",
     "torsional_friction", "stiffness",  "cohesion", "adhesion",    NULL};
-static const char *const particles_keys[] = {"material", "packing", "count",  "radius",   "lower",
-                                             "upper",    "spacing", "jitter", "velocity", "seed",
-                                             "region",   "axis",    NULL};
+static const char *const particles_keys[] = {
+    "material", "packing", "count",  "radius", "lower", "upper", "spacing", "jitter",
+    "velocity", "seed",    "region", "axis",   "name",  "file",  "source",  NULL};
+static const char *const source_keys[] = {"rate",  "mass_rate", "start", "stop",
+                                          "count", "every",     NULL};
+static const char *const sink_keys[] = {"name", "lower", "upper",  "region",
+                                        "axis", "point", "normal", NULL};
 static const char *const radius_keys[] = {"table", NULL};
 static const char *const joint_keys[] = {
     "name",    "type",    "body_i", "body_j", "at",    "axis",   "ref",    "at_2",  "axis_2",
@@ -92,9 +97,9 @@ static const char *const modes_input_keys[] = {"body", "point", "direction", "to
 static const char *const modes_output_keys[] = {"body", "point", "direction", "quantity", NULL};
 static const char *const frequency_keys[] = {"from", "to", "count", NULL};
 static const char *const event_keys[] = {"name", "channel", "value", "direction", "action", NULL};
-static const char *const output_keys[] = {"file",  "every", "channels", "particles", "vtk",
-                                          "plot",  "from",  "x",        "fft",       "scene",
-                                          "video", "speed", NULL};
+static const char *const output_keys[] = {"file",  "every", "channels", "particles", "contacts",
+                                          "vtk",   "plot",  "from",     "x",         "fft",
+                                          "scene", "video", "speed",    NULL};
 
 #define FRAME  " at point_i point_j "
 #define AXES   " axis axis_i axis_j "
@@ -172,6 +177,8 @@ static const se3di_object_keys objects[SE3DI_OBJECT_COUNT] = {
     {"particles", particles_keys, NULL, NULL, NULL},
     {"radius", radius_keys, NULL, NULL, NULL},
     {"event", event_keys, NULL, NULL, NULL},
+    {"source", source_keys, NULL, NULL, NULL},
+    {"sink", sink_keys, NULL, NULL, NULL},
 };
 
 const se3di_object_keys *se3di_keys_get(se3di_object object)

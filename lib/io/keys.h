@@ -28,7 +28,9 @@ typedef enum se3di_object {
     SE3DI_OBJECT_PARTICLES = 19,
     SE3DI_OBJECT_RADIUS = 20,
     SE3DI_OBJECT_EVENT = 21,
-    SE3DI_OBJECT_COUNT = 22
+    SE3DI_OBJECT_SOURCE = 22,
+    SE3DI_OBJECT_SINK = 23,
+    SE3DI_OBJECT_COUNT = 24
 } se3di_object;
 
 /* Keys of a type that not all objects of its kind have. */

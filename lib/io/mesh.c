@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FILE_BYTES_MAX = 1 << 28, FACE_CORNERS_MAX = 64, STL_HEAD = 84, STL_RECORD = 50 };
+enum { FACE_CORNERS_MAX = 64, STL_HEAD = 84, STL_RECORD = 50 };
 
 typedef struct scanner {
     se3di_reader *reader;
@@ -303,50 +303,18 @@ static bool read_text(scanner *s, size_t bytes)
                          "count of triangles says");
 }
 
-/* The path beside the model file; absolute ones stay. */
-static const char *find(se3di_reader *reader, se3di_iopool *pool, const char *file)
-{
-    const char *model = reader->model->file;
-    const char *slash = model ? strrchr(model, '/') : NULL;
-    const size_t folder = slash && file[0] != '/' ? (size_t)(slash - model) + 1 : 0;
-    char *path = se3di_iopool_array(pool, folder + strlen(file) + 1, 1);
-    if (path) {
-        memcpy(path, model ? model : "", folder);
-        memcpy(path + folder, file, strlen(file) + 1);
-    }
-    return path;
-}
-
-static bool read_stream(scanner *s, FILE *stream, se3di_iopool *pool)
-{
-    const long size = fseek(stream, 0, SEEK_END) == 0 ? ftell(stream) : -1;
-    if (size <= 0 || size > FILE_BYTES_MAX || fseek(stream, 0, SEEK_SET) != 0) {
-        return fail(s, "the file is empty, too large or cannot be read");
-    }
-    char *text = se3di_iopool_array(pool, (size_t)size, 1);
-    if (!text) {
-        return se3di_reader_fail_memory(s->reader);
-    }
-    if (fread(text, 1, (size_t)size, stream) != (size_t)size) {
-        return fail(s, "the file is empty, too large or cannot be read");
-    }
-    s->at = text;
-    s->end = text + size;
-    return read_text(s, (size_t)size) &&
-           (s->mesh->triangle_count > 0 || fail(s, "the file has no triangles"));
-}
-
 static bool read_file(scanner *s)
 {
     se3di_iopool pool; /* of the text */
+    char *text = NULL;
+    size_t size = 0;
     se3di_iopool_init(&pool, &s->reader->model->pool.allocator);
-    const char *path = find(s->reader, &pool, s->file);
-    FILE *stream = path ? fopen(path, "rb") : NULL;
-    const bool good = !path     ? se3di_reader_fail_memory(s->reader)
-                      : !stream ? fail(s, "the file cannot be opened")
-                                : read_stream(s, stream, &pool);
-    if (stream) {
-        fclose(stream);
+    bool good = se3di_read_attachment(s->reader, s->shape, s->file, &pool, &text, &size);
+    if (good) {
+        s->at = text;
+        s->end = text + size;
+        good = read_text(s, size) &&
+               (s->mesh->triangle_count > 0 || fail(s, "the file has no triangles"));
     }
     se3di_iopool_destroy(&pool);
     return good;

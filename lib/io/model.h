@@ -67,6 +67,8 @@ typedef struct se3di_analysis_entry {
 typedef struct se3di_output_entry {
     const char *file;
     bool particles; /* snapshots of them, no channels */
+    bool contacts;  /* lists of them, no channels */
+    int32_t set;    /* of whose particles; -1: all */
     bool vtk;       /* a series for ParaView, no channels */
     double every;   /* 0: the analysis's step */
     se3di_channel *channels;

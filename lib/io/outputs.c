@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `output`: results files, and the pictures that are made of them. */
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
-#include "io/reader.h"
+#include "io/grains.h"
 
 static bool read_channels(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
 {
@@ -43,21 +44,57 @@ static bool read_channels(se3di_reader *reader, const se3di_node *node, se3di_ou
     return true;
 }
 
+/* particles: true for all, or the name of a set. */
 static bool read_snapshots(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
 {
     const se3di_node *child = se3di_node_get(node, "particles");
+    const se3d_model *model = reader->model;
+    int32_t wanted = 0;
+    output->set = -1;
+    if (child && child->kind == SE3DI_NODE_SCALAR && model->grains) {
+        const size_t set = se3di_grains_find_set(model->grains, child->text);
+        output->set = set == SIZE_MAX ? -1 : (int32_t)set;
+        wanted = output->set >= 0;
+    }
+    if (child && !wanted && !se3di_read_bool(reader, child, &wanted)) {
+        return false;
+    }
+    if (wanted && !model->grains) {
+        return se3di_reader_fail(reader, child, "is true, but the model has no `particles`");
+    }
+    output->particles = wanted != 0;
+    return true;
+}
+
+/* contacts: true. */
+static bool read_contacts(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
+{
+    const se3di_node *child = se3di_node_get(node, "contacts");
     int32_t wanted = 0;
     if (child && !se3di_read_bool(reader, child, &wanted)) {
         return false;
     }
-    if (wanted && !reader->model->grains) {
-        return se3di_reader_fail(reader, child, "is true, but the model has no `particles`");
+    if (wanted && !se3di_node_get(reader->model->root, "contact") && !reader->model->grains) {
+        return se3di_reader_fail(reader, child,
+                                 "is true, but the model has no `contact` and no `particles`");
     }
-    if (wanted && se3di_node_get(node, "channels")) {
-        return se3di_reader_fail_key(reader, node, "channels",
+    output->contacts = wanted != 0;
+    return true;
+}
+
+/* A file has rows of one kind. */
+static bool check_kind_of_rows(se3di_reader *reader, const se3di_node *node,
+                               const se3di_output_entry *output)
+{
+    const char *what = output->particles ? "particles" : "contacts";
+    if (output->particles && output->contacts) {
+        return se3di_reader_fail_key(reader, node, "contacts",
                                      "cannot stand beside `particles`: give each its own file");
     }
-    output->particles = wanted != 0;
+    if ((output->particles || output->contacts) && se3di_node_get(node, "channels")) {
+        return se3di_reader_fail_key(reader, node, "channels",
+                                     "cannot stand beside `%s`: give each its own file", what);
+    }
     return true;
 }
 
@@ -74,7 +111,7 @@ typedef struct output_kind {
 enum { KIND_FILE = 0, KIND_VTK = 1, KIND_COUNT = 5 };
 
 static const output_kind kinds[KIND_COUNT] = {
-    {"file", NULL, NULL, "results.csv", " file every channels particles "},
+    {"file", NULL, NULL, "results.csv", " file every channels particles contacts "},
     {"vtk", ".pvd", NULL, "motion.pvd", " vtk every "},
     {"plot", ".svg", ".png", "results.svg", " plot from channels x fft "},
     {"scene", ".html", ".glb", "motion.html", " scene "},
@@ -163,8 +200,10 @@ static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kin
     output->node = node;
     if (!read_file_name(reader, file, &kinds[kind], &output->file) ||
         !se3di_read_key_number(reader, node, "every", SE3DI_POSITIVE, &output->every) ||
-        !read_snapshots(reader, node, output) ||
-        (!output->particles && !output->vtk && !read_channels(reader, node, output))) {
+        !read_snapshots(reader, node, output) || !read_contacts(reader, node, output) ||
+        !check_kind_of_rows(reader, node, output) ||
+        (!output->particles && !output->contacts && !output->vtk &&
+         !read_channels(reader, node, output))) {
         return false;
     }
     ++model->output_count;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `particles`. */
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "io/grains.h"
@@ -43,6 +44,21 @@ static bool create_set(se3di_reader *reader, const se3di_node *contact)
     return status < 0
                ? se3di_reader_fail_system(reader, contact ? contact : reader->model->root, status)
                : true;
+}
+
+/* Names of sets and sinks are channels, as those of bodies and elements are. */
+static bool check_free(se3di_reader *reader, const se3di_node *node, const char *name)
+{
+    static const char words[] = " particles contacts energy violation work steps iterations ";
+    const se3d_model *model = reader->model;
+    if (se3di_keys_contain(words, name) || se3di_ionames_find(&model->body_names, name, NULL) ||
+        se3di_ionames_find(&model->element_names, name, NULL) ||
+        se3di_grains_find_set(model->grains, name) != SIZE_MAX ||
+        se3di_grains_find_sink(model->grains, name) != SIZE_MAX) {
+        return se3di_reader_fail(reader, node, "`%.60s` is taken, must differ from other names",
+                                 name);
+    }
+    return true;
 }
 
 /* {table: [[radius, frequency], ...]} */
@@ -125,33 +141,182 @@ static bool read_radius(se3di_reader *reader, const se3di_node *node, se3d_fill_
     return true;
 }
 
-static bool read_fill(se3di_reader *reader, const se3di_node *node)
+/* The tag of the set that an entry names, a new one where the name is new; 0 without a name. */
+static bool read_set(se3di_reader *reader, const se3di_node *node, uint32_t *tag)
+{
+    se3di_grains *grains = reader->model->grains;
+    const se3di_node *child = se3di_node_get(node, "name");
+    const char *name = NULL;
+    *tag = 0;
+    if (!child) {
+        return true;
+    }
+    if (!se3di_read_name(reader, child, &name)) {
+        return false;
+    }
+    const size_t known = se3di_grains_find_set(grains, name);
+    if (known != SIZE_MAX) {
+        *tag = (uint32_t)known;
+        return true;
+    }
+    if (!check_free(reader, child, name)) {
+        return false;
+    }
+    if (grains->set_count == SE3D_PARTICLES_TAGS) {
+        return se3di_reader_fail(reader, child, "there are more than %d names of particles",
+                                 SE3D_PARTICLES_TAGS - 1);
+    }
+    *tag = (uint32_t)grains->set_count;
+    grains->sets[grains->set_count++] = name;
+    return true;
+}
+
+/* Keys that have no meaning beside another one. */
+static bool check_beside(se3di_reader *reader, const se3di_node *node, const char *beside,
+                         const char *keys)
+{
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (!se3di_keys_contain(keys, child->key)) {
+            return se3di_reader_fail(reader, child, "has no meaning beside `%s`, which takes:%s",
+                                     beside, keys);
+        }
+    }
+    return true;
+}
+
+/* rate or mass_rate: a number >= 0, or a function of t. */
+static bool read_rate(se3di_reader *reader, const se3di_node *source, se3d_source_def *def)
+{
+    static const char *const variables[] = {"t", NULL};
+    const se3di_node *count = se3di_node_get(source, "rate");
+    const se3di_node *mass = se3di_node_get(source, "mass_rate");
+    if (!count == !mass) {
+        return se3di_reader_fail(reader, source,
+                                 "must have either `rate` [1/s] or `mass_rate` [kg/s]");
+    }
+    if (!se3di_read_function(reader, count ? count : mass, variables, &def->rate, &def->function)) {
+        return false;
+    }
+    if (def->rate < 0.0) {
+        return se3di_reader_fail(reader, count ? count : mass, "is %g, must be >= 0", def->rate);
+    }
+    def->per_mass = mass != NULL;
+    return true;
+}
+
+static bool read_source(se3di_reader *reader, const se3di_node *node, se3d_fill_def *fill)
+{
+    se3di_grains *grains = reader->model->grains;
+    const se3di_node *child = se3di_node_get(node, "source");
+    se3d_source_def def = se3d_source_def_default();
+    double most = 0.0;
+    def.fill = fill;
+    if (!check_beside(reader, node, "source",
+                      " name material radius lower upper region axis velocity seed source ") ||
+        !se3di_read_keys(reader, child, SE3DI_OBJECT_SOURCE) || !read_rate(reader, child, &def) ||
+        !se3di_read_key_number(reader, child, "start", SE3DI_ANY, &def.start) ||
+        !se3di_read_key_number(reader, child, "stop", SE3DI_ANY, &def.stop) ||
+        !se3di_read_key_number(reader, child, "every", SE3DI_NOT_NEGATIVE, &def.every) ||
+        !se3di_read_key_count(reader, child, "count", 1e8, &most)) {
+        return false;
+    }
+    fill->count = (size_t)most;
+    uint32_t *grown =
+        se3di_iopool_grow(&reader->model->pool, grains->source_tags, grains->source_count,
+                          &grains->source_capacity, sizeof *grown);
+    if (!grown) {
+        return se3di_reader_fail_memory(reader);
+    }
+    grains->source_tags = grown;
+    grains->source_tags[grains->source_count++] = fill->tag;
+    const se3d_status status = se3d_particles_add_source(grains->set, &def, NULL);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+/* Of an entry that fills a region, at once or as a source. */
+static bool read_fill(se3di_reader *reader, const se3di_node *node, se3d_fill_def *def)
 {
     static const char *const packings[] = {"lattice", "random", NULL};
     se3d_particles *set = reader->model->grains->set;
     const se3di_node *packing = se3di_node_get(node, "packing");
-    se3d_fill_def def = se3d_fill_def_default();
     double count = 0.0;
     double seed = 0.0;
     size_t word = 0;
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_PARTICLES) ||
-        (packing && !se3di_read_word(reader, packing, packings, &word)) ||
-        !se3di_read_key_material(reader, node, "material", &def.material) ||
+    if ((packing && !se3di_read_word(reader, packing, packings, &word)) ||
         !se3di_read_key_count(reader, node, "count", 1e8, &count) ||
-        !read_radius(reader, node, &def) || !read_region(reader, node, &def) ||
-        !se3di_read_key_vector(reader, node, "lower", def.lower) ||
-        !se3di_read_key_vector(reader, node, "upper", def.upper) ||
-        !se3di_read_key_vector(reader, node, "velocity", def.velocity) ||
-        !se3di_read_key_number(reader, node, "spacing", SE3DI_POSITIVE, &def.spacing) ||
-        !se3di_read_key_number(reader, node, "jitter", SE3DI_NOT_NEGATIVE, &def.jitter) ||
+        !read_radius(reader, node, def) || !read_region(reader, node, def) ||
+        !se3di_read_key_vector(reader, node, "lower", def->lower) ||
+        !se3di_read_key_vector(reader, node, "upper", def->upper) ||
+        !se3di_read_key_vector(reader, node, "velocity", def->velocity) ||
+        !se3di_read_key_number(reader, node, "spacing", SE3DI_POSITIVE, &def->spacing) ||
+        !se3di_read_key_number(reader, node, "jitter", SE3DI_NOT_NEGATIVE, &def->jitter) ||
         !se3di_read_key_count(reader, node, "seed", 9007199254740992.0, &seed)) {
         return false;
     }
-    def.count = (size_t)count;
-    def.seed = (uint64_t)seed;
-    const se3d_status status = word == 0 ? se3d_particles_fill_lattice(set, &def, NULL)
-                                         : se3d_particles_fill_random(set, &def);
+    def->count = (size_t)count;
+    def->seed = (uint64_t)seed;
+    if (se3di_node_get(node, "source")) {
+        return read_source(reader, node, def);
+    }
+    const se3d_status status = word == 0 ? se3d_particles_fill_lattice(set, def, NULL)
+                                         : se3d_particles_fill_random(set, def);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+static bool read_entry(se3di_reader *reader, const se3di_node *node)
+{
+    se3d_fill_def def = se3d_fill_def_default();
+    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_PARTICLES) ||
+        !se3di_read_key_material(reader, node, "material", &def.material) ||
+        !read_set(reader, node, &def.tag)) {
+        return false;
+    }
+    if (se3di_node_get(node, "file")) {
+        return check_beside(reader, node, "file", " name material file ") &&
+               se3di_read_grain_table(reader, node, def.material, def.tag);
+    }
+    return read_fill(reader, node, &def);
+}
+
+static bool read_sink(se3di_reader *reader, const se3di_node *node)
+{
+    se3di_grains *grains = reader->model->grains;
+    const se3di_node *name = se3di_node_get(node, "name");
+    const char *text = NULL;
+    se3d_sink_def def = se3d_sink_def_default();
+    se3d_fill_def region = se3d_fill_def_default();
+    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_SINK) ||
+        (name && (!se3di_read_name(reader, name, &text) || !check_free(reader, name, text))) ||
+        (se3di_node_get(node, "normal") &&
+         !check_beside(reader, node, "normal", " name point normal ")) ||
+        !se3di_read_key_direction(reader, node, "normal", def.normal) ||
+        !se3di_read_key_vector(reader, node, "point", def.point) ||
+        !read_region(reader, node, &region) ||
+        !se3di_read_key_vector(reader, node, "lower", def.lower) ||
+        !se3di_read_key_vector(reader, node, "upper", def.upper)) {
+        return false;
+    }
+    def.region = region.region;
+    def.axis = region.axis;
+    grains->sinks[grains->sink_count++] = text;
+    const se3d_status status = se3d_particles_add_sink(grains->set, &def, NULL);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+static bool read_sinks(se3di_reader *reader, const se3di_node *list)
+{
+    se3di_grains *grains = reader->model->grains;
+    grains->sinks =
+        se3di_iopool_array(&reader->model->pool, list ? list->count : 1, sizeof *grains->sinks);
+    if (!grains->sinks) {
+        return se3di_reader_fail_memory(reader);
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        if (!read_sink(reader, node)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 /* Particles push bodies in `verlet` only; in kinematics the motion of the bodies is given. */
@@ -185,8 +350,13 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
     se3d_model *model = reader->model;
     const se3di_node *contact = se3di_node_get(root, "contact");
     const se3di_node *list = NULL;
-    if (!se3di_read_list(reader, root, "particles", &list)) {
+    const se3di_node *sinks = NULL;
+    if (!se3di_read_list(reader, root, "particles", &list) ||
+        !se3di_read_list(reader, root, "sinks", &sinks)) {
         return false;
+    }
+    if (sinks && !list) {
+        return se3di_reader_fail(reader, sinks, "needs `particles`, which the model has not");
     }
     if (!list) {
         return true;
@@ -196,11 +366,12 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
         return se3di_reader_fail_memory(reader);
     }
     model->grains->moving_walls = model->moving_shapes;
-    if (!create_set(reader, contact)) {
+    model->grains->set_count = 1; /* those without a name */
+    if (!create_set(reader, contact) || !read_sinks(reader, sinks)) {
         return false;
     }
     for (const se3di_node *node = list->first; node; node = node->next) {
-        if (!read_fill(reader, node)) {
+        if (!read_entry(reader, node)) {
             return false;
         }
     }

@@ -63,6 +63,8 @@ bool se3di_read_key_count(se3di_reader *reader, const se3di_node *map, const cha
 /* The material that the value of `key` names, which is made where it is needed first. */
 bool se3di_read_key_material(se3di_reader *reader, const se3di_node *map, const char *key,
                              se3d_material *material);
+/* The material of a name. @return false: there is none, or (reader->status < 0) it is refused. */
+bool se3di_reader_find_material(se3di_reader *reader, const char *name, se3d_material *material);
 bool se3di_read_vector(se3di_reader *reader, const se3di_node *node, size_t size, double *value);
 bool se3di_read_key_vector(se3di_reader *reader, const se3di_node *map, const char *key,
                            double value[3]);
@@ -114,6 +116,11 @@ bool se3di_read_contact(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_particles(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_events(se3di_reader *reader, const se3di_node *root);
+
+/* Load the file that the key `file` of a map names, relative to the model, to memory of `pool`; a
+ * zero follows it. */
+bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const char *file,
+                           se3di_iopool *pool, char **text, size_t *size);
 
 /* Begin an element: its name, given or made up, is added to the model. */
 bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_element_kind kind,

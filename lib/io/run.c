@@ -13,6 +13,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "io/contact_list.h"
 #include "io/csv.h"
 #include "io/grains.h"
 #include "io/model.h"
@@ -118,7 +119,9 @@ static se3d_status open_file(runner *r, const se3di_output_entry *entry)
     if (entry->vtk) {
         return open_vtk(r, entry, path);
     }
-    columns = entry->particles ? (size_t)SE3DI_GRAIN_COLUMNS : columns;
+    columns = entry->particles  ? (size_t)SE3DI_GRAIN_COLUMNS + 1
+              : entry->contacts ? (size_t)SE3DI_CONTACT_COLUMNS
+                                : columns;
     for (size_t k = 0; k < entry->count; ++k) {
         columns += se3di_channel_get_width(&entry->channels[k]);
     }
@@ -131,10 +134,13 @@ static se3d_status open_file(runner *r, const se3di_output_entry *entry)
         return result;
     }
     ++r->file_count;
-    for (size_t k = 0; k < SE3DI_GRAIN_COLUMNS && entry->particles; ++k) {
-        se3di_csv_put_name(&file->csv, se3di_grains_get_column(k), k + 1 == SE3DI_GRAIN_COLUMNS);
+    for (size_t k = 0; k < columns && (entry->particles || entry->contacts); ++k) {
+        se3di_csv_put_name(&file->csv,
+                           entry->particles ? se3di_grains_get_column(k)
+                                            : se3di_contacts_get_column(k),
+                           k + 1 == columns);
     }
-    if (entry->particles) {
+    if (entry->particles || entry->contacts) {
         return SE3D_OK;
     }
     se3di_csv_put_name(&file->csv, "time", columns == 1);
@@ -200,17 +206,14 @@ static double row_time(const output_file *file, double number, double start, dou
     return number < file->count ? start + number * file->every : start + duration;
 }
 
-/* One row for each particle. */
-static se3d_status sample_particles(runner *r, output_file *file)
+/* One row for each particle, or for each contact. */
+static se3d_status sample_list(runner *r, output_file *file)
 {
     se3di_iopool pool;
-    double *rows = NULL;
-    size_t count = 0;
     se3di_iopool_init(&pool, &r->model->pool.allocator);
-    const se3d_status status = se3di_grains_get_rows(r->model->grains, &pool, &rows, &count);
-    for (size_t k = 0; k < count; ++k) {
-        se3di_csv_put_line(&file->csv, rows + SE3DI_GRAIN_COLUMNS * k);
-    }
+    const se3d_status status =
+        file->entry->contacts ? se3di_contacts_write(r->model, &pool, &file->csv)
+                              : se3di_grains_write(r->model, &pool, file->entry->set, &file->csv);
     se3di_iopool_destroy(&pool);
     if (status < 0) {
         return fail(r, status, se3d_status_get_text(status));
@@ -226,8 +229,8 @@ static se3d_status sample(runner *r, output_file *file, double time)
         se3di_vtk_record(file->vtk, time); /* a failure is reported at the end: others go on */
         return SE3D_OK;
     }
-    if (file->entry->particles) {
-        return sample_particles(r, file);
+    if (file->entry->particles || file->entry->contacts) {
+        return sample_list(r, file);
     }
     memset(&stats, 0, sizeof stats);
     se3d_solver_get_stats(r->solver, &stats);

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "io/contact_list.h"
 #include "io/csv.h"
 #include "io/drawing.h"
 #include "io/grains.h"
@@ -252,12 +253,13 @@ static bool write_grains(const se3di_vtk *vtk, const char *path)
 {
     enum { W = SE3DI_GRAIN_COLUMNS };
     se3di_iopool pool;
-    double *rows = NULL;
-    size_t n = 0;
+    se3di_grain_rows grains;
     se3di_iopool_init(&pool, &vtk->model->pool.allocator);
     errno = ENOMEM;
-    bool good = se3di_grains_get_rows(vtk->model->grains, &pool, &rows, &n) >= 0;
+    bool good = se3di_grains_get_rows(vtk->model, &pool, &grains) >= 0;
     if (good) {
+        const double *rows = grains.rows;
+        const size_t n = grains.count;
         /* The columns of a row: time, id, radius, position, velocity, angular velocity. */
         const se3di_vtk_array arrays[] = {
             {SE3DI_VTK_POINT_DATA, "radius", rows + 2, n, 1, W, 0.0, 0.0, false},
@@ -276,17 +278,59 @@ static bool write_grains(const se3di_vtk *vtk, const char *path)
     return good;
 }
 
+static bool write_contacts(const se3di_vtk *vtk, const char *path)
+{
+    enum { W = SE3DI_CONTACT_NUMBERS };
+    se3di_iopool pool;
+    se3di_contact_rows list;
+    se3di_iopool_init(&pool, &vtk->model->pool.allocator);
+    errno = ENOMEM;
+    bool good = se3di_contacts_get_rows(vtk->model, &pool, &list) >= 0;
+    if (good) {
+        const double *rows = list.rows;
+        const size_t n = list.count;
+        const se3di_vtk_array arrays[] = {
+            {SE3DI_VTK_POINT_DATA, "normal", rows + 4, n, 3, W, 0.0, 0.0, false},
+            {SE3DI_VTK_POINT_DATA, "overlap", rows + 7, n, 1, W, 0.0, 0.0, false},
+            {SE3DI_VTK_POINT_DATA, "normal_force", rows + 8, n, 1, W, 0.0, 0.0, false},
+            {SE3DI_VTK_POINT_DATA, "tangential_force", rows + 9, n, 3, W, 0.0, 0.0, false},
+            {SE3DI_VTK_POINTS, "points", rows + 1, n, 3, W, 0.0, 0.0, false},
+            {SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true},
+            {SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true}};
+        const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
+        good = se3di_vtk_file_write(&file, path);
+    }
+    const int why = errno;
+    se3di_iopool_destroy(&pool);
+    errno = why;
+    return good;
+}
+
+/* A series of its own for what the model has. */
+static bool has_part(const se3d_model *model, int part)
+{
+    return part == 0 || (part == 1 && model->grains) ||
+           (part == 2 && (model->grains || se3di_node_get(model->root, "contact")));
+}
+
+static const char *const part_names[] = {"bodies", "grains", "contacts"};
+
 static bool write_state(se3di_vtk *vtk, size_t number)
 {
     char path[PATH_SIZE];
-    errno = ENAMETOOLONG;
-    if (!name_file(vtk, "bodies", number, true, path) || !se3di_file_make_folders(path) ||
-        !write_bodies(vtk, path)) {
-        return false;
+    bool good = true;
+    for (int part = 0; part < 3 && good; ++part) {
+        if (!has_part(vtk->model, part)) {
+            continue;
+        }
+        errno = ENAMETOOLONG;
+        good = name_file(vtk, part_names[part], number, true, path) &&
+               se3di_file_make_folders(path) &&
+               (part == 0   ? write_bodies(vtk, path)
+                : part == 1 ? write_grains(vtk, path)
+                            : write_contacts(vtk, path));
     }
-    errno = ENAMETOOLONG;
-    return !vtk->model->grains ||
-           (name_file(vtk, "grains", number, true, path) && write_grains(vtk, path));
+    return good;
 }
 
 void se3di_vtk_record(se3di_vtk *vtk, double time)
@@ -325,7 +369,6 @@ static void put_path(FILE *file, const char *path)
 
 static bool write_list(const se3di_vtk *vtk)
 {
-    static const char *const what[] = {"bodies", "grains"};
     char path[PATH_SIZE];
     char time[48];
     FILE *file = se3di_partial_open(vtk->path);
@@ -338,10 +381,13 @@ static bool write_list(const se3di_vtk *vtk)
           file);
     for (size_t k = 0; k < vtk->count; ++k) {
         time[se3di_number_format(vtk->times[k], time)] = '\0';
-        for (int part = 0; part < (vtk->model->grains ? 2 : 1); ++part) {
-            name_file(vtk, what[part], k, false, path);
+        for (int part = 0; part < 3; ++part) {
+            if (!has_part(vtk->model, part)) {
+                continue;
+            }
+            name_file(vtk, part_names[part], k, false, path);
             fprintf(file, "<DataSet timestep=\"%s\" part=\"%d\" name=\"%s\" file=\"", time, part,
-                    what[part]);
+                    part_names[part]);
             put_path(file, path);
             fputs("\"/>\n", file);
         }

@@ -167,6 +167,9 @@ se3d_status se3d_system_set_time(se3d_system *system, double time)
     }
     SE3DI_TRY(se3di_check_finite(system, "time", time));
     system->model.time = time;
+    for (se3di_particles *set = system->model.sets; set; set = set->next) {
+        set->time = time;
+    }
     se3di_model_touch_state(&system->model);
     return SE3D_OK;
 }

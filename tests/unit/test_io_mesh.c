@@ -148,7 +148,7 @@ static void a_mesh_that_only_is_seen_is_read_with_the_model(void)
     static const struct {
         const char *obj, *part;
     } files[] = {
-        {NULL, "`se3d_test_seen.obj`, line 1: the file cannot be opened"},
+        {NULL, "`se3d_test_seen.obj`: the file cannot be opened"},
         {"v 0 0 0\nv 1 0 0\nv 0 1e280 0\nf 1 2 3\n", "line 3: a coordinate is not a finite"},
         {"v 0 0 0\nv 1 0 0\nf 1 2 3\n", "line 3: a face must name"}};
     for (size_t k = 0; k < sizeof files / sizeof *files; ++k) {

@@ -133,8 +133,171 @@ static void grains_that_leave_through_a_sink_are_counted(void)
     se3d_model_destroy(model);
 }
 
+#define TWO                                                                                        \
+    "se3d: 1\nmaterials: [{name: glass, density: 2500, stiffness: 1e4}, {name: steel, density: "   \
+    "7800, stiffness: 1e4}]\n"                                                                     \
+    "bodies: [{name: ground, shapes: [{name: floor, type: plane, material: steel}]}]\n"
+
+static char *read_file(const char *name, char *text, size_t size)
+{
+    char path[1000];
+    snprintf(path, sizeof path, "%s/%s", results_folder(), name);
+    FILE *file = fopen(path, "rb");
+    const size_t length = file ? fread(text, 1, size - 1, file) : 0;
+    text[length] = '\0';
+    if (file) {
+        fclose(file);
+    }
+    return text;
+}
+
+static void write_file(const char *name, const char *text)
+{
+    char path[1000];
+    snprintf(path, sizeof path, "%s/%s", results_folder(), name);
+    FILE *file = fopen(path, "wb");
+    CHECK(file && fputs(text, file) >= 0 && fclose(file) == 0);
+}
+
+/* Sets of two materials and sizes that meet; what is written is read back, bit by bit. */
+static void tables_that_were_written_are_read_back(void)
+{
+    static char first[200000], second[200000];
+    char text[3000];
+    se3d_status status = SE3D_OK;
+    se3d_model *model = run_model(
+        TWO "particles:\n"
+            "  - {name: sand, material: glass, radius: [0.003, 0.005], lower: [0, 0, 0], upper: "
+            "[0.05, 0.05, 0.03], jitter: 3e-4, seed: 5}\n"
+            "  - {name: shot, material: steel, radius: 0.01, count: 2, lower: [0, 0, 0.04], upper: "
+            "[0.05, 0.05, 0.07], velocity: [0.1, 0, -1]}\n"
+            "analysis: {type: dynamics, duration: 0.1}\n"
+            "output: [{file: grains.csv, every: 0.05, particles: true}, {file: shot.csv, "
+            "particles: shot}]\n",
+        results_folder(), &status);
+    CHECK(status >= 0);
+    se3d_model_destroy(model);
+    read_file("grains.csv", first, sizeof first);
+    const char *last = strstr(first, "\n0.1");
+    CHECK(last && strstr(last, ",glass\n") && strstr(last, ",steel\n"));
+    CHECK(strstr(read_file("shot.csv", second, sizeof second), ",steel\n"));
+    CHECK(!strstr(second, ",glass\n"));
+    snprintf(text, sizeof text,
+             TWO "particles: [{material: glass, file: %s/grains.csv}, {name: other, material: "
+                 "glass, radius: 0.001, count: 1, lower: [1, 1, 1], upper: [2, 2, 2]}]\n"
+                 "analysis: {type: dynamics, duration: 0.01, start: 0.1}\n"
+                 "output: [{file: again.csv, every: 0.01, particles: true}]\n",
+             results_folder());
+    model = run_model(text, results_folder(), &status);
+    CHECK(status >= 0);
+    se3d_model_destroy(model);
+    read_file("again.csv", second, sizeof second);
+    const char *again = strchr(second, '\n');
+    size_t rows = 0;
+    for (; last && again && last[1] && again[1]; ++rows) { /* but for the ids, which are new */
+        const char *a = strchr(strchr(last + 1, ',') + 1, ',');
+        const char *b = strchr(strchr(again + 1, ',') + 1, ',');
+        const char *end_a = strchr(a, '\n');
+        CHECK((size_t)(end_a - a) == (size_t)(strchr(b, '\n') - b));
+        CHECK(strncmp(a, b, (size_t)(end_a - a)) == 0);
+        last = end_a;
+        again = strchr(b, '\n');
+    }
+    CHECK(rows > 20);
+}
+
+static void tables_are_refused_with_line_and_column(void)
+{
+    static const struct {
+        const char *table, *part;
+    } bad[] = {
+        {"x,y,z\n0,0,0\n", "column 3: `radius` is missing"},
+        {"x,y,z,r\n", "line 1, column 4: `r` is no column"},
+        {"x,y,z,x,radius\n", "line 1, column 4: `x` is there twice"},
+        {"x,y,z,radius\n0,0,0,0.1\n0,0,zero,0.1\n", "line 3, column 3: `zero` is not a number"},
+        {"x,y,z,radius\n0,0,1e999,0.1\n", "line 2, column 3: `1e999` is not a finite"},
+        {"x,y,z,radius\n\n0,0,0,-0.1\n", "line 3, column 4: `-0.1` is a radius, must be > 0"},
+        {"x,y,z,radius\n0,0,0\n", "line 2, column 4: `radius` is missing: the row is too short"},
+        {"x,y,z,radius\n0,0,0,1,5\n", "line 2, column 5: `5` is beyond the last"},
+        {"x,y,z,radius,material\n0,0,0,1,wood\n", "line 2, column 5: `wood` is no material"},
+        {"x,y,z,radius\n0,0,0,\n", "line 2, column 4: `` is not a finite number"}};
+    char text[2000];
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
+        se3d_model *model = NULL;
+        se3d_model_error error;
+        write_file("bad.csv", bad[k].table);
+        snprintf(text, sizeof text, TWO "particles: [{material: glass, file: %s/bad.csv}]\n",
+                 results_folder());
+        CHECK(se3d_model_read_text(text, strlen(text), "m.yaml", NULL, &model, &error) ==
+              SE3D_ERR_MODEL);
+        CHECK_CONTAINS(error.message, bad[k].part);
+        CHECK_CONTAINS(error.message, "m.yaml:4:");
+    }
+}
+
+/* Two grains rest on a plane, one on the other's side of a wall: contacts carry the weight. */
+static void contacts_are_listed_with_their_forces(void)
+{
+    static char text[20000];
+    se3d_status status = SE3D_OK;
+    se3d_model *model = run_model(
+        TWO "particles: [{name: sand, material: glass, radius: 0.01, count: 1, lower: [-0.011, "
+            "-0.011, 0], upper: [0.011, 0.011, 0.022]}]\n"
+            "analysis: {type: dynamics, duration: 0.5}\n"
+            "output: [{file: contacts.csv, every: 1, contacts: true}]\n",
+        results_folder(), &status);
+    CHECK(status >= 0);
+    se3d_model_destroy(model);
+    read_file("contacts.csv", text, sizeof text);
+    CHECK_CONTAINS(text, "time,kind,a,b,x,y,z,nx,ny,nz,overlap,fn,ftx,fty,ftz\n");
+    const char *row = strstr(text, "\n0.5,wall,0,floor,");
+    double v[11] = {0.0};
+    CHECK(row != NULL);
+    const char *at = row ? row + strlen("\n0.5,wall,0,floor,") : "";
+    for (size_t k = 0; k < 11 && *at; ++k) {
+        char *end;
+        v[k] = strtod(at, &end);
+        at = end + (*end == ',');
+    }
+    const double pi = acos(-1.0);
+    const double weight = 9.81 * 2500.0 * 4.0 / 3.0 * pi * 1e-6;
+    CHECK_NEAR(v[2], 0.0, 1e-12);  /* on the plane */
+    CHECK_NEAR(v[5], -1.0, 1e-12); /* from the grain to the floor */
+    CHECK_NEAR(v[7], weight, 1e-3 * weight);
+    CHECK_NEAR(v[6], weight / 1e4, 1e-2 * weight / 1e4);
+}
+
+static void chute_counts_what_flows(void)
+{
+    se3d_status status = SE3D_OK;
+    se3d_model *model = run_model(
+        TWO "particles:\n"
+            "  - {name: sand, material: glass, radius: 0.004, lower: [0, 0, 0.1], upper: [0.05, "
+            "0.05, 0.12], source: {rate: 200*t, start: 0.1, stop: 0.5, count: 20}}\n"
+            "  - {name: shot, material: steel, radius: 0.01, count: 1, lower: [1, 0, 0.3], upper: "
+            "[2, 1, 1], packing: random}\n"
+            "sinks: [{name: pit, lower: [0.5, -1, -1], upper: [3, 3, 0.1]}]\n"
+            "analysis: {type: dynamics, duration: 0.6}\n"
+            "output: [{file: s.csv, every: 0.1, channels: [sand.count, sand.inserted, "
+            "sand.deferred, sand.waiting, sand.left, shot.lost, shot.left, pit.count, "
+            "particles.left, sand.mass]}]\n",
+        results_folder(), &status);
+    CHECK(status >= 0);
+    /* The integral of 200 t from 0.1 to 0.5 is 24, of which 20 are allowed. */
+    const double expected[9] = {20.0, 20.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0};
+    for (size_t k = 0; k < 9; ++k) {
+        CHECK_NEAR(channel(model, k), expected[k], 0.0);
+    }
+    CHECK_NEAR(channel(model, 9), 20.0 * 2500.0 * 4.0 / 3.0 * acos(-1.0) * 6.4e-8, 1e-12);
+    se3d_model_destroy(model);
+}
+
 int main(void)
 {
+    RUN(tables_that_were_written_are_read_back);
+    RUN(tables_are_refused_with_line_and_column);
+    RUN(contacts_are_listed_with_their_forces);
+    RUN(chute_counts_what_flows);
     RUN(grain_falls_and_bounces_with_its_restitution);
     RUN(driven_wall_throws_a_grain);
     RUN(grains_that_leave_through_a_sink_are_counted);
