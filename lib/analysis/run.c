@@ -8,6 +8,7 @@
 #include "analysis/stiffness.h"
 #include "assembly/user.h"
 #include "contact/loads.h"
+#include "contact/pace.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
@@ -162,7 +163,7 @@ static uint64_t history_tag(const se3di_run *run)
 static se3d_status start_contacts(se3di_run *run)
 {
     se3di_model *model = run->model;
-    se3di_contacts_begin(model, 0.0);
+    se3di_contacts_begin(model, 0.0, 1.0, 0);
     SE3DI_TRY(se3di_loads_prepare(model, model->time, run->error));
     se3di_contacts_accept(model);
     return SE3D_OK;
@@ -199,14 +200,36 @@ static se3d_status watched_step(se3di_run *run, double h)
     return se3di_watch_end(&run->equations);
 }
 
-/* Steps of one length, `count` of them, that end at t_end. */
-static se3d_status run_fixed_steps(se3di_run *run, double t_end, double count)
+static se3di_pace_kind pace_of(const se3di_integration *integration)
+{
+    return integration->method->is_implicit ? SE3DI_PACE_IMPLICIT : SE3DI_PACE_EXPLICIT;
+}
+
+/* The next step on the way to t_end: of the length that was asked for, or as contacts need it. */
+static se3d_status choose_step(const se3di_run *run, double t_end, double *h)
+{
+    const se3di_integration *integration = &run->integration;
+    double rest = t_end - run->model->time;
+    double asked = integration->settings.step;
+    if (asked > 0.0) {
+        *h = rest / fmax(1.0, ceil(rest / asked - 1e-9));
+        return se3di_contacts_check_step(run->model, pace_of(integration), *h, run->error);
+    }
+    *h = se3di_contacts_next_step(run->model, pace_of(integration), integration->settings.step_most,
+                                  t_end);
+    return SE3D_OK;
+}
+
+static se3d_status run_fixed_steps(se3di_run *run, double t_end)
 {
     se3di_model *model = run->model;
-    for (double k = count; k > 0.0; k -= 1.0) {
+    while (model->time < t_end) {
+        double h;
+        SE3DI_TRY(choose_step(run, t_end, &h));
+        int last = t_end - model->time <= (1.0 + 1e-9) * h;
         SE3DI_TRY(se3di_watch_begin(&run->equations));
-        SE3DI_TRY(run->integration.method->step(&run->integration, (t_end - model->time) / k));
-        model->time = k > 1.0 ? model->time : t_end;
+        SE3DI_TRY(run->integration.method->step(&run->integration, h));
+        model->time = last ? t_end : model->time;
         const se3d_status status = se3di_watch_end(&run->equations);
         if (status != SE3D_OK) {
             return status;
@@ -218,7 +241,11 @@ static se3d_status run_fixed_steps(se3di_run *run, double t_end, double count)
 static se3d_status run_dynamics(se3di_run *run, double t_end)
 {
     se3di_integration *integration = &run->integration;
-    double step = integration->settings.step > 0.0 ? integration->settings.step : STEP_DEFAULT;
+    integration->settings.step_most = integration->method->is_implicit
+                                          ? STEP_DEFAULT
+                                          : fmin(STEP_DEFAULT, se3di_stiffness_step(run->model));
+    double step = integration->settings.step > 0.0 ? integration->settings.step
+                                                   : integration->settings.step_most;
     double remaining = t_end - run->model->time;
     if (remaining <= 0.0) {
         return run->model->history_tag == history_tag(run) ? SE3D_OK : settle(run, t_end);
@@ -228,7 +255,7 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
     SE3DI_TRY(se3di_jump_refuse(&run->equations.assembly, t_end, step, run->error));
     SE3DI_TRY(begin_dynamics(run, remaining / count));
     if (!has_step_control(integration)) {
-        status = run_fixed_steps(run, t_end, count);
+        status = run_fixed_steps(run, t_end);
     } else if (run->equations.watch && integration->method->advance) {
         status = se3di_events_run(&run->events, t_end);
     } else {

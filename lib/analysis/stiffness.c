@@ -11,6 +11,8 @@
 #define STIFF_RATIO                                                                                \
     2e4 /* of the rates: bodies that are held by joints decay more slowly than free ones */
 
+#define STEP_ANGLE 0.1 /* of the fastest oscillation in an explicit step [rad] */
+
 /* tr(M^-1 D) of one body of an element, D 6 x 6 of 12 x 12 (minus the derivative of its wrench). */
 static double body_rate(const se3di_body *body, const double *D)
 {
@@ -27,9 +29,10 @@ static double body_rate(const se3di_body *body, const double *D)
     return rate;
 }
 
-double se3di_stiffness_rate(const se3di_model *model)
+/* The largest over springs, dampers and bushings of tr(M^-1 D) or of sqrt tr(M^-1 K). */
+static void measure(const se3di_model *model, double *decay, double *oscillation)
 {
-    double fastest = 0.0;
+    *decay = *oscillation = 0.0;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *force = &model->forces[k];
         se3di_effect effect;
@@ -43,9 +46,25 @@ double se3di_stiffness_rate(const se3di_model *model)
         }
         const double rate = body_rate(&model->bodies[force->body_i], effect.D) +
                             body_rate(&model->bodies[force->body_j], effect.D + 6 * 13);
-        fastest = rate > fastest ? rate : fastest; /* not where it is NaN */
+        const double square = body_rate(&model->bodies[force->body_i], effect.K) +
+                              body_rate(&model->bodies[force->body_j], effect.K + 6 * 13);
+        *decay = rate > *decay ? rate : *decay; /* not where it is NaN */
+        *oscillation = square > *oscillation * *oscillation ? sqrt(square) : *oscillation;
     }
-    return fastest;
+}
+
+double se3di_stiffness_rate(const se3di_model *model)
+{
+    double decay, oscillation;
+    measure(model, &decay, &oscillation);
+    return decay;
+}
+
+double se3di_stiffness_step(const se3di_model *model)
+{
+    double decay, oscillation;
+    measure(model, &decay, &oscillation);
+    return STEP_ANGLE / (decay + oscillation);
 }
 
 double se3di_stiffness_motion(const se3di_model *model)

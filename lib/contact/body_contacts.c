@@ -54,15 +54,22 @@ static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
     const se3di_shape *b = &model->shapes[j];
     se3di_shape_pose at_a, at_b;
     se3di_manifold manifold;
+    se3di_encounter points[SE3DI_MANIFOLD_POINTS];
     se3di_shape_place(a, &model->frames[a->body], &at_a);
     se3di_shape_place(b, &model->frames[b->body], &at_b);
     se3di_narrow_find(a, &at_a, b, &at_b, &manifold);
     size_t memory = manifold.count > 0 ? find_pair(&model->contacts, i, j) : 0;
     for (uint32_t k = 0; k < manifold.count; ++k) {
-        se3di_encounter e = {.model = model, .at = &manifold.points[k], .shape_i = i, .shape_j = j};
-        e.memory = find_memory(&model->contacts, memory, i, j, manifold.points[k].feature);
-        se3di_encounter_eval(&e);
-        SE3DI_TRY(v->visitor(v->ctx, &e));
+        se3di_encounter *e = &points[k];
+        *e = (se3di_encounter){
+            .model = model, .at = &manifold.points[k], .shape_i = i, .shape_j = j};
+        e->memory = find_memory(&model->contacts, memory, i, j, manifold.points[k].feature);
+        se3di_encounter_place(e);
+    }
+    se3di_encounter_share(points, manifold.count);
+    for (uint32_t k = 0; k < manifold.count; ++k) {
+        se3di_encounter_eval(&points[k]);
+        SE3DI_TRY(v->visitor(v->ctx, &points[k]));
     }
     return SE3D_OK;
 }
@@ -127,9 +134,16 @@ double se3di_contacts_power(const se3di_model *model)
     return sum;
 }
 
-void se3di_contacts_begin(se3di_model *model, double h)
+void se3di_contacts_begin(se3di_model *model, double h, double weight, int jumps)
 {
     model->contacts.step = h;
+    model->contacts.weight = weight;
+    model->contacts.jumps = jumps;
+}
+
+int se3di_contacts_changed(const se3di_model *model)
+{
+    return model->contacts.changed;
 }
 
 typedef struct preparation {
@@ -138,7 +152,7 @@ typedef struct preparation {
     se3di_error *error;
 } preparation;
 
-static const char *name_of(const se3di_model *model, uint32_t shape)
+const char *se3di_shape_describe(const se3di_model *model, uint32_t shape)
 {
     const se3di_shape *s = &model->shapes[shape];
     const char *body = model->bodies[s->body].name;
@@ -157,8 +171,8 @@ static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
         p->error, SE3D_ERR_STEP_SIZE,
         "t = %g s: the shapes %.60s and %.60s overlap by %.3g m, more than %g of their size "
         "%.3g m; try a smaller step or a stiffer material",
-        p->t, name_of(model, e->shape_i), name_of(model, e->shape_j), e->at->overlap,
-        model->contact.overlap_limit, size);
+        p->t, se3di_shape_describe(model, e->shape_i), se3di_shape_describe(model, e->shape_j),
+        e->at->overlap, model->contact.overlap_limit, size);
 }
 
 static se3d_status note(void *ctx, const se3di_encounter *e)
@@ -174,6 +188,7 @@ static se3d_status note(void *ctx, const se3di_encounter *e)
         return se3di_error_set(p->error, status, "t = %g s: no memory for %zu contacts", p->t,
                                contacts->next_count + 1);
     }
+    contacts->kept += e->memory ? 1 : 0;
     se3di_encounter_record(e, &contacts->next[contacts->next_count++]);
     return SE3D_OK;
 }
@@ -200,6 +215,7 @@ se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *er
 {
     preparation p = {model, t, error};
     model->contacts.next_count = 0;
+    model->contacts.kept = 0;
     if (model->shape_slots.count < 2) {
         return SE3D_OK;
     }
@@ -239,6 +255,7 @@ void se3di_contacts_accept(se3di_model *model)
 {
     se3di_body_contacts *c = &model->contacts;
     se3di_body_contact *list = c->list;
+    c->changed = c->kept < c->count || c->kept < c->next_count;
     size_t capacity = c->capacity;
     c->list = c->next;
     c->count = c->next_count;

@@ -18,6 +18,8 @@ se3d_status se3di_contacts_visit(const se3di_model *model, se3di_contact_visitor
 /* Whether two shapes may touch at all: materials, groups and masks, not of one body, bodies not
  * joined and not both fixed. */
 int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b);
+/* How messages call a shape: by its name, or that of its body. */
+const char *se3di_shape_describe(const se3di_model *model, uint32_t shape);
 /* Any do. */
 int se3di_contacts_possible(const se3di_model *model);
 
@@ -28,11 +30,16 @@ double se3di_contacts_potential(const se3di_model *model);
 /* Power that goes into them [W]: into springs, and lost. */
 double se3di_contacts_power(const se3di_model *model);
 
-/* A step of length h begins (0: not known, or control of the error finds where contact begins). */
-void se3di_contacts_begin(se3di_model *model, double h);
 /* Memory that the state at t will need, where it has not many more contacts than the last one: for
  * methods that cannot go back once they have moved something. */
 se3d_status se3di_contacts_reserve(se3di_model *model, double t, se3di_error *error);
+/* A step of length h begins (0: not known, or control of the error finds where contact begins).
+ * `weight` is what the method gives to the forces at the end of a step (1: nothing is corrected):
+ * the damping of a contact that begins within it is made such that its impulse is right to second
+ * order. With `jumps` it need not be continuous, for explicit methods. */
+void se3di_contacts_begin(se3di_model *model, double h, double weight, int jumps);
+/* Whether contacts began or ended with the state that was accepted. */
+int se3di_contacts_changed(const se3di_model *model);
 /* The state of the model at t is about to be accepted. On failure nothing is remembered of it.
  * @return OK, NO_MEMORY, STEP_SIZE (two shapes overlap too much: the message names them) */
 se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *error);

@@ -56,8 +56,7 @@ int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b)
            !joined(model, s->body, t->body);
 }
 
-/* Whether the bounds of two shapes, at these centres, are nearer than `margin`. */
-static int near(const se3di_model *model, uint32_t i, uint32_t j, double margin)
+double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j)
 {
     const se3di_shape *s[2] = {&model->shapes[i], &model->shapes[j]};
     double x[2][3], d[3];
@@ -70,18 +69,22 @@ static int near(const se3di_model *model, uint32_t i, uint32_t j, double margin)
             const double up[3] = {plane->A[2], plane->A[5], plane->A[8]};
             double n[3];
             se3di_mul(model->frames[plane->body].A, up, n);
-            return (k ? -1.0 : 1.0) * se3di_dot(n, d) < s[1 - k]->bound + margin;
+            return (k ? -1.0 : 1.0) * se3di_dot(n, d) - s[1 - k]->bound;
         }
     }
-    double reach = s[0]->bound + s[1]->bound + margin;
-    return se3di_dot(d, d) < reach * reach;
+    return se3di_norm(d) - s[0]->bound - s[1]->bound;
 }
 
-/* The list of pairs covers the present poses. */
-static int list_holds(const se3di_model *model)
+static int near(const se3di_model *model, uint32_t i, uint32_t j, double margin)
+{
+    return se3di_shapes_gap_bound(model, i, j) < margin;
+}
+
+/* The list of pairs covers the present poses, with a share of the margin left. */
+static int list_holds(const se3di_model *model, double share)
 {
     const se3di_body_contacts *c = &model->contacts;
-    double room = 0.25 * c->margin * c->margin;
+    double room = share * share * c->margin * c->margin;
     if (c->version != model->topology_version) {
         return 0;
     }
@@ -107,7 +110,7 @@ se3d_status se3di_broad_visit(const se3di_model *model, se3di_pair_visitor visit
     if (shapes < 2) {
         return SE3D_OK;
     }
-    if (list_holds(model)) {
+    if (list_holds(model, 0.5)) {
         for (size_t k = 0; k < c->pair_count; ++k) {
             if (near(model, c->pairs[2 * k], c->pairs[2 * k + 1], 0.0)) {
                 SE3DI_TRY(visitor(ctx, c->pairs[2 * k], c->pairs[2 * k + 1]));
@@ -245,7 +248,7 @@ se3d_status se3di_broad_update(se3di_model *model)
 {
     se3di_body_contacts *c = &model->contacts;
     int fresh = c->version != model->topology_version;
-    if (list_holds(model)) {
+    if (list_holds(model, 0.25)) {
         return SE3D_OK;
     }
     c->version = 0;

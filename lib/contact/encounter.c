@@ -2,10 +2,11 @@
 /* The law at one point, the same as that of particles (docs/theory/contact-laws.md): with v the
  * velocity of j relative to i at the point, n from i to j, s = 1 (hooke) or sqrt(R* delta),
  *
- *     Fn = max(0, kn s delta - dn sqrt(m* s) vn)        on j along n
+ *     Fn = max(0, kn s delta - dn sqrt(m* s) vn)        on j along n, less cohesion
  *     Ft = -kt s xi - dt sqrt(m* s) vt,                 |Ft| <= mu Fn
  *     xi = xj - xi of two points that were one when contact began, in the tangent plane
- *     1/m* = sum over free bodies of 1/m + (a x n) . J^-1 (a x n)
+ *     1/m* = sum over free bodies of 1/m + (a x n) . J^-1 (a x n), over the points that share a
+ * load
  *
  * so that sticking is elastic and does not creep, whatever the method. In the step in which contact
  * begins the damping grows with the share of the step that is spent in contact: forces are
@@ -19,6 +20,11 @@
 
 #include <math.h>
 #include <string.h>
+
+#define FAINT       1e-9 /* of R*: overlaps that do not yet share a load; not their rounding either */
+#define MASS_STEP   2e-3 /* by which the effective mass of a contact changes */
+#define LEAST_SHARE 0.01 /* of a step in contact: w does not grow further */
+#define SHARE_MIN   0.25 /* of the inverse of a point's own effective mass */
 
 double se3di_shape_contact_radius(const se3di_shape *shape)
 {
@@ -44,8 +50,7 @@ double se3di_shape_contact_size(const se3di_shape *shape)
     }
 }
 
-/* R* of two round shapes in series; of two flat ones the smaller size. */
-static double reduced_radius(const se3di_shape *i, const se3di_shape *j)
+double se3di_shapes_contact_radius(const se3di_shape *i, const se3di_shape *j)
 {
     double curvature = 1.0 / se3di_shape_contact_radius(i) + 1.0 / se3di_shape_contact_radius(j);
     return curvature > 0.0 ? 1.0 / curvature
@@ -76,18 +81,46 @@ void se3di_encounter_turn_by(const se3di_body *body, const se3di_frame *frame, c
 
 static void eval_mass(se3di_encounter *e)
 {
-    e->inverse_mass = 0.0;
+    e->alone = 0.0;
     for (int k = 0; k < 2; ++k) {
         const se3di_body *body = &e->model->bodies[e->body[k]];
-        double a[3], q[3];
-        if (body->fixed) {
-            continue;
+        memset(e->turned[k], 0, sizeof e->turned[k]);
+        se3di_cross(e->arm[k], e->at->normal, e->lever[k]);
+        if (!body->fixed) {
+            se3di_encounter_turn_by(body, &e->model->frames[e->body[k]], e->lever[k], e->turned[k]);
+            e->alone += 1.0 / body->mass + se3di_dot(e->lever[k], e->turned[k]);
         }
-        se3di_cross(e->arm[k], e->at->normal, a);
-        se3di_encounter_turn_by(body, &e->model->frames[e->body[k]], a, q);
-        e->inverse_mass += 1.0 / body->mass + se3di_dot(a, q);
     }
-    e->root_mass = 1.0 / sqrt(e->inverse_mass);
+}
+
+/* The acceleration of point i along its normal by a unit force at point j along its own. */
+static double response(const se3di_encounter *i, const se3di_encounter *j)
+{
+    double sum = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        const se3di_body *body = &i->model->bodies[i->body[k]];
+        if (!body->fixed) {
+            sum += se3di_dot(i->at->normal, j->at->normal) / body->mass +
+                   se3di_dot(i->lever[k], j->turned[k]);
+        }
+    }
+    return sum;
+}
+
+void se3di_encounter_share(se3di_encounter *points, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        se3di_encounter *e = &points[i];
+        e->shared = e->alone;
+        for (uint32_t j = 0; j < count; ++j) {
+            double weight =
+                fmin(points[j].at->overlap, e->at->overlap) / (e->at->overlap + FAINT * e->radius);
+            e->shared += i == j ? 0.0 : weight * response(e, &points[j]);
+        }
+        e->shared = fmax(e->shared, SHARE_MIN * e->alone);
+        e->inverse_mass = e->memory ? e->memory->inverse_mass : e->shared;
+        e->root_mass = 1.0 / sqrt(e->inverse_mass);
+    }
 }
 
 static void eval_velocity(se3di_encounter *e)
@@ -142,6 +175,30 @@ static void eval_turn(const se3di_encounter *e, double out[3])
     se3di_mul(e->model->frames[e->body[0]].A, local, out);
 }
 
+/* The factor of the damping force, which grows as s^a with the time since contact began (a = 0, or
+ * 1/4 with hertz_mindlin), at the end of the step of which the share `phi` is spent in contact. The
+ * forces at the ends of all later steps, with equal weights, make of the integral of s^a
+ *
+ *     h^(1+a) sum_{n>=1} (phi + n)^a = integral + h^(1+a) zeta(-a, 1 + phi),
+ *
+ * so that this one needs the weight w = -zeta(-a, 1 + phi) / phi^a (Euler-Maclaurin); it has
+ * 1 - weight from the next step. */
+static double onset(const se3di_encounter *e, double phi)
+{
+    double a = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 0.25 : 0.0;
+    double weight = e->model->contacts.weight;
+    if (!(weight < 1.0)) {
+        return phi;
+    }
+    if (!e->model->contacts.jumps) { /* continuous, and right where contact begins with the step */
+        return phi * (a > 0.0 ? 0.8205 : 1.0) / weight;
+    }
+    double q = 1.0 + phi;
+    phi = fmax(phi, LEAST_SHARE);
+    double w = pow(q, a) * (q / (1.0 + a) - 0.5 + a / (12.0 * q)) * pow(phi, -a);
+    return (w - 1.0 + weight) / weight;
+}
+
 static void eval_memory(se3di_encounter *e)
 {
     const double *n = e->at->normal;
@@ -151,7 +208,7 @@ static void eval_memory(se3di_encounter *e)
     e->twist = 0.0;
     memset(e->rho, 0, sizeof e->rho);
     if (!e->memory) {
-        e->onset = step > 0.0 ? time / step : 1.0;
+        e->onset = step > 0.0 ? onset(e, time / step) : 1.0;
         se3di_scale(time, e->vt, e->xi);
         return;
     }
@@ -202,30 +259,36 @@ static void eval_rolling(se3di_encounter *e)
     se3di_add_scaled(e->radius * e->slack * e->wring, n, e->moment);
 }
 
-void se3di_encounter_eval(se3di_encounter *e)
+void se3di_encounter_place(se3di_encounter *e)
 {
     const se3di_model *model = e->model;
     const se3di_shape *i = &model->shapes[e->shape_i];
     const se3di_shape *j = &model->shapes[e->shape_j];
-    double delta = e->at->overlap;
     e->body[0] = i->body;
     e->body[1] = j->body;
     e->law = model->contact.law;
     e->pair = model->pairs[(size_t)i->material * model->material_slots.count + (size_t)j->material];
-    e->radius = reduced_radius(i, j);
+    e->radius = se3di_shapes_contact_radius(i, j);
     eval_velocity(e);
     eval_mass(e);
-    e->s = e->law == SE3DI_LAW_HERTZ_MINDLIN ? sqrt(e->radius * delta) : 1.0;
+    e->s = e->law == SE3DI_LAW_HERTZ_MINDLIN ? sqrt(e->radius * e->at->overlap) : 1.0;
     e->root = sqrt(e->s);
+}
+
+void se3di_encounter_eval(se3di_encounter *e)
+{
+    double delta = e->at->overlap;
     eval_memory(e);
     e->elastic = e->pair.kn * e->s * delta;
     e->normal = fmax(0.0, e->elastic - e->onset * e->pair.dn * e->root_mass * e->root * e->vn);
+    e->stick = 2.0 * sqrt(e->pair.pull_off * e->radius * e->elastic);
+    e->attraction = e->pair.cohesion * e->radius * delta + e->stick;
     for (int a = 0; a < 3; ++a) {
         e->pull[a] = -e->pair.kt * e->s * e->xi[a] - e->pair.dt * e->root_mass * e->root * e->vt[a];
     }
     e->give = cap_factor(se3di_norm(e->pull), e->pair.friction * e->normal);
     se3di_scale(e->give, e->pull, e->force);
-    se3di_add_scaled(e->normal, e->at->normal, e->force);
+    se3di_add_scaled(e->normal - e->attraction, e->at->normal, e->force);
     eval_rolling(e);
 }
 
@@ -276,6 +339,13 @@ static void settled_roll(const se3di_encounter *e, double rho[3], double *twist)
     *twist = out[0];
 }
 
+/* Not every small change of it: each is a jump of the damping. */
+static double settled_mass(const se3di_encounter *e)
+{
+    return fabs(e->shared - e->inverse_mass) > MASS_STEP * e->inverse_mass ? e->shared
+                                                                           : e->inverse_mass;
+}
+
 double se3di_encounter_energy(const se3di_encounter *e)
 {
     double xi[3], rho[3], twist;
@@ -286,7 +356,10 @@ double se3di_encounter_energy(const se3di_encounter *e)
     if (e->pair.rolling > 0.0 || e->pair.torsion > 0.0) {
         springs += se3di_dot(rho, rho) + twist * twist;
     }
-    return share * e->elastic * e->at->overlap + 0.5 * e->pair.kt * e->s * springs;
+    /* the integrals of the attractions over the overlap */
+    double depth = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 4.0 / 7.0 : 2.0 / 3.0;
+    double stuck = (0.5 * (e->attraction - e->stick) + depth * e->stick) * e->at->overlap;
+    return share * e->elastic * e->at->overlap + 0.5 * e->pair.kt * e->s * springs - stuck;
 }
 
 double se3di_encounter_power(const se3di_encounter *e)
@@ -317,6 +390,7 @@ void se3di_encounter_record(const se3di_encounter *e, se3di_body_contact *record
     se3di_copy(e->at->point, record->point);
     se3di_copy(e->at->normal, record->normal);
     record->overlap = e->at->overlap;
+    record->inverse_mass = settled_mass(e);
     se3di_copy(e->force, record->force);
     se3di_copy(e->moment, record->torque);
 }

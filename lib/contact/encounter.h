@@ -18,13 +18,19 @@ typedef struct se3di_encounter {
     double arm[2][3];           /* from the bodies' centres to the point */
     double w[2][3];             /* of the bodies, ground frame */
     double v[3], vn, vt[3];     /* of j relative to i at the point */
-    double inverse_mass;        /* along the normal */
+    double lever[2][3];         /* arm x normal */
+    double turned[2][3];        /* J^-1 lever, ground frame */
+    double alone;               /* 1/m* of this point alone */
+    double shared;              /* 1/m* among the points of its pair of shapes */
+    double inverse_mass;        /* 1/m*: shared, of the last accepted state where it touched then */
     double root_mass;           /* sqrt(m*) */
     double s, root;             /* 1 or sqrt(R* overlap); sqrt(s) */
-    double onset;               /* share of the step since they touch, of a new contact */
+    double onset;               /* factor of the damping of a new contact */
     double xi[3];               /* stretch, in the tangent plane */
     double rho[3], twist;       /* rolling and torsion, lengths */
-    double elastic, normal;     /* normal force without and with damping, >= 0 */
+    double elastic, normal;     /* repulsive force without and with damping, >= 0 */
+    double stick;               /* attraction of adhesion: 2 sqrt(Fc elastic) */
+    double attraction;          /* that and cohesion, against the normal force */
     double pull[3];             /* -k xi - c vt */
     double bend[3], wring;      /* the same for rolling and torsion */
     double give, yield, slack;  /* factors <= 1 of Coulomb's caps on these */
@@ -39,10 +45,17 @@ typedef struct se3di_encounter_change {
 
 /* The radius of a shape where it touches; infinite: flat. */
 double se3di_shape_contact_radius(const se3di_shape *shape);
+/* R* of two round shapes in series; of two flat ones the smaller size. */
+double se3di_shapes_contact_radius(const se3di_shape *i, const se3di_shape *j);
 /* A length of the shape that overlaps are measured by. */
 double se3di_shape_contact_size(const se3di_shape *shape);
 
-/* Complete an encounter of which model, at, memory, shape_i and shape_j are set. */
+/* Begin an encounter of which model, at, memory, shape_i and shape_j are set: all but the forces.
+ */
+void se3di_encounter_place(se3di_encounter *e);
+/* The effective masses of the points of one pair of shapes, which share the load. */
+void se3di_encounter_share(se3di_encounter *points, uint32_t count);
+/* The forces. */
 void se3di_encounter_eval(se3di_encounter *e);
 /* Forces at the centres (ground frame) and torques (body frames) on i and j. */
 void se3di_encounter_wrench(const se3di_encounter *e, double wrench[12]);

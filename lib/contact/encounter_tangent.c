@@ -164,20 +164,18 @@ static void move_mass(const se3di_encounter *e, const se3di_encounter_change *c,
 {
     double inverse = 0.0;
     for (int k = 0; k < 2; ++k) {
-        double a[3], da[3], x[3], q[3];
-        if (e->model->bodies[e->body[k]].fixed) {
-            continue;
+        double da[3], x[3];
+        if (e->memory || e->model->bodies[e->body[k]].fixed) {
+            continue; /* that of the last accepted state */
         }
-        se3di_cross(e->arm[k], e->at->normal, a);
         se3di_cross(d->arm[k], e->at->normal, da);
         se3di_cross(e->arm[k], d->n, x);
         se3di_add(da, x, da);
-        se3di_cross(c->turn[k], a, x);
+        se3di_cross(c->turn[k], e->lever[k], x);
         se3di_sub(da, x, da);
-        se3di_encounter_turn_by(&e->model->bodies[e->body[k]], &e->model->frames[e->body[k]], a, q);
-        inverse += 2.0 * se3di_dot(q, da);
+        inverse += 2.0 * se3di_dot(e->turned[k], da);
     }
-    d->root_mass = -0.5 * e->root_mass * inverse / e->inverse_mass;
+    d->root_mass = -0.5 * e->root_mass * inverse / e->alone; /* of points that share: nearly */
 }
 
 /* d of x - (n . x) n, where x is already projected and dx is that of what it was made from. */
@@ -200,7 +198,7 @@ static void move_new(const se3di_encounter *e, rates *d)
         int within = e->vn * step < -e->at->overlap;
         time = within ? -e->at->overlap / e->vn : step;
         rate = within ? (-d->delta - time * d->vn) / e->vn : 0.0;
-        d->onset = rate / step;
+        d->onset = time > 0.0 ? e->onset * rate / time : 0.0;
     }
     se3di_scale(time, d->vt, d->xi);
     se3di_add_scaled(rate, e->vt, d->xi);
@@ -285,16 +283,22 @@ static void move_force(const se3di_encounter *e, rates *d)
     double drag = pair->dt * e->root_mass * e->root;
     double ddrag = pair->dt * (d->root_mass * e->root + e->root_mass * d->root);
     double dpull[3];
-    d->normal = pair->kn * (d->s * delta + e->s * d->delta) - e->onset * damping * d->vn -
-                (d->onset * damping + e->onset * ddamping) * e->vn;
+    double delastic = pair->kn * (d->s * delta + e->s * d->delta);
+    d->normal = 0.0;
+    if (e->normal > 0.0) {
+        d->normal = delastic - e->onset * damping * d->vn -
+                    (d->onset * damping + e->onset * ddamping) * e->vn;
+    }
     for (int a = 0; a < 3; ++a) {
         dpull[a] =
             -pair->kt * (d->s * e->xi[a] + e->s * d->xi[a]) - ddrag * e->vt[a] - drag * d->vt[a];
     }
     cap_rate(e->give, pair->friction * e->normal, pair->friction * d->normal, e->pull, dpull,
              d->force);
-    se3di_add_scaled(d->normal, e->at->normal, d->force);
-    se3di_add_scaled(e->normal, d->n, d->force);
+    double dattraction =
+        pair->cohesion * e->radius * d->delta + 0.5 * e->stick * delastic / e->elastic;
+    se3di_add_scaled(d->normal - dattraction, e->at->normal, d->force);
+    se3di_add_scaled(e->normal - e->attraction, d->n, d->force);
     if (pair->rolling > 0.0 || pair->torsion > 0.0) {
         move_rolling(e, d);
     }
@@ -342,7 +346,7 @@ void se3di_encounter_derivative(const se3di_encounter *e, double K[144], double 
     geometry g;
     memset(K, 0, 144 * sizeof *K);
     memset(D, 0, 144 * sizeof *D);
-    if (!(e->normal > 0.0)) {
+    if (!(e->normal > 0.0 || e->attraction > 0.0)) {
         return;
     }
     eval_geometry(e, &g);

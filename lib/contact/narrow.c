@@ -277,7 +277,7 @@ static void dispatch(const se3di_solid *i, const se3di_solid *j, se3di_manifold 
     } else if (a == SE3DI_SHAPE_BOX && b == SE3DI_SHAPE_BOX) {
         se3di_narrow_boxes(i, j, manifold);
     } else if (a == SE3DI_SHAPE_CAPSULE && b == SE3DI_SHAPE_CAPSULE) {
-        se3di_narrow_capsules(i, j, manifold);
+        (void)se3di_narrow_capsules(i, j, manifold);
     } else {
         se3di_narrow_convex(i, j, manifold);
     }
@@ -305,4 +305,71 @@ void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const
     } else {
         dispatch(&a, &b, manifold);
     }
+}
+
+static double sphere_gap(const se3di_solid *i, const se3di_solid *j, double normal[3])
+{
+    double d[3], local[3], at[3], outward[3], distance;
+    se3di_sub(i->at->x, j->at->x, d);
+    se3di_mul_transposed(j->at->R, d, local);
+    se3di_shape_nearest(j->shape, local, at, outward, &distance);
+    se3di_mul(j->at->R, outward, normal);
+    se3di_scale(-1.0, normal, normal);
+    return distance - i->shape->radius;
+}
+
+static double plane_gap(const se3di_solid *i, const se3di_solid *plane, double normal[3])
+{
+    double n[3], lowest[3], d[3];
+    axis_of(plane, 2, n);
+    se3di_scale(-1.0, n, normal);
+    se3di_core_support(i, normal, lowest);
+    se3di_sub(lowest, plane->at->x, d);
+    return se3di_dot(d, n) - se3di_core_radius(i->shape);
+}
+
+/* Of the sphere about the solid. */
+static double mesh_gap(const se3di_solid *i, const se3di_solid *mesh, double normal[3])
+{
+    double d[3], local[3], at[3], outward[3], distance;
+    memset(normal, 0, 3 * sizeof *normal);
+    se3di_sub(i->at->x, mesh->at->x, d);
+    se3di_mul_transposed(mesh->at->R, d, local);
+    se3di_shape_nearest(mesh->shape, local, at, outward, &distance);
+    return distance - i->shape->bound;
+}
+
+static double gap_of(const se3di_solid *i, const se3di_solid *j, double normal[3])
+{
+    double on_i[3], on_j[3];
+    memset(normal, 0, 3 * sizeof *normal);
+    if (i->shape->kind == SE3DI_SHAPE_PLANE || i->shape->kind == SE3DI_SHAPE_MESH) {
+        return 0.0;
+    }
+    if (j->shape->kind == SE3DI_SHAPE_MESH) {
+        return mesh_gap(i, j, normal);
+    }
+    if (i->shape->kind == SE3DI_SHAPE_SPHERE) {
+        return sphere_gap(i, j, normal);
+    }
+    if (j->shape->kind == SE3DI_SHAPE_PLANE) {
+        return plane_gap(i, j, normal);
+    }
+    return -se3di_convex_distance(i, j, normal, on_i, on_j) - se3di_core_radius(i->shape) -
+           se3di_core_radius(j->shape);
+}
+
+double se3di_narrow_gap(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
+                        const se3di_shape_pose *at_j, double normal[3])
+{
+    se3di_solid a = {i, at_i};
+    se3di_solid b = {j, at_j};
+    double gap;
+    if (rank_of(i) > rank_of(j)) {
+        gap = gap_of(&b, &a, normal);
+        se3di_scale(-1.0, normal, normal);
+    } else {
+        gap = gap_of(&a, &b, normal);
+    }
+    return fmax(gap, 0.0);
 }

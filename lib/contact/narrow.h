@@ -39,4 +39,9 @@ typedef struct se3di_manifold {
 void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
                        const se3di_shape_pose *at_j, se3di_manifold *manifold);
 
+/* How far two shapes are apart at least, 0 where they touch, and the direction from i to j in which
+ * they are (zero: not known, as for meshes). */
+double se3di_narrow_gap(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
+                        const se3di_shape_pose *at_j, double normal[3]);
+
 #endif

@@ -294,94 +294,74 @@ static void nearest_of_segments(const double p[3], const double u[3], double hal
     *s = clamp(se3di_dot(d, u) + c * *t, half_p);
 }
 
-static void bend_line(const se3di_solid *capsule, double at, const double u[3], se3di_bend *bend)
+static void bend_line(const se3di_solid *solid, double at, const double u[3], se3di_bend *bend)
 {
-    if (fabs(at) < capsule->shape->half_length) {
+    if (fabs(at) < solid->shape->half_length) {
         se3di_bend_set(bend, u, HUGE_VAL, bend->r[1]);
     }
 }
 
-/* One point, or the two ends of the common part of nearly parallel ones. */
-void se3di_narrow_capsules(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
+/* Whether the surface about that point of the axis is that of a capsule. */
+static int is_round(const se3di_solid *solid, double at)
 {
-    const double radius[2] = {i->shape->radius, j->shape->radius};
-    double u[3], w[3], d[3], across[3], s, t;
-    axis_of(i, 2, u);
-    axis_of(j, 2, w);
+    return solid->shape->kind != SE3DI_SHAPE_CYLINDER || fabs(at) < solid->shape->half_length;
+}
+
+/* The places of contact along two axes: one, or the two ends of the common part of nearly parallel
+ * ones. Returns their number. */
+static int axes_meet(const se3di_solid *i, const se3di_solid *j, const double u[3],
+                     const double w[3], double s[2], double t[2])
+{
+    double d[3], across[3];
     se3di_cross(u, w, across);
     se3di_sub(j->at->x, i->at->x, d);
     double middle = se3di_dot(d, u);
     double low = fmax(-i->shape->half_length, middle - j->shape->half_length);
     double high = fmin(i->shape->half_length, middle + j->shape->half_length);
+    if (!(se3di_norm(across) < PARALLEL && high > low)) {
+        nearest_of_segments(i->at->x, u, i->shape->half_length, j->at->x, w, j->shape->half_length,
+                            &s[0], &t[0]);
+        return 1;
+    }
+    for (int k = 0; k < 2; ++k) {
+        s[k] = k ? high : low;
+        t[k] = clamp(se3di_dot(u, w) * s[k] - se3di_dot(d, w), j->shape->half_length);
+    }
+    return 2;
+}
+
+int se3di_narrow_capsules(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
+{
+    const double radius[2] = {i->shape->radius, j->shape->radius};
+    double u[3], w[3], across[3], s[2], t[2];
+    axis_of(i, 2, u);
+    axis_of(j, 2, w);
+    int count = axes_meet(i, j, u, w, s, t);
+    if (count == 1 && !(is_round(i, s[0]) && is_round(j, t[0]))) {
+        return 0;
+    }
+    se3di_cross(u, w, across);
     double sine = se3di_norm(across);
     if (!(sine > 1e-6)) {
         se3di_perpendicular(u, across);
     } else {
         se3di_scale(1.0 / sine, across, across);
     }
-    int lines = sine < PARALLEL && high > low;
-    for (uint32_t k = 0; k < (lines ? 2u : 1u); ++k) {
+    for (int k = 0; k < count; ++k) {
         double p[3], q[3];
         se3di_copy(i->at->x, p);
         se3di_copy(j->at->x, q);
-        if (lines) {
-            s = k ? high : low;
-            t = clamp(se3di_dot(u, w) * s - se3di_dot(d, w), j->shape->half_length);
-        } else {
-            nearest_of_segments(p, u, i->shape->half_length, q, w, j->shape->half_length, &s, &t);
-        }
-        se3di_add_scaled(s, u, p);
-        se3di_add_scaled(t, w, q);
+        se3di_add_scaled(s[k], u, p);
+        se3di_add_scaled(t[k], w, q);
         uint32_t before = manifold->count;
-        points_touch(p, q, radius, across, lines ? k + 1u : 0u, manifold);
+        points_touch(p, q, radius, across, count > 1 ? (uint32_t)k + 1u : 0u, manifold);
         if (manifold->count > before) {
             se3di_contact_point *c = &manifold->points[before];
-            bend_line(i, s, u, &c->bend_i);
-            bend_line(j, t, w, &c->bend_j);
+            bend_line(i, s[k], u, &c->bend_i);
+            bend_line(j, t[k], w, &c->bend_j);
         }
     }
-}
-
-/* Two lines on round surfaces that touch along `n`, nearly parallel: the ends of the common part.
- */
-static void lines_touch(const se3di_face *i, const se3di_face *j, const double n[3], double radius,
-                        se3di_manifold *manifold)
-{
-    double u[3], w[3], d[3], across[3];
-    se3di_sub(i->corner[1], i->corner[0], u);
-    se3di_sub(j->corner[1], j->corner[0], w);
-    double length = se3di_norm(u);
-    double other = se3di_norm(w);
-    if (!(length > 0.0) || !(other > 0.0)) {
-        return;
-    }
-    se3di_scale(1.0 / length, u, u);
-    se3di_scale(1.0 / other, w, w);
-    se3di_cross(u, w, across);
-    if (se3di_norm(across) > PARALLEL) {
-        return;
-    }
-    se3di_sub(j->corner[0], i->corner[0], d);
-    double c = se3di_dot(u, w);
-    double begin = se3di_dot(d, u);
-    double end = begin + c * other;
-    double low = fmax(0.0, fmin(begin, end));
-    double high = fmin(length, fmax(begin, end));
-    for (uint32_t k = 0; k < 2 && high > low; ++k) {
-        double p[3], q[3], point[3];
-        double s = k ? high : low;
-        se3di_copy(i->corner[0], p);
-        se3di_add_scaled(s, u, p);
-        se3di_copy(j->corner[0], q);
-        se3di_add_scaled((s - begin) / c, w, q);
-        se3di_sub(p, q, d);
-        double overlap = se3di_dot(d, n) + radius;
-        if (overlap > 0.0) {
-            se3di_add(p, q, point);
-            se3di_scale(0.5, point, point);
-            (void)se3di_manifold_add(manifold, point, n, overlap, 1u + k);
-        }
-    }
+    return 1;
 }
 
 /* A deepest pair of points where there is no face. */
@@ -418,8 +398,8 @@ void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manif
         se3di_narrow_clip(&face_i, &face_j, radius, 0, manifold);
     } else if (along_j > FACE_COSINE) {
         se3di_narrow_clip(&face_j, &face_i, radius, 1, manifold);
-    } else if (face_i.count == 2 && face_j.count == 2) {
-        lines_touch(&face_i, &face_j, n, radius, manifold);
+    } else if (face_i.count == 2 && face_j.count == 2 && se3di_narrow_capsules(i, j, manifold)) {
+        return;
     }
     double deepest = 0.0;
     for (uint32_t k = 0; k < manifold->count; ++k) {

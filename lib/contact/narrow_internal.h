@@ -39,7 +39,8 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
                              double on_i[3], double on_j[3]);
 
 void se3di_narrow_boxes(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
-void se3di_narrow_capsules(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
+/* Two capsules, or the sides of cylinders; returns 0 where these touch with an end. */
+int se3di_narrow_capsules(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 /* Contact of the face `reference` (of i; `flip`: of j) with what of the other looks at it. */
 void se3di_narrow_clip(const se3di_face *reference, const se3di_face *incident, double radius,

@@ -11,6 +11,7 @@
  * (stabilisation of index 2). The local error is d/(k + 1), d = y_1 - y_P; the order follows the
  * estimates of its neighbours (Shampine, Reichelt 1997).  docs/theory/bdf.md */
 #include "contact/loads.h"
+#include "contact/pace.h"
 #include "integrator/state.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -260,7 +261,7 @@ static se3d_status iterate_to_convergence(bdf *m, double t)
     if (m->equations->redundant && m->assembly->row_count > 0) {
         memset(m->lambda, 0, m->assembly->row_count * sizeof *m->lambda);
     }
-    se3di_contacts_begin(m->assembly->model, m->header[BDF_STEP]);
+    se3di_contacts_begin(m->assembly->model, m->header[BDF_STEP], 1.0, 0);
     SE3DI_TRY(se3di_assembly_eval_functions(m->assembly, t, m->equations->error));
     update_state(m);
     for (int k = 0; k < 10; ++k) {
@@ -367,9 +368,23 @@ static void adapt(bdf *m, double error)
     }
 }
 
+/* No step over a contact that begins. */
+static void keep_pace(bdf *m)
+{
+    se3di_state_set(m->assembly, m->D);
+    double h = m->header[BDF_STEP];
+    double paced = se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
+    if (paced < h) {
+        change_step(m, paced / h);
+    }
+}
+
 /* One accepted step. */
 static se3d_status advance(bdf *m, int is_controlled)
 {
+    if (is_controlled) {
+        keep_pace(m);
+    }
     for (;;) {
         double t = m->header[BDF_TIME] + m->header[BDF_STEP];
         double error = HUGE_VAL;

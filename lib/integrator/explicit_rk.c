@@ -2,6 +2,7 @@
 #include "integrator/explicit_rk.h"
 
 #include "contact/loads.h"
+#include "contact/pace.h"
 #include "integrator/state.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -115,7 +116,7 @@ static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
 {
     rk m = point(integration, tableau);
     m.integration = integration;
-    se3di_contacts_begin(m.assembly->model, 0.0);
+    se3di_contacts_begin(m.assembly->model, 0.0, 1.0, 0);
     m.kkt =
         se3di_state_begin(m.equations, regularisation(m.tolerance), fmin(1e-6, 1e-3 * m.tolerance));
     return m;
@@ -380,6 +381,7 @@ static se3d_status advance(rk *m, double t_end)
     se3di_state_set(m->assembly, m->y1);
     se3di_angles_accept(m->assembly->model); /* turns count from step to step, not from an output */
     h = se3di_state_limit_turn(m->assembly->model, largest_growth(m), h);
+    h = se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
     double rest = t_end - m->header[RK_T1];
     double longer = m->assembly->model->contacts.pair_count > 0 && h > rest ? h : 0.0;
     h = longer > 0.0 ? rest : h;

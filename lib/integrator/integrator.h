@@ -14,6 +14,7 @@
 
 typedef struct se3di_integrator_settings {
     double step;            /* fixed or largest step [s]; 0: chosen */
+    double step_most;       /* of fixed-step methods, where none is given */
     double tolerance;       /* of adaptive methods */
     double spectral_radius; /* generalized_alpha */
     double alpha;           /* hht */

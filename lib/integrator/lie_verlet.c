@@ -341,6 +341,7 @@ se3d_status se3di_lie_verlet_drift(se3di_lie_verlet *m)
     se3di_equations *equations = m->equations;
     se3di_assembly *assembly = m->assembly;
     const se3di_model *model = assembly->model;
+    se3di_contacts_begin(m->assembly->model, fmax(m->h, 0.0), 0.5, 1);
     se3di_equations_save(equations);
     if (assembly->row_count > 0) {
         memcpy(m->lambda, model->lambda, assembly->row_count * sizeof *m->lambda);

@@ -2,6 +2,7 @@
 #include "integrator/newmark.h"
 
 #include "contact/loads.h"
+#include "contact/pace.h"
 #include "integrator/state.h"
 #include "primitive/turn_counter.h"
 
@@ -361,7 +362,7 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
     se3di_assembly_get_velocity(assembly, step.v_n);
     memcpy(step.vdot, step.vdot_n, n * sizeof *step.vdot);
     copy(step.lambda, assembly->model->lambda, assembly->row_count);
-    se3di_contacts_begin(assembly->model, h);
+    se3di_contacts_begin(assembly->model, h, step.gamma_prime / h, 0);
     se3di_equations_save(equations);
     se3di_model_save_memory(assembly->model, integration->newton.memory);
     se3d_status status = se3di_assembly_eval_functions(assembly, step.t, equations->error);
@@ -384,6 +385,9 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
         return status;
     }
     accept(&step);
+    if (se3di_contacts_changed(assembly->model)) { /* accelerations have jumped */
+        SE3DI_TRY(se3di_newmark_start(integration, method, h));
+    }
     return se3di_work_accept(assembly->model, h);
 }
 
@@ -405,6 +409,7 @@ se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmar
         double t = model->time;
         double remaining = t_end - t;
         double h = *next < remaining ? fmin(*next, 0.5 * remaining) : remaining;
+        h = se3di_contacts_pace(model, SE3DI_PACE_ADAPTIVE, h);
         double smallest = 1e-12 * fmax(1e-3, fabs(t));
         SE3DI_TRY(se3di_watch_begin(equations));
         se3d_status status = se3di_newmark_step(integration, method, h);

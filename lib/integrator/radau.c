@@ -12,6 +12,7 @@
 #include "integrator/radau.h"
 
 #include "contact/loads.h"
+#include "contact/pace.h"
 #include "math/quaternion.h"
 #include "primitive/turn_counter.h"
 
@@ -220,7 +221,7 @@ static se3d_status attempt(se3di_radau *m, const history *past, double inner, do
     m->tolerance = inner > 0.0 ? iteration_tolerance(inner) : 1e-12;
     m->iterations_max = inner > 0.0 ? 12 : 50;
     *error = HUGE_VAL;
-    se3di_contacts_begin(m->assembly->model, h);
+    se3di_contacts_begin(m->assembly->model, inner > 0.0 ? 0.0 : h, 1.0, 0);
     predict(m, past);
     SE3DI_TRY(se3di_radau_solve(m));
     set_defect(m, m->d);
@@ -265,6 +266,7 @@ static se3d_status advance(se3di_integration *integration)
     const double inner = inner_tolerance(integration->settings.tolerance);
     SE3DI_TRY(begin_step(&m, integration, &past));
     double h = se3di_state_limit_turn(m.assembly->model, 0.0, header[RADAU_NEXT]);
+    h = se3di_contacts_pace(m.assembly->model, SE3DI_PACE_ADAPTIVE, h);
     for (;;) {
         double error;
         se3d_status status = attempt(&m, &past, inner, h, &error);

@@ -7,13 +7,11 @@
  *
  * Between two steps of one run the half kicks of the particles are one pass.
  * docs/theory/verlet.md */
-#include "contact/body_contacts.h"
+#include "contact/pace.h"
 #include "contact/particle_sets.h"
 #include "integrator/lie_verlet.h"
 
 #include <math.h>
-
-#define STEP_DEFAULT 1e-3 /* s, where nothing asks for less */
 
 static size_t work_count(const se3di_assembly *assembly)
 {
@@ -84,20 +82,35 @@ static se3d_status advance(verlet *m, double t1)
     return contact; /* the step is complete, and the last one */
 }
 
-static se3d_status run_steps(se3di_integration *integration, double t_end, double count)
+static se3d_status finish(verlet *m, se3d_status status)
+{
+    close_kick(m);
+    m->bodies.assembly->push = NULL;
+    return status;
+}
+
+/* Steps of `most`, equal ones if it was asked for, or shorter where bodies touch. */
+static se3d_status run_steps(se3di_integration *integration, double t_end, double most, int asked)
 {
     verlet m = begin(integration);
     se3d_status status = SE3D_OK;
-    const se3di_equations *equations = integration->equations;
-    for (double k = count; k > 0.0 && status >= 0 && status != SE3D_INFO_EVENT; k -= 1.0) {
-        double t0 = m.model->time;
-        status = se3di_watch_begin(equations);
-        status = status < 0 ? status : advance(&m, k > 1.0 ? t0 + (t_end - t0) / k : t_end);
-        status = status < 0 ? status : se3di_watch_end(equations);
+    while (m.model->time < t_end && status >= 0 && status != SE3D_INFO_EVENT) {
+        double rest = t_end - m.model->time;
+        double h = rest / fmax(1.0, ceil(rest / most - 1e-9));
+        if (asked) {
+            status = se3di_contacts_check_step(m.model, SE3DI_PACE_EXPLICIT, h, m.error);
+        } else {
+            h = se3di_contacts_next_step(m.model, SE3DI_PACE_EXPLICIT, most, t_end);
+        }
+        if (m.open && fabs(h - m.h) > 1e-9 * h) {
+            close_kick(&m);
+        }
+        double t1 = rest > (1.0 + 1e-9) * h ? m.model->time + h : t_end;
+        status = status < 0 ? status : se3di_watch_begin(integration->equations);
+        status = status < 0 ? status : advance(&m, t1);
+        status = status < 0 ? status : se3di_watch_end(integration->equations);
     }
-    close_kick(&m);
-    integration->equations->assembly.push = NULL;
-    return status;
+    return finish(&m, status);
 }
 
 /* Accelerations and multipliers with the forces of the particles. */
@@ -120,19 +133,22 @@ static se3d_status step(se3di_integration *integration, double h)
 {
     se3di_model *model = integration->equations->assembly.model;
     SE3DI_TRY(se3di_sets_begin(model, h, integration->equations->error));
-    return run_steps(integration, model->time + h, 1.0);
+    return run_steps(integration, model->time + h, h, 1);
 }
 
 static se3d_status run(se3di_integration *integration, double t_end)
 {
     se3di_model *model = integration->equations->assembly.model;
-    double h = integration->settings.step > 0.0 ? integration->settings.step : STEP_DEFAULT;
+    double h = integration->settings.step > 0.0 ? integration->settings.step
+                                                : integration->settings.step_most;
     double wanted = se3di_sets_step(model);
+    h = model->contact.step > 0.0 ? fmin(h, model->contact.step) : h;
     h = wanted > 0.0 ? fmin(h, wanted) : h;
     double count = fmax(1.0, ceil((t_end - model->time) / h - 1e-9));
     SE3DI_TRY(
         se3di_sets_begin(model, (t_end - model->time) / count, integration->equations->error));
-    return run_steps(integration, t_end, count);
+    int asked = integration->settings.step > 0.0 || model->contact.step > 0.0;
+    return run_steps(integration, t_end, h, asked);
 }
 
 const se3di_integrator se3di_integrator_verlet = {

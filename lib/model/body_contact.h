@@ -17,6 +17,7 @@ typedef struct se3di_body_contact {
     double turn[4];                  /* orientation of body j in body i */
     double point[3], normal[3];      /* ground frame, the normal from i to j */
     double overlap;
+    double inverse_mass;        /* 1/m* along the normal, of the points that share the load */
     double force[3], torque[3]; /* on j: at the point, of rolling and torsion; ground frame */
 } se3di_body_contact;
 
@@ -34,7 +35,11 @@ typedef struct se3di_body_contacts {
     size_t reference_capacity, order_capacity;
     double margin;
     uint64_t version; /* 0: none */
-    double step;      /* of an implicit or fixed-step method under way; 0: not known */
+    double step;      /* of a method under way that meets contacts within it; 0: not known */
+    double weight;    /* of forces at the end of a step of it, see se3di_contacts_begin */
+    int32_t jumps;    /* its equations may have jumps */
+    int32_t changed;  /* what touches, at the last accepted state */
+    size_t kept;      /* contacts of `next` that are in `list` */
 } se3di_body_contacts;
 
 #endif

@@ -87,6 +87,8 @@ static trial begin(const meeting *m, double mu, double rolling, int law, uint64_
     def.restitution = 0.6;
     def.rolling_friction = rolling;
     def.torsional_friction = 0.5 * rolling;
+    def.cohesion = rolling > 0.0 && rolling < 1.0 ? 3e3 : 0.0;
+    def.adhesion = rolling > 0.0 && rolling < 1.0 ? 20.0 : 0.0;
     CHECK(se3d_material_create(t.system, &def, &material) == SE3D_OK);
     const double origin[3] = {0.01, -0.02, 0.015}, q[4] = {1.0, 0.03, -0.02, 0.04};
     add_shape(&t, m->kind_i, add_body(&t, origin, q), material);
@@ -173,7 +175,7 @@ static void check_trial(const meeting *m, double mu, double rolling, int law, in
             }
         }
     } else {
-        se3di_contacts_begin(t.model, 0.5);
+        se3di_contacts_begin(t.model, 0.5, rolling > 0.0 ? 0.6 : 1.0, 0);
     }
     se3di_frame base[3];
     memcpy(base, t.model->frames, sizeof base);

@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Shapes that touch: the time of contact of what moves there, from its energy,
+ *
+ *     T = pi sqrt(m* / kn)                                              hooke
+ *     T = 2.943 d / v,  d = (5/4 m* v^2 / (kn sqrt R*))^(2/5)           hertz_mindlin
+ *         v^2 = vn^2 + 2 U / m*, U the energy of the spring
+ *
+ * Shapes that are apart by a gap g, closing at the speed s under gravity: not before
+ * g / (s + sqrt(2 a g)) do they touch. A step that long lands where contact begins, and the next
+ * one is a small part of T: a contact is neither missed nor met too late.
+ * docs/theory/body-contact.md */
+#include "contact/pace.h"
+
+#include "contact/broad.h"
+#include "force/force.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PARTS        64.0 /* steps in a time of contact where it is followed */
+#define LAND_PARTS   16.0 /* where the error is controlled: no step over an event */
+#define STABLE_PARTS 3.0  /* fewer are refused */
+#define AT_REST      0.1  /* amplitude of a resting contact over the overlaps that are there */
+#define PASSING      2.0  /* sizes of the smaller shape in a step: it may pass through */
+#define SOFT         1e-6 /* of the smaller size: arrivals that move less in a contact's time */
+#define SHORT        1e-6 /* a long step ends so much before contact begins */
+#define FACE_POINTS  8.0  /* of shapes other than spheres, which may share a load */
+#define ALL_PAIRS    64   /* up to so many shapes all pairs are looked at, beyond what is listed */
+
+typedef struct pace {
+    const se3di_model *model;
+    se3di_pace_kind kind;
+    int32_t checks; /* only what must not be */
+    uint32_t i, j;  /* the shapes that limit it */
+    double gravity;
+    double step;
+} pace;
+
+static void limit(pace *p, double step, uint32_t i, uint32_t j)
+{
+    if (step < p->step) {
+        p->step = step;
+        p->i = i;
+        p->j = j;
+    }
+}
+
+static const se3di_pair *pair_of(const se3di_model *model, uint32_t i, uint32_t j)
+{
+    size_t a = (size_t)model->shapes[i].material;
+    return &model->pairs[a * model->material_slots.count + (size_t)model->shapes[j].material];
+}
+
+/* Speed v without overlap. */
+static double contact_time(const se3di_model *model, uint32_t i, uint32_t j, double inverse_mass,
+                           double v)
+{
+    const se3di_pair *pair = pair_of(model, i, j);
+    if (model->contact.law == SE3DI_LAW_HOOKE) {
+        return 3.14159265358979324 / sqrt(pair->kn * inverse_mass);
+    }
+    double R = se3di_shapes_contact_radius(&model->shapes[i], &model->shapes[j]);
+    if (!(v > 0.0)) {
+        return HUGE_VAL;
+    }
+    return 2.943 * pow(1.25 * v * v / (inverse_mass * pair->kn * sqrt(R)), 0.4) / v;
+}
+
+static void velocity_at(const se3di_frame *frame, const double point[3], double v[3])
+{
+    double w[3], arm[3];
+    se3di_mul(frame->A, frame->w, w);
+    se3di_sub(point, frame->r, arm);
+    se3di_cross(w, arm, v);
+    se3di_add(v, frame->v, v);
+}
+
+static void acceleration_at(const se3di_model *model, uint32_t body, const double point[3],
+                            double out[3])
+{
+    const double *a = model->acceleration + 6 * (size_t)body;
+    const se3di_frame *frame = &model->frames[body];
+    double turn[3], arm[3], w[3], x[3];
+    se3di_sub(point, frame->r, arm);
+    se3di_mul(frame->A, a + 3, turn);
+    se3di_cross(turn, arm, out);
+    se3di_mul(frame->A, frame->w, w);
+    se3di_cross(w, arm, x);
+    se3di_cross(w, x, x);
+    se3di_add(out, x, out);
+    se3di_add(out, a, out);
+}
+
+static double parts_of(const pace *p)
+{
+    return p->kind == SE3DI_PACE_ADAPTIVE ? LAND_PARTS : PARTS;
+}
+
+/* A contact at the last accepted state. */
+static void touching(pace *p, const se3di_body_contact *c)
+{
+    const se3di_model *model = p->model;
+    const uint32_t body[2] = {model->shapes[c->shape_i].body, model->shapes[c->shape_j].body};
+    const se3di_pair *pair = pair_of(model, c->shape_i, c->shape_j);
+    double v[2][3], a[2][3];
+    for (int k = 0; k < 2; ++k) {
+        velocity_at(&model->frames[body[k]], c->point, v[k]);
+        acceleration_at(model, body[k], c->point, a[k]);
+    }
+    se3di_sub(v[1], v[0], v[1]);
+    se3di_sub(a[1], a[0], a[1]);
+    double vn = se3di_dot(v[1], c->normal);
+    double an = se3di_dot(a[1], c->normal);
+    double potential = 0.5 * pair->kn * c->overlap * c->overlap;
+    if (model->contact.law == SE3DI_LAW_HERTZ_MINDLIN) {
+        double R =
+            se3di_shapes_contact_radius(&model->shapes[c->shape_i], &model->shapes[c->shape_j]);
+        potential *= 0.8 * sqrt(R * c->overlap);
+    }
+    double energetic = sqrt(vn * vn + 2.0 * potential * c->inverse_mass);
+    double time = contact_time(model, c->shape_i, c->shape_j, c->inverse_mass, energetic);
+    double rate = 3.14159265358979324 / time;
+    int rests = hypot(vn / rate, an / (rate * rate)) < AT_REST * c->overlap;
+    if (p->kind == SE3DI_PACE_EXPLICIT || (!p->checks && !rests)) {
+        limit(p, time / (p->checks ? STABLE_PARTS : parts_of(p)), c->shape_i, c->shape_j);
+    }
+}
+
+/* The speed of a shape's centre, and what turning adds elsewhere. */
+static double turning_speed(const se3di_model *model, uint32_t shape, double center[3], double v[3])
+{
+    const se3di_shape *s = &model->shapes[shape];
+    const se3di_frame *frame = &model->frames[s->body];
+    se3di_mul(frame->A, s->x, center);
+    se3di_add(center, frame->r, center);
+    velocity_at(frame, center, v);
+    return s->kind == SE3DI_SHAPE_SPHERE || s->kind == SE3DI_SHAPE_PLANE
+               ? 0.0
+               : se3di_norm(frame->w) * s->bound;
+}
+
+static double inverse_mass(const se3di_model *model, uint32_t i, uint32_t j)
+{
+    double sum = 0.0;
+    const uint32_t body[2] = {model->shapes[i].body, model->shapes[j].body};
+    for (int k = 0; k < 2; ++k) {
+        sum += model->bodies[body[k]].fixed ? 0.0 : 1.0 / model->bodies[body[k]].mass;
+    }
+    return sum;
+}
+
+/* The gap between two shapes and a bound on the speed at which it closes; 0 where they do not meet
+ * within a step of h, or not at all, or touch. */
+static int meet(const pace *p, uint32_t i, uint32_t j, double h, double *gap, double *closing)
+{
+    const se3di_model *model = p->model;
+    const se3di_shape *s[2] = {&model->shapes[i], &model->shapes[j]};
+    double x[2][3], v[2][3], n[3];
+    double turning = turning_speed(model, i, x[0], v[0]) + turning_speed(model, j, x[1], v[1]);
+    for (int k = 0; k < 2; ++k) { /* a plane that turns: as fast as it does where the other is */
+        if (s[k]->kind == SE3DI_SHAPE_PLANE) {
+            const se3di_frame *frame = &model->frames[s[k]->body];
+            velocity_at(frame, x[1 - k], v[k]);
+            turning += se3di_norm(frame->w) * s[1 - k]->bound;
+        }
+    }
+    se3di_sub(v[1], v[0], v[1]);
+    double speed = se3di_norm(v[1]) + turning;
+    double bound = se3di_shapes_gap_bound(model, i, j);
+    if (!(bound < h * (speed + p->gravity * h)) || !se3di_shapes_may_touch(model, i, j)) {
+        return 0;
+    }
+    se3di_shape_pose at[2];
+    se3di_shape_place(s[0], &model->frames[s[0]->body], &at[0]);
+    se3di_shape_place(s[1], &model->frames[s[1]->body], &at[1]);
+    *gap = se3di_narrow_gap(s[0], &at[0], s[1], &at[1], n);
+    if (se3di_dot(n, n) > 0.0) {
+        speed = fmax(0.0, -se3di_dot(v[1], n)) + turning;
+    }
+    *closing = speed + sqrt(2.0 * p->gravity * *gap);
+    return *gap <= h * *closing;
+}
+
+static double smaller_size(const se3di_model *model, uint32_t i, uint32_t j)
+{
+    return fmin(se3di_shape_contact_size(&model->shapes[i]),
+                se3di_shape_contact_size(&model->shapes[j]));
+}
+
+/* Two shapes that do not touch, but may. */
+static void approaching(pace *p, uint32_t i, uint32_t j)
+{
+    const se3di_model *model = p->model;
+    double gap, closing;
+    if (!meet(p, i, j, p->step, &gap, &closing)) {
+        return;
+    }
+    double points =
+        model->shapes[i].kind == SE3DI_SHAPE_SPHERE || model->shapes[j].kind == SE3DI_SHAPE_SPHERE
+            ? 1.0
+            : FACE_POINTS;
+    double time = contact_time(model, i, j, points * inverse_mass(model, i, j), closing);
+    double size = smaller_size(model, i, j);
+    if (p->checks && closing * p->step > PASSING * size) {
+        limit(p, PASSING * size / closing, i, j);
+    } else if (!p->checks && closing * time > SOFT * size) {
+        double deep = 0.5 * model->contact.overlap_limit * size / closing;
+        limit(p, fmax((1.0 - SHORT) * gap / closing, fmin(time / parts_of(p), deep)), i, j);
+    }
+}
+
+/* Shapes that are not listed are farther apart than half the margin of the list. */
+static void unlisted(pace *p)
+{
+    const se3di_model *model = p->model;
+    double fastest = 0.0, x[3], v[3];
+    for (uint32_t k = 0; k < model->shape_slots.count; ++k) {
+        if (!model->bodies[model->shapes[k].body].fixed) {
+            (void)turning_speed(model, k, x, v);
+            fastest = fmax(fastest, se3di_norm(v));
+        }
+    }
+    double room = 0.25 * model->contacts.margin;
+    limit(p, room / (fastest + sqrt(2.0 * p->gravity * room)), 0, 0);
+}
+
+static int is_touching(const se3di_model *model, size_t *at, uint32_t i, uint32_t j)
+{
+    const se3di_body_contacts *c = &model->contacts;
+    while (*at < c->count &&
+           (c->list[*at].shape_i < i || (c->list[*at].shape_i == i && c->list[*at].shape_j < j))) {
+        ++*at;
+    }
+    return *at < c->count && c->list[*at].shape_i == i && c->list[*at].shape_j == j;
+}
+
+static void look_around(pace *p)
+{
+    const se3di_model *model = p->model;
+    const se3di_body_contacts *c = &model->contacts;
+    uint32_t shapes = (uint32_t)model->shape_slots.count;
+    size_t at = 0;
+    if (shapes > ALL_PAIRS) {
+        unlisted(p);
+        for (size_t k = 0; k < c->pair_count; ++k) {
+            if (!is_touching(model, &at, c->pairs[2 * k], c->pairs[2 * k + 1])) {
+                approaching(p, c->pairs[2 * k], c->pairs[2 * k + 1]);
+            }
+        }
+        return;
+    }
+    for (uint32_t i = 0; i < shapes; ++i) {
+        for (uint32_t j = i + 1; j < shapes; ++j) {
+            if (!is_touching(model, &at, i, j)) {
+                approaching(p, i, j);
+            }
+        }
+    }
+}
+
+static void look(pace *p)
+{
+    const se3di_model *model = p->model;
+    double g[3] = {0.0, 0.0, 0.0};
+    if (model->shape_slots.count < 2) {
+        return;
+    }
+    (void)se3di_gravity_eval(model, model->time, g, NULL);
+    p->gravity = se3di_norm(g);
+    for (size_t k = 0; k < model->contacts.count; ++k) {
+        touching(p, &model->contacts.list[k]);
+    }
+    look_around(p);
+}
+
+double se3di_contacts_pace(const se3di_model *model, se3di_pace_kind kind, double h)
+{
+    pace p = {.model = model, .kind = kind, .step = h};
+    look(&p);
+    return p.step;
+}
+
+double se3di_contacts_next_step(const se3di_model *model, se3di_pace_kind kind, double h,
+                                double t_end)
+{
+    double rest = t_end - model->time;
+    double step = rest / fmax(1.0, ceil(rest / h - 1e-9));
+    double paced = se3di_contacts_pace(model, kind, step);
+    return paced < step && rest < 2.0 * paced ? 0.5 * rest : paced;
+}
+
+se3d_status se3di_contacts_check_step(const se3di_model *model, se3di_pace_kind kind, double h,
+                                      se3di_error *error)
+{
+    pace p = {.model = model, .kind = kind, .checks = 1, .step = h};
+    look(&p);
+    if (!(p.step < h)) {
+        return SE3D_OK;
+    }
+    return se3di_error_set(error, SE3D_ERR_STEP_SIZE,
+                           "t = %g s: a step of %g s is too large for the contact of the shapes "
+                           "%.60s and %.60s; try at most %.3g s, or none for an automatic step",
+                           model->time, h, se3di_shape_describe(model, p.i),
+                           se3di_shape_describe(model, p.j), p.step);
+}
