@@ -17,6 +17,7 @@ static int find_method(const char *text, se3d_solver_def *def)
         {"bdf", SE3D_METHOD_BDF, 0},        {"radau", SE3D_METHOD_RADAU, 0},
         {"rattle", SE3D_METHOD_RATTLE, 1},  {"generalized_alpha", SE3D_METHOD_GENERALIZED_ALPHA, 1},
         {"hht", SE3D_METHOD_HHT, 1},        {"step_dop853", SE3D_METHOD_DOP853, 1},
+        {"rk4", SE3D_METHOD_RK4, 0},        {"step_rk4", SE3D_METHOD_RK4, 1},
         {"step_rk45", SE3D_METHOD_RK45, 1},
     };
     size_t length = strcspn(text, "/");

@@ -26,7 +26,8 @@ typedef enum se3d_method {
     SE3D_METHOD_BDF = 5,
     SE3D_METHOD_RADAU = 6,
     SE3D_METHOD_RATTLE = 7,
-    SE3D_METHOD_VERLET = 8
+    SE3D_METHOD_VERLET = 8,
+    SE3D_METHOD_RK4 = 9
 } se3d_method;
 
 /* What a solver is made with. @since 0.1 */

@@ -88,13 +88,13 @@ static double projection_accuracy(double tolerance)
 }
 
 /* The parts of history and work. */
-static rk point(const se3di_integration *integration, const se3di_rk_tableau *tableau)
+static rk point(const se3di_integration *integration)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
     size_t count = se3di_state_count(assembly);
     double *history = assembly->model->history;
     return (rk){
-        .tableau = tableau,
+        .tableau = integration->method->tableau,
         .equations = integration->equations,
         .assembly = assembly,
         .count = count,
@@ -112,9 +112,9 @@ static rk point(const se3di_integration *integration, const se3di_rk_tableau *ta
     };
 }
 
-static rk begin(se3di_integration *integration, const se3di_rk_tableau *tableau)
+static rk begin(se3di_integration *integration)
 {
-    rk m = point(integration, tableau);
+    rk m = point(integration);
     m.integration = integration;
     se3di_contacts_begin(m.assembly->model, 0.0, 1.0, 0);
     m.kkt =
@@ -137,30 +137,45 @@ static void grow_scale(rk *m, const double *derivative)
     m->header[RK_ENERGY] = fmax(scale.energy, m->header[RK_ENERGY_MIN]);
 }
 
-/* out = base + h sum_k coefficients_k K_k; base may be NULL. */
+typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
+
+#define PAIRS 4 /* stay in registers */
+
+/* out = base + h sum_k coefficients_k K_k over the first `limit` derivatives; base may be NULL. */
 static void combine(const rk *m, const double *base, double h, const double *coefficients,
-                    double *out)
+                    int limit, double *out)
 {
-    const double *stage[SE3DI_RK_MAX + 3];
-    double factor[SE3DI_RK_MAX + 3] = {0.0};
+    const double *stage[SE3DI_RK_MAX];
+    double factor[SE3DI_RK_MAX];
     int used = 0;
-    for (int k = 0; k < m->tableau->total; ++k) {
+    for (int k = 0; k < limit; ++k) {
         if (coefficients[k] != 0.0) {
             stage[used] = m->K + (size_t)k * m->count;
             factor[used++] = h * coefficients[k];
         }
     }
-    for (; used % 4 != 0 || used == 0; ++used) {
-        stage[used] = m->K;
-    }
-    for (int k = 0; k < used; k += 4) {
-        const double *k0 = stage[k], *k1 = stage[k + 1], *k2 = stage[k + 2], *k3 = stage[k + 3];
-        const double a0 = factor[k], a1 = factor[k + 1], a2 = factor[k + 2], a3 = factor[k + 3];
-        for (size_t c = 0; c < m->count; ++c) {
-            double sum = base ? base[c] : 0.0;
-            out[c] = sum + ((a0 * k0[c] + a1 * k1[c]) + (a2 * k2[c] + a3 * k3[c]));
+    size_t c = 0;
+    for (; c + 2 * PAIRS <= m->count; c += 2 * PAIRS) {
+        pair sum[PAIRS] = {{0.0, 0.0}};
+        if (base) {
+            memcpy(sum, base + c, sizeof sum);
         }
-        base = out;
+        for (int k = 0; k < used; ++k) {
+            const pair *part = (const pair *)(const void *)(stage[k] + c);
+            const pair f = {factor[k], factor[k]};
+            sum[0] += f * part[0];
+            sum[1] += f * part[1];
+            sum[2] += f * part[2];
+            sum[3] += f * part[3];
+        }
+        memcpy(out + c, sum, sizeof sum);
+    }
+    for (; c < m->count; ++c) {
+        double sum = base ? base[c] : 0.0;
+        for (int k = 0; k < used; ++k) {
+            sum += factor[k] * stage[k][c];
+        }
+        out[c] = sum;
     }
 }
 
@@ -173,7 +188,7 @@ static se3d_status evaluate(rk *m, double t, double *derivative)
 
 static se3d_status evaluate_stage(rk *m, double t, double h, int stage)
 {
-    combine(m, m->y0, h, m->tableau->a[stage], m->y);
+    combine(m, m->y0, h, m->tableau->a[stage], stage, m->y);
     se3di_state_set(m->assembly, m->y);
     return evaluate(m, t + m->tableau->c[stage] * h, m->K + (size_t)stage * m->count);
 }
@@ -203,49 +218,68 @@ static double measure(const rk *m, const double *error)
 static double estimate_error(rk *m, double h)
 {
     const se3di_rk_tableau *tableau = m->tableau;
-    combine(m, NULL, h, tableau->error, m->sum);
+    combine(m, NULL, h, tableau->error, tableau->stages + tableau->uses_end, m->sum);
     double error = measure(m, m->sum);
     if (tableau->error3) {
-        combine(m, NULL, h, tableau->error3, m->sum3);
+        combine(m, NULL, h, tableau->error3, tableau->stages, m->sum3);
         double error3 = measure(m, m->sum3);
         error = error > 0.0 ? error * error / sqrt(error * error + 0.01 * error3 * error3) : error;
     }
     return error;
 }
 
-/* From (t_1, y_1, y'_1) by h: stages, error, projection; the history is changed only by accept. The
- * derivative at the end is that before the projection, which moves the state by its error, and with
- * its factorisation: the order is the same.
- * *error is infinite where the step cannot be made at all. */
-static se3d_status attempt(rk *m, double h, double *error)
+/* From (t_1, y_1, y'_1) by h: the stages. The history is changed only by accept. */
+static se3d_status make_stages(rk *m, double h)
 {
-    const se3di_rk_tableau *tableau = m->tableau;
-    double t = m->header[RK_T1];
     memcpy(m->y0, m->y1, m->count * sizeof *m->y0);
     memcpy(m->K, m->f1, m->count * sizeof *m->K);
-    *error = HUGE_VAL;
     se3di_state_begin_step(m->equations, m->header[RK_REDUNDANT]);
-    for (int k = 1; k < tableau->stages; ++k) {
-        SE3DI_TRY(evaluate_stage(m, t, h, k));
+    for (int k = 1; k < m->tableau->stages; ++k) {
+        SE3DI_TRY(evaluate_stage(m, m->header[RK_T1], h, k));
     }
-    if (!tableau->uses_end) {
-        *error = estimate_error(m, h);
-        if (!(*error <= 1.0) && isfinite(m->tolerance)) {
-            return SE3D_OK;
-        }
-    }
-    combine(m, m->y0, h, tableau->a[tableau->stages], m->y);
+    return SE3D_OK;
+}
+
+static double *end_derivative(const rk *m)
+{
+    return m->K + (size_t)m->tableau->stages * m->count;
+}
+
+/* The frames at the end, before the projection. */
+static void arrive(rk *m, double h)
+{
+    const int stages = m->tableau->stages;
+    combine(m, m->y0, h, m->tableau->a[stages], stages, m->y);
     se3di_state_set(m->assembly, m->y);
-    SE3DI_TRY(evaluate(m, t + h, m->K + (size_t)tableau->stages * m->count));
-    if (tableau->uses_end) {
-        *error = estimate_error(m, h);
-        if (!(*error <= 1.0) && isfinite(m->tolerance)) {
-            return SE3D_OK;
-        }
+}
+
+/* The factorisation of the last evaluation, which was here or near, serves. */
+static se3d_status project(rk *m, double t)
+{
+    const se3di_state_scale scale = get_scale(m);
+    return se3di_state_project(m->equations, t, &scale, projection_accuracy(m->tolerance), 1);
+}
+
+/* Stages, error, projection. The derivative at the end is that before the projection, which moves
+ * the state by its error: the order is the same. *error is infinite where the step cannot be made
+ * at all. */
+static se3d_status attempt(rk *m, double h, double *error)
+{
+    const int uses_end = m->tableau->uses_end;
+    const double t = m->header[RK_T1] + h;
+    *error = HUGE_VAL;
+    SE3DI_TRY(make_stages(m, h));
+    *error = uses_end ? 0.0 : estimate_error(m, h);
+    if (!(*error <= 1.0) && isfinite(m->tolerance)) {
+        return SE3D_OK;
     }
-    se3di_state_scale scale = get_scale(m);
-    double accuracy = projection_accuracy(m->tolerance);
-    return se3di_state_project(m->equations, t + h, &scale, accuracy, 1);
+    arrive(m, h);
+    SE3DI_TRY(evaluate(m, t, end_derivative(m)));
+    *error = uses_end ? estimate_error(m, h) : *error;
+    if (!(*error <= 1.0) && isfinite(m->tolerance)) {
+        return SE3D_OK;
+    }
+    return project(m, t);
 }
 
 /* The frames hold the projected y_1. */
@@ -258,7 +292,7 @@ static void accept(rk *m, double h)
     memcpy(m->y, m->y + work, SE3DI_STATE_WORK * sizeof *m->y); /* y_1 before the projection */
     se3di_state_get(m->assembly, m->y1);
     memcpy(m->y1 + work, m->y, SE3DI_STATE_WORK * sizeof *m->y);
-    memcpy(m->f1, m->K + (size_t)m->tableau->stages * m->count, m->count * sizeof *m->f1);
+    memcpy(m->f1, end_derivative(m), m->count * sizeof *m->f1);
     grow_scale(m, m->f1);
     double dependent = se3di_kkt_get_dependent_rows(m->equations->kkt);
     m->header[RK_REDUNDANT] = fmin(m->header[RK_REDUNDANT], dependent);
@@ -273,7 +307,7 @@ static void accept(rk *m, double h)
 static se3d_status settle_memory(rk *m, double h, double *error)
 {
     se3di_model *model = m->assembly->model;
-    double *end = m->K + (size_t)m->tableau->stages * m->count;
+    double *end = end_derivative(m);
     if (!se3di_forces_have_memory(model)) {
         return SE3D_OK;
     }
@@ -433,7 +467,7 @@ static se3d_status build_dense(rk *m)
         F2[k] = 2.0 * F0[k] - h * (f0[k] + m->f1[k]);
     }
     for (int row = 0; row < tableau->dense_rows; ++row) {
-        combine(m, NULL, h, tableau->d[row], F2 + (size_t)(row + 1) * m->count);
+        combine(m, NULL, h, tableau->d[row], tableau->total, F2 + (size_t)(row + 1) * m->count);
     }
     m->header[RK_DENSE] = 1.0;
     return SE3D_OK;
@@ -503,9 +537,10 @@ static double choose_first(rk *m)
     return limit > 0.0 ? fmin(h, limit) : h;
 }
 
-se3d_status se3di_rk_start(se3di_integration *integration, const se3di_rk_tableau *tableau)
+se3d_status se3di_rk_start(se3di_integration *integration, double h)
 {
-    rk m = begin(integration, tableau);
+    (void)h; /* the first step is chosen */
+    rk m = begin(integration);
     memset(m.header, 0, RK_HEADER * sizeof *m.header);
     memset(m.y0, 0, (RK_FORMS + 1) * m.count * sizeof *m.y0);
     m.header[RK_LENGTH] = se3di_state_length(m.assembly->model);
@@ -525,21 +560,54 @@ se3d_status se3di_rk_start(se3di_integration *integration, const se3di_rk_tablea
     return status;
 }
 
-se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau *tableau, double h)
+/* The accelerations that are reported can be those that the next step begins with: nothing changes
+ * at the end of a step, and nothing there is nearly singular, where those of the method are
+ * smoother.
+ */
+static int reports_end(const rk *m)
 {
-    rk m = begin(integration, tableau);
+    const se3di_model *model = m->assembly->model;
+    return !se3di_forces_have_memory(model) && model->shape_slots.count <= 1 &&
+           se3di_kkt_get_dependent_rows(m->equations->kkt) == 0;
+}
+
+/* One step of h without error control; *reported: the accelerations at its end are the model's. */
+static se3d_status step_once(rk *m, double h, int *reported)
+{
+    const double t = m->header[RK_T1] + h;
     double error;
+    SE3DI_TRY(make_stages(m, h));
+    *reported = reports_end(m);
+    arrive(m, h);
+    if (*reported) {
+        SE3DI_TRY(project(m, t));
+        se3di_state_end(m->equations, &m->kkt);
+        SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
+        SE3DI_TRY(se3di_state_derivative(m->assembly, t, m->equations->x,
+                                         m->assembly->model->lambda, end_derivative(m)));
+    } else {
+        SE3DI_TRY(evaluate(m, t, end_derivative(m)));
+        SE3DI_TRY(project(m, t));
+    }
+    SE3DI_TRY(prepare(m, h, &error));
+    accept(m, h);
+    return SE3D_OK;
+}
+
+se3d_status se3di_rk_step(se3di_integration *integration, double h)
+{
+    rk m = begin(integration);
+    int reported = 0;
     se3d_status status = SE3D_OK;
     if (m.header[RK_T1] != m.assembly->model->time) {
         status = adopt(&m);
     }
     m.tolerance = HUGE_VAL; /* no error control */
-    status = status < 0 ? status : attempt(&m, h, &error);
-    status = status < 0 ? status : prepare(&m, h, &error);
-    if (status >= 0) {
-        accept(&m, h);
-    }
+    status = status < 0 ? status : step_once(&m, h, &reported);
     se3di_state_end(m.equations, &m.kkt);
+    if (status >= 0 && reported) {
+        return se3di_state_conclude(m.equations, m.y1, m.header[RK_T1]);
+    }
     se3d_status published = publish(&m);
     return status < 0 ? status : published;
 }
@@ -572,21 +640,19 @@ static se3d_status advance_to(rk *m, double t_end)
     return m->header[RK_T1] > t_end && m->header[RK_DENSE] == 0.0 ? build_dense(m) : SE3D_OK;
 }
 
-se3d_status se3di_rk_advance(se3di_integration *integration, const se3di_rk_tableau *tableau,
-                             double t_end)
+se3d_status se3di_rk_advance(se3di_integration *integration, double t_end)
 {
-    rk m = begin(integration, tableau);
+    rk m = begin(integration);
     se3d_status status = advance(&m, t_end);
     status = status < 0 ? status : build_dense(&m);
     se3di_state_end(m.equations, &m.kkt);
     return status;
 }
 
-void se3di_rk_interpolate(const se3di_integration *integration, const se3di_rk_tableau *tableau,
-                          double t, double *y)
+void se3di_rk_interpolate(const se3di_integration *integration, double t, double *y)
 {
     const se3di_assembly *assembly = &integration->equations->assembly;
-    const rk m = point(integration, tableau);
+    const rk m = point(integration);
     if (t < m.header[RK_T1]) {
         interpolate(&m, t, y);
     } else {
@@ -594,10 +660,9 @@ void se3di_rk_interpolate(const se3di_integration *integration, const se3di_rk_t
     }
 }
 
-se3d_status se3di_rk_run(se3di_integration *integration, const se3di_rk_tableau *tableau,
-                         double t_end)
+se3d_status se3di_rk_run(se3di_integration *integration, double t_end)
 {
-    rk m = begin(integration, tableau);
+    rk m = begin(integration);
     se3d_status status = advance_to(&m, t_end);
     se3di_state_end(m.equations, &m.kkt);
     if (status < 0) {

@@ -37,17 +37,14 @@ typedef struct se3di_rk_tableau {
 
 size_t se3di_rk_history_count(const se3di_assembly *assembly);
 size_t se3di_rk_work_count(const se3di_assembly *assembly);
-se3d_status se3di_rk_start(se3di_integration *integration, const se3di_rk_tableau *tableau);
+/* Functions of the table of methods, for those that have a tableau. */
+se3d_status se3di_rk_start(se3di_integration *integration, double h);
 /* One step of length h without error control. */
-se3d_status se3di_rk_step(se3di_integration *integration, const se3di_rk_tableau *tableau,
-                          double h);
+se3d_status se3di_rk_step(se3di_integration *integration, double h);
 /* To t_end with step control. */
-se3d_status se3di_rk_run(se3di_integration *integration, const se3di_rk_tableau *tableau,
-                         double t_end);
+se3d_status se3di_rk_run(se3di_integration *integration, double t_end);
 /* For the table of a method, see integrator.h. */
-se3d_status se3di_rk_advance(se3di_integration *integration, const se3di_rk_tableau *tableau,
-                             double t_end);
-void se3di_rk_interpolate(const se3di_integration *integration, const se3di_rk_tableau *tableau,
-                          double t, double *y);
+se3d_status se3di_rk_advance(se3di_integration *integration, double t_end);
+void se3di_rk_interpolate(const se3di_integration *integration, double t, double *y);
 
 #endif

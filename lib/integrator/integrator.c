@@ -7,6 +7,8 @@ const se3di_integrator *se3di_integrator_find(int32_t method)
     case SE3D_METHOD_AUTO:
     case SE3D_METHOD_DOP853:
         return &se3di_integrator_dop853;
+    case SE3D_METHOD_RK4:
+        return &se3di_integrator_rk4;
     case SE3D_METHOD_RK45:
         return &se3di_integrator_rk45;
     case SE3D_METHOD_GENERALIZED_ALPHA:

@@ -25,6 +25,7 @@ typedef struct se3di_integrator_settings {
 } se3di_integrator_settings;
 
 typedef struct se3di_integration se3di_integration;
+struct se3di_rk_tableau;
 
 /* Where methods with `advance` keep the end and the begin of their last step. */
 enum { SE3DI_HISTORY_TIME = 0, SE3DI_HISTORY_BEGIN = 1 };
@@ -47,11 +48,12 @@ typedef struct se3di_integrator {
     se3d_status (*advance)(se3di_integration *integration, double t_end);
     /* The state at t within the step, y [se3di_state_count], as the interpolation has it. */
     void (*interpolate)(const se3di_integration *integration, double t, double *y);
-    int32_t is_implicit;       /* not 0: integration->newton is made */
-    int32_t controls_if_asked; /* not 0: `run` only where settings.controls_error */
-    int32_t is_explicit;       /* not 0: works with formulations in the fewest unknowns, */
-    int32_t is_reduced;        /* and so do these implicit ones */
-    uint32_t orders;           /* bit k: settings.order may be k; 0, the default one, always may */
+    const struct se3di_rk_tableau *tableau; /* of Runge-Kutta methods */
+    int32_t is_implicit;                    /* not 0: integration->newton is made */
+    int32_t controls_if_asked;              /* not 0: `run` only where settings.controls_error */
+    int32_t is_explicit; /* not 0: works with formulations in the fewest unknowns, */
+    int32_t is_reduced;  /* and so do these implicit ones */
+    uint32_t orders;     /* bit k: settings.order may be k; 0, the default one, always may */
     int32_t reserved;
 } se3di_integrator;
 
@@ -67,6 +69,7 @@ struct se3di_integration {
 extern const se3di_integrator se3di_integrator_generalized_alpha;
 extern const se3di_integrator se3di_integrator_hht;
 extern const se3di_integrator se3di_integrator_dop853;
+extern const se3di_integrator se3di_integrator_rk4;
 extern const se3di_integrator se3di_integrator_rk45;
 extern const se3di_integrator se3di_integrator_rattle;
 extern const se3di_integrator se3di_integrator_bdf;

@@ -35,42 +35,17 @@ static const se3di_rk_tableau tableau = {
     .d = d,
 };
 
-static se3d_status start(se3di_integration *integration, double h)
-{
-    (void)h;
-    return se3di_rk_start(integration, &tableau);
-}
-
-static se3d_status step(se3di_integration *integration, double h)
-{
-    return se3di_rk_step(integration, &tableau, h);
-}
-
-static se3d_status run(se3di_integration *integration, double t_end)
-{
-    return se3di_rk_run(integration, &tableau, t_end);
-}
-
-static se3d_status advance(se3di_integration *integration, double t_end)
-{
-    return se3di_rk_advance(integration, &tableau, t_end);
-}
-
-static void interpolate(const se3di_integration *integration, double t, double *y)
-{
-    se3di_rk_interpolate(integration, &tableau, t, y);
-}
-
 const se3di_integrator se3di_integrator_rk45 = {
     .name = "rk45",
     .tag = SE3D_METHOD_RK45,
     .history_count = se3di_rk_history_count,
     .work_count = se3di_rk_work_count,
-    .start = start,
-    .step = step,
-    .run = run,
-    .advance = advance,
-    .interpolate = interpolate,
-    .is_explicit = 1,
+    .start = se3di_rk_start,
+    .step = se3di_rk_step,
+    .run = se3di_rk_run,
+    .advance = se3di_rk_advance,
+    .interpolate = se3di_rk_interpolate,
+    .tableau = &tableau,
     .orders = 1u << 5,
+    .is_explicit = 1,
 };

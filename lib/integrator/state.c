@@ -354,6 +354,17 @@ void se3di_state_scale_grow(const se3di_assembly *assembly, const double *deriva
     scale->energy = fmax(0.95 * scale->energy, energy);
 }
 
+se3d_status se3di_state_conclude(se3di_equations *equations, const double *y, double t)
+{
+    se3di_model *model = equations->assembly.model;
+    se3di_angles_accept(model);
+    model->time = t;
+    memcpy(model->work, y + SE3DI_STATE_SIZE * (size_t)equations->assembly.body_count,
+           sizeof model->work);
+    model->work_valid = 1;
+    return se3di_loads_power(model, t, model->power);
+}
+
 se3d_status se3di_state_publish(se3di_equations *equations, const double *y, double t,
                                 const se3di_state_scale *scale, int project)
 {
@@ -362,11 +373,5 @@ se3d_status se3di_state_publish(se3di_equations *equations, const double *y, dou
         SE3DI_TRY(se3di_state_project(equations, t, scale, 1e-15, 0));
     }
     SE3DI_TRY(se3di_acceleration_solve(equations, t));
-    se3di_model *model = equations->assembly.model;
-    se3di_angles_accept(model);
-    model->time = t;
-    memcpy(model->work, y + SE3DI_STATE_SIZE * (size_t)equations->assembly.body_count,
-           sizeof model->work);
-    model->work_valid = 1;
-    return se3di_loads_power(model, t, model->power);
+    return se3di_state_conclude(equations, y, t);
 }

@@ -79,5 +79,7 @@ void se3di_state_scale_grow(const se3di_assembly *assembly, const double *deriva
  * one. */
 se3d_status se3di_state_publish(se3di_equations *equations, const double *y, double t,
                                 const se3di_state_scale *scale, int project);
+/* The last part of it: frames, accelerations and multipliers are those of y at t already. */
+se3d_status se3di_state_conclude(se3di_equations *equations, const double *y, double t);
 
 #endif

@@ -15,7 +15,8 @@ static const char *const types[] = {
 enum { TYPE_MODES = 5 }; /* the others are se3d_analysis */
 static const char *const formulations[] = {"romega", "rp", NULL};
 static const char *const methods[] = {
-    "auto", "generalized_alpha", "hht", "dop853", "rk45", "bdf", "radau", "rattle", "verlet", NULL};
+    "auto", "generalized_alpha", "hht", "dop853", "rk45", "bdf", "radau", "rattle", "verlet", "rk4",
+    NULL};
 
 /* A value that an option of the command line gives, in place of the file's. */
 static const se3di_node *replaced(se3di_reader *reader, const se3di_node *node, const char *option,

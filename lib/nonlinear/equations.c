@@ -142,11 +142,10 @@ static void release_held(se3di_equations *equations)
     }
 }
 
-se3d_status se3di_equations_factor(se3di_equations *equations)
+/* Factor H and C as they have been evaluated. */
+static se3d_status factor_values(se3di_equations *equations)
 {
     se3di_assembly *assembly = &equations->assembly;
-    se3di_assembly_eval_mass(assembly);
-    se3di_assembly_eval_jacobian(assembly);
     SE3DI_TRY(se3di_user_report(assembly->model, equations->error));
     if (equations->hold) {
         release_held(equations);
@@ -166,6 +165,13 @@ se3d_status se3di_equations_factor(se3di_equations *equations)
                                assembly->model->time);
     }
     return status;
+}
+
+se3d_status se3di_equations_factor(se3di_equations *equations)
+{
+    se3di_assembly_eval_mass(&equations->assembly);
+    se3di_assembly_eval_jacobian(&equations->assembly);
+    return factor_values(equations);
 }
 
 se3d_status se3di_equations_solve(se3di_equations *equations)
@@ -274,9 +280,11 @@ se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
 {
     se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
-    SE3DI_TRY(se3di_equations_factor(equations));
+    se3di_assembly_eval_mass(assembly);
+    se3di_assembly_eval_rows(assembly, equations->c);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
-    se3di_assembly_eval_gamma(assembly, equations->c);
+    se3di_kkt_expect(equations->kkt, equations->b, equations->c);
+    SE3DI_TRY(factor_values(equations));
     se3d_status status = se3di_equations_solve(equations);
     SE3DI_TRY(status);
     ++equations->counters.evaluations;

@@ -82,7 +82,7 @@ static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def
                           "formulation = %d, must be SE3D_FORMULATION_ROMEGA or _RP",
                           (int)def->formulation);
     }
-    if (def->method < SE3D_METHOD_AUTO || def->method > SE3D_METHOD_VERLET) {
+    if (def->method < SE3D_METHOD_AUTO || def->method > SE3D_METHOD_RK4) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "method = %d, must be one of se3d_method", (int)def->method);
     }

@@ -239,6 +239,12 @@ static void rk45_is_of_order_5(void)
     check_method(&row);
 }
 
+static void rk4_is_of_order_4(void)
+{
+    const method_row row = {SE3D_METHOD_RK4, 0, 4.0, 4.0, {96, 96, 96}, 1e-11};
+    check_method(&row);
+}
+
 static void generalized_alpha_is_of_order_2(void)
 {
     const method_row row = {SE3D_METHOD_GENERALIZED_ALPHA, 0, 2.0, 2.0, {400, 100, 100}, 1e-12};
@@ -350,6 +356,11 @@ static void rk45_controls_its_error(void)
     check_control(SE3D_METHOD_RK45, 4.0, (const double[2]){1e-4, 1e-8}, 3.0);
 }
 
+static void rk4_controls_its_error(void)
+{
+    check_control(SE3D_METHOD_RK4, 3.2, (const double[2]){1e-3, 1e-6}, 3.0);
+}
+
 static void generalized_alpha_controls_its_error(void)
 {
     check_control(SE3D_METHOD_GENERALIZED_ALPHA, 1.6, (const double[2]){1e-6, 1e-8}, 1e4);
@@ -362,12 +373,14 @@ int main(void)
     RUN(radau_controls_its_error_at_high_order);
     RUN(dop853_controls_its_error_at_high_order);
     RUN(rk45_controls_its_error);
+    RUN(rk4_controls_its_error);
     RUN(generalized_alpha_controls_its_error);
     RUN(rattle_is_of_order_2);
     RUN(verlet_is_of_order_2);
     RUN(rattle_is_of_order_4_by_composition);
     RUN(dop853_is_of_order_8);
     RUN(rk45_is_of_order_5);
+    RUN(rk4_is_of_order_4);
     RUN(generalized_alpha_is_of_order_2);
     RUN(hht_is_of_order_2);
     return check_finish();

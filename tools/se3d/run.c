@@ -19,7 +19,7 @@ static const char help[] =
     "  --analysis T           assembly, kinematics, inverse_dynamics, dynamics, equilibrium,\n"
     "                         modes\n"
     "  --formulation F        romega, rp\n"
-    "  --method M             auto, generalized_alpha, hht, dop853, rk45, bdf, radau, rattle, "
+    "  --method M             auto, generalized_alpha, hht, dop853, rk45, rk4, bdf, radau, rattle, "
     "verlet\n"
     "  --step H               step [s]\n"
     "  --duration T           duration [s]\n"
