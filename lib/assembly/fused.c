@@ -331,3 +331,71 @@ void se3di_fused_add_curvature(const se3di_assembly *assembly, uint32_t joint, c
         add_couplings(i, j, alpha, a_j, blocks);
     }
 }
+
+/* ---- gradient of the rates ---- */
+
+/* s (~p A^T) for the three rows of a point */
+static void add_arms(double *block, double s, const double p[3], const double A[9])
+{
+    for (int k = 0; k < 3; ++k) {
+        double arm[3];
+        se3di_cross(p, A + 3 * k, arm);
+        se3di_add_scaled(s, arm, block + BLOCK * k + 3);
+    }
+}
+
+/* Of v.u, v = A a and its rate A (w x a) on this body, u and its rate W x u on the other one:
+ * (w x a) x A^T u + a x A^T (W x u). */
+static void add_turns(double *row, double c, const se3di_frame *frame, const double a[3],
+                      const double u[3], const double u_rate[3])
+{
+    double rate[3], turned[3], part[3];
+    se3di_cross(frame->w, a, rate);
+    se3di_mul_transposed(frame->A, u, turned);
+    se3di_cross(rate, turned, part);
+    se3di_add_scaled(c, part, row + 3);
+    se3di_mul_transposed(frame->A, u_rate, turned);
+    se3di_cross(a, turned, part);
+    se3di_add_scaled(c, part, row + 3);
+}
+
+/* A a and A (w x a) */
+static void eval_direction(const se3di_frame *frame, const double a[3], double u[3], double rate[3])
+{
+    double local[3];
+    se3di_cross(frame->w, a, local);
+    se3di_mul(frame->A, a, u);
+    se3di_mul(frame->A, local, rate);
+}
+
+void se3di_fused_add_rate_gradient(const se3di_assembly *assembly, uint32_t joint, double c,
+                                   double *rows)
+{
+    const se3di_model *model = assembly->model;
+    const se3di_constraint *constraint = &model->constraints[joint];
+    const se3di_term *terms = model->terms + constraint->term_begin;
+    const se3di_term_place *place = &assembly->places[constraint->term_begin];
+    const size_t *offset = assembly->block_offset + assembly->joint_begin[joint];
+    const se3di_frame *i = &model->frames[terms[0].body_i], *j = &model->frames[terms[0].body_j];
+    double *block_i = place->slot_i >= 0 ? rows + offset[place->slot_i] : NULL;
+    double *block_j = place->slot_j >= 0 ? rows + offset[place->slot_j] : NULL;
+    double rate[3], u[3], v[3], u_rate[3], v_rate[3];
+    if (block_i) {
+        se3di_cross(i->w, terms[0].s_i, rate);
+        add_arms(block_i, -c, rate, i->A);
+    }
+    if (block_j) {
+        se3di_cross(j->w, terms[0].s_j, rate);
+        add_arms(block_j, c, rate, j->A);
+    }
+    for (uint32_t k = 3; k < constraint->row_count; ++k) {
+        eval_direction(i, terms[k].a_i, v, v_rate);
+        eval_direction(j, terms[k].a_j, u, u_rate);
+        if (block_i) {
+            add_turns(block_i + BLOCK * k, c, i, terms[k].a_i, u, u_rate);
+        }
+        if (block_j) {
+            add_turns(block_j + BLOCK * k, c, j, terms[k].a_j, v, v_rate);
+        }
+    }
+}

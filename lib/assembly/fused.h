@@ -40,6 +40,10 @@ typedef struct se3di_fused_blocks {
 int se3di_fused_fits(const se3di_assembly *assembly, uint32_t joint);
 /* Jacobian of a fitting joint into C; gamma (its rows; NULL: not wanted). */
 void se3di_fused_eval(se3di_assembly *assembly, uint32_t joint, double *gamma);
+/* Add c d(Phi_q qdot)/dq to `rows`, laid out as C: the Jacobian with the rates of its points and
+ * directions in their places. */
+void se3di_fused_add_rate_gradient(const se3di_assembly *assembly, uint32_t joint, double c,
+                                   double *rows);
 /* Add the derivative of Phi_q^T lambda to turns of the body frames; lambda: of its rows. */
 void se3di_fused_add_curvature(const se3di_assembly *assembly, uint32_t joint, const double *lambda,
                                const se3di_fused_blocks *blocks);

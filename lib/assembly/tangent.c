@@ -395,6 +395,49 @@ static void add_curvature(se3di_tangent *tangent, const double *lambda)
     }
 }
 
+/* d(Phi_q qdot)/dq = qdot^T d(Phi_q^T)/dq, the curvature for a unit multiplier. */
+static void add_term_gradient(const se3di_assembly *assembly, const se3di_term *term, double c,
+                              double *row_i, double *row_j)
+{
+    const se3di_frame *frames[2] = {&assembly->model->frames[term->body_i],
+                                    &assembly->model->frames[term->body_j]};
+    double *rows[2] = {row_i, row_j};
+    double H[196] = {0.0};
+    assembly->formulation->curvature(term, frames[0], frames[1], c * term->coefficient, H);
+    for (int q = 0; q < 4; ++q) {
+        double velocity[6];
+        se3di_copy(frames[q / 2]->v, velocity);
+        se3di_copy(frames[q / 2]->w, velocity + 3);
+        for (int k = 0; k < 6 && rows[q % 2]; ++k) {
+            for (int r = 0; r < 6; ++r) {
+                rows[q % 2][k] += velocity[r] * H[12 * (6 * (q / 2) + r) + 6 * (q % 2) + k];
+            }
+        }
+    }
+}
+
+void se3di_assembly_add_rate_gradient(const se3di_assembly *assembly, double c, double *rows)
+{
+    const se3di_model *model = assembly->model;
+    for (uint32_t joint = 0; joint < assembly->constraint_count; ++joint) {
+        const se3di_constraint *constraint = &model->constraints[joint];
+        const size_t *offset = assembly->block_offset + assembly->joint_begin[joint];
+        if (assembly->is_fused[joint]) {
+            se3di_fused_add_rate_gradient(assembly, joint, c, rows);
+            continue;
+        }
+        for (uint32_t r = 0; r < constraint->row_count; ++r) {
+            const se3di_row *row = &model->rows[constraint->row_begin + r];
+            for (uint32_t e = row->term_begin; e < row->term_begin + row->term_count; ++e) {
+                const se3di_term_place *place = &assembly->places[e];
+                double *row_i = place->slot_i < 0 ? NULL : rows + offset[place->slot_i] + 6 * r;
+                double *row_j = place->slot_j < 0 ? NULL : rows + offset[place->slot_j] + 6 * r;
+                add_term_gradient(assembly, &model->terms[e], c, row_i, row_j);
+            }
+        }
+    }
+}
+
 /* K += the curvature of one user constraint: minus the derivative of its wrenches -Phi_q^T lambda.
  */
 static se3d_status add_user_curvature(se3di_tangent *tangent, const se3di_constraint *constraint,

@@ -34,6 +34,9 @@ void se3di_tangent_destroy(se3di_tangent *tangent);
  * normalisation), lambda [rows]. @return OK, SINGULAR, NOT_FINITE, CALLBACK of a force element */
 se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *vdot,
                                const double *lambda);
+/* rows, laid out as C: += c d(Phi_q qdot)/dq, but for those of user constraints. Formulations with
+ * velocities (v, w) only. */
+void se3di_assembly_add_rate_gradient(const se3di_assembly *assembly, double c, double *rows);
 /* out += s K x */
 void se3di_tangent_add_stiffness(const se3di_tangent *tangent, double s, const double *x,
                                  double *out);

@@ -47,7 +47,6 @@ typedef struct bdf {
     double *predicted; /* y_P */
     double *y;
     double *acceleration; /* a, wdot of each free body [6] */
-    double *none;         /* [unknowns], zero */
     double tolerance, c;
 } bdf;
 
@@ -58,7 +57,7 @@ static size_t history_count(const se3di_assembly *assembly)
 
 static size_t work_count(const se3di_assembly *assembly)
 {
-    return 3 * se3di_state_count(assembly) + 2 * (size_t)assembly->unknown_count;
+    return 3 * se3di_state_count(assembly) + (size_t)assembly->unknown_count;
 }
 
 /* The parts of history and work. */
@@ -78,7 +77,6 @@ static bdf point(const se3di_integration *integration)
     m.predicted = m.base + count;
     m.y = m.predicted + count;
     m.acceleration = m.y + count;
-    m.none = m.acceleration + assembly->unknown_count;
     return m;
 }
 
@@ -218,13 +216,6 @@ static se3d_status eval_residual(bdf *m, double t)
     return SE3D_OK;
 }
 
-static se3d_status factor(bdf *m, double t)
-{
-    const se3di_newton_weights weights = {.velocity = m->c, .position = m->c * m->c};
-    return se3di_newton_factor(&m->integration->newton, t, m->acceleration, m->lambda, m->none,
-                               &weights);
-}
-
 /* One correction; its size relative to the tolerance. */
 static se3d_status iterate(bdf *m, double t, int refactor, double *size)
 {
@@ -232,7 +223,8 @@ static se3d_status iterate(bdf *m, double t, int refactor, double *size)
     const se3di_assembly *assembly = m->assembly;
     SE3DI_TRY(eval_residual(m, t));
     if (refactor) {
-        SE3DI_TRY(factor(m, t));
+        SE3DI_TRY(se3di_newton_factor_rates(&m->integration->newton, t, m->acceleration, m->lambda,
+                                            m->c));
     }
     SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
     ++equations->counters.iterations;
@@ -266,6 +258,7 @@ static se3d_status iterate_to_convergence(bdf *m, double t)
     update_state(m);
     for (int k = 0; k < 10; ++k) {
         SE3DI_TRY(iterate(m, t, refactor, &size));
+        const int is_traced = se3di_newton_note(&m->integration->newton, size * m->tolerance);
         if (size <= 1e-3 || (k > 0 && size * size / before <= 1e-4) ||
             (k > 1 && size > 0.8 * before && size * m->tolerance <= SE3DI_STATE_NOISE)) {
             return SE3D_OK;
@@ -273,7 +266,7 @@ static se3d_status iterate_to_convergence(bdf *m, double t)
         if (k > 1 && size > 2.0 * before) {
             break;
         }
-        refactor = k > 0 && size > 0.1 * before;
+        refactor = is_traced || (k > 0 && size > 0.1 * before);
         before = size;
     }
     return size <= 0.03

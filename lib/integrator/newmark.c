@@ -242,10 +242,11 @@ static se3d_status iterate_to_convergence(newmark_step *step)
     }
     for (int32_t k = 0; k < limit; ++k) {
         SE3DI_TRY(iterate(step, refactor));
+        const int is_traced = se3di_newton_note(&step->integration->newton, step->correction);
         if (has_converged(step)) {
             return SE3D_OK;
         }
-        refactor = step->equations->redundant ||
+        refactor = is_traced || step->equations->redundant ||
                    (k > 0 && step->correction > (step->exact ? 0.05 : 0.25) * step->previous);
         if (k == PLAIN_ITERATIONS && !step->exact) {
             step->exact = refactor = 1;

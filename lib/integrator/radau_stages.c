@@ -413,6 +413,7 @@ static se3d_status iterate_to_convergence(se3di_radau *m)
     m->iterations = 0;
     for (int k = 0; k < m->iterations_max; ++k) {
         SE3DI_TRY(iterate(m, k == 0));
+        (void)se3di_newton_note(&m->integration->newton, m->size * m->tolerance);
         const double rate = k == 0 ? 1.0 : m->size / m->before;
         if (has_converged(m, rate)) {
             return SE3D_OK;

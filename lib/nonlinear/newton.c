@@ -33,9 +33,10 @@ static se3d_status build(se3di_newton *newton)
     SE3DI_TRY(create_kkt(newton));
     newton->force_count = assembly->model->force_slots.count;
     newton->Tinv = se3di_alloc(allocator, 9 * (size_t)assembly->body_count, sizeof(double));
+    newton->rows = se3di_alloc(allocator, assembly->joint_value_count, sizeof(double));
     newton->memory =
         se3di_alloc(allocator, SE3DI_FORCE_STATES * newton->force_count, sizeof(double));
-    return newton->Tinv && newton->memory ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    return newton->Tinv && newton->rows && newton->memory ? SE3D_OK : SE3D_ERR_NO_MEMORY;
 }
 
 se3d_status se3di_newton_init(se3di_newton *newton, se3di_equations *equations)
@@ -56,16 +57,17 @@ void se3di_newton_destroy(se3di_newton *newton)
     const se3di_assembly *assembly = &newton->equations->assembly;
     const se3d_allocator *allocator = &assembly->model->allocator;
     se3di_free(allocator, newton->Tinv, 9 * (size_t)assembly->body_count, sizeof(double));
+    se3di_free(allocator, newton->rows, assembly->joint_value_count, sizeof(double));
     se3di_free(allocator, newton->memory, SE3DI_FORCE_STATES * newton->force_count, sizeof(double));
     se3di_kkt_destroy(newton->kkt);
     se3di_tangent_destroy(&newton->tangent);
     memset(newton, 0, sizeof *newton);
 }
 
-/* Right three columns of a 6 x 6 block times Tinv. */
-static void turn_columns(double *block, const double *Tinv)
+/* Right three columns of a block of rows of six times Tinv. */
+static void turn_columns(double *block, int32_t rows, const double *Tinv)
 {
-    for (int r = 0; r < 6; ++r) {
+    for (int32_t r = 0; r < rows; ++r) {
         double row[3];
         se3di_mul_transposed(Tinv, block + 6 * r + 3, row);
         se3di_copy(row, block + 6 * r + 3);
@@ -80,24 +82,20 @@ static void combine(double *D, const double *M, const double *K, const double *T
         D[k] = weights->velocity * D[k] + (M ? M[k] : 0.0);
     }
     if (n == 6) {
-        turn_columns(D, Tinv);
+        turn_columns(D, 6, Tinv);
     }
     for (size_t k = 0; k < n * n; ++k) {
         D[k] += weights->position * K[k];
     }
 }
 
-static void combine_all(se3di_newton *newton, const double *step,
-                        const se3di_newton_weights *weights)
+static void combine_all(se3di_newton *newton, const se3di_newton_weights *weights)
 {
     const se3di_assembly *assembly = &newton->equations->assembly;
     se3di_tangent *tangent = &newton->tangent;
     size_t n = (size_t)assembly->formulation->block;
     size_t size = n * n;
     for (size_t k = 0; k < assembly->body_count; ++k) {
-        if (n == 6) {
-            se3di_exp_tangent_inverse(step + n * k + 3, newton->Tinv + 9 * k);
-        }
         combine(tangent->D + k * size, tangent->M + k * size, tangent->K + k * size,
                 newton->Tinv + 9 * k, weights, n);
     }
@@ -115,18 +113,19 @@ static se3di_kkt_values values_of(const se3di_newton *newton)
     return (se3di_kkt_values){.body = newton->tangent.D,
                               .coupling_upper = newton->tangent.D_upper,
                               .coupling_lower = newton->tangent.D_lower,
-                              .joint = newton->equations->assembly.C,
+                              .joint =
+                                  newton->has_rows ? newton->rows : newton->equations->assembly.C,
                               .joint_b = newton->equations->assembly.C};
 }
 
-se3d_status se3di_newton_factor(se3di_newton *newton, double t, const double *vdot,
-                                const double *lambda, const double *step,
-                                const se3di_newton_weights *weights)
+/* With T^-1 and `rows` as they are. */
+static se3d_status factor(se3di_newton *newton, double t, const double *vdot, const double *lambda,
+                          const se3di_newton_weights *weights)
 {
     se3di_equations *equations = newton->equations;
     se3d_status status = se3di_tangent_eval(&newton->tangent, t, vdot, lambda);
     if (status >= 0) {
-        combine_all(newton, step, weights);
+        combine_all(newton, weights);
         se3di_kkt_values values = values_of(newton);
         ++equations->counters.factorizations;
         status = se3di_kkt_factor(newton->kkt, &values, NULL);
@@ -134,6 +133,62 @@ se3d_status se3di_newton_factor(se3di_newton *newton, double t, const double *vd
     return status < 0 ? se3di_error_set(equations->error, status,
                                         "t = %g s: the Newton matrix is singular or not finite", t)
                       : status;
+}
+
+se3d_status se3di_newton_factor(se3di_newton *newton, double t, const double *vdot,
+                                const double *lambda, const double *step,
+                                const se3di_newton_weights *weights)
+{
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    for (size_t k = 0; k < assembly->body_count && assembly->formulation->block == 6; ++k) {
+        se3di_exp_tangent_inverse(step + 6 * k + 3, newton->Tinv + 9 * k);
+    }
+    newton->has_rows = 0;
+    return factor(newton, t, vdot, lambda, weights);
+}
+
+/* p o (1 - c/2 w) is held, so that dtheta o (1 - c/2 w) = c dw and T^-1 = I + c/2 ~w + c^2/4 w w^T.
+ */
+static void set_turns(se3di_newton *newton, double c)
+{
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const double *w = assembly->model->frames[assembly->free_body[k]].w;
+        double *Tinv = newton->Tinv + 9 * k;
+        se3di_tilde(w, Tinv);
+        for (int e = 0; e < 9; ++e) {
+            Tinv[e] = 0.5 * c * Tinv[e] + 0.25 * c * c * w[e / 3] * w[e % 3];
+        }
+        Tinv[0] += 1.0;
+        Tinv[4] += 1.0;
+        Tinv[8] += 1.0;
+    }
+}
+
+static void set_rows(se3di_newton *newton, double c)
+{
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    if (assembly->joint_value_count > 0) {
+        memcpy(newton->rows, assembly->C, assembly->joint_value_count * sizeof *newton->rows);
+    }
+    for (uint32_t joint = 0; joint < assembly->constraint_count; ++joint) {
+        for (int32_t k = assembly->joint_begin[joint]; k < assembly->joint_begin[joint + 1]; ++k) {
+            const double *Tinv = newton->Tinv + 9 * (size_t)assembly->joint_body[k];
+            turn_columns(newton->rows + assembly->block_offset[k], assembly->joint_rows[joint],
+                         Tinv);
+        }
+    }
+    se3di_assembly_add_rate_gradient(assembly, c, newton->rows);
+    newton->has_rows = 1;
+}
+
+se3d_status se3di_newton_factor_rates(se3di_newton *newton, double t, const double *vdot,
+                                      const double *lambda, double c)
+{
+    const se3di_newton_weights weights = {.velocity = c, .position = c * c};
+    set_turns(newton, c);
+    set_rows(newton, c);
+    return factor(newton, t, vdot, lambda, &weights);
 }
 
 se3d_status se3di_newton_solve(se3di_newton *newton)
@@ -161,4 +216,13 @@ se3d_status se3di_newton_solve(se3di_newton *newton)
         se3di_copy(turned, equations->x + 6 * k + 3);
     }
     return status;
+}
+
+int se3di_newton_note(const se3di_newton *newton, double size)
+{
+    se3di_newton_trace *trace = newton->trace;
+    if (trace && trace->count < (int32_t)(sizeof trace->size / sizeof trace->size[0])) {
+        trace->size[trace->count++] = size;
+    }
+    return trace != NULL;
 }

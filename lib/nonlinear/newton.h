@@ -7,6 +7,10 @@
  *
  * with M, D, K of assembly/tangent.h and T the tangent of the exponential map at the rotation of
  * the step (r-omega; I in r-p): a change dx of the step turns the body by T dx.
+ * Where constraints enter by velocities, Phi_q qdot = nu, their rows are instead
+ *
+ *     C T^-1 + (dx/dvdot / dv/dvdot) d(Phi_q qdot)/dq
+ *
  * docs/theory/tangent.md */
 #ifndef SE3DI_NEWTON_H
 #define SE3DI_NEWTON_H
@@ -15,13 +19,25 @@
 #include "linsol/kkt.h"
 #include "nonlinear/equations.h"
 
+/* What a test asks for: every iteration of an implicit step factors anew, so that convergence is
+ * quadratic where the matrix is exact; the sizes of the corrections are kept. */
+typedef struct se3di_newton_trace {
+    double size[16];
+    int32_t count;
+    int32_t reserved;
+} se3di_newton_trace;
+
 typedef struct se3di_newton {
     se3di_equations *equations;
     se3di_tangent tangent;
     se3di_kkt *kkt;
     double *Tinv;   /* [free bodies * 9], r-omega */
+    double *rows;   /* as C: of constraints that enter by velocities */
     double *memory; /* [forces * SE3DI_FORCE_STATES]: what force elements remembered */
     size_t force_count;
+    int32_t has_rows; /* the last factorisation took `rows` */
+    int32_t reserved;
+    se3di_newton_trace *trace; /* NULL: not wanted */
 } se3di_newton;
 
 typedef struct se3di_newton_weights {
@@ -38,7 +54,14 @@ void se3di_newton_destroy(se3di_newton *newton);
 se3d_status se3di_newton_factor(se3di_newton *newton, double t, const double *vdot,
                                 const double *lambda, const double *step,
                                 const se3di_newton_weights *weights);
+/* The same for constraints of velocities, where a body has turned on the way of the step, at the
+ * weight c = dv/dvdot, by (I - c/2 Omega(w))^-1; dx/dvdot = c^2. Unknowns (v, w) only. */
+se3d_status se3di_newton_factor_rates(se3di_newton *newton, double t, const double *vdot,
+                                      const double *lambda, double c);
 /* Solve for equations->b, ->c into equations->x (dvdot) and ->l. */
 se3d_status se3di_newton_solve(se3di_newton *newton);
+
+/* Note the size of a correction. @return whether there is a trace */
+int se3di_newton_note(const se3di_newton *newton, double size);
 
 #endif

@@ -281,15 +281,25 @@ static void radau_is_of_order_5(void)
     check_method(&row);
 }
 
+/* Equal steps begin with one of order 1, whose error is of order 2. */
+static void bdf_is_of_orders_1_and_2_at_equal_steps(void)
+{
+    const method_row first = {SE3D_METHOD_BDF, 1, 1.0, 1.0, {3200, 400, 800}, 1e-9};
+    const method_row second = {SE3D_METHOD_BDF, 2, 2.0, 2.0, {800, 200, 200}, 1e-9};
+    check_method(&first);
+    check_method(&second);
+}
+
 /* A run with error control to the end of a problem; counts its steps. */
-static sample run_controlled(builder build, int32_t method, int32_t formulation, double duration,
-                             double tolerance, uint64_t *steps)
+static sample run_controlled(builder build, const method_row *row, int32_t formulation,
+                             double duration, double tolerance, uint64_t *steps)
 {
     world w = {.body_count = 0};
     se3d_solver *solver;
     se3d_solver_stats stats;
     se3d_solver_def def = se3d_solver_def_default();
-    def.method = method;
+    def.method = row->method;
+    def.order = row->order_option;
     def.formulation = formulation;
     def.tolerance = tolerance;
     must(&w, se3d_system_create(NULL, &w.system));
@@ -304,35 +314,60 @@ static sample run_controlled(builder build, int32_t method, int32_t formulation,
     return s;
 }
 
-/* The errors of two tolerances, against steps: at least `order` between them (the method's, less
- * what the start at low order and the changes of the step cost). */
+/* The slope of errors over steps between two tolerances. */
+static double measure_control(int p, const method_row *row, int32_t formulation,
+                              const sample *reference, const double tolerance[2], double errors[2])
+{
+    uint64_t steps[2];
+    for (int k = 0; k < 2; ++k) {
+        sample s = run_controlled(problems[p].build, row, formulation, problems[p].duration,
+                                  tolerance[k], &steps[k]);
+        errors[k] = 0.0;
+        for (int group = 0; group < 4; ++group) {
+            errors[k] = fmax(errors[k], difference(&s, reference, group));
+        }
+    }
+    double slope = log(errors[0] / errors[1]) / log((double)steps[1] / (double)steps[0]);
+    if (getenv("SE3D_TEST_VERBOSE")) {
+        fprintf(stderr, "%s, %s, formulation %d: errors %.3e %.3e, steps %d %d, order %.2f\n",
+                check_case, problems[p].name, (int)formulation, errors[0], errors[1], (int)steps[0],
+                (int)steps[1], slope);
+    }
+    return slope;
+}
+
+/* At least `order` (the method's, less what the start at low order and the changes of the step
+ * cost). */
 static void check_control(int32_t method, double order, const double tolerance[2], double factor)
 {
     const method_row exact = {.method = SE3D_METHOD_DOP853};
+    const method_row row = {.method = method};
     for (int p = 0; p < 3; ++p) {
         sample reference = run(problems[p].build, &exact, SE3D_FORMULATION_ROMEGA,
                                problems[p].duration, problems[p].reference_steps);
         for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_RP; ++f) {
-            double errors[2] = {0.0, 0.0};
-            uint64_t steps[2];
-            for (int k = 0; k < 2; ++k) {
-                sample s = run_controlled(problems[p].build, method, f, problems[p].duration,
-                                          tolerance[k], &steps[k]);
-                for (int group = 0; group < 4; ++group) {
-                    errors[k] = fmax(errors[k], difference(&s, &reference, group));
-                }
-            }
-            double slope = log(errors[0] / errors[1]) / log((double)steps[1] / (double)steps[0]);
-            int holds = slope > order && errors[0] < factor * tolerance[0] &&
-                        errors[1] < factor * tolerance[1];
-            CHECK(holds);
-            if (!holds || getenv("SE3D_TEST_VERBOSE")) {
-                fprintf(stderr,
-                        "%s, %s, formulation %d: errors %.3e %.3e, steps %d %d, order %.2f\n",
-                        check_case, problems[p].name, (int)f, errors[0], errors[1], (int)steps[0],
-                        (int)steps[1], slope);
-            }
+            double errors[2];
+            CHECK(measure_control(p, &row, f, &reference, tolerance, errors) > order);
+            CHECK(errors[0] < factor * tolerance[0] && errors[1] < factor * tolerance[1]);
         }
+    }
+}
+
+/* The highest order that is allowed shows in errors over steps, on the driven mechanism. */
+static void bdf_has_the_orders_1_to_5(void)
+{
+    static const double tolerances[5][2] = {
+        {1e-3, 1e-5}, {1e-4, 1e-6}, {1e-5, 1e-7}, {1e-6, 1e-8}, {1e-5, 1e-9}};
+    const method_row exact = {.method = SE3D_METHOD_DOP853};
+    const int p = 2;
+    sample reference = run(problems[p].build, &exact, SE3D_FORMULATION_ROMEGA, problems[p].duration,
+                           problems[p].reference_steps);
+    for (int32_t order = 1; order <= 5; ++order) {
+        const method_row row = {.method = SE3D_METHOD_BDF, .order_option = order};
+        double errors[2];
+        double slope = measure_control(p, &row, SE3D_FORMULATION_ROMEGA, &reference,
+                                       tolerances[order - 1], errors);
+        CHECK_NEAR(slope, (double)order, 0.5);
     }
 }
 
@@ -369,6 +404,8 @@ static void generalized_alpha_controls_its_error(void)
 int main(void)
 {
     RUN(bdf_controls_its_error_at_high_order);
+    RUN(bdf_is_of_orders_1_and_2_at_equal_steps);
+    RUN(bdf_has_the_orders_1_to_5);
     RUN(radau_is_of_order_5);
     RUN(radau_controls_its_error_at_high_order);
     RUN(dop853_controls_its_error_at_high_order);
