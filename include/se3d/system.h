@@ -92,14 +92,16 @@ typedef struct se3d_energy {
 SE3D_API se3d_status se3d_system_get_energy(const se3d_system *system, se3d_energy *energy);
 
 /* Work since the start of the run [J]: kinetic + potential + dissipated - actuators - drivers is
- * constant to the integrator's order. Gravity that changes in time counts as an actuator. @since
- * 0.1 */
+ * constant to the integrator's order. Gravity that changes in time counts as an actuator. Inverse
+ * dynamics integrates powers by Gauss-Lobatto's rule of order 6 over its steps; kinematics computes
+ * no works. @since 0.1 */
 typedef struct se3d_work {
     double dissipated;
     double actuators; /* h of springs, loads, callbacks */
     double drivers;
 } se3d_work;
 
+/* @return OK, NULL, STATE (the last analysis was kinematics). Reader. @since 0.1 */
 SE3D_API se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work);
 
 /* Get the largest violation over all equations: [0] |Phi|, [1] |Phi_q qdot - nu|,

@@ -6,9 +6,11 @@
 
 #include "analysis/jump.h"
 #include "analysis/singular.h"
+#include "contact/loads.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
+#include <string.h>
 
 #define TURN_MAX     0.3 /* rad a body may turn in one step, so that the branch is kept */
 #define HALVINGS_MAX 6
@@ -78,10 +80,42 @@ static se3d_status reach(se3di_equations *equations, double t)
     return status < 0 ? status : se3di_kinematics_advance(equations, t);
 }
 
+/* Through the nodes of Gauss-Lobatto's rule with four points; the works by it. */
+static se3d_status step_with_works(se3di_equations *equations, double h)
+{
+    static const double nodes[3] = {0.27639320225002103036, 0.72360679774997896964, 1.0};
+    static const double weights[3] = {5.0 / 12.0, 5.0 / 12.0, 1.0 / 12.0};
+    se3di_model *model = equations->assembly.model;
+    const double start = model->time;
+    double work[3], power[3];
+    for (int k = 0; k < 3; ++k) {
+        work[k] = model->work[k] + h * model->power[k] / 12.0;
+    }
+    for (int node = 0; node < 3; ++node) {
+        se3d_status status = reach(equations, start + nodes[node] * h);
+        status = status < 0 ? status : se3di_loads_power(model, model->time, power);
+        if (status < 0) {
+            model->time = start;
+            return status;
+        }
+        se3di_angles_accept(model);
+        for (int k = 0; k < 3; ++k) {
+            work[k] += h * weights[node] * power[k];
+        }
+    }
+    memcpy(model->work, work, sizeof model->work);
+    memcpy(model->power, power, sizeof model->power);
+    return SE3D_OK;
+}
+
 se3d_status se3di_kinematics_step(se3di_equations *equations, double h)
 {
-    SE3DI_TRY(reach(equations, equations->assembly.model->time + h));
-    se3di_angles_accept(equations->assembly.model);
+    if (equations->audits) {
+        SE3DI_TRY(step_with_works(equations, h));
+    } else {
+        SE3DI_TRY(reach(equations, equations->assembly.model->time + h));
+        se3di_angles_accept(equations->assembly.model);
+    }
     ++equations->counters.steps;
     return SE3D_OK;
 }

@@ -105,6 +105,7 @@ static se3d_status prepare_equations(se3di_run *run)
         reduces ? se3di_formulation_reduce(run->formulation) : run->formulation;
     SE3DI_TRY(se3di_equations_init(&run->equations, run->model, formulation, run->error));
     run->equations.counters = counters;
+    run->equations.audits = run->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS;
     run->equations.iterations_max = run->integration.settings.iterations_max;
     run->integration.equations = &run->equations;
     run->prepared = 1;
@@ -271,6 +272,12 @@ static se3d_status run_kinematics(se3di_run *run, double t_end)
 {
     if (!run->model->settled || !run->determined) {
         SE3DI_TRY(settle(run, run->model->time));
+    }
+    if (run->equations.audits) {
+        SE3DI_TRY(se3di_work_accept(run->model, 0.0));
+    } else {
+        memset(run->model->work, 0, sizeof run->model->work);
+        run->model->work_valid = -1;
     }
     return se3di_kinematics_run(&run->equations, t_end, run->integration.settings.step);
 }

@@ -28,12 +28,12 @@ se3d_status se3di_work_accept(se3di_model *model, double h)
 {
     double power[3];
     SE3DI_TRY(se3di_loads_power(model, model->time, power));
-    if (!model->work_valid) {
+    if (model->work_valid <= 0) {
         memset(model->work, 0, sizeof model->work);
         model->work[0] = se3di_contacts_potential(model);
     }
     for (int k = 0; k < 3; ++k) {
-        model->work[k] += model->work_valid ? 0.5 * h * (model->power[k] + power[k]) : 0.0;
+        model->work[k] += model->work_valid > 0 ? 0.5 * h * (model->power[k] + power[k]) : 0.0;
         model->power[k] = power[k];
     }
     model->work_valid = 1;
@@ -42,7 +42,8 @@ se3d_status se3di_work_accept(se3di_model *model, double h)
 
 double se3di_work_lost(const se3di_model *model)
 {
-    return model->work_valid ? model->work[0] - se3di_contacts_potential(model) : model->work[0];
+    return model->work_valid > 0 ? model->work[0] - se3di_contacts_potential(model)
+                                 : model->work[0];
 }
 
 se3d_status se3di_loads_prepare(se3di_model *model, double t, se3di_error *error)

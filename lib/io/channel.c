@@ -262,6 +262,18 @@ static bool find_system(const char *name, se3di_channel *channel)
     return false;
 }
 
+/* A work, in a model whose analyses (kinematics) do not all compute works. */
+static bool is_left_out(const se3d_model *model, se3di_quantity quantity)
+{
+    bool computed = quantity < SE3DI_ENERGY_DISSIPATED || quantity > SE3DI_WORK_DRIVERS;
+    for (size_t k = 0; k < model->analysis_count && !computed; ++k) {
+        if (model->analyses[k].solver.analysis == SE3D_ANALYSIS_KINEMATICS) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* A name of the form energy.x or violation.x that find_system did not know. */
 static bool explain_system(const char *head, const char *name, char *problem, size_t size)
 {
@@ -345,8 +357,15 @@ bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel
     size_t index = 0;
     memset(channel, 0, sizeof *channel);
     channel->name = name;
-    if (find_system(name, channel) || find_contacts(model, name, channel) ||
-        find_particles(model, name, channel)) {
+    if (find_system(name, channel)) {
+        if (is_left_out(model, channel->quantity)) {
+            snprintf(problem, problem_size,
+                     "`%.60s` is not computed by kinematics, use inverse_dynamics", name);
+            return false;
+        }
+        return true;
+    }
+    if (find_contacts(model, name, channel) || find_particles(model, name, channel)) {
         return true;
     }
     snprintf(head, sizeof head, "%s", name);
@@ -549,6 +568,9 @@ se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count)
     list_bodies(&c);
     list_elements(&c);
     for (const quantity_name *q = system_names; q->name && !c.failed; ++q) {
+        if (is_left_out(model, q->quantity)) {
+            continue;
+        }
         const char *const parts[3] = {q->name, NULL, NULL};
         const se3di_channel channel = {.quantity = q->quantity};
         list_one(&c, channel, parts);

@@ -150,7 +150,8 @@ typedef struct se3di_model {
     se3d_allocator allocator;
     double gravity[3];
     int32_t gravity_function[3]; /* of time, -1: `gravity` */
-    int32_t work_valid;          /* `power` belongs to the present state */
+    int32_t work_valid;          /* 1: `power` belongs to the present state; 0: void; -1: the last
+                                    analysis (kinematics) computes no works */
     double time;
     double work[3];            /* done since the start: dissipated, by actuators, by drivers [J] */
     double power[3];           /* the same, of the last accepted state [W] */

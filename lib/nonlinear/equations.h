@@ -43,7 +43,7 @@ typedef struct se3di_equations {
     int32_t iterations_max;        /* of the position Newton */
     int32_t redundant;             /* an acceleration met dependent rows */
     int32_t hold;                  /* positions and velocities of held bodies stay (assembly) */
-    int32_t reserved;
+    int32_t audits;                /* kinematic steps integrate powers to works */
 } se3di_equations;
 
 se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,

@@ -310,6 +310,9 @@ se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work)
     if (!system || !work) {
         return SE3D_ERR_NULL;
     }
+    if (system->model.work_valid < 0) {
+        return SE3D_ERR_STATE;
+    }
     const double *done = system->model.work;
     *work = (se3d_work){
         .dissipated = se3di_work_lost(&system->model), .actuators = done[1], .drivers = done[2]};

@@ -127,15 +127,20 @@ static void motor_of_the_drum_carries_the_slope(void)
 
 static void pin_carries_the_bucket_and_what_it_has_dug(void)
 {
-    double force[3], torque[3], centre[3];
+    double force[3], torque[3], centre[3], lift = 0.0;
+    const int samples = 20; /* beads still jump about */
     se3d_constraint pin;
     open_world(&w, "bucket");
     CHECK(!se3d_constraint_find(w.system, "pin", &pin));
     go(&w, 1.3);
     double load = mass_above(&w, 0.15, centre);
     CHECK(load > 0.02);
-    CHECK(!se3d_constraint_get_reaction(w.system, pin, force, torque));
-    CHECK_NEAR(force[2], 9.81 * (1.0 + load), 0.05 * 9.81 * load);
+    for (int k = 0; k < samples; ++k) {
+        go(&w, 1.3 + 0.005 * (k + 1));
+        CHECK(!se3d_constraint_get_reaction(w.system, pin, force, torque));
+        lift += force[2] / samples;
+    }
+    CHECK_NEAR(lift, 9.81 * (1.0 + load), 0.05 * 9.81 * load);
     close_world(&w);
 }
 

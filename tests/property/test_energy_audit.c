@@ -7,8 +7,8 @@
  * to 1e-8 of the largest of these at tolerance 1e-9, and to 1e-6 at the default tolerance. */
 #define _POSIX_C_SOURCE 200809L
 
-#include "se3d/io.h"
 #include "support/examples.h"
+#include "support/text_model.h"
 
 enum { SAMPLES = 200 };
 
@@ -106,8 +106,69 @@ static void energy_audit_closes_on_every_example(void)
     CHECK(support_visit_examples(audit_model) >= 10);
 }
 
+#define CRANK(analysis, channels)                                                                  \
+    "se3d: 1\nbodies:\n"                                                                           \
+    "  - {name: crank, mass: 2, inertia: [0.1, 0.2, 0.3]}\n"                                       \
+    "  - {name: block, mass: 0.5, inertia: [0.01, 0.02, 0.03], position: [0.3, 0, 0]}\n"           \
+    "  - {name: yoke, mass: 4, inertia: [0.1, 0.2, 0.3], position: [0.3, 0, 0]}\njoints:\n"        \
+    "  - {name: jc, type: revolute, body_i: ground, body_j: crank, at: [0, 0, 0], axis: [0, -1, "  \
+    "0]}\n  - {name: pin, type: revolute, body_i: crank, body_j: block, at: [0.3, 0, 0], axis: "   \
+    "[0, -1, 0]}\n  - {name: slot, type: prismatic, body_i: yoke, body_j: block, at: [0.3, 0, "    \
+    "0], axis: [0, 0, 1]}\n  - {name: guide, type: prismatic, body_i: ground, body_j: yoke, at: "  \
+    "[0.3, 0, 0], axis: [1, 0, 0]}\ndrivers: [{name: d, joint: jc, value: \"3*t + sin(t)\"}]\n"    \
+    "forces: [{name: s, type: tsda, body_i: ground, body_j: yoke, point_i: [-1, 0, 0], l0: 1.2, "  \
+    "k: 200, c: 30, h: \"10*sin(3*t)\"}]\n"                                                        \
+    "analysis: {type: " analysis ", duration: 2, step: 0.1}\n"                                     \
+    "output: [{file: r.csv, channels: [" channels "]}]\n"
+
+/* Of a scotch yoke with a spring, a damper and an actuator; with few steps of order 6. */
+static void inverse_dynamics_closes_the_balance(void)
+{
+    double off[2];
+    for (int run = 0; run < 4; ++run) {
+        text_model m = text_model_open(CRANK("inverse_dynamics",
+                                             "energy.balance, energy.dissipated, work.actuators, "
+                                             "work.drivers"),
+                                       SE3D_METHOD_AUTO, run % 2, run / 2 ? 0.025 : 0.05);
+        CHECK(text_model_run(&m, 0.0));
+        const double before = text_model_get(&m, 0, 0);
+        CHECK(text_model_run(&m, 2.0));
+        off[run / 2] = fabs(text_model_get(&m, 0, 0) - before);
+        CHECK(text_model_get(&m, 1, 0) > 5.0);
+        CHECK(fabs(text_model_get(&m, 2, 0)) > 1.0);
+        CHECK(text_model_get(&m, 3, 0) > 5.0);
+        text_model_close(&m);
+    }
+    CHECK(off[0] < 1e-6);
+    CHECK_NEAR(off[0] / off[1], 64.0, 20.0);
+}
+
+static void kinematics_has_no_works_and_says_so(void)
+{
+    const char *const text = CRANK("kinematics", "work.drivers");
+    se3d_model *model = NULL;
+    se3d_model_error error = {0};
+    CHECK(se3d_model_read_text(text, strlen(text), "m.yaml", NULL, &model, &error) < 0);
+    CHECK_CONTAINS(error.message, "`work.drivers` is not computed by kinematics");
+    text_model m = text_model_open(CRANK("kinematics", "d.effort"), SE3D_METHOD_AUTO, 0, 0.1);
+    se3d_work work;
+    CHECK(!se3d_system_get_work(m.system, &work));
+    CHECK(text_model_run(&m, 0.5));
+    CHECK(se3d_system_get_work(m.system, &work) == SE3D_ERR_STATE);
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_solver *next = NULL;
+    CHECK(!se3d_solver_create(m.system, &def, &next)); /* dynamics begins a new audit */
+    CHECK(se3d_solver_run(next, 0.6) >= 0);
+    CHECK(!se3d_system_get_work(m.system, &work));
+    CHECK(work.drivers > 0.1 && work.drivers < 10.0);
+    se3d_solver_destroy(next);
+    text_model_close(&m);
+}
+
 int main(void)
 {
     RUN(energy_audit_closes_on_every_example);
+    RUN(inverse_dynamics_closes_the_balance);
+    RUN(kinematics_has_no_works_and_says_so);
     return check_finish();
 }
