@@ -70,7 +70,10 @@ se3d_status se3di_friction_eval(const se3di_model *model, const se3di_force *for
     friction_limits limits = limits_of(force);
     int sticks = !(fabs(force->state[2]) > 0.0);
     (void)se3di_measure_force(model, force, effect->wants_derivative, &measure);
-    double x = force->state[3] > 0.0 ? measure.value - force->state[0] : 0.0;
+    if (!(force->state[3] > 0.0)) { /* nothing to hold on to */
+        limits.stiffness = 0.0;
+    }
+    double x = measure.value - force->state[0];
     se3di_law law = {.n = sticks ? limits.stiffness * x : force->state[2] * limits.slip,
                      .n_x = sticks ? limits.stiffness : 0.0,
                      .n_rate = force->viscous};

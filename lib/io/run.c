@@ -253,9 +253,26 @@ static se3d_status sample(runner *r, output_file *file, double time)
     return file->csv.failure ? fail_file(r, file) : SE3D_OK;
 }
 
-/* The advice that fits a failure. */
-static const char *advice(se3d_status status)
+/* What does not converge: steps and methods are those of dynamics. */
+static const char *advise_iteration(int32_t analysis)
 {
+    switch (analysis) {
+    case SE3D_ANALYSIS_EQUILIBRIUM:
+        return "start from a position nearer to the equilibrium, or run dynamics with dampers "
+               "before it";
+    case SE3D_ANALYSIS_ASSEMBLY:
+        return "start from positions nearer to the assembled ones, or see `se3d check`";
+    case SE3D_ANALYSIS_DYNAMICS:
+        return "try a smaller --step, another --method, or `se3d check` at this position";
+    default:
+        return "try a smaller --step, or `se3d check` at this position";
+    }
+}
+
+/* The advice that fits a failure. */
+static const char *advise(se3d_status status, int32_t analysis)
+{
+    const bool moves = analysis != SE3D_ANALYSIS_EQUILIBRIUM && analysis != SE3D_ANALYSIS_ASSEMBLY;
     switch (status) {
     case SE3D_ERR_INCONSISTENT:
         return "look for constraints and drivers that contradict each other with `se3d check`, and "
@@ -264,9 +281,11 @@ static const char *advice(se3d_status status)
         return "the mechanism may be at a dead point or not fully driven: see `se3d check`";
     case SE3D_ERR_NO_CONVERGENCE:
     case SE3D_ERR_STEP_SIZE:
-        return "try a smaller --step, another --method, or `se3d check` at this position";
+        return advise_iteration(analysis);
     case SE3D_ERR_NOT_FINITE:
-        return "look for a function that is not finite at this time, or try a smaller --step";
+        return moves
+                   ? "look for a function that is not finite at this time, or try a smaller --step"
+                   : "look for a function that is not finite at this time";
     case SE3D_ERR_UNSUPPORTED:
         return "choose another --method, --formulation or --analysis";
     default:
@@ -287,7 +306,7 @@ static se3d_status fail_analysis(runner *r, const se3di_analysis_entry *entry, s
     }
     snprintf(text, sizeof text, "the %s analysis failed at t = %.9g s%s: %.500s. What to try: %s",
              entry->analysis.type, now, way, why[0] ? why : se3d_status_get_text(status),
-             advice(status));
+             advise(status, entry->solver.analysis));
     return fail(r, status, text);
 }
 

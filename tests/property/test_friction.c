@@ -163,6 +163,50 @@ static void what_friction_cannot_do_is_said_and_undone(void)
     text_model_close(&m);
 }
 
+#define HANGING(before, limit)                                                                     \
+    "se3d: 1\nbodies: [{name: a, mass: 1, inertia: [0.1, 0.2, 0.3], position: [1, 0, 0]}]\n"       \
+    "joints: [{name: j, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, -1, "  \
+    "0]}]\nforces: [{name: f, type: friction, joint: j, limit: " limit "}]\n"                      \
+    "analysis: [" before "{type: equilibrium}]\n"                                                  \
+    "output: [{file: r.csv, channels: [j.angle, f.force]}]\n"
+
+/* Friction that nothing has set is none; what a run has left sticking holds. */
+static void an_equilibrium_knows_the_friction_that_a_run_has_left(void)
+{
+    static const char *const texts[3] = {
+        HANGING("", "2"), HANGING("", "20"),
+        HANGING("{type: dynamics, duration: 0.1, step: 0.01, method: rattle}, ", "20")};
+    for (int run = 0; run < 6; ++run) {
+        text_model m = text_model_open(texts[run / 2], -1, run % 2, 0.0);
+        se3d_solver_def def = se3d_solver_def_default();
+        se3d_solver *statics = NULL;
+        def.analysis = SE3D_ANALYSIS_EQUILIBRIUM;
+        def.formulation = run % 2;
+        CHECK(text_model_run(&m, run / 4 ? 0.1 : 0.0));
+        CHECK(!se3d_solver_create(m.system, &def, &statics));
+        CHECK(!se3d_solver_run(statics, 0.1));
+        CHECK_NEAR(text_model_get(&m, 0, 0), run / 4 ? 0.0 : -0.5 * 3.14159265358979323846, 1e-9);
+        se3d_solver_destroy(statics);
+        text_model_close(&m);
+    }
+}
+
+static void the_advice_for_an_equilibrium_is_about_equilibria(void)
+{
+    static const char *const text =
+        "se3d: 1\nbodies: [{name: a, mass: 1, inertia: [1, 1, 1]}]\nanalysis: {type: equilibrium}\n"
+        "output: []\n";
+    se3d_model *model = NULL;
+    se3d_model_error error = {0};
+    se3d_run *run = NULL;
+    CHECK(!se3d_model_read_text(text, strlen(text), "m.yaml", NULL, &model, &error));
+    CHECK(se3d_model_run(model, NULL, &run, &error) < 0);
+    CHECK_CONTAINS(error.message, "What to try: start from a position nearer");
+    CHECK(!strstr(error.message, "--step") && !strstr(error.message, "--method"));
+    se3d_run_destroy(run);
+    se3d_model_destroy(model);
+}
+
 int main(void)
 {
     RUN(a_sliding_block_stops_where_it_should_and_stays);
@@ -171,5 +215,7 @@ int main(void)
     RUN(a_load_that_varies_leaves_the_order_at_2);
     RUN(a_pendulum_with_a_dry_bearing_comes_to_rest_as_with_other_methods);
     RUN(what_friction_cannot_do_is_said_and_undone);
+    RUN(an_equilibrium_knows_the_friction_that_a_run_has_left);
+    RUN(the_advice_for_an_equilibrium_is_about_equilibria);
     return check_finish();
 }
