@@ -225,7 +225,7 @@ static se3d_status run_damped(position_problem *problem, double target, int *sta
         }
         int fell = search_line(problem, length);
         damping = fell ? fmax(damping * 0.3, 1e-6) : damping * 10.0;
-        slow = fell && before - problem->merit < 1e-9 * before ? slow + 1 : 0;
+        slow = fell && before - problem->merit < 1e-12 * before ? slow + 1 : 0;
         *stationary = slow > 1 || damping > 1e6;
     }
     problem->damped = 0;
@@ -317,8 +317,9 @@ static void list_open(const se3di_equations *equations, double widest, char *tex
     }
 }
 
-/* What is open: lengths, or where there are none the worst angle. */
-static void describe_gap(const position_problem *problem, char *text, size_t size)
+/* What is open: lengths, or where there are none the worst angle. Only at the least violation do
+ * the gaps around a loop add up to what is missing. */
+static void describe_gap(const position_problem *problem, int least, char *text, size_t size)
 {
     const se3di_equations *equations = problem->equations;
     const se3di_model *model = equations->assembly.model;
@@ -337,12 +338,16 @@ static void describe_gap(const position_problem *problem, char *text, size_t siz
     }
     name_constraint(model, joint, name, sizeof name);
     if (total < 1.001 * widest) {
-        snprintf(text, size, "%s is open by %.6g m", name, total);
+        snprintf(text, size, "%s is open by %.6g m", name, widest);
         return;
     }
     char list[200];
     list_open(equations, widest, list, sizeof list);
-    snprintf(text, size, "%s is open by %.6g m, spread over its loop (%s)", name, total, list);
+    if (least) {
+        snprintf(text, size, "%s is open by %.6g m, spread over its loop (%s)", name, total, list);
+    } else {
+        snprintf(text, size, "%s is open by %.6g m (of all: %s)", name, widest, list);
+    }
 }
 
 double se3di_position_measure(se3di_equations *equations, char *text, size_t size)
@@ -350,7 +355,7 @@ double se3di_position_measure(se3di_equations *equations, char *text, size_t siz
     position_problem problem = {.equations = equations};
     problem.size = se3di_model_get_size(equations->assembly.model);
     measure(&problem);
-    describe_gap(&problem, text, size);
+    describe_gap(&problem, 0, text, size);
     return problem.worst;
 }
 
@@ -377,7 +382,7 @@ static void describe_lock(const se3di_equations *equations, char *text, size_t s
 static se3d_status report_gap(const position_problem *problem, double t, int stationary)
 {
     char gap[400];
-    describe_gap(problem, gap, sizeof gap);
+    describe_gap(problem, stationary, gap, sizeof gap);
     if (stationary) {
         char lock[180];
         describe_lock(problem->equations, lock, sizeof lock);
