@@ -201,6 +201,8 @@ typedef struct se3d_run_analysis {
     double end;              /* time that was reached [s] */
     double cpu_time;         /* [s] */
     se3d_solver_stats stats;
+    const char *left; /* the method that `auto` left on the way for `method`, "": none */
+    double left_at;   /* when [s], NaN: never */
 } se3d_run_analysis;
 
 SE3D_API size_t se3d_run_count_analyses(const se3d_run *run);

@@ -86,6 +86,12 @@ SE3D_API se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_solve
 /* Get the method in use ("generalized_alpha", ...; what AUTO picked). Reader. @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name);
 
+/* Get where AUTO changed the method during a run because stability held the steps of the first one
+ * short: the time [s] (NaN: it did not) and the name of the method it left ("": none). @return OK,
+ * NULL. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_solver_get_switch(const se3d_solver *solver, double *time,
+                                            const char **left);
+
 /* What a report on the constraints counts. Set struct_size before the call. @since 0.1 */
 typedef struct se3d_check_summary {
     size_t struct_size;

@@ -456,6 +456,9 @@ se3d_status se3di_events_run(se3di_events *events, double t_end)
     events->dense = 1;
     while (t < t_end) {
         if (!(history[SE3DI_HISTORY_TIME] > t)) {
+            if (run->integration.settings.leaves_stiff && method->is_held(&run->integration)) {
+                return method->run(&run->integration, t);
+            }
             const se3d_status status = method->advance(&run->integration, t_end);
             if (status < 0) {
                 return come_back(events, history[SE3DI_HISTORY_TIME], status);

@@ -68,35 +68,38 @@ static se3d_status allocate_work(se3di_run *run)
                                : SE3D_OK;
 }
 
+static int is_history_of(const se3di_model *model, int32_t method)
+{
+    return model->history_tag / 2 == (uint64_t)method;
+}
+
 /* auto: particles move by verlet only; friction sticks by a spring that only an implicit method can
- * follow; strong dampers hold explicit methods to small steps. */
+ * follow; strong dampers hold explicit methods to small steps, or have done so before. */
 static void choose_method(se3di_run *run)
 {
+    const se3di_model *model = run->model;
     if (!run->automatic) {
         return;
     }
-    int32_t method = run->analysis == SE3D_ANALYSIS_DYNAMICS && se3di_stiffness_is_stiff(run->model)
-                         ? SE3D_METHOD_RADAU
-                         : SE3D_METHOD_DOP853;
-    for (size_t k = 0; k < run->model->force_slots.count; ++k) {
-        if (run->model->forces[k].type == SE3DI_FORCE_FRICTION) {
+    int stiff = run->analysis == SE3D_ANALYSIS_DYNAMICS &&
+                (is_history_of(model, SE3D_METHOD_RADAU) || se3di_stiffness_is_stiff(model));
+    int32_t method = stiff ? SE3D_METHOD_RADAU : SE3D_METHOD_DOP853;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (model->forces[k].type == SE3DI_FORCE_FRICTION) {
             method = SE3D_METHOD_GENERALIZED_ALPHA;
         }
     }
-    if (run->model->sets) {
+    if (model->sets) {
         method = SE3D_METHOD_VERLET;
     }
     run->integration.method = se3di_integrator_find(method);
+    run->integration.settings.leaves_stiff = method == SE3D_METHOD_DOP853;
 }
 
 /* Build what the model's structure decides. */
-static se3d_status prepare_equations(se3di_run *run)
+static se3d_status build(se3di_run *run)
 {
-    if (run->prepared && run->equations.assembly.topology_version == run->model->topology_version) {
-        return SE3D_OK;
-    }
     release(run);
-    choose_method(run);
     se3di_counters counters = run->equations.counters;
     const se3di_integrator *method = run->integration.method;
     int reduces =
@@ -121,7 +124,11 @@ static se3d_status prepare_equations(se3di_run *run)
 
 static se3d_status prepare(se3di_run *run)
 {
-    SE3DI_TRY(prepare_equations(run));
+    if (!run->prepared ||
+        run->equations.assembly.topology_version != run->model->topology_version) {
+        choose_method(run);
+        SE3DI_TRY(build(run));
+    }
     run->equations.watch = run->events.slots.count > 0 ? &run->watch : NULL;
     return se3di_events_prepare(&run->events) < 0
                ? se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for events")
@@ -239,7 +246,27 @@ static se3d_status run_fixed_steps(se3di_run *run, double t_end)
     return SE3D_OK;
 }
 
-static se3d_status run_dynamics(se3di_run *run, double t_end)
+/* auto: the explicit method is held to short steps by stability. */
+static int must_switch(const se3di_run *run)
+{
+    const se3di_integration *integration = &run->integration;
+    return integration->settings.leaves_stiff && integration->method->is_held &&
+           run->model->history_tag == history_tag(run) && integration->method->is_held(integration);
+}
+
+/* From the present state by a method for stiff motions. */
+static se3d_status switch_method(se3di_run *run)
+{
+    run->left = run->integration.method;
+    run->left_at = run->model->time;
+    run->integration.method = se3di_integrator_find(SE3D_METHOD_RADAU);
+    run->integration.settings.leaves_stiff = 0;
+    SE3DI_TRY(build(run));
+    return prepare(run);
+}
+
+/* The method in use, to t_end or to where an event ends it or it has to be left. */
+static se3d_status run_method(se3di_run *run, double t_end)
 {
     se3di_integration *integration = &run->integration;
     integration->settings.step_most = integration->method->is_implicit
@@ -247,20 +274,26 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
                                           : fmin(STEP_DEFAULT, se3di_stiffness_step(run->model));
     double step = integration->settings.step > 0.0 ? integration->settings.step
                                                    : integration->settings.step_most;
-    double remaining = t_end - run->model->time;
-    if (remaining <= 0.0) {
+    const double remaining = t_end - run->model->time;
+    SE3DI_TRY(se3di_jump_refuse(&run->equations.assembly, t_end, step, run->error));
+    SE3DI_TRY(begin_dynamics(run, remaining / fmax(1.0, ceil(remaining / step - 1e-9))));
+    if (!has_step_control(integration)) {
+        return run_fixed_steps(run, t_end);
+    }
+    return run->equations.watch && integration->method->advance
+               ? se3di_events_run(&run->events, t_end)
+               : integration->method->run(integration, t_end);
+}
+
+static se3d_status run_dynamics(se3di_run *run, double t_end)
+{
+    if (!(t_end > run->model->time)) {
         return run->model->history_tag == history_tag(run) ? SE3D_OK : settle(run, t_end);
     }
-    double count = fmax(1.0, ceil(remaining / step - 1e-9));
-    se3d_status status;
-    SE3DI_TRY(se3di_jump_refuse(&run->equations.assembly, t_end, step, run->error));
-    SE3DI_TRY(begin_dynamics(run, remaining / count));
-    if (!has_step_control(integration)) {
-        status = run_fixed_steps(run, t_end);
-    } else if (run->equations.watch && integration->method->advance) {
-        status = se3di_events_run(&run->events, t_end);
-    } else {
-        status = integration->method->run(integration, t_end);
+    se3d_status status = run_method(run, t_end);
+    if (status >= 0 && status != SE3D_INFO_EVENT && run->model->time < t_end && must_switch(run)) {
+        SE3DI_TRY(switch_method(run));
+        status = run_method(run, t_end);
     }
     if (status < 0 || status == SE3D_INFO_EVENT) { /* whose callback may have changed the model */
         return status;

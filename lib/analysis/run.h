@@ -18,7 +18,9 @@ typedef struct se3di_run {
     int32_t determined; /* kinematics: the drivers determine the motion (checked once) */
     int32_t automatic;  /* the method is chosen from what the model holds */
     int32_t reserved;
-    se3di_watch watch; /* what the events are told of the steps */
+    const se3di_integrator *left; /* the method that was left on the way, NULL: none */
+    double left_at;               /* when [s] */
+    se3di_watch watch;            /* what the events are told of the steps */
     se3di_events events;
 } se3di_run;
 

@@ -25,11 +25,17 @@ enum {
     RK_ENERGY,
     RK_ENERGY_MIN, /* what the potential at the start says of the size of energies */
     RK_REDUNDANT,  /* the fewest dependent rows so far */
+    RK_HELD,       /* signs in a row that stability holds the steps */
+    RK_FREE,       /* signs against it since */
+    RK_SINCE,      /* steps since the last look */
     RK_HEADER
 };
 
 #define STEPS_MAX      1e9 /* of one run, by the pace of the first STEPS_ASSESSED */
 #define STEPS_ASSESSED 5000.0
+#define HELD_MIN       15.0 /* signs that are enough, and signs against that take them back */
+#define FREE_MIN       6.0
+#define HELD_EACH      8.0 /* steps between looks where there is no sign */
 #define FORCED_MAX     3
 #define SAFETY         0.8 /* a rejected step costs more than several that are this much shorter */
 #define GROWTH         3.0 /* largest, of a step: one small error may be chance */
@@ -407,6 +413,50 @@ static double largest_growth(const rk *m)
     return 2.0 * largest;
 }
 
+/* |h lambda| of the fastest motion, from the last stage and the end of the step, which are at one
+ * time: |y'(end) - y'(stage)|/|y(end) - y(stage)| (Hairer, Wanner 1996, sec. IV.2). What is far
+ * below the tolerance tells nothing. */
+static void watch_stability(rk *m, double h)
+{
+    const se3di_rk_tableau *tableau = m->tableau;
+    const int last = tableau->stages - 1, end = tableau->stages;
+    double difference[SE3DI_RK_MAX], *held = &m->header[RK_HELD], *free = &m->header[RK_FREE];
+    m->header[RK_SINCE] += 1.0;
+    if (!(*held > 0.0) && m->header[RK_SINCE] < HELD_EACH) {
+        return;
+    }
+    m->header[RK_SINCE] = 0.0;
+    for (int k = 0; k < SE3DI_RK_MAX; ++k) {
+        difference[k] = tableau->a[end][k] - tableau->a[last][k];
+    }
+    combine(m, NULL, h, difference, end, m->sum);
+    for (size_t k = 0; k < m->count; ++k) {
+        m->sum3[k] = h * (m->K[(size_t)end * m->count + k] - m->K[(size_t)last * m->count + k]);
+    }
+    memset(m->sum + m->count - SE3DI_STATE_WORK, 0, SE3DI_STATE_WORK * sizeof *m->sum);
+    memset(m->sum3 + m->count - SE3DI_STATE_WORK, 0, SE3DI_STATE_WORK * sizeof *m->sum3);
+    const double apart = measure(m, m->sum);
+    if (apart > 0.01 && measure(m, m->sum3) > tableau->stable * apart) {
+        *held += 1.0;
+        *free = 0.0;
+    } else if (*held > 0.0) {
+        *free += 1.0;
+        *held = *free < FREE_MIN ? *held : 0.0;
+        *free = *free < FREE_MIN ? *free : 0.0;
+    }
+}
+
+int se3di_rk_is_held(const se3di_integration *integration)
+{
+    return integration->equations->assembly.model->history[RK_HELD] >= HELD_MIN;
+}
+
+/* The run is to end at the forward state. */
+static int must_leave(const rk *m)
+{
+    return m->integration->settings.leaves_stiff && m->header[RK_HELD] >= HELD_MIN;
+}
+
 /* One accepted step with error control. What contacts remember belongs to the end of a step, and
  * cannot be interpolated: where shapes are near each other steps end at t_end. */
 static se3d_status advance(rk *m, double t_end)
@@ -430,6 +480,9 @@ static se3d_status advance(rk *m, double t_end)
         }
         if (status >= 0 && error <= 1.0) {
             accept(m, h);
+            if (m->integration->settings.leaves_stiff) {
+                watch_stability(m, h);
+            }
             m->header[RK_NEXT] = fmax(longer, next_step(m, h, error));
             m->header[RK_T1] = longer > 0.0 ? t_end : m->header[RK_T1];
             m->header[RK_ERROR] = error;
@@ -631,7 +684,7 @@ static se3d_status check_pace(rk *m, double start, double t_end, double steps)
 static se3d_status advance_to(rk *m, double t_end)
 {
     const double start = m->header[RK_T1];
-    for (double steps = 1.0; m->header[RK_T1] < t_end; steps += 1.0) {
+    for (double steps = 1.0; m->header[RK_T1] < t_end && !must_leave(m); steps += 1.0) {
         SE3DI_TRY(advance(m, t_end));
         if (steps >= STEPS_ASSESSED) {
             SE3DI_TRY(check_pace(m, start, t_end, steps));
@@ -671,7 +724,7 @@ se3d_status se3di_rk_run(se3di_integration *integration, double t_end)
         *m.equations->error = cause;
         return status;
     }
-    if (m.header[RK_T1] == t_end) {
+    if (m.header[RK_T1] <= t_end) { /* earlier where it leaves a stiff motion */
         return publish(&m);
     }
     interpolate(&m, t_end, m.y);

@@ -26,6 +26,7 @@ typedef struct se3di_rk_tableau {
     int stages;     /* of a step; the derivative at its end is K[stages] */
     int total;      /* with K[stages] and the extra stages of dense output */
     int order;      /* of the error estimate's root: err^(-1/order) */
+    double stable;  /* |h lambda| from which the step is held by stability */
     int uses_end;   /* the error estimate uses K[stages] */
     int dense_rows; /* rows of d */
     const double (*a)[SE3DI_RK_MAX];
@@ -46,5 +47,6 @@ se3d_status se3di_rk_run(se3di_integration *integration, double t_end);
 /* For the table of a method, see integrator.h. */
 se3d_status se3di_rk_advance(se3di_integration *integration, double t_end);
 void se3di_rk_interpolate(const se3di_integration *integration, double t, double *y);
+int se3di_rk_is_held(const se3di_integration *integration);
 
 #endif

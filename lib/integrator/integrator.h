@@ -21,7 +21,7 @@ typedef struct se3di_integrator_settings {
     int32_t iterations_max;
     int32_t order;
     int32_t controls_error; /* the user gave a tolerance and no step */
-    int32_t reserved;
+    int32_t leaves_stiff;   /* a run ends where the method is held by stability */
 } se3di_integrator_settings;
 
 typedef struct se3di_integration se3di_integration;
@@ -48,6 +48,9 @@ typedef struct se3di_integrator {
     se3d_status (*advance)(se3di_integration *integration, double t_end);
     /* The state at t within the step, y [se3di_state_count], as the interpolation has it. */
     void (*interpolate)(const se3di_integration *integration, double t, double *y);
+    /* Whether stability, not accuracy, has held its last steps so short; NULL: it never does. With
+     * settings.leaves_stiff `run` then ends where that was seen. */
+    int (*is_held)(const se3di_integration *integration);
     const struct se3di_rk_tableau *tableau; /* of Runge-Kutta methods */
     int32_t is_implicit;                    /* not 0: integration->newton is made */
     int32_t controls_if_asked;              /* not 0: `run` only where settings.controls_error */

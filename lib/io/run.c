@@ -420,6 +420,8 @@ static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analys
                    clock_t begin)
 {
     const char *method = "";
+    const char *left = "";
+    done->left_at = NAN;
     se3d_system_get_time(r->model->system, &r->time);
     done->end = r->time;
     done->cpu_time = (double)(clock() - begin) / (double)CLOCKS_PER_SEC;
@@ -427,9 +429,11 @@ static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analys
         se3d_solver_get_stats(r->solver, &done->stats);
         if (entry->solver.analysis == SE3D_ANALYSIS_DYNAMICS) {
             se3d_solver_get_method(r->solver, &method);
+            se3d_solver_get_switch(r->solver, &done->left_at, &left);
         }
     }
     done->method = copy_text(r, method ? method : "");
+    done->left = copy_text(r, left);
 }
 
 /* The files of the modes, and the state at which they are. */

@@ -200,3 +200,14 @@ se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name)
     *name = solver->run.integration.method->name;
     return SE3D_OK;
 }
+
+se3d_status se3d_solver_get_switch(const se3d_solver *solver, double *time, const char **left)
+{
+    if (!solver || !time || !left) {
+        return SE3D_ERR_NULL;
+    }
+    const se3di_run *run = &solver->run;
+    *time = run->left ? run->left_at : (double)NAN;
+    *left = run->left ? run->left->name : "";
+    return SE3D_OK;
+}

@@ -73,6 +73,20 @@ expect 'recording changes no bit' 0 cmp "$dir/plain/pendulum_events.csv" \
     "$dir/recorded/pendulum_events.csv"
 is "$(ls "$dir/plain" "$dir/recorded" | grep -c events.csv)" 3
 
+cat >"$dir/stiffens.yaml" <<'MODEL'
+se3d: 1
+bodies: [{name: bar, mass: 10, inertia: [0.01, 10/12, 10/12], position: [0.5, 0, 0]}]
+gravity: [0, -9.81, 0]
+joints: [{name: pin, type: revolute, body_i: ground, body_j: bar, at: [0, 0, 0], axis: [0, 0, 1]}]
+forces: [{name: damper, type: rsda, joint: pin, h: "exp(6*t)*thetadot"}]
+analysis: {type: dynamics, duration: 3}
+MODEL
+expect 'auto says when it changes' 0 "$program" run "$dir/stiffens.yaml" -o "$dir/stiffens"
+has "$dir/out" 'dynamics, romega, radau: success'
+has "$dir/out" 'auto left dop853 for radau at t = 1.6'
+expect 'auto says it in json' 0 "$program" run "$dir/stiffens.yaml" -o "$dir/stiffens" --json
+has "$dir/out" '"left": "dop853", "left_at": 1.6'
+
 expect 'another analysis' 0 "$program" run "$models/pendulum_free.yaml" -o "$dir/a" --analysis assembly
 is "$(wc -l <"$dir/a/pendulum_free.csv" | tr -d ' ')" 2
 

@@ -380,6 +380,7 @@ CALL(solver_run, a->solver, a->number)
 CALL(solver_step, a->solver, a->number)
 CALL(solver_get_stats, a->solver, a->out[0])
 CALL(solver_get_method, a->solver, a->out[0])
+CALL(solver_get_switch, a->solver, a->out[0], a->out[1])
 static se3d_status call_check_create(arguments *a)
 {
     se3d_status status = se3d_check_create(a->system, a->out[0]);
@@ -783,6 +784,7 @@ static const row rows[] = {
     {"se3d_solver_step", call_solver_step, "vn", NULL, NULL},
     {"se3d_solver_get_stats", call_solver_get_stats, "vo0", NULL, NULL},
     {"se3d_solver_get_method", call_solver_get_method, "vo0", NULL, NULL},
+    {"se3d_solver_get_switch", call_solver_get_switch, "vo0o1", NULL, NULL},
     {"se3d_check_create", call_check_create, "Sh0", NULL, NULL},
     {"se3d_check_get_summary", call_check_get_summary, "k", define_summary, NULL},
     {"se3d_check_get_message", call_check_get_message, "ko0", NULL, NULL},

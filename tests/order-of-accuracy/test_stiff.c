@@ -126,9 +126,92 @@ static void auto_looks_at_stiffness_and_says_what_it_picked(void)
     }
 }
 
+/* The bar alone with a damper on its pin that grows: c = exp(6 t). At 3 s it creeps, and dop853 is
+ * held to steps of some 1e-8 s. */
+static se3d_system *build_growing(se3d_constraint *pin)
+{
+    const double at[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 1.0}, gravity[3] = {0.0, -9.81, 0.0};
+    se3d_system *system = NULL;
+    se3d_body_def body = se3d_body_def_default();
+    se3d_joint_def joint = se3d_joint_def_default();
+    se3d_rsda_def damper = se3d_rsda_def_default();
+    se3d_function_def law = se3d_function_def_default();
+    se3d_force force;
+    CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
+    CHECK(se3d_system_set_gravity(system, gravity) == SE3D_OK);
+    body.mass = 10.0;
+    body.inertia[0] = 0.01;
+    body.inertia[1] = body.inertia[2] = 10.0 / 12.0;
+    body.position[0] = 0.5;
+    CHECK(se3d_body_create(system, &body, &joint.body_j) == SE3D_OK);
+    CHECK(se3d_system_get_ground(system, &joint.body_i) == SE3D_OK);
+    CHECK(se3d_joint_def_set_frame(system, &joint, at, axis, NULL) == SE3D_OK);
+    CHECK(se3d_joint_create_revolute(system, &joint, pin) == SE3D_OK);
+    static const char *const variables[] = {"t", "angle", "rate"};
+    law.expression = "exp(6*t)*rate";
+    law.variables = variables;
+    law.variable_count = 3;
+    CHECK(se3d_function_create(system, &law, &damper.h) == SE3D_OK);
+    damper.joint = *pin;
+    CHECK(se3d_force_create_rsda(system, &damper, &force) == SE3D_OK);
+    return system;
+}
+
+typedef struct growing {
+    double angle, left_at;
+    uint64_t steps, hash;
+    char method[32], left[32];
+} growing;
+
+/* In `parts` runs of equal length to 3 s. */
+static growing run_growing(int32_t method, int32_t formulation, int parts)
+{
+    growing out = {0};
+    se3d_constraint pin;
+    se3d_solver *solver = NULL;
+    se3d_solver_stats stats;
+    const char *name = "", *left = "";
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_system *system = build_growing(&pin);
+    def.method = method;
+    def.formulation = formulation;
+    CHECK(se3d_solver_create(system, &def, &solver) == SE3D_OK);
+    for (int k = 1; k <= parts; ++k) {
+        CHECK(se3d_solver_run(solver, 3.0 * k / parts) == SE3D_OK);
+    }
+    CHECK(se3d_joint_get_coordinate(system, pin, SE3D_COORDINATE_ANGLE, &out.angle, NULL, NULL) ==
+          SE3D_OK);
+    CHECK(se3d_solver_get_stats(solver, &stats) == SE3D_OK);
+    CHECK(se3d_solver_get_method(solver, &name) == SE3D_OK);
+    CHECK(se3d_solver_get_switch(solver, &out.left_at, &left) == SE3D_OK);
+    snprintf(out.method, sizeof out.method, "%s", name);
+    snprintf(out.left, sizeof out.left, "%s", left);
+    out.steps = stats.steps;
+    out.hash = se3d_system_hash(system);
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(system);
+    return out;
+}
+
+static void auto_leaves_dop853_where_the_motion_becomes_stiff(void)
+{
+    for (int32_t formulation = 0; formulation < 2; ++formulation) {
+        const growing radau = run_growing(SE3D_METHOD_RADAU, formulation, 1);
+        const growing switches = run_growing(SE3D_METHOD_AUTO, formulation, 1);
+        const growing parts = run_growing(SE3D_METHOD_AUTO, formulation, 97);
+        CHECK(strcmp(switches.left, "dop853") == 0 && strcmp(switches.method, "radau") == 0);
+        CHECK(switches.left_at > 0.3 && switches.left_at < 2.0);
+        CHECK_NEAR(switches.angle, radau.angle, 2e-6);
+        CHECK(switches.steps < 2 * radau.steps + 100);
+        CHECK(parts.hash == switches.hash && parts.steps == switches.steps);
+        CHECK(strcmp(radau.left, "") == 0 && isnan(radau.left_at));
+    }
+}
+
 int main(void)
 {
     RUN(auto_looks_at_stiffness_and_says_what_it_picked);
+    RUN(auto_leaves_dop853_where_the_motion_becomes_stiff);
     RUN(radau_takes_no_more_steps_where_stiff);
     RUN(bdf_takes_no_more_steps_where_stiff);
     RUN(generalized_alpha_takes_no_more_steps_where_stiff);

@@ -73,6 +73,10 @@ static void print_analysis(const se3d_run_analysis *a)
     printf("  from %.9g s to %.9g s, %" PRIu64 " steps (%" PRIu64 " rejected), %" PRIu64
            " iterations, CPU time %.3g s\n",
            a->start, a->end, a->stats.steps, a->stats.rejected, a->stats.iterations, a->cpu_time);
+    if (a->left[0]) {
+        printf("  auto left %s for %s at t = %.9g s: the motion became stiff\n", a->left, a->method,
+               a->left_at);
+    }
 }
 
 static void print_text(const se3d_run *run)
@@ -115,6 +119,12 @@ static void json_put_analysis(const se3d_run_analysis *a)
     json_put_number(a->end);
     fputs(", \"cpu_time\": ", stdout);
     json_put_number(a->cpu_time);
+    if (a->left[0]) {
+        fputs(", \"left\": ", stdout);
+        json_put_text(a->left);
+        fputs(", \"left_at\": ", stdout);
+        json_put_number(a->left_at);
+    }
     json_put_count("steps", a->stats.steps);
     json_put_count("rejected", a->stats.rejected);
     json_put_count("iterations", a->stats.iterations);
