@@ -17,9 +17,43 @@ extern "C" {
  * friction * Fn.
  * @since 0.1 */
 typedef enum se3d_law {
-    SE3D_LAW_HOOKE = 0,        /* linear: stiffness, tangential_ratio */
-    SE3D_LAW_HERTZ_MINDLIN = 1 /* Hertz with Tsuji-type damping, Mindlin: young, poisson */
+    SE3D_LAW_HOOKE = 0,         /* linear: stiffness, tangential_ratio */
+    SE3D_LAW_HERTZ_MINDLIN = 1, /* Hertz with Tsuji-type damping, Mindlin: young, poisson */
+    SE3D_LAW_CALLBACK = 2       /* the user's, of which materials need nothing */
 } se3d_law;
+
+/* A contact as a law of the user's sees it: of two particles, of a particle and a shape, of two
+ * shapes. Forces and velocities are of the second of the two relative to the first, ground frame.
+ * @since 0.1 */
+typedef struct se3d_contact_input {
+    se3d_material material_1, material_2;
+    double step;      /* by which the spring has been stretched since the last call [s]; 0: none */
+    double overlap;   /* [m] > 0 */
+    double normal[3]; /* from the first to the second */
+    double velocity;  /* along the normal [m/s], < 0: approaching */
+    double slip[3];   /* velocity in the tangent plane at the point [m/s] */
+    double spin[3];   /* angular velocity, ground frame [rad/s] */
+    double radius;    /* reduced: 1/R* = 1/R1 + 1/R2 [m]; of a flat face: R = infinite */
+    double mass;      /* effective along the normal [kg] */
+    double spring[3]; /* slip summed up since the contact began, in the tangent plane [m] */
+    double friction;  /* of the two materials */
+    double onset;     /* of bodies, in the step in which they meet: from 0 to 1. Damping times this
+                         is continuous, as implicit methods need it; else 1 */
+} se3d_contact_input;
+
+/* What a law gives; all zero, and the spring as in the input, when it is called. @since 0.1 */
+typedef struct se3d_contact_output {
+    double force;         /* along the normal on the second [N] */
+    double tangential[3]; /* in the tangent plane on the second [N] */
+    double moment[3];     /* on the second, about the point of contact [N m] */
+    double spring[3];     /* what is remembered of it [m] */
+} se3d_contact_output;
+
+/* Compute the force of a contact. It must depend on its input only, may be called from several
+ * threads at a time, and also by queries and for derivatives (of implicit methods, by differences).
+ * Return OK, or a negative status: the step ends, and CALLBACK names the two. */
+typedef se3d_status (*se3d_contact_callback)(void *ctx, const se3d_contact_input *input,
+                                             se3d_contact_output *output);
 
 /* What holds for all contacts of a system. @since 0.1 */
 typedef struct se3d_contact_settings {
@@ -28,6 +62,8 @@ typedef struct se3d_contact_settings {
     int32_t reserved;
     double step;          /* of verlet and of particles [s]; 0: automatic, from the stiffness */
     double overlap_limit; /* allowed overlap over the smaller radius; default 0.2 */
+    se3d_contact_callback callback; /* SE3D_LAW_CALLBACK, which needs a step > 0 */
+    void *ctx;
 } se3d_contact_settings;
 
 SE3D_API void se3d_contact_settings_init(se3d_contact_settings *settings, size_t size);

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define COUPLED_SHAPES 64
+#define COUPLED_BODIES 64
 
 /* Couplings: every pair of free bodies that a force element or a term of a constraint joins; the
  * curvature of CD does not couple its bodies. */
@@ -30,16 +30,36 @@ static void note_pair(se3di_tangent *tangent, uint32_t dense_a, uint32_t dense_b
     ++*count;
 }
 
+/* How many free bodies have shapes; it stops where there are too many. */
+static size_t count_bodies_with_shapes(const se3di_tangent *tangent)
+{
+    const se3di_model *model = tangent->assembly->model;
+    size_t count = 0;
+    for (size_t body = 0; body < model->body_slots.count && count <= COUPLED_BODIES; ++body) {
+        int found = 0;
+        for (size_t k = 0; k < model->shape_slots.count && !found; ++k) {
+            found = model->shapes[k].body == body && model->shapes[k].material >= 0;
+        }
+        count += (size_t)(found && tangent->assembly->free_index[body] >= 0);
+    }
+    return count;
+}
+
 /* Free bodies that may touch. Beyond so many the coupling is left out of the Newton matrix, which
  * then converges more slowly: it would not be sparse. */
 static void list_contacts(se3di_tangent *tangent, size_t *count)
 {
     const se3di_model *model = tangent->assembly->model;
     uint32_t shapes = (uint32_t)model->shape_slots.count;
-    for (uint32_t b = 1; shapes <= COUPLED_SHAPES && b < shapes; ++b) {
+    if (count_bodies_with_shapes(tangent) > COUPLED_BODIES) {
+        return;
+    }
+    for (uint32_t b = 1; b < shapes; ++b) {
+        uint32_t noted = SE3DI_NO_INDEX; /* a body: its shapes often follow one another */
         for (uint32_t a = 0; a < b; ++a) {
-            if (se3di_shapes_may_touch(model, a, b)) {
-                note_pair(tangent, model->shapes[a].body, model->shapes[b].body, count);
+            if (model->shapes[a].body != noted && se3di_shapes_may_touch(model, a, b)) {
+                noted = model->shapes[a].body;
+                note_pair(tangent, noted, model->shapes[b].body, count);
             }
         }
     }

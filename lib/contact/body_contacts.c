@@ -181,6 +181,12 @@ static se3d_status note(void *ctx, const se3di_encounter *e)
     se3di_body_contacts *contacts = &p->model->contacts;
     void *next = contacts->next;
     SE3DI_TRY(check_overlap(p, e));
+    if (e->failed) {
+        return se3di_error_set(p->error, SE3D_ERR_CALLBACK,
+                               "t = %g s: the law of contact failed for the shapes %.60s and %.60s",
+                               p->t, se3di_shape_describe(p->model, e->shape_i),
+                               se3di_shape_describe(p->model, e->shape_j));
+    }
     se3d_status status = se3di_array_reserve(&p->model->allocator, &next, &contacts->next_capacity,
                                              contacts->next_count + 1, sizeof *contacts->next);
     contacts->next = next;

@@ -279,6 +279,10 @@ void se3di_encounter_eval(se3di_encounter *e)
 {
     double delta = e->at->overlap;
     eval_memory(e);
+    if (e->law == SE3DI_LAW_CALLBACK) {
+        se3di_encounter_call(e);
+        return;
+    }
     e->elastic = e->pair.kn * e->s * delta;
     e->normal = fmax(0.0, e->elastic - e->onset * e->pair.dn * e->root_mass * e->root * e->vn);
     e->stick = 2.0 * sqrt(e->pair.pull_off * e->radius * e->elastic);
@@ -318,6 +322,10 @@ static void settled(double k, double c, double factor, const double pull[3], con
 
 static void settled_xi(const se3di_encounter *e, double xi[3])
 {
+    if (e->law == SE3DI_LAW_CALLBACK) {
+        se3di_copy(e->spring, xi);
+        return;
+    }
     settled(e->pair.kt * e->s, e->pair.dt * e->root_mass * e->root, e->give, e->pull, e->vt, e->xi,
             xi);
 }

@@ -112,7 +112,7 @@ static void add_mul(const double A[9], const double x[3], double out[3])
 typedef struct rates {
     double n[3], p[3], delta;
     double arm[2][3], w[2][3], v[3], vn, vt[3];
-    double root_mass, s, root, onset, xi[3], rho[3], twist, normal;
+    double inverse_mass, root_mass, s, root, onset, xi[3], rho[3], twist, normal;
     double force[3], moment[3];
 } rates;
 
@@ -175,6 +175,7 @@ static void move_mass(const se3di_encounter *e, const se3di_encounter_change *c,
         se3di_sub(da, x, da);
         inverse += 2.0 * se3di_dot(e->turned[k], da);
     }
+    d->inverse_mass = inverse;
     d->root_mass = -0.5 * e->root_mass * inverse / e->alone; /* of points that share: nearly */
 }
 
@@ -304,6 +305,18 @@ static void move_force(const se3di_encounter *e, rates *d)
     }
 }
 
+/* A law of the user's. */
+static void call_rate(const se3di_encounter *e, rates *d)
+{
+    se3di_encounter_rates seen = {
+        .delta = d->delta, .vn = d->vn, .inverse_mass = d->inverse_mass, .onset = d->onset};
+    se3di_copy(d->n, seen.n);
+    se3di_copy(d->vt, seen.vt);
+    se3di_copy(d->xi, seen.xi);
+    se3di_sub(d->w[1], d->w[0], seen.spin);
+    se3di_encounter_call_rate(e, &seen, d->force, d->moment);
+}
+
 static void wrench_rate(const se3di_encounter *e, const se3di_encounter_change *c, const rates *d,
                         double out[12])
 {
@@ -337,7 +350,11 @@ static void eval_rate(const se3di_encounter *e, const geometry *g, const se3di_e
         d.root = 0.5 * e->root * d.s / e->s;
     }
     move_memory(e, c, &d);
-    move_force(e, &d);
+    if (e->law == SE3DI_LAW_CALLBACK) {
+        call_rate(e, &d);
+    } else {
+        move_force(e, &d);
+    }
     wrench_rate(e, c, &d, out);
 }
 

@@ -47,10 +47,15 @@ void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_
     double e = choose(o->restitution, sqrt(a->restitution * b->restitution));
     if (law == SE3DI_LAW_HOOKE) {
         hooke(a, b, o->stiffness, e, pair);
+    } else if (law == SE3DI_LAW_CALLBACK) {
+        *pair = (se3di_pair){.kn = 0.0}; /* the user knows */
     } else {
         hertz(a, b, e, pair);
     }
     pair->friction = choose(o->friction, sqrt(a->friction * b->friction));
+    if (law == SE3DI_LAW_CALLBACK) {
+        return;
+    }
     pair->rolling = choose(o->rolling_friction, sqrt(a->rolling_friction * b->rolling_friction));
     pair->torsion =
         choose(o->torsional_friction, sqrt(a->torsional_friction * b->torsional_friction));
@@ -75,6 +80,9 @@ void se3di_pair_mix_all(se3di_model *model)
 double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3di_pair *pair,
                        double radius, double mass, double reduced_mass)
 {
+    if (law == SE3DI_LAW_CALLBACK) {
+        return HUGE_VAL;
+    }
     if (law == SE3DI_LAW_HOOKE) {
         double rate = sqrt(pair->kn / reduced_mass);
         return 0.02 * PI / (rate + pair->dn / sqrt(reduced_mass));

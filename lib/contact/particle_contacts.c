@@ -53,7 +53,16 @@ static se3di_force_task task_of(const se3di_particles *set, couple *c)
         .limit = 1e30,
         .cohesive = set->cohesive,
         .wall_sums = c->sums,
+        .stuffs = set->stuffs,
+        .callback = set->callback,
+        .ctx = set->ctx,
     };
+}
+
+static const se3di_kernels *kernels_of(const se3di_particles *set)
+{
+    return set->law == SE3DI_LAW_CALLBACK ? se3di_particle_kernels_callback()
+                                          : se3di_particle_kernels_portable();
 }
 
 static const se3di_roll *roll_of(const se3di_particles *set, uint32_t b)
@@ -88,7 +97,7 @@ static int pair_contact(const se3di_particles *set, uint32_t b, int lane,
     }
     out->overlap = overlap;
     se3di_force_task task = task_of(set, &c);
-    se3di_particle_kernels_portable()->pairs(&task);
+    kernels_of(set)->pairs(&task);
     out->i = c.spins[0].id;
     out->j = c.spins[1].id;
     out->shape = (se3d_shape){0, 0};
@@ -123,7 +132,7 @@ static int wall_contact(const se3di_particles *set, couple *c, const se3di_given
     c->block.j[0] = 0;
     se3di_force_task task = task_of(set, c);
     task.given = &here;
-    se3di_particle_kernels_portable()->walls(&task);
+    kernels_of(set)->walls(&task);
     out->i = c->spins[0].id;
     out->j = 0;
     out->shape = (se3d_shape){c->wall.handle.index1, c->wall.handle.generation};

@@ -96,12 +96,13 @@ void se3di_particles_mesh_forces(se3di_particles *set, const se3di_slab *slab,
         se3di_mesh_pair *pair = &set->mesh_pairs[k];
         se3di_mesh_pair_open(set, pair, &batch);
         if (batch.count > 0) {
-            set->kernels->walls(&local);
+            se3di_particles_get_kernels(set)->walls(&local);
         }
         close_pair(&batch, pair);
     }
     task->overlap = local.overlap;
     task->touching = local.touching;
+    task->failure = local.failure;
 }
 
 void se3di_particles_mesh_collect(se3di_particles *set)

@@ -207,6 +207,8 @@ se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model)
     SE3DI_TRY(replace_walls(set, model));
     SE3DI_TRY(reserve_sums(set));
     set->law = (se3di_contact_law)model->contact.law;
+    set->callback = model->contact.callback;
+    set->ctx = model->contact.ctx;
     set->overlap_limit = model->contact.overlap_limit;
     set->topology_version = model->topology_version;
     set->force_valid = 0;

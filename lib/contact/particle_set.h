@@ -113,6 +113,13 @@ typedef struct se3di_mesh_batch {
     uint32_t count, reserved;
 } se3di_mesh_batch;
 
+/* A law of the user's has failed for these. */
+typedef struct se3di_law_failure {
+    int32_t happened;
+    int32_t wall; /* j is a wall */
+    uint32_t i, j;
+} se3di_law_failure;
+
 typedef struct se3di_slab {
     uint32_t begin, end;           /* particles */
     uint32_t pair_begin, pair_end; /* blocks */
@@ -123,6 +130,7 @@ typedef struct se3di_slab {
     double overlap;                /* largest excess over what is allowed */
     double fastest;                /* squared speed after the last motion */
     uint64_t touching;
+    se3di_law_failure failure;
     int32_t done; /* in this sweep its forces have been evaluated */
     int32_t reserved;
 } se3di_slab;
@@ -280,6 +288,9 @@ typedef struct se3di_particles {
     double failed_amount; /* its overlap over the smaller radius, */
     double failed_time;   /* then */
     const se3di_kernels *kernels;
+    se3d_contact_callback callback; /* SE3DI_LAW_CALLBACK */
+    void *ctx;
+    se3di_law_failure law_failure;
 } se3di_particles;
 
 /* What a force kernel works on. */
@@ -301,6 +312,10 @@ typedef struct se3di_force_task {
     double overlap;            /* out: largest excess, starts at the caller's value */
     uint64_t touching;         /* out: added to */
     double *wall_sums;         /* walls: [walls * 6], added to */
+    const se3di_stuff *stuffs; /* of a law of the user's, as the next three */
+    se3d_contact_callback callback;
+    void *ctx;
+    se3di_law_failure failure; /* out: the first one */
 } se3di_force_task;
 
 /* `kicks` half kicks (0, 1 or 2) of h/2 from the loads and gravity, then a drift. */
@@ -316,10 +331,18 @@ struct se3di_kernels {
     void (*walls)(se3di_force_task *task);
 };
 
+/* For a law of the user's. */
+const se3di_kernels *se3di_particle_kernels_callback(void);
 /* NULL where the machine has not these instructions. */
 const se3di_kernels *se3di_particle_kernels_portable(void);
 const se3di_kernels *se3di_particle_kernels_avx2(void);
 const se3di_kernels *se3di_particle_kernels_avx512(void);
+
+/* What evaluates the forces of a set. */
+static inline const se3di_kernels *se3di_particles_get_kernels(const se3di_particles *set)
+{
+    return set->law == SE3DI_LAW_CALLBACK ? se3di_particle_kernels_callback() : set->kernels;
+}
 
 /* particle_set.c: life time and editing. All-or-nothing; NO_MEMORY is the only failure. */
 void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator);

@@ -52,6 +52,20 @@ se3d_status se3di_particles_report(const se3di_particles *set, se3d_status statu
                                "the state of particle %u%s%.80s is not finite at time %g s; try a "
                                "smaller step",
                                set->failed, of, name, set->time);
+    case SE3D_ERR_CALLBACK:
+        if (set->law_failure.wall) {
+            const se3di_wall *wall = &set->walls[set->law_failure.j];
+            return se3di_error_set(error, status,
+                                   "the law of contact failed for particle %u%s%.80s and the shape "
+                                   "%.80s at time %g s",
+                                   set->law_failure.i, of, name,
+                                   wall->shape.name ? wall->shape.name : "without a name",
+                                   set->time);
+        }
+        return se3di_error_set(error, status,
+                               "the law of contact failed for the particles %u and %u%s%.80s at "
+                               "time %g s",
+                               set->law_failure.i, set->law_failure.j, of, name, set->time);
     case SE3D_ERR_UNSUPPORTED:
         return se3di_error_set(error, status,
                                "the domain%s%.80s is shorter along a periodic axis than four of "

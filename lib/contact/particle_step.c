@@ -172,7 +172,8 @@ int se3di_particles_is_idle(const se3di_particles *set)
 
 int se3di_particles_is_complete(const se3di_particles *set, se3d_status status)
 {
-    return status == SE3D_ERR_STEP_SIZE || (status == SE3D_ERR_NO_MEMORY && set->force_valid);
+    return status == SE3D_ERR_STEP_SIZE || status == SE3D_ERR_CALLBACK ||
+           (status == SE3D_ERR_NO_MEMORY && set->force_valid);
 }
 
 static void sum_walls(se3di_particles *set)
@@ -206,6 +207,9 @@ static se3di_force_task prepare(se3di_particles *set, double h)
         .cohesive = set->cohesive,
         .h = h,
         .limit = set->overlap_limit,
+        .stuffs = set->stuffs,
+        .callback = set->callback,
+        .ctx = set->ctx,
     };
     for (int a = 0; a < 3; ++a) {
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
@@ -233,6 +237,7 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_motion *motion
         *motion = (se3di_motion){1, h, 0.0};
     }
     set->touching = 0;
+    set->law_failure = (se3di_law_failure){0, 0, 0, 0};
     set->force_valid = 1;
     if (set->count == 0) {
         return set->starved ? SE3D_ERR_NO_MEMORY : SE3D_OK;
@@ -244,6 +249,12 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_motion *motion
     for (uint32_t s = 0; s < set->slab_count; ++s) {
         excess = se3di_larger(excess, set->slabs[s].overlap);
         set->touching += set->slabs[s].touching;
+        if (set->slabs[s].failure.happened && !set->law_failure.happened) {
+            set->law_failure = set->slabs[s].failure;
+        }
+    }
+    if (set->law_failure.happened) {
+        return SE3D_ERR_CALLBACK;
     }
     if (excess > 0.0) {
         return SE3D_ERR_STEP_SIZE;

@@ -135,16 +135,17 @@ static void evaluate_forces(const sweep *w, uint32_t s)
     size_t walls = set->wall_count;
     task.begin = slab->pair_begin;
     task.end = slab->pair_end;
-    set->kernels->pairs(&task);
+    se3di_particles_get_kernels(set)->pairs(&task);
     task.begin = slab->wall_begin;
     task.end = slab->wall_end;
     task.wall_sums = set->wall_sums + 6 * walls * s;
     if (walls > 0) {
         memset(task.wall_sums, 0, 6 * walls * sizeof(double));
-        set->kernels->walls(&task);
+        se3di_particles_get_kernels(set)->walls(&task);
         se3di_particles_mesh_forces(set, slab, &task);
     }
     slab->overlap = task.overlap;
+    slab->failure = task.failure;
     slab->touching = task.touching;
 }
 

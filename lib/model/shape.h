@@ -3,12 +3,12 @@
 #ifndef SE3DI_MODEL_SHAPE_H
 #define SE3DI_MODEL_SHAPE_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "se3d/contact.h"
 
 typedef enum se3di_contact_law {
     SE3DI_LAW_HOOKE = 0,
-    SE3DI_LAW_HERTZ_MINDLIN = 1
+    SE3DI_LAW_HERTZ_MINDLIN = 1,
+    SE3DI_LAW_CALLBACK = 2
 } se3di_contact_law;
 
 typedef struct se3di_material {
@@ -55,6 +55,8 @@ typedef struct se3di_contact_settings {
     int32_t reserved;
     double step;          /* [s]; 0: automatic */
     double overlap_limit; /* of the smaller radius */
+    se3d_contact_callback callback;
+    void *ctx;
 } se3di_contact_settings;
 
 typedef enum se3di_shape_kind {

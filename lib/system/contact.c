@@ -55,13 +55,20 @@ se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_sett
     se3di_model *model = &system->model;
     se3d_contact_settings full = se3d_contact_settings_default();
     SE3DI_TRY(se3di_check_def(system, "contact settings", settings, &full, sizeof full));
-    if (full.law != SE3D_LAW_HOOKE && full.law != SE3D_LAW_HERTZ_MINDLIN) {
+    if (full.law < SE3D_LAW_HOOKE || full.law > SE3D_LAW_CALLBACK) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "law = %d, must be an se3d_law",
                           full.law);
     }
     if (!(isfinite(full.step) && full.step >= 0.0)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "step = %g s, must be finite and >= 0 (0: automatic)", full.step);
+    }
+    if (full.law == SE3D_LAW_CALLBACK) {
+        SE3DI_TRY(se3di_check_pointer(system, "callback", (full.callback ? &full : NULL)));
+        if (!(full.step > 0.0)) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "step = %g s, must be > 0 with the law of a callback", full.step);
+        }
     }
     if (!(full.overlap_limit > 0.0 && full.overlap_limit <= 1.0)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
@@ -73,7 +80,9 @@ se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_sett
     }
     se3di_model_set_contact(model, &(se3di_contact_settings){.law = full.law,
                                                              .step = full.step,
-                                                             .overlap_limit = full.overlap_limit});
+                                                             .overlap_limit = full.overlap_limit,
+                                                             .callback = full.callback,
+                                                             .ctx = full.ctx});
     se3di_pair_mix_all(model);
     return SE3D_OK;
 }
@@ -91,7 +100,9 @@ se3d_status se3d_system_get_contact(const se3d_system *system, se3d_contact_sett
     se3d_contact_settings full = {.struct_size = size,
                                   .law = now->law,
                                   .step = now->step,
-                                  .overlap_limit = now->overlap_limit};
+                                  .overlap_limit = now->overlap_limit,
+                                  .callback = now->callback,
+                                  .ctx = now->ctx};
     memcpy(settings, &full, size);
     return SE3D_OK;
 }

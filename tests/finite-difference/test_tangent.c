@@ -243,6 +243,39 @@ static void check_formulation(const se3di_formulation *formulation)
     }
 }
 
+/* Two bodies of many shapes are one coupling. */
+static void bodies_of_many_shapes_are_coupled(void)
+{
+    se3d_system *system;
+    se3d_body_def body = se3d_body_def_default();
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape shape;
+    se3d_body bodies[2];
+    se3di_assembly assembly;
+    se3di_tangent tangent;
+    CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
+    stuff.density = 1000.0;
+    stuff.stiffness = 1e4;
+    CHECK(se3d_material_create(system, &stuff, &def.material) == SE3D_OK);
+    body.mass = 1.0;
+    body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+    def.radius = 0.1;
+    for (int k = 0; k < 2; ++k) {
+        CHECK(se3d_body_create(system, &body, &bodies[k]) == SE3D_OK);
+    }
+    for (int k = 0; k < 80; ++k) {
+        def.body = bodies[k % 2];
+        CHECK(se3d_shape_create_sphere(system, &def, &shape) == SE3D_OK);
+    }
+    CHECK(!se3di_assembly_init(&assembly, &system->model, &se3di_formulation_romega, NULL));
+    CHECK(se3di_tangent_init(&tangent, &assembly) == SE3D_OK);
+    CHECK(tangent.coupling_count == 1);
+    se3di_tangent_destroy(&tangent);
+    se3di_assembly_destroy(&assembly);
+    se3d_system_destroy(system);
+}
+
 static void the_tangent_of_romega_agrees_with_differences(void)
 {
     check_formulation(&se3di_formulation_romega);
@@ -345,6 +378,7 @@ static void newton_in_rp_converges_superlinearly(void)
 
 int main(void)
 {
+    RUN(bodies_of_many_shapes_are_coupled);
     RUN(the_tangent_of_romega_agrees_with_differences);
     RUN(the_tangent_of_rp_agrees_with_differences);
     RUN(newton_of_an_implicit_step_converges_quadratically);
