@@ -6,6 +6,7 @@
 
 #include "analysis/jump.h"
 #include "analysis/singular.h"
+#include "analysis/turns.h"
 #include "contact/loads.h"
 #include "primitive/turn_counter.h"
 
@@ -110,6 +111,7 @@ static se3d_status step_with_works(se3di_equations *equations, double h)
 
 se3d_status se3di_kinematics_step(se3di_equations *equations, double h)
 {
+    SE3DI_TRY(se3di_turns_check(equations, h, HUGE_VAL));
     if (equations->audits) {
         SE3DI_TRY(step_with_works(equations, h));
     } else {
@@ -150,6 +152,7 @@ se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, doubl
 {
     se3di_model *model = equations->assembly.model;
     double shortest = (t_end - model->time) / STEPS_MAX;
+    shortest = step > 0.0 ? fmin(shortest, step) : shortest;
     while (model->time < t_end) {
         double h = choose_step(equations, t_end - model->time, step, shortest);
         SE3DI_TRY(se3di_jump_refuse(&equations->assembly, model->time + h, h, equations->error));

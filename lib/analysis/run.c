@@ -6,6 +6,7 @@
 #include "analysis/friction_start.h"
 #include "analysis/jump.h"
 #include "analysis/stiffness.h"
+#include "analysis/turns.h"
 #include "assembly/user.h"
 #include "contact/loads.h"
 #include "contact/pace.h"
@@ -15,6 +16,8 @@
 #include <string.h>
 
 #define STEP_DEFAULT 1e-3 /* s, of fixed-step methods */
+#define TURN_MAX     3.0  /* rad, of a body in a step of an implicit method */
+#define TURN_MAX_RP  0.6  /* the same of Newmark's family in r-p */
 
 void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error, se3d_system *system)
 {
@@ -228,6 +231,25 @@ static se3d_status choose_step(const se3di_run *run, double t_end, double *h)
     return SE3D_OK;
 }
 
+/* How far a body may turn in a step. In r-p Newmark's family moves Euler parameters along straight
+ * lines and puts them back on the sphere: beyond some 0.6 rad rotation is lost without a trace. */
+static double largest_turn(const se3di_run *run)
+{
+    const se3di_integrator *method = run->integration.method;
+    if (!method->is_implicit) {
+        return HUGE_VAL; /* of rattle: its own */
+    }
+    int is_newmark = method->tag == SE3D_METHOD_GENERALIZED_ALPHA || method->tag == SE3D_METHOD_HHT;
+    return is_newmark && run->equations.assembly.formulation->block == 8 ? TURN_MAX_RP : TURN_MAX;
+}
+
+static se3d_status step_dynamics(se3di_run *run, double h)
+{
+    se3di_integration *integration = &run->integration;
+    SE3DI_TRY(se3di_turns_check(&run->equations, h, largest_turn(run)));
+    return integration->method->step(integration, h);
+}
+
 static se3d_status run_fixed_steps(se3di_run *run, double t_end)
 {
     se3di_model *model = run->model;
@@ -236,7 +258,7 @@ static se3d_status run_fixed_steps(se3di_run *run, double t_end)
         SE3DI_TRY(choose_step(run, t_end, &h));
         int last = t_end - model->time <= (1.0 + 1e-9) * h;
         SE3DI_TRY(se3di_watch_begin(&run->equations));
-        SE3DI_TRY(run->integration.method->step(&run->integration, h));
+        SE3DI_TRY(step_dynamics(run, h));
         model->time = last ? t_end : model->time;
         const se3d_status status = se3di_watch_end(&run->equations);
         if (status != SE3D_OK) {
@@ -380,7 +402,7 @@ se3d_status se3di_run_make_step(se3di_run *run, double h)
     const se3di_watch *watch = equations->watch;
     equations->watch = NULL;
     const se3d_status status = run->analysis == SE3D_ANALYSIS_DYNAMICS
-                                   ? run->integration.method->step(&run->integration, h)
+                                   ? step_dynamics(run, h)
                                    : se3di_kinematics_step(equations, h);
     equations->watch = watch;
     return status;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/newmark.h"
+#include "math/quaternion.h"
 
 #include "contact/loads.h"
 #include "contact/pace.h"
@@ -300,6 +301,10 @@ static void accept(newmark_step *step)
     copy(model->lambda, step->lambda, assembly->row_count);
     se3di_assembly_set_acceleration(assembly, step->vdot);
     model->time = step->t;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) { /* r-p: else pdot along p builds up */
+        se3di_frame *frame = &model->frames[assembly->free_body[k]];
+        se3di_quat_rate(frame->p, frame->w, frame->pdot);
+    }
     se3di_angles_accept(model);
     se3di_loads_accept(model);
     ++step->equations->counters.steps;
