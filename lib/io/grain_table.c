@@ -189,7 +189,7 @@ static void start_again(table *t)
 
 static bool read_rows(table *t)
 {
-    double before = NAN;
+    double before = (double)NAN;
     for (t->line = 2; *t->at; ++t->line) {
         double time = 0.0;
         if (t->at[strspn(t->at, " \t\r")] == '\n') { /* an empty line */
