@@ -39,11 +39,7 @@ static int joined(const se3di_model *model, uint32_t a, uint32_t b)
 /* Kinds that have no contact with each other. */
 static int strangers(const se3di_shape *a, const se3di_shape *b)
 {
-    int surface_a = a->kind == SE3DI_SHAPE_PLANE || a->kind == SE3DI_SHAPE_MESH;
-    int surface_b = b->kind == SE3DI_SHAPE_PLANE || b->kind == SE3DI_SHAPE_MESH;
-    int mesh = a->kind == SE3DI_SHAPE_MESH || b->kind == SE3DI_SHAPE_MESH;
-    int sphere = a->kind == SE3DI_SHAPE_SPHERE || b->kind == SE3DI_SHAPE_SPHERE;
-    return (surface_a && surface_b) || (mesh && !sphere);
+    return a->kind == b->kind && (a->kind == SE3DI_SHAPE_PLANE || a->kind == SE3DI_SHAPE_MESH);
 }
 
 int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b)

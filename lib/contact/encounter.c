@@ -41,9 +41,9 @@ double se3di_shape_contact_size(const se3di_shape *shape)
     case SE3DI_SHAPE_CYLINDER:
         return fmin(shape->radius, shape->half_length);
     case SE3DI_SHAPE_HULL:
+    case SE3DI_SHAPE_MESH:
         return 0.5 * shape->bound;
     case SE3DI_SHAPE_PLANE:
-    case SE3DI_SHAPE_MESH:
         return HUGE_VAL;
     default:
         return shape->radius;

@@ -126,6 +126,8 @@ static int has_area(const double *vertices, const uint32_t *triangle)
     return se3di_dot(n, n) > 0.0;
 }
 
+static int32_t find_sense(const se3di_shape *s);
+
 static se3d_status fill(const se3d_allocator *allocator, const double *vertices,
                         const uint32_t *triangles, size_t triangle_count, se3di_shape *shape)
 {
@@ -147,6 +149,7 @@ static se3d_status fill(const se3d_allocator *allocator, const double *vertices,
     if (shape->tree) {
         shape->tree_bytes = b.node_count * sizeof *nodes;
         memcpy(shape->tree, nodes, shape->tree_bytes);
+        shape->closed = find_sense(shape);
     }
     se3di_free(allocator, nodes, most, sizeof *nodes);
     return shape->tree ? SE3D_OK : SE3D_ERR_NO_MEMORY;
@@ -258,13 +261,12 @@ static size_t insert(candidate *list, size_t count, const candidate *new)
     return count < CANDIDATES ? count + 1 : count;
 }
 
-/* The triangles within the radius, the nearest first. */
-static size_t gather(const se3di_shape *s, const double local[3], double radius, candidate *list)
+void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double radius,
+                      void (*visitor)(void *ctx, uint32_t triangle), void *ctx)
 {
-    const mesh_node *nodes = s->tree;
+    const mesh_node *nodes = shape->tree;
     uint32_t stack[STACK_SIZE] = {0};
     int depth = 1;
-    size_t count = 0;
     double reach = radius * radius;
     while (depth > 0) {
         uint32_t at = stack[--depth];
@@ -277,14 +279,82 @@ static size_t gather(const se3di_shape *s, const double local[3], double radius,
             stack[depth++] = at + 1;
         }
         for (uint32_t k = node->begin; k < node->begin + node->count; ++k) {
-            candidate here = {.triangle = k};
-            here.square = triangle_distance(s, k, local, here.point);
-            if (here.square < reach) {
-                count = insert(list, count, &here);
+            double point[3];
+            if (triangle_distance(shape, k, local, point) < reach) {
+                visitor(ctx, k);
             }
         }
     }
-    return count;
+}
+
+typedef struct edge_search {
+    const se3di_shape *shape;
+    const double *from, *to;
+    uint32_t triangle, reserved;
+    int same, opposite;
+} edge_search;
+
+static int is_at(const double *a, const double *b)
+{
+    return !(fabs(a[0] - b[0]) > 0.0 || fabs(a[1] - b[1]) > 0.0 || fabs(a[2] - b[2]) > 0.0);
+}
+
+static void count_edge(void *ctx, uint32_t triangle)
+{
+    edge_search *e = ctx;
+    for (uint32_t k = 0; k < 3 && triangle != e->triangle; ++k) {
+        const uint32_t *t = e->shape->triangles + 3 * (size_t)triangle;
+        const double *a = e->shape->vertices + 3 * (size_t)t[k];
+        const double *b = e->shape->vertices + 3 * (size_t)t[(k + 1) % 3];
+        e->same += is_at(a, e->from) && is_at(b, e->to);
+        e->opposite += is_at(a, e->to) && is_at(b, e->from);
+    }
+}
+
+/* Every edge is passed once each way: then the sense of the triangles is that of the volume. */
+static int32_t find_sense(const se3di_shape *s)
+{
+    double volume = 0.0;
+    for (uint32_t k = 0; k < 3 * s->triangle_count; ++k) {
+        const uint32_t *t = s->triangles + k / 3 * 3;
+        edge_search e = {.shape = s, .triangle = k / 3};
+        double middle[3], d[3], n[3];
+        e.from = s->vertices + 3 * (size_t)t[k % 3];
+        e.to = s->vertices + 3 * (size_t)t[(k + 1) % 3];
+        se3di_add(e.from, e.to, middle);
+        se3di_scale(0.5, middle, middle);
+        se3di_sub(e.to, e.from, d);
+        se3di_mesh_visit(s, middle, ON_TRIANGLE * se3di_norm(d), count_edge, &e);
+        if (e.same != 0 || e.opposite != 1) {
+            return 0;
+        }
+        se3di_cross(e.from, e.to, n);
+        volume += k % 3 == 0 ? se3di_dot(n, s->vertices + 3 * (size_t)t[2]) : 0.0;
+    }
+    return volume > 0.0 ? 1 : volume < 0.0 ? -1 : 0;
+}
+
+typedef struct gathering {
+    const se3di_shape *shape;
+    const double *local;
+    candidate *list;
+    size_t count;
+} gathering;
+
+static void gather_triangle(void *ctx, uint32_t triangle)
+{
+    gathering *g = ctx;
+    candidate here = {.triangle = triangle};
+    here.square = triangle_distance(g->shape, triangle, g->local, here.point);
+    g->count = insert(g->list, g->count, &here);
+}
+
+/* The triangles within the radius, the nearest first. */
+static size_t gather(const se3di_shape *s, const double local[3], double radius, candidate *list)
+{
+    gathering g = {s, local, list, 0};
+    se3di_mesh_visit(s, local, radius, gather_triangle, &g);
+    return g.count;
 }
 
 /* The point of candidate k lies on a triangle before it. */

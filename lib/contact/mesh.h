@@ -28,4 +28,8 @@ size_t se3di_mesh_nearest(const se3di_shape *shape, const double local[3], doubl
 size_t se3di_mesh_contacts(const se3di_shape *shape, const double local[3], double radius,
                            size_t capacity, se3di_touch *touch);
 
+/* Visit all triangles nearer to a point than the radius, in the order of the tree. */
+void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double radius,
+                      void (*visitor)(void *ctx, uint32_t triangle), void *ctx);
+
 #endif

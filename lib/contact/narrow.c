@@ -202,21 +202,31 @@ static double rim_direction(const se3di_solid *i, const double normal[3], const 
     return tilt;
 }
 
-/* Four points of each rim: the lowest one, and at right angles. */
-static void cylinder_plane(const se3di_solid *i, const half_space *plane, se3di_manifold *manifold)
+double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double rim[8][3])
 {
     double axis[3], low[3], side[3];
     axis_of(i, 2, axis);
-    double tilt = rim_direction(i, plane->n, axis, low);
+    double tilt = rim_direction(i, normal, axis, low);
     se3di_cross(axis, low, side);
     for (uint32_t k = 0; k < 8; ++k) {
-        double x[3];
         double turn = k & 1u ? -i->shape->radius : i->shape->radius;
-        se3di_copy(i->at->x, x);
-        se3di_add_scaled(k & 4u ? i->shape->half_length : -i->shape->half_length, axis, x);
-        se3di_add_scaled(turn, k & 2u ? side : low, x);
-        se3di_contact_point *p = touch_plane(plane, x, 0.0, k, manifold);
+        se3di_copy(i->at->x, rim[k]);
+        se3di_add_scaled(k & 4u ? i->shape->half_length : -i->shape->half_length, axis, rim[k]);
+        se3di_add_scaled(turn, k & 2u ? side : low, rim[k]);
+    }
+    return tilt;
+}
+
+static void cylinder_plane(const se3di_solid *i, const half_space *plane, se3di_manifold *manifold)
+{
+    double rim[8][3], axis[3], side[3];
+    double tilt = se3di_cylinder_rims(i, plane->n, rim);
+    axis_of(i, 2, axis);
+    se3di_cross(plane->n, axis, side);
+    for (uint32_t k = 0; k < 8; ++k) {
+        se3di_contact_point *p = touch_plane(plane, rim[k], 0.0, k, manifold);
         if (p && k % 4 == 0 && tilt > RIM_TILT) {
+            se3di_scale(1.0 / se3di_norm(side), side, side);
             se3di_bend_set(&p->bend_i, side, i->shape->radius / tilt, 0.0);
         }
     }
@@ -247,6 +257,9 @@ static void any_plane(const se3di_solid *i, const se3di_solid *j, se3di_manifold
             touch_plane(&plane, x, 0.0, (uint32_t)k, manifold);
         }
         break;
+    case SE3DI_SHAPE_MESH:
+        se3di_narrow_mesh_plane(i, plane.x, plane.n, manifold);
+        break;
     default:
         break;
     }
@@ -268,12 +281,12 @@ static void dispatch(const se3di_solid *i, const se3di_solid *j, se3di_manifold 
 {
     int32_t a = i->shape->kind;
     int32_t b = j->shape->kind;
-    if (a == SE3DI_SHAPE_SPHERE) {
-        sphere_any(i, j, manifold);
-    } else if (b == SE3DI_SHAPE_PLANE) {
+    if (b == SE3DI_SHAPE_PLANE && a != SE3DI_SHAPE_SPHERE) {
         any_plane(i, j, manifold);
-    } else if (a == SE3DI_SHAPE_MESH || b == SE3DI_SHAPE_MESH) {
-        return;
+    } else if (b == SE3DI_SHAPE_MESH) {
+        se3di_narrow_mesh(i, j, manifold);
+    } else if (a == SE3DI_SHAPE_SPHERE) {
+        sphere_any(i, j, manifold);
     } else if (a == SE3DI_SHAPE_BOX && b == SE3DI_SHAPE_BOX) {
         se3di_narrow_boxes(i, j, manifold);
     } else if (a == SE3DI_SHAPE_CAPSULE && b == SE3DI_SHAPE_CAPSULE) {
@@ -283,12 +296,12 @@ static void dispatch(const se3di_solid *i, const se3di_solid *j, se3di_manifold 
     }
 }
 
-/* Spheres first, then solids, planes and meshes. */
+/* Spheres first, then solids, meshes and planes. */
 static int rank_of(const se3di_shape *shape)
 {
     return shape->kind == SE3DI_SHAPE_SPHERE  ? 0
-           : shape->kind == SE3DI_SHAPE_PLANE ? 2
-           : shape->kind == SE3DI_SHAPE_MESH  ? 3
+           : shape->kind == SE3DI_SHAPE_MESH  ? 2
+           : shape->kind == SE3DI_SHAPE_PLANE ? 3
                                               : 1;
 }
 
@@ -299,7 +312,12 @@ void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const
     se3di_solid b = {j, at_j};
     manifold->count = 0;
     manifold->reserved = 0;
-    if (rank_of(i) > rank_of(j)) {
+    int rank_i = rank_of(i);
+    int rank_j = rank_of(j);
+    if (rank_i > 1 && rank_i == rank_j) {
+        return; /* two planes, two meshes */
+    }
+    if (rank_i > rank_j) {
         dispatch(&b, &a, manifold);
         mirror(manifold);
     } else {
@@ -343,8 +361,11 @@ static double gap_of(const se3di_solid *i, const se3di_solid *j, double normal[3
 {
     double on_i[3], on_j[3];
     memset(normal, 0, 3 * sizeof *normal);
-    if (i->shape->kind == SE3DI_SHAPE_PLANE || i->shape->kind == SE3DI_SHAPE_MESH) {
+    if (i->shape->kind == SE3DI_SHAPE_PLANE) {
         return 0.0;
+    }
+    if (i->shape->kind == SE3DI_SHAPE_MESH) {
+        return plane_gap(i, j, normal);
     }
     if (j->shape->kind == SE3DI_SHAPE_MESH) {
         return mesh_gap(i, j, normal);

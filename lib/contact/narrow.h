@@ -34,8 +34,8 @@ typedef struct se3di_manifold {
     se3di_contact_point points[SE3DI_MANIFOLD_POINTS];
 } se3di_manifold;
 
-/* The points where shapes i and j touch; none where they are apart, or are a plane or mesh and
- * another one. */
+/* The points where shapes i and j touch; none where they are apart, or are two planes or two
+ * meshes. */
 void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
                        const se3di_shape_pose *at_j, se3di_manifold *manifold);
 

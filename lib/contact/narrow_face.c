@@ -55,6 +55,7 @@ static void local_support(const se3di_shape *s, const double d[3], double out[3]
         out[2] = d[2] < 0.0 ? -s->half_length : s->half_length;
         break;
     case SE3DI_SHAPE_HULL:
+    case SE3DI_SHAPE_MESH:
         se3di_copy(s->vertices + 3 * (size_t)highest_vertex(s, d), out);
         break;
     default:

@@ -42,6 +42,13 @@ void se3di_narrow_boxes(const se3di_solid *i, const se3di_solid *j, se3di_manifo
 /* Two capsules, or the sides of cylinders; returns 0 where these touch with an end. */
 int se3di_narrow_capsules(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
+/* A solid on a mesh; a mesh on the half space at x with the outward normal n. */
+void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold);
+void se3di_narrow_mesh_plane(const se3di_solid *mesh, const double x[3], const double n[3],
+                             se3di_manifold *manifold);
+/* Four points of each rim of a cylinder: the lowest one towards a face with this normal, and at
+ * right angles. Returns the sine of the tilt. */
+double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double rim[8][3]);
 /* Contact of the face `reference` (of i; `flip`: of j) with what of the other looks at it. */
 void se3di_narrow_clip(const se3di_face *reference, const se3di_face *incident, double radius,
                        int flip, se3di_manifold *manifold);

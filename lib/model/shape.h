@@ -86,6 +86,9 @@ typedef struct se3di_shape {
     size_t vertex_count, triangle_count;
     void *tree; /* mesh: bounding volumes, see contact/mesh.h */
     size_t tree_bytes;
+    int32_t closed; /* mesh: 1 with its triangles counter-clockwise seen from outside, -1 clockwise,
+                       0 open or not of one sense */
+    int32_t reserved_mesh;
     double force[3], torque[3]; /* of bodies, on its body about the centre of mass, last accepted */
 } se3di_shape;
 
