@@ -163,20 +163,35 @@ static void settle(bench *b)
     }
 }
 
+/* The axis of a drum is z in the file and runs through the origin: others know no other. */
+static void swap_axes(const bench *b, double x[3], int to_file)
+{
+    double middle = 0.5 * width_of(b);
+    if (b->drum_rate != 0.0) {
+        const double from[3] = {x[0], x[1], x[2]};
+        x[0] = from[0] + (to_file ? -middle : middle);
+        x[1] = to_file ? from[2] - middle : from[2];
+        x[2] = to_file ? from[1] : from[1] + middle;
+    }
+}
+
 static void write_state(bench *b)
 {
     FILE *file = fopen(b->file, "w");
     double width = width_of(b);
+    double low = b->drum_rate != 0.0 ? -0.8 * width : 0.0;
+    double high = b->drum_rate != 0.0 ? 0.8 * width : width;
     if (!file) {
         return;
     }
     must(b, se3d_particles_get_all(b->particles, b->count, b->state, NULL, NULL));
-    fprintf(file, "settled column\n\n%zu atoms\n1 atom types\n\n", b->count);
-    fprintf(file, "0 %.17g xlo xhi\n0 %.17g ylo yhi\n", width, width);
+    fprintf(file, "settled bed\n\n%zu atoms\n1 atom types\n\n", b->count);
+    fprintf(file, "%.17g %.17g xlo xhi\n%.17g %.17g ylo yhi\n", low, high, low, high);
     fprintf(file, "-0.01 %.17g zlo zhi\n\nAtoms # sphere\n\n", 1.5 * width);
     for (size_t k = 0; k < b->count; ++k) {
-        fprintf(file, "%zu 1 %.17g 2500 %.17g %.17g %.17g\n", k + 1, DIAMETER, b->state[3 * k],
-                b->state[3 * k + 1], b->state[3 * k + 2]);
+        double x[3] = {b->state[3 * k], b->state[3 * k + 1], b->state[3 * k + 2]};
+        swap_axes(b, x, 1);
+        fprintf(file, "%zu 1 %.17g 2500 %.17g %.17g %.17g\n", k + 1, DIAMETER, x[0], x[1], x[2]);
     }
     fclose(file);
 }
@@ -207,7 +222,10 @@ static int read_state(bench *b)
         unsigned long id;
         double *x = b->state + 3 * k;
         int found = sscanf(line, "%lu %*d %*f %*f %lf %lf %lf", &id, &x[0], &x[1], &x[2]);
-        k += found == 4;
+        if (found == 4) {
+            swap_axes(b, x, 0);
+            ++k;
+        }
     }
     if (file) {
         fclose(file);
@@ -288,6 +306,11 @@ static void measure(bench *b)
            b->hertz ? "hertz" : "hooke", b->count, (int)after.threads, 1e-6 * cpu_rate, 1e-6 * rate,
            contacts, (double)after.bytes / (double)b->count, (unsigned long long)rebuilds,
            (unsigned long long)after.lost);
+    if (b->tilt != 0.0 || b->drum_rate != 0.0) {
+        se3d_particles_energy energy;
+        must(b, se3d_particles_get_energy(b->particles, &energy));
+        printf("  kinetic energy %.4g J\n", energy.translation);
+    }
     if (after.threads == 1) {
         roofline(contacts, cpu_rate);
     }

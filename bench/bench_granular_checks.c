@@ -156,13 +156,13 @@ static void check_static(bed *b)
                 hypot(hypot(b->r[3 * k] - b->old[3 * k], b->r[3 * k + 1] - b->old[3 * k + 1]),
                       b->r[3 * k + 2] - b->old[3 * k + 2]);
             drift = fmax(drift, far);
-            moved += far > 1e-6 * b->d;
+            moved += far > 1e-4 * b->d;
         }
         must(b, se3d_particles_get_wrench(b->particles, floor_body, on_floor, torque));
         must(b, se3d_particles_get_wrench(b->particles, ground, on_walls, torque));
         printf(
             "%s %zu, %4.1f s: floor %.6f of the weight, walls %.6f, missing %.1e; farthest drift "
-            "%.1e m, %zu spheres by more than 1e-6 d\n",
+            "%.1e m, %zu spheres by more than 1e-4 d\n",
             b->hertz ? "hertz" : "hooke", b->count, 0.1 * part * b->seconds, -on_floor[2] / weight,
             -on_walls[2] / weight, (on_floor[2] + on_walls[2]) / weight + 1.0, drift, moved);
         fflush(stdout);

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Granular beds here, in LAMMPS and in LIGGGHTS, in turn, from the same settled states.
 
-    compare.py BENCH [--edges 20 32 50] [--laws hooke hertz] [--repeats 3] [--processes 1 2]
-               [--keep FOLDER]
+    compare.py BENCH [--quick] [--edges 20 32 50] [--laws hooke hertz] [--avalanche 20] [--drum 20]
+               [--repeats 3] [--processes 1 2] [--keep FOLDER]
 
 BENCH is bench_granular of a release build. Every round runs each program once; the least CPU time
 of all rounds counts. A peer's time is that of lead and steps less that of the lead alone, so that
@@ -20,6 +20,7 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 PITCH = 0.011
+PLANES = 24  # of the drum
 
 
 def run(command, **more):
@@ -33,41 +34,80 @@ def run(command, **more):
     return done.stdout, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-class Case:
-    """A bed: edge^3 spheres, law, tilt of gravity in degrees."""
+def write_shell(name, radius, width):
+    """The planes of the drum about the z axis, two triangles each, a little longer than it is."""
+    angles = [2.0 * math.pi * (k + 0.5) / PLANES for k in range(PLANES + 1)]
+    corner = radius / math.cos(math.pi / PLANES)
+    at = [(corner * math.cos(angle), corner * math.sin(angle)) for angle in angles]
+    with open(name, "w", encoding="ascii") as target:
+        print("solid drum", file=target)
+        for (x0, y0), (x1, y1) in zip(at, at[1:]):
+            low, high = -0.009, 1.2 * width  # the bed is from 0 to width, the file's box from -0.01
+            for corners in (((x0, y0, low), (x1, y1, low), (x1, y1, high)),
+                            ((x0, y0, low), (x1, y1, high), (x0, y0, high))):
+                print("facet normal 0 0 0\nouter loop", file=target)
+                for vertex in corners:
+                    print("vertex %.9g %.9g %.9g" % vertex, file=target)
+                print("endloop\nendfacet", file=target)
+        print("endsolid drum", file=target)
 
-    def __init__(self, options, edge, law, tilt):
-        self.edge, self.law, self.tilt = edge, law, tilt
+
+class Case:
+    """A bed of edge^3 spheres: a column, an avalanche (gravity is tilted), or a drum that turns."""
+
+    LEADS = {"avalanche": 10000, "drum": 20000}
+    TILT = 45.0
+    RATE = 2.0  # of the drum [rad/s]
+
+    def __init__(self, options, kind, edge, law):
+        self.kind, self.edge, self.law = kind, edge, law
         self.count = edge ** 3
-        self.lead = 10000 if tilt else 300 if edge < 30 else 50
+        self.lead = self.LEADS.get(kind, 300 if edge < 30 else 50)
         self.steps = max(100, round(options.work / self.count))
-        self.state = os.path.join(options.keep, f"column_{edge}_{law}.data")
-        self.bench = options.bench
+        bed = "drum" if kind == "drum" else "column"
+        self.state = os.path.join(options.keep, f"{bed}_{edge}_{law}.data")
+        self.own = [options.bench, f"edge={edge}", f"law={law}", f"state={self.state}"]
+        self.own += [f"drum={self.RATE}"] if kind == "drum" else []
 
     def settle(self):
         if not os.path.exists(self.state):
-            run([self.bench, f"edge={self.edge}", f"law={self.law}", "steps=1", "threads=2",
-                 f"state={self.state}"])
+            run(self.own + ["steps=1", "lead=0"])
         with open(self.state, encoding="ascii") as source, \
                 open(self.state + ".plain", "w", encoding="ascii") as target:
             target.write(source.read().replace("Atoms # sphere", "Atoms"))
 
     def ours(self, threads):
         """(M particle-steps per CPU second, per second, the program's words)"""
-        text, _ = run([self.bench, f"edge={self.edge}", f"law={self.law}", f"state={self.state}",
-                       f"threads={threads}", f"tilt={self.tilt}", f"lead={self.lead}",
-                       f"steps={3 * self.steps}"])
+        tilt = self.TILT if self.kind == "avalanche" else 0.0
+        steps = self.steps if self.kind == "drum" else 3 * self.steps
+        text, _ = run(self.own + [f"threads={threads}", f"tilt={tilt}", f"lead={self.lead}",
+                                  f"steps={steps}"])
         rates = re.search(r"([\d.]+) M particle-steps per CPU second, ([\d.]+) per second", text)
         return float(rates[1]), float(rates[2]), text
 
+    def peer_inputs(self, program):
+        """Name of the input, and its variables."""
+        width = self.edge * PITCH
+        if self.kind == "drum" and program == "lammps":
+            # the round shell about the places that our planes leave to the centres
+            radius = 0.005 + (0.75 * width - 0.005) / math.cos(math.pi / PLANES)
+            return "drum", ["-var", "radius", repr(radius), "-var", "rate", repr(-self.RATE)]
+        if self.kind == "drum":
+            shell = self.state + ".stl"
+            write_shell(shell, 0.75 * width, width)
+            return "drum", ["-var", "shell", shell, "-var", "period",
+                            repr(-2.0 * math.pi / self.RATE)]
+        angle = math.radians(self.TILT if self.kind == "avalanche" else 0.0)
+        return self.law, ["-var", "gx", repr(math.sin(angle)), "-var", "gz",
+                          repr(-math.cos(angle))]
+
     def peer(self, program, ranks):
-        angle = math.radians(self.tilt)
         name = "liggghts" if program == "liggghts" else "lammps"
+        what, more = self.peer_inputs(name)
         state = self.state + (".plain" if program == "liggghts" else "")
-        command = [program, "-in", f"{HERE}/{name}_{self.law}.in", "-log", "none",
-                   "-var", "data", state, "-var", "w", repr(self.edge * PITCH),
-                   "-var", "gx", repr(math.sin(angle)), "-var", "gz", repr(-math.cos(angle)),
-                   "-var", "lead", str(self.lead), "-var", "steps"]
+        command = [program, "-in", f"{HERE}/{name}_{what}.in", "-log", "none",
+                   "-var", "data", state, "-var", "w", repr(self.edge * PITCH)] + more
+        command += ["-var", "lead", str(self.lead), "-var", "steps"]
         if ranks > 1:
             command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", str(ranks)] + command
         with tempfile.TemporaryDirectory() as work:
@@ -94,8 +134,7 @@ def measure(case, programs, options):
 
 
 def report(case, best, programs, processes):
-    name = "avalanche" if case.tilt else "column"
-    print(f"| {name} {case.count} {case.law} |", end="")
+    print(f"| {case.kind} {case.count} {case.law} |", end="")
     for number in processes:
         column = 0 if number == 1 else 1
         for program in programs:
@@ -119,12 +158,17 @@ def main():
     parser.add_argument("--edges", type=int, nargs="*", default=[20, 32, 50])
     parser.add_argument("--laws", nargs="*", default=["hooke", "hertz"])
     parser.add_argument("--avalanche", type=int, nargs="*", default=[20], help="edges")
+    parser.add_argument("--drum", type=int, nargs="*", default=[20], help="edges")
+    parser.add_argument("--quick", action="store_true",
+                        help="8,000 spheres only, each program once, for a short time")
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--work", type=float, default=24e6, help="particle-steps of a peer")
     parser.add_argument("--processes", type=int, nargs="*", default=[1, 2],
                         help="1 and 2: two are threads here, ranks there")
     parser.add_argument("--keep", help="folder of the settled states")
     options = parser.parse_args()
+    if options.quick:
+        options.edges, options.repeats, options.work = [20], 1, 4e6
     options.bench = os.path.abspath(options.bench)
     options.keep = os.path.abspath(options.keep or tempfile.mkdtemp())
     programs = ["se3d"] + [p for p in ("lmp", "liggghts") if shutil.which(p)]
@@ -134,10 +178,11 @@ def main():
           "in brackets: how many times as many here")
     print("| bed | " + " | ".join(heads) + " |" + " x2 over x1 |" * both)
     print("|---" * (len(heads) + 1 + both) + "|", flush=True)
-    cases = [(e, l, 0.0) for e in options.edges for l in options.laws]
-    cases += [(e, l, 45.0) for e in options.avalanche for l in options.laws]
-    for edge, law, tilt in cases:
-        case = Case(options, edge, law, tilt)
+    cases = [("column", e, l) for e in options.edges for l in options.laws]
+    cases += [("avalanche", e, l) for e in options.avalanche for l in options.laws]
+    cases += [("drum", e, "hooke") for e in options.drum]
+    for kind, edge, law in cases:
+        case = Case(options, kind, edge, law)
         case.settle()
         report(case, measure(case, programs, options), programs, options.processes)
 

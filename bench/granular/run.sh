@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# usage: sh bench/granular/run.sh [options of compare.py]
+# usage: sh bench/granular/run.sh [--quick] [options of compare.py]
 # Builds bench_granular, installs LAMMPS and LIGGGHTS where that may be done (Debian, root; without
-# them only our own figures are told), and compares.
+# them only our own figures are told), and prints the table of README.md. On an idle machine: two
+# threads or ranks that wait for a processor measure nothing. About an hour; --quick: minutes.
 set -eu
 here=$(dirname "$0")
 source=$here/../..
@@ -16,4 +17,3 @@ cmake -S "$source" -B "$source/build/bench" -DCMAKE_BUILD_TYPE=Release -DSE3D_BU
 cmake --build "$source/build/bench" --target bench_bench_granular -j2 >/dev/null
 program=$source/build/bench/bench/bench_granular
 python3 "$here/compare.py" "$program" "$@"
-"$program" edge=20 settle=20000 drum=3 lead=30000 repeats=3
