@@ -63,7 +63,7 @@ class Case:
         self.kind, self.edge, self.law = kind, edge, law
         self.count = edge ** 3
         self.lead = self.LEADS.get(kind, 300 if edge < 30 else 50)
-        self.steps = max(100, round(options.work / self.count))
+        self.steps = max(100, self.LEADS.get(kind, 0) // 2, round(options.work / self.count))
         bed = "drum" if kind == "drum" else "column"
         self.state = os.path.join(options.keep, f"{bed}_{edge}_{law}.data")
         self.own = [options.bench, f"edge={edge}", f"law={law}", f"state={self.state}"]
@@ -77,13 +77,13 @@ class Case:
             target.write(source.read().replace("Atoms # sphere", "Atoms"))
 
     def ours(self, threads):
-        """(M particle-steps per CPU second, per second, the program's words)"""
+        """CPU seconds, those of the lead, seconds, and the program's words."""
         tilt = self.TILT if self.kind == "avalanche" else 0.0
-        steps = self.steps if self.kind == "drum" else 3 * self.steps
         text, _ = run(self.own + [f"threads={threads}", f"tilt={tilt}", f"lead={self.lead}",
-                                  f"steps={steps}"])
+                                  f"steps={self.steps}", f"repeats={1 if self.kind in self.LEADS else 3}"])
         rates = re.search(r"([\d.]+) M particle-steps per CPU second, ([\d.]+) per second", text)
-        return float(rates[1]), float(rates[2]), text
+        work = 1e-6 * self.count * self.steps
+        return work / float(rates[1]), 0.0, work / float(rates[2]), text
 
     def peer_inputs(self, program):
         """Name of the input, and its variables."""
@@ -102,6 +102,7 @@ class Case:
                           repr(-math.cos(angle))]
 
     def peer(self, program, ranks):
+        """The same of a peer, whose CPU seconds hold the lead."""
         name = "liggghts" if program == "liggghts" else "lammps"
         what, more = self.peer_inputs(name)
         state = self.state + (".plain" if program == "liggghts" else "")
@@ -114,23 +115,25 @@ class Case:
             _, lead = run(command + ["0"], cwd=work) if ranks == 1 else ("", 0.0)
             text, total = run(command + [str(self.steps)], cwd=work)
         wall = float(re.findall(r"Loop time of ([\d.e+-]+)", text)[-1])
-        done = 1e-6 * self.count * self.steps
         lost = self.count - int(re.findall(r"steps with (\d+) atoms", text)[-1])
-        return done / max(total - lead, 1e-9), done / wall, f"{lost} lost"
+        return total, lead, wall, f"{lost} lost"
 
 
 def measure(case, programs, options):
-    """Best rates by (program, processes); column 0: per CPU second, 1: per second."""
-    best = {}
+    """By (program, processes): M particle-steps per CPU second, per second, and words. Of the times
+    of all rounds the least count, of what is subtracted too."""
+    times = {}
     for _ in range(options.repeats):
         for processes in options.processes:
             for program in programs:
                 result = (case.ours(processes) if program == "se3d"
                           else case.peer(program, processes))
                 key = (program, processes)
-                old = best.get(key, (0.0, 0.0, ""))
-                best[key] = (max(old[0], result[0]), max(old[1], result[1]), result[2])
-    return best
+                old = times.get(key, result)
+                times[key] = tuple(map(min, result[:3], old[:3])) + result[3:]
+    work = 1e-6 * case.count * case.steps
+    return {key: (work / max(total - lead, 1e-9), work / wall, text)
+            for key, (total, lead, wall, text) in times.items()}
 
 
 def report(case, best, programs, processes):
