@@ -310,7 +310,11 @@ static se3d_status run_method(se3di_run *run, double t_end)
 static se3d_status run_dynamics(se3di_run *run, double t_end)
 {
     if (!(t_end > run->model->time)) {
-        return run->model->history_tag == history_tag(run) ? SE3D_OK : settle(run, t_end);
+        if (run->model->history_tag == history_tag(run)) {
+            return SE3D_OK;
+        }
+        SE3DI_TRY(settle(run, t_end));
+        return se3di_friction_start(&run->equations);
     }
     se3d_status status = run_method(run, t_end);
     if (status >= 0 && status != SE3D_INFO_EVENT && run->model->time < t_end && must_switch(run)) {

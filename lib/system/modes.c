@@ -298,7 +298,7 @@ se3d_status se3d_modes_get_eigenvalue(const se3d_modes *modes, size_t k,
     eigenvalue->real = modes->eigen.re[k];
     eigenvalue->imaginary = modes->eigen.im[k];
     eigenvalue->frequency = size / 6.283185307179586476925286766559;
-    eigenvalue->damping = size > 0.0 ? -modes->eigen.re[k] / size : 0.0;
+    eigenvalue->damping = size > 0.0 ? 0.0 - modes->eigen.re[k] / size : 0.0; /* never -0 */
     return SE3D_OK;
 }
 

@@ -89,6 +89,7 @@ static void check_frequency(const se3d_modes *modes, size_t k, double w)
     CHECK_NEAR(value.imaginary, w, 1e-10 * w);
     CHECK_NEAR(2.0 * PI * value.frequency, w, 1e-10 * w);
     CHECK_NEAR(value.damping, 0.0, 1e-12);
+    CHECK(!signbit(value.damping) || value.damping < 0.0); /* not printed as -0 */
 }
 
 /* tests/data: theta = -0.28098791701246252. */
