@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The bench's driver of this library. METHOD: dop853, rk45, generalized_alpha, hht, bdf, radau,
- * rattle, with /rp behind it for Euler parameters; step_dop853 and step_rk45 make equal steps
- * without error control, as the other engines' RK4 does. */
+/* The bench's driver of this library. METHOD: dop853, rk45, rk4, generalized_alpha, hht, bdf,
+ * radau, rattle, with /rp behind it for Euler parameters; step_dop853, step_rk45 and step_rk4 make
+ * equal steps without error control, as the other engines' RK4 does. */
 #define _POSIX_C_SOURCE 200809L
 #include "driver.h"
 #include "mechanisms.h"

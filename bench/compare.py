@@ -273,10 +273,11 @@ class Bench:
                                 ("simbody", "merson", False, "Simbody")])
         ours = [Way(self.ours, "dop853", False, "dop853"), Way(self.ours, "rk45", False, "rk45"),
                 Way(self.ours, "step_dop853", True, "dop853 h"),
-                Way(self.ours, "step_rk45", True, "rk45 h")]
+                Way(self.ours, "step_rk45", True, "rk45 h"), Way(self.ours, "rk4", False, "rk4"),
+                Way(self.ours, "step_rk4", True, "rk4 h")]
         print("\n## Work and precision: CPU ms for 1 s (one bar: 5 s) to a relative tip error")
-        print("(dop853 h, rk45 h: equal steps without error control, as both RK4; ratio: the best of ours"
-              "\n / the best peer; mark: what issue 4 asks for; ~ extrapolated)")
+        print("(dop853 h, rk45 h, rk4 h: equal steps without error control, as both RK4; ratio: the best"
+              "\n of ours / the best peer; mark: what issue 4 asks for; ~ extrapolated)")
         names = [way.label for way in ours + peers]
         print(f"{'chain':>6} {'error':>6} " + " ".join(f"{name:>10.10}" for name in names) +
               f" {'ratio':>7} {'mark':>5}  evaluations: ours, best peer")
