@@ -43,8 +43,11 @@ failed=
 show_main suspension || failed=" suspension"
 for model in examples/models/pendulum.yaml examples/models/*.yaml; do
     name=$(basename "$model" .yaml)
-    # The pendulum goes first, and only once.
-    case $name in pendulum) [ -z "${pendulum_done:-}" ] || continue; pendulum_done=1 ;; esac
+    # The suspension has been run; the pendulum goes first, and only once.
+    case $name in
+    suspension) continue ;;
+    pendulum) [ -z "${pendulum_done:-}" ] || continue; pendulum_done=1 ;;
+    esac
     echo
     if [ "$name" = me751_jacobian ]; then # a model to evaluate, not to run
         mkdir -p "results/$name"

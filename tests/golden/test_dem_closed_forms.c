@@ -380,10 +380,10 @@ static void stack_does_not_creep(void)
     double before[30], after[30];
     CHECK(se3d_particles_run(b.particles, 2.0) == SE3D_OK);
     CHECK(se3d_particles_get_all(b.particles, 10, before, NULL, NULL) == SE3D_OK);
-    CHECK(se3d_particles_run(b.particles, 12.0) == SE3D_OK);
+    CHECK(se3d_particles_run(b.particles, 3.0) == SE3D_OK);
     CHECK(se3d_particles_get_all(b.particles, 10, after, NULL, NULL) == SE3D_OK);
     for (int k = 0; k < 30; ++k) {
-        CHECK_NEAR(after[k], before[k], 1e-9);
+        CHECK_NEAR(after[k], before[k], 1e-10); /* of a radius of 5 mm, in 1 s */
     }
     bed_destroy(&b);
 }

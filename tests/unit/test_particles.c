@@ -272,13 +272,13 @@ static void settled_box_weighs_what_it_holds(void)
     bed b;
     bed_init(&b, NULL, down, &material);
     box_around(&b, 0.055);
-    se3d_fill_def fill = region(&b, 0.055, 0.22, 0.004, 0.005);
+    se3d_fill_def fill = region(&b, 0.055, 0.11, 0.004, 0.005);
     fill.jitter = 0.0004;
     size_t count;
     CHECK(se3d_particles_fill_lattice(b.particles, &fill, &count) == SE3D_OK);
-    CHECK(count == 5 * 5 * 20);
+    CHECK(count == 5 * 5 * 10);
     CHECK(se3d_particles_run(b.particles, 1.6) == SE3D_OK);
-    double force[3], torque[3], weight = 0.0, radius[500];
+    double force[3], torque[3], weight = 0.0, radius[250];
     CHECK(se3d_particles_get_radii(b.particles, count, radius) == SE3D_OK);
     for (size_t k = 0; k < count; ++k) {
         weight += 2500.0 * 4.0 / 3.0 * PI * radius[k] * radius[k] * radius[k] * 9.81;
@@ -298,7 +298,7 @@ static void settled_box_weighs_what_it_holds(void)
         on_walls += list[k].shape.index1 ? list[k].force[2] : 0.0;
         walls += list[k].shape.index1 != 0;
     }
-    CHECK(walls > 25 && contacts - walls > 800);
+    CHECK(walls > 25 && contacts - walls > 350);
     CHECK_NEAR(on_walls / weight, 1.0, 1e-5);
     free(list);
     bed_destroy(&b);
@@ -319,10 +319,10 @@ static void pile_does_not_creep(void)
     size_t n = se3d_particles_count(b.particles);
     double *r = malloc(6 * n * sizeof *r);
     CHECK(se3d_particles_get_all(b.particles, n, r, NULL, NULL) == SE3D_OK);
-    CHECK(se3d_particles_run(b.particles, 4.5) == SE3D_OK);
+    CHECK(se3d_particles_run(b.particles, 3.5) == SE3D_OK);
     CHECK(se3d_particles_get_all(b.particles, n, r + 3 * n, NULL, NULL) == SE3D_OK);
     for (size_t k = 0; k < 3 * n; ++k) {
-        CHECK_NEAR(r[3 * n + k], r[k], 1e-9);
+        CHECK_NEAR(r[3 * n + k], r[k], 2e-10); /* in 1 s */
     }
     free(r);
     bed_destroy(&b);
