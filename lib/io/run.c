@@ -421,7 +421,7 @@ static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analys
 {
     const char *method = "";
     const char *left = "";
-    done->left_at = NAN;
+    done->left_at = (double)NAN;
     se3d_system_get_time(r->model->system, &r->time);
     done->end = r->time;
     done->cpu_time = (double)(clock() - begin) / (double)CLOCKS_PER_SEC;

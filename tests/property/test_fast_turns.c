@@ -15,7 +15,7 @@
 static double angle_of(const text_model *m)
 {
     se3d_constraint joint;
-    double angle = NAN;
+    double angle = (double)NAN;
     CHECK(!se3d_constraint_find(m->system, "j", &joint));
     CHECK(!se3d_joint_get_coordinate(m->system, joint, SE3D_COORDINATE_ANGLE, &angle, NULL, NULL));
     return angle;
