@@ -158,14 +158,15 @@ static void predict(bdf *m)
 {
     int order = (int)m->header[BDF_ORDER];
     m->c = m->header[BDF_STEP] / harmonic(order);
-    for (size_t k = 0; k < m->count; ++k) {
-        double sum = m->D[k], psi = 0.0;
-        for (int j = 1; j <= order; ++j) {
-            sum += m->D[(size_t)j * m->count + k];
-            psi += harmonic(j) * m->D[(size_t)j * m->count + k];
+    memcpy(m->predicted, m->D, m->count * sizeof *m->D);
+    memcpy(m->base, m->D, m->count * sizeof *m->D);
+    for (int j = 1; j <= order; ++j) {
+        const double *D = m->D + (size_t)j * m->count;
+        const double weight = 1.0 - harmonic(j) / harmonic(order);
+        for (size_t k = 0; k < m->count; ++k) {
+            m->predicted[k] += D[k];
+            m->base[k] += weight * D[k];
         }
-        m->predicted[k] = sum;
-        m->base[k] = sum - psi / harmonic(order);
     }
     for (size_t k = 0; k < m->assembly->body_count; ++k) {
         for (size_t i = 0; i < 6; ++i) {
@@ -223,6 +224,7 @@ static se3d_status iterate(bdf *m, double t, int refactor, double *size)
     const se3di_assembly *assembly = m->assembly;
     SE3DI_TRY(eval_residual(m, t));
     if (refactor) {
+        se3di_kkt_expect(m->integration->newton.kkt, equations->b, equations->c);
         SE3DI_TRY(se3di_newton_factor_rates(&m->integration->newton, t, m->acceleration, m->lambda,
                                             m->c));
     }

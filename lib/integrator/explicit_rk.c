@@ -285,7 +285,11 @@ static se3d_status attempt(rk *m, double h, double *error)
     if (!(*error <= 1.0) && isfinite(m->tolerance)) {
         return SE3D_OK;
     }
-    return project(m, t);
+    SE3DI_TRY(project(m, t));
+    /* near a singular position (more rows are dependent than have been all along) accelerations at
+     * a state that violates the constraints are others */
+    const double dependent = se3di_kkt_get_dependent_rows(m->equations->kkt);
+    return dependent > m->header[RK_REDUNDANT] ? evaluate(m, t, end_derivative(m)) : SE3D_OK;
 }
 
 /* The frames hold the projected y_1. */
