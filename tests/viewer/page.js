@@ -116,9 +116,10 @@ const checkKeys = async () => {
   check((await evaluate("document.body.className")) === "dark", "dark is dark");
   await evaluate("se3d.set({playing: false, frames: false, traces: false, dark: false})");
 };
-// Arrows point where the CSV says, from where the joint is.
+// Arrows point where the CSV says, at the times whose results a page keeps.
 const checkReactions = async ({ names, rows }) => {
-  const row = rows[Math.round(0.3 * (rows.length - 1))];
+  const time = await evaluate("se3d.sampled(se3d.start + 0.3 * (se3d.end - se3d.start))");
+  const row = rows.reduce((a, b) => Math.abs(b[0] - time) < Math.abs(a[0] - time) ? b : a);
   await evaluate(`se3d.set({reactions: true}); se3d.show(${row[0]})`);
   for (const arrow of await evaluate("se3d.arrows()")) {
     const column = names.indexOf(arrow.joint + ".force.x"), force = row.slice(column, column + 3), size = Math.hypot(...force);

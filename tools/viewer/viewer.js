@@ -353,6 +353,8 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   window.se3d = {
     state, start, end, orbit, set,
     show: (t) => { set({ time: t, playing: false }); draw(); },
+    // The time of the row of results that was kept next to t (all of them where there are few).
+    sampled: (t) => { const [a, b, part] = locate((k) => at(k, 0), rows, t); return at(part < 0.5 ? a : b, 0); },
     // Pictures of this size from now on, seen from there [degrees]; begin and end of the motion.
     film: (width, height, azimuth, elevation) => {
       film = [width, height]; renderer.setPixelRatio(1);
