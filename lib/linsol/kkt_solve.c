@@ -13,6 +13,7 @@
 static const double pivot_vanishes = 1e-12; /* relative; then E = 0 is given up */
 static const double pivot_is_good = 1e-4;   /* relative; then a solve with E = 0 needs no check */
 static const double pivot_is_safe = 1e-11;  /* the same where bodies go before their joints */
+static const double noise_matters = 1e3;    /* times the tolerance of solutions: rounding / pivot */
 static const double weight_range = 1e4;
 
 /* ---- factor ---- */
@@ -296,9 +297,23 @@ static void clear_multipliers(se3di_kkt *kkt, double *l)
     }
 }
 
+/* Above it a solution with E = 0 needs no check. */
+static double least_good_pivot(const se3di_kkt *kkt)
+{
+    const se3di_kkt_settings *s = &kkt->settings;
+    if (s->iterated) {
+        return pivot_is_safe;
+    }
+    if (!kkt->bodies_first || !kkt->pattern.symmetric) {
+        return pivot_is_good;
+    }
+    return fmin(pivot_is_good, fmax(pivot_is_safe, 2.2e-16 / (noise_matters * s->tolerance)));
+}
+
 /* How many refinements reach the tolerance for certain, -1 where only a look at the residual can
  * tell. With E = 0 and bodies before their joints, S = C H^-1 C^T is factored as Cholesky does: the
- * residual is at rounding whatever the pivots. With E > 0 a solution leaves eps / sigma of the
+ * residual of l is at rounding whatever the pivots, that of x at rounding / pivot where C^T l nearly
+ * cancels (a lever that is long beside the radius of gyration). With E > 0 a solution leaves eps / sigma of the
  * error. A row that is not known to be redundant and seems dependent is nearly so: sigma is small.
  */
 static int32_t count_refinements(const se3di_kkt *kkt)
@@ -308,8 +323,7 @@ static int32_t count_refinements(const se3di_kkt *kkt)
         return -1;
     }
     if (!(kkt->eps > 0.0)) {
-        bool is_safe = s->iterated || (kkt->bodies_first && kkt->pattern.symmetric);
-        return kkt->min_pivot > (is_safe ? pivot_is_safe : pivot_is_good) ? 0 : -1;
+        return kkt->min_pivot > least_good_pivot(kkt) ? 0 : -1;
     }
     if (!s->any_multipliers || kkt->dependent_rows + kkt->near_dependent > s->redundant_rows) {
         return -1;
