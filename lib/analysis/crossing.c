@@ -138,7 +138,7 @@ static se3d_status find_dip(const se3di_crossing_function *f, int node, int firs
     double glo = f->g[node], ghi = f->g[node + 1];
     double t[3] = {f->t[first], f->t[first + 1], f->t[first + 2]};
     double g[3] = {f->g[first], f->g[first + 1], f->g[first + 2]};
-    *dip = NAN;
+    *dip = (double)NAN;
     for (int n = 0; n < DIP_TRIES; ++n) {
         double x, low, value;
         const double least = fmin(side * glo, side * ghi);
@@ -170,7 +170,7 @@ static se3d_status find_dip(const se3di_crossing_function *f, int node, int firs
 static se3d_status look_between(search *s, int node, double side)
 {
     const se3di_crossing_function *f = s->f;
-    double dip = NAN;
+    double dip = (double)NAN;
     for (int first = node - 1; first <= node && isnan(dip); ++first) {
         if (first >= 0 && first + 2 < f->count) {
             SE3DI_TRY(find_dip(f, node, first, side, &dip));
