@@ -151,7 +151,7 @@ static const se3di_type_keys shape_types[] = {{"sphere", " radius density" TOUCH
                                               {"capsule", " radius length density" TOUCH},
                                               {"cylinder", " radius length density" TOUCH},
                                               {"plane", " normal" TOUCH},
-                                              {"mesh", " file scale" TOUCH},
+                                              {"mesh", " file scale density" TOUCH},
                                               {NULL, NULL}};
 
 static const se3di_object_keys objects[SE3DI_OBJECT_COUNT] = {

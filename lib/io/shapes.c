@@ -3,10 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/mesh.h"
 #include "io/rotation.h"
-
-static const double pi = 3.14159265358979323846;
+#include "io/solid.h"
 
 static bool require(se3di_reader *reader, const se3di_node *node, const char *key)
 {
@@ -208,72 +206,56 @@ static bool read_density(se3di_reader *reader, const se3di_node *body, const se3
            se3di_read_key_number(reader, shape, "density", SE3DI_POSITIVE, density);
 }
 
-/* Mass and principal moments of solid bodies, uniform density; round ones about their z axis. */
-static double solid_moments(const se3d_model_shape *shape, double density, double J[3])
-{
-    const double r2 = shape->radius * shape->radius;
-    const double length = shape->length;
-    const double ball = density * 4.0 / 3.0 * pi * r2 * shape->radius;
-    const double tube = density * pi * r2 * length;
-    const double across = tube * (3.0 * r2 + length * length) / 12.0;
-    double mass = 0.0;
-    switch (shape->type) {
-    case SE3D_SHAPE_SPHERE:
-        J[0] = J[1] = J[2] = 0.4 * ball * r2;
-        return ball;
-    case SE3D_SHAPE_BOX:
-        mass = density * shape->size[0] * shape->size[1] * shape->size[2];
-        for (int k = 0; k < 3; ++k) {
-            const double a = shape->size[(k + 1) % 3];
-            const double b = shape->size[(k + 2) % 3];
-            J[k] = mass * (a * a + b * b) / 12.0;
-        }
-        return mass;
-    case SE3D_SHAPE_CYLINDER:
-        J[0] = J[1] = across;
-        J[2] = 0.5 * tube * r2;
-        return tube;
-    case SE3D_SHAPE_CAPSULE: /* a hemisphere's centre of mass is 3/8 r from its flat face */
-        J[0] = J[1] =
-            across + ball * (0.4 * r2 + 0.25 * length * length + 0.375 * length * shape->radius);
-        J[2] = 0.5 * tube * r2 + 0.4 * ball * r2;
-        return tube + ball;
-    default:
-        J[0] = J[1] = J[2] = 0.0;
-        return 0.0;
-    }
-}
+/* Shapes of a body together, about its origin. */
+typedef struct whole {
+    double mass, moment[3], inertia[9];
+    double size;
+    bool has_mesh;
+} whole;
 
-/* Add a shape's inertia about the body's origin: A diag(J) A^T + m (s.s I - s s^T). */
-static void add_inertia(const se3d_model_shape *shape, double mass, const double J[3],
-                        double inertia[9])
+/* Add a shape's: A J A^T + m (s.s I - s s^T), with the centre of mass at s = position + A centre.
+ */
+static void add_solid(const se3d_model_shape *shape, const se3di_solid *solid, whole *body)
 {
     double A[9];
-    const double *s = shape->position;
-    const double square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+    double s[3];
+    double half[9]; /* A J */
     se3di_rotation_to_matrix(shape->orientation, A);
     for (int i = 0; i < 3; ++i) {
+        s[i] = shape->position[i];
         for (int j = 0; j < 3; ++j) {
-            double sum = mass * ((i == j ? square : 0.0) - s[i] * s[j]);
-            for (int k = 0; k < 3; ++k) {
-                sum += A[3 * i + k] * J[k] * A[3 * j + k];
-            }
-            inertia[3 * i + j] += sum;
+            s[i] += A[3 * i + j] * solid->centre[j];
+            half[3 * i + j] = A[3 * i] * solid->inertia[j] + A[3 * i + 1] * solid->inertia[3 + j] +
+                              A[3 * i + 2] * solid->inertia[6 + j];
         }
     }
+    const double square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            body->inertia[3 * i + j] += solid->mass * ((i == j ? square : 0.0) - s[i] * s[j]) +
+                                        half[3 * i] * A[3 * j] + half[3 * i + 1] * A[3 * j + 1] +
+                                        half[3 * i + 2] * A[3 * j + 2];
+        }
+        body->moment[i] += solid->mass * s[i];
+        body->size += fabs(shape->position[i]);
+    }
+    body->mass += solid->mass;
+    body->size += solid->size;
 }
 
-static bool check_centre(se3di_reader *reader, const se3di_node *body, double mass,
-                         const double moment[3], double size)
+static bool check_centre(se3di_reader *reader, const se3di_node *node, const whole *body)
 {
-    const double c[3] = {moment[0] / mass, moment[1] / mass, moment[2] / mass};
-    if (hypot(hypot(c[0], c[1]), c[2]) > 1e-9 * size) {
-        return se3di_reader_fail_key(
-            reader, body, "shapes",
-            "have their centre of mass at [%.9g, %.9g, %.9g], must have it "
-            "at the body's origin: shift their positions by the opposite, "
-            "or give mass and inertia",
-            c[0], c[1], c[2]);
+    const double exact = body->has_mesh ? 1e-7 : 1e-9; /* STL files have 24 bits */
+    double c[3];
+    for (int k = 0; k < 3; ++k) {
+        c[k] = body->moment[k] / body->mass;
+    }
+    if (hypot(hypot(c[0], c[1]), c[2]) > exact * body->size) {
+        return se3di_reader_fail_key(reader, node, "shapes",
+                                     "have their centre of mass at [%.12g, %.12g, %.12g], must "
+                                     "have it at the body's origin: shift their positions by the "
+                                     "opposite, or give mass and inertia",
+                                     c[0], c[1], c[2]);
     }
     return true;
 }
@@ -281,39 +263,30 @@ static bool check_centre(se3di_reader *reader, const se3di_node *body, double ma
 bool se3di_read_shape_mass(se3di_reader *reader, const se3di_node *body, se3d_body_def *def)
 {
     const se3di_node *list = NULL;
-    double inertia[9] = {0.0};
-    double moment[3] = {0.0};
-    double mass = 0.0;
-    double extent = 0.0;
+    whole sum = {0};
     if (!se3di_read_list(reader, body, "shapes", &list)) {
         return false;
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
         se3di_shape_entry entry;
+        se3di_solid solid;
         double density = 0.0;
-        double J[3];
-        if (!read_shape(reader, node, &entry) || !read_density(reader, body, node, &density)) {
+        if (!read_shape(reader, node, &entry) || !read_density(reader, body, node, &density) ||
+            !se3di_solid_measure(reader, node, &entry.shape, entry.mesh, density, &solid)) {
             return false;
         }
-        const se3d_model_shape *shape = &entry.shape;
-        const double part = solid_moments(shape, density, J);
-        add_inertia(shape, part, J, inertia);
-        mass += part;
-        for (int k = 0; k < 3; ++k) {
-            moment[k] += part * shape->position[k];
-            extent += fabs(shape->position[k]) + shape->size[k];
-        }
-        extent += shape->radius + shape->length;
+        add_solid(&entry.shape, &solid, &sum);
+        sum.has_mesh = sum.has_mesh || (entry.mesh && solid.mass > 0.0);
     }
-    if (!(mass > 0.0)) {
+    if (!(sum.mass > 0.0)) {
         return true;
     }
-    if (!check_centre(reader, body, mass, moment, extent)) {
+    if (!check_centre(reader, body, &sum)) {
         return false;
     }
-    const double packed[6] = {inertia[0], inertia[4], inertia[8],
-                              inertia[1], inertia[5], inertia[2]};
+    const double packed[6] = {sum.inertia[0], sum.inertia[4], sum.inertia[8],
+                              sum.inertia[1], sum.inertia[5], sum.inertia[2]};
     memcpy(def->inertia, packed, sizeof packed);
-    def->mass = mass;
+    def->mass = sum.mass;
     return true;
 }

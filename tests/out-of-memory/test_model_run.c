@@ -13,8 +13,8 @@
     "gravity: [0, \"0*t\", -9.81]\n"                                                               \
     "bodies:\n"                                                                                    \
     "  - {name: a, mass: 1, inertia: [1, 1, 1], position: [0.5, 0, 0], held: true}\n"              \
-    "  - {name: b, mass: 1, inertia: [1, 1, 1], position: [1.5, 0, 0],\n"                          \
-    "     shapes: [{type: mesh, file: " MESH "}]}\n"                                               \
+    "  - {name: b, density: 6, position: [1.5, 0, 0], shapes: [{type: mesh, file: " MESH ",\n"     \
+    "     position: [-0.25, -0.25, -0.25]}]}\n"                                                    \
     "joints:\n"                                                                                    \
     "  - {name: pin, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, 0]}\n" \
     "  - {name: slide, type: cylindrical, body_i: a, body_j: b, at: [1, 0, 0], axis: [1, 0, 0]}\n" \
@@ -124,7 +124,8 @@ static attempt try_once(const char *text, size_t k, int for_ever)
 static void reading_and_running_survives_every_failed_allocation(void)
 {
     FILE *mesh = fopen(MESH, "wb");
-    CHECK(mesh && fputs("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n", mesh) >= 0);
+    CHECK(mesh && fputs("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n",
+                        mesh) >= 0);
     if (mesh) {
         fclose(mesh);
     }
