@@ -2,14 +2,14 @@
 #include "analysis/linearise.h"
 
 #include "linsol/eigen.h"
-#include "linsol/rank.h"
+#include "linsol/null_space.h"
 #include "math/vec3.h"
 
 #include <math.h>
 #include <string.h>
 
 #define RANK_TOLERANCE 1e-9
-#define LINEAR_ARRAYS  13
+#define LINEAR_ARRAYS  12
 
 typedef struct linear_array {
     double **data;
@@ -21,13 +21,9 @@ static void list_arrays(se3di_linear *l, linear_array list[LINEAR_ARRAYS])
     size_t n = (size_t)l->n;
     size_t rows = (size_t)l->rows;
     const linear_array arrays[LINEAR_ARRAYS] = {
-        {&l->M, n * n},         {&l->D, n * n},
-        {&l->K, n * n},         {&l->Z, n * n},
-        {&l->Mr, n * n},        {&l->Dr, n * n},
-        {&l->Kr, n * n},        {&l->C, rows * n},
-        {&l->row_scale, rows},  {&l->work, n * n + rows * n},
-        {&l->load, n},          {&l->lambda, rows},
-        {&l->buffer, n + rows},
+        {&l->M, n * n},  {&l->D, n * n},        {&l->K, n * n},     {&l->Z, n * n},
+        {&l->Mr, n * n}, {&l->Dr, n * n},       {&l->Kr, n * n},    {&l->unit, 6 * n},
+        {&l->load, n},   {&l->work, 2 * n * n}, {&l->lambda, rows}, {&l->buffer, n},
     };
     memcpy(list, arrays, sizeof arrays);
 }
@@ -49,6 +45,10 @@ se3d_status se3di_linear_init(se3di_linear *linear, se3di_equations *equations)
         se3di_linear_destroy(linear);
         return se3di_error_set(equations->error, status, "no memory for dense matrices of %d",
                                (int)assembly->unknown_count);
+    }
+    memset(linear->unit, 0, 6 * (size_t)linear->n * sizeof *linear->unit);
+    for (size_t k = 0; k < (size_t)linear->n; ++k) {
+        linear->unit[6 * k + k % 6] = 1.0;
     }
     return status;
 }
@@ -84,86 +84,67 @@ static void to_body_axes(const se3di_linear *linear, double *x)
     }
 }
 
-/* Phi_q, dense, in body axes. */
-static void fill_constraints(se3di_linear *linear)
-{
-    se3di_assembly *assembly = &linear->equations->assembly;
-    size_t n = (size_t)linear->n;
-    memset(linear->C, 0, (size_t)linear->rows * n * sizeof *linear->C);
-    se3di_assembly_eval_jacobian(assembly);
-    for (uint32_t joint = 0; joint < assembly->constraint_count; ++joint) {
-        size_t first = assembly->model->constraints[joint].row_begin;
-        for (int32_t b = assembly->joint_begin[joint]; b < assembly->joint_begin[joint + 1]; ++b) {
-            const double *block = assembly->C + assembly->block_offset[b];
-            size_t column = 6 * (size_t)assembly->joint_body[b];
-            for (size_t r = 0; r < (size_t)assembly->joint_rows[joint]; ++r) {
-                memcpy(linear->C + (first + r) * n + column, block + 6 * r, 6 * sizeof *block);
-            }
-        }
-    }
-    for (size_t r = 0; r < (size_t)linear->rows; ++r) {
-        double *row = linear->C + r * n;
-        double sum = 0.0;
-        to_body_axes(linear, row);
-        for (size_t c = 0; c < n; ++c) {
-            sum += row[c] * row[c];
-        }
-        linear->row_scale[r] = sum > 0.0 ? 1.0 / sqrt(sum) : 1.0;
-        for (size_t c = 0; c < n; ++c) {
-            row[c] *= linear->row_scale[r];
-        }
-    }
-}
-
+/* Z, from Phi_q in the assembly. */
 static se3d_status find_freedoms(se3di_linear *linear)
 {
-    const se3d_allocator *allocator = &linear->equations->assembly.model->allocator;
+    const se3di_assembly *assembly = &linear->equations->assembly;
+    const se3d_allocator *allocator = &assembly->model->allocator;
+    const se3di_null_space_pattern pattern = {.body_count = assembly->body_count,
+                                              .joint_count = assembly->constraint_count,
+                                              .joint_rows = assembly->joint_rows,
+                                              .joint_begin = assembly->joint_begin,
+                                              .joint_body = assembly->joint_body,
+                                              .block_offset = assembly->block_offset};
     size_t n = (size_t)linear->n;
-    se3di_rank rank = {0};
-    if (linear->rows == 0) {
-        memset(linear->Z, 0, n * n * sizeof *linear->Z);
-        for (size_t k = 0; k < n; ++k) {
-            linear->Z[k * n + k] = 1.0;
-        }
-        linear->freedoms = linear->n;
-        return SE3D_OK;
+    double *Z;
+    int32_t dependent;
+    SE3DI_TRY(se3di_null_space_find(allocator, &pattern, assembly->C, RANK_TOLERANCE, &Z,
+                                    &linear->freedoms, &dependent));
+    size_t count = (size_t)linear->freedoms * n;
+    for (size_t r = 0; r < (size_t)linear->freedoms; ++r) {
+        to_body_axes(linear, Z + r * n);
     }
     se3d_status status =
-        se3di_rank_analyse(allocator, linear->rows, linear->n, linear->C, RANK_TOLERANCE, &rank);
-    if (status >= 0) {
-        linear->freedoms = rank.freedom_count;
-        memcpy(linear->Z, rank.freedom, (size_t)rank.freedom_count * n * sizeof *linear->Z);
-        se3di_rank_destroy(allocator, &rank);
+        linear->rows > 0
+            ? se3di_null_space_orthonormalise(allocator, linear->freedoms, linear->n, Z)
+            : SE3D_OK;
+    if (status >= 0 && count > 0) {
+        memcpy(linear->Z, Z, count * sizeof *Z);
     }
+    se3di_free(allocator, Z, count, sizeof *Z);
     return status;
 }
 
+/* The multipliers of Phi_q^T lambda = load, in the least squares of N and Nm. */
 static se3d_status balance(se3di_linear *linear)
 {
-    const se3d_allocator *allocator = &linear->equations->assembly.model->allocator;
-    size_t n = (size_t)linear->n;
-    size_t rows = (size_t)linear->rows;
-    if (rows == 0) {
+    se3di_equations *equations = linear->equations;
+    const se3di_assembly *assembly = &equations->assembly;
+    const se3di_kkt_values values = {.body = linear->unit, .joint = assembly->C};
+    se3di_kkt_solve_info info = {0};
+    if (linear->rows == 0) {
         return SE3D_OK;
     }
-    for (size_t r = 0; r < rows; ++r) { /* the multipliers of the unscaled rows */
-        for (size_t c = 0; c < n; ++c) {
-            linear->work[r * n + c] = linear->C[r * n + c] / linear->row_scale[r];
-        }
+    SE3DI_TRY(se3di_kkt_factor(equations->kkt, &values, NULL));
+    se3d_status status = se3di_kkt_solve(equations->kkt, &values, linear->load, NULL,
+                                         linear->buffer, linear->lambda, &info);
+    if (status == SE3D_ERR_NO_CONVERGENCE || info.residual_b > 1e-9) {
+        memset(linear->buffer, 0, (size_t)linear->n * sizeof *linear->buffer);
+        status = se3di_kkt_min_norm(equations->kkt, &values, linear->load, linear->buffer,
+                                    RANK_TOLERANCE, linear->lambda, NULL);
     }
-    memcpy(linear->buffer, linear->load, n * sizeof *linear->load);
-    return se3di_rank_least_norm(allocator, linear->n, linear->rows, linear->work, linear->buffer,
-                                 RANK_TOLERANCE, linear->lambda, NULL);
+    return status < 0 ? status : SE3D_OK;
 }
 
 se3d_status se3di_linear_eval_statics(se3di_linear *linear, double t)
 {
     se3di_equations *equations = linear->equations;
-    fill_constraints(linear);
+    se3di_assembly_eval_jacobian(&equations->assembly);
     SE3DI_TRY(find_freedoms(linear));
     SE3DI_TRY(se3di_assembly_eval_forces(&equations->assembly, t, linear->load, equations->error));
+    SE3DI_TRY(balance(linear));
     to_body_axes(linear, linear->load);
-    return balance(linear);
+    return SE3D_OK;
 }
 
 /* A block of the tangent into a dense matrix. */
@@ -244,27 +225,35 @@ static void add_motion(se3di_linear *linear)
     }
 }
 
-/* out [f f] = Z X Z^T */
+/* out += s x, [count] */
+static void add_row(size_t count, double s, const double *x, double *out)
+{
+    for (size_t k = 0; k < count; ++k) {
+        out[k] += s * x[k];
+    }
+}
+
+/* out [f f] = Z X Z^T; most of X is zero. */
 static void reduce(const se3di_linear *linear, const double *X, double *work, double *out)
 {
     size_t n = (size_t)linear->n;
     size_t f = (size_t)linear->freedoms;
-    for (size_t r = 0; r < n; ++r) { /* work [n f] = X Z^T */
-        for (size_t c = 0; c < f; ++c) {
-            double sum = 0.0;
-            for (size_t k = 0; k < n; ++k) {
-                sum += X[r * n + k] * linear->Z[c * n + k];
-            }
-            work[r * f + c] = sum;
+    double *turned = work + n * f; /* Z^T */
+    for (size_t r = 0; r < f; ++r) {
+        for (size_t c = 0; c < n; ++c) {
+            turned[c * f + r] = linear->Z[r * n + c];
+        }
+    }
+    memset(work, 0, n * f * sizeof *work);
+    for (size_t k = 0; k < n * n; ++k) { /* work [n f] = X Z^T */
+        if (fabs(X[k]) > 0.0 || isnan(X[k])) {
+            add_row(f, X[k], turned + k % n * f, work + k / n * f);
         }
     }
     memset(out, 0, f * f * sizeof *out);
-    for (size_t r = 0; r < f; ++r) {
-        for (size_t k = 0; k < n; ++k) {
-            double z = linear->Z[r * n + k];
-            for (size_t c = 0; c < f; ++c) {
-                out[r * f + c] += z * work[k * f + c];
-            }
+    for (size_t k = 0; k < n; ++k) {
+        for (size_t r = 0; r < f; ++r) {
+            add_row(f, turned[k * f + r], work + k * f, out + r * f);
         }
     }
 }

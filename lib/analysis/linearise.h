@@ -24,9 +24,8 @@ typedef struct se3di_linear {
     double *M, *D, *K;       /* [n n] row-major, body axes */
     double *Z;               /* [n n]: the first f rows are the basis */
     double *Mr, *Dr, *Kr;    /* [n n], used f x f, row-major */
-    double *C;               /* [rows n] Phi_q, body axes, rows of unit length */
-    double *row_scale;       /* [rows] 1 / length of the rows */
-    double *work;            /* [n n] */
+    double *unit;            /* [n 6] a unit block per body */
+    double *work;            /* [2 n n] */
     double *load;            /* [n] applied forces and velocity terms, body axes */
     double *lambda, *buffer; /* [rows], [n] */
 } se3di_linear;
@@ -35,7 +34,7 @@ typedef struct se3di_linear {
 se3d_status se3di_linear_init(se3di_linear *linear, se3di_equations *equations);
 void se3di_linear_destroy(se3di_linear *linear);
 
-/* C, Z, the load and the multipliers that balance it (minimum norm, least squares: statics), at the
+/* Z, the load and the multipliers that balance it (minimum norm, least squares: statics), at the
  * present state. */
 se3d_status se3di_linear_eval_statics(se3di_linear *linear, double t);
 /* M, D, K and their reduction, with Z and the given accelerations [n, ground and body axes as the
