@@ -2,6 +2,7 @@
 #include "analysis/events.h"
 
 #include "analysis/run.h"
+#include "contact/body_contacts.h"
 #include "integrator/state.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -110,17 +111,33 @@ static const char *name_of(const se3di_event *event)
     return event->name ? event->name : "without a name";
 }
 
+/* Call the user's value. What contacts remember is that of the end of a dense step; within it
+ * values that may use forces see those of the contacts there. */
+static se3d_status call_value(se3di_events *events, const se3di_event *event, double *value)
+{
+    se3di_run *run = events->run;
+    const int shows = events->dense && !event->motion_only;
+    if (shows) {
+        SE3DI_TRY(se3di_contacts_show(run->model, run->model->time, run->error));
+    }
+    const se3d_status status = event->value(event->ctx, events->system, value);
+    if (shows) {
+        se3di_contacts_hide(run->model);
+    }
+    return status >= 0 ? SE3D_OK
+                       : se3di_error_set(run->error, SE3D_ERR_CALLBACK,
+                                         "t = %g s: the value of the event %.100s could not be "
+                                         "computed",
+                                         run->model->time, name_of(event));
+}
+
 /* The value at the model's state, less the level. */
 static se3d_status eval(se3di_events *events, uint32_t k, double *g)
 {
     const se3di_event *event = &events->list[k];
     const double t = events->run->model->time;
     double value = 0.0;
-    if (event->value(event->ctx, events->system, &value) < 0) {
-        return se3di_error_set(events->run->error, SE3D_ERR_CALLBACK,
-                               "t = %g s: the value of the event %.100s could not be computed", t,
-                               name_of(event));
-    }
+    SE3DI_TRY(call_value(events, event, &value));
     if (!isfinite(value)) {
         return se3di_error_set(events->run->error, SE3D_ERR_NOT_FINITE,
                                "t = %g s: the value of the event %.100s is not finite", t,

@@ -217,18 +217,20 @@ se3d_status se3di_contacts_reserve(se3di_model *model, double t, se3di_error *er
                : SE3D_OK;
 }
 
-se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *error)
+static se3d_status note_all(se3di_model *model, double t, se3di_error *error)
 {
     preparation p = {model, t, error};
     model->contacts.next_count = 0;
     model->contacts.kept = 0;
-    if (model->shape_slots.count < 2) {
-        return SE3D_OK;
-    }
-    if (se3di_broad_update(model) < 0) {
+    return model->shape_slots.count < 2 ? SE3D_OK : se3di_contacts_visit(model, note, &p);
+}
+
+se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *error)
+{
+    if (model->shape_slots.count >= 2 && se3di_broad_update(model) < 0) {
         return se3di_error_set(error, SE3D_ERR_NO_MEMORY, "t = %g s: no memory for contacts", t);
     }
-    return se3di_contacts_visit(model, note, &p);
+    return note_all(model, t, error);
 }
 
 /* What the contact does to one of its shapes, about the centre of its body. */
@@ -257,17 +259,37 @@ static void sum_shapes(se3di_model *model)
     }
 }
 
-void se3di_contacts_accept(se3di_model *model)
+static void swap_lists(se3di_model *model)
 {
     se3di_body_contacts *c = &model->contacts;
     se3di_body_contact *list = c->list;
-    c->changed = c->kept < c->count || c->kept < c->next_count;
-    size_t capacity = c->capacity;
+    const size_t count = c->count, capacity = c->capacity;
     c->list = c->next;
     c->count = c->next_count;
     c->capacity = c->next_capacity;
     c->next = list;
-    c->next_count = 0;
+    c->next_count = count;
     c->next_capacity = capacity;
     sum_shapes(model);
+}
+
+void se3di_contacts_accept(se3di_model *model)
+{
+    se3di_body_contacts *c = &model->contacts;
+    c->changed = c->kept < c->count || c->kept < c->next_count;
+    swap_lists(model);
+    c->next_count = 0;
+}
+
+se3d_status se3di_contacts_show(se3di_model *model, double t, se3di_error *error)
+{
+    SE3DI_TRY(note_all(model, t, error));
+    swap_lists(model);
+    return SE3D_OK;
+}
+
+void se3di_contacts_hide(se3di_model *model)
+{
+    swap_lists(model);
+    model->contacts.next_count = 0;
 }

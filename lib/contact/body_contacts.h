@@ -44,5 +44,10 @@ int se3di_contacts_changed(const se3di_model *model);
  * @return OK, NO_MEMORY, STEP_SIZE (two shapes overlap too much: the message names them) */
 se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *error);
 void se3di_contacts_accept(se3di_model *model);
+/* Let readers see the contacts of the present state, which lies within a step that was accepted,
+ * among the pairs of that step; what is remembered is kept until se3di_contacts_hide. On failure
+ * nothing is shown, and there is nothing to hide. @return as se3di_contacts_prepare */
+se3d_status se3di_contacts_show(se3di_model *model, double t, se3di_error *error);
+void se3di_contacts_hide(se3di_model *model);
 
 #endif

@@ -394,6 +394,85 @@ static void too_large_overlaps_name_the_shapes(void)
     end(&w);
 }
 
+static se3d_status get_press(void *ctx, const se3d_system *system, double *value)
+{
+    double force[3], torque[3];
+    const se3d_status status =
+        se3d_body_get_contact_wrench(system, *(const se3d_body *)ctx, force, torque);
+    *value = force[2];
+    return status;
+}
+
+static se3d_status get_most(void *ctx, const se3d_system *system, double *value)
+{
+    (void)ctx;
+    return se3d_system_get_contact_force_max(system, value);
+}
+
+/* Only the floor pushes the ball of 500 kg: m (a + g) is its force. */
+static se3d_status get_push(void *ctx, const se3d_system *system, double *value)
+{
+    double a[3];
+    const se3d_status status = se3d_body_get_acceleration(system, *(const se3d_body *)ctx, a);
+    *value = 500.0 * (a[2] + G);
+    return status;
+}
+
+static se3d_body ball_above_floor(world *w)
+{
+    se3d_body_def def = se3d_body_def_default();
+    se3d_shape_def shape_def = se3d_shape_def_default();
+    se3d_body ball;
+    se3d_shape shape;
+    plane(w);
+    def.mass = 500.0;
+    def.inertia[0] = def.inertia[1] = def.inertia[2] = 50.0;
+    def.position[2] = 0.51;
+    def.velocity[2] = -1.0;
+    CHECK(se3d_body_create(w->system, &def, &ball) == SE3D_OK);
+    shape_def.body = ball;
+    shape_def.material = w->material;
+    shape_def.radius = 0.5;
+    CHECK(se3d_shape_create_sphere(w->system, &shape_def, &shape) == SE3D_OK);
+    return ball;
+}
+
+static void add_push_event(world *w, se3d_event_value value, se3d_body *body)
+{
+    se3d_event_def def = se3d_event_def_default();
+    se3d_event event;
+    def.value = value;
+    def.ctx = body;
+    def.level = 2e4;
+    CHECK(se3d_event_create(w->solver, &def, &event) == SE3D_OK);
+}
+
+/* The same three quantities; methods with dense output go back within their steps. */
+static void forces_of_contacts_cross_levels(void)
+{
+    static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RK4, SE3D_METHOD_RADAU,
+                                      SE3D_METHOD_BDF, SE3D_METHOD_RATTLE};
+    for (size_t k = 0; k < sizeof methods / sizeof methods[0]; ++k) {
+        world w = begin_with(NULL, 0.8, 1e6);
+        se3d_body ball = ball_above_floor(&w);
+        solve(&w, methods[k], SE3D_FORMULATION_ROMEGA, 0.0, 1e-7);
+        add_push_event(&w, get_press, &ball);
+        add_push_event(&w, get_most, NULL);
+        add_push_event(&w, get_push, &ball);
+        CHECK(se3d_solver_run(w.solver, 0.15) >= 0);
+        CHECK(se3d_solver_count_event_records(w.solver) == 6);
+        for (size_t n = 0; n < 6 && n < se3d_solver_count_event_records(w.solver); ++n) {
+            se3d_event_record record, last;
+            CHECK(se3d_solver_get_event_record(w.solver, n, &record) == SE3D_OK);
+            CHECK(se3d_solver_get_event_record(w.solver, n - n % 3, &last) == SE3D_OK);
+            CHECK(record.direction == (n < 3 ? SE3D_EVENT_RISING : SE3D_EVENT_FALLING));
+            CHECK_NEAR(record.time, last.time, 1e-12);
+            CHECK_NEAR(record.value, 2e4, 1e-3);
+        }
+        end(&w);
+    }
+}
+
 int main(void)
 {
     RUN(energy_of_a_falling_box_is_accounted_for);
@@ -405,5 +484,6 @@ int main(void)
     RUN(steady_steps_allocate_nothing);
     RUN(failed_allocations_are_reported);
     RUN(too_large_overlaps_name_the_shapes);
+    RUN(forces_of_contacts_cross_levels);
     return check_finish();
 }
