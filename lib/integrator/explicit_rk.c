@@ -79,9 +79,12 @@ static double inner_tolerance(double tolerance)
     return fmax(0.03 * tolerance, 2e-13);
 }
 
-/* See se3di_state_begin. On four-bar windows through flat positions more costs accuracy at tight
- * tolerances, and less leaves noise there that is taken for error. */
-#define REGULARISATION 1e-10
+/* See se3di_state_begin. Tight tolerances need accelerations with less noise near singular
+ * positions; at loose ones a wide filter costs more steps than noise does. */
+static double regularisation(double tolerance)
+{
+    return fmin(1e-8, fmax(1e-10, 1e-10 * (1e-8 / tolerance)));
+}
 
 /* The violation of constraints that does not matter: near a singular position velocities magnify it
  * by the inverse of the distance, accelerations by its cube. */
@@ -120,7 +123,8 @@ static rk begin(se3di_integration *integration)
     rk m = point(integration);
     m.integration = integration;
     se3di_contacts_begin(m.assembly->model, 0.0, 1.0, 0);
-    m.kkt = se3di_state_begin(m.equations, REGULARISATION, fmin(1e-6, 1e-3 * m.tolerance));
+    m.kkt =
+        se3di_state_begin(m.equations, regularisation(m.tolerance), fmin(1e-6, 1e-3 * m.tolerance));
     return m;
 }
 

@@ -231,8 +231,8 @@ static void near_flat_positions_only_rounding_is_magnified(void)
             double speed, acceleration;
             CHECK(se3d_solver_run(solver, 0.01 * k) >= 0);
             double s = measure_flat(system, &speed, &acceleration);
-            CHECK_NEAR(speed, 0.0, 3e-10 + 3e-14 / (s * s));
-            CHECK_NEAR(acceleration, 0.0, 3e-10 + 1e-13 / (s * s * s));
+            CHECK_NEAR(speed, 0.0, 1e-10 + 3e-14 / (s * s));
+            CHECK_NEAR(acceleration, 0.0, 1e-10 + 1e-13 / (s * s * s));
             near += s < 0.1;
         }
         CHECK(near > 20);
