@@ -115,7 +115,7 @@ static se3d_status find_freedoms(se3di_linear *linear)
     return status;
 }
 
-/* The multipliers of Phi_q^T lambda = load, in the least squares of N and Nm. */
+/* The multipliers of Phi_q^T lambda = load, of least 2-norm where rows are redundant. */
 static se3d_status balance(se3di_linear *linear)
 {
     se3di_equations *equations = linear->equations;
