@@ -312,9 +312,10 @@ static double least_good_pivot(const se3di_kkt *kkt)
 
 /* How many refinements reach the tolerance for certain, -1 where only a look at the residual can
  * tell. With E = 0 and bodies before their joints, S = C H^-1 C^T is factored as Cholesky does: the
- * residual of l is at rounding whatever the pivots, that of x at rounding / pivot where C^T l nearly
- * cancels (a lever that is long beside the radius of gyration). With E > 0 a solution leaves eps / sigma of the
- * error. A row that is not known to be redundant and seems dependent is nearly so: sigma is small.
+ * residual of l is at rounding whatever the pivots, that of x at rounding / pivot where C^T l
+ * nearly cancels (a lever that is long beside the radius of gyration). With E > 0 a solution leaves
+ * eps / sigma of the error. A row that is not known to be redundant and seems dependent is nearly
+ * so: sigma is small.
  */
 static int32_t count_refinements(const se3di_kkt *kkt)
 {
