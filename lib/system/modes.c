@@ -26,6 +26,7 @@ struct se3d_modes {
     int32_t *quantity; /* [outputs] */
     int32_t *free;     /* [bodies] -1: fixed */
     double *rotation;  /* [bodies 9] */
+    double *largest;   /* [2 f 2] largest component of each mode, complex */
 };
 
 void se3d_modes_def_init(se3d_modes_def *def, size_t size)
@@ -34,7 +35,7 @@ void se3d_modes_def_init(se3d_modes_def *def, size_t size)
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
-#define MODES_ARRAYS 9
+#define MODES_ARRAYS 10
 
 typedef struct modes_array {
     double **data;
@@ -54,6 +55,7 @@ static void list_arrays(se3d_modes *m, modes_array list[MODES_ARRAYS])
         {&m->A, 4 * f * f},
         {&m->B, m->inputs * 2 * f},
         {&m->rotation, m->bodies * 9},
+        {&m->largest, 4 * f},
     };
     memcpy(list, arrays, sizeof arrays);
 }
@@ -184,6 +186,40 @@ static se3d_status fill_state_space(se3d_modes *m)
     return status;
 }
 
+/* x [6] of one body, ground frame, of a real vector over freedoms. */
+static void expand(const se3d_modes *m, const double *y, size_t body, double x[6])
+{
+    double local[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    for (size_t r = 0; r < m->f && m->free[body] >= 0; ++r) {
+        for (size_t c = 0; c < 6; ++c) {
+            local[c] += m->Z[r * m->n + 6 * (size_t)m->free[body] + c] * y[r];
+        }
+    }
+    se3di_mul(m->rotation + 9 * body, local, x);
+    se3di_mul(m->rotation + 9 * body, local + 3, x + 3);
+}
+
+/* The largest component of mode k, as a complex number. */
+static void find_largest(const se3d_modes *m, size_t k, double scale[2])
+{
+    double best = 0.0;
+    scale[0] = 1.0;
+    scale[1] = 0.0;
+    for (size_t body = 0; body < m->bodies; ++body) {
+        double re[6], im[6];
+        expand(m, m->eigen.y_re + k * m->f, body, re);
+        expand(m, m->eigen.y_im + k * m->f, body, im);
+        for (int c = 0; c < 6; ++c) {
+            double size = hypot(re[c], im[c]);
+            if (size > best * (1.0 + 1e-9)) {
+                best = size;
+                scale[0] = re[c];
+                scale[1] = im[c];
+            }
+        }
+    }
+}
+
 static se3d_status fill(se3d_system *system, const se3di_linear *linear, const se3d_modes_def *def,
                         se3d_modes *m)
 {
@@ -209,7 +245,11 @@ static se3d_status fill(se3d_system *system, const se3di_linear *linear, const s
                            out->quantity >= SE3D_MODES_ROTATION, m->c + k * f));
     }
     SE3DI_TRY(fill_state_space(m));
-    return se3di_eigen_solve(&m->allocator, (int32_t)f, m->M, m->D, m->K, &m->eigen);
+    SE3DI_TRY(se3di_eigen_solve(&m->allocator, (int32_t)f, m->M, m->D, m->K, &m->eigen));
+    for (size_t k = 0; k < (size_t)m->eigen.count; ++k) {
+        find_largest(m, k, m->largest + 2 * k);
+    }
+    return SE3D_OK;
 }
 
 /* Linearise and keep what the queries need. */
@@ -302,40 +342,6 @@ se3d_status se3d_modes_get_eigenvalue(const se3d_modes *modes, size_t k,
     return SE3D_OK;
 }
 
-/* x [6] of one body, ground frame, of a real vector over freedoms. */
-static void expand(const se3d_modes *m, const double *y, size_t body, double x[6])
-{
-    double local[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    for (size_t r = 0; r < m->f && m->free[body] >= 0; ++r) {
-        for (size_t c = 0; c < 6; ++c) {
-            local[c] += m->Z[r * m->n + 6 * (size_t)m->free[body] + c] * y[r];
-        }
-    }
-    se3di_mul(m->rotation + 9 * body, local, x);
-    se3di_mul(m->rotation + 9 * body, local + 3, x + 3);
-}
-
-/* The largest component of a mode, as a complex number. */
-static void find_largest(const se3d_modes *m, size_t k, double scale[2])
-{
-    double best = 0.0;
-    scale[0] = 1.0;
-    scale[1] = 0.0;
-    for (size_t body = 0; body < m->bodies; ++body) {
-        double re[6], im[6];
-        expand(m, m->eigen.y_re + k * m->f, body, re);
-        expand(m, m->eigen.y_im + k * m->f, body, im);
-        for (int c = 0; c < 6; ++c) {
-            double size = hypot(re[c], im[c]);
-            if (size > best * (1.0 + 1e-9)) {
-                best = size;
-                scale[0] = re[c];
-                scale[1] = im[c];
-            }
-        }
-    }
-}
-
 se3d_status se3d_modes_get_shape(const se3d_modes *modes, size_t k, size_t body, double real[6],
                                  double imaginary[6])
 {
@@ -353,8 +359,8 @@ se3d_status se3d_modes_get_shape(const se3d_modes *modes, size_t k, size_t body,
     if (k >= (size_t)modes->eigen.count || body >= modes->bodies) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    double re[6], im[6], scale[2];
-    find_largest(modes, k, scale);
+    double re[6], im[6];
+    const double *scale = modes->largest + 2 * k;
     expand(modes, modes->eigen.y_re + k * modes->f, body, re);
     expand(modes, modes->eigen.y_im + k * modes->f, body, im);
     double square = scale[0] * scale[0] + scale[1] * scale[1];
