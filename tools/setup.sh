@@ -2,7 +2,8 @@
 # Sourced by tests/run.sh, examples/run.sh and .ci/run: installs what is missing.
 #
 #     se3d_install PACKAGE...      on Debian and Ubuntu, as root or with sudo; does nothing where all
-#                                  is there, and only says what is needed on other systems
+#                                  is there, and only says what is needed on other systems; fails
+#                                  if one could not be had, after installing the others
 #     se3d_jobs                    prints the number of processors
 
 SE3D_BUILD_PACKAGES="gcc libc6-dev make cmake pkg-config liblapacke-dev libopenblas-dev \
@@ -15,10 +16,19 @@ se3d_jobs() {
     nproc 2>/dev/null || getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2
 }
 
+# A package is there if dpkg says so, or if its program is: Node.js from elsewhere brings npm along and
+# conflicts with Debian's.
+se3d_has() {
+    case $1 in
+    nodejs) command -v node >/dev/null 2>&1 && return ;;
+    npm | chromium | ffmpeg) command -v "$1" >/dev/null 2>&1 && return ;;
+    esac
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
+}
+
 se3d_missing() {
     for se3d_package in "$@"; do
-        se3d_state=$(dpkg-query -W -f '${db:Status-Status}' "$se3d_package" 2>/dev/null) || se3d_state=
-        [ "$se3d_state" = installed ] || printf '%s ' "$se3d_package"
+        se3d_has "$se3d_package" || printf '%s ' "$se3d_package"
     done
 }
 
@@ -33,6 +43,10 @@ se3d_as_root() {
     fi
 }
 
+se3d_apt() {
+    se3d_as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "$@"
+}
+
 se3d_install() {
     if ! command -v apt-get >/dev/null 2>&1; then
         echo "se3d: no apt-get here; the Debian names of what is needed: $*" >&2
@@ -43,6 +57,14 @@ se3d_install() {
     echo "se3d: installing $se3d_needed"
     se3d_as_root apt-get update -q || return 1
     # shellcheck disable=SC2086
-    se3d_as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q \
-        --no-install-recommends $se3d_needed
+    se3d_apt $se3d_needed && return
+    # apt installs all or none: one that cannot be had must not keep the others away
+    se3d_result=0
+    for se3d_package in $se3d_needed; do
+        se3d_apt "$se3d_package" || {
+            echo "se3d: $se3d_package could not be installed" >&2
+            se3d_result=1
+        }
+    done
+    return $se3d_result
 }

@@ -5,6 +5,9 @@
 set -eu
 here=$(dirname "$0")
 source=$here/../..
+. "$source/tools/setup.sh"
+# shellcheck disable=SC2086
+se3d_install $SE3D_BUILD_PACKAGES
 cmake -S "$source" -B "$source/build/bench" -DCMAKE_BUILD_TYPE=Release -DSE3D_BUILD_BENCH=ON \
     -DSE3D_BUILD_TESTS=OFF -DSE3D_BUILD_EXAMPLES=OFF >/dev/null
 cmake --build "$source/build/bench" --target bench_bench_granular bench_bench_granular_checks -j2 >/dev/null

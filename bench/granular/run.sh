@@ -7,10 +7,11 @@
 set -eu
 here=$(dirname "$0")
 source=$here/../..
-for program in lmp:lammps liggghts:liggghts; do
-    command -v "${program%:*}" >/dev/null || { [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null &&
-        apt-get install -y -qq "${program#*:}" >/dev/null 2>&1; } ||
-        echo "${program#*:} is not here; going on without"
+. "$source/tools/setup.sh"
+# shellcheck disable=SC2086
+se3d_install $SE3D_BUILD_PACKAGES python3
+for package in lammps liggghts openmpi-bin; do
+    se3d_install "$package" || echo "!! $package could not be installed; going on without" >&2
 done
 cmake -S "$source" -B "$source/build/bench" -DCMAKE_BUILD_TYPE=Release -DSE3D_BUILD_BENCH=ON \
     -DSE3D_BUILD_TESTS=OFF -DSE3D_BUILD_EXAMPLES=OFF >/dev/null
