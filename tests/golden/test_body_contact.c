@@ -1,101 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Contact between bodies against closed forms: restitution, Coulomb's incline, rolling, stacks. */
-#include "check.h"
-#include "se3d/se3d.h"
-
-#define G 9.81
-
-typedef struct scene {
-    se3d_system *system;
-    se3d_material material;
-    se3d_solver *solver;
-} scene;
-
-static scene begin_scene(int32_t law, double friction, double restitution, double stiffness)
-{
-    scene s = {0};
-    CHECK(se3d_system_create(NULL, &s.system) == SE3D_OK);
-    se3d_contact_settings settings = se3d_contact_settings_default();
-    settings.law = law;
-    CHECK(se3d_system_set_contact(s.system, &settings) == SE3D_OK);
-    se3d_material_def def = se3d_material_def_default();
-    def.density = 1000.0;
-    def.friction = friction;
-    def.restitution = restitution;
-    def.stiffness = stiffness;
-    def.young = 1e7;
-    CHECK(se3d_material_create(s.system, &def, &s.material) == SE3D_OK);
-    return s;
-}
-
-static void end_scene(scene *s)
-{
-    se3d_solver_destroy(s->solver);
-    se3d_system_destroy(s->system);
-}
-
-static void solve_with(scene *s, int32_t method, int32_t formulation, double step, double tolerance)
-{
-    se3d_solver_def def = se3d_solver_def_default();
-    def.analysis = SE3D_ANALYSIS_DYNAMICS;
-    def.method = method;
-    def.formulation = formulation;
-    def.step = step;
-    def.tolerance = tolerance;
-    CHECK(se3d_solver_create(s->system, &def, &s->solver) == SE3D_OK);
-}
-
-static void run_to(scene *s, double t)
-{
-    se3d_status status = se3d_solver_run(s->solver, t);
-    CHECK(status >= 0);
-    if (status < 0) {
-        fprintf(stderr, "%s\n", se3d_system_get_error(s->system));
-    }
-}
-
-static se3d_body add_body(scene *s, double mass, const double J[3], const double r[3],
-                          const double v[3], const double w[3])
-{
-    se3d_body_def def = se3d_body_def_default();
-    se3d_body body;
-    def.mass = mass;
-    memcpy(def.inertia, J, 3 * sizeof *J);
-    memcpy(def.position, r, 3 * sizeof *r);
-    memcpy(def.velocity, v, 3 * sizeof *v);
-    memcpy(def.angular_velocity, w, 3 * sizeof *w);
-    CHECK(se3d_body_create(s->system, &def, &body) == SE3D_OK);
-    return body;
-}
-
-static const double nothing[3] = {0.0, 0.0, 0.0};
-
-static se3d_body add_sphere(scene *s, double radius, double mass, const double r[3],
-                            const double v[3], const double w[3])
-{
-    double j = 0.4 * mass * radius * radius;
-    const double J[3] = {j, j, j};
-    se3d_body body = add_body(s, mass, J, r, v, w);
-    se3d_shape_def def = se3d_shape_def_default();
-    se3d_shape shape;
-    def.body = body;
-    def.material = s->material;
-    def.radius = radius;
-    CHECK(se3d_shape_create_sphere(s->system, &def, &shape) == SE3D_OK);
-    return body;
-}
-
-/* The ground: a plane whose normal leans by `angle` towards x. */
-static se3d_shape add_ground(scene *s, double angle)
-{
-    se3d_shape_def def = se3d_shape_def_default();
-    se3d_shape shape;
-    def.material = s->material;
-    def.normal[0] = sin(angle);
-    def.normal[2] = cos(angle);
-    CHECK(se3d_shape_create_plane(s->system, &def, &shape) == SE3D_OK);
-    return shape;
-}
+#include "support/scene.h"
 
 static double speed_of(const scene *s, se3d_body body, int axis)
 {
@@ -107,17 +12,16 @@ static double speed_of(const scene *s, se3d_body body, int axis)
 /* A sphere thrown at a wall leaves with e times its speed. */
 static double bounce(int32_t law, int32_t method, double e, double speed, double step)
 {
-    scene s = begin_scene(law, 0.3, e, 1e5);
-    const double none[3] = {0.0, 0.0, 0.0};
-    CHECK(se3d_system_set_gravity(s.system, none) == SE3D_OK);
+    scene s = scene_begin(law, 0.3, e, 1e5);
+    CHECK(se3d_system_set_gravity(s.system, scene_zero) == SE3D_OK);
     const double r[3] = {0.0, 0.0, 0.05 + 1e-3 * speed};
     const double v[3] = {0.0, 0.0, -speed};
-    se3d_body ball = add_sphere(&s, 0.05, 0.5, r, v, nothing);
-    add_ground(&s, 0.0);
-    solve_with(&s, method, SE3D_FORMULATION_ROMEGA, step, 1e-7);
-    run_to(&s, law == SE3D_LAW_HOOKE ? 0.04 : 0.15);
+    se3d_body ball = scene_ball(&s, 0.05, 0.5, r, v);
+    scene_floor(&s, 0.0);
+    scene_solve(&s, method, SE3D_FORMULATION_ROMEGA, step, 1e-7);
+    scene_run(&s, law == SE3D_LAW_HOOKE ? 0.04 : 0.15);
     double out = speed_of(&s, ball, 2) / speed;
-    end_scene(&s);
+    scene_end(&s);
     return out;
 }
 
@@ -141,34 +45,27 @@ static void restitution_is_of_second_order_in_a_given_step(void)
 
 static void two_spheres_part_with_the_restitution(void)
 {
-    scene s = begin_scene(SE3D_LAW_HOOKE, 0.3, 0.6, 1e5);
-    const double none[3] = {0.0, 0.0, 0.0};
-    CHECK(se3d_system_set_gravity(s.system, none) == SE3D_OK);
+    scene s = scene_begin(SE3D_LAW_HOOKE, 0.3, 0.6, 1e5);
+    CHECK(se3d_system_set_gravity(s.system, scene_zero) == SE3D_OK);
     const double r1[3] = {0.0, 0.0, 0.0}, r2[3] = {0.2, 0.0, 0.0};
     const double v1[3] = {1.0, 0.0, 0.0}, v2[3] = {-0.5, 0.0, 0.0};
-    se3d_body a = add_sphere(&s, 0.05, 0.5, r1, v1, nothing);
-    se3d_body b = add_sphere(&s, 0.08, 2.0, r2, v2, nothing);
-    solve_with(&s, SE3D_METHOD_DOP853, SE3D_FORMULATION_RP, 0.0, 1e-8);
-    run_to(&s, 0.2);
+    se3d_body a = scene_ball(&s, 0.05, 0.5, r1, v1);
+    se3d_body b = scene_ball(&s, 0.08, 2.0, r2, v2);
+    scene_solve(&s, SE3D_METHOD_DOP853, SE3D_FORMULATION_RP, 0.0, 1e-8);
+    scene_run(&s, 0.2);
     double va = speed_of(&s, a, 0), vb = speed_of(&s, b, 0);
     CHECK_NEAR(vb - va, 0.6 * 1.5, 1e-3);
     CHECK_NEAR(0.5 * va + 2.0 * vb, 0.5 * 1.0 - 2.0 * 0.5, 1e-9);
-    end_scene(&s);
+    scene_end(&s);
 }
 
-static se3d_body add_box(scene *s, double a, double mass, const double r[3], double angle)
+static const double about_y[3] = {0.0, 1.0, 0.0};
+
+static se3d_body add_cube(scene *s, double a, double mass, const double r[3], double angle)
 {
-    double j = mass * a * a / 6.0;
-    const double J[3] = {j, j, j};
-    se3d_body body = add_body(s, mass, J, r, nothing, nothing);
-    const double p[4] = {cos(0.5 * angle), 0.0, sin(0.5 * angle), 0.0};
-    CHECK(se3d_body_set_orientation(s->system, body, p) == SE3D_OK);
-    se3d_shape_def def = se3d_shape_def_default();
-    se3d_shape shape;
-    def.body = body;
-    def.material = s->material;
-    def.size[0] = def.size[1] = def.size[2] = a;
-    CHECK(se3d_shape_create_box(s->system, &def, &shape) == SE3D_OK);
+    const double size[3] = {a, a, a};
+    se3d_body body = scene_box(s, size, mass, r, scene_zero);
+    scene_turn(s, body, about_y, angle);
     return body;
 }
 
@@ -182,22 +79,22 @@ static void incline_position(double a, double mass, double stiffness, double ang
     r[2] = height * cos(angle);
 }
 
-static const double slope = 20.0 * 3.14159265358979323846 / 180.0;
+static const double slope = 20.0 * PI / 180.0;
 
 static void box_on_an_incline_stays(void)
 {
     static const int32_t methods[2] = {SE3D_METHOD_DOP853, SE3D_METHOD_GENERALIZED_ALPHA};
     for (int k = 0; k < 4; ++k) {
-        scene s = begin_scene(SE3D_LAW_HOOKE, 0.5, 0.3, 1e5);
+        scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.3, 1e5);
         double r[3], before[3], after[3], force[3], torque[3];
         incline_position(0.2, 2.0, 1e5, slope, r);
-        se3d_body box = add_box(&s, 0.2, 2.0, r, slope);
-        add_ground(&s, slope);
-        solve_with(&s, methods[k % 2], k / 2 ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA,
-                   k % 2 ? 2e-3 : 0.0, 1e-6);
-        run_to(&s, 2.0);
+        se3d_body box = add_cube(&s, 0.2, 2.0, r, slope);
+        scene_floor(&s, slope);
+        scene_solve(&s, methods[k % 2], k / 2 ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA,
+                    k % 2 ? 2e-3 : 0.0, 1e-6);
+        scene_run(&s, 2.0);
         CHECK(se3d_body_get_position(s.system, box, before) == SE3D_OK);
-        run_to(&s, k < 2 ? 12.0 : 4.0);
+        scene_run(&s, k < 2 ? 12.0 : 4.0);
         CHECK(se3d_body_get_position(s.system, box, after) == SE3D_OK);
         for (int a = 0; a < 3; ++a) {
             CHECK_NEAR(after[a], before[a], 1e-9);
@@ -207,7 +104,7 @@ static void box_on_an_incline_stays(void)
         CHECK_NEAR(force[0], 0.0, 1e-4);
         CHECK_NEAR(force[2], 2.0 * G, 1e-4);
         CHECK_NEAR(torque[1], 0.0, 1e-4);
-        end_scene(&s);
+        scene_end(&s);
     }
 }
 
@@ -215,74 +112,71 @@ static void box_on_an_incline_slides(void)
 {
     static const int32_t methods[2] = {SE3D_METHOD_DOP853, SE3D_METHOD_GENERALIZED_ALPHA};
     for (int k = 0; k < 2; ++k) {
-        scene s = begin_scene(SE3D_LAW_HOOKE, 0.2, 0.3, 1e5);
+        scene s = scene_begin(SE3D_LAW_HOOKE, 0.2, 0.3, 1e5);
         double r[3], v0[3], v1[3];
         incline_position(0.2, 2.0, 1e5, slope, r);
-        se3d_body box = add_box(&s, 0.2, 2.0, r, slope);
-        add_ground(&s, slope);
-        solve_with(&s, methods[k], SE3D_FORMULATION_ROMEGA, k ? 1e-3 : 0.0, 1e-6);
-        run_to(&s, 0.5);
+        se3d_body box = add_cube(&s, 0.2, 2.0, r, slope);
+        scene_floor(&s, slope);
+        scene_solve(&s, methods[k], SE3D_FORMULATION_ROMEGA, k ? 1e-3 : 0.0, 1e-6);
+        scene_run(&s, 0.5);
         CHECK(se3d_body_get_velocity(s.system, box, v0) == SE3D_OK);
-        run_to(&s, 1.5);
+        scene_run(&s, 1.5);
         CHECK(se3d_body_get_velocity(s.system, box, v1) == SE3D_OK);
         double gained = (v1[0] - v0[0]) * cos(slope) - (v1[2] - v0[2]) * sin(slope);
         CHECK_NEAR(gained, G * (sin(slope) - 0.2 * cos(slope)), 1e-4);
-        end_scene(&s);
+        scene_end(&s);
     }
 }
 
 static void ten_spheres_stay_stacked(void)
 {
-    scene s = begin_scene(SE3D_LAW_HOOKE, 0.5, 0.3, 1e5);
+    scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.3, 1e5);
     se3d_body ball[10];
     double z = 0.0, before[3], after[3];
-    add_ground(&s, 0.0);
+    scene_floor(&s, 0.0);
     for (int k = 0; k < 10; ++k) {
         double sink = 0.5 * G * (10 - k) / 1e5; /* of the contact below */
         z += (k ? 0.1 : 0.05) - sink;
         const double r[3] = {0.0, 0.0, z};
-        ball[k] = add_sphere(&s, 0.05, 0.5, r, nothing, nothing);
+        ball[k] = scene_ball(&s, 0.05, 0.5, r, scene_zero);
     }
-    solve_with(&s, SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_ROMEGA, 5e-3, 1e-6);
-    run_to(&s, 0.1);
+    scene_solve(&s, SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_ROMEGA, 5e-3, 1e-6);
+    scene_run(&s, 0.1);
     CHECK(se3d_body_get_position(s.system, ball[9], before) == SE3D_OK);
-    run_to(&s, 10.1);
+    scene_run(&s, 10.1);
     CHECK(se3d_body_get_position(s.system, ball[9], after) == SE3D_OK);
     CHECK_NEAR(after[2], z, 1e-9);
     CHECK_NEAR(after[2], before[2], 1e-9);
     CHECK_NEAR(after[0], 0.0, 1e-9);
-    end_scene(&s);
+    scene_end(&s);
 }
 
 /* On a slope a body rolls with g sin / (1 + J / (m R^2)). */
 static double roll(int kind, int32_t method, int32_t formulation)
 {
-    scene s = begin_scene(SE3D_LAW_HOOKE, 0.8, 0.3, 1e6);
+    scene s = scene_begin(SE3D_LAW_HOOKE, 0.8, 0.3, 1e6);
     const double R = 0.1, L = 0.3, m = 2.0, tilt = 0.2;
     double along = 0.5 * m * R * R; /* a cylinder; the same numbers for all */
     const double J[3] = {0.2, 0.2, along};
-    int points = kind == SE3D_LAW_HOOKE ? 2 : 2;
-    double height = R - m * G * cos(tilt) / (points * 1e6);
+    double height = R - m * G * cos(tilt) / (2.0 * 1e6);
     const double r[3] = {height * sin(tilt), 0.0, height * cos(tilt)};
-    se3d_body body = add_body(&s, m, J, r, nothing, nothing);
-    const double p[4] = {sqrt(0.5), sqrt(0.5), 0.0, 0.0}; /* z of the shape along -y */
-    CHECK(se3d_body_set_orientation(s.system, body, p) == SE3D_OK);
-    se3d_shape_def def = se3d_shape_def_default();
+    se3d_body body = scene_body(&s, m, J, r, scene_zero);
+    const double about_x[3] = {1.0, 0.0, 0.0};
+    scene_turn(&s, body, about_x, 0.5 * PI); /* z of the shape along -y */
+    se3d_shape_def def = scene_shape(&s, body);
     se3d_shape shape;
-    def.body = body;
-    def.material = s.material;
     def.radius = R;
     def.length = L;
     CHECK((kind ? se3d_shape_create_capsule(s.system, &def, &shape)
                 : se3d_shape_create_cylinder(s.system, &def, &shape)) == SE3D_OK);
-    add_ground(&s, tilt);
+    scene_floor(&s, tilt);
     double v0[3], v1[3];
-    solve_with(&s, method, formulation, method == SE3D_METHOD_DOP853 ? 0.0 : 1e-3, 1e-6);
-    run_to(&s, 0.2);
+    scene_solve(&s, method, formulation, method == SE3D_METHOD_DOP853 ? 0.0 : 1e-3, 1e-6);
+    scene_run(&s, 0.2);
     CHECK(se3d_body_get_velocity(s.system, body, v0) == SE3D_OK);
-    run_to(&s, 0.7);
+    scene_run(&s, 0.7);
     CHECK(se3d_body_get_velocity(s.system, body, v1) == SE3D_OK);
-    end_scene(&s);
+    scene_end(&s);
     double gained = (v1[0] - v0[0]) * cos(tilt) - (v1[2] - v0[2]) * sin(tilt);
     return gained / 0.5 / (G * sin(tilt) / 1.5);
 }

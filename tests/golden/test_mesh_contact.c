@@ -1,66 +1,23 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Bodies on surfaces of triangles: flat ones are planes, whatever the triangles; edges, corners and
  * bowls carry what they should. */
-#include "check.h"
-#include "se3d/se3d.h"
+#include "support/scene.h"
 
-#define G    9.81
 #define GRID 13
 
 enum { SPHERE, BOX, CAPSULE, CYLINDER, HULL, KINDS };
 
-typedef struct scene {
-    se3d_system *system;
-    se3d_material material;
-    se3d_solver *solver;
-} scene;
-
 static scene begin(double friction, double restitution)
 {
-    scene s = {0};
-    se3d_material_def def = se3d_material_def_default();
-    CHECK(se3d_system_create(NULL, &s.system) == SE3D_OK);
-    def.density = 1000.0;
-    def.friction = friction;
-    def.restitution = restitution;
-    def.stiffness = 1e5;
-    CHECK(se3d_material_create(s.system, &def, &s.material) == SE3D_OK);
-    return s;
-}
-
-static void end(scene *s)
-{
-    se3d_solver_destroy(s->solver);
-    se3d_system_destroy(s->system);
+    return scene_begin(SE3D_LAW_HOOKE, friction, restitution, 1e5);
 }
 
 static void run(scene *s, int32_t method, double step, double t)
 {
     if (!s->solver) {
-        se3d_solver_def def = se3d_solver_def_default();
-        def.method = method;
-        def.step = step;
-        CHECK(se3d_solver_create(s->system, &def, &s->solver) == SE3D_OK);
+        scene_solve(s, method, SE3D_FORMULATION_ROMEGA, step, 0.0);
     }
-    se3d_status status = se3d_solver_run(s->solver, t);
-    CHECK(status >= 0);
-    if (status < 0) {
-        fprintf(stderr, "%s\n", se3d_system_get_error(s->system));
-    }
-}
-
-static void mesh_on(scene *s, se3d_body body, const double *points, size_t point_count,
-                    const uint32_t *faces, size_t face_count)
-{
-    se3d_shape_def def = se3d_shape_def_default();
-    se3d_shape shape;
-    def.body = body;
-    def.material = s->material;
-    def.vertices = points;
-    def.vertex_count = point_count;
-    def.triangles = faces;
-    def.triangle_count = face_count;
-    CHECK(se3d_shape_create_mesh(s->system, &def, &shape) == SE3D_OK);
+    scene_run(s, t);
 }
 
 /* A floor from -1.2 to 1.2 in z = 0 of uneven triangles, both ways round; or the plane. */
@@ -68,9 +25,6 @@ static void floor_on(scene *s, int triangles)
 {
     static double points[3 * GRID * GRID];
     static uint32_t faces[6 * (GRID - 1) * (GRID - 1)];
-    se3d_shape_def def = se3d_shape_def_default();
-    se3d_shape shape;
-    const se3d_body ground = {0, 0};
     for (int k = 0; k < GRID * GRID; ++k) {
         points[3 * k] = 0.2 * (k % GRID - 6) + 0.05 * sin(7.0 * k);
         points[3 * k + 1] = 0.2 * (k / GRID - 6) + 0.05 * cos(5.0 * k);
@@ -81,11 +35,10 @@ static void floor_on(scene *s, int triangles)
                                      {a, a + 1, a + GRID + 1, a, a + GRID + 1, a + GRID}};
         memcpy(faces + 6 * k, quad[k % 2], sizeof quad[0]);
     }
-    def.material = s->material;
     if (triangles) {
-        mesh_on(s, ground, points, GRID * GRID, faces, 2 * (GRID - 1) * (GRID - 1));
+        scene_mesh_on(s, scene_ground(s), points, GRID * GRID, faces, 2 * (GRID - 1) * (GRID - 1));
     } else {
-        CHECK(se3d_shape_create_plane(s->system, &def, &shape) == SE3D_OK);
+        scene_floor(s, 0.0);
     }
 }
 
@@ -94,20 +47,13 @@ static se3d_body solid(scene *s, int kind, const double r[3], const double v[3])
     static const double corners[24] = {-0.1, -0.1, -0.1, 0.1,  -0.1,  -0.1, -0.1,  0.1,
                                        -0.1, 0.1,  0.1,  -0.1, -0.05, 0.0,  0.1,   0.05,
                                        0.0,  0.1,  0.0,  0.05, 0.1,   0.0,  -0.05, 0.1};
-    se3d_body_def def = se3d_body_def_default();
-    se3d_shape_def shape_def = se3d_shape_def_default();
-    se3d_body body;
+    const double J[3] = {0.01, 0.01, 0.01}, about_x[3] = {1.0, 0.0, 0.0};
+    se3d_body body = scene_body(s, 2.0, J, r, v);
+    se3d_shape_def shape_def = scene_shape(s, body);
     se3d_shape shape;
-    def.mass = 2.0;
-    def.inertia[0] = def.inertia[1] = def.inertia[2] = 0.01;
-    memcpy(def.position, r, sizeof def.position);
-    memcpy(def.velocity, v, sizeof def.velocity);
     if (kind == CAPSULE) {
-        def.orientation[0] = def.orientation[1] = sqrt(0.5);
+        scene_turn(s, body, about_x, 0.5 * PI);
     }
-    CHECK(se3d_body_create(s->system, &def, &body) == SE3D_OK);
-    shape_def.body = body;
-    shape_def.material = s->material;
     shape_def.radius = 0.1;
     shape_def.length = 0.2;
     shape_def.size[0] = shape_def.size[1] = shape_def.size[2] = 0.2;
@@ -134,7 +80,7 @@ static void bodies_slide_over_triangles_as_over_a_plane(void)
             run(&s, methods[k / KINDS], k / KINDS ? 1e-3 : 0.0, 0.3);
             CHECK(se3d_body_get_position(s.system, body, end_r[triangles]) == SE3D_OK);
             CHECK(se3d_body_get_orientation(s.system, body, end_p[triangles]) == SE3D_OK);
-            end(&s);
+            scene_end(&s);
         }
         CHECK(end_r[0][0] > -0.6); /* over several edges */
         for (int a = 0; a < 4; ++a) {
@@ -153,11 +99,10 @@ static const uint32_t sides[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 
 static void pillar(scene *s, double width, double x)
 {
     double points[24];
-    const se3d_body ground = {0, 0};
     for (int k = 0; k < 24; ++k) {
         points[k] = width * (block[k] - (k % 3 == 2 ? 0.5 : 0.0)) + (k % 3 ? 0.0 : x);
     }
-    mesh_on(s, ground, points, 8, sides, 12);
+    scene_mesh_on(s, scene_ground(s), points, 8, sides, 12);
 }
 
 /* On a smaller block, which has its corners under the box's face; over the edge of a larger one. */
@@ -166,10 +111,10 @@ static void a_box_rests_on_a_block_of_triangles(void)
     static const double widths[3] = {0.12, 0.6, 0.15}, places[3] = {0.0, -0.24, 0.03};
     for (int k = 0; k < 3; ++k) {
         scene s = begin(0.5, 0.3);
-        const double r[3] = {0.0, 0.0, 0.1}, v[3] = {0.0, 0.0, 0.0};
+        const double r[3] = {0.0, 0.0, 0.1};
         double force[3], torque[3], at[3];
         pillar(&s, widths[k], places[k]);
-        se3d_body body = solid(&s, BOX, r, v);
+        se3d_body body = solid(&s, BOX, r, scene_zero);
         run(&s, SE3D_METHOD_GENERALIZED_ALPHA, 1e-3, 2.0);
         CHECK(se3d_body_get_position(s.system, body, at) == SE3D_OK);
         CHECK(se3d_body_get_contact_wrench(s.system, body, force, torque) == SE3D_OK);
@@ -178,7 +123,7 @@ static void a_box_rests_on_a_block_of_triangles(void)
         CHECK_NEAR(torque[1], 0.0, 1e-4);
         CHECK_NEAR(at[0], 0.0, 1e-3);
         CHECK(at[2] < 0.1 && at[2] > 0.0995);
-        end(&s);
+        scene_end(&s);
     }
 }
 
@@ -187,13 +132,12 @@ static void a_box_rests_in_a_corner_of_three_faces(void)
 {
     const double points[21] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1};
     const uint32_t faces[18] = {0, 1, 2, 0, 2, 3, 0, 1, 5, 0, 5, 4, 0, 3, 6, 0, 6, 4};
-    const se3d_body ground = {0, 0};
     scene s = begin(0.0, 0.2);
-    const double r[3] = {0.101, 0.102, 0.103}, v[3] = {0.0, 0.0, 0.0}, g[3] = {-3.0, -4.0, -5.0};
+    const double r[3] = {0.101, 0.102, 0.103}, g[3] = {-3.0, -4.0, -5.0};
     double force[3], torque[3], at[3];
     CHECK(se3d_system_set_gravity(s.system, g) == SE3D_OK);
-    mesh_on(&s, ground, points, 7, faces, 6);
-    se3d_body body = solid(&s, BOX, r, v);
+    scene_mesh_on(&s, scene_ground(&s), points, 7, faces, 6);
+    se3d_body body = solid(&s, BOX, r, scene_zero);
     run(&s, SE3D_METHOD_RADAU, 0.0, 2.0);
     CHECK(se3d_body_get_contact_wrench(s.system, body, force, torque) == SE3D_OK);
     CHECK(se3d_body_get_position(s.system, body, at) == SE3D_OK);
@@ -202,24 +146,20 @@ static void a_box_rests_in_a_corner_of_three_faces(void)
         CHECK_NEAR(force[a], -2.0 * g[a], 1e-4);
         CHECK_NEAR(0.1 - at[a], -2.0 * g[a] / 4e5, 1e-7);
     }
-    end(&s);
+    scene_end(&s);
 }
 
 /* A body that is a mesh stands on a plane on its four lowest corners. */
 static void a_mesh_stands_on_a_plane(void)
 {
     scene s = begin(0.5, 0.3);
-    se3d_body_def def = se3d_body_def_default();
-    se3d_body body;
+    const double J[3] = {0.01, 0.01, 0.01}, r[3] = {0.0, 0.0, 0.15};
     double points[24], force[3], torque[3], at[3];
     for (int k = 0; k < 24; ++k) {
         points[k] = 0.2 * block[k];
     }
-    def.mass = 2.0;
-    def.inertia[0] = def.inertia[1] = def.inertia[2] = 0.01;
-    def.position[2] = 0.15;
-    CHECK(se3d_body_create(s.system, &def, &body) == SE3D_OK);
-    mesh_on(&s, body, points, 8, sides, 12);
+    se3d_body body = scene_body(&s, 2.0, J, r, scene_zero);
+    scene_mesh_on(&s, body, points, 8, sides, 12);
     floor_on(&s, 0);
     run(&s, SE3D_METHOD_DOP853, 0.0, 2.0);
     CHECK(se3d_body_get_position(s.system, body, at) == SE3D_OK);
@@ -227,7 +167,7 @@ static void a_mesh_stands_on_a_plane(void)
     CHECK(se3d_system_count_contacts(s.system) == 4);
     CHECK_NEAR(force[2], 2.0 * G, 1e-3);
     CHECK_NEAR(at[2], 0.1 - 2.0 * G / 4e5, 1e-6);
-    end(&s);
+    scene_end(&s);
 }
 
 #define RINGS 24
@@ -238,11 +178,10 @@ static void a_ball_swings_in_a_bowl(void)
 {
     static double points[3 * RINGS * TURNS];
     static uint32_t faces[6 * (RINGS - 1) * TURNS];
-    const double R = 1.0, pi = 3.14159265358979323846;
-    const se3d_body ground = {0, 0};
+    const double R = 1.0;
     for (int k = 0; k < RINGS * TURNS; ++k) {
         double polar = 0.004 + 0.8 * (k / TURNS) / (RINGS - 1),
-               turn = 2.0 * pi * (k % TURNS) / TURNS;
+               turn = 2.0 * PI * (k % TURNS) / TURNS;
         points[3 * k] = R * sin(polar) * cos(turn);
         points[3 * k + 1] = R * sin(polar) * sin(turn);
         points[3 * k + 2] = -R * cos(polar);
@@ -253,16 +192,16 @@ static void a_ball_swings_in_a_bowl(void)
         memcpy(faces + 6 * k, quad, sizeof quad);
     }
     scene s = begin(0.0, 0.1);
-    const double angle = 0.3, r[3] = {0.9 * sin(angle), 0.0, -0.9 * cos(angle)}, v[3] = {0, 0, 0};
-    mesh_on(&s, ground, points, RINGS * TURNS, faces, 2 * (RINGS - 1) * TURNS);
-    se3d_body body = solid(&s, SPHERE, r, v);
-    double period = 2.0 * pi * sqrt(0.9 / G) * (1.0 + angle * angle / 16.0), at[3];
+    const double angle = 0.3, r[3] = {0.9 * sin(angle), 0.0, -0.9 * cos(angle)};
+    scene_mesh_on(&s, scene_ground(&s), points, RINGS * TURNS, faces, 2 * (RINGS - 1) * TURNS);
+    se3d_body body = solid(&s, SPHERE, r, scene_zero);
+    double period = 2.0 * PI * sqrt(0.9 / G) * (1.0 + angle * angle / 16.0), at[3];
     run(&s, SE3D_METHOD_VERLET, 0.0, 0.5 * period);
     CHECK(se3d_body_get_position(s.system, body, at) == SE3D_OK);
     CHECK_NEAR(at[0], -r[0], 0.02); /* facets */
     CHECK_NEAR(at[1], 0.0, 0.02);
     CHECK_NEAR(sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]), 0.9, 0.005);
-    end(&s);
+    scene_end(&s);
 }
 
 int main(void)

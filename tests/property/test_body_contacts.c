@@ -1,95 +1,27 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Contact between bodies: what is conserved, what is left alone, and that runs repeat themselves.
  */
-#include "check.h"
 #include "math/quaternion.h"
-#include "se3d/se3d.h"
 #include "support/counting.h"
+#include "support/scene.h"
 
-#define G 9.81
-
-typedef struct world {
-    se3d_system *system;
-    se3d_material material;
-    se3d_solver *solver;
-} world;
-
-static world begin_with(const se3d_allocator *allocator, double restitution, double stiffness)
+static scene begin_with(const se3d_allocator *allocator, double restitution, double stiffness)
 {
-    world w = {0};
-    se3d_system_def def = se3d_system_def_default();
-    if (allocator) {
-        def.allocator = allocator;
-    }
-    CHECK(se3d_system_create(&def, &w.system) == SE3D_OK);
-    se3d_material_def material = se3d_material_def_default();
-    material.density = 1000.0;
-    material.friction = 0.4;
-    material.restitution = restitution;
-    material.stiffness = stiffness;
-    material.rolling_friction = 0.01;
-    CHECK(se3d_material_create(w.system, &material, &w.material) == SE3D_OK);
-    return w;
+    se3d_material_def stuff = scene_stuff(0.4, restitution, stiffness);
+    stuff.rolling_friction = 0.01;
+    return scene_begin_with(allocator, SE3D_LAW_HOOKE, &stuff);
 }
 
-static world begin(const se3d_allocator *allocator, double restitution)
+static scene begin(const se3d_allocator *allocator, double restitution)
 {
     return begin_with(allocator, restitution, 1e5);
 }
 
-static void end(world *w)
-{
-    se3d_solver_destroy(w->solver);
-    se3d_system_destroy(w->system);
-}
-
-static void solve(world *w, int32_t method, int32_t formulation, double step, double tolerance)
-{
-    se3d_solver_def def = se3d_solver_def_default();
-    def.method = method;
-    def.formulation = formulation;
-    def.step = step;
-    def.tolerance = tolerance;
-    CHECK(se3d_solver_create(w->system, &def, &w->solver) == SE3D_OK);
-}
-
-static int run(world *w, double t)
-{
-    se3d_status status = se3d_solver_run(w->solver, t);
-    if (status < 0) {
-        fprintf(stderr, "%s\n", se3d_system_get_error(w->system));
-    }
-    return status >= 0;
-}
-
-static void plane(world *w)
-{
-    se3d_shape_def def = se3d_shape_def_default();
-    se3d_shape shape;
-    def.name = "floor";
-    def.material = w->material;
-    CHECK(se3d_shape_create_plane(w->system, &def, &shape) == SE3D_OK);
-}
-
-static se3d_body box(world *w, const double size[3], double mass, const double r[3],
+static se3d_body box(scene *s, const double size[3], double mass, const double r[3],
                      const double p[4])
 {
-    se3d_body_def def = se3d_body_def_default();
-    se3d_shape_def shape_def = se3d_shape_def_default();
-    se3d_body body;
-    se3d_shape shape;
-    def.mass = mass;
-    for (int k = 0; k < 3; ++k) {
-        double a = size[(k + 1) % 3], b = size[(k + 2) % 3];
-        def.inertia[k] = mass * (a * a + b * b) / 12.0;
-    }
-    memcpy(def.position, r, sizeof def.position);
-    memcpy(def.orientation, p, sizeof def.orientation);
-    CHECK(se3d_body_create(w->system, &def, &body) == SE3D_OK);
-    shape_def.body = body;
-    shape_def.material = w->material;
-    memcpy(shape_def.size, size, sizeof shape_def.size);
-    CHECK(se3d_shape_create_box(w->system, &shape_def, &shape) == SE3D_OK);
+    se3d_body body = scene_box(s, size, mass, r, scene_zero);
+    CHECK(se3d_body_set_orientation(s->system, body, p) == SE3D_OK);
     return body;
 }
 
@@ -108,18 +40,19 @@ static void normalised(const double p[4], double out[4])
 static void energy_of_a_falling_box_is_accounted_for(void)
 {
     for (int k = 0; k < 2; ++k) {
-        world w = begin(NULL, 0.4);
+        scene w = begin(NULL, 0.4);
         const double r[3] = {0.0, 0.0, 0.4};
         double p[4], v[3];
         se3d_energy before, after;
         normalised(leaning, p);
         se3d_body body = box(&w, cube, 3.0, r, p);
-        plane(&w);
-        solve(&w, SE3D_METHOD_DOP853, k ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA, 0.0, 1e-7);
+        scene_floor(&w, 0.0);
+        scene_solve(&w, SE3D_METHOD_DOP853, k ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA, 0.0,
+                    1e-7);
         CHECK(se3d_system_get_energy(w.system, &before) == SE3D_OK);
         double lost = 0.0;
         for (int step = 1; step <= 15; ++step) {
-            CHECK(run(&w, 0.1 * step));
+            scene_run(&w, 0.1 * step);
             CHECK(se3d_system_get_energy(w.system, &after) == SE3D_OK);
             CHECK_NEAR(after.total + after.dissipated, before.total, 1e-4 * before.total);
             /* a slipping spring is stretched by its damper, and gives that back */
@@ -129,14 +62,14 @@ static void energy_of_a_falling_box_is_accounted_for(void)
         CHECK(lost > 0.3 * before.total);
         CHECK(se3d_body_get_velocity(w.system, body, v) == SE3D_OK);
         CHECK(fabs(v[2]) < 0.05);
-        end(&w);
+        scene_end(&w);
     }
 }
 
 /* Two boxes that meet in free space: momentum and angular momentum stay to rounding. */
 static void momentum_of_colliding_boxes_is_kept(void)
 {
-    world w = begin(NULL, 0.7);
+    scene w = begin(NULL, 0.7);
     const double none[3] = {0.0, 0.0, 0.0}, a[3] = {0.0, 0.0, 0.0}, b[3] = {0.5, 0.05, 0.08};
     const double v[3] = {-1.5, 0.1, 0.0}, spin[3] = {1.0, -2.0, 0.5};
     const double straight[4] = {1.0, 0.0, 0.0, 0.0};
@@ -146,9 +79,9 @@ static void momentum_of_colliding_boxes_is_kept(void)
     se3d_body bodies[2] = {box(&w, cube, 3.0, a, straight), box(&w, cube, 1.0, b, p)};
     CHECK(se3d_body_set_velocity(w.system, bodies[1], v) == SE3D_OK);
     CHECK(se3d_body_set_angular_velocity(w.system, bodies[1], spin) == SE3D_OK);
-    solve(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0, 1e-9);
+    scene_solve(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0, 1e-9);
     for (int step = 0; step < 5; ++step) {
-        CHECK(run(&w, 0.1 * step));
+        scene_run(&w, 0.1 * step);
         memset(now, 0, sizeof now);
         for (int k = 0; k < 2; ++k) {
             const double mass = k ? 1.0 : 3.0;
@@ -178,35 +111,35 @@ static void momentum_of_colliding_boxes_is_kept(void)
     double u[3];
     CHECK(se3d_body_get_velocity(w.system, bodies[0], u) == SE3D_OK);
     CHECK(u[0] < -0.1); /* they did meet */
-    end(&w);
+    scene_end(&w);
 }
 
 /* A narrow block set on one edge rocks, and rests flat in the end. */
 static void a_rocking_block_comes_to_rest(void)
 {
-    world w = begin(NULL, 0.3);
+    scene w = begin(NULL, 0.3);
     const double size[3] = {0.1, 0.2, 0.4};
     const double angle = 0.15;
     const double p[4] = {cos(0.5 * angle), 0.0, sin(0.5 * angle), 0.0};
     const double r[3] = {0.0, 0.0, 0.2 * cos(angle) + 0.05 * sin(angle) - 1e-5};
     double q[4], wrench[6];
     se3d_body body = box(&w, size, 2.0, r, p);
-    plane(&w);
-    solve(&w, SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_ROMEGA, 5e-4, 1e-6);
-    CHECK(run(&w, 0.1));
+    scene_floor(&w, 0.0);
+    scene_solve(&w, SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_ROMEGA, 5e-4, 1e-6);
+    scene_run(&w, 0.1);
     CHECK(se3d_body_get_angular_velocity(w.system, body, q) == SE3D_OK);
     CHECK(q[1] < -0.05); /* falling back */
-    CHECK(run(&w, 4.0));
+    scene_run(&w, 4.0);
     CHECK(se3d_body_get_orientation(w.system, body, q) == SE3D_OK);
     CHECK_NEAR(q[2], 0.0, 1e-5); /* it stands strained */
     CHECK(se3d_body_get_contact_wrench(w.system, body, wrench, wrench + 3) == SE3D_OK);
     CHECK_NEAR(wrench[2], 2.0 * G, 1e-3);
     CHECK(se3d_system_count_contacts(w.system) == 4);
-    end(&w);
+    scene_end(&w);
 }
 
 /* A leg that slides in a guide, sprung against the airframe, with a ball for a foot. */
-static se3d_body landing_gear(world *w, se3d_body *frame)
+static se3d_body landing_gear(scene *w, se3d_body *frame)
 {
     const double size[3] = {1.0, 1.0, 0.2}, r[3] = {0.0, 0.0, 1.3};
     const double straight[4] = {1.0, 0.0, 0.0, 0.0}, sink[3] = {0.0, 0.0, -1.5};
@@ -251,23 +184,23 @@ static void a_landing_gear_carries_its_weight(void)
                                        SE3D_METHOD_GENERALIZED_ALPHA, SE3D_METHOD_DOP853};
     double heights[4];
     for (int k = 0; k < 4; ++k) {
-        world w = begin_with(NULL, 0.5, 2e6);
+        scene w = begin_with(NULL, 0.5, 2e6);
         se3d_body frame;
         double r[3], force[3], torque[3];
         se3d_body leg = landing_gear(&w, &frame);
-        plane(&w);
+        scene_floor(&w, 0.0);
         int rp = k == 1 || k == 2;
-        solve(&w, methods[k], rp ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA,
-              k == 3 ? 0.0 : 5e-4, 1e-6);
-        CHECK(run(&w, 0.3));
+        scene_solve(&w, methods[k], rp ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA,
+                    k == 3 ? 0.0 : 5e-4, 1e-6);
+        scene_run(&w, 0.3);
         CHECK(se3d_body_get_position(w.system, frame, r) == SE3D_OK);
         heights[k] = r[2];
-        CHECK(run(&w, 3.0));
+        scene_run(&w, 3.0);
         CHECK(se3d_body_get_contact_wrench(w.system, leg, force, torque) == SE3D_OK);
         CHECK_NEAR(force[2], 105.0 * G, 1.0);
         CHECK(se3d_body_get_contact_wrench(w.system, frame, force, torque) == SE3D_OK);
         CHECK(!(fabs(force[2]) > 0.0)); /* its own leg does not touch it */
-        end(&w);
+        scene_end(&w);
         CHECK_NEAR(heights[k], heights[0], 1e-4);
     }
 }
@@ -276,7 +209,7 @@ static void a_landing_gear_carries_its_weight(void)
 static void jointed_bodies_do_not_touch(void)
 {
     for (int jointed = 0; jointed < 2; ++jointed) {
-        world w = begin(NULL, 0.5);
+        scene w = begin(NULL, 0.5);
         const double none[3] = {0.0, 0.0, 0.0}, a[3] = {0.0, 0.0, 0.0}, b[3] = {0.19, 0.0, 0.0};
         const double straight[4] = {1.0, 0.0, 0.0, 0.0};
         double v[3];
@@ -293,11 +226,11 @@ static void jointed_bodies_do_not_touch(void)
         if (jointed) {
             CHECK(se3d_joint_create_revolute(w.system, &def, &joint) == SE3D_OK);
         }
-        solve(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0, 1e-6);
-        CHECK(run(&w, 0.05));
+        scene_solve(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0, 1e-6);
+        scene_run(&w, 0.05);
         CHECK(se3d_body_get_velocity(w.system, two, v) == SE3D_OK);
         CHECK((v[0] > 0.1) == !jointed);
-        end(&w);
+        scene_end(&w);
     }
 }
 
@@ -306,31 +239,31 @@ static void runs_repeat_from_snapshots_and_clones(void)
 {
     static const int32_t methods[2] = {SE3D_METHOD_DOP853, SE3D_METHOD_GENERALIZED_ALPHA};
     for (int k = 0; k < 2; ++k) {
-        world w = begin(NULL, 0.4);
+        scene w = begin(NULL, 0.4);
         const double r[3] = {0.0, 0.0, 0.3};
         double p[4];
         normalised(leaning, p);
         box(&w, cube, 3.0, r, p);
-        plane(&w);
-        solve(&w, methods[k], SE3D_FORMULATION_ROMEGA, k ? 5e-4 : 0.0, 1e-6);
-        CHECK(run(&w, 0.4));
+        scene_floor(&w, 0.0);
+        scene_solve(&w, methods[k], SE3D_FORMULATION_ROMEGA, k ? 5e-4 : 0.0, 1e-6);
+        scene_run(&w, 0.4);
         CHECK(se3d_system_count_contacts(w.system) > 0);
         se3d_snapshot *snapshot = NULL;
-        world copy = {0};
+        scene copy = {0};
         CHECK(se3d_snapshot_create(w.system, &snapshot) == SE3D_OK);
         CHECK(se3d_system_clone(w.system, &copy.system) == SE3D_OK);
-        solve(&copy, methods[k], SE3D_FORMULATION_ROMEGA, k ? 5e-4 : 0.0, 1e-6);
-        CHECK(run(&w, 0.8));
+        scene_solve(&copy, methods[k], SE3D_FORMULATION_ROMEGA, k ? 5e-4 : 0.0, 1e-6);
+        scene_run(&w, 0.8);
         uint64_t hash = se3d_system_hash(w.system);
         CHECK(se3d_snapshot_restore(snapshot, w.system) == SE3D_OK);
         CHECK(se3d_system_hash(w.system) != hash);
-        CHECK(run(&w, 0.8));
+        scene_run(&w, 0.8);
         CHECK(se3d_system_hash(w.system) == hash);
-        CHECK(run(&copy, 0.8));
+        scene_run(&copy, 0.8);
         CHECK(se3d_system_hash(copy.system) == hash);
         se3d_snapshot_destroy(snapshot);
-        end(&copy);
-        end(&w);
+        scene_end(&copy);
+        scene_end(&w);
     }
 }
 
@@ -339,17 +272,17 @@ static void steady_steps_allocate_nothing(void)
 {
     support_counting counting = {0};
     const se3d_allocator allocator = support_counting_allocator(&counting);
-    world w = begin(&allocator, 0.4);
+    scene w = begin(&allocator, 0.4);
     const double r[3] = {0.0, 0.0, 0.125};
     const double straight[4] = {1.0, 0.0, 0.0, 0.0};
     box(&w, cube, 3.0, r, straight);
-    plane(&w);
-    solve(&w, SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_ROMEGA, 1e-3, 1e-6);
-    CHECK(run(&w, 0.1));
+    scene_floor(&w, 0.0);
+    scene_solve(&w, SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_ROMEGA, 1e-3, 1e-6);
+    scene_run(&w, 0.1);
     size_t before = counting.calls;
-    CHECK(run(&w, 1.1));
+    scene_run(&w, 1.1);
     CHECK(counting.calls == before);
-    end(&w);
+    scene_end(&w);
     CHECK(counting.live == 0);
 }
 
@@ -361,18 +294,18 @@ static void failed_allocations_are_reported(void)
     for (; k < 300 && reached; ++k) {
         support_counting counting = {0};
         const se3d_allocator allocator = support_counting_allocator(&counting);
-        world w = begin(&allocator, 0.4);
+        scene w = begin(&allocator, 0.4);
         const double r[3] = {0.0, 0.0, 0.24};
         double p[4];
         normalised(leaning, p);
         box(&w, cube, 3.0, r, p);
-        plane(&w);
-        solve(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0, 1e-4);
+        scene_floor(&w, 0.0);
+        scene_solve(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0, 1e-4);
         counting.fail_at = counting.calls + k;
         se3d_status status = se3d_solver_run(w.solver, 0.3);
         reached = counting.failed > 0;
         CHECK(status == SE3D_ERR_NO_MEMORY || (status >= 0 && !reached));
-        end(&w);
+        scene_end(&w);
         CHECK(counting.live == 0 && counting.wrong == 0);
     }
     CHECK(k > 10 && !reached);
@@ -381,17 +314,17 @@ static void failed_allocations_are_reported(void)
 /* Where two shapes are far inside each other the run says which. */
 static void too_large_overlaps_name_the_shapes(void)
 {
-    world w = begin(NULL, 0.4);
+    scene w = begin(NULL, 0.4);
     const double r[3] = {0.0, 0.0, 0.5}, fast[3] = {0.0, 0.0, -60.0};
     const double straight[4] = {1.0, 0.0, 0.0, 0.0};
     se3d_body body = box(&w, cube, 3.0, r, straight);
     CHECK(se3d_body_set_velocity(w.system, body, fast) == SE3D_OK);
-    plane(&w);
-    solve(&w, SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_ROMEGA, 1e-3, 1e-6);
+    scene_floor(&w, 0.0);
+    scene_solve(&w, SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_ROMEGA, 1e-3, 1e-6);
     CHECK(se3d_solver_run(w.solver, 0.2) == SE3D_ERR_STEP_SIZE);
     CHECK_CONTAINS(se3d_system_get_error(w.system), "floor");
     CHECK_CONTAINS(se3d_system_get_error(w.system), "overlap");
-    end(&w);
+    scene_end(&w);
 }
 
 static se3d_status get_press(void *ctx, const se3d_system *system, double *value)
@@ -418,26 +351,14 @@ static se3d_status get_push(void *ctx, const se3d_system *system, double *value)
     return status;
 }
 
-static se3d_body ball_above_floor(world *w)
+static se3d_body ball_above_floor(scene *w)
 {
-    se3d_body_def def = se3d_body_def_default();
-    se3d_shape_def shape_def = se3d_shape_def_default();
-    se3d_body ball;
-    se3d_shape shape;
-    plane(w);
-    def.mass = 500.0;
-    def.inertia[0] = def.inertia[1] = def.inertia[2] = 50.0;
-    def.position[2] = 0.51;
-    def.velocity[2] = -1.0;
-    CHECK(se3d_body_create(w->system, &def, &ball) == SE3D_OK);
-    shape_def.body = ball;
-    shape_def.material = w->material;
-    shape_def.radius = 0.5;
-    CHECK(se3d_shape_create_sphere(w->system, &shape_def, &shape) == SE3D_OK);
-    return ball;
+    const double r[3] = {0.0, 0.0, 0.51}, v[3] = {0.0, 0.0, -1.0};
+    scene_floor(w, 0.0);
+    return scene_ball(w, 0.5, 500.0, r, v);
 }
 
-static void add_push_event(world *w, se3d_event_value value, se3d_body *body)
+static void add_push_event(scene *w, se3d_event_value value, se3d_body *body)
 {
     se3d_event_def def = se3d_event_def_default();
     se3d_event event;
@@ -453,9 +374,9 @@ static void forces_of_contacts_cross_levels(void)
     static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RK4, SE3D_METHOD_RADAU,
                                       SE3D_METHOD_BDF, SE3D_METHOD_RATTLE};
     for (size_t k = 0; k < sizeof methods / sizeof methods[0]; ++k) {
-        world w = begin_with(NULL, 0.8, 1e6);
+        scene w = begin_with(NULL, 0.8, 1e6);
         se3d_body ball = ball_above_floor(&w);
-        solve(&w, methods[k], SE3D_FORMULATION_ROMEGA, 0.0, 1e-7);
+        scene_solve(&w, methods[k], SE3D_FORMULATION_ROMEGA, 0.0, 1e-7);
         add_push_event(&w, get_press, &ball);
         add_push_event(&w, get_most, NULL);
         add_push_event(&w, get_push, &ball);
@@ -469,7 +390,7 @@ static void forces_of_contacts_cross_levels(void)
             CHECK_NEAR(record.time, last.time, 1e-12);
             CHECK_NEAR(record.value, 2e4, 1e-3);
         }
-        end(&w);
+        scene_end(&w);
     }
 }
 
