@@ -44,7 +44,7 @@ static se3di_force_task task_of(const se3di_particles *set, couple *c)
         .spins = c->spins,
         .loads = c->loads,
         .blocks = &c->block,
-        .rolls = set->rolling && set->rolls ? &c->roll : NULL,
+        .rolls = set->rolling ? &c->roll : NULL,
         .pairs = set->pairs,
         .walls = &c->wall,
         .materials = (uint32_t)set->stuff_count,

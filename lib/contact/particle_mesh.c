@@ -90,7 +90,7 @@ void se3di_particles_mesh_forces(se3di_particles *set, const se3di_slab *slab,
     local.begin = 0;
     local.end = 1;
     local.blocks = &batch.block;
-    local.rolls = task->rolls ? &batch.roll : NULL;
+    local.rolls = set->rolling ? &batch.roll : NULL; /* also where there are no blocks */
     local.given = &batch.given;
     for (uint32_t k = slab->mesh_begin; k < slab->mesh_end; ++k) {
         se3di_mesh_pair *pair = &set->mesh_pairs[k];

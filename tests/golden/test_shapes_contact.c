@@ -166,6 +166,33 @@ static void sliding_spheres_roll_in_the_end_on_flat_shapes(void)
     }
 }
 
+/* One sphere rolls, one spins on the spot: both are slowed as on a plane, also where nothing but a
+ * mesh is touched. */
+static void rolling_and_spinning_are_resisted_on_flat_shapes(void)
+{
+    for (int kind = PLANE; kind <= MESH; ++kind) {
+        se3d_material_def def = stuff();
+        def.restitution = 0.1;
+        def.stiffness = 1e5;
+        def.rolling_friction = 0.02;
+        def.torsional_friction = 0.03;
+        bed b;
+        bed_init(&b, SE3D_LAW_HOOKE, 9.81, &def);
+        (void)shape_under(&b, kind);
+        const double depth = 2500.0 * 4.0 / 3.0 * 3.14159265358979323846 * R * R * R * 9.81 / 1e5;
+        const double r[6] = {-0.3, -0.15, R - depth, 0.2, 0.17, R - depth};
+        const double v[6] = {0.5, 0.0, 0.0, 0.0, 0.0, 0.0};
+        const double w[6] = {0.0, 0.5 / R, 0.0, 0.0, 0.0, 50.0}, radius[2] = {R, R};
+        double now[6], spin[6];
+        CHECK(se3d_particles_add(b.particles, b.material, 2, r, radius, v, w, NULL) == SE3D_OK);
+        CHECK(se3d_particles_run(b.particles, 0.5) == SE3D_OK);
+        CHECK(se3d_particles_get_all(b.particles, 2, NULL, now, spin) == SE3D_OK);
+        CHECK_NEAR(now[0], 0.5 - 5.0 / 7.0 * 0.02 * 9.81 * 0.5, 2e-4);
+        CHECK_NEAR(spin[5], 50.0 - 0.03 * 9.81 / (0.4 * R) * 0.5, 0.02);
+        bed_destroy(&b);
+    }
+}
+
 /* Several shapes on a body that moves and turns: what the particles feel, the body does. */
 static void body_feels_the_opposite_of_what_the_particles_do(void)
 {
@@ -342,6 +369,7 @@ int main(void)
 {
     RUN(restitution_is_what_was_typed_on_every_shape);
     RUN(sliding_spheres_roll_in_the_end_on_flat_shapes);
+    RUN(rolling_and_spinning_are_resisted_on_flat_shapes);
     RUN(body_feels_the_opposite_of_what_the_particles_do);
     RUN(sphere_rests_in_a_corner_of_a_mesh);
     RUN(filters_and_destroyed_shapes_are_obeyed);
