@@ -90,5 +90,5 @@ double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3
     double density = mass / (4.0 / 3.0 * PI * radius * radius * radius);
     double shear_modulus = a->young / (2.0 * (1.0 + a->poisson));
     double rayleigh = PI * radius * sqrt(density / shear_modulus) / (0.1631 * a->poisson + 0.8766);
-    return 0.025 * rayleigh;
+    return 0.025 * rayleigh * sqrt(2.0 * reduced_mass / mass);
 }

@@ -14,7 +14,8 @@ void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_
 void se3di_pair_mix_all(se3di_model *model);
 
 /* The longest time of a step that resolves a contact of two spheres (a wall: radius_b and mass_b
- * infinite): 1/50 of the contact's time (hooke), 1/20 of Rayleigh's time (hertz_mindlin). */
+ * infinite): 1/50 of the contact's time (hooke), 1/40 of Rayleigh's time (hertz_mindlin), of which
+ * the lightest partner, `reduced_mass`, may leave less. */
 double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3di_pair *pair,
                        double radius, double mass, double reduced_mass);
 

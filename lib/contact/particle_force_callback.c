@@ -148,6 +148,18 @@ static void pairs(se3di_force_task *task)
     }
 }
 
+/* What a unit force along n moves the point of the body that gives way. */
+static double wall_response(const se3di_wall *wall, const double lever[3], const double n[3])
+{
+    double arm[3], turned[3];
+    if (!(wall->inverse_mass > 0.0)) {
+        return 0.0;
+    }
+    se3di_cross(lever, n, arm);
+    se3di_mul(wall->turn, arm, turned);
+    return wall->inverse_mass + se3di_dot(arm, turned);
+}
+
 static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
 {
     se3di_block *block = &task->blocks[b];
@@ -156,7 +168,6 @@ static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
     const se3di_grain *g = &task->grains[i];
     double point[3], at[3], side[3], turn[3], xi[3], force[3], lever[3], moment[3];
     touch t = {.radius = g->radius,
-               .mass = 1.0 / g->inverse_mass,
                .w_i = task->spins[i].w,
                .w_j = wall->pose.w,
                .material_i = task->spins[i].material,
@@ -181,6 +192,7 @@ static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
     }
     se3di_sub(g->x, wall->pose.c, side); /* from the centre of mass to the point */
     se3di_add_scaled(-distance, t.n, side);
+    t.mass = 1.0 / (g->inverse_mass + wall_response(wall, side, t.n));
     se3di_cross(wall->pose.w, side, at);
     for (int a = 0; a < 3; ++a) {
         t.v[a] = g->v[a] - wall->pose.v[a] - at[a];

@@ -3,6 +3,7 @@
  * again where the model was edited; the history of contacts goes along. */
 #include "contact/particle_set.h"
 
+#include <math.h>
 #include <string.h>
 
 static int same(se3di_handle a, se3di_handle b)
@@ -105,6 +106,36 @@ static uint32_t find_wall(const se3di_particles *set, se3di_handle handle)
     return SE3DI_NO_INDEX;
 }
 
+/* Nothing but forces moves the body: no joint, no driver. */
+static int is_loose(const se3di_model *model, uint32_t body)
+{
+    if (model->bodies[body].fixed || !(model->bodies[body].mass > 0.0)) {
+        return 0;
+    }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *c = &model->constraints[k];
+        for (uint32_t n = 0; n < c->body_count; ++n) {
+            if (c->bodies[n] == body) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+double se3di_particles_lightest_body(const se3di_particles *set, const se3di_model *model)
+{
+    double lightest = HUGE_VAL;
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        const se3di_shape *shape = &model->shapes[k];
+        double mass = model->bodies[shape->body].mass;
+        if (mass < lightest && touches(set, shape) && is_loose(model, shape->body)) {
+            lightest = mass;
+        }
+    }
+    return lightest;
+}
+
 /* The new walls, with the forces of the old ones; place[old] is the new index. */
 static size_t fill_walls(const se3di_particles *set, const se3di_model *model, se3di_wall *walls,
                          uint32_t *place)
@@ -121,6 +152,7 @@ static size_t fill_walls(const se3di_particles *set, const se3di_model *model, s
         *wall = old == SE3DI_NO_INDEX ? (se3di_wall){.handle = handle} : set->walls[old];
         wall->shape = *shape;
         wall->body = se3di_slots_handle(&model->body_slots, shape->body);
+        wall->loose = is_loose(model, shape->body);
         se3di_shape_place(shape, &model->frames[shape->body], &wall->pose);
         se3di_handle material =
             se3di_slots_handle(&model->material_slots, (uint32_t)shape->material);

@@ -77,8 +77,10 @@ typedef struct se3di_wall {
     se3di_handle handle;
     se3di_handle body; /* the handle of shape.body */
     uint32_t material; /* in the set's table */
-    uint32_t reserved;
+    int32_t loose;     /* nothing but forces moves the body: it gives way where it is hit */
     se3di_shape_pose pose;
+    double inverse_mass;       /* of a body that gives way; 0: it moves as it is told */
+    double turn[9];            /* its inverse inertia, ground frame */
     double old_x[3], old_R[9]; /* pose where the list was built */
     double near_x[3], near_R[9];
     double force[3], torque[3]; /* on the body, about its centre of mass, last evaluation */
@@ -362,6 +364,8 @@ void se3di_particles_filter(se3di_particles *set, const unsigned char *keep);
 void se3di_particles_adopt(se3di_particles *set, const se3di_model *model);
 /* Take materials, shapes and settings from the model where it was edited since. */
 se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model);
+/* The mass of the lightest body that gives way to particles; infinite where none does. */
+double se3di_particles_lightest_body(const se3di_particles *set, const se3di_model *model);
 /* The index in the set's table of a material of the model, which is held from now on. Its users
  * must be counted where *first is 1. */
 se3d_status se3di_particles_hold(se3di_particles *set, const se3di_model *model, uint32_t material,
@@ -420,6 +424,9 @@ double se3di_larger(double a, double b);
 
 /* particle_step.c: steps. */
 void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames);
+/* What a unit force on a wall does to its body, from now on: what its mass makes of it, or nothing,
+ * where the bodies are moved by others (model NULL). */
+void se3di_particles_free_walls(se3di_particles *set, const se3di_model *model);
 /* Nothing moves and nothing will. */
 int se3di_particles_is_idle(const se3di_particles *set);
 /* Bring the lists up to date, evaluate all forces; springs advance by h (0: they stay). Where

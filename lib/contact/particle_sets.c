@@ -85,6 +85,7 @@ se3d_status se3di_particles_place(se3di_particles *set, const se3di_model *model
         return se3di_particles_report(set, status, error);
     }
     se3di_particles_move_walls(set, model->frames);
+    se3di_particles_free_walls(set, NULL);
     return SE3D_OK;
 }
 
@@ -121,6 +122,7 @@ static se3d_status begin(se3di_particles *set, const se3di_model *model, double 
     SE3DI_TRY(se3di_particles_check_step(set, model, h, error));
     SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
     SE3DI_TRY(se3di_particles_place(set, model, error));
+    se3di_particles_free_walls(set, model);
     se3d_status status = se3di_particles_prepare(set);
     return status < 0 ? se3di_particles_report(set, status, error) : SE3D_OK;
 }
@@ -160,6 +162,7 @@ se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_erro
         }
         SE3DI_TRY(se3di_gravity_eval(model, t, set->gravity, NULL));
         se3di_particles_move_walls(set, model->frames);
+        se3di_particles_free_walls(set, model);
         se3d_status status = se3di_particles_forces(set, h);
         if (status < 0 && !se3di_particles_is_complete(set, status)) {
             return se3di_particles_report(set, status, error);

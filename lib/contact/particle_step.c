@@ -4,16 +4,37 @@
 #include "contact/particle_set.h"
 
 #include "base/hash.h"
+#include "contact/encounter.h"
 #include "math/vec3.h"
 
 #include <math.h>
 #include <string.h>
+
+#define BODY_END 4.0 /* a force at the end of a free rod moves that as if its mass were a quarter  \
+                      */
 
 void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames)
 {
     for (size_t k = 0; k < set->wall_count; ++k) {
         se3di_wall *wall = &set->walls[k];
         se3di_shape_place(&wall->shape, &frames[wall->shape.body], &wall->pose);
+    }
+}
+
+void se3di_particles_free_walls(se3di_particles *set, const se3di_model *model)
+{
+    for (size_t k = 0; k < set->wall_count; ++k) {
+        se3di_wall *wall = &set->walls[k];
+        wall->inverse_mass = 0.0;
+        if (model && wall->loose) {
+            const se3di_body *body = &model->bodies[wall->shape.body];
+            const se3di_frame *frame = &model->frames[wall->shape.body];
+            wall->inverse_mass = 1.0 / body->mass;
+            for (int a = 0; a < 3; ++a) { /* symmetric: rows are columns */
+                const double axis[3] = {a == 0, a == 1, a == 2};
+                se3di_encounter_turn_by(body, frame, axis, wall->turn + 3 * a);
+            }
+        }
     }
 }
 
@@ -273,16 +294,16 @@ se3d_status se3di_particles_forces(se3di_particles *set, double h)
 }
 
 /* Over the pairs of a material with all that are in use. */
-static double pair_steps(const se3di_model *model, size_t a, double radius, double mass)
+static double pair_steps(const se3di_model *model, size_t a, double radius, double mass,
+                         double reduced_mass)
 {
     double step = HUGE_VAL;
     size_t n = model->material_slots.count;
     for (size_t b = 0; b < n; ++b) {
         if (model->materials[b].users > 0) {
-            /* the other one may be as light: half of the mass */
             step = fmin(step,
                         se3di_pair_step((se3di_contact_law)model->contact.law, &model->materials[a],
-                                        &model->pairs[a * n + b], radius, mass, 0.5 * mass));
+                                        &model->pairs[a * n + b], radius, mass, reduced_mass));
         }
     }
     return step;
@@ -291,6 +312,7 @@ static double pair_steps(const se3di_model *model, size_t a, double radius, doub
 double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *model)
 {
     const double pi = 3.1415926535897932384626433832795;
+    const double body = se3di_particles_lightest_body(set, model);
     double step = HUGE_VAL;
     for (size_t s = 0; s < set->stuff_count; ++s) {
         double lightest = HUGE_VAL;
@@ -313,7 +335,10 @@ double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *
         if (smallest < HUGE_VAL) {
             uint32_t a = se3di_slots_find(&model->material_slots, stuff->handle.index1,
                                           stuff->handle.generation);
-            step = fmin(step, pair_steps(model, a, smallest, lightest));
+            /* the other one may be as light: half of the mass; or a lighter body, hit at its end */
+            double reduced = BODY_END * lightest > body ? 1.0 / (1.0 / lightest + BODY_END / body)
+                                                        : 0.5 * lightest;
+            step = fmin(step, pair_steps(model, a, smallest, lightest, reduced));
         }
     }
     return step;
