@@ -63,6 +63,9 @@ typedef struct se3d_event_def {
     int32_t motion_only; /* not 0: the value follows from time, positions and velocities alone
                             (not from accelerations, reactions or forces): cheaper to look for */
     int32_t reserved;    /* 0 */
+    double hysteresis;   /* >= 0, in the unit of the value: it has to have been further than this
+                            from the level, on the side it comes from, since it last crossed it;
+                            default 0: further than the level's own rounding */
 } se3d_event_def;
 
 SE3D_API void se3d_event_def_init(se3d_event_def *def, size_t size);
@@ -76,8 +79,8 @@ static inline se3d_event_def se3d_event_def_default(void)
 
 /* Add an event to a solver of dynamics, kinematics or inverse dynamics. Crossings are looked for in
  * every step from then on, also several in one step, and located to the rounding of time. What is
- * at the level when a run begins has not crossed it. With particle sets, which cannot be moved
- * back, a run stops at the end of the step that holds the event.
+ * at the level (within `hysteresis`) when a run begins has not crossed it. With particle sets,
+ * which cannot be moved back, a run stops at the end of the step that holds the event.
  * @return OK, NULL, INVALID_ARGUMENT, UNSUPPORTED (the analysis has no motion), NO_MEMORY.
  * Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_event_create(se3d_solver *solver, const se3d_event_def *def,

@@ -9,6 +9,7 @@
 #define DIP_TRIES   4
 #define DIP_NEAR    0.6 /* of the smaller end: a parabola that stays above it is no dip to zero */
 #define BISECT_EACH 4   /* iterations in which the bracket must have halved */
+#define BACK_PARTS  64.0
 
 typedef struct bracket {
     double a, b;   /* not reached, reached */
@@ -19,6 +20,12 @@ typedef struct bracket {
 static double sign_of(double g)
 {
     return g > 0.0 ? 1.0 : g < 0.0 ? -1.0 : 0.0;
+}
+
+/* The same, 0 in the band. */
+static double side_of(const se3di_crossing_function *f, double g)
+{
+    return fabs(g) > f->band ? sign_of(g) : 0.0;
 }
 
 /* side * g is > 0 as long as zero has not been reached. */
@@ -90,28 +97,50 @@ static se3d_status close_bracket(const se3di_crossing_function *f, bracket *k)
     }
 }
 
+/* Whether the states that count have been beyond the band on `side` at t or before it: what is
+ * rough may leave the band where they do not. *yes is set. */
+static se3d_status was_beyond(const se3di_crossing_function *f, double t, double g, double side,
+                              int *yes)
+{
+    const double begin = f->t[0];
+    double width = (f->t[f->count - 1] - begin) / BACK_PARTS;
+    *yes = side * g > f->band;
+    for (; !*yes && t > begin; width *= 2.0) {
+        t = fmax(begin, t - width);
+        SE3DI_TRY(f->exact(f->ctx, t, &g));
+        *yes = side * g > f->band;
+    }
+    *yes = *yes || side * f->side > 0.0;
+    return SE3D_OK;
+}
+
 typedef struct search {
     const se3di_crossing_function *f;
-    se3di_crossing *found;
-    int count;
+    se3di_crossings *found;
 } search;
 
 /* The crossing between a and b (rough ones), from `side`. */
-static se3d_status locate(search *s, double a, double b, double side)
+static se3d_status locate(const search *s, double a, double b, double side)
 {
     bracket k = {.a = a, .b = b, .side = side};
+    se3di_crossings *found = s->found;
     se3d_status status;
-    if (s->count == SE3DI_CROSSINGS_MAX || (double)s->f->direction * side > 0.0) {
+    int counts = 0;
+    if (found->count == SE3DI_CROSSINGS_MAX || (double)s->f->direction * side > 0.0) {
         return SE3D_OK;
     }
     if (!widen(s->f, &k, &status)) {
         return status;
     }
+    SE3DI_TRY(was_beyond(s->f, k.a, k.ga, side, &counts));
+    if (!counts) {
+        return SE3D_OK;
+    }
     SE3DI_TRY(close_bracket(s->f, &k));
-    const int again = s->count > 0 && !(k.b > s->found[s->count - 1].t);
+    const int again = found->count > 0 && !(k.b > found->list[found->count - 1].t);
     if (!again) {
-        s->found[s->count].t = k.b;
-        s->found[s->count++].direction = side < 0.0 ? 1 : -1;
+        found->list[found->count].t = k.b;
+        found->list[found->count++].direction = side < 0.0 ? 1 : -1;
     }
     return SE3D_OK;
 }
@@ -167,7 +196,7 @@ static se3d_status find_dip(const se3di_crossing_function *f, int node, int firs
 }
 
 /* Two crossings between two nodes of one sign, where there are any. */
-static se3d_status look_between(search *s, int node, double side)
+static se3d_status look_between(const search *s, int node, double side)
 {
     const se3di_crossing_function *f = s->f;
     double dip = (double)NAN;
@@ -183,21 +212,39 @@ static se3d_status look_between(search *s, int node, double side)
     return SE3D_OK;
 }
 
-se3d_status se3di_crossings_find(const se3di_crossing_function *function, se3di_crossing *found,
-                                 int *count)
+/* The side after node k, before which it was `side`: kept in the band until zero is reached. */
+static double next_side(const search *s, int node, double side, int crossed)
 {
-    search s = {.f = function, .found = found};
-    double side = sign_of(function->g[0]);
-    for (int k = 1; k < function->count; ++k) {
-        const double next = sign_of(function->g[k]);
-        const double product = side * next;
-        if (product > 0.0) {
-            SE3DI_TRY(look_between(&s, k - 1, side));
-        } else if (fabs(side) > 0.0) {
-            SE3DI_TRY(locate(&s, function->t[k - 1], function->t[k], side));
+    const double g = s->f->g[node];
+    const int stays = !crossed && !reached(side, g) && fabs(side) > 0.0;
+    return stays ? side : side_of(s->f, g);
+}
+
+se3d_status se3di_crossings_find(const se3di_crossing_function *function, se3di_crossings *found)
+{
+    const search s = {.f = function, .found = found};
+    const int last = function->count - 1;
+    double side = side_of(function, function->g[0]);
+    double beyond = function->t[0]; /* when it was last there */
+    int known = 0;
+    side = fabs(side) > 0.0 ? side : function->side;
+    found->count = 0;
+    found->side = 0;
+    for (int k = 1; k <= last; ++k) {
+        const int before = found->count;
+        if (fabs(side) > 0.0) {
+            SE3DI_TRY(reached(side, function->g[k])
+                          ? locate(&s, function->t[k - 1], function->t[k], side)
+                          : look_between(&s, k - 1, side));
         }
-        side = next;
+        side = next_side(&s, k, side, found->count > before);
+        beyond = fabs(side_of(function, function->g[k])) > 0.0 ? function->t[k] : beyond;
     }
-    *count = s.count;
+    if (fabs(side) > 0.0 && !(fabs(function->g[last]) > function->band)) {
+        double g;
+        SE3DI_TRY(function->exact(function->ctx, beyond, &g));
+        SE3DI_TRY(was_beyond(function, beyond, g, side, &known));
+    }
+    found->side = known ? (int32_t)side : 0;
     return SE3D_OK;
 }

@@ -21,7 +21,9 @@ typedef struct se3di_crossing_function {
     const double *t;   /* nodes, ascending: from the begin to the end of the step */
     const double *g;   /* rough values there */
     int count;         /* of nodes */
+    double band;       /* >= 0: this near to zero no side can be told */
     int32_t direction; /* +1: rising, -1: falling, 0: both */
+    int32_t side;      /* of the begin where that is in the band: -1, +1, or 0 for none */
 } se3di_crossing_function;
 
 typedef struct se3di_crossing {
@@ -30,9 +32,16 @@ typedef struct se3di_crossing {
     int32_t reserved;
 } se3di_crossing;
 
-/* All crossings after the begin of the step, in order of time, into `found`
- * [SE3DI_CROSSINGS_MAX]. What begins at zero has not crossed it; what ends at zero has. */
-se3d_status se3di_crossings_find(const se3di_crossing_function *function, se3di_crossing *found,
-                                 int *count);
+typedef struct se3di_crossings {
+    se3di_crossing list[SE3DI_CROSSINGS_MAX]; /* in order of time */
+    int32_t count;
+    int32_t side; /* on which the function was last seen beyond the band without a crossing since;
+                     only known (not 0) where it ends in the band */
+} se3di_crossings;
+
+/* All crossings after the begin of the step. A crossing is one of zero from a side on which the
+ * function has been beyond the band. What begins at zero has not crossed it; what ends at zero
+ * has. */
+se3d_status se3di_crossings_find(const se3di_crossing_function *function, se3di_crossings *found);
 
 #endif

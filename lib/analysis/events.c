@@ -7,6 +7,7 @@
 #include "math/quaternion.h"
 #include "math/vec3.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -295,14 +296,31 @@ static se3d_status eval_node(se3di_events *events, int node)
     return SE3D_OK;
 }
 
+/* This near to the level no side of it can be told: as asked for, at least its rounding. */
+static double band_of(const se3di_event *event)
+{
+    return fmax(event->hysteresis, 4.0 * DBL_EPSILON * fabs(event->level));
+}
+
+/* The step from `begin` follows the one that was looked at last. */
+static int follows(const se3di_events *events, double begin)
+{
+    return events->looked_stamp == events->run->model->history_stamp &&
+           !(events->looked_time < begin) && !(events->looked_time > begin);
+}
+
 /* The values at the first node are there: those that begin at their level, and the nodes. */
 static void choose_nodes(se3di_events *events, double begin, double end)
 {
+    const int goes_on = follows(events, begin);
     int fine = 0;
     for (uint32_t k = 0; k < events->slots.count; ++k) {
         double *g = &events->g[SE3DI_CROSSING_NODES * k];
-        *g = has_happened_at(events, k, begin) ? 0.0 : *g;
-        fine |= !(fabs(*g) > 0.0);
+        se3di_event *event = &events->list[k];
+        const int happened = has_happened_at(events, k, begin);
+        *g = happened ? 0.0 : *g;
+        event->side = goes_on && !happened ? event->side : 0;
+        fine |= !(fabs(*g) > band_of(event));
     }
     const double *s = fine ? fine_nodes : plain_nodes;
     events->node_count = fine ? (int)(sizeof fine_nodes / sizeof *fine_nodes)
@@ -316,23 +334,27 @@ static void choose_nodes(se3di_events *events, double begin, double end)
 /* Crossings of one event, into the list of hits. */
 static se3d_status find_hits(se3di_events *events, uint32_t k)
 {
-    se3di_crossing found[SE3DI_CROSSINGS_MAX];
-    int count = 0;
+    se3di_crossings found;
+    se3di_event *event = &events->list[k];
     const se3di_crossing_function function = {.rough = eval_rough,
                                               .exact = eval_exact,
                                               .ctx = events,
                                               .t = events->t,
                                               .g = &events->g[SE3DI_CROSSING_NODES * k],
                                               .count = events->node_count,
-                                              .direction = events->list[k].direction};
+                                              .band = band_of(event),
+                                              .direction = event->direction,
+                                              .side = event->side};
     events->looking_for = k;
-    SE3DI_TRY(se3di_crossings_find(&function, found, &count));
-    for (int n = 0; n < count; ++n) {
+    SE3DI_TRY(se3di_crossings_find(&function, &found));
+    event->side = found.side;
+    for (int n = 0; n < found.count; ++n) {
+        const se3di_crossing *crossing = &found.list[n];
         size_t at = events->hit_count++;
-        for (; at > 0 && events->hits[at - 1].time > found[n].t; --at) {
+        for (; at > 0 && events->hits[at - 1].time > crossing->t; --at) {
             events->hits[at] = events->hits[at - 1];
         }
-        events->hits[at] = (se3di_event_hit){found[n].t, k, found[n].direction};
+        events->hits[at] = (se3di_event_hit){crossing->t, k, crossing->direction};
     }
     return SE3D_OK;
 }
@@ -343,6 +365,8 @@ static se3d_status find_all_hits(se3di_events *events)
     for (uint32_t k = 0; k < events->slots.count; ++k) {
         SE3DI_TRY(find_hits(events, k));
     }
+    events->looked_time = events->t[events->node_count - 1];
+    events->looked_stamp = events->run->model->history_stamp;
     return SE3D_OK;
 }
 
@@ -449,8 +473,6 @@ static se3d_status look_ahead(se3di_events *events)
     }
     SE3DI_TRY(find_all_hits(events));
     events->looked = 1;
-    events->looked_stamp = model->history_stamp;
-    events->looked_time = end;
     return SE3D_OK;
 }
 

@@ -23,9 +23,10 @@ typedef struct se3di_event {
     se3d_event_callback callback;
     void *callback_ctx;
     double level;
+    double hysteresis;
     int32_t direction, action; /* se3d_event_direction, se3d_event_action */
     int32_t motion_only;
-    int32_t reserved;
+    int32_t side; /* where the last step ended near the level: the side it came from, 0: none */
 } se3di_event;
 
 /* A crossing in the step that was looked at last. */
@@ -56,9 +57,9 @@ typedef struct se3di_events {
     int32_t dense;        /* the step is one of dense output */
     uint32_t looking_for; /* dense index of the event whose crossing is being located */
     int32_t goes_on;      /* a callback changed the state: the run goes on from there */
-    int32_t looked;       /* the hits are those of the step that ends at looked_time, */
+    int32_t looked;       /* the hits are those of the step that ends at looked_time */
     int32_t reserved;
-    double looked_time;
+    double looked_time;    /* the end of the last step that was looked at, */
     uint64_t looked_stamp; /* in this history */
 } se3di_events;
 

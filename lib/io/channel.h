@@ -85,6 +85,8 @@ bool se3di_channel_find_number(se3d_model *model, const char *name, se3di_channe
 bool se3di_channel_is_continuous(const se3di_channel *channel);
 /* Whether they follow from time, positions and velocities. */
 bool se3di_channel_is_of_motion(const se3di_channel *channel);
+/* How large its numbers are where they are not small, in the present state. */
+double se3di_channel_get_scale(const se3di_channel *channel, const se3d_system *system);
 /* Every channel of the first 100 bodies, constraints and forces. @return NULL: out of memory. */
 se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `events`: reading them, and their values from channels. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -35,6 +36,14 @@ static bool find_source(se3d_model *model, const char *channel, se3di_event_sour
     return true;
 }
 
+/* Nearer to the level a number is rounding; that of accelerations and forces is larger, as it is
+ * what solving for them leaves. */
+static double default_hysteresis(const se3di_event_source *source)
+{
+    const double share = se3di_channel_is_of_motion(&source->channel) ? 1e-10 : 1e-8;
+    return share * se3di_channel_get_scale(&source->channel, source->model->system);
+}
+
 static se3d_status create_event(se3d_solver *solver, se3di_event_source *source,
                                 const se3d_event_def *def, se3d_event *out)
 {
@@ -42,6 +51,9 @@ static se3d_status create_event(se3d_solver *solver, se3di_event_source *source,
     used.value = eval_source;
     used.ctx = source;
     used.motion_only = se3di_channel_is_of_motion(&source->channel);
+    if (!(fabs(def->hysteresis) > 0.0)) {
+        used.hysteresis = default_hysteresis(source);
+    }
     return se3d_event_create(solver, &used, out);
 }
 
@@ -94,6 +106,7 @@ se3d_status se3di_events_create(const se3d_model *model, se3d_solver *solver)
         se3d_event event;
         def.name = entry->name;
         def.level = entry->level;
+        def.hysteresis = entry->hysteresis;
         def.direction = entry->direction;
         def.action = entry->action;
         status = create_event(solver, &entry->source, &def, &event);
@@ -149,6 +162,7 @@ static bool read_event(se3di_reader *reader, const se3di_node *node, se3di_event
         return se3di_reader_fail(reader, channel, "%s", problem);
     }
     return se3di_read_key_number(reader, node, "value", SE3DI_ANY, &event->level) &&
+           se3di_read_key_number(reader, node, "hysteresis", SE3DI_POSITIVE, &event->hysteresis) &&
            read_choices(reader, node, event);
 }
 

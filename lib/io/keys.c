@@ -96,7 +96,8 @@ static const char *const analysis_keys[] = {
 static const char *const modes_input_keys[] = {"body", "point", "direction", "torque", NULL};
 static const char *const modes_output_keys[] = {"body", "point", "direction", "quantity", NULL};
 static const char *const frequency_keys[] = {"from", "to", "count", NULL};
-static const char *const event_keys[] = {"name", "channel", "value", "direction", "action", NULL};
+static const char *const event_keys[] = {"name",   "channel",    "value", "direction",
+                                         "action", "hysteresis", NULL};
 static const char *const output_keys[] = {"file",  "every", "channels", "particles", "contacts",
                                           "vtk",   "plot",  "from",     "x",         "fft",
                                           "scene", "video", "speed",    NULL};

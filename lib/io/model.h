@@ -93,6 +93,7 @@ typedef struct se3di_event_entry {
     const char *channel; /* with its component */
     se3di_event_source source;
     double level;
+    double hysteresis; /* 0: chosen for the channel */
     int32_t direction; /* se3d_event_direction */
     int32_t action;    /* se3d_event_action */
 } se3di_event_entry;

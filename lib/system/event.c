@@ -4,6 +4,7 @@
 
 #include "system/solver.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -16,6 +17,7 @@ void se3d_event_def_init(se3d_event_def *def, size_t size)
 static se3d_status check_numbers(se3d_system *system, const se3d_event_def *def)
 {
     SE3DI_TRY(se3di_check_finite(system, "level", def->level));
+    SE3DI_TRY(se3di_check_range(system, "hysteresis", def->hysteresis, 0.0, DBL_MAX));
     if (def->direction < SE3D_EVENT_FALLING || def->direction > SE3D_EVENT_RISING) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "direction = %d, must be one of se3d_event_direction",
@@ -77,6 +79,7 @@ se3d_status se3d_event_create(se3d_solver *solver, const se3d_event_def *def, se
                                .callback = full.callback,
                                .callback_ctx = full.callback_ctx,
                                .level = full.level,
+                               .hysteresis = full.hysteresis,
                                .direction = full.direction,
                                .action = full.action,
                                .motion_only = full.motion_only != 0};

@@ -31,6 +31,11 @@ static void event_definitions_are_checked(arguments *a, se3d_solver *solver)
     def.level = (double)INFINITY;
     REJECTED(se3d_event_create(solver, &def, &event), SE3D_ERR_INVALID_ARGUMENT);
     def.level = 0.0;
+    def.hysteresis = -1.0;
+    REJECTED(se3d_event_create(solver, &def, &event), SE3D_ERR_INVALID_ARGUMENT);
+    def.hysteresis = (double)NAN;
+    REJECTED(se3d_event_create(solver, &def, &event), SE3D_ERR_INVALID_ARGUMENT);
+    def.hysteresis = 0.0;
     def.direction = 2;
     REJECTED(se3d_event_create(solver, &def, &event), SE3D_ERR_INVALID_ARGUMENT);
     def.direction = -2;
