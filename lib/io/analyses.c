@@ -123,6 +123,11 @@ static bool takes_time(const se3d_solver_def *solver)
            solver->analysis == SE3D_ANALYSIS_DYNAMICS;
 }
 
+bool se3di_analysis_has_motion(const se3di_analysis_entry *entry)
+{
+    return !entry->modes.file && takes_time(&entry->solver);
+}
+
 static bool has_fixed_steps(int32_t method)
 {
     return method == SE3D_METHOD_GENERALIZED_ALPHA || method == SE3D_METHOD_HHT ||

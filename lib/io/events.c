@@ -179,6 +179,22 @@ static bool check_file(se3di_reader *reader, const se3di_node *list)
     return true;
 }
 
+/* Events of a model in which nothing ever moves. What --analysis asks for may have none. */
+static bool check_motion(se3di_reader *reader, const se3di_node *list)
+{
+    const se3d_model *model = reader->model;
+    for (size_t k = 0; k < model->analysis_count; ++k) {
+        if (se3di_analysis_has_motion(&model->analyses[k])) {
+            return true;
+        }
+    }
+    return model->analysis_count == 0 || reader->options->analysis ||
+           se3di_reader_fail(reader, list,
+                             "need an `analysis` with a motion (kinematics, inverse_dynamics, "
+                             "dynamics): %s has none",
+                             model->analyses[0].analysis.type);
+}
+
 bool se3di_read_events(se3di_reader *reader, const se3di_node *root)
 {
     se3d_model *model = reader->model;
@@ -200,5 +216,5 @@ bool se3di_read_events(se3di_reader *reader, const se3di_node *root)
         }
         ++model->event_count;
     }
-    return check_file(reader, list);
+    return check_file(reader, list) && check_motion(reader, list);
 }

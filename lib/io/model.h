@@ -81,6 +81,9 @@ typedef struct se3di_output_entry {
 double se3di_output_count_rows(const se3di_output_entry *output,
                                const se3di_analysis_entry *analysis, double *every);
 
+/* Whether time passes in it, so that there can be events. */
+bool se3di_analysis_has_motion(const se3di_analysis_entry *entry);
+
 /* What an event looks at: a number of a channel. */
 typedef struct se3di_event_source {
     se3di_channel channel;

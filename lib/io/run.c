@@ -167,6 +167,16 @@ static se3d_status open_events(runner *r)
     return status < 0 ? fail_path(r, path, events->csv.failure) : SE3D_OK;
 }
 
+/* Where nothing moves there are no events. */
+static bool has_events(const se3d_model *model)
+{
+    bool moves = false;
+    for (size_t k = 0; k < model->analysis_count; ++k) {
+        moves = moves || se3di_analysis_has_motion(&model->analyses[k]);
+    }
+    return moves && model->event_count > 0;
+}
+
 static se3d_status open_files(runner *r)
 {
     se3d_model *model = r->model;
@@ -187,7 +197,7 @@ static se3d_status open_files(runner *r)
             return status;
         }
     }
-    return model->event_count > 0 ? open_events(r) : SE3D_OK;
+    return has_events(model) ? open_events(r) : SE3D_OK;
 }
 
 /* Number of rows of each file in this analysis. */
@@ -459,13 +469,6 @@ static se3d_status run_modes(runner *r, const se3di_analysis_entry *entry, doubl
     return status < 0 ? fail_analysis(r, entry, status, start) : sample_files(r, start, 0.0, start);
 }
 
-static bool has_motion(const se3di_analysis_entry *entry)
-{
-    const int32_t analysis = entry->solver.analysis;
-    return !entry->modes.file && analysis != SE3D_ANALYSIS_ASSEMBLY &&
-           analysis != SE3D_ANALYSIS_EQUILIBRIUM;
-}
-
 static se3d_status collect_events(runner *r, size_t index, se3d_status status)
 {
     se3d_run *run = r->run;
@@ -493,7 +496,7 @@ static se3d_status run_analysis(runner *r, size_t index)
         if (status >= 0 && !entry->modes.file) {
             status = se3d_solver_create(r->model->system, &entry->solver, &r->solver);
         }
-        if (status >= 0 && has_motion(entry)) {
+        if (status >= 0 && se3di_analysis_has_motion(entry)) {
             status = se3di_events_create(r->model, r->solver);
         }
         status = status < 0          ? fail_analysis(r, entry, status, start)
