@@ -4,39 +4,12 @@
 #include "check.h"
 #include "se3d/io.h"
 #include "se3d/se3d.h"
+#include "support/scratch.h"
 
-#define FOLDER "/tmp/"
 #define MODEL(file)                                                                                \
     "se3d: 1\ncontact: {}\nmaterials: [{name: m, density: 1, stiffness: 1}]\n"                     \
     "bodies: [{name: b, fixed: true, shapes: [{type: mesh, name: s, material: m, scale: 0.5, "     \
     "file: " file "}]}]\n"
-
-static void write_file(const char *name, const void *bytes, size_t size)
-{
-    char path[200];
-    snprintf(path, sizeof path, FOLDER "%s", name);
-    FILE *file = fopen(path, "wb");
-    CHECK(file && fwrite(bytes, 1, size, file) == size);
-    if (file) {
-        fclose(file);
-    }
-}
-
-static void remove_file(const char *name)
-{
-    char path[200];
-    snprintf(path, sizeof path, FOLDER "%s", name);
-    remove(path);
-}
-
-static se3d_model *read_model(const char *text, se3d_model_error *error)
-{
-    se3d_model *model = NULL;
-    se3d_status status =
-        se3d_model_read_text(text, strlen(text), FOLDER "se3d_test_mesh.yaml", NULL, &model, error);
-    CHECK((status == SE3D_OK) == (model != NULL));
-    return model;
-}
 
 static const char ascii[] =
     "solid part\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 2\n   vertex 2.0e0 0 2\n"
@@ -61,12 +34,12 @@ static void stl_and_obj_give_the_same_surface(void)
     unsigned char bytes[200];
     const char *const texts[3] = {MODEL("se3d_test_mesh.stl"), MODEL("se3d_test_mesh_b.STL"),
                                   MODEL("se3d_test_mesh.obj")};
-    write_file("se3d_test_mesh.stl", ascii, sizeof ascii - 1);
-    write_file("se3d_test_mesh_b.STL", bytes, binary(bytes, 2.0f));
-    write_file("se3d_test_mesh.obj", obj, sizeof obj - 1);
+    scratch_write("se3d_test_mesh.stl", ascii, sizeof ascii - 1);
+    scratch_write("se3d_test_mesh_b.STL", bytes, binary(bytes, 2.0f));
+    scratch_write("se3d_test_mesh.obj", obj, sizeof obj - 1);
     for (int k = 0; k < 3; ++k) {
         se3d_model_error error = {0, 0, ""};
-        se3d_model *model = read_model(texts[k], &error);
+        se3d_model *model = scratch_read_model(texts[k], &error);
         if (!model) {
             fprintf(stderr, "%s\n", error.message);
             CHECK(model != NULL);
@@ -85,9 +58,9 @@ static void stl_and_obj_give_the_same_surface(void)
         CHECK_NEAR(point[0], 1.0, 1e-15);
         se3d_model_destroy(model);
     }
-    remove_file("se3d_test_mesh.stl");
-    remove_file("se3d_test_mesh_b.STL");
-    remove_file("se3d_test_mesh.obj");
+    scratch_remove("se3d_test_mesh.stl");
+    scratch_remove("se3d_test_mesh_b.STL");
+    scratch_remove("se3d_test_mesh.obj");
 }
 
 static void refuse(const char *name, const char *text, const void *bytes, size_t size,
@@ -95,15 +68,15 @@ static void refuse(const char *name, const char *text, const void *bytes, size_t
 {
     se3d_model_error error = {0, 0, ""};
     if (bytes) {
-        write_file(name, bytes, size);
+        scratch_write(name, bytes, size);
     }
-    se3d_model *model = read_model(text, &error);
+    se3d_model *model = scratch_read_model(text, &error);
     CHECK(!model);
     CHECK(error.line == 4);
     CHECK_CONTAINS(error.message, "shapes[0]");
     CHECK_CONTAINS(error.message, part);
     se3d_model_destroy(model);
-    remove_file(name);
+    scratch_remove(name);
 }
 
 static void broken_files_are_refused_with_their_place(void)

@@ -4,8 +4,8 @@
 #include "check.h"
 #include "se3d/io.h"
 #include "se3d/se3d.h"
+#include "support/scratch.h"
 
-#define FOLDER         "/tmp/"
 #define FILE_NAME(end) "se3d_test_solid" end
 #define BODY(shape, file)                                                                          \
     "se3d: 1\nbodies:\n  - name: b\n    density: 3\n    shapes: [{type: mesh, file: " file         \
@@ -13,33 +13,15 @@
 
 static const double pi = 3.14159265358979323846;
 
-static void write_bytes(const char *name, const void *bytes, size_t size)
-{
-    char path[200];
-    snprintf(path, sizeof path, FOLDER "%s", name);
-    FILE *file = fopen(path, "wb");
-    CHECK(file && fwrite(bytes, 1, size, file) == size);
-    if (file) {
-        fclose(file);
-    }
-}
-
 static void write_obj(const char *text)
 {
-    write_bytes(FILE_NAME(".obj"), text, strlen(text));
+    scratch_write(FILE_NAME(".obj"), text, strlen(text));
 }
 
 static void remove_files(void)
 {
-    remove(FOLDER FILE_NAME(".obj"));
-    remove(FOLDER FILE_NAME(".stl"));
-}
-
-static se3d_model *read_model(const char *text, se3d_model_error *error)
-{
-    se3d_model *model = NULL;
-    se3d_model_read_text(text, strlen(text), FOLDER "se3d_test_solid.yaml", NULL, &model, error);
-    return model;
+    scratch_remove(FILE_NAME(".obj"));
+    scratch_remove(FILE_NAME(".stl"));
 }
 
 static void expect(const char *text, double mass, const double inertia[6], double tolerance)
@@ -48,7 +30,7 @@ static void expect(const char *text, double mass, const double inertia[6], doubl
     se3d_body body;
     double m = 0.0;
     double J[6] = {0.0};
-    se3d_model *model = read_model(text, &error);
+    se3d_model *model = scratch_read_model(text, &error);
     CHECK(model != NULL);
     if (!model) {
         fprintf(stderr, "%s\n", error.message);
@@ -69,7 +51,7 @@ static void refuse(const char *obj, const char *shape, const char *part)
     se3d_model_error error = {0, 0, ""};
     write_obj(obj);
     snprintf(text, sizeof text, BODY("%s", FILE_NAME(".obj")), shape);
-    se3d_model *model = read_model(text, &error);
+    se3d_model *model = scratch_read_model(text, &error);
     CHECK(!model);
     CHECK(error.line == 5);
     CHECK_CONTAINS(error.message, part);
@@ -190,7 +172,7 @@ static size_t write_sphere(int rings)
             record += 100;
         }
     }
-    write_bytes(FILE_NAME(".stl"), bytes, 84 + 50 * count);
+    scratch_write(FILE_NAME(".stl"), bytes, 84 + 50 * count);
     return count;
 }
 
@@ -203,7 +185,7 @@ static void a_fine_sphere_comes_near_the_ball(void)
         double m = 0.0, J[6] = {0.0};
         se3d_body body;
         write_sphere(fine ? 64 : 32);
-        se3d_model *model = read_model(BODY("scale: 1", FILE_NAME(".stl")), &message);
+        se3d_model *model = scratch_read_model(BODY("scale: 1", FILE_NAME(".stl")), &message);
         CHECK(model != NULL);
         if (!model) {
             fprintf(stderr, "%s\n", message.message);
@@ -242,7 +224,7 @@ static void an_open_mesh_without_density_is_drawn(void)
     expect("se3d: 1\nbodies:\n  - name: b\n    shapes: [{type: mesh, file: " FILE_NAME(
                ".obj") "}, {type: box, size: [1, 2, 4], density: 3}]\n",
            24.0, box_inertia, 1e-14);
-    se3d_model *model = read_model(
+    se3d_model *model = scratch_read_model(
         "se3d: 1\nbodies:\n  - name: b\n    mass: 1\n    inertia: [1, "
         "1, 1]\n    density: 3\n    shapes: [{type: mesh, file: " FILE_NAME(".obj") "}]\n",
         &error);
