@@ -1,9 +1,17 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Files that a model names: meshes, tables of particles. */
+#if !defined(_WIN32)
+#define _POSIX_C_SOURCE 200809L
+#endif
+
 #include <stdio.h>
 #include <string.h>
 
 #include "io/reader.h"
+
+#if !defined(_WIN32)
+#include <sys/stat.h>
+#endif
 
 enum { FILE_BYTES_MAX = 1 << 28 };
 
@@ -21,6 +29,18 @@ static const char *find(const se3di_reader *reader, se3di_iopool *pool, const ch
     return path;
 }
 
+/* Not a folder, nor a pipe or device, which might never end. */
+static bool is_plain(const char *path)
+{
+#if defined(_WIN32)
+    (void)path;
+    return true;
+#else
+    struct stat about;
+    return stat(path, &about) != 0 || S_ISREG(about.st_mode);
+#endif
+}
+
 static bool fail(se3di_reader *reader, const se3di_node *map, const char *file, const char *what)
 {
     return se3di_reader_fail_key(reader, map, "file", "`%.200s`: the file %s", file, what);
@@ -32,6 +52,9 @@ bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const ch
     const char *path = find(reader, pool, file);
     if (!path) {
         return se3di_reader_fail_memory(reader);
+    }
+    if (!is_plain(path)) {
+        return fail(reader, map, file, "is none, but a folder, a pipe or a device");
     }
     FILE *stream = fopen(path, "rb");
     if (!stream) {

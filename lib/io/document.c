@@ -299,6 +299,11 @@ static void parse_events(builder *b, yaml_parser_t *parser, const char *text, si
     }
 }
 
+size_t se3di_byte_order_mark_length(const char *text, size_t length)
+{
+    return length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+}
+
 se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const char *text,
                                  size_t length, se3di_node **root, se3d_model_error *error)
 {
@@ -310,10 +315,9 @@ se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const cha
                 (int)SE3DI_DOCUMENT_BYTES_MAX);
         return b.status;
     }
-    if (length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) {
-        text += 3;
-        length -= 3;
-    }
+    const size_t mark = se3di_byte_order_mark_length(text, length);
+    text += mark;
+    length -= mark;
     yaml_parser_t parser;
     if (!yaml_parser_initialize(&parser)) {
         fail_memory(&b);

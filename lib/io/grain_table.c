@@ -17,7 +17,8 @@ enum {
     FIELD_ID = 12,
     FIELD_COUNT = 13,
     COLUMNS_MAX = 32,
-    CELL_SIZE = 200
+    CELL_SIZE = 200,
+    QUOTE_MAX = 24 /* of a file that may not have been meant to be shown */
 };
 
 static const char *const fields[FIELD_COUNT + 1] = {
@@ -41,8 +42,8 @@ typedef struct table {
 static bool fail(const table *t, const char *cell, const char *what)
 {
     return se3di_reader_fail_key(t->reader, t->node, "file",
-                                 "`%.200s`, line %zu, column %zu: `%.60s` %s", t->file, t->line,
-                                 t->column, cell, what);
+                                 "`%.200s`, line %zu, column %zu: `%.*s` %s", t->file, t->line,
+                                 t->column, (int)QUOTE_MAX, cell, what);
 }
 
 /* Cut the next cell of the line; *last: it ends the line. */
@@ -256,6 +257,9 @@ bool se3di_read_grain_table(se3di_reader *reader, const se3di_node *node, se3d_m
                 se3di_read_attachment(reader, node, t.file, &pool, &t.at, &size);
     if (good && memchr(t.at, '\0', size)) {
         good = se3di_reader_fail_key(reader, node, "file", "`%.200s` is not a text", t.file);
+    }
+    if (good) {
+        t.at += se3di_byte_order_mark_length(t.at, size);
     }
     good = good && read_header(&t) && allocate(&t) && read_rows(&t) && add_rows(&t, tag);
     se3di_iopool_destroy(&pool);

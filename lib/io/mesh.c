@@ -287,7 +287,9 @@ static bool ends_with(const char *text, const char *end)
 
 static bool read_text(scanner *s, size_t bytes)
 {
+    const size_t mark = se3di_byte_order_mark_length(s->at, bytes); /* a binary file has none */
     if (ends_with(s->file, ".obj")) {
+        s->at += mark;
         return read_obj(s);
     }
     if (!ends_with(s->file, ".stl")) {
@@ -297,6 +299,7 @@ static bool read_text(scanner *s, size_t bytes)
         (bytes - STL_HEAD) % STL_RECORD == 0) {
         return read_binary_stl(s);
     }
+    s->at += mark;
     return take_word(s, "solid")
                ? read_ascii_stl(s)
                : fail(s, "is neither an ASCII STL file nor a binary one of the length that its "
