@@ -24,6 +24,7 @@
 #define ROUNDS          3   /* Newton, then damped twice */
 #define TURN_MAX        0.5 /* rad in one step */
 #define CURVATURE_FLOOR 1e-10
+#define LOAD_ROUNDING   1e-13 /* of the largest load or multiplier */
 
 typedef struct statics {
     se3di_equations *equations;
@@ -114,17 +115,38 @@ static int solve_exactly(statics *s)
     return 1;
 }
 
-/* y = (|sym Kr| + damping)^-1 r in the eigenvectors. */
+static double largest_of(size_t count, const double *x)
+{
+    double largest = 0.0;
+    for (size_t k = 0; k < count; ++k) {
+        largest = fmax(largest, fabs(x[k]));
+    }
+    return largest;
+}
+
+/* What rounding leaves unbalanced. */
+static double rounding_of(const se3di_linear *linear)
+{
+    return LOAD_ROUNDING * fmax(largest_of((size_t)linear->n, linear->load),
+                                largest_of((size_t)linear->rows, linear->lambda));
+}
+
+/* y = (|sym Kr| + damping)^-1 r in the eigenvectors. Where there is no curvature (a link of a chain
+ * turns about itself) rounding must not be taken for a load: it would move the bodies for ever. */
 static void solve_downhill(statics *s, double largest)
 {
     size_t f = (size_t)s->linear.freedoms;
     double floor = fmax(CURVATURE_FLOOR, s->damping) * largest;
+    double rounding = rounding_of(&s->linear);
     memset(s->y, 0, f * sizeof *s->y);
     for (size_t k = 0; k < f; ++k) {
         double curvature = fabs(s->w[k]) + s->damping * largest;
         double along = 0.0;
         for (size_t c = 0; c < f; ++c) {
             along += s->V[k * f + c] * s->r[c];
+        }
+        if (curvature <= floor && fabs(along) <= rounding) {
+            continue;
         }
         along /= fmax(fmax(curvature, floor), 1e-300);
         for (size_t c = 0; c < f; ++c) {
