@@ -248,6 +248,8 @@ static se3d_status iterate(bdf *m, double t, int refactor, double *size)
     return isfinite(*size) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
+/* A fall from a correction that had blown up (a stop, a contact that comes and goes) says nothing
+ * of what remains: what is left must be small by itself, too. */
 static se3d_status iterate_to_convergence(bdf *m, double t)
 {
     double before = HUGE_VAL, size = HUGE_VAL;
@@ -261,7 +263,7 @@ static se3d_status iterate_to_convergence(bdf *m, double t)
     for (int k = 0; k < 10; ++k) {
         SE3DI_TRY(iterate(m, t, refactor, &size));
         const int is_traced = se3di_newton_note(&m->integration->newton, size * m->tolerance);
-        if (size <= 1e-3 || (k > 0 && size * size / before <= 1e-4) ||
+        if (size <= 1e-3 || (k > 0 && size <= 1.0 && size * size / before <= 1e-4) ||
             (k > 1 && size > 0.8 * before && size * m->tolerance <= SE3DI_STATE_NOISE)) {
             return SE3D_OK;
         }

@@ -18,7 +18,8 @@
 #include <math.h>
 #include <string.h>
 
-#define STAGES SE3DI_RADAU_STAGES
+#define STAGES   SE3DI_RADAU_STAGES
+#define RATE_MIN 1e-3
 const double se3di_radau_c[3] = {0.15505102572168219, 0.64494897427831781, 1.0};
 const double se3di_radau_a[3][3] = {
     {0.19681547722366042586, -0.0655354258501983881, 0.02377097434822015242},
@@ -396,12 +397,14 @@ static se3d_status iterate(se3di_radau *m, int refactor)
     return isfinite(m->size) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
+/* A faster fall than RATE_MIN says nothing of what remains: where a stop or a contact comes and
+ * goes between iterations, corrections blow up and fall back by many orders. */
 static int has_converged(const se3di_radau *m, double rate)
 {
     if (rate > 0.8) {
         return m->size <= 0.1 || (m->iterations > 1 && m->size * m->tolerance <= SE3DI_STATE_NOISE);
     }
-    return m->size * rate / (1.0 - rate) <= 1.0;
+    return m->size * fmax(rate, RATE_MIN) / (1.0 - rate) <= 1.0;
 }
 
 static se3d_status iterate_to_convergence(se3di_radau *m)
