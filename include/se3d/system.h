@@ -97,7 +97,7 @@ SE3D_API se3d_status se3d_system_get_energy(const se3d_system *system, se3d_ener
  * no works. @since 0.1 */
 typedef struct se3d_work {
     double dissipated;
-    double actuators; /* h of springs, loads, callbacks */
+    double actuators; /* h of springs, loads, callbacks; particles on bodies */
     double drivers;
 } se3d_work;
 

@@ -195,6 +195,18 @@ void se3di_sets_push(const se3di_model *model, double *push)
     }
 }
 
+double se3di_sets_power(const se3di_model *model, const double *push)
+{
+    double power = 0.0;
+    for (size_t b = 0; b < model->body_slots.count; ++b) {
+        if (!model->bodies[b].fixed) {
+            power += se3di_dot(push + 6 * b, model->frames[b].v) +
+                     se3di_dot(push + 6 * b + 3, model->frames[b].w);
+        }
+    }
+    return power;
+}
+
 double se3di_sets_step(const se3di_model *model)
 {
     double step = 0.0;

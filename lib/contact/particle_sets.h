@@ -35,6 +35,8 @@ se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_erro
 void se3di_sets_kick(se3di_model *model, double h);
 /* What the particles do to the bodies [bodies * 6]: force (ground frame), torque (body frame). */
 void se3di_sets_push(const se3di_model *model, double *push);
+/* The power of that [W]. */
+double se3di_sets_power(const se3di_model *model, const double *push);
 /* The step that the particles want; 0: any. */
 double se3di_sets_step(const se3di_model *model);
 

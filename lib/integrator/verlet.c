@@ -51,6 +51,15 @@ static void close_kick(verlet *m)
     }
 }
 
+/* The work of the particles on the bodies, beside that of the step in the audit. Their impulses at
+ * the ends of a step are symmetric about the velocities there: the trapezoidal rule is exact. */
+static void account(const verlet *m)
+{
+    double power = se3di_sets_power(m->model, m->push);
+    m->model->work[1] += 0.5 * m->h * power; /* the other half: with the next step, from `power` */
+    m->model->power[1] += power;
+}
+
 /* One step to t1 that leaves the last half kick of the particles open. */
 static se3d_status advance(verlet *m, double t1)
 {
@@ -77,6 +86,9 @@ static se3d_status advance(verlet *m, double t1)
     if (status < 0) {
         se3di_lie_verlet_restore(bodies, t0);
         return status;
+    }
+    if (m->model->sets) {
+        account(m);
     }
     ++bodies->equations->counters.steps;
     return contact; /* the step is complete, and the last one */

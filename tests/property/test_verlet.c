@@ -144,6 +144,23 @@ static void measure_momentum(const world *w, double sum[6], double *size)
     }
 }
 
+static double energy_kinetic(const world *w)
+{
+    se3d_energy energy = {0};
+    CHECK(!se3d_system_get_energy(w->system, &energy));
+    return energy.kinetic;
+}
+
+/* Energy of the bodies, less what drivers and particles did on them. */
+static double balance(const world *w)
+{
+    se3d_energy energy = {0};
+    se3d_work work = {0};
+    CHECK(!se3d_system_get_energy(w->system, &energy));
+    CHECK(!se3d_system_get_work(w->system, &work));
+    return energy.kinetic + energy.potential + work.dissipated - work.actuators - work.drivers;
+}
+
 /* A long free box is hit by a cloud off its centre: it tumbles. */
 static void momentum_of_bodies_and_particles_is_kept_to_rounding(void)
 {
@@ -168,6 +185,8 @@ static void momentum_of_bodies_and_particles_is_kept_to_rounding(void)
         }
         CHECK(!se3d_body_get_angular_velocity(w.system, w.body, w1));
         CHECK(fabs(w1[1]) > 1.0); /* much has happened */
+        CHECK(energy_kinetic(&w) > 0.05);
+        CHECK_NEAR(balance(&w), 0.0, 1e-4 * energy_kinetic(&w));
         close_world(&w);
     }
 }
@@ -213,6 +232,7 @@ static void a_joint_carries_the_grains_in_its_tray(void)
     CHECK(fabs(reaction[1]) < 0.01 * 9.81 * mass);
     CHECK(!se3d_system_get_violation(w.system, violation));
     CHECK(violation[0] < 1e-12 && violation[1] < 1e-10);
+    CHECK_NEAR(balance(&w), 0.0, 1e-4 * 9.81 * mass * 0.1); /* of the tray alone, at z = 0 */
     close_world(&w);
 }
 
