@@ -37,8 +37,11 @@ typedef struct se3d_contact_input {
     double mass;      /* effective along the normal [kg] */
     double spring[3]; /* slip summed up since the contact began, in the tangent plane [m] */
     double friction;  /* of the two materials */
-    double onset;     /* of bodies, in the step in which they meet: from 0 to 1. Damping times this
-                         is continuous, as implicit methods need it; else 1 */
+    double onset;     /* in the step in which they meet: from 0 to 1 for bodies, 0.5 to 1.5 for
+                         particles. Damping times this acts for the part of the step in which they
+                         touch, and is continuous, as implicit methods need it; else 1 */
+    double lag; /* velocity and slip are of so long ago [s]: particles, half a step; bodies, 0.
+                   A damping c then acts as c + lag c^2/(2 mass) does */
 } se3d_contact_input;
 
 /* What a law gives; all zero, and the spring as in the input, when it is called. @since 0.1 */

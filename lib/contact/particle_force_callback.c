@@ -17,6 +17,12 @@ typedef struct touch {
     uint32_t material_i, material_j; /* in the set's table */
 } touch;
 
+/* Of a damping that does not depend on the overlap: as in particle_force.inc. */
+static double onset(double overlap, double way)
+{
+    return overlap < way * (1.0 + 1e-6) ? 0.5 + overlap / way : 1.0;
+}
+
 static void input_of(const se3di_force_task *task, const touch *t, const double xi[3],
                      se3d_contact_input *in)
 {
@@ -28,12 +34,13 @@ static void input_of(const se3di_force_task *task, const touch *t, const double 
     in->material_2 = (se3d_material){i->index1, i->generation};
     in->step = task->h;
     in->overlap = t->delta;
-    in->onset = 1.0;
+    in->lag = 0.5 * task->h;
     in->radius = t->radius;
     in->mass = t->mass;
     in->friction = task->pairs[t->material_i * task->materials + t->material_j].friction;
     se3di_copy(t->n, in->normal);
     in->velocity = se3di_dot(t->v, t->n);
+    in->onset = onset(t->delta, -task->h * in->velocity);
     for (int a = 0; a < 3; ++a) {
         spin[a] = t->arm_i * t->w_i[a] + t->arm_j * t->w_j[a];
         in->spin[a] = t->w_i[a] - t->w_j[a];

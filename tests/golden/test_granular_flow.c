@@ -129,14 +129,16 @@ static void discharge_through_a_slot_follows_beverloo(void)
 {
     /* narrower ones than 6 d pass less than the law says */
     const double d = 0.006, D[2] = {6.5 * d, 8.0 * d};
-    double scaled[2];
+    double scaled[2], ratio[2];
     for (int k = 0; k < 2; ++k) {
-        CHECK_NEAR(discharge(D[k], &scaled[k]), 1.0, 0.15);
+        ratio[k] = discharge(D[k], &scaled[k]);
+        CHECK_NEAR(ratio[k], 1.0, 0.15);
     }
+    /* C by itself follows badly from two slots: a rate that is off by 1 % moves it by 6 %. */
+    CHECK_NEAR(ratio[0], ratio[1], 0.05);
     double slope = (scaled[1] - scaled[0]) / (D[1] - D[0]);
     double C = pow(slope, 1.5), k = (D[0] - scaled[0] / slope) / d;
     printf("C = %.3f, k = %.2f\n", C, k);
-    CHECK_NEAR(C, 1.03, 0.15 * 1.03);
     CHECK(k > 1.0 && k < 2.9); /* the range that Beverloo et al. report */
 }
 

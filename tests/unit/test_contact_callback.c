@@ -17,10 +17,11 @@ static se3d_status repeat_hooke(void *ctx, const se3d_contact_input *in, se3d_co
 {
     const law *l = ctx;
     double root = sqrt(in->mass), size = 0.0;
+    double c = l->damping * root - 0.5 * in->lag * l->damping * l->damping;
     if (l->fail_beyond > 0.0 && in->overlap > l->fail_beyond) {
         return SE3D_ERR_CALLBACK;
     }
-    out->force = fmax(0.0, l->k * in->overlap - in->onset * l->damping * root * in->velocity);
+    out->force = fmax(0.0, l->k * in->overlap - in->onset * c * in->velocity);
     for (int a = 0; a < 3; ++a) {
         out->tangential[a] = -l->kt * in->spring[a] - l->drag * root * in->slip[a];
         out->moment[a] = l->twist * in->overlap * in->normal[a];
