@@ -14,6 +14,7 @@
 #include <string.h>
 
 #define DAMPED_ITERATIONS 200
+#define GAP_MAX           100.0 /* sizes; a larger one is the size */
 
 typedef struct position_problem {
     se3di_equations *equations;
@@ -399,6 +400,22 @@ static se3d_status report_gap(const position_problem *problem, double t, int sta
         t, gap);
 }
 
+/* A mechanism whose points all lie at the origins of their bodies has no size of its own: what it
+ * is open by is one, else a step would be limited to nothing. */
+static void widen(position_problem *problem)
+{
+    const se3di_equations *equations = problem->equations;
+    double gap = 0.0;
+    for (uint32_t k = 0; k < equations->assembly.constraint_count; ++k) {
+        gap =
+            fmax(gap, measure_joint(equations, &equations->assembly.model->constraints[k]).length);
+    }
+    if (gap > GAP_MAX * problem->size) {
+        problem->size = gap;
+        measure(problem);
+    }
+}
+
 se3d_status se3di_position_solve(se3di_equations *equations, double t)
 {
     position_problem problem = {.equations = equations};
@@ -407,6 +424,7 @@ se3d_status se3di_position_solve(se3di_equations *equations, double t)
     problem.size = se3di_model_get_size(equations->assembly.model);
     SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
     measure(&problem);
+    widen(&problem);
     SE3DI_TRY(run_newton(&problem, &converged));
     for (int round = 0; round < 3 && !converged && !stationary; ++round) {
         SE3DI_TRY(run_damped(&problem, round == 0 ? 1e-4 : 1e-11, &stationary));

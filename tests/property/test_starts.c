@@ -122,8 +122,35 @@ static void point_masses_swing_at_every_tolerance(void)
     }
 }
 
+/* All points at the origins: nothing but the gap says how large the mechanism is. */
+static void slides_without_a_size_start_from_any_distance(void)
+{
+    static const char *const drivers[] = {"1.0e-3", "0.3", "40", "-2.0e+5"};
+    for (int run = 0; run < 8; ++run) {
+        char text[800];
+        snprintf(text, sizeof text,
+                 "se3d: 1\nbodies:\n  - {name: a, mass: 2, inertia: [1, 1, 1]}\n"
+                 "  - {name: b, mass: 2, inertia: [1, 1, 1]}\njoints:\n"
+                 "  - {name: j, type: prismatic, body_i: ground, body_j: a, at: [0, 0, 0], axis: "
+                 "[1, 2, 3]}\n"
+                 "  - {name: k, type: prismatic, body_i: a, body_j: b, at: [0, 0, 0], axis: [1, "
+                 "-2, 3]}\n"
+                 "drivers: [{joint: j, value: %s}, {joint: k, value: 0.5}]\n"
+                 "analysis: {type: kinematics, duration: 1}\n"
+                 "output: [{file: a.csv, channels: [j.displacement, k.displacement]}]\n",
+                 drivers[run / 2]);
+        text_model m = text_model_open(text, -1, run % 2, 0.0);
+        CHECK(text_model_run(&m, 0.0));
+        const double x = atof(drivers[run / 2]);
+        CHECK_NEAR(text_model_get(&m, 0, 0), x, 1e-14 + 1e-15 * fabs(x));
+        CHECK_NEAR(text_model_get(&m, 1, 0), 0.5, 1e-14 + 1e-15 * fabs(x));
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
+    RUN(slides_without_a_size_start_from_any_distance);
     RUN(point_masses_swing_at_every_tolerance);
     RUN(angles_count_turns_between_outputs);
     RUN(block_that_slides_at_the_start_is_braked);
