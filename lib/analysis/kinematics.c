@@ -4,6 +4,7 @@
  * (Haug 1989, ch. 3, 11). docs/theory/kinematics.md */
 #include "analysis/run.h"
 
+#include "analysis/friction_start.h"
 #include "analysis/jump.h"
 #include "analysis/singular.h"
 #include "analysis/turns.h"
@@ -39,6 +40,9 @@ se3d_status se3di_kinematics_advance(se3di_equations *equations, double t)
 {
     predict(equations, t - equations->assembly.model->time);
     SE3DI_TRY(se3di_state_solve(equations, t));
+    if (equations->audits) {
+        SE3DI_TRY(se3di_friction_follow(equations, t));
+    }
     equations->assembly.model->time = t;
     return SE3D_OK;
 }
@@ -100,6 +104,7 @@ static se3d_status step_with_works(se3di_equations *equations, double h)
             return status;
         }
         se3di_angles_accept(model);
+        se3di_stops_accept(model);
         for (int k = 0; k < 3; ++k) {
             work[k] += h * weights[node] * power[k];
         }

@@ -333,6 +333,8 @@ static se3d_status run_kinematics(se3di_run *run, double t_end)
         SE3DI_TRY(settle(run, run->model->time));
     }
     if (run->equations.audits) {
+        SE3DI_TRY(se3di_friction_follow(&run->equations, run->model->time));
+        se3di_stops_accept(run->model);
         SE3DI_TRY(se3di_work_accept(run->model, 0.0));
     } else {
         memset(run->model->work, 0, sizeof run->model->work);

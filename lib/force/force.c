@@ -153,6 +153,15 @@ uint32_t se3di_forces_revise(se3di_model *model)
     return changes;
 }
 
+void se3di_stops_accept(se3di_model *model)
+{
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (model->forces[k].type == SE3DI_FORCE_STOP) {
+            se3di_stop_accept(model, &model->forces[k]);
+        }
+    }
+}
+
 void se3di_forces_accept(se3di_model *model)
 {
     for (size_t k = 0; k < model->force_slots.count; ++k) {

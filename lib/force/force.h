@@ -74,6 +74,8 @@ int se3di_force_is_history_dependent(const se3di_force *force);
 double se3di_friction_stiffness(const se3di_force *force);
 /* The largest force while it sticks, or slips. */
 double se3di_friction_limit(const se3di_force *force, int slips);
+/* Slower than this [m/s, rad/s] a coordinate is at rest where a run begins. */
+#define SE3DI_FRICTION_REST 1e-8
 /* The force against the coordinate without its viscous part; and remember that it is n, sticking
  * (mode 0) or slipping. */
 double se3di_friction_get(const se3di_model *model, const se3di_force *force);
@@ -83,6 +85,8 @@ void se3di_friction_take_load(const se3di_model *model, se3di_force *force);
 uint32_t se3di_friction_revise(const se3di_model *model, se3di_force *force);
 void se3di_friction_accept(const se3di_model *model, se3di_force *force);
 void se3di_stop_accept(const se3di_model *model, se3di_force *force);
+/* All stops take the present speed for that of an impact to come. */
+void se3di_stops_accept(se3di_model *model);
 
 /* The name of an element's type as in the model file. */
 const char *se3di_force_type_name(int32_t type);

@@ -144,7 +144,8 @@ void se3di_friction_accept(const se3di_model *model, se3di_force *force)
     if (!(force->state[3] > 0.0)) {
         force->state[3] = 1.0;
         force->state[0] = measure.value;
-        force->state[2] = fabs(measure.rate) > 1e-8 ? (measure.rate > 0.0 ? 1.0 : -1.0) : 0.0;
+        force->state[2] =
+            fabs(measure.rate) > SE3DI_FRICTION_REST ? (measure.rate > 0.0 ? 1.0 : -1.0) : 0.0;
     }
     double mode = force->state[2];
     if (fabs(mode) > 0.0) {
