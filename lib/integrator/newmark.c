@@ -186,6 +186,12 @@ static se3d_status factor(newmark_step *step)
                : SE3D_OK;
 }
 
+static se3d_status fail_not_finite(const newmark_step *step)
+{
+    return se3di_error_set(step->equations->error, SE3D_ERR_NOT_FINITE,
+                           "t = %g s: the state is not finite, the step is too large", step->t);
+}
+
 /* One Newton correction of vdot and lambda. */
 static se3d_status iterate(newmark_step *step, int refactor)
 {
@@ -211,11 +217,23 @@ static se3d_status iterate(newmark_step *step, int refactor)
         step->lambda[k] += equations->l[k];
     }
     update_state(step);
-    return isfinite(step->correction)
-               ? SE3D_OK
-               : se3di_error_set(equations->error, SE3D_ERR_NOT_FINITE,
-                                 "t = %g s: the state is not finite, the step is too large",
-                                 step->t);
+    return isfinite(step->correction) ? SE3D_OK : fail_not_finite(step);
+}
+
+/* Corrections are looked at by fmax, which passes over what is not a number; and the state may
+ * overflow where they do not. */
+static se3d_status check_state(const newmark_step *step)
+{
+    const se3di_model *model = step->equations->assembly.model;
+    int finite = 1;
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        const se3di_frame *frame = &model->frames[k];
+        for (int i = 0; i < 3; ++i) {
+            finite = finite && isfinite(frame->r[i]) && isfinite(frame->v[i]) &&
+                     isfinite(frame->p[i]) && isfinite(frame->w[i]);
+        }
+    }
+    return finite ? SE3D_OK : fail_not_finite(step);
 }
 
 /* Corrections of vdot below their own rounding (that of positions, times beta') or below 1e-10 of
@@ -245,7 +263,7 @@ static se3d_status iterate_to_convergence(newmark_step *step)
         SE3DI_TRY(iterate(step, refactor));
         const int is_traced = se3di_newton_note(&step->integration->newton, step->correction);
         if (has_converged(step)) {
-            return SE3D_OK;
+            return check_state(step);
         }
         refactor = is_traced || step->equations->redundant ||
                    (k > 0 && step->correction > (step->exact ? 0.05 : 0.25) * step->previous);

@@ -32,13 +32,15 @@ se3d_status se3di_check_coordinate(se3d_system *system, const char *what, uint32
     if (se3di_coordinate_term(&system->model, joint, coordinate, term)) {
         return SE3D_OK;
     }
-    static const char *const has[4] = {"no coordinates", "an angle only", "a displacement only",
-                                       "both"};
+    static const char *const allowed[4] = {
+        "must be one of a joint that has coordinates", "must be SE3D_COORDINATE_ANGLE (0)",
+        "must be SE3D_COORDINATE_DISPLACEMENT (1)", "must be one of both"};
     const se3di_constraint *constraint = &system->model.constraints[joint];
     int which = (constraint->angle >= 0) + 2 * (constraint->has_displacement != 0);
-    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s: '%.64s' (%s) has no %s, it has %s",
-                      what, constraint->name ? constraint->name : "", constraint->type,
-                      coordinate == SE3D_COORDINATE_ANGLE ? "angle" : "displacement", has[which]);
+    return SE3DI_FAIL(
+        system, SE3D_ERR_INVALID_ARGUMENT, "%s = %d: '%.64s' (%s) has no %s, %s", what,
+        (int)coordinate, constraint->name ? constraint->name : "", constraint->type,
+        coordinate == SE3D_COORDINATE_ANGLE ? "angle" : "displacement", allowed[which]);
 }
 
 se3d_status se3di_check_distinct(se3d_system *system, const uint32_t bodies[2])

@@ -401,8 +401,10 @@ static void drivers_need_a_coordinate_of_a_live_joint(void)
     } bad[] = {
         {ball, SE3D_COORDINATE_ANGLE, 0, SE3D_ERR_INVALID_ARGUMENT, "spherical"},
         {ball, SE3D_COORDINATE_DISPLACEMENT, 0, SE3D_ERR_INVALID_ARGUMENT, "no displacement"},
-        {pin, SE3D_COORDINATE_DISPLACEMENT, 0, SE3D_ERR_INVALID_ARGUMENT, "an angle only"},
-        {slide, SE3D_COORDINATE_ANGLE, 0, SE3D_ERR_INVALID_ARGUMENT, "a displacement only"},
+        {pin, SE3D_COORDINATE_DISPLACEMENT, 0, SE3D_ERR_INVALID_ARGUMENT,
+         "has no displacement, must be SE3D_COORDINATE_ANGLE"},
+        {slide, SE3D_COORDINATE_ANGLE, 0, SE3D_ERR_INVALID_ARGUMENT,
+         "must be SE3D_COORDINATE_DISPLACEMENT"},
         {pin, 2, 0, SE3D_ERR_INVALID_ARGUMENT, "coordinate = 2"},
         {pin, -1, 0, SE3D_ERR_INVALID_ARGUMENT, "coordinate = -1"},
         {pin, SE3D_COORDINATE_ANGLE, (double)NAN, SE3D_ERR_INVALID_ARGUMENT, "value"},
