@@ -109,8 +109,9 @@ static int pair_contact(const se3di_particles *set, uint32_t b, int lane,
 static int wall_contact(const se3di_particles *set, couple *c, const se3di_given *given, int lane,
                         se3d_particles_contact *out)
 {
-    const double *x = c->grains[0].x;
-    double normal[3];
+    double x[3], normal[3];
+    se3di_particles_image(set, &c->wall, c->grains[0].x, c->grains[0].radius, x);
+    se3di_copy(x, c->grains[0].x); /* the copy touches where it is */
     double distance = se3di_wall_nearest(&c->wall, x, out->point, normal);
     se3di_given here = {.distance = {distance}};
     for (int a = 0; a < 3; ++a) {

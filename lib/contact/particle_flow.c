@@ -64,7 +64,9 @@ static int is_free(const se3di_particles *set, const double x[3], double radius,
         }
     }
     for (size_t k = 0; k < set->wall_count; ++k) {
-        if (se3di_wall_distance(&set->walls[k], x) < radius) {
+        double image[3];
+        se3di_particles_image(set, &set->walls[k], x, radius, image);
+        if (se3di_wall_distance(&set->walls[k], image) < radius) {
             return 0;
         }
     }

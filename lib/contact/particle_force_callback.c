@@ -179,14 +179,16 @@ static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
                .w_j = wall->pose.w,
                .material_i = task->spins[i].material,
                .material_j = wall->material};
-    double distance;
+    double distance, x[3];
+    se3di_copy(g->x, x);
+    se3di_wall_image(wall, task->length, g->radius, x);
     if (task->given) {
         distance = task->given[b].distance[lane];
         for (int a = 0; a < 3; ++a) {
             t.n[a] = task->given[b].normal[a][lane];
         }
     } else {
-        distance = se3di_wall_nearest(wall, g->x, point, t.n);
+        distance = se3di_wall_nearest(wall, x, point, t.n);
     }
     if (!(distance < g->radius && g->radius > 0.0)) {
         put_xi(block, lane, zero);
@@ -197,7 +199,7 @@ static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
     if (wall->shape.kind == SE3DI_SHAPE_SPHERE) {
         t.radius = g->radius * wall->shape.radius / (g->radius + wall->shape.radius);
     }
-    se3di_sub(g->x, wall->pose.c, side); /* from the centre of mass to the point */
+    se3di_sub(x, wall->pose.c, side); /* from the centre of mass to the point */
     se3di_add_scaled(-distance, t.n, side);
     t.mass = 1.0 / (g->inverse_mass + wall_response(wall, side, t.n));
     se3di_cross(wall->pose.w, side, at);

@@ -295,8 +295,10 @@ static uint32_t mark_walls(se3di_particles *set, const se3di_slab *slab, size_t 
         uint32_t i = entry[0] & ~SE3DI_LIST_ACTIVE;
         const se3di_grain *g = &set->grains[i];
         const se3di_wall *wall = &set->walls[entry[1]];
+        double x[3];
+        se3di_particles_image(set, wall, g->x, g->radius + set->near, x);
         int active = wall->shape.kind != SE3DI_SHAPE_MESH && /* they have pairs of their own */
-                     se3di_wall_distance(wall, g->x) < g->radius + set->near;
+                     se3di_wall_distance(wall, x) < g->radius + set->near;
         entry[0] = active ? i | SE3DI_LIST_ACTIVE : i;
         if (entry[1] != last) {
             blocks += blocks_of(count);
@@ -440,6 +442,44 @@ static double least_distance(const se3di_wall *wall, const double x[3])
     return se3di_norm(d) - wall->shape.bound;
 }
 
+static int is_within(const se3di_wall *wall, const double x[3], double reach)
+{
+    return least_distance(wall, x) < reach && se3di_wall_distance(wall, x) < reach;
+}
+
+void se3di_wall_image(const se3di_wall *wall, const double length[3], double reach, double x[3])
+{
+    static const double shifts[3] = {0.0, 1.0, -1.0};
+    int counts[3];
+    for (int a = 0; a < 3; ++a) {
+        counts[a] = length[a] > 0.0 && wall->shape.kind != SE3DI_SHAPE_PLANE ? 3 : 1;
+    }
+    const int images = counts[0] * counts[1] * counts[2];
+    for (int k = 0; images > 1 && k < images; ++k) {
+        const int of[3] = {k % counts[0], k / counts[0] % counts[1], k / counts[0] / counts[1]};
+        double there[3];
+        for (int a = 0; a < 3; ++a) {
+            there[a] = x[a] + shifts[of[a]] * length[a];
+        }
+        if (is_within(wall, there, reach)) {
+            se3di_copy(there, x);
+            return;
+        }
+    }
+}
+
+void se3di_particles_image(const se3di_particles *set, const se3di_wall *wall, const double x[3],
+                           double reach, double out[3])
+{
+    double length[3];
+    for (int a = 0; a < 3; ++a) {
+        const int periodic = set->boundary[a] == SE3DI_BOUNDARY_PERIODIC;
+        length[a] = periodic ? set->upper[a] - set->lower[a] : 0.0;
+    }
+    se3di_copy(x, out);
+    se3di_wall_image(wall, length, reach, out);
+}
+
 se3d_status se3di_particles_list_walls(se3di_particles *set)
 {
     set->near_count = 0;
@@ -450,8 +490,10 @@ se3d_status se3di_particles_list_walls(se3di_particles *set)
             for (uint32_t i = slab->begin; i < slab->end; ++i) {
                 const se3di_grain *g = &set->grains[i];
                 double reach = g->radius + set->skin;
-                if (least_distance(&set->walls[w], g->x) >= reach ||
-                    se3di_wall_distance(&set->walls[w], g->x) >= reach) {
+                double x[3];
+                se3di_particles_image(set, &set->walls[w], g->x, reach, x);
+                if (least_distance(&set->walls[w], x) >= reach ||
+                    se3di_wall_distance(&set->walls[w], x) >= reach) {
                     continue;
                 }
                 SE3DI_TRY(se3di_particles_grow(set, &set->near_walls, &set->near_capacity,

@@ -36,14 +36,15 @@ void se3di_mesh_pair_open(const se3di_particles *set, const se3di_mesh_pair *pai
     const se3di_wall *wall = &set->walls[pair->wall];
     const se3di_grain *grain = &set->grains[pair->i];
     se3di_touch touches[SE3DI_MESH_TOUCHES];
-    double d[3], local[3];
+    double d[3], local[3], x[3];
     memset(batch, 0, sizeof *batch);
     for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
         batch->block.i[k] = batch->block.j[k] = (uint32_t)set->capacity;
         batch->given.distance[k] = 1e300;
     }
     batch->block.j[0] = pair->wall;
-    se3di_sub(grain->x, wall->pose.x, d);
+    se3di_particles_image(set, wall, grain->x, grain->radius, x);
+    se3di_sub(x, wall->pose.x, d);
     se3di_mul_transposed(wall->pose.R, d, local);
     batch->count = (uint32_t)se3di_mesh_contacts(&wall->shape, local, grain->radius,
                                                  SE3DI_MESH_TOUCHES, touches);
@@ -186,8 +187,12 @@ se3d_status se3di_particles_mesh_activate(se3di_particles *set)
             uint32_t i = set->near_walls[2 * k] & ~SE3DI_LIST_ACTIVE;
             uint32_t w = set->near_walls[2 * k + 1];
             const se3di_grain *g = &set->grains[i];
-            if (is_mesh(&set->walls[w]) &&
-                se3di_wall_distance(&set->walls[w], g->x) < g->radius + set->near) {
+            double x[3];
+            if (!is_mesh(&set->walls[w])) {
+                continue;
+            }
+            se3di_particles_image(set, &set->walls[w], g->x, g->radius + set->near, x);
+            if (se3di_wall_distance(&set->walls[w], x) < g->radius + set->near) {
                 SE3DI_TRY(push(set, i, w));
             }
         }

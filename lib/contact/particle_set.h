@@ -284,11 +284,13 @@ typedef struct se3di_particles {
     se3di_sink *sinks;
     size_t sink_count, sink_capacity;
     uint64_t touching;
-    int32_t starved; /* memory was missing in the last evaluation of the forces */
-    int32_t reserved2;
-    uint32_t failed;      /* id of the particle that a failure names */
-    double failed_amount; /* its overlap over the smaller radius, */
-    double failed_time;   /* then */
+    int32_t starved;       /* memory was missing in the last evaluation of the forces */
+    int32_t failed_placed; /* the overlap was there before any step was made */
+    uint32_t failed;       /* id of the particle that a failure names, */
+    uint32_t failed_with;  /* of the one that it overlaps with, or */
+    uint32_t failed_wall;  /* the wall; SE3DI_NO_INDEX: none */
+    double failed_amount;  /* its overlap over the smaller radius, */
+    double failed_time;    /* then */
     const se3di_kernels *kernels;
     se3d_contact_callback callback; /* SE3DI_LAW_CALLBACK */
     void *ctx;
@@ -408,6 +410,12 @@ void se3di_particles_wrap(const se3di_particles *set, double d[3]);
 double se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3],
                           double normal[3]);
 double se3di_wall_distance(const se3di_wall *wall, const double x[3]);
+/* Shapes are repeated with the period: where x is not within `reach` of the wall, but one of its
+ * images is, make it that one. `length`: 0 without a period. */
+void se3di_wall_image(const se3di_wall *wall, const double length[3], double reach, double x[3]);
+/* The same with the periods of a set, to `out`. */
+void se3di_particles_image(const se3di_particles *set, const se3di_wall *wall, const double x[3],
+                           double reach, double out[3]);
 
 /* particle_sweep.c: forces and motion. */
 /* Half kick of duration h/2 from the present forces and gravity. */

@@ -5,6 +5,7 @@
 #include "math/vec3.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Beyond this many automatic steps a contact is not resolved and may gain energy. */
@@ -35,6 +36,31 @@ se3d_status se3di_particles_check_step(const se3di_particles *set, const se3di_m
     return SE3D_OK;
 }
 
+static const char *wall_name(const se3di_particles *set, uint32_t wall)
+{
+    const char *name = set->walls[wall].shape.name;
+    return name ? name : "without a name";
+}
+
+static se3d_status report_overlap(const se3di_particles *set, se3di_error *error)
+{
+    const char *of;
+    const char *name = set_name(set, &of);
+    char with[112];
+    if (set->failed_wall == SE3DI_NO_INDEX) {
+        (void)snprintf(with, sizeof with, "particle %u", set->failed_with);
+    } else {
+        (void)snprintf(with, sizeof with, "the shape %.80s", wall_name(set, set->failed_wall));
+    }
+    return se3di_error_set(
+        error, SE3D_ERR_STEP_SIZE,
+        "particle %u%s%.80s and %s overlap by %g of the smaller radius at time %g s (allowed: "
+        "%g); %s",
+        set->failed, of, name, with, set->failed_amount, set->failed_time, set->overlap_limit,
+        set->failed_placed ? "they have been placed so"
+                           : "try a smaller step or a stiffer material");
+}
+
 se3d_status se3di_particles_report(const se3di_particles *set, se3d_status status,
                                    se3di_error *error)
 {
@@ -42,11 +68,7 @@ se3d_status se3di_particles_report(const se3di_particles *set, se3d_status statu
     const char *name = set_name(set, &of);
     switch (status) {
     case SE3D_ERR_STEP_SIZE:
-        return se3di_error_set(error, status,
-                               "particle %u%s%.80s overlaps by %g of the smaller radius at time %g "
-                               "s (allowed: %g); try a smaller step or a stiffer material",
-                               set->failed, of, name, set->failed_amount, set->failed_time,
-                               set->overlap_limit);
+        return report_overlap(set, error);
     case SE3D_ERR_NOT_FINITE:
         return se3di_error_set(error, status,
                                "the state of particle %u%s%.80s is not finite at time %g s; try a "
@@ -54,12 +76,10 @@ se3d_status se3di_particles_report(const se3di_particles *set, se3d_status statu
                                set->failed, of, name, set->time);
     case SE3D_ERR_CALLBACK:
         if (set->law_failure.wall) {
-            const se3di_wall *wall = &set->walls[set->law_failure.j];
             return se3di_error_set(error, status,
                                    "the law of contact failed for particle %u%s%.80s and the shape "
                                    "%.80s at time %g s",
-                                   set->law_failure.i, of, name,
-                                   wall->shape.name ? wall->shape.name : "without a name",
+                                   set->law_failure.i, of, name, wall_name(set, set->law_failure.j),
                                    set->time);
         }
         return se3di_error_set(error, status,

@@ -10,8 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-#define BODY_END 4.0 /* a force at the end of a free rod moves that as if its mass were a quarter  \
-                      */
+#define BODY_END                                                                                   \
+    4.0 /* a force at the end of a free rod moves that as if its mass were a quarter               \
+         */
 
 void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames)
 {
@@ -113,11 +114,14 @@ static se3d_status update_lists(se3di_particles *set)
     return since_near < set->near ? SE3D_OK : se3di_particles_refresh(set);
 }
 
-static void note_overlap(se3di_particles *set, uint32_t i, double amount)
+/* Of particle i with particle j, or with a wall. */
+static void note_overlap(se3di_particles *set, uint32_t i, uint32_t j, uint32_t wall, double amount)
 {
     if (amount > set->failed_amount) {
         set->failed_amount = amount;
         set->failed = set->spins[i].id;
+        set->failed_wall = wall;
+        set->failed_with = wall == SE3DI_NO_INDEX ? set->spins[j].id : 0;
     }
 }
 
@@ -142,15 +146,17 @@ static double pair_overlap(const se3di_particles *set, const se3di_grain *i, con
 static double wall_overlap(const se3di_particles *set, uint32_t wall, const se3di_grain *i,
                            double back)
 {
-    double at[3];
-    place_before(i, back, at);
+    double at[3], x[3];
+    place_before(i, back, x);
+    se3di_particles_image(set, &set->walls[wall], x, i->radius, at);
     return 1.0 - se3di_wall_distance(&set->walls[wall], at) / i->radius;
 }
 
 /* Which particle overlapped most when the last forces were evaluated, a drift of length `back` ago:
  * for the message of a failure. */
-static void find_overlap(se3di_particles *set, double back)
+static void find_overlap(se3di_particles *set, double back, int placed)
 {
+    set->failed_placed = placed;
     set->failed_amount = -1.0;
     set->failed_time = set->time;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
@@ -159,15 +165,19 @@ static void find_overlap(se3di_particles *set, double back)
             const se3di_block *block = &set->blocks[b];
             for (int k = 0; k < SE3DI_GRAIN_LANES && block->i[k] < set->count; ++k) {
                 const se3di_grain *i = &set->grains[block->i[k]];
-                note_overlap(set, block->i[k],
-                             b >= slab->wall_begin
-                                 ? wall_overlap(set, block->j[0], i, back)
-                                 : pair_overlap(set, i, &set->grains[block->j[k]], back));
+                if (b >= slab->wall_begin) {
+                    note_overlap(set, block->i[k], 0, block->j[0],
+                                 wall_overlap(set, block->j[0], i, back));
+                } else {
+                    note_overlap(set, block->i[k], block->j[k], SE3DI_NO_INDEX,
+                                 pair_overlap(set, i, &set->grains[block->j[k]], back));
+                }
             }
         }
         for (uint32_t k = slab->mesh_begin; k < slab->mesh_end; ++k) {
             const se3di_mesh_pair *pair = &set->mesh_pairs[k];
-            note_overlap(set, pair->i, wall_overlap(set, pair->wall, &set->grains[pair->i], back));
+            note_overlap(set, pair->i, 0, pair->wall,
+                         wall_overlap(set, pair->wall, &set->grains[pair->i], back));
         }
     }
 }
@@ -288,7 +298,7 @@ se3d_status se3di_particles_forces(se3di_particles *set, double h)
     se3di_motion none = {0, 0.0, 0.0};
     se3d_status status = evaluate(set, h, &none);
     if (status == SE3D_ERR_STEP_SIZE) {
-        find_overlap(set, 0.0);
+        find_overlap(set, 0.0, !(h > 0.0));
     }
     return status;
 }
@@ -379,7 +389,7 @@ se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps
         if (status < 0 && failure == SE3D_OK) {
             failure = status;
             if (status == SE3D_ERR_STEP_SIZE) {
-                find_overlap(set, motion.drift);
+                find_overlap(set, motion.drift, 0);
             }
             steps = motion.drift != 0.0 ? 1 : 0; /* the step that has begun */
         }

@@ -92,8 +92,122 @@ static void restitution_is_what_was_typed_on_bodies_that_give_way(void)
     }
 }
 
+/* A spring with a little friction, without memory. */
+static se3d_status spring_law(void *ctx, const se3d_contact_input *in, se3d_contact_output *out)
+{
+    (void)ctx;
+    out->force = 1e5 * in->overlap;
+    for (int a = 0; a < 3; ++a) {
+        out->tangential[a] = -0.5 * in->slip[a];
+    }
+    return SE3D_OK;
+}
+
+/* A body of a box, a mesh, a cylinder and a sphere in a row along y, seven times as heavy as a
+ * grain. */
+static void add_shapes(const scene *s, se3d_material material)
+{
+    static const double corners[12] = {0.01,  0.0,   0.0,   -0.01, 0.01, -0.01,
+                                       -0.01, -0.01, -0.01, -0.01, 0.0,  0.014};
+    static const uint32_t faces[12] = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape shape;
+    def.body = s->body;
+    def.material = material;
+    def.size[0] = def.size[1] = def.size[2] = 0.02;
+    def.radius = 0.01;
+    def.length = 0.02;
+    def.vertices = corners;
+    def.vertex_count = 4;
+    def.triangles = faces;
+    def.triangle_count = 4;
+    def.position[1] = -0.036;
+    CHECK(se3d_shape_create_box(s->system, &def, &shape) == SE3D_OK);
+    def.position[1] = -0.012;
+    CHECK(se3d_shape_create_mesh(s->system, &def, &shape) == SE3D_OK);
+    def.position[1] = 0.012;
+    CHECK(se3d_shape_create_cylinder(s->system, &def, &shape) == SE3D_OK);
+    def.position[1] = 0.036;
+    CHECK(se3d_shape_create_sphere(s->system, &def, &shape) == SE3D_OK);
+}
+
+#define PERIOD 0.2
+#define GRAINS 8
+
+/* Eight grains hit the body at x from both sides in a domain with a period along x; writes their
+ * velocities and spins and those of the body, and the forces on the grains at a moment. */
+static void collide(double x, int callback, double out[6 * GRAINS + 6], double press[3 * GRAINS])
+{
+    scene s = {0};
+    se3d_system_def world = se3d_system_def_default();
+    world.gravity[2] = 0.0;
+    CHECK(se3d_system_create(&world, &s.system) == SE3D_OK);
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    contact.law = callback ? SE3D_LAW_CALLBACK : SE3D_LAW_HOOKE;
+    contact.callback = callback ? spring_law : NULL;
+    contact.step = 5e-6;
+    CHECK(se3d_system_set_contact(s.system, &contact) == SE3D_OK);
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_material material;
+    stuff.density = 2500.0;
+    stuff.stiffness = 1e5;
+    CHECK(se3d_material_create(s.system, &stuff, &material) == SE3D_OK);
+    se3d_body_def body = se3d_body_def_default();
+    body.mass = 7.0 * grain_mass;
+    body.inertia[0] = body.inertia[1] = body.inertia[2] = 1e-4 * grain_mass * 20.0;
+    body.position[0] = x;
+    CHECK(se3d_body_create(s.system, &body, &s.body) == SE3D_OK);
+    add_shapes(&s, material);
+    se3d_particles_def domain = se3d_particles_def_default();
+    domain.boundary[0] = SE3D_BOUNDARY_PERIODIC;
+    domain.lower[0] = -0.5 * PERIOD;
+    domain.upper[0] = 0.5 * PERIOD;
+    CHECK(se3d_particles_create(s.system, &domain, &s.particles) == SE3D_OK);
+    for (int k = 0; k < GRAINS; ++k) {
+        const double side = k % 2 ? 1.0 : -1.0, radius = R;
+        double at = x + side * (0.0215 + 0.0003 * k);
+        at -= PERIOD * floor(at / PERIOD + 0.5);
+        const double r[3] = {at, -0.036 + 0.024 * (k / 2), 0.002 * side};
+        const double v[3] = {-side, 0.1, 0.2}, w[3] = {10.0, 20.0 * side, -15.0};
+        CHECK(se3d_particles_add(s.particles, material, 1, r, &radius, v, w, NULL) == SE3D_OK);
+    }
+    go(&s, 0.0025);
+    CHECK(se3d_particles_get_forces(s.particles, GRAINS, press, NULL) == SE3D_OK);
+    CHECK(se3d_solver_run(s.solver, 0.008) == SE3D_OK);
+    CHECK(se3d_particles_get_all(s.particles, GRAINS, NULL, out, out + 3 * GRAINS) == SE3D_OK);
+    CHECK(se3d_body_get_velocity(s.system, s.body, out + 6 * GRAINS) == SE3D_OK);
+    CHECK(se3d_body_get_angular_velocity(s.system, s.body, out + 6 * GRAINS + 3) == SE3D_OK);
+    close_scene(&s);
+}
+
+/* Where the body is in the period makes no difference, also where grains meet it across the end. */
+static void shapes_are_repeated_with_the_period(void)
+{
+    for (int callback = 0; callback < 2; ++callback) {
+        double inside[6 * GRAINS + 6], there[6 * GRAINS + 6];
+        double press[3 * GRAINS], press_there[3 * GRAINS], scale = 0.0;
+        collide(0.0, callback, inside, press);
+        const double places[4] = {0.1, -0.1, 0.0931, -0.088};
+        for (int k = 0; k < 4; ++k) {
+            collide(places[k], callback, there, press_there);
+            for (int n = 0; n < 6 * GRAINS + 6; ++n) {
+                CHECK_NEAR(there[n], inside[n], 1e-7 * (1.0 + fabs(inside[n])));
+            }
+            for (int n = 0; n < 3 * GRAINS; ++n) {
+                CHECK_NEAR(press_there[n], press[n], 1e-5);
+                scale = fmax(scale, fabs(press[n]));
+            }
+        }
+        CHECK(scale > 1.0);
+        for (int n = 0; n < GRAINS; ++n) { /* all have been stopped or thrown back */
+            CHECK(inside[3 * n] * (n % 2 ? 1.0 : -1.0) > -0.5);
+        }
+    }
+}
+
 int main(void)
 {
+    RUN(shapes_are_repeated_with_the_period);
     RUN(restitution_is_what_was_typed_on_bodies_that_give_way);
     return check_finish();
 }

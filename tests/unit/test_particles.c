@@ -480,11 +480,32 @@ static void too_much_overlap_names_particle_and_time(void)
     const double v[9] = {0.0, 0.0, 0.0, 50.0, 0.0, 0.0, -50.0, 0.0, 0.0};
     CHECK(se3d_particles_add(b.particles, b.material, 3, r, radius, v, NULL, NULL) == SE3D_OK);
     CHECK(se3d_particles_run(b.particles, 0.1) == SE3D_ERR_STEP_SIZE);
-    CHECK_CONTAINS(se3d_system_get_error(b.system), "particle ");
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "particle 1 and particle 2 overlap by 0.");
     CHECK_CONTAINS(se3d_system_get_error(b.system), "at time ");
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "try a smaller step");
     CHECK(se3d_particles_set_step(b.particles, 1.0) == SE3D_OK);
     CHECK(se3d_particles_step(b.particles, 1) == SE3D_ERR_STEP_SIZE);
     CHECK_CONTAINS(se3d_system_get_error(b.system), "step = 1 s");
+    bed_destroy(&b);
+}
+
+static void what_was_placed_into_another_is_told_so(void)
+{
+    se3d_material_def material = stuff();
+    bed b;
+    bed_init(&b, NULL, none, &material);
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape post;
+    def.name = "post";
+    def.material = b.material;
+    def.size[0] = def.size[1] = def.size[2] = 0.1;
+    CHECK(se3d_shape_create_box(b.system, &def, &post) == SE3D_OK);
+    const double r[6] = {0.3, 0.0, 0.0, 0.052, 0.0, 0.0}, radius[2] = {0.005, 0.005};
+    CHECK(se3d_particles_add(b.particles, b.material, 2, r, radius, NULL, NULL, NULL) == SE3D_OK);
+    CHECK(se3d_particles_run(b.particles, 0.1) == SE3D_ERR_STEP_SIZE);
+    CHECK_CONTAINS(se3d_system_get_error(b.system),
+                   "particle 1 and the shape post overlap by 0.6 ");
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "they have been placed so");
     bed_destroy(&b);
 }
 
@@ -557,6 +578,7 @@ int main(void)
     RUN(particles_that_leave_are_counted);
     RUN(pair_overrides_hold);
     RUN(too_much_overlap_names_particle_and_time);
+    RUN(what_was_placed_into_another_is_told_so);
     RUN(run_goes_on_after_too_much_overlap);
     RUN(packing_that_cannot_fit_changes_nothing);
     return check_finish();
