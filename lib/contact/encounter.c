@@ -175,6 +175,19 @@ static void eval_turn(const se3di_encounter *e, double out[3])
     se3di_mul(e->model->frames[e->body[0]].A, local, out);
 }
 
+/* The marks stay behind where contact moves on. Where one body spins on the other about the normal,
+ * they then move apart without slip: what counts is the motion half way between the marks and the
+ * point, turn x (point - marks)/2 more. */
+static void add_wander(const se3di_encounter *e, double marks[2][3], double xi[3])
+{
+    double way[3], across[3];
+    se3di_copy(e->at->point, way);
+    se3di_add_scaled(-0.5, marks[0], way);
+    se3di_add_scaled(-0.5, marks[1], way);
+    se3di_cross(e->at->normal, way, across);
+    se3di_add_scaled(0.5 * se3di_dot(e->turn, e->at->normal), across, xi);
+}
+
 /* The factor of the damping force, which grows as s^a with the time since contact began (a = 0, or
  * 1/4 with hertz_mindlin), at the end of the step of which the share `phi` is spent in contact. The
  * forces at the ends of all later steps, with equal weights, make of the integral of s^a
@@ -212,19 +225,20 @@ static void eval_memory(se3di_encounter *e)
         se3di_scale(time, e->vt, e->xi);
         return;
     }
-    double x[2][3], turn[3];
+    double x[2][3];
     for (int k = 0; k < 2; ++k) {
         eval_anchors(e, k, x[k]);
         se3di_add(e->model->frames[e->body[k]].r, x[k], x[k]);
     }
     se3di_sub(x[1], x[0], e->xi);
     project(n, e->xi);
+    eval_turn(e, e->turn);
+    add_wander(e, x, e->xi);
     if (e->pair.rolling > 0.0 || e->pair.torsion > 0.0) {
-        eval_turn(e, turn);
         se3di_copy(e->memory->roll, e->rho);
-        se3di_add_scaled(e->radius, turn, e->rho);
+        se3di_add_scaled(e->radius, e->turn, e->rho);
         project(n, e->rho);
-        e->twist = e->memory->twist + e->radius * se3di_dot(turn, n);
+        e->twist = e->memory->twist + e->radius * se3di_dot(e->turn, n);
     }
 }
 

@@ -27,6 +27,7 @@ typedef struct se3di_encounter {
     double s, root;             /* 1 or sqrt(R* overlap); sqrt(s) */
     double onset;               /* factor of the damping of a new contact */
     double xi[3];               /* stretch, in the tangent plane */
+    double turn[3];             /* of j relative to i since the last accepted state, ground frame */
     double rho[3], twist;       /* rolling and torsion, lengths */
     double elastic, normal;     /* repulsive force without and with damping, >= 0 */
     double stick;               /* attraction of adhesion: 2 sqrt(Fc elastic) */

@@ -205,16 +205,36 @@ static void move_new(const se3di_encounter *e, rates *d)
     se3di_add_scaled(rate, e->vt, d->xi);
 }
 
+/* d of what the spin adds to the stretch, see encounter.c; `marks`: where their middle is. */
+static void add_wander_rate(const se3di_encounter *e, const double turn[3], const double marks[3],
+                            const double dmarks[3], rates *d)
+{
+    const double *n = e->at->normal;
+    const double spun = se3di_dot(e->turn, n);
+    const double dspun = se3di_dot(turn, n) + se3di_dot(e->turn, d->n);
+    double way[3], dway[3], x[3];
+    se3di_sub(e->at->point, marks, way);
+    se3di_sub(d->p, dmarks, dway);
+    se3di_cross(n, way, x);
+    se3di_add_scaled(0.5 * dspun, x, d->xi);
+    se3di_cross(d->n, way, x);
+    se3di_add_scaled(0.5 * spun, x, d->xi);
+    se3di_cross(n, dway, x);
+    se3di_add_scaled(0.5 * spun, x, d->xi);
+}
+
 static void move_memory(const se3di_encounter *e, const se3di_encounter_change *c, rates *d)
 {
     const double *n = e->at->normal;
-    double raw[3], moved[3], turn[3];
+    double raw[3], moved[3], turn[3], marks[3], dmarks[3];
     if (!e->memory) {
         move_new(e, d);
         return;
     }
     memset(raw, 0, sizeof raw);
     memset(moved, 0, sizeof moved);
+    memset(marks, 0, sizeof marks);
+    memset(dmarks, 0, sizeof dmarks);
     for (int k = 0; k < 2; ++k) {
         const se3di_frame *frame = &e->model->frames[e->body[k]];
         double x[3], dx[3];
@@ -225,12 +245,17 @@ static void move_memory(const se3di_encounter *e, const se3di_encounter_change *
         se3di_add(x, frame->r, x);
         se3di_add_scaled(sign, x, raw);
         se3di_add_scaled(sign, dx, moved);
+        se3di_add_scaled(0.5, x, marks);
+        se3di_add_scaled(0.5, dx, dmarks);
     }
     project_rate(n, d->n, raw, moved, d->xi);
     se3di_sub(c->turn[1], c->turn[0], turn);
+    add_wander_rate(e, turn, marks, dmarks, d);
+    d->twist = e->radius * (se3di_dot(turn, n) + se3di_dot(e->turn, d->n));
     se3di_scale(e->radius, turn, turn);
-    d->twist = se3di_dot(turn, n);
-    project_rate(n, d->n, e->rho, turn, d->rho);
+    se3di_copy(e->memory->roll, raw);
+    se3di_add_scaled(e->radius, e->turn, raw);
+    project_rate(n, d->n, raw, turn, d->rho);
 }
 
 /* d of f = x cap / |x| where it is capped, of x where it is not. */

@@ -69,6 +69,21 @@ typedef struct meeting {
     double r[3], q[4]; /* of j; i is turned a little about the origin */
 } meeting;
 
+/* A law of a user's that uses all that it is given: its caps are where materials have them. */
+static se3d_status users_law(void *ctx, const se3d_contact_input *in, se3d_contact_output *out)
+{
+    const double k = 1e4 * sqrt(in->overlap / in->radius), c = 20.0 * sqrt(in->mass);
+    (void)ctx;
+    out->force = fmax(0.0, k * in->overlap - in->onset * c * in->velocity);
+    for (int a = 0; a < 3; ++a) {
+        out->tangential[a] = -0.3 * k * in->spring[a] - 0.5 * c * in->slip[a];
+        out->moment[a] = -0.01 * in->radius * out->force * in->spin[a];
+    }
+    const double size = se3di_norm(out->tangential), most = in->friction * out->force;
+    se3di_scale(size > most ? most / size : 1.0, out->tangential, out->tangential);
+    return SE3D_OK;
+}
+
 static trial begin(const meeting *m, double mu, double rolling, int law, uint64_t *seed)
 {
     trial t = {.mu = mu, .rolling = rolling, .law = law};
@@ -77,6 +92,8 @@ static trial begin(const meeting *m, double mu, double rolling, int law, uint64_
     se3d_contact_settings settings = se3d_contact_settings_default();
     settings.overlap_limit = 1.0;
     settings.law = law;
+    settings.callback = law == SE3D_LAW_CALLBACK ? users_law : NULL;
+    settings.step = law == SE3D_LAW_CALLBACK ? 1e-4 : 0.0;
     CHECK(se3d_system_set_contact(t.system, &settings) == SE3D_OK);
     se3d_material_def def = se3d_material_def_default();
     se3d_material material;
@@ -164,15 +181,21 @@ static void check_trial(const meeting *m, double mu, double rolling, int law, in
 {
     trial t = begin(m, mu, rolling, law, seed);
     se3di_error ignored = {0};
-    double exact[288] = {0.0};
+    double exact[288] = {0.0}, turn[3], p[4];
     if (remembers) {
         CHECK(se3di_contacts_prepare(t.model, 0.0, &ignored) == SE3D_OK);
         se3di_contacts_accept(t.model);
         CHECK(t.model->contacts.count > 0);
+        /* of the rolling springs the derivative leaves out what a finite turn adds */
+        const double moved = 1e-3, turned = rolling > 0.0 ? 0.0 : 1e-4;
         for (int b = 1; b < 3; ++b) { /* a trial state later */
             for (int c = 0; c < 3; ++c) {
-                t.model->frames[b].r[c] += 1e-4 * check_random(seed);
+                t.model->frames[b].r[c] += moved * check_random(seed);
+                turn[c] = turned * check_random(seed);
             }
+            se3di_quat_rotate(t.model->frames[b].p, turn, p);
+            memcpy(t.model->frames[b].p, p, sizeof p);
+            se3di_frame_update(&t.model->frames[b]);
         }
     } else {
         se3di_contacts_begin(t.model, 0.5, rolling > 0.0 ? 0.6 : 1.0, 0);
@@ -233,8 +256,8 @@ static void edges_have_exact_derivatives(void)
     uint64_t seed = 7;
     for (int k = 0; k < 8; ++k) {
         meeting m = find_edges(&seed);
-        check_trial(&m, 1e3, 0.0, k % 2, k / 2 % 2, &seed);
-        check_trial(&m, 0.1, 0.02, k % 2, k / 2 % 2, &seed);
+        check_trial(&m, 1e3, 0.0, k % 3, k / 2 % 2, &seed);
+        check_trial(&m, 0.1, 0.02, k % 3, k / 2 % 2, &seed);
     }
 }
 
@@ -242,7 +265,7 @@ static void contacts_have_exact_derivatives(void)
 {
     uint64_t seed = 20240;
     for (size_t k = 0; k < sizeof meetings / sizeof meetings[0]; ++k) {
-        for (int law = 0; law < 2; ++law) {
+        for (int law = 0; law < 3; ++law) {
             for (int remembers = 0; remembers < 2; ++remembers) {
                 int before = check_failures;
                 check_trial(&meetings[k], 1e3, 0.0, law, remembers, &seed);  /* sticks */
