@@ -405,6 +405,44 @@ static se3d_status add_record(se3di_events *events, const se3di_event_hit *hit,
     return SE3D_OK;
 }
 
+/* Whether readers are to see other contacts than those of the end of the step. */
+static int has_own_contacts(const se3di_events *events)
+{
+    return events->dense && events->run->model->contacts.pair_count > 0;
+}
+
+/* Let the user's callback act on the state of a hit, with the contacts there. What it has changed
+ * begins anew, with these contacts. */
+static se3d_status call_back(se3di_events *events, const se3di_event *event,
+                             const se3d_event_record *record, int *changed)
+{
+    se3di_model *model = events->run->model;
+    const uint64_t stamp = model->history_stamp;
+    const int shows = has_own_contacts(events);
+    if (shows) {
+        SE3DI_TRY(se3di_contacts_show(model, model->time, events->run->error));
+    }
+    const se3d_status status = event->callback(event->callback_ctx, events->system, record);
+    *changed = model->history_stamp != stamp;
+    if (shows && !*changed) {
+        se3di_contacts_hide(model);
+    }
+    return status;
+}
+
+/* The run ends within a step, in the state of a hit: with the contacts there, from which the next
+ * run begins anew; those of the end of the step are not of its past. */
+static se3d_status stay(se3di_events *events)
+{
+    se3di_model *model = events->run->model;
+    if (has_own_contacts(events)) {
+        SE3DI_TRY(se3di_contacts_show(model, model->time, events->run->error));
+        model->history_tag = 0;
+        ++model->history_stamp;
+    }
+    return SE3D_OK;
+}
+
 /* Record a hit; the model is in the state there. *stop: the run ends; *changed: the callback has
  * changed the state. */
 static se3d_status happen(se3di_events *events, const se3di_event_hit *hit, int *stop, int *changed)
@@ -413,16 +451,14 @@ static se3d_status happen(se3di_events *events, const se3di_event_hit *hit, int 
     const se3di_event *event = &events->list[hit->event];
     SE3DI_TRY(add_record(events, hit, &record));
     if (event->callback) {
-        const uint64_t stamp = events->run->model->history_stamp;
         const se3d_event_record shown = *record;
-        const se3d_status status = event->callback(event->callback_ctx, events->system, &shown);
+        const se3d_status status = call_back(events, event, &shown, changed);
         if (status < 0) {
             return se3di_error_set(events->run->error, SE3D_ERR_CALLBACK,
                                    "t = %g s: the callback of the event %.100s failed", hit->time,
                                    name_of(event));
         }
         record->action = status == SE3D_INFO_EVENT ? SE3D_EVENT_STOP : record->action;
-        *changed = events->run->model->history_stamp != stamp;
     }
     *stop |= record->action == SE3D_EVENT_STOP;
     return SE3D_OK;
@@ -440,6 +476,9 @@ static se3d_status report(se3di_events *events, double t0, double t_end)
             SE3DI_TRY(happen(events, hit, &stop, &changed));
             last = stop ? hit->time : last; /* what happens at the same time does so too */
         }
+    }
+    if (stop && !changed) {
+        SE3DI_TRY(stay(events));
     }
     events->goes_on = changed && !stop;
     return stop || changed ? SE3D_INFO_EVENT : SE3D_OK;

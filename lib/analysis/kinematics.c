@@ -114,15 +114,29 @@ static se3d_status step_with_works(se3di_equations *equations, double h)
     return SE3D_OK;
 }
 
+/* Through one step, without what contacts remember of its end. */
+static se3d_status pass_step(se3di_equations *equations, double h)
+{
+    if (equations->audits) {
+        return step_with_works(equations, h);
+    }
+    SE3DI_TRY(reach(equations, equations->assembly.model->time + h));
+    se3di_angles_accept(equations->assembly.model);
+    return SE3D_OK;
+}
+
 se3d_status se3di_kinematics_step(se3di_equations *equations, double h)
 {
+    se3di_model *model = equations->assembly.model;
+    const double start = model->time;
     SE3DI_TRY(se3di_turns_check(equations, h, HUGE_VAL));
-    if (equations->audits) {
-        SE3DI_TRY(step_with_works(equations, h));
-    } else {
-        SE3DI_TRY(reach(equations, equations->assembly.model->time + h));
-        se3di_angles_accept(equations->assembly.model);
+    SE3DI_TRY(pass_step(equations, h));
+    const se3d_status status = se3di_contacts_prepare(model, model->time, equations->error);
+    if (status < 0) {
+        model->time = start;
+        return status;
     }
+    se3di_contacts_accept(model);
     ++equations->counters.steps;
     return SE3D_OK;
 }

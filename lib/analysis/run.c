@@ -138,6 +138,18 @@ static se3d_status prepare(se3di_run *run)
                : SE3D_OK;
 }
 
+/* Contacts are taken up as they are. */
+static se3d_status start_contacts(const se3di_run *run, double t)
+{
+    se3di_model *model = run->model;
+    se3di_contacts_begin(model, 0.0, 1.0, 0);
+    SE3DI_TRY(run->analysis == SE3D_ANALYSIS_ASSEMBLY
+                  ? se3di_contacts_prepare_any(model, t, run->error)
+                  : se3di_contacts_prepare(model, t, run->error));
+    se3di_contacts_accept(model);
+    return SE3D_OK;
+}
+
 /* A new state: positions, velocities, accelerations and multipliers made consistent at the model's
  * time. */
 static se3d_status settle(se3di_run *run, double t)
@@ -154,6 +166,7 @@ static se3d_status settle(se3di_run *run, double t)
         run->determined = status >= 0;
     }
     status = status < 0 ? status : se3di_state_solve(equations, t);
+    status = status < 0 ? status : start_contacts(run, t);
     if (status < 0) {
         se3di_state_restore(equations);
         return status;
@@ -169,18 +182,8 @@ static uint64_t history_tag(const se3di_run *run)
     return 2 * run->integration.method->tag + (uint64_t)run->formulation->id;
 }
 
-/* Contacts are taken up as they are, and the audit of energy begins with the first run after a
- * change of the user's. */
-static se3d_status start_contacts(se3di_run *run)
-{
-    se3di_model *model = run->model;
-    se3di_contacts_begin(model, 0.0, 1.0, 0);
-    SE3DI_TRY(se3di_loads_prepare(model, model->time, run->error));
-    se3di_contacts_accept(model);
-    return SE3D_OK;
-}
-
-/* Dynamics goes on from its own history, or starts from a consistent state. */
+/* Dynamics goes on from its own history, or starts from a consistent state, where the audit of
+ * energy begins. */
 static se3d_status begin_dynamics(se3di_run *run, double h)
 {
     se3di_model *model = run->model;
@@ -189,7 +192,6 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
     }
     SE3DI_TRY(settle(run, model->time));
     SE3DI_TRY(se3di_friction_start(&run->equations));
-    SE3DI_TRY(start_contacts(run));
     SE3DI_TRY(se3di_work_accept(model, 0.0));
     SE3DI_TRY(run->integration.method->start(&run->integration, h));
     model->history_count = run->integration.method->history_count(&run->equations.assembly);
@@ -332,6 +334,7 @@ static se3d_status run_kinematics(se3di_run *run, double t_end)
     if (!run->model->settled || !run->determined) {
         SE3DI_TRY(settle(run, run->model->time));
     }
+    se3di_contacts_begin(run->model, 0.0, 1.0, 0);
     if (run->equations.audits) {
         SE3DI_TRY(se3di_friction_follow(&run->equations, run->model->time));
         se3di_stops_accept(run->model);
@@ -362,7 +365,7 @@ static se3d_status run_equilibrium(se3di_run *run, double t_end)
     se3di_angles_accept(model);
     se3di_model_touch_state(model);
     if (status >= 0) { /* contacts are as they are there */
-        SE3DI_TRY(start_contacts(run));
+        SE3DI_TRY(start_contacts(run, model->time));
     }
     return status;
 }

@@ -149,6 +149,7 @@ int se3di_contacts_changed(const se3di_model *model)
 typedef struct preparation {
     se3di_model *model;
     double t;
+    double overlap_limit;
     se3di_error *error;
 } preparation;
 
@@ -164,7 +165,7 @@ static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
     const se3di_model *model = p->model;
     double size = fmin(se3di_shape_contact_size(&model->shapes[e->shape_i]),
                        se3di_shape_contact_size(&model->shapes[e->shape_j]));
-    if (e->at->overlap <= model->contact.overlap_limit * size) {
+    if (e->at->overlap <= p->overlap_limit * size) {
         return SE3D_OK;
     }
     return se3di_error_set(
@@ -172,7 +173,7 @@ static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
         "t = %g s: the shapes %.60s and %.60s overlap by %.3g m, more than %g of their size "
         "%.3g m; try a smaller step or a stiffer material",
         p->t, se3di_shape_describe(model, e->shape_i), se3di_shape_describe(model, e->shape_j),
-        e->at->overlap, model->contact.overlap_limit, size);
+        e->at->overlap, p->overlap_limit, size);
 }
 
 static se3d_status note(void *ctx, const se3di_encounter *e)
@@ -217,20 +218,30 @@ se3d_status se3di_contacts_reserve(se3di_model *model, double t, se3di_error *er
                : SE3D_OK;
 }
 
-static se3d_status note_all(se3di_model *model, double t, se3di_error *error)
+static se3d_status note_all(se3di_model *model, double t, double overlap_limit, se3di_error *error)
 {
-    preparation p = {model, t, error};
+    preparation p = {model, t, overlap_limit, error};
     model->contacts.next_count = 0;
     model->contacts.kept = 0;
     return model->shape_slots.count < 2 ? SE3D_OK : se3di_contacts_visit(model, note, &p);
 }
 
-se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *error)
+static se3d_status prepare(se3di_model *model, double t, double overlap_limit, se3di_error *error)
 {
     if (model->shape_slots.count >= 2 && se3di_broad_update(model) < 0) {
         return se3di_error_set(error, SE3D_ERR_NO_MEMORY, "t = %g s: no memory for contacts", t);
     }
-    return note_all(model, t, error);
+    return note_all(model, t, overlap_limit, error);
+}
+
+se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *error)
+{
+    return prepare(model, t, model->contact.overlap_limit, error);
+}
+
+se3d_status se3di_contacts_prepare_any(se3di_model *model, double t, se3di_error *error)
+{
+    return prepare(model, t, HUGE_VAL, error);
 }
 
 /* What the contact does to one of its shapes, about the centre of its body. */
@@ -283,7 +294,7 @@ void se3di_contacts_accept(se3di_model *model)
 
 se3d_status se3di_contacts_show(se3di_model *model, double t, se3di_error *error)
 {
-    SE3DI_TRY(note_all(model, t, error));
+    SE3DI_TRY(note_all(model, t, model->contact.overlap_limit, error));
     swap_lists(model);
     return SE3D_OK;
 }
