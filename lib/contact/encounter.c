@@ -368,16 +368,22 @@ static double settled_mass(const se3di_encounter *e)
                                                                            : e->inverse_mass;
 }
 
+/* The square of a stretch, up to what the cap allows: where a contact slips fast the damper has
+ * stretched the spring further, which is not what the bodies have worked for. */
+static double held(double square, double cap, double k)
+{
+    return k > 0.0 ? fmin(square, cap * cap / (k * k)) : 0.0;
+}
+
 double se3di_encounter_energy(const se3di_encounter *e)
 {
-    double xi[3], rho[3], twist;
+    double xi[3], rho[3], twist, k = e->pair.kt * e->s;
     settled_xi(e, xi);
     settled_roll(e, rho, &twist);
     double share = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 0.4 : 0.5;
-    double springs = se3di_dot(xi, xi);
-    if (e->pair.rolling > 0.0 || e->pair.torsion > 0.0) {
-        springs += se3di_dot(rho, rho) + twist * twist;
-    }
+    double springs = held(se3di_dot(xi, xi), e->pair.friction * e->normal, k) +
+                     held(se3di_dot(rho, rho), e->pair.rolling * e->normal, k) +
+                     held(twist * twist, e->pair.torsion * e->normal, k);
     /* the integrals of the attractions over the overlap */
     double depth = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 4.0 / 7.0 : 2.0 / 3.0;
     double stuck = (0.5 * (e->attraction - e->stick) + depth * e->stick) * e->at->overlap;
