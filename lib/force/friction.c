@@ -153,6 +153,7 @@ void se3di_friction_accept(const se3di_model *model, se3di_force *force)
         force->state[0] = measure.value - mode * stretch;
         force->state[2] = mode * measure.rate < 0.0 ? 0.0 : mode;
     } else if (fabs(limits.stiffness * (measure.value - force->state[0])) > limits.stick) {
-        force->state[2] = measure.value > force->state[0] ? 1.0 : -1.0;
+        mode = measure.value > force->state[0] ? 1.0 : -1.0;
+        force->state[2] = mode * measure.rate < 0.0 ? 0.0 : mode; /* it swings back by itself */
     }
 }

@@ -12,7 +12,7 @@
  * estimates of its neighbours (Shampine, Reichelt 1997).  docs/theory/bdf.md */
 #include "contact/loads.h"
 #include "contact/pace.h"
-#include "integrator/state.h"
+#include "integrator/memory.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -47,6 +47,7 @@ typedef struct bdf {
     double *predicted; /* y_P */
     double *y;
     double *acceleration; /* a, wdot of each free body [6] */
+    double *work;         /* [unknowns] */
     double tolerance, c;
 } bdf;
 
@@ -57,7 +58,7 @@ static size_t history_count(const se3di_assembly *assembly)
 
 static size_t work_count(const se3di_assembly *assembly)
 {
-    return 3 * se3di_state_count(assembly) + (size_t)assembly->unknown_count;
+    return 3 * se3di_state_count(assembly) + 2 * (size_t)assembly->unknown_count;
 }
 
 /* The parts of history and work. */
@@ -77,6 +78,7 @@ static bdf point(const se3di_integration *integration)
     m.predicted = m.base + count;
     m.y = m.predicted + count;
     m.acceleration = m.y + count;
+    m.work = m.acceleration + assembly->unknown_count;
     return m;
 }
 
@@ -290,20 +292,47 @@ static se3d_status solve_step(bdf *m, double t)
     return status;
 }
 
+/* What friction remembers of the end of the step; *error is raised to what that changes. If it is
+ * too much for a controlled step, nothing is remembered. */
+static se3d_status settle(bdf *m, double t, int is_controlled, double *error)
+{
+    const se3di_state_scale scale = get_scale(m);
+    double change;
+    SE3DI_TRY(
+        se3di_memory_settle(m->integration, t, m->header[BDF_STEP], &scale, m->work, &change));
+    if (is_controlled) {
+        *error = fmax(*error, change / m->integration->settings.tolerance);
+        if (!(*error <= 1.0)) {
+            se3di_memory_undo(m->integration);
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status project_end(bdf *m, double t, double power[SE3DI_STATE_WORK])
+{
+    se3di_model *model = m->assembly->model;
+    se3di_state_scale scale = get_scale(m);
+    SE3DI_TRY(se3di_state_project(m->equations, t, &scale, 1e-13, 0));
+    SE3DI_TRY(se3di_loads_prepare(model, t, m->equations->error));
+    return se3di_loads_power(model, t, power);
+}
+
 /* Project, and take y_1 into the differences. */
 static se3d_status accept(bdf *m, double t)
 {
     se3di_model *model = m->assembly->model;
-    se3di_state_scale scale = get_scale(m);
     size_t bodies = m->count - SE3DI_STATE_WORK;
     int order = (int)m->header[BDF_ORDER];
     double power[SE3DI_STATE_WORK];
     if (m->assembly->row_count > 0) {
         memcpy(model->lambda, m->lambda, m->assembly->row_count * sizeof *m->lambda);
     }
-    SE3DI_TRY(se3di_state_project(m->equations, t, &scale, 1e-13, 0));
-    SE3DI_TRY(se3di_loads_prepare(model, t, m->equations->error));
-    SE3DI_TRY(se3di_loads_power(model, t, power));
+    const se3d_status status = project_end(m, t, power);
+    if (status < 0) {
+        se3di_memory_undo(m->integration);
+        return status;
+    }
     for (int k = 0; k < SE3DI_STATE_WORK; ++k) {
         m->y[bodies + (size_t)k] = m->base[bodies + (size_t)k] + m->c * power[k];
     }
@@ -325,7 +354,7 @@ static se3d_status accept(bdf *m, double t)
     m->header[BDF_TIME] = t;
     m->header[BDF_EQUAL] += 1.0;
     se3di_angles_accept(model);
-    se3di_loads_accept(model);
+    se3di_contacts_accept(model); /* force elements: settle */
     ++m->equations->counters.steps;
     return SE3D_OK;
 }
@@ -396,7 +425,12 @@ static se3d_status advance(bdf *m, int is_controlled)
             for (size_t k = 0; k + SE3DI_STATE_WORK < m->count; ++k) {
                 m->predicted[k] = m->y[k] - m->predicted[k];
             }
-            status = error <= 1.0 || !is_controlled ? accept(m, t) : SE3D_INFO_REDUNDANT;
+            if (error <= 1.0 || !is_controlled) {
+                status = settle(m, t, is_controlled, &error);
+            }
+            if (status >= 0) {
+                status = error <= 1.0 || !is_controlled ? accept(m, t) : SE3D_INFO_REDUNDANT;
+            }
         }
         if (status == SE3D_OK) {
             se3di_state_scale scale = get_scale(m);

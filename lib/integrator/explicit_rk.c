@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/explicit_rk.h"
+#include "integrator/memory.h"
 
 #include "contact/loads.h"
 #include "contact/pace.h"
@@ -312,8 +313,8 @@ static void accept(rk *m, double h)
 }
 
 /* Elements with a memory (stick or slip, the load of friction) change it between steps. The change
- * of the derivative times h is part of the error: *error is raised to it, and the memory stays as
- * it was if that is too much. */
+ * of the derivative times h and the rates against which friction has driven are part of the error:
+ * *error is raised to it, and the memory stays as it was if that is too much. */
 static se3d_status settle_memory(rk *m, double h, double *error)
 {
     se3di_model *model = m->assembly->model;
@@ -321,13 +322,15 @@ static se3d_status settle_memory(rk *m, double h, double *error)
     if (!se3di_forces_have_memory(model)) {
         return SE3D_OK;
     }
+    const se3di_state_scale scale = {.speed = m->header[RK_SPEED], .spin = m->header[RK_SPIN]};
+    const double overshoot = se3di_memory_overshoot(model, &scale) / m->tolerance;
     se3di_model_save_memory(model, m->memory);
     se3di_forces_accept(model);
     SE3DI_TRY(evaluate(m, m->header[RK_T1] + h, m->sum3));
     for (size_t k = 0; k < m->count; ++k) {
         m->sum[k] = h * (m->sum3[k] - end[k]);
     }
-    *error = fmax(*error, measure(m, m->sum));
+    *error = fmax(*error, fmax(overshoot, measure(m, m->sum)));
     if (*error <= 1.0) {
         memcpy(end, m->sum3, m->count * sizeof *end);
     } else {

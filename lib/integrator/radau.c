@@ -10,6 +10,7 @@
  * the Newton matrix (Hairer, Wanner 1996, sec. IV.8). Outputs are interpolated by the quartic that
  * has the derivatives of the stages and of the start of the step.  docs/theory/radau.md */
 #include "integrator/radau.h"
+#include "integrator/memory.h"
 
 #include "contact/loads.h"
 #include "contact/pace.h"
@@ -173,15 +174,37 @@ static se3d_status add_work(se3di_radau *m)
     return SE3D_OK;
 }
 
-/* The step is solved: project its end to rounding, and take it. */
+/* The step is solved: its work, and what friction remembers of its end. *error is raised to what
+ * that changes, relative to `tolerance`; if it is too much, nothing is remembered. */
+static se3d_status settle(se3di_radau *m, double tolerance, double *error)
+{
+    double change;
+    SE3DI_TRY(add_work(m)); /* ends at the last stage */
+    SE3DI_TRY(se3di_memory_settle(m->integration, m->t + m->h, m->h, &m->scale, m->vdot, &change));
+    *error = fmax(*error, change / tolerance);
+    if (!(*error <= 1.0)) {
+        se3di_memory_undo(m->integration);
+    }
+    return SE3D_OK;
+}
+
+static se3d_status project_end(se3di_radau *m)
+{
+    SE3DI_TRY(se3di_state_project(m->equations, m->t + m->h, &m->scale, 1e-13, 0));
+    return se3di_loads_prepare(m->assembly->model, m->t + m->h, m->equations->error);
+}
+
+/* The step is solved and settled: project its end to rounding, and take it. */
 static se3d_status accept(se3di_radau *m, const history *past)
 {
     se3di_model *model = m->assembly->model;
     const size_t bodies = m->count - SE3DI_STATE_WORK;
     const double *end = m->Y + (STAGES - 1) * m->count;
-    SE3DI_TRY(add_work(m));
-    SE3DI_TRY(se3di_state_project(m->equations, m->t + m->h, &m->scale, 1e-13, 0));
-    SE3DI_TRY(se3di_loads_prepare(model, m->t + m->h, m->equations->error));
+    const se3d_status status = project_end(m);
+    if (status < 0) {
+        se3di_memory_undo(m->integration);
+        return status;
+    }
     memcpy(past->start, m->y0, m->count * sizeof *m->y0);
     set_defect(m, past->d);
     for (size_t k = 0; k < STAGES * m->count; ++k) {
@@ -196,7 +219,7 @@ static se3d_status accept(se3di_radau *m, const history *past)
     past->header[RADAU_SPEED] = m->scale.speed;
     past->header[RADAU_SPIN] = m->scale.spin;
     se3di_angles_accept(model);
-    se3di_loads_accept(model);
+    se3di_contacts_accept(model); /* force elements: settle */
     ++m->equations->counters.steps;
     return SE3D_OK;
 }
@@ -270,6 +293,9 @@ static se3d_status advance(se3di_integration *integration)
     for (;;) {
         double error;
         se3d_status status = attempt(&m, &past, inner, h, &error);
+        if (status >= 0 && error <= 1.0) {
+            status = settle(&m, integration->settings.tolerance, &error);
+        }
         if (status >= 0 && error <= 1.0) {
             const double next = next_step(&m, &past, error);
             status = accept(&m, &past);
@@ -346,6 +372,8 @@ static se3d_status step(se3di_integration *integration, double h)
     status = status < 0 ? status : begin_step(&m, integration, &past);
     if (status >= 0) {
         status = attempt(&m, &past, 0.0, h, &error);
+        error = 0.0; /* the step is taken as it is */
+        status = status < 0 ? status : settle(&m, HUGE_VAL, &error);
         status = status < 0 ? status : accept(&m, &past);
     }
     if (status >= 0) {

@@ -209,8 +209,41 @@ static void the_advice_for_an_equilibrium_is_about_equilibria(void)
     se3d_model_destroy(model);
 }
 
+/* Each half swing ends 2 mu m g/k nearer to the middle: methods with error control find where. */
+static void a_mass_on_a_spring_loses_as_much_in_every_swing(void)
+{
+    static const char *const text =
+        "se3d: 1\nbodies: [{name: a, mass: 2, inertia: [1, 1, 1], position: [0.2, 0, 0]}]\n"
+        "joints: [{name: j, type: prismatic, body_i: ground, body_j: a, point_i: [0, 0, 0], "
+        "axis_i: "
+        "[1, 0, 0], axis_j: [1, 0, 0], ref_i: [0, 1, 0], ref_j: [0, 1, 0]}]\nforces:\n"
+        "  - {type: tsda, body_i: ground, body_j: a, point_i: [-5, 0, 0], k: 300, l0: 5}\n"
+        "  - {name: f, type: friction, joint: j, mu: 0.2}\n"
+        "analysis: {type: dynamics, duration: 3}\n"
+        "output: [{file: r.csv, channels: [j.displacement, f.force, energy.balance]}]\n";
+    static const int32_t controlled[] = {SE3D_METHOD_RADAU, SE3D_METHOD_BDF, SE3D_METHOD_DOP853,
+                                         SE3D_METHOD_RK45};
+    const double pi = 3.14159265358979323846, w = sqrt(150.0), shift = 0.2 * 2.0 * 9.81 / 300.0;
+    for (int run = 0; run < 8; ++run) {
+        text_model m = text_model_open(text, controlled[run / 2], run % 2, 0.0);
+        CHECK(text_model_run(&m, 0.0));
+        const double energy = text_model_get(&m, 2, 0);
+        for (int k = 1; k <= 38; ++k) { /* it rests from 2.05 s on */
+            const double t = 0.05 * k, half = floor(w * t / pi);
+            const double way = fmod(half, 2.0) > 0.5 ? 1.0 : -1.0; /* of the motion */
+            const double c = -way * (0.2 - (2.0 * half + 1.0) * shift);
+            CHECK(text_model_run(&m, t));
+            CHECK_NEAR(text_model_get(&m, 0, 0), c * cos(w * t - pi * half) - way * shift, 5e-5);
+            CHECK_NEAR(text_model_get(&m, 1, 0), way * 0.2 * 2.0 * 9.81, 1e-6);
+            CHECK_NEAR(text_model_get(&m, 2, 0), energy, 2e-4);
+        }
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
+    RUN(a_mass_on_a_spring_loses_as_much_in_every_swing);
     RUN(a_sliding_block_stops_where_it_should_and_stays);
     RUN(a_block_sticks_until_the_static_limit);
     RUN(elements_that_act_on_each_other_are_solved_together);
