@@ -6,7 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#define TRIES 2000 /* to find room for one particle */
+#define TRIES      2000 /* to find room for one particle */
+#define POINTS_MAX 2e8  /* of a lattice that are looked at */
 
 void se3d_fill_def_init(se3d_fill_def *def, size_t size)
 {
@@ -133,8 +134,9 @@ se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fi
     se3d_fill_def full = se3d_fill_def_default();
     SE3DI_TRY(se3di_check_fill(particles, def, &full, &material));
     double total = lattice_init(&l, &full);
-    if (full.count == 0) {
-        SE3DI_TRY(se3di_check_range(particles->system, "points of the lattice", total, 0.0, 2e9));
+    if (full.count == 0 || full.region != SE3D_REGION_BOX) { /* all may have to be looked at */
+        SE3DI_TRY(se3di_check_range(particles->system, "points of the lattice from lower to upper",
+                                    total, 0.0, POINTS_MAX));
     }
     size_t wanted = 0, points = 0;
     for (; points < (size_t)fmin(total, 1e18) && (full.count == 0 || wanted < full.count);

@@ -148,10 +148,30 @@ static void tables_and_regions_are_checked(void)
     close_bed(&b);
 }
 
+/* Most of its points are outside the cylinder, so that few particles may take for ever to place. */
+static void a_lattice_that_takes_for_ever_to_look_at_is_refused(void)
+{
+    open_bed(&b);
+    b.fill.region = SE3D_REGION_CYLINDER;
+    b.fill.axis = 1;
+    b.fill.count = 3;
+    b.fill.radius_min = b.fill.radius_max = 0.01;
+    b.fill.upper[0] = b.fill.upper[2] = 1.0;
+    b.fill.upper[1] = 1e21;
+    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "points of the lattice from lower to upper");
+    CHECK(se3d_particles_count(b.particles) == 0);
+    b.fill.region = SE3D_REGION_BOX;
+    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_OK);
+    CHECK(se3d_particles_count(b.particles) == 3);
+    close_bed(&b);
+}
+
 int main(void)
 {
     RUN(regions_hold_every_part_of_their_particles);
     RUN(radii_of_a_table_come_as_often_as_asked_for);
     RUN(tables_and_regions_are_checked);
+    RUN(a_lattice_that_takes_for_ever_to_look_at_is_refused);
     return check_finish();
 }
