@@ -249,57 +249,57 @@ static bool write_bodies(se3di_vtk *vtk, const char *path)
     return se3di_vtk_file_write(&file, path);
 }
 
-static bool write_grains(const se3di_vtk *vtk, const char *path)
+static bool write_grains(const se3d_model *model, se3di_iopool *pool, const char *path)
 {
     enum { W = SE3DI_GRAIN_COLUMNS };
-    se3di_iopool pool;
     se3di_grain_rows grains;
-    se3di_iopool_init(&pool, &vtk->model->pool.allocator);
-    errno = ENOMEM;
-    bool good = se3di_grains_get_rows(vtk->model, &pool, &grains) >= 0;
-    if (good) {
-        const double *rows = grains.rows;
-        const size_t n = grains.count;
-        /* The columns of a row: time, id, radius, position, velocity, angular velocity. */
-        const se3di_vtk_array arrays[] = {
-            {SE3DI_VTK_POINT_DATA, "radius", rows + 2, n, 1, W, 0.0, 0.0, false},
-            {SE3DI_VTK_POINT_DATA, "velocity", rows + 6, n, 3, W, 0.0, 0.0, false},
-            {SE3DI_VTK_POINT_DATA, "angular_velocity", rows + 9, n, 3, W, 0.0, 0.0, false},
-            {SE3DI_VTK_POINT_DATA, "id", rows + 1, n, 1, W, 0.0, 0.0, true},
-            {SE3DI_VTK_POINTS, "points", rows + 3, n, 3, W, 0.0, 0.0, false},
-            {SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true},
-            {SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true}};
-        const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
-        good = se3di_vtk_file_write(&file, path);
+    if (se3di_grains_get_rows(model, pool, &grains) < 0) {
+        return false;
     }
-    const int why = errno;
-    se3di_iopool_destroy(&pool);
-    errno = why;
-    return good;
+    const double *rows = grains.rows;
+    const size_t n = grains.count;
+    /* The columns of a row: time, id, radius, position, velocity, angular velocity. */
+    const se3di_vtk_array arrays[] = {
+        {SE3DI_VTK_POINT_DATA, "radius", rows + 2, n, 1, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "velocity", rows + 6, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "angular_velocity", rows + 9, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "id", rows + 1, n, 1, W, 0.0, 0.0, true},
+        {SE3DI_VTK_POINTS, "points", rows + 3, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true},
+        {SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true}};
+    const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
+    return se3di_vtk_file_write(&file, path);
 }
 
-static bool write_contacts(const se3di_vtk *vtk, const char *path)
+static bool write_contacts(const se3d_model *model, se3di_iopool *pool, const char *path)
 {
     enum { W = SE3DI_CONTACT_NUMBERS };
-    se3di_iopool pool;
     se3di_contact_rows list;
-    se3di_iopool_init(&pool, &vtk->model->pool.allocator);
-    errno = ENOMEM;
-    bool good = se3di_contacts_get_rows(vtk->model, &pool, &list) >= 0;
-    if (good) {
-        const double *rows = list.rows;
-        const size_t n = list.count;
-        const se3di_vtk_array arrays[] = {
-            {SE3DI_VTK_POINT_DATA, "normal", rows + 4, n, 3, W, 0.0, 0.0, false},
-            {SE3DI_VTK_POINT_DATA, "overlap", rows + 7, n, 1, W, 0.0, 0.0, false},
-            {SE3DI_VTK_POINT_DATA, "normal_force", rows + 8, n, 1, W, 0.0, 0.0, false},
-            {SE3DI_VTK_POINT_DATA, "tangential_force", rows + 9, n, 3, W, 0.0, 0.0, false},
-            {SE3DI_VTK_POINTS, "points", rows + 1, n, 3, W, 0.0, 0.0, false},
-            {SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true},
-            {SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true}};
-        const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
-        good = se3di_vtk_file_write(&file, path);
+    if (se3di_contacts_get_rows(model, pool, &list) < 0) {
+        return false;
     }
+    const double *rows = list.rows;
+    const size_t n = list.count;
+    const se3di_vtk_array arrays[] = {
+        {SE3DI_VTK_POINT_DATA, "normal", rows + 4, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "overlap", rows + 7, n, 1, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "normal_force", rows + 8, n, 1, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "tangential_force", rows + 9, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINTS, "points", rows + 1, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true},
+        {SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true}};
+    const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
+    return se3di_vtk_file_write(&file, path);
+}
+
+/* Points with memory of their own. @return false: errno says why */
+static bool write_points(const se3di_vtk *vtk, const char *path,
+                         bool (*write)(const se3d_model *, se3di_iopool *, const char *))
+{
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &vtk->model->pool.allocator);
+    errno = ENOMEM; /* unless something else fails */
+    const bool good = write(vtk->model, &pool, path);
     const int why = errno;
     se3di_iopool_destroy(&pool);
     errno = why;
@@ -326,9 +326,8 @@ static bool write_state(se3di_vtk *vtk, size_t number)
         errno = ENAMETOOLONG;
         good = name_file(vtk, part_names[part], number, true, path) &&
                se3di_file_make_folders(path) &&
-               (part == 0   ? write_bodies(vtk, path)
-                : part == 1 ? write_grains(vtk, path)
-                            : write_contacts(vtk, path));
+               (part == 0 ? write_bodies(vtk, path)
+                          : write_points(vtk, path, part == 1 ? write_grains : write_contacts));
     }
     return good;
 }
