@@ -177,15 +177,7 @@ static const se3di_rk_tableau tableau = {
 const se3di_integrator se3di_integrator_dop853 = {
     .name = "dop853",
     .tag = SE3D_METHOD_DOP853,
-    .history_count = se3di_rk_history_count,
-    .work_count = se3di_rk_work_count,
-    .start = se3di_rk_start,
-    .step = se3di_rk_step,
-    .run = se3di_rk_run,
-    .advance = se3di_rk_advance,
-    .interpolate = se3di_rk_interpolate,
+    SE3DI_RK_METHOD,
     .is_held = se3di_rk_is_held,
-    .tableau = &tableau,
     .orders = 1u << 8,
-    .is_explicit = 1,
 };

@@ -49,4 +49,11 @@ se3d_status se3di_rk_advance(se3di_integration *integration, double t_end);
 void se3di_rk_interpolate(const se3di_integration *integration, double t, double *y);
 int se3di_rk_is_held(const se3di_integration *integration);
 
+/* What the entries of all of them in the table of methods have, beside their own `tableau`. */
+#define SE3DI_RK_METHOD                                                                            \
+    .history_count = se3di_rk_history_count, .work_count = se3di_rk_work_count,                    \
+    .start = se3di_rk_start, .step = se3di_rk_step, .run = se3di_rk_run,                           \
+    .advance = se3di_rk_advance, .interpolate = se3di_rk_interpolate, .tableau = &tableau,         \
+    .is_explicit = 1
+
 #endif

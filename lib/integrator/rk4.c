@@ -35,14 +35,6 @@ static const se3di_rk_tableau tableau = {
 const se3di_integrator se3di_integrator_rk4 = {
     .name = "rk4",
     .tag = SE3D_METHOD_RK4,
-    .history_count = se3di_rk_history_count,
-    .work_count = se3di_rk_work_count,
-    .start = se3di_rk_start,
-    .step = se3di_rk_step,
-    .run = se3di_rk_run,
-    .advance = se3di_rk_advance,
-    .interpolate = se3di_rk_interpolate,
-    .tableau = &tableau,
+    SE3DI_RK_METHOD,
     .orders = 1u << 4,
-    .is_explicit = 1,
 };

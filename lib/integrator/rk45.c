@@ -39,15 +39,7 @@ static const se3di_rk_tableau tableau = {
 const se3di_integrator se3di_integrator_rk45 = {
     .name = "rk45",
     .tag = SE3D_METHOD_RK45,
-    .history_count = se3di_rk_history_count,
-    .work_count = se3di_rk_work_count,
-    .start = se3di_rk_start,
-    .step = se3di_rk_step,
-    .run = se3di_rk_run,
-    .advance = se3di_rk_advance,
-    .interpolate = se3di_rk_interpolate,
+    SE3DI_RK_METHOD,
     .is_held = se3di_rk_is_held,
-    .tableau = &tableau,
     .orders = 1u << 5,
-    .is_explicit = 1,
 };
