@@ -17,7 +17,6 @@
 
 #define STEP_DEFAULT 1e-3 /* s, of fixed-step methods */
 #define TURN_MAX     3.0  /* rad, of a body in a step of an implicit method */
-#define TURN_MAX_RP  0.6  /* the same of Newmark's family in r-p */
 
 void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error, se3d_system *system)
 {
@@ -241,8 +240,8 @@ static double largest_turn(const se3di_run *run)
     if (!method->is_implicit) {
         return HUGE_VAL; /* of rattle: its own */
     }
-    int is_newmark = method->tag == SE3D_METHOD_GENERALIZED_ALPHA || method->tag == SE3D_METHOD_HHT;
-    return is_newmark && run->equations.assembly.formulation->block == 8 ? TURN_MAX_RP : TURN_MAX;
+    const int is_rp = run->equations.assembly.formulation->block == 8;
+    return is_rp && method->turn_max_rp > 0.0 ? method->turn_max_rp : TURN_MAX;
 }
 
 static se3d_status step_dynamics(se3di_run *run, double h)

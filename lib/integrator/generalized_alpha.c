@@ -46,4 +46,5 @@ const se3di_integrator se3di_integrator_generalized_alpha = {
     .controls_if_asked = 1,
     .is_implicit = 1,
     .orders = 1u << 2,
+    .turn_max_rp = SE3DI_NEWMARK_TURN_MAX_RP,
 };

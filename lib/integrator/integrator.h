@@ -58,6 +58,7 @@ typedef struct se3di_integrator {
     int32_t is_reduced;  /* and so do these implicit ones */
     uint32_t orders;     /* bit k: settings.order may be k; 0, the default one, always may */
     int32_t reserved;
+    double turn_max_rp; /* of a body in a step in r-p [rad]; 0: that of implicit methods */
 } se3di_integrator;
 
 struct se3di_integration {

@@ -16,6 +16,8 @@
 
 #include "integrator/integrator.h"
 
+#define SE3DI_NEWMARK_TURN_MAX_RP 0.6 /* rad, of a body in a step: Euler parameters add up */
+
 typedef struct se3di_newmark {
     double alpha_m, alpha_f, beta, gamma;
     double tolerance; /* of the local error of positions; 0: any */
