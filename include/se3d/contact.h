@@ -191,8 +191,8 @@ SE3D_API se3d_status se3d_shape_create_plane(se3d_system *system, const se3d_sha
 SE3D_API se3d_status se3d_shape_create_hull(se3d_system *system, const se3d_shape_def *def,
                                             se3d_shape *shape);
 
-/* A surface of triangles: everything touches it but other meshes. Where it is closed it has an
- * outside, else two sides. @since 0.1 */
+/* A surface of triangles: everything touches it but other meshes (se3d_check names those that would
+ * pass through each other). Where it is closed it has an outside, else two sides. @since 0.1 */
 SE3D_API se3d_status se3d_shape_create_mesh(se3d_system *system, const se3d_shape_def *def,
                                             se3d_shape *shape);
 

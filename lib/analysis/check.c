@@ -13,6 +13,7 @@
 #include "analysis/check.h"
 
 #include "assembly/user.h"
+#include "contact/body_contacts.h"
 #include "linsol/rank.h"
 
 #include <inttypes.h>
@@ -555,6 +556,35 @@ static se3d_status inspect_with_work(inspection *in)
     return status;
 }
 
+/* ---- shapes ---- */
+
+/* Meshes that meet without a trace: one message, with the first pair. */
+static se3d_status report_meshes(se3di_check *check, const se3di_model *model)
+{
+    uint32_t first[2] = {0, 0};
+    size_t pairs = 0;
+    char more[60] = "";
+    for (uint32_t b = 1; b < model->shape_slots.count; ++b) {
+        for (uint32_t a = 0; a < b && model->shapes[b].kind == SE3DI_SHAPE_MESH; ++a) {
+            if (se3di_shapes_pass_through(model, a, b) && pairs++ == 0) {
+                first[0] = a;
+                first[1] = b;
+            }
+        }
+    }
+    if (pairs == 0) {
+        return SE3D_OK;
+    }
+    if (pairs > 1) {
+        snprintf(more, sizeof more, " (and %zu more pairs)", pairs - 1);
+    }
+    return add_message(
+        check,
+        "the meshes %.100s and %.100s%s pass through each other: meshes do not touch "
+        "meshes; make one of them convex, or of other shapes",
+        se3di_shape_describe(model, first[0]), se3di_shape_describe(model, first[1]), more);
+}
+
 se3d_status se3di_check_init(se3di_check *check, se3di_model *model, se3di_error *error)
 {
     se3di_error own = {0};
@@ -570,6 +600,9 @@ se3d_status se3di_check_init(se3di_check *check, se3di_model *model, se3di_error
                      .size = se3di_model_get_size(model)};
     se3di_state_accept(&equations);
     se3d_status status = inspect_with_work(&in);
+    if (status >= 0 && report_meshes(check, model) < 0) {
+        status = SE3D_ERR_NO_MEMORY;
+    }
     se3di_state_restore(&equations);
     se3di_equations_destroy(&equations);
     if (status < 0) {

@@ -18,6 +18,8 @@ se3d_status se3di_contacts_visit(const se3di_model *model, se3di_contact_visitor
 /* Whether two shapes may touch at all: materials, groups and masks, not of one body, bodies not
  * joined and not both fixed. */
 int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b);
+/* Two meshes that would have contact if meshes had any with each other. */
+int se3di_shapes_pass_through(const se3di_model *model, uint32_t a, uint32_t b);
 /* How messages call a shape: by its name, or that of its body. */
 const char *se3di_shape_describe(const se3di_model *model, uint32_t shape);
 /* Any do. */

@@ -42,14 +42,26 @@ static int strangers(const se3di_shape *a, const se3di_shape *b)
     return a->kind == b->kind && (a->kind == SE3DI_SHAPE_PLANE || a->kind == SE3DI_SHAPE_MESH);
 }
 
-int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b)
+/* As far as it is the user's to say. */
+static int are_meant_to_touch(const se3di_model *model, uint32_t a, uint32_t b)
 {
     const se3di_shape *s = &model->shapes[a];
     const se3di_shape *t = &model->shapes[b];
     return s->body != t->body && s->material >= 0 && t->material >= 0 && (s->group & t->mask) &&
-           (t->group & s->mask) && !strangers(s, t) &&
+           (t->group & s->mask) &&
            !(model->bodies[s->body].fixed && model->bodies[t->body].fixed) &&
            !joined(model, s->body, t->body);
+}
+
+int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b)
+{
+    return !strangers(&model->shapes[a], &model->shapes[b]) && are_meant_to_touch(model, a, b);
+}
+
+int se3di_shapes_pass_through(const se3di_model *model, uint32_t a, uint32_t b)
+{
+    return model->shapes[a].kind == SE3DI_SHAPE_MESH && model->shapes[b].kind == SE3DI_SHAPE_MESH &&
+           are_meant_to_touch(model, a, b);
 }
 
 double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j)

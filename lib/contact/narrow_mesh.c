@@ -23,7 +23,8 @@ typedef struct face {
 
 typedef struct meeting {
     const se3di_solid *solid, *mesh;
-    double center[3]; /* of the solid, mesh frame */
+    double origin[3]; /* of the solid, mesh frame */
+    double center[3]; /* a point within it, mesh frame */
     double size;
     se3di_manifold *manifold;
 } meeting;
@@ -335,6 +336,20 @@ static void touch_rims(const meeting *m)
     }
 }
 
+/* Hulls may have their origin anywhere. */
+static void find_center(meeting *m)
+{
+    const se3di_shape *s = m->solid->shape;
+    double mean[3] = {0.0, 0.0, 0.0}, x[3];
+    for (size_t k = 0; k < s->vertex_count && s->kind == SE3DI_SHAPE_HULL; ++k) {
+        se3di_add_scaled(1.0 / (double)s->vertex_count, s->vertices + 3 * k, mean);
+    }
+    se3di_mul(m->solid->at->R, mean, x);
+    se3di_add(x, m->solid->at->x, x);
+    to_mesh(m->mesh, x, m->center);
+    to_mesh(m->mesh, m->solid->at->x, m->origin);
+}
+
 void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
 {
     const se3di_shape *s = i->shape;
@@ -343,7 +358,7 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
              : s->kind == SE3DI_SHAPE_HULL     ? 0.5 * s->bound
              : s->kind == SE3DI_SHAPE_CYLINDER ? fmin(s->radius, s->half_length)
                                                : s->radius;
-    to_mesh(mesh, i->at->x, m.center);
+    find_center(&m);
     if (s->kind == SE3DI_SHAPE_SPHERE || s->kind == SE3DI_SHAPE_CAPSULE) {
         touch_ends(&m);
     } else if (s->kind == SE3DI_SHAPE_CYLINDER) {
@@ -352,7 +367,7 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
         touch_corners(&m);
     }
     if (s->kind != SE3DI_SHAPE_SPHERE) {
-        se3di_mesh_visit(mesh->shape, m.center, s->bound, meet_edges, &m);
+        se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_edges, &m);
     }
 }
 

@@ -174,7 +174,8 @@ static bool create_shape(se3di_reader *reader, const se3di_node *node,
         def.triangles = mesh->triangles;
         def.triangle_count = mesh->triangle_count;
     }
-    se3d_status status = create[shape->type](reader->model->system, &def, &made);
+    se3d_status status = (entry->convex ? se3d_shape_create_hull
+                                        : create[shape->type])(reader->model->system, &def, &made);
     if (status >= 0) {
         status = se3d_body_get_fixed(reader->model->system, shape->body, &fixed);
     }

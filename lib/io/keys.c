@@ -16,8 +16,8 @@ static const char *const body_keys[] = {
 static const char *const orientation_keys[] = {"matrix", "euler_parameters", "axis", "angle", "rpy",
                                                NULL};
 static const char *const shape_keys[] = {
-    "name",  "group",  "mask",    "contact",  "type",     "size",        "radius", "length", "file",
-    "scale", "normal", "density", "material", "position", "orientation", "color",  NULL};
+    "name",  "group",  "mask",   "contact", "type",     "size",     "radius",      "length", "file",
+    "scale", "convex", "normal", "density", "material", "position", "orientation", "color",  NULL};
 static const char *const marker_keys[] = {"name", "position", "orientation", NULL};
 static const char *const material_keys[] = {"name",        "density",          "friction",
                                             "restitution", "rolling_friction", "torsional_friction",
@@ -152,7 +152,7 @@ static const se3di_type_keys shape_types[] = {{"sphere", " radius density" TOUCH
                                               {"capsule", " radius length density" TOUCH},
                                               {"cylinder", " radius length density" TOUCH},
                                               {"plane", " normal" TOUCH},
-                                              {"mesh", " file scale density" TOUCH},
+                                              {"mesh", " file scale convex density" TOUCH},
                                               {NULL, NULL}};
 
 static const se3di_object_keys objects[SE3DI_OBJECT_COUNT] = {

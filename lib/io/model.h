@@ -106,6 +106,8 @@ typedef struct se3di_mesh se3di_mesh;
 typedef struct se3di_shape_entry {
     se3d_model_shape shape;
     const se3di_mesh *mesh; /* NULL: the shape is another one */
+    int32_t convex;         /* mesh: its hull touches */
+    int32_t reserved;
 } se3di_shape_entry;
 
 typedef struct se3di_grains se3di_grains;

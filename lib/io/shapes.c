@@ -64,6 +64,10 @@ static bool read_triangles(se3di_reader *reader, const se3di_node *node, se3di_s
         !se3di_read_key_number(reader, node, "scale", SE3DI_POSITIVE, &shape->scale)) {
         return false;
     }
+    const se3di_node *convex = se3di_node_get(node, "convex");
+    if (convex && !se3di_read_bool(reader, convex, &entry->convex)) {
+        return false;
+    }
     entry->mesh = se3di_read_mesh(reader, node, shape->file, shape->scale);
     return entry->mesh != NULL;
 }
@@ -113,6 +117,7 @@ static bool read_shape(se3di_reader *reader, const se3di_node *node, se3di_shape
         return false;
     }
     entry->mesh = NULL;
+    entry->convex = 0;
     *shape = standard;
     while (strcmp(types[shape->type], type) != 0) {
         ++shape->type;

@@ -130,8 +130,81 @@ static void a_mesh_that_only_is_seen_is_read_with_the_model(void)
     }
 }
 
+static const char cube[] =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+    "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+
+/* A cube of 2 kg on a larger one that is fixed. */
+static se3d_model *cubes(const char *below, const char *above)
+{
+    char text[900];
+    se3d_model_error error = {0};
+    snprintf(
+        text, sizeof text,
+        "se3d: 1\ngravity: [0, 0, -10]\ncontact: {}\n"
+        "materials: [{name: m, density: 1000, stiffness: 1e5, restitution: 0.3}]\n"
+        "bodies:\n  - {name: table, fixed: true, shapes: [{type: mesh, name: low, material: m, "
+        "file: se3d_test_cube.obj, scale: 4, position: [-2, -2, -4]%s}]}\n"
+        "  - {name: b, mass: 2, inertia: [0.5, 0.5, 0.5], position: [0, 0, 0.49995], shapes: "
+        "[{type: mesh, name: high, material: m, file: se3d_test_cube.obj, position: "
+        "[-0.5, -0.5, -0.5]%s}]}\n"
+        "analysis: {type: dynamics, duration: 0.5}\n",
+        below, above);
+    se3d_model *model = scratch_read_model(text, &error);
+    if (!model) {
+        fprintf(stderr, "%s\n", error.message);
+    }
+    return model;
+}
+
+/* The hull of a mesh rests on a mesh and on a hull; meshes pass each other, and a check says so. */
+static void convex_meshes_touch_meshes(void)
+{
+    static const char *const keys[4][2] = {{", convex: true", ", convex: true"},
+                                           {", convex: true", ""},
+                                           {"", ", convex: true"},
+                                           {"", ""}};
+    scratch_write("se3d_test_cube.obj", cube, sizeof cube - 1);
+    for (int k = 0; k < 4; ++k) {
+        se3d_model *model = cubes(keys[k][0], keys[k][1]);
+        se3d_solver_def def = se3d_solver_def_default();
+        se3d_solver *solver = NULL;
+        se3d_check *check = NULL;
+        se3d_body body;
+        double force[3], torque[3];
+        const char *message = "";
+        CHECK(model != NULL);
+        se3d_system *system = model ? se3d_model_get_system(model) : NULL;
+        if (!system) {
+            break;
+        }
+        CHECK(se3d_check_create(system, &check) >= 0);
+        for (size_t n = 0; n < se3d_check_count_messages(check); ++n) {
+            const char *text = "";
+            CHECK(se3d_check_get_message(check, n, &text) == SE3D_OK);
+            message = strstr(text, "pass through") ? text : message;
+        }
+        if (k == 3) {
+            CHECK_CONTAINS(message, "the meshes low and high pass through each other");
+        } else {
+            CHECK(strlen(message) == 0);
+        }
+        se3d_check_destroy(check);
+        CHECK(se3d_body_find(system, "b", &body) == SE3D_OK);
+        CHECK(se3d_solver_create(system, &def, &solver) == SE3D_OK);
+        CHECK(se3d_solver_run(solver, 0.5) >= 0);
+        CHECK(se3d_body_get_contact_wrench(system, body, force, torque) == SE3D_OK);
+        CHECK_NEAR(force[2], k < 3 ? 20.0 : 0.0, 1e-2);
+        CHECK(se3d_system_count_contacts(system) == (k < 3 ? 4 : 0));
+        se3d_solver_destroy(solver);
+        se3d_model_destroy(model);
+    }
+    scratch_remove("se3d_test_cube.obj");
+}
+
 int main(void)
 {
+    RUN(convex_meshes_touch_meshes);
     RUN(a_mesh_that_only_is_seen_is_read_with_the_model);
     RUN(stl_and_obj_give_the_same_surface);
     RUN(broken_files_are_refused_with_their_place);
