@@ -63,6 +63,19 @@ build_and_run() {
     "$work/consumer_cpp"
 }
 
+# The example of the README, by its command.
+readme_command() {
+    command=$(sed -n "s|^\(cc -std=c11 main.c .* -o main\).*|\1|p" "$SE3D_SOURCE_DIR/README.md" |
+        sed "s|^cc|$CC|; s|pkg-config|$PKG_CONFIG|")
+    [ -n "$command" ] || fail "the README has no command for cc"
+    rm -rf "$work/readme"
+    mkdir -p "$work/readme"
+    cp "$SE3D_SOURCE_DIR/examples/pendulum.c" "$work/readme/main.c"
+    cd "$work/readme"
+    eval "$command" || fail "the README's command does not work: $command"
+    LD_LIBRARY_PATH=$libraries ./main >main.txt || fail "the README's example fails"
+}
+
 pkg_config() {
     libraries=$(library_folder)
     export PKG_CONFIG_PATH="$libraries/pkgconfig"
@@ -71,6 +84,7 @@ pkg_config() {
     for name in $names; do
         LD_LIBRARY_PATH=$libraries build_and_run "$name" ""
     done
+    (readme_command)
     # Static: the same tree without the shared libraries, so that -lse3d can only be the archive.
     rm -rf "$work/static"
     cp -r "$prefix" "$work/static"
