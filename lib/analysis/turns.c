@@ -25,15 +25,21 @@ static const char *name_of_angle(const se3di_model *model, size_t angle)
     return name ? name : "without a name";
 }
 
+/* To three digits: what is printed differs from the step that was too long, and can be typed. */
+static double round_down(double longest)
+{
+    const double unit = pow(10.0, floor(log10(longest)) - 2.0);
+    return floor(longest / unit * (1.0 + 1e-12)) * unit;
+}
+
 static se3d_status fail(const se3di_equations *equations, const char *what, const char *name,
                         double turn, double h, double most)
 {
-    const double longest = h * most / turn;
     return se3di_error_set(
         equations->error, SE3D_ERR_STEP_SIZE,
-        "t = %g s: %s %.80s turns by %.3g rad in a step of %g s; the step must be "
-        "at most %.3g s",
-        equations->assembly.model->time, what, name, turn, h, longest);
+        "t = %g s: %s %.80s turns by %.3g rad in a step of %.9g s, more than %g; the step must be "
+        "at most %g s",
+        equations->assembly.model->time, what, name, turn, h, most, round_down(h * most / turn));
 }
 
 se3d_status se3di_turns_check(const se3di_equations *equations, double h, double most)
