@@ -49,7 +49,9 @@ extern "C" {
     X(SE3D_ERR_IO, -13, "reading or writing failed")                                               \
     X(SE3D_ERR_MODEL, -14, "the model is malformed")                                               \
     X(SE3D_ERR_CALLBACK, -15, "a callback reported a failure")                                     \
-    X(SE3D_ERR_UNSUPPORTED, -16, "not supported in this combination")
+    X(SE3D_ERR_UNSUPPORTED, -16, "not supported in this combination")                              \
+    X(SE3D_ERR_INTERRUPTED, -17, "the caller interrupted the run")                                 \
+    X(SE3D_ERR_STEP_COUNT, -18, "the run would take too many steps")
 
 #define SE3D_STATUS_ENUMERATOR(name, value, text) name = value,
 /* What every fallible call returns. @since 0.1 */
@@ -64,6 +66,12 @@ SE3D_API const char *se3d_status_get_text(se3d_status status);
 
 /* Return the version of the library that is linked, e.g. "0.1.0". Safe. @since 0.1 */
 SE3D_API const char *se3d_version_get_text(void);
+
+/* Asked during a long call whether it is to end now: before every step that is tried and in every
+ * iteration of a solution, in the thread of the call. It must not touch the objects that the call
+ * works on. @return 0: go on; otherwise the call ends with SE3D_ERR_INTERRUPTED and its objects in
+ * the state of the last accepted step, from which another call goes on. @since 0.1 */
+typedef int (*se3d_interrupt)(void *ctx);
 
 /* Memory functions of a system. `alloc` and `realloc` return NULL on failure; sizes are in bytes
  * and `free` receives the size that was asked for. Memory must be aligned as malloc's is. @since

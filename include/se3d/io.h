@@ -166,6 +166,8 @@ typedef struct se3d_run_options {
     const char *directory;      /* for relative files, made if missing; NULL: "." */
     se3d_run_progress progress; /* NULL: none */
     void *ctx;
+    se3d_interrupt interrupt; /* asked within rows too whether the run is to end; NULL: none */
+    void *interrupt_ctx;
 } se3d_run_options;
 
 SE3D_API void se3d_run_options_init(se3d_run_options *options, size_t size);
@@ -181,7 +183,8 @@ static inline se3d_run_options se3d_run_options_default(void)
 typedef struct se3d_run se3d_run;
 
 /* Run every analysis of a model and write its results. A file is written under a temporary name and
- * gets its own when the run is over; where an analysis fails, the rows so far are kept.
+ * gets its own when the run is over; where an analysis fails, the rows so far are kept, and where
+ * it is interrupted, they end with one at the time that it had reached.
  * @param[out] out    what was done, also where an analysis failed (NULL where nothing ran)
  * @param[out] error  filled on failure: when, where, why and what to try; may be NULL
  * @return OK or INFO_* of the last analysis, NULL, IO, NO_MEMORY, or the status of the analysis

@@ -217,7 +217,8 @@ static se3d_status search_line(statics *s, double length)
         move(s, fraction);
         se3d_status status = evaluate(s);
         int good = status >= 0 && (length < 1e-6 || work_of_step(s) >= -0.9 * fabs(before));
-        if (good || status == SE3D_ERR_NO_MEMORY || halvings >= 20) {
+        const int ends = status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED;
+        if (good || ends || halvings >= 20) {
             return status;
         }
         memcpy(assembly->model->frames, s->equations->accepted, bytes);
@@ -231,6 +232,7 @@ static se3d_status iterate(statics *s, int *converged)
     *converged = 0;
     for (int k = 0; k < ITERATIONS; ++k) {
         double length;
+        SE3DI_TRY(se3di_equations_ask(s->equations));
         SE3DI_TRY(compute_step(s, &length));
         ++s->equations->counters.iterations;
         if (length < 1e-15 || (length < 1e-10 && length > 0.25 * previous)) {

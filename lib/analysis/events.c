@@ -594,8 +594,10 @@ se3d_status se3di_events_end_step(void *ctx)
         return se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for events");
     }
     const se3di_counters before = run->equations.counters;
+    ++run->guard.muted; /* the step is accepted: an end now would lose what happened in it */
     se3d_status status = look_back(events);
     status = status < 0 ? status : report(events, events->from.time, events->to.time);
+    --run->guard.muted;
     keep_counters(events, &before);
     const int stays = status == SE3D_INFO_EVENT && (can_go_back(events) || events->goes_on);
     if (!stays) {

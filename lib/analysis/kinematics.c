@@ -164,7 +164,35 @@ static double choose_step(const se3di_equations *equations, double remaining, do
 static int shorter_may_help(se3d_status status)
 {
     return status < 0 && status != SE3D_ERR_CALLBACK && status != SE3D_ERR_SINGULAR &&
-           status != SE3D_ERR_NO_MEMORY;
+           status != SE3D_ERR_NO_MEMORY && status != SE3D_ERR_INTERRUPTED;
+}
+
+/* A step of h from the accepted state, or of a half of it, of a quarter ...; *h becomes the one
+ * that was made, to t_end exactly where `last` stays. */
+static se3d_status step_or_less(se3di_equations *equations, double t_end, double *h, int *last)
+{
+    const se3di_model *model = equations->assembly.model;
+    se3d_status status = SE3D_OK;
+    for (int k = 0; k <= HALVINGS_MAX; ++k, *h *= 0.5) {
+        const double whole = t_end - model->time;
+        const double wanted = *h * (1.0 + 1e-9) >= whole ? whole : *h;
+        *h = wanted;
+        *last = !(*h < whole);
+        SE3DI_TRY(se3di_equations_try_step(equations, model->time));
+        status = se3di_kinematics_step(equations, *h);
+        if (status >= 0) {
+            return status;
+        }
+        if (!shorter_may_help(status)) {
+            break;
+        }
+        ++equations->counters.rejected;
+        se3di_state_restore(equations);
+    }
+    if (status == SE3D_ERR_INTERRUPTED) {
+        se3di_state_restore(equations);
+    }
+    return status;
 }
 
 se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, double step)
@@ -175,26 +203,14 @@ se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, doubl
     while (model->time < t_end) {
         double h = choose_step(equations, t_end - model->time, step, shortest);
         SE3DI_TRY(se3di_jump_refuse(&equations->assembly, model->time + h, h, equations->error));
+        int last = 0;
         se3di_state_accept(equations);
-        int last = model->time + h * (1.0 + 1e-9) >= t_end;
         SE3DI_TRY(se3di_watch_begin(equations));
-        se3d_status status = SE3D_OK;
-        for (int k = 0; k <= HALVINGS_MAX; ++k, h *= 0.5, last = 0) {
-            if (last) {
-                h = t_end - model->time;
-            }
-            status = se3di_kinematics_step(equations, h);
-            if (!shorter_may_help(status)) {
-                break;
-            }
-            ++equations->counters.rejected;
-            se3di_state_restore(equations);
-        }
-        SE3DI_TRY(status);
+        SE3DI_TRY(step_or_less(equations, t_end, &h, &last));
         if (last) {
             model->time = t_end;
         }
-        status = se3di_watch_end(equations);
+        const se3d_status status = se3di_watch_end(equations);
         if (status != SE3D_OK) {
             return status;
         }

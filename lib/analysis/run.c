@@ -132,6 +132,7 @@ static se3d_status prepare(se3di_run *run)
         SE3DI_TRY(build(run));
     }
     run->equations.watch = run->events.slots.count > 0 ? &run->watch : NULL;
+    run->equations.guard = &run->guard;
     return se3di_events_prepare(&run->events) < 0
                ? se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for events")
                : SE3D_OK;
@@ -256,6 +257,7 @@ static se3d_status run_fixed_steps(se3di_run *run, double t_end)
     se3di_model *model = run->model;
     while (model->time < t_end) {
         double h;
+        SE3DI_TRY(se3di_equations_try_step(&run->equations, model->time));
         SE3DI_TRY(choose_step(run, t_end, &h));
         int last = t_end - model->time <= (1.0 + 1e-9) * h;
         SE3DI_TRY(se3di_watch_begin(&run->equations));
@@ -298,7 +300,9 @@ static se3d_status run_method(se3di_run *run, double t_end)
     double step = integration->settings.step > 0.0 ? integration->settings.step
                                                    : integration->settings.step_most;
     const double remaining = t_end - run->model->time;
+    run->refused = 1;
     SE3DI_TRY(se3di_jump_refuse(&run->equations.assembly, t_end, step, run->error));
+    run->refused = 0;
     SE3DI_TRY(begin_dynamics(run, remaining / fmax(1.0, ceil(remaining / step - 1e-9))));
     if (!has_step_control(integration)) {
         return run_fixed_steps(run, t_end);
@@ -435,6 +439,10 @@ static void blame_jump(const se3di_run *run, double t_end)
 static se3d_status explain(se3di_run *run, se3d_status status, double t_end)
 {
     se3di_model *model = run->model;
+    if (status < 0 && run->guard.came) {
+        return se3di_error_set(run->error, SE3D_ERR_INTERRUPTED, "interrupted at t = %.9g s",
+                               model->time);
+    }
     if (status == SE3D_ERR_CALLBACK && model->user_failure.status >= 0) {
         se3di_user_find_failure(model); /* the one that failed as the power was computed */
     }
@@ -442,7 +450,7 @@ static se3d_status explain(se3di_run *run, se3d_status status, double t_end)
         return se3di_user_report(model, run->error);
     }
     if (status < 0 && status != SE3D_ERR_NO_MEMORY && status != SE3D_ERR_CALLBACK &&
-        run->analysis == SE3D_ANALYSIS_DYNAMICS &&
+        run->analysis == SE3D_ANALYSIS_DYNAMICS && !run->refused &&
         run->equations.assembly.topology_version == model->topology_version) {
         blame_jump(run, t_end);
     }
@@ -455,10 +463,25 @@ static void begin(se3di_model *model)
     se3di_user_begin(model);
 }
 
+/* Runs on the way to one horizon are counted together. */
+static void begin_guard(se3di_run *run, double t_end)
+{
+    se3di_guard *guard = &run->guard;
+    const double now = run->model->time;
+    const int goes_on = guard->steps > 0.0 && run->horizon >= t_end && guard->end >= t_end &&
+                        now >= guard->half_time;
+    guard->came = guard->muted = 0;
+    if (!goes_on) {
+        se3di_guard_begin(guard, now, fmax(t_end, run->horizon));
+    }
+}
+
 se3d_status se3di_run_to(se3di_run *run, double t_end)
 {
     se3d_status status;
+    begin_guard(run, t_end);
     do { /* again from what the callback of an event has left */
+        run->refused = 0;
         run->events.goes_on = 0;
         SE3DI_TRY(prepare(run));
         begin(run->model);
@@ -472,10 +495,12 @@ se3d_status se3di_run_step(se3di_run *run, double h)
     if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
         return se3di_run_to(run, run->model->time + h);
     }
+    const double t_end = run->model->time + h;
+    begin_guard(run, t_end);
+    run->refused = 0;
     run->events.goes_on = 0;
     SE3DI_TRY(prepare(run));
     begin(run->model);
-    const double t_end = run->model->time + h;
     const se3d_status status = explain(run, run_step(run, h), t_end);
     return status == SE3D_INFO_EVENT && run->events.goes_on ? se3di_run_to(run, t_end) : status;
 }

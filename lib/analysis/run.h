@@ -14,14 +14,16 @@ typedef struct se3di_run {
     se3di_integration integration; /* dynamics */
     se3di_equations equations;
     size_t work_count;
-    int32_t prepared;   /* the equations fit the model */
-    int32_t determined; /* kinematics: the drivers determine the motion (checked once) */
-    int32_t automatic;  /* the method is chosen from what the model holds */
-    int32_t reserved;
+    int32_t prepared;             /* the equations fit the model */
+    int32_t determined;           /* kinematics: the drivers determine the motion (checked once) */
+    int32_t automatic;            /* the method is chosen from what the model holds */
+    int32_t refused;              /* a prescribed value jumps in the run that is asked for */
     const se3di_integrator *left; /* the method that was left on the way, NULL: none */
     double left_at;               /* when [s] */
     se3di_watch watch;            /* what the events are told of the steps */
     se3di_events events;
+    se3di_guard guard; /* what ends a run before its time */
+    double horizon;    /* runs go on to here [s] */
 } se3di_run;
 
 /* Set up for an analysis; allocates nothing yet. `system`: for the callbacks of events. */

@@ -263,6 +263,7 @@ static se3d_status iterate_to_convergence(bdf *m, double t)
     SE3DI_TRY(se3di_assembly_eval_functions(m->assembly, t, m->equations->error));
     update_state(m);
     for (int k = 0; k < 10; ++k) {
+        SE3DI_TRY(se3di_equations_ask(m->equations));
         SE3DI_TRY(iterate(m, t, refactor, &size));
         const int is_traced = se3di_newton_note(&m->integration->newton, size * m->tolerance);
         if (size <= 1e-3 || (k > 0 && size <= 1.0 && size * size / before <= 1e-4) ||
@@ -415,6 +416,9 @@ static se3d_status advance(bdf *m, int is_controlled)
         double t = m->header[BDF_TIME] + m->header[BDF_STEP];
         double error = HUGE_VAL;
         int order = (int)m->header[BDF_ORDER];
+        if (is_controlled) {
+            SE3DI_TRY(se3di_equations_try_step(m->equations, m->header[BDF_TIME]));
+        }
         predict(m);
         se3d_status status = solve_step(m, t);
         if (status >= 0) {
@@ -442,6 +446,9 @@ static se3d_status advance(bdf *m, int is_controlled)
                 adapt(m, error);
             }
             return SE3D_OK;
+        }
+        if (status == SE3D_ERR_INTERRUPTED) {
+            return status;
         }
         ++m->equations->counters.rejected;
         double factor = isfinite(error) ? 0.9 * pow(error, -1.0 / (order + 1)) : 0.25;

@@ -244,6 +244,7 @@ static se3d_status solve_positions(se3di_lie_verlet *m)
     se3di_assembly *assembly = m->assembly;
     double before = HUGE_VAL;
     for (int iteration = 0; iteration < POSITION_ITERATIONS; ++iteration) {
+        SE3DI_TRY(se3di_equations_ask(equations));
         SE3DI_TRY(drift(m));
         double gap = eval_gap(m);
         if (gap <= 1e-15 || (gap <= GAP_ROUNDING && gap >= 0.5 * before)) {
@@ -314,6 +315,7 @@ static se3d_status solve_velocities(se3di_lie_verlet *m)
     se3di_assembly *assembly = m->assembly;
     size_t unknowns = assembly->unknown_count;
     for (int iteration = 0; iteration < m->force_iterations; ++iteration) {
+        SE3DI_TRY(se3di_equations_ask(equations));
         SE3DI_TRY(se3di_assembly_eval_forces(assembly, m->t1, equations->b, equations->error));
         se3di_assembly_get_velocity(assembly, m->last);
         kick(m);

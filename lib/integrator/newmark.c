@@ -260,6 +260,7 @@ static se3d_status iterate_to_convergence(newmark_step *step)
         memset(step->lambda, 0, step->equations->assembly.row_count * sizeof *step->lambda);
     }
     for (int32_t k = 0; k < limit; ++k) {
+        SE3DI_TRY(se3di_equations_ask(step->equations));
         SE3DI_TRY(iterate(step, refactor));
         const int is_traced = se3di_newton_note(&step->integration->newton, step->correction);
         if (has_converged(step)) {
@@ -435,6 +436,7 @@ se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmar
         double h = *next < remaining ? fmin(*next, 0.5 * remaining) : remaining;
         h = se3di_contacts_pace(model, SE3DI_PACE_ADAPTIVE, h);
         double smallest = 1e-12 * fmax(1e-3, fabs(t));
+        SE3DI_TRY(se3di_equations_try_step(equations, t));
         SE3DI_TRY(se3di_watch_begin(equations));
         se3d_status status = se3di_newmark_step(integration, method, h);
         if (status >= 0) {
@@ -446,6 +448,9 @@ se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmar
                 return status;
             }
             continue;
+        }
+        if (status == SE3D_ERR_INTERRUPTED) {
+            return status;
         }
         ++equations->counters.rejected;
         *next = next_step(h, integration->error);

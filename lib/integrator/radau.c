@@ -292,6 +292,7 @@ static se3d_status advance(se3di_integration *integration)
     h = se3di_contacts_pace(m.assembly->model, SE3DI_PACE_ADAPTIVE, h);
     for (;;) {
         double error;
+        SE3DI_TRY(se3di_equations_try_step(m.equations, m.t));
         se3d_status status = attempt(&m, &past, inner, h, &error);
         if (status >= 0 && error <= 1.0) {
             status = settle(&m, integration->settings.tolerance, &error);
@@ -305,6 +306,9 @@ static se3d_status advance(se3di_integration *integration)
                 header[RADAU_REJECTED] = 0.0;
                 return SE3D_OK;
             }
+        }
+        if (status == SE3D_ERR_INTERRUPTED) {
+            return status;
         }
         ++m.equations->counters.rejected;
         header[RADAU_REJECTED] = 1.0;

@@ -415,6 +415,7 @@ static se3d_status iterate_to_convergence(se3di_radau *m)
     m->size = HUGE_VAL;
     m->iterations = 0;
     for (int k = 0; k < m->iterations_max; ++k) {
+        SE3DI_TRY(se3di_equations_ask(m->equations));
         SE3DI_TRY(iterate(m, k == 0));
         (void)se3di_newton_note(&m->integration->newton, m->size * m->tolerance);
         const double rate = k == 0 ? 1.0 : m->size / m->before;

@@ -109,9 +109,10 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
     while (m.model->time < t_end && status >= 0 && status != SE3D_INFO_EVENT) {
         double rest = t_end - m.model->time;
         double h = rest / fmax(1.0, ceil(rest / most - 1e-9));
-        if (asked) {
+        status = se3di_equations_try_step(integration->equations, m.model->time);
+        if (status >= 0 && asked) {
             status = se3di_contacts_check_step(m.model, SE3DI_PACE_EXPLICIT, h, m.error);
-        } else {
+        } else if (status >= 0) {
             h = se3di_contacts_next_step(m.model, SE3DI_PACE_EXPLICIT, most, t_end);
         }
         if (m.open && fabs(h - m.h) > 1e-9 * h) {

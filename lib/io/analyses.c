@@ -7,10 +7,11 @@
 
 static const char *const types[] = {
     "assembly", "kinematics", "inverse_dynamics", "dynamics", "equilibrium", "modes", NULL};
-#define STEP_MIN     1e-15 /* s */
-#define STEP_DEFAULT 1e-3  /* s, of methods with fixed steps */
-#define STEPS_MAX    1e9
-#define TIME_MAX     1e9 /* s, thirty years */
+#define STEP_MIN       1e-15 /* s */
+#define STEP_DEFAULT   1e-3  /* s, of methods with fixed steps */
+#define STEPS_MAX      1e9   /* where the file says nothing */
+#define STEPS_MAX_MOST 1e15
+#define TIME_MAX       1e9 /* s, thirty years */
 
 enum { TYPE_MODES = 5 }; /* the others are se3d_analysis */
 static const char *const formulations[] = {"romega", "rp", NULL};
@@ -94,14 +95,20 @@ static bool read_numbers(se3di_reader *reader, const se3di_node *node, se3d_solv
         replaced(reader, se3di_node_get(node, "step"), "--step", reader->options->step);
     double order = 0.0;
     double iterations = 25.0;
+    double steps = STEPS_MAX;
     if ((step && !se3di_read_number(reader, step, SE3DI_POSITIVE, &solver->step)) ||
         !se3di_read_key_number(reader, node, "tolerance", SE3DI_POSITIVE, &solver->tolerance) ||
         !se3di_read_key_number(reader, node, "spectral_radius", SE3DI_ANY,
                                &solver->spectral_radius) ||
         !se3di_read_key_number(reader, node, "alpha", SE3DI_ANY, &solver->alpha) ||
         !se3di_read_key_count(reader, node, "order", 20.0, &order) ||
-        !se3di_read_key_count(reader, node, "iterations_max", 1e6, &iterations)) {
+        !se3di_read_key_count(reader, node, "iterations_max", 1e6, &iterations) ||
+        !se3di_read_key_count(reader, node, "steps_max", STEPS_MAX_MOST, &steps)) {
         return false;
+    }
+    if (steps < 1.0) {
+        return se3di_reader_fail_key(reader, node, "steps_max",
+                                     "is 0, must be a whole number from 1 to 1e15");
     }
     if (iterations < 1.0) {
         return se3di_reader_fail_key(reader, node, "iterations_max",
@@ -113,6 +120,7 @@ static bool read_numbers(se3di_reader *reader, const se3di_node *node, se3d_solv
     }
     solver->order = reader->options->method ? 0 : (int32_t)order; /* the order of another method */
     solver->iterations_max = (size_t)iterations;
+    solver->steps_max = (uint64_t)steps;
     return true;
 }
 
@@ -151,11 +159,12 @@ static bool check_times(se3di_reader *reader, const se3di_node *node, const se3d
         return se3di_reader_fail(reader, duration, "is %g, must be at most %g [s]", length,
                                  TIME_MAX);
     }
-    if (step > 0.0 && length / step > STEPS_MAX) {
+    const double most = (double)entry->solver.steps_max;
+    if (step > 0.0 && length / step > most) {
         return se3di_reader_fail(reader, duration,
                                  "is %g s, which takes %.3g steps of %g s, must take at most %g: "
-                                 "choose a larger `step`",
-                                 length, length / step, step, STEPS_MAX);
+                                 "choose a larger `step` or `steps_max`",
+                                 length, length / step, step, most);
     }
     if (length > 0.0 && length < 1e-14 * fabs(end)) {
         return se3di_reader_fail(reader, duration, "is %g s, which does not move the time %g s on",

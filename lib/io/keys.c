@@ -90,9 +90,9 @@ static const char *const force_keys[] = {"name",
                                          NULL};
 static const char *const spline_keys[] = {"spline", NULL};
 static const char *const analysis_keys[] = {
-    "type",     "formulation", "method",          "order", "step",           "tolerance",
-    "duration", "start",       "spectral_radius", "alpha", "iterations_max", "file",
-    "inputs",   "outputs",     "frequencies",     NULL};
+    "type",    "formulation",     "method", "order",          "step",      "tolerance", "duration",
+    "start",   "spectral_radius", "alpha",  "iterations_max", "steps_max", "file",      "inputs",
+    "outputs", "frequencies",     NULL};
 static const char *const modes_input_keys[] = {"body", "point", "direction", "torque", NULL};
 static const char *const modes_output_keys[] = {"body", "point", "direction", "quantity", NULL};
 static const char *const frequency_keys[] = {"from", "to", "count", NULL};

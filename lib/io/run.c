@@ -292,6 +292,9 @@ static const char *advise(se3d_status status, int32_t analysis)
     case SE3D_ERR_NO_CONVERGENCE:
     case SE3D_ERR_STEP_SIZE:
         return advise_iteration(analysis);
+    case SE3D_ERR_STEP_COUNT:
+        return "try a larger --step, a looser `tolerance`, --method radau where the motion is "
+               "stiff, a shorter --duration, or a larger `steps_max`";
     case SE3D_ERR_NOT_FINITE:
         return moves
                    ? "look for a function that is not finite at this time, or try a smaller --step"
@@ -313,6 +316,11 @@ static se3d_status fail_analysis(runner *r, const se3di_analysis_entry *entry, s
     se3d_system_get_time(r->model->system, &now);
     if (target > now) {
         snprintf(way, sizeof way, " on the way to t = %.9g", target);
+    }
+    if (status == SE3D_ERR_INTERRUPTED) {
+        snprintf(text, sizeof text, "the %s analysis was interrupted at t = %.9g s",
+                 entry->analysis.type, now);
+        return fail(r, status, text);
     }
     snprintf(text, sizeof text, "the %s analysis failed at t = %.9g s%s: %.500s. What to try: %s",
              entry->analysis.type, now, way, why[0] ? why : se3d_status_get_text(status),
@@ -370,7 +378,7 @@ static double merge_times(const runner *r, double start, double duration, double
     return merged;
 }
 
-/* Rows of all files where an event has stopped the analysis. */
+/* Rows of all files where an event, or the user, has ended the analysis. */
 static se3d_status sample_stop(runner *r, double time)
 {
     se3d_status status = SE3D_OK;
@@ -395,28 +403,32 @@ static se3d_status run_rows(runner *r, size_t index, const se3di_analysis_entry 
     const double duration = entry->analysis.duration;
     se3d_status last = SE3D_OK;
     double time = start;
+    double reached = -HUGE_VAL; /* the last rows are of then */
     while (next_time(r, start, duration, &time) && !r->stopped) {
         time = merge_times(r, start, duration, time);
         last = r->model->grains ? se3di_grains_advance(r->model, &entry->solver, r->solver, time)
                                 : se3d_solver_run(r->solver, time);
-        if (last < 0) {
+        if (last < 0 && last != SE3D_ERR_INTERRUPTED) {
             return fail_analysis(r, entry, last, time);
         }
-        const bool event = last == SE3D_INFO_EVENT;
-        if (event) {
+        const bool ends = last == SE3D_INFO_EVENT || last < 0;
+        if (ends) {
             se3d_system_get_time(r->model->system, &time);
         }
-        const se3d_status status =
-            event ? sample_stop(r, time) : sample_files(r, start, duration, time);
+        const bool has_row = last < 0 && !(time > reached);
+        const se3d_status status = has_row ? SE3D_OK
+                                   : ends  ? sample_stop(r, time)
+                                           : sample_files(r, start, duration, time);
         if (status < 0) {
             return status;
         }
+        reached = time;
         show_progress(r, index, time, start, duration);
-        if (event) {
+        if (ends) {
             break;
         }
     }
-    return last;
+    return last < 0 ? fail_analysis(r, entry, last, time) : last;
 }
 
 static const char *copy_text(runner *r, const char *text)
@@ -477,6 +489,16 @@ static se3d_status collect_events(runner *r, size_t index, se3d_status status)
     return collected < 0 && status >= 0 ? fail(r, collected, "out of memory") : status;
 }
 
+/* The solver of an analysis: of its whole duration, and it can be interrupted. */
+static se3d_status create_solver(runner *r, const se3di_analysis_entry *entry, double start)
+{
+    se3d_solver_def def = entry->solver;
+    def.horizon = start + entry->analysis.duration;
+    def.interrupt = r->options->interrupt;
+    def.interrupt_ctx = r->options->interrupt_ctx;
+    return se3d_solver_create(r->model->system, &def, &r->solver);
+}
+
 static se3d_status run_analysis(runner *r, size_t index)
 {
     const se3di_analysis_entry *entry = &r->model->analyses[index];
@@ -494,7 +516,7 @@ static se3d_status run_analysis(runner *r, size_t index)
     if (status >= 0) {
         status = se3d_system_set_time(r->model->system, start);
         if (status >= 0 && !entry->modes.file) {
-            status = se3d_solver_create(r->model->system, &entry->solver, &r->solver);
+            status = create_solver(r, entry, start);
         }
         if (status >= 0 && se3di_analysis_has_motion(entry)) {
             status = se3di_events_create(r->model, r->solver);

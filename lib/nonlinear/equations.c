@@ -90,6 +90,38 @@ void se3di_equations_destroy(se3di_equations *equations)
     memset(equations, 0, sizeof *equations);
 }
 
+se3d_status se3di_equations_ask(const se3di_equations *equations)
+{
+    return se3di_guard_ask(equations->guard)
+               ? se3di_error_set(equations->error, SE3D_ERR_INTERRUPTED,
+                                 "interrupted on the way from t = %.9g s",
+                                 equations->assembly.model->time)
+               : SE3D_OK;
+}
+
+se3d_status se3di_equations_try_step(const se3di_equations *equations, double t)
+{
+    const se3di_guard *guard = equations->guard;
+    se3di_guard_pace pace;
+    SE3DI_TRY(se3di_equations_ask(equations));
+    if (!guard || !se3di_guard_count(equations->guard, t, &pace)) {
+        return SE3D_OK;
+    }
+    if (!(pace.length > 0.0)) {
+        return se3di_error_set(equations->error, SE3D_ERR_STEP_COUNT,
+                               "t = %.17g s: %.6g steps were tried and the time stands still; "
+                               "steps_max = %.6g",
+                               t, pace.steps, guard->most);
+    }
+    return se3di_error_set(
+        equations->error, SE3D_ERR_STEP_COUNT,
+        "t = %.9g s: %.6g steps were tried since t = %.9g s, the last ones %.3g s long; about %.2g "
+        "would be needed to t = %.9g s, steps_max = %.6g; something moves far faster than the "
+        "rest: "
+        "look for stiffness, mass or speed out of range",
+        t, pace.steps, guard->begin, pace.length, pace.foreseen, guard->end, guard->most);
+}
+
 void se3di_equations_save(se3di_equations *equations)
 {
     memcpy(equations->saved, equations->assembly.model->frames,

@@ -12,6 +12,7 @@
 #define SE3DI_EQUATIONS_H
 
 #include "assembly/assembly.h"
+#include "base/guard.h"
 #include "linsol/kkt.h"
 
 typedef struct se3di_counters {
@@ -40,6 +41,7 @@ typedef struct se3di_equations {
     double *accepted_acceleration; /* [dense bodies * 6], */
     double *accepted_lambda;       /* [rows] */
     const se3di_watch *watch;      /* NULL: nobody */
+    se3di_guard *guard;            /* NULL: nothing ends a run before its time */
     int32_t iterations_max;        /* of the position Newton */
     int32_t redundant;             /* an acceleration met dependent rows */
     int32_t hold;                  /* positions and velocities of held bodies stay (assembly) */
@@ -102,6 +104,12 @@ static inline se3d_status se3di_watch_end(const se3di_equations *equations)
 {
     return equations->watch ? equations->watch->end_step(equations->watch->ctx) : SE3D_OK;
 }
+
+/* Asked in every iteration: fails with INTERRUPTED where the caller wants an end. */
+se3d_status se3di_equations_ask(const se3di_equations *equations);
+/* Asked before every step from t that is tried: fails with INTERRUPTED, or with STEP_COUNT where
+ * the run takes too many. */
+se3d_status se3di_equations_try_step(const se3di_equations *equations, double t);
 
 /* Keep and restore the frames of all bodies. */
 void se3di_equations_save(se3di_equations *equations);

@@ -177,6 +177,7 @@ static se3d_status run_newton(position_problem *problem, int *converged)
     *converged = 0;
     for (int32_t k = 0; k <= equations->iterations_max; ++k) {
         double length;
+        SE3DI_TRY(se3di_equations_ask(equations));
         if (problem->worst <= 1e-15) {
             *converged = 1;
             return SE3D_OK;
@@ -220,7 +221,8 @@ static se3d_status run_damped(position_problem *problem, double target, int *sta
         damped.eps = damping;
         damped.eps_min = damping;
         se3di_kkt_set_settings(equations->kkt, &damped);
-        status = compute_step(problem, &length);
+        status = se3di_equations_ask(equations);
+        status = status < 0 ? status : compute_step(problem, &length);
         if (status < 0) {
             break;
         }

@@ -9,7 +9,7 @@
 #define STEP_MIN      1e-15 /* s; its square still divides */
 #define TOLERANCE_MIN 1e-14 /* what doubles can hold */
 #define TOLERANCE_MAX 0.1
-#define STEPS_MAX     1e9 /* of one run with fixed steps */
+#define STEPS_MAX     1e9 /* of one run */
 
 void se3d_solver_def_init(se3d_solver_def *def, size_t size)
 {
@@ -42,6 +42,10 @@ static se3d_status check_numbers(se3d_system *system, const se3d_solver_def *def
     if (!(def->alpha >= -1.0 / 3.0 && def->alpha <= 0.0)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "alpha = %g, must be from -1/3 to 0",
                           def->alpha);
+    }
+    if (!isfinite(def->horizon)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "horizon = %g s, must be finite",
+                          def->horizon);
     }
     if (def->iterations_max > 1000000) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
@@ -96,6 +100,10 @@ static void configure(se3di_run *run, const se3d_solver_def *def)
                            ? &se3di_formulation_romega
                            : se3di_formulation_find(def->formulation);
     run->automatic = def->method == SE3D_METHOD_AUTO;
+    run->guard = (se3di_guard){.interrupt = def->interrupt,
+                               .ctx = def->interrupt_ctx,
+                               .most = def->steps_max > 0 ? (double)def->steps_max : STEPS_MAX};
+    run->horizon = def->horizon;
     run->integration.method = se3di_integrator_find(def->method);
     run->integration.settings = (se3di_integrator_settings){
         .step = def->step,
@@ -151,11 +159,12 @@ se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
                           "t_end = %g s, must be finite and not before the present time %g s",
                           t_end, system->model.time);
     }
+    const double most = solver->run.guard.most;
     const double steps = (t_end - system->model.time) / solver->run.integration.settings.step;
-    if (isfinite(steps) && steps > STEPS_MAX) {
+    if (isfinite(steps) && steps > most) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "t_end = %g s takes %g steps of %g s, must take at most %g", t_end, steps,
-                          solver->run.integration.settings.step, STEPS_MAX);
+                          solver->run.integration.settings.step, most);
     }
     return se3di_run_to(&solver->run, t_end);
 }

@@ -182,6 +182,33 @@ expect 'ended by a signal' 1 wait $child
 has "$dir/err.long" 'ended by the user at t = '
 is "$(ls "$dir/l" | tr '\n' ' ')" 'l.csv scene.glb '
 is "$(awk -F, 'NF != 4 { print "cut" }' "$dir/l/l.csv")" ''
+
+# Ended in the middle of a row that nobody would wait for, in every method: the rows end there.
+cat >"$dir/row.yaml" <<'END'
+se3d: 1
+bodies: [{name: a, mass: 1, inertia: [1, 1, 1]}]
+joints: [{name: j, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, 1]}]
+drivers: [{name: d, joint: j, value: 1e6*t}]
+analysis: {type: dynamics, duration: 50}
+output: [{file: row.csv, every: 50, channels: [a.angular_velocity]}]
+END
+for method in radau bdf dop853 'rk45 --step 1e-7' 'rk4 --step 1e-7' 'hht --step 1e-7' \
+    'generalized_alpha --step 1e-7' 'rattle --step 1e-7' 'verlet --step 1e-7'; do
+    for signal in INT TERM; do
+        rm -rf "$dir/row"
+        # shellcheck disable=SC2086
+        "$program" run "$dir/row.yaml" -o "$dir/row" --method $method >"$dir/out" 2>"$dir/err.row" &
+        child=$!
+        until [ -e "$dir/row/row.csv.partial" ]; do kill -0 $child || break; done
+        sleep 0.1
+        kill -$signal $child
+        expect "$method ended by $signal" 1 wait $child
+        has "$dir/err.row" 'ended by the user at t = '
+        is "$(ls "$dir/row" | tr '\n' ' ')" 'row.csv scene.glb '
+        is "$(awk -F, 'END { print NR, NF, ($1 > 0 && $1 < 50) }' "$dir/row/row.csv")" '3 4 1'
+    done
+done
+
 # Nobody reads what is printed.
 name='a reader that goes away'
 (sleep 1; "$program" run "$models/pendulum.yaml" -o "$dir/gone" --duration 0.1 2>"$dir/err"; echo $? >"$dir/code") | :

@@ -26,9 +26,8 @@ static const char help[] =
     "  --quiet                print nothing but errors\n"
     "  --json                 print the summary as JSON\n"
     "\n"
-    "Exit code: 0 done; 1 the analysis failed or was ended by Ctrl-C (results so far are on "
-    "disk);\n"
-    "2 bad usage or model.\n";
+    "Exit code: 0 done; 1 the analysis failed or was ended by Ctrl-C or SIGTERM (results so far\n"
+    "are on disk); 2 bad usage or model.\n";
 
 static const char *outcome(const se3d_run_analysis *a)
 {
@@ -212,15 +211,30 @@ static char *results_folder(const options *o, const se3d_model *model)
 typedef struct watcher {
     progress *bar;
     se3d_scene *scene;
-    double time;
 } watcher;
 
 static int watch(void *ctx, size_t analysis, double time, double fraction)
 {
     watcher *w = ctx;
-    w->time = time;
     se3d_scene_record(w->scene);
     return progress_show(w->bar, analysis, time, fraction) || interrupt_came();
+}
+
+/* Also asked between two rows, which may be far from each other. */
+static int is_over(void *ctx)
+{
+    (void)ctx;
+    return interrupt_came();
+}
+
+/* Where the last analysis has come to. */
+static double end_of(const se3d_run *run)
+{
+    se3d_run_analysis analysis;
+    const size_t count = se3d_run_count_analyses(run);
+    return count > 0 && !SE3D_FAILED(se3d_run_get_analysis(run, count - 1, &analysis))
+               ? analysis.end
+               : 0.0;
 }
 
 /* The scene is left beside the results. @return false after a message. */
@@ -249,16 +263,17 @@ static int run_into(const options *o, se3d_model *model, const char *folder, se3
     progress_begin(&bar, o->quiet || o->json, se3d_model_count_analyses(model));
     how.directory = folder;
     se3d_scene_create(model, scene); /* without memory there is no scene */
-    watcher w = {&bar, *scene, 0.0};
+    watcher w = {&bar, *scene};
     interrupt_begin();
     how.progress = watch;
     how.ctx = &w;
+    how.interrupt = is_over;
     const se3d_status status = se3d_model_run(model, &how, &run, &error);
-    const int ended = !SE3D_FAILED(status) && interrupt_came();
+    const int ended = (!SE3D_FAILED(status) || status == SE3D_ERR_INTERRUPTED) && interrupt_came();
     progress_end(&bar);
     if (ended) {
         snprintf(error.message, sizeof error.message,
-                 "ended by the user at t = %.9g s; the results so far are in %.200s", w.time,
+                 "ended by the user at t = %.9g s; the results so far are in %.200s", end_of(run),
                  folder);
     }
     if (o->json) {
