@@ -103,6 +103,14 @@ int se3di_jump_find(const se3di_assembly *assembly, const double range[2], int p
     return 0;
 }
 
+int se3di_jump_is_between(const se3di_function *function, double t0, double t1)
+{
+    const search s = {.function = function};
+    const double range[2] = {t0, t1};
+    se3di_jump jump;
+    return look(&s, range, 1, &jump);
+}
+
 void se3di_jump_format(const se3di_model *model, const se3di_jump *jump, char *text, size_t size)
 {
     char name[128];

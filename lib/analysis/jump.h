@@ -15,6 +15,8 @@ typedef struct se3di_jump {
  * `highest`. Returns 1 where there is one. */
 int se3di_jump_find(const se3di_assembly *assembly, const double range[2], int parts, int highest,
                     se3di_jump *jump);
+/* Whether a function jumps between t0 and t1, by whole turns also. */
+int se3di_jump_is_between(const se3di_function *function, double t0, double t1);
 /* Refuse a value that jumps from the present time to t_end, looking every `step` (but not too
  * often): INCONSISTENT with a message. Otherwise it would tear the mechanism apart, or off its
  * branch. */

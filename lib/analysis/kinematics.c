@@ -4,6 +4,7 @@
  * (Haug 1989, ch. 3, 11). docs/theory/kinematics.md */
 #include "analysis/run.h"
 
+#include "analysis/driver_step.h"
 #include "analysis/friction_start.h"
 #include "analysis/jump.h"
 #include "analysis/singular.h"
@@ -176,7 +177,7 @@ static se3d_status step_or_less(se3di_equations *equations, double t_end, double
     for (int k = 0; k <= HALVINGS_MAX; ++k, *h *= 0.5) {
         const double whole = t_end - model->time;
         const double wanted = *h * (1.0 + 1e-9) >= whole ? whole : *h;
-        *h = wanted;
+        *h = se3di_driver_step(equations, wanted);
         *last = !(*h < whole);
         SE3DI_TRY(se3di_equations_try_step(equations, model->time));
         status = se3di_kinematics_step(equations, *h);

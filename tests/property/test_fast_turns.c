@@ -44,6 +44,44 @@ static void kinematics_says_which_joint_turns_too_fast_to_count(void)
     text_model_close(&m);
 }
 
+/* Ten radians in 1e-4 s and less, long after the last output: the driver is smooth, so the angle is
+ * followed through all of it. */
+static void kinematics_divides_its_steps_where_a_smooth_driver_is_fast(void)
+{
+    static const char *const kinds[4] = {
+        SPIN("kinematics", "drivers: [{name: d, joint: j, value: \"5*tanh(1e4*(t - 1)) + 5\"}]\n",
+             PIN),
+        SPIN("kinematics", "drivers: [{name: d, joint: j, value: \"5*tanh(1e9*(t - 1)) + 5\"}]\n",
+             PIN),
+        SPIN("kinematics",
+             "drivers: [{name: d, joint: j, value: \"5*tanh(1e4*(t - 1)) + 5 + t\"}]\n", PIN),
+        SPIN("inverse_dynamics",
+             "drivers: [{name: d, joint: j, value: \"5*tanh(1e4*(t - 1)) + 5\"}]\n", PIN)};
+    for (int run = 0; run < 16; ++run) {
+        text_model m = text_model_open(kinds[run / 4], -1, run % 2, 0.0);
+        for (int k = 1; k <= (run / 2 % 2 ? 30 : 1); ++k) {
+            CHECK(text_model_run(&m, run / 2 % 2 ? 2.0 * k / 30.0 : 2.0));
+        }
+        CHECK_NEAR(angle_of(&m), run / 4 == 2 ? 12.0 : 10.0, 1e-12);
+        text_model_close(&m);
+    }
+}
+
+/* The limit is rounded down: it differs from the step, and a step of that length is taken. */
+static void the_longest_step_that_a_message_names_can_be_taken(void)
+{
+    const char *text = SPIN("dynamics", "", PIN);
+    const double h = 0.1 / ceil(0.1 / (1.0000001 * 3.0 / 3000.0) - 1.0);
+    text_model m = text_model_open(text, SE3D_METHOD_HHT, 0, h);
+    double longest = 0.0;
+    CHECK(se3d_solver_step(m.solver, h) == SE3D_ERR_STEP_SIZE);
+    const char *at = strstr(se3d_system_get_error(m.system), "must be at most ");
+    CHECK(at && sscanf(at, "must be at most %lf", &longest) == 1);
+    CHECK(longest < h && longest > 0.98 * h);
+    CHECK(!SE3D_FAILED(se3d_solver_step(m.solver, longest)));
+    text_model_close(&m);
+}
+
 /* 3000 rad/s in steps of a millisecond, and of a tenth of one: r-p had become nonsense in both. */
 static void dynamics_refuses_steps_that_mean_nothing(void)
 {
@@ -70,6 +108,8 @@ int main(void)
 {
     RUN(kinematics_counts_turns_at_a_million_radians_a_second);
     RUN(kinematics_says_which_joint_turns_too_fast_to_count);
+    RUN(kinematics_divides_its_steps_where_a_smooth_driver_is_fast);
+    RUN(the_longest_step_that_a_message_names_can_be_taken);
     RUN(dynamics_refuses_steps_that_mean_nothing);
     return check_finish();
 }
