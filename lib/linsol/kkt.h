@@ -90,7 +90,8 @@ typedef enum se3di_kkt_regularise {
 
 typedef struct se3di_kkt_settings {
     double eps;       /* regularisation relative to diag(C H^-1 B); 1e-10 */
-    double eps_min;   /* where rows are nearly dependent it may fall to this; 1e-14 */
+    double eps_min;   /* where rows are nearly dependent it may fall to this; 1e-14; eps: they are
+                         filtered, and the solution does not jump where they become dependent */
     double tolerance; /* of the relative residual; 1e-15 */
     int32_t max_refinements;
     se3di_kkt_regularise regularise;
@@ -117,7 +118,7 @@ typedef struct se3di_kkt_solve_info {
     bool inconsistent; /* dependent rows contradict each other: residual_c stays */
     double rate;       /* last ratio of successive residuals, 0 where there were not two */
     double residual_b; /* |b - H x - B l| / max(|b|, |H x|, |B l|), largest entries */
-    double residual_c; /* |c - C x| / max(|c|, |C x|) */
+    double residual_c; /* |c - C x| / max(|c|, |C_rc x_c|); iterated: max(|c|, |C x|) */
 } se3di_kkt_solve_info;
 
 typedef struct se3di_kkt se3di_kkt;

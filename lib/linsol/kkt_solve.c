@@ -255,6 +255,14 @@ typedef struct kkt_problem {
 
 typedef enum kkt_ending { KKT_CONVERGED, KKT_STAGNATED, KKT_EXHAUSTED } kkt_ending;
 
+/* Where eps stays what it is, nearly dependent rows are filtered: part of what they ask for, by
+ * eps / sigma and the count of refinements, is left out. The count must then not hang on how fast
+ * the residual falls, or the solution would jump where that passes the bound. */
+static bool is_filter(const se3di_kkt_settings *s)
+{
+    return s->eps_min >= s->eps;
+}
+
 /* Refine until the residual is small or no longer falls. */
 static kkt_ending refine(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
                          se3di_kkt_solve_info *info)
@@ -276,7 +284,7 @@ static kkt_ending refine(se3di_kkt *kkt, const kkt_problem *p, double *x, double
             info->residual_c = previous.residual_c;
             return KKT_STAGNATED;
         }
-        if (step > 1 && info->rate > 0.3) {
+        if (step > 1 && info->rate > 0.3 && !is_filter(&kkt->settings)) {
             return KKT_STAGNATED;
         }
         if (info->refinements >= kkt->settings.max_refinements) {

@@ -868,6 +868,72 @@ static void known_redundancy_is_solved_to_the_tolerance_without_a_check(void)
     }
 }
 
+/* c = 0, and C x cancels: the rest of it must be small beside its terms, not beside itself. */
+static void motions_that_obey_the_constraints_are_exact(void)
+{
+    static double force[MAX_BODIES * 8], rate[MAX_JOINTS * 64];
+    static const double zero[MAX_JOINTS * 64];
+    for (uint64_t seed = 1; seed <= 20; ++seed) {
+        start(&m, 1, 6, true, seed);
+        m.pattern.level = levels[seed % 3];
+        add_joint(&m, 2, 0, -1);
+        add_joint(&m, 2, -1, 0);
+        fill(&m);
+        se3di_kkt_settings settings = {
+            .eps = 1e-8, .eps_min = 1e-8, .tolerance = 3e-15, .max_refinements = 10};
+        se3di_kkt *kkt = create(&m, SE3DI_KKT_STRUCTURED);
+        se3di_kkt_solve_info info;
+        se3di_kkt_set_settings(kkt, &settings);
+        CHECK(se3di_kkt_factor(kkt, &m.values, NULL) == SE3D_OK);
+        CHECK(se3di_kkt_solve(kkt, &m.values, m.b, NULL, m.x, m.l, &info) == SE3D_OK);
+        CHECK(info.checked && info.residual_c < 1e-14);
+        memset(rate, 0, sizeof rate);
+        multiply(&m, m.x, m.l, force, rate);
+        CHECK(distance(rate, zero, m.row_count) < 1e-13);
+        se3di_kkt_destroy(kkt);
+    }
+}
+
+/* Two rows at the angle s of each other; the second also asks for a little across the first. */
+static double solve_with_rows_at(double s)
+{
+    start(&m, 1, 6, true, 1);
+    add_joint(&m, 1, 0, -1);
+    add_joint(&m, 1, 0, -1);
+    for (int k = 0; k < 6; ++k) {
+        m.body[7 * k] = 1.0;
+    }
+    m.unknowns = 6;
+    m.row_count = 2;
+    m.joint[0] = 1.0;
+    m.joint[6] = cos(s);
+    m.joint[7] = sin(s);
+    m.c[0] = 1.0;
+    m.c[1] = cos(s) + 0.01 * sin(s);
+    se3di_kkt_settings settings = {.eps = 1e-9,
+                                   .eps_min = 1e-9,
+                                   .tolerance = 1e-15,
+                                   .max_refinements = 10,
+                                   .regularise = SE3DI_KKT_REGULARISE_FIRST,
+                                   .any_multipliers = true};
+    const outcome out = solve_with(&m, SE3DI_KKT_STRUCTURED, &settings);
+    CHECK(out.factor >= 0 && out.solve >= 0);
+    return 100.0 * m.x[1]; /* 1 without a filter */
+}
+
+static void a_filtered_solution_does_not_jump(void)
+{
+    double last = solve_with_rows_at(1e-7), least = last;
+    for (int k = 1; k <= 6000; ++k) {
+        const double now = solve_with_rows_at(1e-7 * pow(10.0, 1e-3 * k));
+        CHECK_NEAR(now, last, 5e-3);
+        least = fmin(least, now);
+        last = now;
+    }
+    CHECK(least < 1e-3);
+    CHECK_NEAR(last, 1.0, 1e-10);
+}
+
 static void cost_of_a_chain_is_proportional_to_its_length(void)
 {
     double cost[2];
@@ -898,6 +964,8 @@ int main(void)
     RUN(redundancy_inside_a_tree_is_found_late);
     RUN(contradicting_rows_are_told);
     RUN(nearly_dependent_rows_are_solved_as_regular);
+    RUN(motions_that_obey_the_constraints_are_exact);
+    RUN(a_filtered_solution_does_not_jump);
     RUN(bad_values_are_refused);
     RUN(bad_patterns_are_refused);
     RUN(a_failing_allocation_leaves_nothing_behind);
