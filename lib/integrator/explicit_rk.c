@@ -78,11 +78,11 @@ static double inner_tolerance(double tolerance)
     return fmax(0.03 * tolerance, 2e-13);
 }
 
-/* See se3di_state_begin. Tight tolerances need accelerations with less noise near singular
- * positions; at loose ones a wide filter costs more steps than noise does. */
+/* See se3di_state_begin. The tightest tolerances need accelerations with less noise near singular
+ * positions; elsewhere a wider filter costs steps and accuracy. */
 static double regularisation(double tolerance)
 {
-    return fmin(1e-8, fmax(1e-10, 1e-10 * (1e-8 / tolerance)));
+    return fmin(1e-9, fmax(1e-10, 1e-10 * (1e-11 / tolerance)));
 }
 
 /* The violation of constraints that does not matter: near a singular position velocities magnify it
