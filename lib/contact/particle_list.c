@@ -40,7 +40,8 @@ void se3di_particles_each_slab(se3di_particles *set, void (*work)(se3di_particle
 {
     const long slabs = (long)set->slab_count;
 #ifdef _OPENMP
-#pragma omp parallel for if (set->threads > 1) num_threads(set->threads) schedule(dynamic)
+    const int32_t team = se3di_particles_team(set);
+#pragma omp parallel for if (team > 1) num_threads(team) schedule(dynamic)
 #endif
     for (long s = 0; s < slabs; ++s) {
         work(set, (uint32_t)s);

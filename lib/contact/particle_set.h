@@ -24,6 +24,7 @@
 #define SE3DI_GRAIN_LANES     8  /* pairs of a block */
 #define SE3DI_GRAIN_CLASSES   12 /* size classes: each twice the radius of the one before */
 #define SE3DI_GRAIN_SLABS_MAX 64
+#define SE3DI_PERIOD_LEAST    4.04 /* of the largest radius: least length along a periodic axis */
 
 /* One cache line: what nearly every pass reads. */
 typedef struct se3di_grain {
@@ -133,7 +134,9 @@ typedef struct se3di_slab {
     double fastest;                /* squared speed after the last motion */
     uint64_t touching;
     se3di_law_failure failure;
-    int32_t done; /* in this sweep its forces have been evaluated */
+    int32_t begun;  /* in this sweep somebody evaluates its forces, */
+    int32_t done;   /* has evaluated them, */
+    int32_t moving; /* moves it or has moved it */
     int32_t reserved;
 } se3di_slab;
 
@@ -341,6 +344,14 @@ const se3di_kernels *se3di_particle_kernels_callback(void);
 const se3di_kernels *se3di_particle_kernels_portable(void);
 const se3di_kernels *se3di_particle_kernels_avx2(void);
 const se3di_kernels *se3di_particle_kernels_avx512(void);
+
+/* Threads that have something to do. One number for everything: a pool whose size changes is made
+ * anew each time. */
+static inline int32_t se3di_particles_team(const se3di_particles *set)
+{
+    const int32_t slabs = (int32_t)set->slab_count;
+    return slabs < 1 ? 1 : set->threads < slabs ? set->threads : slabs;
+}
 
 /* What evaluates the forces of a set. */
 static inline const se3di_kernels *se3di_particles_get_kernels(const se3di_particles *set)

@@ -5,7 +5,9 @@
  * forces of an odd slab wait for those of the two even slabs beside it; and a slab's particles may
  * be moved when its own forces and those of the slab before it have been evaluated. Each thread has
  * a range of slabs of about the same work, the same from step to step, and takes them in the order
- * 0 2 1 4 3 ..., so that what it moves is still near it.            docs/theory/particles.md */
+ * 0 2 1 4 3 ..., so that what it moves is still near it. Then it takes what nobody has begun from
+ * the ends of the others' ranges: a few slabs do not divide evenly, and a thread may have lost its
+ * processor. Who evaluates or moves a slab does not change the bits.   docs/theory/particles.md */
 #include "contact/particle_set.h"
 
 #include <math.h>
@@ -69,7 +71,8 @@ static void pass(se3di_particles *set, const se3di_motion *motion)
     double fastest_of[PASS_PARTS];
     size_t part = set->count / PASS_PARTS + 1;
 #ifdef _OPENMP
-#pragma omp parallel for if (set->threads > 1) num_threads(set->threads) schedule(static)
+    const int32_t team = se3di_particles_team(set);
+#pragma omp parallel for if (team > 1) num_threads(team) schedule(static)
 #endif
     for (size_t c = 0; c < PASS_PARTS; ++c) {
         size_t begin = c * part < set->count ? c * part : set->count;
@@ -127,6 +130,14 @@ static void await(se3di_particles *set, uint32_t s)
 #endif
 }
 
+static void finish_forces(se3di_slab *slab)
+{
+#ifdef _OPENMP
+#pragma omp atomic write seq_cst
+#endif
+    slab->done = 1;
+}
+
 static void evaluate_forces(const sweep *w, uint32_t s)
 {
     se3di_particles *set = w->set;
@@ -149,28 +160,60 @@ static void evaluate_forces(const sweep *w, uint32_t s)
     slab->touching = task.touching;
 }
 
+/* Whether this thread is the first to begin something. */
+static int claim(int32_t *begun)
+{
+    int32_t before;
+#ifdef _OPENMP
+#pragma omp atomic capture seq_cst
+#endif
+    {
+        before = *begun;
+        *begun = 1;
+    }
+    return !before;
+}
+
+/* The forces of an even slab, if nobody has begun them. */
+static void even_forces(const sweep *w, uint32_t s)
+{
+    se3di_slab *slab = &w->set->slabs[s];
+    if (claim(&slab->begun)) {
+        evaluate_forces(w, s);
+        finish_forces(slab);
+    }
+}
+
 static void forces(const sweep *w, uint32_t s)
 {
     se3di_particles *set = w->set;
-    if (s % 2 == 1) {
-        await(set, s - 1);
-        await(set, s + 1 < set->slab_count ? s + 1 : 0); /* across a period, or done long ago */
+    if (s % 2 == 0) {
+        even_forces(w, s);
+        return;
     }
-    evaluate_forces(w, s);
-#ifdef _OPENMP
-#pragma omp atomic write seq_cst
-#endif
-    set->slabs[s].done = 1;
+    if (claim(&set->slabs[s].begun)) {
+        uint32_t next = s + 1 < set->slab_count ? s + 1 : 0; /* across a period, or done long ago */
+        even_forces(w, s - 1);
+        even_forces(w, next);
+        await(set, s - 1);
+        await(set, next);
+        evaluate_forces(w, s);
+        finish_forces(&set->slabs[s]);
+    }
 }
 
 static void move(const sweep *w, uint32_t s)
 {
     se3di_particles *set = w->set;
-    if (w->motion->kicks == 0) {
+    se3di_slab *slab = &set->slabs[s];
+    uint32_t before = s > 0 ? s - 1 : set->slab_count - 1;
+    if (w->motion->kicks == 0 || !claim(&slab->moving)) {
         return;
     }
-    await(set, s > 0 ? s - 1 : set->slab_count - 1);
-    se3di_slab *slab = &set->slabs[s];
+    forces(w, before);
+    forces(w, s);
+    await(set, before);
+    await(set, s);
     slab->fastest = move_range(set, slab->begin, slab->end, w->motion);
 }
 
@@ -225,18 +268,31 @@ static uint32_t first_slab(const se3di_particles *set, int rank, int team)
     return rank < team ? s : set->slab_count;
 }
 
+/* What others have not begun, from the ends of their ranges. */
+static void help(const sweep *w, uint32_t begin, uint32_t end)
+{
+    const uint32_t slabs = w->set->slab_count, others = slabs - (end - begin);
+    for (uint32_t k = 1; k <= others; ++k) {
+        forces(w, (begin + slabs - k) % slabs);
+    }
+    for (uint32_t k = 1; k <= others; ++k) {
+        move(w, (begin + slabs - k) % slabs);
+    }
+}
+
 static void sweep_share(const sweep *w, int rank, int team)
 {
     uint32_t begin = first_slab(w->set, rank, team), end = first_slab(w->set, rank + 1, team);
     if (begin < end) {
         sweep_range(w, begin, end);
     }
+    help(w, begin, end);
 }
 
 static void sweep_together(const sweep *w)
 {
 #ifdef _OPENMP
-#pragma omp parallel num_threads(w->set->threads)
+#pragma omp parallel num_threads(se3di_particles_team(w->set))
     {
         int team = omp_get_num_threads();
         sweep_share(w, omp_get_thread_num(), team);
@@ -254,9 +310,9 @@ void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
     const sweep w = {set, task, motion};
     set->team = 1;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
-        set->slabs[s].done = 0;
+        set->slabs[s].done = set->slabs[s].begun = set->slabs[s].moving = 0;
     }
-    if (set->threads > 1) {
+    if (se3di_particles_team(set) > 1) {
         sweep_together(&w);
     } else {
         sweep_share(&w, 0, 1);
