@@ -441,9 +441,12 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
     if (set->count > 0) {
         size_t cells = 0;
         choose_axes(set, &g);
-        for (int k = 0; k < 3; ++k) {
-            if (g.periodic[k] && g.extent[k] < 2.0 * (2.0 * largest + set->skin)) {
-                return SE3D_ERR_UNSUPPORTED; /* a pair would meet twice */
+        for (int k = 0; k < 3; ++k) { /* no pair may meet twice */
+            if (g.periodic[k] && g.extent[k] < SE3DI_PERIOD_LEAST * largest) {
+                return SE3D_ERR_UNSUPPORTED;
+            }
+            if (g.periodic[k]) {
+                set->skin = fmin(set->skin, 0.4999 * g.extent[k] - 2.0 * largest);
             }
         }
         SE3DI_TRY(divide_all(set, &g, largest, &cells));

@@ -88,9 +88,9 @@ se3d_status se3di_particles_report(const se3di_particles *set, se3d_status statu
                                set->law_failure.i, set->law_failure.j, of, name, set->time);
     case SE3D_ERR_UNSUPPORTED:
         return se3di_error_set(error, status,
-                               "the domain%s%.80s is shorter along a periodic axis than four of "
-                               "the largest radii and two skins",
-                               of, name);
+                               "the domain%s%.80s is shorter along a periodic axis than %g of the "
+                               "largest radii",
+                               of, name, SE3DI_PERIOD_LEAST);
     default:
         return se3di_error_set(error, status, "no memory for contacts%s%.80s at time %g s", of,
                                name, set->time);

@@ -9,6 +9,9 @@
 
 #include "contact/particle_set.h"
 
+/* Of one run: more would never end, and time would not advance by them. */
+#define SE3DI_STEPS_MOST 1e12
+
 /* What a set touches, where the model has it now. */
 se3d_status se3di_particles_place(se3di_particles *set, const se3di_model *model,
                                   se3di_error *error);

@@ -99,6 +99,26 @@ static bool read_settings(se3di_reader *reader, const se3di_node *contact)
     return status < 0 ? se3di_reader_fail_system(reader, contact, status) : true;
 }
 
+static const char *text_of(const se3di_node *map, const char *key)
+{
+    return se3di_node_get(map, key)->text;
+}
+
+/* Two materials of one pair before `node` are these. */
+static bool is_first_of_pair(se3di_reader *reader, const se3di_node *list, const se3di_node *node)
+{
+    const char *a = text_of(node, "material_1"), *b = text_of(node, "material_2");
+    for (const se3di_node *old = list->first; old != node; old = old->next) {
+        const char *c = text_of(old, "material_1"), *d = text_of(old, "material_2");
+        if ((strcmp(a, c) == 0 && strcmp(b, d) == 0) || (strcmp(a, d) == 0 && strcmp(b, c) == 0)) {
+            return se3di_reader_fail(
+                reader, node, "is a second pair of `%.60s` and `%.60s`, must be the only one", a,
+                b);
+        }
+    }
+    return true;
+}
+
 static bool read_pairs(se3di_reader *reader, const se3di_node *contact)
 {
     const se3di_node *list = NULL;
@@ -121,6 +141,9 @@ static bool read_pairs(se3di_reader *reader, const se3di_node *contact)
             !se3di_read_key_number(reader, node, "stiffness", SE3DI_POSITIVE, &def.stiffness) ||
             !se3di_read_key_number(reader, node, "cohesion", SE3DI_NOT_NEGATIVE, &def.cohesion) ||
             !se3di_read_key_number(reader, node, "adhesion", SE3DI_NOT_NEGATIVE, &def.adhesion)) {
+            return false;
+        }
+        if (!is_first_of_pair(reader, list, node)) {
             return false;
         }
         const se3d_status status = se3d_material_set_pair(reader->model->system, a, b, &def);

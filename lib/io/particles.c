@@ -296,6 +296,11 @@ static bool read_sink(se3di_reader *reader, const se3di_node *node)
         !se3di_read_key_vector(reader, node, "upper", def.upper)) {
         return false;
     }
+    if (!se3di_node_get(node, "normal") &&
+        (!se3di_node_get(node, "lower") || !se3di_node_get(node, "upper"))) {
+        return se3di_reader_fail(reader, node,
+                                 "must have `lower` and `upper`, or the `normal` of a plane");
+    }
     def.region = region.region;
     def.axis = region.axis;
     grains->sinks[grains->sink_count++] = text;

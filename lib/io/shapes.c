@@ -171,6 +171,12 @@ bool se3di_read_materials(se3di_reader *reader, const se3di_node *root)
         if (!se3di_read_name(reader, child, &name)) {
             return false;
         }
+        for (const se3di_node *old = list->first; old != node; old = old->next) {
+            if (strcmp(se3di_node_get(old, "name")->text, name) == 0) {
+                return se3di_reader_fail(
+                    reader, child, "`%.60s` is taken, must differ from other materials", name);
+            }
+        }
     }
     return true;
 }

@@ -215,6 +215,21 @@ se3d_status se3di_particles_make_room(se3d_particles *particles, size_t count)
     return SE3D_OK;
 }
 
+se3d_status se3di_check_period(se3d_particles *particles, double radius)
+{
+    const se3di_particles *set = &particles->set;
+    for (int a = 0; a < 3; ++a) {
+        double length = set->upper[a] - set->lower[a];
+        if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC && length < SE3DI_PERIOD_LEAST * radius) {
+            return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
+                              "radius = %g m, the domain is periodic along %c and only %g m long, "
+                              "must be %g radii at least",
+                              radius, "xyz"[a], length, SE3DI_PERIOD_LEAST);
+        }
+    }
+    return SE3D_OK;
+}
+
 static se3d_status check_finite_array(se3d_particles *particles, const char *what,
                                       const double *values, size_t count)
 {
@@ -242,6 +257,7 @@ se3d_status se3d_particles_add(se3d_particles *particles, se3d_material material
             return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
                               "radius[%zu] = %g m, must be finite and > 0", k, radius[k]);
         }
+        SE3DI_TRY(se3di_check_period(particles, radius[k]));
     }
     SE3DI_TRY(check_finite_array(particles, "r", r, 3 * count));
     SE3DI_TRY(check_finite_array(particles, "v", v, 3 * count));
@@ -514,6 +530,11 @@ se3d_status se3d_particles_run(se3d_particles *particles, double time)
     }
     double h = se3di_particles_want_step(&particles->set, &particles->system->model);
     double steps = h > 0.0 ? ceil((time - set->time) / h - 1e-9) : 0.0;
+    if (steps > SE3DI_STEPS_MOST) {
+        return SE3DI_FAIL(particles->system, SE3D_ERR_STEP_SIZE,
+                          "a step of %g s asks for %g steps until %g s, must be at most %g", h,
+                          steps, time, SE3DI_STEPS_MOST);
+    }
     if (steps > 0.0 && !se3di_particles_is_idle(set)) {
         SE3DI_TRY(se3di_particles_check_step(&particles->set, &particles->system->model, h,
                                              &particles->system->error));

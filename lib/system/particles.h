@@ -14,6 +14,8 @@ struct se3d_particles {
 /* The index of a material in the set's table, which it gets and is counted in where it has none. */
 se3d_status se3di_particles_use(se3d_particles *particles, se3d_material material, uint32_t *index);
 
+/* Particles of this radius do not meet themselves across a period. */
+se3d_status se3di_check_period(se3d_particles *particles, double radius);
 se3d_status se3di_check_tag(se3d_particles *particles, uint32_t tag);
 /* particles_fill.c: the def, checked, with the range of its radii; what it says. */
 se3d_status se3di_check_fill(se3d_particles *particles, const se3d_fill_def *def,

@@ -67,6 +67,7 @@ se3d_status se3di_check_fill(se3d_particles *p, const se3d_fill_def *def, se3d_f
     SE3DI_TRY(se3di_check_range(p->system, "spacing", full->spacing, 0.0, 1e30));
     SE3DI_TRY(se3di_check_region(p, full->lower, full->upper, full->region, full->axis,
                                  2.0 * full->radius_max));
+    SE3DI_TRY(se3di_check_period(p, full->radius_max));
     SE3DI_TRY(se3di_check_tag(p, full->tag));
     return se3di_particles_use(p, full->material, material);
 }
@@ -283,6 +284,22 @@ static int place(packing *p, se3d_particles *particles, uint32_t material, uint6
     return 0;
 }
 
+/* Far too many are found before there is memory for them. */
+static se3d_status check_volume(se3d_particles *p, const se3d_fill_def *def)
+{
+    double most = 1.0;
+    for (int a = 0; a < 3; ++a) {
+        most *= (def->upper[a] - def->lower[a]) / def->radius_min;
+    }
+    most /= 4.0 / 3.0 * 3.1415926535897932384626433832795;
+    if ((double)def->count > most) {
+        return SE3DI_FAIL(p->system, SE3D_ERR_NO_CONVERGENCE,
+                          "count = %zu, the region has the volume of %.3g particles only",
+                          def->count, most);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3d_particles_fill_random(se3d_particles *particles, const se3d_fill_def *def)
 {
     if (!particles) {
@@ -291,6 +308,7 @@ se3d_status se3d_particles_fill_random(se3d_particles *particles, const se3d_fil
     uint32_t material;
     se3d_fill_def full = se3d_fill_def_default();
     SE3DI_TRY(se3di_check_fill(particles, def, &full, &material));
+    SE3DI_TRY(check_volume(particles, &full));
     SE3DI_TRY(se3di_particles_make_room(particles, full.count));
     se3di_particles *set = &particles->set;
     const size_t count = set->count;

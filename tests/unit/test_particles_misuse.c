@@ -125,6 +125,39 @@ static void bad_sets_are_refused(void)
     bed_destroy(&b);
 }
 
+/* A period in which a particle would meet a neighbour twice is found when the particle comes. */
+static void too_short_a_period_is_found_at_once(void)
+{
+    bed b;
+    bed_init(&b);
+    se3d_particles *set;
+    se3d_particles_def def = se3d_particles_def_default();
+    def.boundary[1] = SE3D_BOUNDARY_PERIODIC;
+    def.upper[1] = 0.39;
+    CHECK(se3d_particles_create(b.system, &def, &set) == SE3D_OK);
+    const double r[3] = {0.0, 0.2, 1.0}, radius = 0.1, fits = 0.096;
+    se3d_fill_def fill = se3d_fill_def_default();
+    se3d_source_def source = se3d_source_def_default();
+    fill.material = b.material;
+    fill.radius_min = 0.01;
+    fill.radius_max = 0.1;
+    fill.count = 1;
+    fill.upper[0] = fill.upper[1] = fill.upper[2] = 0.39;
+    source.fill = &fill;
+    source.rate = 1.0;
+    const char *text = "periodic along y and only 0.39 m long";
+    refused(&b, se3d_particles_add(set, b.material, 1, r, &radius, NULL, NULL, NULL),
+            SE3D_ERR_INVALID_ARGUMENT, text);
+    refused(&b, se3d_particles_fill_lattice(set, &fill, NULL), SE3D_ERR_INVALID_ARGUMENT, text);
+    refused(&b, se3d_particles_fill_random(set, &fill), SE3D_ERR_INVALID_ARGUMENT, text);
+    refused(&b, se3d_particles_add_source(set, &source, NULL), SE3D_ERR_INVALID_ARGUMENT, text);
+    CHECK(se3d_particles_count(set) == 0);
+    CHECK(se3d_particles_add(set, b.material, 1, r, &fits, NULL, NULL, NULL) == SE3D_OK);
+    CHECK(se3d_particles_step(set, 10) == SE3D_OK); /* with a thinner skin */
+    se3d_particles_destroy(set);
+    bed_destroy(&b);
+}
+
 static void stale_and_foreign_handles_are_detected(void)
 {
     bed a, b;
@@ -382,6 +415,7 @@ int main(void)
 {
     RUN(bad_materials_are_refused);
     RUN(bad_sets_are_refused);
+    RUN(too_short_a_period_is_found_at_once);
     RUN(stale_and_foreign_handles_are_detected);
     RUN(bad_arrays_are_refused_and_change_nothing);
     RUN(null_is_always_answered);
