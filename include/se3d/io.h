@@ -212,6 +212,22 @@ SE3D_API size_t se3d_run_count_analyses(const se3d_run *run);
 SE3D_API se3d_status se3d_run_get_analysis(const se3d_run *run, size_t index,
                                            se3d_run_analysis *analysis);
 
+/* The particles of a name at the end of a run. @since 0.1 */
+typedef struct se3d_run_particles {
+    const char *name;  /* "particles": those without a name; owned by the model */
+    uint64_t count;    /* that are there */
+    uint64_t left;     /* removed by sinks, and those that are there but beyond the domain */
+    uint64_t inserted; /* by sources */
+    uint64_t deferred; /* of all so far, those that a source had to put off for room */
+} se3d_run_particles;
+
+/* Names that nothing ever had particles of are not counted. Reader. @since 0.1 */
+SE3D_API size_t se3d_run_count_particles(const se3d_run *run);
+/* Get the particles of name `index`, from 0. @return OK, NULL, INVALID_ARGUMENT (no such name).
+ * Reader. @since 0.1 */
+SE3D_API se3d_status se3d_run_get_particles(const se3d_run *run, size_t index,
+                                            se3d_run_particles *particles);
+
 /* An event that happened. @since 0.1 */
 typedef struct se3d_run_event {
     const char *name;

@@ -47,6 +47,9 @@ se3d_status se3di_grains_write(const se3d_model *model, se3di_iopool *pool, int3
 /* The particles of a file: x, y, z, radius and more, see docs/model-file/reference.md. */
 bool se3di_read_grain_table(se3di_reader *reader, const se3di_node *node, se3d_material material,
                             uint32_t tag);
+/* What became of the particles of every name, for the summary of a run. @return OK, NO_MEMORY. */
+se3d_status se3di_grains_sum_up(const se3di_grains *grains, se3di_iopool *pool,
+                                se3d_run_particles **out, size_t *count);
 /* The index of a name, SIZE_MAX: none. */
 size_t se3di_grains_find_set(const se3di_grains *grains, const char *name);
 size_t se3di_grains_find_sink(const se3di_grains *grains, const char *name);

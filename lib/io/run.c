@@ -37,6 +37,8 @@ struct se3d_run {
     size_t analysis_count;
     se3d_run_file *files;
     size_t file_count, file_capacity;
+    se3d_run_particles *particles;
+    size_t particles_count;
     se3di_event_list events;
 };
 
@@ -621,6 +623,13 @@ static se3d_status run_all(runner *r)
     for (size_t k = 0; k < r->model->analysis_count && status >= 0 && !r->stopped; ++k) {
         status = run_analysis(r, k);
     }
+    const se3d_status summed =
+        r->model->grains ? se3di_grains_sum_up(r->model->grains, &r->run->pool, &r->run->particles,
+                                               &r->run->particles_count)
+                         : SE3D_OK;
+    if (summed < 0 && status >= 0) {
+        status = fail(r, summed, "out of memory");
+    }
     return close_files(r, status);
 }
 
@@ -676,6 +685,23 @@ se3d_status se3d_run_get_analysis(const se3d_run *run, size_t index, se3d_run_an
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     *analysis = run->analyses[index];
+    return SE3D_OK;
+}
+
+size_t se3d_run_count_particles(const se3d_run *run)
+{
+    return run ? run->particles_count : 0;
+}
+
+se3d_status se3d_run_get_particles(const se3d_run *run, size_t index, se3d_run_particles *particles)
+{
+    if (!run || !particles) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= run->particles_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    *particles = run->particles[index];
     return SE3D_OK;
 }
 

@@ -194,3 +194,39 @@ se3d_status se3di_grains_eval(const se3di_channel *c, double *value)
     }
     return status;
 }
+
+/* Of one name. */
+static se3d_status sum_up(const se3di_grains *grains, uint32_t tag, se3d_run_particles *sum)
+{
+    se3d_particles_tally tally;
+    se3d_status status = se3d_particles_get_tally(grains->set, tag, &tally);
+    *sum = (se3d_run_particles){.name = tag > 0 ? grains->sets[tag] : "particles"};
+    if (status >= 0) {
+        sum->count = tally.count;
+        sum->left = tally.lost + tally.outside;
+    }
+    for (uint32_t k = 0; k < grains->source_count && status >= 0; ++k) {
+        se3d_source_stats stats;
+        if (grains->source_tags[k] == tag) {
+            status = se3d_particles_get_source_stats(grains->set, k, &stats);
+            sum->inserted += status >= 0 ? stats.inserted : 0;
+            sum->deferred += status >= 0 ? stats.deferred : 0;
+        }
+    }
+    return status;
+}
+
+se3d_status se3di_grains_sum_up(const se3di_grains *grains, se3di_iopool *pool,
+                                se3d_run_particles **out, size_t *count)
+{
+    se3d_run_particles *sums = se3di_iopool_array(pool, grains->set_count, sizeof *sums);
+    se3d_status status = sums ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    *count = 0;
+    for (uint32_t tag = 0; tag < grains->set_count && status >= 0; ++tag) {
+        se3d_run_particles *sum = &sums[*count];
+        status = sum_up(grains, tag, sum);
+        *count += sum->count + sum->left + sum->inserted > 0 ? 1 : 0;
+    }
+    *out = sums;
+    return status;
+}

@@ -65,6 +65,20 @@ is "$(tail -1 "$dir/e/events.csv" | cut -d, -f1)" "$(tail -1 "$dir/e/pendulum_ev
 expect 'events in json' 0 "$program" run "$models/pendulum_events.yaml" -o "$dir/e" --json
 has "$dir/out" '"event": "tired", "channel": "energy.total", "value": '
 has "$dir/out" '"direction": "falling", "stopped": true}'
+cat >"$dir/flow.yaml" <<'END'
+se3d: 1
+materials: [{name: glass, density: 2500, stiffness: 1e4}]
+particles:
+  - {name: sand, material: glass, radius: 0.01, lower: [0, 0, 0], upper: [0.1, 0.1, 0.03]}
+  - {name: rain, material: glass, radius: 0.01, lower: [0, 0, 1], upper: [0.1, 0.1, 1.1], source: {rate: 100}}
+sinks: [{point: [0, 0, -0.1], normal: [0, 0, 1]}]
+analysis: {type: dynamics, duration: 0.2}
+END
+expect 'what left' 0 "$program" run "$dir/flow.yaml" -o "$dir/flow"
+has "$dir/out" 'particles sand: 0 at the end, 16 left'
+has "$dir/out" 'particles rain: 20 at the end, 0 left, 20 inserted (0 had to wait for room)'
+expect 'what left in json' 0 "$program" run "$dir/flow.yaml" -o "$dir/flow" --json
+has "$dir/out" '{"name": "sand", "count": 0, "left": 16, "inserted": 0, "deferred": 0}'
 sed '/^events:/,/name: tired/d' "$models/pendulum_events.yaml" >"$dir/plain.yaml"
 grep -v 'name: tired' "$models/pendulum_events.yaml" >"$dir/recorded.yaml"
 expect 'without events' 0 "$program" run "$dir/plain.yaml" -o "$dir/plain" --duration 5

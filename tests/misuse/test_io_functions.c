@@ -119,6 +119,7 @@ static void counters(const world *w)
     CHECK(se3d_model_count_shapes(NULL) == 0 && se3d_model_count_shapes(w->model) == 1);
     CHECK(se3d_run_count_analyses(NULL) == 0 && se3d_run_count_analyses(w->run) == 2);
     CHECK(se3d_run_count_files(NULL) == 0 && se3d_run_count_files(w->run) >= 2);
+    CHECK(se3d_run_count_particles(NULL) == 0 && se3d_run_count_particles(w->run) == 0);
     CHECK(se3d_run_count_events(NULL) == 0 && se3d_run_count_events(w->run) == 1);
 }
 
@@ -153,6 +154,16 @@ GETTER(model_get_shape, model, se3d_model_shape, 1)
 GETTER(run_get_analysis, run, se3d_run_analysis, 2)
 GETTER(run_get_file, run, se3d_run_file, se3d_run_count_files(w->run))
 GETTER(run_get_event, run, se3d_run_event, 1)
+
+/* The model has none. */
+static void check_run_get_particles(const world *w)
+{
+    se3d_run_particles out;
+    IS(se3d_run_get_particles(NULL, 0, &out), SE3D_ERR_NULL);
+    IS(se3d_run_get_particles(w->run, 0, NULL), SE3D_ERR_NULL);
+    IS(se3d_run_get_particles(w->run, 0, &out), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_run_get_particles(w->run, SIZE_MAX, &out), SE3D_ERR_INVALID_ARGUMENT);
+}
 
 static void model_create_event(const world *w)
 {
@@ -282,7 +293,8 @@ static const struct {
     {" se3d_model_destroy se3d_run_destroy se3d_scene_destroy ", destroyers},
     {" se3d_model_get_system se3d_model_get_name se3d_model_get_title ", model_texts},
     {" se3d_model_count_analyses se3d_model_count_outputs se3d_model_count_pictures "
-     "se3d_model_count_shapes se3d_run_count_analyses se3d_run_count_files se3d_run_count_events ",
+     "se3d_model_count_shapes se3d_run_count_analyses se3d_run_count_files se3d_run_count_events "
+     "se3d_run_count_particles ",
      counters},
     {" se3d_model_get_parameter ", model_get_parameter},
     {" se3d_model_get_analysis ", check_model_get_analysis},
@@ -291,6 +303,7 @@ static const struct {
     {" se3d_model_get_shape ", check_model_get_shape},
     {" se3d_run_get_analysis ", check_run_get_analysis},
     {" se3d_run_get_file ", check_run_get_file},
+    {" se3d_run_get_particles ", check_run_get_particles},
     {" se3d_run_get_event ", check_run_get_event},
     {" se3d_model_create_event ", model_create_event},
     {" se3d_model_get_solver ", model_get_solver},

@@ -78,6 +78,24 @@ static void print_analysis(const se3d_run_analysis *a)
     }
 }
 
+/* Where particles came or went. */
+static void print_particles(const se3d_run *run)
+{
+    for (size_t k = 0; k < se3d_run_count_particles(run); ++k) {
+        se3d_run_particles p;
+        if (SE3D_FAILED(se3d_run_get_particles(run, k, &p)) || p.left + p.inserted == 0) {
+            continue;
+        }
+        printf("%s%s: %" PRIu64 " at the end, %" PRIu64 " left",
+               strcmp(p.name, "particles") == 0 ? "" : "particles ", p.name, p.count, p.left);
+        if (p.inserted > 0) {
+            printf(", %" PRIu64 " inserted (%" PRIu64 " had to wait for room)", p.inserted,
+                   p.deferred);
+        }
+        putchar('\n');
+    }
+}
+
 static void print_text(const se3d_run *run)
 {
     for (size_t k = 0; k < se3d_run_count_analyses(run); ++k) {
@@ -87,6 +105,7 @@ static void print_text(const se3d_run *run)
             print_events(run, k);
         }
     }
+    print_particles(run);
     for (size_t k = 0; k < se3d_run_count_files(run); ++k) {
         se3d_run_file file;
         if (!SE3D_FAILED(se3d_run_get_file(run, k, &file))) {
@@ -154,6 +173,24 @@ static void json_put_events(const se3d_run *run)
     }
 }
 
+static void json_put_particles(const se3d_run *run)
+{
+    fputs("], \"particles\": [", stdout);
+    for (size_t k = 0; k < se3d_run_count_particles(run); ++k) {
+        se3d_run_particles p;
+        if (SE3D_FAILED(se3d_run_get_particles(run, k, &p))) {
+            continue;
+        }
+        fputs(k > 0 ? ", {\"name\": " : "{\"name\": ", stdout);
+        json_put_text(p.name);
+        json_put_count("count", p.count);
+        json_put_count("left", p.left);
+        json_put_count("inserted", p.inserted);
+        json_put_count("deferred", p.deferred);
+        putchar('}');
+    }
+}
+
 /* The pictures that come afterwards. */
 static void json_put_pictures(const se3d_model *model)
 {
@@ -191,6 +228,7 @@ static void print_json(const options *o, const se3d_model *model, const se3d_run
         }
     }
     json_put_events(run);
+    json_put_particles(run);
     json_put_pictures(model);
     fputs("]}\n", stdout);
 }
