@@ -325,6 +325,48 @@ static se3d_status make_particles(workshop *w)
     return status;
 }
 
+/* A source with a table of radii and a sink, and copies of them; without memory there is neither,
+ * and the set is as it was. */
+static se3d_status make_source_and_sink(workshop *w)
+{
+    static const double radii[2] = {0.01, 0.02}, weights[2] = {1.0, 3.0};
+    se3d_particles *set = NULL;
+    se3d_material material = {0, 0};
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_fill_def fill = se3d_fill_def_default();
+    se3d_source_def source = se3d_source_def_default();
+    se3d_sink_def sink = se3d_sink_def_default();
+    se3d_source_stats stats;
+    uint64_t count;
+    stuff.density = 2500.0;
+    stuff.stiffness = 1e4;
+    se3d_status status = se3d_particles_create(w->system, NULL, &set);
+    status = status < 0 ? status : se3d_material_create(w->system, &stuff, &material);
+    if (status >= 0) {
+        fill.material = material;
+        fill.upper[0] = fill.upper[1] = fill.upper[2] = 1.0;
+        fill.radii = radii;
+        fill.weights = weights;
+        fill.radius_count = 2;
+        source.fill = &fill;
+        source.rate = 10.0;
+        status = se3d_particles_add_source(set, &source, NULL);
+        CHECK((status >= 0) == (se3d_particles_get_source_stats(set, 0, &stats) == SE3D_OK));
+    }
+    if (status >= 0) {
+        sink.normal[2] = 1.0;
+        status = se3d_particles_add_sink(set, &sink, NULL);
+        CHECK((status >= 0) == (se3d_particles_get_sink_count(set, 0, &count) == SE3D_OK));
+    }
+    status = status < 0 ? status : make_clone(w);
+    status = status < 0 ? status : make_snapshot(w);
+    se3d_particles_destroy(set);
+    if (material.index1 > 0) {
+        CHECK(se3d_material_destroy(w->system, material) == SE3D_OK);
+    }
+    return status;
+}
+
 static se3d_status make_check(workshop *w)
 {
     se3d_check *check = NULL;
@@ -360,6 +402,7 @@ static const operation_row operations[] = {
     {"clone", make_clone},
     {"snapshot", make_snapshot},
     {"particles", make_particles},
+    {"source and sink", make_source_and_sink},
     {"check", make_check},
 };
 
