@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Fill-in and cost of an elimination order, by merging the structures of the children in the
  * elimination tree (George and Liu 1981, chapter 5).                        docs/theory/kkt.md */
-#include <stdlib.h>
-
+#include "base/sort.h"
 #include "linsol/kkt_internal.h"
 
 double se3di_kkt_node_cost(int32_t size, const int32_t *near_size, int32_t degree, bool is_mass)
@@ -24,12 +23,6 @@ void se3di_kkt_fill_destroy(const se3di_kkt *kkt, se3di_kkt_fill *fill)
     se3di_free(&kkt->allocator, fill->parent, n, sizeof(int32_t));
     se3di_free(&kkt->allocator, fill->near, fill->capacity, sizeof(int32_t));
     *fill = (se3di_kkt_fill){0};
-}
-
-static int compare_int(const void *a, const void *b)
-{
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
 }
 
 /* Work arrays, each [node_count]. */
@@ -61,7 +54,7 @@ static void merge_structures(const se3di_kkt *kkt, int32_t node, int32_t k, se3d
     }
     size_t degree = (size_t)(fill->begin[k + 1] - fill->begin[k]);
     if (degree > 1) {
-        qsort(fill->near + fill->begin[k], degree, sizeof(int32_t), compare_int);
+        se3di_sort_tuples(fill->near + fill->begin[k], degree, 1);
     }
 }
 
