@@ -103,12 +103,15 @@ typedef struct se3di_kkt_settings {
 } se3di_kkt_settings;
 
 typedef struct se3di_kkt_factor_info {
-    int32_t factorisations;  /* numeric factorisations that this call took */
-    int32_t dependent_rows;  /* rows whose pivot vanished (within 1e-13) */
-    int32_t near_dependent;  /* rows whose pivot is below 1e-6 */
-    int32_t negative_pivots; /* body pivots of the wrong sign (symmetric mode: H indefinite) */
-    double eps;              /* regularisation that was used, 0 = none */
-    double min_pivot;        /* smallest pivot of a joint row relative to its diag(C H^-1 B) */
+    int32_t factorisations;    /* numeric factorisations that this call took */
+    int32_t dependent_rows;    /* rows whose pivot vanished (within 1e-13) */
+    int32_t near_dependent;    /* rows whose pivot is below 1e-6 */
+    int32_t negative_pivots;   /* body pivots of the wrong sign (symmetric mode: H indefinite) */
+    int32_t negative_freedoms; /* symmetric mode: negative eigenvalues of H on the null space of C
+                                  (by Sylvester's law; with eps > 0 of H + C^T C / e) */
+    int32_t reserved;
+    double eps;       /* regularisation that was used, 0 = none */
+    double min_pivot; /* smallest pivot of a joint row relative to its diag(C H^-1 B) */
 } se3di_kkt_factor_info;
 
 typedef struct se3di_kkt_solve_info {

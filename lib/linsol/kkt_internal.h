@@ -138,7 +138,7 @@ struct se3di_kkt {
     double min_pivot;   /* relative, with E */
     double min_sigma;   /* smallest relative pivot without E above 1e-13 */
     double least_clear; /* smallest relative pivot that is not clearly a dependent row's */
-    int32_t dependent_rows, near_dependent, negative_pivots;
+    int32_t dependent_rows, near_dependent, negative_pivots, positive_rows;
     bool finite;
 
     /* dense kind */

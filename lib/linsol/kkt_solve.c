@@ -72,7 +72,7 @@ static void factor_once(se3di_kkt *kkt, const se3di_kkt_values *values, double e
     kkt->eps = eps;
     kkt->finite = true;
     kkt->min_pivot = kkt->min_sigma = kkt->least_clear = 1.0;
-    kkt->dependent_rows = kkt->near_dependent = kkt->negative_pivots = 0;
+    kkt->dependent_rows = kkt->near_dependent = kkt->negative_pivots = kkt->positive_rows = 0;
     ++kkt->factorisations;
     if (kkt->kind == SE3DI_KKT_DENSE) {
         se3di_kkt_dense_factor(kkt, values);
@@ -161,12 +161,14 @@ se3d_status se3di_kkt_factor(se3di_kkt *kkt, const se3di_kkt_values *values,
     factor_suitably(kkt, values);
     kkt->hold = kkt->hold != KKT_FREE && kkt->finite ? KKT_HELD : kkt->hold;
     if (info) {
-        *info = (se3di_kkt_factor_info){.factorisations = kkt->factorisations,
-                                        .dependent_rows = kkt->dependent_rows,
-                                        .near_dependent = kkt->near_dependent,
-                                        .negative_pivots = kkt->negative_pivots,
-                                        .eps = kkt->eps,
-                                        .min_pivot = kkt->min_pivot};
+        *info =
+            (se3di_kkt_factor_info){.factorisations = kkt->factorisations,
+                                    .dependent_rows = kkt->dependent_rows,
+                                    .near_dependent = kkt->near_dependent,
+                                    .negative_pivots = kkt->negative_pivots,
+                                    .negative_freedoms = kkt->negative_pivots - kkt->positive_rows,
+                                    .eps = kkt->eps,
+                                    .min_pivot = kkt->min_pivot};
     }
     if (!kkt->finite) {
         kkt->expected = NULL;
