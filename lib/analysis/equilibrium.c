@@ -1,45 +1,54 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Equilibrium by Newton on the Lagrangian, on the freedoms that the constraints leave: with
- * Z of their null space, Q the applied forces and K the derivative of Phi_q^T lambda - Q,
+/* Equilibrium by a damped Newton method on the constraints: with rho the forces that they do not
+ * balance,
  *
- *     rho = Z^T Z Q (what is not balanced),   Kr y = Z Q,   q moved by Z^T y, then put back on Phi
- * = 0
+ *     (K + s W) dq + C^T dlambda = rho,  C dq = 0,      q moved by dq, then put back on Phi = 0
  *
- * Where the symmetric part of Kr has negative or no curvature its absolute value is taken, so that
- * the position moves downhill; the step is limited, and halved while rho turns against it (line
- * search without an energy, as forces need not have one). Where that does not end, every direction
- * is damped (dynamic relaxation: the implicit Euler method on a massless system with damping) until
- * it does. The curvature at the end tells stable from unstable.  docs/theory/equilibrium.md */
+ * The damping s (of Levenberg and Marquardt, or an implicit Euler step 1 / s of the massless damped
+ * system) is raised until no freedom has negative curvature and the step is short enough to trust,
+ * so that it leads downhill; and according to how well the model predicts the work done, as forces
+ * need not have a potential: by the trapezoidal rule,
+ *
+ *     predicted  rho . dq - dq . K dq / 2      done  (rho + rho at the end) . dq / 2
+ *
+ * Without damping it is Newton's method. The curvature at the end tells stable from unstable.
+ *                                                                       docs/theory/equilibrium.md
+ */
 #include "analysis/equilibrium.h"
 
-#include "analysis/linearise.h"
-#include "linsol/dense.h"
+#include "analysis/static_newton.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
 #include <string.h>
 
-#define ITERATIONS      120 /* of each round */
-#define ROUNDS          3   /* Newton, then damped twice */
-#define TURN_MAX        0.5 /* rad in one step */
-#define CURVATURE_FLOOR 1e-10
-#define LOAD_ROUNDING   1e-13 /* of the largest load or multiplier */
+#define ITERATIONS   2000
+#define TRIALS       40    /* dampings in one iteration */
+#define TURN_MAX     0.5   /* rad in one step */
+#define DAMPING_MIN  1e-10 /* of the largest stiffness / mass: below it none */
+#define DAMPING_JUMP 1e-4  /* where there was none */
+#define DAMPING_STEP 8.0
+#define DAMPING_FREE 1e-7 /* so little does not shorten a step much */
+#define BALANCE_MAX  1e-9 /* of the largest force, where damping does */
+#define HALVINGS     3    /* of a step that leads too far from the constraints */
+#define RATIO_MIN    0.05 /* of the predicted work, or the step is not taken */
+#define STALLED      8    /* iterations without a better balance */
 
 typedef struct statics {
     se3di_equations *equations;
-    se3di_linear linear;
+    se3di_static_newton newton;
     double t;
     double size;    /* of the mechanism [m] */
-    double *rho;    /* [n] unbalanced force, body axes */
-    double *step;   /* [n] body axes */
-    double *zero;   /* [n] accelerations */
-    double *w, *V;  /* eigenvalues and vectors of Kr */
-    double *y, *r;  /* [f] */
-    double *LU;     /* [f f] */
-    int32_t *pivot; /* [f] */
-    double lowest;  /* the smallest eigenvalue relative to the largest */
-    double damping; /* relative to the largest eigenvalue */
+    double *memory; /* of the next */
+    double *load;   /* [n] applied forces */
+    double *rho;    /* [n] what is unbalanced */
+    double *step;   /* [n] */
+    double *lambda; /* [rows] */
+    double damping; /* s */
+    double length;  /* largest turn or relative shift of the step */
+    int32_t redundant;
+    int32_t reserved;
 } statics;
 
 static double model_size(const se3di_model *model)
@@ -60,187 +69,221 @@ static double model_size(const se3di_model *model)
     return size;
 }
 
+static size_t memory_count(const statics *s)
+{
+    return 3 * (size_t)s->equations->assembly.unknown_count + s->equations->assembly.row_count;
+}
+
 static void release(statics *s)
 {
     const se3d_allocator *allocator = &s->equations->assembly.model->allocator;
-    size_t n = (size_t)s->equations->assembly.unknown_count;
-    se3di_free(allocator, s->rho, 7 * n + 2 * n * n, sizeof(double));
-    se3di_free(allocator, s->pivot, n, sizeof *s->pivot);
-    se3di_linear_destroy(&s->linear);
+    se3di_free(allocator, s->memory, memory_count(s), sizeof(double));
+    se3di_static_newton_destroy(&s->newton);
 }
 
 static se3d_status allocate(statics *s)
 {
-    const se3d_allocator *allocator = &s->equations->assembly.model->allocator;
-    size_t n = (size_t)s->equations->assembly.unknown_count;
-    SE3DI_TRY(se3di_linear_init(&s->linear, s->equations));
-    s->rho = se3di_alloc(allocator, 7 * n + 2 * n * n, sizeof(double));
-    s->pivot = se3di_alloc(allocator, n, sizeof *s->pivot);
-    if (!s->rho || !s->pivot) {
+    const se3di_assembly *assembly = &s->equations->assembly;
+    const size_t n = assembly->unknown_count;
+    se3d_status status = se3di_static_newton_init(&s->newton, s->equations);
+    s->memory = se3di_alloc(&assembly->model->allocator, memory_count(s), sizeof(double));
+    if (status < 0 || !s->memory) {
         release(s);
         return se3di_error_set(s->equations->error, SE3D_ERR_NO_MEMORY,
                                "no memory for the equilibrium of %zu bodies", n / 6);
     }
-    s->step = s->rho + n;
-    s->zero = s->rho + 2 * n;
-    s->w = s->rho + 3 * n;
-    s->y = s->rho + 4 * n;
-    s->r = s->rho + 5 * n;
-    s->V = s->rho + 7 * n;
-    s->LU = s->V + n * n;
+    s->load = s->memory;
+    s->rho = s->memory + n;
+    s->step = s->memory + 2 * n;
+    s->lambda = s->memory + 3 * n;
+    memset(s->lambda, 0, assembly->row_count * sizeof(double));
     return SE3D_OK;
 }
 
-/* Put the bodies on the constraints and evaluate what is unbalanced there. */
-static se3d_status evaluate(statics *s)
+/* What is unbalanced at the present position, on the constraints. */
+static se3d_status evaluate(statics *s, int careful)
 {
-    SE3DI_TRY(se3di_position_solve(s->equations, s->t));
-    SE3DI_TRY(se3di_linear_eval_statics(&s->linear, s->t));
-    se3di_linear_project(&s->linear, s->linear.load, s->r);
-    se3di_linear_expand(&s->linear, s->r, s->rho);
-    return SE3D_OK;
+    se3di_equations *equations = s->equations;
+    se3di_assembly_eval_jacobian(&equations->assembly);
+    SE3DI_TRY(se3di_assembly_eval_forces(&equations->assembly, s->t, s->load, equations->error));
+    se3d_status status =
+        se3di_static_newton_balance(&s->newton, s->load, s->rho, s->lambda, careful);
+    s->redundant = status == SE3D_INFO_REDUNDANT;
+    return status < 0 ? se3di_error_set(equations->error, status,
+                                        "t = %g s: the forces are not finite", s->t)
+                      : SE3D_OK;
 }
 
-/* y = Kr^-1 r by factors; 0 where Kr is singular. */
-static int solve_exactly(statics *s)
+static double measure_step(const statics *s)
 {
-    int32_t f = s->linear.freedoms;
-    size_t count = (size_t)f * (size_t)f;
-    memcpy(s->LU, s->linear.Kr, count * sizeof *s->LU);
-    memcpy(s->y, s->r, (size_t)f * sizeof *s->y);
-    if (se3di_dense_lu_factor(f, s->LU, s->pivot) < 0) {
+    double length = 0.0;
+    for (size_t k = 0; k < s->equations->assembly.unknown_count; ++k) {
+        const double part = fabs(s->step[k]) / (k % 6 < 3 ? s->size : 1.0);
+        length = part <= length ? length : part; /* NaN stays */
+    }
+    return length;
+}
+
+static void raise_damping(statics *s, double factor)
+{
+    s->damping = fmax(factor * s->damping, DAMPING_JUMP * s->newton.rate2);
+}
+
+static void lower_damping(statics *s)
+{
+    s->damping /= DAMPING_STEP;
+    if (s->damping < DAMPING_MIN * s->newton.rate2) {
+        s->damping = 0.0;
+    }
+}
+
+/* Solve for the step and measure it. Returns whether it leads downhill and not too far. */
+static int solve_step(statics *s, int *too_long)
+{
+    int32_t negative;
+    *too_long = 0;
+    if (se3di_static_newton_factor(&s->newton, s->damping, &negative) < 0 || negative > 0 ||
+        se3di_static_newton_solve(&s->newton, s->rho, s->step) < 0) {
         return 0;
     }
-    se3di_dense_lu_solve(f, s->LU, s->pivot, s->y);
-    return 1;
+    s->length = measure_step(s);
+    *too_long = !(s->length <= TURN_MAX);
+    return !*too_long;
 }
 
-static double largest_of(size_t count, const double *x)
+/* The step with as little damping as leads downhill and not too far: where the stiffness has
+ * negative curvature without, of its convex part. */
+static se3d_status compute_step(statics *s)
 {
-    double largest = 0.0;
-    for (size_t k = 0; k < count; ++k) {
-        largest = fmax(largest, fabs(x[k]));
-    }
-    return largest;
-}
-
-/* What rounding leaves unbalanced. */
-static double rounding_of(const se3di_linear *linear)
-{
-    return LOAD_ROUNDING * fmax(largest_of((size_t)linear->n, linear->load),
-                                largest_of((size_t)linear->rows, linear->lambda));
-}
-
-/* y = (|sym Kr| + damping)^-1 r in the eigenvectors. Where there is no curvature (a link of a chain
- * turns about itself) rounding must not be taken for a load: it would move the bodies for ever. */
-static void solve_downhill(statics *s, double largest)
-{
-    size_t f = (size_t)s->linear.freedoms;
-    double floor = fmax(CURVATURE_FLOOR, s->damping) * largest;
-    double rounding = rounding_of(&s->linear);
-    memset(s->y, 0, f * sizeof *s->y);
-    for (size_t k = 0; k < f; ++k) {
-        double curvature = fabs(s->w[k]) + s->damping * largest;
-        double along = 0.0;
-        for (size_t c = 0; c < f; ++c) {
-            along += s->V[k * f + c] * s->r[c];
-        }
-        if (curvature <= floor && fabs(along) <= rounding) {
-            continue;
-        }
-        along /= fmax(fmax(curvature, floor), 1e-300);
-        for (size_t c = 0; c < f; ++c) {
-            s->y[c] += along * s->V[k * f + c];
-        }
-    }
-}
-
-/* The step into s->step; its largest turn or relative shift is returned in *length. */
-static se3d_status compute_step(statics *s, double *length)
-{
-    se3di_linear *linear = &s->linear;
-    int32_t f = linear->freedoms;
-    *length = 0.0;
-    if (f == 0) {
-        s->lowest = 0.0;
-        memset(s->step, 0, (size_t)linear->n * sizeof *s->step);
+    int too_long;
+    SE3DI_TRY(se3di_static_newton_eval(&s->newton, s->t, s->load, s->lambda, 0));
+    if (solve_step(s, &too_long)) {
         return SE3D_OK;
     }
-    SE3DI_TRY(se3di_linear_eval_matrices(linear, s->t, s->zero, linear->lambda));
-    SE3DI_TRY(se3di_linear_eigen(linear, s->w, s->V));
-    double largest = fmax(fabs(s->w[0]), fabs(s->w[f - 1]));
-    s->lowest = largest > 0.0 ? s->w[0] / largest : 0.0;
-    int exact = s->lowest > CURVATURE_FLOOR && !(s->damping > 0.0);
-    if (!exact || !solve_exactly(s)) {
-        solve_downhill(s, largest);
+    if (!too_long) {
+        SE3DI_TRY(se3di_static_newton_eval(&s->newton, s->t, s->load, s->lambda, 1));
     }
-    se3di_linear_expand(linear, s->y, s->step);
-    for (int32_t k = 0; k < linear->n; ++k) {
-        *length = fmax(*length, fabs(s->step[k]) / (k % 6 < 3 ? s->size : 1.0));
-    }
-    return SE3D_OK;
-}
-
-static void move(const statics *s, double fraction)
-{
-    const se3di_assembly *assembly = &s->equations->assembly;
-    for (uint32_t k = 0; k < assembly->body_count; ++k) {
-        se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
-        double dq[6];
-        se3di_mul(frame->A, s->step + 6 * k, dq);
-        se3di_copy(s->step + 6 * k + 3, dq + 3);
-        for (int c = 0; c < 6; ++c) {
-            dq[c] *= fraction;
+    for (int trial = 0; trial < TRIALS; ++trial) {
+        if (solve_step(s, &too_long)) {
+            return SE3D_OK;
         }
-        assembly->formulation->move(frame, dq);
+        raise_damping(s, trial < 4 ? 3.0 : 10.0);
     }
+    return se3di_error_set(s->equations->error, SE3D_ERR_NO_CONVERGENCE,
+                           "t = %g s: no step towards an equilibrium was found", s->t);
 }
 
-static double work_of_step(const statics *s)
+static double dot(const statics *s, const double *a, const double *b)
 {
     double sum = 0.0;
-    for (int32_t k = 0; k < s->linear.n; ++k) {
-        sum += s->rho[k] * s->step[k];
+    for (size_t k = 0; k < s->equations->assembly.unknown_count; ++k) {
+        sum += a[k] * b[k];
     }
     return sum;
 }
 
-/* Move along the step, shortened while the unbalanced force there turns against it. */
-static se3d_status search_line(statics *s, double length)
+/* Move a fraction of the step, onto the constraints, and evaluate there. */
+static se3d_status move(statics *s, double fraction, int *converged)
 {
-    double fraction = length > TURN_MAX ? TURN_MAX / length : 1.0;
-    double before = work_of_step(s);
-    size_t bytes = s->equations->assembly.dense_count * sizeof *s->equations->accepted;
     const se3di_assembly *assembly = &s->equations->assembly;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        double dq[6];
+        for (size_t c = 0; c < 6; ++c) {
+            dq[c] = fraction * s->step[6 * (size_t)k + c];
+        }
+        assembly->formulation->move(&assembly->model->frames[assembly->free_body[k]], dq);
+    }
+    SE3DI_TRY(se3di_position_correct(s->equations, s->t, converged));
+    return *converged ? evaluate(s, 0) : SE3D_OK;
+}
+
+/* Take the step, shortened where it leads too far from the constraints; *ratio of the work done to
+ * what was predicted. Where too little is done all is as before, and *ratio is -1. */
+static se3d_status try_step(statics *s, double *ratio)
+{
+    const se3di_assembly *assembly = &s->equations->assembly;
+    const size_t bytes = assembly->dense_count * sizeof *s->equations->accepted;
+    const double work = dot(s, s->rho, s->step);
+    const double curvature = work - se3di_static_newton_measure(&s->newton, s->damping, s->step);
+    double fraction = 1.0;
     memcpy(s->equations->accepted, assembly->model->frames, bytes);
-    for (int halvings = 0;; ++halvings, fraction *= 0.5) {
-        move(s, fraction);
-        se3d_status status = evaluate(s);
-        int good = status >= 0 && (length < 1e-6 || work_of_step(s) >= -0.9 * fabs(before));
-        const int ends = status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED;
-        if (good || ends || halvings >= 20) {
+    for (int halvings = 0; halvings <= HALVINGS; ++halvings, fraction *= 0.5) {
+        int converged = 0;
+        se3d_status status = move(s, fraction, &converged);
+        if (status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_CALLBACK ||
+            status == SE3D_ERR_INTERRUPTED) {
             return status;
+        }
+        if (status >= 0 && converged) {
+            *ratio = (work + dot(s, s->rho, s->step)) / (2.0 * work - fraction * curvature);
+            if (*ratio > RATIO_MIN || s->length < 1e-6) {
+                return SE3D_OK;
+            }
+            halvings = HALVINGS; /* the model is wrong there: more damping */
         }
         memcpy(assembly->model->frames, s->equations->accepted, bytes);
     }
+    *ratio = -1.0;
+    return evaluate(s, 0);
 }
 
-/* Newton until rounding; *converged tells. */
+/* What is unbalanced, of turns over a radius. */
+static double measure_balance(const statics *s)
+{
+    double largest = 0.0;
+    for (size_t k = 0; k < s->equations->assembly.unknown_count; ++k) {
+        const double radius = sqrt(s->newton.weights[k / 6].radius2);
+        largest = fmax(largest, fabs(s->rho[k]) / (k % 6 < 3 ? 1.0 : radius));
+    }
+    return largest;
+}
+
+typedef struct history {
+    double length;  /* of the last step */
+    double balance; /* the best so far */
+    int32_t stalled;
+} history;
+
+/* Steps at rounding; or no better balance for a while, where steps are noise along freedoms that
+ * nothing holds. Not where only the damping holds them short. */
+static int has_converged(const statics *s, history *progress)
+{
+    const double balance = measure_balance(s);
+    const int at_rounding =
+        s->length < 1e-15 || (s->length < 1e-10 && s->length > 0.25 * progress->length);
+    progress->length = s->length;
+    progress->stalled = balance < 0.5 * progress->balance ? 0 : progress->stalled + 1;
+    progress->balance = fmin(progress->balance, balance);
+    const int is_free =
+        s->damping <= DAMPING_FREE * s->newton.rate2 || balance <= BALANCE_MAX * s->newton.force;
+    return is_free && (at_rounding || (progress->stalled > STALLED && s->length < 1e-6));
+}
+
 static se3d_status iterate(statics *s, int *converged)
 {
-    double previous = HUGE_VAL;
+    history progress = {HUGE_VAL, HUGE_VAL, 0};
     *converged = 0;
-    for (int k = 0; k < ITERATIONS; ++k) {
-        double length;
+    for (int k = 0; k < ITERATIONS && !*converged; ++k) {
+        double ratio = -1.0;
         SE3DI_TRY(se3di_equations_ask(s->equations));
-        SE3DI_TRY(compute_step(s, &length));
-        ++s->equations->counters.iterations;
-        if (length < 1e-15 || (length < 1e-10 && length > 0.25 * previous)) {
-            *converged = 1;
+        for (int trial = 0; trial < TRIALS && ratio < 0.0; ++trial) {
+            SE3DI_TRY(compute_step(s));
+            if (trial == 0 && has_converged(s, &progress)) {
+                *converged = 1;
+                return SE3D_OK;
+            }
+            SE3DI_TRY(try_step(s, &ratio));
+            if (ratio < 0.25) {
+                raise_damping(s, ratio < 0.0 ? DAMPING_STEP : 2.0);
+            }
+        }
+        if (ratio < 0.0) {
             return SE3D_OK;
         }
-        previous = length;
-        SE3DI_TRY(search_line(s, length));
+        ++s->equations->counters.iterations;
+        if (ratio > 0.75) {
+            lower_damping(s);
+        }
         se3di_angles_accept(s->equations->assembly.model);
     }
     return SE3D_OK;
@@ -257,39 +300,41 @@ static void stop_motion(const se3di_assembly *assembly)
     }
 }
 
-static se3d_status finish(const statics *s)
+/* Multipliers of least norm, and whether some freedom has negative curvature. */
+static se3d_status finish(statics *s)
 {
     se3di_model *model = s->equations->assembly.model;
+    int32_t negative = 0;
+    SE3DI_TRY(se3di_position_solve(s->equations, s->t));
+    SE3DI_TRY(evaluate(s, 1));
+    SE3DI_TRY(se3di_static_newton_eval(&s->newton, s->t, s->load, s->lambda, 0));
+    se3d_status status = se3di_static_newton_factor(&s->newton, 0.0, &negative);
+    if (status < 0) { /* a pivot of rounding: a little stiffer */
+        status = se3di_static_newton_factor(&s->newton, DAMPING_MIN * s->newton.rate2, &negative);
+    }
     if (model->row_count > 0) {
-        memcpy(model->lambda, s->linear.lambda, model->row_count * sizeof *model->lambda);
+        memcpy(model->lambda, s->lambda, model->row_count * sizeof *model->lambda);
     }
     model->time = s->t;
-    s->equations->redundant = s->linear.n - s->linear.freedoms < s->linear.rows;
-    return s->lowest < -1e-9 ? SE3D_INFO_UNSTABLE : SE3D_OK;
+    s->equations->redundant = s->redundant;
+    return status < 0 || negative > 0 ? SE3D_INFO_UNSTABLE : SE3D_OK;
 }
 
 static se3d_status solve(statics *s)
 {
-    static const double damping[ROUNDS] = {0.0, 0.03, 0.3};
+    int converged;
     stop_motion(&s->equations->assembly);
-    SE3DI_TRY(evaluate(s));
-    for (int round = 0; round < ROUNDS; ++round) {
-        int converged;
-        s->damping = damping[round];
-        SE3DI_TRY(iterate(s, &converged));
-        if (s->damping > 0.0) { /* what relaxation has reached is refined */
-            s->damping = 0.0;
-            SE3DI_TRY(iterate(s, &converged));
-        }
-        if (converged) {
-            return finish(s);
-        }
+    SE3DI_TRY(se3di_position_solve(s->equations, s->t));
+    SE3DI_TRY(evaluate(s, 0));
+    SE3DI_TRY(iterate(s, &converged));
+    if (converged) {
+        return finish(s);
     }
     return se3di_error_set(s->equations->error, SE3D_ERR_NO_CONVERGENCE,
                            "t = %g s: no equilibrium was found in %d steps; forces may have none, "
                            "or it is too far: start nearer to it, or let damped dynamics come to "
                            "rest",
-                           s->t, (2 * ROUNDS - 1) * ITERATIONS);
+                           s->t, ITERATIONS);
 }
 
 se3d_status se3di_equilibrium_solve(se3di_equations *equations, double t)

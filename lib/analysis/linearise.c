@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "analysis/linearise.h"
 
-#include "linsol/eigen.h"
 #include "linsol/null_space.h"
 #include "math/vec3.h"
 
@@ -274,38 +273,4 @@ se3d_status se3di_linear_eval_matrices(se3di_linear *linear, double t, const dou
     reduce(linear, linear->D, linear->work, linear->Dr);
     reduce(linear, linear->K, linear->work, linear->Kr);
     return SE3D_OK;
-}
-
-void se3di_linear_project(const se3di_linear *linear, const double *x, double *out)
-{
-    size_t n = (size_t)linear->n;
-    for (size_t r = 0; r < (size_t)linear->freedoms; ++r) {
-        out[r] = 0.0;
-        for (size_t c = 0; c < n; ++c) {
-            out[r] += linear->Z[r * n + c] * x[c];
-        }
-    }
-}
-
-void se3di_linear_expand(const se3di_linear *linear, const double *y, double *out)
-{
-    size_t n = (size_t)linear->n;
-    memset(out, 0, n * sizeof *out);
-    for (size_t r = 0; r < (size_t)linear->freedoms; ++r) {
-        for (size_t c = 0; c < n; ++c) {
-            out[c] += linear->Z[r * n + c] * y[r];
-        }
-    }
-}
-
-se3d_status se3di_linear_eigen(const se3di_linear *linear, double *w, double *V)
-{
-    size_t f = (size_t)linear->freedoms;
-    for (size_t r = 0; r < f; ++r) {
-        for (size_t c = 0; c < f; ++c) {
-            V[r * f + c] = 0.5 * (linear->Kr[r * f + c] + linear->Kr[c * f + r]);
-        }
-    }
-    return se3di_symmetric_eigen(&linear->equations->assembly.model->allocator, linear->freedoms, V,
-                                 w);
 }

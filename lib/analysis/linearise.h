@@ -42,12 +42,4 @@ se3d_status se3di_linear_eval_statics(se3di_linear *linear, double t);
 se3d_status se3di_linear_eval_matrices(se3di_linear *linear, double t, const double *vdot,
                                        const double *lambda);
 
-/* out [f] = Z x, out [n] = Z^T y */
-void se3di_linear_project(const se3di_linear *linear, const double *x, double *out);
-void se3di_linear_expand(const se3di_linear *linear, const double *y, double *out);
-
-/* Eigenvalues w [f], ascending, of the symmetric part of Kr; its eigenvectors are the rows of V
- * [f f]. */
-se3d_status se3di_linear_eigen(const se3di_linear *linear, double *w, double *V);
-
 #endif

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "assembly/tangent.h"
 
+#include "assembly/convex.h"
 #include "assembly/fused.h"
+#include "base/sort.h"
 #include "contact/loads.h"
 #include "joint/user.h"
 #include "math/inertia.h"
@@ -101,7 +103,7 @@ static int compare_pairs(const void *a, const void *b)
 static size_t remove_duplicates(int32_t *pairs, size_t count)
 {
     size_t kept = 0;
-    qsort(pairs, count, 2 * sizeof *pairs, compare_pairs);
+    se3di_sort_tuples(pairs, count, 2);
     for (size_t k = 0; k < count; ++k) {
         if (kept == 0 || compare_pairs(pairs + 2 * k, pairs + 2 * (kept - 1)) != 0) {
             memmove(pairs + 2 * kept, pairs + 2 * k, 2 * sizeof *pairs);
@@ -312,6 +314,13 @@ static void add_load(se3di_tangent *tangent, const uint32_t bodies[2], const dou
                      const double *K, const double *D)
 {
     const se3di_assembly *assembly = tangent->assembly;
+    double convex[144];
+    if (tangent->is_convex) {
+        const int is_free[2] = {assembly->free_index[bodies[0]] >= 0,
+                                assembly->free_index[bodies[1]] >= 0};
+        se3di_convex_load(is_free, K, convex);
+        K = convex;
+    }
     for (int row = 0; row < 2; ++row) {
         int32_t free = assembly->free_index[bodies[row]];
         for (int column = 0; column < 2; ++column) {
@@ -575,6 +584,9 @@ se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *v
     }
     add_curvature(tangent, lambda);
     SE3DI_TRY(add_user_curvatures(tangent, t, lambda));
+    if (tangent->is_convex) {
+        se3di_convex_blocks(tangent);
+    }
     SE3DI_TRY(add_forces(tangent, t));
     return se3di_contacts_visit(model, add_contact, tangent);
 }

@@ -19,6 +19,8 @@ typedef struct se3di_tangent {
     size_t coupling_capacity;
     int32_t *coupling;   /* [2 * couplings] free bodies i < j, increasing */
     int32_t *joint_pair; /* [constraints] coupling of the bodies of a fused joint, -1: none */
+    int32_t is_convex;   /* K without negative curvature (r-omega): assembly/convex.h */
+    int32_t reserved;
     /* Blocks [block * block]: of the bodies; of the couplings: rows of i, columns of j, and rows of
      * j, columns of i. */
     double *M; /* bodies only */

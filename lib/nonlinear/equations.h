@@ -60,6 +60,9 @@ se3d_status se3di_equations_solve(se3di_equations *equations);
 /* Consistent levels of the state at t. Positions: @return OK, INCONSISTENT (stationary gap),
  * NO_CONVERGENCE, NOT_FINITE; the poses are then the best ones found, the caller restores. */
 se3d_status se3di_position_solve(se3di_equations *equations, double t);
+/* The same by few Newton steps only, for a caller that can come nearer: *converged tells.
+ * @return OK, NOT_FINITE */
+se3d_status se3di_position_correct(se3di_equations *equations, double t, int *converged);
 se3d_status se3di_velocity_solve(se3di_equations *equations, double t);
 se3d_status se3di_acceleration_solve(se3di_equations *equations, double t);
 

@@ -15,6 +15,7 @@
 
 #define DAMPED_ITERATIONS 200
 #define GAP_MAX           100.0 /* sizes; a larger one is the size */
+#define CORRECTIONS       10
 
 typedef struct position_problem {
     se3di_equations *equations;
@@ -171,11 +172,11 @@ static int search_line(position_problem *problem, double length)
 }
 
 /* Newton until rounding. Returns with *converged = 0 where it stalls. */
-static se3d_status run_newton(position_problem *problem, int *converged)
+static se3d_status run_newton(position_problem *problem, int32_t iterations, int *converged)
 {
     se3di_equations *equations = problem->equations;
     *converged = 0;
-    for (int32_t k = 0; k <= equations->iterations_max; ++k) {
+    for (int32_t k = 0; k <= iterations; ++k) {
         double length;
         SE3DI_TRY(se3di_equations_ask(equations));
         if (problem->worst <= 1e-15) {
@@ -418,6 +419,15 @@ static void widen(position_problem *problem)
     }
 }
 
+static void update_frames(se3di_equations *equations)
+{
+    for (uint32_t k = 0; k < equations->assembly.dense_count; ++k) {
+        if (equations->assembly.free_index[k] >= 0) {
+            se3di_frame_update(&equations->assembly.model->frames[k]);
+        }
+    }
+}
+
 se3d_status se3di_position_solve(se3di_equations *equations, double t)
 {
     position_problem problem = {.equations = equations};
@@ -427,18 +437,25 @@ se3d_status se3di_position_solve(se3di_equations *equations, double t)
     SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
     measure(&problem);
     widen(&problem);
-    SE3DI_TRY(run_newton(&problem, &converged));
+    SE3DI_TRY(run_newton(&problem, equations->iterations_max, &converged));
     for (int round = 0; round < 3 && !converged && !stationary; ++round) {
         SE3DI_TRY(run_damped(&problem, round == 0 ? 1e-4 : 1e-11, &stationary));
         if (problem.worst < 1e-2) {
-            SE3DI_TRY(run_newton(&problem, &converged));
+            SE3DI_TRY(run_newton(&problem, equations->iterations_max, &converged));
         }
     }
-    for (uint32_t k = 0; k < equations->assembly.dense_count; ++k) {
-        se3di_frame *frame = &equations->assembly.model->frames[k];
-        if (equations->assembly.free_index[k] >= 0) {
-            se3di_frame_update(frame);
-        }
-    }
+    update_frames(equations);
     return converged ? SE3D_OK : report_gap(&problem, t, stationary);
+}
+
+se3d_status se3di_position_correct(se3di_equations *equations, double t, int *converged)
+{
+    position_problem problem = {.equations = equations};
+    problem.size = se3di_model_get_size(equations->assembly.model);
+    SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
+    measure(&problem);
+    widen(&problem);
+    SE3DI_TRY(run_newton(&problem, CORRECTIONS, converged));
+    update_frames(equations);
+    return SE3D_OK;
 }

@@ -4,7 +4,10 @@
 
 #include "math/inertia.h"
 #include "math/quaternion.h"
+#include "math/symmetric.h"
 #include "math/vec3.h"
+
+#include <string.h>
 
 #define STATES 100
 #define PI     3.14159265358979323846
@@ -525,6 +528,44 @@ static void inertia_that_is_not_finite_is_not_physical(void)
     }
 }
 
+/* |A| has the square of A, no negative diagonal in any axes, and commutes with A. */
+static void absolute_values_of_symmetric_matrices(void)
+{
+    for (int n = 1; n <= SE3DI_SYMMETRIC_MAX; ++n) {
+        double A[144], B[144], y[12];
+        for (int k = 0; k < n * n; ++k) {
+            A[k] = k % n < k / n ? A[n * (k % n) + k / n] : sin(3.0 * k + n);
+        }
+        memcpy(B, A, sizeof A);
+        se3di_symmetric_abs(n, B);
+        for (int k = 0; k < n * n; ++k) {
+            double AA = 0.0, BB = 0.0, AB = 0.0, BA = 0.0;
+            for (int e = 0; e < n; ++e) {
+                AA += A[n * (k / n) + e] * A[n * e + k % n];
+                BB += B[n * (k / n) + e] * B[n * e + k % n];
+                AB += A[n * (k / n) + e] * B[n * e + k % n];
+                BA += B[n * (k / n) + e] * A[n * e + k % n];
+            }
+            CHECK_NEAR(BB, AA, 1e-13 * n);
+            CHECK_NEAR(AB, BA, 1e-13 * n);
+        }
+        for (int trial = 0; trial < 50; ++trial) {
+            double form = 0.0;
+            for (int k = 0; k < n; ++k) {
+                y[k] = cos(7.0 * trial + 2.0 * k);
+            }
+            for (int k = 0; k < n * n; ++k) {
+                form += y[k / n] * B[k] * y[k % n];
+            }
+            CHECK(form >= -1e-14);
+        }
+    }
+    double scaled[4] = {1e150, 2e150, 2e150, 1e150}; /* 3 and -1: |.| is [2 1; 1 2] */
+    se3di_symmetric_abs(2, scaled);
+    CHECK_NEAR(scaled[0], 2e150, 1e136);
+    CHECK_NEAR(scaled[1], 1e150, 1e136);
+}
+
 int main(void)
 {
     RUN(a_quarter_turn_about_z_maps_x_to_y);
@@ -547,5 +588,6 @@ int main(void)
     RUN(principal_moments_of_sparse_tensors_are_exact);
     RUN(inertia_is_classified);
     RUN(inertia_that_is_not_finite_is_not_physical);
+    RUN(absolute_values_of_symmetric_matrices);
     return check_finish();
 }
