@@ -142,6 +142,13 @@ se3d_status se3di_kinematics_step(se3di_equations *equations, double h)
     return SE3D_OK;
 }
 
+/* A step of less than the rounding of the time would be made for ever. */
+static int moves_on(const se3di_equations *equations, double h)
+{
+    const double t = equations->assembly.model->time;
+    return t + h > t;
+}
+
 /* Length of the next step: at most `step`, at least `shortest`, and no body turns by more than
  * TURN_MAX. */
 static double choose_step(const se3di_equations *equations, double remaining, double step,
@@ -159,7 +166,8 @@ static double choose_step(const se3di_equations *equations, double remaining, do
         }
     }
     double slow = turn > TURN_MAX ? h / ceil(turn / TURN_MAX) : h;
-    return fmin(remaining, fmax(slow, shortest));
+    h = fmin(remaining, fmax(slow, shortest));
+    return moves_on(equations, h) ? h : remaining;
 }
 
 static int shorter_may_help(se3d_status status)
@@ -189,6 +197,9 @@ static se3d_status step_or_less(se3di_equations *equations, double t_end, double
         }
         ++equations->counters.rejected;
         se3di_state_restore(equations);
+        if (!moves_on(equations, 0.5 * *h)) {
+            break;
+        }
     }
     if (status == SE3D_ERR_INTERRUPTED) {
         se3di_state_restore(equations);

@@ -148,8 +148,29 @@ static void slides_without_a_size_start_from_any_distance(void)
     }
 }
 
+/* Where a rate grows without end, steps shrink to the rounding of the time, and the run ends. */
+static void a_driver_that_ends_in_the_middle_ends_the_run(void)
+{
+    for (int run = 0; run < 4; ++run) {
+        char text[500];
+        snprintf(text, sizeof text,
+                 "se3d: 1\nbodies: [{name: a, mass: 2, inertia: [1, 1, 1], position: [1, 0, 0]}]\n"
+                 "joints: [{name: j, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], "
+                 "axis: [0, -1, 0]}]\ndrivers: [{name: m, joint: j, value: sqrt(1 - t)}]\n"
+                 "analysis: {type: %s, duration: 2, step: 0.01}\n"
+                 "output: [{file: a.csv, channels: [j.angle]}]\n",
+                 run / 2 ? "kinematics" : "inverse_dynamics");
+        text_model m = text_model_open(text, -1, run % 2, 0.01);
+        CHECK(text_model_run(&m, 0.99));
+        CHECK(se3d_solver_run(m.solver, 1.0) < 0);
+        CHECK_CONTAINS(se3d_system_get_error(m.system), "m.angle");
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
+    RUN(a_driver_that_ends_in_the_middle_ends_the_run);
     RUN(slides_without_a_size_start_from_any_distance);
     RUN(point_masses_swing_at_every_tolerance);
     RUN(angles_count_turns_between_outputs);
