@@ -431,6 +431,9 @@ static void blame_jump(const se3di_run *run, double t_end)
     if (se3di_jump_find(&run->equations.assembly, range, 16, 1, &jump)) {
         const se3di_error before = *run->error;
         se3di_jump_format(run->model, &jump, text, sizeof text);
+        if (strstr(before.message, text)) {
+            return; /* it was refused */
+        }
         se3di_error_set(run->error, before.status, "%s (%.200s)", text, before.message);
     }
 }
