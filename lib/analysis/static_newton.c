@@ -214,12 +214,13 @@ se3d_status se3di_static_newton_balance(se3di_static_newton *newton, const doubl
     se3d_status status = se3di_kkt_solve(equations->kkt, &values, load, NULL, rho, lambda, &info);
     const int inexact = status == SE3D_ERR_NO_CONVERGENCE || info.residual_b > 1e-9;
     if (inexact && careful && assembly->row_count <= MIN_NORM_ROWS) {
+        int32_t rank = 0;
         memset(rho, 0, assembly->unknown_count * sizeof *rho);
-        status =
-            se3di_kkt_min_norm(equations->kkt, &values, load, rho, RANK_TOLERANCE, lambda, NULL);
+        SE3DI_TRY(
+            se3di_kkt_min_norm(equations->kkt, &values, load, rho, RANK_TOLERANCE, lambda, &rank));
         memcpy(rho, load, assembly->unknown_count * sizeof *rho);
         se3di_assembly_add_transposed(assembly, -1.0, lambda, rho);
-        return status < 0 ? status : SE3D_INFO_REDUNDANT;
+        return (uint32_t)rank < assembly->row_count ? SE3D_INFO_REDUNDANT : SE3D_OK;
     }
     return status == SE3D_ERR_NO_CONVERGENCE ? SE3D_OK : status;
 }

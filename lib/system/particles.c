@@ -531,7 +531,7 @@ se3d_status se3d_particles_run(se3d_particles *particles, double time)
     double h = se3di_particles_want_step(&particles->set, &particles->system->model);
     double steps = h > 0.0 ? ceil((time - set->time) / h - 1e-9) : 0.0;
     if (steps > SE3DI_STEPS_MOST) {
-        return SE3DI_FAIL(particles->system, SE3D_ERR_STEP_SIZE,
+        return SE3DI_FAIL(particles->system, SE3D_ERR_STEP_COUNT,
                           "a step of %g s asks for %g steps until %g s, must be at most %g", h,
                           steps, time, SE3DI_STEPS_MOST);
     }
