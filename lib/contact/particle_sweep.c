@@ -25,33 +25,52 @@ double se3di_larger(double a, double b)
     return b <= a || a != a ? a : b;
 }
 
-/* Returns the largest squared speed of particles [begin, end), NaN where one is NaN. */
-static double move_range(se3di_particles *set, size_t begin, size_t end, const se3di_motion *motion)
+/* Returns the largest squared speed of particles [begin, end), NaN where one is NaN. `kicks` is a
+ * constant at every call: the loop over it is unrolled. */
+static inline double move_kicked(se3di_particles *set, size_t begin, size_t end, int kicks,
+                                 const se3di_motion *motion)
 {
-    const double half = 0.5 * motion->h;
+    const double half = 0.5 * motion->h, drift = motion->drift;
+    const int drifts = drift != 0.0;
     double fastest = 0.0;
     for (size_t k = begin; k < end; ++k) {
         se3di_grain *grain = &set->grains[k];
         se3di_spin *spin = &set->spins[k];
         se3di_load *load = &set->loads[k];
-        double turn = 2.5 * grain->inverse_mass / (grain->radius * grain->radius);
+        const double mobility = grain->inverse_mass;
+        const double turn = 2.5 * mobility / (grain->radius * grain->radius);
         double v2 = 0.0;
         for (int a = 0; a < 3; ++a) {
-            double dv = half * (load->force[a] * grain->inverse_mass + set->gravity[a]);
-            double dw = half * (load->torque[a] * turn);
-            for (int n = 0; n < motion->kicks; ++n) {
-                grain->v[a] += dv;
-                spin->w[a] += dw;
+            const double dv = half * (load->force[a] * mobility + set->gravity[a]);
+            const double dw = half * (load->torque[a] * turn);
+            double v = grain->v[a], w = spin->w[a];
+            for (int n = 0; n < kicks; ++n) {
+                v += dv;
+                w += dw;
             }
-            v2 += grain->v[a] * grain->v[a];
-            grain->x[a] += motion->drift * grain->v[a];
+            grain->v[a] = v;
+            spin->w[a] = w;
+            v2 += v * v;
+            grain->x[a] += drift * v;
         }
         fastest = v2 <= fastest ? fastest : v2; /* NaN stays */
-        if (motion->drift != 0.0) {
+        if (drifts) {
             *load = (se3di_load){{0.0}, {0.0}};
         }
     }
     return fastest;
+}
+
+static double move_range(se3di_particles *set, size_t begin, size_t end, const se3di_motion *motion)
+{
+    switch (motion->kicks) {
+    case 0:
+        return move_kicked(set, begin, end, 0, motion);
+    case 1:
+        return move_kicked(set, begin, end, 1, motion);
+    default:
+        return move_kicked(set, begin, end, 2, motion);
+    }
 }
 
 /* What the lists and forces must know of a drift. */
