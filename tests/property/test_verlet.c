@@ -320,7 +320,8 @@ static void too_large_an_overlap_is_named_and_leaves_one_time_for_all(void)
     CHECK(!se3d_particles_add(w.grains, w.material, 1, x, &radius, v, NULL, NULL));
     solve(&w, SE3D_FORMULATION_ROMEGA);
     CHECK(se3d_solver_run(w.solver, 0.1) == SE3D_ERR_STEP_SIZE);
-    CHECK_CONTAINS(se3d_system_get_error(w.system), "particle 0 of sand and the shape without a name overlap by");
+    CHECK_CONTAINS(se3d_system_get_error(w.system),
+                   "particle 0 of sand and the shape without a name overlap by");
     CHECK(!se3d_system_get_time(w.system, &t) && !se3d_particles_get_time(w.grains, &time));
     CHECK(t == time && t > 0.0023 && t < 0.0026);
     CHECK_CONTAINS(se3d_system_get_error(w.system), "at time 0.00");
