@@ -6,24 +6,13 @@
 
 #define SWEEPS 12
 
-/* Rows r and s of X turned by (cosine, sine). */
-static void turn_rows(int n, double *X, int r, int s, const double turn[2])
+/* The vectors x and y of n components, `stride` apart, turned by (cosine, sine). */
+static void turn_vectors(int n, int stride, double *x, double *y, const double turn[2])
 {
-    for (int k = 0; k < n; ++k) {
-        const double x = X[n * r + k];
-        const double y = X[n * s + k];
-        X[n * r + k] = turn[0] * x - turn[1] * y;
-        X[n * s + k] = turn[1] * x + turn[0] * y;
-    }
-}
-
-static void turn_columns(int n, double *X, int r, int s, const double turn[2])
-{
-    for (int k = 0; k < n; ++k) {
-        const double x = X[n * k + r];
-        const double y = X[n * k + s];
-        X[n * k + r] = turn[0] * x - turn[1] * y;
-        X[n * k + s] = turn[1] * x + turn[0] * y;
+    for (int k = 0; k < n * stride; k += stride) {
+        const double before = x[k];
+        x[k] = turn[0] * before - turn[1] * y[k];
+        y[k] = turn[1] * before + turn[0] * y[k];
     }
 }
 
@@ -39,9 +28,9 @@ static void rotate_away(int n, double *M, double *V, int r, int s)
     const double t = copysign(1.0, zeta) / (fabs(zeta) + hypot(zeta, 1.0));
     const double cosine = 1.0 / hypot(t, 1.0);
     const double turn[2] = {cosine, t * cosine};
-    turn_rows(n, M, r, s, turn);
-    turn_columns(n, M, r, s, turn);
-    turn_rows(n, V, r, s, turn);
+    turn_vectors(n, 1, M + n * r, M + n * s, turn);
+    turn_vectors(n, n, M + r, M + s, turn);
+    turn_vectors(n, 1, V + n * r, V + n * s, turn);
 }
 
 static double off_diagonal(int n, const double *M)

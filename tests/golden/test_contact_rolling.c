@@ -2,19 +2,7 @@
 /* What rolls, in closed form: a ball on a turntable, in a gutter and in a loop, a disk that keeps
  * its tilt, a cart. In an explicit method with a given step, one with control of the error and an
  * implicit one, in both formulations. */
-#include "support/scene.h"
-
-typedef struct choice {
-    int32_t method, formulation;
-} choice;
-
-static const choice choices[] = {{SE3D_METHOD_VERLET, SE3D_FORMULATION_ROMEGA},
-                                 {SE3D_METHOD_DOP853, SE3D_FORMULATION_RP},
-                                 {SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_ROMEGA},
-                                 {SE3D_METHOD_VERLET, SE3D_FORMULATION_RP},
-                                 {SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA},
-                                 {SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_RP}};
-#define CHOICES (sizeof choices / sizeof choices[0])
+#include "support/scene_choices.h"
 
 /* A disk that a driver turns about the vertical with `speed`, with a plane on it. */
 static void turntable(scene *s, double speed)

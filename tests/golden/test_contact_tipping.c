@@ -1,19 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What tips, what slides, what is held and what falls: boxes on inclines and pushed, a gripper,
  * dominoes, a coin. */
-#include "support/scene.h"
-
-typedef struct choice {
-    int32_t method, formulation;
-} choice;
-
-static const choice choices[] = {{SE3D_METHOD_VERLET, SE3D_FORMULATION_ROMEGA},
-                                 {SE3D_METHOD_DOP853, SE3D_FORMULATION_RP},
-                                 {SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_ROMEGA},
-                                 {SE3D_METHOD_VERLET, SE3D_FORMULATION_RP},
-                                 {SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA},
-                                 {SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_RP}};
-#define CHOICES (sizeof choices / sizeof choices[0])
+#include "support/scene_choices.h"
 
 static const double about_y[3] = {0.0, 1.0, 0.0};
 

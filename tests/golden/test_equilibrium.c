@@ -181,6 +181,21 @@ static void a_chain_between_two_points_is_a_catenary_of_links(void)
     }
 }
 
+/* A table of mass M from b to d on two posts of mass m, a to b and c to d, all hinged. Returns it,
+ * and the hinge at a. */
+static se3d_body add_table(scene *s, const double corners[4][3], double m, double M,
+                           se3d_constraint *pin)
+{
+    const double *a = corners[0], *b = corners[1], *c = corners[2], *d = corners[3];
+    se3d_body one = add_bar(s, a, b, m), two = add_bar(s, c, d, m);
+    se3d_body top = add_bar(s, b, d, M);
+    *pin = add_pin(s, s->ground, one, a, 0);
+    (void)add_pin(s, s->ground, two, c, 0);
+    (void)add_pin(s, one, top, b, 0);
+    (void)add_pin(s, two, top, d, 0);
+    return top;
+}
+
 /* A table on two posts that a spring holds upright: a loop in compression, with redundant pins.
  * Its potential (M + m) g h cos(theta) + k theta^2 / 2 is least upright if k > (M + m) g h. */
 static void a_table_on_hinged_posts_stands_where_its_spring_is_stiff_enough(void)
@@ -189,17 +204,13 @@ static void a_table_on_hinged_posts_stands_where_its_spring_is_stiff_enough(void
     const double critical = (M + m) * G * h;
     for (int which = 0; which < 4; ++which) {
         static const double share[4] = {0.5, 0.999, 1.001, 2.0};
-        const double a[3] = {0.0, 0.0, 0.0}, b[3] = {0.0, 0.0, h};
-        const double c[3] = {width, 0.0, 0.0}, d[3] = {width, 0.0, h};
+        const double corners[4][3] = {
+            {0.0, 0.0, 0.0}, {0.0, 0.0, h}, {width, 0.0, 0.0}, {width, 0.0, h}};
         se3d_solver_stats stats;
+        se3d_constraint pin;
         scene s;
         begin(&s);
-        se3d_body one = add_bar(&s, a, b, m), two = add_bar(&s, c, d, m);
-        se3d_body top = add_bar(&s, b, d, M);
-        se3d_constraint pin = add_pin(&s, s.ground, one, a, 0);
-        (void)add_pin(&s, s.ground, two, c, 0);
-        (void)add_pin(&s, one, top, b, 0);
-        (void)add_pin(&s, two, top, d, 0);
+        se3d_body top = add_table(&s, corners, m, M, &pin);
         add_spring(&s, pin, share[which] * critical, 0.0);
         se3d_status status = equilibrate(&s, &stats);
         CHECK(status == (share[which] > 1.0 ? SE3D_INFO_REDUNDANT : SE3D_INFO_UNSTABLE));
@@ -217,18 +228,14 @@ static void a_table_on_a_soft_spring_leans(void)
     const double M = 40.0, m = 3.0, h = 0.8, width = 0.6, lean = 1.0;
     const double k = (M + m) * G * h * sin(lean) / lean;
     const double x = h * sin(0.02), z = h * cos(0.02);
-    const double a[3] = {0.0, 0.0, 0.0}, b[3] = {x, 0.0, z};
-    const double c[3] = {width, 0.0, 0.0}, d[3] = {width + x, 0.0, z};
+    const double corners[4][3] = {
+        {0.0, 0.0, 0.0}, {x, 0.0, z}, {width, 0.0, 0.0}, {width + x, 0.0, z}};
     se3d_solver_stats stats;
+    se3d_constraint pin;
     double theta, rate, acceleration;
     scene s;
     begin(&s);
-    se3d_body one = add_bar(&s, a, b, m), two = add_bar(&s, c, d, m);
-    se3d_body top = add_bar(&s, b, d, M);
-    se3d_constraint pin = add_pin(&s, s.ground, one, a, 0);
-    (void)add_pin(&s, s.ground, two, c, 0);
-    (void)add_pin(&s, one, top, b, 0);
-    (void)add_pin(&s, two, top, d, 0);
+    (void)add_table(&s, corners, m, M, &pin);
     add_spring(&s, pin, k, -0.02); /* at the present pose the angle is 0 */
     CHECK(equilibrate(&s, &stats) == SE3D_INFO_REDUNDANT);
     CHECK(se3d_joint_get_coordinate(s.system, pin, SE3D_COORDINATE_ANGLE, &theta, &rate,
