@@ -10,9 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-#define BODY_END                                                                                   \
-    4.0 /* a force at the end of a free rod moves that as if its mass were a quarter               \
-         */
+/* A force at the end of a free rod moves that as if its mass were a quarter. */
+#define BODY_END 4.0
 
 void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames)
 {
