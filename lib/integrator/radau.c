@@ -320,7 +320,8 @@ static se3d_status advance(se3di_integration *integration)
     }
 }
 
-/* The accepted state is the model's own. */
+/* The accepted state is the model's own. What step control has learnt is for `start` to forget: a
+ * run goes on after steps of the caller's. */
 static se3d_status adopt(se3di_integration *integration)
 {
     se3di_equations *equations = integration->equations;
@@ -328,7 +329,9 @@ static se3d_status adopt(se3di_integration *integration)
     const history past = get_history(assembly);
     double *f1 = past.d; /* no use yet */
     se3di_state_scale scale = {.length = se3di_state_length(assembly->model)};
+    const double next = past.header[RADAU_NEXT];
     memset(past.header, 0, history_count(assembly) * sizeof *past.header);
+    past.header[RADAU_NEXT] = next;
     se3di_state_get(assembly, past.y1);
     se3di_assembly_get_acceleration(assembly, equations->x);
     SE3DI_TRY(se3di_state_derivative(assembly, assembly->model->time, equations->x,
