@@ -98,6 +98,13 @@ static void choose_method(se3di_run *run)
     run->integration.settings.leaves_stiff = method == SE3D_METHOD_DOP853;
 }
 
+/* The motion is to follow from constraints and drivers alone. */
+static int is_driven(const se3di_run *run)
+{
+    return run->analysis == SE3D_ANALYSIS_KINEMATICS ||
+           run->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS;
+}
+
 /* Build what the model's structure decides. */
 static se3d_status build(se3di_run *run)
 {
@@ -115,6 +122,9 @@ static se3d_status build(se3di_run *run)
     run->integration.equations = &run->equations;
     run->prepared = 1;
     run->determined = 0;
+    if (is_driven(run)) {
+        se3di_assembly_level(&run->equations.assembly);
+    }
     se3di_assembly_eval_mass(&run->equations.assembly); /* steps may rely on constant blocks */
     se3d_status status = allocate_work(run);
     if (status < 0) {
@@ -157,10 +167,8 @@ static se3d_status settle(se3di_run *run, double t)
     se3di_equations *equations = &run->equations;
     se3di_state_accept(equations);
     equations->hold = run->analysis == SE3D_ANALYSIS_ASSEMBLY;
-    int driven = run->analysis == SE3D_ANALYSIS_KINEMATICS ||
-                 run->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS;
     se3d_status status = SE3D_OK;
-    if (driven && !run->determined) { /* before levels that may have no solution there */
+    if (is_driven(run) && !run->determined) { /* before levels that may have no solution there */
         status = se3di_position_solve(equations, t);
         status = status < 0 ? status : se3di_equations_check_determined(equations);
         run->determined = status >= 0;

@@ -130,17 +130,11 @@ static se3d_status balance(const passage *p)
 {
     se3di_equations *equations = p->equations;
     se3di_assembly *assembly = &equations->assembly;
-    size_t n = (size_t)assembly->formulation->block;
     SE3DI_TRY(se3di_equations_factor(equations));
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, p->t, equations->b, equations->error));
     se3di_assembly_add_transposed(assembly, -1.0, p->lambda, equations->b);
     se3di_assembly_get_acceleration(assembly, equations->probe);
-    for (size_t k = 0; k < assembly->unknown_count; ++k) {
-        const double *row = assembly->H + k * n;
-        for (size_t c = 0; c < n; ++c) {
-            equations->b[k] -= row[c] * equations->probe[k / n * n + c];
-        }
-    }
+    se3di_assembly_subtract_inertia(assembly, equations->probe, equations->b);
     memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
     SE3DI_TRY(se3di_equations_solve(equations));
     for (size_t r = 0; r < p->rows; ++r) {

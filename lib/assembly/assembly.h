@@ -48,6 +48,10 @@ typedef struct se3di_assembly {
     double time;         /* of the last functions of time */
     uint32_t user_count; /* constraints with a callback */
     uint32_t reserved;
+    int32_t levels; /* H weighs all bodies alike: for motions that the constraints determine */
+    int32_t reserved2;
+    double like_mass;    /* [kg] of each body then: the mean, */
+    double like_inertia; /* [kg m^2] */
 } se3di_assembly;
 
 /* Build the structure; on failure nothing is held. */
@@ -65,8 +69,13 @@ void se3di_assembly_eval_jacobian(se3di_assembly *assembly);
 void se3di_assembly_eval_gamma(const se3di_assembly *assembly, double *gamma);
 /* Both, in one pass. */
 void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma);
-/* Mass blocks into H. */
+/* Mass blocks into H, or equal ones where it `levels`. */
 void se3di_assembly_eval_mass(se3di_assembly *assembly);
+/* From now on H weighs all bodies alike: by their mean mass, and by how far joints are from the
+ * centres of the bodies that move (1 m where they are at the centres). */
+void se3di_assembly_level(se3di_assembly *assembly);
+/* out [unknowns] -= M x, M the mass whatever H is. */
+void se3di_assembly_subtract_inertia(const se3di_assembly *assembly, const double *x, double *out);
 /* Applied forces and velocity terms into b [unknowns]. */
 se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, double *b,
                                        se3di_error *error);

@@ -5,8 +5,10 @@
 #include "assembly/fused.h"
 #include "assembly/user.h"
 #include "contact/loads.h"
+#include "math/vec3.h"
 #include "primitive/turn_counter.h"
 
+#include <math.h>
 #include <string.h>
 
 se3d_status se3di_assembly_eval_functions(se3di_assembly *assembly, double t, se3di_error *error)
@@ -144,11 +146,38 @@ void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma)
 void se3di_assembly_eval_mass(se3di_assembly *assembly)
 {
     size_t block = (size_t)assembly->formulation->block;
+    const double J = assembly->like_inertia;
+    const se3di_body alike = {.mass = assembly->like_mass, .J = {J, J, J, 0.0, 0.0, 0.0}};
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         uint32_t body = assembly->free_body[k];
-        assembly->formulation->mass(&assembly->model->bodies[body], &assembly->model->frames[body],
+        const se3di_body *weight = assembly->levels ? &alike : &assembly->model->bodies[body];
+        assembly->formulation->mass(weight, &assembly->model->frames[body],
                                     assembly->H + k * block * block);
     }
+}
+
+/* Independent of the poses, so that a run goes on with the same bits wherever it stands. */
+void se3di_assembly_level(se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    double length = 0.0;
+    double sum = 0.0;
+    for (uint32_t k = 0; k < model->term_count; ++k) {
+        const se3di_term *term = &model->terms[k];
+        if (assembly->places[k].slot_i >= 0) {
+            length = fmax(length, se3di_norm(term->s_i));
+        }
+        if (assembly->places[k].slot_j >= 0) {
+            length = fmax(length, se3di_norm(term->s_j));
+        }
+    }
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        sum += model->bodies[assembly->free_body[k]].mass;
+    }
+    length = length > 0.0 ? length : 1.0;
+    assembly->like_mass = assembly->body_count > 0 ? sum / assembly->body_count : 1.0;
+    assembly->like_inertia = assembly->like_mass * length * length;
+    assembly->levels = 1;
 }
 
 se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, double *b,
@@ -204,6 +233,22 @@ void se3di_assembly_subtract_mass(const se3di_assembly *assembly, const double *
         for (size_t r = 0; r < n; ++r) {
             for (size_t c = 0; c < n; ++c) {
                 out[k * n + r] -= H[n * r + c] * x[k * n + c];
+            }
+        }
+    }
+}
+
+void se3di_assembly_subtract_inertia(const se3di_assembly *assembly, const double *x, double *out)
+{
+    const size_t n = (size_t)assembly->formulation->block;
+    double M[SE3DI_BLOCK_MAX * SE3DI_BLOCK_MAX];
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const uint32_t body = assembly->free_body[k];
+        assembly->formulation->mass(&assembly->model->bodies[body], &assembly->model->frames[body],
+                                    M);
+        for (size_t r = 0; r < n; ++r) {
+            for (size_t c = 0; c < n; ++c) {
+                out[k * n + r] -= M[n * r + c] * x[k * n + c];
             }
         }
     }

@@ -7,7 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-#define MIN_NORM_ROWS_MAX 600 /* for a dense solution */
+#define MIN_NORM_ROWS_MAX 600  /* for a dense solution */
+#define LIGHT             1e-7 /* of the heaviest body */
 
 static se3d_status create_kkt(se3di_equations *equations)
 {
@@ -26,6 +27,34 @@ static se3d_status create_kkt(se3di_equations *equations)
                             &equations->kkt);
 }
 
+/* Whether some body is so light beside others that the regularisation would outweigh what heavy
+ * ones add to its joints' rows. */
+static int has_light_body(const se3di_assembly *assembly)
+{
+    double least[2] = {HUGE_VAL, HUGE_VAL};
+    double most[2] = {0.0, 0.0};
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const se3di_body *body = &assembly->model->bodies[assembly->free_body[k]];
+        least[0] = fmin(least[0], body->mass);
+        most[0] = fmax(most[0], body->mass);
+        for (int c = 0; c < 3; ++c) {
+            least[1] = fmin(least[1], body->J[c]);
+            most[1] = fmax(most[1], body->J[c]);
+        }
+    }
+    return least[0] < LIGHT * most[0] || least[1] < LIGHT * most[1];
+}
+
+/* Rows of light bodies are told from dependent ones by elimination without regularisation. */
+static void suit_masses(const se3di_equations *equations)
+{
+    if (has_light_body(&equations->assembly)) {
+        se3di_kkt_settings settings = se3di_kkt_get_settings(equations->kkt);
+        settings.regularise = SE3DI_KKT_REGULARISE_LATE;
+        se3di_kkt_set_settings(equations->kkt, &settings);
+    }
+}
+
 static double *alloc_doubles(const se3di_equations *equations, size_t count)
 {
     return se3di_alloc(&equations->assembly.model->allocator, count, sizeof(double));
@@ -35,6 +64,7 @@ static se3d_status allocate(se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(create_kkt(equations));
+    suit_masses(equations);
     equations->b = alloc_doubles(equations, assembly->unknown_count);
     equations->x = alloc_doubles(equations, assembly->unknown_count);
     equations->c = alloc_doubles(equations, assembly->row_count);
@@ -308,16 +338,43 @@ se3d_status se3di_velocity_solve(se3di_equations *equations, double t)
     return SE3D_OK;
 }
 
-se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
+/* Of a motion that the constraints determine, H weighing all bodies alike: accelerations from the
+ * constraints alone, then C^T lambda = Q - M qddot, as H qddot + C^T lambda = Q - (M - H) qddot. So
+ * masses decide on no rank. */
+static se3d_status solve_driven(se3di_equations *equations, double t)
 {
     se3di_assembly *assembly = &equations->assembly;
-    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+    se3di_assembly_eval_mass(assembly);
+    se3di_assembly_eval_rows(assembly, equations->c);
+    SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
+    SE3DI_TRY(factor_values(equations));
+    SE3DI_TRY(se3di_equations_solve(equations));
+    se3di_assembly_subtract_inertia(assembly, equations->x, equations->b);
+    se3di_assembly_mul_mass(assembly, equations->x, equations->probe);
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        equations->b[k] += equations->probe[k];
+    }
+    return se3di_equations_solve(equations);
+}
+
+/* Accelerations and multipliers together. */
+static se3d_status solve_free(se3di_equations *equations, double t)
+{
+    se3di_assembly *assembly = &equations->assembly;
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_rows(assembly, equations->c);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
     se3di_kkt_expect(equations->kkt, equations->b, equations->c);
     SE3DI_TRY(factor_values(equations));
-    se3d_status status = se3di_equations_solve(equations);
+    return se3di_equations_solve(equations);
+}
+
+se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+    const se3d_status status =
+        assembly->levels ? solve_driven(equations, t) : solve_free(equations, t);
     SE3DI_TRY(status);
     ++equations->counters.evaluations;
     equations->redundant |= status == SE3D_INFO_REDUNDANT;
