@@ -29,7 +29,7 @@ typedef enum se3d_boundary {
 typedef struct se3d_particles_def {
     size_t struct_size;
     int32_t threads;     /* 1: default; results do not depend on it */
-    int32_t portable;    /* not 0: the same bits on every machine, slower */
+    int32_t portable;    /* not 0: kernels without vectors; the same bits, slower */
     int32_t boundary[3]; /* se3d_boundary along x, y, z */
     int32_t reserved;
     double lower[3], upper[3]; /* of the domain [m]; where an open boundary has none: unbounded */

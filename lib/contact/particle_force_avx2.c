@@ -35,8 +35,9 @@ typedef __m256d M;
 #define M_ANY(m)          (_mm256_movemask_pd(m) != 0)
 #define M_COUNT(m)        ((uint64_t)__builtin_popcount((unsigned)_mm256_movemask_pd(m)))
 
-V_INLINE double V_SUM(V a)
+V_INLINE double sum_lanes(const double *v)
 {
+    V a = _mm256_add_pd(_mm256_load_pd(v), _mm256_load_pd(v + 4));
     __m128d s = _mm_add_pd(_mm256_castpd256_pd128(a), _mm256_extractf128_pd(a, 1));
     return _mm_cvtsd_f64(_mm_add_sd(s, _mm_unpackhi_pd(s, s)));
 }
@@ -95,17 +96,43 @@ V_INLINE void load_spins(const se3di_spin *spins, const uint32_t *i, V out[3])
     out[2] = columns[2];
 }
 
+/* Force and torque of each lane. */
+V_INLINE void turn_loads(const V force[3], const V torque[3], V f[4], V t[4])
+{
+    V forces[4] = {force[0], force[1], force[2], _mm256_setzero_pd()};
+    V torques[4] = {torque[0], torque[1], torque[2], _mm256_setzero_pd()};
+    transpose(forces, f);
+    transpose(torques, t);
+}
+
+V_INLINE void add_load(se3di_load *load, V force, V torque)
+{
+    _mm256_store_pd(load->force, _mm256_add_pd(_mm256_load_pd(load->force), force));
+    _mm256_store_pd(load->torque, _mm256_add_pd(_mm256_load_pd(load->torque), torque));
+}
+
 V_INLINE void add_loads(se3di_load *loads, const uint32_t *i, const V force[3], const V torque[3])
 {
-    V f[4] = {force[0], force[1], force[2], _mm256_setzero_pd()};
-    V t[4] = {torque[0], torque[1], torque[2], _mm256_setzero_pd()};
-    transpose(f, f);
-    transpose(t, t);
+    V f[4], t[4];
+    turn_loads(force, torque, f, t);
     for (int k = 0; k < 4; ++k) {
-        se3di_load *load = &loads[i[k]];
-        _mm256_store_pd(load->force, _mm256_add_pd(_mm256_load_pd(load->force), f[k]));
-        _mm256_store_pd(load->torque, _mm256_add_pd(_mm256_load_pd(load->torque), t[k]));
+        add_load(&loads[i[k]], f[k], t[k]);
     }
+}
+
+V_INLINE void hold_loads(se3di_load *held, const V force[3], const V torque[3])
+{
+    V f[4], t[4];
+    turn_loads(force, torque, f, t);
+    for (int k = 0; k < 4; ++k) {
+        _mm256_store_pd(held[k].force, f[k]);
+        _mm256_store_pd(held[k].torque, t[k]);
+    }
+}
+
+V_INLINE void add_held(se3di_load *load, const se3di_load *held)
+{
+    add_load(load, _mm256_load_pd(held->force), _mm256_load_pd(held->torque));
 }
 
 #include "contact/particle_force.inc"

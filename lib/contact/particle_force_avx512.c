@@ -36,9 +36,9 @@ typedef __mmask8 M;
 #define M_ANY(m)          ((m) != 0)
 #define M_COUNT(m)        ((uint64_t)__builtin_popcount(m))
 
-V_INLINE double V_SUM(V a)
+V_INLINE double sum_lanes(const double *v)
 {
-    __m256d h = _mm256_add_pd(_mm512_castpd512_pd256(a), _mm512_extractf64x4_pd(a, 1));
+    __m256d h = _mm256_add_pd(_mm256_load_pd(v), _mm256_load_pd(v + 4));
     __m128d s = _mm_add_pd(_mm256_castpd256_pd128(h), _mm256_extractf128_pd(h, 1));
     return _mm_cvtsd_f64(_mm_add_sd(s, _mm_unpackhi_pd(s, s)));
 }

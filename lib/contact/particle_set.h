@@ -341,7 +341,8 @@ struct se3di_kernels {
 /* For a law of the user's. */
 const se3di_kernels *se3di_particle_kernels_callback(void);
 /* NULL where the machine has not these instructions. */
-const se3di_kernels *se3di_particle_kernels_portable(void);
+const se3di_kernels *se3di_particle_kernels_portable(void); /* never NULL */
+const se3di_kernels *se3di_particle_kernels_fma(void);
 const se3di_kernels *se3di_particle_kernels_avx2(void);
 const se3di_kernels *se3di_particle_kernels_avx512(void);
 

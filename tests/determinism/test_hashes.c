@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The same bits from every level of instructions and every number of threads: one hash for each run
+ * of a table of mechanisms, methods, formulations, contacts and particles.
+ *
+ *     test_hashes            compares the levels of this machine
+ *     test_hashes FILE       writes the hashes, one line for each run
+ *
+ * The kernels of a level are chosen by the linker's --wrap: see tests/CMakeLists.txt. */
+#include "base/hash.h"
+#include "check.h"
+#include "contact/particle_set.h"
+#include "linsol/kkt_internal.h"
+#include "support/analyses.h"
+#include "support/bed.h"
+#include "support/models.h"
+#include "support/scene.h"
+
+/* ---- levels ---- */
+
+static int allowed = 2; /* 0: portable, 1: AVX2 too, 2: AVX-512 too */
+static int levels = 1;  /* that this machine has */
+
+const se3di_kkt_core *__real_se3di_kkt_core_avx2(void);
+const se3di_kkt_core *__real_se3di_kkt_core_avx512(void);
+const se3di_kkt_core *__wrap_se3di_kkt_core_avx2(void);
+const se3di_kkt_core *__wrap_se3di_kkt_core_avx512(void);
+const se3di_kernels *__real_se3di_particle_kernels_avx2(void);
+const se3di_kernels *__real_se3di_particle_kernels_avx512(void);
+const se3di_kernels *__wrap_se3di_particle_kernels_avx2(void);
+const se3di_kernels *__wrap_se3di_particle_kernels_avx512(void);
+
+const se3di_kkt_core *__wrap_se3di_kkt_core_avx2(void)
+{
+    return allowed >= 1 ? __real_se3di_kkt_core_avx2() : NULL;
+}
+
+const se3di_kkt_core *__wrap_se3di_kkt_core_avx512(void)
+{
+    return allowed >= 2 ? __real_se3di_kkt_core_avx512() : NULL;
+}
+
+const se3di_kernels *__wrap_se3di_particle_kernels_avx2(void)
+{
+    return allowed >= 1 ? __real_se3di_particle_kernels_avx2() : NULL;
+}
+
+const se3di_kernels *__wrap_se3di_particle_kernels_avx512(void)
+{
+    return allowed >= 2 ? __real_se3di_particle_kernels_avx512() : NULL;
+}
+
+/* ---- runs ---- */
+
+typedef struct row {
+    char name[96];
+    uint64_t (*run)(const struct row *row, int32_t threads);
+    support_analysis analysis;
+    int32_t formulation, law, method;
+    int threads_max;
+} row;
+
+static uint64_t hash_reactions(const support_model *model, uint64_t hash)
+{
+    for (int k = 0; k < model->joint_count; ++k) {
+        double wrench[6];
+        CHECK(!se3d_constraint_get_reaction(model->system, model->joints[k], wrench, wrench + 3));
+        for (int c = 0; c < 6; ++c) {
+            wrench[c] += 0.0; /* -0 is 0 */
+        }
+        hash = se3di_hash_bytes(hash, wrench, sizeof wrench);
+    }
+    return hash;
+}
+
+static uint64_t run_mechanism(const row *r, int32_t threads)
+{
+    support_model model;
+    se3d_solver *solver = NULL;
+    (void)threads;
+    support_model_make(&model, r->analysis.mechanism, r->analysis.count);
+    CHECK(support_solver_create(model.system, &r->analysis, r->formulation, &solver) == SE3D_OK);
+    CHECK(se3d_solver_run(solver, r->analysis.t_end) >= 0);
+    uint64_t hash = se3d_system_hash(model.system);
+    if (r->analysis.analysis >= SE3D_ANALYSIS_INVERSE_DYNAMICS) {
+        hash = hash_reactions(&model, hash);
+    }
+    se3d_solver_destroy(solver);
+    support_model_destroy(&model);
+    return hash;
+}
+
+/* Two balls, a box and a cylinder thrown onto a slope. */
+static uint64_t run_scene(const row *r, int32_t threads)
+{
+    static const double slope[3] = {0.2, 0.1, 1.0}, size[3] = {0.2, 0.3, 0.1};
+    scene s = scene_begin(r->law, 0.4, 0.5, 1e5);
+    (void)threads;
+    se3d_shape_def plane = scene_shape(&s, scene_ground(&s));
+    se3d_shape shape;
+    memcpy(plane.normal, slope, sizeof slope);
+    CHECK(se3d_shape_create_plane(s.system, &plane, &shape) == SE3D_OK);
+    for (int k = 0; k < 2; ++k) {
+        const double at[3] = {0.15 * k, 0.05, 0.3 + 0.25 * k}, v[3] = {0.4, 0.1 * k, -1.0};
+        (void)scene_ball(&s, 0.1, 2.0 + k, at, v);
+    }
+    const double at[3] = {-0.6, 0.2, 0.4}, v[3] = {0.3, -0.2, -1.0}, J[3] = {0.03, 0.02, 0.04};
+    se3d_body box = scene_body(&s, 3.0, J, at, v);
+    (void)scene_box_on(&s, box, size, scene_zero);
+    const double axis[3] = {0.6, 0.0, 0.8};
+    scene_turn(&s, box, axis, 0.7);
+    scene_solve(&s, r->method, r->formulation, r->method == SE3D_METHOD_DOP853 ? 0.02 : 5e-4, 0.0);
+    (void)scene_run(&s, 0.25);
+    uint64_t hash = se3d_system_hash(s.system);
+    scene_end(&s);
+    return hash;
+}
+
+/* The grains of a bed meet at once. */
+static const double strong[3] = {-300.0, 0.0, -400.0};
+
+static uint64_t run_bed(const row *r, int32_t threads)
+{
+    bed b;
+    bed_init(&b, threads, 0, r->law);
+    CHECK(se3d_system_set_gravity(b.system, strong) == SE3D_OK);
+    CHECK(se3d_particles_step(b.particles, 600) == SE3D_OK);
+    CHECK(se3d_particles_count_contacts(b.particles) > 100);
+    uint64_t hash = se3d_particles_hash(b.particles);
+    bed_destroy(&b);
+    return hash;
+}
+
+/* A turned box and a ball that fall into a bed: walls that give way. */
+static uint64_t run_pushed(const row *r, int32_t threads)
+{
+    static const double size[3] = {0.05, 0.02, 0.03}, J[3] = {1e-4, 2e-4, 1.5e-4};
+    static const double at[2][3] = {{0.08, 0.03, 0.15}, {0.16, 0.03, 0.15}},
+                        v[3] = {0.5, 0.0, -2.0};
+    static const double axis[3] = {0.6, 0.0, 0.8};
+    bed b;
+    bed_init(&b, threads, 0, r->law);
+    CHECK(se3d_system_set_gravity(b.system, strong) == SE3D_OK);
+    scene s = {.system = b.system};
+    se3d_material_def stuff = scene_stuff(0.4, 0.5, 2e4);
+    CHECK(se3d_material_create(s.system, &stuff, &s.material) == SE3D_OK);
+    se3d_body box = scene_body(&s, 0.1, J, at[0], v);
+    (void)scene_box_on(&s, box, size, scene_zero);
+    scene_turn(&s, box, axis, 0.7);
+    (void)scene_ball(&s, 0.02, 0.1, at[1], v);
+    scene_solve(&s, SE3D_METHOD_VERLET, r->formulation, 1e-4, 0.0);
+    (void)scene_run(&s, 0.005);
+    CHECK(se3d_particles_count_contacts(b.particles) > 50);
+    uint64_t part = se3d_particles_hash(b.particles);
+    uint64_t hash = se3di_hash_bytes(se3d_system_hash(s.system), &part, sizeof part);
+    se3d_solver_destroy(s.solver);
+    bed_destroy(&b);
+    return hash;
+}
+
+/* ---- table ---- */
+
+static const support_analysis more[] = {
+    {"four_bar", 3, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_GENERALIZED_ALPHA, 0.005, 0.1},
+    {"chain_revolute", 40, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_HHT, 0.005, 0.05},
+    {"slider_crank", 1, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_RK45, 0.01, 0.5},
+    {"driven_pendulum", 1, SE3D_ANALYSIS_INVERSE_DYNAMICS, SE3D_METHOD_AUTO, 0.01, 1.0},
+};
+#define MORE (sizeof more / sizeof more[0])
+
+#define ROWS_MAX 128
+static row rows[ROWS_MAX];
+static size_t row_count;
+
+static row *add(const char *what, int law, int method, int formulation)
+{
+    row *r = &rows[row_count++];
+    CHECK(row_count <= ROWS_MAX);
+    (void)snprintf(r->name, sizeof r->name, "%s/law-%d/method-%d/formulation-%d", what, law, method,
+                   formulation);
+    r->law = law;
+    r->method = method;
+    r->formulation = formulation;
+    r->threads_max = 1;
+    return r;
+}
+
+static void fill_table(void)
+{
+    for (size_t k = 0; k < 2 * (SUPPORT_ANALYSES + MORE); ++k) {
+        const support_analysis *what =
+            k / 2 < SUPPORT_ANALYSES ? &support_analyses[k / 2] : &more[k / 2 - SUPPORT_ANALYSES];
+        char name[64];
+        (void)snprintf(name, sizeof name, "%s-%d/analysis-%d", what->mechanism, what->count,
+                       what->analysis);
+        row *r = add(name, 0, what->method, (int)(k % 2));
+        r->run = run_mechanism;
+        r->analysis = *what;
+    }
+    static const int32_t methods[] = {SE3D_METHOD_VERLET, SE3D_METHOD_DOP853,
+                                      SE3D_METHOD_GENERALIZED_ALPHA};
+    static const int32_t laws[] = {SE3D_LAW_HOOKE, SE3D_LAW_HERTZ_MINDLIN};
+    for (int k = 0; k < 6; ++k) {
+        add("contacts", laws[k % 2], methods[k / 2], k % 2)->run = run_scene;
+    }
+    for (int k = 0; k < 4; ++k) {
+        row *r = add(k / 2 ? "pushed-bed" : "bed", laws[k % 2], 0, k % 2);
+        r->run = k / 2 ? run_pushed : run_bed;
+        r->threads_max = 4;
+    }
+}
+
+static void count_levels(void)
+{
+    levels = 1;
+    if (__real_se3di_kkt_core_avx2() && __real_se3di_particle_kernels_avx2()) {
+        levels = __real_se3di_kkt_core_avx512() && __real_se3di_particle_kernels_avx512() ? 3 : 2;
+    }
+    printf("%d of the levels portable, AVX2, AVX-512\n", levels);
+}
+
+static void every_level_and_number_of_threads_gives_the_same_bits(void)
+{
+    for (size_t k = 0; k < row_count; ++k) {
+        allowed = levels - 1;
+        const uint64_t best = rows[k].run(&rows[k], 1);
+        for (allowed = 0; allowed < levels; ++allowed) {
+            const int32_t threads = rows[k].threads_max > 1 ? 2 + allowed : 1;
+            const uint64_t hash =
+                allowed == levels - 1 && threads == 1 ? best : rows[k].run(&rows[k], threads);
+            if (hash != best) {
+                fprintf(stderr, "%s: level %d, %d threads\n", rows[k].name, allowed, threads);
+            }
+            CHECK(hash == best);
+        }
+    }
+}
+
+static int write_hashes(const char *path)
+{
+    FILE *file = fopen(path, "w");
+    if (!file) {
+        return 1;
+    }
+    allowed = levels - 1;
+    for (size_t k = 0; k < row_count; ++k) {
+        fprintf(file, "%016llx %s\n", (unsigned long long)rows[k].run(&rows[k], 1), rows[k].name);
+    }
+    return fclose(file) != 0 || check_failures > 0;
+}
+
+int main(int argc, char **argv)
+{
+    count_levels();
+    fill_table();
+    if (argc > 1) {
+        return write_hashes(argv[1]);
+    }
+    RUN(every_level_and_number_of_threads_gives_the_same_bits);
+    return check_finish();
+}
