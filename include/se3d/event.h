@@ -27,7 +27,8 @@ typedef enum se3d_event_action {
     SE3D_EVENT_STOP = 1    /* the run ends there with SE3D_INFO_EVENT */
 } se3d_event_action;
 
-/* Compute the quantity at the system's present state; it must be continuous in time.
+/* Compute the quantity at the system's present state, of which it may read everything and set
+ * nothing; it must be continuous in time.
  * @return OK, or < 0: the run fails with CALLBACK. @since 0.1 */
 typedef se3d_status (*se3d_event_value)(void *ctx, const se3d_system *system, double *value);
 
@@ -42,8 +43,10 @@ typedef struct se3d_event_record {
     int32_t action;    /* STOP where the run ended there */
 } se3d_event_record;
 
-/* Called at every event with the system in its state there. It may change the state or the model
- * (the run then goes on from what it left), but not run, create or destroy a solver or an event.
+/* Called at every event with the system in its state there. It may read everything, copy the system
+ * (se3d_system_clone, se3d_snapshot_create), and set values and the state: every se3d_..._set_...;
+ * the run then goes on from what it left. What creates, destroys, restores, steps or runs anything
+ * of the system is refused with STATE: let the event stop the run, edit, and run on.
  * @return OK: go on as the event's action says; SE3D_INFO_EVENT: stop the run; < 0: the run fails
  * with CALLBACK. @since 0.1 */
 typedef se3d_status (*se3d_event_callback)(void *ctx, se3d_system *system,

@@ -7,7 +7,7 @@
 
 /* A model with its state; destroy with se3d_system_destroy. */
 typedef struct se3d_system se3d_system;
-/* An analysis of one system; destroy with se3d_solver_destroy before its system. */
+/* An analysis of one system; destroy with se3d_solver_destroy. */
 typedef struct se3d_solver se3d_solver;
 /* Particles of a system, which destroys them with itself unless se3d_particles_destroy did before.
  */

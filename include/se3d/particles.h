@@ -54,7 +54,8 @@ static inline se3d_particles_def se3d_particles_def_default(void)
  * @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def *def,
                                            se3d_particles **out);
-/* Destroy; NULL is fine. @since 0.1 */
+/* Destroy; NULL is fine. From within a callback of its system nothing is destroyed, and a message
+ * (STATE) says so. @since 0.1 */
 SE3D_API void se3d_particles_destroy(se3d_particles *particles);
 /* Find a set by its name. @return OK, NULL, INVALID_ARGUMENT (no such set). Reader. @since 0.1 */
 SE3D_API se3d_status se3d_particles_find(const se3d_system *system, const char *name,
@@ -66,9 +67,9 @@ SE3D_API se3d_status se3d_particles_get_name(const se3d_particles *particles, co
 SE3D_API size_t se3d_system_count_particles(const se3d_system *system);
 SE3D_API se3d_status se3d_system_get_particles(const se3d_system *system, size_t index,
                                                se3d_particles **particles);
-/* Make an independent copy beside the sets of the same system, to be destroyed before it: no step
- * of the system moves it. It continues with the same bits, and so is a snapshot. Ids are valid on
- * both.
+/* Make an independent copy beside the sets of the same system: no step of the system moves it, and
+ * after the system nothing can be done with it but reading what it holds and destroying it. It
+ * continues with the same bits, and so is a snapshot. Ids are valid on both.
  * @since 0.1 */
 SE3D_API se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles **out);
 /* Make `particles` what `saved`, a clone of it, is. @return OK, NULL, NO_MEMORY (nothing changed).

@@ -59,11 +59,13 @@ static inline se3d_solver_def se3d_solver_def_default(void)
     return def;
 }
 
-/* Create a solver. The system must outlive it; it may be edited between steps.
+/* Create a solver. The system may be edited between steps; where it is destroyed first, the
+ * solver's calls return STATE.
  * @return OK, NULL, INVALID_ARGUMENT, UNSUPPORTED, NO_MEMORY. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_solver_create(se3d_system *system, const se3d_solver_def *def,
                                         se3d_solver **out);
-/* Destroy; NULL is fine. @since 0.1 */
+/* Destroy; NULL is fine, also after its system. From within a callback of its system nothing is
+ * destroyed, and a message (STATE) says so. @since 0.1 */
 SE3D_API void se3d_solver_destroy(se3d_solver *solver);
 
 /* Run to `t_end` [s] (>= the present time). At t_end = now the state is only made consistent:

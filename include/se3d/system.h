@@ -33,12 +33,15 @@ static inline se3d_system_def se3d_system_def_default(void)
  * @return OK, NULL (out), INVALID_ARGUMENT, NO_MEMORY. Safe. @since 0.1 */
 SE3D_API se3d_status se3d_system_create(const se3d_system_def *def, se3d_system **out);
 
-/* Destroy a system and its elements; NULL is fine. Its solvers must have been destroyed. @since 0.1
- */
+/* Destroy a system and its elements; NULL is fine. Solvers and clones of its particle sets that
+ * still live are empty then: their calls return STATE, and destroying them is fine as long as the
+ * allocator lives. From within a callback of the system nothing is destroyed, and a message (STATE)
+ * says so. @since 0.1 */
 SE3D_API void se3d_system_destroy(se3d_system *system);
 
-/* Make an independent copy with the same allocator; handles are valid on both. Reader. @since 0.1
- */
+/* Make an independent copy with the same allocator; handles are valid on both.
+ * @return OK, NULL, NO_MEMORY, STATE (from within a callback that sees a trial state). Reader.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_clone(const se3d_system *system, se3d_system **out);
 
 /* Return the message of the last failing call on this system, "" if none; never NULL. The text is
@@ -47,6 +50,11 @@ SE3D_API const char *se3d_system_get_error(const se3d_system *system);
 
 /* Return the status of the last failing call on this system. Reader. @since 0.1 */
 SE3D_API se3d_status se3d_system_get_error_status(const se3d_system *system);
+
+/* Return 1 while a call works on the system (a run, an analysis, a query that evaluates callbacks),
+ * that is: from within callbacks; else 0, also for NULL. Which calls are then refused with STATE:
+ * docs/api.md, "Callbacks". Reader. @since 0.1 */
+SE3D_API int32_t se3d_system_is_busy(const se3d_system *system);
 
 /* Set the gravitational acceleration [m/s^2], ground frame. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_system_set_gravity(se3d_system *system, const double gravity[3]);
@@ -116,6 +124,7 @@ SE3D_API uint64_t se3d_system_hash(const se3d_system *system);
  * 0.1 */
 typedef struct se3d_snapshot se3d_snapshot;
 
+/* @return as se3d_system_clone. Reader. @since 0.1 */
 SE3D_API se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out);
 /* Put the state back. @return OK, NULL, STATE (the model has changed since). Exclusive. @since 0.1
  */

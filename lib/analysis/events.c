@@ -2,6 +2,7 @@
 #include "analysis/events.h"
 
 #include "analysis/run.h"
+#include "base/busy.h"
 #include "contact/body_contacts.h"
 #include "integrator/state.h"
 #include "math/quaternion.h"
@@ -121,7 +122,9 @@ static se3d_status call_value(se3di_events *events, const se3di_event *event, do
     if (shows) {
         SE3DI_TRY(se3di_contacts_show(run->model, run->model->time, run->error));
     }
+    const int32_t level = se3di_busy_raise(run->model->busy, SE3DI_BUSY_VALUE);
     const se3d_status status = event->value(event->ctx, events->system, value);
+    se3di_busy_restore(run->model->busy, level);
     if (shows) {
         se3di_contacts_hide(run->model);
     }
@@ -422,7 +425,9 @@ static se3d_status call_back(se3di_events *events, const se3di_event *event,
     if (shows) {
         SE3DI_TRY(se3di_contacts_show(model, model->time, events->run->error));
     }
+    const int32_t level = se3di_busy_raise(model->busy, SE3DI_BUSY_EVENT);
     const se3d_status status = event->callback(event->callback_ctx, events->system, record);
+    se3di_busy_restore(model->busy, level);
     *changed = model->history_stamp != stamp;
     if (shows && !*changed) {
         se3di_contacts_hide(model);

@@ -210,6 +210,7 @@ typedef struct se3di_model {
 
     struct se3di_particles *sets; /* particle sets in creation order, see contact/particle_sets.h;
                                      not copied by se3di_model_clone */
+    struct se3di_busy *busy;      /* of the system, see base/busy.h; NULL: no system */
 } se3di_model;
 
 /* A constraint under construction: joints and primitives fill it, se3di_model_add_constraint copies

@@ -43,9 +43,7 @@ se3d_status se3d_body_create(se3d_system *system, const se3d_body_def *def, se3d
     if (body) {
         *body = (se3d_body){0, 0};
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "body", body));
     se3d_body_def full = se3d_body_def_default();
     SE3DI_TRY(se3di_check_def(system, "body def", def, &full, sizeof full));
@@ -85,9 +83,7 @@ se3d_status se3d_body_create(se3d_system *system, const se3d_body_def *def, se3d
 
 se3d_status se3d_body_destroy(se3d_system *system, se3d_body body)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     uint32_t index;
     SE3DI_TRY(se3di_find_body(system, "body", body, &index));
     if (index == 0) {
@@ -152,9 +148,7 @@ se3d_status se3d_body_get_fixed(const se3d_system *system, se3d_body body, int32
 se3d_status se3d_body_set_held(se3d_system *system, se3d_body body, int32_t held)
 {
     uint32_t index;
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_SET(system);
     SE3DI_TRY(se3di_find_body(system, "body", body, &index));
     system->model.bodies[index].held = held != 0;
     return SE3D_OK;
@@ -185,9 +179,7 @@ se3d_status se3d_body_get_mass(const se3d_system *system, se3d_body body, double
 se3d_status se3d_body_set_mass(se3d_system *system, se3d_body body, double mass,
                                const double inertia[6])
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_SET(system);
     uint32_t index;
     SE3DI_TRY(se3di_find_body(system, "body", body, &index));
     SE3DI_TRY(se3di_check_pointer(system, "inertia", inertia));
@@ -265,9 +257,6 @@ se3d_status se3d_body_get_point(const se3d_system *system, se3d_body body, const
 static se3d_status find_writer(se3d_system *system, se3d_body body, const char *what,
                                const double *values, uint32_t *index)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
     SE3DI_TRY(se3di_find_body(system, "body", body, index));
     return se3di_check_pointer(system, what, values);
 }
@@ -284,6 +273,7 @@ static se3d_status check_movable(se3d_system *system, uint32_t index, const char
 se3d_status se3d_body_set_position(se3d_system *system, se3d_body body, const double r[3])
 {
     uint32_t index;
+    SE3DI_SET(system);
     SE3DI_TRY(find_writer(system, body, "position", r, &index));
     SE3DI_TRY(check_movable(system, index, "position"));
     SE3DI_TRY(se3di_check_finites(system, "position", r, 3));
@@ -296,6 +286,7 @@ se3d_status se3d_body_set_orientation(se3d_system *system, se3d_body body, const
 {
     uint32_t index;
     double unit[4];
+    SE3DI_SET(system);
     SE3DI_TRY(find_writer(system, body, "orientation", p, &index));
     SE3DI_TRY(check_movable(system, index, "orientation"));
     SE3DI_TRY(se3di_check_orientation(system, "orientation", p, unit));
@@ -308,6 +299,7 @@ se3d_status se3d_body_set_orientation(se3d_system *system, se3d_body body, const
 se3d_status se3d_body_set_velocity(se3d_system *system, se3d_body body, const double v[3])
 {
     uint32_t index;
+    SE3DI_SET(system);
     SE3DI_TRY(find_writer(system, body, "velocity", v, &index));
     if (system->model.bodies[index].fixed) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
@@ -322,6 +314,7 @@ se3d_status se3d_body_set_velocity(se3d_system *system, se3d_body body, const do
 se3d_status se3d_body_set_angular_velocity(se3d_system *system, se3d_body body, const double w[3])
 {
     uint32_t index;
+    SE3DI_SET(system);
     SE3DI_TRY(find_writer(system, body, "angular_velocity", w, &index));
     if (system->model.bodies[index].fixed) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
@@ -396,9 +389,7 @@ static se3d_status check_all(se3d_system *system, const double *r, const double 
 se3d_status se3d_body_set_all(se3d_system *system, size_t count, const double *r, const double *p,
                               const double *v, const double *w)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_SET(system);
     if (count != system->model.body_slots.count) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "count = %zu, must be the number of bodies, %zu", count,

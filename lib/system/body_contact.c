@@ -28,11 +28,14 @@ se3d_status se3d_system_get_contact_force_max(const se3d_system *system, double 
     for (size_t k = 0; k < model->contacts.count; ++k) {
         *force = fmax(*force, se3di_norm(model->contacts.list[k].force));
     }
-    for (const se3di_particles *set = model->sets; set; set = set->next) {
+    se3di_reading reading;
+    se3d_status status = se3di_read_begin(system, &reading);
+    SE3DI_TRY(status);
+    for (const se3di_particles *set = model->sets; set && status >= 0; set = set->next) {
         size_t count;
-        SE3DI_TRY(se3di_particles_contacts(set, 0, NULL, &count, force));
+        status = se3di_particles_contacts(set, 0, NULL, &count, force);
     }
-    return SE3D_OK;
+    return se3di_read_end(&reading, status < 0 ? status : SE3D_OK);
 }
 
 se3d_status se3d_system_get_contacts(const se3d_system *system, size_t count,

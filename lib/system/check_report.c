@@ -14,15 +14,15 @@ se3d_status se3d_check_create(se3d_system *system, se3d_check **out)
     if (out) {
         *out = NULL;
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "out", out));
     se3d_check *check = se3di_alloc(&system->model.allocator, 1, sizeof *check);
     if (!check) {
         return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for the report on constraints");
     }
-    se3d_status status = se3di_check_init(&check->report, &system->model, &system->error);
+    se3di_work_begin(system);
+    se3d_status status =
+        se3di_work_end(system, se3di_check_init(&check->report, &system->model, &system->error));
     if (status < 0) {
         se3di_free(&system->model.allocator, check, 1, sizeof *check);
         return status;

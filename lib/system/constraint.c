@@ -24,9 +24,7 @@ static const se3di_constraint *find(const se3d_system *system, se3d_constraint c
 
 se3d_status se3d_constraint_destroy(se3d_system *system, se3d_constraint constraint)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     uint32_t index;
     SE3DI_TRY(se3di_find_constraint(system, "constraint", constraint, &index));
     const se3di_constraint *found = &system->model.constraints[index];
@@ -221,7 +219,9 @@ se3d_status se3d_constraint_eval(const se3d_system *system, se3d_constraint cons
     if (!is_formulation(formulation)) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    se3d_status status = SE3D_OK;
+    se3di_reading reading;
+    se3d_status status = se3di_read_begin(system, &reading);
+    SE3DI_TRY(status);
     for (uint32_t r = 0; r < found->row_count && status == SE3D_OK; ++r) {
         double result[3];
         status = equation_eval(&system->model, found, r, formulation, result);
@@ -234,7 +234,7 @@ se3d_status se3d_constraint_eval(const se3d_system *system, se3d_constraint cons
     for (int k = 0; k < 3 && status != SE3D_OK; ++k) {
         null_numbers(outputs[k], found->row_count);
     }
-    return status;
+    return se3di_read_end(&reading, status);
 }
 
 /* Jacobian of a row with respect to one body: 3 + 3 (r-omega) or 3 + 4 (r-p) numbers. */
@@ -308,7 +308,9 @@ se3d_status se3d_constraint_eval_jacobian(const se3d_system *system, se3d_constr
     if (slot >= found->body_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    se3d_status status = SE3D_OK;
+    se3di_reading reading;
+    se3d_status status = se3di_read_begin(system, &reading);
+    SE3DI_TRY(status);
     for (uint32_t r = 0; r < found->row_count && status == SE3D_OK; ++r) {
         double row[7];
         status = equation_jacobian(&system->model, found, r, formulation, found->bodies[slot], row);
@@ -323,7 +325,7 @@ se3d_status se3d_constraint_eval_jacobian(const se3d_system *system, se3d_constr
         null_numbers(phi_r, found->row_count * 3);
         null_numbers(phi_rotation, found->row_count * width);
     }
-    return status;
+    return se3di_read_end(&reading, status);
 }
 
 se3d_status se3d_constraint_get_multipliers(const se3d_system *system, se3d_constraint constraint,

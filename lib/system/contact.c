@@ -49,9 +49,7 @@ static se3d_status check_law(se3d_system *system, int32_t law, double stiffness,
 
 se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_settings *settings)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_SET(system);
     se3di_model *model = &system->model;
     se3d_contact_settings full = se3d_contact_settings_default();
     SE3DI_TRY(se3di_check_def(system, "contact settings", settings, &full, sizeof full));
@@ -131,9 +129,7 @@ se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *d
     if (material) {
         *material = (se3d_material){0, 0};
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "material", material));
     se3d_material_def full = se3d_material_def_default();
     SE3DI_TRY(se3di_check_def(system, "material def", def, &full, sizeof full));
@@ -160,9 +156,7 @@ se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *d
 
 se3d_status se3d_material_destroy(se3d_system *system, se3d_material material)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     uint32_t index;
     SE3DI_TRY(se3di_find_material(system, "material", material, &index));
     uint32_t users = system->model.materials[index].users;
@@ -180,9 +174,7 @@ se3d_status se3d_material_destroy(se3d_system *system, se3d_material material)
 se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_material b,
                                    const se3d_material_pair_def *def)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_SET(system);
     uint32_t index_a, index_b;
     SE3DI_TRY(se3di_find_material(system, "material a", a, &index_a));
     SE3DI_TRY(se3di_find_material(system, "material b", b, &index_b));

@@ -85,19 +85,20 @@ static se3d_status draft_build(se3d_system *system, const char *type, const se3d
     return SE3D_OK;
 }
 
-/* NULL checks that the three creators share; `*joint` becomes the null handle. */
-static se3d_status check_call(se3d_system *system, se3d_constraint *joint)
+/* Checks that the three creators share; `*joint` becomes the null handle. */
+static se3d_status check_call(se3d_system *system, const char *function, se3d_constraint *joint)
 {
     if (joint) {
         *joint = (se3d_constraint){0, 0};
     }
-    return system ? se3di_check_pointer(system, "joint", joint) : SE3D_ERR_NULL;
+    SE3DI_TRY(se3di_enter(system, SE3DI_BUSY_FREE, function));
+    return se3di_check_pointer(system, "joint", joint);
 }
 
 se3d_status se3d_joint_create_coupler(se3d_system *system, const se3d_coupler_def *user,
                                       se3d_constraint *joint)
 {
-    SE3DI_TRY(check_call(system, joint));
+    SE3DI_TRY(check_call(system, __func__, joint));
     se3d_coupler_def def = se3d_coupler_def_default();
     se3di_draft draft;
     int32_t function;
@@ -137,7 +138,7 @@ static se3d_status check_factor(se3d_system *system, const char *what, double fa
 se3d_status se3d_joint_create_gear(se3d_system *system, const char *name, se3d_constraint joint_1,
                                    se3d_constraint joint_2, double ratio, se3d_constraint *joint)
 {
-    SE3DI_TRY(check_call(system, joint));
+    SE3DI_TRY(check_call(system, __func__, joint));
     SE3DI_TRY(check_factor(system, "ratio", ratio));
     se3d_coupler_def def = se3d_coupler_def_default();
     def.name = name;
@@ -153,7 +154,7 @@ se3d_status se3d_joint_create_rack_pinion(se3d_system *system, const char *name,
                                           se3d_constraint pinion, se3d_constraint rack,
                                           double radius, se3d_constraint *joint)
 {
-    SE3DI_TRY(check_call(system, joint));
+    SE3DI_TRY(check_call(system, __func__, joint));
     SE3DI_TRY(check_factor(system, "radius", radius));
     se3d_coupler_def def = se3d_coupler_def_default();
     def.name = name;

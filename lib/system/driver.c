@@ -20,9 +20,7 @@ se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_def *user,
     if (driver) {
         *driver = (se3d_constraint){0, 0};
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "driver", driver));
     se3d_driver_def def = se3d_driver_def_default();
     uint32_t joint;
@@ -73,7 +71,10 @@ se3d_status se3d_driver_get_value(const se3d_system *system, se3d_constraint dri
     uint32_t index;
     SE3DI_TRY(find_row(system, driver, value, &index));
     double jet[3];
-    SE3DI_TRY(se3di_row_prescribed(&system->model, &system->model.rows[index], jet));
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(system, &reading));
+    SE3DI_TRY(se3di_read_end(
+        &reading, se3di_row_prescribed(&system->model, &system->model.rows[index], jet)));
     *value = jet[0];
     return SE3D_OK;
 }

@@ -61,9 +61,7 @@ se3d_status se3d_event_create(se3d_solver *solver, const se3d_event_def *def, se
     if (out) {
         *out = (se3d_event){0, 0};
     }
-    if (!solver) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(solver);
     se3d_system *system = solver->system;
     SE3DI_TRY(se3di_check_pointer(system, "out", out));
     se3d_event_def full = se3d_event_def_default();
@@ -105,9 +103,7 @@ static se3d_status find(const se3d_solver *solver, se3d_event event, uint32_t *i
 se3d_status se3d_event_destroy(se3d_solver *solver, se3d_event event)
 {
     uint32_t index;
-    if (!solver) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(solver);
     SE3DI_TRY(find(solver, event, &index));
     se3di_events_remove(&solver->run.events, index);
     return SE3D_OK;
@@ -119,9 +115,7 @@ se3d_status se3d_event_get_name(se3d_solver *solver, se3d_event event, const cha
     if (name) {
         *name = "";
     }
-    if (!solver) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_OWNED(solver);
     SE3DI_TRY(se3di_check_pointer(solver->system, "name", name));
     SE3DI_TRY(find(solver, event, &index));
     const char *given = solver->run.events.list[index].name;
@@ -131,15 +125,13 @@ se3d_status se3d_event_get_name(se3d_solver *solver, se3d_event event, const cha
 
 size_t se3d_solver_count_event_records(const se3d_solver *solver)
 {
-    return solver ? solver->run.events.record_count : 0;
+    return solver && solver->system ? solver->run.events.record_count : 0;
 }
 
 se3d_status se3d_solver_get_event_record(se3d_solver *solver, size_t index,
                                          se3d_event_record *record)
 {
-    if (!solver) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_OWNED(solver);
     SE3DI_TRY(se3di_check_pointer(solver->system, "record", record));
     const se3di_events *events = &solver->run.events;
     if (index >= events->record_count) {
@@ -153,9 +145,7 @@ se3d_status se3d_solver_get_event_record(se3d_solver *solver, size_t index,
 
 se3d_status se3d_solver_clear_event_records(se3d_solver *solver)
 {
-    if (!solver) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(solver);
     solver->run.events.record_count = 0;
     return SE3D_OK;
 }

@@ -32,7 +32,8 @@ se3d_status se3di_force_begin(se3d_system *system, se3d_force *force)
     if (force) {
         *force = (se3d_force){0, 0};
     }
-    return system ? se3di_check_pointer(system, "force", force) : SE3D_ERR_NULL;
+    SE3DI_TRY(se3di_enter(system, SE3DI_BUSY_FREE, "the creation of a force element"));
+    return se3di_check_pointer(system, "force", force);
 }
 
 se3di_force se3di_force_blank(int32_t type, const char *name)
@@ -210,9 +211,7 @@ se3d_status se3d_force_create_torque(se3d_system *system, const se3d_load_def *d
 
 se3d_status se3d_force_destroy(se3d_system *system, se3d_force force)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     uint32_t index;
     SE3DI_TRY(se3di_find_force(system, "force", force, &index));
     se3di_model_remove_force(&system->model, index);
@@ -276,7 +275,10 @@ static se3d_status eval_reader(const se3d_system *system, se3d_force force, cons
     const se3di_force *data;
     SE3DI_TRY(find_reader(system, force, out, &data));
     effect->wants_derivative = 0;
-    return se3di_force_eval(&system->model, data, system->model.time, effect);
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(system, &reading));
+    return se3di_read_end(&reading,
+                          se3di_force_eval(&system->model, data, system->model.time, effect));
 }
 
 se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force, double *coordinate,

@@ -106,9 +106,7 @@ se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *d
     if (function) {
         *function = (se3d_function){0, 0};
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "function", function));
     se3d_function_def full = se3d_function_def_default();
     SE3DI_TRY(se3di_check_def(system, "function def", def, &full, sizeof full));
@@ -137,9 +135,7 @@ se3d_status se3d_function_create_expression(se3d_system *system, const char *tex
     if (function) {
         *function = (se3d_function){0, 0};
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "text", text));
     se3d_function_def def = se3d_function_def_default();
     def.expression = text;
@@ -148,9 +144,7 @@ se3d_status se3d_function_create_expression(se3d_system *system, const char *tex
 
 se3d_status se3d_function_destroy(se3d_system *system, se3d_function function)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     uint32_t index =
         se3di_slots_find(&system->model.function_slots, function.index1, function.generation);
     if (index == SE3DI_NO_INDEX) {
@@ -176,5 +170,8 @@ se3d_status se3d_function_eval(const se3d_system *system, se3d_function function
     if (index == SE3DI_NO_INDEX) {
         return SE3D_ERR_STALE_HANDLE;
     }
-    return se3di_function_eval(&system->model.functions[index], x, jet, NULL);
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(system, &reading));
+    return se3di_read_end(&reading,
+                          se3di_function_eval(&system->model.functions[index], x, jet, NULL));
 }

@@ -152,15 +152,13 @@ static void draft_build(const se3di_model *model, const se3di_joint_type *type,
     }
 }
 
-static se3d_status joint_create(se3d_system *system, se3di_joint_type_id id,
+static se3d_status joint_create(se3d_system *system, const char *function, se3di_joint_type_id id,
                                 const se3d_joint_def *user, se3d_constraint *joint)
 {
     if (joint) {
         *joint = (se3d_constraint){0, 0};
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_TRY(se3di_enter(system, SE3DI_BUSY_FREE, function));
     SE3DI_TRY(se3di_check_pointer(system, "joint", joint));
     const se3di_joint_type *type = &se3di_joint_types[id];
     se3d_joint_def def = se3d_joint_def_default();
@@ -184,7 +182,7 @@ static se3d_status joint_create(se3d_system *system, se3di_joint_type_id id,
     se3d_status se3d_joint_create_##name(se3d_system *system, const se3d_joint_def *def,           \
                                          se3d_constraint *joint)                                   \
     {                                                                                              \
-        return joint_create(system, SE3DI_JOINT_TYPE_##name, def, joint);                          \
+        return joint_create(system, __func__, SE3DI_JOINT_TYPE_##name, def, joint);                \
     }
 SE3DI_JOINT_LIST(CREATE)
 

@@ -17,9 +17,7 @@ se3d_status se3d_marker_create(se3d_system *system, const se3d_marker_def *def, 
     if (marker) {
         *marker = (se3d_marker){0, 0};
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "marker", marker));
     se3d_marker_def full = se3d_marker_def_default();
     se3di_marker data = {0};
@@ -42,9 +40,7 @@ se3d_status se3d_marker_create(se3d_system *system, const se3d_marker_def *def, 
 
 se3d_status se3d_marker_destroy(se3d_system *system, se3d_marker marker)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     uint32_t index;
     SE3DI_TRY(se3di_find_marker(system, "marker", marker, &index));
     se3di_model_remove_marker(&system->model, index);

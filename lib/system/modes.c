@@ -285,26 +285,31 @@ static se3d_status make(se3d_system *system, se3di_equations *equations, const s
     return status;
 }
 
+static se3d_status linearise(se3d_system *system, const se3d_modes_def *def, se3d_modes **out)
+{
+    se3di_equations equations;
+    SE3DI_TRY(se3di_equations_init(&equations, &system->model, &se3di_formulation_romega,
+                                   &system->error));
+    se3di_error_clear(&system->error);
+    const se3d_status status = make(system, &equations, def, out);
+    se3di_equations_destroy(&equations);
+    return status;
+}
+
 se3d_status se3d_modes_create(se3d_system *system, const se3d_modes_def *def, se3d_modes **out)
 {
     if (out) {
         *out = NULL;
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "out", out));
     se3d_modes_def full = se3d_modes_def_default();
     if (def) {
         SE3DI_TRY(se3di_check_def(system, "modes def", def, &full, sizeof full));
     }
     SE3DI_TRY(check(system, &full));
-    se3di_equations equations;
-    SE3DI_TRY(se3di_equations_init(&equations, &system->model, &se3di_formulation_romega,
-                                   &system->error));
-    se3di_error_clear(&system->error);
-    se3d_status status = make(system, &equations, &full, out);
-    se3di_equations_destroy(&equations);
+    se3di_work_begin(system);
+    const se3d_status status = se3di_work_end(system, linearise(system, &full, out));
     if (status < 0 && system->error.status != status) {
         return SE3DI_FAIL(system, status, "the linearised equations: %s",
                           se3d_status_get_text(status));

@@ -20,9 +20,22 @@ void se3di_sets_link(se3d_particles *particles)
     ++model->topology_version; /* the method may depend on it, and snapshots do */
 }
 
+static void unlink_copy(se3d_particles *particles)
+{
+    se3d_particles **link = &particles->system->copies;
+    while (*link != particles) {
+        link = &(*link)->next;
+    }
+    *link = particles->next;
+}
+
 void se3di_sets_unlink(se3d_particles *particles)
 {
     se3di_model *model = &particles->system->model;
+    if (particles->is_copy) {
+        unlink_copy(particles);
+        return;
+    }
     for (se3di_particles **link = &model->sets; *link; link = &(*link)->next) {
         if (*link == &particles->set) {
             *link = particles->set.next;
@@ -30,6 +43,14 @@ void se3di_sets_unlink(se3d_particles *particles)
             return;
         }
     }
+}
+
+void se3di_copies_orphan(se3d_system *system)
+{
+    for (se3d_particles *copy = system->copies; copy; copy = copy->next) {
+        copy->system = NULL;
+    }
+    system->copies = NULL;
 }
 
 void se3di_sets_destroy(se3di_model *model)
@@ -56,6 +77,8 @@ se3d_status se3di_sets_clone(const se3d_system *system, se3d_system *copy)
             return SE3D_ERR_NO_MEMORY;
         }
         particles->system = copy;
+        particles->next = NULL;
+        particles->is_copy = 0;
         se3di_particles_adopt(&particles->set, &copy->model);
         *last = &particles->set;
         last = &particles->set.next;

@@ -70,9 +70,7 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
     if (out) {
         *out = NULL;
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "out", out));
     se3d_particles_def full = se3d_particles_def_default();
     if (def) {
@@ -88,6 +86,8 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
     se3di_particles *set = &particles->set;
     se3di_particles_init(set, allocator);
     particles->system = system;
+    particles->next = NULL;
+    particles->is_copy = 0;
     set->threads = full.threads;
     set->kernels = choose_kernels(full.portable);
     memcpy(set->boundary, full.boundary, sizeof set->boundary);
@@ -147,13 +147,17 @@ se3d_status se3di_particles_use(se3d_particles *particles, se3d_material materia
 
 void se3d_particles_destroy(se3d_particles *particles)
 {
-    if (particles) {
-        se3d_allocator allocator = particles->set.allocator;
+    if (!particles ||
+        (particles->system && se3di_enter(particles->system, SE3DI_BUSY_FREE, __func__) < 0)) {
+        return;
+    }
+    const se3d_allocator allocator = particles->set.allocator;
+    if (particles->system) {
         se3di_particles_count_users(particles, 0);
         se3di_sets_unlink(particles);
-        se3di_particles_destroy(&particles->set);
-        se3di_free(&allocator, particles, 1, sizeof *particles);
     }
+    se3di_particles_destroy(&particles->set);
+    se3di_free(&allocator, particles, 1, sizeof *particles);
 }
 
 se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles **out)
@@ -161,7 +165,8 @@ se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles
     if (out) {
         *out = NULL;
     }
-    if (!particles || !out) {
+    SE3DI_EDIT_OF(particles);
+    if (!out) {
         return SE3D_ERR_NULL;
     }
     const se3d_allocator *allocator = &particles->set.allocator;
@@ -175,6 +180,9 @@ se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles
         return status;
     }
     copy->system = particles->system;
+    copy->is_copy = 1;
+    copy->next = copy->system->copies;
+    copy->system->copies = copy;
     se3di_particles_count_users(copy, 1);
     *out = copy;
     return SE3D_OK;
@@ -182,9 +190,7 @@ se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles
 
 se3d_status se3d_particles_restore(se3d_particles *particles, const se3d_particles *saved)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(particles);
     SE3DI_TRY(se3di_check_pointer(particles->system, "saved", saved));
     if (saved->system != particles->system) {
         return SE3DI_FAIL(particles->system, SE3D_ERR_STATE,
@@ -246,9 +252,7 @@ se3d_status se3d_particles_add(se3d_particles *particles, se3d_material material
                                const double *r, const double *radius, const double *v,
                                const double *w, uint32_t *first)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(particles);
     uint32_t index;
     SE3DI_TRY(se3di_check_pointer(particles->system, "r", r));
     SE3DI_TRY(se3di_check_pointer(particles->system, "radius", radius));
@@ -288,9 +292,7 @@ static se3d_status check_ids(se3d_particles *particles, size_t count, const uint
 
 se3d_status se3d_particles_remove(se3d_particles *particles, size_t count, const uint32_t *ids)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(particles);
     se3di_particles *set = &particles->set;
     if (count == 0) {
         return SE3D_OK;
@@ -321,9 +323,7 @@ size_t se3d_particles_count(const se3d_particles *particles)
 se3d_status se3d_particles_set_tags(se3d_particles *particles, size_t count, const uint32_t *ids,
                                     uint32_t tag)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_SET_OF(particles);
     if (count > 0) {
         SE3DI_TRY(se3di_check_pointer(particles->system, "ids", ids));
     }
@@ -432,9 +432,7 @@ se3d_status se3d_particles_get_all(const se3d_particles *particles, size_t count
 se3d_status se3d_particles_set_all(se3d_particles *particles, size_t count, const double *r,
                                    const double *v, const double *w)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_SET_OF(particles);
     se3di_particles *set = &particles->set;
     if (count != set->count) {
         return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
@@ -505,9 +503,7 @@ static se3d_status advance(se3d_particles *particles, double h, size_t steps)
 
 se3d_status se3d_particles_step(se3d_particles *particles, size_t steps)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(particles);
     double h = se3di_particles_want_step(&particles->set, &particles->system->model);
     if (steps == 0 || se3di_particles_is_idle(&particles->set)) {
         particles->set.time += h * (double)steps;
@@ -515,14 +511,13 @@ se3d_status se3d_particles_step(se3d_particles *particles, size_t steps)
     }
     SE3DI_TRY(se3di_particles_check_step(&particles->set, &particles->system->model, h,
                                          &particles->system->error));
-    return advance(particles, h, steps);
+    se3di_work_begin(particles->system);
+    return se3di_work_end(particles->system, advance(particles, h, steps));
 }
 
 se3d_status se3d_particles_run(se3d_particles *particles, double time)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(particles);
     se3di_particles *set = &particles->set;
     if (!(isfinite(time) && time >= set->time)) {
         return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
@@ -538,7 +533,9 @@ se3d_status se3d_particles_run(se3d_particles *particles, double time)
     if (steps > 0.0 && !se3di_particles_is_idle(set)) {
         SE3DI_TRY(se3di_particles_check_step(&particles->set, &particles->system->model, h,
                                              &particles->system->error));
-        SE3DI_TRY(advance(particles, (time - set->time) / steps, (size_t)steps));
+        se3di_work_begin(particles->system);
+        SE3DI_TRY(se3di_work_end(particles->system,
+                                 advance(particles, (time - set->time) / steps, (size_t)steps)));
     }
     set->time = time;
     return SE3D_OK;
@@ -546,7 +543,8 @@ se3d_status se3d_particles_run(se3d_particles *particles, double time)
 
 se3d_status se3d_particles_get_step(const se3d_particles *particles, double *step)
 {
-    if (!particles || !step) {
+    SE3DI_OWNED(particles);
+    if (!step) {
         return SE3D_ERR_NULL;
     }
     *step = se3di_particles_want_step(&particles->set, &particles->system->model);
@@ -555,9 +553,7 @@ se3d_status se3d_particles_get_step(const se3d_particles *particles, double *ste
 
 se3d_status se3d_particles_set_step(se3d_particles *particles, double step)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_SET_OF(particles);
     SE3DI_TRY(se3di_check_range(particles->system, "step", step, 0.0, 1e30));
     particles->set.step = step;
     return SE3D_OK;
@@ -570,6 +566,14 @@ se3d_status se3d_particles_get_time(const se3d_particles *particles, double *tim
     }
     *time = particles->set.time;
     return SE3D_OK;
+}
+
+se3d_status se3di_particles_gravity(const se3d_particles *particles, double g[3])
+{
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(particles->system, &reading));
+    return se3di_read_end(
+        &reading, se3di_gravity_eval(&particles->system->model, particles->set.time, g, NULL));
 }
 
 void se3di_particles_energy(const se3di_particles *set, size_t k, const double g[3],
@@ -586,12 +590,13 @@ void se3di_particles_energy(const se3di_particles *set, size_t k, const double g
 se3d_status se3d_particles_get_energy(const se3d_particles *particles,
                                       se3d_particles_energy *energy)
 {
-    if (!particles || !energy) {
+    SE3DI_OWNED(particles);
+    if (!energy) {
         return SE3D_ERR_NULL;
     }
     *energy = (se3d_particles_energy){0.0, 0.0, 0.0};
     double g[3];
-    SE3DI_TRY(se3di_gravity_eval(&particles->system->model, particles->set.time, g, NULL));
+    SE3DI_TRY(se3di_particles_gravity(particles, g));
     size_t id = 0;
     for (size_t k = 0; k < particles->set.count; ++k) {
         size_t index = next(&particles->set, &id);

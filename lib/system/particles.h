@@ -7,8 +7,11 @@
 #include "system/system_internal.h"
 
 struct se3d_particles {
-    se3di_particles set; /* first: a set of the model is the particles it lies in */
-    se3d_system *system;
+    se3di_particles set;  /* first: a set of the model is the particles it lies in */
+    se3d_system *system;  /* NULL: a clone whose system was destroyed */
+    se3d_particles *next; /* a clone: the next one of the system */
+    int32_t is_copy;      /* a clone, which no step of the system moves */
+    int32_t reserved;
 };
 
 /* The index of a material in the set's table, which it gets and is counted in where it has none. */
@@ -22,6 +25,8 @@ se3d_status se3di_check_fill(se3d_particles *particles, const se3d_fill_def *def
                              se3d_fill_def *full, uint32_t *material);
 se3d_status se3di_check_region(se3d_particles *particles, const double lower[3],
                                const double upper[3], int32_t region, int32_t axis, double size);
+/* Gravity at the set's time. */
+se3d_status se3di_particles_gravity(const se3d_particles *particles, double g[3]);
 /* Kinetic energies and the potential one of gravity g. */
 void se3di_particles_energy(const se3di_particles *set, size_t k, const double g[3],
                             double energy[3]);
@@ -37,6 +42,8 @@ se3d_status se3di_check_particles_name(se3d_system *system, const char *name);
 void se3di_sets_link(se3d_particles *particles);
 void se3di_sets_unlink(se3d_particles *particles);
 void se3di_sets_destroy(se3di_model *model);
+/* `system` goes: calls of the clones of its sets are refused from now on. */
+void se3di_copies_orphan(se3d_system *system);
 /* Copies of all sets of `system` for its clone `copy`; on failure `copy` may hold some. */
 se3d_status se3di_sets_clone(const se3d_system *system, se3d_system *copy);
 /* Copies of all sets as a chain; NO_MEMORY: none is held. */

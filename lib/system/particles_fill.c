@@ -126,9 +126,7 @@ static int lattice_point(const lattice *l, const se3d_fill_def *def, size_t k, d
 se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fill_def *def,
                                         size_t *added)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(particles);
     uint32_t material;
     lattice l;
     double x[3];
@@ -302,9 +300,7 @@ static se3d_status check_volume(se3d_particles *p, const se3d_fill_def *def)
 
 se3d_status se3d_particles_fill_random(se3d_particles *particles, const se3d_fill_def *def)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(particles);
     uint32_t material;
     se3d_fill_def full = se3d_fill_def_default();
     SE3DI_TRY(se3di_check_fill(particles, def, &full, &material));

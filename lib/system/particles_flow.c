@@ -75,9 +75,7 @@ static se3d_status grow(se3d_particles *p, void **data, size_t *capacity, size_t
 se3d_status se3d_particles_add_source(se3d_particles *particles, const se3d_source_def *def,
                                       uint32_t *out)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(particles);
     se3di_particles *set = &particles->set;
     se3di_model *model = &particles->system->model;
     se3d_source_def full = se3d_source_def_default();
@@ -146,9 +144,7 @@ static se3d_status check_number(se3d_particles *p, const char *what, uint32_t nu
 
 se3d_status se3d_particles_remove_source(se3d_particles *particles, uint32_t source)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(particles);
     SE3DI_TRY(check_number(particles, "source", source, particles->set.source_count));
     se3di_source *s = &particles->set.sources[source];
     se3di_model *model = &particles->system->model;
@@ -166,9 +162,7 @@ se3d_status se3d_particles_remove_source(se3d_particles *particles, uint32_t sou
 se3d_status se3d_particles_add_sink(se3d_particles *particles, const se3d_sink_def *def,
                                     uint32_t *out)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(particles);
     se3d_system *system = particles->system;
     se3di_particles *set = &particles->set;
     se3d_sink_def full = se3d_sink_def_default();
@@ -216,9 +210,7 @@ se3d_status se3d_particles_get_sink_count(const se3d_particles *particles, uint3
 
 se3d_status se3d_particles_remove_sink(se3d_particles *particles, uint32_t sink)
 {
-    if (!particles) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(particles);
     SE3DI_TRY(check_number(particles, "sink", sink, particles->set.sink_count));
     particles->set.sinks[sink].stopped = 1;
     ++particles->system->model.topology_version;
@@ -228,7 +220,8 @@ se3d_status se3d_particles_remove_sink(se3d_particles *particles, uint32_t sink)
 se3d_status se3d_particles_get_tally(const se3d_particles *particles, uint32_t tag,
                                      se3d_particles_tally *tally)
 {
-    if (!particles || !tally) {
+    SE3DI_OWNED(particles);
+    if (!tally) {
         return SE3D_ERR_NULL;
     }
     if (tag >= SE3D_PARTICLES_TAGS) {
@@ -237,7 +230,7 @@ se3d_status se3d_particles_get_tally(const se3d_particles *particles, uint32_t t
     const se3di_particles *set = &particles->set;
     double g[3];
     *tally = (se3d_particles_tally){.lost = set->lost_of[tag]};
-    SE3DI_TRY(se3di_gravity_eval(&particles->system->model, set->time, g, NULL));
+    SE3DI_TRY(se3di_particles_gravity(particles, g));
     for (size_t id = 0; id < set->id_count; ++id) { /* sums do not depend on the order in memory */
         uint32_t k = set->index_of[id];
         if (k == SE3DI_NO_INDEX || set->spins[k].tag != tag) {

@@ -8,7 +8,8 @@
 se3d_status se3d_particles_get_wrench(const se3d_particles *particles, se3d_body body,
                                       double force[3], double torque[3])
 {
-    if (!particles || !force || !torque) {
+    SE3DI_OWNED(particles);
+    if (!force || !torque) {
         return SE3D_ERR_NULL;
     }
     const se3di_model *model = &particles->system->model;
@@ -33,11 +34,21 @@ static int is_current(const se3d_particles *particles)
     return particles->set.topology_version == particles->system->model.topology_version;
 }
 
+/* What se3di_particles_contacts lists, by the law. */
+static se3d_status list(const se3d_particles *particles, size_t most,
+                        se3d_particles_contact *contacts, size_t *count)
+{
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(particles->system, &reading));
+    return se3di_read_end(&reading,
+                          se3di_particles_contacts(&particles->set, most, contacts, count, NULL));
+}
+
 size_t se3d_particles_count_contacts(const se3d_particles *particles)
 {
     size_t count = 0;
-    if (particles && is_current(particles)) {
-        (void)se3di_particles_contacts(&particles->set, SIZE_MAX, NULL, &count, NULL);
+    if (particles && particles->system && is_current(particles)) {
+        (void)list(particles, SIZE_MAX, NULL, &count);
     }
     return count;
 }
@@ -45,13 +56,13 @@ size_t se3d_particles_count_contacts(const se3d_particles *particles)
 se3d_status se3d_particles_get_contacts(const se3d_particles *particles, size_t count,
                                         se3d_particles_contact *contacts)
 {
-    if (!particles || !contacts) {
+    SE3DI_OWNED(particles);
+    if (!contacts) {
         return SE3D_ERR_NULL;
     }
     size_t found = se3d_particles_count_contacts(particles);
     if (found != count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    return count == 0 ? SE3D_OK
-                      : se3di_particles_contacts(&particles->set, count, contacts, &found, NULL);
+    return count == 0 ? SE3D_OK : list(particles, count, contacts, &found);
 }

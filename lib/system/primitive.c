@@ -59,9 +59,7 @@ se3d_status se3d_primitive_create(se3d_system *system, const se3d_primitive_def 
     if (constraint) {
         *constraint = (se3d_constraint){0, 0};
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "constraint", constraint));
     se3d_primitive_def def = se3d_primitive_def_default();
     uint32_t bodies[2];

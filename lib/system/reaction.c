@@ -50,7 +50,10 @@ se3d_status se3d_constraint_get_reaction(const se3d_system *system, se3d_constra
     if (index == SE3DI_NO_INDEX) {
         return SE3D_ERR_STALE_HANDLE;
     }
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(system, &reading));
     wrench_at(model, &model->constraints[index], 1, NULL, F, T);
+    se3di_busy_unread(&reading);
     if (!se3di_is_finite(F, 3) || !se3di_is_finite(T, 3)) {
         return SE3D_ERR_NOT_FINITE;
     }
@@ -97,7 +100,10 @@ se3d_status se3d_constraint_get_reaction_at(const se3d_system *system, se3d_cons
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     double result[6];
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(system, &reading));
     wrench_at(model, &model->constraints[index], slot, point, result, result + 3);
+    se3di_busy_unread(&reading);
     if (!in_ground) {
         wrench_rotate(model, frame, result);
     }

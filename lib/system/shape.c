@@ -172,15 +172,13 @@ static se3d_status read_mesh(se3d_system *system, const se3d_shape_def *def, se3
 typedef se3d_status (*shape_reader)(se3d_system *system, const se3d_shape_def *def,
                                     se3di_shape *shape);
 
-static se3d_status create(se3d_system *system, const se3d_shape_def *def, se3di_shape_kind kind,
-                          shape_reader read, se3d_shape *out)
+static se3d_status create(se3d_system *system, const char *function, const se3d_shape_def *def,
+                          se3di_shape_kind kind, shape_reader read, se3d_shape *out)
 {
     if (out) {
         *out = (se3d_shape){0, 0};
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_TRY(se3di_enter(system, SE3DI_BUSY_FREE, function));
     SE3DI_TRY(se3di_check_pointer(system, "shape", out));
     se3d_shape_def full = se3d_shape_def_default();
     se3di_shape shape = {.kind = (int32_t)kind};
@@ -205,7 +203,7 @@ static se3d_status create(se3d_system *system, const se3d_shape_def *def, se3di_
     se3d_status se3d_shape_create_##kind(se3d_system *system, const se3d_shape_def *def,           \
                                          se3d_shape *shape)                                        \
     {                                                                                              \
-        return create(system, def, SE3DI_SHAPE_##KIND, read_##kind, shape);                        \
+        return create(system, __func__, def, SE3DI_SHAPE_##KIND, read_##kind, shape);              \
     }
 
 SHAPE_CREATE(sphere, SPHERE)
@@ -218,9 +216,7 @@ SHAPE_CREATE(mesh, MESH)
 
 se3d_status se3d_shape_destroy(se3d_system *system, se3d_shape shape)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     uint32_t index = se3di_slots_find(&system->model.shape_slots, shape.index1, shape.generation);
     if (index == SE3DI_NO_INDEX) {
         return SE3DI_FAIL(system, SE3D_ERR_STALE_HANDLE, "shape %s",

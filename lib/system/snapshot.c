@@ -18,6 +18,9 @@ se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out)
     if (!system || !out) {
         return SE3D_ERR_NULL;
     }
+    if (!se3di_is_settled(system)) {
+        return SE3D_ERR_STATE;
+    }
     const se3di_model *model = &system->model;
     se3d_snapshot *snapshot = se3di_alloc(&model->allocator, 1, sizeof *snapshot);
     if (!snapshot) {
@@ -36,9 +39,7 @@ se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out)
 
 se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *system)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "snapshot", snapshot));
     se3di_model *model = &system->model;
     const se3di_saved *state = &snapshot->state;

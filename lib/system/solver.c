@@ -121,9 +121,7 @@ se3d_status se3d_solver_create(se3d_system *system, const se3d_solver_def *def, 
     if (out) {
         *out = NULL;
     }
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "out", out));
     se3d_solver_def full = se3d_solver_def_default();
     SE3DI_TRY(se3di_check_def(system, "solver def", def, &full, sizeof full));
@@ -134,6 +132,9 @@ se3d_status se3d_solver_create(se3d_system *system, const se3d_solver_def *def, 
         return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a solver");
     }
     solver->system = system;
+    solver->allocator = system->model.allocator;
+    solver->next = system->solvers;
+    system->solvers = solver;
     se3di_run_init(&solver->run, &system->model, &system->error, system);
     configure(&solver->run, &full);
     *out = solver;
@@ -142,17 +143,33 @@ se3d_status se3d_solver_create(se3d_system *system, const se3d_solver_def *def, 
 
 void se3d_solver_destroy(se3d_solver *solver)
 {
-    if (solver) {
-        se3di_run_destroy(&solver->run);
-        se3di_free(&solver->system->model.allocator, solver, 1, sizeof *solver);
+    if (!solver || (solver->system && se3di_enter(solver->system, SE3DI_BUSY_FREE, __func__) < 0)) {
+        return;
     }
+    if (solver->system) {
+        se3d_solver **link = &solver->system->solvers;
+        while (*link != solver) {
+            link = &(*link)->next;
+        }
+        *link = solver->next;
+        se3di_run_destroy(&solver->run);
+    }
+    const se3d_allocator allocator = solver->allocator;
+    se3di_free(&allocator, solver, 1, sizeof *solver);
+}
+
+void se3di_solvers_orphan(se3d_system *system)
+{
+    for (se3d_solver *solver = system->solvers; solver; solver = solver->next) {
+        se3di_run_destroy(&solver->run);
+        solver->system = NULL;
+    }
+    system->solvers = NULL;
 }
 
 se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
 {
-    if (!solver) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(solver);
     se3d_system *system = solver->system;
     if (!(isfinite(t_end) && t_end >= system->model.time)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
@@ -166,14 +183,13 @@ se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
                           "t_end = %g s takes %g steps of %g s, must take at most %g", t_end, steps,
                           solver->run.integration.settings.step, most);
     }
-    return se3di_run_to(&solver->run, t_end);
+    se3di_work_begin(system);
+    return se3di_work_end(system, se3di_run_to(&solver->run, t_end));
 }
 
 se3d_status se3d_solver_step(se3d_solver *solver, double h)
 {
-    if (!solver) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT_OF(solver);
     const double now = solver->system->model.time;
     if (!(isfinite(h) && h >= STEP_MIN && now + h > now)) {
         return SE3DI_FAIL(solver->system, SE3D_ERR_INVALID_ARGUMENT,
@@ -181,7 +197,8 @@ se3d_status se3d_solver_step(se3d_solver *solver, double h)
                           "time %.17g s on",
                           h, STEP_MIN, now);
     }
-    return se3di_run_step(&solver->run, h);
+    se3di_work_begin(solver->system);
+    return se3di_work_end(solver->system, se3di_run_step(&solver->run, h));
 }
 
 se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_solver_stats *stats)

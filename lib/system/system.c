@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Systems: creation, gravity, time, counts, energy, violation, hash. */
 #include "system/particles.h"
+#include "system/solver.h"
 
 #include "base/hash.h"
 #include "contact/loads.h"
@@ -41,6 +42,15 @@ static se3d_status read_def(const se3d_system_def *def, se3d_system_def *full)
     return complete && finite ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;
 }
 
+/* Nobody works on it, and it has no solvers. */
+static void begin_life(se3d_system *system)
+{
+    se3di_busy_init(&system->busy);
+    system->model.busy = &system->busy;
+    system->solvers = NULL;
+    system->copies = NULL;
+}
+
 se3d_status se3d_system_create(const se3d_system_def *def, se3d_system **out)
 {
     if (!out) {
@@ -59,6 +69,7 @@ se3d_status se3d_system_create(const se3d_system_def *def, se3d_system **out)
         se3di_free(&allocator, system, 1, sizeof *system);
         return status;
     }
+    begin_life(system);
     se3di_copy(full.gravity, system->model.gravity);
     system->model.time = full.time;
     system->log = full.log;
@@ -69,12 +80,15 @@ se3d_status se3d_system_create(const se3d_system_def *def, se3d_system **out)
 
 void se3d_system_destroy(se3d_system *system)
 {
-    if (system) {
-        se3d_allocator allocator = system->model.allocator;
-        se3di_sets_destroy(&system->model);
-        se3di_model_destroy(&system->model);
-        se3di_free(&allocator, system, 1, sizeof *system);
+    if (!system || se3di_enter(system, SE3DI_BUSY_FREE, __func__) < 0) {
+        return;
     }
+    const se3d_allocator allocator = system->model.allocator;
+    se3di_solvers_orphan(system);
+    se3di_copies_orphan(system);
+    se3di_sets_destroy(&system->model);
+    se3di_model_destroy(&system->model);
+    se3di_free(&allocator, system, 1, sizeof *system);
 }
 
 se3d_status se3d_system_clone(const se3d_system *system, se3d_system **out)
@@ -85,6 +99,9 @@ se3d_status se3d_system_clone(const se3d_system *system, se3d_system **out)
     if (!system || !out) {
         return SE3D_ERR_NULL;
     }
+    if (!se3di_is_settled(system)) {
+        return SE3D_ERR_STATE;
+    }
     se3d_system *copy = se3di_alloc(&system->model.allocator, 1, sizeof *copy);
     if (!copy) {
         return SE3D_ERR_NO_MEMORY;
@@ -94,6 +111,7 @@ se3d_status se3d_system_clone(const se3d_system *system, se3d_system **out)
         se3di_free(&system->model.allocator, copy, 1, sizeof *copy);
         return status;
     }
+    begin_life(copy);
     status = se3di_sets_clone(system, copy);
     if (status < 0) {
         se3d_system_destroy(copy);
@@ -117,9 +135,7 @@ se3d_status se3d_system_get_error_status(const se3d_system *system)
 
 se3d_status se3d_system_set_gravity(se3d_system *system, const double gravity[3])
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_SET(system);
     SE3DI_TRY(se3di_check_pointer(system, "gravity", gravity));
     SE3DI_TRY(se3di_check_finites(system, "gravity", gravity, 3));
     se3di_copy(gravity, system->model.gravity);
@@ -129,9 +145,7 @@ se3d_status se3d_system_set_gravity(se3d_system *system, const double gravity[3]
 
 se3d_status se3d_system_set_gravity_function(se3d_system *system, const se3d_function gravity[3])
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_SET(system);
     SE3DI_TRY(se3di_check_pointer(system, "gravity", gravity));
     int32_t function[3];
     for (int c = 0; c < 3; ++c) {
@@ -162,9 +176,7 @@ se3d_status se3d_system_get_gravity(const se3d_system *system, double gravity[3]
 
 se3d_status se3d_system_set_time(se3d_system *system, double time)
 {
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_SET(system);
     SE3DI_TRY(se3di_check_finite(system, "time", time));
     system->model.time = time;
     for (se3di_particles *set = system->model.sets; set; set = set->next) {
@@ -298,11 +310,14 @@ se3d_status se3d_system_get_energy(const se3d_system *system, se3d_energy *energ
     if (!system || !energy) {
         return SE3D_ERR_NULL;
     }
-    *energy = (se3d_energy){.kinetic = kinetic_energy(&system->model)};
-    SE3DI_TRY(se3di_loads_potential(&system->model, system->model.time, &energy->potential));
+    const se3di_model *model = &system->model;
+    *energy = (se3d_energy){.kinetic = kinetic_energy(model)};
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(system, &reading));
+    const se3d_status status = se3di_loads_potential(model, model->time, &energy->potential);
     energy->total = energy->kinetic + energy->potential;
-    energy->dissipated = se3di_work_lost(&system->model);
-    return SE3D_OK;
+    energy->dissipated = status < 0 ? 0.0 : se3di_work_lost(model);
+    return se3di_read_end(&reading, status);
 }
 
 se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work)
@@ -314,9 +329,11 @@ se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work)
         return SE3D_ERR_STATE;
     }
     const double *done = system->model.work;
-    *work = (se3d_work){
-        .dissipated = se3di_work_lost(&system->model), .actuators = done[1], .drivers = done[2]};
-    return SE3D_OK;
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(system, &reading));
+    const double lost = se3di_work_lost(&system->model);
+    *work = (se3d_work){.dissipated = lost, .actuators = done[1], .drivers = done[2]};
+    return se3di_read_end(&reading, SE3D_OK);
 }
 
 /* |Phi|, |Phi_q qdot - nu| and |Phi_q qddot - gamma| of one equation, in r-omega. */
@@ -378,13 +395,8 @@ static se3d_status measure_user(const se3di_model *model, const se3di_constraint
     return SE3D_OK;
 }
 
-se3d_status se3d_system_get_violation(const se3d_system *system, double violation[3])
+static se3d_status measure_all(const se3di_model *model, double violation[3])
 {
-    if (!system || !violation) {
-        return SE3D_ERR_NULL;
-    }
-    const se3di_model *model = &system->model;
-    violation[0] = violation[1] = violation[2] = 0.0;
     for (size_t k = 0; k < model->row_count; ++k) {
         double gap[3];
         SE3DI_TRY(measure_row(model, &model->rows[k], gap));
@@ -396,6 +408,17 @@ se3d_status se3d_system_get_violation(const se3d_system *system, double violatio
         }
     }
     return SE3D_OK;
+}
+
+se3d_status se3d_system_get_violation(const se3d_system *system, double violation[3])
+{
+    if (!system || !violation) {
+        return SE3D_ERR_NULL;
+    }
+    violation[0] = violation[1] = violation[2] = 0.0;
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(system, &reading));
+    return se3di_read_end(&reading, measure_all(&system->model, violation));
 }
 
 uint64_t se3d_system_hash(const se3d_system *system)

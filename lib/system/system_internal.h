@@ -4,6 +4,7 @@
 #ifndef SE3DI_SYSTEM_INTERNAL_H
 #define SE3DI_SYSTEM_INTERNAL_H
 
+#include "base/busy.h"
 #include "model/model.h"
 #include "se3d/se3d.h"
 
@@ -12,10 +13,50 @@ struct se3d_system {
     se3di_error error;
     se3d_log_callback log;
     void *log_ctx;
+    se3di_busy busy;               /* the model points to it */
+    struct se3d_solver *solvers;   /* that live, in a chain */
+    struct se3d_particles *copies; /* clones of particle sets that live, in a chain */
 };
 
 /* Record an error on the system and return its status. */
 #define SE3DI_FAIL(system, ...) se3di_error_set(&(system)->error, __VA_ARGS__)
+
+/* What a public function that changes something begins with: `system` is not NULL, and not at work
+ * unless with what allows `most`. A refusal leaves a message that names `function`. */
+se3d_status se3di_enter(se3d_system *system, se3di_busy_level most, const char *function);
+/* It changes the structure, or works for long: not from callbacks. */
+#define SE3DI_EDIT(system) SE3DI_TRY(se3di_enter(system, SE3DI_BUSY_FREE, __func__))
+/* It sets values or the state: also from the callbacks of events. */
+#define SE3DI_SET(system) SE3DI_TRY(se3di_enter(system, SE3DI_BUSY_EVENT, __func__))
+/* The same through an owner that belongs to a system (a solver, particles). */
+#define SE3DI_EDIT_OF(owner)                                                                       \
+    do {                                                                                           \
+        SE3DI_OWNED(owner);                                                                        \
+        SE3DI_EDIT((owner)->system);                                                               \
+    } while (0)
+#define SE3DI_SET_OF(owner)                                                                        \
+    do {                                                                                           \
+        SE3DI_OWNED(owner);                                                                        \
+        SE3DI_SET((owner)->system);                                                                \
+    } while (0)
+/* `owner` is not NULL and its system lives. */
+#define SE3DI_OWNED(owner)                                                                         \
+    do {                                                                                           \
+        if (!(owner) || !(owner)->system) {                                                        \
+            return (owner) ? SE3D_ERR_STATE : SE3D_ERR_NULL;                                       \
+        }                                                                                          \
+    } while (0)
+
+/* Around the work of a call that evaluates callbacks or solves; the end passes its status on. */
+void se3di_work_begin(se3d_system *system);
+se3d_status se3di_work_end(se3d_system *system, se3d_status status);
+
+/* Around what a reader evaluates by callbacks. @return OK, STATE (from within one). */
+se3d_status se3di_read_begin(const se3d_system *system, se3di_reading *reading);
+/* Passes `status` on. */
+se3d_status se3di_read_end(se3di_reading *reading, se3d_status status);
+/* Whether the state is one that may be copied: not that of a trial. */
+int se3di_is_settled(const se3d_system *system);
 
 /* `value` is finite; `what` names it ("mass"). */
 se3d_status se3di_check_finite(se3d_system *system, const char *what, double value);

@@ -607,6 +607,7 @@ static se3d_status counting_null_gives_zero(arguments *a)
     CHECK(se3d_check_count_messages(NULL) == 0 && se3d_check_count_messages(a->check) > 0);
     CHECK(se3d_system_hash(NULL) == 0 && se3d_system_hash(a->system) != 0);
     CHECK(se3d_expression_is_constant(NULL) == 0);
+    CHECK(se3d_system_is_busy(NULL) == 0 && se3d_system_is_busy(a->system) == 0);
     return SE3D_OK;
 }
 
@@ -826,6 +827,7 @@ static const row rows[] = {
     {"se3d_system_count_forces", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_check_count_messages", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_hash", counting_null_gives_zero, "", NULL, NULL},
+    {"se3d_system_is_busy", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_expression_is_constant", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_status_get_text", texts_are_never_null, "", NULL, NULL},
     {"se3d_version_get_text", texts_are_never_null, "", NULL, NULL},

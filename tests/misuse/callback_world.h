@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A system whose run calls user code of every kind, and code that meddles from within. */
+#ifndef SE3D_TESTS_MISUSE_CALLBACK_WORLD_H
+#define SE3D_TESTS_MISUSE_CALLBACK_WORLD_H
+
+#include "check.h"
+#include "se3d/se3d.h"
+
+typedef enum kind {
+    KIND_FORCE = 0,
+    KIND_FUNCTION = 1,
+    KIND_CONSTRAINT = 2,
+    KIND_LAW = 3,
+    KIND_INTERRUPT = 4,
+    KIND_VALUE = 5, /* of an event */
+    KIND_EVENT = 6, /* the callback of one */
+    KIND_COUNT = 7
+} kind;
+
+static const char *const kind_names[KIND_COUNT] = {"force",     "function", "constraint", "law",
+                                                   "interrupt", "value",    "event"};
+
+typedef struct world {
+    se3d_system *system;
+    se3d_solver *solver;
+    se3d_particles *grains; /* NULL: none */
+    se3d_snapshot *snapshot;
+    se3d_body ball, bar, kite;
+    se3d_marker marker;
+    se3d_constraint pin, motor, guide;
+    se3d_force push;
+    se3d_function value, no_functions[3];
+    se3d_shape pad;
+    se3d_material stuff;
+    se3d_event event;
+    se3d_contact_settings contact, contact_read;
+    se3d_material_pair_def pair;
+    se3d_joint_def frame;
+    double r[3], v[3], p[4], inertia[6], many[64], time;
+    uint32_t ids[1];
+    double storage[4][512];
+    void *out[4];
+    /* what meddles: in the call of this number of callbacks of the kind */
+    kind kind;
+    int at;
+    int calls[KIND_COUNT];
+    int meddling; /* not 0: a callback of this kind is at it; none may come to be called meanwhile
+                   */
+    int nested;
+    void (*meddle)(struct world *w);
+} world;
+
+static void world_note(world *w, kind which)
+{
+    w->nested += w->meddling;
+    if (!w->meddling && ++w->calls[which] == w->at && w->kind == which && w->meddle) {
+        w->meddling = 1;
+        w->meddle(w);
+        w->meddling = 0;
+    }
+}
+
+static se3d_status world_push(void *ctx, double t, const se3d_body_motion motion[2],
+                              double wrench[12], double *K, double *D)
+{
+    (void)K, (void)D;
+    world_note(ctx, KIND_FORCE);
+    wrench[7] = 0.3 * sin(20.0 * t);
+    wrench[8] = -0.5 * motion[1].v[2];
+    return SE3D_OK;
+}
+
+static se3d_status world_value(void *ctx, const double *x, double jet[3], double *gradient)
+{
+    world_note(ctx, KIND_FUNCTION);
+    jet[0] = 0.2 * sin(30.0 * x[0]);
+    jet[1] = 6.0 * cos(30.0 * x[0]);
+    jet[2] = -180.0 * sin(30.0 * x[0]);
+    if (gradient) {
+        gradient[0] = jet[1];
+    }
+    return SE3D_OK;
+}
+
+/* The kite stays in the plane x = 0.25. */
+static se3d_status world_guide(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
+                               double *jacobian, double *nu, double *gamma)
+{
+    (void)t, (void)nu, (void)gamma;
+    world_note(ctx, KIND_CONSTRAINT);
+    if (phi) {
+        phi[0] = bodies[0].r[0] - 0.25;
+    }
+    if (jacobian) {
+        jacobian[0] = 1.0;
+    }
+    return SE3D_OK;
+}
+
+static se3d_status world_law(void *ctx, const se3d_contact_input *in, se3d_contact_output *out)
+{
+    world_note(ctx, KIND_LAW);
+    out->force = 2e4 * in->overlap - 20.0 * in->onset * in->velocity;
+    return SE3D_OK;
+}
+
+static int world_interrupt(void *ctx)
+{
+    world_note(ctx, KIND_INTERRUPT);
+    return 0;
+}
+
+static se3d_status world_height(void *ctx, const se3d_system *system, double *value)
+{
+    world *w = ctx;
+    double r[3];
+    world_note(w, KIND_VALUE);
+    const se3d_status status = se3d_body_get_position(system, w->ball, r);
+    *value = r[2];
+    return status;
+}
+
+static se3d_status world_event(void *ctx, se3d_system *system, const se3d_event_record *record)
+{
+    (void)system, (void)record;
+    world_note(ctx, KIND_EVENT);
+    return SE3D_OK;
+}
+
+static void world_add_bodies(world *w)
+{
+    se3d_body ground;
+    se3d_body_def body = se3d_body_def_default();
+    se3d_joint_def pin = se3d_joint_def_default();
+    se3d_marker_def marker = se3d_marker_def_default();
+    CHECK(!se3d_system_get_ground(w->system, &ground));
+    body.name = "name";
+    body.mass = 1.0;
+    body.inertia[0] = body.inertia[1] = body.inertia[2] = 0.004;
+    body.position[0] = 1.0;
+    body.position[2] = 0.1005;
+    body.velocity[2] = -0.2;
+    CHECK(!se3d_body_create(w->system, &body, &w->ball));
+    body.name = NULL;
+    body.position[0] = 0.25;
+    body.position[2] = 0.0;
+    body.velocity[2] = 0.0;
+    CHECK(!se3d_body_create(w->system, &body, &w->bar));
+    CHECK(!se3d_body_create(w->system, &body, &w->kite));
+    pin.name = "name";
+    pin.body_i = ground;
+    pin.body_j = w->bar;
+    pin.point_j[0] = -0.25;
+    pin.axis_i[1] = pin.axis_j[1] = 1.0;
+    pin.axis_i[2] = pin.axis_j[2] = 0.0;
+    CHECK(!se3d_joint_create_revolute(w->system, &pin, &w->pin));
+    marker.name = "name";
+    marker.body = w->bar;
+    CHECK(!se3d_marker_create(w->system, &marker, &w->marker));
+}
+
+static void world_add_callbacks(world *w)
+{
+    se3d_function_def value = se3d_function_def_default();
+    se3d_force_callback_def push = se3d_force_callback_def_default();
+    se3d_user_constraint_def guide = se3d_user_constraint_def_default();
+    se3d_driver_def motor = se3d_driver_def_default();
+    value.callback = world_value;
+    guide.ctx = push.ctx = value.ctx = w;
+    CHECK(!se3d_function_create(w->system, &value, &w->value));
+    motor.joint = w->pin;
+    motor.function = w->value;
+    CHECK(!se3d_driver_create(w->system, &motor, &w->motor));
+    CHECK(!se3d_system_get_ground(w->system, &push.body_i));
+    push.name = "name";
+    push.body_j = w->ball;
+    push.callback = world_push;
+    CHECK(!se3d_force_create_callback(w->system, &push, &w->push));
+    guide.callback = world_guide;
+    guide.bodies[0] = w->kite;
+    CHECK(!se3d_user_constraint_create(w->system, &guide, &w->guide));
+}
+
+static void world_add_contact(world *w)
+{
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_shape_def shape = se3d_shape_def_default();
+    w->contact = se3d_contact_settings_default();
+    w->contact.law = SE3D_LAW_CALLBACK;
+    w->contact.callback = world_law;
+    w->contact.ctx = w;
+    w->contact.step = 2e-4;
+    CHECK(!se3d_system_set_contact(w->system, &w->contact));
+    stuff.density = 1000.0;
+    CHECK(!se3d_material_create(w->system, &stuff, &w->stuff));
+    shape.material = w->stuff;
+    CHECK(!se3d_shape_create_plane(w->system, &shape, &w->pad));
+    shape.name = "name";
+    shape.body = w->ball;
+    shape.radius = 0.1;
+    CHECK(!se3d_shape_create_sphere(w->system, &shape, &w->pad));
+}
+
+static void world_add_grains(world *w)
+{
+    const double r[9] = {2.0, 0.0, 0.0299, 2.0, 0.0595, 0.0299, 2.0, 0.2, 0.0299};
+    const double radius[3] = {0.03, 0.03, 0.03};
+    se3d_fill_def fill = se3d_fill_def_default();
+    se3d_source_def source = se3d_source_def_default();
+    se3d_sink_def sink = se3d_sink_def_default();
+    CHECK(!se3d_particles_create(w->system, NULL, &w->grains));
+    CHECK(!se3d_particles_add(w->grains, w->stuff, 3, r, radius, NULL, NULL, NULL));
+    fill.material = w->stuff;
+    fill.lower[0] = fill.lower[1] = fill.lower[2] = 5.0;
+    fill.upper[0] = fill.upper[1] = fill.upper[2] = 6.0;
+    fill.radius_min = fill.radius_max = 0.03;
+    source.fill = &fill;
+    source.function = w->value;
+    CHECK(!se3d_particles_add_source(w->grains, &source, &w->ids[0]));
+    sink.upper[0] = sink.lower[0] = -9.0;
+    sink.upper[0] = sink.upper[1] = sink.upper[2] = -8.0;
+    sink.lower[1] = sink.lower[2] = -9.0;
+    CHECK(!se3d_particles_add_sink(w->grains, &sink, &w->ids[0]));
+    w->ids[0] = 0;
+}
+
+static void world_add_solver(world *w, int32_t method)
+{
+    se3d_solver_def solver = se3d_solver_def_default();
+    se3d_event_def event = se3d_event_def_default();
+    solver.method = method;
+    solver.step = method == SE3D_METHOD_DOP853 || method == SE3D_METHOD_RADAU ? 0.0 : 5e-4;
+    solver.interrupt = world_interrupt;
+    solver.interrupt_ctx = w;
+    CHECK(!se3d_solver_create(w->system, &solver, &w->solver));
+    event.value = world_height;
+    event.callback = world_event;
+    event.callback_ctx = event.ctx = w;
+    event.level = 0.0999;
+    CHECK(!se3d_event_create(w->solver, &event, &w->event));
+}
+
+static void world_open(world *w, int32_t method)
+{
+    *w = (world){.p = {1.0}, .pair = se3d_material_pair_def_default(), .time = 0.25};
+    w->frame = se3d_joint_def_default();
+    CHECK(!se3d_system_create(NULL, &w->system));
+    world_add_bodies(w);
+    world_add_callbacks(w);
+    world_add_contact(w);
+    if (method == SE3D_METHOD_VERLET) {
+        world_add_grains(w);
+    }
+    world_add_solver(w, method);
+    CHECK(!se3d_snapshot_create(w->system, &w->snapshot));
+    w->frame.body_i = w->ball;
+    w->frame.body_j = w->bar;
+    w->r[0] = 1.0;
+    w->r[2] = 0.2;
+    w->v[2] = 1.0;
+    w->inertia[0] = w->inertia[1] = w->inertia[2] = 0.01;
+    w->contact_read = se3d_contact_settings_default();
+    for (int k = 0; k < 4; ++k) {
+        w->out[k] = w->storage[k];
+    }
+}
+
+static inline void world_close(world *w)
+{
+    se3d_snapshot_destroy(w->snapshot);
+    se3d_solver_destroy(w->solver);
+    se3d_system_destroy(w->system);
+}
+
+#endif

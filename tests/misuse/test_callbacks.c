@@ -1,0 +1,370 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Code that a call on a system calls back must not pull the floor away: every public function, from
+ * within every kind of callback, in every method. What is refused changes no bit of the run. */
+#include "misuse/callback_world.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define DURATION 0.02
+
+typedef enum effect { EDITS = 0, SETS = 1, READS = 2 } effect;
+
+typedef struct row {
+    const char *name;
+    se3d_status (*call)(world *w);
+    effect effect;
+} row;
+
+#define EDIT(name, ...)                                                                            \
+    static se3d_status do_##name(world *w)                                                         \
+    {                                                                                              \
+        return se3d_##name(__VA_ARGS__);                                                           \
+    }
+#define SET EDIT
+#define EDIT_VOID(name, ...)                                                                       \
+    static se3d_status do_##name(world *w)                                                         \
+    {                                                                                              \
+        se3d_##name(__VA_ARGS__);                                                                  \
+        return se3d_system_get_error_status(w->system);                                            \
+    }
+#define READ(name, ...)                                                                            \
+    static se3d_status do_##name(world *w)                                                         \
+    {                                                                                              \
+        (void)se3d_##name(__VA_ARGS__);                                                            \
+        return SE3D_OK;                                                                            \
+    }
+#define COPY(name)
+#include "misuse/callback_rows.inc"
+#undef COPY
+#undef EDIT
+#undef SET
+#undef EDIT_VOID
+#undef READ
+static se3d_status do_nothing(world *w)
+{
+    (void)w;
+    return SE3D_OK;
+}
+#define EDIT(name, ...)      {"se3d_" #name, do_##name, EDITS},
+#define SET(name, ...)       {"se3d_" #name, do_##name, SETS},
+#define EDIT_VOID(name, ...) {"se3d_" #name, do_##name, EDITS},
+#define READ(name, ...)      {"se3d_" #name, do_##name, READS},
+#define COPY(name)           {"se3d_" #name, do_nothing, READS},
+
+static const row rows[] = {
+#include "misuse/callback_rows.inc"
+};
+#define ROWS (sizeof rows / sizeof *rows)
+
+/* Of grains where there are none. */
+static int is_void(const row *r, const world *w)
+{
+    return !w->grains && strncmp(r->name, "se3d_particles_", 15) == 0 &&
+           strcmp(r->name, "se3d_particles_create") != 0;
+}
+
+static void refuse_row(world *w, const row *r)
+{
+    const uint64_t hash = se3d_system_hash(w->system);
+    const se3d_status status = r->call(w);
+    if (status != SE3D_ERR_STATE || se3d_system_get_error_status(w->system) != SE3D_ERR_STATE ||
+        !strstr(se3d_system_get_error(w->system), "not allowed in")) {
+        fprintf(stderr, "%s in a %s: %s: %s\n", r->name, kind_names[w->kind],
+                se3d_status_get_text(status), se3d_system_get_error(w->system));
+        CHECK(status == SE3D_ERR_STATE);
+    }
+    CHECK(hash == se3d_system_hash(w->system));
+}
+
+/* Copies: of what a trial step has left, there are none. */
+static void copy_state(world *w)
+{
+    const int of_event = w->kind == KIND_VALUE || w->kind == KIND_EVENT;
+    se3d_system *copy = w->system;
+    se3d_snapshot *snapshot = w->snapshot;
+    CHECK(se3d_system_clone(w->system, &copy) == (of_event ? SE3D_OK : SE3D_ERR_STATE));
+    CHECK(se3d_snapshot_create(w->system, &snapshot) == (of_event ? SE3D_OK : SE3D_ERR_STATE));
+    CHECK((copy != NULL) == of_event && (snapshot != NULL) == of_event);
+    CHECK(!copy || !se3d_system_is_busy(copy));
+    se3d_system_destroy(copy);
+    se3d_snapshot_destroy(snapshot);
+}
+
+/* Nothing of this may have an effect, nor come back to a callback. */
+static void meddle_with_all(world *w)
+{
+    const int of_event = w->kind == KIND_VALUE || w->kind == KIND_EVENT;
+    CHECK(se3d_system_is_busy(w->system) == 1);
+    for (size_t k = 0; k < ROWS; ++k) {
+        if (is_void(&rows[k], w)) {
+            continue;
+        }
+        if (rows[k].effect == EDITS || (rows[k].effect == SETS && w->kind != KIND_EVENT)) {
+            refuse_row(w, &rows[k]);
+        }
+        const int nested = w->nested;
+        if (rows[k].effect == READS && rows[k].call(w) == SE3D_OK && w->nested > nested &&
+            !of_event) {
+            fprintf(stderr, "%s in a %s calls back\n", rows[k].name, kind_names[w->kind]);
+            CHECK(0);
+        }
+    }
+    copy_state(w);
+    w->nested = 0;
+}
+
+static uint64_t run_with(int32_t method, kind which, void (*meddle)(world *w), int *happened)
+{
+    world w;
+    world_open(&w, method);
+    w.kind = which;
+    w.at = 3;
+    w.meddle = meddle;
+    if (which == KIND_EVENT) {
+        w.at = 1;
+    }
+    const se3d_status status = se3d_solver_run(w.solver, DURATION);
+    if (status != SE3D_OK) {
+        fprintf(stderr, "method %d, meddling in a %s: %s\n", (int)method, kind_names[which],
+                se3d_system_get_error(w.system));
+    }
+    CHECK(status == SE3D_OK && !se3d_system_is_busy(w.system));
+    *happened = w.calls[which] >= w.at;
+    const uint64_t hash = se3d_system_hash(w.system);
+    world_close(&w);
+    return hash;
+}
+
+static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RADAU,
+                                  SE3D_METHOD_BDF,    SE3D_METHOD_GENERALIZED_ALPHA,
+                                  SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET};
+
+static void no_callback_changes_what_is_being_solved(void)
+{
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
+        int happened;
+        const uint64_t hash = run_with(methods[m], KIND_FORCE, NULL, &happened);
+        for (int k = 0; k < KIND_COUNT; ++k) {
+            CHECK(run_with(methods[m], (kind)k, meddle_with_all, &happened) == hash);
+            if (!happened) {
+                fprintf(stderr, "method %d calls no %s\n", (int)methods[m], kind_names[k]);
+                CHECK(0);
+            }
+        }
+    }
+}
+
+static const row *one_setter;
+
+static void set_one(world *w)
+{
+    if (!is_void(one_setter, w)) {
+        CHECK(one_setter->call(w) == SE3D_OK);
+    }
+}
+
+/* What the callback of an event may do; the run goes on from what it left. */
+static void set_all(world *w)
+{
+    for (size_t k = 0; k < ROWS; ++k) {
+        if (rows[k].effect == SETS && !is_void(&rows[k], w)) {
+            const se3d_status status = rows[k].call(w);
+            if (status != SE3D_OK) {
+                fprintf(stderr, "%s in the callback of an event: %s\n", rows[k].name,
+                        se3d_system_get_error(w->system));
+                CHECK(0);
+            }
+        }
+    }
+}
+
+static void the_callback_of_an_event_may_set_values(void)
+{
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
+        for (size_t k = 0; k <= ROWS; ++k) { /* each setter alone, then all */
+            world w;
+            if (k < ROWS && rows[k].effect != SETS) {
+                continue;
+            }
+            world_open(&w, methods[m]);
+            w.kind = KIND_EVENT;
+            w.at = 1;
+            w.time = 0.001;
+            one_setter = k < ROWS ? &rows[k] : NULL;
+            w.meddle = k < ROWS ? set_one : set_all;
+            const se3d_status status = se3d_solver_run(w.solver, DURATION);
+            if (status != SE3D_OK) {
+                fprintf(stderr, "method %d, %s in the callback of an event: %s\n", (int)methods[m],
+                        k < ROWS ? rows[k].name : "all", se3d_system_get_error(w.system));
+                CHECK(0);
+            }
+            CHECK(w.calls[KIND_EVENT] > 0);
+            world_close(&w);
+        }
+    }
+}
+
+/* Code of the user's that a query calls, from outside of any run. */
+static void edit_and_ask(world *w)
+{
+    const uint64_t hash = se3d_system_hash(w->system);
+    double jet[3] = {0.0}, x = 0.0;
+    CHECK(se3d_system_is_busy(w->system) == 1);
+    CHECK(se3d_body_set_position(w->system, w->ball, w->r) == SE3D_ERR_STATE);
+    CHECK(se3d_function_destroy(w->system, w->value) == SE3D_ERR_STATE);
+    CHECK(se3d_solver_run(w->solver, 1.0) == SE3D_ERR_STATE);
+    CHECK(se3d_function_eval(w->system, w->value, &x, jet) == SE3D_ERR_STATE);
+    CHECK(!se3d_body_get_position(w->system, w->ball, jet));
+    CHECK(se3d_system_hash(w->system) == hash);
+}
+
+static void a_query_that_calls_back_is_guarded_too(void)
+{
+    world w;
+    double jet[3] = {0.0}, x = 0.25;
+    world_open(&w, SE3D_METHOD_DOP853);
+    w.kind = KIND_FUNCTION;
+    w.at = 1;
+    w.calls[KIND_FUNCTION] = 0;
+    w.meddle = edit_and_ask;
+    CHECK(!se3d_function_eval(w.system, w.value, &x, jet));
+    CHECK(w.calls[KIND_FUNCTION] == 1 && w.nested == 0);
+    CHECK_NEAR(jet[0], 0.2 * sin(7.5), 1e-15);
+    CHECK(!se3d_system_is_busy(w.system));
+    CHECK(!se3d_body_set_position(w.system, w.ball, w.r));
+    world_close(&w);
+}
+
+/* Reports and linearisations call back as runs do. */
+static void analyses_without_a_solver_are_guarded(void)
+{
+    for (int k = 0; k < 2; ++k) {
+        world w;
+        se3d_check *check = NULL;
+        se3d_modes *modes = NULL;
+        world_open(&w, SE3D_METHOD_DOP853);
+        w.kind = KIND_CONSTRAINT;
+        w.at = 1;
+        w.calls[KIND_CONSTRAINT] = 0;
+        w.meddle = meddle_with_all;
+        CHECK((k == 0 ? se3d_check_create(w.system, &check)
+                      : se3d_modes_create(w.system, NULL, &modes)) != SE3D_ERR_STATE);
+        CHECK(w.calls[KIND_CONSTRAINT] > 0 && !se3d_system_is_busy(w.system));
+        se3d_check_destroy(check);
+        se3d_modes_destroy(modes);
+        world_close(&w);
+    }
+}
+
+static void particles_that_run_alone_are_guarded(void)
+{
+    uint64_t hash[2];
+    for (int k = 0; k < 2; ++k) {
+        world w;
+        world_open(&w, SE3D_METHOD_VERLET);
+        w.kind = KIND_LAW;
+        w.at = 1;
+        w.meddle = k == 0 ? NULL : meddle_with_all;
+        CHECK(!se3d_particles_run(w.grains, DURATION) && !se3d_system_is_busy(w.system));
+        CHECK(w.calls[KIND_LAW] > 0);
+        hash[k] = se3d_particles_hash(w.grains);
+        world_close(&w);
+    }
+    CHECK(hash[0] == hash[1]);
+}
+
+static int has_row(const char *name)
+{
+    for (size_t k = 0; k < ROWS; ++k) {
+        if (strcmp(rows[k].name, name) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Whether a declaration has a parameter of this type, `const` or not. */
+static int takes(const char *declaration, const char *type)
+{
+    for (const char *at = strstr(declaration, type); at; at = strstr(at + 1, type)) {
+        const size_t n = strlen(type);
+        if ((at[-1] == '(' || at[-1] == ' ') && strncmp(at + n, " *", 2) == 0 && at[n + 2] != '*') {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* A declaration that begins at SE3D_API, on one line. @return its end */
+static const char *read_declaration(const char *from, char *text, size_t size)
+{
+    size_t n = 0;
+    for (; *from && *from != ';'; ++from) {
+        if (n + 1 < size && !(isspace((unsigned char)*from) && n > 0 && text[n - 1] == ' ')) {
+            text[n++] = isspace((unsigned char)*from) ? ' ' : *from;
+        }
+    }
+    text[n] = '\0';
+    return from;
+}
+
+static int check_header(const char *text)
+{
+    int count = 0;
+    char declaration[1024];
+    for (text = strstr(text, "\nSE3D_API "); text; text = strstr(text, "\nSE3D_API ")) {
+        text = read_declaration(text + 1, declaration, sizeof declaration);
+        char *open = strchr(declaration, '(');
+        if (!open || !(takes(open, "se3d_system") || takes(open, "se3d_solver") ||
+                       takes(open, "se3d_particles"))) {
+            continue;
+        }
+        *open = '\0';
+        const char *name = strstr(declaration, "se3d_");
+        for (const char *next = name; next; next = strstr(next + 1, " se3d_")) {
+            name = next[0] == ' ' ? next + 1 : next;
+        }
+        name = name && strncmp(name, "se3d_status ", 12) == 0 ? name + 12 : name;
+        ++count;
+        if (name && !has_row(name)) {
+            fprintf(stderr, "%s has no row in callback_rows.inc\n", name);
+            CHECK(0);
+        }
+    }
+    return count;
+}
+
+static void every_public_function_on_a_system_has_a_row(void)
+{
+    static const char *const headers[] = {"body",   "constraint", "contact",  "event",
+                                          "force",  "joint",      "function", "particles",
+                                          "solver", "system",     "modes"};
+    static char text[200000];
+    const char *folder = getenv("SE3D_SOURCE_DIR");
+    int count = 0;
+    for (size_t k = 0; k < sizeof headers / sizeof *headers; ++k) {
+        char path[1024];
+        snprintf(path, sizeof path, "%s/include/se3d/%s.h", folder ? folder : ".", headers[k]);
+        FILE *file = fopen(path, "r");
+        CHECK(file != NULL);
+        text[file ? fread(text, 1, sizeof text - 1, file) : 0] = '\0';
+        count += check_header(text);
+        if (file) {
+            fclose(file);
+        }
+    }
+    CHECK(count > 150);
+}
+
+int main(void)
+{
+    RUN(every_public_function_on_a_system_has_a_row);
+    RUN(no_callback_changes_what_is_being_solved);
+    RUN(the_callback_of_an_event_may_set_values);
+    RUN(a_query_that_calls_back_is_guarded_too);
+    RUN(analyses_without_a_solver_are_guarded);
+    RUN(particles_that_run_alone_are_guarded);
+    return check_finish();
+}
