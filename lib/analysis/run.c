@@ -88,7 +88,7 @@ static void choose_method(se3di_run *run)
     int32_t method = stiff ? SE3D_METHOD_RADAU : SE3D_METHOD_DOP853;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         if (model->forces[k].type == SE3DI_FORCE_FRICTION) {
-            method = SE3D_METHOD_GENERALIZED_ALPHA;
+            method = SE3D_METHOD_RADAU;
         }
     }
     if (model->sets) {

@@ -12,6 +12,7 @@
 #include "contact/pace.h"
 
 #include "contact/broad.h"
+#include "contact/pace_stop.h"
 #include "force/force.h"
 #include "math/vec3.h"
 
@@ -281,7 +282,7 @@ double se3di_contacts_pace(const se3di_model *model, se3di_pace_kind kind, doubl
 {
     pace p = {.model = model, .kind = kind, .step = h};
     look(&p);
-    return p.step;
+    return se3di_stops_pace(model, kind, p.step);
 }
 
 double se3di_contacts_next_step(const se3di_model *model, se3di_pace_kind kind, double h,
@@ -299,7 +300,7 @@ se3d_status se3di_contacts_check_step(const se3di_model *model, se3di_pace_kind 
     pace p = {.model = model, .kind = kind, .checks = 1, .step = h};
     look(&p);
     if (!(p.step < h)) {
-        return SE3D_OK;
+        return se3di_stops_check_step(model, kind, h, error);
     }
     return se3di_error_set(error, SE3D_ERR_STEP_SIZE,
                            "t = %g s: a step of %g s is too large for the contact of the shapes "

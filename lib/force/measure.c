@@ -106,19 +106,42 @@ int se3di_measure_force(const se3di_model *model, const se3di_force *force, int 
     return 1;
 }
 
+/* g . qddot of the bodies of the element. */
+static double along(const se3di_model *model, const se3di_force *force, const double g[12])
+{
+    const double *a_i = model->acceleration + 6 * (size_t)force->body_i;
+    const double *a_j = model->acceleration + 6 * (size_t)force->body_j;
+    double sum = 0.0;
+    for (int k = 0; k < 6; ++k) {
+        sum += g[k] * a_i[k] + g[6 + k] * a_j[k];
+    }
+    return sum;
+}
+
+/* u . H u */
+static double length_curve(const se3di_measure *measure)
+{
+    double sum = 0.0;
+    for (int k = 0; k < 144; ++k) {
+        sum += measure->u[k / 12] * measure->H[k] * measure->u[k % 12];
+    }
+    return sum;
+}
+
 double se3di_measure_acceleration(const se3di_model *model, const se3di_force *force)
 {
     se3di_term term;
     se3di_measure measure;
+    if (force->coordinate == SE3DI_FORCE_LENGTH) {
+        return se3di_measure_length(model, force, 1, &measure)
+                   ? along(model, force, measure.g) + length_curve(&measure)
+                   : 0.0;
+    }
     init_term(model, force, &term);
     se3di_measure_term(model, &term, 0, &measure);
-    double sum = -se3di_primitives[term.type].gamma_romega(&term, &model->frames[term.body_i],
-                                                           &model->frames[term.body_j]);
-    for (int k = 0; k < 6; ++k) {
-        sum += measure.g[k] * model->acceleration[6 * term.body_i + (uint32_t)k];
-        sum += measure.g[6 + k] * model->acceleration[6 * term.body_j + (uint32_t)k];
-    }
-    return sum;
+    return along(model, force, measure.g) -
+           se3di_primitives[term.type].gamma_romega(&term, &model->frames[term.body_i],
+                                                    &model->frames[term.body_j]);
 }
 
 void se3di_effect_add(se3di_effect *effect, const se3di_measure *measure, const se3di_law *law)

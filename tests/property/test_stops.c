@@ -11,7 +11,13 @@ static const int32_t methods[] = {
 static int has_error_control(int32_t method)
 {
     return method == SE3D_METHOD_AUTO || method == SE3D_METHOD_DOP853 ||
-           method == SE3D_METHOD_RK45 || method == SE3D_METHOD_BDF || method == SE3D_METHOD_RADAU;
+           method == SE3D_METHOD_RK45 || method == SE3D_METHOD_RK4 || method == SE3D_METHOD_BDF ||
+           method == SE3D_METHOD_RADAU;
+}
+
+static int is_newmark(int32_t method)
+{
+    return method == SE3D_METHOD_GENERALIZED_ALPHA || method == SE3D_METHOD_HHT;
 }
 
 /* The law of the stop alone returns e v0; the weight, which acts along, adds 2 g over the time of
@@ -44,8 +50,60 @@ static void what_falls_onto_a_stop_bounces_as_high_as_the_restitution_says(void)
     }
 }
 
+#define BLOCK(stop)                                                                                \
+    "se3d: 1\ngravity: [0, 0, 0]\nbodies: [{name: b, mass: 1, inertia: [1, 1, 1], position: [0, "  \
+    "0, 1], velocity: [0, 0, -4]}]\njoints: [{name: s, type: prismatic, body_i: ground, body_j: "  \
+    "b, at: [0, 0, 1], axis: [0, 0, 1]}]\nforces:\n  - {name: buffer, type: stop, " stop           \
+    ", restitution: 0.5}\n  - {name: f, type: friction, joint: s, limit: 1.0e-6}\n"                \
+    "analysis: {type: dynamics, duration: 0.6}\n"                                                  \
+    "output: [{file: r.csv, channels: [b.velocity, energy.balance]}]\n"
+
+static const char *const hard_stops[2] = {
+    BLOCK("joint: s, lower: -1, k: 1.0e+8"),
+    BLOCK("body_i: ground, body_j: b, point_i: [0, 0, -1], lower: 1, k: 1.0e+8"),
+};
+
+/* An impact of 0.3 ms in steps of 1 ms, on a joint's coordinate and on a length. */
+static void a_hard_stop_returns_what_it_should_at_the_defaults_of_every_method(void)
+{
+    for (size_t run = 0; run < 4 * sizeof methods / sizeof methods[0]; ++run) {
+        const int32_t method = methods[run / 4];
+        if (is_newmark(method)) {
+            continue;
+        }
+        text_model m = text_model_open(hard_stops[run % 2], method, (int32_t)(run / 2 % 2), 0.0);
+        CHECK(text_model_run(&m, 0.6));
+        CHECK_NEAR(text_model_get(&m, 0, 2) / 2.0, 1.0, 1e-3);
+        CHECK_NEAR(text_model_get(&m, 1, 0) / 8.0, 1.0, 1e-3);
+        text_model_close(&m);
+    }
+}
+
+/* Where a step is asked for that the impact does not fit in, that is an error before the impact. */
+static void a_step_that_jumps_over_an_impact_is_refused_by_the_name_of_the_stop(void)
+{
+    for (size_t run = 0; run < sizeof methods / sizeof methods[0]; ++run) {
+        const int32_t method = methods[run];
+        if (has_error_control(method)) {
+            continue;
+        }
+        text_model m = text_model_open(hard_stops[run % 2], method, 0, 1e-3);
+        if (se3d_solver_run(m.solver, 0.6) != SE3D_ERR_STEP_SIZE)
+            printf("METHOD %d %d\n", (int)run, method);
+        CHECK_CONTAINS(se3d_system_get_error(m.system), "impact on the stop buffer; try at most 4");
+        CHECK_NEAR(text_model_get(&m, 0, 2), -4.0, 1e-4);
+        text_model_close(&m);
+        m = text_model_open(hard_stops[run % 2], method, 0, 2e-6);
+        CHECK(text_model_run(&m, 0.26));
+        CHECK_NEAR(text_model_get(&m, 0, 2) / 2.0, 1.0, 1e-3);
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
+    RUN(a_hard_stop_returns_what_it_should_at_the_defaults_of_every_method);
+    RUN(a_step_that_jumps_over_an_impact_is_refused_by_the_name_of_the_stop);
     RUN(what_falls_onto_a_stop_bounces_as_high_as_the_restitution_says);
     return check_finish();
 }
