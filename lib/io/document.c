@@ -9,6 +9,8 @@
 #include <string.h>
 #include <yaml.h>
 
+#include "io/text.h"
+
 typedef struct builder {
     se3di_iopool *pool;
     const char *file;
@@ -22,30 +24,13 @@ typedef struct builder {
     se3d_status status;
 } builder;
 
-/* Bytes of the UTF-8 character at `text`, 0 where it is cut or none. */
-static size_t character_length(const char *text)
-{
-    const unsigned char first = (unsigned char)text[0];
-    const size_t length = first < 0x80   ? 1
-                          : first < 0xC2 ? 0
-                          : first < 0xE0 ? 2
-                          : first < 0xF0 ? 3
-                          : first < 0xF5 ? 4
-                                         : 0;
-    for (size_t k = 1; k < length; ++k) {
-        if (((unsigned char)text[k] & 0xC0) != 0x80) {
-            return 0;
-        }
-    }
-    return length;
-}
-
 /* Messages quote what is in a file: control characters and cut ones become '?'. */
 static void make_printable(char *text)
 {
     for (char *c = text; *c;) {
-        const size_t length = character_length(c);
-        if (length == 0 || (unsigned char)*c < ' ' || *c == 0x7F) {
+        uint32_t code = 0;
+        const size_t length = se3di_text_decode(c, &code);
+        if (length == 0 || !se3di_text_is_shown(code)) {
             *c++ = '?';
         } else {
             c += length;

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/text.h"
+
 static bool fail_at(se3di_reader *reader, size_t line, size_t column, const char *path,
                     const char *text)
 {
@@ -264,13 +266,12 @@ bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **
     const char *text = *name;
     const size_t length = strlen(text);
     bool good = length > 0 && length <= 100 && text[0] != ' ' && text[length - 1] != ' ';
-    for (const char *c = text; *c; ++c) {
-        good = good && (unsigned char)*c >= ' ' && *c != 0x7F && !strchr(".,;\"'`[]{}", *c);
-    }
+    good = good && !text[strcspn(text, ".,;\"'`[]{}")] && se3di_text_is_plain(text);
     if (!good) {
         return se3di_reader_fail(reader, node,
                                  "the name `%.60s` is not allowed: 1 to 100 characters, none of "
-                                 ". , ; \" ' ` [ ] { } and no blank at its ends",
+                                 ". , ; \" ' ` [ ] { }, no control characters and no blank at its "
+                                 "ends",
                                  text);
     }
     return true;
@@ -292,6 +293,19 @@ static bool stays_inside(const char *name)
     }
 }
 
+/* Programs to which the user gives such a file take a part that begins so for an option, a pipe or
+ * another folder. */
+static bool is_like_command(const char *name)
+{
+    for (const char *part = name; part; part = strchr(part, '/')) {
+        part += *part == '/';
+        if (*part && strchr("-|<>~", *part)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool se3di_read_file_name(se3di_reader *reader, const se3di_node *node, const char **name)
 {
     static const char tail[] = ".partial";
@@ -300,11 +314,7 @@ bool se3di_read_file_name(se3di_reader *reader, const se3di_node *node, const ch
     }
     const char *text = *name;
     const size_t length = strlen(text);
-    bool good = length > 0 && length <= 1000;
-    for (const char *c = text; *c; ++c) {
-        good = good && (unsigned char)*c >= ' ' && *c != 0x7F && *c != '\\';
-    }
-    if (!good) {
+    if (length == 0 || length > 1000 || strchr(text, '\\') || !se3di_text_is_plain(text)) {
         return se3di_reader_fail(reader, node,
                                  "`%.60s` is not a file name: 1 to 1000 characters, no \\ and no "
                                  "control characters",
@@ -314,6 +324,12 @@ bool se3di_read_file_name(se3di_reader *reader, const se3di_node *node, const ch
         return se3di_reader_fail(reader, node,
                                  "`%.60s` must be a file inside the folder of the results: a "
                                  "relative path without `..`, `.` and `//`",
+                                 text);
+    }
+    if (is_like_command(text)) {
+        return se3di_reader_fail(reader, node,
+                                 "`%.60s`: no part of it may begin with `-`, `|`, `<`, `>` or `~`, "
+                                 "which programs that are given the name take for something else",
                                  text);
     }
     if (length >= sizeof tail - 1 && strcmp(text + length - (sizeof tail - 1), tail) == 0) {

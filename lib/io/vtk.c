@@ -358,7 +358,7 @@ void se3di_vtk_record(se3di_vtk *vtk, double time)
 static void put_path(FILE *file, const char *path)
 {
     for (; *path; ++path) {
-        if (strchr("&<>\"", *path)) {
+        if (strchr("&<>\"'", *path)) {
             fprintf(file, "&#%d;", *path);
         } else {
             fputc(*path, file);

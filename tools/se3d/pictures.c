@@ -34,7 +34,6 @@ static int make_plot(const se3d_model_picture *picture, const char *folder, cons
         free(words);
         return EXIT_FAILED;
     }
-    words[count++] = results;
     words[count++] = "-o";
     words[count++] = path;
     if (picture->x) {
@@ -51,6 +50,8 @@ static int make_plot(const se3d_model_picture *picture, const char *folder, cons
     if (quiet) {
         words[count++] = "--quiet";
     }
+    words[count++] = "--";
+    words[count++] = results;
     const int code = plot_files(count, words);
     free(words);
     return code;

@@ -7,8 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "child.h"
+#include "file.h"
+#include "interrupt.h"
 #include "options.h"
 #include "process.h"
+#include "text.h"
+
+enum { PATH_SIZE = 4096 };
 
 static const char help[] =
     "se3d plot FILE.csv|MODEL... [-x CHANNEL] [-y CHANNEL]... [-o FILE] [--fft]\n"
@@ -50,6 +56,16 @@ static int take_value(plot *p, const char *name, const char *value)
     return EXIT_DONE;
 }
 
+static int add_file(plot *p, const char *word)
+{
+    if (p->file_count == PLOT_FILES_MAX) {
+        fprintf(stderr, "se3d plot: more than %d files\n", PLOT_FILES_MAX);
+        return EXIT_USAGE;
+    }
+    p->files[p->file_count++] = word;
+    return EXIT_DONE;
+}
+
 static int read_word(plot *p, const char *word)
 {
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
@@ -61,21 +77,23 @@ static int read_word(plot *p, const char *word)
     } else if (word[0] == '-') {
         fprintf(stderr, "se3d plot: unknown option `%s`; see `se3d plot --help`\n", word);
         return EXIT_USAGE;
-    } else if (p->file_count == PLOT_FILES_MAX) {
-        fprintf(stderr, "se3d plot: more than %d files\n", PLOT_FILES_MAX);
-        return EXIT_USAGE;
     } else {
-        p->files[p->file_count++] = word;
+        return add_file(p, word);
     }
     return EXIT_DONE;
 }
 
 static int read_words(plot *p, int count, const char *const *words)
 {
+    int names = 0; /* after "--" no word is an option */
     for (int k = 0; k < count; ++k) {
         int code = EXIT_DONE;
-        if (strcmp(words[k], "-x") == 0 || strcmp(words[k], "-y") == 0 ||
-            strcmp(words[k], "-o") == 0) {
+        if (names) {
+            code = add_file(p, words[k]);
+        } else if (strcmp(words[k], "--") == 0) {
+            names = 1;
+        } else if (strcmp(words[k], "-x") == 0 || strcmp(words[k], "-y") == 0 ||
+                   strcmp(words[k], "-o") == 0) {
             code = take_value(p, words[k], k + 1 < count ? words[k + 1] : NULL);
             ++k;
         } else {
@@ -103,63 +121,91 @@ static int name_output(plot *p)
     for (size_t k = 0; p->output && k < sizeof endings / sizeof *endings; ++k) {
         path_cut(p->base, endings[k], p->base, sizeof p->base);
     }
-    return 1;
-}
-
-/* Give the pictures their names. */
-static int finish(const plot *p)
-{
-    static const char *const endings[] = {".svg", ".png"};
-    char partial[4300];
-    char name[4200];
-    for (size_t k = 0; k < 2; ++k) {
-        snprintf(name, sizeof name, "%s%s", p->base, endings[k]);
-        snprintf(partial, sizeof partial, "%s.partial", name);
-        FILE *file = fopen(partial, "rb");
-        const int empty = !file || fgetc(file) == EOF;
-        if (file) {
-            fclose(file);
-        }
-        if (empty || rename(partial, name) != 0) {
-            fprintf(stderr, "se3d plot: %s: cannot be written\n", name);
-            return 0;
-        }
-        if (!p->quiet) {
-            printf("wrote %s\n", name);
-        }
+    if (!text_is_plain(path_get_name(p->base))) {
+        fputs("se3d plot: the name of the picture has control characters or is not UTF-8; choose "
+              "one with -o\n",
+              stderr);
+        return 0;
     }
     return 1;
 }
 
-static void remove_partial(const plot *p)
+/* True where a file that gnuplot made ends as it should, but for blanks. */
+static int is_whole(const char *path, const char *tail)
 {
-    char name[4200];
-    snprintf(name, sizeof name, "%s.svg.partial", p->base);
-    remove(name);
-    snprintf(name, sizeof name, "%s.png.partial", p->base);
-    remove(name);
+    char end[16] = "";
+    const size_t length = strlen(tail);
+    int whole = 0;
+    FILE *file = file_read(path);
+    if (file && fseek(file, -(long)sizeof end, SEEK_END) == 0 &&
+        fread(end, 1, sizeof end, file) == sizeof end) {
+        for (size_t k = 0; k + length <= sizeof end; ++k) {
+            whole = whole || memcmp(end + k, tail, length) == 0;
+        }
+    }
+    if (file) {
+        fclose(file);
+    }
+    return whole;
+}
+
+/* Give one of the files that were made in `folder` its place and name. */
+static int keep(const plot *p, const char *folder, const char *ending)
+{
+    char made[PATH_SIZE + 64];
+    char name[PATH_SIZE + 64];
+    snprintf(made, sizeof made, "%s/plot%s", folder, ending);
+    snprintf(name, sizeof name, "%s%s", p->base, ending);
+    errno = 0;
+    if (!file_copy(made, name)) {
+        fprintf(stderr, "se3d plot: %s: cannot be written: %s\n", name, strerror(errno));
+        return 0;
+    }
+    if (!p->quiet && strcmp(ending, ".gp") != 0) {
+        printf("wrote %s\n", name);
+    }
+    return 1;
+}
+
+/* The script is made and run in a folder of its own under names of ours, so that no name of others
+ * comes before gnuplot, and it reads no file of settings. */
+static int draw_in(plot *p, const char *folder)
+{
+    static const char *const words[] = {"gnuplot", "-d", "-e", "base='plot'", "plot.gp", NULL};
+    char path[PATH_SIZE + 64];
+    snprintf(path, sizeof path, "%s/plot.gp", folder);
+    errno = 0;
+    if (!plot_write_script(p, path)) {
+        fprintf(stderr, "se3d plot: %s: cannot be written: %s\n", path,
+                strerror(errno ? errno : ENOMEM));
+        return 0;
+    }
+    if (!keep(p, folder, ".gp")) {
+        return 0;
+    }
+    const int code = process_run(folder, words);
+    snprintf(path, sizeof path, "%s/plot.svg", folder);
+    int whole = code == 0 && is_whole(path, "</svg>");
+    snprintf(path, sizeof path, "%s/plot.png", folder);
+    whole = whole && is_whole(path, "IEND");
+    if (!whole || interrupt_came()) {
+        fprintf(stderr, "se3d plot: %s on %s.gp\n",
+                interrupt_came() ? "interrupted" : "gnuplot failed", p->base);
+        return 0;
+    }
+    return keep(p, folder, ".svg") && keep(p, folder, ".png");
 }
 
 static int draw(plot *p)
 {
-    char script[4200];
-    char folder[4096];
-    snprintf(script, sizeof script, "%s.gp", p->base);
-    if (!plot_write_script(p, script) || !path_get_folder(script, folder, sizeof folder)) {
-        fprintf(stderr, "se3d plot: %s: cannot be written: %s\n", script, strerror(errno));
+    char folder[PATH_SIZE];
+    if (!folder_make_temporary(folder, sizeof folder)) {
+        fprintf(stderr, "se3d plot: no temporary folder: %s\n", strerror(errno));
         return EXIT_FAILED;
     }
-    const char *const words[] = {"gnuplot", "-e", "partial='.partial'", path_get_name(script),
-                                 NULL};
-    const int code = process_run(folder, words);
-    if (code != 0) {
-        fprintf(stderr, "se3d plot: gnuplot failed on %s\n", script);
-    }
-    if (code != 0 || !finish(p)) {
-        remove_partial(p);
-        return EXIT_FAILED;
-    }
-    return EXIT_DONE;
+    const int good = draw_in(p, folder);
+    folder_remove(folder);
+    return good ? EXIT_DONE : EXIT_FAILED;
 }
 
 static int plot_all(plot *p)
@@ -236,5 +282,6 @@ int plot_files(int count, const char *const *words)
 
 int command_plot(int count, char *const *words)
 {
+    interrupt_begin();
     return plot_files(count, (const char *const *)words);
 }

@@ -27,6 +27,7 @@ typedef struct plot {
     plot_panel panels[PLOT_PANELS_MAX];
     size_t panel_count;
     char x_title[160];
+    double x_range[2];
     char base[4096];                    /* of the files written, without extension */
     char spectra[PLOT_FILES_MAX][4200]; /* files of --fft */
     char csv[PLOT_FILES_MAX][4096];     /* results of models that were run */

@@ -6,10 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "file.h"
 #include "plot.h"
 #include "process.h"
+#include "text.h"
 
-enum { POINTS_MAX = 4000 };
+enum { POINTS_MAX = 4000, ROWS_MAX = POINTS_MAX + 1 }; /* every so many rows, and the last */
 
 /* Without -y: these, as far as the file has them. */
 static const char *const usual[] = {"position",     "velocity", "acceleration",     "angle",
@@ -136,84 +138,148 @@ int plot_choose(plot *p)
     return 1;
 }
 
-/* A text in single quotes, as gnuplot reads it. */
 static void put_text(FILE *file, const char *before, const char *text, const char *after)
 {
     fputs(before, file);
-    fputc('\'', file);
-    for (const char *c = text; *c; ++c) {
-        fputs(*c == '\'' ? "''" : (char[2]){*c, '\0'}, file);
-    }
-    fputc('\'', file);
+    text_put_gnuplot(file, text);
     fputs(after, file);
 }
 
-/* The data file as it is called from the folder of the script. */
-static void put_data(const plot *p, FILE *file, size_t k)
+/* A text that is drawn. gnuplot leaves "]]>" as it is in SVG, where it has a meaning. */
+static void put_title(FILE *file, const char *before, const char *text, const char *after)
 {
-    char folder[2][4096];
-    char full[4200];
-    const char *path = p->tables[k].path;
-    path_get_folder(path, folder[0], sizeof folder[0]);
-    path_get_folder(p->base, folder[1], sizeof folder[1]);
-    const int same = strcmp(folder[0], folder[1]) == 0;
-    const int found = !same && path_get_absolute(path, full, sizeof full);
-    put_text(file, "", same ? path_get_name(path) : found ? full : path, "");
+    char title[640];
+    snprintf(title, sizeof title, "%s", text);
+    for (char *at = strstr(title, "]]>"); at; at = strstr(at, "]]>")) {
+        at[2] = ' ';
+    }
+    put_text(file, before, title, after);
 }
 
-static void put_curve(const plot *p, FILE *file, const plot_panel *panel, size_t curve, size_t k)
+/* The columns that are drawn of file k: x, then the curves of all panels. */
+static size_t count_columns(const plot *p)
+{
+    size_t count = 1;
+    for (size_t k = 0; k < p->panel_count; ++k) {
+        count += p->panels[k].count;
+    }
+    return count;
+}
+
+/* Read one column of file k; numbers that are none and columns that it lacks are NaN. */
+static void load_column(const plot *p, size_t k, const char *name, double *values)
+{
+    const table *t = &p->tables[k];
+    const size_t stride = (t->rows + POINTS_MAX - 1) / POINTS_MAX;
+    const size_t column = table_find(t, name);
+    const size_t count =
+        column < t->count ? table_read_column(t, column, stride, values, ROWS_MAX) : 0;
+    for (size_t row = count; row < ROWS_MAX; ++row) {
+        values[row] = (double)NAN;
+    }
+}
+
+/* The numbers that are drawn of file k: values[column * ROWS_MAX + row]. @return NULL: no memory */
+static double *load(const plot *p, size_t k)
+{
+    double *values = malloc(count_columns(p) * ROWS_MAX * sizeof *values);
+    double *to = values;
+    if (!values) {
+        return NULL;
+    }
+    load_column(p, k, p->x, to);
+    for (size_t panel = 0; panel < p->panel_count; ++panel) {
+        for (size_t curve = 0; curve < p->panels[panel].count; ++curve) {
+            to += ROWS_MAX;
+            load_column(p, k, p->panels[panel].names[curve], to);
+        }
+    }
+    return values;
+}
+
+static size_t count_points(const table *t)
+{
+    const size_t stride = (t->rows + POINTS_MAX - 1) / POINTS_MAX;
+    const size_t count = t->rows > 0 ? (t->rows - 1) / stride + 1 : 0;
+    return count + (t->rows > 0 && (t->rows - 1) % stride != 0);
+}
+
+static void widen(const double *values, double range[2])
+{
+    for (size_t row = 0; row < ROWS_MAX; ++row) {
+        if (isfinite(values[row])) {
+            range[0] = fmin(range[0], values[row]);
+            range[1] = fmax(range[1], values[row]);
+        }
+    }
+}
+
+/* The ranges of x and of every panel. */
+static void find_ranges(plot *p, const double *values)
+{
+    const double *at = values + ROWS_MAX;
+    widen(values, p->x_range);
+    for (size_t panel = 0; panel < p->panel_count; ++panel) {
+        for (size_t curve = 0; curve < p->panels[panel].count; ++curve, at += ROWS_MAX) {
+            widen(at, p->panels[panel].range);
+        }
+    }
+}
+
+static void put_number(FILE *file, double value, char after)
+{
+    if (isfinite(value)) {
+        fprintf(file, "%.15g%c", value, after);
+    } else {
+        fprintf(file, "NaN%c", after);
+    }
+}
+
+/* The numbers of file k as the block $file<k + 1> of the script: no name of a file is an address.
+ */
+static int put_data(plot *p, FILE *file, size_t k)
+{
+    const size_t columns = count_columns(p);
+    const size_t points = count_points(&p->tables[k]);
+    double *values = load(p, k);
+    if (!values) {
+        return 0;
+    }
+    find_ranges(p, values);
+    put_text(file, "# Of ", path_get_name(p->tables[k].path), "\n");
+    fprintf(file, "$file%zu << END_OF_DATA\n", k + 1);
+    for (size_t row = 0; row < points; ++row) {
+        for (size_t c = 0; c < columns; ++c) {
+            put_number(file, values[c * ROWS_MAX + row], c + 1 < columns ? ' ' : '\n');
+        }
+    }
+    fputs("END_OF_DATA\n", file);
+    free(values);
+    return 1;
+}
+
+/* Curve number `column` of all. */
+static void put_curve(const plot *p, FILE *file, const char *name, size_t curve, size_t column,
+                      size_t k)
 {
     static const char *const colors[PLOT_CURVES_MAX] = {"#1f6fb4", "#d1495b", "#2e8b57",
                                                         "#e08e0b", "#7b4fa3", "#17a2b8",
                                                         "#8c5a3c", "#c2185b", "#555555"};
     const table *t = &p->tables[k];
-    const size_t x = table_find(t, p->x);
-    const size_t y = table_find(t, panel->names[curve]);
     char title[600];
-    if (x == t->count || y == t->count) {
+    if (table_find(t, p->x) == t->count || table_find(t, name) == t->count) {
         return;
     }
-    const size_t stride = (t->rows + POINTS_MAX - 1) / POINTS_MAX;
     if (p->file_count > 1) {
-        char name[240];
-        path_cut(path_get_name(p->files[k]), ".csv", name, sizeof name);
-        snprintf(title, sizeof title, "%.300s (%.200s)", panel->names[curve], name);
+        char of[240];
+        path_cut(path_get_name(p->files[k]), ".csv", of, sizeof of);
+        snprintf(title, sizeof title, "%.300s (%.200s)", name, of);
     } else {
-        snprintf(title, sizeof title, "%.300s", panel->names[curve]);
+        snprintf(title, sizeof title, "%.300s", name);
     }
-    fputs("        ", file);
-    put_data(p, file, k);
-    fprintf(file, " every %zu using %zu:%zu with %s lw 1.6 dt %zu lc rgb '%s' title ", stride,
-            x + 1, y + 1, t->rows == 1 ? "points pt 7" : "lines", k + 1, colors[curve]);
-    put_text(file, "", title, ", \\\n");
-}
-
-/* The least and the largest number of a column, widened. */
-static void widen(const table *t, size_t column, double range[2])
-{
-    const size_t stride = (t->rows + POINTS_MAX - 1) / POINTS_MAX;
-    double *values = malloc((POINTS_MAX + 1) * sizeof *values);
-    const size_t count = values && column < t->count
-                             ? table_read_column(t, column, stride, values, POINTS_MAX + 1)
-                             : 0;
-    for (size_t k = 0; k < count; ++k) {
-        if (isfinite(values[k])) {
-            range[0] = fmin(range[0], values[k]);
-            range[1] = fmax(range[1], values[k]);
-        }
-    }
-    free(values);
-}
-
-static void find_range(const plot *p, plot_panel *panel)
-{
-    panel->range[0] = HUGE_VAL;
-    panel->range[1] = -HUGE_VAL;
-    for (size_t k = 0; k < p->file_count; ++k) {
-        for (size_t curve = 0; curve < panel->count; ++curve) {
-            widen(&p->tables[k], table_find(&p->tables[k], panel->names[curve]), panel->range);
-        }
-    }
+    fprintf(file, "        $file%zu using 1:%zu with %s lw 1.6 dt %zu lc rgb '%s' title ", k + 1,
+            column, t->rows == 1 ? "points pt 7" : "lines", k + 1, colors[curve]);
+    put_title(file, "", title, ", \\\n");
 }
 
 /* Digits that tell the marks of an axis apart. */
@@ -242,20 +308,21 @@ static void put_range(FILE *file, const char *axis, const double range[2])
     }
 }
 
-static void put_panel(const plot *p, FILE *file, const plot_panel *panel, int last)
+/* `column`: of its first curve. */
+static void put_panel(const plot *p, FILE *file, const plot_panel *panel, size_t column, int last)
 {
     put_range(file, "y", panel->range);
     fprintf(file, "    set format y '%%.%dg'\n", count_digits(panel->range));
-    put_text(file, "    set ylabel ", panel->title, "\n");
+    put_title(file, "    set ylabel ", panel->title, "\n");
     if (last) {
-        put_text(file, "    set xlabel ", p->x_title, "\n");
+        put_title(file, "    set xlabel ", p->x_title, "\n");
     } else {
         fputs("    unset xlabel\n", file);
     }
     fputs("    plot \\\n", file);
     for (size_t curve = 0; curve < panel->count; ++curve) {
         for (size_t k = 0; k < p->file_count; ++k) {
-            put_curve(p, file, panel, curve, k);
+            put_curve(p, file, panel->names[curve], curve, column + curve, k);
         }
     }
     fputs("        NaN notitle\n", file);
@@ -283,42 +350,44 @@ static size_t key_width(const plot *p)
 static void put_margins(const plot *p, FILE *file)
 {
     int digits = 4;
-    double range[2] = {HUGE_VAL, -HUGE_VAL};
     for (size_t k = 0; k < p->panel_count; ++k) {
         const int needed = count_digits(p->panels[k].range);
         digits = needed > digits ? needed : digits;
     }
-    for (size_t k = 0; k < p->file_count; ++k) {
-        widen(&p->tables[k], table_find(&p->tables[k], p->x), range);
-    }
-    put_range(file, "x", range);
+    put_range(file, "x", p->x_range);
     fprintf(file, "    set lmargin %d\n    set rmargin %zu\n%s", digits + 7, key_width(p) + 6,
             p->fft ? "    set logscale x\n" : "");
 }
 
-int plot_write_script(plot *p, const char *path)
+/* What comes first: how to use the script, the numbers. @return false: no memory. */
+static int put_head(plot *p, FILE *file)
 {
-    const size_t columns = p->panel_count > 3 ? 2 : 1;
-    const size_t rows = (p->panel_count + columns - 1) / columns;
+    int good = 1;
+    p->x_range[0] = HUGE_VAL;
+    p->x_range[1] = -HUGE_VAL;
+    for (size_t k = 0; k < p->panel_count; ++k) {
+        p->panels[k].range[0] = HUGE_VAL;
+        p->panels[k].range[1] = -HUGE_VAL;
+    }
+    fputs(
+        "# Written by `se3d plot`. Change what comes after the numbers, and run it by gnuplot: it\n"
+        "# makes an SVG and a PNG in the folder in which it is run.\n",
+        file);
+    for (size_t k = 0; k < p->file_count && good; ++k) {
+        good = put_data(p, file, k);
+    }
+    char name[4300];
+    snprintf(name, sizeof name, "./%.4200s", path_get_name(p->base)); /* no pipe */
+    put_text(file, "if (!exists('base')) base = ", name, "\n");
+    return good;
+}
+
+static void put_look(const plot *p, FILE *file, size_t rows, size_t columns)
+{
     const size_t key = 8 * (key_width(p) + 6);
     const int width = (int)(columns * ((columns == 2 ? 480 : 600) + (key < 1000 ? key : 1000)));
     const int height = (int)(rows == 1 ? 440 : 270 * rows);
-    char partial[4300];
-    snprintf(partial, sizeof partial, "%s.partial", path);
-    for (size_t k = 0; k < p->panel_count; ++k) {
-        find_range(p, &p->panels[k]);
-    }
-    errno = 0;
-    FILE *file = fopen(partial, "w");
-    if (!file) {
-        return 0;
-    }
-    fputs("# Written by `se3d plot`; change it and run, in this folder:\n", file);
-    fprintf(file, "#     gnuplot '%s'\n", path_get_name(path));
-    fputs("if (!exists('partial')) partial = ''\n", file);
-    put_text(file, "base = ", path_get_name(p->base), "\n");
-    fputs("set datafile separator ','\n"
-          "set encoding utf8\n"
+    fputs("set encoding utf8\n"
           "set grid lc rgb '#d8d8d8' lt 1\n"
           "set key noenhanced outside right top vertical samplen 1.5 spacing 1.1\n"
           "set border lc rgb '#404040'\n"
@@ -329,24 +398,35 @@ int plot_write_script(plot *p, const char *path)
           file);
     fprintf(file,
             "    if (picture eq 'svg') {\n"
-            "        set terminal svg size %d,%d dynamic font 'sans-serif,13' "
+            "        set terminal svg noenhanced size %d,%d dynamic font 'sans-serif,13' "
             "background rgb 'white'\n"
             "    } else {\n"
-            "        set terminal pngcairo size %d,%d font 'sans,11' background rgb 'white'\n"
+            "        set terminal pngcairo noenhanced size %d,%d font 'sans,11' "
+            "background rgb 'white'\n"
             "    }\n"
-            "    set output base.'.'.picture.partial\n"
+            "    set output base.'.'.picture\n"
             "    set multiplot layout %zu,%zu columnsfirst\n",
             width, height, width, height, rows, columns);
+}
+
+int plot_write_script(plot *p, const char *path)
+{
+    const size_t columns = p->panel_count > 3 ? 2 : 1;
+    const size_t rows = (p->panel_count + columns - 1) / columns;
+    size_t column = 2;
+    errno = 0;
+    FILE *file = file_begin(path);
+    if (!file) {
+        return 0;
+    }
+    const int good = put_head(p, file);
+    put_look(p, file, rows, columns);
     put_margins(p, file);
     for (size_t k = 0; k < p->panel_count; ++k) {
         const int last = k + 1 == p->panel_count || (k + 1) % rows == 0;
-        put_panel(p, file, &p->panels[k], last);
+        put_panel(p, file, &p->panels[k], column, last);
+        column += p->panels[k].count;
     }
     fputs("    unset multiplot\n    unset output\n}\n", file);
-    const int bad = ferror(file);
-    if (fclose(file) != 0 || bad || rename(partial, path) != 0) {
-        remove(partial);
-        return 0;
-    }
-    return 1;
+    return file_end(file, path, good);
 }

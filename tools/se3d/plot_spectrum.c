@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "file.h"
 #include "plot.h"
 
 enum { SAMPLES_MAX = 1 << 18 };
@@ -118,9 +119,7 @@ static int write_spectrum(const plot *p, const char *path, const double *values,
                           double duration)
 {
     const size_t curves = count_curves(p);
-    char partial[4400];
-    snprintf(partial, sizeof partial, "%s.partial", path);
-    FILE *file = fopen(partial, "w");
+    FILE *file = file_begin(path);
     if (!file) {
         return 0;
     }
@@ -138,12 +137,7 @@ static int write_spectrum(const plot *p, const char *path, const double *values,
         }
         fputc('\n', file);
     }
-    const int bad = ferror(file);
-    if (fclose(file) != 0 || bad || rename(partial, path) != 0) {
-        remove(partial);
-        return 0;
-    }
-    return 1;
+    return file_end(file, path, 1);
 }
 
 /* One file; `names` keeps the path of the spectrum. */
@@ -172,6 +166,21 @@ static int transform_table(plot *p, size_t k, char *path, size_t size)
     return 1;
 }
 
+/* The names of the curves: the columns of the spectrum, in the order in which they were written. */
+static int take_names(plot *p, const table *spectrum)
+{
+    size_t column = 1;
+    if (spectrum->count != count_curves(p) + 1) {
+        return 0;
+    }
+    for (size_t k = 0; k < p->panel_count; ++k) {
+        for (size_t c = 0; c < p->panels[k].count; ++c) {
+            p->panels[k].names[c] = spectrum->names[column++];
+        }
+    }
+    return 1;
+}
+
 /* The tables keep the names of their columns; their files and orders of columns are replaced. */
 int plot_transform(plot *p)
 {
@@ -190,11 +199,10 @@ int plot_transform(plot *p)
         if (!table_read(&spectrum, "plot", p->spectra[k])) {
             return 0;
         }
-        for (size_t i = 0; k == 0 && i < p->panel_count; ++i) {
-            for (size_t c = 0; c < p->panels[i].count; ++c) {
-                p->panels[i].names[c] =
-                    spectrum.names[table_find(&spectrum, p->panels[i].names[c])];
-            }
+        if (k == 0 && !take_names(p, &spectrum)) {
+            fprintf(stderr, "se3d plot: %s: was changed by others\n", p->spectra[k]);
+            table_destroy(&spectrum);
+            return 0;
         }
         table_destroy(&p->tables[k]);
         p->tables[k] = spectrum;

@@ -6,6 +6,7 @@
 
 #include "process.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,10 +65,11 @@ int process_run(const char *folder, const char *const *words)
         free(copy[k]);
     }
     int status = 0;
-    if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) {
-        return -1;
-    }
-    return WEXITSTATUS(status);
+    pid_t ended = -1;
+    do {
+        ended = child < 0 ? -1 : waitpid(child, &status, 0);
+    } while (ended < 0 && child > 0 && errno == EINTR);
+    return ended == child && ended > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 int path_get_absolute(const char *path, char *out, size_t size)

@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "options.h"
+#include "text.h"
 
 #if defined(_WIN32)
 #include <io.h>
@@ -25,17 +26,7 @@ static int is_terminal(void)
 
 void json_put_text(const char *text)
 {
-    putchar('"');
-    for (const char *c = text; *c; ++c) {
-        if (*c == '"' || *c == '\\') {
-            printf("\\%c", *c);
-        } else if ((unsigned char)*c < ' ') {
-            printf("\\u%04x", (unsigned)(unsigned char)*c);
-        } else {
-            putchar(*c);
-        }
-    }
-    putchar('"');
+    text_put_json(stdout, text);
 }
 
 void json_put_number(double value)

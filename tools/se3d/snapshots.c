@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "file.h"
+
 static const char header[] = "time,id,radius,x,y,z,";
 
 enum { LINE = 1024, GRAINS_MAX = 1 << 22, BYTES_MAX = 16 << 20, ABSENT = 65535 };
@@ -47,7 +49,7 @@ void base64_put(FILE *file, const void *data, size_t size)
 int snapshots_is(const char *path)
 {
     char line[LINE];
-    FILE *file = fopen(path, "rb");
+    FILE *file = file_read(path);
     const int is = file && fgets(line, LINE, file) && strncmp(line, header, sizeof header - 1) == 0;
     if (file) {
         fclose(file);
@@ -80,7 +82,7 @@ static int read_grain(FILE *file, grain *g)
 static FILE *open_rows(const char *path)
 {
     char line[LINE];
-    FILE *file = fopen(path, "rb");
+    FILE *file = file_read(path);
     if (file && !fgets(line, LINE, file)) {
         fclose(file);
         file = NULL;

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "devtools.h"
+#include "file.h"
 #include "options.h"
 #include "process.h"
 #include "view.h"
@@ -29,8 +30,9 @@ static const char help[] =
 
 typedef struct film {
     const char *path;
-    char partial[PATH_SIZE + 64];
-    char folder[PATH_SIZE]; /* temporary: the page, Chromium's profile */
+    FILE *file;             /* begun before the work, so that the message comes early */
+    char folder[PATH_SIZE]; /* temporary: the page, Chromium's profile, what ffmpeg makes */
+    char made[PATH_SIZE + 64];
     char page[PATH_SIZE + 64];
     double start, end; /* of the motion [s] */
     double speed;
@@ -97,7 +99,7 @@ static int start_encoder(film *f)
                                  "-c:v",     "libx264",    "-preset",    "veryfast",
                                  "-crf",     "20",         "-vf",        "scale=out_range=tv",
                                  "-pix_fmt", "yuv420p",    "-movflags",  "+faststart",
-                                 "-f",       "mp4",        f->partial,   NULL};
+                                 "-f",       "mp4",        f->made,      NULL};
     return child_start(&f->encoder, words, 0, -1, 0) ||
            fail("ffmpeg cannot be started: ", strerror(errno));
 }
@@ -159,49 +161,35 @@ static int put_pictures(film *f, int quiet)
     return good;
 }
 
-/* Give the film its name, if it is whole. */
+/* Give the film its name, if it is whole. ffmpeg writes in our folder, under a name of ours. */
 static int finish(film *f, int good)
 {
     const int code = f->encoder.id != 0 ? child_finish(&f->encoder, good ? 600 : 1) : 0;
     if (good && code != 0) {
         good = fail("ffmpeg failed, see above: ", f->path);
     }
-    if (good && rename(f->partial, f->path) != 0) {
+    const int kept = file_end(f->file, f->path, good && file_append(f->file, f->made));
+    if (good && !kept) {
         fprintf(stderr, "se3d video: %s: cannot be written: %s\n", f->path, strerror(errno));
-        good = 0;
     }
-    if (!good) {
-        remove(f->partial);
-    }
-    return good;
-}
-
-/* The temporary name: tried out, so that the message comes before the work. */
-static int try_path(film *f)
-{
-    snprintf(f->partial, sizeof f->partial, "%.4000s.partial", f->path);
-    errno = 0;
-    FILE *file = fopen(f->partial, "wb");
-    if (!file) {
-        fprintf(stderr, "se3d video: %s: cannot be written: %s\n", f->path, strerror(errno));
-        return 0;
-    }
-    fclose(file);
-    return 1;
+    return kept;
 }
 
 static int make_film(film *f, const char *chromium, const char *results, int quiet)
 {
     child_watch_interrupts();
-    if (!try_path(f)) {
+    f->file = file_begin(f->path);
+    if (!f->file) {
+        fprintf(stderr, "se3d video: %s: cannot be written: %s\n", f->path, strerror(errno));
         return EXIT_FAILED;
     }
     if (!folder_make_temporary(f->folder, sizeof f->folder)) {
         fprintf(stderr, "se3d video: no temporary folder: %s\n", strerror(errno));
-        remove(f->partial);
+        file_end(f->file, f->path, 0);
         return EXIT_FAILED;
     }
     snprintf(f->page, sizeof f->page, "%s/page.html", f->folder);
+    snprintf(f->made, sizeof f->made, "%s/film.mp4", f->folder);
     int good = view_write("video", results, f->page) == EXIT_DONE;
     if (good) {
         good = (devtools_open(&f->browser, chromium, f->folder, f->page) ||

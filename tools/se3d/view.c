@@ -11,10 +11,14 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "child.h"
+#include "file.h"
+#include "interrupt.h"
 #include "options.h"
 #include "process.h"
 #include "snapshots.h"
 #include "table.h"
+#include "text.h"
 
 enum { RESULTS_SIZE = 120 * 1024, PATH_SIZE = 4096 };
 
@@ -29,7 +33,7 @@ static const char help[] =
 
 static char *read_whole(const char *path, size_t *size)
 {
-    FILE *file = fopen(path, "rb");
+    FILE *file = file_read(path);
     char *data = NULL;
     *size = 0;
     if (file && fseek(file, 0, SEEK_END) == 0) {
@@ -47,25 +51,11 @@ static char *read_whole(const char *path, size_t *size)
     return data;
 }
 
-/* Texts in scripts: `<` could end them. */
-static void put_json(FILE *file, const char *text)
-{
-    fputc('"', file);
-    for (; *text; ++text) {
-        if (*text == '"' || *text == '\\' || *text == '<' || (unsigned char)*text < ' ') {
-            fprintf(file, "\\u%04x", (unsigned)(unsigned char)*text);
-        } else {
-            fputc(*text, file);
-        }
-    }
-    fputc('"', file);
-}
-
 /* True where a file begins with a column of times. */
 static int has_times(const char *path)
 {
     char head[5] = "";
-    FILE *file = fopen(path, "rb");
+    FILE *file = file_read(path);
     const int has = file && fread(head, 1, 5, file) == 5 && memcmp(head, "time,", 5) == 0;
     if (file) {
         fclose(file);
@@ -116,12 +106,12 @@ static int put_table(FILE *file, const table *t)
     fputs("{\"names\":[", file);
     for (size_t k = 0; k < t->count; ++k) {
         fputs(k > 0 ? "," : "", file);
-        put_json(file, t->names[k]);
+        text_put_script(file, t->names[k]);
     }
     fputs("],\"units\":[", file);
     for (size_t k = 0; k < t->count; ++k) {
         fputs(k > 0 ? "," : "", file);
-        put_json(file, table_get_unit(t, t->names[k], unit, sizeof unit));
+        text_put_script(file, table_get_unit(t, t->names[k], unit, sizeof unit));
     }
     fputs("],\"data\":\"", file);
     if (rows > 0) {
@@ -160,6 +150,7 @@ static int find_viewer(char *folder, size_t size)
     return 0;
 }
 
+/* Where three.js is kept. @return false: the user has no place for it. */
 static int find_cache(char *folder, size_t size)
 {
     const char *given = getenv("SE3D_CACHE");
@@ -168,7 +159,7 @@ static int find_cache(char *folder, size_t size)
     const int used = given               ? snprintf(folder, size, "%s", given)
                      : (user && user[0]) ? snprintf(folder, size, "%s/se3d", user)
                      : (home && home[0]) ? snprintf(folder, size, "%s/.cache/se3d", home)
-                                         : snprintf(folder, size, "/tmp/se3d-viewer");
+                                         : 0;
     return used > 0 && (size_t)used < size;
 }
 
@@ -190,6 +181,7 @@ static int put_file(FILE *out, const char *folder, const char *name)
 typedef struct page {
     char viewer[PATH_SIZE];
     char cache[PATH_SIZE];
+    int is_passing; /* the cache is a folder of this page alone */
     char *glb;
     size_t glb_size;
     table results;                /* empty: there are none */
@@ -226,19 +218,31 @@ static int put_page(FILE *file, const page *p)
 
 static int write_page(const page *p, const char *path)
 {
-    char partial[PATH_SIZE + 64];
-    snprintf(partial, sizeof partial, "%.4000s.partial", path);
-    errno = 0;
-    FILE *file = fopen(partial, "wb");
-    int good = file && put_page(file, p);
-    if (file) {
-        good = !ferror(file) && good;
-        good = fclose(file) == 0 && good;
-    }
-    if (!good || rename(partial, path) != 0) {
+    FILE *file = file_begin(path);
+    if (!file || !file_end(file, path, put_page(file, p) && !interrupt_came())) {
         fprintf(stderr, "se3d %s: %s: cannot be written: %s\n", p->command, path,
-                strerror(errno ? errno : ENOSPC));
-        remove(partial);
+                interrupt_came() ? "interrupted" : strerror(errno ? errno : ENOSPC));
+        return EXIT_FAILED;
+    }
+    return EXIT_DONE;
+}
+
+/* Make three.js in the cache, where it is not. What others could have put there is not taken. */
+static int make_three(const page *p)
+{
+    char script[PATH_SIZE + 64];
+    snprintf(script, sizeof script, "%.4000s/build.sh", p->viewer);
+    const char *const words[] = {"sh", script, p->cache, NULL};
+    if (process_run(NULL, words) != 0) {
+        fprintf(stderr, "se3d %s: three.js could not be made, see above\n", p->command);
+        return EXIT_FAILED;
+    }
+    snprintf(script, sizeof script, "%.4000s/three.js", p->cache);
+    if (!file_is_own(p->cache) || !file_is_own(script)) {
+        fprintf(stderr,
+                "se3d %s: %s belongs to others, or they can change it; set SE3D_CACHE to a folder "
+                "of your own\n",
+                p->command, script);
         return EXIT_FAILED;
     }
     return EXIT_DONE;
@@ -247,7 +251,7 @@ static int write_page(const page *p, const char *path)
 static int prepare(page *p, const char *command)
 {
     char script[PATH_SIZE + 64];
-    if (!find_viewer(p->viewer, sizeof p->viewer) || !find_cache(p->cache, sizeof p->cache)) {
+    if (!find_viewer(p->viewer, sizeof p->viewer)) {
         fprintf(stderr,
                 "se3d %s: the parts of the page are not found; set SE3D_VIEWER to the folder "
                 "tools/viewer of the source\n",
@@ -259,13 +263,14 @@ static int prepare(page *p, const char *command)
         strcpy(p->cache, p->viewer);
         return EXIT_DONE;
     }
-    snprintf(script, sizeof script, "%.4000s/build.sh", p->viewer);
-    const char *const words[] = {"sh", script, p->cache, NULL};
-    if (process_run(NULL, words) != 0) {
-        fprintf(stderr, "se3d %s: three.js could not be made, see above\n", command);
-        return EXIT_FAILED;
+    if (!find_cache(p->cache, sizeof p->cache)) {
+        p->is_passing = folder_make_temporary(p->cache, sizeof p->cache);
+        if (!p->is_passing) {
+            fprintf(stderr, "se3d %s: no temporary folder: %s\n", command, strerror(errno));
+            return EXIT_FAILED;
+        }
     }
-    return EXIT_DONE;
+    return make_three(p);
 }
 
 int view_write(const char *command, const char *folder, const char *path)
@@ -290,6 +295,9 @@ int view_write(const char *command, const char *folder, const char *path)
         code = prepare(p, command);
         code = code == EXIT_DONE ? write_page(p, path) : code;
         table_destroy(&p->results);
+        if (p->is_passing) {
+            folder_remove(p->cache);
+        }
     }
     free(p->glb);
     free(p);
@@ -300,6 +308,7 @@ int command_view(int count, char *const *words)
 {
     char path[PATH_SIZE + 64];
     options o;
+    interrupt_begin();
     int code = options_read(&o, "view", " -o --output --quiet -q ", count, words);
     if (code != EXIT_DONE || o.help) {
         fputs(o.help ? help : "", stdout);

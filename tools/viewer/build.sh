@@ -7,7 +7,7 @@
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 folder=$1
-mkdir -p "$folder"
+mkdir -p -- "$folder"
 stamp="three 0.187 $(cksum <"$here/three_entry.js")"
 [ ! -f "$folder/three.js" ] || [ "$(cat "$folder/three.stamp" 2>/dev/null)" != "$stamp" ] || exit 0
 debian=${SE3D_THREE:-/usr/share/javascript/three/three.min.js} # an older three.js will do
@@ -31,5 +31,5 @@ else
     echo 'three.js is missing; on Debian and Ubuntu: apt-get install npm (or libjs-three)' >&2
     exit 1
 fi
-mv "$work/three.js" "$folder/three.js"
+mv -- "$work/three.js" "$folder/three.js"
 echo "$stamp" >"$folder/three.stamp"
