@@ -323,14 +323,15 @@ void se3di_encounter_wrench(const se3di_encounter *e, double wrench[12])
     }
 }
 
-/* The stretch that the capped force belongs to. */
-static void settled(double k, double c, double factor, const double pull[3], const double v[3],
-                    const double x[3], double out[3])
+/* The stretch that is kept where the force was capped: shortened as the force is, or to what the
+ * cap holds where the damper pulls along with the spring. It so never pulls along the slip. */
+static void settled(double k, double cap, double factor, const double pull[3], const double x[3],
+                    double out[3])
 {
     se3di_copy(x, out);
-    if (factor < 1.0 && k > 0.0) {
-        se3di_scale(-factor / k, pull, out);
-        se3di_add_scaled(-c / k, v, out);
+    if (factor < 1.0) {
+        double held = fmin(k * se3di_norm(x), se3di_norm(pull));
+        se3di_scale(held > cap ? cap / held : 1.0, out, out);
     }
 }
 
@@ -340,24 +341,18 @@ static void settled_xi(const se3di_encounter *e, double xi[3])
         se3di_copy(e->spring, xi);
         return;
     }
-    settled(e->pair.kt * e->s, e->pair.dt * e->root_mass * e->root, e->give, e->pull, e->vt, e->xi,
-            xi);
+    settled(e->pair.kt * e->s, e->pair.friction * e->normal, e->give, e->pull, e->xi, xi);
 }
 
 /* Rolling and torsion as the caps leave them. */
 static void settled_roll(const se3di_encounter *e, double rho[3], double *twist)
 {
-    double spin[3], out[3];
+    double out[3];
     double k = e->pair.kt * e->s;
-    double c = e->pair.dr * e->root_mass * e->root;
-    se3di_sub(e->w[1], e->w[0], spin);
-    se3di_scale(e->radius, spin, spin);
-    double turn[3] = {se3di_dot(spin, e->at->normal), 0.0, 0.0};
-    project(e->at->normal, spin);
-    settled(k, c, e->yield, e->bend, spin, e->rho, rho);
     const double wring[3] = {e->wring, 0.0, 0.0};
     const double now[3] = {e->twist, 0.0, 0.0};
-    settled(k, c, e->slack, wring, turn, now, out);
+    settled(k, e->pair.rolling * e->normal, e->yield, e->bend, e->rho, rho);
+    settled(k, e->pair.torsion * e->normal, e->slack, wring, now, out);
     *twist = out[0];
 }
 
@@ -368,22 +363,13 @@ static double settled_mass(const se3di_encounter *e)
                                                                            : e->inverse_mass;
 }
 
-/* The square of a stretch, up to what the cap allows: where a contact slips fast the damper has
- * stretched the spring further, which is not what the bodies have worked for. */
-static double held(double square, double cap, double k)
-{
-    return k > 0.0 ? fmin(square, cap * cap / (k * k)) : 0.0;
-}
-
 double se3di_encounter_energy(const se3di_encounter *e)
 {
-    double xi[3], rho[3], twist, k = e->pair.kt * e->s;
+    double xi[3], rho[3], twist;
     settled_xi(e, xi);
     settled_roll(e, rho, &twist);
     double share = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 0.4 : 0.5;
-    double springs = held(se3di_dot(xi, xi), e->pair.friction * e->normal, k) +
-                     held(se3di_dot(rho, rho), e->pair.rolling * e->normal, k) +
-                     held(twist * twist, e->pair.torsion * e->normal, k);
+    double springs = se3di_dot(xi, xi) + se3di_dot(rho, rho) + twist * twist;
     /* the integrals of the attractions over the overlap */
     double depth = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 4.0 / 7.0 : 2.0 / 3.0;
     double stuck = (0.5 * (e->attraction - e->stick) + depth * e->stick) * e->at->overlap;

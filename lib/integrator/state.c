@@ -335,10 +335,27 @@ static double body_energy(const se3di_assembly *assembly, uint32_t body, const d
     return 0.5 * (b->mass * v2 + J * w2) + 1e-3 * applied;
 }
 
+/* Squares of the rates that rolling would make of one another: a touch turns what came without spin
+ * by about its speed over its size, and to an error estimate without a measure for spin that would
+ * be a singularity. */
+static void grow_by_shapes(const se3di_model *model, double *v, double *w)
+{
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        const se3di_shape *shape = &model->shapes[k];
+        const se3di_frame *frame = &model->frames[shape->body];
+        const double size = shape->bound + se3di_norm(shape->x);
+        if (shape->material >= 0 && size > 0.0 && size < HUGE_VAL) {
+            *v = fmax(*v, se3di_dot(frame->w, frame->w) * size * size);
+            *w = fmax(*w, se3di_dot(frame->v, frame->v) / (size * size));
+        }
+    }
+}
+
 void se3di_state_scale_grow(const se3di_assembly *assembly, const double *derivative,
                             se3di_state_scale *scale)
 {
     double a = 0.0, wdot = 0.0, v = 1e-12, w = 1e-12, energy = 1e-24;
+    grow_by_shapes(assembly->model, &v, &w);
     for (uint32_t k = 0; k < assembly->body_count; ++k, derivative += SE3DI_STATE_SIZE) {
         const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
         v = fmax(v, se3di_dot(frame->v, frame->v));

@@ -23,6 +23,7 @@ typedef struct bed {
     se3d_material material;
     double r[3 * MOST], radius[MOST];
     size_t count;
+    uint64_t seed;
 } bed;
 
 static bed b; /* large */
@@ -68,7 +69,7 @@ static void fill(double x0, double x1, double depth, double z0, double z1, doubl
     def.radius_min = 0.9 * radius;
     def.radius_max = 1.1 * radius;
     def.jitter = 0.05 * radius;
-    def.seed = 9;
+    def.seed = b.seed;
     CHECK(!se3d_particles_fill_lattice(b.grains, &def, NULL));
 }
 
@@ -129,9 +130,13 @@ static void discharge_through_a_slot_follows_beverloo(void)
 {
     /* narrower ones than 6 d pass less than the law says */
     const double d = 0.006, D[2] = {6.5 * d, 8.0 * d};
-    double scaled[2], ratio[2];
+    double scaled[2] = {0.0, 0.0}, ratio[2] = {0.0, 0.0};
     for (int k = 0; k < 2; ++k) {
-        ratio[k] = discharge(D[k], &scaled[k]);
+        for (b.seed = 1; b.seed <= 2; ++b.seed) { /* 4 % from seed to seed */
+            double one;
+            ratio[k] += 0.5 * discharge(D[k], &one);
+            scaled[k] += 0.5 * one;
+        }
         CHECK_NEAR(ratio[k], 1.0, 0.15);
     }
     /* C by itself follows badly from two slots: a rate that is off by 1 % moves it by 6 %. */
@@ -178,7 +183,12 @@ static double slump(double friction, double rolling)
 
 static void piles_are_steeper_with_friction_and_rolling_resistance(void)
 {
-    double smooth = slump(0.1, 0.0), rough = slump(0.5, 0.0), sticky = slump(0.5, 0.2);
+    double smooth = 0.0, rough = 0.0, sticky = 0.0;
+    for (b.seed = 1; b.seed <= 2; ++b.seed) { /* small piles: 2 degrees from seed to seed */
+        smooth += 0.5 * slump(0.1, 0.0);
+        rough += 0.5 * slump(0.5, 0.0);
+        sticky += 0.5 * slump(0.5, 0.2);
+    }
     CHECK(rough > smooth + 3.0);
     CHECK(sticky > rough + 3.0);
     CHECK(smooth > 0.0 && sticky < 60.0);

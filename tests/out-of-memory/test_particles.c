@@ -241,22 +241,25 @@ static void steady_steps_of_verlet_allocate_nothing(void)
     se3d_solver_def how = se3d_solver_def_default();
     se3d_solver *solver;
     se3d_particles_stats before, after;
+    size_t most = 0;
     open_world(&w, 1);
     CHECK(se3d_particles_remove_source(w.particles, 0) == SE3D_OK);
     how.analysis = SE3D_ANALYSIS_DYNAMICS;
     how.method = SE3D_METHOD_VERLET;
     how.step = STEP;
     CHECK(!SE3D_FAILED(se3d_solver_create(w.system, &how, &solver)));
-    CHECK(!SE3D_FAILED(se3d_solver_run(solver, 0.6)));
+    CHECK(!SE3D_FAILED(se3d_solver_run(solver, 0.65)));
     CHECK(se3d_particles_get_stats(w.particles, &before) == SE3D_OK);
     w.counting.calls = 0;
     for (int k = 0; k < 1000; ++k) {
         CHECK(!SE3D_FAILED(se3d_solver_step(solver, STEP)));
+        const size_t contacts = se3d_particles_count_contacts(w.particles);
+        most = contacts > most ? contacts : most;
     }
     CHECK(w.counting.calls == 0);
     CHECK(se3d_particles_get_stats(w.particles, &after) == SE3D_OK);
     CHECK(after.rebuilds > before.rebuilds + 2); /* the bucket swings */
-    CHECK(after.contacts > 100);
+    CHECK(most > 100);
     se3d_solver_destroy(solver);
     close_world(&w);
 }

@@ -28,10 +28,14 @@ static se3d_status repeat_hooke(void *ctx, const se3d_contact_input *in, se3d_co
         size += out->tangential[a] * out->tangential[a];
     }
     size = sqrt(size);
-    double cap = l->friction * out->force;
+    double cap = l->friction * out->force, stretch = 0.0;
+    for (int a = 0; a < 3; ++a) {
+        stretch += in->spring[a] * in->spring[a];
+    }
+    double held = fmin(l->kt * sqrt(stretch), size);
     for (int a = 0; a < 3 && size > cap; ++a) {
         out->tangential[a] *= cap / size;
-        out->spring[a] = -(out->tangential[a] + l->drag * root * in->slip[a]) / l->kt;
+        out->spring[a] = in->spring[a] * (held > cap ? cap / held : 1.0);
     }
     return SE3D_OK;
 }

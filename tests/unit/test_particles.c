@@ -277,7 +277,7 @@ static void settled_box_weighs_what_it_holds(void)
     size_t count;
     CHECK(se3d_particles_fill_lattice(b.particles, &fill, &count) == SE3D_OK);
     CHECK(count == 5 * 5 * 10);
-    CHECK(se3d_particles_run(b.particles, 1.6) == SE3D_OK);
+    CHECK(se3d_particles_run(b.particles, 2.4) == SE3D_OK);
     double force[3], torque[3], weight = 0.0, radius[250];
     CHECK(se3d_particles_get_radii(b.particles, count, radius) == SE3D_OK);
     for (size_t k = 0; k < count; ++k) {
