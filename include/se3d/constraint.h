@@ -64,9 +64,10 @@ SE3D_API se3d_status se3d_primitive_create(se3d_system *system, const se3d_primi
  * of Phi that have no acceleration
  *
  * Arrays that are not wanted are NULL, the others are zeroed. phi, jacobian and nu must not depend
- * on velocities. Must be a pure function of its arguments. Return OK, or a negative status to stop
- * the analysis with CALLBACK; numbers that are not finite end it with NOT_FINITE, unless a shorter
- * step avoids them. @since 0.1 */
+ * on velocities. Must be a pure function of its arguments: methods keep what it gave. Where what it
+ * computes has to change between steps, call se3d_system_touch after every change. Return OK, or a
+ * negative status to stop the analysis with CALLBACK; numbers that are not finite end it with
+ * NOT_FINITE, unless a shorter step avoids them. @since 0.1 */
 typedef se3d_status (*se3d_constraint_callback)(void *ctx, double t, const se3d_body_motion *bodies,
                                                 double *phi, double *jacobian, double *nu,
                                                 double *gamma);
@@ -100,6 +101,12 @@ static inline se3d_user_constraint_def se3d_user_constraint_def_default(void)
 SE3D_API se3d_status se3d_user_constraint_create(se3d_system *system,
                                                  const se3d_user_constraint_def *def,
                                                  se3d_constraint *constraint);
+
+/* Set the prescribed value of a driver, primitive or coupler that was made without a function. The
+ * state is made to follow before the next step, with the same velocities: a jump.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_constraint_set_value(se3d_system *system, se3d_constraint constraint,
+                                               double value);
 
 /* Destroy a primitive, joint or driver. @return OK, STALE_HANDLE, IN_USE. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_constraint_destroy(se3d_system *system, se3d_constraint constraint);

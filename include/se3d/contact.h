@@ -52,8 +52,9 @@ typedef struct se3d_contact_output {
     double spring[3];     /* what is remembered of it [m] */
 } se3d_contact_output;
 
-/* Compute the force of a contact. It must depend on its input only, may be called from several
- * threads at a time, and also by queries and for derivatives (of implicit methods, by differences).
+/* Compute the force of a contact. It must be a pure function of its input (call
+ * se3d_system_touch where it has to change between steps), may be called from several threads at a
+ * time, and also by queries and for derivatives (of implicit methods, by differences).
  * Return OK, or a negative status: the step ends, and CALLBACK names the two. */
 typedef se3d_status (*se3d_contact_callback)(void *ctx, const se3d_contact_input *input,
                                              se3d_contact_output *output);
@@ -116,6 +117,15 @@ static inline se3d_material_def se3d_material_def_default(void)
  * NO_MEMORY. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *def,
                                           se3d_material *material);
+/* Give a material other values, between steps: the handle stays, contacts keep what they remember,
+ * and the next step begins with the new values. Particles keep the mass that they were made with.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_material_set(se3d_system *system, se3d_material material,
+                                       const se3d_material_def *def);
+/* Get its values; struct_size must be set. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT.
+ * Reader. @since 0.1 */
+SE3D_API se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
+                                       se3d_material_def *def);
 /* Destroy. @return OK, NULL, STALE_HANDLE, IN_USE (a shape or a set of particles uses it).
  * Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_material_destroy(se3d_system *system, se3d_material material);

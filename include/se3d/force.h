@@ -200,8 +200,10 @@ typedef struct se3d_body_motion {
  * frame, at the centre of mass), torque on i (body frame), force on j, torque on j}. K and D are
  * NULL, or [144], row-major and zeroed: the derivatives of wrench to (dr_i, dtheta_i, dr_j,
  * dtheta_j), dtheta virtual rotations in the body frame, and to (v_i, w_i, v_j, w_j). Must be a
- * pure function of its arguments. Return OK, or a negative status to stop the analysis. @since 0.1
- */
+ * pure function of its arguments: methods keep and interpolate what it gave. What changes between
+ * steps is the value of an element (se3d_force_set_value, se3d_function_set_constant, ...); where
+ * it cannot be, call se3d_system_touch after every change. Return OK, or a negative status to stop
+ * the analysis. @since 0.1 */
 typedef se3d_status (*se3d_force_callback)(void *ctx, double t, const se3d_body_motion motion[2],
                                            double wrench[12], double *K, double *D);
 
@@ -228,6 +230,48 @@ static inline se3d_force_callback_def se3d_force_callback_def_default(void)
 SE3D_API se3d_status se3d_force_create_callback(se3d_system *system,
                                                 const se3d_force_callback_def *def,
                                                 se3d_force *force);
+
+/* ---- Values that change between steps. The handle stays, and so does what the element remembers.
+ * The next step begins with the new value, and queries that evaluate elements see it at once;
+ * accelerations and multipliers stay those of the last analysis until the next step or
+ * se3d_solver_run to the present time. ---- */
+
+/* Set, get the components of a force or torque [N, N m] where they are no functions.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT. Exclusive; Reader. @since 0.1 */
+SE3D_API se3d_status se3d_force_set_value(se3d_system *system, se3d_force force,
+                                          const double value[3]);
+SE3D_API se3d_status se3d_force_get_value(const se3d_system *system, se3d_force force,
+                                          double value[3]);
+
+/* A number that a force element has, with the units and the range of its definition. */
+typedef enum se3d_force_parameter {
+    SE3D_PARAMETER_K = 0,           /* tsda, rsda, stop */
+    SE3D_PARAMETER_C = 1,           /* tsda, rsda */
+    SE3D_PARAMETER_REST = 2,        /* tsda: l0, rsda: theta0 */
+    SE3D_PARAMETER_PRELOAD = 3,     /* tsda, rsda: also the value of a constant actuator */
+    SE3D_PARAMETER_LOWER = 4,       /* stop */
+    SE3D_PARAMETER_UPPER = 5,       /* stop */
+    SE3D_PARAMETER_RESTITUTION = 6, /* stop */
+    SE3D_PARAMETER_MU = 7,          /* friction; mu_static goes along where it is the same */
+    SE3D_PARAMETER_MU_STATIC = 8,   /* friction; 0: mu */
+    SE3D_PARAMETER_RADIUS = 9,      /* friction */
+    SE3D_PARAMETER_LIMIT = 10,      /* friction */
+    SE3D_PARAMETER_VISCOUS = 11,    /* friction */
+    SE3D_PARAMETER_PRESLIDING = 12  /* friction */
+} se3d_force_parameter;
+
+/* Set, get a number of a tsda, rsda, stop or friction element. What the change makes of the energy
+ * that is stored counts as work of actuators.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT. Exclusive; Reader. @since 0.1 */
+SE3D_API se3d_status se3d_force_set_parameter(se3d_system *system, se3d_force force,
+                                              int32_t parameter, double value);
+SE3D_API se3d_status se3d_force_get_parameter(const se3d_system *system, se3d_force force,
+                                              int32_t parameter, double *value);
+/* The same of the matrices of a bushing. @since 0.1 */
+SE3D_API se3d_status se3d_force_set_bushing(se3d_system *system, se3d_force force,
+                                            const double K[36], const double C[36]);
+SE3D_API se3d_status se3d_force_get_bushing(const se3d_system *system, se3d_force force,
+                                            double K[36], double C[36]);
 
 /* Get what an element does to its body i (side 0) or j (side 1): force at the centre of mass and
  * torque about it, ground frame. Reader. @since 0.1 */

@@ -13,7 +13,10 @@ extern "C" {
 #define SE3D_FUNCTION_VARIABLES_MAX 4
 
 /* Compute a function of x[0..variable_count): jet = {value, d/dx0, d2/dx0^2}; gradient (NULL or
- * [variable_count]) = first derivatives. Return OK, or a negative status to stop the analysis. */
+ * [variable_count]) = first derivatives. Must be a pure function of x: methods keep and
+ * interpolate what it gave. A value that changes between steps is a constant with
+ * se3d_function_set_constant; where it cannot be, call se3d_system_touch after every change. Return
+ * OK, or a negative status to stop the analysis. */
 typedef se3d_status (*se3d_function_callback)(void *ctx, const double *x, double jet[3],
                                               double *gradient);
 
@@ -51,6 +54,12 @@ SE3D_API se3d_status se3d_function_create(se3d_system *system, const se3d_functi
 /* Create a function of time from a text in `t`. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_function_create_expression(se3d_system *system, const char *text,
                                                      se3d_function *function);
+/* Change the value of a constant, between steps: the handle stays, and the next step begins with
+ * the new value. Where it prescribes a coordinate, the state is made to follow before that step,
+ * with the same velocity: a jump.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (it is no constant). Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_function_set_constant(se3d_system *system, se3d_function function,
+                                                double value);
 /* @return OK, STALE_HANDLE, IN_USE. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_function_destroy(se3d_system *system, se3d_function function);
 

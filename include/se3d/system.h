@@ -56,7 +56,14 @@ SE3D_API se3d_status se3d_system_get_error_status(const se3d_system *system);
  * docs/api.md, "Callbacks". Reader. @since 0.1 */
 SE3D_API int32_t se3d_system_is_busy(const se3d_system *system);
 
-/* Set the gravitational acceleration [m/s^2], ground frame. Exclusive. @since 0.1 */
+/* Say that what callbacks compute has changed since the last step: they must be pure functions of
+ * their arguments, and methods keep what they gave. The next step begins with what they give now;
+ * what elements remember stays. Setters of values do this by themselves. @return OK, NULL.
+ * Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_system_touch(se3d_system *system);
+
+/* Set the gravitational acceleration [m/s^2], ground frame. The next step begins with it.
+ * Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_system_set_gravity(se3d_system *system, const double gravity[3]);
 SE3D_API se3d_status se3d_system_get_gravity(const se3d_system *system, double gravity[3]);
 

@@ -305,6 +305,46 @@ static double band_of(const se3di_event *event)
     return fmax(event->hysteresis, 4.0 * DBL_EPSILON * fabs(event->level));
 }
 
+/* On which side of its level an event's value was last seen up to t within the step that was looked
+ * at; 0: at none. */
+static int32_t side_at(const se3di_events *events, uint32_t k, double t)
+{
+    const double *g = &events->g[SE3DI_CROSSING_NODES * k];
+    const double band = band_of(&events->list[k]);
+    const se3di_handle handle = se3di_slots_handle(&events->slots, k);
+    double since = events->t[0];
+    int32_t side = 0;
+    for (int node = 0; node < events->node_count && events->t[node] <= t; ++node) {
+        if (fabs(g[node]) > band) {
+            side = g[node] > 0.0 ? 1 : -1;
+            since = events->t[node];
+        }
+    }
+    for (size_t n = 0; n < events->record_count; ++n) {
+        const se3d_event_record *record = &events->records[n];
+        if (record->event.index1 == handle.index1 && record->time > since && record->time <= t) {
+            side = record->direction;
+        }
+    }
+    return side;
+}
+
+void se3di_events_renew(se3di_events *events, uint64_t stamp)
+{
+    const double t = events->run->model->time;
+    const int knows = events->slots.count > 0 && events->looked_stamp == stamp;
+    if (knows && events->looked && events->looked_time > t) {
+        for (uint32_t k = 0; k < events->slots.count; ++k) {
+            events->list[k].side = side_at(events, k, t);
+        }
+        events->looked_time = t;
+    }
+    events->looked = 0;
+    if (knows) {
+        events->looked_stamp = events->run->model->history_stamp;
+    }
+}
+
 /* The step from `begin` follows the one that was looked at last. */
 static int follows(const se3di_events *events, double begin)
 {
@@ -420,7 +460,7 @@ static se3d_status call_back(se3di_events *events, const se3di_event *event,
                              const se3d_event_record *record, int *changed)
 {
     se3di_model *model = events->run->model;
-    const uint64_t stamp = model->history_stamp;
+    const uint64_t stamp = model->history_stamp, inputs = model->inputs_version;
     const int shows = has_own_contacts(events);
     if (shows) {
         SE3DI_TRY(se3di_contacts_show(model, model->time, events->run->error));
@@ -428,7 +468,7 @@ static se3d_status call_back(se3di_events *events, const se3di_event *event,
     const int32_t level = se3di_busy_raise(model->busy, SE3DI_BUSY_EVENT);
     const se3d_status status = event->callback(event->callback_ctx, events->system, record);
     se3di_busy_restore(model->busy, level);
-    *changed = model->history_stamp != stamp;
+    *changed = model->history_stamp != stamp || model->inputs_version != inputs;
     if (shows && !*changed) {
         se3di_contacts_hide(model);
     }

@@ -77,6 +77,8 @@ se3d_status se3di_events_prepare(se3di_events *events);
 /* Steps of a method with dense output to t_end. @return OK, INFO_EVENT (the model is at the event),
  * or an error as from the method's run. */
 se3d_status se3di_events_run(se3di_events *events, double t_end);
+/* The model goes on from its present state under other loads; the history was of `stamp`. */
+void se3di_events_renew(se3di_events *events, uint64_t stamp);
 /* Around a watched step, see se3di_watch. */
 se3d_status se3di_events_begin_step(void *events);
 se3d_status se3di_events_end_step(void *events);

@@ -43,13 +43,10 @@ static se3d_status balance(se3di_equations *equations, se3di_force *force, doubl
     return hold(equations, force, mode, wanted);
 }
 
-se3d_status se3di_friction_start(se3di_equations *equations)
+/* Find what those that rest hold with, of which `fresh` elements do not know it. */
+static se3d_status find_holds(se3di_equations *equations, uint32_t fresh)
 {
     se3di_model *model = equations->assembly.model;
-    uint32_t fresh = 0;
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        fresh += (uint32_t)is_fresh(&model->forces[k]);
-    }
     se3di_forces_accept(model);
     double change = 1.0;
     for (int sweep = 0; fresh > 0 && change > 1e-12 && sweep < SWEEPS; ++sweep) {
@@ -69,6 +66,26 @@ se3d_status se3di_friction_start(se3di_equations *equations)
         se3di_forces_accept(model);
     }
     return SE3D_OK;
+}
+
+se3d_status se3di_friction_start(se3di_equations *equations)
+{
+    const se3di_model *model = equations->assembly.model;
+    uint32_t fresh = 0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        fresh += (uint32_t)is_fresh(&model->forces[k]);
+    }
+    return find_holds(equations, fresh);
+}
+
+se3d_status se3di_friction_renew(se3di_equations *equations)
+{
+    const se3di_model *model = equations->assembly.model;
+    uint32_t count = 0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        count += model->forces[k].type == SE3DI_FORCE_FRICTION;
+    }
+    return count > 0 ? find_holds(equations, count) : SE3D_OK;
 }
 
 /* Count the elements; some follow a load. */

@@ -122,6 +122,7 @@ static se3d_status build(se3di_run *run)
     run->integration.equations = &run->equations;
     run->prepared = 1;
     run->determined = 0;
+    run->values_version = run->model->values_version;
     if (is_driven(run)) {
         se3di_assembly_level(&run->equations.assembly);
     }
@@ -141,6 +142,10 @@ static se3d_status prepare(se3di_run *run)
         choose_method(run);
         SE3DI_TRY(build(run));
     }
+    if (run->values_version != run->model->values_version) {
+        se3di_assembly_take_values(&run->equations.assembly);
+        run->values_version = run->model->values_version;
+    }
     run->equations.watch = run->events.slots.count > 0 ? &run->watch : NULL;
     run->equations.guard = &run->guard;
     return se3di_events_prepare(&run->events) < 0
@@ -158,6 +163,15 @@ static se3d_status start_contacts(const se3di_run *run, double t)
                   : se3di_contacts_prepare(model, t, run->error));
     se3di_contacts_accept(model);
     return SE3D_OK;
+}
+
+/* Accelerations and multipliers at the present state. */
+static se3d_status accelerate(se3di_run *run)
+{
+    const se3di_integrator *method = run->integration.method;
+    return run->analysis == SE3D_ANALYSIS_DYNAMICS && method->accelerate
+               ? method->accelerate(&run->integration)
+               : se3di_acceleration_solve(&run->equations, run->model->time);
 }
 
 /* A new state: positions, velocities, accelerations and multipliers made consistent at the model's
@@ -190,13 +204,59 @@ static uint64_t history_tag(const se3di_run *run)
     return 2 * run->integration.method->tag + (uint64_t)run->formulation->id;
 }
 
+/* The history belongs to what acts on the model now. */
+static void mark_history(se3di_model *model)
+{
+    model->history_inputs = model->inputs_version;
+    model->history_values = model->values_version;
+}
+
+/* Where a step ends after the present time, what elements remember of its end is not of their past.
+ */
+static se3d_status recall(se3di_run *run)
+{
+    se3di_model *model = run->model;
+    if (!run->integration.method->advance || !(model->history[SE3DI_HISTORY_TIME] > model->time)) {
+        return SE3D_OK;
+    }
+    se3di_forces_recall(model);
+    se3di_contacts_begin(model, 0.0, 1.0, 0);
+    return model->contacts.pair_count > 0 ? se3di_contacts_show(model, model->time, run->error)
+                                          : SE3D_OK;
+}
+
+/* Something else acts on the present state than did on the way to it (`whole`: it may not be
+ * consistent any more). All that follows from what acts is computed anew, so that it does so from
+ * the very start of the next step; what is remembered of the motion stays. */
+static se3d_status renew(se3di_run *run, int whole)
+{
+    se3di_model *model = run->model;
+    const se3di_integrator *method = run->integration.method;
+    SE3DI_TRY(recall(run));
+    SE3DI_TRY(whole ? settle(run, model->time) : SE3D_OK);
+    SE3DI_TRY(accelerate(run));
+    SE3DI_TRY(se3di_friction_renew(&run->equations));
+    SE3DI_TRY(model->sets ? accelerate(run) : SE3D_OK);   /* friction knows no particles */
+    if (model->history_values != model->values_version) { /* who did the work is not known */
+        model->work_valid = 0;
+    }
+    SE3DI_TRY(se3di_work_accept(model, 0.0));
+    SE3DI_TRY(method->renew ? method->renew(&run->integration) : SE3D_OK);
+    mark_history(model);
+    const uint64_t stamp = model->history_stamp++;
+    se3di_events_renew(&run->events, stamp);
+    return SE3D_OK;
+}
+
 /* Dynamics goes on from its own history, or starts from a consistent state, where the audit of
  * energy begins. */
 static se3d_status begin_dynamics(se3di_run *run, double h)
 {
     se3di_model *model = run->model;
     if (model->history_tag == history_tag(run)) {
-        return SE3D_OK;
+        return model->history_inputs == model->inputs_version
+                   ? SE3D_OK
+                   : renew(run, model->history_values != model->values_version);
     }
     SE3DI_TRY(settle(run, model->time));
     SE3DI_TRY(se3di_friction_start(&run->equations));
@@ -204,6 +264,7 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
     SE3DI_TRY(run->integration.method->start(&run->integration, h));
     model->history_count = run->integration.method->history_count(&run->equations.assembly);
     model->history_tag = history_tag(run);
+    mark_history(model);
     ++model->history_stamp;
     return SE3D_OK;
 }
@@ -324,9 +385,10 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
 {
     if (!(t_end > run->model->time)) {
         if (run->model->history_tag == history_tag(run)) {
-            return SE3D_OK;
+            return renew(run, 1);
         }
         SE3DI_TRY(settle(run, t_end));
+        SE3DI_TRY(run->integration.method->accelerate ? accelerate(run) : SE3D_OK);
         return se3di_friction_start(&run->equations);
     }
     se3d_status status = run_method(run, t_end);
@@ -342,7 +404,7 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
 
 static se3d_status run_kinematics(se3di_run *run, double t_end)
 {
-    if (!run->model->settled || !run->determined) {
+    if (!run->model->settled || !run->determined || !(t_end > run->model->time)) {
         SE3DI_TRY(settle(run, run->model->time));
     }
     se3di_contacts_begin(run->model, 0.0, 1.0, 0);

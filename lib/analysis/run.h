@@ -22,8 +22,9 @@ typedef struct se3di_run {
     double left_at;               /* when [s] */
     se3di_watch watch;            /* what the events are told of the steps */
     se3di_events events;
-    se3di_guard guard; /* what ends a run before its time */
-    double horizon;    /* runs go on to here [s] */
+    uint64_t values_version; /* of the prescribed values that the equations have */
+    se3di_guard guard;       /* what ends a run before its time */
+    double horizon;          /* runs go on to here [s] */
 } se3di_run;
 
 /* Set up for an analysis; allocates nothing yet. `system`: for the callbacks of events. */

@@ -130,13 +130,19 @@ static void release(const se3d_allocator *allocator, assembly_array *arrays, int
     }
 }
 
+void se3di_assembly_take_values(se3di_assembly *assembly)
+{
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        assembly->f[3 * (size_t)k] = assembly->model->rows[k].value;
+    }
+}
+
 /* Rows that change with time, the values of the others, and joints that are evaluated as one. */
 static void sort_rows(se3di_assembly *assembly)
 {
+    se3di_assembly_take_values(assembly);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        const se3di_row *row = &assembly->model->rows[k];
-        assembly->f[3 * (size_t)k] = row->value;
-        if (row->function >= 0) {
+        if (assembly->model->rows[k].function >= 0) {
             assembly->timed_rows[assembly->timed_count++] = k;
         }
     }

@@ -60,6 +60,8 @@ se3d_status se3di_assembly_init(se3di_assembly *assembly, se3di_model *model,
 void se3di_assembly_destroy(se3di_assembly *assembly);
 
 /* Functions of time at t, for all that follows. */
+/* Take the prescribed values of rows without a function from the model, where they have changed. */
+void se3di_assembly_take_values(se3di_assembly *assembly);
 se3d_status se3di_assembly_eval_functions(se3di_assembly *assembly, double t, se3di_error *error);
 /* Phi [rows]; with `functions` evaluated. */
 void se3di_assembly_eval_phi(const se3di_assembly *assembly, double *phi);

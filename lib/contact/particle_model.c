@@ -217,10 +217,39 @@ static se3d_status reserve_sums(se3di_particles *set)
     return status;
 }
 
+static void take_law(se3di_particles *set, const se3di_model *model)
+{
+    set->law = (se3di_contact_law)model->contact.law;
+    set->callback = model->contact.callback;
+    set->ctx = model->contact.ctx;
+    set->overlap_limit = model->contact.overlap_limit;
+    set->contact_version = model->contact_version;
+    set->force_valid = 0;
+}
+
+/* Materials and the law have changed, what touches has not. *whole: more has to be done. */
+static se3d_status renew(se3di_particles *set, const se3di_model *model, int *whole)
+{
+    const int32_t rolling = set->rolling;
+    SE3DI_TRY(mix(set, model));
+    *whole = set->rolling != rolling; /* contacts have to remember more, or less */
+    set->rolling = rolling;
+    if (!*whole) {
+        take_law(set, model);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model)
 {
     if (set->topology_version == model->topology_version) {
-        return SE3D_OK;
+        int whole = 0;
+        if (set->contact_version != model->contact_version) {
+            SE3DI_TRY(renew(set, model, &whole));
+        }
+        if (!whole) {
+            return SE3D_OK;
+        }
     }
     SE3DI_TRY(se3di_particles_collect(set)); /* rolling may begin */
     for (size_t k = 0; k < set->stuff_count; ++k) {
@@ -238,12 +267,8 @@ se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model)
     SE3DI_TRY(mix(set, model));
     SE3DI_TRY(replace_walls(set, model));
     SE3DI_TRY(reserve_sums(set));
-    set->law = (se3di_contact_law)model->contact.law;
-    set->callback = model->contact.callback;
-    set->ctx = model->contact.ctx;
-    set->overlap_limit = model->contact.overlap_limit;
+    take_law(set, model);
     set->topology_version = model->topology_version;
-    set->force_valid = 0;
     return SE3D_OK;
 }
 

@@ -224,6 +224,7 @@ typedef struct se3di_particles {
     double gravity[3];
 
     uint64_t topology_version; /* of the model whose materials and shapes these are; 0: none */
+    uint64_t contact_version;  /* of them and of the law */
     uint32_t group, mask;
     se3di_stuff *stuffs;
     size_t stuff_count, stuff_capacity;

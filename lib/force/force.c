@@ -165,11 +165,21 @@ void se3di_stops_accept(se3di_model *model)
 void se3di_forces_accept(se3di_model *model)
 {
     for (size_t k = 0; k < model->force_slots.count; ++k) {
+        double *state = model->forces[k].state;
+        memcpy(state + SE3DI_FORCE_BEFORE, state, SE3DI_FORCE_BEFORE * sizeof *state);
         if (model->forces[k].type == SE3DI_FORCE_FRICTION) {
             se3di_friction_accept(model, &model->forces[k]);
         } else if (model->forces[k].type == SE3DI_FORCE_STOP) {
             se3di_stop_accept(model, &model->forces[k]);
         }
+    }
+}
+
+void se3di_forces_recall(se3di_model *model)
+{
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        double *state = model->forces[k].state;
+        memcpy(state, state + SE3DI_FORCE_BEFORE, SE3DI_FORCE_BEFORE * sizeof *state);
     }
 }
 

@@ -65,6 +65,8 @@ se3d_status se3di_power_eval(const se3di_model *model, double t, double power[3]
 uint32_t se3di_forces_revise(se3di_model *model);
 /* The state of the model is accepted. */
 void se3di_forces_accept(se3di_model *model);
+/* The last accepted state is not taken: what was remembered before it. */
+void se3di_forces_recall(se3di_model *model);
 /* Some element has a memory. */
 int se3di_forces_have_memory(const se3di_model *model);
 /* The element has a memory. */

@@ -34,6 +34,7 @@ enum {
     BDF_LENGTH,
     BDF_SPEED,
     BDF_SPIN,
+    BDF_RENEWED, /* 1: something else acts since the last step */
     BDF_HEADER
 };
 
@@ -49,6 +50,7 @@ typedef struct bdf {
     double *acceleration; /* a, wdot of each free body [6] */
     double *work;         /* [unknowns] */
     double tolerance, c;
+    double t_end; /* of the run */
 } bdf;
 
 static size_t history_count(const se3di_assembly *assembly)
@@ -112,8 +114,9 @@ static double measure(const bdf *m, const double *error)
     return (r + v) / m->tolerance;
 }
 
-/* Backward differences for the step `ratio` times as long: interpolation of degree `order`. */
-static void change_step(bdf *m, double ratio)
+/* Backward differences for the step `ratio` times as long from a time `shift` steps after the
+ * present one: interpolation of degree `order`. */
+static void move_base(bdf *m, double ratio, double shift)
 {
     int order = (int)m->header[BDF_ORDER];
     double basis[ORDER_MAX + 1][ORDER_MAX + 1] = {{0.0}}; /* value at -i ratio of the j-th form */
@@ -121,7 +124,7 @@ static void change_step(bdf *m, double ratio)
     for (int i = 0; i <= order; ++i) {
         basis[i][0] = 1.0;
         for (int j = 1; j <= order; ++j) {
-            basis[i][j] = basis[i][j - 1] * (j - 1 - i * ratio) / j;
+            basis[i][j] = basis[i][j - 1] * (j - 1 + shift - i * ratio) / j;
         }
     }
     memcpy(R, basis, sizeof R);
@@ -145,6 +148,11 @@ static void change_step(bdf *m, double ratio)
     }
     m->header[BDF_STEP] *= ratio;
     m->header[BDF_EQUAL] = 0.0;
+}
+
+static void change_step(bdf *m, double ratio)
+{
+    move_base(m, ratio, 0.0);
 }
 
 static double harmonic(int order)
@@ -354,6 +362,7 @@ static se3d_status accept(bdf *m, double t)
     m->header[BDF_BEGIN] = m->header[BDF_TIME];
     m->header[BDF_TIME] = t;
     m->header[BDF_EQUAL] += 1.0;
+    m->header[BDF_RENEWED] = 0.0;
     se3di_angles_accept(model);
     se3di_contacts_accept(model); /* force elements: settle */
     ++m->equations->counters.steps;
@@ -395,12 +404,15 @@ static void adapt(bdf *m, double error)
     }
 }
 
-/* No step over a contact that begins. */
+/* No step over a contact that begins; and after a change of what acts, which may soon change again,
+ * none over the end of the run. */
 static void keep_pace(bdf *m)
 {
     se3di_state_set(m->assembly, m->D);
     double h = m->header[BDF_STEP];
     double paced = se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
+    const double rest = m->t_end - m->header[BDF_TIME];
+    paced = m->header[BDF_RENEWED] > 0.0 && rest > 0.0 ? fmin(paced, rest) : paced;
     if (paced < h) {
         change_step(m, paced / h);
     }
@@ -499,6 +511,66 @@ static se3d_status start(se3di_integration *integration, double h)
     return adopt(&m, limit > 0.0 ? fmin(limit, first) : first);
 }
 
+/* The past is moved to where the present rates y' and accelerations would have led from it: a line
+ * on all, a parabola on positions. With the latter order 2 is there from the start. */
+static void bend(bdf *m, const double *rate)
+{
+    const double h = m->header[BDF_STEP];
+    const int order = (int)m->header[BDF_ORDER];
+    double *D1 = m->D + m->count, *D2 = D1 + m->count;
+    for (size_t k = 0; k < m->count; ++k) {
+        double slope = D1[k];
+        for (int j = 2; j <= order; ++j) {
+            slope += m->D[(size_t)j * m->count + k] / j;
+        }
+        m->y[k] = h * rate[k] - slope;
+        D1[k] += m->y[k];
+    }
+    for (size_t k = 0; k < m->assembly->body_count; ++k) {
+        const size_t at = k * SE3DI_STATE_SIZE;
+        double curve[7];
+        for (size_t i = 7; order == 1 && i < SE3DI_STATE_SIZE; ++i) {
+            m->y[at + i] = h * rate[at + i]; /* there was no parabola yet */
+        }
+        se3di_copy(m->y + at + 7, curve);
+        se3di_quat_rate(m->D + at + 3, m->y + at + 10, curve + 3);
+        for (size_t i = 3; order == 1 && i < 7; ++i) {
+            const double *w = m->D + at + 10;
+            curve[i] -= 0.25 * h * se3di_dot(w, w) * m->D[at + i];
+        }
+        for (size_t i = 0; i < 7; ++i) {
+            D1[at + i] -= 0.5 * h * curve[i];
+            D2[at + i] = (order > 1 ? D2[at + i] : 0.0) + h * curve[i];
+        }
+        for (size_t i = 7; order == 1 && i < SE3DI_STATE_SIZE; ++i) {
+            D2[at + i] = 0.0;
+        }
+    }
+}
+
+static se3d_status renew(se3di_integration *integration)
+{
+    bdf m = begin(integration);
+    se3di_model *model = m.assembly->model;
+    const double shift = (model->time - m.header[BDF_TIME]) / m.header[BDF_STEP];
+    if (shift < 0.0) {
+        move_base(&m, 1.0, shift);
+        m.header[BDF_TIME] = model->time;
+    }
+    se3di_state_get(m.assembly, m.D);
+    se3di_assembly_get_acceleration(m.assembly, m.acceleration);
+    SE3DI_TRY(se3di_state_derivative(m.assembly, model->time, m.acceleration, model->lambda,
+                                     m.predicted));
+    bend(&m, m.predicted);
+    const int top = integration->settings.order;
+    m.header[BDF_ORDER] = top == 1 ? 1.0 : fmax(2.0, m.header[BDF_ORDER]);
+    m.header[BDF_RENEWED] = 1.0;
+    if (m.assembly->row_count > 0) {
+        memcpy(m.lambda, model->lambda, m.assembly->row_count * sizeof *m.lambda);
+    }
+    return SE3D_OK;
+}
+
 /* The polynomial of the differences at t. */
 static void eval_polynomial(const bdf *m, double t, double *y)
 {
@@ -545,7 +617,7 @@ static se3d_status step(se3di_integration *integration, double h)
 static se3d_status advance_one(se3di_integration *integration, double t_end)
 {
     bdf m = begin(integration);
-    (void)t_end;
+    m.t_end = t_end;
     return advance(&m, 1);
 }
 
@@ -563,6 +635,7 @@ static se3d_status run(se3di_integration *integration, double t_end)
 {
     bdf m = begin(integration);
     se3d_status status = SE3D_OK;
+    m.t_end = t_end;
     while (m.header[BDF_TIME] < t_end && status >= 0) {
         status = advance(&m, 1);
     }
@@ -581,6 +654,7 @@ const se3di_integrator se3di_integrator_bdf = {
     .history_count = history_count,
     .work_count = work_count,
     .start = start,
+    .renew = renew,
     .step = step,
     .run = run,
     .advance = advance_one,

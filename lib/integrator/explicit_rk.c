@@ -29,6 +29,7 @@ enum {
     RK_HELD,       /* signs in a row that stability holds the steps */
     RK_FREE,       /* signs against it since */
     RK_SINCE,      /* steps since the last look */
+    RK_RENEWED,    /* 1: something else acts since the last step */
     RK_HEADER
 };
 
@@ -296,7 +297,7 @@ static void accept(rk *m, double h)
 {
     m->header[RK_T0] = m->header[RK_T1];
     m->header[RK_T1] += h;
-    m->header[RK_DENSE] = 0.0;
+    m->header[RK_DENSE] = m->header[RK_RENEWED] = 0.0;
     size_t work = m->count - SE3DI_STATE_WORK;
     memcpy(m->y, m->y + work, SE3DI_STATE_WORK * sizeof *m->y); /* y_1 before the projection */
     se3di_state_get(m->assembly, m->y1);
@@ -463,7 +464,8 @@ static int must_leave(const rk *m)
 }
 
 /* One accepted step with error control. What contacts remember belongs to the end of a step, and
- * cannot be interpolated: where shapes are near each other steps end at t_end. */
+ * cannot be interpolated: where shapes are near each other steps end at t_end. So does the first
+ * one after a change of what acts, which may soon change again. */
 static se3d_status advance(rk *m, double t_end)
 {
     double h = m->header[RK_NEXT];
@@ -472,7 +474,8 @@ static se3d_status advance(rk *m, double t_end)
     h = se3di_state_limit_turn(m->assembly->model, largest_growth(m), h);
     h = se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
     double rest = t_end - m->header[RK_T1];
-    double longer = m->assembly->model->contacts.pair_count > 0 && h > rest ? h : 0.0;
+    const int ends = m->assembly->model->contacts.pair_count > 0 || m->header[RK_RENEWED] > 0.0;
+    double longer = ends && h > rest ? h : 0.0;
     h = longer > 0.0 ? rest : h;
     for (;;) {
         double error;
@@ -615,6 +618,15 @@ se3d_status se3di_rk_start(se3di_integration *integration, double h)
     if (status >= 0) {
         m.header[RK_NEXT] = choose_first(&m);
     }
+    se3di_state_end(m.equations, &m.kkt);
+    return status;
+}
+
+se3d_status se3di_rk_renew(se3di_integration *integration)
+{
+    rk m = begin(integration);
+    const se3d_status status = adopt(&m);
+    m.header[RK_RENEWED] = 1.0;
     se3di_state_end(m.equations, &m.kkt);
     return status;
 }

@@ -40,6 +40,7 @@ size_t se3di_rk_history_count(const se3di_assembly *assembly);
 size_t se3di_rk_work_count(const se3di_assembly *assembly);
 /* Functions of the table of methods, for those that have a tableau. */
 se3d_status se3di_rk_start(se3di_integration *integration, double h);
+se3d_status se3di_rk_renew(se3di_integration *integration);
 /* One step of length h without error control. */
 se3d_status se3di_rk_step(se3di_integration *integration, double h);
 /* To t_end with step control. */
@@ -52,7 +53,7 @@ int se3di_rk_is_held(const se3di_integration *integration);
 /* What the entries of all of them in the table of methods have, beside their own `tableau`. */
 #define SE3DI_RK_METHOD                                                                            \
     .history_count = se3di_rk_history_count, .work_count = se3di_rk_work_count,                    \
-    .start = se3di_rk_start, .step = se3di_rk_step, .run = se3di_rk_run,                           \
+    .start = se3di_rk_start, .renew = se3di_rk_renew, .step = se3di_rk_step, .run = se3di_rk_run,  \
     .advance = se3di_rk_advance, .interpolate = se3di_rk_interpolate, .tableau = &tableau,         \
     .is_explicit = 1
 

@@ -43,6 +43,7 @@ const se3di_integrator se3di_integrator_hht = {
     .history_count = se3di_newmark_history_count,
     .work_count = se3di_newmark_work_count,
     .start = start,
+    .renew = se3di_newmark_renew,
     .step = step,
     .run = run,
     .controls_if_asked = 1,

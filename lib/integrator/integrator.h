@@ -37,6 +37,12 @@ typedef struct se3di_integrator {
     size_t (*work_count)(const se3di_assembly *assembly);    /* doubles of integration->work */
     /* Fill the history from a consistent state (accelerations included), for a first step of h. */
     se3d_status (*start)(se3di_integration *integration, double h);
+    /* Something else acts from the present time on: the history is to go on from the model's state
+     * with its new accelerations, and nothing that was computed with the old ones is used again.
+     * NULL: nothing is kept of accelerations. */
+    se3d_status (*renew)(se3di_integration *integration);
+    /* Accelerations and multipliers at the model's state. NULL: se3di_acceleration_solve. */
+    se3d_status (*accelerate)(se3di_integration *integration);
     /* One step of length h. */
     se3d_status (*step)(se3di_integration *integration, double h);
     /* Several steps to t_end with own step control; NULL, or step control not wanted: steps of

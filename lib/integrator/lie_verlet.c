@@ -37,6 +37,11 @@ se3d_status se3di_lie_verlet_start(se3di_integration *integration, double h)
     return SE3D_OK;
 }
 
+se3d_status se3di_lie_verlet_renew(se3di_integration *integration)
+{
+    return se3di_lie_verlet_start(integration, 0.0);
+}
+
 se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int force_iterations)
 {
     se3di_assembly *assembly = &integration->equations->assembly;

@@ -37,6 +37,7 @@ typedef struct se3di_lie_verlet {
 size_t se3di_lie_verlet_history_count(const se3di_assembly *assembly);
 size_t se3di_lie_verlet_work_count(const se3di_assembly *assembly);
 se3d_status se3di_lie_verlet_start(se3di_integration *integration, double h);
+se3d_status se3di_lie_verlet_renew(se3di_integration *integration);
 
 /* On the work arrays of the integration; h and t1 are set by the caller for each step. */
 se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int force_iterations);

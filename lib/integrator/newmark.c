@@ -117,6 +117,24 @@ se3d_status se3di_newmark_start(se3di_integration *integration, const se3di_newm
     return SE3D_OK;
 }
 
+/* Accelerations have jumped, and the algorithmic ones, which lag behind them by the same as before,
+ * with them. */
+se3d_status se3di_newmark_renew(se3di_integration *integration)
+{
+    se3di_equations *equations = integration->equations;
+    const se3di_assembly *assembly = &equations->assembly;
+    double *a = assembly->model->history;
+    double *vdot = a + assembly->unknown_count;
+    const size_t block = (size_t)assembly->formulation->block;
+    se3di_assembly_get_acceleration(assembly, equations->x);
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        const double jump = k % block == 7 ? 0.0 : equations->x[k] - vdot[k];
+        a[k] += jump;
+        vdot[k] += jump;
+    }
+    return SE3D_OK;
+}
+
 /* q, v, a from the present vdot. */
 static void update_state(newmark_step *step)
 {

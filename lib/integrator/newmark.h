@@ -30,6 +30,7 @@ se3d_status se3di_newmark_start(se3di_integration *integration, const se3di_newm
 /* One step. A step whose local error of positions,
  *     h^2 (|beta - 1/6| + 1/24) (vdot - vdot_n),
  * exceeds method->tolerance is undone: STEP_SIZE, and integration->error > 1. */
+se3d_status se3di_newmark_renew(se3di_integration *integration);
 se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newmark *method,
                                double h);
 /* Steps of controlled error that end at t_end. */

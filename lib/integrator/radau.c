@@ -34,6 +34,7 @@ enum {
     RADAU_LENGTH,                      /* scales */
     RADAU_SPEED,
     RADAU_SPIN,
+    RADAU_RENEWED, /* 1: something else acts since the last step */
     RADAU_HEADER
 };
 
@@ -215,6 +216,7 @@ static se3d_status accept(se3di_radau *m, const history *past)
     past->header[RADAU_BEGIN] = m->t;
     past->header[RADAU_TIME] = m->t + m->h;
     past->header[RADAU_LAST] = m->h;
+    past->header[RADAU_RENEWED] = 0.0;
     se3di_state_scale_grow(m->assembly, m->f0, &m->scale);
     past->header[RADAU_SPEED] = m->scale.speed;
     past->header[RADAU_SPIN] = m->scale.spin;
@@ -280,8 +282,9 @@ static se3d_status fail_small(const se3di_radau *m, double h, se3d_status cause)
                                        m->t, h, m->integration->settings.tolerance);
 }
 
-/* One accepted step with error control. */
-static se3d_status advance(se3di_integration *integration)
+/* One accepted step with error control; the first one after a change of what acts, which may soon
+ * change again, goes to t_end at most. */
+static se3d_status advance(se3di_integration *integration, double t_end)
 {
     se3di_radau m;
     const history past = get_history(&integration->equations->assembly);
@@ -290,7 +293,9 @@ static se3d_status advance(se3di_integration *integration)
     SE3DI_TRY(begin_step(&m, integration, &past));
     double h = se3di_state_limit_turn(m.assembly->model, 0.0, header[RADAU_NEXT]);
     h = se3di_contacts_pace(m.assembly->model, SE3DI_PACE_ADAPTIVE, h);
-    for (;;) {
+    const double longer = header[RADAU_RENEWED] > 0.0 && h > t_end - m.t ? h : 0.0;
+    h = longer > 0.0 ? t_end - m.t : h;
+    for (int whole = 1;; whole = 0) {
         double error;
         SE3DI_TRY(se3di_equations_try_step(m.equations, m.t));
         se3d_status status = attempt(&m, &past, inner, h, &error);
@@ -301,7 +306,8 @@ static se3d_status advance(se3di_integration *integration)
             const double next = next_step(&m, &past, error);
             status = accept(&m, &past);
             if (status >= 0) {
-                header[RADAU_NEXT] = next;
+                header[RADAU_NEXT] = whole ? fmax(longer, next) : next;
+                header[RADAU_TIME] = whole && longer > 0.0 ? t_end : header[RADAU_TIME];
                 header[RADAU_ERROR] = fmax(error, 1e-2);
                 header[RADAU_REJECTED] = 0.0;
                 return SE3D_OK;
@@ -355,6 +361,16 @@ static se3d_status start(se3di_integration *integration, double h)
     return SE3D_OK;
 }
 
+static se3d_status renew(se3di_integration *integration)
+{
+    const history past = get_history(&integration->equations->assembly);
+    const double next = past.header[RADAU_NEXT];
+    SE3DI_TRY(adopt(integration));
+    past.header[RADAU_NEXT] = next;
+    past.header[RADAU_RENEWED] = 1.0;
+    return SE3D_OK;
+}
+
 static se3d_status publish(se3di_integration *integration, double t)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
@@ -395,8 +411,7 @@ static se3d_status step(se3di_integration *integration, double h)
 
 static se3d_status advance_one(se3di_integration *integration, double t_end)
 {
-    (void)t_end;
-    return advance(integration);
+    return advance(integration, t_end);
 }
 
 static void interpolate(const se3di_integration *integration, double t, double *y)
@@ -416,7 +431,7 @@ static se3d_status run(se3di_integration *integration, double t_end)
     const history past = get_history(&integration->equations->assembly);
     se3d_status status = SE3D_OK;
     while (past.header[RADAU_TIME] < t_end && status >= 0) {
-        status = advance(integration);
+        status = advance(integration, t_end);
     }
     if (status >= 0) {
         return publish(integration, t_end);
@@ -433,6 +448,7 @@ const se3di_integrator se3di_integrator_radau = {
     .history_count = history_count,
     .work_count = se3di_radau_work_count,
     .start = start,
+    .renew = renew,
     .step = step,
     .run = run,
     .advance = advance_one,

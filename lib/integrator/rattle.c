@@ -54,6 +54,7 @@ const se3di_integrator se3di_integrator_rattle = {
     .history_count = se3di_lie_verlet_history_count,
     .work_count = se3di_lie_verlet_work_count,
     .start = se3di_lie_verlet_start,
+    .renew = se3di_lie_verlet_renew,
     .step = step,
     .orders = 1u << 2 | 1u << 4,
 };

@@ -127,19 +127,21 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
 }
 
 /* Accelerations and multipliers with the forces of the particles. */
-static se3d_status start(se3di_integration *integration, double h)
+static se3d_status accelerate(se3di_integration *integration)
 {
     se3di_equations *equations = integration->equations;
     se3di_model *model = equations->assembly.model;
-    SE3DI_TRY(se3di_lie_verlet_start(integration, h));
-    if (!model->sets) {
-        return SE3D_OK;
-    }
     SE3DI_TRY(se3di_sets_begin(model, 0.0, equations->error)); /* any step */
     (void)begin(integration);
     se3d_status status = se3di_acceleration_solve(equations, model->time);
     equations->assembly.push = NULL;
     return status;
+}
+
+static se3d_status start(se3di_integration *integration, double h)
+{
+    SE3DI_TRY(se3di_lie_verlet_start(integration, h));
+    return integration->equations->assembly.model->sets ? accelerate(integration) : SE3D_OK;
 }
 
 static se3d_status step(se3di_integration *integration, double h)
@@ -176,6 +178,8 @@ const se3di_integrator se3di_integrator_verlet = {
     .history_count = se3di_lie_verlet_history_count,
     .work_count = work_count,
     .start = start,
+    .renew = se3di_lie_verlet_renew,
+    .accelerate = accelerate,
     .step = step,
     .run = run,
     .orders = 1u << 2,

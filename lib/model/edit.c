@@ -88,6 +88,24 @@ void se3di_model_touch(se3di_model *model)
     se3di_model_touch_state(model);
 }
 
+void se3di_model_touch_inputs(se3di_model *model)
+{
+    ++model->inputs_version;
+    model->settled = 0;
+}
+
+void se3di_model_touch_contact(se3di_model *model)
+{
+    ++model->contact_version;
+    se3di_model_touch_inputs(model);
+}
+
+void se3di_model_touch_values(se3di_model *model)
+{
+    ++model->values_version;
+    se3di_model_touch_inputs(model);
+}
+
 se3d_status se3di_model_add_body(se3di_model *model, const se3di_body *body,
                                  const se3di_frame *frame, se3di_handle *handle)
 {

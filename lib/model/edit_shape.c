@@ -162,11 +162,11 @@ void se3di_model_set_override(se3di_model *model, uint32_t a, uint32_t b,
     size_t n = model->material_slots.count;
     model->overrides[a * n + b] = *over;
     model->overrides[b * n + a] = *over;
-    se3di_model_touch(model);
+    se3di_model_touch_contact(model);
 }
 
 void se3di_model_set_contact(se3di_model *model, const se3di_contact_settings *settings)
 {
     model->contact = *settings;
-    se3di_model_touch(model);
+    se3di_model_touch_contact(model);
 }

@@ -85,7 +85,7 @@ typedef struct se3di_constraint {
     se3d_constraint_callback callback; /* user constraints; their rows have no terms */
     void *ctx;
     uint32_t user_first; /* the callback's bodies begin here in `bodies` */
-    uint32_t reserved;
+    int32_t has_value;   /* one row, whose prescribed value is the user's */
 } se3di_constraint;
 
 /* The first callback of a user constraint that failed since an analysis began. */
@@ -115,8 +115,10 @@ typedef enum se3di_force_type {
 } se3di_force_type;
 
 #define SE3DI_FORCE_FUNCTIONS                                                                      \
-    5                        /* h or the components of a load (0, 1, 2), spring (3), damper (4) */
-#define SE3DI_FORCE_STATES 4 /* what an element remembers of the accepted states */
+    5 /* h or the components of a load (0, 1, 2), spring (3), damper (4) */
+#define SE3DI_FORCE_STATES                                                                         \
+    8 /* what an element remembers of the accepted states: of the last one, */
+#define SE3DI_FORCE_BEFORE 4 /* and from here on, of the one before */
 
 typedef struct se3di_force {
     char *name;
@@ -156,6 +158,10 @@ typedef struct se3di_model {
     double work[3];            /* done since the start: dissipated, by actuators, by drivers [J] */
     double power[3];           /* the same, of the last accepted state [W] */
     uint64_t topology_version; /* changes when elements come, go or change */
+    uint64_t inputs_version;   /* changes when values of elements, masses or gravity change, or what
+                                  callbacks compute: what acts on the state, not the state itself */
+    uint64_t contact_version;  /* changes when materials or the law of contact do */
+    uint64_t values_version;   /* changes when prescribed values do: positions have to follow */
     int32_t settled;           /* the state is an analysis' own; 0 after the user set one */
     int32_t remembers;         /* an analysis may have left something in forces, shapes, contacts */
 
@@ -203,8 +209,9 @@ typedef struct se3di_model {
 
     double *history; /* what an integrator carries from step to step */
     size_t history_count, history_capacity;
-    uint64_t history_tag;   /* who wrote it; 0: nobody */
-    uint64_t history_stamp; /* changes where it does other than by steps forward */
+    uint64_t history_tag;                    /* who wrote it; 0: nobody */
+    uint64_t history_stamp;                  /* changes where it does other than by steps forward */
+    uint64_t history_inputs, history_values; /* the versions that it belongs to */
 
     se3di_user_failure user_failure; /* see assembly/user.h */
 
@@ -283,6 +290,13 @@ void se3di_model_restore_memory(se3di_model *model, const double *memory);
 void se3di_model_touch(se3di_model *model);
 /* The user has set a state: nothing that an integrator or solver remembers of it holds. */
 void se3di_model_touch_state(se3di_model *model);
+
+/* Other things act on the state from here on; what is remembered of it stays. */
+void se3di_model_touch_inputs(se3di_model *model);
+/* The same of prescribed values: the state has to follow. */
+void se3di_model_touch_values(se3di_model *model);
+/* The same of contacts. */
+void se3di_model_touch_contact(se3di_model *model);
 
 /* Complete a frame (A, pdot) from r, p, v, w. */
 void se3di_frame_update(se3di_frame *frame);

@@ -17,6 +17,7 @@ typedef struct se3di_saved {
     double work[3], power[3];
     double contact_step;
     uint64_t history_tag;
+    uint64_t history_inputs, history_values;
     int32_t settled;
     int32_t work_valid;
     se3di_saved_array frames;       /* se3di_frame */

@@ -187,9 +187,12 @@ se3d_status se3d_body_set_mass(se3d_system *system, se3d_body body, double mass,
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "a fixed body has no mass to set");
     }
     SE3DI_TRY(check_mass(system, mass, inertia));
-    system->model.bodies[index].mass = mass;
-    memcpy(system->model.bodies[index].J, inertia, 6 * sizeof *inertia);
-    se3di_model_touch_state(&system->model);
+    se3di_model *model = &system->model;
+    const double before = se3di_audit_forces(model);
+    model->bodies[index].mass = mass;
+    memcpy(model->bodies[index].J, inertia, 6 * sizeof *inertia);
+    se3di_audit_change(model, before);
+    se3di_model_touch_contact(model); /* its damping goes by the mass */
     return SE3D_OK;
 }
 

@@ -76,12 +76,14 @@ se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_sett
         SE3DI_TRY(
             check_law(system, full.law, model->materials[k].stiffness, model->materials[k].young));
     }
+    const double before = se3di_audit_contacts(model);
     se3di_model_set_contact(model, &(se3di_contact_settings){.law = full.law,
                                                              .step = full.step,
                                                              .overlap_limit = full.overlap_limit,
                                                              .callback = full.callback,
                                                              .ctx = full.ctx});
     se3di_pair_mix_all(model);
+    se3di_audit_contacts_change(model, before);
     return SE3D_OK;
 }
 
@@ -123,6 +125,21 @@ static se3d_status check_material(se3d_system *system, const se3d_material_def *
     return check_law(system, system->model.contact.law, def->stiffness, def->young);
 }
 
+static se3di_material read_material(const se3d_material_def *def)
+{
+    return (se3di_material){.density = def->density,
+                            .young = def->young,
+                            .poisson = def->poisson,
+                            .friction = def->friction,
+                            .restitution = def->restitution,
+                            .rolling_friction = def->rolling_friction,
+                            .torsional_friction = def->torsional_friction,
+                            .stiffness = def->stiffness,
+                            .tangential_ratio = def->tangential_ratio,
+                            .cohesion = def->cohesion,
+                            .adhesion = def->adhesion};
+}
+
 se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *def,
                                  se3d_material *material)
 {
@@ -134,23 +151,65 @@ se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *d
     se3d_material_def full = se3d_material_def_default();
     SE3DI_TRY(se3di_check_def(system, "material def", def, &full, sizeof full));
     SE3DI_TRY(check_material(system, &full));
-    se3di_material data = {.density = full.density,
-                           .young = full.young,
-                           .poisson = full.poisson,
-                           .friction = full.friction,
-                           .restitution = full.restitution,
-                           .rolling_friction = full.rolling_friction,
-                           .torsional_friction = full.torsional_friction,
-                           .stiffness = full.stiffness,
-                           .tangential_ratio = full.tangential_ratio,
-                           .cohesion = full.cohesion,
-                           .adhesion = full.adhesion};
+    const se3di_material data = read_material(&full);
     se3di_handle handle;
     if (se3di_model_add_material(&system->model, &data, &handle) < 0) {
         return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a material");
     }
     se3di_pair_mix_all(&system->model);
     *material = (se3d_material){handle.index1, handle.generation};
+    return SE3D_OK;
+}
+
+se3d_status se3d_material_set(se3d_system *system, se3d_material material,
+                              const se3d_material_def *def)
+{
+    SE3DI_SET(system);
+    uint32_t index;
+    SE3DI_TRY(se3di_find_material(system, "material", material, &index));
+    se3d_material_def full = se3d_material_def_default();
+    SE3DI_TRY(se3di_check_def(system, "material def", def, &full, sizeof full));
+    SE3DI_TRY(check_material(system, &full));
+    se3di_model *model = &system->model;
+    se3di_material data = read_material(&full);
+    data.users = model->materials[index].users;
+    const double before = se3di_audit_contacts(model);
+    model->materials[index] = data;
+    se3di_pair_mix_all(model);
+    se3di_audit_contacts_change(model, before);
+    se3di_model_touch_contact(model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
+                              se3d_material_def *def)
+{
+    if (!system || !def) {
+        return SE3D_ERR_NULL;
+    }
+    const size_t size = def->struct_size;
+    if (size < sizeof size || size > sizeof *def) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    const uint32_t index =
+        se3di_slots_find(&system->model.material_slots, material.index1, material.generation);
+    if (index == SE3DI_NO_INDEX) {
+        return SE3D_ERR_STALE_HANDLE;
+    }
+    const se3di_material *data = &system->model.materials[index];
+    const se3d_material_def full = {.struct_size = size,
+                                    .density = data->density,
+                                    .friction = data->friction,
+                                    .restitution = data->restitution,
+                                    .rolling_friction = data->rolling_friction,
+                                    .torsional_friction = data->torsional_friction,
+                                    .stiffness = data->stiffness,
+                                    .tangential_ratio = data->tangential_ratio,
+                                    .young = data->young,
+                                    .poisson = data->poisson,
+                                    .cohesion = data->cohesion,
+                                    .adhesion = data->adhesion};
+    memcpy(def, &full, size);
     return SE3D_OK;
 }
 
@@ -195,7 +254,9 @@ se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_ma
     const se3di_override over = {
         full.friction,  full.restitution, full.rolling_friction, full.torsional_friction,
         full.stiffness, full.cohesion,    full.adhesion};
+    const double before = se3di_audit_contacts(&system->model);
     se3di_model_set_override(&system->model, index_a, index_b, &over);
     se3di_pair_mix_all(&system->model);
+    se3di_audit_contacts_change(&system->model, before);
     return SE3D_OK;
 }

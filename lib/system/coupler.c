@@ -106,6 +106,7 @@ se3d_status se3d_joint_create_coupler(se3d_system *system, const se3d_coupler_de
     SE3DI_TRY(draft_build(system, "coupler", &def, &draft));
     SE3DI_TRY(se3di_find_function(system, "function", def.function, 1, &function));
     SE3DI_TRY(se3di_check_prescribed(system, def.value, function));
+    draft.constraint.has_value = 1;
     draft.rows[0].function = function;
     draft.rows[0].value = def.value;
     return se3di_constraint_add(system, &draft, joint);

@@ -40,6 +40,7 @@ se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_def *user,
     draft.constraint.name = (char *)(uintptr_t)def.name; /* copied, never written to */
     draft.constraint.frames = source->frames;
     draft.constraint.joints[0] = (int32_t)joint;
+    draft.constraint.has_value = 1;
     se3di_row *row = se3di_draft_add_row(&draft, is_angle ? "angle" : "displacement", def.value);
     row->function = function;
     row->wrap = is_angle;

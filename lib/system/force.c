@@ -64,22 +64,16 @@ se3d_status se3d_force_create_tsda(se3d_system *system, const se3d_tsda_def *def
     SE3DI_TRY(se3di_find_body(system, "body_j", full.body_j, &data.body_j));
     SE3DI_TRY(se3di_check_finites(system, "point_i", full.point_i, 3));
     SE3DI_TRY(se3di_check_finites(system, "point_j", full.point_j, 3));
-    SE3DI_TRY(se3di_check_finite(system, "k", full.k));
-    SE3DI_TRY(se3di_check_finite(system, "c", full.c));
-    SE3DI_TRY(se3di_check_finite(system, "l0", full.l0));
     SE3DI_TRY(se3di_find_function(system, "h", full.h, 3, &data.function[0]));
     SE3DI_TRY(se3di_find_function(system, "spring", full.spring, 1, &data.function[3]));
     SE3DI_TRY(se3di_find_function(system, "damper", full.damper, 1, &data.function[4]));
-    SE3DI_TRY(se3di_check_finite(system, "preload", full.preload));
-    if (full.l0 < 0.0) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "l0 = %g m, must be >= 0", full.l0);
-    }
-    SE3DI_TRY(se3di_force_check_pair(system, &data));
     data.preload = full.preload;
     data.coordinate = SE3DI_FORCE_LENGTH;
     data.k = full.k;
     data.c = full.c;
     data.rest = full.l0;
+    SE3DI_TRY(se3di_force_check_values(system, &data));
+    SE3DI_TRY(se3di_force_check_pair(system, &data));
     se3di_copy(full.point_i, data.s_i);
     se3di_copy(full.point_j, data.s_j);
     return se3di_force_add(system, &data, force);
@@ -158,10 +152,6 @@ se3d_status se3d_force_create_rsda(se3d_system *system, const se3d_rsda_def *def
     SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
     se3di_force data = se3di_force_blank(SE3DI_FORCE_RSDA, full.name);
     se3di_angle angle;
-    SE3DI_TRY(se3di_check_finite(system, "k", full.k));
-    SE3DI_TRY(se3di_check_finite(system, "c", full.c));
-    SE3DI_TRY(se3di_check_finite(system, "theta0", full.theta0));
-    SE3DI_TRY(se3di_check_finite(system, "preload", full.preload));
     SE3DI_TRY(se3di_find_function(system, "h", full.h, 3, &data.function[0]));
     SE3DI_TRY(se3di_find_function(system, "spring", full.spring, 1, &data.function[3]));
     SE3DI_TRY(se3di_find_function(system, "damper", full.damper, 1, &data.function[4]));
@@ -169,6 +159,7 @@ se3d_status se3d_force_create_rsda(se3d_system *system, const se3d_rsda_def *def
     data.c = full.c;
     data.rest = full.theta0;
     data.preload = full.preload;
+    SE3DI_TRY(se3di_force_check_values(system, &data));
     if (full.joint.index1 == 0 && full.joint.generation == 0 && full.body_j.index1 != 0) {
         SE3DI_TRY(make_angle(system, &full, &data, &angle));
         return add_with_angle(system, &data, &angle, force);
@@ -232,8 +223,8 @@ se3d_status se3d_force_find(const se3d_system *system, const char *name, se3d_fo
     return SE3D_OK;
 }
 
-static se3d_status find_reader(const se3d_system *system, se3d_force force, const void *out,
-                               const se3di_force **data)
+se3d_status se3di_force_find_reader(const se3d_system *system, se3d_force force, const void *out,
+                                    const se3di_force **data)
 {
     if (!system || !out) {
         return SE3D_ERR_NULL;
@@ -252,7 +243,7 @@ se3d_status se3d_force_get_name(const se3d_system *system, se3d_force force, con
         *name = NULL;
     }
     const se3di_force *data;
-    SE3DI_TRY(find_reader(system, force, name, &data));
+    SE3DI_TRY(se3di_force_find_reader(system, force, name, &data));
     *name = data->name ? data->name : "";
     return SE3D_OK;
 }
@@ -263,7 +254,7 @@ se3d_status se3d_force_get_type(const se3d_system *system, se3d_force force, con
         *type = NULL;
     }
     const se3di_force *data;
-    SE3DI_TRY(find_reader(system, force, type, &data));
+    SE3DI_TRY(se3di_force_find_reader(system, force, type, &data));
     *type = se3di_force_type_name(data->type);
     return SE3D_OK;
 }
@@ -273,7 +264,7 @@ static se3d_status eval_reader(const se3d_system *system, se3d_force force, cons
                                se3di_effect *effect)
 {
     const se3di_force *data;
-    SE3DI_TRY(find_reader(system, force, out, &data));
+    SE3DI_TRY(se3di_force_find_reader(system, force, out, &data));
     effect->wants_derivative = 0;
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
@@ -286,7 +277,7 @@ se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force, do
 {
     const se3di_force *data;
     se3di_effect effect;
-    SE3DI_TRY(find_reader(system, force, system, &data));
+    SE3DI_TRY(se3di_force_find_reader(system, force, system, &data));
     int scalar = data->type == SE3DI_FORCE_TSDA || data->type == SE3DI_FORCE_RSDA ||
                  data->type == SE3DI_FORCE_FRICTION || data->type == SE3DI_FORCE_STOP;
     if (!scalar) {
@@ -313,7 +304,7 @@ se3d_status se3d_force_get_wrench(const se3d_system *system, se3d_force force, s
     for (int k = 0; wrench && k < 6; ++k) {
         wrench[k] = 0.0;
     }
-    SE3DI_TRY(find_reader(system, force, wrench, &data));
+    SE3DI_TRY(se3di_force_find_reader(system, force, wrench, &data));
     if (side > 1) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Force elements: creation of bushings, friction, stops and callbacks. */
 #include "force/force.h"
-#include "force/stop.h"
 #include "math/vec3.h"
 #include "system/coordinate.h"
 #include "system/force_internal.h"
@@ -54,22 +53,6 @@ static se3d_status find_pair(se3d_system *system, se3d_body i, se3d_body j, se3d
     return se3di_force_check_pair(system, data);
 }
 
-/* Symmetric, or the energy of the bushing has no meaning. */
-static se3d_status check_symmetric(se3d_system *system, const double K[36])
-{
-    for (int r = 0; r < 6; ++r) {
-        for (int c = 0; c < r; ++c) {
-            double gap = fabs(K[6 * r + c] - K[6 * c + r]);
-            if (gap > 1e-9 * (fabs(K[6 * r + c]) + fabs(K[6 * c + r]))) {
-                return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                                  "K[%d][%d] = %g and K[%d][%d] = %g, K must be symmetric", r, c,
-                                  K[6 * r + c], c, r, K[6 * c + r]);
-            }
-        }
-    }
-    return SE3D_OK;
-}
-
 se3d_status se3d_force_create_bushing(se3d_system *system, const se3d_bushing_def *def,
                                       se3d_force *force)
 {
@@ -83,13 +66,9 @@ se3d_status se3d_force_create_bushing(se3d_system *system, const se3d_bushing_de
     SE3DI_TRY(se3di_check_finites(system, "point_j", full.point_j, 3));
     SE3DI_TRY(se3di_check_orientation(system, "orientation_i", full.orientation_i, data.p_i));
     SE3DI_TRY(se3di_check_orientation(system, "orientation_j", full.orientation_j, data.p_j));
-    SE3DI_TRY(se3di_check_finites(system, "K", full.K, 36));
-    SE3DI_TRY(se3di_check_finites(system, "C", full.C, 36));
-    SE3DI_TRY(check_symmetric(system, full.K));
+    SE3DI_TRY(se3di_force_take_bushing(system, full.K, full.C, &data));
     se3di_copy(full.point_i, data.s_i);
     se3di_copy(full.point_j, data.s_j);
-    memcpy(data.K, full.K, sizeof data.K);
-    memcpy(data.C, full.C, sizeof data.C);
     return se3di_force_add(system, &data, force);
 }
 
@@ -110,15 +89,6 @@ static se3d_status find_coordinate(se3d_system *system, se3d_constraint handle, 
     return SE3D_OK;
 }
 
-static se3d_status check_not_negative(se3d_system *system, const char *what, double value)
-{
-    if (!(isfinite(value) && value >= 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s = %g, must be finite and >= 0",
-                          what, value);
-    }
-    return SE3D_OK;
-}
-
 se3d_status se3d_force_create_friction(se3d_system *system, const se3d_friction_def *def,
                                        se3d_force *force)
 {
@@ -128,42 +98,14 @@ se3d_status se3d_force_create_friction(se3d_system *system, const se3d_friction_
     SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
     se3di_force data = se3di_force_blank(SE3DI_FORCE_FRICTION, full.name);
     SE3DI_TRY(find_coordinate(system, full.joint, full.coordinate, &data));
-    SE3DI_TRY(check_not_negative(system, "mu", full.mu));
-    SE3DI_TRY(check_not_negative(system, "mu_static", full.mu_static));
-    SE3DI_TRY(check_not_negative(system, "radius", full.radius));
-    SE3DI_TRY(check_not_negative(system, "limit", full.limit));
-    SE3DI_TRY(check_not_negative(system, "viscous", full.viscous));
-    SE3DI_TRY(check_not_negative(system, "presliding", full.presliding));
-    if (full.mu_static > 0.0 && full.mu_static < full.mu) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "mu_static = %g, must be at least mu = %g (0: the same)", full.mu_static,
-                          full.mu);
-    }
     data.mu = full.mu;
-    data.mu_static = fmax(full.mu, full.mu_static);
+    data.mu_static = full.mu_static;
     data.radius = full.radius;
     data.limit = full.limit;
     data.viscous = full.viscous;
-    data.presliding = full.presliding > 0.0 ? full.presliding : 1e-9;
+    data.presliding = full.presliding;
+    SE3DI_TRY(se3di_force_check_values(system, &data));
     return se3di_force_add(system, &data, force);
-}
-
-static se3d_status check_range(se3d_system *system, const se3d_stop_def *def)
-{
-    if (!(def->lower < def->upper)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "lower = %g and upper = %g, lower must be below upper", def->lower,
-                          def->upper);
-    }
-    if (!(isfinite(def->k) && def->k > 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "k = %g, must be finite and > 0",
-                          def->k);
-    }
-    if (!(def->restitution >= 0.01 && def->restitution <= 1.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "restitution = %g, must be from 0.01 to 1", def->restitution);
-    }
-    return SE3D_OK;
 }
 
 se3d_status se3d_force_create_stop(se3d_system *system, const se3d_stop_def *def, se3d_force *force)
@@ -183,12 +125,11 @@ se3d_status se3d_force_create_stop(se3d_system *system, const se3d_stop_def *def
     } else {
         SE3DI_TRY(find_coordinate(system, full.joint, full.coordinate, &data));
     }
-    SE3DI_TRY(check_range(system, &full));
     data.low = full.lower;
     data.high = full.upper;
     data.k = full.k;
     data.restitution = full.restitution;
-    data.c = se3di_stop_damping(full.restitution);
+    SE3DI_TRY(se3di_force_check_values(system, &data));
     return se3di_force_add(system, &data, force);
 }
 

@@ -11,6 +11,15 @@ se3d_status se3di_force_begin(se3d_system *system, se3d_force *force);
 se3di_force se3di_force_blank(int32_t type, const char *name);
 /* body_i and body_j differ. */
 se3d_status se3di_force_check_pair(se3d_system *system, const se3di_force *data);
+/* The parameters of a tsda, rsda, friction or stop are what they may be; completes those that
+ * follow from others. */
+se3d_status se3di_force_check_values(se3d_system *system, se3di_force *data);
+/* Check and take the matrices of a bushing. */
+se3d_status se3di_force_take_bushing(se3d_system *system, const double K[36], const double C[36],
+                                     se3di_force *data);
+/* The element of a query; `out` is where its answer goes. */
+se3d_status se3di_force_find_reader(const se3d_system *system, se3d_force force, const void *out,
+                                    const se3di_force **data);
 /* Add the validated element. */
 se3d_status se3di_force_add(se3d_system *system, const se3di_force *data, se3d_force *force);
 

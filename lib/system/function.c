@@ -159,6 +159,63 @@ se3d_status se3d_function_destroy(se3d_system *system, se3d_function function)
     return SE3D_OK;
 }
 
+/* Whether a function prescribes something. */
+static int is_prescribed(const se3di_model *model, uint32_t function)
+{
+    for (size_t k = 0; k < model->row_count; ++k) {
+        if (model->rows[k].function == (int32_t)function) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Whether energies depend on it: gravity, curves of springs. */
+static int holds_energy(const se3di_model *model, uint32_t function)
+{
+    int holds = 0;
+    for (int c = 0; c < 3; ++c) {
+        holds |= model->gravity_function[c] == (int32_t)function;
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        holds |= model->forces[k].function[3] == (int32_t)function;
+    }
+    return holds;
+}
+
+se3d_status se3d_function_set_constant(se3d_system *system, se3d_function handle, double value)
+{
+    SE3DI_SET(system);
+    se3di_model *model = &system->model;
+    const uint32_t index =
+        se3di_slots_find(&model->function_slots, handle.index1, handle.generation);
+    if (index == SE3DI_NO_INDEX) {
+        return SE3DI_FAIL(system, SE3D_ERR_STALE_HANDLE,
+                          "function is null, was destroyed or belongs to another system");
+    }
+    se3di_function *function = &model->functions[index];
+    SE3DI_TRY(se3di_check_finite(system, "constant", value));
+    if (function->expression || function->callback || function->table) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "the function is not a constant, its value cannot be set");
+    }
+    if (memcmp(&function->constant, &value, sizeof value) == 0) {
+        return SE3D_OK;
+    }
+    const int holds = holds_energy(model, index);
+    const double before = holds ? se3di_audit_forces(model) : 0.0;
+    function->constant = value;
+    if (holds) {
+        se3di_audit_change(model, before);
+    }
+    if (is_prescribed(model, index)) {
+        se3di_model_touch_values(model);
+    } else if (function->users > 0) {
+        se3di_model_touch_inputs(model);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3d_function_eval(const se3d_system *system, se3d_function function, const double *x,
                                double jet[3])
 {

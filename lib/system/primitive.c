@@ -6,6 +6,8 @@
 #include "system/coordinate.h"
 #include "system/system_internal.h"
 
+#include <string.h>
+
 void se3d_primitive_def_init(se3d_primitive_def *def, size_t size)
 {
     se3d_primitive_def full = {.struct_size = size};
@@ -41,14 +43,40 @@ static se3d_status fill_term(se3d_system *system, const se3d_primitive_def *def,
     return SE3D_OK;
 }
 
-static se3d_status check_value(se3d_system *system, const se3d_primitive_def *def, int32_t function)
+static se3d_status check_value(se3d_system *system, int type, double value, int32_t function)
 {
-    SE3DI_TRY(se3di_check_prescribed(system, def->value, function));
-    if (def->type == SE3D_PRIMITIVE_D && function < 0 && !(def->value > 0.0)) {
+    SE3DI_TRY(se3di_check_prescribed(system, value, function));
+    if (type == SE3D_PRIMITIVE_D && function < 0 && !(value > 0.0)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "value = %g m^2, must be > 0 (a squared distance; points that coincide "
                           "are three cd)",
-                          def->value);
+                          value);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_constraint_set_value(se3d_system *system, se3d_constraint handle, double value)
+{
+    SE3DI_SET(system);
+    uint32_t index;
+    se3di_model *model = &system->model;
+    SE3DI_TRY(se3di_find_constraint(system, "constraint", handle, &index));
+    const se3di_constraint *constraint = &model->constraints[index];
+    if (!constraint->has_value) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "a %s constraint has no value to set, must be a driver, a primitive or a "
+                          "coupler",
+                          constraint->type);
+    }
+    se3di_row *row = &model->rows[constraint->row_begin];
+    if (row->function >= 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "the value of the %s is a function, set that", constraint->type);
+    }
+    SE3DI_TRY(check_value(system, model->terms[row->term_begin].type, value, -1));
+    if (memcmp(&row->value, &value, sizeof value) != 0) {
+        row->value = value;
+        se3di_model_touch_values(model);
     }
     return SE3D_OK;
 }
@@ -78,10 +106,11 @@ se3d_status se3d_primitive_create(se3d_system *system, const se3d_primitive_def 
     se3di_term term = {.type = def.type, .angle = -1, .body_i = bodies[0], .body_j = bodies[1]};
     SE3DI_TRY(fill_term(system, &def, &term));
     SE3DI_TRY(se3di_find_function(system, "function", def.function, 1, &function));
-    SE3DI_TRY(check_value(system, &def, function));
+    SE3DI_TRY(check_value(system, def.type, def.value, function));
     const char *name = se3di_primitives[def.type].name;
     se3di_draft_init(&draft, name, bodies[0], bodies[1]);
     draft.constraint.name = (char *)(uintptr_t)def.name; /* copied, never written to */
+    draft.constraint.has_value = 1;
     se3di_copy(term.s_i, draft.constraint.frames.point_i);
     se3di_copy(term.s_j, draft.constraint.frames.point_j);
     se3di_draft_add_row(&draft, name, def.value)->function = function;

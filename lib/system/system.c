@@ -138,8 +138,11 @@ se3d_status se3d_system_set_gravity(se3d_system *system, const double gravity[3]
     SE3DI_SET(system);
     SE3DI_TRY(se3di_check_pointer(system, "gravity", gravity));
     SE3DI_TRY(se3di_check_finites(system, "gravity", gravity, 3));
-    se3di_copy(gravity, system->model.gravity);
-    se3di_model_touch_state(&system->model);
+    se3di_model *model = &system->model;
+    const double before = se3di_audit_forces(model);
+    se3di_copy(gravity, model->gravity);
+    se3di_audit_change(model, before);
+    se3di_model_touch_inputs(model);
     return SE3D_OK;
 }
 
@@ -152,6 +155,7 @@ se3d_status se3d_system_set_gravity_function(se3d_system *system, const se3d_fun
         SE3DI_TRY(se3di_find_function(system, "gravity", gravity[c], 1, &function[c]));
     }
     se3di_model *model = &system->model;
+    const double before = se3di_audit_forces(model);
     for (int c = 0; c < 3; ++c) {
         if (function[c] >= 0) {
             ++model->functions[function[c]].users;
@@ -161,7 +165,16 @@ se3d_status se3d_system_set_gravity_function(se3d_system *system, const se3d_fun
         }
         model->gravity_function[c] = function[c];
     }
-    se3di_model_touch_state(model);
+    se3di_audit_change(model, before);
+    se3di_model_touch_inputs(model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_touch(se3d_system *system)
+{
+    SE3DI_SET(system);
+    se3di_model_touch_values(&system->model);
+    se3di_model_touch_contact(&system->model);
     return SE3D_OK;
 }
 
@@ -288,7 +301,7 @@ se3d_status se3d_system_get_force(const se3d_system *system, size_t index, se3d_
     return SE3D_OK;
 }
 
-static double kinetic_energy(const se3di_model *model)
+double se3di_kinetic_energy(const se3di_model *model)
 {
     double energy = 0.0;
     for (size_t k = 0; k < model->body_slots.count; ++k) {
@@ -311,7 +324,7 @@ se3d_status se3d_system_get_energy(const se3d_system *system, se3d_energy *energ
         return SE3D_ERR_NULL;
     }
     const se3di_model *model = &system->model;
-    *energy = (se3d_energy){.kinetic = kinetic_energy(model)};
+    *energy = (se3d_energy){.kinetic = se3di_kinetic_energy(model)};
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
     const se3d_status status = se3di_loads_potential(model, model->time, &energy->potential);

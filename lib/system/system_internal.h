@@ -97,6 +97,18 @@ se3d_status se3di_find_material(se3d_system *system, const char *what, se3d_mate
 se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_function function,
                                 uint32_t variables, int32_t *index);
 
+/* The audit of energy over a change of values: what it makes of the energies is work of actuators.
+ * Before the change: the energy that it may change (0 where nothing is audited); after it. Of a
+ * force element alone; of bodies, gravity and all elements; of contacts. */
+double se3di_audit_force(const se3di_model *model, const se3di_force *force);
+void se3di_audit_force_change(se3di_model *model, const se3di_force *force, double before);
+double se3di_audit_forces(const se3di_model *model);
+void se3di_audit_change(se3di_model *model, double before);
+double se3di_audit_contacts(const se3di_model *model);
+void se3di_audit_contacts_change(se3di_model *model, double before);
+/* The kinetic energy of all bodies [J]. */
+double se3di_kinetic_energy(const se3di_model *model);
+
 /* `name` (not NULL) is well formed. */
 se3d_status se3di_check_name(se3d_system *system, const char *name);
 /* `name` is well formed and free among the elements of `slots`, of which it would be another

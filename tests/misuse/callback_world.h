@@ -27,14 +27,15 @@ typedef struct world {
     se3d_snapshot *snapshot;
     se3d_body ball, bar, kite;
     se3d_marker marker;
-    se3d_constraint pin, motor, guide;
-    se3d_force push;
-    se3d_function value, no_functions[3];
+    se3d_constraint pin, motor, guide, rail;
+    se3d_force push, load, spring, mount;
+    se3d_function value, constant, no_functions[3];
     se3d_shape pad;
     se3d_material stuff;
     se3d_event event;
     se3d_contact_settings contact, contact_read;
     se3d_material_pair_def pair;
+    se3d_material_def other_stuff;
     se3d_joint_def frame;
     double r[3], v[3], p[4], inertia[6], many[64], time;
     uint32_t ids[1];
@@ -181,6 +182,31 @@ static void world_add_callbacks(world *w)
     CHECK(!se3d_user_constraint_create(w->system, &guide, &w->guide));
 }
 
+/* What has values to set. */
+static void world_add_values(world *w)
+{
+    se3d_body ground;
+    se3d_load_def load = se3d_load_def_default();
+    se3d_tsda_def spring = se3d_tsda_def_default();
+    se3d_bushing_def mount = se3d_bushing_def_default();
+    se3d_primitive_def rail = se3d_primitive_def_default();
+    se3d_function_def constant = se3d_function_def_default();
+    CHECK(!se3d_system_get_ground(w->system, &ground));
+    CHECK(!se3d_function_create(w->system, &constant, &w->constant));
+    load.body = w->kite;
+    load.function[2] = w->constant;
+    CHECK(!se3d_force_create_load(w->system, &load, &w->load));
+    spring.body_i = mount.body_i = rail.body_i = ground;
+    spring.body_j = mount.body_j = rail.body_j = w->kite;
+    spring.point_i[2] = 1.0;
+    spring.k = 1.0;
+    CHECK(!se3d_force_create_tsda(w->system, &spring, &w->spring));
+    CHECK(!se3d_force_create_bushing(w->system, &mount, &w->mount));
+    rail.type = SE3D_PRIMITIVE_CD;
+    rail.c[1] = 1.0;
+    CHECK(!se3d_primitive_create(w->system, &rail, &w->rail));
+}
+
 static void world_add_contact(world *w)
 {
     se3d_material_def stuff = se3d_material_def_default();
@@ -192,6 +218,7 @@ static void world_add_contact(world *w)
     w->contact.step = 2e-4;
     CHECK(!se3d_system_set_contact(w->system, &w->contact));
     stuff.density = 1000.0;
+    w->other_stuff = stuff;
     CHECK(!se3d_material_create(w->system, &stuff, &w->stuff));
     shape.material = w->stuff;
     CHECK(!se3d_shape_create_plane(w->system, &shape, &w->pad));
@@ -247,6 +274,7 @@ static void world_open(world *w, int32_t method)
     CHECK(!se3d_system_create(NULL, &w->system));
     world_add_bodies(w);
     world_add_callbacks(w);
+    world_add_values(w);
     world_add_contact(w);
     if (method == SE3D_METHOD_VERLET) {
         world_add_grains(w);

@@ -5,6 +5,7 @@
 #define SE3D_TESTS_MISUSE_CALLS_H
 
 #include "misuse/misuse_events.h"
+#include "misuse/misuse_inputs.h"
 #include "misuse/misuse_particles.h"
 #include "misuse/misuse_world.h"
 
@@ -814,6 +815,15 @@ static const row rows[] = {
     {"se3d_joint_create_gear", check_joint_create_gear, "", NULL, NULL},
     {"se3d_system_create", check_system_create, "", NULL, NULL},
     {"se3d_system_get_work", check_system_get_work, "", NULL, NULL},
+    {"se3d_force_set_value", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_value", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_parameter", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_parameter", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_bushing", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_bushing", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_function_set_constant", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_constraint_set_value", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_system_touch", setters_reject_misuse, "", NULL, NULL},
     {"se3d_system_set_gravity_function", check_system_set_gravity_function, "", NULL, NULL},
     {"se3d_expression_create", check_expression_create, "", NULL, NULL},
     {"se3d_system_destroy", destroying_null_is_fine, "", NULL, NULL},
@@ -901,6 +911,8 @@ static const row rows[] = {
     {"se3d_system_get_contact", materials_reject_misuse, "", NULL, NULL},
     {"se3d_material_create", materials_reject_misuse, "", NULL, NULL},
     {"se3d_material_destroy", materials_reject_misuse, "", NULL, NULL},
+    {"se3d_material_set", materials_reject_misuse, "", NULL, NULL},
+    {"se3d_material_get", materials_reject_misuse, "", NULL, NULL},
     {"se3d_material_set_pair", materials_reject_misuse, "", NULL, NULL},
     {"se3d_shape_create_sphere", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_create_box", shapes_reject_misuse, "", NULL, NULL},

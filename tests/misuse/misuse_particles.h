@@ -195,6 +195,20 @@ static se3d_status materials_reject_misuse(arguments *a)
     stuff.density = 1.0; /* hooke needs a stiffness */
     REJECTED(se3d_material_create(a->system, &stuff, &made), SE3D_ERR_INVALID_ARGUMENT);
     CHECK_CONTAINS(se3d_system_get_error(a->system), "stiffness");
+    CHECK(se3d_material_set(NULL, material, &stuff) == SE3D_ERR_NULL);
+    REJECTED(se3d_material_set(a->system, material, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_material_set(a->system, made, &stuff), SE3D_ERR_STALE_HANDLE);
+    REJECTED(se3d_material_set(a->system, material, &stuff), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_material_get(NULL, material, &stuff) == SE3D_ERR_NULL);
+    CHECK(se3d_material_get(a->system, material, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_material_get(a->system, made, &stuff) == SE3D_ERR_STALE_HANDLE);
+    CHECK(!se3d_material_get(a->system, material, &stuff) && stuff.stiffness > 0.0);
+    stuff.friction = 0.125;
+    CHECK(!se3d_material_set(a->system, material, &stuff));
+    stuff.friction = 0.0;
+    CHECK(!se3d_material_get(a->system, material, &stuff) && stuff.friction > 0.1);
+    stuff.struct_size = 4096;
+    CHECK(se3d_material_get(a->system, material, &stuff) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK(se3d_material_set_pair(NULL, material, material, &pair) == SE3D_ERR_NULL);
     REJECTED(se3d_material_set_pair(a->system, material, material, NULL), SE3D_ERR_NULL);
     REJECTED(se3d_material_set_pair(a->system, material, made, &pair), SE3D_ERR_STALE_HANDLE);

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Misuse of the setters of values. */
+#ifndef SE3D_TESTS_MISUSE_INPUTS_H
+#define SE3D_TESTS_MISUSE_INPUTS_H
+
+#include "misuse/misuse_world.h"
+
+#include <math.h>
+
+typedef struct settable {
+    se3d_force spring, load, bushing, stop, friction;
+} settable;
+
+static settable add_settable(arguments *a)
+{
+    settable made;
+    se3d_body ground;
+    CHECK(!se3d_system_get_ground(a->system, &ground));
+    made.spring = a->use.force;
+    se3d_load_def load = se3d_load_def_default();
+    load.body = a->use.body;
+    CHECK(!se3d_force_create_load(a->system, &load, &made.load));
+    se3d_bushing_def bushing = se3d_bushing_def_default();
+    bushing.body_i = ground;
+    bushing.body_j = a->use.body;
+    CHECK(!se3d_force_create_bushing(a->system, &bushing, &made.bushing));
+    se3d_stop_def stop = se3d_stop_def_default();
+    stop.joint = a->use.pin;
+    stop.upper = 1.0;
+    stop.k = 1.0;
+    CHECK(!se3d_force_create_stop(a->system, &stop, &made.stop));
+    se3d_friction_def friction = se3d_friction_def_default();
+    friction.joint = a->use.pin;
+    friction.mu = 0.1;
+    CHECK(!se3d_force_create_friction(a->system, &friction, &made.friction));
+    return made;
+}
+
+static void remove_settable(arguments *a, const settable *made)
+{
+    CHECK(!se3d_force_destroy(a->system, made->load));
+    CHECK(!se3d_force_destroy(a->system, made->bushing));
+    CHECK(!se3d_force_destroy(a->system, made->stop));
+    CHECK(!se3d_force_destroy(a->system, made->friction));
+}
+
+#define INVALID(call) CHECK((call) == SE3D_ERR_INVALID_ARGUMENT)
+
+/* The value of each parameter that is refused, and one that is taken. */
+static void check_parameters(arguments *a, const settable *m)
+{
+    const double nan = (double)NAN, infinite = (double)INFINITY;
+    const struct {
+        se3d_force force;
+        int32_t parameter;
+        int32_t reserved;
+        double bad, good;
+    } rows[] = {{m->spring, SE3D_PARAMETER_K, 0, nan, -2.0},
+                {m->spring, SE3D_PARAMETER_C, 0, infinite, 2.0},
+                {m->spring, SE3D_PARAMETER_REST, 0, -1.0, 0.5},
+                {m->spring, SE3D_PARAMETER_PRELOAD, 0, nan, 7.0},
+                {m->stop, SE3D_PARAMETER_K, 0, 0.0, 9.0},
+                {m->stop, SE3D_PARAMETER_LOWER, 0, 1.0, -infinite},
+                {m->stop, SE3D_PARAMETER_UPPER, 0, nan, 3.0},
+                {m->stop, SE3D_PARAMETER_RESTITUTION, 0, 1.5, 0.5},
+                {m->friction, SE3D_PARAMETER_MU, 0, -0.1, 0.3},
+                {m->friction, SE3D_PARAMETER_MU_STATIC, 0, 0.2, 0.4},
+                {m->friction, SE3D_PARAMETER_RADIUS, 0, nan, 0.01},
+                {m->friction, SE3D_PARAMETER_LIMIT, 0, -1.0, 0.0},
+                {m->friction, SE3D_PARAMETER_VISCOUS, 0, infinite, 0.5},
+                {m->friction, SE3D_PARAMETER_PRESLIDING, 0, -1e-9, 1e-6}};
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; ++k) {
+        double before = 0.0, after = 1.0;
+        CHECK(!se3d_force_get_parameter(a->system, rows[k].force, rows[k].parameter, &before));
+        INVALID(se3d_force_set_parameter(a->system, rows[k].force, rows[k].parameter, rows[k].bad));
+        CHECK(!se3d_force_get_parameter(a->system, rows[k].force, rows[k].parameter, &after));
+        CHECK(memcmp(&before, &after, sizeof after) == 0);
+        CHECK(!se3d_force_set_parameter(a->system, rows[k].force, rows[k].parameter, rows[k].good));
+        CHECK(!se3d_force_get_parameter(a->system, rows[k].force, rows[k].parameter, &after));
+        CHECK(memcmp(&rows[k].good, &after, sizeof after) == 0);
+    }
+    double mu_static = 0.0; /* the same again */
+    CHECK(!se3d_force_set_parameter(a->system, m->friction, SE3D_PARAMETER_MU_STATIC, 0.0));
+    CHECK(!se3d_force_set_parameter(a->system, m->friction, SE3D_PARAMETER_MU, 0.7));
+    CHECK(!se3d_force_get_parameter(a->system, m->friction, SE3D_PARAMETER_MU_STATIC, &mu_static));
+    CHECK_NEAR(mu_static, 0.7, 0.0);
+    INVALID(se3d_force_set_parameter(a->system, m->spring, SE3D_PARAMETER_MU, 0.1));
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "a tsda element has no mu");
+    INVALID(se3d_force_set_parameter(a->system, m->load, SE3D_PARAMETER_K, 0.1));
+    INVALID(se3d_force_set_parameter(a->system, m->spring, 13, 0.1));
+    INVALID(se3d_force_set_parameter(a->system, m->spring, -1, 0.1));
+    INVALID(se3d_force_get_parameter(a->system, m->spring, 13, &mu_static));
+    INVALID(se3d_force_get_parameter(a->system, m->stop, SE3D_PARAMETER_C, &mu_static));
+    CHECK(se3d_force_set_parameter(NULL, m->spring, 0, 1.0) == SE3D_ERR_NULL);
+    CHECK(se3d_force_get_parameter(NULL, m->spring, 0, &mu_static) == SE3D_ERR_NULL);
+    CHECK(se3d_force_get_parameter(a->system, m->spring, 0, NULL) == SE3D_ERR_NULL);
+}
+
+static void check_values(arguments *a, const settable *m)
+{
+    const double nan[3] = {0.0, (double)NAN, 0.0}, good[3] = {1.0, 2.0, 3.0};
+    double K[36] = {1.0}, C[36] = {0.0}, value[3];
+    CHECK(!se3d_force_set_value(a->system, m->load, good));
+    INVALID(se3d_force_set_value(a->system, m->load, nan));
+    INVALID(se3d_force_set_value(a->system, m->spring, good));
+    INVALID(se3d_force_get_value(a->system, m->spring, value));
+    CHECK(!se3d_force_get_value(a->system, m->load, value));
+    CHECK(memcmp(value, good, sizeof value) == 0);
+    CHECK(se3d_force_set_value(NULL, m->load, good) == SE3D_ERR_NULL);
+    CHECK(se3d_force_set_value(a->system, m->load, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_force_get_value(NULL, m->load, value) == SE3D_ERR_NULL);
+    CHECK(se3d_force_get_value(a->system, m->load, NULL) == SE3D_ERR_NULL);
+    CHECK(!se3d_force_set_bushing(a->system, m->bushing, K, C));
+    INVALID(se3d_force_set_bushing(a->system, m->spring, K, C));
+    INVALID(se3d_force_get_bushing(a->system, m->spring, K, C));
+    K[1] = 1.0; /* not symmetric */
+    INVALID(se3d_force_set_bushing(a->system, m->bushing, K, C));
+    CHECK(!se3d_force_get_bushing(a->system, m->bushing, K, C));
+    CHECK(fabs(K[1]) <= 0.0 && K[0] >= 1.0);
+    CHECK(se3d_force_set_bushing(NULL, m->bushing, K, C) == SE3D_ERR_NULL);
+    CHECK(se3d_force_set_bushing(a->system, m->bushing, NULL, C) == SE3D_ERR_NULL);
+    CHECK(se3d_force_set_bushing(a->system, m->bushing, K, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_force_get_bushing(NULL, m->bushing, K, C) == SE3D_ERR_NULL);
+    CHECK(se3d_force_get_bushing(a->system, m->bushing, NULL, C) == SE3D_ERR_NULL);
+    CHECK(se3d_force_get_bushing(a->system, m->bushing, K, NULL) == SE3D_ERR_NULL);
+}
+
+static void check_prescribed(arguments *a)
+{
+    se3d_function_def def = se3d_function_def_default();
+    se3d_function constant;
+    CHECK(!se3d_function_create(a->system, &def, &constant));
+    CHECK(!se3d_function_set_constant(a->system, constant, 2.0));
+    INVALID(se3d_function_set_constant(a->system, constant, (double)NAN));
+    INVALID(se3d_function_set_constant(a->system, a->use.function, 2.0)); /* an expression */
+    CHECK(se3d_function_set_constant(NULL, constant, 2.0) == SE3D_ERR_NULL);
+    CHECK(!se3d_function_destroy(a->system, constant));
+    CHECK(se3d_function_set_constant(a->system, constant, 2.0) == SE3D_ERR_STALE_HANDLE);
+    CHECK(!se3d_constraint_set_value(a->system, a->use.driver, 0.0));
+    CHECK(!se3d_constraint_set_value(a->system, a->use.primitive, 0.0));
+    INVALID(se3d_constraint_set_value(a->system, a->use.pin, 0.0));
+    INVALID(se3d_constraint_set_value(a->system, a->use.driver, (double)INFINITY));
+    CHECK(se3d_constraint_set_value(NULL, a->use.driver, 0.0) == SE3D_ERR_NULL);
+    CHECK(se3d_constraint_set_value(a->system, (se3d_constraint){0, 0}, 0.0) ==
+          SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_system_touch(NULL) == SE3D_ERR_NULL);
+    CHECK(!se3d_system_touch(a->system));
+}
+
+static se3d_status setters_reject_misuse(arguments *a)
+{
+    const settable made = add_settable(a);
+    const se3d_force none = {0, 0};
+    double K[36] = {0.0}, value[3] = {0.0};
+    check_parameters(a, &made);
+    check_values(a, &made);
+    check_prescribed(a);
+    CHECK(se3d_force_set_value(a->system, none, value) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_force_get_value(a->system, none, value) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_force_set_parameter(a->system, none, 0, 1.0) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_force_get_parameter(a->system, none, 0, value) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_force_set_bushing(a->system, none, K, K) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_force_get_bushing(a->system, none, K, K) == SE3D_ERR_STALE_HANDLE);
+    remove_settable(a, &made);
+    return SE3D_OK;
+}
+
+#endif
