@@ -428,7 +428,7 @@ static se3d_status add_record(se3di_events *events, const se3di_event_hit *hit,
     const se3di_event *event = &events->list[hit->event];
     const se3di_handle handle = se3di_slots_handle(&events->slots, hit->event);
     void *records = events->records;
-    double g;
+    double g = 0.0;
     se3d_status status =
         se3di_array_reserve(&events->run->model->allocator, &records, &events->record_capacity,
                             events->record_count + 1, sizeof *events->records);

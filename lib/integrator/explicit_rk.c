@@ -401,6 +401,9 @@ static se3d_status cross_jump(rk *m, double h, double error)
     status = status < 0 ? status : prepare(m, h, &error);
     m->tolerance = tolerance;
     SE3DI_TRY(status);
+    if (!(error <= 1.0)) { /* nor is what it leads to a number */
+        return fail_small(m, h);
+    }
     accept(m, h);
     m->header[RK_FORCED] += 1.0;
     m->header[RK_NEXT] = limit_step(m, 1e6 * h);
@@ -646,7 +649,7 @@ static int reports_end(const rk *m)
 static se3d_status step_once(rk *m, double h, int *reported)
 {
     const double t = m->header[RK_T1] + h;
-    double error;
+    double error = 0.0; /* none is asked for: what settle_memory adds decides */
     SE3DI_TRY(make_stages(m, h));
     *reported = reports_end(m);
     arrive(m, h);

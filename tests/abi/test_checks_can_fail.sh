@@ -23,7 +23,7 @@ reject() {
 }
 
 mkdir -p "$work/include/se3d" "$work/lib/base" "$work/lib/math" "$work/lib/io" "$work/tools"
-cp tools/*.py "$work/tools/"
+cp tools/*.py tools/*.sh "$work/tools/"
 cp include/se3d/base.h "$work/include/se3d/"
 cd "$work" || exit 1
 abi="python3 tools/check_abi.py"
@@ -92,6 +92,22 @@ reject 'long_one: lines' python3 tools/check_size.py
 } >lib/math/deep.c
 reject 'deep: complexity 21' python3 tools/check_size.py
 reject 'deep: parameters 9' python3 tools/check_size.py
+
+{
+    echo 'static int ask(int a, double *out)'
+    echo '{'
+    echo '    if (a < 0) { return -1; }'
+    echo '    *out = *out > 1.0 ? 1.0 : 2.0;'
+    echo '    return 0;'
+    echo '}'
+    echo 'double tell(int a);'
+    echo 'double tell(int a)'
+    echo '{'
+    echo '    double out;'
+    echo '    return ask(a, &out) < 0 ? 0.0 : out;'
+    echo '}'
+} >lib/math/unset.c
+reject 'uninitialized' sh tools/check_uninitialised.sh lib/math/unset.c
 
 echo "$count checks, $failed failed"
 [ "$failed" -eq 0 ]
