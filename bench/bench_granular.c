@@ -8,6 +8,7 @@
  *     steps=3000    steps that are timed    repeats=1              so often, the best is told
  *     tilt=0        degrees that gravity turns by before the lead: an avalanche
  *     drum=0        rad/s: the box is a drum of 24 planes about the y axis instead
+ *     funnel=0      1: the box is a conical hopper of 192 triangles, opened below before the lead
  *     state=FILE    the settled state as a LAMMPS data file: read where there is one, written
  *                   otherwise, so that others start from the same
  *     tiles=1       the state is one of (edge/tiles)^3 spheres, put side by side and on top of each
@@ -31,6 +32,11 @@
 #define DRUM_RADIUS 0.75 /* of the width: the box fits in */
 #define PI          3.14159265358979323846
 
+/* A cylinder around the box, a cone below it and a short tube, of so many sides. */
+enum { FUNNEL_SIDES = 32, FUNNEL_RINGS = 4 };
+static const double funnel[FUNNEL_RINGS][2] = {
+    {0.75, 1.5}, {0.75, 0.0}, {0.15, -0.6}, {0.15, -0.7}}; /* radius and height over the width */
+
 typedef struct bench {
     se3d_system *system;
     se3d_particles *particles;
@@ -39,7 +45,8 @@ typedef struct bench {
     double *state; /* r, v, w [count * 3] each */
     double turned; /* angle of the drum */
     int hertz, reserved;
-    double threads, settle, lead, steps, repeats, tilt, drum_rate, tiles;
+    double threads, settle, lead, steps, repeats, tilt, drum_rate, tiles, funnel;
+    se3d_shape gate;
     const char *file;
 } bench;
 
@@ -65,8 +72,8 @@ static double width_of(const bench *b)
 
 /* A floor and four sides; or planes around the y axis through the middle, on a body that turns,
  * and two ends. */
-static void add_plane(bench *b, se3d_body body, se3d_material material, const double point[3],
-                      const double normal[3])
+static se3d_shape add_plane(bench *b, se3d_body body, se3d_material material, const double point[3],
+                            const double normal[3])
 {
     se3d_shape_def wall = se3d_shape_def_default();
     se3d_shape handle;
@@ -75,6 +82,42 @@ static void add_plane(bench *b, se3d_body body, se3d_material material, const do
     memcpy(wall.normal, normal, sizeof wall.normal);
     memcpy(wall.position, point, sizeof wall.position);
     must(b, se3d_shape_create_plane(b->system, &wall, &handle));
+    return handle;
+}
+
+/* The rings of the funnel, two triangles a side, and a gate below it. */
+static void add_funnel(bench *b, se3d_material material)
+{
+    const double width = width_of(b);
+    double vertices[FUNNEL_RINGS * FUNNEL_SIDES][3];
+    uint32_t triangles[2 * (FUNNEL_RINGS - 1) * FUNNEL_SIDES][3];
+    se3d_shape_def wall = se3d_shape_def_default();
+    se3d_shape handle;
+    for (uint32_t ring = 0, t = 0; ring < FUNNEL_RINGS; ++ring) {
+        for (uint32_t k = 0; k < FUNNEL_SIDES; ++k) {
+            const double angle = 2.0 * PI * k / FUNNEL_SIDES;
+            const uint32_t at = ring * FUNNEL_SIDES + k;
+            const uint32_t next = ring * FUNNEL_SIDES + (k + 1) % FUNNEL_SIDES;
+            vertices[at][0] = width * (0.5 + funnel[ring][0] * cos(angle));
+            vertices[at][1] = width * (0.5 + funnel[ring][0] * sin(angle));
+            vertices[at][2] = width * funnel[ring][1];
+            if (ring + 1 < FUNNEL_RINGS) {
+                memcpy(triangles[t++], (uint32_t[3]){at, next, next + FUNNEL_SIDES},
+                       sizeof *triangles);
+                memcpy(triangles[t++], (uint32_t[3]){at, next + FUNNEL_SIDES, at + FUNNEL_SIDES},
+                       sizeof *triangles);
+            }
+        }
+    }
+    wall.material = material;
+    wall.vertices = vertices[0];
+    wall.vertex_count = sizeof vertices / sizeof *vertices;
+    wall.triangles = triangles[0];
+    wall.triangle_count = sizeof triangles / sizeof *triangles;
+    must(b, se3d_shape_create_mesh(b->system, &wall, &handle));
+    b->gate = add_plane(b, (se3d_body){0, 0}, material,
+                        (double[3]){0.0, 0.0, width * funnel[FUNNEL_RINGS - 1][1]},
+                        (double[3]){0.0, 0.0, 1.0});
 }
 
 static void add_walls(bench *b, se3d_material material)
@@ -83,6 +126,10 @@ static void add_walls(bench *b, se3d_material material)
         {0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}};
     double width = width_of(b);
     const se3d_body ground = {0, 0};
+    if (b->funnel > 0.0) {
+        add_funnel(b, material);
+        return;
+    }
     for (int k = 0; k < (b->drum_rate != 0.0 ? 2 : 5); ++k) {
         const double point[3] = {k == 3 ? width : 0.0, k == 1 ? width : 0.0, 0.0};
         add_plane(b, ground, material, point, normals[k]);
@@ -179,15 +226,16 @@ static void write_state(bench *b)
 {
     FILE *file = fopen(b->file, "w");
     double width = width_of(b);
-    double low = b->drum_rate != 0.0 ? -0.8 * width : 0.0;
-    double high = b->drum_rate != 0.0 ? 0.8 * width : width;
+    double low = b->drum_rate != 0.0 ? -0.8 * width : b->funnel > 0.0 ? -0.5 * width : 0.0;
+    double high = b->drum_rate != 0.0 ? 0.8 * width : b->funnel > 0.0 ? 1.5 * width : width;
     if (!file) {
         return;
     }
     must(b, se3d_particles_get_all(b->particles, b->count, b->state, NULL, NULL));
     fprintf(file, "settled bed\n\n%zu atoms\n1 atom types\n\n", b->count);
     fprintf(file, "%.17g %.17g xlo xhi\n%.17g %.17g ylo yhi\n", low, high, low, high);
-    fprintf(file, "-0.01 %.17g zlo zhi\n\nAtoms # sphere\n\n", 1.5 * width);
+    fprintf(file, "%.17g %.17g zlo zhi\n\nAtoms # sphere\n\n",
+            b->funnel > 0.0 ? -4.0 * width : -0.01, 1.5 * width);
     for (size_t k = 0; k < b->count; ++k) {
         double x[3] = {b->state[3 * k], b->state[3 * k + 1], b->state[3 * k + 2]};
         swap_axes(b, x, 1);
@@ -240,6 +288,9 @@ static int read_state(bench *b)
 
 static void tilt(bench *b)
 {
+    if (b->funnel > 0.0) {
+        must(b, se3d_shape_destroy(b->system, b->gate));
+    }
     double angle = b->tilt * PI / 180.0;
     const double g[3] = {9.81 * sin(angle), 0.0, -9.81 * cos(angle)};
     must(b, se3d_system_set_gravity(b->system, g));
@@ -306,7 +357,7 @@ static void measure(bench *b)
            b->hertz ? "hertz" : "hooke", b->count, (int)after.threads, 1e-6 * cpu_rate, 1e-6 * rate,
            contacts, (double)after.bytes / (double)b->count, (unsigned long long)rebuilds,
            (unsigned long long)after.lost);
-    if (b->tilt != 0.0 || b->drum_rate != 0.0) {
+    if (b->tilt != 0.0 || b->drum_rate != 0.0 || b->funnel > 0.0) {
         se3d_particles_energy energy;
         must(b, se3d_particles_get_energy(b->particles, &energy));
         printf("  kinetic energy %.4g J\n", energy.translation);
@@ -323,7 +374,7 @@ static int parse(bench *b, const char *text)
         double *value;
     } numbers[] = {{"threads", &b->threads}, {"settle", &b->settle},   {"lead", &b->lead},
                    {"steps", &b->steps},     {"repeats", &b->repeats}, {"tilt", &b->tilt},
-                   {"drum", &b->drum_rate},  {"tiles", &b->tiles}};
+                   {"drum", &b->drum_rate},  {"tiles", &b->tiles},     {"funnel", &b->funnel}};
     const char *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : 0;
     for (size_t k = 0; equals && k < sizeof numbers / sizeof numbers[0]; ++k) {

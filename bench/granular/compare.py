@@ -3,7 +3,7 @@
 """Granular beds here, in LAMMPS and in LIGGGHTS, in turn, from the same settled states.
 
     compare.py BENCH [--quick] [--edges 20 32 50] [--laws hooke hertz] [--avalanche 20] [--drum 20]
-               [--repeats 3] [--processes 1 2] [--keep FOLDER]
+               [--funnel 21] [--repeats 3] [--processes 1 2] [--keep FOLDER]
 
 BENCH is bench_granular of a release build. Every round runs each program once; the least CPU time
 of all rounds counts. A peer's time is that of lead and steps less that of the lead alone, so that
@@ -21,6 +21,8 @@ import tempfile
 HERE = os.path.dirname(os.path.abspath(__file__))
 PITCH = 0.011
 PLANES = 24  # of the drum
+SIDES = 32  # of the hopper, a cylinder, a cone and a tube
+RINGS = ((0.75, 1.5), (0.75, 0.0), (0.15, -0.6), (0.15, -0.7))  # radius and height over the width
 
 
 def run(command, **more):
@@ -34,28 +36,50 @@ def run(command, **more):
     return done.stdout, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
+def write_triangles(name, triangles):
+    with open(name, "w", encoding="ascii") as target:
+        print("solid shell", file=target)
+        for corners in triangles:
+            print("facet normal 0 0 0\nouter loop", file=target)
+            for vertex in corners:
+                print("vertex %.9g %.9g %.9g" % vertex, file=target)
+            print("endloop\nendfacet", file=target)
+        print("endsolid shell", file=target)
+
+
+def write_funnel(name, width):
+    """The triangles of the hopper, as bench_granular has them."""
+    def at(ring, k):
+        angle = 2.0 * math.pi * (k % SIDES) / SIDES
+        radius, height = RINGS[ring]
+        return (width * (0.5 + radius * math.cos(angle)),
+                width * (0.5 + radius * math.sin(angle)), width * height)
+    triangles = []
+    for ring in range(len(RINGS) - 1):
+        for k in range(SIDES):
+            triangles.append((at(ring, k), at(ring, k + 1), at(ring + 1, k + 1)))
+            triangles.append((at(ring, k), at(ring + 1, k + 1), at(ring + 1, k)))
+    write_triangles(name, triangles)
+
+
 def write_shell(name, radius, width):
     """The planes of the drum about the z axis, two triangles each, a little longer than it is."""
     angles = [2.0 * math.pi * (k + 0.5) / PLANES for k in range(PLANES + 1)]
     corner = radius / math.cos(math.pi / PLANES)
     at = [(corner * math.cos(angle), corner * math.sin(angle)) for angle in angles]
-    with open(name, "w", encoding="ascii") as target:
-        print("solid drum", file=target)
-        for (x0, y0), (x1, y1) in zip(at, at[1:]):
-            low, high = -0.009, 1.2 * width  # the bed is from 0 to width, the file's box from -0.01
-            for corners in (((x0, y0, low), (x1, y1, low), (x1, y1, high)),
-                            ((x0, y0, low), (x1, y1, high), (x0, y0, high))):
-                print("facet normal 0 0 0\nouter loop", file=target)
-                for vertex in corners:
-                    print("vertex %.9g %.9g %.9g" % vertex, file=target)
-                print("endloop\nendfacet", file=target)
-        print("endsolid drum", file=target)
+    triangles = []
+    for (x0, y0), (x1, y1) in zip(at, at[1:]):
+        low, high = -0.009, 1.2 * width  # the bed is from 0 to width, the file's box from -0.01
+        triangles.append(((x0, y0, low), (x1, y1, low), (x1, y1, high)))
+        triangles.append(((x0, y0, low), (x1, y1, high), (x0, y0, high)))
+    write_triangles(name, triangles)
 
 
 class Case:
-    """A bed of edge^3 spheres: a column, an avalanche (gravity is tilted), or a drum that turns."""
+    """A bed of edge^3 spheres: a column, an avalanche (gravity is tilted), a drum that turns, or a
+    hopper of triangles that empties."""
 
-    LEADS = {"avalanche": 10000, "drum": 20000}
+    LEADS = {"avalanche": 10000, "drum": 20000, "funnel": 5000}
     TILT = 45.0
     RATE = 2.0  # of the drum [rad/s]
 
@@ -64,14 +88,16 @@ class Case:
         self.count = edge ** 3
         self.lead = self.LEADS.get(kind, 300 if edge < 30 else 50)
         self.steps = max(100, self.LEADS.get(kind, 0) // 2, round(options.work / self.count))
-        bed = "drum" if kind == "drum" else "column"
+        bed = kind if kind in ("drum", "funnel") else "column"
         self.state = os.path.join(options.keep, f"{bed}_{edge}_{law}.data")
         self.own = [options.bench, f"edge={edge}", f"law={law}", f"state={self.state}"]
         self.own += [f"drum={self.RATE}"] if kind == "drum" else []
+        self.own += ["funnel=1"] if kind == "funnel" else []
 
     def settle(self):
         if not os.path.exists(self.state):
-            run(self.own + ["steps=1", "lead=0"])
+            more = ["settle=120000"] if self.kind == "funnel" else []
+            run(self.own + more + ["steps=1", "lead=0"])
         with open(self.state, encoding="ascii") as source, \
                 open(self.state + ".plain", "w", encoding="ascii") as target:
             target.write(source.read().replace("Atoms # sphere", "Atoms"))
@@ -97,6 +123,10 @@ class Case:
             write_shell(shell, 0.75 * width, width)
             return "drum", ["-var", "shell", shell, "-var", "period",
                             repr(-2.0 * math.pi / self.RATE)]
+        if self.kind == "funnel":
+            shell = self.state + ".stl"
+            write_funnel(shell, width)
+            return "funnel", ["-var", "shell", shell]
         angle = math.radians(self.TILT if self.kind == "avalanche" else 0.0)
         return self.law, ["-var", "gx", repr(math.sin(angle)), "-var", "gz",
                           repr(-math.cos(angle))]
@@ -141,6 +171,9 @@ def report(case, best, programs, processes):
     for number in processes:
         column = 0 if number == 1 else 1
         for program in programs:
+            if (program, number) not in best:
+                print(" |", end="")
+                continue
             rate = best[program, number][column]
             ratio = best["se3d", number][column] / rate
             print(f" {rate:.1f}" + (f" ({ratio:.1f}) |" if program != "se3d" else " |"), end="")
@@ -149,7 +182,7 @@ def report(case, best, programs, processes):
     print()
     words = best["se3d", processes[0]][2].splitlines()
     for program in programs:
-        if program != "se3d" and best[program, processes[0]][2] != "0 lost":
+        if program != "se3d" and best.get((program, processes[0]), "0 lost" * 3)[2] != "0 lost":
             words.append(f"{program}: {best[program, processes[0]][2]}")
     print("\n".join("    " + line.strip() for line in words[1:]), flush=True)
 
@@ -162,6 +195,7 @@ def main():
     parser.add_argument("--laws", nargs="*", default=["hooke", "hertz"])
     parser.add_argument("--avalanche", type=int, nargs="*", default=[20], help="edges")
     parser.add_argument("--drum", type=int, nargs="*", default=[20], help="edges")
+    parser.add_argument("--funnel", type=int, nargs="*", default=[21], help="edges")
     parser.add_argument("--quick", action="store_true",
                         help="8,000 spheres only, each program once, for a short time")
     parser.add_argument("--repeats", type=int, default=3)
@@ -184,10 +218,12 @@ def main():
     cases = [("column", e, l) for e in options.edges for l in options.laws]
     cases += [("avalanche", e, l) for e in options.avalanche for l in options.laws]
     cases += [("drum", e, "hooke") for e in options.drum]
+    cases += [("funnel", e, "hooke") for e in options.funnel]
     for kind, edge, law in cases:
         case = Case(options, kind, edge, law)
         case.settle()
-        report(case, measure(case, programs, options), programs, options.processes)
+        may = [p for p in programs if kind != "funnel" or p != "lmp"]  # no triangles in LAMMPS 2021
+        report(case, measure(case, may, options), programs, options.processes)
 
 
 if __name__ == "__main__":

@@ -198,14 +198,51 @@ static double box_distance(const mesh_node *node, const double p[3])
     return sum;
 }
 
+static void find_corners(const se3di_shape *s, uint32_t triangle, const double *corner[3])
+{
+    for (int k = 0; k < 3; ++k) {
+        corner[k] = s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle + (size_t)k];
+    }
+}
+
 static double triangle_distance(const se3di_shape *s, uint32_t triangle, const double p[3],
                                 double point[3])
 {
     const double *corner[3];
-    for (int k = 0; k < 3; ++k) {
-        corner[k] = s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle + (size_t)k];
-    }
+    find_corners(s, triangle, corner);
     return se3di_triangle_nearest(corner, p, point, NULL);
+}
+
+/* Whether a triangle is within reach, with its point and squared distance; most are not, and their
+ * planes tell it for a few operations. */
+static int reaches(const se3di_shape *s, uint32_t triangle, const double p[3], double reach,
+                   double point[3], double *square)
+{
+    const double *corner[3];
+    double ab[3], ac[3], normal[3], d[3];
+    find_corners(s, triangle, corner);
+    se3di_sub(corner[1], corner[0], ab);
+    se3di_sub(corner[2], corner[0], ac);
+    se3di_sub(p, corner[0], d);
+    se3di_cross(ab, ac, normal);
+    const double height = se3di_dot(d, normal);
+    if (height * height > (1.0 + 1e-9) * reach * se3di_dot(normal, normal)) {
+        return 0;
+    }
+    *square = se3di_triangle_nearest(corner, p, point, NULL);
+    return *square < reach;
+}
+
+int se3di_mesh_is_near(const se3di_shape *shape, const uint32_t *faces, size_t face_count,
+                       const double local[3], double radius)
+{
+    double point[3], square;
+    for (size_t k = 0; k < face_count; ++k) {
+        if (reaches(shape, faces[k], local, radius * radius, point, &square)) {
+            return 1;
+        }
+    }
+    return 0;
 }
 
 size_t se3di_mesh_nearest(const se3di_shape *shape, const double local[3], double point[3],
@@ -279,8 +316,8 @@ void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double ra
             stack[depth++] = at + 1;
         }
         for (uint32_t k = node->begin; k < node->begin + node->count; ++k) {
-            double point[3];
-            if (triangle_distance(shape, k, local, point) < reach) {
+            double point[3], square;
+            if (reaches(shape, k, local, reach, point, &square)) {
                 visitor(ctx, k);
             }
         }
@@ -370,11 +407,11 @@ static int leads_on(const se3di_shape *s, const candidate *list, size_t k, doubl
     return 0;
 }
 
-size_t se3di_mesh_contacts(const se3di_shape *shape, const double local[3], double radius,
-                           size_t capacity, se3di_touch *touch)
+/* Of the triangles within the radius, the nearest first, those that are contacts. */
+static size_t choose_contacts(const se3di_shape *shape, const candidate *list, size_t found,
+                              const double local[3], double radius, size_t capacity,
+                              se3di_touch *touch)
 {
-    candidate list[CANDIDATES];
-    size_t found = gather(shape, local, radius, list);
     size_t count = 0;
     for (size_t k = 0; k < found && count < capacity; ++k) {
         if (leads_on(shape, list, k, ON_TRIANGLE * radius)) {
@@ -395,4 +432,27 @@ size_t se3di_mesh_contacts(const se3di_shape *shape, const double local[3], doub
         count += again ? 0 : 1;
     }
     return count;
+}
+
+size_t se3di_mesh_contacts(const se3di_shape *shape, const double local[3], double radius,
+                           size_t capacity, se3di_touch *touch)
+{
+    candidate list[CANDIDATES];
+    const size_t found = gather(shape, local, radius, list);
+    return choose_contacts(shape, list, found, local, radius, capacity, touch);
+}
+
+size_t se3di_mesh_contacts_among(const se3di_shape *shape, const uint32_t *faces, size_t face_count,
+                                 const double local[3], double radius, size_t capacity,
+                                 se3di_touch *touch)
+{
+    candidate list[CANDIDATES];
+    size_t found = 0;
+    for (size_t k = 0; k < face_count; ++k) {
+        candidate here = {.triangle = faces[k]};
+        if (reaches(shape, faces[k], local, radius * radius, here.point, &here.square)) {
+            found = insert(list, found, &here);
+        }
+    }
+    return choose_contacts(shape, list, found, local, radius, capacity, touch);
 }

@@ -28,6 +28,14 @@ size_t se3di_mesh_nearest(const se3di_shape *shape, const double local[3], doubl
 size_t se3di_mesh_contacts(const se3di_shape *shape, const double local[3], double radius,
                            size_t capacity, se3di_touch *touch);
 
+/* The same where all triangles within the radius are among these, in the order of the tree. */
+size_t se3di_mesh_contacts_among(const se3di_shape *shape, const uint32_t *faces, size_t face_count,
+                                 const double local[3], double radius, size_t capacity,
+                                 se3di_touch *touch);
+/* Whether one of these triangles is nearer than the radius. */
+int se3di_mesh_is_near(const se3di_shape *shape, const uint32_t *faces, size_t face_count,
+                       const double local[3], double radius);
+
 /* Visit all triangles nearer to a point than the radius, in the order of the tree. */
 void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double radius,
                       void (*visitor)(void *ctx, uint32_t triangle), void *ctx);

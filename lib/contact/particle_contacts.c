@@ -181,7 +181,8 @@ static void list_meshes(const se3di_particles *set, const se3di_slab *slab, cont
 {
     for (uint32_t k = slab->mesh_begin; k < slab->mesh_end; ++k) {
         se3di_mesh_batch batch;
-        se3di_mesh_pair_open(set, &set->mesh_pairs[k], &batch);
+        se3di_mesh_batch_begin(set, set->mesh_pairs[k].wall, &batch);
+        (void)se3di_mesh_batch_add(set, &set->mesh_pairs[k], &batch);
         for (int lane = 0; lane < (int)batch.count; ++lane) {
             couple c;
             se3d_particles_contact contact;

@@ -4,8 +4,8 @@
  * History waits in `carry` while lists change: entries {i, j, xi}, chained by i through key[] (the
  * first) and carry_next[]. They lie in the memory of the loads, which hold nothing while there are
  * no valid lists. Where memory fails they stay there, and nothing is lost. */
+#include "contact/mesh.h"
 #include "contact/particle_set.h"
-
 #include "math/vec3.h"
 
 #include <math.h>
@@ -292,19 +292,19 @@ static uint32_t mark_walls(se3di_particles *set, const se3di_slab *slab, size_t 
     size_t count = 0;
     uint32_t last = SE3DI_NO_INDEX;
     for (uint32_t k = slab->near_begin; k < slab->near_end; ++k) {
-        uint32_t *entry = &set->near_walls[2 * k];
-        uint32_t i = entry[0] & ~SE3DI_LIST_ACTIVE;
+        se3di_near_wall *entry = &set->near_walls[k];
+        uint32_t i = entry->i & ~SE3DI_LIST_ACTIVE;
         const se3di_grain *g = &set->grains[i];
-        const se3di_wall *wall = &set->walls[entry[1]];
+        const se3di_wall *wall = &set->walls[entry->wall];
         double x[3];
         se3di_particles_image(set, wall, g->x, g->radius + set->near, x);
         int active = wall->shape.kind != SE3DI_SHAPE_MESH && /* they have pairs of their own */
                      se3di_wall_distance(wall, x) < g->radius + set->near;
-        entry[0] = active ? i | SE3DI_LIST_ACTIVE : i;
-        if (entry[1] != last) {
+        entry->i = active ? i | SE3DI_LIST_ACTIVE : i;
+        if (entry->wall != last) {
             blocks += blocks_of(count);
             count = 0;
-            last = entry[1];
+            last = entry->wall;
         }
         count += (size_t)active;
         *pairs += (size_t)active;
@@ -334,8 +334,8 @@ static void fill_slab(se3di_particles *set, uint32_t s)
     }
     uint32_t last = SE3DI_NO_INDEX;
     for (uint32_t k = slab->near_begin; k < slab->near_end; ++k) {
-        uint32_t i = set->near_walls[2 * k];
-        uint32_t w = set->near_walls[2 * k + 1];
+        uint32_t i = set->near_walls[k].i;
+        uint32_t w = set->near_walls[k].wall;
         if (i & SE3DI_LIST_ACTIVE) {
             at.lane = w == last ? at.lane : SE3DI_GRAIN_LANES;
             last = w;
@@ -481,27 +481,75 @@ void se3di_particles_image(const se3di_particles *set, const se3di_wall *wall, c
     se3di_wall_image(wall, length, reach, out);
 }
 
+/* Triangles of a mesh within reach, appended to the set's faces. */
+typedef struct face_list {
+    se3di_particles *set;
+    se3d_status status;
+} face_list;
+
+static void add_face(void *ctx, uint32_t triangle)
+{
+    face_list *faces = ctx;
+    se3di_particles *set = faces->set;
+    if (faces->status == SE3D_OK) {
+        faces->status =
+            se3di_particles_grow(set, &set->faces, &set->face_capacity, set->face_count + 1);
+    }
+    if (faces->status == SE3D_OK) {
+        set->faces[set->face_count++] = triangle;
+    }
+}
+
+static se3d_status list_faces(se3di_particles *set, const se3di_wall *wall, const double x[3],
+                              double reach)
+{
+    face_list faces = {set, SE3D_OK};
+    double d[3], local[3];
+    se3di_sub(x, wall->pose.x, d);
+    se3di_mul_transposed(wall->pose.R, d, local);
+    se3di_mesh_visit(&wall->shape, local, reach, add_face, &faces);
+    return faces.status;
+}
+
+/* One particle and one wall. */
+static se3d_status list_wall(se3di_particles *set, uint32_t i, uint32_t w)
+{
+    const se3di_grain *g = &set->grains[i];
+    const se3di_wall *wall = &set->walls[w];
+    const double reach = g->radius + set->skin;
+    const size_t face_begin = set->face_count;
+    double x[3];
+    se3di_particles_image(set, wall, g->x, reach, x);
+    if (least_distance(wall, x) >= reach) {
+        return SE3D_OK;
+    }
+    if (wall->shape.kind == SE3DI_SHAPE_MESH) {
+        SE3DI_TRY(list_faces(set, wall, x, reach));
+        if (set->face_count == face_begin) {
+            return SE3D_OK;
+        }
+    } else if (se3di_wall_distance(wall, x) >= reach) {
+        return SE3D_OK;
+    }
+    void *memory = set->near_walls;
+    const se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->near_capacity,
+                                                   set->near_count + 1, sizeof *set->near_walls);
+    set->near_walls = memory;
+    SE3DI_TRY(status);
+    set->near_walls[set->near_count++] =
+        (se3di_near_wall){i, w, (uint32_t)face_begin, (uint32_t)(set->face_count - face_begin)};
+    return SE3D_OK;
+}
+
 se3d_status se3di_particles_list_walls(se3di_particles *set)
 {
-    set->near_count = 0;
+    set->near_count = set->face_count = 0;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
         se3di_slab *slab = &set->slabs[s];
         slab->near_begin = (uint32_t)set->near_count;
         for (uint32_t w = 0; w < set->wall_count; ++w) {
             for (uint32_t i = slab->begin; i < slab->end; ++i) {
-                const se3di_grain *g = &set->grains[i];
-                double reach = g->radius + set->skin;
-                double x[3];
-                se3di_particles_image(set, &set->walls[w], g->x, reach, x);
-                if (least_distance(&set->walls[w], x) >= reach ||
-                    se3di_wall_distance(&set->walls[w], x) >= reach) {
-                    continue;
-                }
-                SE3DI_TRY(se3di_particles_grow(set, &set->near_walls, &set->near_capacity,
-                                               2 * set->near_count + 2));
-                set->near_walls[2 * set->near_count] = i;
-                set->near_walls[2 * set->near_count + 1] = w;
-                ++set->near_count;
+                SE3DI_TRY(list_wall(set, i, w));
             }
         }
         slab->near_end = (uint32_t)set->near_count;

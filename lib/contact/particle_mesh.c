@@ -30,32 +30,49 @@ static int match(const se3di_mesh_pair *pair, const double normal[3], unsigned t
     return found;
 }
 
-void se3di_mesh_pair_open(const se3di_particles *set, const se3di_mesh_pair *pair,
-                          se3di_mesh_batch *batch)
+void se3di_mesh_batch_begin(const se3di_particles *set, uint32_t wall, se3di_mesh_batch *batch)
 {
-    const se3di_wall *wall = &set->walls[pair->wall];
-    const se3di_grain *grain = &set->grains[pair->i];
-    se3di_touch touches[SE3DI_MESH_TOUCHES];
-    double d[3], local[3], x[3];
     memset(batch, 0, sizeof *batch);
     for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
         batch->block.i[k] = batch->block.j[k] = (uint32_t)set->capacity;
         batch->given.distance[k] = 1e300;
     }
-    batch->block.j[0] = pair->wall;
-    se3di_particles_image(set, wall, grain->x, grain->radius, x);
+    batch->block.j[0] = wall;
+}
+
+static void find_local(const se3di_particles *set, const se3di_mesh_pair *pair, double reach,
+                       double local[3])
+{
+    const se3di_wall *wall = &set->walls[pair->wall];
+    double x[3], d[3];
+    se3di_particles_image(set, wall, set->grains[pair->i].x, reach, x);
     se3di_sub(x, wall->pose.x, d);
     se3di_mul_transposed(wall->pose.R, d, local);
-    batch->count = (uint32_t)se3di_mesh_contacts(&wall->shape, local, grain->radius,
-                                                 SE3DI_MESH_TOUCHES, touches);
+}
+
+int se3di_mesh_batch_add(const se3di_particles *set, const se3di_mesh_pair *pair,
+                         se3di_mesh_batch *batch)
+{
+    const se3di_wall *wall = &set->walls[pair->wall];
+    const double radius = set->grains[pair->i].radius;
+    se3di_touch touches[SE3DI_MESH_TOUCHES];
+    double local[3];
+    find_local(set, pair, radius, local);
+    const size_t count =
+        se3di_mesh_contacts_among(&wall->shape, set->faces + pair->face_begin, pair->face_count,
+                                  local, radius, SE3DI_MESH_TOUCHES, touches);
+    if (batch->block.j[0] != pair->wall || batch->count + count > SE3DI_GRAIN_LANES) {
+        return 0;
+    }
     unsigned taken = 0;
-    for (uint32_t k = 0; k < batch->count; ++k) {
+    for (uint32_t t = 0; t < count; ++t) {
+        const uint32_t k = batch->count++;
         double normal[3];
-        se3di_copy(touches[k].normal, batch->local[k]);
-        se3di_mul(wall->pose.R, touches[k].normal, normal);
+        se3di_copy(touches[t].normal, batch->local[k]);
+        se3di_mul(wall->pose.R, touches[t].normal, normal);
         batch->block.i[k] = pair->i;
-        batch->given.distance[k] = touches[k].distance;
-        int old = match(pair, touches[k].normal, taken);
+        batch->given.distance[k] = touches[t].distance;
+        int old = match(pair, touches[t].normal, taken);
         for (int a = 0; a < 3; ++a) {
             batch->given.normal[a][k] = normal[a];
             batch->block.xi[a][k] = old < 0 ? 0.0 : pair->touches[old].xi[a];
@@ -65,41 +82,57 @@ void se3di_mesh_pair_open(const se3di_particles *set, const se3di_mesh_pair *pai
         }
         taken |= old < 0 ? 0u : 1u << old;
     }
+    return 1;
 }
 
-/* What the kernel made of the history. */
-static void close_pair(const se3di_mesh_batch *batch, se3di_mesh_pair *pair)
+/* What the kernel made of the history of the pairs [begin, end): their lanes follow each other. */
+static void close_batch(const se3di_mesh_batch *batch, se3di_mesh_pair *begin, se3di_mesh_pair *end)
 {
-    pair->count = batch->count;
-    for (uint32_t k = 0; k < batch->count; ++k) {
-        se3di_mesh_touch *touch = &pair->touches[k];
-        se3di_copy(batch->local[k], touch->normal);
-        for (int a = 0; a < 3; ++a) {
-            touch->xi[a] = batch->block.xi[a][k];
-        }
-        for (int a = 0; a < 4; ++a) {
-            touch->rho[a] = batch->roll.rho[a][k];
+    uint32_t k = 0;
+    for (se3di_mesh_pair *pair = begin; pair < end; ++pair) {
+        for (pair->count = 0; k < batch->count && batch->block.i[k] == pair->i; ++k) {
+            se3di_mesh_touch *touch = &pair->touches[pair->count++];
+            se3di_copy(batch->local[k], touch->normal);
+            for (int a = 0; a < 3; ++a) {
+                touch->xi[a] = batch->block.xi[a][k];
+            }
+            for (int a = 0; a < 4; ++a) {
+                touch->rho[a] = batch->roll.rho[a][k];
+            }
         }
     }
+}
+
+/* Pairs from `first` on of one wall, as many as there are lanes; returns the one after them. */
+static se3di_mesh_pair *evaluate_batch(se3di_particles *set, se3di_mesh_pair *first,
+                                       se3di_mesh_pair *end, se3di_force_task *task)
+{
+    se3di_mesh_batch batch;
+    se3di_mesh_pair *next = first;
+    se3di_mesh_batch_begin(set, first->wall, &batch);
+    while (next < end && se3di_mesh_batch_add(set, next, &batch)) {
+        ++next;
+    }
+    if (batch.count > 0) {
+        task->blocks = &batch.block;
+        task->rolls = set->rolling ? &batch.roll : NULL; /* also where there are no blocks */
+        task->given = &batch.given;
+        se3di_particles_get_kernels(set)->walls(task);
+    }
+    close_batch(&batch, first, next);
+    return next;
 }
 
 void se3di_particles_mesh_forces(se3di_particles *set, const se3di_slab *slab,
                                  se3di_force_task *task)
 {
     se3di_force_task local = *task;
-    se3di_mesh_batch batch;
+    se3di_mesh_pair *at = set->mesh_pairs + slab->mesh_begin;
+    se3di_mesh_pair *end = set->mesh_pairs + slab->mesh_end;
     local.begin = 0;
     local.end = 1;
-    local.blocks = &batch.block;
-    local.rolls = set->rolling ? &batch.roll : NULL; /* also where there are no blocks */
-    local.given = &batch.given;
-    for (uint32_t k = slab->mesh_begin; k < slab->mesh_end; ++k) {
-        se3di_mesh_pair *pair = &set->mesh_pairs[k];
-        se3di_mesh_pair_open(set, pair, &batch);
-        if (batch.count > 0) {
-            se3di_particles_get_kernels(set)->walls(&local);
-        }
-        close_pair(&batch, pair);
+    while (at < end) {
+        at = evaluate_batch(set, at, end, &local);
     }
     task->overlap = local.overlap;
     task->touching = local.touching;
@@ -151,23 +184,36 @@ static void chain(se3di_particles *set)
     }
 }
 
-static se3d_status push(se3di_particles *set, uint32_t i, uint32_t wall)
+static se3d_status push(se3di_particles *set, const se3di_near_wall *near)
 {
+    const uint32_t i = near->i & ~SE3DI_LIST_ACTIVE;
     void *memory = set->mesh_pairs;
     se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->mesh_capacity,
                                              set->mesh_count + 1, sizeof *set->mesh_pairs);
     set->mesh_pairs = memory;
     SE3DI_TRY(status);
     uint32_t old = set->key[i];
-    while (old != SE3DI_NO_INDEX && set->mesh_old[old].wall != wall) {
+    while (old != SE3DI_NO_INDEX && set->mesh_old[old].wall != near->wall) {
         old = set->mesh_old[old].next;
     }
     se3di_mesh_pair *pair = &set->mesh_pairs[set->mesh_count++];
-    *pair = (se3di_mesh_pair){.i = i, .wall = wall};
+    *pair = (se3di_mesh_pair){.i = i, .wall = near->wall};
     if (old != SE3DI_NO_INDEX) {
         *pair = set->mesh_old[old];
     }
+    pair->face_begin = near->face_begin;
+    pair->face_count = near->face_count;
     return SE3D_OK;
+}
+
+static int is_active(const se3di_particles *set, const se3di_near_wall *near)
+{
+    const se3di_mesh_pair pair = {.i = near->i & ~SE3DI_LIST_ACTIVE, .wall = near->wall};
+    const double reach = set->grains[pair.i].radius + set->near;
+    double local[3];
+    find_local(set, &pair, reach, local);
+    return se3di_mesh_is_near(&set->walls[pair.wall].shape, set->faces + near->face_begin,
+                              near->face_count, local, reach);
 }
 
 se3d_status se3di_particles_mesh_activate(se3di_particles *set)
@@ -184,16 +230,9 @@ se3d_status se3di_particles_mesh_activate(se3di_particles *set)
         se3di_slab *slab = &set->slabs[s];
         slab->mesh_begin = (uint32_t)set->mesh_count;
         for (uint32_t k = slab->near_begin; any && k < slab->near_end; ++k) {
-            uint32_t i = set->near_walls[2 * k] & ~SE3DI_LIST_ACTIVE;
-            uint32_t w = set->near_walls[2 * k + 1];
-            const se3di_grain *g = &set->grains[i];
-            double x[3];
-            if (!is_mesh(&set->walls[w])) {
-                continue;
-            }
-            se3di_particles_image(set, &set->walls[w], g->x, g->radius + set->near, x);
-            if (se3di_wall_distance(&set->walls[w], x) < g->radius + set->near) {
-                SE3DI_TRY(push(set, i, w));
+            const se3di_near_wall *near = &set->near_walls[k];
+            if (is_mesh(&set->walls[near->wall]) && is_active(set, near)) {
+                SE3DI_TRY(push(set, near));
             }
         }
         slab->mesh_end = (uint32_t)set->mesh_count;

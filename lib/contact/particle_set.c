@@ -72,6 +72,7 @@ void se3di_particles_destroy(se3di_particles *set)
     se3di_free(a, set->first, set->first_capacity, sizeof *set->first);
     se3di_free(a, set->list, set->list_capacity, sizeof *set->list);
     se3di_free(a, set->near_walls, set->near_capacity, sizeof *set->near_walls);
+    se3di_free(a, set->faces, set->face_capacity, sizeof *set->faces);
     se3di_free(a, set->carry_roll, set->carry_roll_capacity, sizeof(double));
     se3di_free(a, set->carry_next, set->carry_next_capacity, sizeof *set->carry_next);
     se3di_free(a, set->mesh_pairs, set->mesh_capacity, sizeof *set->mesh_pairs);
@@ -103,7 +104,8 @@ size_t se3di_particles_memory(const se3di_particles *set)
            set->block_memory.bytes + set->roll_memory.bytes +
            set->capacity * (3 * sizeof(double) + 2 * sizeof(uint32_t)) +
            sizeof(uint32_t) * (set->index_capacity + set->cell_capacity + set->first_capacity +
-                               set->list_capacity + set->near_capacity + set->carry_next_capacity) +
+                               set->list_capacity + set->face_capacity + set->carry_next_capacity) +
+           set->near_capacity * sizeof *set->near_walls +
            sizeof(double) * (set->carry_roll_capacity + set->wall_sum_capacity) +
            (set->mesh_capacity + set->mesh_old_capacity) * sizeof *set->mesh_pairs +
            set->wall_capacity * sizeof *set->walls + set->source_capacity * sizeof *set->sources +
@@ -256,7 +258,8 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         {&to->cells, from->cells, from->cell_capacity, sizeof(uint32_t)},
         {&to->first, from->first, from->first_capacity, sizeof(uint32_t)},
         {&to->list, from->list, from->list_capacity, sizeof(uint32_t)},
-        {&to->near_walls, from->near_walls, from->near_capacity, sizeof(uint32_t)},
+        {&to->near_walls, from->near_walls, from->near_capacity, sizeof(se3di_near_wall)},
+        {&to->faces, from->faces, from->face_capacity, sizeof(uint32_t)},
         {&to->carry_next, from->carry_next, from->carry_next_capacity, sizeof(uint32_t)},
         {&to->carry_roll, from->carry_roll, from->carry_roll_capacity, sizeof(double)},
         {&to->wall_sums, from->wall_sums, from->wall_sum_capacity, sizeof(double)},

@@ -62,7 +62,7 @@ typedef struct se3di_carry {
 } se3di_carry; /* of i, in a chain that starts at carry_first[i] */
 
 #define SE3DI_CARRY_WALL  0x80000000u
-#define SE3DI_LIST_ACTIVE 0x80000000u /* in entries of list and near_walls: nearer than `near` */
+#define SE3DI_LIST_ACTIVE 0x80000000u /* in entries of the list: nearer than `near` */
 
 /* What the set has taken from the model: a material of particles or walls. */
 typedef struct se3di_stuff {
@@ -95,10 +95,17 @@ typedef struct se3di_mesh_touch {
 
 #define SE3DI_MESH_TOUCHES 6
 
+/* A particle that may touch a wall before the list is built anew. */
+typedef struct se3di_near_wall {
+    uint32_t i, wall;                /* SE3DI_LIST_ACTIVE in i: nearer than `near` */
+    uint32_t face_begin, face_count; /* in the set's faces: a mesh's triangles within reach */
+} se3di_near_wall;
+
 /* A particle near a mesh. */
 typedef struct se3di_mesh_pair {
     uint32_t i, wall;
     uint32_t count, next;
+    uint32_t face_begin, face_count; /* in the set's faces: triangles that it may touch */
     se3di_mesh_touch touches[SE3DI_MESH_TOUCHES];
 } se3di_mesh_pair;
 
@@ -107,12 +114,12 @@ typedef struct se3di_given {
     double normal[3][SE3DI_GRAIN_LANES], distance[SE3DI_GRAIN_LANES];
 } se3di_given;
 
-/* The touches of a pair as they are now, for a kernel. */
+/* The touches of a few pairs with one mesh as they are now, for a kernel. */
 typedef struct se3di_mesh_batch {
     _Alignas(64) se3di_block block;
     _Alignas(64) se3di_given given;
     se3di_roll roll;
-    double local[SE3DI_MESH_TOUCHES][3]; /* normals, mesh frame */
+    double local[SE3DI_GRAIN_LANES][3]; /* normals, mesh frame */
     uint32_t count, reserved;
 } se3di_mesh_batch;
 
@@ -259,8 +266,10 @@ typedef struct se3di_particles {
     se3di_block *blocks;
     se3di_roll *rolls;
     uint32_t block_count;
-    uint32_t *near_walls; /* pairs (particle, wall): candidates, by slab and wall */
+    se3di_near_wall *near_walls; /* by slab and wall */
     size_t near_count, near_capacity;
+    uint32_t *faces; /* triangles of meshes, see se3di_near_wall */
+    size_t face_count, face_capacity;
     se3di_carry *carry; /* in the memory of the loads, while list_valid is 0 */
     double *carry_roll; /* [4 * carry] where rolling */
     uint32_t *carry_next;
@@ -411,9 +420,11 @@ void se3di_particles_mesh_remap(se3di_particles *set, const uint32_t *new_index,
 se3d_status se3di_particles_mesh_activate(se3di_particles *set);
 void se3di_particles_mesh_forces(se3di_particles *set, const se3di_slab *slab,
                                  se3di_force_task *task);
-/* Where the two touch now, with the history. */
-void se3di_mesh_pair_open(const se3di_particles *set, const se3di_mesh_pair *pair,
-                          se3di_mesh_batch *batch);
+/* Empty, of a wall. */
+void se3di_mesh_batch_begin(const se3di_particles *set, uint32_t wall, se3di_mesh_batch *batch);
+/* Append where the two touch now, with the history; returns 0 where there is no room. */
+int se3di_mesh_batch_add(const se3di_particles *set, const se3di_mesh_pair *pair,
+                         se3di_mesh_batch *batch);
 /* Grow an array to hold `needed` elements, a little more. */
 se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, size_t *capacity,
                                  size_t needed);
