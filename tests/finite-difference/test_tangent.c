@@ -9,6 +9,7 @@
 #include "math/vec3.h"
 #include "nonlinear/newton.h"
 #include "se3d/se3d.h"
+#include "support/two_points.h"
 #include "system/system_internal.h"
 
 #define BODIES 3
@@ -76,7 +77,20 @@ static void add_joints(se3d_system *system, const se3d_body body[BODIES + 1])
     CHECK(se3d_joint_create_distance(system, &def, &joint) == SE3D_OK);
 }
 
-static se3d_system *build(void)
+/* One that is said by callback, against the order of the pair. */
+static void add_user_constraint(se3d_system *system, const se3d_body body[BODIES + 1])
+{
+    se3d_constraint joint;
+    se3d_user_constraint_def user = se3d_user_constraint_def_default();
+    user.callback = two_points;
+    user.bodies[0] = body[3];
+    user.bodies[1] = body[2];
+    user.body_count = TWO_POINTS_BODIES;
+    user.equation_count = TWO_POINTS_EQUATIONS;
+    CHECK(se3d_user_constraint_create(system, &user, &joint) == SE3D_OK);
+}
+
+static se3d_system *build(int with_callback)
 {
     se3d_system *system;
     se3d_body body[BODIES + 1];
@@ -98,6 +112,9 @@ static se3d_system *build(void)
         CHECK(se3d_body_create(system, &def, &body[k]) == SE3D_OK);
     }
     add_joints(system, body);
+    if (with_callback) {
+        add_user_constraint(system, body);
+    }
     add_elements(system, body);
     /* leave the pose at which the joints were made: every curvature counts */
     for (int k = 1; k <= BODIES; ++k) {
@@ -219,10 +236,32 @@ static double tangent_error(se3di_assembly *assembly, const se3di_tangent *tange
     return worst;
 }
 
+/* Integrators multiply by K all at once: the same as direction by direction. */
+static void check_product(const se3di_tangent *tangent)
+{
+    double x[6 * BODIES], sum[6 * BODIES] = {0.0}, product[6 * BODIES] = {0.0};
+    double column[8 * BODIES];
+    for (int k = 0; k < 6 * BODIES; ++k) {
+        x[k] = cos(3.0 * k);
+    }
+    for (int k = 0; k < BODIES; ++k) {
+        for (int c = 0; c < 6; ++c) {
+            multiply(tangent, k, c, column);
+            for (int r = 0; r < 6 * BODIES; ++r) {
+                sum[r] += 0.7 * column[r] * x[6 * k + c];
+            }
+        }
+    }
+    se3di_tangent_add_stiffness(tangent, 0.7, x, product);
+    for (int r = 0; r < 6 * BODIES; ++r) {
+        CHECK_NEAR(product[r], sum[r], 1e-10 * (1.0 + fabs(sum[r])));
+    }
+}
+
 static void check_formulation(const se3di_formulation *formulation)
 {
     for (int trial = 0; trial < 5; ++trial) {
-        se3d_system *system = build();
+        se3d_system *system = build(1);
         se3di_assembly assembly;
         se3di_tangent tangent;
         double vdot[8 * BODIES];
@@ -230,6 +269,7 @@ static void check_formulation(const se3di_formulation *formulation)
         CHECK(se3di_assembly_init(&assembly, &system->model, formulation, NULL) == SE3D_OK);
         CHECK(se3di_tangent_init(&tangent, &assembly) == SE3D_OK);
         CHECK(tangent.coupling_count == 3);
+        CHECK(se3di_assembly_eval_functions(&assembly, 0.3, NULL) == SE3D_OK);
         random_vector(vdot, 8 * BODIES, 5.0);
         random_vector(lambda, 64, 10.0);
         CHECK(se3di_tangent_eval(&tangent, 0.3, vdot, lambda) == SE3D_OK);
@@ -237,6 +277,9 @@ static void check_formulation(const se3di_formulation *formulation)
         double fine = tangent_error(&assembly, &tangent, vdot, lambda, 2.5e-4);
         CHECK(coarse < 2e-2);
         CHECK(fine < coarse / 12.0);
+        if (formulation->block == 6) {
+            check_product(&tangent);
+        }
         se3di_tangent_destroy(&tangent);
         se3di_assembly_destroy(&assembly);
         se3d_system_destroy(system);
@@ -322,7 +365,7 @@ static void implicit_state(se3di_equations *equations, const double *v_n, const 
 /* The sizes of the first 12 corrections of Newton with the exact matrix. */
 static void newton_corrections(const se3di_formulation *formulation, double e[12])
 {
-    se3d_system *system = build();
+    se3d_system *system = build(0);
     se3di_error error = {0};
     se3di_equations equations;
     se3di_newton newton;

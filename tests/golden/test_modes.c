@@ -501,8 +501,181 @@ static void transfer_functions_and_matrices_of_an_oscillator(void)
     se3d_system_destroy(system);
 }
 
+enum { MASSES = 2 };
+static const double masses[MASSES] = {2.0, 3.0};
+static const double stiff[MASSES][MASSES] = {{50.0, 7.0}, {-4.0, 80.0}};
+static const double damp[MASSES][MASSES] = {{1.0, -0.5}, {0.8, 2.0}};
+
+/* Forces along x that belong to no potential: -stiff x - damp v. */
+static se3d_status skew_spring(void *ctx, double t, const se3d_body_motion motion[2],
+                               double wrench[12], double *K, double *D)
+{
+    (void)ctx;
+    (void)t;
+    for (int r = 0; r < MASSES; ++r) {
+        wrench[6 * r] = 0.0;
+        for (int c = 0; c < MASSES; ++c) {
+            wrench[6 * r] -= stiff[r][c] * motion[c].r[0] + damp[r][c] * motion[c].v[0];
+            if (K) {
+                K[12 * (6 * r) + 6 * c] = -stiff[r][c];
+                D[12 * (6 * r) + 6 * c] = -damp[r][c];
+            }
+        }
+    }
+    return SE3D_OK;
+}
+
+/* Two bodies on rails along x, tied by those forces. */
+static se3d_system *make_skew_pair(int has_jacobian, se3d_body body[MASSES])
+{
+    se3d_body ground;
+    se3d_system *system = begin(origin, &ground);
+    se3d_force_callback_def def = se3d_force_callback_def_default();
+    se3d_force force;
+    for (int k = 0; k < MASSES; ++k) {
+        se3d_constraint slide;
+        body[k] = add_bar(system, masses[k], 0.1, 0.0, k, 0.3 * k);
+        const double at[3] = {0.0, k, 0.0};
+        se3d_joint_def joint = se3d_joint_def_default();
+        joint.body_i = ground;
+        joint.body_j = body[k];
+        CHECK(se3d_joint_def_set_frame(system, &joint, at, along_x, NULL) == SE3D_OK);
+        CHECK(se3d_joint_create_prismatic(system, &joint, &slide) == SE3D_OK);
+    }
+    def.body_i = body[0];
+    def.body_j = body[1];
+    def.callback = skew_spring;
+    def.has_jacobian = has_jacobian;
+    CHECK(se3d_force_create_callback(system, &def, &force) == SE3D_OK);
+    return system;
+}
+
+/* Element (output, input) of (stiff + i w damp - w^2 masses)^-1. */
+static void skew_compliance(double w, int output, int input, double got[2])
+{
+    double re[MASSES][MASSES], im[MASSES][MASSES];
+    for (int r = 0; r < MASSES; ++r) {
+        for (int c = 0; c < MASSES; ++c) {
+            re[r][c] = stiff[r][c] - (r == c ? w * w * masses[r] : 0.0);
+            im[r][c] = w * damp[r][c];
+        }
+    }
+    const double det[2] = {
+        re[0][0] * re[1][1] - im[0][0] * im[1][1] - re[0][1] * re[1][0] + im[0][1] * im[1][0],
+        re[0][0] * im[1][1] + im[0][0] * re[1][1] - re[0][1] * im[1][0] - im[0][1] * re[1][0]};
+    const int same = output == input;
+    const int row = same ? 1 - output : output;
+    const int column = same ? 1 - input : input;
+    const double sign = same ? 1.0 : -1.0;
+    const double square = det[0] * det[0] + det[1] * det[1];
+    const double a = sign * re[row][column];
+    const double b = sign * im[row][column];
+    got[0] = (a * det[0] + b * det[1]) / square;
+    got[1] = (b * det[0] - a * det[1]) / square;
+}
+
+static void a_pair_that_is_not_symmetric_answers_from_each_side_as_it_should(void)
+{
+    for (int has_jacobian = 0; has_jacobian < 2; ++has_jacobian) {
+        const double tolerance = has_jacobian ? 1e-13 : 1e-9;
+        se3d_body body[MASSES];
+        se3d_system *system = make_skew_pair(has_jacobian, body);
+        se3d_modes_input input[MASSES] = {{.body = body[0], .direction = {1.0, 0.0, 0.0}},
+                                          {.body = body[1], .direction = {1.0, 0.0, 0.0}}};
+        se3d_modes_output output[MASSES] = {
+            {.body = body[0], .quantity = SE3D_MODES_POSITION, .direction = {1.0, 0.0, 0.0}},
+            {.body = body[1], .quantity = SE3D_MODES_POSITION, .direction = {1.0, 0.0, 0.0}}};
+        se3d_modes_def def = se3d_modes_def_default();
+        def.inputs = input;
+        def.outputs = output;
+        def.input_count = def.output_count = MASSES;
+        se3d_modes *modes = linearise(system, &def);
+        for (size_t k = 0; k < 3 * MASSES * MASSES; ++k) {
+            const size_t from = k % MASSES, to = k / MASSES % MASSES;
+            const double frequency = 0.5 * (double)(k / (MASSES * MASSES));
+            double got[2], expected[2];
+            CHECK(se3d_modes_get_transfer(modes, from, to, frequency, &got[0], &got[1]) == SE3D_OK);
+            skew_compliance(2.0 * PI * frequency, (int)to, (int)from, expected);
+            CHECK_NEAR(got[0], expected[0], tolerance);
+            CHECK_NEAR(got[1], expected[1], tolerance);
+        }
+        se3d_modes_destroy(modes);
+        se3d_system_destroy(system);
+    }
+}
+
+/* |r_2 - r_1|^2 - 1, or |r_1|^2 - 1 of one body. */
+static se3d_status unit_link(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
+                             double *jacobian, double *nu, double *gamma)
+{
+    const int is_pair = ctx != NULL;
+    double square = 0.0;
+    double fast = 0.0;
+    (void)t;
+    for (int c = 0; c < 3; ++c) {
+        const double d = bodies[is_pair].r[c] - (is_pair ? bodies[0].r[c] : 0.0);
+        const double v = bodies[is_pair].v[c] - (is_pair ? bodies[0].v[c] : 0.0);
+        square += d * d;
+        fast += v * v;
+        if (jacobian) {
+            jacobian[6 * is_pair + c] = 2.0 * d;
+            jacobian[6 * is_pair + 3 + c] = 0.0;
+        }
+        if (jacobian && is_pair) {
+            jacobian[c] = -2.0 * d;
+            jacobian[3 + c] = 0.0;
+        }
+    }
+    if (phi) {
+        phi[0] = square - 1.0;
+    }
+    if (nu) {
+        nu[0] = 0.0;
+    }
+    if (gamma) {
+        gamma[0] = -2.0 * fast;
+    }
+    return SE3D_OK;
+}
+
+/* Two masses on strings that callbacks keep at 1 m: all of their stiffness is the second derivative
+ * of the constraints, w^2 = (2 -+ sqrt 2) g, each in two directions. */
+static void strings_by_callback_swing_at_their_frequencies(void)
+{
+    int pair = 1;
+    se3d_body ground;
+    se3d_constraint joint;
+    se3d_system *system = begin(down_y, &ground);
+    se3d_body body[2];
+    for (int k = 0; k < 2; ++k) {
+        se3d_user_constraint_def def = se3d_user_constraint_def_default();
+        body[k] = add_bar(system, 2.0, 0.1, 0.0, -1.0 - k, 0.0);
+        se3d_joint_def turned = se3d_joint_def_default();
+        turned.body_i = ground;
+        turned.body_j = body[k];
+        CHECK(se3d_joint_create_orientation(system, &turned, &joint) == SE3D_OK);
+        def.callback = unit_link;
+        def.ctx = k == 1 ? &pair : NULL;
+        def.body_count = k + 1;
+        memcpy(def.bodies, body, (size_t)(k + 1) * sizeof *body);
+        CHECK(se3d_user_constraint_create(system, &def, &joint) == SE3D_OK);
+    }
+    se3d_modes *modes = linearise(system, NULL);
+    CHECK(se3d_modes_count(modes) == 4);
+    for (size_t k = 0; k < 4; ++k) {
+        se3d_eigenvalue value;
+        const double w = sqrt(9.81 * (2.0 + (k < 2 ? -sqrt(2.0) : sqrt(2.0))));
+        CHECK(se3d_modes_get_eigenvalue(modes, k, &value) == SE3D_OK);
+        CHECK_NEAR(value.imaginary, w, 1e-7 * w); /* that derivative is by differences */
+    }
+    se3d_modes_destroy(modes);
+    se3d_system_destroy(system);
+}
+
 int main(void)
 {
+    RUN(a_pair_that_is_not_symmetric_answers_from_each_side_as_it_should);
+    RUN(strings_by_callback_swing_at_their_frequencies);
     RUN(a_bar_on_two_springs_rests_where_the_reference_does);
     RUN(a_body_on_three_springs_comes_to_rest_from_a_bad_guess);
     RUN(an_unstable_equilibrium_is_reported);
