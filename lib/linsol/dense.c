@@ -1,27 +1,33 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "linsol/dense.h"
 
-#include <lapacke.h>
 #include <math.h>
-#include <stdbool.h>
+#include <stddef.h>
 
-static void swap_rows(int32_t n, double *a, double *b)
+#include "base/error.h"
+
+/* Columns that are eliminated before the others are brought up to date, so that what is read again
+ * and again stays in the cache. Each entry sees the same operations in the same order. */
+#define PANEL 48
+
+static void swap_rows(size_t n, double *a, double *b)
 {
-    for (int32_t c = 0; c < n; ++c) {
+    for (size_t c = 0; c < n; ++c) {
         double t = a[c];
         a[c] = b[c];
         b[c] = t;
     }
 }
 
-static se3d_status lu_small(int32_t n, double *A, int32_t *pivot)
+/* Columns [begin, end), below and in row `begin` and on. */
+static se3d_status factor_panel(size_t n, size_t begin, size_t end, double *A, int32_t *pivot)
 {
-    for (int32_t r = 0; r < n; ++r) {
-        int32_t best = r;
-        for (int32_t q = r + 1; q < n; ++q) {
+    for (size_t r = begin; r < end; ++r) {
+        size_t best = r;
+        for (size_t q = r + 1; q < n; ++q) {
             best = fabs(A[q * n + r]) > fabs(A[best * n + r]) ? q : best;
         }
-        pivot[r] = best;
+        pivot[r] = (int32_t)best;
         if (best != r) {
             swap_rows(n, A + r * n, A + best * n);
         }
@@ -32,10 +38,10 @@ static se3d_status lu_small(int32_t n, double *A, int32_t *pivot)
         if (!(fabs(d) > 0.0)) {
             return SE3D_ERR_SINGULAR;
         }
-        for (int32_t q = r + 1; q < n; ++q) {
+        for (size_t q = r + 1; q < n; ++q) {
             double f = A[q * n + r] / d;
             A[q * n + r] = f;
-            for (int32_t c = r + 1; c < n; ++c) {
+            for (size_t c = r + 1; c < end; ++c) {
                 A[q * n + c] -= f * A[r * n + c];
             }
         }
@@ -43,59 +49,59 @@ static se3d_status lu_small(int32_t n, double *A, int32_t *pivot)
     return SE3D_OK;
 }
 
-se3d_status se3di_dense_lu_factor(int32_t n, double *A, int32_t *pivot)
+/* The columns from `end` on. */
+static void update_rest(size_t n, size_t begin, size_t end, double *A)
 {
-    if (n < SE3DI_DENSE_SMALL) {
-        return lu_small(n, A, pivot);
-    }
-    /* The row-major A is A^T to LAPACK; the solve undoes that. */
-    lapack_int result = LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, A, n, pivot);
-    for (int32_t i = 0; i < n; ++i) {
-        if (!isfinite(A[(size_t)i * (size_t)n + (size_t)i])) {
-            return SE3D_ERR_NOT_FINITE;
+    for (size_t q = begin + 1; q < n; ++q) {
+        double *row = A + q * n;
+        for (size_t r = begin; r < end && r < q; ++r) {
+            const double f = row[r], *above = A + r * n;
+            for (size_t c = end; c < n; ++c) {
+                row[c] -= f * above[c];
+            }
         }
     }
-    return result > 0 ? SE3D_ERR_SINGULAR : SE3D_OK;
 }
 
-void se3di_dense_lu_solve(int32_t n, const double *A, const int32_t *pivot, double *b)
+se3d_status se3di_dense_lu_factor(int32_t unknowns, double *A, int32_t *pivot)
 {
-    if (n >= SE3DI_DENSE_SMALL) {
-        (void)LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', n, 1, A, n, pivot, b, n);
-        return;
+    const size_t n = (size_t)unknowns;
+    for (size_t begin = 0; begin < n; begin += PANEL) {
+        const size_t end = begin + PANEL < n ? begin + PANEL : n;
+        SE3DI_TRY(factor_panel(n, begin, end, A, pivot));
+        update_rest(n, begin, end, A);
     }
-    for (int32_t r = 0; r < n; ++r) {
+    return SE3D_OK;
+}
+
+void se3di_dense_lu_solve(int32_t unknowns, const double *A, const int32_t *pivot, double *b)
+{
+    const size_t n = (size_t)unknowns;
+    for (size_t r = 0; r < n; ++r) {
         double t = b[pivot[r]];
         b[pivot[r]] = b[r];
         b[r] = t;
     }
-    for (int32_t r = 0; r < n; ++r) {
-        for (int32_t c = 0; c < r; ++c) {
+    for (size_t r = 0; r < n; ++r) {
+        for (size_t c = 0; c < r; ++c) {
             b[r] -= A[r * n + c] * b[c];
         }
     }
-    for (int32_t r = n - 1; r >= 0; --r) {
-        for (int32_t c = r + 1; c < n; ++c) {
+    for (size_t r = n; r-- > 0;) {
+        for (size_t c = r + 1; c < n; ++c) {
             b[r] -= A[r * n + c] * b[c];
         }
         b[r] /= A[r * n + r];
     }
 }
 
-se3d_status se3di_dense_cholesky_factor(int32_t n, double *A)
+se3d_status se3di_dense_cholesky_factor(int32_t unknowns, double *A)
 {
-    if (n >= SE3DI_DENSE_SMALL) { /* the lower triangle is the upper one to LAPACK */
-        lapack_int result = LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'U', n, A, n);
-        bool is_fine = result == 0;
-        for (int32_t i = 0; i < n; ++i) {
-            is_fine = is_fine && isfinite(A[(size_t)i * (size_t)n + (size_t)i]);
-        }
-        return is_fine ? SE3D_OK : SE3D_ERR_SINGULAR;
-    }
-    for (int32_t r = 0; r < n; ++r) {
-        for (int32_t c = 0; c <= r; ++c) {
+    const size_t n = (size_t)unknowns;
+    for (size_t r = 0; r < n; ++r) {
+        for (size_t c = 0; c <= r; ++c) {
             double sum = A[r * n + c];
-            for (int32_t k = 0; k < c; ++k) {
+            for (size_t k = 0; k < c; ++k) {
                 sum -= A[r * n + k] * A[c * n + k];
             }
             if (c < r) {
@@ -110,21 +116,18 @@ se3d_status se3di_dense_cholesky_factor(int32_t n, double *A)
     return SE3D_OK;
 }
 
-void se3di_dense_cholesky_solve(int32_t n, const double *L, double *b)
+void se3di_dense_cholesky_solve(int32_t unknowns, const double *L, double *b)
 {
-    if (n >= SE3DI_DENSE_SMALL) {
-        (void)LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'U', n, 1, L, n, b, n);
-        return;
-    }
-    for (int32_t r = 0; r < n; ++r) {
-        for (int32_t c = 0; c < r; ++c) {
+    const size_t n = (size_t)unknowns;
+    for (size_t r = 0; r < n; ++r) {
+        for (size_t c = 0; c < r; ++c) {
             b[r] -= L[r * n + c] * b[c];
         }
         b[r] /= L[r * n + r];
     }
-    for (int32_t r = n - 1; r >= 0; --r) {
+    for (size_t r = n; r-- > 0;) {
         b[r] /= L[r * n + r];
-        for (int32_t c = 0; c < r; ++c) {
+        for (size_t c = 0; c < r; ++c) {
             b[c] -= L[r * n + c] * b[r];
         }
     }

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Small dense linear algebra on row-major arrays of the caller, without allocation.
  *
- * Below SE3DI_DENSE_SMALL unknowns own loops, whose bits do not depend on any library or its
- * threads; above, LAPACK. */
+ * Own loops, whose bits do not depend on any library or its threads. */
 #ifndef SE3DI_LINSOL_DENSE_H
 #define SE3DI_LINSOL_DENSE_H
 
 #include "se3d/base.h"
-
-#define SE3DI_DENSE_SMALL 64
 
 /* P A = L U in place, row pivoting. pivot[n]. Returns SE3D_ERR_SINGULAR where a pivot is zero,
  * SE3D_ERR_NOT_FINITE where A is not finite. */

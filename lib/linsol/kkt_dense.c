@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The dense reference of the KKT solver: one LU with pivoting of [H B; C -E], and the rank of C by
- * QR with column pivoting (LAPACK dgeqp3) of its rows scaled to unit length.  docs/theory/kkt.md */
-#include <lapacke.h>
+ * QR with column pivoting of its rows scaled to unit length.  docs/theory/kkt.md */
 #include <math.h>
 #include <string.h>
 
 #include "linsol/dense.h"
+#include "linsol/householder.h"
 #include "linsol/kkt_internal.h"
 
 se3d_status se3di_kkt_dense_create(se3di_kkt *kkt)
@@ -20,11 +20,7 @@ se3d_status se3di_kkt_dense_create(se3di_kkt *kkt)
     kkt->rank_matrix = se3di_kkt_take_aligned(kkt, n * m);
     kkt->rank_tau = se3di_kkt_take_aligned(kkt, total);
     kkt->rank_pivot = se3di_kkt_take(kkt, m, sizeof(int32_t));
-    double wish = 0.0;
-    (void)LAPACKE_dgeqp3_work(LAPACK_COL_MAJOR, (lapack_int)n, (lapack_int)m, NULL,
-                              n > 0 ? (lapack_int)n : 1, NULL, NULL, &wish, -1);
-    kkt->rank_work_size = wish > 0.0 ? (size_t)wish : 3 * m + 1;
-    kkt->rank_work = se3di_kkt_take_aligned(kkt, kkt->rank_work_size);
+    kkt->rank_work = se3di_kkt_take_aligned(kkt, 2 * m);
     kkt->cost = (double)total * (double)total * (double)total / 3.0;
     return kkt->out_of_memory ? SE3D_ERR_NO_MEMORY : SE3D_OK;
 }
@@ -80,11 +76,11 @@ static void put_joints(se3di_kkt *kkt, const se3di_kkt_values *v, size_t total)
 }
 
 /* Columns of unit length from the rows of the joints with bodies; returns how many are not zero. */
-static lapack_int collect_rows(se3di_kkt *kkt)
+static int32_t collect_rows(se3di_kkt *kkt)
 {
     const se3di_kkt_pattern *p = &kkt->pattern;
     size_t n = kkt->layout.unknown_count, total = n + kkt->layout.row_count;
-    lapack_int used = 0;
+    int32_t used = 0;
     for (size_t j = 0; j < p->joint_count; ++j) {
         int32_t begin = kkt->row_offset[j], end = kkt->row_offset[j + 1];
         if (p->joint_begin[j + 1] == p->joint_begin[j]) {
@@ -110,16 +106,10 @@ static lapack_int collect_rows(se3di_kkt *kkt)
 static void find_rank(se3di_kkt *kkt)
 {
     size_t n = kkt->layout.unknown_count;
-    lapack_int used = collect_rows(kkt);
-    for (lapack_int k = 0; k < used; ++k) {
-        kkt->rank_pivot[k] = 0;
-    }
-    if (used > 0) {
-        (void)LAPACKE_dgeqp3_work(LAPACK_COL_MAJOR, (lapack_int)n, used, kkt->rank_matrix,
-                                  (lapack_int)n, kkt->rank_pivot, kkt->rank_tau, kkt->rank_work,
-                                  (lapack_int)kkt->rank_work_size);
-    }
-    for (lapack_int k = 0; k < used; ++k) {
+    int32_t used = collect_rows(kkt);
+    se3di_householder_pivoted(n, (size_t)used, kkt->rank_matrix, kkt->rank_pivot, kkt->rank_tau,
+                              kkt->rank_work);
+    for (int32_t k = 0; k < used; ++k) {
         size_t at = (size_t)k * (n + 1);
         double d = (size_t)k < n ? fabs(kkt->rank_matrix[at]) : 0.0;
         kkt->min_pivot = d * d < kkt->min_pivot ? d * d : kkt->min_pivot;

@@ -147,7 +147,6 @@ struct se3di_kkt {
     int32_t *dense_pivot;
     double *rank_matrix, *rank_tau, *rank_work;
     int32_t *rank_pivot;
-    size_t rank_work_size;
 };
 
 /* Zeroed array that se3di_kkt_destroy frees; on failure kkt->out_of_memory is set. */

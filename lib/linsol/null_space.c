@@ -2,8 +2,8 @@
 #include "linsol/null_space.h"
 
 #include "base/error.h"
+#include "linsol/householder.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
@@ -301,18 +301,22 @@ se3d_status se3di_null_space_find(const se3d_allocator *allocator,
 se3d_status se3di_null_space_orthonormalise(const se3d_allocator *allocator, int32_t freedoms,
                                             int32_t n, double *Z)
 {
-    size_t work_size = 65 * (size_t)freedoms;
+    size_t columns = (size_t)freedoms, rows = (size_t)n;
     if (freedoms == 0) {
         return SE3D_OK;
     }
-    double *work = se3di_alloc(allocator, work_size, sizeof *work);
-    if (!work) {
+    double *Q = se3di_alloc(allocator, (rows + 1) * columns, sizeof *Q);
+    if (!Q) {
         return SE3D_ERR_NO_MEMORY;
     }
-    lapack_int size = (lapack_int)(work_size - (size_t)freedoms);
-    double *tau = work + size; /* Z is [n freedoms] to LAPACK, Z = Q R */
-    (void)LAPACKE_dgeqrf_work(LAPACK_COL_MAJOR, n, freedoms, Z, n, tau, work, size);
-    (void)LAPACKE_dorgqr_work(LAPACK_COL_MAJOR, n, freedoms, freedoms, Z, n, tau, work, size);
-    se3di_free(allocator, work, work_size, sizeof *work);
+    double *tau = Q + rows * columns; /* column by column Z is n x freedoms, Z = Q R */
+    memcpy(Q, Z, rows * columns * sizeof *Q);
+    se3di_householder(rows, columns, Q, tau);
+    memset(Z, 0, rows * columns * sizeof *Z);
+    for (size_t k = 0; k < columns; ++k) {
+        Z[k * rows + k] = 1.0;
+        se3di_householder_apply(rows, columns, Q, tau, Z + k * rows);
+    }
+    se3di_free(allocator, Q, (rows + 1) * columns, sizeof *Q);
     return SE3D_OK;
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "linsol/rank.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
 #include "base/error.h"
+#include "linsol/householder.h"
 
 static const double negligible = 1e-9; /* factors of a combination, relative to the largest */
 
@@ -22,12 +22,12 @@ static double dot(const double *a, const double *b, size_t n)
 /* ---- QR with column pivoting of C^T ---- */
 
 typedef struct pivoted_qr {
-    double *A;   /* columns x rows, column-major = C row-major */
-    double *tau; /* [min] */
-    double *work;
+    double *A;     /* columns x rows, column-major = C row-major */
+    double *tau;   /* [min] */
+    double *work;  /* [2 rows] */
     double *scale; /* [rows]: 1 / length of each row of C */
     int32_t *pivot;
-    size_t rows, columns, work_size;
+    size_t rows, columns;
 } pivoted_qr;
 
 static void qr_destroy(const se3d_allocator *allocator, pivoted_qr *qr)
@@ -37,22 +37,20 @@ static void qr_destroy(const se3d_allocator *allocator, pivoted_qr *qr)
     se3di_free(allocator, qr->tau, least, sizeof(double));
     se3di_free(allocator, qr->scale, qr->rows, sizeof(double));
     se3di_free(allocator, qr->pivot, qr->rows, sizeof(int32_t));
-    se3di_free(allocator, qr->work, qr->work_size, sizeof(double));
+    se3di_free(allocator, qr->work, 2 * qr->rows, sizeof(double));
     *qr = (pivoted_qr){0};
 }
 
-/* Work enough for dgeqp3, dormqr and dgelqf with their blocked code. */
 static se3d_status qr_create(const se3d_allocator *allocator, size_t rows, size_t columns,
                              pivoted_qr *qr)
 {
     size_t least = rows < columns ? rows : columns;
     *qr = (pivoted_qr){.rows = rows, .columns = columns};
-    qr->work_size = 2 * rows + 64 * (rows + columns + 1) + 4160;
     qr->A = se3di_alloc(allocator, rows * columns, sizeof(double));
     qr->tau = se3di_alloc(allocator, least, sizeof(double));
     qr->scale = se3di_alloc(allocator, rows, sizeof(double));
     qr->pivot = se3di_alloc(allocator, rows, sizeof(int32_t));
-    qr->work = se3di_alloc(allocator, qr->work_size, sizeof(double));
+    qr->work = se3di_alloc(allocator, 2 * rows, sizeof(double));
     if (!qr->A || !qr->tau || !qr->scale || !qr->pivot || !qr->work) {
         qr_destroy(allocator, qr);
         return SE3D_ERR_NO_MEMORY;
@@ -74,11 +72,7 @@ static se3d_status qr_factor(pivoted_qr *qr)
             column[c] *= qr->scale[r];
         }
     }
-    if (qr->rows > 0 && qr->columns > 0) {
-        (void)LAPACKE_dgeqp3_work(LAPACK_COL_MAJOR, (lapack_int)qr->columns, (lapack_int)qr->rows,
-                                  qr->A, (lapack_int)qr->columns, qr->pivot, qr->tau, qr->work,
-                                  (lapack_int)qr->work_size);
-    }
+    se3di_householder_pivoted(qr->columns, qr->rows, qr->A, qr->pivot, qr->tau, qr->work);
     return SE3D_OK;
 }
 
@@ -244,17 +238,13 @@ static se3d_status name_redundant(const se3d_allocator *allocator, selection *s,
 
 /* ---- freedoms ---- */
 
-/* The last columns of the full Q of dgeqp3 span the null space of C. */
-static void write_freedoms(pivoted_qr *qr, int32_t reflectors, se3di_rank *result)
+/* The last columns of the full Q span the null space of C. */
+static void write_freedoms(const pivoted_qr *qr, int32_t reflectors, se3di_rank *result)
 {
     size_t n = qr->columns, rank = (size_t)reflectors;
     for (size_t k = 0; k < (size_t)result->freedom_count; ++k) {
         result->freedom[k * n + rank + k] = 1.0;
-    }
-    if (reflectors > 0 && result->freedom_count > 0) {
-        (void)LAPACKE_dormqr_work(LAPACK_COL_MAJOR, 'L', 'N', (lapack_int)n, result->freedom_count,
-                                  reflectors, qr->A, (lapack_int)n, qr->tau, result->freedom,
-                                  (lapack_int)n, qr->work, (lapack_int)qr->work_size);
+        se3di_householder_apply(n, rank, qr->A, qr->tau, result->freedom + k * n);
     }
 }
 
@@ -341,22 +331,20 @@ se3d_status se3di_rank_analyse(const se3d_allocator *allocator, int32_t rows, in
 static void least_norm_solve(const pivoted_qr *qr, int32_t rank, double *T, double *g, double *tau,
                              double *l)
 {
-    lapack_int rows = (lapack_int)qr->columns, columns = (lapack_int)qr->rows;
-    size_t n = (size_t)columns, least = n < qr->columns ? n : qr->columns;
-    (void)LAPACKE_dormqr_work(LAPACK_COL_MAJOR, 'L', 'T', rows, 1, (lapack_int)least, qr->A, rows,
-                              qr->tau, g, rows, qr->work, (lapack_int)qr->work_size);
+    size_t n = qr->rows, r1 = (size_t)rank;
+    size_t least = n < qr->columns ? n : qr->columns;
+    se3di_householder_apply_transposed(qr->columns, least, qr->A, qr->tau, g);
     for (size_t k = 0; k < n; ++k) {
-        size_t column = (size_t)qr->pivot[k] - 1;
-        for (size_t r = 0; r < (size_t)rank; ++r) {
+        size_t column = (size_t)qr->pivot[k];
+        for (size_t r = 0; r < r1; ++r) {
             T[r * n + column] = r <= k ? qr->A[k * qr->columns + r] / qr->scale[column] : 0.0;
         }
     }
-    (void)LAPACKE_dgeqrf_work(LAPACK_COL_MAJOR, columns, rank, T, columns, tau, qr->work,
-                              (lapack_int)qr->work_size);
-    (void)LAPACKE_dtrtrs_work(LAPACK_COL_MAJOR, 'U', 'T', 'N', rank, 1, T, columns, g, rows);
-    memcpy(l, g, (size_t)rank * sizeof(double));
-    (void)LAPACKE_dormqr_work(LAPACK_COL_MAJOR, 'L', 'N', columns, 1, rank, T, columns, tau, l,
-                              columns, qr->work, (lapack_int)qr->work_size);
+    se3di_householder(n, r1, T, tau);
+    for (size_t r = 0; r < r1; ++r) { /* R2^T l = g */
+        l[r] = (g[r] - dot(T + r * n, l, r)) / T[r * n + r];
+    }
+    se3di_householder_apply(n, r1, T, tau, l);
 }
 
 se3d_status se3di_rank_least_norm(const se3d_allocator *allocator, int32_t rows, int32_t columns,
