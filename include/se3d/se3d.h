@@ -18,6 +18,7 @@
 #include "se3d/body.h"
 #include "se3d/constraint.h"
 #include "se3d/contact.h"
+#include "se3d/elementary.h"
 #include "se3d/event.h"
 #include "se3d/expression.h"
 #include "se3d/force.h"

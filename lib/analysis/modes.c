@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "linsol/dense.h"
 #include "linsol/eigen.h"
+#include "math/elementary.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,7 +34,7 @@ static void add_mode(se3di_eigen *e, double re, double im, const double *y_re, c
 {
     size_t f = (size_t)e->f;
     size_t k = (size_t)e->count++;
-    while (k > 0 && hypot(e->re[k - 1], e->im[k - 1]) > hypot(re, im)) {
+    while (k > 0 && se3di_hypot(e->re[k - 1], e->im[k - 1]) > se3di_hypot(re, im)) {
         e->re[k] = e->re[k - 1];
         e->im[k] = e->im[k - 1];
         memcpy(e->y_re + k * f, e->y_re + (k - 1) * f, f * sizeof *y_re);
@@ -97,10 +98,8 @@ static se3d_status solve_conservative(const se3d_allocator *allocator, const dou
     memcpy(L, M, f * f * sizeof *L);
     memcpy(S, K, f * f * sizeof *S);
     SE3DI_TRY(se3di_dense_cholesky_factor(e->f, L));
-    if (f >= SE3DI_DENSE_SMALL) {
-        for (size_t r = 0; r < f; ++r) { /* only the lower triangle is the factor */
-            memset(L + r * f + r + 1, 0, (f - r - 1) * sizeof *L);
-        }
+    for (size_t r = 0; r < f; ++r) { /* only the lower triangle is the factor */
+        memset(L + r * f + r + 1, 0, (f - r - 1) * sizeof *L);
     }
     solve_lower(f, L, S);
     transpose(f, S);

@@ -2,6 +2,7 @@
 #include "analysis/turns.h"
 
 #include "force/measure.h"
+#include "math/elementary.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -28,7 +29,7 @@ static const char *name_of_angle(const se3di_model *model, size_t angle)
 /* To three digits: what is printed differs from the step that was too long, and can be typed. */
 static double round_down(double longest)
 {
-    const double unit = pow(10.0, floor(log10(longest)) - 2.0);
+    const double unit = se3di_pow(10.0, floor(se3di_log10(longest)) - 2.0);
     return floor(longest / unit * (1.0 + 1e-12)) * unit;
 }
 

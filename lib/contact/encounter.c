@@ -14,6 +14,7 @@
  */
 #include "contact/encounter.h"
 
+#include "math/elementary.h"
 #include "math/inertia.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -170,7 +171,7 @@ static void eval_turn(const se3di_encounter *e, double out[3])
     se3di_quat_mul(back, e->model->frames[e->body[1]].p, now);
     se3di_quat_mul(now, before, turn); /* in the frame of i */
     double size = sqrt(turn[1] * turn[1] + turn[2] * turn[2] + turn[3] * turn[3]);
-    double angle = 2.0 * atan2(turn[0] < 0.0 ? -size : size, fabs(turn[0]));
+    double angle = 2.0 * se3di_atan2(turn[0] < 0.0 ? -size : size, fabs(turn[0]));
     se3di_scale(size > 0.0 ? angle / size : 2.0, turn + 1, local);
     se3di_mul(e->model->frames[e->body[0]].A, local, out);
 }
@@ -208,7 +209,7 @@ static double onset(const se3di_encounter *e, double phi)
     }
     double q = 1.0 + phi;
     phi = fmax(phi, LEAST_SHARE);
-    double w = pow(q, a) * (q / (1.0 + a) - 0.5 + a / (12.0 * q)) * pow(phi, -a);
+    double w = se3di_pow(q, a) * (q / (1.0 + a) - 0.5 + a / (12.0 * q)) * se3di_pow(phi, -a);
     return (w - 1.0 + weight) / weight;
 }
 

@@ -3,6 +3,7 @@
 #include "contact/narrow.h"
 
 #include "contact/narrow_internal.h"
+#include "math/elementary.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -65,13 +66,13 @@ static void bend_at(const se3di_solid *solid, const double local[3], se3di_bend 
         bend->r[1] = s->radius;
         break;
     case SE3DI_SHAPE_CYLINDER: {
-        double rho = hypot(local[0], local[1]);
+        double rho = se3di_hypot(local[0], local[1]);
         int cap = fabs(local[2]) > s->half_length;
         if (rho <= s->radius) { /* on a cap, or from inside */
             return;
         }
         if (cap) {
-            double lean = hypot(rho - s->radius, fabs(local[2]) - s->half_length);
+            double lean = se3di_hypot(rho - s->radius, fabs(local[2]) - s->half_length);
             u[0] = -local[1] / rho;
             u[1] = local[0] / rho;
             u[2] = 0.0;

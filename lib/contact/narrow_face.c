@@ -3,6 +3,7 @@
  * what they are. */
 #include "contact/narrow_internal.h"
 
+#include "math/elementary.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -38,7 +39,7 @@ static uint32_t highest_vertex(const se3di_shape *s, const double d[3])
 
 static void local_support(const se3di_shape *s, const double d[3], double out[3])
 {
-    double rho = hypot(d[0], d[1]);
+    double rho = se3di_hypot(d[0], d[1]);
     out[0] = out[1] = out[2] = 0.0;
     switch (s->kind) {
     case SE3DI_SHAPE_BOX:
@@ -101,10 +102,10 @@ static void cylinder_cap(const se3di_solid *solid, const double d[3], se3di_face
         -1.0, -0.70710678118654752, 0.0, 0.70710678118654752};
     const se3di_shape *s = solid->shape;
     double sign = d[2] < 0.0 ? -1.0 : 1.0;
-    double tilt = hypot(d[0], d[1]);
+    double tilt = se3di_hypot(d[0], d[1]);
     double bias = tilt < 1e-2 ? 1e-4 * (1.0 - tilt / 1e-2) : 0.0; /* as on planes */
     double lean[2] = {d[0] + bias, d[1]};
-    double size = hypot(lean[0], lean[1]);
+    double size = se3di_hypot(lean[0], lean[1]);
     double x = size > 0.0 ? lean[0] / size : 1.0;
     double y = size > 0.0 ? lean[1] / size : 0.0;
     double n[3] = {0.0, 0.0, sign};
@@ -124,7 +125,7 @@ static void cylinder_cap(const se3di_solid *solid, const double d[3], se3di_face
 static void side_line(const se3di_solid *solid, const double d[3], se3di_face *face)
 {
     const se3di_shape *s = solid->shape;
-    double rho = hypot(d[0], d[1]);
+    double rho = se3di_hypot(d[0], d[1]);
     double radius = s->kind == SE3DI_SHAPE_CYLINDER && rho > 0.0 ? s->radius / rho : 0.0;
     double n[3] = {rho > 0.0 ? d[0] / rho : 1.0, rho > 0.0 ? d[1] / rho : 0.0, 0.0};
     se3di_mul(solid->at->R, n, face->normal);
@@ -156,7 +157,7 @@ static void insert_corner(const se3di_shape *s, double frame[3][3], uint32_t ver
 {
     double d[3];
     se3di_sub(s->vertices + 3 * (size_t)vertex, frame[2], d);
-    double turn = atan2(se3di_dot(d, frame[1]), se3di_dot(d, frame[0]));
+    double turn = se3di_atan2(se3di_dot(d, frame[1]), se3di_dot(d, frame[0]));
     int at = *count;
     if (at == SE3DI_FACE_CORNERS) {
         return;

@@ -14,6 +14,7 @@
 #include "contact/broad.h"
 #include "contact/pace_stop.h"
 #include "force/force.h"
+#include "math/elementary.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -65,7 +66,7 @@ static double contact_time(const se3di_model *model, uint32_t i, uint32_t j, dou
     if (!(v > 0.0)) {
         return HUGE_VAL;
     }
-    return 2.943 * pow(1.25 * v * v / (inverse_mass * pair->kn * sqrt(R)), 0.4) / v;
+    return 2.943 * se3di_pow(1.25 * v * v / (inverse_mass * pair->kn * sqrt(R)), 0.4) / v;
 }
 
 static void velocity_at(const se3di_frame *frame, const double point[3], double v[3])
@@ -122,7 +123,7 @@ static void touching(pace *p, const se3di_body_contact *c)
     double energetic = sqrt(vn * vn + 2.0 * potential * c->inverse_mass);
     double time = contact_time(model, c->shape_i, c->shape_j, c->inverse_mass, energetic);
     double rate = 3.14159265358979324 / time;
-    int rests = hypot(vn / rate, an / (rate * rate)) < AT_REST * c->overlap;
+    int rests = se3di_hypot(vn / rate, an / (rate * rate)) < AT_REST * c->overlap;
     if (p->kind == SE3DI_PACE_EXPLICIT || (!p->checks && !rests)) {
         limit(p, time / (p->checks ? STABLE_PARTS : parts_of(p)), c->shape_i, c->shape_j);
     }

@@ -12,6 +12,7 @@
 
 #include "force/measure.h"
 #include "force/stop.h"
+#include "math/elementary.h"
 #include "math/inertia.h"
 #include "math/vec3.h"
 
@@ -52,7 +53,7 @@ typedef struct arrival {
 static double pace_inside(const arrival *a, se3di_pace_kind kind, double parts, double h)
 {
     const double rate = 3.14159265358979324 / a->time;
-    const double amplitude = hypot(a->speed / rate, a->acceleration / (rate * rate));
+    const double amplitude = se3di_hypot(a->speed / rate, a->acceleration / (rate * rate));
     const int rests = amplitude < AT_REST * -a->gap;
     return kind != SE3DI_PACE_EXPLICIT && rests ? h : fmin(h, a->time / parts);
 }

@@ -10,6 +10,7 @@
  * of parameters but alpha, and is integrated once per trial. Both fall monotonically from 1, so the
  * inverse is found by bisection.                                    docs/theory/contact-laws.md */
 #include "contact/restitution.h"
+#include "math/elementary.h"
 
 #include <math.h>
 
@@ -22,14 +23,14 @@ double se3di_restitution_hooke(double zeta)
 {
     const double near_one = 1e-6;
     if (zeta > 1.0 - near_one && zeta < 1.0 + near_one) {
-        return exp(-2.0); /* the limit; off by less than 1e-6 */
+        return se3di_exp(-2.0); /* the limit; off by less than 1e-6 */
     }
     if (zeta < 1.0) {
         double w = sqrt(1.0 - zeta * zeta);
-        return exp(-(zeta / w) * (PI - atan2(2.0 * zeta * w, w * w - zeta * zeta)));
+        return se3di_exp(-(zeta / w) * (PI - se3di_atan2(2.0 * zeta * w, w * w - zeta * zeta)));
     }
     double q = sqrt(zeta * zeta - 1.0);
-    return exp(-(2.0 * zeta / q) * log(zeta + q)); /* (b-q)(b+q) = w0^2 */
+    return se3di_exp(-(2.0 * zeta / q) * se3di_log(zeta + q)); /* (b-q)(b+q) = w0^2 */
 }
 
 static double hertz_force(double alpha, double x, double v)

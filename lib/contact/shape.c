@@ -7,6 +7,7 @@
 #include "contact/shape.h"
 
 #include "contact/mesh.h"
+#include "math/elementary.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -32,7 +33,7 @@ double se3di_shape_bound(const se3di_shape *shape)
     case SE3DI_SHAPE_CAPSULE:
         return shape->half_length + shape->radius;
     case SE3DI_SHAPE_CYLINDER:
-        return hypot(shape->half_length, shape->radius);
+        return se3di_hypot(shape->half_length, shape->radius);
     case SE3DI_SHAPE_PLANE:
         return HUGE_VAL;
     default:
@@ -94,7 +95,7 @@ static void nearest_box(const se3di_shape *s, const double local[3], double poin
 static void nearest_cylinder(const se3di_shape *s, const double local[3], double point[3],
                              double normal[3], double *distance)
 {
-    double rho = hypot(local[0], local[1]);
+    double rho = se3di_hypot(local[0], local[1]);
     const double out[2] = {rho > 0.0 ? local[0] / rho : 1.0, rho > 0.0 ? local[1] / rho : 0.0};
     double up = local[2] < 0.0 ? -1.0 : 1.0;
     double side = rho - s->radius;
@@ -103,7 +104,7 @@ static void nearest_cylinder(const se3di_shape *s, const double local[3], double
     double height = fmin(fabs(local[2]), s->half_length);
     double n[2];
     if (side > 0.0 || cap > 0.0) {
-        *distance = hypot(fmax(side, 0.0), fmax(cap, 0.0));
+        *distance = se3di_hypot(fmax(side, 0.0), fmax(cap, 0.0));
         n[0] = fmax(side, 0.0) / *distance;
         n[1] = fmax(cap, 0.0) / *distance;
     } else {

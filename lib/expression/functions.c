@@ -6,6 +6,7 @@
  * promised in docs/model-file/expressions.md: kinks take a finite convention, singular derivatives
  * come out as infinite or NaN and are reported by the caller. */
 #include "expression/functions.h"
+#include "math/elementary.h"
 
 #include <math.h>
 #include <string.h>
@@ -55,36 +56,38 @@ static void eval_sqrt(double u, double d[3])
 
 static void eval_exp(double u, double d[3])
 {
-    double f = exp(u);
+    double f = se3di_exp(u);
     set(d, f, f, f);
 }
 
 static void eval_log(double u, double d[3])
 {
-    set(d, log(u), 1.0 / u, -1.0 / (u * u));
+    set(d, se3di_log(u), 1.0 / u, -1.0 / (u * u));
 }
 
 static void eval_log10(double u, double d[3])
 {
     const double log_e = 0.43429448190325182765; /* log10(e) */
-    set(d, log10(u), log_e / u, -log_e / (u * u));
+    set(d, se3di_log10(u), log_e / u, -log_e / (u * u));
 }
 
 static void eval_sin(double u, double d[3])
 {
-    double s = sin(u), c = cos(u); /* one call where the compiler knows sincos */
+    double s, c;
+    se3di_sincos(u, &s, &c);
     set(d, s, c, -s);
 }
 
 static void eval_cos(double u, double d[3])
 {
-    double s = sin(u), c = cos(u);
+    double s, c;
+    se3di_sincos(u, &s, &c);
     set(d, c, -s, -c);
 }
 
 static void eval_tan(double u, double d[3])
 {
-    double f = tan(u);
+    double f = se3di_tan(u);
     double f1 = 1.0 + f * f;
     set(d, f, f1, 2.0 * f * f1);
 }
@@ -92,37 +95,37 @@ static void eval_tan(double u, double d[3])
 static void eval_asin(double u, double d[3])
 {
     double w = 1.0 / sqrt((1.0 - u) * (1.0 + u));
-    set(d, asin(u), w, u * w * w * w);
+    set(d, se3di_asin(u), w, u * w * w * w);
 }
 
 static void eval_acos(double u, double d[3])
 {
     double w = 1.0 / sqrt((1.0 - u) * (1.0 + u));
-    set(d, acos(u), -w, -u * w * w * w);
+    set(d, se3di_acos(u), -w, -u * w * w * w);
 }
 
 static void eval_atan(double u, double d[3])
 {
     double w = 1.0 / (1.0 + u * u);
-    set(d, atan(u), w, -2.0 * u * w * w);
+    set(d, se3di_atan(u), w, -2.0 * u * w * w);
 }
 
 static void eval_sinh(double u, double d[3])
 {
-    double s = sinh(u);
-    set(d, s, cosh(u), s);
+    double s = se3di_sinh(u);
+    set(d, s, se3di_cosh(u), s);
 }
 
 static void eval_cosh(double u, double d[3])
 {
-    double c = cosh(u);
-    set(d, c, sinh(u), c);
+    double c = se3di_cosh(u);
+    set(d, c, se3di_sinh(u), c);
 }
 
 static void eval_tanh(double u, double d[3])
 {
-    double f = tanh(u);
-    double s = 1.0 / cosh(u); /* 1 - f^2 would cancel for large u */
+    double f = se3di_tanh(u);
+    double s = 1.0 / se3di_cosh(u); /* 1 - f^2 would cancel for large u */
     set(d, f, s * s, -2.0 * f * s * s);
 }
 
@@ -140,9 +143,9 @@ static void eval_max(double a, double b, se3di_partials *d)
 
 static void eval_atan2(double y, double x, se3di_partials *d)
 {
-    double r = hypot(x, y);
+    double r = se3di_hypot(x, y);
     double c = x / r, s = y / r; /* scaled first, so that nothing overflows */
-    d->f = atan2(y, x);
+    d->f = se3di_atan2(y, x);
     d->a = c / r;
     d->b = -s / r;
     d->aa = -2.0 * c * s / r / r;
@@ -152,7 +155,7 @@ static void eval_atan2(double y, double x, se3di_partials *d)
 
 static void eval_hypot(double a, double b, se3di_partials *d)
 {
-    double r = hypot(a, b);
+    double r = se3di_hypot(a, b);
     if (r == 0.0) { /* a kink like that of abs */
         *d = (se3di_partials){.f = 0.0};
         return;
@@ -173,16 +176,16 @@ static void eval_mod(double a, double b, se3di_partials *d)
 
 static void eval_power(double a, double b, se3di_partials *d)
 {
-    double f = pow(a, b);
+    double f = se3di_pow(a, b);
     if (a == 0.0) { /* limits from a > 0: a^b log(a) and a^b log(a)^2 go to 0 for b > 0 */
         d->f = f;
-        d->a = b * pow(0.0, b - 1.0);
-        d->aa = b == 1.0 ? 0.0 : b * (b - 1.0) * pow(0.0, b - 2.0);
+        d->a = b * se3di_pow(0.0, b - 1.0);
+        d->aa = b == 1.0 ? 0.0 : b * (b - 1.0) * se3di_pow(0.0, b - 2.0);
         d->b = d->bb = b > 0.0 ? 0.0 : (double)NAN;
         d->ab = b > 1.0 ? 0.0 : -(double)INFINITY;
         return;
     }
-    double l = log(a); /* NaN for a < 0: only derivatives along a exist there */
+    double l = se3di_log(a); /* NaN for a < 0: only derivatives along a exist there */
     d->f = f;
     d->a = f * b / a;
     d->aa = d->a * (b - 1.0) / a;
@@ -296,9 +299,9 @@ void se3di_function_power(double u, double c, double d[3])
     } else if (c == 4.0) {
         set(d, u * u * (u * u), 4.0 * u * u * u, 12.0 * u * u);
     } else if (u == 0.0) { /* a quotient by u would lose the limit */
-        set(d, pow(u, c), c * pow(u, c - 1.0), c * (c - 1.0) * pow(u, c - 2.0));
+        set(d, se3di_pow(u, c), c * se3di_pow(u, c - 1.0), c * (c - 1.0) * se3di_pow(u, c - 2.0));
     } else {
-        double f = pow(u, c);
+        double f = se3di_pow(u, c);
         double f1 = c * f / u;
         set(d, f, f1, (c - 1.0) * f1 / u);
     }

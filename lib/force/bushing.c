@@ -8,6 +8,7 @@
  * dtheta = Tinv R_j^T dpi_j - Tinv^T R_i^T dpi_i.  Degenerate at |theta| = pi.
  * docs/theory/bushing.md */
 #include "force/measure.h"
+#include "math/elementary.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/primitive.h"
@@ -43,8 +44,8 @@ static void read_frames(const se3di_model *model, const se3di_force *force, bush
             1.0 / 360.0 + square * (1.0 / 7560.0 + square * (1.0 / 201600.0 + square / 5987520.0));
     } else {
         double phi = sqrt(square);
-        double half = 0.5 * phi / tan(0.5 * phi);
-        double sine = sin(0.5 * phi);
+        double half = 0.5 * phi / se3di_tan(0.5 * phi);
+        double sine = se3di_sin(0.5 * phi);
         double half_slope = half / phi - 0.25 * phi / (sine * sine);
         f->curve = (1.0 - half) / square;
         f->curve_slope = (-half_slope / phi - 2.0 * f->curve) / square;

@@ -10,6 +10,7 @@
  */
 #include "force/stop.h"
 #include "force/measure.h"
+#include "math/elementary.h"
 
 #include <math.h>
 
@@ -24,7 +25,7 @@ double se3di_stop_damping(double e)
     }
     for (int k = 0; k < 200; ++k) {
         double d = 0.5 * (low + high);
-        double gap = log1p(d) - log1p(-d * e) - d * (1.0 + e);
+        double gap = se3di_log1p(d) - se3di_log1p(-d * e) - d * (1.0 + e);
         if (gap < 0.0) {
             low = d;
         } else {

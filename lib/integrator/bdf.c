@@ -13,6 +13,7 @@
 #include "contact/loads.h"
 #include "contact/pace.h"
 #include "integrator/memory.h"
+#include "math/elementary.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -384,15 +385,15 @@ static void adapt(bdf *m, double error)
     if (m->header[BDF_EQUAL] < order + 1) {
         return;
     }
-    double best = pow(fmax(error, 1e-10), -1.0 / (order + 1));
+    double best = se3di_pow(fmax(error, 1e-10), -1.0 / (order + 1));
     int chosen = order;
     if (order > 1) {
-        double factor = pow(fmax(error_of(m, order), 1e-10), -1.0 / order);
+        double factor = se3di_pow(fmax(error_of(m, order), 1e-10), -1.0 / order);
         chosen = factor > best ? order - 1 : chosen;
         best = fmax(best, factor);
     }
     if (order < top) {
-        double factor = pow(fmax(error_of(m, order + 2), 1e-10), -1.0 / (order + 2));
+        double factor = se3di_pow(fmax(error_of(m, order + 2), 1e-10), -1.0 / (order + 2));
         chosen = factor > best ? order + 1 : chosen;
         best = fmax(best, factor);
     }
@@ -463,7 +464,7 @@ static se3d_status advance(bdf *m, int is_controlled)
             return status;
         }
         ++m->equations->counters.rejected;
-        double factor = isfinite(error) ? 0.9 * pow(error, -1.0 / (order + 1)) : 0.25;
+        double factor = isfinite(error) ? 0.9 * se3di_pow(error, -1.0 / (order + 1)) : 0.25;
         if (!is_controlled || m->header[BDF_STEP] < 1e-12 * fmax(1e-3, fabs(t))) {
             return status < 0 ? status
                               : se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,

@@ -5,6 +5,7 @@
 #include "contact/loads.h"
 #include "contact/pace.h"
 #include "integrator/state.h"
+#include "math/elementary.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
 
@@ -375,7 +376,7 @@ static double next_step(const rk *m, double h, double error)
     double exponent = 1.0 / m->tableau->order;
     double before = fmax(m->header[RK_ERROR], 1e-4);
     double e = fmax(error, 1e-10);
-    double factor = SAFETY * pow(e, -0.8 * exponent) * pow(e / before, -0.2 * exponent);
+    double factor = SAFETY * se3di_pow(e, -0.8 * exponent) * se3di_pow(e / before, -0.2 * exponent);
     double largest = m->header[RK_REJECTED] != 0.0 ? 1.0 : GROWTH;
     h *= fmin(largest, fmax(0.2, factor));
     return limit_step(m, h);
@@ -505,7 +506,8 @@ static se3d_status advance(rk *m, double t_end)
         ++m->equations->counters.rejected;
         m->header[RK_REJECTED] = 1.0;
         double exponent = 1.0 / m->tableau->order;
-        double factor = status < 0 || !isfinite(error) ? 0.25 : SAFETY * pow(error, -exponent);
+        double factor =
+            status < 0 || !isfinite(error) ? 0.25 : SAFETY * se3di_pow(error, -exponent);
         const double before = h;
         h *= fmax(0.2, fmin(0.9, factor));
         if (!(h > least_step(m))) {
@@ -596,8 +598,8 @@ static double choose_first(rk *m)
     se3di_state_set(m->assembly, m->y1);
     m->equations->error = error;
     double d = fmax(d1 * m->tolerance, 1e-3 / h0);
-    double h1 = pow(0.01 / (fmax(d, sqrt(fmax(d2, 0.0) * m->tolerance)) / m->tolerance),
-                    1.0 / m->tableau->order);
+    double h1 = se3di_pow(0.01 / (fmax(d, sqrt(fmax(d2, 0.0) * m->tolerance)) / m->tolerance),
+                          1.0 / m->tableau->order);
     double h = isfinite(h1) && h1 > 0.0 ? fmin(100.0 * h0, h1) : h0;
     return limit > 0.0 ? fmin(h, limit) : h;
 }

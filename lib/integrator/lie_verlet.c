@@ -3,6 +3,7 @@
 
 #include "contact/loads.h"
 #include "integrator/state.h"
+#include "math/elementary.h"
 #include "math/inertia.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -71,7 +72,7 @@ static void turn_coefficients(double y, double *c, double *c_y)
         *c_y = 1.0 / 720 + y * (1.0 / 15120 + y * (1.0 / 403200 + y * (1.0 / 11975040)));
         return;
     }
-    const double z = 0.5 * sqrt(y), cot = 1.0 / tan(z);
+    const double z = 0.5 * sqrt(y), cot = 1.0 / se3di_tan(z);
     *c = (1.0 - z * cot) / y;
     *c_y = (0.125 * (1.0 + cot * cot - cot / z) - *c) / y;
 }

@@ -5,6 +5,7 @@
 #include "contact/loads.h"
 #include "contact/pace.h"
 #include "integrator/state.h"
+#include "math/elementary.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
@@ -437,7 +438,7 @@ se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newma
 /* From the error of a step; a rejected one is at least halved. */
 static double next_step(double h, double error)
 {
-    double factor = isfinite(error) ? 0.85 / cbrt(fmax(error, 1e-6)) : 0.25;
+    double factor = isfinite(error) ? 0.85 / se3di_cbrt(fmax(error, 1e-6)) : 0.25;
     return h * (error <= 1.0 ? fmin(2.0, factor) : fmin(0.5, fmax(0.1, factor)));
 }
 

@@ -14,6 +14,7 @@
 
 #include "contact/loads.h"
 #include "contact/pace.h"
+#include "math/elementary.h"
 #include "math/quaternion.h"
 #include "primitive/turn_counter.h"
 
@@ -68,7 +69,7 @@ static se3di_state_scale get_scale(const history *past)
 /* The estimate is of order 3, the result of order 5 (Hairer, Wanner 1996, sec. IV.8). */
 static double inner_tolerance(double tolerance)
 {
-    return 0.1 * pow(fmax(tolerance, 1e-13), 2.0 / 3.0);
+    return 0.1 * se3di_pow(fmax(tolerance, 1e-13), 2.0 / 3.0);
 }
 
 /* The iteration stops where it does not show in the result. */
@@ -261,10 +262,10 @@ static double next_step(const se3di_radau *m, const history *past, double error)
     const double *header = past->header;
     const double e = fmax(error, 1e-8);
     const double safety = 0.9 * 11.0 / (10.0 + m->iterations);
-    double factor = safety * pow(e, -0.25);
+    double factor = safety * se3di_pow(e, -0.25);
     if (header[RADAU_LAST] > 0.0 && header[RADAU_ERROR] > 0.0) {
         const double predicted =
-            0.9 * m->h / header[RADAU_LAST] * pow(header[RADAU_ERROR] / (e * e), 0.25);
+            0.9 * m->h / header[RADAU_LAST] * se3di_pow(header[RADAU_ERROR] / (e * e), 0.25);
         factor = fmin(factor, predicted);
     }
     factor = fmin(header[RADAU_REJECTED] > 0.0 ? 1.0 : 8.0, fmax(0.2, factor));
@@ -318,7 +319,7 @@ static se3d_status advance(se3di_integration *integration, double t_end)
         }
         ++m.equations->counters.rejected;
         header[RADAU_REJECTED] = 1.0;
-        h *= status < 0 ? 0.5 : fmin(0.9, fmax(0.1, 0.9 * pow(error, -0.25)));
+        h *= status < 0 ? 0.5 : fmin(0.9, fmax(0.1, 0.9 * se3di_pow(error, -0.25)));
         header[RADAU_NEXT] = h;
         if (!(h > 1e-12 * fmax(1e-3, fabs(m.t)))) {
             return fail_small(&m, h, status);

@@ -3,6 +3,7 @@
  * its mass, and one second or the time in which gravity crosses the length. */
 #include <math.h>
 
+#include "io/elementary.h"
 #include "io/model.h"
 
 typedef struct sizes {
@@ -90,5 +91,5 @@ double se3di_channel_get_scale(const se3di_channel *channel, const se3d_system *
     const sizes s = measure(system);
     const unit u = units[channel->quantity];
     const double lever = u.lever ? fmax(1.0, s.length) : 1.0;
-    return pow(s.length, u.length) * pow(s.rate, u.rate) * pow(s.mass, u.mass) * lever;
+    return io_pow(s.length, u.length) * io_pow(s.rate, u.rate) * io_pow(s.mass, u.mass) * lever;
 }

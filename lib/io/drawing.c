@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/elementary.h"
 #include "io/rotation.h"
 
 static const double palette[][3] = {{0.20, 0.47, 0.72}, {0.85, 0.37, 0.27}, {0.25, 0.60, 0.42},
@@ -154,7 +155,7 @@ static double turn_to(const double v[3], double p[4])
     if (side <= 1e-12 * length || !(length > 0.0)) {
         memcpy(p, identity, sizeof identity);
     } else {
-        se3di_rotation_from_axis(axis, atan2(side, v[2]), p);
+        se3di_rotation_from_axis(axis, io_atan2(side, v[2]), p);
     }
     return length;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Readers of triangles. Files are data from anywhere: every count, index and number is checked. */
 #include "io/mesh.h"
+#include "io/elementary.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -148,7 +149,8 @@ static bool take_number(scanner *s, double *value)
         }
     }
     exponent -= after;
-    sum = exponent < 0 ? sum / pow(10.0, -(double)exponent) : sum * pow(10.0, (double)exponent);
+    sum =
+        exponent < 0 ? sum / io_pow(10.0, -(double)exponent) : sum * io_pow(10.0, (double)exponent);
     *value = negative ? -sum : sum;
     return true;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Rotations between the ways in which a file can say them. */
 #include "io/rotation.h"
+#include "io/elementary.h"
 
 #include <math.h>
 
@@ -61,9 +62,9 @@ void se3di_rotation_from_matrix(const double A[9], double p[4])
 
 void se3di_rotation_from_axis(const double axis[3], double angle, double p[4])
 {
-    const double length = hypot(hypot(axis[0], axis[1]), axis[2]);
-    const double s = sin(0.5 * angle) / length;
-    p[0] = cos(0.5 * angle);
+    const double length = io_hypot(io_hypot(axis[0], axis[1]), axis[2]);
+    const double s = io_sin(0.5 * angle) / length;
+    p[0] = io_cos(0.5 * angle);
     for (int k = 0; k < 3; ++k) {
         p[k + 1] = s * axis[k];
     }

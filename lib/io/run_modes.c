@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "io/csv.h"
+#include "io/elementary.h"
 
 static const char *const shape_parts[] = {"x", "y", "z", "rx", "ry", "rz"};
 
@@ -174,7 +175,7 @@ static se3d_status write_transfer(se3di_modes_run *run, const se3d_modes *modes)
     for (size_t k = 0; k < entry->frequency_count && status >= 0; ++k) {
         row[0] = k == entry->frequency_count - 1
                      ? entry->to
-                     : entry->from * pow(entry->to / entry->from, (double)k / last);
+                     : entry->from * io_pow(entry->to / entry->from, (double)k / last);
         for (size_t pair = 0; pair < pairs && status >= 0; ++pair) {
             status =
                 se3d_modes_get_transfer(modes, pair % entry->input_count, pair / entry->input_count,

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "io/drawing.h"
+#include "io/elementary.h"
 #include "io/glb.h"
 #include "io/keys.h"
 
@@ -278,7 +279,7 @@ static void add_spring(drawing *d, const se3di_element_entry *entry, se3di_bytes
 static void add_grid(drawing *d, double height, se3di_bytes *roots)
 {
     const double least = d->extent / 5.0;
-    const double ten = pow(10.0, floor(log10(least)));
+    const double ten = io_pow(10.0, floor(io_log10(least)));
     const double step = least <= ten         ? ten
                         : least <= 2.0 * ten ? 2.0 * ten
                         : least <= 5.0 * ten ? 5.0 * ten

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/elementary.h"
 #include "io/rotation.h"
 #include "io/solid.h"
 
@@ -50,9 +51,9 @@ static bool read_plane(se3di_reader *reader, const se3di_node *node, se3d_model_
         return se3di_reader_fail_key(reader, node, "normal",
                                      "and `orientation` exclude each other");
     }
-    const double across = hypot(n[0], n[1]);
+    const double across = io_hypot(n[0], n[1]);
     const double axis[3] = {across > 0.0 ? -n[1] : 1.0, across > 0.0 ? n[0] : 0.0, 0.0};
-    se3di_rotation_from_axis(axis, atan2(across, n[2]), shape->orientation);
+    se3di_rotation_from_axis(axis, io_atan2(across, n[2]), shape->orientation);
     return true;
 }
 
@@ -261,7 +262,7 @@ static bool check_centre(se3di_reader *reader, const se3di_node *node, const who
     for (int k = 0; k < 3; ++k) {
         c[k] = body->moment[k] / body->mass;
     }
-    if (hypot(hypot(c[0], c[1]), c[2]) > exact * body->size) {
+    if (io_hypot(io_hypot(c[0], c[1]), c[2]) > exact * body->size) {
         return se3di_reader_fail_key(reader, node, "shapes",
                                      "have their centre of mass at [%.12g, %.12g, %.12g], must "
                                      "have it at the body's origin: shift their positions by the "

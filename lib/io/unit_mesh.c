@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Unit surfaces and lines, made from their formulas. */
 #include "io/unit_mesh.h"
+#include "io/elementary.h"
 
 #include <math.h>
 #include <string.h>
@@ -65,7 +66,8 @@ static void make_sphere(se3di_unit_mesh *m)
         for (int k = 0; k <= AROUND; ++k) {
             const double polar = pi - pi * i / RINGS;
             const double turn = 2.0 * pi * k / AROUND;
-            const double n[3] = {sin(polar) * cos(turn), sin(polar) * sin(turn), cos(polar)};
+            const double n[3] = {io_sin(polar) * io_cos(turn), io_sin(polar) * io_sin(turn),
+                                 io_cos(polar)};
             put_vertex(m, n[0], n[1], n[2], n);
         }
     }
@@ -77,7 +79,7 @@ static void make_cylinder(se3di_unit_mesh *m)
     for (int i = 0; i < 2; ++i) {
         for (int k = 0; k <= AROUND; ++k) {
             const double turn = 2.0 * pi * k / AROUND;
-            const double n[3] = {cos(turn), sin(turn), 0.0};
+            const double n[3] = {io_cos(turn), io_sin(turn), 0.0};
             put_vertex(m, n[0], n[1], i - 0.5, n);
         }
     }
@@ -87,7 +89,7 @@ static void make_cylinder(se3di_unit_mesh *m)
         const double n[3] = {0.0, 0.0, i == 0 ? -1.0 : 1.0};
         for (int k = 0; k < AROUND; ++k) {
             const double turn = 2.0 * pi * k / AROUND;
-            put_vertex(m, cos(turn), sin(turn), i - 0.5, n);
+            put_vertex(m, io_cos(turn), io_sin(turn), i - 0.5, n);
         }
         for (size_t k = 1; k + 1 < AROUND; ++k) {
             put_triangle(m, first, first + k + (i == 0), first + k + (i == 1));
@@ -101,9 +103,10 @@ static void put_ring(se3di_unit_mesh *m, double radius, double z, double turn)
     const double thick[2] = {0.12, 0.02}; /* across and along: it will be stretched along z */
     for (int k = 0; k < WIRE; ++k) {
         const double angle = 2.0 * pi * k / WIRE;
-        const double out = radius + thick[0] * cos(angle);
-        const double n[3] = {cos(angle) * cos(turn), cos(angle) * sin(turn), sin(angle)};
-        put_vertex(m, out * cos(turn), out * sin(turn), z + thick[1] * sin(angle), n);
+        const double out = radius + thick[0] * io_cos(angle);
+        const double n[3] = {io_cos(angle) * io_cos(turn), io_cos(angle) * io_sin(turn),
+                             io_sin(angle)};
+        put_vertex(m, out * io_cos(turn), out * io_sin(turn), z + thick[1] * io_sin(angle), n);
     }
 }
 

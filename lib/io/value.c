@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/elementary.h"
 #include "io/rotation.h"
 
 /* Beyond these the squares and products of mechanics leave what doubles hold. */
@@ -224,7 +225,7 @@ bool se3di_read_key_vector(se3di_reader *reader, const se3di_node *map, const ch
 
 static bool is_direction(const double v[3])
 {
-    const double length = hypot(hypot(v[0], v[1]), v[2]);
+    const double length = io_hypot(io_hypot(v[0], v[1]), v[2]);
     return isfinite(length) && length > 1e-100;
 }
 
@@ -278,7 +279,7 @@ static bool read_euler_parameters(se3di_reader *reader, const se3di_node *node, 
     if (!se3di_read_vector(reader, node, 4, p)) {
         return false;
     }
-    const double length = hypot(hypot(p[0], p[1]), hypot(p[2], p[3]));
+    const double length = io_hypot(io_hypot(p[0], p[1]), io_hypot(p[2], p[3]));
     if (!(fabs(length - 1.0) <= 1e-6)) {
         return se3di_reader_fail(
             reader, node, "has the length %.9g, must be unit Euler parameters (to 1e-6)", length);

@@ -2,6 +2,7 @@
 /* Joint frames: the triads (ref, third, axis) on both bodies, and the start of the joint angle. */
 #include "joint/joint.h"
 
+#include "math/elementary.h"
 #include "math/vec3.h"
 #include "primitive/primitive.h"
 
@@ -36,8 +37,10 @@ void se3di_joint_ref_match(const se3di_joint_frames *frames, double angle, const
                            const se3di_frame *j, double ref_j[3])
 {
     double e_i[3], e[3], axis[3], a_i[3];
-    se3di_scale(cos(angle), frames->ref_i, e_i);
-    se3di_add_scaled(sin(angle), frames->third_i, e_i);
+    double sine, cosine;
+    se3di_sincos(angle, &sine, &cosine);
+    se3di_scale(cosine, frames->ref_i, e_i);
+    se3di_add_scaled(sine, frames->third_i, e_i);
     se3di_mul(i->A, e_i, e);
     se3di_mul(i->A, frames->axis_i, a_i);
     se3di_mul_transposed(j->A, a_i, axis); /* axis_i in body j */

@@ -2,6 +2,7 @@
 /* Inertia tensors: principal moments by Jacobi rotations, and what is physical. */
 #include "math/inertia.h"
 
+#include "math/elementary.h"
 #include "math/vec3.h"
 
 /* Data sheets round their figures: a plate (c = a + b) must pass. */
@@ -30,8 +31,8 @@ static void rotate_away(double M[9], int r, int s, int o)
     }
     /* tangent of the smaller angle: t^2 + 2 zeta t - 1 = 0 */
     const double zeta = (M[4 * s] - M[4 * r]) / (2.0 * off);
-    const double t = copysign(1.0, zeta) / (fabs(zeta) + hypot(zeta, 1.0));
-    const double cosine = 1.0 / hypot(t, 1.0);
+    const double t = copysign(1.0, zeta) / (fabs(zeta) + se3di_hypot(zeta, 1.0));
+    const double cosine = 1.0 / se3di_hypot(t, 1.0);
     const double sine = t * cosine;
     const double ro = M[3 * r + o];
     const double so = M[3 * s + o];

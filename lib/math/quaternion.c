@@ -3,6 +3,7 @@
  */
 #include "math/quaternion.h"
 
+#include "math/elementary.h"
 #include "math/vec3.h"
 
 /* Below this |theta|^2 the quotients of the exponential map's tangent lose digits and their power
@@ -18,14 +19,18 @@ static inline double polynomial(const double coefficients[8], double x)
     return sum;
 }
 
-/* sin(t/2)/t with x = t^2 */
-static double half_sinc(double x)
+/* sin(t/2)/t and cos(t/2) with x = t^2 */
+static void half_angle(double x, double *sinc, double *cosine)
 {
     if (x < 1e-4) {
-        return 0.5 - x * (1.0 / 48.0 - x * (1.0 / 3840.0));
+        *sinc = 0.5 - x * (1.0 / 48.0 - x * (1.0 / 3840.0));
+        *cosine = 1.0 - x * (1.0 / 8.0 - x * (1.0 / 384.0 - x * (1.0 / 46080.0)));
+        return;
     }
     const double t = sqrt(x);
-    return sin(0.5 * t) / t;
+    double sine;
+    se3di_sincos(0.5 * t, &sine, cosine);
+    *sinc = sine / t;
 }
 
 /* (t - sin t)/t^3 with x = t^2 */
@@ -38,7 +43,7 @@ static double sine_defect(double x)
         return polynomial(series, x);
     }
     const double t = sqrt(x);
-    return (t - sin(t)) / (x * t);
+    return (t - se3di_sin(t)) / (x * t);
 }
 
 /* (1 - (t/2) cot(t/2))/t^2 with x = t^2; the series' coefficients are |B_2k|/(2k)! */
@@ -52,7 +57,9 @@ static double cotangent_defect(double x)
         return polynomial(series, x);
     }
     const double half = 0.5 * sqrt(x);
-    return (1.0 - half * cos(half) / sin(half)) / x;
+    double sine, cosine;
+    se3di_sincos(half, &sine, &cosine);
+    return (1.0 - half * cosine / sine) / x;
 }
 
 /* out = I + first tilde(theta) + second tilde(theta)^2 */
@@ -96,8 +103,8 @@ void se3di_quat_from_matrix(const double A[9], double p[4])
 
 void se3di_quat_from_axis_angle(const double axis[3], double angle, double p[4])
 {
-    const double s = sin(0.5 * angle);
-    p[0] = cos(0.5 * angle);
+    double s;
+    se3di_sincos(0.5 * angle, &s, &p[0]);
     p[1] = s * axis[0];
     p[2] = s * axis[1];
     p[3] = s * axis[2];
@@ -119,8 +126,9 @@ void se3di_quat_mul(const double p[4], const double q[4], double out[4])
 void se3di_quat_rotate(const double p[4], const double theta[3], double out[4])
 {
     const double x = se3di_dot(theta, theta);
-    const double s = half_sinc(x);
-    const double turn[4] = {cos(0.5 * sqrt(x)), s * theta[0], s * theta[1], s * theta[2]};
+    double s, cosine;
+    half_angle(x, &s, &cosine);
+    const double turn[4] = {cosine, s * theta[0], s * theta[1], s * theta[2]};
     se3di_quat_mul(p, turn, out);
 }
 
@@ -132,7 +140,7 @@ void se3di_quat_log(const double p[4], const double q[4], double theta[3])
     const double sign = turn[0] < 0.0 ? -1.0 : 1.0; /* the shorter way round */
     const double sine = se3di_norm(turn + 1);
     const double cosine = fabs(turn[0]);
-    const double factor = sine > 0.0 ? 2.0 * atan2(sine, cosine) / sine : 2.0 / cosine;
+    const double factor = sine > 0.0 ? 2.0 * se3di_atan2(sine, cosine) / sine : 2.0 / cosine;
     se3di_scale(sign * factor, turn + 1, theta);
 }
 
@@ -165,7 +173,8 @@ void se3di_k_matrix(const double a[3], const double y[3], double K[16])
 void se3di_exp_tangent(const double theta[3], double T[9])
 {
     const double x = se3di_dot(theta, theta);
-    const double s = half_sinc(x);
+    double s, cosine;
+    half_angle(x, &s, &cosine);
     rotation_polynomial(theta, -2.0 * s * s, sine_defect(x), T); /* 1 - cos t = 2 sin^2(t/2) */
 }
 

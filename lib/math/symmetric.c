@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "math/symmetric.h"
+#include "math/elementary.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,8 +26,8 @@ static void rotate_away(int n, double *M, double *V, int r, int s)
     }
     /* tangent of the smaller angle: t^2 + 2 zeta t - 1 = 0 */
     const double zeta = (M[n * s + s] - M[n * r + r]) / (2.0 * off);
-    const double t = copysign(1.0, zeta) / (fabs(zeta) + hypot(zeta, 1.0));
-    const double cosine = 1.0 / hypot(t, 1.0);
+    const double t = copysign(1.0, zeta) / (fabs(zeta) + se3di_hypot(zeta, 1.0));
+    const double cosine = 1.0 / se3di_hypot(t, 1.0);
     const double turn[2] = {cosine, t * cosine};
     turn_vectors(n, 1, M + n * r, M + n * s, turn);
     turn_vectors(n, n, M + r, M + s, turn);

@@ -6,6 +6,7 @@
  * docs/theory/consistency.md */
 #include "nonlinear/equations.h"
 
+#include "math/elementary.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 
@@ -258,13 +259,13 @@ static open_joint measure_joint(const se3di_equations *equations,
         case SE3DI_PRIMITIVE_D: {
             double f = equations->assembly.f[3 * row];
             phi = sqrt(fmax(phi + f, 0.0)) - sqrt(fmax(f, 0.0));
-            open.length = hypot(open.length, phi);
+            open.length = se3di_hypot(open.length, phi);
             break;
         }
         case SE3DI_PRIMITIVE_CD:
         case SE3DI_PRIMITIVE_DP2:
         case SE3DI_PRIMITIVE_TRIPLE:
-            open.length = hypot(open.length, phi);
+            open.length = se3di_hypot(open.length, phi);
             break;
         default:
             open.angle = fmax(open.angle, fabs(phi));

@@ -12,6 +12,7 @@
  *
  * Removes one rotational degree of freedom, at every angle; degenerate only where a_j is parallel
  * to b_i (q = 0): all functions are NaN there.  docs/theory/angle.md */
+#include "math/elementary.h"
 #include "primitive/dot.h"
 #include "primitive/table.h"
 
@@ -55,7 +56,7 @@ double se3di_primitive_angle_value(const se3di_term *t, const se3di_frame *i, co
     if (cs[0] * cs[0] + cs[1] * cs[1] == 0.0) {
         return (double)NAN;
     }
-    return atan2(cs[1] + 0.0, cs[0]); /* + 0.0: s = -0 is at pi, not -pi */
+    return se3di_atan2(cs[1] + 0.0, cs[0]); /* + 0.0: s = -0 is at pi, not -pi */
 }
 
 void se3di_primitive_angle_jacobian_romega(const se3di_term *t, const se3di_frame *i,

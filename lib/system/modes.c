@@ -7,6 +7,7 @@
 #include "analysis/linearise.h"
 #include "analysis/modes.h"
 #include "linsol/dense.h"
+#include "math/elementary.h"
 #include "math/vec3.h"
 #include "system/coordinate.h"
 
@@ -210,7 +211,7 @@ static void find_largest(const se3d_modes *m, size_t k, double scale[2])
         expand(m, m->eigen.y_re + k * m->f, body, re);
         expand(m, m->eigen.y_im + k * m->f, body, im);
         for (int c = 0; c < 6; ++c) {
-            double size = hypot(re[c], im[c]);
+            double size = se3di_hypot(re[c], im[c]);
             if (size > best * (1.0 + 1e-9)) {
                 best = size;
                 scale[0] = re[c];
@@ -339,7 +340,7 @@ se3d_status se3d_modes_get_eigenvalue(const se3d_modes *modes, size_t k,
     if (k >= (size_t)modes->eigen.count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    double size = hypot(modes->eigen.re[k], modes->eigen.im[k]);
+    double size = se3di_hypot(modes->eigen.re[k], modes->eigen.im[k]);
     eigenvalue->real = modes->eigen.re[k];
     eigenvalue->imaginary = modes->eigen.im[k];
     eigenvalue->frequency = size / 6.283185307179586476925286766559;

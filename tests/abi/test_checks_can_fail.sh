@@ -36,6 +36,10 @@ printf '%s\n' '#include <stdio.h>' 'void se3di_say(void);' \
 "$cc" -c lib/math/bad.c -o bad.o && "$cc" -c lib/math/say.c -o say.o && ar rc libse3d.a bad.o say.o
 reject bss $abi globals libse3d.a
 reject puts $abi calls libse3d.a
+printf '%s\n' '#include <math.h>' 'double se3di_bend(double);' \
+    'double se3di_bend(double x) { return sin(x); }' >lib/math/bend.c
+"$cc" -c lib/math/bend.c -o bend.o && ar rc libse3d.a bend.o
+reject sin $abi calls libse3d.a
 printf '%s\n' 'void se3di_say(void);' 'void se3di_say(void) {}' >lib/io/say.c
 "$cc" -c lib/io/say.c -o say_io.o && ar rc libse3d-io.a say_io.o
 reject 'se3di_say (T) is defined by libse3d.a(say.o) and libse3d-io.a(say_io.o)' \

@@ -625,6 +625,18 @@ static se3d_status texts_are_never_null(arguments *a)
     return SE3D_OK;
 }
 
+static se3d_status unknown_functions_are_not_a_number(arguments *a)
+{
+    (void)a;
+    for (int32_t k = 0; k <= SE3D_ELEMENTARY_POW; ++k) {
+        CHECK(!isnan(se3d_elementary_eval(k, 0.5, 0.5)));
+        CHECK(isnan(se3d_elementary_eval(k, (double)NAN, 0.5)));
+    }
+    CHECK(isnan(se3d_elementary_eval(-1, 0.5, 0.5)) && isnan(se3d_elementary_eval(15, 0.5, 0.5)));
+    CHECK(isnan(se3d_elementary_eval(INT32_MAX, 0.5, 0.5)));
+    return SE3D_OK;
+}
+
 /* An older caller's def is smaller, a newer one's larger: exactly `size` bytes are written. */
 #define CHECK_INIT(type) CHECK_INIT_OF(se3d_##type##_def)
 #define CHECK_INIT_OF(type)                                                                        \
@@ -840,6 +852,7 @@ static const row rows[] = {
     {"se3d_system_is_busy", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_expression_is_constant", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_status_get_text", texts_are_never_null, "", NULL, NULL},
+    {"se3d_elementary_eval", unknown_functions_are_not_a_number, "", NULL, NULL},
     {"se3d_version_get_text", texts_are_never_null, "", NULL, NULL},
     {"se3d_system_get_error", texts_are_never_null, "", NULL, NULL},
     {"se3d_system_get_error_status", texts_are_never_null, "", NULL, NULL},
