@@ -390,15 +390,16 @@ se3d_status se3di_multipliers_reduce(se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(se3di_equations_factor(equations));
-    memset(equations->b, 0, assembly->unknown_count * sizeof *equations->b);
-    memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
+    se3di_assembly_get_acceleration(assembly, equations->x);
+    se3di_assembly_mul_mass(assembly, equations->x, equations->b);
+    se3di_assembly_mul(assembly, equations->x, equations->c); /* not all rounding, as zeros are */
     se3di_assembly_add_transposed(assembly, 1.0, assembly->model->lambda, equations->b);
     se3d_status status = se3di_equations_solve(equations);
     SE3DI_TRY(status);
     if (status != SE3D_INFO_REDUNDANT && assembly->row_count <= MIN_NORM_ROWS_MAX) {
         /* near a singular position the fast solver does not tell dependent rows apart */
         se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
-        memset(equations->x, 0, assembly->unknown_count * sizeof *equations->x);
+        se3di_assembly_get_acceleration(assembly, equations->x);
         SE3DI_TRY(se3di_kkt_min_norm(equations->kkt, &values, equations->b, equations->x, 1e-10,
                                      equations->l, NULL));
         status = SE3D_INFO_REDUNDANT;

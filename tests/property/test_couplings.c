@@ -113,8 +113,52 @@ static void a_gear_of_itself_is_refused_with_its_reason(void)
     check_refused("j", "joints[1].joint_2: is the same as joint_1, must be another joint");
 }
 
+static const char *const three_gears =
+    "se3d: 1\ngravity: [0, 0, 0]\nparameters: {J: %g}\nbodies:\n"
+    "  - {name: a, mass: 20*J, inertia: [0.5*J, 0.6*J, J]}\n"
+    "  - {name: b, mass: 2, inertia: [0.1, 0.1, 0.15], position: [1, 0, 0]}\njoints:\n"
+    "  - {name: ja, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, 1]}\n"
+    "  - {name: jb, type: revolute, body_i: ground, body_j: b, at: [1, 0, 0], axis: [0, 0, 1]}\n"
+    "  - {name: g1, type: gear, joint_1: ja, joint_2: jb, ratio: 2}\n"
+    "  - {name: g2, type: gear, joint_1: ja, joint_2: jb, ratio: 2}\n"
+    "  - {name: g3, type: gear, joint_1: ja, joint_2: jb, ratio: 2}\n"
+    "forces: [{type: torque, body: a, value: [0, 0, \"3*sin(5*t)+0.2\"]}]\n"
+    "analysis: {type: dynamics, duration: 1}\n"
+    "output: [{file: r.csv, channels: [g1.effort, g2.effort, g3.effort]}]\n";
+
+/* The multipliers of least norm are equal, and exact at the time of the output whatever the method.
+ * J_b theta_b'' is what all three do, theta_b'' = -2 T / (J + 4 J_b). */
+static void check_equal_gears(double J, int32_t method, int32_t formulation)
+{
+    char text[2000];
+    snprintf(text, sizeof text, three_gears, J);
+    text_model m = text_model_open(text, method, formulation, 0.0);
+    for (int row = 1; row < 6; ++row) {
+        const double t = 0.13 * row;
+        const double torque = 3.0 * sin(5.0 * t) + 0.2;
+        const double third = -0.15 * 2.0 * torque / (J + 0.6) / 3.0;
+        CHECK(text_model_run(&m, t));
+        for (size_t k = 0; k < 3; ++k) {
+            CHECK_NEAR(text_model_get(&m, k, 0), third, 1e-5);
+            CHECK_NEAR(text_model_get(&m, k, 0), text_model_get(&m, 0, 0), 1e-8);
+        }
+    }
+    text_model_close(&m);
+}
+
+static void equal_gears_share_the_effort_in_every_method(void)
+{
+    for (int32_t method = SE3D_METHOD_AUTO; method <= SE3D_METHOD_RK4; ++method) {
+        for (int32_t formulation = 0; formulation < 2; ++formulation) {
+            check_equal_gears(0.05, method, formulation);
+            check_equal_gears(5e-9, method, formulation); /* a wheel of nearly nothing */
+        }
+    }
+}
+
 int main(void)
 {
+    RUN(equal_gears_share_the_effort_in_every_method);
     RUN(a_gear_reports_its_torque_on_both_discs);
     RUN(a_rack_reports_the_force_on_the_rack_and_the_torque_on_the_pinion);
     RUN(a_coupler_that_moves_reports_value_force_and_effort);
