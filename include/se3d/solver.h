@@ -37,9 +37,10 @@ typedef struct se3d_solver_def {
     int32_t formulation; /* se3d_formulation, default ROMEGA */
     int32_t method;      /* se3d_method, dynamics only, default AUTO */
     int32_t order;       /* bdf: 1..5, rattle: 2, 4, others: the one they have; 0: the default */
-    double step;         /* fixed step, or the largest one of an adaptive method, >= 1e-15 [s]; 0:
-                            chosen */
-    double tolerance;    /* relative error of adaptive methods, 1e-14..0.1; 0: 1e-6 */
+    double
+        step; /* of generalized_alpha, hht, rattle, verlet: fixed; of the others: the largest one;
+                 >= 1e-15 [s]; 0: chosen, by the error but for rattle and verlet (1 ms) */
+    double tolerance;       /* relative error of adaptive methods, 1e-14..0.1; 0: 1e-6 */
     double spectral_radius; /* generalized_alpha: at infinite frequency, 0..1, default 0.9 */
     double alpha;           /* hht: -1/3..0, default -0.1 */
     size_t iterations_max;  /* Newton iterations per step; 0: 25 */

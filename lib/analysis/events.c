@@ -516,7 +516,10 @@ static se3d_status report(se3di_events *events, double t0, double t_end)
     int stop = 0, changed = 0;
     double last = t_end;
     for (size_t k = 0; k < events->hit_count && !changed; ++k) {
-        const se3di_event_hit *hit = &events->hits[k];
+        se3di_event_hit *hit = &events->hits[k];
+        if (hit->time > t_end && hit->time - t_end <= 4.0 * DBL_EPSILON * fabs(t_end)) {
+            hit->time = t_end; /* but for rounding: what follows may begin anew there */
+        }
         if (hit->time > t0 && hit->time <= last) {
             SE3DI_TRY(happen(events, hit, &stop, &changed));
             last = stop ? hit->time : last; /* what happens at the same time does so too */

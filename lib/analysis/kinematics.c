@@ -8,8 +8,8 @@
 #include "analysis/friction_start.h"
 #include "analysis/jump.h"
 #include "analysis/singular.h"
-#include "analysis/turns.h"
 #include "contact/loads.h"
+#include "integrator/turns.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>

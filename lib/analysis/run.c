@@ -6,10 +6,10 @@
 #include "analysis/friction_start.h"
 #include "analysis/jump.h"
 #include "analysis/stiffness.h"
-#include "analysis/turns.h"
 #include "assembly/user.h"
 #include "contact/loads.h"
 #include "contact/pace.h"
+#include "integrator/turns.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
@@ -271,8 +271,7 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
 
 static int has_step_control(const se3di_integration *integration)
 {
-    return integration->method->run &&
-           (!integration->method->controls_if_asked || integration->settings.controls_error);
+    return integration->method->run != NULL;
 }
 
 static se3d_status watched_step(se3di_run *run, double h)
@@ -302,16 +301,10 @@ static se3d_status choose_step(const se3di_run *run, double t_end, double *h)
     return SE3D_OK;
 }
 
-/* How far a body may turn in a step. In r-p Newmark's family moves Euler parameters along straight
- * lines and puts them back on the sphere: beyond some 0.6 rad rotation is lost without a trace. */
+/* How far a body may turn in a step. */
 static double largest_turn(const se3di_run *run)
 {
-    const se3di_integrator *method = run->integration.method;
-    if (!method->is_implicit) {
-        return HUGE_VAL; /* of rattle: its own */
-    }
-    const int is_rp = run->equations.assembly.formulation->block == 8;
-    return is_rp && method->turn_max_rp > 0.0 ? method->turn_max_rp : TURN_MAX;
+    return run->integration.method->is_implicit ? TURN_MAX : HUGE_VAL; /* of rattle: its own */
 }
 
 static se3d_status step_dynamics(se3di_run *run, double h)

@@ -11,30 +11,37 @@
 
 static se3di_newmark parameters(const se3di_integration *integration)
 {
-    double alpha = integration->settings.alpha;
-    return (se3di_newmark){.alpha_m = 0.0,
-                           .alpha_f = -alpha,
-                           .gamma = 0.5 - alpha,
-                           .beta = 0.25 * (1.0 - alpha) * (1.0 - alpha)};
+    return (se3di_newmark){.alpha_m = 0.0, .alpha_f = -integration->settings.alpha};
 }
 
 static se3d_status start(se3di_integration *integration, double h)
 {
-    se3di_newmark m = parameters(integration);
+    const se3di_newmark m = parameters(integration);
     return se3di_newmark_start(integration, &m, h);
+}
+
+static se3d_status renew(se3di_integration *integration)
+{
+    const se3di_newmark m = parameters(integration);
+    return se3di_newmark_renew(integration, &m);
 }
 
 static se3d_status step(se3di_integration *integration, double h)
 {
-    se3di_newmark m = parameters(integration);
-    return se3di_newmark_step(integration, &m, h);
+    const se3di_newmark m = parameters(integration);
+    return se3di_newmark_make_step(integration, &m, h);
 }
 
 static se3d_status run(se3di_integration *integration, double t_end)
 {
-    se3di_newmark m = parameters(integration);
-    m.tolerance = integration->settings.tolerance;
+    const se3di_newmark m = parameters(integration);
     return se3di_newmark_run(integration, &m, t_end);
+}
+
+static se3d_status advance(se3di_integration *integration, double t_end)
+{
+    const se3di_newmark m = parameters(integration);
+    return se3di_newmark_advance(integration, &m, t_end);
 }
 
 const se3di_integrator se3di_integrator_hht = {
@@ -43,11 +50,12 @@ const se3di_integrator se3di_integrator_hht = {
     .history_count = se3di_newmark_history_count,
     .work_count = se3di_newmark_work_count,
     .start = start,
-    .renew = se3di_newmark_renew,
+    .renew = renew,
     .step = step,
     .run = run,
-    .controls_if_asked = 1,
+    .advance = advance,
+    .interpolate = se3di_newmark_interpolate,
     .is_implicit = 1,
+    .is_reduced = 1,
     .orders = 1u << 2,
-    .turn_max_rp = SE3DI_NEWMARK_TURN_MAX_RP,
 };

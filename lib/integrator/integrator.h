@@ -20,8 +20,8 @@ typedef struct se3di_integrator_settings {
     double alpha;           /* hht */
     int32_t iterations_max;
     int32_t order;
-    int32_t controls_error; /* the user gave a tolerance and no step */
-    int32_t leaves_stiff;   /* a run ends where the method is held by stability */
+    int32_t leaves_stiff; /* a run ends where the method is held by stability */
+    int32_t reserved;
 } se3di_integrator_settings;
 
 typedef struct se3di_integration se3di_integration;
@@ -59,12 +59,9 @@ typedef struct se3di_integrator {
     int (*is_held)(const se3di_integration *integration);
     const struct se3di_rk_tableau *tableau; /* of Runge-Kutta methods */
     int32_t is_implicit;                    /* not 0: integration->newton is made */
-    int32_t controls_if_asked;              /* not 0: `run` only where settings.controls_error */
     int32_t is_explicit; /* not 0: works with formulations in the fewest unknowns, */
     int32_t is_reduced;  /* and so do these implicit ones */
     uint32_t orders;     /* bit k: settings.order may be k; 0, the default one, always may */
-    int32_t reserved;
-    double turn_max_rp; /* of a body in a step in r-p [rad]; 0: that of implicit methods */
 } se3di_integrator;
 
 struct se3di_integration {

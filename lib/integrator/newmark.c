@@ -1,18 +1,21 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/newmark.h"
-#include "math/quaternion.h"
 
 #include "contact/loads.h"
 #include "contact/pace.h"
-#include "integrator/state.h"
-#include "math/elementary.h"
+#include "integrator/turns.h"
+#include "math/vec3.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
 #include <string.h>
 
-#define PLAIN_ITERATIONS 5  /* with the mass matrix alone */
-#define REVISIONS_MAX    30 /* of elements with a memory, per step */
+#define TURN_MAX    3.0  /* rad, of a body in a step */
+#define TURN_WANTED 0.5  /* where the step is chosen */
+#define SPAN_LEAST  0.5  /* from a_n to a, over the step */
+#define FIRST_STEP  0.3  /* of the root of the tolerance, over the rates */
+#define PART_LEAST  0.01 /* of an equal step that does not converge */
+#define JUMP_ERROR  30.0 /* over the tolerance, where the acceleration jumps */
 
 /* memcpy where count may be zero and the pointers NULL. */
 static void copy(double *to, const double *from, size_t count)
@@ -22,33 +25,32 @@ static void copy(double *to, const double *from, size_t count)
     }
 }
 
-/* History: a_n [n], vdot_n [n], the step they belong to, whether rows are redundant, the next step
- * of step control (0: none yet). */
 size_t se3di_newmark_history_count(const se3di_assembly *assembly)
 {
-    return 2 * (size_t)assembly->unknown_count + 3;
+    return SE3DI_NEWMARK_HEADER + 2 * se3di_state_count(assembly) +
+           3 * (size_t)assembly->unknown_count + 2 * (size_t)assembly->row_count;
 }
 
-/* Work: v_n, vdot, a, x [n]; lambda [rows]. */
+/* v_n, vdot, a, x, z, b, dz [n]; lambda, c [rows]; y. */
 size_t se3di_newmark_work_count(const se3di_assembly *assembly)
 {
-    return 4 * (size_t)assembly->unknown_count + assembly->row_count;
+    return 7 * (size_t)assembly->unknown_count + 2 * (size_t)assembly->row_count +
+           se3di_state_count(assembly);
 }
 
-typedef struct newmark_step {
-    const se3di_newmark *method;
-    se3di_integration *integration;
-    se3di_equations *equations;
-    double h, t;
-    const double *a_n, *vdot_n;  /* history [n] */
-    double *v_n, *vdot, *a;      /* [n] */
-    double *x;                   /* [n] displacement of the step */
-    double *lambda;              /* [rows] */
-    double beta_prime;           /* d vdot / d x: (1 - alpha_m) / (h^2 beta (1 - alpha_f)) */
-    double gamma_prime;          /* d v / d vdot: h gamma (1 - alpha_f) / (1 - alpha_m) */
-    double correction, previous; /* size of the last two Newton corrections of vdot */
-    int exact;                   /* the Newton matrix has stiffness, damping and curvature */
-} newmark_step;
+se3di_newmark_history se3di_newmark_get_history(const se3di_assembly *assembly)
+{
+    const size_t count = se3di_state_count(assembly), n = assembly->unknown_count;
+    se3di_newmark_history past = {.header = assembly->model->history};
+    past.y = past.header + SE3DI_NEWMARK_HEADER;
+    past.y_begin = past.y + count;
+    past.a = past.y_begin + count;
+    past.vdot = past.a + n;
+    past.vdot_begin = past.vdot + n;
+    past.lambda = past.vdot_begin + n;
+    past.lambda_begin = past.lambda + assembly->row_count;
+    return past;
+}
 
 /* The third derivative of the motion at the start, from accelerations at h/2 and h along the
  * parabola; zero where they cannot be evaluated. */
@@ -57,12 +59,9 @@ static void estimate_jerk(se3di_integration *integration, double h, const double
 {
     se3di_equations *equations = integration->equations;
     se3di_assembly *assembly = &equations->assembly;
-    uint32_t n = assembly->unknown_count;
-    size_t block = (size_t)assembly->formulation->block;
-    double *v_n = integration->work;
-    double *v = integration->work + n;
-    double *dq = integration->work + 2 * (size_t)n;
-    double t = assembly->model->time;
+    const uint32_t n = assembly->unknown_count;
+    double *v_n = integration->work, *v = v_n + n;
+    const double t = assembly->model->time;
     const double weight[2] = {4.0, -1.0};
     se3di_error ignored = {0};
     se3di_error *error = equations->error;
@@ -73,15 +72,16 @@ static void estimate_jerk(se3di_integration *integration, double h, const double
         jerk[k] = -3.0 * vdot[k] / h;
     }
     for (int stage = 0; stage < 2; ++stage) {
-        double s = 0.5 * h * (stage + 1);
+        const double s = 0.5 * h * (stage + 1);
         se3di_equations_restore(equations);
-        for (uint32_t k = 0; k < n; ++k) {
-            dq[k] = s * v_n[k] + 0.5 * s * s * vdot[k];
-            v[k] = v_n[k] + s * vdot[k];
-        }
         for (uint32_t k = 0; k < assembly->body_count; ++k) {
-            assembly->formulation->move(&assembly->model->frames[assembly->free_body[k]],
-                                        dq + k * block);
+            double dq[6];
+            for (size_t c = 0; c < 6; ++c) {
+                const size_t at = 6 * (size_t)k + c;
+                dq[c] = s * v_n[at] + 0.5 * s * s * vdot[at];
+                v[at] = v_n[at] + s * vdot[at];
+            }
+            assembly->formulation->move(&assembly->model->frames[assembly->free_body[k]], dq);
         }
         se3di_assembly_set_velocity(assembly, v);
         if (se3di_acceleration_solve(equations, t + s) < 0) {
@@ -96,391 +96,487 @@ static void estimate_jerk(se3di_integration *integration, double h, const double
     equations->error = error;
 }
 
+static double shift_of(const se3di_newmark *method)
+{
+    return method->alpha_m - method->alpha_f;
+}
+
+/* a_n is vdot of the start itself, where that leaves it far enough from a; else it is moved to the
+ * place that it has at equal steps of h. */
+static void place_start(se3di_integration *integration, const se3di_newmark *method, double h)
+{
+    const se3di_assembly *assembly = &integration->equations->assembly;
+    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    const double shift = shift_of(method);
+    past.header[SE3DI_NEWMARK_PLACE] = 0.0;
+    if (1.0 + shift >= SPAN_LEAST) {
+        copy(past.a, past.vdot, assembly->unknown_count);
+        return;
+    }
+    estimate_jerk(integration, h, past.vdot, past.a);
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        past.a[k] = past.vdot[k] + shift * h * past.a[k];
+    }
+    past.header[SE3DI_NEWMARK_PLACE] = shift * h;
+}
+
+/* vdot, lambda and a of the model's state, from which steps go on as from a start. */
+static se3d_status restart(se3di_integration *integration, const se3di_newmark *method, double h)
+{
+    se3di_equations *equations = integration->equations;
+    se3di_assembly *assembly = &equations->assembly;
+    se3di_model *model = assembly->model;
+    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    SE3DI_TRY(se3di_acceleration_solve(equations, model->time));
+    copy(past.vdot, equations->x, assembly->unknown_count);
+    copy(past.lambda, model->lambda, assembly->row_count);
+    place_start(integration, method, h);
+    se3di_assembly_set_acceleration(assembly, past.vdot);
+    copy(model->lambda, past.lambda, assembly->row_count);
+    past.header[SE3DI_NEWMARK_LAST] = 0.0;
+    past.header[SE3DI_NEWMARK_REDUNDANT] = equations->redundant ? 1.0 : 0.0;
+    return SE3D_OK;
+}
+
+/* The largest velocities of the model's state, or what its accelerations make on the way of its
+ * length and a turn of 1 rad: [0] of translation, [1] of rotation. */
+static void find_scales(const se3di_assembly *assembly, const double *vdot, double scale[2])
+{
+    const double length = assembly->model->history[SE3DI_NEWMARK_LENGTH];
+    double a = 0.0, wdot = 0.0;
+    scale[0] = scale[1] = 1e-12;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        scale[0] = fmax(scale[0], se3di_norm(frame->v));
+        scale[1] = fmax(scale[1], se3di_norm(frame->w));
+        a = fmax(a, se3di_norm(vdot + 6 * k));
+        wdot = fmax(wdot, se3di_norm(vdot + 6 * k + 3));
+    }
+    scale[0] = fmax(scale[0], sqrt(a * length));
+    scale[1] = fmax(scale[1], sqrt(wdot));
+}
+
+/* Grow the scales of velocities to those of the accepted state, which is the model's. */
+static void grow_scales(const se3di_assembly *assembly, const se3di_newmark_history *past)
+{
+    double scale[2];
+    find_scales(assembly, past->vdot, scale);
+    for (int k = 0; k < 2; ++k) {
+        double *kept = &past->header[SE3DI_NEWMARK_SPEED + k];
+        *kept = fmax(0.95 * *kept, scale[k]);
+    }
+}
+
+/* The accepted state is the model's own. */
+static se3d_status adopt(se3di_integration *integration, const se3di_newmark *method, double h)
+{
+    se3di_assembly *assembly = &integration->equations->assembly;
+    const se3di_model *model = assembly->model;
+    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    const double next = past.header[SE3DI_NEWMARK_NEXT];
+    SE3DI_TRY(restart(integration, method, h));
+    const double redundant = past.header[SE3DI_NEWMARK_REDUNDANT];
+    const double place = past.header[SE3DI_NEWMARK_PLACE];
+    memset(past.header, 0, SE3DI_NEWMARK_HEADER * sizeof *past.header);
+    past.header[SE3DI_NEWMARK_TIME] = past.header[SE3DI_NEWMARK_BEGIN] = model->time;
+    past.header[SE3DI_NEWMARK_END] = model->time;
+    past.header[SE3DI_NEWMARK_PLACE] = place;
+    past.header[SE3DI_NEWMARK_REDUNDANT] = redundant;
+    past.header[SE3DI_NEWMARK_LENGTH] = se3di_state_length(model);
+    past.header[SE3DI_NEWMARK_NEXT] = next;
+    copy(past.header + SE3DI_NEWMARK_POWER, model->power, SE3DI_STATE_WORK);
+    se3di_state_get(assembly, past.y);
+    copy(past.y_begin, past.y, se3di_state_count(assembly));
+    grow_scales(assembly, &past);
+    return SE3D_OK;
+}
+
+/* A first step that is small against all that turns. */
+static double first_step(const se3di_integration *integration, const double *header)
+{
+    const double rate =
+        header[SE3DI_NEWMARK_SPIN] + header[SE3DI_NEWMARK_SPEED] / header[SE3DI_NEWMARK_LENGTH];
+    return fmin(1e-3, FIRST_STEP * sqrt(integration->settings.tolerance) / (1.0 + rate));
+}
+
 se3d_status se3di_newmark_start(se3di_integration *integration, const se3di_newmark *method,
                                 double h)
 {
-    se3di_equations *equations = integration->equations;
-    se3di_assembly *assembly = &equations->assembly;
-    uint32_t n = assembly->unknown_count;
-    double *a = assembly->model->history;
-    double *vdot = a + n;
-    SE3DI_TRY(se3di_acceleration_solve(equations, assembly->model->time));
-    copy(vdot, equations->x, n);
-    copy(integration->work + 3 * (size_t)n, equations->l, assembly->row_count);
-    estimate_jerk(integration, h, vdot, a);
-    for (uint32_t k = 0; k < n; ++k) {
-        a[k] = vdot[k] + (method->alpha_m - method->alpha_f) * h * a[k];
-    }
-    vdot[n] = h;
-    vdot[n + 1] = equations->redundant ? 1.0 : 0.0;
-    copy(assembly->model->lambda, integration->work + 3 * (size_t)n, assembly->row_count);
-    se3di_assembly_set_acceleration(assembly, vdot);
+    double *header = integration->equations->assembly.model->history;
+    header[SE3DI_NEWMARK_NEXT] = 0.0;
+    SE3DI_TRY(adopt(integration, method, h));
+    header[SE3DI_NEWMARK_NEXT] = first_step(integration, header);
     return SE3D_OK;
 }
 
-/* Accelerations have jumped, and the algorithmic ones, which lag behind them by the same as before,
- * with them. */
-se3d_status se3di_newmark_renew(se3di_integration *integration)
+se3d_status se3di_newmark_renew(se3di_integration *integration, const se3di_newmark *method)
 {
-    se3di_equations *equations = integration->equations;
-    const se3di_assembly *assembly = &equations->assembly;
-    double *a = assembly->model->history;
-    double *vdot = a + assembly->unknown_count;
-    const size_t block = (size_t)assembly->formulation->block;
-    se3di_assembly_get_acceleration(assembly, equations->x);
-    for (size_t k = 0; k < assembly->unknown_count; ++k) {
-        const double jump = k % block == 7 ? 0.0 : equations->x[k] - vdot[k];
-        a[k] += jump;
-        vdot[k] += jump;
-    }
+    double *header = integration->equations->assembly.model->history;
+    SE3DI_TRY(adopt(integration, method,
+                    integration->settings.step > 0.0 ? integration->settings.step
+                                                     : header[SE3DI_NEWMARK_NEXT]));
+    header[SE3DI_NEWMARK_RENEWED] = 1.0;
     return SE3D_OK;
 }
 
-/* q, v, a from the present vdot. */
-static void update_state(newmark_step *step)
+/* The model is in the accepted state of the history, to the bit. */
+static void load(se3di_assembly *assembly, const se3di_newmark_history *past)
 {
-    const se3di_newmark *m = step->method;
-    se3di_equations *equations = step->equations;
-    se3di_assembly *assembly = &equations->assembly;
-    size_t block = (size_t)assembly->formulation->block;
-    double h = step->h;
-    double *x = step->x;
-    se3di_equations_restore(equations);
-    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
-        step->a[k] = ((1.0 - m->alpha_f) * step->vdot[k] + m->alpha_f * step->vdot_n[k] -
-                      m->alpha_m * step->a_n[k]) /
-                     (1.0 - m->alpha_m);
-        x[k] = h * step->v_n[k] + h * h * ((0.5 - m->beta) * step->a_n[k] + m->beta * step->a[k]);
-    }
-    for (uint32_t k = 0; k < assembly->body_count; ++k) {
-        assembly->formulation->move(&assembly->model->frames[assembly->free_body[k]],
-                                    x + k * block);
-    }
-    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
-        equations->x[k] =
-            step->v_n[k] + h * ((1.0 - m->gamma) * step->a_n[k] + m->gamma * step->a[k]);
-    }
-    se3di_assembly_set_velocity(assembly, equations->x);
-}
-
-/* b = Q + velocity terms - M vdot - Phi_q^T lambda, c = -beta' Phi, with M and Phi_q at the present
- * state. */
-static se3d_status eval_residual(newmark_step *step)
-{
-    se3di_equations *equations = step->equations;
-    se3di_assembly *assembly = &equations->assembly;
-    size_t n = (size_t)assembly->formulation->block;
-    se3di_assembly_eval_mass(assembly);
-    se3di_assembly_eval_jacobian(assembly);
-    SE3DI_TRY(se3di_assembly_eval_forces(assembly, step->t, equations->b, equations->error));
-    se3di_assembly_add_transposed(assembly, -1.0, step->lambda, equations->b);
-    se3di_assembly_subtract_mass(assembly, step->vdot, equations->b);
-    for (size_t k = 0; n == 8 && k < assembly->body_count; ++k) {
-        equations->b[8 * k + 7] =
-            step->beta_prime *
-            assembly->formulation->normalisation(&assembly->model->frames[assembly->free_body[k]]);
-    }
-    se3di_assembly_eval_phi(assembly, equations->c);
-    for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        equations->c[k] *= -step->beta_prime;
-    }
-    return SE3D_OK;
-}
-
-static se3d_status factor(newmark_step *step)
-{
-    se3di_equations *equations = step->equations;
-    if (step->exact) {
-        const se3di_newton_weights weights = {.velocity = step->gamma_prime,
-                                              .position = 1.0 / step->beta_prime};
-        return se3di_newton_factor(&step->integration->newton, step->t, step->vdot, step->lambda,
-                                   step->x, &weights);
-    }
-    se3di_kkt_values values = {.body = equations->assembly.H, .joint = equations->assembly.C};
-    ++equations->counters.factorizations;
-    se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
-    return status < 0
-               ? se3di_error_set(equations->error, status,
-                                 "t = %g s: the Newton matrix is singular or not finite", step->t)
-               : SE3D_OK;
-}
-
-static se3d_status fail_not_finite(const newmark_step *step)
-{
-    return se3di_error_set(step->equations->error, SE3D_ERR_NOT_FINITE,
-                           "t = %g s: the state is not finite, the step is too large", step->t);
-}
-
-/* One Newton correction of vdot and lambda. */
-static se3d_status iterate(newmark_step *step, int refactor)
-{
-    se3di_equations *equations = step->equations;
-    const se3di_assembly *assembly = &equations->assembly;
-    size_t block = (size_t)assembly->formulation->block;
-    SE3DI_TRY(eval_residual(step));
-    if (refactor) {
-        SE3DI_TRY(factor(step));
-    }
-    SE3DI_TRY(step->exact ? se3di_newton_solve(&step->integration->newton)
-                          : se3di_equations_solve(equations));
-    ++equations->counters.iterations;
-    step->previous = step->correction;
-    step->correction = 0.0;
-    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
-        step->vdot[k] += equations->x[k];
-        if (k % block != 7) {
-            step->correction = fmax(step->correction, fabs(equations->x[k]));
-        }
-    }
-    for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        step->lambda[k] += equations->l[k];
-    }
-    update_state(step);
-    return isfinite(step->correction) ? SE3D_OK : fail_not_finite(step);
-}
-
-/* Corrections are looked at by fmax, which passes over what is not a number; and the state may
- * overflow where they do not. */
-static se3d_status check_state(const newmark_step *step)
-{
-    const se3di_model *model = step->equations->assembly.model;
-    int finite = 1;
-    for (size_t k = 0; k < model->body_slots.count; ++k) {
-        const se3di_frame *frame = &model->frames[k];
-        for (int i = 0; i < 3; ++i) {
-            finite = finite && isfinite(frame->r[i]) && isfinite(frame->v[i]) &&
-                     isfinite(frame->p[i]) && isfinite(frame->w[i]);
-        }
-    }
-    return finite ? SE3D_OK : fail_not_finite(step);
-}
-
-/* Corrections of vdot below their own rounding (that of positions, times beta') or below 1e-10 of
- * it. */
-static int has_converged(const newmark_step *step)
-{
-    double scale = 0.0;
-    size_t block = (size_t)step->equations->assembly.formulation->block;
-    for (uint32_t k = 0; k < step->equations->assembly.unknown_count; ++k) {
-        scale = k % block == 7 ? scale : fmax(scale, fabs(step->vdot[k]));
-    }
-    double shift = step->correction / step->beta_prime;
-    return step->correction <= 1e-11 * (1.0 + scale) || shift <= 1e-15 ||
-           (shift <= 1e-11 && step->correction > 0.3 * step->previous);
-}
-
-/* Newton with the mass matrix alone where there are no force elements; with the exact matrix where
- * there are, or where the other one does not do. */
-static se3d_status iterate_to_convergence(newmark_step *step)
-{
-    int32_t limit = step->integration->settings.iterations_max;
-    int refactor = 1;
-    if (step->equations->redundant) { /* else rounding adds up in the dependent directions */
-        memset(step->lambda, 0, step->equations->assembly.row_count * sizeof *step->lambda);
-    }
-    for (int32_t k = 0; k < limit; ++k) {
-        SE3DI_TRY(se3di_equations_ask(step->equations));
-        SE3DI_TRY(iterate(step, refactor));
-        const int is_traced = se3di_newton_note(&step->integration->newton, step->correction);
-        if (has_converged(step)) {
-            return check_state(step);
-        }
-        refactor = is_traced || step->equations->redundant ||
-                   (k > 0 && step->correction > (step->exact ? 0.05 : 0.25) * step->previous);
-        if (k == PLAIN_ITERATIONS && !step->exact) {
-            step->exact = refactor = 1;
-        }
-    }
-    return se3di_error_set(step->equations->error, SE3D_ERR_NO_CONVERGENCE,
-                           "t = %g s: Newton did not converge in %d iterations of a step of %g s; "
-                           "try a smaller step",
-                           step->t, (int)limit, step->h);
-}
-
-/* Elements with a memory may have assumed wrong what comes out: again until none has. */
-static se3d_status iterate_with_memory(newmark_step *step)
-{
-    se3di_model *model = step->equations->assembly.model;
-    for (int round = 0; round < REVISIONS_MAX; ++round) {
-        SE3DI_TRY(iterate_to_convergence(step));
-        copy(model->lambda, step->lambda, step->equations->assembly.row_count);
-        if (se3di_forces_revise(model) == 0) {
-            return SE3D_OK;
-        }
-    }
-    return SE3D_OK; /* the last one stands */
-}
-
-/* The rounding of beta' Phi contradicts itself in dependent rows: a smaller regularisation, which
- * tells nearly dependent rows from dependent ones, would only amplify it. */
-static se3d_status solve_step(newmark_step *step)
-{
-    se3di_kkt *kkt = step->exact ? step->integration->newton.kkt : step->equations->kkt;
-    se3di_kkt_settings settings = se3di_kkt_get_settings(kkt);
-    double eps_min = settings.eps_min;
-    if (step->equations->redundant) {
-        settings.eps_min = settings.eps;
-        se3di_kkt_set_settings(kkt, &settings);
-    }
-    se3d_status status = iterate_with_memory(step);
-    settings.eps_min = eps_min;
-    se3di_kkt_set_settings(kkt, &settings);
-    return status;
-}
-
-static void accept(newmark_step *step)
-{
-    se3di_assembly *assembly = &step->equations->assembly;
     se3di_model *model = assembly->model;
-    uint32_t n = assembly->unknown_count;
-    copy(model->history, step->a, n);
-    copy(model->history + n, step->vdot, n);
-    model->history[2 * (size_t)n] = step->h;
+    const double *y = past->y;
+    for (uint32_t k = 0; k < assembly->body_count; ++k, y += SE3DI_STATE_SIZE) {
+        se3di_frame *frame = &model->frames[assembly->free_body[k]];
+        copy(frame->r, y, 3);
+        copy(frame->p, y + 3, 4);
+        copy(frame->v, y + 7, 3);
+        copy(frame->w, y + 10, 3);
+        se3di_frame_update(frame);
+    }
+    copy(model->work, y, SE3DI_STATE_WORK);
+    copy(model->power, past->header + SE3DI_NEWMARK_POWER, SE3DI_STATE_WORK);
+    copy(model->lambda, past->lambda, assembly->row_count);
+    se3di_assembly_set_acceleration(assembly, past->vdot);
+    model->time = past->header[SE3DI_NEWMARK_END];
+    se3di_angles_accept(model);
+}
+
+/* alpha_m, beta, gamma of the step: such that a is at t + shift h, where a_n is at t_n + d_n. */
+static void set_coefficients(se3di_newmark_step *step, const se3di_newmark *method, double place)
+{
+    const double h = step->h;
+    const double span = h + shift_of(method) * h - place;
+    step->alpha_f = method->alpha_f;
+    step->alpha_m = (shift_of(method) + method->alpha_f) * h / span;
+    step->gamma = (0.5 * h - place) / span;
+    step->beta = 0.25 * (step->gamma + 0.5) * (step->gamma + 0.5);
+    const double part = (1.0 - step->alpha_f) / (1.0 - step->alpha_m);
+    step->velocity = h * step->gamma * part;
+    step->position = h * h * step->beta * part;
+}
+
+/* A step much longer than the last one, of a method with strong damping: a_n is moved. */
+static void move_history(const se3di_assembly *assembly, const se3di_newmark_history *past,
+                         double shift, double h)
+{
+    double *place = &past->header[SE3DI_NEWMARK_PLACE];
+    if (!(*place < 0.0) || h + shift * h - *place >= SPAN_LEAST * h) {
+        return;
+    }
+    const double ratio = (SPAN_LEAST + shift) * h / *place;
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        past->a[k] = past->vdot[k] + ratio * (past->a[k] - past->vdot[k]);
+    }
+    *place *= ratio;
+}
+
+/* vdot goes on as in the last step. */
+static void predict(se3di_newmark_step *step)
+{
+    const se3di_newmark_history past = se3di_newmark_get_history(step->assembly);
+    const double last = past.header[SE3DI_NEWMARK_LAST];
+    const double ratio = last > 0.0 ? step->h / last : 0.0;
+    for (uint32_t k = 0; k < step->assembly->unknown_count; ++k) {
+        step->vdot[k] = past.vdot[k] + ratio * (past.vdot[k] - past.vdot_begin[k]);
+    }
+    copy(step->lambda, past.lambda, step->assembly->row_count);
+}
+
+static se3di_newmark_step begin_step(se3di_integration *integration, const se3di_newmark *method,
+                                     double h)
+{
+    se3di_assembly *assembly = &integration->equations->assembly;
+    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    const size_t n = assembly->unknown_count;
+    se3di_newmark_step step = {.integration = integration,
+                               .equations = integration->equations,
+                               .assembly = assembly,
+                               .h = h,
+                               .t = past.header[SE3DI_NEWMARK_END] + h,
+                               .length = past.header[SE3DI_NEWMARK_LENGTH],
+                               .a_n = past.a,
+                               .vdot_n = past.vdot,
+                               .v_n = integration->work};
+    step.vdot = step.v_n + n;
+    step.a = step.vdot + n;
+    step.x = step.a + n;
+    step.z = step.x + n;
+    step.b = step.z + n;
+    step.dz = step.b + n;
+    step.lambda = step.dz + n;
+    step.c = step.lambda + assembly->row_count;
+    move_history(assembly, &past, shift_of(method), h);
+    set_coefficients(&step, method, past.header[SE3DI_NEWMARK_PLACE]);
+    integration->equations->redundant |= past.header[SE3DI_NEWMARK_REDUNDANT] > 0.0;
+    se3di_assembly_get_velocity(assembly, step.v_n);
+    predict(&step);
+    return step;
+}
+
+/* The local error of velocities in a unit of time in which they change by themselves, relative to
+ * the tolerance: from the third derivative of the motion, by differences of velocities. */
+static double estimate_error(const se3di_newmark_step *step)
+{
+    const se3di_newmark_history past = se3di_newmark_get_history(step->assembly);
+    const double *header = past.header;
+    const double last = header[SE3DI_NEWMARK_LAST], h = step->h;
+    const double place = header[SE3DI_NEWMARK_PLACE] / h;
+    const double span = (0.5 - place) / step->gamma;
+    const double constant = fabs(0.5 * place + step->beta * span - 1.0 / 6.0) + 1.0 / 12.0;
+    double worst = 0.0, scale[2];
+    find_scales(step->assembly, step->vdot, scale);
+    for (size_t k = 0; k < step->assembly->unknown_count; ++k) {
+        const se3di_frame *frame = &step->assembly->model->frames[step->assembly->free_body[k / 6]];
+        const double v = k % 6 < 3 ? frame->v[k % 6] : frame->w[k % 6 - 3];
+        const double before = past.y_begin[SE3DI_STATE_SIZE * (k / 6) + 7 + k % 6];
+        const double mean = last > 0.0 ? (step->v_n[k] - before) / last : step->vdot_n[k];
+        const double jerk = 2.0 * fabs((v - step->v_n[k]) / h - mean) / (h + last);
+        const size_t kind = k % 6 / 3;
+        const double size = jerk / fmax(scale[kind], header[SE3DI_NEWMARK_SPEED + kind]);
+        worst = size <= worst ? worst : size; /* NaN stays */
+    }
+    return constant * h * h * worst / step->integration->settings.tolerance;
+}
+
+/* All that may fail is done. */
+static void accept(se3di_newmark_step *step, const se3di_newmark *method)
+{
+    se3di_assembly *assembly = step->assembly;
+    se3di_model *model = assembly->model;
+    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    const uint32_t n = assembly->unknown_count;
+    copy(past.y_begin, past.y, se3di_state_count(assembly));
+    copy(past.vdot_begin, past.vdot, n);
+    copy(past.lambda_begin, past.lambda, assembly->row_count);
+    copy(past.a, step->a, n);
+    copy(past.vdot, step->vdot, n);
+    copy(past.lambda, step->lambda, assembly->row_count);
     copy(model->lambda, step->lambda, assembly->row_count);
     se3di_assembly_set_acceleration(assembly, step->vdot);
-    model->time = step->t;
-    for (uint32_t k = 0; k < assembly->body_count; ++k) { /* r-p: else pdot along p builds up */
-        se3di_frame *frame = &model->frames[assembly->free_body[k]];
-        se3di_quat_rate(frame->p, frame->w, frame->pdot);
-    }
+    past.header[SE3DI_NEWMARK_BEGIN] = past.header[SE3DI_NEWMARK_END];
+    past.header[SE3DI_NEWMARK_TIME] = past.header[SE3DI_NEWMARK_END] = model->time = step->t;
+    copy(past.header + SE3DI_NEWMARK_POWER + SE3DI_STATE_WORK, past.header + SE3DI_NEWMARK_POWER,
+         SE3DI_STATE_WORK);
+    past.header[SE3DI_NEWMARK_PLACE] = shift_of(method) * step->h;
+    past.header[SE3DI_NEWMARK_LAST] = step->h;
+    past.header[SE3DI_NEWMARK_RENEWED] = 0.0;
+    past.header[SE3DI_NEWMARK_REDUNDANT] = step->equations->redundant ? 1.0 : 0.0;
     se3di_angles_accept(model);
     se3di_loads_accept(model);
     ++step->equations->counters.steps;
 }
 
-/* a_n belongs to t_n + (alpha_m - alpha_f) h_old: move it to the new step's place. */
-static void rescale_history(double *history, uint32_t n, double h)
+/* What follows from the accepted state. */
+static se3d_status conclude(se3di_newmark_step *step, const se3di_newmark *method)
 {
-    double ratio = h / history[2 * (size_t)n];
-    if (fabs(ratio - 1.0) > 1e-9) {
-        for (uint32_t k = 0; k < n; ++k) {
-            history[k] = history[n + k] + ratio * (history[k] - history[n + k]);
-        }
+    se3di_assembly *assembly = step->assembly;
+    se3di_model *model = assembly->model;
+    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    se3d_status status = SE3D_OK;
+    if (se3di_contacts_changed(model)) { /* accelerations have jumped */
+        status = restart(step->integration, method, step->h);
     }
-    history[2 * (size_t)n] = h;
+    status = status < 0 ? status : se3di_work_accept(model, step->h);
+    copy(past.header + SE3DI_NEWMARK_POWER, model->power, SE3DI_STATE_WORK);
+    se3di_state_get(assembly, past.y);
+    grow_scales(assembly, &past);
+    return status;
 }
 
-/* The local error of positions, relative to the tolerance. */
-static double estimate_error(const newmark_step *step)
-{
-    const se3di_assembly *assembly = &step->equations->assembly;
-    size_t block = (size_t)assembly->formulation->block;
-    double length = se3di_state_length(assembly->model);
-    double factor = step->h * step->h * (fabs(step->method->beta - 1.0 / 6.0) + 1.0 / 24.0);
-    double worst = 0.0;
-    for (size_t k = 0; k < assembly->unknown_count; ++k) {
-        size_t part = k % block;
-        double size = fabs(step->vdot[k] - step->vdot_n[k]);
-        size *= part < 3 ? 1.0 / length : block == 8 ? 2.0 : 1.0;
-        worst = part == 7 || size <= worst ? worst : size;
-    }
-    return factor * worst / step->method->tolerance;
-}
-
-se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newmark *method,
-                               double h)
+/* One step of h to t from the accepted state; on failure that is the model's. With an error, as
+ * estimated, above `most` (0: any) it fails with STEP_SIZE. */
+static se3d_status step_to(se3di_integration *integration, const se3di_newmark *method, double h,
+                           double t, double most)
 {
     se3di_equations *equations = integration->equations;
     se3di_assembly *assembly = &equations->assembly;
-    uint32_t n = assembly->unknown_count;
-    double *work = integration->work;
-    rescale_history(assembly->model->history, n, h);
-    equations->redundant = assembly->model->history[2 * (size_t)n + 1] > 0.0;
-    newmark_step step = {
-        .method = method,
-        .integration = integration,
-        .equations = equations,
-        .h = h,
-        .t = assembly->model->time + h,
-        .a_n = assembly->model->history,
-        .vdot_n = assembly->model->history + n,
-        .v_n = work,
-        .vdot = work + n,
-        .a = work + 2 * (size_t)n,
-        .x = work + 3 * (size_t)n,
-        .lambda = work + 4 * (size_t)n,
-        .gamma_prime = h * method->gamma * (1.0 - method->alpha_f) / (1.0 - method->alpha_m),
-        .exact = se3di_loads_are_stiff(assembly->model),
-        .beta_prime = (1.0 - method->alpha_m) / (h * h * method->beta * (1.0 - method->alpha_f)),
-    };
-    se3di_assembly_get_velocity(assembly, step.v_n);
-    memcpy(step.vdot, step.vdot_n, n * sizeof *step.vdot);
-    copy(step.lambda, assembly->model->lambda, assembly->row_count);
-    se3di_contacts_begin(assembly->model, h, step.gamma_prime / h, 0);
+    se3di_model *model = assembly->model;
+    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    se3di_newmark_step step = begin_step(integration, method, h);
+    step.t = t;
+    se3di_contacts_begin(model, h, step.velocity / h, 0);
     se3di_equations_save(equations);
-    se3di_model_save_memory(assembly->model, integration->newton.memory);
-    se3d_status status = se3di_assembly_eval_functions(assembly, step.t, equations->error);
-    if (status >= 0) {
-        update_state(&step);
-        status = solve_step(&step);
-    }
+    se3di_model_save_memory(model, integration->newton.memory);
+    se3d_status status = se3di_newmark_solve(&step);
     integration->error = HUGE_VAL;
-    if (status >= 0 && method->tolerance > 0.0) {
-        integration->error = estimate_error(&step);
-        status = integration->error <= 1.0 ? SE3D_OK : SE3D_ERR_STEP_SIZE;
-    }
     if (status >= 0) {
-        status = se3di_loads_prepare(assembly->model, step.t, equations->error);
-        integration->error = status < 0 ? HUGE_VAL : integration->error;
+        integration->error = most > 0.0 ? estimate_error(&step) : 0.0;
+        const int is_refused = !(integration->error <= most);
+        status = is_refused ? SE3D_ERR_STEP_SIZE : se3di_loads_prepare(model, t, equations->error);
+        integration->error = status < 0 && !is_refused ? HUGE_VAL : integration->error;
     }
     if (status < 0) {
-        se3di_equations_restore(equations);
-        se3di_model_restore_memory(assembly->model, integration->newton.memory);
+        se3di_model_restore_memory(model, integration->newton.memory);
+        load(assembly, &past);
         return status;
     }
-    accept(&step);
-    if (se3di_contacts_changed(assembly->model)) { /* accelerations have jumped */
-        SE3DI_TRY(se3di_newmark_start(integration, method, h));
-    }
-    return se3di_work_accept(assembly->model, h);
+    accept(&step, method);
+    return conclude(&step, method);
 }
 
-/* From the error of a step; a rejected one is at least halved. */
+se3d_status se3di_newmark_make_step(se3di_integration *integration, const se3di_newmark *method,
+                                    double h)
+{
+    se3di_assembly *assembly = &integration->equations->assembly;
+    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    double *header = past.header;
+    const double t0 = assembly->model->time;
+    if (fabs(header[SE3DI_NEWMARK_TIME] - t0) <=
+        SE3DI_NEWMARK_SAME_TIME * header[SE3DI_NEWMARK_LAST]) {
+        header[SE3DI_NEWMARK_TIME] = header[SE3DI_NEWMARK_END] = t0;
+        load(assembly, &past);
+    } else {
+        SE3DI_TRY(adopt(integration, method, h));
+    }
+    SE3DI_TRY(step_to(integration, method, h, t0 + h, 0.0));
+    return se3di_newmark_publish(integration, t0 + h);
+}
+
+/* Steps of the length asked for, at equal distances from where they began. One that does not
+ * converge (a singular position) is made in parts, a half or less of what remains of it. */
+static se3d_status advance_equally(se3di_integration *integration, const se3di_newmark *method,
+                                   double longest)
+{
+    se3di_equations *equations = integration->equations;
+    const se3di_model *model = equations->assembly.model;
+    double *header = model->history;
+    double *count = &header[SE3DI_NEWMARK_COUNT], h = integration->settings.step;
+    if (fabs(header[SE3DI_NEWMARK_EQUAL] - h) > SE3DI_NEWMARK_SAME_TIME * h) {
+        header[SE3DI_NEWMARK_ORIGIN] = header[SE3DI_NEWMARK_END];
+        header[SE3DI_NEWMARK_EQUAL] = h;
+        *count = 0.0;
+    }
+    SE3DI_TRY(se3di_equations_try_step(equations, model->time));
+    SE3DI_TRY(se3di_contacts_check_step(model, SE3DI_PACE_IMPLICIT, h, equations->error));
+    SE3DI_TRY(se3di_turns_check(equations, h, TURN_MAX));
+    for (double part = fmin(floor(*count) + 1.0 - *count, longest / h);; part *= 0.5) {
+        const double to = *count + part;
+        const se3d_status status =
+            step_to(integration, method, part * h, header[SE3DI_NEWMARK_ORIGIN] + to * h, 0.0);
+        if (status >= 0) {
+            *count = to;
+        }
+        if (status != SE3D_ERR_NO_CONVERGENCE || part <= PART_LEAST) {
+            return status;
+        }
+    }
+}
+
+/* From the error of a step; a rejected one is at least shortened by a fifth. */
 static double next_step(double h, double error)
 {
-    double factor = isfinite(error) ? 0.85 / se3di_cbrt(fmax(error, 1e-6)) : 0.25;
-    return h * (error <= 1.0 ? fmin(2.0, factor) : fmin(0.5, fmax(0.1, factor)));
+    const double factor = isfinite(error) ? 0.9 / sqrt(fmax(error, 1e-6)) : 0.25;
+    if (error <= 1.0) { /* equal steps where they do */
+        return factor > 1.2 ? h * fmin(2.0, factor) : fmin(1.0, factor) * h;
+    }
+    return h * fmin(0.8, fmax(0.1, factor));
+}
+
+/* No contact is stepped over, and nothing turns too far. */
+static double limit_step(const se3di_integration *integration, double h)
+{
+    const se3di_model *model = integration->equations->assembly.model;
+    double spin = 0.0;
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        spin = fmax(spin, se3di_norm(model->frames[k].w));
+    }
+    h = h * spin > TURN_WANTED ? TURN_WANTED / spin : h;
+    h = se3di_state_limit_turn(model, 0.0, h);
+    return se3di_contacts_pace(model, SE3DI_PACE_ADAPTIVE, h);
+}
+
+static se3d_status fail_small(const se3di_integration *integration, double t, se3d_status cause)
+{
+    return cause == SE3D_ERR_STEP_SIZE && isfinite(integration->error)
+               ? se3di_error_set(
+                     integration->equations->error, cause,
+                     "t = %g s: the step fell to %.3g s: the tolerance %g cannot be "
+                     "met here; the motion is not smooth",
+                     t, integration->equations->assembly.model->history[SE3DI_NEWMARK_NEXT],
+                     integration->settings.tolerance)
+               : cause;
+}
+
+/* What the error of the next attempt may be, relative to the tolerance: where the one of the last
+ * two has fallen with h, not with its square, the acceleration jumps, and no step gets over that
+ * with a small error. */
+static double get_most(const double h[2], const double error[2])
+{
+    const double ratio = h[0] / h[1];
+    const int jumps = isfinite(error[0]) && isfinite(error[1]) && error[1] > 0.0 &&
+                      error[0] / error[1] < ratio * sqrt(ratio);
+    return jumps ? JUMP_ERROR : 1.0;
+}
+
+static se3d_status advance_by_error(se3di_integration *integration, const se3di_newmark *method,
+                                    double longest)
+{
+    se3di_equations *equations = integration->equations;
+    double *header = equations->assembly.model->history;
+    double *next = &header[SE3DI_NEWMARK_NEXT];
+    const double t = header[SE3DI_NEWMARK_END];
+    double tried[2] = {0.0, 0.0}, errors[2] = {HUGE_VAL, HUGE_VAL};
+    for (;;) {
+        const double h = limit_step(integration, fmin(*next, longest));
+        const double most = get_most(tried, errors);
+        SE3DI_TRY(se3di_equations_try_step(equations, t));
+        const se3d_status status = step_to(integration, method, h, t + h, most);
+        if (status >= 0) {
+            const double wanted = next_step(h, integration->error);
+            *next = h < *next ? fmin(*next, fmax(2.0 * h, wanted)) : wanted;
+            if (most > 1.0) { /* differences over the jump say nothing of what follows */
+                *next = h;
+                header[SE3DI_NEWMARK_LAST] = 0.0;
+            }
+            return status;
+        }
+        if (status == SE3D_ERR_INTERRUPTED) {
+            return status;
+        }
+        ++equations->counters.rejected;
+        tried[0] = tried[1];
+        errors[0] = errors[1];
+        tried[1] = h;
+        errors[1] = integration->error;
+        *next = next_step(h, integration->error);
+        if (!(*next > 1e-12 * fmax(1e-3, fabs(t)))) {
+            return fail_small(integration, t, status);
+        }
+    }
+}
+
+se3d_status se3di_newmark_advance(se3di_integration *integration, const se3di_newmark *method,
+                                  double t_end)
+{
+    se3di_assembly *assembly = &integration->equations->assembly;
+    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    double *header = past.header;
+    const double last = header[SE3DI_NEWMARK_END] - header[SE3DI_NEWMARK_BEGIN];
+    if (t_end - header[SE3DI_NEWMARK_END] <= SE3DI_NEWMARK_SAME_TIME * last) {
+        header[SE3DI_NEWMARK_TIME] = t_end;
+        return SE3D_OK;
+    }
+    load(assembly, &past);
+    /* what acts has changed, and may soon do so again: not past the end of the run */
+    const double longest =
+        header[SE3DI_NEWMARK_RENEWED] > 0.0 ? t_end - header[SE3DI_NEWMARK_END] : HUGE_VAL;
+    return integration->settings.step > 0.0 ? advance_equally(integration, method, longest)
+                                            : advance_by_error(integration, method, longest);
 }
 
 se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmark *method,
                               double t_end)
 {
     se3di_equations *equations = integration->equations;
-    se3di_model *model = equations->assembly.model;
-    double *next = model->history + 2 * (size_t)equations->assembly.unknown_count + 2;
-    *next = *next > 0.0 ? *next : 1e-4;
-    while (model->time < t_end) {
-        double t = model->time;
-        double remaining = t_end - t;
-        double h = *next < remaining ? fmin(*next, 0.5 * remaining) : remaining;
-        h = se3di_contacts_pace(model, SE3DI_PACE_ADAPTIVE, h);
-        double smallest = 1e-12 * fmax(1e-3, fabs(t));
-        SE3DI_TRY(se3di_equations_try_step(equations, t));
-        SE3DI_TRY(se3di_watch_begin(equations));
-        se3d_status status = se3di_newmark_step(integration, method, h);
-        if (status >= 0) {
-            double wanted = next_step(h, integration->error);
-            *next = h < *next ? fmax(*next, wanted) : wanted; /* shortened only for t_end */
-            model->time = h < remaining ? model->time : t_end;
-            status = se3di_watch_end(equations);
-            if (status != SE3D_OK) {
-                return status;
-            }
-            continue;
-        }
-        if (status == SE3D_ERR_INTERRUPTED) {
-            return status;
-        }
-        ++equations->counters.rejected;
-        *next = next_step(h, integration->error);
-        if (!(*next > smallest)) {
-            return status == SE3D_ERR_STEP_SIZE && isfinite(integration->error)
-                       ? se3di_error_set(equations->error, status,
-                                         "t = %g s: the step fell to %.3g s: the tolerance %g "
-                                         "cannot be met here; the motion is not smooth",
-                                         t, *next, integration->settings.tolerance)
-                       : status;
-        }
+    const double *header = equations->assembly.model->history;
+    se3d_status status = SE3D_OK;
+    while (header[SE3DI_NEWMARK_TIME] < t_end && status >= 0) {
+        status = se3di_newmark_advance(integration, method, t_end);
     }
-    return SE3D_OK;
+    if (status >= 0) {
+        return se3di_newmark_publish(integration, t_end);
+    }
+    const se3di_error cause = *equations->error;
+    (void)se3di_newmark_publish(integration, header[SE3DI_NEWMARK_END]);
+    *equations->error = cause;
+    return status;
 }

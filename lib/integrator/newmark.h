@@ -1,40 +1,97 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* One step of the Newmark family on index 3, shared by generalized_alpha and hht; in r-omega
- * orientations move on the group (Bruels, Cardona, Arnold 2012), in r-p Euler parameters are
- * coordinates (Negrut et al. 2007):
+/* The Newmark family (generalized_alpha, hht) on index 2, stabilised (Arnold, Bruels, Cardona
+ * 2015), at steps of any lengths; orientations move on the group in both formulations:
  *
- *     x       = h v_n + h^2 (1/2 - beta) a_n + h^2 beta a          q = q_n moved by x
- *     v       = v_n + h (1 - gamma) a_n + h gamma a
+ *     x   = h v_n + h^2 (1/2 - beta) a_n + h^2 beta a      q = q_n moved by x, then by z
+ *     v   = v_n + h (1 - gamma) a_n + h gamma a
  *     (1 - alpha_m) a + alpha_m a_n = (1 - alpha_f) vdot + alpha_f vdot_n
- *     M vdot + Phi_q^T lambda = Q + velocity terms,  Phi(q, t) = 0       at t = t_n + h
+ *     M vdot + Phi_q^T lambda = Q + velocity terms,   Phi_q v = nu(t),   Phi(q, t) = 0
  *
- * a is the algorithmic acceleration, an approximation of vdot at t + (alpha_m - alpha_f) h; it
- * starts there (Arnold, Bruels, Cardona 2015), which gives order 2 from the first step on.
+ * at t = t_n + h; lambda holds the velocities on their constraints, z the positions. a is an
+ * approximation of vdot at t + delta h, delta = alpha_m - alpha_f of equal steps; a_n keeps the
+ * place d_n that it was made for, and alpha_m, beta, gamma of a step follow from it.
  * docs/theory/newmark.md */
 #ifndef SE3DI_NEWMARK_H
 #define SE3DI_NEWMARK_H
 
-#include "integrator/integrator.h"
-
-#define SE3DI_NEWMARK_TURN_MAX_RP 0.6 /* rad, of a body in a step: Euler parameters add up */
+#include "integrator/state.h"
 
 typedef struct se3di_newmark {
-    double alpha_m, alpha_f, beta, gamma;
-    double tolerance; /* of the local error of positions; 0: any */
+    double alpha_m, alpha_f; /* of equal steps */
 } se3di_newmark;
+
+/* The history: this header, then the arrays of se3di_newmark_history. */
+enum {
+    SE3DI_NEWMARK_TIME = SE3DI_HISTORY_TIME, /* of the accepted state, as runs were asked for it */
+    SE3DI_NEWMARK_BEGIN = SE3DI_HISTORY_BEGIN, /* of the last step */
+    SE3DI_NEWMARK_END,                         /* of the last step, as it was computed */
+    SE3DI_NEWMARK_ORIGIN,                      /* where equal steps began */
+    SE3DI_NEWMARK_COUNT,                       /* of equal steps since then, */
+    SE3DI_NEWMARK_EQUAL,                       /* so long [s] */
+    SE3DI_NEWMARK_PLACE,                       /* of a, relative to the accepted state [s] */
+    SE3DI_NEWMARK_LAST,                        /* the last step [s], 0: none */
+    SE3DI_NEWMARK_NEXT,                        /* of step control [s], 0: none yet */
+    SE3DI_NEWMARK_REDUNDANT,                   /* rows are dependent */
+    SE3DI_NEWMARK_RENEWED,                     /* something else acts since the last step */
+    SE3DI_NEWMARK_LENGTH,                      /* scales */
+    SE3DI_NEWMARK_SPEED,
+    SE3DI_NEWMARK_SPIN,  /* follows SPEED */
+    SE3DI_NEWMARK_POWER, /* of the accepted state, three; then at the begin of the last step */
+    SE3DI_NEWMARK_HEADER = SE3DI_NEWMARK_POWER + 2 * SE3DI_STATE_WORK
+};
+
+typedef struct se3di_newmark_history {
+    double *header;
+    double *y, *y_begin;           /* the accepted state, that at the begin of the last step */
+    double *a;                     /* [unknowns] */
+    double *vdot, *vdot_begin;     /* [unknowns] */
+    double *lambda, *lambda_begin; /* [rows] */
+} se3di_newmark_history;
+
+/* A step that is being solved. */
+typedef struct se3di_newmark_step {
+    se3di_integration *integration;
+    se3di_equations *equations;
+    se3di_assembly *assembly;
+    double h, t;
+    double alpha_m, alpha_f, beta, gamma; /* of this step */
+    double velocity, position;            /* d v / d vdot, d x / d vdot */
+    double length;                        /* of the mechanism [m] */
+    const double *a_n, *vdot_n;           /* [unknowns] */
+    double *v_n, *vdot, *a, *x, *z;       /* [unknowns] */
+    double *b, *dz;                       /* [unknowns] */
+    double *lambda, *c;                   /* [rows] */
+    double correction, previous;          /* size of the last two Newton corrections of vdot */
+    double gap;                           /* of positions before the last one, relative */
+    int opens;                            /* there is a gap to close */
+    int is_finite;                        /* the last correction */
+    int exact;                            /* the Newton matrix has stiffness, damping, curvature */
+} se3di_newmark_step;
 
 size_t se3di_newmark_history_count(const se3di_assembly *assembly);
 size_t se3di_newmark_work_count(const se3di_assembly *assembly);
+se3di_newmark_history se3di_newmark_get_history(const se3di_assembly *assembly);
+
+/* From a first guess of vdot and lambda. On success the frames are those of the end of the step. */
+se3d_status se3di_newmark_solve(se3di_newmark_step *step);
+
+/* The functions of a method's table. */
 se3d_status se3di_newmark_start(se3di_integration *integration, const se3di_newmark *method,
                                 double h);
-/* One step. A step whose local error of positions,
- *     h^2 (|beta - 1/6| + 1/24) (vdot - vdot_n),
- * exceeds method->tolerance is undone: STEP_SIZE, and integration->error > 1. */
-se3d_status se3di_newmark_renew(se3di_integration *integration);
-se3d_status se3di_newmark_step(se3di_integration *integration, const se3di_newmark *method,
-                               double h);
-/* Steps of controlled error that end at t_end. */
+se3d_status se3di_newmark_renew(se3di_integration *integration, const se3di_newmark *method);
+/* From the model's state, by h. */
+se3d_status se3di_newmark_make_step(se3di_integration *integration, const se3di_newmark *method,
+                                    double h);
+#define SE3DI_NEWMARK_SAME_TIME 1e-9 /* of a step: two times are one */
+/* The next step of the run, of the length asked for or with control of its error; none where the
+ * last one has ended at t_end but for rounding. */
+se3d_status se3di_newmark_advance(se3di_integration *integration, const se3di_newmark *method,
+                                  double t_end);
+/* Steps past t_end, where the model gets the state. */
 se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmark *method,
                               double t_end);
+void se3di_newmark_interpolate(const se3di_integration *integration, double t, double *y);
+/* Give the model the state at t, within the last step or at its end. */
+se3d_status se3di_newmark_publish(se3di_integration *integration, double t);
 
 #endif

@@ -147,6 +147,36 @@ se3d_status se3di_newton_factor(se3di_newton *newton, double t, const double *vd
     return factor(newton, t, vdot, lambda, weights);
 }
 
+/* The rows C T^-1 + c d(Phi_q qdot)/dq of constraints that enter by velocities. */
+static void set_rows(se3di_newton *newton, double c)
+{
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    if (assembly->joint_value_count > 0) {
+        memcpy(newton->rows, assembly->C, assembly->joint_value_count * sizeof *newton->rows);
+    }
+    for (uint32_t joint = 0; joint < assembly->constraint_count; ++joint) {
+        for (int32_t k = assembly->joint_begin[joint]; k < assembly->joint_begin[joint + 1]; ++k) {
+            const double *Tinv = newton->Tinv + 9 * (size_t)assembly->joint_body[k];
+            turn_columns(newton->rows + assembly->block_offset[k], assembly->joint_rows[joint],
+                         Tinv);
+        }
+    }
+    se3di_assembly_add_rate_gradient(assembly, c, newton->rows);
+    newton->has_rows = 1;
+}
+
+se3d_status se3di_newton_factor_velocities(se3di_newton *newton, double t, const double *vdot,
+                                           const double *lambda, const double *step,
+                                           const se3di_newton_weights *weights)
+{
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        se3di_exp_tangent_inverse(step + 6 * k + 3, newton->Tinv + 9 * k);
+    }
+    set_rows(newton, weights->position / weights->velocity);
+    return factor(newton, t, vdot, lambda, weights);
+}
+
 /* p o (1 - c/2 w) is held, so that dtheta o (1 - c/2 w) = c dw and T^-1 = I + c/2 ~w + c^2/4 w w^T.
  */
 static void set_turns(se3di_newton *newton, double c)
@@ -165,23 +195,6 @@ static void set_turns(se3di_newton *newton, double c)
     }
 }
 
-static void set_rows(se3di_newton *newton, double c)
-{
-    const se3di_assembly *assembly = &newton->equations->assembly;
-    if (assembly->joint_value_count > 0) {
-        memcpy(newton->rows, assembly->C, assembly->joint_value_count * sizeof *newton->rows);
-    }
-    for (uint32_t joint = 0; joint < assembly->constraint_count; ++joint) {
-        for (int32_t k = assembly->joint_begin[joint]; k < assembly->joint_begin[joint + 1]; ++k) {
-            const double *Tinv = newton->Tinv + 9 * (size_t)assembly->joint_body[k];
-            turn_columns(newton->rows + assembly->block_offset[k], assembly->joint_rows[joint],
-                         Tinv);
-        }
-    }
-    se3di_assembly_add_rate_gradient(assembly, c, newton->rows);
-    newton->has_rows = 1;
-}
-
 se3d_status se3di_newton_factor_rates(se3di_newton *newton, double t, const double *vdot,
                                       const double *lambda, double c)
 {
@@ -191,11 +204,10 @@ se3d_status se3di_newton_factor_rates(se3di_newton *newton, double t, const doub
     return factor(newton, t, vdot, lambda, &weights);
 }
 
-se3d_status se3di_newton_solve(se3di_newton *newton)
+se3d_status se3di_newton_solve_displacement(se3di_newton *newton)
 {
     se3di_equations *equations = newton->equations;
     const se3di_assembly *assembly = &equations->assembly;
-    size_t n = (size_t)assembly->formulation->block;
     se3di_kkt_values values = values_of(newton);
     se3di_kkt_solve_info info = {0};
     ++equations->counters.solves;
@@ -210,12 +222,54 @@ se3d_status se3di_newton_solve(se3di_newton *newton)
                                    ? "the solution of the linear equations is not finite"
                                    : "the linear equations could not be solved");
     }
-    for (size_t k = 0; n == 6 && k < assembly->body_count; ++k) {
-        double turned[3];
-        se3di_mul(newton->Tinv + 9 * k, equations->x + 6 * k + 3, turned);
-        se3di_copy(turned, equations->x + 6 * k + 3);
-    }
     return status;
+}
+
+void se3di_newton_turn(const se3di_newton *newton, double *x)
+{
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    for (size_t k = 0; assembly->formulation->block == 6 && k < assembly->body_count; ++k) {
+        double *turn = x + 6 * k + 3, turned[3];
+        se3di_mul(newton->Tinv + 9 * k, turn, turned);
+        se3di_copy(turned, turn);
+    }
+}
+
+se3d_status se3di_newton_solve(se3di_newton *newton)
+{
+    const se3d_status status = se3di_newton_solve_displacement(newton);
+    SE3DI_TRY(status);
+    se3di_newton_turn(newton, newton->equations->x);
+    return status;
+}
+
+/* out += scale rows x of one block of rows on a body. */
+static void add_rows(const double *rows, int32_t count, double scale, const double x[6],
+                     double *out)
+{
+    for (int32_t r = 0; r < count; ++r, rows += 6) {
+        for (int c = 0; c < 6; ++c) {
+            out[r] += scale * rows[c] * x[c];
+        }
+    }
+}
+
+void se3di_newton_add_gradient(const se3di_newton *newton, double scale, const double *y,
+                               double *out)
+{
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    for (uint32_t joint = 0; joint < assembly->constraint_count; ++joint) {
+        double *part = out + assembly->model->constraints[joint].row_begin;
+        const int32_t count = assembly->joint_rows[joint];
+        for (int32_t k = assembly->joint_begin[joint]; k < assembly->joint_begin[joint + 1]; ++k) {
+            const size_t body = (size_t)assembly->joint_body[k], at = assembly->block_offset[k];
+            const double *whole = y + 6 * body;
+            double turned[6] = {whole[0], whole[1], whole[2]};
+            se3di_mul(newton->Tinv + 9 * body, whole + 3, turned + 3);
+            add_rows(newton->rows + at, count, scale, whole, part);
+            add_rows(assembly->C + at, count, -scale, turned, part);
+        }
+    }
 }
 
 int se3di_newton_note(const se3di_newton *newton, double size)

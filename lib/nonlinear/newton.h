@@ -54,12 +54,24 @@ void se3di_newton_destroy(se3di_newton *newton);
 se3d_status se3di_newton_factor(se3di_newton *newton, double t, const double *vdot,
                                 const double *lambda, const double *step,
                                 const se3di_newton_weights *weights);
-/* The same for constraints of velocities, where a body has turned on the way of the step, at the
+/* The same for constraints of velocities. Unknowns (v, w) only. */
+se3d_status se3di_newton_factor_velocities(se3di_newton *newton, double t, const double *vdot,
+                                           const double *lambda, const double *step,
+                                           const se3di_newton_weights *weights);
+/* Those, where a body has turned on the way of the step, at the
  * weight c = dv/dvdot, by (I - c/2 Omega(w))^-1; dx/dvdot = c^2. Unknowns (v, w) only. */
 se3d_status se3di_newton_factor_rates(se3di_newton *newton, double t, const double *vdot,
                                       const double *lambda, double c);
 /* Solve for equations->b, ->c into equations->x (dvdot) and ->l. */
 se3d_status se3di_newton_solve(se3di_newton *newton);
+/* The same, into ->x a displacement: T dvdot. */
+se3d_status se3di_newton_solve_displacement(se3di_newton *newton);
+/* x <- T^-1 x */
+void se3di_newton_turn(const se3di_newton *newton, double *x);
+/* out += scale (rows y - C T^-1 y), with the rows of se3di_newton_factor_velocities: what a
+ * displacement y does to Phi_q qdot, times (dx/dvdot) / (dv/dvdot). */
+void se3di_newton_add_gradient(const se3di_newton *newton, double scale, const double *y,
+                               double *out);
 
 /* Note the size of a correction. @return whether there is a trace */
 int se3di_newton_note(const se3di_newton *newton, double size);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "analysis/turns.h"
+#include "integrator/turns.h"
 
 #include "force/measure.h"
 #include "math/elementary.h"

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What the model is given of the steps of the Newmark family: states between their ends, and
+ * accelerations and multipliers that are exact for the positions and velocities. */
+#include "integrator/newmark.h"
+
+#include "contact/loads.h"
+#include "math/quaternion.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+static void copy(double *to, const double *from, size_t count)
+{
+    if (count > 0) {
+        memcpy(to, from, count * sizeof *to);
+    }
+}
+
+/* Hermite's cubic from 0 at s = 0 to x at s = 1 with the slopes u, v there; and its slope. */
+static void eval_cubic(const double x[3], const double u[3], const double v[3], double s,
+                       double out[3], double slope[3])
+{
+    const double r = 1.0 - s;
+    for (int k = 0; k < 3; ++k) {
+        out[k] = s * s * (1.0 + 2.0 * r) * x[k] + s * r * (r * u[k] - s * v[k]);
+        slope[k] = 6.0 * s * r * x[k] + r * (1.0 - 3.0 * s) * u[k] + s * (1.0 - 3.0 * r) * v[k];
+    }
+}
+
+/* A body on its way from y0 to y1 in h: position and the logarithm of its turn along cubics. */
+static void interpolate_body(const double *y0, const double *y1, double h, double s, double *y)
+{
+    double x[3], u[3], v[3], slope[3], turn[3], T[9];
+    for (int k = 0; k < 3; ++k) {
+        x[k] = y1[k] - y0[k];
+        u[k] = h * y0[7 + k];
+        v[k] = h * y1[7 + k];
+    }
+    eval_cubic(x, u, v, s, y, slope);
+    for (int k = 0; k < 3; ++k) {
+        y[k] += y0[k];
+        y[7 + k] = slope[k] / h;
+        u[k] = h * y0[10 + k];
+    }
+    se3di_quat_log(y0 + 3, y1 + 3, x);
+    se3di_exp_tangent_inverse(x, T);
+    se3di_mul(T, y1 + 10, v);
+    se3di_scale(h, v, v);
+    eval_cubic(x, u, v, s, turn, slope);
+    se3di_quat_rotate(y0 + 3, turn, y + 3);
+    se3di_exp_tangent(turn, T);
+    se3di_mul(T, slope, y + 10);
+    se3di_scale(1.0 / h, y + 10, y + 10);
+}
+
+void se3di_newmark_interpolate(const se3di_integration *integration, double t, double *y)
+{
+    const se3di_assembly *assembly = &integration->equations->assembly;
+    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    const double begin = past.header[SE3DI_NEWMARK_BEGIN], end = past.header[SE3DI_NEWMARK_END];
+    const size_t count = se3di_state_count(assembly);
+    if (!(t > begin && t < end)) { /* the ends to the bit */
+        copy(y, t < end ? past.y_begin : past.y, count);
+        return;
+    }
+    const double s = (t - begin) / (end - begin);
+    size_t at = 0;
+    for (; at + SE3DI_STATE_WORK < count; at += SE3DI_STATE_SIZE) {
+        interpolate_body(past.y_begin + at, past.y + at, end - begin, s, y + at);
+    }
+    const double *power =
+        past.header + SE3DI_NEWMARK_POWER; /* along a parabola to s, as the rule */
+    for (int k = 0; k < SE3DI_STATE_WORK; ++k, ++at) {
+        const double p1 = power[k], p0 = power[SE3DI_STATE_WORK + k];
+        y[at] = past.y_begin[at] + (end - begin) * s * (p0 + 0.5 * s * (p1 - p0));
+    }
+}
+
+/* Forces that depend on what was before: they belong to the steps. */
+static int remembers(const se3di_model *model)
+{
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (model->forces[k].type == SE3DI_FORCE_FRICTION ||
+            model->forces[k].type == SE3DI_FORCE_STOP) {
+            return 1;
+        }
+    }
+    return model->contacts.pair_count > 0;
+}
+
+/* Whether the accelerations in equations->x, solved for at a state between two steps, differ from
+ * those of the steps by no more than they differ among themselves: with stiff forces what the state
+ * is off by counts for more. */
+static int are_plausible(const se3di_equations *equations, const double *guess,
+                         const se3di_newmark_history *past)
+{
+    double change = 0.0, off = 0.0, size = 0.0;
+    for (uint32_t k = 0; k < equations->assembly.unknown_count; ++k) {
+        change = fmax(change, fabs(past->vdot[k] - past->vdot_begin[k]));
+        off = fmax(off, fabs(equations->x[k] - guess[k]));
+        size = fmax(size, fabs(guess[k]));
+    }
+    return off <= change + 1e-6 * size;
+}
+
+/* Accelerations and multipliers of the model's state at t, a part s on the way from the begin of
+ * the last step to its end. */
+static void set_accelerations(se3di_integration *integration, double t, double s)
+{
+    se3di_equations *equations = integration->equations;
+    se3di_assembly *assembly = &equations->assembly;
+    se3di_model *model = assembly->model;
+    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    double *guess = integration->work;
+    se3di_error ignored = {0};
+    se3di_error *error = equations->error;
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        guess[k] = past.vdot[k] - (1.0 - s) * (past.vdot[k] - past.vdot_begin[k]);
+    }
+    equations->error = &ignored;
+    const int is_exact = !remembers(model) && se3di_acceleration_solve(equations, t) >= 0 &&
+                         (s >= 1.0 || are_plausible(equations, guess, &past));
+    equations->error = error;
+    if (!is_exact) {
+        for (uint32_t k = 0; k < assembly->row_count; ++k) {
+            model->lambda[k] = past.lambda[k] - (1.0 - s) * (past.lambda[k] - past.lambda_begin[k]);
+        }
+        se3di_assembly_set_acceleration(assembly, guess);
+    }
+}
+
+se3d_status se3di_newmark_publish(se3di_integration *integration, double t)
+{
+    se3di_equations *equations = integration->equations;
+    se3di_assembly *assembly = &equations->assembly;
+    const double *header = assembly->model->history;
+    const double end = header[SE3DI_NEWMARK_END], last = end - header[SE3DI_NEWMARK_BEGIN];
+    const se3di_state_scale scale = {.length = header[SE3DI_NEWMARK_LENGTH],
+                                     .speed = header[SE3DI_NEWMARK_SPEED],
+                                     .spin = header[SE3DI_NEWMARK_SPIN]};
+    double *y =
+        integration->work + 7 * (size_t)assembly->unknown_count + 2 * (size_t)assembly->row_count;
+    const int is_end = !(end - t > SE3DI_NEWMARK_SAME_TIME * last);
+    se3di_newmark_interpolate(integration, is_end ? end : t, y);
+    se3di_state_set(assembly, y);
+    if (!is_end) {
+        SE3DI_TRY(se3di_state_project(equations, t, &scale, 1e-15, 0));
+    }
+    set_accelerations(integration, t, is_end ? 1.0 : (t - header[SE3DI_NEWMARK_BEGIN]) / last);
+    return se3di_state_conclude(equations, y, t);
+}
