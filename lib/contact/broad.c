@@ -36,10 +36,15 @@ static int joined(const se3di_model *model, uint32_t a, uint32_t b)
     return 0;
 }
 
+static int are_open_meshes(const se3di_shape *a, const se3di_shape *b)
+{
+    return a->kind == SE3DI_SHAPE_MESH && b->kind == SE3DI_SHAPE_MESH && !a->convex && !b->convex;
+}
+
 /* Kinds that have no contact with each other. */
 static int strangers(const se3di_shape *a, const se3di_shape *b)
 {
-    return a->kind == b->kind && (a->kind == SE3DI_SHAPE_PLANE || a->kind == SE3DI_SHAPE_MESH);
+    return (a->kind == b->kind && a->kind == SE3DI_SHAPE_PLANE) || are_open_meshes(a, b);
 }
 
 /* As far as it is the user's to say. */
@@ -60,8 +65,7 @@ int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b)
 
 int se3di_shapes_pass_through(const se3di_model *model, uint32_t a, uint32_t b)
 {
-    return model->shapes[a].kind == SE3DI_SHAPE_MESH && model->shapes[b].kind == SE3DI_SHAPE_MESH &&
-           are_meant_to_touch(model, a, b);
+    return are_open_meshes(&model->shapes[a], &model->shapes[b]) && are_meant_to_touch(model, a, b);
 }
 
 double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j)

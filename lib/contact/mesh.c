@@ -18,6 +18,8 @@
 #define STACK_SIZE      64    /* median splits: the depth is at most 32 */
 #define CANDIDATES      128   /* triangles within reach of one sphere that are told apart */
 #define ON_TRIANGLE     1e-8  /* of the radius: a point is on a triangle */
+#define FLAT            1e-9  /* of the size: a vertex is in the plane of a face */
+#define CONVEX_MOST     1000  /* triangles; more are found faster by the tree */
 #define NEARLY_COPLANAR 0.999 /* cosine of the angle of normals that are one contact */
 
 typedef struct mesh_node {
@@ -127,6 +129,7 @@ static int has_area(const double *vertices, const uint32_t *triangle)
 }
 
 static int32_t find_sense(const se3di_shape *s);
+static int32_t make_convex(se3di_shape *s);
 
 static se3d_status fill(const se3d_allocator *allocator, const double *vertices,
                         const uint32_t *triangles, size_t triangle_count, se3di_shape *shape)
@@ -150,6 +153,7 @@ static se3d_status fill(const se3d_allocator *allocator, const double *vertices,
         shape->tree_bytes = b.node_count * sizeof *nodes;
         memcpy(shape->tree, nodes, shape->tree_bytes);
         shape->closed = find_sense(shape);
+        shape->convex = make_convex(shape);
     }
     se3di_free(allocator, nodes, most, sizeof *nodes);
     return shape->tree ? SE3D_OK : SE3D_ERR_NO_MEMORY;
@@ -324,6 +328,77 @@ void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double ra
     }
 }
 
+/* Whether a segment meets a box, larger by a little. */
+static int meets_box(const mesh_node *node, const double from[3], const double to[3], double slack)
+{
+    double low = 0.0, high = 1.0;
+    for (int a = 0; a < 3; ++a) {
+        double way = to[a] - from[a];
+        double near = node->low[a] - slack - from[a];
+        double far = node->high[a] + slack - from[a];
+        if (!(fabs(way) > 0.0)) {
+            if (near > 0.0 || far < 0.0) {
+                return 0;
+            }
+            continue;
+        }
+        low = fmax(low, fmin(near / way, far / way));
+        high = fmin(high, fmax(near / way, far / way));
+    }
+    return low <= high;
+}
+
+/* Also on its sides, so that nothing slips through between two. */
+static int crosses_triangle(const se3di_shape *s, uint32_t triangle, const double from[3],
+                            const double to[3], double slack)
+{
+    const double *a = s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle];
+    const double *b = s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle + 1];
+    const double *c = s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle + 2];
+    double u[3], v[3], n[3], d[3], x[3], at[3];
+    se3di_sub(b, a, u);
+    se3di_sub(c, a, v);
+    se3di_cross(u, v, n);
+    se3di_sub(from, a, d);
+    double before = se3di_dot(d, n);
+    se3di_sub(to, a, d);
+    double after = se3di_dot(d, n);
+    if (!(before * after <= 0.0 && fabs(before - after) > 0.0)) {
+        return 0;
+    }
+    se3di_sub(to, from, d);
+    se3di_copy(from, x);
+    se3di_add_scaled(before / (before - after), d, x);
+    return triangle_distance(s, triangle, x, at) <= slack * slack;
+}
+
+int se3di_mesh_crosses(const se3di_shape *shape, const double from[3], const double to[3])
+{
+    const mesh_node *nodes = shape->tree;
+    uint32_t stack[STACK_SIZE] = {0};
+    int depth = 1;
+    double way[3];
+    se3di_sub(to, from, way);
+    const double slack = ON_TRIANGLE * se3di_norm(way);
+    while (depth > 0) {
+        uint32_t at = stack[--depth];
+        const mesh_node *node = &nodes[at];
+        if (!meets_box(node, from, to, slack)) {
+            continue;
+        }
+        if (node->count == 0) {
+            stack[depth++] = node->right;
+            stack[depth++] = at + 1;
+        }
+        for (uint32_t k = node->begin; k < node->begin + node->count; ++k) {
+            if (crosses_triangle(shape, k, from, to, slack)) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
 typedef struct edge_search {
     const se3di_shape *shape;
     const double *from, *to;
@@ -369,6 +444,45 @@ static int32_t find_sense(const se3di_shape *s)
         volume += k % 3 == 0 ? se3di_dot(n, s->vertices + 3 * (size_t)t[2]) : 0.0;
     }
     return volume > 0.0 ? 1 : volume < 0.0 ? -1 : 0;
+}
+
+/* No vertex is above a face. */
+static int is_convex(const se3di_shape *s)
+{
+    double size = 0.0;
+    for (size_t k = 0; k < s->vertex_count; ++k) {
+        size = fmax(size, se3di_norm(s->vertices + 3 * k));
+    }
+    for (size_t k = 0; k < s->triangle_count; ++k) {
+        const double *a = s->vertices + 3 * (size_t)s->triangles[3 * k];
+        double u[3], v[3], n[3];
+        se3di_sub(s->vertices + 3 * (size_t)s->triangles[3 * k + 1], a, u);
+        se3di_sub(s->vertices + 3 * (size_t)s->triangles[3 * k + 2], a, v);
+        se3di_cross(u, v, n);
+        const double slack = FLAT * size * se3di_norm(n);
+        for (size_t c = 0; c < s->vertex_count; ++c) {
+            se3di_sub(s->vertices + 3 * c, a, u);
+            if (s->closed * se3di_dot(u, n) > slack) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+/* A convex one is a hull, with triangles that are counter-clockwise from outside. */
+static int32_t make_convex(se3di_shape *s)
+{
+    if (s->closed == 0 || s->triangle_count > CONVEX_MOST || !is_convex(s)) {
+        return 0;
+    }
+    for (size_t k = 0; k < s->triangle_count && s->closed < 0; ++k) {
+        const uint32_t second = s->triangles[3 * k + 1];
+        s->triangles[3 * k + 1] = s->triangles[3 * k + 2];
+        s->triangles[3 * k + 2] = second;
+    }
+    s->closed = 1;
+    return 1;
 }
 
 typedef struct gathering {

@@ -40,4 +40,7 @@ int se3di_mesh_is_near(const se3di_shape *shape, const uint32_t *faces, size_t f
 void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double radius,
                       void (*visitor)(void *ctx, uint32_t triangle), void *ctx);
 
+/* Whether the segment between two points meets the surface. */
+int se3di_mesh_crosses(const se3di_shape *shape, const double from[3], const double to[3]);
+
 #endif

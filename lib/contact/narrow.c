@@ -297,6 +297,19 @@ static void dispatch(const se3di_solid *i, const se3di_solid *j, se3di_manifold 
     }
 }
 
+/* A mesh that is convex is the hull of its vertices, but for spheres. */
+static const se3di_shape *as_hull(const se3di_shape *shape, const se3di_shape *other,
+                                  se3di_shape *hull)
+{
+    const int flat = other->kind == SE3DI_SHAPE_SPHERE || other->kind == SE3DI_SHAPE_PLANE;
+    if (shape->kind != SE3DI_SHAPE_MESH || !shape->convex || flat) {
+        return shape;
+    }
+    *hull = *shape;
+    hull->kind = SE3DI_SHAPE_HULL;
+    return hull;
+}
+
 /* Spheres first, then solids, meshes and planes. */
 static int rank_of(const se3di_shape *shape)
 {
@@ -309,12 +322,13 @@ static int rank_of(const se3di_shape *shape)
 void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
                        const se3di_shape_pose *at_j, se3di_manifold *manifold)
 {
-    se3di_solid a = {i, at_i};
-    se3di_solid b = {j, at_j};
+    se3di_shape hull_i, hull_j;
+    se3di_solid a = {as_hull(i, j, &hull_i), at_i};
+    se3di_solid b = {as_hull(j, i, &hull_j), at_j};
     manifold->count = 0;
     manifold->reserved = 0;
-    int rank_i = rank_of(i);
-    int rank_j = rank_of(j);
+    int rank_i = rank_of(a.shape);
+    int rank_j = rank_of(b.shape);
     if (rank_i > 1 && rank_i == rank_j) {
         return; /* two planes, two meshes */
     }
@@ -384,10 +398,11 @@ static double gap_of(const se3di_solid *i, const se3di_solid *j, double normal[3
 double se3di_narrow_gap(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
                         const se3di_shape_pose *at_j, double normal[3])
 {
-    se3di_solid a = {i, at_i};
-    se3di_solid b = {j, at_j};
+    se3di_shape hull_i, hull_j;
+    se3di_solid a = {as_hull(i, j, &hull_i), at_i};
+    se3di_solid b = {as_hull(j, i, &hull_j), at_j};
     double gap;
-    if (rank_of(i) > rank_of(j)) {
+    if (rank_of(a.shape) > rank_of(b.shape)) {
         gap = gap_of(&b, &a, normal);
         se3di_scale(-1.0, normal, normal);
     } else {

@@ -380,6 +380,23 @@ static void cores_touch(const se3di_solid *i, const se3di_solid *j, const double
     (void)se3di_manifold_add(manifold, point, n, overlap, 0);
 }
 
+/* How deep the cores overlap along the normal of a face that looks nearly along n; infinite where
+ * it does not. sign: 1 for a face of i, -1 for one of j. */
+static double depth_on(const se3di_face *face, const double n[3], const se3di_solid *i,
+                       const se3di_solid *j, double sign)
+{
+    double along[3], back[3], on_i[3], on_j[3], d[3];
+    if (face->count <= 2 || !(se3di_dot(face->normal, n) > FACE_COSINE)) {
+        return HUGE_VAL;
+    }
+    se3di_scale(sign, face->normal, along);
+    se3di_scale(-1.0, along, back);
+    se3di_core_support(i, along, on_i);
+    se3di_core_support(j, back, on_j);
+    se3di_sub(on_i, on_j, d);
+    return se3di_dot(d, along);
+}
+
 void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     double n[3], back[3], on_i[3], on_j[3];
@@ -392,11 +409,13 @@ void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manif
     se3di_scale(-1.0, n, back);
     se3di_face_find(i, n, &face_i);
     se3di_face_find(j, back, &face_j);
-    double along_i = face_i.count > 2 ? se3di_dot(face_i.normal, n) : 0.0;
-    double along_j = face_j.count > 2 ? se3di_dot(face_j.normal, back) : 0.0;
-    if (along_i > FACE_COSINE && along_i >= along_j - 1e-3) {
+    double depth_i = depth_on(&face_i, n, i, j, 1.0) + radius;
+    double depth_j = depth_on(&face_j, back, i, j, -1.0) + radius;
+    int edges_i = overlap < EDGE_FACTOR * depth_i;
+    int edges_j = overlap < EDGE_FACTOR * depth_j;
+    if (!edges_i && !(depth_j < OTHER_FACTOR * depth_i)) {
         se3di_narrow_clip(&face_i, &face_j, radius, 0, manifold);
-    } else if (along_j > FACE_COSINE) {
+    } else if (!edges_j) {
         se3di_narrow_clip(&face_j, &face_i, radius, 1, manifold);
     } else if (face_i.count == 2 && face_j.count == 2 && se3di_narrow_capsules(i, j, manifold)) {
         return;

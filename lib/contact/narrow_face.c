@@ -151,17 +151,33 @@ static void triangle_normal(const se3di_shape *s, size_t triangle, double n[3])
     se3di_scale(size > 0.0 ? 1.0 / size : 0.0, n, n);
 }
 
-/* Insert a corner of the polygon about `center` by its angle from u. */
-static void insert_corner(const se3di_shape *s, double frame[3][3], uint32_t vertex, uint32_t *list,
-                          double *angle, int *count)
+/* The plane of a face: two directions in it, and its middle. */
+typedef struct face_plane {
+    const se3di_shape *s;
+    double u[3], w[3], center[3], n[3], level, slack;
+} face_plane;
+
+static int is_new(const face_plane *plane, uint32_t vertex, const uint32_t *list, int count)
+{
+    const double *x = plane->s->vertices + 3 * (size_t)vertex;
+    for (int k = 0; k < count; ++k) {
+        double d[3];
+        se3di_sub(plane->s->vertices + 3 * (size_t)list[k], x, d);
+        if (!(se3di_norm(d) > plane->slack)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Insert a corner of the polygon about the middle by its angle from u. */
+static void insert_corner(const face_plane *plane, uint32_t vertex, uint32_t *list, double *angle,
+                          int *count)
 {
     double d[3];
-    se3di_sub(s->vertices + 3 * (size_t)vertex, frame[2], d);
-    double turn = se3di_atan2(se3di_dot(d, frame[1]), se3di_dot(d, frame[0]));
+    se3di_sub(plane->s->vertices + 3 * (size_t)vertex, plane->center, d);
+    double turn = se3di_atan2(se3di_dot(d, plane->w), se3di_dot(d, plane->u));
     int at = *count;
-    if (at == SE3DI_FACE_CORNERS) {
-        return;
-    }
     for (; at > 0 && angle[at - 1] > turn; --at) {
         angle[at] = angle[at - 1];
         list[at] = list[at - 1];
@@ -169,6 +185,61 @@ static void insert_corner(const se3di_shape *s, double frame[3][3], uint32_t ver
     angle[at] = turn;
     list[at] = vertex;
     ++*count;
+}
+
+/* Whether the polygon turns left at its corner k. */
+static int is_corner(const face_plane *plane, const uint32_t *list, int count, int k)
+{
+    const double *v = plane->s->vertices;
+    const double *x = v + 3 * (size_t)list[k];
+    double before[3], after[3], turn[3];
+    se3di_sub(x, v + 3 * (size_t)list[(k + count - 1) % count], before);
+    se3di_sub(v + 3 * (size_t)list[(k + 1) % count], x, after);
+    se3di_cross(before, after, turn);
+    return se3di_dot(turn, plane->n) > plane->slack * plane->s->bound;
+}
+
+/* Vertices within the face and on its sides are no corners of it. */
+static void drop_inner(const face_plane *plane, uint32_t *list, int *count)
+{
+    for (int k = 0; k<*count && * count> 3; ++k) {
+        if (!is_corner(plane, list, *count, k)) {
+            for (int c = k; c + 1 < *count; ++c) {
+                list[c] = list[c + 1];
+            }
+            --*count;
+            k = -1; /* all again */
+        }
+    }
+}
+
+static int is_on(const face_plane *plane, uint32_t vertex)
+{
+    return se3di_dot(plane->s->vertices + 3 * (size_t)vertex, plane->n) >
+           plane->level - plane->slack;
+}
+
+/* Of more corners than there is room for those that are farthest to all sides. */
+static void insert_farthest(const face_plane *plane, uint32_t *list, double *angle, int *count)
+{
+    *count = 0;
+    for (int k = 0; k < SE3DI_FACE_CORNERS; ++k) {
+        const double turn = 6.283185307179586 * k / SE3DI_FACE_CORNERS;
+        double way[3], most = -HUGE_VAL;
+        uint32_t best = 0;
+        se3di_scale(se3di_cos(turn), plane->u, way);
+        se3di_add_scaled(se3di_sin(turn), plane->w, way);
+        for (uint32_t v = 0; v < plane->s->vertex_count; ++v) {
+            const double far = se3di_dot(plane->s->vertices + 3 * (size_t)v, way);
+            if (far > most + plane->slack && is_on(plane, v)) {
+                most = far;
+                best = v;
+            }
+        }
+        if (is_new(plane, best, list, *count)) {
+            insert_corner(plane, best, list, angle, count);
+        }
+    }
 }
 
 /* All vertices in the plane of the triangle that looks along d best. */
@@ -186,22 +257,29 @@ static void hull_face(const se3di_solid *solid, const double d[3], se3di_face *f
             se3di_copy(here, n);
         }
     }
-    double frame[3][3] = {{0.0}}; /* u, w, centre */
-    double level = se3di_dot(s->vertices + 3 * (size_t)s->triangles[3 * triangle], n);
+    face_plane plane = {.s = s, .slack = 1e-9 * s->bound};
+    plane.level = se3di_dot(s->vertices + 3 * (size_t)s->triangles[3 * triangle], n);
     uint32_t list[SE3DI_FACE_CORNERS];
     double angle[SE3DI_FACE_CORNERS];
     for (size_t k = 0; k < 3; ++k) {
         se3di_add_scaled(1.0 / 3.0, s->vertices + 3 * (size_t)s->triangles[3 * triangle + k],
-                         frame[2]);
+                         plane.center);
     }
-    se3di_perpendicular(n, frame[0]);
-    se3di_cross(n, frame[0], frame[1]);
+    se3di_copy(n, plane.n);
+    se3di_perpendicular(n, plane.u);
+    se3di_cross(n, plane.u, plane.w);
     face->count = 0;
     for (uint32_t k = 0; k < s->vertex_count; ++k) {
-        if (se3di_dot(s->vertices + 3 * (size_t)k, n) > level - 1e-9 * s->bound) {
-            insert_corner(s, frame, k, list, angle, &face->count);
+        if (!is_on(&plane, k) || !is_new(&plane, k, list, face->count)) {
+            continue;
         }
+        if (face->count == SE3DI_FACE_CORNERS) {
+            insert_farthest(&plane, list, angle, &face->count);
+            break;
+        }
+        insert_corner(&plane, k, list, angle, &face->count);
     }
+    drop_inner(&plane, list, &face->count);
     face->id = (uint32_t)triangle;
     se3di_mul(solid->at->R, n, face->normal);
     for (int k = 0; k < face->count; ++k) {

@@ -11,6 +11,7 @@
 #include "math/vec3.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #define TOUCHES  4     /* faces that one corner touches */
@@ -27,6 +28,8 @@ typedef struct meeting {
     double center[3]; /* a point within it, mesh frame */
     double size;
     se3di_manifold *manifold;
+    double parting; /* the least way out of edges where the least of all leads through faces */
+    se3di_manifold parted;
 } meeting;
 
 static void to_mesh(const se3di_solid *mesh, const double x[3], double local[3])
@@ -176,15 +179,18 @@ static void meet_corner(void *ctx, uint32_t triangle)
     keep_face(c, &f, -height);
 }
 
-/* A corner of the solid, ground frame. */
-static void touch_corner(const meeting *m, const double x[3], uint32_t feature)
+/* A corner of the solid, ground frame; `only`: on faces of this normal (mesh frame), or NULL. */
+static void touch_corner(const meeting *m, const double x[3], const double *only, uint32_t feature)
 {
     corner_faces c = {.m = m};
     to_mesh(m->mesh, x, c.x);
     se3di_mesh_visit(m->mesh->shape, c.x, m->size, meet_corner, &c);
+    if (c.count > 0 && !se3di_mesh_crosses(m->mesh->shape, m->center, c.x)) {
+        return; /* behind planes of faces, but not behind the surface */
+    }
     for (int k = 0; k < c.count; ++k) {
         double at[3];
-        if (!(c.depth[k] > 0.0)) {
+        if (!(c.depth[k] > 0.0) || (only && se3di_dot(c.list[k].n, only) < COPLANAR)) {
             continue; /* it only keeps others from counting */
         }
         se3di_copy(c.x, at);
@@ -229,6 +235,25 @@ static void meet_neighbour(void *ctx, uint32_t triangle)
     e->is_flat = e->is_flat || continues || !bulges || triangle < e->triangle;
 }
 
+/* A direction away from an edge: whether it leads out between its faces, not through them. */
+typedef struct wedge {
+    const edge *e;
+    const double *n;
+    int open;
+} wedge;
+
+static void meet_wedge(void *ctx, uint32_t triangle)
+{
+    wedge *w = ctx;
+    double along[3], inward[3];
+    face f;
+    (void)face_of(w->e->m, triangle, &f);
+    se3di_sub(w->e->b, w->e->a, along);
+    se3di_sub(f.middle, w->e->middle, inward);
+    se3di_add_scaled(-se3di_dot(inward, along) / se3di_dot(along, along), along, inward);
+    w->open = w->open && se3di_dot(w->n, inward) < SAME * se3di_norm(inward);
+}
+
 /* An edge as a line without thickness. */
 static double place_edge(const edge *e, se3di_shape *line, se3di_shape_pose *at)
 {
@@ -249,9 +274,149 @@ static double place_edge(const edge *e, se3di_shape *line, se3di_shape_pose *at)
     return length;
 }
 
-static void touch_edge(edge *e, uint32_t feature)
+static int leads_out(const edge *e, const double n[3])
 {
-    const meeting *m = e->m;
+    double local[3], along[3];
+    se3di_mul_transposed(e->m->mesh->at->R, n, local);
+    wedge w = {e, local, 1};
+    se3di_sub(e->b, e->a, along);
+    se3di_mesh_visit(e->m->mesh->shape, e->middle, SAME * se3di_norm(along), meet_wedge, &w);
+    return w.open;
+}
+
+/* What solid and edge touch by if they part along n, from the edge to the solid. */
+typedef struct parting {
+    const edge *e;
+    const se3di_solid *segment;
+    double depth, n[3];
+    double lowest[3]; /* of the solid */
+    double along[3];  /* of its edge; zero: a face */
+} parting;
+
+static void try_parting(parting *p, const double way[3], const double along[3])
+{
+    const double size = se3di_norm(way);
+    double n[3], back[3], high[3], low[3], d[3];
+    if (!(size > SAME * se3di_norm(along))) {
+        return; /* parallel edges */
+    }
+    se3di_scale(1.0 / size, way, n);
+    se3di_scale(-1.0, n, back);
+    se3di_core_support(p->segment, n, high);
+    se3di_core_support(p->e->m->solid, back, low);
+    se3di_sub(high, low, d);
+    const double depth = se3di_dot(d, n);
+    if (depth > 0.0 && depth < p->depth && leads_out(p->e, n)) {
+        p->depth = depth;
+        se3di_copy(n, p->n);
+        se3di_copy(low, p->lowest);
+        se3di_copy(along, p->along);
+    }
+}
+
+static void try_edge(parting *p, const double along[3])
+{
+    const double *R = p->segment->at->R;
+    const double line[3] = {R[2], R[5], R[8]};
+    double way[3], back[3];
+    se3di_cross(along, line, way);
+    se3di_scale(-1.0, way, back);
+    try_parting(p, way, along);
+    try_parting(p, back, along);
+}
+
+static void try_box(parting *p)
+{
+    static const double none[3] = {0.0, 0.0, 0.0};
+    const double *R = p->e->m->solid->at->R;
+    for (int k = 0; k < 3; ++k) {
+        const double axis[3] = {R[k], R[3 + k], R[6 + k]};
+        double back[3];
+        se3di_scale(-1.0, axis, back);
+        try_parting(p, axis, none);
+        try_parting(p, back, none);
+        try_edge(p, axis);
+    }
+}
+
+static void try_hull(parting *p)
+{
+    static const double none[3] = {0.0, 0.0, 0.0};
+    const se3di_solid *solid = p->e->m->solid;
+    for (uint32_t k = 0; k < solid->shape->triangle_count; ++k) {
+        double side[3][3], inward[3];
+        for (uint32_t c = 0; c < 3; ++c) {
+            double d[3];
+            se3di_sub(corner_of(solid->shape, k, c + 1), corner_of(solid->shape, k, c), d);
+            se3di_mul(solid->at->R, d, side[c]);
+            try_edge(p, side[c]);
+        }
+        se3di_cross(side[1], side[0], inward);
+        try_parting(p, inward, none);
+    }
+}
+
+/* Where two edges pass, on that of the mesh; returns 0 where one passes beyond its end. */
+static int edges_pass(const parting *p, double at[3])
+{
+    const double *R = p->segment->at->R;
+    const double line[3] = {R[2], R[5], R[8]};
+    double d[3], across[3];
+    se3di_cross(p->along, p->n, across); /* in the plane of both, square to the solid's edge */
+    se3di_sub(p->lowest, p->segment->at->x, d);
+    const double t = se3di_dot(d, across) / se3di_dot(line, across);
+    se3di_copy(p->segment->at->x, at);
+    se3di_add_scaled(t, line, at);
+    return fabs(t) <= p->segment->shape->half_length;
+}
+
+/* A box or hull that is least deep in the edge where this leads through the faces beside it: the
+ * least way out between them. */
+static void part_from_edge(meeting *m, const edge *e, const se3di_solid *segment)
+{
+    const se3di_solid *solid = m->solid;
+    parting p = {.e = e, .segment = segment, .depth = m->parting};
+    double back[3], at[3];
+    if (solid->shape->kind == SE3DI_SHAPE_BOX) {
+        try_box(&p);
+    } else if (solid->shape->kind == SE3DI_SHAPE_HULL) {
+        try_hull(&p);
+    }
+    const int is_face = !(se3di_norm(p.along) > 0.0);
+    if (!(p.depth < m->parting) || !(is_face || edges_pass(&p, at))) {
+        return;
+    }
+    m->parting = p.depth;
+    m->parted.count = 0;
+    se3di_scale(-1.0, p.n, back);
+    if (is_face) {
+        se3di_face side, flat;
+        se3di_face_find(solid, back, &side);
+        se3di_face_find(segment, p.n, &flat);
+        se3di_narrow_clip(&side, &flat, 0.0, 0, &m->parted);
+    } else {
+        (void)se3di_manifold_add(&m->parted, at, back, p.depth, 0);
+    }
+}
+
+/* All contacts with lines. */
+static void add_lines(const meeting *m, const se3di_manifold *lines, const edge *e,
+                      uint32_t feature)
+{
+    for (uint32_t k = 0; k < lines->count; ++k) {
+        double here[3], back[3], n[3];
+        se3di_scale(-1.0, lines->points[k].normal, back);
+        if (!e || leads_out(e, back)) {
+            to_mesh(m->mesh, lines->points[k].point, here);
+            se3di_mul_transposed(m->mesh->at->R, back, n);
+            add(m, here, n, lines->points[k].overlap, se3di_core_radius(m->solid->shape),
+                feature + k);
+        }
+    }
+}
+
+static void touch_edge(meeting *m, edge *e, uint32_t feature)
+{
     double n[3], on_i[3], on_j[3];
     se3di_shape line;
     se3di_shape_pose at;
@@ -262,28 +427,27 @@ static void touch_edge(edge *e, uint32_t feature)
         return;
     }
     se3di_mesh_visit(m->mesh->shape, e->middle, SAME * length, meet_neighbour, e);
-    se3di_manifold lines = {.count = 0};
-    if (!e->is_flat) {
-        se3di_narrow_convex(m->solid, &segment, &lines);
+    if (e->is_flat) {
+        return;
     }
-    for (uint32_t k = 0; k < lines.count; ++k) {
-        double here[3], back[3];
-        to_mesh(m->mesh, lines.points[k].point, here);
-        se3di_mul_transposed(m->mesh->at->R, lines.points[k].normal, back);
-        se3di_scale(-1.0, back, back);
-        add(m, here, back, lines.points[k].overlap, radius, feature + k);
+    const uint32_t before = m->manifold->count;
+    se3di_manifold lines = {.count = 0};
+    se3di_narrow_convex(m->solid, &segment, &lines);
+    add_lines(m, &lines, e, feature);
+    if (m->manifold->count == before) {
+        part_from_edge(m, e, &segment);
     }
 }
 
 static void meet_edges(void *ctx, uint32_t triangle)
 {
-    const meeting *m = ctx;
+    meeting *m = ctx;
     const se3di_shape *s = m->mesh->shape;
     for (uint32_t k = 0; k < 3; ++k) {
         edge e = {m, corner_of(s, triangle, k), corner_of(s, triangle, k + 1), {0.0}, triangle, 0};
         se3di_add(e.a, e.b, e.middle);
         se3di_scale(0.5, e.middle, e.middle);
-        touch_edge(&e, 0x80000000u + 16 * (3 * triangle + k));
+        touch_edge(m, &e, 0x80000000u + 16 * (3 * triangle + k));
     }
 }
 
@@ -302,7 +466,7 @@ static void touch_corners(const meeting *m)
         }
         se3di_mul(m->solid->at->R, local, x);
         se3di_add(m->solid->at->x, x, x);
-        touch_corner(m, x, k);
+        touch_corner(m, x, NULL, k);
     }
 }
 
@@ -321,18 +485,88 @@ static void touch_ends(const meeting *m)
     }
 }
 
-/* The points of the rims that are lowest on the nearest face, as on a plane. */
-static void touch_rims(const meeting *m)
+/* The points of the rims that are lowest on a face, as on a plane. */
+static void meet_rims(void *ctx, uint32_t triangle)
 {
-    double point[3], distance, n[3], normal[3], rim[8][3];
-    uint32_t triangle = (uint32_t)se3di_mesh_nearest(m->mesh->shape, m->center, point, &distance);
+    const meeting *m = ctx;
+    const double *corner[3];
+    double normal[3], rim[8][3];
     face f;
-    (void)face_of(m, triangle, &f);
-    se3di_copy(f.n, n);
-    se3di_mul(m->mesh->at->R, n, normal);
+    if (!face_of(m, triangle, &f)) {
+        return;
+    }
+    for (uint32_t k = 0; k < 3; ++k) {
+        corner[k] = corner_of(m->mesh->shape, triangle, k);
+    }
+    se3di_mul(m->mesh->at->R, f.n, normal);
     se3di_cylinder_rims(m->solid, normal, rim);
     for (uint32_t k = 0; k < 8; ++k) {
-        touch_corner(m, rim[k], k);
+        double x[3], at[3];
+        to_mesh(m->mesh, rim[k], x);
+        double height = height_over(&f, x);
+        se3di_add_scaled(-height, f.n, x);
+        if (height < 0.0 && -height < m->size &&
+            se3di_triangle_nearest(corner, x, at, NULL) < m->size * m->size) {
+            touch_corner(m, rim[k], f.n, k);
+        }
+    }
+}
+
+/* A triangle that a solid cuts through where none of its corners and no edge of the mesh that
+ * bulges touch (sharp ones, in hollows): pushed apart as convex shapes are, but not through the
+ * surface. */
+static void meet_rest(void *ctx, uint32_t triangle)
+{
+    static const uint32_t whole[3] = {0, 1, 2};
+    const meeting *m = ctx;
+    double corners[9], down[3], lowest[3], n[3], back[3], on_i[3], on_j[3];
+    face f;
+    if (!face_of(m, triangle, &f)) {
+        return;
+    }
+    se3di_mul(m->mesh->at->R, f.n, down);
+    se3di_scale(-1.0, down, down);
+    se3di_core_support(m->solid, down, lowest);
+    to_mesh(m->mesh, lowest, lowest);
+    const double radius = se3di_core_radius(m->solid->shape);
+    double depth = radius - height_over(&f, lowest);
+    if (!(depth > 0.0)) {
+        return; /* all of it is in front */
+    }
+    for (uint32_t k = 0; k < 3; ++k) {
+        se3di_copy(corner_of(m->mesh->shape, triangle, k), corners + 3 * (size_t)k);
+    }
+    const se3di_shape flat = {.kind = SE3DI_SHAPE_HULL,
+                              .bound = m->mesh->shape->bound,
+                              .vertices = corners,
+                              .triangles = (uint32_t *)(uintptr_t)whole,
+                              .vertex_count = 3,
+                              .triangle_count = 1};
+    const se3di_solid other = {&flat, m->mesh->at};
+    double overlap = se3di_convex_distance(m->solid, &other, n, on_i, on_j) + radius;
+    if (!(overlap > 0.0)) {
+        return;
+    }
+    to_mesh(m->mesh, on_j, on_j);
+    se3di_mul_transposed(m->mesh->at->R, n, back);
+    se3di_scale(-1.0, back, back);
+    if (se3di_dot(back, f.n) < 0.0) {
+        add(m, on_j, f.n, depth, radius, 0x40000000u + triangle);
+    } else {
+        add(m, on_j, back, overlap, radius, 0x40000000u + triangle);
+    }
+}
+
+/* Points are told apart by their features. */
+static void separate_features(se3di_manifold *manifold)
+{
+    for (uint32_t k = 1; k < manifold->count; ++k) {
+        for (uint32_t other = 0; other < k; ++other) {
+            if (manifold->points[other].feature == manifold->points[k].feature) {
+                manifold->points[k].feature += 0x01000000u;
+                other = UINT32_MAX; /* all again */
+            }
+        }
     }
 }
 
@@ -353,21 +587,34 @@ static void find_center(meeting *m)
 void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
 {
     const se3di_shape *s = i->shape;
-    meeting m = {.solid = i, .mesh = mesh, .manifold = manifold};
+    meeting m;
+    memset(&m, 0, offsetof(meeting, parted));
+    m.solid = i;
+    m.mesh = mesh;
+    m.manifold = manifold;
+    m.parted.count = 0;
     m.size = s->kind == SE3DI_SHAPE_BOX        ? fmin(s->half[0], fmin(s->half[1], s->half[2]))
              : s->kind == SE3DI_SHAPE_HULL     ? 0.5 * s->bound
              : s->kind == SE3DI_SHAPE_CYLINDER ? fmin(s->radius, s->half_length)
                                                : s->radius;
+    m.parting = m.size;
     find_center(&m);
     if (s->kind == SE3DI_SHAPE_SPHERE || s->kind == SE3DI_SHAPE_CAPSULE) {
         touch_ends(&m);
     } else if (s->kind == SE3DI_SHAPE_CYLINDER) {
-        touch_rims(&m);
+        se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_rims, &m);
     } else {
         touch_corners(&m);
     }
     if (s->kind != SE3DI_SHAPE_SPHERE) {
         se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_edges, &m);
+        if (manifold->count == 0) {
+            add_lines(&m, &m.parted, NULL, 0x80000008u);
+        }
+        if (manifold->count == 0) {
+            se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_rest, &m);
+        }
+        separate_features(manifold);
     }
 }
 

@@ -88,7 +88,7 @@ typedef struct se3di_shape {
     size_t tree_bytes;
     int32_t closed; /* mesh: 1 with its triangles counter-clockwise seen from outside, -1 clockwise,
                        0 open or not of one sense */
-    int32_t reserved_mesh;
+    int32_t convex; /* mesh: closed, and the hull of its vertices */
     double force[3], torque[3]; /* of bodies, on its body about the centre of mass, last accepted */
 } se3di_shape;
 
