@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* bdf: backward differentiation of order 1 to 5 with quasi-constant steps, for stiff and smooth
- * motions. With the backward differences D_0 .. D_k of y = (r, p, v, w) at the step h,
+/* bdf: backward differentiation of order 1 to 5 with variable steps, for stiff and smooth motions.
+ * The formula has a fixed leading coefficient on the times that the accepted states have
+ * (bdf_history.c); both levels of the constraints hold at the end of a step (bdf_newton.c), which
+ * is then projected to rounding. Order and step follow the local errors that this and the
+ * neighbouring orders would have made.
  *
- *     y_1 = y_P - psi + c y'_1,    y_P = sum_j D_j,   psi = sum_(j >= 1) gamma_j D_j / gamma_k,
- *     c = h / gamma_k,             gamma_j = sum_(i <= j) 1/i
- *     M vdot_1 + Phi_q^T lambda = Q + velocity terms,   Phi(q_1, t_1) = 0
- *
- * solved for (vdot_1, lambda) by Newton with the exact matrix; p_1 = (I - c/2 Omega(w_1))^-1 (..)
- * is explicit. Velocities, and positions to rounding, are then projected onto their constraints
- * (stabilisation of index 2). The local error is d/(k + 1), d = y_1 - y_P; the order follows the
- * estimates of its neighbours (Shampine, Reichelt 1997).  docs/theory/bdf.md */
+ * Steps of the caller's lengths have no error control: where the last states do not lie nearly
+ * evenly behind the new one, and at the begin, the step is one of radau, of order 5.
+ * docs/theory/bdf.md */
+#include "integrator/bdf.h"
+#include "integrator/memory.h"
+#include "integrator/radau.h"
+
 #include "contact/loads.h"
 #include "contact/pace.h"
-#include "integrator/memory.h"
 #include "math/elementary.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -21,93 +22,82 @@
 #include <math.h>
 #include <string.h>
 
-#define ORDER_MAX   5
-#define DIFFERENCES (ORDER_MAX + 3)
+#define GROWTH 2.0 /* of a step at most */
 
-/* The history: this header, the differences, the state at the begin of the last step, the
- * multipliers. */
-enum {
-    BDF_TIME = SE3DI_HISTORY_TIME,
-    BDF_BEGIN = SE3DI_HISTORY_BEGIN, /* of the last step */
-    BDF_STEP,                        /* the next one */
-    BDF_ORDER,
-    BDF_EQUAL,
-    BDF_LENGTH,
-    BDF_SPEED,
-    BDF_SPIN,
-    BDF_RENEWED, /* 1: something else acts since the last step */
-    BDF_HEADER
-};
+/* Newton iterations: a shorter step is worth more than many, where it can be had. */
+#define ITERATIONS_CONTROLLED 10
+#define ITERATIONS_STEP       25
 
-typedef struct bdf {
-    se3di_integration *integration;
-    se3di_equations *equations;
-    se3di_assembly *assembly;
-    size_t count; /* numbers of y */
-    double *header, *D, *y0, *lambda;
-    double *base;      /* y_P - psi */
-    double *predicted; /* y_P */
-    double *y;
-    double *acceleration; /* a, wdot of each free body [6] */
-    double *work;         /* [unknowns] */
-    double tolerance, c;
-    double t_end; /* of the run */
-} bdf;
-
-static size_t history_count(const se3di_assembly *assembly)
+size_t se3di_bdf_history_count(const se3di_assembly *assembly)
 {
-    return BDF_HEADER + (DIFFERENCES + 1) * se3di_state_count(assembly) + assembly->row_count;
+    return BDF_HEADER + SE3DI_BDF_POINTS_MAX * se3di_state_count(assembly);
 }
 
+size_t se3di_bdf_work_count(const se3di_assembly *assembly)
+{
+    return 4 * se3di_state_count(assembly) + 2 * (size_t)assembly->unknown_count +
+           assembly->row_count;
+}
+
+/* Behind what the steps of radau need. */
 static size_t work_count(const se3di_assembly *assembly)
 {
-    return 3 * se3di_state_count(assembly) + 2 * (size_t)assembly->unknown_count;
+    return se3di_radau_work_count(assembly) + se3di_bdf_work_count(assembly);
 }
 
-/* The parts of history and work. */
-static bdf point(const se3di_integration *integration)
+void se3di_bdf_point(se3di_bdf *m, const se3di_integration *integration, size_t before)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
-    size_t count = se3di_state_count(assembly);
-    bdf m = {.equations = integration->equations,
-             .assembly = assembly,
-             .count = count,
-             .header = assembly->model->history,
-             .base = integration->work,
-             .tolerance = fmax(0.1 * integration->settings.tolerance, 1e-10)};
-    m.D = m.header + BDF_HEADER;
-    m.y0 = m.D + DIFFERENCES * count;
-    m.lambda = m.y0 + count;
-    m.predicted = m.base + count;
-    m.y = m.predicted + count;
-    m.acceleration = m.y + count;
-    m.work = m.acceleration + assembly->unknown_count;
-    return m;
+    const size_t count = se3di_state_count(assembly);
+    const size_t n = assembly->unknown_count;
+    *m = (se3di_bdf){.equations = integration->equations,
+                     .assembly = assembly,
+                     .count = count,
+                     .header = assembly->model->history,
+                     .base = integration->work + before,
+                     .iterations_max = ITERATIONS_CONTROLLED,
+                     .tolerance = fmax(0.1 * integration->settings.tolerance, 1e-13)};
+    m->accuracy = fmin(1e-13, fmax(1e-15, 1e-6 * m->tolerance));
+    m->times = m->header + BDF_TIMES;
+    m->points = m->header + BDF_HEADER;
+    m->predicted = m->base + count;
+    m->y = m->predicted + count;
+    m->difference = m->y + count;
+    m->acceleration = m->difference + count;
+    m->work = m->acceleration + n;
+    m->lambda = m->work + n;
 }
 
-static bdf begin(se3di_integration *integration)
+static se3di_bdf begin(se3di_integration *integration)
 {
-    bdf m = point(integration);
+    se3di_bdf m;
+    se3di_bdf_point(&m, integration, se3di_radau_work_count(&integration->equations->assembly));
     m.integration = integration;
     return m;
 }
 
-static se3di_state_scale get_scale(const bdf *m)
+se3di_state_scale se3di_bdf_get_scale(const se3di_bdf *m)
 {
     return (se3di_state_scale){.length = m->header[BDF_LENGTH],
                                .speed = m->header[BDF_SPEED],
                                .spin = m->header[BDF_SPIN]};
 }
 
-/* The largest part of an error vector, relative to tolerance and scales. */
-static double measure(const bdf *m, const double *error)
+int se3di_bdf_get_top(const se3di_bdf *m)
+{
+    const int top = m->integration->settings.order;
+    return top >= 1 && top <= SE3DI_BDF_ORDER_MAX ? top : SE3DI_BDF_ORDER_MAX;
+}
+
+/* The largest part of m->difference, relative to tolerance and scales. */
+static double measure(const se3di_bdf *m)
 {
     double r = 0.0, v = 0.0;
     for (size_t k = 0; k + SE3DI_STATE_WORK < m->count; k += SE3DI_STATE_SIZE) {
-        const double *e = error + k;
-        double turn = sqrt(e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6]);
-        double q = se3di_norm(e) / m->header[BDF_LENGTH] + 2.0 * turn;
-        double s =
+        const double *e = m->difference + k;
+        const double turn = sqrt(e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6]);
+        const double q = se3di_norm(e) / m->header[BDF_LENGTH] + 2.0 * turn;
+        const double s =
             se3di_norm(e + 7) / m->header[BDF_SPEED] + se3di_norm(e + 10) / m->header[BDF_SPIN];
         r = q <= r ? r : q; /* NaN stays */
         v = s <= v ? v : s;
@@ -115,201 +105,59 @@ static double measure(const bdf *m, const double *error)
     return (r + v) / m->tolerance;
 }
 
-/* Backward differences for the step `ratio` times as long from a time `shift` steps after the
- * present one: interpolation of degree `order`. */
-static void move_base(bdf *m, double ratio, double shift)
-{
-    int order = (int)m->header[BDF_ORDER];
-    double basis[ORDER_MAX + 1][ORDER_MAX + 1] = {{0.0}}; /* value at -i ratio of the j-th form */
-    double R[ORDER_MAX + 1][ORDER_MAX + 1];
-    for (int i = 0; i <= order; ++i) {
-        basis[i][0] = 1.0;
-        for (int j = 1; j <= order; ++j) {
-            basis[i][j] = basis[i][j - 1] * (j - 1 + shift - i * ratio) / j;
-        }
-    }
-    memcpy(R, basis, sizeof R);
-    for (int level = 1; level <= order; ++level) { /* differences of the values at the new nodes */
-        for (int i = order; i >= level; --i) {
-            for (int j = 0; j <= order; ++j) {
-                R[i][j] = R[i - 1][j] - R[i][j];
-            }
-        }
-    }
-    for (size_t k = 0; k < m->count; ++k) {
-        double fresh[ORDER_MAX + 1] = {0.0};
-        for (int i = 0; i <= order; ++i) {
-            for (int j = 0; j <= order; ++j) {
-                fresh[i] += R[i][j] * m->D[(size_t)j * m->count + k];
-            }
-        }
-        for (int i = 0; i <= order; ++i) {
-            m->D[(size_t)i * m->count + k] = fresh[i];
-        }
-    }
-    m->header[BDF_STEP] *= ratio;
-    m->header[BDF_EQUAL] = 0.0;
-}
-
-static void change_step(bdf *m, double ratio)
-{
-    move_base(m, ratio, 0.0);
-}
-
-static double harmonic(int order)
-{
-    double sum = 0.0;
-    for (int k = 1; k <= order; ++k) {
-        sum += 1.0 / k;
-    }
-    return sum;
-}
-
-static void predict(bdf *m)
-{
-    int order = (int)m->header[BDF_ORDER];
-    m->c = m->header[BDF_STEP] / harmonic(order);
-    memcpy(m->predicted, m->D, m->count * sizeof *m->D);
-    memcpy(m->base, m->D, m->count * sizeof *m->D);
-    for (int j = 1; j <= order; ++j) {
-        const double *D = m->D + (size_t)j * m->count;
-        const double weight = 1.0 - harmonic(j) / harmonic(order);
-        for (size_t k = 0; k < m->count; ++k) {
-            m->predicted[k] += D[k];
-            m->base[k] += weight * D[k];
-        }
-    }
-    for (size_t k = 0; k < m->assembly->body_count; ++k) {
-        for (size_t i = 0; i < 6; ++i) {
-            size_t at = k * SE3DI_STATE_SIZE + 7 + i;
-            m->acceleration[6 * k + i] = (m->predicted[at] - m->base[at]) / m->c;
-        }
-    }
-}
-
-/* y_1 from the accelerations, and the frames. */
-static void update_state(bdf *m)
-{
-    const double c = m->c;
-    for (size_t k = 0; k < m->assembly->body_count; ++k) {
-        const double *base = m->base + k * SE3DI_STATE_SIZE;
-        double *y = m->y + k * SE3DI_STATE_SIZE;
-        double rate[4];
-        for (int i = 0; i < 6; ++i) {
-            y[7 + i] = base[7 + i] + c * m->acceleration[6 * k + (size_t)i];
-        }
-        for (int i = 0; i < 3; ++i) {
-            y[i] = base[i] + c * y[7 + i];
-        }
-        se3di_quat_rate(base + 3, y + 10, rate);
-        const double scale = 1.0 / (1.0 + 0.25 * c * c * se3di_dot(y + 10, y + 10));
-        for (int i = 0; i < 4; ++i) {
-            y[3 + i] = scale * (base[3 + i] + c * rate[i]);
-        }
-    }
-    se3di_state_set(m->assembly, m->y);
-}
-
-/* Right-hand sides of a Newton correction of accelerations and multipliers. */
-static se3d_status eval_residual(bdf *m, double t)
-{
-    se3di_equations *equations = m->equations;
-    se3di_assembly *assembly = m->assembly;
-    se3di_assembly_eval_mass(assembly);
-    se3di_assembly_eval_jacobian(assembly);
-    SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
-    se3di_assembly_add_transposed(assembly, -1.0, m->lambda, equations->b);
-    se3di_assembly_subtract_mass(assembly, m->acceleration, equations->b);
-    se3di_assembly_get_velocity(assembly, equations->x);
-    se3di_assembly_mul(assembly, equations->x, equations->c);
-    for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        equations->c[k] = (assembly->f[3 * (size_t)k + 1] - equations->c[k]) / m->c;
-    }
-    return SE3D_OK;
-}
-
-/* One correction; its size relative to the tolerance. */
-static se3d_status iterate(bdf *m, double t, int refactor, double *size)
+/* Six numbers a body of m->difference, positions (`at` 0) or velocities (7), without the part that
+ * the constraints decide: from m->work. */
+static se3d_status leave_tangent(se3di_bdf *m, double *six)
 {
     se3di_equations *equations = m->equations;
     const se3di_assembly *assembly = m->assembly;
-    SE3DI_TRY(eval_residual(m, t));
-    if (refactor) {
-        se3di_kkt_expect(m->integration->newton.kkt, equations->b, equations->c);
-        SE3DI_TRY(se3di_newton_factor_rates(&m->integration->newton, t, m->acceleration, m->lambda,
-                                            m->c));
+    memset(equations->b, 0, assembly->unknown_count * sizeof *equations->b);
+    memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        six[k] *= -1.0;
     }
-    SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
-    ++equations->counters.iterations;
-    *size = 0.0;
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        const double *change = equations->x + 6 * k;
-        for (size_t i = 0; i < 6; ++i) {
-            double scale = i < 3 ? 1.0 / m->header[BDF_SPEED] + m->c / m->header[BDF_LENGTH]
-                                 : 1.0 / m->header[BDF_SPIN] + m->c;
-            double part = m->c * fabs(change[i]) * scale / m->tolerance;
-            *size = part <= *size ? *size : part;
-            m->acceleration[6 * k + i] += change[i];
-        }
-    }
-    for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        m->lambda[k] += equations->l[k];
-    }
-    update_state(m);
-    return isfinite(*size) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
+    se3di_assembly_subtract_mass(assembly, six, equations->b);
+    SE3DI_TRY(se3di_equations_solve(equations));
+    memcpy(six, equations->x, assembly->unknown_count * sizeof *six);
+    return SE3D_OK;
 }
 
-/* A fall from a correction that had blown up (a stop, a contact that comes and goes) says nothing
- * of what remains: what is left must be small by itself, too. */
-static se3d_status iterate_to_convergence(bdf *m, double t)
+/* The same of its part in the directions that the constraints leave, where the equations are
+ * factored. The others are as good as rounding is in the projection, which near a singular position
+ * amplifies it by the square of the inverse distance: no shorter step would help. */
+static se3d_status measure_tangent(se3di_bdf *m, double *error)
 {
-    double before = HUGE_VAL, size = HUGE_VAL;
-    int refactor = 1;
-    if (m->equations->redundant && m->assembly->row_count > 0) {
-        memset(m->lambda, 0, m->assembly->row_count * sizeof *m->lambda);
-    }
-    se3di_contacts_begin(m->assembly->model, m->header[BDF_STEP], 1.0, 0);
-    SE3DI_TRY(se3di_assembly_eval_functions(m->assembly, t, m->equations->error));
-    update_state(m);
-    for (int k = 0; k < 10; ++k) {
-        SE3DI_TRY(se3di_equations_ask(m->equations));
-        SE3DI_TRY(iterate(m, t, refactor, &size));
-        const int is_traced = se3di_newton_note(&m->integration->newton, size * m->tolerance);
-        if (size <= 1e-3 || (k > 0 && size <= 1.0 && size * size / before <= 1e-4) ||
-            (k > 1 && size > 0.8 * before && size * m->tolerance <= SE3DI_STATE_NOISE)) {
-            return SE3D_OK;
+    double largest[2] = {0.0, 0.0};
+    for (int level = 0; level < 2; ++level) {
+        for (size_t k = 0; k < m->assembly->body_count; ++k) {
+            const double *d = m->difference + k * SE3DI_STATE_SIZE;
+            double *six = m->work + 6 * k;
+            se3di_copy(level ? d + 7 : d, six);
+            if (level) {
+                se3di_copy(d + 10, six + 3);
+            } else {
+                se3di_quat_angular_velocity(m->y + k * SE3DI_STATE_SIZE + 3, d + 3, six + 3);
+            }
         }
-        if (k > 1 && size > 2.0 * before) {
-            break;
+        SE3DI_TRY(leave_tangent(m, m->work));
+        for (size_t k = 0; k < m->assembly->unknown_count; k += 6) {
+            const double part =
+                se3di_norm(m->work + k) / m->header[level ? BDF_SPEED : BDF_LENGTH] +
+                se3di_norm(m->work + k + 3) / (level ? m->header[BDF_SPIN] : 1.0);
+            largest[level] = part <= largest[level] ? largest[level] : part;
         }
-        refactor = is_traced || (k > 0 && size > 0.1 * before);
-        before = size;
     }
-    return size <= 0.03
-               ? SE3D_OK
-               : se3di_error_set(m->equations->error, SE3D_ERR_NO_CONVERGENCE,
-                                 "t = %g s: Newton did not converge in a step of %g s; try a "
-                                 "smaller step or tolerance",
-                                 t, m->header[BDF_STEP]);
-}
-
-static se3d_status solve_step(bdf *m, double t)
-{
-    se3di_kkt *kkt = m->integration->newton.kkt;
-    const se3di_kkt_settings before = se3di_state_regularise(m->assembly, kkt);
-    se3d_status status = iterate_to_convergence(m, t);
-    se3di_kkt_set_settings(kkt, &before);
-    return status;
+    *error = (largest[0] + largest[1]) / m->tolerance;
+    return SE3D_OK;
 }
 
 /* What friction remembers of the end of the step; *error is raised to what that changes. If it is
  * too much for a controlled step, nothing is remembered. */
-static se3d_status settle(bdf *m, double t, int is_controlled, double *error)
+static se3d_status settle(se3di_bdf *m, int is_controlled, double *error)
 {
-    const se3di_state_scale scale = get_scale(m);
+    const se3di_state_scale scale = se3di_bdf_get_scale(m);
     double change;
-    SE3DI_TRY(
-        se3di_memory_settle(m->integration, t, m->header[BDF_STEP], &scale, m->work, &change));
+    SE3DI_TRY(se3di_memory_settle(m->integration, m->t, m->h, &scale, m->work, &change));
     if (is_controlled) {
         *error = fmax(*error, change / m->integration->settings.tolerance);
         if (!(*error <= 1.0)) {
@@ -319,326 +167,394 @@ static se3d_status settle(bdf *m, double t, int is_controlled, double *error)
     return SE3D_OK;
 }
 
-static se3d_status project_end(bdf *m, double t, double power[SE3DI_STATE_WORK])
+/* y_1 put onto its constraints to rounding: before its error is measured, as near a singular
+ * position the iteration leaves what the projection takes away. */
+static se3d_status project_end(se3di_bdf *m)
 {
-    se3di_model *model = m->assembly->model;
-    se3di_state_scale scale = get_scale(m);
-    SE3DI_TRY(se3di_state_project(m->equations, t, &scale, 1e-13, 0));
-    SE3DI_TRY(se3di_loads_prepare(model, t, m->equations->error));
-    return se3di_loads_power(model, t, power);
+    const size_t bodies = m->count - SE3DI_STATE_WORK;
+    const se3di_state_scale scale = se3di_bdf_get_scale(m);
+    double work[SE3DI_STATE_WORK];
+    SE3DI_TRY(se3di_state_project(m->equations, m->t, &scale, m->accuracy, 0));
+    memcpy(work, m->y + bodies, sizeof work);
+    se3di_state_get(m->assembly, m->y);
+    memcpy(m->y + bodies, work, sizeof work);
+    return SE3D_OK;
 }
 
-/* Project, and take y_1 into the differences. */
-static se3d_status accept(bdf *m, double t)
+/* The frames and y_1 are the projected end of the step; `is_bdf`: without the works yet. */
+static void take(se3di_bdf *m, const double *power, int order, int is_bdf)
+{
+    const size_t bodies = m->count - SE3DI_STATE_WORK;
+    for (size_t k = bodies; k < m->count && is_bdf; ++k) {
+        m->y[k] = m->base[k] + m->c * power[k - bodies];
+    }
+    se3di_bdf_push(m, m->y, m->t);
+    m->header[BDF_BEGIN] = m->header[BDF_TIME];
+    m->header[BDF_TIME] = m->t;
+    m->header[BDF_USED] = order;
+    m->header[BDF_SINCE] += 1.0;
+    m->header[BDF_RENEWED] = 0.0;
+    se3di_angles_accept(m->assembly->model);
+    se3di_contacts_accept(m->assembly->model); /* force elements: settle */
+    ++m->equations->counters.steps;
+}
+
+/* Take y_1, and let the scales follow. */
+static se3d_status accept(se3di_bdf *m, int order, int is_bdf)
 {
     se3di_model *model = m->assembly->model;
-    size_t bodies = m->count - SE3DI_STATE_WORK;
-    int order = (int)m->header[BDF_ORDER];
+    se3di_state_scale scale = se3di_bdf_get_scale(m);
     double power[SE3DI_STATE_WORK];
     if (m->assembly->row_count > 0) {
         memcpy(model->lambda, m->lambda, m->assembly->row_count * sizeof *m->lambda);
     }
-    const se3d_status status = project_end(m, t, power);
+    se3d_status status = se3di_loads_prepare(model, m->t, m->equations->error);
+    status = status < 0 ? status : se3di_loads_power(model, m->t, power);
+    status = status < 0 ? status
+                        : se3di_state_derivative(m->assembly, m->t, m->acceleration, m->lambda,
+                                                 m->difference);
     if (status < 0) {
         se3di_memory_undo(m->integration);
         return status;
     }
-    for (int k = 0; k < SE3DI_STATE_WORK; ++k) {
-        m->y[bodies + (size_t)k] = m->base[bodies + (size_t)k] + m->c * power[k];
-    }
-    memcpy(m->y0, m->D, m->count * sizeof *m->y0);
-    for (size_t k = 0; k < m->count; ++k) {
-        double *D = m->D + k;
-        double d = m->y[k] - m->predicted[k];
-        D[(size_t)(order + 2) * m->count] = d - D[(size_t)(order + 1) * m->count];
-        D[(size_t)(order + 1) * m->count] = d;
-        for (int j = order; j >= 0; --j) {
-            D[(size_t)j * m->count] += D[(size_t)(j + 1) * m->count];
-        }
-    }
-    double work[SE3DI_STATE_WORK];
-    memcpy(work, m->D + bodies, sizeof work);
-    se3di_state_get(m->assembly, m->D); /* projected */
-    memcpy(m->D + bodies, work, sizeof work);
-    m->header[BDF_BEGIN] = m->header[BDF_TIME];
-    m->header[BDF_TIME] = t;
-    m->header[BDF_EQUAL] += 1.0;
-    m->header[BDF_RENEWED] = 0.0;
-    se3di_angles_accept(model);
-    se3di_contacts_accept(model); /* force elements: settle */
-    ++m->equations->counters.steps;
+    take(m, power, order, is_bdf);
+    se3di_state_scale_grow(m->assembly, m->difference, &scale);
+    m->header[BDF_SPEED] = scale.speed;
+    m->header[BDF_SPIN] = scale.spin;
     return SE3D_OK;
 }
 
-static double error_of(const bdf *m, int difference)
+/* ---- with error control ---- */
+
+typedef struct errors {
+    double lower, here, higher; /* of order - 1, order, order + 1; HUGE_VAL: not to be had */
+} errors;
+
+static se3d_status measure_error(se3di_bdf *m, int order, int is_tangent, double *error)
 {
-    return measure(m, m->D + (size_t)difference * m->count) / difference;
+    se3di_bdf_get_error(m, order);
+    *error = measure(m);
+    return is_tangent ? measure_tangent(m, error) : SE3D_OK;
 }
 
-/* Order and step after an accepted step of error `error`. */
-static void adapt(bdf *m, double error)
+/* The errors of the orders that can be chosen. */
+static se3d_status measure_errors(se3di_bdf *m, int order, errors *e)
 {
-    int order = (int)m->header[BDF_ORDER];
-    int top = m->integration->settings.order;
-    top = top >= 1 && top <= ORDER_MAX ? top : ORDER_MAX;
-    double limit = m->integration->settings.step;
-    if (m->header[BDF_EQUAL] < order + 1) {
+    SE3DI_TRY(measure_error(m, order, 0, &e->here));
+    const int is_tangent = e->here > 1.0 && m->assembly->row_count > 0;
+    if (is_tangent) {
+        SE3DI_TRY(se3di_equations_factor(m->equations));
+        SE3DI_TRY(measure_error(m, order, 1, &e->here));
+    }
+    if (!(e->here <= 1.0)) {
+        return isfinite(e->here) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
+    }
+    if (order > 1) {
+        SE3DI_TRY(measure_error(m, order - 1, is_tangent, &e->lower));
+    }
+    if (order < se3di_bdf_get_top(m) && (int)m->header[BDF_POINTS] > order + 1) {
+        SE3DI_TRY(measure_error(m, order + 1, is_tangent, &e->higher));
+    }
+    return SE3D_OK;
+}
+
+/* A step of the order; its errors. */
+static se3d_status attempt(se3di_bdf *m, int order, errors *e)
+{
+    *e = (errors){HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    se3di_bdf_predict(m, order);
+    SE3DI_TRY(se3di_bdf_solve(m));
+    SE3DI_TRY(project_end(m));
+    return measure_errors(m, order, e);
+}
+
+/* The factor that a step of the order may be longer by. */
+static double factor_of(double error, int order)
+{
+    return se3di_pow(2.0 * fmax(error, 1e-10), -1.0 / (order + 1));
+}
+
+static void set_order(se3di_bdf *m, int order)
+{
+    if (order != (int)m->header[BDF_ORDER]) {
+        m->header[BDF_SINCE] = 0.0;
+    }
+    m->header[BDF_ORDER] = order;
+}
+
+static double limit_step(const se3di_bdf *m, double h)
+{
+    const double limit = m->integration->settings.step;
+    return limit > 0.0 && h > limit ? limit : h;
+}
+
+/* At the begin the order rises and the step doubles as long as the errors allow both. */
+static int grow_at_start(se3di_bdf *m, int order, const errors *e)
+{
+    if (m->header[BDF_STARTS] == 0.0) {
+        return 0;
+    }
+    const int can_rise = order < se3di_bdf_get_top(m);
+    if (!can_rise || e->lower < e->here || !(factor_of(e->here, order) >= GROWTH)) {
+        m->header[BDF_STARTS] = 0.0;
+        return 0;
+    }
+    set_order(m, order + 1);
+    m->header[BDF_STEP] = limit_step(m, GROWTH * m->h);
+    return 1;
+}
+
+/* Order and step after an accepted step. A step that would grow a little only stays. */
+static void adapt(se3di_bdf *m, int order, const errors *e)
+{
+    if (grow_at_start(m, order, e)) {
         return;
     }
-    double best = se3di_pow(fmax(error, 1e-10), -1.0 / (order + 1));
+    double best = factor_of(e->here, order);
     int chosen = order;
-    if (order > 1) {
-        double factor = se3di_pow(fmax(error_of(m, order), 1e-10), -1.0 / order);
-        chosen = factor > best ? order - 1 : chosen;
-        best = fmax(best, factor);
+    if (order > 1 && factor_of(e->lower, order - 1) > best) {
+        best = factor_of(e->lower, order - 1);
+        chosen = order - 1;
     }
-    if (order < top) {
-        double factor = se3di_pow(fmax(error_of(m, order + 2), 1e-10), -1.0 / (order + 2));
-        chosen = factor > best ? order + 1 : chosen;
-        best = fmax(best, factor);
+    if (m->header[BDF_SINCE] > order && isfinite(e->higher) &&
+        factor_of(e->higher, order + 1) > best) {
+        best = factor_of(e->higher, order + 1);
+        chosen = order + 1;
     }
-    m->header[BDF_ORDER] = chosen;
-    double ratio = fmin(5.0, 0.9 * best);
-    ratio = limit > 0.0 ? fmin(ratio, limit / m->header[BDF_STEP]) : ratio;
-    if (ratio > 1.1 || ratio < 0.9 || chosen != order) {
-        change_step(m, ratio);
+    set_order(m, chosen);
+    double factor = 1.0;
+    if (best >= 1.2) {
+        factor = fmin(best, GROWTH);
+    } else if (best < 1.0) {
+        factor = fmax(0.5, fmin(0.9, best));
     }
+    m->header[BDF_STEP] = limit_step(m, factor * m->h);
 }
 
-/* No step over a contact that begins; and after a change of what acts, which may soon change again,
- * none over the end of the run. */
-static void keep_pace(bdf *m)
+/* A step that was rejected `times` times: at a kink of the motion the states behind it say nothing
+ * of what is ahead, and the order falls. The history stays as it is: a run that is interrupted here
+ * begins the step anew. */
+static void shorten(se3di_bdf *m, int *order, double error, int times)
 {
-    se3di_state_set(m->assembly, m->D);
-    double h = m->header[BDF_STEP];
-    double paced = se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
-    const double rest = m->t_end - m->header[BDF_TIME];
-    paced = m->header[BDF_RENEWED] > 0.0 && rest > 0.0 ? fmin(paced, rest) : paced;
-    if (paced < h) {
-        change_step(m, paced / h);
+    if (times == 1 && isfinite(error)) {
+        m->h *= fmax(0.25, fmin(0.9, 0.9 * factor_of(error, *order)));
+    } else {
+        m->h *= 0.25;
     }
+    *order = times > 2 ? 1 : *order;
 }
 
-/* One accepted step. */
-static se3d_status advance(bdf *m, int is_controlled)
+static se3d_status fail_small(const se3di_bdf *m, se3d_status cause)
 {
-    if (is_controlled) {
-        keep_pace(m);
-    }
-    for (;;) {
-        double t = m->header[BDF_TIME] + m->header[BDF_STEP];
-        double error = HUGE_VAL;
-        int order = (int)m->header[BDF_ORDER];
-        if (is_controlled) {
-            SE3DI_TRY(se3di_equations_try_step(m->equations, m->header[BDF_TIME]));
+    return cause < 0 ? cause
+                     : se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
+                                       "t = %g s: the step fell to %.3g s: the tolerance %g cannot "
+                                       "be met here; the motion is not smooth",
+                                       m->t, m->h, m->integration->settings.tolerance);
+}
+
+/* No step over a contact that begins, nor of more than an angle's counter can follow; and after a
+ * change of what acts, which may soon change again, none over the end of the run: *longer is then
+ * what it would have been, else 0. */
+static double pace(se3di_bdf *m, double t_end, double *longer)
+{
+    const double rest = t_end - m->header[BDF_TIME];
+    se3di_state_set(m->assembly, m->points);
+    double h = se3di_state_limit_turn(m->assembly->model, 0.0, m->header[BDF_STEP]);
+    h = se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
+    *longer = m->header[BDF_RENEWED] > 0.0 && rest > 0.0 && h > rest ? h : 0.0;
+    return *longer > 0.0 ? rest : h;
+}
+
+/* One accepted step with error control. */
+static se3d_status advance(se3di_bdf *m, double t_end)
+{
+    double longer;
+    int order = (int)m->header[BDF_ORDER];
+    m->h = pace(m, t_end, &longer);
+    for (int times = 1;; ++times, longer = 0.0) {
+        errors e;
+        SE3DI_TRY(se3di_equations_try_step(m->equations, m->header[BDF_TIME]));
+        se3d_status status = attempt(m, order, &e);
+        if (status >= 0 && e.here <= 1.0) {
+            status = settle(m, 1, &e.here);
         }
-        predict(m);
-        se3d_status status = solve_step(m, t);
-        if (status >= 0) {
-            for (size_t k = 0; k + SE3DI_STATE_WORK < m->count; ++k) {
-                m->predicted[k] = m->y[k] - m->predicted[k];
-            }
-            error = measure(m, m->predicted) / (order + 1);
-            for (size_t k = 0; k + SE3DI_STATE_WORK < m->count; ++k) {
-                m->predicted[k] = m->y[k] - m->predicted[k];
-            }
-            if (error <= 1.0 || !is_controlled) {
-                status = settle(m, t, is_controlled, &error);
-            }
+        if (status >= 0 && e.here <= 1.0) {
+            status = accept(m, order, 1);
             if (status >= 0) {
-                status = error <= 1.0 || !is_controlled ? accept(m, t) : SE3D_INFO_REDUNDANT;
+                m->header[BDF_STARTS] = times > 1 ? 0.0 : m->header[BDF_STARTS];
+                set_order(m, order);
+                adapt(m, order, &e);
+                if (longer > 0.0) {
+                    m->header[BDF_TIME] = m->times[0] = t_end;
+                    m->header[BDF_STEP] = fmax(longer, m->header[BDF_STEP]);
+                }
+                return SE3D_OK;
             }
-        }
-        if (status == SE3D_OK) {
-            se3di_state_scale scale = get_scale(m);
-            se3di_state_derivative(m->assembly, t, m->acceleration, m->lambda, m->y);
-            se3di_state_scale_grow(m->assembly, m->y, &scale);
-            m->header[BDF_SPEED] = scale.speed;
-            m->header[BDF_SPIN] = scale.spin;
-            if (is_controlled) {
-                adapt(m, error);
-            }
-            return SE3D_OK;
         }
         if (status == SE3D_ERR_INTERRUPTED) {
             return status;
         }
         ++m->equations->counters.rejected;
-        double factor = isfinite(error) ? 0.9 * se3di_pow(error, -1.0 / (order + 1)) : 0.25;
-        if (!is_controlled || m->header[BDF_STEP] < 1e-12 * fmax(1e-3, fabs(t))) {
-            return status < 0 ? status
-                              : se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
-                                                "t = %g s: the step fell to %.3g s: the tolerance "
-                                                "%g cannot be met here; the motion is not smooth",
-                                                t, m->header[BDF_STEP],
-                                                m->integration->settings.tolerance);
+        shorten(m, &order, status < 0 ? HUGE_VAL : e.here, times);
+        if (!(m->h > 1e-12 * fmax(1e-3, fabs(m->t)))) {
+            return fail_small(m, status);
         }
-        change_step(m, fmax(0.1, fmin(0.9, factor)));
     }
 }
 
-/* D_0 and D_1 from the model's state. */
-static se3d_status adopt(bdf *m, double h)
+/* ---- begin, steps and runs ---- */
+
+/* The model's state is the newest one. */
+static se3d_status adopt(se3di_bdf *m)
 {
     se3di_model *model = m->assembly->model;
-    se3di_state_scale scale = {.length = se3di_state_length(model)};
-    memset(m->header, 0, history_count(m->assembly) * sizeof *m->header);
-    se3di_state_get(m->assembly, m->D);
+    se3di_state_scale scale = {.length = se3di_state_length(model),
+                               .speed = m->header[BDF_SPEED],
+                               .spin = m->header[BDF_SPIN]};
+    se3di_bdf_drop_from(m, model->time);
+    se3di_state_get(m->assembly, m->y);
+    se3di_bdf_push(m, m->y, model->time);
     se3di_assembly_get_acceleration(m->assembly, m->acceleration);
     SE3DI_TRY(se3di_state_derivative(m->assembly, model->time, m->acceleration, model->lambda,
-                                     m->D + m->count));
-    se3di_state_scale_grow(m->assembly, m->D + m->count, &scale);
-    for (size_t k = 0; k < m->count; ++k) {
-        m->D[m->count + k] *= h;
-    }
+                                     m->difference));
+    se3di_state_scale_grow(m->assembly, m->difference, &scale);
     m->header[BDF_TIME] = m->header[BDF_BEGIN] = model->time;
-    m->header[BDF_STEP] = h;
-    m->header[BDF_ORDER] = 1.0;
     m->header[BDF_LENGTH] = scale.length;
     m->header[BDF_SPEED] = scale.speed;
     m->header[BDF_SPIN] = scale.spin;
-    if (m->assembly->row_count > 0) {
-        memcpy(m->lambda, model->lambda, m->assembly->row_count * sizeof *m->lambda);
-    }
     return SE3D_OK;
+}
+
+/* A run begins on states before its start, on the parabola (velocities: the line) that the
+ * accelerations make of the state: order 2 is there at once. */
+static void add_past(se3di_bdf *m, double h)
+{
+    const double t = m->header[BDF_TIME];
+    memcpy(m->y, m->points, m->count * sizeof *m->y);
+    m->header[BDF_POINTS] = 0.0;
+    for (int j = 2; j > 0; --j) {
+        se3di_bdf_extend(m, -j * h, m->predicted);
+        se3di_bdf_push(m, m->predicted, t - j * h);
+    }
+    se3di_bdf_push(m, m->y, t);
+    m->header[BDF_USED] = se3di_bdf_get_top(m) > 1 ? 2.0 : 1.0;
+    set_order(m, (int)m->header[BDF_USED]);
 }
 
 static se3d_status start(se3di_integration *integration, double h)
 {
-    bdf m = begin(integration);
-    double limit = integration->settings.step;
-    double first = fmin(1e-3, 0.1 * sqrt(m.tolerance));
+    se3di_bdf m = begin(integration);
+    const double limit = integration->settings.step;
+    const double first = fmin(1e-3, 0.1 * sqrt(m.tolerance));
     (void)h;
-    return adopt(&m, limit > 0.0 ? fmin(limit, first) : first);
+    memset(m.header, 0, se3di_bdf_history_count(m.assembly) * sizeof *m.header);
+    SE3DI_TRY(adopt(&m));
+    m.header[BDF_STEP] = limit > 0.0 ? fmin(limit, first) : first;
+    m.header[BDF_STARTS] = 1.0;
+    add_past(&m, m.header[BDF_STEP]);
+    return SE3D_OK;
 }
 
-/* The past is moved to where the present rates y' and accelerations would have led from it: a line
- * on all, a parabola on positions. With the latter order 2 is there from the start. */
-static void bend(bdf *m, const double *rate)
-{
-    const double h = m->header[BDF_STEP];
-    const int order = (int)m->header[BDF_ORDER];
-    double *D1 = m->D + m->count, *D2 = D1 + m->count;
-    for (size_t k = 0; k < m->count; ++k) {
-        double slope = D1[k];
-        for (int j = 2; j <= order; ++j) {
-            slope += m->D[(size_t)j * m->count + k] / j;
-        }
-        m->y[k] = h * rate[k] - slope;
-        D1[k] += m->y[k];
-    }
-    for (size_t k = 0; k < m->assembly->body_count; ++k) {
-        const size_t at = k * SE3DI_STATE_SIZE;
-        double curve[7];
-        for (size_t i = 7; order == 1 && i < SE3DI_STATE_SIZE; ++i) {
-            m->y[at + i] = h * rate[at + i]; /* there was no parabola yet */
-        }
-        se3di_copy(m->y + at + 7, curve);
-        se3di_quat_rate(m->D + at + 3, m->y + at + 10, curve + 3);
-        for (size_t i = 3; order == 1 && i < 7; ++i) {
-            const double *w = m->D + at + 10;
-            curve[i] -= 0.25 * h * se3di_dot(w, w) * m->D[at + i];
-        }
-        for (size_t i = 0; i < 7; ++i) {
-            D1[at + i] -= 0.5 * h * curve[i];
-            D2[at + i] = (order > 1 ? D2[at + i] : 0.0) + h * curve[i];
-        }
-        for (size_t i = 7; order == 1 && i < SE3DI_STATE_SIZE; ++i) {
-            D2[at + i] = 0.0;
-        }
-    }
-}
-
+/* Something else acts: the past is bent to where the present accelerations would have led from it.
+ */
 static se3d_status renew(se3di_integration *integration)
 {
-    bdf m = begin(integration);
-    se3di_model *model = m.assembly->model;
-    const double shift = (model->time - m.header[BDF_TIME]) / m.header[BDF_STEP];
-    if (shift < 0.0) {
-        move_base(&m, 1.0, shift);
-        m.header[BDF_TIME] = model->time;
+    se3di_bdf m = begin(integration);
+    const double t = m.assembly->model->time;
+    se3di_bdf_eval_rate(&m, t, m.base);
+    SE3DI_TRY(adopt(&m));
+    if (m.header[BDF_POINTS] < 3.0) {
+        add_past(&m, m.header[BDF_STEP]);
+    } else {
+        for (size_t k = 0; k < m.count; ++k) {
+            m.difference[k] -= m.base[k];
+        }
+        se3di_bdf_bend(&m, m.difference);
     }
-    se3di_state_get(m.assembly, m.D);
-    se3di_assembly_get_acceleration(m.assembly, m.acceleration);
-    SE3DI_TRY(se3di_state_derivative(m.assembly, model->time, m.acceleration, model->lambda,
-                                     m.predicted));
-    bend(&m, m.predicted);
-    const int top = integration->settings.order;
-    m.header[BDF_ORDER] = top == 1 ? 1.0 : fmax(2.0, m.header[BDF_ORDER]);
+    const double least = fmin(2.0, se3di_bdf_get_top(&m));
+    set_order(&m, (int)fmin(fmax(least, m.header[BDF_ORDER]), m.header[BDF_POINTS] - 1.0));
     m.header[BDF_RENEWED] = 1.0;
-    if (m.assembly->row_count > 0) {
-        memcpy(m.lambda, model->lambda, m.assembly->row_count * sizeof *m.lambda);
+    return SE3D_OK;
+}
+
+static se3d_status publish(se3di_bdf *m, double t, int project)
+{
+    const se3di_state_scale scale = se3di_bdf_get_scale(m);
+    if (t < m->header[BDF_TIME]) {
+        se3di_bdf_eval(m, t, m->y);
+    } else {
+        memcpy(m->y, m->points, m->count * sizeof *m->y);
+    }
+    return se3di_state_publish(m->equations, m->y, t, &scale, project);
+}
+
+/* y_1, accelerations and multipliers by a step of radau. */
+static se3d_status solve_by_radau(se3di_bdf *m)
+{
+    const se3di_state_scale scale = se3di_bdf_get_scale(m);
+    const se3di_radau_begin_state from = {m->points, m->header[BDF_TIME], &scale};
+    m->t = m->header[BDF_TIME] + m->h;
+    SE3DI_TRY(se3di_radau_make_step(m->integration, &from, m->h, m->y, m->acceleration));
+    if (m->assembly->row_count > 0) {
+        memcpy(m->lambda, m->assembly->model->lambda, m->assembly->row_count * sizeof *m->lambda);
     }
     return SE3D_OK;
 }
 
-/* The polynomial of the differences at t. */
-static void eval_polynomial(const bdf *m, double t, double *y)
-{
-    int order = (int)m->header[BDF_ORDER];
-    double s = (t - m->header[BDF_TIME]) / m->header[BDF_STEP];
-    for (size_t k = 0; k < m->count; ++k) {
-        double weight = 1.0, sum = m->D[k];
-        for (int j = 1; j <= order; ++j) {
-            weight *= (s + j - 1.0) / j;
-            sum += weight * m->D[(size_t)j * m->count + k];
-        }
-        y[k] = sum;
-    }
-}
-
-static se3d_status publish(bdf *m, double t, int project)
-{
-    se3di_state_scale scale = get_scale(m);
-    eval_polynomial(m, t, m->y);
-    return se3di_state_publish(m->equations, m->y, t, &scale, project);
-}
-
-/* One step of length h; the order grows with the number of equal steps. */
+/* One step of length h. */
 static se3d_status step(se3di_integration *integration, double h)
 {
-    bdf m = begin(integration);
-    double t0 = m.assembly->model->time;
-    if (m.header[BDF_TIME] != t0 || m.header[BDF_EQUAL] == 0.0) {
-        SE3DI_TRY(adopt(&m, h));
-    } else if (fabs(m.header[BDF_STEP] / h - 1.0) > 1e-9) {
-        change_step(&m, h / m.header[BDF_STEP]);
+    se3di_bdf m = begin(integration);
+    const double t0 = m.assembly->model->time;
+    double error = 0.0;
+    if (m.header[BDF_TIME] != t0) {
+        SE3DI_TRY(adopt(&m));
+    } else if (m.header[BDF_STARTS] > 0.0 && m.header[BDF_BEGIN] == t0) {
+        m.header[BDF_POINTS] = 1.0; /* no step was made yet: without the state before the start */
     }
-    int top = integration->settings.order;
-    top = top >= 1 && top <= ORDER_MAX ? top : ORDER_MAX;
-    se3d_status status = advance(&m, 0);
+    const int order = se3di_bdf_get_top(&m);
+    const int is_bdf = se3di_bdf_is_even(&m, order, h);
+    m.h = h;
+    m.iterations_max = ITERATIONS_STEP;
+    if (is_bdf) {
+        se3di_bdf_predict(&m, order);
+    }
+    se3d_status status = is_bdf ? se3di_bdf_solve(&m) : solve_by_radau(&m);
+    status = status < 0 ? status : project_end(&m);
+    status = status < 0 ? status : settle(&m, 0, &error);
+    status = status < 0 ? status : accept(&m, order, is_bdf);
     if (status >= 0) {
-        m.header[BDF_TIME] = t0 + h;
-        m.header[BDF_ORDER] = fmin(top, m.header[BDF_ORDER] + 1.0);
+        m.header[BDF_TIME] = m.times[0] = t0 + h;
+        set_order(&m, 1 < order && m.header[BDF_POINTS] > 2.0 ? 2 : 1);
+        m.header[BDF_STEP] = limit_step(&m, h);
+        return publish(&m, m.header[BDF_TIME], 0);
     }
-    se3d_status published = publish(&m, m.header[BDF_TIME], 0);
-    return status < 0 ? status : published;
+    se3di_error cause = *m.equations->error;
+    (void)publish(&m, t0, 0);
+    *m.equations->error = cause;
+    return status;
 }
 
 static se3d_status advance_one(se3di_integration *integration, double t_end)
 {
-    bdf m = begin(integration);
-    m.t_end = t_end;
-    return advance(&m, 1);
+    se3di_bdf m = begin(integration);
+    return advance(&m, t_end);
 }
 
 static void interpolate(const se3di_integration *integration, double t, double *y)
 {
-    const bdf m = point(integration);
-    if (t > m.header[BDF_BEGIN]) {
-        eval_polynomial(&m, t, y);
-    } else { /* which the polynomial meets to the error only */
-        memcpy(y, m.y0, m.count * sizeof *y);
-    }
+    se3di_bdf m;
+    se3di_bdf_point(&m, integration, se3di_radau_work_count(&integration->equations->assembly));
+    se3di_bdf_eval(&m, t, y);
 }
 
 static se3d_status run(se3di_integration *integration, double t_end)
 {
-    bdf m = begin(integration);
+    se3di_bdf m = begin(integration);
     se3d_status status = SE3D_OK;
-    m.t_end = t_end;
     while (m.header[BDF_TIME] < t_end && status >= 0) {
-        status = advance(&m, 1);
+        status = advance(&m, t_end);
     }
     if (status < 0) {
         se3di_error cause = *m.equations->error;
@@ -652,7 +568,7 @@ static se3d_status run(se3di_integration *integration, double t_end)
 const se3di_integrator se3di_integrator_bdf = {
     .name = "bdf",
     .tag = SE3D_METHOD_BDF,
-    .history_count = history_count,
+    .history_count = se3di_bdf_history_count,
     .work_count = work_count,
     .start = start,
     .renew = renew,

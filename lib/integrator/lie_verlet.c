@@ -359,7 +359,8 @@ se3d_status se3di_lie_verlet_drift(se3di_lie_verlet *m)
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, model->time, equations->b, equations->error));
     se3di_lie_friction_add_wrenches(&m->friction);
     memcpy(m->wrench, assembly->wrench, 6 * (size_t)assembly->dense_count * sizeof *m->wrench);
-    const se3di_kkt_settings before = se3di_state_regularise(assembly, equations->kkt);
+    const se3di_kkt_settings before =
+        se3di_state_regularise(assembly, equations->kkt, SE3DI_STATE_REGULARISATION);
     se3d_status status = se3di_equations_factor(equations);
     status = status < 0 ? status : se3di_assembly_eval_functions(assembly, m->t1, equations->error);
     status = status < 0 ? status : solve_positions(m);

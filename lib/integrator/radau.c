@@ -256,6 +256,27 @@ static se3d_status attempt(se3di_radau *m, const history *past, double inner, do
     return inner == 0.0 || isfinite(*error) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
+se3d_status se3di_radau_make_step(se3di_integration *integration,
+                                  const se3di_radau_begin_state *from, double h, double *y1,
+                                  double *acceleration)
+{
+    double header[RADAU_HEADER] = {0.0}; /* no step before this one */
+    const history none = {.header = header};
+    se3di_radau m;
+    double error;
+    se3di_radau_begin(&m, integration);
+    m.t = from->t;
+    m.y0 = from->y;
+    m.scale = *from->scale;
+    se3di_state_set(m.assembly, m.y0);
+    SE3DI_TRY(se3di_radau_prepare(&m));
+    SE3DI_TRY(attempt(&m, &none, 0.0, h, &error));
+    SE3DI_TRY(add_work(&m)); /* ends at the last stage */
+    memcpy(y1, m.Y + (STAGES - 1) * m.count, m.count * sizeof *y1);
+    se3di_radau_get_acceleration(&m, STAGES - 1, acceleration);
+    return SE3D_OK;
+}
+
 /* Predictive control (Gustafsson 1994). */
 static double next_step(const se3di_radau *m, const history *past, double error)
 {

@@ -53,4 +53,21 @@ se3d_status se3di_radau_solve(se3di_radau *m);
  * relative to the scales. */
 se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error);
 
+/* Accelerations of a stage [unknowns]. */
+void se3di_radau_get_acceleration(const se3di_radau *m, int stage, double *vdot);
+
+/* Where a single step begins. */
+typedef struct se3di_radau_begin_state {
+    double *y; /* not changed */
+    double t;
+    const se3di_state_scale *scale;
+} se3di_radau_begin_state;
+
+/* A step of h without error control, solved to rounding, for methods of several steps to begin
+ * with: its end, not projected, in y1 and the frames, its accelerations, and its multipliers in the
+ * model. integration->work holds se3di_radau_work_count numbers. */
+se3d_status se3di_radau_make_step(se3di_integration *integration,
+                                  const se3di_radau_begin_state *from, double h, double *y1,
+                                  double *acceleration);
+
 #endif

@@ -182,17 +182,16 @@ static void update_positions(se3di_radau *m)
     }
 }
 
-/* Accelerations of a stage. */
-static void set_acceleration(se3di_radau *m, int i)
+void se3di_radau_get_acceleration(const se3di_radau *m, int i, double *vdot)
 {
     for (size_t k = 0; k < m->assembly->body_count; ++k) {
         const size_t place = k * SE3DI_STATE_SIZE + 7;
-        double *vdot = m->vdot + 6 * k;
+        double *out = vdot + 6 * k;
         for (size_t c = 0; c < 6; ++c) {
             const double v0 = m->y0[place + c];
-            vdot[c] = 0.0;
+            out[c] = 0.0;
             for (int j = 0; j < STAGES; ++j) {
-                vdot[c] +=
+                out[c] +=
                     se3di_radau_inverse[i][j] / m->h * (at(m->Y, j, m->count)[place + c] - v0);
             }
         }
@@ -211,7 +210,7 @@ static se3d_status eval_stage(se3di_radau *m, int i)
     se3di_assembly_eval_jacobian(assembly);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, b, equations->error));
     se3di_assembly_add_transposed(assembly, -1.0, at(m->lambda, i, rows), b);
-    set_acceleration(m, i);
+    se3di_radau_get_acceleration(m, i, m->vdot);
     se3di_assembly_subtract_mass(assembly, m->vdot, b);
     se3di_assembly_get_velocity(assembly, m->sum);
     se3di_assembly_mul(assembly, m->sum, at(m->g, i, rows));
@@ -435,7 +434,8 @@ static se3d_status iterate_to_convergence(se3di_radau *m)
 se3d_status se3di_radau_solve(se3di_radau *m)
 {
     se3di_kkt *kkt = m->integration->newton.kkt;
-    const se3di_kkt_settings before = se3di_state_regularise(m->assembly, kkt);
+    const se3di_kkt_settings before =
+        se3di_state_regularise(m->assembly, kkt, SE3DI_STATE_REGULARISATION);
     se3d_status status = iterate_to_convergence(m);
     se3di_kkt_set_settings(kkt, &before);
     return status;

@@ -93,11 +93,12 @@ void se3di_state_begin_step(se3di_equations *equations, double redundant)
     se3di_kkt_hold(equations->kkt, equations->assembly.formulation->block == 6);
 }
 
-se3di_kkt_settings se3di_state_regularise(const se3di_assembly *assembly, se3di_kkt *kkt)
+se3di_kkt_settings se3di_state_regularise(const se3di_assembly *assembly, se3di_kkt *kkt,
+                                          double eps)
 {
     const se3di_kkt_settings before = se3di_kkt_get_settings(kkt);
     se3di_kkt_settings settings = before;
-    settings.eps = settings.eps_min = SE3DI_STATE_REGULARISATION;
+    settings.eps = settings.eps_min = eps;
     settings.tolerance = 1e-8;
     settings.max_refinements = 1;
     settings.any_multipliers = !has_power(assembly);

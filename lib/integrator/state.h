@@ -45,7 +45,8 @@ void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *setti
  * such rounding. */
 #define SE3DI_STATE_REGULARISATION 1e-5
 #define SE3DI_STATE_NOISE          1e-8
-se3di_kkt_settings se3di_state_regularise(const se3di_assembly *assembly, se3di_kkt *kkt);
+se3di_kkt_settings se3di_state_regularise(const se3di_assembly *assembly, se3di_kkt *kkt,
+                                          double eps);
 /* Accelerations at the present frames into equations->x, multipliers into equations->l; without the
  * checks and records of se3di_acceleration_solve. */
 se3d_status se3di_state_evaluate(se3di_equations *equations, double t);

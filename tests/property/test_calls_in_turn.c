@@ -99,9 +99,16 @@ static void radau_goes_on(void)
     check_energy(SE3D_METHOD_RADAU, 2e-5);
 }
 
+/* Its steps of a new length are as accurate as those of a run. */
+static void bdf_goes_on(void)
+{
+    check_energy(SE3D_METHOD_BDF, 2e-4);
+}
+
 int main(void)
 {
     RUN(explicit_methods_go_on_from_each_other);
     RUN(radau_goes_on);
+    RUN(bdf_goes_on);
     return check_finish();
 }

@@ -86,8 +86,12 @@ static se3di_newton_trace follow_step(int32_t method, int32_t formulation, doubl
     def.formulation = formulation;
     def.tolerance = 1e-9;
     def.step = h;
+    def.order = method == SE3D_METHOD_BDF ? 1 : 0;
     must(&w, se3d_solver_create(w.system, &def, &solver));
     must(&w, se3d_solver_run(solver, 0.0));
+    if (method == SE3D_METHOD_BDF) { /* whose first step is one of radau */
+        must(&w, se3d_solver_step(solver, h));
+    }
     solver->run.integration.newton.trace = &trace;
     must(&w, se3d_solver_step(solver, h));
     se3d_solver_destroy(solver);

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Parts of bdf: the accepted states and the polynomials through them (bdf_history.c); the equations
+ * of a step and their Newton iteration (bdf_newton.c); the step, its error and its control (bdf.c).
+ * docs/theory/bdf.md */
+#ifndef SE3DI_BDF_H
+#define SE3DI_BDF_H
+
+#include "integrator/state.h"
+
+#define SE3DI_BDF_ORDER_MAX  5
+#define SE3DI_BDF_POINTS_MAX (SE3DI_BDF_ORDER_MAX + 2)
+
+/* The history: this header and the accepted states, newest first. */
+enum {
+    BDF_TIME = SE3DI_HISTORY_TIME,   /* of the newest state */
+    BDF_BEGIN = SE3DI_HISTORY_BEGIN, /* of the last step */
+    BDF_STEP,                        /* the next one */
+    BDF_ORDER,                       /* of the next one */
+    BDF_USED,                        /* degree of the polynomial over the last step */
+    BDF_SINCE,                       /* steps since the order changed */
+    BDF_STARTS,                      /* 1: no step was rejected and no order found too high yet */
+    BDF_POINTS,                      /* states that there are */
+    BDF_LENGTH,                      /* scales */
+    BDF_SPEED,
+    BDF_SPIN,
+    BDF_RENEWED, /* 1: something else acts since the last step */
+    BDF_TIMES,   /* of the states */
+    BDF_HEADER = BDF_TIMES + SE3DI_BDF_POINTS_MAX
+};
+
+typedef struct se3di_bdf {
+    se3di_integration *integration;
+    se3di_equations *equations;
+    se3di_assembly *assembly;
+    size_t count;   /* numbers of a state */
+    double *header; /* the history */
+    double *times, *points;
+    double *base;      /* of y_1 = base + c y'_1 */
+    double *predicted; /* y_P */
+    double *y;         /* y_1 */
+    double *difference;
+    double *acceleration; /* a, wdot of each free body [6] */
+    double *work;         /* [unknowns] */
+    double *lambda;       /* [rows] */
+    double tolerance;     /* of the local error */
+    double accuracy;      /* violation of constraints that does not matter: near a singular position
+                             velocities magnify it by the square of the inverse distance */
+    double t, h, c;       /* the end of the step, its length, its weight */
+    int32_t iterations_max;
+    int32_t reserved;
+} se3di_bdf;
+
+size_t se3di_bdf_history_count(const se3di_assembly *assembly);
+/* Behind the first `before` numbers. */
+size_t se3di_bdf_work_count(const se3di_assembly *assembly);
+void se3di_bdf_point(se3di_bdf *m, const se3di_integration *integration, size_t before);
+
+se3di_state_scale se3di_bdf_get_scale(const se3di_bdf *m);
+int se3di_bdf_get_top(const se3di_bdf *m); /* the highest order that may be used */
+
+/* ---- bdf_history.c ---- */
+
+/* The newest state is y at t. */
+void se3di_bdf_push(se3di_bdf *m, const double *y, double t);
+/* Forget the states at t and after. */
+void se3di_bdf_drop_from(se3di_bdf *m, double t);
+/* Whether steps of this order are stable and accurate on the times of the states with the next step
+ * h. */
+int se3di_bdf_is_even(const se3di_bdf *m, int order, double h);
+/* Prepare the step from the newest state by m->h at the order: y_P, base, c, accelerations. */
+void se3di_bdf_predict(se3di_bdf *m, int order);
+/* The local error that a step of this order would have made, from y_1: in m->difference. */
+void se3di_bdf_get_error(se3di_bdf *m, int order);
+/* The polynomial of the last step at t, and its derivative. */
+void se3di_bdf_eval(const se3di_bdf *m, double t, double *y);
+void se3di_bdf_eval_rate(const se3di_bdf *m, double t, double *rate);
+/* m->y, with the derivative m->difference, at the time s later (or before) on a parabola. */
+void se3di_bdf_extend(const se3di_bdf *m, double s, double *y);
+/* The accelerations jump by those in `jump` (like y'): move the states before the newest one to
+ * where they would have been with the new ones. */
+void se3di_bdf_bend(se3di_bdf *m, const double *jump);
+
+/* ---- bdf_newton.c ---- */
+
+/* y_1 and the multipliers of a prepared step. */
+se3d_status se3di_bdf_solve(se3di_bdf *m);
+
+#endif
