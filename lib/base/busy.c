@@ -18,7 +18,7 @@ int32_t se3di_busy_raise(se3di_busy *busy, se3di_busy_level level)
 {
     const int32_t before = busy ? busy->level : SE3DI_BUSY_FREE;
     if (busy) {
-        busy->level = level;
+        busy->level = (int32_t)level;
     }
     return before;
 }
