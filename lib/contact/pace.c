@@ -18,6 +18,7 @@
 #include "math/vec3.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define PARTS        64.0 /* steps in a time of contact where it is followed */
@@ -308,4 +309,53 @@ se3d_status se3di_contacts_check_step(const se3di_model *model, se3di_pace_kind 
                            "%.60s and %.60s; try at most %.3g s, or none for an automatic step",
                            model->time, h, se3di_shape_describe(model, p.i),
                            se3di_shape_describe(model, p.j), p.step);
+}
+
+/* The pair that is nearest to each other. */
+static void nearest_pair(pace *p, uint32_t i, uint32_t j)
+{
+    const se3di_model *model = p->model;
+    const se3di_shape *s[2] = {&model->shapes[i], &model->shapes[j]};
+    se3di_shape_pose at[2];
+    double n[3];
+    if (!(se3di_shapes_gap_bound(model, i, j) < p->step) || !se3di_shapes_may_touch(model, i, j)) {
+        return;
+    }
+    se3di_shape_place(s[0], &model->frames[s[0]->body], &at[0]);
+    se3di_shape_place(s[1], &model->frames[s[1]->body], &at[1]);
+    limit(p, se3di_narrow_gap(s[0], &at[0], s[1], &at[1], n), i, j);
+}
+
+/* The pair with the largest force, or, where none touch, the nearest. */
+static void find_culprits(pace *p)
+{
+    const se3di_body_contacts *c = &p->model->contacts;
+    const uint32_t shapes = (uint32_t)p->model->shape_slots.count;
+    for (size_t k = 0; k < c->count; ++k) {
+        limit(p, -se3di_norm(c->list[k].force), c->list[k].shape_i, c->list[k].shape_j);
+    }
+    for (uint32_t i = 0; c->count == 0 && shapes <= ALL_PAIRS && i < shapes; ++i) {
+        for (uint32_t j = i + 1; j < shapes; ++j) {
+            nearest_pair(p, i, j);
+        }
+    }
+    for (size_t k = 0; c->count == 0 && shapes > ALL_PAIRS && k < c->pair_count; ++k) {
+        nearest_pair(p, c->pairs[2 * k], c->pairs[2 * k + 1]);
+    }
+}
+
+void se3di_contacts_blame(const se3di_model *model, se3di_error *error)
+{
+    pace p = {.model = model, .step = HUGE_VAL};
+    const size_t used = error ? strlen(error->message) : 0;
+    if (!error) {
+        return;
+    }
+    find_culprits(&p);
+    if (p.i != p.j && used < sizeof error->message) {
+        snprintf(error->message + used, sizeof error->message - used,
+                 "; the shapes %.60s and %.60s %s", se3di_shape_describe(model, p.i),
+                 se3di_shape_describe(model, p.j),
+                 model->contacts.count > 0 ? "press most on each other" : "are about to touch");
+    }
 }

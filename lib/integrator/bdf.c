@@ -346,11 +346,14 @@ static void shorten(se3di_bdf *m, int *order, double error, int times)
 
 static se3d_status fail_small(const se3di_bdf *m, se3d_status cause)
 {
-    return cause < 0 ? cause
-                     : se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
-                                       "t = %g s: the step fell to %.3g s: the tolerance %g cannot "
-                                       "be met here; the motion is not smooth",
-                                       m->t, m->h, m->integration->settings.tolerance);
+    if (cause >= 0) {
+        cause = se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
+                                "t = %g s: the step fell to %.3g s: the tolerance %g cannot "
+                                "be met here; the motion is not smooth",
+                                m->t, m->h, m->integration->settings.tolerance);
+    }
+    se3di_contacts_blame(m->assembly->model, m->equations->error);
+    return cause;
 }
 
 /* No step over a contact that begins, nor of more than an angle's counter can follow; and after a

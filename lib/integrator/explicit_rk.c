@@ -357,11 +357,14 @@ static se3d_status prepare(rk *m, double h, double *error)
 static se3d_status fail_small(rk *m, double h)
 {
     double t = m->header[RK_T1];
-    return se3di_error_set(
-        m->equations->error, SE3D_ERR_STEP_SIZE,
-        "t = %g s: the step fell to %.3g s: the tolerance %g cannot be met here; "
-        "the motion is not smooth, or stiff (try generalized_alpha or radau)",
-        t, h, m->tolerance);
+    const se3d_status status =
+        se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
+                        "t = %g s: the step fell to %.3g s: the tolerance %g cannot be met here; "
+                        "the motion is not smooth, or stiff (try generalized_alpha or radau)",
+                        t, h, m->tolerance);
+    se3di_state_set(m->assembly, m->y1);
+    se3di_contacts_blame(m->assembly->model, m->equations->error);
+    return status;
 }
 
 static double limit_step(const rk *m, double h)

@@ -486,14 +486,16 @@ static double limit_step(const se3di_integration *integration, double h)
 
 static se3d_status fail_small(const se3di_integration *integration, double t, se3d_status cause)
 {
-    return cause == SE3D_ERR_STEP_SIZE && isfinite(integration->error)
-               ? se3di_error_set(
-                     integration->equations->error, cause,
-                     "t = %g s: the step fell to %.3g s: the tolerance %g cannot be "
-                     "met here; the motion is not smooth",
-                     t, integration->equations->assembly.model->history[SE3DI_NEWMARK_NEXT],
-                     integration->settings.tolerance)
-               : cause;
+    const se3di_model *model = integration->equations->assembly.model;
+    if (cause == SE3D_ERR_STEP_SIZE && isfinite(integration->error)) {
+        cause =
+            se3di_error_set(integration->equations->error, cause,
+                            "t = %g s: the step fell to %.3g s: the tolerance %g cannot be "
+                            "met here; the motion is not smooth",
+                            t, model->history[SE3DI_NEWMARK_NEXT], integration->settings.tolerance);
+    }
+    se3di_contacts_blame(model, integration->equations->error);
+    return cause;
 }
 
 /* What the error of the next attempt may be, relative to the tolerance: where the one of the last

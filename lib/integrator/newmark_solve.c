@@ -3,6 +3,7 @@
 #include "integrator/newmark.h"
 
 #include "contact/loads.h"
+#include "contact/pace.h"
 #include "math/quaternion.h"
 
 #include <math.h>
@@ -302,10 +303,14 @@ static se3d_status iterate_to_convergence(se3di_newmark_step *step)
             step->exact = refactor = 1;
         }
     }
-    return se3di_error_set(step->equations->error, SE3D_ERR_NO_CONVERGENCE,
-                           "t = %g s: Newton did not converge in %d iterations of a step of %g s; "
-                           "try a smaller step",
-                           step->t, (int)limit, step->h);
+    const se3d_status status = se3di_error_set(
+        step->equations->error, SE3D_ERR_NO_CONVERGENCE,
+        "t = %g s: Newton did not converge in %d iterations of a step of %g s; try a smaller step",
+        step->t, (int)limit, step->h);
+    if (!(step->integration->settings.tolerance > 0.0)) { /* the last word */
+        se3di_contacts_blame(step->equations->assembly.model, step->equations->error);
+    }
+    return status;
 }
 
 /* Elements with a memory may have assumed wrong what comes out: again until none has. */

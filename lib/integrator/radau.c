@@ -297,11 +297,15 @@ static double next_step(const se3di_radau *m, const history *past, double error)
 
 static se3d_status fail_small(const se3di_radau *m, double h, se3d_status cause)
 {
-    return cause < 0 ? cause
-                     : se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
-                                       "t = %g s: the step fell to %.3g s: the tolerance %g cannot "
-                                       "be met here; the motion is not smooth",
-                                       m->t, h, m->integration->settings.tolerance);
+    if (cause >= 0) {
+        cause = se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
+                                "t = %g s: the step fell to %.3g s: the tolerance %g cannot "
+                                "be met here; the motion is not smooth",
+                                m->t, h, m->integration->settings.tolerance);
+    }
+    se3di_state_set(m->assembly, m->y0);
+    se3di_contacts_blame(m->assembly->model, m->equations->error);
+    return cause;
 }
 
 /* One accepted step with error control; the first one after a change of what acts, which may soon
