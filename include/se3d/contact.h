@@ -201,8 +201,9 @@ SE3D_API se3d_status se3d_shape_create_plane(se3d_system *system, const se3d_sha
 SE3D_API se3d_status se3d_shape_create_hull(se3d_system *system, const se3d_shape_def *def,
                                             se3d_shape *shape);
 
-/* A surface of triangles: everything touches it but other meshes (se3d_check names those that would
- * pass through each other). Where it is closed it has an outside, else two sides. @since 0.1 */
+/* A surface of triangles: everything touches it but other meshes where neither of the two is convex
+ * (se3d_system_count_passing_meshes). Where it is closed it has an outside, else two sides; convex
+ * is what is closed, the hull of its vertices, and of at most 1000 triangles. @since 0.1 */
 SE3D_API se3d_status se3d_shape_create_mesh(se3d_system *system, const se3d_shape_def *def,
                                             se3d_shape *shape);
 
@@ -239,6 +240,11 @@ typedef struct se3d_contact {
 SE3D_API size_t se3d_system_count_contacts(const se3d_system *system);
 SE3D_API se3d_status se3d_system_get_contacts(const se3d_system *system, size_t count,
                                               se3d_contact *contacts);
+/* Count the pairs of meshes that pass through each other: materials, groups and joints would let
+ * them touch, but neither is convex. The first pair to *i and *j (NULL: not wanted; null handles
+ * where there is none). @return the count; 0 where system is NULL. Reader. @since 0.1 */
+SE3D_API size_t se3d_system_count_passing_meshes(const se3d_system *system, se3d_shape *i,
+                                                 se3d_shape *j);
 /* Get the largest force at one point of contact, of bodies and of particles [N]. Reader.
  * @since 0.1 */
 SE3D_API se3d_status se3d_system_get_contact_force_max(const se3d_system *system, double *force);

@@ -15,8 +15,8 @@ typedef se3d_status (*se3di_contact_visitor)(void *ctx, const se3di_encounter *e
 se3d_status se3di_contacts_visit(const se3di_model *model, se3di_contact_visitor visitor,
                                  void *ctx);
 
-/* Whether two shapes may touch at all: materials, groups and masks, not of one body, bodies not
- * joined and not both fixed. */
+/* Whether two shapes may touch at all: materials, groups and masks, not of one body, not joined
+ * (joined.h), bodies not both fixed. */
 int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b);
 /* Two meshes that would have contact if meshes had any with each other. */
 int se3di_shapes_pass_through(const se3di_model *model, uint32_t a, uint32_t b);

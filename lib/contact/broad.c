@@ -5,6 +5,7 @@
 #include "contact/broad.h"
 
 #include "contact/body_contacts.h"
+#include "contact/joined.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -18,22 +19,6 @@ static void center_of(const se3di_model *model, uint32_t shape, double x[3])
     const se3di_frame *frame = &model->frames[s->body];
     se3di_mul(frame->A, s->x, x);
     se3di_add(frame->r, x, x);
-}
-
-static int joined(const se3di_model *model, uint32_t a, uint32_t b)
-{
-    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
-        const se3di_constraint *c = &model->constraints[k];
-        int has_a = 0, has_b = 0;
-        for (uint32_t n = 0; n < c->body_count; ++n) {
-            has_a |= c->bodies[n] == a;
-            has_b |= c->bodies[n] == b;
-        }
-        if (has_a && has_b) {
-            return 1;
-        }
-    }
-    return 0;
 }
 
 static int are_open_meshes(const se3di_shape *a, const se3di_shape *b)
@@ -55,7 +40,7 @@ static int are_meant_to_touch(const se3di_model *model, uint32_t a, uint32_t b)
     return s->body != t->body && s->material >= 0 && t->material >= 0 && (s->group & t->mask) &&
            (t->group & s->mask) &&
            !(model->bodies[s->body].fixed && model->bodies[t->body].fixed) &&
-           !joined(model, s->body, t->body);
+           !se3di_shapes_are_joined(model, a, b);
 }
 
 int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b)

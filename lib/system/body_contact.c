@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts between bodies, read. */
+#include "contact/body_contacts.h"
 #include "contact/particle_set.h"
 #include "math/vec3.h"
 #include "se3d/contact.h"
@@ -36,6 +37,28 @@ se3d_status se3d_system_get_contact_force_max(const se3d_system *system, double 
         status = se3di_particles_contacts(set, 0, NULL, &count, force);
     }
     return se3di_read_end(&reading, status < 0 ? status : SE3D_OK);
+}
+
+size_t se3d_system_count_passing_meshes(const se3d_system *system, se3d_shape *i, se3d_shape *j)
+{
+    se3d_shape first[2] = {{0, 0}, {0, 0}};
+    size_t count = 0;
+    const uint32_t shapes = system ? (uint32_t)system->model.shape_slots.count : 0;
+    for (uint32_t b = 1; b < shapes; ++b) {
+        for (uint32_t a = 0; a < b; ++a) {
+            if (se3di_shapes_pass_through(&system->model, a, b) && count++ == 0) {
+                first[0] = shape_at(&system->model, a);
+                first[1] = shape_at(&system->model, b);
+            }
+        }
+    }
+    if (i) {
+        *i = first[0];
+    }
+    if (j) {
+        *j = first[1];
+    }
+    return count;
 }
 
 se3d_status se3d_system_get_contacts(const se3d_system *system, size_t count,

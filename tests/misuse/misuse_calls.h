@@ -941,6 +941,7 @@ static const row rows[] = {
     {"se3d_shape_get_wrench", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_get_nearest", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_system_count_contacts", contacts_reject_misuse, "", NULL, NULL},
+    {"se3d_system_count_passing_meshes", contacts_reject_misuse, "", NULL, NULL},
     {"se3d_system_get_contacts", contacts_reject_misuse, "", NULL, NULL},
     {"se3d_system_get_contact_force_max", contacts_reject_misuse, "", NULL, NULL},
     {"se3d_body_get_contact_wrench", shapes_reject_misuse, "", NULL, NULL},

@@ -246,6 +246,9 @@ static se3d_status contacts_reject_misuse(arguments *a)
     se3d_contact contact;
     double force = 1.0;
     CHECK(se3d_system_count_contacts(NULL) == 0 && se3d_system_count_contacts(a->system) == 0);
+    se3d_shape i = {1, 1}, j = {1, 1};
+    CHECK(se3d_system_count_passing_meshes(NULL, &i, &j) == 0 && i.index1 == 0 && j.index1 == 0);
+    CHECK(se3d_system_count_passing_meshes(a->system, NULL, NULL) == 0);
     CHECK(se3d_system_get_contacts(NULL, 0, &contact) == SE3D_ERR_NULL);
     CHECK(se3d_system_get_contacts(a->system, 1, NULL) == SE3D_ERR_NULL);
     CHECK(se3d_system_get_contacts(a->system, 1, &contact) == SE3D_ERR_INVALID_ARGUMENT);

@@ -96,7 +96,33 @@ static void print_particles(const se3d_run *run)
     }
 }
 
-static void print_text(const se3d_run *run)
+static const char *shape_name(const se3d_system *system, se3d_shape shape)
+{
+    const char *name = "";
+    se3d_body body;
+    (void)se3d_shape_get_name(system, shape, &name);
+    if (!name[0] && se3d_shape_get_body(system, shape, &body) == SE3D_OK) {
+        (void)se3d_body_get_name(system, body, &name);
+    }
+    return name;
+}
+
+/* Meshes that do not touch each other. */
+static void print_passing(const se3d_model *model)
+{
+    const se3d_system *system = se3d_model_get_system((se3d_model *)(uintptr_t)model);
+    se3d_shape i, j;
+    const size_t pairs = se3d_system_count_passing_meshes(system, &i, &j);
+    if (pairs > 0) {
+        printf("the meshes %s and %s", shape_name(system, i), shape_name(system, j));
+        if (pairs > 1) {
+            printf(" (and %zu more pairs)", pairs - 1);
+        }
+        puts(" pass through each other: make one of them convex, or of other shapes");
+    }
+}
+
+static void print_text(const se3d_model *model, const se3d_run *run)
 {
     for (size_t k = 0; k < se3d_run_count_analyses(run); ++k) {
         se3d_run_analysis analysis;
@@ -106,6 +132,7 @@ static void print_text(const se3d_run *run)
         }
     }
     print_particles(run);
+    print_passing(model);
     for (size_t k = 0; k < se3d_run_count_files(run); ++k) {
         se3d_run_file file;
         if (!SE3D_FAILED(se3d_run_get_file(run, k, &file))) {
@@ -230,7 +257,11 @@ static void print_json(const options *o, const se3d_model *model, const se3d_run
     json_put_events(run);
     json_put_particles(run);
     json_put_pictures(model);
-    fputs("]}\n", stdout);
+    fputs("]", stdout);
+    json_put_count("passing_meshes",
+                   se3d_system_count_passing_meshes(
+                       se3d_model_get_system((se3d_model *)(uintptr_t)model), NULL, NULL));
+    fputs("}\n", stdout);
 }
 
 /* The folder for the results; free it. */
@@ -317,7 +348,7 @@ static int run_into(const options *o, se3d_model *model, const char *folder, se3
     if (o->json) {
         print_json(o, model, run, error.message);
     } else if (!o->quiet) {
-        print_text(run);
+        print_text(model, run);
     }
     if (SE3D_FAILED(status) || ended) {
         fflush(stdout);
