@@ -41,13 +41,12 @@ static void the_first_touch_is_no_singularity(void)
 /* A stiffness whose contacts are shorter than any step. */
 static void a_run_that_fails_names_the_shapes(void)
 {
-    static const int32_t methods[4] = {SE3D_METHOD_RADAU, SE3D_METHOD_DOP853, SE3D_METHOD_BDF,
-                                       SE3D_METHOD_GENERALIZED_ALPHA};
-    for (int k = 0; k < 4; ++k) {
+    static const int32_t methods[3] = {SE3D_METHOD_RADAU, SE3D_METHOD_DOP853, SE3D_METHOD_BDF};
+    for (int k = 0; k < 3; ++k) {
         scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.3, 1e30);
         se3d_body bodies[BOXES];
         drop(&s, bodies);
-        scene_solve(&s, methods[k], SE3D_FORMULATION_ROMEGA, 0.0, k == 3 ? 1e-6 : 0.0);
+        scene_solve(&s, methods[k], SE3D_FORMULATION_ROMEGA, 0.0, 0.0);
         CHECK(se3d_solver_run(s.solver, 0.12) < 0);
         CHECK_CONTAINS(se3d_system_get_error(s.system), "box ");
         scene_end(&s);
