@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Heaps of boxes: what falls without spin passes its first touch in every method with control of the
- * error, and a run that fails says which shapes touched. */
+/* Heaps of boxes: what falls without spin passes its first touch in every method with control of
+ * the error, and a run that fails says which shapes touched. */
 #include "support/scene.h"
 
 enum { LAYERS = 2, BOXES = 4 * LAYERS };
