@@ -36,7 +36,9 @@ enum {
 
 #define HELD_MIN    15.0 /* signs that are enough, and signs against that take them back */
 #define FREE_MIN    6.0
-#define HELD_EACH   8.0 /* steps between looks where there is no sign */
+#define SLOW_MAX    0.01 /* most of a step times the rate of the motion, */
+#define DECAY_MIN   0.5  /* and least of it times a decay, where decays hold the step */
+#define HELD_EACH   8.0  /* steps between looks where there is no sign */
 #define FORCED_MAX  3
 #define SAFETY      0.8 /* a rejected step costs more than several that are this much shorter */
 #define GROWTH      3.0 /* largest, of a step: one small error may be chance */
@@ -426,15 +428,41 @@ static double largest_growth(const rk *m)
     return 2.0 * largest;
 }
 
+/* h lambda of a decay that is in the differences `y` of velocities and `f` of accelerations times
+ * h: what oscillates has none on the average. */
+static double decay_of(const rk *m, const double *y, const double *f)
+{
+    const double v = 1.0 / (m->header[RK_SPEED] * m->header[RK_SPEED]);
+    const double w = 1.0 / (m->header[RK_SPIN] * m->header[RK_SPIN]);
+    double product = 0.0, square = 0.0;
+    for (size_t k = 7; k + SE3DI_STATE_WORK < m->count; k += SE3DI_STATE_SIZE) {
+        product += v * se3di_dot(y + k, f + k) + w * se3di_dot(y + k + 3, f + k + 3);
+        square += v * se3di_dot(y + k, y + k) + w * se3di_dot(y + k + 3, y + k + 3);
+    }
+    return square > 0.0 ? -product / square : 0.0;
+}
+
+/* The step is far below what the motion asks for, and of the size of a decay. Disturbances of each
+ * step (its projection) keep such a decay alive long before stability is lost. */
+static int is_held_by_decay(const rk *m, double h)
+{
+    const double rate = fmax(m->header[RK_SPEED] / m->header[RK_LENGTH], m->header[RK_SPIN]);
+    return h * rate < SLOW_MAX && decay_of(m, m->sum, m->sum3) > DECAY_MIN;
+}
+
 /* |h lambda| of the fastest motion, from the last stage and the end of the step, which are at one
  * time: |y'(end) - y'(stage)|/|y(end) - y(stage)| (Hairer, Wanner 1996, sec. IV.2). What is far
- * below the tolerance tells nothing. */
+ * below the tolerance tells nothing; nor does what is near a singular position, where accelerations
+ * change fast with how far the constraints are violated. */
 static void watch_stability(rk *m, double h)
 {
     const se3di_rk_tableau *tableau = m->tableau;
     const int last = tableau->stages - 1, end = tableau->stages;
     double difference[SE3DI_RK_MAX], *held = &m->header[RK_HELD], *free = &m->header[RK_FREE];
     m->header[RK_SINCE] += 1.0;
+    if (se3di_kkt_get_dependent_rows(m->equations->kkt) > m->header[RK_REDUNDANT]) {
+        return;
+    }
     if (!(*held > 0.0) && m->header[RK_SINCE] < HELD_EACH) {
         return;
     }
@@ -449,7 +477,7 @@ static void watch_stability(rk *m, double h)
     memset(m->sum + m->count - SE3DI_STATE_WORK, 0, SE3DI_STATE_WORK * sizeof *m->sum);
     memset(m->sum3 + m->count - SE3DI_STATE_WORK, 0, SE3DI_STATE_WORK * sizeof *m->sum3);
     const double apart = measure(m, m->sum);
-    if (apart > 0.01 && measure(m, m->sum3) > tableau->stable * apart) {
+    if (apart > 0.01 && (measure(m, m->sum3) > tableau->stable * apart || is_held_by_decay(m, h))) {
         *held += 1.0;
         *free = 0.0;
     } else if (*held > 0.0) {
