@@ -11,8 +11,9 @@
 #define SLACK        1e-6  /* of the face's size: corners beyond a side by less are not cut off */
 #define PARALLEL     1e-2  /* sine below which two lines touch in two points */
 #define FACE_COSINE  0.985 /* faces leaning by less than 10 degrees from the normal */
-#define OTHER_FACTOR 0.98  /* overlap below which the second box's face, */
-#define EDGE_FACTOR  0.9   /* or two edges, are preferred to a face */
+#define FLAT_COSINE  0.9999995 /* what is round about its core touches a face so nearly square */
+#define OTHER_FACTOR 0.98      /* overlap below which the second box's face, */
+#define EDGE_FACTOR  0.9       /* or two edges, are preferred to a face */
 
 typedef struct cut {
     int count;
@@ -411,6 +412,10 @@ void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manif
     se3di_face_find(j, back, &face_j);
     double depth_i = depth_on(&face_i, n, i, j, 1.0) + radius;
     double depth_j = depth_on(&face_j, back, i, j, -1.0) + radius;
+    if (overlap < radius) { /* the cores are apart: n is the way between their nearest points */
+        depth_i = se3di_dot(face_i.normal, n) > FLAT_COSINE ? depth_i : HUGE_VAL;
+        depth_j = se3di_dot(face_j.normal, back) > FLAT_COSINE ? depth_j : HUGE_VAL;
+    }
     int edges_i = overlap < EDGE_FACTOR * depth_i;
     int edges_j = overlap < EDGE_FACTOR * depth_j;
     if (!edges_i && !(depth_j < OTHER_FACTOR * depth_i)) {
@@ -424,7 +429,7 @@ void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manif
     for (uint32_t k = 0; k < manifold->count; ++k) {
         deepest = fmax(deepest, manifold->points[k].overlap);
     }
-    if (!(deepest > 0.5 * overlap)) {
+    if (!(deepest > (overlap < radius ? 0.999 : 0.5) * overlap)) {
         manifold->count = 0;
         cores_touch(i, j, n, on_i, on_j, overlap, manifold);
     }

@@ -629,10 +629,45 @@ static void solids_are_divided_by_a_plane_or_share_their_points_of_contact(void)
     }
 }
 
+/* Spheres and capsules whose line is outside: the radius less the line's least distance, which is
+ * convex along it. What lies along a face within a thousandth touches the face. */
+static void overlaps_of_round_solids_are_those_of_their_lines(void)
+{
+    for (int pair = 0; pair < 2 * SOLIDS; ++pair) {
+        uint64_t seed = 9;
+        const se3di_shape one = solid_of(kinds[3 + pair / SOLIDS]),
+                          two = solid_of(kinds[pair % SOLIDS]);
+        const double half = one.kind == SE3DI_SHAPE_CAPSULE ? one.half_length : 0.0;
+        int counted = 0;
+        for (int k = 0; k < POSES; ++k) {
+            se3di_shape_pose at, of;
+            se3di_manifold m;
+            double ends[2][3];
+            random_turn(&seed, &at);
+            random_turn(&seed, &of);
+            for (int c = 0; c < 3; ++c) {
+                at.x[c] = 0.5 * check_random(&seed);
+                ends[0][c] = at.x[c] - half * at.R[3 * c + 2];
+                ends[1][c] = at.x[c] + half * at.R[3 * c + 2];
+            }
+            const double apart = on_line(&two, &of, ends[0], ends[1]);
+            if (apart < 1e-3) {
+                continue;
+            }
+            se3di_narrow_find(&one, &at, &two, &of, &m);
+            const double least = m.count > 0 ? deepest(&m)->overlap : 0.0;
+            CHECK_NEAR(least, fmax(one.radius - apart, 0.0), 1e-7);
+            ++counted;
+        }
+        CHECK(counted > POSES / 2);
+    }
+}
+
 int main(void)
 {
     RUN(solids_touch_the_triangles_that_they_overlap_and_no_others);
     RUN(overlaps_of_polyhedra_are_the_least_ones);
     RUN(solids_are_divided_by_a_plane_or_share_their_points_of_contact);
+    RUN(overlaps_of_round_solids_are_those_of_their_lines);
     return check_finish();
 }
