@@ -46,7 +46,7 @@ typedef struct se3d_solver_def {
     size_t iterations_max;  /* Newton iterations per step; 0: 25 */
     uint64_t steps_max;     /* steps that a run may try; 0: 1e9 */
     double horizon; /* where runs go on to this time [s], their steps are counted together and
-                       foreseen up to it; not after t_end: each run by itself */
+                       foreseen up to it; 0, or not after t_end: each run by itself */
     se3d_interrupt interrupt; /* asked whether a run is to end now; NULL: none */
     void *interrupt_ctx;
 } se3d_solver_def;
@@ -69,17 +69,17 @@ SE3D_API se3d_status se3d_solver_create(se3d_system *system, const se3d_solver_d
  * destroyed, and a message (STATE) says so. @since 0.1 */
 SE3D_API void se3d_solver_destroy(se3d_solver *solver);
 
-/* Run to `t_end` [s] (>= the present time). At t_end = now the state is only made consistent:
- * positions and velocities are projected, accelerations and multipliers are computed. More than
- * def.steps_max steps of def.step are refused, and a run of any method is given up once its pace
- * shows that it would take more. On failure, and where def.interrupt ends the run, the state is the
- * last accepted step's; another run goes on from there. @return OK, INFO_*, INVALID_ARGUMENT,
- * INCONSISTENT, NO_CONVERGENCE, SINGULAR, NOT_FINITE, STEP_SIZE, STEP_COUNT, INTERRUPTED, CALLBACK,
- * NO_MEMORY; the message is the system's. Exclusive. @since 0.1 */
+/* Run to `t_end` [s] (>= the present time, to rounding). At t_end = now the state is only made
+ * consistent: positions and velocities are projected, accelerations and multipliers are computed.
+ * More than def.steps_max steps of def.step are refused, and a run of any method is given up once
+ * its pace shows that it would take more. On failure, and where def.interrupt ends the run, the
+ * state is the last accepted step's; another run goes on from there. @return OK, INFO_*,
+ * INVALID_ARGUMENT, INCONSISTENT, NO_CONVERGENCE, SINGULAR, NOT_FINITE, STEP_SIZE, STEP_COUNT,
+ * INTERRUPTED, CALLBACK, NO_MEMORY; the message is the system's. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_solver_run(se3d_solver *solver, double t_end);
 
-/* Make one step of length h >= 1e-15 [s] that moves the time on. As se3d_solver_run. Exclusive.
- * @since 0.1 */
+/* Make one step of length h >= 1e-15 [s] that moves the time on; n steps come to n h, to rounding.
+ * As se3d_solver_run. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_solver_step(se3d_solver *solver, double h);
 
 /* Counters since creation. @since 0.1 */

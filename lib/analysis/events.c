@@ -563,14 +563,14 @@ static se3d_status look_ahead(se3di_events *events)
     return SE3D_OK;
 }
 
-/* After a failure: the model at t, and the message of the failure. */
-static se3d_status come_back(se3di_events *events, double t, se3d_status status)
+void se3di_events_forget(se3di_events *events, double t)
 {
-    se3di_run *run = events->run;
-    const se3di_error cause = *run->error;
-    (void)run->integration.method->run(&run->integration, t);
-    *run->error = cause;
-    return status;
+    size_t *count = &events->record_count;
+    while (*count > 0 && events->records[*count - 1].time > t) {
+        --*count;
+    }
+    events->looked = 0;
+    ++events->run->model->history_stamp;
 }
 
 se3d_status se3di_events_run(se3di_events *events, double t_end)
@@ -580,27 +580,23 @@ se3d_status se3di_events_run(se3di_events *events, double t_end)
     const double *history = run->model->history;
     double t = run->model->time;
     events->dense = 1;
+    events->reached = t;
     while (t < t_end) {
         if (!(history[SE3DI_HISTORY_TIME] > t)) {
             if (run->integration.settings.leaves_stiff && method->is_held(&run->integration)) {
                 return method->run(&run->integration, t);
             }
-            const se3d_status status = method->advance(&run->integration, t_end);
-            if (status < 0) {
-                return come_back(events, history[SE3DI_HISTORY_TIME], status);
-            }
+            SE3DI_TRY(method->advance(&run->integration, t_end));
         }
         const se3di_counters before = run->equations.counters;
         se3d_status status = look_ahead(events);
         status = status < 0 ? status : report(events, t, t_end);
         keep_counters(events, &before);
-        if (status < 0) {
-            return come_back(events, t, status);
-        }
-        if (status == SE3D_INFO_EVENT) {
+        if (status != SE3D_OK) {
             return status;
         }
         t = fmin(t_end, history[SE3DI_HISTORY_TIME]);
+        events->reached = history[SE3DI_HISTORY_TIME] > t_end ? events->reached : t;
     }
     return method->run(&run->integration, t_end);
 }

@@ -59,6 +59,7 @@ typedef struct se3di_events {
     int32_t goes_on;      /* a callback changed the state: the run goes on from there */
     int32_t looked;       /* the hits are those of the step that ends at looked_time */
     int32_t reserved;
+    double reached;        /* to where, at the end of a step, the run has been looked at [s] */
     double looked_time;    /* the end of the last step that was looked at, */
     uint64_t looked_stamp; /* in this history */
 } se3di_events;
@@ -79,6 +80,8 @@ se3d_status se3di_events_prepare(se3di_events *events);
 se3d_status se3di_events_run(se3di_events *events, double t_end);
 /* The model goes on from its present state under other loads; the history was of `stamp`. */
 void se3di_events_renew(se3di_events *events, uint64_t stamp);
+/* The run has come back to t: what happened later has not. */
+void se3di_events_forget(se3di_events *events, double t);
 /* Around a watched step, see se3di_watch. */
 se3d_status se3di_events_begin_step(void *events);
 se3d_status se3di_events_end_step(void *events);

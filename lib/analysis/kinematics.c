@@ -196,13 +196,10 @@ static se3d_status step_or_less(se3di_equations *equations, double t_end, double
             break;
         }
         ++equations->counters.rejected;
-        se3di_state_restore(equations);
+        se3di_equations_come_back(equations);
         if (!moves_on(equations, 0.5 * *h)) {
             break;
         }
-    }
-    if (status == SE3D_ERR_INTERRUPTED) {
-        se3di_state_restore(equations);
     }
     return status;
 }
@@ -217,8 +214,13 @@ se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, doubl
         SE3DI_TRY(se3di_jump_refuse(&equations->assembly, model->time + h, h, equations->error));
         int last = 0;
         se3di_state_accept(equations);
+        SE3DI_TRY(se3di_equations_keep(equations));
         SE3DI_TRY(se3di_watch_begin(equations));
-        SE3DI_TRY(step_or_less(equations, t_end, &h, &last));
+        const se3d_status stepped = step_or_less(equations, t_end, &h, &last);
+        if (stepped < 0) {
+            se3di_equations_come_back(equations);
+            return stepped;
+        }
         if (last) {
             model->time = t_end;
         }

@@ -12,6 +12,7 @@
 #include "integrator/turns.h"
 #include "primitive/turn_counter.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -46,6 +47,22 @@ void se3di_run_destroy(se3di_run *run)
 {
     release(run);
     se3di_events_destroy(&run->events);
+    se3di_saved_destroy(&run->before, &run->model->allocator);
+}
+
+/* Steps and failures allocate nothing. */
+static se3d_status reserve_kept(se3di_run *run, size_t history)
+{
+    const se3d_allocator *allocator = &run->model->allocator;
+    const size_t memories = SE3DI_FORCE_STATES * run->model->force_slots.count;
+    se3di_saved_array *const arrays[] = {&run->before.history, &run->equations.kept.history,
+                                         &run->equations.kept.memory};
+    for (int k = 0; k < 3; ++k) {
+        se3di_saved_array *array = arrays[k];
+        SE3DI_TRY(se3di_array_reserve(allocator, &array->data, &array->capacity,
+                                      k < 2 ? history : memories, sizeof(double)));
+    }
+    return SE3D_OK;
 }
 
 static se3d_status allocate_work(se3di_run *run)
@@ -61,6 +78,7 @@ static se3d_status allocate_work(se3di_run *run)
                                              count, sizeof(double));
     model->history = history;
     SE3DI_TRY(status);
+    SE3DI_TRY(reserve_kept(run, count));
     run->work_count = method->work_count(&run->equations.assembly);
     run->integration.work = se3di_alloc(&model->allocator, run->work_count, sizeof(double));
     if (!run->integration.work) {
@@ -248,16 +266,10 @@ static se3d_status renew(se3di_run *run, int whole)
     return SE3D_OK;
 }
 
-/* Dynamics goes on from its own history, or starts from a consistent state, where the audit of
- * energy begins. */
-static se3d_status begin_dynamics(se3di_run *run, double h)
+/* Dynamics starts from a consistent state, where the audit of energy begins. */
+static se3d_status start_history(se3di_run *run, double h)
 {
     se3di_model *model = run->model;
-    if (model->history_tag == history_tag(run)) {
-        return model->history_inputs == model->inputs_version
-                   ? SE3D_OK
-                   : renew(run, model->history_values != model->values_version);
-    }
     SE3DI_TRY(settle(run, model->time));
     SE3DI_TRY(se3di_friction_start(&run->equations));
     SE3DI_TRY(se3di_work_accept(model, 0.0));
@@ -267,6 +279,36 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
     mark_history(model);
     ++model->history_stamp;
     return SE3D_OK;
+}
+
+/* The state that a call comes back to where it cannot reach another one. Methods that step up to a
+ * time keep each step's own. */
+static se3d_status keep_state(se3di_run *run)
+{
+    se3di_model *model = run->model;
+    run->has_before = 0;
+    if (se3di_saved_fill(&run->before, model, &model->allocator) < 0) {
+        return se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory to keep the state");
+    }
+    run->has_before = 1;
+    run->before_version = model->topology_version;
+    return SE3D_OK;
+}
+
+/* Dynamics goes on from its own history, or starts anew. */
+static se3d_status begin_dynamics(se3di_run *run, double h)
+{
+    se3di_model *model = run->model;
+    const int has_history = model->history_tag == history_tag(run);
+    const int goes_on = has_history && model->history_inputs == model->inputs_version;
+    if (!goes_on || run->integration.method->advance) {
+        SE3DI_TRY(keep_state(run));
+    }
+    if (goes_on) {
+        return SE3D_OK;
+    }
+    return has_history ? renew(run, model->history_values != model->values_version)
+                       : start_history(run, h);
 }
 
 static int has_step_control(const se3di_integration *integration)
@@ -377,6 +419,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
 static se3d_status run_dynamics(se3di_run *run, double t_end)
 {
     if (!(t_end > run->model->time)) {
+        SE3DI_TRY(keep_state(run));
         if (run->model->history_tag == history_tag(run)) {
             return renew(run, 1);
         }
@@ -412,27 +455,15 @@ static se3d_status run_kinematics(se3di_run *run, double t_end)
     return se3di_kinematics_run(&run->equations, t_end, run->integration.settings.step);
 }
 
-/* A static position at t_end; on failure the old state. */
+/* A static position at t_end. */
 static se3d_status run_equilibrium(se3di_run *run, double t_end)
 {
     se3di_model *model = run->model;
-    size_t bytes = run->equations.assembly.dense_count * sizeof *model->frames;
-    se3di_frame *kept =
-        se3di_alloc(&model->allocator, run->equations.assembly.dense_count, sizeof *kept);
-    if (!kept) {
-        return se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for the equilibrium");
-    }
-    memcpy(kept, model->frames, bytes);
-    se3d_status status = se3di_equilibrium_solve(&run->equations, t_end);
-    if (status < 0) {
-        memcpy(model->frames, kept, bytes);
-    }
-    se3di_free(&model->allocator, kept, run->equations.assembly.dense_count, sizeof *kept);
+    const se3d_status status = se3di_equilibrium_solve(&run->equations, t_end);
+    SE3DI_TRY(status);
     se3di_angles_accept(model);
     se3di_model_touch_state(model);
-    if (status >= 0) { /* contacts are as they are there */
-        SE3DI_TRY(start_contacts(run, model->time));
-    }
+    SE3DI_TRY(start_contacts(run, model->time)); /* contacts are as they are there */
     return status;
 }
 
@@ -443,7 +474,9 @@ static se3d_status information(const se3di_run *run)
 
 static se3d_status run_to(se3di_run *run, double t_end)
 {
-    se3d_status status = SE3D_OK;
+    se3d_status status =
+        run->analysis == SE3D_ANALYSIS_DYNAMICS ? SE3D_OK /* where it has to */ : keep_state(run);
+    SE3DI_TRY(status);
     switch (run->analysis) {
     case SE3D_ANALYSIS_EQUILIBRIUM:
         status = run_equilibrium(run, t_end);
@@ -481,6 +514,80 @@ se3d_status se3di_run_make_step(se3di_run *run, double h)
                                    : se3di_kinematics_step(equations, h);
     equations->watch = watch;
     return status;
+}
+
+/* The last accepted step that a method with dense output may show, which has gone on to t_end at
+ * least; with events, the last one that they were looked for in. */
+static double last_accepted(const se3di_run *run, double t_end)
+{
+    const se3di_model *model = run->model;
+    const int has_history =
+        run->integration.method->advance && model->history_tag == history_tag(run);
+    if (!has_history || run->steps_once) {
+        return run->before.time;
+    }
+    if (run->equations.watch) {
+        return run->events.reached;
+    }
+    const int passed = model->history[SE3DI_HISTORY_TIME] > t_end;
+    if (passed && model->contacts.pair_count > 0) { /* they remember the end of the step */
+        return run->before.time;
+    }
+    return model->history[passed ? SE3DI_HISTORY_BEGIN : SE3DI_HISTORY_TIME];
+}
+
+/* The state at t: the end of an accepted step, or the begin of the one that goes on after it, which
+ * elements with a memory have seen the end of already. */
+static se3d_status show_accepted(se3di_run *run, double t)
+{
+    se3di_model *model = run->model;
+    const int passed = model->history[SE3DI_HISTORY_TIME] > t;
+    double *memory = run->equations.kept.memory.data;
+    se3di_user_begin(model);
+    if (passed && model->force_slots.count > 0) {
+        se3di_model_save_memory(model, memory);
+        se3di_forces_recall(model);
+    }
+    const se3d_status status = run->integration.method->run(&run->integration, t);
+    if (passed && model->force_slots.count > 0) {
+        se3di_model_restore_memory(model, memory);
+    }
+    return status;
+}
+
+static void restore_before(se3di_run *run)
+{
+    se3di_model *model = run->model;
+    if (run->before_version == model->topology_version && se3di_saved_fits(&run->before, model) &&
+        se3di_saved_reserve(&run->before, model) >= 0) {
+        se3di_saved_restore(&run->before, model);
+        se3di_events_forget(&run->events, model->time);
+    }
+}
+
+/* After a failure: the state of the last accepted step, to the bit; or, where its accelerations
+ * cannot be computed any more, that of before the call. Methods without dense output, and steps of
+ * kinematics, have come back to theirs by themselves. */
+static void recover(se3di_run *run, double t_end)
+{
+    se3di_model *model = run->model;
+    const se3di_integrator *method = run->integration.method;
+    const se3di_error cause = *run->error;
+    if (!run->prepared || !run->has_before) {
+        return;
+    }
+    if (run->analysis == SE3D_ANALYSIS_DYNAMICS && method->advance) {
+        const double t = last_accepted(run, t_end);
+        ++run->guard.muted;
+        if (!(t > run->before.time) || show_accepted(run, t) < 0) {
+            restore_before(run);
+        }
+        --run->guard.muted;
+    } else if (!(model->time > run->before.time) || run->analysis == SE3D_ANALYSIS_EQUILIBRIUM ||
+               run->analysis == SE3D_ANALYSIS_ASSEMBLY) {
+        restore_before(run);
+    }
+    *run->error = cause;
 }
 
 /* Where dynamics fails near a prescribed value or rate that jumps, that is why. */
@@ -523,10 +630,32 @@ static se3d_status explain(se3di_run *run, se3d_status status, double t_end)
     return status;
 }
 
-static void begin(se3di_model *model)
+/* @return the status of the message that is there; it is taken off, to see whether one comes. */
+static se3d_status begin(se3di_run *run)
 {
-    model->remembers = 1;
-    se3di_user_begin(model);
+    const se3d_status told = run->error->status;
+    run->error->status = SE3D_OK;
+    run->has_before = run->steps_once = 0;
+    run->model->remembers = 1;
+    se3di_user_begin(run->model);
+    return told;
+}
+
+static se3d_status conclude(se3di_run *run, se3d_status status, double t_end, se3d_status told)
+{
+    if (status >= 0) {
+        run->error->status = run->error->status < 0 ? run->error->status : told;
+        return status;
+    }
+    status = explain(run, status, t_end);
+    if (run->error->status != status) { /* the powers of elements have no message of their own */
+        se3di_error_set(run->error, status,
+                        "t = %.9g s: a function or callback failed, or is not finite, as the works "
+                        "of forces and drivers were computed",
+                        run->model->time);
+    }
+    recover(run, t_end);
+    return status;
 }
 
 /* Runs on the way to one horizon are counted together. */
@@ -542,18 +671,50 @@ static void begin_guard(se3di_run *run, double t_end)
     }
 }
 
-se3d_status se3di_run_to(se3di_run *run, double t_end)
+int se3di_run_is_now(const se3di_run *run, double t)
+{
+    const double now = run->model->time;
+    return fabs(t - now) <= 4.0 * DBL_EPSILON * fmax(fabs(t), fabs(now));
+}
+
+/* To t_end, and on from what the callback of an event has left. */
+static se3d_status run_again(se3di_run *run, double t_end)
 {
     se3d_status status;
     begin_guard(run, t_end);
-    do { /* again from what the callback of an event has left */
+    do {
         run->refused = 0;
         run->events.goes_on = 0;
         SE3DI_TRY(prepare(run));
-        begin(run->model);
-        status = explain(run, run_to(run, t_end), t_end);
+        const se3d_status told = begin(run);
+        status = conclude(run, run_to(run, t_end), t_end, told);
     } while (status == SE3D_INFO_EVENT && run->events.goes_on);
     return status;
+}
+
+se3d_status se3di_run_to(se3di_run *run, double t_end)
+{
+    se3d_status status;
+    const double now = run->model->time;
+    if (!se3di_run_is_now(run, t_end)) {
+        return run_again(run, t_end);
+    }
+    run->model->time = fmax(t_end, now); /* no step is that short */
+    status = run_again(run, run->model->time);
+    run->model->time = status < 0 ? now : run->model->time;
+    return status;
+}
+
+/* The length of a step of `h` to where as many steps as there were lead, added up exactly: what
+ * rounding takes from one goes into the next. *rest: what this one leaves. */
+static double step_length(const se3di_model *model, double h, double *rest)
+{
+    const double t = model->time;
+    const int goes_on = !(t < model->rest_time) && !(t > model->rest_time);
+    const double wanted = goes_on ? h + model->time_rest : h;
+    const double length = (t + wanted) - t;
+    *rest = wanted - length;
+    return length > 0.0 ? length : h;
 }
 
 se3d_status se3di_run_step(se3di_run *run, double h)
@@ -561,12 +722,19 @@ se3d_status se3di_run_step(se3di_run *run, double h)
     if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
         return se3di_run_to(run, run->model->time + h);
     }
-    const double t_end = run->model->time + h;
+    double rest;
+    se3di_model *model = run->model;
+    const double length = step_length(model, h, &rest), t_end = model->time + length;
     begin_guard(run, t_end);
     run->refused = 0;
     run->events.goes_on = 0;
     SE3DI_TRY(prepare(run));
-    begin(run->model);
-    const se3d_status status = explain(run, run_step(run, h), t_end);
+    const se3d_status told = begin(run);
+    run->steps_once = 1;
+    const se3d_status status = conclude(run, run_step(run, length), t_end, told);
+    if (status >= 0 && status != SE3D_INFO_EVENT) {
+        model->rest_time = model->time;
+        model->time_rest = rest;
+    }
     return status == SE3D_INFO_EVENT && run->events.goes_on ? se3di_run_to(run, t_end) : status;
 }

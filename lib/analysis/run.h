@@ -25,6 +25,10 @@ typedef struct se3di_run {
     uint64_t values_version; /* of the prescribed values that the equations have */
     se3di_guard guard;       /* what ends a run before its time */
     double horizon;          /* runs go on to here [s] */
+    se3di_saved before;      /* the state that the call under way began with, where */
+    uint64_t before_version;
+    int32_t has_before; /* it was kept */
+    int32_t steps_once; /* the call is one step */
 } se3di_run;
 
 /* Set up for an analysis; allocates nothing yet. `system`: for the callbacks of events. */
@@ -34,7 +38,9 @@ void se3di_run_destroy(se3di_run *run);
 /* Bring the model to t_end >= its time. @return OK or INFO_REDUNDANT, or an error with the model at
  * the last accepted state. */
 se3d_status se3di_run_to(se3di_run *run, double t_end);
-/* One step of length h > 0. */
+/* Whether t is the present time, to rounding. */
+int se3di_run_is_now(const se3di_run *run, double t);
+/* One step of length h > 0, to rounding: n steps come to n h. */
 se3d_status se3di_run_step(se3di_run *run, double h);
 
 /* The bare step of length h of the analysis' method, which nobody watches; on failure the old

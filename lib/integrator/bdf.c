@@ -208,7 +208,7 @@ static se3d_status accept(se3di_bdf *m, int order, int is_bdf)
     if (m->assembly->row_count > 0) {
         memcpy(model->lambda, m->lambda, m->assembly->row_count * sizeof *m->lambda);
     }
-    se3d_status status = se3di_loads_prepare(model, m->t, m->equations->error);
+    se3d_status status = se3di_state_prepare(m->equations, m->t);
     status = status < 0 ? status : se3di_loads_power(model, m->t, power);
     status = status < 0 ? status
                         : se3di_state_derivative(m->assembly, m->t, m->acceleration, m->lambda,
@@ -363,6 +363,8 @@ static double pace(se3di_bdf *m, double t_end, double *longer)
 {
     const double rest = t_end - m->header[BDF_TIME];
     se3di_state_set(m->assembly, m->points);
+    se3di_bdf_eval_rate(m, m->header[BDF_TIME], m->difference);
+    se3di_state_set_rates(m->assembly, m->difference);
     double h = se3di_state_limit_turn(m->assembly->model, 0.0, m->header[BDF_STEP]);
     h = se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
     *longer = m->header[BDF_RENEWED] > 0.0 && rest > 0.0 && h > rest ? h : 0.0;
@@ -484,7 +486,10 @@ static se3d_status renew(se3di_integration *integration)
 static se3d_status publish(se3di_bdf *m, double t, int project)
 {
     const se3di_state_scale scale = se3di_bdf_get_scale(m);
-    if (t < m->header[BDF_TIME]) {
+    const int at_begin = !(t > m->header[BDF_BEGIN]) && m->header[BDF_POINTS] > 1.0;
+    if (t < m->header[BDF_TIME] && at_begin) { /* the end of the step before, to the bit */
+        memcpy(m->y, m->points + m->count, m->count * sizeof *m->y);
+    } else if (t < m->header[BDF_TIME]) {
         se3di_bdf_eval(m, t, m->y);
     } else {
         memcpy(m->y, m->points, m->count * sizeof *m->y);
@@ -527,16 +532,11 @@ static se3d_status step(se3di_integration *integration, double h)
     status = status < 0 ? status : project_end(&m);
     status = status < 0 ? status : settle(&m, 0, &error);
     status = status < 0 ? status : accept(&m, order, is_bdf);
-    if (status >= 0) {
-        m.header[BDF_TIME] = m.times[0] = t0 + h;
-        set_order(&m, 1 < order && m.header[BDF_POINTS] > 2.0 ? 2 : 1);
-        m.header[BDF_STEP] = limit_step(&m, h);
-        return publish(&m, m.header[BDF_TIME], 0);
-    }
-    se3di_error cause = *m.equations->error;
-    (void)publish(&m, t0, 0);
-    *m.equations->error = cause;
-    return status;
+    SE3DI_TRY(status);
+    m.header[BDF_TIME] = m.times[0] = t0 + h;
+    set_order(&m, 1 < order && m.header[BDF_POINTS] > 2.0 ? 2 : 1);
+    m.header[BDF_STEP] = limit_step(&m, h);
+    return publish(&m, m.header[BDF_TIME], 0);
 }
 
 static se3d_status advance_one(se3di_integration *integration, double t_end)
@@ -559,13 +559,8 @@ static se3d_status run(se3di_integration *integration, double t_end)
     while (m.header[BDF_TIME] < t_end && status >= 0) {
         status = advance(&m, t_end);
     }
-    if (status < 0) {
-        se3di_error cause = *m.equations->error;
-        (void)publish(&m, m.header[BDF_TIME], 0);
-        *m.equations->error = cause;
-        return status;
-    }
-    return publish(&m, t_end, m.header[BDF_TIME] > t_end);
+    SE3DI_TRY(status);
+    return publish(&m, t_end, m.header[BDF_TIME] > t_end && t_end > m.header[BDF_BEGIN]);
 }
 
 const se3di_integrator se3di_integrator_bdf = {

@@ -112,7 +112,12 @@ static se3d_status iterate(se3di_bdf *m, int refactor, double *size)
     SE3DI_TRY(eval_residual(m));
     if (refactor) {
         se3di_kkt_expect(newton->kkt, equations->b, equations->c);
-        SE3DI_TRY(se3di_newton_factor_rates(newton, m->t, m->acceleration, m->lambda, m->c));
+        const se3d_status status =
+            se3di_newton_factor_rates(newton, m->t, m->acceleration, m->lambda, m->c);
+        if (status < 0) {
+            se3di_kkt_expect(newton->kkt, NULL, NULL);
+            return status;
+        }
     }
     SE3DI_TRY(se3di_newton_solve(newton));
     ++equations->counters.iterations;

@@ -349,7 +349,7 @@ static se3d_status prepare(rk *m, double h, double *error)
     if (!(*error <= 1.0)) {
         return SE3D_OK;
     }
-    se3d_status status = se3di_loads_prepare(model, m->header[RK_T1] + h, m->equations->error);
+    se3d_status status = se3di_state_prepare(m->equations, m->header[RK_T1] + h);
     if (status < 0 && se3di_forces_have_memory(model)) {
         se3di_model_restore_memory(model, m->memory);
     }
@@ -498,13 +498,22 @@ static int must_leave(const rk *m)
     return m->integration->settings.leaves_stiff && m->header[RK_HELD] >= HELD_MIN;
 }
 
+/* Nothing is learnt from attempts that end the run. */
+static se3d_status give_up(rk *m, const double *header, se3d_status status)
+{
+    memcpy(m->header, header, RK_HEADER * sizeof *header);
+    return status;
+}
+
 /* One accepted step with error control. What contacts remember belongs to the end of a step, and
  * cannot be interpolated: where shapes are near each other steps end at t_end. So does the first
  * one after a change of what acts, which may soon change again. */
 static se3d_status advance(rk *m, double t_end)
 {
-    double h = m->header[RK_NEXT];
+    double h = m->header[RK_NEXT], header[RK_HEADER];
+    memcpy(header, m->header, sizeof header);
     se3di_state_set(m->assembly, m->y1);
+    se3di_state_set_rates(m->assembly, m->f1);
     se3di_angles_accept(m->assembly->model); /* turns count from step to step, not from an output */
     h = se3di_state_limit_turn(m->assembly->model, largest_growth(m), h);
     h = se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
@@ -514,13 +523,16 @@ static se3d_status advance(rk *m, double t_end)
     h = longer > 0.0 ? rest : h;
     for (;;) {
         double error;
-        SE3DI_TRY(se3di_equations_try_step(m->equations, m->header[RK_T1]));
-        se3d_status status = attempt(m, h, &error);
+        se3d_status status = se3di_equations_try_step(m->equations, m->header[RK_T1]);
+        if (status < 0) {
+            return give_up(m, header, status);
+        }
+        status = attempt(m, h, &error);
         if (status >= 0 && error <= 1.0) {
             status = prepare(m, h, &error);
         }
         if (status == SE3D_ERR_NO_MEMORY) {
-            return status;
+            return give_up(m, header, status);
         }
         if (status >= 0 && error <= 1.0) {
             accept(m, h);
@@ -542,7 +554,8 @@ static se3d_status advance(rk *m, double t_end)
         const double before = h;
         h *= fmax(0.2, fmin(0.9, factor));
         if (!(h > least_step(m))) {
-            return status < 0 ? status : cross_jump(m, before, error);
+            status = status < 0 ? status : cross_jump(m, before, error);
+            return status < 0 ? give_up(m, header, status) : status;
         }
         m->header[RK_NEXT] = h;
         longer = 0.0;
@@ -598,11 +611,12 @@ static se3d_status adopt(rk *m)
     return SE3D_OK;
 }
 
-/* The model's state is the forward one. */
-static se3d_status publish(rk *m)
+/* The model's state is that at an end of the last step. */
+static se3d_status publish(rk *m, int at_end)
 {
-    se3di_state_scale scale = get_scale(m);
-    return se3di_state_publish(m->equations, m->y1, m->header[RK_T1], &scale, 0);
+    const se3di_state_scale scale = get_scale(m);
+    return se3di_state_publish(m->equations, at_end ? m->y1 : m->y0,
+                               m->header[at_end ? RK_T1 : RK_T0], &scale, 0);
 }
 
 /* Hairer, Norsett, Wanner 1993, sec. II.4: from the derivative and its change over a small step. */
@@ -715,8 +729,7 @@ se3d_status se3di_rk_step(se3di_integration *integration, double h)
     if (status >= 0 && reported) {
         return se3di_state_conclude(m.equations, m.y1, m.header[RK_T1]);
     }
-    se3d_status published = publish(&m);
-    return status < 0 ? status : published;
+    return status < 0 ? status : publish(&m, 1);
 }
 
 /* Forward steps until t_end is reached, and the interpolation where it is passed. */
@@ -751,16 +764,12 @@ void se3di_rk_interpolate(const se3di_integration *integration, double t, double
 se3d_status se3di_rk_run(se3di_integration *integration, double t_end)
 {
     rk m = begin(integration);
-    se3d_status status = advance_to(&m, t_end);
+    const int at_begin = !(t_end > m.header[RK_T0]);
+    se3d_status status = at_begin ? SE3D_OK : advance_to(&m, t_end);
     se3di_state_end(m.equations, &m.kkt);
-    if (status < 0) {
-        se3di_error cause = *m.equations->error;
-        (void)publish(&m);
-        *m.equations->error = cause;
-        return status;
-    }
-    if (m.header[RK_T1] <= t_end) { /* earlier where it leaves a stiff motion */
-        return publish(&m);
+    SE3DI_TRY(status);
+    if (at_begin || m.header[RK_T1] <= t_end) { /* earlier where it leaves a stiff motion */
+        return publish(&m, m.header[RK_T1] <= t_end);
     }
     interpolate(&m, t_end, m.y);
     se3di_state_scale scale = get_scale(&m);

@@ -23,7 +23,7 @@ static uint32_t count_elements(const se3di_model *model)
 size_t se3di_lie_friction_work_count(const se3di_model *model)
 {
     size_t count = count_elements(model);
-    return count > 0 ? count * (21 + count) + SE3DI_FORCE_STATES * model->force_slots.count : 0;
+    return count > 0 ? count * (21 + count) : 0;
 }
 
 size_t se3di_lie_friction_history_count(const se3di_model *model)
@@ -53,16 +53,8 @@ se3di_lie_friction se3di_lie_friction_begin(se3di_equations *equations, double *
         f.load = f.limit + f.count;
         f.Q = f.load + f.count;
         f.W = f.Q + 16 * (size_t)f.count;
-        f.memory = f.W + (size_t)f.count * f.count;
     }
     return f;
-}
-
-void se3di_lie_friction_keep(const se3di_lie_friction *f)
-{
-    if (f->count > 0) {
-        se3di_model_save_memory(f->equations->assembly.model, f->memory);
-    }
 }
 
 /* The next friction element after *at (the first from 0), of which there is one. */
@@ -316,12 +308,5 @@ void se3di_lie_friction_accept(const se3di_lie_friction *f)
     for (uint32_t k = 0; k < f->count; ++k) {
         se3di_friction_set(f->equations->assembly.model, next_element(f, &at), f->mode[k], f->n[k]);
         f->history[k] = f->n[k];
-    }
-}
-
-void se3di_lie_friction_restore(const se3di_lie_friction *f)
-{
-    if (f->count > 0) {
-        se3di_model_restore_memory(f->equations->assembly.model, f->memory);
     }
 }

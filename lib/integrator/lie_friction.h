@@ -25,7 +25,6 @@ typedef struct se3di_lie_friction {
     double *Q;     /* [count * 16]: generalised forces of a unit on bodies i and j */
     double *W;     /* [count * count] */
     double *history;
-    double *memory; /* [forces * SE3DI_FORCE_STATES] of the last accepted state */
 } se3di_lie_friction;
 
 /* Of the history: n of each element, exactly (the elements' own memory of it is an anchor some
@@ -53,8 +52,5 @@ se3d_status se3di_lie_friction_solve_accelerations(se3di_lie_friction *f);
 double se3di_lie_friction_change(const se3di_lie_friction *f);
 /* The elements remember what was found. */
 void se3di_lie_friction_accept(const se3di_lie_friction *f);
-/* Keep what they remember, and put it back. */
-void se3di_lie_friction_keep(const se3di_lie_friction *f);
-void se3di_lie_friction_restore(const se3di_lie_friction *f);
 
 #endif

@@ -410,23 +410,10 @@ se3d_status se3di_lie_verlet_kick(se3di_lie_verlet *m)
 se3d_status se3di_lie_verlet_finish(se3di_lie_verlet *m)
 {
     se3di_model *model = m->assembly->model;
-    SE3DI_TRY(se3di_loads_prepare(model, m->t1, m->equations->error));
+    SE3DI_TRY(se3di_state_prepare(m->equations, m->t1));
     se3di_lie_friction_accept(&m->friction);
     model->time = m->t1;
     se3di_angles_accept(model);
     se3di_loads_accept(model);
     return se3di_work_accept(model, m->h);
-}
-
-void se3di_lie_verlet_keep(se3di_lie_verlet *m)
-{
-    se3di_state_accept(m->equations);
-    se3di_lie_friction_keep(&m->friction);
-}
-
-void se3di_lie_verlet_restore(se3di_lie_verlet *m, double t0)
-{
-    se3di_state_restore(m->equations);
-    se3di_lie_friction_restore(&m->friction);
-    m->assembly->model->time = t0;
 }

@@ -47,8 +47,5 @@ se3d_status se3di_lie_verlet_drift(se3di_lie_verlet *m);
 /* The velocities at t1, accelerations and multipliers. */
 se3d_status se3di_lie_verlet_kick(se3di_lie_verlet *m);
 se3d_status se3di_lie_verlet_finish(se3di_lie_verlet *m);
-/* Before steps that may have to be undone; undo them: the state is that at t0 again. */
-void se3di_lie_verlet_keep(se3di_lie_verlet *m);
-void se3di_lie_verlet_restore(se3di_lie_verlet *m, double t0);
 
 #endif

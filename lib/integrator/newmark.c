@@ -390,27 +390,27 @@ static se3d_status step_to(se3di_integration *integration, const se3di_newmark *
     se3di_equations *equations = integration->equations;
     se3di_assembly *assembly = &equations->assembly;
     se3di_model *model = assembly->model;
-    const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    SE3DI_TRY(se3di_equations_keep(equations));
     se3di_newmark_step step = begin_step(integration, method, h);
     step.t = t;
     se3di_contacts_begin(model, h, step.velocity / h, 0);
     se3di_equations_save(equations);
-    se3di_model_save_memory(model, integration->newton.memory);
     se3d_status status = se3di_newmark_solve(&step);
     integration->error = HUGE_VAL;
     if (status >= 0) {
         integration->error = most > 0.0 ? estimate_error(&step) : 0.0;
         const int is_refused = !(integration->error <= most);
-        status = is_refused ? SE3D_ERR_STEP_SIZE : se3di_loads_prepare(model, t, equations->error);
+        status = is_refused ? SE3D_ERR_STEP_SIZE : se3di_state_prepare(equations, t);
         integration->error = status < 0 && !is_refused ? HUGE_VAL : integration->error;
     }
-    if (status < 0) {
-        se3di_model_restore_memory(model, integration->newton.memory);
-        load(assembly, &past);
-        return status;
+    if (status >= 0) {
+        accept(&step, method);
+        status = conclude(&step, method);
     }
-    accept(&step, method);
-    return conclude(&step, method);
+    if (status < 0) {
+        se3di_equations_come_back(equations);
+    }
+    return status;
 }
 
 se3d_status se3di_newmark_make_step(se3di_integration *integration, const se3di_newmark *method,
@@ -515,7 +515,7 @@ static se3d_status advance_by_error(se3di_integration *integration, const se3di_
     se3di_equations *equations = integration->equations;
     double *header = equations->assembly.model->history;
     double *next = &header[SE3DI_NEWMARK_NEXT];
-    const double t = header[SE3DI_NEWMARK_END];
+    const double t = header[SE3DI_NEWMARK_END], before = *next;
     double tried[2] = {0.0, 0.0}, errors[2] = {HUGE_VAL, HUGE_VAL};
     for (;;) {
         const double h = limit_step(integration, fmin(*next, longest));
@@ -532,6 +532,7 @@ static se3d_status advance_by_error(se3di_integration *integration, const se3di_
             return status;
         }
         if (status == SE3D_ERR_INTERRUPTED) {
+            *next = before;
             return status;
         }
         ++equations->counters.rejected;
@@ -541,7 +542,9 @@ static se3d_status advance_by_error(se3di_integration *integration, const se3di_
         errors[1] = integration->error;
         *next = next_step(h, integration->error);
         if (!(*next > 1e-12 * fmax(1e-3, fabs(t)))) {
-            return fail_small(integration, t, status);
+            const se3d_status failed = fail_small(integration, t, status);
+            *next = before; /* nothing is learnt from attempts that end the run */
+            return failed;
         }
     }
 }
@@ -568,17 +571,10 @@ se3d_status se3di_newmark_advance(se3di_integration *integration, const se3di_ne
 se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmark *method,
                               double t_end)
 {
-    se3di_equations *equations = integration->equations;
-    const double *header = equations->assembly.model->history;
+    const double *header = integration->equations->assembly.model->history;
     se3d_status status = SE3D_OK;
     while (header[SE3DI_NEWMARK_TIME] < t_end && status >= 0) {
         status = se3di_newmark_advance(integration, method, t_end);
     }
-    if (status >= 0) {
-        return se3di_newmark_publish(integration, t_end);
-    }
-    const se3di_error cause = *equations->error;
-    (void)se3di_newmark_publish(integration, header[SE3DI_NEWMARK_END]);
-    *equations->error = cause;
-    return status;
+    return status < 0 ? status : se3di_newmark_publish(integration, t_end);
 }

@@ -116,7 +116,8 @@ static void set_accelerations(se3di_integration *integration, double t, double s
     se3di_error ignored = {0};
     se3di_error *error = equations->error;
     for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
-        guess[k] = past.vdot[k] - (1.0 - s) * (past.vdot[k] - past.vdot_begin[k]);
+        guess[k] = s > 0.0 ? past.vdot[k] - (1.0 - s) * (past.vdot[k] - past.vdot_begin[k])
+                           : past.vdot_begin[k]; /* to the bit */
     }
     equations->error = &ignored;
     const int is_exact = !remembers(model) && se3di_acceleration_solve(equations, t) >= 0 &&
@@ -124,7 +125,9 @@ static void set_accelerations(se3di_integration *integration, double t, double s
     equations->error = error;
     if (!is_exact) {
         for (uint32_t k = 0; k < assembly->row_count; ++k) {
-            model->lambda[k] = past.lambda[k] - (1.0 - s) * (past.lambda[k] - past.lambda_begin[k]);
+            model->lambda[k] =
+                s > 0.0 ? past.lambda[k] - (1.0 - s) * (past.lambda[k] - past.lambda_begin[k])
+                        : past.lambda_begin[k];
         }
         se3di_assembly_set_acceleration(assembly, guess);
     }
@@ -144,7 +147,7 @@ se3d_status se3di_newmark_publish(se3di_integration *integration, double t)
     const int is_end = !(end - t > SE3DI_NEWMARK_SAME_TIME * last);
     se3di_newmark_interpolate(integration, is_end ? end : t, y);
     se3di_state_set(assembly, y);
-    if (!is_end) {
+    if (!is_end && t > header[SE3DI_NEWMARK_BEGIN]) { /* not the end of the step before */
         SE3DI_TRY(se3di_state_project(equations, t, &scale, 1e-15, 0));
     }
     set_accelerations(integration, t, is_end ? 1.0 : (t - header[SE3DI_NEWMARK_BEGIN]) / last);

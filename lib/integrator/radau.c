@@ -193,7 +193,7 @@ static se3d_status settle(se3di_radau *m, double tolerance, double *error)
 static se3d_status project_end(se3di_radau *m)
 {
     SE3DI_TRY(se3di_state_project(m->equations, m->t + m->h, &m->scale, 1e-13, 0));
-    return se3di_loads_prepare(m->assembly->model, m->t + m->h, m->equations->error);
+    return se3di_state_prepare(m->equations, m->t + m->h);
 }
 
 /* The step is solved and settled: project its end to rounding, and take it. */
@@ -308,6 +308,14 @@ static se3d_status fail_small(const se3di_radau *m, double h, se3d_status cause)
     return cause;
 }
 
+/* Nothing is learnt from attempts that end the run. */
+static se3d_status give_up(double *header, double next, double rejected, se3d_status status)
+{
+    header[RADAU_NEXT] = next;
+    header[RADAU_REJECTED] = rejected;
+    return status;
+}
+
 /* One accepted step with error control; the first one after a change of what acts, which may soon
  * change again, goes to t_end at most. */
 static se3d_status advance(se3di_integration *integration, double t_end)
@@ -316,15 +324,18 @@ static se3d_status advance(se3di_integration *integration, double t_end)
     const history past = get_history(&integration->equations->assembly);
     double *header = past.header;
     const double inner = inner_tolerance(integration->settings.tolerance);
+    const double was_next = header[RADAU_NEXT], was_rejected = header[RADAU_REJECTED];
     SE3DI_TRY(begin_step(&m, integration, &past));
+    se3di_state_set_rates(m.assembly, m.f0);
     double h = se3di_state_limit_turn(m.assembly->model, 0.0, header[RADAU_NEXT]);
     h = se3di_contacts_pace(m.assembly->model, SE3DI_PACE_ADAPTIVE, h);
     const double longer = header[RADAU_RENEWED] > 0.0 && h > t_end - m.t ? h : 0.0;
     h = longer > 0.0 ? t_end - m.t : h;
     for (int whole = 1;; whole = 0) {
-        double error;
-        SE3DI_TRY(se3di_equations_try_step(m.equations, m.t));
-        se3d_status status = attempt(&m, &past, inner, h, &error);
+        double error = HUGE_VAL;
+        se3d_status status = se3di_equations_try_step(m.equations, m.t);
+        const int ends = status < 0;
+        status = ends ? status : attempt(&m, &past, inner, h, &error);
         if (status >= 0 && error <= 1.0) {
             status = settle(&m, integration->settings.tolerance, &error);
         }
@@ -339,15 +350,15 @@ static se3d_status advance(se3di_integration *integration, double t_end)
                 return SE3D_OK;
             }
         }
-        if (status == SE3D_ERR_INTERRUPTED) {
-            return status;
+        if (ends || status == SE3D_ERR_INTERRUPTED) {
+            return give_up(header, was_next, was_rejected, status);
         }
         ++m.equations->counters.rejected;
         header[RADAU_REJECTED] = 1.0;
         h *= status < 0 ? 0.5 : fmin(0.9, fmax(0.1, 0.9 * se3di_pow(error, -0.25)));
         header[RADAU_NEXT] = h;
         if (!(h > 1e-12 * fmax(1e-3, fabs(m.t)))) {
-            return fail_small(&m, h, status);
+            return give_up(header, was_next, was_rejected, fail_small(&m, h, status));
         }
     }
 }
@@ -390,9 +401,7 @@ static se3d_status start(se3di_integration *integration, double h)
 static se3d_status renew(se3di_integration *integration)
 {
     const history past = get_history(&integration->equations->assembly);
-    const double next = past.header[RADAU_NEXT];
     SE3DI_TRY(adopt(integration));
-    past.header[RADAU_NEXT] = next;
     past.header[RADAU_RENEWED] = 1.0;
     return SE3D_OK;
 }
@@ -405,6 +414,10 @@ static se3d_status publish(se3di_integration *integration, double t)
     se3di_state_scale scale = get_scale(&past);
     if (!(t < header[RADAU_TIME])) {
         return se3di_state_publish(integration->equations, past.y1, header[RADAU_TIME], &scale, 0);
+    }
+    if (!(t > header[RADAU_BEGIN])) {
+        return se3di_state_publish(integration->equations, past.start, header[RADAU_BEGIN], &scale,
+                                   0);
     }
     eval_polynomial(&past, se3di_state_count(assembly), t, integration->work);
     return se3di_state_publish(integration->equations, integration->work, t, &scale, 1);
@@ -425,14 +438,9 @@ static se3d_status step(se3di_integration *integration, double h)
         status = status < 0 ? status : settle(&m, HUGE_VAL, &error);
         status = status < 0 ? status : accept(&m, &past);
     }
-    if (status >= 0) {
-        past.header[RADAU_TIME] = t0 + h;
-        return publish(integration, t0 + h);
-    }
-    se3di_error cause = *integration->equations->error;
-    (void)publish(integration, t0);
-    *integration->equations->error = cause;
-    return status;
+    SE3DI_TRY(status);
+    past.header[RADAU_TIME] = t0 + h;
+    return publish(integration, t0 + h);
 }
 
 static se3d_status advance_one(se3di_integration *integration, double t_end)
@@ -459,13 +467,7 @@ static se3d_status run(se3di_integration *integration, double t_end)
     while (past.header[RADAU_TIME] < t_end && status >= 0) {
         status = advance(integration, t_end);
     }
-    if (status >= 0) {
-        return publish(integration, t_end);
-    }
-    se3di_error cause = *integration->equations->error;
-    (void)publish(integration, past.header[RADAU_TIME]);
-    *integration->equations->error = cause;
-    return status;
+    return status < 0 ? status : publish(integration, t_end);
 }
 
 const se3di_integrator se3di_integrator_radau = {

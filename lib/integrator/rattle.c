@@ -31,8 +31,7 @@ static se3d_status step(se3di_integration *integration, double h)
             "rattle of order 4 steps back in time, which friction does not allow; "
             "use order 2");
     }
-    se3di_lie_verlet_keep(&m);
-    se3d_status status = SE3D_OK;
+    se3d_status status = se3di_equations_keep(m.equations);
     double sum = 0.0;
     for (int k = 0; k < parts && status >= 0; ++k) {
         sum += weights[k];
@@ -41,7 +40,7 @@ static se3d_status step(se3di_integration *integration, double h)
         status = advance(&m);
     }
     if (status < 0) {
-        se3di_lie_verlet_restore(&m, t0);
+        se3di_equations_come_back(m.equations);
         return status;
     }
     ++integration->equations->counters.steps;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/state.h"
 
+#include "assembly/user.h"
 #include "contact/loads.h"
 #include "math/inertia.h"
 #include "math/quaternion.h"
@@ -36,6 +37,14 @@ void se3di_state_set(se3di_assembly *assembly, const double *y)
         memcpy(frame->v, y + 7, 3 * sizeof *y);
         memcpy(frame->w, y + 10, 3 * sizeof *y);
         se3di_frame_update(frame);
+    }
+}
+
+void se3di_state_set_rates(se3di_assembly *assembly, const double *derivative)
+{
+    for (uint32_t k = 0; k < assembly->body_count; ++k, derivative += SE3DI_STATE_SIZE) {
+        memcpy(assembly->model->acceleration + 6 * (size_t)assembly->free_body[k], derivative + 7,
+               6 * sizeof *derivative);
     }
 }
 
@@ -370,6 +379,13 @@ void se3di_state_scale_grow(const se3di_assembly *assembly, const double *deriva
     scale->speed = fmax(0.95 * scale->speed, v);
     scale->spin = fmax(0.95 * scale->spin, w);
     scale->energy = fmax(0.95 * scale->energy, energy);
+}
+
+se3d_status se3di_state_prepare(se3di_equations *equations, double t)
+{
+    se3di_model *model = equations->assembly.model;
+    SE3DI_TRY(se3di_user_report(model, equations->error));
+    return se3di_loads_prepare(model, t, equations->error);
 }
 
 se3d_status se3di_state_conclude(se3di_equations *equations, const double *y, double t)

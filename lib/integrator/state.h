@@ -22,6 +22,9 @@ size_t se3di_state_count(const se3di_assembly *assembly);
 void se3di_state_get(const se3di_assembly *assembly, double *y);
 /* Sets the frames; p is normalised on the way. */
 void se3di_state_set(se3di_assembly *assembly, const double *y);
+/* The accelerations of y' become those of the model: of a state that the model steps on from
+ * without showing it, whatever it has shown last. */
+void se3di_state_set_rates(se3di_assembly *assembly, const double *derivative);
 /* y' at t from the frames, the accelerations `qddot` [unknowns] and the multipliers l [rows], which
  * become those of the model where powers depend on them. */
 se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const double *qddot,
@@ -75,6 +78,10 @@ double se3di_state_length(const se3di_model *model);
 /* Grow speed, spin and energy to those of the present state with derivative `derivative`. */
 void se3di_state_scale_grow(const se3di_assembly *assembly, const double *derivative,
                             se3di_state_scale *scale);
+
+/* The state at t is about to be accepted: all that can fail. What a callback computed last may have
+ * failed without anybody asking yet. */
+se3d_status se3di_state_prepare(se3di_equations *equations, double t);
 
 /* The model's state from y at t, with accelerations and multipliers: an accepted or an interpolated
  * one. */

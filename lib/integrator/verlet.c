@@ -68,8 +68,8 @@ static se3d_status advance(verlet *m, double t1)
     bodies->h = t1 - t0;
     bodies->t1 = t1;
     SE3DI_TRY(se3di_sets_aim(m->model, bodies->h, m->error));
-    se3di_lie_verlet_keep(bodies);
-    se3d_status status = se3di_lie_verlet_drift(bodies);
+    se3d_status status = se3di_equations_keep(bodies->equations);
+    status = status < 0 ? status : se3di_lie_verlet_drift(bodies);
     se3d_status contact = SE3D_OK;
     if (status >= 0 && m->model->sets) { /* particles do not go back: no failure for memory below */
         status = se3di_contacts_reserve(m->model, t1, m->error);
@@ -84,7 +84,7 @@ static se3d_status advance(verlet *m, double t1)
     status = status < 0 ? status : se3di_lie_verlet_kick(bodies);
     status = status < 0 ? status : se3di_lie_verlet_finish(bodies);
     if (status < 0) {
-        se3di_lie_verlet_restore(bodies, t0);
+        se3di_equations_come_back(bodies->equations);
         return status;
     }
     if (m->model->sets) {

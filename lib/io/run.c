@@ -8,6 +8,7 @@
  * Where an event stops an analysis the last row is that of the event; others are in their own file.
  */
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -495,7 +496,8 @@ static se3d_status collect_events(runner *r, size_t index, se3d_status status)
 static se3d_status create_solver(runner *r, const se3di_analysis_entry *entry, double start)
 {
     se3d_solver_def def = entry->solver;
-    def.horizon = start + entry->analysis.duration;
+    const double end = start + entry->analysis.duration;
+    def.horizon = fabs(end) > 0.0 ? end : DBL_MIN; /* 0 is none */
     def.interrupt = r->options->interrupt;
     def.interrupt_ctx = r->options->interrupt_ctx;
     return se3d_solver_create(r->model->system, &def, &r->solver);

@@ -155,6 +155,8 @@ typedef struct se3di_model {
     int32_t work_valid;          /* 1: `power` belongs to the present state; 0: void; -1: the last
                                     analysis (kinematics) computes no works */
     double time;
+    double time_rest, rest_time; /* what rounding took from the steps of a caller's on the way to
+                                    rest_time [s] */
     double work[3];            /* done since the start: dissipated, by actuators, by drivers [J] */
     double power[3];           /* the same, of the last accepted state [W] */
     uint64_t topology_version; /* changes when elements come, go or change */

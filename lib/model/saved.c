@@ -63,6 +63,8 @@ se3d_status se3di_saved_fill(se3di_saved *saved, const se3di_model *model,
     saved->history_inputs = model->history_inputs;
     saved->history_values = model->history_values;
     saved->time = model->time;
+    saved->time_rest = model->time_rest;
+    saved->rest_time = model->rest_time;
     return SE3D_OK;
 }
 
@@ -118,6 +120,8 @@ void se3di_saved_restore(const se3di_saved *saved, se3di_model *model)
     model->history_inputs = saved->history_inputs;
     model->history_values = saved->history_values;
     model->time = saved->time;
+    model->time_rest = saved->time_rest;
+    model->rest_time = saved->rest_time;
 }
 
 static void release(se3di_saved_array *array, const se3d_allocator *allocator, size_t size)

@@ -13,7 +13,7 @@ typedef struct se3di_saved_array {
 } se3di_saved_array;
 
 typedef struct se3di_saved {
-    double time;
+    double time, time_rest, rest_time;
     double work[3], power[3];
     double contact_step;
     uint64_t history_tag;

@@ -116,6 +116,7 @@ void se3di_equations_destroy(se3di_equations *equations)
     se3di_free(allocator, equations->accepted_acceleration, 6 * (size_t)assembly->dense_count,
                sizeof(double));
     se3di_free(allocator, equations->accepted_lambda, assembly->row_count, sizeof(double));
+    se3di_saved_destroy(&equations->kept, allocator);
     se3di_assembly_destroy(assembly);
     memset(equations, 0, sizeof *equations);
 }
@@ -164,6 +165,36 @@ void se3di_equations_restore(se3di_equations *equations)
            equations->assembly.dense_count * sizeof *equations->saved);
 }
 
+/* Lists of contacts are exchanged from state to state: both must have room for the one that is
+ * kept. */
+static se3d_status keep(se3di_saved *kept, se3di_model *model)
+{
+    void *next = model->contacts.next;
+    SE3DI_TRY(se3di_saved_fill(kept, model, &model->allocator));
+    const se3d_status status =
+        se3di_array_reserve(&model->allocator, &next, &model->contacts.next_capacity,
+                            model->contacts.count, sizeof *model->contacts.next);
+    model->contacts.next = next;
+    return status;
+}
+
+se3d_status se3di_equations_keep(se3di_equations *equations)
+{
+    equations->keeps = 0;
+    if (keep(&equations->kept, equations->assembly.model) < 0) {
+        return se3di_error_set(equations->error, SE3D_ERR_NO_MEMORY, "no memory for a step");
+    }
+    equations->keeps = 1;
+    return SE3D_OK;
+}
+
+void se3di_equations_come_back(se3di_equations *equations)
+{
+    if (equations->keeps) {
+        se3di_saved_restore(&equations->kept, equations->assembly.model);
+    }
+}
+
 void se3di_state_accept(se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
@@ -208,7 +239,12 @@ static void release_held(se3di_equations *equations)
 static se3d_status factor_values(se3di_equations *equations)
 {
     se3di_assembly *assembly = &equations->assembly;
-    SE3DI_TRY(se3di_user_report(assembly->model, equations->error));
+    const se3d_status reported = se3di_user_report(assembly->model, equations->error);
+    if (reported < 0) {
+        se3di_kkt_expect(equations->kkt, NULL,
+                         NULL); /* or another solution would be taken for it */
+        return reported;
+    }
     if (equations->hold) {
         release_held(equations);
     }

@@ -14,6 +14,7 @@
 #include "assembly/assembly.h"
 #include "base/guard.h"
 #include "linsol/kkt.h"
+#include "model/saved.h"
 
 typedef struct se3di_counters {
     uint64_t steps, rejected, iterations, evaluations, factorizations, solves;
@@ -40,12 +41,15 @@ typedef struct se3di_equations {
     se3di_frame *accepted;         /* the last accepted state: frames [dense bodies], */
     double *accepted_acceleration; /* [dense bodies * 6], */
     double *accepted_lambda;       /* [rows] */
+    se3di_saved kept;              /* what a step that fails comes back to */
     const se3di_watch *watch;      /* NULL: nobody */
     se3di_guard *guard;            /* NULL: nothing ends a run before its time */
     int32_t iterations_max;        /* of the position Newton */
     int32_t redundant;             /* an acceleration met dependent rows */
     int32_t hold;                  /* positions and velocities of held bodies stay (assembly) */
     int32_t audits;                /* kinematic steps integrate powers to works */
+    int32_t keeps;                 /* `kept` is what a failure has to come back to */
+    int32_t reserved;
 } se3di_equations;
 
 se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
@@ -117,6 +121,11 @@ se3d_status se3di_equations_try_step(const se3di_equations *equations, double t)
 /* Keep and restore the frames of all bodies. */
 void se3di_equations_save(se3di_equations *equations);
 void se3di_equations_restore(se3di_equations *equations);
+
+/* Keep all that a step reads and writes, history and memories included (particle sets are not), and
+ * come back to it, to the bit. @return OK, NO_MEMORY */
+se3d_status se3di_equations_keep(se3di_equations *equations);
+void se3di_equations_come_back(se3di_equations *equations);
 
 /* Keep and restore the whole state: frames, accelerations, multipliers (not the time). */
 void se3di_state_accept(se3di_equations *equations);

@@ -103,7 +103,7 @@ static void configure(se3di_run *run, const se3d_solver_def *def)
     run->guard = (se3di_guard){.interrupt = def->interrupt,
                                .ctx = def->interrupt_ctx,
                                .most = def->steps_max > 0 ? (double)def->steps_max : STEPS_MAX};
-    run->horizon = def->horizon;
+    run->horizon = fabs(def->horizon) > 0.0 ? def->horizon : -HUGE_VAL;
     run->integration.method = se3di_integrator_find(def->method);
     run->integration.settings = (se3di_integrator_settings){
         .step = def->step,
@@ -170,7 +170,8 @@ se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
 {
     SE3DI_EDIT_OF(solver);
     se3d_system *system = solver->system;
-    if (!(isfinite(t_end) && t_end >= system->model.time)) {
+    if (!isfinite(t_end) ||
+        (t_end < system->model.time && !se3di_run_is_now(&solver->run, t_end))) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "t_end = %g s, must be finite and not before the present time %g s",
                           t_end, system->model.time);

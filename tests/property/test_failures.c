@@ -1,0 +1,356 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A callback that fails at any of its calls: the state is that of the last accepted step, to the
+ * bit, and the run goes on from it as if nothing had happened. */
+#include "check.h"
+#include "se3d/se3d.h"
+
+#define METHODS 10
+
+static const char *const method_names[METHODS] = {
+    "auto", "generalized_alpha", "hht", "dop853", "rk45", "bdf", "radau", "rattle", "verlet",
+    "rk4"};
+
+/* Counts the calls of all callbacks, and fails at one of them, or from it on. */
+static long calls, fails_at;
+static int for_ever;
+
+static se3d_status may_fail(void)
+{
+    ++calls;
+    return fails_at > 0 && (calls == fails_at || (for_ever && calls > fails_at)) ? SE3D_ERR_CALLBACK
+                                                                                 : SE3D_OK;
+}
+
+static se3d_status push(void *ctx, double t, const se3d_body_motion motion[2], double wrench[12],
+                        double *K, double *D)
+{
+    (void)ctx, (void)motion, (void)K, (void)D;
+    wrench[6] = 0.3 * sin(3.0 * t);
+    wrench[8] = 0.5;
+    return may_fail();
+}
+
+static se3d_status wave(void *ctx, const double *x, double jet[3], double *gradient)
+{
+    (void)ctx;
+    jet[0] = 0.2 * sin(2.0 * x[0]);
+    jet[1] = 0.4 * cos(2.0 * x[0]);
+    jet[2] = -0.8 * sin(2.0 * x[0]);
+    if (gradient) {
+        gradient[0] = jet[1];
+    }
+    return may_fail();
+}
+
+/* z of the second body is that of the ground. */
+static se3d_status level(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
+                         double *jacobian, double *nu, double *gamma)
+{
+    (void)ctx, (void)t, (void)nu, (void)gamma;
+    if (phi) {
+        phi[0] = bodies[0].r[1];
+    }
+    if (jacobian) {
+        jacobian[1] = 1.0;
+    }
+    return may_fail();
+}
+
+/* Which callbacks there are, and what has a memory. */
+enum {
+    SCENE_FORCE,
+    SCENE_DRIVER,
+    SCENE_CONSTRAINT,
+    SCENE_MEMORY,
+    SCENE_CONTACT,
+    SCENE_EVENT,
+    SCENES,      /* of dynamics */
+    SCENE_DRIVEN /* the bar alone, its motion determined */
+};
+
+typedef struct world {
+    se3d_system *system;
+    se3d_solver *solver;
+    se3d_body a, b;
+    se3d_constraint pin;
+} world;
+
+static void add_push(const world *w, se3d_body ground)
+{
+    se3d_force_callback_def force = se3d_force_callback_def_default();
+    se3d_force made;
+    force.body_i = ground;
+    force.body_j = w->b;
+    force.callback = push;
+    CHECK(!se3d_force_create_callback(w->system, &force, &made));
+}
+
+static void add_driver(const world *w)
+{
+    se3d_function_def function = se3d_function_def_default();
+    se3d_driver_def driver = se3d_driver_def_default();
+    se3d_constraint made;
+    function.callback = wave;
+    CHECK(!se3d_function_create(w->system, &function, &driver.function));
+    driver.joint = w->pin;
+    CHECK(!se3d_driver_create(w->system, &driver, &made));
+}
+
+static void add_level(const world *w)
+{
+    se3d_user_constraint_def user = se3d_user_constraint_def_default();
+    se3d_constraint made;
+    user.callback = level;
+    user.bodies[0] = w->b;
+    CHECK(!se3d_user_constraint_create(w->system, &user, &made));
+}
+
+static void add_memories(const world *w)
+{
+    se3d_friction_def friction = se3d_friction_def_default();
+    se3d_stop_def stop = se3d_stop_def_default();
+    se3d_force made;
+    friction.joint = w->pin;
+    friction.mu = 0.1;
+    friction.radius = 0.01;
+    friction.presliding = 1e-4;
+    CHECK(!se3d_force_create_friction(w->system, &friction, &made));
+    stop.joint = w->pin;
+    stop.upper = 0.1;
+    stop.k = 100.0;
+    stop.restitution = 0.8;
+    CHECK(!se3d_force_create_stop(w->system, &stop, &made));
+}
+
+static se3d_status get_height(void *ctx, const se3d_system *system, double *value)
+{
+    const world *w = ctx;
+    double r[3];
+    CHECK(!se3d_body_get_position(system, w->b, r));
+    *value = r[2];
+    return may_fail();
+}
+
+static void add_event(world *w)
+{
+    se3d_event_def event = se3d_event_def_default();
+    se3d_event made;
+    event.value = get_height;
+    event.ctx = w;
+    event.level = -0.02;
+    CHECK(!se3d_event_create(w->solver, &event, &made));
+}
+
+/* A floor under the second body, which it meets in the run. */
+static void add_floor(const world *w)
+{
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_shape_def shape = se3d_shape_def_default();
+    se3d_shape made;
+    stuff.density = 1.0;
+    stuff.stiffness = 1e4;
+    CHECK(!se3d_material_create(w->system, &stuff, &shape.material));
+    shape.position[2] = -0.3;
+    CHECK(!se3d_shape_create_plane(w->system, &shape, &made));
+    shape.position[2] = 0.0;
+    shape.body = w->b;
+    shape.radius = 0.2;
+    CHECK(!se3d_shape_create_sphere(w->system, &shape, &made));
+}
+
+/* A bar on a pin, and a body on a spring at its end. */
+static void make(world *w, int scene, int32_t analysis, int32_t method)
+{
+    se3d_body ground;
+    se3d_body_def body = se3d_body_def_default();
+    se3d_joint_def pin = se3d_joint_def_default();
+    se3d_tsda_def spring = se3d_tsda_def_default();
+    se3d_force made;
+    calls = fails_at = 0;
+    for_ever = 0;
+    CHECK(!se3d_system_create(NULL, &w->system));
+    CHECK(!se3d_system_get_ground(w->system, &ground));
+    body.mass = 1.0;
+    body.inertia[0] = body.inertia[1] = body.inertia[2] = 0.1;
+    body.position[0] = 0.5;
+    CHECK(!se3d_body_create(w->system, &body, &w->a));
+    body.position[0] = 1.25;
+    w->b = w->a;
+    if (scene != SCENE_DRIVEN) {
+        CHECK(!se3d_body_create(w->system, &body, &w->b));
+    }
+    pin.body_i = ground;
+    pin.body_j = w->a;
+    pin.point_j[0] = -0.5;
+    pin.axis_i[1] = pin.axis_j[1] = 1.0;
+    pin.axis_i[2] = pin.axis_j[2] = 0.0;
+    CHECK(!se3d_joint_create_revolute(w->system, &pin, &w->pin));
+    spring.body_i = scene == SCENE_DRIVEN ? ground : w->a;
+    spring.body_j = w->b;
+    spring.point_i[0] = 0.5;
+    spring.point_i[2] = scene == SCENE_DRIVEN ? 1.0 : 0.0;
+    spring.k = 30.0;
+    spring.c = 0.5;
+    spring.l0 = 0.25;
+    CHECK(!se3d_force_create_tsda(w->system, &spring, &made));
+    if (scene == SCENE_DRIVER || scene == SCENE_DRIVEN) {
+        add_driver(w);
+    }
+    if (scene == SCENE_DRIVER) {
+        ; /* no other callbacks */
+    } else if (scene == SCENE_CONSTRAINT) {
+        add_level(w);
+    } else {
+        add_push(w, ground);
+    }
+    if (scene == SCENE_MEMORY) {
+        add_memories(w);
+    } else if (scene == SCENE_CONTACT) {
+        add_floor(w);
+    }
+    se3d_solver_def def = se3d_solver_def_default();
+    def.analysis = analysis;
+    def.method = method;
+    def.tolerance = 1e-5;
+    def.step = method == SE3D_METHOD_GENERALIZED_ALPHA || method == SE3D_METHOD_HHT ||
+                       method == SE3D_METHOD_RATTLE || method == SE3D_METHOD_VERLET ||
+                       analysis != SE3D_ANALYSIS_DYNAMICS
+                   ? 1.0 / 256.0
+                   : 0.0;
+    CHECK(!se3d_solver_create(w->system, &def, &w->solver));
+    if (scene == SCENE_EVENT) {
+        add_event(w);
+    }
+}
+
+static void destroy(world *w)
+{
+    se3d_solver_destroy(w->solver);
+    se3d_system_destroy(w->system);
+}
+
+/* The calls of a short run: a time to run to, or a step. */
+#define CALLS 5
+static const double ends[CALLS] = {0.0, 0.0625, 0.0, 0.125, 0.1484375};
+
+static se3d_status call(const world *w, int k)
+{
+    return k == 2 ? se3d_solver_step(w->solver, 1.0 / 256.0) : se3d_solver_run(w->solver, ends[k]);
+}
+
+/* The k-th call is to be made again, or to go on, where it has come to t. */
+static int is_to_do(int k, double t)
+{
+    return k == 0 || k == 2 || t < ends[k];
+}
+
+static double time_of(const world *w)
+{
+    double t = -1.0;
+    CHECK(!se3d_system_get_time(w->system, &t));
+    return t;
+}
+
+/* An undisturbed run of the same calls before the k-th, to t, and then on: its hashes at t and at
+ * the end. */
+static void run_undisturbed(int scene, int32_t analysis, int32_t method, int k, double t,
+                            uint64_t hash[2])
+{
+    world w;
+    make(&w, scene, analysis, method);
+    for (int n = 0; n < k; ++n) {
+        CHECK(call(&w, n) >= 0);
+    }
+    if (t > time_of(&w)) {
+        CHECK(se3d_solver_run(w.solver, t) >= 0);
+    }
+    hash[0] = se3d_system_hash(w.system);
+    for (int n = k; n < CALLS; ++n) {
+        if (n != k || is_to_do(n, t)) {
+            CHECK(call(&w, n) >= 0);
+        }
+    }
+    hash[1] = se3d_system_hash(w.system);
+    destroy(&w);
+}
+
+/* The run with a failure at call n of a callback; the number of calls that have failed. */
+static int run_with_failure(int scene, int32_t analysis, int32_t method, long n, int ever)
+{
+    world w;
+    int failures = 0;
+    uint64_t hash[2] = {0, 0};
+    make(&w, scene, analysis, method);
+    fails_at = n;
+    for_ever = ever;
+    for (int k = 0; k < CALLS; ++k) {
+        if (call(&w, k) >= 0) {
+            continue;
+        }
+        ++failures;
+        const double t = time_of(&w);
+        const uint64_t here = se3d_system_hash(w.system);
+        CHECK(se3d_system_get_error_status(w.system) == SE3D_ERR_CALLBACK);
+        fails_at = 0;
+        run_undisturbed(scene, analysis, method, k, t, hash);
+        CHECK(here == hash[0]);
+        fails_at = 0;
+        if (is_to_do(k, t)) {
+            CHECK(call(&w, k) >= 0);
+        }
+    }
+    CHECK(failures == 0 || se3d_system_hash(w.system) == hash[1]);
+    destroy(&w);
+    return failures;
+}
+
+static void fail_everywhere(int scene, int32_t analysis, int32_t method)
+{
+    world w;
+    int failed = 0;
+    const int before = check_failures;
+    make(&w, scene, analysis, method);
+    for (int k = 0; k < CALLS; ++k) {
+        CHECK(call(&w, k) >= 0);
+    }
+    const long count = calls;
+    destroy(&w);
+    const long stride = count / 20 + 1; /* not a divisor of the calls of a step */
+    for (long n = 1; n <= count; n += stride) {
+        for (int ever = 0; ever < 2 && check_failures == before; ++ever) {
+            const int failures = run_with_failure(scene, analysis, method, n, ever);
+            CHECK(!ever || failures == 1);
+            failed += failures;
+            if (check_failures > before) {
+                fprintf(stderr, "  %s, scene %d, analysis %d, call %ld of %ld %s\n",
+                        method_names[method], scene, (int)analysis, n, count, ever ? "on" : "");
+            }
+        }
+    }
+    CHECK(failed > 0);
+}
+
+static void a_failure_leaves_the_last_accepted_step_in_every_method(void)
+{
+    for (int32_t method = 0; method < METHODS; ++method) {
+        for (int scene = 0; scene < SCENES; ++scene) {
+            fail_everywhere(scene, SE3D_ANALYSIS_DYNAMICS, method);
+        }
+    }
+}
+
+static void so_it_does_in_every_analysis(void)
+{
+    static const int32_t analyses[] = {SE3D_ANALYSIS_ASSEMBLY, SE3D_ANALYSIS_KINEMATICS,
+                                       SE3D_ANALYSIS_INVERSE_DYNAMICS};
+    for (size_t k = 0; k < sizeof analyses / sizeof analyses[0]; ++k) {
+        fail_everywhere(SCENE_DRIVEN, analyses[k], SE3D_METHOD_AUTO);
+    }
+}
+
+int main(void)
+{
+    RUN(so_it_does_in_every_analysis);
+    RUN(a_failure_leaves_the_last_accepted_step_in_every_method);
+    return check_finish();
+}

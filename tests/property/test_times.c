@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The times of steps and runs: steps add up without their roundings, a run to the time where they
+ * lead is one to the present time, and times may be negative. */
+#include "check.h"
+#include "se3d/se3d.h"
+
+#include <float.h>
+
+#define METHODS 10
+
+typedef struct fall {
+    se3d_system *system;
+    se3d_solver *solver;
+    se3d_body body;
+} fall;
+
+static void make(fall *f, const se3d_solver_def *def, double start)
+{
+    se3d_system_def system = se3d_system_def_default();
+    se3d_body_def body = se3d_body_def_default();
+    system.time = start;
+    body.mass = body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+    CHECK(!se3d_system_create(&system, &f->system));
+    CHECK(!se3d_body_create(f->system, &body, &f->body));
+    CHECK(!se3d_solver_create(f->system, def, &f->solver));
+}
+
+static void destroy(fall *f)
+{
+    se3d_solver_destroy(f->solver);
+    se3d_system_destroy(f->system);
+}
+
+static void a_run_may_go_to_where_steps_have_led(void)
+{
+    static const double lengths[] = {1e-3, 0.01, 0.1 / 3.0, 1.0 / 60.0, 1e-7, 0.7};
+    for (int32_t method = 0; method < METHODS; ++method) {
+        for (size_t k = 0; k < sizeof lengths / sizeof lengths[0]; ++k) {
+            fall f;
+            se3d_solver_def def = se3d_solver_def_default();
+            const double h = lengths[k];
+            def.method = method;
+            make(&f, &def, 0.0);
+            for (int n = 1; n <= 300; ++n) {
+                const double end = n * h;
+                double t, v[3], a[3];
+                CHECK(se3d_solver_step(f.solver, h) >= 0);
+                CHECK(!se3d_system_get_time(f.system, &t));
+                CHECK_NEAR(t, end, DBL_EPSILON * end);
+                if (n % 7 == 0 || n == 10) {
+                    CHECK(se3d_solver_run(f.solver, end) >= 0);
+                    CHECK(!se3d_system_get_time(f.system, &t));
+                    CHECK_NEAR(t, end, DBL_EPSILON * end);
+                }
+                CHECK(!se3d_body_get_velocity(f.system, f.body, v));
+                CHECK(!se3d_body_get_acceleration(f.system, f.body, a));
+                CHECK_NEAR(v[2], -9.81 * end, 1e-12 * (1.0 + 9.81 * end));
+                CHECK_NEAR(a[2], -9.81, 1e-12);
+            }
+            destroy(&f);
+        }
+    }
+}
+
+static void a_time_before_the_present_one_is_refused(void)
+{
+    fall f;
+    const se3d_solver_def def = se3d_solver_def_default();
+    make(&f, &def, 1.0);
+    CHECK(se3d_solver_run(f.solver, 1.0 - 1e-14) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_solver_run(f.solver, 1.0 - DBL_EPSILON) >= 0);
+    CHECK(se3d_solver_run(f.solver, 1.0 + DBL_EPSILON) >= 0);
+    CHECK(se3d_solver_run(f.solver, 1.0 + 1e-12) >= 0);
+    destroy(&f);
+}
+
+/* Half of the steps that are allowed, a tenth of the way to t = 0. */
+static void no_horizon_is_none_at_negative_times(void)
+{
+    fall f;
+    se3d_solver_def def = se3d_solver_def_default();
+    def.method = SE3D_METHOD_VERLET;
+    def.step = 1e-4;
+    def.steps_max = 20000;
+    make(&f, &def, -10.0);
+    CHECK(se3d_solver_run(f.solver, -9.0) == SE3D_OK);
+    destroy(&f);
+    def.horizon = -1.0; /* one is */
+    make(&f, &def, -10.0);
+    CHECK(se3d_solver_run(f.solver, -9.0) == SE3D_ERR_STEP_COUNT);
+    destroy(&f);
+}
+
+int main(void)
+{
+    RUN(a_run_may_go_to_where_steps_have_led);
+    RUN(a_time_before_the_present_one_is_refused);
+    RUN(no_horizon_is_none_at_negative_times);
+    return check_finish();
+}
