@@ -69,7 +69,7 @@ def fast_tables():
         parts("ln2", "the first exact times 11 bits", ln(2), [42]),
         "static const double rate_log10[2] = %s; /* 1 / ln 10 */\n" % pair(1 / ln(10)),
         table("sin_table", "sin(i pi / 128)", [sin(pi * i / 128) for i in range(65)]),
-        parts("pi_128", "pi / 128: the first two exact times 23 bits", pi / 128, [30, 30]),
+        parts("pi_128", "pi / 128: the first two exact times 23 bits", pi / 128, [30, 30, 53]),
         "static const double rate_sin = %s; /* 128 / pi */\n" % number(cut(128 / pi, 53)),
         table("atan_table", "atan(j/64)", [atan(mpf(j) / 64) for j in range(65)]),
         "static const double pi_pair[2] = %s;\n" % pair(pi),

@@ -224,6 +224,9 @@ double se3di_atan2(double y, double x)
     if (!(u > 0.0 && v > 0.0 && u < HUGE_VAL && v < HUGE_VAL)) {
         return atan2_special(y, x);
     }
+    if (x > 0.0 && u < 0x1p-54 * v && fabs(y / x) > 0x1p-1000) {
+        return y / x; /* no quotient is as near to a tie as the cube is small: 2^-107 of it */
+    }
     if (u > 0x1p-400 && v > 0x1p-400 && u < 0x1p400 && v < 0x1p400 && fast()->atan2(y, x, &out)) {
         return out;
     }

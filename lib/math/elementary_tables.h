@@ -375,8 +375,8 @@ static const double sin_table[65][2] = {{0.0, 0.0},
                                         {0x1.0000000000000p+0, 0.0}};
 
 /* pi / 128: the first two exact times 23 bits */
-static const double pi_128[3] = {0x1.921fb54800000p-6, -0x1.de973dc800000p-37,
-                                 -0x1.9d9cceba3f91fp-68};
+static const double pi_128[4] = {0x1.921fb54800000p-6, -0x1.de973dc800000p-37,
+                                 -0x1.9d9cceba3f91fp-68, -0x1.976b7ed8fbbadp-124};
 
 static const double rate_sin = 0x1.45f306dc9c883p+5; /* 128 / pi */
 

@@ -290,6 +290,10 @@ static void both_phases_round_alike(void)
         check_same("cos", x, 0.0, cosine, exact[1]);
         CHECK(same(se3di_sin(x), sine) && same(se3di_cos(x), cosine));
         check_same("atan2", y, x, se3di_atan2(y, x), se3di_big_atan2(y, x));
+        const double few = floor(8.0 * y) * se3di_pow(2.0, -50.0 - n % 8);
+        const double one = 1.0 + (n % 5 - 2) * 0x1p-53; /* noise about an angle of 0 */
+        check_same("atan2", few, one, se3di_atan2(few, one),
+                   few == 0.0 ? few : se3di_big_atan2(few, one));
         check_same("hypot", x, y, se3di_hypot(x, y), se3di_big_hypot(x, y));
         check_same("pow", fabs(x), y, se3di_pow(fabs(x), y), se3di_big_pow(fabs(x), y));
     }
