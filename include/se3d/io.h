@@ -42,6 +42,7 @@ typedef struct se3d_model_options {
     const char *duration;  /* expression over the parameters [s] */
     int32_t mass_optional; /* not 0: bodies without mass get 1 kg, 1 kg m^2 (geometry only) */
     int32_t reserved;      /* 0 */
+    const char *tolerance; /* expression over the parameters, of every analysis */
 } se3d_model_options;
 
 SE3D_API void se3d_model_options_init(se3d_model_options *options, size_t size);

@@ -3,7 +3,6 @@
 
 #include "assembly/user.h"
 #include "contact/loads.h"
-#include "math/inertia.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -284,18 +283,6 @@ void se3di_state_split_force(const se3di_assembly *assembly, const se3di_frame *
     }
     se3di_g_mul(frame->p, generalised + 3, torque); /* 2 G^T n is the force of a torque n */
     se3di_scale(0.5, torque, torque);
-}
-
-void se3di_state_mass_solve(const se3di_assembly *assembly, uint32_t free_body,
-                            const double *generalised, double rate[6])
-{
-    const uint32_t dense = assembly->free_body[free_body];
-    const se3di_body *body = &assembly->model->bodies[dense];
-    double torque[3], J[9];
-    se3di_state_split_force(assembly, &assembly->model->frames[dense], generalised, rate, torque);
-    se3di_scale(1.0 / body->mass, rate, rate);
-    se3di_inertia_matrix(body->J, J);
-    se3di_solve3(J, torque, rate + 3);
 }
 
 double se3di_state_limit_turn(const se3di_model *model, double growth, double h)

@@ -62,12 +62,10 @@ se3d_status se3di_state_project(se3di_equations *equations, double t,
 se3d_status se3di_state_project_positions(se3di_equations *equations, double t,
                                           const se3di_state_scale *scale, double accuracy);
 
-/* Force and torque (body frame) of a generalised force on a body with the orientation of `frame`;
- * and the same divided by the body's mass and inertia. */
+/* Force and torque (body frame) of a generalised force on a body with the orientation of
+ * `frame`. */
 void se3di_state_split_force(const se3di_assembly *assembly, const se3di_frame *frame,
                              const double *generalised, double force[3], double torque[3]);
-void se3di_state_mass_solve(const se3di_assembly *assembly, uint32_t free_body,
-                            const double *generalised, double rate[6]);
 
 /* A step of at most h in which no joint angle turns by as much as its counter cannot follow, where
  * rates grow by at most `growth` [rad/s^2]. */

@@ -93,11 +93,13 @@ static bool read_numbers(se3di_reader *reader, const se3di_node *node, se3d_solv
 {
     const se3di_node *step =
         replaced(reader, se3di_node_get(node, "step"), "--step", reader->options->step);
+    const se3di_node *tolerance = replaced(reader, se3di_node_get(node, "tolerance"), "--tolerance",
+                                           reader->options->tolerance);
     double order = 0.0;
     double iterations = 25.0;
     double steps = STEPS_MAX;
     if ((step && !se3di_read_number(reader, step, SE3DI_POSITIVE, &solver->step)) ||
-        !se3di_read_key_number(reader, node, "tolerance", SE3DI_POSITIVE, &solver->tolerance) ||
+        (tolerance && !se3di_read_number(reader, tolerance, SE3DI_POSITIVE, &solver->tolerance)) ||
         !se3di_read_key_number(reader, node, "spectral_radius", SE3DI_ANY,
                                &solver->spectral_radius) ||
         !se3di_read_key_number(reader, node, "alpha", SE3DI_ANY, &solver->alpha) ||

@@ -97,9 +97,9 @@ analysis: {type: dynamics, duration: 3}
 MODEL
 expect 'auto says when it changes' 0 "$program" run "$dir/stiffens.yaml" -o "$dir/stiffens"
 has "$dir/out" 'dynamics, romega, radau: success'
-has "$dir/out" 'auto left dop853 for radau at t = 1.6'
+has "$dir/out" 'auto left dop853 for radau at t = 1.3'
 expect 'auto says it in json' 0 "$program" run "$dir/stiffens.yaml" -o "$dir/stiffens" --json
-has "$dir/out" '"left": "dop853", "left_at": 1.6'
+has "$dir/out" '"left": "dop853", "left_at": 1.3'
 
 expect 'another analysis' 0 "$program" run "$models/pendulum_free.yaml" -o "$dir/a" --analysis assembly
 is "$(wc -l <"$dir/a/pendulum_free.csv" | tr -d ' ')" 2
@@ -206,6 +206,24 @@ drivers: [{name: d, joint: j, value: 1e6*t}]
 analysis: {type: dynamics, duration: 50}
 output: [{file: row.csv, every: 50, channels: [a.angular_velocity]}]
 END
+# --tolerance replaces that of the file: the tighter, the more steps
+cat >"$dir/swing.yaml" <<'END'
+se3d: 1
+gravity: [0, 0, 0]
+bodies: [{name: a, mass: 1, inertia: [1, 1, 1], position: [1, 0, 0]}]
+forces: [{type: force, body: a, value: ["1 - exp(t)", 0, 0]}]
+analysis: {type: dynamics, duration: 4, method: bdf, tolerance: 1e-3}
+output: [{file: row.csv, every: 4, channels: [a.position]}]
+END
+for tolerance in 1e-3 1e-5 1e-9; do
+    expect 'run with a tolerance' 0 "$program" run "$dir/swing.yaml" -o "$dir/swing" --tolerance $tolerance
+    steps=$(sed -n 's/.* s, \([0-9]*\) steps.*/\1/p' "$dir/out")
+    is "$([ "$steps" -gt "${fewer:-0}" ] && echo more)" more
+    fewer=$steps
+done
+expect 'a tolerance that is none' 2 "$program" run "$dir/swing.yaml" -o "$dir/swing" --tolerance 0
+expect 'a tolerance that is too large' 2 "$program" run "$dir/swing.yaml" -o "$dir/swing" --tolerance 2
+
 for method in radau bdf dop853 'rk45 --step 1e-7' 'rk4 --step 1e-7' 'hht --step 1e-7' \
     'generalized_alpha --step 1e-7' 'rattle --step 1e-7' 'verlet --step 1e-7'; do
     for signal in INT TERM; do

@@ -48,8 +48,9 @@ static const char **value_target(options *o, const char *name)
     } table[] = {{"-o", &o->directory},        {"--output", &o->directory},
                  {"--analysis", &o->analysis}, {"--formulation", &o->formulation},
                  {"--method", &o->method},     {"--step", &o->step},
-                 {"--duration", &o->duration}, {"--time", &o->time},
-                 {"--speed", &o->speed},       {"--view", &o->view}};
+                 {"--duration", &o->duration}, {"--tolerance", &o->tolerance},
+                 {"--time", &o->time},         {"--speed", &o->speed},
+                 {"--view", &o->view}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;
@@ -157,6 +158,7 @@ se3d_model_options options_get_model(const options *o)
     how.formulation = o->formulation;
     how.method = o->method;
     how.step = o->step;
+    how.tolerance = o->tolerance;
     how.duration = o->duration;
     return how;
 }

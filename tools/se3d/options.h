@@ -15,6 +15,7 @@ typedef struct options {
     const char *formulation;
     const char *method;
     const char *step;
+    const char *tolerance;
     const char *duration;
     const char *time;
     const char *speed;

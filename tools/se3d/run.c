@@ -22,6 +22,7 @@ static const char help[] =
     "  --method M             auto, generalized_alpha, hht, dop853, rk45, rk4, bdf, radau, rattle, "
     "verlet\n"
     "  --step H               step [s]\n"
+    "  --tolerance E          relative error of methods that control it\n"
     "  --duration T           duration [s]\n"
     "  --quiet                print nothing but errors\n"
     "  --json                 print the summary as JSON\n"
@@ -435,7 +436,7 @@ int run_for_plots(const char *path, int quiet, int draw, char *csv, size_t size)
 int command_run(int count, char *const *words)
 {
     static const char allowed[] = " -o --output --set --analysis --formulation --method --step "
-                                  "--duration --quiet -q --json ";
+                                  "--tolerance --duration --quiet -q --json ";
     options o;
     se3d_model *model = NULL;
     int code = options_read(&o, "run", allowed, count, words);
