@@ -238,8 +238,13 @@ typedef struct se3d_contact {
  * must be that number). Those of particles: se3d_particles_get_contacts.
  * @return OK, NULL, INVALID_ARGUMENT. Reader. @since 0.1 */
 SE3D_API size_t se3d_system_count_contacts(const se3d_system *system);
-SE3D_API se3d_status se3d_system_get_contacts(const se3d_system *system, size_t count,
-                                              se3d_contact *contacts);
+SE3D_API se3d_status se3d_system_get_contacts_sized(const se3d_system *system, size_t count,
+                                                    se3d_contact *contacts, size_t size);
+static inline se3d_status se3d_system_get_contacts(const se3d_system *system, size_t count,
+                                                   se3d_contact *contacts)
+{
+    return se3d_system_get_contacts_sized(system, count, contacts, sizeof *contacts);
+}
 /* Count the pairs of meshes that pass through each other: materials, groups and joints would let
  * them touch, but neither is convex. The first pair to *i and *j (NULL: not wanted; null handles
  * where there is none). @return the count; 0 where system is NULL. Reader. @since 0.1 */

@@ -97,8 +97,13 @@ SE3D_API se3d_status se3d_event_get_name(se3d_solver *solver, se3d_event event, 
 /* Count the events that happened, in the order in which they did; 0 for NULL. Reader. @since 0.1 */
 SE3D_API size_t se3d_solver_count_event_records(const se3d_solver *solver);
 /* Get one. @return OK, NULL, INVALID_ARGUMENT (index). Exclusive. @since 0.1 */
-SE3D_API se3d_status se3d_solver_get_event_record(se3d_solver *solver, size_t index,
-                                                  se3d_event_record *record);
+SE3D_API se3d_status se3d_solver_get_event_record_sized(se3d_solver *solver, size_t index,
+                                                        se3d_event_record *record, size_t size);
+static inline se3d_status se3d_solver_get_event_record(se3d_solver *solver, size_t index,
+                                                       se3d_event_record *record)
+{
+    return se3d_solver_get_event_record_sized(solver, index, record, sizeof *record);
+}
 /* Forget them all. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_solver_clear_event_records(se3d_solver *solver);
 

@@ -92,8 +92,13 @@ typedef struct se3d_model_analysis {
 /* Count the analyses, to be run one after the other; 0 for NULL. Reader. @since 0.1 */
 SE3D_API size_t se3d_model_count_analyses(const se3d_model *model);
 /* Get one. @return OK, NULL, INVALID_ARGUMENT (index). Reader. @since 0.1 */
-SE3D_API se3d_status se3d_model_get_analysis(const se3d_model *model, size_t index,
-                                             se3d_model_analysis *analysis);
+SE3D_API se3d_status se3d_model_get_analysis_sized(const se3d_model *model, size_t index,
+                                                   se3d_model_analysis *analysis, size_t size);
+static inline se3d_status se3d_model_get_analysis(const se3d_model *model, size_t index,
+                                                  se3d_model_analysis *analysis)
+{
+    return se3d_model_get_analysis_sized(model, index, analysis, sizeof *analysis);
+}
 /* Get the definition of its solver into `def`, which comes from se3d_solver_def_default.
  * @return as se3d_model_get_analysis; UNSUPPORTED for modes, which has none. Reader. @since 0.1 */
 SE3D_API se3d_status se3d_model_get_solver(const se3d_model *model, size_t index,
@@ -107,8 +112,13 @@ typedef struct se3d_model_output {
 } se3d_model_output;
 
 SE3D_API size_t se3d_model_count_outputs(const se3d_model *model);
-SE3D_API se3d_status se3d_model_get_output(const se3d_model *model, size_t index,
-                                           se3d_model_output *output);
+SE3D_API se3d_status se3d_model_get_output_sized(const se3d_model *model, size_t index,
+                                                 se3d_model_output *output, size_t size);
+static inline se3d_status se3d_model_get_output(const se3d_model *model, size_t index,
+                                                se3d_model_output *output)
+{
+    return se3d_model_get_output_sized(model, index, output, sizeof *output);
+}
 /* Get the name of channel `k` of an output: "bar.position". @return OK, NULL, INVALID_ARGUMENT.
  * Reader. @since 0.1 */
 SE3D_API se3d_status se3d_model_get_channel(const se3d_model *model, size_t output, size_t k,
@@ -155,8 +165,13 @@ typedef struct se3d_model_shape {
 } se3d_model_shape;
 
 SE3D_API size_t se3d_model_count_shapes(const se3d_model *model);
-SE3D_API se3d_status se3d_model_get_shape(const se3d_model *model, size_t index,
-                                          se3d_model_shape *shape);
+SE3D_API se3d_status se3d_model_get_shape_sized(const se3d_model *model, size_t index,
+                                                se3d_model_shape *shape, size_t size);
+static inline se3d_status se3d_model_get_shape(const se3d_model *model, size_t index,
+                                               se3d_model_shape *shape)
+{
+    return se3d_model_get_shape_sized(model, index, shape, sizeof *shape);
+}
 
 /* Called during a run after each row; return not 0 to stop it. @since 0.1 */
 typedef int (*se3d_run_progress)(void *ctx, size_t analysis, double time, double fraction);
@@ -210,8 +225,13 @@ typedef struct se3d_run_analysis {
 } se3d_run_analysis;
 
 SE3D_API size_t se3d_run_count_analyses(const se3d_run *run);
-SE3D_API se3d_status se3d_run_get_analysis(const se3d_run *run, size_t index,
-                                           se3d_run_analysis *analysis);
+SE3D_API se3d_status se3d_run_get_analysis_sized(const se3d_run *run, size_t index,
+                                                 se3d_run_analysis *analysis, size_t size);
+static inline se3d_status se3d_run_get_analysis(const se3d_run *run, size_t index,
+                                                se3d_run_analysis *analysis)
+{
+    return se3d_run_get_analysis_sized(run, index, analysis, sizeof *analysis);
+}
 
 /* The particles of a name at the end of a run. @since 0.1 */
 typedef struct se3d_run_particles {
@@ -226,8 +246,13 @@ typedef struct se3d_run_particles {
 SE3D_API size_t se3d_run_count_particles(const se3d_run *run);
 /* Get the particles of name `index`, from 0. @return OK, NULL, INVALID_ARGUMENT (no such name).
  * Reader. @since 0.1 */
-SE3D_API se3d_status se3d_run_get_particles(const se3d_run *run, size_t index,
-                                            se3d_run_particles *particles);
+SE3D_API se3d_status se3d_run_get_particles_sized(const se3d_run *run, size_t index,
+                                                  se3d_run_particles *particles, size_t size);
+static inline se3d_status se3d_run_get_particles(const se3d_run *run, size_t index,
+                                                 se3d_run_particles *particles)
+{
+    return se3d_run_get_particles_sized(run, index, particles, sizeof *particles);
+}
 
 /* An event that happened. @since 0.1 */
 typedef struct se3d_run_event {
@@ -241,7 +266,13 @@ typedef struct se3d_run_event {
 } se3d_run_event;
 
 SE3D_API size_t se3d_run_count_events(const se3d_run *run);
-SE3D_API se3d_status se3d_run_get_event(const se3d_run *run, size_t index, se3d_run_event *event);
+SE3D_API se3d_status se3d_run_get_event_sized(const se3d_run *run, size_t index,
+                                              se3d_run_event *event, size_t size);
+static inline se3d_status se3d_run_get_event(const se3d_run *run, size_t index,
+                                             se3d_run_event *event)
+{
+    return se3d_run_get_event_sized(run, index, event, sizeof *event);
+}
 
 /* A file that was written. @since 0.1 */
 typedef struct se3d_run_file {
@@ -251,7 +282,12 @@ typedef struct se3d_run_file {
 } se3d_run_file;
 
 SE3D_API size_t se3d_run_count_files(const se3d_run *run);
-SE3D_API se3d_status se3d_run_get_file(const se3d_run *run, size_t index, se3d_run_file *file);
+SE3D_API se3d_status se3d_run_get_file_sized(const se3d_run *run, size_t index, se3d_run_file *file,
+                                             size_t size);
+static inline se3d_status se3d_run_get_file(const se3d_run *run, size_t index, se3d_run_file *file)
+{
+    return se3d_run_get_file_sized(run, index, file, sizeof *file);
+}
 
 /* A picture that the `output` of a model asks for. libse3d-io describes it only; the program `se3d`
  * makes it after the run, from the files that the run leaves. @since 0.1 */
@@ -271,8 +307,13 @@ typedef struct se3d_model_picture {
 SE3D_API size_t se3d_model_count_pictures(const se3d_model *model);
 /* Get picture `index`, from 0. @return OK, NULL, INVALID_ARGUMENT (no such picture). Reader. @since
  * 0.1 */
-SE3D_API se3d_status se3d_model_get_picture(const se3d_model *model, size_t index,
-                                            se3d_model_picture *picture);
+SE3D_API se3d_status se3d_model_get_picture_sized(const se3d_model *model, size_t index,
+                                                  se3d_model_picture *picture, size_t size);
+static inline se3d_status se3d_model_get_picture(const se3d_model *model, size_t index,
+                                                 se3d_model_picture *picture)
+{
+    return se3d_model_get_picture_sized(model, index, picture, sizeof *picture);
+}
 
 /* The motion of a model as a 3-D scene: bodies, joints, springs. Make it, record during a run
  * (for example from the progress callback), write it. @since 0.1 */

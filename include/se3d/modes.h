@@ -82,8 +82,13 @@ typedef struct se3d_eigenvalue {
 } se3d_eigenvalue;
 
 /* Get mode k, in the order of increasing |s|. Reader. @since 0.1 */
-SE3D_API se3d_status se3d_modes_get_eigenvalue(const se3d_modes *modes, size_t k,
-                                               se3d_eigenvalue *eigenvalue);
+SE3D_API se3d_status se3d_modes_get_eigenvalue_sized(const se3d_modes *modes, size_t k,
+                                                     se3d_eigenvalue *eigenvalue, size_t size);
+static inline se3d_status se3d_modes_get_eigenvalue(const se3d_modes *modes, size_t k,
+                                                    se3d_eigenvalue *eigenvalue)
+{
+    return se3d_modes_get_eigenvalue_sized(modes, k, eigenvalue, sizeof *eigenvalue);
+}
 /* Get the shape of mode k at the body of dense index `body` (as se3d_system_get_body counts):
  * displacement of its centre of mass and rotation vector, ground frame, real and imaginary parts.
  * The largest component of the mode is 1. Either may be NULL. Reader. @since 0.1 */

@@ -174,8 +174,14 @@ typedef struct se3d_source_stats {
 } se3d_source_stats;
 
 /* @return OK, NULL, INVALID_ARGUMENT (no such source). Reader. @since 0.1 */
-SE3D_API se3d_status se3d_particles_get_source_stats(const se3d_particles *particles,
-                                                     uint32_t source, se3d_source_stats *stats);
+SE3D_API se3d_status se3d_particles_get_source_stats_sized(const se3d_particles *particles,
+                                                           uint32_t source,
+                                                           se3d_source_stats *stats, size_t size);
+static inline se3d_status se3d_particles_get_source_stats(const se3d_particles *particles,
+                                                          uint32_t source, se3d_source_stats *stats)
+{
+    return se3d_particles_get_source_stats_sized(particles, source, stats, sizeof *stats);
+}
 /* Stop a source for good; the numbers of the others stay. Exclusive. @since 0.1 */
 SE3D_API se3d_status se3d_particles_remove_source(se3d_particles *particles, uint32_t source);
 
@@ -223,8 +229,13 @@ typedef struct se3d_particles_tally {
 } se3d_particles_tally;
 
 /* @return OK, NULL, INVALID_ARGUMENT (tag). Reader. @since 0.1 */
-SE3D_API se3d_status se3d_particles_get_tally(const se3d_particles *particles, uint32_t tag,
-                                              se3d_particles_tally *tally);
+SE3D_API se3d_status se3d_particles_get_tally_sized(const se3d_particles *particles, uint32_t tag,
+                                                    se3d_particles_tally *tally, size_t size);
+static inline se3d_status se3d_particles_get_tally(const se3d_particles *particles, uint32_t tag,
+                                                   se3d_particles_tally *tally)
+{
+    return se3d_particles_get_tally_sized(particles, tag, tally, sizeof *tally);
+}
 
 /* Remove `count` particles by id. @return OK, INVALID_ARGUMENT (an id that does not live; nothing
  * changed). @since 0.1 */
@@ -266,8 +277,15 @@ typedef struct se3d_particles_contact {
 /* Count the contacts of the last step, and list them (`count` must be that number).
  * @return OK, NULL, INVALID_ARGUMENT. Reader. @since 0.1 */
 SE3D_API size_t se3d_particles_count_contacts(const se3d_particles *particles);
-SE3D_API se3d_status se3d_particles_get_contacts(const se3d_particles *particles, size_t count,
-                                                 se3d_particles_contact *contacts);
+SE3D_API se3d_status se3d_particles_get_contacts_sized(const se3d_particles *particles,
+                                                       size_t count,
+                                                       se3d_particles_contact *contacts,
+                                                       size_t size);
+static inline se3d_status se3d_particles_get_contacts(const se3d_particles *particles, size_t count,
+                                                      se3d_particles_contact *contacts)
+{
+    return se3d_particles_get_contacts_sized(particles, count, contacts, sizeof *contacts);
+}
 
 /* Advance by `steps` steps of velocity Verlet; bodies are where the system has them.
  * Where an overlap is beyond the limit, the step that ends with it is complete and the last one;
@@ -292,8 +310,13 @@ typedef struct se3d_particles_energy {
     double potential;
 } se3d_particles_energy;
 
-SE3D_API se3d_status se3d_particles_get_energy(const se3d_particles *particles,
-                                               se3d_particles_energy *energy);
+SE3D_API se3d_status se3d_particles_get_energy_sized(const se3d_particles *particles,
+                                                     se3d_particles_energy *energy, size_t size);
+static inline se3d_status se3d_particles_get_energy(const se3d_particles *particles,
+                                                    se3d_particles_energy *energy)
+{
+    return se3d_particles_get_energy_sized(particles, energy, sizeof *energy);
+}
 
 /* What a run did. @since 0.1 */
 typedef struct se3d_particles_stats {
@@ -306,8 +329,13 @@ typedef struct se3d_particles_stats {
     uint64_t left;     /* lost, and those that are there but outside, as in se3d_particles_tally */
 } se3d_particles_stats;
 
-SE3D_API se3d_status se3d_particles_get_stats(const se3d_particles *particles,
-                                              se3d_particles_stats *stats);
+SE3D_API se3d_status se3d_particles_get_stats_sized(const se3d_particles *particles,
+                                                    se3d_particles_stats *stats, size_t size);
+static inline se3d_status se3d_particles_get_stats(const se3d_particles *particles,
+                                                   se3d_particles_stats *stats)
+{
+    return se3d_particles_get_stats_sized(particles, stats, sizeof *stats);
+}
 
 /* A hash of time, positions and velocities: equal bits, equal hash. Zero for NULL. @since 0.1 */
 SE3D_API uint64_t se3d_particles_hash(const se3d_particles *particles);

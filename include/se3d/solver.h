@@ -92,9 +92,15 @@ typedef struct se3d_solver_stats {
     uint64_t evaluations;    /* acceleration evaluations */
     uint64_t factorizations; /* of the linear solver */
     uint64_t solves;
+    uint64_t reserved[10]; /* 0; for counters to come: other structures hold this one */
 } se3d_solver_stats;
 
-SE3D_API se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_solver_stats *stats);
+SE3D_API se3d_status se3d_solver_get_stats_sized(const se3d_solver *solver,
+                                                 se3d_solver_stats *stats, size_t size);
+static inline se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_solver_stats *stats)
+{
+    return se3d_solver_get_stats_sized(solver, stats, sizeof *stats);
+}
 /* Get the method in use ("generalized_alpha", ...; what AUTO picked). Reader. @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name);
 

@@ -104,7 +104,12 @@ typedef struct se3d_energy {
     double dissipated;
 } se3d_energy;
 
-SE3D_API se3d_status se3d_system_get_energy(const se3d_system *system, se3d_energy *energy);
+SE3D_API se3d_status se3d_system_get_energy_sized(const se3d_system *system, se3d_energy *energy,
+                                                  size_t size);
+static inline se3d_status se3d_system_get_energy(const se3d_system *system, se3d_energy *energy)
+{
+    return se3d_system_get_energy_sized(system, energy, sizeof *energy);
+}
 
 /* Work since the start of the run [J]: kinetic + potential + dissipated - actuators - drivers is
  * constant to the integrator's order. Gravity that changes in time counts as an actuator. Inverse
@@ -117,7 +122,12 @@ typedef struct se3d_work {
 } se3d_work;
 
 /* @return OK, NULL, STATE (the last analysis was kinematics). Reader. @since 0.1 */
-SE3D_API se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work);
+SE3D_API se3d_status se3d_system_get_work_sized(const se3d_system *system, se3d_work *work,
+                                                size_t size);
+static inline se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work)
+{
+    return se3d_system_get_work_sized(system, work, sizeof *work);
+}
 
 /* Get the largest violation over all equations: [0] |Phi|, [1] |Phi_q qdot - nu|,
  * [2] |Phi_q qddot - gamma|, at the present state. Reader. @since 0.1 */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts as they are: each is evaluated by itself, on copies, with springs that stay. */
+#include "base/sized.h"
 #include "contact/particle_set.h"
 
 #include "math/vec3.h"
@@ -142,15 +143,16 @@ static int wall_contact(const se3di_particles *set, couple *c, const se3di_given
 }
 
 typedef struct contact_list {
-    se3d_particles_contact *contacts;
-    size_t capacity, count;
+    unsigned char *contacts; /* of `size` bytes each; NULL: only counted */
+    size_t size, capacity, count;
     double force_max;
 } contact_list;
 
 static void append(contact_list *list, int touches, const se3d_particles_contact *contact)
 {
     if (touches && list->contacts && list->count < list->capacity) {
-        list->contacts[list->count] = *contact;
+        (void)se3di_sized_give(list->contacts + list->count * list->size, list->size, contact,
+                               sizeof *contact);
     }
     list->force_max = touches ? fmax(list->force_max, se3di_norm(contact->force)) : list->force_max;
     list->count += (size_t)touches;
@@ -193,11 +195,10 @@ static void list_meshes(const se3di_particles *set, const se3di_slab *slab, cont
     }
 }
 
-se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity,
-                                     se3d_particles_contact *contacts, size_t *count,
-                                     double *force_max)
+se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity, void *contacts,
+                                     size_t size, size_t *count, double *force_max)
 {
-    contact_list list = {contacts, capacity, 0, 0.0};
+    contact_list list = {contacts, size, capacity, 0, 0.0};
     for (uint32_t s = 0; set && set->list_valid && s < set->slab_count; ++s) {
         list_blocks(set, &set->slabs[s], &list);
         list_meshes(set, &set->slabs[s], &list);

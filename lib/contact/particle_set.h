@@ -491,9 +491,8 @@ int se3di_region_holds(const se3di_region *region, const double x[3], double rad
 
 /* particle_contacts.c: contacts of the present lists as they are now; nothing changes. Counts all,
  * writes the first `capacity`. */
-se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity,
-                                     se3d_particles_contact *contacts, size_t *count,
-                                     double *force_max);
+se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity, void *contacts,
+                                     size_t size, size_t *count, double *force_max);
 uint64_t se3di_particles_hash(const se3di_particles *set);
 
 #endif

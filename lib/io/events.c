@@ -6,6 +6,7 @@
 
 #include "io/reader.h"
 #include "io/run_events.h"
+#include "io/sized.h"
 
 static se3d_status eval_source(void *ctx, const se3d_system *system, double *value)
 {
@@ -79,11 +80,9 @@ se3d_status se3d_model_create_event(se3d_model *model, se3d_solver *solver, cons
         return report(error, model, "model, solver, channel, def or out is NULL", SE3D_ERR_NULL);
     }
     se3d_event_def full = se3d_event_def_default();
-    if (def->struct_size < sizeof def->struct_size || def->struct_size > sizeof full) {
-        return report(error, model, "def.struct_size is not one of this library",
-                      SE3D_ERR_INVALID_ARGUMENT);
+    if (!se3di_io_take(def, &full, sizeof full)) {
+        return report(error, model, "def: " SE3DI_IO_SIZE_TEXT, SE3D_ERR_INVALID_ARGUMENT);
     }
-    memcpy(&full, def, def->struct_size);
     full.struct_size = sizeof full;
     se3di_event_source *source = se3di_iopool_alloc(&model->pool, sizeof *source);
     const char *name = se3di_iopool_copy(&model->pool, channel, strlen(channel));

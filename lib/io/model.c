@@ -8,6 +8,7 @@
 
 #include "io/grains.h"
 #include "io/reader.h"
+#include "io/sized.h"
 
 void se3d_model_options_init(se3d_model_options *options, size_t size)
 {
@@ -127,26 +128,26 @@ static se3d_status fail_early(se3d_model_error *error, se3d_status status, const
     return status;
 }
 
-static se3d_model_options options_of(const se3d_model_options *options)
+/* Takes the options over the defaults in `used`. */
+static int take_options(const se3d_model_options *options, se3d_model_options *used)
 {
-    se3d_model_options copy = se3d_model_options_default();
-    if (options) {
-        const size_t size = options->struct_size < sizeof copy ? options->struct_size : sizeof copy;
-        memcpy(&copy, options, size);
-    }
-    return copy;
+    *used = se3d_model_options_default();
+    return !options || se3di_io_take(options, used, sizeof *used);
 }
 
 se3d_status se3d_model_read_text(const char *text, size_t length, const char *name,
                                  const se3d_model_options *options, se3d_model **out,
                                  se3d_model_error *error)
 {
-    const se3d_model_options used = options_of(options);
+    se3d_model_options used;
     if (error) {
         memset(error, 0, sizeof *error);
     }
     if (out) {
         *out = NULL;
+    }
+    if (!take_options(options, &used)) {
+        return fail_early(error, SE3D_ERR_INVALID_ARGUMENT, "", "options: " SE3DI_IO_SIZE_TEXT);
     }
     if (!text || !name || !out || (used.setting_count > 0 && !used.settings)) {
         return fail_early(error, SE3D_ERR_NULL, "", "text, name or out is NULL");
@@ -203,7 +204,7 @@ static se3d_status read_bytes(se3di_iopool *pool, FILE *file, char **text, size_
 se3d_status se3d_model_read_file(const char *path, const se3d_model_options *options,
                                  se3d_model **out, se3d_model_error *error)
 {
-    const se3d_model_options used = options_of(options);
+    se3d_model_options used;
     char *text = NULL;
     size_t length = 0;
     if (error) {
@@ -211,6 +212,9 @@ se3d_status se3d_model_read_file(const char *path, const se3d_model_options *opt
     }
     if (out) {
         *out = NULL;
+    }
+    if (!take_options(options, &used)) {
+        return fail_early(error, SE3D_ERR_INVALID_ARGUMENT, "", "options: " SE3DI_IO_SIZE_TEXT);
     }
     if (!path || !out) {
         return fail_early(error, SE3D_ERR_NULL, "", "path or out is NULL");
@@ -278,8 +282,8 @@ size_t se3d_model_count_analyses(const se3d_model *model)
     return model ? model->analysis_count : 0;
 }
 
-se3d_status se3d_model_get_analysis(const se3d_model *model, size_t index,
-                                    se3d_model_analysis *analysis)
+se3d_status se3d_model_get_analysis_sized(const se3d_model *model, size_t index,
+                                          se3d_model_analysis *analysis, size_t size)
 {
     if (!model || !analysis) {
         return SE3D_ERR_NULL;
@@ -287,8 +291,7 @@ se3d_status se3d_model_get_analysis(const se3d_model *model, size_t index,
     if (index >= model->analysis_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    *analysis = model->analyses[index].analysis;
-    return SE3D_OK;
+    return se3di_io_give(analysis, size, &model->analyses[index].analysis, sizeof *analysis);
 }
 
 se3d_status se3d_model_get_solver(const se3d_model *model, size_t index, se3d_solver_def *def)
@@ -313,7 +316,8 @@ size_t se3d_model_count_outputs(const se3d_model *model)
     return model ? model->output_count : 0;
 }
 
-se3d_status se3d_model_get_output(const se3d_model *model, size_t index, se3d_model_output *output)
+se3d_status se3d_model_get_output_sized(const se3d_model *model, size_t index,
+                                        se3d_model_output *output, size_t size)
 {
     if (!model || !output) {
         return SE3D_ERR_NULL;
@@ -321,10 +325,10 @@ se3d_status se3d_model_get_output(const se3d_model *model, size_t index, se3d_mo
     if (index >= model->output_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    output->file = model->outputs[index].file;
-    output->every = model->outputs[index].every;
-    output->channel_count = model->outputs[index].count;
-    return SE3D_OK;
+    const se3d_model_output full = {.file = model->outputs[index].file,
+                                    .every = model->outputs[index].every,
+                                    .channel_count = model->outputs[index].count};
+    return se3di_io_give(output, size, &full, sizeof full);
 }
 
 se3d_status se3d_model_get_channel(const se3d_model *model, size_t output, size_t k,
@@ -360,7 +364,8 @@ size_t se3d_model_count_shapes(const se3d_model *model)
     return model ? model->shape_count : 0;
 }
 
-se3d_status se3d_model_get_shape(const se3d_model *model, size_t index, se3d_model_shape *shape)
+se3d_status se3d_model_get_shape_sized(const se3d_model *model, size_t index,
+                                       se3d_model_shape *shape, size_t size)
 {
     if (!model || !shape) {
         return SE3D_ERR_NULL;
@@ -368,8 +373,7 @@ se3d_status se3d_model_get_shape(const se3d_model *model, size_t index, se3d_mod
     if (index >= model->shape_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    *shape = model->shapes[index].shape;
-    return SE3D_OK;
+    return se3di_io_give(shape, size, &model->shapes[index].shape, sizeof *shape);
 }
 
 size_t se3d_model_count_pictures(const se3d_model *model)
@@ -377,8 +381,8 @@ size_t se3d_model_count_pictures(const se3d_model *model)
     return model ? model->picture_count : 0;
 }
 
-se3d_status se3d_model_get_picture(const se3d_model *model, size_t index,
-                                   se3d_model_picture *picture)
+se3d_status se3d_model_get_picture_sized(const se3d_model *model, size_t index,
+                                         se3d_model_picture *picture, size_t size)
 {
     if (!model || !picture) {
         return SE3D_ERR_NULL;
@@ -386,6 +390,5 @@ se3d_status se3d_model_get_picture(const se3d_model *model, size_t index,
     if (index >= model->picture_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    *picture = model->pictures[index];
-    return SE3D_OK;
+    return se3di_io_give(picture, size, &model->pictures[index], sizeof *picture);
 }

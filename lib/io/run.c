@@ -20,6 +20,7 @@
 #include "io/model.h"
 #include "io/run_events.h"
 #include "io/run_modes.h"
+#include "io/sized.h"
 #include "io/vtk.h"
 
 typedef struct output_file {
@@ -650,8 +651,9 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
         return fail(&r, SE3D_ERR_NULL, "model or out is NULL");
     }
     if (options) {
-        const size_t size = options->struct_size < sizeof used ? options->struct_size : sizeof used;
-        memcpy(&used, options, size);
+        if (!se3di_io_take(options, &used, sizeof used)) {
+            return fail(&r, SE3D_ERR_INVALID_ARGUMENT, "options: " SE3DI_IO_SIZE_TEXT);
+        }
     }
     if (model->analysis_count == 0) {
         return fail(&r, SE3D_ERR_STATE, "the model has no `analysis`");
@@ -678,7 +680,8 @@ size_t se3d_run_count_analyses(const se3d_run *run)
     return run ? run->analysis_count : 0;
 }
 
-se3d_status se3d_run_get_analysis(const se3d_run *run, size_t index, se3d_run_analysis *analysis)
+se3d_status se3d_run_get_analysis_sized(const se3d_run *run, size_t index,
+                                        se3d_run_analysis *analysis, size_t size)
 {
     if (!run || !analysis) {
         return SE3D_ERR_NULL;
@@ -686,8 +689,7 @@ se3d_status se3d_run_get_analysis(const se3d_run *run, size_t index, se3d_run_an
     if (index >= run->analysis_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    *analysis = run->analyses[index];
-    return SE3D_OK;
+    return se3di_io_give(analysis, size, &run->analyses[index], sizeof *analysis);
 }
 
 size_t se3d_run_count_particles(const se3d_run *run)
@@ -695,7 +697,8 @@ size_t se3d_run_count_particles(const se3d_run *run)
     return run ? run->particles_count : 0;
 }
 
-se3d_status se3d_run_get_particles(const se3d_run *run, size_t index, se3d_run_particles *particles)
+se3d_status se3d_run_get_particles_sized(const se3d_run *run, size_t index,
+                                         se3d_run_particles *particles, size_t size)
 {
     if (!run || !particles) {
         return SE3D_ERR_NULL;
@@ -703,8 +706,7 @@ se3d_status se3d_run_get_particles(const se3d_run *run, size_t index, se3d_run_p
     if (index >= run->particles_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    *particles = run->particles[index];
-    return SE3D_OK;
+    return se3di_io_give(particles, size, &run->particles[index], sizeof *particles);
 }
 
 size_t se3d_run_count_files(const se3d_run *run)
@@ -712,7 +714,8 @@ size_t se3d_run_count_files(const se3d_run *run)
     return run ? run->file_count : 0;
 }
 
-se3d_status se3d_run_get_file(const se3d_run *run, size_t index, se3d_run_file *file)
+se3d_status se3d_run_get_file_sized(const se3d_run *run, size_t index, se3d_run_file *file,
+                                    size_t size)
 {
     if (!run || !file) {
         return SE3D_ERR_NULL;
@@ -720,8 +723,7 @@ se3d_status se3d_run_get_file(const se3d_run *run, size_t index, se3d_run_file *
     if (index >= run->file_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    *file = run->files[index];
-    return SE3D_OK;
+    return se3di_io_give(file, size, &run->files[index], sizeof *file);
 }
 
 size_t se3d_run_count_events(const se3d_run *run)
@@ -729,7 +731,8 @@ size_t se3d_run_count_events(const se3d_run *run)
     return run ? run->events.count : 0;
 }
 
-se3d_status se3d_run_get_event(const se3d_run *run, size_t index, se3d_run_event *event)
+se3d_status se3d_run_get_event_sized(const se3d_run *run, size_t index, se3d_run_event *event,
+                                     size_t size)
 {
     if (!run || !event) {
         return SE3D_ERR_NULL;
@@ -737,6 +740,5 @@ se3d_status se3d_run_get_event(const se3d_run *run, size_t index, se3d_run_event
     if (index >= run->events.count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    *event = run->events.list[index];
-    return SE3D_OK;
+    return se3di_io_give(event, size, &run->events.list[index], sizeof *event);
 }

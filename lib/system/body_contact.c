@@ -34,7 +34,7 @@ se3d_status se3d_system_get_contact_force_max(const se3d_system *system, double 
     SE3DI_TRY(status);
     for (const se3di_particles *set = model->sets; set && status >= 0; set = set->next) {
         size_t count;
-        status = se3di_particles_contacts(set, 0, NULL, &count, force);
+        status = se3di_particles_contacts(set, 0, NULL, 0, &count, force);
     }
     return se3di_read_end(&reading, status < 0 ? status : SE3D_OK);
 }
@@ -61,8 +61,8 @@ size_t se3d_system_count_passing_meshes(const se3d_system *system, se3d_shape *i
     return count;
 }
 
-se3d_status se3d_system_get_contacts(const se3d_system *system, size_t count,
-                                     se3d_contact *contacts)
+se3d_status se3d_system_get_contacts_sized(const se3d_system *system, size_t count,
+                                           se3d_contact *contacts, size_t size)
 {
     if (!system || (!contacts && count > 0)) {
         return SE3D_ERR_NULL;
@@ -73,13 +73,14 @@ se3d_status se3d_system_get_contacts(const se3d_system *system, size_t count,
     }
     for (size_t k = 0; k < count; ++k) {
         const se3di_body_contact *from = &model->contacts.list[k];
-        se3d_contact *to = &contacts[k];
-        to->shape_i = shape_at(model, from->shape_i);
-        to->shape_j = shape_at(model, from->shape_j);
-        to->overlap = from->overlap;
-        se3di_copy(from->point, to->point);
-        se3di_copy(from->normal, to->normal);
-        se3di_copy(from->force, to->force);
+        se3d_contact to;
+        to.shape_i = shape_at(model, from->shape_i);
+        to.shape_j = shape_at(model, from->shape_j);
+        to.overlap = from->overlap;
+        se3di_copy(from->point, to.point);
+        se3di_copy(from->normal, to.normal);
+        se3di_copy(from->force, to.force);
+        SE3DI_TRY(se3di_sized_give((unsigned char *)contacts + k * size, size, &to, sizeof to));
     }
     return SE3D_OK;
 }

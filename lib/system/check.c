@@ -88,13 +88,19 @@ se3d_status se3di_check_def(se3d_system *system, const char *what, const void *d
     SE3DI_TRY(se3di_check_pointer(system, what, def));
     size_t size;
     memcpy(&size, def, sizeof size);
-    if (size < sizeof size || size > full_size) {
+    const se3di_sized_verdict verdict = se3di_sized_take(def, copy, full_size);
+    if (verdict == SE3DI_SIZED_UNKNOWN) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "%s.struct_size = %zu, must be set by its _default function (at most %zu "
-                          "in this version)",
+                          "%s has %zu bytes, of which this library (%s) knows %zu: what a newer "
+                          "header has beyond them must be zero",
+                          what, size, se3d_version_get_text(), full_size);
+    }
+    if (verdict != SE3DI_SIZED_FITS) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "%s.struct_size = %zu, must be set by its _default function (%zu in this "
+                          "version)",
                           what, size, full_size);
     }
-    memcpy(copy, def, size);
     return SE3D_OK;
 }
 

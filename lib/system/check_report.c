@@ -47,7 +47,7 @@ se3d_status se3d_check_get_summary(const se3d_check *check, se3d_check_summary *
     }
     const se3di_check *report = &check->report;
     size_t size = summary->struct_size;
-    if (size < sizeof size || size > sizeof *summary) {
+    if (size < sizeof size) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     se3d_check_summary full = {
@@ -60,8 +60,7 @@ se3d_status se3d_check_get_summary(const se3d_check *check, se3d_check_summary *
         .gruebler = 6 * (int64_t)report->bodies - (int64_t)report->equations,
         .inconsistent = report->inconsistent,
     };
-    memcpy(summary, &full, size);
-    return SE3D_OK;
+    return se3di_sized_give(summary, size, &full, sizeof full);
 }
 
 size_t se3d_check_count_messages(const se3d_check *check)

@@ -92,8 +92,8 @@ se3d_status se3d_system_get_contact(const se3d_system *system, se3d_contact_sett
     if (!system || !settings) {
         return SE3D_ERR_NULL;
     }
-    size_t size = settings->struct_size;
-    if (size < sizeof size || size > sizeof *settings) {
+    const size_t size = settings->struct_size;
+    if (size < sizeof size) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     const se3di_contact_settings *now = &system->model.contact;
@@ -103,8 +103,7 @@ se3d_status se3d_system_get_contact(const se3d_system *system, se3d_contact_sett
                                   .overlap_limit = now->overlap_limit,
                                   .callback = now->callback,
                                   .ctx = now->ctx};
-    memcpy(settings, &full, size);
-    return SE3D_OK;
+    return se3di_sized_give(settings, size, &full, sizeof full);
 }
 
 static se3d_status check_material(se3d_system *system, const se3d_material_def *def)
@@ -188,7 +187,7 @@ se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
         return SE3D_ERR_NULL;
     }
     const size_t size = def->struct_size;
-    if (size < sizeof size || size > sizeof *def) {
+    if (size < sizeof size) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     const uint32_t index =
@@ -209,8 +208,7 @@ se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
                                     .poisson = data->poisson,
                                     .cohesion = data->cohesion,
                                     .adhesion = data->adhesion};
-    memcpy(def, &full, size);
-    return SE3D_OK;
+    return se3di_sized_give(def, size, &full, sizeof full);
 }
 
 se3d_status se3d_material_destroy(se3d_system *system, se3d_material material)

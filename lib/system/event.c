@@ -128,8 +128,8 @@ size_t se3d_solver_count_event_records(const se3d_solver *solver)
     return solver && solver->system ? solver->run.events.record_count : 0;
 }
 
-se3d_status se3d_solver_get_event_record(se3d_solver *solver, size_t index,
-                                         se3d_event_record *record)
+se3d_status se3d_solver_get_event_record_sized(se3d_solver *solver, size_t index,
+                                               se3d_event_record *record, size_t size)
 {
     SE3DI_OWNED(solver);
     SE3DI_TRY(se3di_check_pointer(solver->system, "record", record));
@@ -139,8 +139,7 @@ se3d_status se3d_solver_get_event_record(se3d_solver *solver, size_t index,
                           "index = %zu, must be below the number of records, %zu", index,
                           events->record_count);
     }
-    *record = events->records[index];
-    return SE3D_OK;
+    return se3di_sized_give(record, size, &events->records[index], sizeof *record);
 }
 
 se3d_status se3d_solver_clear_event_records(se3d_solver *solver)

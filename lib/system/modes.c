@@ -328,11 +328,12 @@ size_t se3d_modes_count_freedoms(const se3d_modes *modes)
     return modes ? modes->f : 0;
 }
 
-se3d_status se3d_modes_get_eigenvalue(const se3d_modes *modes, size_t k,
-                                      se3d_eigenvalue *eigenvalue)
+se3d_status se3d_modes_get_eigenvalue_sized(const se3d_modes *modes, size_t k,
+                                            se3d_eigenvalue *eigenvalue, size_t size)
 {
     if (eigenvalue) {
-        *eigenvalue = (se3d_eigenvalue){0.0, 0.0, 0.0, 0.0};
+        (void)se3di_sized_give(eigenvalue, size, &(se3d_eigenvalue){0.0, 0.0, 0.0, 0.0},
+                               sizeof *eigenvalue);
     }
     if (!modes || !eigenvalue) {
         return SE3D_ERR_NULL;
@@ -340,12 +341,13 @@ se3d_status se3d_modes_get_eigenvalue(const se3d_modes *modes, size_t k,
     if (k >= (size_t)modes->eigen.count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    double size = se3di_hypot(modes->eigen.re[k], modes->eigen.im[k]);
-    eigenvalue->real = modes->eigen.re[k];
-    eigenvalue->imaginary = modes->eigen.im[k];
-    eigenvalue->frequency = size / 6.283185307179586476925286766559;
-    eigenvalue->damping = size > 0.0 ? 0.0 - modes->eigen.re[k] / size : 0.0; /* never -0 */
-    return SE3D_OK;
+    const double modulus = se3di_hypot(modes->eigen.re[k], modes->eigen.im[k]);
+    const se3d_eigenvalue full = {.real = modes->eigen.re[k],
+                                  .imaginary = modes->eigen.im[k],
+                                  .frequency = modulus / 6.283185307179586476925286766559,
+                                  .damping = modulus > 0.0 ? 0.0 - modes->eigen.re[k] / modulus
+                                                           : 0.0 /* never -0 */};
+    return se3di_sized_give(eigenvalue, size, &full, sizeof full);
 }
 
 se3d_status se3d_modes_get_shape(const se3d_modes *modes, size_t k, size_t body, double real[6],

@@ -587,14 +587,14 @@ void se3di_particles_energy(const se3di_particles *set, size_t k, const double g
     energy[2] = -mass * se3di_dot(g, grain->x);
 }
 
-se3d_status se3d_particles_get_energy(const se3d_particles *particles,
-                                      se3d_particles_energy *energy)
+se3d_status se3d_particles_get_energy_sized(const se3d_particles *particles,
+                                            se3d_particles_energy *energy, size_t size)
 {
     SE3DI_OWNED(particles);
     if (!energy) {
         return SE3D_ERR_NULL;
     }
-    *energy = (se3d_particles_energy){0.0, 0.0, 0.0};
+    se3d_particles_energy full = {0.0, 0.0, 0.0};
     double g[3];
     SE3DI_TRY(se3di_particles_gravity(particles, g));
     size_t id = 0;
@@ -602,30 +602,31 @@ se3d_status se3d_particles_get_energy(const se3d_particles *particles,
         size_t index = next(&particles->set, &id);
         double share[3];
         se3di_particles_energy(&particles->set, index, g, share);
-        energy->translation += share[0];
-        energy->rotation += share[1];
-        energy->potential += share[2];
+        full.translation += share[0];
+        full.rotation += share[1];
+        full.potential += share[2];
     }
-    return SE3D_OK;
+    return se3di_sized_give(energy, size, &full, sizeof full);
 }
 
-se3d_status se3d_particles_get_stats(const se3d_particles *particles, se3d_particles_stats *stats)
+se3d_status se3d_particles_get_stats_sized(const se3d_particles *particles,
+                                           se3d_particles_stats *stats, size_t size)
 {
     if (!particles || !stats) {
         return SE3D_ERR_NULL;
     }
     const se3di_particles *set = &particles->set;
-    *stats = (se3d_particles_stats){.steps = set->steps,
-                                    .rebuilds = set->rebuilds,
-                                    .contacts = set->touching,
-                                    .lost = set->lost,
-                                    .bytes = se3di_particles_memory(set),
-                                    .threads = (uint64_t)set->team,
-                                    .left = set->lost};
+    se3d_particles_stats full = {.steps = set->steps,
+                                 .rebuilds = set->rebuilds,
+                                 .contacts = set->touching,
+                                 .lost = set->lost,
+                                 .bytes = se3di_particles_memory(set),
+                                 .threads = (uint64_t)set->team,
+                                 .left = set->lost};
     for (size_t k = 0; k < set->count; ++k) {
-        stats->left += (uint64_t)se3di_particles_is_out(set, k);
+        full.left += (uint64_t)se3di_particles_is_out(set, k);
     }
-    return SE3D_OK;
+    return se3di_sized_give(stats, size, &full, sizeof full);
 }
 
 uint64_t se3d_particles_hash(const se3d_particles *particles)

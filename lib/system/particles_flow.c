@@ -115,8 +115,8 @@ se3d_status se3d_particles_add_source(se3d_particles *particles, const se3d_sour
     return SE3D_OK;
 }
 
-se3d_status se3d_particles_get_source_stats(const se3d_particles *particles, uint32_t source,
-                                            se3d_source_stats *stats)
+se3d_status se3d_particles_get_source_stats_sized(const se3d_particles *particles, uint32_t source,
+                                                  se3d_source_stats *stats, size_t size)
 {
     if (!particles || !stats) {
         return SE3D_ERR_NULL;
@@ -125,11 +125,11 @@ se3d_status se3d_particles_get_source_stats(const se3d_particles *particles, uin
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     const se3di_source *s = &particles->set.sources[source];
-    *stats = (se3d_source_stats){.inserted = s->inserted,
-                                 .deferred = s->deferred,
-                                 .mass = s->mass,
-                                 .waiting = s->inserted < s->maximum ? fmax(0.0, s->owed) : 0.0};
-    return SE3D_OK;
+    const se3d_source_stats full = {.inserted = s->inserted,
+                                    .deferred = s->deferred,
+                                    .mass = s->mass,
+                                    .waiting = s->inserted < s->maximum ? fmax(0.0, s->owed) : 0.0};
+    return se3di_sized_give(stats, size, &full, sizeof full);
 }
 
 /* There is a source (a sink) of this number. */
@@ -217,8 +217,8 @@ se3d_status se3d_particles_remove_sink(se3d_particles *particles, uint32_t sink)
     return SE3D_OK;
 }
 
-se3d_status se3d_particles_get_tally(const se3d_particles *particles, uint32_t tag,
-                                     se3d_particles_tally *tally)
+se3d_status se3d_particles_get_tally_sized(const se3d_particles *particles, uint32_t tag,
+                                           se3d_particles_tally *tally, size_t size)
 {
     SE3DI_OWNED(particles);
     if (!tally) {
@@ -229,7 +229,7 @@ se3d_status se3d_particles_get_tally(const se3d_particles *particles, uint32_t t
     }
     const se3di_particles *set = &particles->set;
     double g[3];
-    *tally = (se3d_particles_tally){.lost = set->lost_of[tag]};
+    se3d_particles_tally full = {.lost = set->lost_of[tag]};
     SE3DI_TRY(se3di_particles_gravity(particles, g));
     for (size_t id = 0; id < set->id_count; ++id) { /* sums do not depend on the order in memory */
         uint32_t k = set->index_of[id];
@@ -238,10 +238,10 @@ se3d_status se3d_particles_get_tally(const se3d_particles *particles, uint32_t t
         }
         double share[3];
         se3di_particles_energy(set, k, g, share);
-        ++tally->count;
-        tally->outside += (uint64_t)se3di_particles_is_out(set, k);
-        tally->mass += 1.0 / set->grains[k].inverse_mass;
-        tally->energy += share[0] + share[1] + share[2];
+        ++full.count;
+        full.outside += (uint64_t)se3di_particles_is_out(set, k);
+        full.mass += 1.0 / set->grains[k].inverse_mass;
+        full.energy += share[0] + share[1] + share[2];
     }
-    return SE3D_OK;
+    return se3di_sized_give(tally, size, &full, sizeof full);
 }

@@ -35,34 +35,37 @@ static int is_current(const se3d_particles *particles)
 }
 
 /* What se3di_particles_contacts lists, by the law. */
-static se3d_status list(const se3d_particles *particles, size_t most,
-                        se3d_particles_contact *contacts, size_t *count)
+static se3d_status list(const se3d_particles *particles, size_t most, void *contacts, size_t size,
+                        size_t *count)
 {
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(particles->system, &reading));
-    return se3di_read_end(&reading,
-                          se3di_particles_contacts(&particles->set, most, contacts, count, NULL));
+    return se3di_read_end(
+        &reading, se3di_particles_contacts(&particles->set, most, contacts, size, count, NULL));
 }
 
 size_t se3d_particles_count_contacts(const se3d_particles *particles)
 {
     size_t count = 0;
     if (particles && particles->system && is_current(particles)) {
-        (void)list(particles, SIZE_MAX, NULL, &count);
+        (void)list(particles, SIZE_MAX, NULL, 0, &count);
     }
     return count;
 }
 
-se3d_status se3d_particles_get_contacts(const se3d_particles *particles, size_t count,
-                                        se3d_particles_contact *contacts)
+se3d_status se3d_particles_get_contacts_sized(const se3d_particles *particles, size_t count,
+                                              se3d_particles_contact *contacts, size_t size)
 {
     SE3DI_OWNED(particles);
     if (!contacts) {
         return SE3D_ERR_NULL;
     }
+    if (size == 0 || size > sizeof *contacts + SE3DI_SIZED_GROWTH) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
     size_t found = se3d_particles_count_contacts(particles);
     if (found != count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    return count == 0 ? SE3D_OK : list(particles, count, contacts, &found);
+    return count == 0 ? SE3D_OK : list(particles, count, contacts, size, &found);
 }

@@ -201,13 +201,14 @@ se3d_status se3d_solver_step(se3d_solver *solver, double h)
     return se3di_work_end(solver->system, se3di_run_step(&solver->run, h));
 }
 
-se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_solver_stats *stats)
+se3d_status se3d_solver_get_stats_sized(const se3d_solver *solver, se3d_solver_stats *stats,
+                                        size_t size)
 {
     if (!solver || !stats) {
         return SE3D_ERR_NULL;
     }
     const se3di_counters *counters = &solver->run.equations.counters;
-    *stats = (se3d_solver_stats){
+    const se3d_solver_stats full = {
         .steps = counters->steps,
         .rejected = counters->rejected,
         .iterations = counters->iterations,
@@ -215,7 +216,7 @@ se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_solver_stats *
         .factorizations = counters->factorizations,
         .solves = counters->solves,
     };
-    return SE3D_OK;
+    return se3di_sized_give(stats, size, &full, sizeof full);
 }
 
 se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name)

@@ -32,10 +32,9 @@ static se3d_status read_def(const se3d_system_def *def, se3d_system_def *full)
     if (!def) {
         return SE3D_OK;
     }
-    if (def->struct_size < sizeof def->struct_size || def->struct_size > sizeof *full) {
+    if (se3di_sized_take(def, full, sizeof *full) != SE3DI_SIZED_FITS) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    memcpy(full, def, def->struct_size);
     const se3d_allocator *allocator = full->allocator;
     int complete = !allocator || (allocator->alloc && allocator->realloc && allocator->free);
     int finite = se3di_is_finite(full->gravity, 3) && isfinite(full->time);
@@ -318,22 +317,24 @@ double se3di_kinetic_energy(const se3di_model *model)
     return energy;
 }
 
-se3d_status se3d_system_get_energy(const se3d_system *system, se3d_energy *energy)
+se3d_status se3d_system_get_energy_sized(const se3d_system *system, se3d_energy *energy,
+                                         size_t size)
 {
     if (!system || !energy) {
         return SE3D_ERR_NULL;
     }
     const se3di_model *model = &system->model;
-    *energy = (se3d_energy){.kinetic = se3di_kinetic_energy(model)};
+    se3d_energy full = {.kinetic = se3di_kinetic_energy(model)};
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
-    const se3d_status status = se3di_loads_potential(model, model->time, &energy->potential);
-    energy->total = energy->kinetic + energy->potential;
-    energy->dissipated = status < 0 ? 0.0 : se3di_work_lost(model);
-    return se3di_read_end(&reading, status);
+    const se3d_status status = se3di_loads_potential(model, model->time, &full.potential);
+    full.total = full.kinetic + full.potential;
+    full.dissipated = status < 0 ? 0.0 : se3di_work_lost(model);
+    SE3DI_TRY(se3di_read_end(&reading, status));
+    return se3di_sized_give(energy, size, &full, sizeof full);
 }
 
-se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work)
+se3d_status se3d_system_get_work_sized(const se3d_system *system, se3d_work *work, size_t size)
 {
     if (!system || !work) {
         return SE3D_ERR_NULL;
@@ -345,8 +346,9 @@ se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work)
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
     const double lost = se3di_work_lost(&system->model);
-    *work = (se3d_work){.dissipated = lost, .actuators = done[1], .drivers = done[2]};
-    return se3di_read_end(&reading, SE3D_OK);
+    const se3d_work full = {.dissipated = lost, .actuators = done[1], .drivers = done[2]};
+    se3di_busy_unread(&reading);
+    return se3di_sized_give(work, size, &full, sizeof full);
 }
 
 /* |Phi|, |Phi_q qdot - nu| and |Phi_q qddot - gamma| of one equation, in r-omega. */

@@ -5,6 +5,7 @@
 #define SE3DI_SYSTEM_INTERNAL_H
 
 #include "base/busy.h"
+#include "base/sized.h"
 #include "model/model.h"
 #include "se3d/se3d.h"
 
@@ -74,8 +75,8 @@ se3d_status se3di_check_orientation(se3d_system *system, const char *what, const
                                     double unit[4]);
 /* `pointer` is not NULL. */
 se3d_status se3di_check_pointer(se3d_system *system, const char *what, const void *pointer);
-/* A def struct: copies `size` = its struct_size bytes (at most full_size) over the defaults already
- * in `copy`; fails where def is NULL, struct_size is 0 or beyond what this library knows. */
+/* A def struct: copies its struct_size bytes over the defaults already in `copy`; fails where def
+ * is NULL, struct_size is none, or something is set beyond what this library knows. */
 se3d_status se3di_check_def(se3d_system *system, const char *what, const void *def, void *copy,
                             size_t full_size);
 

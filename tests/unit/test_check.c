@@ -274,7 +274,7 @@ static void misuse_of_reports_is_refused(void)
     check = check_world(&w, SE3D_INFO_REDUNDANT);
     summary.struct_size = 0;
     CHECK(se3d_check_get_summary(check, &summary) == SE3D_ERR_INVALID_ARGUMENT);
-    summary.struct_size = sizeof summary + 8;
+    summary.struct_size = sizeof summary + 4096;
     CHECK(se3d_check_get_summary(check, &summary) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK(se3d_check_get_summary(NULL, &summary) == SE3D_ERR_NULL);
     CHECK(se3d_check_get_summary(check, NULL) == SE3D_ERR_NULL);
