@@ -97,7 +97,12 @@ typedef enum se3d_log_level {
     SE3D_LOG_ERROR = 2
 } se3d_log_level;
 
-/* Receives every message of a system; the text is valid during the call only. @since 0.1 */
+/* Receives what happens to a system, one sentence a call: every message of a failure (ERROR);
+ * starts that were projected, redundant constraints (WARNING); starts of driven motions and
+ * assemblies that were moved, changes of method (INFO). It is called in the thread of the call that
+ * works, never by two threads at a time; results do not depend on it. From within, the system may
+ * be read as from a force callback (docs/api.md). The text is valid during the call only. @since
+ * 0.1 */
 typedef void (*se3d_log_callback)(void *ctx, se3d_log_level level, const char *message);
 
 #ifdef __cplusplus

@@ -67,7 +67,8 @@ SE3D_API se3d_status se3d_model_read_file(const char *path, const se3d_model_opt
 SE3D_API se3d_status se3d_model_read_text(const char *text, size_t length, const char *name,
                                           const se3d_model_options *options, se3d_model **out,
                                           se3d_model_error *error);
-/* Destroy a model and its system; solvers on that system must have been destroyed. NULL is fine.
+/* Destroy a model and its system. NULL is fine. Nothing is destroyed from within se3d_model_run or
+ * a callback of the system.
  * @since 0.1 */
 SE3D_API void se3d_model_destroy(se3d_model *model);
 
@@ -220,8 +221,12 @@ typedef struct se3d_run_analysis {
     double end;              /* time that was reached [s] */
     double cpu_time;         /* [s] */
     se3d_solver_stats stats;
-    const char *left; /* the method that `auto` left on the way for `method`, "": none */
-    double left_at;   /* when [s], NaN: never */
+    const char *left;       /* the method that `auto` left on the way for `method`, "": none */
+    double left_at;         /* when [s], NaN: never */
+    const char *moved;      /* the body that the start moved most, "": none */
+    const char *deflected;  /* the body whose velocity the start changed most, "": none */
+    double start_change[8]; /* as se3d_start_change: norms [m, rad, m/s, rad/s], and those of the
+                               bodies above */
 } se3d_run_analysis;
 
 SE3D_API size_t se3d_run_count_analyses(const se3d_run *run);

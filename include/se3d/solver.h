@@ -101,6 +101,33 @@ static inline se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_
 {
     return se3d_solver_get_stats_sized(solver, stats, sizeof *stats);
 }
+/* How far the start that the user gave was from what the constraints admit: the last one that a run
+ * of the solver began from. All is zero where it was met but for rounding (1e-9 of the model's size
+ * and speeds), and the velocities where none was given (all zero) or drivers say them. Norms are
+ * roots of the sums of squares over the bodies. @since 0.1 */
+typedef struct se3d_start_change {
+    double time;                  /* of the start [s] */
+    double position;              /* norm of the displacements of centres of mass [m] */
+    double rotation;              /* [rad] */
+    double velocity;              /* [m/s] */
+    double angular_velocity;      /* [rad/s] */
+    double most_position;         /* of the body that was moved most [m] */
+    double most_rotation;         /* [rad] */
+    double most_velocity;         /* of the body whose velocity was changed most [m/s] */
+    double most_angular_velocity; /* [rad/s] */
+    se3d_body moved;              /* that body; null: none */
+    se3d_body deflected;
+} se3d_start_change;
+
+/* @return OK, NULL. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_solver_get_start_change_sized(const se3d_solver *solver,
+                                                        se3d_start_change *change, size_t size);
+static inline se3d_status se3d_solver_get_start_change(const se3d_solver *solver,
+                                                       se3d_start_change *change)
+{
+    return se3d_solver_get_start_change_sized(solver, change, sizeof *change);
+}
+
 /* Get the method in use ("generalized_alpha", ...; what AUTO picked). Reader. @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name);
 

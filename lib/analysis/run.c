@@ -7,6 +7,7 @@
 #include "analysis/jump.h"
 #include "analysis/stiffness.h"
 #include "assembly/user.h"
+#include "base/log.h"
 #include "contact/loads.h"
 #include "contact/pace.h"
 #include "integrator/turns.h"
@@ -139,6 +140,7 @@ static se3d_status build(se3di_run *run)
     run->equations.iterations_max = run->integration.settings.iterations_max;
     run->integration.equations = &run->equations;
     run->prepared = 1;
+    run->told_redundant = 0;
     run->determined = 0;
     run->values_version = run->model->values_version;
     if (is_driven(run)) {
@@ -192,6 +194,16 @@ static se3d_status accelerate(se3di_run *run)
                : se3di_acceleration_solve(&run->equations, run->model->time);
 }
 
+/* What the user gave against what it has become. */
+static void note_start(se3di_run *run, double t)
+{
+    const int free = run->analysis == SE3D_ANALYSIS_DYNAMICS;
+    se3di_start_change_measure(run->model, run->equations.accepted, is_driven(run), &run->start);
+    run->start.time = t;
+    se3di_start_change_log(run->model, &run->start, free ? SE3D_LOG_WARNING : SE3D_LOG_INFO,
+                           run->error);
+}
+
 /* A new state: positions, velocities, accelerations and multipliers made consistent at the model's
  * time. */
 static se3d_status settle(se3di_run *run, double t)
@@ -206,6 +218,9 @@ static se3d_status settle(se3di_run *run, double t)
         run->determined = status >= 0;
     }
     status = status < 0 ? status : se3di_state_solve(equations, t);
+    if (status >= 0 && !run->model->settled) {
+        note_start(run, t);
+    }
     status = status < 0 ? status : start_contacts(run, t);
     if (status < 0) {
         se3di_state_restore(equations);
@@ -390,6 +405,9 @@ static se3d_status switch_method(se3di_run *run)
     run->left_at = run->model->time;
     run->integration.method = se3di_integrator_find(SE3D_METHOD_RADAU);
     run->integration.settings.leaves_stiff = 0;
+    se3di_log_write(run->error, SE3D_LOG_INFO,
+                    "t = %g s: stability holds the steps of %s short, %s goes on", run->left_at,
+                    run->left->name, run->integration.method->name);
     SE3DI_TRY(build(run));
     return prepare(run);
 }
@@ -467,8 +485,15 @@ static se3d_status run_equilibrium(se3di_run *run, double t_end)
     return status;
 }
 
-static se3d_status information(const se3di_run *run)
+static se3d_status information(se3di_run *run)
 {
+    if (run->equations.redundant && !run->told_redundant) {
+        run->told_redundant = 1;
+        se3di_log_write(run->error, SE3D_LOG_WARNING,
+                        "t = %g s: there are redundant constraints, of which reactions are the "
+                        "minimum-norm ones; se3d_check names them",
+                        run->model->time);
+    }
     return run->equations.redundant ? SE3D_INFO_REDUNDANT : SE3D_OK;
 }
 

@@ -4,6 +4,7 @@
 #define SE3DI_RUN_H
 
 #include "analysis/events.h"
+#include "analysis/start_change.h"
 #include "integrator/integrator.h"
 
 typedef struct se3di_run {
@@ -27,8 +28,11 @@ typedef struct se3di_run {
     double horizon;          /* runs go on to here [s] */
     se3di_saved before;      /* the state that the call under way began with, where */
     uint64_t before_version;
-    int32_t has_before; /* it was kept */
-    int32_t steps_once; /* the call is one step */
+    int32_t has_before;       /* it was kept */
+    int32_t steps_once;       /* the call is one step */
+    se3di_start_change start; /* of the last start that the user gave */
+    int32_t told_redundant;   /* the log was told of these equations */
+    int32_t reserved;
 } se3di_run;
 
 /* Set up for an analysis; allocates nothing yet. `system`: for the callbacks of events. */

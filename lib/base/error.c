@@ -3,7 +3,6 @@
 
 #include <ctype.h>
 #include <locale.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -22,14 +21,19 @@ static void restore_decimal_point(char *text)
     }
 }
 
+void se3di_error_format(char *text, size_t size, const char *format, va_list arguments)
+{
+    vsnprintf(text, size, format, arguments);
+    restore_decimal_point(text);
+}
+
 se3d_status se3di_error_set(se3di_error *error, se3d_status status, const char *format, ...)
 {
     if (error) {
         va_list arguments;
         va_start(arguments, format);
-        vsnprintf(error->message, sizeof error->message, format, arguments);
+        se3di_error_format(error->message, sizeof error->message, format, arguments);
         va_end(arguments);
-        restore_decimal_point(error->message);
         error->status = status;
     }
     return status;

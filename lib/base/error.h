@@ -5,11 +5,14 @@
 
 #include "se3d/base.h"
 
+#include <stdarg.h>
+
 #define SE3DI_ERROR_SIZE 512
 
 typedef struct se3di_error {
     se3d_status status;
     char message[SE3DI_ERROR_SIZE];
+    struct se3di_logger *log; /* of the owner, see base/log.h; NULL: none */
 } se3di_error;
 
 /* Record `status` with a printf-like message (cut to fit) and return `status`. `error` may be NULL.
@@ -19,6 +22,9 @@ __attribute__((format(printf, 3, 4)))
 #endif
 se3d_status
 se3di_error_set(se3di_error *error, se3d_status status, const char *format, ...);
+
+/* What both messages and the log are written with. */
+void se3di_error_format(char *text, size_t size, const char *format, va_list arguments);
 
 /* Forget the last error. */
 void se3di_error_clear(se3di_error *error);

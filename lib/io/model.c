@@ -241,7 +241,7 @@ se3d_status se3d_model_read_file(const char *path, const se3d_model_options *opt
 
 void se3d_model_destroy(se3d_model *model)
 {
-    if (model) {
+    if (model && !model->running && !se3d_system_is_busy(model->system)) {
         se3di_iopool pool = model->pool; /* the model itself lies in it */
         se3d_system_destroy(model->system);
         se3di_iopool_destroy(&pool);

@@ -115,6 +115,8 @@ typedef struct se3di_grains se3di_grains;
 struct se3d_model {
     se3di_iopool pool;
     se3d_system *system;
+    int32_t running; /* se3d_model_run is at work */
+    int32_t reserved;
     const char *file;
     const char *name;
     const char *title;

@@ -441,6 +441,32 @@ static const char *copy_text(runner *r, const char *text)
     return copy ? copy : "";
 }
 
+static const char *name_of_body(runner *r, se3d_body body)
+{
+    const char *name = "";
+    if (SE3D_FAILED(se3d_body_get_name(r->model->system, body, &name))) {
+        return "";
+    }
+    return copy_text(r, name[0] ? name : "without a name");
+}
+
+/* How the start was changed. */
+static void record_start(runner *r, se3d_run_analysis *done)
+{
+    se3d_start_change change;
+    memset(&change, 0, sizeof change);
+    if (r->solver) {
+        se3d_solver_get_start_change(r->solver, &change);
+    }
+    const double numbers[8] = {change.position,      change.rotation,
+                               change.velocity,      change.angular_velocity,
+                               change.most_position, change.most_rotation,
+                               change.most_velocity, change.most_angular_velocity};
+    memcpy(done->start_change, numbers, sizeof numbers);
+    done->moved = name_of_body(r, change.moved);
+    done->deflected = name_of_body(r, change.deflected);
+}
+
 /* What the solver did, for the summary. */
 static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analysis *done,
                    clock_t begin)
@@ -460,6 +486,7 @@ static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analys
     }
     done->method = copy_text(r, method ? method : "");
     done->left = copy_text(r, left);
+    record_start(r, done);
 }
 
 /* The files of the modes, and the state at which they are. */
@@ -658,11 +685,16 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
     if (model->analysis_count == 0) {
         return fail(&r, SE3D_ERR_STATE, "the model has no `analysis`");
     }
+    if (model->running || se3d_system_is_busy(model->system)) {
+        return fail(&r, SE3D_ERR_STATE, "the model is being run");
+    }
     r.run = create_run(model);
     if (!r.run) {
         return fail(&r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
+    model->running = 1;
     const se3d_status status = run_all(&r);
+    model->running = 0;
     *out = r.run;
     return status;
 }

@@ -11,9 +11,11 @@ static void say_refused(se3d_system *system, const char *function)
     se3di_busy *busy = &system->busy;
     const int32_t level = busy->level;
     if (!atomic_flag_test_and_set(&busy->messaging)) {
-        (void)SE3DI_FAIL(system, SE3D_ERR_STATE,
-                         "%s is not allowed in %s: the system is at work until that call returns",
-                         function, where[level]);
+        (void)se3di_error_set(
+            &system->error, SE3D_ERR_STATE,
+            "%s is not allowed in %s: the system is at work until that call returns", function,
+            where[level]);
+        se3di_log_write(&system->error, SE3D_LOG_ERROR, "%s", system->error.message);
         atomic_flag_clear(&busy->messaging);
     }
 }
@@ -38,7 +40,10 @@ void se3di_work_begin(se3d_system *system)
 se3d_status se3di_work_end(se3d_system *system, se3d_status status)
 {
     se3di_busy_restore(&system->busy, SE3DI_BUSY_FREE);
-    return status;
+    if (status < 0 && system->error.status != status) {
+        return SE3DI_FAIL(system, status, "%s", se3d_status_get_text(status));
+    }
+    return status < 0 ? se3di_log_error(&system->error, status) : status;
 }
 
 se3d_status se3di_read_begin(const se3d_system *system, se3di_reading *reading)

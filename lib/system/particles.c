@@ -501,6 +501,15 @@ static se3d_status advance(se3d_particles *particles, double h, size_t steps)
     return SE3D_OK;
 }
 
+/* In steps of `length` where `h` is the one that is looked at. */
+static se3d_status check_and_advance(se3d_particles *particles, double h, double length,
+                                     size_t steps)
+{
+    SE3DI_TRY(se3di_particles_check_step(&particles->set, &particles->system->model, h,
+                                         &particles->system->error));
+    return advance(particles, length, steps);
+}
+
 se3d_status se3d_particles_step(se3d_particles *particles, size_t steps)
 {
     SE3DI_EDIT_OF(particles);
@@ -509,10 +518,8 @@ se3d_status se3d_particles_step(se3d_particles *particles, size_t steps)
         particles->set.time += h * (double)steps;
         return SE3D_OK;
     }
-    SE3DI_TRY(se3di_particles_check_step(&particles->set, &particles->system->model, h,
-                                         &particles->system->error));
     se3di_work_begin(particles->system);
-    return se3di_work_end(particles->system, advance(particles, h, steps));
+    return se3di_work_end(particles->system, check_and_advance(particles, h, h, steps));
 }
 
 se3d_status se3d_particles_run(se3d_particles *particles, double time)
@@ -531,11 +538,10 @@ se3d_status se3d_particles_run(se3d_particles *particles, double time)
                           steps, time, SE3DI_STEPS_MOST);
     }
     if (steps > 0.0 && !se3di_particles_is_idle(set)) {
-        SE3DI_TRY(se3di_particles_check_step(&particles->set, &particles->system->model, h,
-                                             &particles->system->error));
+        const double length = (time - set->time) / steps;
         se3di_work_begin(particles->system);
         SE3DI_TRY(se3di_work_end(particles->system,
-                                 advance(particles, (time - set->time) / steps, (size_t)steps)));
+                                 check_and_advance(particles, h, length, (size_t)steps)));
     }
     set->time = time;
     return SE3D_OK;

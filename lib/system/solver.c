@@ -219,6 +219,29 @@ se3d_status se3d_solver_get_stats_sized(const se3d_solver *solver, se3d_solver_s
     return se3di_sized_give(stats, size, &full, sizeof full);
 }
 
+se3d_status se3d_solver_get_start_change_sized(const se3d_solver *solver, se3d_start_change *change,
+                                               size_t size)
+{
+    if (!solver || !change) {
+        return SE3D_ERR_NULL;
+    }
+    const se3di_start_change *start = &solver->run.start;
+    const se3d_start_change full = {
+        .time = start->time,
+        .position = start->position,
+        .rotation = start->rotation,
+        .velocity = start->velocity,
+        .angular_velocity = start->angular_velocity,
+        .most_position = start->most_position[0],
+        .most_rotation = start->most_position[1],
+        .most_velocity = start->most_velocity[0],
+        .most_angular_velocity = start->most_velocity[1],
+        .moved = {start->moved.index1, start->moved.generation},
+        .deflected = {start->deflected.index1, start->deflected.generation},
+    };
+    return se3di_sized_give(change, size, &full, sizeof full);
+}
+
 se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name)
 {
     if (!solver || !name) {

@@ -46,6 +46,8 @@ static void begin_life(se3d_system *system)
 {
     se3di_busy_init(&system->busy);
     system->model.busy = &system->busy;
+    system->log.busy = &system->busy;
+    system->error.log = &system->log;
     system->solvers = NULL;
     system->copies = NULL;
 }
@@ -71,8 +73,8 @@ se3d_status se3d_system_create(const se3d_system_def *def, se3d_system **out)
     begin_life(system);
     se3di_copy(full.gravity, system->model.gravity);
     system->model.time = full.time;
-    system->log = full.log;
-    system->log_ctx = full.log_ctx;
+    system->log.callback = full.log;
+    system->log.ctx = full.log_ctx;
     *out = system;
     return SE3D_OK;
 }
@@ -116,8 +118,8 @@ se3d_status se3d_system_clone(const se3d_system *system, se3d_system **out)
         se3d_system_destroy(copy);
         return status;
     }
-    copy->log = system->log;
-    copy->log_ctx = system->log_ctx;
+    copy->log.callback = system->log.callback;
+    copy->log.ctx = system->log.ctx;
     *out = copy;
     return SE3D_OK;
 }

@@ -5,6 +5,7 @@
 #define SE3DI_SYSTEM_INTERNAL_H
 
 #include "base/busy.h"
+#include "base/log.h"
 #include "base/sized.h"
 #include "model/model.h"
 #include "se3d/se3d.h"
@@ -12,15 +13,15 @@
 struct se3d_system {
     se3di_model model;
     se3di_error error;
-    se3d_log_callback log;
-    void *log_ctx;
+    se3di_logger log;
     se3di_busy busy;               /* the model points to it */
     struct se3d_solver *solvers;   /* that live, in a chain */
     struct se3d_particles *copies; /* clones of particle sets that live, in a chain */
 };
 
-/* Record an error on the system and return its status. */
-#define SE3DI_FAIL(system, ...) se3di_error_set(&(system)->error, __VA_ARGS__)
+/* Record an error on the system, log it, and return its status. */
+#define SE3DI_FAIL(system, ...)                                                                    \
+    se3di_log_error(&(system)->error, se3di_error_set(&(system)->error, __VA_ARGS__))
 
 /* What a public function that changes something begins with: `system` is not NULL, and not at work
  * unless with what allows `most`. A refusal leaves a message that names `function`. */

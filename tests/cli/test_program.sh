@@ -101,6 +101,21 @@ has "$dir/out" 'auto left dop853 for radau at t = 1.3'
 expect 'auto says it in json' 0 "$program" run "$dir/stiffens.yaml" -o "$dir/stiffens" --json
 has "$dir/out" '"left": "dop853", "left_at": 1.3'
 
+cat >"$dir/crank.yaml" <<'MODEL'
+se3d: 1
+bodies:
+  - {name: crank, mass: 1, inertia: [0.1, 0.1, 0.1], position: [0.5, 0, 0], angular_velocity: [0, 0, 6], velocity: [0, 3, 0]}
+  - {name: rod, mass: 1, inertia: [0.1, 0.1, 0.1], position: [1.5, 0, 0]}
+joints:
+  - {name: pin, type: revolute, body_i: ground, body_j: crank, at: [0, 0, 0], axis: [0, 0, 1]}
+  - {name: knee, type: revolute, body_i: crank, body_j: rod, at: [1, 0, 0], axis: [0, 0, 1]}
+analysis: {type: dynamics, duration: 0.01}
+MODEL
+expect 'a start that does not fit is told' 0 "$program" run "$dir/crank.yaml" -o "$dir/crank"
+has "$dir/out" 'the given velocities do not fit: changed by '
+expect 'a start that does not fit is told in json' 0 "$program" run "$dir/crank.yaml" -o "$dir/crank" --json
+has "$dir/out" '"start_change": {"moved": "", "deflected": "'
+
 expect 'another analysis' 0 "$program" run "$models/pendulum_free.yaml" -o "$dir/a" --analysis assembly
 is "$(wc -l <"$dir/a/pendulum_free.csv" | tr -d ' ')" 2
 

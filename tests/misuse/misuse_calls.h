@@ -380,6 +380,7 @@ static se3d_status call_solver_create(arguments *a)
 CALL(solver_run, a->solver, a->number)
 CALL(solver_step, a->solver, a->number)
 CALL(solver_get_stats, a->solver, a->out[0])
+CALL(solver_get_start_change, a->solver, a->out[0])
 CALL(solver_get_method, a->solver, a->out[0])
 CALL(solver_get_switch, a->solver, a->out[0], a->out[1])
 static se3d_status call_check_create(arguments *a)
@@ -797,6 +798,7 @@ static const row rows[] = {
     {"se3d_solver_run", call_solver_run, "vn", NULL, NULL},
     {"se3d_solver_step", call_solver_step, "vn", NULL, NULL},
     {"se3d_solver_get_stats", call_solver_get_stats, "vo0", NULL, NULL},
+    {"se3d_solver_get_start_change", call_solver_get_start_change, "vo0", NULL, NULL},
     {"se3d_solver_get_method", call_solver_get_method, "vo0", NULL, NULL},
     {"se3d_solver_get_switch", call_solver_get_switch, "vo0o1", NULL, NULL},
     {"se3d_check_create", call_check_create, "Sh0", NULL, NULL},

@@ -43,6 +43,32 @@ static void close_world(world *w)
 
 #define IS(call, status) CHECK((call) == (status))
 
+/* From within a run neither the model nor the run can be begun again or taken away. */
+static int meddle(void *ctx, size_t analysis, double time, double fraction)
+{
+    const world *w = ctx;
+    se3d_run *run = NULL;
+    (void)analysis, (void)time, (void)fraction;
+    IS(se3d_model_run(w->model, NULL, &run, NULL), SE3D_ERR_STATE);
+    CHECK(run == NULL);
+    se3d_model_destroy(w->model);
+    return 0;
+}
+
+static void a_run_keeps_its_model(void)
+{
+    world w = open_world();
+    se3d_run *run = NULL;
+    se3d_run_options how = se3d_run_options_default();
+    how.directory = w.folder;
+    how.progress = meddle;
+    how.ctx = &w;
+    IS(se3d_model_run(w.model, &how, &run, NULL), SE3D_OK);
+    CHECK(se3d_run_count_analyses(run) == 2);
+    se3d_run_destroy(run);
+    close_world(&w);
+}
+
 static void model_read_file(const world *w)
 {
     se3d_model *model = w->model;
@@ -364,6 +390,7 @@ static void every_function_of_the_map_has_a_row(void)
 
 int main(void)
 {
+    RUN(a_run_keeps_its_model);
     RUN(every_function_of_the_map_has_a_row);
     RUN(every_function_rejects_bad_arguments);
     return check_finish();

@@ -29,6 +29,7 @@ typedef struct place {
 FILL(system_get_energy, se3d_energy, p->w.system)
 FILL(system_get_work, se3d_work, p->w.system)
 FILL(solver_get_stats, se3d_solver_stats, p->w.solver)
+FILL(solver_get_start_change, se3d_start_change, p->w.solver)
 FILL(solver_get_event_record, se3d_event_record, p->w.solver, 0)
 FILL(modes_get_eigenvalue, se3d_eigenvalue, p->modes, 0)
 FILL(system_get_contacts, se3d_contact, p->w.system, 1)
@@ -61,6 +62,7 @@ static const filler fillers[] = {
     ROW(system_get_energy, se3d_energy),
     ROW(system_get_work, se3d_work),
     ROW(solver_get_stats, se3d_solver_stats),
+    ROW(solver_get_start_change, se3d_start_change),
     ROW(solver_get_event_record, se3d_event_record),
     ROW(modes_get_eigenvalue, se3d_eigenvalue),
     ROW(system_get_contacts, se3d_contact),

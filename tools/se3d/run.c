@@ -66,6 +66,24 @@ static void print_events(const se3d_run *run, size_t index)
     }
 }
 
+/* What of the given start did not fit. */
+static void print_start(const se3d_run_analysis *a)
+{
+    const double *d = a->start_change;
+    if (a->moved[0]) {
+        printf(
+            "  the given positions do not fit: moved by %.3g m and %.3g rad in all, body %s most, "
+            "by %.3g m and %.3g rad\n",
+            d[0], d[1], a->moved, d[4], d[5]);
+    }
+    if (a->deflected[0]) {
+        printf(
+            "  the given velocities do not fit: changed by %.3g m/s and %.3g rad/s in all, of body "
+            "%s most, by %.3g m/s and %.3g rad/s\n",
+            d[2], d[3], a->deflected, d[6], d[7]);
+    }
+}
+
 static void print_analysis(const se3d_run_analysis *a)
 {
     printf("%s, %s%s%s: %s\n", a->type, a->formulation, a->method[0] ? ", " : "", a->method,
@@ -77,6 +95,7 @@ static void print_analysis(const se3d_run_analysis *a)
         printf("  auto left %s for %s at t = %.9g s: the motion became stiff\n", a->left, a->method,
                a->left_at);
     }
+    print_start(a);
 }
 
 /* Where particles came or went. */
@@ -149,6 +168,23 @@ static void json_put_count(const char *name, uint64_t value)
     printf(", \"%s\": %" PRIu64, name, value);
 }
 
+static void json_put_start(const se3d_run_analysis *a)
+{
+    static const char *const names[4] = {"position", "rotation", "velocity", "angular_velocity"};
+    if (!a->moved[0] && !a->deflected[0]) {
+        return;
+    }
+    fputs(", \"start_change\": {\"moved\": ", stdout);
+    json_put_text(a->moved);
+    fputs(", \"deflected\": ", stdout);
+    json_put_text(a->deflected);
+    for (int k = 0; k < 8; ++k) {
+        printf(", \"%s%s\": ", k < 4 ? "" : "most_", names[k % 4]);
+        json_put_number(a->start_change[k]);
+    }
+    fputs("}", stdout);
+}
+
 static void json_put_analysis(const se3d_run_analysis *a)
 {
     fputs("{\"type\": ", stdout);
@@ -171,6 +207,7 @@ static void json_put_analysis(const se3d_run_analysis *a)
         fputs(", \"left_at\": ", stdout);
         json_put_number(a->left_at);
     }
+    json_put_start(a);
     json_put_count("steps", a->stats.steps);
     json_put_count("rejected", a->stats.rejected);
     json_put_count("iterations", a->stats.iterations);
