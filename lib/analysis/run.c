@@ -316,6 +316,7 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
     se3di_model *model = run->model;
     const int has_history = model->history_tag == history_tag(run);
     const int goes_on = has_history && model->history_inputs == model->inputs_version;
+    run->equations.redundant |= has_history && model->history_redundant > 0; /* whoever made it */
     if (!goes_on || run->integration.method->advance) {
         SE3DI_TRY(keep_state(run));
     }
@@ -494,6 +495,7 @@ static se3d_status information(se3di_run *run)
                         "minimum-norm ones; se3d_check names them",
                         run->model->time);
     }
+    run->model->history_redundant = run->equations.redundant;
     return run->equations.redundant ? SE3D_INFO_REDUNDANT : SE3D_OK;
 }
 

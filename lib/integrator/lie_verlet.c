@@ -275,6 +275,7 @@ static se3d_status solve_positions(se3di_lie_verlet *m)
                                m->t1, m->h);
     }
     memcpy(m->lambda, m->best, assembly->row_count * sizeof *m->best);
+    m->is_singular = 1;
     return close_gap(m);
 }
 

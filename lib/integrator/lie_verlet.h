@@ -24,6 +24,7 @@ typedef struct se3di_lie_verlet {
     se3di_assembly *assembly;
     double h, t1;
     double size;          /* of the mechanism [m] */
+    int is_singular;      /* some constraints have had no leverage */
     int force_iterations; /* of forces that depend on velocities: 1 is explicit, of order 2 */
     double *wrench;       /* applied at the start [dense bodies * 6] */
     double *lambda;       /* [rows] */

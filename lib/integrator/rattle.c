@@ -14,30 +14,52 @@ static se3d_status advance(se3di_lie_verlet *m)
     return se3di_lie_verlet_finish(m);
 }
 
-static se3d_status step(se3di_integration *integration, double h)
+/* Parts of a step from t0 to t0 + h. */
+static se3d_status advance_parts(se3di_lie_verlet *m, double t0, double h, const double *weights,
+                                 int parts)
 {
-    static const double compose2[1] = {1.0};
+    double sum = 0.0;
+    m->is_singular = 0;
+    for (int k = 0; k < parts; ++k) {
+        sum += weights[k];
+        m->h = weights[k] * h;
+        m->t1 = k == parts - 1 ? t0 + h : t0 + sum * h;
+        SE3DI_TRY(advance(m));
+    }
+    return SE3D_OK;
+}
+
+/* Order 4. Near a singular position, where constraints have no leverage, going back and forth
+ * leaves the branch or loses energy: there the step is one of order 2. */
+static se3d_status advance_composed(se3di_lie_verlet *m, double t0, double h)
+{
     static const double compose4[5] = {0.41449077179437573714, 0.41449077179437573714,
                                        -0.65796308717750294857, 0.41449077179437573714,
                                        0.41449077179437573714};
-    se3di_assembly *assembly = &integration->equations->assembly;
-    double t0 = assembly->model->time;
-    int parts = integration->settings.order == 4 ? 5 : 1;
-    const double *weights = parts == 5 ? compose4 : compose2;
+    static const double whole = 1.0;
+    const se3d_status status = advance_parts(m, t0, h, compose4, 5);
+    if (status == SE3D_ERR_NO_CONVERGENCE || (status >= 0 && m->is_singular)) {
+        se3di_equations_come_back(m->equations);
+        return advance_parts(m, t0, h, &whole, 1);
+    }
+    return status;
+}
+
+static se3d_status step(se3di_integration *integration, double h)
+{
+    static const double whole = 1.0;
+    const double t0 = integration->equations->assembly.model->time;
+    const int is_composed = integration->settings.order == 4;
     se3di_lie_verlet m = se3di_lie_verlet_begin(integration, FORCE_ITERATIONS);
-    if (parts == 5 && m.friction.count > 0) {
+    if (is_composed && m.friction.count > 0) {
         return se3di_error_set(
             integration->equations->error, SE3D_ERR_UNSUPPORTED,
             "rattle of order 4 steps back in time, which friction does not allow; "
             "use order 2");
     }
     se3d_status status = se3di_equations_keep(m.equations);
-    double sum = 0.0;
-    for (int k = 0; k < parts && status >= 0; ++k) {
-        sum += weights[k];
-        m.h = weights[k] * h;
-        m.t1 = k == parts - 1 ? t0 + h : t0 + sum * h;
-        status = advance(&m);
+    if (status >= 0) {
+        status = is_composed ? advance_composed(&m, t0, h) : advance_parts(&m, t0, h, &whole, 1);
     }
     if (status < 0) {
         se3di_equations_come_back(m.equations);

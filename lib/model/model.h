@@ -211,6 +211,7 @@ typedef struct se3di_model {
 
     double *history; /* what an integrator carries from step to step */
     size_t history_count, history_capacity;
+    int64_t history_redundant;               /* not 0: on the way rows were dependent */
     uint64_t history_tag;                    /* who wrote it; 0: nobody */
     uint64_t history_stamp;                  /* changes where it does other than by steps forward */
     uint64_t history_inputs, history_values; /* the versions that it belongs to */

@@ -60,6 +60,7 @@ se3d_status se3di_saved_fill(se3di_saved *saved, const se3di_model *model,
     saved->work_valid = model->work_valid;
     saved->settled = model->settled;
     saved->history_tag = model->history_tag;
+    saved->history_redundant = model->history_redundant;
     saved->history_inputs = model->history_inputs;
     saved->history_values = model->history_values;
     saved->time = model->time;
@@ -117,6 +118,7 @@ void se3di_saved_restore(const se3di_saved *saved, se3di_model *model)
     model->remembers = 1;
     model->history_count = saved->history.count;
     model->history_tag = saved->history_tag;
+    model->history_redundant = saved->history_redundant;
     model->history_inputs = saved->history_inputs;
     model->history_values = saved->history_values;
     model->time = saved->time;

@@ -17,6 +17,7 @@ typedef struct se3di_saved {
     double work[3], power[3];
     double contact_step;
     uint64_t history_tag;
+    int64_t history_redundant;
     uint64_t history_inputs, history_values;
     int32_t settled;
     int32_t work_valid;
