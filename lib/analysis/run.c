@@ -94,8 +94,8 @@ static int is_history_of(const se3di_model *model, int32_t method)
     return model->history_tag / 2 == (uint64_t)method;
 }
 
-/* auto: particles move by verlet only; friction sticks by a spring that only an implicit method can
- * follow; strong dampers hold explicit methods to small steps, or have done so before. */
+/* auto: particles move by verlet only; strong dampers hold explicit methods to small steps, or have
+ * done so before. */
 static void choose_method(se3di_run *run)
 {
     const se3di_model *model = run->model;
@@ -105,11 +105,6 @@ static void choose_method(se3di_run *run)
     int stiff = run->analysis == SE3D_ANALYSIS_DYNAMICS &&
                 (is_history_of(model, SE3D_METHOD_RADAU) || se3di_stiffness_is_stiff(model));
     int32_t method = stiff ? SE3D_METHOD_RADAU : SE3D_METHOD_DOP853;
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (model->forces[k].type == SE3DI_FORCE_FRICTION) {
-            method = SE3D_METHOD_RADAU;
-        }
-    }
     if (model->sets) {
         method = SE3D_METHOD_VERLET;
     }
@@ -136,6 +131,8 @@ static se3d_status build(se3di_run *run)
         reduces ? se3di_formulation_reduce(run->formulation) : run->formulation;
     SE3DI_TRY(se3di_equations_init(&run->equations, run->model, formulation, run->error));
     run->equations.counters = counters;
+    run->equations.friction.is_rigid =
+        run->analysis == SE3D_ANALYSIS_DYNAMICS && method->tableau != NULL;
     run->equations.audits = run->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS;
     run->equations.iterations_max = run->integration.settings.iterations_max;
     run->integration.equations = &run->equations;

@@ -2,6 +2,7 @@
 /* All force elements of a model together, and gravity. */
 #include "force/force.h"
 
+#include "force/friction.h"
 #include "joint/user.h"
 #include "math/vec3.h"
 
@@ -145,6 +146,7 @@ int se3di_forces_have_memory(const se3di_model *model)
 uint32_t se3di_forces_revise(se3di_model *model)
 {
     uint32_t changes = 0;
+    se3di_frictions_take_loads(model, model->lambda);
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         if (model->forces[k].type == SE3DI_FORCE_FRICTION) {
             changes += se3di_friction_revise(model, &model->forces[k]);
@@ -164,6 +166,7 @@ void se3di_stops_accept(se3di_model *model)
 
 void se3di_forces_accept(se3di_model *model)
 {
+    se3di_frictions_take_loads(model, model->lambda);
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         double *state = model->forces[k].state;
         memcpy(state + SE3DI_FORCE_BEFORE, state, SE3DI_FORCE_BEFORE * sizeof *state);

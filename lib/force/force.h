@@ -72,8 +72,6 @@ int se3di_forces_have_memory(const se3di_model *model);
 /* The element has a memory. */
 int se3di_force_is_history_dependent(const se3di_force *force);
 
-/* Stiffness of sticking: the limit of sticking over the presliding. */
-double se3di_friction_stiffness(const se3di_force *force);
 /* The largest force while it sticks, or slips. */
 double se3di_friction_limit(const se3di_force *force, int slips);
 /* Slower than this [m/s, rad/s] a coordinate is at rest where a run begins. */
@@ -82,8 +80,8 @@ double se3di_friction_limit(const se3di_force *force, int slips);
  * (mode 0) or slipping. */
 double se3di_friction_get(const se3di_model *model, const se3di_force *force);
 void se3di_friction_set(const se3di_model *model, se3di_force *force, double mode, double n);
-/* The load follows from the multipliers of the model. */
-void se3di_friction_take_load(const se3di_model *model, se3di_force *force);
+/* It holds on to where it is, unless it does so already: it slips if it moves. */
+void se3di_friction_begin(const se3di_model *model, se3di_force *force);
 uint32_t se3di_friction_revise(const se3di_model *model, se3di_force *force);
 void se3di_friction_accept(const se3di_model *model, se3di_force *force);
 void se3di_stop_accept(const se3di_model *model, se3di_force *force);

@@ -128,20 +128,24 @@ static double length_curve(const se3di_measure *measure)
     return sum;
 }
 
-double se3di_measure_acceleration(const se3di_model *model, const se3di_force *force)
+double se3di_measure_curve(const se3di_model *model, const se3di_force *force)
 {
     se3di_term term;
     se3di_measure measure;
     if (force->coordinate == SE3DI_FORCE_LENGTH) {
-        return se3di_measure_length(model, force, 1, &measure)
-                   ? along(model, force, measure.g) + length_curve(&measure)
-                   : 0.0;
+        return se3di_measure_length(model, force, 1, &measure) ? length_curve(&measure) : 0.0;
     }
     init_term(model, force, &term);
-    se3di_measure_term(model, &term, 0, &measure);
-    return along(model, force, measure.g) -
-           se3di_primitives[term.type].gamma_romega(&term, &model->frames[term.body_i],
-                                                    &model->frames[term.body_j]);
+    return -se3di_primitives[term.type].gamma_romega(&term, &model->frames[term.body_i],
+                                                     &model->frames[term.body_j]);
+}
+
+double se3di_measure_acceleration(const se3di_model *model, const se3di_force *force)
+{
+    se3di_measure measure;
+    return se3di_measure_force(model, force, 0, &measure)
+               ? along(model, force, measure.g) + se3di_measure_curve(model, force)
+               : 0.0;
 }
 
 void se3di_effect_add(se3di_effect *effect, const se3di_measure *measure, const se3di_law *law)

@@ -36,6 +36,9 @@ int se3di_measure_force(const se3di_model *model, const se3di_force *force, int 
  * model. */
 double se3di_measure_acceleration(const se3di_model *model, const se3di_force *force);
 
+/* Its part that does not depend on accelerations. */
+double se3di_measure_curve(const se3di_model *model, const se3di_force *force);
+
 /* Velocities of bodies i and j. */
 void se3di_velocity_pair(const se3di_model *model, const se3di_force *force, double u[12]);
 

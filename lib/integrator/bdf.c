@@ -151,17 +151,34 @@ static se3d_status measure_tangent(se3di_bdf *m, double *error)
     return SE3D_OK;
 }
 
+/* The step is not taken: what force elements remembered before. */
+static void forget(const se3di_bdf *m)
+{
+    se3di_model_restore_memory(m->assembly->model, m->integration->newton.memory);
+}
+
 /* What friction remembers of the end of the step; *error is raised to what that changes. If it is
  * too much for a controlled step, nothing is remembered. */
 static se3d_status settle(se3di_bdf *m, int is_controlled, double *error)
 {
     const se3di_state_scale scale = se3di_bdf_get_scale(m);
-    double change;
-    SE3DI_TRY(se3di_memory_settle(m->integration, m->t, m->h, &scale, m->work, &change));
+    const double tolerance = is_controlled ? m->integration->settings.tolerance : HUGE_VAL;
+    se3di_memory_end end;
+    const se3di_memory_step step = {
+        m->t, m->h, tolerance, m->lambda, &scale, m->integration->newton.memory, m->work};
+    SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
+    m->fraction = end.fraction;
+    if (end.has_changed) { /* what stands still does so */
+        const size_t bodies = m->count - SE3DI_STATE_WORK;
+        double work[SE3DI_STATE_WORK];
+        memcpy(work, m->y + bodies, sizeof work);
+        se3di_state_get(m->assembly, m->y);
+        memcpy(m->y + bodies, work, sizeof work);
+    }
     if (is_controlled) {
-        *error = fmax(*error, change / m->integration->settings.tolerance);
+        *error = fmax(*error, end.error);
         if (!(*error <= 1.0)) {
-            se3di_memory_undo(m->integration);
+            forget(m);
         }
     }
     return SE3D_OK;
@@ -214,7 +231,7 @@ static se3d_status accept(se3di_bdf *m, int order, int is_bdf)
                         : se3di_state_derivative(m->assembly, m->t, m->acceleration, m->lambda,
                                                  m->difference);
     if (status < 0) {
-        se3di_memory_undo(m->integration);
+        forget(m);
         return status;
     }
     take(m, power, order, is_bdf);
@@ -379,6 +396,7 @@ static se3d_status advance(se3di_bdf *m, double t_end)
     m->h = pace(m, t_end, &longer);
     for (int times = 1;; ++times, longer = 0.0) {
         errors e;
+        m->fraction = 0.0;
         SE3DI_TRY(se3di_equations_try_step(m->equations, m->header[BDF_TIME]));
         se3d_status status = attempt(m, order, &e);
         if (status >= 0 && e.here <= 1.0) {
@@ -401,7 +419,11 @@ static se3d_status advance(se3di_bdf *m, double t_end)
             return status;
         }
         ++m->equations->counters.rejected;
-        shorten(m, &order, status < 0 ? HUGE_VAL : e.here, times);
+        if (status >= 0 && m->fraction > 0.0) {
+            m->h *= m->fraction;
+        } else {
+            shorten(m, &order, status < 0 ? HUGE_VAL : e.here, times);
+        }
         if (!(m->h > 1e-12 * fmax(1e-3, fabs(m->t)))) {
             return fail_small(m, status);
         }

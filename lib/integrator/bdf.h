@@ -43,6 +43,7 @@ typedef struct se3di_bdf {
     double *work;         /* [unknowns] */
     double *lambda;       /* [rows] */
     double tolerance;     /* of the local error */
+    double fraction;      /* of the step, that a turn of friction asks for; 0: none does */
     double accuracy;      /* violation of constraints that does not matter: near a singular position
                              velocities magnify it by the square of the inverse distance */
     double t, h, c;       /* the end of the step, its length, its weight */

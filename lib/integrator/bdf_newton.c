@@ -13,6 +13,7 @@
 #include "integrator/bdf.h"
 
 #include "contact/pace.h"
+#include "force/friction.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 
@@ -92,6 +93,7 @@ static se3d_status eval_residual(se3di_bdf *m)
     se3di_assembly *assembly = m->assembly;
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_jacobian(assembly);
+    se3di_frictions_take_loads(assembly->model, m->lambda);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, m->t, equations->b, equations->error));
     se3di_assembly_add_transposed(assembly, -1.0, m->lambda, equations->b);
     se3di_assembly_subtract_mass(assembly, m->acceleration, equations->b);

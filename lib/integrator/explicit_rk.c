@@ -72,6 +72,7 @@ typedef struct rk {
     double *sum, *sum3; /* error estimates */
     double *memory;     /* [forces * SE3DI_FORCE_STATES] */
     double tolerance;
+    double fraction;        /* of the step, that a turn of friction asks for; 0: none does */
     se3di_kkt_settings kkt; /* of the model's linear solver, to come back to */
 } rk;
 
@@ -277,6 +278,7 @@ static se3d_status attempt(rk *m, double h, double *error)
     const int uses_end = m->tableau->uses_end;
     const double t = m->header[RK_T1] + h;
     *error = HUGE_VAL;
+    m->fraction = 0.0;
     SE3DI_TRY(make_stages(m, h));
     *error = uses_end ? 0.0 : estimate_error(m, h);
     if (!(*error <= 1.0) && isfinite(m->tolerance)) {
@@ -314,31 +316,29 @@ static void accept(rk *m, double h)
     ++m->equations->counters.steps;
 }
 
-/* Elements with a memory (stick or slip, the load of friction) change it between steps. The change
- * of the derivative times h and the rates against which friction has driven are part of the error:
- * *error is raised to it, and the memory stays as it was if that is too much. */
+/* Elements with a memory (stick or slip, stops) change it between steps: *error is raised to what
+ * that says of the step, and the memory stays as it was if that is too much. */
 static se3d_status settle_memory(rk *m, double h, double *error)
 {
     se3di_model *model = m->assembly->model;
-    double *end = end_derivative(m);
+    const double t = m->header[RK_T1] + h;
+    m->fraction = 0.0;
     if (!se3di_forces_have_memory(model)) {
         return SE3D_OK;
     }
     const se3di_state_scale scale = {.speed = m->header[RK_SPEED], .spin = m->header[RK_SPIN]};
-    const double overshoot = se3di_memory_overshoot(model, &scale) / m->tolerance;
-    se3di_model_save_memory(model, m->memory);
-    se3di_forces_accept(model);
-    SE3DI_TRY(evaluate(m, m->header[RK_T1] + h, m->sum3));
-    for (size_t k = 0; k < m->count; ++k) {
-        m->sum[k] = h * (m->sum3[k] - end[k]);
-    }
-    *error = fmax(*error, fmax(overshoot, measure(m, m->sum)));
-    if (*error <= 1.0) {
-        memcpy(end, m->sum3, m->count * sizeof *end);
-    } else {
+    se3di_memory_end end;
+    const se3di_memory_step step = {t, h, m->tolerance, model->lambda, &scale, m->memory, m->sum};
+    SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
+    *error = fmax(*error, end.error);
+    m->fraction = end.fraction;
+    if (!(*error <= 1.0)) {
         se3di_model_restore_memory(model, m->memory);
+        return SE3D_OK;
     }
-    return SE3D_OK;
+    return end.has_changed ? se3di_state_derivative(m->assembly, t, m->equations->x,
+                                                    m->equations->l, end_derivative(m))
+                           : SE3D_OK;
 }
 
 /* All that may fail before the state is accepted; *error as from settle_memory. */
@@ -552,7 +552,7 @@ static se3d_status advance(rk *m, double t_end)
         double factor =
             status < 0 || !isfinite(error) ? 0.25 : SAFETY * se3di_pow(error, -exponent);
         const double before = h;
-        h *= fmax(0.2, fmin(0.9, factor));
+        h *= status >= 0 && m->fraction > 0.0 ? m->fraction : fmax(0.2, fmin(0.9, factor));
         if (!(h > least_step(m))) {
             status = status < 0 ? status : cross_jump(m, before, error);
             return status < 0 ? give_up(m, header, status) : status;

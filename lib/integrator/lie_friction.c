@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/lie_friction.h"
 
+#include "force/friction.h"
 #include "force/measure.h"
 
 #include <math.h>
@@ -105,7 +106,7 @@ static void silence(const se3di_lie_friction *f)
 {
     size_t at = 0;
     for (uint32_t k = 0; k < f->count; ++k) {
-        se3di_friction_set(f->equations->assembly.model, next_element(f, &at), 0.0, 0.0);
+        se3di_friction_silence(next_element(f, &at));
     }
 }
 
@@ -251,10 +252,14 @@ static double take_loads(se3di_lie_friction *f)
     size_t at = 0;
     for (uint32_t k = 0; k < f->count; ++k) {
         se3di_force *force = next_element(f, &at);
-        double before = force->state[1];
-        se3di_friction_take_load(model, force);
-        change = fmax(change, fabs(force->state[1] - before));
-        largest = fmax(largest, force->state[1]);
+        if (se3di_friction_has_load(force)) {
+            double R[SE3DI_FRICTION_PARTS], *load = &force->state[SE3DI_FRICTION_LOAD];
+            const double before = *load;
+            se3di_friction_reaction(model, force, model->lambda, R);
+            *load = se3di_friction_load(model, force, R, NULL);
+            change = fmax(change, fabs(*load - before));
+            largest = fmax(largest, *load);
+        }
     }
     return largest > 0.0 ? change / largest : 0.0;
 }

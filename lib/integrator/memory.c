@@ -1,75 +1,170 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/memory.h"
 
+#include "force/friction.h"
 #include "force/measure.h"
 #include "math/vec3.h"
 
 #include <math.h>
 #include <string.h>
 
-static int has_friction(const se3di_model *model)
+#define STANDING 1e-2 /* of the tolerance: slower is standing still */
+#define LANDING  0.5  /* of the tolerance: how far beyond the turn a step is aimed */
+
+static se3di_force *element_of(const se3di_equations *equations, uint32_t k)
 {
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (model->forces[k].type == SE3DI_FORCE_FRICTION) {
-            return 1;
-        }
-    }
-    return 0;
+    return &equations->assembly.model->forces[equations->friction.element[k]];
 }
 
-double se3di_memory_overshoot(const se3di_model *model, const se3di_state_scale *scale)
+/* It slips against its direction: friction has driven since its motion turned within the step. */
+static int review_slip(const se3di_force *force, double rate, double allowed, se3di_memory_end *end)
+{
+    const double mode = force->state[SE3DI_FRICTION_MODE], against = -mode * rate;
+    const double before = mode * force->state[SE3DI_FRICTION_RATE];
+    if (!(against > 0.0)) {
+        return 0;
+    }
+    end->error = fmax(end->error, against / allowed);
+    if (before > 0.0 && against > allowed) {
+        const double fraction = (before + LANDING * allowed) / (before + against);
+        end->fraction = end->fraction > 0.0 ? fmin(end->fraction, fraction) : fraction;
+    }
+    return 1;
+}
+
+/* Which elements may have to change: friction.rests. @return how many */
+static uint32_t review(se3di_equations *equations, const se3di_state_scale *scale, double tolerance,
+                       se3di_memory_end *end, uint32_t *broken)
+{
+    const se3di_model *model = equations->assembly.model;
+    uint32_t count = 0;
+    *broken = 0;
+    for (uint32_t k = 0; k < equations->friction.count; ++k) {
+        const se3di_force *force = element_of(equations, k);
+        const int turns = force->coordinate == SE3D_COORDINATE_ANGLE;
+        int changes = 0;
+        se3di_measure measure;
+        (void)se3di_measure_force(model, force, 0, &measure);
+        if (!se3di_friction_sticks(force)) {
+            changes = review_slip(force, measure.rate,
+                                  tolerance * (turns ? scale->spin : scale->speed), end);
+        } else if (force->state[SE3DI_FRICTION_SET] > 0.0) {
+            const double n = fabs(se3di_friction_get(model, force));
+            changes = n > se3di_friction_limit(force, 0);
+            *broken += (uint32_t)changes;
+        }
+        equations->friction.rests[k] = changes;
+        count += (uint32_t)changes;
+    }
+    return count;
+}
+
+/* What is on the way back to its direction, as where it starts, has not turned. */
+static uint32_t drop_returning(se3di_equations *equations)
+{
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < equations->friction.count; ++k) {
+        const double mode = element_of(equations, k)->state[SE3DI_FRICTION_MODE];
+        if (equations->friction.rests[k] &&
+            mode * se3di_friction_system_acceleration(equations, k) > 0.0) {
+            equations->friction.rests[k] = 0;
+        }
+        count += (uint32_t)(equations->friction.rests[k] != 0);
+    }
+    return count;
+}
+
+/* Where one element changes, all that stand still are decided with it: they hold each other. */
+static void add_standing(se3di_equations *equations, const se3di_state_scale *scale,
+                         double tolerance)
+{
+    const se3di_model *model = equations->assembly.model;
+    for (uint32_t k = 0; k < equations->friction.count; ++k) {
+        const se3di_force *force = element_of(equations, k);
+        const int turns = force->coordinate == SE3D_COORDINATE_ANGLE;
+        const double still =
+            STANDING * fmin(tolerance, 1e-6) * (turns ? scale->spin : scale->speed);
+        se3di_measure measure;
+        (void)se3di_measure_force(model, force, 0, &measure);
+        if (force->state[SE3DI_FRICTION_SET] > 0.0 &&
+            (se3di_friction_sticks(force) || fabs(measure.rate) <= still)) {
+            equations->friction.rests[k] = 1;
+        }
+    }
+}
+
+static double change_of(const se3di_equations *equations, const double *before, double h,
+                        const se3di_state_scale *scale)
 {
     double largest = 0.0;
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        const se3di_force *force = &model->forces[k];
-        se3di_measure measure;
-        if (force->type != SE3DI_FORCE_FRICTION) {
-            continue;
+    for (size_t k = 0; k < equations->assembly.unknown_count; k += 6) {
+        double change[6];
+        for (size_t c = 0; c < 6; ++c) {
+            change[c] = h * (equations->x[k + c] - before[k + c]);
         }
-        (void)se3di_measure_force(model, force, 0, &measure);
-        const double unit = force->coordinate == SE3D_COORDINATE_ANGLE ? scale->spin : scale->speed;
-        largest = fmax(largest, -force->state[2] * measure.rate / unit);
+        const double part =
+            se3di_norm(change) / scale->speed + se3di_norm(change + 3) / scale->spin;
+        largest = part <= largest ? largest : part; /* NaN stays */
     }
     return largest;
 }
 
-se3d_status se3di_memory_settle(se3di_integration *integration, double t, double h,
-                                const se3di_state_scale *scale, double *work, double *error)
+/* @return with the accelerations of the new modes */
+static se3d_status change_modes(se3di_equations *equations, double t,
+                                const se3di_state_scale *scale, double tolerance,
+                                se3di_memory_end *end)
 {
-    se3di_equations *equations = integration->equations;
-    const se3di_assembly *assembly = &equations->assembly;
-    se3di_model *model = assembly->model;
-    se3di_model_save_memory(model, integration->newton.memory);
-    *error = 0.0;
-    if (!has_friction(model)) {
-        se3di_forces_accept(model);
-        return SE3D_OK;
+    if (drop_returning(equations) > 0) {
+        add_standing(equations, scale, tolerance);
+        SE3DI_TRY(se3di_friction_system_decide(equations, t));
+        SE3DI_TRY(se3di_state_evaluate(equations, t));
+        end->has_changed = 1;
     }
-    SE3DI_TRY(se3di_state_evaluate(equations, t));
-    memcpy(work, equations->x, assembly->unknown_count * sizeof *work);
-    if (assembly->row_count > 0) { /* the loads */
-        memcpy(model->lambda, equations->l, assembly->row_count * sizeof *model->lambda);
-    }
-    *error = se3di_memory_overshoot(model, scale);
-    se3di_forces_accept(model);
-    const se3d_status status = se3di_state_evaluate(equations, t);
-    if (status < 0) {
-        se3di_memory_undo(integration);
-        return status;
-    }
-    for (size_t k = 0; k < assembly->unknown_count; k += 6) {
-        double change[6];
-        for (size_t c = 0; c < 6; ++c) {
-            change[c] = h * (equations->x[k + c] - work[k + c]);
-        }
-        const double part =
-            se3di_norm(change) / scale->speed + se3di_norm(change + 3) / scale->spin;
-        *error = part <= *error ? *error : part; /* NaN stays */
+    se3di_assembly_set_acceleration(&equations->assembly, equations->x);
+    if (equations->assembly.row_count > 0) {
+        memcpy(equations->assembly.model->lambda, equations->l,
+               equations->assembly.row_count * sizeof *equations->l);
     }
     return SE3D_OK;
 }
 
-void se3di_memory_undo(se3di_integration *integration)
+se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_step *step,
+                                se3di_memory_end *end)
 {
-    se3di_model_restore_memory(integration->equations->assembly.model, integration->newton.memory);
+    const double t = step->t, h = step->h, tolerance = step->tolerance, *lambda = step->lambda;
+    const se3di_state_scale *scale = step->scale;
+    double *memory = step->memory, *work = step->work;
+    se3di_model *model = equations->assembly.model;
+    uint32_t broken = 0;
+    *end = (se3di_memory_end){0.0, 0.0, 0, 0};
+    se3di_model_save_memory(model, memory);
+    if (equations->friction.count > 0) {
+        se3di_frictions_take_loads(model, lambda);
+        if (equations->assembly.row_count > 0 && lambda != model->lambda) {
+            memcpy(model->lambda, lambda, equations->assembly.row_count * sizeof *lambda);
+        }
+    }
+    const uint32_t count = review(equations, scale, tolerance, end, &broken);
+    if (count > 0 && end->error <= 1.0) {
+        se3d_status status = se3di_state_evaluate(equations, t);
+        memcpy(work, equations->x, equations->assembly.unknown_count * sizeof *work);
+        status = status < 0 ? status : change_modes(equations, t, scale, tolerance, end);
+        if (status < 0) {
+            memset(equations->friction.rests, 0,
+                   equations->friction.count * sizeof *equations->friction.rests);
+            se3di_model_restore_memory(model, memory);
+            return status;
+        }
+        const double change = broken > 0 ? change_of(equations, work, h, scale) / tolerance : 0.0;
+        end->error = change <= end->error ? end->error : change;
+    } else if (count > 0) {
+        memset(equations->friction.rests, 0,
+               equations->friction.count * sizeof *equations->friction.rests);
+    }
+    se3di_forces_accept(model);
+    for (size_t k = 0; k < model->force_slots.count; ++k) { /* modes had changed already */
+        memcpy(model->forces[k].state + SE3DI_FORCE_BEFORE, memory + SE3DI_FORCE_STATES * k,
+               SE3DI_FORCE_BEFORE * sizeof *memory);
+    }
+    return SE3D_OK;
 }

@@ -1,21 +1,34 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Friction under methods with error control: within a step it keeps its mode and its load, at the
- * end they change. docs/theory/friction.md */
+/* Friction under methods with error control: within a step it keeps its mode, at the end it may
+ * change. docs/theory/friction.md */
 #ifndef SE3DI_MEMORY_H
 #define SE3DI_MEMORY_H
 
 #include "integrator/state.h"
 
-/* The largest rate against the direction of slip, relative to the scales: there friction has
- * driven, as the motion turned within the step. */
-double se3di_memory_overshoot(const se3di_model *model, const se3di_state_scale *scale);
+typedef struct se3di_memory_end {
+    double error;    /* of the step, by modes that it should have changed within, relative to the
+                        tolerance */
+    double fraction; /* of the step that ends where the first of them does; 0: unknown */
+    int32_t has_changed; /* modes, and with them accelerations (equations->x, l are the new ones) */
+    int32_t reserved;
+} se3di_memory_end;
 
-/* At the end of a step of h, at the state of the model at t: let the force elements remember it.
- * *error: what this changes of the accelerations, times h, and the overshoot, relative to the
- * scales. For implicit methods. `work` [unknowns]. */
-se3d_status se3di_memory_settle(se3di_integration *integration, double t, double h,
-                                const se3di_state_scale *scale, double *work, double *error);
-/* The step is not taken: the memory of before. */
-void se3di_memory_undo(se3di_integration *integration);
+typedef struct se3di_memory_step {
+    double t, h; /* its end and length */
+    double tolerance;
+    const double *lambda; /* [rows] at the end */
+    const se3di_state_scale *scale;
+    double *memory; /* [forces * SE3DI_FORCE_STATES]: takes that of before, to be restored where the
+                       step is not taken */
+    double *work;   /* [unknowns] */
+} se3di_memory_step;
+
+/* At the end of a step, at the state of the model: let the force elements remember it. What slips
+ * and has turned comes to a stand, or slips on the other way: what it went against its direction is
+ * error, relative to the scales and the tolerance; and so is what an element that breaks loose
+ * changes of the accelerations, times h. */
+se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_step *step,
+                                se3di_memory_end *end);
 
 #endif

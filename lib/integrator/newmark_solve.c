@@ -4,6 +4,7 @@
 
 #include "contact/loads.h"
 #include "contact/pace.h"
+#include "force/friction.h"
 #include "math/quaternion.h"
 
 #include <math.h>
@@ -56,6 +57,7 @@ static se3d_status eval_residual(se3di_newmark_step *step)
     se3di_equations *equations = step->equations;
     se3di_assembly *assembly = step->assembly;
     se3di_assembly_eval_jacobian(assembly);
+    se3di_frictions_take_loads(assembly->model, step->lambda);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, step->t, equations->b, equations->error));
     se3di_assembly_add_transposed(assembly, -1.0, step->lambda, equations->b);
     se3di_assembly_subtract_mass(assembly, step->vdot, equations->b);

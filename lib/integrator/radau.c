@@ -150,6 +150,24 @@ static void set_defect(const se3di_radau *m, double *d)
     }
 }
 
+/* The state of a solved stage, with its multipliers. Those of inner stages are of a lower order
+ * than the motion: where they load friction, better ones follow from the state. */
+static se3d_status set_stage(se3di_radau *m, int i)
+{
+    se3di_equations *equations = m->equations;
+    const size_t rows = m->assembly->row_count;
+    const double *lambda = m->lambda + (size_t)i * rows;
+    se3di_state_set(m->assembly, m->Y + (size_t)i * m->count);
+    if (equations->friction.count > 0) {
+        SE3DI_TRY(se3di_state_evaluate(equations, m->t + se3di_radau_c[i] * m->h));
+        lambda = equations->l;
+    }
+    if (rows > 0) {
+        memcpy(m->assembly->model->lambda, lambda, rows * sizeof *lambda);
+    }
+    return SE3D_OK;
+}
+
 /* The work done, as a part of the states of the stages. */
 static se3d_status add_work(se3di_radau *m)
 {
@@ -157,11 +175,7 @@ static se3d_status add_work(se3di_radau *m)
     const size_t place = m->count - SE3DI_STATE_WORK;
     double power[STAGES][SE3DI_STATE_WORK];
     for (int i = 0; i < STAGES; ++i) {
-        se3di_state_set(m->assembly, m->Y + (size_t)i * m->count);
-        if (m->assembly->row_count > 0) {
-            memcpy(model->lambda, m->lambda + (size_t)i * m->assembly->row_count,
-                   m->assembly->row_count * sizeof *model->lambda);
-        }
+        SE3DI_TRY(set_stage(m, i));
         SE3DI_TRY(se3di_loads_power(model, m->t + se3di_radau_c[i] * m->h, power[i]));
     }
     for (int i = 0; i < STAGES; ++i) {
@@ -176,16 +190,30 @@ static se3d_status add_work(se3di_radau *m)
     return SE3D_OK;
 }
 
+/* The step is not taken: what force elements remembered before. */
+static void forget(const se3di_radau *m)
+{
+    se3di_model_restore_memory(m->assembly->model, m->integration->newton.memory);
+}
+
 /* The step is solved: its work, and what friction remembers of its end. *error is raised to what
  * that changes, relative to `tolerance`; if it is too much, nothing is remembered. */
 static se3d_status settle(se3di_radau *m, double tolerance, double *error)
 {
-    double change;
+    se3di_memory_end end;
     SE3DI_TRY(add_work(m)); /* ends at the last stage */
-    SE3DI_TRY(se3di_memory_settle(m->integration, m->t + m->h, m->h, &m->scale, m->vdot, &change));
-    *error = fmax(*error, change / tolerance);
+    const se3di_memory_step step = {.t = m->t + m->h,
+                                    .h = m->h,
+                                    .tolerance = tolerance,
+                                    .lambda = m->assembly->model->lambda,
+                                    .scale = &m->scale,
+                                    .memory = m->integration->newton.memory,
+                                    .work = m->vdot};
+    SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
+    *error = fmax(*error, end.error);
+    m->fraction = end.fraction;
     if (!(*error <= 1.0)) {
-        se3di_memory_undo(m->integration);
+        forget(m);
     }
     return SE3D_OK;
 }
@@ -204,7 +232,7 @@ static se3d_status accept(se3di_radau *m, const history *past)
     const double *end = m->Y + (STAGES - 1) * m->count;
     const se3d_status status = project_end(m);
     if (status < 0) {
-        se3di_memory_undo(m->integration);
+        forget(m);
         return status;
     }
     memcpy(past->start, m->y0, m->count * sizeof *m->y0);
@@ -244,6 +272,7 @@ static se3d_status attempt(se3di_radau *m, const history *past, double inner, do
                            double *error)
 {
     m->h = h;
+    m->fraction = 0.0;
     m->tolerance = inner > 0.0 ? iteration_tolerance(inner) : 1e-12;
     m->iterations_max = inner > 0.0 ? 12 : 50;
     *error = HUGE_VAL;
@@ -316,6 +345,15 @@ static se3d_status give_up(double *header, double next, double rejected, se3d_st
     return status;
 }
 
+/* Of a step that was rejected. */
+static double shrink(const se3di_radau *m, se3d_status status, double error)
+{
+    if (status < 0) {
+        return 0.5;
+    }
+    return m->fraction > 0.0 ? m->fraction : fmin(0.9, fmax(0.1, 0.9 * se3di_pow(error, -0.25)));
+}
+
 /* One accepted step with error control; the first one after a change of what acts, which may soon
  * change again, goes to t_end at most. */
 static se3d_status advance(se3di_integration *integration, double t_end)
@@ -355,7 +393,7 @@ static se3d_status advance(se3di_integration *integration, double t_end)
         }
         ++m.equations->counters.rejected;
         header[RADAU_REJECTED] = 1.0;
-        h *= status < 0 ? 0.5 : fmin(0.9, fmax(0.1, 0.9 * se3di_pow(error, -0.25)));
+        h *= shrink(&m, status, error);
         header[RADAU_NEXT] = h;
         if (!(h > 1e-12 * fmax(1e-3, fabs(m.t)))) {
             return give_up(header, was_next, was_rejected, fail_small(&m, h, status));

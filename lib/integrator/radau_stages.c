@@ -11,6 +11,7 @@
  * triangular: the stages are solved one after the other with one real matrix, that of a step
  * gamma h; the errors that A - P leaves fall by 0.37 or better in every iteration, however stiff
  * the motion.  docs/theory/radau.md */
+#include "force/friction.h"
 #include "integrator/radau.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -208,6 +209,7 @@ static se3d_status eval_stage(se3di_radau *m, int i)
     se3di_state_set(assembly, at(m->Y, i, m->count));
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
     se3di_assembly_eval_jacobian(assembly);
+    se3di_frictions_take_loads(assembly->model, at(m->lambda, i, rows));
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, b, equations->error));
     se3di_assembly_add_transposed(assembly, -1.0, at(m->lambda, i, rows), b);
     se3di_radau_get_acceleration(m, i, m->vdot);

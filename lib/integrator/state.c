@@ -140,11 +140,13 @@ se3d_status se3di_state_evaluate(se3di_equations *equations, double t)
     se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
     se3di_assembly_eval_rows(assembly, equations->c);
+    se3di_friction_system_begin(equations);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
     se3di_kkt_expect(equations->kkt, equations->b, equations->c);
     SE3DI_TRY(factor(equations, t));
     ++equations->counters.evaluations;
-    return se3di_equations_solve(equations);
+    SE3DI_TRY(se3di_equations_solve(equations));
+    return se3di_friction_system_finish(equations, t);
 }
 
 /* c = -Phi; returns the largest relative violation. */

@@ -117,8 +117,8 @@ typedef enum se3di_force_type {
 #define SE3DI_FORCE_FUNCTIONS                                                                      \
     5 /* h or the components of a load (0, 1, 2), spring (3), damper (4) */
 #define SE3DI_FORCE_STATES                                                                         \
-    8 /* what an element remembers of the accepted states: of the last one, */
-#define SE3DI_FORCE_BEFORE 4 /* and from here on, of the one before */
+    16 /* what an element remembers of the accepted states: of the last one, */
+#define SE3DI_FORCE_BEFORE 8 /* and from here on, of the one before */
 
 typedef struct se3di_force {
     char *name;
@@ -138,7 +138,8 @@ typedef struct se3di_force {
     double value[3];    /* loads */
     double low, high;   /* stop: free between; infinite: none */
     double restitution; /* stop */
-    double mu, mu_static, radius, limit, viscous, presliding; /* friction */
+    double mu, mu_static, radius, limit, viscous, presliding; /* friction, */
+    double length, width, thrust_radius;                      /* of what carries its load */
     double p_i[4], p_j[4];                                    /* bushing: frames -> bodies */
     double K[36], C[36];                                      /* bushing, in frame i */
     se3d_force_callback callback;

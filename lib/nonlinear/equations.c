@@ -64,6 +64,7 @@ static se3d_status allocate(se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(create_kkt(equations));
+    SE3DI_TRY(se3di_friction_system_init(&equations->friction, assembly));
     suit_masses(equations);
     equations->b = alloc_doubles(equations, assembly->unknown_count);
     equations->x = alloc_doubles(equations, assembly->unknown_count);
@@ -105,6 +106,7 @@ void se3di_equations_destroy(se3di_equations *equations)
     }
     const se3d_allocator *allocator = &assembly->model->allocator;
     se3di_kkt_destroy(equations->kkt);
+    se3di_friction_system_destroy(&equations->friction, assembly);
     se3di_free(allocator, equations->b, assembly->unknown_count, sizeof(double));
     se3di_free(allocator, equations->x, assembly->unknown_count, sizeof(double));
     se3di_free(allocator, equations->c, assembly->row_count, sizeof(double));
@@ -382,6 +384,7 @@ static se3d_status solve_driven(se3di_equations *equations, double t)
     se3di_assembly *assembly = &equations->assembly;
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_rows(assembly, equations->c);
+    se3di_friction_system_begin(equations);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
     SE3DI_TRY(factor_values(equations));
     SE3DI_TRY(se3di_equations_solve(equations));
@@ -399,6 +402,7 @@ static se3d_status solve_free(se3di_equations *equations, double t)
     se3di_assembly *assembly = &equations->assembly;
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_rows(assembly, equations->c);
+    se3di_friction_system_begin(equations);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
     se3di_kkt_expect(equations->kkt, equations->b, equations->c);
     SE3DI_TRY(factor_values(equations));
@@ -414,6 +418,7 @@ se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
     SE3DI_TRY(status);
     ++equations->counters.evaluations;
     equations->redundant |= status == SE3D_INFO_REDUNDANT;
+    SE3DI_TRY(se3di_friction_system_finish(equations, t));
     if (assembly->row_count > 0) {
         memcpy(assembly->model->lambda, equations->l, assembly->row_count * sizeof *equations->l);
     }

@@ -15,6 +15,7 @@
 #include "base/guard.h"
 #include "linsol/kkt.h"
 #include "model/saved.h"
+#include "nonlinear/friction_system.h"
 
 typedef struct se3di_counters {
     uint64_t steps, rejected, iterations, evaluations, factorizations, solves;
@@ -50,6 +51,7 @@ typedef struct se3di_equations {
     int32_t audits;                /* kinematic steps integrate powers to works */
     int32_t keeps;                 /* `kept` is what a failure has to come back to */
     int32_t reserved;
+    se3di_friction_system friction;
 } se3di_equations;
 
 se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,

@@ -34,9 +34,13 @@ static se3d_status build(se3di_newton *newton)
     newton->force_count = assembly->model->force_slots.count;
     newton->Tinv = se3di_alloc(allocator, 9 * (size_t)assembly->body_count, sizeof(double));
     newton->rows = se3di_alloc(allocator, assembly->joint_value_count, sizeof(double));
+    newton->columns = se3di_alloc(
+        allocator, newton->equations->friction.count > 0 ? assembly->joint_value_count : 0,
+        sizeof(double));
     newton->memory =
         se3di_alloc(allocator, SE3DI_FORCE_STATES * newton->force_count, sizeof(double));
-    return newton->Tinv && newton->rows && newton->memory ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    return newton->Tinv && newton->rows && newton->columns && newton->memory ? SE3D_OK
+                                                                             : SE3D_ERR_NO_MEMORY;
 }
 
 se3d_status se3di_newton_init(se3di_newton *newton, se3di_equations *equations)
@@ -58,6 +62,9 @@ void se3di_newton_destroy(se3di_newton *newton)
     const se3d_allocator *allocator = &assembly->model->allocator;
     se3di_free(allocator, newton->Tinv, 9 * (size_t)assembly->body_count, sizeof(double));
     se3di_free(allocator, newton->rows, assembly->joint_value_count, sizeof(double));
+    se3di_free(allocator, newton->columns,
+               newton->equations->friction.count > 0 ? assembly->joint_value_count : 0,
+               sizeof(double));
     se3di_free(allocator, newton->memory, SE3DI_FORCE_STATES * newton->force_count, sizeof(double));
     se3di_kkt_destroy(newton->kkt);
     se3di_tangent_destroy(&newton->tangent);
@@ -110,12 +117,23 @@ static void combine_all(se3di_newton *newton, const se3di_newton_weights *weight
 
 static se3di_kkt_values values_of(const se3di_newton *newton)
 {
-    return (se3di_kkt_values){.body = newton->tangent.D,
-                              .coupling_upper = newton->tangent.D_upper,
-                              .coupling_lower = newton->tangent.D_lower,
-                              .joint =
-                                  newton->has_rows ? newton->rows : newton->equations->assembly.C,
-                              .joint_b = newton->equations->assembly.C};
+    return (se3di_kkt_values){
+        .body = newton->tangent.D,
+        .coupling_upper = newton->tangent.D_upper,
+        .coupling_lower = newton->tangent.D_lower,
+        .joint = newton->has_rows ? newton->rows : newton->equations->assembly.C,
+        .joint_b = newton->has_columns ? newton->columns : newton->equations->assembly.C};
+}
+
+/* What multipliers do to the bodies, where some of them load friction. */
+static void set_columns(se3di_newton *newton, const double *lambda)
+{
+    const se3di_assembly *assembly = &newton->equations->assembly;
+    newton->has_columns = 0;
+    if (newton->equations->friction.count > 0 && assembly->joint_value_count > 0) {
+        memcpy(newton->columns, assembly->C, assembly->joint_value_count * sizeof(double));
+        newton->has_columns = se3di_frictions_add_columns(assembly, lambda, newton->columns);
+    }
 }
 
 /* With T^-1 and `rows` as they are. */
@@ -126,6 +144,7 @@ static se3d_status factor(se3di_newton *newton, double t, const double *vdot, co
     se3d_status status = se3di_tangent_eval(&newton->tangent, t, vdot, lambda);
     if (status >= 0) {
         combine_all(newton, weights);
+        set_columns(newton, lambda);
         se3di_kkt_values values = values_of(newton);
         ++equations->counters.factorizations;
         status = se3di_kkt_factor(newton->kkt, &values, NULL);

@@ -31,12 +31,13 @@ typedef struct se3di_newton {
     se3di_equations *equations;
     se3di_tangent tangent;
     se3di_kkt *kkt;
-    double *Tinv;   /* [free bodies * 9], r-omega */
-    double *rows;   /* as C: of constraints that enter by velocities */
-    double *memory; /* [forces * SE3DI_FORCE_STATES]: what force elements remembered */
+    double *Tinv;    /* [free bodies * 9], r-omega */
+    double *rows;    /* as C: of constraints that enter by velocities */
+    double *columns; /* as C: what multipliers do to the bodies, by loading friction too */
+    double *memory;  /* [forces * SE3DI_FORCE_STATES]: what force elements remembered */
     size_t force_count;
-    int32_t has_rows; /* the last factorisation took `rows` */
-    int32_t reserved;
+    int32_t has_rows;          /* the last factorisation took `rows` */
+    int32_t has_columns;       /* and `columns` */
     se3di_newton_trace *trace; /* NULL: not wanted */
 } se3di_newton;
 

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The load of joint friction belongs to the same instant as its force, in every method. */
+#include "support/text_model.h"
+
+static const int32_t methods[] = {
+    SE3D_METHOD_AUTO, SE3D_METHOD_DOP853, SE3D_METHOD_RK45,
+    SE3D_METHOD_BDF,  SE3D_METHOD_RADAU,  SE3D_METHOD_GENERALIZED_ALPHA,
+    SE3D_METHOD_HHT,  SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET,
+};
+
+#define METHODS  (sizeof methods / sizeof methods[0])
+#define CONTROLS 5 /* the first ones have error control */
+
+static text_model open_with(const char *text, int32_t method, double step, double tolerance)
+{
+    text_model m = text_model_open(text, method, -1, step);
+    se3d_solver_def def = se3d_solver_def_default();
+    if (tolerance > 0.0) {
+        se3d_solver_destroy(m.solver);
+        CHECK(!se3d_model_get_solver(m.model, 0, &def));
+        def.method = method;
+        def.tolerance = tolerance;
+        CHECK(!se3d_solver_create(m.system, &def, &m.solver));
+    }
+    return m;
+}
+
+static const char *const slider_crank =
+    "se3d: 1\ngravity: [0, -9.81, 0]\nbodies:\n"
+    "  - {name: crank, mass: 1, inertia: [0.01, 0.01, 0.01], angular_velocity: [0, 0, 20]}\n"
+    "  - {name: rod, mass: 1, inertia: [0.02, 0.02, 0.02], position: [0.25, 0, 0], velocity: [0, "
+    "1, 0], angular_velocity: [0, 0, -20/3]}\n"
+    "  - {name: slider, mass: 2, inertia: [0.01, 0.01, 0.01], position: [0.4, 0, 0]}\njoints:\n"
+    "  - {name: bearing, type: revolute, body_i: ground, body_j: crank, at: [0, 0, 0], axis: [0, "
+    "0, 1]}\n"
+    "  - {name: pin, type: revolute, body_i: crank, body_j: rod, at: [0.1, 0, 0], axis: [0, 0, "
+    "1]}\n"
+    "  - {name: wrist, type: spherical, body_i: rod, body_j: slider, at: [0.4, 0, 0]}\n"
+    "  - {name: guide, type: prismatic, body_i: ground, body_j: slider, at: [0.4, 0, 0], axis: "
+    "[1, 0, 0]}\n"
+    "forces:\n  - {name: rub, type: friction, joint: guide, mu: 0.2}\n"
+    "  - {name: dry, type: friction, joint: pin, mu: 0.1, radius: 0.01}\n"
+    "analysis: {type: dynamics, duration: 0.3}\n"
+    "output: [{file: r.csv, channels: [bearing.angle, bearing.rate, rub.force, energy.balance, "
+    "guide.force]}]\n";
+
+/* It starts at a dead point, where friction has no leverage. Angles and forces against a run of a
+ * tight tolerance. */
+static void all_methods_agree_on_a_slider_crank_that_rubs(void)
+{
+    text_model m = open_with(slider_crank, SE3D_METHOD_DOP853, 0.0, 1e-12);
+    double truth[3];
+    CHECK(text_model_run(&m, 0.3));
+    for (size_t k = 0; k < 3; ++k) {
+        truth[k] = text_model_get(&m, k, 0);
+    }
+    CHECK_NEAR(text_model_get(&m, 3, 0) / 2.9, 2.94444444444444 / 2.9, 1e-9);
+    text_model_close(&m);
+    for (size_t run = 0; run < METHODS; ++run) {
+        const double near = run < CONTROLS ? 1e-5 : 1e-3;
+        m = open_with(slider_crank, methods[run], run < CONTROLS ? 0.0 : 2e-4, 0.0);
+        CHECK(text_model_run(&m, 0.3));
+        for (size_t k = 0; k < 3; ++k) {
+            CHECK_NEAR(text_model_get(&m, k, 0) / truth[k], 1.0, near);
+        }
+        CHECK_NEAR(text_model_get(&m, 3, 0), 2.94444444444444, 3.0 * near);
+        const double y = text_model_get(&m, 4, 1), z = text_model_get(&m, 4, 2);
+        CHECK_NEAR(fabs(text_model_get(&m, 2, 0)) / (0.2 * sqrt(y * y + z * z)), 1.0, 1e-9);
+        text_model_close(&m);
+    }
+}
+
+#define YOKE(presliding)                                                                           \
+    "se3d: 1\ngravity: [0, -9.81, 0]\nbodies:\n"                                                   \
+    "  - {name: crank, mass: 1, inertia: [0.01, 0.01, 0.01], angular_velocity: [0, 0, 20]}\n"      \
+    "  - {name: yoke, mass: 2, inertia: [0.01, 0.01, 0.01], position: [0.1, 0, 0]}\njoints:\n"     \
+    "  - {name: b, type: revolute, body_i: ground, body_j: crank, at: [0, 0, 0], axis: [0, 0, "    \
+    "1]}\n"                                                                                        \
+    "  - {name: g, type: prismatic, body_i: ground, body_j: yoke, at: [0.1, 0, 0], axis: [1, 0, "  \
+    "0]}\n"                                                                                        \
+    "  - {name: s, type: point_on_plane, body_i: yoke, body_j: crank, point_j: [0.1, 0, 0], "      \
+    "axis_i: [1, 0, 0]}\n"                                                                         \
+    "forces: [{name: rub, type: friction, joint: g, mu: 0.2, presliding: " presliding "}]\n"       \
+    "analysis: {type: dynamics, duration: 0.5}\n"                                                  \
+    "output: [{file: r.csv, channels: [energy.balance, energy.dissipated, g.displacement, "        \
+    "b.angle]}]\n"
+
+/* The way x of the yoke, to and fro: mu m g times it is lost. */
+static void friction_takes_what_its_way_says_whatever_the_presliding(void)
+{
+    static const char *const texts[4] = {YOKE("1.0e-12"), YOKE("1.0e-9"), YOKE("1.0e-6"),
+                                         YOKE("1.0e-4")};
+    for (size_t run = 0; run < 4 * METHODS; ++run) {
+        const int is_controlled = run / 4 < CONTROLS;
+        text_model m = open_with(texts[run % 4], methods[run / 4], is_controlled ? 0.0 : 5e-4, 0.0);
+        CHECK(text_model_run(&m, 0.1)); /* on the way to the first turn */
+        CHECK_NEAR(text_model_get(&m, 0, 0), 2.0, is_controlled ? 1e-5 : 1e-3);
+        CHECK_NEAR(text_model_get(&m, 1, 0) + 0.2 * 2.0 * 9.81 * text_model_get(&m, 2, 0), 0.0,
+                   is_controlled ? 1e-5 : 1e-3);
+        CHECK(text_model_run(&m, 0.5));
+        CHECK_NEAR(text_model_get(&m, 0, 0), 2.0, is_controlled ? 1e-5 : 1e-3);
+        CHECK_NEAR(text_model_get(&m, 3, 0), 5.44499716, is_controlled ? 1e-4 : 2e-3);
+        text_model_close(&m);
+    }
+}
+
+static const char *const pin =
+    "se3d: 1\nbodies: [{name: a, mass: 1, inertia: [1, 1, 1], position: [1, 0, 0]}]\n"
+    "joints: [{name: j, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, -1, "
+    "0]}]\nforces: [{name: f, type: friction, joint: j, mu: 0.2, radius: 0.1}]\n"
+    "analysis: {type: dynamics, duration: 5}\n"
+    "output: [{file: r.csv, channels: [j.angle, energy.balance]}]\n";
+
+static void a_load_that_varies_costs_no_steps(void)
+{
+    static const struct {
+        int32_t method;
+        double tolerance, most;
+    } cases[] = {
+        {SE3D_METHOD_DOP853, 1e-6, 100.0},  {SE3D_METHOD_DOP853, 1e-8, 150.0},
+        {SE3D_METHOD_DOP853, 1e-10, 300.0}, {SE3D_METHOD_RK45, 1e-8, 900.0},
+        {SE3D_METHOD_RADAU, 1e-6, 300.0},   {SE3D_METHOD_RADAU, 1e-9, 900.0},
+        {SE3D_METHOD_BDF, 1e-6, 900.0},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; ++k) {
+        text_model m = open_with(pin, cases[k].method, 0.0, cases[k].tolerance);
+        se3d_solver_stats stats;
+        CHECK(text_model_run(&m, 5.0));
+        CHECK(!se3d_solver_get_stats(m.solver, &stats));
+        CHECK((double)stats.steps < cases[k].most);
+        CHECK_NEAR(text_model_get(&m, 0, 0), -2.88355444418, 10.0 * cases[k].tolerance);
+        if (cases[k].method != SE3D_METHOD_BDF) { /* whose works are not under error control */
+            CHECK_NEAR(text_model_get(&m, 1, 0), 0.0, 20.0 * cases[k].tolerance);
+        }
+        text_model_close(&m);
+    }
+}
+
+#define TRIPLE(mu)                                                                                 \
+    "se3d: 1\nbodies:\n  - {name: a, mass: 1, inertia: [0.08, 0.08, 0.08], position: [0.5, 0, "    \
+    "0]}\n"                                                                                        \
+    "  - {name: b, mass: 1, inertia: [0.08, 0.08, 0.08], position: [1.5, 0, 0]}\n"                 \
+    "  - {name: c, mass: 1, inertia: [0.08, 0.08, 0.08], position: [2.5, 0, 0]}\njoints:\n"        \
+    "  - {type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, -1, 0]}\n"           \
+    "  - {name: j, type: revolute, body_i: a, body_j: b, at: [1, 0, 0], axis: [0, -1, 0]}\n"       \
+    "  - {type: revolute, body_i: b, body_j: c, at: [2, 0, 0], axis: [0, -1, 0]}\n"                \
+    "forces: [{name: f, type: friction, joint: j, mu: " mu ", radius: 0.05}]\n"                    \
+    "analysis: {type: dynamics, duration: 3}\n"                                                    \
+    "output: [{file: r.csv, channels: [c.position]}]\n"
+
+/* A little friction must not cost the accuracy of a motion that would be smooth without. */
+static void the_default_is_under_error_control_with_friction(void)
+{
+    static const char *const texts[4] = {TRIPLE("1.0e-9"), TRIPLE("3.0e-7"), TRIPLE("3.0e-6"),
+                                         TRIPLE("0.1")};
+    for (size_t run = 0; run < 4; ++run) {
+        text_model m = open_with(texts[run], SE3D_METHOD_RADAU, 0.0, 1e-10);
+        CHECK(text_model_run(&m, 3.0));
+        const double x = text_model_get(&m, 0, 0), z = text_model_get(&m, 0, 2);
+        text_model_close(&m);
+        m = open_with(texts[run], SE3D_METHOD_AUTO, 0.0, 0.0);
+        CHECK(text_model_run(&m, 3.0));
+        CHECK_NEAR(text_model_get(&m, 0, 0), x, 1e-7);
+        CHECK_NEAR(text_model_get(&m, 0, 2), z, 1e-7);
+        text_model_close(&m);
+    }
+}
+
+int main(void)
+{
+    RUN(all_methods_agree_on_a_slider_crank_that_rubs);
+    RUN(friction_takes_what_its_way_says_whatever_the_presliding);
+    RUN(a_load_that_varies_costs_no_steps);
+    RUN(the_default_is_under_error_control_with_friction);
+    return check_finish();
+}
