@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "integrator/state.h"
+#include "math/elementary.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -22,7 +23,7 @@ static double angle_between(const double p[4], const double q[4])
         const double d = q[k] - (dot < 0.0 ? -p[k] : p[k]);
         square += d * d;
     }
-    return 2.0 * sqrt(square) < 1e-3 ? 2.0 * sqrt(square) : 2.0 * acos(fmin(1.0, fabs(dot)));
+    return 2.0 * sqrt(square) < 1e-3 ? 2.0 * sqrt(square) : 2.0 * se3di_acos(fmin(1.0, fabs(dot)));
 }
 
 static double difference(const double a[3], const double b[3])
@@ -48,8 +49,8 @@ static double largest_speed(const se3di_model *model, const se3di_frame *given, 
 static void take(const double change[2], double length, se3di_handle body, double sums[2],
                  double most[2], se3di_handle *which)
 {
-    sums[0] = hypot(sums[0], change[0]);
-    sums[1] = hypot(sums[1], change[1]);
+    sums[0] = se3di_hypot(sums[0], change[0]);
+    sums[1] = se3di_hypot(sums[1], change[1]);
     if (change[0] + length * change[1] > most[0] + length * most[1]) {
         memcpy(most, change, 2 * sizeof *most);
         *which = body;
