@@ -580,7 +580,6 @@ static void settle(se3di_equations *equations)
                                s->n[u]);
         }
     }
-    memset(s->rests, 0, s->count * sizeof *s->rests);
 }
 
 static se3d_status decide(se3di_equations *equations, double t)
@@ -596,7 +595,7 @@ static se3d_status decide(se3di_equations *equations, double t)
                            "t = %g s: friction jams: what it holds and what slips do not agree", t);
 }
 
-se3d_status se3di_friction_system_decide(se3di_equations *equations, double t)
+static se3d_status decide_rests(se3di_equations *equations, double t)
 {
     friction *s = &equations->friction;
     se3di_assembly *assembly = &equations->assembly;
@@ -619,6 +618,14 @@ se3d_status se3di_friction_system_decide(se3di_equations *equations, double t)
     arrest(equations);
     settle(equations);
     return SE3D_OK;
+}
+
+se3d_status se3di_friction_system_decide(se3di_equations *equations, double t)
+{
+    friction *s = &equations->friction;
+    const se3d_status status = decide_rests(equations, t);
+    memset(s->rests, 0, s->count * sizeof *s->rests); /* or they would hold what comes next */
+    return status;
 }
 
 /* The columns of one element: d n / d lambda_r times its unit force, on the bodies of its joint. */

@@ -47,7 +47,7 @@ void se3di_friction_system_begin(struct se3di_equations *equations);
 se3d_status se3di_friction_system_finish(struct se3di_equations *equations, double t);
 /* Elements with rests[] not 0 are at rest: decide which stick and which begin to slip to where, by
  * their limits and accelerations, at a state whose equations are factored; what sticks is brought
- * to a stand. Clears rests[]. @return OK, NO_CONVERGENCE (it jams) */
+ * to a stand. Clears rests[], also on failure. @return OK, NO_CONVERGENCE (it jams) */
 se3d_status se3di_friction_system_decide(struct se3di_equations *equations, double t);
 
 /* The acceleration of the coordinate of an element (index into `element`) from equations->x. */
