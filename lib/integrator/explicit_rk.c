@@ -505,6 +505,19 @@ static se3d_status give_up(rk *m, const double *header, se3d_status status)
     return status;
 }
 
+/* The step h has met the tolerance: what follows for the next ones. */
+static void take(rk *m, double h, double error)
+{
+    accept(m, h);
+    if (m->integration->settings.leaves_stiff) {
+        watch_stability(m, h);
+    }
+    m->header[RK_NEXT] = next_step(m, h, error);
+    m->header[RK_ERROR] = error;
+    m->header[RK_REJECTED] = 0.0;
+    m->header[RK_FORCED] = h > 1e3 * least_step(m) ? 0.0 : m->header[RK_FORCED];
+}
+
 /* One accepted step with error control. What contacts remember belongs to the end of a step, and
  * cannot be interpolated: where shapes are near each other steps end at t_end. So does the first
  * one after a change of what acts, which may soon change again. */
@@ -535,15 +548,11 @@ static se3d_status advance(rk *m, double t_end)
             return give_up(m, header, status);
         }
         if (status >= 0 && error <= 1.0) {
-            accept(m, h);
-            if (m->integration->settings.leaves_stiff) {
-                watch_stability(m, h);
+            take(m, h, error);
+            if (longer > 0.0) {
+                m->header[RK_NEXT] = fmax(longer, m->header[RK_NEXT]);
+                m->header[RK_T1] = t_end;
             }
-            m->header[RK_NEXT] = fmax(longer, next_step(m, h, error));
-            m->header[RK_T1] = longer > 0.0 ? t_end : m->header[RK_T1];
-            m->header[RK_ERROR] = error;
-            m->header[RK_REJECTED] = 0.0;
-            m->header[RK_FORCED] = h > 1e3 * least_step(m) ? 0.0 : m->header[RK_FORCED];
             return SE3D_OK;
         }
         ++m->equations->counters.rejected;
