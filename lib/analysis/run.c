@@ -660,6 +660,7 @@ static se3d_status begin(se3di_run *run)
     const se3d_status told = run->error->status;
     run->error->status = SE3D_OK;
     run->has_before = run->steps_once = 0;
+    run->events.reached = run->model->time; /* not where an earlier call has come to */
     run->model->remembers = 1;
     se3di_user_begin(run->model);
     return told;
