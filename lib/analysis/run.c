@@ -553,6 +553,9 @@ static double last_accepted(const se3di_run *run, double t_end)
     if (run->equations.watch) {
         return run->events.reached;
     }
+    if (model->history_inputs != model->inputs_version) { /* that step was under other loads */
+        return run->before.time;
+    }
     const int passed = model->history[SE3DI_HISTORY_TIME] > t_end;
     if (passed && model->contacts.pair_count > 0) { /* they remember the end of the step */
         return run->before.time;
