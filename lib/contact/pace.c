@@ -348,8 +348,8 @@ void se3di_contacts_blame(const se3di_model *model, se3di_error *error)
 {
     pace p = {.model = model, .step = HUGE_VAL};
     const size_t used = error ? strlen(error->message) : 0;
-    if (!error) {
-        return;
+    if (!error || error->status == SE3D_ERR_CALLBACK || error->status == SE3D_ERR_NO_MEMORY) {
+        return; /* no shape is to blame */
     }
     find_culprits(&p);
     if (p.i != p.j && used < sizeof error->message) {
