@@ -159,6 +159,7 @@ static se3d_status prepare(se3di_run *run)
         choose_method(run);
         SE3DI_TRY(build(run));
     }
+    se3di_equations_suit_masses(&run->equations); /* which may be others than at the last call */
     if (run->values_version != run->model->values_version) {
         se3di_assembly_take_values(&run->equations.assembly);
         run->values_version = run->model->values_version;

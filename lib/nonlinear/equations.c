@@ -45,14 +45,12 @@ static int has_light_body(const se3di_assembly *assembly)
     return least[0] < LIGHT * most[0] || least[1] < LIGHT * most[1];
 }
 
-/* Rows of light bodies are told from dependent ones by elimination without regularisation. */
-static void suit_masses(const se3di_equations *equations)
+void se3di_equations_suit_masses(const se3di_equations *equations)
 {
-    if (has_light_body(&equations->assembly)) {
-        se3di_kkt_settings settings = se3di_kkt_get_settings(equations->kkt);
-        settings.regularise = SE3DI_KKT_REGULARISE_LATE;
-        se3di_kkt_set_settings(equations->kkt, &settings);
-    }
+    se3di_kkt_settings settings = se3di_kkt_get_settings(equations->kkt);
+    settings.regularise = has_light_body(&equations->assembly) ? SE3DI_KKT_REGULARISE_LATE
+                                                               : SE3DI_KKT_REGULARISE_AUTO;
+    se3di_kkt_set_settings(equations->kkt, &settings);
 }
 
 static double *alloc_doubles(const se3di_equations *equations, size_t count)
@@ -65,7 +63,7 @@ static se3d_status allocate(se3di_equations *equations)
     const se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(create_kkt(equations));
     SE3DI_TRY(se3di_friction_system_init(&equations->friction, assembly));
-    suit_masses(equations);
+    se3di_equations_suit_masses(equations);
     equations->b = alloc_doubles(equations, assembly->unknown_count);
     equations->x = alloc_doubles(equations, assembly->unknown_count);
     equations->c = alloc_doubles(equations, assembly->row_count);

@@ -57,6 +57,9 @@ typedef struct se3di_equations {
 se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
                                  const se3di_formulation *formulation, se3di_error *error);
 void se3di_equations_destroy(se3di_equations *equations);
+/* Masses have changed: rows of light bodies are told from dependent ones by elimination without
+ * regularisation. */
+void se3di_equations_suit_masses(const se3di_equations *equations);
 
 /* Evaluate mass and Jacobian at the present state and factor. */
 se3d_status se3di_equations_factor(se3di_equations *equations);
