@@ -105,8 +105,8 @@ static int are_plausible(const se3di_equations *equations, const double *guess,
 }
 
 /* Accelerations and multipliers of the model's state at t, a part s on the way from the begin of
- * the last step to its end. */
-static void set_accelerations(se3di_integration *integration, double t, double s)
+ * the last step to its end. @return OK, or what the user's code or the memory has failed with */
+static se3d_status set_accelerations(se3di_integration *integration, double t, double s)
 {
     se3di_equations *equations = integration->equations;
     se3di_assembly *assembly = &equations->assembly;
@@ -120,9 +120,15 @@ static void set_accelerations(se3di_integration *integration, double t, double s
                            : past.vdot_begin[k]; /* to the bit */
     }
     equations->error = &ignored;
-    const int is_exact = !remembers(model) && se3di_acceleration_solve(equations, t) >= 0 &&
-                         (s >= 1.0 || are_plausible(equations, guess, &past));
+    const int solves = !remembers(model);
+    const se3d_status status = solves ? se3di_acceleration_solve(equations, t) : SE3D_OK;
+    const int is_exact =
+        solves && status >= 0 && (s >= 1.0 || are_plausible(equations, guess, &past));
     equations->error = error;
+    if (status == SE3D_ERR_CALLBACK || status == SE3D_ERR_NO_MEMORY) {
+        return ignored.status == status ? se3di_error_set(error, status, "%s", ignored.message)
+                                        : status;
+    }
     if (!is_exact) {
         for (uint32_t k = 0; k < assembly->row_count; ++k) {
             model->lambda[k] =
@@ -131,6 +137,7 @@ static void set_accelerations(se3di_integration *integration, double t, double s
         }
         se3di_assembly_set_acceleration(assembly, guess);
     }
+    return SE3D_OK;
 }
 
 se3d_status se3di_newmark_publish(se3di_integration *integration, double t)
@@ -150,6 +157,7 @@ se3d_status se3di_newmark_publish(se3di_integration *integration, double t)
     if (!is_end && t > header[SE3DI_NEWMARK_BEGIN]) { /* not the end of the step before */
         SE3DI_TRY(se3di_state_project(equations, t, &scale, 1e-15, 0));
     }
-    set_accelerations(integration, t, is_end ? 1.0 : (t - header[SE3DI_NEWMARK_BEGIN]) / last);
+    SE3DI_TRY(
+        set_accelerations(integration, t, is_end ? 1.0 : (t - header[SE3DI_NEWMARK_BEGIN]) / last));
     return se3di_state_conclude(equations, y, t);
 }
