@@ -88,21 +88,28 @@ void se3di_model_touch(se3di_model *model)
     se3di_model_touch_state(model);
 }
 
+/* The next version, another one than of any clone: states go from one to the other, and with them
+ * which version they belong to. Versions are only compared. */
+static void renew(const se3di_model *model, uint64_t *version)
+{
+    *version = *version * UINT64_C(6364136223846793005) + 2 * (uint64_t)(uintptr_t)model + 1;
+}
+
 void se3di_model_touch_inputs(se3di_model *model)
 {
-    ++model->inputs_version;
+    renew(model, &model->inputs_version);
     model->settled = 0;
 }
 
 void se3di_model_touch_contact(se3di_model *model)
 {
-    ++model->contact_version;
+    renew(model, &model->contact_version);
     se3di_model_touch_inputs(model);
 }
 
 void se3di_model_touch_values(se3di_model *model)
 {
-    ++model->values_version;
+    renew(model, &model->values_version);
     se3di_model_touch_inputs(model);
 }
 

@@ -543,12 +543,46 @@ static void materials_act_from_the_next_step_on(void)
     }
 }
 
+/* A snapshot of a clone on which other loads act: those of the system that it is restored on act
+ * from its very start. */
+static void states_of_a_clone_go_on_under_the_loads_of_the_system(void)
+{
+    static const double weak[3] = {0.0, 0.0, -1.0}, strong[3] = {0.0, 0.0, -20.0};
+    for (int32_t method = 0; method < METHODS; ++method) {
+        se3d_system *from = NULL, *to = NULL;
+        se3d_snapshot *state = NULL;
+        se3d_solver *solver[2] = {NULL, NULL};
+        se3d_solver_def def = se3d_solver_def_default();
+        se3d_body_def stuff = se3d_body_def_default();
+        se3d_body body;
+        double before[3], after[3];
+        stuff.mass = stuff.inertia[0] = stuff.inertia[1] = stuff.inertia[2] = 1.0;
+        def.method = method;
+        CHECK(!se3d_system_create(NULL, &from) && !se3d_body_create(from, &stuff, &body));
+        CHECK(!se3d_solver_create(from, &def, &solver[0]) && !se3d_solver_run(solver[0], 0.1));
+        CHECK(!se3d_system_clone(from, &to));
+        CHECK(!se3d_system_set_gravity(from, weak) && !se3d_system_set_gravity(to, strong));
+        CHECK(!se3d_solver_run(solver[0], 0.2) && !se3d_snapshot_create(from, &state));
+        CHECK(!se3d_snapshot_restore(state, to) && !se3d_solver_create(to, &def, &solver[1]));
+        CHECK(!se3d_body_get_velocity(to, body, before) && !se3d_solver_run(solver[1], 0.3));
+        CHECK(!se3d_body_get_velocity(to, body, after));
+        CHECK_NEAR(after[2] - before[2], -2.0, 1e-12);
+        for (int k = 0; k < 2; ++k) {
+            se3d_solver_destroy(solver[k]);
+        }
+        se3d_snapshot_destroy(state);
+        se3d_system_destroy(from);
+        se3d_system_destroy(to);
+    }
+}
+
 int main(void)
 {
     RUN(prescribed_values_are_met_from_the_next_step_on);
     RUN(materials_act_from_the_next_step_on);
     RUN(all_values_act_from_the_next_step_on);
     RUN(held_inputs_are_exact_in_every_method);
+    RUN(states_of_a_clone_go_on_under_the_loads_of_the_system);
     RUN(inputs_may_be_set_within_a_step_made_ahead);
     return check_finish();
 }
