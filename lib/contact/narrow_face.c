@@ -202,7 +202,7 @@ static int is_corner(const face_plane *plane, const uint32_t *list, int count, i
 /* Vertices within the face and on its sides are no corners of it. */
 static void drop_inner(const face_plane *plane, uint32_t *list, int *count)
 {
-    for (int k = 0; k<*count && * count> 3; ++k) {
+    for (int k = 0; *count > 3 && k < *count; ++k) {
         if (!is_corner(plane, list, *count, k)) {
             for (int c = k; c + 1 < *count; ++c) {
                 list[c] = list[c + 1];
