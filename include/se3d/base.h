@@ -34,6 +34,7 @@ extern "C" {
     X(SE3D_INFO_EVENT, 1, "an event stopped the run")                                              \
     X(SE3D_INFO_REDUNDANT, 2, "redundant constraints: multipliers are the minimum-norm ones")      \
     X(SE3D_INFO_UNSTABLE, 3, "the equilibrium is unstable")                                        \
+    X(SE3D_INFO_NEUTRAL, 4, "the equilibrium is neutral: nothing holds some freedom")              \
     X(SE3D_ERR_NO_MEMORY, -1, "out of memory")                                                     \
     X(SE3D_ERR_INVALID_ARGUMENT, -2, "an argument is outside its allowed range")                   \
     X(SE3D_ERR_NULL, -3, "a required pointer is NULL")                                             \
@@ -63,6 +64,11 @@ typedef enum se3d_status { SE3D_STATUS_LIST(SE3D_STATUS_ENUMERATOR) } se3d_statu
 
 /* Return the text of a status ("success", ...); never NULL. Safe. @since 0.1 */
 SE3D_API const char *se3d_status_get_text(se3d_status status);
+
+/* Return the bytes of the character at `text`; 0 at the end, for NULL, and where there is none that
+ * names and messages may have: bytes that are not UTF-8, control characters, ends of lines and
+ * paragraphs, marks that change the direction of writing. Safe. @since 0.1 */
+SE3D_API size_t se3d_text_get_character(const char *text);
 
 /* Return the version of the library that is linked, e.g. "0.1.0". Safe. @since 0.1 */
 SE3D_API const char *se3d_version_get_text(void);

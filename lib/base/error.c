@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
+
 /* printf writes the host program's decimal separator; messages always have a point. */
 static void restore_decimal_point(char *text)
 {
@@ -25,6 +27,7 @@ void se3di_error_format(char *text, size_t size, const char *format, va_list arg
 {
     vsnprintf(text, size, format, arguments);
     restore_decimal_point(text);
+    se3di_text_make_plain(text); /* a name may have been cut in a character */
 }
 
 se3d_status se3di_error_set(se3di_error *error, se3d_status status, const char *format, ...)

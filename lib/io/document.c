@@ -9,8 +9,6 @@
 #include <string.h>
 #include <yaml.h>
 
-#include "io/text.h"
-
 typedef struct builder {
     se3di_iopool *pool;
     const char *file;
@@ -27,14 +25,10 @@ typedef struct builder {
 /* Messages quote what is in a file: control characters and cut ones become '?'. */
 static void make_printable(char *text)
 {
-    for (char *c = text; *c;) {
-        uint32_t code = 0;
-        const size_t length = se3di_text_decode(c, &code);
-        if (length == 0 || !se3di_text_is_shown(code)) {
-            *c++ = '?';
-        } else {
-            c += length;
-        }
+    while (*text) {
+        const size_t length = se3d_text_get_character(text);
+        *text = length > 0 ? *text : '?';
+        text += length > 0 ? length : 1;
     }
 }
 

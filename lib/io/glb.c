@@ -10,7 +10,6 @@
 #include <string.h>
 
 #include "io/csv.h"
-#include "io/text.h"
 
 enum { NUMBER_FLOAT = 5126, NUMBER_SHORT = 5122, NUMBER_INDEX = 5123 };
 
@@ -61,17 +60,16 @@ void se3di_glb_put(se3di_glb *glb, se3di_bytes *bytes, const char *format, ...)
 void se3di_glb_put_text(se3di_glb *glb, se3di_bytes *bytes, const char *text)
 {
     se3di_glb_put_bytes(glb, bytes, "\"", 1);
-    while (*text) {
-        uint32_t code = 0;
-        const size_t length = se3di_text_decode(text, &code);
-        if (length == 0 || (!se3di_text_is_shown(code) && code >= 0x10000)) {
-            se3di_glb_put(glb, bytes, "\\ufffd"); /* JSON is UTF-8, whatever the bytes are */
-        } else if (*text == '"' || *text == '\\') {
+    while (*text) { /* valid UTF-8 whatever the bytes are */
+        const size_t length = se3d_text_get_character(text);
+        if (*text == '"' || *text == '\\') {
             se3di_glb_put(glb, bytes, "\\%c", *text);
-        } else if (!se3di_text_is_shown(code)) {
-            se3di_glb_put(glb, bytes, "\\u%04x", (unsigned)code);
-        } else {
+        } else if (length > 0) {
             se3di_glb_put_bytes(glb, bytes, text, length);
+        } else if ((unsigned char)*text < 0x80) {
+            se3di_glb_put(glb, bytes, "\\u%04x", (unsigned)*text);
+        } else {
+            se3di_glb_put(glb, bytes, "\\ufffd");
         }
         text += length > 0 ? length : 1;
     }

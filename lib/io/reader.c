@@ -6,8 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "io/text.h"
-
 static bool fail_at(se3di_reader *reader, size_t line, size_t column, const char *path,
                     const char *text)
 {
@@ -258,6 +256,16 @@ bool se3di_read_bool(se3di_reader *reader, const se3di_node *node, int32_t *valu
     return true;
 }
 
+/* UTF-8 without what cannot be shown. */
+static bool is_plain(const char *text)
+{
+    size_t length = 0;
+    while ((length = se3d_text_get_character(text)) > 0) {
+        text += length;
+    }
+    return *text == '\0';
+}
+
 bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **name)
 {
     if (!se3di_read_text(reader, node, name)) {
@@ -266,7 +274,7 @@ bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **
     const char *text = *name;
     const size_t length = strlen(text);
     bool good = length > 0 && length <= 100 && text[0] != ' ' && text[length - 1] != ' ';
-    good = good && !text[strcspn(text, ".,;\"'`[]{}")] && se3di_text_is_plain(text);
+    good = good && !text[strcspn(text, ".,;\"'`[]{}")] && is_plain(text);
     if (!good) {
         return se3di_reader_fail(reader, node,
                                  "the name `%.60s` is not allowed: 1 to 100 characters, none of "
@@ -314,7 +322,7 @@ bool se3di_read_file_name(se3di_reader *reader, const se3di_node *node, const ch
     }
     const char *text = *name;
     const size_t length = strlen(text);
-    if (length == 0 || length > 1000 || strchr(text, '\\') || !se3di_text_is_plain(text)) {
+    if (length == 0 || length > 1000 || strchr(text, '\\') || !is_plain(text)) {
         return se3di_reader_fail(reader, node,
                                  "`%.60s` is not a file name: 1 to 1000 characters, no \\ and no "
                                  "control characters",

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Checks of arguments at the public boundary. */
+#include "base/text.h"
 #include "math/vec3.h"
 #include "system/system_internal.h"
 
@@ -172,14 +173,11 @@ se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_func
 
 se3d_status se3di_check_name(se3d_system *system, const char *name)
 {
-    int bad = name[0] == '\0';
-    for (const char *c = name; *c && !bad; ++c) {
-        bad = *c == '.' || (unsigned char)*c < 0x20 || *c == 0x7f;
-    }
-    if (bad) {
-        return SE3DI_FAIL(
-            system, SE3D_ERR_INVALID_ARGUMENT,
-            "name = \"%.64s\", must not be empty and have no '.' or control characters", name);
+    if (name[0] == '\0' || strchr(name, '.') || !se3di_text_is_plain(name)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "name = \"%.64s\", must be UTF-8, not empty, and have no '.' or control "
+                          "characters",
+                          name);
     }
     return SE3D_OK;
 }

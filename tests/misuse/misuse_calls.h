@@ -617,6 +617,7 @@ static se3d_status texts_are_never_null(arguments *a)
 {
     CHECK_CONTAINS(se3d_status_get_text(SE3D_OK), "success");
     CHECK(se3d_status_get_text((se3d_status)-99) && se3d_status_get_text((se3d_status)99));
+    CHECK(se3d_text_get_character(NULL) == 0 && se3d_text_get_character("") == 0);
     CHECK_CONTAINS(se3d_version_get_text(), ".");
     CHECK(se3d_system_get_error(NULL) != NULL);
     CHECK(se3d_system_get_error_status(NULL) == SE3D_ERR_NULL ||
@@ -855,6 +856,7 @@ static const row rows[] = {
     {"se3d_expression_is_constant", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_status_get_text", texts_are_never_null, "", NULL, NULL},
     {"se3d_elementary_eval", unknown_functions_are_not_a_number, "", NULL, NULL},
+    {"se3d_text_get_character", texts_are_never_null, "", NULL, NULL},
     {"se3d_version_get_text", texts_are_never_null, "", NULL, NULL},
     {"se3d_system_get_error", texts_are_never_null, "", NULL, NULL},
     {"se3d_system_get_error_status", texts_are_never_null, "", NULL, NULL},

@@ -2,6 +2,7 @@
 /* Names of elements: found after a look or two however many there are; unique among their owner's;
  * right after removals, in copies, and after failures. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/names.h"
 #include "base/slots.h"
@@ -188,8 +189,65 @@ static void a_name_is_free_again_when_its_element_is_gone(void)
     se3d_system_destroy(system);
 }
 
+static int is_plain(const char *text)
+{
+    for (size_t n; (n = se3d_text_get_character(text)) > 0;) {
+        text += n;
+    }
+    return *text == '\0';
+}
+
+static void names_are_characters_that_can_be_shown(void)
+{
+    static const char *const bad[] = {"\xff",
+                                      "\xc3",
+                                      "\xc0\xaf",
+                                      "\xe0\x80\xaf",
+                                      "\xed\xa0\x80",
+                                      "\xf4\x90\x80\x80",
+                                      "\xf5\x80\x80\x80",
+                                      "\xe2\x28\xa1",
+                                      "K\xf6rper",
+                                      "cut \xe2\x98",
+                                      "\xc2\x85",
+                                      "\xe2\x80\xa8",
+                                      "\xe2\x80\xae",
+                                      "\xe2\x81\xa6",
+                                      "\xef\xbb\xbf",
+                                      "\xef\xbf\xbf",
+                                      "\x1b[31m",
+                                      "a\tb",
+                                      "a\r",
+                                      "\x7f",
+                                      "",
+                                      "a.b"};
+    static const char *const good[] = {"K\xc3\xb6rper \xe2\x98\x83", "\xf0\x9f\x94\xa9",
+                                       "<b> & 'x'", "$(x)"};
+    se3d_system *system = NULL;
+    CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
+        make_body(system, bad[k], SE3D_ERR_INVALID_ARGUMENT);
+        CHECK(is_plain(se3d_system_get_error(system)));
+        CHECK_CONTAINS(se3d_system_get_error(system), "must be UTF-8");
+    }
+    for (size_t k = 0; k < sizeof good / sizeof *good; ++k) {
+        make_body(system, good[k], SE3D_OK);
+    }
+    /* A message quotes a part of it: the last character is not cut. */
+    char name[200] = "";
+    for (size_t k = 0; k < 63; ++k) {
+        memcpy(name + 3 * k, "\xe2\x98\x83", 3);
+    }
+    make_body(system, name, SE3D_OK);
+    make_body(system, name, SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(system), "is taken");
+    CHECK(is_plain(se3d_system_get_error(system)));
+    se3d_system_destroy(system);
+}
+
 int main(void)
 {
+    RUN(names_are_characters_that_can_be_shown);
     RUN(a_name_is_found_after_a_few_looks_among_many);
     RUN(names_come_and_go_in_any_order);
     RUN(a_system_of_many_elements_is_built_and_searched);
