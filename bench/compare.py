@@ -277,7 +277,7 @@ class Bench:
                 Way(self.ours, "step_rk4", True, "rk4 h")]
         print("\n## Work and precision: CPU ms for 1 s (one bar: 5 s) to a relative tip error")
         print("(dop853 h, rk45 h, rk4 h: equal steps without error control, as both RK4; ratio: the best"
-              "\n of ours / the best peer; mark: what issue 4 asks for; ~ extrapolated)")
+              "\n of ours / the best peer; mark: the aim; ~ extrapolated)")
         names = [way.label for way in ours + peers]
         print(f"{'chain':>6} {'error':>6} " + " ".join(f"{name:>10.10}" for name in names) +
               f" {'ratio':>7} {'mark':>5}  evaluations: ours, best peer")
@@ -313,7 +313,7 @@ class Bench:
         print("\n## Four-bar windows, 10 s, plain revolutes: CPU ms to a drift of energy")
         print("(on the right branch: tip within .01 m; 'tip 1e-6': also tip within 1e-6 m, gap within")
         print(" 1e-10; MuJoCo RK4, Newton, loops by `connect`: time constant 2 h (its safe least, for")
-        print(" which the marks of issue 4 were set), 1 h and h/2 (its safeguard off), impedance .9999)")
+        print(" which the marks were set), 1 h and h/2 (its safeguard off), impedance .9999)")
         names = [way.label for way in [ours, exact] + peers]
         print(f"{'n':>4} {'drift':>6} " + " ".join(f"{name:>14}" for name in names) +
               f" {'ratio 2h':>9} {'mark':>6} {'ratio best':>10}")

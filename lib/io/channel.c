@@ -265,8 +265,9 @@ static bool find_system(const char *name, se3di_channel *channel)
 /* A work, in a model whose analyses (kinematics) do not all compute works. */
 static bool is_left_out(const se3d_model *model, se3di_quantity quantity)
 {
-    bool computed = quantity < SE3DI_ENERGY_DISSIPATED || quantity > SE3DI_WORK_DRIVERS;
-    for (size_t k = 0; k < model->analysis_count && !computed; ++k) {
+    const bool work = quantity == SE3DI_ENERGY_DISSIPATED || quantity == SE3DI_ENERGY_BALANCE ||
+                      quantity == SE3DI_WORK_ACTUATORS || quantity == SE3DI_WORK_DRIVERS;
+    for (size_t k = 0; k < model->analysis_count && work; ++k) {
         if (model->analyses[k].solver.analysis == SE3D_ANALYSIS_KINEMATICS) {
             return true;
         }
@@ -452,37 +453,6 @@ bool se3di_channel_find_number(se3d_model *model, const char *name, se3di_channe
     return false;
 }
 
-bool se3di_channel_is_continuous(const se3di_channel *channel)
-{
-    const se3di_quantity q = channel->quantity;
-    return q != SE3DI_STEPS && q != SE3DI_ITERATIONS && q != SE3DI_CONTACTS_COUNT &&
-           !(q >= SE3DI_PARTICLES_COUNT && q <= SE3DI_PARTICLES_ENERGY);
-}
-
-bool se3di_channel_is_of_motion(const se3di_channel *channel)
-{
-    switch (channel->quantity) {
-    case SE3DI_BODY_POSITION:
-    case SE3DI_BODY_ORIENTATION:
-    case SE3DI_BODY_VELOCITY:
-    case SE3DI_BODY_ANGULAR_VELOCITY:
-    case SE3DI_MARKER_POSITION:
-    case SE3DI_MARKER_VELOCITY:
-    case SE3DI_JOINT_ANGLE:
-    case SE3DI_JOINT_ANGLE_RATE:
-    case SE3DI_JOINT_DISPLACEMENT:
-    case SE3DI_JOINT_DISPLACEMENT_RATE:
-    case SE3DI_FORCE_COORDINATE:
-    case SE3DI_FORCE_RATE:
-    case SE3DI_ENERGY_KINETIC:
-    case SE3DI_ENERGY_POTENTIAL:
-    case SE3DI_ENERGY_TOTAL:
-        return true;
-    default:
-        return false;
-    }
-}
-
 /* A growing list of channels with names made up of two or three parts. */
 typedef struct channel_list {
     se3d_model *model;
@@ -588,14 +558,6 @@ se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count)
     }
     *count = c.failed ? 0 : c.count;
     return c.failed ? NULL : c.list;
-}
-
-size_t se3di_channel_get_width(const se3di_channel *channel)
-{
-    if (channel->quantity == SE3DI_BODY_ORIENTATION) {
-        return 4;
-    }
-    return channel->quantity <= SE3DI_REACTION_TORQUE ? 3 : 1;
 }
 
 void se3di_channel_format_column(const se3di_channel *channel, size_t k, char *text, size_t size)

@@ -6,58 +6,89 @@
 #include "io/pool.h"
 #include "se3d/io.h"
 
+/* What a channel may give: columns, what computes it, how it changes in time, and its unit as
+ * powers of the model's length, of 1/s and of its mass; of what may be a translation or a rotation,
+ * the last number takes the larger. */
+/* clang-format off */
+#define SE3DI_QUANTITY_LIST(X)                                                                     \
+    X(BODY_POSITION, 3, BODY, MOTION, 1, 0, 0, 0)                                                  \
+    X(BODY_ORIENTATION, 4, BODY, MOTION, 0, 0, 0, 0)                                               \
+    X(BODY_VELOCITY, 3, BODY, MOTION, 1, 1, 0, 0)                                                  \
+    X(BODY_ANGULAR_VELOCITY, 3, BODY, MOTION, 0, 1, 0, 0)                                          \
+    X(BODY_ACCELERATION, 3, BODY, SOLVED, 1, 2, 0, 0)                                              \
+    X(BODY_ANGULAR_ACCELERATION, 3, BODY, SOLVED, 0, 2, 0, 0)                                      \
+    X(BODY_CONTACT_FORCE, 3, BODY, SOLVED, 1, 2, 1, 0)                                             \
+    X(MARKER_POSITION, 3, BODY, MOTION, 1, 0, 0, 0)                                                \
+    X(MARKER_VELOCITY, 3, BODY, MOTION, 1, 1, 0, 0)                                                \
+    X(MARKER_ACCELERATION, 3, BODY, SOLVED, 1, 2, 0, 0)                                            \
+    X(WRENCH_FORCE, 3, ELEMENT, SOLVED, 1, 2, 1, 0)                                                \
+    X(WRENCH_TORQUE, 3, ELEMENT, SOLVED, 2, 2, 1, 0)                                               \
+    X(REACTION_FORCE, 3, ELEMENT, SOLVED, 1, 2, 1, 0)                                              \
+    X(REACTION_TORQUE, 3, ELEMENT, SOLVED, 2, 2, 1, 0)                                             \
+    X(JOINT_ANGLE, 1, ELEMENT, MOTION, 0, 0, 0, 0)                                                 \
+    X(JOINT_ANGLE_RATE, 1, ELEMENT, MOTION, 0, 1, 0, 0)                                            \
+    X(JOINT_DISPLACEMENT, 1, ELEMENT, MOTION, 1, 0, 0, 0)                                          \
+    X(JOINT_DISPLACEMENT_RATE, 1, ELEMENT, MOTION, 1, 1, 0, 0)                                     \
+    X(DRIVER_VALUE, 1, ELEMENT, SOLVED, 0, 0, 0, 1)                                                \
+    X(DRIVER_EFFORT, 1, ELEMENT, SOLVED, 1, 2, 1, 1)                                               \
+    X(FORCE_COORDINATE, 1, ELEMENT, MOTION, 0, 0, 0, 1)                                            \
+    X(FORCE_RATE, 1, ELEMENT, MOTION, 0, 1, 0, 1)                                                  \
+    X(FORCE_VALUE, 1, ELEMENT, SOLVED, 1, 2, 1, 1)                                                 \
+    X(ENERGY_KINETIC, 1, ENERGY, MOTION, 2, 2, 1, 0)                                               \
+    X(ENERGY_POTENTIAL, 1, ENERGY, MOTION, 2, 2, 1, 0)                                             \
+    X(ENERGY_TOTAL, 1, ENERGY, MOTION, 2, 2, 1, 0)                                                 \
+    X(ENERGY_DISSIPATED, 1, ENERGY, SOLVED, 2, 2, 1, 0)                                            \
+    X(ENERGY_BALANCE, 1, WORK, SOLVED, 2, 2, 1, 0)                                                 \
+    X(WORK_ACTUATORS, 1, WORK, SOLVED, 2, 2, 1, 0)                                                 \
+    X(WORK_DRIVERS, 1, WORK, SOLVED, 2, 2, 1, 0)                                                   \
+    X(VIOLATION_POSITION, 1, VIOLATION, SOLVED, 1, 0, 0, 0)                                        \
+    X(VIOLATION_VELOCITY, 1, VIOLATION, SOLVED, 1, 1, 0, 0)                                        \
+    X(VIOLATION_ACCELERATION, 1, VIOLATION, SOLVED, 1, 2, 0, 0)                                    \
+    X(CONTACTS_COUNT, 1, CONTACTS, JUMPS, 0, 0, 0, 0)                                              \
+    X(CONTACTS_FORCE_MAX, 1, CONTACTS, SOLVED, 1, 2, 1, 0)                                         \
+    X(PARTICLES_COUNT, 1, PARTICLES, JUMPS, 0, 0, 0, 0)                                            \
+    X(PARTICLES_LOST, 1, PARTICLES, JUMPS, 0, 0, 0, 0)                                             \
+    X(PARTICLES_ENERGY, 1, PARTICLES, SOLVED, 2, 2, 1, 0)                                          \
+    X(PARTICLES_LEFT, 1, PARTICLES, JUMPS, 0, 0, 0, 0)                                             \
+    X(SET_COUNT, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                       \
+    X(SET_LOST, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                        \
+    X(SET_LEFT, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                        \
+    X(SET_MASS, 1, FLOW, JUMPS, 0, 0, 1, 0)                                                        \
+    X(SET_ENERGY, 1, FLOW, SOLVED, 2, 2, 1, 0)                                                     \
+    X(SET_INSERTED, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                    \
+    X(SET_DEFERRED, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                    \
+    X(SET_WAITING, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                     \
+    X(SINK_COUNT, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                      \
+    X(STEPS, 1, SOLVER, JUMPS, 0, 0, 0, 0)                                                         \
+    X(ITERATIONS, 1, SOLVER, JUMPS, 0, 0, 0, 0)
+/* clang-format on */
+
+#define SE3DI_QUANTITY(name, width, group, nature, length, rate, mass, lever) SE3DI_##name,
 typedef enum se3di_quantity {
-    SE3DI_BODY_POSITION,
-    SE3DI_BODY_ORIENTATION,
-    SE3DI_BODY_VELOCITY,
-    SE3DI_BODY_ANGULAR_VELOCITY,
-    SE3DI_BODY_ACCELERATION,
-    SE3DI_BODY_ANGULAR_ACCELERATION,
-    SE3DI_BODY_CONTACT_FORCE,
-    SE3DI_MARKER_POSITION,
-    SE3DI_MARKER_VELOCITY,
-    SE3DI_MARKER_ACCELERATION,
-    SE3DI_WRENCH_FORCE,
-    SE3DI_WRENCH_TORQUE,
-    SE3DI_REACTION_FORCE,
-    SE3DI_REACTION_TORQUE,
-    SE3DI_JOINT_ANGLE,
-    SE3DI_JOINT_ANGLE_RATE,
-    SE3DI_JOINT_DISPLACEMENT,
-    SE3DI_JOINT_DISPLACEMENT_RATE,
-    SE3DI_DRIVER_VALUE,
-    SE3DI_DRIVER_EFFORT,
-    SE3DI_FORCE_COORDINATE,
-    SE3DI_FORCE_RATE,
-    SE3DI_FORCE_VALUE,
-    SE3DI_ENERGY_KINETIC,
-    SE3DI_ENERGY_POTENTIAL,
-    SE3DI_ENERGY_TOTAL,
-    SE3DI_ENERGY_DISSIPATED,
-    SE3DI_ENERGY_BALANCE,
-    SE3DI_WORK_ACTUATORS,
-    SE3DI_WORK_DRIVERS,
-    SE3DI_VIOLATION_POSITION,
-    SE3DI_VIOLATION_VELOCITY,
-    SE3DI_VIOLATION_ACCELERATION,
-    SE3DI_CONTACTS_COUNT,
-    SE3DI_CONTACTS_FORCE_MAX,
-    SE3DI_PARTICLES_COUNT,
-    SE3DI_PARTICLES_LOST,
-    SE3DI_PARTICLES_ENERGY,
-    SE3DI_PARTICLES_LEFT,
-    SE3DI_SET_COUNT,
-    SE3DI_SET_LOST,
-    SE3DI_SET_LEFT,
-    SE3DI_SET_MASS,
-    SE3DI_SET_ENERGY,
-    SE3DI_SET_INSERTED,
-    SE3DI_SET_DEFERRED,
-    SE3DI_SET_WAITING,
-    SE3DI_SINK_COUNT,
-    SE3DI_STEPS,
-    SE3DI_ITERATIONS
+    SE3DI_QUANTITY_LIST(SE3DI_QUANTITY) SE3DI_QUANTITY_COUNT
 } se3di_quantity;
+#undef SE3DI_QUANTITY
+
+/* What computes it. */
+typedef enum se3di_quantity_group {
+    SE3DI_GROUP_BODY, /* and markers */
+    SE3DI_GROUP_ELEMENT,
+    SE3DI_GROUP_ENERGY,
+    SE3DI_GROUP_WORK,
+    SE3DI_GROUP_VIOLATION,
+    SE3DI_GROUP_CONTACTS,
+    SE3DI_GROUP_PARTICLES,
+    SE3DI_GROUP_FLOW, /* sets and sinks */
+    SE3DI_GROUP_SOLVER
+} se3di_quantity_group;
+
+/* How it changes. */
+typedef enum se3di_quantity_nature {
+    SE3DI_NATURE_MOTION, /* follows from time, positions and velocities */
+    SE3DI_NATURE_SOLVED, /* continuously, but forces or accelerations must be solved for, or work
+                            summed */
+    SE3DI_NATURE_JUMPS   /* counts, and what is proportional to them */
+} se3di_quantity_nature;
 
 typedef struct se3di_channel {
     const char *name;
@@ -81,6 +112,7 @@ bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel
  */
 bool se3di_channel_find_number(se3d_model *model, const char *name, se3di_channel *channel,
                                size_t *component, char *problem, size_t problem_size);
+se3di_quantity_group se3di_channel_get_group(const se3di_channel *channel);
 /* Whether its numbers change in time continuously, unlike counts. */
 bool se3di_channel_is_continuous(const se3di_channel *channel);
 /* Whether they follow from time, positions and velocities. */

@@ -89,7 +89,9 @@ static se3d_status eval_element(const se3di_channel *c, const se3d_system *syste
         return se3d_driver_get_effort(system, c->constraint, value);
     default:
         status = se3d_force_get_state(system, c->force, &other[0], &other[1], &other[2]);
-        value[0] = other[c->quantity - SE3DI_FORCE_COORDINATE];
+        value[0] = other[c->quantity == SE3DI_FORCE_COORDINATE ? 0
+                         : c->quantity == SE3DI_FORCE_RATE     ? 1
+                                                               : 2];
         return status;
     }
 }
@@ -118,10 +120,11 @@ static se3d_status eval_particles(const se3di_channel *c, double value[4])
     if (status >= 0) {
         status = se3d_particles_get_energy(c->particles, &energy);
     }
-    const double all[4] = {(double)se3d_particles_count(c->particles), (double)stats.lost,
-                           energy.translation + energy.rotation + energy.potential,
-                           (double)stats.left};
-    value[0] = all[c->quantity - SE3DI_PARTICLES_COUNT];
+    value[0] = c->quantity == SE3DI_PARTICLES_COUNT  ? (double)se3d_particles_count(c->particles)
+               : c->quantity == SE3DI_PARTICLES_LOST ? (double)stats.lost
+               : c->quantity == SE3DI_PARTICLES_LEFT
+                   ? (double)stats.left
+                   : energy.translation + energy.rotation + energy.potential;
     return status;
 }
 
@@ -140,32 +143,25 @@ static se3d_status eval_contacts(const se3di_channel *c, const se3d_system *syst
     return status;
 }
 
-static se3d_status eval_system(const se3di_channel *c, const se3d_system *system,
-                               const se3d_solver_stats *stats, double value[4])
+static se3d_status eval_energy(const se3di_channel *c, const se3d_system *system, double value[4])
 {
-    se3d_status status = SE3D_OK;
-    if (c->quantity <= SE3DI_ENERGY_DISSIPATED) {
-        se3d_energy energy = {0.0, 0.0, 0.0, 0.0};
-        status = se3d_system_get_energy(system, &energy);
-        const double all[4] = {energy.kinetic, energy.potential, energy.total, energy.dissipated};
-        value[0] = all[c->quantity - SE3DI_ENERGY_KINETIC];
-    } else if (c->quantity <= SE3DI_WORK_DRIVERS) {
-        status = eval_work(c, system, value);
-    } else if (c->quantity <= SE3DI_VIOLATION_ACCELERATION) {
-        double violation[3] = {0.0, 0.0, 0.0};
-        status = se3d_system_get_violation(system, violation);
-        value[0] = violation[c->quantity - SE3DI_VIOLATION_POSITION];
-    } else if (c->quantity <= SE3DI_CONTACTS_FORCE_MAX) {
-        status = eval_contacts(c, system, value);
-    } else if (c->quantity <= SE3DI_PARTICLES_LEFT) {
-        status = eval_particles(c, value);
-    } else if (c->quantity <= SE3DI_SINK_COUNT) {
-        status = se3di_grains_eval(c, value);
-    } else {
-        value[0] = !stats                       ? 0.0
-                   : c->quantity == SE3DI_STEPS ? (double)stats->steps
-                                                : (double)stats->iterations;
-    }
+    se3d_energy energy = {0.0, 0.0, 0.0, 0.0};
+    const se3d_status status = se3d_system_get_energy(system, &energy);
+    value[0] = c->quantity == SE3DI_ENERGY_KINETIC     ? energy.kinetic
+               : c->quantity == SE3DI_ENERGY_POTENTIAL ? energy.potential
+               : c->quantity == SE3DI_ENERGY_TOTAL     ? energy.total
+                                                       : energy.dissipated;
+    return status;
+}
+
+static se3d_status eval_violation(const se3di_channel *c, const se3d_system *system,
+                                  double value[4])
+{
+    double violation[3] = {0.0, 0.0, 0.0};
+    const se3d_status status = se3d_system_get_violation(system, violation);
+    value[0] = violation[c->quantity == SE3DI_VIOLATION_POSITION   ? 0
+                         : c->quantity == SE3DI_VIOLATION_VELOCITY ? 1
+                                                                   : 2];
     return status;
 }
 
@@ -173,11 +169,27 @@ se3d_status se3di_channel_eval(const se3di_channel *channel, const se3d_system *
                                const se3d_solver_stats *stats, double value[4])
 {
     memset(value, 0, 4 * sizeof *value);
-    if (channel->quantity <= SE3DI_MARKER_ACCELERATION) {
+    switch (se3di_channel_get_group(channel)) {
+    case SE3DI_GROUP_BODY:
         return eval_body(channel, system, value);
-    }
-    if (channel->quantity <= SE3DI_FORCE_VALUE) {
+    case SE3DI_GROUP_ELEMENT:
         return eval_element(channel, system, value);
+    case SE3DI_GROUP_ENERGY:
+        return eval_energy(channel, system, value);
+    case SE3DI_GROUP_WORK:
+        return eval_work(channel, system, value);
+    case SE3DI_GROUP_VIOLATION:
+        return eval_violation(channel, system, value);
+    case SE3DI_GROUP_CONTACTS:
+        return eval_contacts(channel, system, value);
+    case SE3DI_GROUP_PARTICLES:
+        return eval_particles(channel, value);
+    case SE3DI_GROUP_FLOW:
+        return se3di_grains_eval(channel, value);
+    case SE3DI_GROUP_SOLVER:
+        break;
     }
-    return eval_system(channel, system, stats, value);
+    const bool steps = channel->quantity == SE3DI_STEPS;
+    value[0] = !stats ? 0.0 : steps ? (double)stats->steps : (double)stats->iterations;
+    return SE3D_OK;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* How large the numbers of a channel are where they are not small: products of the model's length,
- * its mass, and one second or the time in which gravity crosses the length. */
+/* What is known of each quantity, and how large its numbers are where they are not small: products
+ * of the model's length, its mass, and one second or the time in which gravity crosses the length.
+ */
 #include <math.h>
 
 #include "io/elementary.h"
@@ -44,52 +45,42 @@ static sizes measure(const se3d_system *system)
     return s;
 }
 
-/* Powers of the sizes in a quantity's unit; none: an angle, a parameter of a turn. Of what may be a
- * translation or a rotation, `lever` takes the larger. */
-typedef struct unit {
-    int length, rate, mass, lever;
-} unit;
+typedef struct quantity {
+    se3di_quantity_group group;
+    se3di_quantity_nature nature;
+    int width, length, rate, mass, lever;
+} quantity;
 
-static const unit units[] = {
-    [SE3DI_BODY_POSITION] = {1, 0, 0, 0},
-    [SE3DI_BODY_VELOCITY] = {1, 1, 0, 0},
-    [SE3DI_BODY_ANGULAR_VELOCITY] = {0, 1, 0, 0},
-    [SE3DI_BODY_ACCELERATION] = {1, 2, 0, 0},
-    [SE3DI_BODY_ANGULAR_ACCELERATION] = {0, 2, 0, 0},
-    [SE3DI_BODY_CONTACT_FORCE] = {1, 2, 1, 0},
-    [SE3DI_MARKER_POSITION] = {1, 0, 0, 0},
-    [SE3DI_MARKER_VELOCITY] = {1, 1, 0, 0},
-    [SE3DI_MARKER_ACCELERATION] = {1, 2, 0, 0},
-    [SE3DI_WRENCH_FORCE] = {1, 2, 1, 0},
-    [SE3DI_WRENCH_TORQUE] = {2, 2, 1, 0},
-    [SE3DI_REACTION_FORCE] = {1, 2, 1, 0},
-    [SE3DI_REACTION_TORQUE] = {2, 2, 1, 0},
-    [SE3DI_JOINT_ANGLE_RATE] = {0, 1, 0, 0},
-    [SE3DI_JOINT_DISPLACEMENT] = {1, 0, 0, 0},
-    [SE3DI_JOINT_DISPLACEMENT_RATE] = {1, 1, 0, 0},
-    [SE3DI_DRIVER_VALUE] = {0, 0, 0, 1},
-    [SE3DI_DRIVER_EFFORT] = {1, 2, 1, 1},
-    [SE3DI_FORCE_COORDINATE] = {0, 0, 0, 1},
-    [SE3DI_FORCE_RATE] = {0, 1, 0, 1},
-    [SE3DI_FORCE_VALUE] = {1, 2, 1, 1},
-    [SE3DI_ENERGY_KINETIC] = {2, 2, 1, 0},
-    [SE3DI_ENERGY_POTENTIAL] = {2, 2, 1, 0},
-    [SE3DI_ENERGY_TOTAL] = {2, 2, 1, 0},
-    [SE3DI_ENERGY_DISSIPATED] = {2, 2, 1, 0},
-    [SE3DI_ENERGY_BALANCE] = {2, 2, 1, 0},
-    [SE3DI_WORK_ACTUATORS] = {2, 2, 1, 0},
-    [SE3DI_WORK_DRIVERS] = {2, 2, 1, 0},
-    [SE3DI_VIOLATION_POSITION] = {1, 0, 0, 0},
-    [SE3DI_VIOLATION_VELOCITY] = {1, 1, 0, 0},
-    [SE3DI_VIOLATION_ACCELERATION] = {1, 2, 0, 0},
-    [SE3DI_CONTACTS_FORCE_MAX] = {1, 2, 1, 0},
-    [SE3DI_ITERATIONS] = {0, 0, 0, 0},
-};
+#define QUANTITY(name, width, group, nature, length, rate, mass, lever)                            \
+    [SE3DI_##name] = {                                                                             \
+        SE3DI_GROUP_##group, SE3DI_NATURE_##nature, (width), (length), (rate), (mass), (lever)},
+static const quantity quantities[SE3DI_QUANTITY_COUNT] = {SE3DI_QUANTITY_LIST(QUANTITY)};
+#undef QUANTITY
 
 double se3di_channel_get_scale(const se3di_channel *channel, const se3d_system *system)
 {
     const sizes s = measure(system);
-    const unit u = units[channel->quantity];
-    const double lever = u.lever ? fmax(1.0, s.length) : 1.0;
-    return io_pow(s.length, u.length) * io_pow(s.rate, u.rate) * io_pow(s.mass, u.mass) * lever;
+    const quantity *q = &quantities[channel->quantity];
+    const double lever = q->lever ? fmax(1.0, s.length) : 1.0;
+    return io_pow(s.length, q->length) * io_pow(s.rate, q->rate) * io_pow(s.mass, q->mass) * lever;
+}
+
+size_t se3di_channel_get_width(const se3di_channel *channel)
+{
+    return (size_t)quantities[channel->quantity].width;
+}
+
+se3di_quantity_group se3di_channel_get_group(const se3di_channel *channel)
+{
+    return quantities[channel->quantity].group;
+}
+
+bool se3di_channel_is_continuous(const se3di_channel *channel)
+{
+    return quantities[channel->quantity].nature != SE3DI_NATURE_JUMPS;
+}
+
+bool se3di_channel_is_of_motion(const se3di_channel *channel)
+{
+    return quantities[channel->quantity].nature == SE3DI_NATURE_MOTION;
 }

@@ -13,12 +13,14 @@ static bool require(se3di_reader *reader, const se3di_node *node, const char *ke
                : se3di_reader_fail_key(reader, node, key, "is missing, `%s` needs it", type);
 }
 
+/* In the order of se3d_primitive_type. */
+static const char *const types[] = {"dp1", "dp2", "d", "cd", NULL};
+
 static bool read_geometry(se3di_reader *reader, const se3di_node *node,
                           const se3di_body_entry *bodies[2], se3d_primitive_def *def)
 {
     static const char *const required[] = {" a_i a_j ", " a_i ", "  ", " c "};
     static const char *const directions[] = {"a_i", "a_j", "c"};
-    static const char *const types[] = {"dp1", "dp2", "d", "cd"};
     double *const targets[] = {def->a_i, def->a_j, def->c};
     for (size_t k = 0; k < 3; ++k) {
         if (se3di_keys_contain(required[def->type], directions[k]) &&
@@ -51,15 +53,15 @@ static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_primit
     return true;
 }
 
-static bool read_primitive(se3di_reader *reader, const se3di_node *node, const char *type,
-                           se3di_element_entry *entry)
+static bool read_primitive(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
 {
-    static const char *const types[] = {"dp1", "dp2", "d", "cd"};
+    size_t index = 0;
     const se3di_body_entry *bodies[2] = {NULL, NULL};
     se3d_primitive_def def = se3d_primitive_def_default();
-    while (strcmp(types[def.type], type) != 0) {
-        ++def.type;
+    if (!se3di_read_word(reader, se3di_node_get(node, "type"), types, &index)) {
+        return false;
     }
+    def.type = (int32_t)index;
     if (!se3di_read_key_body(reader, node, "body_i", &bodies[0]) ||
         !se3di_read_key_body(reader, node, "body_j", &bodies[1])) {
         return false;
@@ -94,7 +96,7 @@ bool se3di_read_constraints(se3di_reader *reader, const se3di_node *root)
         }
         const bool pair = strncmp(type, "perpendicular", 13) == 0;
         if (pair ? !se3di_read_pair(reader, node, type, entry)
-                 : !read_primitive(reader, node, type, entry)) {
+                 : !read_primitive(reader, node, entry)) {
             return false;
         }
     }

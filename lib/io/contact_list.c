@@ -37,18 +37,38 @@ static void put_row(se3di_contact_rows *out, double time, const double point[3],
     }
 }
 
-static se3d_status add_particles(const se3d_model *model, se3di_iopool *pool, size_t count,
+/* The contacts of grains, at best in one pass over the forces: there are mostly as many as at the
+ * end of the last step. */
+typedef struct grain_contacts {
+    se3d_particles_contact *list;
+    size_t count;
+} grain_contacts;
+
+static se3d_status get_particles(const se3d_particles *set, se3di_iopool *pool, grain_contacts *c)
+{
+    se3d_particles_stats stats = {.steps = 0};
+    const se3d_status status = se3d_particles_get_stats(set, &stats);
+    c->count = (size_t)stats.contacts;
+    for (int tries = 0; tries < 2 && status >= 0; ++tries) {
+        c->list = se3di_iopool_array(pool, c->count + 1, sizeof *c->list);
+        if (!c->list) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+        if (se3d_particles_get_contacts(set, c->count, c->list) >= 0) {
+            return SE3D_OK;
+        }
+        c->count = se3d_particles_count_contacts(set);
+    }
+    return status < 0 ? status : SE3D_ERR_STATE;
+}
+
+static se3d_status add_particles(const se3d_model *model, const grain_contacts *grains,
                                  se3di_contact_rows *out)
 {
     double time = 0.0;
-    se3d_particles_contact *list = se3di_iopool_array(pool, count + 1, sizeof *list);
-    if (!list) {
-        return SE3D_ERR_NO_MEMORY;
-    }
-    se3d_status status = se3d_particles_get_time(model->grains->set, &time);
-    if (status >= 0) {
-        status = se3d_particles_get_contacts(model->grains->set, count, list);
-    }
+    const se3d_particles_contact *list = grains->list;
+    const size_t count = grains->count;
+    const se3d_status status = se3d_particles_get_time(model->grains->set, &time);
     for (size_t k = 0; k < count && status >= 0; ++k) {
         const se3d_particles_contact *c = &list[k];
         const bool wall = c->shape.index1 != 0;
@@ -88,9 +108,15 @@ se3d_status se3di_contacts_get_rows(const se3d_model *model, se3di_iopool *pool,
                                     se3di_contact_rows *out)
 {
     const size_t bodies = se3d_system_count_contacts(model->system);
-    const size_t grains = model->grains ? se3d_particles_count_contacts(model->grains->set) : 0;
-    const size_t room = bodies + grains + 1;
+    grain_contacts grains = {NULL, 0};
     memset(out, 0, sizeof *out);
+    if (model->grains) {
+        const se3d_status found = get_particles(model->grains->set, pool, &grains);
+        if (found < 0) {
+            return found;
+        }
+    }
+    const size_t room = bodies + grains.count + 1;
     out->rows = se3di_iopool_array(pool, room, SE3DI_CONTACT_NUMBERS * sizeof *out->rows);
     out->kinds = se3di_iopool_array(pool, room, sizeof *out->kinds);
     out->a = se3di_iopool_array(pool, room, sizeof *out->a);
@@ -101,7 +127,7 @@ se3d_status se3di_contacts_get_rows(const se3d_model *model, se3di_iopool *pool,
         return SE3D_ERR_NO_MEMORY;
     }
     const se3d_status status = bodies > 0 ? add_bodies(model, pool, bodies, out) : SE3D_OK;
-    return status < 0 || grains == 0 ? status : add_particles(model, pool, grains, out);
+    return status < 0 || grains.count == 0 ? status : add_particles(model, &grains, out);
 }
 
 const char *se3di_contacts_get_column(size_t k)

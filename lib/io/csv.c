@@ -36,9 +36,18 @@ static void remember(se3di_csv *csv)
 static void flush(se3di_csv *csv)
 {
     errno = 0;
-    if (csv->failure == 0 && csv->used > 0 &&
-        fwrite(csv->buffer, 1, csv->used, csv->file) != csv->used) {
-        remember(csv);
+    if (csv->failure == 0 && csv->used > 0) {
+        const size_t written = fwrite(csv->buffer, 1, csv->used, csv->file);
+        if (written != csv->used) {
+            remember(csv);
+        }
+        for (const char *end = csv->buffer;
+             (end = memchr(end, '\n', written - (size_t)(end - csv->buffer))) != NULL;) {
+            ++end;
+            ++csv->lines;
+            csv->whole = csv->written + (uint64_t)(end - csv->buffer);
+        }
+        csv->written += written;
     }
     csv->used = 0;
 }
@@ -132,8 +141,12 @@ se3d_status se3di_csv_close(se3di_csv *csv)
     flush(csv);
     FILE *file = csv->file;
     csv->file = NULL;
-    if (csv->failure != 0) {
-        se3di_partial_abandon(file, csv->path);
+    if (csv->failure != 0) { /* lines: the names of the columns are one */
+        csv->rows = csv->lines > 1 ? csv->lines - 1 : 0;
+        if (csv->rows == 0 || !se3di_partial_keep(file, csv->path, csv->whole)) {
+            csv->rows = 0;
+            se3di_partial_abandon(file, csv->path);
+        }
         return SE3D_ERR_IO;
     }
     if (!se3di_partial_close(file, csv->path)) {

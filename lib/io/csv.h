@@ -16,7 +16,10 @@ typedef struct se3di_csv {
     uint64_t rows;
     double *pending; /* the last row, not written yet */
     bool has_pending;
-    int failure; /* errno of the first failure, 0 for none */
+    int failure;      /* errno of the first failure, 0 for none */
+    uint64_t written; /* bytes on disk */
+    uint64_t whole;   /* of them, bytes of whole lines */
+    uint64_t lines;   /* that are whole */
 } se3di_csv;
 
 /* Open for `columns` numbers a row. @return OK, IO, NO_MEMORY. */
@@ -33,7 +36,9 @@ typedef struct se3di_csv_cell {
 
 /* Write one row as it is, whatever its time. */
 void se3di_csv_put_cells(se3di_csv *csv, const se3di_csv_cell *cells, size_t count);
-/* Complete the file and give it its name. @return OK or IO (nothing is left then). */
+/* Complete the file and give it its name. @return OK, or IO: then the rows that are whole on the
+ * disk are kept, and `rows` is their number; where there is none nothing is left, and a file of
+ * that name stays as it was. */
 se3d_status se3di_csv_close(se3di_csv *csv);
 /* Close without keeping anything. */
 void se3di_csv_abandon(se3di_csv *csv);
@@ -51,6 +56,9 @@ bool se3di_file_make_folders(const char *path);
  * says why, and nothing is left. */
 FILE *se3di_partial_open(const char *path);
 bool se3di_partial_close(FILE *file, const char *path);
+/* Cut the file to its first `size` bytes and give it its name, after a write has failed; where it
+ * cannot have it, it keeps the temporary one. @return false: nothing is left. */
+bool se3di_partial_keep(FILE *file, const char *path, uint64_t size);
 /* Close without keeping anything. */
 void se3di_partial_abandon(FILE *file, const char *path);
 

@@ -30,8 +30,8 @@ static bool find_source(se3d_model *model, const char *channel, se3di_event_sour
         return false;
     }
     if (!se3di_channel_is_continuous(&source->channel)) {
-        snprintf(problem, size, "`%.200s` is a count, an event needs what changes continuously",
-                 channel);
+        snprintf(problem, size,
+                 "`%.200s` changes by jumps, an event needs what changes continuously", channel);
         return false;
     }
     return true;

@@ -11,6 +11,18 @@
 
 #if defined(_WIN32)
 #include <direct.h>
+#include <io.h>
+static bool is_folder(const char *path)
+{
+    (void)path;
+    return false; /* opening it fails there */
+}
+
+static bool cut(FILE *file, uint64_t size)
+{
+    return _chsize_s(_fileno(file), (long long)size) == 0;
+}
+
 static bool is_link(const char *path)
 {
     (void)path;
@@ -23,6 +35,18 @@ static int make_folder(const char *path)
 }
 #else
 #include <sys/stat.h>
+#include <unistd.h>
+static bool is_folder(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
+}
+
+static bool cut(FILE *file, uint64_t size)
+{
+    return ftruncate(fileno(file), (off_t)size) == 0;
+}
+
 static bool is_link(const char *path)
 {
     struct stat about;
@@ -104,6 +128,10 @@ FILE *se3di_partial_open(const char *path)
         errno = ENAMETOOLONG;
         return NULL;
     }
+    if (is_folder(path)) { /* known before the work, not after it */
+        errno = EISDIR;
+        return NULL;
+    }
     remove(partial); /* of a run that was ended; or a link, which must not be followed */
     errno = 0;
     return fopen(partial, "wbx");
@@ -126,6 +154,20 @@ bool se3di_partial_close(FILE *file, const char *path)
     remove(partial);
     errno = why;
     return false;
+}
+
+bool se3di_partial_keep(FILE *file, const char *path, uint64_t size)
+{
+    char partial[4200];
+    if (!format_partial(path, partial) || !cut(file, size)) {
+        return false;
+    }
+    fclose(file);
+#if defined(_WIN32)
+    remove(path);
+#endif
+    rename(partial, path);
+    return true;
 }
 
 void se3di_partial_abandon(FILE *file, const char *path)

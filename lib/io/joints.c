@@ -192,14 +192,24 @@ static bool read_sizes(se3di_reader *reader, const se3di_node *node, const joint
            se3di_read_key_number(reader, node, "distance", range, &def->distance);
 }
 
+static const joint_type *find_type(const char *name)
+{
+    for (size_t k = 0; k < sizeof joint_types / sizeof *joint_types; ++k) {
+        if (strcmp(joint_types[k].name, name) == 0) {
+            return &joint_types[k];
+        }
+    }
+    return NULL;
+}
+
 bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *name,
                      se3di_element_entry *entry)
 {
-    const joint_type *type = joint_types;
+    const joint_type *type = find_type(name);
     const se3di_body_entry *bodies[2] = {NULL, NULL};
     se3d_joint_def def = se3d_joint_def_default();
-    while (strcmp(type->name, name) != 0) {
-        ++type;
+    if (!type) {
+        return se3di_reader_fail(reader, node, "the joint type `%.60s` cannot be made", name);
     }
     if (!se3di_read_key_body(reader, node, "body_i", &bodies[0]) ||
         !se3di_read_key_body(reader, node, "body_j", &bodies[1])) {

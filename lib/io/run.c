@@ -9,6 +9,7 @@
  */
 #include <errno.h>
 #include <float.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -80,9 +81,21 @@ static se3d_status fail_path(runner *r, const char *path, int why)
     return fail(r, memory ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO, text);
 }
 
+/* The rows that are on the disk stay there. */
+static se3d_status fail_csv(runner *r, const se3di_csv *csv)
+{
+    char text[800];
+    if (csv->failure == 0 || csv->failure == ENOMEM || csv->lines < 2) {
+        return fail_path(r, csv->path, csv->failure);
+    }
+    snprintf(text, sizeof text, "%.500s: cannot be written: %s; the first %" PRIu64 " row%s kept",
+             csv->path, strerror(csv->failure), csv->lines - 1, csv->lines == 2 ? " is" : "s are");
+    return fail(r, SE3D_ERR_IO, text);
+}
+
 static se3d_status fail_file(runner *r, const output_file *file)
 {
-    return fail_path(r, file->csv.path, file->csv.failure);
+    return fail_csv(r, &file->csv);
 }
 
 static se3d_status open_vtk(runner *r, const se3di_output_entry *entry, const char *path)
@@ -573,7 +586,7 @@ static se3d_status close_csv(runner *r, se3di_csv *csv, se3d_run_file *about)
     about->columns = csv->columns;
     const se3d_status status = se3di_csv_close(csv);
     about->rows = csv->rows;
-    return status < 0 ? fail_path(r, csv->path, csv->failure) : SE3D_OK;
+    return status < 0 ? fail_csv(r, csv) : SE3D_OK;
 }
 
 /* Complete one file. */
@@ -589,7 +602,8 @@ static se3d_status close_file(runner *r, output_file *file, se3d_run_file *about
     return close_csv(r, &file->csv, about);
 }
 
-/* One more file of the results, which `closed` says is complete; the first failure is reported. */
+/* One more file of the results, which `closed` says is complete, or which has rows that were kept;
+ * the first failure is reported. */
 static se3d_status list_file(runner *r, const se3d_run_file *file, se3d_status closed,
                              se3d_status status)
 {
@@ -599,7 +613,7 @@ static se3d_status list_file(runner *r, const se3d_run_file *file, se3d_status c
     if (grown) {
         run->files = grown;
         run->files[run->file_count] = *file;
-        run->file_count += closed >= 0;
+        run->file_count += closed >= 0 || (file->rows > 0 && file->columns > 0);
     } else if (status >= 0 && closed >= 0) {
         return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
     }

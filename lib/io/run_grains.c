@@ -183,14 +183,17 @@ se3d_status se3di_grains_eval(const se3di_channel *c, double *value)
         *value = (double)count;
         return status;
     }
-    if (c->quantity >= SE3DI_SET_INSERTED) {
+    if (c->quantity == SE3DI_SET_INSERTED || c->quantity == SE3DI_SET_DEFERRED ||
+        c->quantity == SE3DI_SET_WAITING) {
         return sum_sources(c, value);
     }
     status = se3d_particles_get_tally(c->particles, c->index, &tally);
     if (status >= 0) {
-        const double all[5] = {(double)tally.count, (double)tally.lost,
-                               (double)(tally.lost + tally.outside), tally.mass, tally.energy};
-        *value = all[c->quantity - SE3DI_SET_COUNT];
+        *value = c->quantity == SE3DI_SET_COUNT  ? (double)tally.count
+                 : c->quantity == SE3DI_SET_LOST ? (double)tally.lost
+                 : c->quantity == SE3DI_SET_LEFT ? (double)(tally.lost + tally.outside)
+                 : c->quantity == SE3DI_SET_MASS ? tally.mass
+                                                 : tally.energy;
     }
     return status;
 }

@@ -399,6 +399,7 @@ se3d_status se3d_scene_write(se3d_scene *scene, const char *path, se3d_model_err
     if (scene->poses.count == 0) {
         const se3d_status status = se3d_scene_record(scene);
         if (status < 0) {
+            se3di_document_report(error, "", 0, 0, "", se3d_status_get_text(status));
             return status;
         }
     }

@@ -110,7 +110,9 @@ static bool read_color(se3di_reader *reader, const se3di_node *node, double colo
 static bool read_shape(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
 {
     se3d_model_shape *shape = &entry->shape;
-    static const char *const types[] = {"sphere", "box", "capsule", "cylinder", "plane", "mesh"};
+    static const char *const types[] = {"sphere", "box",  "capsule", "cylinder",
+                                        "plane",  "mesh", NULL};
+    size_t index = 0;
     static const se3d_model_shape standard = {
         .scale = 1.0, .orientation = {1.0, 0.0, 0.0, 0.0}, .color = {-1.0, -1.0, -1.0}, .file = ""};
     const char *type = NULL;
@@ -120,9 +122,10 @@ static bool read_shape(se3di_reader *reader, const se3di_node *node, se3di_shape
     entry->mesh = NULL;
     entry->convex = 0;
     *shape = standard;
-    while (strcmp(types[shape->type], type) != 0) {
-        ++shape->type;
+    if (!se3di_read_word(reader, se3di_node_get(node, "type"), types, &index)) {
+        return false;
     }
+    shape->type = (int32_t)index;
     return se3di_read_key_vector(reader, node, "position", shape->position) &&
            se3di_read_key_orientation(reader, node, shape->orientation) &&
            read_dimensions(reader, node, entry) && read_color(reader, node, shape->color);

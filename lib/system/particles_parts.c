@@ -63,9 +63,9 @@ se3d_status se3d_particles_get_contacts_sized(const se3d_particles *particles, s
     if (size == 0 || size > sizeof *contacts + SE3DI_SIZED_GROWTH) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    size_t found = se3d_particles_count_contacts(particles);
-    if (found != count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
+    size_t found = 0;
+    if (is_current(particles)) { /* once: every contact calls the law */
+        SE3DI_TRY(list(particles, count, contacts, size, &found));
     }
-    return count == 0 ? SE3D_OK : list(particles, count, contacts, size, &found);
+    return found == count ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;
 }

@@ -174,10 +174,23 @@ is "$(ls "$dir/r" | tr '\n' ' ')" 'r.csv scene.glb '
 expect 'a folder that cannot be made' 1 "$program" run "$models/pendulum.yaml" -o "$dir/bad.yaml/x"
 has "$dir/err" 'cannot be written'
 # A full disk, played by a limit on the size of files.
-expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 8; exec "$@"' sh \
+# rows_are_whole FILE: as many columns in each row as names, and at least 3 rows
+rows_are_whole() {
+    holds "rows of $1 are cut" awk -F, 'NR == 1 { n = NF } NF != n { bad = 1 } END { exit bad || NR < 4 }' "$1"
+}
+expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 16; exec "$@"' sh \
     "$program" run "$models/pendulum.yaml" -o "$dir/full"
-has "$dir/err" 'pendulum.csv: cannot be written'
-is "$(ls "$dir/full")" ''
+has "$dir/err" 'pendulum.csv: cannot be written: File too large; the first '
+has "$dir/err" "$(($(wc -l <"$dir/full/pendulum.csv") - 1)) rows are kept"
+has "$dir/out" "wrote $dir/full/pendulum.csv: $(($(wc -l <"$dir/full/pendulum.csv") - 1)) rows, 28 columns"
+rows_are_whole "$dir/full/pendulum.csv"
+is "$(ls "$dir/full")" 'pendulum.csv'
+expect 'a limit that nobody asked to survive' 1 sh -c 'ulimit -f 16; exec "$@"' sh \
+    "$program" run "$models/pendulum.yaml" -o "$dir/limit"
+rows_are_whole "$dir/limit/pendulum.csv"
+mkdir -p "$dir/taken/pendulum.csv/x"
+expect 'a folder in the place of the results' 1 "$program" run "$models/pendulum.yaml" -o "$dir/taken"
+has "$dir/err" 'pendulum.csv: cannot be written: Is a directory'
 
 # Files of the results stay in their folder.
 mkdir -p "$dir/links/away" "$dir/links/r"
@@ -211,6 +224,34 @@ expect 'ended by a signal' 1 wait $child
 has "$dir/err.long" 'ended by the user at t = '
 is "$(ls "$dir/l" | tr '\n' ' ')" 'l.csv scene.glb '
 is "$(awk -F, 'NF != 4 { print "cut" }' "$dir/l/l.csv")" ''
+
+"$program" run "$dir/long.yaml" -o "$dir/hup" >/dev/null 2>"$dir/err.long" &
+child=$!
+until [ -s "$dir/hup/l.csv.partial" ]; do kill -0 $child || break; done
+kill -HUP $child
+kill -HUP $child
+expect 'ended with its terminal, which is told twice' 1 wait $child
+has "$dir/err.long" 'ended by the user at t = '
+is "$(ls "$dir/hup" | tr '\n' ' ')" 'l.csv scene.glb '
+sh -c 'trap "" HUP; exec "$@"' sh "$program" run "$dir/long.yaml" -o "$dir/nohup" >/dev/null 2>"$dir/err.long" &
+child=$!
+until [ -s "$dir/nohup/l.csv.partial" ]; do kill -0 $child || break; done
+kill -HUP $child
+sleep 0.2
+expect 'who asks to survive the terminal does' 0 kill -TERM $child
+expect 'and is ended by another signal' 1 wait $child
+is "$(ls "$dir/nohup" | tr '\n' ' ')" 'l.csv scene.glb '
+
+# Without memory for the scene the run has its rows, and says what it lacks.
+awk 'BEGIN {
+    print "se3d: 1\nbodies:"
+    for (k = 0; k < 12000; ++k) print "  - {name: b" k ", mass: 1, inertia: [1, 1, 1], position: [" k ", 0, 0]}"
+    print "analysis: {type: dynamics, duration: 0.02, step: 0.01, method: verlet}\noutput: [{file: m.csv, channels: [b0.position]}]"
+}' >"$dir/many.yaml"
+expect 'no memory for the scene' 1 sh -c 'ulimit -v 750000; exec "$@"' sh "$program" run "$dir/many.yaml" -o "$dir/many" --json
+has "$dir/err" 'many/scene.glb: cannot be made: out of memory'
+has "$dir/out" '"status": "failed"'
+rows_are_whole "$dir/many/m.csv"
 
 # Ended in the middle of a row that nobody would wait for, in every method: the rows end there.
 cat >"$dir/row.yaml" <<'END'
@@ -295,9 +336,11 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 echo kept >"$dir/p/notes.txt"
 cp "$dir/p/pendulum.csv" "$dir/before.csv"
-expect 'a failure before the run' 1 sh -c 'trap "" XFSZ; ulimit -f 8; exec "$@"' sh \
-    "$program" run "$models/pendulum.yaml" -o "$dir/p"
-expect 'old results stay where new ones fail' 0 cmp "$dir/before.csv" "$dir/p/pendulum.csv"
+printf 'se3d: 1\nbodies: [{name: b%090d, mass: 1, inertia: [1, 1, 1]}]\nanalysis: {type: dynamics, duration: 0.1}\n' 0 >"$dir/wide.yaml"
+cp "$dir/before.csv" "$dir/p/results.csv"
+expect 'a disk without room for a row' 1 sh -c 'ulimit -f 1; exec "$@"' sh "$program" run "$dir/wide.yaml" -o "$dir/p"
+has "$dir/err" 'results.csv: cannot be written: File too'
+expect 'old results stay where new ones have no row' 0 cmp "$dir/before.csv" "$dir/p/results.csv"
 is "$(cat "$dir/p/notes.txt")" kept
 
 expect 'evaluate' 0 "$program" evaluate "$models/me751_jacobian.yaml" --csv
@@ -338,7 +381,12 @@ has "$dir/out" 'Phi_pi'
 
 expect 'check' 0 "$program" check "$models/fourbar.yaml"
 has "$dir/out" '3 redundant'
-has "$dir/out" '1 degrees of freedom'
+has "$dir/out" '1 degree of freedom (Gruebler'
+has "$dir/out" '3 bodies, '
+printf 'se3d: 1\nbodies: [{name: a}]\njoints: [{name: j, type: fixed, body_i: ground, body_j: a, at: [0, 0, 0]}]\n' >"$dir/one.yaml"
+expect 'check of one' 0 "$program" check "$dir/one.yaml"
+has "$dir/out" '1 body, 1 constraint or driver, 0 forces'
+has "$dir/out" '0 degrees of freedom'
 expect 'check without masses' 0 "$program" check "$models/me751_jacobian.yaml"
 has "$dir/out" '6 equations, rank 6'
 expect 'check --json' 0 "$program" check "$models/fourbar.yaml" --json

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The restitution typed is the restitution obtained: every method at its own step and tolerance,
  * both laws, slow and fast, shapes on a plane and on each other, in one point of contact or in
- * many. Closed form: central impacts. The bound is that of issue 6, 1e-3. */
+ * many. Closed form: central impacts. The bound is 1e-3. */
 #include "check.h"
 #include "se3d/se3d.h"
 

@@ -10,6 +10,7 @@ typedef struct law {
     double k, kt, damping, drag, friction;
     double fail_beyond; /* an overlap [m]; 0: never */
     double twist;       /* moment along the normal, per overlap */
+    size_t *calls;      /* counted where that is not NULL */
 } law;
 
 /* hooke as docs/theory/contact-laws.md has it. */
@@ -17,6 +18,9 @@ static se3d_status repeat_hooke(void *ctx, const se3d_contact_input *in, se3d_co
 {
     const law *l = ctx;
     double root = sqrt(in->mass), size = 0.0;
+    if (l->calls) {
+        ++*l->calls;
+    }
     double c = l->damping * root - 0.5 * in->lag * l->damping * l->damping;
     if (l->fail_beyond > 0.0 && in->overlap > l->fail_beyond) {
         return SE3D_ERR_CALLBACK;
@@ -68,8 +72,9 @@ static void open_world(world *w, int own, double gravity)
         low = e > 0.5 ? z : low;
         high = e > 0.5 ? high : z;
     }
-    w->law = (law){
-        k, k * 2.0 / 7.0, 2.0 * low * sqrt(k), 2.0 * low * sqrt(k) * 2.0 / 7.0, 0.3, 0.0, 0.0};
+    w->law =
+        (law){k,   k * 2.0 / 7.0, 2.0 * low * sqrt(k), 2.0 * low * sqrt(k) * 2.0 / 7.0, 0.3, 0.0,
+              0.0, NULL};
     contact.step = 1e-5;
     if (own) {
         contact.law = SE3D_LAW_CALLBACK;
@@ -102,6 +107,21 @@ static void add_shape(world *w, se3d_body body, int kind, double z)
                         : se3d_shape_create_box)(w->system, &def, &shape));
 }
 
+/* Counting contacts and listing them ask the law once for each. */
+static void check_lists(world *w, se3d_particles *set)
+{
+    static se3d_particles_contact list[1000];
+    size_t calls = 0;
+    w->law.calls = &calls;
+    const size_t count = se3d_particles_count_contacts(set);
+    const size_t once = calls;
+    CHECK(count > 10 && count <= 1000);
+    CHECK(se3d_particles_get_contacts(set, count, list) == SE3D_OK && calls == 2 * once);
+    CHECK(se3d_particles_get_contacts(set, count - 1, list) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_contacts(set, count + 1, list) == SE3D_ERR_INVALID_ARGUMENT);
+    w->law.calls = NULL;
+}
+
 /* Grains fall through each other onto a plane, a sphere and a mesh. */
 static void run_grains(world *w, int threads, double *r, double *v, double *spin)
 {
@@ -126,7 +146,7 @@ static void run_grains(world *w, int threads, double *r, double *v, double *spin
     fill.count = 60;
     CHECK(se3d_particles_fill_lattice(set, &fill, NULL) == SE3D_OK);
     CHECK(se3d_particles_step(set, 12000) == SE3D_OK);
-    CHECK(se3d_particles_count_contacts(set) > 10);
+    check_lists(w, set);
     CHECK(se3d_particles_get_all(set, 60, r, v, spin) == SE3D_OK);
 }
 

@@ -466,7 +466,7 @@ static const bad_input table[] = {
      {"`bar.position` is no single number", "bar.position.z"}},
     {WITH("events: [{name: a, channel: pin.angle.x}]"), 4, 29, {"`pin.angle` has no components"}},
     {WITH("events: [{name: a, channel: bar.position.e0}]"), 4, 29, {"no single number"}},
-    {WITH("events: [{name: a, channel: steps}]"), 4, 29, {"`steps` is a count"}},
+    {WITH("events: [{name: a, channel: steps}]"), 4, 29, {"`steps` changes by jumps"}},
     {WITH("events: [{name: a, channel: pin.angle, value: x}]"), 4, 47, {"events[0].value"}},
     {WITH("events: [{name: a, channel: pin.angle, direction: up}]"), 4, 51, {"rising, falling"}},
     {WITH("events: [{name: a, channel: pin.angle, action: stopp}]"), 4, 48, {"mean `stop`"}},

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "options.h"
+#include "text.h"
 
 static const char help[] =
     "se3d check MODEL [--set NAME=VALUE]... [--json]\n"
@@ -18,13 +19,18 @@ static void print_text(const se3d_model *model, const se3d_check_summary *s,
                        const se3d_check *check)
 {
     const char *title = se3d_model_get_title(model);
-    printf("%s%s%s\n", se3d_model_get_name(model), title[0] ? ": " : "", title);
-    printf("%zu bodies, %zu constraints and drivers, %zu forces\n", s->bodies,
-           se3d_system_count_constraints(se3d_model_get_system(model)),
-           se3d_system_count_forces(se3d_model_get_system(model)));
-    printf("%zu equations, rank %zu, %zu redundant, %zu inconsistent\n", s->equations, s->rank,
-           s->redundant, s->inconsistent);
-    printf("%zu degrees of freedom (Gruebler count %" PRId64 ")\n", s->freedoms, s->gruebler);
+    text_put_plain(stdout, se3d_model_get_name(model));
+    fputs(title[0] ? ": " : "", stdout);
+    text_put_plain(stdout, title);
+    putchar('\n');
+    put_count(s->bodies, "body", "bodies", ", ");
+    put_count(se3d_system_count_constraints(se3d_model_get_system(model)), "constraint or driver",
+              "constraints and drivers", ", ");
+    put_count(se3d_system_count_forces(se3d_model_get_system(model)), "force", "forces", "\n");
+    put_count(s->equations, "equation", "equations", "");
+    printf(", rank %zu, %zu redundant, %zu inconsistent\n", s->rank, s->redundant, s->inconsistent);
+    put_count(s->freedoms, "degree of freedom", "degrees of freedom", "");
+    printf(" (Gruebler count %" PRId64 ")\n", s->gruebler);
     for (size_t k = 0; k < se3d_check_count_messages(check); ++k) {
         const char *text = NULL;
         if (!SE3D_FAILED(se3d_check_get_message(check, k, &text))) {

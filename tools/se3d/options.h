@@ -3,6 +3,8 @@
 #ifndef SE3D_TOOL_OPTIONS_H
 #define SE3D_TOOL_OPTIONS_H
 
+#include <stdint.h>
+
 #include "se3d/io.h"
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
@@ -60,6 +62,9 @@ int run_for_plots(const char *model, int quiet, int draw, char *csv, size_t size
 /* Write a text as a JSON string, a number as JSON (null where it is not finite). */
 void json_put_text(const char *text);
 void json_put_number(double value);
+
+/* Print "1 body" or "2 bodies"; `after` follows. */
+void put_count(uint64_t count, const char *one, const char *many, const char *after);
 
 /* A progress bar on standard error, shown on a terminal only. */
 typedef struct progress {

@@ -4,6 +4,7 @@
 #define _POSIX_C_SOURCE 200809L
 #endif
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -36,6 +37,11 @@ void json_put_number(double value)
     } else {
         fputs("null", stdout);
     }
+}
+
+void put_count(uint64_t count, const char *one, const char *many, const char *after)
+{
+    printf("%" PRIu64 " %s%s", count, count == 1 ? one : many, after);
 }
 
 void report_failure(const options *o, const char *command, const char *message)

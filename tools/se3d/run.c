@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "interrupt.h"
+#include "notes.h"
 #include "options.h"
 #include "pictures.h"
 
@@ -35,8 +36,9 @@ static const char *outcome(const se3d_run_analysis *a)
     if (a->status < 0) {
         return "FAILED";
     }
-    if (strcmp(a->type, "equilibrium") == 0 && a->status != SE3D_INFO_UNSTABLE) {
-        return "the equilibrium is stable or neutral";
+    const int known = a->status == SE3D_INFO_UNSTABLE || a->status == SE3D_INFO_NEUTRAL;
+    if (strcmp(a->type, "equilibrium") == 0 && !known) {
+        return "the equilibrium is stable";
     }
     return se3d_status_get_text((se3d_status)a->status);
 }
@@ -62,7 +64,8 @@ static void print_events(const se3d_run *run, size_t index)
         }
     }
     if (count > 0) {
-        printf("  %zu event%s, see events.csv\n", count, count > 1 ? "s" : "");
+        fputs("  ", stdout);
+        put_count(count, "event", "events", ", see events.csv\n");
     }
 }
 
@@ -88,9 +91,11 @@ static void print_analysis(const se3d_run_analysis *a)
 {
     printf("%s, %s%s%s: %s\n", a->type, a->formulation, a->method[0] ? ", " : "", a->method,
            outcome(a));
-    printf("  from %.9g s to %.9g s, %" PRIu64 " steps (%" PRIu64 " rejected), %" PRIu64
-           " iterations, CPU time %.3g s\n",
-           a->start, a->end, a->stats.steps, a->stats.rejected, a->stats.iterations, a->cpu_time);
+    printf("  from %.9g s to %.9g s, ", a->start, a->end);
+    put_count(a->stats.steps, "step", "steps", "");
+    printf(" (%" PRIu64 " rejected), ", a->stats.rejected);
+    put_count(a->stats.iterations, "iteration", "iterations", "");
+    printf(", CPU time %.3g s\n", a->cpu_time);
     if (a->left[0]) {
         printf("  auto left %s for %s at t = %.9g s: the motion became stiff\n", a->left, a->method,
                a->left_at);
@@ -142,6 +147,17 @@ static void print_passing(const se3d_model *model)
     }
 }
 
+static void print_file(const se3d_run_file *file)
+{
+    printf("wrote %s: ", file->path);
+    if (file->columns > 0) {
+        put_count(file->rows, "row", "rows", ", ");
+        put_count(file->columns, "column", "columns", "\n");
+    } else {
+        put_count(file->rows, "time", "times", "\n");
+    }
+}
+
 static void print_text(const se3d_model *model, const se3d_run *run)
 {
     for (size_t k = 0; k < se3d_run_count_analyses(run); ++k) {
@@ -156,9 +172,7 @@ static void print_text(const se3d_model *model, const se3d_run *run)
     for (size_t k = 0; k < se3d_run_count_files(run); ++k) {
         se3d_run_file file;
         if (!SE3D_FAILED(se3d_run_get_file(run, k, &file))) {
-            printf(file.columns > 0 ? "wrote %s: %" PRIu64 " rows, %zu columns\n"
-                                    : "wrote %s: %" PRIu64 " times\n",
-                   file.path, file.rows, file.columns);
+            print_file(&file);
         }
     }
 }
@@ -269,7 +283,7 @@ static void json_put_pictures(const se3d_model *model)
 }
 
 static void print_json(const options *o, const se3d_model *model, const se3d_run *run,
-                       const char *message)
+                       const char *message, const notes *n)
 {
     printf("{\"status\": \"%s\", \"model\": ", message[0] ? "failed" : "done");
     json_put_text(o->model);
@@ -299,7 +313,12 @@ static void print_json(const options *o, const se3d_model *model, const se3d_run
     json_put_count("passing_meshes",
                    se3d_system_count_passing_meshes(
                        se3d_model_get_system((se3d_model *)(uintptr_t)model), NULL, NULL));
-    fputs("}\n", stdout);
+    fputs(", \"notes\": [", stdout);
+    for (size_t k = 0; k < n->count; ++k) {
+        fputs(k > 0 ? ", " : "", stdout);
+        json_put_text(n->text[k]);
+    }
+    fputs("]}\n", stdout);
 }
 
 /* The folder for the results; free it. */
@@ -318,12 +337,15 @@ static char *results_folder(const options *o, const se3d_model *model)
 typedef struct watcher {
     progress *bar;
     se3d_scene *scene;
+    se3d_status status; /* of the scene: the first failure */
 } watcher;
 
 static int watch(void *ctx, size_t analysis, double time, double fraction)
 {
     watcher *w = ctx;
-    se3d_scene_record(w->scene);
+    if (!SE3D_FAILED(w->status)) {
+        w->status = se3d_scene_record(w->scene);
+    }
     return progress_show(w->bar, analysis, time, fraction) || interrupt_came();
 }
 
@@ -344,20 +366,36 @@ static double end_of(const se3d_run *run)
                : 0.0;
 }
 
-/* The scene is left beside the results. @return false after a message. */
-static int write_scene(const options *o, se3d_scene *scene, const char *folder)
+/* The scene is left beside the results. @return false: `error` says why. */
+static int write_scene(const watcher *w, const char *folder, se3d_model_error *error)
 {
     char path[4200];
-    se3d_model_error error;
     const int length = snprintf(path, sizeof path, "%s/scene.glb", folder);
-    if (!scene || length < 0 || (size_t)length >= sizeof path) {
-        return 1;
+    const int fits = length > 0 && (size_t)length < sizeof path;
+    if (!SE3D_FAILED(w->status) && fits) {
+        return !SE3D_FAILED(se3d_scene_write(w->scene, path, error));
     }
-    if (SE3D_FAILED(se3d_scene_write(scene, path, &error))) {
-        fprintf(stderr, "%s: %s\n", o->model, error.message);
-        return 0;
+    memset(error, 0, sizeof *error);
+    snprintf(error->message, sizeof error->message, "%.200s/scene.glb: cannot be made: %s", folder,
+             fits ? se3d_status_get_text(w->status) : "the path is too long");
+    return 0;
+}
+
+static void print_result(const options *o, se3d_model *model, const se3d_run *run,
+                         const char *message)
+{
+    notes n;
+    if (o->json || !o->quiet) {
+        notes_collect(&n, model, run);
     }
-    return 1;
+    if (o->json) {
+        print_json(o, model, run, message, &n);
+    } else if (!o->quiet) {
+        print_text(model, run);
+        for (size_t k = 0; k < n.count; ++k) {
+            printf("note: %s\n", n.text[k]);
+        }
+    }
 }
 
 /* Run, and leave the results and the scene in `folder`. */
@@ -365,12 +403,13 @@ static int run_into(const options *o, se3d_model *model, const char *folder, se3
 {
     se3d_run_options how = se3d_run_options_default();
     se3d_run *run = NULL;
-    se3d_model_error error;
+    se3d_model_error error = {.message = ""};
     progress bar;
     progress_begin(&bar, o->quiet || o->json, se3d_model_count_analyses(model));
     how.directory = folder;
-    se3d_scene_create(model, scene); /* without memory there is no scene */
-    watcher w = {&bar, *scene};
+    watcher w = {&bar, NULL, SE3D_OK};
+    w.status = se3d_scene_create(model, scene);
+    w.scene = *scene;
     interrupt_begin();
     how.progress = watch;
     how.ctx = &w;
@@ -383,25 +422,24 @@ static int run_into(const options *o, se3d_model *model, const char *folder, se3
                  "ended by the user at t = %.9g s; the results so far are in %.200s", end_of(run),
                  folder);
     }
-    if (o->json) {
-        print_json(o, model, run, error.message);
-    } else if (!o->quiet) {
-        print_text(model, run);
-    }
-    if (SE3D_FAILED(status) || ended) {
+    const int failed = SE3D_FAILED(status) || ended;
+    const int nothing = se3d_run_count_files(run) == 0;
+    se3d_model_error lost;
+    const int drawn = nothing || write_scene(&w, folder, failed ? &lost : &error);
+    print_result(o, model, run, error.message);
+    if (failed || !drawn) {
         fflush(stdout);
         fprintf(stderr, "%s: %s\n", o->model, error.message);
     }
-    const int drawn = se3d_run_count_files(run) == 0 || write_scene(o, *scene, folder);
-    const int nothing = se3d_run_count_files(run) == 0;
+    if (failed && !drawn) {
+        fprintf(stderr, "%s: %s\n", o->model, lost.message);
+    }
     se3d_run_destroy(run);
     if (status == SE3D_ERR_UNSUPPORTED || (SE3D_FAILED(status) && nothing) || ended) {
         se3d_scene_destroy(*scene); /* no pictures of nothing, or nobody waits for them */
         *scene = NULL;
     }
-    return status == SE3D_ERR_UNSUPPORTED           ? EXIT_USAGE
-           : SE3D_FAILED(status) || ended || !drawn ? EXIT_FAILED
-                                                    : EXIT_DONE;
+    return status == SE3D_ERR_UNSUPPORTED ? EXIT_USAGE : failed || !drawn ? EXIT_FAILED : EXIT_DONE;
 }
 
 /* `pictures`: the type of those to make, "" for none, NULL for all. */

@@ -225,7 +225,8 @@ static int write_film(const char *results, const char *path, double speed, const
         code = make_film(f, chromium, results, quiet);
     }
     if (code == EXIT_DONE && !quiet) {
-        printf("wrote %s: %zu pictures\n", path, f->count);
+        printf("wrote %s: ", path);
+        put_count(f->count, "picture", "pictures", "\n");
     }
     free(f);
     return code;
