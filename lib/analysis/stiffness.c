@@ -64,7 +64,8 @@ double se3di_stiffness_step(const se3di_model *model)
 {
     double decay, oscillation;
     measure(model, &decay, &oscillation);
-    return STEP_ANGLE / (decay + oscillation);
+    const double rate = decay + oscillation;
+    return rate > 0.0 ? STEP_ANGLE / rate : HUGE_VAL; /* a host may trap divisions by 0 */
 }
 
 double se3di_stiffness_motion(const se3di_model *model)

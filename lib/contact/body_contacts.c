@@ -80,18 +80,6 @@ se3d_status se3di_contacts_visit(const se3di_model *model, se3di_contact_visitor
     return se3di_broad_visit(model, visit_pair, &v);
 }
 
-int se3di_contacts_possible(const se3di_model *model)
-{
-    for (uint32_t b = 1; b < model->shape_slots.count; ++b) {
-        for (uint32_t a = 0; a < b; ++a) {
-            if (se3di_shapes_may_touch(model, a, b)) {
-                return 1;
-            }
-        }
-    }
-    return 0;
-}
-
 static se3d_status add_wrench(void *ctx, const se3di_encounter *e)
 {
     double *wrench = ctx;

@@ -444,7 +444,6 @@ void se3di_particles_image(const se3di_particles *set, const se3di_wall *wall, c
 /* particle_sweep.c: forces and motion. */
 /* Half kick of duration h/2 from the present forces and gravity. */
 void se3di_particles_kick(se3di_particles *set, double h);
-void se3di_particles_drift(se3di_particles *set, double h);
 /* One or two half kicks of duration h/2 each and a drift by h, in one pass. */
 void se3di_particles_move(se3di_particles *set, int kicks, double h);
 /* The forces of all slabs, and for every slab, as soon as its forces are complete and nobody looks

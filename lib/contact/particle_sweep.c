@@ -110,11 +110,6 @@ void se3di_particles_kick(se3di_particles *set, double h)
     pass(set, &(se3di_motion){1, h, 0.0});
 }
 
-void se3di_particles_drift(se3di_particles *set, double h)
-{
-    pass(set, &(se3di_motion){0, 0.0, h});
-}
-
 void se3di_particles_move(se3di_particles *set, int kicks, double h)
 {
     pass(set, &(se3di_motion){kicks, h, h});
@@ -168,8 +163,8 @@ static void evaluate_forces(const sweep *w, uint32_t s)
     se3di_particles_get_kernels(set)->pairs(&task);
     task.begin = slab->wall_begin;
     task.end = slab->wall_end;
-    task.wall_sums = set->wall_sums + 6 * walls * s;
     if (walls > 0) {
+        task.wall_sums = set->wall_sums + 6 * walls * s;
         memset(task.wall_sums, 0, 6 * walls * sizeof(double));
         se3di_particles_get_kernels(set)->walls(&task);
         se3di_particles_mesh_forces(set, slab, &task);

@@ -293,7 +293,8 @@ double se3di_state_limit_turn(const se3di_model *model, double growth, double h)
         const se3di_term *term = &model->angles[k].term;
         double rate =
             se3di_norm(model->frames[term->body_i].w) + se3di_norm(model->frames[term->body_j].w);
-        double least = 4.0 / (rate + sqrt(rate * rate + 4.0 * growth)); /* 2 rad */
+        const double pace = rate + sqrt(rate * rate + 4.0 * growth);
+        const double least = pace > 0.0 ? 4.0 / pace : h; /* 2 rad */
         h = h > least ? least : h;
     }
     return h;

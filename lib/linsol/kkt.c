@@ -329,11 +329,6 @@ se3d_status se3di_kkt_create(const se3d_allocator *allocator, const se3di_kkt_pa
     return SE3D_OK;
 }
 
-const se3di_kkt_layout *se3di_kkt_get_layout(const se3di_kkt *kkt)
-{
-    return &kkt->layout;
-}
-
 se3di_kkt_settings se3di_kkt_get_settings(const se3di_kkt *kkt)
 {
     return kkt->settings;
@@ -342,11 +337,6 @@ se3di_kkt_settings se3di_kkt_get_settings(const se3di_kkt *kkt)
 void se3di_kkt_set_settings(se3di_kkt *kkt, const se3di_kkt_settings *settings)
 {
     kkt->settings = *settings;
-}
-
-se3di_kkt_level se3di_kkt_get_level(const se3di_kkt *kkt)
-{
-    return kkt->level;
 }
 
 int32_t se3di_kkt_get_dependent_rows(const se3di_kkt *kkt)

@@ -132,10 +132,8 @@ se3d_status se3di_kkt_create(const se3d_allocator *allocator, const se3di_kkt_pa
                              se3di_kkt_kind kind, se3di_kkt **kkt);
 void se3di_kkt_destroy(se3di_kkt *kkt); /* NULL is fine */
 
-const se3di_kkt_layout *se3di_kkt_get_layout(const se3di_kkt *kkt);
 se3di_kkt_settings se3di_kkt_get_settings(const se3di_kkt *kkt);
 void se3di_kkt_set_settings(se3di_kkt *kkt, const se3di_kkt_settings *settings);
-se3di_kkt_level se3di_kkt_get_level(const se3di_kkt *kkt); /* that is really used */
 
 /* Estimated cost of factor and one solve, in vector operations; for the choice of orders. */
 int32_t se3di_kkt_get_dependent_rows(const se3di_kkt *kkt); /* of the last factorisation */

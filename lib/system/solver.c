@@ -177,11 +177,12 @@ se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
                           t_end, system->model.time);
     }
     const double most = solver->run.guard.most;
-    const double steps = (t_end - system->model.time) / solver->run.integration.settings.step;
+    const double step = solver->run.integration.settings.step; /* 0: none was asked for */
+    const double steps = step > 0.0 ? (t_end - system->model.time) / step : 0.0;
     if (isfinite(steps) && steps > most) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "t_end = %g s takes %g steps of %g s, must take at most %g", t_end, steps,
-                          solver->run.integration.settings.step, most);
+                          step, most);
     }
     se3di_work_begin(system);
     return se3di_work_end(system, se3di_run_to(&solver->run, t_end));
