@@ -13,6 +13,7 @@
 #include "analysis/check.h"
 
 #include "assembly/user.h"
+#include "base/text.h"
 #include "contact/body_contacts.h"
 #include "linsol/rank.h"
 
@@ -63,6 +64,7 @@ add_message(se3di_check *check, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    se3di_text_make_plain(text); /* a name may have been cut in a character */
     void *messages = check->messages;
     se3d_status status = se3di_array_reserve(&check->allocator, &messages, &check->message_capacity,
                                              check->message_count + 1, sizeof *check->messages);
@@ -143,6 +145,26 @@ static void mark_held(inspection *in)
     }
 }
 
+/* Whether a spring, damper or bushing leads out of a component. */
+static int has_springs(const inspection *in, uint32_t root)
+{
+    const se3di_assembly *assembly = &in->equations->assembly;
+    for (size_t k = 0; k < in->model->force_slots.count; ++k) {
+        const se3di_force *force = &in->model->forces[k];
+        if (force->type != SE3DI_FORCE_TSDA && force->type != SE3DI_FORCE_BUSHING) {
+            continue;
+        }
+        const int32_t i = assembly->free_index[force->body_i];
+        const int32_t j = assembly->free_index[force->body_j];
+        const int inside_i = i >= 0 && in->component[i] == root;
+        const int inside_j = j >= 0 && in->component[j] == root;
+        if (inside_i != inside_j) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 static se3d_status report_unheld(inspection *in, uint32_t root)
 {
     const se3di_assembly *assembly = &in->equations->assembly;
@@ -158,6 +180,10 @@ static se3d_status report_unheld(inspection *in, uint32_t root)
             name_body(in->model, assembly->free_body[k], name, sizeof name);
             list_name(list, sizeof list, index++, count, name);
         }
+    }
+    if (has_springs(in, root)) {
+        return add_message(
+            in->check, "only force elements hold %s: no constraint leads to a fixed body", list);
     }
     if (count == 1) {
         return add_message(in->check, "nothing holds %s: no constraint leads to a fixed body",

@@ -11,8 +11,8 @@
  *
  *     predicted  rho . dq - dq . K dq / 2      done  (rho + rho at the end) . dq / 2
  *
- * Without damping it is Newton's method. The curvature at the end tells stable from unstable.
- *                                                                       docs/theory/equilibrium.md
+ * Without damping it is Newton's method. The curvature at the end tells stable, neutral and
+ * unstable apart. docs/theory/equilibrium.md
  */
 #include "analysis/equilibrium.h"
 
@@ -262,7 +262,7 @@ static int has_converged(const statics *s, history *progress)
 static se3d_status iterate(statics *s, int *converged)
 {
     history progress = {HUGE_VAL, HUGE_VAL, 0};
-    *converged = 0;
+    *converged = !(measure_balance(s) > 0.0); /* without any force there is no step to find */
     for (int k = 0; k < ITERATIONS && !*converged; ++k) {
         double ratio = -1.0;
         SE3DI_TRY(se3di_equations_ask(s->equations));
@@ -317,7 +317,11 @@ static se3d_status finish(statics *s)
     }
     model->time = s->t;
     s->equations->redundant = s->redundant;
-    return status < 0 || negative > 0 ? SE3D_INFO_UNSTABLE : SE3D_OK;
+    const int has_stiffness = s->newton.rate2 > 0.0;
+    if (has_stiffness && (status < 0 || negative > 0)) {
+        return SE3D_INFO_UNSTABLE;
+    }
+    return se3di_static_newton_is_strict(&s->newton) ? SE3D_OK : SE3D_INFO_NEUTRAL;
 }
 
 static se3d_status solve(statics *s)

@@ -2,6 +2,7 @@
 /* Preparation and control of a run. */
 #include "analysis/run.h"
 
+#include "analysis/dead_point.h"
 #include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
 #include "analysis/jump.h"
@@ -512,14 +513,20 @@ static se3d_status run_to(se3di_run *run, double t_end)
         break;
     case SE3D_ANALYSIS_DYNAMICS:
         status = run_dynamics(run, t_end);
-        SE3DI_TRY(status);
+        if (status < 0) {
+            return se3di_dead_point_explain(&run->equations, t_end, status);
+        }
         break;
     default:
         status = run_kinematics(run, t_end);
-        SE3DI_TRY(status);
+        if (status < 0) {
+            return se3di_dead_point_explain(&run->equations, t_end, status);
+        }
         break;
     }
-    return status == SE3D_INFO_EVENT || status == SE3D_INFO_UNSTABLE ? status : information(run);
+    return status == SE3D_INFO_EVENT || status == SE3D_INFO_UNSTABLE || status == SE3D_INFO_NEUTRAL
+               ? status
+               : information(run);
 }
 
 static se3d_status run_step(se3di_run *run, double h)

@@ -276,9 +276,10 @@ static void weigh_stiffness(se3di_static_newton *newton, const double *load, con
 }
 
 /* The diagonal of s W + F. */
-static double shift_of(const se3di_static_weight *weight, double s, size_t entry)
+static double shift_of(const se3di_static_newton *newton, size_t body, double s, size_t entry)
 {
-    const double shift = s * weight->mass + STIFFNESS_FLOOR * weight->stiffness;
+    const se3di_static_weight *weight = &newton->weights[body];
+    const double shift = s * weight->mass + newton->floor * weight->stiffness;
     return entry < 3 ? shift : shift * weight->radius2;
 }
 
@@ -346,7 +347,7 @@ static void combine_bodies(se3di_static_newton *newton, double s)
         for (size_t e = 0; e < 36; ++e) {
             const size_t r = e / 6;
             const size_t c = e % 6;
-            const double shift = r == c ? shift_of(&newton->weights[k], s, r) : 0.0;
+            const double shift = r == c ? shift_of(newton, k, s, r) : 0.0;
             const double added = shift + newton->penalty[36 * k + e];
             tangent->D[36 * k + e] = 0.5 * (K[e] + K[6 * c + r]) + added;
             tangent->M[36 * k + e] = K[e] + added;
@@ -378,6 +379,7 @@ se3d_status se3di_static_newton_eval(se3di_static_newton *newton, double t, cons
                                      const double *lambda, int is_convex)
 {
     newton->tangent.is_convex = is_convex;
+    newton->floor = STIFFNESS_FLOOR;
     SE3DI_TRY(se3di_tangent_eval(&newton->tangent, t, newton->zero, lambda));
     weigh_stiffness(newton, load, lambda);
     eval_penalty(newton);
@@ -404,6 +406,18 @@ se3d_status se3di_static_newton_factor(se3di_static_newton *newton, double s, in
     return SE3D_OK;
 }
 
+int se3di_static_newton_is_strict(se3di_static_newton *newton)
+{
+    int32_t negative = 0;
+    newton->floor = -STIFFNESS_FLOOR;
+    se3d_status status = se3di_static_newton_factor(newton, 0.0, &negative);
+    if (status < 0) { /* nothing has any stiffness: is there a freedom at all? */
+        status = se3di_static_newton_factor(newton, -1.0, &negative);
+    }
+    newton->floor = STIFFNESS_FLOOR;
+    return status >= 0 && negative == 0;
+}
+
 se3d_status se3di_static_newton_solve(se3di_static_newton *newton, const double *rho, double *dq)
 {
     se3di_equations *equations = newton->equations;
@@ -425,7 +439,7 @@ double se3di_static_newton_measure(const se3di_static_newton *newton, double s, 
 {
     double sum = 0.0;
     for (size_t k = 0; k < newton->equations->assembly.unknown_count; ++k) {
-        sum += shift_of(&newton->weights[k / 6], s, k % 6) * dq[k] * dq[k];
+        sum += shift_of(newton, k / 6, s, k % 6) * dq[k] * dq[k];
     }
     return sum;
 }

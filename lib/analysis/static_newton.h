@@ -41,6 +41,7 @@ typedef struct se3di_static_newton {
     double *reaction;                        /* [rows] */
     se3di_static_weight *weights;            /* [free bodies] */
     double rate2;                            /* the largest stiffness / mass [1/s^2] */
+    double floor;                            /* added to blocks, of a body's own stiffness */
     double force;                            /* the largest stiffness times radius [N] */
 } se3di_static_newton;
 
@@ -61,6 +62,8 @@ se3d_status se3di_static_newton_eval(se3di_static_newton *newton, double t, cons
 /* Factor the symmetric part with damping s >= 0; *negative: freedoms of negative curvature.
  * @return OK, or SINGULAR, NOT_FINITE where another s may do */
 se3d_status se3di_static_newton_factor(se3di_static_newton *newton, double s, int32_t *negative);
+/* Whether every freedom has positive curvature, beyond rounding. What was factored is lost. */
+int se3di_static_newton_is_strict(se3di_static_newton *newton);
 /* dq for rho, with the damping last factored by. */
 se3d_status se3di_static_newton_solve(se3di_static_newton *newton, const double *rho, double *dq);
 /* dq . (s W + F) dq */

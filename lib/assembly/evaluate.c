@@ -11,6 +11,42 @@
 #include <math.h>
 #include <string.h>
 
+#define DISTANCE_MIN 1e-12 /* squared, of the square of the bodies' size */
+
+/* A body's radius of gyration, or the distance of a point on it. */
+static double reach(const se3di_body *body, const double s[3])
+{
+    const double gyration =
+        body->mass > 0.0 ? (body->J[0] + body->J[1] + body->J[2]) / body->mass : 0.0;
+    return fmax(sqrt(fmax(gyration, 0.0)), se3di_norm(s));
+}
+
+/* A distance of nothing has no direction, and no motion goes on through it. */
+static int is_lost_distance(const se3di_model *model, const se3di_row *row, double square)
+{
+    if (square > 1e-9 || row->term_count != 1 ||
+        model->terms[row->term_begin].type != SE3DI_PRIMITIVE_D) {
+        return 0;
+    }
+    const se3di_term *term = &model->terms[row->term_begin];
+    const double size = fmax(reach(&model->bodies[term->body_i], term->s_i),
+                             reach(&model->bodies[term->body_j], term->s_j));
+    return square <= DISTANCE_MIN * size * size;
+}
+
+static se3d_status report_distance(const se3di_model *model, uint32_t row, double t, double square,
+                                   se3di_error *error)
+{
+    char name[128];
+    se3di_row_name(model, row, name, sizeof name);
+    return se3di_error_set(
+        error, SE3D_ERR_INCONSISTENT,
+        "t = %g s: the square of the distance that %s asks for is %.3g m^2, must "
+        "be > 0: a distance of nothing has no direction (a spherical joint holds "
+        "points together)",
+        t, name, square);
+}
+
 se3d_status se3di_assembly_eval_functions(se3di_assembly *assembly, double t, se3di_error *error)
 {
     const se3di_model *model = assembly->model;
@@ -28,6 +64,9 @@ se3d_status se3di_assembly_eval_functions(se3di_assembly *assembly, double t, se
                                    "t = %g s: the function of %s is f = %g, f' = %g, f'' = %g, "
                                    "must be finite",
                                    t, name, jet[0], jet[1], jet[2]);
+        }
+        if (is_lost_distance(model, row, jet[0])) {
+            return report_distance(model, k, t, jet[0], error);
         }
     }
     return SE3D_OK;

@@ -17,6 +17,7 @@
 #define DAMPED_ITERATIONS 200
 #define GAP_MAX           100.0 /* sizes; a larger one is the size */
 #define CORRECTIONS       10
+#define DIGITS            1e-5 /* of the size: what rounding of dimensions leaves open */
 
 typedef struct position_problem {
     se3di_equations *equations;
@@ -384,13 +385,61 @@ static void describe_lock(const se3di_equations *equations, char *text, size_t s
     }
 }
 
+/* ", but body a is held", where all bodies of an open constraint that could move are. */
+static int describe_held(const se3di_equations *equations, char *text, size_t size)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    double widest, total;
+    (void)find_widest(equations, &widest, &total);
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        const open_joint open = measure_joint(equations, &assembly->model->constraints[k]);
+        int held = open.length > 1e-3 * widest || open.angle > 1e-9;
+        uint32_t body = 0;
+        for (int32_t e = assembly->joint_begin[k]; e < assembly->joint_begin[k + 1]; ++e) {
+            body = assembly->free_body[assembly->joint_body[e]];
+            held = held && se3di_equations_holds(equations, body);
+        }
+        if (held && assembly->joint_begin[k] < assembly->joint_begin[k + 1]) {
+            const char *name = assembly->model->bodies[body].name;
+            char joint[100];
+            name_constraint(assembly->model, k, joint, sizeof joint);
+            snprintf(text, size, "%s asks body %.64s to move, which is held", joint,
+                     name ? name : "without a name");
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Violations that dimensions of six digits leave. */
+static se3d_status report_digits(const position_problem *problem, double t, const char *gap)
+{
+    return se3di_error_set(
+        problem->equations->error, SE3D_ERR_INCONSISTENT,
+        "t = %g s: the constraints fit to %.2g of the size of the mechanism, but not exactly: %s; "
+        "give positions, axes and dimensions more digits, or put a joint with more freedom into "
+        "the "
+        "loop, such as a spherical one",
+        t, problem->worst, gap);
+}
+
 static se3d_status report_gap(const position_problem *problem, double t, int stationary)
 {
     char gap[400];
+    char held[240];
     describe_gap(problem, stationary, gap, sizeof gap);
+    if (problem->equations->hold && describe_held(problem->equations, held, sizeof held)) {
+        return se3di_error_set(problem->equations->error, SE3D_ERR_INCONSISTENT,
+                               "t = %g s: the constraints cannot be met: %s (%s); give it the pose "
+                               "that the constraints ask for, or do not hold it",
+                               t, held, gap);
+    }
+    char lock[180];
+    describe_lock(problem->equations, lock, sizeof lock);
+    if (problem->worst < DIGITS && !lock[0]) {
+        return report_digits(problem, t, gap);
+    }
     if (stationary) {
-        char lock[180];
-        describe_lock(problem->equations, lock, sizeof lock);
         return se3di_error_set(
             problem->equations->error, SE3D_ERR_INCONSISTENT,
             "t = %g s: the constraints cannot be met: %s at the least violation%s; "

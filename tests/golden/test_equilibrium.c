@@ -134,7 +134,8 @@ static void chains_hang_from_any_start(void)
             const double phi = 2.0 * PI * next();
             add_link(&s, PI * (2.0 * next() - 1.0), ball ? phi : 0.0, ball);
         }
-        CHECK(equilibrate(&s, &stats) == SE3D_OK);
+        CHECK(equilibrate(&s, &stats) ==
+              (ball ? SE3D_INFO_NEUTRAL : SE3D_OK)); /* links of ball joints spin */
         CHECK(stats.factorizations < 200 + 25 * count);
         for (size_t k = 0; k < count; ++k) {
             double force[3];
@@ -288,7 +289,7 @@ static void a_cloth_hangs_from_its_corners(void)
         def.point_i[2] = 0.3;
         CHECK(se3d_force_create_tsda(s.system, &def, &corner[e]) == SE3D_OK);
     }
-    CHECK(equilibrate(&s, &stats) == SE3D_OK);
+    CHECK(equilibrate(&s, &stats) == SE3D_INFO_NEUTRAL); /* its balls turn */
     CHECK(stats.iterations < 100);
     double lift = 0.0;
     for (int e = 0; e < 4; ++e) {
@@ -360,7 +361,7 @@ static void balls_rest_on_a_plane(void)
         solid.body = ball[k];
         CHECK(se3d_shape_create_sphere(s.system, &solid, &shape) == SE3D_OK);
     }
-    CHECK(equilibrate(&s, &stats) == SE3D_OK);
+    CHECK(equilibrate(&s, &stats) == SE3D_INFO_NEUTRAL); /* they roll */
     for (int k = 0; k < BALLS; ++k) {
         double r[3];
         CHECK(se3d_body_get_position(s.system, ball[k], r) == SE3D_OK);

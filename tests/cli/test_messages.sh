@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What the program says where a mechanism cannot do what it is asked to, or where a run leaves something out: it names
+# the element, the time and what would help.
+set -u
+. "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
+slide='{name: slide, type: prismatic, body_i: ground, body_j: a, at: [0, 0, 0], axis: [1, 0, 0]}'
+body='{name: a, mass: 1, inertia: [0.1, 0.1, 0.1], position: [1, 0, 0]}'
+prints() {
+    has "$dir/out" "$1"
+}
+
+# A slider that drives a crank of 1 m and a rod of 2 m (cosines of 30 degrees) past the position in which they are in
+# line: 3 m from the pin, at (3 - sqrt(3)) / 2 s.
+cat >"$dir/slider.yaml" <<'END'
+se3d: 1
+gravity: [0, 0, 0]
+parameters: {c: sqrt(3)}
+bodies:
+  - {name: crank, mass: 1, inertia: [0.1, 0.1, 0.1], position: [0, 0.5, 0]}
+  - {name: rod, mass: 1, inertia: [0.1, 0.1, 0.1], position: [c/2, 0.5, 0]}
+  - {name: piston, mass: 1, inertia: [0.1, 0.1, 0.1], position: [c, 0, 0]}
+joints:
+  - {name: main, type: revolute, body_i: ground, body_j: crank, at: [0, 0, 0], axis: [0, 0, 1]}
+  - {name: big, type: revolute, body_i: crank, body_j: rod, at: [0, 1, 0], axis: [0, 0, 1]}
+  - {name: small, type: revolute, body_i: rod, body_j: piston, at: [c, 0, 0], axis: [0, 0, 1]}
+  - {name: slide, type: prismatic, body_i: ground, body_j: piston, at: [0, 0, 0], axis: [1, 0, 0]}
+drivers:
+  - {name: push, joint: slide, coordinate: displacement, value: 2*t}
+analysis: {type: kinematics, duration: 1, step: 0.01}
+output: [{file: s.csv, channels: [piston.position]}]
+END
+for how in kinematics inverse_dynamics dynamics 'dynamics --method radau' 'dynamics --method rattle' \
+    'dynamics --method generalized_alpha' 'kinematics --formulation rp'; do
+    # shellcheck disable=SC2086
+    expect "a slider beyond its dead point: $how" 1 "$program" run "$dir/slider.yaml" -o "$dir/o" --analysis $how
+    says 'driver push has come to a dead point of the mechanism at t = 0.6339'
+    says 's, where its value is 1.267'
+done
+sed 's/value: 2\*t/value: "if(t > 0.3, 9, t)"/' "$dir/slider.yaml" >"$dir/jump.yaml"
+expect 'a jump is no dead point' 1 "$program" run "$dir/jump.yaml" -o "$dir/o"
+holds 'it is called one' [ "$(grep -c 'dead point' "$dir/err")" = 0 ]
+
+# The square of a distance that goes to zero, and below.
+for value in '1 - t' '(1 - t)^2 - 1e-3' '(1 - t)^2'; do
+    printf 'se3d: 1\nbodies: [%s]\njoints: [%s]\nconstraints: [{name: reach, type: d, body_i: ground, body_j: a, value: "%s"}]\nanalysis: {type: kinematics, duration: 2, step: 0.01}\n' \
+        "$body" "$slide" "$value" | sed 's/1 - t)^2 - 1e-3/1 - t)^2 - 1e-9/' >"$dir/d.yaml"
+    for analysis in kinematics dynamics; do
+        expect "$value: $analysis" 1 timeout 20 "$program" run "$dir/d.yaml" -o "$dir/o" --analysis $analysis
+        holds "does not name the constraint: $(cat "$dir/err")" grep -qE 'reach|dead point' "$dir/err"
+        holds 'shows what the user cannot know' [ "$(grep -cE 'least violation|the tolerance 3e' "$dir/err")" = 0 ]
+    done
+done
+
+# A held body, and a driver that asks it to move.
+printf 'se3d: 1\nbodies: [%s]\njoints: [%s]\ndrivers: [{name: push, joint: slide, coordinate: displacement, value: 3}]\nanalysis: {type: assembly}\n' \
+    "$(echo "$body" | sed 's/}/, held: true}/')" "$slide" >"$dir/held.yaml"
+expect 'a driver of a held body' 1 "$program" run "$dir/held.yaml" -o "$dir/o"
+says 'push asks body a to move, which is held'
+
+# A body on springs.
+printf 'se3d: 1\nbodies: [%s]\nforces: [{name: s, type: tsda, body_i: ground, body_j: a, k: 100, l0: 0.5}]\nanalysis: {type: equilibrium}\n' \
+    "$body" >"$dir/spring.yaml"
+expect 'a body on a spring' 0 "$program" check "$dir/spring.yaml"
+prints 'only force elements hold a: no constraint leads to a fixed body'
+prints '1 body, 0 constraints and drivers, 1 force'
+sed '/^forces/d' "$dir/spring.yaml" >"$dir/free.yaml"
+expect 'a body on nothing' 0 "$program" check "$dir/free.yaml"
+prints 'nothing holds a: no constraint leads to a fixed body'
+
+# Strict minima are stable; what turns about itself is neutral.
+pendulum() {
+    printf 'se3d: 1\n%s\nbodies: [{name: a, mass: 1, inertia: [0.1, 0.1, 0.1], position: [0, 0, %s]}]\njoints: [{name: pin, type: %s, body_i: ground, body_j: a, at: [0, 0, 0]%s}]\nanalysis: {type: equilibrium}\n' \
+        "$1" "$2" "$3" "$4" >"$dir/pendulum.yaml"
+    expect "an equilibrium: $*" 0 "$program" run "$dir/pendulum.yaml" -o "$dir/o"
+}
+pendulum '' -1 revolute ', axis: [1, 0, 0]'
+prints 'the equilibrium is stable'
+prints 'wrote '
+holds 'and more than stable' [ "$(grep -c neutral "$dir/out")" = 0 ]
+pendulum '' 1 revolute ', axis: [1, 0, 0]'
+prints 'the equilibrium is unstable'
+pendulum '' -1 revolute ', axis: [0, 0, 1]'
+prints 'the equilibrium is neutral: nothing holds some freedom'
+pendulum 'gravity: [0, 0, 0]' -1 revolute ', axis: [1, 0, 0]'
+prints 'the equilibrium is neutral'
+pendulum '' -1 spherical ''
+prints 'the equilibrium is neutral'
+pendulum '' 1 fixed ''
+prints 'the equilibrium is stable'
+# A stiff spring beside a soft one: both count.
+for soft in 1e-3 0; do
+    printf 'se3d: 1\ngravity: [0, 0, 0]\nbodies: [%s, {name: b, mass: 1, inertia: [1, 1, 1], position: [0, 1, 0]}]\njoints: [%s, {name: t, type: prismatic, body_i: ground, body_j: b, at: [0, 1, 0], axis: [1, 0, 0]}]\nforces:\n  - {name: s, type: tsda, body_i: ground, body_j: a, k: 1e6, l0: 0.5}\n  - {name: u, type: tsda, body_i: ground, body_j: b, point_i: [1, 1, 0], k: %s, l0: 0.5}\nanalysis: {type: equilibrium}\n' \
+        "$body" "$slide" $soft >"$dir/soft.yaml"
+    expect "a spring of $soft N/m" 0 "$program" run "$dir/soft.yaml" -o "$dir/o"
+    prints "$([ $soft = 0 ] && echo 'is neutral' || echo 'is stable')"
+done
+
+# Dimensions of six digits in a loop that has no freedom to spare: the diagonal of a square.
+cat >"$dir/digits.yaml" <<'END'
+se3d: 1
+bodies:
+  - {name: a, mass: 1, inertia: [1, 1, 1], position: [0.5, 0, 0]}
+  - {name: b, mass: 1, inertia: [1, 1, 1], position: [0.5, 0.5, 0]}
+joints:
+  - {name: p, type: revolute, body_i: ground, body_j: a, point_j: [-0.5, 0, 0], axis_i: [0, 0, 1], axis_j: [0, 0, 1]}
+  - {name: q, type: revolute, body_i: a, body_j: b, point_i: [0.5, 0, 0], point_j: [0.707107, 0, 0], axis_i: [0, 0, 1], axis_j: [0, 0, 1]}
+  - {name: r, type: fixed, body_i: ground, body_j: b, point_i: [0, 1, 0], point_j: [-0.707107, 0, 0]}
+analysis: {type: assembly}
+END
+sed -i 's/position: \[0.5, 0.5, 0\]}/position: [0.5, 0.5, 0], orientation: {axis: [0, 0, 1], angle: -pi\/4}}/; s/point_j: \[-0.707107, 0, 0\]}/point_j: [-0.707107, 0, 0], axis_i: [1, -1, 0], axis_j: [1, 0, 0]}/' "$dir/digits.yaml"
+expect 'six digits' 1 "$program" run "$dir/digits.yaml" -o "$dir/o"
+says 'but not exactly'
+says 'more digits'
+
+# What a run leaves out.
+printf 'se3d: 1\nbodies: [%s]\njoints:\n  - {name: p, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, 1]}\n  - {name: q, type: revolute, body_i: ground, body_j: a, at: [1, 0, 0], axis: [0, 0, 1]}\nanalysis: {type: dynamics, duration: 0.1}\n' \
+    "$body" >"$dir/locked.yaml"
+expect 'a locked mechanism' 0 "$program" run "$dir/locked.yaml" -o "$dir/o"
+prints 'note: nothing can move: the constraints leave no degree of freedom'
+expect 'a locked mechanism in JSON' 0 "$program" run "$dir/locked.yaml" -o "$dir/o" --json
+prints '"notes": ["nothing can move: '
+sed 's/value: 2\*t/value: 0.1*t/' "$dir/slider.yaml" >"$dir/driven.yaml"
+expect 'a driven mechanism is not locked' 0 "$program" run "$dir/driven.yaml" -o "$dir/o" --analysis dynamics
+holds 'it says so' [ "$(grep -c 'note: ' "$dir/out")" = 0 ]
+printf 'solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n' >"$dir/t.stl"
+cat >"$dir/meshes.yaml" <<'END'
+se3d: 1
+materials: [{name: steel, density: 7800, stiffness: 1e5}]
+contact: {law: hooke}
+bodies:
+  - {name: a, mass: 1, inertia: [1, 1, 1], shapes: [{type: mesh, file: t.stl, material: steel}]}
+  - {name: b, mass: 1, inertia: [1, 1, 1], position: [0, 0, 1], shapes: [{type: mesh, file: t.stl, material: steel}]}
+analysis: {type: dynamics, duration: 0.01}
+END
+expect 'meshes on meshes' 0 "$program" run "$dir/meshes.yaml" -o "$dir/o"
+prints 'the meshes '
+prints 'pass through each other'
+cat >"$dir/grains.yaml" <<'END'
+se3d: 1
+materials: [{name: glass, density: 2500, stiffness: 1e4}]
+bodies: [{name: a, mass: 1, inertia: [1, 1, 1], position: [0, 0, -1]}]
+joints: [{name: pin, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [1, 0, 0]}]
+particles: [{name: sand, material: glass, radius: 0.01, lower: [0, 0, 0], upper: [0.1, 0.1, 0.03]}]
+analysis: [{type: equilibrium}, {type: modes}]
+END
+expect 'grains beside an equilibrium' 0 "$program" run "$dir/grains.yaml" -o "$dir/o"
+prints 'note: equilibrium: the particles are left out'
+prints 'note: modes: the particles are left out'
+
+# Events need what changes continuously, whatever it is called.
+for channel in particles.count particles.lost particles.left sand.count sand.mass contacts.count steps; do
+    sed "s/^analysis.*/events: [{name: e, channel: $channel, value: 0.5}]\\nanalysis: {type: dynamics, duration: 0.01, method: verlet}/" \
+        "$dir/grains.yaml" >"$dir/event.yaml"
+    expect "an event on $channel" 2 "$program" run "$dir/event.yaml" -o "$dir/o"
+    says "\`$channel\` changes by jumps"
+done
+for channel in particles.energy sand.energy contacts.force_max energy.dissipated a.angular_velocity.x; do
+    sed "s/^analysis.*/events: [{name: e, channel: $channel, value: 1e9}]\\nanalysis: {type: dynamics, duration: 0.01, method: verlet}/" \
+        "$dir/grains.yaml" >"$dir/event.yaml"
+    expect "an event on $channel" 0 "$program" run "$dir/event.yaml" -o "$dir/o"
+done
+finish
