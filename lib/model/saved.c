@@ -31,7 +31,13 @@ static se3d_status fit(se3di_saved *saved, const se3di_model *model,
         resize(&saved->memory, allocator, SE3DI_FORCE_STATES * model->force_slots.count, one));
     SE3DI_TRY(resize(&saved->history, allocator, history, one));
     SE3DI_TRY(resize(&saved->wrench, allocator, 6 * model->shape_slots.count, one));
-    return resize(&saved->contacts, allocator, model->contacts.count, sizeof(se3di_body_contact));
+    /* room for contacts to come: steps make new ones and allocate nothing */
+    const size_t contacts = model->contacts.count;
+    const int has_room = saved->contacts.capacity > contacts || model->shape_slots.count < 2;
+    SE3DI_TRY(resize(&saved->contacts, allocator, has_room ? contacts : 2 * contacts + 16,
+                     sizeof(se3di_body_contact)));
+    saved->contacts.count = contacts;
+    return SE3D_OK;
 }
 
 se3d_status se3di_saved_fill(se3di_saved *saved, const se3di_model *model,
