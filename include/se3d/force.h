@@ -130,7 +130,10 @@ SE3D_API se3d_status se3d_force_create_bushing(se3d_system *system, const se3d_b
 
 /* Friction on a coordinate of a joint: sliding against the rate with mu N + limit, plus viscous
  * times the rate; sticking by a spring that gives at most `presliding`. N is the joint's reaction
- * square to its axis; on an angle the moment is radius mu N + limit. @since 0.1 */
+ * perpendicular to its axis; on an angle the moment is mu (radius N + thrust_radius |F_axial|) +
+ * limit. With a `length` N also has the moment of the reaction: two places at +-length/2 about the
+ * joint point carry both. With a `width` of a guide, N has 2 |M_axial| / width more: two rails
+ * carry the moment about the axis. docs/theory/friction.md. @since 0.1 */
 typedef struct se3d_friction_def {
     size_t struct_size;
     const char *name;
@@ -143,6 +146,9 @@ typedef struct se3d_friction_def {
     double limit;      /* friction without load [N, N m] */
     double viscous;    /* [N s/m, N m s/rad] */
     double presliding; /* [m, rad]; 0: 1e-9 */
+    double length; /* between the places that carry the load, along the axis [m]; 0: one place */
+    double width;  /* on a displacement: between its rails [m]; 0: no moment about the axis */
+    double thrust_radius; /* on an angle: of the shoulder that carries the axial force [m] */
 } se3d_friction_def;
 
 SE3D_API void se3d_friction_def_init(se3d_friction_def *def, size_t size);

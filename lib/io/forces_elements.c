@@ -150,10 +150,15 @@ bool se3di_read_friction(se3di_reader *reader, const se3di_node *node, se3di_ele
         !se3di_read_key_number(reader, node, "radius", SE3DI_NOT_NEGATIVE, &def.radius) ||
         !se3di_read_key_number(reader, node, "limit", SE3DI_NOT_NEGATIVE, &def.limit) ||
         !se3di_read_key_number(reader, node, "viscous", SE3DI_NOT_NEGATIVE, &def.viscous) ||
-        !se3di_read_key_number(reader, node, "presliding", SE3DI_POSITIVE, &def.presliding)) {
+        !se3di_read_key_number(reader, node, "presliding", SE3DI_POSITIVE, &def.presliding) ||
+        !se3di_read_key_number(reader, node, "length", SE3DI_POSITIVE, &def.length) ||
+        !se3di_read_key_number(reader, node, "width", SE3DI_POSITIVE, &def.width) ||
+        !se3di_read_key_number(reader, node, "thrust_radius", SE3DI_NOT_NEGATIVE,
+                               &def.thrust_radius)) {
         return false;
     }
-    if (def.coordinate == SE3D_COORDINATE_ANGLE && def.mu > 0.0 && !(def.radius > 0.0)) {
+    if (def.coordinate == SE3D_COORDINATE_ANGLE && def.mu > 0.0 && !(def.radius > 0.0) &&
+        !(def.thrust_radius > 0.0)) {
         return se3di_reader_fail_key(reader, node, "radius",
                                      "is missing, friction with `mu` on an angle needs the radius "
                                      "of the bearing [m] > 0");

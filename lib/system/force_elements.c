@@ -104,6 +104,9 @@ se3d_status se3d_force_create_friction(se3d_system *system, const se3d_friction_
     data.limit = full.limit;
     data.viscous = full.viscous;
     data.presliding = full.presliding;
+    data.length = full.length;
+    data.width = full.width;
+    data.thrust_radius = full.thrust_radius;
     SE3DI_TRY(se3di_force_check_values(system, &data));
     return se3di_force_add(system, &data, force);
 }

@@ -72,6 +72,9 @@ static se3d_status check_friction(se3d_system *system, se3di_force *data)
     SE3DI_TRY(check_not_negative(system, "limit", data->limit));
     SE3DI_TRY(check_not_negative(system, "viscous", data->viscous));
     SE3DI_TRY(check_not_negative(system, "presliding", data->presliding));
+    SE3DI_TRY(check_not_negative(system, "length", data->length));
+    SE3DI_TRY(check_not_negative(system, "width", data->width));
+    SE3DI_TRY(check_not_negative(system, "thrust_radius", data->thrust_radius));
     if (data->mu_static > 0.0 && data->mu_static < data->mu) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "mu_static = %g, must be at least mu = %g (0: the same)", data->mu_static,

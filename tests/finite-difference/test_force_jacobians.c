@@ -5,6 +5,7 @@
 #include "check.h"
 
 #include "force/force.h"
+#include "force/friction.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "se3d/se3d.h"
@@ -464,8 +465,48 @@ static void power_balances_for_every_element(void)
     }
 }
 
+/* The largest error of the load's derivative by the parts of the reaction. */
+static double load_error(const world *w, double h)
+{
+    double R[SE3DI_FRICTION_PARTS], gradient[SE3DI_FRICTION_PARTS];
+    double worst = 0.0;
+    for (int k = 0; k < SE3DI_FRICTION_PARTS; ++k) {
+        R[k] = (k % 2 ? -1.0 : 1.0) * (2.0 + k);
+    }
+    (void)se3di_friction_load(w->model, w->force, R, gradient);
+    for (int k = 0; k < SE3DI_FRICTION_PARTS; ++k) {
+        const double kept = R[k];
+        R[k] = kept + h;
+        const double plus = se3di_friction_load(w->model, w->force, R, NULL);
+        R[k] = kept - h;
+        const double minus = se3di_friction_load(w->model, w->force, R, NULL);
+        R[k] = kept;
+        worst = fmax(worst, fabs((plus - minus) / (2.0 * h) - gradient[k]));
+    }
+    return worst;
+}
+
+static void the_load_of_friction_changes_with_the_reaction_as_told(void)
+{
+    void (*const create[])(world *) = {create_sticking_hinge, create_slipping_slide};
+    for (int k = 0; k < 8; ++k) {
+        world w = {0};
+        build(&w);
+        create[k % 2](&w);
+        se3di_force *force = &w.model->forces[0];
+        force->length = k & 2 ? 0.4 : 0.0;
+        force->width = k & 4 ? 0.3 : 0.0;
+        force->thrust_radius = k & 4 ? 0.1 : 0.0;
+        const double coarse = load_error(&w, 1e-2);
+        CHECK(coarse < 1e-4);
+        CHECK(load_error(&w, 2.5e-3) < coarse / 12.0 + 1e-11);
+        se3d_system_destroy(w.system);
+    }
+}
+
 int main(void)
 {
+    RUN(the_load_of_friction_changes_with_the_reaction_as_told);
     RUN(jacobians_of_every_element);
     RUN(a_callback_without_jacobian_is_differenced);
     RUN(the_wrench_is_minus_the_gradient_of_the_potential);

@@ -194,6 +194,9 @@ static const field friction_fields[] = {MEMBER('N', se3d_friction_def, name, 1),
                                         MEMBER('n', se3d_friction_def, limit, 1),
                                         MEMBER('n', se3d_friction_def, viscous, 1),
                                         MEMBER('n', se3d_friction_def, presliding, 1),
+                                        MEMBER('n', se3d_friction_def, length, 1),
+                                        MEMBER('n', se3d_friction_def, width, 1),
+                                        MEMBER('n', se3d_friction_def, thrust_radius, 1),
                                         END};
 
 /* Infinite bounds are allowed (none), a joint that is null too. */

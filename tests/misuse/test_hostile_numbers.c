@@ -233,11 +233,17 @@ FILL(se3d_friction_def, friction)
     def->limit = 0.1;
 }
 CREATE(se3d_friction_def, force_create_friction, se3d_force)
-static const field friction_fields[] = {
-    INTEGER(se3d_friction_def, coordinate), NUMBERS(se3d_friction_def, mu),
-    NUMBERS(se3d_friction_def, mu_static),  NUMBERS(se3d_friction_def, radius),
-    NUMBERS(se3d_friction_def, limit),      NUMBERS(se3d_friction_def, viscous),
-    NUMBERS(se3d_friction_def, presliding), FIELDS_END};
+static const field friction_fields[] = {INTEGER(se3d_friction_def, coordinate),
+                                        NUMBERS(se3d_friction_def, mu),
+                                        NUMBERS(se3d_friction_def, mu_static),
+                                        NUMBERS(se3d_friction_def, radius),
+                                        NUMBERS(se3d_friction_def, limit),
+                                        NUMBERS(se3d_friction_def, viscous),
+                                        NUMBERS(se3d_friction_def, presliding),
+                                        NUMBERS(se3d_friction_def, length),
+                                        NUMBERS(se3d_friction_def, width),
+                                        NUMBERS(se3d_friction_def, thrust_radius),
+                                        FIELDS_END};
 
 FILL(se3d_stop_def, stop)
 {

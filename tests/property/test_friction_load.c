@@ -166,8 +166,68 @@ static void the_default_is_under_error_control_with_friction(void)
     }
 }
 
+/* A carriage of 2 kg is pushed along x by 40 N at (0, .3, .2) from its guide and weighs 19.62 N:
+ * N is what two places 0.25 m apart (and rails 0.5 m apart) carry of F = (0, 0, -19.62) N and M. */
+#define CARRIAGE(keys)                                                                             \
+    "se3d: 1\nbodies:\n"                                                                           \
+    "  - {name: a, mass: 2, inertia: [0.02, 0.02, 0.02], velocity: [1, 0, 0]}\njoints:\n"          \
+    "  - {name: g, type: prismatic, body_i: ground, body_j: a, at: [0, 0, 0], axis: [1, 0, 0]}\n"  \
+    "forces:\n  - {name: rub, type: friction, joint: g, mu: 0.1" keys "}\n"                        \
+    "  - {type: force, body: a, point: [0, 0.3, 0.2], value: [40, 0, 0]}\n"                        \
+    "  - {type: torque, body: a, value: [3, 0, 0]}\n"                                              \
+    "analysis: {type: dynamics, duration: 0.3}\n"                                                  \
+    "output: [{file: r.csv, channels: [rub.force, a.acceleration]}]\n"
+
+static void check_carriage(const char *text, double N)
+{
+    for (size_t run = 0; run < METHODS; ++run) {
+        for (int32_t formulation = 0; formulation < 2; ++formulation) {
+            text_model m = text_model_open(text, methods[run], formulation, 0.0);
+            CHECK(text_model_run(&m, 0.1));
+            CHECK_NEAR(text_model_get(&m, 0, 0), 0.1 * N, 1e-8 * N);
+            CHECK_NEAR(text_model_get(&m, 1, 0), (40.0 - 0.1 * N) / 2.0, 1e-7);
+            text_model_close(&m);
+        }
+    }
+}
+
+/* M = (0, .3, .2) x (40, 0, 0) = (0, 8, -12) N m of the push, balanced by the guide. */
+static void a_guide_rubs_by_the_moments_that_it_carries(void)
+{
+    const double W = 2.0 * 9.81;
+    check_carriage(CARRIAGE(""), W);
+    /* places: (0, 0, W)/2 +- e_x x (0, 8, -12)/length, e_x x (0, 8, -12) = (0, 12, 8) */
+    const double one = hypot(12.0 / 0.25, 0.5 * W + 8.0 / 0.25);
+    const double two = hypot(12.0 / 0.25, 0.5 * W - 8.0 / 0.25);
+    check_carriage(CARRIAGE(", length: 0.25"), one + two);
+    check_carriage(CARRIAGE(", length: 0.25, width: 0.5"), one + two + 2.0 * 3.0 / 0.5);
+    check_carriage(CARRIAGE(", width: 0.5"), W + 2.0 * 3.0 / 0.5);
+}
+
+/* A disc that stands on its shoulder slows down with mu r m g / J. */
+static void a_shoulder_rubs_by_the_axial_force(void)
+{
+    static const char *const disc =
+        "se3d: 1\nbodies:\n"
+        "  - {name: a, mass: 3, inertia: [0.1, 0.1, 0.2], angular_velocity: [0, 0, 9]}\njoints:\n"
+        "  - {name: p, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, 1]}\n"
+        "forces: [{name: rub, type: friction, joint: p, mu: 0.2, thrust_radius: 0.05}]\n"
+        "analysis: {type: dynamics, duration: 0.5}\n"
+        "output: [{file: r.csv, channels: [p.rate, rub.force]}]\n";
+    for (size_t run = 0; run < METHODS; ++run) {
+        text_model m = text_model_open(disc, methods[run], -1, 0.0);
+        const double torque = 0.2 * 0.05 * 3.0 * 9.81;
+        CHECK(text_model_run(&m, 0.5));
+        CHECK_NEAR(text_model_get(&m, 1, 0), torque, 1e-8);
+        CHECK_NEAR(text_model_get(&m, 0, 0), 9.0 - 0.5 * torque / 0.2, 1e-7);
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
+    RUN(a_guide_rubs_by_the_moments_that_it_carries);
+    RUN(a_shoulder_rubs_by_the_axial_force);
     RUN(all_methods_agree_on_a_slider_crank_that_rubs);
     RUN(friction_takes_what_its_way_says_whatever_the_presliding);
     RUN(a_load_that_varies_costs_no_steps);
