@@ -37,9 +37,9 @@ typedef struct se3d_solver_def {
     int32_t formulation; /* se3d_formulation, default ROMEGA */
     int32_t method;      /* se3d_method, dynamics only, default AUTO */
     int32_t order;       /* bdf: 1..5, rattle: 2, 4, others: the one they have; 0: the default */
-    double
-        step; /* of generalized_alpha, hht, rattle, verlet: fixed; of the others: the largest one;
-                 >= 1e-15 [s]; 0: chosen, by the error but for rattle and verlet (1 ms) */
+    /* Of generalized_alpha, hht, rattle, verlet: fixed; of the others: the largest one; >= 1e-15
+     * [s]; 0: chosen, by the error but for rattle and verlet (1 ms). */
+    double step;
     double tolerance;       /* relative error of adaptive methods, 1e-14..0.1; 0: 1e-6. Below what a
                                method reaches it works at that: dop853, rk45, rk4 7e-12, bdf
                                1e-12, radau 1e-13 */

@@ -415,7 +415,7 @@ static se3d_status advance(se3di_bdf *m, double t_end)
                 return SE3D_OK;
             }
         }
-        if (status == SE3D_ERR_INTERRUPTED) {
+        if (status == SE3D_ERR_INTERRUPTED || status == SE3D_ERR_NO_MEMORY) {
             return status;
         }
         ++m->equations->counters.rejected;

@@ -54,8 +54,8 @@ se3di_newmark_history se3di_newmark_get_history(const se3di_assembly *assembly)
 
 /* The third derivative of the motion at the start, from accelerations at h/2 and h along the
  * parabola; zero where they cannot be evaluated. */
-static void estimate_jerk(se3di_integration *integration, double h, const double *vdot,
-                          double *jerk)
+static se3d_status estimate_jerk(se3di_integration *integration, double h, const double *vdot,
+                                 double *jerk)
 {
     se3di_equations *equations = integration->equations;
     se3di_assembly *assembly = &equations->assembly;
@@ -63,6 +63,7 @@ static void estimate_jerk(se3di_integration *integration, double h, const double
     double *v_n = integration->work, *v = v_n + n;
     const double t = assembly->model->time;
     const double weight[2] = {4.0, -1.0};
+    se3d_status status = SE3D_OK;
     se3di_error ignored = {0};
     se3di_error *error = equations->error;
     equations->error = &ignored;
@@ -84,7 +85,8 @@ static void estimate_jerk(se3di_integration *integration, double h, const double
             assembly->formulation->move(&assembly->model->frames[assembly->free_body[k]], dq);
         }
         se3di_assembly_set_velocity(assembly, v);
-        if (se3di_acceleration_solve(equations, t + s) < 0) {
+        status = se3di_acceleration_solve(equations, t + s);
+        if (status < 0) {
             memset(jerk, 0, n * sizeof *jerk);
             break;
         }
@@ -94,6 +96,13 @@ static void estimate_jerk(se3di_integration *integration, double h, const double
     }
     se3di_equations_restore(equations);
     equations->error = error;
+    if (status == SE3D_ERR_CALLBACK || status == SE3D_ERR_NO_MEMORY) {
+        if (error) {
+            *error = ignored; /* not a matter of the motion */
+        }
+        return status;
+    }
+    return SE3D_OK;
 }
 
 static double shift_of(const se3di_newmark *method)
@@ -103,7 +112,8 @@ static double shift_of(const se3di_newmark *method)
 
 /* a_n is vdot of the start itself, where that leaves it far enough from a; else it is moved to the
  * place that it has at equal steps of h. */
-static void place_start(se3di_integration *integration, const se3di_newmark *method, double h)
+static se3d_status place_start(se3di_integration *integration, const se3di_newmark *method,
+                               double h)
 {
     const se3di_assembly *assembly = &integration->equations->assembly;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
@@ -111,13 +121,14 @@ static void place_start(se3di_integration *integration, const se3di_newmark *met
     past.header[SE3DI_NEWMARK_PLACE] = 0.0;
     if (1.0 + shift >= SPAN_LEAST) {
         copy(past.a, past.vdot, assembly->unknown_count);
-        return;
+        return SE3D_OK;
     }
-    estimate_jerk(integration, h, past.vdot, past.a);
+    SE3DI_TRY(estimate_jerk(integration, h, past.vdot, past.a));
     for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
         past.a[k] = past.vdot[k] + shift * h * past.a[k];
     }
     past.header[SE3DI_NEWMARK_PLACE] = shift * h;
+    return SE3D_OK;
 }
 
 /* vdot, lambda and a of the model's state, from which steps go on as from a start. */
@@ -130,7 +141,7 @@ static se3d_status restart(se3di_integration *integration, const se3di_newmark *
     SE3DI_TRY(se3di_acceleration_solve(equations, model->time));
     copy(past.vdot, equations->x, assembly->unknown_count);
     copy(past.lambda, model->lambda, assembly->row_count);
-    place_start(integration, method, h);
+    SE3DI_TRY(place_start(integration, method, h));
     se3di_assembly_set_acceleration(assembly, past.vdot);
     copy(model->lambda, past.lambda, assembly->row_count);
     past.header[SE3DI_NEWMARK_LAST] = 0.0;
@@ -531,7 +542,7 @@ static se3d_status advance_by_error(se3di_integration *integration, const se3di_
             }
             return status;
         }
-        if (status == SE3D_ERR_INTERRUPTED) {
+        if (status == SE3D_ERR_INTERRUPTED || status == SE3D_ERR_NO_MEMORY) {
             *next = before;
             return status;
         }

@@ -388,7 +388,7 @@ static se3d_status advance(se3di_integration *integration, double t_end)
                 return SE3D_OK;
             }
         }
-        if (ends || status == SE3D_ERR_INTERRUPTED) {
+        if (ends || status == SE3D_ERR_INTERRUPTED || status == SE3D_ERR_NO_MEMORY) {
             return give_up(header, was_next, was_rejected, status);
         }
         ++m.equations->counters.rejected;

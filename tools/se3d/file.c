@@ -66,7 +66,7 @@ int file_is_own(const char *path)
 {
     struct stat about;
     return stat(path, &about) == 0 && (about.st_uid == geteuid() || about.st_uid == 0) &&
-           (about.st_mode & S_IWOTH) == 0;
+           (about.st_mode & (S_IWGRP | S_IWOTH)) == 0;
 }
 #endif
 
