@@ -24,7 +24,11 @@ se3d_status
 se3di_error_set(se3di_error *error, se3d_status status, const char *format, ...);
 
 /* What both messages and the log are written with. */
-void se3di_error_format(char *text, size_t size, const char *format, va_list arguments);
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 0)))
+#endif
+void
+se3di_error_format(char *text, size_t size, const char *format, va_list arguments);
 
 /* Forget the last error. */
 void se3di_error_clear(se3di_error *error);

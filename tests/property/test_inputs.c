@@ -554,7 +554,7 @@ static void states_of_a_clone_go_on_under_the_loads_of_the_system(void)
         se3d_solver *solver[2] = {NULL, NULL};
         se3d_solver_def def = se3d_solver_def_default();
         se3d_body_def stuff = se3d_body_def_default();
-        se3d_body body;
+        se3d_body body = {0, 0};
         double before[3], after[3];
         stuff.mass = stuff.inertia[0] = stuff.inertia[1] = stuff.inertia[2] = 1.0;
         def.method = method;
