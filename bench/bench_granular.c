@@ -156,7 +156,7 @@ static void build(bench *b)
     must(b, se3d_system_create(NULL, &b->system));
     se3d_particles_def def = se3d_particles_def_default();
     se3d_contact_settings contact = se3d_contact_settings_default();
-    contact.law = b->hertz ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE;
+    contact.law = b->hertz ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
     must(b, se3d_system_set_contact(b->system, &contact));
     def.threads = (int32_t)b->threads;
     def.step = 1e-5;

@@ -52,7 +52,7 @@ static void open_bed(bed *b, double stiffness, double restitution)
     se3d_contact_settings contact = se3d_contact_settings_default();
     se3d_material_def stuff = se3d_material_def_default();
     must(b, se3d_system_create(NULL, &b->system));
-    contact.law = b->hertz ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE;
+    contact.law = b->hertz ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
     must(b, se3d_system_set_contact(b->system, &contact));
     def.threads = b->threads;
     must(b, se3d_particles_create(b->system, &def, &b->particles));

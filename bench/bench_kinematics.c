@@ -77,7 +77,7 @@ static void add_four_bar(se3d_system *system, int k)
     add_pin(system, "A", k, crank, coupler, A);
     add_pin(system, "B", k, coupler, rocker, B);
     add_pin(system, "Q", k, ground, rocker, Q);
-    driver.coordinate = SE3D_COORDINATE_ANGLE;
+    driver.coordinate = SE3D_JOINT_COORDINATE_ANGLE;
     note(system, se3d_function_create_expression(system, "1.5*t+0.2*sin(3*t)", &driver.function));
     note(system, se3d_driver_create(system, &driver, &made));
 }

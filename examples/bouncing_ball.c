@@ -19,7 +19,7 @@ static int fail(se3d_system *system, const char *what)
 static se3d_status build(se3d_system *system, se3d_particles **particles)
 {
     se3d_contact_settings contact = se3d_contact_settings_default();
-    contact.law = SE3D_LAW_HERTZ_MINDLIN;
+    contact.law = SE3D_CONTACT_LAW_HERTZ_MINDLIN;
     se3d_status status = se3d_system_set_contact(system, &contact);
     if (SE3D_FAILED(status)) {
         return status;

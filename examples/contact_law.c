@@ -43,7 +43,7 @@ static se3d_status build(se3d_system *system, power_law *law, se3d_particles **b
     se3d_material material;
     se3d_shape shape;
     const double r[3] = {0.0, 0.0, 1.2 * RADIUS}, v[3] = {0.0, 0.0, -SPEED}, radius = RADIUS;
-    contact.law = SE3D_LAW_CALLBACK;
+    contact.law = SE3D_CONTACT_LAW_CALLBACK;
     contact.callback = push;
     contact.ctx = law;
     contact.step = 1e-5; /* only the law knows what it needs */

@@ -18,14 +18,14 @@ typedef struct bar {
 
 static se3d_status get_angle(void *ctx, const se3d_system *system, double *value)
 {
-    return se3d_joint_get_coordinate(system, ((bar *)ctx)->pin, SE3D_COORDINATE_ANGLE, value, NULL,
-                                     NULL);
+    return se3d_joint_get_coordinate(system, ((bar *)ctx)->pin, SE3D_JOINT_COORDINATE_ANGLE, value,
+                                     NULL, NULL);
 }
 
 static se3d_status get_rate(void *ctx, const se3d_system *system, double *value)
 {
-    return se3d_joint_get_coordinate(system, ((bar *)ctx)->pin, SE3D_COORDINATE_ANGLE, NULL, value,
-                                     NULL);
+    return se3d_joint_get_coordinate(system, ((bar *)ctx)->pin, SE3D_JOINT_COORDINATE_ANGLE, NULL,
+                                     value, NULL);
 }
 
 /* All velocities are proportional to the rate of the pin. */

@@ -51,7 +51,7 @@ static int build(se3d_system *sys, pendulum *p)
     TRY(se3d_joint_create_revolute(sys, &joint, &p->pin));
     se3d_driver_def driver = se3d_driver_def_default();
     driver.joint = p->pin;
-    driver.coordinate = SE3D_COORDINATE_ANGLE;
+    driver.coordinate = SE3D_JOINT_COORDINATE_ANGLE;
     TRY(se3d_function_create_expression(sys, "pi/4*cos(2*t)", &driver.function));
     TRY(se3d_driver_create(sys, &driver, &p->drive));
     TRY(se3d_body_get_all(sys, 2, p->r, p->q, p->v, p->w));
@@ -65,7 +65,7 @@ static int report(se3d_system *sys, se3d_solver *solver, const pendulum *p, cons
     printf("   t [s]  theta [rad]  theta' [rad/s]  pin Fy [N]  pin Fz [N]  torque [N m]\n");
     for (int k = 0; k <= 4; ++k) {
         TRY(se3d_solver_run(solver, 0.25 * k));
-        TRY(se3d_joint_get_coordinate(sys, p->pin, SE3D_COORDINATE_ANGLE, &x, &xd, &xdd));
+        TRY(se3d_joint_get_coordinate(sys, p->pin, SE3D_JOINT_COORDINATE_ANGLE, &x, &xd, &xdd));
         TRY(se3d_constraint_get_reaction(sys, p->pin, F, T)); /* of the ground on the bar */
         if (p->driven) {
             TRY(se3d_driver_get_effort(sys, p->drive, &effort));

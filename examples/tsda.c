@@ -59,7 +59,8 @@ static int oscillate(se3d_system *sys, se3d_constraint slide, se3d_force spring,
         double t = 0.1 * k;
         double x, xdot, xddot, l, ldot, f;
         TRY(se3d_solver_run(solver, t));
-        TRY(se3d_joint_get_coordinate(sys, slide, SE3D_COORDINATE_DISPLACEMENT, &x, &xdot, &xddot));
+        TRY(se3d_joint_get_coordinate(sys, slide, SE3D_JOINT_COORDINATE_DISPLACEMENT, &x, &xdot,
+                                      &xddot));
         TRY(se3d_force_get_state(sys, spring, &l, &ldot, &f));
         double exact = 0.02 * exp(-b * t) * (cos(w * t) + b / w * sin(w * t));
         *worst = fmax(*worst, fabs(x - exact));
@@ -86,7 +87,8 @@ static int rest(se3d_system *sys, se3d_body mass, se3d_constraint slide, double 
     TRY(se3d_solver_create(sys, &def, &solver));
     TRY(se3d_solver_run(solver, 1.0));
     se3d_solver_destroy(solver);
-    TRY(se3d_joint_get_coordinate(sys, slide, SE3D_COORDINATE_DISPLACEMENT, &x, &xdot, &xddot));
+    TRY(se3d_joint_get_coordinate(sys, slide, SE3D_JOINT_COORDINATE_DISPLACEMENT, &x, &xdot,
+                                  &xddot));
     TRY(se3d_modes_create(sys, NULL, &modes));
     TRY(se3d_modes_get_eigenvalue(modes, 0, &value));
     printf("rest under 5 N: x = %.9f m; %.6f Hz, damping ratio %.6f\n", x, value.frequency,

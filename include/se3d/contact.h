@@ -16,11 +16,11 @@ extern "C" {
 /* Force laws. Fn never pulls but by cohesion; Ft is a spring with history and a damper, capped at
  * friction * Fn.
  * @since 0.1 */
-typedef enum se3d_law {
-    SE3D_LAW_HOOKE = 0,         /* linear: stiffness, tangential_ratio */
-    SE3D_LAW_HERTZ_MINDLIN = 1, /* Hertz with Tsuji-type damping, Mindlin: young, poisson */
-    SE3D_LAW_CALLBACK = 2       /* the user's, of which materials need nothing */
-} se3d_law;
+typedef enum se3d_contact_law {
+    SE3D_CONTACT_LAW_HOOKE = 0,         /* linear: stiffness, tangential_ratio */
+    SE3D_CONTACT_LAW_HERTZ_MINDLIN = 1, /* Hertz with Tsuji-type damping, Mindlin: young, poisson */
+    SE3D_CONTACT_LAW_CALLBACK = 2       /* the user's, of which materials need nothing */
+} se3d_contact_law;
 
 /* A contact as a law of the user's sees it: of two particles, of a particle and a shape, of two
  * shapes. Forces and velocities are of the second of the two relative to the first, ground frame.
@@ -62,11 +62,11 @@ typedef se3d_status (*se3d_contact_callback)(void *ctx, const se3d_contact_input
 /* What holds for all contacts of a system. @since 0.1 */
 typedef struct se3d_contact_settings {
     size_t struct_size;
-    int32_t law; /* se3d_law */
+    int32_t law; /* se3d_contact_law */
     int32_t reserved;
     double step;          /* of verlet and of particles [s]; 0: automatic, from the stiffness */
     double overlap_limit; /* allowed overlap over the smaller radius; default 0.2 */
-    se3d_contact_callback callback; /* SE3D_LAW_CALLBACK, which needs a step > 0 */
+    se3d_contact_callback callback; /* SE3D_CONTACT_LAW_CALLBACK, which needs a step > 0 */
     void *ctx;
 } se3d_contact_settings;
 

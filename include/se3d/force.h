@@ -138,7 +138,7 @@ typedef struct se3d_friction_def {
     size_t struct_size;
     const char *name;
     se3d_constraint joint;
-    int32_t coordinate; /* se3d_coordinate */
+    int32_t coordinate; /* se3d_joint_coordinate */
     int32_t reserved;
     double mu;         /* of sliding, >= 0 */
     double mu_static;  /* of sticking, >= mu; 0: mu */
@@ -170,7 +170,7 @@ typedef struct se3d_stop_def {
     size_t struct_size;
     const char *name;
     se3d_constraint joint; /* or null: the two points */
-    int32_t coordinate;    /* se3d_coordinate */
+    int32_t coordinate;    /* se3d_joint_coordinate */
     int32_t reserved;
     se3d_body body_i;
     se3d_body body_j;
@@ -251,19 +251,19 @@ SE3D_API se3d_status se3d_force_get_value(const se3d_system *system, se3d_force 
 
 /* A number that a force element has, with the units and the range of its definition. */
 typedef enum se3d_force_parameter {
-    SE3D_PARAMETER_K = 0,           /* tsda, rsda, stop */
-    SE3D_PARAMETER_C = 1,           /* tsda, rsda */
-    SE3D_PARAMETER_REST = 2,        /* tsda: l0, rsda: theta0 */
-    SE3D_PARAMETER_PRELOAD = 3,     /* tsda, rsda: also the value of a constant actuator */
-    SE3D_PARAMETER_LOWER = 4,       /* stop */
-    SE3D_PARAMETER_UPPER = 5,       /* stop */
-    SE3D_PARAMETER_RESTITUTION = 6, /* stop */
-    SE3D_PARAMETER_MU = 7,          /* friction; mu_static goes along where it is the same */
-    SE3D_PARAMETER_MU_STATIC = 8,   /* friction; 0: mu */
-    SE3D_PARAMETER_RADIUS = 9,      /* friction */
-    SE3D_PARAMETER_LIMIT = 10,      /* friction */
-    SE3D_PARAMETER_VISCOUS = 11,    /* friction */
-    SE3D_PARAMETER_PRESLIDING = 12  /* friction */
+    SE3D_FORCE_PARAMETER_K = 0,           /* tsda, rsda, stop */
+    SE3D_FORCE_PARAMETER_C = 1,           /* tsda, rsda */
+    SE3D_FORCE_PARAMETER_REST = 2,        /* tsda: l0, rsda: theta0 */
+    SE3D_FORCE_PARAMETER_PRELOAD = 3,     /* tsda, rsda: also the value of a constant actuator */
+    SE3D_FORCE_PARAMETER_LOWER = 4,       /* stop */
+    SE3D_FORCE_PARAMETER_UPPER = 5,       /* stop */
+    SE3D_FORCE_PARAMETER_RESTITUTION = 6, /* stop */
+    SE3D_FORCE_PARAMETER_MU = 7,          /* friction; mu_static goes along where it is the same */
+    SE3D_FORCE_PARAMETER_MU_STATIC = 8,   /* friction; 0: mu */
+    SE3D_FORCE_PARAMETER_RADIUS = 9,      /* friction */
+    SE3D_FORCE_PARAMETER_LIMIT = 10,      /* friction */
+    SE3D_FORCE_PARAMETER_VISCOUS = 11,    /* friction */
+    SE3D_FORCE_PARAMETER_PRESLIDING = 12  /* friction */
 } se3d_force_parameter;
 
 /* Set, get a number of a tsda, rsda, stop or friction element. What the change makes of the energy

@@ -104,15 +104,15 @@ SE3D_API se3d_status se3d_joint_create_perpendicular2(se3d_system *system,
                                                       se3d_constraint *joint);
 
 /* Coordinates of a joint: of j relative to i, about or along its axis. */
-typedef enum se3d_coordinate {
-    SE3D_COORDINATE_ANGLE = 0,       /* [rad], counts turns */
-    SE3D_COORDINATE_DISPLACEMENT = 1 /* [m] */
-} se3d_coordinate;
+typedef enum se3d_joint_coordinate {
+    SE3D_JOINT_COORDINATE_ANGLE = 0,       /* [rad], counts turns */
+    SE3D_JOINT_COORDINATE_DISPLACEMENT = 1 /* [m] */
+} se3d_joint_coordinate;
 
 /* Get a joint coordinate with its rate and acceleration. @return OK, STALE_HANDLE, INVALID_ARGUMENT
  * (the joint has no such coordinate). Reader. @since 0.1 */
 SE3D_API se3d_status se3d_joint_get_coordinate(const se3d_system *system, se3d_constraint joint,
-                                               se3d_coordinate coordinate, double *value,
+                                               se3d_joint_coordinate coordinate, double *value,
                                                double *rate, double *acceleration);
 
 #define SE3D_COUPLER_TERMS_MAX 4
@@ -124,7 +124,7 @@ typedef struct se3d_coupler_def {
     size_t struct_size;
     const char *name;
     se3d_constraint joint[SE3D_COUPLER_TERMS_MAX];
-    int32_t coordinate[SE3D_COUPLER_TERMS_MAX]; /* se3d_coordinate */
+    int32_t coordinate[SE3D_COUPLER_TERMS_MAX]; /* se3d_joint_coordinate */
     double ratio[SE3D_COUPLER_TERMS_MAX];
     size_t count;           /* 1 .. SE3D_COUPLER_TERMS_MAX */
     double value;           /* where `function` is null */
@@ -158,7 +158,7 @@ typedef struct se3d_driver_def {
     size_t struct_size;
     const char *name;
     se3d_constraint joint;
-    int32_t coordinate; /* se3d_coordinate */
+    int32_t coordinate; /* se3d_joint_coordinate */
     int32_t reserved;
     double value;           /* f where `function` is null */
     se3d_function function; /* f(t), or null */

@@ -15,11 +15,11 @@ extern "C" {
 #endif
 
 /* What is at `lower` and `upper` along an axis. @since 0.1 */
-typedef enum se3d_boundary {
-    SE3D_BOUNDARY_OPEN = 0,
-    SE3D_BOUNDARY_PERIODIC = 1,
-    SE3D_BOUNDARY_SINK = 2 /* particles beyond it are removed and counted as lost */
-} se3d_boundary;
+typedef enum se3d_domain_boundary {
+    SE3D_DOMAIN_BOUNDARY_OPEN = 0,
+    SE3D_DOMAIN_BOUNDARY_PERIODIC = 1,
+    SE3D_DOMAIN_BOUNDARY_SINK = 2 /* particles beyond it are removed and counted as lost */
+} se3d_domain_boundary;
 
 /* Particles carry a tag from 0 to this less 1 (default 0), by which they can be told apart: what is
  * a set to the user may be a tag here, so that all sets touch each other. */
@@ -30,7 +30,7 @@ typedef struct se3d_particles_def {
     size_t struct_size;
     int32_t threads;     /* 1: default; results do not depend on it */
     int32_t portable;    /* not 0: kernels without vectors; the same bits, slower */
-    int32_t boundary[3]; /* se3d_boundary along x, y, z */
+    int32_t boundary[3]; /* se3d_domain_boundary along x, y, z */
     int32_t reserved;
     double lower[3], upper[3]; /* of the domain [m]; where an open boundary has none: unbounded */
     double step;               /* [s]; 0: that of the system's contact settings */
@@ -90,11 +90,11 @@ SE3D_API se3d_status se3d_particles_add(se3d_particles *particles, se3d_material
 
 /* The shape of a region within its box: the whole box, the cylinder along an axis with the box's
  * height, or the sphere about its centre; both have the largest radius that fits. @since 0.1 */
-typedef enum se3d_region {
-    SE3D_REGION_BOX = 0,
-    SE3D_REGION_CYLINDER = 1,
-    SE3D_REGION_SPHERE = 2
-} se3d_region;
+typedef enum se3d_fill_region {
+    SE3D_FILL_REGION_BOX = 0,
+    SE3D_FILL_REGION_CYLINDER = 1,
+    SE3D_FILL_REGION_SPHERE = 2
+} se3d_fill_region;
 
 /* A region filled with particles. @since 0.1 */
 typedef struct se3d_fill_def {
@@ -107,7 +107,7 @@ typedef struct se3d_fill_def {
     double jitter;                 /* lattice: largest displacement along each axis [m] */
     double velocity[3];            /* [m/s] */
     uint64_t seed;
-    int32_t region;        /* se3d_region, in the box from lower to upper */
+    int32_t region;        /* se3d_fill_region, in the box from lower to upper */
     int32_t axis;          /* of a cylinder: 0, 1 or 2 */
     const double *radii;   /* [radius_count] radii to draw from instead of the range [m], */
     const double *weights; /* [radius_count] with frequencies like these; NULL: all alike */
@@ -138,7 +138,7 @@ SE3D_API se3d_status se3d_particles_fill_random(se3d_particles *particles,
  * radius_min, radius_max, radii, weights, velocity, material, seed and tag; count is the largest
  * number, 0: no limit). The rate is a constant or a function of time, negative values count as 0.
  * @since 0.1 */
-typedef struct se3d_source_def {
+typedef struct se3d_particles_source_def {
     size_t struct_size;
     const se3d_fill_def *fill;
     double rate;            /* particles [1/s] or mass [kg/s], >= 0 */
@@ -147,14 +147,14 @@ typedef struct se3d_source_def {
     double every;           /* least time between insertions [s]; each rebuilds neighbour lists */
     int32_t per_mass;       /* not 0: the rate is [kg/s] */
     int32_t reserved;
-} se3d_source_def;
+} se3d_particles_source_def;
 
-SE3D_API void se3d_source_def_init(se3d_source_def *def, size_t size);
+SE3D_API void se3d_particles_source_def_init(se3d_particles_source_def *def, size_t size);
 
-static inline se3d_source_def se3d_source_def_default(void)
+static inline se3d_particles_source_def se3d_particles_source_def_default(void)
 {
-    se3d_source_def def;
-    se3d_source_def_init(&def, sizeof def);
+    se3d_particles_source_def def;
+    se3d_particles_source_def_init(&def, sizeof def);
     return def;
 }
 
@@ -163,22 +163,25 @@ static inline se3d_source_def se3d_source_def_default(void)
  * Exclusive.
  * @since 0.1 */
 SE3D_API se3d_status se3d_particles_add_source(se3d_particles *particles,
-                                               const se3d_source_def *def, uint32_t *source);
+                                               const se3d_particles_source_def *def,
+                                               uint32_t *source);
 
 /* What a source has done. @since 0.1 */
-typedef struct se3d_source_stats {
+typedef struct se3d_particles_source_stats {
     uint64_t inserted;
     uint64_t deferred; /* of all so far, those that had to wait for room */
     double mass;       /* inserted [kg] */
     double waiting;    /* what is owed now: particles, or [kg] */
-} se3d_source_stats;
+} se3d_particles_source_stats;
 
 /* @return OK, NULL, INVALID_ARGUMENT (no such source). Reader. @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_source_stats_sized(const se3d_particles *particles,
                                                            uint32_t source,
-                                                           se3d_source_stats *stats, size_t size);
+                                                           se3d_particles_source_stats *stats,
+                                                           size_t size);
 static inline se3d_status se3d_particles_get_source_stats(const se3d_particles *particles,
-                                                          uint32_t source, se3d_source_stats *stats)
+                                                          uint32_t source,
+                                                          se3d_particles_source_stats *stats)
 {
     return se3d_particles_get_source_stats_sized(particles, source, stats, sizeof *stats);
 }
@@ -187,28 +190,28 @@ SE3D_API se3d_status se3d_particles_remove_source(se3d_particles *particles, uin
 
 /* A sink: particles whose centre is in the region, or behind the plane, are removed and counted as
  * lost, at the latest when they have moved by half of the skin. @since 0.1 */
-typedef struct se3d_sink_def {
+typedef struct se3d_particles_sink_def {
     size_t struct_size;
     double lower[3], upper[3]; /* [m], without a plane */
-    int32_t region;            /* se3d_region */
+    int32_t region;            /* se3d_fill_region */
     int32_t axis;              /* of a cylinder: 0, 1 or 2 */
     double point[3];           /* of the plane [m] */
     double normal[3];          /* of the plane; zero: the region */
-} se3d_sink_def;
+} se3d_particles_sink_def;
 
-SE3D_API void se3d_sink_def_init(se3d_sink_def *def, size_t size);
+SE3D_API void se3d_particles_sink_def_init(se3d_particles_sink_def *def, size_t size);
 
-static inline se3d_sink_def se3d_sink_def_default(void)
+static inline se3d_particles_sink_def se3d_particles_sink_def_default(void)
 {
-    se3d_sink_def def;
-    se3d_sink_def_init(&def, sizeof def);
+    se3d_particles_sink_def def;
+    se3d_particles_sink_def_init(&def, sizeof def);
     return def;
 }
 
 /* Add a sink, numbered from 0; get how many particles it has removed; remove it.
  * @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY. Exclusive (the count: Reader). @since 0.1 */
-SE3D_API se3d_status se3d_particles_add_sink(se3d_particles *particles, const se3d_sink_def *def,
-                                             uint32_t *sink);
+SE3D_API se3d_status se3d_particles_add_sink(se3d_particles *particles,
+                                             const se3d_particles_sink_def *def, uint32_t *sink);
 SE3D_API se3d_status se3d_particles_get_sink_count(const se3d_particles *particles, uint32_t sink,
                                                    uint64_t *count);
 SE3D_API se3d_status se3d_particles_remove_sink(se3d_particles *particles, uint32_t sink);

@@ -50,12 +50,12 @@ int se3di_region_holds(const se3di_region *region, const double x[3], double rad
 {
     double square = 0.0;
     double reach = HUGE_VAL;
-    if (region->kind == SE3D_REGION_BOX) {
+    if (region->kind == SE3D_FILL_REGION_BOX) {
         return 1;
     }
     for (int a = 0; a < 3; ++a) {
         double d = x[a] - 0.5 * (region->lower[a] + region->upper[a]);
-        if (region->kind == SE3D_REGION_SPHERE || a != region->axis) {
+        if (region->kind == SE3D_FILL_REGION_SPHERE || a != region->axis) {
             square += d * d;
             reach = fmin(reach, 0.5 * (region->upper[a] - region->lower[a]));
         }

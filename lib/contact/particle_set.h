@@ -165,7 +165,7 @@ typedef struct se3di_kernels se3di_kernels;
 /* A box, and what of it is meant: all, or the largest cylinder or sphere in it. */
 typedef struct se3di_region {
     double lower[3], upper[3];
-    int32_t kind; /* se3d_region */
+    int32_t kind; /* se3d_fill_region */
     int32_t axis; /* of a cylinder */
 } se3di_region;
 

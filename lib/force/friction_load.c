@@ -89,7 +89,7 @@ double se3di_friction_load(const se3di_model *model, const se3di_force *force,
                            const double R[SE3DI_FRICTION_PARTS],
                            double gradient[SE3DI_FRICTION_PARTS])
 {
-    const int turns = force->coordinate == SE3D_COORDINATE_ANGLE;
+    const int turns = force->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
     const double arm = turns ? force->radius : 1.0;
     double g[SE3DI_FRICTION_PARTS] = {0.0}, N;
     if (force->length > 0.0) {

@@ -84,7 +84,7 @@ int se3di_measure_length(const se3di_model *model, const se3di_force *force, int
 
 static void init_term(const se3di_model *model, const se3di_force *force, se3di_term *term)
 {
-    if (force->coordinate == SE3D_COORDINATE_ANGLE) {
+    if (force->coordinate == SE3D_JOINT_COORDINATE_ANGLE) {
         *term = model->angles[force->angle].term;
         term->angle = force->angle;
         term->coefficient = 1.0;

@@ -41,7 +41,7 @@ static uint32_t review(se3di_equations *equations, const se3di_state_scale *scal
     *broken = 0;
     for (uint32_t k = 0; k < equations->friction.count; ++k) {
         const se3di_force *force = element_of(equations, k);
-        const int turns = force->coordinate == SE3D_COORDINATE_ANGLE;
+        const int turns = force->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
         int changes = 0;
         se3di_measure measure;
         (void)se3di_measure_force(model, force, 0, &measure);
@@ -81,7 +81,7 @@ static void add_standing(se3di_equations *equations, const se3di_state_scale *sc
     const se3di_model *model = equations->assembly.model;
     for (uint32_t k = 0; k < equations->friction.count; ++k) {
         const se3di_force *force = element_of(equations, k);
-        const int turns = force->coordinate == SE3D_COORDINATE_ANGLE;
+        const int turns = force->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
         const double still =
             STANDING * fmin(tolerance, 1e-6) * (turns ? scale->spin : scale->speed);
         se3di_measure measure;

@@ -114,10 +114,10 @@ static void offer_one(offer *o, const char *name, se3di_quantity quantity)
 static void offer_coordinates(offer *o, const se3d_system *system, se3d_constraint joint)
 {
     double value[3];
-    const bool angle = !SE3D_FAILED(se3d_joint_get_coordinate(system, joint, SE3D_COORDINATE_ANGLE,
-                                                              &value[0], &value[1], &value[2]));
+    const bool angle = !SE3D_FAILED(se3d_joint_get_coordinate(
+        system, joint, SE3D_JOINT_COORDINATE_ANGLE, &value[0], &value[1], &value[2]));
     const bool displacement = !SE3D_FAILED(se3d_joint_get_coordinate(
-        system, joint, SE3D_COORDINATE_DISPLACEMENT, &value[0], &value[1], &value[2]));
+        system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT, &value[0], &value[1], &value[2]));
     if (angle) {
         offer_one(o, "angle", SE3DI_JOINT_ANGLE);
     }

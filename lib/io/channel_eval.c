@@ -73,14 +73,15 @@ static se3d_status eval_element(const se3di_channel *c, const se3d_system *syste
         return se3d_constraint_get_reaction(system, c->constraint, other, value);
     case SE3DI_JOINT_ANGLE:
     case SE3DI_JOINT_ANGLE_RATE:
-        status = se3d_joint_get_coordinate(system, c->constraint, SE3D_COORDINATE_ANGLE, &other[0],
-                                           &other[1], &other[2]);
+        status = se3d_joint_get_coordinate(system, c->constraint, SE3D_JOINT_COORDINATE_ANGLE,
+                                           &other[0], &other[1], &other[2]);
         value[0] = other[c->quantity == SE3DI_JOINT_ANGLE_RATE];
         return status;
     case SE3DI_JOINT_DISPLACEMENT:
     case SE3DI_JOINT_DISPLACEMENT_RATE:
-        status = se3d_joint_get_coordinate(system, c->constraint, SE3D_COORDINATE_DISPLACEMENT,
-                                           &other[0], &other[1], &other[2]);
+        status =
+            se3d_joint_get_coordinate(system, c->constraint, SE3D_JOINT_COORDINATE_DISPLACEMENT,
+                                      &other[0], &other[1], &other[2]);
         value[0] = other[c->quantity == SE3DI_JOINT_DISPLACEMENT_RATE];
         return status;
     case SE3DI_DRIVER_VALUE:

@@ -14,10 +14,10 @@ bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3
     const se3di_node *child = se3di_node_get(node, "coordinate");
     size_t word = 0;
     double value[3];
-    const bool angle = !SE3D_FAILED(se3d_joint_get_coordinate(system, joint, SE3D_COORDINATE_ANGLE,
-                                                              &value[0], &value[1], &value[2]));
+    const bool angle = !SE3D_FAILED(se3d_joint_get_coordinate(
+        system, joint, SE3D_JOINT_COORDINATE_ANGLE, &value[0], &value[1], &value[2]));
     const bool displacement = !SE3D_FAILED(se3d_joint_get_coordinate(
-        system, joint, SE3D_COORDINATE_DISPLACEMENT, &value[0], &value[1], &value[2]));
+        system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT, &value[0], &value[1], &value[2]));
     if (!angle && !displacement) {
         return se3di_reader_fail_key(reader, node, "joint",
                                      "has no coordinate, must be a joint with an angle or a "
@@ -29,7 +29,7 @@ bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3
                                      "both");
     }
     if (!child) {
-        *coordinate = angle ? SE3D_COORDINATE_ANGLE : SE3D_COORDINATE_DISPLACEMENT;
+        *coordinate = angle ? SE3D_JOINT_COORDINATE_ANGLE : SE3D_JOINT_COORDINATE_DISPLACEMENT;
         return true;
     }
     if (!se3di_read_word(reader, child, coordinates, &word)) {

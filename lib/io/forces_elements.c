@@ -157,7 +157,7 @@ bool se3di_read_friction(se3di_reader *reader, const se3di_node *node, se3di_ele
                                &def.thrust_radius)) {
         return false;
     }
-    if (def.coordinate == SE3D_COORDINATE_ANGLE && def.mu > 0.0 && !(def.radius > 0.0) &&
+    if (def.coordinate == SE3D_JOINT_COORDINATE_ANGLE && def.mu > 0.0 && !(def.radius > 0.0) &&
         !(def.thrust_radius > 0.0)) {
         return se3di_reader_fail_key(reader, node, "radius",
                                      "is missing, friction with `mu` on an angle needs the radius "
@@ -214,7 +214,7 @@ bool se3di_read_stop(se3di_reader *reader, const se3di_node *node, se3di_element
     }
     def.name = entry->name;
     entry->coordinate =
-        se3di_node_get(node, "joint") ? def.coordinate : SE3D_COORDINATE_DISPLACEMENT;
+        se3di_node_get(node, "joint") ? def.coordinate : SE3D_JOINT_COORDINATE_DISPLACEMENT;
     const se3d_status status = se3d_force_create_stop(reader->model->system, &def, &entry->force);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }

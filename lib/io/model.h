@@ -38,7 +38,7 @@ typedef struct se3di_element_entry {
     double point[3]; /* where */
     /* How it is drawn: a pair with points (1), also with an axis (2), a spring (3); 0: not. */
     int32_t drawn;
-    int32_t coordinate; /* se3d_coordinate of a driver, friction or stop */
+    int32_t coordinate; /* se3d_joint_coordinate of a driver, friction or stop */
     se3d_body body_i;
     se3d_body body_j;
     double point_i[3]; /* body frames */

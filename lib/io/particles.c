@@ -105,7 +105,7 @@ static bool read_region(se3di_reader *reader, const se3di_node *node, se3d_fill_
         (axis && !se3di_read_word(reader, axis, axes, &along))) {
         return false;
     }
-    if (axis && kind != SE3D_REGION_CYLINDER) {
+    if (axis && kind != SE3D_FILL_REGION_CYLINDER) {
         return se3di_reader_fail(reader, axis, "is of `region: cylinder` only");
     }
     def->region = (int32_t)kind;
@@ -185,7 +185,8 @@ static bool check_beside(se3di_reader *reader, const se3di_node *node, const cha
 }
 
 /* rate or mass_rate: a number >= 0, or a function of t. */
-static bool read_rate(se3di_reader *reader, const se3di_node *source, se3d_source_def *def)
+static bool read_rate(se3di_reader *reader, const se3di_node *source,
+                      se3d_particles_source_def *def)
 {
     static const char *const variables[] = {"t", NULL};
     const se3di_node *count = se3di_node_get(source, "rate");
@@ -208,7 +209,7 @@ static bool read_source(se3di_reader *reader, const se3di_node *node, se3d_fill_
 {
     se3di_grains *grains = reader->model->grains;
     const se3di_node *child = se3di_node_get(node, "source");
-    se3d_source_def def = se3d_source_def_default();
+    se3d_particles_source_def def = se3d_particles_source_def_default();
     double most = 0.0;
     def.fill = fill;
     if (!check_beside(reader, node, "source",
@@ -283,7 +284,7 @@ static bool read_sink(se3di_reader *reader, const se3di_node *node)
     se3di_grains *grains = reader->model->grains;
     const se3di_node *name = se3di_node_get(node, "name");
     const char *text = NULL;
-    se3d_sink_def def = se3d_sink_def_default();
+    se3d_particles_sink_def def = se3d_particles_sink_def_default();
     se3d_fill_def region = se3d_fill_def_default();
     if (!se3di_read_keys(reader, node, SE3DI_OBJECT_SINK) ||
         (name && (!se3di_read_name(reader, name, &text) || !check_free(reader, name, text))) ||

@@ -157,7 +157,7 @@ size_t se3di_grains_find_sink(const se3di_grains *grains, const char *name)
 static se3d_status sum_sources(const se3di_channel *c, double *value)
 {
     for (uint32_t k = 0; k < c->grains->source_count; ++k) {
-        se3d_source_stats stats;
+        se3d_particles_source_stats stats;
         if (c->grains->source_tags[k] != c->index) {
             continue;
         }
@@ -209,7 +209,7 @@ static se3d_status sum_up(const se3di_grains *grains, uint32_t tag, se3d_run_par
         sum->left = tally.lost + tally.outside;
     }
     for (uint32_t k = 0; k < grains->source_count && status >= 0; ++k) {
-        se3d_source_stats stats;
+        se3d_particles_source_stats stats;
         if (grains->source_tags[k] == tag) {
             status = se3d_particles_get_source_stats(grains->set, k, &stats);
             sum->inserted += status >= 0 ? stats.inserted : 0;

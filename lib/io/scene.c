@@ -314,13 +314,13 @@ static void put_units(drawing *d)
         const se3di_node *type = se3di_node_get(entry->node, "type");
         const char *text = type ? type->text : "";
         double value[3];
-        bool turns = entry->coordinate == SE3D_COORDINATE_ANGLE;
+        bool turns = entry->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
         if (entry->kind == SE3DI_ELEMENT_DRIVER) {
             put_unit(d, entry, "value", turns ? "rad" : "m");
             put_unit(d, entry, "effort", turns ? "N m" : "N");
         } else if (entry->kind == SE3DI_ELEMENT_JOINT) {
             turns = !SE3D_FAILED(se3d_joint_get_coordinate(model->system, entry->constraint,
-                                                           SE3D_COORDINATE_ANGLE, &value[0],
+                                                           SE3D_JOINT_COORDINATE_ANGLE, &value[0],
                                                            &value[1], &value[2]));
         } else if (se3di_keys_contain(" friction stop ", text)) {
             put_unit(d, entry, "coordinate", turns ? "rad" : "m");

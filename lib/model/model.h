@@ -133,7 +133,8 @@ typedef struct se3di_force {
     int32_t joint;                           /* rsda, friction, stop: whose coordinate; -1: none */
     int32_t angle;                           /* its turn counter; -1: none */
     int32_t owns_angle;                      /* the turn counter is the element's own */
-    int32_t coordinate; /* friction, stop: se3d_coordinate, SE3DI_FORCE_LENGTH: of two points */
+    int32_t
+        coordinate; /* friction, stop: se3d_joint_coordinate, SE3DI_FORCE_LENGTH: of two points */
     uint32_t users;
     double value[3];    /* loads */
     double low, high;   /* stop: free between; infinite: none */

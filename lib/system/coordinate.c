@@ -9,12 +9,12 @@ int se3di_coordinate_term(const se3di_model *model, uint32_t joint, int32_t coor
                           se3di_term *term)
 {
     const se3di_constraint *constraint = &model->constraints[joint];
-    if (coordinate == SE3D_COORDINATE_ANGLE && constraint->angle >= 0) {
+    if (coordinate == SE3D_JOINT_COORDINATE_ANGLE && constraint->angle >= 0) {
         *term = model->angles[constraint->angle].term;
         term->angle = constraint->angle;
         return 1;
     }
-    if (coordinate == SE3D_COORDINATE_DISPLACEMENT && constraint->has_displacement) {
+    if (coordinate == SE3D_JOINT_COORDINATE_DISPLACEMENT && constraint->has_displacement) {
         se3di_displacement_term_init(term, &constraint->frames, constraint->bodies);
         return 1;
     }
@@ -24,23 +24,25 @@ int se3di_coordinate_term(const se3di_model *model, uint32_t joint, int32_t coor
 se3d_status se3di_check_coordinate(se3d_system *system, const char *what, uint32_t joint,
                                    int32_t coordinate, se3di_term *term)
 {
-    if (coordinate != SE3D_COORDINATE_ANGLE && coordinate != SE3D_COORDINATE_DISPLACEMENT) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "%s = %d, must be SE3D_COORDINATE_ANGLE or SE3D_COORDINATE_DISPLACEMENT",
-                          what, (int)coordinate);
+    if (coordinate != SE3D_JOINT_COORDINATE_ANGLE &&
+        coordinate != SE3D_JOINT_COORDINATE_DISPLACEMENT) {
+        return SE3DI_FAIL(
+            system, SE3D_ERR_INVALID_ARGUMENT,
+            "%s = %d, must be SE3D_JOINT_COORDINATE_ANGLE or SE3D_JOINT_COORDINATE_DISPLACEMENT",
+            what, (int)coordinate);
     }
     if (se3di_coordinate_term(&system->model, joint, coordinate, term)) {
         return SE3D_OK;
     }
     static const char *const allowed[4] = {
-        "must be one of a joint that has coordinates", "must be SE3D_COORDINATE_ANGLE (0)",
-        "must be SE3D_COORDINATE_DISPLACEMENT (1)", "must be one of both"};
+        "must be one of a joint that has coordinates", "must be SE3D_JOINT_COORDINATE_ANGLE (0)",
+        "must be SE3D_JOINT_COORDINATE_DISPLACEMENT (1)", "must be one of both"};
     const se3di_constraint *constraint = &system->model.constraints[joint];
     int which = (constraint->angle >= 0) + 2 * (constraint->has_displacement != 0);
     return SE3DI_FAIL(
         system, SE3D_ERR_INVALID_ARGUMENT, "%s = %d: '%.64s' (%s) has no %s, %s", what,
         (int)coordinate, constraint->name ? constraint->name : "", constraint->type,
-        coordinate == SE3D_COORDINATE_ANGLE ? "angle" : "displacement", allowed[which]);
+        coordinate == SE3D_JOINT_COORDINATE_ANGLE ? "angle" : "displacement", allowed[which]);
 }
 
 se3d_status se3di_check_distinct(se3d_system *system, const uint32_t bodies[2])

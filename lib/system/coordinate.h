@@ -6,8 +6,8 @@
 
 #include "system/system_internal.h"
 
-/* The term of a joint coordinate (se3d_coordinate), coefficient 1, angles with their turn counter.
- * Returns 0 where the constraint has no such coordinate. */
+/* The term of a joint coordinate (se3d_joint_coordinate), coefficient 1, angles with their turn
+ * counter. Returns 0 where the constraint has no such coordinate. */
 int se3di_coordinate_term(const se3di_model *model, uint32_t joint, int32_t coordinate,
                           se3di_term *term);
 /* The same; records a message that says what the joint has. `what` names the place. */

@@ -162,7 +162,7 @@ se3d_status se3d_joint_create_rack_pinion(se3d_system *system, const char *name,
     def.count = 2;
     def.joint[0] = pinion;
     def.joint[1] = rack;
-    def.coordinate[1] = SE3D_COORDINATE_DISPLACEMENT;
+    def.coordinate[1] = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     def.ratio[0] = -radius;
     def.ratio[1] = 1.0;
     return create_pair(system, "rack_pinion", &def, joint);

@@ -34,7 +34,7 @@ se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_def *user,
     SE3DI_TRY(se3di_find_function(system, "function", def.function, 1, &function));
     SE3DI_TRY(se3di_check_prescribed(system, def.value, function));
     const se3di_constraint *source = &system->model.constraints[joint];
-    int is_angle = def.coordinate == SE3D_COORDINATE_ANGLE;
+    int is_angle = def.coordinate == SE3D_JOINT_COORDINATE_ANGLE;
     se3di_draft draft;
     se3di_draft_init(&draft, "driver", source->bodies[0], source->bodies[1]);
     draft.constraint.name = (char *)(uintptr_t)def.name; /* copied, never written to */

@@ -25,19 +25,21 @@ typedef struct parameter {
 } parameter;
 
 static const parameter parameters[] = {
-    [SE3D_PARAMETER_K] = {"k", SPRINGS | STOP, 0, offsetof(se3di_force, k)},
-    [SE3D_PARAMETER_C] = {"c", SPRINGS, 0, offsetof(se3di_force, c)},
-    [SE3D_PARAMETER_REST] = {"rest", SPRINGS, 0, offsetof(se3di_force, rest)},
-    [SE3D_PARAMETER_PRELOAD] = {"preload", SPRINGS, 0, offsetof(se3di_force, preload)},
-    [SE3D_PARAMETER_LOWER] = {"lower", STOP, 0, offsetof(se3di_force, low)},
-    [SE3D_PARAMETER_UPPER] = {"upper", STOP, 0, offsetof(se3di_force, high)},
-    [SE3D_PARAMETER_RESTITUTION] = {"restitution", STOP, 0, offsetof(se3di_force, restitution)},
-    [SE3D_PARAMETER_MU] = {"mu", FRICTION, 0, offsetof(se3di_force, mu)},
-    [SE3D_PARAMETER_MU_STATIC] = {"mu_static", FRICTION, 0, offsetof(se3di_force, mu_static)},
-    [SE3D_PARAMETER_RADIUS] = {"radius", FRICTION, 0, offsetof(se3di_force, radius)},
-    [SE3D_PARAMETER_LIMIT] = {"limit", FRICTION, 0, offsetof(se3di_force, limit)},
-    [SE3D_PARAMETER_VISCOUS] = {"viscous", FRICTION, 0, offsetof(se3di_force, viscous)},
-    [SE3D_PARAMETER_PRESLIDING] = {"presliding", FRICTION, 0, offsetof(se3di_force, presliding)},
+    [SE3D_FORCE_PARAMETER_K] = {"k", SPRINGS | STOP, 0, offsetof(se3di_force, k)},
+    [SE3D_FORCE_PARAMETER_C] = {"c", SPRINGS, 0, offsetof(se3di_force, c)},
+    [SE3D_FORCE_PARAMETER_REST] = {"rest", SPRINGS, 0, offsetof(se3di_force, rest)},
+    [SE3D_FORCE_PARAMETER_PRELOAD] = {"preload", SPRINGS, 0, offsetof(se3di_force, preload)},
+    [SE3D_FORCE_PARAMETER_LOWER] = {"lower", STOP, 0, offsetof(se3di_force, low)},
+    [SE3D_FORCE_PARAMETER_UPPER] = {"upper", STOP, 0, offsetof(se3di_force, high)},
+    [SE3D_FORCE_PARAMETER_RESTITUTION] = {"restitution", STOP, 0,
+                                          offsetof(se3di_force, restitution)},
+    [SE3D_FORCE_PARAMETER_MU] = {"mu", FRICTION, 0, offsetof(se3di_force, mu)},
+    [SE3D_FORCE_PARAMETER_MU_STATIC] = {"mu_static", FRICTION, 0, offsetof(se3di_force, mu_static)},
+    [SE3D_FORCE_PARAMETER_RADIUS] = {"radius", FRICTION, 0, offsetof(se3di_force, radius)},
+    [SE3D_FORCE_PARAMETER_LIMIT] = {"limit", FRICTION, 0, offsetof(se3di_force, limit)},
+    [SE3D_FORCE_PARAMETER_VISCOUS] = {"viscous", FRICTION, 0, offsetof(se3di_force, viscous)},
+    [SE3D_FORCE_PARAMETER_PRESLIDING] = {"presliding", FRICTION, 0,
+                                         offsetof(se3di_force, presliding)},
 };
 
 #define PARAMETERS ((int32_t)(sizeof parameters / sizeof parameters[0]))
@@ -203,7 +205,7 @@ se3d_status se3d_force_set_parameter(se3d_system *system, se3d_force force, int3
     if (!(p->types & BIT(data.type))) {
         return fail_type(system, &data, p->name);
     }
-    const int follows = which == SE3D_PARAMETER_MU && !(data.mu_static > data.mu);
+    const int follows = which == SE3D_FORCE_PARAMETER_MU && !(data.mu_static > data.mu);
     double *at = (double *)(void *)((char *)&data + p->offset);
     if (memcmp(at, &value, sizeof value) == 0) {
         return SE3D_OK;

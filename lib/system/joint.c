@@ -253,7 +253,7 @@ static void term_rates(const se3di_model *model, const se3di_term *term, double 
 }
 
 se3d_status se3d_joint_get_coordinate(const se3d_system *system, se3d_constraint joint,
-                                      se3d_coordinate coordinate, double *value, double *rate,
+                                      se3d_joint_coordinate coordinate, double *value, double *rate,
                                       double *acceleration)
 {
     double *outputs[3] = {value, rate, acceleration};

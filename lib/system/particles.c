@@ -21,11 +21,13 @@ void se3d_particles_def_init(se3d_particles_def *def, size_t size)
 static se3d_status check_domain(se3d_system *system, const se3d_particles_def *def)
 {
     for (int a = 0; a < 3; ++a) {
-        if (def->boundary[a] < SE3D_BOUNDARY_OPEN || def->boundary[a] > SE3D_BOUNDARY_SINK) {
+        if (def->boundary[a] < SE3D_DOMAIN_BOUNDARY_OPEN ||
+            def->boundary[a] > SE3D_DOMAIN_BOUNDARY_SINK) {
             return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "boundary[%d] = %d, must be an se3d_boundary", a, def->boundary[a]);
+                              "boundary[%d] = %d, must be an se3d_domain_boundary", a,
+                              def->boundary[a]);
         }
-        int used = def->boundary[a] != SE3D_BOUNDARY_OPEN;
+        int used = def->boundary[a] != SE3D_DOMAIN_BOUNDARY_OPEN;
         int finite = isfinite(def->lower[a]) && isfinite(def->upper[a]);
         if (used && !(finite && def->upper[a] > def->lower[a])) {
             return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,

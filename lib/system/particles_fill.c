@@ -38,9 +38,9 @@ static se3d_status check_radii(se3d_particles *p, se3d_fill_def *def)
 se3d_status se3di_check_region(se3d_particles *p, const double lower[3], const double upper[3],
                                int32_t region, int32_t axis, double size)
 {
-    if (region < SE3D_REGION_BOX || region > SE3D_REGION_SPHERE) {
+    if (region < SE3D_FILL_REGION_BOX || region > SE3D_FILL_REGION_SPHERE) {
         return SE3DI_FAIL(p->system, SE3D_ERR_INVALID_ARGUMENT,
-                          "region = %d, must be an se3d_region", region);
+                          "region = %d, must be an se3d_fill_region", region);
     }
     if (axis < 0 || axis > 2) {
         return SE3DI_FAIL(p->system, SE3D_ERR_INVALID_ARGUMENT, "axis = %d, must be 0, 1 or 2",
@@ -133,7 +133,7 @@ se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fi
     se3d_fill_def full = se3d_fill_def_default();
     SE3DI_TRY(se3di_check_fill(particles, def, &full, &material));
     double total = lattice_init(&l, &full);
-    if (full.count == 0 || full.region != SE3D_REGION_BOX) { /* all may have to be looked at */
+    if (full.count == 0 || full.region != SE3D_FILL_REGION_BOX) { /* all may have to be looked at */
         SE3DI_TRY(se3di_check_range(particles->system, "points of the lattice from lower to upper",
                                     total, 0.0, POINTS_MAX));
     }

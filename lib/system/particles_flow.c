@@ -7,15 +7,15 @@
 #include <math.h>
 #include <string.h>
 
-void se3d_source_def_init(se3d_source_def *def, size_t size)
+void se3d_particles_source_def_init(se3d_particles_source_def *def, size_t size)
 {
-    se3d_source_def defaults = {.struct_size = size};
+    se3d_particles_source_def defaults = {.struct_size = size};
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
-void se3d_sink_def_init(se3d_sink_def *def, size_t size)
+void se3d_particles_sink_def_init(se3d_particles_sink_def *def, size_t size)
 {
-    se3d_sink_def defaults = {.struct_size = size};
+    se3d_particles_sink_def defaults = {.struct_size = size};
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
@@ -28,8 +28,8 @@ se3d_status se3di_check_tag(se3d_particles *particles, uint32_t tag)
     return SE3D_OK;
 }
 
-static se3d_status check_source(se3d_particles *p, const se3d_source_def *def,
-                                se3d_source_def *full, int32_t *function)
+static se3d_status check_source(se3d_particles *p, const se3d_particles_source_def *def,
+                                se3d_particles_source_def *full, int32_t *function)
 {
     se3d_system *system = p->system;
     SE3DI_TRY(se3di_check_def(system, "source def", def, full, sizeof *full));
@@ -72,13 +72,13 @@ static se3d_status grow(se3d_particles *p, void **data, size_t *capacity, size_t
     return SE3D_OK;
 }
 
-se3d_status se3d_particles_add_source(se3d_particles *particles, const se3d_source_def *def,
-                                      uint32_t *out)
+se3d_status se3d_particles_add_source(se3d_particles *particles,
+                                      const se3d_particles_source_def *def, uint32_t *out)
 {
     SE3DI_EDIT_OF(particles);
     se3di_particles *set = &particles->set;
     se3di_model *model = &particles->system->model;
-    se3d_source_def full = se3d_source_def_default();
+    se3d_particles_source_def full = se3d_particles_source_def_default();
     se3d_fill_def fill = se3d_fill_def_default();
     int32_t function = -1;
     uint32_t material;
@@ -116,7 +116,7 @@ se3d_status se3d_particles_add_source(se3d_particles *particles, const se3d_sour
 }
 
 se3d_status se3d_particles_get_source_stats_sized(const se3d_particles *particles, uint32_t source,
-                                                  se3d_source_stats *stats, size_t size)
+                                                  se3d_particles_source_stats *stats, size_t size)
 {
     if (!particles || !stats) {
         return SE3D_ERR_NULL;
@@ -125,10 +125,11 @@ se3d_status se3d_particles_get_source_stats_sized(const se3d_particles *particle
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     const se3di_source *s = &particles->set.sources[source];
-    const se3d_source_stats full = {.inserted = s->inserted,
-                                    .deferred = s->deferred,
-                                    .mass = s->mass,
-                                    .waiting = s->inserted < s->maximum ? fmax(0.0, s->owed) : 0.0};
+    const se3d_particles_source_stats full = {
+        .inserted = s->inserted,
+        .deferred = s->deferred,
+        .mass = s->mass,
+        .waiting = s->inserted < s->maximum ? fmax(0.0, s->owed) : 0.0};
     return se3di_sized_give(stats, size, &full, sizeof full);
 }
 
@@ -159,13 +160,13 @@ se3d_status se3d_particles_remove_source(se3d_particles *particles, uint32_t sou
     return SE3D_OK;
 }
 
-se3d_status se3d_particles_add_sink(se3d_particles *particles, const se3d_sink_def *def,
+se3d_status se3d_particles_add_sink(se3d_particles *particles, const se3d_particles_sink_def *def,
                                     uint32_t *out)
 {
     SE3DI_EDIT_OF(particles);
     se3d_system *system = particles->system;
     se3di_particles *set = &particles->set;
-    se3d_sink_def full = se3d_sink_def_default();
+    se3d_particles_sink_def full = se3d_particles_sink_def_default();
     SE3DI_TRY(se3di_check_def(system, "sink def", def, &full, sizeof full));
     SE3DI_TRY(se3di_check_finites(system, "point", full.point, 3));
     SE3DI_TRY(se3di_check_finites(system, "normal", full.normal, 3));

@@ -114,7 +114,7 @@ static void add_forces(const support_model *model)
     se3d_force force;
     se3d_friction_def friction = se3d_friction_def_default();
     friction.joint = model->joints[0];
-    friction.coordinate = SE3D_COORDINATE_ANGLE;
+    friction.coordinate = SE3D_JOINT_COORDINATE_ANGLE;
     friction.mu = 0.2;
     friction.radius = 0.05;
     friction.limit = 0.1;
@@ -122,7 +122,7 @@ static void add_forces(const support_model *model)
     CHECK(se3d_force_create_friction(model->system, &friction, &force) == SE3D_OK);
     se3d_stop_def stop = se3d_stop_def_default();
     stop.joint = model->joints[1];
-    stop.coordinate = SE3D_COORDINATE_ANGLE;
+    stop.coordinate = SE3D_JOINT_COORDINATE_ANGLE;
     stop.lower = -0.2;
     stop.upper = 0.2;
     stop.k = 500.0;
@@ -280,7 +280,7 @@ static void fill_table(void)
     add("elementary", 0, 0, 0)->run = run_elementary;
     static const int32_t methods[] = {SE3D_METHOD_VERLET, SE3D_METHOD_DOP853,
                                       SE3D_METHOD_GENERALIZED_ALPHA};
-    static const int32_t laws[] = {SE3D_LAW_HOOKE, SE3D_LAW_HERTZ_MINDLIN};
+    static const int32_t laws[] = {SE3D_CONTACT_LAW_HOOKE, SE3D_CONTACT_LAW_HERTZ_MINDLIN};
     for (int k = 0; k < 6; ++k) {
         add("contacts", laws[k % 2], methods[k / 2], k % 2)->run = run_scene;
     }

@@ -92,8 +92,8 @@ static trial begin(const meeting *m, double mu, double rolling, int law, uint64_
     se3d_contact_settings settings = se3d_contact_settings_default();
     settings.overlap_limit = 1.0;
     settings.law = law;
-    settings.callback = law == SE3D_LAW_CALLBACK ? users_law : NULL;
-    settings.step = law == SE3D_LAW_CALLBACK ? 1e-4 : 0.0;
+    settings.callback = law == SE3D_CONTACT_LAW_CALLBACK ? users_law : NULL;
+    settings.step = law == SE3D_CONTACT_LAW_CALLBACK ? 1e-4 : 0.0;
     CHECK(se3d_system_set_contact(t.system, &settings) == SE3D_OK);
     se3d_material_def def = se3d_material_def_default();
     se3d_material material;

@@ -234,12 +234,12 @@ static void create_friction(world *w, int32_t coordinate, double mode)
 
 static void create_sticking_hinge(world *w)
 {
-    create_friction(w, SE3D_COORDINATE_ANGLE, 0.0);
+    create_friction(w, SE3D_JOINT_COORDINATE_ANGLE, 0.0);
 }
 
 static void create_slipping_slide(world *w)
 {
-    create_friction(w, SE3D_COORDINATE_DISPLACEMENT, -1.0);
+    create_friction(w, SE3D_JOINT_COORDINATE_DISPLACEMENT, -1.0);
 }
 
 static void create_stop(world *w, double lower, double upper)

@@ -107,7 +107,7 @@ static inline se3d_constraint add_local(world *w, joint_create create, const cha
 }
 
 static inline se3d_constraint add_driver(world *w, const char *name, se3d_constraint joint,
-                                         se3d_coordinate coordinate, const char *text)
+                                         se3d_joint_coordinate coordinate, const char *text)
 {
     se3d_constraint driver;
     se3d_driver_def def = se3d_driver_def_default();

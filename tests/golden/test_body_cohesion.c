@@ -66,7 +66,7 @@ static void end(couple *c)
 static double elastic(int32_t law, double delta)
 {
     double stiffness = 4.0 / 3.0 * 1e8 / (2.0 * (1.0 - 0.09));
-    return law == SE3D_LAW_HOOKE ? 1e5 * delta : stiffness * sqrt(R * delta) * delta;
+    return law == SE3D_CONTACT_LAW_HOOKE ? 1e5 * delta : stiffness * sqrt(R * delta) * delta;
 }
 
 static double force_at(int32_t law, double cohesion, double adhesion, double delta)
@@ -132,7 +132,7 @@ static void a_ball_hangs_where_it_sticks(void)
     for (int k = 0; k < 4; ++k) {
         const double up[3] = {0.3, 0.0, 9.81};
         double r[3], force[3], torque[3];
-        couple c = begin(SE3D_LAW_HERTZ_MINDLIN, 0.0, 50.0, 0.3, -2e-5, 0.0);
+        couple c = begin(SE3D_CONTACT_LAW_HERTZ_MINDLIN, 0.0, 50.0, 0.3, -2e-5, 0.0);
         CHECK(se3d_system_set_gravity(c.system, up) == SE3D_OK);
         solve(&c, SE3D_ANALYSIS_DYNAMICS, methods[k], 0.0);
         CHECK(se3d_solver_run(c.solver, 0.5) >= 0);

@@ -19,7 +19,7 @@ static double bounce(int32_t law, int32_t method, double e, double speed, double
     se3d_body ball = scene_ball(&s, 0.05, 0.5, r, v);
     scene_floor(&s, 0.0);
     scene_solve(&s, method, SE3D_FORMULATION_ROMEGA, step, 1e-7);
-    scene_run(&s, law == SE3D_LAW_HOOKE ? 0.04 : 0.15);
+    scene_run(&s, law == SE3D_CONTACT_LAW_HOOKE ? 0.04 : 0.15);
     double out = speed_of(&s, ball, 2) / speed;
     scene_end(&s);
     return out;
@@ -35,7 +35,8 @@ static void restitution_is_of_second_order_in_a_given_step(void)
         for (int phase = 0; phase < 4; ++phase) {
             double e = 0.3 + 0.2 * (k % 4), step = 8e-5 * (1.0 + 0.07 * phase);
             for (int fine = 0; fine < 2; ++fine) {
-                double out = bounce(SE3D_LAW_HOOKE, methods[k / 4], e, 0.1, fine ? step / 4 : step);
+                double out =
+                    bounce(SE3D_CONTACT_LAW_HOOKE, methods[k / 4], e, 0.1, fine ? step / 4 : step);
                 worst[fine] = fmax(worst[fine], fabs(out - e));
             }
         }
@@ -45,7 +46,7 @@ static void restitution_is_of_second_order_in_a_given_step(void)
 
 static void two_spheres_part_with_the_restitution(void)
 {
-    scene s = scene_begin(SE3D_LAW_HOOKE, 0.3, 0.6, 1e5);
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.3, 0.6, 1e5);
     CHECK(se3d_system_set_gravity(s.system, scene_zero) == SE3D_OK);
     const double r1[3] = {0.0, 0.0, 0.0}, r2[3] = {0.2, 0.0, 0.0};
     const double v1[3] = {1.0, 0.0, 0.0}, v2[3] = {-0.5, 0.0, 0.0};
@@ -85,7 +86,7 @@ static void box_on_an_incline_stays(void)
 {
     static const int32_t methods[2] = {SE3D_METHOD_DOP853, SE3D_METHOD_GENERALIZED_ALPHA};
     for (int k = 0; k < 4; ++k) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.3, 1e5);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e5);
         double r[3], before[3], after[3], force[3], torque[3];
         incline_position(0.2, 2.0, 1e5, slope, r);
         se3d_body box = add_cube(&s, 0.2, 2.0, r, slope);
@@ -112,7 +113,7 @@ static void box_on_an_incline_slides(void)
 {
     static const int32_t methods[2] = {SE3D_METHOD_DOP853, SE3D_METHOD_GENERALIZED_ALPHA};
     for (int k = 0; k < 2; ++k) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.2, 0.3, 1e5);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.2, 0.3, 1e5);
         double r[3], v0[3], v1[3];
         incline_position(0.2, 2.0, 1e5, slope, r);
         se3d_body box = add_cube(&s, 0.2, 2.0, r, slope);
@@ -130,7 +131,7 @@ static void box_on_an_incline_slides(void)
 
 static void ten_spheres_stay_stacked(void)
 {
-    scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.3, 1e5);
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e5);
     se3d_body ball[10];
     double z = 0.0, before[3], after[3];
     scene_floor(&s, 0.0);
@@ -154,7 +155,7 @@ static void ten_spheres_stay_stacked(void)
 /* On a slope a body rolls with g sin / (1 + J / (m R^2)). */
 static double roll(int kind, int32_t method, int32_t formulation)
 {
-    scene s = scene_begin(SE3D_LAW_HOOKE, 0.8, 0.3, 1e6);
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.8, 0.3, 1e6);
     const double R = 0.1, L = 0.3, m = 2.0, tilt = 0.2;
     double along = 0.5 * m * R * R; /* a cylinder; the same numbers for all */
     const double J[3] = {0.2, 0.2, along};

@@ -32,7 +32,7 @@ static se3d_body press(scene *s, const double r[3], const double axis[3], const 
     CHECK(se3d_joint_def_set_frame(s->system, &weld, r, axis, NULL) == SE3D_OK);
     CHECK(se3d_joint_create_prismatic(s->system, &guide, &joint) == SE3D_OK);
     drive.joint = joint;
-    drive.coordinate = SE3D_COORDINATE_DISPLACEMENT;
+    drive.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     CHECK(se3d_function_create_expression(s->system, f, &drive.function) == SE3D_OK);
     CHECK(se3d_driver_create(s->system, &drive, motor) == SE3D_OK);
     CHECK(se3d_joint_create_fixed(s->system, &weld, &joint) == SE3D_OK);
@@ -46,7 +46,7 @@ static void a_press_needs_what_the_contact_gives(void)
 {
     const double k = 1e5, axis[3] = {0.0, 0.0, 1.0}, r[3] = {0.0, 0.0, 0.1 + 1e-3};
     for (int n = 0; n < 4; ++n) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 1.0, k);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 1.0, k);
         se3d_constraint motor;
         double force[3], torque[3], effort, most;
         scene_floor(&s, 0.0);
@@ -75,7 +75,7 @@ static void a_ball_that_is_dragged_sticks_and_slips(void)
     const double axis[3] = {1.0, 0.0, 0.0}, r[3] = {0.0, 0.0, 0.1 - overlap};
     const double cap = mu * k * overlap;
     for (int n = 0; n < 4; ++n) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, mu, 1.0, k);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, mu, 1.0, k);
         se3d_constraint motor;
         double force[3], torque[3], effort, spring = 0.0, last = 0.0;
         scene_floor(&s, 0.0);
@@ -100,7 +100,7 @@ static void driven_bodies_may_not_overlap_too_much(void)
 {
     const double axis[3] = {0.0, 0.0, 1.0}, r[3] = {0.0, 0.0, 0.11};
     for (int n = 0; n < 2; ++n) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 1.0, 1e5);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 1.0, 1e5);
         se3d_constraint motor;
         double at[3], time;
         scene_floor(&s, 0.0);
@@ -136,7 +136,7 @@ static void a_box_vibrates_on_its_corners(void)
     const double k = 1e6, kt = 2.0 / 7.0 * k, m = 2.0, size[3] = {0.3, 0.2, 0.1};
     const double sink = m * G / (4.0 * k), h = 0.05 - sink;
     const double r[3] = {0.0, 0.0, h};
-    scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 1.0, k);
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 1.0, k);
     se3d_modes *modes = NULL;
     scene_box(&s, size, m, r, scene_zero);
     scene_floor(&s, 0.0);
@@ -167,7 +167,7 @@ static void a_ball_sinks_in_as_hertz_says(void)
 {
     const double R = 0.1, m = 2.0, K = 4.0 / 3.0 * 1e7 / (2.0 * 0.91) * sqrt(R);
     const double sink = pow(m * G / K, 2.0 / 3.0), r[3] = {0.0, 0.0, R - 1e-5};
-    scene s = scene_begin(SE3D_LAW_HERTZ_MINDLIN, 0.5, 1.0, 1e5);
+    scene s = scene_begin(SE3D_CONTACT_LAW_HERTZ_MINDLIN, 0.5, 1.0, 1e5);
     se3d_modes *modes = NULL;
     double at[3];
     se3d_body ball = scene_ball(&s, R, m, r, scene_zero);
@@ -197,7 +197,7 @@ static void forces_are_known_before_the_first_step(void)
     static const int32_t analyses[2] = {SE3D_ANALYSIS_DYNAMICS, SE3D_ANALYSIS_ASSEMBLY};
     const double r[3] = {0.0, 0.0, 0.0999}, v[3] = {0.0, 0.0, -0.1};
     for (int k = 0; k < 2; ++k) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.5, 1e5);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.5, 1e5);
         se3d_body ball = scene_ball(&s, 0.1, 2.0, r, v);
         scene_floor(&s, 0.0);
         solve_analysis(&s, analyses[k], SE3D_FORMULATION_ROMEGA, 0.0);
@@ -222,7 +222,7 @@ static void forces_are_those_of_where_an_event_stops(void)
     const double r[3] = {0.0, 0.0, 0.1}, v[3] = {0.0, 0.0, -0.5};
     for (int32_t method = SE3D_METHOD_GENERALIZED_ALPHA; method <= SE3D_METHOD_RK4; ++method) {
         for (int given = 0; given < 2; ++given) {
-            scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.5, 1e5);
+            scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.5, 1e5);
             se3d_event_def def = se3d_event_def_default();
             se3d_event event;
             double at[3];

@@ -35,7 +35,7 @@ static void a_ball_on_a_turntable_goes_round_a_circle(void)
     const double arm = R - m * G / k;
     const double rate = speed / (1.0 + arm * arm / (0.4 * R * R)); /* 2/7 Omega */
     for (size_t n = 0; n < CHOICES; ++n) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.8, 0.3, k);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.8, 0.3, k);
         const double r[3] = {a, 0.0, arm}, v[3] = {0.0, v0, 0.0};
         const double w[3] = {(speed * a - v0) / arm, 0.0, 0.0};
         double at[3], now[3];
@@ -89,7 +89,7 @@ static void a_ball_swings_in_a_gutter(void)
     const double length = R - r + m * G / k;
     const double period = 2.0 * PI * sqrt(7.0 * length / (5.0 * G)) * (1.0 + start * start / 16.0);
     for (size_t n = 0; n < MESH_CHOICES; ++n) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.8, 0.2, k);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.8, 0.2, k);
         const double at0[3] = {length * sin(start), 0.0, -length * cos(start)};
         double at[3];
         gutter(&s, R, 0.4);
@@ -115,7 +115,7 @@ static void a_ball_passes_a_loop_if_it_is_fast_enough(void)
     for (size_t n = 0; n < 2 * MESH_CHOICES; ++n) {
         const int passes = n % 2 == 0;
         const double v0 = sqrt((passes ? 1.06 : 0.9) * 27.0 / 7.0 * G * rho);
-        scene s = scene_begin(SE3D_LAW_HOOKE, 1.5, 0.2, k);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 1.5, 0.2, k);
         const double at0[3] = {0.0, 0.0, -rho}, v[3] = {v0, 0.0, 0.0};
         const double w[3] = {0.0, v0 / r, 0.0};
         double at[3], now[3], top = 0.0, least = HUGE_VAL;
@@ -155,7 +155,7 @@ static void a_disk_rolls_on_its_rim_about_a_centre_at_rest(void)
     const double rate =
         sqrt(m * G * (R * c - 0.5 * h * q) / (q * (Jt * c - Ja * h / (2.0 * R) * q)));
     for (size_t n = 0; n < CHOICES; ++n) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.8, 0.3, k);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.8, 0.3, k);
         /* turned about y: e1 = x of the body looks down, e3 leans to +x */
         const double J[3] = {Jt, Jt, Ja}, about_y[3] = {0.0, 1.0, 0.0};
         const double r[3] = {0.0, 0.0, R * q + 0.5 * h * c - sink};
@@ -199,7 +199,7 @@ static void a_cart_rolls_down_a_slope(void)
     const double along[3] = {cos(slope), 0.0, -sin(slope)}, up[3] = {sin(slope), 0.0, cos(slope)};
     const double about_y[3] = {0.0, 1.0, 0.0};
     for (size_t n = 0; n < CHOICES; ++n) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.8, 0.2, k);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.8, 0.2, k);
         const double size[3] = {0.8, 0.2, 0.1};
         double r[3], v0[3], v1[3], gained = 0.0;
         for (int a = 0; a < 3; ++a) {

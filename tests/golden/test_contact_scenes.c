@@ -7,7 +7,7 @@ static void a_row_of_balls_passes_the_blow_on(void)
 {
     const double e = 0.9;
     const double expected[3] = {0.5 * (1 - e), 0.25 * (1 - e * e), 0.25 * (1 + e) * (1 + e)};
-    scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, e, 1e5);
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, e, 1e5);
     se3d_body balls[3];
     CHECK(se3d_system_set_gravity(s.system, scene_zero) == SE3D_OK);
     for (int k = 0; k < 3; ++k) {
@@ -64,7 +64,7 @@ static void touching_balls_pass_a_blow_on_as_a_chain_does(void)
     run_chain(K / m, 0.1, expected);
     CHECK(expected[CHAIN - 1] > 0.95);
     for (int n = 0; n < 6; ++n) {
-        scene s = scene_begin(SE3D_LAW_HERTZ_MINDLIN, 0.0, 1.0, 1e5);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HERTZ_MINDLIN, 0.0, 1.0, 1e5);
         se3d_body balls[CHAIN];
         double sum = 0.0, square = 0.0, before = -1.0;
         CHECK(se3d_system_set_gravity(s.system, scene_zero) == SE3D_OK);
@@ -111,7 +111,7 @@ static void a_hung_ball_passes_its_height_on(void)
     const double R = 0.05, e = 0.8, angle = 0.5;
     const double rise = 0.25 * (1.0 + e) * (1.0 + e) * (1.0 - cos(angle));
     for (int n = 0; n < 6; ++n) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.0, e, 1e5);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.0, e, 1e5);
         double r[3], highest = -1.0;
         (void)pendulum(&s, 0.0, angle, R);
         se3d_body second = pendulum(&s, 2.0 * R + 1e-6, 0.0, R);

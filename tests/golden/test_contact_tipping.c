@@ -50,7 +50,7 @@ static void a_box_on_a_slope_stands_tips_or_slides(void)
         const choice *c = &choices[n / 3];
         const double slope = slopes[kind], mu = friction[kind], k = 1e6;
         double v0[3], v1[3], w[3];
-        scene s = scene_begin(SE3D_LAW_HOOKE, mu, 0.3, k);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, mu, 0.3, k);
         se3d_body box = tall_box(&s, k, slope);
         scene_solve(&s, c->method, c->formulation, 0.0, 1e-6);
         scene_run(&s, 0.2);
@@ -82,7 +82,7 @@ static void a_pushed_box_slides_or_tips(void)
         const int tips = (int)(n % 2);
         const choice *c = &choices[n / 2];
         double v0[3], v1[3];
-        scene s = scene_begin(SE3D_LAW_HOOKE, mu, 0.3, k);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, mu, 0.3, k);
         se3d_body box = tall_box(&s, k, 0.0);
         se3d_load_def load = se3d_load_def_default();
         se3d_force force;
@@ -129,7 +129,7 @@ static se3d_body gripper(scene *s, double lift, double N)
     se3d_constraint motor;
     char text[60];
     drive.joint = slide(s, scene_ground(s), hand, top, up);
-    drive.coordinate = SE3D_COORDINATE_DISPLACEMENT;
+    drive.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     snprintf(text, sizeof text, "%.17g * t^2 / 2", lift);
     CHECK(se3d_function_create_expression(s->system, text, &drive.function) == SE3D_OK);
     CHECK(se3d_driver_create(s->system, &drive, &motor) == SE3D_OK);
@@ -160,7 +160,7 @@ static void a_gripper_lifts_what_its_friction_holds(void)
         const choice *c = &choices[n / 2];
         const double N = (holds ? 1.05 : 0.8) * (G + lift) / (2.0 * mu);
         double v0[3], v1[3], w[3];
-        scene s = scene_begin(SE3D_LAW_HOOKE, mu, 0.3, 1e6);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, mu, 0.3, 1e6);
         se3d_body box = gripper(&s, lift, N);
         scene_solve(&s, c->method, c->formulation, 0.0, 1e-6);
         scene_run(&s, 0.05);
@@ -179,7 +179,7 @@ static void a_gripper_lifts_what_its_friction_holds(void)
 static double time_to_topple(const choice *c)
 {
     const double size[3] = {0.02, 0.1, 0.12}, pitch = 0.06, lean = 0.25, k = 1e5, m = 0.1;
-    scene s = scene_begin(SE3D_LAW_HOOKE, 0.6, 0.3, k);
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.6, 0.3, k);
     se3d_body row[4];
     se3d_energy before, after;
     scene_floor(&s, 0.0);
@@ -231,7 +231,7 @@ static void a_coin_spins_down_and_lies_flat(void)
         double at[3], p[4], last;
         stuff.rolling_friction = 0.1;
         stuff.torsional_friction = 0.1;
-        scene s = scene_begin_with(NULL, SE3D_LAW_HOOKE, &stuff);
+        scene s = scene_begin_with(NULL, SE3D_CONTACT_LAW_HOOKE, &stuff);
         se3d_energy energy;
         se3d_body coin = scene_body(&s, m, J, r, scene_zero);
         scene_turn(&s, coin, about_y, tilt);

@@ -13,7 +13,7 @@ typedef struct bed {
     se3d_material material;
 } bed;
 
-static void bed_init(bed *b, se3d_law law, double g, const se3d_material_def *material)
+static void bed_init(bed *b, se3d_contact_law law, double g, const se3d_material_def *material)
 {
     se3d_system_def def = se3d_system_def_default();
     def.gravity[2] = -g;
@@ -67,8 +67,8 @@ static double mass_of(double radius)
 }
 
 /* Head-on impact at relative velocity `v`; returns the restitution, writes time and overlap. */
-static double impact(se3d_law law, const se3d_material_def *def, int wall, double radius, double v,
-                     double divide, double out[3])
+static double impact(se3d_contact_law law, const se3d_material_def *def, int wall, double radius,
+                     double v, double divide, double out[3])
 {
     bed b;
     bed_init(&b, law, 0.0, def);
@@ -104,14 +104,14 @@ static void restitution_typed_is_restitution_obtained(void)
 {
     static const double es[4] = {0.3, 0.5, 0.7, 0.9};
     for (int k = 0; k < 32; ++k) {
-        se3d_law law = k & 1 ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE;
+        se3d_contact_law law = k & 1 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
         double v = k & 4 ? 10.0 : 0.1;
         se3d_material_def def = stuff();
         def.restitution = es[k >> 3];
         def.stiffness = 4e6; /* 10 m/s within the allowed overlap */
         double out[3];
-        double e =
-            impact(law, &def, (k & 2) != 0, 0.005, v, law == SE3D_LAW_HOOKE ? 8.0 : 16.0, out);
+        double e = impact(law, &def, (k & 2) != 0, 0.005, v,
+                          law == SE3D_CONTACT_LAW_HOOKE ? 8.0 : 16.0, out);
         CHECK_NEAR(e, def.restitution, 1e-3);
     }
 }
@@ -121,8 +121,8 @@ static void restitution_converges_with_the_step(void)
     se3d_material_def def = stuff();
     double out[3];
     def.restitution = 0.7;
-    double coarse = fabs(impact(SE3D_LAW_HOOKE, &def, 0, 0.005, 0.1, 1.0, out) - 0.7);
-    double fine = fabs(impact(SE3D_LAW_HOOKE, &def, 0, 0.005, 0.1, 16.0, out) - 0.7);
+    double coarse = fabs(impact(SE3D_CONTACT_LAW_HOOKE, &def, 0, 0.005, 0.1, 1.0, out) - 0.7);
+    double fine = fabs(impact(SE3D_CONTACT_LAW_HOOKE, &def, 0, 0.005, 0.1, 16.0, out) - 0.7);
     CHECK(coarse < 1e-2);
     CHECK(fine < coarse / 8.0);
 }
@@ -131,12 +131,12 @@ static void linear_contact_lasts_half_a_period(void)
 {
     se3d_material_def def = stuff();
     double out[3];
-    double e = impact(SE3D_LAW_HOOKE, &def, 0, 0.005, 1.0, 20.0, out);
+    double e = impact(SE3D_CONTACT_LAW_HOOKE, &def, 0, 0.005, 1.0, 20.0, out);
     double rate = sqrt(2.5e4 / (0.5 * mass_of(0.005)));
     CHECK_NEAR(e, 1.0, 1e-6);
     CHECK_NEAR(out[2] * rate / PI, 1.0, 2e-3); /* whole steps */
     CHECK_NEAR(out[0] * rate, 1.0, 1e-4);
-    e = impact(SE3D_LAW_HOOKE, &def, 1, 0.005, 1.0, 20.0, out);
+    e = impact(SE3D_CONTACT_LAW_HOOKE, &def, 1, 0.005, 1.0, 20.0, out);
     CHECK_NEAR(out[2] * sqrt(2.5e4 / mass_of(0.005)) / PI, 1.0, 2e-3);
     CHECK_NEAR(e, 1.0, 1e-6);
 }
@@ -156,8 +156,8 @@ static void elastic_impacts_are_those_of_hertz(void)
         def.poisson = rows[k].poisson;
         def.density = rows[k].density;
         double out[3];
-        double e = impact(SE3D_LAW_HERTZ_MINDLIN, &def, rows[k].wall, rows[k].radius, rows[k].v,
-                          40.0, out);
+        double e = impact(SE3D_CONTACT_LAW_HERTZ_MINDLIN, &def, rows[k].wall, rows[k].radius,
+                          rows[k].v, 40.0, out);
         CHECK_NEAR(e, 1.0, 1e-5);
         CHECK_NEAR(out[0] / rows[k].overlap, 1.0, 1e-4);
         CHECK_NEAR(out[1] / rows[k].force, 1.0, 1e-4);
@@ -173,7 +173,7 @@ static void impact_on_a_rigid_wall_is_that_of_hertz(void)
     def.poisson = 0.30;
     def.density = 2699.0;
     bed b;
-    bed_init(&b, SE3D_LAW_HERTZ_MINDLIN, 0.0, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HERTZ_MINDLIN, 0.0, &def);
     const double v[3] = {0.0, 0.0, -0.2};
     se3d_material rigid;
     def.young = 70e18;
@@ -213,7 +213,7 @@ static void slipping_becomes_rolling(void)
     def.friction = 0.3;
     def.restitution = 0.1;
     bed b;
-    bed_init(&b, SE3D_LAW_HOOKE, G, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
     const double v0 = 1.0, v[3] = {1.0, 0.0, 0.0};
     settle_on_floor(&b, 0.005, G, v, NULL);
     floor_at(&b, 0.0, 0.0, 1.0);
@@ -234,7 +234,7 @@ static void spin_on_the_spot_becomes_rolling(void)
     se3d_material_def def = stuff();
     def.restitution = 0.1;
     bed b;
-    bed_init(&b, SE3D_LAW_HOOKE, G, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
     const double w0[3] = {0.0, 100.0, 0.0};
     double u[3];
     settle_on_floor(&b, 0.005, G, NULL, w0);
@@ -253,7 +253,7 @@ static double incline(double angle, double mu, double rolling)
     def.restitution = 0.1;
     def.rolling_friction = rolling;
     bed b;
-    bed_init(&b, SE3D_LAW_HOOKE, 0.0, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 0.0, &def);
     const double g[3] = {G * sin(angle), 0.0, -G * cos(angle)};
     CHECK(se3d_system_set_gravity(b.system, g) == SE3D_OK);
     settle_on_floor(&b, 0.005, G * cos(angle), NULL, NULL);
@@ -287,7 +287,7 @@ static void torsional_resistance_stops_spin_about_the_normal(void)
     def.restitution = 0.1;
     def.torsional_friction = 0.05;
     bed b;
-    bed_init(&b, SE3D_LAW_HOOKE, G, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
     const double w0[3] = {0.0, 0.0, 50.0};
     double w[3];
     settle_on_floor(&b, 0.005, G, NULL, w0);
@@ -310,7 +310,7 @@ static void two_spheres_squeezed_between_walls_balance(void)
     def.restitution = 0.05;
     def.density = 20000.0;
     bed b;
-    bed_init(&b, SE3D_LAW_HOOKE, G, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
     add(&b, 0.0, 0.45e-3, 0.5e-3, NULL, NULL);
     def.density = 10000.0;
     CHECK(se3d_material_create(b.system, &def, &b.material) == SE3D_OK);
@@ -325,7 +325,7 @@ static void two_spheres_squeezed_between_walls_balance(void)
     bed_destroy(&b);
 }
 
-static void chain_stands_as_it_must(se3d_law law)
+static void chain_stands_as_it_must(se3d_contact_law law)
 {
     se3d_material_def def = stuff();
     def.restitution = 0.05;
@@ -340,7 +340,7 @@ static void chain_stands_as_it_must(se3d_law law)
         int carried = n - k;
         double radius = k == 0 ? R : 0.5 * R; /* R*: the wall's is R */
         double hertz = pow(carried * weight / (4.0 / 3.0 * modulus * sqrt(radius)), 2.0 / 3.0);
-        double overlap = law == SE3D_LAW_HOOKE ? carried * weight / 2.5e4 : hertz;
+        double overlap = law == SE3D_CONTACT_LAW_HOOKE ? carried * weight / 2.5e4 : hertz;
         expected[k] = (k == 0 ? R : expected[k - 1] + 2.0 * R) - overlap;
         add(&b, 0.0, (2.0 * k + 1.0) * R, R, NULL, NULL);
     }
@@ -359,12 +359,12 @@ static void chain_stands_as_it_must(se3d_law law)
 
 static void hooke_chain_stands_as_it_must(void)
 {
-    chain_stands_as_it_must(SE3D_LAW_HOOKE);
+    chain_stands_as_it_must(SE3D_CONTACT_LAW_HOOKE);
 }
 
 static void hertz_chain_stands_as_it_must(void)
 {
-    chain_stands_as_it_must(SE3D_LAW_HERTZ_MINDLIN);
+    chain_stands_as_it_must(SE3D_CONTACT_LAW_HERTZ_MINDLIN);
 }
 
 static void stack_does_not_creep(void)
@@ -372,7 +372,7 @@ static void stack_does_not_creep(void)
     se3d_material_def def = stuff();
     def.restitution = 0.05;
     bed b;
-    bed_init(&b, SE3D_LAW_HOOKE, G, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
     for (int k = 0; k < 10; ++k) {
         add(&b, 0.0, 0.005 * (2.0 * k + 1.0), 0.005, NULL, NULL);
     }
@@ -394,7 +394,7 @@ static void impact_without_slip_reverses_the_contact_point(void)
     def.friction = 1e6;
     def.stiffness = 2.5e8; /* the arm is shorter by the overlap: small */
     bed b;
-    bed_init(&b, SE3D_LAW_HOOKE, 0.0, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 0.0, &def);
     const double v[3] = {0.3, 0.0, -1.0}, w[3] = {0.0, 20.0, 0.0};
     add(&b, 0.0, 0.005, 0.005, v, w);
     floor_at(&b, 0.0, 0.0, 1.0);
@@ -416,7 +416,7 @@ static void sliding_impact_obeys_coulomb(void)
     def.friction = 0.1;
     def.stiffness = 2.5e8; /* the arm is shorter by the overlap: small */
     bed b;
-    bed_init(&b, SE3D_LAW_HOOKE, 0.0, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 0.0, &def);
     const double v[3] = {5.0, 0.0, -1.0};
     add(&b, 0.0, 0.005, 0.005, v, NULL);
     floor_at(&b, 0.0, 0.0, 1.0);

@@ -30,7 +30,7 @@ static void bed_init(bed *b, const kind *what)
     def.gravity[2] = 0.0;
     CHECK(se3d_system_create(&def, &b->system) == SE3D_OK);
     se3d_contact_settings contact = se3d_contact_settings_default();
-    contact.law = what->hertz ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE;
+    contact.law = what->hertz ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
     CHECK(se3d_system_set_contact(b->system, &contact) == SE3D_OK);
     se3d_particles_def set = se3d_particles_def_default();
     set.portable = what->portable;

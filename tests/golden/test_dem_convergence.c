@@ -23,7 +23,7 @@ enum { RESTITUTION, OVERLAP, DURATION, SLIDING };
 
 typedef struct form {
     const char *name;
-    se3d_law law;
+    se3d_contact_law law;
     int what, wall;
     double e;
     double exact;
@@ -42,7 +42,7 @@ typedef struct record {
     double overlap[PHASES], before[PHASES], since[PHASES], until[PHASES];
 } record;
 
-static bed bed_create(se3d_law law, double e, double friction, int wall)
+static bed bed_create(se3d_contact_law law, double e, double friction, int wall)
 {
     bed b = {.wall = wall};
     se3d_system_def system = se3d_system_def_default();
@@ -167,19 +167,20 @@ static void errors_fall_with_the_step(void)
 {
     const double rate = sqrt(STIFF / (0.5 * mass()));
     const form forms[] = {
-        {"restitution .5, hooke, pair", SE3D_LAW_HOOKE, RESTITUTION, 0, 0.5, 0.5, 1.5},
-        {"restitution .8, hooke, wall", SE3D_LAW_HOOKE, RESTITUTION, 1, 0.8, 0.8, 1.5},
-        {"restitution .5, hertz_mindlin, pair", SE3D_LAW_HERTZ_MINDLIN, RESTITUTION, 0, 0.5, 0.5,
-         1.1},
-        {"restitution .8, hertz_mindlin, wall", SE3D_LAW_HERTZ_MINDLIN, RESTITUTION, 1, 0.8, 0.8,
-         1.1},
-        {"largest overlap, hooke, pair", SE3D_LAW_HOOKE, OVERLAP, 0, 1.0, SPEED / rate, 1.8},
-        {"duration, hooke, pair", SE3D_LAW_HOOKE, DURATION, 0, 1.0, PI / rate, 1.8},
-        {"largest overlap, hertz_mindlin, pair", SE3D_LAW_HERTZ_MINDLIN, OVERLAP, 0, 1.0,
+        {"restitution .5, hooke, pair", SE3D_CONTACT_LAW_HOOKE, RESTITUTION, 0, 0.5, 0.5, 1.5},
+        {"restitution .8, hooke, wall", SE3D_CONTACT_LAW_HOOKE, RESTITUTION, 1, 0.8, 0.8, 1.5},
+        {"restitution .5, hertz_mindlin, pair", SE3D_CONTACT_LAW_HERTZ_MINDLIN, RESTITUTION, 0, 0.5,
+         0.5, 1.1},
+        {"restitution .8, hertz_mindlin, wall", SE3D_CONTACT_LAW_HERTZ_MINDLIN, RESTITUTION, 1, 0.8,
+         0.8, 1.1},
+        {"largest overlap, hooke, pair", SE3D_CONTACT_LAW_HOOKE, OVERLAP, 0, 1.0, SPEED / rate,
+         1.8},
+        {"duration, hooke, pair", SE3D_CONTACT_LAW_HOOKE, DURATION, 0, 1.0, PI / rate, 1.8},
+        {"largest overlap, hertz_mindlin, pair", SE3D_CONTACT_LAW_HERTZ_MINDLIN, OVERLAP, 0, 1.0,
          hertz_overlap(), 1.8},
-        {"duration, hertz_mindlin, pair", SE3D_LAW_HERTZ_MINDLIN, DURATION, 0, 1.0,
+        {"duration, hertz_mindlin, pair", SE3D_CONTACT_LAW_HERTZ_MINDLIN, DURATION, 0, 1.0,
          2.9432750995 * hertz_overlap() / SPEED, 1.8},
-        {"tangential impulse when sliding, hooke, wall", SE3D_LAW_HOOKE, SLIDING, 1, 0.8,
+        {"tangential impulse when sliding, hooke, wall", SE3D_CONTACT_LAW_HOOKE, SLIDING, 1, 0.8,
          MU * 1.8 * SPEED, 1.5},
     };
     printf("| closed form | h | h/2 | h/4 | order |\n|---|---|---|---|---|\n");
@@ -201,7 +202,7 @@ static void errors_fall_with_the_step(void)
 static void roll(double steps_of, double rolling, double torsion, const double start[3], double t,
                  double out[3])
 {
-    bed b = bed_create(SE3D_LAW_HOOKE, 0.3, 0.3, 0);
+    bed b = bed_create(SE3D_CONTACT_LAW_HOOKE, 0.3, 0.3, 0);
     const double g[3] = {0.0, 0.0, -9.81}, radius = RADIUS;
     const double r[3] = {0.0, 0.0, RADIUS - mass() * 9.81 / STIFF};
     const double v[3] = {start[0], 0.0, 0.0}, w[3] = {0.0, start[1], start[2]};

@@ -78,7 +78,7 @@ static state reference(const impact *c, state s, double h)
 static se3d_material make(se3d_system *system, const impact *c)
 {
     se3d_contact_settings contact = se3d_contact_settings_default();
-    contact.law = c->hertz ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE;
+    contact.law = c->hertz ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
     CHECK(se3d_system_set_contact(system, &contact) == SE3D_OK);
     se3d_material_def stuff = se3d_material_def_default();
     se3d_material material;

@@ -12,7 +12,7 @@
 
 /* One kind of impact. */
 typedef struct kind {
-    se3d_law law;
+    se3d_contact_law law;
     int wall, portable, sizes; /* sizes: radii differ */
     double e, v, divide;       /* divide: of the automatic step */
 } kind;
@@ -107,7 +107,7 @@ static void restitution_typed_is_restitution_obtained_at_the_automatic_step(void
 {
     static const double es[4] = {0.3, 0.5, 0.7, 0.9};
     for (int n = 0; n < 128; ++n) {
-        kind k = {.law = n & 1 ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE,
+        kind k = {.law = n & 1 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE,
                   .wall = n >> 1 & 1,
                   .portable = n >> 2 & 1,
                   .sizes = n >> 3 & 1,

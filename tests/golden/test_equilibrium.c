@@ -239,7 +239,7 @@ static void a_table_on_a_soft_spring_leans(void)
     (void)add_table(&s, corners, m, M, &pin);
     add_spring(&s, pin, k, -0.02); /* at the present pose the angle is 0 */
     CHECK(equilibrate(&s, &stats) == SE3D_INFO_REDUNDANT);
-    CHECK(se3d_joint_get_coordinate(s.system, pin, SE3D_COORDINATE_ANGLE, &theta, &rate,
+    CHECK(se3d_joint_get_coordinate(s.system, pin, SE3D_JOINT_COORDINATE_ANGLE, &theta, &rate,
                                     &acceleration) == SE3D_OK);
     CHECK_NEAR(fabs(theta + 0.02), lean, 1e-9);
     end(&s);
@@ -323,7 +323,7 @@ static void a_following_force_is_balanced_in_few_steps(void)
     CHECK(se3d_force_create_load(s.system, &load, &force) == SE3D_OK);
     CHECK(equilibrate(&s, &stats) == SE3D_OK);
     CHECK(stats.iterations < 40);
-    CHECK(se3d_joint_get_coordinate(s.system, pin, SE3D_COORDINATE_ANGLE, &theta, &rate,
+    CHECK(se3d_joint_get_coordinate(s.system, pin, SE3D_JOINT_COORDINATE_ANGLE, &theta, &rate,
                                     &acceleration) == SE3D_OK);
     CHECK_NEAR(fabs(theta), F * l / k, 1e-12);
     end(&s);

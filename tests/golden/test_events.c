@@ -31,7 +31,7 @@ static se3d_status get_angle(void *ctx, const se3d_system *system, double *value
 {
     double rate, second;
     const probe *p = ctx;
-    return se3d_joint_get_coordinate(system, p->joint, SE3D_COORDINATE_ANGLE, value, &rate,
+    return se3d_joint_get_coordinate(system, p->joint, SE3D_JOINT_COORDINATE_ANGLE, value, &rate,
                                      &second);
 }
 

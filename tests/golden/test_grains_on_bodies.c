@@ -17,7 +17,7 @@ typedef struct scene {
 static const double grain_mass = 2500.0 * 4.0 / 3.0 * PI * R * R * R;
 
 /* A box of 0.1 x 0.1 x 0.04 m with its top at z = 0, `ratio` times as heavy as a grain. */
-static void open_scene(scene *s, se3d_law law, double ratio, se3d_material *material)
+static void open_scene(scene *s, se3d_contact_law law, double ratio, se3d_material *material)
 {
     se3d_system_def def = se3d_system_def_default();
     def.gravity[2] = 0.0;
@@ -64,7 +64,7 @@ static void go(scene *s, double time)
 }
 
 /* A grain falls on the box at x, y with 1 m/s; returns how fast it leaves the point that it hit. */
-static double rebound(se3d_law law, double ratio, double x, double y)
+static double rebound(se3d_contact_law law, double ratio, double x, double y)
 {
     scene s;
     se3d_material material;
@@ -86,7 +86,7 @@ static void restitution_is_what_was_typed_on_bodies_that_give_way(void)
 {
     const double ratio[4] = {1e6, 10.0, 1.0, 0.2};
     for (int k = 0; k < 8; ++k) {
-        se3d_law law = k & 4 ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE;
+        se3d_contact_law law = k & 4 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
         CHECK_NEAR(rebound(law, ratio[k % 4], 0.0, 0.0), 0.5, 4e-3);
         CHECK_NEAR(rebound(law, ratio[k % 4], 0.03, 0.02), 0.5, 1e-2);
     }
@@ -143,7 +143,7 @@ static void collide(double x, int callback, double out[6 * GRAINS + 6], double p
     world.gravity[2] = 0.0;
     CHECK(se3d_system_create(&world, &s.system) == SE3D_OK);
     se3d_contact_settings contact = se3d_contact_settings_default();
-    contact.law = callback ? SE3D_LAW_CALLBACK : SE3D_LAW_HOOKE;
+    contact.law = callback ? SE3D_CONTACT_LAW_CALLBACK : SE3D_CONTACT_LAW_HOOKE;
     contact.callback = callback ? spring_law : NULL;
     contact.step = 5e-6;
     CHECK(se3d_system_set_contact(s.system, &contact) == SE3D_OK);
@@ -159,7 +159,7 @@ static void collide(double x, int callback, double out[6 * GRAINS + 6], double p
     CHECK(se3d_body_create(s.system, &body, &s.body) == SE3D_OK);
     add_shapes(&s, material);
     se3d_particles_def domain = se3d_particles_def_default();
-    domain.boundary[0] = SE3D_BOUNDARY_PERIODIC;
+    domain.boundary[0] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
     domain.lower[0] = -0.5 * PERIOD;
     domain.upper[0] = 0.5 * PERIOD;
     CHECK(se3d_particles_create(s.system, &domain, &s.particles) == SE3D_OK);

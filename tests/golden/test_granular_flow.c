@@ -33,7 +33,7 @@ static void open_bed(double depth, double friction, double rolling)
     se3d_particles_def def = se3d_particles_def_default();
     se3d_material_def stuff = se3d_material_def_default();
     CHECK(!se3d_system_create(NULL, &b.system));
-    def.boundary[1] = SE3D_BOUNDARY_PERIODIC;
+    def.boundary[1] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
     def.upper[1] = depth;
     CHECK(!se3d_particles_create(b.system, &def, &b.grains));
     stuff.density = 2500.0;

@@ -28,7 +28,7 @@ static void the_first_touch_is_no_singularity(void)
 {
     static const int32_t methods[3] = {SE3D_METHOD_RADAU, SE3D_METHOD_DOP853, SE3D_METHOD_BDF};
     for (int k = 0; k < 3; ++k) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.3, 1e5);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e5);
         se3d_body bodies[BOXES];
         drop(&s, bodies);
         scene_solve(&s, methods[k], SE3D_FORMULATION_ROMEGA, 0.0, 0.0);
@@ -43,7 +43,7 @@ static void a_run_that_fails_names_the_shapes(void)
 {
     static const int32_t methods[3] = {SE3D_METHOD_RADAU, SE3D_METHOD_DOP853, SE3D_METHOD_BDF};
     for (int k = 0; k < 3; ++k) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.3, 1e30);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e30);
         se3d_body bodies[BOXES];
         drop(&s, bodies);
         scene_solve(&s, methods[k], SE3D_FORMULATION_ROMEGA, 0.0, 0.0);

@@ -74,7 +74,7 @@ static void a_hull_of_a_box_rests_as_the_box_does(void)
     for (int support = 0; support < SUPPORTS; ++support) {
         for (int kind = 0; kind < SOLIDS; ++kind) {
             const int32_t method = methods[(support + kind) % 3];
-            scene s = scene_begin(SE3D_LAW_HOOKE, 0.6, 0.2, k);
+            scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.6, 0.2, k);
             const double r[3] = {0.0, 0.0, HALF + 2e-3};
             double at[3], force[3], torque[3];
             add_support(&s, support);
@@ -108,7 +108,7 @@ static void hulls_collide_as_boxes_do(void)
 {
     double parted[SOLIDS][3];
     for (int kind = 0; kind < SOLIDS; ++kind) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.3, 0.6, 1e5);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.3, 0.6, 1e5);
         const double a[3] = {0.0, 0.0, 0.0}, b[3] = {0.32, 0.03, 0.05}, v[3] = {-1.0, 0.1, 0.0};
         const double axis[3] = {0.48, 0.6, 0.64};
         double u[3], w[3];

@@ -39,7 +39,7 @@ static void push(scene *s, se3d_body body)
 
 static void an_arm_falls_on_the_floor(void)
 {
-    scene s = scene_begin(SE3D_LAW_HOOKE, 0.0, 0.2, 1e5);
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.0, 0.2, 1e5);
     double r[3], force[3], torque[3];
     se3d_body body = arm(&s, 0.1, 0);
     scene_floor(&s, 0.0);
@@ -59,7 +59,7 @@ static void an_arm_falls_on_the_floor(void)
 static void a_pin_does_not_touch_its_post(void)
 {
     for (int floor = 0; floor < 2; ++floor) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.2, 1e5);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.2, 1e5);
         const double post[3] = {0.03, 0.2, 0.3}, at[3] = {0.0, 0.0, 0.2};
         const double height = floor ? 0.5 * RADIUS : 0.3;
         double r[3];
@@ -84,7 +84,7 @@ static void a_pin_does_not_touch_its_post(void)
 
 static void what_is_welded_to_the_ground_does_not_touch_it(void)
 {
-    scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.2, 1e5);
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.2, 1e5);
     double force[3], torque[3];
     se3d_body body = arm(&s, 0.5 * RADIUS, 1);
     scene_floor(&s, 0.0);
@@ -99,7 +99,7 @@ static void what_is_welded_to_the_ground_does_not_touch_it(void)
 static void a_lift_lands_on_the_floor(void)
 {
     for (int group = 0; group < 2; ++group) {
-        scene s = scene_begin(SE3D_LAW_HOOKE, 0.5, 0.2, 1e5);
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.2, 1e5);
         const double size[3] = {0.2, 0.2, 0.1}, rail[3] = {0.02, 0.02, 4.0};
         const double r0[3] = {0.0, 0.0, 0.3}, z[3] = {0.0, 0.0, 1.0};
         double r[3];

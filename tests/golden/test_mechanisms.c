@@ -173,7 +173,7 @@ static spatial create_spatial(void)
     s.B = add_local(w, se3d_joint_create_spherical, "B", s.body[0], pin, s.body[1], end);
     s.C = add_rod_end(w, s.body[2], s.body[1]);
     s.D = add_joint(w, se3d_joint_create_prismatic, "D", w->ground, s.body[2], slide, x);
-    s.driver = add_driver(w, "drive", s.A, SE3D_COORDINATE_ANGLE, "-2*pi*t");
+    s.driver = add_driver(w, "drive", s.A, SE3D_JOINT_COORDINATE_ANGLE, "-2*pi*t");
     return s;
 }
 
@@ -244,7 +244,7 @@ static void expect_spatial_reactions(const spatial *s)
     expect_vector("MD", "xyz", T);
     MUST(&s->w, se3d_driver_get_effort(system, s->driver, &effort));
     expect("Tdrv_x", effort);
-    MUST(&s->w, se3d_joint_get_coordinate(system, s->A, SE3D_COORDINATE_ANGLE, &phi, &rate,
+    MUST(&s->w, se3d_joint_get_coordinate(system, s->A, SE3D_JOINT_COORDINATE_ANGLE, &phi, &rate,
                                           &acceleration));
     expect("phi", phi);
     double power = effort * rate;
@@ -295,7 +295,7 @@ static crank_drive create_slider_crank(joint_create closing)
     s.B = add_pin(w, "B", crank, rod, 0.2, 0.0);
     s.C = add_joint(w, closing, "C", s.slider, rod, end, z);
     s.guide = add_joint(w, se3d_joint_create_prismatic, "guide", w->ground, s.slider, end, x);
-    s.driver = add_driver(w, "motor", s.O, SE3D_COORDINATE_ANGLE, "10*t");
+    s.driver = add_driver(w, "motor", s.O, SE3D_JOINT_COORDINATE_ANGLE, "10*t");
     return s;
 }
 
@@ -305,7 +305,7 @@ static void expect_slider_crank(const crank_drive *s)
     double r[3], F[3], T[3], effort, theta, rate, acceleration;
     MUST(&s->w, se3d_body_get_position(system, s->slider, r));
     expect("slider_x", r[0]);
-    MUST(&s->w, se3d_joint_get_coordinate(system, s->O, SE3D_COORDINATE_ANGLE, &theta, &rate,
+    MUST(&s->w, se3d_joint_get_coordinate(system, s->O, SE3D_JOINT_COORDINATE_ANGLE, &theta, &rate,
                                           &acceleration));
     expect("theta", theta); /* counts turns */
     MUST(&s->w, se3d_driver_get_effort(system, s->driver, &effort));
@@ -367,7 +367,7 @@ static world create_fourbar(joint_create closing, se3d_body body[3])
     add_pin(&w, "A", body[0], body[1], A[0], A[1]);
     add_joint(&w, closing, "B", body[1], body[2], B, z);
     add_pin(&w, "Q", w.ground, body[2], Q[0], Q[1]);
-    add_driver(&w, "drive", pin, SE3D_COORDINATE_ANGLE, "2*t");
+    add_driver(&w, "drive", pin, SE3D_JOINT_COORDINATE_ANGLE, "2*t");
     return w;
 }
 

@@ -9,7 +9,7 @@ enum { SPHERE, BOX, CAPSULE, CYLINDER, HULL, KINDS };
 
 static scene begin(double friction, double restitution)
 {
-    return scene_begin(SE3D_LAW_HOOKE, friction, restitution, 1e5);
+    return scene_begin(SE3D_CONTACT_LAW_HOOKE, friction, restitution, 1e5);
 }
 
 static void run(scene *s, int32_t method, double step, double t)

@@ -119,7 +119,7 @@ static void a_bar_on_two_springs_rests_where_the_reference_does(void)
     se3d_solver_stats stats;
     CHECK(equilibrate(system, &stats) == SE3D_OK);
     CHECK(stats.iterations < 30); /* a few of Newton, each put back on the joint */
-    CHECK(se3d_joint_get_coordinate(system, pin, SE3D_COORDINATE_ANGLE, &theta, &rate,
+    CHECK(se3d_joint_get_coordinate(system, pin, SE3D_JOINT_COORDINATE_ANGLE, &theta, &rate,
                                     &acceleration) == SE3D_OK);
     CHECK_NEAR(theta, -0.28098791701246252, 1e-12);
     /* the pin carries what is left of weight and spring */

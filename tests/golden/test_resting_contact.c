@@ -10,7 +10,7 @@ static scene begin(int ball, double slope, double mu, const double r[3], const d
                    se3d_body *body)
 {
     const double size[3] = {0.2, 0.2, 0.2}, about_y[3] = {0.0, 1.0, 0.0};
-    scene s = scene_begin(SE3D_LAW_HOOKE, mu, 0.3, K);
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, mu, 0.3, K);
     *body = ball ? scene_ball(&s, 0.1, 2.0, r, v) : scene_box(&s, size, 2.0, r, v);
     scene_turn(&s, *body, about_y, slope);
     scene_floor(&s, slope);

@@ -86,7 +86,7 @@ static void check_method(int32_t method)
 {
     for (int k = 0; k < 8 * KINDS * 4; ++k) {
         impact m = {.method = method,
-                    .law = k & 1 ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE,
+                    .law = k & 1 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE,
                     .pair = k >> 1 & 1,
                     .speed = k >> 2 & 1 ? 10.0 : 0.1,
                     .kind = (k >> 3) % KINDS,

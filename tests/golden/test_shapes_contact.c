@@ -23,7 +23,7 @@ static se3d_material_def stuff(void)
     return def;
 }
 
-static void bed_init(bed *b, se3d_law law, double g, const se3d_material_def *material)
+static void bed_init(bed *b, se3d_contact_law law, double g, const se3d_material_def *material)
 {
     se3d_system_def def = se3d_system_def_default();
     se3d_contact_settings contact = se3d_contact_settings_default();
@@ -94,7 +94,7 @@ static se3d_shape shape_under(bed *b, int kind)
     return shape;
 }
 
-static double rebound(int kind, se3d_law law, double e, double speed)
+static double rebound(int kind, se3d_contact_law law, double e, double speed)
 {
     se3d_material_def def = stuff();
     def.restitution = e;
@@ -124,7 +124,7 @@ static void restitution_is_what_was_typed_on_every_shape(void)
     const double e[4] = {0.3, 0.5, 0.7, 0.9};
     for (int kind = 0; kind < KINDS; ++kind) {
         for (int k = 0; k < 16; ++k) {
-            se3d_law law = k & 4 ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE;
+            se3d_contact_law law = k & 4 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
             CHECK_NEAR(rebound(kind, law, e[k % 4], k & 8 ? 10.0 : 0.1), e[k % 4], 1e-3);
         }
     }
@@ -140,7 +140,7 @@ static void sliding_spheres_roll_in_the_end_on_flat_shapes(void)
         def.stiffness = 1e5;
         def.friction = 0.3;
         bed b;
-        bed_init(&b, SE3D_LAW_HOOKE, 9.81, &def);
+        bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
         se3d_shape shape = shape_under(&b, kind);
         double weight = 2500.0 * 4.0 / 3.0 * 3.14159265358979323846 * R * R * R * 9.81;
         const double r[3] = {-0.3, -0.15, R - weight / 1e5}, v[3] = {0.5, 0.3, 0.0}, radius = R;
@@ -177,7 +177,7 @@ static void rolling_and_spinning_are_resisted_on_flat_shapes(void)
         def.rolling_friction = 0.02;
         def.torsional_friction = 0.03;
         bed b;
-        bed_init(&b, SE3D_LAW_HOOKE, 9.81, &def);
+        bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
         (void)shape_under(&b, kind);
         const double depth = 2500.0 * 4.0 / 3.0 * 3.14159265358979323846 * R * R * R * 9.81 / 1e5;
         const double r[6] = {-0.3, -0.15, R - depth, 0.2, 0.17, R - depth};
@@ -199,7 +199,7 @@ static void body_feels_the_opposite_of_what_the_particles_do(void)
     se3d_material_def def = stuff();
     def.rolling_friction = 0.05;
     bed b;
-    bed_init(&b, SE3D_LAW_HERTZ_MINDLIN, 9.81, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HERTZ_MINDLIN, 9.81, &def);
     se3d_body_def body = se3d_body_def_default();
     se3d_body tray;
     body.mass = body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
@@ -291,7 +291,7 @@ static void sphere_rests_in_a_corner_of_a_mesh(void)
     def.restitution = 0.1;
     def.stiffness = 1e5;
     bed b;
-    bed_init(&b, SE3D_LAW_HOOKE, 9.81, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
     se3d_shape_def shape = se3d_shape_def_default();
     se3d_shape corner;
     shape.material = b.material;
@@ -336,7 +336,7 @@ static void filters_and_destroyed_shapes_are_obeyed(void)
 {
     se3d_material_def def = stuff();
     bed b;
-    bed_init(&b, SE3D_LAW_HOOKE, 9.81, &def);
+    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
     se3d_shape_def shape = se3d_shape_def_default();
     se3d_shape plane, other;
     shape.material = b.material;

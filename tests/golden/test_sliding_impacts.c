@@ -76,7 +76,7 @@ static void check_methods(const int32_t *methods, int count)
 {
     for (int k = 0; k < count * 20; ++k) {
         impact m = {.method = methods[k / 20],
-                    .law = k & 1 ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE,
+                    .law = k & 1 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE,
                     .pair = k >> 1 & 1,
                     .e = restitutions[k % 20 / 4]};
         bodies_slide(&m);
@@ -146,7 +146,7 @@ static void particles_that_slide_lose_mu_times_the_normal_impulse(void)
 {
     for (int k = 0; k < 5 * 4 * PARTNERS; ++k) {
         const int partner = k / 4 % PARTNERS;
-        impact m = {.law = k & 1 ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE,
+        impact m = {.law = k & 1 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE,
                     .pair = partner == PAIR,
                     .e = restitutions[k / 4 / PARTNERS]};
         particles_slide(&m, partner, k >> 1 & 1);
@@ -181,8 +181,8 @@ static void friction_gives_no_energy_at_any_incidence(void)
     static const int32_t methods[2] = {SE3D_METHOD_DOP853, SE3D_METHOD_RADAU};
     for (int k = 0; k < 2 * 2 * 3 * 5 * 3; ++k) {
         const double e = 1.0 - 0.45 * (k / 4 % 3);
-        check_energy(k & 1 ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE, methods[k >> 1 & 1], e,
-                     0.7 * (k / 12 % 5), 30.0 * (k / 60 - 1));
+        check_energy(k & 1 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE,
+                     methods[k >> 1 & 1], e, 0.7 * (k / 12 % 5), 30.0 * (k / 60 - 1));
     }
 }
 

@@ -163,7 +163,7 @@ static se3d_solver *make_solver(problem *p, int32_t method, int32_t formulation,
 }
 
 /* The largest error of coordinate, rate and acceleration over the table's first `rows` rows. */
-static double trajectory_error(build_problem build, se3d_coordinate coordinate, int columns,
+static double trajectory_error(build_problem build, se3d_joint_coordinate coordinate, int columns,
                                int32_t method, int32_t formulation, double step)
 {
     problem p = {0};
@@ -188,7 +188,8 @@ static double trajectory_error(build_problem build, se3d_coordinate coordinate, 
     return worst;
 }
 
-static void check_order(build_problem build, se3d_coordinate coordinate, int columns, double size)
+static void check_order(build_problem build, se3d_joint_coordinate coordinate, int columns,
+                        double size)
 {
     for (int32_t formulation = 0; formulation < 2; ++formulation) {
         for (int32_t method = SE3D_METHOD_GENERALIZED_ALPHA; method <= SE3D_METHOD_HHT; ++method) {
@@ -206,19 +207,19 @@ static void check_order(build_problem build, se3d_coordinate coordinate, int col
 static void a_mass_on_a_tsda_moves_as_the_closed_form(void)
 {
     read_table("tsda_mass");
-    check_order(build_tsda_mass, SE3D_COORDINATE_DISPLACEMENT, 3, 2e-3);
+    check_order(build_tsda_mass, SE3D_JOINT_COORDINATE_DISPLACEMENT, 3, 2e-3);
 }
 
 static void a_bar_with_rsda_and_tsda_moves_as_the_reference(void)
 {
     read_table("bar_rsda_tsda");
-    check_order(build_bar, SE3D_COORDINATE_ANGLE, 2, 2e-3);
+    check_order(build_bar, SE3D_JOINT_COORDINATE_ANGLE, 2, 2e-3);
 }
 
 static void a_pendulum_with_rsda_moves_as_the_reference(void)
 {
     read_table("pendulum_rsda");
-    check_order(build_pendulum, SE3D_COORDINATE_ANGLE, 3, 2e-4);
+    check_order(build_pendulum, SE3D_JOINT_COORDINATE_ANGLE, 3, 2e-4);
 }
 
 static void tsda_force_and_rsda_torque_follow_their_definition(void)

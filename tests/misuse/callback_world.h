@@ -212,7 +212,7 @@ static void world_add_contact(world *w)
     se3d_material_def stuff = se3d_material_def_default();
     se3d_shape_def shape = se3d_shape_def_default();
     w->contact = se3d_contact_settings_default();
-    w->contact.law = SE3D_LAW_CALLBACK;
+    w->contact.law = SE3D_CONTACT_LAW_CALLBACK;
     w->contact.callback = world_law;
     w->contact.ctx = w;
     w->contact.step = 2e-4;
@@ -233,8 +233,8 @@ static void world_add_grains(world *w)
     const double r[9] = {2.0, 0.0, 0.0299, 2.0, 0.0595, 0.0299, 2.0, 0.2, 0.0299};
     const double radius[3] = {0.03, 0.03, 0.03};
     se3d_fill_def fill = se3d_fill_def_default();
-    se3d_source_def source = se3d_source_def_default();
-    se3d_sink_def sink = se3d_sink_def_default();
+    se3d_particles_source_def source = se3d_particles_source_def_default();
+    se3d_particles_sink_def sink = se3d_particles_sink_def_default();
     CHECK(!se3d_particles_create(w->system, NULL, &w->grains));
     CHECK(!se3d_particles_add(w->grains, w->stuff, 3, r, radius, NULL, NULL, NULL));
     fill.material = w->stuff;

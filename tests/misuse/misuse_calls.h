@@ -107,7 +107,7 @@ static void define_coupler(arguments *a)
     se3d_coupler_def def = se3d_coupler_def_default();
     def.joint[0] = a->use.pin;
     def.joint[1] = a->use.slide;
-    def.coordinate[1] = SE3D_COORDINATE_DISPLACEMENT;
+    def.coordinate[1] = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     def.ratio[0] = def.ratio[1] = 1.0;
     def.count = 2;
     STORE(def);
@@ -347,7 +347,7 @@ CALL(joint_create_perpendicular, a->system, a->def, a->out[0])
 CALL(joint_create_orientation, a->system, a->def, a->out[0])
 CALL(joint_create_perpendicular1, a->system, a->def, a->out[0])
 CALL(joint_create_perpendicular2, a->system, a->def, a->out[0])
-CALL(joint_get_coordinate, a->system, a->use.pin, SE3D_COORDINATE_ANGLE, a->out[0], a->out[1],
+CALL(joint_get_coordinate, a->system, a->use.pin, SE3D_JOINT_COORDINATE_ANGLE, a->out[0], a->out[1],
      a->out[2])
 CALL(joint_create_coupler, a->system, a->def, a->out[0])
 CALL(joint_create_rack_pinion, a->system, NULL, a->use.pin, a->use.slide, a->number, a->out[0])
@@ -685,8 +685,8 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(event);
     CHECK_INIT(expression);
     CHECK_INIT(particles);
-    CHECK_INIT(source);
-    CHECK_INIT(sink);
+    CHECK_INIT(particles_source);
+    CHECK_INIT(particles_sink);
     CHECK_INIT(material);
     CHECK_INIT(material_pair);
     CHECK_INIT(shape);
@@ -966,8 +966,8 @@ static const row rows[] = {
     {"se3d_particles_get_tags", flows_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_materials", flows_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_tally", flows_reject_misuse, "", NULL, NULL},
-    {"se3d_source_def_init", definitions_are_never_overrun, "", NULL, NULL},
-    {"se3d_sink_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_particles_source_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_particles_sink_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_particles_fill_lattice", fills_reject_misuse, "", NULL, NULL},
     {"se3d_particles_fill_random", fills_reject_misuse, "", NULL, NULL},
 };

@@ -55,20 +55,20 @@ static void check_parameters(arguments *a, const settable *m)
         int32_t parameter;
         int32_t reserved;
         double bad, good;
-    } rows[] = {{m->spring, SE3D_PARAMETER_K, 0, nan, -2.0},
-                {m->spring, SE3D_PARAMETER_C, 0, infinite, 2.0},
-                {m->spring, SE3D_PARAMETER_REST, 0, -1.0, 0.5},
-                {m->spring, SE3D_PARAMETER_PRELOAD, 0, nan, 7.0},
-                {m->stop, SE3D_PARAMETER_K, 0, 0.0, 9.0},
-                {m->stop, SE3D_PARAMETER_LOWER, 0, 1.0, -infinite},
-                {m->stop, SE3D_PARAMETER_UPPER, 0, nan, 3.0},
-                {m->stop, SE3D_PARAMETER_RESTITUTION, 0, 1.5, 0.5},
-                {m->friction, SE3D_PARAMETER_MU, 0, -0.1, 0.3},
-                {m->friction, SE3D_PARAMETER_MU_STATIC, 0, 0.2, 0.4},
-                {m->friction, SE3D_PARAMETER_RADIUS, 0, nan, 0.01},
-                {m->friction, SE3D_PARAMETER_LIMIT, 0, -1.0, 0.0},
-                {m->friction, SE3D_PARAMETER_VISCOUS, 0, infinite, 0.5},
-                {m->friction, SE3D_PARAMETER_PRESLIDING, 0, -1e-9, 1e-6}};
+    } rows[] = {{m->spring, SE3D_FORCE_PARAMETER_K, 0, nan, -2.0},
+                {m->spring, SE3D_FORCE_PARAMETER_C, 0, infinite, 2.0},
+                {m->spring, SE3D_FORCE_PARAMETER_REST, 0, -1.0, 0.5},
+                {m->spring, SE3D_FORCE_PARAMETER_PRELOAD, 0, nan, 7.0},
+                {m->stop, SE3D_FORCE_PARAMETER_K, 0, 0.0, 9.0},
+                {m->stop, SE3D_FORCE_PARAMETER_LOWER, 0, 1.0, -infinite},
+                {m->stop, SE3D_FORCE_PARAMETER_UPPER, 0, nan, 3.0},
+                {m->stop, SE3D_FORCE_PARAMETER_RESTITUTION, 0, 1.5, 0.5},
+                {m->friction, SE3D_FORCE_PARAMETER_MU, 0, -0.1, 0.3},
+                {m->friction, SE3D_FORCE_PARAMETER_MU_STATIC, 0, 0.2, 0.4},
+                {m->friction, SE3D_FORCE_PARAMETER_RADIUS, 0, nan, 0.01},
+                {m->friction, SE3D_FORCE_PARAMETER_LIMIT, 0, -1.0, 0.0},
+                {m->friction, SE3D_FORCE_PARAMETER_VISCOUS, 0, infinite, 0.5},
+                {m->friction, SE3D_FORCE_PARAMETER_PRESLIDING, 0, -1e-9, 1e-6}};
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; ++k) {
         double before = 0.0, after = 1.0;
         CHECK(!se3d_force_get_parameter(a->system, rows[k].force, rows[k].parameter, &before));
@@ -80,17 +80,18 @@ static void check_parameters(arguments *a, const settable *m)
         CHECK(memcmp(&rows[k].good, &after, sizeof after) == 0);
     }
     double mu_static = 0.0; /* the same again */
-    CHECK(!se3d_force_set_parameter(a->system, m->friction, SE3D_PARAMETER_MU_STATIC, 0.0));
-    CHECK(!se3d_force_set_parameter(a->system, m->friction, SE3D_PARAMETER_MU, 0.7));
-    CHECK(!se3d_force_get_parameter(a->system, m->friction, SE3D_PARAMETER_MU_STATIC, &mu_static));
+    CHECK(!se3d_force_set_parameter(a->system, m->friction, SE3D_FORCE_PARAMETER_MU_STATIC, 0.0));
+    CHECK(!se3d_force_set_parameter(a->system, m->friction, SE3D_FORCE_PARAMETER_MU, 0.7));
+    CHECK(!se3d_force_get_parameter(a->system, m->friction, SE3D_FORCE_PARAMETER_MU_STATIC,
+                                    &mu_static));
     CHECK_NEAR(mu_static, 0.7, 0.0);
-    INVALID(se3d_force_set_parameter(a->system, m->spring, SE3D_PARAMETER_MU, 0.1));
+    INVALID(se3d_force_set_parameter(a->system, m->spring, SE3D_FORCE_PARAMETER_MU, 0.1));
     CHECK_CONTAINS(se3d_system_get_error(a->system), "a tsda element has no mu");
-    INVALID(se3d_force_set_parameter(a->system, m->load, SE3D_PARAMETER_K, 0.1));
+    INVALID(se3d_force_set_parameter(a->system, m->load, SE3D_FORCE_PARAMETER_K, 0.1));
     INVALID(se3d_force_set_parameter(a->system, m->spring, 13, 0.1));
     INVALID(se3d_force_set_parameter(a->system, m->spring, -1, 0.1));
     INVALID(se3d_force_get_parameter(a->system, m->spring, 13, &mu_static));
-    INVALID(se3d_force_get_parameter(a->system, m->stop, SE3D_PARAMETER_C, &mu_static));
+    INVALID(se3d_force_get_parameter(a->system, m->stop, SE3D_FORCE_PARAMETER_C, &mu_static));
     CHECK(se3d_force_set_parameter(NULL, m->spring, 0, 1.0) == SE3D_ERR_NULL);
     CHECK(se3d_force_get_parameter(NULL, m->spring, 0, &mu_static) == SE3D_ERR_NULL);
     CHECK(se3d_force_get_parameter(a->system, m->spring, 0, NULL) == SE3D_ERR_NULL);

@@ -222,9 +222,9 @@ static se3d_status materials_reject_misuse(arguments *a)
     REJECTED(se3d_system_set_contact(a->system, NULL), SE3D_ERR_NULL);
     contact.law = 7;
     REJECTED(se3d_system_set_contact(a->system, &contact), SE3D_ERR_INVALID_ARGUMENT);
-    contact.law = SE3D_LAW_HERTZ_MINDLIN; /* the material has no modulus */
+    contact.law = SE3D_CONTACT_LAW_HERTZ_MINDLIN; /* the material has no modulus */
     REJECTED(se3d_system_set_contact(a->system, &contact), SE3D_ERR_INVALID_ARGUMENT);
-    contact.law = SE3D_LAW_HOOKE;
+    contact.law = SE3D_CONTACT_LAW_HOOKE;
     contact.step = (double)NAN;
     REJECTED(se3d_system_set_contact(a->system, &contact), SE3D_ERR_INVALID_ARGUMENT);
     contact.step = 0.0;
@@ -233,7 +233,7 @@ static se3d_status materials_reject_misuse(arguments *a)
     CHECK(se3d_system_get_contact(NULL, &contact) == SE3D_ERR_NULL);
     CHECK(se3d_system_get_contact(a->system, NULL) == SE3D_ERR_NULL);
     CHECK(!se3d_system_get_contact(a->system, &contact));
-    CHECK(contact.law == SE3D_LAW_HOOKE && contact.overlap_limit > 0.0);
+    CHECK(contact.law == SE3D_CONTACT_LAW_HOOKE && contact.overlap_limit > 0.0);
     contact.struct_size = 4096;
     CHECK(se3d_system_get_contact(a->system, &contact) == SE3D_ERR_INVALID_ARGUMENT);
     se3d_particles_destroy(p);
@@ -364,11 +364,11 @@ static se3d_status flows_reject_misuse(arguments *a)
     uint32_t number = 7, ids[2] = {0, 1}, tags[2];
     uint64_t count;
     se3d_material made[2];
-    se3d_source_stats stats;
+    se3d_particles_source_stats stats;
     se3d_particles_tally tally;
     se3d_particles *p = particles_open(a, &material);
-    se3d_source_def source = se3d_source_def_default();
-    se3d_sink_def sink = se3d_sink_def_default();
+    se3d_particles_source_def source = se3d_particles_source_def_default();
+    se3d_particles_sink_def sink = se3d_particles_sink_def_default();
     se3d_fill_def fill = se3d_fill_def_default();
     CHECK(se3d_particles_add_source(NULL, &source, &number) == SE3D_ERR_NULL);
     REJECTED(se3d_particles_add_source(p, NULL, &number), SE3D_ERR_NULL);

@@ -138,7 +138,7 @@ FILL(se3d_coupler_def, coupler)
 {
     def->joint[0] = w->pin;
     def->joint[1] = w->slide;
-    def->coordinate[1] = SE3D_COORDINATE_DISPLACEMENT;
+    def->coordinate[1] = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     def->ratio[0] = 1.0;
     def->ratio[1] = 2.0;
     def->count = 2;
@@ -362,7 +362,7 @@ CREATE(se3d_shape_def, shape_create_mesh, se3d_shape)
 FILL(se3d_particles_def, particles)
 {
     (void)w;
-    def->boundary[0] = SE3D_BOUNDARY_OPEN;
+    def->boundary[0] = SE3D_DOMAIN_BOUNDARY_OPEN;
     for (int k = 0; k < 3; ++k) {
         def->lower[k] = -5.0;
         def->upper[k] = 5.0;
@@ -408,7 +408,7 @@ static const field region_fields[] = {
     NUMBERS(se3d_fill_def, velocity),   INTEGER(se3d_fill_def, region),
     INTEGER(se3d_fill_def, axis),       FIELDS_END};
 
-FILL(se3d_source_def, source)
+FILL(se3d_particles_source_def, source)
 {
     fill_region(w, &w->fill);
     def->fill = &w->fill;
@@ -420,11 +420,11 @@ static se3d_status create_source(world *w, const void *def)
     return se3d_particles_add_source(w->set, def, &source);
 }
 static const field source_fields[] = {
-    NUMBERS(se3d_source_def, rate),     NUMBERS(se3d_source_def, start),
-    NUMBERS(se3d_source_def, stop),     NUMBERS(se3d_source_def, every),
-    INTEGER(se3d_source_def, per_mass), FIELDS_END};
+    NUMBERS(se3d_particles_source_def, rate),     NUMBERS(se3d_particles_source_def, start),
+    NUMBERS(se3d_particles_source_def, stop),     NUMBERS(se3d_particles_source_def, every),
+    INTEGER(se3d_particles_source_def, per_mass), FIELDS_END};
 
-FILL(se3d_sink_def, sink)
+FILL(se3d_particles_sink_def, sink)
 {
     (void)w;
     def->upper[0] = def->upper[1] = def->upper[2] = 1.0;
@@ -434,12 +434,12 @@ static se3d_status create_sink(world *w, const void *def)
     uint32_t sink;
     return se3d_particles_add_sink(w->set, def, &sink);
 }
-static const field sink_fields[] = {NUMBERS(se3d_sink_def, lower),
-                                    NUMBERS(se3d_sink_def, upper),
-                                    INTEGER(se3d_sink_def, region),
-                                    INTEGER(se3d_sink_def, axis),
-                                    NUMBERS(se3d_sink_def, point),
-                                    NUMBERS(se3d_sink_def, normal),
+static const field sink_fields[] = {NUMBERS(se3d_particles_sink_def, lower),
+                                    NUMBERS(se3d_particles_sink_def, upper),
+                                    INTEGER(se3d_particles_sink_def, region),
+                                    INTEGER(se3d_particles_sink_def, axis),
+                                    NUMBERS(se3d_particles_sink_def, point),
+                                    NUMBERS(se3d_particles_sink_def, normal),
                                     FIELDS_END};
 
 static se3d_status get_height(void *ctx, const se3d_system *system, double *value)

@@ -33,7 +33,7 @@ FILL(solver_get_start_change, se3d_start_change, p->w.solver)
 FILL(solver_get_event_record, se3d_event_record, p->w.solver, 0)
 FILL(modes_get_eigenvalue, se3d_eigenvalue, p->modes, 0)
 FILL(system_get_contacts, se3d_contact, p->w.system, 1)
-FILL(particles_get_source_stats, se3d_source_stats, p->w.grains, 0)
+FILL(particles_get_source_stats, se3d_particles_source_stats, p->w.grains, 0)
 FILL(particles_get_tally, se3d_particles_tally, p->w.grains, 0)
 FILL(particles_get_contacts, se3d_particles_contact, p->grains, 1)
 FILL(particles_get_energy, se3d_particles_energy, p->w.grains)
@@ -66,7 +66,7 @@ static const filler fillers[] = {
     ROW(solver_get_event_record, se3d_event_record),
     ROW(modes_get_eigenvalue, se3d_eigenvalue),
     ROW(system_get_contacts, se3d_contact),
-    ROW(particles_get_source_stats, se3d_source_stats),
+    ROW(particles_get_source_stats, se3d_particles_source_stats),
     ROW(particles_get_tally, se3d_particles_tally),
     ROW(particles_get_contacts, se3d_particles_contact),
     ROW(particles_get_energy, se3d_particles_energy),

@@ -144,8 +144,8 @@ static double bounce(int32_t method, double tolerance, uint64_t *steps)
     def.tolerance = tolerance;
     MUST(&w, se3d_solver_create(w.system, &def, &w.solver));
     MUST(&w, se3d_solver_run(w.solver, 3.0));
-    MUST(&w, se3d_joint_get_coordinate(w.system, spring.joint, SE3D_COORDINATE_ANGLE, &angle, NULL,
-                                       NULL));
+    MUST(&w, se3d_joint_get_coordinate(w.system, spring.joint, SE3D_JOINT_COORDINATE_ANGLE, &angle,
+                                       NULL, NULL));
     MUST(&w, se3d_solver_get_stats(w.solver, &stats));
     *steps = stats.steps + stats.rejected;
     world_destroy(&w);

@@ -68,8 +68,8 @@ static outcome run(int32_t method, int32_t formulation, double stiffness, double
         fprintf(stderr, "method %d: %s\n", (int)method, se3d_system_get_error(system));
     }
     CHECK(status >= 0);
-    CHECK(se3d_joint_get_coordinate(system, pin, SE3D_COORDINATE_ANGLE, &out.angle, NULL, NULL) ==
-          SE3D_OK);
+    CHECK(se3d_joint_get_coordinate(system, pin, SE3D_JOINT_COORDINATE_ANGLE, &out.angle, NULL,
+                                    NULL) == SE3D_OK);
     CHECK(se3d_solver_get_stats(solver, &stats) == SE3D_OK);
     out.steps = stats.steps;
     CHECK(se3d_solver_get_method(solver, &picked) == SE3D_OK);
@@ -179,8 +179,8 @@ static growing run_growing(int32_t method, int32_t formulation, int parts)
     for (int k = 1; k <= parts; ++k) {
         CHECK(se3d_solver_run(solver, 3.0 * k / parts) == SE3D_OK);
     }
-    CHECK(se3d_joint_get_coordinate(system, pin, SE3D_COORDINATE_ANGLE, &out.angle, NULL, NULL) ==
-          SE3D_OK);
+    CHECK(se3d_joint_get_coordinate(system, pin, SE3D_JOINT_COORDINATE_ANGLE, &out.angle, NULL,
+                                    NULL) == SE3D_OK);
     CHECK(se3d_solver_get_stats(solver, &stats) == SE3D_OK);
     CHECK(se3d_solver_get_method(solver, &name) == SE3D_OK);
     CHECK(se3d_solver_get_switch(solver, &out.left_at, &left) == SE3D_OK);

@@ -206,7 +206,7 @@ static se3d_status make_coupler(workshop *w)
     def.name = "coupler";
     def.joint[0] = w->pin;
     def.joint[1] = w->slide;
-    def.coordinate[1] = SE3D_COORDINATE_DISPLACEMENT;
+    def.coordinate[1] = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     def.ratio[0] = def.ratio[1] = 1.0;
     def.count = 2;
     return se3d_joint_create_coupler(w->system, &def, &coupler);
@@ -334,9 +334,9 @@ static se3d_status make_source_and_sink(workshop *w)
     se3d_material material = {0, 0};
     se3d_material_def stuff = se3d_material_def_default();
     se3d_fill_def fill = se3d_fill_def_default();
-    se3d_source_def source = se3d_source_def_default();
-    se3d_sink_def sink = se3d_sink_def_default();
-    se3d_source_stats stats;
+    se3d_particles_source_def source = se3d_particles_source_def_default();
+    se3d_particles_sink_def sink = se3d_particles_sink_def_default();
+    se3d_particles_source_stats stats;
     uint64_t count;
     stuff.density = 2500.0;
     stuff.stiffness = 1e4;

@@ -92,7 +92,7 @@ static void open_world(world *w, int rolling)
     CHECK(se3d_particles_fill_lattice(w->particles, &fill, NULL) == SE3D_OK);
     fill.lower[2] = 0.12;
     fill.upper[2] = 0.15;
-    se3d_source_def source = se3d_source_def_default();
+    se3d_particles_source_def source = se3d_particles_source_def_default();
     source.fill = &fill;
     source.rate = 120.0;
     CHECK(se3d_particles_add_source(w->particles, &source, NULL) == SE3D_OK);

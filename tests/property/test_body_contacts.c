@@ -9,7 +9,7 @@ static scene begin_with(const se3d_allocator *allocator, double restitution, dou
 {
     se3d_material_def stuff = scene_stuff(0.4, restitution, stiffness);
     stuff.rolling_friction = 0.01;
-    return scene_begin_with(allocator, SE3D_LAW_HOOKE, &stuff);
+    return scene_begin_with(allocator, SE3D_CONTACT_LAW_HOOKE, &stuff);
 }
 
 static scene begin(const se3d_allocator *allocator, double restitution)

@@ -17,7 +17,8 @@ static double angle_of(const text_model *m)
     se3d_constraint joint;
     double angle = (double)NAN;
     CHECK(!se3d_constraint_find(m->system, "j", &joint));
-    CHECK(!se3d_joint_get_coordinate(m->system, joint, SE3D_COORDINATE_ANGLE, &angle, NULL, NULL));
+    CHECK(!se3d_joint_get_coordinate(m->system, joint, SE3D_JOINT_COORDINATE_ANGLE, &angle, NULL,
+                                     NULL));
     return angle;
 }
 

@@ -131,7 +131,7 @@ static void set_input(world *w, double u)
         CHECK(!se3d_system_set_gravity(w->system, along));
         break;
     case INPUT_PRELOAD:
-        CHECK(!se3d_force_set_parameter(w->system, w->torque, SE3D_PARAMETER_PRELOAD, -u));
+        CHECK(!se3d_force_set_parameter(w->system, w->torque, SE3D_FORCE_PARAMETER_PRELOAD, -u));
         break;
     case INPUT_CONSTANT:
         CHECK(!se3d_function_set_constant(w->system, w->function, -u));
@@ -273,7 +273,7 @@ static void add_elements(bars *w, se3d_body ground)
     CHECK(!se3d_force_create_bushing(w->system, &bushing, &w->bushing));
     se3d_stop_def stop = se3d_stop_def_default();
     stop.joint = w->pin;
-    stop.coordinate = SE3D_COORDINATE_ANGLE;
+    stop.coordinate = SE3D_JOINT_COORDINATE_ANGLE;
     stop.upper = -0.01; /* it has been passed */
     stop.k = 50.0;
     CHECK(!se3d_force_create_stop(w->system, &stop, &w->stop));
@@ -318,10 +318,10 @@ static void change(const bars *w, se3d_system *system, int k, double u)
         int32_t parameter;
         int32_t is_stop;
         double value;
-    } table[] = {{SE3D_PARAMETER_K, 0, 90.0},      {SE3D_PARAMETER_C, 0, 3.0},
-                 {SE3D_PARAMETER_REST, 0, 1.2},    {SE3D_PARAMETER_PRELOAD, 0, 5.0},
-                 {SE3D_PARAMETER_K, 1, 500.0},     {SE3D_PARAMETER_UPPER, 1, -0.02},
-                 {SE3D_PARAMETER_LOWER, 1, -100.0}};
+    } table[] = {{SE3D_FORCE_PARAMETER_K, 0, 90.0},      {SE3D_FORCE_PARAMETER_C, 0, 3.0},
+                 {SE3D_FORCE_PARAMETER_REST, 0, 1.2},    {SE3D_FORCE_PARAMETER_PRELOAD, 0, 5.0},
+                 {SE3D_FORCE_PARAMETER_K, 1, 500.0},     {SE3D_FORCE_PARAMETER_UPPER, 1, -0.02},
+                 {SE3D_FORCE_PARAMETER_LOWER, 1, -100.0}};
     const double inertia[6] = {0.01 * u, 0.1 * u, 0.1 * u, 0.0, 0.0, 0.0};
     const double g[3] = {1.0, 2.0 * u, -9.0 * u}, value[3] = {u, 2.0, 3.0 * u};
     double K[36], C[36];
@@ -329,7 +329,8 @@ static void change(const bars *w, se3d_system *system, int k, double u)
         CHECK(!se3d_force_set_parameter(system, table[k].is_stop ? w->stop : w->spring,
                                         table[k].parameter, table[k].value * u));
     } else if (k < 11) {
-        CHECK(!se3d_force_set_parameter(system, w->damper, SE3D_PARAMETER_K + k - 7, 2.0 * u));
+        CHECK(
+            !se3d_force_set_parameter(system, w->damper, SE3D_FORCE_PARAMETER_K + k - 7, 2.0 * u));
     } else if (k == 11) {
         CHECK(!se3d_force_get_bushing(system, w->bushing, K, C));
         K[14] *= u;
@@ -448,11 +449,12 @@ static void prescribed_values_are_met_from_the_next_step_on(void)
             double t, angle, rate, effort;
             CHECK(!(by_function ? se3d_function_set_constant(w.system, w.function, wanted)
                                 : se3d_constraint_set_value(w.system, driver, wanted)));
-            CHECK(!se3d_force_set_parameter(w.system, w.torque, SE3D_PARAMETER_PRELOAD, 2.0 * n));
+            CHECK(!se3d_force_set_parameter(w.system, w.torque, SE3D_FORCE_PARAMETER_PRELOAD,
+                                            2.0 * n));
             CHECK(!se3d_system_get_time(w.system, &t));
             CHECK((by_run ? se3d_solver_run(w.solver, t + H) : se3d_solver_step(w.solver, H)) >= 0);
-            CHECK(!se3d_joint_get_coordinate(w.system, w.pin, SE3D_COORDINATE_ANGLE, &angle, &rate,
-                                             NULL));
+            CHECK(!se3d_joint_get_coordinate(w.system, w.pin, SE3D_JOINT_COORDINATE_ANGLE, &angle,
+                                             &rate, NULL));
             CHECK(!se3d_driver_get_effort(w.system, driver, &effort));
             CHECK_NEAR(angle, wanted, 1e-12);
             CHECK_NEAR(rate, 0.0, 1e-12);
@@ -467,8 +469,8 @@ static void prescribed_values_are_met_from_the_next_step_on(void)
             CHECK(!(by_function ? se3d_function_set_constant(w.system, w.function, -0.3 * n)
                                 : se3d_constraint_set_value(w.system, driver, -0.3 * n)));
             CHECK(!se3d_solver_run(w.solver, n < 3 ? t + 0.1 : t));
-            CHECK(!se3d_joint_get_coordinate(w.system, w.pin, SE3D_COORDINATE_ANGLE, &angle, NULL,
-                                             NULL));
+            CHECK(!se3d_joint_get_coordinate(w.system, w.pin, SE3D_JOINT_COORDINATE_ANGLE, &angle,
+                                             NULL, NULL));
             CHECK_NEAR(angle, -0.3 * n, 1e-12);
         }
         destroy(&w);

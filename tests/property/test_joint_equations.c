@@ -241,7 +241,7 @@ static void equations_of_couplers_match_finite_differences(void)
         couple.count = 3;
         couple.joint[0] = pin;
         couple.joint[1] = couple.joint[2] = slide;
-        couple.coordinate[2] = SE3D_COORDINATE_DISPLACEMENT;
+        couple.coordinate[2] = SE3D_JOINT_COORDINATE_DISPLACEMENT;
         couple.ratio[0] = 0.9;
         couple.ratio[1] = -1.3;
         couple.ratio[2] = 2.1;
@@ -264,7 +264,7 @@ static void coordinate_rates_match_finite_differences(void)
         motion motions[WORLD_BODIES + 1];
         se3d_joint_def def = random_def(&w, trial == 1 ? w.ground : w.body[3], w.body[1]);
         se3d_constraint joint;
-        se3d_coordinate coordinate = (se3d_coordinate)(trial % 2);
+        se3d_joint_coordinate coordinate = (se3d_joint_coordinate)(trial % 2);
         CHECK(se3d_joint_create_cylindrical(w.system, &def, &joint) == SE3D_OK);
         motion_init(&w, motions);
         double value, rate, acceleration, q[3], coarse[2], fine[2];

@@ -104,12 +104,12 @@ static void check_coordinates(const world *w, const joint_case *c, se3d_constrai
                               double angle, double displacement)
 {
     double value;
-    se3d_status status =
-        se3d_joint_get_coordinate(w->system, joint, SE3D_COORDINATE_ANGLE, &value, NULL, NULL);
+    se3d_status status = se3d_joint_get_coordinate(w->system, joint, SE3D_JOINT_COORDINATE_ANGLE,
+                                                   &value, NULL, NULL);
     CHECK(status == (c->angle ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT));
     CHECK_NEAR(value, c->angle ? angle : 0.0, 2e-13);
-    status = se3d_joint_get_coordinate(w->system, joint, SE3D_COORDINATE_DISPLACEMENT, &value, NULL,
-                                       NULL);
+    status = se3d_joint_get_coordinate(w->system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT, &value,
+                                       NULL, NULL);
     CHECK(status == (c->displacement ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT));
     CHECK_NEAR(value, c->displacement ? displacement : 0.0, 2e-13);
 }
@@ -118,8 +118,8 @@ static double displacement_of(const world *w, const joint_case *c, se3d_constrai
 {
     double value = 0.0;
     if (c->displacement) {
-        CHECK(se3d_joint_get_coordinate(w->system, joint, SE3D_COORDINATE_DISPLACEMENT, &value,
-                                        NULL, NULL) == SE3D_OK);
+        CHECK(se3d_joint_get_coordinate(w->system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT,
+                                        &value, NULL, NULL) == SE3D_OK);
     }
     return value;
 }

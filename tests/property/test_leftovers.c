@@ -69,11 +69,11 @@ static void add_slide(scene *s)
     joint.ref_i[0] = joint.ref_j[0] = 0.0;
     joint.ref_i[2] = joint.ref_j[2] = 1.0;
     CHECK(!se3d_joint_create_prismatic(s->system, &joint, &rub.joint));
-    rub.coordinate = SE3D_COORDINATE_DISPLACEMENT;
+    rub.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     rub.mu = 0.3;
     CHECK(!se3d_force_create_friction(s->system, &rub, &s->rub));
     stop.joint = rub.joint;
-    stop.coordinate = SE3D_COORDINATE_DISPLACEMENT;
+    stop.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     stop.upper = 0.003;
     stop.k = 1e4;
     stop.restitution = 0.5;

@@ -176,10 +176,10 @@ static void three_parallel_cranks_pass_their_flat_positions(void)
                 fprintf(stderr, "t = %g: %s\n", 0.02 * k, se3d_system_get_error(system));
                 break;
             }
-            CHECK(!se3d_joint_get_coordinate(system, pins[0], SE3D_COORDINATE_ANGLE, &angle, &rate,
-                                             NULL));
-            CHECK(!se3d_joint_get_coordinate(system, pins[2], SE3D_COORDINATE_ANGLE, &other, NULL,
-                                             NULL));
+            CHECK(!se3d_joint_get_coordinate(system, pins[0], SE3D_JOINT_COORDINATE_ANGLE, &angle,
+                                             &rate, NULL));
+            CHECK(!se3d_joint_get_coordinate(system, pins[2], SE3D_JOINT_COORDINATE_ANGLE, &other,
+                                             NULL, NULL));
             CHECK_NEAR(other, angle, 1e-9);
             CHECK(!se3d_body_get_orientation(system, coupler, p));
             CHECK_NEAR(fabs(p[0]), 1.0, 1e-9); /* the coupler only shifts */

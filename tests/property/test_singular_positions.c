@@ -62,7 +62,7 @@ static void open_linkage(linkage *l, int slider, double start, const char *text)
     add_joint(l, l->ground, l->last, slider ? B : Q, slider);
     se3d_driver_def driver = se3d_driver_def_default();
     driver.joint = l->pin;
-    driver.coordinate = SE3D_COORDINATE_ANGLE;
+    driver.coordinate = SE3D_JOINT_COORDINATE_ANGLE;
     CHECK(!se3d_function_create_expression(l->system, text, &driver.function));
     CHECK(!se3d_driver_create(l->system, &driver, &l->driver));
 }

@@ -38,8 +38,8 @@ static void angles_count_turns_between_outputs(void)
                         : k == 1 ? 20.0 * t * t
                         : k == 2 ? 100.0 * sin(t)
                                  : 1000.0 * t * t;
-                CHECK(!se3d_joint_get_coordinate(system, joint, SE3D_COORDINATE_ANGLE, &angle, NULL,
-                                                 NULL));
+                CHECK(!se3d_joint_get_coordinate(system, joint, SE3D_JOINT_COORDINATE_ANGLE, &angle,
+                                                 NULL, NULL));
                 CHECK_NEAR(angle, value, 1e-8);
             }
             se3d_solver_destroy(solver);
@@ -79,14 +79,14 @@ static void block_that_slides_at_the_start_is_braked(void)
             CHECK(!se3d_solver_create(system, &def, &solver));
             CHECK(se3d_solver_run(solver, 0.1) >= 0);
             CHECK(!se3d_constraint_find(system, "j", &joint));
-            CHECK(!se3d_joint_get_coordinate(system, joint, SE3D_COORDINATE_DISPLACEMENT, &x, NULL,
-                                             NULL));
+            CHECK(!se3d_joint_get_coordinate(system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT, &x,
+                                             NULL, NULL));
             CHECK_NEAR(x, 0.1 - 0.005 * F, 1e-6);
             /* the presliding's stiffness keeps explicit steps small where it sticks */
             const double end = m == 2 || m == 3 ? 0.15 : 2.5;
             CHECK(se3d_solver_run(solver, end) >= 0);
-            CHECK(!se3d_joint_get_coordinate(system, joint, SE3D_COORDINATE_DISPLACEMENT, &x, NULL,
-                                             NULL));
+            CHECK(!se3d_joint_get_coordinate(system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT, &x,
+                                             NULL, NULL));
             CHECK_NEAR(x, end < 1.0 ? 0.15 - 0.01125 * F : 0.5 / F, 2e-3 / F);
             se3d_solver_destroy(solver);
             se3d_model_destroy(model);

@@ -163,7 +163,7 @@ static void drive(world *w)
     CHECK(!se3d_joint_def_set_frame(w->system, &slide, at, axis, NULL));
     CHECK(!se3d_joint_create_prismatic(w->system, &slide, &made));
     driver.joint = w->pin;
-    driver.coordinate = SE3D_COORDINATE_ANGLE;
+    driver.coordinate = SE3D_JOINT_COORDINATE_ANGLE;
     CHECK(!se3d_function_create_expression(w->system, "0.3*sin(t)", &driver.function));
     CHECK(!se3d_driver_create(w->system, &driver, &made));
 }

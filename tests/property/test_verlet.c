@@ -251,7 +251,7 @@ static void open_blade(world *w)
     CHECK(!se3d_joint_create_prismatic(w->system, &slide, &joint));
     se3d_driver_def drive = se3d_driver_def_default();
     drive.joint = joint;
-    drive.coordinate = SE3D_COORDINATE_DISPLACEMENT;
+    drive.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     CHECK(!se3d_function_create_expression(w->system, "0.1*t", &drive.function));
     CHECK(!se3d_driver_create(w->system, &drive, &driver));
     add_box(w, w->body, (double[3]){0.0, 0.0, 0.0}, (double[3]){0.02, 0.2, 0.1});

@@ -313,7 +313,7 @@ static se3d_status create_driver(support_model *model, const support_plan *plan,
         return SE3D_OK;
     }
     def.joint = model->joints[index];
-    def.coordinate = SE3D_COORDINATE_ANGLE;
+    def.coordinate = SE3D_JOINT_COORDINATE_ANGLE;
     se3d_status status =
         se3d_function_create_expression(model->system, plan->joints[index].drive, &def.function);
     return status < 0 ? status : se3d_driver_create(model->system, &def, &model->drivers[index]);

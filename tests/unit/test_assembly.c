@@ -262,11 +262,11 @@ static void a_driver_that_locks_is_named_with_its_time(void)
         se3d_constraint guide =
             add_joint(&w, se3d_joint_create_prismatic, "guide", w.ground, slider, at, x);
         double s, rate, acceleration;
-        MUST(&w, se3d_joint_get_coordinate(w.system, guide, SE3D_COORDINATE_DISPLACEMENT, &s, &rate,
-                                           &acceleration));
+        MUST(&w, se3d_joint_get_coordinate(w.system, guide, SE3D_JOINT_COORDINATE_DISPLACEMENT, &s,
+                                           &rate, &acceleration));
         char text[64];
         snprintf(text, sizeof text, "%.17g + 0.5*t", s);
-        add_driver(&w, "push", guide, SE3D_COORDINATE_DISPLACEMENT, text);
+        add_driver(&w, "push", guide, SE3D_JOINT_COORDINATE_DISPLACEMENT, text);
         use_solver(&w, SE3D_ANALYSIS_KINEMATICS, (se3d_formulation)f);
         double lock = (0.7 - reach) / 0.5; /* stretched: 0.483 s */
         CHECK(se3d_solver_run(w.solver, 0.98 * lock) == SE3D_INFO_REDUNDANT);

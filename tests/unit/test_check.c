@@ -209,8 +209,8 @@ static void two_drivers_at_different_speeds_contradict_each_other(void)
         world w = world_create();
         se3d_body bar = add_bar(&w, "bar", from, 0.0, 2.0, 1.0);
         se3d_constraint pin = add_pin(&w, "pin", w.ground, bar, 0.0, 0.0);
-        add_driver(&w, "motor", pin, SE3D_COORDINATE_ANGLE, "2*t");
-        add_driver(&w, "second", pin, SE3D_COORDINATE_ANGLE, same ? "t+t" : "3*t");
+        add_driver(&w, "motor", pin, SE3D_JOINT_COORDINATE_ANGLE, "2*t");
+        add_driver(&w, "second", pin, SE3D_JOINT_COORDINATE_ANGLE, same ? "t+t" : "3*t");
         se3d_check *check = check_world(&w, SE3D_INFO_REDUNDANT);
         CHECK(summary.rank == 6 && summary.freedoms == 0);
         CHECK(summary.inconsistent == (same ? 0 : 1));

@@ -77,7 +77,7 @@ static void open_world(world *w, int own, double gravity)
               0.0, NULL};
     contact.step = 1e-5;
     if (own) {
-        contact.law = SE3D_LAW_CALLBACK;
+        contact.law = SE3D_CONTACT_LAW_CALLBACK;
         contact.callback = repeat_hooke;
         contact.ctx = &w->law;
     }
@@ -322,8 +322,9 @@ static void settings_of_a_law_are_checked(void)
     se3d_contact_settings bad = se3d_contact_settings_default(), now = bad;
     open_world(&w, 1, 0.0);
     CHECK(se3d_system_get_contact(w.system, &now) == SE3D_OK);
-    CHECK(now.law == SE3D_LAW_CALLBACK && now.callback == repeat_hooke && now.ctx == &w.law);
-    bad.law = SE3D_LAW_CALLBACK;
+    CHECK(now.law == SE3D_CONTACT_LAW_CALLBACK && now.callback == repeat_hooke &&
+          now.ctx == &w.law);
+    bad.law = SE3D_CONTACT_LAW_CALLBACK;
     bad.step = 1e-5;
     CHECK(se3d_system_set_contact(w.system, &bad) == SE3D_ERR_NULL);
     bad.callback = repeat_hooke;

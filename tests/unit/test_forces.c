@@ -34,7 +34,7 @@ static void add_friction(slide *s, double mu)
 {
     se3d_friction_def def = se3d_friction_def_default();
     def.joint = s->joint;
-    def.coordinate = SE3D_COORDINATE_DISPLACEMENT;
+    def.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     def.mu = mu;
     CHECK(se3d_force_create_friction(s->system, &def, &s->force) == SE3D_OK);
 }
@@ -59,8 +59,8 @@ static void run(slide *s, double t_end, double step, se3d_solver_stats *stats)
 
 static void get(const slide *s, double x[3])
 {
-    CHECK(se3d_joint_get_coordinate(s->system, s->joint, SE3D_COORDINATE_DISPLACEMENT, &x[0], &x[1],
-                                    &x[2]) == SE3D_OK);
+    CHECK(se3d_joint_get_coordinate(s->system, s->joint, SE3D_JOINT_COORDINATE_DISPLACEMENT, &x[0],
+                                    &x[1], &x[2]) == SE3D_OK);
 }
 
 static void a_block_below_the_friction_angle_does_not_creep(void)
@@ -131,7 +131,7 @@ static double bounce(double mass, double restitution, double speed, double step)
     CHECK(se3d_body_set_velocity(s.system, s.block, v0) == SE3D_OK);
     se3d_stop_def def = se3d_stop_def_default();
     def.joint = s.joint;
-    def.coordinate = SE3D_COORDINATE_DISPLACEMENT;
+    def.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     def.upper = 0.01 * speed;
     def.k = 1e5;
     def.restitution = restitution;

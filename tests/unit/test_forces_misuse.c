@@ -109,7 +109,7 @@ static void friction_is_checked(void)
     refused(&w, se3d_force_create_friction(w.system, &bad, &force), SE3D_ERR_INVALID_ARGUMENT,
             "at least mu = 0.3");
     bad = good;
-    bad.coordinate = SE3D_COORDINATE_DISPLACEMENT;
+    bad.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     refused(&w, se3d_force_create_friction(w.system, &bad, &force), SE3D_ERR_INVALID_ARGUMENT,
             "displacement");
     bad = good;

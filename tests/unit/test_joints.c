@@ -10,8 +10,8 @@ static const double Z[3] = {0.0, 0.0, 1.0}, ORIGIN[3] = {0.0, 0.0, 0.0};
 static double angle_of(const world *w, se3d_constraint joint)
 {
     double value;
-    CHECK(se3d_joint_get_coordinate(w->system, joint, SE3D_COORDINATE_ANGLE, &value, NULL, NULL) ==
-          SE3D_OK);
+    CHECK(se3d_joint_get_coordinate(w->system, joint, SE3D_JOINT_COORDINATE_ANGLE, &value, NULL,
+                                    NULL) == SE3D_OK);
     return value;
 }
 
@@ -125,8 +125,8 @@ static void screw_advances_by_its_pitch_over_many_turns(void)
     for (int k = 0; k < 30; ++k) {
         world_move(&w, w.body[0], Z, ORIGIN, PI / 2, 0.25 / 4);
     }
-    CHECK(se3d_joint_get_coordinate(w.system, screw, SE3D_COORDINATE_DISPLACEMENT, &displacement,
-                                    NULL, NULL) == SE3D_OK);
+    CHECK(se3d_joint_get_coordinate(w.system, screw, SE3D_JOINT_COORDINATE_DISPLACEMENT,
+                                    &displacement, NULL, NULL) == SE3D_OK);
     CHECK_NEAR(displacement, 7.5 * 0.25, 1e-13);
     CHECK_NEAR(angle_of(&w, screw), 15 * PI, 1e-12);
     CHECK(se3d_constraint_eval(w.system, screw, SE3D_FORMULATION_RP, phi, NULL, NULL) == SE3D_OK);
@@ -399,17 +399,17 @@ static void drivers_need_a_coordinate_of_a_live_joint(void)
         se3d_status status;
         const char *part;
     } bad[] = {
-        {ball, SE3D_COORDINATE_ANGLE, 0, SE3D_ERR_INVALID_ARGUMENT, "spherical"},
-        {ball, SE3D_COORDINATE_DISPLACEMENT, 0, SE3D_ERR_INVALID_ARGUMENT, "no displacement"},
-        {pin, SE3D_COORDINATE_DISPLACEMENT, 0, SE3D_ERR_INVALID_ARGUMENT,
-         "has no displacement, must be SE3D_COORDINATE_ANGLE"},
-        {slide, SE3D_COORDINATE_ANGLE, 0, SE3D_ERR_INVALID_ARGUMENT,
-         "must be SE3D_COORDINATE_DISPLACEMENT"},
+        {ball, SE3D_JOINT_COORDINATE_ANGLE, 0, SE3D_ERR_INVALID_ARGUMENT, "spherical"},
+        {ball, SE3D_JOINT_COORDINATE_DISPLACEMENT, 0, SE3D_ERR_INVALID_ARGUMENT, "no displacement"},
+        {pin, SE3D_JOINT_COORDINATE_DISPLACEMENT, 0, SE3D_ERR_INVALID_ARGUMENT,
+         "has no displacement, must be SE3D_JOINT_COORDINATE_ANGLE"},
+        {slide, SE3D_JOINT_COORDINATE_ANGLE, 0, SE3D_ERR_INVALID_ARGUMENT,
+         "must be SE3D_JOINT_COORDINATE_DISPLACEMENT"},
         {pin, 2, 0, SE3D_ERR_INVALID_ARGUMENT, "coordinate = 2"},
         {pin, -1, 0, SE3D_ERR_INVALID_ARGUMENT, "coordinate = -1"},
-        {pin, SE3D_COORDINATE_ANGLE, (double)NAN, SE3D_ERR_INVALID_ARGUMENT, "value"},
-        {null, SE3D_COORDINATE_ANGLE, 0, SE3D_ERR_STALE_HANDLE, "joint"},
-        {foreign, SE3D_COORDINATE_ANGLE, 0, SE3D_ERR_STALE_HANDLE, "joint"},
+        {pin, SE3D_JOINT_COORDINATE_ANGLE, (double)NAN, SE3D_ERR_INVALID_ARGUMENT, "value"},
+        {null, SE3D_JOINT_COORDINATE_ANGLE, 0, SE3D_ERR_STALE_HANDLE, "joint"},
+        {foreign, SE3D_JOINT_COORDINATE_ANGLE, 0, SE3D_ERR_STALE_HANDLE, "joint"},
     };
     for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
         se3d_driver_def def = se3d_driver_def_default();
@@ -532,7 +532,7 @@ static void queries_detect_stale_handles_and_null(void)
     CHECK(se3d_constraint_get_body(w.system, pin, 0, &body) == stale && body.index1 == 0);
     CHECK(se3d_constraint_eval(w.system, pin, SE3D_FORMULATION_RP, v, v, v) == stale);
     CHECK(se3d_constraint_get_multipliers(w.system, pin, v) == stale);
-    CHECK(se3d_joint_get_coordinate(w.system, pin, SE3D_COORDINATE_ANGLE, v, v, v) == stale);
+    CHECK(se3d_joint_get_coordinate(w.system, pin, SE3D_JOINT_COORDINATE_ANGLE, v, v, v) == stale);
     CHECK(se3d_constraint_get_multipliers(w.system, pin, NULL) == SE3D_ERR_NULL);
     CHECK(se3d_constraint_eval(NULL, pin, SE3D_FORMULATION_RP, v, v, v) == SE3D_ERR_NULL);
     CHECK(se3d_constraint_destroy(NULL, pin) == SE3D_ERR_NULL);

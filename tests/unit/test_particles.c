@@ -137,7 +137,8 @@ static void neighbours_are_those_of_a_search_of_all_pairs(void)
         bed b;
         se3d_material_def material = stuff();
         for (int a = 0; a < 3; ++a) {
-            def.boundary[a] = k >> a & 1 ? SE3D_BOUNDARY_PERIODIC : SE3D_BOUNDARY_OPEN;
+            def.boundary[a] =
+                k >> a & 1 ? SE3D_DOMAIN_BOUNDARY_PERIODIC : SE3D_DOMAIN_BOUNDARY_OPEN;
             def.upper[a] = a == 2 ? 1.2 : 0.5;
         }
         bed_init(&b, &def, none, &material);
@@ -185,7 +186,8 @@ static void sum(const bed *b, double momentum[3], double angular[3], double *kin
     free(radius);
 }
 
-static void free_cloud(se3d_law law, double restitution, double rolling, int portable, double ratio)
+static void free_cloud(se3d_contact_law law, double restitution, double rolling, int portable,
+                       double ratio)
 {
     se3d_particles_def def = se3d_particles_def_default();
     def.portable = portable;
@@ -231,8 +233,8 @@ static void free_cloud(se3d_law law, double restitution, double rolling, int por
 static void free_cloud_conserves_momentum_and_angular_momentum(void)
 {
     for (int k = 0; k < 16; ++k) {
-        free_cloud(k & 1 ? SE3D_LAW_HERTZ_MINDLIN : SE3D_LAW_HOOKE, k & 2 ? 0.6 : 1.0,
-                   k & 4 ? 0.1 : 0.0, (k & 8) != 0, k & 2 ? 1.0 : 4.0);
+        free_cloud(k & 1 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE,
+                   k & 2 ? 0.6 : 1.0, k & 4 ? 0.1 : 0.0, (k & 8) != 0, k & 2 ? 1.0 : 4.0);
     }
 }
 
@@ -430,7 +432,7 @@ static void particles_are_added_and_removed_while_others_touch(void)
 static void particles_that_leave_are_counted(void)
 {
     se3d_particles_def def = se3d_particles_def_default();
-    def.boundary[2] = SE3D_BOUNDARY_SINK;
+    def.boundary[2] = SE3D_DOMAIN_BOUNDARY_SINK;
     def.lower[2] = -0.5;
     def.upper[2] = 10.0;
     se3d_material_def material = stuff();

@@ -69,7 +69,7 @@ static void regions_hold_every_part_of_their_particles(void)
                 b.fill.lower[a] = centre[a] - half;
                 b.fill.upper[a] = centre[a] + half;
             }
-            b.fill.region = axis < 0 ? SE3D_REGION_SPHERE : SE3D_REGION_CYLINDER;
+            b.fill.region = axis < 0 ? SE3D_FILL_REGION_SPHERE : SE3D_FILL_REGION_CYLINDER;
             b.fill.axis = axis < 0 ? 0 : axis;
             b.fill.radius_min = 0.008;
             b.fill.radius_max = 0.012;
@@ -140,7 +140,7 @@ static void tables_and_regions_are_checked(void)
     b.fill.region = 3;
     CHECK(se3d_particles_fill_random(b.particles, &b.fill) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK_CONTAINS(se3d_system_get_error(b.system), "region = 3");
-    b.fill.region = SE3D_REGION_CYLINDER;
+    b.fill.region = SE3D_FILL_REGION_CYLINDER;
     b.fill.axis = -1;
     CHECK(se3d_particles_fill_random(b.particles, &b.fill) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK_CONTAINS(se3d_system_get_error(b.system), "axis = -1");
@@ -152,7 +152,7 @@ static void tables_and_regions_are_checked(void)
 static void a_lattice_that_takes_for_ever_to_look_at_is_refused(void)
 {
     open_bed(&b);
-    b.fill.region = SE3D_REGION_CYLINDER;
+    b.fill.region = SE3D_FILL_REGION_CYLINDER;
     b.fill.axis = 1;
     b.fill.count = 3;
     b.fill.radius_min = b.fill.radius_max = 0.01;
@@ -161,7 +161,7 @@ static void a_lattice_that_takes_for_ever_to_look_at_is_refused(void)
     CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK_CONTAINS(se3d_system_get_error(b.system), "points of the lattice from lower to upper");
     CHECK(se3d_particles_count(b.particles) == 0);
-    b.fill.region = SE3D_REGION_BOX;
+    b.fill.region = SE3D_FILL_REGION_BOX;
     CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_OK);
     CHECK(se3d_particles_count(b.particles) == 3);
     close_bed(&b);

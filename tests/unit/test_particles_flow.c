@@ -51,17 +51,17 @@ static void read_bed(void)
     CHECK(se3d_particles_get_radii(b.particles, b.count, b.radius) == SE3D_OK);
 }
 
-static se3d_source_def source_of(double rate)
+static se3d_particles_source_def source_of(double rate)
 {
-    se3d_source_def def = se3d_source_def_default();
+    se3d_particles_source_def def = se3d_particles_source_def_default();
     def.fill = &b.fill;
     def.rate = rate;
     return def;
 }
 
-static se3d_source_stats stats_of(uint32_t source)
+static se3d_particles_source_stats stats_of(uint32_t source)
 {
-    se3d_source_stats stats = {0, 0, 0.0, 0.0};
+    se3d_particles_source_stats stats = {0, 0, 0.0, 0.0};
     CHECK(se3d_particles_get_source_stats(b.particles, source, &stats) == SE3D_OK);
     return stats;
 }
@@ -90,7 +90,7 @@ static void source_gives_its_rate_with_its_velocity(void)
     b.fill.velocity[0] = 0.25;
     b.fill.velocity[2] = -1.5;
     b.fill.tag = 5;
-    se3d_source_def def = source_of(250.0);
+    se3d_particles_source_def def = source_of(250.0);
     def.start = 0.1;
     def.stop = 0.5;
     CHECK(se3d_particles_add_source(b.particles, &def, &source) == SE3D_OK);
@@ -119,7 +119,7 @@ static void source_gives_its_rate_with_its_velocity(void)
 static void rate_may_be_a_function_and_a_mass(void)
 {
     const double radii[3] = {0.002, 0.003, 0.004}, weights[3] = {4.0, 2.0, 1.0};
-    se3d_source_def def;
+    se3d_particles_source_def def;
     open_bed(10.0, NULL);
     b.fill.radii = radii;
     b.fill.weights = weights;
@@ -160,7 +160,7 @@ static void what_finds_no_room_waits(void)
     wall.position[0] = wall.position[1] = 0.05;
     CHECK(se3d_shape_create_sphere(b.system, &wall, &ball) == SE3D_OK);
     b.fill.count = 1000;
-    se3d_source_def def = source_of(2000.0);
+    se3d_particles_source_def def = source_of(2000.0);
     CHECK(se3d_particles_add_source(b.particles, &def, NULL) == SE3D_OK);
     CHECK(se3d_particles_run(b.particles, 0.2) == SE3D_OK);
     read_bed();
@@ -180,7 +180,7 @@ static void source_ends_at_its_maximum(void)
 {
     open_bed(10.0, NULL);
     b.fill.count = 30;
-    se3d_source_def def = source_of(500.0);
+    se3d_particles_source_def def = source_of(500.0);
     def.every = 0.02;
     CHECK(se3d_particles_add_source(b.particles, &def, NULL) == SE3D_OK);
     CHECK(se3d_particles_run(b.particles, 0.0204) == SE3D_OK);
@@ -197,7 +197,7 @@ static void open_chute(int threads)
 {
     se3d_particles_def set = se3d_particles_def_default();
     se3d_shape_def plate = se3d_shape_def_default();
-    se3d_sink_def sink = se3d_sink_def_default();
+    se3d_particles_sink_def sink = se3d_particles_sink_def_default();
     se3d_shape shape;
     set.threads = threads;
     open_bed(10.0, &set);
@@ -210,7 +210,7 @@ static void open_chute(int threads)
     sink.normal[2] = 1.0;
     sink.point[2] = -0.12;
     CHECK(se3d_particles_add_sink(b.particles, &sink, NULL) == SE3D_OK);
-    se3d_source_def def = source_of(1500.0);
+    se3d_particles_source_def def = source_of(1500.0);
     b.fill.radius_min = 0.003;
     b.fill.velocity[2] = -0.5;
     CHECK(se3d_particles_add_source(b.particles, &def, NULL) == SE3D_OK);
@@ -276,7 +276,7 @@ static void insertion_does_not_disturb_others(void)
         plane.position[2] = -0.015;
         CHECK(se3d_shape_create_plane(b.system, &plane, &shape) == SE3D_OK);
         CHECK(!se3d_particles_add(b.particles, b.material, 1, r, &radius, NULL, NULL, &first));
-        se3d_source_def def = source_of(1000.0);
+        se3d_particles_source_def def = source_of(1000.0);
         if (feeding) {
             CHECK(se3d_particles_add_source(b.particles, &def, NULL) == SE3D_OK);
         }
@@ -295,7 +295,7 @@ static void sinks_remove_what_is_in_their_region(void)
                           0.0, 2.9, 0.9, 0.0, 5.0, 0.0, 0.0};
     const double radius[5] = {0.01, 0.01, 0.01, 0.01, 0.01};
     const uint32_t tagged[2] = {0, 4};
-    se3d_sink_def box = se3d_sink_def_default(), ball = box, plane = box;
+    se3d_particles_sink_def box = se3d_particles_sink_def_default(), ball = box, plane = box;
     uint64_t count[3];
     uint32_t number;
     open_bed(0.0, NULL);
@@ -307,7 +307,7 @@ static void sinks_remove_what_is_in_their_region(void)
     }
     box.lower[0] += 2.0;
     box.upper[0] += 2.0;
-    ball.region = SE3D_REGION_SPHERE;
+    ball.region = SE3D_FILL_REGION_SPHERE;
     plane.normal[0] = -2.0;
     plane.point[0] = 4.0;
     CHECK(!se3d_particles_add_sink(b.particles, &box, &number) && number == 0);
@@ -386,7 +386,7 @@ static void verlet_moves_what_a_source_gives(void)
     open_bed(10.0, NULL);
     CHECK(se3d_particles_set_step(b.particles, 0.0) == SE3D_OK);
     b.fill.velocity[2] = -1.0;
-    se3d_source_def def = source_of(300.0);
+    se3d_particles_source_def def = source_of(300.0);
     CHECK(se3d_particles_add_source(b.particles, &def, NULL) == SE3D_OK);
     how.analysis = SE3D_ANALYSIS_DYNAMICS;
     how.method = SE3D_METHOD_VERLET;

@@ -115,7 +115,7 @@ static void bad_sets_are_refused(void)
         def.skin = k == 3 ? 0.0 : def.skin;
         def.skin = k == 4 ? strtod("nan", NULL) : def.skin;
         def.boundary[1] = k == 5 ? 3 : def.boundary[1];
-        def.boundary[2] = k == 6 ? SE3D_BOUNDARY_SINK : def.boundary[2]; /* lower = upper */
+        def.boundary[2] = k == 6 ? SE3D_DOMAIN_BOUNDARY_SINK : def.boundary[2]; /* lower = upper */
         def.struct_size = k == 7 ? 4096 : def.struct_size;
         refused(&b, se3d_particles_create(b.system, &def, &out), SE3D_ERR_INVALID_ARGUMENT, "must");
         CHECK(out == NULL);
@@ -132,12 +132,12 @@ static void too_short_a_period_is_found_at_once(void)
     bed_init(&b);
     se3d_particles *set;
     se3d_particles_def def = se3d_particles_def_default();
-    def.boundary[1] = SE3D_BOUNDARY_PERIODIC;
+    def.boundary[1] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
     def.upper[1] = 0.39;
     CHECK(se3d_particles_create(b.system, &def, &set) == SE3D_OK);
     const double r[3] = {0.0, 0.2, 1.0}, radius = 0.1, fits = 0.096;
     se3d_fill_def fill = se3d_fill_def_default();
-    se3d_source_def source = se3d_source_def_default();
+    se3d_particles_source_def source = se3d_particles_source_def_default();
     fill.material = b.material;
     fill.radius_min = 0.01;
     fill.radius_max = 0.1;
