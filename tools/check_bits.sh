@@ -14,8 +14,8 @@ cd "$(dirname "$0")/.."
 . tools/setup.sh
 name=$1
 out=build/bits-$name
-layers="base math expression model primitive joint force contact formulation assembly linsol nonlinear integrator \
-analysis system"
+layers="base math expression model primitive joint force contact particles formulation assembly \
+linsol nonlinear integrator analysis system"
 flags="-std=c11 -ffp-contract=off -Ilib -Iinclude -Itests"
 libraries="-lamd -lsuitesparseconfig -lm"
 run=

@@ -9,8 +9,8 @@ import re
 import sys
 from pathlib import Path
 
-LAYERS = ("base math expression model primitive joint force contact formulation assembly linsol "
-          "nonlinear integrator analysis system").split()
+LAYERS = ("base math expression model primitive joint force contact particles formulation assembly "
+          "linsol nonlinear integrator analysis system").split()
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 
 

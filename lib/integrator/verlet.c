@@ -8,8 +8,8 @@
  * Between two steps of one run the half kicks of the particles are one pass.
  * docs/theory/verlet.md */
 #include "contact/pace.h"
-#include "contact/particle_sets.h"
 #include "integrator/lie_verlet.h"
+#include "particles/sets.h"
 
 #include <math.h>
 

@@ -220,7 +220,7 @@ typedef struct se3di_model {
 
     se3di_user_failure user_failure; /* see assembly/user.h */
 
-    struct se3di_particles *sets; /* particle sets in creation order, see contact/particle_sets.h;
+    struct se3di_particles *sets; /* particle sets in creation order, see particles/sets.h;
                                      not copied by se3di_model_clone */
     struct se3di_busy *busy;      /* of the system, see base/busy.h; NULL: no system */
 } se3di_model;

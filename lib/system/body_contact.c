@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts between bodies, read. */
 #include "contact/body_contacts.h"
-#include "contact/particle_set.h"
 #include "math/vec3.h"
+#include "particles/set.h"
 #include "se3d/contact.h"
 #include "system/system_internal.h"
 

@@ -3,7 +3,7 @@
 #ifndef SE3DI_SYSTEM_PARTICLES_H
 #define SE3DI_SYSTEM_PARTICLES_H
 
-#include "contact/particle_sets.h"
+#include "particles/sets.h"
 #include "system/system_internal.h"
 
 struct se3d_particles {

@@ -10,8 +10,8 @@
 
 #include "base/hash.h"
 #include "check.h"
-#include "contact/particle_set.h"
 #include "linsol/kkt_internal.h"
+#include "particles/set.h"
 #include "support/analyses.h"
 #include "support/bed.h"
 #include "support/models.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Steps of particles: lists that hold what touches, forces, velocity Verlet, and what may fail.
  *                                                                      docs/theory/particles.md */
-#include "contact/particle_set.h"
+#include "particles/set.h"
 
 #include "base/hash.h"
 #include "contact/encounter.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts as they are: each is evaluated by itself, on copies, with springs that stay. */
 #include "base/sized.h"
-#include "contact/particle_set.h"
+#include "particles/set.h"
 
 #include "math/vec3.h"
 

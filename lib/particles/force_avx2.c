@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels for x86-64 with AVX2 and FMA, chosen at run time.  docs/theory/particles.md */
-#include "contact/particle_set.h"
+#include "particles/set.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
@@ -135,7 +135,7 @@ V_INLINE void add_held(se3di_load *load, const se3di_load *held)
     add_load(load, _mm256_load_pd(held->force), _mm256_load_pd(held->torque));
 }
 
-#include "contact/particle_force.inc"
+#include "particles/force.inc"
 
 #if defined(__clang__)
 #pragma clang attribute pop

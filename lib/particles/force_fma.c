@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels in plain C for x86-64 with FMA, where fma() is one instruction and not a call:
  * what is chosen where no vectors are wanted.                          docs/theory/particles.md */
-#include "contact/particle_set.h"
+#include "particles/set.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 
@@ -12,7 +12,7 @@
 #pragma GCC target("avx,fma")
 #endif
 
-#include "contact/particle_force_plain.inc"
+#include "particles/force_plain.inc"
 
 #if defined(__clang__)
 #pragma clang attribute pop

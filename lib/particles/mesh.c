@@ -3,8 +3,8 @@
  * mesh carries the history of all of them; from step to step a place is known by its normal, which
  * turns little (a rolling sphere's in the mesh's frame, also over an edge). */
 #include "contact/mesh.h"
-#include "contact/particle_set.h"
 #include "math/vec3.h"
+#include "particles/set.h"
 
 #include <string.h>
 

@@ -10,8 +10,8 @@
  * moved by half of it; and blocks of active pairs, those nearer than `near` (a small part of
  * the skin, chosen by the speed), which carry the history of the tangential springs beside the
  * indices, and are what the force kernels read. */
-#ifndef SE3DI_CONTACT_PARTICLE_SET_H
-#define SE3DI_CONTACT_PARTICLE_SET_H
+#ifndef SE3DI_PARTICLES_SET_H
+#define SE3DI_PARTICLES_SET_H
 
 #include "base/alloc.h"
 #include "base/error.h"
@@ -176,7 +176,7 @@ typedef struct se3di_radii {
     size_t count;                  /* 0: the range */
 } se3di_radii;
 
-/* Inserts particles during a run.                                      particle_flow.c */
+/* Inserts particles during a run.                                               flow.c */
 typedef struct se3di_source {
     se3di_region region;
     se3di_radii radii; /* in `table` */
@@ -370,7 +370,7 @@ static inline const se3di_kernels *se3di_particles_get_kernels(const se3di_parti
     return set->law == SE3DI_LAW_CALLBACK ? se3di_particle_kernels_callback() : set->kernels;
 }
 
-/* particle_set.c: life time and editing. All-or-nothing; NO_MEMORY is the only failure. */
+/* set.c: life time and editing. All-or-nothing; NO_MEMORY is the only failure. */
 void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator);
 void se3di_particles_destroy(se3di_particles *set);
 /* Deep copy into the uninitialised `copy`; on failure nothing is held. */
@@ -399,7 +399,7 @@ se3d_status se3di_aligned_reserve(const se3d_allocator *allocator, se3di_aligned
                                   size_t bytes, size_t keep);
 size_t se3di_particles_memory(const se3di_particles *set);
 
-/* particle_grid.c, particle_list.c: neighbours. */
+/* grid.c, list.c: neighbours. */
 se3d_status se3di_particles_rebuild(se3di_particles *set); /* sort, list, active blocks */
 se3d_status se3di_particles_refresh(se3di_particles *set); /* active blocks from the list */
 /* Take the history out of the blocks; the lists are invalid then. */
@@ -412,7 +412,7 @@ se3d_status se3di_particles_activate(se3di_particles *set);
 se3d_status se3di_particles_list_walls(se3di_particles *set);
 /* Do something for every slab, on all threads at a time. */
 void se3di_particles_each_slab(se3di_particles *set, void (*work)(se3di_particles *, uint32_t));
-/* particle_mesh.c: the same for pairs with meshes. */
+/* mesh.c: the same for pairs with meshes. */
 void se3di_particles_mesh_collect(se3di_particles *set);
 /* NULL: particles (walls) are as they were. */
 void se3di_particles_mesh_remap(se3di_particles *set, const uint32_t *new_index,
@@ -441,7 +441,7 @@ void se3di_wall_image(const se3di_wall *wall, const double length[3], double rea
 void se3di_particles_image(const se3di_particles *set, const se3di_wall *wall, const double x[3],
                            double reach, double out[3]);
 
-/* particle_sweep.c: forces and motion. */
+/* sweep.c: forces and motion. */
 /* Half kick of duration h/2 from the present forces and gravity. */
 void se3di_particles_kick(se3di_particles *set, double h);
 /* One or two half kicks of duration h/2 each and a drift by h, in one pass. */
@@ -453,7 +453,7 @@ void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
 /* The larger one; NaN where one is NaN. */
 double se3di_larger(double a, double b);
 
-/* particle_step.c: steps. */
+/* step.c: steps. */
 void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames);
 /* What a unit force on a wall does to its body, from now on: what its mass makes of it, or nothing,
  * where the bodies are moved by others (model NULL). */
@@ -472,7 +472,7 @@ double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *
 /* One step of velocity Verlet; frames move the walls (NULL: they stay). */
 se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps,
                                     const se3di_frame *frames);
-/* particle_flow.c: sources, sinks, what has left. */
+/* flow.c: sources, sinks, what has left. */
 /* What the sources give in the step to come, of duration h. */
 se3d_status se3di_sources_aim(se3di_particles *set, const se3di_model *model, double h);
 /* Insert what is due at the end of a step of duration h, between drift and forces. */
@@ -481,14 +481,14 @@ se3d_status se3di_sources_feed(se3di_particles *set, double h);
 uint32_t se3di_sinks_find(const se3di_particles *set, const double x[3]);
 /* Whether a particle is beyond the domain or falls without end. */
 int se3di_particles_is_out(const se3di_particles *set, size_t k);
-/* particle_draw.c: splitmix64, uniform in [0, 1); a radius; a point such that a sphere of that
+/* draw.c: splitmix64, uniform in [0, 1); a radius; a point such that a sphere of that
  * radius is within the box of a region; whether the region holds it. */
 double se3di_random_draw(uint64_t *state);
 double se3di_radii_draw(const se3di_radii *radii, uint64_t *state);
 void se3di_region_draw(const se3di_region *region, double radius, uint64_t *state, double x[3]);
 int se3di_region_holds(const se3di_region *region, const double x[3], double radius);
 
-/* particle_contacts.c: contacts of the present lists as they are now; nothing changes. Counts all,
+/* contacts.c: contacts of the present lists as they are now; nothing changes. Counts all,
  * writes the first `capacity`. */
 se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity, void *contacts,
                                      size_t size, size_t *count, double *force_max);

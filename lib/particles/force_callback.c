@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Forces of particles by a law of the user's: contact by contact, geometry and momentum as in
- * particle_force.inc. The first of the two is j (or the wall), the second i.
+ * force.inc. The first of the two is j (or the wall), the second i.
  *                                                                   docs/theory/contact-laws.md */
-#include "contact/particle_set.h"
 #include "math/vec3.h"
+#include "particles/set.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,7 +17,7 @@ typedef struct touch {
     uint32_t material_i, material_j; /* in the set's table */
 } touch;
 
-/* Of a damping that does not depend on the overlap: as in particle_force.inc. */
+/* Of a damping that does not depend on the overlap: as in force.inc. */
 static double onset(double overlap, double way)
 {
     return overlap < way * (1.0 + 1e-6) ? 0.5 + overlap / way : 1.0;

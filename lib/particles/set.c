@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Life time and editing of particle sets; nothing here moves a particle. */
-#include "contact/particle_set.h"
+#include "particles/set.h"
 
 #include <math.h>
 #include <string.h>

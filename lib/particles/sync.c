@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a set of particles takes from the model: materials and shapes. It keeps copies, and looks
  * again where the model was edited; the history of contacts goes along. */
-#include "contact/particle_set.h"
+#include "particles/set.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,8 +5,8 @@
  * first) and carry_next[]. They lie in the memory of the loads, which hold nothing while there are
  * no valid lists. Where memory fails they stay there, and nothing is lost. */
 #include "contact/mesh.h"
-#include "contact/particle_set.h"
 #include "math/vec3.h"
+#include "particles/set.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels for x86-64 with AVX-512, chosen at run time.       docs/theory/particles.md */
-#include "contact/particle_set.h"
+#include "particles/set.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
@@ -126,7 +126,7 @@ V_INLINE void add_loads(se3di_load *loads, const uint32_t *i, const V force[3], 
     }
 }
 
-#include "contact/particle_force.inc"
+#include "particles/force.inc"
 
 #if defined(__clang__)
 #pragma clang attribute pop

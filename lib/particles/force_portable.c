@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels in plain C, for every machine.                     docs/theory/particles.md */
-#include "contact/particle_set.h"
+#include "particles/set.h"
 
-#include "contact/particle_force_plain.inc"
+#include "particles/force_plain.inc"
 
 const se3di_kernels *se3di_particle_kernels_portable(void)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "contact/particle_sets.h"
+#include "particles/sets.h"
 
 #include "force/force.h"
 #include "math/vec3.h"

@@ -5,7 +5,7 @@
  * the forces, where it overlaps with no particle and no wall, so that no force changes by it. Where
  * no place is found in TRIES draws the particle waits for the next step, with its radius: neither
  * the rate nor the distribution of the radii suffers.                  docs/theory/particles.md */
-#include "contact/particle_set.h"
+#include "particles/set.h"
 
 #include "math/vec3.h"
 

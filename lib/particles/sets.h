@@ -4,10 +4,10 @@
  * A step of length h: se3di_sets_begin; se3di_sets_move with 1 (or, between two steps of one loop,
  * 2) half kicks; with the bodies at their new positions se3di_sets_forces; se3di_sets_kick at the
  * end of the loop. docs/theory/verlet.md */
-#ifndef SE3DI_CONTACT_PARTICLE_SETS_H
-#define SE3DI_CONTACT_PARTICLE_SETS_H
+#ifndef SE3DI_PARTICLES_SETS_H
+#define SE3DI_PARTICLES_SETS_H
 
-#include "contact/particle_set.h"
+#include "particles/set.h"
 
 /* Of one run: more would never end, and time would not advance by them. */
 #define SE3DI_STEPS_MOST 1e12

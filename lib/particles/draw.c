@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What particles are drawn from: random numbers, radii, places in a region. */
-#include "contact/particle_set.h"
+#include "particles/set.h"
 
 #include <math.h>
 
