@@ -83,6 +83,14 @@ SE3D_API se3d_status se3d_body_get_angular_acceleration(const se3d_system *syste
 SE3D_API se3d_status se3d_body_get_point(const se3d_system *system, se3d_body body,
                                          const double local[3], double ground[3]);
 
+/* The motion of a body, as callbacks of forces and constraints see it. @since 0.1 */
+typedef struct se3d_body_motion {
+    double r[3]; /* centre of mass, ground frame [m] */
+    double p[4]; /* Euler parameters */
+    double v[3]; /* ground frame [m/s] */
+    double w[3]; /* body frame [rad/s] */
+} se3d_body_motion;
+
 /* Bulk access: arrays of `count` bodies in creation order, the ground first (count must be
  * se3d_system_count_bodies): r [count * 3], p [count * 4], v [count * 3], w [count * 3]; NULL
  * arrays are skipped. Setting skips fixed bodies. @since 0.1 */

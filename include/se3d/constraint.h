@@ -3,12 +3,18 @@
 #ifndef SE3D_CONSTRAINT_H
 #define SE3D_CONSTRAINT_H
 
-#include "se3d/force.h" /* se3d_body_motion */
+#include "se3d/body.h" /* se3d_body_motion */
 #include "se3d/handles.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* The two formulations; both give the same motion. */
+typedef enum se3d_formulation {
+    SE3D_FORMULATION_ROMEGA = 0, /* unknowns: position and virtual rotation (angular velocity) */
+    SE3D_FORMULATION_RP = 1      /* unknowns: position and Euler parameters with p.p - 1 = 0 */
+} se3d_formulation;
 
 /* d_ij = r_j + A_j s_j - r_i - A_i s_i; directions a_i, a_j in body frames, c in the ground frame.
  */

@@ -9,12 +9,6 @@
 extern "C" {
 #endif
 
-/* An event of one solver; all zero is null. */
-typedef struct se3d_event {
-    uint32_t index1;
-    uint32_t generation;
-} se3d_event;
-
 /* Which crossings count: from below the level to it (or beyond), from above, or both. */
 typedef enum se3d_event_direction {
     SE3D_EVENT_FALLING = -1,

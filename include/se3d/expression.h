@@ -5,7 +5,7 @@
 #ifndef SE3D_EXPRESSION_H
 #define SE3D_EXPRESSION_H
 
-#include "se3d/base.h"
+#include "se3d/handles.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -15,9 +15,6 @@ extern "C" {
 #define SE3D_EXPRESSION_TEXT_MAX     4096 /* characters */
 #define SE3D_EXPRESSION_DEPTH_MAX    64   /* parentheses, calls and '^' inside each other */
 #define SE3D_EXPRESSION_VARIABLE_MAX 4
-
-/* A compiled expression: an owner handle, immutable after creation. @since 0.1 */
-typedef struct se3d_expression se3d_expression;
 
 /* A named constant. Its value is compiled in. @since 0.1 */
 typedef struct se3d_expression_symbol {

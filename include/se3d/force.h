@@ -3,6 +3,7 @@
 #ifndef SE3D_FORCE_H
 #define SE3D_FORCE_H
 
+#include "se3d/body.h" /* se3d_body_motion */
 #include "se3d/handles.h"
 
 #ifdef __cplusplus
@@ -193,14 +194,6 @@ static inline se3d_stop_def se3d_stop_def_default(void)
 
 SE3D_API se3d_status se3d_force_create_stop(se3d_system *system, const se3d_stop_def *def,
                                             se3d_force *force);
-
-/* What a force callback sees of a body. */
-typedef struct se3d_body_motion {
-    double r[3]; /* centre of mass, ground frame [m] */
-    double p[4]; /* Euler parameters */
-    double v[3]; /* ground frame [m/s] */
-    double w[3]; /* body frame [rad/s] */
-} se3d_body_motion;
 
 /* Compute what an element of the user's does to its bodies i and j: wrench = {force on i (ground
  * frame, at the centre of mass), torque on i (body frame), force on j, torque on j}. K and D are

@@ -13,6 +13,25 @@ typedef struct se3d_solver se3d_solver;
  */
 typedef struct se3d_particles se3d_particles;
 
+/* A saved state of a system, which continues bit-identically when it is restored there or on a
+ * clone; destroy with se3d_snapshot_destroy. @since 0.1 */
+typedef struct se3d_snapshot se3d_snapshot;
+/* A linearised system; destroy with se3d_modes_destroy. It keeps nothing of its system.
+ * @since 0.1 */
+typedef struct se3d_modes se3d_modes;
+/* A report on the constraints of a system; destroy with se3d_check_destroy. @since 0.1 */
+typedef struct se3d_check se3d_check;
+/* A compiled expression, immutable; destroy with se3d_expression_destroy. @since 0.1 */
+typedef struct se3d_expression se3d_expression;
+
+/* A model file that was read; destroy with se3d_model_destroy. @since 0.1 */
+typedef struct se3d_model se3d_model;
+/* What a run of a model did; destroy with se3d_run_destroy. @since 0.1 */
+typedef struct se3d_run se3d_run;
+/* The motion of a model as a 3-D scene: make it, record during a run, write it; destroy with
+ * se3d_scene_destroy. @since 0.1 */
+typedef struct se3d_scene se3d_scene;
+
 /* Elements: all zero is null. A handle of a destroyed element, or of another system, is always
  * detected. */
 typedef struct se3d_body {
@@ -56,10 +75,10 @@ typedef struct se3d_shape {
     uint32_t generation;
 } se3d_shape;
 
-/* The two formulations; both give the same motion. */
-typedef enum se3d_formulation {
-    SE3D_FORMULATION_ROMEGA = 0, /* unknowns: position and virtual rotation (angular velocity) */
-    SE3D_FORMULATION_RP = 1      /* unknowns: position and Euler parameters with p.p - 1 = 0 */
-} se3d_formulation;
+/* An event of one solver. @since 0.1 */
+typedef struct se3d_event {
+    uint32_t index1;
+    uint32_t generation;
+} se3d_event;
 
 #endif

@@ -11,9 +11,6 @@
 extern "C" {
 #endif
 
-/* A model file that was read; destroy with se3d_model_destroy. @since 0.1 */
-typedef struct se3d_model se3d_model;
-
 /* Why a file was rejected or a run failed: "file:line:column: path: what, and what is allowed".
  * @since 0.1 */
 typedef struct se3d_model_error {
@@ -141,15 +138,6 @@ SE3D_API se3d_status se3d_model_create_event(se3d_model *model, se3d_solver *sol
                                              const char *channel, const se3d_event_def *def,
                                              se3d_event *out, se3d_model_error *error);
 
-typedef enum se3d_shape_type {
-    SE3D_SHAPE_SPHERE = 0,
-    SE3D_SHAPE_BOX = 1,
-    SE3D_SHAPE_CAPSULE = 2,
-    SE3D_SHAPE_CYLINDER = 3,
-    SE3D_SHAPE_PLANE = 4,
-    SE3D_SHAPE_MESH = 5
-} se3d_shape_type;
-
 /* A shape of a body, as the file describes it. @since 0.1 */
 typedef struct se3d_model_shape {
     int32_t type;     /* se3d_shape_type */
@@ -195,9 +183,6 @@ static inline se3d_run_options se3d_run_options_default(void)
     se3d_run_options_init(&options, sizeof options);
     return options;
 }
-
-/* What a run did; destroy with se3d_run_destroy. @since 0.1 */
-typedef struct se3d_run se3d_run;
 
 /* Run every analysis of a model and write its results. A file is written under a temporary name and
  * gets its own when the run is over; where an analysis fails, the rows so far are kept, and where
@@ -319,10 +304,6 @@ static inline se3d_status se3d_model_get_picture(const se3d_model *model, size_t
 {
     return se3d_model_get_picture_sized(model, index, picture, sizeof *picture);
 }
-
-/* The motion of a model as a 3-D scene: bodies, joints, springs. Make it, record during a run
- * (for example from the progress callback), write it. @since 0.1 */
-typedef struct se3d_scene se3d_scene;
 
 /* Create an empty scene of a model, which must outlive it. @return OK, NULL, NO_MEMORY. Safe.
  * @since 0.1 */

@@ -10,9 +10,6 @@
 extern "C" {
 #endif
 
-/* The linearised system; destroy with se3d_modes_destroy. It keeps nothing of its system. */
-typedef struct se3d_modes se3d_modes;
-
 /* A force at a point of a body, or a torque on it, along a direction. */
 typedef struct se3d_modes_input {
     se3d_body body;

@@ -16,6 +16,7 @@
 
 #include "se3d/base.h"
 #include "se3d/body.h"
+#include "se3d/check.h"
 #include "se3d/constraint.h"
 #include "se3d/contact.h"
 #include "se3d/elementary.h"
@@ -25,8 +26,10 @@
 #include "se3d/function.h"
 #include "se3d/handles.h"
 #include "se3d/joint.h"
+#include "se3d/material.h"
 #include "se3d/modes.h"
 #include "se3d/particles.h"
+#include "se3d/shape.h"
 #include "se3d/solver.h"
 #include "se3d/system.h"
 

@@ -137,10 +137,6 @@ SE3D_API se3d_status se3d_system_get_violation(const se3d_system *system, double
  * hash. Zero for NULL. Reader. @since 0.1 */
 SE3D_API uint64_t se3d_system_hash(const se3d_system *system);
 
-/* A saved state; it continues bit-identically when restored on the same system or a clone. @since
- * 0.1 */
-typedef struct se3d_snapshot se3d_snapshot;
-
 /* @return as se3d_system_clone. Reader. @since 0.1 */
 SE3D_API se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out);
 /* Put the state back. @return OK, NULL, STATE (the model has changed since). Exclusive. @since 0.1

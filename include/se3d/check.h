@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Reports on the constraints of a system: rank, redundant equations, contradictions, freedoms. */
+#ifndef SE3D_CHECK_H
+#define SE3D_CHECK_H
+
+#include "se3d/handles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a report on the constraints counts. Set struct_size before the call. @since 0.1 */
+typedef struct se3d_check_summary {
+    size_t struct_size;
+    size_t bodies;       /* movable */
+    size_t equations;    /* scalar constraint equations, without normalisation */
+    size_t rank;         /* independent ones */
+    size_t redundant;    /* equations - rank */
+    size_t freedoms;     /* 6 bodies - rank */
+    int64_t gruebler;    /* 6 bodies - equations */
+    size_t inconsistent; /* redundant equations that contradict the others */
+} se3d_check_summary;
+
+/* Analyse the constraints: rank, redundant equations with the ones they depend on, contradictions,
+ * freedoms, bodies that nothing holds. Poses that do not fit are assembled for the analysis (where
+ * that is impossible, the poses of least violation are analysed), and a message says so; the state
+ * of the system does not change. Destroy the report before the allocator goes.
+ * @return OK, INFO_REDUNDANT, NULL, NO_MEMORY, NOT_FINITE, CALLBACK. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_check_create(se3d_system *system, se3d_check **out);
+SE3D_API void se3d_check_destroy(se3d_check *check);
+SE3D_API se3d_status se3d_check_get_summary(const se3d_check *check, se3d_check_summary *summary);
+/* Count the findings and get one as a sentence: "B.cd_z duplicates A.cd_z, C.cd_z". Reader. @since
+ * 0.1 */
+SE3D_API size_t se3d_check_count_messages(const se3d_check *check);
+SE3D_API se3d_status se3d_check_get_message(const se3d_check *check, size_t k, const char **text);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Materials: what shapes and particles are made of, and what holds between two of them. */
+#ifndef SE3D_MATERIAL_H
+#define SE3D_MATERIAL_H
+
+#include "se3d/handles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a material is made with. The restitution given is the one obtained, at any velocity; pairs
+ * of materials mix: geometric means of friction and restitution, springs in series. @since 0.1 */
+typedef struct se3d_material_def {
+    size_t struct_size;
+    double density;            /* [kg/m^3] > 0, required */
+    double friction;           /* >= 0, default 0.5 */
+    double restitution;        /* 0.01 .. 1, default 0.5 */
+    double rolling_friction;   /* >= 0: resisting moment over R* Fn */
+    double torsional_friction; /* >= 0: the same about the normal */
+    double stiffness;          /* [N/m] > 0, required for hooke: of two spheres of this material */
+    double tangential_ratio;   /* kt/kn >= 0, default 2/7 */
+    double young;              /* [Pa] > 0, required for hertz_mindlin */
+    double poisson;            /* 0 .. 0.5, default 0.3 */
+    double cohesion;           /* >= 0 [J/m^3]: attraction per area of contact, 2 pi R* overlap */
+    double adhesion; /* >= 0 [J/m^2]: work of adhesion; pull-off force 3/2 pi R* adhesion */
+} se3d_material_def;
+
+SE3D_API void se3d_material_def_init(se3d_material_def *def, size_t size);
+
+static inline se3d_material_def se3d_material_def_default(void)
+{
+    se3d_material_def def;
+    se3d_material_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Create a material; what the system's law needs must be given. @return OK, NULL, INVALID_ARGUMENT,
+ * NO_MEMORY. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *def,
+                                          se3d_material *material);
+/* Give a material other values, between steps: the handle stays, contacts keep what they remember,
+ * and the next step begins with the new values. Particles keep the mass that they were made with.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_material_set(se3d_system *system, se3d_material material,
+                                       const se3d_material_def *def);
+/* Get its values; struct_size must be set. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT.
+ * Reader. @since 0.1 */
+SE3D_API se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
+                                       se3d_material_def *def);
+/* Destroy. @return OK, NULL, STALE_HANDLE, IN_USE (a shape or a set of particles uses it).
+ * Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_material_destroy(se3d_system *system, se3d_material material);
+
+/* What holds for a pair of materials instead of the mixing rules; negative: the rule, the default.
+ * @since 0.1 */
+typedef struct se3d_material_pair_def {
+    size_t struct_size;
+    double friction, restitution, rolling_friction, torsional_friction;
+    double stiffness; /* hooke [N/m] */
+    double cohesion, adhesion;
+} se3d_material_pair_def;
+
+SE3D_API void se3d_material_pair_def_init(se3d_material_pair_def *def, size_t size);
+
+static inline se3d_material_pair_def se3d_material_pair_def_default(void)
+{
+    se3d_material_pair_def def;
+    se3d_material_pair_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Say what holds between two materials (which may be the same). @return OK, NULL, STALE_HANDLE,
+ * INVALID_ARGUMENT. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_material b,
+                                            const se3d_material_pair_def *def);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Shapes on bodies, for contact. */
+#ifndef SE3D_SHAPE_H
+#define SE3D_SHAPE_H
+
+#include "se3d/handles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Kinds of shapes. @since 0.1 */
+typedef enum se3d_shape_type {
+    SE3D_SHAPE_SPHERE = 0,
+    SE3D_SHAPE_BOX = 1,
+    SE3D_SHAPE_CAPSULE = 2,
+    SE3D_SHAPE_CYLINDER = 3,
+    SE3D_SHAPE_PLANE = 4,
+    SE3D_SHAPE_MESH = 5
+} se3d_shape_type;
+
+/* What a shape is made with; every kind takes its own of the last fields. Its frame is at its
+ * centre.
+ * @since 0.1 */
+typedef struct se3d_shape_def {
+    size_t struct_size;
+    const char *name;       /* copied; NULL or unique among the shapes */
+    se3d_body body;         /* null: the ground */
+    se3d_material material; /* null: nothing touches it */
+    double position[3];     /* body frame [m] */
+    double orientation[4];  /* shape -> body, Euler parameters; default (1,0,0,0) */
+    double normal[3];       /* plane: instead of an orientation, body frame; zero: the shape's z */
+    double size[3];         /* box: full lengths [m] > 0 */
+    double radius;          /* sphere, capsule, cylinder [m] > 0 */
+    double length;          /* along the shape's z: capsule, between the centres of its caps (>= 0);
+                               cylinder (> 0) [m] */
+    uint32_t group, mask;   /* a and b touch if a.group & b.mask and b.group & a.mask; default 1 and
+                               all ones */
+    const double *vertices; /* mesh, hull: [3 * vertex_count], shape frame [m], copied */
+    size_t vertex_count;
+    const uint32_t *triangles; /* mesh: [3 * triangle_count] indices of vertices, copied */
+    size_t triangle_count;
+} se3d_shape_def;
+
+SE3D_API void se3d_shape_def_init(se3d_shape_def *def, size_t size);
+
+static inline se3d_shape_def se3d_shape_def_default(void)
+{
+    se3d_shape_def def;
+    se3d_shape_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Create a shape; it moves with its body. A plane is infinite, and solid behind its normal.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_shape_create_sphere(se3d_system *system, const se3d_shape_def *def,
+                                              se3d_shape *shape);
+SE3D_API se3d_status se3d_shape_create_box(se3d_system *system, const se3d_shape_def *def,
+                                           se3d_shape *shape);
+SE3D_API se3d_status se3d_shape_create_capsule(se3d_system *system, const se3d_shape_def *def,
+                                               se3d_shape *shape);
+SE3D_API se3d_status se3d_shape_create_cylinder(se3d_system *system, const se3d_shape_def *def,
+                                                se3d_shape *shape);
+SE3D_API se3d_status se3d_shape_create_plane(se3d_system *system, const se3d_shape_def *def,
+                                             se3d_shape *shape);
+/* The convex hull of at least four points that are not in one plane. @since 0.1 */
+SE3D_API se3d_status se3d_shape_create_hull(se3d_system *system, const se3d_shape_def *def,
+                                            se3d_shape *shape);
+
+/* A surface of triangles: everything touches it but other meshes where neither of the two is convex
+ * (se3d_system_count_passing_meshes). Where it is closed it has an outside, else two sides; convex
+ * is what is closed, the hull of its vertices, and of at most 1000 triangles. @since 0.1 */
+SE3D_API se3d_status se3d_shape_create_mesh(se3d_system *system, const se3d_shape_def *def,
+                                            se3d_shape *shape);
+
+/* Destroy. @return OK, NULL, STALE_HANDLE. Exclusive. @since 0.1 */
+SE3D_API se3d_status se3d_shape_destroy(se3d_system *system, se3d_shape shape);
+/* Find by name. @return OK, NULL, NOT_FOUND (*shape is null). Reader. @since 0.1 */
+SE3D_API se3d_status se3d_shape_find(const se3d_system *system, const char *name,
+                                     se3d_shape *shape);
+/* Get the name, "" where it has none; it lives as long as the shape. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_shape_get_name(const se3d_system *system, se3d_shape shape,
+                                         const char **name);
+/* Get the body that it is on. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_shape_get_body(const se3d_system *system, se3d_shape shape,
+                                         se3d_body *body);
+/* Get the point of a shape's surface nearest to `position`, the outward normal there, and the
+ * distance [m], negative inside; ground frame. Reader. @since 0.1 */
+SE3D_API se3d_status se3d_shape_get_nearest(const se3d_system *system, se3d_shape shape,
+                                            const double position[3], double point[3],
+                                            double normal[3], double *distance);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
