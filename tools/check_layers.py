@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A file of lib/<layer>/ includes only its own layer, those before it, and public headers.
+"""A file includes only its own folder, those before it, and public headers.
 
-libse3d-io, the programs in tools/ and the examples see public headers only. With a folder as
-argument, that tree is checked instead of this one.
+The folders of lib/ are layers, those of lib/io its rooms. LAYERS and ROOMS give their orders, and the
+tables of docs/architecture.md must give the same. No headers include each other in a circle. libse3d-io,
+the programs in tools/ and the examples see public headers only. With a folder as argument, that tree
+is checked instead of this one.
 """
 import re
 import sys
@@ -11,46 +13,111 @@ from pathlib import Path
 
 LAYERS = ("base math expression model primitive joint force contact particles formulation assembly "
           "linsol nonlinear integrator analysis system").split()
+# Folders that have folders of their own, in their order.
+ROOMS = {"io": "base document model channel read write run".split()}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
+TABLE_ROW = re.compile(r"^\| `([\w/]+)` \|", re.M)
 
 
-def complaint(folder, layer, quoted, name):
-    """Why `name` may not be included from `folder` (of layer `layer` or None); None if it may."""
-    first = name.split("/")[0] if "/" in name else ""
-    if first == "se3d":
-        if name == "se3d/io.h" and layer is not None:
+def complaint(folder, place, quoted, name):
+    """Why `name` may not be included from `folder`, None if it may.
+
+    `place` is the folder below lib/ as parts, [] outside of it.
+    """
+    parts = name.split("/")
+    if parts[0] == "se3d" and len(parts) > 1:
+        if name == "se3d/io.h" and place and place[0] != "io":
             return "libse3d does not know libse3d-io"
         return None
-    if not quoted or (not first and (folder / name).exists()):
+    if not quoted or (len(parts) == 1 and (folder / name).exists()):
         return None
-    if ".." in name.split("/"):
+    if ".." in parts:
         return "write paths from lib/"
-    if layer is None:
-        own = folder.name == first == "io"
-        return None if own else "only public headers (se3d/...) may be included here"
-    if first in LAYERS:
-        return None if LAYERS.index(first) <= LAYERS.index(layer) else \
-            f"layer `{first}` comes after `{layer}`"
-    return "neither a layer nor a public header"
+    if not place or (place[0] == "io" and parts[0] != "io"):
+        return "only public headers (se3d/...) may be included here"
+    if parts[0] != place[0]:
+        if parts[0] not in LAYERS:
+            return "neither a layer nor a public header"
+        before, after, order = parts[0], place[0], LAYERS
+    elif place[0] in ROOMS:
+        before, after, order = parts[1], place[1], ROOMS[place[0]]
+        if before not in order:
+            return "in none of the folders"
+    else:
+        return None
+    return f"`{before}` comes after `{after}`" if order.index(before) > order.index(after) else None
+
+
+def find_circles(headers):
+    """The circles of includes, each as the list of its files, among {name: included names}."""
+    circles, state = [], {}
+
+    def visit(name, path):
+        if state.get(name) == "done":
+            return
+        if name in path:
+            circles.append(path[path.index(name):] + [name])
+            return
+        for other in headers.get(name, ()):
+            visit(other, path + [name])
+        state[name] = "done"
+
+    for name in sorted(headers):
+        visit(name, [])
+    return circles
+
+
+def check_documents(root):
+    """The tables of layers and rooms against the orders above."""
+    path = root / "docs" / "architecture.md"
+    if not path.exists():
+        return []
+    names = TABLE_ROW.findall(path.read_text())
+    wanted = {"layers": LAYERS} | {room: [f"{room}/{name}" for name in order]
+                                   for room, order in ROOMS.items()}
+    listed = {"layers": [name for name in names if name in LAYERS or "/" not in name]}
+    for room in ROOMS:
+        listed[room] = [name for name in names if name.startswith(room + "/")]
+    return [f"docs/architecture.md lists {' '.join(listed[key])}, the tree has {' '.join(order)}"
+            for key, order in wanted.items() if listed[key] != order]
+
+
+def list_folders(root):
+    """Every folder with sources: its path and its parts below lib/, or why it may not be there."""
+    for layer in sorted(p for p in (root / "lib").iterdir() if p.is_dir()):
+        for folder in [layer] + sorted(p for p in layer.rglob("*") if p.is_dir()):
+            place = list(folder.relative_to(root / "lib").parts)
+            known = place[0] in LAYERS or place[0] in ROOMS
+            if place[0] in ROOMS:
+                known = len(place) == 1 or (len(place) == 2 and place[1] in ROOMS[place[0]])
+            yield folder, place, known
+    for folder in (root / "tools" / "se3d", root / "examples"):
+        if folder.is_dir():
+            yield folder, [], True
 
 
 def main():
     root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent
-    count, problems = 0, []
-    folders = [p for p in sorted((root / "lib").iterdir()) if p.is_dir()]
-    folders += [p for p in (root / "tools" / "se3d", root / "examples") if p.is_dir()]
-    for folder in folders:
-        layer = folder.name if folder.parent.name == "lib" and folder.name != "io" else None
-        if layer is not None and layer not in LAYERS:
-            problems.append(f"{folder.relative_to(root)}: not a layer of DESIGN's list")
+    count, problems, headers = 0, check_documents(root), {}
+    for folder, place, known in list_folders(root):
+        if not known:
+            problems.append(f"{folder.relative_to(root)}: in no list of tools/check_layers.py")
             continue
-        for path in sorted(folder.rglob("*.[ch]")):
+        for path in sorted(folder.glob("*.[ch]")):
+            where = path.relative_to(root)
+            if len(place) == 1 and place[0] in ROOMS:
+                problems.append(f"{where}: must stand in one of the folders")
+                continue
             text = re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.S)
-            for bracket, name in INCLUDE.findall(text):
-                count += 1
-                why = complaint(path.parent, layer, bracket == '"', name)
+            found = INCLUDE.findall(text)
+            count += len(found)
+            if place and path.suffix == ".h":
+                headers[path.relative_to(root / "lib").as_posix()] = [name for _, name in found]
+            for bracket, name in found:
+                why = complaint(folder, place, bracket == '"', name)
                 if why:
-                    problems.append(f'{path.relative_to(root)}: #include "{name}": {why}')
+                    problems.append(f'{where}: #include "{name}": {why}')
+    problems += [f"includes in a circle: {' -> '.join(circle)}" for circle in find_circles(headers)]
     for path in sorted((root / "include" / "se3d").glob("*.h")):
         for bracket, name in INCLUDE.findall(path.read_text()):
             count += 1

@@ -66,8 +66,18 @@ reject "padding struct" $abi padding
 
 printf '%s\n' '#include "math/vec3.h"' >lib/base/up.c
 reject 'base/up.c' python3 tools/check_layers.py
-printf '%s\n' '#include "base/alloc.h"' >lib/io/inner.c
-reject 'io/inner.c' python3 tools/check_layers.py
+mkdir -p lib/io/document lib/io/model lib/attic docs
+printf '%s\n' '#include "base/alloc.h"' >lib/io/document/inner.c
+reject 'io/document/inner.c' python3 tools/check_layers.py
+printf '%s\n' '#include "io/model/model.h"' >lib/io/document/down.c
+reject 'io/document/down.c.*comes after' python3 tools/check_layers.py
+reject 'io/say.c: must stand in one of the folders' python3 tools/check_layers.py
+reject 'lib/attic: in no list' python3 tools/check_layers.py
+printf '%s\n' '#include "io/model/b.h"' >lib/io/model/a.h
+printf '%s\n' '#include "io/model/a.h"' >lib/io/model/b.h
+reject 'circle: io/model/a.h -> io/model/b.h -> io/model/a.h' python3 tools/check_layers.py
+printf '%s\n' '| `math` | x |' '| `base` | y |' >docs/architecture.md
+reject 'architecture.md lists math base, the tree has base math' python3 tools/check_layers.py
 
 {
     echo '/* SPDX-License-Identifier: BSD-3-Clause */'

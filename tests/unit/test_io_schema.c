@@ -4,8 +4,8 @@
 #include <stdlib.h>
 
 #include "check.h"
-#include "io/document.h"
-#include "io/keys.h"
+#include "io/document/document.h"
+#include "io/document/keys.h"
 
 static se3di_iopool pool;
 

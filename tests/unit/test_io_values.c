@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "check.h"
-#include "io/csv.h"
+#include "io/write/csv.h"
 #include "se3d/io.h"
 
 /* A model with one body `b` made of `keys`. */

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What is written, with which channels. */
+#ifndef SE3D_IO_OUTPUT_H
+#define SE3D_IO_OUTPUT_H
+
+#include "io/channel/channel.h"
+#include "io/model/model.h"
+
+typedef struct se3di_output_entry {
+    const char *file;
+    bool particles; /* snapshots of them, no channels */
+    bool contacts;  /* lists of them, no channels */
+    int32_t set;    /* of whose particles; -1: all */
+    bool vtk;       /* a series for ParaView, no channels */
+    double every;   /* 0: the analysis's step */
+    se3di_channel *channels;
+    size_t count;
+    const se3di_node *node; /* NULL: the default output */
+} se3di_output_entry;
+
+/* How many rows an output has in an analysis beside the first, *every [s] apart: its own `every`,
+ * else the step, else a 500th of the duration. */
+double se3di_output_count_rows(const se3di_output_entry *output,
+                               const se3di_analysis_entry *analysis, double *every);
+
+#endif

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A YAML text as a tree of scalars, lists and maps that know where they stand. */
+#ifndef SE3D_IO_DOCUMENT_H
+#define SE3D_IO_DOCUMENT_H
+
+#include "io/base/pool.h"
+#include "se3d/io.h"
+
+/* Limits of a model file; what exceeds one is rejected with a message that names it. */
+enum {
+    SE3DI_DOCUMENT_DEPTH_MAX = 32,
+    SE3DI_DOCUMENT_NODES_MAX = 1000000,
+    SE3DI_DOCUMENT_BYTES_MAX = 64 * 1024 * 1024,
+    SE3DI_DOCUMENT_SCALAR_MAX = 65536,
+    SE3DI_DOCUMENT_KEYS_MAX = 4096 /* of one map */
+};
+
+typedef enum se3di_node_kind { SE3DI_NODE_SCALAR, SE3DI_NODE_LIST, SE3DI_NODE_MAP } se3di_node_kind;
+
+typedef struct se3di_node {
+    se3di_node_kind kind;
+    bool plain;        /* scalar without quotes */
+    bool one_line;     /* scalar whose characters stand in the file as in `text`, on one line */
+    size_t line;       /* 1-based; 0: not from the file (an option of the command line) */
+    size_t column;     /* 1-based, in characters */
+    size_t key_line;   /* of the key, where `key` is not NULL */
+    size_t key_column; /* of the key */
+    const char *text;  /* scalar */
+    const char *key;   /* child of a map, or the name of an option */
+    size_t index;      /* child of a list */
+    size_t count;      /* children */
+    struct se3di_node *parent;
+    struct se3di_node *first;
+    struct se3di_node *last;
+    struct se3di_node *next; /* sibling */
+} se3di_node;
+
+/* Parse one document. @return OK, MODEL, NO_MEMORY, with `error` filled. */
+se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const char *text,
+                                 size_t length, se3di_node **root, se3d_model_error *error);
+
+/* The child of a map, or NULL (also where `map` is NULL or not a map). */
+se3di_node *se3di_node_get(const se3di_node *map, const char *key);
+/* True for a plain scalar that stands for nothing: empty, `~` or `null`. */
+bool se3di_node_is_null(const se3di_node *node);
+/* "a number", "a list", ...: what stands there, for messages. */
+const char *se3di_node_describe(const se3di_node *node);
+/* Write the path of a node, "bodies[0].mass" ("" for the root), cut to `size` bytes. */
+void se3di_node_format_path(const se3di_node *node, char *path, size_t size);
+
+/* Fill `error` with "file:line:column: path: text"; line 0 leaves the place out, an empty path is
+ * left out. */
+void se3di_document_report(se3d_model_error *error, const char *file, size_t line, size_t column,
+                           const char *path, const char *text);
+
+/* Bytes of the mark that some editors put at the beginning of a text in UTF-8; 0 where it has none.
+ */
+size_t se3di_byte_order_mark_length(const char *text, size_t length);
+
+#endif

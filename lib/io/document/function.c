@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Values that may be functions: expressions and splines. */
+#include "io/document/function.h"
+
+#include "io/base/pool.h"
+#include "io/document/document.h"
+#include "io/document/reader.h"
+#include "io/document/value.h"
+
+static bool create_expression(se3di_reader *reader, const se3di_node *node,
+                              const char *const *variables, size_t count, se3d_function *function)
+{
+    se3d_function_def def = se3d_function_def_default();
+    def.expression = node->text;
+    def.variables = variables;
+    def.variable_count = count;
+    def.symbols = reader->symbols;
+    def.symbol_count = reader->symbol_count;
+    const se3d_status status = se3d_function_create(reader->system, &def, function);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+/* {spline: [[x, y], ...]}: C2 through the points. */
+static bool read_spline(se3di_reader *reader, const se3di_node *node, se3d_function *function)
+{
+    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_SPLINE)) {
+        return false;
+    }
+    const se3di_node *list = se3di_node_get(node, "spline");
+    if (!list || list->kind != SE3DI_NODE_LIST || list->count < 2) {
+        return se3di_reader_fail(reader, list ? list : node,
+                                 "must be a list of at least two points [x, y]");
+    }
+    double *x = se3di_iopool_array(reader->pool, list->count, sizeof *x);
+    double *y = se3di_iopool_array(reader->pool, list->count, sizeof *y);
+    if (!x || !y) {
+        return se3di_reader_fail_memory(reader);
+    }
+    size_t k = 0;
+    for (const se3di_node *point = list->first; point; point = point->next, ++k) {
+        double pair[2];
+        if (!se3di_read_vector(reader, point, 2, pair)) {
+            return false;
+        }
+        if (k > 0 && !(pair[0] > x[k - 1])) {
+            return se3di_reader_fail(reader, point, "begins with %g after %g, must increase",
+                                     pair[0], x[k - 1]);
+        }
+        x[k] = pair[0];
+        y[k] = pair[1];
+    }
+    se3d_function_def def = se3d_function_def_default();
+    def.table_x = x;
+    def.table_y = y;
+    def.table_count = list->count;
+    const se3d_status status = se3d_function_create(reader->system, &def, function);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const char *const *variables,
+                         double *value, se3d_function *function)
+{
+    size_t count = 0;
+    while (variables[count]) {
+        ++count;
+    }
+    if (node->kind == SE3DI_NODE_MAP) {
+        return read_spline(reader, node, function);
+    }
+    if (node->kind != SE3DI_NODE_SCALAR || se3di_node_is_null(node)) {
+        return se3di_reader_fail(reader, node,
+                                 "is %s, must be a number, an expression in %s or {spline: [[%s, "
+                                 "value], ...]}",
+                                 se3di_node_describe(node), variables[0], variables[0]);
+    }
+    se3d_expression_def def = se3d_expression_def_default();
+    se3d_expression *expression = NULL;
+    def.variables = variables;
+    def.variable_count = count;
+    if (!se3di_read_compile(reader, node, &def, &expression)) {
+        return false;
+    }
+    const bool constant = se3d_expression_is_constant(expression) != 0;
+    se3d_expression_destroy(expression);
+    return constant ? se3di_read_number(reader, node, SE3DI_ANY, value)
+                    : create_expression(reader, node, variables, count, function);
+}

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Values that may be functions: expressions and splines. */
+#ifndef SE3D_IO_FUNCTION_H
+#define SE3D_IO_FUNCTION_H
+
+#include "io/document/reader.h"
+
+/* A number, or a function of `variables` (NULL at the end, the first is the time): then *function
+ * is not null. */
+bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const char *const *variables,
+                         double *value, se3d_function *function);
+
+#endif

@@ -1,0 +1,358 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Reports with place and path, keys, words and names. */
+#include "io/document/reader.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/document/document.h"
+#include "io/document/guess.h"
+#include "io/document/keys.h"
+
+static bool fail_at(se3di_reader *reader, size_t line, size_t column, const char *path,
+                    const char *text)
+{
+    reader->status = SE3D_ERR_MODEL;
+    se3di_document_report(reader->error, reader->file, line, column, path, text);
+    return false;
+}
+
+bool se3di_reader_fail(se3di_reader *reader, const se3di_node *node, const char *format, ...)
+{
+    char path[256];
+    char text[640];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    se3di_node_format_path(node, path, sizeof path);
+    return fail_at(reader, node->line, node->column, path, text);
+}
+
+bool se3di_reader_fail_key(se3di_reader *reader, const se3di_node *map, const char *key,
+                           const char *format, ...)
+{
+    char path[256];
+    char text[640];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    const se3di_node *child = se3di_node_get(map, key);
+    if (child) {
+        se3di_node_format_path(child, path, sizeof path);
+        return fail_at(reader, child->line, child->column, path, text);
+    }
+    se3di_node_format_path(map, path, sizeof path);
+    const size_t used = strlen(path);
+    snprintf(path + used, sizeof path - used, "%s%.80s", used > 0 ? "." : "", key);
+    return fail_at(reader, map->line, map->column, path, text);
+}
+
+bool se3di_reader_fail_memory(se3di_reader *reader)
+{
+    reader->status = SE3D_ERR_NO_MEMORY;
+    se3di_document_report(reader->error, "", 0, 0, "", "out of memory");
+    return false;
+}
+
+/* "mass = -1 kg, must be > 0" at bodies[0] becomes "bodies[0].mass: is -1 kg, must be > 0". */
+bool se3di_reader_fail_system(se3di_reader *reader, const se3di_node *map, se3d_status status)
+{
+    const char *message = se3d_system_get_error(reader->system);
+    char key[48];
+    size_t length = strspn(message, "abcdefghijklmnopqrstuvwxyz_0123456789");
+    if (status == SE3D_ERR_NO_MEMORY) {
+        return se3di_reader_fail_memory(reader);
+    }
+    if (!message[0]) {
+        message = se3d_status_get_text(status);
+        length = 0;
+    }
+    if (length == 0 || length >= sizeof key) {
+        return se3di_reader_fail(reader, map, "%s", message);
+    }
+    memcpy(key, message, length);
+    key[length] = '\0';
+    if (!se3di_node_get(map, key)) {
+        return se3di_reader_fail(reader, map, "%s", message);
+    }
+    const char *rest = message + length;
+    if (strncmp(rest, " = ", 3) == 0) {
+        return se3di_reader_fail_key(reader, map, key, "is %s", rest + 3);
+    }
+    return se3di_reader_fail_key(reader, map, key, "%s", rest[0] == ' ' ? rest + 1 : message);
+}
+
+/* Append "a, b, c" to `text`. */
+static void append_word(char *text, size_t size, const char *word)
+{
+    const size_t used = strlen(text);
+    snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", word);
+}
+
+static bool fail_unknown_key(se3di_reader *reader, const se3di_node *child,
+                             const se3di_object_keys *object)
+{
+    char path[256];
+    char text[640];
+    char list[480] = "";
+    se3di_guess guess = se3di_guess_begin(child->key);
+    for (const char *const *key = object->keys; *key; ++key) {
+        append_word(list, sizeof list, *key);
+        se3di_guess_offer(&guess, *key);
+    }
+    const char *meant = se3di_guess_get(&guess);
+    se3di_node_format_path(child->parent, path, sizeof path);
+    if (meant) {
+        snprintf(text, sizeof text, "the key `%.60s` is unknown, did you mean `%s`?", child->key,
+                 meant);
+    } else {
+        snprintf(text, sizeof text, "the key `%.60s` is unknown, allowed are: %s", child->key,
+                 list);
+    }
+    return fail_at(reader, child->key_line, child->key_column, path, text);
+}
+
+static bool has_key(const se3di_object_keys *object, const char *word)
+{
+    for (const char *const *key = object->keys; *key; ++key) {
+        if (strcmp(*key, word) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, se3di_object object)
+{
+    const se3di_object_keys *keys = se3di_keys_get(object);
+    if (node->kind != SE3DI_NODE_MAP) {
+        return se3di_reader_fail(reader, node, "is %s, must be a map such as {%s: ...}",
+                                 se3di_node_describe(node), keys->keys[0]);
+    }
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (!has_key(keys, child->key)) {
+            return fail_unknown_key(reader, child, keys);
+        }
+    }
+    return true;
+}
+
+/* The keys that this type does not have. */
+static bool check_type_keys(se3di_reader *reader, const se3di_node *node,
+                            const se3di_object_keys *object, const se3di_type_keys *type)
+{
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (!se3di_keys_contain(object->common, child->key) &&
+            !se3di_keys_contain(type->keys, child->key)) {
+            char path[256];
+            char text[640];
+            se3di_node_format_path(child, path, sizeof path);
+            snprintf(text, sizeof text, "`%s` has no such key, allowed are:%s%s", type->type,
+                     object->common, type->keys);
+            return fail_at(reader, child->key_line, child->key_column, path, text);
+        }
+    }
+    return true;
+}
+
+static bool fail_unknown_type(se3di_reader *reader, const se3di_node *map, const se3di_node *node,
+                              const se3di_object_keys *object)
+{
+    char list[480] = "";
+    const char *text = node ? node->text : NULL;
+    se3di_guess guess = se3di_guess_begin(text ? text : "");
+    for (const se3di_type_keys *type = object->types; type->type; ++type) {
+        append_word(list, sizeof list, type->type);
+        se3di_guess_offer(&guess, type->type);
+    }
+    const char *meant = se3di_guess_get(&guess);
+    if (!node) {
+        return se3di_reader_fail_key(reader, map, "type", "is missing, must be one of: %s", list);
+    }
+    if (!text) {
+        return se3di_reader_fail(reader, node, "is %s, must be one of: %s",
+                                 se3di_node_describe(node), list);
+    }
+    return se3di_reader_fail(
+        reader, node, "the %s type `%.60s` is not supported, %s%s%s%s", object->name, text,
+        meant ? "did you mean `" : "allowed are: ", meant ? meant : list, meant ? "`?" : "", "");
+}
+
+bool se3di_read_type(se3di_reader *reader, const se3di_node *node, se3di_object object,
+                     const char **type)
+{
+    const se3di_object_keys *keys = se3di_keys_get(object);
+    if (!se3di_read_keys(reader, node, object)) {
+        return false;
+    }
+    const se3di_node *child = se3di_node_get(node, "type");
+    for (const se3di_type_keys *known = keys->types; child && child->text && known->type; ++known) {
+        if (strcmp(known->type, child->text) == 0) {
+            *type = known->type;
+            return check_type_keys(reader, node, keys, known);
+        }
+    }
+    return fail_unknown_type(reader, node, child, keys);
+}
+
+bool se3di_read_list(se3di_reader *reader, const se3di_node *map, const char *key,
+                     const se3di_node **list)
+{
+    *list = se3di_node_get(map, key);
+    if (*list && se3di_node_is_null(*list)) {
+        *list = NULL;
+    }
+    if (*list && (*list)->kind != SE3DI_NODE_LIST) {
+        return se3di_reader_fail(reader, *list, "is %s, must be a list",
+                                 se3di_node_describe(*list));
+    }
+    return true;
+}
+
+bool se3di_read_word(se3di_reader *reader, const se3di_node *node, const char *const *words,
+                     size_t *index)
+{
+    char list[480] = "";
+    se3di_guess guess = se3di_guess_begin(node->text ? node->text : "");
+    for (size_t k = 0; words[k]; ++k) {
+        if (node->text && strcmp(node->text, words[k]) == 0) {
+            *index = k;
+            return true;
+        }
+        append_word(list, sizeof list, words[k]);
+        se3di_guess_offer(&guess, words[k]);
+    }
+    const char *meant = se3di_guess_get(&guess);
+    if (!node->text) {
+        return se3di_reader_fail(reader, node, "is %s, must be one of: %s",
+                                 se3di_node_describe(node), list);
+    }
+    if (meant) {
+        return se3di_reader_fail(reader, node, "is `%.60s`, did you mean `%s`? Allowed are: %s",
+                                 node->text, meant, list);
+    }
+    return se3di_reader_fail(reader, node, "is `%.60s`, must be one of: %s", node->text, list);
+}
+
+bool se3di_read_text(se3di_reader *reader, const se3di_node *node, const char **text)
+{
+    if (node->kind != SE3DI_NODE_SCALAR) {
+        return se3di_reader_fail(reader, node, "is %s, must be a text", se3di_node_describe(node));
+    }
+    *text = node->text;
+    return true;
+}
+
+bool se3di_read_bool(se3di_reader *reader, const se3di_node *node, int32_t *value)
+{
+    if (node->text && strcmp(node->text, "true") == 0) {
+        *value = 1;
+    } else if (node->text && strcmp(node->text, "false") == 0) {
+        *value = 0;
+    } else {
+        return se3di_reader_fail(
+            reader, node, "is %s%.60s%s, must be true or false", node->text ? "`" : "",
+            node->text ? node->text : se3di_node_describe(node), node->text ? "`" : "");
+    }
+    return true;
+}
+
+/* UTF-8 without what cannot be shown. */
+static bool is_plain(const char *text)
+{
+    size_t length = 0;
+    while ((length = se3d_text_get_character(text)) > 0) {
+        text += length;
+    }
+    return *text == '\0';
+}
+
+bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **name)
+{
+    if (!se3di_read_text(reader, node, name)) {
+        return false;
+    }
+    const char *text = *name;
+    const size_t length = strlen(text);
+    bool good = length > 0 && length <= 100 && text[0] != ' ' && text[length - 1] != ' ';
+    good = good && !text[strcspn(text, ".,;\"'`[]{}")] && is_plain(text);
+    if (!good) {
+        return se3di_reader_fail(reader, node,
+                                 "the name `%.60s` is not allowed: 1 to 100 characters, none of "
+                                 ". , ; \" ' ` [ ] { }, no control characters and no blank at its "
+                                 "ends",
+                                 text);
+    }
+    return true;
+}
+
+/* Parts between '/' are not empty, "." or "..". */
+static bool stays_inside(const char *name)
+{
+    for (const char *part = name;; ++part) {
+        const size_t length = strcspn(part, "/");
+        if (length == 0 || (length == 1 && part[0] == '.') ||
+            (length == 2 && part[0] == '.' && part[1] == '.')) {
+            return false;
+        }
+        part += length;
+        if (*part == '\0') {
+            return true;
+        }
+    }
+}
+
+/* Programs to which the user gives such a file take a part that begins so for an option, a pipe or
+ * another folder. */
+static bool is_like_command(const char *name)
+{
+    for (const char *part = name; part; part = strchr(part, '/')) {
+        part += *part == '/';
+        if (*part && strchr("-|<>~", *part)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool se3di_read_file_name(se3di_reader *reader, const se3di_node *node, const char **name)
+{
+    static const char tail[] = ".partial";
+    if (!se3di_read_text(reader, node, name)) {
+        return false;
+    }
+    const char *text = *name;
+    const size_t length = strlen(text);
+    if (length == 0 || length > 1000 || strchr(text, '\\') || !is_plain(text)) {
+        return se3di_reader_fail(reader, node,
+                                 "`%.60s` is not a file name: 1 to 1000 characters, no \\ and no "
+                                 "control characters",
+                                 text);
+    }
+    if (!stays_inside(text) || (length > 1 && text[1] == ':')) {
+        return se3di_reader_fail(reader, node,
+                                 "`%.60s` must be a file inside the folder of the results: a "
+                                 "relative path without `..`, `.` and `//`",
+                                 text);
+    }
+    if (is_like_command(text)) {
+        return se3di_reader_fail(reader, node,
+                                 "`%.60s`: no part of it may begin with `-`, `|`, `<`, `>` or `~`, "
+                                 "which programs that are given the name take for something else",
+                                 text);
+    }
+    if (length >= sizeof tail - 1 && strcmp(text + length - (sizeof tail - 1), tail) == 0) {
+        return se3di_reader_fail(reader, node, "`%.60s` must not end with %s", text, tail);
+    }
+    return true;
+}
+
+bool se3di_text_is_identifier(const char *text)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
+    static const char more[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
+    return strspn(text, letters) > 0 && text[strspn(text, more)] == '\0';
+}

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Reports with place and path, keys, words and names: every function of a reader returns false
+ * after it has reported why. The first error ends the reading. */
+#ifndef SE3D_IO_READER_H
+#define SE3D_IO_READER_H
+
+#include "io/document/document.h"
+#include "io/document/keys.h"
+
+typedef struct se3di_reader {
+    se3d_model *model; /* what the sections fill; below only what values need of it */
+    se3di_iopool *pool;
+    const char *file;
+    se3d_system *system;                   /* NULL: not made yet */
+    const se3d_expression_symbol *symbols; /* the parameters */
+    size_t symbol_count;
+    const se3d_model_options *options;
+    se3d_model_error *error;
+    se3d_status status;
+} se3di_reader;
+
+/* Report about a node: "file:line:column: path: text". Always false. */
+SE3DI_IO_FORMAT(3, 4)
+bool se3di_reader_fail(se3di_reader *reader, const se3di_node *node, const char *format, ...);
+/* Report about a key of a map: where the key is, or where the map begins if it has no such key. */
+SE3DI_IO_FORMAT(4, 5)
+bool se3di_reader_fail_key(se3di_reader *reader, const se3di_node *map, const char *key,
+                           const char *format, ...);
+bool se3di_reader_fail_memory(se3di_reader *reader);
+/* Report the system's message about the element that `map` describes, at the key it names. */
+bool se3di_reader_fail_system(se3di_reader *reader, const se3di_node *map, se3d_status status);
+
+/* `node` must be a map whose keys are those of `object` (and, if it has types, of its type). */
+bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, se3di_object object);
+/* The `type` of a map, one of `types`; `what` is "a joint type", ... */
+bool se3di_read_type(se3di_reader *reader, const se3di_node *node, se3di_object object,
+                     const char **type);
+/* A list, or nothing (NULL or empty: *list is NULL). */
+bool se3di_read_list(se3di_reader *reader, const se3di_node *map, const char *key,
+                     const se3di_node **list);
+/* A text that is one of `words` (NULL at the end): its index. */
+bool se3di_read_word(se3di_reader *reader, const se3di_node *node, const char *const *words,
+                     size_t *index);
+bool se3di_read_text(se3di_reader *reader, const se3di_node *node, const char **text);
+bool se3di_read_bool(se3di_reader *reader, const se3di_node *node, int32_t *value);
+/* A name that other things refer to: not empty, without blanks at its ends, dots, commas, ... */
+bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **name);
+
+/* The name of a file inside the folder of the results: relative, without "..", "." and "//". */
+bool se3di_read_file_name(se3di_reader *reader, const se3di_node *node, const char **name);
+
+/* True for letters, digits and '_', not beginning with a digit. */
+bool se3di_text_is_identifier(const char *text);
+
+#endif

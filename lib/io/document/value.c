@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Numbers (expressions over the parameters), vectors, orientations and functions. */
+#include "io/document/value.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/base/elementary.h"
+#include "io/base/rotation.h"
+#include "io/document/document.h"
+#include "io/document/guess.h"
+#include "io/document/reader.h"
+
+/* Beyond these the squares and products of mechanics leave what doubles hold. */
+#define LARGEST  1e40
+#define SMALLEST 1e-40
+
+static const char *const range_texts[] = {"finite", "finite and > 0", "finite and >= 0"};
+
+/* The identifier that begins at `text`, in `word`. */
+static bool identifier_at(const char *text, char *word, size_t size)
+{
+    size_t length = 0;
+    while (length + 1 < size &&
+           (text[length] == '_' || (text[length] >= '0' && text[length] <= '9') ||
+            (text[length] >= 'a' && text[length] <= 'z') ||
+            (text[length] >= 'A' && text[length] <= 'Z'))) {
+        word[length] = text[length];
+        ++length;
+    }
+    word[length] = '\0';
+    return se3di_text_is_identifier(word);
+}
+
+/* What the name at the error was meant to be, among the parameters and variables. */
+static const char *guess_symbol(const se3d_expression_def *def, size_t column, char word[64])
+{
+    if (column == 0 || column > strlen(def->text) ||
+        !identifier_at(def->text + column - 1, word, 64)) {
+        return NULL;
+    }
+    se3di_guess guess = se3di_guess_begin(word);
+    for (size_t k = 0; k < def->symbol_count; ++k) {
+        se3di_guess_offer(&guess, def->symbols[k].name);
+    }
+    for (size_t k = 0; k < def->variable_count; ++k) {
+        se3di_guess_offer(&guess, def->variables[k]);
+    }
+    return guess.distance > 0 ? se3di_guess_get(&guess) : NULL;
+}
+
+/* A plain text in a flow list or map ends at a comma: hypot(a, b) becomes two values. */
+static bool is_cut(const se3di_node *node)
+{
+    int open = 0;
+    for (const char *c = node->text; *c; ++c) {
+        open += (*c == '(') - (*c == ')');
+    }
+    return node->plain && open != 0;
+}
+
+static bool fail_expression(se3di_reader *reader, const se3di_node *node,
+                            const se3d_expression_def *def, const se3d_expression_error *why)
+{
+    char word[64];
+    char hint[96] = "";
+    se3di_node place = *node;
+    const char *meant = guess_symbol(def, why->column, word);
+    if (is_cut(node)) {
+        snprintf(hint, sizeof hint,
+                 " (inside [ ] and { } an expression with a comma needs quotes)");
+    } else if (meant) {
+        snprintf(hint, sizeof hint, ", did you mean `%.63s`?", meant);
+    }
+    if (node->one_line && why->column > 0) {
+        place.column += why->column - 1 + (node->plain ? 0 : 1);
+    }
+    return se3di_reader_fail(reader, &place, "`%.120s`: %s%s", node->text, why->message, hint);
+}
+
+static bool check_expression_node(se3di_reader *reader, const se3di_node *node)
+{
+    if (node->kind != SE3DI_NODE_SCALAR || se3di_node_is_null(node)) {
+        return se3di_reader_fail(reader, node, "is %s, must be a number or an expression",
+                                 se3di_node_describe(node));
+    }
+    static const char *const special[] = {".nan", ".NaN",  ".NAN",  "nan",      "NaN",      "NAN",
+                                          ".inf", "-.inf", "+.inf", ".Inf",     "-.Inf",    ".INF",
+                                          "inf",  "-inf",  "+inf",  "Infinity", "-Infinity"};
+    for (size_t k = 0; k < sizeof special / sizeof *special; ++k) {
+        if (strcmp(node->text, special[k]) == 0) {
+            return se3di_reader_fail(reader, node, "is %s, must be a finite number", node->text);
+        }
+    }
+    return true;
+}
+
+bool se3di_read_compile(se3di_reader *reader, const se3di_node *node, se3d_expression_def *def,
+                        se3d_expression **expression)
+{
+    se3d_expression_error why;
+    if (!check_expression_node(reader, node)) {
+        return false;
+    }
+    def->text = node->text;
+    def->allocator = &reader->pool->allocator;
+    if (!def->symbols) {
+        def->symbols = reader->symbols;
+        def->symbol_count = reader->symbol_count;
+    }
+    const se3d_status status = se3d_expression_create(def, expression, &why);
+    if (status == SE3D_ERR_NO_MEMORY) {
+        return se3di_reader_fail_memory(reader);
+    }
+    return status < 0 ? fail_expression(reader, node, def, &why) : true;
+}
+
+bool se3di_read_expression(se3di_reader *reader, const se3di_node *node,
+                           const se3d_expression_symbol *symbols, size_t count, double *value)
+{
+    se3d_expression_def def = se3d_expression_def_default();
+    se3d_expression *expression = NULL;
+    def.symbols = symbols;
+    def.symbol_count = count;
+    if (!se3di_read_compile(reader, node, &def, &expression)) {
+        return false;
+    }
+    const se3d_status status = se3d_expression_eval(expression, NULL, value);
+    se3d_expression_destroy(expression);
+    if (status < 0 || !isfinite(*value)) {
+        return se3di_reader_fail(reader, node, "`%.120s` is %g, must be a finite number",
+                                 node->text, *value);
+    }
+    return true;
+}
+
+/* "-1", or "2*q = -1" where the text is not the number itself. */
+static void format_value(const se3di_node *node, double value, char *text, size_t size)
+{
+    const bool literal = node->text[strspn(node->text, "+-0123456789.eE")] == '\0';
+    if (literal) {
+        snprintf(text, size, "%.60s", node->text);
+    } else {
+        snprintf(text, size, "%.120s = %g", node->text, value);
+    }
+}
+
+bool se3di_read_number(se3di_reader *reader, const se3di_node *node, se3di_range range,
+                       double *value)
+{
+    if (!se3di_read_expression(reader, node, reader->symbols, reader->symbol_count, value)) {
+        return false;
+    }
+    if (fabs(*value) > LARGEST || (range == SE3DI_POSITIVE && *value > 0.0 && *value < SMALLEST)) {
+        char text[200];
+        format_value(node, *value, text, sizeof text);
+        return se3di_reader_fail(reader, node, "is %s, must be %s%g in magnitude", text,
+                                 fabs(*value) > LARGEST ? "at most " : "at least ",
+                                 fabs(*value) > LARGEST ? LARGEST : SMALLEST);
+    }
+    if ((range == SE3DI_POSITIVE && !(*value > 0.0)) ||
+        (range == SE3DI_NOT_NEGATIVE && !(*value >= 0.0))) {
+        char text[200];
+        format_value(node, *value, text, sizeof text);
+        return se3di_reader_fail(reader, node, "is %s, must be %s", text, range_texts[range]);
+    }
+    return true;
+}
+
+bool se3di_read_key_number(se3di_reader *reader, const se3di_node *map, const char *key,
+                           se3di_range range, double *value)
+{
+    const se3di_node *node = se3di_node_get(map, key);
+    return !node || se3di_read_number(reader, node, range, value);
+}
+
+bool se3di_read_key_restitution(se3di_reader *reader, const se3di_node *map, double *value)
+{
+    double read = 1.0;
+    if (!se3di_read_key_number(reader, map, "restitution", SE3DI_ANY, &read)) {
+        return false;
+    }
+    if (!(read >= 0.01 && read <= 1.0)) {
+        return se3di_reader_fail_key(reader, map, "restitution", "is %g, must be from 0.01 to 1",
+                                     read);
+    }
+    if (se3di_node_get(map, "restitution")) {
+        *value = read;
+    }
+    return true;
+}
+
+bool se3di_read_vector(se3di_reader *reader, const se3di_node *node, size_t size, double *value)
+{
+    if (node->kind != SE3DI_NODE_LIST) {
+        return se3di_reader_fail(reader, node, "is %s, must be a list of %zu numbers",
+                                 se3di_node_describe(node), size);
+    }
+    if (node->count != size) {
+        for (const se3di_node *child = node->first; child; child = child->next) {
+            if (child->text && is_cut(child)) {
+                return se3di_reader_fail(reader, child,
+                                         "`%.80s` was cut at a comma: inside [ ] an expression "
+                                         "with a comma needs quotes",
+                                         child->text);
+            }
+        }
+        return se3di_reader_fail(reader, node, "has %zu entries, must be a list of %zu numbers",
+                                 node->count, size);
+    }
+    size_t k = 0;
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (!se3di_read_number(reader, child, SE3DI_ANY, &value[k++])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool se3di_read_key_vector(se3di_reader *reader, const se3di_node *map, const char *key,
+                           double value[3])
+{
+    const se3di_node *node = se3di_node_get(map, key);
+    return !node || se3di_read_vector(reader, node, 3, value);
+}
+
+static bool is_direction(const double v[3])
+{
+    const double length = io_hypot(io_hypot(v[0], v[1]), v[2]);
+    return isfinite(length) && length > 1e-100;
+}
+
+bool se3di_read_key_direction(se3di_reader *reader, const se3di_node *map, const char *key,
+                              double value[3])
+{
+    const se3di_node *node = se3di_node_get(map, key);
+    if (!node) {
+        return true;
+    }
+    if (!se3di_read_vector(reader, node, 3, value)) {
+        return false;
+    }
+    if (!is_direction(value)) {
+        return se3di_reader_fail(reader, node, "is [%g, %g, %g], must be a direction: not zero",
+                                 value[0], value[1], value[2]);
+    }
+    return true;
+}
+
+static bool read_matrix(se3di_reader *reader, const se3di_node *node, double p[4])
+{
+    double A[9]; /* row-major, body -> ground */
+    if (node->kind != SE3DI_NODE_LIST || node->count != 3) {
+        return se3di_reader_fail(reader, node, "must be a list of 3 rows of 3 numbers");
+    }
+    size_t row = 0;
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (!se3di_read_vector(reader, child, 3, &A[3 * row++])) {
+            return false;
+        }
+    }
+    const double error = se3di_rotation_matrix_error(A);
+    if (!(error <= 1e-6)) {
+        return se3di_reader_fail(reader, node,
+                                 "is not a rotation: A^T A differs from the identity by %.3g, its "
+                                 "columns must be unit vectors square to each other (to 1e-6)",
+                                 error);
+    }
+    if (se3di_rotation_matrix_determinant(A) < 0.0) {
+        return se3di_reader_fail(reader, node,
+                                 "is a reflection (determinant -1), must be right-handed: "
+                                 "determinant 1");
+    }
+    se3di_rotation_from_matrix(A, p);
+    return true;
+}
+
+static bool read_euler_parameters(se3di_reader *reader, const se3di_node *node, double p[4])
+{
+    if (!se3di_read_vector(reader, node, 4, p)) {
+        return false;
+    }
+    const double length = io_hypot(io_hypot(p[0], p[1]), io_hypot(p[2], p[3]));
+    if (!(fabs(length - 1.0) <= 1e-6)) {
+        return se3di_reader_fail(
+            reader, node, "has the length %.9g, must be unit Euler parameters (to 1e-6)", length);
+    }
+    for (int k = 0; k < 4; ++k) {
+        p[k] /= length;
+    }
+    return true;
+}
+
+static bool read_axis_angle(se3di_reader *reader, const se3di_node *map, double p[4])
+{
+    double axis[3] = {0.0, 0.0, 1.0};
+    double angle = 0.0;
+    if (!se3di_node_get(map, "axis") || !se3di_node_get(map, "angle")) {
+        return se3di_reader_fail_key(reader, map, se3di_node_get(map, "axis") ? "angle" : "axis",
+                                     "is missing, `axis` and `angle` go together");
+    }
+    if (!se3di_read_key_direction(reader, map, "axis", axis) ||
+        !se3di_read_key_number(reader, map, "angle", SE3DI_ANY, &angle)) {
+        return false;
+    }
+    se3di_rotation_from_axis(axis, angle, p);
+    return true;
+}
+
+bool se3di_read_key_orientation(se3di_reader *reader, const se3di_node *map, double p[4])
+{
+    return se3di_read_orientation(reader, se3di_node_get(map, "orientation"), p);
+}
+
+bool se3di_read_orientation(se3di_reader *reader, const se3di_node *node, double p[4])
+{
+    if (!node) {
+        return true;
+    }
+    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_ORIENTATION)) {
+        return false;
+    }
+    const se3di_node *matrix = se3di_node_get(node, "matrix");
+    const se3di_node *euler = se3di_node_get(node, "euler_parameters");
+    const se3di_node *rpy = se3di_node_get(node, "rpy");
+    const bool axis = se3di_node_get(node, "axis") || se3di_node_get(node, "angle");
+    if ((matrix != NULL) + (euler != NULL) + (rpy != NULL) + axis != 1) {
+        return se3di_reader_fail(reader, node,
+                                 "must have exactly one of matrix, euler_parameters, axis with "
+                                 "angle, rpy");
+    }
+    if (matrix) {
+        return read_matrix(reader, matrix, p);
+    }
+    if (euler) {
+        return read_euler_parameters(reader, euler, p);
+    }
+    if (rpy) {
+        double angles[3];
+        if (!se3di_read_vector(reader, rpy, 3, angles)) {
+            return false;
+        }
+        se3di_rotation_from_rpy(angles, p);
+        return true;
+    }
+    return read_axis_angle(reader, node, p);
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Numbers, which are expressions over the parameters, vectors and orientations. */
+#ifndef SE3D_IO_VALUE_H
+#define SE3D_IO_VALUE_H
+
+#include "io/document/reader.h"
+
+typedef enum se3di_range {
+    SE3DI_ANY = 0,         /* finite */
+    SE3DI_POSITIVE = 1,    /* finite and > 0 */
+    SE3DI_NOT_NEGATIVE = 2 /* finite and >= 0 */
+} se3di_range;
+
+bool se3di_read_number(se3di_reader *reader, const se3di_node *node, se3di_range range,
+                       double *value);
+/* The number under `key`, left alone where there is none. */
+bool se3di_read_key_number(se3di_reader *reader, const se3di_node *map, const char *key,
+                           se3di_range range, double *value);
+/* A coefficient of restitution, 0.01 to 1, left alone where there is none. */
+bool se3di_read_key_restitution(se3di_reader *reader, const se3di_node *map, double *value);
+/* The same for a whole number from 0 to `largest`. */
+bool se3di_read_key_count(se3di_reader *reader, const se3di_node *map, const char *key,
+                          double largest, double *value);
+bool se3di_read_vector(se3di_reader *reader, const se3di_node *node, size_t size, double *value);
+bool se3di_read_key_vector(se3di_reader *reader, const se3di_node *map, const char *key,
+                           double value[3]);
+/* As above, and not the zero vector. */
+bool se3di_read_key_direction(se3di_reader *reader, const se3di_node *map, const char *key,
+                              double value[3]);
+/* The Euler parameters under `orientation`, left alone where there is none. */
+bool se3di_read_key_orientation(se3di_reader *reader, const se3di_node *map, double p[4]);
+/* The Euler parameters that a map says; NULL: left alone. */
+bool se3di_read_orientation(se3di_reader *reader, const se3di_node *node, double p[4]);
+
+/* Compile the text of `node`; def->symbols NULL: the parameters. */
+bool se3di_read_compile(se3di_reader *reader, const se3di_node *node, se3d_expression_def *def,
+                        se3d_expression **expression);
+/* Evaluate the text of `node` as an expression over `symbols`. */
+bool se3di_read_expression(se3di_reader *reader, const se3di_node *node,
+                           const se3d_expression_symbol *symbols, size_t count, double *value);
+
+#endif

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Sets and sinks by their names. */
+#include "io/model/grains.h"
+
+#include <stdint.h>
+#include <string.h>
+
+static size_t find_name(const char *const *names, size_t count, const char *name)
+{
+    for (size_t k = 0; k < count; ++k) {
+        if (names[k] && strcmp(names[k], name) == 0) {
+            return k;
+        }
+    }
+    return SIZE_MAX;
+}
+
+size_t se3di_grains_find_set(const se3di_grains *grains, const char *name)
+{
+    return grains ? find_name(grains->sets, grains->set_count, name) : SIZE_MAX;
+}
+
+size_t se3di_grains_find_sink(const se3di_grains *grains, const char *name)
+{
+    return grains ? find_name(grains->sinks, grains->sink_count, name) : SIZE_MAX;
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `particles` of a model. */
+#ifndef SE3D_IO_GRAINS_H
+#define SE3D_IO_GRAINS_H
+
+#include <stdbool.h>
+
+#include "se3d/particles.h"
+
+/* All particles of a model are one set, so that they touch each other; what the file calls a set is
+ * a tag in it: sets[0] are those without a name. */
+typedef struct se3di_grains {
+    se3d_particles *set;
+    bool moving_walls; /* some shape is on a body that is not fixed */
+    const char *sets[SE3D_PARTICLES_TAGS];
+    size_t set_count;
+    uint32_t *source_tags; /* of the sources */
+    size_t source_count, source_capacity;
+    const char **sinks;
+    size_t sink_count;
+} se3di_grains;
+
+/* The index of a name, SIZE_MAX: none. */
+size_t se3di_grains_find_set(const se3di_grains *grains, const char *name);
+size_t se3di_grains_find_sink(const se3di_grains *grains, const char *name);
+
+#endif

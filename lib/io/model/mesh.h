@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Surfaces of triangles. */
+#ifndef SE3D_IO_MESH_H
+#define SE3D_IO_MESH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct se3di_mesh {
+    const char *file;
+    double scale;
+    struct se3di_mesh *next; /* of the model */
+    double *points;          /* [3 * point_count], scaled */
+    size_t point_count, point_capacity;
+    uint32_t *triangles; /* [3 * triangle_count] */
+    size_t triangle_count, triangle_capacity;
+    double low[3], high[3]; /* the box around all points */
+} se3di_mesh;
+
+#endif

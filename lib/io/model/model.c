@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Models: what one can ask of one. */
+#include "io/model/model.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/base/pool.h"
+#include "io/base/sized.h"
+
+void se3d_model_destroy(se3d_model *model)
+{
+    if (model && !model->running && !se3d_system_is_busy(model->system)) {
+        se3di_iopool pool = model->pool; /* the model itself lies in it */
+        se3d_system_destroy(model->system);
+        se3di_iopool_destroy(&pool);
+    }
+}
+
+se3d_system *se3d_model_get_system(const se3d_model *model)
+{
+    return model ? model->system : NULL;
+}
+
+const char *se3d_model_get_name(const se3d_model *model)
+{
+    return model ? model->name : "";
+}
+
+const char *se3d_model_get_title(const se3d_model *model)
+{
+    return model ? model->title : "";
+}
+
+se3d_status se3d_model_get_parameter(const se3d_model *model, const char *name, double *value)
+{
+    if (!model || !name || !value) {
+        return SE3D_ERR_NULL;
+    }
+    for (size_t k = 0; k < model->symbol_count; ++k) {
+        if (strcmp(model->symbols[k].name, name) == 0) {
+            *value = model->symbols[k].value;
+            return SE3D_OK;
+        }
+    }
+    return SE3D_ERR_INVALID_ARGUMENT;
+}
+
+size_t se3d_model_count_analyses(const se3d_model *model)
+{
+    return model ? model->analysis_count : 0;
+}
+
+se3d_status se3d_model_get_analysis_sized(const se3d_model *model, size_t index,
+                                          se3d_model_analysis *analysis, size_t size)
+{
+    if (!model || !analysis) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= model->analysis_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    return se3di_io_give(analysis, size, &model->analyses[index].analysis, sizeof *analysis);
+}
+
+se3d_status se3d_model_get_solver(const se3d_model *model, size_t index, se3d_solver_def *def)
+{
+    if (!model || !def) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= model->analysis_count || def->struct_size < sizeof def->struct_size) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    if (model->analyses[index].modes.file) {
+        return SE3D_ERR_UNSUPPORTED;
+    }
+    const size_t size = def->struct_size;
+    memcpy(def, &model->analyses[index].solver, size < sizeof *def ? size : sizeof *def);
+    def->struct_size = size;
+    return SE3D_OK;
+}
+
+size_t se3d_model_count_shapes(const se3d_model *model)
+{
+    return model ? model->shape_count : 0;
+}
+
+se3d_status se3d_model_get_shape_sized(const se3d_model *model, size_t index,
+                                       se3d_model_shape *shape, size_t size)
+{
+    if (!model || !shape) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= model->shape_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    return se3di_io_give(shape, size, &model->shapes[index].shape, sizeof *shape);
+}
+
+size_t se3d_model_count_pictures(const se3d_model *model)
+{
+    return model ? model->picture_count : 0;
+}
+
+se3d_status se3d_model_get_picture_sized(const se3d_model *model, size_t index,
+                                         se3d_model_picture *picture, size_t size)
+{
+    if (!model || !picture) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= model->picture_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    return se3di_io_give(picture, size, &model->pictures[index], sizeof *picture);
+}
+
+bool se3di_solver_takes_time(const se3d_solver_def *solver)
+{
+    return solver->analysis == SE3D_ANALYSIS_KINEMATICS ||
+           solver->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS ||
+           solver->analysis == SE3D_ANALYSIS_DYNAMICS;
+}
+
+bool se3di_analysis_has_motion(const se3di_analysis_entry *entry)
+{
+    return !entry->modes.file && se3di_solver_takes_time(&entry->solver);
+}

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a model file became. */
+#ifndef SE3D_IO_MODEL_H
+#define SE3D_IO_MODEL_H
+
+#include "io/document/document.h"
+#include "io/model/grains.h"
+#include "io/model/mesh.h"
+
+typedef struct se3di_body_entry {
+    const char *name;
+    const se3di_node *node; /* NULL: the ground */
+    se3d_body body;
+    se3di_ionames markers; /* to indices of se3d_model.markers */
+} se3di_body_entry;
+
+typedef struct se3di_marker_entry {
+    const char *name;
+    size_t body; /* index of the body's entry */
+    se3d_marker marker;
+    double position[3]; /* body frame */
+} se3di_marker_entry;
+
+typedef enum se3di_element_kind {
+    SE3DI_ELEMENT_JOINT = 0,
+    SE3DI_ELEMENT_CONSTRAINT = 1,
+    SE3DI_ELEMENT_DRIVER = 2,
+    SE3DI_ELEMENT_FORCE = 3
+} se3di_element_kind;
+
+/* A joint, constraint, driver or force: their names are unique together. */
+typedef struct se3di_element_entry {
+    const char *name;
+    const se3di_node *node;
+    se3di_element_kind kind;
+    se3d_constraint constraint;
+    se3d_force force;
+    se3d_body body;  /* bushing, force, torque: the body acted on, */
+    double point[3]; /* where */
+    /* How it is drawn: a pair with points (1), also with an axis (2), a spring (3); 0: not. */
+    int32_t drawn;
+    int32_t coordinate; /* se3d_joint_coordinate of a driver, friction or stop */
+    se3d_body body_i;
+    se3d_body body_j;
+    double point_i[3]; /* body frames */
+    double point_j[3];
+    double axis_j[3];
+} se3di_element_entry;
+
+/* What `modes` writes. */
+typedef struct se3di_modes_entry {
+    const char *file; /* NULL: the analysis is another one */
+    se3d_modes_input *inputs;
+    size_t input_count;
+    se3d_modes_output *outputs;
+    size_t output_count;
+    double from, to; /* frequencies of the transfer functions [Hz] */
+    size_t frequency_count;
+} se3di_modes_entry;
+
+typedef struct se3di_analysis_entry {
+    se3d_model_analysis analysis;
+    se3d_solver_def solver;
+    se3di_modes_entry modes;
+    const se3di_node *node;
+} se3di_analysis_entry;
+
+/* Whether the analysis that it asks for has a duration. */
+bool se3di_solver_takes_time(const se3d_solver_def *solver);
+/* Whether time passes in it, so that there can be events. */
+bool se3di_analysis_has_motion(const se3di_analysis_entry *entry);
+
+typedef struct se3di_shape_entry {
+    se3d_model_shape shape;
+    const se3di_mesh *mesh; /* NULL: the shape is another one */
+    int32_t convex;         /* mesh: its hull touches */
+    int32_t reserved;
+} se3di_shape_entry;
+
+struct se3d_model {
+    se3di_iopool pool;
+    se3d_system *system;
+    int32_t running; /* se3d_model_run is at work */
+    int32_t reserved;
+    const char *file;
+    const char *name;
+    const char *title;
+    se3di_node *root;
+    const se3d_expression_symbol *symbols; /* the parameters */
+    size_t symbol_count;
+    se3di_body_entry *bodies; /* [0] is the ground */
+    size_t body_count, body_capacity;
+    se3di_ionames body_names;
+    se3di_marker_entry *markers;
+    size_t marker_count, marker_capacity;
+    se3di_element_entry *elements;
+    size_t element_count, element_capacity;
+    se3di_ionames element_names;
+    se3di_shape_entry *shapes;
+    size_t shape_count, shape_capacity;
+    se3di_mesh *meshes; /* that have been read */
+    se3di_analysis_entry *analyses;
+    size_t analysis_count;
+    se3d_material *materials;           /* in the order of the file; null: not needed yet */
+    bool moving_shapes;                 /* some shape that touches is on a body that is not fixed */
+    se3di_grains *grains;               /* NULL: no particles */
+    struct se3di_output_entry *outputs; /* io/channel/output.h */
+    size_t output_count;
+    struct se3di_event_entry *events; /* io/channel/event.h */
+    size_t event_count;
+    se3d_model_picture *pictures;
+    size_t picture_count;
+};
+
+#endif

@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `bodies`: poses, velocities, mass, markers, shapes. */
+#include "io/read/bodies.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "io/base/pool.h"
+#include "io/document/document.h"
+#include "io/document/guess.h"
+#include "io/document/keys.h"
+#include "io/document/reader.h"
+#include "io/document/value.h"
+#include "io/model/model.h"
+#include "io/read/sections.h"
+#include "io/read/shapes.h"
+
+/* Report a name that is unknown, with the one that was meant or with those there are. */
+static bool fail_unknown_body(se3di_reader *reader, const se3di_node *node)
+{
+    const se3d_model *model = reader->model;
+    se3di_guess guess = se3di_guess_begin(node->text);
+    for (size_t k = 0; k < model->body_count; ++k) {
+        se3di_guess_offer(&guess, model->bodies[k].name);
+    }
+    const char *meant = se3di_guess_get(&guess);
+    return se3di_reader_fail(reader, node, "no body is named `%.60s`, %s%s%s", node->text,
+                             meant ? "did you mean `" : "must be `ground` or the name of a body",
+                             meant ? meant : "", meant ? "`?" : "");
+}
+
+bool se3di_read_key_body(se3di_reader *reader, const se3di_node *map, const char *key,
+                         const se3di_body_entry **entry)
+{
+    const se3di_node *node = se3di_node_get(map, key);
+    const char *name = NULL;
+    size_t index = 0;
+    if (!node) {
+        return se3di_reader_fail_key(reader, map, key,
+                                     "is missing, must be `ground` or the name of a body");
+    }
+    if (!se3di_read_text(reader, node, &name)) {
+        return false;
+    }
+    if (!se3di_ionames_find(&reader->model->body_names, name, &index)) {
+        return fail_unknown_body(reader, node);
+    }
+    *entry = &reader->model->bodies[index];
+    return true;
+}
+
+bool se3di_read_key_point(se3di_reader *reader, const se3di_node *map, const char *key,
+                          const se3di_body_entry *body, double point[3])
+{
+    const se3di_node *node = se3di_node_get(map, key);
+    size_t index = 0;
+    if (!node || node->kind != SE3DI_NODE_SCALAR) {
+        return !node || se3di_read_vector(reader, node, 3, point);
+    }
+    if (!se3di_ionames_find(&body->markers, node->text, &index)) {
+        return se3di_reader_fail(reader, node,
+                                 "`%.60s` is not a marker of `%.60s`, must be a list of 3 numbers "
+                                 "or the name of a marker of that body",
+                                 node->text, body->name);
+    }
+    memcpy(point, reader->model->markers[index].position, 3 * sizeof *point);
+    return true;
+}
+
+/* 3 diagonal entries, 6 as in the definition, or the rows of the symmetric matrix. */
+static bool read_inertia(se3di_reader *reader, const se3di_node *node, double inertia[6])
+{
+    double J[3][3];
+    size_t row = 0;
+    if (node->kind == SE3DI_NODE_LIST && node->count == 6) {
+        return se3di_read_vector(reader, node, 6, inertia);
+    }
+    if (node->kind != SE3DI_NODE_LIST || node->count != 3) {
+        return se3di_reader_fail(reader, node,
+                                 "must be [Ixx, Iyy, Izz], [Ixx, Iyy, Izz, Ixy, Ixz, Iyz in the "
+                                 "order xx yy zz xy yz xz] or three rows of three numbers");
+    }
+    if (node->first->kind != SE3DI_NODE_LIST) {
+        return se3di_read_vector(reader, node, 3, inertia);
+    }
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (!se3di_read_vector(reader, child, 3, J[row++])) {
+            return false;
+        }
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        const size_t j = (i + 1) % 3;
+        if (fabs(J[i][j] - J[j][i]) > 1e-9 * (fabs(J[i][i]) + fabs(J[j][j]))) {
+            return se3di_reader_fail(reader, node, "is not symmetric: %g and %g face each other",
+                                     J[i][j], J[j][i]);
+        }
+        inertia[i] = J[i][i];
+    }
+    inertia[3] = J[0][1];
+    inertia[4] = J[1][2];
+    inertia[5] = J[0][2];
+    return true;
+}
+
+static bool read_mass(se3di_reader *reader, const se3di_node *node, se3d_body_def *def)
+{
+    const se3di_node *mass = se3di_node_get(node, "mass");
+    const se3di_node *inertia = se3di_node_get(node, "inertia");
+    if (mass && !se3di_read_number(reader, mass, SE3DI_POSITIVE, &def->mass)) {
+        return false;
+    }
+    if (inertia && !read_inertia(reader, inertia, def->inertia)) {
+        return false;
+    }
+    if (def->fixed || (mass && inertia)) {
+        return true;
+    }
+    if (mass && !reader->options->mass_optional) {
+        return se3di_reader_fail_key(reader, node, "inertia",
+                                     "is missing, must be given with the mass [kg m^2]");
+    }
+    if (!mass && !inertia) {
+        if (se3di_node_get(node, "shapes") && !se3di_read_shape_mass(reader, node, def)) {
+            return false;
+        }
+        if (def->mass > 0.0) {
+            return true;
+        }
+    }
+    if (!reader->options->mass_optional) {
+        return se3di_reader_fail_key(reader, node, "mass",
+                                     "is missing, must be finite and > 0 [kg] unless the body is "
+                                     "fixed or its shapes have a density");
+    }
+    def->mass = mass ? def->mass : 1.0;
+    for (int k = 0; !inertia && k < 3; ++k) {
+        def->inertia[k] = 1.0;
+    }
+    return true;
+}
+
+static bool read_markers(se3di_reader *reader, const se3di_node *body, size_t entry)
+{
+    se3d_model *model = reader->model;
+    const se3di_node *list = NULL;
+    if (!se3di_read_list(reader, body, "markers", &list)) {
+        return false;
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        se3d_marker_def def = se3d_marker_def_default();
+        se3di_marker_entry marker = {.body = entry};
+        const se3di_node *name = NULL;
+        if (!se3di_read_keys(reader, node, SE3DI_OBJECT_MARKER)) {
+            return false;
+        }
+        name = se3di_node_get(node, "name");
+        if (!name) {
+            return se3di_reader_fail_key(reader, node, "name", "is missing");
+        }
+        if (!se3di_read_name(reader, name, &marker.name) ||
+            !se3di_read_key_vector(reader, node, "position", def.position) ||
+            !se3di_read_key_orientation(reader, node, def.orientation)) {
+            return false;
+        }
+        se3di_body_entry *owner = &model->bodies[entry];
+        if (se3di_ionames_find(&owner->markers, marker.name, NULL)) {
+            return se3di_reader_fail(reader, name, "`%.60s` is the name of two markers",
+                                     marker.name);
+        }
+        def.name = marker.name;
+        def.body = owner->body;
+        memcpy(marker.position, def.position, sizeof marker.position);
+        const se3d_status status = se3d_marker_create(model->system, &def, &marker.marker);
+        if (status < 0) {
+            return se3di_reader_fail_system(reader, node, status);
+        }
+        se3di_marker_entry *grown =
+            se3di_iopool_grow(&model->pool, model->markers, model->marker_count,
+                              &model->marker_capacity, sizeof *grown);
+        if (!grown ||
+            !se3di_ionames_add(&owner->markers, &model->pool, marker.name, model->marker_count)) {
+            return se3di_reader_fail_memory(reader);
+        }
+        model->markers = grown;
+        model->markers[model->marker_count++] = marker;
+    }
+    return true;
+}
+
+static bool add_body(se3di_reader *reader, const char *name, const se3di_node *node, se3d_body body)
+{
+    se3d_model *model = reader->model;
+    se3di_body_entry *grown = se3di_iopool_grow(&model->pool, model->bodies, model->body_count,
+                                                &model->body_capacity, sizeof *grown);
+    if (!grown || !se3di_ionames_add(&model->body_names, &model->pool, name, model->body_count)) {
+        return se3di_reader_fail_memory(reader);
+    }
+    model->bodies = grown;
+    const se3di_body_entry entry = {.name = name, .node = node, .body = body};
+    model->bodies[model->body_count++] = entry;
+    return true;
+}
+
+/* `ground` may be listed to give it markers and shapes. */
+static bool read_ground(se3di_reader *reader, const se3di_node *node)
+{
+    if (reader->model->bodies[0].node) {
+        return se3di_reader_fail(reader, node, "`ground` is listed twice");
+    }
+    reader->model->bodies[0].node = node;
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (!se3di_keys_contain(" name markers shapes ", child->key)) {
+            return se3di_reader_fail(reader, child,
+                                     "the ground can only have markers and shapes, it does not "
+                                     "move");
+        }
+    }
+    return read_markers(reader, node, 0) && se3di_read_shapes(reader, node, 0);
+}
+
+static bool read_body_name(se3di_reader *reader, const se3di_node *node, const char **name)
+{
+    static const char words[] = " energy work violation contacts particles steps iterations time ";
+    const se3di_node *child = se3di_node_get(node, "name");
+    if (!child) {
+        return se3di_reader_fail_key(reader, node, "name", "is missing, every body needs one");
+    }
+    if (!se3di_read_name(reader, child, name)) {
+        return false;
+    }
+    if (se3di_keys_contain(words, *name)) {
+        return se3di_reader_fail(reader, child, "the name `%s` is taken by a channel", *name);
+    }
+    if (strcmp(*name, "ground") != 0 &&
+        se3di_ionames_find(&reader->model->body_names, *name, NULL)) {
+        return se3di_reader_fail(reader, child, "`%.60s` is the name of two bodies", *name);
+    }
+    return true;
+}
+
+static bool read_body(se3di_reader *reader, const se3di_node *node)
+{
+    se3d_body_def def = se3d_body_def_default();
+    se3d_body body;
+    const char *name = NULL;
+    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_BODY) || !read_body_name(reader, node, &name)) {
+        return false;
+    }
+    if (strcmp(name, "ground") == 0) {
+        return read_ground(reader, node);
+    }
+    const se3di_node *fixed = se3di_node_get(node, "fixed");
+    const se3di_node *held = se3di_node_get(node, "held");
+    int32_t is_held = 0;
+    if ((held && !se3di_read_bool(reader, held, &is_held)) ||
+        (fixed && !se3di_read_bool(reader, fixed, &def.fixed)) ||
+        !se3di_read_key_vector(reader, node, "position", def.position) ||
+        !se3di_read_key_orientation(reader, node, def.orientation) ||
+        !se3di_read_key_vector(reader, node, "velocity", def.velocity) ||
+        !se3di_read_key_vector(reader, node, "angular_velocity", def.angular_velocity) ||
+        !read_mass(reader, node, &def)) {
+        return false;
+    }
+    def.name = name;
+    se3d_status status = se3d_body_create(reader->system, &def, &body);
+    if (status >= 0 && is_held) {
+        status = se3d_body_set_held(reader->system, body, is_held);
+    }
+    if (status < 0) {
+        return se3di_reader_fail_system(reader, node, status);
+    }
+    const size_t entry = reader->model->body_count;
+    return add_body(reader, name, node, body) && read_markers(reader, node, entry) &&
+           se3di_read_shapes(reader, node, entry);
+}
+
+bool se3di_read_bodies(se3di_reader *reader, const se3di_node *root)
+{
+    const se3di_node *list = NULL;
+    se3d_body ground;
+    const se3d_status status = se3d_system_get_ground(reader->system, &ground);
+    if (status < 0 || !add_body(reader, "ground", NULL, ground) ||
+        !se3di_read_list(reader, root, "bodies", &list)) {
+        return false;
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        if (!read_body(reader, node)) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Bodies by their names, and points of them. */
+#ifndef SE3D_IO_BODIES_H
+#define SE3D_IO_BODIES_H
+
+#include "io/document/reader.h"
+#include "io/model/model.h"
+
+/* The body whose name stands under `key`; entry NULL: only the handle is wanted. */
+bool se3di_read_key_body(se3di_reader *reader, const se3di_node *map, const char *key,
+                         const se3di_body_entry **entry);
+/* body_i and body_j, which must differ; `what` is "a spring", ... */
+bool se3di_read_bodies_ij(se3di_reader *reader, const se3di_node *node, const char *what,
+                          const se3di_body_entry *bodies[2]);
+/* A point of a body: three coordinates or the name of one of its markers; left alone where there is
+ * none. */
+bool se3di_read_key_point(se3di_reader *reader, const se3di_node *map, const char *key,
+                          const se3di_body_entry *body, double point[3]);
+
+#endif

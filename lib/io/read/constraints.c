@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `constraints`: the primitives DP1, DP2, D, CD and the intermediate constraints of ME751. */
+#include <string.h>
+
+#include "io/document/document.h"
+#include "io/document/function.h"
+#include "io/document/keys.h"
+#include "io/document/reader.h"
+#include "io/document/value.h"
+#include "io/model/model.h"
+#include "io/read/bodies.h"
+#include "io/read/elements.h"
+#include "io/read/joints.h"
+#include "io/read/sections.h"
+
+static const char *const time_only[] = {"t", NULL};
+
+static bool require(se3di_reader *reader, const se3di_node *node, const char *key, const char *type)
+{
+    return se3di_node_get(node, key)
+               ? true
+               : se3di_reader_fail_key(reader, node, key, "is missing, `%s` needs it", type);
+}
+
+/* In the order of se3d_primitive_type. */
+static const char *const types[] = {"dp1", "dp2", "d", "cd", NULL};
+
+static bool read_geometry(se3di_reader *reader, const se3di_node *node,
+                          const se3di_body_entry *bodies[2], se3d_primitive_def *def)
+{
+    static const char *const required[] = {" a_i a_j ", " a_i ", "  ", " c "};
+    static const char *const directions[] = {"a_i", "a_j", "c"};
+    double *const targets[] = {def->a_i, def->a_j, def->c};
+    for (size_t k = 0; k < 3; ++k) {
+        if (se3di_keys_contain(required[def->type], directions[k]) &&
+            !require(reader, node, directions[k], types[def->type])) {
+            return false;
+        }
+        if (!se3di_read_key_direction(reader, node, directions[k], targets[k])) {
+            return false;
+        }
+    }
+    return se3di_read_key_point(reader, node, "point_i", bodies[0], def->point_i) &&
+           se3di_read_key_point(reader, node, "point_j", bodies[1], def->point_j);
+}
+
+static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_primitive_def *def)
+{
+    const se3di_node *value = se3di_node_get(node, "value");
+    if (!value) {
+        return def->type != SE3D_PRIMITIVE_D || require(reader, node, "value", "d");
+    }
+    if (!se3di_read_function(reader, value, time_only, &def->value, &def->function)) {
+        return false;
+    }
+    if (def->type == SE3D_PRIMITIVE_D && def->function.index1 == 0 && !(def->value > 0.0)) {
+        return se3di_reader_fail(reader, value,
+                                 "is %s, must be > 0: the square of the distance [m^2]; for a "
+                                 "distance of zero use a spherical joint",
+                                 value->text);
+    }
+    return true;
+}
+
+static bool read_primitive(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+{
+    size_t index = 0;
+    const se3di_body_entry *bodies[2] = {NULL, NULL};
+    se3d_primitive_def def = se3d_primitive_def_default();
+    if (!se3di_read_word(reader, se3di_node_get(node, "type"), types, &index)) {
+        return false;
+    }
+    def.type = (int32_t)index;
+    if (!se3di_read_key_body(reader, node, "body_i", &bodies[0]) ||
+        !se3di_read_key_body(reader, node, "body_j", &bodies[1])) {
+        return false;
+    }
+    if (bodies[0] == bodies[1]) {
+        return se3di_reader_fail_key(reader, node, "body_j",
+                                     "is body_i too, a constraint needs two different bodies");
+    }
+    def.name = entry->name;
+    def.body_i = bodies[0]->body;
+    def.body_j = bodies[1]->body;
+    if (!read_geometry(reader, node, bodies, &def) || !read_value(reader, node, &def)) {
+        return false;
+    }
+    const se3d_status status = se3d_primitive_create(reader->system, &def, &entry->constraint);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+bool se3di_read_constraints(se3di_reader *reader, const se3di_node *root)
+{
+    const se3di_node *list = NULL;
+    const char *type = NULL;
+    se3di_element_entry *entry = NULL;
+    if (!se3di_read_list(reader, root, "constraints", &list)) {
+        return false;
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        if (!se3di_read_type(reader, node, SE3DI_OBJECT_CONSTRAINT, &type) ||
+            !se3di_read_element(reader, node, SE3DI_ELEMENT_CONSTRAINT, &entry)) {
+            return false;
+        }
+        const bool pair = strncmp(type, "perpendicular", 13) == 0;
+        if (pair ? !se3di_read_pair(reader, node, type, entry)
+                 : !read_primitive(reader, node, entry)) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Names of joints, constraints, drivers and forces, and looking joints up. */
+#include "io/read/elements.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "io/base/pool.h"
+#include "io/document/document.h"
+#include "io/document/guess.h"
+#include "io/document/reader.h"
+#include "io/model/model.h"
+
+static const char *const kind_texts[] = {"joint", "constraint", "driver", "force"};
+
+bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_element_kind kind,
+                        se3di_element_entry **entry)
+{
+    se3d_model *model = reader->model;
+    const se3di_node *child = se3di_node_get(node, "name");
+    const char *name = NULL;
+    if (child && !se3di_read_name(reader, child, &name)) {
+        return false;
+    }
+    if (!child) {
+        char made[48];
+        snprintf(made, sizeof made, "%s%zu", kind_texts[kind], node->index + 1);
+        name = se3di_iopool_copy(&model->pool, made, strlen(made));
+        if (!name) {
+            return se3di_reader_fail_memory(reader);
+        }
+    }
+    if (se3di_ionames_find(&model->element_names, name, NULL)) {
+        return se3di_reader_fail_key(reader, node, "name",
+                                     "`%.60s` is the name of two elements: joints, constraints, "
+                                     "drivers and forces must have different names",
+                                     name);
+    }
+    se3di_element_entry *grown =
+        se3di_iopool_grow(&model->pool, model->elements, model->element_count,
+                          &model->element_capacity, sizeof *grown);
+    if (!grown ||
+        !se3di_ionames_add(&model->element_names, &model->pool, name, model->element_count)) {
+        return se3di_reader_fail_memory(reader);
+    }
+    model->elements = grown;
+    *entry = &model->elements[model->element_count++];
+    memset(*entry, 0, sizeof **entry);
+    (*entry)->name = name;
+    (*entry)->node = node;
+    (*entry)->kind = kind;
+    return true;
+}
+
+bool se3di_read_key_joint(se3di_reader *reader, const se3di_node *map, const char *key,
+                          se3d_constraint *joint)
+{
+    const se3d_model *model = reader->model;
+    const se3di_node *node = se3di_node_get(map, key);
+    const char *name = NULL;
+    size_t index = 0;
+    if (!node) {
+        return se3di_reader_fail_key(reader, map, key, "is missing, must be the name of a joint");
+    }
+    if (!se3di_read_text(reader, node, &name)) {
+        return false;
+    }
+    if (se3di_ionames_find(&model->element_names, name, &index) &&
+        model->elements[index].kind == SE3DI_ELEMENT_JOINT) {
+        *joint = model->elements[index].constraint;
+        return joint->index1 != 0 ||
+               se3di_reader_fail(reader, node,
+                                 "is `%.60s` itself, must be the name of another joint", name);
+    }
+    se3di_guess guess = se3di_guess_begin(name);
+    for (size_t k = 0; k < model->element_count; ++k) {
+        if (model->elements[k].kind == SE3DI_ELEMENT_JOINT) {
+            se3di_guess_offer(&guess, model->elements[k].name);
+        }
+    }
+    const char *meant = se3di_guess_get(&guess);
+    return se3di_reader_fail(reader, node, "no joint is named `%.60s`, %s%s%s", name,
+                             meant ? "did you mean `" : "must be the name of one of `joints`",
+                             meant ? meant : "", meant ? "`?" : "");
+}

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `forces`: bushing, friction, stop. */
+#include "io/read/forces_elements.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "io/base/rotation.h"
+#include "io/document/document.h"
+#include "io/document/keys.h"
+#include "io/document/reader.h"
+#include "io/document/value.h"
+#include "io/model/model.h"
+#include "io/read/bodies.h"
+#include "io/read/elements.h"
+
+bool se3di_read_bodies_ij(se3di_reader *reader, const se3di_node *node, const char *what,
+                          const se3di_body_entry *bodies[2])
+{
+    if (!se3di_read_key_body(reader, node, "body_i", &bodies[0]) ||
+        !se3di_read_key_body(reader, node, "body_j", &bodies[1])) {
+        return false;
+    }
+    if (bodies[0] == bodies[1]) {
+        return se3di_reader_fail_key(reader, node, "body_j",
+                                     "is body_i too, %s needs two different bodies", what);
+    }
+    return true;
+}
+
+/* 6 numbers on the diagonal, or 6 rows of 6. */
+static bool read_matrix(se3di_reader *reader, const se3di_node *node, const char *key,
+                        double matrix[36])
+{
+    const se3di_node *child = se3di_node_get(node, key);
+    double diagonal[6];
+    size_t row = 0;
+    if (!child) {
+        return true;
+    }
+    if (child->kind != SE3DI_NODE_LIST || child->count != 6) {
+        return se3di_reader_fail(reader, child,
+                                 "must be the 6 numbers of the diagonal (x, y, z, about x, y, z) "
+                                 "or 6 rows of 6 numbers");
+    }
+    if (child->first->kind != SE3DI_NODE_LIST) {
+        if (!se3di_read_vector(reader, child, 6, diagonal)) {
+            return false;
+        }
+        for (size_t k = 0; k < 6; ++k) {
+            matrix[7 * k] = diagonal[k];
+        }
+        return true;
+    }
+    for (const se3di_node *part = child->first; part; part = part->next) {
+        if (!se3di_read_vector(reader, part, 6, &matrix[6 * row++])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* The Euler parameters of frame `f` (ground) in the body's frame: A^T F. */
+static void to_body_frame(const double body[4], const double f[4], double local[4])
+{
+    double A[9];
+    double F[9];
+    double product[9];
+    se3di_rotation_to_matrix(body, A);
+    se3di_rotation_to_matrix(f, F);
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            product[3 * i + j] = A[i] * F[j] + A[3 + i] * F[3 + j] + A[6 + i] * F[6 + j];
+        }
+    }
+    se3di_rotation_from_matrix(product, local);
+}
+
+/* The frame of a bushing on a body, from a point and axes in the ground frame. */
+static bool place(se3di_reader *reader, se3d_body body, const double at[3], const double frame[4],
+                  double point[3], double orientation[4])
+{
+    double r[3];
+    double p[4];
+    if (SE3D_FAILED(se3d_body_get_position(reader->system, body, r)) ||
+        SE3D_FAILED(se3d_body_get_orientation(reader->system, body, p))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    const double d[3] = {at[0] - r[0], at[1] - r[1], at[2] - r[2]};
+    se3di_rotation_apply_inverse(p, d, point);
+    to_body_frame(p, frame, orientation);
+    return true;
+}
+
+static bool read_frames(se3di_reader *reader, const se3di_node *node,
+                        const se3di_body_entry *const bodies[2], se3d_bushing_def *def)
+{
+    const bool global = se3di_node_get(node, "at") != NULL;
+    double at[3] = {0.0, 0.0, 0.0};
+    double frame[4] = {1.0, 0.0, 0.0, 0.0};
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        const char *others =
+            global ? " point_i point_j orientation_i orientation_j " : " orientation ";
+        if (se3di_keys_contain(others, child->key)) {
+            return se3di_reader_fail(reader, child,
+                                     "is out of place: give `at` and `orientation` (ground frame), "
+                                     "or point_i, point_j, orientation_i, orientation_j");
+        }
+    }
+    if (!global) {
+        return se3di_read_key_point(reader, node, "point_i", bodies[0], def->point_i) &&
+               se3di_read_key_point(reader, node, "point_j", bodies[1], def->point_j) &&
+               se3di_read_orientation(reader, se3di_node_get(node, "orientation_i"),
+                                      def->orientation_i) &&
+               se3di_read_orientation(reader, se3di_node_get(node, "orientation_j"),
+                                      def->orientation_j);
+    }
+    return se3di_read_key_vector(reader, node, "at", at) &&
+           se3di_read_key_orientation(reader, node, frame) &&
+           place(reader, bodies[0]->body, at, frame, def->point_i, def->orientation_i) &&
+           place(reader, bodies[1]->body, at, frame, def->point_j, def->orientation_j);
+}
+
+bool se3di_read_bushing(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+{
+    const se3di_body_entry *bodies[2] = {NULL, NULL};
+    se3d_bushing_def def = se3d_bushing_def_default();
+    if (!se3di_read_bodies_ij(reader, node, "a bushing", bodies) ||
+        !read_frames(reader, node, bodies, &def) || !read_matrix(reader, node, "K", def.K) ||
+        !read_matrix(reader, node, "C", def.C)) {
+        return false;
+    }
+    for (size_t k = 0; k < 36; ++k) {
+        const double off = def.K[k] - def.K[6 * (k % 6) + k / 6];
+        if (fabs(off) > 1e-9 * (fabs(def.K[k]) + fabs(def.K[6 * (k % 6) + k / 6]))) {
+            return se3di_reader_fail_key(reader, node, "K",
+                                         "is not symmetric: row %zu and column %zu differ by %g",
+                                         k / 6 + 1, k % 6 + 1, off);
+        }
+    }
+    def.name = entry->name;
+    def.body_i = bodies[0]->body;
+    def.body_j = bodies[1]->body;
+    entry->body = def.body_j;
+    memcpy(entry->point, def.point_j, sizeof entry->point);
+    const se3d_status status = se3d_force_create_bushing(reader->system, &def, &entry->force);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+bool se3di_read_friction(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+{
+    se3d_friction_def def = se3d_friction_def_default();
+    if (!se3di_read_key_joint(reader, node, "joint", &def.joint) ||
+        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
+        !se3di_read_key_number(reader, node, "mu", SE3DI_NOT_NEGATIVE, &def.mu) ||
+        !se3di_read_key_number(reader, node, "mu_static", SE3DI_NOT_NEGATIVE, &def.mu_static) ||
+        !se3di_read_key_number(reader, node, "radius", SE3DI_NOT_NEGATIVE, &def.radius) ||
+        !se3di_read_key_number(reader, node, "limit", SE3DI_NOT_NEGATIVE, &def.limit) ||
+        !se3di_read_key_number(reader, node, "viscous", SE3DI_NOT_NEGATIVE, &def.viscous) ||
+        !se3di_read_key_number(reader, node, "presliding", SE3DI_POSITIVE, &def.presliding) ||
+        !se3di_read_key_number(reader, node, "length", SE3DI_POSITIVE, &def.length) ||
+        !se3di_read_key_number(reader, node, "width", SE3DI_POSITIVE, &def.width) ||
+        !se3di_read_key_number(reader, node, "thrust_radius", SE3DI_NOT_NEGATIVE,
+                               &def.thrust_radius)) {
+        return false;
+    }
+    if (def.coordinate == SE3D_JOINT_COORDINATE_ANGLE && def.mu > 0.0 && !(def.radius > 0.0) &&
+        !(def.thrust_radius > 0.0)) {
+        return se3di_reader_fail_key(reader, node, "radius",
+                                     "is missing, friction with `mu` on an angle needs the radius "
+                                     "of the bearing [m] > 0");
+    }
+    def.name = entry->name;
+    entry->coordinate = def.coordinate;
+    const se3d_status status = se3d_force_create_friction(reader->system, &def, &entry->force);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+/* The coordinate of a joint, or two points whose distance it is. */
+static bool read_stop_place(se3di_reader *reader, const se3di_node *node, se3d_stop_def *def)
+{
+    const se3di_body_entry *bodies[2] = {NULL, NULL};
+    if (!se3di_node_get(node, "joint") && se3di_node_get(node, "body_j")) {
+        if (!se3di_read_bodies_ij(reader, node, "a stop", bodies) ||
+            !se3di_read_key_point(reader, node, "point_i", bodies[0], def->point_i) ||
+            !se3di_read_key_point(reader, node, "point_j", bodies[1], def->point_j)) {
+            return false;
+        }
+        def->body_i = bodies[0]->body;
+        def->body_j = bodies[1]->body;
+        return true;
+    }
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (se3di_node_get(node, "joint") &&
+            se3di_keys_contain(" body_i body_j point_i point_j ", child->key)) {
+            return se3di_reader_fail(reader, child, "cannot stand beside `joint`");
+        }
+    }
+    return se3di_read_key_joint(reader, node, "joint", &def->joint) &&
+           se3di_read_key_coordinate(reader, node, def->joint, &def->coordinate);
+}
+
+bool se3di_read_stop(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+{
+    se3d_stop_def def = se3d_stop_def_default();
+    if (!read_stop_place(reader, node, &def) ||
+        !se3di_read_key_number(reader, node, "lower", SE3DI_ANY, &def.lower) ||
+        !se3di_read_key_number(reader, node, "upper", SE3DI_ANY, &def.upper) ||
+        !se3di_read_key_number(reader, node, "k", SE3DI_POSITIVE, &def.k) ||
+        !se3di_read_key_restitution(reader, node, &def.restitution)) {
+        return false;
+    }
+    if (!se3di_node_get(node, "lower") && !se3di_node_get(node, "upper")) {
+        return se3di_reader_fail_key(reader, node, "upper",
+                                     "is missing, a stop needs `lower`, `upper` or both");
+    }
+    if (!se3di_node_get(node, "k")) {
+        return se3di_reader_fail_key(reader, node, "k",
+                                     "is missing, a stop needs its stiffness > 0");
+    }
+    def.name = entry->name;
+    entry->coordinate =
+        se3di_node_get(node, "joint") ? def.coordinate : SE3D_JOINT_COORDINATE_DISPLACEMENT;
+    const se3d_status status = se3d_force_create_stop(reader->system, &def, &entry->force);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}

@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Models from texts and files: the sections in their order. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/base/pool.h"
+#include "io/base/sized.h"
+#include "io/document/document.h"
+#include "io/document/function.h"
+#include "io/document/reader.h"
+#include "io/document/value.h"
+#include "io/model/model.h"
+#include "io/read/sections.h"
+
+void se3d_model_options_init(se3d_model_options *options, size_t size)
+{
+    if (options && size >= sizeof options->struct_size) {
+        memset(options, 0, size);
+        options->struct_size = size;
+    }
+}
+
+/* The file's name without folder and extension. */
+static const char *base_name(se3di_iopool *pool, const char *file)
+{
+    const char *start = file;
+    for (const char *c = file; *c; ++c) {
+        if (*c == '/' || *c == '\\') {
+            start = c + 1;
+        }
+    }
+    const char *dot = strrchr(start, '.');
+    const size_t length = dot && dot > start ? (size_t)(dot - start) : strlen(start);
+    return length > 0 ? se3di_iopool_copy(pool, start, length) : "model";
+}
+
+static bool read_head(se3di_reader *reader, const se3di_node *root)
+{
+    double version = 0.0;
+    if (root->kind != SE3DI_NODE_MAP) {
+        return se3di_reader_fail(reader, root, "is %s, must be a map that begins with `se3d: 1`",
+                                 se3di_node_describe(root));
+    }
+    const se3di_node *node = se3di_node_get(root, "se3d");
+    if (!node) {
+        return se3di_reader_fail_key(reader, root, "se3d",
+                                     "is missing, must be 1: the version of the file format");
+    }
+    if (!se3di_read_number(reader, node, SE3DI_ANY, &version)) {
+        return false;
+    }
+    if (version < 1.0 || version > 1.0) {
+        return se3di_reader_fail(reader, node, "is %s, must be 1: the version of the file format",
+                                 node->text);
+    }
+    if (!se3di_read_keys(reader, root, SE3DI_OBJECT_MODEL)) {
+        return false;
+    }
+    const se3di_node *title = se3di_node_get(root, "title");
+    return !title || se3di_read_text(reader, title, &reader->model->title);
+}
+
+/* Three components, each a number or a function of time. */
+static bool read_gravity(se3di_reader *reader, const se3di_node *root)
+{
+    static const char *const time_only[] = {"t", NULL};
+    const se3di_node *node = se3di_node_get(root, "gravity");
+    se3d_system *system = reader->system;
+    se3d_function function[3] = {{0, 0}, {0, 0}, {0, 0}};
+    double value[3] = {0.0, 0.0, 0.0};
+    size_t k = 0;
+    if (!node) {
+        return true;
+    }
+    if (node->kind != SE3DI_NODE_LIST || node->count != 3) {
+        return se3di_read_vector(reader, node, 3, value); /* says why not */
+    }
+    for (const se3di_node *part = node->first; part; part = part->next, ++k) {
+        if (!se3di_read_function(reader, part, time_only, &value[k], &function[k])) {
+            return false;
+        }
+    }
+    se3d_status status = se3d_system_set_gravity(system, value);
+    if (status >= 0) {
+        status = se3d_system_set_gravity_function(system, function);
+    }
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+static bool create_system(se3di_reader *reader, const se3di_node *root)
+{
+    se3d_system_def def = se3d_system_def_default();
+    def.allocator = &reader->pool->allocator;
+    if (SE3D_FAILED(se3d_system_create(&def, &reader->model->system))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    reader->system = reader->model->system;
+    return read_gravity(reader, root);
+}
+
+static bool read_model(se3di_reader *reader, const se3di_node *root)
+{
+    return read_head(reader, root) && se3di_read_parameters(reader, root) &&
+           create_system(reader, root) && se3di_read_materials(reader, root) &&
+           se3di_read_bodies(reader, root) && se3di_read_joints(reader, root) &&
+           se3di_read_constraints(reader, root) && se3di_read_drivers(reader, root) &&
+           se3di_read_forces(reader, root) && se3di_read_analyses(reader, root) &&
+           se3di_read_contact(reader, root) && se3di_read_particles(reader, root) &&
+           se3di_read_outputs(reader, root) && se3di_read_events(reader, root);
+}
+
+/* An empty model with its own memory. */
+static se3d_model *create_model(const se3d_allocator *allocator)
+{
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, allocator);
+    se3d_model *model = se3di_iopool_alloc(&pool, sizeof *model);
+    if (!model) {
+        se3di_iopool_destroy(&pool);
+        return NULL;
+    }
+    model->pool = pool;
+    model->title = "";
+    return model;
+}
+
+static se3d_status fail_early(se3d_model_error *error, se3d_status status, const char *path,
+                              const char *text)
+{
+    se3di_document_report(error, "", 0, 0, path, text);
+    return status;
+}
+
+/* Takes the options over the defaults in `used`. */
+static int take_options(const se3d_model_options *options, se3d_model_options *used)
+{
+    *used = se3d_model_options_default();
+    return !options || se3di_io_take(options, used, sizeof *used);
+}
+
+se3d_status se3d_model_read_text(const char *text, size_t length, const char *name,
+                                 const se3d_model_options *options, se3d_model **out,
+                                 se3d_model_error *error)
+{
+    se3d_model_options used;
+    if (error) {
+        memset(error, 0, sizeof *error);
+    }
+    if (out) {
+        *out = NULL;
+    }
+    if (!take_options(options, &used)) {
+        return fail_early(error, SE3D_ERR_INVALID_ARGUMENT, "", "options: " SE3DI_IO_SIZE_TEXT);
+    }
+    if (!text || !name || !out || (used.setting_count > 0 && !used.settings)) {
+        return fail_early(error, SE3D_ERR_NULL, "", "text, name or out is NULL");
+    }
+    se3d_model *model = create_model(used.allocator);
+    if (!model) {
+        return fail_early(error, SE3D_ERR_NO_MEMORY, "", "out of memory");
+    }
+    model->file = se3di_iopool_copy(&model->pool, name, strlen(name));
+    model->name = base_name(&model->pool, name);
+    se3d_status status = model->file && model->name ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    if (status < 0) {
+        fail_early(error, status, "", "out of memory");
+    } else {
+        status = se3di_document_parse(&model->pool, model->file, text, length, &model->root, error);
+    }
+    if (status >= 0) {
+        se3di_reader reader = {.model = model,
+                               .pool = &model->pool,
+                               .file = model->file,
+                               .options = &used,
+                               .error = error};
+        if (!read_model(&reader, model->root)) {
+            status = reader.status < 0 ? reader.status : SE3D_ERR_MODEL;
+        }
+    }
+    if (status < 0) {
+        se3d_model_destroy(model);
+        return status;
+    }
+    *out = model;
+    return SE3D_OK;
+}
+
+/* Read a whole file into memory of `pool`. */
+static se3d_status read_bytes(se3di_iopool *pool, FILE *file, char **text, size_t *length)
+{
+    size_t capacity = 65536;
+    char *bytes = se3di_iopool_alloc(pool, capacity);
+    size_t used = 0;
+    while (bytes) {
+        used += fread(bytes + used, 1, capacity - used, file);
+        if (used < capacity || capacity > SE3DI_DOCUMENT_BYTES_MAX) {
+            *text = bytes;
+            *length = used;
+            return ferror(file) ? SE3D_ERR_IO : SE3D_OK;
+        }
+        char *larger = se3di_iopool_alloc(pool, 2 * capacity);
+        if (larger) {
+            memcpy(larger, bytes, used);
+        }
+        bytes = larger;
+        capacity *= 2;
+    }
+    return SE3D_ERR_NO_MEMORY;
+}
+
+se3d_status se3d_model_read_file(const char *path, const se3d_model_options *options,
+                                 se3d_model **out, se3d_model_error *error)
+{
+    se3d_model_options used;
+    char *text = NULL;
+    size_t length = 0;
+    if (error) {
+        memset(error, 0, sizeof *error);
+    }
+    if (out) {
+        *out = NULL;
+    }
+    if (!take_options(options, &used)) {
+        return fail_early(error, SE3D_ERR_INVALID_ARGUMENT, "", "options: " SE3DI_IO_SIZE_TEXT);
+    }
+    if (!path || !out) {
+        return fail_early(error, SE3D_ERR_NULL, "", "path or out is NULL");
+    }
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        return fail_early(error, SE3D_ERR_IO, path, strerror(errno));
+    }
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, used.allocator);
+    errno = 0;
+    se3d_status status = read_bytes(&pool, file, &text, &length);
+    if (status == SE3D_ERR_IO) {
+        fail_early(error, status, path, errno ? strerror(errno) : "cannot be read");
+    } else if (status < 0) {
+        fail_early(error, status, path, "out of memory");
+    } else {
+        status = se3d_model_read_text(text, length, path, options, out, error);
+    }
+    fclose(file);
+    se3di_iopool_destroy(&pool);
+    return status;
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Meshes in files: STL, binary and ASCII, and OBJ. */
+#ifndef SE3D_IO_MESH_FILE_H
+#define SE3D_IO_MESH_FILE_H
+
+#include "io/document/reader.h"
+#include "io/model/mesh.h"
+
+/* Read the file that `file` of a shape names, relative to the model file, once for all shapes of
+ * the same scale; its memory is the model's. @return NULL: failed, with the place in the model file
+ * and in the mesh. */
+const se3di_mesh *se3di_read_mesh(se3di_reader *reader, const se3di_node *shape, const char *file,
+                                  double scale);
+
+#endif

@@ -1,0 +1,381 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `output`: results files, and the pictures that are made of them. */
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "io/base/pool.h"
+#include "io/channel/channel.h"
+#include "io/channel/output.h"
+#include "io/document/document.h"
+#include "io/document/keys.h"
+#include "io/document/reader.h"
+#include "io/document/value.h"
+#include "io/model/grains.h"
+#include "io/model/model.h"
+#include "io/read/sections.h"
+
+static bool read_channels(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
+{
+    se3d_model *model = reader->model;
+    const se3di_node *list = NULL;
+    if (!se3di_read_list(reader, node, "channels", &list)) {
+        return false;
+    }
+    if (!list) {
+        output->channels = se3di_channel_list_all(model, &output->count);
+        return output->channels ? true : se3di_reader_fail_memory(reader);
+    }
+    output->channels = se3di_iopool_array(&model->pool, list->count, sizeof *output->channels);
+    if (!output->channels) {
+        return se3di_reader_fail_memory(reader);
+    }
+    for (const se3di_node *child = list->first; child; child = child->next) {
+        char problem[480] = "";
+        const char *name = NULL;
+        if (!se3di_read_text(reader, child, &name)) {
+            return false;
+        }
+        if (strlen(name) > 310) {
+            return se3di_reader_fail(reader, child, "is longer than any channel's name");
+        }
+        if (!se3di_channel_find(model, name, &output->channels[output->count], problem,
+                                sizeof problem)) {
+            return se3di_reader_fail(reader, child, "%s", problem);
+        }
+        for (size_t k = 0; k < output->count; ++k) {
+            if (strcmp(output->channels[k].name, name) == 0) {
+                return se3di_reader_fail(reader, child, "`%s` is listed twice", name);
+            }
+        }
+        ++output->count;
+    }
+    return true;
+}
+
+/* particles: true for all, or the name of a set. */
+static bool read_snapshots(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
+{
+    const se3di_node *child = se3di_node_get(node, "particles");
+    const se3d_model *model = reader->model;
+    int32_t wanted = 0;
+    output->set = -1;
+    if (child && child->kind == SE3DI_NODE_SCALAR && model->grains) {
+        const size_t set = se3di_grains_find_set(model->grains, child->text);
+        output->set = set == SIZE_MAX ? -1 : (int32_t)set;
+        wanted = output->set >= 0;
+    }
+    if (child && !wanted && !se3di_read_bool(reader, child, &wanted)) {
+        return false;
+    }
+    if (wanted && !model->grains) {
+        return se3di_reader_fail(reader, child, "is true, but the model has no `particles`");
+    }
+    output->particles = wanted != 0;
+    return true;
+}
+
+/* contacts: true. */
+static bool read_contacts(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
+{
+    const se3di_node *child = se3di_node_get(node, "contacts");
+    int32_t wanted = 0;
+    if (child && !se3di_read_bool(reader, child, &wanted)) {
+        return false;
+    }
+    if (wanted && !se3di_node_get(reader->model->root, "contact") && !reader->model->grains) {
+        return se3di_reader_fail(reader, child,
+                                 "is true, but the model has no `contact` and no `particles`");
+    }
+    output->contacts = wanted != 0;
+    return true;
+}
+
+/* A file has rows of one kind. */
+static bool check_kind_of_rows(se3di_reader *reader, const se3di_node *node,
+                               const se3di_output_entry *output)
+{
+    const char *what = output->particles ? "particles" : "contacts";
+    if (output->particles && output->contacts) {
+        return se3di_reader_fail_key(reader, node, "contacts",
+                                     "cannot stand beside `particles`: give each its own file");
+    }
+    if ((output->particles || output->contacts) && se3di_node_get(node, "channels")) {
+        return se3di_reader_fail_key(reader, node, "channels",
+                                     "cannot stand beside `%s`: give each its own file", what);
+    }
+    return true;
+}
+
+/* What an entry makes: the key that says so and names the file, how the name ends, and the other
+ * keys that it may have. */
+typedef struct output_kind {
+    const char *key;
+    const char *ending;  /* NULL: any */
+    const char *ending2; /* NULL: no other */
+    const char *example;
+    const char *keys;
+} output_kind;
+
+enum { KIND_FILE = 0, KIND_VTK = 1, KIND_COUNT = 5 };
+
+static const output_kind kinds[KIND_COUNT] = {
+    {"file", NULL, NULL, "results.csv", " file every channels particles contacts "},
+    {"vtk", ".pvd", NULL, "motion.pvd", " vtk every "},
+    {"plot", ".svg", ".png", "results.svg", " plot from channels x fft "},
+    {"scene", ".html", ".glb", "motion.html", " scene "},
+    {"video", ".mp4", NULL, "motion.mp4", " video speed "}};
+
+static bool ends_with(const char *text, const char *ending)
+{
+    const size_t length = strlen(text);
+    const size_t tail = strlen(ending);
+    return length > tail && strcmp(text + length - tail, ending) == 0;
+}
+
+/* A name that nothing else in the folder of the results has. */
+static bool read_file_name(se3di_reader *reader, const se3di_node *node, const output_kind *kind,
+                           const char **file)
+{
+    const se3d_model *model = reader->model;
+    if (!se3di_read_file_name(reader, node, file)) {
+        return false;
+    }
+    const char *name = *file;
+    bool taken = strcmp(name, "scene.glb") == 0 && strcmp(kind->key, "scene") != 0;
+    if (kind->ending && !ends_with(name, kind->ending) &&
+        !(kind->ending2 && ends_with(name, kind->ending2))) {
+        return se3di_reader_fail(reader, node, "`%.60s` must end with %s%s%s, such as %s", name,
+                                 kind->ending, kind->ending2 ? " or " : "",
+                                 kind->ending2 ? kind->ending2 : "", kind->example);
+    }
+    for (size_t k = 0; k < model->output_count; ++k) {
+        taken = taken || strcmp(model->outputs[k].file, name) == 0;
+    }
+    for (size_t k = 0; k < model->picture_count; ++k) {
+        taken = taken || strcmp(model->pictures[k].file, name) == 0;
+    }
+    if (taken) {
+        return se3di_reader_fail(reader, node, "`%.60s` is written by two outputs", name);
+    }
+    for (size_t k = 0; k < model->analysis_count; ++k) {
+        const char *other = model->analyses[k].modes.file;
+        if (other && strcmp(other, name) == 0) {
+            return se3di_reader_fail(reader, node, "`%.60s` is written by the modes", name);
+        }
+    }
+    return true;
+}
+
+/* Which kind an entry is: exactly one of their keys is there. */
+static bool find_kind(se3di_reader *reader, const se3di_node *node, size_t *kind)
+{
+    size_t found = KIND_COUNT;
+    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_OUTPUT)) {
+        return false;
+    }
+    for (size_t k = 0; k < KIND_COUNT; ++k) {
+        if (!se3di_node_get(node, kinds[k].key)) {
+            continue;
+        }
+        if (found < KIND_COUNT) {
+            return se3di_reader_fail_key(reader, node, kinds[k].key,
+                                         "cannot stand beside `%s`: give each its own entry",
+                                         kinds[found].key);
+        }
+        found = k;
+    }
+    if (found == KIND_COUNT) {
+        return se3di_reader_fail_key(reader, node, "file",
+                                     "is missing, such as results.csv (or one of vtk, plot, "
+                                     "scene, video)");
+    }
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (!se3di_keys_contain(kinds[found].keys, child->key)) {
+            return se3di_reader_fail(reader, child, "has no meaning beside `%s`, which takes:%s",
+                                     kinds[found].key, kinds[found].keys);
+        }
+    }
+    *kind = found;
+    return true;
+}
+
+static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kind)
+{
+    se3d_model *model = reader->model;
+    se3di_output_entry *output = &model->outputs[model->output_count];
+    const se3di_node *file = se3di_node_get(node, kinds[kind].key);
+    output->vtk = kind == KIND_VTK;
+    output->node = node;
+    if (!read_file_name(reader, file, &kinds[kind], &output->file) ||
+        !se3di_read_key_number(reader, node, "every", SE3DI_POSITIVE, &output->every) ||
+        !read_snapshots(reader, node, output) || !read_contacts(reader, node, output) ||
+        !check_kind_of_rows(reader, node, output) ||
+        (!output->particles && !output->contacts && !output->vtk &&
+         !read_channels(reader, node, output))) {
+        return false;
+    }
+    ++model->output_count;
+    return true;
+}
+
+/* True where `part` is `whole` or a part of it: pin.force of pin, pin.force.x of pin.force. */
+static bool is_part(const char *part, const char *whole)
+{
+    const size_t length = strlen(whole);
+    return strncmp(part, whole, length) == 0 && (part[length] == '\0' || part[length] == '.');
+}
+
+/* A channel of a plot: one of its results, all of an element's, or a component. */
+static bool read_plot_channel(se3di_reader *reader, const se3di_node *node,
+                              const se3di_output_entry *from, const char **name)
+{
+    if (!se3di_read_text(reader, node, name)) {
+        return false;
+    }
+    bool found = strcmp(*name, "time") == 0;
+    for (size_t k = 0; k < from->count; ++k) {
+        found = found || is_part(*name, from->channels[k].name) ||
+                is_part(from->channels[k].name, *name);
+    }
+    return found ||
+           se3di_reader_fail(reader, node, "`%.100s` is no channel of %.100s", *name, from->file);
+}
+
+/* The results that a plot shows: `from`, or the first that have channels. */
+static bool find_results(se3di_reader *reader, const se3di_node *node,
+                         const se3di_output_entry **from)
+{
+    const se3d_model *model = reader->model;
+    const se3di_node *child = se3di_node_get(node, "from");
+    const char *name = NULL;
+    if (child && !se3di_read_text(reader, child, &name)) {
+        return false;
+    }
+    for (size_t k = 0; k < model->output_count; ++k) {
+        const se3di_output_entry *output = &model->outputs[k];
+        if (output->channels && (!name || strcmp(output->file, name) == 0)) {
+            *from = output;
+            return true;
+        }
+    }
+    return se3di_reader_fail(reader, child ? child : node,
+                             "names no results with channels, which `output` must have");
+}
+
+static bool read_plot(se3di_reader *reader, const se3di_node *node, se3d_model_picture *picture)
+{
+    const se3di_node *list = NULL;
+    const se3di_output_entry *from = NULL;
+    const se3di_node *x = se3di_node_get(node, "x");
+    const se3di_node *fft = se3di_node_get(node, "fft");
+    if (!find_results(reader, node, &from) || !se3di_read_list(reader, node, "channels", &list) ||
+        (x && !read_plot_channel(reader, x, from, &picture->x)) ||
+        (fft && !se3di_read_bool(reader, fft, &picture->fft))) {
+        return false;
+    }
+    picture->results = from->file;
+    const size_t count = list ? list->count : 0;
+    const char **channels = se3di_iopool_array(reader->pool, count + 1, sizeof *channels);
+    if (!channels) {
+        return se3di_reader_fail_memory(reader);
+    }
+    for (const se3di_node *child = list ? list->first : NULL; child; child = child->next) {
+        if (!read_plot_channel(reader, child, from, &channels[picture->channel_count++])) {
+            return false;
+        }
+    }
+    picture->channels = channels;
+    return true;
+}
+
+static bool read_picture(se3di_reader *reader, const se3di_node *node, size_t kind)
+{
+    se3d_model *model = reader->model;
+    se3d_model_picture *picture = &model->pictures[model->picture_count];
+    picture->type = kinds[kind].key;
+    picture->speed = 1.0;
+    if (!read_file_name(reader, se3di_node_get(node, kinds[kind].key), &kinds[kind],
+                        &picture->file) ||
+        !se3di_read_key_number(reader, node, "speed", SE3DI_POSITIVE, &picture->speed) ||
+        (strcmp(picture->type, "plot") == 0 && !read_plot(reader, node, picture))) {
+        return false;
+    }
+    ++model->picture_count;
+    return true;
+}
+
+/* So many rows that they would fill the disk are a slip. */
+static bool check_rows(se3di_reader *reader)
+{
+    const se3d_model *model = reader->model;
+    for (size_t k = 0; k < model->output_count; ++k) {
+        const se3di_output_entry *output = &model->outputs[k];
+        const double most = output->vtk ? 1e5 : 1e8;
+        for (size_t i = 0; i < model->analysis_count; ++i) {
+            const se3di_analysis_entry *analysis = &model->analyses[i];
+            double every;
+            const double count = se3di_output_count_rows(output, analysis, &every);
+            if (count > most) {
+                const bool own = output->every > 0.0;
+                const se3di_node *node = own || !analysis->node ? output->node : analysis->node;
+                return se3di_reader_fail_key(
+                    reader, node ? node : model->root, own ? "every" : "step",
+                    "is %g s, which asks for %.3g %s of `%.60s`, must ask for at most %g%s", every,
+                    count, output->vtk ? "files" : "rows", output->file, most,
+                    own ? "" : ": give the output an `every`");
+            }
+        }
+    }
+    return true;
+}
+
+/* Without a list of results: every channel. */
+static bool add_default(se3di_reader *reader)
+{
+    se3d_model *model = reader->model;
+    se3di_output_entry *output = &model->outputs[model->output_count];
+    output->file = "results.csv";
+    output->channels = se3di_channel_list_all(model, &output->count);
+    ++model->output_count;
+    return output->channels ? true : se3di_reader_fail_memory(reader);
+}
+
+static bool read_entries(se3di_reader *reader, const se3di_node *list, bool pictures)
+{
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        size_t kind = 0;
+        if (!find_kind(reader, node, &kind)) {
+            return false;
+        }
+        if ((kind > KIND_VTK) == pictures &&
+            !(pictures ? read_picture(reader, node, kind) : read_output(reader, node, kind))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root)
+{
+    se3d_model *model = reader->model;
+    const se3di_node *list = NULL;
+    if (!se3di_read_list(reader, root, "output", &list)) {
+        return false;
+    }
+    const size_t count = list ? list->count : 0;
+    model->outputs = se3di_iopool_array(&model->pool, count + 1, sizeof *model->outputs);
+    model->pictures = se3di_iopool_array(&model->pool, count + 1, sizeof *model->pictures);
+    if (!model->outputs || !model->pictures) {
+        return se3di_reader_fail_memory(reader);
+    }
+    if (!read_entries(reader, list, false)) {
+        return false;
+    }
+    bool results = false;
+    for (size_t k = 0; k < model->output_count; ++k) {
+        results = results || !model->outputs[k].vtk;
+    }
+    return (results || add_default(reader)) && check_rows(reader) &&
+           read_entries(reader, list, true);
+}

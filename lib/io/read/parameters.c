@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Parameters: numbers and expressions over one another, in any order.
+ *
+ * Each is evaluated after those that its text names (depth first over an explicit stack, so that
+ * long chains need no recursion); one that is met again while it waits is part of a cycle. */
+#include <stdio.h>
+#include <string.h>
+
+#include "io/base/pool.h"
+#include "io/document/document.h"
+#include "io/document/guess.h"
+#include "io/document/reader.h"
+#include "io/document/value.h"
+#include "io/model/model.h"
+#include "io/read/sections.h"
+
+typedef enum parameter_state { NEW = 0, WAITING = 1, DONE = 2 } parameter_state;
+
+typedef struct parameter {
+    const se3di_node *node;
+    const char *text; /* where the search for names goes on */
+    parameter_state state;
+} parameter;
+
+typedef struct resolver {
+    se3di_reader *reader;
+    parameter *list;
+    size_t count;
+    se3di_ionames names;
+    size_t *stack;
+    size_t depth;
+    se3d_expression_symbol *symbols; /* of those that are done */
+    size_t done;
+} resolver;
+
+static const char *const reserved[] = {"t", "pi", "deg", "ground", NULL};
+
+/* Parameters of the expression library's own names are found by compiling one. */
+static bool check_name(se3di_reader *reader, const se3di_node *node)
+{
+    bool good = se3di_text_is_identifier(node->key) && strlen(node->key) <= 60;
+    for (const char *const *word = reserved; *word; ++word) {
+        good = good && strcmp(*word, node->key) != 0;
+    }
+    if (good) {
+        const se3d_expression_symbol symbol = {node->key, 1.0};
+        se3d_expression_def def = se3d_expression_def_default();
+        se3d_expression *expression = NULL;
+        def.text = "1";
+        def.symbols = &symbol;
+        def.symbol_count = 1;
+        def.allocator = &reader->pool->allocator;
+        const se3d_status status = se3d_expression_create(&def, &expression, NULL);
+        se3d_expression_destroy(expression);
+        if (status == SE3D_ERR_NO_MEMORY) {
+            return se3di_reader_fail_memory(reader);
+        }
+        good = status >= 0;
+    }
+    if (!good) {
+        se3di_node place = *node;
+        place.line = node->key_line;
+        place.column = node->key_column;
+        if (strpbrk(node->key, "()")) {
+            return se3di_reader_fail(reader, &place,
+                                     "is the rest of an expression that was cut at a comma: inside "
+                                     "{ } an expression with a comma needs quotes");
+        }
+        return se3di_reader_fail(reader, &place,
+                                 "the name is not allowed: letters, digits and _, not beginning "
+                                 "with a digit, and not t or the name of a constant or function");
+    }
+    return true;
+}
+
+/* The next name of a parameter in the text, from *text on; numbers such as 1e5 are passed over. */
+static bool next_name(const resolver *r, const char **text, size_t *index)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
+    static const char more[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789.";
+    char word[64];
+    const char *at = *text;
+    while (*at) {
+        const size_t length = strspn(at, more);
+        if (length == 0) {
+            ++at;
+            continue;
+        }
+        if (strspn(at, letters) > 0 && length < sizeof word) {
+            memcpy(word, at, length);
+            word[length] = '\0';
+            if (se3di_ionames_find(&r->names, word, index)) {
+                *text = at + length;
+                return true;
+            }
+        }
+        at += length;
+    }
+    *text = at;
+    return false;
+}
+
+static bool fail_cycle(resolver *r, size_t again)
+{
+    char text[400] = "";
+    size_t k = 0;
+    while (r->stack[k] != again) {
+        ++k;
+    }
+    for (; k < r->depth && strlen(text) < 300; ++k) {
+        const size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, "%.60s -> ", r->list[r->stack[k]].node->key);
+    }
+    return se3di_reader_fail(r->reader, r->list[again].node,
+                             "depends on itself: %s%.60s; parameters must not form a circle", text,
+                             r->list[again].node->key);
+}
+
+static bool finish(resolver *r, size_t index)
+{
+    parameter *p = &r->list[index];
+    double value = 0.0;
+    if (!se3di_read_expression(r->reader, p->node, r->symbols, r->done, &value)) {
+        return false;
+    }
+    r->symbols[r->done].name = p->node->key;
+    r->symbols[r->done].value = value;
+    ++r->done;
+    p->state = DONE;
+    return true;
+}
+
+static bool resolve(resolver *r, size_t start)
+{
+    r->stack[0] = start;
+    r->depth = 1;
+    r->list[start].state = WAITING;
+    while (r->depth > 0) {
+        parameter *p = &r->list[r->stack[r->depth - 1]];
+        size_t index = 0;
+        if (!next_name(r, &p->text, &index)) {
+            if (!finish(r, r->stack[r->depth - 1])) {
+                return false;
+            }
+            --r->depth;
+        } else if (r->list[index].state == WAITING) {
+            return fail_cycle(r, index);
+        } else if (r->list[index].state == NEW) {
+            r->list[index].state = WAITING;
+            r->stack[r->depth++] = index;
+        }
+    }
+    return true;
+}
+
+/* The node that an option of the command line stands for. */
+static se3di_node *setting_node(se3di_reader *reader, const char *name, const char *value)
+{
+    se3di_node *node = se3di_iopool_alloc(reader->pool, sizeof *node);
+    if (node) {
+        node->kind = SE3DI_NODE_SCALAR;
+        node->key = name;
+        node->text = value;
+    }
+    return node;
+}
+
+static bool apply_settings(resolver *r)
+{
+    se3di_reader *reader = r->reader;
+    for (size_t k = 0; k < reader->options->setting_count; ++k) {
+        const se3d_model_setting *setting = &reader->options->settings[k];
+        se3di_node *node = setting_node(reader, setting->name, setting->value);
+        size_t index = 0;
+        if (!node) {
+            return se3di_reader_fail_memory(reader);
+        }
+        if (!se3di_ionames_find(&r->names, setting->name, &index)) {
+            char list[400] = "";
+            se3di_guess guess = se3di_guess_begin(setting->name);
+            for (size_t i = 0; i < r->count; ++i) {
+                const size_t used = strlen(list);
+                snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "",
+                         r->list[i].node->key);
+                se3di_guess_offer(&guess, r->list[i].node->key);
+            }
+            const char *meant = se3di_guess_get(&guess);
+            return se3di_reader_fail(reader, node, "the model has no such parameter, %s%s%s",
+                                     meant          ? "did you mean `"
+                                     : r->count > 0 ? "it has: "
+                                                    : "it has none",
+                                     meant ? meant : list, meant ? "`?" : "");
+        }
+        r->list[index].node = node;
+        r->list[index].text = node->text;
+    }
+    return true;
+}
+
+static bool collect(resolver *r, const se3di_node *map)
+{
+    if (!map) {
+        return true;
+    }
+    for (const se3di_node *node = map->first; node; node = node->next) {
+        if (!check_name(r->reader, node)) {
+            return false;
+        }
+        r->list[r->count].node = node;
+        r->list[r->count].text = node->text ? node->text : "";
+        if (!se3di_ionames_add(&r->names, r->reader->pool, node->key, r->count++)) {
+            return se3di_reader_fail_memory(r->reader);
+        }
+    }
+    return true;
+}
+
+bool se3di_read_parameters(se3di_reader *reader, const se3di_node *root)
+{
+    se3di_iopool *pool = reader->pool;
+    const se3di_node *map = se3di_node_get(root, "parameters");
+    if (map && se3di_node_is_null(map)) {
+        map = NULL;
+    }
+    if (map && map->kind != SE3DI_NODE_MAP) {
+        return se3di_reader_fail(reader, map, "is %s, must be a map such as {L: 2}",
+                                 se3di_node_describe(map));
+    }
+    const size_t count = map ? map->count : 0;
+    resolver r = {.reader = reader};
+    r.list = se3di_iopool_array(pool, count, sizeof *r.list);
+    r.stack = se3di_iopool_array(pool, count, sizeof *r.stack);
+    r.symbols = se3di_iopool_array(pool, count, sizeof *r.symbols);
+    if (!r.list || !r.stack || !r.symbols) {
+        return se3di_reader_fail_memory(reader);
+    }
+    if (!collect(&r, map) || !apply_settings(&r)) {
+        return false;
+    }
+    for (size_t k = 0; k < r.count; ++k) {
+        if (r.list[k].state == NEW && !resolve(&r, k)) {
+            return false;
+        }
+    }
+    reader->symbols = reader->model->symbols = r.symbols;
+    reader->symbol_count = reader->model->symbol_count = r.done;
+    return true;
+}

@@ -1,0 +1,392 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `particles`. */
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "io/base/pool.h"
+#include "io/document/document.h"
+#include "io/document/function.h"
+#include "io/document/keys.h"
+#include "io/document/reader.h"
+#include "io/document/value.h"
+#include "io/model/grains.h"
+#include "io/model/model.h"
+#include "io/read/grain_table.h"
+#include "io/read/materials.h"
+#include "io/read/sections.h"
+
+static bool read_boundaries(se3di_reader *reader, const se3di_node *map, se3d_particles_def *def)
+{
+    static const char *const words[] = {"open", "periodic", "sink", NULL};
+    const se3di_node *list = se3di_node_get(map, "boundary");
+    size_t k = 0;
+    if (list && (list->kind != SE3DI_NODE_LIST || list->count != 3)) {
+        return se3di_reader_fail(reader, list,
+                                 "must be a list of 3 words, for x, y and z: open, "
+                                 "periodic or sink");
+    }
+    for (const se3di_node *child = list ? list->first : NULL; child; child = child->next) {
+        size_t word = 0;
+        if (!se3di_read_word(reader, child, words, &word)) {
+            return false;
+        }
+        def->boundary[k++] = (int32_t)word;
+    }
+    return se3di_read_key_vector(reader, map, "lower", def->lower) &&
+           se3di_read_key_vector(reader, map, "upper", def->upper);
+}
+
+static bool create_set(se3di_reader *reader, const se3di_node *contact)
+{
+    se3d_particles_def def = se3d_particles_def_default();
+    double threads = 1.0;
+    if (contact && (!se3di_read_key_count(reader, contact, "threads", 1024.0, &threads) ||
+                    !se3di_read_key_number(reader, contact, "skin", SE3DI_POSITIVE, &def.skin) ||
+                    !read_boundaries(reader, contact, &def))) {
+        return false;
+    }
+    def.threads = (int32_t)threads;
+    def.name = "particles";
+    const se3d_status status =
+        se3d_particles_create(reader->system, &def, &reader->model->grains->set);
+    return status < 0
+               ? se3di_reader_fail_system(reader, contact ? contact : reader->model->root, status)
+               : true;
+}
+
+/* Names of sets and sinks are channels, as those of bodies and elements are. */
+static bool check_free(se3di_reader *reader, const se3di_node *node, const char *name)
+{
+    static const char words[] = " particles contacts energy violation work steps iterations ";
+    const se3d_model *model = reader->model;
+    if (se3di_keys_contain(words, name) || se3di_ionames_find(&model->body_names, name, NULL) ||
+        se3di_ionames_find(&model->element_names, name, NULL) ||
+        se3di_grains_find_set(model->grains, name) != SIZE_MAX ||
+        se3di_grains_find_sink(model->grains, name) != SIZE_MAX) {
+        return se3di_reader_fail(reader, node, "`%.60s` is taken, must differ from other names",
+                                 name);
+    }
+    return true;
+}
+
+/* {table: [[radius, frequency], ...]} */
+static bool read_radius_table(se3di_reader *reader, const se3di_node *radius, se3d_fill_def *def)
+{
+    const se3di_node *table = se3di_node_get(radius, "table");
+    if (!se3di_read_keys(reader, radius, SE3DI_OBJECT_RADIUS)) {
+        return false;
+    }
+    if (!table || table->kind != SE3DI_NODE_LIST || table->count == 0) {
+        return se3di_reader_fail(
+            reader, table ? table : radius,
+            "must be {table: [[radius, frequency], ...]} with one pair or more");
+    }
+    double *numbers = se3di_iopool_array(reader->pool, 2 * table->count, sizeof *numbers);
+    if (!numbers) {
+        return se3di_reader_fail_memory(reader);
+    }
+    size_t k = 0;
+    for (const se3di_node *pair = table->first; pair; pair = pair->next, ++k) {
+        double values[2];
+        if (!se3di_read_vector(reader, pair, 2, values)) {
+            return false;
+        }
+        numbers[k] = values[0];
+        numbers[table->count + k] = values[1];
+    }
+    def->radii = numbers;
+    def->weights = numbers + table->count;
+    def->radius_count = table->count;
+    return true;
+}
+
+/* The part of the box from `lower` to `upper` that is filled. */
+static bool read_region(se3di_reader *reader, const se3di_node *node, se3d_fill_def *def)
+{
+    static const char *const regions[] = {"box", "cylinder", "sphere", NULL};
+    static const char *const axes[] = {"x", "y", "z", NULL};
+    const se3di_node *region = se3di_node_get(node, "region");
+    const se3di_node *axis = se3di_node_get(node, "axis");
+    size_t kind = 0;
+    size_t along = 2;
+    if ((region && !se3di_read_word(reader, region, regions, &kind)) ||
+        (axis && !se3di_read_word(reader, axis, axes, &along))) {
+        return false;
+    }
+    if (axis && kind != SE3D_FILL_REGION_CYLINDER) {
+        return se3di_reader_fail(reader, axis, "is of `region: cylinder` only");
+    }
+    def->region = (int32_t)kind;
+    def->axis = (int32_t)along;
+    return true;
+}
+
+/* One radius, [smallest, largest], or a table. */
+static bool read_radius(se3di_reader *reader, const se3di_node *node, se3d_fill_def *def)
+{
+    const se3di_node *radius = se3di_node_get(node, "radius");
+    double range[2];
+    if (!radius) {
+        return se3di_reader_fail_key(reader, node, "radius",
+                                     "is missing, must be a number, [smallest, largest] or {table: "
+                                     "[[radius, frequency], ...]} [m]");
+    }
+    if (radius->kind == SE3DI_NODE_MAP) {
+        return read_radius_table(reader, radius, def);
+    }
+    if (radius->kind != SE3DI_NODE_LIST) {
+        if (!se3di_read_number(reader, radius, SE3DI_POSITIVE, &def->radius_min)) {
+            return false;
+        }
+        def->radius_max = def->radius_min;
+        return true;
+    }
+    if (!se3di_read_vector(reader, radius, 2, range)) {
+        return false;
+    }
+    def->radius_min = range[0];
+    def->radius_max = range[1];
+    return true;
+}
+
+/* The tag of the set that an entry names, a new one where the name is new; 0 without a name. */
+static bool read_set(se3di_reader *reader, const se3di_node *node, uint32_t *tag)
+{
+    se3di_grains *grains = reader->model->grains;
+    const se3di_node *child = se3di_node_get(node, "name");
+    const char *name = NULL;
+    *tag = 0;
+    if (!child) {
+        return true;
+    }
+    if (!se3di_read_name(reader, child, &name)) {
+        return false;
+    }
+    const size_t known = se3di_grains_find_set(grains, name);
+    if (known != SIZE_MAX) {
+        *tag = (uint32_t)known;
+        return true;
+    }
+    if (!check_free(reader, child, name)) {
+        return false;
+    }
+    if (grains->set_count == SE3D_PARTICLES_TAGS) {
+        return se3di_reader_fail(reader, child, "there are more than %d names of particles",
+                                 SE3D_PARTICLES_TAGS - 1);
+    }
+    *tag = (uint32_t)grains->set_count;
+    grains->sets[grains->set_count++] = name;
+    return true;
+}
+
+/* Keys that have no meaning beside another one. */
+static bool check_beside(se3di_reader *reader, const se3di_node *node, const char *beside,
+                         const char *keys)
+{
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (!se3di_keys_contain(keys, child->key)) {
+            return se3di_reader_fail(reader, child, "has no meaning beside `%s`, which takes:%s",
+                                     beside, keys);
+        }
+    }
+    return true;
+}
+
+/* rate or mass_rate: a number >= 0, or a function of t. */
+static bool read_rate(se3di_reader *reader, const se3di_node *source,
+                      se3d_particles_source_def *def)
+{
+    static const char *const variables[] = {"t", NULL};
+    const se3di_node *count = se3di_node_get(source, "rate");
+    const se3di_node *mass = se3di_node_get(source, "mass_rate");
+    if (!count == !mass) {
+        return se3di_reader_fail(reader, source,
+                                 "must have either `rate` [1/s] or `mass_rate` [kg/s]");
+    }
+    if (!se3di_read_function(reader, count ? count : mass, variables, &def->rate, &def->function)) {
+        return false;
+    }
+    if (def->rate < 0.0) {
+        return se3di_reader_fail(reader, count ? count : mass, "is %g, must be >= 0", def->rate);
+    }
+    def->per_mass = mass != NULL;
+    return true;
+}
+
+static bool read_source(se3di_reader *reader, const se3di_node *node, se3d_fill_def *fill)
+{
+    se3di_grains *grains = reader->model->grains;
+    const se3di_node *child = se3di_node_get(node, "source");
+    se3d_particles_source_def def = se3d_particles_source_def_default();
+    double most = 0.0;
+    def.fill = fill;
+    if (!check_beside(reader, node, "source",
+                      " name material radius lower upper region axis velocity seed source ") ||
+        !se3di_read_keys(reader, child, SE3DI_OBJECT_SOURCE) || !read_rate(reader, child, &def) ||
+        !se3di_read_key_number(reader, child, "start", SE3DI_ANY, &def.start) ||
+        !se3di_read_key_number(reader, child, "stop", SE3DI_ANY, &def.stop) ||
+        !se3di_read_key_number(reader, child, "every", SE3DI_NOT_NEGATIVE, &def.every) ||
+        !se3di_read_key_count(reader, child, "count", 1e8, &most)) {
+        return false;
+    }
+    fill->count = (size_t)most;
+    uint32_t *grown = se3di_iopool_grow(reader->pool, grains->source_tags, grains->source_count,
+                                        &grains->source_capacity, sizeof *grown);
+    if (!grown) {
+        return se3di_reader_fail_memory(reader);
+    }
+    grains->source_tags = grown;
+    grains->source_tags[grains->source_count++] = fill->tag;
+    const se3d_status status = se3d_particles_add_source(grains->set, &def, NULL);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+/* Of an entry that fills a region, at once or as a source. */
+static bool read_fill(se3di_reader *reader, const se3di_node *node, se3d_fill_def *def)
+{
+    static const char *const packings[] = {"lattice", "random", NULL};
+    se3d_particles *set = reader->model->grains->set;
+    const se3di_node *packing = se3di_node_get(node, "packing");
+    double count = 0.0;
+    double seed = 0.0;
+    size_t word = 0;
+    if ((packing && !se3di_read_word(reader, packing, packings, &word)) ||
+        !se3di_read_key_count(reader, node, "count", 1e8, &count) ||
+        !read_radius(reader, node, def) || !read_region(reader, node, def) ||
+        !se3di_read_key_vector(reader, node, "lower", def->lower) ||
+        !se3di_read_key_vector(reader, node, "upper", def->upper) ||
+        !se3di_read_key_vector(reader, node, "velocity", def->velocity) ||
+        !se3di_read_key_number(reader, node, "spacing", SE3DI_POSITIVE, &def->spacing) ||
+        !se3di_read_key_number(reader, node, "jitter", SE3DI_NOT_NEGATIVE, &def->jitter) ||
+        !se3di_read_key_count(reader, node, "seed", 9007199254740992.0, &seed)) {
+        return false;
+    }
+    def->count = (size_t)count;
+    def->seed = (uint64_t)seed;
+    if (se3di_node_get(node, "source")) {
+        return read_source(reader, node, def);
+    }
+    const se3d_status status = word == 0 ? se3d_particles_fill_lattice(set, def, NULL)
+                                         : se3d_particles_fill_random(set, def);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+static bool read_entry(se3di_reader *reader, const se3di_node *node)
+{
+    se3d_fill_def def = se3d_fill_def_default();
+    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_PARTICLES) ||
+        !se3di_read_key_material(reader, node, "material", &def.material) ||
+        !read_set(reader, node, &def.tag)) {
+        return false;
+    }
+    if (se3di_node_get(node, "file")) {
+        return check_beside(reader, node, "file", " name material file ") &&
+               se3di_read_grain_table(reader, node, def.material, def.tag);
+    }
+    return read_fill(reader, node, &def);
+}
+
+static bool read_sink(se3di_reader *reader, const se3di_node *node)
+{
+    se3di_grains *grains = reader->model->grains;
+    const se3di_node *name = se3di_node_get(node, "name");
+    const char *text = NULL;
+    se3d_particles_sink_def def = se3d_particles_sink_def_default();
+    se3d_fill_def region = se3d_fill_def_default();
+    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_SINK) ||
+        (name && (!se3di_read_name(reader, name, &text) || !check_free(reader, name, text))) ||
+        (se3di_node_get(node, "normal") &&
+         !check_beside(reader, node, "normal", " name point normal ")) ||
+        !se3di_read_key_direction(reader, node, "normal", def.normal) ||
+        !se3di_read_key_vector(reader, node, "point", def.point) ||
+        !read_region(reader, node, &region) ||
+        !se3di_read_key_vector(reader, node, "lower", def.lower) ||
+        !se3di_read_key_vector(reader, node, "upper", def.upper)) {
+        return false;
+    }
+    if (!se3di_node_get(node, "normal") &&
+        (!se3di_node_get(node, "lower") || !se3di_node_get(node, "upper"))) {
+        return se3di_reader_fail(reader, node,
+                                 "must have `lower` and `upper`, or the `normal` of a plane");
+    }
+    def.region = region.region;
+    def.axis = region.axis;
+    grains->sinks[grains->sink_count++] = text;
+    const se3d_status status = se3d_particles_add_sink(grains->set, &def, NULL);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+static bool read_sinks(se3di_reader *reader, const se3di_node *list)
+{
+    se3di_grains *grains = reader->model->grains;
+    grains->sinks = se3di_iopool_array(reader->pool, list ? list->count : 1, sizeof *grains->sinks);
+    if (!grains->sinks) {
+        return se3di_reader_fail_memory(reader);
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        if (!read_sink(reader, node)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Particles push bodies in `verlet` only; in kinematics the motion of the bodies is given. */
+static bool check_analyses(se3di_reader *reader)
+{
+    const se3d_model *model = reader->model;
+    for (size_t k = 0; k < model->analysis_count; ++k) {
+        const se3di_analysis_entry *entry = &model->analyses[k];
+        const se3di_node *node = entry->node ? entry->node : model->root;
+        const char *type = entry->analysis.type;
+        int32_t method = entry->solver.method;
+        if (strcmp(type, "dynamics") != 0 && strcmp(type, "kinematics") != 0 &&
+            model->moving_shapes) {
+            return se3di_reader_fail_key(reader, node, "type",
+                                         "is `%s`, must be dynamics or kinematics where particles "
+                                         "touch bodies that move",
+                                         type);
+        }
+        if (strcmp(type, "dynamics") == 0 && method != SE3D_METHOD_AUTO &&
+            method != SE3D_METHOD_VERLET) {
+            return se3di_reader_fail_key(reader, node, "method",
+                                         "must be verlet (or auto, which picks it) where there are "
+                                         "particles");
+        }
+    }
+    return true;
+}
+
+bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
+{
+    se3d_model *model = reader->model;
+    const se3di_node *contact = se3di_node_get(root, "contact");
+    const se3di_node *list = NULL;
+    const se3di_node *sinks = NULL;
+    if (!se3di_read_list(reader, root, "particles", &list) ||
+        !se3di_read_list(reader, root, "sinks", &sinks)) {
+        return false;
+    }
+    if (sinks && !list) {
+        return se3di_reader_fail(reader, sinks, "needs `particles`, which the model has not");
+    }
+    if (!list) {
+        return true;
+    }
+    model->grains = se3di_iopool_alloc(&model->pool, sizeof *model->grains);
+    if (!model->grains) {
+        return se3di_reader_fail_memory(reader);
+    }
+    model->grains->moving_walls = model->moving_shapes;
+    model->grains->set_count = 1; /* those without a name */
+    if (!create_set(reader, contact) || !read_sinks(reader, sinks)) {
+        return false;
+    }
+    for (const se3di_node *node = list->first; node; node = node->next) {
+        if (!read_entry(reader, node)) {
+            return false;
+        }
+    }
+    return check_analyses(reader);
+}

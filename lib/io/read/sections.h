@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The sections of the file, one function each, in the order in which load.c calls them. */
+#ifndef SE3D_IO_SECTIONS_H
+#define SE3D_IO_SECTIONS_H
+
+#include "io/document/reader.h"
+
+bool se3di_read_parameters(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_materials(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_bodies(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_joints(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_constraints(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_drivers(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_forces(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_analyses(se3di_reader *reader, const se3di_node *root);
+/* `contact` and `particles`, after the analyses. */
+bool se3di_read_contact(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_particles(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_events(se3di_reader *reader, const se3di_node *root);
+
+#endif

@@ -1,0 +1,317 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `shapes` and `materials`: what bodies look like, and what they weigh where no mass is given. */
+#include "io/read/shapes.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "io/base/elementary.h"
+#include "io/base/pool.h"
+#include "io/base/rotation.h"
+#include "io/document/document.h"
+#include "io/document/guess.h"
+#include "io/document/reader.h"
+#include "io/document/value.h"
+#include "io/model/model.h"
+#include "io/read/mesh_file.h"
+#include "io/read/sections.h"
+#include "io/read/solid.h"
+
+static bool require(se3di_reader *reader, const se3di_node *node, const char *key)
+{
+    return se3di_node_get(node, key)
+               ? true
+               : se3di_reader_fail_key(reader, node, key, "is missing, a %s needs it",
+                                       se3di_node_get(node, "type")->text);
+}
+
+static bool read_positive(se3di_reader *reader, const se3di_node *node, const char *key,
+                          double *value)
+{
+    return require(reader, node, key) &&
+           se3di_read_key_number(reader, node, key, SE3DI_POSITIVE, value);
+}
+
+static bool read_size(se3di_reader *reader, const se3di_node *node, double size[3])
+{
+    if (!require(reader, node, "size") || !se3di_read_key_vector(reader, node, "size", size)) {
+        return false;
+    }
+    for (int k = 0; k < 3; ++k) {
+        if (!(size[k] > 0.0)) {
+            return se3di_reader_fail_key(reader, node, "size",
+                                         "is [%g, %g, %g], each edge must be > 0", size[0], size[1],
+                                         size[2]);
+        }
+    }
+    return true;
+}
+
+/* The plane's normal is its z axis. */
+static bool read_plane(se3di_reader *reader, const se3di_node *node, se3d_model_shape *shape)
+{
+    double n[3] = {0.0, 0.0, 1.0};
+    if (!se3di_read_key_direction(reader, node, "normal", n)) {
+        return false;
+    }
+    if (!se3di_node_get(node, "normal")) {
+        return true;
+    }
+    if (se3di_node_get(node, "orientation")) {
+        return se3di_reader_fail_key(reader, node, "normal",
+                                     "and `orientation` exclude each other");
+    }
+    const double across = io_hypot(n[0], n[1]);
+    const double axis[3] = {across > 0.0 ? -n[1] : 1.0, across > 0.0 ? n[0] : 0.0, 0.0};
+    se3di_rotation_from_axis(axis, io_atan2(across, n[2]), shape->orientation);
+    return true;
+}
+
+static bool read_triangles(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
+{
+    se3d_model_shape *shape = &entry->shape;
+    if (!require(reader, node, "file") ||
+        !se3di_read_text(reader, se3di_node_get(node, "file"), &shape->file) ||
+        !se3di_read_key_number(reader, node, "scale", SE3DI_POSITIVE, &shape->scale)) {
+        return false;
+    }
+    const se3di_node *convex = se3di_node_get(node, "convex");
+    if (convex && !se3di_read_bool(reader, convex, &entry->convex)) {
+        return false;
+    }
+    entry->mesh = se3di_read_mesh(reader, node, shape->file, shape->scale);
+    return entry->mesh != NULL;
+}
+
+static bool read_dimensions(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
+{
+    se3d_model_shape *shape = &entry->shape;
+    switch (shape->type) {
+    case SE3D_SHAPE_SPHERE:
+        return read_positive(reader, node, "radius", &shape->radius);
+    case SE3D_SHAPE_BOX:
+        return read_size(reader, node, shape->size);
+    case SE3D_SHAPE_CAPSULE:
+    case SE3D_SHAPE_CYLINDER:
+        return read_positive(reader, node, "radius", &shape->radius) &&
+               read_positive(reader, node, "length", &shape->length);
+    case SE3D_SHAPE_PLANE:
+        return read_plane(reader, node, shape);
+    default:
+        return read_triangles(reader, node, entry);
+    }
+}
+
+static bool read_color(se3di_reader *reader, const se3di_node *node, double color[3])
+{
+    if (!se3di_read_key_vector(reader, node, "color", color)) {
+        return false;
+    }
+    for (int k = 0; k < 3; ++k) {
+        if (se3di_node_get(node, "color") && !(color[k] >= 0.0 && color[k] <= 1.0)) {
+            return se3di_reader_fail_key(reader, node, "color",
+                                         "is [%g, %g, %g], must be red, green, blue from 0 to 1",
+                                         color[0], color[1], color[2]);
+        }
+    }
+    return true;
+}
+
+static bool read_shape(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
+{
+    se3d_model_shape *shape = &entry->shape;
+    static const char *const types[] = {"sphere", "box",  "capsule", "cylinder",
+                                        "plane",  "mesh", NULL};
+    size_t index = 0;
+    static const se3d_model_shape standard = {
+        .scale = 1.0, .orientation = {1.0, 0.0, 0.0, 0.0}, .color = {-1.0, -1.0, -1.0}, .file = ""};
+    const char *type = NULL;
+    if (!se3di_read_type(reader, node, SE3DI_OBJECT_SHAPE, &type)) {
+        return false;
+    }
+    entry->mesh = NULL;
+    entry->convex = 0;
+    *shape = standard;
+    if (!se3di_read_word(reader, se3di_node_get(node, "type"), types, &index)) {
+        return false;
+    }
+    shape->type = (int32_t)index;
+    return se3di_read_key_vector(reader, node, "position", shape->position) &&
+           se3di_read_key_orientation(reader, node, shape->orientation) &&
+           read_dimensions(reader, node, entry) && read_color(reader, node, shape->color);
+}
+
+bool se3di_read_shapes(se3di_reader *reader, const se3di_node *body, size_t entry)
+{
+    se3d_model *model = reader->model;
+    const se3di_node *list = NULL;
+    if (!se3di_read_list(reader, body, "shapes", &list)) {
+        return false;
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        se3di_shape_entry made;
+        if (!read_shape(reader, node, &made)) {
+            return false;
+        }
+        made.shape.body = model->bodies[entry].body;
+        se3di_shape_entry *grown = se3di_iopool_grow(
+            &model->pool, model->shapes, model->shape_count, &model->shape_capacity, sizeof *grown);
+        if (!grown) {
+            return se3di_reader_fail_memory(reader);
+        }
+        model->shapes = grown;
+        model->shapes[model->shape_count++] = made;
+    }
+    return true;
+}
+
+bool se3di_read_materials(se3di_reader *reader, const se3di_node *root)
+{
+    const se3di_node *list = NULL;
+    const char *name = NULL;
+    double density = 0.0;
+    if (!se3di_read_list(reader, root, "materials", &list)) {
+        return false;
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        if (!se3di_read_keys(reader, node, SE3DI_OBJECT_MATERIAL) ||
+            !se3di_read_key_number(reader, node, "density", SE3DI_POSITIVE, &density)) {
+            return false;
+        }
+        const se3di_node *child = se3di_node_get(node, "name");
+        if (!child) {
+            return se3di_reader_fail_key(reader, node, "name", "is missing");
+        }
+        if (!se3di_read_name(reader, child, &name)) {
+            return false;
+        }
+        for (const se3di_node *old = list->first; old != node; old = old->next) {
+            if (strcmp(se3di_node_get(old, "name")->text, name) == 0) {
+                return se3di_reader_fail(
+                    reader, child, "`%.60s` is taken, must differ from other materials", name);
+            }
+        }
+    }
+    return true;
+}
+
+/* The density of a material, 0 where it has none. */
+static bool read_material(se3di_reader *reader, const se3di_node *node, double *density)
+{
+    const se3di_node *list = se3di_node_get(reader->model->root, "materials");
+    const char *name = NULL;
+    if (!se3di_read_text(reader, node, &name)) {
+        return false;
+    }
+    se3di_guess guess = se3di_guess_begin(name);
+    for (const se3di_node *material = list ? list->first : NULL; material;
+         material = material->next) {
+        const char *known = se3di_node_get(material, "name")->text;
+        if (strcmp(known, name) == 0) {
+            return se3di_read_key_number(reader, material, "density", SE3DI_POSITIVE, density);
+        }
+        se3di_guess_offer(&guess, known);
+    }
+    const char *meant = se3di_guess_get(&guess);
+    return se3di_reader_fail(reader, node, "no material is named `%.60s`%s%s%s", name,
+                             meant ? ", did you mean `" : "; list it under `materials`",
+                             meant ? meant : "", meant ? "`?" : "");
+}
+
+/* Of the shape, else of the body, else of the shape's material; 0 where nobody says. */
+static bool read_density(se3di_reader *reader, const se3di_node *body, const se3di_node *shape,
+                         double *density)
+{
+    const se3di_node *material = se3di_node_get(shape, "material");
+    *density = 0.0;
+    if (material && !read_material(reader, material, density)) {
+        return false;
+    }
+    return se3di_read_key_number(reader, body, "density", SE3DI_POSITIVE, density) &&
+           se3di_read_key_number(reader, shape, "density", SE3DI_POSITIVE, density);
+}
+
+/* Shapes of a body together, about its origin. */
+typedef struct whole {
+    double mass, moment[3], inertia[9];
+    double size;
+    bool has_mesh;
+} whole;
+
+/* Add a shape's: A J A^T + m (s.s I - s s^T), with the centre of mass at s = position + A centre.
+ */
+static void add_solid(const se3d_model_shape *shape, const se3di_solid *solid, whole *body)
+{
+    double A[9];
+    double s[3];
+    double half[9]; /* A J */
+    se3di_rotation_to_matrix(shape->orientation, A);
+    for (int i = 0; i < 3; ++i) {
+        s[i] = shape->position[i];
+        for (int j = 0; j < 3; ++j) {
+            s[i] += A[3 * i + j] * solid->centre[j];
+            half[3 * i + j] = A[3 * i] * solid->inertia[j] + A[3 * i + 1] * solid->inertia[3 + j] +
+                              A[3 * i + 2] * solid->inertia[6 + j];
+        }
+    }
+    const double square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            body->inertia[3 * i + j] += solid->mass * ((i == j ? square : 0.0) - s[i] * s[j]) +
+                                        half[3 * i] * A[3 * j] + half[3 * i + 1] * A[3 * j + 1] +
+                                        half[3 * i + 2] * A[3 * j + 2];
+        }
+        body->moment[i] += solid->mass * s[i];
+        body->size += fabs(shape->position[i]);
+    }
+    body->mass += solid->mass;
+    body->size += solid->size;
+}
+
+static bool check_centre(se3di_reader *reader, const se3di_node *node, const whole *body)
+{
+    const double exact = body->has_mesh ? 1e-7 : 1e-9; /* STL files have 24 bits */
+    double c[3];
+    for (int k = 0; k < 3; ++k) {
+        c[k] = body->moment[k] / body->mass;
+    }
+    if (io_hypot(io_hypot(c[0], c[1]), c[2]) > exact * body->size) {
+        return se3di_reader_fail_key(reader, node, "shapes",
+                                     "have their centre of mass at [%.12g, %.12g, %.12g], must "
+                                     "have it at the body's origin: shift their positions by the "
+                                     "opposite, or give mass and inertia",
+                                     c[0], c[1], c[2]);
+    }
+    return true;
+}
+
+bool se3di_read_shape_mass(se3di_reader *reader, const se3di_node *body, se3d_body_def *def)
+{
+    const se3di_node *list = NULL;
+    whole sum = {0};
+    if (!se3di_read_list(reader, body, "shapes", &list)) {
+        return false;
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        se3di_shape_entry entry;
+        se3di_solid solid;
+        double density = 0.0;
+        if (!read_shape(reader, node, &entry) || !read_density(reader, body, node, &density) ||
+            !se3di_solid_measure(reader, node, &entry.shape, entry.mesh, density, &solid)) {
+            return false;
+        }
+        add_solid(&entry.shape, &solid, &sum);
+        sum.has_mesh = sum.has_mesh || (entry.mesh && solid.mass > 0.0);
+    }
+    if (!(sum.mass > 0.0)) {
+        return true;
+    }
+    if (!check_centre(reader, body, &sum)) {
+        return false;
+    }
+    const double packed[6] = {sum.inertia[0], sum.inertia[4], sum.inertia[8],
+                              sum.inertia[1], sum.inertia[5], sum.inertia[2]};
+    memcpy(def->inertia, packed, sizeof packed);
+    def->mass = sum.mass;
+    return true;
+}

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What bodies look like, and what they weigh where no mass is given. */
+#ifndef SE3D_IO_SHAPES_H
+#define SE3D_IO_SHAPES_H
+
+#include "io/document/reader.h"
+#include "io/model/model.h"
+
+bool se3di_read_shapes(se3di_reader *reader, const se3di_node *body, size_t entry);
+/* Mass and inertia of a body from its shapes' densities. */
+bool se3di_read_shape_mass(se3di_reader *reader, const se3di_node *body, se3d_body_def *def);
+
+#endif

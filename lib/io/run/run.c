@@ -1,0 +1,797 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Running a model: its analyses one after the other, the rows of its results files on the way.
+ *
+ * Output k of an analysis has a row at start + i * every, i = 0, 1, ..., and one at the end. The
+ * solver is run from one time at which any file wants a row to the next; times are computed from
+ * their number, never summed up, and the last one is start + duration exactly. Where an analysis
+ * begins at the time at which the one before ended, its first row takes the place of the last one.
+ * Where an event stops an analysis the last row is that of the event; others are in their own file.
+ */
+#include <errno.h>
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "io/base/pool.h"
+#include "io/base/sized.h"
+#include "io/channel/channel.h"
+#include "io/channel/event.h"
+#include "io/channel/output.h"
+#include "io/document/document.h"
+#include "io/model/model.h"
+#include "io/run/run_events.h"
+#include "io/run/run_grains.h"
+#include "io/run/run_modes.h"
+#include "io/write/contact_list.h"
+#include "io/write/csv.h"
+#include "io/write/file.h"
+#include "io/write/grain_list.h"
+#include "io/write/vtk.h"
+
+typedef struct output_file {
+    const se3di_output_entry *entry;
+    se3di_csv csv;
+    se3di_vtk *vtk; /* NULL: it is a CSV file */
+    double *row;
+    double every; /* in this analysis */
+    double count; /* number of the last row, the one at the end */
+    double next;  /* number of the next row */
+} output_file;
+
+struct se3d_run {
+    se3di_iopool pool;
+    se3d_run_analysis *analyses;
+    size_t analysis_count;
+    se3d_run_file *files;
+    size_t file_count, file_capacity;
+    se3d_run_particles *particles;
+    size_t particles_count;
+    se3di_event_list events;
+};
+
+typedef struct runner {
+    se3d_model *model;
+    const se3d_run_options *options;
+    se3d_run *run;
+    se3d_model_error *error;
+    output_file *files;
+    size_t file_count; /* open ones */
+    se3d_solver *solver;
+    double time; /* where the analysis before ended */
+    bool stopped;
+} runner;
+
+void se3d_run_options_init(se3d_run_options *options, size_t size)
+{
+    if (options && size >= sizeof options->struct_size) {
+        memset(options, 0, size);
+        options->struct_size = size;
+    }
+}
+
+static se3d_status fail(runner *r, se3d_status status, const char *text)
+{
+    se3di_document_report(r->error, "", 0, 0, "", text);
+    return status;
+}
+
+/* `why`: errno, 0 where memory is missing. */
+static se3d_status fail_path(runner *r, const char *path, int why)
+{
+    char text[800];
+    const bool memory = why == 0 || why == ENOMEM;
+    snprintf(text, sizeof text, "%.500s: cannot be written: %s", path,
+             memory ? "out of memory" : strerror(why));
+    return fail(r, memory ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO, text);
+}
+
+/* The rows that are on the disk stay there. */
+static se3d_status fail_csv(runner *r, const se3di_csv *csv)
+{
+    char text[800];
+    if (csv->failure == 0 || csv->failure == ENOMEM || csv->lines < 2) {
+        return fail_path(r, csv->path, csv->failure);
+    }
+    snprintf(text, sizeof text, "%.500s: cannot be written: %s; the first %" PRIu64 " row%s kept",
+             csv->path, strerror(csv->failure), csv->lines - 1, csv->lines == 2 ? " is" : "s are");
+    return fail(r, SE3D_ERR_IO, text);
+}
+
+static se3d_status fail_file(runner *r, const output_file *file)
+{
+    return fail_csv(r, &file->csv);
+}
+
+static se3d_status open_vtk(runner *r, const se3di_output_entry *entry, const char *path)
+{
+    output_file *file = &r->files[r->file_count];
+    file->entry = entry;
+    file->vtk = se3di_vtk_open(r->model, &r->run->pool, path);
+    if (!file->vtk) {
+        return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    ++r->file_count;
+    return SE3D_OK;
+}
+
+/* The path of a file of the results, which lies in their folder. */
+static se3d_status join(runner *r, const char *file, char *path, size_t size)
+{
+    char text[800];
+    if (se3di_file_join(r->options->directory, file, path, size)) {
+        return SE3D_OK;
+    }
+    snprintf(text, sizeof text, "%.500s: cannot be written: %s", file,
+             errno == ELOOP ? "a symbolic link leads out of the folder of the results"
+                            : strerror(errno));
+    return fail(r, SE3D_ERR_IO, text);
+}
+
+static se3d_status open_file(runner *r, const se3di_output_entry *entry)
+{
+    output_file *file = &r->files[r->file_count];
+    char path[4096];
+    char name[400];
+    size_t columns = 1;
+    const se3d_status joined = join(r, entry->file, path, sizeof path);
+    if (joined < 0) {
+        return joined;
+    }
+    if (entry->vtk) {
+        return open_vtk(r, entry, path);
+    }
+    columns = entry->particles  ? (size_t)SE3DI_GRAIN_COLUMNS + 1
+              : entry->contacts ? (size_t)SE3DI_CONTACT_COLUMNS
+                                : columns;
+    for (size_t k = 0; k < entry->count; ++k) {
+        columns += se3di_channel_get_width(&entry->channels[k]);
+    }
+    file->entry = entry;
+    file->row = se3di_iopool_array(&r->run->pool, columns, sizeof *file->row);
+    const se3d_status status = se3di_csv_open(&file->csv, &r->run->pool, path, columns);
+    if (status < 0 || !file->row) {
+        const se3d_status result = fail_file(r, file);
+        se3di_csv_abandon(&file->csv);
+        return result;
+    }
+    ++r->file_count;
+    for (size_t k = 0; k < columns && (entry->particles || entry->contacts); ++k) {
+        se3di_csv_put_name(&file->csv,
+                           entry->particles ? se3di_grains_get_column(k)
+                                            : se3di_contacts_get_column(k),
+                           k + 1 == columns);
+    }
+    if (entry->particles || entry->contacts) {
+        return SE3D_OK;
+    }
+    se3di_csv_put_name(&file->csv, "time", columns == 1);
+    size_t column = 1;
+    for (size_t k = 0; k < entry->count; ++k) {
+        const size_t width = se3di_channel_get_width(&entry->channels[k]);
+        for (size_t i = 0; i < width; ++i) {
+            se3di_channel_format_column(&entry->channels[k], i, name, sizeof name);
+            se3di_csv_put_name(&file->csv, name, ++column == columns);
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status open_events(runner *r)
+{
+    char path[4096];
+    se3di_event_list *events = &r->run->events;
+    const se3d_status joined = join(r, se3di_events_file, path, sizeof path);
+    if (joined < 0) {
+        return joined;
+    }
+    const se3d_status status = se3di_event_list_open(events, &r->run->pool, path);
+    return status < 0 ? fail_path(r, path, events->csv.failure) : SE3D_OK;
+}
+
+/* Where nothing moves there are no events. */
+static bool has_events(const se3d_model *model)
+{
+    bool moves = false;
+    for (size_t k = 0; k < model->analysis_count; ++k) {
+        moves = moves || se3di_analysis_has_motion(&model->analyses[k]);
+    }
+    return moves && model->event_count > 0;
+}
+
+static se3d_status open_files(runner *r)
+{
+    se3d_model *model = r->model;
+    r->files = se3di_iopool_array(&r->run->pool, model->output_count, sizeof *r->files);
+    if (!r->files) {
+        return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    for (size_t k = 0; k < model->output_count; ++k) {
+        const se3d_status status = open_file(r, &model->outputs[k]);
+        if (status < 0) {
+            return status;
+        }
+    }
+    for (size_t k = 0; k < model->picture_count; ++k) { /* they are made later, by others */
+        char path[4096];
+        const se3d_status status = join(r, model->pictures[k].file, path, sizeof path);
+        if (status < 0) {
+            return status;
+        }
+    }
+    return has_events(model) ? open_events(r) : SE3D_OK;
+}
+
+/* Number of rows of each file in this analysis. */
+static void plan(runner *r, const se3di_analysis_entry *entry)
+{
+    for (size_t k = 0; k < r->file_count; ++k) {
+        output_file *file = &r->files[k];
+        file->next = 0.0;
+        file->count = se3di_output_count_rows(file->entry, entry, &file->every);
+    }
+}
+
+/* The time of row `number` of a file. */
+static double row_time(const output_file *file, double number, double start, double duration)
+{
+    return number < file->count ? start + number * file->every : start + duration;
+}
+
+/* One row for each particle, or for each contact. */
+static se3d_status sample_list(runner *r, output_file *file)
+{
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &r->model->pool.allocator);
+    const se3d_status status =
+        file->entry->contacts ? se3di_contacts_write(r->model, &pool, &file->csv)
+                              : se3di_grains_write(r->model, &pool, file->entry->set, &file->csv);
+    se3di_iopool_destroy(&pool);
+    if (status < 0) {
+        return fail(r, status, se3d_status_get_text(status));
+    }
+    return file->csv.failure ? fail_file(r, file) : SE3D_OK;
+}
+
+static se3d_status sample(runner *r, output_file *file, double time)
+{
+    se3d_solver_stats stats;
+    double *row = file->row;
+    if (file->vtk) {
+        se3di_vtk_record(file->vtk, time); /* a failure is reported at the end: others go on */
+        return SE3D_OK;
+    }
+    if (file->entry->particles || file->entry->contacts) {
+        return sample_list(r, file);
+    }
+    memset(&stats, 0, sizeof stats);
+    se3d_solver_get_stats(r->solver, &stats);
+    *row++ = time;
+    for (size_t k = 0; k < file->entry->count; ++k) {
+        const se3di_channel *channel = &file->entry->channels[k];
+        double value[4];
+        const se3d_status status = se3di_channel_eval(channel, r->model->system, &stats, value);
+        if (status < 0) {
+            char text[600];
+            snprintf(text, sizeof text, "the channel `%.300s` cannot be computed at t = %.9g: %s",
+                     channel->name, time, se3d_status_get_text(status));
+            return fail(r, status, text);
+        }
+        const size_t width = se3di_channel_get_width(channel);
+        memcpy(row, value, width * sizeof *row);
+        row += width;
+    }
+    se3di_csv_put_row(&file->csv, file->row);
+    return file->csv.failure ? fail_file(r, file) : SE3D_OK;
+}
+
+/* What does not converge: steps and methods are those of dynamics. */
+static const char *advise_iteration(int32_t analysis)
+{
+    switch (analysis) {
+    case SE3D_ANALYSIS_EQUILIBRIUM:
+        return "start from a position nearer to the equilibrium, or run dynamics with dampers "
+               "before it";
+    case SE3D_ANALYSIS_ASSEMBLY:
+        return "start from positions nearer to the assembled ones, or see `se3d check`";
+    case SE3D_ANALYSIS_DYNAMICS:
+        return "try a smaller --step, another --method, or `se3d check` at this position";
+    default:
+        return "try a smaller --step, or `se3d check` at this position";
+    }
+}
+
+/* The advice that fits a failure. */
+static const char *advise(se3d_status status, int32_t analysis)
+{
+    const bool moves = analysis != SE3D_ANALYSIS_EQUILIBRIUM && analysis != SE3D_ANALYSIS_ASSEMBLY;
+    switch (status) {
+    case SE3D_ERR_INCONSISTENT:
+        return "look for constraints and drivers that contradict each other with `se3d check`, and "
+               "check the positions at the start";
+    case SE3D_ERR_SINGULAR:
+        return "the mechanism may be at a dead point or not fully driven: see `se3d check`";
+    case SE3D_ERR_NO_CONVERGENCE:
+    case SE3D_ERR_STEP_SIZE:
+        return advise_iteration(analysis);
+    case SE3D_ERR_STEP_COUNT:
+        return "try a larger --step, a looser `tolerance`, --method radau where the motion is "
+               "stiff, a shorter --duration, or a larger `steps_max`";
+    case SE3D_ERR_NOT_FINITE:
+        return moves
+                   ? "look for a function that is not finite at this time, or try a smaller --step"
+                   : "look for a function that is not finite at this time";
+    case SE3D_ERR_UNSUPPORTED:
+        return "choose another --method, --formulation or --analysis";
+    default:
+        return "see the message above";
+    }
+}
+
+static se3d_status fail_analysis(runner *r, const se3di_analysis_entry *entry, se3d_status status,
+                                 double target)
+{
+    char text[1000];
+    char way[80] = "";
+    const char *why = se3d_system_get_error(r->model->system);
+    double now = r->time;
+    se3d_system_get_time(r->model->system, &now);
+    if (target > now) {
+        snprintf(way, sizeof way, " on the way to t = %.9g", target);
+    }
+    if (status == SE3D_ERR_INTERRUPTED) {
+        snprintf(text, sizeof text, "the %s analysis was interrupted at t = %.9g s",
+                 entry->analysis.type, now);
+        return fail(r, status, text);
+    }
+    snprintf(text, sizeof text, "the %s analysis failed at t = %.9g s%s: %.500s. What to try: %s",
+             entry->analysis.type, now, way, why[0] ? why : se3d_status_get_text(status),
+             advise(status, entry->solver.analysis));
+    return fail(r, status, text);
+}
+
+/* The earliest time at which a file wants its next row; false: all have theirs. */
+static bool next_time(const runner *r, double start, double duration, double *time)
+{
+    bool found = false;
+    for (size_t k = 0; k < r->file_count; ++k) {
+        const output_file *file = &r->files[k];
+        if (file->next <= file->count) {
+            const double wanted = row_time(file, file->next, start, duration);
+            *time = found ? fmin(*time, wanted) : wanted;
+            found = true;
+        }
+    }
+    return found;
+}
+
+static se3d_status sample_files(runner *r, double start, double duration, double time)
+{
+    for (size_t k = 0; k < r->file_count; ++k) {
+        output_file *file = &r->files[k];
+        if (file->next > file->count) {
+            continue;
+        }
+        const double wanted = row_time(file, file->next, start, duration);
+        if (wanted - time <= 1e-9 * file->every) {
+            const se3d_status status = sample(r, file, time);
+            if (status < 0) {
+                return status;
+            }
+            file->next += 1.0;
+        }
+    }
+    return SE3D_OK;
+}
+
+/* Times of two files that differ by rounding only are one time: the later is asked for first. */
+static double merge_times(const runner *r, double start, double duration, double time)
+{
+    double merged = time;
+    for (size_t k = 0; k < r->file_count; ++k) {
+        const output_file *file = &r->files[k];
+        if (file->next <= file->count) {
+            const double wanted = row_time(file, file->next, start, duration);
+            if (wanted - time <= 1e-9 * file->every && wanted > merged) {
+                merged = wanted;
+            }
+        }
+    }
+    return merged;
+}
+
+/* Rows of all files where an event, or the user, has ended the analysis. */
+static se3d_status sample_stop(runner *r, double time)
+{
+    se3d_status status = SE3D_OK;
+    for (size_t k = 0; k < r->file_count && status >= 0; ++k) {
+        status = sample(r, &r->files[k], time);
+    }
+    return status;
+}
+
+static void show_progress(runner *r, size_t index, double time, double start, double duration)
+{
+    if (r->options->progress &&
+        r->options->progress(r->options->ctx, index, time,
+                             duration > 0.0 ? (time - start) / duration : 1.0)) {
+        r->stopped = true;
+    }
+}
+
+static se3d_status run_rows(runner *r, size_t index, const se3di_analysis_entry *entry,
+                            double start)
+{
+    const double duration = entry->analysis.duration;
+    se3d_status last = SE3D_OK;
+    double time = start;
+    double reached = -HUGE_VAL; /* the last rows are of then */
+    while (next_time(r, start, duration, &time) && !r->stopped) {
+        time = merge_times(r, start, duration, time);
+        last = r->model->grains ? se3di_grains_advance(r->model, &entry->solver, r->solver, time)
+                                : se3d_solver_run(r->solver, time);
+        if (last < 0 && last != SE3D_ERR_INTERRUPTED) {
+            return fail_analysis(r, entry, last, time);
+        }
+        const bool ends = last == SE3D_INFO_EVENT || last < 0;
+        if (ends) {
+            se3d_system_get_time(r->model->system, &time);
+        }
+        const bool has_row = last < 0 && !(time > reached);
+        const se3d_status status = has_row ? SE3D_OK
+                                   : ends  ? sample_stop(r, time)
+                                           : sample_files(r, start, duration, time);
+        if (status < 0) {
+            return status;
+        }
+        reached = time;
+        show_progress(r, index, time, start, duration);
+        if (ends) {
+            break;
+        }
+    }
+    return last < 0 ? fail_analysis(r, entry, last, time) : last;
+}
+
+static const char *copy_text(runner *r, const char *text)
+{
+    const char *copy = se3di_iopool_copy(&r->run->pool, text, strlen(text));
+    return copy ? copy : "";
+}
+
+static const char *name_of_body(runner *r, se3d_body body)
+{
+    const char *name = "";
+    if (SE3D_FAILED(se3d_body_get_name(r->model->system, body, &name))) {
+        return "";
+    }
+    return copy_text(r, name[0] ? name : "without a name");
+}
+
+/* How the start was changed. */
+static void record_start(runner *r, se3d_run_analysis *done)
+{
+    se3d_start_change change;
+    memset(&change, 0, sizeof change);
+    if (r->solver) {
+        se3d_solver_get_start_change(r->solver, &change);
+    }
+    const double numbers[8] = {change.position,      change.rotation,
+                               change.velocity,      change.angular_velocity,
+                               change.most_position, change.most_rotation,
+                               change.most_velocity, change.most_angular_velocity};
+    memcpy(done->start_change, numbers, sizeof numbers);
+    done->moved = name_of_body(r, change.moved);
+    done->deflected = name_of_body(r, change.deflected);
+}
+
+/* What the solver did, for the summary. */
+static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analysis *done,
+                   clock_t begin)
+{
+    const char *method = "";
+    const char *left = "";
+    done->left_at = (double)NAN;
+    se3d_system_get_time(r->model->system, &r->time);
+    done->end = r->time;
+    done->cpu_time = (double)(clock() - begin) / (double)CLOCKS_PER_SEC;
+    if (r->solver) {
+        se3d_solver_get_stats(r->solver, &done->stats);
+        if (entry->solver.analysis == SE3D_ANALYSIS_DYNAMICS) {
+            se3d_solver_get_method(r->solver, &method);
+            se3d_solver_get_switch(r->solver, &done->left_at, &left);
+        }
+    }
+    done->method = copy_text(r, method ? method : "");
+    done->left = copy_text(r, left);
+    record_start(r, done);
+}
+
+/* The files of the modes, and the state at which they are. */
+static se3d_status run_modes(runner *r, const se3di_analysis_entry *entry, double start)
+{
+    se3di_modes_run modes = {.model = r->model,
+                             .entry = &entry->modes,
+                             .folder = r->options->directory,
+                             .pool = &r->run->pool};
+    se3d_status status = se3di_modes_run_write(&modes);
+    for (size_t k = 0; k < modes.file_count; ++k) {
+        se3d_run_file *grown = se3di_iopool_grow(&r->run->pool, r->run->files, r->run->file_count,
+                                                 &r->run->file_capacity, sizeof *grown);
+        if (!grown) {
+            return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+        }
+        r->run->files = grown;
+        r->run->files[r->run->file_count++] = modes.files[k];
+    }
+    if (status < 0 && modes.problem[0]) {
+        return fail(r, status, modes.problem);
+    }
+    return status < 0 ? fail_analysis(r, entry, status, start) : sample_files(r, start, 0.0, start);
+}
+
+static se3d_status collect_events(runner *r, size_t index, se3d_status status)
+{
+    se3d_run *run = r->run;
+    const se3d_status collected =
+        se3di_event_list_collect(&run->events, &run->pool, r->model, r->solver, index);
+    return collected < 0 && status >= 0 ? fail(r, collected, "out of memory") : status;
+}
+
+/* The solver of an analysis: of its whole duration, and it can be interrupted. */
+static se3d_status create_solver(runner *r, const se3di_analysis_entry *entry, double start)
+{
+    se3d_solver_def def = entry->solver;
+    const double end = start + entry->analysis.duration;
+    def.horizon = fabs(end) > 0.0 ? end : DBL_MIN; /* 0 is none */
+    def.interrupt = r->options->interrupt;
+    def.interrupt_ctx = r->options->interrupt_ctx;
+    return se3d_solver_create(r->model->system, &def, &r->solver);
+}
+
+static se3d_status run_analysis(runner *r, size_t index)
+{
+    const se3di_analysis_entry *entry = &r->model->analyses[index];
+    se3d_run_analysis *done = &r->run->analyses[r->run->analysis_count++];
+    const double start = isnan(entry->analysis.start) ? r->time : entry->analysis.start;
+    const clock_t begin = clock();
+    done->type = copy_text(r, entry->analysis.type);
+    done->formulation = entry->solver.formulation == SE3D_FORMULATION_RP ? "rp" : "romega";
+    done->method = "";
+    done->start = start;
+    done->end = start;
+    se3d_status status =
+        done->type[0] != '\0' ? SE3D_OK : fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    plan(r, entry);
+    if (status >= 0) {
+        status = se3d_system_set_time(r->model->system, start);
+        if (status >= 0 && !entry->modes.file) {
+            status = create_solver(r, entry, start);
+        }
+        if (status >= 0 && se3di_analysis_has_motion(entry)) {
+            status = se3di_events_create(r->model, r->solver);
+        }
+        status = status < 0          ? fail_analysis(r, entry, status, start)
+                 : entry->modes.file ? run_modes(r, entry, start)
+                                     : run_rows(r, index, entry, start);
+    }
+    if (r->run->events.is_open && r->solver) {
+        status = collect_events(r, index, status);
+    }
+    record(r, entry, done, begin);
+    done->status = (int32_t)status;
+    se3d_solver_destroy(r->solver);
+    r->solver = NULL;
+    return status;
+}
+
+static se3d_status close_csv(runner *r, se3di_csv *csv, se3d_run_file *about)
+{
+    about->path = csv->path;
+    about->columns = csv->columns;
+    const se3d_status status = se3di_csv_close(csv);
+    about->rows = csv->rows;
+    return status < 0 ? fail_csv(r, csv) : SE3D_OK;
+}
+
+/* Complete one file. */
+static se3d_status close_file(runner *r, output_file *file, se3d_run_file *about)
+{
+    int why = 0;
+    if (file->vtk) {
+        const se3d_status status = se3di_vtk_close(file->vtk, &why);
+        about->path = se3di_vtk_get_path(file->vtk);
+        about->rows = se3di_vtk_count(file->vtk);
+        return status < 0 ? fail_path(r, about->path, why) : SE3D_OK;
+    }
+    return close_csv(r, &file->csv, about);
+}
+
+/* One more file of the results, which `closed` says is complete, or which has rows that were kept;
+ * the first failure is reported. */
+static se3d_status list_file(runner *r, const se3d_run_file *file, se3d_status closed,
+                             se3d_status status)
+{
+    se3d_run *run = r->run;
+    se3d_run_file *grown = se3di_iopool_grow(&run->pool, run->files, run->file_count,
+                                             &run->file_capacity, sizeof *grown);
+    if (grown) {
+        run->files = grown;
+        run->files[run->file_count] = *file;
+        run->file_count += closed >= 0 || (file->rows > 0 && file->columns > 0);
+    } else if (status >= 0 && closed >= 0) {
+        return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    return status < 0 ? status : closed < 0 ? closed : status;
+}
+
+/* Complete every file, also after a failure: the rows so far are kept. The first failure is
+ * reported. */
+static se3d_status close_files(runner *r, se3d_status status)
+{
+    se3d_model_error *reported = r->error;
+    const size_t count = r->file_count + (r->run->events.is_open ? 1 : 0);
+    for (size_t k = 0; k < count; ++k) {
+        se3d_run_file file = {NULL, 0, 0};
+        r->error = status < 0 ? NULL : reported;
+        const se3d_status closed = k < r->file_count ? close_file(r, &r->files[k], &file)
+                                                     : close_csv(r, &r->run->events.csv, &file);
+        status = list_file(r, &file, closed, status);
+        r->error = reported;
+    }
+    return status;
+}
+
+static se3d_run *create_run(const se3d_model *model)
+{
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &model->pool.allocator);
+    se3d_run *run = se3di_iopool_alloc(&pool, sizeof *run);
+    if (run) {
+        run->analyses = se3di_iopool_array(&pool, model->analysis_count, sizeof *run->analyses);
+    }
+    if (!run || !run->analyses) {
+        se3di_iopool_destroy(&pool);
+        return NULL;
+    }
+    run->pool = pool;
+    return run;
+}
+
+static se3d_status run_all(runner *r)
+{
+    se3d_status status = open_files(r);
+    if (status < 0) {
+        for (size_t k = 0; k < r->file_count; ++k) {
+            se3di_csv_abandon(&r->files[k].csv);
+        }
+        se3di_csv_abandon(&r->run->events.csv);
+        return status;
+    }
+    se3d_system_get_time(r->model->system, &r->time);
+    for (size_t k = 0; k < r->model->analysis_count && status >= 0 && !r->stopped; ++k) {
+        status = run_analysis(r, k);
+    }
+    const se3d_status summed =
+        r->model->grains ? se3di_grains_sum_up(r->model->grains, &r->run->pool, &r->run->particles,
+                                               &r->run->particles_count)
+                         : SE3D_OK;
+    if (summed < 0 && status >= 0) {
+        status = fail(r, summed, "out of memory");
+    }
+    return close_files(r, status);
+}
+
+se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, se3d_run **out,
+                           se3d_model_error *error)
+{
+    se3d_run_options used = se3d_run_options_default();
+    runner r = {.model = model, .options = &used, .error = error};
+    if (out) {
+        *out = NULL;
+    }
+    if (error) {
+        memset(error, 0, sizeof *error);
+    }
+    if (!model || !out) {
+        return fail(&r, SE3D_ERR_NULL, "model or out is NULL");
+    }
+    if (options) {
+        if (!se3di_io_take(options, &used, sizeof used)) {
+            return fail(&r, SE3D_ERR_INVALID_ARGUMENT, "options: " SE3DI_IO_SIZE_TEXT);
+        }
+    }
+    if (model->analysis_count == 0) {
+        return fail(&r, SE3D_ERR_STATE, "the model has no `analysis`");
+    }
+    if (model->running || se3d_system_is_busy(model->system)) {
+        return fail(&r, SE3D_ERR_STATE, "the model is being run");
+    }
+    r.run = create_run(model);
+    if (!r.run) {
+        return fail(&r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    model->running = 1;
+    const se3d_status status = run_all(&r);
+    model->running = 0;
+    *out = r.run;
+    return status;
+}
+
+void se3d_run_destroy(se3d_run *run)
+{
+    if (run) {
+        se3di_iopool pool = run->pool; /* the run itself lies in it */
+        se3di_iopool_destroy(&pool);
+    }
+}
+
+size_t se3d_run_count_analyses(const se3d_run *run)
+{
+    return run ? run->analysis_count : 0;
+}
+
+se3d_status se3d_run_get_analysis_sized(const se3d_run *run, size_t index,
+                                        se3d_run_analysis *analysis, size_t size)
+{
+    if (!run || !analysis) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= run->analysis_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    return se3di_io_give(analysis, size, &run->analyses[index], sizeof *analysis);
+}
+
+size_t se3d_run_count_particles(const se3d_run *run)
+{
+    return run ? run->particles_count : 0;
+}
+
+se3d_status se3d_run_get_particles_sized(const se3d_run *run, size_t index,
+                                         se3d_run_particles *particles, size_t size)
+{
+    if (!run || !particles) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= run->particles_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    return se3di_io_give(particles, size, &run->particles[index], sizeof *particles);
+}
+
+size_t se3d_run_count_files(const se3d_run *run)
+{
+    return run ? run->file_count : 0;
+}
+
+se3d_status se3d_run_get_file_sized(const se3d_run *run, size_t index, se3d_run_file *file,
+                                    size_t size)
+{
+    if (!run || !file) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= run->file_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    return se3di_io_give(file, size, &run->files[index], sizeof *file);
+}
+
+size_t se3d_run_count_events(const se3d_run *run)
+{
+    return run ? run->events.count : 0;
+}
+
+se3d_status se3d_run_get_event_sized(const se3d_run *run, size_t index, se3d_run_event *event,
+                                     size_t size)
+{
+    if (!run || !event) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= run->events.count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    return se3di_io_give(event, size, &run->events.list[index], sizeof *event);
+}

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The events of a run of a model: put on its solvers, collected, written to a file. */
+#ifndef SE3D_IO_RUN_EVENTS_H
+#define SE3D_IO_RUN_EVENTS_H
+
+#include "io/model/model.h"
+#include "io/write/csv.h"
+
+typedef struct se3di_event_list {
+    se3d_run_event *list;
+    size_t count, capacity;
+    se3di_csv csv;
+    bool is_open;
+} se3di_event_list;
+
+/* Open the file: as se3di_csv_open. */
+se3d_status se3di_event_list_open(se3di_event_list *events, se3di_iopool *pool, const char *path);
+/* What is on the solver's record, to the list and the file. @return OK, NO_MEMORY */
+se3d_status se3di_event_list_collect(se3di_event_list *events, se3di_iopool *pool,
+                                     const se3d_model *model, se3d_solver *solver, size_t analysis);
+
+#endif

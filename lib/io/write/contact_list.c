@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "io/write/contact_list.h"
+
+#include <string.h>
+
+#include "io/model/grains.h"
+
+static const char *shape_name(const se3d_model *model, se3d_shape shape)
+{
+    const char *name = "";
+    se3d_body body;
+    if (se3d_shape_get_name(model->system, shape, &name) < 0 || name[0] != '\0') {
+        return name ? name : "";
+    }
+    if (se3d_shape_get_body(model->system, shape, &body) < 0 ||
+        se3d_body_get_name(model->system, body, &name) < 0) {
+        return "";
+    }
+    return name;
+}
+
+/* `force`: on b, `normal`: from a to b. */
+static void put_row(se3di_contact_rows *out, double time, const double point[3],
+                    const double normal[3], double overlap, const double force[3])
+{
+    double *row = out->rows + SE3DI_CONTACT_NUMBERS * out->count++;
+    row[0] = time;
+    row[7] = overlap;
+    row[8] = 0.0;
+    for (size_t k = 0; k < 3; ++k) {
+        row[1 + k] = point[k];
+        row[4 + k] = normal[k];
+        row[8] += force[k] * normal[k];
+    }
+    for (size_t k = 0; k < 3; ++k) {
+        row[9 + k] = force[k] - row[8] * normal[k];
+    }
+}
+
+/* The contacts of grains, at best in one pass over the forces: there are mostly as many as at the
+ * end of the last step. */
+typedef struct grain_contacts {
+    se3d_particles_contact *list;
+    size_t count;
+} grain_contacts;
+
+static se3d_status get_particles(const se3d_particles *set, se3di_iopool *pool, grain_contacts *c)
+{
+    se3d_particles_stats stats = {.steps = 0};
+    const se3d_status status = se3d_particles_get_stats(set, &stats);
+    c->count = (size_t)stats.contacts;
+    for (int tries = 0; tries < 2 && status >= 0; ++tries) {
+        c->list = se3di_iopool_array(pool, c->count + 1, sizeof *c->list);
+        if (!c->list) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+        if (se3d_particles_get_contacts(set, c->count, c->list) >= 0) {
+            return SE3D_OK;
+        }
+        c->count = se3d_particles_count_contacts(set);
+    }
+    return status < 0 ? status : SE3D_ERR_STATE;
+}
+
+static se3d_status add_particles(const se3d_model *model, const grain_contacts *grains,
+                                 se3di_contact_rows *out)
+{
+    double time = 0.0;
+    const se3d_particles_contact *list = grains->list;
+    const size_t count = grains->count;
+    const se3d_status status = se3d_particles_get_time(model->grains->set, &time);
+    for (size_t k = 0; k < count && status >= 0; ++k) {
+        const se3d_particles_contact *c = &list[k];
+        const bool wall = c->shape.index1 != 0;
+        const double normal[3] = {-c->normal[0], -c->normal[1], -c->normal[2]};
+        const double force[3] = {-c->force[0], -c->force[1], -c->force[2]};
+        out->kinds[out->count] = wall ? "wall" : "particles";
+        out->id_a[out->count] = (double)c->i;
+        out->id_b[out->count] = (double)c->j;
+        out->b[out->count] = wall ? shape_name(model, c->shape) : NULL;
+        put_row(out, time, c->point, normal, c->overlap, force);
+    }
+    return status;
+}
+
+static se3d_status add_bodies(const se3d_model *model, se3di_iopool *pool, size_t count,
+                              se3di_contact_rows *out)
+{
+    double time = 0.0;
+    se3d_contact *list = se3di_iopool_array(pool, count + 1, sizeof *list);
+    if (!list) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    se3d_status status = se3d_system_get_time(model->system, &time);
+    if (status >= 0) {
+        status = se3d_system_get_contacts(model->system, count, list);
+    }
+    for (size_t k = 0; k < count && status >= 0; ++k) {
+        out->kinds[out->count] = "bodies";
+        out->a[out->count] = shape_name(model, list[k].shape_i);
+        out->b[out->count] = shape_name(model, list[k].shape_j);
+        put_row(out, time, list[k].point, list[k].normal, list[k].overlap, list[k].force);
+    }
+    return status;
+}
+
+se3d_status se3di_contacts_get_rows(const se3d_model *model, se3di_iopool *pool,
+                                    se3di_contact_rows *out)
+{
+    const size_t bodies = se3d_system_count_contacts(model->system);
+    grain_contacts grains = {NULL, 0};
+    memset(out, 0, sizeof *out);
+    if (model->grains) {
+        const se3d_status found = get_particles(model->grains->set, pool, &grains);
+        if (found < 0) {
+            return found;
+        }
+    }
+    const size_t room = bodies + grains.count + 1;
+    out->rows = se3di_iopool_array(pool, room, SE3DI_CONTACT_NUMBERS * sizeof *out->rows);
+    out->kinds = se3di_iopool_array(pool, room, sizeof *out->kinds);
+    out->a = se3di_iopool_array(pool, room, sizeof *out->a);
+    out->b = se3di_iopool_array(pool, room, sizeof *out->b);
+    out->id_a = se3di_iopool_array(pool, room, sizeof *out->id_a);
+    out->id_b = se3di_iopool_array(pool, room, sizeof *out->id_b);
+    if (!out->rows || !out->kinds || !out->a || !out->b || !out->id_a || !out->id_b) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    const se3d_status status = bodies > 0 ? add_bodies(model, pool, bodies, out) : SE3D_OK;
+    return status < 0 || grains.count == 0 ? status : add_particles(model, &grains, out);
+}
+
+const char *se3di_contacts_get_column(size_t k)
+{
+    static const char *const names[SE3DI_CONTACT_COLUMNS] = {
+        "time", "kind", "a",       "b",  "x",   "y",   "z",  "nx",
+        "ny",   "nz",   "overlap", "fn", "ftx", "fty", "ftz"};
+    return names[k];
+}
+
+se3d_status se3di_contacts_write(const se3d_model *model, se3di_iopool *pool, se3di_csv *csv)
+{
+    se3di_contact_rows list;
+    const se3d_status status = se3di_contacts_get_rows(model, pool, &list);
+    for (size_t k = 0; k < list.count && status >= 0; ++k) {
+        const double *row = list.rows + SE3DI_CONTACT_NUMBERS * k;
+        se3di_csv_cell cells[SE3DI_CONTACT_COLUMNS] = {{NULL, row[0]},
+                                                       {list.kinds[k], 0.0},
+                                                       {list.a[k], list.id_a[k]},
+                                                       {list.b[k], list.id_b[k]}};
+        for (size_t c = 4; c < SE3DI_CONTACT_COLUMNS; ++c) {
+            cells[c].number = row[c - 3];
+        }
+        se3di_csv_put_cells(csv, cells, SE3DI_CONTACT_COLUMNS);
+    }
+    return status;
+}

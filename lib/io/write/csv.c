@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* CSV files: buffered rows, completed by renaming. */
+#include "io/write/csv.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include "io/base/pool.h"
+#include "io/write/file.h"
+
+enum { BUFFER_SIZE = 1 << 16, NUMBER_SIZE = 40 };
+
+size_t se3di_number_format(double value, char *text)
+{
+    const char *const special = isnan(value) ? "nan" : value < 0.0 ? "-inf" : "inf";
+    if (!isfinite(value)) {
+        strcpy(text, special);
+        return strlen(text);
+    }
+    const int length = snprintf(text, NUMBER_SIZE, "%.17g", value);
+    const size_t head = strspn(text, "-0123456789");
+    const size_t point = strcspn(text + head, "0123456789e"); /* bytes of the decimal point */
+    if (text[head] == 'e' || text[head] == '\0') {
+        return (size_t)length;
+    }
+    text[head] = '.';
+    memmove(text + head + 1, text + head + point, (size_t)length - head - point + 1);
+    return (size_t)length - point + 1;
+}
+
+static void remember(se3di_csv *csv)
+{
+    if (csv->failure == 0) {
+        csv->failure = errno ? errno : EIO;
+    }
+}
+
+static void flush(se3di_csv *csv)
+{
+    errno = 0;
+    if (csv->failure == 0 && csv->used > 0) {
+        const size_t written = fwrite(csv->buffer, 1, csv->used, csv->file);
+        if (written != csv->used) {
+            remember(csv);
+        }
+        for (const char *end = csv->buffer;
+             (end = memchr(end, '\n', written - (size_t)(end - csv->buffer))) != NULL;) {
+            ++end;
+            ++csv->lines;
+            csv->whole = csv->written + (uint64_t)(end - csv->buffer);
+        }
+        csv->written += written;
+    }
+    csv->used = 0;
+}
+
+static void put(se3di_csv *csv, const char *text, size_t length)
+{
+    while (length > 0) {
+        if (csv->used == BUFFER_SIZE) {
+            flush(csv);
+        }
+        const size_t room = BUFFER_SIZE - csv->used;
+        const size_t part = length < room ? length : room;
+        memcpy(csv->buffer + csv->used, text, part);
+        csv->used += part;
+        text += part;
+        length -= part;
+    }
+}
+
+se3d_status se3di_csv_open(se3di_csv *csv, se3di_iopool *pool, const char *path, size_t columns)
+{
+    memset(csv, 0, sizeof *csv);
+    csv->columns = columns;
+    csv->path = se3di_iopool_copy(pool, path, strlen(path));
+    csv->buffer = se3di_iopool_alloc(pool, BUFFER_SIZE);
+    csv->pending = se3di_iopool_array(pool, columns, sizeof *csv->pending);
+    if (!csv->path || !csv->buffer || !csv->pending) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    errno = 0;
+    csv->file = se3di_file_make_folders(path) ? se3di_partial_open(path) : NULL;
+    if (!csv->file) {
+        remember(csv);
+        return SE3D_ERR_IO;
+    }
+    setvbuf(csv->file, NULL, _IONBF, 0);
+    return SE3D_OK;
+}
+
+/* Names with commas or quotes cannot occur: the reader does not allow them. */
+void se3di_csv_put_name(se3di_csv *csv, const char *name, bool last)
+{
+    put(csv, name, strlen(name));
+    put(csv, last ? "\n" : ",", 1);
+}
+
+static void write_pending(se3di_csv *csv)
+{
+    char text[NUMBER_SIZE + 1];
+    if (!csv->has_pending) {
+        return;
+    }
+    for (size_t k = 0; k < csv->columns; ++k) {
+        size_t length = se3di_number_format(csv->pending[k], text);
+        text[length++] = k + 1 < csv->columns ? ',' : '\n';
+        put(csv, text, length);
+    }
+    csv->has_pending = false;
+    ++csv->rows;
+}
+
+void se3di_csv_put_row(se3di_csv *csv, const double *row)
+{
+    const bool again =
+        csv->has_pending && !(row[0] < csv->pending[0]) && !(row[0] > csv->pending[0]);
+    if (!again) {
+        write_pending(csv);
+    }
+    memcpy(csv->pending, row, csv->columns * sizeof *row);
+    csv->has_pending = true;
+}
+
+void se3di_csv_put_cells(se3di_csv *csv, const se3di_csv_cell *cells, size_t count)
+{
+    char text[NUMBER_SIZE + 1];
+    write_pending(csv);
+    for (size_t k = 0; k < count; ++k) {
+        if (cells[k].text) {
+            put(csv, cells[k].text, strlen(cells[k].text));
+        } else {
+            put(csv, text, se3di_number_format(cells[k].number, text));
+        }
+        put(csv, k + 1 < count ? "," : "\n", 1);
+    }
+    ++csv->rows;
+}
+
+se3d_status se3di_csv_close(se3di_csv *csv)
+{
+    write_pending(csv);
+    flush(csv);
+    FILE *file = csv->file;
+    csv->file = NULL;
+    if (csv->failure != 0) { /* lines: the names of the columns are one */
+        csv->rows = csv->lines > 1 ? csv->lines - 1 : 0;
+        if (csv->rows == 0 || !se3di_partial_keep(file, csv->path, csv->whole)) {
+            csv->rows = 0;
+            se3di_partial_abandon(file, csv->path);
+        }
+        return SE3D_ERR_IO;
+    }
+    if (!se3di_partial_close(file, csv->path)) {
+        remember(csv);
+        return SE3D_ERR_IO;
+    }
+    return SE3D_OK;
+}
+
+void se3di_csv_abandon(se3di_csv *csv)
+{
+    if (csv->file) {
+        se3di_partial_abandon(csv->file, csv->path);
+        csv->file = NULL;
+    }
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Files that appear whole, under their name, in folders that are made for them. */
+#ifndef SE3D_IO_FILE_H
+#define SE3D_IO_FILE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* The path of `file`, which is relative, in `folder`. @return false: errno says why: too long, or
+ * ELOOP where a symbolic link leads out of the folder. */
+bool se3di_file_join(const char *folder, const char *file, char *path, size_t size);
+/* Make the folders that a path of a file needs. @return false: errno says why. */
+bool se3di_file_make_folders(const char *path);
+/* Open a file under a temporary name; complete it and give it its name. @return NULL, false: errno
+ * says why, and nothing is left. */
+FILE *se3di_partial_open(const char *path);
+bool se3di_partial_close(FILE *file, const char *path);
+/* Cut the file to its first `size` bytes and give it its name, after a write has failed; where it
+ * cannot have it, it keeps the temporary one. @return false: nothing is left. */
+bool se3di_partial_keep(FILE *file, const char *path, uint64_t size);
+/* Close without keeping anything. */
+void se3di_partial_abandon(FILE *file, const char *path);
+
+#endif

@@ -1,0 +1,365 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Binary glTF 2.0 files: a header, a JSON chunk and a chunk of numbers, little-endian. */
+#include "io/write/glb.h"
+
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/base/pool.h"
+#include "io/model/mesh.h"
+#include "io/write/csv.h"
+#include "io/write/drawing.h"
+#include "io/write/file.h"
+#include "io/write/unit_mesh.h"
+
+enum { NUMBER_FLOAT = 5126, NUMBER_SHORT = 5122, NUMBER_INDEX = 5123 };
+
+void se3di_glb_init(se3di_glb *glb, se3di_iopool *pool)
+{
+    memset(glb, 0, sizeof *glb);
+    glb->pool = pool;
+    for (size_t k = 0; k < SE3DI_UNIT_COUNT; ++k) {
+        glb->unit[k][0] = glb->unit[k][1] = glb->unit[k][2] = -1;
+    }
+}
+
+void se3di_glb_put_bytes(se3di_glb *glb, se3di_bytes *bytes, const void *data, size_t size)
+{
+    size_t capacity = bytes->capacity ? bytes->capacity : 1024;
+    while (capacity < bytes->count + size) {
+        capacity *= 2;
+    }
+    if (capacity != bytes->capacity) {
+        char *grown = se3di_iopool_alloc(glb->pool, capacity);
+        if (!grown) {
+            glb->failed = true;
+            return;
+        }
+        if (bytes->count > 0) {
+            memcpy(grown, bytes->data, bytes->count);
+        }
+        bytes->data = grown;
+        bytes->capacity = capacity;
+    }
+    memcpy(bytes->data + bytes->count, data, size);
+    bytes->count += size;
+}
+
+void se3di_glb_put(se3di_glb *glb, se3di_bytes *bytes, const char *format, ...)
+{
+    char text[1024];
+    va_list list;
+    va_start(list, format);
+    const int length = vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    if (length > 0) {
+        se3di_glb_put_bytes(glb, bytes, text,
+                            (size_t)length < sizeof text ? (size_t)length : sizeof text - 1);
+    }
+}
+
+void se3di_glb_put_text(se3di_glb *glb, se3di_bytes *bytes, const char *text)
+{
+    se3di_glb_put_bytes(glb, bytes, "\"", 1);
+    while (*text) { /* valid UTF-8 whatever the bytes are */
+        const size_t length = se3d_text_get_character(text);
+        if (*text == '"' || *text == '\\') {
+            se3di_glb_put(glb, bytes, "\\%c", *text);
+        } else if (length > 0) {
+            se3di_glb_put_bytes(glb, bytes, text, length);
+        } else if ((unsigned char)*text < 0x80) {
+            se3di_glb_put(glb, bytes, "\\u%04x", (unsigned)*text);
+        } else {
+            se3di_glb_put(glb, bytes, "\\ufffd");
+        }
+        text += length > 0 ? length : 1;
+    }
+    se3di_glb_put_bytes(glb, bytes, "\"", 1);
+}
+
+void se3di_glb_put_number(se3di_glb *glb, se3di_bytes *bytes, double value)
+{
+    char text[48];
+    const size_t length = se3di_number_format(isfinite(value) ? (double)(float)value : 0.0, text);
+    se3di_glb_put_bytes(glb, bytes, text, length);
+}
+
+static void put_little(se3di_glb *glb, uint32_t value, size_t size)
+{
+    const unsigned char bytes[4] = {(unsigned char)value, (unsigned char)(value >> 8),
+                                    (unsigned char)(value >> 16), (unsigned char)(value >> 24)};
+    se3di_glb_put_bytes(glb, &glb->binary, bytes, size);
+}
+
+static long begin(se3di_glb *glb, size_t size, int target)
+{
+    const bool first = glb->accessor_count == 0;
+    while (glb->binary.count % 4 != 0) {
+        put_little(glb, 0, 1);
+    }
+    se3di_glb_put(glb, &glb->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu",
+                  first ? "" : ",", glb->binary.count, size);
+    if (target != 0) {
+        se3di_glb_put(glb, &glb->views, ",\"target\":%d", target);
+    }
+    se3di_glb_put(glb, &glb->views, "}");
+    return (long)glb->accessor_count;
+}
+
+/* The nearest 32-bit number; 0 where it is none. */
+static float to_float(double value)
+{
+    return isfinite(value) ? (float)fmax(-(double)FLT_MAX, fmin((double)FLT_MAX, value)) : 0.0F;
+}
+
+static void put_range(se3di_glb *glb, const double *values, size_t count, size_t width)
+{
+    for (int largest = 0; largest < 2; ++largest) {
+        se3di_glb_put(glb, &glb->accessors, largest ? "],\"max\":[" : ",\"min\":[");
+        for (size_t i = 0; i < width; ++i) {
+            float best = to_float(values[i]);
+            for (size_t k = 1; k < count; ++k) {
+                const float value = to_float(values[k * width + i]);
+                best = (largest ? value > best : value < best) ? value : best;
+            }
+            se3di_glb_put(glb, &glb->accessors, i > 0 ? "," : "");
+            se3di_glb_put_number(glb, &glb->accessors, (double)best);
+        }
+    }
+    se3di_glb_put(glb, &glb->accessors, "]");
+}
+
+static void describe(se3di_glb *glb, long view, int number, size_t count, const char *type)
+{
+    se3di_glb_put(glb, &glb->accessors,
+                  "%s{\"bufferView\":%ld,\"componentType\":%d,\"count\":%zu,\"type\":\"%s\"",
+                  view > 0 ? "," : "", view, number, count, type);
+    ++glb->accessor_count;
+}
+
+long se3di_glb_add_floats(se3di_glb *glb, const double *values, size_t count, se3di_glb_type type,
+                          int target)
+{
+    const size_t width = (size_t)type;
+    const long view = begin(glb, count * width * 4, target);
+    for (size_t k = 0; k < count * width; ++k) {
+        const float value = to_float(values[k]);
+        uint32_t bits = 0;
+        memcpy(&bits, &value, sizeof bits);
+        put_little(glb, bits, 4);
+    }
+    describe(glb, view, NUMBER_FLOAT, count, type == SE3DI_GLB_SCALAR ? "SCALAR" : "VEC3");
+    put_range(glb, values, count, width);
+    se3di_glb_put(glb, &glb->accessors, "}");
+    return view;
+}
+
+long se3di_glb_add_rotations(se3di_glb *glb, const double *values, size_t count)
+{
+    const long view = begin(glb, count * 8, 0);
+    for (size_t k = 0; k < 4 * count; ++k) {
+        const long value = lround(32767.0 * fmax(-1.0, fmin(1.0, values[k])));
+        put_little(glb, (uint32_t)(value & 0xffff), 2);
+    }
+    describe(glb, view, NUMBER_SHORT, count, "VEC4");
+    se3di_glb_put(glb, &glb->accessors, ",\"normalized\":true}");
+    return view;
+}
+
+static void add_unit(se3di_glb *glb, se3di_unit mesh)
+{
+    se3di_unit_mesh *m = se3di_iopool_alloc(glb->pool, sizeof *m);
+    if (!m) {
+        glb->failed = true;
+        return;
+    }
+    se3di_unit_mesh_make(m, mesh);
+    glb->unit[mesh][0] =
+        se3di_glb_add_floats(glb, m->points, m->points_count, SE3DI_GLB_VEC3, 34962);
+    if (m->indices_count > 0) {
+        glb->unit[mesh][1] =
+            se3di_glb_add_floats(glb, m->normals, m->points_count, SE3DI_GLB_VEC3, 34962);
+        glb->unit[mesh][2] = begin(glb, m->indices_count * 2, 34963);
+        for (size_t k = 0; k < m->indices_count; ++k) {
+            put_little(glb, m->indices[k], 2);
+        }
+        describe(glb, glb->unit[mesh][2], NUMBER_INDEX, m->indices_count, "SCALAR");
+        se3di_glb_put(glb, &glb->accessors, "}");
+    }
+}
+
+/* The unit normal of a triangle; z where it has no area. */
+static void get_normal(const double *const p[3], double n[3])
+{
+    double a[3];
+    double b[3];
+    double largest = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        a[i] = p[1][i] - p[0][i];
+        b[i] = p[2][i] - p[0][i];
+        largest = fmax(largest, fmax(fabs(a[i]), fabs(b[i])));
+    }
+    for (int i = 0; i < 3 && largest > 0.0; ++i) { /* no square overflows or vanishes */
+        a[i] /= largest;
+        b[i] /= largest;
+    }
+    n[0] = a[1] * b[2] - a[2] * b[1];
+    n[1] = a[2] * b[0] - a[0] * b[2];
+    n[2] = a[0] * b[1] - a[1] * b[0];
+    const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    const bool flat = length > 0.0 && isfinite(length);
+    for (int i = 0; i < 3; ++i) {
+        n[i] = flat ? n[i] / length : (double)(i == 2);
+    }
+}
+
+/* Edges are sharp: every triangle has points and a normal of its own, and no indices. */
+static void add_surface(se3di_glb *glb, const se3di_mesh *mesh, long accessors[3])
+{
+    const size_t count = 3 * mesh->triangle_count;
+    double *points = se3di_iopool_array(glb->pool, count, 3 * sizeof *points);
+    double *normals = se3di_iopool_array(glb->pool, count, 3 * sizeof *normals);
+    if (!points || !normals) {
+        glb->failed = true;
+        return;
+    }
+    for (size_t k = 0; k < count; k += 3) {
+        const double *corners[3];
+        double n[3];
+        for (size_t c = 0; c < 3; ++c) {
+            corners[c] = mesh->points + 3 * (size_t)mesh->triangles[k + c];
+        }
+        get_normal(corners, n);
+        for (size_t c = 0; c < 3; ++c) {
+            memcpy(points + 3 * (k + c), corners[c], sizeof n);
+            memcpy(normals + 3 * (k + c), n, sizeof n);
+        }
+    }
+    accessors[0] = se3di_glb_add_floats(glb, points, count, SE3DI_GLB_VEC3, 34962);
+    accessors[1] = se3di_glb_add_floats(glb, normals, count, SE3DI_GLB_VEC3, 34962);
+}
+
+/* Accessors of positions, normals and indices, made when they are first asked for. */
+static const long *find_surface(se3di_glb *glb, const se3di_part *part)
+{
+    if (!part->mesh) {
+        if (glb->unit[part->unit][0] < 0) {
+            add_unit(glb, part->unit);
+        }
+        return glb->unit[part->unit];
+    }
+    for (size_t k = 0; k < glb->surface_count; ++k) {
+        if (glb->surfaces[k].mesh == part->mesh) {
+            return glb->surfaces[k].accessors;
+        }
+    }
+    struct se3di_glb_surface made = {part->mesh, {-1, -1, -1}};
+    struct se3di_glb_surface *grown = se3di_iopool_grow(
+        glb->pool, glb->surfaces, glb->surface_count, &glb->surface_capacity, sizeof *grown);
+    if (!grown) {
+        glb->failed = true;
+        return glb->unit[part->unit];
+    }
+    add_surface(glb, part->mesh, made.accessors);
+    glb->surfaces = grown;
+    glb->surfaces[glb->surface_count] = made;
+    return glb->surfaces[glb->surface_count++].accessors;
+}
+
+size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part)
+{
+    const long *surface = find_surface(glb, part);
+    const size_t index = glb->mesh_count++;
+    se3di_glb_put(glb, &glb->meshes, "%s{\"primitives\":[{\"attributes\":{\"POSITION\":%ld",
+                  index > 0 ? "," : "", surface[0]);
+    if (surface[2] >= 0) {
+        se3di_glb_put(glb, &glb->meshes, ",\"NORMAL\":%ld},\"indices\":%ld", surface[1],
+                      surface[2]);
+    } else if (surface[1] >= 0) {
+        se3di_glb_put(glb, &glb->meshes, ",\"NORMAL\":%ld}", surface[1]);
+    } else {
+        se3di_glb_put(glb, &glb->meshes, "},\"mode\":1");
+    }
+    se3di_glb_put(glb, &glb->meshes, ",\"material\":%zu}]}", index);
+    se3di_glb_put(glb, &glb->materials,
+                  "%s{\"pbrMetallicRoughness\":{\"metallicFactor\":0.1,\"roughnessFactor\":0.6,"
+                  "\"baseColorFactor\":[",
+                  index > 0 ? "," : "");
+    for (size_t k = 0; k < 4; ++k) {
+        se3di_glb_put(glb, &glb->materials, k > 0 ? "," : "");
+        se3di_glb_put_number(glb, &glb->materials, part->color[k]);
+    }
+    se3di_glb_put(glb, &glb->materials, "]},\"doubleSided\":true%s}",
+                  part->color[3] < 1.0 ? ",\"alphaMode\":\"BLEND\"" : "");
+    return index;
+}
+
+static void put_head(unsigned char *at, uint32_t value)
+{
+    for (int k = 0; k < 4; ++k) {
+        at[k] = (unsigned char)(value >> (8 * k));
+    }
+}
+
+static void write_chunk(FILE *file, const se3di_bytes *bytes, const char *type)
+{
+    unsigned char head[8];
+    put_head(head, (uint32_t)bytes->count);
+    memcpy(head + 4, type, 4);
+    fwrite(head, 1, 8, file);
+    fwrite(bytes->data, 1, bytes->count, file);
+}
+
+static bool write_file(const char *path, const se3di_bytes *json, const se3di_bytes *binary)
+{
+    unsigned char head[12] = {'g', 'l', 'T', 'F'};
+    FILE *file = se3di_partial_open(path);
+    if (!file) {
+        return false;
+    }
+    put_head(head + 4, 2);
+    put_head(head + 8, (uint32_t)(28 + json->count + binary->count));
+    fwrite(head, 1, sizeof head, file);
+    write_chunk(file, json, "JSON");
+    write_chunk(file, binary, "BIN\0");
+    return se3di_partial_close(file, path);
+}
+
+bool se3di_glb_write(se3di_glb *glb, const se3di_bytes *rest, const char *path)
+{
+    static const char *const names[] = {",\"bufferViews\":[", "],\"accessors\":[", "],\"meshes\":[",
+                                        "],\"materials\":["};
+    const se3di_bytes *const parts[] = {&glb->views, &glb->accessors, &glb->meshes,
+                                        &glb->materials};
+    se3di_bytes json = {NULL, 0, 0};
+    while (glb->binary.count % 4 != 0) {
+        put_little(glb, 0, 1);
+    }
+    se3di_glb_put(glb, &json,
+                  "{\"asset\":{\"version\":\"2.0\",\"generator\":\"libse3d %s\"},"
+                  "\"buffers\":[{\"byteLength\":%zu}]",
+                  se3d_version_get_text(), glb->binary.count);
+    for (size_t k = 0; k < 4; ++k) {
+        se3di_glb_put(glb, &json, "%s", names[k]);
+        se3di_glb_put_bytes(glb, &json, parts[k]->data ? parts[k]->data : "", parts[k]->count);
+    }
+    se3di_glb_put(glb, &json, "]");
+    se3di_glb_put_bytes(glb, &json, rest->data, rest->count);
+    se3di_glb_put(glb, &json, "}");
+    while (json.count % 4 != 0) {
+        se3di_glb_put(glb, &json, " ");
+    }
+    if (glb->failed) {
+        errno = ENOMEM;
+        return false;
+    }
+    if (json.count > UINT32_MAX / 2 || glb->binary.count > UINT32_MAX / 2) { /* sizes are 32 bits */
+        errno = EFBIG;
+        return false;
+    }
+    return write_file(path, &json, &glb->binary);
+}

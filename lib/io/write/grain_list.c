@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Snapshots of particles, in ascending order of the ids. */
+#include "io/write/grain_list.h"
+
+#include <string.h>
+
+#include "io/base/pool.h"
+#include "io/document/document.h"
+#include "io/model/grains.h"
+#include "io/model/model.h"
+#include "io/write/csv.h"
+
+const char *se3di_grains_get_column(size_t k)
+{
+    static const char *const names[SE3DI_GRAIN_COLUMNS + 1] = {
+        "time", "id", "radius", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "material"};
+    return names[k];
+}
+
+static const char *name_of(const se3d_model *model, se3d_material material)
+{
+    const se3di_node *list = se3di_node_get(model->root, "materials");
+    size_t k = 0;
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next, ++k) {
+        if (model->materials[k].index1 == material.index1 &&
+            model->materials[k].generation == material.generation) {
+            return se3di_node_get(node, "name")->text;
+        }
+    }
+    return "";
+}
+
+/* Numbers of all particles, [n], [n], [3 n] ... in turn. */
+static se3d_status read_set(const se3d_particles *set, size_t n, double *numbers, uint32_t *ids,
+                            se3di_grain_rows *out, se3d_material *materials)
+{
+    se3d_status status = se3d_particles_get_ids(set, n, ids);
+    if (status >= 0) {
+        status = se3d_particles_get_radii(set, n, numbers);
+    }
+    if (status >= 0) {
+        status = se3d_particles_get_all(set, n, numbers + n, numbers + 4 * n, numbers + 7 * n);
+    }
+    if (status >= 0) {
+        status = se3d_particles_get_tags(set, n, out->tags);
+    }
+    return status < 0 ? status : se3d_particles_get_materials(set, n, materials);
+}
+
+se3d_status se3di_grains_get_rows(const se3d_model *model, se3di_iopool *pool,
+                                  se3di_grain_rows *out)
+{
+    enum { WIDTH = SE3DI_GRAIN_COLUMNS };
+    const se3d_particles *set = model->grains->set;
+    const size_t n = se3d_particles_count(set);
+    uint32_t *ids = se3di_iopool_array(pool, n + 1, sizeof *ids);
+    double *numbers = se3di_iopool_array(pool, 10 * n + 1, sizeof *numbers);
+    se3d_material *materials = se3di_iopool_array(pool, n + 1, sizeof *materials);
+    double time = 0.0;
+    out->count = 0;
+    out->rows = se3di_iopool_array(pool, WIDTH * n + 1, sizeof *out->rows);
+    out->tags = se3di_iopool_array(pool, n + 1, sizeof *out->tags);
+    out->materials = se3di_iopool_array(pool, n + 1, sizeof *out->materials);
+    if (!ids || !numbers || !materials || !out->rows || !out->tags || !out->materials) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    se3d_status status = se3d_particles_get_time(set, &time);
+    if (status >= 0) {
+        status = read_set(set, n, numbers, ids, out, materials);
+    }
+    for (size_t k = 0; k < n && status >= 0; ++k) {
+        double *row = out->rows + WIDTH * k;
+        row[0] = time;
+        row[1] = (double)ids[k];
+        row[2] = numbers[k];
+        for (size_t v = 0; v < 3; ++v) {
+            memcpy(row + 3 + 3 * v, numbers + n + 3 * (v * n + k), 3 * sizeof *row);
+        }
+        out->materials[k] = name_of(model, materials[k]);
+    }
+    out->count = status < 0 ? 0 : n;
+    return status;
+}
+
+se3d_status se3di_grains_write(const se3d_model *model, se3di_iopool *pool, int32_t set,
+                               struct se3di_csv *csv)
+{
+    se3di_grain_rows grains;
+    se3di_csv_cell cells[SE3DI_GRAIN_COLUMNS + 1] = {{NULL, 0.0}};
+    const se3d_status status = se3di_grains_get_rows(model, pool, &grains);
+    for (size_t k = 0; k < grains.count; ++k) {
+        if (set >= 0 && grains.tags[k] != (uint32_t)set) {
+            continue;
+        }
+        for (size_t c = 0; c < SE3DI_GRAIN_COLUMNS; ++c) {
+            cells[c].number = grains.rows[SE3DI_GRAIN_COLUMNS * k + c];
+        }
+        cells[SE3DI_GRAIN_COLUMNS].text = grains.materials[k];
+        se3di_csv_put_cells(csv, cells, SE3DI_GRAIN_COLUMNS + 1);
+    }
+    return status;
+}

@@ -1,0 +1,411 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A series of VTK files: the surfaces of bodies and the points of particles. */
+#include "io/write/vtk.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include "io/base/pool.h"
+#include "io/document/document.h"
+#include "io/model/mesh.h"
+#include "io/model/model.h"
+#include "io/write/contact_list.h"
+#include "io/write/csv.h"
+#include "io/write/drawing.h"
+#include "io/write/file.h"
+#include "io/write/grain_list.h"
+#include "io/write/unit_mesh.h"
+#include "io/write/vtk_file.h"
+
+enum { PATH_SIZE = 4096, EXTENSION = 4 };
+
+typedef struct surface {
+    const double *points;
+    const uint32_t *indices; /* of triangles */
+    size_t points_count, indices_count;
+} surface;
+
+/* A part, and whose it is: a body's, or a spring. */
+typedef struct piece {
+    se3di_part part;
+    size_t body;
+    const se3di_element_entry *spring; /* NULL: none */
+} piece;
+
+struct se3di_vtk {
+    se3d_model *model;
+    se3di_iopool *pool;
+    const char *path;
+    double extent;
+    piece *pieces;
+    size_t piece_count, piece_capacity;
+    const se3di_unit_mesh *units; /* [SE3DI_UNIT_COUNT] */
+    double *poses;                /* of all bodies */
+    size_t points_count, triangles_count;
+    double *points, *velocities; /* [points_count][3] */
+    double *triangles;           /* [triangles_count][3] */
+    double *bodies;              /* of every triangle; -1: a spring */
+    double *times;
+    size_t count, capacity;
+    int failure; /* errno of the first failure; ENOMEM also where memory is missing */
+};
+
+static surface surface_of(const se3di_vtk *vtk, const se3di_part *part)
+{
+    const se3di_unit_mesh *unit = &vtk->units[part->unit];
+    const se3di_mesh *mesh = part->mesh;
+    const surface s = {mesh ? mesh->points : unit->points, mesh ? mesh->triangles : unit->indices,
+                       mesh ? mesh->point_count : unit->points_count,
+                       mesh ? 3 * mesh->triangle_count : unit->indices_count};
+    return s;
+}
+
+static bool list_pieces(se3di_vtk *vtk, const se3di_part *parts, size_t count, size_t body,
+                        const se3di_element_entry *spring)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const surface s = surface_of(vtk, &parts[k]);
+        piece *grown = se3di_iopool_grow(vtk->pool, vtk->pieces, vtk->piece_count,
+                                         &vtk->piece_capacity, sizeof *grown);
+        if (!grown) {
+            return false;
+        }
+        vtk->pieces = grown;
+        const piece added = {parts[k], body, spring};
+        vtk->pieces[vtk->piece_count++] = added;
+        vtk->points_count += s.points_count;
+        vtk->triangles_count += s.indices_count / 3;
+    }
+    return true;
+}
+
+static bool list_all(se3di_vtk *vtk)
+{
+    const se3d_model *model = vtk->model;
+    for (size_t k = 0; k < model->body_count; ++k) {
+        se3di_parts parts = {NULL, 0, 0};
+        if (!se3di_drawing_list(model, k, vtk->extent, vtk->pool, &parts) ||
+            !list_pieces(vtk, parts.list, parts.count, k, NULL)) {
+            return false;
+        }
+    }
+    for (size_t e = 0; e < model->element_count; ++e) {
+        const se3di_element_entry *entry = &model->elements[e];
+        if (entry->drawn == 3) {
+            const se3di_part part = se3di_drawing_get_spring(model, entry, vtk->extent, vtk->poses);
+            if (!list_pieces(vtk, &part, 1, 0, entry)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+static void connect(se3di_vtk *vtk)
+{
+    size_t first = 0;
+    size_t corner = 0;
+    for (size_t k = 0; k < vtk->piece_count; ++k) {
+        const piece *p = &vtk->pieces[k];
+        const surface s = surface_of(vtk, &p->part);
+        for (size_t i = 0; i < s.indices_count; ++i) {
+            vtk->triangles[corner] = (double)(first + s.indices[i]);
+            vtk->bodies[corner++ / 3] = p->spring ? -1.0 : (double)p->body;
+        }
+        first += s.points_count;
+    }
+}
+
+static bool prepare(se3di_vtk *vtk)
+{
+    se3di_iopool *pool = vtk->pool;
+    se3di_unit_mesh *units = se3di_iopool_array(pool, SE3DI_UNIT_COUNT, sizeof *units);
+    vtk->poses = se3di_iopool_array(pool, vtk->model->body_count, SE3DI_POSE * sizeof(double));
+    if (!units || !vtk->poses) {
+        return false;
+    }
+    for (int k = 0; k < SE3DI_UNIT_COUNT; ++k) {
+        se3di_unit_mesh_make(&units[k], (se3di_unit)k);
+    }
+    vtk->units = units;
+    se3di_drawing_get_poses(vtk->model, vtk->poses);
+    const se3di_poses poses = {vtk->poses, vtk->model->body_count, 1};
+    double floor_height = 0.0;
+    vtk->extent = se3di_drawing_measure(vtk->model, &poses, &floor_height);
+    if (!list_all(vtk)) {
+        return false;
+    }
+    vtk->points = se3di_iopool_array(pool, vtk->points_count + 1, 3 * sizeof(double));
+    vtk->velocities = se3di_iopool_array(pool, vtk->points_count + 1, 3 * sizeof(double));
+    vtk->triangles = se3di_iopool_array(pool, vtk->triangles_count + 1, 3 * sizeof(double));
+    vtk->bodies = se3di_iopool_array(pool, vtk->triangles_count + 1, sizeof(double));
+    if (!vtk->points || !vtk->velocities || !vtk->triangles || !vtk->bodies) {
+        return false;
+    }
+    connect(vtk);
+    return true;
+}
+
+se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *path)
+{
+    se3di_vtk *vtk = se3di_iopool_alloc(pool, sizeof *vtk);
+    if (!vtk) {
+        return NULL;
+    }
+    vtk->model = model;
+    vtk->pool = pool;
+    vtk->path = se3di_iopool_copy(pool, path, strlen(path));
+    return vtk->path && prepare(vtk) ? vtk : NULL;
+}
+
+const char *se3di_vtk_get_path(const se3di_vtk *vtk)
+{
+    return vtk->path;
+}
+
+size_t se3di_vtk_count(const se3di_vtk *vtk)
+{
+    return vtk->count;
+}
+
+/* The points of a part in the frame of its body (a spring's: of the ground), to `local`. */
+static void place(const se3di_part *part, const double unit[3], double local[3])
+{
+    double pose[SE3DI_POSE];
+    const double stretched[3] = {unit[0] * part->scale[0], unit[1] * part->scale[1],
+                                 unit[2] * part->scale[2]};
+    memcpy(pose, part->position, 3 * sizeof *pose);
+    memcpy(pose + 3, part->orientation, 4 * sizeof *pose);
+    se3di_drawing_to_ground(pose, stretched, local);
+}
+
+typedef struct motion {
+    double pose[SE3DI_POSE];
+    double v[3]; /* of the origin, ground frame */
+    double w[3]; /* body frame */
+} motion;
+
+/* Position and velocity of a point of a body. */
+static void carry(const motion *m, const double s[3], double r[3], double v[3])
+{
+    const double still[SE3DI_POSE] = {0.0,        0.0,        0.0,       m->pose[3],
+                                      m->pose[4], m->pose[5], m->pose[6]};
+    const double turning[3] = {m->w[1] * s[2] - m->w[2] * s[1], m->w[2] * s[0] - m->w[0] * s[2],
+                               m->w[0] * s[1] - m->w[1] * s[0]};
+    se3di_drawing_to_ground(m->pose, s, r);
+    se3di_drawing_to_ground(still, turning, v);
+    for (int i = 0; i < 3; ++i) {
+        v[i] += m->v[i];
+    }
+}
+
+static void move_points(se3di_vtk *vtk)
+{
+    const se3d_model *model = vtk->model;
+    size_t point = 0;
+    for (size_t k = 0; k < vtk->piece_count; ++k) {
+        const piece *p = &vtk->pieces[k];
+        const surface s = surface_of(vtk, &p->part);
+        motion m = {{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+        const se3di_part part =
+            p->spring ? se3di_drawing_get_spring(model, p->spring, vtk->extent, vtk->poses)
+                      : p->part;
+        if (!p->spring) {
+            const se3d_body body = model->bodies[p->body].body;
+            memcpy(m.pose, vtk->poses + SE3DI_POSE * p->body, sizeof m.pose);
+            se3d_body_get_velocity(model->system, body, m.v);
+            se3d_body_get_angular_velocity(model->system, body, m.w);
+        }
+        for (size_t i = 0; i < s.points_count; ++i, ++point) {
+            double local[3];
+            place(&part, s.points + 3 * i, local);
+            carry(&m, local, vtk->points + 3 * point, vtk->velocities + 3 * point);
+        }
+    }
+}
+
+/* The path of a file of the series: "DIR/motion/bodies_00007.vtp"; `whole` false: as the list says
+ * it, without DIR.
+ */
+static bool name_file(const se3di_vtk *vtk, const char *what, size_t number, bool whole, char *path)
+{
+    const char *start = vtk->path;
+    for (const char *c = vtk->path; *c && !whole; ++c) {
+        start = *c == '/' || *c == '\\' ? c + 1 : start;
+    }
+    const int length = snprintf(path, PATH_SIZE, "%.*s/%s_%05zu.vtp",
+                                (int)(strlen(start) - EXTENSION), start, what, number);
+    return length > 0 && length < PATH_SIZE;
+}
+
+static bool write_bodies(se3di_vtk *vtk, const char *path)
+{
+    const size_t n = vtk->points_count;
+    const size_t polys = vtk->triangles_count;
+    const se3di_vtk_array arrays[] = {
+        {SE3DI_VTK_POINT_DATA, "velocity", vtk->velocities, n, 3, 3, 0.0, 0.0, false},
+        {SE3DI_VTK_CELL_DATA, "body", vtk->bodies, polys, 1, 1, 0.0, 0.0, true},
+        {SE3DI_VTK_POINTS, "points", vtk->points, n, 3, 3, 0.0, 0.0, false},
+        {SE3DI_VTK_POLYS, "connectivity", vtk->triangles, 3 * polys, 1, 1, 0.0, 0.0, true},
+        {SE3DI_VTK_POLYS, "offsets", NULL, polys, 1, 1, 3.0, 3.0, true}};
+    const se3di_vtk_file file = {n, 0, polys, arrays, sizeof arrays / sizeof *arrays};
+    se3di_drawing_get_poses(vtk->model, vtk->poses);
+    move_points(vtk);
+    return se3di_vtk_file_write(&file, path);
+}
+
+static bool write_grains(const se3d_model *model, se3di_iopool *pool, const char *path)
+{
+    enum { W = SE3DI_GRAIN_COLUMNS };
+    se3di_grain_rows grains;
+    if (se3di_grains_get_rows(model, pool, &grains) < 0) {
+        return false;
+    }
+    const double *rows = grains.rows;
+    const size_t n = grains.count;
+    /* The columns of a row: time, id, radius, position, velocity, angular velocity. */
+    const se3di_vtk_array arrays[] = {
+        {SE3DI_VTK_POINT_DATA, "radius", rows + 2, n, 1, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "velocity", rows + 6, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "angular_velocity", rows + 9, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "id", rows + 1, n, 1, W, 0.0, 0.0, true},
+        {SE3DI_VTK_POINTS, "points", rows + 3, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true},
+        {SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true}};
+    const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
+    return se3di_vtk_file_write(&file, path);
+}
+
+static bool write_contacts(const se3d_model *model, se3di_iopool *pool, const char *path)
+{
+    enum { W = SE3DI_CONTACT_NUMBERS };
+    se3di_contact_rows list;
+    if (se3di_contacts_get_rows(model, pool, &list) < 0) {
+        return false;
+    }
+    const double *rows = list.rows;
+    const size_t n = list.count;
+    const se3di_vtk_array arrays[] = {
+        {SE3DI_VTK_POINT_DATA, "normal", rows + 4, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "overlap", rows + 7, n, 1, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "normal_force", rows + 8, n, 1, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINT_DATA, "tangential_force", rows + 9, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_POINTS, "points", rows + 1, n, 3, W, 0.0, 0.0, false},
+        {SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true},
+        {SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true}};
+    const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
+    return se3di_vtk_file_write(&file, path);
+}
+
+/* Points with memory of their own. @return false: errno says why */
+static bool write_points(const se3di_vtk *vtk, const char *path,
+                         bool (*write)(const se3d_model *, se3di_iopool *, const char *))
+{
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &vtk->model->pool.allocator);
+    errno = ENOMEM; /* unless something else fails */
+    const bool good = write(vtk->model, &pool, path);
+    const int why = errno;
+    se3di_iopool_destroy(&pool);
+    errno = why;
+    return good;
+}
+
+/* A series of its own for what the model has. */
+static bool has_part(const se3d_model *model, int part)
+{
+    return part == 0 || (part == 1 && model->grains) ||
+           (part == 2 && (model->grains || se3di_node_get(model->root, "contact")));
+}
+
+static const char *const part_names[] = {"bodies", "grains", "contacts"};
+
+static bool write_state(se3di_vtk *vtk, size_t number)
+{
+    char path[PATH_SIZE];
+    bool good = true;
+    for (int part = 0; part < 3 && good; ++part) {
+        if (!has_part(vtk->model, part)) {
+            continue;
+        }
+        errno = ENAMETOOLONG;
+        good = name_file(vtk, part_names[part], number, true, path) &&
+               se3di_file_make_folders(path) &&
+               (part == 0 ? write_bodies(vtk, path)
+                          : write_points(vtk, path, part == 1 ? write_grains : write_contacts));
+    }
+    return good;
+}
+
+void se3di_vtk_record(se3di_vtk *vtk, double time)
+{
+    if (vtk->failure != 0) {
+        return;
+    }
+    if (vtk->count > 0 && !(time > vtk->times[vtk->count - 1])) {
+        --vtk->count;
+    }
+    double *grown =
+        se3di_iopool_grow(vtk->pool, vtk->times, vtk->count, &vtk->capacity, sizeof *grown);
+    if (!grown) {
+        vtk->failure = ENOMEM;
+        return;
+    }
+    vtk->times = grown;
+    if (!write_state(vtk, vtk->count)) {
+        vtk->failure = errno ? errno : EIO;
+        return;
+    }
+    vtk->times[vtk->count++] = time;
+}
+
+/* An attribute of the list. */
+static void put_path(FILE *file, const char *path)
+{
+    for (; *path; ++path) {
+        if (strchr("&<>\"'", *path)) {
+            fprintf(file, "&#%d;", *path);
+        } else {
+            fputc(*path, file);
+        }
+    }
+}
+
+static bool write_list(const se3di_vtk *vtk)
+{
+    char path[PATH_SIZE];
+    char time[48];
+    FILE *file = se3di_partial_open(vtk->path);
+    if (!file) {
+        return false;
+    }
+    fputs("<?xml version=\"1.0\"?>\n"
+          "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+          "<Collection>\n",
+          file);
+    for (size_t k = 0; k < vtk->count; ++k) {
+        time[se3di_number_format(vtk->times[k], time)] = '\0';
+        for (int part = 0; part < 3; ++part) {
+            if (!has_part(vtk->model, part)) {
+                continue;
+            }
+            name_file(vtk, part_names[part], k, false, path);
+            fprintf(file, "<DataSet timestep=\"%s\" part=\"%d\" name=\"%s\" file=\"", time, part,
+                    part_names[part]);
+            put_path(file, path);
+            fputs("\"/>\n", file);
+        }
+    }
+    fputs("</Collection>\n</VTKFile>\n", file);
+    return se3di_partial_close(file, vtk->path);
+}
+
+se3d_status se3di_vtk_close(se3di_vtk *vtk, int *why)
+{
+    errno = 0;
+    if (vtk->count > 0 && !write_list(vtk) && vtk->failure == 0) {
+        vtk->failure = errno ? errno : EIO;
+    }
+    *why = vtk->failure;
+    return vtk->failure == 0 ? SE3D_OK : vtk->failure == ENOMEM ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO;
+}
