@@ -54,7 +54,7 @@ class Engine:
         return os.access(self.path, os.X_OK)
 
     def start(self):
-        environment = dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")
+        environment = dict(os.environ, OMP_NUM_THREADS="1")
         self.process = subprocess.Popen(
             [self.path], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL, env=environment, bufsize=0)

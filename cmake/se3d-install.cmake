@@ -50,7 +50,7 @@ foreach(dir LIBDIR INCLUDEDIR)
 endforeach()
 # Those who link statically need -L for what does not lie in the compiler's own folders.
 set(SE3D_PC_LINK_FOLDERS "")
-foreach(library lapacke openblas amd yaml)
+foreach(library amd yaml)
     cmake_path(GET SE3D_${library}_LIBRARY PARENT_PATH folder)
     if(folder AND NOT folder IN_LIST CMAKE_C_IMPLICIT_LINK_DIRECTORIES
        AND NOT SE3D_PC_LINK_FOLDERS MATCHES "-L${folder}( |$)")

@@ -15,7 +15,7 @@ unit_io_solid unit_io_values unit_joints unit_linsol_rank unit_math unit_null_sp
 unit_particles_misuse unit_sort"
 SE3D_SOURCE_DIR=$(pwd)
 SE3D_BUILD_DIR=$(dirname "$folder")
-export SE3D_SOURCE_DIR SE3D_BUILD_DIR OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=2
+export SE3D_SOURCE_DIR SE3D_BUILD_DIR OMP_NUM_THREADS=2
 jobs=$(nproc 2>/dev/null || echo 2)
 # shellcheck disable=SC2086
 printf '%s\n' $tests | xargs -P "$jobs" -I NAME valgrind -q --error-exitcode=9 --leak-check=no \

@@ -87,23 +87,24 @@ static void solve_upper(size_t f, const double *L, double *x)
     }
 }
 
+/* X <- L^-1 X L^-T */
+static void reduce(size_t f, const double *L, double *X)
+{
+    solve_lower(f, L, X);
+    transpose(f, X);
+    solve_lower(f, L, X);
+    transpose(f, X);
+}
+
 /* s^2 = -mu: L^-1 K L^-T v = mu v with M = L L^T, y = L^-T v. */
-static se3d_status solve_conservative(const se3d_allocator *allocator, const double *M,
+static se3d_status solve_conservative(const se3d_allocator *allocator, const double *L,
                                       const double *K, double *work, se3di_eigen *e)
 {
     size_t f = (size_t)e->f;
-    double *L = work;
-    double *S = work + f * f;
-    double *mu = work + 2 * f * f;
-    memcpy(L, M, f * f * sizeof *L);
+    double *S = work;
+    double *mu = work + f * f;
     memcpy(S, K, f * f * sizeof *S);
-    SE3DI_TRY(se3di_dense_cholesky_factor(e->f, L));
-    for (size_t r = 0; r < f; ++r) { /* only the lower triangle is the factor */
-        memset(L + r * f + r + 1, 0, (f - r - 1) * sizeof *L);
-    }
-    solve_lower(f, L, S);
-    transpose(f, S);
-    solve_lower(f, L, S);
+    reduce(f, L, S);
     SE3DI_TRY(se3di_symmetric_eigen(allocator, e->f, S, mu));
     double noise = 4e-16 * (double)f * fmax(fabs(mu[0]), fabs(mu[f - 1]));
     for (size_t k = 0; k < f; ++k) {
@@ -120,45 +121,64 @@ static se3d_status solve_conservative(const se3d_allocator *allocator, const dou
     return SE3D_OK;
 }
 
-/* With y' = w z and m, w the sizes of M and of the frequencies, all blocks are of size one:
+/* With M = L L^T, y = L^-T p and p' = w q, w the size of the frequencies:
  *
- *     [0          w I ] [y]     [I  0  ] [y]
- *     [-K/(m w)  -D/m ] [z] = s [0  M/m] [z] */
-static void fill_pencil(size_t f, const double *M, const double *D, const double *K, double *A,
-                        double *B)
+ *     [0                  w I          ] [p]     [p]
+ *     [-L^-1 K L^-T / w  -L^-1 D L^-T  ] [q] = s [q] */
+static void fill_state_matrix(size_t f, const double *D, const double *K, double *A)
 {
-    double m = largest(M, f * f);
-    double w = sqrt(largest(K, f * f) / m);
-    w = w > 0.0 ? w : fmax(largest(D, f * f) / m, 1e-300);
-    memset(A, 0, 4 * f * f * sizeof *A);
-    memset(B, 0, 4 * f * f * sizeof *B);
+    double w = sqrt(largest(K, f * f));
+    w = w > 0.0 ? w : fmax(largest(D, f * f), 1e-300);
     for (size_t r = 0; r < f; ++r) {
-        A[r * 2 * f + f + r] = w;
-        B[r * 2 * f + r] = 1.0;
+        double *upper = A + r * 2 * f;
+        double *lower = A + (f + r) * 2 * f;
+        memset(upper, 0, 2 * f * sizeof *upper);
+        upper[f + r] = w;
         for (size_t c = 0; c < f; ++c) {
-            A[(f + r) * 2 * f + c] = -K[r * f + c] / (m * w);
-            A[(f + r) * 2 * f + f + c] = -D[r * f + c] / m;
-            B[(f + r) * 2 * f + f + c] = M[r * f + c] / m;
+            lower[c] = -K[r * f + c] / w;
+            lower[f + c] = -D[r * f + c];
         }
     }
 }
 
-static se3d_status solve_damped(const se3d_allocator *allocator, const double *M, const double *D,
+static se3d_status solve_damped(const se3d_allocator *allocator, const double *L, const double *D,
                                 const double *K, double *work, se3di_eigen *e)
 {
     size_t f = (size_t)e->f;
-    double *A = work;
-    double *B = work + 4 * f * f;
-    double *V = work + 8 * f * f;
-    double *re = work + 12 * f * f;
+    double *D_reduced = work;
+    double *K_reduced = work + f * f;
+    double *A = work + 2 * f * f;
+    double *V = A + 4 * f * f;
+    double *re = V + 4 * f * f;
     double *im = re + 2 * f;
-    fill_pencil(f, M, D, K, A, B);
-    SE3DI_TRY(se3di_general_eigen(allocator, 2 * e->f, A, B, re, im, V));
+    memcpy(D_reduced, D, f * f * sizeof *D);
+    memcpy(K_reduced, K, f * f * sizeof *K);
+    reduce(f, L, D_reduced);
+    reduce(f, L, K_reduced);
+    fill_state_matrix(f, D_reduced, K_reduced, A);
+    SE3DI_TRY(se3di_general_eigen(allocator, 2 * e->f, A, re, im, V));
     for (size_t k = 0; k < 2 * f; ++k) {
+        double *y_im = im[k] > 0.0 ? V + (k + 1) * 2 * f : NULL;
         if (!isfinite(re[k]) || !isfinite(im[k]) || im[k] < 0.0) {
             continue;
         }
-        add_mode(e, re[k], im[k], V + k * 2 * f, im[k] > 0.0 ? V + (k + 1) * 2 * f : NULL);
+        solve_upper(f, L, V + k * 2 * f);
+        if (y_im) {
+            solve_upper(f, L, y_im);
+        }
+        add_mode(e, re[k], im[k], V + k * 2 * f, y_im);
+    }
+    return SE3D_OK;
+}
+
+/* M = L L^T, zeros above the diagonal of L. */
+static se3d_status factor_mass(int32_t freedoms, const double *M, double *L)
+{
+    size_t f = (size_t)freedoms;
+    memcpy(L, M, f * f * sizeof *L);
+    SE3DI_TRY(se3di_dense_cholesky_factor(freedoms, L));
+    for (size_t r = 0; r < f; ++r) {
+        memset(L + r * f + r + 1, 0, (f - r - 1) * sizeof *L);
     }
     return SE3D_OK;
 }
@@ -178,7 +198,7 @@ se3d_status se3di_eigen_solve(const se3d_allocator *allocator, int32_t freedoms,
     if (f == 0) {
         return SE3D_OK;
     }
-    size_t work_count = 12 * f * f + 4 * f;
+    size_t work_count = 11 * f * f + 4 * f;
     double *work = se3di_alloc(allocator, work_count, sizeof *work);
     e->re = se3di_alloc(allocator, 4 * f + 4 * f * f, sizeof *e->re);
     se3d_status status = work && e->re ? SE3D_OK : SE3D_ERR_NO_MEMORY;
@@ -186,8 +206,11 @@ se3d_status se3di_eigen_solve(const se3d_allocator *allocator, int32_t freedoms,
         e->im = e->re + 2 * f;
         e->y_re = e->re + 4 * f;
         e->y_im = e->y_re + 2 * f * f;
-        status = is_conservative(f, D, K) ? solve_conservative(allocator, M, K, work, e)
-                                          : solve_damped(allocator, M, D, K, work, e);
+        status = factor_mass(e->f, M, work);
+    }
+    if (status >= 0) {
+        status = is_conservative(f, D, K) ? solve_conservative(allocator, work, K, work + f * f, e)
+                                          : solve_damped(allocator, work, D, K, work + f * f, e);
     }
     se3di_free(allocator, work, work_count, sizeof *work);
     if (status < 0) {

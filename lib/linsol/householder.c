@@ -22,8 +22,7 @@ static double dot(const double *a, const double *b, size_t n)
     return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
 }
 
-/* The reflection that turns column[0 .. n) into (beta, 0 ..); its tau. */
-static double reflect(size_t n, double *column)
+double se3di_householder_reflect(size_t n, double *column)
 {
     double rest = dot(column + 1, column + 1, n - 1), first = column[0];
     if (!(rest > 0.0)) {
@@ -37,8 +36,7 @@ static double reflect(size_t n, double *column)
     return (beta - first) / beta;
 }
 
-/* x -= tau v v^T x, v = (1, v[1 .. n)) */
-static void mirror(size_t n, double tau, const double *v, double *x)
+void se3di_householder_mirror(size_t n, double tau, const double *v, double *x)
 {
     double f = tau * (x[0] + dot(v + 1, x + 1, n - 1));
     x[0] -= f;
@@ -51,9 +49,9 @@ void se3di_householder(size_t rows, size_t columns, double *A, double *tau)
 {
     for (size_t k = 0; k < rows && k < columns; ++k) {
         double *column = A + k * rows + k;
-        tau[k] = reflect(rows - k, column);
+        tau[k] = se3di_householder_reflect(rows - k, column);
         for (size_t j = k + 1; j < columns; ++j) {
-            mirror(rows - k, tau[k], column, A + j * rows + k);
+            se3di_householder_mirror(rows - k, tau[k], column, A + j * rows + k);
         }
     }
 }
@@ -101,9 +99,9 @@ void se3di_householder_pivoted(size_t rows, size_t columns, double *A, int32_t *
             swap_columns(rows, A + k * rows, A + best * rows);
         }
         double *column = A + k * rows + k;
-        tau[k] = reflect(rows - k, column);
+        tau[k] = se3di_householder_reflect(rows - k, column);
         for (size_t j = k + 1; j < columns; ++j) {
-            mirror(rows - k, tau[k], column, A + j * rows + k);
+            se3di_householder_mirror(rows - k, tau[k], column, A + j * rows + k);
             if (now[j] > 0.0) {
                 shorten(rows - k, A + j * rows + k, &now[j], &measured[j]);
             }
@@ -115,7 +113,7 @@ void se3di_householder_apply(size_t rows, size_t count, const double *A, const d
                              double *x)
 {
     for (size_t k = count; k-- > 0;) {
-        mirror(rows - k, tau[k], A + k * rows + k, x + k);
+        se3di_householder_mirror(rows - k, tau[k], A + k * rows + k, x + k);
     }
 }
 
@@ -123,6 +121,6 @@ void se3di_householder_apply_transposed(size_t rows, size_t count, const double 
                                         const double *tau, double *x)
 {
     for (size_t k = 0; k < count; ++k) {
-        mirror(rows - k, tau[k], A + k * rows + k, x + k);
+        se3di_householder_mirror(rows - k, tau[k], A + k * rows + k, x + k);
     }
 }

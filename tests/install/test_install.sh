@@ -49,17 +49,17 @@ library_folder() {
     dirname "$(dirname "$pc")"
 }
 
-# build_and_run NAME STATIC-OPTION: consumer.c as C and as C++ by the flags of pkg-config.
+# build_and_run NAME STATIC-OPTION: consumer.c as C and as C++ by the flags of pkg-config and $link.
 build_and_run() {
     define=
     [ "$1" = se3d ] || define=-DCONSUMER_IO
     flags=$("$PKG_CONFIG" --cflags --libs $2 "$1")
     strict="-Wall -Wextra -Wpedantic -Werror"
     # shellcheck disable=SC2086
-    "$CC" -std=c11 $strict $define "$here/consumer.c" -o "$work/consumer_c" $flags
+    "$CC" -std=c11 $strict $define "$here/consumer.c" -o "$work/consumer_c" ${link:-} $flags
     "$work/consumer_c"
     # shellcheck disable=SC2086
-    "$CXX" -std=c++11 $strict $define -x c++ "$here/consumer.c" -x none -o "$work/consumer_cpp" $flags
+    "$CXX" -std=c++11 $strict $define -x c++ "$here/consumer.c" -x none -o "$work/consumer_cpp" ${link:-} $flags
     "$work/consumer_cpp"
 }
 
@@ -96,6 +96,7 @@ pkg_config() {
         if ldd "$work/consumer_c" | grep libse3d; then
             fail "$name: the static consumer needs a shared libse3d"
         fi
+        link=-static build_and_run "$name" --static # no shared library at all
     done
 }
 

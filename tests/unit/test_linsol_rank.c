@@ -210,7 +210,7 @@ static void least_norm_solution_is_exact_and_orthogonal_to_the_null_space(void)
     }
 }
 
-/* A x = b for sizes on both sides of the switch to LAPACK. */
+/* A x = b for small and large sizes. */
 static void small_and_large_factorisations_solve(void)
 {
     enum { MOST = 80 };
