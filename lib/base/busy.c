@@ -6,7 +6,7 @@
 
 void se3di_busy_init(se3di_busy *busy)
 {
-    busy->level = SE3DI_BUSY_FREE;
+    atomic_init(&busy->level, SE3DI_BUSY_FREE);
     atomic_init(&busy->reading, 0);
     for (int k = 0; k < SE3DI_BUSY_READERS; ++k) {
         atomic_init(&busy->readers[k], 0);
@@ -16,23 +16,19 @@ void se3di_busy_init(se3di_busy *busy)
 
 int32_t se3di_busy_raise(se3di_busy *busy, se3di_busy_level level)
 {
-    const int32_t before = busy ? busy->level : SE3DI_BUSY_FREE;
-    if (busy) {
-        busy->level = (int32_t)level;
-    }
-    return before;
+    return busy ? atomic_exchange(&busy->level, (int)level) : SE3DI_BUSY_FREE;
 }
 
 void se3di_busy_restore(se3di_busy *busy, int32_t level)
 {
     if (busy) {
-        busy->level = level;
+        atomic_store(&busy->level, level);
     }
 }
 
 int se3di_busy_allows(se3di_busy *busy, se3di_busy_level most)
 {
-    return !busy || (busy->level <= (int32_t)most && atomic_load(&busy->reading) == 0);
+    return !busy || (atomic_load(&busy->level) <= (int)most && atomic_load(&busy->reading) == 0);
 }
 
 /* Different for every thread that lives: errno is each thread's own. */
@@ -57,7 +53,7 @@ int se3di_busy_read(se3di_busy *busy, se3di_reading *reading)
     if (!busy) {
         return 1;
     }
-    if (busy->level >= (int32_t)SE3DI_BUSY_CALL || is_listed(busy, thread)) {
+    if (atomic_load(&busy->level) >= (int)SE3DI_BUSY_CALL || is_listed(busy, thread)) {
         return 0;
     }
     for (int k = 0; k < SE3DI_BUSY_READERS && !reading->place; ++k) {

@@ -23,7 +23,7 @@ typedef enum se3di_busy_level {
 #define SE3DI_BUSY_READERS 64 /* threads; those beyond are not watched */
 
 typedef struct se3di_busy {
-    int32_t level;                                /* se3di_busy_level */
+    atomic_int level;                             /* se3di_busy_level */
     atomic_uint reading;                          /* readers on the list */
     atomic_uintptr_t readers[SE3DI_BUSY_READERS]; /* threads within the user's callbacks; 0: none */
     atomic_flag messaging;                        /* a message is being written */

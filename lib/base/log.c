@@ -9,14 +9,13 @@
 static void tell(se3di_error *error, se3d_log_level level, const char *text)
 {
     se3di_logger *log = error->log;
-    if (!log || !log->callback || log->writing) {
+    if (!log || !log->callback || atomic_exchange(&log->writing, 1) != 0) {
         return;
     }
     const se3di_error before = *error;
     const int32_t busy = se3di_busy_raise(log->busy, SE3DI_BUSY_CALL);
-    log->writing = 1;
     log->callback(log->ctx, level, text);
-    log->writing = 0;
+    atomic_store(&log->writing, 0);
     se3di_busy_restore(log->busy, busy);
     *error = before;
 }

@@ -11,7 +11,7 @@ typedef struct se3di_logger {
     se3d_log_callback callback; /* NULL: silent */
     void *ctx;
     se3di_busy *busy;
-    int32_t writing; /* within the callback */
+    atomic_int writing; /* within the callback; readers in several threads may get here */
     int32_t reserved;
 } se3di_logger;
 

@@ -489,6 +489,11 @@ static se3d_status renew(se3di_integration *integration)
 {
     se3di_bdf m = begin(integration);
     const double t = m.assembly->model->time;
+    double work[SE3DI_STATE_WORK]; /* a change of values does some */
+    se3di_bdf_eval(&m, t, m.y);
+    for (size_t k = 0; k < SE3DI_STATE_WORK; ++k) {
+        work[k] = m.assembly->model->work[k] - m.y[m.count - SE3DI_STATE_WORK + k];
+    }
     se3di_bdf_eval_rate(&m, t, m.base);
     SE3DI_TRY(adopt(&m));
     if (m.header[BDF_POINTS] < 3.0) {
@@ -497,7 +502,7 @@ static se3d_status renew(se3di_integration *integration)
         for (size_t k = 0; k < m.count; ++k) {
             m.difference[k] -= m.base[k];
         }
-        se3di_bdf_bend(&m, m.difference);
+        se3di_bdf_bend(&m, m.difference, work);
     }
     const double least = fmin(2.0, se3di_bdf_get_top(&m));
     set_order(&m, (int)fmin(fmax(least, m.header[BDF_ORDER]), m.header[BDF_POINTS] - 1.0));

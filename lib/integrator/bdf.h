@@ -77,9 +77,9 @@ void se3di_bdf_eval(const se3di_bdf *m, double t, double *y);
 void se3di_bdf_eval_rate(const se3di_bdf *m, double t, double *rate);
 /* m->y, with the derivative m->difference, at the time s later (or before) on a parabola. */
 void se3di_bdf_extend(const se3di_bdf *m, double s, double *y);
-/* The accelerations jump by those in `jump` (like y'): move the states before the newest one to
- * where they would have been with the new ones. */
-void se3di_bdf_bend(se3di_bdf *m, const double *jump);
+/* The accelerations and powers jump by those in `jump` (like y'), the works by `work`: move the
+ * states before the newest one to where they would have been with the new ones. */
+void se3di_bdf_bend(se3di_bdf *m, const double *jump, const double work[SE3DI_STATE_WORK]);
 
 /* ---- bdf_newton.c ---- */
 

@@ -167,8 +167,9 @@ void se3di_bdf_extend(const se3di_bdf *m, double s, double *y)
     }
 }
 
-void se3di_bdf_bend(se3di_bdf *m, const double *jump)
+void se3di_bdf_bend(se3di_bdf *m, const double *jump, const double work[SE3DI_STATE_WORK])
 {
+    const size_t first = m->count - SE3DI_STATE_WORK;
     for (int j = 1; j < (int)m->header[BDF_POINTS]; ++j) {
         const double s = m->times[j] - m->times[0];
         for (size_t k = 0; k + SE3DI_STATE_WORK < m->count; k += SE3DI_STATE_SIZE) {
@@ -184,6 +185,9 @@ void se3di_bdf_bend(se3di_bdf *m, const double *jump)
             for (int i = 7; i < SE3DI_STATE_SIZE; ++i) {
                 y[i] += s * jump[k + (size_t)i];
             }
+        }
+        for (size_t k = 0; k < SE3DI_STATE_WORK; ++k) {
+            m->points[(size_t)j * m->count + first + k] += work[k] + s * jump[first + k];
         }
     }
 }

@@ -4,6 +4,23 @@
 #include "contact/loads.h"
 #include "system/system_internal.h"
 
+#include <math.h>
+#include <string.h>
+
+/* Where a callback failed before or after the change, the work of the change is not known: the
+ * audit begins anew. */
+static void count(se3di_model *model, uint32_t first, uint32_t last, double change)
+{
+    if (!isfinite(change)) {
+        memset(model->work, 0, sizeof model->work);
+        model->work_valid = 0;
+        return;
+    }
+    for (uint32_t k = first; k <= last; ++k) {
+        model->work[k] += change;
+    }
+}
+
 double se3di_audit_force(const se3di_model *model, const se3di_force *force)
 {
     se3di_effect effect;
@@ -14,12 +31,12 @@ double se3di_audit_force(const se3di_model *model, const se3di_force *force)
     const int32_t level = se3di_busy_raise(model->busy, SE3DI_BUSY_CALL);
     const se3d_status status = se3di_force_eval(model, force, model->time, &effect);
     se3di_busy_restore(model->busy, level);
-    return status < 0 ? 0.0 : effect.potential;
+    return status < 0 ? (double)NAN : effect.potential;
 }
 
 void se3di_audit_force_change(se3di_model *model, const se3di_force *force, double before)
 {
-    model->work[1] += se3di_audit_force(model, force) - before;
+    count(model, 1, 1, se3di_audit_force(model, force) - before);
 }
 
 double se3di_audit_forces(const se3di_model *model)
@@ -31,12 +48,12 @@ double se3di_audit_forces(const se3di_model *model)
     const int32_t level = se3di_busy_raise(model->busy, SE3DI_BUSY_CALL);
     const se3d_status status = se3di_forces_potential(model, model->time, &potential);
     se3di_busy_restore(model->busy, level);
-    return status < 0 ? 0.0 : potential + se3di_kinetic_energy(model);
+    return status < 0 ? (double)NAN : potential + se3di_kinetic_energy(model);
 }
 
 void se3di_audit_change(se3di_model *model, double before)
 {
-    model->work[1] += se3di_audit_forces(model) - before;
+    count(model, 1, 1, se3di_audit_forces(model) - before);
 }
 
 double se3di_audit_contacts(const se3di_model *model)
@@ -53,7 +70,5 @@ double se3di_audit_contacts(const se3di_model *model)
 /* All that goes into contacts counts as dissipated but for what their springs hold. */
 void se3di_audit_contacts_change(se3di_model *model, double before)
 {
-    const double change = se3di_audit_contacts(model) - before;
-    model->work[0] += change;
-    model->work[1] += change;
+    count(model, 0, 1, se3di_audit_contacts(model) - before);
 }

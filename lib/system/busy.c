@@ -9,7 +9,7 @@ static void say_refused(se3d_system *system, const char *function)
                                         "the value of an event",
                                         "a callback of the call that works on it"};
     se3di_busy *busy = &system->busy;
-    const int32_t level = busy->level;
+    const int level = atomic_load(&busy->level);
     if (!atomic_flag_test_and_set(&busy->messaging)) {
         (void)se3di_error_set(
             &system->error, SE3D_ERR_STATE,
@@ -59,7 +59,7 @@ se3d_status se3di_read_end(se3di_reading *reading, se3d_status status)
 
 int se3di_is_settled(const se3d_system *system)
 {
-    return system->busy.level < (int32_t)SE3DI_BUSY_CALL;
+    return atomic_load(&system->busy.level) < (int)SE3DI_BUSY_CALL;
 }
 
 int32_t se3d_system_is_busy(const se3d_system *system)

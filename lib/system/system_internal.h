@@ -100,8 +100,9 @@ se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_func
                                 uint32_t variables, int32_t *index);
 
 /* The audit of energy over a change of values: what it makes of the energies is work of actuators.
- * Before the change: the energy that it may change (0 where nothing is audited); after it. Of a
- * force element alone; of bodies, gravity and all elements; of contacts. */
+ * Before the change: the energy that it may change (0 where nothing is audited, not a number where
+ * a callback fails: then the audit begins anew); after it. Of a force element alone; of bodies,
+ * gravity and all elements; of contacts. */
 double se3di_audit_force(const se3di_model *model, const se3di_force *force);
 void se3di_audit_force_change(se3di_model *model, const se3di_force *force, double before);
 double se3di_audit_forces(const se3di_model *model);
