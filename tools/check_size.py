@@ -6,6 +6,7 @@
     complexity    20 decisions + 1 (if for while case && || ?)
     parameters    8
     file          1000 lines; an example 120
+    line          100 columns
 Every C file also begins with its SPDX line.
 """
 import re
@@ -13,6 +14,7 @@ import sys
 from pathlib import Path
 
 LINES, KERNEL_LINES, COMPLEXITY, PARAMETERS, FILE_LINES, EXAMPLE_LINES = 100, 160, 20, 8, 1000, 120
+COLUMNS = 100
 FOLDERS = ("include", "lib", "tools", "examples", "tests", "bench")
 TOKEN = re.compile(r"[A-Za-z_]\w*|\n|&&|\|\||\.?\d(?:[eEpP][+-]|[\w.])*|\S")
 NOISE = re.compile(r"/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.S)
@@ -120,6 +122,8 @@ def check_file(path, name, found, problems):
         problems.append(f"{name}: {count} lines, at most {limit}")
     if "SPDX-License-Identifier: BSD-3-Clause" not in lines[0]:
         problems.append(f"{name}: the first line is not the SPDX line")
+    problems.extend(f"{name}:{k}: {len(line)} columns, at most {COLUMNS}"
+                    for k, line in enumerate(lines, 1) if len(line) > COLUMNS)
     for function, first, last, complexity, parameters in functions(text):
         length = last - first + 1
         found.append((length, complexity, parameters, f"{name}:{first} {function}"))

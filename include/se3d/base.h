@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Status codes, allocator, log, version: what every other header needs. */
+/* Status codes, allocator, log, version: what every other header needs.
+ *
+ * Threads: the rule of se3d/se3d.h. */
 #ifndef SE3D_BASE_H
 #define SE3D_BASE_H
 
@@ -24,11 +26,13 @@
 extern "C" {
 #endif
 
+/* The version of these headers. @since 0.1 */
 #define SE3D_VERSION_MAJOR 0
 #define SE3D_VERSION_MINOR 1
 #define SE3D_VERSION_PATCH 0
 
-/* 0 is success, < 0 failure, > 0 success with information. */
+/* The statuses with their texts: 0 is success, < 0 failure, > 0 success with information.
+ * @since 0.1 */
 #define SE3D_STATUS_LIST(X)                                                                        \
     X(SE3D_OK, 0, "success")                                                                       \
     X(SE3D_INFO_EVENT, 1, "an event stopped the run")                                              \
@@ -59,18 +63,24 @@ extern "C" {
 typedef enum se3d_status { SE3D_STATUS_LIST(SE3D_STATUS_ENUMERATOR) } se3d_status;
 #undef SE3D_STATUS_ENUMERATOR
 
-/* True where `call` failed; positive information counts as success. */
+/* True if `call` failed; positive information counts as success. @since 0.1 */
 #define SE3D_FAILED(call) ((call) < 0)
 
-/* Return the text of a status ("success", ...); never NULL. Safe. @since 0.1 */
+/* Get the text of a status ("success", ...).
+ * @param[in] status  any number
+ * @return the text, static; never NULL.
+ * @since 0.1 */
 SE3D_API const char *se3d_status_get_text(se3d_status status);
 
-/* Return the bytes of the character at `text`; 0 at the end, for NULL, and where there is none that
- * names and messages may have: bytes that are not UTF-8, control characters, ends of lines and
- * paragraphs, marks that change the direction of writing. Safe. @since 0.1 */
+/* Measure the character at `text`. Names and messages may not hold bytes that are not UTF-8,
+ * control characters, ends of lines and paragraphs, or marks that change the direction of writing.
+ * @param[in] text  UTF-8, ends with a zero byte; NULL counts as empty
+ * @return the number of its bytes; 0 at the end and for a character that is not allowed.
+ * @since 0.1 */
 SE3D_API size_t se3d_text_get_character(const char *text);
 
-/* Return the version of the library that is linked, e.g. "0.1.0". Safe. @since 0.1 */
+/* Get the version of the library that is linked, e.g. "0.1.0". @return the text, static.
+ * @since 0.1 */
 SE3D_API const char *se3d_version_get_text(void);
 
 /* Asked during a long call whether it is to end now: before every step that is tried and in every
@@ -96,7 +106,7 @@ typedef struct se3d_allocator {
     void *ctx;
 } se3d_allocator;
 
-/* Severity of a log message. */
+/* Severity of a log message. @since 0.1 */
 typedef enum se3d_log_level {
     SE3D_LOG_INFO = 0,
     SE3D_LOG_WARNING = 1,

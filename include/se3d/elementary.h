@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The elementary functions that expressions are made of, for callbacks that are to give the same
- * bits on every machine: those of libm differ from library to library. */
+ * bits on every machine: those of libm differ from library to library.
+ *
+ * Threads: the rule of se3d/se3d.h. */
 #ifndef SE3D_ELEMENTARY_H
 #define SE3D_ELEMENTARY_H
 
@@ -30,13 +32,12 @@ typedef enum se3d_elementary {
 } se3d_elementary;
 
 /* Evaluate an elementary function: the double nearest to the exact value (ties to even), with the
- * special cases of C11, annex F. Angles in radians.
- *
- * @param[in]  function  se3d_elementary
- * @param[in]  x, y      any; y counts for ATAN2, HYPOT and POW only
- * @return the value; NaN where `function` is none of them
- *
- * Safe. @since 0.1 */
+ * special cases of C11, annex F. Angles are in radians.
+ * @param[in] function  se3d_elementary
+ * @param[in] x         any number [1, rad]
+ * @param[in] y         any number [1]; counts for ATAN2, HYPOT and POW only
+ * @return the value; NaN if `function` is none of them.
+ * @since 0.1 */
 SE3D_API double se3d_elementary_eval(int32_t function, double x, double y);
 
 #ifdef __cplusplus

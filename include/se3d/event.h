@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Events: where a quantity crosses a level during a run of a solver. docs/theory/events.md */
+/* Events: where a quantity crosses a level during a run of a solver. docs/theory/events.md
+ *
+ * Threads: the rule of se3d/se3d.h; what needs a solver for itself needs its system, too. */
 #ifndef SE3D_EVENT_H
 #define SE3D_EVENT_H
 
@@ -9,13 +11,15 @@
 extern "C" {
 #endif
 
-/* Which crossings count: from below the level to it (or beyond), from above, or both. */
+/* Which crossings count: from below the level to it (or beyond), from above, or both.
+ * @since 0.1 */
 typedef enum se3d_event_direction {
     SE3D_EVENT_FALLING = -1,
     SE3D_EVENT_ANY = 0,
     SE3D_EVENT_RISING = 1
 } se3d_event_direction;
 
+/* What an event does to the run. @since 0.1 */
 typedef enum se3d_event_action {
     SE3D_EVENT_RECORD = 0, /* note it and go on: the motion is the same as without */
     SE3D_EVENT_STOP = 1    /* the run ends there with SE3D_INFO_EVENT */
@@ -30,7 +34,7 @@ typedef se3d_status (*se3d_event_value)(void *ctx, const se3d_system *system, do
  * and multipliers are those of `time`. @since 0.1 */
 typedef struct se3d_event_record {
     double time;       /* [s] */
-    double value;      /* of the quantity: the level, to rounding, or just beyond it */
+    double value;      /* of the quantity [its unit]: the level, to rounding, or just beyond */
     const char *name;  /* of the event, "" for none; owned by the event */
     se3d_event event;  /* which one */
     int32_t direction; /* RISING or FALLING */
@@ -65,8 +69,10 @@ typedef struct se3d_event_def {
                             default 0: further than the level's own rounding */
 } se3d_event_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_event_def_default. @since 0.1 */
 SE3D_API void se3d_event_def_init(se3d_event_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_event_def se3d_event_def_default(void)
 {
     se3d_event_def def;
@@ -74,31 +80,45 @@ static inline se3d_event_def se3d_event_def_default(void)
     return def;
 }
 
-/* Add an event to a solver of dynamics, kinematics or inverse dynamics. Crossings are looked for in
- * every step from then on, also several in one step, and located to the rounding of time. What is
- * at the level (within `hysteresis`) when a run begins has not crossed it. With particle sets,
- * which cannot be moved back, a run stops at the end of the step that holds the event.
- * @return OK, NULL, INVALID_ARGUMENT, UNSUPPORTED (the analysis has no motion), NO_MEMORY.
- * Exclusive. @since 0.1 */
+/* Add an event to a solver of dynamics, kinematics or inverse dynamics. From then on crossings
+ * are looked for in every step, also several in one step, and located to the rounding of time. A
+ * value that is at the level (within `hysteresis`) when a run begins has not crossed it. A
+ * system with particle sets cannot be moved back: its run stops at the end of the step that
+ * holds the event. @return OK, NULL, STATE (the system is gone), INVALID_ARGUMENT, UNSUPPORTED
+ * (the analysis has no motion), NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_event_create(se3d_solver *solver, const se3d_event_def *def,
                                        se3d_event *out);
-/* Remove an event and its records. @return OK, NULL, STALE_HANDLE. Exclusive. @since 0.1 */
+
+/* Remove an event and its records. @return OK, NULL, STATE (the system is gone), STALE_HANDLE.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_event_destroy(se3d_solver *solver, se3d_event event);
-/* Get the name, "" for none, owned by the event. Exclusive (a failure leaves a message). @since 0.1
- */
+
+/* Get the name of an event.
+ * @param[out] name  "" if it has none; owned by the event
+ * @return OK, NULL, STATE (the system is gone), STALE_HANDLE.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_event_get_name(se3d_solver *solver, se3d_event event, const char **name);
 
-/* Count the events that happened, in the order in which they did; 0 for NULL. Reader. @since 0.1 */
+/* Count the events that happened, in the order in which they did. @return the number; 0 for
+ * NULL. @since 0.1 */
 SE3D_API size_t se3d_solver_count_event_records(const se3d_solver *solver);
-/* Get one. @return OK, NULL, INVALID_ARGUMENT (index). Exclusive. @since 0.1 */
+
+/* As se3d_solver_get_event_record, told the size of *record in bytes. @return as
+ * se3d_solver_get_event_record, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_event_record_sized(se3d_solver *solver, size_t index,
                                                         se3d_event_record *record, size_t size);
+
+/* Get an event that happened.
+ * @param[in] index  from 0, below se3d_solver_count_event_records
+ * @return OK, NULL, STATE (the system is gone), INVALID_ARGUMENT (index).
+ * @since 0.1 */
 static inline se3d_status se3d_solver_get_event_record(se3d_solver *solver, size_t index,
                                                        se3d_event_record *record)
 {
     return se3d_solver_get_event_record_sized(solver, index, record, sizeof *record);
 }
-/* Forget them all. Exclusive. @since 0.1 */
+
+/* Forget the events that happened. @return OK, NULL, STATE (the system is gone). @since 0.1 */
 SE3D_API se3d_status se3d_solver_clear_event_records(se3d_solver *solver);
 
 #ifdef __cplusplus

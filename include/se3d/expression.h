@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Expressions: text such as "pi/4*cos(2*t)", evaluated with exact derivatives.
  *
- * The grammar, the functions and what they mean at kinks: docs/model-file/expressions.md. */
+ * The grammar, the functions and what they mean at kinks: docs/model-file/expressions.md.
+ *
+ * Threads: the rule of se3d/se3d.h. */
 #ifndef SE3D_EXPRESSION_H
 #define SE3D_EXPRESSION_H
 
@@ -19,7 +21,7 @@ extern "C" {
 /* A named constant. Its value is compiled in. @since 0.1 */
 typedef struct se3d_expression_symbol {
     const char *name; /* letters, digits and '_', not beginning with a digit, not reserved */
-    double value;     /* finite */
+    double value;     /* finite [any unit] */
 } se3d_expression_symbol;
 
 /* Where and why a text was rejected. @since 0.1 */
@@ -40,11 +42,10 @@ typedef struct se3d_expression_def {
     const se3d_allocator *allocator;       /* NULL: malloc and free */
 } se3d_expression_def;
 
-/* Write the default definition into `size` bytes at `def`; see se3d_expression_def_default.
- * NULL is ignored. Safe. @since 0.1 */
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_expression_def_default. @since 0.1 */
 SE3D_API void se3d_expression_def_init(se3d_expression_def *def, size_t size);
 
-/* Return the default definition: no text, no variables, no symbols, malloc. @since 0.1 */
+/* Return the defaults. @since 0.1 */
 static inline se3d_expression_def se3d_expression_def_default(void)
 {
     se3d_expression_def def;
@@ -53,55 +54,50 @@ static inline se3d_expression_def se3d_expression_def_default(void)
 }
 
 /* Compile a text. Constant parts are computed here.
- *
- * @param[in]  def    what to compile
- * @param[out] out    the expression, to be given to se3d_expression_destroy; NULL on failure
  * @param[out] error  filled on failure, emptied on success; may be NULL
- * @return SE3D_OK; SE3D_ERR_EXPRESSION (text), SE3D_ERR_NULL, SE3D_ERR_INVALID_ARGUMENT
- *         (definition), SE3D_ERR_NO_MEMORY
- * Safe. @since 0.1 */
+ * @return OK, EXPRESSION (text), NULL, INVALID_ARGUMENT (definition), NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_expression_create(const se3d_expression_def *def, se3d_expression **out,
                                             se3d_expression_error *error);
 
-/* Destroy an expression; NULL is fine. Exclusive. @since 0.1 */
+/* Destroy an expression; NULL is fine. @since 0.1 */
 SE3D_API void se3d_expression_destroy(se3d_expression *expression);
 
-/* Evaluate f(x).
- *
- * @param[in]  x      [variable_count], finite; may be NULL where there are no variables
- * @param[out] value  f(x)
- * @return SE3D_OK; SE3D_ERR_NOT_FINITE where the result is not finite (it is written all the same);
- *         SE3D_ERR_INVALID_ARGUMENT where an x is not finite (NaN is written); SE3D_ERR_NULL
- * Allocates nothing. Reader. @since 0.1 */
+/* Evaluate f(x). Allocates nothing.
+ * @param[in] x       [variable_count], finite; may be NULL if there are no variables
+ * @param[out] value  f(x) [any unit]
+ * @return OK, NOT_FINITE (the result is not finite; it is written all the same), INVALID_ARGUMENT
+ *         (an x is not finite; NaN is written), NULL.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_expression_eval(const se3d_expression *expression, const double *x,
                                           double *value);
 
-/* Evaluate f, df/dt and d2f/dt2, exactly, where t is variable 0 and the other variables are held.
- *
- * @param[in]  x    [variable_count], as in se3d_expression_eval
- * @param[out] jet  [3]: f, df/dt, d2f/dt2; the derivatives are 0 where there are no variables
- * @return as se3d_expression_eval, for the three results together
- * Allocates nothing. Reader. @since 0.1 */
+/* Evaluate f, df/dt and d2f/dt2 exactly; t is variable 0, the other variables are held. Allocates
+ * nothing.
+ * @param[in] x     [variable_count], as in se3d_expression_eval
+ * @param[out] jet  [3] f, df/dt, d2f/dt2 [any unit, per s], in no frame; the derivatives are 0 if
+ *                  there are no variables
+ * @return as se3d_expression_eval, for the three results together.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_expression_eval_time(const se3d_expression *expression, const double *x,
                                                double jet[3]);
 
-/* Evaluate f and its exact first derivatives with respect to all variables.
- *
- * @param[in]  x         [variable_count], as in se3d_expression_eval
- * @param[out] value     f(x)
- * @param[out] gradient  [variable_count]: df/dx_k; may be NULL where there are no variables
- * @return as se3d_expression_eval, for all results together
- * Allocates nothing. Reader. @since 0.1 */
+/* Evaluate f and its exact first derivatives with respect to all variables. Allocates nothing.
+ * @param[in] x          [variable_count], as in se3d_expression_eval
+ * @param[out] value     f(x) [any unit]
+ * @param[out] gradient  [variable_count] df/dx_k; may be NULL if there are no variables
+ * @return as se3d_expression_eval, for all results together.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_expression_eval_gradient(const se3d_expression *expression,
                                                    const double *x, double *value,
                                                    double *gradient);
 
-/* Return 1 where the expression was reduced to one number, else 0 (also for NULL).
- * Reader. @since 0.1 */
+/* Tell whether the expression was reduced to one number. @return 1 if so, else 0, also for NULL.
+ * @since 0.1 */
 SE3D_API int se3d_expression_is_constant(const se3d_expression *expression);
 
-/* Return the text it was compiled from, owned by the expression; "" for NULL.
- * Reader. @since 0.1 */
+/* Get the text that an expression was compiled from. @return the text, owned by the expression;
+ * "" for NULL. @since 0.1 */
 SE3D_API const char *se3d_expression_get_text(const se3d_expression *expression);
 
 #ifdef __cplusplus

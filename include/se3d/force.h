@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Force elements: springs, dampers, actuators, applied forces and torques. */
+/* Force elements: springs, dampers, actuators, applied forces and torques.
+ *
+ * Threads: the rule of se3d/se3d.h. */
 #ifndef SE3D_FORCE_H
 #define SE3D_FORCE_H
 
@@ -17,8 +19,8 @@ typedef struct se3d_tsda_def {
     const char *name;
     se3d_body body_i;
     se3d_body body_j;
-    double point_i[3]; /* body frames [m] */
-    double point_j[3];
+    double point_i[3];    /* frame of body i [m] */
+    double point_j[3];    /* frame of body j [m] */
     double k;             /* [N/m] */
     double c;             /* [N s/m] */
     double l0;            /* free length [m], >= 0 */
@@ -28,8 +30,10 @@ typedef struct se3d_tsda_def {
     double preload;       /* f at l = l0 and rest [N]: with l0 the installed length, its load */
 } se3d_tsda_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_tsda_def_default. @since 0.1 */
 SE3D_API void se3d_tsda_def_init(se3d_tsda_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_tsda_def se3d_tsda_def_default(void)
 {
     se3d_tsda_def def;
@@ -37,6 +41,8 @@ static inline se3d_tsda_def se3d_tsda_def_default(void)
     return def;
 }
 
+/* Create a translational spring-damper-actuator. @return OK, NULL, STALE_HANDLE,
+ * INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_force_create_tsda(se3d_system *system, const se3d_tsda_def *def,
                                             se3d_force *force);
 
@@ -56,14 +62,16 @@ typedef struct se3d_rsda_def {
     double preload;        /* n at theta = theta0 and rest [N m] */
     se3d_body body_i;      /* without a joint: the bodies, */
     se3d_body body_j;
-    double axis_i[3]; /* the axis, frame of body i, */
-    double ref_i[3];  /* where the angle counts from, frame of body i; 0: chosen, */
-    double ref_j[3];  /* and to, frame of body j; 0: so that the angle is angle0 now */
-    double angle0;    /* [rad] at creation; given ref_j: the nearest whole turns */
+    double axis_i[3]; /* the axis, a direction in the frame of body i, */
+    double ref_i[3];  /* the direction the angle counts from, frame of body i; 0: chosen, */
+    double ref_j[3]; /* and the direction to, frame of body j; 0: so that the angle is angle0 now */
+    double angle0;   /* [rad] at creation; given ref_j: the nearest whole turns */
 } se3d_rsda_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_rsda_def_default. @since 0.1 */
 SE3D_API void se3d_rsda_def_init(se3d_rsda_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_rsda_def se3d_rsda_def_default(void)
 {
     se3d_rsda_def def;
@@ -71,6 +79,8 @@ static inline se3d_rsda_def se3d_rsda_def_default(void)
     return def;
 }
 
+/* Create a rotational spring-damper-actuator. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT,
+ * NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_force_create_rsda(se3d_system *system, const se3d_rsda_def *def,
                                             se3d_force *force);
 
@@ -86,8 +96,10 @@ typedef struct se3d_load_def {
     int32_t reserved;
 } se3d_load_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_load_def_default. @since 0.1 */
 SE3D_API void se3d_load_def_init(se3d_load_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_load_def se3d_load_def_default(void)
 {
     se3d_load_def def;
@@ -95,8 +107,13 @@ static inline se3d_load_def se3d_load_def_default(void)
     return def;
 }
 
+/* Create a force at a point of a body. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT,
+ * NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_force_create_load(se3d_system *system, const se3d_load_def *def,
                                             se3d_force *force);
+
+/* Create a torque on a body; def->point is ignored. @return OK, NULL, STALE_HANDLE,
+ * INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_force_create_torque(se3d_system *system, const se3d_load_def *def,
                                               se3d_force *force);
 
@@ -109,16 +126,18 @@ typedef struct se3d_bushing_def {
     const char *name;
     se3d_body body_i;
     se3d_body body_j;
-    double point_i[3]; /* body frames [m] */
-    double point_j[3];
-    double orientation_i[4]; /* frame -> body, Euler parameters; default the body's */
-    double orientation_j[4];
-    double K[36]; /* row-major, symmetric, [N/m, N, N m/rad] */
-    double C[36]; /* row-major, [N s/m, N s, N m s/rad] */
+    double point_i[3];       /* frame of body i [m] */
+    double point_j[3];       /* frame of body j [m] */
+    double orientation_i[4]; /* frame i -> body i, Euler parameters; default (1,0,0,0) */
+    double orientation_j[4]; /* frame j -> body j, Euler parameters; default (1,0,0,0) */
+    double K[36];            /* row-major, symmetric, frame i [N/m, N, N m/rad] */
+    double C[36];            /* row-major, frame i [N s/m, N s, N m s/rad] */
 } se3d_bushing_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_bushing_def_default. @since 0.1 */
 SE3D_API void se3d_bushing_def_init(se3d_bushing_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_bushing_def se3d_bushing_def_default(void)
 {
     se3d_bushing_def def;
@@ -126,6 +145,7 @@ static inline se3d_bushing_def se3d_bushing_def_default(void)
     return def;
 }
 
+/* Create a bushing. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_force_create_bushing(se3d_system *system, const se3d_bushing_def *def,
                                                se3d_force *force);
 
@@ -142,7 +162,7 @@ typedef struct se3d_friction_def {
     int32_t coordinate; /* se3d_joint_coordinate */
     int32_t reserved;
     double mu;         /* of sliding, >= 0 */
-    double mu_static;  /* of sticking, >= mu; 0: mu */
+    double mu_static;  /* of sticking, >= mu [1]; 0: mu */
     double radius;     /* of the bearing, on an angle [m] */
     double limit;      /* friction without load [N, N m] */
     double viscous;    /* [N s/m, N m s/rad] */
@@ -152,8 +172,10 @@ typedef struct se3d_friction_def {
     double thrust_radius; /* on an angle: of the shoulder that carries the axial force [m] */
 } se3d_friction_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_friction_def_default. @since 0.1 */
 SE3D_API void se3d_friction_def_init(se3d_friction_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_friction_def se3d_friction_def_default(void)
 {
     se3d_friction_def def;
@@ -161,6 +183,8 @@ static inline se3d_friction_def se3d_friction_def_default(void)
     return def;
 }
 
+/* Create friction on a joint coordinate. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT,
+ * NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_force_create_friction(se3d_system *system, const se3d_friction_def *def,
                                                 se3d_force *force);
 
@@ -175,16 +199,18 @@ typedef struct se3d_stop_def {
     int32_t reserved;
     se3d_body body_i;
     se3d_body body_j;
-    double point_i[3]; /* body frames [m] */
-    double point_j[3];
-    double lower;       /* default -infinity: none */
-    double upper;       /* default +infinity: none */
+    double point_i[3];  /* frame of body i [m] */
+    double point_j[3];  /* frame of body j [m] */
+    double lower;       /* [m, rad]; default -infinity: none */
+    double upper;       /* [m, rad]; default +infinity: none */
     double k;           /* > 0 [N/m, N m/rad] */
     double restitution; /* 0.01 .. 1, default 1 */
 } se3d_stop_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_stop_def_default. @since 0.1 */
 SE3D_API void se3d_stop_def_init(se3d_stop_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_stop_def se3d_stop_def_default(void)
 {
     se3d_stop_def def;
@@ -192,20 +218,27 @@ static inline se3d_stop_def se3d_stop_def_default(void)
     return def;
 }
 
+/* Create a stop. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_force_create_stop(se3d_system *system, const se3d_stop_def *def,
                                             se3d_force *force);
 
-/* Compute what an element of the user's does to its bodies i and j: wrench = {force on i (ground
- * frame, at the centre of mass), torque on i (body frame), force on j, torque on j}. K and D are
- * NULL, or [144], row-major and zeroed: the derivatives of wrench to (dr_i, dtheta_i, dr_j,
- * dtheta_j), dtheta virtual rotations in the body frame, and to (v_i, w_i, v_j, w_j). Must be a
- * pure function of its arguments: methods keep and interpolate what it gave. What changes between
- * steps is the value of an element (se3d_force_set_value, se3d_function_set_constant, ...); where
- * it cannot be, call se3d_system_touch after every change. Return OK, or a negative status to stop
- * the analysis. @since 0.1 */
+/* Compute what a user-defined element does to its bodies i and j at the time t [s]:
+ *
+ *     wrench  force on i [N] (ground frame, at the centre of mass), torque on i [N m] (body frame),
+ *             force on j, torque on j
+ *     K       NULL, or [144], row-major and zeroed: the derivatives of wrench with respect to
+ *             (dr_i, dtheta_i, dr_j, dtheta_j), dtheta virtual rotations in the body frame
+ *     D       NULL, or [144]: the same with respect to (v_i, w_i, v_j, w_j)
+ *
+ * It must be a pure function of its arguments: methods keep and interpolate what it gave. What
+ * changes between steps is the value of an element (se3d_force_set_value,
+ * se3d_function_set_constant, ...); if it cannot be, call se3d_system_touch after every change.
+ * @return OK, or a negative status: the analysis ends with CALLBACK.
+ * @since 0.1 */
 typedef se3d_status (*se3d_force_callback)(void *ctx, double t, const se3d_body_motion motion[2],
                                            double wrench[12], double *K, double *D);
 
+/* What an element with a callback is made with. @since 0.1 */
 typedef struct se3d_force_callback_def {
     size_t struct_size;
     const char *name;
@@ -217,8 +250,11 @@ typedef struct se3d_force_callback_def {
     int32_t reserved;
 } se3d_force_callback_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see
+ * se3d_force_callback_def_default. @since 0.1 */
 SE3D_API void se3d_force_callback_def_init(se3d_force_callback_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_force_callback_def se3d_force_callback_def_default(void)
 {
     se3d_force_callback_def def;
@@ -226,6 +262,8 @@ static inline se3d_force_callback_def se3d_force_callback_def_default(void)
     return def;
 }
 
+/* Create an element whose forces a callback computes. @return OK, NULL, STALE_HANDLE,
+ * INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_force_create_callback(se3d_system *system,
                                                 const se3d_force_callback_def *def,
                                                 se3d_force *force);
@@ -235,14 +273,21 @@ SE3D_API se3d_status se3d_force_create_callback(se3d_system *system,
  * accelerations and multipliers stay those of the last analysis until the next step or
  * se3d_solver_run to the present time. ---- */
 
-/* Set, get the components of a force or torque [N, N m] where they are no functions.
- * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT. Exclusive; Reader. @since 0.1 */
+/* Set the components of a force or torque; those given by functions stay with their functions.
+ * @param[in] value  in the frame of the definition [N, N m]
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (not finite, or neither force nor torque).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_set_value(se3d_system *system, se3d_force force,
                                           const double value[3]);
+
+/* Get the components of a force or torque, as they were set.
+ * @param[out] value  in the frame of the definition [N, N m]
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (neither force nor torque).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_value(const se3d_system *system, se3d_force force,
                                           double value[3]);
 
-/* A number that a force element has, with the units and the range of its definition. */
+/* A number that a force element has, with the unit and the range of its definition. @since 0.1 */
 typedef enum se3d_force_parameter {
     SE3D_FORCE_PARAMETER_K = 0,           /* tsda, rsda, stop */
     SE3D_FORCE_PARAMETER_C = 1,           /* tsda, rsda */
@@ -259,39 +304,91 @@ typedef enum se3d_force_parameter {
     SE3D_FORCE_PARAMETER_PRESLIDING = 12  /* friction */
 } se3d_force_parameter;
 
-/* Set, get a number of a tsda, rsda, stop or friction element. What the change makes of the energy
- * that is stored counts as work of actuators.
- * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT. Exclusive; Reader. @since 0.1 */
+/* Set a number of a tsda, rsda, stop or friction element. What the change makes of the stored
+ * energy counts as work of actuators.
+ * @param[in] parameter  se3d_force_parameter
+ * @param[in] value      with the unit and the range of the definition [N, m, s, rad]
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_set_parameter(se3d_system *system, se3d_force force,
                                               int32_t parameter, double value);
+
+/* Get a number of a tsda, rsda, stop or friction element.
+ * @param[in] parameter  se3d_force_parameter
+ * @param[out] value     with the unit of the definition [N, m, s, rad]
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (the element has no such parameter).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_parameter(const se3d_system *system, se3d_force force,
                                               int32_t parameter, double *value);
-/* The same of the matrices of a bushing. @since 0.1 */
+
+/* Set the matrices of a bushing. What the change makes of the stored energy counts as work of
+ * actuators.
+ * @param[in] K  row-major, symmetric, frame i of the bushing [N/m, N, N m/rad]
+ * @param[in] C  row-major, frame i of the bushing [N s/m, N s, N m s/rad]
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_set_bushing(se3d_system *system, se3d_force force,
                                             const double K[36], const double C[36]);
+
+/* Get the matrices of a bushing.
+ * @param[out] K  row-major, frame i of the bushing [N/m, N, N m/rad]
+ * @param[out] C  row-major, frame i of the bushing [N s/m, N s, N m s/rad]
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (no bushing).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_bushing(const se3d_system *system, se3d_force force,
                                             double K[36], double C[36]);
 
-/* Get what an element does to its body i (side 0) or j (side 1): force at the centre of mass and
- * torque about it, ground frame. Reader. @since 0.1 */
+/* Get what an element does to one of its bodies at the present state.
+ * @param[in] side     0: body i, 1: body j
+ * @param[out] wrench  force [N] and torque about the centre of mass [N m], ground frame
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (side), CALLBACK, NOT_FINITE, SINGULAR (the
+ *         points coincide, so that a tsda or stop has no direction).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_wrench(const se3d_system *system, se3d_force force, size_t side,
                                            double wrench[6]);
-/* Get potential energy [J], dissipated power and power fed in by an actuator, a load or a callback
- * [W] at the present state. Reader. @since 0.1 */
+
+/* Get the energy and the powers of an element at the present state. NULL ones are skipped.
+ * @param[out] potential   stored energy [J]
+ * @param[out] dissipated  power [W]
+ * @param[out] actuator    power fed in by an actuator, a load or a callback [W]
+ * @return OK, NULL, STALE_HANDLE, CALLBACK, NOT_FINITE, SINGULAR (as se3d_force_get_wrench).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_power(const se3d_system *system, se3d_force force,
                                           double *potential, double *dissipated, double *actuator);
 
+/* Destroy a force element. @return OK, NULL, STALE_HANDLE. @since 0.1 */
 SE3D_API se3d_status se3d_force_destroy(se3d_system *system, se3d_force force);
+
+/* Find a force element by its name.
+ * @param[in] name  UTF-8
+ * @return OK, NULL, INVALID_ARGUMENT (no such name).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_find(const se3d_system *system, const char *name,
                                      se3d_force *force);
+
+/* Get the name of a force element.
+ * @param[out] name  "" if it has none; valid until the system is edited
+ * @return OK, NULL, STALE_HANDLE.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_name(const se3d_system *system, se3d_force force,
                                          const char **name);
-/* Get the type as in the model file: "tsda", "rsda", "force", "torque", "bushing", "friction",
- * "stop", "callback". Reader. @since 0.1 */
+
+/* Get the type of a force element as in the model file.
+ * @param[out] type  "tsda", "rsda", "force", "torque", "bushing", "friction", "stop", "callback";
+ *                   static
+ * @return OK, NULL, STALE_HANDLE.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_type(const se3d_system *system, se3d_force force,
                                          const char **type);
-/* Get the coordinate (length, angle, displacement), its rate and the force f or torque n against it
- * of a tsda, rsda, friction or stop. Reader. @since 0.1 */
+
+/* Get the coordinate of a tsda, rsda, friction or stop and what acts against it, at the present
+ * state. NULL ones are skipped.
+ * @param[out] coordinate  length or displacement [m], angle [rad]
+ * @param[out] rate        of the coordinate [m/s, rad/s]
+ * @param[out] value       force f [N] or torque n [N m]
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (no such element), CALLBACK, NOT_FINITE,
+ *         SINGULAR (as se3d_force_get_wrench).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force,
                                           double *coordinate, double *rate, double *value);
 

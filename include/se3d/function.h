@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Functions of time (drivers) and of a force element's variables (actuators). */
+/* Functions of time (drivers) and of a force element's variables (actuators).
+ *
+ * Threads: the rule of se3d/se3d.h. */
 #ifndef SE3D_FUNCTION_H
 #define SE3D_FUNCTION_H
 
@@ -10,13 +12,14 @@
 extern "C" {
 #endif
 
+/* The most variables of a function. @since 0.1 */
 #define SE3D_FUNCTION_VARIABLES_MAX 4
 
 /* Compute a function of x[0..variable_count): jet = {value, d/dx0, d2/dx0^2}; gradient (NULL or
- * [variable_count]) = first derivatives. Must be a pure function of x: methods keep and
+ * [variable_count]) = first derivatives. It must be a pure function of x: methods keep and
  * interpolate what it gave. A value that changes between steps is a constant with
- * se3d_function_set_constant; where it cannot be, call se3d_system_touch after every change. Return
- * OK, or a negative status to stop the analysis. */
+ * se3d_function_set_constant; if it cannot be, call se3d_system_touch after every change.
+ * @return OK, or a negative status: the analysis ends with CALLBACK. @since 0.1 */
 typedef se3d_status (*se3d_function_callback)(void *ctx, const double *x, double jet[3],
                                               double *gradient);
 
@@ -31,15 +34,16 @@ typedef struct se3d_function_def {
     size_t symbol_count;
     se3d_function_callback callback;
     void *ctx;
-    const double
-        *table_x; /* increasing, [table_count], of x[0]; natural cubic spline (C2), copied */
-    const double *table_y;
-    size_t table_count; /* at least 2 */
-    double constant;    /* used where none of the above is given */
+    const double *table_x; /* [table_count] of x[0], increasing; natural cubic spline, copied */
+    const double *table_y; /* [table_count] values */
+    size_t table_count;    /* at least 2 */
+    double constant;       /* [any unit], used if none of the above is given */
 } se3d_function_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_function_def_default. @since 0.1 */
 SE3D_API void se3d_function_def_init(se3d_function_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_function_def se3d_function_def_default(void)
 {
     se3d_function_def def;
@@ -47,25 +51,36 @@ static inline se3d_function_def se3d_function_def_default(void)
     return def;
 }
 
-/* Create a function. @return OK, NULL, INVALID_ARGUMENT, EXPRESSION (the message has the column),
- * NO_MEMORY. Exclusive. @since 0.1 */
+/* Create a function. @return OK, NULL, INVALID_ARGUMENT, EXPRESSION (the message has the
+ * column), NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *def,
                                           se3d_function *function);
-/* Create a function of time from a text in `t`. Exclusive. @since 0.1 */
+
+/* Create a function of time.
+ * @param[in] text  an expression in `t`, the time [s]
+ * @return OK, NULL, INVALID_ARGUMENT, EXPRESSION (the message has the column), NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_function_create_expression(se3d_system *system, const char *text,
                                                      se3d_function *function);
-/* Change the value of a constant, between steps: the handle stays, and the next step begins with
- * the new value. Where it prescribes a coordinate, the state is made to follow before that step,
- * with the same velocity: a jump.
- * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (it is no constant). Exclusive. @since 0.1 */
+
+/* Change the value of a constant between steps. The handle stays, and the next step begins with the
+ * new value. If it prescribes a coordinate, that step begins with a state that meets it, with the
+ * same velocity: a jump.
+ * @param[in] value  [unit of what the function is used for]
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (not finite, or the function is not a constant).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_function_set_constant(se3d_system *system, se3d_function function,
                                                 double value);
-/* @return OK, STALE_HANDLE, IN_USE. Exclusive. @since 0.1 */
+
+/* Destroy a function. @return OK, NULL, STALE_HANDLE, IN_USE. @since 0.1 */
 SE3D_API se3d_status se3d_function_destroy(se3d_system *system, se3d_function function);
 
-/* Compute value, first and second derivative with respect to variable 0 at x. Outside a table's
- * range the spline goes on as a straight line. @return OK, NOT_FINITE, CALLBACK. Reader. @since 0.1
- */
+/* Compute a function with its first two derivatives with respect to variable 0. Outside the range
+ * of a table the spline goes on as a straight line.
+ * @param[in] x     [variable_count] the variables
+ * @param[out] jet  [3] value, first and second derivative [any unit]; in no frame
+ * @return OK, NULL, STALE_HANDLE, NOT_FINITE, CALLBACK.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_function_eval(const se3d_system *system, se3d_function function,
                                         const double *x, double jet[3]);
 

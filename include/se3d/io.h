@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* libse3d-io: model files (YAML or JSON) and results (CSV). Link with -lse3d-io -lse3d.
  *
- * A model owns the system it was read into. The file format: docs/model-file/reference.md. */
+ * A model owns the system it was read into. The file format: docs/model-file/reference.md.
+ *
+ * Threads: the rule of se3d/se3d.h; a model includes its system. */
 #ifndef SE3D_IO_H
 #define SE3D_IO_H
 
@@ -42,8 +44,10 @@ typedef struct se3d_model_options {
     const char *tolerance; /* expression over the parameters, of every analysis */
 } se3d_model_options;
 
+/* Fill `options`, of `size` bytes, with the defaults: see se3d_model_options_default. @since 0.1 */
 SE3D_API void se3d_model_options_init(se3d_model_options *options, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_model_options se3d_model_options_default(void)
 {
     se3d_model_options options;
@@ -52,30 +56,46 @@ static inline se3d_model_options se3d_model_options_default(void)
 }
 
 /* Read a model file and build its system.
- * @param[in]  options  NULL: the defaults
- * @param[out] out      the model, NULL on failure
- * @param[out] error    filled on failure, emptied on success; may be NULL
- * @return OK, NULL, IO (cannot be read), MODEL (malformed; see the message), NO_MEMORY.
- * Safe. @since 0.1 */
+ * @param[in] path     of the file
+ * @param[in] options  NULL: the defaults
+ * @param[out] error   filled on failure, emptied on success; may be NULL
+ * @return OK, NULL, INVALID_ARGUMENT (options), IO (cannot be read), MODEL (malformed; see the
+ *         message), NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_model_read_file(const char *path, const se3d_model_options *options,
                                           se3d_model **out, se3d_model_error *error);
-/* Read a model from `length` bytes of UTF-8; `name` stands for the file in messages.
- * As se3d_model_read_file. Safe. @since 0.1 */
+
+/* Read a model from memory and build its system.
+ * @param[in] text     [length] UTF-8
+ * @param[in] length   in bytes
+ * @param[in] name     stands for the file in messages
+ * @param[in] options  NULL: the defaults
+ * @param[out] error   filled on failure, emptied on success; may be NULL
+ * @return OK, NULL, INVALID_ARGUMENT (options), MODEL (malformed; see the message), NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_model_read_text(const char *text, size_t length, const char *name,
                                           const se3d_model_options *options, se3d_model **out,
                                           se3d_model_error *error);
-/* Destroy a model and its system. NULL is fine. Nothing is destroyed from within se3d_model_run or
- * a callback of the system.
- * @since 0.1 */
+
+/* Destroy a model and its system; NULL is fine. Within se3d_model_run or a callback of the
+ * system nothing is destroyed. @since 0.1 */
 SE3D_API void se3d_model_destroy(se3d_model *model);
 
-/* Return the system, owned by the model; NULL for NULL. @since 0.1 */
+/* Get the system of a model, which may be changed. @return the system, owned by the model; NULL
+ * for NULL. @since 0.1 */
 SE3D_API se3d_system *se3d_model_get_system(const se3d_model *model);
-/* Return the file's name without folder and extension; "" for NULL. Reader. @since 0.1 */
+
+/* Get the name of the file without folder and extension. @return the text, owned by the model;
+ * "" for NULL. @since 0.1 */
 SE3D_API const char *se3d_model_get_name(const se3d_model *model);
-/* Return the title, "" where there is none. Reader. @since 0.1 */
+
+/* Get the title of a model. @return the text, owned by the model; "" if it has none. @since 0.1 */
 SE3D_API const char *se3d_model_get_title(const se3d_model *model);
-/* Get the value of a parameter. @return OK, NULL, INVALID_ARGUMENT (no such parameter). Reader.
+
+/* Get the value of a parameter of the file.
+ * @param[in] name    of the parameter
+ * @param[out] value  [any unit]
+ * @return OK, NULL, INVALID_ARGUMENT (no such parameter).
  * @since 0.1 */
 SE3D_API se3d_status se3d_model_get_parameter(const se3d_model *model, const char *name,
                                               double *value);
@@ -87,18 +107,29 @@ typedef struct se3d_model_analysis {
     const char *type; /* "dynamics", ...; owned by the model */
 } se3d_model_analysis;
 
-/* Count the analyses, to be run one after the other; 0 for NULL. Reader. @since 0.1 */
+/* Count the analyses of a model, which run one after the other. @return the number; 0 for NULL.
+ * @since 0.1 */
 SE3D_API size_t se3d_model_count_analyses(const se3d_model *model);
-/* Get one. @return OK, NULL, INVALID_ARGUMENT (index). Reader. @since 0.1 */
+
+/* As se3d_model_get_analysis, told the size of *analysis in bytes. @return as
+ * se3d_model_get_analysis, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_model_get_analysis_sized(const se3d_model *model, size_t index,
                                                    se3d_model_analysis *analysis, size_t size);
+
+/* Get an analysis of a model.
+ * @param[in] index  from 0, below se3d_model_count_analyses
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 static inline se3d_status se3d_model_get_analysis(const se3d_model *model, size_t index,
                                                   se3d_model_analysis *analysis)
 {
     return se3d_model_get_analysis_sized(model, index, analysis, sizeof *analysis);
 }
-/* Get the definition of its solver into `def`, which comes from se3d_solver_def_default.
- * @return as se3d_model_get_analysis; UNSUPPORTED for modes, which has none. Reader. @since 0.1 */
+
+/* Get the definition of the solver of an analysis. `def` comes from se3d_solver_def_default.
+ * @param[in] index  from 0, below se3d_model_count_analyses
+ * @return OK, NULL, INVALID_ARGUMENT (index), UNSUPPORTED (modes need no solver).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_model_get_solver(const se3d_model *model, size_t index,
                                            se3d_solver_def *def);
 
@@ -109,31 +140,52 @@ typedef struct se3d_model_output {
     size_t channel_count; /* without `time` */
 } se3d_model_output;
 
+/* Count the results files of a model. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_model_count_outputs(const se3d_model *model);
+
+/* As se3d_model_get_output, told the size of *output in bytes. @return as se3d_model_get_output,
+ * and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_model_get_output_sized(const se3d_model *model, size_t index,
                                                  se3d_model_output *output, size_t size);
+
+/* Get a results file of a model.
+ * @param[in] index  from 0, below se3d_model_count_outputs
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 static inline se3d_status se3d_model_get_output(const se3d_model *model, size_t index,
                                                 se3d_model_output *output)
 {
     return se3d_model_get_output_sized(model, index, output, sizeof *output);
 }
-/* Get the name of channel `k` of an output: "bar.position". @return OK, NULL, INVALID_ARGUMENT.
- * Reader. @since 0.1 */
+
+/* Get the name of a channel of a results file.
+ * @param[in] output  index of the results file
+ * @param[in] k       index of the channel, from 0
+ * @param[out] name   "bar.position", ...; owned by the model
+ * @return OK, NULL, INVALID_ARGUMENT (output, k).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_model_get_channel(const se3d_model *model, size_t output, size_t k,
                                             const char **name);
-/* Compute channel `k` of an output at the present state, as many numbers as it has columns (at most
- * 4). `stats` (NULL: zeros) feeds `steps` and `iterations`. @return OK, NULL, INVALID_ARGUMENT or
- * what the system's getter returned. Reader. @since 0.1 */
+
+/* Compute a channel of a results file at the present state.
+ * @param[in] output  index of the results file
+ * @param[in] k       index of the channel, from 0
+ * @param[in] stats   feeds `steps` and `iterations`; NULL: zeros
+ * @param[out] value  as many numbers as the channel has columns, in its frame and [unit]
+ * @param[out] width  the number of columns, at most 4
+ * @return OK, NULL, INVALID_ARGUMENT (output, k), or what the system's getter returned.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_model_get_channel_value(const se3d_model *model, size_t output, size_t k,
                                                   const se3d_solver_stats *stats, double value[4],
                                                   size_t *width);
 
-/* Add an event to a solver on the model's system: `def` with the value of `channel`, one number of
- * the model file's channels ("pin.angle", "bar.position.z"), in place of its own value and ctx. The
- * model must outlive the solver.
- * @param[out] error  filled on failure; may be NULL
- * @return OK, NULL, INVALID_ARGUMENT (no such channel, not one number, a count), UNSUPPORTED,
- * NO_MEMORY. Exclusive. @since 0.1 */
+/* Add an event to a solver on the model's system. Its value is a channel of the model file, in
+ * place of the value and ctx of `def`. The model must outlive the solver.
+ * @param[in] channel  one number: "pin.angle", "bar.position.z", ...
+ * @param[out] error   filled on failure; may be NULL
+ * @return OK, NULL, STATE (the system is gone), INVALID_ARGUMENT (no such channel, not one number,
+ *         a count), UNSUPPORTED, NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_model_create_event(se3d_model *model, se3d_solver *solver,
                                              const char *channel, const se3d_event_def *def,
                                              se3d_event *out, se3d_model_error *error);
@@ -146,16 +198,25 @@ typedef struct se3d_model_shape {
     double size[3];        /* box: lengths of its edges [m] */
     double radius;         /* sphere, capsule, cylinder [m] */
     double length;         /* capsule (between its centres), cylinder, along the shape's z [m] */
-    double scale;          /* mesh */
+    double scale;          /* mesh: factor on its vertices [1] */
     double position[3];    /* of the shape's centre, body frame [m] */
-    double orientation[4]; /* shape -> body */
+    double orientation[4]; /* shape -> body, Euler parameters */
     double color[3];       /* 0..1; -1 where none is given */
     const char *file;      /* mesh; "" for the others; owned by the model */
 } se3d_model_shape;
 
+/* Count the shapes of the bodies of a model. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_model_count_shapes(const se3d_model *model);
+
+/* As se3d_model_get_shape, told the size of *shape in bytes. @return as se3d_model_get_shape,
+ * and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_model_get_shape_sized(const se3d_model *model, size_t index,
                                                 se3d_model_shape *shape, size_t size);
+
+/* Get a shape as the file describes it.
+ * @param[in] index  from 0, below se3d_model_count_shapes
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 static inline se3d_status se3d_model_get_shape(const se3d_model *model, size_t index,
                                                se3d_model_shape *shape)
 {
@@ -175,8 +236,10 @@ typedef struct se3d_run_options {
     void *interrupt_ctx;
 } se3d_run_options;
 
+/* Fill `options`, of `size` bytes, with the defaults: see se3d_run_options_default. @since 0.1 */
 SE3D_API void se3d_run_options_init(se3d_run_options *options, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_run_options se3d_run_options_default(void)
 {
     se3d_run_options options;
@@ -185,14 +248,18 @@ static inline se3d_run_options se3d_run_options_default(void)
 }
 
 /* Run every analysis of a model and write its results. A file is written under a temporary name and
- * gets its own when the run is over; where an analysis fails, the rows so far are kept, and where
- * it is interrupted, they end with one at the time that it had reached.
- * @param[out] out    what was done, also where an analysis failed (NULL where nothing ran)
- * @param[out] error  filled on failure: when, where, why and what to try; may be NULL
- * @return OK or INFO_* of the last analysis, NULL, IO, NO_MEMORY, or the status of the analysis
- * that failed. Exclusive. @since 0.1 */
+ * gets its own when the run is over. If an analysis fails, the rows so far are kept; if it is
+ * interrupted, they end with one at the time that was reached.
+ * @param[in] options  NULL: the defaults
+ * @param[out] error   filled on failure: when, where, why and what to try; may be NULL
+ * @return OK or INFO_* of the last analysis, NULL, INVALID_ARGUMENT (options), STATE (no analysis,
+ *         or within a run of the model), IO, NO_MEMORY, or the status of the analysis that failed;
+ *         *out tells what was done, also then, and is NULL if nothing ran.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options,
                                     se3d_run **out, se3d_model_error *error);
+
+/* Destroy the report of a run; NULL is fine. @since 0.1 */
 SE3D_API void se3d_run_destroy(se3d_run *run);
 
 /* What one analysis did. @since 0.1 */
@@ -214,9 +281,18 @@ typedef struct se3d_run_analysis {
                                bodies above */
 } se3d_run_analysis;
 
+/* Count the analyses that a run began. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_run_count_analyses(const se3d_run *run);
+
+/* As se3d_run_get_analysis, told the size of *analysis in bytes. @return as
+ * se3d_run_get_analysis, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_run_get_analysis_sized(const se3d_run *run, size_t index,
                                                  se3d_run_analysis *analysis, size_t size);
+
+/* Get what an analysis of a run did.
+ * @param[in] index  from 0, below se3d_run_count_analyses
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 static inline se3d_status se3d_run_get_analysis(const se3d_run *run, size_t index,
                                                 se3d_run_analysis *analysis)
 {
@@ -232,12 +308,18 @@ typedef struct se3d_run_particles {
     uint64_t deferred; /* of all so far, those that a source had to put off for room */
 } se3d_run_particles;
 
-/* Names that nothing ever had particles of are not counted. Reader. @since 0.1 */
+/* Count the names that ever had particles in a run. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_run_count_particles(const se3d_run *run);
-/* Get the particles of name `index`, from 0. @return OK, NULL, INVALID_ARGUMENT (no such name).
- * Reader. @since 0.1 */
+
+/* As se3d_run_get_particles, told the size of *particles in bytes. @return as
+ * se3d_run_get_particles, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_run_get_particles_sized(const se3d_run *run, size_t index,
                                                   se3d_run_particles *particles, size_t size);
+
+/* Get the particles of a name at the end of a run.
+ * @param[in] index  from 0, below se3d_run_count_particles
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 static inline se3d_status se3d_run_get_particles(const se3d_run *run, size_t index,
                                                  se3d_run_particles *particles)
 {
@@ -249,15 +331,24 @@ typedef struct se3d_run_event {
     const char *name;
     const char *channel; /* with its component; both owned by the model */
     double time;         /* [s] */
-    double value;        /* of the channel then */
+    double value;        /* of the channel then [its unit] */
     size_t analysis;     /* index */
     int32_t direction;   /* SE3D_EVENT_RISING or _FALLING */
     int32_t stopped;     /* not 0: it ended the analysis */
 } se3d_run_event;
 
+/* Count the events that happened in a run. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_run_count_events(const se3d_run *run);
+
+/* As se3d_run_get_event, told the size of *event in bytes. @return as se3d_run_get_event, and
+ * INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_run_get_event_sized(const se3d_run *run, size_t index,
                                               se3d_run_event *event, size_t size);
+
+/* Get an event that happened in a run.
+ * @param[in] index  from 0, below se3d_run_count_events
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 static inline se3d_status se3d_run_get_event(const se3d_run *run, size_t index,
                                              se3d_run_event *event)
 {
@@ -271,9 +362,18 @@ typedef struct se3d_run_file {
     size_t columns;
 } se3d_run_file;
 
+/* Count the files that a run wrote. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_run_count_files(const se3d_run *run);
+
+/* As se3d_run_get_file, told the size of *file in bytes. @return as se3d_run_get_file, and
+ * INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_run_get_file_sized(const se3d_run *run, size_t index, se3d_run_file *file,
                                              size_t size);
+
+/* Get a file that a run wrote.
+ * @param[in] index  from 0, below se3d_run_count_files
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 static inline se3d_status se3d_run_get_file(const se3d_run *run, size_t index, se3d_run_file *file)
 {
     return se3d_run_get_file_sized(run, index, file, sizeof *file);
@@ -288,32 +388,48 @@ typedef struct se3d_model_picture {
     const char *x;       /* plot: the channel of the horizontal axis; NULL: time */
     const char *const *channels; /* plot: [channel_count]; none: the usual ones */
     size_t channel_count;
-    double speed;     /* video: seconds of motion in one of film */
+    double speed;     /* video: seconds of motion in one of film [s/s] */
     int32_t fft;      /* plot: not 0: amplitudes over frequency */
     int32_t reserved; /* 0 */
 } se3d_model_picture;
 
-/* Reader. @since 0.1 */
+/* Count the pictures that the `output` of a model asks for. @return the number; 0 for NULL.
+ * @since 0.1 */
 SE3D_API size_t se3d_model_count_pictures(const se3d_model *model);
-/* Get picture `index`, from 0. @return OK, NULL, INVALID_ARGUMENT (no such picture). Reader. @since
- * 0.1 */
+
+/* As se3d_model_get_picture, told the size of *picture in bytes. @return as
+ * se3d_model_get_picture, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_model_get_picture_sized(const se3d_model *model, size_t index,
                                                   se3d_model_picture *picture, size_t size);
+
+/* Get a picture that the `output` of a model asks for.
+ * @param[in] index  from 0, below se3d_model_count_pictures
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 static inline se3d_status se3d_model_get_picture(const se3d_model *model, size_t index,
                                                  se3d_model_picture *picture)
 {
     return se3d_model_get_picture_sized(model, index, picture, sizeof *picture);
 }
 
-/* Create an empty scene of a model, which must outlive it. @return OK, NULL, NO_MEMORY. Safe.
- * @since 0.1 */
+/* Create an empty scene of a model, which must outlive it. Reader (the model is not changed).
+ * @return OK, NULL, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_scene_create(se3d_model *model, se3d_scene **out);
+
+/* Destroy a scene; NULL is fine. @since 0.1 */
 SE3D_API void se3d_scene_destroy(se3d_scene *scene);
-/* Record the present poses. Times at or before the last one are skipped; a long motion is thinned
- * out evenly to at most 1250 samples. @return OK, NULL. Exclusive. @since 0.1 */
+
+/* Record the present poses, for example in the progress callback of a run. Times at or before
+ * the last one are skipped; a long motion is thinned out evenly to at most 1250 samples. @return
+ * OK, NULL. @since 0.1 */
 SE3D_API se3d_status se3d_scene_record(se3d_scene *scene);
-/* Write the scene as binary glTF 2.0 (.glb), under a temporary name first. @return OK, NULL, IO
- * (see the message), NO_MEMORY. Exclusive. @since 0.1 */
+
+/* Write a scene as binary glTF 2.0 (.glb), under a temporary name first. An empty scene gets the
+ * present poses.
+ * @param[in] path    of the file
+ * @param[out] error  filled on failure, emptied on success; may be NULL
+ * @return OK, NULL, IO (see the message), NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_scene_write(se3d_scene *scene, const char *path, se3d_model_error *error);
 
 #ifdef __cplusplus

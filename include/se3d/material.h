@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Materials: what shapes and particles are made of, and what holds between two of them. */
+/* Materials: what shapes and particles are made of, and what holds between two of them.
+ *
+ * Threads: the rule of se3d/se3d.h. */
 #ifndef SE3D_MATERIAL_H
 #define SE3D_MATERIAL_H
 
@@ -26,8 +28,10 @@ typedef struct se3d_material_def {
     double adhesion; /* >= 0 [J/m^2]: work of adhesion; pull-off force 3/2 pi R* adhesion */
 } se3d_material_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_material_def_default. @since 0.1 */
 SE3D_API void se3d_material_def_init(se3d_material_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_material_def se3d_material_def_default(void)
 {
     se3d_material_def def;
@@ -35,34 +39,38 @@ static inline se3d_material_def se3d_material_def_default(void)
     return def;
 }
 
-/* Create a material; what the system's law needs must be given. @return OK, NULL, INVALID_ARGUMENT,
- * NO_MEMORY. Exclusive. @since 0.1 */
+/* Create a material. What the system's law needs must be given. @return OK, NULL,
+ * INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *def,
                                           se3d_material *material);
-/* Give a material other values, between steps: the handle stays, contacts keep what they remember,
- * and the next step begins with the new values. Particles keep the mass that they were made with.
- * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT. Exclusive. @since 0.1 */
+
+/* Change a material, for all shapes and particles made of it. The next step begins with it.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT. @since 0.1 */
 SE3D_API se3d_status se3d_material_set(se3d_system *system, se3d_material material,
                                        const se3d_material_def *def);
-/* Get its values; struct_size must be set. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT.
- * Reader. @since 0.1 */
+
+/* Get a material. Set def->struct_size before the call. @return OK, NULL, STALE_HANDLE,
+ * INVALID_ARGUMENT (struct_size). @since 0.1 */
 SE3D_API se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
                                        se3d_material_def *def);
-/* Destroy. @return OK, NULL, STALE_HANDLE, IN_USE (a shape or a set of particles uses it).
- * Exclusive. @since 0.1 */
+
+/* Destroy a material. @return OK, NULL, STALE_HANDLE, IN_USE (a shape or a set of particles uses
+ * it). @since 0.1 */
 SE3D_API se3d_status se3d_material_destroy(se3d_system *system, se3d_material material);
 
 /* What holds for a pair of materials instead of the mixing rules; negative: the rule, the default.
  * @since 0.1 */
 typedef struct se3d_material_pair_def {
     size_t struct_size;
-    double friction, restitution, rolling_friction, torsional_friction;
-    double stiffness; /* hooke [N/m] */
-    double cohesion, adhesion;
+    double friction, restitution, rolling_friction, torsional_friction; /* [1] */
+    double stiffness;                                                   /* hooke [N/m] */
+    double cohesion, adhesion;                                          /* [J/m^3], [J/m^2] */
 } se3d_material_pair_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_material_pair_def_default. @since 0.1 */
 SE3D_API void se3d_material_pair_def_init(se3d_material_pair_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_material_pair_def se3d_material_pair_def_default(void)
 {
     se3d_material_pair_def def;
@@ -70,8 +78,8 @@ static inline se3d_material_pair_def se3d_material_pair_def_default(void)
     return def;
 }
 
-/* Say what holds between two materials (which may be the same). @return OK, NULL, STALE_HANDLE,
- * INVALID_ARGUMENT. Exclusive. @since 0.1 */
+/* Set what holds between two materials, which may be the same. @return OK, NULL, STALE_HANDLE,
+ * INVALID_ARGUMENT. @since 0.1 */
 SE3D_API se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_material b,
                                             const se3d_material_pair_def *def);
 

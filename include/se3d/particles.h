@@ -2,9 +2,11 @@
 /* Particles: spheres in bulk with penalty contact and friction (se3d/contact.h).
  *
  * A se3d_particles belongs to one system: it takes its gravity, its allocator, its materials, law
- * and shapes, and records failures there (se3d_system_get_error). Functions that
- * take it without `const` need exclusive access to both. Particles have ids, counted from 0 in the
- * order of creation and never used again; arrays are in ascending order of the ids that live. */
+ * and shapes, and records failures there (se3d_system_get_error). Particles have ids, counted from
+ * 0 in the order of creation and never used again; arrays are in ascending order of the ids of the
+ * particles that are there.
+ *
+ * Threads: the rule of se3d/se3d.h; what needs a set for itself needs its system, too. */
 #ifndef SE3D_PARTICLES_H
 #define SE3D_PARTICLES_H
 
@@ -22,7 +24,7 @@ typedef enum se3d_domain_boundary {
 } se3d_domain_boundary;
 
 /* Particles carry a tag from 0 to this less 1 (default 0), by which they can be told apart: what is
- * a set to the user may be a tag here, so that all sets touch each other. */
+ * a set to the user may be a tag here, so that all sets touch each other. @since 0.1 */
 #define SE3D_PARTICLES_TAGS 256
 
 /* What particles are made with. @since 0.1 */
@@ -39,8 +41,10 @@ typedef struct se3d_particles_def {
     const char *name;          /* copied; NULL or unique among the sets of the system */
 } se3d_particles_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_particles_def_default. @since 0.1 */
 SE3D_API void se3d_particles_def_init(se3d_particles_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_particles_def se3d_particles_def_default(void)
 {
     se3d_particles_def def;
@@ -48,42 +52,67 @@ static inline se3d_particles_def se3d_particles_def_default(void)
     return def;
 }
 
-/* Create an empty set of particles in `system`. `def` may be NULL. The system's clones, snapshots
- * and hash include it, `verlet` moves it, and se3d_system_destroy destroys what is left of its
- * sets.
- * @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY. Exclusive. @since 0.1 */
+/* Create an empty set of particles. Clones, snapshots and hashes of the system include it, the
+ * method `verlet` moves it, and se3d_system_destroy destroys it. `def` may be NULL. @return OK,
+ * NULL, INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def *def,
                                            se3d_particles **out);
-/* Destroy; NULL is fine. From within a callback of its system nothing is destroyed, and a message
- * (STATE) says so. @since 0.1 */
+
+/* Destroy a set of particles; NULL is fine. Within a callback of its system nothing is
+ * destroyed, and a message (STATE) says so. @since 0.1 */
 SE3D_API void se3d_particles_destroy(se3d_particles *particles);
-/* Find a set by its name. @return OK, NULL, INVALID_ARGUMENT (no such set). Reader. @since 0.1 */
+
+/* Find a set of particles by its name.
+ * @param[in] name  UTF-8
+ * @return OK, NULL, INVALID_ARGUMENT (no such name).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_find(const se3d_system *system, const char *name,
                                          se3d_particles **particles);
-/* Get the name, "" where it has none; the system's. Reader. @since 0.1 */
+
+/* Get the name of a set of particles.
+ * @param[out] name  "" if it has none; lives as long as the set
+ * @return OK, NULL.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_name(const se3d_particles *particles, const char **name);
-/* Count the sets of a system and get one, in the order of creation: how the sets of a clone are
- * reached. @return OK, NULL, INVALID_ARGUMENT (index). Reader. @since 0.1 */
+
+/* Count the sets of particles of a system. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_system_count_particles(const se3d_system *system);
+
+/* Get a set of particles of a system, in the order of creation. This is how the sets of a clone are
+ * reached.
+ * @param[in] index  from 0, below se3d_system_count_particles
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_get_particles(const se3d_system *system, size_t index,
                                                se3d_particles **particles);
-/* Make an independent copy beside the sets of the same system: no step of the system moves it, and
- * after the system nothing can be done with it but reading what it holds and destroying it. It
- * continues with the same bits, and so is a snapshot. Ids are valid on both.
- * @since 0.1 */
+
+/* Make an independent copy of a set, beside the sets of the same system: no step of the system
+ * moves it. It continues with the same bits as the original, and ids are valid on both. Once the
+ * system is destroyed, the copy can only be read and destroyed. Exclusive (the system keeps a
+ * list of copies). @return OK, NULL, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles **out);
-/* Make `particles` what `saved`, a clone of it, is. @return OK, NULL, NO_MEMORY (nothing changed).
- * @since 0.1 */
+
+/* Make a set equal to `saved`, a clone of it. @return OK, NULL, STATE (the clone is of another
+ * system), NO_MEMORY (nothing changed). @since 0.1 */
 SE3D_API se3d_status se3d_particles_restore(se3d_particles *particles, const se3d_particles *saved);
 
-/* Get the force of the particles on a body [N] and its moment about the centre of mass [N m],
- * ground frame, of the last step, summed over the shapes of the body. Reader. @since 0.1 */
+/* Get what the particles of a set did to a body in the last step: the sum over its shapes.
+ * @param[out] force   ground frame [N]
+ * @param[out] torque  about the centre of mass, ground frame [N m]
+ * @return OK, NULL, STATE (the system is gone), STALE_HANDLE.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_wrench(const se3d_particles *particles, se3d_body body,
                                                double force[3], double torque[3]);
 
-/* Add `count` particles: r [count * 3], radius [count], v [count * 3] and w [count * 3] (ground
- * frame) or NULL: at rest. They get the ids *first, *first + 1, ...; `first` may be NULL.
- * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
+/* Add particles.
+ * @param[in] count   their number
+ * @param[in] r       [count * 3] centres, ground frame [m]
+ * @param[in] radius  [count] [m] > 0
+ * @param[in] v       [count * 3] velocities, ground frame [m/s]; NULL: at rest
+ * @param[in] w       [count * 3] angular velocities, ground frame [rad/s]; NULL: none
+ * @param[out] first  they get the ids *first, *first + 1, ...; NULL: not wanted
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_add(se3d_particles *particles, se3d_material material,
                                         size_t count, const double *r, const double *radius,
                                         const double *v, const double *w, uint32_t *first);
@@ -116,8 +145,10 @@ typedef struct se3d_fill_def {
     uint32_t reserved;
 } se3d_fill_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_fill_def_default. @since 0.1 */
 SE3D_API void se3d_fill_def_init(se3d_fill_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_fill_def se3d_fill_def_default(void)
 {
     se3d_fill_def def;
@@ -125,12 +156,16 @@ static inline se3d_fill_def se3d_fill_def_default(void)
     return def;
 }
 
-/* Fill a region with a cubic lattice, layer by layer along z, from the lower corner. `added` may be
- * NULL. @since 0.1 */
+/* Fill a region with a cubic lattice, layer by layer along z, from the lower corner.
+ * @param[out] added  the number of new particles; NULL: not wanted
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_fill_lattice(se3d_particles *particles,
                                                  const se3d_fill_def *def, size_t *added);
-/* Fill a region at random without overlaps, also with particles that are there. @return OK, ...,
- * NO_CONVERGENCE (there was no room for all; nothing changed). @since 0.1 */
+
+/* Fill a region at random, without overlaps, also with particles that are there. @return OK,
+ * NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY, NO_CONVERGENCE (there was no room for all;
+ * nothing changed). @since 0.1 */
 SE3D_API se3d_status se3d_particles_fill_random(se3d_particles *particles,
                                                 const se3d_fill_def *def);
 
@@ -149,8 +184,11 @@ typedef struct se3d_particles_source_def {
     int32_t reserved;
 } se3d_particles_source_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see
+ * se3d_particles_source_def_default. @since 0.1 */
 SE3D_API void se3d_particles_source_def_init(se3d_particles_source_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_particles_source_def se3d_particles_source_def_default(void)
 {
     se3d_particles_source_def def;
@@ -158,9 +196,10 @@ static inline se3d_particles_source_def se3d_particles_source_def_default(void)
     return def;
 }
 
-/* Add a source, numbered from 0. During steps it inserts what is due where it overlaps with
- * nothing; what finds no place waits. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY.
- * Exclusive.
+/* Add a source. During steps it inserts what is due if it overlaps with nothing; what finds no
+ * place waits.
+ * @param[out] source  its number, from 0; NULL: not wanted
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY.
  * @since 0.1 */
 SE3D_API se3d_status se3d_particles_add_source(se3d_particles *particles,
                                                const se3d_particles_source_def *def,
@@ -174,18 +213,28 @@ typedef struct se3d_particles_source_stats {
     double waiting;    /* what is owed now: particles, or [kg] */
 } se3d_particles_source_stats;
 
-/* @return OK, NULL, INVALID_ARGUMENT (no such source). Reader. @since 0.1 */
+/* As se3d_particles_get_source_stats, told the size of *stats in bytes. @return as
+ * se3d_particles_get_source_stats, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_source_stats_sized(const se3d_particles *particles,
                                                            uint32_t source,
                                                            se3d_particles_source_stats *stats,
                                                            size_t size);
+
+/* Get what a source has done.
+ * @param[in] source  its number
+ * @return OK, NULL, INVALID_ARGUMENT (no such source).
+ * @since 0.1 */
 static inline se3d_status se3d_particles_get_source_stats(const se3d_particles *particles,
                                                           uint32_t source,
                                                           se3d_particles_source_stats *stats)
 {
     return se3d_particles_get_source_stats_sized(particles, source, stats, sizeof *stats);
 }
-/* Stop a source for good; the numbers of the others stay. Exclusive. @since 0.1 */
+
+/* Stop a source for good. The numbers of the others stay.
+ * @param[in] source  its number
+ * @return OK, NULL, INVALID_ARGUMENT (no such source).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_remove_source(se3d_particles *particles, uint32_t source);
 
 /* A sink: particles whose centre is in the region, or behind the plane, are removed and counted as
@@ -196,11 +245,14 @@ typedef struct se3d_particles_sink_def {
     int32_t region;            /* se3d_fill_region */
     int32_t axis;              /* of a cylinder: 0, 1 or 2 */
     double point[3];           /* of the plane [m] */
-    double normal[3];          /* of the plane; zero: the region */
+    double normal[3];          /* direction, of the plane; zero: the region */
 } se3d_particles_sink_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see
+ * se3d_particles_sink_def_default. @since 0.1 */
 SE3D_API void se3d_particles_sink_def_init(se3d_particles_sink_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_particles_sink_def se3d_particles_sink_def_default(void)
 {
     se3d_particles_sink_def def;
@@ -208,16 +260,33 @@ static inline se3d_particles_sink_def se3d_particles_sink_def_default(void)
     return def;
 }
 
-/* Add a sink, numbered from 0; get how many particles it has removed; remove it.
- * @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY. Exclusive (the count: Reader). @since 0.1 */
+/* Add a sink.
+ * @param[out] sink  its number, from 0; NULL: not wanted
+ * @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_add_sink(se3d_particles *particles,
                                              const se3d_particles_sink_def *def, uint32_t *sink);
+
+/* Get how many particles a sink has removed.
+ * @param[in] sink    its number
+ * @param[out] count  removed so far
+ * @return OK, NULL, INVALID_ARGUMENT (no such sink).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_sink_count(const se3d_particles *particles, uint32_t sink,
                                                    uint64_t *count);
+
+/* Stop a sink for good. The numbers of the others stay.
+ * @param[in] sink  its number
+ * @return OK, NULL, INVALID_ARGUMENT (no such sink).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_remove_sink(se3d_particles *particles, uint32_t sink);
 
-/* Give particles, named by their ids, a tag. @return OK, NULL, INVALID_ARGUMENT (an id that does
- * not live, a tag that is too large; nothing changed). Exclusive. @since 0.1 */
+/* Give particles a tag.
+ * @param[in] count  of ids
+ * @param[in] ids    [count] of the particles
+ * @param[in] tag    below SE3D_PARTICLES_TAGS
+ * @return OK, NULL, INVALID_ARGUMENT (an id of no particle, or the tag; nothing changed).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_set_tags(se3d_particles *particles, size_t count,
                                              const uint32_t *ids, uint32_t tag);
 
@@ -231,39 +300,91 @@ typedef struct se3d_particles_tally {
     double energy;    /* kinetic and potential of those [J] */
 } se3d_particles_tally;
 
-/* @return OK, NULL, INVALID_ARGUMENT (tag). Reader. @since 0.1 */
+/* As se3d_particles_get_tally, told the size of *tally in bytes. @return as
+ * se3d_particles_get_tally, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_tally_sized(const se3d_particles *particles, uint32_t tag,
                                                     se3d_particles_tally *tally, size_t size);
+
+/* Get the numbers, mass and energy of the particles of a tag.
+ * @param[in] tag  below SE3D_PARTICLES_TAGS
+ * @return OK, NULL, INVALID_ARGUMENT (tag), CALLBACK, NOT_FINITE (functions of gravity).
+ * @since 0.1 */
 static inline se3d_status se3d_particles_get_tally(const se3d_particles *particles, uint32_t tag,
                                                    se3d_particles_tally *tally)
 {
     return se3d_particles_get_tally_sized(particles, tag, tally, sizeof *tally);
 }
 
-/* Remove `count` particles by id. @return OK, INVALID_ARGUMENT (an id that does not live; nothing
- * changed). @since 0.1 */
+/* Remove particles.
+ * @param[in] count  of ids
+ * @param[in] ids    [count] of the particles
+ * @return OK, NULL, INVALID_ARGUMENT (an id of no particle; nothing changed), NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_remove(se3d_particles *particles, size_t count,
                                            const uint32_t *ids);
 
-/* Count the particles. Zero for NULL. Reader. @since 0.1 */
+/* Count the particles of a set. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_particles_count(const se3d_particles *particles);
 
-/* Bulk access: arrays of `count` = se3d_particles_count particles; NULL arrays are skipped.
- * r, v, w, force and torque are [count * 3]. @since 0.1 */
+/* Get the ids of the particles, in ascending order: the order of all arrays of particles.
+ * @param[in] count  must be se3d_particles_count
+ * @param[out] ids   [count]
+ * @return OK, NULL, INVALID_ARGUMENT (count).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_ids(const se3d_particles *particles, size_t count,
                                             uint32_t *ids);
+
+/* Get the tags of the particles.
+ * @param[in] count  must be se3d_particles_count
+ * @param[out] tags  [count]
+ * @return OK, NULL, INVALID_ARGUMENT (count).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_tags(const se3d_particles *particles, size_t count,
                                              uint32_t *tags);
+
+/* Get the materials of the particles.
+ * @param[in] count       must be se3d_particles_count
+ * @param[out] materials  [count]
+ * @return OK, NULL, INVALID_ARGUMENT (count).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_materials(const se3d_particles *particles, size_t count,
                                                   se3d_material *materials);
+
+/* Get the radii of the particles.
+ * @param[in] count    must be se3d_particles_count
+ * @param[out] radius  [count] [m]
+ * @return OK, NULL, INVALID_ARGUMENT (count).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_radii(const se3d_particles *particles, size_t count,
                                               double *radius);
+
+/* Get the states of the particles. NULL arrays are skipped.
+ * @param[in] count  must be se3d_particles_count
+ * @param[out] r     [count * 3] centres, ground frame [m]
+ * @param[out] v     [count * 3] ground frame [m/s]
+ * @param[out] w     [count * 3] ground frame [rad/s]
+ * @return OK, NULL, INVALID_ARGUMENT (count).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_all(const se3d_particles *particles, size_t count,
                                             double *r, double *v, double *w);
+
+/* Set the states of the particles. Arrays that are NULL leave their quantity alone.
+ * @param[in] count  must be se3d_particles_count
+ * @param[in] r      [count * 3] centres, ground frame [m]
+ * @param[in] v      [count * 3] ground frame [m/s]
+ * @param[in] w      [count * 3] ground frame [rad/s]
+ * @return OK, NULL, INVALID_ARGUMENT (count, not finite), NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_set_all(se3d_particles *particles, size_t count,
                                             const double *r, const double *v, const double *w);
-/* Contact forces and torques of the last step, without gravity; zero after particles, materials or
- * walls were edited, until the next step. @since 0.1 */
+
+/* Get what contacts did to the particles in the last step, without gravity. It is zero from an edit
+ * of particles, materials or walls to the next step. NULL arrays are skipped.
+ * @param[in] count    must be se3d_particles_count
+ * @param[out] force   [count * 3] ground frame [N]
+ * @param[out] torque  [count * 3] about the centres, ground frame [N m]
+ * @return OK, NULL, INVALID_ARGUMENT (count).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_forces(const se3d_particles *particles, size_t count,
                                                double *force, double *torque);
 
@@ -271,39 +392,66 @@ SE3D_API se3d_status se3d_particles_get_forces(const se3d_particles *particles, 
 typedef struct se3d_particles_contact {
     uint32_t i, j;    /* ids of the particles */
     se3d_shape shape; /* null: with particle j */
-    double point[3];  /* [m] */
-    double force[3];  /* on i [N] */
-    double normal[3]; /* towards i */
+    double point[3];  /* ground frame [m] */
+    double force[3];  /* on i, ground frame [N] */
+    double normal[3]; /* unit vector towards i, ground frame */
     double overlap;   /* [m] > 0 */
 } se3d_particles_contact;
 
-/* Count the contacts of the last step, and list them (`count` must be that number).
- * @return OK, NULL, INVALID_ARGUMENT. Reader. @since 0.1 */
+/* Count the contacts of the last step. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_particles_count_contacts(const se3d_particles *particles);
+
+/* As se3d_particles_get_contacts, told the size of an element in bytes. @return as
+ * se3d_particles_get_contacts, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_contacts_sized(const se3d_particles *particles,
                                                        size_t count,
                                                        se3d_particles_contact *contacts,
                                                        size_t size);
+
+/* List the contacts of the last step.
+ * @param[in] count      must be se3d_particles_count_contacts
+ * @param[out] contacts  [count]
+ * @return OK, NULL, STATE (the system is gone), INVALID_ARGUMENT (count).
+ * @since 0.1 */
 static inline se3d_status se3d_particles_get_contacts(const se3d_particles *particles, size_t count,
                                                       se3d_particles_contact *contacts)
 {
     return se3d_particles_get_contacts_sized(particles, count, contacts, sizeof *contacts);
 }
 
-/* Advance by `steps` steps of velocity Verlet; bodies are where the system has them.
- * Where an overlap is beyond the limit, the step that ends with it is complete and the last one;
- * the run may go on from there, with a smaller step or a larger limit. A state that is not finite
- * cannot be repaired: restore a clone.
- * @return OK, STEP_SIZE (an overlap beyond the limit or a step beyond stability: the message names
- * the particle and the time), NOT_FINITE, NO_MEMORY (lists could not grow: they are made shorter,
- * the step is complete, and the run may go on), CALLBACK (the rate of a source). @since 0.1 */
+/* Advance by steps of velocity Verlet; bodies stay where the system has them. A step that ends with
+ * an overlap beyond the limit is complete, and the last one; the run may go on from there with a
+ * smaller step or a larger limit. A state that is not finite cannot be repaired: restore a clone.
+ * @param[in] steps  their number
+ * @return OK, NULL, INVALID_ARGUMENT, STEP_SIZE (an overlap beyond the limit or a step beyond
+ *         stability: the message names the particle and the time), NOT_FINITE, NO_MEMORY (lists
+ *         could not grow: they are made shorter, the step is complete, and the run may go on),
+ *         CALLBACK (of a source, gravity or law), UNSUPPORTED.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_step(se3d_particles *particles, size_t steps);
-/* Advance to `time` in equal steps, none longer than the step. @since 0.1 */
+
+/* Advance to a time in equal steps, none longer than the step.
+ * @param[in] time  not before that of the set [s]
+ * @return as se3d_particles_step, and INVALID_ARGUMENT (time), STEP_COUNT.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_run(se3d_particles *particles, double time);
-/* Get the step: the one that was set, or the automatic one (0 where there is nothing to resolve).
- * Reader. @since 0.1 */
+
+/* Get the step: the one that was set, or the automatic one.
+ * @param[out] step  [s]; 0 if there is nothing to resolve
+ * @return OK, NULL, STATE (the system is gone).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_step(const se3d_particles *particles, double *step);
+
+/* Set the step of a set of particles.
+ * @param[in] step  [s]; 0: that of the system's contact settings
+ * @return OK, NULL, INVALID_ARGUMENT.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_set_step(se3d_particles *particles, double step);
+
+/* Get the time of a set of particles.
+ * @param[out] time  [s]
+ * @return OK, NULL.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_time(const se3d_particles *particles, double *time);
 
 /* Energies [J]; potential: of gravity, zero at the ground origin. @since 0.1 */
@@ -313,8 +461,13 @@ typedef struct se3d_particles_energy {
     double potential;
 } se3d_particles_energy;
 
+/* As se3d_particles_get_energy, told the size of *energy in bytes. @return as
+ * se3d_particles_get_energy, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_energy_sized(const se3d_particles *particles,
                                                      se3d_particles_energy *energy, size_t size);
+
+/* Get the energy of the particles of a set. @return OK, NULL, STATE (the system is gone),
+ * CALLBACK, NOT_FINITE (functions of gravity). @since 0.1 */
 static inline se3d_status se3d_particles_get_energy(const se3d_particles *particles,
                                                     se3d_particles_energy *energy)
 {
@@ -332,15 +485,20 @@ typedef struct se3d_particles_stats {
     uint64_t left;     /* lost, and those that are there but outside, as in se3d_particles_tally */
 } se3d_particles_stats;
 
+/* As se3d_particles_get_stats, told the size of *stats in bytes. @return as
+ * se3d_particles_get_stats, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_stats_sized(const se3d_particles *particles,
                                                     se3d_particles_stats *stats, size_t size);
+
+/* Get the counters of a set of particles. @return OK, NULL. @since 0.1 */
 static inline se3d_status se3d_particles_get_stats(const se3d_particles *particles,
                                                    se3d_particles_stats *stats)
 {
     return se3d_particles_get_stats_sized(particles, stats, sizeof *stats);
 }
 
-/* A hash of time, positions and velocities: equal bits, equal hash. Zero for NULL. @since 0.1 */
+/* Compute a hash of time, positions and velocities: equal bits, equal hash. @return the hash; 0
+ * for NULL. @since 0.1 */
 SE3D_API uint64_t se3d_particles_hash(const se3d_particles *particles);
 
 #ifdef __cplusplus

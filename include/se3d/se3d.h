@@ -6,8 +6,19 @@
  * in the body frame. For every element between two bodies, i is the reference and j moves:
  * coordinates are of j relative to i, and reactions act on j (body i receives the opposite).
  *
- * Threads: distinct systems are independent. On one system, functions taking `const se3d_system *`
- * ("Reader") may run concurrently with each other; all others ("Exclusive") need exclusive access.
+ * Parameters: an object or a handle names what the call is about, a definition says what to make,
+ * `out` or a handle's address receives what was made. Texts are UTF-8, end with a zero byte and are
+ * copied. Other parameters are described at each function; [in], [out] and units in brackets.
+ *
+ * Returns: after @return stand the statuses without SE3D_ or SE3D_ERR_. NULL means that a required
+ * pointer is NULL. Functions that change or evaluate something of a system also return STATE if
+ * they are called within a callback that does not allow it (docs/api.md, "Callbacks"), and so do
+ * those of a solver, particle set or event whose system is gone.
+ *
+ * Threads: distinct systems are independent. A function may run concurrently with others that take
+ * the same object by a pointer to const, as it does itself (a Reader); it needs objects that it
+ * takes otherwise for itself (Exclusive); without objects it is Safe. Where a function differs, its
+ * comment says which it is, and why in parentheses.
  *
  * Errors: a call that takes a system and fails records a message: se3d_system_get_error. Arguments
  * are always checked; on failure of an editing call nothing changed and handle outputs are null. */

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Shapes on bodies, for contact. */
+/* Shapes on bodies, for contact.
+ *
+ * Threads: the rule of se3d/se3d.h. */
 #ifndef SE3D_SHAPE_H
 #define SE3D_SHAPE_H
 
@@ -29,7 +31,7 @@ typedef struct se3d_shape_def {
     se3d_material material; /* null: nothing touches it */
     double position[3];     /* body frame [m] */
     double orientation[4];  /* shape -> body, Euler parameters; default (1,0,0,0) */
-    double normal[3];       /* plane: instead of an orientation, body frame; zero: the shape's z */
+    double normal[3];       /* plane: direction of its normal, body frame; zero: the shape's z */
     double size[3];         /* box: full lengths [m] > 0 */
     double radius;          /* sphere, capsule, cylinder [m] > 0 */
     double length;          /* along the shape's z: capsule, between the centres of its caps (>= 0);
@@ -42,8 +44,10 @@ typedef struct se3d_shape_def {
     size_t triangle_count;
 } se3d_shape_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_shape_def_default. @since 0.1 */
 SE3D_API void se3d_shape_def_init(se3d_shape_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_shape_def se3d_shape_def_default(void)
 {
     se3d_shape_def def;
@@ -51,41 +55,69 @@ static inline se3d_shape_def se3d_shape_def_default(void)
     return def;
 }
 
-/* Create a shape; it moves with its body. A plane is infinite, and solid behind its normal.
- * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, NO_MEMORY. Exclusive. @since 0.1 */
+/* Create a sphere. It moves with its body, as every shape does. @return OK, NULL, STALE_HANDLE,
+ * INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_shape_create_sphere(se3d_system *system, const se3d_shape_def *def,
                                               se3d_shape *shape);
+
+/* Create a box. @return as se3d_shape_create_sphere. @since 0.1 */
 SE3D_API se3d_status se3d_shape_create_box(se3d_system *system, const se3d_shape_def *def,
                                            se3d_shape *shape);
+
+/* Create a capsule: a cylinder with half spheres as caps. @return as se3d_shape_create_sphere.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_shape_create_capsule(se3d_system *system, const se3d_shape_def *def,
                                                se3d_shape *shape);
+
+/* Create a cylinder. @return as se3d_shape_create_sphere. @since 0.1 */
 SE3D_API se3d_status se3d_shape_create_cylinder(se3d_system *system, const se3d_shape_def *def,
                                                 se3d_shape *shape);
+
+/* Create a plane. It is infinite, and solid behind its normal. @return as
+ * se3d_shape_create_sphere. @since 0.1 */
 SE3D_API se3d_status se3d_shape_create_plane(se3d_system *system, const se3d_shape_def *def,
                                              se3d_shape *shape);
-/* The convex hull of at least four points that are not in one plane. @since 0.1 */
+
+/* Create the convex hull of at least four points that are not in one plane. @return as
+ * se3d_shape_create_sphere. @since 0.1 */
 SE3D_API se3d_status se3d_shape_create_hull(se3d_system *system, const se3d_shape_def *def,
                                             se3d_shape *shape);
 
-/* A surface of triangles: everything touches it but other meshes where neither of the two is convex
- * (se3d_system_count_passing_meshes). Where it is closed it has an outside, else two sides; convex
- * is what is closed, the hull of its vertices, and of at most 1000 triangles. @since 0.1 */
+/* Create a surface of triangles. Everything touches it, but two meshes touch each other only if
+ * one of them is convex (se3d_system_count_passing_meshes). A closed surface has an outside, any
+ * other has two sides. A mesh is convex if it is closed, the hull of its vertices, and has at
+ * most 1000 triangles. @return as se3d_shape_create_sphere. @since 0.1 */
 SE3D_API se3d_status se3d_shape_create_mesh(se3d_system *system, const se3d_shape_def *def,
                                             se3d_shape *shape);
 
-/* Destroy. @return OK, NULL, STALE_HANDLE. Exclusive. @since 0.1 */
+/* Destroy a shape. @return OK, NULL, STALE_HANDLE. @since 0.1 */
 SE3D_API se3d_status se3d_shape_destroy(se3d_system *system, se3d_shape shape);
-/* Find by name. @return OK, NULL, NOT_FOUND (*shape is null). Reader. @since 0.1 */
+
+/* Find a shape by its name.
+ * @param[in] name  UTF-8
+ * @return OK, NULL, INVALID_ARGUMENT (no such name; *shape is null).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_shape_find(const se3d_system *system, const char *name,
                                      se3d_shape *shape);
-/* Get the name, "" where it has none; it lives as long as the shape. Reader. @since 0.1 */
+
+/* Get the name of a shape.
+ * @param[out] name  "" if it has none; lives as long as the shape
+ * @return OK, NULL, STALE_HANDLE.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_shape_get_name(const se3d_system *system, se3d_shape shape,
                                          const char **name);
-/* Get the body that it is on. Reader. @since 0.1 */
+
+/* Get the body that a shape is on. @return OK, NULL, STALE_HANDLE. @since 0.1 */
 SE3D_API se3d_status se3d_shape_get_body(const se3d_system *system, se3d_shape shape,
                                          se3d_body *body);
-/* Get the point of a shape's surface nearest to `position`, the outward normal there, and the
- * distance [m], negative inside; ground frame. Reader. @since 0.1 */
+
+/* Get the point of a shape's surface that is nearest to a position.
+ * @param[in] position   ground frame [m]
+ * @param[out] point     of the surface, ground frame [m]
+ * @param[out] normal    outward at `point`, unit vector, ground frame
+ * @param[out] distance  from `position` to `point` [m]; negative inside the shape
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (position).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_shape_get_nearest(const se3d_system *system, se3d_shape shape,
                                             const double position[3], double point[3],
                                             double normal[3], double *distance);

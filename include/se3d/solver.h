@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Solvers: one analysis of one system. */
+/* Solvers: one analysis of one system.
+ *
+ * Threads: the rule of se3d/se3d.h; what needs a solver for itself needs its system, too. */
 #ifndef SE3D_SOLVER_H
 #define SE3D_SOLVER_H
 
@@ -9,6 +11,7 @@
 extern "C" {
 #endif
 
+/* What a solver does. @since 0.1 */
 typedef enum se3d_analysis {
     SE3D_ANALYSIS_ASSEMBLY = 0,         /* consistent positions, velocities, accelerations */
     SE3D_ANALYSIS_KINEMATICS = 1,       /* motion under drivers: no forces needed */
@@ -17,6 +20,7 @@ typedef enum se3d_analysis {
     SE3D_ANALYSIS_EQUILIBRIUM = 4       /* static position */
 } se3d_analysis;
 
+/* How a solver of dynamics steps in time. @since 0.1 */
 typedef enum se3d_method {
     SE3D_METHOD_AUTO = 0,
     SE3D_METHOD_GENERALIZED_ALPHA = 1,
@@ -53,8 +57,10 @@ typedef struct se3d_solver_def {
     void *interrupt_ctx;
 } se3d_solver_def;
 
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_solver_def_default. @since 0.1 */
 SE3D_API void se3d_solver_def_init(se3d_solver_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_solver_def se3d_solver_def_default(void)
 {
     se3d_solver_def def;
@@ -62,26 +68,31 @@ static inline se3d_solver_def se3d_solver_def_default(void)
     return def;
 }
 
-/* Create a solver. The system may be edited between steps; where it is destroyed first, the
- * solver's calls return STATE.
- * @return OK, NULL, INVALID_ARGUMENT, UNSUPPORTED, NO_MEMORY. Exclusive. @since 0.1 */
+/* Create a solver. The system may be edited between steps. If the system is destroyed first, the
+ * calls of the solver return STATE. @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_solver_create(se3d_system *system, const se3d_solver_def *def,
                                         se3d_solver **out);
-/* Destroy; NULL is fine, also after its system. From within a callback of its system nothing is
- * destroyed, and a message (STATE) says so. @since 0.1 */
+
+/* Destroy a solver, also after its system; NULL is fine. Within a callback of its system nothing
+ * is destroyed, and a message (STATE) says so. @since 0.1 */
 SE3D_API void se3d_solver_destroy(se3d_solver *solver);
 
-/* Run to `t_end` [s] (>= the present time, to rounding). At t_end = now the state is only made
- * consistent: positions and velocities are projected, accelerations and multipliers are computed.
- * More than def.steps_max steps of def.step are refused, and a run of any method is given up once
- * its pace shows that it would take more. On failure, and where def.interrupt ends the run, the
- * state is the last accepted step's; another run goes on from there. @return OK, INFO_*,
- * INVALID_ARGUMENT, INCONSISTENT, NO_CONVERGENCE, SINGULAR, NOT_FINITE, STEP_SIZE, STEP_COUNT,
- * INTERRUPTED, CALLBACK, NO_MEMORY; the message is the system's. Exclusive. @since 0.1 */
+/* Run to a time. At the present time the state is only made consistent: positions and velocities
+ * are projected, accelerations and multipliers are computed. A run of more than def.steps_max steps
+ * of def.step is refused, and a run of any method is given up once its pace shows that it would
+ * take more. On failure, and when def.interrupt ends the run, the state is that of the last
+ * accepted step; another run goes on from there. The message is the system's.
+ * @param[in] t_end  not before the present time, to rounding [s]
+ * @return OK, INFO_*, NULL, STATE (the system is gone), INVALID_ARGUMENT, INCONSISTENT,
+ *         NO_CONVERGENCE, SINGULAR, NOT_FINITE, STEP_SIZE, STEP_COUNT, INTERRUPTED, CALLBACK,
+ *         UNSUPPORTED, NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_solver_run(se3d_solver *solver, double t_end);
 
-/* Make one step of length h >= 1e-15 [s] that moves the time on; n steps come to n h, to rounding.
- * As se3d_solver_run. Exclusive. @since 0.1 */
+/* Make one step that moves the time on; n steps come to n h, to rounding.
+ * @param[in] h  length of the step, >= 1e-15 [s]
+ * @return as se3d_solver_run.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_solver_step(se3d_solver *solver, double h);
 
 /* Counters since creation. @since 0.1 */
@@ -95,8 +106,12 @@ typedef struct se3d_solver_stats {
     uint64_t reserved[10]; /* 0; for counters to come: other structures hold this one */
 } se3d_solver_stats;
 
+/* As se3d_solver_get_stats, told the size of *stats in bytes. @return as se3d_solver_get_stats,
+ * and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_stats_sized(const se3d_solver *solver,
                                                  se3d_solver_stats *stats, size_t size);
+
+/* Get the counters of a solver since its creation. @return OK, NULL. @since 0.1 */
 static inline se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_solver_stats *stats)
 {
     return se3d_solver_get_stats_sized(solver, stats, sizeof *stats);
@@ -119,21 +134,31 @@ typedef struct se3d_start_change {
     se3d_body deflected;
 } se3d_start_change;
 
-/* @return OK, NULL. Reader. @since 0.1 */
+/* As se3d_solver_get_start_change, told the size of *change in bytes. @return as
+ * se3d_solver_get_start_change, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_start_change_sized(const se3d_solver *solver,
                                                         se3d_start_change *change, size_t size);
+
+/* Get how far the last start of a run was from what the constraints admit. @return OK, NULL.
+ * @since 0.1 */
 static inline se3d_status se3d_solver_get_start_change(const se3d_solver *solver,
                                                        se3d_start_change *change)
 {
     return se3d_solver_get_start_change_sized(solver, change, sizeof *change);
 }
 
-/* Get the method in use ("generalized_alpha", ...; what AUTO picked). Reader. @since 0.1 */
+/* Get the method in use; of AUTO the one that it picked.
+ * @param[out] name  "generalized_alpha", ...; static
+ * @return OK, NULL.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name);
 
-/* Get where AUTO changed the method during a run because stability held the steps of the first one
- * short: the time [s] (NaN: it did not) and the name of the method it left ("": none). @return OK,
- * NULL. Reader. @since 0.1 */
+/* Get when AUTO changed the method during a run because stability kept the steps of the first
+ * method short.
+ * @param[out] time  [s]; NaN: it did not
+ * @param[out] left  the method that it left, "": none; static
+ * @return OK, NULL.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_switch(const se3d_solver *solver, double *time,
                                             const char **left);
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Systems: creation, gravity, time, energy, errors, copies. */
+/* Systems: creation, gravity, time, energy, errors, copies.
+ *
+ * Threads: the rule of se3d/se3d.h. */
 #ifndef SE3D_SYSTEM_H
 #define SE3D_SYSTEM_H
 
@@ -19,9 +21,10 @@ typedef struct se3d_system_def {
     double time;       /* [s], default 0 */
 } se3d_system_def;
 
-/* Fill `def` (of `size` bytes) with the defaults. Safe. @since 0.1 */
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_system_def_default. @since 0.1 */
 SE3D_API void se3d_system_def_init(se3d_system_def *def, size_t size);
 
+/* Return the defaults. @since 0.1 */
 static inline se3d_system_def se3d_system_def_default(void)
 {
     se3d_system_def def;
@@ -29,69 +32,111 @@ static inline se3d_system_def se3d_system_def_default(void)
     return def;
 }
 
-/* Create an empty system (the ground only). `def` may be NULL.
- * @return OK, NULL (out), INVALID_ARGUMENT, NO_MEMORY. Safe. @since 0.1 */
+/* Create an empty system, which holds the ground only. `def` may be NULL. @return OK, NULL
+ * (out), INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_system_create(const se3d_system_def *def, se3d_system **out);
 
 /* Destroy a system and its elements; NULL is fine. Solvers and clones of its particle sets that
- * still live are empty then: their calls return STATE, and destroying them is fine as long as the
- * allocator lives. From within a callback of the system nothing is destroyed, and a message (STATE)
+ * still live are empty then: their calls return STATE, and they may be destroyed as long as the
+ * allocator lives. Within a callback of the system nothing is destroyed, and a message (STATE)
  * says so. @since 0.1 */
 SE3D_API void se3d_system_destroy(se3d_system *system);
 
-/* Make an independent copy with the same allocator; handles are valid on both.
- * @return OK, NULL, NO_MEMORY, STATE (from within a callback that sees a trial state). Reader.
- * @since 0.1 */
+/* Make an independent copy with the same allocator; handles are valid on both. @return OK, NULL,
+ * NO_MEMORY, STATE (within a callback that sees a trial state). @since 0.1 */
 SE3D_API se3d_status se3d_system_clone(const se3d_system *system, se3d_system **out);
 
-/* Return the message of the last failing call on this system, "" if none; never NULL. The text is
- * valid until the next call. Reader. @since 0.1 */
+/* Get the message of the last call on this system that failed. @return the text, "" if none
+ * failed; valid until the next call. @since 0.1 */
 SE3D_API const char *se3d_system_get_error(const se3d_system *system);
 
-/* Return the status of the last failing call on this system. Reader. @since 0.1 */
+/* Get the status of the last call on this system that failed. @return the status; OK if none
+ * failed, NULL for NULL. @since 0.1 */
 SE3D_API se3d_status se3d_system_get_error_status(const se3d_system *system);
 
-/* Return 1 while a call works on the system (a run, an analysis, a query that evaluates callbacks),
- * that is: from within callbacks; else 0, also for NULL. Which calls are then refused with STATE:
- * docs/api.md, "Callbacks". Reader. @since 0.1 */
+/* Tell whether a call works on the system (a run, an analysis, a query that evaluates
+ * callbacks): this is so within callbacks. Which calls are then refused with STATE: docs/api.md,
+ * "Callbacks". @return 1 if so, else 0, also for NULL. @since 0.1 */
 SE3D_API int32_t se3d_system_is_busy(const se3d_system *system);
 
-/* Say that what callbacks compute has changed since the last step: they must be pure functions of
- * their arguments, and methods keep what they gave. The next step begins with what they give now;
- * what elements remember stays. Setters of values do this by themselves. @return OK, NULL.
- * Exclusive. @since 0.1 */
+/* Say that what callbacks compute has changed since the last step: they must be pure functions
+ * of their arguments, and methods keep what they gave. The next step begins with what they give
+ * now; what elements remember stays. Setters of values do this by themselves. @return OK, NULL.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_touch(se3d_system *system);
 
-/* Set the gravitational acceleration [m/s^2], ground frame. The next step begins with it.
- * Exclusive. @since 0.1 */
+/* Set the gravitational acceleration. The next step begins with it.
+ * @param[in] gravity  ground frame [m/s^2]
+ * @return OK, NULL, INVALID_ARGUMENT.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_set_gravity(se3d_system *system, const double gravity[3]);
+
+/* Get the gravitational acceleration that was set; functions of gravity do not count.
+ * @param[out] gravity  ground frame [m/s^2]
+ * @return OK, NULL.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_get_gravity(const se3d_system *system, double gravity[3]);
 
-/* Make components of the gravitational acceleration functions of time; a null function keeps the
- * component of se3d_system_set_gravity. Exclusive. @since 0.1 */
+/* Make components of the gravitational acceleration functions of time.
+ * @param[in] gravity  of x, y, z, ground frame [m/s^2]; null: the component stays that of
+ *                     se3d_system_set_gravity
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (not of one variable).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_set_gravity_function(se3d_system *system,
                                                       const se3d_function gravity[3]);
 
-/* Set the time [s] at which functions of time are evaluated, also of the system's particle sets.
- * Exclusive. @since 0.1 */
+/* Set the time at which functions of time are evaluated, also that of the system's particle sets.
+ * @param[in] time  [s]
+ * @return OK, NULL, INVALID_ARGUMENT.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_set_time(se3d_system *system, double time);
+
+/* Get the time of a system.
+ * @param[out] time  [s]
+ * @return OK, NULL.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_get_time(const se3d_system *system, double *time);
 
-/* Get the handle of the ground, the immovable body 0 named "ground". Reader. @since 0.1 */
+/* Get the ground, the immovable body 0 named "ground". @return OK, NULL. @since 0.1 */
 SE3D_API se3d_status se3d_system_get_ground(const se3d_system *system, se3d_body *ground);
 
-/* Count the elements of a system; bodies include the ground. Zero for NULL. Reader. @since 0.1 */
+/* Count the bodies of a system, the ground included. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_system_count_bodies(const se3d_system *system);
+
+/* Count the markers of a system. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_system_count_markers(const se3d_system *system);
+
+/* Count the constraints of a system: primitives, joints, couplers, drivers and user-defined
+ * ones. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_system_count_constraints(const se3d_system *system);
+
+/* Count the force elements of a system. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_system_count_forces(const se3d_system *system);
 
-/* Get the element at `index` (creation order, < count). Reader. @since 0.1 */
+/* Get a body of a system, in the order of creation.
+ * @param[in] index  from 0, the ground; below se3d_system_count_bodies
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_get_body(const se3d_system *system, size_t index, se3d_body *body);
+
+/* Get a marker of a system, in the order of creation.
+ * @param[in] index  from 0, below se3d_system_count_markers
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_get_marker(const se3d_system *system, size_t index,
                                             se3d_marker *marker);
+
+/* Get a constraint of a system, in the order of creation.
+ * @param[in] index  from 0, below se3d_system_count_constraints
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_get_constraint(const se3d_system *system, size_t index,
                                                 se3d_constraint *constraint);
+
+/* Get a force element of a system, in the order of creation.
+ * @param[in] index  from 0, below se3d_system_count_forces
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_get_force(const se3d_system *system, size_t index,
                                            se3d_force *force);
 
@@ -104,8 +149,13 @@ typedef struct se3d_energy {
     double dissipated;
 } se3d_energy;
 
+/* As se3d_system_get_energy, told the size of *energy in bytes. @return as
+ * se3d_system_get_energy, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_system_get_energy_sized(const se3d_system *system, se3d_energy *energy,
                                                   size_t size);
+
+/* Get the energies of a system at its present state. @return OK, NULL, CALLBACK, NOT_FINITE.
+ * @since 0.1 */
 static inline se3d_status se3d_system_get_energy(const se3d_system *system, se3d_energy *energy)
 {
     return se3d_system_get_energy_sized(system, energy, sizeof *energy);
@@ -117,32 +167,42 @@ static inline se3d_status se3d_system_get_energy(const se3d_system *system, se3d
  * no works. Where a callback fails while a value is set they begin anew at zero. @since 0.1 */
 typedef struct se3d_work {
     double dissipated;
-    double actuators; /* h of springs, loads, callbacks; particles on bodies */
+    double actuators; /* h of springs, loads, callbacks; particles on bodies [J] */
     double drivers;
 } se3d_work;
 
-/* @return OK, NULL, STATE (the last analysis was kinematics). Reader. @since 0.1 */
+/* As se3d_system_get_work, told the size of *work in bytes. @return as se3d_system_get_work, and
+ * INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_system_get_work_sized(const se3d_system *system, se3d_work *work,
                                                 size_t size);
+
+/* Get the works done in a system since the start of the run. @return OK, NULL, STATE (the last
+ * analysis was kinematics). @since 0.1 */
 static inline se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work)
 {
     return se3d_system_get_work_sized(system, work, sizeof *work);
 }
 
-/* Get the largest violation over all equations: [0] |Phi|, [1] |Phi_q qdot - nu|,
- * [2] |Phi_q qddot - gamma|, at the present state. Reader. @since 0.1 */
+/* Get the largest violation over all equations at the present state, in the units of the equations.
+ * @param[out] violation  [0] |Phi| [m, m^2, 1, rad], [1] |Phi_q qdot - nu|, [2] |Phi_q qddot -
+ *                        gamma|; in no frame
+ * @return OK, NULL, CALLBACK, NOT_FINITE.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_system_get_violation(const se3d_system *system, double violation[3]);
 
-/* A hash of the state (time, positions, velocities, accelerations, multipliers): equal bits, equal
- * hash. Zero for NULL. Reader. @since 0.1 */
+/* Compute a hash of the state (time, positions, velocities, accelerations, multipliers,
+ * particles): equal bits, equal hash. @return the hash; 0 for NULL. @since 0.1 */
 SE3D_API uint64_t se3d_system_hash(const se3d_system *system);
 
-/* @return as se3d_system_clone. Reader. @since 0.1 */
+/* Save the state of a system. @return OK, NULL, NO_MEMORY, STATE (within a callback that sees a
+ * trial state). @since 0.1 */
 SE3D_API se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out);
-/* Put the state back. @return OK, NULL, STATE (the model has changed since). Exclusive. @since 0.1
- */
+
+/* Put a saved state back. @return OK, NULL, STATE (the model has changed since), NO_MEMORY.
+ * @since 0.1 */
 SE3D_API se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *system);
-/* Destroy; NULL is fine. @since 0.1 */
+
+/* Destroy a saved state; NULL is fine. @since 0.1 */
 SE3D_API void se3d_snapshot_destroy(se3d_snapshot *snapshot);
 
 #ifdef __cplusplus

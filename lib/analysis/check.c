@@ -25,7 +25,7 @@
 
 #define ROWS_MAX       3000 /* of a component, for a dense analysis */
 #define ROWS_SMALL     300  /* of a model: no open ends are taken off */
-#define FITS           1e-9 /* violation of poses that are assembled, relative to the model's size */
+#define FITS           1e-9 /* violation of assembled poses, relative to the model's size */
 #define RANK_ASSEMBLED 1e-8 /* relative size of a row's independent part */
 #define RANK_VIOLATED  1e-5 /* where the poses are of least violation only */
 #define NAMES_MAX      12   /* in one message */

@@ -22,7 +22,7 @@
 #include <math.h>
 #include <string.h>
 
-#define FAINT       1e-9 /* of R*: overlaps that do not yet share a load; not their rounding either */
+#define FAINT       1e-9 /* of R*: overlaps that do not yet share a load, nor their rounding */
 #define MASS_STEP   2e-3 /* by which the effective mass of a contact changes */
 #define LEAST_SHARE 0.01 /* of a step in contact: w does not grow further */
 #define SHARE_MIN   0.25 /* of the inverse of a point's own effective mass */

@@ -5,8 +5,7 @@
  * freedoms that take part in a row, one is given up and the others take as much of it as keeps the
  * row at zero. Pivots are among the largest of what a joint has left, and of those with the fewest
  * bodies, so that along a chain or tree only the six freedoms of the next body are worked on.
- *                                                                              docs/theory/equilibrium.md
- */
+ * docs/theory/equilibrium.md */
 #ifndef SE3DI_LINSOL_NULL_SPACE_H
 #define SE3DI_LINSOL_NULL_SPACE_H
 

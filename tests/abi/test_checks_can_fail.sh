@@ -64,6 +64,24 @@ reject "se3d_lost: declared, but not in the symbol map" $abi symbols libse3d.so
 reject "se3d_plain: declared without SE3D_API" $abi symbols libse3d.so
 reject "padding struct" $abi padding
 
+headers="python3 tools/check_headers.py"
+reject "se3d_lost: no comment right before it" $headers
+reject "lost.h:1: the head: no rule on threads" $headers
+printf '%s\n' '#include "se3d/base.h"' 'se3d_status se3d_told_get(const int *o, double *v, double r[3])' \
+    '{' '    r[0] = *v;' '    return o ? SE3D_ERR_STALE_HANDLE : SE3D_ERR_NULL;' '}' >lib/base/told.c
+printf '%s\n' '/* Get it. Reader. @param[out] r  where. @return OK, NULL, NOT_FOUND, NO_MEMORY. */' \
+    'SE3D_API se3d_status se3d_told_get(const int *o, double *v, double r[3]);' \
+    'typedef struct se3d_span {' '    double width;' '} se3d_span;' >include/se3d/told.h
+reject 'se3d_span.width: no unit' $headers
+reject 'nothing on the parameter `v`' $headers
+reject 'no unit of the parameter `r`' $headers
+reject 'no frame of the parameter `r`' $headers
+reject 'se3d_told_get: no @since' $headers
+reject 'thread word without its reason' $headers
+reject 'NOT_FOUND: there is no such status' $headers
+reject 'NO_MEMORY: the code never returns it' $headers
+reject 'lacks STALE_HANDLE' $headers
+
 printf '%s\n' '#include "math/vec3.h"' >lib/base/up.c
 reject 'base/up.c' python3 tools/check_layers.py
 mkdir -p lib/io/document lib/io/model lib/attic docs
@@ -106,6 +124,8 @@ reject 'long_one: lines' python3 tools/check_size.py
 } >lib/math/deep.c
 reject 'deep: complexity 21' python3 tools/check_size.py
 reject 'deep: parameters 9' python3 tools/check_size.py
+printf '/* SPDX-License-Identifier: BSD-3-Clause */\n/*%098d */\n' 0 >lib/math/wide.h
+reject 'wide.h:2: 103 columns' python3 tools/check_size.py
 
 {
     echo 'static int ask(int a, double *out)'
