@@ -7,8 +7,13 @@
  *     Mr y'' + Dr y' + Kr y = Z^T E^T (applied forces)
  *
  * At rest Mr = Z^T E^T M E Z and so on. About a steady motion (v, w constant in body axes) the
- * rates of the body axes add, with W = tilde(w):  dv = E (s' + W s),  dvdot_r = A (s'' + 2 W s' +
- * (W W + Wdot) s),  dwdot = s'' + W s' + Wdot s.  docs/theory/modes.md */
+ * rates of the body axes add, with W = tilde(w):
+ *
+ *     dv = E (s' + W s)
+ *     dvdot_r = A (s'' + 2 W s' + (W W + Wdot) s)
+ *     dwdot = s'' + W s' + Wdot s
+ *
+ * docs/theory/modes.md */
 #ifndef SE3DI_LINEARISE_H
 #define SE3DI_LINEARISE_H
 

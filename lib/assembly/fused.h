@@ -4,8 +4,11 @@
  * and revolute joints; all others are evaluated term by term. With S = A s, W = A w, u = A_j a_j,
  * v = A_i a_i, n = v x u, D = W_i - W_j:
  *
- *     r-omega   CD k:  phi_j = [ e_k,  s_j x (row k of A_j)]    phi_i = [-e_k, -s_i x (row k of
- * A_i)] gamma = f_tt + (W_i (W_i.S_i) - S_i (W_i.W_i) - the same of j)_k DP1:   Phi' = n . D, so
+ *     r-omega
+ *               CD k:  phi_j = [ e_k,  s_j x (row k of A_j)]
+ *                      phi_i = [-e_k, -s_i x (row k of A_i)]
+ *                      gamma = f_tt + (W_i (W_i.S_i) - S_i (W_i.W_i) - the same of j)_k
+ *               DP1:   Phi' = n . D, so that
  *                      phi_i = [0, A_i^T n]    phi_j = [0, -A_j^T n]
  *                      gamma = f_tt - n . (W_i x W_j) + (D.D) (u.v) - (D.u) (D.v)
  *

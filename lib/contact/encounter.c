@@ -5,8 +5,8 @@
  *     Fn = max(0, kn s delta - dn sqrt(m* s) vn)        on j along n, less cohesion
  *     Ft = -kt s xi - dt sqrt(m* s) vt,                 |Ft| <= mu Fn
  *     xi = xj - xi of two points that were one when contact began, in the tangent plane
- *     1/m* = sum over free bodies of 1/m + (a x n) . J^-1 (a x n), over the points that share a
- * load
+ *     1/m* = sum over free bodies of 1/m + (a x n) . J^-1 (a x n),
+ *            over the points that share a load
  *
  * so that sticking is elastic and does not creep, whatever the method. In the step in which contact
  * begins the damping grows with the share of the step that is spent in contact: forces are

@@ -5,9 +5,12 @@
  *     n = k delta (1 + d(e) deltadot / v0), at least 0          against the penetration
  *
  * v0 is the speed of the impact (that of the last accepted state outside). Under this law alone a
- * mass leaves with exactly e v0, whatever its mass and k: v dv / (1 + d v/v0) = -(k/m) delta ddelta
- * from v0 to -e v0 gives  d (1 + e) = ln((1 + d)/(1 - d e)).  state: [0] v0.  docs/theory/stop.md
- */
+ * mass leaves with exactly e v0, whatever its mass and k, because
+ *
+ *     v dv / (1 + d v/v0) = -(k/m) delta ddelta    from v0 to -e v0 gives
+ *     d (1 + e) = ln((1 + d)/(1 - d e))
+ *
+ * state: [0] v0.  docs/theory/stop.md */
 #include "force/stop.h"
 #include "force/measure.h"
 #include "math/elementary.h"

@@ -2,9 +2,10 @@
 /* The two formulations behind one table: what the unknowns of a body are and how they act on its
  * pose.
  *
- *     r-omega: q = (r, pi):  6 unknowns, velocities (v, w), w in the body frame; virtual rotations
- * A exp(tilde) r-p:     q = (r, p):   7 unknowns, velocities (v, pdot), and the multiplier of p.p -
- * 1 = 0 (x 1/2)
+ *     r-omega: q = (r, pi):  6 unknowns, velocities (v, w), w in the body frame;
+ *                            virtual rotations A exp(tilde)
+ *     r-p:     q = (r, p):   7 unknowns, velocities (v, pdot),
+ *                            and the multiplier of 1/2 (p.p - 1) = 0
  *
  * `block` is the size of a body's block in the KKT system: 6, or 7 + 1 with the normalisation in
  * the last row and column.  docs/theory/formulations.md */

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Constraints of the user's: equations without terms, whose values a callback computes.
  *
- *     Phi(q, t), Phi_q (r-omega), nu = -Phi_t, gamma = -(Phi_q qdot)_q qdot - 2 Phi_qt qdot -
- * Phi_tt
+ *     Phi(q, t),  Phi_q (r-omega),  nu = -Phi_t,
+ *     gamma = -(Phi_q qdot)_q qdot - 2 Phi_qt qdot - Phi_tt
  *
- * The callback knows r-omega only; with Phi_p = 2 Phi_pi G(p) and pddot = 1/2 G^T wdot - 1/4 (w.w)
- * p it follows that Phi_p pddot = Phi_pi wdot, so that gamma is the same number in r-p.
+ * The callback knows r-omega only. With Phi_p = 2 Phi_pi G(p) and
+ * pddot = 1/2 G^T wdot - 1/4 (w.w) p it follows that Phi_p pddot = Phi_pi wdot, so that gamma is
+ * the same number in r-p.
  * docs/theory/user-constraints.md */
 #ifndef SE3DI_USER_H
 #define SE3DI_USER_H

@@ -2,8 +2,8 @@
 /* The exact Newton matrix of an implicit step, with its linear solver: for a step whose unknown
  * vdot moves positions by x(vdot) and velocities by v(vdot),
  *
- *     H = (M + (dv/dvdot) D) T^-1 + (dx/dvdot) K,     [H C^T; C 0] [z; l] = [b; c],    dvdot = T^-1
- * z
+ *     H = (M + (dv/dvdot) D) T^-1 + (dx/dvdot) K
+ *     [H C^T; C 0] [z; l] = [b; c],    dvdot = T^-1 z
  *
  * with M, D, K of assembly/tangent.h and T the tangent of the exponential map at the rotation of
  * the step (r-omega; I in r-p): a change dx of the step turns the body by T dx.

@@ -5,8 +5,9 @@
  *     r-omega   phi_i = [-u, a_i x (A_i^T d + s_i)]            phi_j = [u, s_j x A_j^T u]
  *     r-p       phi_i = [-u, B(p_i,a_i)^T d - B(p_i,s_i)^T u]  phi_j = [u, B(p_j,s_j)^T u]
  *     gamma   = - d.u'' - 2 udot.ddot - u.d''
- *     r-omega   u'' = A_i (w_i x (w_i x a_i)),  d'' = A_j (w_j x (w_j x s_j)) - A_i (w_i x (w_i x
- * s_i)) r-p       u'' = B(pdot_i,a_i) pdot_i,     d'' = B(pdot_j,s_j) pdot_j - B(pdot_i,s_i) pdot_i
+ *     r-omega   u'' = A_i (w_i x (w_i x a_i)),
+ *               d'' = A_j (w_j x (w_j x s_j)) - A_i (w_i x (w_i x s_i))
+ *     r-p       u'' = B(pdot_i,a_i) pdot_i,     d'' = B(pdot_j,s_j) pdot_j - B(pdot_i,s_i) pdot_i
  *
  * Removes one degree of freedom: with f = 0 point j stays in the plane through point i normal to u.
  * Never degenerate for a_i /= 0.  docs/theory/dp2.md */

@@ -8,13 +8,17 @@
  * so that everything here is free of time: nu and the time part of gamma are added by the equation.
  *
  * Jacobians, per body:
+ *
  *     r-omega: 6 numbers, [d/dr (ground frame), d/dtheta (virtual rotation in the body frame)]
  *     r-p:     7 numbers, [d/dr, d/dp], the B-matrix form (p counted as four independent numbers)
- * gamma: the right-hand side of  Phi_q qddot = gamma  for f = 0: minus the velocity terms; r-omega
- * with qddot = (a, wdot in the body frame), r-p with (a, pddot). curvature: the derivative of
- * Phi_q^T lambda with respect to q, *added* to H (12 x 12 or 14 x 14, row-major, order body i, body
- * j). In r-omega the derivative of the body-frame torque with respect to the body-frame virtual
- * rotations A -> A exp(tilde(dtheta)): in general not symmetric. */
+ *
+ * gamma: the right-hand side of Phi_q qddot = gamma for f = 0, minus the velocity terms; r-omega
+ * with qddot = (a, wdot in the body frame), r-p with (a, pddot).
+ *
+ * curvature: the derivative of Phi_q^T lambda with respect to q, *added* to H (12 x 12 or 14 x 14,
+ * row-major, order body i, body j). In r-omega it is the derivative of the body-frame torque with
+ * respect to the body-frame virtual rotations A -> A exp(tilde(dtheta)), in general not symmetric.
+ */
 #ifndef SE3DI_PRIMITIVE_H
 #define SE3DI_PRIMITIVE_H
 

@@ -11,6 +11,7 @@
  *     o<k> output k: NULL      h<k>  output k is a handle or owner: also nulled on failure
  *     D    a def: NULL, struct_size 0 and too large, and its fields
  *     v p k e  solver, snapshot, check, expression: NULL
+ *
  * Every row must succeed unspoiled; a row whose call returns nothing checks itself. */
 #include "misuse/misuse_world.h"
 

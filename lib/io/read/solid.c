@@ -2,8 +2,9 @@
 /* Solids of uniform density. That inside a closed mesh is the sum of the tetrahedra from any point
  * to its triangles a b c, negative ones included (the divergence theorem). With s = a + b + c:
  *
- *     V = a . (b x c) / 6     int x dV = V s / 4     int x x^T dV = V (a a^T + b b^T + c c^T + s
- * s^T) / 20
+ *     V = a . (b x c) / 6
+ *     int x dV = V s / 4
+ *     int x x^T dV = V (a a^T + b b^T + c c^T + s s^T) / 20
  *
  * It is closed if triangles pass every edge as often one way as the other. */
 #include "io/read/solid.h"
