@@ -15,6 +15,7 @@
 #include "assembly/user.h"
 #include "base/text.h"
 #include "contact/body_contacts.h"
+#include "force/force.h"
 #include "linsol/rank.h"
 
 #include <inttypes.h>
@@ -151,7 +152,7 @@ static int has_springs(const inspection *in, uint32_t root)
     const se3di_assembly *assembly = &in->equations->assembly;
     for (size_t k = 0; k < in->model->force_slots.count; ++k) {
         const se3di_force *force = &in->model->forces[k];
-        if (force->type != SE3DI_FORCE_TSDA && force->type != SE3DI_FORCE_BUSHING) {
+        if (!(se3di_force_class_of(force)->traits & SE3DI_FORCE_HOLDS)) {
             continue;
         }
         const int32_t i = assembly->free_index[force->body_i];

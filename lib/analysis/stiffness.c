@@ -36,8 +36,7 @@ static void measure(const se3di_model *model, double *decay, double *oscillation
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *force = &model->forces[k];
         se3di_effect effect;
-        if (force->type != SE3DI_FORCE_TSDA && force->type != SE3DI_FORCE_RSDA &&
-            force->type != SE3DI_FORCE_BUSHING) {
+        if (!(se3di_force_class_of(force)->traits & SE3DI_FORCE_IS_ELASTIC)) {
             continue;
         }
         effect.wants_derivative = 1;

@@ -230,7 +230,7 @@ se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, doubl
         const char *name = is_gravity ? "gravity" : model->forces[failed].name;
         return se3di_error_set(
             error, status, "t = %g s: force element %s (%s): %s", t, name ? name : "without a name",
-            is_gravity ? "gravity" : se3di_force_type_name(model->forces[failed].type),
+            is_gravity ? "gravity" : se3di_force_class_of(&model->forces[failed])->name,
             status == SE3D_ERR_SINGULAR ? "its two points coincide, it has no direction"
                                         : "its function is not finite or failed");
     }

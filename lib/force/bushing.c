@@ -155,8 +155,8 @@ static void add_derivatives(const se3di_force *force, const se3di_measure z[6], 
     }
 }
 
-se3d_status se3di_bushing_eval(const se3di_model *model, const se3di_force *force, double t,
-                               se3di_effect *effect)
+static se3d_status eval_bushing(const se3di_model *model, const se3di_force *force, double t,
+                                se3di_effect *effect)
 {
     (void)t;
     se3di_measure z[6];
@@ -181,3 +181,9 @@ se3d_status se3di_bushing_eval(const se3di_model *model, const se3di_force *forc
     }
     return SE3D_OK;
 }
+
+const se3di_force_class se3di_force_class_bushing = {
+    .name = "bushing",
+    .eval = eval_bushing,
+    .traits = SE3DI_FORCE_IS_ELASTIC | SE3DI_FORCE_HOLDS,
+};

@@ -67,8 +67,8 @@ static se3d_status difference(const se3di_force *force, double t, const se3d_bod
     return SE3D_OK;
 }
 
-se3d_status se3di_callback_eval(const se3di_model *model, const se3di_force *force, double t,
-                                se3di_effect *effect)
+static se3d_status eval_callback(const se3di_model *model, const se3di_force *force, double t,
+                                 se3di_effect *effect)
 {
     se3d_body_motion motion[2];
     double u[12];
@@ -89,3 +89,8 @@ se3d_status se3di_callback_eval(const se3di_model *model, const se3di_force *for
     }
     return SE3D_OK;
 }
+
+const se3di_force_class se3di_force_class_callback = {
+    .name = "callback",
+    .eval = eval_callback,
+};

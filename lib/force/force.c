@@ -9,24 +9,16 @@
 #include <stddef.h>
 #include <string.h>
 
-typedef se3d_status (*element_eval)(const se3di_model *model, const se3di_force *force, double t,
-                                    se3di_effect *effect);
-
-typedef struct element {
-    const char *name; /* as in the model file */
-    element_eval eval;
-} element;
-
-static const element elements[SE3DI_FORCE_COUNT] = {
-    [SE3DI_FORCE_TSDA] = {"tsda", se3di_tsda_eval},
-    [SE3DI_FORCE_RSDA] = {"rsda", se3di_rsda_eval},
-    [SE3DI_FORCE_LOAD] = {"force", se3di_load_eval},
-    [SE3DI_FORCE_TORQUE] = {"torque", se3di_torque_eval},
-    [SE3DI_FORCE_BUSHING] = {"bushing", se3di_bushing_eval},
-    [SE3DI_FORCE_FRICTION] = {"friction", se3di_friction_eval},
-    [SE3DI_FORCE_STOP] = {"stop", se3di_stop_eval},
-    [SE3DI_FORCE_CALLBACK] = {"callback", se3di_callback_eval},
+static const se3di_force_class *const classes[SE3DI_FORCE_COUNT] = {
+#define ROW(TYPE, name) [SE3DI_FORCE_##TYPE] = &se3di_force_class_##name,
+    SE3DI_FORCE_LIST(ROW)
+#undef ROW
 };
+
+const se3di_force_class *se3di_force_class_of(const se3di_force *force)
+{
+    return classes[force->type];
+}
 
 se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force, double t,
                              se3di_effect *effect)
@@ -35,7 +27,7 @@ se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force,
     int32_t wants = effect->wants_derivative;
     memset(effect, 0, size);
     effect->wants_derivative = wants;
-    return elements[force->type].eval(model, force, t, effect);
+    return classes[force->type]->eval(model, force, t, effect);
 }
 
 se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed)
@@ -130,7 +122,7 @@ se3d_status se3di_power_eval(const se3di_model *model, double t, double power[3]
 
 int se3di_force_is_history_dependent(const se3di_force *force)
 {
-    return force->type == SE3DI_FORCE_FRICTION || force->type == SE3DI_FORCE_STOP;
+    return classes[force->type]->accept != NULL;
 }
 
 int se3di_forces_have_memory(const se3di_model *model)
@@ -148,9 +140,8 @@ uint32_t se3di_forces_revise(se3di_model *model)
     uint32_t changes = 0;
     se3di_frictions_take_loads(model, model->lambda);
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (model->forces[k].type == SE3DI_FORCE_FRICTION) {
-            changes += se3di_friction_revise(model, &model->forces[k]);
-        }
+        const se3di_force_class *type = classes[model->forces[k].type];
+        changes += type->revise ? type->revise(model, &model->forces[k]) : 0;
     }
     return changes;
 }
@@ -159,7 +150,7 @@ void se3di_stops_accept(se3di_model *model)
 {
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         if (model->forces[k].type == SE3DI_FORCE_STOP) {
-            se3di_stop_accept(model, &model->forces[k]);
+            classes[SE3DI_FORCE_STOP]->accept(model, &model->forces[k]);
         }
     }
 }
@@ -168,12 +159,11 @@ void se3di_forces_accept(se3di_model *model)
 {
     se3di_frictions_take_loads(model, model->lambda);
     for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force_class *type = classes[model->forces[k].type];
         double *state = model->forces[k].state;
         memcpy(state + SE3DI_FORCE_BEFORE, state, SE3DI_FORCE_BEFORE * sizeof *state);
-        if (model->forces[k].type == SE3DI_FORCE_FRICTION) {
-            se3di_friction_accept(model, &model->forces[k]);
-        } else if (model->forces[k].type == SE3DI_FORCE_STOP) {
-            se3di_stop_accept(model, &model->forces[k]);
+        if (type->accept) {
+            type->accept(model, &model->forces[k]);
         }
     }
 }
@@ -184,9 +174,4 @@ void se3di_forces_recall(se3di_model *model)
         double *state = model->forces[k].state;
         memcpy(state, state + SE3DI_FORCE_BEFORE, SE3DI_FORCE_BEFORE * sizeof *state);
     }
-}
-
-const char *se3di_force_type_name(int32_t type)
-{
-    return elements[type].name;
 }

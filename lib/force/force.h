@@ -28,23 +28,33 @@ typedef struct se3di_effect {
 se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force, double t,
                              se3di_effect *effect);
 
-/* The elements; `effect` comes zeroed. */
-se3d_status se3di_tsda_eval(const se3di_model *model, const se3di_force *force, double t,
-                            se3di_effect *effect);
-se3d_status se3di_rsda_eval(const se3di_model *model, const se3di_force *force, double t,
-                            se3di_effect *effect);
-se3d_status se3di_load_eval(const se3di_model *model, const se3di_force *force, double t,
-                            se3di_effect *effect);
-se3d_status se3di_torque_eval(const se3di_model *model, const se3di_force *force, double t,
-                              se3di_effect *effect);
-se3d_status se3di_bushing_eval(const se3di_model *model, const se3di_force *force, double t,
-                               se3di_effect *effect);
-se3d_status se3di_friction_eval(const se3di_model *model, const se3di_force *force, double t,
-                                se3di_effect *effect);
-se3d_status se3di_stop_eval(const se3di_model *model, const se3di_force *force, double t,
-                            se3di_effect *effect);
-se3d_status se3di_callback_eval(const se3di_model *model, const se3di_force *force, double t,
-                                se3di_effect *effect);
+/* What a type of elements may be. */
+enum {
+    SE3DI_FORCE_IS_SCALAR = 1,  /* acts on one coordinate: effect->coordinate, rate, value */
+    SE3DI_FORCE_IS_ELASTIC = 2, /* its K and D make frequencies and decay rates */
+    SE3DI_FORCE_HOLDS = 4       /* may hold a body in space as a joint does */
+};
+
+/* A type of elements: one in each file of the folder. */
+typedef struct se3di_force_class {
+    const char *name; /* as in the model file */
+    /* `effect` comes zeroed but for wants_derivative. @return as se3di_force_eval */
+    se3d_status (*eval)(const se3di_model *model, const se3di_force *force, double t,
+                        se3di_effect *effect);
+    /* The state of the model is accepted; NULL: the type has no memory. */
+    void (*accept)(const se3di_model *model, se3di_force *force);
+    /* Compare what it assumed of a trial step with what came out, correct it. @return whether it
+     * changed; NULL: it assumes nothing */
+    uint32_t (*revise)(const se3di_model *model, se3di_force *force);
+    uint32_t traits;
+} se3di_force_class;
+
+#define SE3DI_FORCE_DECLARE(TYPE, name) extern const se3di_force_class se3di_force_class_##name;
+SE3DI_FORCE_LIST(SE3DI_FORCE_DECLARE)
+#undef SE3DI_FORCE_DECLARE
+
+/* The class of an element. */
+const se3di_force_class *se3di_force_class_of(const se3di_force *force);
 
 /* Gravity at t and its rate (NULL: not wanted). */
 se3d_status se3di_gravity_eval(const se3di_model *model, double t, double g[3], double *g_t);
@@ -82,13 +92,7 @@ double se3di_friction_get(const se3di_model *model, const se3di_force *force);
 void se3di_friction_set(const se3di_model *model, se3di_force *force, double mode, double n);
 /* It holds on to where it is, unless it does so already: it slips if it moves. */
 void se3di_friction_begin(const se3di_model *model, se3di_force *force);
-uint32_t se3di_friction_revise(const se3di_model *model, se3di_force *force);
-void se3di_friction_accept(const se3di_model *model, se3di_force *force);
-void se3di_stop_accept(const se3di_model *model, se3di_force *force);
 /* All stops take the present speed for that of an impact to come. */
 void se3di_stops_accept(se3di_model *model);
-
-/* The name of an element's type as in the model file. */
-const char *se3di_force_type_name(int32_t type);
 
 #endif

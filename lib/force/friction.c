@@ -97,8 +97,8 @@ void se3di_friction_silence(se3di_force *force)
     force->state[FORCE] = force->state[STIFFNESS] = force->state[MODE] = 0.0;
 }
 
-se3d_status se3di_friction_eval(const se3di_model *model, const se3di_force *force, double t,
-                                se3di_effect *effect)
+static se3d_status eval_friction(const se3di_model *model, const se3di_force *force, double t,
+                                 se3di_effect *effect)
 {
     (void)t;
     se3di_measure measure;
@@ -121,7 +121,7 @@ se3d_status se3di_friction_eval(const se3di_model *model, const se3di_force *for
     return SE3D_OK;
 }
 
-uint32_t se3di_friction_revise(const se3di_model *model, se3di_force *force)
+static uint32_t revise_friction(const se3di_model *model, se3di_force *force)
 {
     double rate, mode = force->state[MODE];
     if (!(force->state[SET] > 0.0)) {
@@ -163,7 +163,7 @@ static int has_turned(const se3di_model *model, const se3di_force *force, double
     return mode * rate < 0.0 && !(mode * se3di_measure_acceleration(model, force) > 0.0);
 }
 
-void se3di_friction_accept(const se3di_model *model, se3di_force *force)
+static void accept_friction(const se3di_model *model, se3di_force *force)
 {
     double rate;
     const double x = coordinate(model, force, &rate);
@@ -184,3 +184,11 @@ void se3di_friction_accept(const se3di_model *model, se3di_force *force)
         anchor(force, x, n);
     }
 }
+
+const se3di_force_class se3di_force_class_friction = {
+    .name = "friction",
+    .eval = eval_friction,
+    .accept = accept_friction,
+    .revise = revise_friction,
+    .traits = SE3DI_FORCE_IS_SCALAR,
+};

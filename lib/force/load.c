@@ -38,8 +38,8 @@ static void add_power(const se3di_frame *frame, se3di_effect *effect)
         se3di_dot(effect->wrench + 6, frame->v) + se3di_dot(effect->wrench + 9, frame->w);
 }
 
-se3d_status se3di_load_eval(const se3di_model *model, const se3di_force *force, double t,
-                            se3di_effect *effect)
+static se3d_status eval_load(const se3di_model *model, const se3di_force *force, double t,
+                             se3di_effect *effect)
 {
     const se3di_frame *frame = &model->frames[force->body_j];
     double value[3], local[3], T[9], S[9], M[9];
@@ -68,8 +68,8 @@ se3d_status se3di_load_eval(const se3di_model *model, const se3di_force *force, 
     return SE3D_OK;
 }
 
-se3d_status se3di_torque_eval(const se3di_model *model, const se3di_force *force, double t,
-                              se3di_effect *effect)
+static se3d_status eval_torque(const se3di_model *model, const se3di_force *force, double t,
+                               se3di_effect *effect)
 {
     const se3di_frame *frame = &model->frames[force->body_j];
     double value[3], T[9];
@@ -86,3 +86,13 @@ se3d_status se3di_torque_eval(const se3di_model *model, const se3di_force *force
     add_power(frame, effect);
     return SE3D_OK;
 }
+
+const se3di_force_class se3di_force_class_load = {
+    .name = "force",
+    .eval = eval_load,
+};
+
+const se3di_force_class se3di_force_class_torque = {
+    .name = "torque",
+    .eval = eval_torque,
+};

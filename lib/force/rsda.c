@@ -7,8 +7,8 @@
  * torque above, off parallel the one that does the work -n d theta.  docs/theory/springs.md */
 #include "force/measure.h"
 
-se3d_status se3di_rsda_eval(const se3di_model *model, const se3di_force *force, double t,
-                            se3di_effect *effect)
+static se3d_status eval_rsda(const se3di_model *model, const se3di_force *force, double t,
+                             se3di_effect *effect)
 {
     se3di_measure measure;
     se3di_law law;
@@ -17,3 +17,9 @@ se3d_status se3di_rsda_eval(const se3di_model *model, const se3di_force *force, 
     se3di_effect_add(effect, &measure, &law);
     return SE3D_OK;
 }
+
+const se3di_force_class se3di_force_class_rsda = {
+    .name = "rsda",
+    .eval = eval_rsda,
+    .traits = SE3DI_FORCE_IS_SCALAR | SE3DI_FORCE_IS_ELASTIC,
+};

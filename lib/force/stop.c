@@ -47,8 +47,8 @@ static double penetration(const se3di_force *force, double x)
     return x < force->low ? x - force->low : 0.0;
 }
 
-se3d_status se3di_stop_eval(const se3di_model *model, const se3di_force *force, double t,
-                            se3di_effect *effect)
+static se3d_status eval_stop(const se3di_model *model, const se3di_force *force, double t,
+                             se3di_effect *effect)
 {
     (void)t;
     se3di_measure measure;
@@ -74,7 +74,7 @@ se3d_status se3di_stop_eval(const se3di_model *model, const se3di_force *force, 
     return SE3D_OK;
 }
 
-void se3di_stop_accept(const se3di_model *model, se3di_force *force)
+static void accept_stop(const se3di_model *model, se3di_force *force)
 {
     se3di_measure measure;
     (void)se3di_measure_force(model, force, 0, &measure);
@@ -84,3 +84,10 @@ void se3di_stop_accept(const se3di_model *model, se3di_force *force)
         force->state[0] = fmax(fabs(measure.rate), SPEED_MIN);
     }
 }
+
+const se3di_force_class se3di_force_class_stop = {
+    .name = "stop",
+    .eval = eval_stop,
+    .accept = accept_stop,
+    .traits = SE3DI_FORCE_IS_SCALAR,
+};

@@ -35,8 +35,8 @@ static void eval_at_zero(const se3di_model *model, const se3di_force *force, se3
     }
 }
 
-se3d_status se3di_tsda_eval(const se3di_model *model, const se3di_force *force, double t,
-                            se3di_effect *effect)
+static se3d_status eval_tsda(const se3di_model *model, const se3di_force *force, double t,
+                             se3di_effect *effect)
 {
     se3di_measure measure;
     se3di_law law;
@@ -53,3 +53,9 @@ se3d_status se3di_tsda_eval(const se3di_model *model, const se3di_force *force, 
     se3di_effect_add(effect, &measure, &law);
     return SE3D_OK;
 }
+
+const se3di_force_class se3di_force_class_tsda = {
+    .name = "tsda",
+    .eval = eval_tsda,
+    .traits = SE3DI_FORCE_IS_SCALAR | SE3DI_FORCE_IS_ELASTIC | SE3DI_FORCE_HOLDS,
+};

@@ -80,13 +80,7 @@ void se3di_newmark_interpolate(const se3di_integration *integration, double t, d
 /* Forces that depend on what was before: they belong to the steps. */
 static int remembers(const se3di_model *model)
 {
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (model->forces[k].type == SE3DI_FORCE_FRICTION ||
-            model->forces[k].type == SE3DI_FORCE_STOP) {
-            return 1;
-        }
-    }
-    return model->contacts.pair_count > 0;
+    return se3di_forces_have_memory(model) || model->contacts.pair_count > 0;
 }
 
 /* Whether the accelerations in equations->x, solved for at a state between two steps, differ from

@@ -102,16 +102,23 @@ typedef struct se3di_angle {
     double theta;    /* joint angle of the last accepted state, counts turns */
 } se3di_angle;
 
+/* The types of force elements, X(TYPE, name): each has a se3di_force_class_<name> in lib/force. New
+ * ones go to the end: the numbers are part of what a run's bits depend on. */
+#define SE3DI_FORCE_LIST(X)                                                                        \
+    X(TSDA, tsda)                                                                                  \
+    X(RSDA, rsda)                                                                                  \
+    X(LOAD, load)                                                                                  \
+    X(TORQUE, torque)                                                                              \
+    X(BUSHING, bushing)                                                                            \
+    X(FRICTION, friction)                                                                          \
+    X(STOP, stop)                                                                                  \
+    X(CALLBACK, callback)
+
 typedef enum se3di_force_type {
-    SE3DI_FORCE_TSDA = 0,
-    SE3DI_FORCE_RSDA = 1,
-    SE3DI_FORCE_LOAD = 2,
-    SE3DI_FORCE_TORQUE = 3,
-    SE3DI_FORCE_BUSHING = 4,
-    SE3DI_FORCE_FRICTION = 5,
-    SE3DI_FORCE_STOP = 6,
-    SE3DI_FORCE_CALLBACK = 7,
-    SE3DI_FORCE_COUNT = 8
+#define SE3DI_FORCE_ENUM(TYPE, name) SE3DI_FORCE_##TYPE,
+    SE3DI_FORCE_LIST(SE3DI_FORCE_ENUM)
+#undef SE3DI_FORCE_ENUM
+        SE3DI_FORCE_COUNT
 } se3di_force_type;
 
 #define SE3DI_FORCE_FUNCTIONS                                                                      \

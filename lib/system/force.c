@@ -255,7 +255,7 @@ se3d_status se3d_force_get_type(const se3d_system *system, se3d_force force, con
     }
     const se3di_force *data;
     SE3DI_TRY(se3di_force_find_reader(system, force, type, &data));
-    *type = se3di_force_type_name(data->type);
+    *type = se3di_force_class_of(data)->name;
     return SE3D_OK;
 }
 
@@ -278,9 +278,7 @@ se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force, do
     const se3di_force *data;
     se3di_effect effect;
     SE3DI_TRY(se3di_force_find_reader(system, force, system, &data));
-    int scalar = data->type == SE3DI_FORCE_TSDA || data->type == SE3DI_FORCE_RSDA ||
-                 data->type == SE3DI_FORCE_FRICTION || data->type == SE3DI_FORCE_STOP;
-    if (!scalar) {
+    if (!(se3di_force_class_of(data)->traits & SE3DI_FORCE_IS_SCALAR)) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     SE3DI_TRY(eval_reader(system, force, system, &effect));

@@ -164,7 +164,7 @@ static se3d_status find_writer(se3d_system *system, se3d_force handle, uint32_t 
 static se3d_status fail_type(se3d_system *system, const se3di_force *data, const char *what)
 {
     return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "a %s element has no %s",
-                      se3di_force_type_name(data->type), what);
+                      se3di_force_class_of(data)->name, what);
 }
 
 static int is_load(const se3di_force *data)
