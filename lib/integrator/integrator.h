@@ -73,17 +73,24 @@ struct se3di_integration {
     se3di_newton newton; /* of implicit methods */
 };
 
-extern const se3di_integrator se3di_integrator_generalized_alpha;
-extern const se3di_integrator se3di_integrator_hht;
-extern const se3di_integrator se3di_integrator_dop853;
-extern const se3di_integrator se3di_integrator_rk4;
-extern const se3di_integrator se3di_integrator_rk45;
-extern const se3di_integrator se3di_integrator_rattle;
-extern const se3di_integrator se3di_integrator_bdf;
-extern const se3di_integrator se3di_integrator_radau;
-extern const se3di_integrator se3di_integrator_verlet;
+/* The methods but AUTO, X(METHOD, name): se3di_integrator_<name> is the table of
+ * SE3D_METHOD_<METHOD>, in lib/integrator/<name>.c. */
+#define SE3DI_METHOD_LIST(X)                                                                       \
+    X(GENERALIZED_ALPHA, generalized_alpha)                                                        \
+    X(HHT, hht)                                                                                    \
+    X(DOP853, dop853)                                                                              \
+    X(RK45, rk45)                                                                                  \
+    X(BDF, bdf)                                                                                    \
+    X(RADAU, radau)                                                                                \
+    X(RATTLE, rattle)                                                                              \
+    X(VERLET, verlet)                                                                              \
+    X(RK4, rk4)
 
-/* By se3d_method; NULL where there is none yet. */
+#define SE3DI_METHOD_DECLARE(METHOD, name) extern const se3di_integrator se3di_integrator_##name;
+SE3DI_METHOD_LIST(SE3DI_METHOD_DECLARE)
+#undef SE3DI_METHOD_DECLARE
+
+/* By se3d_method, AUTO: where a run begins; NULL: there is none of that number. */
 const se3di_integrator *se3di_integrator_find(int32_t method);
 
 #endif

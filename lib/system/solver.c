@@ -55,6 +55,18 @@ static se3d_status check_numbers(se3d_system *system, const se3d_solver_def *def
     return SE3D_OK;
 }
 
+const char *se3d_method_get_name(int32_t method)
+{
+    const se3di_integrator *found = se3di_integrator_find(method);
+    return method == SE3D_METHOD_AUTO ? "auto" : found ? found->name : "";
+}
+
+const char *se3d_formulation_get_name(int32_t formulation)
+{
+    const se3di_formulation *found = se3di_formulation_find(formulation);
+    return found ? found->name : "";
+}
+
 /* The order must be one that the method has. */
 static se3d_status check_order(se3d_system *system, const se3d_solver_def *def)
 {
@@ -71,8 +83,7 @@ static se3d_status check_order(se3d_system *system, const se3d_solver_def *def)
         }
     }
     return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "order = %d, must be 0%s with method %s",
-                      (int)def->order, list,
-                      def->method == SE3D_METHOD_AUTO ? "auto" : method->name);
+                      (int)def->order, list, se3d_method_get_name(def->method));
 }
 
 static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def)
@@ -86,7 +97,7 @@ static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def
                           "formulation = %d, must be SE3D_FORMULATION_ROMEGA or _RP",
                           (int)def->formulation);
     }
-    if (def->method < SE3D_METHOD_AUTO || def->method > SE3D_METHOD_RK4) {
+    if (!se3di_integrator_find(def->method)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "method = %d, must be one of se3d_method", (int)def->method);
     }

@@ -622,6 +622,11 @@ static se3d_status texts_are_never_null(arguments *a)
     CHECK(se3d_status_get_text((se3d_status)-99) && se3d_status_get_text((se3d_status)99));
     CHECK(se3d_text_get_character(NULL) == 0 && se3d_text_get_character("") == 0);
     CHECK_CONTAINS(se3d_version_get_text(), ".");
+    CHECK(strcmp(se3d_method_get_name(SE3D_METHOD_RK4), "rk4") == 0);
+    CHECK(strcmp(se3d_method_get_name(SE3D_METHOD_AUTO), "auto") == 0);
+    CHECK(strcmp(se3d_method_get_name(-1), "") == 0 && !*se3d_method_get_name(INT32_MAX));
+    CHECK(strcmp(se3d_formulation_get_name(SE3D_FORMULATION_RP), "rp") == 0);
+    CHECK(!*se3d_formulation_get_name(-7) && !*se3d_formulation_get_name(99));
     CHECK(se3d_system_get_error(NULL) != NULL);
     CHECK(se3d_system_get_error_status(NULL) == SE3D_ERR_NULL ||
           se3d_system_get_error_status(NULL) == SE3D_OK);
@@ -861,6 +866,8 @@ static const row rows[] = {
     {"se3d_elementary_eval", unknown_functions_are_not_a_number, "", NULL, NULL},
     {"se3d_text_get_character", texts_are_never_null, "", NULL, NULL},
     {"se3d_version_get_text", texts_are_never_null, "", NULL, NULL},
+    {"se3d_method_get_name", texts_are_never_null, "", NULL, NULL},
+    {"se3d_formulation_get_name", texts_are_never_null, "", NULL, NULL},
     {"se3d_system_get_error", texts_are_never_null, "", NULL, NULL},
     {"se3d_system_get_error_status", texts_are_never_null, "", NULL, NULL},
     {"se3d_expression_get_text", texts_are_never_null, "", NULL, NULL},

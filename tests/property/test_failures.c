@@ -3,12 +3,7 @@
  * bit, and the run goes on from it as if nothing had happened. */
 #include "check.h"
 #include "se3d/se3d.h"
-
-#define METHODS 10
-
-static const char *const method_names[METHODS] = {
-    "auto", "generalized_alpha", "hht", "dop853", "rk45", "bdf", "radau", "rattle", "verlet",
-    "rk4"};
+#include "support/methods.h"
 
 /* Counts the calls of all callbacks, and fails at one of them, or from it on. */
 static long calls, fails_at;
@@ -323,7 +318,8 @@ static void fail_everywhere(int scene, int32_t analysis, int32_t method)
             failed += failures;
             if (check_failures > before) {
                 fprintf(stderr, "  %s, scene %d, analysis %d, call %ld of %ld %s\n",
-                        method_names[method], scene, (int)analysis, n, count, ever ? "on" : "");
+                        se3d_method_get_name(method), scene, (int)analysis, n, count,
+                        ever ? "on" : "");
             }
         }
     }
@@ -332,7 +328,7 @@ static void fail_everywhere(int scene, int32_t analysis, int32_t method)
 
 static void a_failure_leaves_the_last_accepted_step_in_every_method(void)
 {
-    for (int32_t method = 0; method < METHODS; ++method) {
+    for (int32_t method = 0; method < method_count(); ++method) {
         for (int scene = 0; scene < SCENES; ++scene) {
             fail_everywhere(scene, SE3D_ANALYSIS_DYNAMICS, method);
         }
@@ -373,11 +369,11 @@ static double balance_of(const world *w)
 static void the_audit_closes_over_a_change_of_values_or_begins_anew(void)
 {
     static const double gravity[3] = {0.0, 0.0, -3.0};
-    for (int run = 0; run < 3 * METHODS; ++run) {
-        const int failing = run / METHODS; /* evaluation of the energy; 0: none */
+    for (int run = 0; run < 3 * method_count(); ++run) {
+        const int failing = run / method_count(); /* evaluation of the energy; 0: none */
         world w;
         se3d_work work;
-        make(&w, SCENE_FORCE, SE3D_ANALYSIS_DYNAMICS, run % METHODS);
+        make(&w, SCENE_FORCE, SE3D_ANALYSIS_DYNAMICS, run % method_count());
         CHECK(se3d_solver_run(w.solver, 0.0625) >= 0);
         double before = balance_of(&w);
         fails_at = failing > 0 ? calls + failing : 0;
@@ -397,7 +393,7 @@ static void the_audit_closes_over_a_change_of_values_or_begins_anew(void)
 static void a_failure_after_a_change_of_loads_stays_where_they_changed(void)
 {
     static const double gravity[3] = {0.0, 0.0, -3.0};
-    for (int32_t method = 0; method < METHODS; ++method) {
+    for (int32_t method = 0; method < method_count(); ++method) {
         for (int with_event = 0; with_event < 2; ++with_event) {
             world w;
             make(&w, with_event ? SCENE_EVENT : SCENE_FORCE, SE3D_ANALYSIS_DYNAMICS, method);

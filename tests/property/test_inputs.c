@@ -3,15 +3,11 @@
  * method, by step and by run, and what is computed at the present time sees them. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/methods.h"
 
-#define METHODS 10
-#define STEPS   40
-#define H       1e-3
-#define SHORT   1e-4 /* of stiff bars */
-
-static const char *const method_names[METHODS] = {
-    "auto", "generalized_alpha", "hht", "dop853", "rk45", "bdf", "radau", "rattle", "verlet",
-    "rk4"};
+#define STEPS 40
+#define H     1e-3
+#define SHORT 1e-4 /* of stiff bars */
 
 /* How a callback learns of its value: by the user, who says so. */
 static double pushed;
@@ -183,7 +179,7 @@ static void hold_and_change(input kind, int32_t method, int32_t formulation, int
             check_motion(&w, rate, way);
         }
         if (check_failures > before) {
-            fprintf(stderr, "  %s, formulation %d, input %d, by %s\n", method_names[method],
+            fprintf(stderr, "  %s, formulation %d, input %d, by %s\n", se3d_method_get_name(method),
                     (int)formulation, (int)kind, by_run ? "run" : "step");
         }
     }
@@ -193,7 +189,7 @@ static void hold_and_change(input kind, int32_t method, int32_t formulation, int
 static void held_inputs_are_exact_in_every_method(void)
 {
     for (int kind = 0; kind < INPUTS; ++kind) {
-        for (int32_t method = 0; method < METHODS; ++method) {
+        for (int32_t method = 0; method < method_count(); ++method) {
             for (int k = 0; k < 4; ++k) {
                 hold_and_change((input)kind, method,
                                 k / 2 ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA, k % 2);
@@ -205,7 +201,7 @@ static void held_inputs_are_exact_in_every_method(void)
 /* Runs that end within a step which the method has made already: it is made again. */
 static void inputs_may_be_set_within_a_step_made_ahead(void)
 {
-    for (int32_t method = 0; method < METHODS; ++method) {
+    for (int32_t method = 0; method < method_count(); ++method) {
         world w;
         uint64_t seed = 99;
         double rate = 0.0, way = 0.0, u = 0.0, t = 0.0;
@@ -400,7 +396,7 @@ static void change_and_compare(const bars *w, se3d_solver *solver, const se3d_so
 
 static void all_values_act_from_the_next_step_on(void)
 {
-    for (int32_t method = 0; method < METHODS; ++method) {
+    for (int32_t method = 0; method < method_count(); ++method) {
         for (int32_t formulation = 0; formulation < 2; ++formulation) {
             bars w;
             se3d_solver *solver = NULL;
@@ -419,8 +415,8 @@ static void all_values_act_from_the_next_step_on(void)
                 change_and_compare(&w, solver, &def, k, 1.3);
                 change_and_compare(&w, solver, &def, k, 1.0);
                 if (check_failures > before) {
-                    fprintf(stderr, "  %s, formulation %d, change %d\n", method_names[method],
-                            (int)formulation, k);
+                    fprintf(stderr, "  %s, formulation %d, change %d\n",
+                            se3d_method_get_name(method), (int)formulation, k);
                 }
             }
             se3d_solver_destroy(solver);
@@ -432,7 +428,7 @@ static void all_values_act_from_the_next_step_on(void)
 /* A driver and a primitive without a function: the state follows, and rests there. */
 static void prescribed_values_are_met_from_the_next_step_on(void)
 {
-    for (int k = 0; k < 4 * METHODS; ++k) {
+    for (int k = 0; k < 4 * method_count(); ++k) {
         world w = {.kind = INPUT_LOAD};
         const int by_function = k % 2, by_run = k / 2 % 2;
         se3d_constraint driver;
@@ -550,7 +546,7 @@ static void materials_act_from_the_next_step_on(void)
 static void states_of_a_clone_go_on_under_the_loads_of_the_system(void)
 {
     static const double weak[3] = {0.0, 0.0, -1.0}, strong[3] = {0.0, 0.0, -20.0};
-    for (int32_t method = 0; method < METHODS; ++method) {
+    for (int32_t method = 0; method < method_count(); ++method) {
         se3d_system *from = NULL, *to = NULL;
         se3d_snapshot *state = NULL;
         se3d_solver *solver[2] = {NULL, NULL};

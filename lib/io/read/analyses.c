@@ -18,12 +18,9 @@ static const char *const types[] = {
 #define STEPS_MAX      1e9   /* where the file says nothing */
 #define STEPS_MAX_MOST 1e15
 #define TIME_MAX       1e9 /* s, thirty years */
+#define WORDS_MOST     32
 
 enum { TYPE_MODES = 5 }; /* the others are se3d_analysis */
-static const char *const formulations[] = {"romega", "rp", NULL};
-static const char *const methods[] = {
-    "auto", "generalized_alpha", "hht", "dop853", "rk45", "bdf", "radau", "rattle", "verlet", "rk4",
-    NULL};
 
 /* A value that an option of the command line gives, in place of the file's. */
 static const se3di_node *replaced(se3di_reader *reader, const se3di_node *node, const char *option,
@@ -41,6 +38,16 @@ static const se3di_node *replaced(se3di_reader *reader, const se3di_node *node, 
     return made;
 }
 
+/* The words of a list in the core, by number, with a NULL behind the last. */
+static void list_words(const char *(*name_of)(int32_t), const char *words[WORDS_MOST + 1])
+{
+    int32_t count = 0;
+    for (; count < WORDS_MOST && *name_of(count); ++count) {
+        words[count] = name_of(count);
+    }
+    words[count] = NULL;
+}
+
 static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry,
                        int32_t *chosen)
 {
@@ -52,6 +59,7 @@ static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analy
                                              "--formulation", options->formulation);
     const se3di_node *method =
         replaced(reader, se3di_node_get(node, "method"), "--method", options->method);
+    const char *words[WORDS_MOST + 1];
     size_t word = SE3D_ANALYSIS_DYNAMICS;
     if (node && !type) {
         return se3di_reader_fail_key(reader, node, "type",
@@ -63,13 +71,15 @@ static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analy
     }
     entry->analysis.type = types[word];
     solver->analysis = word == TYPE_MODES ? SE3D_ANALYSIS_EQUILIBRIUM : (int32_t)word;
-    word = 0;
-    if (formulation && !se3di_read_word(reader, formulation, formulations, &word)) {
+    word = SE3D_FORMULATION_ROMEGA;
+    list_words(se3d_formulation_get_name, words);
+    if (formulation && !se3di_read_word(reader, formulation, words, &word)) {
         return false;
     }
-    solver->formulation = word == 0 ? SE3D_FORMULATION_ROMEGA : SE3D_FORMULATION_RP;
-    word = 0;
-    if (method && !se3di_read_word(reader, method, methods, &word)) {
+    solver->formulation = (int32_t)word;
+    word = SE3D_METHOD_AUTO;
+    list_words(se3d_method_get_name, words);
+    if (method && !se3di_read_word(reader, method, words, &word)) {
         return false;
     }
     *chosen = (int32_t)word;
