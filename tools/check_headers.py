@@ -119,12 +119,20 @@ class Code:
                 is_static = "static" in body.split("{")[0]
                 place = self.local.setdefault(path, {}) if is_static else self.shared
                 place[name] = (path, calls, found)
+            self.add_tables(path, "\n".join(outside + lines[last:]))
+
+    def add_tables(self, path, text):
+        """Tables of functions, `const se3di_integrator se3di_integrator_rk4 = {..};`, call what they name."""
+        for name, body in re.findall(r"^const \w+ (se3di_\w+) = \{(.*?)^\};", text, re.M | re.S):
+            self.shared[name] = (path, self.names(body, r"\b([a-z]\w+)\b"), set())
 
     @staticmethod
     def names(text, pattern):
         return set(re.findall(pattern, check_size.NOISE.sub('""', text)))
 
     def look(self, path, name):
+        if name.endswith("_") and name not in self.shared:  # se3di_force_class_##name of a list
+            self.shared[name] = (path, {each for each in self.shared if each.startswith(name)}, set())
         return self.local.get(path, {}).get(name) or self.shared.get(name)
 
     def reach(self, name):

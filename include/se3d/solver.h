@@ -34,13 +34,17 @@ typedef enum se3d_method {
     SE3D_METHOD_RK4 = 9
 } se3d_method;
 
-/* The name of a method (se3d_method) as in a model file: "auto", "dop853". The methods have the
- * numbers from 0 to the one before the first without a name.
- * @return "" where there is none of that number @since 0.1 */
+/* Get the name of a method as in a model file ("auto", "dop853"). The methods have the numbers from
+ * 0 to the one before the first without a name.
+ * @param[in] method  se3d_method, or any number
+ * @return the name, static; "" where no method has that number.
+ * @since 0.1 */
 SE3D_API const char *se3d_method_get_name(int32_t method);
 
-/* The name of a formulation (se3d_formulation) as in a model file: "romega", "rp".
- * @return "" where there is none of that number @since 0.1 */
+/* Get the name of a formulation as in a model file ("romega", "rp").
+ * @param[in] formulation  se3d_formulation, or any number
+ * @return the name, static; "" where no formulation has that number.
+ * @since 0.1 */
 SE3D_API const char *se3d_formulation_get_name(int32_t formulation);
 
 /* What a solver is made with. @since 0.1 */
