@@ -270,17 +270,19 @@ static void frictionless_elastic_cloud_keeps_its_energy(void)
 static void settled_box_weighs_what_it_holds(void)
 {
     se3d_material_def material = stuff();
-    material.restitution = 0.3;
+    material.restitution = 0.1;
+    material.stiffness = 2.5e3; /* long steps */
+    material.rolling_friction = 0.05;
     bed b;
     bed_init(&b, NULL, down, &material);
-    box_around(&b, 0.055);
-    se3d_fill_def fill = region(&b, 0.055, 0.11, 0.004, 0.005);
+    box_around(&b, 0.044);
+    se3d_fill_def fill = region(&b, 0.044, 0.055, 0.004, 0.005);
     fill.jitter = 0.0004;
     size_t count;
     CHECK(se3d_particles_fill_lattice(b.particles, &fill, &count) == SE3D_OK);
-    CHECK(count == 5 * 5 * 10);
-    CHECK(se3d_particles_run(b.particles, 2.4) == SE3D_OK);
-    double force[3], torque[3], weight = 0.0, radius[250];
+    CHECK(count == 4 * 4 * 5);
+    CHECK(se3d_particles_run(b.particles, 1.0) == SE3D_OK);
+    double force[3], torque[3], weight = 0.0, radius[80];
     CHECK(se3d_particles_get_radii(b.particles, count, radius) == SE3D_OK);
     for (size_t k = 0; k < count; ++k) {
         weight += 2500.0 * 4.0 / 3.0 * PI * radius[k] * radius[k] * radius[k] * 9.81;
@@ -300,7 +302,7 @@ static void settled_box_weighs_what_it_holds(void)
         on_walls += list[k].shape.index1 ? list[k].force[2] : 0.0;
         walls += list[k].shape.index1 != 0;
     }
-    CHECK(walls > 25 && contacts - walls > 350);
+    CHECK(walls > 16 && contacts - walls > 100);
     CHECK_NEAR(on_walls / weight, 1.0, 1e-5);
     free(list);
     bed_destroy(&b);
@@ -321,17 +323,18 @@ static double distance_moved(const bed *b, size_t n, double *r)
 static void pile_does_not_creep(void)
 {
     se3d_material_def material = stuff();
-    material.restitution = 0.2;
-    material.rolling_friction = 0.02; /* one that lies alone would roll for ever */
+    material.restitution = 0.05;
+    material.stiffness = 2.5e3;        /* long steps */
+    material.rolling_friction = 0.005; /* one that lies alone would roll for ever */
     bed b;
     bed_init(&b, NULL, down, &material);
     box_around(&b, 0.044);
-    se3d_fill_def fill = region(&b, 0.044, 0.1, 0.005, 0.005);
+    se3d_fill_def fill = region(&b, 0.044, 0.055, 0.005, 0.005);
     fill.jitter = 0.0004;
     fill.seed = 1;
     CHECK(se3d_particles_fill_lattice(b.particles, &fill, NULL) == SE3D_OK);
     size_t n = se3d_particles_count(b.particles);
-    double *r = calloc(6 * n, sizeof *r), t = 2.5, moved;
+    double *r = calloc(6 * n, sizeof *r), t = 1.5, moved;
     do { /* until the last one that rolled in its cage lies */
         CHECK(se3d_particles_run(b.particles, t) == SE3D_OK);
         moved = distance_moved(&b, n, r);
