@@ -154,7 +154,7 @@ se3d_status se3di_dead_point_explain(se3di_equations *equations, double t_end, s
     describe(equations, row, name, sizeof name);
     return se3di_error_set(
         equations->error, status,
-        "t = %.9g s: %s has come to a dead point of the mechanism at t = %.6g s, "
-        "where its value is %.6g%s: it cannot drive the mechanism beyond",
+        "t = %.9g s: %s has reached a dead point of the mechanism at t = %.6g s, "
+        "where its value is %.6g%s: it cannot drive the mechanism beyond it",
         model->time, name, t, jet[0], se3di_row_get_unit(model, row));
 }

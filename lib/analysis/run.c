@@ -406,7 +406,7 @@ static se3d_status switch_method(se3di_run *run)
     run->integration.method = se3di_integrator_find(SE3D_METHOD_RADAU);
     run->integration.settings.leaves_stiff = 0;
     se3di_log_write(run->error, SE3D_LOG_INFO,
-                    "t = %g s: stability holds the steps of %s short, %s goes on", run->left_at,
+                    "t = %g s: stability limits the steps of %s, %s takes over", run->left_at,
                     run->left->name, run->integration.method->name);
     SE3DI_TRY(build(run));
     return prepare(run);
@@ -490,7 +490,7 @@ static se3d_status information(se3di_run *run)
     if (run->equations.redundant && !run->told_redundant) {
         run->told_redundant = 1;
         se3di_log_write(run->error, SE3D_LOG_WARNING,
-                        "t = %g s: there are redundant constraints, of which reactions are the "
+                        "t = %g s: there are redundant constraints; their reactions are the "
                         "minimum-norm ones; se3d_check names them",
                         run->model->time);
     }
@@ -686,8 +686,8 @@ static se3d_status conclude(se3di_run *run, se3d_status status, double t_end, se
     status = explain(run, status, t_end);
     if (run->error->status != status) { /* the powers of elements have no message of their own */
         se3di_error_set(run->error, status,
-                        "t = %.9g s: a function or callback failed, or is not finite, as the works "
-                        "of forces and drivers were computed",
+                        "t = %.9g s: a function or callback failed, or is not finite, while the "
+                        "work of forces and drivers was computed",
                         run->model->time);
     }
     recover(run, t_end);

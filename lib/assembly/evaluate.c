@@ -41,8 +41,8 @@ static se3d_status report_distance(const se3di_model *model, uint32_t row, doubl
     se3di_row_name(model, row, name, sizeof name);
     return se3di_error_set(
         error, SE3D_ERR_INCONSISTENT,
-        "t = %g s: the square of the distance that %s asks for is %.3g m^2, must "
-        "be > 0: a distance of nothing has no direction (a spherical joint holds "
+        "t = %g s: the square of the distance that %s prescribes is %.3g m^2, must "
+        "be > 0: a distance of zero has no direction (a spherical joint holds "
         "points together)",
         t, name, square);
 }

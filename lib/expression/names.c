@@ -106,7 +106,7 @@ se3d_status se3di_names_check(const se3d_expression_def *def, const se3di_lexer 
         for (size_t m = 0; m < def->variable_count; ++m) {
             if (strcmp(name, def->variables[m]) == 0) {
                 return se3di_lexer_fail(lexer, SE3D_ERR_INVALID_ARGUMENT, NULL,
-                                        "symbol '%.60s': the name is that of a variable", name);
+                                        "symbol '%.60s': a variable has this name", name);
             }
         }
         if (!isfinite(def->symbols[k].value)) {

@@ -320,7 +320,7 @@ static se3d_status parse_comparison(parser *p, se3di_operand *out)
     SE3DI_TRY(next(p));
     SE3DI_TRY(parse_sum(p, &right));
     if (p->lexer.token.kind == SE3DI_TOKEN_COMPARISON) {
-        return fail_unexpected(p, "no second comparison: use parentheses");
+        return fail_unexpected(p, "a second comparison needs parentheses");
     }
     return check_finite(p, &sign,
                         se3di_program_binary(p->program, SE3DI_OP_BINARY,
@@ -349,8 +349,7 @@ se3d_status se3di_expression_parse(const se3d_expression_def *def, se3di_program
     }
     if (se3di_program_stack_size(program) > SE3DI_PROGRAM_STACK) {
         return se3di_lexer_fail(&p.lexer, SE3D_ERR_EXPRESSION, def->text,
-                                "more than %d values wait for their operators: simplify the "
-                                "expression",
+                                "more than %d operands are pending: simplify the expression",
                                 SE3DI_PROGRAM_STACK);
     }
     return SE3D_OK;

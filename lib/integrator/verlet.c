@@ -162,7 +162,7 @@ static se3d_status run(se3di_integration *integration, double t_end)
     double count = fmax(1.0, ceil((t_end - model->time) / h - 1e-9));
     if (count > SE3DI_STEPS_MOST) {
         return se3di_error_set(integration->equations->error, SE3D_ERR_STEP_COUNT,
-                               "a step of %g s asks for %g steps from t = %g s to %g s, must be at "
+                               "a step of %g s needs %g steps from t = %g s to %g s, must be at "
                                "most %g; try softer or heavier materials, or another step",
                                h, count, model->time, t_end, SE3DI_STEPS_MOST);
     }

@@ -140,7 +140,7 @@ se3d_status se3di_equations_try_step(const se3di_equations *equations, double t)
     }
     if (!(pace.length > 0.0)) {
         return se3di_error_set(equations->error, SE3D_ERR_STEP_COUNT,
-                               "t = %.17g s: %.6g steps were tried and the time stands still; "
+                               "t = %.17g s: %.6g steps were tried and the time does not advance; "
                                "steps_max = %.6g",
                                t, pace.steps, guard->most);
     }

@@ -379,7 +379,8 @@ static void describe_lock(const se3di_equations *equations, char *text, size_t s
         if (strcmp(constraint->type, "driver") == 0 && (takes_part || open.angle > 1e-9)) {
             char name[100];
             name_constraint(assembly->model, k, name, sizeof name);
-            snprintf(text, size, ", the driver %s asks for more than the mechanism reaches", name);
+            snprintf(text, size, ", the driver %s asks for more than the mechanism can reach",
+                     name);
             return;
         }
     }
@@ -403,7 +404,7 @@ static int describe_held(const se3di_equations *equations, char *text, size_t si
             const char *name = assembly->model->bodies[body].name;
             char joint[100];
             name_constraint(assembly->model, k, joint, sizeof joint);
-            snprintf(text, size, "%s asks body %.64s to move, which is held", joint,
+            snprintf(text, size, "%s requires body %.64s to move, but it is held", joint,
                      name ? name : "without a name");
             return 1;
         }
@@ -431,7 +432,7 @@ static se3d_status report_gap(const position_problem *problem, double t, int sta
     if (problem->equations->hold && describe_held(problem->equations, held, sizeof held)) {
         return se3di_error_set(problem->equations->error, SE3D_ERR_INCONSISTENT,
                                "t = %g s: the constraints cannot be met: %s (%s); give it the pose "
-                               "that the constraints ask for, or do not hold it",
+                               "that the constraints require, or do not hold it",
                                t, held, gap);
     }
     char lock[180];
@@ -443,7 +444,7 @@ static se3d_status report_gap(const position_problem *problem, double t, int sta
         return se3di_error_set(
             problem->equations->error, SE3D_ERR_INCONSISTENT,
             "t = %g s: the constraints cannot be met: %s at the least violation%s; "
-            "the mechanism is locked, over-constrained, or its parts do not reach",
+            "the mechanism is locked, over-constrained, or its parts cannot reach each other",
             t, gap, lock);
     }
     return se3di_error_set(

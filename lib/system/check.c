@@ -93,7 +93,7 @@ se3d_status se3di_check_def(se3d_system *system, const char *what, const void *d
     if (verdict == SE3DI_SIZED_UNKNOWN) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "%s has %zu bytes, of which this library (%s) knows %zu: what a newer "
-                          "header has beyond them must be zero",
+                          "header adds must be zero",
                           what, size, se3d_version_get_text(), full_size);
     }
     if (verdict != SE3DI_SIZED_FITS) {

@@ -65,7 +65,7 @@ se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_sett
         SE3DI_TRY(se3di_check_pointer(system, "callback", (full.callback ? &full : NULL)));
         if (!(full.step > 0.0)) {
             return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "step = %g s, must be > 0 with the law of a callback", full.step);
+                              "step = %g s, must be > 0 with a user-defined law", full.step);
         }
     }
     if (!(full.overlap_limit > 0.0 && full.overlap_limit <= 1.0)) {

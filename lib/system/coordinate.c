@@ -35,8 +35,8 @@ se3d_status se3di_check_coordinate(se3d_system *system, const char *what, uint32
         return SE3D_OK;
     }
     static const char *const allowed[4] = {
-        "must be one of a joint that has coordinates", "must be SE3D_JOINT_COORDINATE_ANGLE (0)",
-        "must be SE3D_JOINT_COORDINATE_DISPLACEMENT (1)", "must be one of both"};
+        "must be a coordinate that the joint has", "must be SE3D_JOINT_COORDINATE_ANGLE (0)",
+        "must be SE3D_JOINT_COORDINATE_DISPLACEMENT (1)", "must be one of the two"};
     const se3di_constraint *constraint = &system->model.constraints[joint];
     int which = (constraint->angle >= 0) + 2 * (constraint->has_displacement != 0);
     return SE3DI_FAIL(

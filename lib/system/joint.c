@@ -39,8 +39,8 @@ static se3d_status check_triad(se3d_system *system, const char *what, const doub
     SE3DI_TRY(se3di_check_direction(system, what, ref, unit));
     if (!se3di_joint_triad_build(axis, unit, ref_out, third)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "%s = [%g, %g, %g] is parallel to its axis, must be across it", what,
-                          ref[0], ref[1], ref[2]);
+                          "%s = [%g, %g, %g] is parallel to its axis, must not be", what, ref[0],
+                          ref[1], ref[2]);
     }
     return SE3D_OK;
 }

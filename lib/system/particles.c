@@ -31,8 +31,8 @@ static se3d_status check_domain(se3d_system *system, const se3d_particles_def *d
         int finite = isfinite(def->lower[a]) && isfinite(def->upper[a]);
         if (used && !(finite && def->upper[a] > def->lower[a])) {
             return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "lower[%d] = %g and upper[%d] = %g, must be finite and increasing "
-                              "where the boundary is not open",
+                              "lower[%d] = %g and upper[%d] = %g, must be finite and increasing if "
+                              "the boundary is not open",
                               a, def->lower[a], a, def->upper[a]);
         }
     }
@@ -231,7 +231,7 @@ se3d_status se3di_check_period(se3d_particles *particles, double radius)
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC && length < SE3DI_PERIOD_LEAST * radius) {
             return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
                               "radius = %g m, the domain is periodic along %c and only %g m long, "
-                              "must be %g radii at least",
+                              "must be at least %g radii",
                               radius, "xyz"[a], length, SE3DI_PERIOD_LEAST);
         }
     }
@@ -536,8 +536,8 @@ se3d_status se3d_particles_run(se3d_particles *particles, double time)
     double steps = h > 0.0 ? ceil((time - set->time) / h - 1e-9) : 0.0;
     if (steps > SE3DI_STEPS_MOST) {
         return SE3DI_FAIL(particles->system, SE3D_ERR_STEP_COUNT,
-                          "a step of %g s asks for %g steps until %g s, must be at most %g", h,
-                          steps, time, SE3DI_STEPS_MOST);
+                          "a step of %g s needs %g steps until %g s, must be at most %g", h, steps,
+                          time, SE3DI_STEPS_MOST);
     }
     if (steps > 0.0 && !se3di_particles_is_idle(set)) {
         const double length = (time - set->time) / steps;

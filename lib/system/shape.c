@@ -137,7 +137,8 @@ static se3d_status read_hull(se3d_system *system, const se3d_shape_def *def, se3
     se3d_status status =
         se3di_hull_build(&system->model.allocator, def->vertices, def->vertex_count, shape);
     if (status == SE3D_ERR_INVALID_ARGUMENT) {
-        return SE3DI_FAIL(system, status, "the %zu vertices of the hull lie in one plane, must not",
+        return SE3DI_FAIL(system, status,
+                          "the %zu vertices of the hull lie in one plane, must span a volume",
                           def->vertex_count);
     }
     return status < 0 ? SE3DI_FAIL(system, status, "no memory for a hull") : SE3D_OK;

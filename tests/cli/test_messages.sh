@@ -33,7 +33,7 @@ for how in kinematics inverse_dynamics dynamics 'dynamics --method radau' 'dynam
     'dynamics --method generalized_alpha' 'kinematics --formulation rp'; do
     # shellcheck disable=SC2086
     expect "a slider beyond its dead point: $how" 1 "$program" run "$dir/slider.yaml" -o "$dir/o" --analysis $how
-    says 'driver push has come to a dead point of the mechanism at t = 0.6339'
+    says 'driver push has reached a dead point of the mechanism at t = 0.6339'
     says 's, where its value is 1.267'
 done
 sed 's/value: 2\*t/value: "if(t > 0.3, 9, t)"/' "$dir/slider.yaml" >"$dir/jump.yaml"
@@ -55,7 +55,7 @@ done
 printf 'se3d: 1\nbodies: [%s]\njoints: [%s]\ndrivers: [{name: push, joint: slide, coordinate: displacement, value: 3}]\nanalysis: {type: assembly}\n' \
     "$(echo "$body" | sed 's/}/, held: true}/')" "$slide" >"$dir/held.yaml"
 expect 'a driver of a held body' 1 "$program" run "$dir/held.yaml" -o "$dir/o"
-says 'push asks body a to move, which is held'
+says 'push requires body a to move, but it is held'
 
 # A body on springs.
 printf 'se3d: 1\nbodies: [%s]\nforces: [{name: s, type: tsda, body_i: ground, body_j: a, k: 100, l0: 0.5}]\nanalysis: {type: equilibrium}\n' \
@@ -152,7 +152,7 @@ for channel in particles.count particles.lost particles.left sand.count sand.mas
     sed "s/^analysis.*/events: [{name: e, channel: $channel, value: 0.5}]\\nanalysis: {type: dynamics, duration: 0.01, method: verlet}/" \
         "$dir/grains.yaml" >"$dir/event.yaml"
     expect "an event on $channel" 2 "$program" run "$dir/event.yaml" -o "$dir/o"
-    says "\`$channel\` changes by jumps"
+    says "\`$channel\` changes in jumps"
 done
 for channel in particles.energy sand.energy contacts.force_max energy.dissipated a.angular_velocity.x; do
     sed "s/^analysis.*/events: [{name: e, channel: $channel, value: 1e9}]\\nanalysis: {type: dynamics, duration: 0.01, method: verlet}/" \

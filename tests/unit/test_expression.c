@@ -635,7 +635,7 @@ static void bad_definitions_are_rejected(void)
     check_symbol("pi", 3, SE3D_ERR_INVALID_ARGUMENT, "symbol 'pi': the name is reserved");
     check_symbol("deg", 3, SE3D_ERR_INVALID_ARGUMENT, "symbol 'deg': the name is reserved");
     check_symbol("if", 3, SE3D_ERR_INVALID_ARGUMENT, "reserved");
-    check_symbol("t", 3, SE3D_ERR_INVALID_ARGUMENT, "'t': the name is that of a variable");
+    check_symbol("t", 3, SE3D_ERR_INVALID_ARGUMENT, "'t': a variable has this name");
     check_symbol("2a", 3, SE3D_ERR_INVALID_ARGUMENT, "letters, digits");
     check_symbol("a-b", 3, SE3D_ERR_INVALID_ARGUMENT, "'a-b'");
     check_symbol("^", 3, SE3D_ERR_INVALID_ARGUMENT, "letters, digits");

@@ -210,10 +210,11 @@ static void surfaces_that_enclose_nothing_name_the_edge(void)
     refuse(BOX_POINTS "f 4 3 2 1\n" BOX_SIDES, "scale: 10",
            "the edge from [0, 0, 40] to [10, 0, 40]");
     refuse(BOX_POINTS "f 4 3 2 1\nf 8 7 6 5\n" BOX_SIDES, "scale: 1", "is inverted");
-    refuse(BOX "f 1 2 7\n", "scale: 1", "as often one way as the other");
-    refuse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n", "scale: 1", "encloses no volume");
+    refuse(BOX "f 1 2 7\n", "scale: 1", "equally often in both directions");
+    refuse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n", "scale: 1",
+           "does not enclose a volume");
     refuse("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 3 2 1\nf 1 2 4\nf 4 2 1\n", "scale: 1",
-           "encloses no volume");
+           "does not enclose a volume");
 }
 
 /* Drawn, or of a body that has its mass: nobody asks. */

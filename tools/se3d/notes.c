@@ -32,7 +32,7 @@ static void note_particles(notes *n, const se3d_run *run)
     for (size_t k = 0; k < sizeof types / sizeof *types && se3d_run_count_particles(run) > 0; ++k) {
         if (is_analysed(run, types[k])) {
             snprintf(text, sizeof text,
-                     "%s: the particles are left out, and what they do to the bodies; let dynamics "
+                     "%s: the particles and their forces on the bodies are left out; let dynamics "
                      "bring them to rest",
                      types[k]);
             add(n, text);

@@ -135,7 +135,7 @@ int options_read(options *o, const char *command, const char *allowed, int count
             }
             k += used;
         } else if (o->model) {
-            return usage_error(command, "one model at a time, what is", word);
+            return usage_error(command, "one model at a time, unexpected argument", word);
         } else {
             o->model = word;
             ++k;

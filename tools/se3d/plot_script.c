@@ -131,7 +131,7 @@ int plot_choose(plot *p)
     }
     for (size_t k = 0; k < p->panel_count && !p->quiet; ++k) {
         if (p->panels[k].dropped > 0) {
-            fprintf(stderr, "se3d plot: %s: %zu more curves have no room, choose with -y\n",
+            fprintf(stderr, "se3d plot: %s: there is no room for %zu more curves, choose with -y\n",
                     p->panels[k].title, p->panels[k].dropped);
         }
     }

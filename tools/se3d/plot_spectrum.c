@@ -200,7 +200,7 @@ int plot_transform(plot *p)
             return 0;
         }
         if (k == 0 && !take_names(p, &spectrum)) {
-            fprintf(stderr, "se3d plot: %s: was changed by others\n", p->spectra[k]);
+            fprintf(stderr, "se3d plot: %s: was changed by another program\n", p->spectra[k]);
             table_destroy(&spectrum);
             return 0;
         }

@@ -143,7 +143,7 @@ static void print_passing(const se3d_model *model)
         if (pairs > 1) {
             printf(" (and %zu more pairs)", pairs - 1);
         }
-        puts(" pass through each other: make one of them convex, or of other shapes");
+        puts(" pass through each other: make one of them convex, or build it from other shapes");
     }
 }
 

@@ -140,7 +140,7 @@ static int put_picture(film *f, size_t k)
     snprintf(expression, sizeof expression, "se3d.picture(%.9g)", time < f->end ? time : f->end);
     char *text = devtools_evaluate(&f->browser, expression);
     if (!text || strncmp(text, head, strlen(head)) != 0) {
-        return fail("Chromium gave no picture", "");
+        return fail("Chromium returned no picture", "");
     }
     text += strlen(head);
     return child_write(&f->encoder, text, decode(text)) ||

@@ -240,7 +240,8 @@ static int make_three(const page *p)
     snprintf(script, sizeof script, "%.4000s/three.js", p->cache);
     if (!file_is_own(p->cache) || !file_is_own(script)) {
         fprintf(stderr,
-                "se3d %s: %s belongs to others, or they can change it; set SE3D_CACHE to a folder "
+                "se3d %s: %s belongs to another user, or others can change it; set SE3D_CACHE to a "
+                "folder "
                 "of your own\n",
                 p->command, script);
         return EXIT_FAILED;

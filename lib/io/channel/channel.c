@@ -451,7 +451,8 @@ bool se3di_channel_find_number(se3d_model *model, const char *name, se3di_channe
     } else {
         se3di_channel_format_column(channel, width - 1, column, sizeof column);
         snprintf(problem, problem_size,
-                 "`%.200s` is no single number, name a component such as `%.200s`", name, column);
+                 "`%.200s` is not a single number, name a component such as `%.200s`", name,
+                 column);
     }
     return false;
 }

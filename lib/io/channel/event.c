@@ -37,7 +37,8 @@ bool se3di_event_source_find(se3d_model *model, const char *channel, se3di_event
     }
     if (!se3di_channel_is_continuous(&source->channel)) {
         snprintf(problem, size,
-                 "`%.200s` changes by jumps, an event needs what changes continuously", channel);
+                 "`%.200s` changes in jumps, an event needs a channel that changes continuously",
+                 channel);
         return false;
     }
     return true;

@@ -57,7 +57,7 @@ bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const ch
         return se3di_reader_fail_memory(reader);
     }
     if (!is_plain(path)) {
-        return fail(reader, map, file, "is none, but a folder, a pipe or a device");
+        return fail(reader, map, file, "is a folder, a pipe or a device, must be a regular file");
     }
     FILE *stream = fopen(path, "rb");
     if (!stream) {

@@ -259,7 +259,7 @@ static void fail_syntax(builder *b, const yaml_parser_t *parser, const char *tex
     } else if (strstr(problem, "found character that cannot start any token")) {
         fail_at(b, parser->problem_mark, NULL,
                 "syntax error: a value cannot begin with this character (a tab, @, `, %%); "
-                "indent with spaces, put texts in quotes");
+                "indent with spaces and put texts in quotes");
     } else {
         fail_at(b, parser->problem_mark, NULL, "syntax error: %s%s%s", problem,
                 parser->context ? " " : "", parser->context ? parser->context : "");

@@ -334,14 +334,14 @@ bool se3di_read_file_name(se3di_reader *reader, const se3di_node *node, const ch
     }
     if (!stays_inside(text) || (length > 1 && text[1] == ':')) {
         return se3di_reader_fail(reader, node,
-                                 "`%.60s` must be a file inside the folder of the results: a "
+                                 "`%.60s` must be a file inside the results folder: a "
                                  "relative path without `..`, `.` and `//`",
                                  text);
     }
     if (is_like_command(text)) {
         return se3di_reader_fail(reader, node,
-                                 "`%.60s`: no part of it may begin with `-`, `|`, `<`, `>` or `~`, "
-                                 "which programs that are given the name take for something else",
+                                 "`%.60s`: no part of it may begin with `-`, `|`, `<`, `>` or `~`: "
+                                 "other programs would not take it for a file name",
                                  text);
     }
     if (length >= sizeof tail - 1 && strcmp(text + length - (sizeof tail - 1), tail) == 0) {

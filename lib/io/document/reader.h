@@ -46,7 +46,7 @@ bool se3di_read_bool(se3di_reader *reader, const se3di_node *node, int32_t *valu
 /* A name that other things refer to: not empty, without blanks at its ends, dots, commas, ... */
 bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **name);
 
-/* The name of a file inside the folder of the results: relative, without "..", "." and "//". */
+/* The name of a file inside the results folder: relative, without "..", "." and "//". */
 bool se3di_read_file_name(se3di_reader *reader, const se3di_node *node, const char **name);
 
 /* True for letters, digits and '_', not beginning with a digit. */

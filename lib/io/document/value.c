@@ -262,10 +262,11 @@ static bool read_matrix(se3di_reader *reader, const se3di_node *node, double p[4
     }
     const double error = se3di_rotation_matrix_error(A);
     if (!(error <= 1e-6)) {
-        return se3di_reader_fail(reader, node,
-                                 "is not a rotation: A^T A differs from the identity by %.3g, its "
-                                 "columns must be unit vectors square to each other (to 1e-6)",
-                                 error);
+        return se3di_reader_fail(
+            reader, node,
+            "is not a rotation: A^T A differs from the identity by %.3g, its "
+            "columns must be unit vectors perpendicular to each other (to 1e-6)",
+            error);
     }
     if (se3di_rotation_matrix_determinant(A) < 0.0) {
         return se3di_reader_fail(reader, node,

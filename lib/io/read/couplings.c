@@ -44,7 +44,8 @@ bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3
         return false;
     }
     if (word == 0 ? !angle : !displacement) {
-        return se3di_reader_fail(reader, child, "is `%s`, which this joint has not, must be `%s`",
+        return se3di_reader_fail(reader, child,
+                                 "is `%s`, which this joint does not have, must be `%s`",
                                  coordinates[word], coordinates[1 - word]);
     }
     *coordinate = (int32_t)word;

@@ -102,9 +102,10 @@ static bool read_frames(se3di_reader *reader, const se3di_node *node,
         const char *others =
             global ? " point_i point_j orientation_i orientation_j " : " orientation ";
         if (se3di_keys_contain(others, child->key)) {
-            return se3di_reader_fail(reader, child,
-                                     "is out of place: give `at` and `orientation` (ground frame), "
-                                     "or point_i, point_j, orientation_i, orientation_j");
+            return se3di_reader_fail(
+                reader, child,
+                "is not allowed here: give `at` and `orientation` (ground frame), "
+                "or point_i, point_j, orientation_i, orientation_j");
         }
     }
     if (!global) {

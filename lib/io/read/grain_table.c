@@ -81,11 +81,11 @@ static bool read_header(table *t)
         }
         if (!fields[k]) {
             return fail(t, cell,
-                        "is no column: x, y, z, radius are needed; vx, vy, vz, wx, wy, "
-                        "wz, material, time, id may be there");
+                        "is not a column: x, y, z, radius are required; vx, vy, vz, wx, wy, wz, "
+                        "material, time, id are optional");
         }
         if (seen >> k & 1u) {
-            return fail(t, cell, "is there twice");
+            return fail(t, cell, "appears twice");
         }
         seen |= 1u << k;
         t->field[t->columns++] = k; /* at most FIELD_COUNT, as none is there twice */
@@ -132,9 +132,7 @@ static bool read_material(table *t, const char *cell)
 {
     if (!se3di_reader_find_material(t->reader, cell, &t->materials[t->count])) {
         return t->reader->status < 0 ? false
-                                     : fail(t, cell,
-                                            "is no material that is listed under "
-                                            "`materials`");
+                                     : fail(t, cell, "is not a material listed under `materials`");
     }
     return true;
 }

@@ -214,7 +214,7 @@ bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *n
     const se3di_body_entry *bodies[2] = {NULL, NULL};
     se3d_joint_def def = se3d_joint_def_default();
     if (!type) {
-        return se3di_reader_fail(reader, node, "the joint type `%.60s` cannot be made", name);
+        return se3di_reader_fail(reader, node, "a joint of type `%.60s` cannot be made", name);
     }
     if (!se3di_read_key_body(reader, node, "body_i", &bodies[0]) ||
         !se3di_read_key_body(reader, node, "body_j", &bodies[1])) {

@@ -149,7 +149,7 @@ bool se3di_read_modes(se3di_reader *reader, const se3di_node *node, se3di_analys
     for (const se3di_node *child = node ? node->first : NULL; child; child = child->next) {
         if (!reader->options->analysis &&
             se3di_keys_contain(" file inputs outputs frequencies ", child->key)) {
-            return se3di_reader_fail(reader, child, "is for an analysis of type modes only");
+            return se3di_reader_fail(reader, child, "is only for an analysis of type modes");
         }
     }
     return true;

@@ -192,7 +192,7 @@ static bool find_kind(se3di_reader *reader, const se3di_node *node, size_t *kind
     }
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (!se3di_keys_contain(kinds[found].keys, child->key)) {
-            return se3di_reader_fail(reader, child, "has no meaning beside `%s`, which takes:%s",
+            return se3di_reader_fail(reader, child, "has no effect with `%s`, which takes:%s",
                                      kinds[found].key, kinds[found].keys);
         }
     }
@@ -238,8 +238,8 @@ static bool read_plot_channel(se3di_reader *reader, const se3di_node *node,
         found = found || is_part(*name, from->channels[k].name) ||
                 is_part(from->channels[k].name, *name);
     }
-    return found ||
-           se3di_reader_fail(reader, node, "`%.100s` is no channel of %.100s", *name, from->file);
+    return found || se3di_reader_fail(reader, node, "`%.100s` is not a channel of %.100s", *name,
+                                      from->file);
 }
 
 /* The results that a plot shows: `from`, or the first that have channels. */
@@ -260,7 +260,7 @@ static bool find_results(se3di_reader *reader, const se3di_node *node,
         }
     }
     return se3di_reader_fail(reader, child ? child : node,
-                             "names no results with channels, which `output` must have");
+                             "names no results file with channels, must be one of `output`");
 }
 
 static bool read_plot(se3di_reader *reader, const se3di_node *node, se3d_model_picture *picture)

@@ -115,7 +115,7 @@ static bool read_region(se3di_reader *reader, const se3di_node *node, se3d_fill_
         return false;
     }
     if (axis && kind != SE3D_FILL_REGION_CYLINDER) {
-        return se3di_reader_fail(reader, axis, "is of `region: cylinder` only");
+        return se3di_reader_fail(reader, axis, "is only for `region: cylinder`");
     }
     def->region = (int32_t)kind;
     def->axis = (int32_t)along;
@@ -186,7 +186,7 @@ static bool check_beside(se3di_reader *reader, const se3di_node *node, const cha
 {
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (!se3di_keys_contain(keys, child->key)) {
-            return se3di_reader_fail(reader, child, "has no meaning beside `%s`, which takes:%s",
+            return se3di_reader_fail(reader, child, "has no effect with `%s`, which takes:%s",
                                      beside, keys);
         }
     }
@@ -343,16 +343,16 @@ static bool check_analyses(se3di_reader *reader)
         int32_t method = entry->solver.method;
         if (strcmp(type, "dynamics") != 0 && strcmp(type, "kinematics") != 0 &&
             model->moving_shapes) {
-            return se3di_reader_fail_key(reader, node, "type",
-                                         "is `%s`, must be dynamics or kinematics where particles "
-                                         "touch bodies that move",
-                                         type);
+            return se3di_reader_fail_key(
+                reader, node, "type",
+                "is `%s`, must be dynamics or kinematics if particles touch bodies that move",
+                type);
         }
         if (strcmp(type, "dynamics") == 0 && method != SE3D_METHOD_AUTO &&
             method != SE3D_METHOD_VERLET) {
-            return se3di_reader_fail_key(reader, node, "method",
-                                         "must be verlet (or auto, which picks it) where there are "
-                                         "particles");
+            return se3di_reader_fail_key(
+                reader, node, "method",
+                "must be verlet (or auto, which picks it) if there are particles");
         }
     }
     return true;
@@ -369,7 +369,7 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
         return false;
     }
     if (sinks && !list) {
-        return se3di_reader_fail(reader, sinks, "needs `particles`, which the model has not");
+        return se3di_reader_fail(reader, sinks, "needs `particles`, which the model does not have");
     }
     if (!list) {
         return true;

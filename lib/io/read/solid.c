@@ -155,14 +155,15 @@ static bool fail_edge(se3di_reader *reader, const se3di_node *node, const se3di_
 {
     const double *a = mesh->points + 3 * (size_t)e->low;
     const double *b = mesh->points + 3 * (size_t)e->high;
-    const char *why = e->count == 1 ? "has one triangle only, must have two: the surface is open"
-                      : e->count == 2
-                          ? "is passed twice the same way: one of its two triangles is inverted"
-                          : "has triangles that do not pass it as often one way as the other";
+    const char *why =
+        e->count == 1 ? "has one triangle only, must have two: the surface is open"
+        : e->count == 2
+            ? "is passed twice in the same direction: one of its two triangles is inverted"
+            : "has triangles that do not pass it equally often in both directions";
     return se3di_reader_fail_key(
         reader, node, "file",
-        "`%.200s` encloses no solid that has a mass: the edge from [%.9g, %.9g, %.9g] to [%.9g, "
-        "%.9g, %.9g] %s; mend it, or give the body mass and inertia",
+        "`%.200s` does not enclose a solid with a mass: the edge from [%.9g, %.9g, %.9g] to [%.9g, "
+        "%.9g, %.9g] %s; repair it, or give the body mass and inertia",
         mesh->file, a[0], a[1], a[2], b[0], b[1], b[2], why);
 }
 
@@ -255,8 +256,8 @@ static bool measure_mesh(se3di_reader *reader, const se3di_node *node, const se3
     }
     if (!(fabs(m.volume) > 1e-9 * box)) {
         return se3di_reader_fail_key(reader, node, "file",
-                                     "`%.200s` encloses no volume, a body of that `density` needs "
-                                     "one; or give the body mass and inertia",
+                                     "`%.200s` does not enclose a volume, which a body with that "
+                                     "`density` needs; or give the body mass and inertia",
                                      mesh->file);
     }
     solid->mass = density * fabs(m.volume);

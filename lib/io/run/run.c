@@ -125,8 +125,7 @@ static se3d_status join(runner *r, const char *file, char *path, size_t size)
         return SE3D_OK;
     }
     snprintf(text, sizeof text, "%.500s: cannot be written: %s", file,
-             errno == ELOOP ? "a symbolic link leads out of the folder of the results"
-                            : strerror(errno));
+             errno == ELOOP ? "a symbolic link leads out of the results folder" : strerror(errno));
     return fail(r, SE3D_ERR_IO, text);
 }
 
@@ -317,8 +316,8 @@ static const char *advise(se3d_status status, int32_t analysis)
     case SE3D_ERR_STEP_SIZE:
         return advise_iteration(analysis);
     case SE3D_ERR_STEP_COUNT:
-        return "try a larger --step, a looser `tolerance`, --method radau where the motion is "
-               "stiff, a shorter --duration, or a larger `steps_max`";
+        return "try a larger --step, a looser `tolerance`, --method radau if the motion is stiff, "
+               "a shorter --duration, or a larger `steps_max`";
     case SE3D_ERR_NOT_FINITE:
         return moves
                    ? "look for a function that is not finite at this time, or try a smaller --step"

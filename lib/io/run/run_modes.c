@@ -40,7 +40,7 @@ static se3d_status open_csv(se3di_modes_run *run, const char *suffix, size_t col
     snprintf(name, sizeof name, "%.*s%s%s", (int)stem, file, suffix, suffix[0] ? ".csv" : "");
     if (!se3di_file_join(run->folder, name, path, sizeof path)) {
         snprintf(run->problem, sizeof run->problem, "%.500s: cannot be written: %s", name,
-                 errno == ELOOP ? "a symbolic link leads out of the folder of the results"
+                 errno == ELOOP ? "a symbolic link leads out of the results folder"
                                 : strerror(errno));
         return SE3D_ERR_IO;
     }
