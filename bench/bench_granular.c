@@ -260,7 +260,7 @@ static void copy_tiles(bench *b, size_t n)
     }
 }
 
-/* Returns 0 where there is no such file. */
+/* Returns 0 if there is no such file. */
 static int read_state(bench *b)
 {
     FILE *file = b->file ? fopen(b->file, "r") : NULL;

@@ -13,7 +13,7 @@
  *                beside Beverloo's law
  *     drum       edge=16 rate=2: the slope in a drum that turns by so many rad/s
  *
- * law=hooke|hertz, friction=0.5, rolling=0, threads=1 where it matters. */
+ * law=hooke|hertz, friction=0.5, rolling=0, threads=1 if it matters. */
 #define _POSIX_C_SOURCE 200809L
 #include "se3d/se3d.h"
 

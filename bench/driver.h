@@ -8,7 +8,7 @@
  *
  * KIND: a chain with revolutes, b chain with balls, f four-bar windows, p pendulum; METHOD is the
  * driver's own; SETTING the step [s] or the tolerance; SAMPLES parts of the run between which
- * energy and constraints are looked at (1 where time is measured); SECONDS of CPU, the least of
+ * energy and constraints are looked at (1 if time is measured); SECONDS of CPU, the least of
  * REPEATS runs, model building not counted. X Y Z is the tip at the end, DRIFT the largest change
  * of the energy [J], GAP the largest violation. */
 #ifndef BENCH_DRIVER_H

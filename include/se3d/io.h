@@ -16,8 +16,8 @@ extern "C" {
 /* Why a file was rejected or a run failed: "file:line:column: path: what, and what is allowed".
  * @since 0.1 */
 typedef struct se3d_model_error {
-    size_t line;   /* 1-based; 0 where no line is to blame */
-    size_t column; /* 1-based, in characters; 0 where unknown */
+    size_t line;   /* 1-based; 0 if no line is to blame */
+    size_t column; /* 1-based, in characters; 0 if unknown */
     char message[1024];
 } se3d_model_error;
 
@@ -201,7 +201,7 @@ typedef struct se3d_model_shape {
     double scale;          /* mesh: factor on its vertices [1] */
     double position[3];    /* of the shape's centre, body frame [m] */
     double orientation[4]; /* shape -> body, Euler parameters */
-    double color[3];       /* 0..1; -1 where none is given */
+    double color[3];       /* 0..1; -1 if none is given */
     const char *file;      /* mesh; "" for the others; owned by the model */
 } se3d_model_shape;
 

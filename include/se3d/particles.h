@@ -294,7 +294,7 @@ SE3D_API se3d_status se3d_particles_set_tags(se3d_particles *particles, size_t c
 typedef struct se3d_particles_tally {
     uint64_t count;   /* that are there */
     uint64_t lost;    /* removed by sinks */
-    uint64_t outside; /* of those that are there: beyond the domain; where there is none: below
+    uint64_t outside; /* of those that are there: beyond the domain; if there is none: below
                          everything, falling without end */
     double mass;      /* of those that are there [kg] */
     double energy;    /* kinetic and potential of those [J] */
@@ -481,7 +481,7 @@ typedef struct se3d_particles_stats {
     uint64_t contacts; /* at the last step */
     uint64_t lost;     /* particles that left through a sink */
     uint64_t bytes;    /* memory held */
-    uint64_t threads;  /* that worked on the last step: 1 where the library knows no OpenMP */
+    uint64_t threads;  /* that worked on the last step: 1 if the library knows no OpenMP */
     uint64_t left;     /* lost, and those that are there but outside, as in se3d_particles_tally */
 } se3d_particles_stats;
 

@@ -17,7 +17,7 @@
  *
  * Threads: distinct systems are independent. A function may run concurrently with others that take
  * the same object by a pointer to const, as it does itself (a Reader); it needs objects that it
- * takes otherwise for itself (Exclusive); without objects it is Safe. Where a function differs, its
+ * takes otherwise for itself (Exclusive); without objects it is Safe. If a function differs, its
  * comment says which it is, and why in parentheses.
  *
  * Errors: a call that takes a system and fails records a message: se3d_system_get_error. Arguments

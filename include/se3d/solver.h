@@ -130,7 +130,7 @@ static inline se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_
     return se3d_solver_get_stats_sized(solver, stats, sizeof *stats);
 }
 /* How far the start that the user gave was from what the constraints admit: the last one that a run
- * of the solver began from. All is zero where it was met but for rounding (1e-9 of the model's size
+ * of the solver began from. All is zero if it was met but for rounding (1e-9 of the model's size
  * and speeds), and the velocities where none was given (all zero) or drivers say them. Norms are
  * roots of the sums of squares over the bodies. @since 0.1 */
 typedef struct se3d_start_change {

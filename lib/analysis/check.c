@@ -5,7 +5,7 @@
  *
  *     C_r = sum_k f_k C_k,      and consistent only if  Phi_r = sum_k f_k Phi_k  (and nu alike).
  *
- * Where the constraints cannot be met, the poses of least violation are analysed: there the
+ * If the constraints cannot be met, the poses of least violation are analysed: there the
  * violations are a combination of rows that vanishes, so that the contradiction shows as a
  * redundant row. In large models a body whose only constraint has full row rank on it leaves that
  * constraint independent of all others; such bodies are taken off first, so that trees cost no QR.

@@ -16,7 +16,7 @@ typedef struct se3di_check {
     size_t message_count, message_capacity;
 } se3di_check;
 
-/* Analyse the constraints of `model` at its time. Where the poses do not fit, they are assembled
+/* Analyse the constraints of `model` at its time. If the poses do not fit, they are assembled
  * first (or brought to the least violation); the model is left as it was. On failure nothing is
  * held. @return OK, INFO_REDUNDANT, NO_MEMORY, NOT_FINITE, CALLBACK */
 se3d_status se3di_check_init(se3di_check *check, se3di_model *model, se3di_error *error);

@@ -18,12 +18,12 @@ typedef se3d_status (*se3di_crossing_eval)(void *ctx, double t, double *value);
 typedef struct se3di_crossing_function {
     se3di_crossing_eval rough, exact;
     void *ctx;
-    const double *t;   /* nodes, ascending: from the begin to the end of the step */
+    const double *t;   /* nodes, ascending: from the beginning to the end of the step */
     const double *g;   /* rough values there */
     int count;         /* of nodes */
     double band;       /* >= 0: this near to zero no side can be told */
     int32_t direction; /* +1: rising, -1: falling, 0: both */
-    int32_t side;      /* of the begin where that is in the band: -1, +1, or 0 for none */
+    int32_t side;      /* of the beginning where that is in the band: -1, +1, or 0 for none */
 } se3di_crossing_function;
 
 typedef struct se3di_crossing {
@@ -39,7 +39,7 @@ typedef struct se3di_crossings {
                      only known (not 0) where it ends in the band */
 } se3di_crossings;
 
-/* All crossings after the begin of the step. A crossing is one of zero from a side on which the
+/* All crossings after the beginning of the step. A crossing is one of zero from a side on which the
  * function has been beyond the band. What begins at zero has not crossed it; what ends at zero
  * has. */
 se3d_status se3di_crossings_find(const se3di_crossing_function *function, se3di_crossings *found);

@@ -110,7 +110,7 @@ static int is_smooth(const se3di_equations *equations, double t, double way)
     return 1;
 }
 
-/* The time of the dead point before t_end; HUGE_VAL where there is none. */
+/* The time of the dead point before t_end; HUGE_VAL if there is none. */
 static double find_dead_point(se3di_equations *equations, double t_end)
 {
     const double way = t_end - equations->assembly.model->time;

@@ -10,7 +10,7 @@
 #define RESOLVED  1e-15 /* relative length of the shortest step */
 #define TWO_PI    6.283185307179586
 
-/* How far the value at t + h is from the parabola at t, in units of the row's scale; 0 where it
+/* How far the value at t + h is from the parabola at t, in units of the row's scale; 0 if it
  * cannot be computed, which is reported when it is used. */
 static double measure(const se3di_model *model, uint32_t row, double h, double scale)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Steps of kinematics that smooth drivers allow: within a step a prescribed value stays near the
- * parabola that positions are predicted by. Where it does not, as in the middle of tanh(1e4 (t -
+ * parabola that positions are predicted by. If it does not, as in the middle of tanh(1e4 (t -
  * 1)), the end of the step is far from the prediction and the positions need not be found. */
 #ifndef SE3DI_ANALYSIS_DRIVER_STEP_H
 #define SE3DI_ANALYSIS_DRIVER_STEP_H

@@ -198,7 +198,7 @@ static se3d_status move(statics *s, double fraction, int *converged)
 }
 
 /* Take the step, shortened where it leads too far from the constraints; *ratio of the work done to
- * what was predicted. Where too little is done all is as before, and *ratio is -1. */
+ * what was predicted. If too little is done all is as before, and *ratio is -1. */
 static se3d_status try_step(statics *s, double *ratio)
 {
     const se3di_assembly *assembly = &s->equations->assembly;

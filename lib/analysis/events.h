@@ -3,8 +3,8 @@
  *
  * A step is looked at in one of two ways. Methods with dense output (integrator `advance`) make
  * their step ahead of the model's time and are asked for states within it. All others, and time
- * driven analyses, are watched: from the state at the begin of an accepted step a shorter one leads
- * to any time within it, and the state at its end is put back. Neither changes the motion.
+ * driven analyses, are watched: from the state at the beginning of an accepted step a shorter one
+ * leads to any time within it, and the state at its end is put back. Neither changes the motion.
  * docs/theory/events.md */
 #ifndef SE3DI_EVENTS_H
 #define SE3DI_EVENTS_H

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A smooth f obeys f1 - f0 = h/2 (f0' + f1') + O(h^3). Where it does not, the interval is halved,
+/* A smooth f obeys f1 - f0 = h/2 (f0' + f1') + O(h^3). If it does not, the interval is halved,
  * always towards the half that misses more; f jumps if it still changes in the last one, as short
  * as the times are resolved. */
 #include "analysis/jump.h"

@@ -12,7 +12,7 @@ typedef struct se3di_jump {
 } se3di_jump;
 
 /* Look for a jump of a value between t0 and t1, in `parts` equal parts and up to the derivative
- * `highest`. Returns 1 where there is one. */
+ * `highest`. Returns 1 if there is one. */
 int se3di_jump_find(const se3di_assembly *assembly, const double range[2], int parts, int highest,
                     se3di_jump *jump);
 /* Whether a function jumps between t0 and t1, by whole turns also. */

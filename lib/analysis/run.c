@@ -243,8 +243,7 @@ static void mark_history(se3di_model *model)
     model->history_values = model->values_version;
 }
 
-/* Where a step ends after the present time, what elements remember of its end is not of their past.
- */
+/* If a step ends after the present time, what elements remember of its end is not of their past. */
 static se3d_status recall(se3di_run *run)
 {
     se3di_model *model = run->model;
@@ -571,8 +570,8 @@ static double last_accepted(const se3di_run *run, double t_end)
     return model->history[passed ? SE3DI_HISTORY_BEGIN : SE3DI_HISTORY_TIME];
 }
 
-/* The state at t: the end of an accepted step, or the begin of the one that goes on after it, which
- * elements with a memory have seen the end of already. */
+/* The state at t: the end of an accepted step, or the beginning of the one that goes on after it,
+ * which elements with a memory have seen the end of already. */
 static se3d_status show_accepted(se3di_run *run, double t)
 {
     se3di_model *model = run->model;
@@ -625,7 +624,7 @@ static void recover(se3di_run *run, double t_end)
     *run->error = cause;
 }
 
-/* Where dynamics fails near a prescribed value or rate that jumps, that is why. */
+/* If dynamics fails near a prescribed value or rate that jumps, that is why. */
 static void blame_jump(const se3di_run *run, double t_end)
 {
     const double now = run->model->time;

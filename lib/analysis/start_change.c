@@ -57,7 +57,7 @@ static void take(const double change[2], double length, se3di_handle body, doubl
     }
 }
 
-/* Someone gave velocities: where all are zero, none was. */
+/* Someone gave velocities: if all are zero, none was. */
 static int has_velocities(const se3di_model *model, const se3di_frame *given)
 {
     double sum = 0.0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Who is at work on a system: code of the user's that is called from there must not change what is
+/* Who is at work on a system: user code that is called from there must not change what is
  * being worked on, nor begin the same work anew.
  *
  * A call that works for long (a run, an analysis) raises the level; it has the system to itself,

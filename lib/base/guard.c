@@ -23,7 +23,7 @@ int se3di_guard_ask(se3di_guard *guard)
     return guard && !guard->muted && guard->came;
 }
 
-/* Steps of the whole run at the pace of the last ones; infinite where the time stands still. */
+/* Steps of the whole run at the pace of the last ones; infinite if the time stands still. */
 static double foresee(const se3di_guard *guard, double t, double since, double steps)
 {
     const double rest = guard->end - t;

@@ -29,7 +29,7 @@ typedef struct se3di_guard_pace {
     double foreseen; /* of the whole run */
 } se3di_guard_pace;
 
-/* At the begin of a call that is to come to `end`. */
+/* At the beginning of a call that is to come to `end`. */
 void se3di_guard_begin(se3di_guard *guard, double begin, double end);
 /* Whether the caller wants an end; `guard` may be NULL. */
 int se3di_guard_ask(se3di_guard *guard);

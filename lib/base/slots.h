@@ -17,7 +17,7 @@ typedef struct se3di_handle {
 
 typedef struct se3di_slot {
     uint32_t generation; /* of the present or next object */
-    uint32_t dense;      /* index of the object, SE3DI_NO_INDEX where free */
+    uint32_t dense;      /* index of the object, SE3DI_NO_INDEX if free */
 } se3di_slot;
 
 typedef struct se3di_slots {
@@ -43,13 +43,13 @@ se3di_handle se3di_slots_add(se3di_slots *slots);
 /* Give the object `dense` (< count) a name, unique among those of `owner`, for which there is room
  * (se3di_names_reserve); the text stays the caller's, and must live as long as the entry. */
 void se3di_slots_name(se3di_slots *slots, uint32_t dense, uint32_t owner, const char *name);
-/* Dense index of the object of that name, SE3DI_NO_INDEX where there is none. */
+/* Dense index of the object of that name, SE3DI_NO_INDEX if there is none. */
 uint32_t se3di_slots_find_name(const se3di_slots *slots, uint32_t owner, const char *name);
 
 /* Remove object `dense`, whose name has been taken out; the objects behind it move down by one. */
 void se3di_slots_remove(se3di_slots *slots, uint32_t dense);
 
-/* Dense index of a handle, SE3DI_NO_INDEX where it is null, stale or foreign. */
+/* Dense index of a handle, SE3DI_NO_INDEX if it is null, stale or foreign. */
 uint32_t se3di_slots_find(const se3di_slots *slots, uint32_t index1, uint32_t generation);
 
 /* Handle of the object `dense` (< count). */

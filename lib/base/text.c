@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/* The code of the character at `text`. @return its bytes, 0 where they are not UTF-8. */
+/* The code of the character at `text`. @return its bytes, 0 if they are not UTF-8. */
 static size_t decode(const char *text, uint32_t *code)
 {
     static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};

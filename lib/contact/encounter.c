@@ -141,14 +141,14 @@ static void eval_velocity(se3di_encounter *e)
     se3di_add_scaled(-e->vn, n, e->vt);
 }
 
-/* Time since a new contact began, within the step; 0 where the step is not known. */
+/* Time since a new contact began, within the step; 0 if the step is not known. */
 static double time_since(const se3di_encounter *e)
 {
     double step = e->model->contacts.step;
     return e->vn * step < -e->at->overlap ? -e->at->overlap / e->vn : step;
 }
 
-/* What is left square to the normal. */
+/* What is left perpendicular to the normal. */
 static void project(const double n[3], double x[3])
 {
     se3di_add_scaled(-se3di_dot(n, x), n, x);
@@ -176,7 +176,7 @@ static void eval_turn(const se3di_encounter *e, double out[3])
     se3di_mul(e->model->frames[e->body[0]].A, local, out);
 }
 
-/* The marks stay behind where contact moves on. Where one body spins on the other about the normal,
+/* The marks stay behind where contact moves on. If one body spins on the other about the normal,
  * they then move apart without slip: what counts is the motion half way between the marks and the
  * point, turn x (point - marks)/2 more. */
 static void add_wander(const se3di_encounter *e, double marks[2][3], double xi[3])

@@ -36,7 +36,7 @@ typedef struct se3di_encounter {
     double bend[3], wring;      /* the same for rolling and torsion */
     double give, yield, slack;  /* factors <= 1 of Coulomb's caps on these */
     double force[3], moment[3]; /* on j */
-    double spring[3];           /* a law of the user's: what it remembers */
+    double spring[3];           /* a user-defined law: what it remembers */
     int32_t failed;             /* that law failed: there is no force */
     int32_t reserved;
 } se3di_encounter;
@@ -65,7 +65,7 @@ void se3di_encounter_eval(se3di_encounter *e);
 void se3di_encounter_wrench(const se3di_encounter *e, double wrench[12]);
 /* d wrench / d (dr, dtheta) and / d (v, w), as those of force elements. */
 void se3di_encounter_derivative(const se3di_encounter *e, double K[144], double D[144]);
-/* encounter_callback.c: the same for a law of the user's. */
+/* encounter_callback.c: the same for a user-defined law. */
 void se3di_encounter_call(se3di_encounter *e);
 /* d force and d moment, by differences, along changes of what the law sees. */
 typedef struct se3di_encounter_rates {
@@ -76,7 +76,7 @@ void se3di_encounter_call_rate(const se3di_encounter *e, const se3di_encounter_r
 /* Energy in its springs; power that goes into it. */
 double se3di_encounter_energy(const se3di_encounter *e);
 double se3di_encounter_power(const se3di_encounter *e);
-/* J^-1 a of a body, ground frame; zero where it has no inertia. */
+/* J^-1 a of a body, ground frame; zero if it has no inertia. */
 void se3di_encounter_turn_by(const se3di_body *body, const se3di_frame *frame, const double a[3],
                              double out[3]);
 /* What is remembered of it. */

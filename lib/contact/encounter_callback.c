@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A law of the user's at one point where two bodies touch, and its derivatives by differences.
+/* A user-defined law at one point where two bodies touch, and its derivatives by differences.
  * docs/theory/contact-laws.md */
 #include "contact/encounter.h"
 #include "math/vec3.h"
@@ -35,7 +35,7 @@ static void input_of(const se3di_encounter *e, se3d_contact_input *in)
     se3di_sub(e->w[1], e->w[0], in->spin);
 }
 
-/* Force, moment and spring on j; returns 0 where the law fails. */
+/* Force, moment and spring on j; returns 0 if the law fails. */
 static int call(const se3di_model *model, const se3d_contact_input *in, double force[3],
                 double moment[3], double spring[3])
 {

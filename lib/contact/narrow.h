@@ -14,7 +14,7 @@
 /* How a surface itself bends where it is touched: moving on by a length l along `u` turns its
  * normal by l / r[0], along n x u by l / r[1]. 0: a corner or edge; infinite: flat. */
 typedef struct se3di_bend {
-    double u[3]; /* unit, square to the normal */
+    double u[3]; /* unit, perpendicular to the normal */
     double r[2];
 } se3di_bend;
 
@@ -34,12 +34,12 @@ typedef struct se3di_manifold {
     se3di_contact_point points[SE3DI_MANIFOLD_POINTS];
 } se3di_manifold;
 
-/* The points where shapes i and j touch; none where they are apart, or are two planes or two
+/* The points where shapes i and j touch; none if they are apart, or are two planes or two
  * meshes. */
 void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
                        const se3di_shape_pose *at_j, se3di_manifold *manifold);
 
-/* How far two shapes are apart at least, 0 where they touch, and the direction from i to j in which
+/* How far two shapes are apart at least, 0 if they touch, and the direction from i to j in which
  * they are (zero: not known, as for meshes). */
 double se3di_narrow_gap(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
                         const se3di_shape_pose *at_j, double normal[3]);

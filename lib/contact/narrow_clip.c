@@ -365,7 +365,7 @@ int se3di_narrow_capsules(const se3di_solid *i, const se3di_solid *j, se3di_mani
     return 1;
 }
 
-/* A deepest pair of points where there is no face. */
+/* A deepest pair of points if there is no face. */
 static void cores_touch(const se3di_solid *i, const se3di_solid *j, const double n[3],
                         const double on_i[3], const double on_j[3], double overlap,
                         se3di_manifold *manifold)
@@ -381,7 +381,7 @@ static void cores_touch(const se3di_solid *i, const se3di_solid *j, const double
     (void)se3di_manifold_add(manifold, point, n, overlap, 0);
 }
 
-/* How deep the cores overlap along the normal of a face that looks nearly along n; infinite where
+/* How deep the cores overlap along the normal of a face that looks nearly along n; infinite if
  * it does not. sign: 1 for a face of i, -1 for one of j. */
 static double depth_on(const se3di_face *face, const double n[3], const se3di_solid *i,
                        const se3di_solid *j, double sign)

@@ -46,7 +46,7 @@ typedef struct simplex {
     double weight[4];
 } simplex;
 
-/* Solve the n <= 3 symmetric equations G x = b; 0 where they are singular. */
+/* Solve the n <= 3 symmetric equations G x = b; 0 if they are singular. */
 static int solve_gram(int n, double G[3][3], double b[3], double x[3])
 {
     for (int k = 0; k < n; ++k) {
@@ -84,7 +84,7 @@ static int solve_gram(int n, double G[3][3], double b[3], double x[3])
 }
 
 /* The point of the affine hull of some corners nearest to the origin: weights, all positive, and
- * the point; 0 where it is not between them. */
+ * the point; 0 if it is not between them. */
 static int nearest_of_part(const simplex *s, const int *part, int count, double weight[4],
                            double point[3])
 {
@@ -161,7 +161,7 @@ static int holds(const simplex *s, const vertex *v)
     return 0;
 }
 
-/* The distance; 0 where the origin is within rounding of the simplex. */
+/* The distance; 0 if the origin is within rounding of the simplex. */
 static double walk(const difference *D, simplex *s, double point[3])
 {
     double d[3];
@@ -243,7 +243,7 @@ static double height_over(const polytope *P, const polytope_face *f, const doubl
     return f->distance < HUGE_VAL ? se3di_dot(d, f->n) : 0.0;
 }
 
-/* Complete a simplex that holds the origin to a tetrahedron; 0 where D is flat. */
+/* Complete a simplex that holds the origin to a tetrahedron; 0 if D is flat. */
 static int complete(const difference *D, simplex *s)
 {
     static const double way[6][3] = {{1.0, 0.0, 0.0},  {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0},
@@ -318,7 +318,7 @@ static int is_horizon(const polytope *P, int faces, int a, int b)
     return 1;
 }
 
-/* Faces that the new vertex sees give way to a cone from it. Returns 0 where there is no room. */
+/* Faces that the new vertex sees give way to a cone from it. Returns 0 if there is no room. */
 static int grow(polytope *P, int vertex_index)
 {
     int faces = P->face_count, seen = 0;
@@ -401,7 +401,7 @@ static double expand(polytope *P, double normal[3], double a[3], double b[3])
     return least < HUGE_VAL ? fmax(least, 0.0) : 0.0;
 }
 
-/* Cores without volume in their difference (crossing lines): square to both. */
+/* Cores without volume in their difference (crossing lines): perpendicular to both. */
 static double flat_normal(const difference *D, const simplex *s, double normal[3])
 {
     double e[3], f[3];

@@ -26,9 +26,9 @@ se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double p
                                         const double normal[3], double overlap, uint32_t feature);
 void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double across);
 
-/* The radius about its core (point or line) that is added to a shape; 0 where it has no core. */
+/* The radius about its core (point or line) that is added to a shape; 0 if it has no core. */
 double se3di_core_radius(const se3di_shape *shape);
-/* The point of the core (of the whole shape where it has none) farthest along d. */
+/* The point of the core (of the whole shape if it has none) farthest along d. */
 void se3di_core_support(const se3di_solid *solid, const double d[3], double point[3]);
 /* The part of the shape that looks along d best. */
 void se3di_face_find(const se3di_solid *solid, const double d[3], se3di_face *face);
@@ -39,7 +39,7 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
                              double on_i[3], double on_j[3]);
 
 void se3di_narrow_boxes(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
-/* Two capsules, or the sides of cylinders; returns 0 where these touch with an end. */
+/* Two capsules, or the sides of cylinders; returns 0 if these touch with an end. */
 int se3di_narrow_capsules(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 /* A solid on a mesh; a mesh on the half space at x with the outward normal n. */

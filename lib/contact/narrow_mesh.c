@@ -44,7 +44,7 @@ static const double *corner_of(const se3di_shape *s, uint32_t triangle, uint32_t
     return s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle + k % 3];
 }
 
-/* Returns 0 where the solid's centre is behind it: only closed meshes have a behind. */
+/* Returns 0 if the solid's centre is behind it: only closed meshes have a behind. */
 static int face_of(const meeting *m, uint32_t triangle, face *f)
 {
     const se3di_shape *s = m->mesh->shape;
@@ -80,7 +80,7 @@ static uint32_t way_of(const double n[3])
     return 2 * a + (n[a] < 0.0);
 }
 
-/* A contact at a place of the mesh's surface, where there is none yet. */
+/* A contact at a place of the mesh's surface, if there is none yet. */
 static void add(const meeting *m, const double at[3], const double n[3], double overlap,
                 double radius, uint32_t feature)
 {
@@ -356,13 +356,13 @@ static void try_hull(parting *p)
     }
 }
 
-/* Where two edges pass, on that of the mesh; returns 0 where one passes beyond its end. */
+/* Where two edges pass, on that of the mesh; returns 0 if one passes beyond its end. */
 static int edges_pass(const parting *p, double at[3])
 {
     const double *R = p->segment->at->R;
     const double line[3] = {R[2], R[5], R[8]};
     double d[3], across[3];
-    se3di_cross(p->along, p->n, across); /* in the plane of both, square to the solid's edge */
+    se3di_cross(p->along, p->n, across); /* in the plane of both, perpendicular to the edge */
     se3di_sub(p->lowest, p->segment->at->x, d);
     const double t = se3di_dot(d, across) / se3di_dot(line, across);
     se3di_copy(p->segment->at->x, at);

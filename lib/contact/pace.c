@@ -153,7 +153,7 @@ static double inverse_mass(const se3di_model *model, uint32_t i, uint32_t j)
     return sum;
 }
 
-/* The gap between two shapes and a bound on the speed at which it closes; 0 where they do not meet
+/* The gap between two shapes and a bound on the speed at which it closes; 0 if they do not meet
  * within a step of h, or not at all, or touch. */
 static int meet(const pace *p, uint32_t i, uint32_t j, double h, double *gap, double *closing)
 {

@@ -99,7 +99,7 @@ static void jet_select(jet *a, const se3di_instruction *in)
     if (d.b != 0.0) {
         a[0] = a[1];
     }
-    a[0].f = d.f; /* NaN where either is */
+    a[0].f = d.f; /* NaN if either is */
 }
 
 /* A condition that is NaN takes no branch: the result becomes NaN. */

@@ -194,7 +194,7 @@ static void eval_power(double a, double b, se3di_partials *d)
     d->ab = f * (1.0 + b * l) / a;
 }
 
-/* Comparisons give 1 or 0, and NaN where an operand is NaN: it must not choose a branch. */
+/* Comparisons give 1 or 0, and NaN if an operand is NaN: it must not choose a branch. */
 static void set_truth(int holds, double a, double b, se3di_partials *d)
 {
     *d = (se3di_partials){.f = isnan(a) || isnan(b) ? (double)NAN : (double)holds};

@@ -161,7 +161,7 @@ static se3d_status fail_character(const se3di_lexer *lexer)
                             length == 0 ? 1 : length, c, allowed);
 }
 
-/* Length of the comparison at c, 0 where there is none. */
+/* Length of the comparison at c, 0 if there is none. */
 static size_t comparison_length(const char *c)
 {
     if (c[0] == '<' || c[0] == '>') {

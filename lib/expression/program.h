@@ -20,7 +20,7 @@ typedef enum se3di_op {
     SE3DI_OP_SELECT = 11,      /* a or b, as functions[function] says */
     SE3DI_OP_STEP = 12,        /* five operands */
     SE3DI_OP_JUMP = 13,        /* skip `jump` instructions */
-    SE3DI_OP_JUMP_IF_ZERO = 14 /* pop; skip `jump` instructions where it is 0 */
+    SE3DI_OP_JUMP_IF_ZERO = 14 /* pop; skip `jump` instructions if it is 0 */
 } se3di_op;
 
 typedef struct se3di_instruction {

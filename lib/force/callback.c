@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Force callbacks: a wrench of the user's on two bodies. Without a Jacobian of the user's, central
+/* Force callbacks: a user-defined wrench on two bodies. Without a user-defined Jacobian, central
  * differences stand in: enough for Newton, not for an exact linearisation.  docs/theory/loads.md */
 #include "force/measure.h"
 #include "math/quaternion.h"

@@ -18,9 +18,9 @@ enum {
     SE3DI_FRICTION_RATE = 7       /* of the last accepted state */
 };
 
-/* The reaction of the joint that loads it, on body j, ground frame: force square to the axis,
- * moment about the joint point square to the axis, force and moment along the axis. Linear in the
- * multipliers. */
+/* The reaction of the joint that loads it, on body j, ground frame: force perpendicular to the
+ * axis, moment about the joint point perpendicular to the axis, force and moment along the axis.
+ * Linear in the multipliers. */
 #define SE3DI_FRICTION_PARTS 8
 void se3di_friction_reaction(const se3di_model *model, const se3di_force *force,
                              const double *lambda, double R[SE3DI_FRICTION_PARTS]);

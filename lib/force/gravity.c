@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Gravity: m g(t) at every centre of mass; V = -m g . r. Where g changes in time, dV/dt at rest is
+/* Gravity: m g(t) at every centre of mass; V = -m g . r. If g changes in time, dV/dt at rest is
  * counted as work of an actuator.  docs/theory/loads.md */
 #include "force/force.h"
 

@@ -25,7 +25,7 @@ typedef struct se3di_law {
 /* Evaluate the coordinate of a term. */
 void se3di_measure_term(const se3di_model *model, const se3di_term *term, int wants_H,
                         se3di_measure *measure);
-/* The distance of two points. Returns 0 where they coincide: g is then zero, the value exact. */
+/* The distance of two points. Returns 0 if they coincide: g is then zero, the value exact. */
 int se3di_measure_length(const se3di_model *model, const se3di_force *force, int wants_H,
                          se3di_measure *measure);
 /* The coordinate that a friction, stop or rsda acts on. Returns 0 as above. */

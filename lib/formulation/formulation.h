@@ -55,7 +55,7 @@ extern const se3di_formulation se3di_formulation_rp;
 /* r-p with the normalisation eliminated: 6 unknowns per body, and the curvature of r-omega. */
 extern const se3di_formulation se3di_formulation_rp_tangent;
 
-/* By se3d_formulation; NULL where there is none. */
+/* By se3d_formulation; NULL if there is none. */
 const se3di_formulation *se3di_formulation_find(int32_t id);
 /* What formulations with unknowns (v, w) or their equal share: no normalisation, accelerations that
  * are the unknowns' own. */

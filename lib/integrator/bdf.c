@@ -5,8 +5,8 @@
  * is then projected to rounding. Order and step follow the local errors that this and the
  * neighbouring orders would have made.
  *
- * Steps of the caller's lengths have no error control: where the last states do not lie nearly
- * evenly behind the new one, and at the begin, the step is one of radau, of order 5.
+ * Steps whose lengths the caller gives have no error control: if the last states do not lie
+ * nearly evenly behind the new one, and at the beginning, the step is one of radau, of order 5.
  * docs/theory/bdf.md */
 #include "integrator/bdf.h"
 #include "integrator/memory.h"
@@ -305,7 +305,7 @@ static double limit_step(const se3di_bdf *m, double h)
     return limit > 0.0 && h > limit ? limit : h;
 }
 
-/* At the begin the order rises and the step doubles as long as the errors allow both. */
+/* At the beginning the order rises and the step doubles as long as the errors allow both. */
 static int grow_at_start(se3di_bdf *m, int order, const errors *e)
 {
     if (m->header[BDF_STARTS] == 0.0) {

@@ -38,7 +38,7 @@ enum {
 #define FREE_MIN    6.0
 #define SLOW_MAX    0.01 /* most of a step times the rate of the motion, */
 #define DECAY_MIN   0.5  /* and least of it times a decay, where decays hold the step */
-#define HELD_EACH   8.0  /* steps between looks where there is no sign */
+#define HELD_EACH   8.0  /* steps between looks if there is no sign */
 #define FORCED_MAX  3
 #define SAFETY      0.8 /* a rejected step costs more than several that are this much shorter */
 #define GROWTH      3.0 /* largest, of a step: one small error may be chance */
@@ -271,7 +271,7 @@ static se3d_status project(rk *m, double t)
 }
 
 /* Stages, error, projection. The derivative at the end is that before the projection, which moves
- * the state by its error: the order is the same. *error is infinite where the step cannot be made
+ * the state by its error: the order is the same. *error is infinite if the step cannot be made
  * at all. */
 static se3d_status attempt(rk *m, double h, double *error)
 {
@@ -393,7 +393,7 @@ static double least_step(const rk *m)
     return 3e-14 * fmax(1e-3, fabs(m->header[RK_T1]));
 }
 
-/* Where the accelerations jump, as under a driver or a load that is switched, no step is short
+/* If the accelerations jump, as under a driver or a load that is switched, no step is short
  * enough for a tight tolerance. One of the least length crosses the jump; what it makes of error is
  * the jump times h. If no ordinary step follows, it was no jump. */
 static se3d_status cross_jump(rk *m, double h, double error)

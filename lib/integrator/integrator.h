@@ -14,7 +14,7 @@
 
 typedef struct se3di_integrator_settings {
     double step;            /* fixed or largest step [s]; 0: chosen */
-    double step_most;       /* of fixed-step methods, where none is given */
+    double step_most;       /* of fixed-step methods, if none is given */
     double tolerance;       /* of adaptive methods */
     double spectral_radius; /* generalized_alpha */
     double alpha;           /* hht */
@@ -27,7 +27,7 @@ typedef struct se3di_integrator_settings {
 typedef struct se3di_integration se3di_integration;
 struct se3di_rk_tableau;
 
-/* Where methods with `advance` keep the end and the begin of their last step. */
+/* Where methods with `advance` keep the end and the beginning of their last step. */
 enum { SE3DI_HISTORY_TIME = 0, SE3DI_HISTORY_BEGIN = 1 };
 
 typedef struct se3di_integrator {
@@ -50,7 +50,7 @@ typedef struct se3di_integrator {
     se3d_status (*run)(se3di_integration *integration, double t_end);
     /* Of methods that step ahead of the model's time and interpolate, others NULL. One accepted
      * step (towards t_end) after the one that is there; `run` to a time within it makes no step, it
-     * gives the model the state there. History [0] is its end, [1] its begin. */
+     * gives the model the state there. History [0] is its end, [1] its beginning. */
     se3d_status (*advance)(se3di_integration *integration, double t_end);
     /* The state at t within the step, y [se3di_state_count], as the interpolation has it. */
     void (*interpolate)(const se3di_integration *integration, double t, double *y);
@@ -90,7 +90,7 @@ struct se3di_integration {
 SE3DI_METHOD_LIST(SE3DI_METHOD_DECLARE)
 #undef SE3DI_METHOD_DECLARE
 
-/* By se3d_method, AUTO: where a run begins; NULL: there is none of that number. */
+/* By se3d_method, AUTO: the one with which a run begins; NULL: there is none of that number. */
 const se3di_integrator *se3di_integrator_find(int32_t method);
 
 #endif

@@ -74,7 +74,7 @@ static uint32_t drop_returning(se3di_equations *equations)
     return count;
 }
 
-/* Where one element changes, all that stand still are decided with it: they hold each other. */
+/* If one element changes, all that stand still are decided with it: they hold each other. */
 static void add_standing(se3di_equations *equations, const se3di_state_scale *scale,
                          double tolerance)
 {

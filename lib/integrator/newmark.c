@@ -53,7 +53,7 @@ se3di_newmark_history se3di_newmark_get_history(const se3di_assembly *assembly)
 }
 
 /* The third derivative of the motion at the start, from accelerations at h/2 and h along the
- * parabola; zero where they cannot be evaluated. */
+ * parabola; zero if they cannot be evaluated. */
 static se3d_status estimate_jerk(se3di_integration *integration, double h, const double *vdot,
                                  double *jerk)
 {

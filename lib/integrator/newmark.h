@@ -36,13 +36,13 @@ enum {
     SE3DI_NEWMARK_LENGTH,                      /* scales */
     SE3DI_NEWMARK_SPEED,
     SE3DI_NEWMARK_SPIN,  /* follows SPEED */
-    SE3DI_NEWMARK_POWER, /* of the accepted state, three; then at the begin of the last step */
+    SE3DI_NEWMARK_POWER, /* of the accepted state, three; then at the beginning of the last step */
     SE3DI_NEWMARK_HEADER = SE3DI_NEWMARK_POWER + 2 * SE3DI_STATE_WORK
 };
 
 typedef struct se3di_newmark_history {
     double *header;
-    double *y, *y_begin;           /* the accepted state, that at the begin of the last step */
+    double *y, *y_begin;           /* the accepted state, that at the beginning of the last step */
     double *a;                     /* [unknowns] */
     double *vdot, *vdot_begin;     /* [unknowns] */
     double *lambda, *lambda_begin; /* [rows] */
@@ -83,7 +83,7 @@ se3d_status se3di_newmark_renew(se3di_integration *integration, const se3di_newm
 se3d_status se3di_newmark_make_step(se3di_integration *integration, const se3di_newmark *method,
                                     double h);
 #define SE3DI_NEWMARK_SAME_TIME 1e-9 /* of a step: two times are one */
-/* The next step of the run, of the length asked for or with control of its error; none where the
+/* The next step of the run, of the length asked for or with control of its error; none if the
  * last one has ended at t_end but for rounding. */
 se3d_status se3di_newmark_advance(se3di_integration *integration, const se3di_newmark *method,
                                   double t_end);

@@ -98,8 +98,8 @@ static int are_plausible(const se3di_equations *equations, const double *guess,
     return off <= change + 1e-6 * size;
 }
 
-/* Accelerations and multipliers of the model's state at t, a part s on the way from the begin of
- * the last step to its end. @return OK, or what the user's code or the memory has failed with */
+/* Accelerations and multipliers of the model's state at t, a part s on the way from the beginning
+ * of the last step to its end. @return OK, or what the user's code or the memory has failed with */
 static se3d_status set_accelerations(se3di_integration *integration, double t, double s)
 {
     se3di_equations *equations = integration->equations;

@@ -402,7 +402,7 @@ static se3d_status advance(se3di_integration *integration, double t_end)
 }
 
 /* The accepted state is the model's own. What step control has learnt is for `start` to forget: a
- * run goes on after steps of the caller's. */
+ * run goes on after steps by the caller. */
 static se3d_status adopt(se3di_integration *integration)
 {
     se3di_equations *equations = integration->equations;

@@ -65,13 +65,13 @@ extern const se3di_joint_type se3di_joint_types[SE3DI_JOINT_TYPE_COUNT];
 SE3DI_JOINT_LIST(SE3DI_JOINT_DECLARE)
 #undef SE3DI_JOINT_DECLARE
 
-/* Complete a triad: `ref_out` is `ref` (NULL: chosen) made square to the unit vector `axis` and of
- * unit length, third = axis x ref. Returns 0 where ref is parallel to the axis. */
+/* Complete a triad: `ref_out` is `ref` (NULL: chosen) made perpendicular to the unit vector `axis`
+ * and of unit length, third = axis x ref. Returns 0 if ref is parallel to the axis. */
 int se3di_joint_triad_build(const double axis[3], const double *ref, double ref_out[3],
                             double third[3]);
 
-/* The direction on body j, square to axis_j, at which the angle from ref_i about axis_i is `angle`
- * in the given poses. Uses axis_i, ref_i, third_i and axis_j of `frames`. */
+/* The direction on body j, perpendicular to axis_j, at which the angle from ref_i about axis_i is
+ * `angle` in the given poses. Uses axis_i, ref_i, third_i and axis_j of `frames`. */
 void se3di_joint_ref_match(const se3di_joint_frames *frames, double angle, const se3di_frame *i,
                            const se3di_frame *j, double ref_j[3]);
 

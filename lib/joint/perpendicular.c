@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Perpendicular: axis_i and axis_j stay square to each other.
+/* Perpendicular: axis_i and axis_j stay perpendicular to each other.
  *
  *     dp1                  axis_i . axis_j = 0
  *

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Perpendicular 1 (ME751): the direction axis_j of body j is square to the plane whose normal on
- * body i is axis_i; the same equations as parallel.
+/* Perpendicular 1 (ME751): the direction axis_j of body j is perpendicular to the plane whose
+ * normal on body i is axis_i; the same equations as parallel.
  *
  *     dp1_a, dp1_b         ref_i . axis_j = third_i . axis_j = 0
  *

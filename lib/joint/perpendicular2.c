@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Perpendicular 2 (ME751): d is square to the plane whose normal on body i is axis_i; the same
- * equations as point_on_line.
+/* Perpendicular 2 (ME751): d is perpendicular to the plane whose normal on body i is axis_i; the
+ * same equations as point_on_line.
  *
  *     dp2_a, dp2_b         ref_i . d = third_i . d = 0
  *

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Planar: the plane through P_j square to axis_j glides on the plane through P_i square to
- * axis_i.
+/* Planar: the plane through P_j perpendicular to axis_j glides on the plane through P_i
+ * perpendicular to axis_i.
  *
  *     dp1_a, dp1_b         ref_i . axis_j = third_i . axis_j = 0
  *     dp2                  axis_i . d = 0
  *
- * 3 equations; freedoms: two translations and the angle. Never degenerate.  docs/theory/joints.md
- */
+ * 3 equations; freedoms: two translations and the angle. Never degenerate.
+ * docs/theory/joints.md */
 #include "joint/joint.h"
 #include "joint/rows.h"
 

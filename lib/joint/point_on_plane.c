@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Point on plane: P_j stays in the plane through P_i square to axis_i.
+/* Point on plane: P_j stays in the plane through P_i perpendicular to axis_i.
  *
  *     dp2                  axis_i . d = 0
  *

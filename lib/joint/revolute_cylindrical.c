@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Revolute-cylindrical: a massless link turns about axis_i through P_i on body i, square to it, and
- * carries a cylindrical joint along axis_j through P_j on body j; the axes are square to each other
- * at `distance`.
+/* Revolute-cylindrical: a massless link turns about axis_i through P_i on body i, perpendicular to
+ * it, and carries a cylindrical joint along axis_j through P_j on body j; the axes are
+ * perpendicular to each other at `distance`.
  *
  *     dp1                  axis_i . axis_j = 0
  *     dp2                  axis_i . d = 0

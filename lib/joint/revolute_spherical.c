@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Revolute-spherical: a massless link of length `distance` turns about axis_i on body i, square to
- * it, and holds P_j with a ball: P_j runs on a circle.
+/* Revolute-spherical: a massless link of length `distance` turns about axis_i on body i,
+ * perpendicular to it, and holds P_j with a ball: P_j runs on a circle.
  *
  *     d                    d . d = distance^2
  *     dp2                  axis_i . d = 0
  *
  * 2 equations, 4 freedoms. Regular for a distance > 0: the gradients with respect to r_j, 2 d and
- * axis_i, are square to each other.  docs/theory/joints.md */
+ * axis_i, are perpendicular to each other.  docs/theory/joints.md */
 #include "joint/joint.h"
 #include "joint/rows.h"
 

@@ -27,9 +27,10 @@ void se3di_row_add_d(se3di_draft *draft, double distance);
 
 /* cd_x, cd_y, cd_z: the joint points coincide. */
 void se3di_row_add_spherical(se3di_draft *draft);
-/* dp1_a, dp1_b: axis_j is square to ref_i and third_i, that is parallel to axis_i. */
+/* dp1_a, dp1_b: axis_j is perpendicular to ref_i and third_i, that is parallel to axis_i. */
 void se3di_row_add_perpendicular1(se3di_draft *draft);
-/* dp2_a, dp2_b: d is square to ref_i and third_i: P_j is on the line through P_i along axis_i. */
+/* dp2_a, dp2_b: d is perpendicular to ref_i and third_i: P_j is on the line through P_i along
+ * axis_i. */
 void se3di_row_add_perpendicular2(se3di_draft *draft);
 /* dp1_a, dp1_b, dp1_c: the two triads coincide. */
 void se3di_row_add_orientation(se3di_draft *draft);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Constraints of the user's: equations without terms, whose values a callback computes.
+/* User-defined constraints: equations without terms, whose values a callback computes.
  *
  *     Phi(q, t),  Phi_q (r-omega),  nu = -Phi_t,
  *     gamma = -(Phi_q qdot)_q qdot - 2 Phi_qt qdot - Phi_tt

@@ -10,7 +10,7 @@
  *
  * The system is factored as [H B; C -E] with E = eps w I, w the size of diag(C H^-1 B), which is
  * quasi-definite, so that the order of elimination is chosen once for cost alone; refinement
- * against the unregularised system removes E from the answer. E = 0 where the graph has no loop.
+ * against the unregularised system removes E from the answer. E = 0 if the graph has no loop.
  *
  * Everything is allocated by se3di_kkt_create; factor and solve allocate nothing. One kkt object is
  * used by one thread at a time.                                              docs/theory/kkt.md */
@@ -119,7 +119,7 @@ typedef struct se3di_kkt_solve_info {
     bool checked;      /* the residuals below were computed */
     bool projected;    /* the multipliers were projected to the least norm */
     bool inconsistent; /* dependent rows contradict each other: residual_c stays */
-    double rate;       /* last ratio of successive residuals, 0 where there were not two */
+    double rate;       /* last ratio of successive residuals, 0 if there were not two */
     double residual_b; /* |b - H x - B l| / max(|b|, |H x|, |B l|), largest entries */
     double residual_c; /* |c - C x| / max(|c|, |C_rc x_c|); iterated: max(|c|, |C x|) */
 } se3di_kkt_solve_info;

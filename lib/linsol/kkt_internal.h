@@ -185,7 +185,7 @@ se3d_status se3di_kkt_dense_create(se3di_kkt *kkt);
 void se3di_kkt_dense_factor(se3di_kkt *kkt, const se3di_kkt_values *values);
 void se3di_kkt_dense_solve(se3di_kkt *kkt, const double *b, const double *c, double *x, double *l);
 
-/* The kernels of each level, NULL where the compiler cannot make them. */
+/* The kernels of each level, NULL if the compiler cannot make them. */
 const se3di_kkt_core *se3di_kkt_core_portable(void);
 const se3di_kkt_core *se3di_kkt_core_avx2(void);
 const se3di_kkt_core *se3di_kkt_core_avx512(void);

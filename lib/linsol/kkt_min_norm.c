@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Multipliers of least norm from B l = b - H x, densely. The equations of each unknown are scaled
- * by H_cc^-1/2, which changes nothing where they are consistent.                docs/theory/kkt.md
- */
+ * by H_cc^-1/2, which changes nothing if they are consistent.                docs/theory/kkt.md */
 #include <math.h>
 #include <string.h>
 

@@ -15,8 +15,8 @@ typedef struct amd_memory {
     size_t near_size, n;
 } amd_memory;
 
-/* Bodies of each joint node are a clique: neighbours of joint node `i`, counted and (where out is
- * not NULL) written. */
+/* Bodies of each joint node are a clique: neighbours of joint node `i`, counted and (if out is not
+ * NULL) written. */
 static size_t joint_neighbours(const se3di_kkt *kkt, int32_t i, int32_t *mark, int *out)
 {
     size_t count = 0;
@@ -62,7 +62,7 @@ static void amd_order_joints(const se3di_kkt *kkt, const amd_memory *m, int32_t 
     }
 }
 
-/* All bodies, then the joints as AMD orders them. SE3D_ERR_UNSUPPORTED where this is no good
+/* All bodies, then the joints as AMD orders them. SE3D_ERR_UNSUPPORTED if this is no good
  * candidate: couplings between bodies, or so many joints on a body that S is nearly full. */
 static se3d_status bodies_first_order(const se3di_kkt *kkt, int32_t *node_at)
 {

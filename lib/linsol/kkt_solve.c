@@ -257,7 +257,7 @@ typedef struct kkt_problem {
 
 typedef enum kkt_ending { KKT_CONVERGED, KKT_STAGNATED, KKT_EXHAUSTED } kkt_ending;
 
-/* Where eps stays what it is, nearly dependent rows are filtered: part of what they ask for, by
+/* If eps stays what it is, nearly dependent rows are filtered: part of what they ask for, by
  * eps / sigma and the count of refinements, is left out. The count must then not hang on how fast
  * the residual falls, or the solution would jump where that passes the bound. */
 static bool is_filter(const se3di_kkt_settings *s)
@@ -320,13 +320,12 @@ static double least_good_pivot(const se3di_kkt *kkt)
     return fmin(pivot_is_good, fmax(pivot_is_safe, 2.2e-16 / (noise_matters * s->tolerance)));
 }
 
-/* How many refinements reach the tolerance for certain, -1 where only a look at the residual can
+/* How many refinements reach the tolerance for certain, -1 if only a look at the residual can
  * tell. With E = 0 and bodies before their joints, S = C H^-1 C^T is factored as Cholesky does: the
  * residual of l is at rounding whatever the pivots, that of x at rounding / pivot where C^T l
  * nearly cancels (a lever that is long beside the radius of gyration). With E > 0 a solution leaves
  * eps / sigma of the error. A row that is not known to be redundant and seems dependent is nearly
- * so: sigma is small.
- */
+ * so: sigma is small. */
 static int32_t count_refinements(const se3di_kkt *kkt)
 {
     const se3di_kkt_settings *s = &kkt->settings;
@@ -444,7 +443,7 @@ static void project(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
         solve_once(kkt, kkt->residual_b, NULL, kkt->correction_x, kkt->correction_l);
         add_to_multipliers(kkt, 1.0, x, l);
     }
-    /* Where the balance is lost, the rows were nearly dependent only: keep the refined l. */
+    /* If the balance is lost, the rows were nearly dependent only: keep the refined l. */
     if (info->residual_b > limit && !(unprojected.residual_c > 1e-8)) {
         restore_multipliers(kkt, x, l);
         *info = unprojected;

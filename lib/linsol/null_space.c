@@ -156,7 +156,7 @@ static void find_touched(search *s, size_t joint)
     }
 }
 
-/* The row and the touched freedom to give up; returns 0 where the rows left are dependent. */
+/* The row and the touched freedom to give up; returns 0 if the rows left are dependent. */
 static int find_pivot(const search *s, size_t rows, double tolerance, size_t *row, size_t *pivot)
 {
     double best = 0.0;

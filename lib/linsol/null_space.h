@@ -21,7 +21,7 @@ typedef struct se3di_null_space_pattern {
 } se3di_null_space_pattern;
 
 /* A basis Z [freedoms x 6 bodies], row-major, rows of unit length, C Z^T = 0; to be freed by the
- * caller with that size, NULL where freedoms = 0. Rows of C that the freedoms left meet within
+ * caller with that size, NULL if freedoms = 0. Rows of C that the freedoms left meet within
  * `tolerance` of their length are dependent; their number is returned in *dependent.
  * @return OK, NO_MEMORY, NOT_FINITE */
 se3d_status se3di_null_space_find(const se3d_allocator *allocator,

@@ -58,7 +58,7 @@ static se3d_status qr_create(const se3d_allocator *allocator, size_t rows, size_
     return SE3D_OK;
 }
 
-/* Scale the columns of A to unit length, factor; SE3D_ERR_NOT_FINITE where they are not finite. */
+/* Scale the columns of A to unit length, factor; SE3D_ERR_NOT_FINITE if they are not finite. */
 static se3d_status qr_factor(pivoted_qr *qr)
 {
     for (size_t r = 0; r < qr->rows; ++r) {
@@ -158,7 +158,7 @@ static size_t select_rows(selection *s, size_t rows, size_t limit, double thresh
     return s->count;
 }
 
-/* Find a threshold at which exactly `rank` rows are accepted; fewer where there is none. */
+/* Find a threshold at which exactly `rank` rows are accepted; fewer if there is none. */
 static size_t select_rank(selection *s, size_t rows, size_t rank, double tolerance)
 {
     double threshold = tolerance, least, most;

@@ -10,7 +10,7 @@ typedef struct se3di_reduced {
     int n;
 } se3di_reduced;
 
-/* First phase, of arguments without special cases: 1, or 0 where it cannot round. `sincos` returns
+/* First phase, of arguments without special cases: 1, or 0 if it cannot round. `sincos` returns
  * bit 0 for the sine in out[0] and bit 1 for the cosine in out[1]. */
 typedef struct se3di_fast {
     int (*exp)(double x, double *out);

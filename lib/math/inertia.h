@@ -20,7 +20,7 @@ void se3di_inertia_matrix(const double J[6], double M[9]);
 /* The principal moments, ascending. */
 void se3di_inertia_principal(const double J[6], double moments[3]);
 
-/* An se3di_inertia_verdict: 0 where J is physical up to 1e-9 of its largest moment (NOT a truth
+/* An se3di_inertia_verdict: 0 if J is physical up to 1e-9 of its largest moment (NOT a truth
  * value: zero means yes). */
 int se3di_inertia_is_physical(const double J[6]);
 

@@ -116,8 +116,8 @@ static inline void se3di_tilde(const double a[3], double out[9])
     out[8] = 0.0;
 }
 
-/* A unit vector square to the unit vector `axis`: the ground axis least along it, made orthogonal.
- */
+/* A unit vector perpendicular to the unit vector `axis`: the ground axis least along it, made
+ * orthogonal. */
 static inline void se3di_perpendicular(const double axis[3], double out[3])
 {
     int least = 0;

@@ -60,7 +60,7 @@ typedef struct se3di_row {
     uint32_t term_begin, term_count;
     int32_t function; /* dense index, -1: `value` */
     int32_t wrap;     /* 1: one angle; Phi is taken modulo 2 pi into (-pi, pi] */
-    double value;     /* f where there is no function */
+    double value;     /* f if there is no function */
 } se3di_row;
 
 typedef struct se3di_joint_frames {

@@ -26,7 +26,7 @@ typedef struct se3di_saved {
     se3di_saved_array lambda;       /* [rows] */
     se3di_saved_array turns;        /* [angles] */
     se3di_saved_array memory;       /* [forces * SE3DI_FORCE_STATES] */
-    se3di_saved_array history;      /* none where nobody wrote it */
+    se3di_saved_array history;      /* none if nobody wrote it */
     se3di_saved_array contacts;     /* se3di_body_contact */
     se3di_saved_array wrench;       /* [shapes * 6] */
 } se3di_saved;

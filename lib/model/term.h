@@ -32,7 +32,7 @@ typedef struct se3di_term {
     uint32_t body_i, body_j; /* dense indices, 0 = ground */
     double coefficient;      /* factor of this term in its equation */
     double a_i[3], a_j[3];   /* directions, body frames (ANGLE: unit) */
-    double b_i[3];           /* ANGLE: unit axis on body i, square to a_i */
+    double b_i[3];           /* ANGLE: unit axis on body i, perpendicular to a_i */
     double s_i[3], s_j[3];   /* points, body frames [m] */
     double c[3];             /* CD: direction, ground frame */
 } se3di_term;

@@ -7,7 +7,7 @@
  *     hold    a_k(x_0 + sum_j n_j X_j) = 0
  *
  * is solved by Newton from n = 0, so that of several solutions it is the one that begins at mu = 0.
- * Where there is none, friction jams.  docs/theory/friction.md */
+ * If there is none, friction jams.  docs/theory/friction.md */
 #ifndef SE3DI_FRICTION_SYSTEM_H
 #define SE3DI_FRICTION_SYSTEM_H
 

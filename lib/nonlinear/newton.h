@@ -6,8 +6,8 @@
  *     [H C^T; C 0] [z; l] = [b; c],    dvdot = T^-1 z
  *
  * with M, D, K of assembly/tangent.h and T the tangent of the exponential map at the rotation of
- * the step (r-omega; I in r-p): a change dx of the step turns the body by T dx.
- * Where constraints enter by velocities, Phi_q qdot = nu, their rows are instead
+ * the step (r-omega; I in r-p): a change dx of the step turns the body by T dx. If constraints
+ * enter by velocities, Phi_q qdot = nu, their rows are instead
  *
  *     C T^-1 + (dx/dvdot / dv/dvdot) d(Phi_q qdot)/dq
  *

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Positions: min |dq|_M with Phi(q, t) = 0, by Newton with line search; where that stalls (far from
- * a solution, or where there is none) by damped Gauss-Newton (Levenberg-Marquardt: the KKT system
+ * a solution, or if there is none) by damped Gauss-Newton (Levenberg-Marquardt: the KKT system
  * with a large regularisation), which ends in the least sum of squared violations. A stationary
  * violation means that the constraints cannot be met from here: the gap is named.
  * docs/theory/consistency.md */
@@ -43,7 +43,7 @@ double se3di_model_get_size(const se3di_model *model)
     return size;
 }
 
-/* Type of the first term of a row; -1 where it has none (a callback's). */
+/* Type of the first term of a row; -1 if it has none (a callback's). */
 static int32_t row_type(const se3di_model *model, uint32_t row)
 {
     const se3di_row *r = &model->rows[row];
@@ -155,7 +155,7 @@ static void move(const position_problem *problem, double fraction)
     }
 }
 
-/* Take the step, shortened until the violation falls. Returns 0 where it does not. */
+/* Take the step, shortened until the violation falls. Returns 0 if it does not. */
 static int search_line(position_problem *problem, double length)
 {
     double merit = problem->merit;
@@ -173,7 +173,7 @@ static int search_line(position_problem *problem, double length)
     return 0;
 }
 
-/* Newton until rounding. Returns with *converged = 0 where it stalls. */
+/* Newton until rounding. Returns with *converged = 0 if it stalls. */
 static se3d_status run_newton(position_problem *problem, int32_t iterations, int *converged)
 {
     se3di_equations *equations = problem->equations;
@@ -323,7 +323,7 @@ static void list_open(const se3di_equations *equations, double widest, char *tex
     }
 }
 
-/* What is open: lengths, or where there are none the worst angle. Only at the least violation do
+/* What is open: lengths, or if there are none the worst angle. Only at the least violation do
  * the gaps around a loop add up to what is missing. */
 static void describe_gap(const position_problem *problem, int least, char *text, size_t size)
 {

@@ -71,7 +71,7 @@ static const se3di_roll *roll_of(const se3di_particles *set, uint32_t b)
     return set->rolls ? &set->rolls[b] : NULL;
 }
 
-/* The contact of a lane; returns 0 where the two do not touch. */
+/* The contact of a lane; returns 0 if the two do not touch. */
 static int pair_contact(const se3di_particles *set, uint32_t b, int lane,
                         se3d_particles_contact *out)
 {

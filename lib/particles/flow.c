@@ -2,7 +2,7 @@
 /* Sources that insert particles during a run, sinks that remove them, and what has left.
  *
  * A source owes rate * h more after every step; what is due is inserted after the drift and before
- * the forces, where it overlaps with no particle and no wall, so that no force changes by it. Where
+ * the forces, where it overlaps with no particle and no wall, so that no force changes by it. If
  * no place is found in TRIES draws the particle waits for the next step, with its radius: neither
  * the rate nor the distribution of the radii suffers.                  docs/theory/particles.md */
 #include "particles/set.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Forces of particles by a law of the user's: contact by contact, geometry and momentum as in
+/* Forces of particles by a user-defined law: contact by contact, geometry and momentum as in
  * force.inc. The first of the two is j (or the wall), the second i.
  *                                                                   docs/theory/contact-laws.md */
 #include "math/vec3.h"
@@ -53,7 +53,7 @@ static void input_of(const se3di_force_task *task, const touch *t, const double 
     se3di_add_scaled(-se3di_dot(in->spring, t->n), t->n, in->spring);
 }
 
-/* Force, lever (n x Ft) and moment on i; returns 0 where the law fails. */
+/* Force, lever (n x Ft) and moment on i; returns 0 if the law fails. */
 static int respond(const se3di_force_task *task, const touch *t, double xi[3], double force[3],
                    double lever[3], double moment[3])
 {

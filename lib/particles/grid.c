@@ -395,7 +395,7 @@ static se3d_status search_all(se3di_particles *set, const grid *g)
 }
 
 /* Few particles in a large space: larger cells, so that there are not many more cells than
- * particles; also where there is no memory for so many. */
+ * particles; also if there is no memory for so many. */
 static se3d_status divide_all(se3di_particles *set, grid *g, double largest, size_t *cells)
 {
     double total = divide(set, g, largest, 1.0);
@@ -413,7 +413,7 @@ static se3d_status divide_all(se3di_particles *set, grid *g, double largest, siz
     return SE3D_ERR_NO_MEMORY;
 }
 
-/* Where memory is missing, a smaller skin makes shorter lists: at last of those that touch, which
+/* If memory is missing, a smaller skin makes shorter lists: at last of those that touch, which
  * were in the list before. */
 static se3d_status list_all(se3di_particles *set, const grid *g)
 {

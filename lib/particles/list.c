@@ -3,7 +3,7 @@
  *
  * History waits in `carry` while lists change: entries {i, j, xi}, chained by i through key[] (the
  * first) and carry_next[]. They lie in the memory of the loads, which hold nothing while there are
- * no valid lists. Where memory fails they stay there, and nothing is lost. */
+ * no valid lists. If memory fails they stay there, and nothing is lost. */
 #include "contact/mesh.h"
 #include "math/vec3.h"
 #include "particles/set.h"
@@ -363,7 +363,7 @@ static size_t place_slabs(se3di_particles *set, size_t *pairs)
 }
 
 /* Mark the active pairs, reserve blocks for them and what it takes to collect their history, so
- * that this cannot fail; fewer where memory is missing. */
+ * that this cannot fail; fewer if memory is missing. */
 static se3d_status choose_active(se3di_particles *set)
 {
     const double least = 1e-3 * set->near;

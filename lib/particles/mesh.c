@@ -115,7 +115,7 @@ static se3di_mesh_pair *evaluate_batch(se3di_particles *set, se3di_mesh_pair *fi
     }
     if (batch.count > 0) {
         task->blocks = &batch.block;
-        task->rolls = set->rolling ? &batch.roll : NULL; /* also where there are no blocks */
+        task->rolls = set->rolling ? &batch.roll : NULL; /* also if there are no blocks */
         task->given = &batch.given;
         se3di_particles_get_kernels(set)->walls(task);
     }

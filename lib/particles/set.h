@@ -123,7 +123,7 @@ typedef struct se3di_mesh_batch {
     uint32_t count, reserved;
 } se3di_mesh_batch;
 
-/* A law of the user's has failed for these. */
+/* A user-defined law has failed for these. */
 typedef struct se3di_law_failure {
     int32_t happened;
     int32_t wall; /* j is a wall */
@@ -329,7 +329,7 @@ typedef struct se3di_force_task {
     double overlap;            /* out: largest excess, starts at the caller's value */
     uint64_t touching;         /* out: added to */
     double *wall_sums;         /* walls: [walls * 6], added to */
-    const se3di_stuff *stuffs; /* of a law of the user's, as the next three */
+    const se3di_stuff *stuffs; /* of a user-defined law, as the next three */
     se3d_contact_callback callback;
     void *ctx;
     se3di_law_failure failure; /* out: the first one */
@@ -348,9 +348,9 @@ struct se3di_kernels {
     void (*walls)(se3di_force_task *task);
 };
 
-/* For a law of the user's. */
+/* For a user-defined law. */
 const se3di_kernels *se3di_particle_kernels_callback(void);
-/* NULL where the machine has not these instructions. */
+/* NULL if the machine lacks these instructions. */
 const se3di_kernels *se3di_particle_kernels_portable(void); /* never NULL */
 const se3di_kernels *se3di_particle_kernels_fma(void);
 const se3di_kernels *se3di_particle_kernels_avx2(void);
@@ -388,7 +388,7 @@ void se3di_particles_filter(se3di_particles *set, const unsigned char *keep);
 void se3di_particles_adopt(se3di_particles *set, const se3di_model *model);
 /* Take materials, shapes and settings from the model where it was edited since. */
 se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model);
-/* The mass of the lightest body that gives way to particles; infinite where none does. */
+/* The mass of the lightest body that gives way to particles; infinite if none does. */
 double se3di_particles_lightest_body(const se3di_particles *set, const se3di_model *model);
 /* The index in the set's table of a material of the model, which is held from now on. Its users
  * must be counted where *first is 1. */
@@ -422,7 +422,7 @@ void se3di_particles_mesh_forces(se3di_particles *set, const se3di_slab *slab,
                                  se3di_force_task *task);
 /* Empty, of a wall. */
 void se3di_mesh_batch_begin(const se3di_particles *set, uint32_t wall, se3di_mesh_batch *batch);
-/* Append where the two touch now, with the history; returns 0 where there is no room. */
+/* Append where the two touch now, with the history; returns 0 if there is no room. */
 int se3di_mesh_batch_add(const se3di_particles *set, const se3di_mesh_pair *pair,
                          se3di_mesh_batch *batch);
 /* Grow an array to hold `needed` elements, a little more. */
@@ -434,7 +434,7 @@ void se3di_particles_wrap(const se3di_particles *set, double d[3]);
 double se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3],
                           double normal[3]);
 double se3di_wall_distance(const se3di_wall *wall, const double x[3]);
-/* Shapes are repeated with the period: where x is not within `reach` of the wall, but one of its
+/* Shapes are repeated with the period: if x is not within `reach` of the wall, but one of its
  * images is, make it that one. `length`: 0 without a period. */
 void se3di_wall_image(const se3di_wall *wall, const double length[3], double reach, double x[3]);
 /* The same with the periods of a set, to `out`. */
@@ -450,7 +450,7 @@ void se3di_particles_move(se3di_particles *set, int kicks, double h);
  * at where it was, its motion. */
 void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
                            const se3di_motion *motion);
-/* The larger one; NaN where one is NaN. */
+/* The larger one; NaN if one is NaN. */
 double se3di_larger(double a, double b);
 
 /* step.c: steps. */
@@ -460,14 +460,14 @@ void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames)
 void se3di_particles_free_walls(se3di_particles *set, const se3di_model *model);
 /* Nothing moves and nothing will. */
 int se3di_particles_is_idle(const se3di_particles *set);
-/* Bring the lists up to date, evaluate all forces; springs advance by h (0: they stay). Where
+/* Bring the lists up to date, evaluate all forces; springs advance by h (0: they stay). If
  * memory is missing, lists are made with a smaller skin, which needs none. */
 se3d_status se3di_particles_forces(se3di_particles *set, double h);
 /* After a failure: the forces are complete all the same. */
 int se3di_particles_is_complete(const se3di_particles *set, se3d_status status);
 /* Forces that belong to the state, with springs as they are. */
 se3d_status se3di_particles_prepare(se3di_particles *set);
-/* The automatic step with the model's materials. Infinite where there is nothing to resolve. */
+/* The automatic step with the model's materials. Infinite if there is nothing to resolve. */
 double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *model);
 /* One step of velocity Verlet; frames move the walls (NULL: they stay). */
 se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps,

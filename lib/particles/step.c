@@ -251,7 +251,7 @@ static se3di_force_task prepare(se3di_particles *set, double h)
     return task;
 }
 
-/* Forces with lists that hold everything, and then the motion; without its drift where memory is
+/* Forces with lists that hold everything, and then the motion; without its drift if memory is
  * missing. STEP_SIZE: an overlap is too large, but all is done. */
 static se3d_status evaluate(se3di_particles *set, double h, se3di_motion *motion)
 {

@@ -25,7 +25,7 @@ double se3di_larger(double a, double b)
     return b <= a || a != a ? a : b;
 }
 
-/* Returns the largest squared speed of particles [begin, end), NaN where one is NaN. `kicks` is a
+/* Returns the largest squared speed of particles [begin, end), NaN if one is NaN. `kicks` is a
  * constant at every call: the loop over it is unrolled. */
 static inline double move_kicked(se3di_particles *set, size_t begin, size_t end, int kicks,
                                  const se3di_motion *motion)

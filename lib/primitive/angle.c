@@ -17,7 +17,7 @@
 #include "primitive/table.h"
 
 typedef struct angle_vectors {
-    double m[3], n[3]; /* body i; NaN where q = 0 */
+    double m[3], n[3]; /* body i; NaN if q = 0 */
 } angle_vectors;
 
 /* c and s of the head. */

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Where a callback failed before or after the change, the work of the change is not known: the
+/* If a callback failed before or after the change, the work of the change is not known: the
  * audit begins anew. */
 static void count(se3di_model *model, uint32_t first, uint32_t last, double change)
 {

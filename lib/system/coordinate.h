@@ -7,7 +7,7 @@
 #include "system/system_internal.h"
 
 /* The term of a joint coordinate (se3d_joint_coordinate), coefficient 1, angles with their turn
- * counter. Returns 0 where the constraint has no such coordinate. */
+ * counter. Returns 0 if the constraint has no such coordinate. */
 int se3di_coordinate_term(const se3di_model *model, uint32_t joint, int32_t coordinate,
                           se3di_term *term);
 /* The same; records a message that says what the joint has. `what` names the place. */
@@ -17,7 +17,7 @@ se3d_status se3di_check_coordinate(se3d_system *system, const char *what, uint32
 /* body_i and body_j are not the same body. */
 se3d_status se3di_check_distinct(se3d_system *system, const uint32_t bodies[2]);
 
-/* Where there is no function of time, `value` is finite. */
+/* If there is no function of time, `value` is finite. */
 se3d_status se3di_check_prescribed(se3d_system *system, double value, int32_t function);
 
 /* {f, f_t, f_tt} of an equation at the present time. */

@@ -14,7 +14,7 @@
 #define STOP      BIT(SE3DI_FORCE_STOP)
 #define FRICTION  BIT(SE3DI_FORCE_FRICTION)
 
-#define PRESLIDING 1e-9 /* [m, rad] where none is given */
+#define PRESLIDING 1e-9 /* [m, rad] if none is given */
 
 /* By se3d_force_parameter: its name, the types of elements that have it, and where. */
 typedef struct parameter {

@@ -14,7 +14,7 @@ struct se3d_particles {
     int32_t reserved;
 };
 
-/* The index of a material in the set's table, which it gets and is counted in where it has none. */
+/* The index of a material in the set's table, which it gets and is counted in if it has none. */
 se3d_status se3di_particles_use(se3d_particles *particles, se3d_material material, uint32_t *index);
 
 /* Particles of this radius do not meet themselves across a period. */

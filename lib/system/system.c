@@ -234,7 +234,7 @@ size_t se3d_system_count_forces(const se3d_system *system)
     return system ? system->model.force_slots.count : 0;
 }
 
-/* Handle at `index`; null where there is none. */
+/* Handle at `index`; null if there is none. */
 static se3d_status get_handle(const se3di_slots *slots, size_t index, se3di_handle *handle)
 {
     *handle = (se3di_handle){0, 0};

@@ -76,13 +76,13 @@ se3d_status se3di_check_orientation(se3d_system *system, const char *what, const
                                     double unit[4]);
 /* `pointer` is not NULL. */
 se3d_status se3di_check_pointer(se3d_system *system, const char *what, const void *pointer);
-/* A def struct: copies its struct_size bytes over the defaults already in `copy`; fails where def
- * is NULL, struct_size is none, or something is set beyond what this library knows. */
+/* A def struct: copies its struct_size bytes over the defaults already in `copy`; fails if def is
+ * NULL, struct_size is none, or something is set beyond what this library knows. */
 se3d_status se3di_check_def(se3d_system *system, const char *what, const void *def, void *copy,
                             size_t full_size);
 
 /* What every public _def_init does: the first `size` bytes of `defaults` (of `full` bytes), zeros
- * beyond them. Nothing happens where def is NULL or too small for its struct_size. */
+ * beyond them. Nothing happens if def is NULL or too small for its struct_size. */
 void se3di_def_init(void *def, size_t size, const void *defaults, size_t full);
 
 /* Dense index of a handle; fails with STALE_HANDLE and a message. */
@@ -100,7 +100,7 @@ se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_func
                                 uint32_t variables, int32_t *index);
 
 /* The audit of energy over a change of values: what it makes of the energies is work of actuators.
- * Before the change: the energy that it may change (0 where nothing is audited, not a number where
+ * Before the change: the energy that it may change (0 if nothing is audited, not a number where
  * a callback fails: then the audit begins anew); after it. Of a force element alone; of bodies,
  * gravity and all elements; of contacts. */
 double se3di_audit_force(const se3di_model *model, const se3di_force *force);
@@ -118,7 +118,7 @@ se3d_status se3di_check_name(se3d_system *system, const char *name);
  * `what`; markers: among those of `owner`, others: 0. NULL always is. */
 se3d_status se3di_check_new_name(se3d_system *system, const se3di_slots *slots, uint32_t owner,
                                  const char *what, const char *name);
-/* The handle of an element by its name; left alone where there is none. */
+/* The handle of an element by its name; left alone if there is none. */
 se3d_status se3di_find_named(const se3di_slots *slots, const char *name, se3di_handle *handle);
 
 #endif

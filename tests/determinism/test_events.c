@@ -28,7 +28,8 @@ static se3d_status get_spin(void *ctx, const se3d_system *system, double *value)
     return status;
 }
 
-/* Levels through which the motion of every row goes: between the values at its begin and end. */
+/* Levels through which the motion of every row goes: between the values at its beginning and end.
+ * */
 typedef struct levels {
     double height[3], spin;
 } levels;

@@ -307,7 +307,7 @@ static const char *const advice =
     "commit\n"
     "which and why (CONTRIBUTING.md); if not, the difference is between compilers or machines.\n";
 
-/* The expected hash of a row; 0 where the table has none. */
+/* The expected hash of a row; 0 if the table has none. */
 static uint64_t expected(const char *name)
 {
     const char *source = getenv("SE3D_SOURCE_DIR");

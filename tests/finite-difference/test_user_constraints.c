@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Constraints of the user's in both formulations, against central differences along a motion with
+/* User-defined constraints in both formulations, against central differences along a motion with
  * known velocities and accelerations: the rate of Phi is Phi_q qdot - nu, its second derivative
  * Phi_q qddot - gamma; the error must fall with the square of the step. */
 #include "check.h"

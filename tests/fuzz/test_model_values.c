@@ -140,7 +140,7 @@ static size_t spoil(const example *e, char *text, uint64_t *seed)
     const size_t kind = pick(seed, 12);
     size_t length = e->begin[which];
     memcpy(text, e->text, length);
-    if (kind == 0) { /* the key again: the part of the line from its begin */
+    if (kind == 0) { /* the key again: the part of the line from its beginning */
         size_t line = length;
         while (line > 0 && e->text[line - 1] != '\n') {
             --line;

@@ -180,7 +180,7 @@ static void collide(double x, int callback, double out[6 * GRAINS + 6], double p
     close_scene(&s);
 }
 
-/* Where the body is in the period makes no difference, also where grains meet it across the end. */
+/* If the body is in the period makes no difference, also where grains meet it across the end. */
 static void shapes_are_repeated_with_the_period(void)
 {
     for (int callback = 0; callback < 2; ++callback) {

@@ -152,7 +152,7 @@ static void sliding_spheres_roll_in_the_end_on_flat_shapes(void)
         }
         CHECK(se3d_shape_get_wrench(b.system, shape, force, torque) == SE3D_OK);
         CHECK(se3d_particles_get_all(b.particles, 1, at, now, NULL) == SE3D_OK);
-        double arm = 1.0 - weight / 1e5 / R; /* over R: 5/7 where it is 1 */
+        double arm = 1.0 - weight / 1e5 / R; /* over R: 5/7 if it is 1 */
         CHECK_NEAR(now[0], 0.5 / (1.0 + 0.4 / (arm * arm)), 1e-7);
         CHECK_NEAR(now[1], 0.3 / (1.0 + 0.4 / (arm * arm)), 1e-7);
         CHECK_NEAR(force[2] / weight, -1.0, 1e-6);

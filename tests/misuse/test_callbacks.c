@@ -58,7 +58,7 @@ static const row rows[] = {
 };
 #define ROWS (sizeof rows / sizeof *rows)
 
-/* Of grains where there are none. */
+/* Of grains if there are none. */
 static int is_void(const row *r, const world *w)
 {
     return !w->grains && strncmp(r->name, "se3d_particles_", 15) == 0 &&
@@ -206,7 +206,7 @@ static void the_callback_of_an_event_may_set_values(void)
     }
 }
 
-/* Code of the user's that a query calls, from outside of any run. */
+/* User code that a query calls, from outside of any run. */
 static void edit_and_ask(world *w)
 {
     const uint64_t hash = se3d_system_hash(w->system);

@@ -561,7 +561,7 @@ static void run_on(world *w)
     expect(finite, "positions or velocities are not finite", se3d_system_get_error(w->system));
 }
 
-/* Where a field limits another, as `lower` does `upper`, that one may be named. */
+/* If a field limits another, as `lower` does `upper`, that one may be named. */
 static int names_a_field(const subject *s, const char *message)
 {
     int named = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* bdf with steps of the caller's: the order that was asked for in positions, velocities and
+/* bdf with steps by the caller: the order that was asked for in positions, velocities and
  * multipliers, at equal steps and at steps that change; and with error control through singular
  * positions, in as many steps as elsewhere. */
 #include "golden/mechanisms.h"

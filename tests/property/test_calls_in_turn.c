@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Runs with error control and steps of the caller's in turn: each goes on from the state that the
+/* Runs with error control and steps by the caller in turn: each goes on from the state that the
  * other left, which a method that steps ahead has passed already. */
 #include "check.h"
 #include "se3d/se3d.h"

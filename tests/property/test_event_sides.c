@@ -132,8 +132,8 @@ static void returns_within_the_band_do_not_count(void)
     }
 }
 
-/* A pendulum in a vertical plane whose axis is not exact in binary: torques and rates square to
- * the plane are rounding. */
+/* A pendulum in a vertical plane whose axis is not exact in binary: torques and rates perpendicular
+ * to the plane are rounding. */
 static const char pendulum[] =
     "se3d: 1\n"
     "bodies: [{name: bar, mass: 1, inertia: [0.1, 0.1, 0.1], position: [0.6, 0.8, 0]}]\n"

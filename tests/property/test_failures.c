@@ -364,7 +364,7 @@ static double balance_of(const world *w)
     return energy.total + work.dissipated - work.actuators - work.drivers;
 }
 
-/* What a change of values does is work of actuators. Where a callback fails before or after it, it
+/* What a change of values does is work of actuators. If a callback fails before or after it, it
  * is not known: the audit begins anew there. */
 static void the_audit_closes_over_a_change_of_values_or_begins_anew(void)
 {

@@ -91,9 +91,9 @@ typedef struct joint_case {
     joint_create create;
     int rows;
     int angle, displacement; /* has the coordinate */
-    int square;              /* axis_j is square to axis_i */
+    int square;              /* axis_j is perpendicular to axis_i */
     char place; /* P_j: i at P_i, a slid along axis_i, b along axis_j, c the same beside P_i, p in
-                   the plane square to axis_i, f anywhere */
+                   the plane perpendicular to axis_i, f anywhere */
     const char *row_names;
     freedom freedoms[6];
 } joint_case;
@@ -275,7 +275,7 @@ static inline void world_joint_def(world *w, const joint_case *c, se3d_body body
     CHECK(se3d_joint_def_set_frame(w->system, def, at, axis, ref) == SE3D_OK);
     const se3di_frame *j = world_frame(w, body_j);
     double third[3], direction[3];
-    se3di_cross(axis, ref, third); /* square to the axis */
+    se3di_cross(axis, ref, third); /* perpendicular to the axis */
     se3di_scale(1.0 / se3di_norm(third), third, third);
     se3di_cross(axis, third, other);
     if (c->square) {

@@ -90,7 +90,7 @@ static void check_same_reactions(const support_model *a, const support_model *b,
     }
 }
 
-/* Where the drivers determine the motion to rounding, in dynamics to the error of the integrators,
+/* If the drivers determine the motion to rounding, in dynamics to the error of the integrators,
  * which differs. Rows of the two formulations are the same: so are least-norm multipliers. */
 static void both_formulations_give_the_same_motion_and_reactions(void)
 {

@@ -298,7 +298,7 @@ static const struct fixed {
                    {"rattle", SE3D_METHOD_RATTLE, 5e-4, 2e-3},
                    {"verlet", SE3D_METHOD_VERLET, 5e-4, 2e-3}};
 
-/* Returns 1 where the mechanism moves: one that locks at once is of no use here. */
+/* Returns 1 if the mechanism moves: one that locks at once is of no use here. */
 static int try_mechanism(uint64_t seed)
 {
     const outcome a = run(seed, SE3D_FORMULATION_ROMEGA, SE3D_METHOD_DOP853, 1e-10, 0.0);

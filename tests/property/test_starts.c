@@ -148,7 +148,7 @@ static void slides_without_a_size_start_from_any_distance(void)
     }
 }
 
-/* Where a rate grows without end, steps shrink to the rounding of the time, and the run ends. */
+/* If a rate grows without end, steps shrink to the rounding of the time, and the run ends. */
 static void a_driver_that_ends_in_the_middle_ends_the_run(void)
 {
     for (int run = 0; run < 4; ++run) {

@@ -79,7 +79,7 @@ static void a_hard_stop_returns_what_it_should_at_the_defaults_of_every_method(v
     }
 }
 
-/* Where a step is asked for that the impact does not fit in, that is an error before the impact. */
+/* If a step is asked for that the impact does not fit in, that is an error before the impact. */
 static void a_step_that_jumps_over_an_impact_is_refused_by_the_name_of_the_stop(void)
 {
     for (size_t run = 0; run < sizeof methods / sizeof methods[0]; ++run) {

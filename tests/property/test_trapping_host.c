@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A host that traps divisions by zero (feenableexcept) is not killed: nothing divides by zero where
+/* A host that traps divisions by zero (feenableexcept) is not killed: nothing divides by zero if
  * all is well, in any analysis and method. */
 #define _GNU_SOURCE
 #include <fenv.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Constraints of the user's: a distance by callback is the distance joint in every analysis, with
+/* User-defined constraints: a distance by callback is the distance joint in every analysis, with
  * every method, in both formulations; equations whose Phi_t depends on positions against a closed
  * form; callbacks that fail. */
 #include "check.h"

@@ -186,8 +186,8 @@ static void plan_slider_crank(support_plan *plan, const char *drive)
     add_bar(plan, B, end, 4.0);
     add_joint(plan, se3d_joint_create_revolute, -1, 0, O, X)->drive = drive;
     add_joint(plan, se3d_joint_create_spherical, 0, 1, A, X);
-    /* One axis of the cross is square to the rod and fixed in it, the other is fixed in the
-     * slider, square to both. */
+    /* One axis of the cross is perpendicular to the rod and fixed in it, the other is fixed in the
+     * slider, perpendicular to both. */
     support_joint *cardan = add_joint(plan, se3d_joint_create_universal, 1, 2, B, X);
     const double rod[3] = {B[0] - A[0], B[1] - A[1], B[2] - A[2]};
     const double square[3] = {0.0, -rod[2], rod[1]};

@@ -38,7 +38,7 @@ typedef struct support_model {
     se3d_body ground;
     se3d_body *bodies;
     se3d_constraint *joints;
-    se3d_constraint *drivers; /* [joint_count], null where the joint has none */
+    se3d_constraint *drivers; /* [joint_count], null if the joint has none */
     int body_count, joint_count;
 } support_model;
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Laws of contact of the user's: one that repeats hooke gives what hooke gives, for particles and
+/* user-defined laws of contact: one that repeats hooke gives what hooke gives, for particles and
  * for bodies, in explicit and implicit methods; momentum is kept; failures name the two. */
 #include "check.h"
 #include "se3d/se3d.h"
@@ -10,7 +10,7 @@ typedef struct law {
     double k, kt, damping, drag, friction;
     double fail_beyond; /* an overlap [m]; 0: never */
     double twist;       /* moment along the normal, per overlap */
-    size_t *calls;      /* counted where that is not NULL */
+    size_t *calls;      /* counted if that is not NULL */
 } law;
 
 /* hooke as docs/theory/contact-laws.md has it. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Where shapes touch, against tests that are exact: no contact of what is apart, a contact of all
+/* If shapes touch, against tests that are exact: no contact of what is apart, a contact of all
  * that overlaps. Two convex polyhedra overlap where none of their normals and products of edges
  * separates them; a solid and a triangle, where the least value on the triangle of the solid's
  * distance function, which is convex, is negative.
@@ -574,7 +574,8 @@ static void overlaps_of_polyhedra_are_the_least_ones(void)
 
 /* ---- certificates ---- */
 
-/* How far two convex shapes overlap along n; negative: a plane square to it is between them. */
+/* How far two convex shapes overlap along n; negative: a plane perpendicular to it is between
+ * them. */
 static double overlap_along(const se3di_solid *i, const se3di_solid *j, const double n[3])
 {
     double back[3], on_i[3], on_j[3];
@@ -585,7 +586,8 @@ static double overlap_along(const se3di_solid *i, const se3di_solid *j, const do
            se3di_core_radius(j->shape);
 }
 
-/* A place within both, to its own depth: faces are cut off square to the one that they touch. */
+/* A place within both, to its own depth: faces are cut off perpendicular to the one that they
+ * touch. */
 static int is_in_both(const se3di_solid *i, const se3di_solid *j, const se3di_contact_point *p)
 {
     return distance_to(i->shape, i->at, p->point) < p->overlap + 1e-9 &&

@@ -205,7 +205,7 @@ static void nearest_points_are_where_a_search_finds_them(void)
     }
 }
 
-/* Where the normal has no direction of its own, it is one of the surface's. */
+/* If the normal has no direction of its own, it is one of the surface's. */
 static void centres_and_surface_points_have_normals(void)
 {
     for (int kind = 0; kind < KINDS; ++kind) {

@@ -20,7 +20,7 @@ int child_write(child *c, const void *data, size_t size);
  * time, or after an interrupt. */
 size_t child_read(child *c, void *data, size_t size, int seconds);
 /* Close the pipes and wait for the end, at most so many seconds; then end it and all it started.
- * @return its exit code, -1 where it did not end by itself. */
+ * @return its exit code, -1 if it did not end by itself. */
 int child_finish(child *c, int seconds);
 
 /* From now on an interrupt (Ctrl-C) is only remembered, and a broken pipe is an error of the write.

@@ -59,7 +59,7 @@ int plot_files(int count, const char *const *words);
  * results with channels are. @return the exit code, after a message where it failed. */
 int run_for_plots(const char *model, int quiet, int draw, char *csv, size_t size);
 
-/* Write a text as a JSON string, a number as JSON (null where it is not finite). */
+/* Write a text as a JSON string, a number as JSON (null if it is not finite). */
 void json_put_text(const char *text);
 void json_put_number(double value);
 

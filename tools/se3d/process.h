@@ -9,7 +9,7 @@
 int process_is_found(const char *name);
 
 /* Run a program in `folder` (NULL: here) and wait for it. `words` ends with NULL. @return its exit
- * code, -1 where it could not be run. */
+ * code, -1 if it could not be run. */
 int process_run(const char *folder, const char *const *words);
 
 /* Say that a program is missing and how to get it. @return EXIT_FAILED. */

@@ -9,7 +9,7 @@
 int snapshots_is(const char *path);
 /* Write them as a JSON object: times, the box around all, radii, and of each snapshot the positions
  * as 16-bit parts of the box (65535: not there). Of very many, every so many are written; "null"
- * where there are none. @return false after a message. */
+ * if there are none. @return false after a message. */
 int snapshots_put(FILE *out, const char *command, const char *path);
 /* Write bytes in base64. */
 void base64_put(FILE *file, const void *data, size_t size);

@@ -19,7 +19,7 @@ typedef struct table {
 int table_read(table *t, const char *command, const char *path);
 void table_destroy(table *t);
 
-/* The number of a column, or `count` where there is none of that name. */
+/* The number of a column, or `count` if there is none of that name. */
 size_t table_find(const table *t, const char *name);
 
 /* Read one column, at most `size` numbers, every `stride`-th row and the last. @return how many. */
@@ -30,7 +30,7 @@ size_t table_read_rows(const table *t, size_t stride, double *values, size_t row
 
 /* What a column is: "position", "effort", ...; its last word but the component. */
 void table_get_quantity(const char *column, char *quantity, size_t size);
-/* The unit of a column: "m/s"; "" where it has none. Some depend on the model: they are looked up
+/* The unit of a column: "m/s"; "" if it has none. Some depend on the model: they are looked up
  * in the scene beside the file. */
 const char *table_get_unit(const table *t, const char *column, char *buffer, size_t size);
 

@@ -227,7 +227,7 @@ static int write_page(const page *p, const char *path)
     return EXIT_DONE;
 }
 
-/* Make three.js in the cache, where it is not. What others could have put there is not taken. */
+/* Make three.js in the cache, if it is not. What others could have put there is not taken. */
 static int make_three(const page *p)
 {
     char script[PATH_SIZE + 64];

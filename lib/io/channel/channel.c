@@ -411,7 +411,7 @@ bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel
     return false;
 }
 
-/* The length of `name` without a component at its end, 0 where there is none. */
+/* The length of `name` without a component at its end, 0 if there is none. */
 static size_t find_component(const char *name)
 {
     static const char *const components[] = {"x", "y", "z", "e0", "e1", "e2", "e3"};

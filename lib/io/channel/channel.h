@@ -104,7 +104,7 @@ typedef struct se3di_channel {
     double point[3]; /* of `body`, where a wrench acts */
 } se3di_channel;
 
-/* Find what `name` means. Where it means nothing, `problem` gets what is allowed. */
+/* Find what `name` means. If it means nothing, `problem` gets what is allowed. */
 bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel *channel,
                         char *problem, size_t problem_size);
 /* The same for one number: a channel of one column, or a component of another as in
@@ -117,7 +117,7 @@ se3di_quantity_group se3di_channel_get_group(const se3di_channel *channel);
 bool se3di_channel_is_continuous(const se3di_channel *channel);
 /* Whether they follow from time, positions and velocities. */
 bool se3di_channel_is_of_motion(const se3di_channel *channel);
-/* How large its numbers are where they are not small, in the present state. */
+/* How large its numbers are if they are not small, in the present state. */
 double se3di_channel_get_scale(const se3di_channel *channel, const se3d_system *system);
 /* Every channel of the first 100 bodies, constraints and forces. @return NULL: out of memory. */
 se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count);

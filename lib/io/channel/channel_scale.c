@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What is known of each quantity, and how large its numbers are where they are not small: products
- * of the model's length, its mass, and one second or the time in which gravity crosses the length.
- */
+/* What is known of each quantity, and how large its numbers are if they are not small: products
+ * of the model's length, its mass, and one second or the time in which gravity crosses the
+ * length. */
 #include <math.h>
 
 #include "io/base/elementary.h"

@@ -53,8 +53,7 @@ void se3di_node_format_path(const se3di_node *node, char *path, size_t size);
 void se3di_document_report(se3d_model_error *error, const char *file, size_t line, size_t column,
                            const char *path, const char *text);
 
-/* Bytes of the mark that some editors put at the beginning of a text in UTF-8; 0 where it has none.
- */
+/* Bytes of the mark that some editors put at the beginning of a text in UTF-8; 0 if it has none. */
 size_t se3di_byte_order_mark_length(const char *text, size_t length);
 
 #endif

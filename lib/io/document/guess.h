@@ -14,7 +14,7 @@ typedef struct se3di_guess {
 
 se3di_guess se3di_guess_begin(const char *word);
 void se3di_guess_offer(se3di_guess *guess, const char *candidate);
-/* The best one, or NULL where none is near enough. */
+/* The best one, or NULL if none is near enough. */
 const char *se3di_guess_get(const se3di_guess *guess);
 
 #endif

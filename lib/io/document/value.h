@@ -13,10 +13,10 @@ typedef enum se3di_range {
 
 bool se3di_read_number(se3di_reader *reader, const se3di_node *node, se3di_range range,
                        double *value);
-/* The number under `key`, left alone where there is none. */
+/* The number under `key`, left alone if there is none. */
 bool se3di_read_key_number(se3di_reader *reader, const se3di_node *map, const char *key,
                            se3di_range range, double *value);
-/* A coefficient of restitution, 0.01 to 1, left alone where there is none. */
+/* A coefficient of restitution, 0.01 to 1, left alone if there is none. */
 bool se3di_read_key_restitution(se3di_reader *reader, const se3di_node *map, double *value);
 /* The same for a whole number from 0 to `largest`. */
 bool se3di_read_key_count(se3di_reader *reader, const se3di_node *map, const char *key,
@@ -27,7 +27,7 @@ bool se3di_read_key_vector(se3di_reader *reader, const se3di_node *map, const ch
 /* As above, and not the zero vector. */
 bool se3di_read_key_direction(se3di_reader *reader, const se3di_node *map, const char *key,
                               double value[3]);
-/* The Euler parameters under `orientation`, left alone where there is none. */
+/* The Euler parameters under `orientation`, left alone if there is none. */
 bool se3di_read_key_orientation(se3di_reader *reader, const se3di_node *map, double p[4]);
 /* The Euler parameters that a map says; NULL: left alone. */
 bool se3di_read_orientation(se3di_reader *reader, const se3di_node *node, double p[4]);

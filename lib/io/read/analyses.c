@@ -224,7 +224,7 @@ static bool read_analysis(se3di_reader *reader, const se3di_node *node)
     return true;
 }
 
-/* With --analysis only entries of that type are run; where there is none, the last one is run as
+/* With --analysis only entries of that type are run; if there is none, the last one is run as
  * that type. */
 static bool is_wanted(const se3di_reader *reader, const se3di_node *list, const se3di_node *node)
 {

@@ -12,7 +12,7 @@ bool se3di_read_key_body(se3di_reader *reader, const se3di_node *map, const char
 /* body_i and body_j, which must differ; `what` is "a spring", ... */
 bool se3di_read_bodies_ij(se3di_reader *reader, const se3di_node *node, const char *what,
                           const se3di_body_entry *bodies[2]);
-/* A point of a body: three coordinates or the name of one of its markers; left alone where there is
+/* A point of a body: three coordinates or the name of one of its markers; left alone if there is
  * none. */
 bool se3di_read_key_point(se3di_reader *reader, const se3di_node *map, const char *key,
                           const se3di_body_entry *body, double point[3]);

@@ -195,7 +195,7 @@ bool se3di_read_materials(se3di_reader *reader, const se3di_node *root)
     return true;
 }
 
-/* The density of a material, 0 where it has none. */
+/* The density of a material, 0 if it has none. */
 static bool read_material(se3di_reader *reader, const se3di_node *node, double *density)
 {
     const se3di_node *list = se3di_node_get(reader->model->root, "materials");
@@ -218,7 +218,7 @@ static bool read_material(se3di_reader *reader, const se3di_node *node, double *
                              meant ? meant : "", meant ? "`?" : "");
 }
 
-/* Of the shape, else of the body, else of the shape's material; 0 where nobody says. */
+/* Of the shape, else of the body, else of the shape's material; 0 if nobody says. */
 static bool read_density(se3di_reader *reader, const se3di_node *body, const se3di_node *shape,
                          double *density)
 {

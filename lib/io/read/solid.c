@@ -128,8 +128,7 @@ static void weld_points(seam *s)
     }
 }
 
-/* The entry of edge `side` of a triangle, NULL where its ends coincide; *way: 1 from low to high.
- */
+/* The entry of edge `side` of a triangle, NULL if its ends coincide; *way: 1 from low to high. */
 static edge *find_edge(const seam *s, size_t triangle, size_t side, int32_t *way)
 {
     const uint32_t *t = s->mesh->triangles + 3 * triangle;

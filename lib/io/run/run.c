@@ -3,10 +3,10 @@
  *
  * Output k of an analysis has a row at start + i * every, i = 0, 1, ..., and one at the end. The
  * solver is run from one time at which any file wants a row to the next; times are computed from
- * their number, never summed up, and the last one is start + duration exactly. Where an analysis
+ * their number, never summed up, and the last one is start + duration exactly. If an analysis
  * begins at the time at which the one before ended, its first row takes the place of the last one.
- * Where an event stops an analysis the last row is that of the event; others are in their own file.
- */
+ * Where an event stops an analysis the last row is that of the event; others are in their own
+ * file. */
 #include <errno.h>
 #include <float.h>
 #include <inttypes.h>
@@ -78,7 +78,7 @@ static se3d_status fail(runner *r, se3d_status status, const char *text)
     return status;
 }
 
-/* `why`: errno, 0 where memory is missing. */
+/* `why`: errno, 0 if memory is missing. */
 static se3d_status fail_path(runner *r, const char *path, int why)
 {
     char text[800];

@@ -24,8 +24,7 @@ static se3d_status fail_file(se3di_modes_run *run, const se3di_csv *csv)
     return csv->failure ? SE3D_ERR_IO : SE3D_ERR_NO_MEMORY;
 }
 
-/* Open <stem>suffix.csv, or the file itself where there is no suffix; *row has `columns` numbers.
- */
+/* Open <stem>suffix.csv, or the file itself if there is no suffix; *row has `columns` numbers. */
 static se3d_status open_csv(se3di_modes_run *run, const char *suffix, size_t columns,
                             se3di_csv *csv, double **row)
 {

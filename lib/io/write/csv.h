@@ -37,7 +37,7 @@ typedef struct se3di_csv_cell {
 /* Write one row as it is, whatever its time. */
 void se3di_csv_put_cells(se3di_csv *csv, const se3di_csv_cell *cells, size_t count);
 /* Complete the file and give it its name. @return OK, or IO: then the rows that are whole on the
- * disk are kept, and `rows` is their number; where there is none nothing is left, and a file of
+ * disk are kept, and `rows` is their number; if there is none nothing is left, and a file of
  * that name stays as it was. */
 se3d_status se3di_csv_close(se3di_csv *csv);
 /* Close without keeping anything. */

@@ -36,7 +36,7 @@ enum { SE3DI_POSE = 7 };
 se3d_status se3di_drawing_get_poses(const se3d_model *model, double *pose);
 /* Half the size of what is seen, > 0, and where a floor belongs. */
 double se3di_drawing_measure(const se3d_model *model, const se3di_poses *poses, double *floor);
-/* The parts of body `k`: its shapes and joints; bars to its joints where it has no shapes.
+/* The parts of body `k`: its shapes and joints; bars to its joints if it has no shapes.
  * @return false: out of memory. */
 bool se3di_drawing_list(const se3d_model *model, size_t k, double extent, se3di_iopool *pool,
                         se3di_parts *parts);

@@ -110,7 +110,7 @@ static long begin(se3di_glb *glb, size_t size, int target)
     return (long)glb->accessor_count;
 }
 
-/* The nearest 32-bit number; 0 where it is none. */
+/* The nearest 32-bit number; 0 if it is none. */
 static float to_float(double value)
 {
     return isfinite(value) ? (float)fmax(-(double)FLT_MAX, fmin((double)FLT_MAX, value)) : 0.0F;
@@ -192,7 +192,7 @@ static void add_unit(se3di_glb *glb, se3di_unit mesh)
     }
 }
 
-/* The unit normal of a triangle; z where it has no area. */
+/* The unit normal of a triangle; z if it has no area. */
 static void get_normal(const double *const p[3], double n[3])
 {
     double a[3];

@@ -47,7 +47,7 @@ struct se3di_vtk {
     double *bodies;              /* of every triangle; -1: a spring */
     double *times;
     size_t count, capacity;
-    int failure; /* errno of the first failure; ENOMEM also where memory is missing */
+    int failure; /* errno of the first failure; ENOMEM also if memory is missing */
 };
 
 static surface surface_of(const se3di_vtk *vtk, const se3di_part *part)
