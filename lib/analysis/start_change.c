@@ -67,7 +67,7 @@ static int has_velocities(const se3di_model *model, const se3di_frame *given)
     return sum > 0.0;
 }
 
-/* What is not more than rounding is none. */
+/* What is not more than rounding counts as zero. */
 static void drop(double sums[2], double most[2], se3di_handle *which)
 {
     sums[0] = sums[1] = most[0] = most[1] = 0.0;

@@ -19,7 +19,7 @@ typedef struct se3di_start_change {
 } se3di_start_change;
 
 /* What lies between the frames `given` and those of the model. What is rounding by the size and the
- * speeds of the model is none; `driven`: velocities are the drivers' to say. */
+ * speeds of the model counts as zero; `driven`: drivers determine the velocities. */
 void se3di_start_change_measure(const se3di_model *model, const se3di_frame *given, int driven,
                                 se3di_start_change *change);
 /* Tell the log. */

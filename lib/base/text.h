@@ -7,7 +7,7 @@
 
 /* True where all of it are characters of se3d_text_get_character. */
 int se3di_text_is_plain(const char *text);
-/* Replace what is none by '?', byte by byte. */
+/* Replace what is not such a character by '?', byte by byte. */
 void se3di_text_make_plain(char *text);
 
 #endif

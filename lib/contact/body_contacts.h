@@ -30,8 +30,8 @@ double se3di_contacts_potential(const se3di_model *model);
 /* Power that goes into them [W]: into springs, and lost. */
 double se3di_contacts_power(const se3di_model *model);
 
-/* Memory that the state at t will need, where it has not many more contacts than the last one: for
- * methods that cannot go back once they have moved something. */
+/* Memory that the state at t will need, if it does not have many more contacts than the last one:
+ * for methods that cannot go back once they have moved something. */
 se3d_status se3di_contacts_reserve(se3di_model *model, double t, se3di_error *error);
 /* A step of length h begins (0: not known, or control of the error finds where contact begins).
  * `weight` is what the method gives to the forces at the end of a step (1: nothing is corrected):

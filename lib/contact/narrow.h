@@ -3,7 +3,7 @@
  *
  * The normal points from the first shape to the second. Overlaps change continuously with the
  * poses. The point of a pair of round shapes is half way between the two surfaces; on a plane, and
- * of a sphere on anything that is none, it is on the surface of the other shape. */
+ * of a sphere and another kind of shape, it is on the surface of that shape. */
 #ifndef SE3DI_CONTACT_NARROW_H
 #define SE3DI_CONTACT_NARROW_H
 

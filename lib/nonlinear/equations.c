@@ -460,7 +460,7 @@ se3d_status se3di_state_solve(se3di_equations *equations, double t)
     return status;
 }
 
-/* r-p: velocities along p are none. */
+/* r-p: there are no velocities along p. */
 static void make_tangent(const se3di_equations *equations, double *qdot)
 {
     const se3di_assembly *assembly = &equations->assembly;

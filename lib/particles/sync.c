@@ -227,7 +227,7 @@ static void take_law(se3di_particles *set, const se3di_model *model)
     set->force_valid = 0;
 }
 
-/* Materials and the law have changed, what touches has not. *whole: more has to be done. */
+/* Materials and the law have changed, but not what touches. *whole: more has to be done. */
 static se3d_status renew(se3di_particles *set, const se3di_model *model, int *whole)
 {
     const int32_t rolling = set->rolling;

@@ -77,7 +77,7 @@ se3d_status se3di_check_orientation(se3d_system *system, const char *what, const
 /* `pointer` is not NULL. */
 se3d_status se3di_check_pointer(se3d_system *system, const char *what, const void *pointer);
 /* A def struct: copies its struct_size bytes over the defaults already in `copy`; fails if def is
- * NULL, struct_size is none, or something is set beyond what this library knows. */
+ * NULL, struct_size is too small, or something is set beyond what this library knows. */
 se3d_status se3di_check_def(se3d_system *system, const char *what, const void *def, void *copy,
                             size_t full_size);
 

@@ -166,7 +166,7 @@ static size_t count_columns(const plot *p)
     return count;
 }
 
-/* Read one column of file k; numbers that are none and columns that it lacks are NaN. */
+/* Read one column of file k; texts that are no numbers and columns that it lacks are NaN. */
 static void load_column(const plot *p, size_t k, const char *name, double *values)
 {
     const table *t = &p->tables[k];

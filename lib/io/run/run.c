@@ -544,7 +544,7 @@ static se3d_status create_solver(runner *r, const se3di_analysis_entry *entry, d
 {
     se3d_solver_def def = entry->solver;
     const double end = start + entry->analysis.duration;
-    def.horizon = fabs(end) > 0.0 ? end : DBL_MIN; /* 0 is none */
+    def.horizon = fabs(end) > 0.0 ? end : DBL_MIN; /* 0 means none */
     def.interrupt = r->options->interrupt;
     def.interrupt_ctx = r->options->interrupt_ctx;
     return se3d_solver_create(r->model->system, &def, &r->solver);
