@@ -6,9 +6,9 @@
 
 #include "nonlinear/equations.h"
 
-/* Where a motion under drivers has failed by `status` on the way to t_end, from the state that was
- * accepted last: name the driver and the time and value of the dead point before it in the message,
- * if that is what has ended it. @return status */
+/* Explain why a motion under drivers has failed by `status` on the way to t_end, from the state
+ * that was accepted last: if a dead point has ended it, the message names the driver and the time
+ * and value of the dead point. @return status */
 se3d_status se3di_dead_point_explain(se3di_equations *equations, double t_end, se3d_status status);
 
 #endif

@@ -21,7 +21,7 @@ static double reach(const se3di_body *body, const double s[3])
     return fmax(sqrt(fmax(gyration, 0.0)), se3di_norm(s));
 }
 
-/* A distance of nothing has no direction, and no motion goes on through it. */
+/* A distance of zero has no direction, and no motion goes on through it. */
 static int is_lost_distance(const se3di_model *model, const se3di_row *row, double square)
 {
     if (square > 1e-9 || row->term_count != 1 ||

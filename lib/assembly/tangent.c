@@ -202,7 +202,7 @@ void se3di_tangent_destroy(se3di_tangent *tangent)
     memset(tangent, 0, sizeof *tangent);
 }
 
-/* Where the block of (row body, column body) of K (which = 0) or D is; NULL: a body is fixed. */
+/* The block of (row body, column body) of K (which = 0) or D; NULL: a body is fixed. */
 static double *find_block(const se3di_tangent *tangent, int which, int32_t row, int32_t column)
 {
     size_t n = (size_t)tangent->assembly->formulation->block;

@@ -14,7 +14,7 @@ static size_t hash(uint32_t owner, const char *text)
     return (size_t)(h ^ (h >> 29));
 }
 
-/* Where a name is, or the free entry where it would be. */
+/* The entry of a name, or the free one where it would be. */
 static size_t locate(const se3di_names *names, uint32_t owner, const char *text)
 {
     size_t at = hash(owner, text) & (names->capacity - 1);

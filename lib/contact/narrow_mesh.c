@@ -356,7 +356,7 @@ static void try_hull(parting *p)
     }
 }
 
-/* Where two edges pass, on that of the mesh; returns 0 if one passes beyond its end. */
+/* The point where two edges pass, on that of the mesh; returns 0 if one passes beyond its end. */
 static int edges_pass(const parting *p, double at[3])
 {
     const double *R = p->segment->at->R;

@@ -320,7 +320,7 @@ static se3d_status parse_comparison(parser *p, se3di_operand *out)
     SE3DI_TRY(next(p));
     SE3DI_TRY(parse_sum(p, &right));
     if (p->lexer.token.kind == SE3DI_TOKEN_COMPARISON) {
-        return fail_unexpected(p, "a second comparison needs parentheses");
+        return fail_unexpected(p, "parentheses around the first comparison");
     }
     return check_finite(p, &sign,
                         se3di_program_binary(p->program, SE3DI_OP_BINARY,

@@ -27,7 +27,7 @@ enum {
     RK_ENERGY,
     RK_ENERGY_MIN, /* what the potential at the start says of the size of energies */
     RK_REDUNDANT,  /* the fewest dependent rows so far */
-    RK_HELD,       /* signs in a row that stability holds the steps */
+    RK_HELD,       /* signs in a row that stability limits the steps */
     RK_FREE,       /* signs against it since */
     RK_SINCE,      /* steps since the last look */
     RK_RENEWED,    /* 1: something else acts since the last step */
@@ -37,7 +37,7 @@ enum {
 #define HELD_MIN    15.0 /* signs that are enough, and signs against that take them back */
 #define FREE_MIN    6.0
 #define SLOW_MAX    0.01 /* most of a step times the rate of the motion, */
-#define DECAY_MIN   0.5  /* and least of it times a decay, where decays hold the step */
+#define DECAY_MIN   0.5  /* and least of it times a decay, where decays limit the step */
 #define HELD_EACH   8.0  /* steps between looks if there is no sign */
 #define FORCED_MAX  3
 #define SAFETY      0.8 /* a rejected step costs more than several that are this much shorter */

@@ -29,7 +29,7 @@ enum {
     KKT_BASE_COUNT = 5
 };
 
-/* One block of the caller's, of `rows` rows and body_size columns, to copy. */
+/* A block from the caller, of `rows` rows and body_size columns, to copy. */
 typedef struct se3di_kkt_source {
     int32_t base;
     int32_t rows;

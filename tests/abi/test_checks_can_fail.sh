@@ -97,6 +97,14 @@ reject 'circle: io/model/a.h -> io/model/b.h -> io/model/a.h' python3 tools/chec
 printf '%s\n' '| `math` | x |' '| `base` | y |' >docs/architecture.md
 reject 'architecture.md lists math base, the tree has base math' python3 tools/check_layers.py
 
+language="python3 tools/check_language.py"
+printf '%s\n' '/* Where it is square' ' * to its axis, a = 0:' ' *' ' *     F = m (a +' ' * g)' ' */' >lib/math/prose.h
+reject 'prose.h:1: `square to`' $language
+reject 'prose.h:1: .*Where' $language
+reject 'prose.h:5: text right after a formula' $language
+printf '%0121d b\n| %0130d |\n' 0 0 >docs/wide.md
+reject 'docs/wide.md:1: 123 columns' $language
+
 {
     echo '/* SPDX-License-Identifier: BSD-3-Clause */'
     echo 'int long_one(int a)'

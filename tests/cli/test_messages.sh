@@ -144,8 +144,8 @@ particles: [{name: sand, material: glass, radius: 0.01, lower: [0, 0, 0], upper:
 analysis: [{type: equilibrium}, {type: modes}]
 END
 expect 'grains beside an equilibrium' 0 "$program" run "$dir/grains.yaml" -o "$dir/o"
-prints 'note: equilibrium: the particles are left out'
-prints 'note: modes: the particles are left out'
+prints 'note: equilibrium: the particles and their forces on the bodies are left out'
+prints 'note: modes: the particles and their forces on the bodies are left out'
 
 # Events need what changes continuously, whatever it is called.
 for channel in particles.count particles.lost particles.left sand.count sand.mass contacts.count steps; do

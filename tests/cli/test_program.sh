@@ -283,7 +283,7 @@ for tolerance in 1e-3 1e-5 1e-9; do
     is "$([ "$steps" -gt "${fewer:-0}" ] && echo more)" more
     fewer=$steps
 done
-expect 'a tolerance that is none' 2 "$program" run "$dir/swing.yaml" -o "$dir/swing" --tolerance 0
+expect 'a tolerance of zero' 2 "$program" run "$dir/swing.yaml" -o "$dir/swing" --tolerance 0
 expect 'a tolerance that is too large' 2 "$program" run "$dir/swing.yaml" -o "$dir/swing" --tolerance 2
 
 for method in radau bdf dop853 'rk45 --step 1e-7' 'rk4 --step 1e-7' 'hht --step 1e-7' \

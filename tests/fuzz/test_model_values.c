@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Values of the example models made hostile one by one: the reader takes the model or says where
- * and why not, and what it takes is checked and moved two steps without numbers that are none.
+ * and why not, and what it takes is checked and moved two steps without NaN or infinity.
  * SE3D_FUZZ_ROUNDS multiplies the work, SE3D_FUZZ_SEED begins elsewhere. */
 #define _POSIX_C_SOURCE 200809L
 

@@ -209,7 +209,7 @@ static void auto_leaves_dop853_where_the_motion_becomes_stiff(void)
 }
 
 /* A governor at 1 turn/s: arms of 1 m from a spindle, their middles tied to a collar by springs
- * with dampers. The dampers decay long before stability holds the steps of dop853, but each of its
+ * with dampers. The dampers decay long before stability limits the steps of dop853, but each of its
  * steps disturbs them. */
 static se3d_body add_part(se3d_system *system, double mass, double inertia, const double at[3])
 {

@@ -479,7 +479,7 @@ static void every_bad_text_is_named_with_its_column(void)
         {"1 \x01", 3, "unexpected byte 0x01"},
         {"t = 2", 3, "did you mean '=='"},
         {"!t", 1, "did you mean '!='"},
-        {"1 < t < 2", 7, "use parentheses"},
+        {"1 < t < 2", 7, "parentheses around"},
         {"t ** 2", 4, "unexpected '*'"},
         {"1 + .", 5, "'.' without digits"},
         {"2e", 1, "the exponent of '2e' has no digits"},
@@ -565,7 +565,7 @@ static void limits_are_kept(void)
     check_nesting("t^", "", 65, SE3D_ERR_EXPRESSION, "nested too deeply");
     check_nesting("if(t,1,", ")", 65, SE3D_ERR_EXPRESSION, "nested too deeply");
     check_nesting("t+t*(", ")", 63, SE3D_OK, "");
-    check_nesting("t<t+t*(", ")", 64, SE3D_ERR_EXPRESSION, "more than 128 values");
+    check_nesting("t<t+t*(", ")", 64, SE3D_ERR_EXPRESSION, "more than 128 operands");
     check_nesting("-", "", 4000, SE3D_OK, "");
     check_nesting("t+", "", 2047, SE3D_OK, "");
     check_nesting("t+", "", 2048, SE3D_ERR_EXPRESSION, "longer than 4096");
@@ -575,7 +575,7 @@ static void limits_are_kept(void)
     free(text);
     text = nest("t<t+t*(", "t+t*t", ")", 42);
     CHECK(try_text(text, &error) == SE3D_ERR_EXPRESSION);
-    CHECK_CONTAINS(error.message, "more than 128 values");
+    CHECK_CONTAINS(error.message, "more than 128 operands");
     free(text);
     text = nest("1", "", "", 600);
     CHECK(try_text(text, &error) == SE3D_ERR_EXPRESSION);
