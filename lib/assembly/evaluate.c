@@ -264,16 +264,21 @@ void se3di_assembly_mul_mass(const se3di_assembly *assembly, const double *x, do
     }
 }
 
+/* out [n] -= B x, B an n x n block of one body. */
+static void subtract_block(const double *B, size_t n, const double *x, double *out)
+{
+    for (size_t r = 0; r < n; ++r) {
+        for (size_t c = 0; c < n; ++c) {
+            out[r] -= B[n * r + c] * x[c];
+        }
+    }
+}
+
 void se3di_assembly_subtract_mass(const se3di_assembly *assembly, const double *x, double *out)
 {
-    size_t n = (size_t)assembly->formulation->block;
+    const size_t n = (size_t)assembly->formulation->block;
     for (size_t k = 0; k < assembly->body_count; ++k) {
-        const double *H = assembly->H + k * n * n;
-        for (size_t r = 0; r < n; ++r) {
-            for (size_t c = 0; c < n; ++c) {
-                out[k * n + r] -= H[n * r + c] * x[k * n + c];
-            }
-        }
+        subtract_block(assembly->H + k * n * n, n, x + k * n, out + k * n);
     }
 }
 
@@ -285,11 +290,7 @@ void se3di_assembly_subtract_inertia(const se3di_assembly *assembly, const doubl
         const uint32_t body = assembly->free_body[k];
         assembly->formulation->mass(&assembly->model->bodies[body], &assembly->model->frames[body],
                                     M);
-        for (size_t r = 0; r < n; ++r) {
-            for (size_t c = 0; c < n; ++c) {
-                out[k * n + r] -= M[n * r + c] * x[k * n + c];
-            }
-        }
+        subtract_block(M, n, x + k * n, out + k * n);
     }
 }
 
