@@ -19,7 +19,7 @@ BANNED = (
      "user-defined, by the caller"),
     (r"\bsquare to\b", "perpendicular to"),
     (r"\b(the|its|their|a) begin\b(?! [a-z]+\()", "beginning or start"),
-    (r"\bwhat is typed\b|\bas typed\b", "the value given"),
+    (r"\bwhat (is|was) typed\b|\bas typed\b|\w+ typed is\b", "the value given"),
     (r"\bwhich (this|the) \w+ has not\b", "which it does not have"),
     (r"\bis none, but\b|\bthat (is|are) none\b|\bwas none,", "is not a ..."),
     (r"(?:^|[.:;!?] |\*\* |\* )Where [^.?!:;|]{3,}?,", "If ..., or When ..."),

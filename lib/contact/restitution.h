@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The restitution that is typed is the restitution that is obtained: damping from restitution, with
+/* The given restitution is the one that is obtained: damping from restitution, with
  * the force clipped at zero as the laws do.                         docs/theory/contact-laws.md */
 #ifndef SE3DI_CONTACT_RESTITUTION_H
 #define SE3DI_CONTACT_RESTITUTION_H
