@@ -7,6 +7,17 @@
 #include "io/document/reader.h"
 #include "io/document/value.h"
 
+/* clang-format off */
+static const se3di_key spline_keys[] = {
+    {"spline", SE3DI_KIND_POINTS, .required = true, .text = "points [x, y], x increasing"},
+    {.key = NULL}};
+const se3di_object se3di_object_spline = {
+    "spline",
+    "A natural cubic spline through points, straight outside.",
+    spline_keys, NULL,
+    NULL};
+/* clang-format on */
+
 static bool create_expression(se3di_reader *reader, const se3di_node *node,
                               const char *const *variables, size_t count, se3d_function *function)
 {
@@ -23,7 +34,7 @@ static bool create_expression(se3di_reader *reader, const se3di_node *node,
 /* {spline: [[x, y], ...]}: C2 through the points. */
 static bool read_spline(se3di_reader *reader, const se3di_node *node, se3d_function *function)
 {
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_SPLINE)) {
+    if (!se3di_read_keys(reader, node, &se3di_object_spline)) {
         return false;
     }
     const se3di_node *list = se3di_node_get(node, "spline");

@@ -5,6 +5,8 @@
 
 #include "io/document/reader.h"
 
+extern const se3di_object se3di_object_spline;
+
 /* A number, or a function of `variables` (NULL at the end, the first is the time): then *function
  * is not null. */
 bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const char *const *variables,

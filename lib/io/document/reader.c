@@ -93,15 +93,14 @@ static void append_word(char *text, size_t size, const char *word)
 }
 
 static bool fail_unknown_key(se3di_reader *reader, const se3di_node *child,
-                             const se3di_object_keys *object)
+                             const se3di_object *object)
 {
     char path[256];
     char text[640];
-    char list[480] = "";
+    char list[480];
     se3di_guess guess = se3di_guess_begin(child->key);
-    for (const char *const *key = object->keys; *key; ++key) {
-        append_word(list, sizeof list, *key);
-        se3di_guess_offer(&guess, *key);
+    for (const se3di_key *row = object->keys; row->key; ++row) {
+        se3di_guess_offer(&guess, row->key);
     }
     const char *meant = se3di_guess_get(&guess);
     se3di_node_format_path(child->parent, path, sizeof path);
@@ -109,32 +108,22 @@ static bool fail_unknown_key(se3di_reader *reader, const se3di_node *child,
         snprintf(text, sizeof text, "the key `%.60s` is unknown, did you mean `%s`?", child->key,
                  meant);
     } else {
+        se3di_object_list(object, NULL, ", ", list, sizeof list);
         snprintf(text, sizeof text, "the key `%.60s` is unknown, allowed are: %s", child->key,
                  list);
     }
     return fail_at(reader, child->key_line, child->key_column, path, text);
 }
 
-static bool has_key(const se3di_object_keys *object, const char *word)
+bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_object *object)
 {
-    for (const char *const *key = object->keys; *key; ++key) {
-        if (strcmp(*key, word) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
-bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, se3di_object object)
-{
-    const se3di_object_keys *keys = se3di_keys_get(object);
     if (node->kind != SE3DI_NODE_MAP) {
         return se3di_reader_fail(reader, node, "is %s, must be a map such as {%s: ...}",
-                                 se3di_node_describe(node), keys->keys[0]);
+                                 se3di_node_describe(node), object->keys[0].key);
     }
     for (const se3di_node *child = node->first; child; child = child->next) {
-        if (!has_key(keys, child->key)) {
-            return fail_unknown_key(reader, child, keys);
+        if (!se3di_object_find(object, NULL, child->key)) {
+            return fail_unknown_key(reader, child, object);
         }
     }
     return true;
@@ -142,16 +131,16 @@ bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, se3di_object 
 
 /* The keys that this type does not have. */
 static bool check_type_keys(se3di_reader *reader, const se3di_node *node,
-                            const se3di_object_keys *object, const se3di_type_keys *type)
+                            const se3di_object *object, const char *type)
 {
     for (const se3di_node *child = node->first; child; child = child->next) {
-        if (!se3di_keys_contain(object->common, child->key) &&
-            !se3di_keys_contain(type->keys, child->key)) {
+        if (!se3di_object_find(object, type, child->key)) {
             char path[256];
+            char list[480];
             char text[640];
             se3di_node_format_path(child, path, sizeof path);
-            snprintf(text, sizeof text, "`%s` has no such key, allowed are:%s%s", type->type,
-                     object->common, type->keys);
+            se3di_object_list(object, type, ", ", list, sizeof list);
+            snprintf(text, sizeof text, "`%s` has no such key, allowed are: %s", type, list);
             return fail_at(reader, child->key_line, child->key_column, path, text);
         }
     }
@@ -159,14 +148,14 @@ static bool check_type_keys(se3di_reader *reader, const se3di_node *node,
 }
 
 static bool fail_unknown_type(se3di_reader *reader, const se3di_node *map, const se3di_node *node,
-                              const se3di_object_keys *object)
+                              const se3di_object *object)
 {
     char list[480] = "";
     const char *text = node ? node->text : NULL;
     se3di_guess guess = se3di_guess_begin(text ? text : "");
-    for (const se3di_type_keys *type = object->types; type->type; ++type) {
-        append_word(list, sizeof list, type->type);
-        se3di_guess_offer(&guess, type->type);
+    for (const char *const *type = object->types; *type; ++type) {
+        append_word(list, sizeof list, *type);
+        se3di_guess_offer(&guess, *type);
     }
     const char *meant = se3di_guess_get(&guess);
     if (!node) {
@@ -177,25 +166,24 @@ static bool fail_unknown_type(se3di_reader *reader, const se3di_node *map, const
                                  se3di_node_describe(node), list);
     }
     return se3di_reader_fail(
-        reader, node, "the %s type `%.60s` is not supported, %s%s%s%s", object->name, text,
-        meant ? "did you mean `" : "allowed are: ", meant ? meant : list, meant ? "`?" : "", "");
+        reader, node, "the %s type `%.60s` is not supported, %s%s%s", object->name, text,
+        meant ? "did you mean `" : "allowed are: ", meant ? meant : list, meant ? "`?" : "");
 }
 
-bool se3di_read_type(se3di_reader *reader, const se3di_node *node, se3di_object object,
+bool se3di_read_type(se3di_reader *reader, const se3di_node *node, const se3di_object *object,
                      const char **type)
 {
-    const se3di_object_keys *keys = se3di_keys_get(object);
     if (!se3di_read_keys(reader, node, object)) {
         return false;
     }
     const se3di_node *child = se3di_node_get(node, "type");
-    for (const se3di_type_keys *known = keys->types; child && child->text && known->type; ++known) {
-        if (strcmp(known->type, child->text) == 0) {
-            *type = known->type;
-            return check_type_keys(reader, node, keys, known);
+    for (const char *const *known = object->types; child && child->text && *known; ++known) {
+        if (strcmp(*known, child->text) == 0) {
+            *type = *known;
+            return check_type_keys(reader, node, object, *known);
         }
     }
-    return fail_unknown_type(reader, node, child, keys);
+    return fail_unknown_type(reader, node, child, object);
 }
 
 bool se3di_read_list(se3di_reader *reader, const se3di_node *map, const char *key,

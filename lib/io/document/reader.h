@@ -31,9 +31,9 @@ bool se3di_reader_fail_memory(se3di_reader *reader);
 bool se3di_reader_fail_system(se3di_reader *reader, const se3di_node *map, se3d_status status);
 
 /* `node` must be a map whose keys are those of `object` (and, if it has types, of its type). */
-bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, se3di_object object);
+bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_object *object);
 /* The `type` of a map, one of `types`; `what` is "a joint type", ... */
-bool se3di_read_type(se3di_reader *reader, const se3di_node *node, se3di_object object,
+bool se3di_read_type(se3di_reader *reader, const se3di_node *node, const se3di_object *object,
                      const char **type);
 /* A list, or nothing (NULL or empty: *list is NULL). */
 bool se3di_read_list(se3di_reader *reader, const se3di_node *map, const char *key,

@@ -191,6 +191,19 @@ bool se3di_read_key_restitution(se3di_reader *reader, const se3di_node *map, dou
     return true;
 }
 
+bool se3di_read_key_count(se3di_reader *reader, const se3di_node *map, const char *key,
+                          double largest, double *value)
+{
+    if (!se3di_read_key_number(reader, map, key, SE3DI_NOT_NEGATIVE, value)) {
+        return false;
+    }
+    if (*value > largest || floor(*value) < *value) {
+        return se3di_reader_fail_key(reader, map, key, "is %g, must be a whole number from 0 to %g",
+                                     *value, largest);
+    }
+    return true;
+}
+
 bool se3di_read_vector(se3di_reader *reader, const se3di_node *node, size_t size, double *value)
 {
     if (node->kind != SE3DI_NODE_LIST) {
@@ -247,6 +260,24 @@ bool se3di_read_key_direction(se3di_reader *reader, const se3di_node *map, const
     }
     return true;
 }
+
+/* clang-format off */
+static const se3di_key orientation_keys[] = {
+    {"matrix", SE3DI_KIND_MATRIX3,
+     .text = "rotation matrix body -> ground, by rows; right-handed"},
+    {"euler_parameters", SE3DI_KIND_EULER_PARAMETERS,
+     .text = "unit Euler parameters e0 e1 e2 e3, scalar first"},
+    {"axis", SE3DI_KIND_VECTOR, .text = "axis of the rotation, with angle"},
+    {"angle", SE3DI_KIND_NUMBER, .text = "angle about axis [rad]"},
+    {"rpy", SE3DI_KIND_VECTOR,
+     .text = "roll about x, then pitch about y, then yaw about z, fixed axes [rad]"},
+    {.key = NULL}};
+const se3di_object se3di_object_orientation = {
+    "orientation",
+    "Exactly one way: matrix, euler_parameters, axis with angle, rpy.",
+    orientation_keys, NULL,
+    NULL};
+/* clang-format on */
 
 static bool read_matrix(se3di_reader *reader, const se3di_node *node, double p[4])
 {
@@ -319,7 +350,7 @@ bool se3di_read_orientation(se3di_reader *reader, const se3di_node *node, double
     if (!node) {
         return true;
     }
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_ORIENTATION)) {
+    if (!se3di_read_keys(reader, node, &se3di_object_orientation)) {
         return false;
     }
     const se3di_node *matrix = se3di_node_get(node, "matrix");

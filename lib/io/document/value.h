@@ -5,11 +5,7 @@
 
 #include "io/document/reader.h"
 
-typedef enum se3di_range {
-    SE3DI_ANY = 0,         /* finite */
-    SE3DI_POSITIVE = 1,    /* finite and > 0 */
-    SE3DI_NOT_NEGATIVE = 2 /* finite and >= 0 */
-} se3di_range;
+extern const se3di_object se3di_object_orientation;
 
 bool se3di_read_number(se3di_reader *reader, const se3di_node *node, se3di_range range,
                        double *value);

@@ -5,22 +5,73 @@
 
 #include "io/base/pool.h"
 #include "io/document/document.h"
+#include "io/document/fields.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/read/modes.h"
+#include "io/read/objects.h"
 #include "io/read/sections.h"
 
-static const char *const types[] = {
-    "assembly", "kinematics", "inverse_dynamics", "dynamics", "equilibrium", "modes", NULL};
 #define STEP_MIN       1e-15 /* s */
 #define STEP_DEFAULT   1e-3  /* s, of methods with fixed steps */
 #define STEPS_MAX      1e9   /* where the file says nothing */
 #define STEPS_MAX_MOST 1e15
 #define TIME_MAX       1e9 /* s, thirty years */
-#define WORDS_MOST     32
 
 enum { TYPE_MODES = 5 }; /* the others are se3d_analysis */
+static const char *const types[] = {[SE3D_ANALYSIS_ASSEMBLY] = "assembly",
+                                    [SE3D_ANALYSIS_KINEMATICS] = "kinematics",
+                                    [SE3D_ANALYSIS_INVERSE_DYNAMICS] = "inverse_dynamics",
+                                    [SE3D_ANALYSIS_DYNAMICS] = "dynamics",
+                                    [SE3D_ANALYSIS_EQUILIBRIUM] = "equilibrium",
+                                    [TYPE_MODES] = "modes",
+                                    NULL};
+
+/* clang-format off */
+static const se3di_key analysis_keys[] = {
+    {"type", SE3DI_KIND_WORD, .words = types, .required = true, .text = ""},
+    {"formulation", SE3DI_KIND_WORD, .name_of = se3d_formulation_get_name, .standard = "romega",
+     .text = "what describes turns: angular velocities, or Euler parameters"},
+    {"method", SE3DI_KIND_WORD, .name_of = se3d_method_get_name, .standard = "auto",
+     .text = "of dynamics; auto: verlet with particles, radau if a damper's decay is 20000 "
+         "times faster than the motion, else dop853, which it leaves for radau if stability "
+         "limits its steps"},
+    {"order", SE3DI_KIND_COUNT, .most = 20.0, .standard = "chosen",
+     .text = "of bdf (1 to 5) and rattle (2, 4)"},
+    {"step", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
+     .standard = "chosen by the error, or 1 ms for rattle and verlet",
+     .text = "the fixed step of generalized_alpha, hht, rattle, verlet, or the largest one [s]"},
+    {"tolerance", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
+     .text = "relative error, 1e-14 to 0.1, replaced by --tolerance; a method works at the least "
+         "tolerance that it can reach: dop853, rk45, rk4 7e-12, bdf 1e-12, radau 1e-13"},
+    {"duration", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     .text = "[s], at most 1e9; required in kinematics, inverse_dynamics and dynamics"},
+    {"start", SE3DI_KIND_NUMBER, .standard = "the end of the analysis before, 0 for the first",
+     .text = "[s], -1e9 to 1e9"},
+    {"spectral_radius", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_solver_def, spectral_radius),
+     .text = "of generalized_alpha: at infinite frequency, 0 to 1"},
+    {"alpha", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_solver_def, alpha), .text = "of hht: -1/3 to 0"},
+    {"iterations_max", SE3DI_KIND_COUNT, .most = 1e6, .standard = "25",
+     .text = "Newton iterations a step, 1 to 1000000"},
+    {"steps_max", SE3DI_KIND_COUNT, .most = STEPS_MAX_MOST, .standard = "1e9",
+     .text = "steps that it may take, 1 to 1e15: fixed steps are counted beforehand; any "
+         "method is given up, with a message, as soon as its pace shows that it would take more"},
+    {"file", SE3DI_KIND_FILE, .standard = "modes.csv",
+     .text = "of modes: where they are written"},
+    {"inputs", SE3DI_KIND_LIST, .object = "modes_input",
+     .text = "of modes: forces and torques, for the matrices and transfer functions"},
+    {"outputs", SE3DI_KIND_LIST, .object = "modes_output",
+     .text = "of modes: components of the motion"},
+    {"frequencies", SE3DI_KIND_OBJECT, .object = "frequencies",
+     .text = "of modes: of the transfer functions"},
+    {.key = NULL}};
+const se3di_object se3di_object_analysis = {
+    "analysis",
+    "One analysis.",
+    analysis_keys, NULL,
+    NULL};
+/* clang-format on */
 
 /* A value that an option of the command line gives, in place of the file's. */
 static const se3di_node *replaced(se3di_reader *reader, const se3di_node *node, const char *option,
@@ -38,14 +89,12 @@ static const se3di_node *replaced(se3di_reader *reader, const se3di_node *node, 
     return made;
 }
 
-/* The words of a list in the core, by number, with a NULL behind the last. */
-static void list_words(const char *(*name_of)(int32_t), const char *words[WORDS_MOST + 1])
+/* A word of a row, wherever it stands. */
+static bool read_word(se3di_reader *reader, const se3di_node *node, const char *key, size_t *word)
 {
-    int32_t count = 0;
-    for (; count < WORDS_MOST && *name_of(count); ++count) {
-        words[count] = name_of(count);
-    }
-    words[count] = NULL;
+    const char *words[SE3DI_WORDS_MAX + 1];
+    se3di_key_list_words(se3di_object_find(&se3di_object_analysis, NULL, key), words);
+    return se3di_read_word(reader, node, words, word);
 }
 
 static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry,
@@ -59,7 +108,6 @@ static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analy
                                              "--formulation", options->formulation);
     const se3di_node *method =
         replaced(reader, se3di_node_get(node, "method"), "--method", options->method);
-    const char *words[WORDS_MOST + 1];
     size_t word = SE3D_ANALYSIS_DYNAMICS;
     if (node && !type) {
         return se3di_reader_fail_key(reader, node, "type",
@@ -72,14 +120,12 @@ static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analy
     entry->analysis.type = types[word];
     solver->analysis = word == TYPE_MODES ? SE3D_ANALYSIS_EQUILIBRIUM : (int32_t)word;
     word = SE3D_FORMULATION_ROMEGA;
-    list_words(se3d_formulation_get_name, words);
-    if (formulation && !se3di_read_word(reader, formulation, words, &word)) {
+    if (formulation && !read_word(reader, formulation, "formulation", &word)) {
         return false;
     }
     solver->formulation = (int32_t)word;
     word = SE3D_METHOD_AUTO;
-    list_words(se3d_method_get_name, words);
-    if (method && !se3di_read_word(reader, method, words, &word)) {
+    if (method && !read_word(reader, method, "method", &word)) {
         return false;
     }
     *chosen = (int32_t)word;
@@ -111,17 +157,16 @@ static bool read_numbers(se3di_reader *reader, const se3di_node *node, se3d_solv
         replaced(reader, se3di_node_get(node, "step"), "--step", reader->options->step);
     const se3di_node *tolerance = replaced(reader, se3di_node_get(node, "tolerance"), "--tolerance",
                                            reader->options->tolerance);
+    const se3di_object *object = &se3di_object_analysis;
     double order = 0.0;
     double iterations = 25.0;
     double steps = STEPS_MAX;
     if ((step && !se3di_read_number(reader, step, SE3DI_POSITIVE, &solver->step)) ||
         (tolerance && !se3di_read_number(reader, tolerance, SE3DI_POSITIVE, &solver->tolerance)) ||
-        !se3di_read_key_number(reader, node, "spectral_radius", SE3DI_ANY,
-                               &solver->spectral_radius) ||
-        !se3di_read_key_number(reader, node, "alpha", SE3DI_ANY, &solver->alpha) ||
-        !se3di_read_key_count(reader, node, "order", 20.0, &order) ||
-        !se3di_read_key_count(reader, node, "iterations_max", 1e6, &iterations) ||
-        !se3di_read_key_count(reader, node, "steps_max", STEPS_MAX_MOST, &steps)) {
+        !se3di_read_fields(reader, node, object, NULL, "se3d_solver_def", solver) ||
+        !se3di_read_key(reader, node, object, NULL, "order", &order) ||
+        !se3di_read_key(reader, node, object, NULL, "iterations_max", &iterations) ||
+        !se3di_read_key(reader, node, object, NULL, "steps_max", &steps)) {
         return false;
     }
     if (steps < 1.0) {
@@ -188,7 +233,8 @@ static bool read_times(se3di_reader *reader, const se3di_node *node, se3di_analy
     const se3di_node *duration =
         replaced(reader, se3di_node_get(node, "duration"), "--duration", reader->options->duration);
     entry->analysis.start = (double)NAN;
-    if (!se3di_read_key_number(reader, node, "start", SE3DI_ANY, &entry->analysis.start)) {
+    if (!se3di_read_key(reader, node, &se3di_object_analysis, NULL, "start",
+                        &entry->analysis.start)) {
         return false;
     }
     if (fabs(entry->analysis.start) > TIME_MAX) {
@@ -214,7 +260,7 @@ static bool read_analysis(se3di_reader *reader, const se3di_node *node)
     se3di_analysis_entry entry = {.node = node};
     int32_t method = SE3D_METHOD_AUTO;
     entry.solver = se3d_solver_def_default();
-    if ((node && !se3di_read_keys(reader, node, SE3DI_OBJECT_ANALYSIS)) ||
+    if ((node && !se3di_read_keys(reader, node, &se3di_object_analysis)) ||
         !read_words(reader, node, &entry, &method) || !read_numbers(reader, node, &entry.solver) ||
         !check_solver(reader, node, &entry.solver, method) || !read_times(reader, node, &entry) ||
         !se3di_read_modes(reader, node, &entry)) {

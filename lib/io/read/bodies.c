@@ -7,13 +7,62 @@
 
 #include "io/base/pool.h"
 #include "io/document/document.h"
+#include "io/document/fields.h"
 #include "io/document/guess.h"
 #include "io/document/keys.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
+#include "io/read/objects.h"
 #include "io/read/sections.h"
 #include "io/read/shapes.h"
+
+/* clang-format off */
+static const se3di_key body_keys[] = {
+    {"name", SE3DI_KIND_NAME, .required = true, .text = "unique among the bodies"},
+    {"fixed", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_body_def, fixed), .standard = "false",
+     .text = "immovable, like the ground; needs no mass"},
+    {"held", SE3DI_KIND_BOOL, .standard = "false",
+     .text = "the assembly analysis keeps its pose and velocity and moves the others"},
+    {"mass", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .text = "[kg]"},
+    {"inertia", SE3DI_KIND_INERTIA,
+     .text = "about the centre of mass, body frame [kg m^2]: [xx, yy, zz], [xx, yy, zz, xy, "
+         "yz, xz] or three rows; xy is the entry of the matrix"},
+    {"density", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
+     .text = "of its shapes [kg/m^3], if there is no mass"},
+    {"position", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_body_def, position),
+     .standard = "[0, 0, 0]", .text = "centre of mass, ground frame [m]"},
+    {"orientation", SE3DI_KIND_ORIENTATION, SE3DI_INTO(se3d_body_def, orientation),
+     .standard = "that of the ground", .text = "body -> ground"},
+    {"velocity", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_body_def, velocity),
+     .standard = "[0, 0, 0]", .text = "of the centre of mass, ground frame [m/s]"},
+    {"angular_velocity", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_body_def, angular_velocity),
+     .standard = "[0, 0, 0]", .text = "body frame [rad/s]"},
+    {"shapes", SE3DI_KIND_LIST, .object = "shape",
+     .text = "for drawing and contact, and for mass if none is given"},
+    {"markers", SE3DI_KIND_LIST, .object = "marker", .text = "points with names"},
+    {.key = NULL}};
+const se3di_object se3di_object_body = {
+    "body",
+    "A body. The ground is the body ground: it may be listed to give it markers and shapes.",
+    body_keys, NULL,
+    NULL};
+/* clang-format on */
+
+/* clang-format off */
+static const se3di_key marker_keys[] = {
+    {"name", SE3DI_KIND_NAME, .required = true, .text = "unique among the markers of the body"},
+    {"position", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_marker_def, position),
+     .standard = "[0, 0, 0]", .text = "body frame [m]"},
+    {"orientation", SE3DI_KIND_ORIENTATION, SE3DI_INTO(se3d_marker_def, orientation),
+     .standard = "that of the body", .text = "marker -> body"},
+    {.key = NULL}};
+const se3di_object se3di_object_marker = {
+    "marker",
+    "A point of a body with axes.",
+    marker_keys, NULL,
+    NULL};
+/* clang-format on */
 
 /* Report a name that is unknown, with the one that was meant or with those there are. */
 static bool fail_unknown_body(se3di_reader *reader, const se3di_node *node)
@@ -106,7 +155,7 @@ static bool read_mass(se3di_reader *reader, const se3di_node *node, se3d_body_de
 {
     const se3di_node *mass = se3di_node_get(node, "mass");
     const se3di_node *inertia = se3di_node_get(node, "inertia");
-    if (mass && !se3di_read_number(reader, mass, SE3DI_POSITIVE, &def->mass)) {
+    if (!se3di_read_key(reader, node, &se3di_object_body, NULL, "mass", &def->mass)) {
         return false;
     }
     if (inertia && !read_inertia(reader, inertia, def->inertia)) {
@@ -150,7 +199,7 @@ static bool read_markers(se3di_reader *reader, const se3di_node *body, size_t en
         se3d_marker_def def = se3d_marker_def_default();
         se3di_marker_entry marker = {.body = entry};
         const se3di_node *name = NULL;
-        if (!se3di_read_keys(reader, node, SE3DI_OBJECT_MARKER)) {
+        if (!se3di_read_keys(reader, node, &se3di_object_marker)) {
             return false;
         }
         name = se3di_node_get(node, "name");
@@ -158,8 +207,7 @@ static bool read_markers(se3di_reader *reader, const se3di_node *body, size_t en
             return se3di_reader_fail_key(reader, node, "name", "is missing");
         }
         if (!se3di_read_name(reader, name, &marker.name) ||
-            !se3di_read_key_vector(reader, node, "position", def.position) ||
-            !se3di_read_key_orientation(reader, node, def.orientation)) {
+            !se3di_read_fields(reader, node, &se3di_object_marker, NULL, "se3d_marker_def", &def)) {
             return false;
         }
         se3di_body_entry *owner = &model->bodies[entry];
@@ -243,21 +291,16 @@ static bool read_body(se3di_reader *reader, const se3di_node *node)
     se3d_body_def def = se3d_body_def_default();
     se3d_body body;
     const char *name = NULL;
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_BODY) || !read_body_name(reader, node, &name)) {
+    if (!se3di_read_keys(reader, node, &se3di_object_body) ||
+        !read_body_name(reader, node, &name)) {
         return false;
     }
     if (strcmp(name, "ground") == 0) {
         return read_ground(reader, node);
     }
-    const se3di_node *fixed = se3di_node_get(node, "fixed");
-    const se3di_node *held = se3di_node_get(node, "held");
     int32_t is_held = 0;
-    if ((held && !se3di_read_bool(reader, held, &is_held)) ||
-        (fixed && !se3di_read_bool(reader, fixed, &def.fixed)) ||
-        !se3di_read_key_vector(reader, node, "position", def.position) ||
-        !se3di_read_key_orientation(reader, node, def.orientation) ||
-        !se3di_read_key_vector(reader, node, "velocity", def.velocity) ||
-        !se3di_read_key_vector(reader, node, "angular_velocity", def.angular_velocity) ||
+    if (!se3di_read_key(reader, node, &se3di_object_body, NULL, "held", &is_held) ||
+        !se3di_read_fields(reader, node, &se3di_object_body, NULL, "se3d_body_def", &def) ||
         !read_mass(reader, node, &def)) {
         return false;
     }

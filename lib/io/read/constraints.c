@@ -10,10 +10,51 @@
 #include "io/model/model.h"
 #include "io/read/bodies.h"
 #include "io/read/elements.h"
-#include "io/read/joints.h"
+#include "io/read/objects.h"
+#include "io/read/pairs.h"
 #include "io/read/sections.h"
 
 static const char *const time_only[] = {"t", NULL};
+
+#define PRIMITIVES                                                                                 \
+    [SE3D_PRIMITIVE_DP1] = "dp1", [SE3D_PRIMITIVE_DP2] = "dp2", [SE3D_PRIMITIVE_D] = "d",          \
+    [SE3D_PRIMITIVE_CD] = "cd"
+static const char *const primitive_types[] = {PRIMITIVES, NULL};
+static const char *const constraint_types[] = {PRIMITIVES, "perpendicular1", "perpendicular2",
+                                               NULL};
+
+/* clang-format off */
+static const se3di_key constraint_keys[] = {
+    {"name", SE3DI_KIND_NAME, .standard = "constraint1, constraint2, ...",
+     .text = "unique among joints, drivers, constraints and forces"},
+    {"type", SE3DI_KIND_TYPE, .required = true, .text = ""},
+    {"body_i", SE3DI_KIND_BODY, .required = true, .text = ""},
+    {"body_j", SE3DI_KIND_BODY, .required = true, .text = ""},
+    {"a_i", SE3DI_KIND_DIRECTION, .types = " dp1 dp2 ", .text = "frame of body i"},
+    {"a_j", SE3DI_KIND_DIRECTION, .types = " dp1 ", .text = "frame of body j"},
+    {"point_i", SE3DI_KIND_POINT, .types = " dp2 d cd perpendicular1 perpendicular2 ",
+     .text = "frame of body i [m]"},
+    {"point_j", SE3DI_KIND_POINT, .types = " dp2 d cd perpendicular1 perpendicular2 ",
+     .text = "frame of body j [m]"},
+    {"c", SE3DI_KIND_DIRECTION, .types = " cd ", .text = "ground frame"},
+    {"value", SE3DI_KIND_FUNCTION, .types = " dp1 dp2 d cd ", .standard = "0",
+     .text = "what the expression of the primitive is equal to; a function of t makes it a driver"},
+    {"at", SE3DI_KIND_VECTOR, .types = " perpendicular1 perpendicular2 ",
+     .text = "as of a joint"},
+    {"axis", SE3DI_KIND_DIRECTION, .types = " perpendicular1 perpendicular2 ",
+     .text = "as of a joint"},
+    {"axis_i", SE3DI_KIND_DIRECTION, .types = " perpendicular1 perpendicular2 ",
+     .text = "as of a joint"},
+    {"axis_j", SE3DI_KIND_DIRECTION, .types = " perpendicular1 ", .text = "as of a joint"},
+    {"axis_2", SE3DI_KIND_DIRECTION, .types = " perpendicular1 ", .text = "as of a joint"},
+    {"at_2", SE3DI_KIND_VECTOR, .types = " perpendicular2 ", .text = "as of a joint"},
+    {.key = NULL}};
+const se3di_object se3di_object_constraint = {
+    "constraint",
+    "A constraint primitive; d runs from the point of body i to that of body j.",
+    constraint_keys, constraint_types,
+    NULL};
+/* clang-format on */
 
 static bool require(se3di_reader *reader, const se3di_node *node, const char *key, const char *type)
 {
@@ -21,9 +62,6 @@ static bool require(se3di_reader *reader, const se3di_node *node, const char *ke
                ? true
                : se3di_reader_fail_key(reader, node, key, "is missing, `%s` needs it", type);
 }
-
-/* In the order of se3d_primitive_type. */
-static const char *const types[] = {"dp1", "dp2", "d", "cd", NULL};
 
 static bool read_geometry(se3di_reader *reader, const se3di_node *node,
                           const se3di_body_entry *bodies[2], se3d_primitive_def *def)
@@ -33,7 +71,7 @@ static bool read_geometry(se3di_reader *reader, const se3di_node *node,
     double *const targets[] = {def->a_i, def->a_j, def->c};
     for (size_t k = 0; k < 3; ++k) {
         if (se3di_keys_contain(required[def->type], directions[k]) &&
-            !require(reader, node, directions[k], types[def->type])) {
+            !require(reader, node, directions[k], primitive_types[def->type])) {
             return false;
         }
         if (!se3di_read_key_direction(reader, node, directions[k], targets[k])) {
@@ -67,7 +105,7 @@ static bool read_primitive(se3di_reader *reader, const se3di_node *node, se3di_e
     size_t index = 0;
     const se3di_body_entry *bodies[2] = {NULL, NULL};
     se3d_primitive_def def = se3d_primitive_def_default();
-    if (!se3di_read_word(reader, se3di_node_get(node, "type"), types, &index)) {
+    if (!se3di_read_word(reader, se3di_node_get(node, "type"), primitive_types, &index)) {
         return false;
     }
     def.type = (int32_t)index;
@@ -98,7 +136,7 @@ bool se3di_read_constraints(se3di_reader *reader, const se3di_node *root)
         return false;
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!se3di_read_type(reader, node, SE3DI_OBJECT_CONSTRAINT, &type) ||
+        if (!se3di_read_type(reader, node, &se3di_object_constraint, &type) ||
             !se3di_read_element(reader, node, SE3DI_ELEMENT_CONSTRAINT, &entry)) {
             return false;
         }

@@ -6,102 +6,86 @@
 
 #include "io/base/pool.h"
 #include "io/document/document.h"
+#include "io/document/fields.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/mesh.h"
 #include "io/model/model.h"
 #include "io/read/materials.h"
+#include "io/read/objects.h"
 #include "io/read/sections.h"
 
-bool se3di_read_key_count(se3di_reader *reader, const se3di_node *map, const char *key,
-                          double largest, double *value)
-{
-    if (!se3di_read_key_number(reader, map, key, SE3DI_NOT_NEGATIVE, value)) {
-        return false;
-    }
-    if (*value > largest || floor(*value) < *value) {
-        return se3di_reader_fail_key(reader, map, key, "is %g, must be a whole number from 0 to %g",
-                                     *value, largest);
-    }
-    return true;
-}
+static const char *const laws[] = {
+    [SE3D_CONTACT_LAW_HOOKE] = "hooke", [SE3D_CONTACT_LAW_HERTZ_MINDLIN] = "hertz_mindlin", NULL};
+static const char *const boundaries[] = {[SE3D_DOMAIN_BOUNDARY_OPEN] = "open",
+                                         [SE3D_DOMAIN_BOUNDARY_PERIODIC] = "periodic",
+                                         [SE3D_DOMAIN_BOUNDARY_SINK] = "sink",
+                                         NULL};
 
-static bool create_material(se3di_reader *reader, const se3di_node *entry, se3d_material *material)
-{
-    se3d_material_def def = se3d_material_def_default();
-    const struct {
-        const char *key;
-        double *value;
-    } numbers[] = {{"density", &def.density},
-                   {"friction", &def.friction},
-                   {"restitution", &def.restitution},
-                   {"rolling_friction", &def.rolling_friction},
-                   {"torsional_friction", &def.torsional_friction},
-                   {"stiffness", &def.stiffness},
-                   {"tangential_ratio", &def.tangential_ratio},
-                   {"young", &def.young},
-                   {"poisson", &def.poisson},
-                   {"cohesion", &def.cohesion},
-                   {"adhesion", &def.adhesion}};
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i) {
-        if (!se3di_read_key_number(reader, entry, numbers[i].key, SE3DI_ANY, numbers[i].value)) {
-            return false;
-        }
-    }
-    const se3d_status status = se3d_material_create(reader->system, &def, material);
-    return status < 0 ? se3di_reader_fail_system(reader, entry, status) : true;
-}
+/* clang-format off */
+static const se3di_key contact_keys[] = {
+    {"law", SE3DI_KIND_WORD, SE3DI_INTO(se3d_contact_settings, law), .words = laws,
+     .standard = "hooke", .text = "the force law"},
+    {"step", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_contact_settings, step),
+     .standard = "from the stiffness", .text = "[s]"},
+    {"threads", SE3DI_KIND_COUNT, .most = 1024.0, .standard = "1",
+     .text = "results do not depend on it"},
+    {"skin", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_particles_def, skin),
+     .standard = "0.1", .text = "of the neighbour list, over the mean diameter"},
+    {"overlap_limit", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
+     SE3DI_INTO(se3d_contact_settings, overlap_limit), .standard = "0.2",
+     .text = "over the smaller radius"},
+    {"boundary", SE3DI_KIND_BOUNDARY, .words = boundaries, .standard = "open",
+     .text = "of the domain along x, y, z: periodic (a period is 4.04 of the largest radii at "
+         "least), sink: particles beyond it are removed and counted"},
+    {"lower", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_particles_def, lower),
+     .text = "corner of the domain [m]"},
+    {"upper", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_particles_def, upper),
+     .text = "corner of the domain [m]"},
+    {"pairs", SE3DI_KIND_LIST, .object = "pair",
+     .text = "what holds between two materials in place of the mixing rules"},
+    {.key = NULL}};
+const se3di_object se3di_object_contact = {
+    "contact",
+    "How shapes and particles touch.",
+    contact_keys, NULL,
+    NULL};
+/* clang-format on */
 
-bool se3di_reader_find_material(se3di_reader *reader, const char *name, se3d_material *material)
-{
-    se3d_material *materials = reader->model->materials;
-    const se3di_node *list = se3di_node_get(reader->model->root, "materials");
-    const se3di_node *entry = list ? list->first : NULL;
-    size_t k = 0;
-    for (; entry && strcmp(se3di_node_get(entry, "name")->text, name) != 0; entry = entry->next) {
-        ++k;
-    }
-    if (!entry || (materials[k].index1 == 0 && !create_material(reader, entry, &materials[k]))) {
-        return false;
-    }
-    *material = materials[k];
-    return true;
-}
-
-bool se3di_read_key_material(se3di_reader *reader, const se3di_node *map, const char *key,
-                             se3d_material *material)
-{
-    const se3di_node *node = se3di_node_get(map, key);
-    const char *name = NULL;
-    if (!node) {
-        return se3di_reader_fail_key(reader, map, key, "is missing, must be one of `materials`");
-    }
-    if (!se3di_read_text(reader, node, &name)) {
-        return false;
-    }
-    if (se3di_reader_find_material(reader, name, material)) {
-        return true;
-    }
-    return reader->status < 0
-               ? false
-               : se3di_reader_fail(reader, node,
-                                   "no material is named `%.60s`; list it under `materials`", name);
-}
+/* clang-format off */
+static const se3di_key pair_keys[] = {
+    {"material_1", SE3DI_KIND_MATERIAL, .required = true, .text = ""},
+    {"material_2", SE3DI_KIND_MATERIAL, .required = true, .text = ""},
+    {"friction", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_pair_def, friction), .text = "coefficient of sliding"},
+    {"restitution", SE3DI_KIND_NUMBER, SE3DI_RESTITUTION,
+     SE3DI_INTO(se3d_material_pair_def, restitution), .text = "coefficient of restitution"},
+    {"rolling_friction", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_pair_def, rolling_friction), .text = "as of a material"},
+    {"torsional_friction", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_pair_def, torsional_friction), .text = "as of a material"},
+    {"stiffness", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_material_pair_def, stiffness),
+     .text = "hooke [N/m]"},
+    {"cohesion", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_pair_def, cohesion), .text = "[J/m^3]"},
+    {"adhesion", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_pair_def, adhesion), .text = "[J/m^2]"},
+    {.key = NULL}};
+const se3di_object se3di_object_pair = {
+    "pair",
+    "Two materials, each pair once; without a key the mixing rules hold.",
+    pair_keys, NULL,
+    NULL};
+/* clang-format on */
 
 static bool read_settings(se3di_reader *reader, const se3di_node *contact)
 {
-    static const char *const laws[] = {"hooke", "hertz_mindlin", NULL};
     se3d_contact_settings settings = se3d_contact_settings_default();
-    const se3di_node *word = se3di_node_get(contact, "law");
-    size_t law = 0;
-    if (!se3di_read_keys(reader, contact, SE3DI_OBJECT_CONTACT) ||
-        (word && !se3di_read_word(reader, word, laws, &law)) ||
-        !se3di_read_key_number(reader, contact, "step", SE3DI_POSITIVE, &settings.step) ||
-        !se3di_read_key_number(reader, contact, "overlap_limit", SE3DI_POSITIVE,
-                               &settings.overlap_limit)) {
+    if (!se3di_read_keys(reader, contact, &se3di_object_contact) ||
+        !se3di_read_fields(reader, contact, &se3di_object_contact, NULL, "se3d_contact_settings",
+                           &settings)) {
         return false;
     }
-    settings.law = (int32_t)law;
     const se3d_status status = se3d_system_set_contact(reader->system, &settings);
     return status < 0 ? se3di_reader_fail_system(reader, contact, status) : true;
 }
@@ -136,18 +120,11 @@ static bool read_pairs(se3di_reader *reader, const se3di_node *contact)
         se3d_material_pair_def def = se3d_material_pair_def_default();
         se3d_material a;
         se3d_material b;
-        if (!se3di_read_keys(reader, node, SE3DI_OBJECT_PAIR) ||
+        if (!se3di_read_keys(reader, node, &se3di_object_pair) ||
             !se3di_read_key_material(reader, node, "material_1", &a) ||
             !se3di_read_key_material(reader, node, "material_2", &b) ||
-            !se3di_read_key_number(reader, node, "friction", SE3DI_NOT_NEGATIVE, &def.friction) ||
-            !se3di_read_key_restitution(reader, node, &def.restitution) ||
-            !se3di_read_key_number(reader, node, "rolling_friction", SE3DI_NOT_NEGATIVE,
-                                   &def.rolling_friction) ||
-            !se3di_read_key_number(reader, node, "torsional_friction", SE3DI_NOT_NEGATIVE,
-                                   &def.torsional_friction) ||
-            !se3di_read_key_number(reader, node, "stiffness", SE3DI_POSITIVE, &def.stiffness) ||
-            !se3di_read_key_number(reader, node, "cohesion", SE3DI_NOT_NEGATIVE, &def.cohesion) ||
-            !se3di_read_key_number(reader, node, "adhesion", SE3DI_NOT_NEGATIVE, &def.adhesion)) {
+            !se3di_read_fields(reader, node, &se3di_object_pair, NULL, "se3d_material_pair_def",
+                               &def)) {
             return false;
         }
         if (!is_first_of_pair(reader, list, node)) {
@@ -163,14 +140,13 @@ static bool read_pairs(se3di_reader *reader, const se3di_node *contact)
 
 static bool read_shape_keys(se3di_reader *reader, const se3di_node *node, se3d_shape_def *def)
 {
-    const se3di_node *name = se3di_node_get(node, "name");
-    const double most = 4294967295.0;
+    const se3di_object *shape = &se3di_object_shape;
     double group = 1.0;
-    double mask = most;
-    if ((name && !se3di_read_name(reader, name, &def->name)) ||
+    double mask = 4294967295.0;
+    if (!se3di_read_key(reader, node, shape, NULL, "name", (void *)&def->name) ||
         !se3di_read_key_material(reader, node, "material", &def->material) ||
-        !se3di_read_key_count(reader, node, "group", most, &group) ||
-        !se3di_read_key_count(reader, node, "mask", most, &mask)) {
+        !se3di_read_key(reader, node, shape, NULL, "group", &group) ||
+        !se3di_read_key(reader, node, shape, NULL, "mask", &mask)) {
         return false;
     }
     def->group = (uint32_t)group;
@@ -222,9 +198,8 @@ static bool create_shapes(se3di_reader *reader, const se3di_node *root)
         const se3di_node *shapes = se3di_node_get(body, "shapes");
         for (const se3di_node *node = shapes ? shapes->first : NULL; node; node = node->next) {
             const se3di_shape_entry *entry = &reader->model->shapes[index++];
-            const se3di_node *word = se3di_node_get(node, "contact");
             int32_t wanted = 1;
-            if (word && !se3di_read_bool(reader, word, &wanted)) {
+            if (!se3di_read_key(reader, node, &se3di_object_shape, NULL, "contact", &wanted)) {
                 return false;
             }
             if (wanted && se3di_node_get(node, "material") && !create_shape(reader, node, entry)) {

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The list of joints; joints between joints (gear, rack and pinion, coupler); drivers. */
+/* Joints between joints: gear, rack and pinion, coupler. */
+#include "io/read/couplings.h"
+
 #include <string.h>
 
 #include "io/document/document.h"
@@ -9,50 +11,26 @@
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/read/elements.h"
-#include "io/read/joints.h"
+#include "io/read/objects.h"
 #include "io/read/sections.h"
 
-static const char *const coordinates[] = {"angle", "displacement", NULL};
 static const char *const time_only[] = {"t", NULL};
 
-bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3d_constraint joint,
-                               int32_t *coordinate)
-{
-    const se3d_system *system = reader->system;
-    const se3di_node *child = se3di_node_get(node, "coordinate");
-    size_t word = 0;
-    double value[3];
-    const bool angle = !SE3D_FAILED(se3d_joint_get_coordinate(
-        system, joint, SE3D_JOINT_COORDINATE_ANGLE, &value[0], &value[1], &value[2]));
-    const bool displacement = !SE3D_FAILED(se3d_joint_get_coordinate(
-        system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT, &value[0], &value[1], &value[2]));
-    if (!angle && !displacement) {
-        return se3di_reader_fail_key(reader, node, "joint",
-                                     "has no coordinate, must be a joint with an angle or a "
-                                     "displacement");
-    }
-    if (!child && angle && displacement) {
-        return se3di_reader_fail_key(reader, node, "coordinate",
-                                     "is missing, must be angle or displacement: the joint has "
-                                     "both");
-    }
-    if (!child) {
-        *coordinate = angle ? SE3D_JOINT_COORDINATE_ANGLE : SE3D_JOINT_COORDINATE_DISPLACEMENT;
-        return true;
-    }
-    if (!se3di_read_word(reader, child, coordinates, &word)) {
-        return false;
-    }
-    if (word == 0 ? !angle : !displacement) {
-        return se3di_reader_fail(reader, child,
-                                 "is `%s`, which this joint does not have, must be `%s`",
-                                 coordinates[word], coordinates[1 - word]);
-    }
-    *coordinate = (int32_t)word;
-    return true;
-}
+/* clang-format off */
+static const se3di_key term_keys[] = {
+    {"joint", SE3DI_KIND_JOINT, .required = true, .text = ""},
+    {"coordinate", SE3DI_KIND_WORD, .words = se3di_coordinates,
+     .text = "may be left out if the joint has one only"},
+    {"ratio", SE3DI_KIND_NUMBER, .standard = "1", .text = ""},
+    {.key = NULL}};
+const se3di_object se3di_object_term = {
+    "term",
+    "A term of a coupler.",
+    term_keys, NULL,
+    NULL};
+/* clang-format on */
 
-static bool read_gear(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+bool se3di_read_gear(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
 {
     se3d_constraint first;
     se3d_constraint second;
@@ -77,7 +55,7 @@ static bool read_gear(se3di_reader *reader, const se3di_node *node, se3di_elemen
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
-static bool read_rack(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+bool se3di_read_rack(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
 {
     se3d_constraint pinion;
     se3d_constraint rack;
@@ -98,7 +76,7 @@ static bool read_rack(se3di_reader *reader, const se3di_node *node, se3di_elemen
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
-static bool read_coupler(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+bool se3di_read_coupler(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
 {
     const se3di_node *list = se3di_node_get(node, "terms");
     const se3di_node *value = se3di_node_get(node, "value");
@@ -112,7 +90,7 @@ static bool read_coupler(se3di_reader *reader, const se3di_node *node, se3di_ele
     }
     for (const se3di_node *term = list->first; term; term = term->next, ++def.count) {
         def.ratio[def.count] = 1.0;
-        if (!se3di_read_keys(reader, term, SE3DI_OBJECT_TERM) ||
+        if (!se3di_read_keys(reader, term, &se3di_object_term) ||
             !se3di_read_key_joint(reader, term, "joint", &def.joint[def.count]) ||
             !se3di_read_key_coordinate(reader, term, def.joint[def.count],
                                        &def.coordinate[def.count]) ||
@@ -126,83 +104,4 @@ static bool read_coupler(se3di_reader *reader, const se3di_node *node, se3di_ele
     def.name = entry->name;
     const se3d_status status = se3d_joint_create_coupler(reader->system, &def, &entry->constraint);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
-}
-
-static bool is_coupling(const char *type)
-{
-    return se3di_keys_contain(" gear rack_pinion coupler ", type) != 0;
-}
-
-static bool read_joint(se3di_reader *reader, const se3di_node *node, const char *type)
-{
-    se3di_element_entry *entry = NULL;
-    if (!se3di_read_element(reader, node, SE3DI_ELEMENT_JOINT, &entry)) {
-        return false;
-    }
-    if (strcmp(type, "gear") == 0) {
-        return read_gear(reader, node, entry);
-    }
-    if (strcmp(type, "rack_pinion") == 0) {
-        return read_rack(reader, node, entry);
-    }
-    return strcmp(type, "coupler") == 0 ? read_coupler(reader, node, entry)
-                                        : se3di_read_pair(reader, node, type, entry);
-}
-
-/* Couplings may name joints that stand below them: they come in a second round. */
-bool se3di_read_joints(se3di_reader *reader, const se3di_node *root)
-{
-    const se3di_node *list = NULL;
-    const char *type = NULL;
-    if (!se3di_read_list(reader, root, "joints", &list)) {
-        return false;
-    }
-    for (int round = 0; round < 2; ++round) {
-        for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-            if (!se3di_read_type(reader, node, SE3DI_OBJECT_JOINT, &type) ||
-                (is_coupling(type) == (round == 1) && !read_joint(reader, node, type))) {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
-static bool read_driver(se3di_reader *reader, const se3di_node *node)
-{
-    se3d_driver_def def = se3d_driver_def_default();
-    se3di_element_entry *entry = NULL;
-    const se3di_node *value = se3di_node_get(node, "value");
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_DRIVER) ||
-        !se3di_read_element(reader, node, SE3DI_ELEMENT_DRIVER, &entry) ||
-        !se3di_read_key_joint(reader, node, "joint", &def.joint) ||
-        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate)) {
-        return false;
-    }
-    if (!value) {
-        return se3di_reader_fail_key(reader, node, "value",
-                                     "is missing, must be a number, an expression in t or "
-                                     "{spline: [[t, value], ...]}");
-    }
-    if (!se3di_read_function(reader, value, time_only, &def.value, &def.function)) {
-        return false;
-    }
-    def.name = entry->name;
-    entry->coordinate = def.coordinate;
-    const se3d_status status = se3d_driver_create(reader->system, &def, &entry->constraint);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
-}
-
-bool se3di_read_drivers(se3di_reader *reader, const se3di_node *root)
-{
-    const se3di_node *list = NULL;
-    if (!se3di_read_list(reader, root, "drivers", &list)) {
-        return false;
-    }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!read_driver(reader, node)) {
-            return false;
-        }
-    }
-    return true;
 }

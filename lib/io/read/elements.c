@@ -11,6 +11,10 @@
 #include "io/document/reader.h"
 #include "io/model/model.h"
 
+const char *const se3di_coordinates[] = {[SE3D_JOINT_COORDINATE_ANGLE] = "angle",
+                                         [SE3D_JOINT_COORDINATE_DISPLACEMENT] = "displacement",
+                                         NULL};
+
 static const char *const kind_texts[] = {"joint", "constraint", "driver", "force"};
 
 bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_element_kind kind,
@@ -82,4 +86,41 @@ bool se3di_read_key_joint(se3di_reader *reader, const se3di_node *map, const cha
     return se3di_reader_fail(reader, node, "no joint is named `%.60s`, %s%s%s", name,
                              meant ? "did you mean `" : "must be the name of one of `joints`",
                              meant ? meant : "", meant ? "`?" : "");
+}
+
+bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3d_constraint joint,
+                               int32_t *coordinate)
+{
+    const se3d_system *system = reader->system;
+    const se3di_node *child = se3di_node_get(node, "coordinate");
+    size_t word = 0;
+    double value[3];
+    const bool angle = !SE3D_FAILED(se3d_joint_get_coordinate(
+        system, joint, SE3D_JOINT_COORDINATE_ANGLE, &value[0], &value[1], &value[2]));
+    const bool displacement = !SE3D_FAILED(se3d_joint_get_coordinate(
+        system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT, &value[0], &value[1], &value[2]));
+    if (!angle && !displacement) {
+        return se3di_reader_fail_key(reader, node, "joint",
+                                     "has no coordinate, must be a joint with an angle or a "
+                                     "displacement");
+    }
+    if (!child && angle && displacement) {
+        return se3di_reader_fail_key(reader, node, "coordinate",
+                                     "is missing, must be angle or displacement: the joint has "
+                                     "both");
+    }
+    if (!child) {
+        *coordinate = angle ? SE3D_JOINT_COORDINATE_ANGLE : SE3D_JOINT_COORDINATE_DISPLACEMENT;
+        return true;
+    }
+    if (!se3di_read_word(reader, child, se3di_coordinates, &word)) {
+        return false;
+    }
+    if (word == 0 ? !angle : !displacement) {
+        return se3di_reader_fail(reader, child,
+                                 "is `%s`, which this joint does not have, must be `%s`",
+                                 se3di_coordinates[word], se3di_coordinates[1 - word]);
+    }
+    *coordinate = (int32_t)word;
+    return true;
 }

@@ -6,6 +6,9 @@
 #include "io/document/reader.h"
 #include "io/model/model.h"
 
+/* The words of se3d_joint_coordinate; NULL at the end. */
+extern const char *const se3di_coordinates[];
+
 /* Begin an element: its name, given or made up, is added to the model. */
 bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_element_kind kind,
                         se3di_element_entry **entry);

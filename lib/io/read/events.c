@@ -8,34 +8,52 @@
 #include "io/channel/event.h"
 #include "io/channel/output.h"
 #include "io/document/document.h"
+#include "io/document/fields.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
+#include "io/read/objects.h"
 #include "io/read/sections.h"
 
-static bool read_choices(se3di_reader *reader, const se3di_node *node, se3di_event_entry *event)
-{
-    static const char *const directions[] = {"any", "rising", "falling", NULL};
-    static const char *const actions[] = {"record", "stop", NULL};
-    static const int32_t values[] = {SE3D_EVENT_ANY, SE3D_EVENT_RISING, SE3D_EVENT_FALLING};
-    const se3di_node *direction = se3di_node_get(node, "direction");
-    const se3di_node *action = se3di_node_get(node, "action");
-    size_t which = 0;
-    size_t what = SE3D_EVENT_RECORD;
-    if ((direction && !se3di_read_word(reader, direction, directions, &which)) ||
-        (action && !se3di_read_word(reader, action, actions, &what))) {
-        return false;
-    }
-    event->direction = values[which];
-    event->action = (int32_t)what;
-    return true;
-}
+static const char *const directions[] = {"any", "rising", "falling", NULL};
+static const int32_t direction_values[] = {SE3D_EVENT_ANY, SE3D_EVENT_RISING, SE3D_EVENT_FALLING};
+static const char *const actions[] = {
+    [SE3D_EVENT_RECORD] = "record", [SE3D_EVENT_STOP] = "stop", NULL};
+
+/* clang-format off */
+static const se3di_key event_keys[] = {
+    {"name", SE3DI_KIND_NAME, SE3DI_INTO(se3di_event_entry, name), .required = true,
+     .text = "unique among the events"},
+    {"channel", SE3DI_KIND_TEXT, SE3DI_INTO(se3di_event_entry, channel), .required = true,
+     .text = "a [channel](#output) of one number, or a component (.x .y .z, .e0 ... .e3), such "
+         "as pin.angle or bar.tip.position.z; not channels of particles, nor counts"},
+    {"value", SE3DI_KIND_NUMBER, SE3DI_INTO(se3di_event_entry, level), .standard = "0",
+     .text = "the level"},
+    {"direction", SE3DI_KIND_WORD, SE3DI_INTO(se3di_event_entry, direction), .words = directions,
+     .standard = "any", .text = "rising: from below, falling: from above"},
+    {"action", SE3DI_KIND_WORD, SE3DI_INTO(se3di_event_entry, action), .words = actions,
+     .standard = "record",
+     .text = "stop: the analysis ends there, with exit code 0; the next one in a list begins "
+         "there"},
+    {"hysteresis", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_event_entry, hysteresis),
+     .standard = "rounding in a model of this size, 1e-10 (reactions, accelerations, "
+         "contacts and forces: 1e-8) of its length, velocity, mass and so on "
+         "([theory](../theory/events.md#sides))",
+     .text = "in the unit of the channel: a crossing counts if the value has been further "
+         "than this from the level, on the side it comes from, since it last crossed"},
+    {.key = NULL}};
+const se3di_object se3di_object_event = {
+    "event",
+    "Where a number of a channel crosses a level.",
+    event_keys, NULL,
+    NULL};
+/* clang-format on */
 
 static bool read_event(se3di_reader *reader, const se3di_node *node, se3di_event_entry *event)
 {
     se3d_model *model = reader->model;
     char problem[480] = "";
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_EVENT)) {
+    if (!se3di_read_keys(reader, node, &se3di_object_event)) {
         return false;
     }
     const se3di_node *name = se3di_node_get(node, "name");
@@ -47,8 +65,7 @@ static bool read_event(se3di_reader *reader, const se3di_node *node, se3di_event
         return se3di_reader_fail_key(reader, node, "channel",
                                      "is missing, must be a channel such as pin.angle");
     }
-    if (!se3di_read_name(reader, name, &event->name) ||
-        !se3di_read_text(reader, channel, &event->channel)) {
+    if (!se3di_read_fields(reader, node, &se3di_object_event, NULL, "se3di_event_entry", event)) {
         return false;
     }
     for (size_t k = 0; k < model->event_count; ++k) {
@@ -57,12 +74,11 @@ static bool read_event(se3di_reader *reader, const se3di_node *node, se3di_event
                                      event->name);
         }
     }
+    event->direction = direction_values[event->direction];
     if (!se3di_event_source_find(model, event->channel, &event->source, problem, sizeof problem)) {
         return se3di_reader_fail(reader, channel, "%s", problem);
     }
-    return se3di_read_key_number(reader, node, "value", SE3DI_ANY, &event->level) &&
-           se3di_read_key_number(reader, node, "hysteresis", SE3DI_POSITIVE, &event->hysteresis) &&
-           read_choices(reader, node, event);
+    return true;
 }
 
 /* The file of the events is not another one's. */

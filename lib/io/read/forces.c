@@ -4,6 +4,7 @@
 
 #include "io/base/rotation.h"
 #include "io/document/document.h"
+#include "io/document/fields.h"
 #include "io/document/function.h"
 #include "io/document/keys.h"
 #include "io/document/reader.h"
@@ -12,9 +13,111 @@
 #include "io/read/bodies.h"
 #include "io/read/elements.h"
 #include "io/read/forces_elements.h"
+#include "io/read/objects.h"
 #include "io/read/sections.h"
 
 static const char *const time_only[] = {"t", NULL};
+static const char *const frames[] = {"ground", "body", NULL}; /* of se3d_load_def.in_body_frame */
+static const char *const force_types[] = {"tsda", "rsda",  "bushing", "friction",
+                                          "stop", "force", "torque",  NULL};
+
+/* clang-format off */
+static const se3di_key force_keys[] = {
+    {"name", SE3DI_KIND_NAME, .standard = "force1, force2, ...",
+     .text = "unique among joints, drivers, constraints and forces"},
+    {"type", SE3DI_KIND_TYPE, .required = true, .text = ""},
+    {"body_i", SE3DI_KIND_BODY, .types = " tsda rsda bushing stop ", .text = ""},
+    {"body_j", SE3DI_KIND_BODY, .types = " tsda rsda bushing stop ", .text = ""},
+    {"point_i", SE3DI_KIND_POINT, .types = " tsda bushing stop ", .text = "frame of body i [m]"},
+    {"point_j", SE3DI_KIND_POINT, .types = " tsda bushing stop ", .text = "frame of body j [m]"},
+    {"k", SE3DI_KIND_COEFFICIENT, .types = " tsda rsda ", .standard = "0",
+     .text = "stiffness [N/m, N m/rad], or the table of the elastic force over l - l0 or theta "
+         "- theta0"},
+    {"k", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_stop_def, k), .types = " stop ",
+     .text = "stiffness [N/m, N m/rad]"},
+    {"c", SE3DI_KIND_COEFFICIENT, .types = " tsda rsda ", .standard = "0",
+     .text = "damping [N s/m, N m s/rad], or the table of the damping force over the rate"},
+    {"l0", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_tsda_def, l0), .types = " tsda ",
+     .standard = "0", .text = "free length [m]"},
+    {"h", SE3DI_KIND_FUNCTION, .types = " tsda rsda ",
+     .text = "actuator: a function of t, l, ldot (tsda) or t, theta, thetadot (rsda)"},
+    {"spring", SE3DI_KIND_FUNCTION, .types = " tsda rsda ",
+     .text = "elastic force of x = l - l0 or theta - theta0, beside k"},
+    {"damper", SE3DI_KIND_FUNCTION, .types = " tsda rsda ",
+     .text = "damping force of v, the rate, beside c"},
+    {"preload", SE3DI_KIND_NUMBER, .types = " tsda rsda ", .standard = "0",
+     .text = "force at l = l0 (torque at theta = theta0) and rest [N, N m]"},
+    {"joint", SE3DI_KIND_JOINT, .types = " rsda ", .text = "a joint with an angle"},
+    {"joint", SE3DI_KIND_JOINT, .types = " friction stop ",
+     .text = "a joint with the coordinate"},
+    {"theta0", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_rsda_def, theta0), .types = " rsda ",
+     .standard = "0", .text = "free angle [rad]"},
+    {"axis", SE3DI_KIND_DIRECTION, .types = " rsda ",
+     .text = "without a joint: its axis, ground frame"},
+    {"ref", SE3DI_KIND_DIRECTION, .types = " rsda ",
+     .text = "without a joint: zero direction, ground frame"},
+    {"axis_i", SE3DI_KIND_DIRECTION, .types = " rsda ",
+     .text = "without a joint: its axis, frame of body i"},
+    {"ref_i", SE3DI_KIND_DIRECTION, .types = " rsda ",
+     .text = "the angle is from ref_i (frame of body i)"},
+    {"ref_j", SE3DI_KIND_DIRECTION, .types = " rsda ", .text = "to ref_j (frame of body j)"},
+    {"angle0", SE3DI_KIND_NUMBER, .types = " rsda ", .standard = "0",
+     .text = "without a joint: the angle at the given pose [rad]"},
+    {"at", SE3DI_KIND_VECTOR, .types = " bushing ",
+     .text = "its point at the given pose, ground frame [m]"},
+    {"orientation", SE3DI_KIND_ORIENTATION, .types = " bushing ",
+     .text = "with at: its axes in the ground frame"},
+    {"orientation_i", SE3DI_KIND_ORIENTATION, .types = " bushing ", .text = "its axes on body i"},
+    {"orientation_j", SE3DI_KIND_ORIENTATION, .types = " bushing ", .text = "its axes on body j"},
+    {"K", SE3DI_KIND_MATRIX6, .types = " bushing ", .standard = "0",
+     .text = "stiffness, symmetric [N/m, N, N m/rad]: the six numbers of a diagonal, or six "
+         "rows of six"},
+    {"C", SE3DI_KIND_MATRIX6, .types = " bushing ", .standard = "0",
+     .text = "damping [N s/m, N s, N m s/rad]"},
+    {"coordinate", SE3DI_KIND_WORD, .types = " friction stop ", .words = se3di_coordinates,
+     .text = "may be left out if the joint has one only"},
+    {"mu", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_friction_def, mu),
+     .types = " friction ", .standard = "0", .text = "coefficient of sliding"},
+    {"mu_static", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_friction_def, mu_static),
+     .types = " friction ", .standard = "mu", .text = "of sticking, at least mu"},
+    {"radius", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_friction_def, radius),
+     .types = " friction ", .standard = "0", .text = "on an angle: of the bearing [m]"},
+    {"limit", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_friction_def, limit),
+     .types = " friction ", .standard = "0", .text = "friction without load [N, N m]"},
+    {"viscous", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_friction_def, viscous),
+     .types = " friction ", .standard = "0", .text = "times the rate [N s/m, N m s/rad]"},
+    {"presliding", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_friction_def, presliding),
+     .types = " friction ", .standard = "1e-9",
+     .text = "how far it gives while it sticks [m, rad]"},
+    {"length", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_friction_def, length),
+     .types = " friction ", .standard = "one place, no moments",
+     .text = "between the two places along the axis that carry the load [m]"},
+    {"width", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_friction_def, width),
+     .types = " friction ", .standard = "no moment",
+     .text = "on a displacement: between the rails that carry the moment about the axis [m]"},
+    {"thrust_radius", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_friction_def, thrust_radius), .types = " friction ", .standard = "0",
+     .text = "on an angle: of the shoulder that carries the axial force [m]"},
+    {"lower", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_stop_def, lower), .types = " stop ",
+     .standard = "none", .text = "end of the range [m, rad]"},
+    {"upper", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_stop_def, upper), .types = " stop ",
+     .standard = "none", .text = "end of the range [m, rad]"},
+    {"restitution", SE3DI_KIND_NUMBER, SE3DI_RESTITUTION, SE3DI_INTO(se3d_stop_def, restitution),
+     .types = " stop ", .standard = "1", .text = "coefficient of restitution"},
+    {"body", SE3DI_KIND_BODY, .types = " force torque ", .text = "what it acts on"},
+    {"point", SE3DI_KIND_POINT, .types = " force ", .standard = "the centre of mass",
+     .text = "frame of the body [m]"},
+    {"frame", SE3DI_KIND_WORD, SE3DI_INTO(se3d_load_def, in_body_frame), .types = " force torque ",
+     .words = frames, .standard = "ground", .text = "of value"},
+    {"value", SE3DI_KIND_FUNCTIONS, .types = " force torque ",
+     .text = "numbers or functions of t [N, N m]"},
+    {.key = NULL}};
+const se3di_object se3di_object_force = {
+    "force",
+    "A force element.",
+    force_keys, force_types,
+    NULL};
+/* clang-format on */
 
 /* A function of `variables` under `key`; also a mere number. */
 static bool read_function(se3di_reader *reader, const se3di_node *node, const char *key,
@@ -73,7 +176,7 @@ static bool read_spring(se3di_reader *reader, const se3di_node *node, const char
            read_function(reader, node, "damper", viscous, &v->damper) &&
            read_coefficient(reader, node, "k", "spring", &v->k, &v->spring) &&
            read_coefficient(reader, node, "c", "damper", &v->c, &v->damper) &&
-           se3di_read_key_number(reader, node, "preload", SE3DI_ANY, &v->preload) &&
+           se3di_read_key(reader, node, &se3di_object_force, "tsda", "preload", &v->preload) &&
            read_function(reader, node, "h", variables, &v->h);
 }
 
@@ -86,7 +189,7 @@ static bool read_tsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
     if (!se3di_read_bodies_ij(reader, node, "a spring", bodies) ||
         !se3di_read_key_point(reader, node, "point_i", bodies[0], def.point_i) ||
         !se3di_read_key_point(reader, node, "point_j", bodies[1], def.point_j) ||
-        !se3di_read_key_number(reader, node, "l0", SE3DI_NOT_NEGATIVE, &def.l0) ||
+        !se3di_read_fields(reader, node, &se3di_object_force, "tsda", "se3d_tsda_def", &def) ||
         !read_spring(reader, node, variables, &v)) {
         return false;
     }
@@ -155,7 +258,7 @@ static bool read_rsda_place(se3di_reader *reader, const se3di_node *node, se3d_r
         def->body_i = bodies[0]->body;
         def->body_j = bodies[1]->body;
         return read_axes(reader, node, def) &&
-               se3di_read_key_number(reader, node, "angle0", SE3DI_ANY, &def->angle0);
+               se3di_read_key(reader, node, &se3di_object_force, "rsda", "angle0", &def->angle0);
     }
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (se3di_node_get(node, "joint") &&
@@ -172,7 +275,7 @@ static bool read_rsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
     se3d_rsda_def def = se3d_rsda_def_default();
     spring_values v;
     if (!read_rsda_place(reader, node, &def) ||
-        !se3di_read_key_number(reader, node, "theta0", SE3DI_ANY, &def.theta0) ||
+        !se3di_read_fields(reader, node, &se3di_object_force, "rsda", "se3d_rsda_def", &def) ||
         !read_spring(reader, node, variables, &v)) {
         return false;
     }
@@ -191,15 +294,12 @@ static bool read_rsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
 static bool read_load(se3di_reader *reader, const se3di_node *node, const char *type,
                       se3di_element_entry *entry)
 {
-    static const char *const frames[] = {"ground", "body", NULL};
     const se3di_body_entry *body = NULL;
-    const se3di_node *frame = se3di_node_get(node, "frame");
     const se3di_node *value = se3di_node_get(node, "value");
     se3d_load_def def = se3d_load_def_default();
-    size_t word = 0;
     if (!se3di_read_key_body(reader, node, "body", &body) ||
         !se3di_read_key_point(reader, node, "point", body, def.point) ||
-        (frame && !se3di_read_word(reader, frame, frames, &word))) {
+        !se3di_read_fields(reader, node, &se3di_object_force, type, "se3d_load_def", &def)) {
         return false;
     }
     if (!value || value->kind != SE3DI_NODE_LIST || value->count != 3) {
@@ -216,7 +316,6 @@ static bool read_load(se3di_reader *reader, const se3di_node *node, const char *
     memcpy(entry->point, def.point, sizeof entry->point);
     def.name = entry->name;
     def.body = body->body;
-    def.in_body_frame = word == 1;
     const se3d_status status = strcmp(type, "force") == 0
                                    ? se3d_force_create_load(reader->system, &def, &entry->force)
                                    : se3d_force_create_torque(reader->system, &def, &entry->force);
@@ -238,7 +337,7 @@ static bool read_force(se3di_reader *reader, const se3di_node *node)
                    {"stop", se3di_read_stop}};
     const char *type = NULL;
     se3di_element_entry *entry = NULL;
-    if (!se3di_read_type(reader, node, SE3DI_OBJECT_FORCE, &type) ||
+    if (!se3di_read_type(reader, node, &se3di_object_force, &type) ||
         !se3di_read_element(reader, node, SE3DI_ELEMENT_FORCE, &entry)) {
         return false;
     }

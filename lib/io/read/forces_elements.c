@@ -7,12 +7,14 @@
 
 #include "io/base/rotation.h"
 #include "io/document/document.h"
+#include "io/document/fields.h"
 #include "io/document/keys.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/read/bodies.h"
 #include "io/read/elements.h"
+#include "io/read/objects.h"
 
 bool se3di_read_bodies_ij(se3di_reader *reader, const se3di_node *node, const char *what,
                           const se3di_body_entry *bodies[2])
@@ -153,16 +155,8 @@ bool se3di_read_friction(se3di_reader *reader, const se3di_node *node, se3di_ele
     se3d_friction_def def = se3d_friction_def_default();
     if (!se3di_read_key_joint(reader, node, "joint", &def.joint) ||
         !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
-        !se3di_read_key_number(reader, node, "mu", SE3DI_NOT_NEGATIVE, &def.mu) ||
-        !se3di_read_key_number(reader, node, "mu_static", SE3DI_NOT_NEGATIVE, &def.mu_static) ||
-        !se3di_read_key_number(reader, node, "radius", SE3DI_NOT_NEGATIVE, &def.radius) ||
-        !se3di_read_key_number(reader, node, "limit", SE3DI_NOT_NEGATIVE, &def.limit) ||
-        !se3di_read_key_number(reader, node, "viscous", SE3DI_NOT_NEGATIVE, &def.viscous) ||
-        !se3di_read_key_number(reader, node, "presliding", SE3DI_POSITIVE, &def.presliding) ||
-        !se3di_read_key_number(reader, node, "length", SE3DI_POSITIVE, &def.length) ||
-        !se3di_read_key_number(reader, node, "width", SE3DI_POSITIVE, &def.width) ||
-        !se3di_read_key_number(reader, node, "thrust_radius", SE3DI_NOT_NEGATIVE,
-                               &def.thrust_radius)) {
+        !se3di_read_fields(reader, node, &se3di_object_force, "friction", "se3d_friction_def",
+                           &def)) {
         return false;
     }
     if (def.coordinate == SE3D_JOINT_COORDINATE_ANGLE && def.mu > 0.0 && !(def.radius > 0.0) &&
@@ -205,10 +199,7 @@ bool se3di_read_stop(se3di_reader *reader, const se3di_node *node, se3di_element
 {
     se3d_stop_def def = se3d_stop_def_default();
     if (!read_stop_place(reader, node, &def) ||
-        !se3di_read_key_number(reader, node, "lower", SE3DI_ANY, &def.lower) ||
-        !se3di_read_key_number(reader, node, "upper", SE3DI_ANY, &def.upper) ||
-        !se3di_read_key_number(reader, node, "k", SE3DI_POSITIVE, &def.k) ||
-        !se3di_read_key_restitution(reader, node, &def.restitution)) {
+        !se3di_read_fields(reader, node, &se3di_object_force, "stop", "se3d_stop_def", &def)) {
         return false;
     }
     if (!se3di_node_get(node, "lower") && !se3di_node_get(node, "upper")) {

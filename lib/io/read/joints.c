@@ -1,245 +1,124 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* `joints`: between two bodies, by a global frame or locally; and between joints. */
-#include "io/read/joints.h"
-
+/* `joints`: their list. Those between two bodies: pairs.c, those between joints: couplings.c. */
 #include <string.h>
 
-#include "io/base/rotation.h"
-#include "io/document/document.h"
-#include "io/document/reader.h"
-#include "io/document/value.h"
-#include "io/model/model.h"
-#include "io/read/bodies.h"
+#include "io/read/couplings.h"
+#include "io/read/elements.h"
+#include "io/read/objects.h"
+#include "io/read/pairs.h"
+#include "io/read/sections.h"
 
-typedef se3d_status (*create_joint)(se3d_system *, const se3d_joint_def *, se3d_constraint *);
+typedef bool (*read_element)(se3di_reader *reader, const se3di_node *node,
+                             se3di_element_entry *entry);
 
-/* What a type needs to be said about it. */
-enum { POINT = 1, AXIS_I = 2, AXIS_J = 4, AXIS_2 = 8, DISTANCE = 16, PITCH = 32 };
+#define NAME(name, needs) #name,
+static const char *const joint_types[] = {SE3DI_TURNING_LIST(NAME) SE3DI_DISTANCE_LIST(NAME) "gear",
+                                          "rack_pinion", "coupler", NULL};
+#undef NAME
+#define WORD(name, needs) #name " "
+#define TURNING           " " SE3DI_TURNING_LIST(WORD)
+#define PAIRS             TURNING SE3DI_DISTANCE_LIST(WORD)
 
-typedef struct joint_type {
-    const char *name;
-    create_joint create;
-    unsigned needs;
-} joint_type;
+/* clang-format off */
+static const se3di_key joint_keys[] = {
+    {"name", SE3DI_KIND_NAME, .standard = "joint1, joint2, ...",
+     .text = "unique among joints, drivers, constraints and forces"},
+    {"type", SE3DI_KIND_TYPE, .required = true, .text = ""},
+    {"body_i", SE3DI_KIND_BODY, .types = PAIRS, .text = "the reference"},
+    {"body_j", SE3DI_KIND_BODY, .types = PAIRS, .text = "moves relative to body_i"},
+    {"at", SE3DI_KIND_VECTOR, .types = PAIRS,
+     .text = "joint point, ground frame, at the given pose [m]"},
+    {"axis", SE3DI_KIND_DIRECTION, .types = TURNING, .text = "joint axis, ground frame"},
+    {"ref", SE3DI_KIND_DIRECTION, .types = TURNING,
+     .text = "zero direction of the angle, ground frame"},
+    {"at_2", SE3DI_KIND_VECTOR,
+     .types = " point_on_line point_on_plane distance revolute_spherical revolute_cylindrical ",
+     .text = "point of body j if it is another one, ground frame [m]"},
+    {"axis_2", SE3DI_KIND_DIRECTION, .types = " universal revolute_cylindrical perpendicular ",
+     .text = "axis of body j if it is another one, ground frame"},
+    {"point_i", SE3DI_KIND_POINT, .types = PAIRS,
+     .text = "frame of body i [m]; one of the points may be left out and is the origin"},
+    {"point_j", SE3DI_KIND_POINT, .types = PAIRS, .text = "frame of body j [m]"},
+    {"axis_i", SE3DI_KIND_DIRECTION, .types = TURNING, .text = "frame of body i"},
+    {"axis_j", SE3DI_KIND_DIRECTION, .types = TURNING, .text = "frame of body j"},
+    {"ref_i", SE3DI_KIND_DIRECTION, .types = TURNING,
+     .text = "the angle is from ref_i to ref_j about the axis; frame of body i"},
+    {"ref_j", SE3DI_KIND_DIRECTION, .types = TURNING, .text = "see ref_i; frame of body j"},
+    {"angle0", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_joint_def, angle0), .types = TURNING,
+     .standard = "0",
+     .text = "angle at the given pose, or, with ref_j, when ref_i and ref_j coincide [rad]"},
+    {"pitch", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_joint_def, pitch), .types = " screw ",
+     .text = "advance per turn [m]"},
+    {"distance", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_joint_def, distance),
+     .types = " distance revolute_spherical ", .text = "[m]"},
+    {"distance", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_joint_def, distance),
+     .types = " revolute_cylindrical ", .text = "[m]"},
+    {"joint_1", SE3DI_KIND_JOINT, .types = " gear ", .text = "a joint with an angle"},
+    {"joint_2", SE3DI_KIND_JOINT, .types = " gear ", .text = "another joint with an angle"},
+    {"ratio", SE3DI_KIND_NUMBER, .types = " gear ",
+     .text = "ratio * angle 1 + angle 2 = constant"},
+    {"pinion", SE3DI_KIND_JOINT, .types = " rack_pinion ", .text = "a joint with an angle"},
+    {"rack", SE3DI_KIND_JOINT, .types = " rack_pinion ", .text = "a joint with a displacement"},
+    {"radius", SE3DI_KIND_NUMBER, .types = " rack_pinion ",
+     .text = "displacement = radius * angle + constant [m]"},
+    {"terms", SE3DI_KIND_TERMS, .types = " coupler ", .object = "term",
+     .text = "sum of ratio * coordinate = value"},
+    {"value", SE3DI_KIND_FUNCTION, .types = " coupler ", .standard = "0",
+     .text = "a number or a function of t"},
+    {.key = NULL}};
+const se3di_object se3di_object_joint = {
+    "joint",
+    "A joint between two bodies, by a global frame at the given pose or by local ones; or "
+         "between joints.",
+    joint_keys, joint_types,
+    NULL};
+/* clang-format on */
 
-static const joint_type joint_types[] = {
-    {"fixed", se3d_joint_create_fixed, 0},
-    {"revolute", se3d_joint_create_revolute, POINT | AXIS_I | AXIS_J},
-    {"prismatic", se3d_joint_create_prismatic, POINT | AXIS_I | AXIS_J},
-    {"cylindrical", se3d_joint_create_cylindrical, POINT | AXIS_I | AXIS_J},
-    {"spherical", se3d_joint_create_spherical, POINT},
-    {"universal", se3d_joint_create_universal, POINT | AXIS_I | AXIS_J | AXIS_2},
-    {"planar", se3d_joint_create_planar, POINT | AXIS_I | AXIS_J},
-    {"screw", se3d_joint_create_screw, POINT | AXIS_I | AXIS_J | PITCH},
-    {"point_on_line", se3d_joint_create_point_on_line, POINT | AXIS_I},
-    {"point_on_plane", se3d_joint_create_point_on_plane, POINT | AXIS_I},
-    {"distance", se3d_joint_create_distance, POINT | DISTANCE},
-    {"revolute_spherical", se3d_joint_create_revolute_spherical, POINT | AXIS_I | DISTANCE},
-    {"revolute_cylindrical", se3d_joint_create_revolute_cylindrical,
-     POINT | AXIS_I | AXIS_J | AXIS_2 | DISTANCE},
-    {"parallel", se3d_joint_create_parallel, AXIS_I | AXIS_J},
-    {"perpendicular", se3d_joint_create_perpendicular, AXIS_I | AXIS_J | AXIS_2},
-    {"orientation", se3d_joint_create_orientation, 0},
-    {"perpendicular1", se3d_joint_create_perpendicular1, AXIS_I | AXIS_J | AXIS_2},
-    {"perpendicular2", se3d_joint_create_perpendicular2, POINT | AXIS_I},
-};
+#undef WORD
 
-static bool has(const se3di_node *node, const char *key)
+/* How a coupling is read, NULL: it is no coupling. */
+static read_element find_coupling(const char *type)
 {
-    return se3di_node_get(node, key) != NULL;
-}
-
-static bool is_local(const se3di_node *node)
-{
-    static const char *const keys[] = {"point_i", "point_j", "axis_i", "axis_j", "ref_i", "ref_j"};
-    for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k) {
-        if (has(node, keys[k])) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* A point of the ground frame in the frame of a body. */
-static bool to_body_point(se3di_reader *reader, se3d_body body, const double ground[3],
-                          double local[3])
-{
-    const se3d_system *system = reader->system;
-    double r[3];
-    double p[4];
-    if (SE3D_FAILED(se3d_body_get_position(system, body, r)) ||
-        SE3D_FAILED(se3d_body_get_orientation(system, body, p))) {
-        return se3di_reader_fail_memory(reader);
-    }
-    const double d[3] = {ground[0] - r[0], ground[1] - r[1], ground[2] - r[2]};
-    se3di_rotation_apply_inverse(p, d, local);
-    return true;
-}
-
-static bool to_body_axis(se3di_reader *reader, se3d_body body, const double ground[3],
-                         double local[3])
-{
-    double p[4];
-    if (SE3D_FAILED(se3d_body_get_orientation(reader->system, body, p))) {
-        return se3di_reader_fail_memory(reader);
-    }
-    se3di_rotation_apply_inverse(p, ground, local);
-    return true;
-}
-
-static bool read_local(se3di_reader *reader, const se3di_node *node, const joint_type *type,
-                       const se3di_body_entry *bodies[2], se3d_joint_def *def)
-{
-    static const char *const global[] = {"at", "axis", "ref", "at_2", "axis_2"};
-    for (size_t k = 0; k < sizeof global / sizeof *global; ++k) {
-        if (has(node, global[k])) {
-            return se3di_reader_fail_key(reader, node, global[k],
-                                         "cannot stand beside point_i, axis_i ...: give either the "
-                                         "global frame (at, axis, ref) or the local ones");
-        }
-    }
-    if ((type->needs & POINT) && !has(node, "point_i") && !has(node, "point_j")) {
-        return se3di_reader_fail_key(reader, node, "point_i",
-                                     "is missing, a %s joint needs point_i and point_j",
-                                     type->name);
-    }
-    if ((type->needs & AXIS_I) && !has(node, "axis_i")) {
-        return se3di_reader_fail_key(reader, node, "axis_i", "is missing, `%s` needs it",
-                                     type->name);
-    }
-    if ((type->needs & AXIS_J) && !has(node, "axis_j")) {
-        return se3di_reader_fail_key(reader, node, "axis_j", "is missing, `%s` needs it",
-                                     type->name);
-    }
-    return se3di_read_key_point(reader, node, "point_i", bodies[0], def->point_i) &&
-           se3di_read_key_point(reader, node, "point_j", bodies[1], def->point_j) &&
-           se3di_read_key_direction(reader, node, "axis_i", def->axis_i) &&
-           se3di_read_key_direction(reader, node, "axis_j", def->axis_j) &&
-           se3di_read_key_direction(reader, node, "ref_i", def->ref_i) &&
-           se3di_read_key_direction(reader, node, "ref_j", def->ref_j);
-}
-
-static bool check_global(se3di_reader *reader, const se3di_node *node, const joint_type *type)
-{
-    if ((type->needs & POINT) && !has(node, "at")) {
-        return se3di_reader_fail_key(reader, node, "at",
-                                     "is missing, `%s` needs a point `at` [x, y, z] in the ground "
-                                     "frame, or point_i and point_j on the bodies",
-                                     type->name);
-    }
-    if ((type->needs & AXIS_I) && !has(node, "axis")) {
-        return se3di_reader_fail_key(reader, node, "axis",
-                                     "is missing, `%s` needs an `axis` [x, y, z] in the ground "
-                                     "frame, or axis_i and axis_j on the bodies",
-                                     type->name);
-    }
-    if ((type->needs & AXIS_2) && !has(node, "axis_2")) {
-        return se3di_reader_fail_key(reader, node, "axis_2",
-                                     "is missing, `%s` needs the axis of body j in the ground "
-                                     "frame beside `axis`, that of body i",
-                                     type->name);
-    }
-    if ((type->needs & DISTANCE) && strcmp(type->name, "revolute_cylindrical") != 0 &&
-        !has(node, "at_2")) {
-        return se3di_reader_fail_key(reader, node, "at_2",
-                                     "is missing, `%s` needs the point of body j in the ground "
-                                     "frame beside `at`, that of body i",
-                                     type->name);
-    }
-    return true;
-}
-
-static bool read_global(se3di_reader *reader, const se3di_node *node, const joint_type *type,
-                        se3d_joint_def *def)
-{
-    double at[3] = {0.0};
-    double at_2[3];
-    double axis[3] = {0.0, 0.0, 1.0};
-    double axis_2[3];
-    double ref[3];
-    if (!check_global(reader, node, type)) {
-        return false;
-    }
-    if (!has(node, "at") && SE3D_FAILED(se3d_body_get_position(reader->system, def->body_j, at))) {
-        return se3di_reader_fail_memory(reader);
-    }
-    if (!se3di_read_key_vector(reader, node, "at", at) ||
-        !se3di_read_key_vector(reader, node, "at_2", at_2) ||
-        !se3di_read_key_direction(reader, node, "axis", axis) ||
-        !se3di_read_key_direction(reader, node, "axis_2", axis_2) ||
-        !se3di_read_key_direction(reader, node, "ref", ref)) {
-        return false;
-    }
-    const se3d_status status =
-        se3d_joint_def_set_frame(reader->system, def, at, axis, has(node, "ref") ? ref : NULL);
-    if (status < 0) {
-        return se3di_reader_fail_system(reader, node, status);
-    }
-    return (!has(node, "at_2") || to_body_point(reader, def->body_j, at_2, def->point_j)) &&
-           (!has(node, "axis_2") || to_body_axis(reader, def->body_j, axis_2, def->axis_j));
-}
-
-static bool read_sizes(se3di_reader *reader, const se3di_node *node, const joint_type *type,
-                       se3d_joint_def *def)
-{
-    if ((type->needs & DISTANCE) && !has(node, "distance")) {
-        return se3di_reader_fail_key(reader, node, "distance", "is missing, `%s` needs it [m]",
-                                     type->name);
-    }
-    if ((type->needs & PITCH) && !has(node, "pitch")) {
-        return se3di_reader_fail_key(reader, node, "pitch",
-                                     "is missing, `screw` needs its advance per turn [m]");
-    }
-    const se3di_range range =
-        strcmp(type->name, "revolute_cylindrical") == 0 ? SE3DI_NOT_NEGATIVE : SE3DI_POSITIVE;
-    return se3di_read_key_number(reader, node, "angle0", SE3DI_ANY, &def->angle0) &&
-           se3di_read_key_number(reader, node, "pitch", SE3DI_ANY, &def->pitch) &&
-           se3di_read_key_number(reader, node, "distance", range, &def->distance);
-}
-
-static const joint_type *find_type(const char *name)
-{
-    for (size_t k = 0; k < sizeof joint_types / sizeof *joint_types; ++k) {
-        if (strcmp(joint_types[k].name, name) == 0) {
-            return &joint_types[k];
+    static const struct {
+        const char *type;
+        read_element read;
+    } readers[] = {{"gear", se3di_read_gear},
+                   {"rack_pinion", se3di_read_rack},
+                   {"coupler", se3di_read_coupler}};
+    for (size_t k = 0; k < sizeof readers / sizeof *readers; ++k) {
+        if (strcmp(readers[k].type, type) == 0) {
+            return readers[k].read;
         }
     }
     return NULL;
 }
 
-bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *name,
-                     se3di_element_entry *entry)
+static bool read_joint(se3di_reader *reader, const se3di_node *node, const char *type)
 {
-    const joint_type *type = find_type(name);
-    const se3di_body_entry *bodies[2] = {NULL, NULL};
-    se3d_joint_def def = se3d_joint_def_default();
-    if (!type) {
-        return se3di_reader_fail(reader, node, "a joint of type `%.60s` cannot be made", name);
-    }
-    if (!se3di_read_key_body(reader, node, "body_i", &bodies[0]) ||
-        !se3di_read_key_body(reader, node, "body_j", &bodies[1])) {
+    const read_element read = find_coupling(type);
+    se3di_element_entry *entry = NULL;
+    if (!se3di_read_element(reader, node, SE3DI_ELEMENT_JOINT, &entry)) {
         return false;
     }
-    if (bodies[0] == bodies[1]) {
-        return se3di_reader_fail_key(reader, node, "body_j",
-                                     "is body_i too, a joint needs two different bodies");
-    }
-    def.name = entry->name;
-    def.body_i = bodies[0]->body;
-    def.body_j = bodies[1]->body;
-    if (!read_sizes(reader, node, type, &def)) {
+    return read ? read(reader, node, entry) : se3di_read_pair(reader, node, type, entry);
+}
+
+/* Couplings may name joints that stand below them: they come in a second round. */
+bool se3di_read_joints(se3di_reader *reader, const se3di_node *root)
+{
+    const se3di_node *list = NULL;
+    const char *type = NULL;
+    if (!se3di_read_list(reader, root, "joints", &list)) {
         return false;
     }
-    if (is_local(node) ? !read_local(reader, node, type, bodies, &def)
-                       : !read_global(reader, node, type, &def)) {
-        return false;
+    for (int round = 0; round < 2; ++round) {
+        for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+            if (!se3di_read_type(reader, node, &se3di_object_joint, &type) ||
+                ((find_coupling(type) != NULL) == (round == 1) &&
+                 !read_joint(reader, node, type))) {
+                return false;
+            }
+        }
     }
-    entry->body_i = def.body_i;
-    entry->body_j = def.body_j;
-    entry->drawn = (type->needs & AXIS_J) ? 2 : 1;
-    memcpy(entry->point_i, def.point_i, sizeof def.point_i);
-    memcpy(entry->point_j, def.point_j, sizeof def.point_j);
-    memcpy(entry->axis_j, def.axis_j, sizeof def.axis_j);
-    const se3d_status status = type->create(reader->system, &def, &entry->constraint);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return true;
 }

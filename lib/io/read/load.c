@@ -11,6 +11,7 @@
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
+#include "io/read/objects.h"
 #include "io/read/sections.h"
 
 void se3d_model_options_init(se3d_model_options *options, size_t size)
@@ -35,6 +36,44 @@ static const char *base_name(se3di_iopool *pool, const char *file)
     return length > 0 ? se3di_iopool_copy(pool, start, length) : "model";
 }
 
+/* clang-format off */
+static const se3di_key model_keys[] = {
+    {"se3d", SE3DI_KIND_VERSION, .required = true, .text = "version of the format"},
+    {"title", SE3DI_KIND_TITLE, .text = "text"},
+    {"parameters", SE3DI_KIND_PARAMETERS,
+     .text = "names and their values or expressions, in any order; replaced by --set NAME=VALUE"},
+    {"gravity", SE3DI_KIND_FUNCTIONS, .standard = "[0, 0, -9.81]",
+     .text = "ground frame [m/s^2], numbers or functions of t"},
+    {"materials", SE3DI_KIND_LIST, .object = "material",
+     .text = "what bodies and particles are made of"},
+    {"bodies", SE3DI_KIND_LIST, .object = "body",
+     .text = "moving and fixed bodies; ground is always there"},
+    {"joints", SE3DI_KIND_LIST, .object = "joint", .text = "joints"},
+    {"drivers", SE3DI_KIND_LIST, .object = "driver",
+     .text = "joint coordinates that follow a function of time"},
+    {"constraints", SE3DI_KIND_LIST, .object = "constraint", .text = "constraint primitives"},
+    {"forces", SE3DI_KIND_LIST, .object = "force",
+     .text = "springs, dampers, friction, stops, loads"},
+    {"contact", SE3DI_KIND_OBJECT, .object = "contact",
+     .text = "how shapes and particles touch; may be empty"},
+    {"particles", SE3DI_KIND_LIST, .object = "particles",
+     .text = "spheres that touch each other and the walls: regions filled with them, tables, "
+         "sources"},
+    {"sinks", SE3DI_KIND_LIST, .object = "sink",
+     .text = "regions that remove particles and count them"},
+    {"analysis", SE3DI_KIND_ONE_OR_LIST, .object = "analysis",
+     .text = "one analysis, or several that run one after the other"},
+    {"events", SE3DI_KIND_LIST, .object = "event",
+     .text = "crossings of levels, looked for in every step"},
+    {"output", SE3DI_KIND_LIST, .object = "output", .text = "results files and pictures"},
+    {.key = NULL}};
+const se3di_object se3di_object_model = {
+    "model",
+    "A model.",
+    model_keys, NULL,
+    NULL};
+/* clang-format on */
+
 static bool read_head(se3di_reader *reader, const se3di_node *root)
 {
     double version = 0.0;
@@ -54,7 +93,7 @@ static bool read_head(se3di_reader *reader, const se3di_node *root)
         return se3di_reader_fail(reader, node, "is %s, must be 1: the version of the file format",
                                  node->text);
     }
-    if (!se3di_read_keys(reader, root, SE3DI_OBJECT_MODEL)) {
+    if (!se3di_read_keys(reader, root, &se3di_object_model)) {
         return false;
     }
     const se3di_node *title = se3di_node_get(root, "title");

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `analysis` of type modes: its file, inputs, outputs and frequencies. */
 #include "io/read/modes.h"
+#include "io/read/objects.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "io/base/pool.h"
 #include "io/document/document.h"
+#include "io/document/fields.h"
 #include "io/document/keys.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
@@ -16,6 +18,53 @@
 static const char *const quantities[] = {"position", "velocity",         "acceleration",
                                          "rotation", "angular_velocity", "angular_acceleration",
                                          NULL};
+
+/* clang-format off */
+static const se3di_key modes_input_keys[] = {
+    {"body", SE3DI_KIND_BODY, .required = true, .text = ""},
+    {"point", SE3DI_KIND_POINT, .standard = "the centre of mass",
+     .text = "where a force acts, body frame [m]"},
+    {"direction", SE3DI_KIND_DIRECTION, .required = true, .text = "ground frame"},
+    {"torque", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_modes_input, is_torque), .standard = "false",
+     .text = "a torque about the direction, not a force along it"},
+    {.key = NULL}};
+const se3di_object se3di_object_modes_input = {
+    "modes_input",
+    "A force or a torque on a body.",
+    modes_input_keys, NULL,
+    NULL};
+/* clang-format on */
+
+/* clang-format off */
+static const se3di_key modes_output_keys[] = {
+    {"body", SE3DI_KIND_BODY, .required = true, .text = ""},
+    {"point", SE3DI_KIND_POINT, .standard = "the centre of mass", .text = "body frame [m]"},
+    {"direction", SE3DI_KIND_DIRECTION, .required = true, .text = "ground frame"},
+    {"quantity", SE3DI_KIND_WORD, SE3DI_INTO(se3d_modes_output, quantity), .words = quantities,
+     .standard = "position", .text = "what is observed"},
+    {.key = NULL}};
+const se3di_object se3di_object_modes_output = {
+    "modes_output",
+    "A component of the motion of a body.",
+    modes_output_keys, NULL,
+    NULL};
+/* clang-format on */
+
+/* clang-format off */
+static const se3di_key frequencies_keys[] = {
+    {"from", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_modes_entry, from),
+     .required = true, .text = "[Hz]"},
+    {"to", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_modes_entry, to), .required = true,
+     .text = "[Hz], > from"},
+    {"count", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .standard = "200",
+     .text = "a whole number from 2 to 1000000"},
+    {.key = NULL}};
+const se3di_object se3di_object_frequencies = {
+    "frequencies",
+    "Of the transfer functions, in a geometric progression.",
+    frequencies_keys, NULL,
+    NULL};
+/* clang-format on */
 
 /* A direction must be given: no default would be right. */
 static bool read_direction(se3di_reader *reader, const se3di_node *node, double direction[3])
@@ -30,35 +79,29 @@ static bool read_direction(se3di_reader *reader, const se3di_node *node, double 
 static bool read_input(se3di_reader *reader, const se3di_node *node, se3d_modes_input *input)
 {
     const se3di_body_entry *body = NULL;
-    const se3di_node *torque = NULL;
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_MODES_INPUT) ||
+    if (!se3di_read_keys(reader, node, &se3di_object_modes_input) ||
         !se3di_read_key_body(reader, node, "body", &body) ||
         !se3di_read_key_point(reader, node, "point", body, input->point)) {
         return false;
     }
     input->body = body->body;
-    torque = se3di_node_get(node, "torque");
-    return (!torque || se3di_read_bool(reader, torque, &input->is_torque)) &&
+    return se3di_read_fields(reader, node, &se3di_object_modes_input, NULL, "se3d_modes_input",
+                             input) &&
            read_direction(reader, node, input->direction);
 }
 
 static bool read_output(se3di_reader *reader, const se3di_node *node, se3d_modes_output *output)
 {
     const se3di_body_entry *body = NULL;
-    const se3di_node *quantity = NULL;
-    size_t word = 0;
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_MODES_OUTPUT) ||
+    if (!se3di_read_keys(reader, node, &se3di_object_modes_output) ||
         !se3di_read_key_body(reader, node, "body", &body) ||
         !se3di_read_key_point(reader, node, "point", body, output->point)) {
         return false;
     }
-    quantity = se3di_node_get(node, "quantity");
-    if (quantity && !se3di_read_word(reader, quantity, quantities, &word)) {
-        return false;
-    }
     output->body = body->body;
-    output->quantity = (int32_t)word;
-    return read_direction(reader, node, output->direction);
+    return se3di_read_fields(reader, node, &se3di_object_modes_output, NULL, "se3d_modes_output",
+                             output) &&
+           read_direction(reader, node, output->direction);
 }
 
 static bool read_lists(se3di_reader *reader, const se3di_node *node, se3di_modes_entry *modes)
@@ -100,10 +143,10 @@ static bool read_frequencies(se3di_reader *reader, const se3di_node *node, se3di
                                  "need `inputs` and `outputs`: transfer functions are "
                                  "from each input to each output");
     }
-    if (!se3di_read_keys(reader, map, SE3DI_OBJECT_FREQUENCIES) ||
-        !se3di_read_key_number(reader, map, "from", SE3DI_POSITIVE, &modes->from) ||
-        !se3di_read_key_number(reader, map, "to", SE3DI_POSITIVE, &modes->to) ||
-        !se3di_read_key_number(reader, map, "count", SE3DI_POSITIVE, &count)) {
+    if (!se3di_read_keys(reader, map, &se3di_object_frequencies) ||
+        !se3di_read_fields(reader, map, &se3di_object_frequencies, NULL, "se3di_modes_entry",
+                           modes) ||
+        !se3di_read_key(reader, map, &se3di_object_frequencies, NULL, "count", &count)) {
         return false;
     }
     if (!(modes->from > 0.0) || !(modes->to > modes->from)) {

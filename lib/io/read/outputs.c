@@ -8,12 +8,66 @@
 #include "io/channel/channel.h"
 #include "io/channel/output.h"
 #include "io/document/document.h"
+#include "io/document/fields.h"
 #include "io/document/keys.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/grains.h"
 #include "io/model/model.h"
+#include "io/read/objects.h"
 #include "io/read/sections.h"
+
+/* What an entry makes: the key that says so and names the file. */
+enum { KIND_FILE = 0, KIND_VTK = 1, KIND_COUNT = 5 };
+static const char *const output_types[KIND_COUNT + 1] = {
+    [KIND_FILE] = "file", [KIND_VTK] = "vtk", "plot", "scene", "video", NULL};
+static const char *const examples[KIND_COUNT] = {"results.csv", "motion.pvd", "results.svg",
+                                                 "motion.html", "motion.mp4"};
+static const char *const vtk_endings[] = {".pvd", NULL};
+static const char *const plot_endings[] = {".svg", ".png", NULL};
+static const char *const scene_endings[] = {".html", ".glb", NULL};
+static const char *const video_endings[] = {".mp4", NULL};
+
+/* clang-format off */
+static const se3di_key output_keys[] = {
+    {"file", SE3DI_KIND_FILE, .types = " file ", .text = "results as CSV"},
+    {"every", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_output_entry, every),
+     .types = " file vtk ", .standard = "the step; without one a 500th of the duration",
+     .text = "time between rows [s]"},
+    {"channels", SE3DI_KIND_CHANNELS, .types = " file ",
+     .standard = "every channel of up to 100 bodies", .text = "what is written, a row each time"},
+    {"channels", SE3DI_KIND_CHANNELS, .types = " plot ", .standard = "the usual ones",
+     .text = "channels, components of them, or elements"},
+    {"particles", SE3DI_KIND_SNAPSHOTS, .types = " file ", .standard = "false",
+     .text = "all particles, or the set of this name, in place of channels"},
+    {"contacts", SE3DI_KIND_BOOL, .types = " file ", .standard = "false",
+     .text = "all contacts, in place of channels"},
+    {"vtk", SE3DI_KIND_FILE, .types = " vtk ", .words = vtk_endings,
+     .text = "surfaces of the bodies and points of the particles for ParaView, see "
+         "[VTK](../scene.md#vtk)"},
+    {"plot", SE3DI_KIND_FILE, .types = " plot ", .words = plot_endings,
+     .text = "SVG, PNG and the script .gp, as [se3d plot](../plots.md)"},
+    {"from", SE3DI_KIND_TEXT, .types = " plot ", .standard = "the first with channels",
+     .text = "the results of a plot"},
+    {"x", SE3DI_KIND_TEXT, .types = " plot ", .standard = "time",
+     .text = "the horizontal axis of a plot"},
+    {"fft", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_model_picture, fft), .types = " plot ",
+     .standard = "false", .text = "amplitudes over frequency"},
+    {"scene", SE3DI_KIND_FILE, .types = " scene ", .words = scene_endings,
+     .text = "a page for browsers, as [se3d view](../viewer.md), or glTF; scene.glb is left by "
+         "every run"},
+    {"video", SE3DI_KIND_FILE, .types = " video ", .words = video_endings,
+     .text = "a film, as [se3d video](../video.md)"},
+    {"speed", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_model_picture, speed),
+     .types = " video ", .standard = "1", .text = "seconds of motion in one of film"},
+    {.key = NULL}};
+const se3di_object se3di_object_output = {
+    "output",
+    "A file of results, or a picture of them. Its first key says which.",
+    output_keys, output_types,
+    "\"oneOf\": [{\"required\": [\"file\"]}, {\"required\": [\"vtk\"]}, {\"required\": "
+         "[\"plot\"]}, {\"required\": [\"scene\"]}, {\"required\": [\"video\"]}]"};
+/* clang-format on */
 
 static bool read_channels(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
 {
@@ -80,7 +134,7 @@ static bool read_contacts(se3di_reader *reader, const se3di_node *node, se3di_ou
 {
     const se3di_node *child = se3di_node_get(node, "contacts");
     int32_t wanted = 0;
-    if (child && !se3di_read_bool(reader, child, &wanted)) {
+    if (!se3di_read_key(reader, node, &se3di_object_output, NULL, "contacts", &wanted)) {
         return false;
     }
     if (wanted && !se3di_node_get(reader->model->root, "contact") && !reader->model->grains) {
@@ -107,25 +161,6 @@ static bool check_kind_of_rows(se3di_reader *reader, const se3di_node *node,
     return true;
 }
 
-/* What an entry makes: the key that says so and names the file, how the name ends, and the other
- * keys that it may have. */
-typedef struct output_kind {
-    const char *key;
-    const char *ending;  /* NULL: any */
-    const char *ending2; /* NULL: no other */
-    const char *example;
-    const char *keys;
-} output_kind;
-
-enum { KIND_FILE = 0, KIND_VTK = 1, KIND_COUNT = 5 };
-
-static const output_kind kinds[KIND_COUNT] = {
-    {"file", NULL, NULL, "results.csv", " file every channels particles contacts "},
-    {"vtk", ".pvd", NULL, "motion.pvd", " vtk every "},
-    {"plot", ".svg", ".png", "results.svg", " plot from channels x fft "},
-    {"scene", ".html", ".glb", "motion.html", " scene "},
-    {"video", ".mp4", NULL, "motion.mp4", " video speed "}};
-
 static bool ends_with(const char *text, const char *ending)
 {
     const size_t length = strlen(text);
@@ -134,20 +169,21 @@ static bool ends_with(const char *text, const char *ending)
 }
 
 /* A name that nothing else in the folder of the results has. */
-static bool read_file_name(se3di_reader *reader, const se3di_node *node, const output_kind *kind,
+static bool read_file_name(se3di_reader *reader, const se3di_node *node, size_t kind,
                            const char **file)
 {
+    const char *key = output_types[kind];
+    const char *const *endings = se3di_object_find(&se3di_object_output, NULL, key)->words;
     const se3d_model *model = reader->model;
     if (!se3di_read_file_name(reader, node, file)) {
         return false;
     }
     const char *name = *file;
-    bool taken = strcmp(name, "scene.glb") == 0 && strcmp(kind->key, "scene") != 0;
-    if (kind->ending && !ends_with(name, kind->ending) &&
-        !(kind->ending2 && ends_with(name, kind->ending2))) {
+    bool taken = strcmp(name, "scene.glb") == 0 && strcmp(key, "scene") != 0;
+    if (endings && !ends_with(name, endings[0]) && !(endings[1] && ends_with(name, endings[1]))) {
         return se3di_reader_fail(reader, node, "`%.60s` must end with %s%s%s, such as %s", name,
-                                 kind->ending, kind->ending2 ? " or " : "",
-                                 kind->ending2 ? kind->ending2 : "", kind->example);
+                                 endings[0], endings[1] ? " or " : "", endings[1] ? endings[1] : "",
+                                 examples[kind]);
     }
     for (size_t k = 0; k < model->output_count; ++k) {
         taken = taken || strcmp(model->outputs[k].file, name) == 0;
@@ -171,17 +207,17 @@ static bool read_file_name(se3di_reader *reader, const se3di_node *node, const o
 static bool find_kind(se3di_reader *reader, const se3di_node *node, size_t *kind)
 {
     size_t found = KIND_COUNT;
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_OUTPUT)) {
+    if (!se3di_read_keys(reader, node, &se3di_object_output)) {
         return false;
     }
     for (size_t k = 0; k < KIND_COUNT; ++k) {
-        if (!se3di_node_get(node, kinds[k].key)) {
+        if (!se3di_node_get(node, output_types[k])) {
             continue;
         }
         if (found < KIND_COUNT) {
-            return se3di_reader_fail_key(reader, node, kinds[k].key,
+            return se3di_reader_fail_key(reader, node, output_types[k],
                                          "cannot stand beside `%s`: give each its own entry",
-                                         kinds[found].key);
+                                         output_types[found]);
         }
         found = k;
     }
@@ -191,9 +227,11 @@ static bool find_kind(se3di_reader *reader, const se3di_node *node, size_t *kind
                                      "scene, video)");
     }
     for (const se3di_node *child = node->first; child; child = child->next) {
-        if (!se3di_keys_contain(kinds[found].keys, child->key)) {
-            return se3di_reader_fail(reader, child, "has no effect with `%s`, which takes:%s",
-                                     kinds[found].key, kinds[found].keys);
+        if (!se3di_object_find(&se3di_object_output, output_types[found], child->key)) {
+            char list[480];
+            se3di_object_list(&se3di_object_output, output_types[found], ", ", list, sizeof list);
+            return se3di_reader_fail(reader, child, "has no effect with `%s`, which takes: %s",
+                                     output_types[found], list);
         }
     }
     *kind = found;
@@ -204,11 +242,12 @@ static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kin
 {
     se3d_model *model = reader->model;
     se3di_output_entry *output = &model->outputs[model->output_count];
-    const se3di_node *file = se3di_node_get(node, kinds[kind].key);
+    const se3di_node *file = se3di_node_get(node, output_types[kind]);
     output->vtk = kind == KIND_VTK;
     output->node = node;
-    if (!read_file_name(reader, file, &kinds[kind], &output->file) ||
-        !se3di_read_key_number(reader, node, "every", SE3DI_POSITIVE, &output->every) ||
+    if (!read_file_name(reader, file, kind, &output->file) ||
+        !se3di_read_fields(reader, node, &se3di_object_output, NULL, "se3di_output_entry",
+                           output) ||
         !read_snapshots(reader, node, output) || !read_contacts(reader, node, output) ||
         !check_kind_of_rows(reader, node, output) ||
         (!output->particles && !output->contacts && !output->vtk &&
@@ -268,10 +307,8 @@ static bool read_plot(se3di_reader *reader, const se3di_node *node, se3d_model_p
     const se3di_node *list = NULL;
     const se3di_output_entry *from = NULL;
     const se3di_node *x = se3di_node_get(node, "x");
-    const se3di_node *fft = se3di_node_get(node, "fft");
     if (!find_results(reader, node, &from) || !se3di_read_list(reader, node, "channels", &list) ||
-        (x && !read_plot_channel(reader, x, from, &picture->x)) ||
-        (fft && !se3di_read_bool(reader, fft, &picture->fft))) {
+        (x && !read_plot_channel(reader, x, from, &picture->x))) {
         return false;
     }
     picture->results = from->file;
@@ -293,11 +330,11 @@ static bool read_picture(se3di_reader *reader, const se3di_node *node, size_t ki
 {
     se3d_model *model = reader->model;
     se3d_model_picture *picture = &model->pictures[model->picture_count];
-    picture->type = kinds[kind].key;
+    picture->type = output_types[kind];
     picture->speed = 1.0;
-    if (!read_file_name(reader, se3di_node_get(node, kinds[kind].key), &kinds[kind],
-                        &picture->file) ||
-        !se3di_read_key_number(reader, node, "speed", SE3DI_POSITIVE, &picture->speed) ||
+    if (!read_file_name(reader, se3di_node_get(node, picture->type), kind, &picture->file) ||
+        !se3di_read_fields(reader, node, &se3di_object_output, NULL, "se3d_model_picture",
+                           picture) ||
         (strcmp(picture->type, "plot") == 0 && !read_plot(reader, node, picture))) {
         return false;
     }

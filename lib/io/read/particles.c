@@ -6,6 +6,7 @@
 
 #include "io/base/pool.h"
 #include "io/document/document.h"
+#include "io/document/fields.h"
 #include "io/document/function.h"
 #include "io/document/keys.h"
 #include "io/document/reader.h"
@@ -14,11 +15,112 @@
 #include "io/model/model.h"
 #include "io/read/grain_table.h"
 #include "io/read/materials.h"
+#include "io/read/objects.h"
 #include "io/read/sections.h"
+
+enum { LATTICE = 0, RANDOM = 1 };
+static const char *const packings[] = {[LATTICE] = "lattice", [RANDOM] = "random", NULL};
+static const char *const regions[] = {[SE3D_FILL_REGION_BOX] = "box",
+                                      [SE3D_FILL_REGION_CYLINDER] = "cylinder",
+                                      [SE3D_FILL_REGION_SPHERE] = "sphere",
+                                      NULL};
+static const char *const axes[] = {"x", "y", "z", NULL};
+
+/* clang-format off */
+static const se3di_key particles_keys[] = {
+    {"material", SE3DI_KIND_MATERIAL, .required = true, .text = "what they are made of"},
+    {"packing", SE3DI_KIND_WORD, .words = packings, .standard = "lattice",
+     .text = "lattice: in rows; random: count of them without overlaps"},
+    {"count", SE3DI_KIND_COUNT, .most = 1e8, .standard = "0",
+     .text = "lattice: at most, 0 for all that fit; random: how many"},
+    {"radius", SE3DI_KIND_RADIUS,
+     .text = "[m]: a number, [smallest, largest], or a table of radii with how often each comes"},
+    {"lower", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_fill_def, lower),
+     .text = "corner of the region [m]"},
+    {"upper", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_fill_def, upper),
+     .text = "corner of the region [m]"},
+    {"spacing", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_fill_def, spacing),
+     .standard = "1.1 diameters", .text = "lattice [m]"},
+    {"jitter", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_fill_def, jitter),
+     .standard = "0", .text = "lattice: largest displacement along each axis [m]"},
+    {"velocity", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_fill_def, velocity),
+     .standard = "[0, 0, 0]", .text = "[m/s]"},
+    {"seed", SE3DI_KIND_COUNT, .most = 9007199254740992.0, .standard = "0",
+     .text = "of the random numbers"},
+    {"region", SE3DI_KIND_WORD, .words = regions, .standard = "box",
+     .text = "what is filled of the box from lower to upper: all, or the largest cylinder or "
+         "sphere in it"},
+    {"axis", SE3DI_KIND_WORD, .words = axes, .standard = "z", .text = "of a cylinder"},
+    {"name", SE3DI_KIND_NAME, .text = "of the set; entries of one name are one set"},
+    {"file", SE3DI_KIND_TEXT,
+     .text = "a CSV table with the columns x, y, z, radius and more, relative to the model"},
+    {"source", SE3DI_KIND_OBJECT, .object = "source",
+     .text = "inserts them during the run, in place of all at the start"},
+    {.key = NULL}};
+const se3di_object se3di_object_particles = {
+    "particles",
+    "A region that is filled with spheres, a table of them, or a source.",
+    particles_keys, NULL,
+    "\"anyOf\": [{\"required\": [\"file\"]}, {\"required\": [\"radius\", \"lower\", \"upper\"]}]"};
+/* clang-format on */
+
+/* clang-format off */
+static const se3di_key radius_keys[] = {
+    {"table", SE3DI_KIND_PAIRS, .required = true, .text = "pairs [radius, frequency]"},
+    {.key = NULL}};
+const se3di_object se3di_object_radius = {
+    "radius",
+    "Radii with how often each comes.",
+    radius_keys, NULL,
+    NULL};
+/* clang-format on */
+
+/* clang-format off */
+static const se3di_key source_keys[] = {
+    {"rate", SE3DI_KIND_FUNCTION, .text = "[1/s], may be an expression in t"},
+    {"mass_rate", SE3DI_KIND_FUNCTION, .text = "[kg/s], in place of rate"},
+    {"start", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_particles_source_def, start), .standard = "0",
+     .text = "[s]"},
+    {"stop", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_particles_source_def, stop),
+     .standard = "never", .text = "[s]"},
+    {"count", SE3DI_KIND_COUNT, .most = 1e8, .standard = "no limit",
+     .text = "the largest number"},
+    {"every", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_particles_source_def, every),
+     .standard = "0", .text = "least time between insertions [s]"},
+    {.key = NULL}};
+const se3di_object se3di_object_source = {
+    "source",
+    "Particles are inserted during the run, in place of all at the start.",
+    source_keys, NULL,
+    "\"oneOf\": [{\"required\": [\"rate\"]}, {\"required\": [\"mass_rate\"]}]"};
+/* clang-format on */
+
+/* clang-format off */
+static const se3di_key sink_keys[] = {
+    {"name", SE3DI_KIND_NAME, .text = "for its channel"},
+    {"lower", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_particles_sink_def, lower),
+     .text = "corner of the region [m]"},
+    {"upper", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_particles_sink_def, upper),
+     .text = "corner of the region [m]"},
+    {"region", SE3DI_KIND_WORD, .words = regions, .standard = "box",
+     .text = "all of the box, or the largest cylinder or sphere in it"},
+    {"axis", SE3DI_KIND_WORD, .words = axes, .standard = "z", .text = "of a cylinder"},
+    {"point", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_particles_sink_def, point),
+     .standard = "[0, 0, 0]", .text = "of a plane [m]"},
+    {"normal", SE3DI_KIND_DIRECTION, SE3DI_INTO(se3d_particles_sink_def, normal),
+     .text = "of a plane; particles behind it are removed"},
+    {.key = NULL}};
+const se3di_object se3di_object_sink = {
+    "sink",
+    "A region, or what is behind a plane: particles whose centre is in it are removed and "
+         "counted.",
+    sink_keys, NULL,
+    NULL};
+/* clang-format on */
 
 static bool read_boundaries(se3di_reader *reader, const se3di_node *map, se3d_particles_def *def)
 {
-    static const char *const words[] = {"open", "periodic", "sink", NULL};
+    const char *const *words = se3di_object_find(&se3di_object_contact, NULL, "boundary")->words;
     const se3di_node *list = se3di_node_get(map, "boundary");
     size_t k = 0;
     if (list && (list->kind != SE3DI_NODE_LIST || list->count != 3)) {
@@ -33,17 +135,16 @@ static bool read_boundaries(se3di_reader *reader, const se3di_node *map, se3d_pa
         }
         def->boundary[k++] = (int32_t)word;
     }
-    return se3di_read_key_vector(reader, map, "lower", def->lower) &&
-           se3di_read_key_vector(reader, map, "upper", def->upper);
+    return se3di_read_fields(reader, map, &se3di_object_contact, NULL, "se3d_particles_def", def);
 }
 
 static bool create_set(se3di_reader *reader, const se3di_node *contact)
 {
     se3d_particles_def def = se3d_particles_def_default();
     double threads = 1.0;
-    if (contact && (!se3di_read_key_count(reader, contact, "threads", 1024.0, &threads) ||
-                    !se3di_read_key_number(reader, contact, "skin", SE3DI_POSITIVE, &def.skin) ||
-                    !read_boundaries(reader, contact, &def))) {
+    if (contact &&
+        (!se3di_read_key(reader, contact, &se3di_object_contact, NULL, "threads", &threads) ||
+         !read_boundaries(reader, contact, &def))) {
         return false;
     }
     def.threads = (int32_t)threads;
@@ -74,7 +175,7 @@ static bool check_free(se3di_reader *reader, const se3di_node *node, const char 
 static bool read_radius_table(se3di_reader *reader, const se3di_node *radius, se3d_fill_def *def)
 {
     const se3di_node *table = se3di_node_get(radius, "table");
-    if (!se3di_read_keys(reader, radius, SE3DI_OBJECT_RADIUS)) {
+    if (!se3di_read_keys(reader, radius, &se3di_object_radius)) {
         return false;
     }
     if (!table || table->kind != SE3DI_NODE_LIST || table->count == 0) {
@@ -102,23 +203,18 @@ static bool read_radius_table(se3di_reader *reader, const se3di_node *radius, se
 }
 
 /* The part of the box from `lower` to `upper` that is filled. */
-static bool read_region(se3di_reader *reader, const se3di_node *node, se3d_fill_def *def)
+static bool read_region(se3di_reader *reader, const se3di_node *node, const se3di_object *object,
+                        int32_t *region, int32_t *axis)
 {
-    static const char *const regions[] = {"box", "cylinder", "sphere", NULL};
-    static const char *const axes[] = {"x", "y", "z", NULL};
-    const se3di_node *region = se3di_node_get(node, "region");
-    const se3di_node *axis = se3di_node_get(node, "axis");
-    size_t kind = 0;
-    size_t along = 2;
-    if ((region && !se3di_read_word(reader, region, regions, &kind)) ||
-        (axis && !se3di_read_word(reader, axis, axes, &along))) {
+    *region = SE3D_FILL_REGION_BOX;
+    *axis = 2;
+    if (!se3di_read_key(reader, node, object, NULL, "region", region) ||
+        !se3di_read_key(reader, node, object, NULL, "axis", axis)) {
         return false;
     }
-    if (axis && kind != SE3D_FILL_REGION_CYLINDER) {
-        return se3di_reader_fail(reader, axis, "is only for `region: cylinder`");
+    if (se3di_node_get(node, "axis") && *region != SE3D_FILL_REGION_CYLINDER) {
+        return se3di_reader_fail_key(reader, node, "axis", "is only for `region: cylinder`");
     }
-    def->region = (int32_t)kind;
-    def->axis = (int32_t)along;
     return true;
 }
 
@@ -223,11 +319,10 @@ static bool read_source(se3di_reader *reader, const se3di_node *node, se3d_fill_
     def.fill = fill;
     if (!check_beside(reader, node, "source",
                       " name material radius lower upper region axis velocity seed source ") ||
-        !se3di_read_keys(reader, child, SE3DI_OBJECT_SOURCE) || !read_rate(reader, child, &def) ||
-        !se3di_read_key_number(reader, child, "start", SE3DI_ANY, &def.start) ||
-        !se3di_read_key_number(reader, child, "stop", SE3DI_ANY, &def.stop) ||
-        !se3di_read_key_number(reader, child, "every", SE3DI_NOT_NEGATIVE, &def.every) ||
-        !se3di_read_key_count(reader, child, "count", 1e8, &most)) {
+        !se3di_read_keys(reader, child, &se3di_object_source) || !read_rate(reader, child, &def) ||
+        !se3di_read_fields(reader, child, &se3di_object_source, NULL, "se3d_particles_source_def",
+                           &def) ||
+        !se3di_read_key(reader, child, &se3di_object_source, NULL, "count", &most)) {
         return false;
     }
     fill->count = (size_t)most;
@@ -245,21 +340,17 @@ static bool read_source(se3di_reader *reader, const se3di_node *node, se3d_fill_
 /* Of an entry that fills a region, at once or as a source. */
 static bool read_fill(se3di_reader *reader, const se3di_node *node, se3d_fill_def *def)
 {
-    static const char *const packings[] = {"lattice", "random", NULL};
+    const se3di_object *object = &se3di_object_particles;
     se3d_particles *set = reader->model->grains->set;
-    const se3di_node *packing = se3di_node_get(node, "packing");
     double count = 0.0;
     double seed = 0.0;
-    size_t word = 0;
-    if ((packing && !se3di_read_word(reader, packing, packings, &word)) ||
-        !se3di_read_key_count(reader, node, "count", 1e8, &count) ||
-        !read_radius(reader, node, def) || !read_region(reader, node, def) ||
-        !se3di_read_key_vector(reader, node, "lower", def->lower) ||
-        !se3di_read_key_vector(reader, node, "upper", def->upper) ||
-        !se3di_read_key_vector(reader, node, "velocity", def->velocity) ||
-        !se3di_read_key_number(reader, node, "spacing", SE3DI_POSITIVE, &def->spacing) ||
-        !se3di_read_key_number(reader, node, "jitter", SE3DI_NOT_NEGATIVE, &def->jitter) ||
-        !se3di_read_key_count(reader, node, "seed", 9007199254740992.0, &seed)) {
+    int32_t packing = LATTICE;
+    if (!se3di_read_key(reader, node, object, NULL, "packing", &packing) ||
+        !se3di_read_key(reader, node, object, NULL, "count", &count) ||
+        !read_radius(reader, node, def) ||
+        !read_region(reader, node, object, &def->region, &def->axis) ||
+        !se3di_read_fields(reader, node, object, NULL, "se3d_fill_def", def) ||
+        !se3di_read_key(reader, node, object, NULL, "seed", &seed)) {
         return false;
     }
     def->count = (size_t)count;
@@ -267,15 +358,15 @@ static bool read_fill(se3di_reader *reader, const se3di_node *node, se3d_fill_de
     if (se3di_node_get(node, "source")) {
         return read_source(reader, node, def);
     }
-    const se3d_status status = word == 0 ? se3d_particles_fill_lattice(set, def, NULL)
-                                         : se3d_particles_fill_random(set, def);
+    const se3d_status status = packing == LATTICE ? se3d_particles_fill_lattice(set, def, NULL)
+                                                  : se3d_particles_fill_random(set, def);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
 static bool read_entry(se3di_reader *reader, const se3di_node *node)
 {
     se3d_fill_def def = se3d_fill_def_default();
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_PARTICLES) ||
+    if (!se3di_read_keys(reader, node, &se3di_object_particles) ||
         !se3di_read_key_material(reader, node, "material", &def.material) ||
         !read_set(reader, node, &def.tag)) {
         return false;
@@ -293,16 +384,13 @@ static bool read_sink(se3di_reader *reader, const se3di_node *node)
     const se3di_node *name = se3di_node_get(node, "name");
     const char *text = NULL;
     se3d_particles_sink_def def = se3d_particles_sink_def_default();
-    se3d_fill_def region = se3d_fill_def_default();
-    if (!se3di_read_keys(reader, node, SE3DI_OBJECT_SINK) ||
+    if (!se3di_read_keys(reader, node, &se3di_object_sink) ||
         (name && (!se3di_read_name(reader, name, &text) || !check_free(reader, name, text))) ||
         (se3di_node_get(node, "normal") &&
          !check_beside(reader, node, "normal", " name point normal ")) ||
-        !se3di_read_key_direction(reader, node, "normal", def.normal) ||
-        !se3di_read_key_vector(reader, node, "point", def.point) ||
-        !read_region(reader, node, &region) ||
-        !se3di_read_key_vector(reader, node, "lower", def.lower) ||
-        !se3di_read_key_vector(reader, node, "upper", def.upper)) {
+        !read_region(reader, node, &se3di_object_sink, &def.region, &def.axis) ||
+        !se3di_read_fields(reader, node, &se3di_object_sink, NULL, "se3d_particles_sink_def",
+                           &def)) {
         return false;
     }
     if (!se3di_node_get(node, "normal") &&
@@ -310,8 +398,6 @@ static bool read_sink(se3di_reader *reader, const se3di_node *node)
         return se3di_reader_fail(reader, node,
                                  "must have `lower` and `upper`, or the `normal` of a plane");
     }
-    def.region = region.region;
-    def.axis = region.axis;
     grains->sinks[grains->sink_count++] = text;
     const se3d_status status = se3d_particles_add_sink(grains->set, &def, NULL);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;

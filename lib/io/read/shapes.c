@@ -9,13 +9,63 @@
 #include "io/base/pool.h"
 #include "io/base/rotation.h"
 #include "io/document/document.h"
+#include "io/document/fields.h"
 #include "io/document/guess.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/read/mesh_file.h"
+#include "io/read/objects.h"
 #include "io/read/sections.h"
 #include "io/read/solid.h"
+
+static const char *const shape_types[] = {[SE3D_SHAPE_SPHERE] = "sphere",
+                                          [SE3D_SHAPE_BOX] = "box",
+                                          [SE3D_SHAPE_CAPSULE] = "capsule",
+                                          [SE3D_SHAPE_CYLINDER] = "cylinder",
+                                          [SE3D_SHAPE_PLANE] = "plane",
+                                          [SE3D_SHAPE_MESH] = "mesh",
+                                          NULL};
+
+/* clang-format off */
+static const se3di_key shape_keys[] = {
+    {"name", SE3DI_KIND_NAME, .text = "for lists of contacts"},
+    {"group", SE3DI_KIND_COUNT, .most = 4294967295.0, .standard = "1",
+     .text = "bits: a and b touch if a.group & b.mask and b.group & a.mask are not zero"},
+    {"mask", SE3DI_KIND_COUNT, .most = 4294967295.0, .standard = "4294967295, all groups",
+     .text = "see group"},
+    {"contact", SE3DI_KIND_BOOL, .standard = "true",
+     .text = "false: nothing touches it, though it has a material"},
+    {"type", SE3DI_KIND_TYPE, .required = true, .text = ""},
+    {"size", SE3DI_KIND_VECTOR, .types = " box ", .text = "its edges [m], each > 0"},
+    {"radius", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " sphere capsule cylinder ",
+     .text = "[m]"},
+    {"length", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " capsule cylinder ",
+     .text = "along its z [m]; of a capsule between the centres of its ends"},
+    {"file", SE3DI_KIND_TEXT, .types = " mesh ",
+     .text = "STL (binary, ASCII) or OBJ, relative to the model file"},
+    {"scale", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_model_shape, scale),
+     .types = " mesh ", .standard = "1", .text = "factor, to metres"},
+    {"convex", SE3DI_KIND_BOOL, SE3DI_INTO(se3di_shape_entry, convex), .types = " mesh ",
+     .standard = "false", .text = "its convex hull touches in its place, also meshes"},
+    {"normal", SE3DI_KIND_DIRECTION, .types = " plane ", .standard = "[0, 0, 1]",
+     .text = "in place of an orientation"},
+    {"density", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " sphere box capsule cylinder mesh ",
+     .text = "[kg/m^3], for bodies without mass; a mesh must be closed"},
+    {"material", SE3DI_KIND_MATERIAL,
+     .text = "if there is contact or particles, what has one touches"},
+    {"position", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_model_shape, position),
+     .standard = "[0, 0, 0]", .text = "centre, body frame [m]"},
+    {"orientation", SE3DI_KIND_ORIENTATION, SE3DI_INTO(se3d_model_shape, orientation),
+     .standard = "that of the body", .text = "shape -> body"},
+    {"color", SE3DI_KIND_VECTOR, .text = "red, green, blue, 0 to 1"},
+    {.key = NULL}};
+const se3di_object se3di_object_shape = {
+    "shape",
+    "What a body looks like, weighs and touches with.",
+    shape_keys, shape_types,
+    NULL};
+/* clang-format on */
 
 static bool require(se3di_reader *reader, const se3di_node *node, const char *key)
 {
@@ -25,16 +75,16 @@ static bool require(se3di_reader *reader, const se3di_node *node, const char *ke
                                        se3di_node_get(node, "type")->text);
 }
 
-static bool read_positive(se3di_reader *reader, const se3di_node *node, const char *key,
+static bool read_required(se3di_reader *reader, const se3di_node *node, const char *key,
                           double *value)
 {
     return require(reader, node, key) &&
-           se3di_read_key_number(reader, node, key, SE3DI_POSITIVE, value);
+           se3di_read_key(reader, node, &se3di_object_shape, NULL, key, value);
 }
 
 static bool read_size(se3di_reader *reader, const se3di_node *node, double size[3])
 {
-    if (!require(reader, node, "size") || !se3di_read_key_vector(reader, node, "size", size)) {
+    if (!read_required(reader, node, "size", size)) {
         return false;
     }
     for (int k = 0; k < 3; ++k) {
@@ -51,7 +101,7 @@ static bool read_size(se3di_reader *reader, const se3di_node *node, double size[
 static bool read_plane(se3di_reader *reader, const se3di_node *node, se3d_model_shape *shape)
 {
     double n[3] = {0.0, 0.0, 1.0};
-    if (!se3di_read_key_direction(reader, node, "normal", n)) {
+    if (!se3di_read_key(reader, node, &se3di_object_shape, NULL, "normal", n)) {
         return false;
     }
     if (!se3di_node_get(node, "normal")) {
@@ -71,12 +121,8 @@ static bool read_triangles(se3di_reader *reader, const se3di_node *node, se3di_s
 {
     se3d_model_shape *shape = &entry->shape;
     if (!require(reader, node, "file") ||
-        !se3di_read_text(reader, se3di_node_get(node, "file"), &shape->file) ||
-        !se3di_read_key_number(reader, node, "scale", SE3DI_POSITIVE, &shape->scale)) {
-        return false;
-    }
-    const se3di_node *convex = se3di_node_get(node, "convex");
-    if (convex && !se3di_read_bool(reader, convex, &entry->convex)) {
+        !se3di_read_key(reader, node, &se3di_object_shape, NULL, "file", (void *)&shape->file) ||
+        !se3di_read_fields(reader, node, &se3di_object_shape, "mesh", "se3di_shape_entry", entry)) {
         return false;
     }
     entry->mesh = se3di_read_mesh(reader, node, shape->file, shape->scale);
@@ -88,13 +134,13 @@ static bool read_dimensions(se3di_reader *reader, const se3di_node *node, se3di_
     se3d_model_shape *shape = &entry->shape;
     switch (shape->type) {
     case SE3D_SHAPE_SPHERE:
-        return read_positive(reader, node, "radius", &shape->radius);
+        return read_required(reader, node, "radius", &shape->radius);
     case SE3D_SHAPE_BOX:
         return read_size(reader, node, shape->size);
     case SE3D_SHAPE_CAPSULE:
     case SE3D_SHAPE_CYLINDER:
-        return read_positive(reader, node, "radius", &shape->radius) &&
-               read_positive(reader, node, "length", &shape->length);
+        return read_required(reader, node, "radius", &shape->radius) &&
+               read_required(reader, node, "length", &shape->length);
     case SE3D_SHAPE_PLANE:
         return read_plane(reader, node, shape);
     default:
@@ -104,7 +150,7 @@ static bool read_dimensions(se3di_reader *reader, const se3di_node *node, se3di_
 
 static bool read_color(se3di_reader *reader, const se3di_node *node, double color[3])
 {
-    if (!se3di_read_key_vector(reader, node, "color", color)) {
+    if (!se3di_read_key(reader, node, &se3di_object_shape, NULL, "color", color)) {
         return false;
     }
     for (int k = 0; k < 3; ++k) {
@@ -120,24 +166,21 @@ static bool read_color(se3di_reader *reader, const se3di_node *node, double colo
 static bool read_shape(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
 {
     se3d_model_shape *shape = &entry->shape;
-    static const char *const types[] = {"sphere", "box",  "capsule", "cylinder",
-                                        "plane",  "mesh", NULL};
     size_t index = 0;
     static const se3d_model_shape standard = {
         .scale = 1.0, .orientation = {1.0, 0.0, 0.0, 0.0}, .color = {-1.0, -1.0, -1.0}, .file = ""};
     const char *type = NULL;
-    if (!se3di_read_type(reader, node, SE3DI_OBJECT_SHAPE, &type)) {
+    if (!se3di_read_type(reader, node, &se3di_object_shape, &type)) {
         return false;
     }
     entry->mesh = NULL;
     entry->convex = 0;
     *shape = standard;
-    if (!se3di_read_word(reader, se3di_node_get(node, "type"), types, &index)) {
+    if (!se3di_read_word(reader, se3di_node_get(node, "type"), shape_types, &index)) {
         return false;
     }
     shape->type = (int32_t)index;
-    return se3di_read_key_vector(reader, node, "position", shape->position) &&
-           se3di_read_key_orientation(reader, node, shape->orientation) &&
+    return se3di_read_fields(reader, node, &se3di_object_shape, type, "se3d_model_shape", shape) &&
            read_dimensions(reader, node, entry) && read_color(reader, node, shape->color);
 }
 
@@ -161,36 +204,6 @@ bool se3di_read_shapes(se3di_reader *reader, const se3di_node *body, size_t entr
         }
         model->shapes = grown;
         model->shapes[model->shape_count++] = made;
-    }
-    return true;
-}
-
-bool se3di_read_materials(se3di_reader *reader, const se3di_node *root)
-{
-    const se3di_node *list = NULL;
-    const char *name = NULL;
-    double density = 0.0;
-    if (!se3di_read_list(reader, root, "materials", &list)) {
-        return false;
-    }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!se3di_read_keys(reader, node, SE3DI_OBJECT_MATERIAL) ||
-            !se3di_read_key_number(reader, node, "density", SE3DI_POSITIVE, &density)) {
-            return false;
-        }
-        const se3di_node *child = se3di_node_get(node, "name");
-        if (!child) {
-            return se3di_reader_fail_key(reader, node, "name", "is missing");
-        }
-        if (!se3di_read_name(reader, child, &name)) {
-            return false;
-        }
-        for (const se3di_node *old = list->first; old != node; old = old->next) {
-            if (strcmp(se3di_node_get(old, "name")->text, name) == 0) {
-                return se3di_reader_fail(
-                    reader, child, "`%.60s` is taken, must differ from other materials", name);
-            }
-        }
     }
     return true;
 }
@@ -227,8 +240,8 @@ static bool read_density(se3di_reader *reader, const se3di_node *body, const se3
     if (material && !read_material(reader, material, density)) {
         return false;
     }
-    return se3di_read_key_number(reader, body, "density", SE3DI_POSITIVE, density) &&
-           se3di_read_key_number(reader, shape, "density", SE3DI_POSITIVE, density);
+    return se3di_read_key(reader, body, &se3di_object_body, NULL, "density", density) &&
+           se3di_read_key(reader, shape, &se3di_object_shape, NULL, "density", density);
 }
 
 /* Shapes of a body together, about its origin. */

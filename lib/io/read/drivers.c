@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `drivers`: joint coordinates that follow a function of time. */
+#include "io/document/function.h"
+#include "io/read/elements.h"
+#include "io/read/objects.h"
+#include "io/read/sections.h"
+
+static const char *const time_only[] = {"t", NULL};
+
+/* clang-format off */
+static const se3di_key driver_keys[] = {
+    {"name", SE3DI_KIND_NAME, .standard = "driver1, driver2, ...",
+     .text = "unique among joints, drivers, constraints and forces"},
+    {"joint", SE3DI_KIND_JOINT, .required = true, .text = ""},
+    {"coordinate", SE3DI_KIND_WORD, .words = se3di_coordinates,
+     .text = "may be left out if the joint has one only"},
+    {"value", SE3DI_KIND_FUNCTION, .required = true, .text = "a number or a function of t"},
+    {.key = NULL}};
+const se3di_object se3di_object_driver = {
+    "driver",
+    "A joint coordinate that follows a function of time.",
+    driver_keys, NULL,
+    NULL};
+/* clang-format on */
+
+static bool read_driver(se3di_reader *reader, const se3di_node *node)
+{
+    se3d_driver_def def = se3d_driver_def_default();
+    se3di_element_entry *entry = NULL;
+    const se3di_node *value = se3di_node_get(node, "value");
+    if (!se3di_read_keys(reader, node, &se3di_object_driver) ||
+        !se3di_read_element(reader, node, SE3DI_ELEMENT_DRIVER, &entry) ||
+        !se3di_read_key_joint(reader, node, "joint", &def.joint) ||
+        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate)) {
+        return false;
+    }
+    if (!value) {
+        return se3di_reader_fail_key(reader, node, "value",
+                                     "is missing, must be a number, an expression in t or "
+                                     "{spline: [[t, value], ...]}");
+    }
+    if (!se3di_read_function(reader, value, time_only, &def.value, &def.function)) {
+        return false;
+    }
+    def.name = entry->name;
+    entry->coordinate = def.coordinate;
+    const se3d_status status = se3d_driver_create(reader->system, &def, &entry->constraint);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+bool se3di_read_drivers(se3di_reader *reader, const se3di_node *root)
+{
+    const se3di_node *list = NULL;
+    if (!se3di_read_list(reader, root, "drivers", &list)) {
+        return false;
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        if (!read_driver(reader, node)) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `materials`: their list, and those that are needed. */
+#include "io/read/materials.h"
+
+#include <string.h>
+
+#include "io/document/fields.h"
+#include "io/document/value.h"
+#include "io/read/objects.h"
+#include "io/read/sections.h"
+
+/* clang-format off */
+static const se3di_key material_keys[] = {
+    {"name", SE3DI_KIND_NAME, .required = true, .text = "unique among the materials"},
+    {"density", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, density), .text = "[kg/m^3]"},
+    {"friction", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, friction), .standard = "0.5",
+     .text = "coefficient of sliding"},
+    {"restitution", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, restitution),
+     .standard = "0.5", .text = "over the speed of approach, the same at any speed, 0.01 to 1"},
+    {"rolling_friction", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, rolling_friction),
+     .standard = "0", .text = "resisting moment over radius times normal force"},
+    {"torsional_friction", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, torsional_friction),
+     .standard = "0", .text = "the same about the normal"},
+    {"stiffness", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, stiffness),
+     .text = "hooke [N/m] > 0"},
+    {"tangential_ratio", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, tangential_ratio),
+     .standard = "2/7", .text = "hooke: tangential over normal stiffness"},
+    {"young", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, young),
+     .text = "hertz_mindlin [Pa] > 0"},
+    {"poisson", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, poisson), .standard = "0.3",
+     .text = "hertz_mindlin, 0 to 0.5"},
+    {"cohesion", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, cohesion), .standard = "0",
+     .text = "attraction per area of contact [J/m^3]"},
+    {"adhesion", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, adhesion), .standard = "0",
+     .text = "work of adhesion [J/m^2], pull-off force 3/2 pi R* adhesion"},
+    {.key = NULL}};
+const se3di_object se3di_object_material = {
+    "material",
+    "What bodies and particles are made of.",
+    material_keys, NULL,
+    NULL};
+/* clang-format on */
+
+static bool create_material(se3di_reader *reader, const se3di_node *entry, se3d_material *material)
+{
+    se3d_material_def def = se3d_material_def_default();
+    if (!se3di_read_fields(reader, entry, &se3di_object_material, NULL, "se3d_material_def",
+                           &def)) {
+        return false;
+    }
+    const se3d_status status = se3d_material_create(reader->system, &def, material);
+    return status < 0 ? se3di_reader_fail_system(reader, entry, status) : true;
+}
+
+bool se3di_reader_find_material(se3di_reader *reader, const char *name, se3d_material *material)
+{
+    se3d_material *materials = reader->model->materials;
+    const se3di_node *list = se3di_node_get(reader->model->root, "materials");
+    const se3di_node *entry = list ? list->first : NULL;
+    size_t k = 0;
+    for (; entry && strcmp(se3di_node_get(entry, "name")->text, name) != 0; entry = entry->next) {
+        ++k;
+    }
+    if (!entry || (materials[k].index1 == 0 && !create_material(reader, entry, &materials[k]))) {
+        return false;
+    }
+    *material = materials[k];
+    return true;
+}
+
+bool se3di_read_key_material(se3di_reader *reader, const se3di_node *map, const char *key,
+                             se3d_material *material)
+{
+    const se3di_node *node = se3di_node_get(map, key);
+    const char *name = NULL;
+    if (!node) {
+        return se3di_reader_fail_key(reader, map, key, "is missing, must be one of `materials`");
+    }
+    if (!se3di_read_text(reader, node, &name)) {
+        return false;
+    }
+    if (se3di_reader_find_material(reader, name, material)) {
+        return true;
+    }
+    return reader->status < 0
+               ? false
+               : se3di_reader_fail(reader, node,
+                                   "no material is named `%.60s`; list it under `materials`", name);
+}
+
+bool se3di_read_materials(se3di_reader *reader, const se3di_node *root)
+{
+    const se3di_node *list = NULL;
+    const char *name = NULL;
+    double density = 0.0;
+    if (!se3di_read_list(reader, root, "materials", &list)) {
+        return false;
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        if (!se3di_read_keys(reader, node, &se3di_object_material) ||
+            !se3di_read_key_number(reader, node, "density", SE3DI_POSITIVE, &density)) {
+            return false;
+        }
+        const se3di_node *child = se3di_node_get(node, "name");
+        if (!child) {
+            return se3di_reader_fail_key(reader, node, "name", "is missing");
+        }
+        if (!se3di_read_name(reader, child, &name)) {
+            return false;
+        }
+        for (const se3di_node *old = list->first; old != node; old = old->next) {
+            if (strcmp(se3di_node_get(old, "name")->text, name) == 0) {
+                return se3di_reader_fail(
+                    reader, child, "`%.60s` is taken, must differ from other materials", name);
+            }
+        }
+    }
+    return true;
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* All objects of the model file; the table of each stands beside its reader. */
+#ifndef SE3D_IO_OBJECTS_H
+#define SE3D_IO_OBJECTS_H
+
+#include "io/document/keys.h"
+
+/* In the order of the schema. */
+#define SE3DI_OBJECT_LIST(X)                                                                       \
+    X(model)                                                                                       \
+    X(spline)                                                                                      \
+    X(orientation)                                                                                 \
+    X(shape)                                                                                       \
+    X(marker)                                                                                      \
+    X(material)                                                                                    \
+    X(contact)                                                                                     \
+    X(pair)                                                                                        \
+    X(radius)                                                                                      \
+    X(particles)                                                                                   \
+    X(source)                                                                                      \
+    X(sink)                                                                                        \
+    X(body)                                                                                        \
+    X(term)                                                                                        \
+    X(joint)                                                                                       \
+    X(driver)                                                                                      \
+    X(constraint)                                                                                  \
+    X(force)                                                                                       \
+    X(analysis)                                                                                    \
+    X(event)                                                                                       \
+    X(modes_input)                                                                                 \
+    X(modes_output)                                                                                \
+    X(frequencies)                                                                                 \
+    X(output)
+
+#define SE3DI_OBJECT(name) extern const se3di_object se3di_object_##name;
+SE3DI_OBJECT_LIST(SE3DI_OBJECT)
+#undef SE3DI_OBJECT
+
+/* The k-th object, NULL behind the last. */
+const se3di_object *se3di_objects_get(size_t k);
+
+#endif

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Joints between two bodies, by a global frame or locally. */
+#include "io/read/pairs.h"
+
+#include <string.h>
+
+#include "io/base/rotation.h"
+#include "io/document/document.h"
+#include "io/document/fields.h"
+#include "io/document/reader.h"
+#include "io/document/value.h"
+#include "io/model/model.h"
+#include "io/read/bodies.h"
+#include "io/read/objects.h"
+
+typedef se3d_status (*create_joint)(se3d_system *, const se3d_joint_def *, se3d_constraint *);
+
+/* What a type needs to be said about it. */
+enum { POINT = 1, AXIS_I = 2, AXIS_J = 4, AXIS_2 = 8, DISTANCE = 16, PITCH = 32 };
+
+typedef struct joint_type {
+    const char *name;
+    create_joint create;
+    unsigned needs;
+} joint_type;
+
+#define TYPE(name, needs) {#name, se3d_joint_create_##name, needs},
+static const joint_type joint_types[] = {SE3DI_TURNING_LIST(TYPE) SE3DI_DISTANCE_LIST(TYPE)
+                                             SE3DI_PERPENDICULAR_LIST(TYPE)};
+#undef TYPE
+
+static bool has(const se3di_node *node, const char *key)
+{
+    return se3di_node_get(node, key) != NULL;
+}
+
+static bool is_local(const se3di_node *node)
+{
+    static const char *const keys[] = {"point_i", "point_j", "axis_i", "axis_j", "ref_i", "ref_j"};
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k) {
+        if (has(node, keys[k])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A point of the ground frame in the frame of a body. */
+static bool to_body_point(se3di_reader *reader, se3d_body body, const double ground[3],
+                          double local[3])
+{
+    const se3d_system *system = reader->system;
+    double r[3];
+    double p[4];
+    if (SE3D_FAILED(se3d_body_get_position(system, body, r)) ||
+        SE3D_FAILED(se3d_body_get_orientation(system, body, p))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    const double d[3] = {ground[0] - r[0], ground[1] - r[1], ground[2] - r[2]};
+    se3di_rotation_apply_inverse(p, d, local);
+    return true;
+}
+
+static bool to_body_axis(se3di_reader *reader, se3d_body body, const double ground[3],
+                         double local[3])
+{
+    double p[4];
+    if (SE3D_FAILED(se3d_body_get_orientation(reader->system, body, p))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    se3di_rotation_apply_inverse(p, ground, local);
+    return true;
+}
+
+static bool read_local(se3di_reader *reader, const se3di_node *node, const joint_type *type,
+                       const se3di_body_entry *bodies[2], se3d_joint_def *def)
+{
+    static const char *const global[] = {"at", "axis", "ref", "at_2", "axis_2"};
+    for (size_t k = 0; k < sizeof global / sizeof *global; ++k) {
+        if (has(node, global[k])) {
+            return se3di_reader_fail_key(reader, node, global[k],
+                                         "cannot stand beside point_i, axis_i ...: give either the "
+                                         "global frame (at, axis, ref) or the local ones");
+        }
+    }
+    if ((type->needs & POINT) && !has(node, "point_i") && !has(node, "point_j")) {
+        return se3di_reader_fail_key(reader, node, "point_i",
+                                     "is missing, a %s joint needs point_i and point_j",
+                                     type->name);
+    }
+    if ((type->needs & AXIS_I) && !has(node, "axis_i")) {
+        return se3di_reader_fail_key(reader, node, "axis_i", "is missing, `%s` needs it",
+                                     type->name);
+    }
+    if ((type->needs & AXIS_J) && !has(node, "axis_j")) {
+        return se3di_reader_fail_key(reader, node, "axis_j", "is missing, `%s` needs it",
+                                     type->name);
+    }
+    return se3di_read_key_point(reader, node, "point_i", bodies[0], def->point_i) &&
+           se3di_read_key_point(reader, node, "point_j", bodies[1], def->point_j) &&
+           se3di_read_key_direction(reader, node, "axis_i", def->axis_i) &&
+           se3di_read_key_direction(reader, node, "axis_j", def->axis_j) &&
+           se3di_read_key_direction(reader, node, "ref_i", def->ref_i) &&
+           se3di_read_key_direction(reader, node, "ref_j", def->ref_j);
+}
+
+static bool check_global(se3di_reader *reader, const se3di_node *node, const joint_type *type)
+{
+    if ((type->needs & POINT) && !has(node, "at")) {
+        return se3di_reader_fail_key(reader, node, "at",
+                                     "is missing, `%s` needs a point `at` [x, y, z] in the ground "
+                                     "frame, or point_i and point_j on the bodies",
+                                     type->name);
+    }
+    if ((type->needs & AXIS_I) && !has(node, "axis")) {
+        return se3di_reader_fail_key(reader, node, "axis",
+                                     "is missing, `%s` needs an `axis` [x, y, z] in the ground "
+                                     "frame, or axis_i and axis_j on the bodies",
+                                     type->name);
+    }
+    if ((type->needs & AXIS_2) && !has(node, "axis_2")) {
+        return se3di_reader_fail_key(reader, node, "axis_2",
+                                     "is missing, `%s` needs the axis of body j in the ground "
+                                     "frame beside `axis`, that of body i",
+                                     type->name);
+    }
+    if ((type->needs & DISTANCE) && strcmp(type->name, "revolute_cylindrical") != 0 &&
+        !has(node, "at_2")) {
+        return se3di_reader_fail_key(reader, node, "at_2",
+                                     "is missing, `%s` needs the point of body j in the ground "
+                                     "frame beside `at`, that of body i",
+                                     type->name);
+    }
+    return true;
+}
+
+static bool read_global(se3di_reader *reader, const se3di_node *node, const joint_type *type,
+                        se3d_joint_def *def)
+{
+    double at[3] = {0.0};
+    double at_2[3];
+    double axis[3] = {0.0, 0.0, 1.0};
+    double axis_2[3];
+    double ref[3];
+    if (!check_global(reader, node, type)) {
+        return false;
+    }
+    if (!has(node, "at") && SE3D_FAILED(se3d_body_get_position(reader->system, def->body_j, at))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    if (!se3di_read_key_vector(reader, node, "at", at) ||
+        !se3di_read_key_vector(reader, node, "at_2", at_2) ||
+        !se3di_read_key_direction(reader, node, "axis", axis) ||
+        !se3di_read_key_direction(reader, node, "axis_2", axis_2) ||
+        !se3di_read_key_direction(reader, node, "ref", ref)) {
+        return false;
+    }
+    const se3d_status status =
+        se3d_joint_def_set_frame(reader->system, def, at, axis, has(node, "ref") ? ref : NULL);
+    if (status < 0) {
+        return se3di_reader_fail_system(reader, node, status);
+    }
+    return (!has(node, "at_2") || to_body_point(reader, def->body_j, at_2, def->point_j)) &&
+           (!has(node, "axis_2") || to_body_axis(reader, def->body_j, axis_2, def->axis_j));
+}
+
+static bool read_sizes(se3di_reader *reader, const se3di_node *node, const joint_type *type,
+                       se3d_joint_def *def)
+{
+    if ((type->needs & DISTANCE) && !has(node, "distance")) {
+        return se3di_reader_fail_key(reader, node, "distance", "is missing, `%s` needs it [m]",
+                                     type->name);
+    }
+    if ((type->needs & PITCH) && !has(node, "pitch")) {
+        return se3di_reader_fail_key(reader, node, "pitch",
+                                     "is missing, `screw` needs its advance per turn [m]");
+    }
+    return se3di_read_fields(reader, node, &se3di_object_joint, type->name, "se3d_joint_def", def);
+}
+
+static const joint_type *find_type(const char *name)
+{
+    for (size_t k = 0; k < sizeof joint_types / sizeof *joint_types; ++k) {
+        if (strcmp(joint_types[k].name, name) == 0) {
+            return &joint_types[k];
+        }
+    }
+    return NULL;
+}
+
+bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *name,
+                     se3di_element_entry *entry)
+{
+    const joint_type *type = find_type(name);
+    const se3di_body_entry *bodies[2] = {NULL, NULL};
+    se3d_joint_def def = se3d_joint_def_default();
+    if (!type) {
+        return se3di_reader_fail(reader, node, "a joint of type `%.60s` cannot be made", name);
+    }
+    if (!se3di_read_key_body(reader, node, "body_i", &bodies[0]) ||
+        !se3di_read_key_body(reader, node, "body_j", &bodies[1])) {
+        return false;
+    }
+    if (bodies[0] == bodies[1]) {
+        return se3di_reader_fail_key(reader, node, "body_j",
+                                     "is body_i too, a joint needs two different bodies");
+    }
+    def.name = entry->name;
+    def.body_i = bodies[0]->body;
+    def.body_j = bodies[1]->body;
+    if (!read_sizes(reader, node, type, &def)) {
+        return false;
+    }
+    if (is_local(node) ? !read_local(reader, node, type, bodies, &def)
+                       : !read_global(reader, node, type, &def)) {
+        return false;
+    }
+    entry->body_i = def.body_i;
+    entry->body_j = def.body_j;
+    entry->drawn = (type->needs & AXIS_J) ? 2 : 1;
+    memcpy(entry->point_i, def.point_i, sizeof def.point_i);
+    memcpy(entry->point_j, def.point_j, sizeof def.point_j);
+    memcpy(entry->axis_j, def.axis_j, sizeof def.axis_j);
+    const se3d_status status = type->create(reader->system, &def, &entry->constraint);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Joints between two bodies. */
+#ifndef SE3D_IO_PAIRS_H
+#define SE3D_IO_PAIRS_H
+
+#include "io/document/reader.h"
+#include "io/model/model.h"
+
+/* Joint types, with what must be said of them: those that have axes, those of points only, and the
+ * intermediate constraints that are made like joints. */
+#define SE3DI_TURNING_LIST(X)                                                                      \
+    X(fixed, 0)                                                                                    \
+    X(revolute, POINT | AXIS_I | AXIS_J)                                                           \
+    X(prismatic, POINT | AXIS_I | AXIS_J)                                                          \
+    X(cylindrical, POINT | AXIS_I | AXIS_J)                                                        \
+    X(spherical, POINT)                                                                            \
+    X(universal, POINT | AXIS_I | AXIS_J | AXIS_2)                                                 \
+    X(planar, POINT | AXIS_I | AXIS_J)                                                             \
+    X(screw, POINT | AXIS_I | AXIS_J | PITCH)                                                      \
+    X(point_on_line, POINT | AXIS_I)                                                               \
+    X(point_on_plane, POINT | AXIS_I)                                                              \
+    X(revolute_spherical, POINT | AXIS_I | DISTANCE)                                               \
+    X(revolute_cylindrical, POINT | AXIS_I | AXIS_J | AXIS_2 | DISTANCE)                           \
+    X(parallel, AXIS_I | AXIS_J)                                                                   \
+    X(perpendicular, AXIS_I | AXIS_J | AXIS_2)                                                     \
+    X(orientation, 0)
+#define SE3DI_DISTANCE_LIST(X) X(distance, POINT | DISTANCE)
+#define SE3DI_PERPENDICULAR_LIST(X)                                                                \
+    X(perpendicular1, AXIS_I | AXIS_J | AXIS_2)                                                    \
+    X(perpendicular2, POINT | AXIS_I)
+
+/* One that a pair of bodies carries: used for joints and two of the constraints. */
+bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *type,
+                     se3di_element_entry *entry);
+
+#endif
