@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The restitution typed is the restitution obtained by particles at their automatic step, whatever
+/* The given restitution is the restitution obtained by particles at their automatic step, whatever
  * the part of a step in which they meet: a hundred impacts at random phases each. */
 #include "check.h"
 #include "se3d/se3d.h"

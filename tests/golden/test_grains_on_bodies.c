@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Grains against bodies that give way: the restitution typed is the one obtained, however light the
+/* Grains against bodies that give way: the given restitution is the one obtained, however light the
  * body is and wherever it is hit. */
 #include "check.h"
 #include "se3d/se3d.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The restitution typed is the restitution obtained: every method at its own step and tolerance,
+/* The given restitution is the restitution obtained: every method at its own step and tolerance,
  * both laws, slow and fast, shapes on a plane and on each other, in one point of contact or in
  * many. Closed form: central impacts. The bound is 1e-3. */
 #include "check.h"
