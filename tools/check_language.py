@@ -15,20 +15,20 @@ from pathlib import Path
 
 COLUMNS = 120
 BANNED = (
-    (r"\bof the (user|caller)'s\b(?=[.,;:)*]|$| (in|by|that|and|has|is|at|on|to|from|which|as)\b)",
+    (r"of the (user|caller)'s\b(?=[.,;:)*]|$| (in|by|that|and|has|is|at|on|to|from|which|as)\b)",
      "user-defined, by the caller"),
-    (r"\bsquare to\b", "perpendicular to"),
+    (r"square to\b", "perpendicular to"),
     (r"\b(the|its|their|a) begin\b(?! [a-z]+\()", "beginning or start"),
-    (r"\bwhat (is|was) typed\b|\bas typed\b|\w+ typed is\b", "the value given"),
-    (r"\bwhich (this|the) \w+ has not\b", "which it does not have"),
-    (r"\bis none, but\b|\bthat (is|are) none\b|\bwas none,", "is not a ..."),
+    (r"what (is|was) typed\b|\bas typed\b|\btyped is\b", "the value given"),
+    (r"which (this|the) \w+ has not\b", "which it does not have"),
+    (r"is none, but\b|\bthat (is|are) none\b|\bwas none,", "is not a ..."),
     (r"(?:^|[.:;!?] |\*\* |\* )Where [^.?!:;|]{3,}?,", "If ..., or When ..."),
     (r"\b(NULL|null|false|true|zero|NaN|-?[01]) where (there|it|they|no|none|nothing)\b", "if"),
-    (r"\bwhere (there|it) (is|are|has) none\b", "if there is none"),
-    (r"\bholds? (the|its|their) steps?\b", "limits the step"),
-    (r"\bis no (column|channel|single|material|constant)\b", "is not a"),
-    (r"\bcome to a dead point\b", "reached a dead point"),
-    (r"\bof nothing has\b", "of zero has"),
+    (r"where (there|it) (is|are|has) none\b", "if there is none"),
+    (r"holds? (the|its|their) steps?\b", "limits the step"),
+    (r"is no (column|channel|single|material|constant)\b", "is not a"),
+    (r"come to a dead point\b", "reached a dead point"),
+    (r"of nothing has\b", "of zero has"),
 )
 KINDS = {".c", ".h", ".inc", ".md", ".py", ".sh", ".yaml"}
 FOLDERS = ("include", "lib", "tools", "examples", "tests", "bench", "docs", "cmake", ".ci")
@@ -53,10 +53,17 @@ def flat(text):
                   lambda m: " " + "\0" * len(m.group(1)), text)
 
 
+RULES = tuple((re.compile(pattern.replace(" ", r"[ \0]+"), re.M), better) for pattern, better in BANNED)
+LIKELY = re.compile(r"(user|caller)'s|square|begin|typed|has not|none|Where|where|\bholds?\b|is no\b|"
+                    r"come to|nothing")
+
+
 def check_words(text, name, problems):
+    if not LIKELY.search(text):
+        return
     plain = flat(text)
-    for pattern, better in BANNED:
-        for match in re.finditer(pattern.replace(" ", "[ \\0]+"), plain, re.M):
+    for pattern, better in RULES:
+        for match in pattern.finditer(plain):
             line = text.count("\n", 0, match.start()) + 1
             words = " ".join(match.group().replace("\0", "").split())
             problems.append(f"{name}:{line}: `{words[:60]}`: {better}")
