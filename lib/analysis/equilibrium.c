@@ -18,6 +18,7 @@
 
 #include "analysis/static_newton.h"
 #include "math/vec3.h"
+#include "nonlinear/ranks.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
@@ -328,6 +329,7 @@ static se3d_status solve(statics *s)
 {
     int converged;
     stop_motion(&s->equations->assembly);
+    SE3DI_TRY(se3di_ranks_decide(s->equations, s->t));
     SE3DI_TRY(se3di_position_solve(s->equations, s->t));
     SE3DI_TRY(evaluate(s, 0));
     SE3DI_TRY(iterate(s, &converged));

@@ -98,7 +98,7 @@ static se3d_status find_freedoms(se3di_linear *linear)
     double *Z;
     int32_t dependent;
     SE3DI_TRY(se3di_null_space_find(allocator, &pattern, assembly->C, RANK_TOLERANCE, &Z,
-                                    &linear->freedoms, &dependent));
+                                    &linear->freedoms, &dependent, NULL));
     size_t count = (size_t)linear->freedoms * n;
     for (size_t r = 0; r < (size_t)linear->freedoms; ++r) {
         to_body_axes(linear, Z + r * n);

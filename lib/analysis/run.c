@@ -12,6 +12,7 @@
 #include "contact/loads.h"
 #include "contact/pace.h"
 #include "integrator/turns.h"
+#include "nonlinear/ranks.h"
 #include "primitive/turn_counter.h"
 
 #include <float.h>
@@ -20,6 +21,7 @@
 
 #define STEP_DEFAULT 1e-3 /* s, of fixed-step methods */
 #define TURN_MAX     3.0  /* rad, of a body in a step of an implicit method */
+#define LEFT_OUT_MAX 1e-4 /* how far rows that are left out may be off, relative */
 
 void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error, se3d_system *system)
 {
@@ -138,7 +140,7 @@ static se3d_status build(se3di_run *run)
     run->equations.iterations_max = run->integration.settings.iterations_max;
     run->integration.equations = &run->equations;
     run->prepared = 1;
-    run->told_redundant = 0;
+    run->told_redundant = run->told_left_out = 0;
     run->determined = 0;
     run->values_version = run->model->values_version;
     if (is_driven(run)) {
@@ -210,8 +212,9 @@ static se3d_status settle(se3di_run *run, double t)
     se3di_equations *equations = &run->equations;
     se3di_state_accept(equations);
     equations->hold = run->analysis == SE3D_ANALYSIS_ASSEMBLY;
-    se3d_status status = SE3D_OK;
-    if (is_driven(run) && !run->determined) { /* before levels that may have no solution there */
+    se3d_status status = se3di_ranks_decide(equations, t);
+    if (status >= 0 && is_driven(run) &&
+        !run->determined) { /* before levels that may have no solution there */
         status = se3di_position_solve(equations, t);
         status = status < 0 ? status : se3di_equations_check_determined(equations);
         run->determined = status >= 0;
@@ -484,8 +487,43 @@ static se3d_status run_equilibrium(se3di_run *run, double t_end)
     return status;
 }
 
+/* A row that was left out constrains the mechanism after all. */
+static void warn_of_rows(se3di_run *run)
+{
+    se3di_model *model = run->model;
+    char name[128];
+    if (!(model->left_out_gap > LEFT_OUT_MAX) || run->told_left_out) {
+        return;
+    }
+    run->told_left_out = 1;
+    se3di_row_name(model, model->left_out_row, name, sizeof name);
+    se3di_log_write(run->error, SE3D_LOG_WARNING,
+                    "t = %g s: the equation %s was left out, as it seemed to be redundant but for "
+                    "the digits of its data, but the mechanism has left it by %.2g of its size: "
+                    "give positions, axes and dimensions more digits",
+                    model->time, name, model->left_out_gap);
+}
+
+/* Which rows are not among the equations. */
+static void tell_rows(se3di_run *run)
+{
+    char rows[400];
+    if (run->model->left_out_count == 0 || run->told_redundant) {
+        return;
+    }
+    run->told_redundant = 1;
+    se3di_ranks_describe(run->model, rows, sizeof rows);
+    se3di_log_write(run->error, SE3D_LOG_INFO,
+                    "t = %g s: %u equations are redundant but for the digits of their data, and "
+                    "left out: %s",
+                    run->model->time, (unsigned)run->model->left_out_count, rows);
+}
+
 static se3d_status information(se3di_run *run)
 {
+    tell_rows(run);
+    warn_of_rows(run);
+    run->equations.redundant |= run->model->left_out_count > 0;
     if (run->equations.redundant && !run->told_redundant) {
         run->told_redundant = 1;
         se3di_log_write(run->error, SE3D_LOG_WARNING,

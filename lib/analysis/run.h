@@ -31,8 +31,8 @@ typedef struct se3di_run {
     int32_t has_before;       /* it was kept */
     int32_t steps_once;       /* the call is one step */
     se3di_start_change start; /* of the last start that the user gave */
-    int32_t told_redundant;   /* the log was told of these equations */
-    int32_t reserved;
+    int32_t told_redundant;   /* the log was told of these equations, */
+    int32_t told_left_out;    /* and that rows that are left out are off */
 } se3di_run;
 
 /* Set up for an analysis; allocates nothing yet. `system`: for the callbacks of events. */

@@ -3,6 +3,7 @@
 #include "assembly/assembly.h"
 
 #include "assembly/fused.h"
+#include "assembly/left_out.h"
 #include "assembly/user.h"
 #include "contact/loads.h"
 #include "math/vec3.h"
@@ -80,6 +81,7 @@ void se3di_assembly_eval_phi(const se3di_assembly *assembly, double *phi)
         phi[k] = se3di_row_violation(model, row, assembly->f[3 * k]);
     }
     se3di_user_eval_phi(assembly, phi);
+    se3di_left_out_clear_values(assembly, phi);
 }
 
 /* Add `size` numbers of a term's block to a row of the joint's blocks. */
@@ -141,6 +143,7 @@ void se3di_assembly_eval_jacobian(se3di_assembly *assembly)
         }
     }
     se3di_user_eval_jacobian(assembly);
+    se3di_left_out_clear_blocks(assembly, assembly->C);
 }
 
 static double eval_row_gamma(const se3di_assembly *assembly, uint32_t k)
@@ -163,6 +166,7 @@ void se3di_assembly_eval_gamma(const se3di_assembly *assembly, double *gamma)
         gamma[k] = eval_row_gamma(assembly, k);
     }
     se3di_user_eval_gamma(assembly, gamma);
+    se3di_left_out_clear_values(assembly, gamma);
 }
 
 void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma)
@@ -180,6 +184,8 @@ void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma)
     }
     se3di_user_eval_jacobian(assembly);
     se3di_user_eval_gamma(assembly, gamma);
+    se3di_left_out_clear_blocks(assembly, assembly->C);
+    se3di_left_out_clear_values(assembly, gamma);
 }
 
 void se3di_assembly_eval_mass(se3di_assembly *assembly)

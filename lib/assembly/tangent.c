@@ -3,6 +3,7 @@
 
 #include "assembly/convex.h"
 #include "assembly/fused.h"
+#include "assembly/left_out.h"
 #include "base/sort.h"
 #include "contact/loads.h"
 #include "joint/user.h"
@@ -465,6 +466,7 @@ void se3di_assembly_add_rate_gradient(const se3di_assembly *assembly, double c, 
             }
         }
     }
+    se3di_left_out_clear_blocks(assembly, rows);
 }
 
 /* K += the curvature of one user constraint: minus the derivative of its wrenches -Phi_q^T lambda.

@@ -27,7 +27,7 @@ typedef struct search {
     size_t rows_max;
     double
         *G; /* [6 bodies * rows_max]: row r of the joint by touched freedom t at t rows_max + r */
-    double *length; /* [rows_max] of the rows of the joint, 0: done */
+    double *length; /* [rows_max] of the rows of the joint, -1: done */
 } search;
 
 static void release(search *s)
@@ -243,7 +243,19 @@ static se3d_status normalise(const search *s)
     return SE3D_OK;
 }
 
-static se3d_status apply_joint(search *s, size_t joint, double tolerance, int32_t *dependent)
+/* What the freedoms left have of each row, relative to its length; -1 where it took one. */
+static void note_rest(const search *s, size_t rows, double *rest)
+{
+    for (size_t r = 0; r < rows; ++r) {
+        rest[r] = s->length[r] < 0.0 ? -1.0 : 0.0;
+        for (size_t t = 0; t < s->touch_count && s->length[r] > 0.0; ++t) {
+            rest[r] = fmax(rest[r], fabs(s->G[t * s->rows_max + r]) / s->length[r]);
+        }
+    }
+}
+
+static se3d_status apply_joint(search *s, size_t joint, double tolerance, int32_t *dependent,
+                               double *rest)
 {
     size_t rows = (size_t)s->pattern->joint_rows[joint];
     size_t row = 0;
@@ -253,8 +265,11 @@ static se3d_status apply_joint(search *s, size_t joint, double tolerance, int32_
     find_touched(s, joint);
     for (; done < rows && find_pivot(s, rows, tolerance, &row, &pivot); ++done) {
         SE3DI_TRY(eliminate(s, rows, row, pivot));
-        s->length[row] = 0.0;
+        s->length[row] = -1.0;
         drop(s, pivot);
+    }
+    if (rest) {
+        note_rest(s, rows, rest);
     }
     *dependent += (int32_t)(rows - done);
     return normalise(s);
@@ -281,14 +296,15 @@ static se3d_status write_basis(const search *s, double **Z)
 se3d_status se3di_null_space_find(const se3d_allocator *allocator,
                                   const se3di_null_space_pattern *pattern, const double *C,
                                   double tolerance, double **Z, int32_t *freedoms,
-                                  int32_t *dependent)
+                                  int32_t *dependent, double *rest)
 {
     search s = {.allocator = allocator, .pattern = pattern, .C = C, .rows_max = 1};
     *Z = NULL;
     *freedoms = *dependent = 0;
     se3d_status status = begin(&s);
     for (size_t k = 0; k < pattern->joint_count && status >= 0; ++k) {
-        status = apply_joint(&s, k, tolerance, dependent);
+        status = apply_joint(&s, k, tolerance, dependent, rest);
+        rest = rest ? rest + pattern->joint_rows[k] : NULL;
     }
     if (status >= 0) {
         status = write_basis(&s, Z);

@@ -23,11 +23,13 @@ typedef struct se3di_null_space_pattern {
 /* A basis Z [freedoms x 6 bodies], row-major, rows of unit length, C Z^T = 0; to be freed by the
  * caller with that size, NULL if freedoms = 0. Rows of C that the freedoms left meet within
  * `tolerance` of their length are dependent; their number is returned in *dependent.
+ * `rest` [rows of all joints in turn] or NULL: by how much a dependent row depends, its largest part
+ * on the freedoms left relative to its length; -1: the row is independent.
  * @return OK, NO_MEMORY, NOT_FINITE */
 se3d_status se3di_null_space_find(const se3d_allocator *allocator,
                                   const se3di_null_space_pattern *pattern, const double *C,
                                   double tolerance, double **Z, int32_t *freedoms,
-                                  int32_t *dependent);
+                                  int32_t *dependent, double *rest);
 
 /* Make the rows of Z [freedoms x n] orthonormal, of the same span. @return OK, NO_MEMORY */
 se3d_status se3di_null_space_orthonormalise(const se3d_allocator *allocator, int32_t freedoms,

@@ -82,10 +82,26 @@ void se3di_model_touch_state(se3di_model *model)
     model->contacts.step = 0.0;
 }
 
+void se3di_model_take_all_rows(se3di_model *model)
+{
+    for (size_t k = 0; model->left_out_count > 0 && k < model->row_count; ++k) {
+        model->rows[k].left_out = 0;
+    }
+    model->left_out_count = model->left_out_row = 0;
+    model->left_out_gap = 0.0;
+    model->ranks_known = 0;
+}
+
+void se3di_model_touch_poses(se3di_model *model)
+{
+    se3di_model_take_all_rows(model);
+    se3di_model_touch_state(model);
+}
+
 void se3di_model_touch(se3di_model *model)
 {
     ++model->topology_version;
-    se3di_model_touch_state(model);
+    se3di_model_touch_poses(model);
 }
 
 /* The next version, another one than of any clone: states go from one to the other, and with them

@@ -61,6 +61,8 @@ typedef struct se3di_row {
     int32_t function; /* dense index, -1: `value` */
     int32_t wrap;     /* 1: one angle; Phi is taken modulo 2 pi into (-pi, pi] */
     double value;     /* f if there is no function */
+    int32_t left_out; /* 1: not among the equations, see nonlinear/ranks.h */
+    int32_t reserved;
 } se3di_row;
 
 typedef struct se3di_joint_frames {
@@ -175,6 +177,11 @@ typedef struct se3di_model {
     uint64_t values_version;   /* changes when prescribed values do: positions have to follow */
     int32_t settled;           /* the state is an analysis' own; 0 after the user set one */
     int32_t remembers;         /* an analysis may have left something in forces, shapes, contacts */
+    int32_t ranks_known;       /* which rows are left out was decided; 0 after edits, new poses */
+    uint32_t left_out_count;   /* rows that are */
+    double left_out_gap;       /* the largest violation of those in an accepted state, relative, */
+    uint32_t left_out_row;     /* its row; 0 after it was told */
+    int32_t reserved;
 
     se3di_slots body_slots; /* count = bodies, [0] the ground */
     se3di_body *bodies;
@@ -302,6 +309,11 @@ void se3di_model_restore_memory(se3di_model *model, const double *memory);
 void se3di_model_touch(se3di_model *model);
 /* The user has set a state: nothing that an integrator or solver remembers of it holds. */
 void se3di_model_touch_state(se3di_model *model);
+
+/* The user has set poses: ranks may be others, too. */
+void se3di_model_touch_poses(se3di_model *model);
+/* No row is left out of the equations; which ones are has to be decided. */
+void se3di_model_take_all_rows(se3di_model *model);
 
 /* Other things act on the state from here on; what is remembered of it stays. */
 void se3di_model_touch_inputs(se3di_model *model);

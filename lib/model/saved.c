@@ -31,6 +31,8 @@ static se3d_status fit(se3di_saved *saved, const se3di_model *model,
         resize(&saved->memory, allocator, SE3DI_FORCE_STATES * model->force_slots.count, one));
     SE3DI_TRY(resize(&saved->history, allocator, history, one));
     SE3DI_TRY(resize(&saved->wrench, allocator, 6 * model->shape_slots.count, one));
+    SE3DI_TRY(resize(&saved->left_out, allocator, model->left_out_count > 0 ? model->row_count : 0,
+                     sizeof(uint8_t)));
     /* room for contacts to come: steps make new ones and allocate nothing */
     const size_t contacts = model->contacts.count;
     const int has_room = saved->contacts.capacity > contacts || model->shape_slots.count < 2;
@@ -38,6 +40,31 @@ static se3d_status fit(se3di_saved *saved, const se3di_model *model,
                      sizeof(se3di_body_contact)));
     saved->contacts.count = contacts;
     return SE3D_OK;
+}
+
+static void save_ranks(se3di_saved *saved, const se3di_model *model)
+{
+    uint8_t *left_out = saved->left_out.data;
+    for (size_t k = 0; k < saved->left_out.count; ++k) {
+        left_out[k] = model->rows[k].left_out != 0;
+    }
+    saved->ranks_known = model->ranks_known;
+    saved->left_out_count = model->left_out_count;
+    saved->left_out_row = model->left_out_row;
+    saved->left_out_gap = model->left_out_gap;
+}
+
+static void restore_ranks(const se3di_saved *saved, se3di_model *model)
+{
+    const uint8_t *left_out = saved->left_out.data;
+    se3di_model_take_all_rows(model);
+    for (size_t k = 0; k < saved->left_out.count; ++k) {
+        model->rows[k].left_out = left_out[k];
+    }
+    model->ranks_known = saved->ranks_known;
+    model->left_out_count = saved->left_out_count;
+    model->left_out_row = saved->left_out_row;
+    model->left_out_gap = saved->left_out_gap;
 }
 
 se3d_status se3di_saved_fill(se3di_saved *saved, const se3di_model *model,
@@ -60,6 +87,7 @@ se3d_status se3di_saved_fill(se3di_saved *saved, const se3di_model *model,
         memcpy(wrench + 6 * k, model->shapes[k].force, 3 * sizeof *wrench);
         memcpy(wrench + 6 * k + 3, model->shapes[k].torque, 3 * sizeof *wrench);
     }
+    save_ranks(saved, model);
     memcpy(saved->work, model->work, sizeof saved->work);
     memcpy(saved->power, model->power, sizeof saved->power);
     saved->contact_step = model->contacts.step;
@@ -117,6 +145,7 @@ void se3di_saved_restore(const se3di_saved *saved, se3di_model *model)
         memcpy(model->shapes[k].force, wrench + 6 * k, 3 * sizeof *wrench);
         memcpy(model->shapes[k].torque, wrench + 6 * k + 3, 3 * sizeof *wrench);
     }
+    restore_ranks(saved, model);
     memcpy(model->work, saved->work, sizeof saved->work);
     memcpy(model->power, saved->power, sizeof saved->power);
     model->work_valid = saved->work_valid;
@@ -148,5 +177,6 @@ void se3di_saved_destroy(se3di_saved *saved, const se3d_allocator *allocator)
     release(&saved->memory, allocator, one);
     release(&saved->history, allocator, one);
     release(&saved->wrench, allocator, one);
+    release(&saved->left_out, allocator, sizeof(uint8_t));
     release(&saved->contacts, allocator, sizeof(se3di_body_contact));
 }

@@ -21,6 +21,10 @@ typedef struct se3di_saved {
     uint64_t history_inputs, history_values;
     int32_t settled;
     int32_t work_valid;
+    int32_t ranks_known;
+    uint32_t left_out_count, left_out_row;
+    int32_t reserved;
+    double left_out_gap;
     se3di_saved_array frames;       /* se3di_frame */
     se3di_saved_array acceleration; /* [bodies * 6] */
     se3di_saved_array lambda;       /* [rows] */
@@ -29,6 +33,7 @@ typedef struct se3di_saved {
     se3di_saved_array history;      /* none if nobody wrote it */
     se3di_saved_array contacts;     /* se3di_body_contact */
     se3di_saved_array wrench;       /* [shapes * 6] */
+    se3di_saved_array left_out;     /* [rows] uint8_t, none where no row is */
 } se3di_saved;
 
 /* Copy the model's state; `saved` is zero or has been filled before with the same allocator.

@@ -16,6 +16,7 @@
 #include "linsol/kkt.h"
 #include "model/saved.h"
 #include "nonlinear/friction_system.h"
+#include "primitive/scale.h"
 
 typedef struct se3di_counters {
     uint64_t steps, rejected, iterations, evaluations, factorizations, solves;
@@ -82,13 +83,6 @@ se3d_status se3di_multipliers_reduce(se3di_equations *equations);
 /* The largest violation of a position equation relative to its scale, with what is open in words;
  * functions of time evaluated. */
 double se3di_position_measure(se3di_equations *equations, char *text, size_t size);
-
-/* A length of the model [m]: how far its joints are from its bodies' centres. */
-double se3di_model_get_size(const se3di_model *model);
-/* What a violation of a row is measured by: 1 for angles and cosines, `size` for lengths, its
- * square for squared lengths; and its unit with a space before it ("" for cosines). */
-double se3di_row_get_scale(const se3di_model *model, uint32_t row, double size);
-const char *se3di_row_get_unit(const se3di_model *model, uint32_t row);
 
 /* Whether a body (dense index) stays where it is. */
 static inline int se3di_equations_holds(const se3di_equations *equations, uint32_t body)

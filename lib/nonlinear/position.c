@@ -28,58 +28,6 @@ typedef struct position_problem {
     int32_t damped; /* the damped step descends in the plain sum */
 } position_problem;
 
-double se3di_model_get_size(const se3di_model *model)
-{
-    double size = 1e-6;
-    for (size_t k = 0; k < model->row_count; ++k) {
-        for (uint32_t t = 0; t < model->rows[k].term_count; ++t) {
-            const se3di_term *term = &model->terms[model->rows[k].term_begin + t];
-            size = fmax(size, fmax(se3di_norm(term->s_i), se3di_norm(term->s_j)));
-        }
-    }
-    for (size_t k = 0; k < model->body_slots.count; ++k) {
-        size = fmax(size, fmin(1e3 * size, se3di_norm(model->frames[k].r)));
-    }
-    return size;
-}
-
-/* Type of the first term of a row; -1 if it has none (a callback's). */
-static int32_t row_type(const se3di_model *model, uint32_t row)
-{
-    const se3di_row *r = &model->rows[row];
-    return r->term_count > 0 ? model->terms[r->term_begin].type : -1;
-}
-
-double se3di_row_get_scale(const se3di_model *model, uint32_t row, double size)
-{
-    switch (row_type(model, row)) {
-    case SE3DI_PRIMITIVE_D:
-        return size * size;
-    case SE3DI_PRIMITIVE_DP2:
-    case SE3DI_PRIMITIVE_CD:
-    case SE3DI_PRIMITIVE_TRIPLE:
-        return size;
-    default:
-        return 1.0;
-    }
-}
-
-const char *se3di_row_get_unit(const se3di_model *model, uint32_t row)
-{
-    switch (row_type(model, row)) {
-    case SE3DI_PRIMITIVE_D:
-        return " m^2";
-    case SE3DI_PRIMITIVE_DP2:
-    case SE3DI_PRIMITIVE_CD:
-    case SE3DI_PRIMITIVE_TRIPLE:
-        return " m";
-    case SE3DI_PRIMITIVE_ANGLE:
-        return " rad";
-    default:
-        return "";
-    }
-}
-
 static void measure(position_problem *problem)
 {
     se3di_equations *equations = problem->equations;
@@ -256,7 +204,7 @@ static open_joint measure_joint(const se3di_equations *equations,
     for (uint32_t k = 0; k < constraint->row_count; ++k) {
         uint32_t row = constraint->row_begin + k;
         double phi = equations->phi[row];
-        switch (row_type(model, row)) {
+        switch (se3di_row_get_type(model, row)) {
         case SE3DI_PRIMITIVE_D: {
             double f = equations->assembly.f[3 * row];
             phi = sqrt(fmax(phi + f, 0.0)) - sqrt(fmax(f, 0.0));

@@ -4,6 +4,7 @@
 #include "primitive/turn_counter.h"
 
 #include "primitive/primitive.h"
+#include "primitive/scale.h"
 
 #include <math.h>
 
@@ -43,4 +44,5 @@ void se3di_angles_accept(se3di_model *model)
     for (size_t k = 0; k < model->angle_count; ++k) {
         model->angles[k].theta = se3di_angle_value(model, (uint32_t)k);
     }
+    se3di_left_out_follow(model);
 }

@@ -11,7 +11,7 @@ double se3di_term_value(const se3di_model *model, const se3di_term *term);
 double se3di_row_violation(const se3di_model *model, const se3di_row *row, double f);
 /* Joint angle of a turn counter at the present frames, nearest to its last accepted one. */
 double se3di_angle_value(const se3di_model *model, uint32_t angle);
-/* Take the present joint angles as accepted. */
+/* A state was accepted: take its joint angles, and note what rows that are left out are off by. */
 void se3di_angles_accept(se3di_model *model);
 
 #endif

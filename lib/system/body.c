@@ -281,7 +281,7 @@ se3d_status se3d_body_set_position(se3d_system *system, se3d_body body, const do
     SE3DI_TRY(check_movable(system, index, "position"));
     SE3DI_TRY(se3di_check_finites(system, "position", r, 3));
     se3di_copy(r, system->model.frames[index].r);
-    se3di_model_touch_state(&system->model);
+    se3di_model_touch_poses(&system->model);
     return SE3D_OK;
 }
 
@@ -295,7 +295,7 @@ se3d_status se3d_body_set_orientation(se3d_system *system, se3d_body body, const
     SE3DI_TRY(se3di_check_orientation(system, "orientation", p, unit));
     memcpy(system->model.frames[index].p, unit, sizeof unit);
     se3di_frame_update(&system->model.frames[index]);
-    se3di_model_touch_state(&system->model);
+    se3di_model_touch_poses(&system->model);
     return SE3D_OK;
 }
 
@@ -417,6 +417,9 @@ se3d_status se3d_body_set_all(se3d_system *system, size_t count, const double *r
             se3di_copy(w + 3 * k, frame->w);
         }
         se3di_frame_update(frame);
+    }
+    if (r || p) {
+        se3di_model_touch_poses(&system->model);
     }
     se3di_model_touch_state(&system->model);
     return SE3D_OK;

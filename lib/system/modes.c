@@ -9,6 +9,7 @@
 #include "linsol/dense.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
+#include "nonlinear/ranks.h"
 #include "system/coordinate.h"
 
 #include <math.h>
@@ -259,6 +260,7 @@ static se3d_status make(se3d_system *system, se3di_equations *equations, const s
 {
     se3di_model *model = &system->model;
     se3di_linear linear;
+    SE3DI_TRY(se3di_ranks_decide(equations, model->time));
     SE3DI_TRY(se3di_acceleration_solve(equations, model->time));
     SE3DI_TRY(se3di_linear_init(&linear, equations));
     se3d_status status = se3di_linear_eval_statics(&linear, model->time);

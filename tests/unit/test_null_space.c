@@ -119,7 +119,7 @@ static double worst_violation(const mechanism *m, const double *Z, int32_t freed
 static double *find(const mechanism *m, int32_t *freedoms, int32_t *dependent)
 {
     double *Z = NULL;
-    CHECK(se3di_null_space_find(&heap, &m->pattern, m->C, 1e-9, &Z, freedoms, dependent) ==
+    CHECK(se3di_null_space_find(&heap, &m->pattern, m->C, 1e-9, &Z, freedoms, dependent, NULL) ==
           SE3D_OK);
     return Z;
 }
@@ -194,8 +194,8 @@ static void what_is_not_finite_is_refused(void)
         int32_t freedoms, dependent;
         build(&m, 3);
         m.C[25] = k ? (double)NAN : HUGE_VAL;
-        CHECK(se3di_null_space_find(&heap, &m.pattern, m.C, 1e-9, &Z, &freedoms, &dependent) ==
-              SE3D_ERR_NOT_FINITE);
+        CHECK(se3di_null_space_find(&heap, &m.pattern, m.C, 1e-9, &Z, &freedoms, &dependent,
+                                    NULL) == SE3D_ERR_NOT_FINITE);
         CHECK(Z == NULL);
     }
 }
@@ -210,8 +210,8 @@ static void running_out_of_memory_holds_nothing(void)
         const se3d_allocator short_heap = {plain_alloc, plain_realloc, plain_free, &left};
         double *Z = NULL;
         int32_t freedoms, dependent;
-        se3d_status status =
-            se3di_null_space_find(&short_heap, &m.pattern, m.C, 1e-9, &Z, &freedoms, &dependent);
+        se3d_status status = se3di_null_space_find(&short_heap, &m.pattern, m.C, 1e-9, &Z,
+                                                   &freedoms, &dependent, NULL);
         if (status == SE3D_OK) {
             CHECK(allowed > 5);
             free(Z);
