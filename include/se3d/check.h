@@ -47,6 +47,18 @@ SE3D_API size_t se3d_check_count_messages(const se3d_check *check);
  * @since 0.1 */
 SE3D_API se3d_status se3d_check_get_message(const se3d_check *check, size_t k, const char **text);
 
+/* Name the constraint equations that the present analysis does without, as they are redundant but
+ * for the digits of their data (axes 4e-6 rad off in a planar loop, say), with what each is off by
+ * at the present state: "J3.dp1_a (off by 2.1e-06), J3.cd_z (off by 1e-06 m)", "" where there is
+ * none. They are decided on where an analysis starts, have multipliers zero, and are told by
+ * INFO_REDUNDANT.
+ * @param[out] text  [size] bytes, cut to fit
+ * @param[in] size   > 0
+ * @return OK, NULL, INVALID_ARGUMENT (size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_system_describe_left_out(const se3d_system *system, char *text,
+                                                   size_t size);
+
 #ifdef __cplusplus
 }
 #endif

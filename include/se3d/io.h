@@ -279,6 +279,8 @@ typedef struct se3d_run_analysis {
     const char *deflected;  /* the body whose velocity the start changed most, "": none */
     double start_change[8]; /* as se3d_start_change: norms [m, rad, m/s, rad/s], and those of the
                                bodies above */
+    const char *left_out;   /* equations that are redundant but for the digits of their data, with
+                               what they are off by at the end, "": none */
 } se3d_run_analysis;
 
 /* Count the analyses that a run began. @return the number; 0 for NULL. @since 0.1 */

@@ -17,6 +17,7 @@
 #include "contact/body_contacts.h"
 #include "force/force.h"
 #include "linsol/rank.h"
+#include "nonlinear/ranks.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -367,6 +368,19 @@ static void name_rows(const inspection *in, const se3di_rank *rank, int32_t k, c
     }
 }
 
+/* A row that the equations do without. */
+static se3d_status report_left_out(inspection *in, uint32_t row)
+{
+    char name[NAME_SIZE];
+    const double scale = se3di_row_get_scale(in->model, row, in->size);
+    se3di_row_name(in->model, row, name, sizeof name);
+    return add_message(in->check,
+                       "%s is redundant but for the digits of its data, and left out of the "
+                       "equations: it is off by %.2g%s",
+                       name, se3di_row_measure(in->model, row, in->size) * scale,
+                       se3di_row_get_unit(in->model, row));
+}
+
 static se3d_status report_redundant(inspection *in, const se3di_rank *rank, int32_t k)
 {
     char name[NAME_SIZE];
@@ -377,6 +391,9 @@ static se3d_status report_redundant(inspection *in, const se3di_rank *rank, int3
     double gap = contradiction(in, rank, k, in->equations->phi, 1);
     double rate = contradiction(in, rank, k, in->equations->assembly.f + 1, 3);
     int empty = rank->combination_begin[k] == rank->combination_begin[k + 1];
+    if (in->model->rows[row].left_out) {
+        return report_left_out(in, row);
+    }
     se3di_row_name(in->model, row, name, sizeof name);
     name_rows(in, rank, k, list, sizeof list);
     if (!in->lost && fabs(gap) > (in->violated ? 1e-5 : 1e-8) * scale) {
@@ -528,6 +545,7 @@ static se3d_status settle_poses(inspection *in)
 
 static se3d_status inspect_model(inspection *in)
 {
+    SE3DI_TRY(se3di_ranks_decide(in->equations, in->model->time));
     SE3DI_TRY(settle_poses(in));
     se3di_assembly_eval_phi(&in->equations->assembly, in->equations->phi);
     se3di_assembly_eval_jacobian(&in->equations->assembly);
@@ -625,8 +643,12 @@ se3d_status se3di_check_init(se3di_check *check, se3di_model *model, se3di_error
                      .equations = &equations,
                      .model = model,
                      .size = se3di_model_get_size(model)};
+    const int32_t was_known = model->ranks_known;
     se3di_state_accept(&equations);
     se3d_status status = inspect_with_work(&in);
+    if (!was_known) { /* a run is to decide where it starts */
+        se3di_model_take_all_rows(model);
+    }
     if (status >= 0 && report_meshes(check, model) < 0) {
         status = SE3D_ERR_NO_MEMORY;
     }

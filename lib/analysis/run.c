@@ -513,10 +513,13 @@ static void tell_rows(se3di_run *run)
     }
     run->told_redundant = 1;
     se3di_ranks_describe(run->model, rows, sizeof rows);
-    se3di_log_write(run->error, SE3D_LOG_INFO,
-                    "t = %g s: %u equations are redundant but for the digits of their data, and "
-                    "left out: %s",
-                    run->model->time, (unsigned)run->model->left_out_count, rows);
+    se3di_log_write(
+        run->error, SE3D_LOG_INFO,
+        "t = %g s: %u equation%s redundant but for the digits of %s data, and left out: "
+        "%s",
+        run->model->time, (unsigned)run->model->left_out_count,
+        run->model->left_out_count == 1 ? " is" : "s are",
+        run->model->left_out_count == 1 ? "its" : "their", rows);
 }
 
 static se3d_status information(se3di_run *run)

@@ -23,8 +23,8 @@ typedef struct se3di_null_space_pattern {
 /* A basis Z [freedoms x 6 bodies], row-major, rows of unit length, C Z^T = 0; to be freed by the
  * caller with that size, NULL if freedoms = 0. Rows of C that the freedoms left meet within
  * `tolerance` of their length are dependent; their number is returned in *dependent.
- * `rest` [rows of all joints in turn] or NULL: by how much a dependent row depends, its largest part
- * on the freedoms left relative to its length; -1: the row is independent.
+ * `rest` [rows of all joints in turn] or NULL: by how much a dependent row depends, its largest
+ * part on the freedoms left relative to its length; -1: the row is independent.
  * @return OK, NO_MEMORY, NOT_FINITE */
 se3d_status se3di_null_space_find(const se3d_allocator *allocator,
                                   const se3di_null_space_pattern *pattern, const double *C,

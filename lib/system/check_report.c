@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Public layer: reports on the constraints. */
 #include "analysis/check.h"
+#include "base/text.h"
+#include "nonlinear/ranks.h"
 #include "system/system_internal.h"
 
 #include <string.h>
@@ -80,5 +82,18 @@ se3d_status se3d_check_get_message(const se3d_check *check, size_t k, const char
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     *text = check->report.messages[k];
+    return SE3D_OK;
+}
+
+se3d_status se3d_system_describe_left_out(const se3d_system *system, char *text, size_t size)
+{
+    if (!system || !text) {
+        return SE3D_ERR_NULL;
+    }
+    if (size == 0) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    se3di_ranks_describe(&system->model, text, size);
+    se3di_text_make_plain(text); /* a name may have been cut in a character */
     return SE3D_OK;
 }

@@ -554,6 +554,17 @@ static se3d_status check_system_create(arguments *a)
     return SE3D_OK;
 }
 
+static se3d_status check_describe_left_out(arguments *a)
+{
+    char text[4] = "abc";
+    CHECK(se3d_system_describe_left_out(NULL, text, sizeof text) == SE3D_ERR_NULL);
+    CHECK(se3d_system_describe_left_out(a->system, NULL, 4) == SE3D_ERR_NULL);
+    CHECK(se3d_system_describe_left_out(a->system, text, 0) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(text[0] == 'a');
+    CHECK(!se3d_system_describe_left_out(a->system, text, sizeof text) && text[0] == '\0');
+    return SE3D_OK;
+}
+
 static se3d_status check_system_get_work(arguments *a)
 {
     se3d_work work;
@@ -837,6 +848,7 @@ static const row rows[] = {
     {"se3d_joint_def_set_frame", check_joint_def_set_frame, "", NULL, NULL},
     {"se3d_joint_create_gear", check_joint_create_gear, "", NULL, NULL},
     {"se3d_system_create", check_system_create, "", NULL, NULL},
+    {"se3d_system_describe_left_out", check_describe_left_out, "", NULL, NULL},
     {"se3d_system_get_work", check_system_get_work, "", NULL, NULL},
     {"se3d_force_set_value", setters_reject_misuse, "", NULL, NULL},
     {"se3d_force_get_value", setters_reject_misuse, "", NULL, NULL},

@@ -101,6 +101,10 @@ static void print_analysis(const se3d_run_analysis *a)
                a->left_at);
     }
     print_start(a);
+    if (a->left_out && a->left_out[0]) {
+        printf("  equations that are redundant but for the digits of their data, left out: %s\n",
+               a->left_out);
+    }
 }
 
 /* Where particles came or went. */
@@ -199,6 +203,14 @@ static void json_put_start(const se3d_run_analysis *a)
     fputs("}", stdout);
 }
 
+static void json_put_left_out(const se3d_run_analysis *a)
+{
+    if (a->left_out && a->left_out[0]) {
+        fputs(", \"left_out\": ", stdout);
+        json_put_text(a->left_out);
+    }
+}
+
 static void json_put_analysis(const se3d_run_analysis *a)
 {
     fputs("{\"type\": ", stdout);
@@ -222,6 +234,7 @@ static void json_put_analysis(const se3d_run_analysis *a)
         json_put_number(a->left_at);
     }
     json_put_start(a);
+    json_put_left_out(a);
     json_put_count("steps", a->stats.steps);
     json_put_count("rejected", a->stats.rejected);
     json_put_count("iterations", a->stats.iterations);

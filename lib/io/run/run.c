@@ -469,7 +469,14 @@ static const char *name_of_body(runner *r, se3d_body body)
     return copy_text(r, name[0] ? name : "without a name");
 }
 
-/* How the start was changed. */
+static const char *copy_left_out(runner *r)
+{
+    char rows[600] = "";
+    se3d_system_describe_left_out(r->model->system, rows, sizeof rows);
+    return copy_text(r, rows);
+}
+
+/* How the start was changed, and which equations do not count. */
 static void record_start(runner *r, se3d_run_analysis *done)
 {
     se3d_start_change change;
@@ -482,6 +489,7 @@ static void record_start(runner *r, se3d_run_analysis *done)
                                change.most_position, change.most_rotation,
                                change.most_velocity, change.most_angular_velocity};
     memcpy(done->start_change, numbers, sizeof numbers);
+    done->left_out = copy_left_out(r);
     done->moved = name_of_body(r, change.moved);
     done->deflected = name_of_body(r, change.deflected);
 }
