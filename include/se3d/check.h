@@ -49,7 +49,7 @@ SE3D_API se3d_status se3d_check_get_message(const se3d_check *check, size_t k, c
 
 /* Name the constraint equations that the present analysis does without, as they are redundant but
  * for the digits of their data (axes 4e-6 rad off in a planar loop, say), with what each is off by
- * at the present state: "J3.dp1_a (off by 2.1e-06), J3.cd_z (off by 1e-06 m)", "" where there is
+ * at the present state: "J3.dp1_a (off by 2.1e-06), J3.cd_z (off by 1e-06 m)", "" if there is
  * none. They are decided on where an analysis starts, have multipliers zero, and are told by
  * INFO_REDUNDANT.
  * @param[out] text  [size] bytes, cut to fit

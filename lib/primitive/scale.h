@@ -7,7 +7,7 @@
 
 /* A length of the model [m]: how far its joints are from its bodies' centres. */
 double se3di_model_get_size(const se3di_model *model);
-/* Type of the first term of a row; -1 where it has none (a callback's). */
+/* Type of the first term of a row; -1 if it has none (a callback's). */
 int32_t se3di_row_get_type(const se3di_model *model, uint32_t row);
 /* What a violation of a row is measured by: 1 for angles and cosines, `size` for lengths, its
  * square for squared lengths; and its unit with a space before it ("" for cosines). */
