@@ -604,17 +604,31 @@ static void add_block(const double *block, size_t n, double s, const double *x, 
     }
 }
 
-void se3di_tangent_add_stiffness(const se3di_tangent *tangent, double s, const double *x,
-                                 double *out)
+/* out += s (blocks) x */
+static void add_blocks(const se3di_tangent *tangent, const double *const blocks[3], double s,
+                       const double *x, double *out)
 {
     size_t n = (size_t)tangent->assembly->formulation->block;
     for (size_t k = 0; k < tangent->assembly->body_count; ++k) {
-        add_block(tangent->K + k * n * n, n, s, x + k * n, out + k * n);
+        add_block(blocks[0] + k * n * n, n, s, x + k * n, out + k * n);
     }
     for (size_t k = 0; k < tangent->coupling_count; ++k) {
         size_t i = (size_t)tangent->coupling[2 * k];
         size_t j = (size_t)tangent->coupling[2 * k + 1];
-        add_block(tangent->K_upper + k * n * n, n, s, x + j * n, out + i * n);
-        add_block(tangent->K_lower + k * n * n, n, s, x + i * n, out + j * n);
+        add_block(blocks[1] + k * n * n, n, s, x + j * n, out + i * n);
+        add_block(blocks[2] + k * n * n, n, s, x + i * n, out + j * n);
     }
+}
+
+void se3di_tangent_add_stiffness(const se3di_tangent *tangent, double s, const double *x,
+                                 double *out)
+{
+    const double *const blocks[3] = {tangent->K, tangent->K_upper, tangent->K_lower};
+    add_blocks(tangent, blocks, s, x, out);
+}
+
+void se3di_tangent_add_damping(const se3di_tangent *tangent, double s, const double *x, double *out)
+{
+    const double *const blocks[3] = {tangent->D, tangent->D_upper, tangent->D_lower};
+    add_blocks(tangent, blocks, s, x, out);
 }

@@ -42,5 +42,8 @@ void se3di_assembly_add_rate_gradient(const se3di_assembly *assembly, double c, 
 /* out += s K x */
 void se3di_tangent_add_stiffness(const se3di_tangent *tangent, double s, const double *x,
                                  double *out);
+/* out += s D x */
+void se3di_tangent_add_damping(const se3di_tangent *tangent, double s, const double *x,
+                               double *out);
 
 #endif

@@ -14,6 +14,9 @@ extern const double se3di_radau_a[3][3];
 extern const double se3di_radau_inverse[3][3];
 extern const double se3di_radau_gamma; /* the Newton matrix is that of a step gamma h */
 
+/* Of the rows of stages that are projected, which are consistent. */
+#define SE3DI_RADAU_REGULARISATION 1e-9
+
 typedef struct se3di_radau {
     se3di_integration *integration;
     se3di_equations *equations;
@@ -37,9 +40,13 @@ typedef struct se3di_radau {
     double *ul;     /* of multipliers, transformed [rows] */
     double *C1;     /* constraints of the Newton matrix */
     double *vdot, *none, *sum, *sum_q;
+    double *normal;      /* what is projected away of a correction; 0 where stages are not */
     double fraction;     /* of the step, that a turn of friction asks for; 0: none does */
     double size, before; /* of the last two corrections, relative to the tolerance */
     int iterations, iterations_max;
+    int projects; /* not 0: accelerations of stages are those of the states projected onto the
+                     constraints, each with rows of its own: where bodies and joints make loops,
+                     rows may be dependent */
 } se3di_radau;
 
 size_t se3di_radau_work_count(const se3di_assembly *assembly);

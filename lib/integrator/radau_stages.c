@@ -50,7 +50,7 @@ size_t se3di_radau_work_count(const se3di_assembly *assembly)
     size_t n = assembly->unknown_count;
     size_t rows = assembly->row_count;
     size_t count = se3di_state_count(assembly);
-    return STAGES * (count + 4 * rows + 4 * n) + 2 * count + rows + 4 * n +
+    return STAGES * (count + 4 * rows + 4 * n) + 2 * count + rows + 5 * n +
            assembly->joint_value_count;
 }
 
@@ -64,7 +64,8 @@ void se3di_radau_begin(se3di_radau *m, se3di_integration *integration)
     *m = (se3di_radau){.integration = integration,
                        .equations = integration->equations,
                        .assembly = assembly,
-                       .count = count};
+                       .count = count,
+                       .projects = se3di_kkt_has_loop(integration->equations->kkt)};
     struct {
         double **place;
         size_t size;
@@ -83,6 +84,7 @@ void se3di_radau_begin(se3di_radau *m, se3di_integration *integration)
         {&m->lambda0, rows},
         {&m->vdot, n},
         {&m->none, n},
+        {&m->normal, n},
         {&m->sum, n},
         {&m->sum_q, n},
         {&m->C1, assembly->joint_value_count},
@@ -199,6 +201,26 @@ void se3di_radau_get_acceleration(const se3di_radau *m, int i, double *vdot)
     }
 }
 
+/* The residual of a stage on its constraints: b = a - vdot, with the multipliers of a. */
+static se3d_status eval_projected(se3di_radau *m, int i)
+{
+    se3di_equations *equations = m->equations;
+    se3di_assembly *assembly = m->assembly;
+    const size_t n = assembly->unknown_count;
+    const double t = m->t + se3di_radau_c[i] * m->h;
+    double *b = at(m->b, i, n);
+    se3di_state_set(assembly, at(m->Y, i, m->count));
+    SE3DI_TRY(se3di_state_project(equations, t, &m->scale, 1e-13, 0));
+    SE3DI_TRY(se3di_state_evaluate(equations, t));
+    se3di_radau_get_acceleration(m, i, m->vdot);
+    for (size_t k = 0; k < n; ++k) {
+        b[k] = equations->x[k] - m->vdot[k];
+    }
+    copy(m->vdot, equations->x, n);
+    copy(at(m->lambda, i, assembly->row_count), equations->l, assembly->row_count);
+    return SE3D_OK;
+}
+
 static se3d_status eval_stage(se3di_radau *m, int i)
 {
     se3di_equations *equations = m->equations;
@@ -234,6 +256,52 @@ static se3d_status factor(se3di_radau *m)
                                at(m->lambda, 1, m->assembly->row_count), m->none, &weights);
 }
 
+/* Right-hand sides of a stage of the transformed system from the balance of its forces and what
+ * its velocities lack, with h (W b)_i in equations->b. */
+static void set_balance(se3di_radau *m, int i)
+{
+    se3di_equations *equations = m->equations;
+    const size_t rows = m->assembly->row_count;
+    if (i > 0) {
+        se3di_assembly_subtract_mass(m->assembly, m->sum, equations->b);
+    }
+    for (size_t k = 0; k < rows; ++k) { /* -S^-1 g */
+        const double g0 = m->g[k], g1 = m->g[rows + k], g2 = m->g[2 * rows + k];
+        const double h1 = g1 - S[1][2] * g2;
+        equations->c[k] = i == 2 ? -g2 : i == 1 ? -h1 : -(g0 - S[0][1] * h1 - S[0][2] * g2);
+    }
+}
+
+/* The part of a vector that is against the constraints, M^-1 Phi_q^T mu, at the state that was
+ * evaluated last, whose projection takes it away: into equations->x. */
+static se3d_status solve_normal(se3di_radau *m, const double *vector)
+{
+    se3di_equations *equations = m->equations;
+    memset(equations->b, 0, m->assembly->unknown_count * sizeof *equations->b);
+    se3di_assembly_mul(m->assembly, vector, equations->c);
+    return se3di_equations_solve(equations);
+}
+
+/* The same where residuals are accelerations: those against the constraints, too, of which only the
+ * tangent part is seen by forces: they do not feel what is projected away. */
+static se3d_status set_missing(se3di_radau *m)
+{
+    se3di_equations *equations = m->equations;
+    const size_t n = m->assembly->unknown_count;
+    for (size_t k = 0; k < n; ++k) {
+        m->sum[k] = equations->b[k] - m->sum[k];
+    }
+    SE3DI_TRY(solve_normal(m, m->sum));
+    for (size_t k = 0; k < n; ++k) {
+        m->normal[k] = equations->x[k];
+        m->sum[k] = m->normal[k] - m->sum[k]; /* minus the tangent part */
+    }
+    memset(equations->b, 0, n * sizeof *equations->b);
+    se3di_assembly_subtract_mass(m->assembly, m->sum, equations->b);
+    se3di_newton_add_matrix(&m->integration->newton, m->normal, equations->b);
+    return SE3D_OK;
+}
+
 /* One stage of the transformed system: u, uq and ul. */
 static se3d_status solve_stage(se3di_radau *m, int i, double W[STAGES][STAGES])
 {
@@ -251,19 +319,18 @@ static se3d_status solve_stage(se3di_radau *m, int i, double W[STAGES][STAGES])
             m->sum_q[k] += N[i][j] * at(m->uq, j, n)[k];
         }
     }
-    if (i > 0) {
-        se3di_assembly_subtract_mass(assembly, m->sum, equations->b);
-        se3di_tangent_add_stiffness(&m->integration->newton.tangent, -c, m->sum_q, equations->b);
+    if (m->projects) {
+        SE3DI_TRY(set_missing(m));
+    } else {
+        set_balance(m, i);
     }
-    for (size_t k = 0; k < rows; ++k) { /* -S^-1 g */
-        const double g0 = m->g[k], g1 = m->g[rows + k], g2 = m->g[2 * rows + k];
-        const double h1 = g1 - S[1][2] * g2;
-        equations->c[k] = i == 2 ? -g2 : i == 1 ? -h1 : -(g0 - S[0][1] * h1 - S[0][2] * g2);
+    if (i > 0) {
+        se3di_tangent_add_stiffness(&m->integration->newton.tangent, -c, m->sum_q, equations->b);
     }
     SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
     for (size_t k = 0; k < n; ++k) {
         at(m->u, i, n)[k] = equations->x[k];
-        at(m->uq, i, n)[k] = c * equations->x[k] + m->sum_q[k];
+        at(m->uq, i, n)[k] = c * (equations->x[k] - m->normal[k]) + m->sum_q[k];
     }
     copy(at(m->ul, i, rows), equations->l, rows);
     return SE3D_OK;
@@ -378,7 +445,7 @@ static se3d_status iterate(se3di_radau *m, int refactor)
     double W[STAGES][STAGES];
     set_weights(W);
     for (int k = 0; k < STAGES; ++k) {
-        SE3DI_TRY(eval_stage(m, order[k]));
+        SE3DI_TRY(m->projects ? eval_projected(m, order[k]) : eval_stage(m, order[k]));
     }
     if (refactor) {
         SE3DI_TRY(factor(m));
@@ -392,8 +459,10 @@ static se3d_status iterate(se3di_radau *m, int refactor)
     m->before = m->size;
     m->size = 0.0;
     apply_corrections(m);
-    apply_multipliers(m);
-    SE3DI_TRY(correct_positions(m));
+    if (!m->projects) {
+        apply_multipliers(m);
+        SE3DI_TRY(correct_positions(m));
+    }
     update_positions(m);
     return isfinite(m->size) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
@@ -411,8 +480,10 @@ static int has_converged(const se3di_radau *m, double rate)
 static se3d_status iterate_to_convergence(se3di_radau *m)
 {
     memset(m->shift, 0, STAGES * 6 * (size_t)m->assembly->body_count * sizeof *m->shift);
+    memset(m->normal, 0, m->assembly->unknown_count * sizeof *m->normal);
     se3di_assembly_eval_mass(m->assembly); /* constant in the unknowns of this method */
     update_positions(m);
+    double earlier = HUGE_VAL; /* corrections fall in turns: rates are .3, .3, 1, .3, .3, 1 */
     m->size = HUGE_VAL;
     m->iterations = 0;
     for (int k = 0; k < m->iterations_max; ++k) {
@@ -423,9 +494,10 @@ static se3d_status iterate_to_convergence(se3di_radau *m)
         if (has_converged(m, rate)) {
             return SE3D_OK;
         }
-        if (k > 3 && rate > 1.0) {
+        if (k > 3 && rate > 1.0 && m->size > earlier) {
             break;
         }
+        earlier = m->before;
     }
     return se3di_error_set(m->equations->error, SE3D_ERR_NO_CONVERGENCE,
                            "t = %g s: Newton did not converge in a step of %g s; try a smaller "
@@ -435,11 +507,37 @@ static se3d_status iterate_to_convergence(se3di_radau *m)
 
 se3d_status se3di_radau_solve(se3di_radau *m)
 {
+    se3di_equations *equations = m->equations;
     se3di_kkt *kkt = m->integration->newton.kkt;
+    if (!m->projects) {
+        const se3di_kkt_settings before =
+            se3di_state_regularise(m->assembly, kkt, SE3DI_STATE_REGULARISATION);
+        const se3d_status status = iterate_to_convergence(m);
+        se3di_kkt_set_settings(kkt, &before);
+        return status;
+    }
+    const se3di_kkt_settings newton =
+        se3di_state_regularise(m->assembly, kkt, SE3DI_RADAU_REGULARISATION);
+    const se3di_kkt_settings plain =
+        se3di_state_begin(equations, SE3DI_RADAU_REGULARISATION, 1e-13);
+    se3di_state_begin_step(equations, 0.0);
+    const se3d_status status = iterate_to_convergence(m);
+    se3di_state_end(equations, &plain);
+    se3di_kkt_set_settings(kkt, &newton);
+    return status;
+}
+
+/* Positions lack what is projected away, too: it is no error. */
+static se3d_status project_defect(se3di_radau *m)
+{
+    se3di_equations *equations = m->equations;
     const se3di_kkt_settings before =
-        se3di_state_regularise(m->assembly, kkt, SE3DI_STATE_REGULARISATION);
-    se3d_status status = iterate_to_convergence(m);
-    se3di_kkt_set_settings(kkt, &before);
+        se3di_state_begin(equations, SE3DI_RADAU_REGULARISATION, 1e-13);
+    const se3d_status status = solve_normal(m, m->sum_q);
+    se3di_state_end(equations, &before);
+    for (size_t k = 0; k < m->assembly->unknown_count; ++k) {
+        m->sum_q[k] -= equations->x[k];
+    }
     return status;
 }
 
@@ -450,8 +548,6 @@ se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error)
     const size_t n = assembly->unknown_count;
     const double gamma = se3di_radau_gamma;
     const double c = gamma * m->h;
-    memset(equations->b, 0, n * sizeof *equations->b);
-    memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
     for (size_t k = 0; k < assembly->body_count; ++k) {
         const double *raw = d + k * SE3DI_STATE_SIZE;
         const double *p0 = m->y0 + k * SE3DI_STATE_SIZE + 3;
@@ -463,9 +559,14 @@ se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error)
             m->sum[6 * k + j] = -gamma * raw[7 + j];
         }
     }
+    copy(assembly->C, m->C1, assembly->joint_value_count);
+    if (m->projects) {
+        SE3DI_TRY(project_defect(m));
+    }
+    memset(equations->b, 0, n * sizeof *equations->b);
+    memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
     se3di_assembly_subtract_mass(assembly, m->sum, equations->b);
     se3di_tangent_add_stiffness(&m->integration->newton.tangent, -c, m->sum_q, equations->b);
-    copy(assembly->C, m->C1, assembly->joint_value_count);
     SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
     *error = 0.0;
     for (size_t k = 0; k < assembly->body_count; ++k) {

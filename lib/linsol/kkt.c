@@ -344,6 +344,11 @@ int32_t se3di_kkt_get_dependent_rows(const se3di_kkt *kkt)
     return kkt->dependent_rows;
 }
 
+bool se3di_kkt_has_loop(const se3di_kkt *kkt)
+{
+    return kkt->has_loop;
+}
+
 double se3di_kkt_get_cost(const se3di_kkt *kkt)
 {
     return kkt->cost;

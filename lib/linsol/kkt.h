@@ -139,6 +139,9 @@ void se3di_kkt_set_settings(se3di_kkt *kkt, const se3di_kkt_settings *settings);
 int32_t se3di_kkt_get_dependent_rows(const se3di_kkt *kkt); /* of the last factorisation */
 double se3di_kkt_get_cost(const se3di_kkt *kkt);
 
+/* Whether bodies, the ground and joints make a loop: rows may be dependent. */
+bool se3di_kkt_has_loop(const se3di_kkt *kkt);
+
 /* Promise that body blocks stay as they are from the next factorisation on: what follows from them
  * alone is then kept, and so are the weights that pivots are measured by. `hold` false, or another
  * call: from then on everything is new. */

@@ -244,6 +244,11 @@ se3d_status se3di_newton_solve_displacement(se3di_newton *newton)
     return status;
 }
 
+void se3di_newton_add_matrix(const se3di_newton *newton, const double *x, double *out)
+{
+    se3di_tangent_add_damping(&newton->tangent, 1.0, x, out); /* where `combine` has put it */
+}
+
 void se3di_newton_turn(const se3di_newton *newton, double *x)
 {
     const se3di_assembly *assembly = &newton->equations->assembly;

@@ -67,6 +67,8 @@ se3d_status se3di_newton_factor_rates(se3di_newton *newton, double t, const doub
 se3d_status se3di_newton_solve(se3di_newton *newton);
 /* The same, into ->x a displacement: T dvdot. */
 se3d_status se3di_newton_solve_displacement(se3di_newton *newton);
+/* out += H x, in displacements */
+void se3di_newton_add_matrix(const se3di_newton *newton, const double *x, double *out);
 /* x <- T^-1 x */
 void se3di_newton_turn(const se3di_newton *newton, double *x);
 /* out += scale (rows y - C T^-1 y), with the rows of se3di_newton_factor_velocities: what a
