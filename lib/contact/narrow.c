@@ -290,8 +290,6 @@ static void dispatch(const se3di_solid *i, const se3di_solid *j, se3di_manifold 
         sphere_any(i, j, manifold);
     } else if (a == SE3DI_SHAPE_BOX && b == SE3DI_SHAPE_BOX) {
         se3di_narrow_boxes(i, j, manifold);
-    } else if (a == SE3DI_SHAPE_CAPSULE && b == SE3DI_SHAPE_CAPSULE) {
-        (void)se3di_narrow_capsules(i, j, manifold);
     } else {
         se3di_narrow_convex(i, j, manifold);
     }
@@ -391,8 +389,7 @@ static double gap_of(const se3di_solid *i, const se3di_solid *j, double normal[3
     if (j->shape->kind == SE3DI_SHAPE_PLANE) {
         return plane_gap(i, j, normal);
     }
-    return -se3di_convex_distance(i, j, normal, on_i, on_j) - se3di_core_radius(i->shape) -
-           se3di_core_radius(j->shape);
+    return -se3di_convex_least(i, j, normal, on_i, on_j);
 }
 
 double se3di_narrow_gap(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,

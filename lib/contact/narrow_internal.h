@@ -38,9 +38,11 @@ void se3di_face_find(const se3di_solid *solid, const double d[3], se3di_face *fa
 double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],
                              double on_i[3], double on_j[3]);
 
+/* The same to rounding and with the radii about the cores: the overlap, negative: the distance. */
+double se3di_convex_least(const se3di_solid *i, const se3di_solid *j, double normal[3],
+                          double on_i[3], double on_j[3]);
+
 void se3di_narrow_boxes(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
-/* Two capsules, or the sides of cylinders; returns 0 if these touch with an end. */
-int se3di_narrow_capsules(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 /* A solid on a mesh; a mesh on the half space at x with the outward normal n. */
 void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold);
@@ -49,8 +51,11 @@ void se3di_narrow_mesh_plane(const se3di_solid *mesh, const double x[3], const d
 /* Four points of each rim of a cylinder: the lowest one towards a face with this normal, and at
  * right angles. Returns the sine of the tilt. */
 double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double rim[8][3]);
-/* Contact of the face `reference` (of i; `flip`: of j) with what of the other looks at it. */
-void se3di_narrow_clip(const se3di_face *reference, const se3di_face *incident, double radius,
-                       int flip, se3di_manifold *manifold);
+/* Contact of the face `reference` (of i; `flip`: of j) with what of the other looks at it, with
+ * overlaps along the unit `along`, outward from the face. */
+void se3di_narrow_clip(const se3di_face *reference, const se3di_face *incident,
+                       const double along[3], double radius, int flip, se3di_manifold *manifold);
+/* How a part of a surface bends that is touched at its corners, or as a line. */
+void se3di_face_bend(const se3di_face *incident, double radius, se3di_bend *bend);
 
 #endif

@@ -393,7 +393,7 @@ static void part_from_edge(meeting *m, const edge *e, const se3di_solid *segment
         se3di_face side, flat;
         se3di_face_find(solid, back, &side);
         se3di_face_find(segment, p.n, &flat);
-        se3di_narrow_clip(&side, &flat, 0.0, 0, &m->parted);
+        se3di_narrow_clip(&side, &flat, side.normal, 0.0, 0, &m->parted);
     } else {
         (void)se3di_manifold_add(&m->parted, at, back, p.depth, 0);
     }

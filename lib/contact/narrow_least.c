@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The least translation that separates two convex shapes, to rounding.
+ *
+ * For polyhedra and lines the walk and the polytope of narrow_convex.c end exactly. Against round
+ * shapes they come near, and what follows is exact:
+ *
+ * - A line that is apart: its distance function is convex, and the slope along the line, n . u, has
+ *   one sign on either side of the nearest point.
+ * - Cylinders that overlap: h(n) = h_i(n) + h_j(-n) is least at a face or cap, at a product of an
+ *   edge with the axis, on the circle of directions perpendicular to an edge (or to the axis) where its
+ *   slope changes its sign, or, of two rims, where the nearest points v = a - b lie along n:
+ *       (v - (n.v) n) = 0,   Newton:  U^T (dv/dn - (n.v) 1) U x = -U^T v.
+ *   Those near the polytope's direction are tried, the least is taken. */
+#include "contact/narrow_internal.h"
+#include "math/elementary.h"
+#include "math/vec3.h"
+
+#include <math.h>
+
+#define NEAR     3e-2  /* rad; the polytope's direction is that good */
+#define TIE      1e-15 /* of the size: of equal directions the first */
+#define LOOSE    1e-11 /* of the size: by how much the polytope's own may be less */
+#define EDGES    12
+#define HALVINGS 60
+#define NEWTONS  8
+#define APART    1e-9 /* of the size: cores that are */
+
+static void axis_of(const se3di_solid *solid, double out[3])
+{
+    out[0] = solid->at->R[2];
+    out[1] = solid->at->R[5];
+    out[2] = solid->at->R[8];
+}
+
+/* The distance of a point from a core, and the direction to it. */
+static double distance_from(const se3di_solid *solid, const double x[3], double n[3], double at[3])
+{
+    se3di_shape core = *solid->shape;
+    double d[3], local[3], point[3], normal[3], distance;
+    core.radius -= se3di_core_radius(solid->shape);
+    se3di_sub(x, solid->at->x, d);
+    se3di_mul_transposed(solid->at->R, d, local);
+    se3di_shape_nearest(&core, local, point, normal, &distance);
+    se3di_mul(solid->at->R, normal, n);
+    se3di_copy(x, at);
+    se3di_add_scaled(-distance, n, at);
+    return distance;
+}
+
+/* Of the line of a capsule from the core of j: the least distance, <= 0 if they meet. */
+static double line_distance(const se3di_solid *line, const se3di_solid *j, double n[3],
+                            double on_line[3], double on_j[3])
+{
+    double low = -line->shape->half_length, high = line->shape->half_length, u[3], distance = 0.0;
+    axis_of(line, u);
+    for (int k = 0; k < HALVINGS; ++k) {
+        const double t = k == 0 ? low : k == 1 ? high : 0.5 * (low + high);
+        double from[3];
+        se3di_copy(line->at->x, on_line);
+        se3di_add_scaled(t, u, on_line);
+        distance = distance_from(j, on_line, from, on_j);
+        se3di_scale(-1.0, from, n);
+        const double slope = se3di_dot(from, u);
+        const int is_end = (k == 0 && slope >= 0.0) || (k == 1 && slope <= 0.0);
+        if (is_end || (k > 1 && !(low < t && t < high))) {
+            break;
+        }
+        if (k > 1) {
+            low = slope < 0.0 ? t : low;
+            high = slope < 0.0 ? high : t;
+        }
+    }
+    return distance;
+}
+
+typedef struct search {
+    const se3di_solid *i, *j;
+    double size;
+    double about[3]; /* near which */
+    double least, n[3];
+    int count;
+    double edge[2 * EDGES][3]; /* nearly perpendicular to `about`, unit */
+} search;
+
+/* h(n); v: the difference of the farthest points. */
+static double overlap_along(const search *s, const double n[3], double v[3])
+{
+    double back[3], on_i[3], on_j[3];
+    se3di_scale(-1.0, n, back);
+    se3di_core_support(s->i, n, on_i);
+    se3di_core_support(s->j, back, on_j);
+    se3di_sub(on_i, on_j, v);
+    return se3di_dot(v, n);
+}
+
+static void try_direction(search *s, const double direction[3], double margin)
+{
+    const double size = se3di_norm(direction);
+    if (!(size > 0.0)) {
+        return;
+    }
+    double n[3], turn[3], v[3];
+    const double sign = se3di_dot(direction, s->about) < 0.0 ? -1.0 : 1.0;
+    se3di_scale(sign / size, direction, n);
+    se3di_sub(n, s->about, turn);
+    if (se3di_norm(turn) > NEAR) {
+        return;
+    }
+    const double here = overlap_along(s, n, v);
+    if (here < s->least - margin * s->size) {
+        s->least = here;
+        se3di_copy(n, s->n);
+    }
+}
+
+static void add_edge(search *s, const double e[3])
+{
+    const double size = se3di_norm(e);
+    if (s->count < 2 * EDGES && size > 0.0 && fabs(se3di_dot(e, s->about)) < NEAR * size) {
+        se3di_scale(1.0 / size, e, s->edge[s->count++]);
+    }
+}
+
+/* Sides of the faces that are about as far along `way` as anything of the hull. */
+static void add_hull_edges(search *s, const se3di_solid *solid, double sign)
+{
+    const se3di_shape *shape = solid->shape;
+    double way[3], local[3], top[3];
+    se3di_scale(sign, s->about, way);
+    se3di_mul_transposed(solid->at->R, way, local);
+    se3di_core_support(solid, way, top);
+    se3di_sub(top, solid->at->x, top);
+    const double level = se3di_dot(top, way) - NEAR * shape->bound;
+    for (size_t k = 0; k < 3 * shape->triangle_count; ++k) {
+        const uint32_t *t = shape->triangles + k / 3 * 3;
+        const double *a = shape->vertices + 3 * (size_t)t[k % 3];
+        const double *b = shape->vertices + 3 * (size_t)t[(k + 1) % 3];
+        double d[3], e[3];
+        if (t[k % 3] < t[(k + 1) % 3] && se3di_dot(a, local) > level &&
+            se3di_dot(b, local) > level) {
+            se3di_sub(b, a, d);
+            se3di_mul(solid->at->R, d, e);
+            add_edge(s, e);
+        }
+    }
+}
+
+static void add_edges(search *s, const se3di_solid *solid, double sign)
+{
+    double axis[3];
+    if (solid->shape->kind == SE3DI_SHAPE_HULL) {
+        add_hull_edges(s, solid, sign);
+        return;
+    }
+    const int first = solid->shape->kind == SE3DI_SHAPE_BOX ? 0 : 2;
+    for (int a = first; a < 3; ++a) {
+        for (int c = 0; c < 3; ++c) {
+            axis[c] = solid->at->R[3 * c + a];
+        }
+        add_edge(s, axis);
+    }
+}
+
+/* Where the slope changes its sign on the directions perpendicular to an edge. */
+static void try_circle(search *s, const double e[3])
+{
+    double u[3], w[3], n[3], low = -NEAR, high = NEAR;
+    se3di_copy(s->about, u);
+    se3di_add_scaled(-se3di_dot(u, e), e, u);
+    se3di_scale(1.0 / se3di_norm(u), u, u);
+    se3di_cross(e, u, w);
+    se3di_copy(u, n);
+    for (int k = 0; k < HALVINGS; ++k) {
+        const double turn = k == 0 ? low : k == 1 ? high : 0.5 * (low + high);
+        const double cosine = sqrt(1.0 - turn * turn); /* `turn` is its sine */
+        double along[3], v[3];
+        se3di_scale(cosine, u, n);
+        se3di_add_scaled(turn, w, n);
+        se3di_scale(cosine, w, along);
+        se3di_add_scaled(-turn, u, along);
+        (void)overlap_along(s, n, v);
+        const double slope = se3di_dot(v, along);
+        if ((k == 0 && slope > 0.0) || (k == 1 && slope < 0.0)) {
+            return;
+        }
+        if (k > 1) {
+            if (!(low < turn && turn < high)) {
+                break;
+            }
+            low = slope < 0.0 ? turn : low;
+            high = slope < 0.0 ? high : turn;
+        }
+    }
+    try_direction(s, n, TIE);
+}
+
+/* Add what a rim moves by as n turns along u: R/|s| (u - (u.z) z - (u.s) s), s the unit part of n
+ * perpendicular to the axis. */
+static void add_rim_rate(const se3di_solid *solid, const double n[3], const double u[3],
+                         double out[3])
+{
+    double z[3], side[3];
+    axis_of(solid, z);
+    se3di_copy(n, side);
+    se3di_add_scaled(-se3di_dot(n, z), z, side);
+    const double size = se3di_norm(side);
+    if (size > 0.0) {
+        se3di_scale(1.0 / size, side, side);
+        const double rate = solid->shape->radius / size;
+        se3di_add_scaled(rate, u, out);
+        se3di_add_scaled(-rate * se3di_dot(u, z), z, out);
+        se3di_add_scaled(-rate * se3di_dot(u, side), side, out);
+    }
+}
+
+static void try_rims(search *s)
+{
+    double n[3];
+    se3di_copy(s->about, n);
+    for (int k = 0; k < NEWTONS; ++k) {
+        double u[2][3], v[3], A[2][2], f[2];
+        const double along = overlap_along(s, n, v);
+        se3di_perpendicular(n, u[0]);
+        se3di_cross(n, u[0], u[1]);
+        for (int c = 0; c < 2; ++c) {
+            double rate[3] = {0.0, 0.0, 0.0};
+            add_rim_rate(s->i, n, u[c], rate);
+            add_rim_rate(s->j, n, u[c], rate);
+            for (int r = 0; r < 2; ++r) {
+                A[r][c] = se3di_dot(rate, u[r]) - (r == c ? along : 0.0);
+            }
+            f[c] = -se3di_dot(v, u[c]);
+        }
+        const double det = A[0][0] * A[1][1] - A[0][1] * A[1][0];
+        if (!(fabs(det) > 0.0)) {
+            return;
+        }
+        se3di_add_scaled((A[1][1] * f[0] - A[0][1] * f[1]) / det, u[0], n);
+        se3di_add_scaled((A[0][0] * f[1] - A[1][0] * f[0]) / det, u[1], n);
+        se3di_scale(1.0 / se3di_norm(n), n, n);
+    }
+    try_direction(s, n, TIE);
+}
+
+/* Faces and caps. */
+static void try_faces(search *s)
+{
+    se3di_face face;
+    double back[3];
+    se3di_scale(-1.0, s->about, back);
+    se3di_face_find(s->i, s->about, &face);
+    if (face.count > 2) {
+        try_direction(s, face.normal, TIE);
+    }
+    se3di_face_find(s->j, back, &face);
+    if (face.count > 2) {
+        try_direction(s, face.normal, TIE);
+    }
+}
+
+static double polish(const se3di_solid *i, const se3di_solid *j, double overlap, double n[3])
+{
+    search s = {.i = i, .j = j, .size = i->shape->bound + j->shape->bound, .least = HUGE_VAL};
+    se3di_copy(n, s.about);
+    try_faces(&s);
+    add_edges(&s, i, 1.0);
+    const int of_i = s.count;
+    add_edges(&s, j, -1.0);
+    for (int a = 0; a < of_i; ++a) {
+        for (int b = of_i; b < s.count; ++b) {
+            double product[3];
+            se3di_cross(s.edge[a], s.edge[b], product);
+            if (se3di_norm(product) > 1e-9) {
+                try_direction(&s, product, TIE);
+            }
+        }
+    }
+    for (int a = 0; a < s.count; ++a) {
+        try_circle(&s, s.edge[a]);
+    }
+    if (i->shape->kind == SE3DI_SHAPE_CYLINDER && j->shape->kind == SE3DI_SHAPE_CYLINDER) {
+        try_rims(&s);
+    }
+    if (!(overlap < s.least - LOOSE * s.size)) {
+        se3di_copy(s.n, n);
+        return s.least;
+    }
+    return overlap;
+}
+
+static int is_line(const se3di_solid *solid)
+{
+    return solid->shape->kind == SE3DI_SHAPE_CAPSULE;
+}
+
+static int is_cylinder(const se3di_solid *solid)
+{
+    return solid->shape->kind == SE3DI_SHAPE_CYLINDER;
+}
+
+double se3di_convex_least(const se3di_solid *i, const se3di_solid *j, double n[3], double on_i[3],
+                          double on_j[3])
+{
+    const double radius = se3di_core_radius(i->shape) + se3di_core_radius(j->shape);
+    const double apart = APART * (i->shape->bound + j->shape->bound);
+    if (is_line(i) && j->shape->kind != SE3DI_SHAPE_HULL) {
+        const double distance = line_distance(i, j, n, on_i, on_j);
+        if (distance > apart) {
+            return radius - distance;
+        }
+    } else if (is_line(j) && i->shape->kind != SE3DI_SHAPE_HULL) {
+        const double distance = line_distance(j, i, n, on_j, on_i);
+        if (distance > apart) {
+            se3di_scale(-1.0, n, n);
+            return radius - distance;
+        }
+    }
+    double overlap = se3di_convex_distance(i, j, n, on_i, on_j);
+    if (overlap > 0.0 && (is_cylinder(i) || is_cylinder(j))) {
+        overlap = polish(i, j, overlap, n);
+    }
+    return radius + overlap;
+}

@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Points of contact of two convex shapes, along the direction in which they come apart first.
+ *
+ * All points of a pair have that normal, and their overlaps are measured along it: those of flat
+ * parts that lean little from it where the other part is cut off at the sides, those of two lines
+ * at the ends of what they have in common. Directions that differ little, as those of two faces
+ * that lie on each other and of their edges, so give nearly the same points, and the least overlap
+ * is never left for another one. */
+#include "contact/narrow_internal.h"
+#include "math/vec3.h"
+
+#include <math.h>
+
+#define FACE_COSINE 0.985 /* faces leaning by less than 10 degrees from the normal */
+#define PARALLEL    1e-2  /* sine below which two lines touch in two points */
+#define LOSS        1e-3 /* of the overlap: by how much it is less at these, where the lines cross */
+#define SAME        2e-15 /* of the size: depths that are one; faces come before edges then */
+#define EXACT       1e-9  /* the normal is that of a face */
+#define LIFT        1e-5  /* of the size: by how much points of a round rim are too shallow */
+#define SKEW        1e-8  /* sine; edges that are more nearly parallel have no product */
+#define WITNESS     0x20000001u
+#define EDGES       0x40000000u /* features of edges, by their axes */
+
+/* How two shapes come apart. */
+typedef struct parting {
+    const se3di_solid *i, *j;
+    double n[3]; /* from i to j */
+    double depth, radius;
+    double on_i[3], on_j[3]; /* the points of the cores that are farthest in each other */
+    int edges;               /* of two boxes: the axes of the edges, or -1 */
+    int axis_i, axis_j;
+} parting;
+
+static void axis_of(const se3di_solid *solid, int a, double out[3])
+{
+    out[0] = solid->at->R[a];
+    out[1] = solid->at->R[3 + a];
+    out[2] = solid->at->R[6 + a];
+}
+
+/* Half the extent of a box along n. */
+static double extent(const se3di_solid *box, const double n[3])
+{
+    double local[3];
+    se3di_mul_transposed(box->at->R, n, local);
+    return fabs(local[0]) * box->shape->half[0] + fabs(local[1]) * box->shape->half[1] +
+           fabs(local[2]) * box->shape->half[2];
+}
+
+typedef struct separation {
+    double depth; /* least translation along n */
+    double n[3];  /* from i to j */
+    int a, b;     /* axes */
+} separation;
+
+/* The overlap along an axis; the least one is kept. */
+static void try_axis(const se3di_solid *i, const se3di_solid *j, const double axis[3], int a, int b,
+                     separation *best)
+{
+    double d[3];
+    se3di_sub(j->at->x, i->at->x, d);
+    double along = se3di_dot(d, axis);
+    double depth = extent(i, axis) + extent(j, axis) - fabs(along);
+    if (depth < best->depth) {
+        best->depth = depth;
+        best->a = a;
+        best->b = b;
+        se3di_scale(along < 0.0 ? -1.0 : 1.0, axis, best->n);
+    }
+}
+
+/* The middle of the edge along axis a that is farthest along n. */
+static void edge_middle(const se3di_solid *box, const double n[3], int a, double out[3])
+{
+    se3di_copy(box->at->x, out);
+    for (int c = 0; c < 3; ++c) {
+        double axis[3];
+        axis_of(box, c, axis);
+        double side = se3di_dot(axis, n) < 0.0 ? -1.0 : 1.0;
+        se3di_add_scaled(c == a ? 0.0 : side * box->shape->half[c], axis, out);
+    }
+}
+
+/* Parameters of the nearest points of two lines p + s u, q + t w (unit, not parallel). */
+static void nearest_of_lines(const double p[3], const double u[3], const double q[3],
+                             const double w[3], double *s, double *t)
+{
+    double d[3];
+    se3di_sub(q, p, d);
+    double c = se3di_dot(u, w);
+    double du = se3di_dot(d, u);
+    double dw = se3di_dot(d, w);
+    double square = fmax(1.0 - c * c, 1e-300);
+    *s = (du - c * dw) / square;
+    *t = (c * du - dw) / square;
+}
+
+/* How the surface of a shape with an axis bends where its side is touched, or its round end. */
+static void bend_side(const se3di_solid *solid, const double n[3], se3di_bend *bend)
+{
+    const se3di_shape *s = solid->shape;
+    double u[3];
+    if (s->kind != SE3DI_SHAPE_CAPSULE && s->kind != SE3DI_SHAPE_CYLINDER) {
+        return;
+    }
+    axis_of(solid, 2, u);
+    if (fabs(se3di_dot(u, n)) < EXACT) {
+        se3di_bend_set(bend, u, HUGE_VAL, s->radius);
+    } else if (s->kind == SE3DI_SHAPE_CAPSULE) {
+        bend->r[0] = bend->r[1] = s->radius;
+    }
+}
+
+/* The one point where there is neither a face nor a line. */
+static void point_touches(const parting *p, uint32_t feature, se3di_manifold *manifold)
+{
+    double a[3], b[3], point[3];
+    se3di_copy(p->on_i, a);
+    se3di_copy(p->on_j, b);
+    se3di_add_scaled(se3di_core_radius(p->i->shape), p->n, a);
+    se3di_add_scaled(-se3di_core_radius(p->j->shape), p->n, b);
+    se3di_add(a, b, point);
+    se3di_scale(0.5, point, point);
+    se3di_contact_point *c = se3di_manifold_add(manifold, point, p->n, p->depth, feature);
+    if (p->edges) {
+        double u[3], w[3];
+        c->feature += EDGES + (uint32_t)(3 * p->axis_i + p->axis_j);
+        axis_of(p->i, p->axis_i, u);
+        axis_of(p->j, p->axis_j, w);
+        se3di_bend_set(&c->bend_i, u, HUGE_VAL, 0.0);
+        se3di_bend_set(&c->bend_j, w, HUGE_VAL, 0.0);
+        return;
+    }
+    bend_side(p->i, p->n, &c->bend_i);
+    bend_side(p->j, p->n, &c->bend_j);
+}
+
+/* Two lines on the surfaces, or cores, that touch along what they have in common. */
+typedef struct lines {
+    const double *a, *b;   /* their beginnings */
+    double u[3], w[3];     /* unit */
+    double long_a, long_b; /* lengths */
+    double low, high;      /* what they have in common, along a */
+} lines;
+
+/* Returns 0 if they cross at an angle, or lie end to end. Where they cross nearly parallel the
+ * overlap falls off to either side. */
+static int lines_meet(const parting *p, const se3di_face *face_i, const se3di_face *face_j,
+                      lines *l)
+{
+    double across[3], d[3];
+    l->a = face_i->corner[0];
+    l->b = face_j->corner[0];
+    se3di_sub(face_i->corner[1], l->a, l->u);
+    se3di_sub(face_j->corner[1], l->b, l->w);
+    l->long_a = se3di_norm(l->u);
+    l->long_b = se3di_norm(l->w);
+    if (!(l->long_a > 0.0 && l->long_b > 0.0)) {
+        return 0;
+    }
+    se3di_scale(1.0 / l->long_a, l->u, l->u);
+    se3di_scale(1.0 / l->long_b, l->w, l->w);
+    se3di_cross(l->u, l->w, across);
+    if (!(se3di_norm(across) < PARALLEL && fabs(se3di_dot(l->u, p->n)) < PARALLEL)) {
+        return 0;
+    }
+    se3di_sub(l->b, l->a, d);
+    const double from = se3di_dot(d, l->u);
+    const double to = from + l->long_b * se3di_dot(l->w, l->u);
+    const double round = p->i->shape->radius + p->j->shape->radius;
+    const double turn = fabs(se3di_dot(across, p->n));
+    const double far = sqrt(2.0 * LOSS * p->depth * round);
+    l->low = fmax(0.0, fmin(from, to));
+    l->high = fmin(l->long_a, fmax(from, to));
+    const int meet = l->high > l->low;
+    if (far < turn * l->long_a) {
+        se3di_sub(p->on_i, l->a, d);
+        l->low = fmax(l->low, se3di_dot(d, l->u) - far / turn);
+        l->high = fmin(l->high, se3di_dot(d, l->u) + far / turn);
+    }
+    return meet && l->high > l->low;
+}
+
+static void lines_touch(const parting *p, const lines *l, se3di_manifold *manifold)
+{
+    const double round = p->i->shape->radius + p->j->shape->radius;
+    for (uint32_t k = 0; k < 2; ++k) {
+        double x[3], q[3], d[3], way[3];
+        se3di_copy(l->a, x);
+        se3di_add_scaled(k ? l->high : l->low, l->u, x);
+        se3di_copy(l->w, way);
+        se3di_add_scaled(-se3di_dot(way, p->n), p->n, way);
+        se3di_sub(x, l->b, d);
+        const double t = se3di_dot(d, way) / se3di_dot(way, way);
+        se3di_copy(l->b, q);
+        se3di_add_scaled(fmax(0.0, fmin(l->long_b, t)), l->w, q);
+        se3di_sub(x, q, d);
+        const double along = se3di_dot(d, p->n);
+        se3di_add_scaled(-along, p->n, d);
+        const double overlap = along + p->radius - 0.5 * se3di_dot(d, d) / round;
+        if (overlap > 0.0) {
+            se3di_add_scaled(se3di_core_radius(p->i->shape) - 0.5 * overlap, p->n, x);
+            se3di_contact_point *c = se3di_manifold_add(manifold, x, p->n, overlap, k + 1u);
+            bend_side(p->i, p->n, &c->bend_i);
+            bend_side(p->j, p->n, &c->bend_j);
+        }
+    }
+}
+
+/* Points of a face's sides turn with the shape whose normal it is. */
+static void bend_points(const parting *p, const se3di_face *face_i, const se3di_face *face_j,
+                        se3di_manifold *manifold)
+{
+    double turn[3];
+    se3di_sub(face_i->normal, p->n, turn);
+    const int of_i = face_i->count > 2 && se3di_norm(turn) < EXACT;
+    se3di_add(face_j->normal, p->n, turn);
+    const int of_j = face_j->count > 2 && se3di_norm(turn) < EXACT;
+    for (uint32_t k = 0; k < manifold->count && (of_i || of_j); ++k) {
+        static const double flat = HUGE_VAL;
+        se3di_contact_point *c = &manifold->points[k];
+        se3di_bend *own = of_i ? &c->bend_i : &c->bend_j;
+        own->r[0] = own->r[1] = flat;
+        se3di_face_bend(of_i ? face_j : face_i, p->radius, of_i ? &c->bend_j : &c->bend_i);
+    }
+}
+
+/* No point is deeper than the two are, and one is as deep. */
+static void complete(const parting *p, se3di_manifold *manifold)
+{
+    const double size = p->i->shape->bound + p->j->shape->bound;
+    double deepest = 0.0;
+    for (uint32_t k = 0; k < manifold->count; ++k) {
+        se3di_contact_point *c = &manifold->points[k];
+        c->overlap = fmin(c->overlap, p->depth);
+        deepest = fmax(deepest, c->overlap);
+    }
+    const double gap = p->depth - deepest;
+    if (manifold->count == 0 || gap > LIFT * size) {
+        point_touches(p, manifold->count > 0 ? WITNESS : 0, manifold);
+        return;
+    }
+    for (uint32_t k = 0; k < manifold->count; ++k) {
+        manifold->points[k].overlap += gap;
+    }
+}
+
+static void touch(const parting *p, se3di_manifold *manifold)
+{
+    se3di_face face_i, face_j;
+    double back[3];
+    lines both;
+    se3di_scale(-1.0, p->n, back);
+    se3di_face_find(p->i, p->n, &face_i);
+    se3di_face_find(p->j, back, &face_j);
+    const int flat_i = face_i.count > 2 && se3di_dot(face_i.normal, p->n) > FACE_COSINE;
+    const int flat_j = face_j.count > 2 && se3di_dot(face_j.normal, back) > FACE_COSINE;
+    if (flat_i) {
+        se3di_narrow_clip(&face_i, &face_j, p->n, p->radius, 0, manifold);
+    } else if (flat_j) {
+        se3di_narrow_clip(&face_j, &face_i, back, p->radius, 1, manifold);
+    } else if (face_i.count == 2 && face_j.count == 2 && lines_meet(p, &face_i, &face_j, &both)) {
+        lines_touch(p, &both, manifold);
+    }
+    if (flat_i || flat_j) {
+        bend_points(p, &face_i, &face_j, manifold);
+    }
+    complete(p, manifold);
+}
+
+/* The nearest points of the edges that cross. */
+static void find_crossing(const separation *best, parting *p)
+{
+    double u[3], w[3], back[3], s, t;
+    se3di_scale(-1.0, p->n, back);
+    edge_middle(p->i, p->n, best->a, p->on_i);
+    edge_middle(p->j, back, best->b, p->on_j);
+    axis_of(p->i, best->a, u);
+    axis_of(p->j, best->b, w);
+    nearest_of_lines(p->on_i, u, p->on_j, w, &s, &t);
+    se3di_add_scaled(s, u, p->on_i);
+    se3di_add_scaled(t, w, p->on_j);
+    p->edges = 1;
+    p->axis_i = best->a;
+    p->axis_j = best->b;
+}
+
+/* Of a face: the lowest corner of the other box. */
+static void find_corner(int of_j, parting *p)
+{
+    double back[3];
+    se3di_scale(-1.0, p->n, back);
+    if (of_j) {
+        se3di_core_support(p->i, p->n, p->on_i);
+        se3di_copy(p->on_i, p->on_j);
+        se3di_add_scaled(-p->depth, p->n, p->on_j);
+    } else {
+        se3di_core_support(p->j, back, p->on_j);
+        se3di_copy(p->on_j, p->on_i);
+        se3di_add_scaled(p->depth, p->n, p->on_i);
+    }
+}
+
+/* Separating axes: three faces of each, nine pairs of edges. */
+void se3di_narrow_boxes(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
+{
+    separation face_i = {.depth = HUGE_VAL}, face_j = face_i, edge = face_i;
+    for (int a = 0; a < 3; ++a) {
+        double u[3], w[3], axis[3];
+        axis_of(i, a, u);
+        try_axis(i, j, u, a, 0, &face_i);
+        axis_of(j, a, w);
+        try_axis(i, j, w, 0, a, &face_j);
+        for (int b = 0; b < 3; ++b) {
+            axis_of(j, b, w);
+            se3di_cross(u, w, axis);
+            double size = se3di_norm(axis);
+            if (size > SKEW) {
+                se3di_scale(1.0 / size, axis, axis);
+                try_axis(i, j, axis, a, b, &edge);
+            }
+        }
+    }
+    const double same = SAME * (i->shape->bound + j->shape->bound);
+    const int of_j = face_j.depth < face_i.depth - same;
+    const separation *least = of_j ? &face_j : &face_i;
+    const int edges = edge.depth < least->depth - same;
+    least = edges ? &edge : least;
+    if (!(least->depth > 0.0)) {
+        return;
+    }
+    parting p = {.i = i, .j = j, .depth = least->depth};
+    se3di_copy(least->n, p.n);
+    if (edges) {
+        find_crossing(least, &p);
+    } else {
+        find_corner(of_j, &p);
+    }
+    touch(&p, manifold);
+}
+
+void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
+{
+    parting p = {.i = i, .j = j};
+    p.radius = se3di_core_radius(i->shape) + se3di_core_radius(j->shape);
+    p.depth = se3di_convex_least(i, j, p.n, p.on_i, p.on_j);
+    if (p.depth > 0.0) {
+        touch(&p, manifold);
+    }
+}

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Overlap and normal of two convex shapes against support/separation.h: both right to 1e-9 for
+ * every pair, and every point of contact within both.
+ *
+ * From any pose where two overlap by d along n, the pose that is moved by d - w along n overlaps by
+ * w along n and by more in all other directions: the ball about the origin in the difference of the
+ * two has moved to where it touches first. So no pose is ambiguous, and any depth is had. */
+#include "contact/hull.h"
+#include "contact/narrow_internal.h"
+#include "support/poses.h"
+#include "support/separation.h"
+#include "support/surfaces.h"
+
+#define SAME  1e-9
+#define CLEAR 1e-8
+#define KINDS 5
+
+static const int kinds[KINDS] = {SE3DI_SHAPE_BOX, SE3DI_SHAPE_HULL, SE3DI_SHAPE_CYLINDER,
+                                 SE3DI_SHAPE_CAPSULE, SE3DI_SHAPE_SPHERE};
+static const char *const names[KINDS] = {"box", "hull", "cylinder", "capsule", "sphere"};
+
+static const se3di_contact_point *deepest(const se3di_manifold *m)
+{
+    const se3di_contact_point *best = &m->points[0];
+    for (uint32_t k = 1; k < m->count; ++k) {
+        best = m->points[k].overlap > best->overlap ? &m->points[k] : best;
+    }
+    return best;
+}
+
+typedef struct accuracy {
+    int counted, wrong, outside, less, phantom;
+    double depth, normal, beyond;
+} accuracy;
+
+/* How far a place is outside a shape. */
+static double outside(const se3di_shape *s, const se3di_shape_pose *at, const double x[3])
+{
+    double d[3], local[3], point[3], normal[3], distance;
+    se3di_sub(x, at->x, d);
+    se3di_mul_transposed(at->R, d, local);
+    se3di_shape_nearest(s, local, point, normal, &distance);
+    return distance;
+}
+
+/* Each point is the middle of a line along the normal that is as long as its overlap, in both. */
+static double beyond_of(const se3di_shape *i, const se3di_shape_pose *at, const se3di_shape *j,
+                        const se3di_shape_pose *of, const se3di_manifold *m)
+{
+    double most = 0.0;
+    for (uint32_t k = 0; k < m->count; ++k) {
+        const se3di_contact_point *p = &m->points[k];
+        for (int end = -1; end <= 1; end += 2) {
+            double x[3];
+            const double share = end < 0 ? 1.0 - p->share : p->share;
+            se3di_copy(p->point, x);
+            se3di_add_scaled(end * share * p->overlap, p->normal, x);
+            most = fmax(most, end > 0 ? outside(i, at, x) : outside(j, of, x));
+        }
+    }
+    return most;
+}
+
+static void show(const se3di_shape *i, const se3di_shape *j, double wanted, const double n[3],
+                 const se3di_contact_point *p)
+{
+    if (poses_are_many()) {
+        printf("kinds %d %d: overlap %.15g, not %.15g; normal %.12g %.12g %.12g, not %.12g %.12g "
+               "%.12g\n",
+               i->kind, j->kind, p ? p->overlap : 0.0, wanted, p ? p->normal[0] : 0.0,
+               p ? p->normal[1] : 0.0, p ? p->normal[2] : 0.0, n[0], n[1], n[2]);
+    }
+}
+
+/* Along any direction the overlap bounds the least one: one that is less than that found here is
+ * right if it is that along its own normal. Normals may differ where these are equal to rounding.
+ */
+static void compare(const se3di_shape *i, const se3di_shape_pose *at, const se3di_shape *j,
+                    const se3di_shape_pose *of, double wanted, const double n[3], accuracy *a)
+{
+    se3di_manifold m;
+    poly one, two;
+    double turn[3] = {1.0, 0.0, 0.0}, v[3], off = 1.0, along = HUGE_VAL;
+    se3di_narrow_find(i, at, j, of, &m);
+    const se3di_contact_point *p = m.count > 0 ? deepest(&m) : NULL;
+    if (p && j->kind != SE3DI_SHAPE_MESH) {
+        poly_of(i, at, &one);
+        poly_of(j, of, &two);
+        along = overlap_along(&one, &two, p->normal, v) + one.radius + two.radius;
+    }
+    if (p) {
+        se3di_sub(p->normal, n, turn);
+        off = fabs(p->overlap - wanted);
+    }
+    const double beyond = j->kind == SE3DI_SHAPE_MESH ? 0.0 : beyond_of(i, at, j, of, &m);
+    const double lean = se3di_norm(turn);
+    const int less = p && along < wanted - 1e-12 && fabs(p->overlap - along) < SAME;
+    const int same = off < SAME && (lean < SAME || (lean < 10.0 * SAME && along < wanted + 1e-14));
+    ++a->counted;
+    a->less += less;
+    a->wrong += !same && !less;
+    a->outside += !(beyond < 2e-5 + 1e-2 * wanted);
+    a->depth = less ? a->depth : fmax(a->depth, off);
+    a->normal = less ? a->normal : fmax(a->normal, lean);
+    a->beyond = fmax(a->beyond, beyond);
+    if ((!same && !less) || !(beyond < 2e-5 + 1e-2 * wanted)) {
+        show(i, j, wanted, n, p);
+    }
+}
+
+/* Moved on along the normal, until they are apart. */
+static void part(const se3di_shape *i, se3di_shape_pose *at, const se3di_shape *j,
+                 const se3di_shape_pose *of, double wanted, const double n[3], accuracy *a)
+{
+    se3di_manifold m;
+    se3di_add_scaled(-(wanted + CLEAR), n, at->x);
+    se3di_narrow_find(i, at, j, of, &m);
+    a->phantom += m.count > 0;
+}
+
+/* Of a random pose, or one with axes nearly parallel, on the way to the other. */
+static void random_pair(se3di_shape_pose *at, se3di_shape_pose *of, uint64_t *seed)
+{
+    poses_turn(seed, of);
+    poses_turn(seed, at);
+    if (check_random(seed) > 0.4) {
+        poses_lean(seed, of, at);
+    }
+    for (int c = 0; c < 3; ++c) {
+        at->x[c] = 0.3 * check_random(seed);
+    }
+}
+
+static void report(const char *one, const char *two, const accuracy *a)
+{
+    if (poses_are_many()) {
+        printf("%s, %s: %d counted, %d wrong, depth %.2g, normal %.2g, outside %d, %.2g, less %d, "
+               "phantom %d\n",
+               one, two, a->counted, a->wrong, a->depth, a->normal, a->outside, a->beyond, a->less,
+               a->phantom);
+    }
+}
+
+static void check_pair(int one, int two, int poses)
+{
+    uint64_t seed = 5 + 100 * (uint64_t)one + (uint64_t)two;
+    accuracy a = {.counted = 0};
+    for (int k = 0; k < poses; ++k) {
+        poses_solid i, j;
+        poses_random_solid(kinds[one], &seed, &i);
+        poses_random_solid(kinds[two], &seed, &j);
+        se3di_shape_pose at, of;
+        double n[3];
+        random_pair(&at, &of, &seed);
+        const double size = fmin(poses_size(&i.shape), poses_size(&j.shape));
+        double wanted = size * (k % 4 == 3 ? 0.5 : 0.02) * (1.001 + check_random(&seed));
+        const double radius = se3di_core_radius(&i.shape) + se3di_core_radius(&j.shape);
+        wanted += k % 8 == 7 && radius < size ? radius : 0.0;
+        const double least = separation_of(&i.shape, &at, &j.shape, &of, n);
+        if (!(least > radius ? least > wanted : least > -HUGE_VAL && wanted < radius)) {
+            continue;
+        }
+        se3di_add_scaled(wanted - least, n, at.x);
+        compare(&i.shape, &at, &j.shape, &of, wanted, n, &a);
+        part(&i.shape, &at, &j.shape, &of, wanted, n, &a);
+    }
+    report(names[one], names[two], &a);
+    CHECK(a.counted > poses / 8);
+    CHECK(a.wrong == 0);
+    CHECK(a.phantom == 0);
+    CHECK(a.outside == 0);
+    CHECK(a.less * 200 < a.counted);
+}
+
+/* A convex mesh is what it encloses. */
+static void check_block(int kind, int poses)
+{
+    static surface s;
+    uint64_t seed = 70 + (uint64_t)kind;
+    accuracy a = {.counted = 0};
+    surface_make(SURFACE_BLOCK, &s);
+    const se3di_shape block = {
+        .kind = SE3DI_SHAPE_BOX, .half = {0.5, 0.5, 0.5}, .bound = s.shape.bound};
+    for (int k = 0; k < poses; ++k) {
+        poses_solid i;
+        se3di_shape_pose at, of;
+        double n[3];
+        poses_random_solid(kinds[kind], &seed, &i);
+        random_pair(&at, &of, &seed);
+        const double radius = se3di_core_radius(&i.shape);
+        const double wanted = 0.1 * poses_size(&i.shape) * (1.001 + check_random(&seed));
+        const double least = separation_of(&i.shape, &at, &block, &of, n);
+        if (least > (least > radius ? wanted : -HUGE_VAL)) {
+            se3di_add_scaled(wanted - least, n, at.x);
+            compare(&i.shape, &at, &s.shape, &of, wanted, n, &a);
+            part(&i.shape, &at, &s.shape, &of, wanted, n, &a);
+        }
+    }
+    report(names[kind], s.name, &a);
+    surface_release(&s);
+    CHECK(a.counted > poses / 8);
+    CHECK(a.wrong == 0);
+    CHECK(a.phantom == 0);
+}
+
+static void convex_meshes_are_as_deep_as_what_they_enclose(void)
+{
+    for (int kind = 0; kind < KINDS; ++kind) {
+        check_block(kind, poses_count(400));
+    }
+}
+
+static void overlaps_and_normals_are_those_of_the_least_translation(void)
+{
+    for (int one = 0; one < KINDS; ++one) {
+        for (int two = 0; two < KINDS; ++two) {
+            check_pair(one, two, poses_count(one == 2 && two == 2 ? 60 : 400));
+        }
+    }
+}
+
+int main(void)
+{
+    RUN(convex_meshes_are_as_deep_as_what_they_enclose);
+    RUN(overlaps_and_normals_are_those_of_the_least_translation);
+    return check_finish();
+}
