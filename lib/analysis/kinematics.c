@@ -8,7 +8,8 @@
 #include "analysis/friction_start.h"
 #include "analysis/jump.h"
 #include "analysis/singular.h"
-#include "contact/loads.h"
+#include "assembly/energy.h"
+#include "assembly/loads.h"
 #include "integrator/turns.h"
 #include "primitive/turn_counter.h"
 

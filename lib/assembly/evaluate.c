@@ -4,8 +4,8 @@
 
 #include "assembly/fused.h"
 #include "assembly/left_out.h"
+#include "assembly/loads.h"
 #include "assembly/user.h"
-#include "contact/loads.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
 

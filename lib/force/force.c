@@ -3,7 +3,6 @@
 #include "force/force.h"
 
 #include "force/friction.h"
-#include "joint/user.h"
 #include "math/vec3.h"
 
 #include <stddef.h>
@@ -51,73 +50,6 @@ se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench
         }
     }
     return SE3D_OK;
-}
-
-se3d_status se3di_forces_potential(const se3di_model *model, double t, double *potential)
-{
-    double g[3];
-    se3di_effect effect;
-    effect.wants_derivative = 0;
-    *potential = 0.0;
-    SE3DI_TRY(se3di_gravity_eval(model, t, g, NULL));
-    for (size_t b = 0; b < model->body_slots.count; ++b) {
-        *potential -= model->bodies[b].mass * se3di_dot(g, model->frames[b].r);
-    }
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        SE3DI_TRY(se3di_force_eval(model, &model->forces[k], t, &effect));
-        *potential += effect.potential;
-    }
-    return SE3D_OK;
-}
-
-static se3d_status user_power(const se3di_model *model, double t, double *power)
-{
-    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
-        const se3di_constraint *constraint = &model->constraints[k];
-        se3di_user_values values;
-        if (se3di_is_user(constraint)) {
-            SE3DI_TRY(se3di_user_eval(model, constraint, t, SE3DI_USER_NU, &values));
-            for (uint32_t r = 0; r < constraint->row_count; ++r) {
-                *power -= model->lambda[constraint->row_begin + r] * values.nu[r];
-            }
-        }
-    }
-    return SE3D_OK;
-}
-
-/* -lambda . nu: the power of constraints that change in time. */
-static se3d_status driver_power(const se3di_model *model, double t, double *power)
-{
-    for (size_t k = 0; k < model->row_count; ++k) {
-        double jet[3];
-        if (model->rows[k].function >= 0) {
-            SE3DI_TRY(
-                se3di_function_eval(&model->functions[model->rows[k].function], &t, jet, NULL));
-            *power -= model->lambda[k] * jet[1];
-        }
-    }
-    return user_power(model, t, power);
-}
-
-se3d_status se3di_power_eval(const se3di_model *model, double t, double power[3])
-{
-    double g[3];
-    double g_t[3];
-    se3di_effect effect;
-    effect.wants_derivative = 0;
-    power[0] = power[1] = power[2] = 0.0;
-    SE3DI_TRY(se3di_gravity_eval(model, t, g, g_t));
-    for (size_t b = 0; b < model->body_slots.count; ++b) {
-        if (!model->bodies[b].fixed) {
-            power[1] -= model->bodies[b].mass * se3di_dot(g_t, model->frames[b].r);
-        }
-    }
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        SE3DI_TRY(se3di_force_eval(model, &model->forces[k], t, &effect));
-        power[0] += effect.power[0];
-        power[1] += effect.power[1];
-    }
-    return driver_power(model, t, &power[2]);
 }
 
 int se3di_force_is_history_dependent(const se3di_force *force)

@@ -63,12 +63,6 @@ se3d_status se3di_gravity_eval(const se3di_model *model, double t, double g[3], 
  * element (the count of elements: gravity). */
 se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed);
 
-/* Potential energy of gravity (zero at the ground origin) and elements [J]. */
-se3d_status se3di_forces_potential(const se3di_model *model, double t, double *potential);
-
-/* Power of elements at the state of the model [W]: {dissipated, fed in by actuators, loads and
- * gravity that changes, fed in by drivers (from model->lambda)}. */
-se3d_status se3di_power_eval(const se3di_model *model, double t, double power[3]);
 /* Elements with a memory (friction, stops). After a trial step from the last accepted state:
  * compare what they assumed with what came out, correct it and return how many changed; the step is
  * repeated until none does. */

@@ -12,7 +12,7 @@
 #include "integrator/memory.h"
 #include "integrator/radau.h"
 
-#include "contact/loads.h"
+#include "assembly/energy.h"
 #include "contact/pace.h"
 #include "math/elementary.h"
 #include "math/quaternion.h"

@@ -2,7 +2,8 @@
 #include "integrator/explicit_rk.h"
 #include "integrator/memory.h"
 
-#include "contact/loads.h"
+#include "assembly/energy.h"
+#include "assembly/loads.h"
 #include "contact/pace.h"
 #include "integrator/state.h"
 #include "math/elementary.h"

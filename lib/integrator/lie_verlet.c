@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/lie_verlet.h"
 
-#include "contact/loads.h"
+#include "assembly/energy.h"
+#include "assembly/loads.h"
 #include "integrator/state.h"
 #include "math/elementary.h"
 #include "math/inertia.h"

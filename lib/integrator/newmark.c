@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/newmark.h"
 
-#include "contact/loads.h"
+#include "assembly/energy.h"
+#include "assembly/loads.h"
 #include "contact/pace.h"
 #include "integrator/turns.h"
 #include "math/vec3.h"

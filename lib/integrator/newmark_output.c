@@ -3,7 +3,7 @@
  * accelerations and multipliers that are exact for the positions and velocities. */
 #include "integrator/newmark.h"
 
-#include "contact/loads.h"
+#include "assembly/loads.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 

@@ -2,7 +2,7 @@
 /* The equations of a step of the Newmark family and their Newton iteration. */
 #include "integrator/newmark.h"
 
-#include "contact/loads.h"
+#include "assembly/loads.h"
 #include "contact/pace.h"
 #include "force/friction.h"
 #include "math/quaternion.h"

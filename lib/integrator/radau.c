@@ -12,7 +12,7 @@
 #include "integrator/radau.h"
 #include "integrator/memory.h"
 
-#include "contact/loads.h"
+#include "assembly/energy.h"
 #include "contact/pace.h"
 #include "math/elementary.h"
 #include "math/quaternion.h"

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/state.h"
 
+#include "assembly/energy.h"
+#include "assembly/loads.h"
 #include "assembly/user.h"
-#include "contact/loads.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The audit of energy where values of elements change between two steps. Elements evaluate
  * callbacks: the system is busy while they do. */
-#include "contact/loads.h"
+#include "assembly/energy.h"
+#include "contact/body_contacts.h"
+#include "force/force.h"
 #include "system/system_internal.h"
 
 #include <math.h>

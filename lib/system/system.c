@@ -3,8 +3,8 @@
 #include "system/particles.h"
 #include "system/solver.h"
 
+#include "assembly/energy.h"
 #include "base/hash.h"
-#include "contact/loads.h"
 #include "joint/user.h"
 #include "math/vec3.h"
 #include "primitive/primitive.h"
@@ -300,23 +300,6 @@ se3d_status se3d_system_get_force(const se3d_system *system, size_t index, se3d_
     SE3DI_TRY(get_handle(&system->model.force_slots, index, &handle));
     *force = (se3d_force){handle.index1, handle.generation};
     return SE3D_OK;
-}
-
-double se3di_kinetic_energy(const se3di_model *model)
-{
-    double energy = 0.0;
-    for (size_t k = 0; k < model->body_slots.count; ++k) {
-        const se3di_body *body = &model->bodies[k];
-        const se3di_frame *frame = &model->frames[k];
-        const double *J = body->J;
-        const double *w = frame->w;
-        if (!body->fixed) {
-            energy += 0.5 * body->mass * se3di_dot(frame->v, frame->v);
-            energy += 0.5 * (J[0] * w[0] * w[0] + J[1] * w[1] * w[1] + J[2] * w[2] * w[2]);
-            energy += J[3] * w[0] * w[1] + J[4] * w[1] * w[2] + J[5] * w[0] * w[2];
-        }
-    }
-    return energy;
 }
 
 se3d_status se3d_system_get_energy_sized(const se3d_system *system, se3d_energy *energy,

@@ -109,8 +109,6 @@ double se3di_audit_forces(const se3di_model *model);
 void se3di_audit_change(se3di_model *model, double before);
 double se3di_audit_contacts(const se3di_model *model);
 void se3di_audit_contacts_change(se3di_model *model, double before);
-/* The kinetic energy of all bodies [J]. */
-double se3di_kinetic_energy(const se3di_model *model);
 
 /* `name` (not NULL) is well formed. */
 se3d_status se3di_check_name(se3d_system *system, const char *name);
