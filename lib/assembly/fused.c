@@ -8,45 +8,11 @@
 
 #define BLOCK 6 /* of both formulations that are covered */
 
-static int same(const double a[3], const double b[3])
-{
-    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
-
-static int is_cd(const se3di_term *term, const se3di_term *first, int axis)
-{
-    return term->type == SE3DI_PRIMITIVE_CD && term->coefficient == 1.0 &&
-           term->body_i == first->body_i && term->body_j == first->body_j &&
-           same(term->s_i, first->s_i) && same(term->s_j, first->s_j) &&
-           term->c[0] == (axis == 0 ? 1.0 : 0.0) && term->c[1] == (axis == 1 ? 1.0 : 0.0) &&
-           term->c[2] == (axis == 2 ? 1.0 : 0.0);
-}
-
-static int is_dp1(const se3di_term *term, const se3di_term *first, const se3di_term *direction)
-{
-    return term->type == SE3DI_PRIMITIVE_DP1 && term->coefficient == 1.0 &&
-           term->body_i == first->body_i && term->body_j == first->body_j &&
-           same(term->a_j, direction->a_j);
-}
-
 int se3di_fused_fits(const se3di_assembly *assembly, uint32_t joint)
 {
-    const se3di_model *model = assembly->model;
-    const se3di_constraint *constraint = &model->constraints[joint];
-    const se3di_term *terms = model->terms + constraint->term_begin;
-    if (assembly->formulation->block != BLOCK || constraint->term_count != constraint->row_count ||
-        (constraint->row_count != 3 && constraint->row_count != 5) ||
-        terms[0].body_i == terms[0].body_j) {
-        return 0;
-    }
-    int fits = 1;
-    for (uint32_t r = 0; r < constraint->row_count; ++r) {
-        const se3di_row *row = &model->rows[constraint->row_begin + r];
-        fits = fits && row->term_count == 1 && row->term_begin == constraint->term_begin + r;
-        fits = fits && (r < 3 ? is_cd(&terms[r], &terms[0], (int)r)
-                              : is_dp1(&terms[r], &terms[0], &terms[3]));
-    }
-    return fits;
+    const se3di_constraint *constraint = &assembly->model->constraints[joint];
+    return assembly->formulation->block == BLOCK && constraint->pattern != SE3DI_PATTERN_NONE &&
+           constraint->bodies[0] != constraint->bodies[1];
 }
 
 /* Rows of a point that moves with a body, sign s: [s I, s s x (rows of A)]. */
@@ -250,9 +216,9 @@ void se3di_fused_eval(se3di_assembly *assembly, uint32_t joint, double *gamma)
         .gamma = gamma,
     };
     if (assembly->formulation->id == SE3D_FORMULATION_RP) {
-        rp_eval(&seen, constraint->row_count == 5);
+        rp_eval(&seen, constraint->pattern == SE3DI_PATTERN_HINGE);
     } else {
-        romega_eval(&seen, constraint->row_count == 5);
+        romega_eval(&seen, constraint->pattern == SE3DI_PATTERN_HINGE);
     }
 }
 

@@ -18,6 +18,7 @@ void se3di_draft_init(se3di_draft *draft, const char *type, uint32_t body_i, uin
 se3di_row *se3di_draft_add_row(se3di_draft *draft, const char *name, double value)
 {
     assert(draft->row_count < SE3DI_DRAFT_ROWS);
+    draft->constraint.pattern = SE3DI_PATTERN_NONE; /* those who add a pattern set it behind */
     se3di_row *row = &draft->rows[draft->row_count++];
     *row =
         (se3di_row){.name = name, .term_begin = draft->term_count, .function = -1, .value = value};
@@ -81,19 +82,23 @@ void se3di_row_add_d(se3di_draft *draft, double distance)
 void se3di_row_add_spherical(se3di_draft *draft)
 {
     static const char *const names[3] = {"cd_x", "cd_y", "cd_z"};
+    const int is_first = draft->row_count == 0;
     for (int k = 0; k < 3; ++k) {
         se3di_term term = term_between(draft, SE3DI_PRIMITIVE_CD);
         term.c[k] = 1.0;
         se3di_draft_add_row(draft, names[k], 0.0);
         se3di_draft_add_term(draft, &term, 1.0);
     }
+    draft->constraint.pattern = is_first ? SE3DI_PATTERN_POINT : SE3DI_PATTERN_NONE;
 }
 
 void se3di_row_add_perpendicular1(se3di_draft *draft)
 {
     const se3di_joint_frames *f = &draft->constraint.frames;
+    const int is_point = draft->constraint.pattern == SE3DI_PATTERN_POINT;
     se3di_row_add_dp1(draft, "dp1_a", f->ref_i, f->axis_j);
     se3di_row_add_dp1(draft, "dp1_b", f->third_i, f->axis_j);
+    draft->constraint.pattern = is_point ? SE3DI_PATTERN_HINGE : SE3DI_PATTERN_NONE;
 }
 
 void se3di_row_add_perpendicular2(se3di_draft *draft)

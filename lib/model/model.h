@@ -71,6 +71,14 @@ typedef struct se3di_joint_frames {
     double axis_j[3], ref_j[3], third_j[3];
 } se3di_joint_frames;
 
+/* What the rows of a constraint are together, where they can be evaluated in one pass
+ * (assembly/fused.h). */
+typedef enum se3di_row_pattern {
+    SE3DI_PATTERN_NONE = 0,
+    SE3DI_PATTERN_POINT = 1, /* three CD along the ground axes: the joint points coincide */
+    SE3DI_PATTERN_HINGE = 2  /* and two DP1 with the same direction on body j */
+} se3di_row_pattern;
+
 typedef struct se3di_constraint {
     char *name;
     const char *type; /* static: "dp1", "revolute", "driver" */
@@ -88,6 +96,7 @@ typedef struct se3di_constraint {
     void *ctx;
     uint32_t user_first; /* the callback's bodies begin here in `bodies` */
     int32_t has_value;   /* one row, whose prescribed value is the user's */
+    int32_t pattern;     /* se3di_row_pattern */
 } se3di_constraint;
 
 /* The first callback of a user constraint that failed since an analysis began. */
