@@ -9,7 +9,7 @@
  *     tilt=0        degrees that gravity turns by before the lead: an avalanche
  *     drum=0        rad/s: the box is a drum of 24 planes about the y axis instead
  *     funnel=0      1: the box is a conical hopper of 192 triangles, opened below before the lead
- *     state=FILE    the settled state as a LAMMPS data file: read where there is one, written
+ *     state=FILE    the settled state as a LAMMPS data file: read if there is one, written
  *                   otherwise, so that others start from the same
  *     tiles=1       the state is one of (edge/tiles)^3 spheres, put side by side and on top of each
  *                   other so many times, and settles from there: for sets that would take hours
@@ -315,7 +315,7 @@ static double triad(void)
     return best;
 }
 
-/* What passes between processor and memory where nothing stays in a cache, and what is computed,
+/* What passes between processor and memory if nothing stays in a cache, and what is computed,
  * for each particle and step: the records of a particle twice, once to move it and once for its
  * forces; the blocks of its pairs (8 of 256 bytes), of which the springs are written. */
 static void roofline(double contacts, double rate)

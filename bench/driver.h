@@ -35,7 +35,7 @@ typedef struct bench_answer {
     double tip[3];
     double drift, gap;
     double steps, evaluations, iterations, factorizations;
-    char failure[160]; /* "" where all went well */
+    char failure[160]; /* "" if all went well */
 } bench_answer;
 
 static inline double bench_clock(void)

@@ -92,7 +92,7 @@ typedef int (*se3d_interrupt)(void *ctx);
 /* Structures grow at their end in later versions. Those that a caller fills (definitions, options)
  * begin with their struct_size; those that the library fills are told the size by the caller's own
  * header: f(..., out) is f_sized(..., out, sizeof *out), which other languages call. What a smaller
- * one has no room for is left out; what this library does not know of is zero, or must be where the
+ * one has no room for is left out; what this library does not know of is zero, or must be if the
  * caller fills it. se3d_solver_stats, se3d_body_motion, se3d_expression_error and se3d_model_error
  * keep their size. */
 

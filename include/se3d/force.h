@@ -90,7 +90,7 @@ typedef struct se3d_load_def {
     const char *name;
     se3d_body body;
     double point[3];           /* force: where it acts, body frame [m] */
-    double value[3];           /* where the function is null [N, N m] */
+    double value[3];           /* if the function is null [N, N m] */
     se3d_function function[3]; /* of t, or null */
     int32_t in_body_frame;     /* not 0: components in the body frame, else in the ground frame */
     int32_t reserved;
@@ -242,7 +242,7 @@ typedef se3d_status (*se3d_force_callback)(void *ctx, double t, const se3d_body_
 typedef struct se3d_force_callback_def {
     size_t struct_size;
     const char *name;
-    se3d_body body_i; /* the ground where there is only one body */
+    se3d_body body_i; /* the ground if there is only one body */
     se3d_body body_j;
     se3d_force_callback callback;
     void *ctx;
@@ -296,7 +296,7 @@ typedef enum se3d_force_parameter {
     SE3D_FORCE_PARAMETER_LOWER = 4,       /* stop */
     SE3D_FORCE_PARAMETER_UPPER = 5,       /* stop */
     SE3D_FORCE_PARAMETER_RESTITUTION = 6, /* stop */
-    SE3D_FORCE_PARAMETER_MU = 7,          /* friction; mu_static goes along where it is the same */
+    SE3D_FORCE_PARAMETER_MU = 7,          /* friction; mu_static goes along if it is the same */
     SE3D_FORCE_PARAMETER_MU_STATIC = 8,   /* friction; 0: mu */
     SE3D_FORCE_PARAMETER_RADIUS = 9,      /* friction */
     SE3D_FORCE_PARAMETER_LIMIT = 10,      /* friction */

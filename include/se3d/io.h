@@ -266,7 +266,7 @@ SE3D_API void se3d_run_destroy(se3d_run *run);
 typedef struct se3d_run_analysis {
     const char *type;        /* owned by the run, as all texts below */
     const char *formulation; /* "rp", "romega" */
-    const char *method;      /* in use; "" where the analysis has none */
+    const char *method;      /* in use; "" if the analysis has none */
     int32_t status;          /* se3d_status */
     int32_t reserved;        /* 0 */
     double start;            /* [s] */

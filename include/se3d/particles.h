@@ -34,7 +34,7 @@ typedef struct se3d_particles_def {
     int32_t portable;    /* not 0: kernels without vectors; the same bits, slower */
     int32_t boundary[3]; /* se3d_domain_boundary along x, y, z */
     int32_t reserved;
-    double lower[3], upper[3]; /* of the domain [m]; where an open boundary has none: unbounded */
+    double lower[3], upper[3]; /* of the domain [m]; if an open boundary has none: unbounded */
     double step;               /* [s]; 0: that of the system's contact settings */
     double skin;               /* of the neighbour list, over the mean diameter; default 0.1 */
     uint32_t group, mask;      /* as of se3d_shape_def */

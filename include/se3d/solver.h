@@ -37,13 +37,13 @@ typedef enum se3d_method {
 /* Get the name of a method as in a model file ("auto", "dop853"). The methods have the numbers from
  * 0 to the one before the first without a name.
  * @param[in] method  se3d_method, or any number
- * @return the name, static; "" where no method has that number.
+ * @return the name, static; "" if no method has that number.
  * @since 0.1 */
 SE3D_API const char *se3d_method_get_name(int32_t method);
 
 /* Get the name of a formulation as in a model file ("romega", "rp").
  * @param[in] formulation  se3d_formulation, or any number
- * @return the name, static; "" where no formulation has that number.
+ * @return the name, static; "" if no formulation has that number.
  * @since 0.1 */
 SE3D_API const char *se3d_formulation_get_name(int32_t formulation);
 
@@ -131,7 +131,7 @@ static inline se3d_status se3d_solver_get_stats(const se3d_solver *solver, se3d_
 }
 /* How far the start that the user gave was from what the constraints admit: the last one that a run
  * of the solver began from. All is zero if it was met but for rounding (1e-9 of the model's size
- * and speeds), and the velocities where none was given (all zero) or drivers say them. Norms are
+ * and speeds), and the velocities if none was given (all zero) or drivers say them. Norms are
  * roots of the sums of squares over the bodies. @since 0.1 */
 typedef struct se3d_start_change {
     double time;                  /* of the start [s] */

@@ -519,7 +519,7 @@ static se3d_status inspect(inspection *in)
     return too_many > 0 ? count_by_factor(in, too_many) : SE3D_OK;
 }
 
-/* Poses that fit, or those of least violation, with a message where the given ones do not fit. */
+/* Poses that fit, or those of least violation, with a message if the given ones do not fit. */
 static se3d_status settle_poses(inspection *in)
 {
     se3di_equations *equations = in->equations;

@@ -59,7 +59,7 @@ static int widen(const se3di_crossing_function *f, bracket *k, se3d_status *stat
     return *status >= 0 && reached(k->side, k->gb);
 }
 
-/* Regula falsi with the weights of Anderson and Bjoerck (1973), bisection where that is slow; steps
+/* Regula falsi with the weights of Anderson and Bjoerck (1973), bisection if that is slow; steps
  * of at least half the tolerance, so that the bracket closes from both sides. */
 static se3d_status close_bracket(const se3di_crossing_function *f, bracket *k)
 {
@@ -98,7 +98,7 @@ static se3d_status close_bracket(const se3di_crossing_function *f, bracket *k)
 }
 
 /* Whether the states that count have been beyond the band on `side` at t or before it: what is
- * rough may leave the band where they do not. *yes is set. */
+ * rough may leave the band if they do not. *yes is set. */
 static se3d_status was_beyond(const se3di_crossing_function *f, double t, double g, double side,
                               int *yes)
 {
@@ -195,7 +195,7 @@ static se3d_status find_dip(const se3di_crossing_function *f, int node, int firs
     return SE3D_OK;
 }
 
-/* Two crossings between two nodes of one sign, where there are any. */
+/* Two crossings between two nodes of one sign, if there are any. */
 static se3d_status look_between(const search *s, int node, double side)
 {
     const se3di_crossing_function *f = s->f;

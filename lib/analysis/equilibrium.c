@@ -198,7 +198,7 @@ static se3d_status move(statics *s, double fraction, int *converged)
     return *converged ? evaluate(s, 0) : SE3D_OK;
 }
 
-/* Take the step, shortened where it leads too far from the constraints; *ratio of the work done to
+/* Take the step, shortened if it leads too far from the constraints; *ratio of the work done to
  * what was predicted. If too little is done all is as before, and *ratio is -1. */
 static se3d_status try_step(statics *s, double *ratio)
 {

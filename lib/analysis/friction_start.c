@@ -23,7 +23,7 @@ static uint32_t take_up(se3di_equations *equations)
     return fresh;
 }
 
-/* Decide what those that rest do, where there are any. */
+/* Decide what those that rest do, if there are any. */
 static se3d_status find_holds(se3di_equations *equations, uint32_t count)
 {
     se3di_model *model = equations->assembly.model;

@@ -9,13 +9,13 @@
  * run starts. Ends with the accelerations and multipliers of that. docs/theory/friction.md */
 se3d_status se3di_friction_start(se3di_equations *equations);
 
-/* The same where something else acts from here on: what rests holds with another force. Without
+/* The same if something else acts from here on: what rests holds with another force. Without
  * friction nothing happens. */
 se3d_status se3di_friction_renew(se3di_equations *equations);
 
 /* Where drivers determine the motion: friction slips as its coordinate moves, under the load of the
  * reactions that come out; what is at rest takes none. At a consistent state at t, whose
- * accelerations and multipliers are computed again. @return NO_CONVERGENCE where friction jams. */
+ * accelerations and multipliers are computed again. @return NO_CONVERGENCE if friction jams. */
 se3d_status se3di_friction_follow(se3di_equations *equations, double t);
 
 #endif

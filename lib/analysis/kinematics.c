@@ -63,7 +63,7 @@ static se3d_status pass(se3di_equations *equations, double t)
     return status;
 }
 
-/* The state at t from the accepted one; where the constraints lose rank by another way. */
+/* The state at t from the accepted one; if the constraints lose rank by another way. */
 static se3d_status reach(se3di_equations *equations, double t)
 {
     se3di_model *model = equations->assembly.model;

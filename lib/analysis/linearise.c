@@ -114,7 +114,7 @@ static se3d_status find_freedoms(se3di_linear *linear)
     return status;
 }
 
-/* The multipliers of Phi_q^T lambda = load, of least 2-norm where rows are redundant. */
+/* The multipliers of Phi_q^T lambda = load, of least 2-norm if rows are redundant. */
 static se3d_status balance(se3di_linear *linear)
 {
     se3di_equations *equations = linear->equations;

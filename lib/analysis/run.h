@@ -53,7 +53,7 @@ se3d_status se3di_run_make_step(se3di_run *run, double h);
 
 /* One kinematic step of length h: prediction, then the three levels; on failure the old state. */
 se3d_status se3di_kinematics_step(se3di_equations *equations, double h);
-/* Kinematics to t_end in steps of at most `step` (0: any), shortened where the motion is fast. */
+/* Kinematics to t_end in steps of at most `step` (0: any), shortened if the motion is fast. */
 se3d_status se3di_kinematics_run(se3di_equations *equations, double t_end, double step);
 
 #endif

@@ -44,8 +44,7 @@ static double largest_speed(const se3di_model *model, const se3di_frame *given, 
     return speed;
 }
 
-/* The change {translation, rotation} of body k to the sums; the body is kept where it is the most.
- */
+/* The change {translation, rotation} of body k to the sums; the body is kept if it is the most. */
 static void take(const double change[2], double length, se3di_handle body, double sums[2],
                  double most[2], se3di_handle *which)
 {

@@ -11,7 +11,7 @@
 #define RANK_TOLERANCE  1e-9
 #define MIN_NORM_ROWS   600 /* beyond it dense least squares would be too slow */
 
-/* Count the pairs of the bodies of joints, and write them where there is room. */
+/* Count the pairs of the bodies of joints, and write them if there is room. */
 static size_t list_joint_pairs(const se3di_assembly *assembly, int32_t *pairs)
 {
     size_t count = 0;

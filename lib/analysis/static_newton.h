@@ -50,7 +50,7 @@ se3d_status se3di_static_newton_init(se3di_static_newton *newton, se3di_equation
 void se3di_static_newton_destroy(se3di_static_newton *newton);
 
 /* The forces that the constraints do not balance [unknowns] (of least 2-norm), and the multipliers
- * [rows], at the present state, whose applied forces are `load`. Exact where rows are dependent or
+ * [rows], at the present state, whose applied forces are `load`. Exact if rows are dependent or
  * nearly so only if `careful`.
  * @return OK, INFO_REDUNDANT, NO_MEMORY, NOT_FINITE, SINGULAR */
 se3d_status se3di_static_newton_balance(se3di_static_newton *newton, const double *load,
@@ -60,7 +60,7 @@ se3d_status se3di_static_newton_balance(se3di_static_newton *newton, const doubl
 se3d_status se3di_static_newton_eval(se3di_static_newton *newton, double t, const double *load,
                                      const double *lambda, int is_convex);
 /* Factor the symmetric part with damping s >= 0; *negative: freedoms of negative curvature.
- * @return OK, or SINGULAR, NOT_FINITE where another s may do */
+ * @return OK, or SINGULAR, NOT_FINITE if another s may do */
 se3d_status se3di_static_newton_factor(se3di_static_newton *newton, double s, int32_t *negative);
 /* Whether every freedom has positive curvature, beyond rounding. What was factored is lost. */
 int se3di_static_newton_is_strict(se3di_static_newton *newton);

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Dense body indices of a term; both are counted even where they are the same. */
+/* Dense body indices of a term; both are counted even if they are the same. */
 static int32_t free_of(const se3di_assembly *assembly, uint32_t dense)
 {
     return assembly->free_index[dense];
@@ -25,7 +25,7 @@ static void number_bodies(se3di_assembly *assembly)
     }
 }
 
-/* Block of `free` within the joint that begins at `begin`; appended where it is new. */
+/* Block of `free` within the joint that begins at `begin`; appended if it is new. */
 static int32_t place_body(se3di_assembly *assembly, uint32_t begin, int32_t free)
 {
     if (free < 0) {

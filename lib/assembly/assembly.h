@@ -71,10 +71,10 @@ void se3di_assembly_eval_jacobian(se3di_assembly *assembly);
 void se3di_assembly_eval_gamma(const se3di_assembly *assembly, double *gamma);
 /* Both, in one pass. */
 void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma);
-/* Mass blocks into H, or equal ones where it `levels`. */
+/* Mass blocks into H, or equal ones if it `levels`. */
 void se3di_assembly_eval_mass(se3di_assembly *assembly);
 /* From now on H weighs all bodies alike: by their mean mass, and by how far joints are from the
- * centres of the bodies that move (1 m where they are at the centres). */
+ * centres of the bodies that move (1 m if they are at the centres). */
 void se3di_assembly_level(se3di_assembly *assembly);
 /* out [unknowns] -= M x, M the mass whatever H is. */
 void se3di_assembly_subtract_inertia(const se3di_assembly *assembly, const double *x, double *out);

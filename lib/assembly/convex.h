@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Stiffness without negative curvature: that of every force element, and of the constraints on
  * every body, in its absolute value. Newton steps with it lead downhill far from an equilibrium,
- * and where nothing has negative curvature it is nearly the stiffness itself (Teran, Sifakis,
- * Irving and Fedkiw 2005). In r-omega.                                   docs/theory/equilibrium.md
- */
+ * and if nothing has negative curvature it is nearly the stiffness itself (Teran, Sifakis,
+ * Irving and Fedkiw 2005). In r-omega.
+ * docs/theory/equilibrium.md */
 #ifndef SE3DI_CONVEX_H
 #define SE3DI_CONVEX_H
 

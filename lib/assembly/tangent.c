@@ -33,7 +33,7 @@ static void note_pair(se3di_tangent *tangent, uint32_t dense_a, uint32_t dense_b
     ++*count;
 }
 
-/* How many free bodies have shapes; it stops where there are too many. */
+/* How many free bodies have shapes; it stops if there are too many. */
 static size_t count_bodies_with_shapes(const se3di_tangent *tangent)
 {
     const se3di_model *model = tangent->assembly->model;
@@ -68,7 +68,7 @@ static void list_contacts(se3di_tangent *tangent, size_t *count)
     }
 }
 
-/* Count the pairs, and write them where there is room. */
+/* Count the pairs, and write them if there is room. */
 static size_t list_pairs(se3di_tangent *tangent)
 {
     const se3di_model *model = tangent->assembly->model;

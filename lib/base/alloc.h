@@ -5,11 +5,10 @@
 
 #include "se3d/base.h"
 
-/* The allocator used where the user gave none: malloc and friends. */
+/* The allocator used if the user gave none: malloc and friends. */
 se3d_allocator se3di_alloc_default(void);
 
-/* Zeroed memory of count * size bytes, or NULL (also where the product overflows). count may be 0.
- */
+/* Zeroed memory of count * size bytes, or NULL (also if the product overflows). count may be 0. */
 void *se3di_alloc(const se3d_allocator *allocator, size_t count, size_t size);
 
 /* Give back what se3di_alloc or se3di_array_reserve returned with the same count and size; NULL is

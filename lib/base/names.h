@@ -26,7 +26,7 @@ void se3di_names_destroy(se3di_names *names, const se3d_allocator *allocator);
 se3d_status se3di_names_reserve(se3di_names *names, const se3d_allocator *allocator, size_t count);
 /* Add a name that is not there; the text stays the caller's and must outlive the entry. */
 void se3di_names_add(se3di_names *names, uint32_t owner, const char *text, uint32_t slot);
-/* Remove a name, where it is there. */
+/* Remove a name, if it is there. */
 void se3di_names_remove(se3di_names *names, uint32_t owner, const char *text);
 /* The slot of a name, SE3DI_NO_INDEX if there is none. */
 uint32_t se3di_names_find(const se3di_names *names, uint32_t owner, const char *text);

@@ -5,7 +5,7 @@
 
 #include "se3d/base.h"
 
-/* True where all of it are characters of se3d_text_get_character. */
+/* True if all of it are characters of se3d_text_get_character. */
 int se3di_text_is_plain(const char *text);
 /* Replace what is not such a character by '?', byte by byte. */
 void se3di_text_make_plain(char *text);

@@ -9,7 +9,7 @@
 typedef se3d_status (*se3di_pair_visitor)(void *ctx, uint32_t i, uint32_t j);
 se3d_status se3di_broad_visit(const se3di_model *model, se3di_pair_visitor visitor, void *ctx);
 
-/* How far apart two shapes are at least, by their bounds; negative where these overlap. */
+/* How far apart two shapes are at least, by their bounds; negative if these overlap. */
 double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j);
 
 /* Renew the list of pairs if the shapes have moved too far since it was made. On failure it is

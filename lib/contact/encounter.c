@@ -324,7 +324,7 @@ void se3di_encounter_wrench(const se3di_encounter *e, double wrench[12])
     }
 }
 
-/* The stretch that is kept where the force was capped: shortened as the force is, or to what the
+/* The stretch that is kept if the force was capped: shortened as the force is, or to what the
  * cap holds where the damper pulls along with the spring. It so never pulls along the slip. */
 static void settled(double k, double cap, double factor, const double pull[3], const double x[3],
                     double out[3])

@@ -21,7 +21,7 @@ typedef struct se3di_face {
     double corner[SE3DI_FACE_CORNERS][3]; /* ground frame */
 } se3di_face;
 
-/* Append a point; where the manifold is full the shallowest gives way. */
+/* Append a point; if the manifold is full the shallowest gives way. */
 se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double point[3],
                                         const double normal[3], double overlap, uint32_t feature);
 void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double across);

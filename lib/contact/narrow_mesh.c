@@ -512,7 +512,7 @@ static void meet_rims(void *ctx, uint32_t triangle)
     }
 }
 
-/* A triangle that a solid cuts through where none of its corners and no edge of the mesh that
+/* A triangle that a solid cuts through if none of its corners and no edge of the mesh that
  * bulges touch (sharp ones, in hollows): pushed apart as convex shapes are, but not through the
  * surface. */
 static void meet_rest(void *ctx, uint32_t triangle)

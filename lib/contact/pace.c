@@ -22,7 +22,7 @@
 #include <string.h>
 
 #define PARTS        64.0 /* steps in a time of contact where it is followed */
-#define LAND_PARTS   16.0 /* where the error is controlled: no step over an event */
+#define LAND_PARTS   16.0 /* if the error is controlled: no step over an event */
 #define STABLE_PARTS 3.0  /* fewer are refused */
 #define AT_REST      0.1  /* amplitude of a resting contact over the overlaps that are there */
 #define PASSING      2.0  /* sizes of the smaller shape in a step: it may pass through */
@@ -326,7 +326,7 @@ static void nearest_pair(pace *p, uint32_t i, uint32_t j)
     limit(p, se3di_narrow_gap(s[0], &at[0], s[1], &at[1], n), i, j);
 }
 
-/* The pair with the largest force, or, where none touch, the nearest. */
+/* The pair with the largest force, or, if none touch, the nearest. */
 static void find_culprits(pace *p)
 {
     const se3di_body_contacts *c = &p->model->contacts;

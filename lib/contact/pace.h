@@ -14,7 +14,7 @@ typedef enum se3di_pace_kind {
 
 /* The longest step from the last accepted state, at most h. */
 double se3di_contacts_pace(const se3di_model *model, se3di_pace_kind kind, double h);
-/* A step on the way to t_end, of at most h: equal ones where no contact asks for less. */
+/* A step on the way to t_end, of at most h: equal ones if no contact asks for less. */
 double se3di_contacts_next_step(const se3di_model *model, se3di_pace_kind kind, double h,
                                 double t_end);
 
@@ -24,7 +24,7 @@ double se3di_contacts_next_step(const se3di_model *model, se3di_pace_kind kind, 
 se3d_status se3di_contacts_check_step(const se3di_model *model, se3di_pace_kind kind, double h,
                                       se3di_error *error);
 
-/* Add to the message of a step that failed which shapes press most on each other, or, where none
+/* Add to the message of a step that failed which shapes press most on each other, or, if none
  * touch, which are about to. */
 void se3di_contacts_blame(const se3di_model *model, se3di_error *error);
 

@@ -19,7 +19,7 @@
 #include <math.h>
 
 #define PARTS        64.0 /* steps in the time of an impact */
-#define LAND_PARTS   16.0 /* where the error is controlled */
+#define LAND_PARTS   16.0 /* if the error is controlled */
 #define STABLE_PARTS 3.0  /* fewer are refused */
 #define AT_REST      0.1  /* amplitude of a coordinate at rest on its stop over its penetration */
 #define SHORT        1e-6 /* a long step ends so much before an impact begins */
@@ -49,7 +49,7 @@ typedef struct arrival {
     double gap, speed, acceleration, time;
 } arrival;
 
-/* The impact is followed; where the stop is rested upon, only explicit methods need that. */
+/* The impact is followed; if the stop is rested upon, only explicit methods need that. */
 static double pace_inside(const arrival *a, se3di_pace_kind kind, double parts, double h)
 {
     const double rate = 3.14159265358979324 / a->time;

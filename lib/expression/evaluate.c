@@ -9,7 +9,7 @@
  *
  * with first derivatives along all variables (struct slope) or first and second along the first
  * variable (struct jet). The masks of an instruction say on which variables an operand depends:
- * a term that is zero for that reason stays zero also where f_u is infinite. */
+ * a term that is zero for that reason stays zero also if f_u is infinite. */
 #include "expression/functions.h"
 #include "expression/program.h"
 #include "se3d/expression.h"

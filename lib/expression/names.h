@@ -23,7 +23,7 @@ se3d_status se3di_names_check(const se3d_expression_def *def, const se3di_lexer 
 /* Look up a name that is not a function. */
 se3di_name se3di_name_find(const se3d_expression_def *def, const char *name, size_t length);
 
-/* Report the present token as an unknown name or function, with a suggestion where one is near. */
+/* Report the present token as an unknown name or function, with a suggestion if one is near. */
 se3d_status se3di_name_fail(const se3d_expression_def *def, const se3di_lexer *lexer,
                             const se3di_token *token, int is_function);
 

@@ -55,7 +55,7 @@ static se3d_status enter(parser *p)
     return SE3D_OK;
 }
 
-/* Pass the status of an operation on, with a message where its constants have no finite result. */
+/* Pass the status of an operation on, with a message if its constants have no finite result. */
 static se3d_status check_finite(const parser *p, const se3di_token *token, se3d_status status)
 {
     if (status != SE3D_ERR_NOT_FINITE) {

@@ -60,14 +60,14 @@ typedef struct se3di_operand {
 
 void se3di_program_destroy(se3di_program *program);
 
-/* True where `operand`, which must be the last one, is a known number; it is then code[start]. */
+/* True if `operand`, which must be the last one, is a known number; it is then code[start]. */
 int se3di_program_is_constant(const se3di_program *program, se3di_operand operand);
 
 se3d_status se3di_program_push_constant(se3di_program *program, double value, se3di_operand *out);
 se3d_status se3di_program_push_variable(se3di_program *program, size_t index, se3di_operand *out);
 
 /* Replace the last operand(s) by the result, which is written to the first. Constants are folded;
- * SE3D_ERR_NOT_FINITE where the result can never be finite. */
+ * SE3D_ERR_NOT_FINITE if the result can never be finite. */
 se3d_status se3di_program_negate(se3di_program *program, se3di_operand *a);
 se3d_status se3di_program_unary(se3di_program *program, size_t function, se3di_operand *a);
 se3d_status se3di_program_binary(se3di_program *program, se3di_op op, size_t function,

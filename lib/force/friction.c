@@ -7,7 +7,7 @@
  *
  * L belongs to the multipliers of the same instant: it is an unknown of the step. Whether it sticks
  * or slips, the anchor z, n_0 and s do not change within a step, so that the step solves smooth
- * equations. Fixed steps compare what they assumed with their end (`revise`) and are repeated where
+ * equations. Fixed steps compare what they assumed with their end (`revise`) and are repeated if
  * they differ, the return mapping of elasto-plasticity; methods with error control change modes at
  * the ends of steps (integrator/memory.h). The energy of the spring is continuous.
  * docs/theory/friction.md */

@@ -2,7 +2,7 @@
 /* What presses in a joint, from its reaction on body j: F perpendicular to the axis u and the
  * moment M about the joint point, which is carried by two places at +-length/2 on the axis,
  *
- *     N = |F/2 + u x M/length| + |F/2 - u x M/length|       |F| where no length is given
+ *     N = |F/2 + u x M/length| + |F/2 - u x M/length|       |F| if no length is given
  *       + 2 |M_u|/width                                     a guide on two rails
  *
  * and on an angle  radius N + thrust_radius |F_u|, the moment on pin and shoulder.

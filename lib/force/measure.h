@@ -14,7 +14,7 @@ typedef struct se3di_measure {
     double value, rate;
     double g[12];
     double u[12];  /* v, w of i and j */
-    double H[144]; /* where wanted */
+    double H[144]; /* if wanted */
 } se3di_measure;
 
 /* A force law at one state: n and its slopes. */

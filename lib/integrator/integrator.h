@@ -69,7 +69,7 @@ struct se3di_integration {
     se3di_equations *equations;
     se3di_integrator_settings settings;
     double *work;
-    double error;        /* of the last step, relative to the tolerance, where it is controlled */
+    double error;        /* of the last step, relative to the tolerance, if it is controlled */
     se3di_newton newton; /* of implicit methods */
 };
 

@@ -64,7 +64,7 @@ se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int forc
  *
  *     m + s/2 x x m + c x x (x x m),   c(y) = (1 - z cot z)/y,  z = y^(1/2)/2
  *
- * Its c and dc/dy; by series where the difference cancels. */
+ * Its c and dc/dy; by series if the difference cancels. */
 static void turn_coefficients(double y, double *c, double *c_y)
 {
     if (y < 0.06) {
@@ -316,7 +316,7 @@ static se3d_status project_velocities(se3di_lie_verlet *m)
     return SE3D_OK;
 }
 
-/* v_1 and w_1; iterated where forces depend on them. */
+/* v_1 and w_1; iterated if forces depend on them. */
 static se3d_status solve_velocities(se3di_lie_verlet *m)
 {
     se3di_equations *equations = m->equations;

@@ -19,7 +19,7 @@ typedef struct se3di_memory_step {
     double tolerance;
     const double *lambda; /* [rows] at the end */
     const se3di_state_scale *scale;
-    double *memory; /* [forces * SE3DI_FORCE_STATES]: takes that of before, to be restored where the
+    double *memory; /* [forces * SE3DI_FORCE_STATES]: takes that of before, to be restored if the
                        step is not taken */
     double *work;   /* [unknowns] */
 } se3di_memory_step;

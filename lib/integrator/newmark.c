@@ -12,13 +12,13 @@
 #include <string.h>
 
 #define TURN_MAX    3.0  /* rad, of a body in a step */
-#define TURN_WANTED 0.5  /* where the step is chosen */
+#define TURN_WANTED 0.5  /* if the step is chosen */
 #define SPAN_LEAST  0.5  /* from a_n to a, over the step */
 #define FIRST_STEP  0.3  /* of the root of the tolerance, over the rates */
 #define PART_LEAST  0.01 /* of an equal step that does not converge */
 #define JUMP_ERROR  30.0 /* over the tolerance, where the acceleration jumps */
 
-/* memcpy where count may be zero and the pointers NULL. */
+/* memcpy if count may be zero and the pointers NULL. */
 static void copy(double *to, const double *from, size_t count)
 {
     if (count > 0) {

@@ -163,7 +163,7 @@ static se3d_status correct_plainly(se3di_newmark_step *step)
     return SE3D_OK;
 }
 
-/* dz, with the matrix whose rows are those of velocities, refined where they are very different;
+/* dz, with the matrix whose rows are those of velocities, refined if they are very different;
  * and what it changes: of b and c of the step, and of phi. */
 static se3d_status close_gap(se3di_newmark_step *step)
 {
@@ -249,7 +249,7 @@ static se3d_status iterate(se3di_newmark_step *step, int refactor)
 }
 
 /* Corrections are looked at by fmax, which passes over what is not a number; and the state may
- * overflow where they do not. */
+ * overflow if they do not. */
 static se3d_status check_state(const se3di_newmark_step *step)
 {
     const se3di_model *model = step->assembly->model;

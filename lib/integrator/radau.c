@@ -72,7 +72,7 @@ static double inner_tolerance(double tolerance)
     return 0.1 * se3di_pow(fmax(tolerance, 1e-13), 2.0 / 3.0);
 }
 
-/* The iteration stops where it does not show in the result. If stages are projected it
+/* The iteration stops if it does not show in the result. If stages are projected it
  * converges faster, and its rate tells better what is missing. */
 static double iteration_tolerance(const se3di_radau *m, double inner)
 {

@@ -30,14 +30,14 @@ void se3di_state_set_rates(se3di_assembly *assembly, const double *derivative);
 se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const double *qddot,
                                    const double *l, double *derivative);
 
-/* Before a series of evaluations: the mass where it is constant, and the linear solver's settings
+/* Before a series of evaluations: the mass if it is constant, and the linear solver's settings
  * for the regularisation `eps`; after it: the settings as they were. Near singular positions an
  * acceleration is then a smooth function of the state: eps and the two refinements act as a filter,
  * (eps / (eps + sigma^2))^3 of a constraint direction of relative size sigma is not enforced, where
  * its multiplier has no leverage anyway; errors are amplified by eps^(-1/2) at most. */
 se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, double accuracy);
 /* Before the evaluations of one step: what changes little within it (and must not depend on the
- * steps before) is kept. `redundant`: rows that have been dependent all along; where there are
+ * steps before) is kept. `redundant`: rows that have been dependent all along; if there are
  * more, the position is nearly singular. */
 void se3di_state_begin_step(se3di_equations *equations, double redundant);
 void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *settings);

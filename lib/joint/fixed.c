@@ -5,7 +5,7 @@
  *     dp1_a, dp1_b         ref_i . axis_j = third_i . axis_j = 0
  *     dp1_c                ref_i . third_j = 0
  *
- * 6 equations, no freedom. The rotational rows vanish also where body j is turned by half a turn
+ * 6 equations, no freedom. The rotational rows vanish also if body j is turned by half a turn
  * about one of its directions: a guess within a quarter of a turn finds the right one. Regular
  * there: the gradients of dp1_a, dp1_b, dp1_c are -third, ref, axis.  docs/theory/joints.md */
 #include "joint/joint.h"

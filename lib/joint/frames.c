@@ -49,7 +49,7 @@ void se3di_joint_ref_match(const se3di_joint_frames *frames, double angle, const
     double along = se3di_dot(axis, frames->axis_j);
     if (fabs(along) > ALIGNED_COSINE) {
         /* e + alpha axis_i is perpendicular to axis_j and has the direction e seen along axis_i:
-         * the angle is exact also where the axes are not yet aligned */
+         * the angle is exact also if the axes are not yet aligned */
         se3di_add_scaled(-se3di_dot(e_j, frames->axis_j) / along, axis, e_j);
     }
     double third[3];

@@ -4,7 +4,7 @@
  *
  *     dp2_a, dp2_b         ref_i . d = third_i . d = 0
  *
- * 2 equations; freedoms: the displacement axis_i . d and three rotations. Regular also where d = 0.
+ * 2 equations; freedoms: the displacement axis_i . d and three rotations. Regular also if d = 0.
  * docs/theory/joints.md */
 #include "joint/joint.h"
 #include "joint/rows.h"

@@ -7,18 +7,18 @@
 
 #include "se3d/base.h"
 
-/* P A = L U in place, row pivoting. pivot[n]. Returns SE3D_ERR_SINGULAR where a pivot is zero,
- * SE3D_ERR_NOT_FINITE where A is not finite. */
+/* P A = L U in place, row pivoting. pivot[n]. Returns SE3D_ERR_SINGULAR if a pivot is zero,
+ * SE3D_ERR_NOT_FINITE if A is not finite. */
 se3d_status se3di_dense_lu_factor(int32_t n, double *A, int32_t *pivot);
 /* Overwrite b[n] by A^-1 b. */
 void se3di_dense_lu_solve(int32_t n, const double *A, const int32_t *pivot, double *b);
 
-/* A = L L^T in place (lower triangle; the upper is not touched). SE3D_ERR_SINGULAR where A is not
+/* A = L L^T in place (lower triangle; the upper is not touched). SE3D_ERR_SINGULAR if A is not
  * positive definite. */
 se3d_status se3di_dense_cholesky_factor(int32_t n, double *A);
 void se3di_dense_cholesky_solve(int32_t n, const double *L, double *b);
 
-/* A = L D L^T in place, no pivoting: unit L below, D on the diagonal. SE3D_ERR_SINGULAR where a
+/* A = L D L^T in place, no pivoting: unit L below, D on the diagonal. SE3D_ERR_SINGULAR if a
  * pivot is zero or not finite. */
 se3d_status se3di_dense_ldl_factor(int32_t n, double *A);
 void se3di_dense_ldl_solve(int32_t n, const double *A, double *b);

@@ -95,7 +95,7 @@ typedef struct se3di_kkt_settings {
     double tolerance; /* of the relative residual; 1e-15 */
     int32_t max_refinements;
     se3di_kkt_regularise regularise;
-    bool always_check;      /* compute the residual also where the pivots promise the tolerance */
+    bool always_check;      /* compute the residual also if the pivots promise the tolerance */
     bool any_multipliers;   /* of dependent rows: they need not be those of least norm */
     bool iterated;          /* the caller iterates on the exact residual (Newton): where E = 0, that
                                corrects what a solution leaves, and it is not looked at */

@@ -33,7 +33,7 @@ typedef struct se3di_saved {
     se3di_saved_array history;      /* none if nobody wrote it */
     se3di_saved_array contacts;     /* se3di_body_contact */
     se3di_saved_array wrench;       /* [shapes * 6] */
-    se3di_saved_array left_out;     /* [rows] uint8_t, none where no row is */
+    se3di_saved_array left_out;     /* [rows] uint8_t, none if no row is */
 } se3di_saved;
 
 /* Copy the model's state; `saved` is zero or has been filled before with the same allocator.

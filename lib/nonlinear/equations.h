@@ -97,8 +97,7 @@ se3d_status se3di_state_solve(se3di_equations *equations, double t);
  * to rounding where they do; *body (dense) is the one that can move most. */
 se3d_status se3di_equations_probe(se3di_equations *equations, double *worst, uint32_t *body);
 
-/* Fails with SINGULAR where the constraints leave a freedom (motion not determined by the drivers).
- */
+/* Fails with SINGULAR if the constraints leave a freedom (motion not determined by the drivers). */
 se3d_status se3di_equations_check_determined(se3di_equations *equations);
 
 static inline se3d_status se3di_watch_begin(const se3di_equations *equations)

@@ -19,7 +19,7 @@
 
 typedef se3di_friction_system friction;
 
-/* memcpy where count may be zero and the pointers NULL. */
+/* memcpy if count may be zero and the pointers NULL. */
 static void copy(double *to, const double *from, size_t count)
 {
     if (count > 0) {

@@ -180,7 +180,7 @@ static void collide(double x, int callback, double out[6 * GRAINS + 6], double p
     close_scene(&s);
 }
 
-/* If the body is in the period makes no difference, also where grains meet it across the end. */
+/* The place of the body in the period makes no difference, nor do grains that meet it across. */
 static void shapes_are_repeated_with_the_period(void)
 {
     for (int callback = 0; callback < 2; ++callback) {

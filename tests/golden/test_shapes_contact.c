@@ -166,7 +166,7 @@ static void sliding_spheres_roll_in_the_end_on_flat_shapes(void)
     }
 }
 
-/* One sphere rolls, one spins on the spot: both are slowed as on a plane, also where nothing but a
+/* One sphere rolls, one spins on the spot: both are slowed as on a plane, also if nothing but a
  * mesh is touched. */
 static void rolling_and_spinning_are_resisted_on_flat_shapes(void)
 {

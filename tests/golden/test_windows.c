@@ -157,7 +157,7 @@ static void auto_takes_no_singular_position_for_stiffness(void)
     check_rows(SE3D_METHOD_AUTO, rows, sizeof rows / sizeof *rows);
 }
 
-/* As many as where nothing is singular, however many windows. Measured: 1140 (two windows: 52293
+/* As many as without singular positions, however many windows. Measured: 1140 (two windows: 52293
  * and 28501 rejected when redundant rows were taken at positions that were open by the error of the
  * prediction; 40 never passed), 2450, 3650, 5300, 7900. */
 static void bdf_takes_no_more_steps_for_more_windows(void)
@@ -230,7 +230,7 @@ static void follow_at(int32_t method, int windows, double tolerance, double tip)
     }
 }
 
-/* Three times as many as dop853 accepts at 1e-6 (123), as many as a method of order 5 needs where
+/* Three times as many as dop853 accepts at 1e-6 (123), as many as a method of order 5 needs if
  * nothing is singular, however many windows. Measured: 365, 772, 1644, 2438 (one matrix of the
  * constraints for all stages: two windows 1672 and 3260, off by 5e-4 m). */
 static void radau_takes_no_more_steps_for_more_windows(void)

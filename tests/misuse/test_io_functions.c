@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* One row for every function of libse3d-io: what it does with NULL, a wrong index and what cannot
- * be written. A failure leaves outputs NULL and a message where there is one to leave. */
+ * be written. A failure leaves outputs NULL and a message if there is one to leave. */
 #include <stdlib.h>
 
 #include "check.h"

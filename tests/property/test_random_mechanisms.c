@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Random mechanisms: trees and loops of all joint types between bodies at random poses, with random
  * frames, springs, dampers and velocities. r-p and r-omega, dop853 and radau give one motion, the
- * audit of energy closes, and where nothing holds them momentum is kept; methods with fixed steps
+ * audit of energy closes, and if nothing holds them momentum is kept; methods with fixed steps
  * come near. With arguments FIRST COUNT: more of them. */
 #include <stdlib.h>
 

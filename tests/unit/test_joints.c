@@ -92,7 +92,7 @@ static void given_references_define_the_angle(void)
     world_destroy(&w);
 }
 
-/* A reference chosen by the library gives angle0 exactly, also where the axes are not aligned. */
+/* A reference chosen by the library gives angle0 exactly, also if the axes are not aligned. */
 static void chosen_reference_gives_angle0_at_a_rough_pose(void)
 {
     for (uint64_t trial = 0; trial < 40; ++trial) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Solids beside meshes, against tests that are exact: no contact of what is apart, a contact of all
- * that overlaps. A box or hull and a triangle overlap where no normal or product of edges divides
+ * that overlaps. A box or hull and a triangle overlap if no normal or product of edges divides
  * them; a capsule or sphere, where the line or point is nearer than the radius; a cylinder, where
  * what of the triangle is between the planes of its caps comes nearer to the axis than its radius.
  * Each is asked with the solid larger and smaller by a margin, so that no pose is ambiguous. */

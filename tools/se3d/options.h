@@ -56,7 +56,7 @@ int command_video(int count, char *const *words);
 /* What `se3d plot` does with its words. */
 int plot_files(int count, const char *const *words);
 /* Run a model, results into results/<model>, and draw the plots it asks for. `csv`: where its first
- * results with channels are. @return the exit code, after a message where it failed. */
+ * results with channels are. @return the exit code, after a message if it failed. */
 int run_for_plots(const char *model, int quiet, int draw, char *csv, size_t size);
 
 /* Write a text as a JSON string, a number as JSON (null if it is not finite). */

@@ -130,7 +130,7 @@ static int name_output(plot *p)
     return 1;
 }
 
-/* True where a file that gnuplot made ends as it should, but for blanks. */
+/* True if a file that gnuplot made ends as it should, but for blanks. */
 static int is_whole(const char *path, const char *tail)
 {
     char end[16] = "";

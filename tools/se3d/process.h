@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-/* True where a program is on the PATH, or is a path of an executable file. */
+/* True if a program is on the PATH, or is a path of an executable file. */
 int process_is_found(const char *name);
 
 /* Run a program in `folder` (NULL: here) and wait for it. `words` ends with NULL. @return its exit
@@ -21,7 +21,7 @@ int path_get_folder(const char *path, char *folder, size_t size);
 const char *path_get_name(const char *path);
 /* Copy a path without its extension, if that is `extension` (".csv"). */
 int path_cut(const char *path, const char *extension, char *out, size_t size);
-/* True where the path begins at the root. */
+/* True if the path begins at the root. */
 int path_is_absolute(const char *path);
 /* The absolute form of a path of something that exists. @return false: there is none. */
 int path_get_absolute(const char *path, char *out, size_t size);

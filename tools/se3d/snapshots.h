@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-/* True where a results file holds snapshots of particles. */
+/* True if a results file holds snapshots of particles. */
 int snapshots_is(const char *path);
 /* Write them as a JSON object: times, the box around all, radii, and of each snapshot the positions
  * as 16-bit parts of the box (65535: not there). Of very many, every so many are written; "null"

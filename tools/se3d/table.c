@@ -249,7 +249,7 @@ static const char *const units[][2] = {{"time", "s"},
                                        {"displacement_rate", "m/s"},
                                        {"length", "m"},
                                        {"energy", "J"},
-                                       {"effort", "N or N m"}, /* these two where no scene tells */
+                                       {"effort", "N or N m"}, /* these two if no scene tells */
                                        {"rate", "per s"},
                                        {"frequency", "Hz"}};
 

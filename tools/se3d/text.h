@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-/* True where all are characters of se3d_text_get_character. */
+/* True if all are characters of se3d_text_get_character. */
 int text_is_plain(const char *text);
 /* Replace what may not be shown by '?', in place. */
 void text_clean(char *text);

@@ -51,7 +51,7 @@ static char *read_whole(const char *path, size_t *size)
     return data;
 }
 
-/* True where a file begins with a column of times. */
+/* True if a file begins with a column of times. */
 static int has_times(const char *path)
 {
     char head[5] = "";

@@ -3,11 +3,11 @@
 #ifndef SE3D_TOOL_VIEW_H
 #define SE3D_TOOL_VIEW_H
 
-/* Write the page of a folder of results. @return the exit code, after a message where it failed. */
+/* Write the page of a folder of results. @return the exit code, after a message if it failed. */
 int view_write(const char *command, const char *folder, const char *path);
 
 /* Make a film of a folder of results; `speed`: seconds of motion in one of film. @return the exit
- * code, after a message where it failed. */
+ * code, after a message if it failed. */
 int video_write(const char *results, const char *path, double speed, int quiet);
 
 #endif

@@ -229,7 +229,7 @@ static void explain_unknown(const se3d_model *model, const char *name, char *pro
              meant ? meant : "", meant ? "`?" : "");
 }
 
-/* Of bodies, and of particles where there are any. */
+/* Of bodies, and of particles if there are any. */
 static bool find_contacts(const se3d_model *model, const char *name, se3di_channel *channel)
 {
     for (const quantity_name *q = contact_names; q->name; ++q) {

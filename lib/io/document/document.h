@@ -23,7 +23,7 @@ typedef struct se3di_node {
     bool one_line;     /* scalar whose characters stand in the file as in `text`, on one line */
     size_t line;       /* 1-based; 0: not from the file (an option of the command line) */
     size_t column;     /* 1-based, in characters */
-    size_t key_line;   /* of the key, where `key` is not NULL */
+    size_t key_line;   /* of the key, if `key` is not NULL */
     size_t key_column; /* of the key */
     const char *text;  /* scalar */
     const char *key;   /* child of a map, or the name of an option */
@@ -39,7 +39,7 @@ typedef struct se3di_node {
 se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const char *text,
                                  size_t length, se3di_node **root, se3d_model_error *error);
 
-/* The child of a map, or NULL (also where `map` is NULL or not a map). */
+/* The child of a map, or NULL (also if `map` is NULL or not a map). */
 se3di_node *se3di_node_get(const se3di_node *map, const char *key);
 /* True for a plain scalar that stands for nothing: empty, `~` or `null`. */
 bool se3di_node_is_null(const se3di_node *node);

@@ -26,7 +26,7 @@ typedef enum se3di_kind {
     SE3DI_KIND_TITLE,
     SE3DI_KIND_VERSION,
     SE3DI_KIND_PARAMETERS,
-    SE3DI_KIND_FILE,        /* ends with one of `words`, where there are some */
+    SE3DI_KIND_FILE,        /* ends with one of `words`, if there are some */
     SE3DI_KIND_BODY,        /* the name of one, also of the ground */
     SE3DI_KIND_JOINT,       /* the name of one */
     SE3DI_KIND_MATERIAL,    /* the name of one */
@@ -86,7 +86,7 @@ typedef struct se3di_object {
     const char *rule;         /* NULL, or what else the schema says: members of a JSON object */
 } se3di_object;
 
-/* True where `word` is one of the space-separated words of `list` (a space at each end). */
+/* True if `word` is one of the space-separated words of `list` (a space at each end). */
 bool se3di_keys_contain(const char *list, const char *word);
 /* Whether things of this type have what the row says; type NULL: of any type. */
 bool se3di_key_is_of(const se3di_key *key, const char *type);

@@ -135,7 +135,7 @@ bool se3di_read_expression(se3di_reader *reader, const se3di_node *node,
     return true;
 }
 
-/* "-1", or "2*q = -1" where the text is not the number itself. */
+/* "-1", or "2*q = -1" if the text is not the number itself. */
 static void format_value(const se3di_node *node, double value, char *text, size_t size)
 {
     const bool literal = node->text[strspn(node->text, "+-0123456789.eE")] == '\0';

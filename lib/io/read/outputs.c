@@ -258,7 +258,7 @@ static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kin
     return true;
 }
 
-/* True where `part` is `whole` or a part of it: pin.force of pin, pin.force.x of pin.force. */
+/* True if `part` is `whole` or a part of it: pin.force of pin, pin.force.x of pin.force. */
 static bool is_part(const char *part, const char *whole)
 {
     const size_t length = strlen(whole);

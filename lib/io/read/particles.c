@@ -246,7 +246,7 @@ static bool read_radius(se3di_reader *reader, const se3di_node *node, se3d_fill_
     return true;
 }
 
-/* The tag of the set that an entry names, a new one where the name is new; 0 without a name. */
+/* The tag of the set that an entry names, a new one if the name is new; 0 without a name. */
 static bool read_set(se3di_reader *reader, const se3di_node *node, uint32_t *tag)
 {
     se3di_grains *grains = reader->model->grains;

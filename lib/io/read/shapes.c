@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* `shapes` and `materials`: what bodies look like, and what they weigh where no mass is given. */
+/* `shapes` and `materials`: what bodies look like, and what they weigh if no mass is given. */
 #include "io/read/shapes.h"
 
 #include <math.h>

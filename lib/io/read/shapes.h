@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What bodies look like, and what they weigh where no mass is given. */
+/* What bodies look like, and what they weigh if no mass is given. */
 #ifndef SE3D_IO_SHAPES_H
 #define SE3D_IO_SHAPES_H
 

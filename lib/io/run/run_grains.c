@@ -29,7 +29,7 @@ se3d_status se3di_grains_advance(const se3d_model *model, const se3d_solver_def 
         const double target = k < whole ? now + (time - now) * (k / whole) : time;
         last = se3d_solver_run(solver, target);
         status = last;
-        double reached = target; /* less where an event has stopped the bodies */
+        double reached = target; /* less if an event has stopped the bodies */
         if (status >= 0) {
             status = se3d_system_get_time(model->system, &reached);
         }

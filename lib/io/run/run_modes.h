@@ -14,7 +14,7 @@ typedef struct se3di_modes_run {
     se3di_iopool *pool;
     se3d_run_file files[SE3DI_MODES_FILES_MAX]; /* written */
     size_t file_count;
-    char problem[900]; /* why a file could not be written; "" where the system knows why */
+    char problem[900]; /* why a file could not be written; "" if the system knows why */
 } se3di_modes_run;
 
 /* Linearise at the present state and write eigenvalues and shapes, with inputs or outputs also the
