@@ -7,9 +7,11 @@
  * - A line that is apart: its distance function is convex, and the slope along the line, n . u, has
  *   one sign on either side of the nearest point.
  * - Cylinders that overlap: h(n) = h_i(n) + h_j(-n) is least at a face or cap, at a product of an
- *   edge with the axis, on the circle of directions perpendicular to an edge (or to the axis) where its
- *   slope changes its sign, or, of two rims, where the nearest points v = a - b lie along n:
+ *   edge with the axis, on the circle of directions perpendicular to an edge (or to the axis) where
+ *   its slope changes its sign, or, of two rims, where the nearest points v = a - b lie along n:
+ *
  *       (v - (n.v) n) = 0,   Newton:  U^T (dv/dn - (n.v) 1) U x = -U^T v.
+ *
  *   Those near the polytope's direction are tried, the least is taken. */
 #include "contact/narrow_internal.h"
 #include "math/elementary.h"

@@ -243,7 +243,7 @@ static se3d_status normalise(const search *s)
     return SE3D_OK;
 }
 
-/* What the freedoms left have of each row, relative to its length; -1 if one was given up for it. */
+/* What the freedoms left have of each row, relative to its length; -1: one was given up for it. */
 static void note_rest(const search *s, size_t rows, double *rest)
 {
     for (size_t r = 0; r < rows; ++r) {

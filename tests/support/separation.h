@@ -5,7 +5,7 @@
  * directions is the depth. It is along one of these:
  *
  * - normals of faces and caps, products of two edges (the axis of a cylinder is one);
- * - where a cylinder is, directions perpendicular to an edge or axis: the derivative has one sign on
+ * - with a cylinder, directions perpendicular to an edge or axis: the derivative has one sign on
  *   either side of a least value, so that bisection finds it to the last digit;
  * - for two rims any direction: descent, then Newton's method.
  *
