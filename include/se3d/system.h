@@ -54,6 +54,11 @@ SE3D_API const char *se3d_system_get_error(const se3d_system *system);
  * failed, NULL for NULL. @since 0.1 */
 SE3D_API se3d_status se3d_system_get_error_status(const se3d_system *system);
 
+/* Get what the last call on this system that failed was about: the name of an argument or of a
+ * member of a definition ("mass", "position"), with which its message begins. @return the name, ""
+ * if it was about none, none failed or `system` is NULL; valid until the next call. @since 0.1 */
+SE3D_API const char *se3d_system_get_error_field(const se3d_system *system);
+
 /* Tell whether a call works on the system (a run, an analysis, a query that evaluates
  * callbacks): this is so within callbacks. Which calls are then refused with STATE: docs/api.md,
  * "Callbacks". @return 1 if so, else 0, also for NULL. @since 0.1 */

@@ -8,11 +8,13 @@
 #include <stdarg.h>
 
 #define SE3DI_ERROR_SIZE 512
+#define SE3DI_FIELD_SIZE 48
 
 typedef struct se3di_error {
     se3d_status status;
     char message[SE3DI_ERROR_SIZE];
-    struct se3di_logger *log; /* of the owner, see base/log.h; NULL: none */
+    char field[SE3DI_FIELD_SIZE]; /* the argument or member that it is about; "": of none */
+    struct se3di_logger *log;     /* of the owner, see base/log.h; NULL: none */
 } se3di_error;
 
 /* Record `status` with a printf-like message (cut to fit) and return `status`. `error` may be NULL.
@@ -22,6 +24,15 @@ __attribute__((format(printf, 3, 4)))
 #endif
 se3d_status
 se3di_error_set(se3di_error *error, se3d_status status, const char *format, ...);
+
+/* The same about an argument or a member of a structure, with whose name the message begins: `field`
+ * "radius[3]" is recorded as "radius". */
+#if defined(__GNUC__)
+__attribute__((format(printf, 4, 5)))
+#endif
+se3d_status
+se3di_error_set_of(se3di_error *error, const char *field, se3d_status status, const char *format,
+                   ...);
 
 /* What both messages and the log are written with. */
 #if defined(__GNUC__)

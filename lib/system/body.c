@@ -17,23 +17,23 @@ void se3d_body_def_init(se3d_body_def *def, size_t size)
 static se3d_status check_mass(se3d_system *system, double mass, const double inertia[6])
 {
     if (!(isfinite(mass) && mass > 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "mass = %g kg, must be finite and > 0",
-                          mass);
+        return SE3DI_FAIL_OF(system, "mass", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g kg, must be finite and > 0", mass);
     }
     SE3DI_TRY(se3di_check_finites(system, "inertia", inertia, 6));
     double moments[3];
     se3di_inertia_principal(inertia, moments);
     int verdict = se3di_inertia_is_physical(inertia);
     if (verdict == SE3DI_INERTIA_NOT_TRIANGLE) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "inertia has principal moments %g, %g, %g kg m^2, the largest must not "
-                          "exceed the sum of the others",
-                          moments[0], moments[1], moments[2]);
+        return SE3DI_FAIL_OF(system, "inertia", SE3D_ERR_INVALID_ARGUMENT,
+                             " has principal moments %g, %g, %g kg m^2, the largest must not "
+                             "exceed the sum of the others",
+                             moments[0], moments[1], moments[2]);
     }
     if (verdict != SE3DI_INERTIA_PHYSICAL || !(moments[0] > 1e-14 * moments[2])) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "inertia has principal moments %g, %g, %g kg m^2, must be > 0",
-                          moments[0], moments[1], moments[2]);
+        return SE3DI_FAIL_OF(system, "inertia", SE3D_ERR_INVALID_ARGUMENT,
+                             " has principal moments %g, %g, %g kg m^2, must be > 0", moments[0],
+                             moments[1], moments[2]);
     }
     return SE3D_OK;
 }
@@ -59,8 +59,8 @@ se3d_status se3d_body_create(se3d_system *system, const se3d_body_def *def, se3d
     static const double none[3] = {0.0, 0.0, 0.0};
     if (full.fixed && (memcmp(full.velocity, none, sizeof none) != 0 ||
                        memcmp(full.angular_velocity, none, sizeof none) != 0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "velocity and angular_velocity of a fixed body must be zero");
+        return SE3DI_FAIL_OF(system, "velocity", SE3D_ERR_INVALID_ARGUMENT,
+                             " and angular_velocity of a fixed body must be zero");
     }
     se3di_copy(full.position, frame.r);
     se3di_copy(full.velocity, frame.v);
@@ -267,8 +267,8 @@ static se3d_status find_writer(se3d_system *system, se3d_body body, const char *
 static se3d_status check_movable(se3d_system *system, uint32_t index, const char *what)
 {
     if (index == 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s of the ground cannot be set",
-                          what);
+        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                             " of the ground cannot be set");
     }
     return SE3D_OK;
 }
@@ -305,8 +305,8 @@ se3d_status se3d_body_set_velocity(se3d_system *system, se3d_body body, const do
     SE3DI_SET(system);
     SE3DI_TRY(find_writer(system, body, "velocity", v, &index));
     if (system->model.bodies[index].fixed) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "velocity of a fixed body cannot be set");
+        return SE3DI_FAIL_OF(system, "velocity", SE3D_ERR_INVALID_ARGUMENT,
+                             " of a fixed body cannot be set");
     }
     SE3DI_TRY(se3di_check_finites(system, "velocity", v, 3));
     se3di_copy(v, system->model.frames[index].v);
@@ -320,8 +320,8 @@ se3d_status se3d_body_set_angular_velocity(se3d_system *system, se3d_body body, 
     SE3DI_SET(system);
     SE3DI_TRY(find_writer(system, body, "angular_velocity", w, &index));
     if (system->model.bodies[index].fixed) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "angular_velocity of a fixed body cannot be set");
+        return SE3DI_FAIL_OF(system, "angular_velocity", SE3D_ERR_INVALID_ARGUMENT,
+                             " of a fixed body cannot be set");
     }
     SE3DI_TRY(se3di_check_finites(system, "angular_velocity", w, 3));
     se3di_copy(w, system->model.frames[index].w);
@@ -363,8 +363,8 @@ static se3d_status check_of_body(se3d_system *system, size_t k, const char *what
 {
     for (size_t c = 3 * k; values && c < 3 * k + 3; ++c) {
         if (!isfinite(values[c])) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "%s[%zu] = %g (body %zu), must be finite", what, c, values[c], k);
+            return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                                 "[%zu] = %g (body %zu), must be finite", c, values[c], k);
         }
     }
     return SE3D_OK;
@@ -394,9 +394,9 @@ se3d_status se3d_body_set_all(se3d_system *system, size_t count, const double *r
 {
     SE3DI_SET(system);
     if (count != system->model.body_slots.count) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "count = %zu, must be the number of bodies, %zu", count,
-                          system->model.body_slots.count);
+        return SE3DI_FAIL_OF(system, "count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be the number of bodies, %zu", count,
+                             system->model.body_slots.count);
     }
     SE3DI_TRY(check_all(system, r, p, v, w));
     for (size_t k = 0; k < count; ++k) {

@@ -21,8 +21,8 @@ se3d_status se3di_check_range(se3d_system *system, const char *what, double valu
     if (isfinite(value) && value >= low && value <= high) {
         return SE3D_OK;
     }
-    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s = %g, must be finite, >= %g and <= %g",
-                      what, value, low, high);
+    return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                         " = %g, must be finite, >= %g and <= %g", value, low, high);
 }
 
 se3d_status se3di_check_finite(se3d_system *system, const char *what, double value)
@@ -30,7 +30,7 @@ se3d_status se3di_check_finite(se3d_system *system, const char *what, double val
     if (isfinite(value)) {
         return SE3D_OK;
     }
-    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s = %g, must be finite", what, value);
+    return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT, " = %g, must be finite", value);
 }
 
 se3d_status se3di_check_finites(se3d_system *system, const char *what, const double *values,
@@ -38,8 +38,8 @@ se3d_status se3di_check_finites(se3d_system *system, const char *what, const dou
 {
     for (int k = 0; k < count; ++k) {
         if (!isfinite(values[k])) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s[%d] = %g, must be finite",
-                              what, k, values[k]);
+            return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                                 "[%d] = %g, must be finite", k, values[k]);
         }
     }
     return SE3D_OK;
@@ -51,9 +51,9 @@ se3d_status se3di_check_direction(se3d_system *system, const char *what, const d
     SE3DI_TRY(se3di_check_finites(system, what, values, 3));
     double largest = fmax(fabs(values[0]), fmax(fabs(values[1]), fabs(values[2])));
     if (largest < 1e-150) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "%s = [%g, %g, %g], must be a direction (not zero)", what, values[0],
-                          values[1], values[2]);
+        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                             " = [%g, %g, %g], must be a direction (not zero)", values[0],
+                             values[1], values[2]);
     }
     double scaled[3];
     se3di_scale(1.0 / largest, values, scaled);
@@ -67,10 +67,10 @@ se3d_status se3di_check_orientation(se3d_system *system, const char *what, const
     SE3DI_TRY(se3di_check_finites(system, what, p, 4));
     double norm = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
     if (!(fabs(norm - 1.0) <= 1e-6)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "%s = [%g, %g, %g, %g] has length %.9g, must be unit Euler parameters "
-                          "(length 1 within 1e-6)",
-                          what, p[0], p[1], p[2], p[3], norm);
+        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                             " = [%g, %g, %g, %g] has length %.9g, must be unit Euler parameters "
+                             "(length 1 within 1e-6)",
+                             p[0], p[1], p[2], p[3], norm);
     }
     for (int k = 0; k < 4; ++k) {
         unit[k] = p[k] / norm;
@@ -80,7 +80,7 @@ se3d_status se3di_check_orientation(se3d_system *system, const char *what, const
 
 se3d_status se3di_check_pointer(se3d_system *system, const char *what, const void *pointer)
 {
-    return pointer ? SE3D_OK : SE3DI_FAIL(system, SE3D_ERR_NULL, "%s is NULL", what);
+    return pointer ? SE3D_OK : SE3DI_FAIL_OF(system, what, SE3D_ERR_NULL, " is NULL");
 }
 
 se3d_status se3di_check_def(se3d_system *system, const char *what, const void *def, void *copy,
@@ -91,16 +91,17 @@ se3d_status se3di_check_def(se3d_system *system, const char *what, const void *d
     memcpy(&size, def, sizeof size);
     const se3di_sized_verdict verdict = se3di_sized_take(def, copy, full_size);
     if (verdict == SE3DI_SIZED_UNKNOWN) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "%s has %zu bytes, of which this library (%s) knows %zu: what a newer "
-                          "header adds must be zero",
-                          what, size, se3d_version_get_text(), full_size);
+        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                             " has %zu bytes, of which this library (%s) knows %zu: what a newer "
+                             "header adds must be zero",
+                             size, se3d_version_get_text(), full_size);
     }
     if (verdict != SE3DI_SIZED_FITS) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "%s.struct_size = %zu, must be set by its _default function (%zu in this "
-                          "version)",
-                          what, size, full_size);
+        return SE3DI_FAIL_OF(
+            system, what, SE3D_ERR_INVALID_ARGUMENT,
+            ".struct_size = %zu, must be set by its _default function (%zu in this "
+            "version)",
+            size, full_size);
     }
     return SE3D_OK;
 }
@@ -114,7 +115,7 @@ static se3d_status find(se3d_system *system, const se3di_slots *slots, const cha
     }
     const char *reason =
         handle.index1 == 0 ? "is the null handle" : "was destroyed or belongs to another system";
-    return SE3DI_FAIL(system, SE3D_ERR_STALE_HANDLE, "%s %s", what, reason);
+    return SE3DI_FAIL_OF(system, what, SE3D_ERR_STALE_HANDLE, " %s", reason);
 }
 
 se3d_status se3di_find_body(se3d_system *system, const char *what, se3d_body body, uint32_t *index)
@@ -163,9 +164,9 @@ se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_func
                    (se3di_handle){function.index1, function.generation}, &dense));
     uint32_t count = system->model.functions[dense].variable_count;
     if (count > variables) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "%s is a function of %u variables, at most %u are allowed here", what,
-                          count, variables);
+        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                             " is a function of %u variables, at most %u are allowed here", count,
+                             variables);
     }
     *index = (int32_t)dense;
     return SE3D_OK;
@@ -174,10 +175,10 @@ se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_func
 se3d_status se3di_check_name(se3d_system *system, const char *name)
 {
     if (name[0] == '\0' || strchr(name, '.') || !se3di_text_is_plain(name)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "name = \"%.64s\", must be UTF-8, not empty, and have no '.' or control "
-                          "characters",
-                          name);
+        return SE3DI_FAIL_OF(system, "name", SE3D_ERR_INVALID_ARGUMENT,
+                             " = \"%.64s\", must be UTF-8, not empty, and have no '.' or control "
+                             "characters",
+                             name);
     }
     return SE3D_OK;
 }
@@ -190,8 +191,8 @@ se3d_status se3di_check_new_name(se3d_system *system, const se3di_slots *slots, 
     }
     SE3DI_TRY(se3di_check_name(system, name));
     if (se3di_slots_find_name(slots, owner, name) != SE3DI_NO_INDEX) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "name = \"%.64s\" is taken by another %s, must be unique", name, what);
+        return SE3DI_FAIL_OF(system, "name", SE3D_ERR_INVALID_ARGUMENT,
+                             " = \"%.64s\" is taken by another %s, must be unique", name, what);
     }
     return SE3D_OK;
 }

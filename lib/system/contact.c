@@ -33,16 +33,16 @@ void se3d_material_pair_def_init(se3d_material_pair_def *def, size_t size)
 static se3d_status check_law(se3d_system *system, int32_t law, double stiffness, double young)
 {
     if (law == SE3D_CONTACT_LAW_HOOKE && !(stiffness > 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "stiffness = %g N/m of a material, must be > 0 with the law hooke "
-                          "(se3d_system_set_contact)",
-                          stiffness);
+        return SE3DI_FAIL_OF(system, "stiffness", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g N/m of a material, must be > 0 with the law hooke "
+                             "(se3d_system_set_contact)",
+                             stiffness);
     }
     if (law == SE3D_CONTACT_LAW_HERTZ_MINDLIN && !(young > 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "young = %g Pa of a material, must be > 0 with the law hertz_mindlin "
-                          "(se3d_system_set_contact)",
-                          young);
+        return SE3DI_FAIL_OF(system, "young", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g Pa of a material, must be > 0 with the law hertz_mindlin "
+                             "(se3d_system_set_contact)",
+                             young);
     }
     return SE3D_OK;
 }
@@ -54,23 +54,23 @@ se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_sett
     se3d_contact_settings full = se3d_contact_settings_default();
     SE3DI_TRY(se3di_check_def(system, "contact settings", settings, &full, sizeof full));
     if (full.law < SE3D_CONTACT_LAW_HOOKE || full.law > SE3D_CONTACT_LAW_CALLBACK) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "law = %d, must be an se3d_contact_law", full.law);
+        return SE3DI_FAIL_OF(system, "law", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be an se3d_contact_law", full.law);
     }
     if (!(isfinite(full.step) && full.step >= 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "step = %g s, must be finite and >= 0 (0: automatic)", full.step);
+        return SE3DI_FAIL_OF(system, "step", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g s, must be finite and >= 0 (0: automatic)", full.step);
     }
     if (full.law == SE3D_CONTACT_LAW_CALLBACK) {
         SE3DI_TRY(se3di_check_pointer(system, "callback", (full.callback ? &full : NULL)));
         if (!(full.step > 0.0)) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "step = %g s, must be > 0 with a user-defined law", full.step);
+            return SE3DI_FAIL_OF(system, "step", SE3D_ERR_INVALID_ARGUMENT,
+                                 " = %g s, must be > 0 with a user-defined law", full.step);
         }
     }
     if (!(full.overlap_limit > 0.0 && full.overlap_limit <= 1.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "overlap_limit = %g, must be > 0 and <= 1", full.overlap_limit);
+        return SE3DI_FAIL_OF(system, "overlap_limit", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be > 0 and <= 1", full.overlap_limit);
     }
     for (size_t k = 0; k < model->material_slots.count; ++k) {
         SE3DI_TRY(

@@ -26,10 +26,10 @@ se3d_status se3di_check_coordinate(se3d_system *system, const char *what, uint32
 {
     if (coordinate != SE3D_JOINT_COORDINATE_ANGLE &&
         coordinate != SE3D_JOINT_COORDINATE_DISPLACEMENT) {
-        return SE3DI_FAIL(
-            system, SE3D_ERR_INVALID_ARGUMENT,
-            "%s = %d, must be SE3D_JOINT_COORDINATE_ANGLE or SE3D_JOINT_COORDINATE_DISPLACEMENT",
-            what, (int)coordinate);
+        return SE3DI_FAIL_OF(
+            system, what, SE3D_ERR_INVALID_ARGUMENT,
+            " = %d, must be SE3D_JOINT_COORDINATE_ANGLE or SE3D_JOINT_COORDINATE_DISPLACEMENT",
+            (int)coordinate);
     }
     if (se3di_coordinate_term(&system->model, joint, coordinate, term)) {
         return SE3D_OK;
@@ -39,8 +39,8 @@ se3d_status se3di_check_coordinate(se3d_system *system, const char *what, uint32
         "must be SE3D_JOINT_COORDINATE_DISPLACEMENT (1)", "must be one of the two"};
     const se3di_constraint *constraint = &system->model.constraints[joint];
     int which = (constraint->angle >= 0) + 2 * (constraint->has_displacement != 0);
-    return SE3DI_FAIL(
-        system, SE3D_ERR_INVALID_ARGUMENT, "%s = %d: '%.64s' (%s) has no %s, %s", what,
+    return SE3DI_FAIL_OF(
+        system, what, SE3D_ERR_INVALID_ARGUMENT, " = %d: '%.64s' (%s) has no %s, %s",
         (int)coordinate, constraint->name ? constraint->name : "", constraint->type,
         coordinate == SE3D_JOINT_COORDINATE_ANGLE ? "angle" : "displacement", allowed[which]);
 }
@@ -51,9 +51,9 @@ se3d_status se3di_check_distinct(se3d_system *system, const uint32_t bodies[2])
         return SE3D_OK;
     }
     const char *name = system->model.bodies[bodies[0]].name;
-    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                      "body_i and body_j are the same body '%.64s', must be two bodies",
-                      name ? name : "");
+    return SE3DI_FAIL_OF(system, "body_i", SE3D_ERR_INVALID_ARGUMENT,
+                         " and body_j are the same body '%.64s', must be two bodies",
+                         name ? name : "");
 }
 
 se3d_status se3di_check_prescribed(se3d_system *system, double value, int32_t function)

@@ -44,15 +44,15 @@ static se3d_status check_term(se3d_system *system, const se3d_coupler_def *def, 
     snprintf(what, sizeof what, "ratio[%zu]", k);
     SE3DI_TRY(se3di_check_finite(system, what, def->ratio[k]));
     if (def->ratio[k] == 0.0) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s = 0, must not be 0", what);
+        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT, " = 0, must not be 0");
     }
     for (size_t i = 0; i < k; ++i) {
         if (def->joint[i].index1 == def->joint[k].index1 &&
             def->coordinate[i] == def->coordinate[k]) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "joint[%zu] and joint[%zu] are the same coordinate of one joint, "
-                              "must be different",
-                              i, k);
+            return SE3DI_FAIL_OF(system, "joint", SE3D_ERR_INVALID_ARGUMENT,
+                                 "[%zu] and joint[%zu] are the same coordinate of one joint, "
+                                 "must be different",
+                                 i, k);
         }
     }
     const se3di_constraint *source = &system->model.constraints[joint];
@@ -72,8 +72,8 @@ static se3d_status draft_build(se3d_system *system, const char *type, const se3d
     SE3DI_TRY(
         se3di_check_new_name(system, &system->model.constraint_slots, 0, "constraint", def->name));
     if (def->count < 1 || def->count > SE3D_COUPLER_TERMS_MAX) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "count = %zu, must be 1 to %d",
-                          def->count, SE3D_COUPLER_TERMS_MAX);
+        return SE3DI_FAIL_OF(system, "count", SE3D_ERR_INVALID_ARGUMENT, " = %zu, must be 1 to %d",
+                             def->count, SE3D_COUPLER_TERMS_MAX);
     }
     se3di_draft_init(draft, type, 0, 0);
     draft->constraint.body_count = 0;
@@ -133,7 +133,7 @@ static se3d_status check_factor(se3d_system *system, const char *what, double fa
     SE3DI_TRY(se3di_check_finite(system, what, factor));
     return factor != 0.0
                ? SE3D_OK
-               : SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s = 0, must not be 0", what);
+               : SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT, " = 0, must not be 0");
 }
 
 se3d_status se3d_joint_create_gear(se3d_system *system, const char *name, se3d_constraint joint_1,

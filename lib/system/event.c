@@ -19,13 +19,12 @@ static se3d_status check_numbers(se3d_system *system, const se3d_event_def *def)
     SE3DI_TRY(se3di_check_finite(system, "level", def->level));
     SE3DI_TRY(se3di_check_range(system, "hysteresis", def->hysteresis, 0.0, DBL_MAX));
     if (def->direction < SE3D_EVENT_FALLING || def->direction > SE3D_EVENT_RISING) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "direction = %d, must be one of se3d_event_direction",
-                          (int)def->direction);
+        return SE3DI_FAIL_OF(system, "direction", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be one of se3d_event_direction", (int)def->direction);
     }
     if (def->action < SE3D_EVENT_RECORD || def->action > SE3D_EVENT_STOP) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "action = %d, must be SE3D_EVENT_RECORD or _STOP", (int)def->action);
+        return SE3DI_FAIL_OF(system, "action", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be SE3D_EVENT_RECORD or _STOP", (int)def->action);
     }
     return SE3D_OK;
 }
@@ -50,8 +49,8 @@ static se3d_status check_analysis(const se3d_solver *solver)
 {
     const int32_t analysis = solver->run.analysis;
     if (analysis == SE3D_ANALYSIS_ASSEMBLY || analysis == SE3D_ANALYSIS_EQUILIBRIUM) {
-        return SE3DI_FAIL(solver->system, SE3D_ERR_UNSUPPORTED,
-                          "analysis = %d has no motion, and so no events", (int)analysis);
+        return SE3DI_FAIL_OF(solver->system, "analysis", SE3D_ERR_UNSUPPORTED,
+                             " = %d has no motion, and so no events", (int)analysis);
     }
     return SE3D_OK;
 }
@@ -67,7 +66,7 @@ se3d_status se3d_event_create(se3d_solver *solver, const se3d_event_def *def, se
     se3d_event_def full = se3d_event_def_default();
     SE3DI_TRY(se3di_check_def(system, "event def", def, &full, sizeof full));
     if (!full.value) {
-        return SE3DI_FAIL(system, SE3D_ERR_NULL, "value is NULL, must compute the quantity");
+        return SE3DI_FAIL_OF(system, "value", SE3D_ERR_NULL, " is NULL, must compute the quantity");
     }
     SE3DI_TRY(check_numbers(system, &full));
     SE3DI_TRY(check_name(solver, full.name));
@@ -135,9 +134,9 @@ se3d_status se3d_solver_get_event_record_sized(se3d_solver *solver, size_t index
     SE3DI_TRY(se3di_check_pointer(solver->system, "record", record));
     const se3di_events *events = &solver->run.events;
     if (index >= events->record_count) {
-        return SE3DI_FAIL(solver->system, SE3D_ERR_INVALID_ARGUMENT,
-                          "index = %zu, must be below the number of records, %zu", index,
-                          events->record_count);
+        return SE3DI_FAIL_OF(solver->system, "index", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be below the number of records, %zu", index,
+                             events->record_count);
     }
     return se3di_sized_give(record, size, &events->records[index], sizeof *record);
 }

@@ -95,9 +95,9 @@ static se3d_status make_angle(se3d_system *system, const se3d_rsda_def *def, se3
     int chosen = memcmp(def->ref_i, none, sizeof none) == 0;
     if (!se3di_joint_triad_build(frames.axis_i, chosen ? NULL : def->ref_i, frames.ref_i,
                                  frames.third_i)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "ref_i = [%g, %g, %g] is parallel to axis_i, must not be", def->ref_i[0],
-                          def->ref_i[1], def->ref_i[2]);
+        return SE3DI_FAIL_OF(system, "ref_i", SE3D_ERR_INVALID_ARGUMENT,
+                             " = [%g, %g, %g] is parallel to axis_i, must not be", def->ref_i[0],
+                             def->ref_i[1], def->ref_i[2]);
     }
     const se3di_frame *i = &system->model.frames[data->body_i];
     const se3di_frame *j = &system->model.frames[data->body_j];
@@ -122,9 +122,10 @@ static se3d_status use_angle(se3d_system *system, const se3d_rsda_def *def, se3d
     SE3DI_TRY(se3di_find_constraint(system, "joint", def->joint, &joint));
     const se3di_constraint *constraint = &system->model.constraints[joint];
     if (constraint->angle < 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "joint %s is a %s joint, must be one with an angle",
-                          constraint->name ? constraint->name : "without a name", constraint->type);
+        return SE3DI_FAIL_OF(system, "joint", SE3D_ERR_INVALID_ARGUMENT,
+                             " %s is a %s joint, must be one with an angle",
+                             constraint->name ? constraint->name : "without a name",
+                             constraint->type);
     }
     data->joint = (int32_t)joint;
     data->angle = constraint->angle;

@@ -40,8 +40,8 @@ void se3d_force_callback_def_init(se3d_force_callback_def *def, size_t size)
 se3d_status se3di_force_check_pair(se3d_system *system, const se3di_force *data)
 {
     if (data->body_i == data->body_j) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "body_i and body_j are the same body, must differ");
+        return SE3DI_FAIL_OF(system, "body_i", SE3D_ERR_INVALID_ARGUMENT,
+                             " and body_j are the same body, must differ");
     }
     return SE3D_OK;
 }

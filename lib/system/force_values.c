@@ -47,8 +47,8 @@ static const parameter parameters[] = {
 static se3d_status check_not_negative(se3d_system *system, const char *what, double value)
 {
     if (!(isfinite(value) && value >= 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s = %g, must be finite and >= 0",
-                          what, value);
+        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be finite and >= 0", value);
     }
     return SE3D_OK;
 }
@@ -61,7 +61,8 @@ static se3d_status check_spring(se3d_system *system, const se3di_force *data)
     SE3DI_TRY(se3di_check_finite(system, is_length ? "l0" : "theta0", data->rest));
     SE3DI_TRY(se3di_check_finite(system, "preload", data->preload));
     if (is_length && data->rest < 0.0) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "l0 = %g m, must be >= 0", data->rest);
+        return SE3DI_FAIL_OF(system, "l0", SE3D_ERR_INVALID_ARGUMENT, " = %g m, must be >= 0",
+                             data->rest);
     }
     return SE3D_OK;
 }
@@ -78,9 +79,9 @@ static se3d_status check_friction(se3d_system *system, se3di_force *data)
     SE3DI_TRY(check_not_negative(system, "width", data->width));
     SE3DI_TRY(check_not_negative(system, "thrust_radius", data->thrust_radius));
     if (data->mu_static > 0.0 && data->mu_static < data->mu) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "mu_static = %g, must be at least mu = %g (0: the same)", data->mu_static,
-                          data->mu);
+        return SE3DI_FAIL_OF(system, "mu_static", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be at least mu = %g (0: the same)", data->mu_static,
+                             data->mu);
     }
     data->mu_static = fmax(data->mu, data->mu_static);
     data->presliding = data->presliding > 0.0 ? data->presliding : PRESLIDING;
@@ -90,17 +91,17 @@ static se3d_status check_friction(se3d_system *system, se3di_force *data)
 static se3d_status check_stop(se3d_system *system, se3di_force *data)
 {
     if (!(data->low < data->high)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "lower = %g and upper = %g, lower must be below upper", data->low,
-                          data->high);
+        return SE3DI_FAIL_OF(system, "lower", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g and upper = %g, lower must be below upper", data->low,
+                             data->high);
     }
     if (!(isfinite(data->k) && data->k > 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "k = %g, must be finite and > 0",
-                          data->k);
+        return SE3DI_FAIL_OF(system, "k", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be finite and > 0", data->k);
     }
     if (!(data->restitution >= 0.01 && data->restitution <= 1.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "restitution = %g, must be from 0.01 to 1", data->restitution);
+        return SE3DI_FAIL_OF(system, "restitution", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be from 0.01 to 1", data->restitution);
     }
     data->c = se3di_stop_damping(data->restitution);
     return SE3D_OK;
@@ -198,8 +199,8 @@ se3d_status se3d_force_set_parameter(se3d_system *system, se3d_force force, int3
     se3di_force data;
     SE3DI_TRY(find_writer(system, force, &index, &data));
     if (which < 0 || which >= PARAMETERS) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "parameter = %d, must be one of se3d_force_parameter", (int)which);
+        return SE3DI_FAIL_OF(system, "parameter", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be one of se3d_force_parameter", (int)which);
     }
     const parameter *p = &parameters[which];
     if (!(p->types & BIT(data.type))) {

@@ -22,9 +22,9 @@ static se3d_status check_kind(se3d_system *system, const se3d_function_def *def)
                           kinds);
     }
     if (def->variable_count < 1 || def->variable_count > SE3D_FUNCTION_VARIABLES_MAX) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "variable_count = %zu, must be between 1 and %d", def->variable_count,
-                          SE3D_FUNCTION_VARIABLES_MAX);
+        return SE3DI_FAIL_OF(system, "variable_count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be between 1 and %d", def->variable_count,
+                             SE3D_FUNCTION_VARIABLES_MAX);
     }
     if (def->variable_count > 1 && !def->variables && def->expression) {
         return SE3DI_FAIL(system, SE3D_ERR_NULL, "variables is NULL, must name %zu variables",
@@ -60,8 +60,8 @@ static se3d_status check_table(se3d_system *system, const se3d_function_def *def
 {
     SE3DI_TRY(se3di_check_pointer(system, "table_y", def->table_y));
     if (def->table_count < 2 || def->table_count > UINT32_MAX) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "table_count = %zu, must be at least 2", def->table_count);
+        return SE3DI_FAIL_OF(system, "table_count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be at least 2", def->table_count);
     }
     for (size_t k = 0; k < def->table_count; ++k) {
         if (!isfinite(def->table_x[k]) || !isfinite(def->table_y[k])) {
@@ -70,9 +70,9 @@ static se3d_status check_table(se3d_system *system, const se3d_function_def *def
                               def->table_y[k]);
         }
         if (k > 0 && !(def->table_x[k] > def->table_x[k - 1])) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "table_x[%zu] = %g after %g, must increase", k, def->table_x[k],
-                              def->table_x[k - 1]);
+            return SE3DI_FAIL_OF(system, "table_x", SE3D_ERR_INVALID_ARGUMENT,
+                                 "[%zu] = %g after %g, must increase", k, def->table_x[k],
+                                 def->table_x[k - 1]);
         }
     }
     return SE3D_OK;

@@ -38,9 +38,9 @@ static se3d_status check_triad(se3d_system *system, const char *what, const doub
     }
     SE3DI_TRY(se3di_check_direction(system, what, ref, unit));
     if (!se3di_joint_triad_build(axis, unit, ref_out, third)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "%s = [%g, %g, %g] is parallel to its axis, must not be", what, ref[0],
-                          ref[1], ref[2]);
+        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                             " = [%g, %g, %g] is parallel to its axis, must not be", ref[0], ref[1],
+                             ref[2]);
     }
     return SE3D_OK;
 }
@@ -87,26 +87,26 @@ static se3d_status check_parameters(se3d_system *system, uint32_t flags, const u
     SE3DI_TRY(se3di_check_finite(system, "pitch", def->pitch));
     SE3DI_TRY(se3di_check_finite(system, "distance", def->distance));
     if ((flags & SE3DI_JOINT_PITCH) && def->pitch == 0.0) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "pitch = 0 m, must not be 0 (a screw without advance is a revolute)");
+        return SE3DI_FAIL_OF(system, "pitch", SE3D_ERR_INVALID_ARGUMENT,
+                             " = 0 m, must not be 0 (a screw without advance is a revolute)");
     }
     if (!(flags & (SE3DI_JOINT_DISTANCE | SE3DI_JOINT_OFFSET))) {
         return SE3D_OK;
     }
     if (def->distance < 0.0) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "distance = %g m, must be %s",
-                          def->distance,
-                          flags & SE3DI_JOINT_OFFSET ? ">= 0 (0: the axes meet)"
-                                                     : "> 0 (or 0: as at the present pose)");
+        return SE3DI_FAIL_OF(system, "distance", SE3D_ERR_INVALID_ARGUMENT, " = %g m, must be %s",
+                             def->distance,
+                             flags & SE3DI_JOINT_OFFSET ? ">= 0 (0: the axes meet)"
+                                                        : "> 0 (or 0: as at the present pose)");
     }
     if ((flags & SE3DI_JOINT_DISTANCE) && def->distance == 0.0) {
         double scale;
         const se3di_frame *frames = system->model.frames;
         def->distance = present_distance(f, &frames[bodies[0]], &frames[bodies[1]], &scale);
         if (!(def->distance > COINCIDENT * scale)) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "distance = 0 m and the points coincide at the present pose, must be "
-                              "> 0 (points that coincide are a spherical joint)");
+            return SE3DI_FAIL_OF(system, "distance", SE3D_ERR_INVALID_ARGUMENT,
+                                 " = 0 m and the points coincide at the present pose, must be "
+                                 "> 0 (points that coincide are a spherical joint)");
         }
     }
     return SE3D_OK;

@@ -115,9 +115,9 @@ static se3d_status check(se3d_system *system, const se3d_modes_def *def)
         SE3DI_TRY(se3di_check_direction(system, "outputs[].direction", output->direction, unit));
         if (output->quantity < SE3D_MODES_POSITION ||
             output->quantity > SE3D_MODES_ANGULAR_ACCELERATION) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "outputs[%zu].quantity = %d, must be one of se3d_modes_quantity", k,
-                              (int)output->quantity);
+            return SE3DI_FAIL_OF(system, "outputs", SE3D_ERR_INVALID_ARGUMENT,
+                                 "[%zu].quantity = %d, must be one of se3d_modes_quantity", k,
+                                 (int)output->quantity);
         }
     }
     return SE3D_OK;

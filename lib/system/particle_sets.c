@@ -148,8 +148,8 @@ se3d_status se3di_check_particles_name(se3d_system *system, const char *name)
     }
     SE3DI_TRY(se3di_check_name(system, name));
     if (find(&system->model, name)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "name = \"%.64s\" is taken by other particles, must be unique", name);
+        return SE3DI_FAIL_OF(system, "name", SE3D_ERR_INVALID_ARGUMENT,
+                             " = \"%.64s\" is taken by other particles, must be unique", name);
     }
     return SE3D_OK;
 }

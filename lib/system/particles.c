@@ -23,17 +23,16 @@ static se3d_status check_domain(se3d_system *system, const se3d_particles_def *d
     for (int a = 0; a < 3; ++a) {
         if (def->boundary[a] < SE3D_DOMAIN_BOUNDARY_OPEN ||
             def->boundary[a] > SE3D_DOMAIN_BOUNDARY_SINK) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "boundary[%d] = %d, must be an se3d_domain_boundary", a,
-                              def->boundary[a]);
+            return SE3DI_FAIL_OF(system, "boundary", SE3D_ERR_INVALID_ARGUMENT,
+                                 "[%d] = %d, must be an se3d_domain_boundary", a, def->boundary[a]);
         }
         int used = def->boundary[a] != SE3D_DOMAIN_BOUNDARY_OPEN;
         int finite = isfinite(def->lower[a]) && isfinite(def->upper[a]);
         if (used && !(finite && def->upper[a] > def->lower[a])) {
-            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                              "lower[%d] = %g and upper[%d] = %g, must be finite and increasing if "
-                              "the boundary is not open",
-                              a, def->lower[a], a, def->upper[a]);
+            return SE3DI_FAIL_OF(system, "lower", SE3D_ERR_INVALID_ARGUMENT,
+                                 "[%d] = %g and upper[%d] = %g, must be finite and increasing if "
+                                 "the boundary is not open",
+                                 a, def->lower[a], a, def->upper[a]);
         }
     }
     return SE3D_OK;
@@ -42,17 +41,16 @@ static se3d_status check_domain(se3d_system *system, const se3d_particles_def *d
 static se3d_status check_particles_def(se3d_system *system, const se3d_particles_def *def)
 {
     if (def->threads < 1 || def->threads > THREADS_MAX) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "threads = %d, must be at least 1 and at most %d", def->threads,
-                          THREADS_MAX);
+        return SE3DI_FAIL_OF(system, "threads", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be at least 1 and at most %d", def->threads, THREADS_MAX);
     }
     if (!(isfinite(def->step) && def->step >= 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "step = %g s, must be finite and >= 0 (0: automatic)", def->step);
+        return SE3DI_FAIL_OF(system, "step", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g s, must be finite and >= 0 (0: automatic)", def->step);
     }
     if (!(def->skin > 0.0 && def->skin <= 10.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "skin = %g, must be > 0 and <= 10",
-                          def->skin);
+        return SE3DI_FAIL_OF(system, "skin", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be > 0 and <= 10", def->skin);
     }
     return check_domain(system, def);
 }
@@ -213,8 +211,8 @@ se3d_status se3di_particles_make_room(se3d_particles *particles, size_t count)
 {
     se3di_particles *set = &particles->set;
     if (count > SE3DI_CARRY_WALL - set->id_count - 1 || count > SE3DI_CARRY_WALL - set->count - 1) {
-        return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
-                          "count = %zu, at most 2^31 particles can be made", count);
+        return SE3DI_FAIL_OF(particles->system, "count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, at most 2^31 particles can be made", count);
     }
     if (se3di_particles_reserve(set, set->count + count) < 0) {
         return SE3DI_FAIL(particles->system, SE3D_ERR_NO_MEMORY, "no memory for %zu particles",
@@ -229,10 +227,10 @@ se3d_status se3di_check_period(se3d_particles *particles, double radius)
     for (int a = 0; a < 3; ++a) {
         double length = set->upper[a] - set->lower[a];
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC && length < SE3DI_PERIOD_LEAST * radius) {
-            return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
-                              "radius = %g m, the domain is periodic along %c and only %g m long, "
-                              "must be at least %g radii",
-                              radius, "xyz"[a], length, SE3DI_PERIOD_LEAST);
+            return SE3DI_FAIL_OF(particles->system, "radius", SE3D_ERR_INVALID_ARGUMENT,
+                                 " = %g m, the domain is periodic along %c and only %g m long, "
+                                 "must be at least %g radii",
+                                 radius, "xyz"[a], length, SE3DI_PERIOD_LEAST);
         }
     }
     return SE3D_OK;
@@ -243,8 +241,8 @@ static se3d_status check_finite_array(se3d_particles *particles, const char *wha
 {
     for (size_t k = 0; values && k < count; ++k) {
         if (!isfinite(values[k])) {
-            return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
-                              "%s[%zu] = %g, must be finite", what, k, values[k]);
+            return SE3DI_FAIL_OF(particles->system, what, SE3D_ERR_INVALID_ARGUMENT,
+                                 "[%zu] = %g, must be finite", k, values[k]);
         }
     }
     return SE3D_OK;
@@ -260,8 +258,8 @@ se3d_status se3d_particles_add(se3d_particles *particles, se3d_material material
     SE3DI_TRY(se3di_check_pointer(particles->system, "radius", radius));
     for (size_t k = 0; k < count; ++k) {
         if (!(isfinite(radius[k]) && radius[k] > 0.0)) {
-            return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
-                              "radius[%zu] = %g m, must be finite and > 0", k, radius[k]);
+            return SE3DI_FAIL_OF(particles->system, "radius", SE3D_ERR_INVALID_ARGUMENT,
+                                 "[%zu] = %g m, must be finite and > 0", k, radius[k]);
         }
         SE3DI_TRY(se3di_check_period(particles, radius[k]));
     }
@@ -437,8 +435,8 @@ se3d_status se3d_particles_set_all(se3d_particles *particles, size_t count, cons
     SE3DI_SET_OF(particles);
     se3di_particles *set = &particles->set;
     if (count != set->count) {
-        return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
-                          "count = %zu, must be the number of particles, %zu", count, set->count);
+        return SE3DI_FAIL_OF(particles->system, "count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be the number of particles, %zu", count, set->count);
     }
     SE3DI_TRY(check_finite_array(particles, "r", r, 3 * count));
     SE3DI_TRY(check_finite_array(particles, "v", v, 3 * count));
@@ -529,8 +527,8 @@ se3d_status se3d_particles_run(se3d_particles *particles, double time)
     SE3DI_EDIT_OF(particles);
     se3di_particles *set = &particles->set;
     if (!(isfinite(time) && time >= set->time)) {
-        return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
-                          "time = %g s, must be finite and not before %g s", time, set->time);
+        return SE3DI_FAIL_OF(particles->system, "time", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g s, must be finite and not before %g s", time, set->time);
     }
     double h = se3di_particles_want_step(&particles->set, &particles->system->model);
     double steps = h > 0.0 ? ceil((time - set->time) / h - 1e-9) : 0.0;

@@ -39,12 +39,12 @@ se3d_status se3di_check_region(se3d_particles *p, const double lower[3], const d
                                int32_t region, int32_t axis, double size)
 {
     if (region < SE3D_FILL_REGION_BOX || region > SE3D_FILL_REGION_SPHERE) {
-        return SE3DI_FAIL(p->system, SE3D_ERR_INVALID_ARGUMENT,
-                          "region = %d, must be an se3d_fill_region", region);
+        return SE3DI_FAIL_OF(p->system, "region", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be an se3d_fill_region", region);
     }
     if (axis < 0 || axis > 2) {
-        return SE3DI_FAIL(p->system, SE3D_ERR_INVALID_ARGUMENT, "axis = %d, must be 0, 1 or 2",
-                          axis);
+        return SE3DI_FAIL_OF(p->system, "axis", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be 0, 1 or 2", axis);
     }
     for (int a = 0; a < 3; ++a) {
         SE3DI_TRY(se3di_check_range(p->system, "lower", lower[a], -1e30, 1e30));
@@ -291,9 +291,9 @@ static se3d_status check_volume(se3d_particles *p, const se3d_fill_def *def)
     }
     most /= 4.0 / 3.0 * 3.1415926535897932384626433832795;
     if ((double)def->count > most) {
-        return SE3DI_FAIL(p->system, SE3D_ERR_NO_CONVERGENCE,
-                          "count = %zu, the region has the volume of %.3g particles only",
-                          def->count, most);
+        return SE3DI_FAIL_OF(p->system, "count", SE3D_ERR_NO_CONVERGENCE,
+                             " = %zu, the region has the volume of %.3g particles only", def->count,
+                             most);
     }
     return SE3D_OK;
 }

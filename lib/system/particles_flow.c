@@ -22,8 +22,8 @@ void se3d_particles_sink_def_init(se3d_particles_sink_def *def, size_t size)
 se3d_status se3di_check_tag(se3d_particles *particles, uint32_t tag)
 {
     if (tag >= SE3D_PARTICLES_TAGS) {
-        return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
-                          "tag = %u, must be less than %d", tag, SE3D_PARTICLES_TAGS);
+        return SE3DI_FAIL_OF(particles->system, "tag", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %u, must be less than %d", tag, SE3D_PARTICLES_TAGS);
     }
     return SE3D_OK;
 }
@@ -137,8 +137,8 @@ se3d_status se3d_particles_get_source_stats_sized(const se3d_particles *particle
 static se3d_status check_number(se3d_particles *p, const char *what, uint32_t number, size_t count)
 {
     if (number >= count) {
-        return SE3DI_FAIL(p->system, SE3D_ERR_INVALID_ARGUMENT,
-                          "%s = %u, must be less than their number, %zu", what, number, count);
+        return SE3DI_FAIL_OF(p->system, what, SE3D_ERR_INVALID_ARGUMENT,
+                             " = %u, must be less than their number, %zu", number, count);
     }
     return SE3D_OK;
 }

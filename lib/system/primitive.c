@@ -47,10 +47,10 @@ static se3d_status check_value(se3d_system *system, int type, double value, int3
 {
     SE3DI_TRY(se3di_check_prescribed(system, value, function));
     if (type == SE3D_PRIMITIVE_D && function < 0 && !(value > 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "value = %g m^2, must be > 0 (a squared distance; points that coincide "
-                          "are three cd)",
-                          value);
+        return SE3DI_FAIL_OF(system, "value", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g m^2, must be > 0 (a squared distance; points that coincide "
+                             "are three cd)",
+                             value);
     }
     return SE3D_OK;
 }
@@ -97,8 +97,8 @@ se3d_status se3d_primitive_create(se3d_system *system, const se3d_primitive_def 
     SE3DI_TRY(
         se3di_check_new_name(system, &system->model.constraint_slots, 0, "constraint", def.name));
     if (def.type < SE3D_PRIMITIVE_DP1 || def.type > SE3D_PRIMITIVE_CD) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "type = %d, must be one of se3d_primitive_type (0 to 3)", (int)def.type);
+        return SE3DI_FAIL_OF(system, "type", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be one of se3d_primitive_type (0 to 3)", (int)def.type);
     }
     SE3DI_TRY(se3di_find_body(system, "body_i", def.body_i, &bodies[0]));
     SE3DI_TRY(se3di_find_body(system, "body_j", def.body_j, &bodies[1]));

@@ -25,8 +25,8 @@ static se3d_status check_size(se3d_system *system, const char *what, double valu
     if (isfinite(value) && value > 0.0) {
         return SE3D_OK;
     }
-    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "%s = %g m, must be finite and > 0", what,
-                      value);
+    return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT, " = %g m, must be finite and > 0",
+                         value);
 }
 
 /* A frame whose third axis is the unit vector n: columns of A. */
@@ -110,9 +110,9 @@ static se3d_status read_vertices(se3d_system *system, const se3d_shape_def *def,
 {
     SE3DI_TRY(se3di_check_pointer(system, "vertices", def->vertices));
     if (def->vertex_count < 3 || def->vertex_count > UINT32_MAX / 16) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "vertex_count = %zu, must be at least 3 and at most %u",
-                          def->vertex_count, UINT32_MAX / 16);
+        return SE3DI_FAIL_OF(system, "vertex_count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be at least 3 and at most %u", def->vertex_count,
+                             UINT32_MAX / 16);
     }
     for (size_t k = 0; k < 3 * def->vertex_count; ++k) {
         if (!isfinite(def->vertices[k])) {
@@ -130,9 +130,9 @@ static se3d_status read_hull(se3d_system *system, const se3d_shape_def *def, se3
 {
     SE3DI_TRY(read_vertices(system, def, shape));
     if (def->vertex_count > HULL_VERTICES_MAX) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "vertex_count = %zu of a hull, must be at most %d", def->vertex_count,
-                          HULL_VERTICES_MAX);
+        return SE3DI_FAIL_OF(system, "vertex_count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu of a hull, must be at most %d", def->vertex_count,
+                             HULL_VERTICES_MAX);
     }
     se3d_status status =
         se3di_hull_build(&system->model.allocator, def->vertices, def->vertex_count, shape);
@@ -149,9 +149,9 @@ static se3d_status read_mesh(se3d_system *system, const se3d_shape_def *def, se3
     SE3DI_TRY(read_vertices(system, def, shape));
     SE3DI_TRY(se3di_check_pointer(system, "triangles", def->triangles));
     if (def->triangle_count < 1 || def->triangle_count > UINT32_MAX / 16) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "triangle_count = %zu, must be at least 1 and at most %u",
-                          def->triangle_count, UINT32_MAX / 16);
+        return SE3DI_FAIL_OF(system, "triangle_count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be at least 1 and at most %u", def->triangle_count,
+                             UINT32_MAX / 16);
     }
     for (size_t k = 0; k < 3 * def->triangle_count; ++k) {
         if (def->triangles[k] >= def->vertex_count) {

@@ -25,32 +25,31 @@ void se3d_solver_def_init(se3d_solver_def *def, size_t size)
 static se3d_status check_numbers(se3d_system *system, const se3d_solver_def *def)
 {
     if (!(def->step == 0.0 || (def->step >= STEP_MIN && isfinite(def->step)))) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "step = %g s, must be finite and at least %g (0: chosen)", def->step,
-                          STEP_MIN);
+        return SE3DI_FAIL_OF(system, "step", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g s, must be finite and at least %g (0: chosen)", def->step,
+                             STEP_MIN);
     }
     if (!(def->tolerance == 0.0 ||
           (def->tolerance >= TOLERANCE_MIN && def->tolerance <= TOLERANCE_MAX))) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "tolerance = %g, must be from %g to %g (0: 1e-6)", def->tolerance,
-                          TOLERANCE_MIN, TOLERANCE_MAX);
+        return SE3DI_FAIL_OF(system, "tolerance", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be from %g to %g (0: 1e-6)", def->tolerance,
+                             TOLERANCE_MIN, TOLERANCE_MAX);
     }
     if (!(def->spectral_radius >= 0.0 && def->spectral_radius <= 1.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "spectral_radius = %g, must be from 0 to 1", def->spectral_radius);
+        return SE3DI_FAIL_OF(system, "spectral_radius", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be from 0 to 1", def->spectral_radius);
     }
     if (!(def->alpha >= -1.0 / 3.0 && def->alpha <= 0.0)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "alpha = %g, must be from -1/3 to 0",
-                          def->alpha);
+        return SE3DI_FAIL_OF(system, "alpha", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be from -1/3 to 0", def->alpha);
     }
     if (!isfinite(def->horizon)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "horizon = %g s, must be finite",
-                          def->horizon);
+        return SE3DI_FAIL_OF(system, "horizon", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g s, must be finite", def->horizon);
     }
     if (def->iterations_max > 1000000) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "iterations_max = %zu, must be from 1 to 1000000 (0: 25)",
-                          def->iterations_max);
+        return SE3DI_FAIL_OF(system, "iterations_max", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be from 1 to 1000000 (0: 25)", def->iterations_max);
     }
     return SE3D_OK;
 }
@@ -82,24 +81,25 @@ static se3d_status check_order(se3d_system *system, const se3d_solver_def *def)
             used += (size_t)snprintf(list + used, sizeof list - used, ", %d", k);
         }
     }
-    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "order = %d, must be 0%s with method %s",
-                      (int)def->order, list, se3d_method_get_name(def->method));
+    return SE3DI_FAIL_OF(system, "order", SE3D_ERR_INVALID_ARGUMENT,
+                         " = %d, must be 0%s with method %s", (int)def->order, list,
+                         se3d_method_get_name(def->method));
 }
 
 static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def)
 {
     if (def->analysis < SE3D_ANALYSIS_ASSEMBLY || def->analysis > SE3D_ANALYSIS_EQUILIBRIUM) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "analysis = %d, must be one of se3d_analysis", (int)def->analysis);
+        return SE3DI_FAIL_OF(system, "analysis", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be one of se3d_analysis", (int)def->analysis);
     }
     if (!se3di_formulation_find(def->formulation)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "formulation = %d, must be SE3D_FORMULATION_ROMEGA or _RP",
-                          (int)def->formulation);
+        return SE3DI_FAIL_OF(system, "formulation", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be SE3D_FORMULATION_ROMEGA or _RP",
+                             (int)def->formulation);
     }
     if (!se3di_integrator_find(def->method)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "method = %d, must be one of se3d_method", (int)def->method);
+        return SE3DI_FAIL_OF(system, "method", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be one of se3d_method", (int)def->method);
     }
     return check_order(system, def);
 }
@@ -183,17 +183,17 @@ se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
     se3d_system *system = solver->system;
     if (!isfinite(t_end) ||
         (t_end < system->model.time && !se3di_run_is_now(&solver->run, t_end))) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "t_end = %g s, must be finite and not before the present time %g s",
-                          t_end, system->model.time);
+        return SE3DI_FAIL_OF(system, "t_end", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g s, must be finite and not before the present time %g s", t_end,
+                             system->model.time);
     }
     const double most = solver->run.guard.most;
     const double step = solver->run.integration.settings.step; /* 0: none was asked for */
     const double steps = step > 0.0 ? (t_end - system->model.time) / step : 0.0;
     if (isfinite(steps) && steps > most) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "t_end = %g s takes %g steps of %g s, must take at most %g", t_end, steps,
-                          step, most);
+        return SE3DI_FAIL_OF(system, "t_end", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g s takes %g steps of %g s, must take at most %g", t_end, steps,
+                             step, most);
     }
     se3di_work_begin(system);
     return se3di_work_end(system, se3di_run_to(&solver->run, t_end));
@@ -204,10 +204,10 @@ se3d_status se3d_solver_step(se3d_solver *solver, double h)
     SE3DI_EDIT_OF(solver);
     const double now = solver->system->model.time;
     if (!(isfinite(h) && h >= STEP_MIN && now + h > now)) {
-        return SE3DI_FAIL(solver->system, SE3D_ERR_INVALID_ARGUMENT,
-                          "h = %g s, must be finite, at least %g and large enough to move the "
-                          "time %.17g s on",
-                          h, STEP_MIN, now);
+        return SE3DI_FAIL_OF(solver->system, "h", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g s, must be finite, at least %g and large enough to move the "
+                             "time %.17g s on",
+                             h, STEP_MIN, now);
     }
     se3di_work_begin(solver->system);
     return se3di_work_end(solver->system, se3di_run_step(&solver->run, h));

@@ -134,6 +134,11 @@ se3d_status se3d_system_get_error_status(const se3d_system *system)
     return system ? system->error.status : SE3D_ERR_NULL;
 }
 
+const char *se3d_system_get_error_field(const se3d_system *system)
+{
+    return system ? system->error.field : "";
+}
+
 se3d_status se3d_system_set_gravity(se3d_system *system, const double gravity[3])
 {
     SE3DI_SET(system);

@@ -23,6 +23,10 @@ struct se3d_system {
 #define SE3DI_FAIL(system, ...)                                                                    \
     se3di_log_error(&(system)->error, se3di_error_set(&(system)->error, __VA_ARGS__))
 
+/* The same about an argument or a member `field`, with which the message begins. */
+#define SE3DI_FAIL_OF(system, field, ...)                                                          \
+    se3di_log_error(&(system)->error, se3di_error_set_of(&(system)->error, field, __VA_ARGS__))
+
 /* What a public function that changes something begins with: `system` is not NULL, and not at work
  * unless with what allows `most`. A refusal leaves a message that names `function`. */
 se3d_status se3di_enter(se3d_system *system, se3di_busy_level most, const char *function);

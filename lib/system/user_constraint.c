@@ -15,12 +15,13 @@ void se3d_user_constraint_def_init(se3d_user_constraint_def *def, size_t size)
 static se3d_status check_counts(se3d_system *system, const se3d_user_constraint_def *def)
 {
     if (def->body_count < 1 || def->body_count > SE3D_USER_BODIES_MAX) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "body_count = %d, must be 1 to %d",
-                          (int)def->body_count, SE3D_USER_BODIES_MAX);
+        return SE3DI_FAIL_OF(system, "body_count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be 1 to %d", (int)def->body_count, SE3D_USER_BODIES_MAX);
     }
     if (def->equation_count < 1 || def->equation_count > SE3D_USER_EQUATIONS_MAX) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "equation_count = %d, must be 1 to %d",
-                          (int)def->equation_count, SE3D_USER_EQUATIONS_MAX);
+        return SE3DI_FAIL_OF(system, "equation_count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be 1 to %d", (int)def->equation_count,
+                             SE3D_USER_EQUATIONS_MAX);
     }
     return se3di_check_pointer(system, "callback", (const void *)(uintptr_t)def->callback);
 }
@@ -35,9 +36,9 @@ static se3d_status find_bodies(se3d_system *system, const se3d_user_constraint_d
         SE3DI_TRY(se3di_find_body(system, what, def->bodies[k], &bodies[k]));
         for (int32_t other = 0; other < k; ++other) {
             if (bodies[other] == bodies[k]) {
-                return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                                  "%s is bodies[%d] again, the bodies must be different", what,
-                                  (int)other);
+                return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                                     " is bodies[%d] again, the bodies must be different",
+                                     (int)other);
             }
         }
     }

@@ -639,6 +639,7 @@ static se3d_status texts_are_never_null(arguments *a)
     CHECK(strcmp(se3d_formulation_get_name(SE3D_FORMULATION_RP), "rp") == 0);
     CHECK(!*se3d_formulation_get_name(-7) && !*se3d_formulation_get_name(99));
     CHECK(se3d_system_get_error(NULL) != NULL);
+    CHECK(strcmp(se3d_system_get_error_field(NULL), "") == 0);
     CHECK(se3d_system_get_error_status(NULL) == SE3D_ERR_NULL ||
           se3d_system_get_error_status(NULL) == SE3D_OK);
     CHECK(strcmp(se3d_expression_get_text(NULL), "") == 0);
@@ -881,6 +882,7 @@ static const row rows[] = {
     {"se3d_method_get_name", texts_are_never_null, "", NULL, NULL},
     {"se3d_formulation_get_name", texts_are_never_null, "", NULL, NULL},
     {"se3d_system_get_error", texts_are_never_null, "", NULL, NULL},
+    {"se3d_system_get_error_field", texts_are_never_null, "", NULL, NULL},
     {"se3d_system_get_error_status", texts_are_never_null, "", NULL, NULL},
     {"se3d_expression_get_text", texts_are_never_null, "", NULL, NULL},
     {"se3d_system_def_init", definitions_are_never_overrun, "", NULL, NULL},

@@ -259,6 +259,11 @@ static void check_message(const row *r, const arguments *owned, const spoiled *s
     if (is_number) {
         CHECK_CONTAINS(message, s->variant == 0 ? "nan" : "inf");
     }
+    const char *about = se3d_system_get_error_field(owned->system);
+    if (strncmp(message, about, strlen(about)) != 0 || (is_number && !about[0])) {
+        fprintf(stderr, "%s (%c): `%s` is about '%s'\n", r->name, s->what, message, about);
+        CHECK(0);
+    }
 }
 
 static void run_case(const misuse_world *w, const row *r, const spoiled *s)

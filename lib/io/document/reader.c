@@ -57,32 +57,24 @@ bool se3di_reader_fail_memory(se3di_reader *reader)
     return false;
 }
 
-/* "mass = -1 kg, must be > 0" at bodies[0] becomes "bodies[0].mass: is -1 kg, must be > 0". */
+/* What is about the mass, "mass = -1 kg, must be > 0", at bodies[0] becomes "bodies[0].mass: is -1 kg,
+ * must be > 0". */
 bool se3di_reader_fail_system(se3di_reader *reader, const se3di_node *map, se3d_status status)
 {
     const char *message = se3d_system_get_error(reader->system);
-    char key[48];
-    size_t length = strspn(message, "abcdefghijklmnopqrstuvwxyz_0123456789");
+    const char *field = se3d_system_get_error_field(reader->system);
     if (status == SE3D_ERR_NO_MEMORY) {
         return se3di_reader_fail_memory(reader);
     }
-    if (!message[0]) {
-        message = se3d_status_get_text(status);
-        length = 0;
+    if (!se3di_node_get(map, field)) {
+        return se3di_reader_fail(reader, map, "%s",
+                                 message[0] ? message : se3d_status_get_text(status));
     }
-    if (length == 0 || length >= sizeof key) {
-        return se3di_reader_fail(reader, map, "%s", message);
-    }
-    memcpy(key, message, length);
-    key[length] = '\0';
-    if (!se3di_node_get(map, key)) {
-        return se3di_reader_fail(reader, map, "%s", message);
-    }
-    const char *rest = message + length;
+    const char *rest = message + strlen(field);
     if (strncmp(rest, " = ", 3) == 0) {
-        return se3di_reader_fail_key(reader, map, key, "is %s", rest + 3);
+        return se3di_reader_fail_key(reader, map, field, "is %s", rest + 3);
     }
-    return se3di_reader_fail_key(reader, map, key, "%s", rest[0] == ' ' ? rest + 1 : message);
+    return se3di_reader_fail_key(reader, map, field, "%s", rest[0] == ' ' ? rest + 1 : message);
 }
 
 /* Append "a, b, c" to `text`. */
