@@ -25,8 +25,8 @@ __attribute__((format(printf, 3, 4)))
 se3d_status
 se3di_error_set(se3di_error *error, se3d_status status, const char *format, ...);
 
-/* The same about an argument or a member of a structure, with whose name the message begins: `field`
- * "radius[3]" is recorded as "radius". */
+/* The same about an argument or a member of a structure, with whose name the message begins:
+ * `field` "radius[3]" is recorded as "radius". */
 #if defined(__GNUC__)
 __attribute__((format(printf, 4, 5)))
 #endif

@@ -57,8 +57,8 @@ bool se3di_reader_fail_memory(se3di_reader *reader)
     return false;
 }
 
-/* What is about the mass, "mass = -1 kg, must be > 0", at bodies[0] becomes "bodies[0].mass: is -1 kg,
- * must be > 0". */
+/* What is about the mass, "mass = -1 kg, must be > 0", at bodies[0] becomes "bodies[0].mass: is -1
+ * kg, must be > 0". */
 bool se3di_reader_fail_system(se3di_reader *reader, const se3di_node *map, se3d_status status)
 {
     const char *message = se3d_system_get_error(reader->system);
