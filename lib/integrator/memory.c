@@ -32,6 +32,27 @@ static int review_slip(const se3di_force *force, double rate, double allowed, se
     return 1;
 }
 
+/* So slow stands still. */
+static double slowness_of(const se3di_force *force, const se3di_state_scale *scale,
+                          double tolerance)
+{
+    const int turns = force->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
+    return STANDING * fmin(tolerance, 1e-6) * (turns ? scale->spin : scale->speed);
+}
+
+/* It sticks: whether it cannot, -1 if it has begun to move, as only what has no leverage does. */
+static int32_t review_stick(const se3di_equations *equations, uint32_t k, double rate,
+                            double slowness)
+{
+    const se3di_force *force = element_of(equations, k);
+    if (equations->friction.is_rigid && fabs(rate) > slowness &&
+        !se3di_friction_system_can_hold(equations, k)) {
+        return -1;
+    }
+    return fabs(se3di_friction_get(equations->assembly.model, force)) >
+           se3di_friction_limit(force, 0);
+}
+
 /* Which elements may have to change: friction.rests. @return how many */
 static uint32_t review(se3di_equations *equations, const se3di_state_scale *scale, double tolerance,
                        se3di_memory_end *end, uint32_t *broken)
@@ -42,31 +63,61 @@ static uint32_t review(se3di_equations *equations, const se3di_state_scale *scal
     for (uint32_t k = 0; k < equations->friction.count; ++k) {
         const se3di_force *force = element_of(equations, k);
         const int turns = force->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
-        int changes = 0;
+        int32_t changes = 0;
         se3di_measure measure;
         (void)se3di_measure_force(model, force, 0, &measure);
         if (!se3di_friction_sticks(force)) {
             changes = review_slip(force, measure.rate,
                                   tolerance * (turns ? scale->spin : scale->speed), end);
         } else if (force->state[SE3DI_FRICTION_SET] > 0.0) {
-            const double n = fabs(se3di_friction_get(model, force));
-            changes = n > se3di_friction_limit(force, 0);
-            *broken += (uint32_t)changes;
+            changes =
+                review_stick(equations, k, measure.rate, slowness_of(force, scale, tolerance));
+            *broken += changes != 0;
         }
         equations->friction.rests[k] = changes;
-        count += (uint32_t)changes;
+        count += changes != 0;
     }
     return count;
 }
 
-/* What is on the way back to its direction, as where it starts, has not turned. */
-static uint32_t drop_returning(se3di_equations *equations)
+static int stands(const se3di_equations *equations, uint32_t k, const se3di_state_scale *scale,
+                  double tolerance)
+{
+    const se3di_force *force = element_of(equations, k);
+    se3di_measure measure;
+    (void)se3di_measure_force(equations->assembly.model, force, 0, &measure);
+    return fabs(measure.rate) <= slowness_of(force, scale, tolerance);
+}
+
+/* What has begun to move slips as it moves; the others are left to be decided. */
+static void let_go(se3di_equations *equations)
+{
+    se3di_model *model = equations->assembly.model;
+    for (uint32_t k = 0; k < equations->friction.count; ++k) {
+        if (equations->friction.rests[k] < 0) {
+            se3di_force *force = element_of(equations, k);
+            se3di_measure measure;
+            (void)se3di_measure_force(model, force, 0, &measure);
+            const double mode = copysign(1.0, measure.rate);
+            se3di_friction_set(model, force, mode, mode * se3di_friction_limit(force, 1));
+            equations->friction.rests[k] = 0;
+        }
+    }
+}
+
+/* What is on the way back to its direction, as where it starts, has not turned; nor has what stands
+ * and is not driven back. */
+static uint32_t drop_returning(se3di_equations *equations, const se3di_state_scale *scale,
+                               double tolerance)
 {
     uint32_t count = 0;
     for (uint32_t k = 0; k < equations->friction.count; ++k) {
         const double mode = element_of(equations, k)->state[SE3DI_FRICTION_MODE];
-        if (equations->friction.rests[k] &&
-            mode * se3di_friction_system_acceleration(equations, k) > 0.0) {
+        if (!equations->friction.rests[k] || !(fabs(mode) > 0.0)) {
+            ;
+        } else if (mode * se3di_friction_system_acceleration(equations, k) > 0.0 ||
+                   (stands(equations, k, scale, tolerance) &&
+                    mode * se3di_friction_system_moves(equations, k) >= 0.0)) {
             equations->friction.rests[k] = 0;
         }
         count += (uint32_t)(equations->friction.rests[k] != 0);
@@ -78,16 +129,10 @@ static uint32_t drop_returning(se3di_equations *equations)
 static void add_standing(se3di_equations *equations, const se3di_state_scale *scale,
                          double tolerance)
 {
-    const se3di_model *model = equations->assembly.model;
     for (uint32_t k = 0; k < equations->friction.count; ++k) {
         const se3di_force *force = element_of(equations, k);
-        const int turns = force->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
-        const double still =
-            STANDING * fmin(tolerance, 1e-6) * (turns ? scale->spin : scale->speed);
-        se3di_measure measure;
-        (void)se3di_measure_force(model, force, 0, &measure);
         if (force->state[SE3DI_FRICTION_SET] > 0.0 &&
-            (se3di_friction_sticks(force) || fabs(measure.rate) <= still)) {
+            (se3di_friction_sticks(force) || stands(equations, k, scale, tolerance))) {
             equations->friction.rests[k] = 1;
         }
     }
@@ -114,7 +159,8 @@ static se3d_status change_modes(se3di_equations *equations, double t,
                                 const se3di_state_scale *scale, double tolerance,
                                 se3di_memory_end *end)
 {
-    if (drop_returning(equations) > 0) {
+    if (drop_returning(equations, scale, tolerance) > 0) {
+        let_go(equations);
         add_standing(equations, scale, tolerance);
         SE3DI_TRY(se3di_friction_system_decide(equations, t));
         SE3DI_TRY(se3di_state_evaluate(equations, t));

@@ -4,6 +4,8 @@
 #include "assembly/energy.h"
 #include "assembly/loads.h"
 #include "assembly/user.h"
+#include "force/friction.h"
+#include "force/measure.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -352,11 +354,36 @@ static void grow_by_shapes(const se3di_model *model, double *v, double *w)
     }
 }
 
+/* Where friction holds a mechanism at rest nothing moves but rounding: the scale is of what its
+ * forces would move of the whole mass. */
+static void grow_by_holds(const se3di_model *model, double *a, double *wdot)
+{
+    double mass = 0.0, J = 0.0;
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        const se3di_body *body = &model->bodies[k];
+        mass += body->fixed ? 0.0 : body->mass;
+        J += body->fixed ? 0.0 : fmax(body->J[0], fmax(body->J[1], body->J[2]));
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force *force = &model->forces[k];
+        if (force->type == SE3DI_FORCE_FRICTION && se3di_friction_sticks(force)) {
+            const double n = se3di_friction_get(model, force);
+            se3di_measure measure;
+            (void)se3di_measure_force(model, force, 0, &measure);
+            *a = fmax(*a, n * n * se3di_dot(measure.g + 6, measure.g + 6) / (mass * mass));
+            *wdot = fmax(*wdot, n * n * se3di_dot(measure.g + 9, measure.g + 9) / (J * J));
+        }
+    }
+}
+
 void se3di_state_scale_grow(const se3di_assembly *assembly, const double *derivative,
                             se3di_state_scale *scale)
 {
     double a = 0.0, wdot = 0.0, v = 1e-12, w = 1e-12, energy = 1e-24;
     grow_by_shapes(assembly->model, &v, &w);
+    if (se3di_forces_have_memory(assembly->model)) {
+        grow_by_holds(assembly->model, &a, &wdot);
+    }
     for (uint32_t k = 0; k < assembly->body_count; ++k, derivative += SE3DI_STATE_SIZE) {
         const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
         v = fmax(v, se3di_dot(frame->v, frame->v));

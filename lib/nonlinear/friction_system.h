@@ -6,8 +6,9 @@
  *     slip    n_k = +-mu_k N_k(l_0 + sum_j n_j L_j)          (limits are constant)
  *     hold    a_k(x_0 + sum_j n_j X_j) = 0
  *
- * is solved by Newton from n = 0, so that of several solutions it is the one that begins at mu = 0.
- * If there is none, friction jams.  docs/theory/friction.md */
+ * is solved by Newton from n = 0, so that of several solutions it is the one that begins at mu = 0
+ * (friction_newton.c). If there is none, friction jams. Elements at rest are decided on in
+ * friction_decide.c.  docs/theory/friction.md */
 #ifndef SE3DI_FRICTION_SYSTEM_H
 #define SE3DI_FRICTION_SYSTEM_H
 
@@ -23,7 +24,9 @@ typedef struct se3di_friction_system {
     int32_t *holds;    /* [count]: not 0: its acceleration is wanted zero */
     int32_t *rests;    /* [count], of the caller: to be decided */
     double *n;         /* [count]: force against the coordinate, beyond what forces hold already */
-    double *shared;    /* [count]: see SHARING */
+    double *centre;    /* [count]: sharing draws n to it, */
+    double *share;     /* [count]: by this, relative to the leverage */
+    double *kept;      /* [count]: n to come back to */
     double *Q;         /* [count * 16]: generalised force of a unit on bodies i and j */
     double *b, *c;     /* right-hand sides [unknowns], [rows] */
     double *x, *l;     /* without them */
@@ -31,6 +34,15 @@ typedef struct se3di_friction_system {
     double *R;         /* [count * (count + 1) * PARTS]: reactions of l and of every L */
     double *a, *W;     /* accelerations of coordinates: without, and of units [count * count] */
     double *J, *f;     /* Newton: [count * count], [count] */
+    int32_t *stays;    /* [count]: at rest at the limit of what it holds, as others hold it */
+    int32_t *slides;   /* [count]: has begun to slip while it was decided on */
+    int32_t *at;       /* [active]: -1, 1: at that limit */
+    int32_t *fixed;    /* [active]: its force is not in question */
+    double *limit;     /* [active]: of the force of those at rest */
+    double *stiff;     /* [active]: sharing, in accelerations */
+    double *guess;     /* [active]: forces under loads as they are */
+    double *loaded;    /* [active]: forces which these follow from */
+    double *P, *work;  /* of friction_box.h */
 } se3di_friction_system;
 
 struct se3di_equations;
@@ -52,6 +64,13 @@ se3d_status se3di_friction_system_decide(struct se3di_equations *equations, doub
 
 /* The acceleration of the coordinate of an element (index into `element`) from equations->x. */
 double se3di_friction_system_acceleration(const struct se3di_equations *equations, uint32_t k);
+
+/* The sign of that of an element beyond rounding, after _finish: -1, 0 or 1; 0 for one that neither
+ * holds nor slips under a load. */
+int se3di_friction_system_moves(const struct se3di_equations *equations, uint32_t k);
+
+/* Whether it has leverage on its own coordinate, after _finish. */
+int se3di_friction_system_can_hold(const struct se3di_equations *equations, uint32_t k);
 
 /* B (as C, transposed: what multipliers do to the bodies) += what they do by loading friction that
  * slips. @return whether anything does */
