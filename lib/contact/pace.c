@@ -353,9 +353,9 @@ void se3di_contacts_blame(const se3di_model *model, se3di_error *error)
     }
     find_culprits(&p);
     if (p.i != p.j && used < sizeof error->message) {
-        snprintf(error->message + used, sizeof error->message - used,
-                 "; the shapes %.60s and %.60s %s", se3di_shape_describe(model, p.i),
-                 se3di_shape_describe(model, p.j),
-                 model->contacts.count > 0 ? "press most on each other" : "are about to touch");
+        snprintf(
+            error->message + used, sizeof error->message - used, "; the shapes %.60s and %.60s %s",
+            se3di_shape_describe(model, p.i), se3di_shape_describe(model, p.j),
+            model->contacts.count > 0 ? "have the largest contact force" : "are about to touch");
     }
 }

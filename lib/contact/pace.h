@@ -24,7 +24,7 @@ double se3di_contacts_next_step(const se3di_model *model, se3di_pace_kind kind, 
 se3d_status se3di_contacts_check_step(const se3di_model *model, se3di_pace_kind kind, double h,
                                       se3di_error *error);
 
-/* Add to the message of a step that failed which shapes press most on each other, or, if none
+/* Add to the message of a step that failed which shapes have the largest contact force, or, if none
  * touch, which are about to. */
 void se3di_contacts_blame(const se3di_model *model, se3di_error *error);
 

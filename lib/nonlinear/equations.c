@@ -254,7 +254,7 @@ static se3d_status factor_values(se3di_equations *equations)
     if (status == SE3D_ERR_NOT_FINITE) {
         return se3di_error_set(equations->error, status,
                                "t = %g s: the equations are not finite: an angle has no direction, "
-                               "or the state has run away",
+                               "or the state has diverged",
                                assembly->model->time);
     }
     if (status < 0) {

@@ -57,7 +57,7 @@ static se3d_status report_overlap(const se3di_particles *set, se3di_error *error
         "particle %u%s%.80s and %s overlap by %g of the smaller radius at time %g s (allowed: "
         "%g); %s",
         set->failed, of, name, with, set->failed_amount, set->failed_time, set->overlap_limit,
-        set->failed_placed ? "they have been placed so"
+        set->failed_placed ? "they were placed with this overlap"
                            : "try a smaller step or a stiffer material");
 }
 

@@ -510,7 +510,7 @@ static void what_was_placed_into_another_is_told_so(void)
     CHECK(se3d_particles_run(b.particles, 0.1) == SE3D_ERR_STEP_SIZE);
     CHECK_CONTAINS(se3d_system_get_error(b.system),
                    "particle 1 and the shape post overlap by 0.6 ");
-    CHECK_CONTAINS(se3d_system_get_error(b.system), "they have been placed so");
+    CHECK_CONTAINS(se3d_system_get_error(b.system), "they were placed with this overlap");
     bed_destroy(&b);
 }
 

@@ -114,8 +114,9 @@ static bool read_primitive(se3di_reader *reader, const se3di_node *node, se3di_e
         return false;
     }
     if (bodies[0] == bodies[1]) {
-        return se3di_reader_fail_key(reader, node, "body_j",
-                                     "is body_i too, a constraint needs two different bodies");
+        return se3di_reader_fail_key(
+            reader, node, "body_j",
+            "is the same body as body_i, a constraint needs two different bodies");
     }
     def.name = entry->name;
     def.body_i = bodies[0]->body;

@@ -155,7 +155,7 @@ static bool read_coefficient(se3di_reader *reader, const se3di_node *node, const
     }
     if (other) {
         return se3di_reader_fail(reader, other,
-                                 "cannot stand beside a table `%s`, give one of them", key);
+                                 "cannot be combined with a table `%s`, give one of them", key);
     }
     return se3di_read_function(reader, child, x_only, value, function);
 }
@@ -223,9 +223,10 @@ static bool read_axes(se3di_reader *reader, const se3di_node *node, se3d_rsda_de
                                      "`joint` or an axis between two bodies");
     }
     if (global && (se3di_node_get(node, "ref_i") || se3di_node_get(node, "ref_j"))) {
-        return se3di_reader_fail_key(reader, node, "axis",
-                                     "cannot stand beside ref_i, ref_j: give axis and ref (ground "
-                                     "frame), or axis_i, ref_i, ref_j");
+        return se3di_reader_fail_key(
+            reader, node, "axis",
+            "cannot be combined with ref_i, ref_j: give axis and ref (ground "
+            "frame), or axis_i, ref_i, ref_j");
     }
     if (!global) {
         return se3di_read_key_direction(reader, node, "axis_i", def->axis_i) &&
@@ -263,7 +264,8 @@ static bool read_rsda_place(se3di_reader *reader, const se3di_node *node, se3d_r
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (se3di_node_get(node, "joint") &&
             se3di_keys_contain(" body_i body_j axis ref axis_i ref_i ref_j angle0 ", child->key)) {
-            return se3di_reader_fail(reader, child, "cannot stand beside `joint`, which has it");
+            return se3di_reader_fail(reader, child,
+                                     "cannot be combined with `joint`, which has it");
         }
     }
     return se3di_read_key_joint(reader, node, "joint", &def->joint);

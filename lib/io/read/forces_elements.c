@@ -25,7 +25,8 @@ bool se3di_read_bodies_ij(se3di_reader *reader, const se3di_node *node, const ch
     }
     if (bodies[0] == bodies[1]) {
         return se3di_reader_fail_key(reader, node, "body_j",
-                                     "is body_i too, %s needs two different bodies", what);
+                                     "is the same body as body_i, %s needs two different bodies",
+                                     what);
     }
     return true;
 }
@@ -188,7 +189,7 @@ static bool read_stop_place(se3di_reader *reader, const se3di_node *node, se3d_s
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (se3di_node_get(node, "joint") &&
             se3di_keys_contain(" body_i body_j point_i point_j ", child->key)) {
-            return se3di_reader_fail(reader, child, "cannot stand beside `joint`");
+            return se3di_reader_fail(reader, child, "cannot be combined with `joint`");
         }
     }
     return se3di_read_key_joint(reader, node, "joint", &def->joint) &&

@@ -152,11 +152,11 @@ static bool check_kind_of_rows(se3di_reader *reader, const se3di_node *node,
     const char *what = output->particles ? "particles" : "contacts";
     if (output->particles && output->contacts) {
         return se3di_reader_fail_key(reader, node, "contacts",
-                                     "cannot stand beside `particles`: give each its own file");
+                                     "cannot be combined with `particles`: give each its own file");
     }
     if ((output->particles || output->contacts) && se3di_node_get(node, "channels")) {
         return se3di_reader_fail_key(reader, node, "channels",
-                                     "cannot stand beside `%s`: give each its own file", what);
+                                     "cannot be combined with `%s`: give each its own file", what);
     }
     return true;
 }
@@ -216,7 +216,7 @@ static bool find_kind(se3di_reader *reader, const se3di_node *node, size_t *kind
         }
         if (found < KIND_COUNT) {
             return se3di_reader_fail_key(reader, node, output_types[k],
-                                         "cannot stand beside `%s`: give each its own entry",
+                                         "cannot be combined with `%s`: give each its own entry",
                                          output_types[found]);
         }
         found = k;

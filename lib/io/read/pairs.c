@@ -78,9 +78,10 @@ static bool read_local(se3di_reader *reader, const se3di_node *node, const joint
     static const char *const global[] = {"at", "axis", "ref", "at_2", "axis_2"};
     for (size_t k = 0; k < sizeof global / sizeof *global; ++k) {
         if (has(node, global[k])) {
-            return se3di_reader_fail_key(reader, node, global[k],
-                                         "cannot stand beside point_i, axis_i ...: give either the "
-                                         "global frame (at, axis, ref) or the local ones");
+            return se3di_reader_fail_key(
+                reader, node, global[k],
+                "cannot be combined with point_i, axis_i ...: give either the "
+                "global frame (at, axis, ref) or the local ones");
         }
     }
     if ((type->needs & POINT) && !has(node, "point_i") && !has(node, "point_j")) {
@@ -202,8 +203,9 @@ bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *n
         return false;
     }
     if (bodies[0] == bodies[1]) {
-        return se3di_reader_fail_key(reader, node, "body_j",
-                                     "is body_i too, a joint needs two different bodies");
+        return se3di_reader_fail_key(
+            reader, node, "body_j",
+            "is the same body as body_i, a joint needs two different bodies");
     }
     def.name = entry->name;
     def.body_i = bodies[0]->body;

@@ -112,7 +112,7 @@ static bool fail_cycle(resolver *r, size_t again)
         snprintf(text + used, sizeof text - used, "%.60s -> ", r->list[r->stack[k]].node->key);
     }
     return se3di_reader_fail(r->reader, r->list[again].node,
-                             "depends on itself: %s%.60s; parameters must not form a circle", text,
+                             "depends on itself: %s%.60s; parameters must not form a cycle", text,
                              r->list[again].node->key);
 }
 
