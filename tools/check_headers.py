@@ -4,7 +4,8 @@
 
 In the comment right before it, every
 
-    type, macro   has a sentence and `@since`; a field that is a number with a unit names it
+    type, macro   has a sentence and `@since`
+    field         has a comment; that of a double has its unit or range
     function      has a sentence, `@since`, and unless it returns nothing `@return`
     status        in `@return` exists, is one that the code can return, and none that the function's
                   own code returns is left out; `as se3d_...` refers to another function's list
@@ -186,21 +187,20 @@ def function_problems(match, comment, docs, code, known):
 
 
 def fields(text):
-    """(line, name, comment) of the double fields of public structures."""
+    """(place, name, own comment or the one above, that of the structure, is a double)."""
     for struct in re.finditer(r"^typedef struct \w+ \{\n(.*?)^\} (se3d_\w+);", text, re.M | re.S):
-        whole = comment_before(text, struct.start())
-        above = whole
+        whole, above = comment_before(text, struct.start()), ""
         for field in re.finditer(rf"^ +(?:({COMMENT})|([^/;]*?;)[ ]*({COMMENT})?)$", struct.group(1),
                                  re.M | re.S):
             if field.group(1):
                 above = words(field.group(1))
-            elif re.match(r"(const )?double\b", field.group(2)):
+            elif not re.search(r"\b(struct_size|reserved|index1|generation)\b", field.group(2)):
                 said = words(field.group(3)) if field.group(3) else above
-                name = re.findall(r"\w+", re.sub(r"\[.*?\]", "", field.group(2)))[-1]
-                yield struct.start(1) + field.start(), f"{struct.group(2)}.{name}", said
-                above = said if not field.group(3) else whole
-            else:
-                above = whole
+                name = re.findall(r"\w+", re.sub(r"\[.*?\]|\)\(.*", "", field.group(2)))[-1]
+                is_double = re.match(r"(const )?double\b", field.group(2))
+                yield (struct.start(1) + field.start(), f"{struct.group(2)}.{name}", said, whole,
+                       is_double)
+                above = ""
 
 
 NUMBER = re.compile(r"\[[^\]]+\]|Euler parameters|unit vector|direction|\d ?\.\. ?\d|>= 0\b|"
@@ -232,8 +232,10 @@ def check_header(path, docs, code, known):
         count += 1
         for why in sentence_problems(comment_before(text, match.start())):
             add(match.start(), name, why)
-    for at, name, said in fields(text):
-        if not NUMBER.search(said):
+    for at, name, said, whole, is_double in fields(text):
+        if not said:
+            add(at, name, "no comment")
+        elif is_double and not NUMBER.search(said) and not NUMBER.search(whole):
             add(at, name, "no unit or range")
     return count, problems
 

@@ -100,10 +100,10 @@ typedef int (*se3d_interrupt)(void *ctx);
  * and `free` receives the size that was asked for. Memory must be aligned as malloc's is. @since
  * 0.1 */
 typedef struct se3d_allocator {
-    void *(*alloc)(void *ctx, size_t size);
-    void *(*realloc)(void *ctx, void *memory, size_t old_size, size_t new_size);
-    void (*free)(void *ctx, void *memory, size_t size);
-    void *ctx;
+    void *(*alloc)(void *ctx, size_t size);                                      /* as malloc */
+    void *(*realloc)(void *ctx, void *memory, size_t old_size, size_t new_size); /* as realloc */
+    void (*free)(void *ctx, void *memory, size_t size);                          /* as free */
+    void *ctx;                                                                   /* of the three */
 } se3d_allocator;
 
 /* Severity of a log message. @since 0.1 */

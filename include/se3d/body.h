@@ -208,8 +208,8 @@ SE3D_API se3d_status se3d_body_set_all(se3d_system *system, size_t count, const 
 /* What a marker is made with. @since 0.1 */
 typedef struct se3d_marker_def {
     size_t struct_size;
-    const char *name; /* copied; unique on its body */
-    se3d_body body;
+    const char *name;      /* copied; unique on its body */
+    se3d_body body;        /* that it is on */
     double position[3];    /* body frame [m] */
     double orientation[4]; /* marker -> body, Euler parameters; default (1,0,0,0) */
 } se3d_marker_def;

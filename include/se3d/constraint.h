@@ -30,11 +30,11 @@ typedef enum se3d_primitive_type {
 /* What a primitive constraint is made with. @since 0.1 */
 typedef struct se3d_primitive_def {
     size_t struct_size;
-    const char *name; /* copied; NULL or unique among constraints */
-    int32_t type;     /* se3d_primitive_type */
-    int32_t reserved; /* 0 */
-    se3d_body body_i;
-    se3d_body body_j;
+    const char *name;       /* copied; NULL or unique among constraints */
+    int32_t type;           /* se3d_primitive_type */
+    int32_t reserved;       /* 0 */
+    se3d_body body_i;       /* the reference */
+    se3d_body body_j;       /* moves relative to body i */
     double a_i[3];          /* DP1, DP2: direction, body frame, not zero */
     double a_j[3];          /* DP1: direction, body frame, not zero */
     double point_i[3];      /* DP2, D, CD: s_i, body frame [m] */
@@ -94,9 +94,9 @@ typedef se3d_status (*se3d_constraint_callback)(void *ctx, double t, const se3d_
  * central differences of `jacobian`. @since 0.1 */
 typedef struct se3d_user_constraint_def {
     size_t struct_size;
-    const char *name;
-    se3d_constraint_callback callback;
-    void *ctx;
+    const char *name;                       /* copied; NULL or unique among constraints */
+    se3d_constraint_callback callback;      /* required */
+    void *ctx;                              /* of `callback` */
     se3d_body bodies[SE3D_USER_BODIES_MAX]; /* different ones, not only the ground */
     int32_t body_count;                     /* 1 to SE3D_USER_BODIES_MAX, default 1 */
     int32_t equation_count;                 /* 1 to SE3D_USER_EQUATIONS_MAX, default 1 */

@@ -27,7 +27,7 @@ typedef enum se3d_contact_law {
  * shapes. Forces and velocities are of the second of the two relative to the first, ground frame.
  * @since 0.1 */
 typedef struct se3d_contact_input {
-    se3d_material material_1, material_2;
+    se3d_material material_1, material_2; /* of the first and the second */
     double step;      /* by which the spring has been stretched since the last call [s]; 0: none */
     double overlap;   /* [m] > 0 */
     double normal[3]; /* unit vector from the first to the second, ground frame */
@@ -68,7 +68,7 @@ typedef struct se3d_contact_settings {
     double step;          /* of verlet and of particles [s]; 0: automatic, from the stiffness */
     double overlap_limit; /* allowed overlap over the smaller radius; default 0.2 */
     se3d_contact_callback callback; /* SE3D_CONTACT_LAW_CALLBACK, which needs a step > 0 */
-    void *ctx;
+    void *ctx;                      /* of `callback` */
 } se3d_contact_settings;
 
 /* Fill `settings`, of `size` bytes, with the defaults: see
@@ -110,11 +110,11 @@ SE3D_API se3d_status se3d_body_get_contact_wrench(const se3d_system *system, se3
                                                   double force[3], double torque[3]);
 /* A point where shapes of two bodies touch. @since 0.1 */
 typedef struct se3d_contact {
-    se3d_shape shape_i, shape_j;
-    double point[3];  /* ground frame [m] */
-    double normal[3]; /* unit vector from i to j, ground frame */
-    double overlap;   /* [m] > 0 */
-    double force[3];  /* on j at the point, ground frame [N] */
+    se3d_shape shape_i, shape_j; /* that touch */
+    double point[3];             /* ground frame [m] */
+    double normal[3];            /* unit vector from i to j, ground frame */
+    double overlap;              /* [m] > 0 */
+    double force[3];             /* on j at the point, ground frame [N] */
 } se3d_contact;
 
 /* Count the points where shapes of two bodies touch, at the last accepted state. Those of

@@ -57,7 +57,7 @@ typedef struct se3d_event_def {
     se3d_event_value value;       /* required */
     void *ctx;                    /* of `value` */
     se3d_event_callback callback; /* NULL: none */
-    void *callback_ctx;
+    void *callback_ctx;           /* of `callback` */
     double level;        /* the crossing that is looked for, in the unit of the value; default 0 */
     int32_t direction;   /* se3d_event_direction, default ANY */
     int32_t action;      /* se3d_event_action, default RECORD */

@@ -16,9 +16,9 @@ extern "C" {
  * f = k (l - l0) + c ldot + h(t, l, ldot), positive pulls the points together. @since 0.1 */
 typedef struct se3d_tsda_def {
     size_t struct_size;
-    const char *name;
-    se3d_body body_i;
-    se3d_body body_j;
+    const char *name;     /* copied; NULL or unique among force elements */
+    se3d_body body_i;     /* of one end */
+    se3d_body body_j;     /* of the other end */
     double point_i[3];    /* frame of body i [m] */
     double point_j[3];    /* frame of body j [m] */
     double k;             /* [N/m] */
@@ -51,7 +51,7 @@ SE3D_API se3d_status se3d_force_create_tsda(se3d_system *system, const se3d_tsda
  * about the axis; theta counts turns. @since 0.1 */
 typedef struct se3d_rsda_def {
     size_t struct_size;
-    const char *name;
+    const char *name;      /* copied; NULL or unique among force elements */
     se3d_constraint joint; /* a joint with an angle, or null: the fields after h */
     double k;              /* [N m/rad] */
     double c;              /* [N m s/rad] */
@@ -61,9 +61,9 @@ typedef struct se3d_rsda_def {
     se3d_function damper;  /* one variable: damping torque [N m] of thetadot; or null */
     double preload;        /* n at theta = theta0 and rest [N m] */
     se3d_body body_i;      /* without a joint: the bodies, */
-    se3d_body body_j;
-    double axis_i[3]; /* the axis, a direction in the frame of body i, */
-    double ref_i[3];  /* the direction the angle counts from, frame of body i; 0: chosen, */
+    se3d_body body_j;      /* they must differ */
+    double axis_i[3];      /* the axis, a direction in the frame of body i, */
+    double ref_i[3];       /* the direction the angle counts from, frame of body i; 0: chosen, */
     double ref_j[3]; /* and the direction to, frame of body j; 0: so that the angle is angle0 now */
     double angle0;   /* [rad] at creation; given ref_j: the nearest whole turns */
 } se3d_rsda_def;
@@ -87,8 +87,8 @@ SE3D_API se3d_status se3d_force_create_rsda(se3d_system *system, const se3d_rsda
 /* A force at a point, or a torque, on a body: constant or functions of time. @since 0.1 */
 typedef struct se3d_load_def {
     size_t struct_size;
-    const char *name;
-    se3d_body body;
+    const char *name;          /* copied; NULL or unique among force elements */
+    se3d_body body;            /* that it acts on */
     double point[3];           /* force: where it acts, body frame [m] */
     double value[3];           /* if the function is null [N, N m] */
     se3d_function function[3]; /* of t, or null */
@@ -123,9 +123,9 @@ SE3D_API se3d_status se3d_force_create_torque(se3d_system *system, const se3d_lo
  * @since 0.1 */
 typedef struct se3d_bushing_def {
     size_t struct_size;
-    const char *name;
-    se3d_body body_i;
-    se3d_body body_j;
+    const char *name;        /* copied; NULL or unique among force elements */
+    se3d_body body_i;        /* the reference */
+    se3d_body body_j;        /* moves relative to body i */
     double point_i[3];       /* frame of body i [m] */
     double point_j[3];       /* frame of body j [m] */
     double orientation_i[4]; /* frame i -> body i, Euler parameters; default (1,0,0,0) */
@@ -157,9 +157,9 @@ SE3D_API se3d_status se3d_force_create_bushing(se3d_system *system, const se3d_b
  * carry the moment about the axis. docs/theory/friction.md. @since 0.1 */
 typedef struct se3d_friction_def {
     size_t struct_size;
-    const char *name;
-    se3d_constraint joint;
-    int32_t coordinate; /* se3d_joint_coordinate */
+    const char *name;      /* copied; NULL or unique among force elements */
+    se3d_constraint joint; /* with that coordinate */
+    int32_t coordinate;    /* se3d_joint_coordinate */
     int32_t reserved;
     double mu;         /* of sliding, >= 0 */
     double mu_static;  /* of sticking, >= mu [1]; 0: mu */
@@ -193,12 +193,12 @@ SE3D_API se3d_status se3d_force_create_friction(se3d_system *system, const se3d_
  * impact speed above 1 mm/s (or mrad/s). @since 0.1 */
 typedef struct se3d_stop_def {
     size_t struct_size;
-    const char *name;
+    const char *name;      /* copied; NULL or unique among force elements */
     se3d_constraint joint; /* or null: the two points */
     int32_t coordinate;    /* se3d_joint_coordinate */
     int32_t reserved;
-    se3d_body body_i;
-    se3d_body body_j;
+    se3d_body body_i;   /* without a joint: of one point */
+    se3d_body body_j;   /* without a joint: of the other point */
     double point_i[3];  /* frame of body i [m] */
     double point_j[3];  /* frame of body j [m] */
     double lower;       /* [m, rad]; default -infinity: none */
@@ -241,12 +241,12 @@ typedef se3d_status (*se3d_force_callback)(void *ctx, double t, const se3d_body_
 /* What an element with a callback is made with. @since 0.1 */
 typedef struct se3d_force_callback_def {
     size_t struct_size;
-    const char *name;
-    se3d_body body_i; /* the ground if there is only one body */
-    se3d_body body_j;
-    se3d_force_callback callback;
-    void *ctx;
-    int32_t has_jacobian; /* not 0: the callback fills K and D; else differences are used */
+    const char *name;             /* copied; NULL or unique among force elements */
+    se3d_body body_i;             /* the ground if there is only one body */
+    se3d_body body_j;             /* the other one */
+    se3d_force_callback callback; /* required */
+    void *ctx;                    /* of `callback` */
+    int32_t has_jacobian;         /* not 0: the callback fills K and D; else differences are used */
     int32_t reserved;
 } se3d_force_callback_def;
 

@@ -31,9 +31,9 @@ typedef struct se3d_function_def {
     const char *const *variables;          /* names of x[0..variable_count); NULL: {"t"} */
     size_t variable_count;                 /* default 1, at most SE3D_FUNCTION_VARIABLES_MAX */
     const se3d_expression_symbol *symbols; /* named constants of the expression */
-    size_t symbol_count;
-    se3d_function_callback callback;
-    void *ctx;
+    size_t symbol_count;                   /* default 0 */
+    se3d_function_callback callback;       /* NULL: not a callback */
+    void *ctx;                             /* of `callback` */
     const double *table_x; /* [table_count] of x[0], increasing; natural cubic spline, copied */
     const double *table_y; /* [table_count] values */
     size_t table_count;    /* at least 2 */

@@ -16,29 +16,29 @@ extern "C" {
 /* Why a file was rejected or a run failed: "file:line:column: path: what, and what is allowed".
  * @since 0.1 */
 typedef struct se3d_model_error {
-    size_t line;   /* 1-based; 0 if no line is to blame */
-    size_t column; /* 1-based, in characters; 0 if unknown */
-    char message[1024];
+    size_t line;        /* 1-based; 0 if no line is to blame */
+    size_t column;      /* 1-based, in characters; 0 if unknown */
+    char message[1024]; /* the text, UTF-8 */
 } se3d_model_error;
 
 /* One parameter to replace; both texts as on the command line, `value` is an expression. @since 0.1
  */
 typedef struct se3d_model_setting {
-    const char *name;
-    const char *value;
+    const char *name;  /* of the parameter */
+    const char *value; /* an expression */
 } se3d_model_setting;
 
 /* How to read a model. Texts are as in the file; NULL: as the file says. @since 0.1 */
 typedef struct se3d_model_options {
     size_t struct_size;
-    const se3d_allocator *allocator; /* copied, also for the system; NULL: malloc */
-    const se3d_model_setting *settings;
-    size_t setting_count;
-    const char *analysis;    /* run this type only */
-    const char *formulation; /* of every analysis */
-    const char *method;
-    const char *step;      /* expression over the parameters [s] */
-    const char *duration;  /* expression over the parameters [s] */
+    const se3d_allocator *allocator;    /* copied, also for the system; NULL: malloc */
+    const se3d_model_setting *settings; /* [setting_count] */
+    size_t setting_count;               /* default 0 */
+    const char *analysis;               /* run this type only */
+    const char *formulation;            /* of every analysis */
+    const char *method;                 /* of every dynamics analysis */
+    const char *step;                   /* expression over the parameters [s] */
+    const char *duration;               /* expression over the parameters [s] */
     int32_t mass_optional; /* not 0: bodies without mass get 1 kg, 1 kg m^2 (geometry only) */
     int32_t reserved;      /* 0 */
     const char *tolerance; /* expression over the parameters, of every analysis */
@@ -192,9 +192,9 @@ SE3D_API se3d_status se3d_model_create_event(se3d_model *model, se3d_solver *sol
 
 /* A shape of a body, as the file describes it. @since 0.1 */
 typedef struct se3d_model_shape {
-    int32_t type;     /* se3d_shape_type */
-    int32_t reserved; /* 0 */
-    se3d_body body;
+    int32_t type;          /* se3d_shape_type */
+    int32_t reserved;      /* 0 */
+    se3d_body body;        /* that it is on */
     double size[3];        /* box: lengths of its edges [m] */
     double radius;         /* sphere, capsule, cylinder [m] */
     double length;         /* capsule (between its centres), cylinder, along the shape's z [m] */
@@ -231,9 +231,9 @@ typedef struct se3d_run_options {
     size_t struct_size;
     const char *directory;      /* for relative files, made if missing; NULL: "." */
     se3d_run_progress progress; /* NULL: none */
-    void *ctx;
-    se3d_interrupt interrupt; /* asked within rows too whether the run is to end; NULL: none */
-    void *interrupt_ctx;
+    void *ctx;                  /* of `progress` */
+    se3d_interrupt interrupt;   /* asked within rows too whether the run is to end; NULL: none */
+    void *interrupt_ctx;        /* of `interrupt` */
 } se3d_run_options;
 
 /* Fill `options`, of `size` bytes, with the defaults: see se3d_run_options_default. @since 0.1 */
@@ -272,14 +272,14 @@ typedef struct se3d_run_analysis {
     double start;            /* [s] */
     double end;              /* time that was reached [s] */
     double cpu_time;         /* [s] */
-    se3d_solver_stats stats;
-    const char *left;       /* the method that `auto` left on the way for `method`, "": none */
-    double left_at;         /* when [s], NaN: never */
-    const char *moved;      /* the body that the start moved most, "": none */
-    const char *deflected;  /* the body whose velocity the start changed most, "": none */
-    double start_change[8]; /* as se3d_start_change: norms [m, rad, m/s, rad/s], and those of the
+    se3d_solver_stats stats; /* of its solver */
+    const char *left;        /* the method that `auto` left on the way for `method`, "": none */
+    double left_at;          /* when [s], NaN: never */
+    const char *moved;       /* the body that the start moved most, "": none */
+    const char *deflected;   /* the body whose velocity the start changed most, "": none */
+    double start_change[8];  /* as se3d_start_change: norms [m, rad, m/s, rad/s], and those of the
                                bodies above */
-    const char *left_out;   /* equations that are redundant but for the digits of their data, with
+    const char *left_out;    /* equations that are redundant but for the digits of their data, with
                                what they are off by at the end, "": none */
 } se3d_run_analysis;
 
@@ -330,7 +330,7 @@ static inline se3d_status se3d_run_get_particles(const se3d_run *run, size_t ind
 
 /* An event that happened. @since 0.1 */
 typedef struct se3d_run_event {
-    const char *name;
+    const char *name;    /* of the event */
     const char *channel; /* with its component; both owned by the model */
     double time;         /* [s] */
     double value;        /* of the channel then [its unit] */
@@ -359,9 +359,9 @@ static inline se3d_status se3d_run_get_event(const se3d_run *run, size_t index,
 
 /* A file that was written. @since 0.1 */
 typedef struct se3d_run_file {
-    const char *path;
-    uint64_t rows; /* without the header */
-    size_t columns;
+    const char *path; /* with the folder of the results; owned by the run */
+    uint64_t rows;    /* without the header */
+    size_t columns;   /* with `time` */
 } se3d_run_file;
 
 /* Count the files that a run wrote. @return the number; 0 for NULL. @since 0.1 */
@@ -389,10 +389,10 @@ typedef struct se3d_model_picture {
     const char *results; /* plot: the CSV file it shows */
     const char *x;       /* plot: the channel of the horizontal axis; NULL: time */
     const char *const *channels; /* plot: [channel_count]; none: the usual ones */
-    size_t channel_count;
-    double speed;     /* video: seconds of motion in one of film [s/s] */
-    int32_t fft;      /* plot: not 0: amplitudes over frequency */
-    int32_t reserved; /* 0 */
+    size_t channel_count;        /* of `channels` */
+    double speed;                /* video: seconds of motion in one of film [s/s] */
+    int32_t fft;                 /* plot: not 0: amplitudes over frequency */
+    int32_t reserved;            /* 0 */
 } se3d_model_picture;
 
 /* Count the pictures that the `output` of a model asks for. @return the number; 0 for NULL.

@@ -170,13 +170,13 @@ SE3D_API se3d_status se3d_joint_get_coordinate(const se3d_system *system, se3d_c
  * j of the first joint, at its point there. @since 0.1 */
 typedef struct se3d_coupler_def {
     size_t struct_size;
-    const char *name;
-    se3d_constraint joint[SE3D_COUPLER_TERMS_MAX];
-    int32_t coordinate[SE3D_COUPLER_TERMS_MAX]; /* se3d_joint_coordinate */
-    double ratio[SE3D_COUPLER_TERMS_MAX];       /* [1, m/rad, rad/m], not zero */
-    size_t count;                               /* 1 .. SE3D_COUPLER_TERMS_MAX */
-    double value;                               /* if `function` is null [m, rad] */
-    se3d_function function;                     /* f(t), or null */
+    const char *name;                              /* copied; NULL or unique among constraints */
+    se3d_constraint joint[SE3D_COUPLER_TERMS_MAX]; /* [count] */
+    int32_t coordinate[SE3D_COUPLER_TERMS_MAX];    /* se3d_joint_coordinate */
+    double ratio[SE3D_COUPLER_TERMS_MAX];          /* [1, m/rad, rad/m], not zero */
+    size_t count;                                  /* 1 .. SE3D_COUPLER_TERMS_MAX */
+    double value;                                  /* if `function` is null [m, rad] */
+    se3d_function function;                        /* f(t), or null */
 } se3d_coupler_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_coupler_def_default. @since 0.1 */
@@ -218,9 +218,9 @@ SE3D_API se3d_status se3d_joint_create_rack_pinion(se3d_system *system, const ch
 /* What a driver is made with: coordinate of `joint` = f(t). @since 0.1 */
 typedef struct se3d_driver_def {
     size_t struct_size;
-    const char *name;
-    se3d_constraint joint;
-    int32_t coordinate; /* se3d_joint_coordinate */
+    const char *name;      /* copied; NULL or unique among constraints */
+    se3d_constraint joint; /* with that coordinate */
+    int32_t coordinate;    /* se3d_joint_coordinate */
     int32_t reserved;
     double value;           /* f if `function` is null [m, rad] */
     se3d_function function; /* f(t), or null */

@@ -14,7 +14,7 @@ extern "C" {
 
 /* A force at a point of a body, or a torque on it, along a direction. @since 0.1 */
 typedef struct se3d_modes_input {
-    se3d_body body;
+    se3d_body body;    /* that it acts on */
     int32_t is_torque; /* not 0: a torque */
     int32_t reserved;
     double point[3];     /* force: where it acts, body frame [m] */
@@ -33,7 +33,7 @@ typedef enum se3d_modes_quantity {
 
 /* A component of the motion of a body, as a change from the present one. @since 0.1 */
 typedef struct se3d_modes_output {
-    se3d_body body;
+    se3d_body body;   /* that moves */
     int32_t quantity; /* se3d_modes_quantity */
     int32_t reserved;
     double point[3];     /* body frame [m] */
@@ -43,10 +43,10 @@ typedef struct se3d_modes_output {
 /* What the linearisation is made with; both lists may be empty. Copied. @since 0.1 */
 typedef struct se3d_modes_def {
     size_t struct_size;
-    const se3d_modes_input *inputs;
-    size_t input_count;
-    const se3d_modes_output *outputs;
-    size_t output_count;
+    const se3d_modes_input *inputs;   /* [input_count] */
+    size_t input_count;               /* default 0 */
+    const se3d_modes_output *outputs; /* [output_count] */
+    size_t output_count;              /* default 0 */
 } se3d_modes_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_modes_def_default. @since 0.1 */

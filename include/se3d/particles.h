@@ -128,20 +128,20 @@ typedef enum se3d_fill_region {
 /* A region filled with particles. @since 0.1 */
 typedef struct se3d_fill_def {
     size_t struct_size;
-    se3d_material material;
+    se3d_material material;        /* of the particles */
     size_t count;                  /* lattice: at most; 0: all that fit */
     double lower[3], upper[3];     /* region: no part of a particle is outside [m] */
     double radius_min, radius_max; /* uniformly distributed [m] */
     double spacing;                /* lattice [m]; 0: 1.1 times the largest diameter */
     double jitter;                 /* lattice: largest displacement along each axis [m] */
     double velocity[3];            /* [m/s] */
-    uint64_t seed;
-    int32_t region;        /* se3d_fill_region, in the box from lower to upper */
-    int32_t axis;          /* of a cylinder: 0, 1 or 2 */
-    const double *radii;   /* [radius_count] radii to draw from instead of the range [m], */
-    const double *weights; /* [radius_count] with frequencies like these; NULL: all alike */
-    size_t radius_count;
-    uint32_t tag;
+    uint64_t seed;                 /* of the random numbers */
+    int32_t region;                /* se3d_fill_region, in the box from lower to upper */
+    int32_t axis;                  /* of a cylinder: 0, 1 or 2 */
+    const double *radii;           /* [radius_count] radii to draw from instead of the range [m], */
+    const double *weights;         /* [radius_count] with frequencies like these; NULL: all alike */
+    size_t radius_count;           /* of `radii`; 0: the range */
+    uint32_t tag;                  /* of the particles, below SE3D_PARTICLES_TAGS */
     uint32_t reserved;
 } se3d_fill_def;
 
@@ -175,12 +175,12 @@ SE3D_API se3d_status se3d_particles_fill_random(se3d_particles *particles,
  * @since 0.1 */
 typedef struct se3d_particles_source_def {
     size_t struct_size;
-    const se3d_fill_def *fill;
-    double rate;            /* particles [1/s] or mass [kg/s], >= 0 */
-    se3d_function function; /* null: `rate` */
-    double start, stop;     /* [s]; stop 0: never */
-    double every;           /* least time between insertions [s]; each rebuilds neighbour lists */
-    int32_t per_mass;       /* not 0: the rate is [kg/s] */
+    const se3d_fill_def *fill; /* required */
+    double rate;               /* particles [1/s] or mass [kg/s], >= 0 */
+    se3d_function function;    /* null: `rate` */
+    double start, stop;        /* [s]; stop 0: never */
+    double every;     /* least time between insertions [s]; each rebuilds neighbour lists */
+    int32_t per_mass; /* not 0: the rate is [kg/s] */
     int32_t reserved;
 } se3d_particles_source_def;
 
@@ -207,7 +207,7 @@ SE3D_API se3d_status se3d_particles_add_source(se3d_particles *particles,
 
 /* What a source has done. @since 0.1 */
 typedef struct se3d_particles_source_stats {
-    uint64_t inserted;
+    uint64_t inserted; /* particles so far */
     uint64_t deferred; /* of all so far, those that had to wait for room */
     double mass;       /* inserted [kg] */
     double waiting;    /* what is owed now: particles, or [kg] */
@@ -456,9 +456,9 @@ SE3D_API se3d_status se3d_particles_get_time(const se3d_particles *particles, do
 
 /* Energies [J]; potential: of gravity, zero at the ground origin. @since 0.1 */
 typedef struct se3d_particles_energy {
-    double translation;
-    double rotation;
-    double potential;
+    double translation; /* kinetic */
+    double rotation;    /* kinetic */
+    double potential;   /* of gravity */
 } se3d_particles_energy;
 
 /* As se3d_particles_get_energy, told the size of *energy in bytes. @return as
@@ -476,7 +476,7 @@ static inline se3d_status se3d_particles_get_energy(const se3d_particles *partic
 
 /* What a run did. @since 0.1 */
 typedef struct se3d_particles_stats {
-    uint64_t steps;
+    uint64_t steps;    /* of verlet so far */
     uint64_t rebuilds; /* of the neighbour list */
     uint64_t contacts; /* at the last step */
     uint64_t lost;     /* particles that left through a sink */

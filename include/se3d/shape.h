@@ -39,9 +39,9 @@ typedef struct se3d_shape_def {
     uint32_t group, mask;   /* a and b touch if a.group & b.mask and b.group & a.mask; default 1 and
                                all ones */
     const double *vertices; /* mesh, hull: [3 * vertex_count], shape frame [m], copied */
-    size_t vertex_count;
+    size_t vertex_count;    /* of `vertices` */
     const uint32_t *triangles; /* mesh: [3 * triangle_count] indices of vertices, copied */
-    size_t triangle_count;
+    size_t triangle_count;     /* of `triangles` */
 } se3d_shape_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_shape_def_default. @since 0.1 */

@@ -67,7 +67,7 @@ typedef struct se3d_solver_def {
     double horizon; /* where runs go on to this time [s], their steps are counted together and
                        foreseen up to it; 0, or not after t_end: each run by itself */
     se3d_interrupt interrupt; /* asked whether a run is to end now; NULL: none */
-    void *interrupt_ctx;
+    void *interrupt_ctx;      /* of `interrupt` */
 } se3d_solver_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_solver_def_default. @since 0.1 */
@@ -115,8 +115,8 @@ typedef struct se3d_solver_stats {
     uint64_t iterations;     /* Newton iterations */
     uint64_t evaluations;    /* acceleration evaluations */
     uint64_t factorizations; /* of the linear solver */
-    uint64_t solves;
-    uint64_t reserved[10]; /* 0; for counters to come: other structures hold this one */
+    uint64_t solves;         /* of the linear solver */
+    uint64_t reserved[10];   /* 0; for counters to come: other structures hold this one */
 } se3d_solver_stats;
 
 /* As se3d_solver_get_stats, told the size of *stats in bytes. @return as se3d_solver_get_stats,
@@ -144,7 +144,7 @@ typedef struct se3d_start_change {
     double most_velocity;         /* of the body whose velocity was changed most [m/s] */
     double most_angular_velocity; /* [rad/s] */
     se3d_body moved;              /* that body; null: none */
-    se3d_body deflected;
+    se3d_body deflected;          /* the body whose velocity was changed most; null: none */
 } se3d_start_change;
 
 /* As se3d_solver_get_start_change, told the size of *change in bytes. @return as

@@ -16,9 +16,9 @@ typedef struct se3d_system_def {
     size_t struct_size;
     const se3d_allocator *allocator; /* copied; NULL: malloc */
     se3d_log_callback log;           /* NULL: silent */
-    void *log_ctx;
-    double gravity[3]; /* ground frame [m/s^2], default (0, 0, -9.81) */
-    double time;       /* [s], default 0 */
+    void *log_ctx;                   /* of `log` */
+    double gravity[3];               /* ground frame [m/s^2], default (0, 0, -9.81) */
+    double time;                     /* [s], default 0 */
 } se3d_system_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_system_def_default. @since 0.1 */
@@ -148,10 +148,10 @@ SE3D_API se3d_status se3d_system_get_force(const se3d_system *system, size_t ind
 /* Energies [J]; potential includes gravity (zero at the ground origin) and springs; dissipated is
  * the integral since the start of the run. @since 0.1 */
 typedef struct se3d_energy {
-    double kinetic;
-    double potential;
-    double total;
-    double dissipated;
+    double kinetic;    /* of translation and rotation */
+    double potential;  /* of gravity, springs and contacts */
+    double total;      /* kinetic + potential */
+    double dissipated; /* since the start of the run */
 } se3d_energy;
 
 /* As se3d_system_get_energy, told the size of *energy in bytes. @return as
@@ -171,9 +171,9 @@ static inline se3d_status se3d_system_get_energy(const se3d_system *system, se3d
  * dynamics integrates powers by Gauss-Lobatto's rule of order 6 over its steps; kinematics computes
  * no works. Where a callback fails while a value is set they begin anew at zero. @since 0.1 */
 typedef struct se3d_work {
-    double dissipated;
-    double actuators; /* h of springs, loads, callbacks; particles on bodies [J] */
-    double drivers;
+    double dissipated; /* by dampers, friction and contacts */
+    double actuators;  /* h of springs, loads, callbacks; particles on bodies [J] */
+    double drivers;    /* by constraints with a function */
 } se3d_work;
 
 /* As se3d_system_get_work, told the size of *work in bytes. @return as se3d_system_get_work, and

@@ -71,8 +71,9 @@ printf '%s\n' '#include "se3d/base.h"' 'se3d_status se3d_told_get(const int *o, 
     '{' '    r[0] = *v;' '    return o ? SE3D_ERR_STALE_HANDLE : SE3D_ERR_NULL;' '}' >lib/base/told.c
 printf '%s\n' '/* Get it. Reader. @param[out] r  where. @return OK, NULL, NOT_FOUND, NO_MEMORY. */' \
     'SE3D_API se3d_status se3d_told_get(const int *o, double *v, double r[3]);' \
-    'typedef struct se3d_span {' '    double width;' '} se3d_span;' >include/se3d/told.h
+    'typedef struct se3d_span {' '    double width; /* of it */' '    int way;' '} se3d_span;' >include/se3d/told.h
 reject 'se3d_span.width: no unit' $headers
+reject 'se3d_span.way: no comment' $headers
 reject 'nothing on the parameter `v`' $headers
 reject 'no unit of the parameter `r`' $headers
 reject 'no frame of the parameter `r`' $headers
