@@ -59,7 +59,7 @@ extern "C" {
     X(SE3D_ERR_STEP_COUNT, -18, "the run would take too many steps")
 
 #define SE3D_STATUS_ENUMERATOR(name, value, text) name = value,
-/* What every fallible call returns. @since 0.1 */
+/* The result of every call that can fail. @since 0.1 */
 typedef enum se3d_status { SE3D_STATUS_LIST(SE3D_STATUS_ENUMERATOR) } se3d_status;
 #undef SE3D_STATUS_ENUMERATOR
 

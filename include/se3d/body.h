@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/* What a body is made with. @since 0.1 */
+/* The definition of a body. @since 0.1 */
 typedef struct se3d_body_def {
     size_t struct_size;
     const char *name;   /* copied; NULL or unique in the system */
@@ -205,7 +205,7 @@ SE3D_API se3d_status se3d_body_get_all(const se3d_system *system, size_t count, 
 SE3D_API se3d_status se3d_body_set_all(se3d_system *system, size_t count, const double *r,
                                        const double *p, const double *v, const double *w);
 
-/* What a marker is made with. @since 0.1 */
+/* The definition of a marker. @since 0.1 */
 typedef struct se3d_marker_def {
     size_t struct_size;
     const char *name;      /* copied; unique on its body */

@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/* What a report on the constraints counts. Set struct_size before the call. @since 0.1 */
+/* The counts of a report on the constraints. Set struct_size before the call. @since 0.1 */
 typedef struct se3d_check_summary {
     size_t struct_size;
     size_t bodies;       /* movable */

@@ -27,7 +27,7 @@ typedef enum se3d_primitive_type {
     SE3D_PRIMITIVE_CD = 3   /* Phi = c.d_ij - f */
 } se3d_primitive_type;
 
-/* What a primitive constraint is made with. @since 0.1 */
+/* The definition of a primitive constraint. @since 0.1 */
 typedef struct se3d_primitive_def {
     size_t struct_size;
     const char *name;       /* copied; NULL or unique among constraints */
@@ -88,7 +88,7 @@ typedef se3d_status (*se3d_constraint_callback)(void *ctx, double t, const se3d_
                                                 double *phi, double *jacobian, double *nu,
                                                 double *gamma);
 
-/* What a user-defined constraint is made with. With one body, body i is the ground and the body is
+/* The definition of a user-defined constraint. With one body, body i is the ground and the body is
  * j; else bodies[0] is i and bodies[1] is j. Reactions are reported at the centre of body j.
  * Methods that need the second derivative of Phi (generalized_alpha, hht, modes, equilibria) take
  * central differences of `jacobian`. @since 0.1 */

@@ -45,7 +45,8 @@ typedef struct se3d_contact_input {
                    A damping c then acts as c + lag c^2/(2 mass) does */
 } se3d_contact_input;
 
-/* What a law gives; all zero, and the spring as in the input, when it is called. @since 0.1 */
+/* The result of a law of contact; all zero, and the spring as in the input, when it is called.
+ * @since 0.1 */
 typedef struct se3d_contact_output {
     double force;         /* along the normal on the second [N] */
     double tangential[3]; /* in the tangent plane on the second [N] */
@@ -60,7 +61,7 @@ typedef struct se3d_contact_output {
 typedef se3d_status (*se3d_contact_callback)(void *ctx, const se3d_contact_input *input,
                                              se3d_contact_output *output);
 
-/* What holds for all contacts of a system. @since 0.1 */
+/* The settings of all contacts of a system. @since 0.1 */
 typedef struct se3d_contact_settings {
     size_t struct_size;
     int32_t law; /* se3d_contact_law */

@@ -19,7 +19,7 @@ typedef enum se3d_event_direction {
     SE3D_EVENT_RISING = 1
 } se3d_event_direction;
 
-/* What an event does to the run. @since 0.1 */
+/* The effect of an event on the run. @since 0.1 */
 typedef enum se3d_event_action {
     SE3D_EVENT_RECORD = 0, /* note it and go on: the motion is the same as without */
     SE3D_EVENT_STOP = 1    /* the run ends there with SE3D_INFO_EVENT */
@@ -50,7 +50,7 @@ typedef struct se3d_event_record {
 typedef se3d_status (*se3d_event_callback)(void *ctx, se3d_system *system,
                                            const se3d_event_record *record);
 
-/* What an event is made with. @since 0.1 */
+/* The definition of an event. @since 0.1 */
 typedef struct se3d_event_def {
     size_t struct_size;
     const char *name;             /* copied; NULL: none */

@@ -30,8 +30,8 @@ typedef struct se3d_expression_error {
     char message[256]; /* names the offending token and what is allowed */
 } se3d_expression_error;
 
-/* What to compile. Everything is copied: nothing needs to outlive the call, but the functions and
- * the context of the allocator, which must live as long as the expression. @since 0.1 */
+/* The definition of an expression. Everything is copied: only the functions and the context of the
+ * allocator must live as long as the expression. @since 0.1 */
 typedef struct se3d_expression_def {
     size_t struct_size;                    /* set by se3d_expression_def_default */
     const char *text;                      /* required; at most SE3D_EXPRESSION_TEXT_MAX long */

@@ -238,7 +238,7 @@ SE3D_API se3d_status se3d_force_create_stop(se3d_system *system, const se3d_stop
 typedef se3d_status (*se3d_force_callback)(void *ctx, double t, const se3d_body_motion motion[2],
                                            double wrench[12], double *K, double *D);
 
-/* What an element with a callback is made with. @since 0.1 */
+/* The definition of an element with a callback. @since 0.1 */
 typedef struct se3d_force_callback_def {
     size_t struct_size;
     const char *name;             /* copied; NULL or unique among force elements */

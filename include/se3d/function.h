@@ -23,7 +23,7 @@ extern "C" {
 typedef se3d_status (*se3d_function_callback)(void *ctx, const double *x, double jet[3],
                                               double *gradient);
 
-/* What a function is made with: exactly one of `expression`, `callback`, a table, or the constant.
+/* The definition of a function: exactly one of `expression`, `callback`, a table, or the constant.
  * @since 0.1 */
 typedef struct se3d_function_def {
     size_t struct_size;

@@ -30,7 +30,7 @@ typedef struct se3d_expression se3d_expression;
 
 /* A model file that was read; destroy with se3d_model_destroy. @since 0.1 */
 typedef struct se3d_model se3d_model;
-/* What a run of a model did; destroy with se3d_run_destroy. @since 0.1 */
+/* The report on a run of a model; destroy with se3d_run_destroy. @since 0.1 */
 typedef struct se3d_run se3d_run;
 /* The motion of a model as a 3-D scene: make it, record during a run, write it; destroy with
  * se3d_scene_destroy. @since 0.1 */
@@ -69,7 +69,7 @@ typedef struct se3d_force {
     uint32_t generation;
 } se3d_force;
 
-/* What shapes and particles are made of. @since 0.1 */
+/* A material of shapes and particles. @since 0.1 */
 typedef struct se3d_material {
     uint32_t index1;
     uint32_t generation;

@@ -262,7 +262,7 @@ SE3D_API se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *o
 /* Destroy the report of a run; NULL is fine. @since 0.1 */
 SE3D_API void se3d_run_destroy(se3d_run *run);
 
-/* What one analysis did. @since 0.1 */
+/* The report on one analysis. @since 0.1 */
 typedef struct se3d_run_analysis {
     const char *type;        /* owned by the run, as all texts below */
     const char *formulation; /* "rp", "romega" */

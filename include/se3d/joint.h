@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/* What a joint between two bodies is made with: a point and an axis on each. @since 0.1 */
+/* The definition of a joint between two bodies: a point and an axis on each. @since 0.1 */
 typedef struct se3d_joint_def {
     size_t struct_size;
     const char *name;  /* copied; NULL or unique among constraints */
@@ -215,7 +215,7 @@ SE3D_API se3d_status se3d_joint_create_rack_pinion(se3d_system *system, const ch
                                                    se3d_constraint pinion, se3d_constraint rack,
                                                    double radius, se3d_constraint *joint);
 
-/* What a driver is made with: coordinate of `joint` = f(t). @since 0.1 */
+/* The definition of a driver: coordinate of `joint` = f(t). @since 0.1 */
 typedef struct se3d_driver_def {
     size_t struct_size;
     const char *name;      /* copied; NULL or unique among constraints */

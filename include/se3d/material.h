@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/* What a material is made with. The restitution given is the one obtained, at any velocity; pairs
+/* The definition of a material. The restitution given is the one obtained, at any velocity; pairs
  * of materials mix: geometric means of friction and restitution, springs in series. @since 0.1 */
 typedef struct se3d_material_def {
     size_t struct_size;
@@ -58,8 +58,8 @@ SE3D_API se3d_status se3d_material_get(const se3d_system *system, se3d_material 
  * it). @since 0.1 */
 SE3D_API se3d_status se3d_material_destroy(se3d_system *system, se3d_material material);
 
-/* What holds for a pair of materials instead of the mixing rules; negative: the rule, the default.
- * @since 0.1 */
+/* The definition of a pair of materials, instead of the mixing rules; a negative number stands for
+ * the rule, the default. @since 0.1 */
 typedef struct se3d_material_pair_def {
     size_t struct_size;
     double friction, restitution, rolling_friction, torsional_friction; /* [1] */

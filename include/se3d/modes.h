@@ -21,7 +21,7 @@ typedef struct se3d_modes_input {
     double direction[3]; /* ground frame; made a unit vector */
 } se3d_modes_input;
 
-/* What an output is. @since 0.1 */
+/* The quantity of an output. @since 0.1 */
 typedef enum se3d_modes_quantity {
     SE3D_MODES_POSITION = 0, /* of a point, along the direction [m] */
     SE3D_MODES_VELOCITY = 1,
@@ -40,7 +40,7 @@ typedef struct se3d_modes_output {
     double direction[3]; /* ground frame; made a unit vector */
 } se3d_modes_output;
 
-/* What the linearisation is made with; both lists may be empty. Copied. @since 0.1 */
+/* The definition of the linearisation; both lists may be empty. Copied. @since 0.1 */
 typedef struct se3d_modes_def {
     size_t struct_size;
     const se3d_modes_input *inputs;   /* [input_count] */

@@ -16,7 +16,7 @@
 extern "C" {
 #endif
 
-/* What is at `lower` and `upper` along an axis. @since 0.1 */
+/* The boundary of a domain at `lower` and `upper` along an axis. @since 0.1 */
 typedef enum se3d_domain_boundary {
     SE3D_DOMAIN_BOUNDARY_OPEN = 0,
     SE3D_DOMAIN_BOUNDARY_PERIODIC = 1,
@@ -27,7 +27,7 @@ typedef enum se3d_domain_boundary {
  * a set to the user may be a tag here, so that all sets touch each other. @since 0.1 */
 #define SE3D_PARTICLES_TAGS 256
 
-/* What particles are made with. @since 0.1 */
+/* The definition of a set of particles. @since 0.1 */
 typedef struct se3d_particles_def {
     size_t struct_size;
     int32_t threads;     /* 1: default; results do not depend on it */
@@ -205,7 +205,7 @@ SE3D_API se3d_status se3d_particles_add_source(se3d_particles *particles,
                                                const se3d_particles_source_def *def,
                                                uint32_t *source);
 
-/* What a source has done. @since 0.1 */
+/* Counters of a source. @since 0.1 */
 typedef struct se3d_particles_source_stats {
     uint64_t inserted; /* particles so far */
     uint64_t deferred; /* of all so far, those that had to wait for room */
@@ -474,7 +474,7 @@ static inline se3d_status se3d_particles_get_energy(const se3d_particles *partic
     return se3d_particles_get_energy_sized(particles, energy, sizeof *energy);
 }
 
-/* What a run did. @since 0.1 */
+/* Counters of a set of particles. @since 0.1 */
 typedef struct se3d_particles_stats {
     uint64_t steps;    /* of verlet so far */
     uint64_t rebuilds; /* of the neighbour list */

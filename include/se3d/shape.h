@@ -21,7 +21,7 @@ typedef enum se3d_shape_type {
     SE3D_SHAPE_MESH = 5
 } se3d_shape_type;
 
-/* What a shape is made with; every kind takes its own of the last fields. Its frame is at its
+/* The definition of a shape; every kind takes its own of the last fields. Its frame is at its
  * centre.
  * @since 0.1 */
 typedef struct se3d_shape_def {

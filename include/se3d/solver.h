@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/* What a solver does. @since 0.1 */
+/* The analysis of a solver. @since 0.1 */
 typedef enum se3d_analysis {
     SE3D_ANALYSIS_ASSEMBLY = 0,         /* consistent positions, velocities, accelerations */
     SE3D_ANALYSIS_KINEMATICS = 1,       /* motion under drivers: no forces needed */
@@ -47,7 +47,7 @@ SE3D_API const char *se3d_method_get_name(int32_t method);
  * @since 0.1 */
 SE3D_API const char *se3d_formulation_get_name(int32_t formulation);
 
-/* What a solver is made with. @since 0.1 */
+/* The definition of a solver. @since 0.1 */
 typedef struct se3d_solver_def {
     size_t struct_size;
     int32_t analysis;    /* se3d_analysis, default DYNAMICS */

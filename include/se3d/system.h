@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/* What a system is made with. @since 0.1 */
+/* The definition of a system. @since 0.1 */
 typedef struct se3d_system_def {
     size_t struct_size;
     const se3d_allocator *allocator; /* copied; NULL: malloc */
