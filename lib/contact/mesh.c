@@ -196,7 +196,9 @@ static double box_distance(const mesh_node *node, const double p[3])
 {
     double sum = 0.0;
     for (int a = 0; a < 3; ++a) {
-        double beyond = fmax(fmax(node->low[a] - p[a], p[a] - node->high[a]), 0.0);
+        const double below = node->low[a] - p[a], above = p[a] - node->high[a];
+        double beyond = below > above ? below : above; /* fmax() is a call */
+        beyond = beyond > 0.0 ? beyond : 0.0;
         sum += beyond * beyond;
     }
     return sum;
@@ -247,6 +249,31 @@ int se3di_mesh_is_near(const se3di_shape *shape, const uint32_t *faces, size_t f
         }
     }
     return 0;
+}
+
+int se3di_mesh_is_clear(const se3di_shape *shape, const double local[3], double radius)
+{
+    const mesh_node *nodes = shape->tree;
+    uint32_t stack[STACK_SIZE] = {0};
+    int depth = 1;
+    const double reach = radius * radius;
+    while (depth > 0) {
+        const uint32_t at = stack[--depth];
+        if (!(box_distance(&nodes[at], local) < reach)) {
+            continue;
+        }
+        if (nodes[at].count == 0) {
+            stack[depth++] = nodes[at].right;
+            stack[depth++] = at + 1;
+        }
+        for (uint32_t k = nodes[at].begin; k < nodes[at].begin + nodes[at].count; ++k) {
+            double point[3], square;
+            if (reaches(shape, k, local, reach, point, &square)) {
+                return 0;
+            }
+        }
+    }
+    return 1;
 }
 
 size_t se3di_mesh_nearest(const se3di_shape *shape, const double local[3], double point[3],

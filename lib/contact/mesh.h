@@ -36,6 +36,9 @@ size_t se3di_mesh_contacts_among(const se3di_shape *shape, const uint32_t *faces
 int se3di_mesh_is_near(const se3di_shape *shape, const uint32_t *faces, size_t face_count,
                        const double local[3], double radius);
 
+/* Whether no triangle is nearer to a point than the radius. */
+int se3di_mesh_is_clear(const se3di_shape *shape, const double local[3], double radius);
+
 /* Visit all triangles nearer to a point than the radius, in the order of the tree. */
 void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double radius,
                       void (*visitor)(void *ctx, uint32_t triangle), void *ctx);

@@ -130,7 +130,27 @@ static double along(const double a[3], const double b[3])
     se3di_sub(b, a, ab);
     double square = se3di_dot(ab, ab);
     double t = square > 0.0 ? -se3di_dot(a, ab) / square : 0.0;
-    return fmax(0.0, fmin(1.0, t));
+    t = t < 1.0 ? t : 1.0; /* fmin() is a call */
+    return t > 0.0 ? t : 0.0;
+}
+
+/* Barycentric coordinates of the point of the sides of a triangle nearest to the origin. */
+static void find_on_sides(double q[3][3], double w[3])
+{
+    double least = HUGE_VAL;
+    for (int k = 0; k < 3; ++k) {
+        const double *a = q[k];
+        const double *b = q[(k + 1) % 3];
+        double t = along(a, b);
+        double d[3] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]),
+                       a[2] + t * (b[2] - a[2])};
+        if (se3di_dot(d, d) < least) {
+            least = se3di_dot(d, d);
+            w[k] = 1.0 - t;
+            w[(k + 1) % 3] = t;
+            w[(k + 2) % 3] = 0.0;
+        }
+    }
 }
 
 /* Inside the triangle's prism the foot of the perpendicular; elsewhere the nearest of its sides. */
@@ -152,34 +172,17 @@ double se3di_triangle_nearest(const double *const corner[3], const double p[3], 
         w[k] = se3di_dot(c, normal);
         inside = inside && w[k] > 0.0;
     }
-    if (inside) {
-        double sum = w[0] + w[1] + w[2];
-        se3di_scale(1.0 / sum, w, w);
-    } else {
-        double least = HUGE_VAL;
-        for (int k = 0; k < 3; ++k) {
-            const double *a = q[k];
-            const double *b = q[(k + 1) % 3];
-            double t = along(a, b);
-            double d[3] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]),
-                           a[2] + t * (b[2] - a[2])};
-            if (se3di_dot(d, d) < least) {
-                least = se3di_dot(d, d);
-                w[k] = 1.0 - t;
-                w[(k + 1) % 3] = t;
-                w[(k + 2) % 3] = 0.0;
-            }
-        }
-    }
     double d[3] = {0.0, 0.0, 0.0};
-    for (int k = 0; k < 3; ++k) {
-        se3di_add_scaled(w[k], q[k], d);
-        if (weights) {
-            weights[k] = w[k];
-        }
-    }
     if (inside) { /* more exactly along the normal, which matters where p is near */
         se3di_scale(se3di_dot(q[0], normal) / square, normal, d);
+    } else {
+        find_on_sides(q, w);
+        for (int k = 0; k < 3; ++k) {
+            se3di_add_scaled(w[k], q[k], d);
+        }
+    }
+    if (weights) {
+        se3di_scale(inside ? 1.0 / (w[0] + w[1] + w[2]) : 1.0, w, weights);
     }
     se3di_add(p, d, point);
     return se3di_dot(d, d);

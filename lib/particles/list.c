@@ -4,7 +4,6 @@
  * History waits in `carry` while lists change: entries {i, j, xi}, chained by i through key[] (the
  * first) and carry_next[]. They lie in the memory of the loads, which hold nothing while there are
  * no valid lists. If memory fails they stay there, and nothing is lost. */
-#include "contact/mesh.h"
 #include "math/vec3.h"
 #include "particles/set.h"
 
@@ -285,6 +284,14 @@ static uint32_t mark_pairs(se3di_particles *set, const se3di_slab *slab, size_t 
     return blocks_of(count);
 }
 
+static int is_near_wall(const se3di_particles *set, const se3di_wall *wall, uint32_t i)
+{
+    const double reach = set->grains[i].radius + set->near;
+    double x[3];
+    se3di_particles_image(set, wall, set->grains[i].x, reach, x);
+    return se3di_wall_distance(wall, x) < reach;
+}
+
 /* The same for walls: one wall per block. */
 static uint32_t mark_walls(se3di_particles *set, const se3di_slab *slab, size_t *pairs)
 {
@@ -294,12 +301,9 @@ static uint32_t mark_walls(se3di_particles *set, const se3di_slab *slab, size_t 
     for (uint32_t k = slab->near_begin; k < slab->near_end; ++k) {
         se3di_near_wall *entry = &set->near_walls[k];
         uint32_t i = entry->i & ~SE3DI_LIST_ACTIVE;
-        const se3di_grain *g = &set->grains[i];
         const se3di_wall *wall = &set->walls[entry->wall];
-        double x[3];
-        se3di_particles_image(set, wall, g->x, g->radius + set->near, x);
-        int active = wall->shape.kind != SE3DI_SHAPE_MESH && /* they have pairs of their own */
-                     se3di_wall_distance(wall, x) < g->radius + set->near;
+        /* meshes have pairs of their own */
+        int active = wall->shape.kind != SE3DI_SHAPE_MESH && is_near_wall(set, wall, i);
         entry->i = active ? i | SE3DI_LIST_ACTIVE : i;
         if (entry->wall != last) {
             blocks += blocks_of(count);
@@ -413,146 +417,4 @@ se3d_status se3di_particles_refresh(se3di_particles *set)
 {
     SE3DI_TRY(se3di_particles_collect(set));
     return se3di_particles_activate(set);
-}
-
-double se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3],
-                          double normal[3])
-{
-    const double *R = wall->pose.R;
-    double d[3], local[3], at[3], n[3], distance;
-    se3di_sub(x, wall->pose.x, d);
-    se3di_mul_transposed(R, d, local);
-    se3di_shape_nearest(&wall->shape, local, at, n, &distance);
-    se3di_mul(R, n, normal);
-    se3di_copy(x, point);
-    se3di_add_scaled(-distance, normal, point);
-    return distance;
-}
-
-double se3di_wall_distance(const se3di_wall *wall, const double x[3])
-{
-    double point[3], normal[3];
-    return se3di_wall_nearest(wall, x, point, normal);
-}
-
-/* Cheaper than the distance, and never more. */
-static double least_distance(const se3di_wall *wall, const double x[3])
-{
-    double d[3];
-    se3di_sub(x, wall->pose.x, d);
-    return se3di_norm(d) - wall->shape.bound;
-}
-
-static int is_within(const se3di_wall *wall, const double x[3], double reach)
-{
-    return least_distance(wall, x) < reach && se3di_wall_distance(wall, x) < reach;
-}
-
-void se3di_wall_image(const se3di_wall *wall, const double length[3], double reach, double x[3])
-{
-    static const double shifts[3] = {0.0, 1.0, -1.0};
-    int counts[3];
-    for (int a = 0; a < 3; ++a) {
-        counts[a] = length[a] > 0.0 && wall->shape.kind != SE3DI_SHAPE_PLANE ? 3 : 1;
-    }
-    const int images = counts[0] * counts[1] * counts[2];
-    for (int k = 0; images > 1 && k < images; ++k) {
-        const int of[3] = {k % counts[0], k / counts[0] % counts[1], k / counts[0] / counts[1]};
-        double there[3];
-        for (int a = 0; a < 3; ++a) {
-            there[a] = x[a] + shifts[of[a]] * length[a];
-        }
-        if (is_within(wall, there, reach)) {
-            se3di_copy(there, x);
-            return;
-        }
-    }
-}
-
-void se3di_particles_image(const se3di_particles *set, const se3di_wall *wall, const double x[3],
-                           double reach, double out[3])
-{
-    double length[3];
-    for (int a = 0; a < 3; ++a) {
-        const int periodic = set->boundary[a] == SE3DI_BOUNDARY_PERIODIC;
-        length[a] = periodic ? set->upper[a] - set->lower[a] : 0.0;
-    }
-    se3di_copy(x, out);
-    se3di_wall_image(wall, length, reach, out);
-}
-
-/* Triangles of a mesh within reach, appended to the set's faces. */
-typedef struct face_list {
-    se3di_particles *set;
-    se3d_status status;
-} face_list;
-
-static void add_face(void *ctx, uint32_t triangle)
-{
-    face_list *faces = ctx;
-    se3di_particles *set = faces->set;
-    if (faces->status == SE3D_OK) {
-        faces->status =
-            se3di_particles_grow(set, &set->faces, &set->face_capacity, set->face_count + 1);
-    }
-    if (faces->status == SE3D_OK) {
-        set->faces[set->face_count++] = triangle;
-    }
-}
-
-static se3d_status list_faces(se3di_particles *set, const se3di_wall *wall, const double x[3],
-                              double reach)
-{
-    face_list faces = {set, SE3D_OK};
-    double d[3], local[3];
-    se3di_sub(x, wall->pose.x, d);
-    se3di_mul_transposed(wall->pose.R, d, local);
-    se3di_mesh_visit(&wall->shape, local, reach, add_face, &faces);
-    return faces.status;
-}
-
-/* One particle and one wall. */
-static se3d_status list_wall(se3di_particles *set, uint32_t i, uint32_t w)
-{
-    const se3di_grain *g = &set->grains[i];
-    const se3di_wall *wall = &set->walls[w];
-    const double reach = g->radius + set->skin;
-    const size_t face_begin = set->face_count;
-    double x[3];
-    se3di_particles_image(set, wall, g->x, reach, x);
-    if (least_distance(wall, x) >= reach) {
-        return SE3D_OK;
-    }
-    if (wall->shape.kind == SE3DI_SHAPE_MESH) {
-        SE3DI_TRY(list_faces(set, wall, x, reach));
-        if (set->face_count == face_begin) {
-            return SE3D_OK;
-        }
-    } else if (se3di_wall_distance(wall, x) >= reach) {
-        return SE3D_OK;
-    }
-    void *memory = set->near_walls;
-    const se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->near_capacity,
-                                                   set->near_count + 1, sizeof *set->near_walls);
-    set->near_walls = memory;
-    SE3DI_TRY(status);
-    set->near_walls[set->near_count++] =
-        (se3di_near_wall){i, w, (uint32_t)face_begin, (uint32_t)(set->face_count - face_begin)};
-    return SE3D_OK;
-}
-
-se3d_status se3di_particles_list_walls(se3di_particles *set)
-{
-    set->near_count = set->face_count = 0;
-    for (uint32_t s = 0; s < set->slab_count; ++s) {
-        se3di_slab *slab = &set->slabs[s];
-        slab->near_begin = (uint32_t)set->near_count;
-        for (uint32_t w = 0; w < set->wall_count; ++w) {
-            for (uint32_t i = slab->begin; i < slab->end; ++i) {
-                SE3DI_TRY(list_wall(set, i, w));
-            }
-        }
-        slab->near_end = (uint32_t)set->near_count;
-    }
-    return SE3D_OK;
 }

@@ -32,7 +32,12 @@ static int match(const se3di_mesh_pair *pair, const double normal[3], unsigned t
 
 void se3di_mesh_batch_begin(const se3di_particles *set, uint32_t wall, se3di_mesh_batch *batch)
 {
-    memset(batch, 0, sizeof *batch);
+    memset(&batch->block, 0, sizeof batch->block);
+    memset(&batch->given, 0, sizeof batch->given);
+    if (set->rolling) {
+        memset(&batch->roll, 0, sizeof batch->roll);
+    }
+    batch->count = 0;
     for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
         batch->block.i[k] = batch->block.j[k] = (uint32_t)set->capacity;
         batch->given.distance[k] = 1e300;
@@ -40,14 +45,13 @@ void se3di_mesh_batch_begin(const se3di_particles *set, uint32_t wall, se3di_mes
     batch->block.j[0] = wall;
 }
 
-static void find_local(const se3di_particles *set, const se3di_mesh_pair *pair, double reach,
-                       double local[3])
+static void locate(const se3di_particles *set, const se3di_mesh_pair *pair, double reach,
+                   double local[3])
 {
     const se3di_wall *wall = &set->walls[pair->wall];
-    double x[3], d[3];
+    double x[3];
     se3di_particles_image(set, wall, set->grains[pair->i].x, reach, x);
-    se3di_sub(x, wall->pose.x, d);
-    se3di_mul_transposed(wall->pose.R, d, local);
+    se3di_wall_local(wall, x, local);
 }
 
 int se3di_mesh_batch_add(const se3di_particles *set, const se3di_mesh_pair *pair,
@@ -57,7 +61,7 @@ int se3di_mesh_batch_add(const se3di_particles *set, const se3di_mesh_pair *pair
     const double radius = set->grains[pair->i].radius;
     se3di_touch touches[SE3DI_MESH_TOUCHES];
     double local[3];
-    find_local(set, pair, radius, local);
+    locate(set, pair, radius, local);
     const size_t count =
         se3di_mesh_contacts_among(&wall->shape, set->faces + pair->face_begin, pair->face_count,
                                   local, radius, SE3DI_MESH_TOUCHES, touches);
@@ -211,7 +215,7 @@ static int is_active(const se3di_particles *set, const se3di_near_wall *near)
     const se3di_mesh_pair pair = {.i = near->i & ~SE3DI_LIST_ACTIVE, .wall = near->wall};
     const double reach = set->grains[pair.i].radius + set->near;
     double local[3];
-    find_local(set, &pair, reach, local);
+    locate(set, &pair, reach, local);
     return se3di_mesh_is_near(&set->walls[pair.wall].shape, set->faces + near->face_begin,
                               near->face_count, local, reach);
 }

@@ -430,6 +430,8 @@ se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, si
                                  size_t needed);
 /* The vector between centres, to the nearest image. */
 void se3di_particles_wrap(const se3di_particles *set, double d[3]);
+/* A point in the frame of a wall's shape. */
+void se3di_wall_local(const se3di_wall *wall, const double x[3], double local[3]);
 /* The point of a wall's surface nearest to x, the normal there; the distance. */
 double se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3],
                           double normal[3]);

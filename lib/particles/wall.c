@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Walls as particles see them: how far they are, and which particles may touch them before the list
+ * is built anew. */
+#include "contact/mesh.h"
+#include "math/vec3.h"
+#include "particles/set.h"
+
+#include <math.h>
+
+#define PARCEL   8    /* particles that are compared with a wall together */
+#define PARCELS  256  /* of a slab; where it has more particles, parcels are larger */
+#define ROUNDING 1e-9 /* of a distance */
+
+void se3di_wall_local(const se3di_wall *wall, const double x[3], double local[3])
+{
+    double d[3];
+    se3di_sub(x, wall->pose.x, d);
+    se3di_mul_transposed(wall->pose.R, d, local);
+}
+
+double se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3],
+                          double normal[3])
+{
+    double local[3], at[3], n[3], distance;
+    se3di_wall_local(wall, x, local);
+    se3di_shape_nearest(&wall->shape, local, at, n, &distance);
+    se3di_mul(wall->pose.R, n, normal);
+    se3di_copy(x, point);
+    se3di_add_scaled(-distance, normal, point);
+    return distance;
+}
+
+double se3di_wall_distance(const se3di_wall *wall, const double x[3])
+{
+    double local[3], point[3], normal[3], distance;
+    se3di_wall_local(wall, x, local);
+    se3di_shape_nearest(&wall->shape, local, point, normal, &distance);
+    return distance;
+}
+
+/* Cheaper than the distance, and never more. */
+static double least_distance(const se3di_wall *wall, const double x[3])
+{
+    double d[3];
+    if (wall->shape.kind == SE3DI_SHAPE_PLANE) {
+        return -HUGE_VAL;
+    }
+    se3di_sub(x, wall->pose.x, d);
+    return se3di_norm(d) - wall->shape.bound;
+}
+
+static int is_within(const se3di_wall *wall, const double x[3], double reach)
+{
+    return least_distance(wall, x) < reach && se3di_wall_distance(wall, x) < reach;
+}
+
+void se3di_wall_image(const se3di_wall *wall, const double length[3], double reach, double x[3])
+{
+    static const double shifts[3] = {0.0, 1.0, -1.0};
+    int counts[3];
+    for (int a = 0; a < 3; ++a) {
+        counts[a] = length[a] > 0.0 && wall->shape.kind != SE3DI_SHAPE_PLANE ? 3 : 1;
+    }
+    const int images = counts[0] * counts[1] * counts[2];
+    for (int k = 0; images > 1 && k < images; ++k) {
+        const int of[3] = {k % counts[0], k / counts[0] % counts[1], k / counts[0] / counts[1]};
+        double there[3];
+        for (int a = 0; a < 3; ++a) {
+            there[a] = x[a] + shifts[of[a]] * length[a];
+        }
+        if (is_within(wall, there, reach)) {
+            se3di_copy(there, x);
+            return;
+        }
+    }
+}
+
+static int is_periodic(const se3di_particles *set)
+{
+    return set->boundary[0] == SE3DI_BOUNDARY_PERIODIC ||
+           set->boundary[1] == SE3DI_BOUNDARY_PERIODIC ||
+           set->boundary[2] == SE3DI_BOUNDARY_PERIODIC;
+}
+
+void se3di_particles_image(const se3di_particles *set, const se3di_wall *wall, const double x[3],
+                           double reach, double out[3])
+{
+    se3di_copy(x, out);
+    if (!is_periodic(set)) {
+        return;
+    }
+    double length[3];
+    for (int a = 0; a < 3; ++a) {
+        const int periodic = set->boundary[a] == SE3DI_BOUNDARY_PERIODIC;
+        length[a] = periodic ? set->upper[a] - set->lower[a] : 0.0;
+    }
+    se3di_wall_image(wall, length, reach, out);
+}
+
+/* Triangles of a mesh within reach, appended to the set's faces. */
+typedef struct face_list {
+    se3di_particles *set;
+    se3d_status status;
+} face_list;
+
+static void add_face(void *ctx, uint32_t triangle)
+{
+    face_list *faces = ctx;
+    se3di_particles *set = faces->set;
+    if (faces->status == SE3D_OK) {
+        faces->status =
+            se3di_particles_grow(set, &set->faces, &set->face_capacity, set->face_count + 1);
+    }
+    if (faces->status == SE3D_OK) {
+        set->faces[set->face_count++] = triangle;
+    }
+}
+
+static se3d_status list_faces(se3di_particles *set, const se3di_wall *wall, const double x[3],
+                              double reach)
+{
+    face_list faces = {set, SE3D_OK};
+    double local[3];
+    se3di_wall_local(wall, x, local);
+    se3di_mesh_visit(&wall->shape, local, reach, add_face, &faces);
+    return faces.status;
+}
+
+/* One particle and one wall. */
+static se3d_status list_wall(se3di_particles *set, uint32_t i, uint32_t w)
+{
+    const se3di_grain *g = &set->grains[i];
+    const se3di_wall *wall = &set->walls[w];
+    const double reach = g->radius + set->skin;
+    const size_t face_begin = set->face_count;
+    double x[3];
+    se3di_particles_image(set, wall, g->x, reach, x);
+    if (least_distance(wall, x) >= reach) {
+        return SE3D_OK;
+    }
+    if (wall->shape.kind == SE3DI_SHAPE_MESH) {
+        SE3DI_TRY(list_faces(set, wall, x, reach));
+        if (set->face_count == face_begin) {
+            return SE3D_OK;
+        }
+    } else if (se3di_wall_distance(wall, x) >= reach) {
+        return SE3D_OK;
+    }
+    void *memory = set->near_walls;
+    const se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->near_capacity,
+                                                   set->near_count + 1, sizeof *set->near_walls);
+    set->near_walls = memory;
+    SE3DI_TRY(status);
+    set->near_walls[set->near_count++] =
+        (se3di_near_wall){i, w, (uint32_t)face_begin, (uint32_t)(set->face_count - face_begin)};
+    return SE3D_OK;
+}
+
+/* The box of the centres of particles of one slab that follow each other: which of them are far
+ * from a wall is known for many at a time. */
+typedef struct parcel {
+    double middle[3], half[3];
+    double radius; /* the largest */
+} parcel;
+
+static parcel enclose(const se3di_particles *set, uint32_t begin, uint32_t end)
+{
+    parcel box = {.radius = 0.0};
+    double low[3], high[3];
+    se3di_copy(set->grains[begin].x, low);
+    se3di_copy(low, high);
+    for (uint32_t i = begin; i < end; ++i) {
+        const se3di_grain *g = &set->grains[i];
+        for (int a = 0; a < 3; ++a) {
+            low[a] = g->x[a] < low[a] ? g->x[a] : low[a];
+            high[a] = g->x[a] > high[a] ? g->x[a] : high[a];
+        }
+        box.radius = g->radius > box.radius ? g->radius : box.radius;
+    }
+    for (int a = 0; a < 3; ++a) {
+        box.middle[a] = 0.5 * (low[a] + high[a]);
+        box.half[a] = 0.5 * (high[a] - low[a]);
+    }
+    return box;
+}
+
+/* Whether no particle of the parcel is nearer to the wall than the skin, by its box; or, but for
+ * planes, by the sphere around that. */
+static int is_clear(const se3di_wall *wall, const parcel *box, double skin)
+{
+    double extent = se3di_norm(box->half);
+    if (wall->shape.kind == SE3DI_SHAPE_PLANE) {
+        const double *R = wall->pose.R;
+        extent = fabs(R[2]) * box->half[0] + fabs(R[5]) * box->half[1] + fabs(R[8]) * box->half[2];
+    }
+    const double reach = (extent + box->radius + skin) * (1.0 + ROUNDING);
+    if (least_distance(wall, box->middle) >= reach) {
+        return 1;
+    }
+    if (wall->shape.kind != SE3DI_SHAPE_MESH) {
+        return se3di_wall_distance(wall, box->middle) >= reach;
+    }
+    double local[3];
+    se3di_wall_local(wall, box->middle, local);
+    return se3di_mesh_is_clear(&wall->shape, local, reach);
+}
+
+static se3d_status list_slab(se3di_particles *set, const se3di_slab *slab)
+{
+    parcel parcels[PARCELS];
+    const uint32_t count = slab->end - slab->begin;
+    const uint32_t size = count > PARCELS * PARCEL ? (count + PARCELS - 1) / PARCELS : PARCEL;
+    for (uint32_t p = 0; p * size < count; ++p) {
+        const uint32_t begin = slab->begin + p * size;
+        parcels[p] = enclose(set, begin, begin + size < slab->end ? begin + size : slab->end);
+    }
+    const int periodic = is_periodic(set);
+    for (uint32_t w = 0; w < set->wall_count; ++w) {
+        const se3di_wall *wall = &set->walls[w];
+        const int images = periodic && wall->shape.kind != SE3DI_SHAPE_PLANE;
+        for (uint32_t p = 0; p * size < count; ++p) {
+            if (!images && is_clear(wall, &parcels[p], set->skin)) {
+                continue;
+            }
+            for (uint32_t i = p * size; i < (p + 1) * size && i < count; ++i) {
+                SE3DI_TRY(list_wall(set, slab->begin + i, w));
+            }
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_particles_list_walls(se3di_particles *set)
+{
+    set->near_count = set->face_count = 0;
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        se3di_slab *slab = &set->slabs[s];
+        slab->near_begin = (uint32_t)set->near_count;
+        SE3DI_TRY(list_slab(set, slab));
+        slab->near_end = (uint32_t)set->near_count;
+    }
+    return SE3D_OK;
+}
