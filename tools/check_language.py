@@ -22,7 +22,7 @@ BANNED = (
     (r"what (is|was) typed\b|\bas typed\b|\btyped is\b", "the value given"),
     (r"which (this|the) \w+ has not\b", "which it does not have"),
     (r"is none, but\b|\bthat (is|are) none\b|\bwas none,", "is not a ..."),
-    (r"(?:^|[.:;!?] |\*\* |\* )Where [^.?!:;|]{3,}?,", "If ..., or When ..."),
+    (r"(?:^|[.:;!?] |\*\* |\* )Where [a-z`]", "If ..., When ..., or The place where ..."),
     (r"\b(NULL|null|false|true|zero|NaN|-?[01]) where (there|it|they|no|none|nothing)\b", "if"),
     (r"where (there|it) (is|are|has) none\b", "if there is none"),
     (r"holds? (the|its|their) steps?\b", "limits the step"),

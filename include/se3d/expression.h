@@ -24,7 +24,7 @@ typedef struct se3d_expression_symbol {
     double value;     /* finite [any unit] */
 } se3d_expression_symbol;
 
-/* Where and why a text was rejected. @since 0.1 */
+/* The place and the reason of an error in a text. @since 0.1 */
 typedef struct se3d_expression_error {
     size_t column;     /* 1-based, in the text; 0 if the text is not to blame */
     char message[256]; /* names the offending token and what is allowed */

@@ -169,7 +169,7 @@ static inline se3d_status se3d_system_get_energy(const se3d_system *system, se3d
 /* Work since the start of the run [J]: kinetic + potential + dissipated - actuators - drivers is
  * constant to the integrator's order. Gravity that changes in time counts as an actuator. Inverse
  * dynamics integrates powers by Gauss-Lobatto's rule of order 6 over its steps; kinematics computes
- * no works. Where a callback fails while a value is set they begin anew at zero. @since 0.1 */
+ * no works. If a callback fails while a value is set they begin anew at zero. @since 0.1 */
 typedef struct se3d_work {
     double dissipated; /* by dampers, friction and contacts */
     double actuators;  /* h of springs, loads, callbacks; particles on bodies [J] */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Where a function of time reaches zero within one step: numbers only, no mechanics.
+/* The times at which a function reaches zero within one step: numbers only, no mechanics.
  *
  * The function is known in two ways: `rough` values, cheap, of the nodes and of points between
  * them, and `exact` ones, which count. docs/theory/events.md */

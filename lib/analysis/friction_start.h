@@ -13,7 +13,7 @@ se3d_status se3di_friction_start(se3di_equations *equations);
  * friction nothing happens. */
 se3d_status se3di_friction_renew(se3di_equations *equations);
 
-/* Where drivers determine the motion: friction slips as its coordinate moves, under the load of the
+/* If drivers determine the motion: friction slips as its coordinate moves, under the load of the
  * reactions that come out; what is at rest takes none. At a consistent state at t, whose
  * accelerations and multipliers are computed again. @return NO_CONVERGENCE if friction jams. */
 se3d_status se3di_friction_follow(se3di_equations *equations, double t);

@@ -16,7 +16,7 @@
 
 #include "formulation/formulation.h"
 
-/* Where the blocks of a term go in the joint's row of the KKT matrix; -1: the body is fixed. */
+/* The places of a term's blocks in the joint's row of the KKT matrix; -1: the body is fixed. */
 typedef struct se3di_term_place {
     int32_t slot_i, slot_j; /* block within its joint */
 } se3di_term_place;

@@ -369,7 +369,7 @@ static void find_witness(const polytope *P, const polytope_face *nearest, double
     }
 }
 
-/* The normal with the least reach of D that a nearest face has had; the reach is the overlap. Where
+/* The normal with the least reach of D that a nearest face has had; the reach is the overlap. If
  * rounding has spoilt the polytope (it no longer grows) the search ends. */
 static double expand(polytope *P, double normal[3], double a[3], double b[3])
 {

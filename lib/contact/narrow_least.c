@@ -163,7 +163,7 @@ static void add_edges(search *s, const se3di_solid *solid, double sign)
     }
 }
 
-/* Where the slope changes its sign on the directions perpendicular to an edge. */
+/* The place where the slope changes its sign on the directions perpendicular to an edge. */
 static void try_circle(search *s, const double e[3])
 {
     double u[3], w[3], n[3], low = -NEAR, high = NEAR;

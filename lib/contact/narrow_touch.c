@@ -143,7 +143,7 @@ typedef struct lines {
     double low, high;      /* what they have in common, along a */
 } lines;
 
-/* Returns 0 if they cross at an angle, or lie end to end. Where they cross nearly parallel the
+/* Returns 0 if they cross at an angle, or lie end to end. If they cross nearly parallel the
  * overlap falls off to either side. */
 static int lines_meet(const parting *p, const se3di_face *face_i, const se3di_face *face_j,
                       lines *l)

@@ -27,7 +27,7 @@ typedef struct se3di_integrator_settings {
 typedef struct se3di_integration se3di_integration;
 struct se3di_rk_tableau;
 
-/* Where methods with `advance` keep the end and the beginning of their last step. */
+/* The places in which methods with `advance` keep the end and the beginning of their last step. */
 enum { SE3DI_HISTORY_TIME = 0, SE3DI_HISTORY_BEGIN = 1 };
 
 typedef struct se3di_integrator {

@@ -64,7 +64,7 @@ se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error);
 /* Accelerations of a stage [unknowns]. */
 void se3di_radau_get_acceleration(const se3di_radau *m, int stage, double *vdot);
 
-/* Where a single step begins. */
+/* The state in which a single step begins. */
 typedef struct se3di_radau_begin_state {
     double *y; /* not changed */
     double t;

@@ -354,7 +354,7 @@ static void grow_by_shapes(const se3di_model *model, double *v, double *w)
     }
 }
 
-/* Where friction holds a mechanism at rest nothing moves but rounding: the scale is of what its
+/* If friction holds a mechanism at rest nothing moves but rounding: the scale is of what its
  * forces would move of the whole mass. */
 static void grow_by_holds(const se3di_model *model, double *a, double *wdot)
 {

@@ -73,7 +73,7 @@ typedef struct se3di_kkt_values {
     const double *joint_b;        /* unsymmetric mode only: B transposed, laid out exactly as C */
 } se3di_kkt_values;
 
-/* Where things are. x: body i at i * body_size; l and c: joint j at row_offset[j]. */
+/* The places of things. x: body i at i * body_size; l and c: joint j at row_offset[j]. */
 typedef struct se3di_kkt_layout {
     size_t unknown_count;       /* body_count * body_size */
     size_t row_count;           /* rows of all joints */

@@ -201,7 +201,7 @@ static se3d_status reserve_blocks(se3di_particles *set, size_t count)
     return SE3D_OK;
 }
 
-/* Where the next pair of a slab goes. */
+/* The place of the next pair of a slab. */
 typedef struct cursor {
     uint32_t next; /* block */
     int lane;      /* of the block before `next` */

@@ -87,7 +87,7 @@ typedef struct se3di_wall {
     double force[3], torque[3]; /* on the body, about its centre of mass, last evaluation */
 } se3di_wall;
 
-/* Where a particle touches a mesh. */
+/* The place where a particle touches a mesh. */
 typedef struct se3di_mesh_touch {
     double normal[3]; /* mesh frame */
     double xi[3], rho[4];

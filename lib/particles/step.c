@@ -124,7 +124,7 @@ static void note_overlap(se3di_particles *set, uint32_t i, uint32_t j, uint32_t 
     }
 }
 
-/* Where it was a drift of length `back` ago. */
+/* The place where it was a drift of length `back` ago. */
 static void place_before(const se3di_grain *g, double back, double x[3])
 {
     se3di_copy(g->x, x);

@@ -207,7 +207,7 @@ void se3di_particles_adopt(se3di_particles *set, const se3di_model *model)
     }
 }
 
-/* Where the kernels add up what the walls get. */
+/* The place where the kernels add up what the walls get. */
 static se3d_status reserve_sums(se3di_particles *set)
 {
     void *memory = set->wall_sums;

@@ -428,7 +428,7 @@ static void the_reference_has_a_table_of_every_object(void)
     CHECK(count == objects);
 }
 
-/* Where a key goes has the size of what is read. */
+/* The place that a key goes to has the size of what is read. */
 static void places_have_the_size_of_their_kind(void)
 {
     static const size_t sizes[SE3DI_KIND_PLACES] = {

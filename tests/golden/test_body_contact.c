@@ -70,7 +70,7 @@ static se3d_body add_cube(scene *s, double a, double mass, const double r[3], do
     return body;
 }
 
-/* Where a box rests on its four lower corners. */
+/* The places where a box rests on its four lower corners. */
 static void incline_position(double a, double mass, double stiffness, double angle, double r[3])
 {
     double sink = mass * G * cos(angle) / (4.0 * stiffness);

@@ -216,7 +216,7 @@ static se3d_status get_height(void *ctx, const se3d_system *system, double *valu
     return status;
 }
 
-/* Where an event on the position stops the run contacts are those of that instant. */
+/* If an event on the position stops the run contacts are those of that instant. */
 static void forces_are_those_of_where_an_event_stops(void)
 {
     const double r[3] = {0.0, 0.0, 0.1}, v[3] = {0.0, 0.0, -0.5};

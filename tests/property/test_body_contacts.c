@@ -310,7 +310,7 @@ static void failed_allocations_are_reported(void)
     CHECK(k > 10 && !reached);
 }
 
-/* Where two shapes are far inside each other the run says which. */
+/* If two shapes are far inside each other the run says which. */
 static void too_large_overlaps_name_the_shapes(void)
 {
     scene w = begin(NULL, 0.4);

@@ -39,7 +39,7 @@ static int add_setting(options *o, const char *command, const char *text)
     return EXIT_DONE;
 }
 
-/* Where the value of an option goes; NULL: it has none or is unknown. */
+/* The place that the value of an option goes to; NULL: it has none or is unknown. */
 static const char **value_target(options *o, const char *name)
 {
     const struct {

@@ -107,7 +107,7 @@ static void print_analysis(const se3d_run_analysis *a)
     }
 }
 
-/* Where particles came or went. */
+/* If particles came or went. */
 static void print_particles(const se3d_run *run)
 {
     for (size_t k = 0; k < se3d_run_count_particles(run); ++k) {
@@ -369,7 +369,7 @@ static int is_over(void *ctx)
     return interrupt_came();
 }
 
-/* Where the last analysis has come to. */
+/* The time that the last analysis has come to. */
 static double end_of(const se3d_run *run)
 {
     se3d_run_analysis analysis;

@@ -123,7 +123,7 @@ static int put_table(FILE *file, const table *t)
     return rows > 0;
 }
 
-/* Where the page's parts are: SE3D_VIEWER, beside an installed program, or in the source tree. */
+/* The folder of the page's parts: SE3D_VIEWER, beside an installed program, or in the sources. */
 static int find_viewer(char *folder, size_t size)
 {
     static const char *const places[] = {"../share/se3d/viewer", "../../../tools/viewer",
@@ -150,7 +150,7 @@ static int find_viewer(char *folder, size_t size)
     return 0;
 }
 
-/* Where three.js is kept. @return false: the user has no place for it. */
+/* The place where three.js is kept. @return false: the user has no place for it. */
 static int find_cache(char *folder, size_t size)
 {
     const char *given = getenv("SE3D_CACHE");

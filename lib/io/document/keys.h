@@ -74,7 +74,7 @@ typedef struct se3di_key {
     const char *text;     /* one sentence, with units and frame */
 } se3di_key;
 
-/* Where a key goes. */
+/* The place that a key goes to. */
 #define SE3DI_INTO(type, member)                                                                   \
     .structure = #type, .offset = offsetof(type, member), .size = sizeof(((type *)0)->member)
 

@@ -5,7 +5,7 @@
  * solver is run from one time at which any file wants a row to the next; times are computed from
  * their number, never summed up, and the last one is start + duration exactly. If an analysis
  * begins at the time at which the one before ended, its first row takes the place of the last one.
- * Where an event stops an analysis the last row is that of the event; others are in their own
+ * If an event stops an analysis the last row is that of the event; others are in their own
  * file. */
 #include <errno.h>
 #include <float.h>
@@ -190,7 +190,7 @@ static se3d_status open_events(runner *r)
     return status < 0 ? fail_path(r, path, events->csv.failure) : SE3D_OK;
 }
 
-/* Where nothing moves there are no events. */
+/* If nothing moves there are no events. */
 static bool has_events(const se3d_model *model)
 {
     bool moves = false;

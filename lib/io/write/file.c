@@ -114,7 +114,7 @@ bool se3di_file_join(const char *folder, const char *file, char *path, size_t si
     return true;
 }
 
-/* Where a file is written before it has its name. @return false: the path is too long. */
+/* The path at which a file is written before it has its name. @return false: it is too long. */
 static bool format_partial(const char *path, char partial[4200])
 {
     const int length = snprintf(partial, 4200, "%s.partial", path);
