@@ -16,14 +16,27 @@ typedef struct se3di_frame {
     double pdot[4]; /* 1/2 G(p)^T w */
 } se3di_frame;
 
+/* X(TYPE, name): lib/primitive/<name>.c has the functions of each.
+ *
+ *     dp1      a_i . a_j
+ *     dp2      a_i . d_ij
+ *     d        d_ij . d_ij
+ *     cd       c . d_ij, c in the ground frame
+ *     angle    angle from a_i to a_j about b_i (right-handed), in (-pi, pi]
+ *     triple   d_ij . (a_i x a_j)                                       */
+#define SE3DI_PRIMITIVE_LIST(X)                                                                    \
+    X(DP1, dp1)                                                                                    \
+    X(DP2, dp2)                                                                                    \
+    X(D, d)                                                                                        \
+    X(CD, cd)                                                                                      \
+    X(ANGLE, angle)                                                                                \
+    X(TRIPLE, triple)
+
 typedef enum se3di_primitive_type {
-    SE3DI_PRIMITIVE_DP1 = 0,    /* a_i . a_j */
-    SE3DI_PRIMITIVE_DP2 = 1,    /* a_i . d_ij */
-    SE3DI_PRIMITIVE_D = 2,      /* d_ij . d_ij */
-    SE3DI_PRIMITIVE_CD = 3,     /* c . d_ij, c in the ground frame */
-    SE3DI_PRIMITIVE_ANGLE = 4,  /* angle from a_i to a_j about b_i (right-handed), in (-pi, pi] */
-    SE3DI_PRIMITIVE_TRIPLE = 5, /* d_ij . (a_i x a_j) */
-    SE3DI_PRIMITIVE_COUNT = 6
+#define SE3DI_PRIMITIVE_ENUM(TYPE, name) SE3DI_PRIMITIVE_##TYPE,
+    SE3DI_PRIMITIVE_LIST(SE3DI_PRIMITIVE_ENUM)
+#undef SE3DI_PRIMITIVE_ENUM
+        SE3DI_PRIMITIVE_COUNT
 } se3di_primitive_type;
 
 typedef struct se3di_term {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Declares the functions that every primitive has; primitive.c lists them in the table. */
+/* Declares the functions of all primitives. */
 #ifndef SE3DI_PRIMITIVE_TABLE_H
 #define SE3DI_PRIMITIVE_TABLE_H
 
 #include "primitive/primitive.h"
 
-#define SE3DI_PRIMITIVE_DECLARE(name)                                                              \
+#define SE3DI_PRIMITIVE_DECLARE(TYPE, name)                                                        \
     double se3di_primitive_##name##_value(const se3di_term *t, const se3di_frame *i,               \
                                           const se3di_frame *j);                                   \
     void se3di_primitive_##name##_jacobian_romega(const se3di_term *t, const se3di_frame *i,       \
@@ -25,12 +25,7 @@
                                                const se3di_frame *j, double lambda,                \
                                                double H[196]);
 
-SE3DI_PRIMITIVE_DECLARE(dp1)
-SE3DI_PRIMITIVE_DECLARE(dp2)
-SE3DI_PRIMITIVE_DECLARE(d)
-SE3DI_PRIMITIVE_DECLARE(cd)
-SE3DI_PRIMITIVE_DECLARE(angle)
-SE3DI_PRIMITIVE_DECLARE(triple)
+SE3DI_PRIMITIVE_LIST(SE3DI_PRIMITIVE_DECLARE)
 
 #undef SE3DI_PRIMITIVE_DECLARE
 
