@@ -113,6 +113,11 @@ def is_kernel(lines, first):
     return re.match(r"\s*/\*\s*kernel:\s*\w", lines[at]) is not None
 
 
+def check_columns(lines, name, problems):
+    problems.extend(f"{name}:{k}: {len(line)} columns, at most {COLUMNS}"
+                    for k, line in enumerate(lines, 1) if len(line) > COLUMNS)
+
+
 def check_file(path, name, found, problems):
     text = path.read_text()
     lines = text.split("\n")
@@ -122,8 +127,7 @@ def check_file(path, name, found, problems):
         problems.append(f"{name}: {count} lines, at most {limit}")
     if "SPDX-License-Identifier: BSD-3-Clause" not in lines[0]:
         problems.append(f"{name}: the first line is not the SPDX line")
-    problems.extend(f"{name}:{k}: {len(line)} columns, at most {COLUMNS}"
-                    for k, line in enumerate(lines, 1) if len(line) > COLUMNS)
+    check_columns(lines, name, problems)
     for function, first, last, complexity, parameters in functions(text):
         length = last - first + 1
         found.append((length, complexity, parameters, f"{name}:{first} {function}"))
@@ -155,6 +159,8 @@ def main():
         for path in sorted((root / folder).rglob("*.[ch]")):
             name = str(path.relative_to(root))
             files.append((check_file(path, name, found, problems), name))
+    for path in sorted((root / "lib").rglob("*.inc")):
+        check_columns(path.read_text().split("\n"), str(path.relative_to(root)), problems)
     shown = [f for f in found if not f[3].startswith(("tests/", "bench/"))]
     for title, key in (("longest functions", 0), ("most complex functions", 1)):
         print(f"{title} (lines, complexity, parameters), tests left out:")
