@@ -7,6 +7,12 @@ expect 'help' 0 "$program" view --help
 expect 'no folder' 2 "$program" view
 expect 'no scene' 1 "$program" view "$dir"
 has "$dir/err" 'scene.glb: cannot be read; `se3d run MODEL -o '
+# Where others can write nothing is run, and nothing is taken from there.
+mkdir -m 777 "$dir/open" && mkdir "$dir/shown"
+"$program" run -q "$source/examples/models/tsda_mass.yaml" -o "$dir/shown"
+expect 'a cache that others can change' 1 env SE3D_CACHE="$dir/open" "$program" view "$dir/shown"
+has "$dir/err" 'set SE3D_CACHE to a folder of your own'
+holds 'something was made in it' [ -z "$(ls -A "$dir/open")" ]
 if ! command -v npm >/dev/null 2>&1 && [ ! -f /usr/share/javascript/three/three.min.js ]; then
     echo 'SKIPPED: neither npm nor libjs-three: no page was tested' >&2
     finish

@@ -16,35 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
-static volatile sig_atomic_t interrupted = 0;
-
-static void remember_interrupt(int number)
-{
-    (void)number;
-    interrupted = 1;
-}
-
-void child_watch_interrupts(void)
-{
-    struct sigaction action;
-    struct sigaction before;
-    memset(&action, 0, sizeof action);
-    sigemptyset(&action.sa_mask);
-    action.sa_handler = remember_interrupt;
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
-        sigaction(SIGHUP, &action, NULL);
-    }
-    action.sa_handler = SIG_IGN;
-    sigaction(SIGPIPE, &action, NULL);
-    sigaction(SIGXFSZ, &action, NULL);
-}
-
-int child_was_interrupted(void)
-{
-    return interrupted;
-}
+#include "interrupt.h"
 
 void child_pause(int milliseconds)
 {
@@ -135,7 +107,7 @@ int child_write(child *c, const void *data, size_t size)
     const char *at = data;
     while (size > 0) {
         const ssize_t written = write(c->to, at, size);
-        if (written < 0 && errno == EINTR && !interrupted) {
+        if (written < 0 && errno == EINTR && !interrupt_came()) {
             continue;
         }
         if (written <= 0) {
@@ -150,7 +122,7 @@ int child_write(child *c, const void *data, size_t size)
 size_t child_read(child *c, void *data, size_t size, int seconds)
 {
     struct pollfd wait = {c->from, POLLIN, 0};
-    if (interrupted || poll(&wait, 1, 1000 * seconds) <= 0) {
+    if (interrupt_came() || poll(&wait, 1, 1000 * seconds) <= 0) {
         return 0;
     }
     const ssize_t count = read(c->from, data, size);

@@ -23,10 +23,6 @@ size_t child_read(child *c, void *data, size_t size, int seconds);
  * @return its exit code, -1 if it did not end by itself. */
 int child_finish(child *c, int seconds);
 
-/* From now on an interrupt (Ctrl-C) is only remembered, and a broken pipe is an error of the write.
- */
-void child_watch_interrupts(void);
-int child_was_interrupted(void);
 void child_pause(int milliseconds);
 
 /* Make a fresh folder for temporary files. @return false: errno says why. */

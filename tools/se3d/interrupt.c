@@ -9,11 +9,12 @@
 #include <string.h>
 
 static volatile sig_atomic_t came;
+static volatile sig_atomic_t held;
 
 static void note(int number)
 {
     came = 1;
-    if (number == SIGINT || number == SIGTERM) {
+    if (!held && (number == SIGINT || number == SIGTERM)) {
         signal(number, SIG_DFL); /* the second one ends the program */
     }
 }
@@ -44,6 +45,11 @@ void interrupt_begin(void)
     sigaction(SIGXFSZ, &action, NULL); /* a file that is too large is an error of the write */
 }
 #endif
+
+void interrupt_hold(void)
+{
+    held = 1;
+}
 
 int interrupt_came(void)
 {

@@ -6,6 +6,9 @@
 
 /* Listen from now on; a reader of our output that goes away does not end the run either. */
 void interrupt_begin(void);
+/* From now on also a second request is only remembered: programs that run beside this one must be
+ * ended first. */
+void interrupt_hold(void);
 /* @return not 0: the user wants an end. */
 int interrupt_came(void);
 

@@ -136,7 +136,7 @@ static int is_whole(const char *path, const char *tail)
     char end[16] = "";
     const size_t length = strlen(tail);
     int whole = 0;
-    FILE *file = file_read(path);
+    FILE *file = se3di_file_open(path);
     if (file && fseek(file, -(long)sizeof end, SEEK_END) == 0 &&
         fread(end, 1, sizeof end, file) == sizeof end) {
         for (size_t k = 0; k + length <= sizeof end; ++k) {

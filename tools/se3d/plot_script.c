@@ -415,7 +415,7 @@ int plot_write_script(plot *p, const char *path)
     const size_t rows = (p->panel_count + columns - 1) / columns;
     size_t column = 2;
     errno = 0;
-    FILE *file = file_begin(path);
+    FILE *file = se3di_partial_open(path);
     if (!file) {
         return 0;
     }

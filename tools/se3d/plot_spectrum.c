@@ -119,7 +119,7 @@ static int write_spectrum(const plot *p, const char *path, const double *values,
                           double duration)
 {
     const size_t curves = count_curves(p);
-    FILE *file = file_begin(path);
+    FILE *file = se3di_partial_open(path);
     if (!file) {
         return 0;
     }

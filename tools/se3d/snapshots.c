@@ -49,7 +49,7 @@ void base64_put(FILE *file, const void *data, size_t size)
 int snapshots_is(const char *path)
 {
     char line[LINE];
-    FILE *file = file_read(path);
+    FILE *file = se3di_file_open(path);
     const int is = file && fgets(line, LINE, file) && strncmp(line, header, sizeof header - 1) == 0;
     if (file) {
         fclose(file);
@@ -82,7 +82,7 @@ static int read_grain(FILE *file, grain *g)
 static FILE *open_rows(const char *path)
 {
     char line[LINE];
-    FILE *file = file_read(path);
+    FILE *file = se3di_file_open(path);
     if (file && !fgets(line, LINE, file)) {
         fclose(file);
         file = NULL;

@@ -99,7 +99,7 @@ static char *read_scene(const char *path)
         return NULL;
     }
     snprintf(name, sizeof name, "%s/scene.glb", folder);
-    FILE *file = file_read(name);
+    FILE *file = se3di_file_open(name);
     if (file && fread(head, 1, sizeof head, file) == sizeof head && memcmp(head, "glTF", 4) == 0 &&
         memcmp(head + 16, "JSON", 4) == 0) {
         const size_t length = (size_t)head[12] | (size_t)head[13] << 8 | (size_t)head[14] << 16;
@@ -119,7 +119,7 @@ int table_read(table *t, const char *command, const char *path)
     memset(t, 0, sizeof *t);
     t->path = path;
     errno = 0;
-    FILE *file = file_read(path);
+    FILE *file = se3di_file_open(path);
     t->header = file ? read_line(file) : NULL;
     if (!file || !t->header || !split_header(t)) {
         const char *why = !file && errno ? strerror(errno) : "is empty";
@@ -168,7 +168,7 @@ size_t table_find(const table *t, const char *name)
  * where that is `count`. */
 static size_t read_numbers(const table *t, size_t only, size_t stride, double *values, size_t size)
 {
-    FILE *file = file_read(t->path);
+    FILE *file = se3di_file_open(t->path);
     char *line = file ? read_line(file) : NULL;
     size_t rows = 0;
     for (size_t row = 0; line && rows < size; ++row) {

@@ -10,6 +10,7 @@
 
 #include "devtools.h"
 #include "file.h"
+#include "interrupt.h"
 #include "options.h"
 #include "process.h"
 #include "view.h"
@@ -44,7 +45,7 @@ typedef struct film {
 
 static int fail(const char *text, const char *detail)
 {
-    if (!child_was_interrupted()) {
+    if (!interrupt_came()) {
         fprintf(stderr, "se3d video: %s%s\n", text, detail);
     }
     return 0;
@@ -57,7 +58,7 @@ static int meet_page(film *f)
     snprintf(expression, sizeof expression,
              "window.se3d ? se3d.film(1280, 720, %.9g, %.9g) : 'no ' + (window.se3dProblem || '')",
              f->view[0], f->view[1]);
-    for (int k = 0; k < 10 * START_SECONDS && !child_was_interrupted(); ++k) {
+    for (int k = 0; k < 10 * START_SECONDS && !interrupt_came(); ++k) {
         const char *text = devtools_evaluate(&f->browser, expression);
         if (!text) {
             return fail("Chromium does not answer", "");
@@ -153,7 +154,7 @@ static int put_pictures(film *f, int quiet)
     int good = 1;
     progress_begin(&bar, quiet, 1);
     for (size_t k = 0; k < f->count && good; ++k) {
-        good = !child_was_interrupted() && put_picture(f, k);
+        good = !interrupt_came() && put_picture(f, k);
         progress_show(&bar, 0, f->start + (double)k * f->speed / RATE,
                       (double)(k + 1) / (double)f->count);
     }
@@ -177,8 +178,9 @@ static int finish(film *f, int good)
 
 static int make_film(film *f, const char *chromium, const char *results, int quiet)
 {
-    child_watch_interrupts();
-    f->file = file_begin(f->path);
+    interrupt_begin();
+    interrupt_hold();
+    f->file = se3di_partial_open(f->path);
     if (!f->file) {
         fprintf(stderr, "se3d video: %s: cannot be written: %s\n", f->path, strerror(errno));
         return EXIT_FAILED;
@@ -199,7 +201,7 @@ static int make_film(film *f, const char *chromium, const char *results, int qui
     }
     good = finish(f, good);
     folder_remove(f->folder);
-    if (!good && child_was_interrupted()) {
+    if (!good && interrupt_came()) {
         fputs("se3d video: interrupted\n", stderr);
     }
     return good ? EXIT_DONE : EXIT_FAILED;

@@ -33,7 +33,7 @@ static const char help[] =
 
 static char *read_whole(const char *path, size_t *size)
 {
-    FILE *file = file_read(path);
+    FILE *file = se3di_file_open(path);
     char *data = NULL;
     *size = 0;
     if (file && fseek(file, 0, SEEK_END) == 0) {
@@ -55,7 +55,7 @@ static char *read_whole(const char *path, size_t *size)
 static int has_times(const char *path)
 {
     char head[5] = "";
-    FILE *file = file_read(path);
+    FILE *file = se3di_file_open(path);
     const int has = file && fread(head, 1, 5, file) == 5 && memcmp(head, "time,", 5) == 0;
     if (file) {
         fclose(file);
@@ -218,7 +218,7 @@ static int put_page(FILE *file, const page *p)
 
 static int write_page(const page *p, const char *path)
 {
-    FILE *file = file_begin(path);
+    FILE *file = se3di_partial_open(path);
     if (!file || !file_end(file, path, put_page(file, p) && !interrupt_came())) {
         fprintf(stderr, "se3d %s: %s: cannot be written: %s\n", p->command, path,
                 interrupt_came() ? "interrupted" : strerror(errno ? errno : ENOSPC));
@@ -227,26 +227,35 @@ static int write_page(const page *p, const char *path)
     return EXIT_DONE;
 }
 
-/* Make three.js in the cache, if it is not. What others could have put there is not taken. */
+/* Whether what is at `path` may be run or shown: if not, says so. */
+static int check_own(const page *p, const char *path)
+{
+    if (file_is_own(path)) {
+        return 1;
+    }
+    fprintf(stderr,
+            "se3d %s: %s belongs to another user, or others can change it; set SE3D_CACHE to a "
+            "folder of your own\n",
+            p->command, path);
+    return 0;
+}
+
+/* Make three.js in the cache, if it is not. What others could have put there is not taken, and
+ * nothing is run where they could. */
 static int make_three(const page *p)
 {
     char script[PATH_SIZE + 64];
     snprintf(script, sizeof script, "%.4000s/build.sh", p->viewer);
     const char *const words[] = {"sh", script, p->cache, NULL};
+    if (!file_is_missing(p->cache) && !check_own(p, p->cache)) {
+        return EXIT_FAILED;
+    }
     if (process_run(NULL, words) != 0) {
         fprintf(stderr, "se3d %s: three.js could not be made, see above\n", p->command);
         return EXIT_FAILED;
     }
     snprintf(script, sizeof script, "%.4000s/three.js", p->cache);
-    if (!file_is_own(p->cache) || !file_is_own(script)) {
-        fprintf(stderr,
-                "se3d %s: %s belongs to another user, or others can change it; set SE3D_CACHE to a "
-                "folder "
-                "of your own\n",
-                p->command, script);
-        return EXIT_FAILED;
-    }
-    return EXIT_DONE;
+    return check_own(p, p->cache) && check_own(p, script) ? EXIT_DONE : EXIT_FAILED;
 }
 
 static int prepare(page *p, const char *command)

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Files that a model names: meshes, tables of particles. */
-#if !defined(_WIN32)
-#define _POSIX_C_SOURCE 200809L
-#endif
-
 #include "io/document/attachment.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#if !defined(_WIN32)
-#include <sys/stat.h>
-#endif
 
+#include "io/base/file.h"
 #include "io/base/pool.h"
 #include "io/document/document.h"
 #include "io/document/reader.h"
@@ -32,18 +27,6 @@ static const char *find(const se3di_reader *reader, se3di_iopool *pool, const ch
     return path;
 }
 
-/* Not a folder, nor a pipe or device, which might never end. */
-static bool is_plain(const char *path)
-{
-#if defined(_WIN32)
-    (void)path;
-    return true;
-#else
-    struct stat about;
-    return stat(path, &about) != 0 || S_ISREG(about.st_mode);
-#endif
-}
-
 static bool fail(se3di_reader *reader, const se3di_node *map, const char *file, const char *what)
 {
     return se3di_reader_fail_key(reader, map, "file", "`%.200s`: the file %s", file, what);
@@ -56,12 +39,13 @@ bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const ch
     if (!path) {
         return se3di_reader_fail_memory(reader);
     }
-    if (!is_plain(path)) {
-        return fail(reader, map, file, "is a folder, a pipe or a device, must be a regular file");
-    }
-    FILE *stream = fopen(path, "rb");
+    errno = 0;
+    FILE *stream = se3di_file_open(path);
     if (!stream) {
-        return fail(reader, map, file, "cannot be opened");
+        const bool other = errno == EISDIR || errno == EINVAL;
+        return fail(reader, map, file,
+                    other ? "is a folder, a pipe or a device, must be a regular file"
+                          : "cannot be opened");
     }
     const long length = fseek(stream, 0, SEEK_END) == 0 ? ftell(stream) : -1;
     bool good = length > 0 && length <= FILE_BYTES_MAX && fseek(stream, 0, SEEK_SET) == 0;

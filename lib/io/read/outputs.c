@@ -168,6 +168,35 @@ static bool ends_with(const char *text, const char *ending)
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
+/* What an entry writes beside its file: a plot has a picture of each kind and a script. */
+static bool writes(const char *type, const char *file, const char *name)
+{
+    static const char *const endings[] = {".svg", ".png", ".gp"};
+    const char *dot = strrchr(file, '.');
+    if (strcmp(type, "plot") != 0 || !dot) {
+        return strcmp(file, name) == 0;
+    }
+    const size_t base = (size_t)(dot - file);
+    for (size_t k = 0; k < sizeof endings / sizeof *endings; ++k) {
+        if (strncmp(file, name, base) == 0 && strcmp(name + base, endings[k]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Whether two entries write a file of the same name. */
+static bool collide(const char *type, const char *file, const char *other_type, const char *other)
+{
+    const bool both = strcmp(type, "plot") == 0 && strcmp(other_type, "plot") == 0;
+    if (both) {
+        const size_t base = strlen(file) - strlen(strrchr(file, '.'));
+        const size_t second = strlen(other) - strlen(strrchr(other, '.'));
+        return base == second && strncmp(file, other, base) == 0;
+    }
+    return writes(type, file, other) || writes(other_type, other, file);
+}
+
 /* A name that nothing else in the folder of the results has. */
 static bool read_file_name(se3di_reader *reader, const se3di_node *node, size_t kind,
                            const char **file)
@@ -186,10 +215,10 @@ static bool read_file_name(se3di_reader *reader, const se3di_node *node, size_t 
                                  examples[kind]);
     }
     for (size_t k = 0; k < model->output_count; ++k) {
-        taken = taken || strcmp(model->outputs[k].file, name) == 0;
+        taken = taken || collide(key, name, "file", model->outputs[k].file);
     }
     for (size_t k = 0; k < model->picture_count; ++k) {
-        taken = taken || strcmp(model->pictures[k].file, name) == 0;
+        taken = taken || collide(key, name, model->pictures[k].type, model->pictures[k].file);
     }
     if (taken) {
         return se3di_reader_fail(reader, node, "`%.60s` is written by two outputs", name);

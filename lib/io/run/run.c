@@ -15,6 +15,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "io/base/file.h"
 #include "io/base/pool.h"
 #include "io/base/sized.h"
 #include "io/channel/channel.h"
@@ -27,7 +28,6 @@
 #include "io/run/run_modes.h"
 #include "io/write/contact_list.h"
 #include "io/write/csv.h"
-#include "io/write/file.h"
 #include "io/write/grain_list.h"
 #include "io/write/vtk.h"
 

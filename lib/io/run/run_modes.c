@@ -9,10 +9,10 @@
 #include <string.h>
 
 #include "io/base/elementary.h"
+#include "io/base/file.h"
 #include "io/base/pool.h"
 #include "io/model/model.h"
 #include "io/write/csv.h"
-#include "io/write/file.h"
 
 static const char *const shape_parts[] = {"x", "y", "z", "rx", "ry", "rz"};
 

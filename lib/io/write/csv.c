@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/base/file.h"
 #include "io/base/pool.h"
-#include "io/write/file.h"
 
 enum { BUFFER_SIZE = 1 << 16, NUMBER_SIZE = 40 };
 

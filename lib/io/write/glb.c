@@ -9,11 +9,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/base/file.h"
 #include "io/base/pool.h"
 #include "io/model/mesh.h"
 #include "io/write/csv.h"
 #include "io/write/drawing.h"
-#include "io/write/file.h"
 #include "io/write/unit_mesh.h"
 
 enum { NUMBER_FLOAT = 5126, NUMBER_SHORT = 5122, NUMBER_INDEX = 5123 };

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "io/base/file.h"
 #include "io/base/pool.h"
 #include "io/document/document.h"
 #include "io/model/mesh.h"
@@ -12,7 +13,6 @@
 #include "io/write/contact_list.h"
 #include "io/write/csv.h"
 #include "io/write/drawing.h"
-#include "io/write/file.h"
 #include "io/write/grain_list.h"
 #include "io/write/unit_mesh.h"
 #include "io/write/vtk_file.h"

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "io/write/file.h"
+#include "io/base/file.h"
 
 enum { BLOCK = 4096 };
 

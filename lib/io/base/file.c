@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Folders of results, on POSIX systems and on Windows. */
+/* Safe reading and writing, on POSIX systems and on Windows. */
 #if !defined(_WIN32)
 #define _POSIX_C_SOURCE 200809L
 #endif
 
-#include "io/write/file.h"
+#include "io/base/file.h"
 
 #include <errno.h>
 #include <string.h>
+
+enum { PATH_SIZE = 4300 };
 
 #if defined(_WIN32)
 #include <direct.h>
@@ -16,6 +18,21 @@ static bool is_folder(const char *path)
 {
     (void)path;
     return false; /* opening it fails there */
+}
+
+static FILE *open_new(const char *path)
+{
+    return fopen(path, "wbx");
+}
+
+FILE *se3di_file_open(const char *path)
+{
+    return fopen(path, "rb");
+}
+
+static void take_away(const char *path)
+{
+    remove(path);
 }
 
 static bool cut(FILE *file, uint64_t size)
@@ -34,8 +51,46 @@ static int make_folder(const char *path)
     return _mkdir(path);
 }
 #else
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+static FILE *open_new(const char *path)
+{
+    const int number = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    FILE *file = number >= 0 ? fdopen(number, "wb") : NULL;
+    if (number >= 0 && !file) {
+        close(number);
+    }
+    return file;
+}
+
+FILE *se3di_file_open(const char *path)
+{
+    struct stat about;
+    const int number = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (number < 0) {
+        return NULL;
+    }
+    const bool known = fstat(number, &about) == 0;
+    FILE *file = known && S_ISREG(about.st_mode) ? fdopen(number, "rb") : NULL;
+    if (!file) {
+        const int why = !known                    ? errno
+                        : S_ISDIR(about.st_mode)  ? EISDIR
+                        : !S_ISREG(about.st_mode) ? EINVAL
+                                                  : ENOMEM;
+        close(number);
+        errno = why;
+    }
+    return file;
+}
+
+/* A file, or a link to one; unlike remove, it leaves folders alone. */
+static void take_away(const char *path)
+{
+    unlink(path);
+}
+
 static bool is_folder(const char *path)
 {
     struct stat about;
@@ -115,15 +170,15 @@ bool se3di_file_join(const char *folder, const char *file, char *path, size_t si
 }
 
 /* The path at which a file is written before it has its name. @return false: it is too long. */
-static bool format_partial(const char *path, char partial[4200])
+static bool format_partial(const char *path, char partial[PATH_SIZE])
 {
-    const int length = snprintf(partial, 4200, "%s.partial", path);
-    return length >= 0 && length < 4200;
+    const int length = snprintf(partial, PATH_SIZE, "%s.partial", path);
+    return length >= 0 && length < PATH_SIZE;
 }
 
 FILE *se3di_partial_open(const char *path)
 {
-    char partial[4200];
+    char partial[PATH_SIZE];
     if (!format_partial(path, partial)) {
         errno = ENAMETOOLONG;
         return NULL;
@@ -132,14 +187,15 @@ FILE *se3di_partial_open(const char *path)
         errno = EISDIR;
         return NULL;
     }
-    remove(partial); /* of a run that was ended; or a link, which must not be followed */
+    take_away(partial); /* of a run that was ended; or a link, which must not be followed */
     errno = 0;
-    return fopen(partial, "wbx");
+    return open_new(partial);
 }
 
 bool se3di_partial_close(FILE *file, const char *path)
 {
-    char partial[4200];
+    char partial[PATH_SIZE];
+    const int before = errno;
     errno = 0;
     bool good = !ferror(file);
     format_partial(path, partial);
@@ -150,15 +206,15 @@ bool se3di_partial_close(FILE *file, const char *path)
     if (good && rename(partial, path) == 0) {
         return true;
     }
-    const int why = errno ? errno : ENOSPC; /* a write before has failed */
-    remove(partial);
+    const int why = errno ? errno : before ? before : ENOSPC; /* a write before has failed */
+    take_away(partial);
     errno = why;
     return false;
 }
 
 bool se3di_partial_keep(FILE *file, const char *path, uint64_t size)
 {
-    char partial[4200];
+    char partial[PATH_SIZE];
     if (!format_partial(path, partial) || !cut(file, size)) {
         return false;
     }
@@ -172,9 +228,9 @@ bool se3di_partial_keep(FILE *file, const char *path, uint64_t size)
 
 void se3di_partial_abandon(FILE *file, const char *path)
 {
-    char partial[4200];
+    char partial[PATH_SIZE];
     fclose(file);
     if (format_partial(path, partial)) {
-        remove(partial);
+        take_away(partial);
     }
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Files that appear whole, under their name, in folders that are made for them. */
+/* Files in folders where others may have left something: links are not followed, pipes and devices
+ * not opened, and what is not whole gets no name. The program uses it, too. */
 #ifndef SE3D_IO_FILE_H
 #define SE3D_IO_FILE_H
 
@@ -12,6 +13,9 @@
 bool se3di_file_join(const char *folder, const char *file, char *path, size_t size);
 /* Make the folders that a path of a file needs. @return false: errno says why. */
 bool se3di_file_make_folders(const char *path);
+/* Open a regular file for reading: a folder is EISDIR, a pipe or device EINVAL. @return NULL: errno
+ * says why. */
+FILE *se3di_file_open(const char *path);
 /* Open a file under a temporary name; complete it and give it its name. @return NULL, false: errno
  * says why, and nothing is left. */
 FILE *se3di_partial_open(const char *path);

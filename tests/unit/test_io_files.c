@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Files of results and files that are read, in folders where others have left something. */
+#define _XOPEN_SOURCE 700
+#include <errno.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "check.h"
+#include "io/base/file.h"
+
+static char folder[200];
+static char path[300], partial[320];
+
+static int exists(const char *name)
+{
+    struct stat about;
+    return lstat(name, &about) == 0;
+}
+
+static void a_file_has_its_name_only_when_it_is_complete(void)
+{
+    FILE *file = se3di_partial_open(path);
+    CHECK(file && exists(partial) && !exists(path));
+    CHECK(file && fputs("x", file) >= 0 && se3di_partial_close(file, path));
+    CHECK(!exists(partial) && exists(path));
+    file = se3di_partial_open(path);
+    CHECK(file != NULL);
+    se3di_partial_abandon(file, path);
+    CHECK(!exists(partial) && exists(path));
+    CHECK(unlink(path) == 0);
+}
+
+static void what_stood_under_the_temporary_name_goes_but_is_not_followed(void)
+{
+    char target[300];
+    snprintf(target, sizeof target, "%s/target", folder);
+    CHECK(symlink(target, partial) == 0);
+    FILE *file = se3di_partial_open(path);
+    CHECK(file && se3di_partial_close(file, path));
+    CHECK(!exists(target) && exists(path));
+    CHECK(unlink(path) == 0);
+}
+
+static void an_empty_folder_of_that_name_stays(void)
+{
+    CHECK(mkdir(partial, 0700) == 0);
+    errno = 0;
+    CHECK(se3di_partial_open(path) == NULL && errno != 0);
+    CHECK(exists(partial));
+    CHECK(rmdir(partial) == 0);
+    CHECK(mkdir(path, 0700) == 0);
+    CHECK(se3di_partial_open(path) == NULL && errno == EISDIR);
+    CHECK(rmdir(path) == 0);
+}
+
+/* Opening a pipe that nobody writes to must not wait. */
+static void only_regular_files_are_opened_for_reading(void)
+{
+    CHECK(mkfifo(path, 0600) == 0);
+    CHECK(se3di_file_open(path) == NULL && errno == EINVAL);
+    CHECK(unlink(path) == 0);
+    CHECK(se3di_file_open(folder) == NULL && errno == EISDIR);
+    CHECK(se3di_file_open(path) == NULL && errno == ENOENT);
+}
+
+int main(void)
+{
+    const char *where = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%.100s/se3d-files-XXXXXX", where && where[0] ? where : "/tmp");
+    if (!mkdtemp(folder)) {
+        return 1;
+    }
+    snprintf(path, sizeof path, "%s/a.csv", folder);
+    snprintf(partial, sizeof partial, "%s.partial", path);
+    RUN(a_file_has_its_name_only_when_it_is_complete);
+    RUN(what_stood_under_the_temporary_name_goes_but_is_not_followed);
+    RUN(an_empty_folder_of_that_name_stays);
+    RUN(only_regular_files_are_opened_for_reading);
+    rmdir(folder);
+    return check_finish();
+}
