@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define RANK_TOLERANCE 1e-9
-#define LINEAR_ARRAYS  12
+#define LINEAR_ARRAYS  14
 
 typedef struct linear_array {
     double **data;
@@ -20,9 +20,10 @@ static void list_arrays(se3di_linear *l, linear_array list[LINEAR_ARRAYS])
     size_t n = (size_t)l->n;
     size_t rows = (size_t)l->rows;
     const linear_array arrays[LINEAR_ARRAYS] = {
-        {&l->M, n * n},  {&l->D, n * n},        {&l->K, n * n},     {&l->Z, n * n},
-        {&l->Mr, n * n}, {&l->Dr, n * n},       {&l->Kr, n * n},    {&l->unit, 6 * n},
-        {&l->load, n},   {&l->work, 2 * n * n}, {&l->lambda, rows}, {&l->buffer, n},
+        {&l->M, n * n},    {&l->D, n * n},        {&l->K, n * n},     {&l->Z, n * n},
+        {&l->Mr, n * n},   {&l->Dr, n * n},       {&l->Kr, n * n},    {&l->unit, 6 * n},
+        {&l->load, n},     {&l->work, 2 * n * n}, {&l->lambda, rows}, {&l->buffer, n},
+        {&l->rate, n / 2}, {&l->turn, 3 * n / 2},
     };
     memcpy(list, arrays, sizeof arrays);
 }
@@ -33,7 +34,8 @@ se3d_status se3di_linear_init(se3di_linear *linear, se3di_equations *equations)
     linear_array arrays[LINEAR_ARRAYS];
     *linear = (se3di_linear){.equations = equations,
                              .n = (int32_t)assembly->unknown_count,
-                             .rows = (int32_t)assembly->row_count};
+                             .rows = (int32_t)assembly->row_count,
+                             .own_axes = 1};
     list_arrays(linear, arrays);
     se3d_status status = se3di_tangent_init(&linear->tangent, assembly);
     for (int k = 0; k < LINEAR_ARRAYS && status >= 0; ++k) {
@@ -73,13 +75,17 @@ static const double *rotation_of(const se3di_linear *linear, size_t body)
     return assembly->model->frames[assembly->free_body[body]].A;
 }
 
-/* The translational part of each body of a vector over unknowns turned by A^T. */
-static void to_body_axes(const se3di_linear *linear, double *x)
+/* Both parts of each body of a vector over unknowns in the axes of the linearisation. */
+static void to_axes(const se3di_linear *linear, double *x)
 {
     for (size_t k = 0; k < (size_t)linear->n / 6; ++k) {
         double local[3];
         se3di_mul_transposed(rotation_of(linear, k), x + 6 * k, local);
         se3di_copy(local, x + 6 * k);
+        for (size_t half = 0; linear->is_turned && half < 2; ++half) {
+            se3di_mul_transposed(linear->turn + 9 * k, x + 6 * k + 3 * half, local);
+            se3di_copy(local, x + 6 * k + 3 * half);
+        }
     }
 }
 
@@ -101,7 +107,7 @@ static se3d_status find_freedoms(se3di_linear *linear)
                                     &linear->freedoms, &dependent, NULL));
     size_t count = (size_t)linear->freedoms * n;
     for (size_t r = 0; r < (size_t)linear->freedoms; ++r) {
-        to_body_axes(linear, Z + r * n);
+        to_axes(linear, Z + r * n);
     }
     se3d_status status =
         linear->rows > 0
@@ -142,7 +148,7 @@ se3d_status se3di_linear_eval_statics(se3di_linear *linear, double t)
     SE3DI_TRY(find_freedoms(linear));
     SE3DI_TRY(se3di_assembly_eval_forces(&equations->assembly, t, linear->load, equations->error));
     SE3DI_TRY(balance(linear));
-    to_body_axes(linear, linear->load);
+    to_axes(linear, linear->load);
     return SE3D_OK;
 }
 
@@ -175,19 +181,17 @@ static void fill_dense(const se3di_linear *linear, double *dense, const double *
 static void turn_matrix(const se3di_linear *linear, double *X)
 {
     size_t n = (size_t)linear->n;
+    double *column = linear->buffer;
     for (size_t r = 0; r < n; ++r) {
-        to_body_axes(linear, X + r * n);
+        to_axes(linear, X + r * n);
     }
-    for (size_t k = 0; k < n / 6; ++k) {
-        const double *A = rotation_of(linear, k);
-        for (size_t c = 0; c < n; ++c) {
-            const double column[3] = {X[6 * k * n + c], X[(6 * k + 1) * n + c],
-                                      X[(6 * k + 2) * n + c]};
-            double local[3];
-            se3di_mul_transposed(A, column, local);
-            for (size_t r = 0; r < 3; ++r) {
-                X[(6 * k + r) * n + c] = local[r];
-            }
+    for (size_t c = 0; c < n; ++c) {
+        for (size_t r = 0; r < n; ++r) {
+            column[r] = X[r * n + c];
+        }
+        to_axes(linear, column);
+        for (size_t r = 0; r < n; ++r) {
+            X[r * n + c] = column[r];
         }
     }
 }
@@ -204,23 +208,75 @@ static void add_columns(const se3di_linear *linear, double *Y, const double *X, 
     }
 }
 
-/* The rates of the body axes: K first (it needs the old D), then D. */
+/* Rates of axes, in these axes: of the body, its change, of the axes, of the axes beside the body.
+ */
+typedef struct axes_rates {
+    double w[3], wdot[3], W[9], T[9];
+} axes_rates;
+
+static axes_rates get_rates(const se3di_linear *linear, size_t k)
+{
+    const se3di_model *model = linear->equations->assembly.model;
+    const uint32_t body = linear->equations->assembly.free_body[k];
+    const double *rate = linear->rate + 3 * k;
+    axes_rates rates;
+    double beside[3];
+    se3di_copy(model->frames[body].w, rates.w);
+    se3di_copy(model->acceleration + 6 * body + 3, rates.wdot);
+    if (linear->is_turned) {
+        se3di_mul_transposed(linear->turn + 9 * k, model->frames[body].w, rates.w);
+        se3di_mul_transposed(linear->turn + 9 * k, model->acceleration + 6 * body + 3, rates.wdot);
+    }
+    for (int c = 0; c < 3; ++c) {
+        beside[c] = linear->own_axes ? 0.0 : rate[c] - rates.w[c];
+    }
+    se3di_tilde(linear->own_axes ? rates.w : rate, rates.W);
+    se3di_tilde(beside, rates.T);
+    return rates;
+}
+
+/* Of rotations: dw = s' + W s, dwdot = s'' + (W + T) s' + (T W + Wdot) s. */
+static void add_rotation(se3di_linear *linear, size_t k, const axes_rates *rates)
+{
+    const size_t column = 6 * k + 3;
+    double turn[9];
+    double change[9];
+    for (int e = 0; e < 9; ++e) {
+        turn[e] = rates->W[e] + rates->T[e];
+    }
+    if (linear->own_axes) {
+        se3di_tilde(rates->wdot, change);
+    } else {
+        se3di_mat_mul(rates->T, rates->W, change);
+    }
+    add_columns(linear, linear->K, linear->D, column, 1.0, rates->W);
+    add_columns(linear, linear->K, linear->M, column, 1.0, change);
+    add_columns(linear, linear->D, linear->M, column, 1.0, turn);
+}
+
+/* Of translations: dv = s' + W s, dvdot = s'' + 2 W s' + (W W + Wdot) s. */
+static void add_translation(se3di_linear *linear, size_t k, const axes_rates *rates)
+{
+    const size_t column = 6 * k;
+    double WW[9];
+    double Wdot[9];
+    se3di_tilde(rates->wdot, Wdot);
+    se3di_mat_mul(rates->W, rates->W, WW);
+    add_columns(linear, linear->K, linear->D, column, 1.0, rates->W);
+    if (linear->own_axes) {
+        add_columns(linear, linear->K, linear->M, column, 1.0, Wdot);
+    }
+    add_columns(linear, linear->D, linear->M, column, 2.0, rates->W);
+    add_columns(linear, linear->K, linear->M, column, 1.0, WW);
+}
+
+/* The rates of the axes: K first (it needs the old D), then D. */
 static void add_motion(se3di_linear *linear)
 {
-    const se3di_assembly *assembly = &linear->equations->assembly;
     for (size_t k = 0; k < (size_t)linear->n / 6; ++k) {
-        uint32_t body = assembly->free_body[k];
-        double W[9], Wdot[9], WW[9];
-        se3di_tilde(assembly->model->frames[body].w, W);
-        se3di_tilde(assembly->model->acceleration + 6 * body + 3, Wdot);
-        se3di_mat_mul(W, W, WW);
-        for (size_t half = 0; half < 2; ++half) {
-            size_t column = 6 * k + 3 * half;
-            add_columns(linear, linear->K, linear->D, column, 1.0, W);
-            add_columns(linear, linear->K, linear->M, column, 1.0, Wdot);
-            add_columns(linear, linear->D, linear->M, column, half == 0 ? 2.0 : 1.0, W);
-        }
-        add_columns(linear, linear->K, linear->M, 6 * k, 1.0, WW);
+        const axes_rates rates = get_rates(linear, k);
+        add_translation(linear, k, &rates);
+        add_rotation(linear, k, &rates);
     }
 }
 

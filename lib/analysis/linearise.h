@@ -13,6 +13,11 @@
  *     dvdot_r = A (s'' + 2 W s' + (W W + Wdot) s)
  *     dwdot = s'' + W s' + Wdot s
  *
+ * Other axes may turn at constant rates of their own (a rotor's with its carrier): W is then their
+ * rate, T theirs less the body's, E = diag(A B, B) with B from these axes to the body's, and
+ *
+ *     dwdot = s'' + (W + T) s' + T W s
+ *
  * docs/theory/modes.md */
 #ifndef SE3DI_LINEARISE_H
 #define SE3DI_LINEARISE_H
@@ -33,6 +38,10 @@ typedef struct se3di_linear {
     double *work;            /* [2 n n] */
     double *load;            /* [n] applied forces and velocity terms, body axes */
     double *lambda, *buffer; /* [rows], [n] */
+    double *rate;            /* [n / 2] of the axes, in these axes [rad/s], unless own_axes */
+    double *turn;            /* [3 n / 2] axes -> body, if is_turned, row-major */
+    int32_t own_axes;        /* the axes turn with the bodies */
+    int32_t is_turned;       /* the axes are not those of the bodies at present */
 } se3di_linear;
 
 /* For equations in r-omega. On failure nothing is held. */

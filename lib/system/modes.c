@@ -6,6 +6,7 @@
 
 #include "analysis/linearise.h"
 #include "analysis/modes.h"
+#include "analysis/steady.h"
 #include "linsol/dense.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
@@ -263,10 +264,7 @@ static se3d_status make(se3d_system *system, se3di_equations *equations, const s
     SE3DI_TRY(se3di_ranks_decide(equations, model->time));
     SE3DI_TRY(se3di_acceleration_solve(equations, model->time));
     SE3DI_TRY(se3di_linear_init(&linear, equations));
-    se3d_status status = se3di_linear_eval_statics(&linear, model->time);
-    if (status >= 0) {
-        status = se3di_linear_eval_matrices(&linear, model->time, equations->x, model->lambda);
-    }
+    se3d_status status = se3di_steady_linearise(&linear, model->time);
     se3d_modes *modes = status >= 0 ? se3di_alloc(&model->allocator, 1, sizeof *modes) : NULL;
     status = status >= 0 && !modes ? SE3D_ERR_NO_MEMORY : status;
     if (status >= 0) {
