@@ -62,11 +62,27 @@ static uint32_t find_driver(se3di_equations *equations)
     return found;
 }
 
-/* Positions and velocities at t, from the accepted ones. */
-static int is_met(se3di_equations *equations, double t, double *speed)
+static int correct(se3di_equations *equations, double t)
 {
     int converged = 0;
-    const int met = se3di_position_correct(equations, t, &converged) >= 0 && converged;
+    return se3di_position_correct(equations, t, &converged) >= 0 && converged;
+}
+
+/* Positions and velocities at t, from the accepted ones. If these are far away (a method has come to
+ * the dead point by long steps) Newton fails near it: the way is gone in parts, each a quarter of
+ * the rest. */
+static int is_met(se3di_equations *equations, double t, double *speed)
+{
+    const double from = equations->assembly.model->time;
+    int met = correct(equations, t);
+    if (!met) {
+        double rest = t - from;
+        se3di_state_restore(equations);
+        for (met = 1; met && rest > 1e-9 * (t - from); rest *= 0.25) {
+            met = correct(equations, t - rest);
+        }
+        met = met && correct(equations, t);
+    }
     if (met && speed) {
         *speed = se3di_velocity_solve(equations, t) < 0 ? HUGE_VAL : measure_speed(equations);
     }
