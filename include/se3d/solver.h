@@ -58,8 +58,7 @@ typedef struct se3d_solver_def {
      * [s]; 0: chosen, by the error but for rattle and verlet (1 ms). */
     double step;
     double tolerance;       /* relative error of adaptive methods, 1e-14..0.1; 0: 1e-6. Below what a
-                               method reaches it works at that: dop853, rk45, rk4 7e-12, bdf
-                               1e-12, radau 1e-13 */
+                               method reaches it works at that (se3d_solver_get_tolerance) */
     double spectral_radius; /* generalized_alpha: at infinite frequency, 0..1, default 0.9 */
     double alpha;           /* hht: -1/3..0, default -0.1 */
     size_t iterations_max;  /* Newton iterations per step; 0: 25 */
@@ -159,6 +158,15 @@ static inline se3d_status se3d_solver_get_start_change(const se3d_solver *solver
 {
     return se3d_solver_get_start_change_sized(solver, change, sizeof *change);
 }
+
+/* Get the tolerance to which the steps of a run are controlled: the one asked for, or the smallest
+ * one that the method in use reaches if that is larger (dop853, rk45, rk4 6.7e-12, bdf 1e-12,
+ * radau 1e-13, generalized_alpha, hht 1e-11); the log is told of that.
+ * @param[out] tolerance  [relative] 0: errors are not controlled (other analyses, rattle, verlet,
+ *                        generalized_alpha and hht with a step)
+ * @return OK, NULL.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_solver_get_tolerance(const se3d_solver *solver, double *tolerance);
 
 /* Get the method in use; of AUTO the one that it picked.
  * @param[out] name  "generalized_alpha", ...; static

@@ -415,6 +415,21 @@ static se3d_status switch_method(se3di_run *run)
     return prepare(run);
 }
 
+/* The log is told if the tolerance that is asked for is smaller than what the method reaches. */
+static void tell_reach(se3di_run *run)
+{
+    const se3di_integration *integration = &run->integration;
+    const double tolerance =
+        se3di_integrator_get_tolerance(integration->method, &integration->settings);
+    if (tolerance > integration->settings.tolerance && run->told_reach != integration->method) {
+        run->told_reach = integration->method;
+        se3di_log_write(run->error, SE3D_LOG_WARNING,
+                        "t = %g s: the tolerance %g is smaller than what %s reaches; %.3g is used",
+                        run->model->time, integration->settings.tolerance,
+                        integration->method->name, tolerance);
+    }
+}
+
 /* The method in use, to t_end or to where an event ends it or it has to be left. */
 static se3d_status run_method(se3di_run *run, double t_end)
 {
@@ -432,6 +447,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
     if (!has_step_control(integration)) {
         return run_fixed_steps(run, t_end);
     }
+    tell_reach(run);
     return run->equations.watch && integration->method->advance
                ? se3di_events_run(&run->events, t_end)
                : integration->method->run(integration, t_end);

@@ -56,7 +56,7 @@ void se3di_bdf_point(se3di_bdf *m, const se3di_integration *integration, size_t 
                      .header = assembly->model->history,
                      .base = integration->work + before,
                      .iterations_max = ITERATIONS_CONTROLLED,
-                     .tolerance = fmax(0.1 * integration->settings.tolerance, 1e-13)};
+                     .tolerance = 0.1 * fmax(integration->settings.tolerance, SE3DI_BDF_REACH)};
     m->accuracy = fmin(1e-13, fmax(1e-15, 1e-6 * m->tolerance));
     m->times = m->header + BDF_TIMES;
     m->points = m->header + BDF_HEADER;
@@ -604,4 +604,5 @@ const se3di_integrator se3di_integrator_bdf = {
     .is_implicit = 1,
     .is_reduced = 1,
     .orders = 0x3E, /* 1 to 5 */
+    .reach = SE3DI_BDF_REACH,
 };

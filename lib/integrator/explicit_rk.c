@@ -81,7 +81,7 @@ typedef struct rk {
  * below what rounding allows. */
 static double inner_tolerance(double tolerance)
 {
-    return fmax(0.03 * tolerance, 2e-13);
+    return fmax(SE3DI_RK_PART * tolerance, SE3DI_RK_LEAST);
 }
 
 /* See se3di_state_begin. The tightest tolerances need accelerations with less noise near singular

@@ -51,10 +51,15 @@ void se3di_rk_interpolate(const se3di_integration *integration, double t, double
 int se3di_rk_is_held(const se3di_integration *integration);
 
 /* What the entries of all of them in the table of methods have, beside their own `tableau`. */
+/* Local errors are a part of the tolerance, and no smaller than rounding allows. */
+#define SE3DI_RK_PART  0.03
+#define SE3DI_RK_LEAST 2e-13
+#define SE3DI_RK_REACH (SE3DI_RK_LEAST / SE3DI_RK_PART)
+
 #define SE3DI_RK_METHOD                                                                            \
     .history_count = se3di_rk_history_count, .work_count = se3di_rk_work_count,                    \
     .start = se3di_rk_start, .renew = se3di_rk_renew, .step = se3di_rk_step, .run = se3di_rk_run,  \
     .advance = se3di_rk_advance, .interpolate = se3di_rk_interpolate, .tableau = &tableau,         \
-    .is_explicit = 1
+    .is_explicit = 1, .reach = SE3DI_RK_REACH
 
 #endif

@@ -58,4 +58,6 @@ const se3di_integrator se3di_integrator_generalized_alpha = {
     .is_implicit = 1,
     .is_reduced = 1,
     .orders = 1u << 2,
+    .reach = SE3DI_NEWMARK_REACH,
+    .fixes_step = 1,
 };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/integrator.h"
 
+#include <math.h>
 #include <stddef.h>
 
 static const se3di_integrator *const methods[] = {[SE3D_METHOD_AUTO] = &se3di_integrator_dop853,
@@ -18,4 +19,11 @@ const se3di_integrator *se3di_integrator_find(int32_t method)
 {
     const int32_t count = (int32_t)(sizeof methods / sizeof *methods);
     return method >= 0 && method < count ? methods[method] : NULL;
+}
+
+double se3di_integrator_get_tolerance(const se3di_integrator *method,
+                                      const se3di_integrator_settings *settings)
+{
+    const int is_controlled = method->reach > 0.0 && !(method->fixes_step && settings->step > 0.0);
+    return is_controlled ? fmax(settings->tolerance, method->reach) : 0.0;
 }

@@ -62,6 +62,9 @@ typedef struct se3di_integrator {
     int32_t is_explicit; /* not 0: works with formulations in the fewest unknowns, */
     int32_t is_reduced;  /* and so do these implicit ones */
     uint32_t orders;     /* bit k: settings.order may be k; 0, the default one, always may */
+    double reach;        /* smallest tolerance that its control of errors meets; 0: it has none */
+    int32_t fixes_step;  /* not 0: with settings.step, errors are not controlled */
+    int32_t reserved;
 } se3di_integrator;
 
 struct se3di_integration {
@@ -89,6 +92,11 @@ struct se3di_integration {
 #define SE3DI_METHOD_DECLARE(METHOD, name) extern const se3di_integrator se3di_integrator_##name;
 SE3DI_METHOD_LIST(SE3DI_METHOD_DECLARE)
 #undef SE3DI_METHOD_DECLARE
+
+/* The tolerance that the steps of a run are controlled to: the one that is asked for, or what the
+ * method reaches; 0: errors are not controlled. */
+double se3di_integrator_get_tolerance(const se3di_integrator *method,
+                                      const se3di_integrator_settings *settings);
 
 /* By se3d_method, AUTO: the one with which a run begins; NULL: there is none of that number. */
 const se3di_integrator *se3di_integrator_find(int32_t method);

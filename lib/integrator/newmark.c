@@ -346,7 +346,8 @@ static double estimate_error(const se3di_newmark_step *step)
         const double size = jerk / fmax(scale[kind], header[SE3DI_NEWMARK_SPEED + kind]);
         worst = size <= worst ? worst : size; /* NaN stays */
     }
-    return constant * h * h * worst / step->integration->settings.tolerance;
+    return constant * h * h * worst /
+           fmax(step->integration->settings.tolerance, SE3DI_NEWMARK_REACH);
 }
 
 /* All that may fail is done. */

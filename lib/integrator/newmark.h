@@ -16,6 +16,9 @@
 
 #include "integrator/state.h"
 
+/* Below it rounding of velocities, over the cube of the step, is what differences show. */
+#define SE3DI_NEWMARK_REACH 1e-11
+
 typedef struct se3di_newmark {
     double alpha_m, alpha_f; /* of equal steps */
 } se3di_newmark;

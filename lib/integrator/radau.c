@@ -22,6 +22,7 @@
 #include <string.h>
 
 #define STAGES SE3DI_RADAU_STAGES
+#define REACH  1e-13 /* smallest tolerance of a run */
 
 /* The history: this header, the accepted state, then of the last step: its start, the increments of
  * the stages, d = h f_0 - h u'(0). */
@@ -69,7 +70,7 @@ static se3di_state_scale get_scale(const history *past)
 /* The estimate is of order 3, the result of order 5 (Hairer, Wanner 1996, sec. IV.8). */
 static double inner_tolerance(double tolerance)
 {
-    return 0.1 * se3di_pow(fmax(tolerance, 1e-13), 2.0 / 3.0);
+    return 0.1 * se3di_pow(fmax(tolerance, REACH), 2.0 / 3.0);
 }
 
 /* The iteration stops if it does not show in the result. If stages are projected it
@@ -528,4 +529,5 @@ const se3di_integrator se3di_integrator_radau = {
     .is_implicit = 1,
     .is_reduced = 1,
     .orders = 1u << 5,
+    .reach = REACH,
 };

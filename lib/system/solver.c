@@ -254,6 +254,18 @@ se3d_status se3d_solver_get_start_change_sized(const se3d_solver *solver, se3d_s
     return se3di_sized_give(change, size, &full, sizeof full);
 }
 
+se3d_status se3d_solver_get_tolerance(const se3d_solver *solver, double *tolerance)
+{
+    if (!solver || !tolerance) {
+        return SE3D_ERR_NULL;
+    }
+    const se3di_integration *integration = &solver->run.integration;
+    *tolerance = solver->run.analysis == SE3D_ANALYSIS_DYNAMICS
+                     ? se3di_integrator_get_tolerance(integration->method, &integration->settings)
+                     : 0.0;
+    return SE3D_OK;
+}
+
 se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name)
 {
     if (!solver || !name) {

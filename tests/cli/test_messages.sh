@@ -33,12 +33,25 @@ for how in kinematics inverse_dynamics dynamics 'dynamics --method radau' 'dynam
     'dynamics --method generalized_alpha' 'kinematics --formulation rp'; do
     # shellcheck disable=SC2086
     expect "a slider beyond its dead point: $how" 1 "$program" run "$dir/slider.yaml" -o "$dir/o" --analysis $how
-    says 'driver push has reached a dead point of the mechanism at t = 0.6339'
-    says 's, where its value is 1.267'
+    says 'driver push has reached a dead point of the mechanism at t = 0.633975 s'
+    says ', where its value is 1.26795'
 done
 sed 's/value: 2\*t/value: "if(t > 0.3, 9, t)"/' "$dir/slider.yaml" >"$dir/jump.yaml"
 expect 'a jump is no dead point' 1 "$program" run "$dir/jump.yaml" -o "$dir/o"
 holds 'it is called one' [ "$(grep -c 'dead point' "$dir/err")" = 0 ]
+
+# A tolerance that the method does not reach.
+printf 'se3d: 1\nbodies: [%s]\njoints: [%s]\nanalysis: {type: dynamics, duration: 1e-3}\n' "$body" "$slide" >"$dir/fine.yaml"
+for row in 'bdf 1e-13 1e-12' 'dop853 1e-14 6.67e-12' 'auto 1e-14 6.67e-12'; do
+    # shellcheck disable=SC2086
+    set -- $row
+    expect "$row" 0 "$program" run "$dir/fine.yaml" -o "$dir/o" --method "$1" --tolerance "$2"
+    holds "$row is not told" grep -q "the tolerance $2 is smaller than what .* reaches; $3 was used" "$dir/out"
+    expect "$row as JSON" 0 "$program" run "$dir/fine.yaml" -o "$dir/o" --method "$1" --tolerance "$2" --json
+    holds "$row is not in JSON" grep -qE '"tolerance": [0-9.]*e-1[345], "tolerance_reached": (6\.66|9\.99|1e-12)' "$dir/out"
+done
+expect 'a tolerance that is reached' 0 "$program" run "$dir/fine.yaml" -o "$dir/o" --method bdf --tolerance 1e-11
+holds 'says more than there is' [ "$(grep -c 'smaller than what' "$dir/out")" = 0 ]
 
 # The square of a distance that goes to zero, and below.
 for value in '1 - t' '(1 - t)^2 - 1e-3' '(1 - t)^2'; do

@@ -118,6 +118,52 @@ static void redundant_constraints_are_logged_once(void)
     se3d_system_destroy(s.system);
 }
 
+/* What is used is told once, and so is that errors are not controlled. */
+static void a_tolerance_that_is_not_reached_is_logged_once(void)
+{
+    static const struct {
+        int32_t method;
+        double asked, step, used;
+        const char *name; /* in the log, NULL: nothing */
+    } rows[] = {{SE3D_METHOD_AUTO, 1e-13, 0.0, 2e-13 / 0.03, "dop853"},
+                {SE3D_METHOD_DOP853, 1e-14, 0.0, 2e-13 / 0.03, "dop853"},
+                {SE3D_METHOD_DOP853, 1e-14, 1e-3, 2e-13 / 0.03, "dop853"},
+                {SE3D_METHOD_RK45, 1e-12, 0.0, 2e-13 / 0.03, "rk45"},
+                {SE3D_METHOD_RK4, 1e-12, 0.0, 2e-13 / 0.03, "rk4"},
+                {SE3D_METHOD_BDF, 1e-13, 0.0, 1e-12, "bdf"},
+                {SE3D_METHOD_RADAU, 1e-14, 0.0, 1e-13, "radau"},
+                {SE3D_METHOD_GENERALIZED_ALPHA, 1e-12, 0.0, 1e-11, "generalized_alpha"},
+                {SE3D_METHOD_HHT, 1e-12, 0.0, 1e-11, "hht"},
+                {SE3D_METHOD_DOP853, 1e-11, 0.0, 1e-11, NULL},
+                {SE3D_METHOD_BDF, 0.0, 0.0, 1e-6, NULL},
+                {SE3D_METHOD_RADAU, 1e-12, 0.0, 1e-12, NULL},
+                {SE3D_METHOD_GENERALIZED_ALPHA, 1e-12, 1e-4, 0.0, NULL},
+                {SE3D_METHOD_RATTLE, 1e-14, 1e-4, 0.0, NULL},
+                {SE3D_METHOD_VERLET, 1e-14, 1e-4, 0.0, NULL}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        sheet s;
+        se3d_solver *solver = NULL;
+        se3d_solver_def def = se3d_solver_def_default();
+        double used = -1.0;
+        open_sheet(&s, 0);
+        add_pin(&s, add_bar(&s, "bar", 1.0), "pin");
+        def.method = rows[k].method;
+        def.tolerance = rows[k].asked;
+        def.step = rows[k].step;
+        CHECK(!se3d_solver_create(s.system, &def, &solver));
+        CHECK(!se3d_solver_run(solver, 1e-3) && !se3d_solver_run(solver, 2e-3));
+        CHECK(!se3d_solver_get_tolerance(solver, &used));
+        CHECK_NEAR(used / fmax(rows[k].used, 1e-300), rows[k].used > 0.0 ? 1.0 : 0.0, 1e-12);
+        CHECK(total(&s) == (rows[k].name != NULL));
+        if (rows[k].name) {
+            CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], rows[k].name);
+            CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "tolerance");
+        }
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(s.system);
+    }
+}
+
 static se3d_status damp(void *ctx, double t, const se3d_body_motion motion[2], double wrench[12],
                         double *K, double *D)
 {
@@ -272,6 +318,7 @@ int main(void)
     RUN(every_failure_is_logged_once);
     RUN(redundant_constraints_are_logged_once);
     RUN(a_change_of_method_is_logged);
+    RUN(a_tolerance_that_is_not_reached_is_logged_once);
     RUN(velocities_that_do_not_fit_are_told);
     RUN(positions_that_do_not_fit_are_told);
     RUN(rounding_is_no_change);

@@ -100,6 +100,10 @@ static void print_analysis(const se3d_run_analysis *a)
         printf("  auto left %s for %s at t = %.9g s: the motion became stiff\n", a->left, a->method,
                a->left_at);
     }
+    if (a->reached > a->tolerance) {
+        printf("  the tolerance %g is smaller than what %s reaches; %.3g was used\n", a->tolerance,
+               a->method, a->reached);
+    }
     print_start(a);
     if (a->left_out && a->left_out[0]) {
         printf("  equations that are redundant but for the digits of their data, left out: %s\n",
@@ -232,6 +236,12 @@ static void json_put_analysis(const se3d_run_analysis *a)
         json_put_text(a->left);
         fputs(", \"left_at\": ", stdout);
         json_put_number(a->left_at);
+    }
+    if (a->reached > 0.0) {
+        fputs(", \"tolerance\": ", stdout);
+        json_put_number(a->tolerance);
+        fputs(", \"tolerance_reached\": ", stdout);
+        json_put_number(a->reached);
     }
     json_put_start(a);
     json_put_left_out(a);

@@ -509,6 +509,9 @@ static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analys
         if (entry->solver.analysis == SE3D_ANALYSIS_DYNAMICS) {
             se3d_solver_get_method(r->solver, &method);
             se3d_solver_get_switch(r->solver, &done->left_at, &left);
+            se3d_solver_get_tolerance(r->solver, &done->reached);
+            const double asked = entry->solver.tolerance > 0.0 ? entry->solver.tolerance : 1e-6;
+            done->tolerance = done->reached > 0.0 ? asked : 0.0;
         }
     }
     done->method = copy_text(r, method ? method : "");
