@@ -68,9 +68,9 @@ static int correct(se3di_equations *equations, double t)
     return se3di_position_correct(equations, t, &converged) >= 0 && converged;
 }
 
-/* Positions and velocities at t, from the accepted ones. If these are far away (a method has come to
- * the dead point by long steps) Newton fails near it: the way is gone in parts, each a quarter of
- * the rest. */
+/* Positions and velocities at t, from the accepted ones. If these are far away (a method has come
+ * to the dead point by long steps) Newton fails near it: the way is gone in parts, each a quarter
+ * of the rest. */
 static int is_met(se3di_equations *equations, double t, double *speed)
 {
     const double from = equations->assembly.model->time;
