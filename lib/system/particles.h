@@ -20,7 +20,7 @@ se3d_status se3di_particles_use(se3d_particles *particles, se3d_material materia
 /* Particles of this radius do not meet themselves across a period. */
 se3d_status se3di_check_period(se3d_particles *particles, double radius);
 se3d_status se3di_check_tag(se3d_particles *particles, uint32_t tag);
-/* particles_fill.c: the def, checked, with the range of its radii; what it says. */
+/* particles_fill.c: the def, checked, with the range of its radii. */
 se3d_status se3di_check_fill(se3d_particles *particles, const se3d_fill_def *def,
                              se3d_fill_def *full, uint32_t *material);
 se3d_status se3di_check_region(se3d_particles *particles, const double lower[3],
@@ -30,8 +30,6 @@ se3d_status se3di_particles_gravity(const se3d_particles *particles, double g[3]
 /* Kinetic energies and the potential one of gravity g. */
 void se3di_particles_energy(const se3di_particles *set, size_t k, const double g[3],
                             double energy[3]);
-se3di_radii se3di_fill_radii(const se3d_fill_def *def);
-se3di_region se3di_fill_region(const se3d_fill_def *def);
 /* Discount (add 0) or count what a set uses of the model. */
 void se3di_particles_count_users(se3d_particles *particles, int add);
 

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Regions filled with particles: a lattice, or at random without overlaps. */
-#include "math/vec3.h"
+/* Regions filled with particles: definitions, checked. */
+#include "particles/fill.h"
 #include "system/particles.h"
 
 #include <math.h>
-#include <string.h>
 
-#define TRIES      2000 /* to find room for one particle */
-#define POINTS_MAX 2e8  /* of a lattice that are looked at */
+#define POINTS_MAX 2e8 /* of a lattice that are looked at */
 
 void se3d_fill_def_init(se3d_fill_def *def, size_t size)
 {
@@ -72,214 +70,25 @@ se3d_status se3di_check_fill(se3d_particles *p, const se3d_fill_def *def, se3d_f
     return se3di_particles_use(p, full->material, material);
 }
 
-se3di_radii se3di_fill_radii(const se3d_fill_def *def)
-{
-    return (se3di_radii){def->radius_min, def->radius_max, def->radii, def->weights,
-                         def->radius_count};
-}
-
-se3di_region se3di_fill_region(const se3d_fill_def *def)
-{
-    se3di_region region = {.kind = def->region, .axis = def->axis};
-    memcpy(region.lower, def->lower, sizeof region.lower);
-    memcpy(region.upper, def->upper, sizeof region.upper);
-    return region;
-}
-
-static void append(se3d_particles *p, uint32_t material, const se3d_fill_def *def, double radius,
-                   const double x[3])
-{
-    (void)se3di_particles_append(&p->set, material, radius, x, def->velocity, NULL);
-    p->set.spins[p->set.count - 1].tag = (uint16_t)def->tag;
-}
-
-typedef struct lattice {
-    double spacing, margin; /* margin: from the walls of the box */
-    size_t n[3];
-} lattice;
-
-static double lattice_init(lattice *l, const se3d_fill_def *def)
-{
-    double total = 1.0;
-    l->spacing = def->spacing > 0.0 ? def->spacing : 2.2 * def->radius_max;
-    l->margin = fmax(0.5 * l->spacing, def->radius_max + def->jitter);
-    for (int a = 0; a < 3; ++a) {
-        double room = def->upper[a] - def->lower[a] - 2.0 * l->margin;
-        double n = room < -1e-9 * l->spacing ? 0.0 : floor(room / l->spacing + 1e-9) + 1.0;
-        l->n[a] = n < 2e9 ? (size_t)n : (size_t)2e9;
-        total *= n;
-    }
-    return total;
-}
-
-/* Point k of the lattice; returns whether the region holds whatever may be there. */
-static int lattice_point(const lattice *l, const se3d_fill_def *def, size_t k, double x[3])
-{
-    const size_t at[3] = {k % l->n[0], k / l->n[0] % l->n[1], k / (l->n[0] * l->n[1])};
-    for (int a = 0; a < 3; ++a) {
-        x[a] = def->lower[a] + l->margin + l->spacing * (double)at[a];
-    }
-    const se3di_region region = se3di_fill_region(def);
-    return se3di_region_holds(&region, x, def->radius_max + sqrt(3.0) * def->jitter);
-}
-
 se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fill_def *def,
                                         size_t *added)
 {
     SE3DI_EDIT_OF(particles);
     uint32_t material;
-    lattice l;
-    double x[3];
+    size_t points;
     se3d_fill_def full = se3d_fill_def_default();
     SE3DI_TRY(se3di_check_fill(particles, def, &full, &material));
-    double total = lattice_init(&l, &full);
     if (full.count == 0 || full.region != SE3D_FILL_REGION_BOX) { /* all may have to be looked at */
         SE3DI_TRY(se3di_check_range(particles->system, "points of the lattice from lower to upper",
-                                    total, 0.0, POINTS_MAX));
+                                    se3di_lattice_count(&full), 0.0, POINTS_MAX));
     }
-    size_t wanted = 0, points = 0;
-    for (; points < (size_t)fmin(total, 1e18) && (full.count == 0 || wanted < full.count);
-         ++points) {
-        wanted += lattice_point(&l, &full, points, x) ? 1 : 0;
-    }
+    const size_t wanted = se3di_lattice_measure(&full, &points);
     SE3DI_TRY(se3di_particles_make_room(particles, wanted));
-    uint64_t state = full.seed;
-    const se3di_radii radii = se3di_fill_radii(&full);
-    for (size_t k = 0; k < points; ++k) {
-        if (lattice_point(&l, &full, k, x)) {
-            double radius = se3di_radii_draw(&radii, &state);
-            for (int a = 0; a < 3; ++a) {
-                x[a] += full.jitter * (2.0 * se3di_random_draw(&state) - 1.0);
-            }
-            append(particles, material, &full, radius, x);
-        }
-    }
+    se3di_lattice_fill(&particles->set, &full, material, points);
     if (added) {
         *added = wanted;
     }
     return SE3D_OK;
-}
-
-/* Cells over the region with chains of the particles in them. */
-typedef struct packing {
-    se3di_particles *set;
-    const se3d_fill_def *def;
-    double size;
-    int cells[3];
-    uint32_t *head; /* [cells] particle, SE3DI_NO_INDEX: none */
-    uint32_t *next; /* [room] */
-    size_t head_count, room;
-} packing;
-
-static int cell_along(const packing *p, double x, int a)
-{
-    double at = (x - p->def->lower[a]) / p->size;
-    return at <= 0.0 ? 0 : at >= p->cells[a] - 1 ? p->cells[a] - 1 : (int)at;
-}
-
-static void enter(packing *p, size_t k)
-{
-    const double *x = p->set->grains[k].x;
-    for (int a = 0; a < 3; ++a) {
-        if (x[a] < p->def->lower[a] - p->size || x[a] > p->def->upper[a] + p->size) {
-            return; /* too far to matter; those just outside are in the border cells */
-        }
-    }
-    size_t cell =
-        ((size_t)cell_along(p, x[2], 2) * (size_t)p->cells[1] + (size_t)cell_along(p, x[1], 1)) *
-            (size_t)p->cells[0] +
-        (size_t)cell_along(p, x[0], 0);
-    p->next[k] = p->head[cell];
-    p->head[cell] = (uint32_t)k;
-}
-
-static int cell_is_free(const packing *p, size_t cell, const double x[3], double radius)
-{
-    for (uint32_t k = p->head[cell]; k != SE3DI_NO_INDEX; k = p->next[k]) {
-        const se3di_grain *g = &p->set->grains[k];
-        double d[3];
-        se3di_sub(g->x, x, d);
-        se3di_particles_wrap(p->set, d);
-        if (se3di_dot(d, d) < (g->radius + radius) * (g->radius + radius)) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-static int is_free(const packing *p, const double x[3], double radius)
-{
-    int low[3], high[3];
-    for (int a = 0; a < 3; ++a) {
-        low[a] = cell_along(p, x[a] - p->size, a);
-        high[a] = cell_along(p, x[a] + p->size, a);
-        if (p->set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
-            /* images are in the border cells of the other side: a whole row is searched there */
-            int border = low[a] == 0 || high[a] == p->cells[a] - 1;
-            low[a] = border ? 0 : low[a];
-            high[a] = border ? p->cells[a] - 1 : high[a];
-        }
-    }
-    for (int z = low[2]; z <= high[2]; ++z) {
-        for (int y = low[1]; y <= high[1]; ++y) {
-            for (int c = low[0]; c <= high[0]; ++c) {
-                size_t cell =
-                    ((size_t)z * (size_t)p->cells[1] + (size_t)y) * (size_t)p->cells[0] + (size_t)c;
-                if (!cell_is_free(p, cell, x, radius)) {
-                    return 0;
-                }
-            }
-        }
-    }
-    return 1;
-}
-
-static se3d_status packing_init(packing *p, se3di_particles *set, const se3d_fill_def *def)
-{
-    double largest = def->radius_max;
-    for (size_t k = 0; k < set->count; ++k) {
-        largest = fmax(largest, set->grains[k].radius);
-    }
-    *p = (packing){.set = set, .def = def, .size = 2.0 * largest, .head_count = 1};
-    p->room = set->count + def->count;
-    for (int a = 0; a < 3; ++a) {
-        double parts = floor((def->upper[a] - def->lower[a]) / p->size);
-        p->cells[a] = parts < 1.0 ? 1 : (int)fmin(parts, 400.0);
-        p->size = fmax(p->size, (def->upper[a] - def->lower[a]) / p->cells[a]);
-    }
-    for (int a = 0; a < 3; ++a) {
-        p->head_count *= (size_t)p->cells[a];
-    }
-    p->head = se3di_alloc(&set->allocator, p->head_count, sizeof *p->head);
-    p->next = se3di_alloc(&set->allocator, p->room, sizeof *p->next);
-    if (!p->head || !p->next) {
-        return SE3D_ERR_NO_MEMORY;
-    }
-    for (size_t k = 0; k < p->head_count; ++k) {
-        p->head[k] = SE3DI_NO_INDEX;
-    }
-    for (size_t k = 0; k < set->count; ++k) {
-        enter(p, k);
-    }
-    return SE3D_OK;
-}
-
-static int place(packing *p, se3d_particles *particles, uint32_t material, uint64_t *state)
-{
-    const se3d_fill_def *def = p->def;
-    const se3di_radii radii = se3di_fill_radii(def);
-    const se3di_region region = se3di_fill_region(def);
-    double radius = se3di_radii_draw(&radii, state);
-    for (int try = 0; try < TRIES; ++try) {
-        double x[3];
-        se3di_region_draw(&region, radius, state, x);
-        if (se3di_region_holds(&region, x, radius) && is_free(p, x, radius)) {
-            append(particles, material, def, radius, x);
-            enter(p, p->set->count - 1);
-            return 1;
-        }
-    }
-    return 0;
 }
 
 /* Far too many are found before there is memory for them. */
@@ -302,32 +111,20 @@ se3d_status se3d_particles_fill_random(se3d_particles *particles, const se3d_fil
 {
     SE3DI_EDIT_OF(particles);
     uint32_t material;
+    size_t placed;
     se3d_fill_def full = se3d_fill_def_default();
     SE3DI_TRY(se3di_check_fill(particles, def, &full, &material));
     SE3DI_TRY(check_volume(particles, &full));
     SE3DI_TRY(se3di_particles_make_room(particles, full.count));
-    se3di_particles *set = &particles->set;
-    const size_t count = set->count;
-    const size_t ids = set->id_count;
-    packing p;
-    se3d_status status = packing_init(&p, set, &full);
+    const se3d_status status = se3di_random_fill(&particles->set, &full, material, &placed);
+    if (status == SE3D_ERR_NO_CONVERGENCE) {
+        return SE3DI_FAIL(particles->system, status,
+                          "only %zu of %zu particles found room at random; use a larger region or "
+                          "a lattice",
+                          placed, full.count);
+    }
     if (status < 0) {
-        (void)SE3DI_FAIL(particles->system, status, "no memory to pack %zu particles", full.count);
+        return SE3DI_FAIL(particles->system, status, "no memory to pack %zu particles", full.count);
     }
-    uint64_t state = full.seed;
-    for (size_t k = 0; k < full.count && status == SE3D_OK; ++k) {
-        if (!place(&p, particles, material, &state)) {
-            status = SE3DI_FAIL(particles->system, SE3D_ERR_NO_CONVERGENCE,
-                                "only %zu of %zu particles found room at random; use a larger "
-                                "region or a lattice",
-                                k, full.count);
-        }
-    }
-    if (status < 0) { /* nothing changed */
-        set->count = count;
-        set->id_count = ids;
-    }
-    se3di_free(&set->allocator, p.head, p.head_count, sizeof *p.head);
-    se3di_free(&set->allocator, p.next, p.room, sizeof *p.next);
     return status;
 }

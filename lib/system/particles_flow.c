@@ -2,6 +2,7 @@
 /* Sources and sinks of particles, tags and what is there of each. */
 #include "force/force.h"
 #include "math/vec3.h"
+#include "particles/fill.h"
 #include "system/particles.h"
 
 #include <math.h>
