@@ -25,8 +25,27 @@ typedef struct verlet {
     double *push; /* of the particles on the bodies [dense bodies * 6] */
     double h;     /* of the last step, whose second half kick of the particles is `open` */
     int32_t open;
+    int32_t moved; /* the particles were, in the step under way */
+    int32_t keeps; /* they come back where it fails */
     int32_t reserved;
 } verlet;
+
+/* The user's own functions may fail with the particles moved: then these are kept before each step.
+ * That costs as much as half a step of theirs, so it is not done for what hardly ever fails. */
+static int has_callbacks(const se3di_model *model)
+{
+    int has = model->contact.callback != NULL;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        has = has || model->forces[k].callback;
+    }
+    for (size_t k = 0; k < model->function_slots.count; ++k) {
+        has = has || model->functions[k].callback;
+    }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        has = has || model->constraints[k].callback;
+    }
+    return has;
+}
 
 static verlet begin(se3di_integration *integration)
 {
@@ -38,6 +57,7 @@ static verlet begin(se3di_integration *integration)
     if (m.model->sets) {
         se3di_sets_push(m.model, m.push);
         assembly->push = m.push;
+        m.keeps = has_callbacks(m.model);
     }
     return m;
 }
@@ -60,29 +80,45 @@ static void account(const verlet *m)
     m->model->power[1] += power;
 }
 
+/* The particles to t1, and what they do to the bodies there; *contact as se3di_sets_forces has it.
+ * Nothing has moved where room is missing. */
+static se3d_status move_particles(verlet *m, double t1, se3d_status *contact)
+{
+    SE3DI_TRY(se3di_contacts_reserve(m->model, t1, m->error)); /* no failure for memory later */
+    if (m->keeps) {
+        SE3DI_TRY(se3di_sets_keep(m->model, m->error));
+    }
+    se3di_sets_move(m->model, m->open ? 2 : 1, m->bodies.h);
+    m->moved = 1;
+    const se3d_status status = se3di_sets_forces(m->model, t1, m->bodies.h, m->error, contact);
+    se3di_sets_push(m->model, m->push);
+    return status;
+}
+
 /* One step to t1 that leaves the last half kick of the particles open. */
 static se3d_status advance(verlet *m, double t1)
 {
     se3di_lie_verlet *bodies = &m->bodies;
-    double t0 = m->model->time;
-    bodies->h = t1 - t0;
+    bodies->h = t1 - m->model->time;
     bodies->t1 = t1;
+    m->moved = 0;
     SE3DI_TRY(se3di_sets_aim(m->model, bodies->h, m->error));
     se3d_status status = se3di_equations_keep(bodies->equations);
     status = status < 0 ? status : se3di_lie_verlet_drift(bodies);
     se3d_status contact = SE3D_OK;
-    if (status >= 0 && m->model->sets) { /* particles do not go back: no failure for memory below */
-        status = se3di_contacts_reserve(m->model, t1, m->error);
-    }
     if (status >= 0 && m->model->sets) {
-        se3di_sets_move(m->model, m->open ? 2 : 1, bodies->h);
-        m->open = 1;
-        m->h = bodies->h;
-        status = se3di_sets_forces(m->model, t1, bodies->h, m->error, &contact);
-        se3di_sets_push(m->model, m->push);
+        status = move_particles(m, t1, &contact);
     }
     status = status < 0 ? status : se3di_lie_verlet_kick(bodies);
     status = status < 0 ? status : se3di_lie_verlet_finish(bodies);
+    const int comes_back = status < 0 && m->moved && m->keeps;
+    if (m->moved && !comes_back) { /* else the kick before stays as it was */
+        m->open = 1;
+        m->h = bodies->h;
+    }
+    if (comes_back) {
+        se3di_sets_come_back(m->model);
+    }
     if (status < 0) {
         se3di_equations_come_back(bodies->equations);
         return status;

@@ -55,6 +55,7 @@ void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator)
 void se3di_particles_destroy(se3di_particles *set)
 {
     const se3d_allocator *a = &set->allocator;
+    se3di_particles_forget(set);
     se3di_text_free(a, set->name);
     se3di_free(a, set->stuffs, set->stuff_capacity, sizeof *set->stuffs);
     se3di_free(a, set->pairs, set->pair_capacity, sizeof *set->pairs);
@@ -109,7 +110,7 @@ size_t se3di_particles_memory(const se3di_particles *set)
            sizeof(double) * (set->carry_roll_capacity + set->wall_sum_capacity) +
            (set->mesh_capacity + set->mesh_old_capacity) * sizeof *set->mesh_pairs +
            set->wall_capacity * sizeof *set->walls + set->source_capacity * sizeof *set->sources +
-           set->sink_capacity * sizeof *set->sinks + sizeof *set;
+           set->sink_capacity * sizeof *set->sinks + se3di_particles_kept_memory(set) + sizeof *set;
 }
 
 /* An array of exactly `count` elements of which `keep` stay in *to; on failure *to is NULL. */
@@ -341,6 +342,7 @@ se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *c
     *copy = *set;
     copy->next = NULL;
     copy->name = NULL;
+    copy->kept = NULL;
     copy->grain_memory = copy->spin_memory = copy->load_memory = none;
     copy->block_memory = copy->roll_memory = none;
     copy->grains = NULL;

@@ -210,6 +210,8 @@ typedef struct se3di_sink {
     uint64_t count;
 } se3di_sink;
 
+typedef struct se3di_particles_kept se3di_particles_kept;
+
 typedef struct se3di_particles {
     struct se3di_particles *next; /* of the model's sets */
     char *name;                   /* NULL: none; a clone has none */
@@ -308,6 +310,7 @@ typedef struct se3di_particles {
     se3d_contact_callback callback; /* SE3DI_LAW_CALLBACK */
     void *ctx;
     se3di_law_failure law_failure;
+    se3di_particles_kept *kept; /* of the step under way; NULL: none was needed yet */
 } se3di_particles;
 
 /* What a force kernel works on. */
@@ -397,6 +400,12 @@ se3d_status se3di_particles_hold(se3di_particles *set, const se3di_model *model,
 /* Grow an aligned block to hold `bytes`, keeping the first `keep` bytes. */
 se3d_status se3di_aligned_reserve(const se3d_allocator *allocator, se3di_aligned *memory,
                                   size_t bytes, size_t keep);
+/* kept.c: keep what a step changes, to come back to where it fails. Allocates only where the set has
+ * grown. */
+se3d_status se3di_particles_keep(se3di_particles *set);
+void se3di_particles_come_back(se3di_particles *set); /* to what was kept last */
+void se3di_particles_forget(se3di_particles *set);    /* give its memory back */
+size_t se3di_particles_kept_memory(const se3di_particles *set);
 size_t se3di_particles_memory(const se3di_particles *set);
 
 /* grid.c, list.c: neighbours. */

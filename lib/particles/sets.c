@@ -155,6 +155,23 @@ se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error)
     return SE3D_OK;
 }
 
+se3d_status se3di_sets_keep(se3di_model *model, se3di_error *error)
+{
+    for (se3di_particles *set = model->sets; set; set = set->next) {
+        if (se3di_particles_keep(set) < 0) {
+            return se3di_error_set(error, SE3D_ERR_NO_MEMORY, "no memory for a step");
+        }
+    }
+    return SE3D_OK;
+}
+
+void se3di_sets_come_back(se3di_model *model)
+{
+    for (se3di_particles *set = model->sets; set; set = set->next) {
+        se3di_particles_come_back(set);
+    }
+}
+
 void se3di_sets_move(se3di_model *model, int kicks, double h)
 {
     for (se3di_particles *set = model->sets; set; set = set->next) {

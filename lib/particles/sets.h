@@ -26,6 +26,9 @@ se3d_status se3di_particles_report(const se3di_particles *set, se3d_status statu
 
 /* The sets at the model's time, with forces that belong to the state. */
 se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error);
+/* Keep the sets as they are before a step; bring them back. */
+se3d_status se3di_sets_keep(se3di_model *model, se3di_error *error);
+void se3di_sets_come_back(se3di_model *model);
 void se3di_sets_move(se3di_model *model, int kicks, double h);
 /* Before a step of length h begins: what its sources give. */
 se3d_status se3di_particles_aim(se3di_particles *set, const se3di_model *model, double h,

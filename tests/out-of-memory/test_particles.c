@@ -33,6 +33,24 @@ static void add_shape(world *w, se3d_material material, se3d_body body, const do
 
 /* Grains fall into a bucket that hangs on a spring; a mesh is in it, and grains roll with friction.
  */
+static se3d_status do_nothing(void *ctx, double t, const se3d_body_motion motion[2],
+                              double wrench[12], double *K, double *D)
+{
+    (void)ctx, (void)t, (void)motion, (void)wrench, (void)K, (void)D;
+    return SE3D_OK;
+}
+
+/* With a callback the particles are kept before each step of verlet. */
+static void add_callback(const world *w)
+{
+    se3d_force_callback_def def = se3d_force_callback_def_default();
+    se3d_force made;
+    CHECK(se3d_system_get_ground(w->system, &def.body_i) == SE3D_OK);
+    def.body_j = w->bucket;
+    def.callback = do_nothing;
+    CHECK(se3d_force_create_callback(w->system, &def, &made) == SE3D_OK);
+}
+
 static void open_world(world *w, int rolling)
 {
     static const double tray[12] = {-0.04, -0.04, 0.005, 0.04,  -0.04, 0.005,
@@ -57,6 +75,7 @@ static void open_world(world *w, int rolling)
     body.mass = 0.5;
     body.inertia[0] = body.inertia[1] = body.inertia[2] = 1e-3;
     CHECK(se3d_body_create(w->system, &body, &w->bucket) == SE3D_OK);
+    add_callback(w);
     const double bottom[3] = {0.1, 0.1, 0.01}, side[3] = {0.01, 0.1, 0.1},
                  front[3] = {0.1, 0.01, 0.1};
     const double places[5][3] = {

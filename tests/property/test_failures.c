@@ -59,8 +59,9 @@ enum {
     SCENE_MEMORY,
     SCENE_CONTACT,
     SCENE_EVENT,
-    SCENES,      /* of dynamics */
-    SCENE_DRIVEN /* the bar alone, its motion determined */
+    SCENES,       /* of dynamics */
+    SCENE_DRIVEN, /* the bar alone, its motion determined */
+    SCENE_GRAINS  /* particles on the bar, for verlet */
 };
 
 typedef struct world {
@@ -68,6 +69,7 @@ typedef struct world {
     se3d_solver *solver;
     se3d_body a, b;
     se3d_constraint pin;
+    se3d_particles *grains; /* NULL: none */
 } world;
 
 static void add_push(const world *w, se3d_body ground)
@@ -153,6 +155,46 @@ static void add_floor(const world *w)
     CHECK(!se3d_shape_create_sphere(w->system, &shape, &made));
 }
 
+/* Particles in two layers on the bar, which they leave in the run, and a mesh beside it. */
+static void add_grains(world *w)
+{
+    static const double corners[9] = {0.0, -1.0, -0.06, 2.0, -1.0, -0.06, 1.0, 2.0, -0.06};
+    static const uint32_t corner[3] = {0, 1, 2};
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_shape_def shape = se3d_shape_def_default();
+    se3d_particles_def def = se3d_particles_def_default();
+    se3d_shape made;
+    double r[20][3], radii[20];
+    stuff.density = 2500.0;
+    stuff.stiffness = 1e4;
+    stuff.rolling_friction = 0.1;
+    CHECK(!se3d_material_create(w->system, &stuff, &shape.material));
+    shape.vertices = corners;
+    shape.vertex_count = 3;
+    shape.triangles = corner;
+    shape.triangle_count = 1;
+    CHECK(!se3d_shape_create_mesh(w->system, &shape, &made));
+    shape.body = w->a;
+    shape.size[0] = 1.0;
+    shape.size[1] = 0.2;
+    shape.size[2] = 0.1;
+    CHECK(!se3d_shape_create_box(w->system, &shape, &made));
+    for (int k = 0; k < 20; ++k) {
+        radii[k] = 0.02;
+        r[k][0] = 0.3 + 0.041 * (k % 10) + 0.003 * (k / 10);
+        r[k][1] = 0.0;
+        r[k][2] = 0.0699 + 0.0395 * (k / 10);
+    }
+    CHECK(!se3d_particles_create(w->system, &def, &w->grains));
+    CHECK(!se3d_particles_add(w->grains, shape.material, 20, r[0], radii, NULL, NULL, NULL));
+}
+
+/* Of a step. */
+static double length_of(int scene)
+{
+    return scene == SCENE_GRAINS ? 1.0 / 16384.0 : 1.0 / 256.0;
+}
+
 /* A bar on a pin, and a body on a spring at its end. */
 static void make(world *w, int scene, int32_t analysis, int32_t method)
 {
@@ -163,6 +205,7 @@ static void make(world *w, int scene, int32_t analysis, int32_t method)
     se3d_force made;
     calls = fails_at = 0;
     for_ever = 0;
+    w->grains = NULL;
     CHECK(!se3d_system_create(NULL, &w->system));
     CHECK(!se3d_system_get_ground(w->system, &ground));
     body.mass = 1.0;
@@ -202,6 +245,8 @@ static void make(world *w, int scene, int32_t analysis, int32_t method)
         add_memories(w);
     } else if (scene == SCENE_CONTACT) {
         add_floor(w);
+    } else if (scene == SCENE_GRAINS) {
+        add_grains(w);
     }
     se3d_solver_def def = se3d_solver_def_default();
     def.analysis = analysis;
@@ -210,7 +255,7 @@ static void make(world *w, int scene, int32_t analysis, int32_t method)
     def.step = method == SE3D_METHOD_GENERALIZED_ALPHA || method == SE3D_METHOD_HHT ||
                        method == SE3D_METHOD_RATTLE || method == SE3D_METHOD_VERLET ||
                        analysis != SE3D_ANALYSIS_DYNAMICS
-                   ? 1.0 / 256.0
+                   ? length_of(scene)
                    : 0.0;
     CHECK(!se3d_solver_create(w->system, &def, &w->solver));
     if (scene == SCENE_EVENT) {
@@ -221,6 +266,7 @@ static void make(world *w, int scene, int32_t analysis, int32_t method)
 static void destroy(world *w)
 {
     se3d_solver_destroy(w->solver);
+    se3d_particles_destroy(w->grains);
     se3d_system_destroy(w->system);
 }
 
@@ -228,15 +274,28 @@ static void destroy(world *w)
 #define CALLS 5
 static const double ends[CALLS] = {0.0, 0.0625, 0.0, 0.125, 0.1484375};
 
+static double end_of(const world *w, int k)
+{
+    return w->grains ? 0.25 * ends[k] : ends[k];
+}
+
 static se3d_status call(const world *w, int k)
 {
-    return k == 2 ? se3d_solver_step(w->solver, 1.0 / 256.0) : se3d_solver_run(w->solver, ends[k]);
+    return k == 2 ? se3d_solver_step(w->solver, length_of(w->grains ? SCENE_GRAINS : SCENE_FORCE))
+                  : se3d_solver_run(w->solver, end_of(w, k));
+}
+
+/* Of bodies and particles. */
+static uint64_t hash_of(const world *w)
+{
+    const uint64_t bodies = se3d_system_hash(w->system);
+    return w->grains ? 31 * bodies + se3d_particles_hash(w->grains) : bodies;
 }
 
 /* The k-th call is to be made again, or to go on, where it has come to t. */
-static int is_to_do(int k, double t)
+static int is_to_do(const world *w, int k, double t)
 {
-    return k == 0 || k == 2 || t < ends[k];
+    return k == 0 || k == 2 || t < end_of(w, k);
 }
 
 static double time_of(const world *w)
@@ -259,13 +318,13 @@ static void run_undisturbed(int scene, int32_t analysis, int32_t method, int k, 
     if (t > time_of(&w)) {
         CHECK(se3d_solver_run(w.solver, t) >= 0);
     }
-    hash[0] = se3d_system_hash(w.system);
+    hash[0] = hash_of(&w);
     for (int n = k; n < CALLS; ++n) {
-        if (n != k || is_to_do(n, t)) {
+        if (n != k || is_to_do(&w, n, t)) {
             CHECK(call(&w, n) >= 0);
         }
     }
-    hash[1] = se3d_system_hash(w.system);
+    hash[1] = hash_of(&w);
     destroy(&w);
 }
 
@@ -284,17 +343,17 @@ static int run_with_failure(int scene, int32_t analysis, int32_t method, long n,
         }
         ++failures;
         const double t = time_of(&w);
-        const uint64_t here = se3d_system_hash(w.system);
+        const uint64_t here = hash_of(&w);
         CHECK(se3d_system_get_error_status(w.system) == SE3D_ERR_CALLBACK);
         fails_at = 0;
         run_undisturbed(scene, analysis, method, k, t, hash);
         CHECK(here == hash[0]);
         fails_at = 0;
-        if (is_to_do(k, t)) {
+        if (is_to_do(&w, k, t)) {
             CHECK(call(&w, k) >= 0);
         }
     }
-    CHECK(failures == 0 || se3d_system_hash(w.system) == hash[1]);
+    CHECK(failures == 0 || hash_of(&w) == hash[1]);
     destroy(&w);
     return failures;
 }
@@ -333,6 +392,11 @@ static void a_failure_leaves_the_last_accepted_step_in_every_method(void)
             fail_everywhere(scene, SE3D_ANALYSIS_DYNAMICS, method);
         }
     }
+}
+
+static void particles_come_back_with_the_bodies(void)
+{
+    fail_everywhere(SCENE_GRAINS, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_VERLET);
 }
 
 static void so_it_does_in_every_analysis(void)
@@ -413,6 +477,7 @@ static void a_failure_after_a_change_of_loads_stays_where_they_changed(void)
 
 int main(void)
 {
+    RUN(particles_come_back_with_the_bodies);
     RUN(so_it_does_in_every_analysis);
     RUN(so_it_does_on_the_way_to_an_equilibrium);
     RUN(the_audit_closes_over_a_change_of_values_or_begins_anew);
