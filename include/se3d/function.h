@@ -23,8 +23,8 @@ extern "C" {
 typedef se3d_status (*se3d_function_callback)(void *ctx, const double *x, double jet[3],
                                               double *gradient);
 
-/* The definition of a function: exactly one of `expression`, `callback`, a table, or the constant.
- * @since 0.1 */
+/* The definition of a function: exactly one of `expression`, `compiled`, `callback`, a table, or
+ * the constant. @since 0.1 */
 typedef struct se3d_function_def {
     size_t struct_size;
     const char *expression;                /* text, copied; NULL: not an expression */
@@ -37,7 +37,8 @@ typedef struct se3d_function_def {
     const double *table_x; /* [table_count] of x[0], increasing; natural cubic spline, copied */
     const double *table_y; /* [table_count] values */
     size_t table_count;    /* at least 2 */
-    double constant;       /* [any unit], used if none of the above is given */
+    double constant;       /* [any unit], used if nothing else is given */
+    const se3d_expression *compiled; /* copied; as `expression`, of variable_count variables */
 } se3d_function_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_function_def_default. @since 0.1 */

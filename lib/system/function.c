@@ -15,7 +15,8 @@ void se3d_function_def_init(se3d_function_def *def, size_t size)
 
 static se3d_status check_kind(se3d_system *system, const se3d_function_def *def)
 {
-    int kinds = (def->expression != NULL) + (def->callback != NULL) + (def->table_x != NULL);
+    int kinds = (def->expression != NULL) + (def->compiled != NULL) + (def->callback != NULL) +
+                (def->table_x != NULL);
     if (kinds > 1) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "a function is an expression, a callback, or a table: %d are given",
@@ -29,6 +30,11 @@ static se3d_status check_kind(se3d_system *system, const se3d_function_def *def)
     if (def->variable_count > 1 && !def->variables && def->expression) {
         return SE3DI_FAIL(system, SE3D_ERR_NULL, "variables is NULL, must name %zu variables",
                           def->variable_count);
+    }
+    if (def->compiled && se3di_expression_variable_count(def->compiled) != def->variable_count) {
+        return SE3DI_FAIL_OF(system, "compiled", SE3D_ERR_INVALID_ARGUMENT,
+                             " has %zu variables, must have variable_count = %zu",
+                             se3di_expression_variable_count(def->compiled), def->variable_count);
     }
     return se3di_check_finite(system, "constant", def->constant);
 }
@@ -54,6 +60,14 @@ static se3d_status make_expression(se3d_system *system, const se3d_function_def 
                           error.column, error.message);
     }
     return SE3D_OK;
+}
+
+static se3d_status copy_expression(se3d_system *system, const se3d_function_def *def,
+                                   se3di_function *function)
+{
+    const se3d_status status =
+        se3di_expression_clone(def->compiled, &system->model.allocator, &function->expression);
+    return status < 0 ? SE3DI_FAIL(system, status, "no memory for an expression") : status;
 }
 
 static se3d_status check_table(se3d_system *system, const se3d_function_def *def)
@@ -117,6 +131,8 @@ se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *d
                            .variable_count = (uint32_t)full.variable_count};
     if (full.expression) {
         SE3DI_TRY(make_expression(system, &full, &data));
+    } else if (full.compiled) {
+        SE3DI_TRY(copy_expression(system, &full, &data));
     } else if (full.table_x) {
         SE3DI_TRY(make_table(system, &full, &data));
     }

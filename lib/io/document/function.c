@@ -19,14 +19,12 @@ const se3di_object se3di_object_spline = {
 /* clang-format on */
 
 static bool create_expression(se3di_reader *reader, const se3di_node *node,
-                              const char *const *variables, size_t count, se3d_function *function)
+                              const se3d_expression *compiled, size_t count,
+                              se3d_function *function)
 {
     se3d_function_def def = se3d_function_def_default();
-    def.expression = node->text;
-    def.variables = variables;
+    def.compiled = compiled;
     def.variable_count = count;
-    def.symbols = reader->symbols;
-    def.symbol_count = reader->symbol_count;
     const se3d_status status = se3d_function_create(reader->system, &def, function);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
@@ -91,8 +89,10 @@ bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const cha
     if (!se3di_read_compile(reader, node, &def, &expression)) {
         return false;
     }
-    const bool constant = se3d_expression_is_constant(expression) != 0;
+    const bool good = se3d_expression_is_constant(expression)
+                          ? se3di_read_constant(reader, node, expression, value) &&
+                                se3di_check_number(reader, node, SE3DI_ANY, *value)
+                          : create_expression(reader, node, expression, count, function);
     se3d_expression_destroy(expression);
-    return constant ? se3di_read_number(reader, node, SE3DI_ANY, value)
-                    : create_expression(reader, node, variables, count, function);
+    return good;
 }

@@ -116,6 +116,18 @@ bool se3di_read_compile(se3di_reader *reader, const se3di_node *node, se3d_expre
     return status < 0 ? fail_expression(reader, node, def, &why) : true;
 }
 
+bool se3di_read_constant(se3di_reader *reader, const se3di_node *node,
+                         const se3d_expression *expression, double *value)
+{
+    static const double nowhere[SE3D_FUNCTION_VARIABLES_MAX] = {0.0};
+    const se3d_status status = se3d_expression_eval(expression, nowhere, value);
+    if (status < 0 || !isfinite(*value)) {
+        return se3di_reader_fail(reader, node, "`%.120s` is %g, must be a finite number",
+                                 node->text, *value);
+    }
+    return true;
+}
+
 bool se3di_read_expression(se3di_reader *reader, const se3di_node *node,
                            const se3d_expression_symbol *symbols, size_t count, double *value)
 {
@@ -126,13 +138,9 @@ bool se3di_read_expression(se3di_reader *reader, const se3di_node *node,
     if (!se3di_read_compile(reader, node, &def, &expression)) {
         return false;
     }
-    const se3d_status status = se3d_expression_eval(expression, NULL, value);
+    const bool good = se3di_read_constant(reader, node, expression, value);
     se3d_expression_destroy(expression);
-    if (status < 0 || !isfinite(*value)) {
-        return se3di_reader_fail(reader, node, "`%.120s` is %g, must be a finite number",
-                                 node->text, *value);
-    }
-    return true;
+    return good;
 }
 
 /* "-1", or "2*q = -1" if the text is not the number itself. */
@@ -146,26 +154,30 @@ static void format_value(const se3di_node *node, double value, char *text, size_
     }
 }
 
-bool se3di_read_number(se3di_reader *reader, const se3di_node *node, se3di_range range,
-                       double *value)
+bool se3di_check_number(se3di_reader *reader, const se3di_node *node, se3di_range range,
+                        double value)
 {
-    if (!se3di_read_expression(reader, node, reader->symbols, reader->symbol_count, value)) {
-        return false;
-    }
-    if (fabs(*value) > LARGEST || (range == SE3DI_POSITIVE && *value > 0.0 && *value < SMALLEST)) {
+    if (fabs(value) > LARGEST || (range == SE3DI_POSITIVE && value > 0.0 && value < SMALLEST)) {
         char text[200];
-        format_value(node, *value, text, sizeof text);
+        format_value(node, value, text, sizeof text);
         return se3di_reader_fail(reader, node, "is %s, must be %s%g in magnitude", text,
-                                 fabs(*value) > LARGEST ? "at most " : "at least ",
-                                 fabs(*value) > LARGEST ? LARGEST : SMALLEST);
+                                 fabs(value) > LARGEST ? "at most " : "at least ",
+                                 fabs(value) > LARGEST ? LARGEST : SMALLEST);
     }
-    if ((range == SE3DI_POSITIVE && !(*value > 0.0)) ||
-        (range == SE3DI_NOT_NEGATIVE && !(*value >= 0.0))) {
+    if ((range == SE3DI_POSITIVE && !(value > 0.0)) ||
+        (range == SE3DI_NOT_NEGATIVE && !(value >= 0.0))) {
         char text[200];
-        format_value(node, *value, text, sizeof text);
+        format_value(node, value, text, sizeof text);
         return se3di_reader_fail(reader, node, "is %s, must be %s", text, range_texts[range]);
     }
     return true;
+}
+
+bool se3di_read_number(se3di_reader *reader, const se3di_node *node, se3di_range range,
+                       double *value)
+{
+    return se3di_read_expression(reader, node, reader->symbols, reader->symbol_count, value) &&
+           se3di_check_number(reader, node, range, *value);
 }
 
 bool se3di_read_key_number(se3di_reader *reader, const se3di_node *map, const char *key,

@@ -31,6 +31,12 @@ bool se3di_read_orientation(se3di_reader *reader, const se3di_node *node, double
 /* Compile the text of `node`; def->symbols NULL: the parameters. */
 bool se3di_read_compile(se3di_reader *reader, const se3di_node *node, se3d_expression_def *def,
                         se3d_expression **expression);
+/* The value of an expression that is constant, whatever its variables; finite. */
+bool se3di_read_constant(se3di_reader *reader, const se3di_node *node,
+                         const se3d_expression *expression, double *value);
+/* A number that was read lies in a range, and not beyond what mechanics can do with. */
+bool se3di_check_number(se3di_reader *reader, const se3di_node *node, se3di_range range,
+                        double value);
 /* Evaluate the text of `node` as an expression over `symbols`. */
 bool se3di_read_expression(se3di_reader *reader, const se3di_node *node,
                            const se3d_expression_symbol *symbols, size_t count, double *value);
