@@ -400,7 +400,7 @@ se3d_status se3di_particles_hold(se3di_particles *set, const se3di_model *model,
 /* Grow an aligned block to hold `bytes`, keeping the first `keep` bytes. */
 se3d_status se3di_aligned_reserve(const se3d_allocator *allocator, se3di_aligned *memory,
                                   size_t bytes, size_t keep);
-/* kept.c: keep what a step changes, to come back to where it fails. Allocates only where the set has
+/* kept.c: keep what a step changes, to come back to if it fails. Allocates only if the set has
  * grown. */
 se3d_status se3di_particles_keep(se3di_particles *set);
 void se3di_particles_come_back(se3di_particles *set); /* to what was kept last */
