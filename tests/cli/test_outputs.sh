@@ -118,11 +118,17 @@ expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 30; exec "$@"' sh "$progra
 says 'File too large'
 holds 'something unfinished is left' [ -z "$(find "$dir/full" -name '*.partial')" ]
 mkdir "$dir/small"
-if mount -t tmpfs -o size=100k tmpfs "$dir/small" 2>/dev/null; then
+if mount -t tmpfs -o size=600k tmpfs "$dir/small" 2>/dev/null; then
     trap 'umount "$dir/small"; rm -rf "$dir"' EXIT
     expect 'a full file system' 1 "$program" run "$dir/vtk.yaml" -o "$dir/small/run"
     says 'No space left on device'
     holds 'something unfinished is left' [ -z "$(find "$dir/small" -name '*.partial')" ]
+    list=$dir/small/run/motion.pvd
+    sed -n 's/.* file="\([^"]*\)".*/\1/p' "$list" | sort >"$dir/listed"
+    (cd "$dir/small/run" && find motion -type f | sort) >"$dir/kept"
+    holds 'the list of a series is lost' [ -s "$dir/listed" ]
+    holds 'the list is not that of the files' cmp -s "$dir/listed" "$dir/kept"
+    holds 'the list is not whole' [ "$(tail -n 1 "$list")" = '</VTKFile>' ]
 else
     echo 'SKIPPED: no file system can be mounted: only limits of files were tested' >&2
 fi

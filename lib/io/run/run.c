@@ -630,7 +630,7 @@ static se3d_status list_file(runner *r, const se3d_run_file *file, se3d_status c
     if (grown) {
         run->files = grown;
         run->files[run->file_count] = *file;
-        run->file_count += closed >= 0 || (file->rows > 0 && file->columns > 0);
+        run->file_count += closed >= 0 || file->rows > 0;
     } else if (status >= 0 && closed >= 0) {
         return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
     }

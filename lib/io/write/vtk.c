@@ -337,6 +337,17 @@ static bool write_state(se3di_vtk *vtk, size_t number)
     return good;
 }
 
+/* Take the files of a state away: it is not whole, or makes room for the list. */
+static void forget_state(const se3di_vtk *vtk, size_t number)
+{
+    char path[PATH_SIZE];
+    for (int part = 0; part < 3; ++part) {
+        if (has_part(vtk->model, part) && name_file(vtk, part_names[part], number, true, path)) {
+            remove(path);
+        }
+    }
+}
+
 void se3di_vtk_record(se3di_vtk *vtk, double time)
 {
     if (vtk->failure != 0) {
@@ -354,6 +365,7 @@ void se3di_vtk_record(se3di_vtk *vtk, double time)
     vtk->times = grown;
     if (!write_state(vtk, vtk->count)) {
         vtk->failure = errno ? errno : EIO;
+        forget_state(vtk, vtk->count);
         return;
     }
     vtk->times[vtk->count++] = time;
@@ -403,8 +415,14 @@ static bool write_list(const se3di_vtk *vtk)
 se3d_status se3di_vtk_close(se3di_vtk *vtk, int *why)
 {
     errno = 0;
-    if (vtk->count > 0 && !write_list(vtk) && vtk->failure == 0) {
-        vtk->failure = errno ? errno : EIO;
+    while (vtk->count > 0 && !write_list(vtk)) {
+        const int failed = errno ? errno : EIO;
+        vtk->failure = vtk->failure ? vtk->failure : failed;
+        if (failed != ENOSPC) {
+            vtk->count = 0;
+            break;
+        }
+        forget_state(vtk, --vtk->count); /* on a full disk the last states make room */
     }
     *why = vtk->failure;
     return vtk->failure == 0 ? SE3D_OK : vtk->failure == ENOMEM ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO;

@@ -13,10 +13,11 @@ se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *pat
 /* Write the present state; at the time of the one before it takes its place. After a failure
  * nothing more is written. */
 void se3di_vtk_record(se3di_vtk *vtk, double time);
-/* Write the list. @return OK, NO_MEMORY, or IO: errno of the first failure in *why. */
+/* Write the list; on a full disk of as many states as there is room for. @return OK, NO_MEMORY, or
+ * IO: errno of the first failure in *why. */
 se3d_status se3di_vtk_close(se3di_vtk *vtk, int *why);
 const char *se3di_vtk_get_path(const se3di_vtk *vtk);
-/* How many times were written. */
+/* How many times were written, and are in the list once it is closed. */
 size_t se3di_vtk_count(const se3di_vtk *vtk);
 
 #endif
