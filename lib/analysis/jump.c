@@ -7,10 +7,12 @@
 #include <math.h>
 #include <stdio.h>
 
-#define LEAST     1e-6  /* relative: smaller ones are no jump */
-#define RESOLVED  4e-16 /* relative length of the last interval */
-#define PARTS_MAX 64.0  /* of one run */
-#define TWO_PI    6.283185307179586
+#define LEAST      1e-6  /* relative: smaller ones are no jump */
+#define RESOLVED   4e-16 /* relative length of the last interval */
+#define PARTS_MAX  64.0  /* of one run */
+#define KINK_STEP  1e-2  /* s, between looks at a rate, */
+#define KINK_PARTS 1e3   /* but no more of a run */
+#define TWO_PI     6.283185307179586
 
 typedef struct point {
     double t, f, d; /* time, value, derivative */
@@ -101,6 +103,60 @@ int se3di_jump_find(const se3di_assembly *assembly, const double range[2], int p
         }
     }
     return 0;
+}
+
+/* Rates on both sides have limits: one that grows without bound is no jump. */
+static int has_limits(const search *s, const point *a, const point *b, double apart)
+{
+    point outer[2];
+    const double most = 0.1 * fabs(b->f - a->f);
+    return eval(s, a->t - apart, &outer[0]) && eval(s, b->t + apart, &outer[1]) &&
+           fabs(outer[0].f - a->f) <= most && fabs(outer[1].f - b->f) <= most;
+}
+
+/* The first jump of one rate. */
+static int look_for_kink(const search *s, const double range[2], se3di_kink *kink)
+{
+    const double span = range[1] - range[0];
+    const int parts = (int)fmin(KINK_PARTS, fmax(8.0, ceil(span / KINK_STEP)));
+    for (int k = 0; k < parts; ++k) {
+        const double part[2] = {range[0] + span * k / parts,
+                                k < parts - 1 ? range[0] + span * (k + 1) / parts : range[1]};
+        se3di_jump jump;
+        if (!look(s, part, 1, &jump)) {
+            continue;
+        }
+        point after = {.t = jump.t, .f = jump.after};
+        point before = {.t = nextafter(jump.t, -HUGE_VAL), .f = jump.before};
+        for (int back = 0; back < 8 && eval(s, before.t, &before) &&
+                           fabs(before.f - jump.before) > fabs(before.f - jump.after);
+             ++back) {
+            after.t = before.t; /* it is within the last few steps of rounding */
+            before.t = nextafter(before.t, -HUGE_VAL);
+        }
+        if (has_limits(s, &before, &after, 1e-8 * fmax(part[1] - part[0], 1e-3))) {
+            *kink = (se3di_kink){.t = after.t, .t_before = before.t};
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int se3di_jump_find_kink(const se3di_assembly *assembly, double t_end, se3di_kink *kink)
+{
+    const se3di_model *model = assembly->model;
+    double range[2] = {model->time, t_end};
+    int found = 0;
+    for (uint32_t timed = 0; timed < assembly->timed_count && range[1] > range[0]; ++timed) {
+        const uint32_t row = assembly->timed_rows[timed];
+        const search s = {&model->functions[model->rows[row].function], 1, 0};
+        if (!s.function->callback && look_for_kink(&s, range, kink)) {
+            kink->row = row;
+            range[1] = kink->t; /* an earlier one counts */
+            found = 1;
+        }
+    }
+    return found;
 }
 
 int se3di_jump_is_between(const se3di_function *function, double t0, double t1)

@@ -25,4 +25,15 @@ se3d_status se3di_jump_refuse(const se3di_assembly *assembly, double t_end, doub
 /* "the value of drive.angle jumps from 0 to 2 at t = 0.95 s". */
 void se3di_jump_format(const se3di_model *model, const se3di_jump *jump, char *text, size_t size);
 
+/* A rate that jumps, between neighbouring times. */
+typedef struct se3di_kink {
+    double t, t_before;
+    uint32_t row;
+    int32_t reserved;
+} se3di_kink;
+
+/* The first jump of a prescribed rate after the model's time and up to t_end. Returns whether there
+ * is one. Functions by callback are not looked at. */
+int se3di_jump_find_kink(const se3di_assembly *assembly, double t_end, se3di_kink *kink);
+
 #endif

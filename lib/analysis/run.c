@@ -13,6 +13,7 @@
 #include "base/log.h"
 #include "contact/pace.h"
 #include "integrator/turns.h"
+#include "math/vec3.h"
 #include "nonlinear/ranks.h"
 #include "primitive/turn_counter.h"
 
@@ -475,6 +476,67 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
     return run->equations.redundant ? se3di_multipliers_reduce(&run->equations) : SE3D_OK;
 }
 
+static double kinetic_energy(const se3di_model *model)
+{
+    double twice = 0.0;
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        const se3di_body *body = &model->bodies[k];
+        const se3di_frame *frame = &model->frames[k];
+        const double *w = frame->w, *J = body->J;
+        twice += body->fixed
+                     ? 0.0
+                     : body->mass * se3di_dot(frame->v, frame->v) + J[0] * w[0] * w[0] +
+                           J[1] * w[1] * w[1] + J[2] * w[2] * w[2] +
+                           2.0 * (J[3] * w[0] * w[1] + J[4] * w[1] * w[2] + J[5] * w[0] * w[2]);
+    }
+    return 0.5 * twice;
+}
+
+/* The impulses of the constraints since equations->probe, the velocities before:
+ * C^T L = M (v- - v+). */
+static se3d_status find_impulses(se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    se3di_assembly_get_velocity(assembly, equations->x);
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        equations->probe[k] = equations->x[k] - equations->probe[k];
+        equations->b[k] = 0.0;
+    }
+    se3di_assembly_subtract_inertia(assembly, equations->probe, equations->b);
+    memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
+    return se3di_equations_solve(equations);
+}
+
+/* A prescribed rate jumps: velocities do by the impulses L of the constraints,
+ *
+ *     M dv + Phi_q^T L = 0,  Phi_q v = nu,
+ *
+ * whose work is that of the drivers. */
+static se3d_status pass_kink(se3di_run *run, const se3di_kink *kink)
+{
+    se3di_model *model = run->model;
+    se3di_equations *equations = &run->equations;
+    const double before = kinetic_energy(model);
+    char name[128];
+    model->time = kink->t;
+    se3di_assembly_get_velocity(&equations->assembly, equations->probe);
+    SE3DI_TRY(se3di_velocity_solve(equations, kink->t));
+    SE3DI_TRY(find_impulses(equations));
+    const double work = kinetic_energy(model) - before;
+    const double impulse = -equations->l[kink->row];
+    model->work[2] += work;
+    SE3DI_TRY(settle(run, kink->t));
+    SE3DI_TRY(se3di_work_accept(model, 0.0));
+    se3di_row_name(model, kink->row, name, sizeof name);
+    se3di_log_write(run->error, SE3D_LOG_WARNING,
+                    "t = %.9g s: the rate of %s jumps: an impulse of %.6g %s acts, a reaction "
+                    "without bound for no time, and all impulses do the work %.6g J",
+                    kink->t, name, impulse,
+                    strcmp(se3di_row_get_unit(model, kink->row), " rad") == 0 ? "N m s" : "N s",
+                    work);
+    return SE3D_OK;
+}
+
 static se3d_status run_kinematics(se3di_run *run, double t_end)
 {
     if (!run->model->settled || !run->determined || !(t_end > run->model->time)) {
@@ -489,7 +551,21 @@ static se3d_status run_kinematics(se3di_run *run, double t_end)
         memset(run->model->work, 0, sizeof run->model->work);
         run->model->work_valid = -1;
     }
-    return se3di_kinematics_run(&run->equations, t_end, run->integration.settings.step);
+    se3di_kink kink;
+    const double step = run->integration.settings.step;
+    while (run->equations.audits && se3di_jump_find_kink(&run->equations.assembly, t_end, &kink)) {
+        const se3d_status status = se3di_kinematics_run(&run->equations, kink.t_before, step);
+        if (status < 0 || status == SE3D_INFO_EVENT) {
+            return status;
+        }
+        SE3DI_TRY(se3di_equations_keep(&run->equations));
+        const se3d_status passed = pass_kink(run, &kink);
+        if (passed < 0) {
+            se3di_equations_come_back(&run->equations);
+            return passed;
+        }
+    }
+    return se3di_kinematics_run(&run->equations, t_end, step);
 }
 
 /* A static position at t_end. */
