@@ -55,7 +55,8 @@ typedef struct se3d_solver_def {
     int32_t method;      /* se3d_method, dynamics only, default AUTO */
     int32_t order;       /* bdf: 1..5, rattle: 2, 4, others: the one they have; 0: the default */
     /* Of generalized_alpha, hht, rattle, verlet: fixed; of the others: the largest one; >= 1e-15
-     * [s]; 0: chosen, by the error but for rattle and verlet (1 ms). */
+     * [s]; 0: chosen by the error, but rattle and verlet take 1 ms (less at contacts and stops)
+     * and warn in the log, with its size, if the error that adds up is large. */
     double step;
     double tolerance;       /* relative error of adaptive methods, 1e-14..0.1; 0: 1e-6. Below what a
                                method reaches it works at that (se3d_solver_get_tolerance) */

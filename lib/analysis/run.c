@@ -143,6 +143,7 @@ static se3d_status build(se3di_run *run)
     run->integration.equations = &run->equations;
     run->prepared = 1;
     run->told_redundant = run->told_left_out = 0;
+    run->integration.step_error = (se3di_step_error){0.0, 0.0, 0.0};
     run->determined = 0;
     run->values_version = run->model->values_version;
     if (is_driven(run)) {
@@ -386,6 +387,7 @@ static se3d_status run_fixed_steps(se3di_run *run, double t_end)
         SE3DI_TRY(se3di_watch_begin(&run->equations));
         SE3DI_TRY(step_dynamics(run, h));
         model->time = last ? t_end : model->time;
+        se3di_step_error_add(&run->integration, h);
         const se3d_status status = se3di_watch_end(&run->equations);
         if (status != SE3D_OK) {
             return status;

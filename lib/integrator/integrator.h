@@ -8,6 +8,7 @@
 #ifndef SE3DI_INTEGRATOR_H
 #define SE3DI_INTEGRATOR_H
 
+#include "integrator/step_error.h"
 #include "nonlinear/equations.h"
 #include "nonlinear/newton.h"
 #include "se3d/solver.h"
@@ -74,6 +75,7 @@ struct se3di_integration {
     double *work;
     double error;        /* of the last step, relative to the tolerance, if it is controlled */
     se3di_newton newton; /* of implicit methods */
+    se3di_step_error step_error; /* of steps that nobody gave */
 };
 
 /* The methods but AUTO, X(METHOD, name): se3di_integrator_<name> is the table of

@@ -157,6 +157,9 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
         double t1 = rest > (1.0 + 1e-9) * h ? m.model->time + h : t_end;
         status = status < 0 ? status : se3di_watch_begin(integration->equations);
         status = status < 0 ? status : advance(&m, t1);
+        if (status >= 0) {
+            se3di_step_error_add(integration, m.bodies.h);
+        }
         status = status < 0 ? status : se3di_watch_end(integration->equations);
     }
     return finish(&m, status);

@@ -285,6 +285,41 @@ static void rounding_is_no_change(void)
     }
 }
 
+/* rattle and verlet without a step: the size of what their steps add up to is that of the error. */
+static void steps_that_nobody_gave_are_told_if_they_are_too_long(void)
+{
+    static const int32_t methods[2] = {SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET};
+    for (int run = 0; run < 6; ++run) {
+        const double spin = run < 4 ? 150.0 : 0.5, step = run == 2 || run == 3 ? 1e-3 : 0.0;
+        const double swift[3] = {0.0, -spin, 0.0};
+        const double velocity[3] = {0.0, 0.0, spin};
+        sheet s;
+        double r[3], kept, shift = 0.0, turn = 0.0;
+        open_sheet(&s, 0);
+        const se3d_body bar = add_bar(&s, "bar", 1.0);
+        add_pin(&s, bar, "a");
+        CHECK(!se3d_body_set_angular_velocity(s.system, bar, swift));
+        CHECK(!se3d_body_set_velocity(s.system, bar, velocity));
+        se3d_solver *solver = NULL;
+        se3d_solver_def def = se3d_solver_def_default();
+        def.method = methods[run % 2];
+        def.step = step;
+        CHECK(!se3d_solver_create(s.system, &def, &solver));
+        CHECK(se3d_solver_run(solver, 0.2) >= 0);
+        CHECK((s.lines[SE3D_LOG_WARNING] > 0) == (run < 2));
+        if (run < 2) {
+            const char *size = strstr(s.last[SE3D_LOG_WARNING], "errors of ");
+            CHECK(size && sscanf(size, "errors of %lf m and %lf rad", &shift, &turn) == 2);
+            CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "no step was given to ");
+            CHECK(!se3d_body_get_position(s.system, bar, r));
+            kept = fabs(atan2(r[2], r[0]) - remainder(150.0 * 0.2, 6.283185307179586));
+            CHECK(shift > 0.2 * kept && kept > 0.02 * shift);
+        }
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(s.system);
+    }
+}
+
 static void the_log_has_no_effect(void)
 {
     uint64_t hash[3];
@@ -322,6 +357,7 @@ int main(void)
     RUN(velocities_that_do_not_fit_are_told);
     RUN(positions_that_do_not_fit_are_told);
     RUN(rounding_is_no_change);
+    RUN(steps_that_nobody_gave_are_told_if_they_are_too_long);
     RUN(the_log_has_no_effect);
     return check_finish();
 }
