@@ -128,7 +128,7 @@ static int has_area(const double *vertices, const uint32_t *triangle)
     return se3di_dot(n, n) > 0.0;
 }
 
-static int32_t find_sense(const se3di_shape *s);
+static se3d_status find_sense(const se3d_allocator *allocator, se3di_shape *s);
 static int32_t make_convex(se3di_shape *s);
 
 static se3d_status fill(const se3d_allocator *allocator, const double *vertices,
@@ -148,15 +148,16 @@ static se3d_status fill(const se3d_allocator *allocator, const double *vertices,
     }
     builder b = {vertices, shape->triangles, nodes, 0};
     build(&b, 0, kept);
+    se3d_status status = SE3D_ERR_NO_MEMORY;
     shape->tree = se3di_alloc(allocator, b.node_count * sizeof *nodes, 1);
     if (shape->tree) {
         shape->tree_bytes = b.node_count * sizeof *nodes;
         memcpy(shape->tree, nodes, shape->tree_bytes);
-        shape->closed = find_sense(shape);
+        status = find_sense(allocator, shape);
         shape->convex = make_convex(shape);
     }
     se3di_free(allocator, nodes, most, sizeof *nodes);
-    return shape->tree ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    return status;
 }
 
 se3d_status se3di_mesh_build(const se3d_allocator *allocator, const double *vertices,
@@ -429,6 +430,7 @@ int se3di_mesh_crosses(const se3di_shape *shape, const double from[3], const dou
 typedef struct edge_search {
     const se3di_shape *shape;
     const double *from, *to;
+    uint32_t *piece; /* of each triangle another one of its piece, or itself */
     uint32_t triangle, reserved;
     int same, opposite;
 } edge_search;
@@ -438,6 +440,15 @@ static int is_at(const double *a, const double *b)
     return !(fabs(a[0] - b[0]) > 0.0 || fabs(a[1] - b[1]) > 0.0 || fabs(a[2] - b[2]) > 0.0);
 }
 
+static uint32_t piece_of(uint32_t *piece, uint32_t triangle)
+{
+    while (piece[triangle] != triangle) {
+        piece[triangle] = piece[piece[triangle]];
+        triangle = piece[triangle];
+    }
+    return triangle;
+}
+
 static void count_edge(void *ctx, uint32_t triangle)
 {
     edge_search *e = ctx;
@@ -445,18 +456,34 @@ static void count_edge(void *ctx, uint32_t triangle)
         const uint32_t *t = e->shape->triangles + 3 * (size_t)triangle;
         const double *a = e->shape->vertices + 3 * (size_t)t[k];
         const double *b = e->shape->vertices + 3 * (size_t)t[(k + 1) % 3];
+        const int opposite = is_at(a, e->to) && is_at(b, e->from);
         e->same += is_at(a, e->from) && is_at(b, e->to);
-        e->opposite += is_at(a, e->to) && is_at(b, e->from);
+        e->opposite += opposite;
+        if (opposite) {
+            e->piece[piece_of(e->piece, triangle)] = piece_of(e->piece, e->triangle);
+        }
     }
 }
 
-/* Every edge is passed once each way: then the sense of the triangles is that of the volume. */
-static int32_t find_sense(const se3di_shape *s)
+static int is_one_piece(uint32_t *piece, size_t count)
+{
+    for (uint32_t k = 1; k < count; ++k) {
+        if (piece_of(piece, k) != piece_of(piece, 0)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* If no edge is passed twice one way, triangles of one piece have one sense; if every edge is
+ * passed once each way, it is that of the volume. */
+static void judge_edges(se3di_shape *s, uint32_t *piece)
 {
     double volume = 0.0;
+    int closed = 1;
     for (uint32_t k = 0; k < 3 * s->triangle_count; ++k) {
         const uint32_t *t = s->triangles + k / 3 * 3;
-        edge_search e = {.shape = s, .triangle = k / 3};
+        edge_search e = {.shape = s, .piece = piece, .triangle = k / 3};
         double middle[3], d[3], n[3];
         e.from = s->vertices + 3 * (size_t)t[k % 3];
         e.to = s->vertices + 3 * (size_t)t[(k + 1) % 3];
@@ -464,13 +491,30 @@ static int32_t find_sense(const se3di_shape *s)
         se3di_scale(0.5, middle, middle);
         se3di_sub(e.to, e.from, d);
         se3di_mesh_visit(s, middle, ON_TRIANGLE * se3di_norm(d), count_edge, &e);
-        if (e.same != 0 || e.opposite != 1) {
-            return 0;
+        if (e.same != 0 || e.opposite > 1) {
+            return;
         }
+        closed = closed && e.opposite == 1;
         se3di_cross(e.from, e.to, n);
         volume += k % 3 == 0 ? se3di_dot(n, s->vertices + 3 * (size_t)t[2]) : 0.0;
     }
-    return volume > 0.0 ? 1 : volume < 0.0 ? -1 : 0;
+    s->oriented = is_one_piece(piece, s->triangle_count);
+    s->closed = !closed ? 0 : volume > 0.0 ? 1 : volume < 0.0 ? -1 : 0;
+}
+
+static se3d_status find_sense(const se3d_allocator *allocator, se3di_shape *s)
+{
+    uint32_t *piece = se3di_alloc(allocator, s->triangle_count, sizeof *piece);
+    if (!piece) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    for (uint32_t k = 0; k < s->triangle_count; ++k) {
+        piece[k] = k;
+    }
+    s->closed = s->oriented = 0;
+    judge_edges(s, piece);
+    se3di_free(allocator, piece, s->triangle_count, sizeof *piece);
+    return SE3D_OK;
 }
 
 /* No vertex is above a face. */

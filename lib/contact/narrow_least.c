@@ -9,9 +9,7 @@
  * - Cylinders that overlap: h(n) = h_i(n) + h_j(-n) is least at a face or cap, at a product of an
  *   edge with the axis, on the circle of directions perpendicular to an edge (or to the axis) where
  *   its slope changes its sign, or, of two rims, where the nearest points v = a - b lie along n:
- *
  *       (v - (n.v) n) = 0,   Newton:  U^T (dv/dn - (n.v) 1) U x = -U^T v.
- *
  *   Those near the polytope's direction are tried, the least is taken. */
 #include "contact/narrow_internal.h"
 #include "math/elementary.h"
@@ -19,13 +17,62 @@
 
 #include <math.h>
 
-#define NEAR     3e-2  /* rad; the polytope's direction is that good */
-#define TIE      1e-15 /* of the size: of equal directions the first */
-#define LOOSE    1e-11 /* of the size: by how much the polytope's own may be less */
-#define EDGES    12
-#define HALVINGS 60
-#define NEWTONS  8
-#define APART    1e-9 /* of the size: cores that are */
+#define NEAR    3e-2  /* rad; the polytope's direction is that good */
+#define TIE     1e-15 /* of the size: of equal directions the first */
+#define LOOSE   1e-11 /* of the size: by how much the polytope's own may be less */
+#define EDGES   12
+#define EXACT   1e-15 /* of the first bracket */
+#define LOOKS   200
+#define NEWTONS 8
+#define APART   1e-9 /* of the size: cores that are */
+
+/* The place where a slope is zero, between one where it is negative and one where it is positive:
+ * by secants that keep both (the Illinois rule), by halves if these do not close in (a slope that
+ * jumps). */
+typedef struct bracket {
+    double low, high, slope_low, slope_high;
+    double next, width; /* where to look; what was left two looks ago */
+    double exact;       /* a step so small is none */
+    int count, last;    /* -1: the lower end moved last, 1: the upper */
+} bracket;
+
+/* Returns 0 if there is no other place to look at. */
+static int bracket_look(bracket *b)
+{
+    const double before = b->next;
+    const double secant =
+        b->low + (b->high - b->low) * (b->slope_low / (b->slope_low - b->slope_high));
+    const int slow = b->count % 3 == 2 && b->high - b->low > 0.25 * b->width;
+    if (b->count == 0) {
+        b->exact = EXACT * (b->high - b->low);
+    }
+    if (b->count % 3 == 2) {
+        b->width = b->high - b->low;
+    }
+    b->next = slow || !(secant > b->low && secant < b->high) ? 0.5 * (b->low + b->high) : secant;
+    ++b->count;
+    return b->count < 2 || fabs(b->next - before) > b->exact;
+}
+
+/* Take the slope at `next`; returns 0 if there is nothing between the ends, or it is the place. */
+static int bracket_take(bracket *b, double slope)
+{
+    if (!(b->low < b->next && b->next < b->high) || !(fabs(slope) > 0.0)) {
+        return 0;
+    }
+    if (slope < 0.0) {
+        b->slope_high *= b->last < 0 ? 0.5 : 1.0;
+        b->low = b->next;
+        b->slope_low = slope;
+        b->last = -1;
+    } else {
+        b->slope_low *= b->last > 0 ? 0.5 : 1.0;
+        b->high = b->next;
+        b->slope_high = slope;
+        b->last = 1;
+    }
+    return 1;
+}
 
 static void axis_of(const se3di_solid *solid, double out[3])
 {
@@ -49,27 +96,38 @@ static double distance_from(const se3di_solid *solid, const double x[3], double 
     return distance;
 }
 
+/* At a place of a line: the distance of the core of j, and its slope along the line. */
+static double line_look(const se3di_solid *line, const se3di_solid *j, double t, double n[3],
+                        double on_line[3], double on_j[3], double *slope)
+{
+    double u[3], from[3];
+    axis_of(line, u);
+    se3di_copy(line->at->x, on_line);
+    se3di_add_scaled(t, u, on_line);
+    const double distance = distance_from(j, on_line, from, on_j);
+    se3di_scale(-1.0, from, n);
+    *slope = se3di_dot(from, u);
+    return distance;
+}
+
 /* Of the line of a capsule from the core of j: the least distance, <= 0 if they meet. */
 static double line_distance(const se3di_solid *line, const se3di_solid *j, double n[3],
                             double on_line[3], double on_j[3])
 {
-    double low = -line->shape->half_length, high = line->shape->half_length, u[3], distance = 0.0;
-    axis_of(line, u);
-    for (int k = 0; k < HALVINGS; ++k) {
-        const double t = k == 0 ? low : k == 1 ? high : 0.5 * (low + high);
-        double from[3];
-        se3di_copy(line->at->x, on_line);
-        se3di_add_scaled(t, u, on_line);
-        distance = distance_from(j, on_line, from, on_j);
-        se3di_scale(-1.0, from, n);
-        const double slope = se3di_dot(from, u);
-        const int is_end = (k == 0 && slope >= 0.0) || (k == 1 && slope <= 0.0);
-        if (is_end || (k > 1 && !(low < t && t < high))) {
+    const double half = line->shape->half_length;
+    bracket b = {.low = -half, .high = half, .width = 2.0 * half};
+    double slope, distance = line_look(line, j, b.low, n, on_line, on_j, &b.slope_low);
+    if (b.slope_low >= 0.0) {
+        return distance;
+    }
+    distance = line_look(line, j, b.high, n, on_line, on_j, &b.slope_high);
+    if (b.slope_high <= 0.0) {
+        return distance;
+    }
+    while (b.count < LOOKS && bracket_look(&b)) {
+        distance = line_look(line, j, b.next, n, on_line, on_j, &slope);
+        if (!bracket_take(&b, slope)) {
             break;
-        }
-        if (k > 1) {
-            low = slope < 0.0 ? t : low;
-            high = slope < 0.0 ? high : t;
         }
     }
     return distance;
@@ -163,35 +221,36 @@ static void add_edges(search *s, const se3di_solid *solid, double sign)
     }
 }
 
+/* A direction perpendicular to an edge, `turn` the sine of its angle from u; the slope there. */
+static double look_along(const search *s, const double u[3], const double w[3], double turn,
+                         double n[3])
+{
+    const double cosine = sqrt(1.0 - turn * turn);
+    double along[3], v[3];
+    se3di_scale(cosine, u, n);
+    se3di_add_scaled(turn, w, n);
+    se3di_scale(cosine, w, along);
+    se3di_add_scaled(-turn, u, along);
+    (void)overlap_along(s, n, v);
+    return se3di_dot(v, along);
+}
+
 /* The place where the slope changes its sign on the directions perpendicular to an edge. */
 static void try_circle(search *s, const double e[3])
 {
-    double u[3], w[3], n[3], low = -NEAR, high = NEAR;
+    bracket b = {.low = -NEAR, .high = NEAR, .width = 2.0 * NEAR};
+    double u[3], w[3], n[3];
     se3di_copy(s->about, u);
     se3di_add_scaled(-se3di_dot(u, e), e, u);
     se3di_scale(1.0 / se3di_norm(u), u, u);
     se3di_cross(e, u, w);
-    se3di_copy(u, n);
-    for (int k = 0; k < HALVINGS; ++k) {
-        const double turn = k == 0 ? low : k == 1 ? high : 0.5 * (low + high);
-        const double cosine = sqrt(1.0 - turn * turn); /* `turn` is its sine */
-        double along[3], v[3];
-        se3di_scale(cosine, u, n);
-        se3di_add_scaled(turn, w, n);
-        se3di_scale(cosine, w, along);
-        se3di_add_scaled(-turn, u, along);
-        (void)overlap_along(s, n, v);
-        const double slope = se3di_dot(v, along);
-        if ((k == 0 && slope > 0.0) || (k == 1 && slope < 0.0)) {
-            return;
-        }
-        if (k > 1) {
-            if (!(low < turn && turn < high)) {
-                break;
-            }
-            low = slope < 0.0 ? turn : low;
-            high = slope < 0.0 ? high : turn;
-        }
+    b.slope_low = look_along(s, u, w, b.low, n);
+    b.slope_high = look_along(s, u, w, b.high, n);
+    if (!(b.slope_low < 0.0 && b.slope_high > 0.0)) {
+        return;
+    }
+    while (b.count < LOOKS && bracket_look(&b) &&
+           bracket_take(&b, look_along(s, u, w, b.next, n))) {
     }
     try_direction(s, n, TIE);
 }

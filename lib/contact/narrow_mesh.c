@@ -6,66 +6,56 @@
  * triangles in one plane is that plane. Behind an edge that bulges towards the solid only the face
  * that is nearest counts. Edges of the mesh that bulge touch the solid as lines do. Round ends
  * touch as spheres do.                                          docs/theory/body-contact.md */
+#include "contact/narrow_mesh.h"
+
 #include "contact/mesh.h"
-#include "contact/narrow_internal.h"
 #include "math/vec3.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
-#define TOUCHES  4     /* faces that one corner touches */
-#define COPLANAR 0.999 /* cosine of the angle of faces that are one */
-#define SAME     1e-6  /* of the solid's size: points that are one */
+#define TOUCHES  4   /* faces that one corner touches */
+#define BESIDE   0.2 /* of the solid's size: an edge that a solid is past may be what it rests on */
+#define COPLANAR SE3DI_MESH_COPLANAR
+#define SAME     SE3DI_MESH_SAME
 
-typedef struct face {
-    double n[3], corner[3], middle[3]; /* unit, towards the solid's centre */
-} face;
+typedef se3di_mesh_face face;
+typedef se3di_mesh_meeting meeting;
+typedef se3di_mesh_edge edge;
 
-typedef struct meeting {
-    const se3di_solid *solid, *mesh;
-    double origin[3]; /* of the solid, mesh frame */
-    double center[3]; /* a point within it, mesh frame */
-    double size;
-    se3di_manifold *manifold;
-    double parting; /* the least way out of edges where the least of all leads through faces */
-    se3di_manifold parted;
-} meeting;
-
-static void to_mesh(const se3di_solid *mesh, const double x[3], double local[3])
+void se3di_mesh_to_local(const se3di_solid *mesh, const double x[3], double local[3])
 {
     double d[3];
     se3di_sub(x, mesh->at->x, d);
     se3di_mul_transposed(mesh->at->R, d, local);
 }
 
-static const double *corner_of(const se3di_shape *s, uint32_t triangle, uint32_t k)
+const double *se3di_mesh_corner(const se3di_shape *s, uint32_t triangle, uint32_t k)
 {
     return s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle + k % 3];
 }
 
-/* Returns 0 if the solid's centre is behind it: only closed meshes have a behind. */
-static int face_of(const meeting *m, uint32_t triangle, face *f)
+int se3di_mesh_face_of(const meeting *m, uint32_t triangle, face *f)
 {
     const se3di_shape *s = m->mesh->shape;
     double u[3], v[3];
-    se3di_copy(corner_of(s, triangle, 0), f->corner);
-    se3di_sub(corner_of(s, triangle, 1), f->corner, u);
-    se3di_sub(corner_of(s, triangle, 2), f->corner, v);
+    se3di_copy(se3di_mesh_corner(s, triangle, 0), f->corner);
+    se3di_sub(se3di_mesh_corner(s, triangle, 1), f->corner, u);
+    se3di_sub(se3di_mesh_corner(s, triangle, 2), f->corner, v);
     se3di_cross(u, v, f->n);
     se3di_scale(1.0 / se3di_norm(f->n), f->n, f->n);
     se3di_add(u, v, f->middle);
     se3di_scale(1.0 / 3.0, f->middle, f->middle);
     se3di_add(f->middle, f->corner, f->middle);
     se3di_sub(m->center, f->corner, u);
-    int closed = m->mesh->shape->closed;
-    if (closed ? closed < 0 : se3di_dot(u, f->n) < 0.0) {
+    if (m->sense ? m->sense < 0 : se3di_dot(u, f->n) < 0.0) {
         se3di_scale(-1.0, f->n, f->n);
     }
     return !(se3di_dot(u, f->n) < 0.0);
 }
 
-static double height_over(const face *f, const double x[3])
+double se3di_mesh_height(const face *f, const double x[3])
 {
     double d[3];
     se3di_sub(x, f->corner, d);
@@ -80,9 +70,8 @@ static uint32_t way_of(const double n[3])
     return 2 * a + (n[a] < 0.0);
 }
 
-/* A contact at a place of the mesh's surface, if there is none yet. */
-static void add(const meeting *m, const double at[3], const double n[3], double overlap,
-                double radius, uint32_t feature)
+void se3di_mesh_add(const meeting *m, const double at[3], const double n[3], double overlap,
+                    double radius, uint32_t feature)
 {
     double point[3], normal[3], d[3];
     se3di_mul(m->mesh->at->R, at, point);
@@ -116,7 +105,8 @@ static void keep_face(corner_faces *c, const face *f, double depth)
     for (int k = 0; k < c->count; ++k) {
         const face *other = &c->list[k];
         int one = se3di_dot(other->n, f->n) > COPLANAR;
-        int bulge = height_over(f, other->middle) < 0.0 && height_over(other, f->middle) < 0.0;
+        int bulge =
+            se3di_mesh_height(f, other->middle) < 0.0 && se3di_mesh_height(other, f->middle) < 0.0;
         if (one || bulge) {
             if (!(depth < c->depth[k])) {
                 return;
@@ -143,13 +133,13 @@ static void meet_wall(void *ctx, uint32_t triangle)
 {
     hollow *h = ctx;
     face other;
-    if (!face_of(h->m, triangle, &other)) {
+    if (!se3di_mesh_face_of(h->m, triangle, &other)) {
         return;
     }
     double least = SAME * h->m->size;
-    h->found = h->found ||
-               (height_over(h->own, other.middle) > least &&
-                height_over(&other, h->own->middle) > least && height_over(&other, h->x) < 0.0);
+    h->found = h->found || (se3di_mesh_height(h->own, other.middle) > least &&
+                            se3di_mesh_height(&other, h->own->middle) > least &&
+                            se3di_mesh_height(&other, h->x) < 0.0);
 }
 
 static void meet_corner(void *ctx, uint32_t triangle)
@@ -159,13 +149,13 @@ static void meet_corner(void *ctx, uint32_t triangle)
     const double *corner[3];
     face f;
     double foot[3], at[3];
-    int in_front = face_of(m, triangle, &f);
-    double height = height_over(&f, c->x);
+    int in_front = se3di_mesh_face_of(m, triangle, &f);
+    double height = se3di_mesh_height(&f, c->x);
     if (!(in_front && height < SAME * m->size && -height < m->size)) {
         return;
     }
     for (uint32_t k = 0; k < 3; ++k) {
-        corner[k] = corner_of(m->mesh->shape, triangle, k);
+        corner[k] = se3di_mesh_corner(m->mesh->shape, triangle, k);
     }
     se3di_copy(c->x, foot);
     se3di_add_scaled(-height, f.n, foot);
@@ -183,7 +173,7 @@ static void meet_corner(void *ctx, uint32_t triangle)
 static void touch_corner(const meeting *m, const double x[3], const double *only, uint32_t feature)
 {
     corner_faces c = {.m = m};
-    to_mesh(m->mesh, x, c.x);
+    se3di_mesh_to_local(m->mesh, x, c.x);
     se3di_mesh_visit(m->mesh->shape, c.x, m->size, meet_corner, &c);
     if (c.count > 0 && !se3di_mesh_crosses(m->mesh->shape, m->center, c.x)) {
         return; /* behind planes of faces, but not behind the surface */
@@ -195,7 +185,7 @@ static void touch_corner(const meeting *m, const double x[3], const double *only
         }
         se3di_copy(c.x, at);
         se3di_add_scaled(c.depth[k], c.list[k].n, at);
-        add(m, at, c.list[k].n, c.depth[k], 0.0, 8 * feature + way_of(c.list[k].n));
+        se3di_mesh_add(m, at, c.list[k].n, c.depth[k], 0.0, 8 * feature + way_of(c.list[k].n));
     }
 }
 
@@ -204,21 +194,14 @@ static void touch_ball(const meeting *m, const double x[3], double radius, uint3
 {
     se3di_touch touches[TOUCHES];
     double local[3];
-    to_mesh(m->mesh, x, local);
+    se3di_mesh_to_local(m->mesh, x, local);
     size_t count = se3di_mesh_contacts(m->mesh->shape, local, radius, TOUCHES, touches);
     for (size_t k = 0; k < count; ++k) {
         const se3di_touch *t = &touches[k];
-        add(m, t->point, t->normal, radius - t->distance, radius, 8 * feature + way_of(t->normal));
+        se3di_mesh_add(m, t->point, t->normal, radius - t->distance, radius,
+                       8 * feature + way_of(t->normal));
     }
 }
-
-typedef struct edge {
-    const meeting *m;
-    const double *a, *b; /* its ends */
-    double middle[3];
-    uint32_t triangle;
-    int is_flat; /* or bulges away, or is another triangle's */
-} edge;
 
 /* Another triangle at the middle of an edge. */
 static void meet_neighbour(void *ctx, uint32_t triangle)
@@ -228,11 +211,14 @@ static void meet_neighbour(void *ctx, uint32_t triangle)
     if (triangle == e->triangle) {
         return;
     }
-    (void)face_of(e->m, e->triangle, &own);
-    (void)face_of(e->m, triangle, &other);
+    (void)se3di_mesh_face_of(e->m, e->triangle, &own);
+    (void)se3di_mesh_face_of(e->m, triangle, &other);
     int continues = se3di_dot(own.n, other.n) > COPLANAR;
-    int bulges = height_over(&own, other.middle) < 0.0 || height_over(&other, own.middle) < 0.0;
+    int bulges =
+        se3di_mesh_height(&own, other.middle) < 0.0 || se3di_mesh_height(&other, own.middle) < 0.0;
     e->is_flat = e->is_flat || continues || !bulges || triangle < e->triangle;
+    e->is_border = 0;
+    e->other = other;
 }
 
 /* A direction away from an edge: whether it leads out between its faces, not through them. */
@@ -247,7 +233,7 @@ static void meet_wedge(void *ctx, uint32_t triangle)
     wedge *w = ctx;
     double along[3], inward[3];
     face f;
-    (void)face_of(w->e->m, triangle, &f);
+    (void)se3di_mesh_face_of(w->e->m, triangle, &f);
     se3di_sub(w->e->b, w->e->a, along);
     se3di_sub(f.middle, w->e->middle, inward);
     se3di_add_scaled(-se3di_dot(inward, along) / se3di_dot(along, along), along, inward);
@@ -274,7 +260,7 @@ static double place_edge(const edge *e, se3di_shape *line, se3di_shape_pose *at)
     return length;
 }
 
-static int leads_out(const edge *e, const double n[3])
+int se3di_mesh_leads_out(const edge *e, const double n[3])
 {
     double local[3], along[3];
     se3di_mul_transposed(e->m->mesh->at->R, n, local);
@@ -284,135 +270,37 @@ static int leads_out(const edge *e, const double n[3])
     return w.open;
 }
 
-/* What solid and edge touch by if they part along n, from the edge to the solid. */
-typedef struct parting {
-    const edge *e;
-    const se3di_solid *segment;
-    double depth, n[3];
-    double lowest[3]; /* of the solid */
-    double along[3];  /* of its edge; zero: a face */
-} parting;
-
-static void try_parting(parting *p, const double way[3], const double along[3])
-{
-    const double size = se3di_norm(way);
-    double n[3], back[3], high[3], low[3], d[3];
-    if (!(size > SAME * se3di_norm(along))) {
-        return; /* parallel edges */
-    }
-    se3di_scale(1.0 / size, way, n);
-    se3di_scale(-1.0, n, back);
-    se3di_core_support(p->segment, n, high);
-    se3di_core_support(p->e->m->solid, back, low);
-    se3di_sub(high, low, d);
-    const double depth = se3di_dot(d, n);
-    if (depth > 0.0 && depth < p->depth && leads_out(p->e, n)) {
-        p->depth = depth;
-        se3di_copy(n, p->n);
-        se3di_copy(low, p->lowest);
-        se3di_copy(along, p->along);
-    }
-}
-
-static void try_edge(parting *p, const double along[3])
-{
-    const double *R = p->segment->at->R;
-    const double line[3] = {R[2], R[5], R[8]};
-    double way[3], back[3];
-    se3di_cross(along, line, way);
-    se3di_scale(-1.0, way, back);
-    try_parting(p, way, along);
-    try_parting(p, back, along);
-}
-
-static void try_box(parting *p)
-{
-    static const double none[3] = {0.0, 0.0, 0.0};
-    const double *R = p->e->m->solid->at->R;
-    for (int k = 0; k < 3; ++k) {
-        const double axis[3] = {R[k], R[3 + k], R[6 + k]};
-        double back[3];
-        se3di_scale(-1.0, axis, back);
-        try_parting(p, axis, none);
-        try_parting(p, back, none);
-        try_edge(p, axis);
-    }
-}
-
-static void try_hull(parting *p)
-{
-    static const double none[3] = {0.0, 0.0, 0.0};
-    const se3di_solid *solid = p->e->m->solid;
-    for (uint32_t k = 0; k < solid->shape->triangle_count; ++k) {
-        double side[3][3], inward[3];
-        for (uint32_t c = 0; c < 3; ++c) {
-            double d[3];
-            se3di_sub(corner_of(solid->shape, k, c + 1), corner_of(solid->shape, k, c), d);
-            se3di_mul(solid->at->R, d, side[c]);
-            try_edge(p, side[c]);
-        }
-        se3di_cross(side[1], side[0], inward);
-        try_parting(p, inward, none);
-    }
-}
-
-/* The point where two edges pass, on that of the mesh; returns 0 if one passes beyond its end. */
-static int edges_pass(const parting *p, double at[3])
-{
-    const double *R = p->segment->at->R;
-    const double line[3] = {R[2], R[5], R[8]};
-    double d[3], across[3];
-    se3di_cross(p->along, p->n, across); /* in the plane of both, perpendicular to the edge */
-    se3di_sub(p->lowest, p->segment->at->x, d);
-    const double t = se3di_dot(d, across) / se3di_dot(line, across);
-    se3di_copy(p->segment->at->x, at);
-    se3di_add_scaled(t, line, at);
-    return fabs(t) <= p->segment->shape->half_length;
-}
-
-/* A box or hull that is least deep in the edge where this leads through the faces beside it: the
- * least way out between them. */
-static void part_from_edge(meeting *m, const edge *e, const se3di_solid *segment)
-{
-    const se3di_solid *solid = m->solid;
-    parting p = {.e = e, .segment = segment, .depth = m->parting};
-    double back[3], at[3];
-    if (solid->shape->kind == SE3DI_SHAPE_BOX) {
-        try_box(&p);
-    } else if (solid->shape->kind == SE3DI_SHAPE_HULL) {
-        try_hull(&p);
-    }
-    const int is_face = !(se3di_norm(p.along) > 0.0);
-    if (!(p.depth < m->parting) || !(is_face || edges_pass(&p, at))) {
-        return;
-    }
-    m->parting = p.depth;
-    m->parted.count = 0;
-    se3di_scale(-1.0, p.n, back);
-    if (is_face) {
-        se3di_face side, flat;
-        se3di_face_find(solid, back, &side);
-        se3di_face_find(segment, p.n, &flat);
-        se3di_narrow_clip(&side, &flat, side.normal, 0.0, 0, &m->parted);
-    } else {
-        (void)se3di_manifold_add(&m->parted, at, back, p.depth, 0);
-    }
-}
-
-/* All contacts with lines. */
+/* Contacts with the edge as a line, by ways that lead out; where they lead over its end, also from
+ * there. */
 static void add_lines(const meeting *m, const se3di_manifold *lines, const edge *e,
                       uint32_t feature)
 {
+    double along[3];
+    se3di_sub(e->b, e->a, along);
     for (uint32_t k = 0; k < lines->count; ++k) {
         double here[3], back[3], n[3];
         se3di_scale(-1.0, lines->points[k].normal, back);
-        if (!e || leads_out(e, back)) {
-            to_mesh(m->mesh, lines->points[k].point, here);
-            se3di_mul_transposed(m->mesh->at->R, back, n);
-            add(m, here, n, lines->points[k].overlap, se3di_core_radius(m->solid->shape),
-                feature + k);
+        se3di_mul_transposed(m->mesh->at->R, back, n);
+        const double over = se3di_dot(n, along) / se3di_norm(along);
+        const int ends = fabs(over) > SAME;
+        if (se3di_mesh_leads_out(e, back) &&
+            (!ends || se3di_mesh_leads_off(m, over > 0.0 ? e->b : e->a, n))) {
+            se3di_mesh_to_local(m->mesh, lines->points[k].point, here);
+            se3di_mesh_add(m, here, n, lines->points[k].overlap, se3di_core_radius(m->solid->shape),
+                           feature + k);
         }
     }
+}
+
+/* The ball about the solid does not come near the edge. */
+static int is_far(const meeting *m, const edge *e)
+{
+    double u[3], d[3];
+    se3di_sub(e->b, e->a, u);
+    se3di_sub(m->origin, e->a, d);
+    const double t = se3di_dot(d, u) / se3di_dot(u, u);
+    se3di_add_scaled(-fmax(0.0, fmin(1.0, t)), u, d);
+    return se3di_norm(d) > m->solid->shape->bound + BESIDE * m->size;
 }
 
 static void touch_edge(meeting *m, edge *e, uint32_t feature)
@@ -421,34 +309,49 @@ static void touch_edge(meeting *m, edge *e, uint32_t feature)
     se3di_shape line;
     se3di_shape_pose at;
     se3di_solid segment = {&line, &at};
-    double length = place_edge(e, &line, &at);
-    double radius = se3di_core_radius(m->solid->shape);
-    if (!(se3di_convex_distance(m->solid, &segment, n, on_i, on_j) + radius > 0.0)) {
+    if (is_far(m, e)) {
         return;
     }
+    const double length = place_edge(e, &line, &at);
     se3di_mesh_visit(m->mesh->shape, e->middle, SAME * length, meet_neighbour, e);
     if (e->is_flat) {
         return;
     }
-    const uint32_t before = m->manifold->count;
-    se3di_manifold lines = {.count = 0};
-    se3di_narrow_convex(m->solid, &segment, &lines);
-    add_lines(m, &lines, e, feature);
-    if (m->manifold->count == before) {
-        part_from_edge(m, e, &segment);
+    const double overlap = se3di_convex_distance(m->solid, &segment, n, on_i, on_j) +
+                           se3di_core_radius(m->solid->shape);
+    if (!(overlap > -BESIDE * m->size)) {
+        return;
     }
+    se3di_manifold lines = {.count = 0};
+    if (overlap > 0.0) {
+        se3di_narrow_convex(m->solid, &segment, &lines);
+        add_lines(m, &lines, e, feature);
+    }
+    se3di_mesh_find_ways_off_edge(m, e);
 }
 
 static void meet_edges(void *ctx, uint32_t triangle)
 {
     meeting *m = ctx;
+    double low[3];
+    face f;
+    (void)se3di_mesh_face_of(m, triangle, &f);
+    const double radius = se3di_mesh_lowest(m, f.n, low);
+    if (!(se3di_mesh_height(&f, low) < radius)) {
+        return; /* all of it is in front */
+    }
     const se3di_shape *s = m->mesh->shape;
     for (uint32_t k = 0; k < 3; ++k) {
-        edge e = {m, corner_of(s, triangle, k), corner_of(s, triangle, k + 1), {0.0}, triangle, 0};
+        edge e = {.m = m,
+                  .a = se3di_mesh_corner(s, triangle, k),
+                  .b = se3di_mesh_corner(s, triangle, k + 1),
+                  .triangle = triangle,
+                  .is_border = 1};
         se3di_add(e.a, e.b, e.middle);
         se3di_scale(0.5, e.middle, e.middle);
         touch_edge(m, &e, 0x80000000u + 16 * (3 * triangle + k));
     }
+    se3di_mesh_find_ways(m, triangle);
 }
 
 static void touch_corners(const meeting *m)
@@ -492,18 +395,18 @@ static void meet_rims(void *ctx, uint32_t triangle)
     const double *corner[3];
     double normal[3], rim[8][3];
     face f;
-    if (!face_of(m, triangle, &f)) {
+    if (!se3di_mesh_face_of(m, triangle, &f)) {
         return;
     }
     for (uint32_t k = 0; k < 3; ++k) {
-        corner[k] = corner_of(m->mesh->shape, triangle, k);
+        corner[k] = se3di_mesh_corner(m->mesh->shape, triangle, k);
     }
     se3di_mul(m->mesh->at->R, f.n, normal);
     se3di_cylinder_rims(m->solid, normal, rim);
     for (uint32_t k = 0; k < 8; ++k) {
         double x[3], at[3];
-        to_mesh(m->mesh, rim[k], x);
-        double height = height_over(&f, x);
+        se3di_mesh_to_local(m->mesh, rim[k], x);
+        double height = se3di_mesh_height(&f, x);
         se3di_add_scaled(-height, f.n, x);
         if (height < 0.0 && -height < m->size &&
             se3di_triangle_nearest(corner, x, at, NULL) < m->size * m->size) {
@@ -521,20 +424,20 @@ static void meet_rest(void *ctx, uint32_t triangle)
     const meeting *m = ctx;
     double corners[9], down[3], lowest[3], n[3], back[3], on_i[3], on_j[3];
     face f;
-    if (!face_of(m, triangle, &f)) {
+    if (!se3di_mesh_face_of(m, triangle, &f)) {
         return;
     }
     se3di_mul(m->mesh->at->R, f.n, down);
     se3di_scale(-1.0, down, down);
     se3di_core_support(m->solid, down, lowest);
-    to_mesh(m->mesh, lowest, lowest);
+    se3di_mesh_to_local(m->mesh, lowest, lowest);
     const double radius = se3di_core_radius(m->solid->shape);
-    double depth = radius - height_over(&f, lowest);
+    double depth = radius - se3di_mesh_height(&f, lowest);
     if (!(depth > 0.0)) {
         return; /* all of it is in front */
     }
     for (uint32_t k = 0; k < 3; ++k) {
-        se3di_copy(corner_of(m->mesh->shape, triangle, k), corners + 3 * (size_t)k);
+        se3di_copy(se3di_mesh_corner(m->mesh->shape, triangle, k), corners + 3 * (size_t)k);
     }
     const se3di_shape flat = {.kind = SE3DI_SHAPE_HULL,
                               .bound = m->mesh->shape->bound,
@@ -543,17 +446,17 @@ static void meet_rest(void *ctx, uint32_t triangle)
                               .vertex_count = 3,
                               .triangle_count = 1};
     const se3di_solid other = {&flat, m->mesh->at};
-    double overlap = se3di_convex_distance(m->solid, &other, n, on_i, on_j) + radius;
+    const double overlap = se3di_convex_least(m->solid, &other, n, on_i, on_j);
     if (!(overlap > 0.0)) {
         return;
     }
-    to_mesh(m->mesh, on_j, on_j);
+    se3di_mesh_to_local(m->mesh, on_j, on_j);
     se3di_mul_transposed(m->mesh->at->R, n, back);
     se3di_scale(-1.0, back, back);
     if (se3di_dot(back, f.n) < 0.0) {
-        add(m, on_j, f.n, depth, radius, 0x40000000u + triangle);
+        se3di_mesh_add(m, on_j, f.n, depth, radius, 0x40000000u + triangle);
     } else {
-        add(m, on_j, back, overlap, radius, 0x40000000u + triangle);
+        se3di_mesh_add(m, on_j, back, overlap, radius, 0x40000000u + triangle);
     }
 }
 
@@ -570,6 +473,46 @@ static void separate_features(se3di_manifold *manifold)
     }
 }
 
+/* The side of an open surface that the solid's centre is on is that of the nearest place of it; on
+ * an edge that of the face which is seen best from the centre. */
+typedef struct side {
+    const meeting *m;
+    const double *at;
+    double best;
+    int sense;
+} side;
+
+static void meet_side(void *ctx, uint32_t triangle)
+{
+    side *s = ctx;
+    face f;
+    double d[3];
+    (void)se3di_mesh_face_of(s->m, triangle, &f); /* turned to the centre, as sense is 0 */
+    const double *a = se3di_mesh_corner(s->m->mesh->shape, triangle, 0);
+    double u[3], v[3], n[3];
+    se3di_sub(se3di_mesh_corner(s->m->mesh->shape, triangle, 1), a, u);
+    se3di_sub(se3di_mesh_corner(s->m->mesh->shape, triangle, 2), a, v);
+    se3di_cross(u, v, n);
+    se3di_sub(s->m->center, s->at, d);
+    if (fabs(se3di_dot(d, f.n)) > s->best) {
+        s->best = fabs(se3di_dot(d, f.n));
+        s->sense = se3di_dot(d, n) > 0.0 ? 1 : -1;
+    }
+}
+
+static void find_side(meeting *m)
+{
+    const se3di_shape *s = m->mesh->shape;
+    double at[3], distance;
+    m->sense = s->closed;
+    if (s->closed == 0 && s->oriented) {
+        side here = {m, at, 0.0, 0};
+        (void)se3di_mesh_nearest(s, m->center, at, &distance);
+        se3di_mesh_visit(s, at, SAME * m->size, meet_side, &here);
+        m->sense = here.sense;
+    }
+}
+
 /* Hulls may have their origin anywhere. */
 static void find_center(meeting *m)
 {
@@ -580,25 +523,24 @@ static void find_center(meeting *m)
     }
     se3di_mul(m->solid->at->R, mean, x);
     se3di_add(x, m->solid->at->x, x);
-    to_mesh(m->mesh, x, m->center);
-    to_mesh(m->mesh, m->solid->at->x, m->origin);
+    se3di_mesh_to_local(m->mesh, x, m->center);
+    se3di_mesh_to_local(m->mesh, m->solid->at->x, m->origin);
 }
 
 void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
 {
     const se3di_shape *s = i->shape;
     meeting m;
-    memset(&m, 0, offsetof(meeting, parted));
+    memset(&m, 0, offsetof(meeting, ways));
     m.solid = i;
     m.mesh = mesh;
     m.manifold = manifold;
-    m.parted.count = 0;
     m.size = s->kind == SE3DI_SHAPE_BOX        ? fmin(s->half[0], fmin(s->half[1], s->half[2]))
              : s->kind == SE3DI_SHAPE_HULL     ? 0.5 * s->bound
              : s->kind == SE3DI_SHAPE_CYLINDER ? fmin(s->radius, s->half_length)
                                                : s->radius;
-    m.parting = m.size;
     find_center(&m);
+    find_side(&m);
     if (s->kind == SE3DI_SHAPE_SPHERE || s->kind == SE3DI_SHAPE_CAPSULE) {
         touch_ends(&m);
     } else if (s->kind == SE3DI_SHAPE_CYLINDER) {
@@ -608,9 +550,7 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
     }
     if (s->kind != SE3DI_SHAPE_SPHERE) {
         se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_edges, &m);
-        if (manifold->count == 0) {
-            add_lines(&m, &m.parted, NULL, 0x80000008u);
-        }
+        se3di_mesh_add_ways(&m);
         if (manifold->count == 0) {
             se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_rest, &m);
         }
@@ -631,7 +571,7 @@ void se3di_narrow_mesh_plane(const se3di_solid *mesh, const double x[3], const d
     uint32_t chosen[WAYS + 1];
     meeting m = {.solid = mesh, .mesh = mesh, .size = s->bound, .manifold = manifold};
     se3di_mul_transposed(mesh->at->R, n, local_n);
-    to_mesh(mesh, x, base);
+    se3di_mesh_to_local(mesh, x, base);
     se3di_perpendicular(local_n, u);
     se3di_cross(local_n, u, w);
     for (int k = 0; k <= WAYS; ++k) {
@@ -656,6 +596,6 @@ void se3di_narrow_mesh_plane(const se3di_solid *mesh, const double x[3], const d
         double depth = -se3di_dot(d, local_n);
         se3di_copy(s->vertices + 3 * (size_t)chosen[k], at);
         se3di_add_scaled(depth, local_n, at);
-        add(&m, at, local_n, depth, 0.0, chosen[k]);
+        se3di_mesh_add(&m, at, local_n, depth, 0.0, chosen[k]);
     }
 }

@@ -13,7 +13,7 @@
 
 #define FACE_COSINE 0.985 /* faces leaning by less than 10 degrees from the normal */
 #define PARALLEL    1e-2  /* sine below which two lines touch in two points */
-#define LOSS        1e-3  /* of the overlap: how much less it is at these, where lines cross */
+#define LOSS        1e-3  /* of the overlap: by how much it is less at these if the lines cross */
 #define SAME        2e-15 /* of the size: depths that are one; faces come before edges then */
 #define EXACT       1e-9  /* the normal is that of a face */
 #define LIFT        1e-5  /* of the size: by how much points of a round rim are too shallow */
@@ -143,7 +143,7 @@ typedef struct lines {
     double low, high;      /* what they have in common, along a */
 } lines;
 
-/* Returns 0 if they cross at an angle, or lie end to end. If they cross nearly parallel the
+/* Returns 0 if they cross at an angle, or lie end to end. If they cross nearly parallel, the
  * overlap falls off to either side. */
 static int lines_meet(const parting *p, const se3di_face *face_i, const se3di_face *face_j,
                       lines *l)

@@ -89,6 +89,8 @@ typedef struct se3di_shape {
     int32_t closed; /* mesh: 1 with its triangles counter-clockwise seen from outside, -1 clockwise,
                        0 open or not of one sense */
     int32_t convex; /* mesh: closed, and the hull of its vertices */
+    int32_t oriented; /* mesh: in one piece, its triangles of one sense */
+    int32_t reserved;
     double force[3], torque[3]; /* of bodies, on its body about the centre of mass, last accepted */
 } se3di_shape;
 

@@ -12,28 +12,47 @@
 
 static const double restitutions[5] = {0.9, 0.7, 0.5, 0.3, 0.1};
 
+/* What it slides on; PAIR: a ball like it. */
+enum { PLANE, MESH, BODY, PAIR, PARTNERS };
+
 typedef struct impact {
     int32_t law, method;
     double e;
-    int pair; /* two balls; else one on a plane */
+    int partner;
 } impact;
 
 static scene begin(const impact *m, double gravity)
 {
     /* two balls so hard that their normal hardly turns while they touch: 1e-5 s */
-    se3d_material_def stuff = scene_stuff(MU, m->e, m->pair ? 3e10 : 1e7);
+    se3d_material_def stuff = scene_stuff(MU, m->e, m->partner == PAIR ? 3e10 : 1e7);
     const double g[3] = {0.0, 0.0, -gravity};
-    stuff.young = m->pair ? 1e14 : 1e10;
+    stuff.young = m->partner == PAIR ? 1e14 : 1e10;
     scene s = scene_begin_with(NULL, m->law, &stuff);
     CHECK(se3d_system_set_gravity(s.system, g) == SE3D_OK);
     return s;
+}
+
+static void floor_for(scene *s, int partner)
+{
+    static const double points[12] = {-1.0, -1.0, 0.0, 1.0,  -1.0, 0.0,
+                                      1.0,  1.0,  0.0, -1.0, 1.0,  0.0};
+    static const uint32_t faces[6] = {0, 1, 2, 0, 2, 3};
+    static const double size[3] = {2.0, 2.0, 0.4}, below[3] = {0.0, 0.0, -0.2};
+    if (partner == PLANE) {
+        scene_floor(s, 0.0);
+    } else if (partner == MESH) {
+        scene_mesh_on(s, scene_ground(s), points, 4, faces, 2);
+    } else if (partner == BODY) {
+        (void)scene_box_on(s, scene_ground(s), size, below);
+    }
 }
 
 /* What friction took of the velocity along, over mu times what the impact gave across. */
 static void check_ratio(const impact *m, const double before[3], const double after[3])
 {
     const double across = after[2] - before[2];
-    CHECK_NEAR(across, (m->pair ? 0.5 : 1.0) * (1.0 + m->e) * INTO, 1e-3 * (1.0 + m->e) * INTO);
+    CHECK_NEAR(across, (m->partner == PAIR ? 0.5 : 1.0) * (1.0 + m->e) * INTO,
+               1e-3 * (1.0 + m->e) * INTO);
     CHECK_NEAR((before[0] - after[0]) / (MU * across), 1.0, 1e-3);
 }
 
@@ -48,13 +67,14 @@ static void bodies_slide(const impact *m)
 {
     scene s = begin(m, 0.0);
     const double v[3] = {ALONG, 0.0, -INTO}, mass = 0.5;
-    const double r[3] = {-FLIGHT * ALONG, 0.0, (m->pair ? 2.0 : 1.0) * RADIUS + FLIGHT * INTO};
+    const double r[3] = {-FLIGHT * ALONG, 0.0,
+                         (m->partner == PAIR ? 2.0 : 1.0) * RADIUS + FLIGHT * INTO};
     double lost = energy_of(v, scene_zero, mass), u[3], w[3];
     se3d_body ball = scene_ball(&s, RADIUS, mass, r, v), other = {0};
-    if (m->pair) {
+    if (m->partner == PAIR) {
         other = scene_ball(&s, RADIUS, mass, scene_zero, scene_zero);
     } else {
-        scene_floor(&s, 0.0);
+        floor_for(&s, m->partner);
     }
     scene_solve(&s, m->method, SE3D_FORMULATION_ROMEGA, 0.0, 0.0);
     if (scene_run(&s, 3.0 * FLIGHT)) {
@@ -62,7 +82,7 @@ static void bodies_slide(const impact *m)
         CHECK(se3d_body_get_angular_velocity(s.system, ball, w) == SE3D_OK);
         check_ratio(m, v, u);
         lost -= energy_of(u, w, mass);
-        if (m->pair) {
+        if (m->partner == PAIR) {
             CHECK(se3d_body_get_velocity(s.system, other, u) == SE3D_OK);
             CHECK(se3d_body_get_angular_velocity(s.system, other, w) == SE3D_OK);
             lost -= energy_of(u, w, mass);
@@ -74,11 +94,11 @@ static void bodies_slide(const impact *m)
 
 static void check_methods(const int32_t *methods, int count)
 {
-    for (int k = 0; k < count * 20; ++k) {
-        impact m = {.method = methods[k / 20],
+    for (int k = 0; k < count * 40; ++k) {
+        impact m = {.method = methods[k / 40],
                     .law = k & 1 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE,
-                    .pair = k >> 1 & 1,
-                    .e = restitutions[k % 20 / 4]};
+                    .partner = k / 2 % PARTNERS,
+                    .e = restitutions[k % 40 / 8]};
         bodies_slide(&m);
     }
 }
@@ -97,30 +117,15 @@ static void bodies_that_slide_lose_mu_times_the_normal_impulse_in_implicit_metho
     check_methods(methods, 4);
 }
 
-/* On a plane, on a mesh, on each other. */
-enum { PLANE, MESH, PAIR, PARTNERS };
-
-static void floor_for(scene *s, int partner)
-{
-    static const double points[12] = {-1.0, -1.0, 0.0, 1.0,  -1.0, 0.0,
-                                      1.0,  1.0,  0.0, -1.0, 1.0,  0.0};
-    static const uint32_t faces[6] = {0, 1, 2, 0, 2, 3};
-    if (partner == PLANE) {
-        scene_floor(s, 0.0);
-    } else if (partner == MESH) {
-        scene_mesh_on(s, scene_ground(s), points, 4, faces, 2);
-    }
-}
-
 static void particles_slide(const impact *m, int partner, int portable)
 {
     scene s = begin(m, 0.0);
     se3d_particles *set;
     se3d_particles_def def = se3d_particles_def_default();
     double v[6] = {ALONG, 0.0, -INTO}, radius[2] = {RADIUS, RADIUS}, step, u[6], w[6];
-    double r[6] = {0.0, 0.0, (m->pair ? 2.0 : 1.0) * RADIUS};
+    double r[6] = {0.0, 0.0, (m->partner == PAIR ? 2.0 : 1.0) * RADIUS};
     const double mass = 1000.0 * 4.0 / 3.0 * PI * RADIUS * RADIUS * RADIUS;
-    const size_t count = m->pair ? 2 : 1;
+    const size_t count = m->partner == PAIR ? 2 : 1;
     def.portable = portable;
     floor_for(&s, partner);
     CHECK(se3d_particles_create(s.system, &def, &set) == SE3D_OK);
@@ -136,7 +141,7 @@ static void particles_slide(const impact *m, int partner, int portable)
     CHECK(se3d_particles_get_all(set, count, NULL, u, w) == SE3D_OK);
     check_ratio(m, v, u);
     double lost = energy_of(v, scene_zero, mass) - energy_of(u, w, mass);
-    lost -= m->pair ? energy_of(u + 3, w + 3, mass) : 0.0;
+    lost -= m->partner == PAIR ? energy_of(u + 3, w + 3, mass) : 0.0;
     CHECK(lost > 0.5 * MU * mass * INTO * ALONG * 0.5);
     se3d_particles_destroy(set);
     scene_end(&s);
@@ -147,7 +152,7 @@ static void particles_that_slide_lose_mu_times_the_normal_impulse(void)
     for (int k = 0; k < 5 * 4 * PARTNERS; ++k) {
         const int partner = k / 4 % PARTNERS;
         impact m = {.law = k & 1 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE,
-                    .pair = partner == PAIR,
+                    .partner = partner,
                     .e = restitutions[k / 4 / PARTNERS]};
         particles_slide(&m, partner, k >> 1 & 1);
     }

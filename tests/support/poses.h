@@ -111,6 +111,17 @@ static inline void poses_random_solid(int kind, uint64_t *seed, poses_solid *s)
     s->shape.bound = se3di_shape_bound(&s->shape);
 }
 
+/* A place within it; hulls may have their origin anywhere. */
+static inline void poses_inner(const se3di_shape *s, const se3di_shape_pose *at, double x[3])
+{
+    double mean[3] = {0.0, 0.0, 0.0};
+    for (size_t k = 0; k < s->vertex_count; ++k) {
+        se3di_add_scaled(1.0 / (double)s->vertex_count, s->vertices + 3 * k, mean);
+    }
+    se3di_mul(at->R, mean, x);
+    se3di_add(at->x, x, x);
+}
+
 /* The least half width, about. */
 static inline double poses_size(const se3di_shape *s)
 {

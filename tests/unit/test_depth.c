@@ -219,9 +219,84 @@ static void overlaps_and_normals_are_those_of_the_least_translation(void)
     }
 }
 
+/* The convex solid below a surface that bulges upwards. */
+static void solid_below(const surface *s, se3di_shape *hull)
+{
+    static double points[3 * (SURFACE_GRID * SURFACE_GRID + 4)];
+    const se3d_allocator allocator = se3di_alloc_default();
+    memcpy(points, s->points, 3 * s->point_count * sizeof(double));
+    for (size_t k = 0; k < 4; ++k) {
+        double *x = points + 3 * (s->point_count + k);
+        x[0] = k & 1 ? 1.0 : -1.0;
+        x[1] = k & 2 ? 1.0 : -1.0;
+        x[2] = -4.0;
+    }
+    memset(hull, 0, sizeof *hull);
+    hull->kind = SE3DI_SHAPE_HULL;
+    CHECK(!se3di_hull_build(&allocator, points, s->point_count + 4, hull));
+    hull->bound = se3di_shape_bound(hull);
+}
+
+/* Meshes that bulge are the convex solids below them. */
+static void check_surface(int kind, int which, int poses)
+{
+    static surface s;
+    const se3d_allocator allocator = se3di_alloc_default();
+    uint64_t seed = 40 + (uint64_t)kind;
+    accuracy a = {.counted = 0};
+    se3di_shape below;
+    surface_make(which, &s);
+    solid_below(&s, &below);
+    for (int k = 0; k < poses; ++k) {
+        poses_solid solid;
+        se3di_shape_pose at, of;
+        double n[3], local[3], up[3];
+        poses_random_solid(kinds[kind], &seed, &solid);
+        random_pair(&at, &of, &seed);
+        for (int c = 0; c < 2; ++c) {
+            local[c] = 0.5 * check_random(&seed);
+        }
+        local[2] = surface_height(which, local[0], local[1]) + 0.1 * check_random(&seed);
+        poly_place(&of, local, at.x);
+        const double size = poses_size(&solid.shape);
+        const double wanted = size * (k % 4 == 3 ? 0.2 : 0.02) * (1.001 + check_random(&seed));
+        const double least = separation_of(&solid.shape, &at, &below, &of, n);
+        const double radius = se3di_core_radius(&solid.shape);
+        for (int c = 0; c < 3; ++c) {
+            up[c] = of.R[3 * c + 2];
+        }
+        if (!(least > radius ? least > wanted : least > -HUGE_VAL && wanted < radius) ||
+            !(se3di_dot(n, up) < 0.0)) {
+            continue;
+        }
+        se3di_add_scaled(wanted - least, n, at.x);
+        poses_inner(&solid.shape, &at, local);
+        if (outside(&below, &of, local) < 0.0) {
+            continue; /* the surface is seen from below */
+        }
+        compare(&solid.shape, &at, &s.shape, &of, wanted, n, &a);
+        part(&solid.shape, &at, &s.shape, &of, wanted, n, &a);
+    }
+    report(names[kind], s.name, &a);
+    CHECK(a.counted > poses / 8);
+    CHECK(a.wrong == 0);
+    CHECK(a.phantom == 0);
+    se3di_shape_release(&allocator, &below);
+    surface_release(&s);
+}
+
+static void meshes_that_bulge_are_as_deep_as_what_is_below_them(void)
+{
+    for (int kind = 0; kind < KINDS; ++kind) {
+        check_surface(kind, SURFACE_ROOF, poses_count(400));
+        check_surface(kind, SURFACE_DOME, poses_count(400) / 20);
+    }
+}
+
 int main(void)
 {
     RUN(convex_meshes_are_as_deep_as_what_they_enclose);
     RUN(overlaps_and_normals_are_those_of_the_least_translation);
+    RUN(meshes_that_bulge_are_as_deep_as_what_is_below_them);
     return check_finish();
 }

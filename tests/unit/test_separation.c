@@ -191,24 +191,14 @@ static void show(const pose_pair *p, const char *what, const se3di_manifold *m)
     printf("\n");
 }
 
-/* A place within the solid; hulls may have their origin anywhere. */
-static void inner_place(const poly *solid, double x[3])
-{
-    se3di_copy(solid->x, x);
-    if (solid->points > 2) {
-        memset(x, 0, 3 * sizeof *x);
-        for (int k = 0; k < solid->points; ++k) {
-            se3di_add_scaled(1.0 / solid->points, solid->point[k], x);
-        }
-    }
-}
-
 static void count_pose(pose_pair *p, tally *t)
 {
     se3di_manifold m;
-    double inner[3];
+    double inner[3], d[3], x[3];
     bring(p);
-    inner_place(&p->body, inner);
+    poses_inner(p->solid, &p->at, x);
+    se3di_sub(x, p->of.x, d);
+    se3di_mul_transposed(p->of.R, d, inner);
     if (surface_holds(p->mesh, inner)) {
         return;
     }

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What the files on solids and surfaces of triangles share. */
+#ifndef SE3DI_CONTACT_NARROW_MESH_H
+#define SE3DI_CONTACT_NARROW_MESH_H
+
+#include "contact/narrow_internal.h"
+
+#define SE3DI_MESH_COPLANAR 0.999 /* cosine of the angle of faces that are one */
+#define SE3DI_MESH_SAME     1e-6  /* of the solid's size: points that are one */
+#define SE3DI_MESH_WAYS     24
+
+/* All in the frame of the mesh. */
+typedef struct se3di_mesh_face {
+    double n[3], corner[3], middle[3]; /* unit, towards the solid's centre */
+} se3di_mesh_face;
+
+/* A way by which the solid comes off a part of the surface, and off no other sooner. */
+typedef struct se3di_mesh_way {
+    double n[3], depth, at[3]; /* to the solid; the place of the surface that is left last */
+    se3di_mesh_face face;      /* that has the place */
+    uint32_t feature, reserved;
+} se3di_mesh_way;
+
+typedef struct se3di_mesh_meeting {
+    const se3di_solid *solid, *mesh;
+    double origin[3]; /* of the solid */
+    double center[3]; /* a point within it */
+    double size;
+    int sense; /* of the triangles: 1 counter-clockwise seen from the solid, -1 clockwise, 0: each
+                  for itself */
+    int way_count;
+    se3di_manifold *manifold;
+    se3di_mesh_way ways[SE3DI_MESH_WAYS];
+} se3di_mesh_meeting;
+
+typedef struct se3di_mesh_edge {
+    const se3di_mesh_meeting *m;
+    const double *a, *b; /* its ends */
+    double middle[3];
+    uint32_t triangle;
+    int is_flat; /* or bulges away, or is another triangle's */
+    int is_border;
+    se3di_mesh_face other; /* beyond it, where it is no border */
+} se3di_mesh_edge;
+
+void se3di_mesh_to_local(const se3di_solid *mesh, const double x[3], double local[3]);
+const double *se3di_mesh_corner(const se3di_shape *s, uint32_t triangle, uint32_t k);
+/* Returns 0 if the solid's centre is behind it: only closed meshes have a behind. */
+int se3di_mesh_face_of(const se3di_mesh_meeting *m, uint32_t triangle, se3di_mesh_face *f);
+double se3di_mesh_height(const se3di_mesh_face *f, const double x[3]);
+/* The lowest point of the solid's core along the unit n; returns how far its surface is below. */
+double se3di_mesh_lowest(const se3di_mesh_meeting *m, const double n[3], double at[3]);
+/* Whether a direction leads out between the faces at an edge, not through them. */
+int se3di_mesh_leads_out(const se3di_mesh_edge *e, const double n[3]);
+/* The same at a corner of the mesh; n in its frame. */
+int se3di_mesh_leads_off(const se3di_mesh_meeting *m, const double x[3], const double n[3]);
+/* A contact at a place of the surface, if there is none yet. */
+void se3di_mesh_add(const se3di_mesh_meeting *m, const double at[3], const double n[3],
+                    double overlap, double radius, uint32_t feature);
+
+/* Note the ways off a face; off its corners; off an edge that bulges. */
+void se3di_mesh_find_ways(se3di_mesh_meeting *m, uint32_t triangle);
+void se3di_mesh_find_ways_off_edge(se3di_mesh_meeting *m, const se3di_mesh_edge *e);
+/* Of each part of the surface that bulges the least way, if no contact is as deep there. */
+void se3di_mesh_add_ways(se3di_mesh_meeting *m);
+
+#endif

@@ -1,0 +1,356 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The least ways by which a solid comes off a surface of triangles.
+ *
+ * Off a convex piece a solid comes by the least translation, whose direction is one of
+ *
+ *   face     a face's normal; the solid's lowest point is over the face
+ *   edge     perpendicular to an edge, between the normals of its faces, where the reach of the
+ *            solid as a function of the angle is least: two edges that cross, or an edge and a rim;
+ *            the place is on both
+ *   corner   the normal of a face of the solid, from a corner of the mesh, between its faces
+ *
+ * for all other least values of the reach are not over their own place. Of the ways off one piece
+ * (faces each behind the other) only the least counts. What corners of the solid and edges of the
+ * mesh have shown already is not said again.                 docs/theory/body-contact.md */
+#include "contact/mesh.h"
+#include "contact/narrow_mesh.h"
+#include "math/elementary.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PARTS    12 /* of the angle between two faces */
+#define HALVINGS 60
+#define EQUAL    1e-9        /* of the size: depths that are one */
+#define RIM      1e-5        /* of the size: by how much points of an upright rim are too shallow */
+#define FEATURE  0xc0000000u /* of ways: not those of corners, edges and triangles */
+
+double se3di_mesh_lowest(const se3di_mesh_meeting *m, const double n[3], double at[3])
+{
+    double down[3], point[3];
+    const double radius = se3di_core_radius(m->solid->shape);
+    se3di_mul(m->mesh->at->R, n, down);
+    se3di_scale(-1.0, down, down);
+    se3di_core_support(m->solid, down, point);
+    se3di_mesh_to_local(m->mesh, point, at);
+    return radius;
+}
+
+static void note(se3di_mesh_meeting *m, const se3di_mesh_way *way)
+{
+    int at = m->way_count;
+    if (!(way->depth > 0.0 && way->depth < m->size)) {
+        return;
+    }
+    if (at == SE3DI_MESH_WAYS) { /* the deepest gives way */
+        at = 0;
+        for (int k = 1; k < SE3DI_MESH_WAYS; ++k) {
+            at = m->ways[k].depth > m->ways[at].depth ? k : at;
+        }
+        if (!(way->depth < m->ways[at].depth)) {
+            return;
+        }
+    }
+    m->ways[at] = *way;
+    m->way_count += at == m->way_count;
+}
+
+/* ---- off faces ---- */
+
+static void find_off_face(se3di_mesh_meeting *m, const se3di_mesh_face *f, uint32_t triangle)
+{
+    const double *corner[3];
+    se3di_mesh_way way = {.feature = FEATURE + 4 * triangle, .face = *f};
+    double low[3], near[3];
+    const double radius = se3di_mesh_lowest(m, f->n, low);
+    se3di_copy(f->n, way.n);
+    way.depth = radius - se3di_mesh_height(f, low);
+    se3di_copy(low, way.at);
+    se3di_add_scaled(way.depth - radius, f->n, way.at);
+    if (!(way.depth > 0.0 && way.depth < m->size)) {
+        return;
+    }
+    for (uint32_t k = 0; k < 3; ++k) {
+        corner[k] = se3di_mesh_corner(m->mesh->shape, triangle, k);
+    }
+    const double least = SE3DI_MESH_SAME * m->size;
+    se3di_add_scaled(-radius, f->n, low);
+    if (se3di_triangle_nearest(corner, way.at, near, NULL) < least * least &&
+        se3di_mesh_crosses(m->mesh->shape, m->center, low)) {
+        note(m, &way);
+    }
+}
+
+/* ---- off corners ---- */
+
+typedef struct fan {
+    const se3di_mesh_meeting *m;
+    const double *x, *n;
+    int open;
+} fan;
+
+static void meet_fan(void *ctx, uint32_t triangle)
+{
+    fan *f = ctx;
+    for (uint32_t k = 0; k < 3; ++k) {
+        double d[3];
+        se3di_sub(se3di_mesh_corner(f->m->mesh->shape, triangle, k), f->x, d);
+        f->open = f->open && !(se3di_dot(d, f->n) > SE3DI_MESH_SAME * se3di_norm(d));
+    }
+}
+
+int se3di_mesh_leads_off(const se3di_mesh_meeting *m, const double x[3], const double n[3])
+{
+    fan f = {m, x, n, 1};
+    se3di_mesh_visit(m->mesh->shape, x, SE3DI_MESH_SAME * m->size, meet_fan, &f);
+    return f.open;
+}
+
+/* The corner x of the mesh leaves the solid along its outward normal `out` (ground frame). */
+static void try_corner(se3di_mesh_meeting *m, const double x[3], const double out[3],
+                       se3di_mesh_way *way)
+{
+    double at[3];
+    se3di_mul_transposed(m->mesh->at->R, out, way->n);
+    se3di_scale(-1.0, way->n, way->n);
+    const double radius = se3di_mesh_lowest(m, way->n, at);
+    se3di_sub(x, at, at);
+    way->depth = se3di_dot(at, way->n) + radius;
+    if (!(way->depth > 0.0 && way->depth < m->size)) {
+        return;
+    }
+    if (se3di_mesh_leads_off(m, x, way->n)) {
+        note(m, way);
+    }
+}
+
+static void try_hull_faces(se3di_mesh_meeting *m, const double x[3], se3di_mesh_way *way)
+{
+    const se3di_shape *s = m->solid->shape;
+    for (uint32_t k = 0; k < s->triangle_count; ++k) {
+        double u[3], v[3], local[3], out[3];
+        se3di_sub(se3di_mesh_corner(s, k, 1), se3di_mesh_corner(s, k, 0), u);
+        se3di_sub(se3di_mesh_corner(s, k, 2), se3di_mesh_corner(s, k, 0), v);
+        se3di_cross(u, v, local);
+        const double size = se3di_norm(local);
+        se3di_scale(size > 0.0 ? 1.0 / size : 0.0, local, local);
+        se3di_mul(m->solid->at->R, local, out);
+        if (size > 0.0) {
+            try_corner(m, x, out, way);
+        }
+    }
+}
+
+static void find_off_corner(se3di_mesh_meeting *m, const double x[3], se3di_mesh_way *way)
+{
+    const se3di_solid *solid = m->solid;
+    double ground[3], d[3], local[3], point[3], normal[3], distance;
+    se3di_mul(m->mesh->at->R, x, ground);
+    se3di_add(ground, m->mesh->at->x, ground);
+    se3di_sub(ground, solid->at->x, d);
+    se3di_mul_transposed(solid->at->R, d, local);
+    se3di_shape_nearest(solid->shape, local, point, normal, &distance);
+    if (!(distance < 0.0)) {
+        return;
+    }
+    se3di_copy(x, way->at);
+    if (solid->shape->kind == SE3DI_SHAPE_HULL) {
+        try_hull_faces(m, x, way);
+        return;
+    }
+    const int box = solid->shape->kind == SE3DI_SHAPE_BOX;
+    for (int k = 0; k < 6; ++k) { /* of a cylinder the caps, and its side there */
+        const double sign = k & 1 ? -1.0 : 1.0;
+        double out[3];
+        for (int c = 0; c < 3; ++c) {
+            out[c] = sign * solid->at->R[3 * c + k / 2];
+        }
+        if (box || k / 2 == 2) {
+            try_corner(m, x, out, way);
+        }
+    }
+    const double side[3] = {local[0], local[1], 0.0};
+    const double size = se3di_norm(side);
+    if (!box && size > 0.0) {
+        double out[3];
+        se3di_mul(solid->at->R, side, out);
+        se3di_scale(1.0 / size, out, out);
+        try_corner(m, x, out, way);
+    }
+}
+
+void se3di_mesh_find_ways(se3di_mesh_meeting *m, uint32_t triangle)
+{
+    se3di_mesh_face f;
+    const int32_t kind = m->solid->shape->kind;
+    if (kind == SE3DI_SHAPE_CAPSULE || kind == SE3DI_SHAPE_SPHERE ||
+        !se3di_mesh_face_of(m, triangle, &f)) {
+        return;
+    }
+    find_off_face(m, &f, triangle);
+    for (uint32_t k = 0; k < 3; ++k) {
+        se3di_mesh_way way = {.feature = FEATURE + 4 * triangle + 1 + k, .face = f};
+        find_off_corner(m, se3di_mesh_corner(m->mesh->shape, triangle, k), &way);
+    }
+}
+
+/* ---- off edges ---- */
+
+/* The directions perpendicular to an edge, by their angle from the normal of its face; how far the
+ * solid reaches below the edge along them, and the slope of that. */
+typedef struct arc {
+    se3di_mesh_meeting *m;
+    const se3di_mesh_edge *e;
+    double along[3], n0[3], out[3]; /* unit: the edge, the normal, away from the face */
+    double length, end;
+} arc;
+
+typedef struct reach {
+    double angle, slope, depth, n[3], low[3];
+} reach;
+
+static void eval_reach(const arc *a, double angle, reach *r)
+{
+    const double c = se3di_cos(angle), s = se3di_sin(angle);
+    double turn[3], d[3];
+    r->angle = angle;
+    se3di_scale(c, a->n0, r->n);
+    se3di_add_scaled(s, a->out, r->n);
+    se3di_scale(c, a->out, turn);
+    se3di_add_scaled(-s, a->n0, turn);
+    const double radius = se3di_mesh_lowest(a->m, r->n, r->low);
+    se3di_sub(a->e->a, r->low, d);
+    r->depth = se3di_dot(d, r->n) + radius;
+    r->slope = se3di_dot(d, turn);
+}
+
+/* The angle between two at which the slope changes from down to up: there the lowest edge passes
+ * over that of the mesh. */
+static void find_least(const arc *a, reach low, reach high, uint32_t feature)
+{
+    for (int k = 0; k < HALVINGS; ++k) {
+        reach middle;
+        eval_reach(a, 0.5 * (low.angle + high.angle), &middle);
+        if (!(low.angle < middle.angle && middle.angle < high.angle)) {
+            break;
+        }
+        if (middle.slope < 0.0) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    se3di_mesh_way way = {.depth = high.depth, .feature = feature};
+    double place[3], d[3];
+    const double share = low.slope < high.slope ? low.slope / (low.slope - high.slope) : 0.0;
+    se3di_sub(high.low, low.low, d);
+    se3di_copy(low.low, place);
+    se3di_add_scaled(share, d, place);
+    se3di_sub(place, a->e->a, d);
+    const double t = se3di_dot(d, a->along), slack = SE3DI_MESH_SAME * a->m->size;
+    if (t < -slack || t > a->length + slack) {
+        return;
+    }
+    se3di_copy(high.n, way.n);
+    se3di_copy(a->e->a, way.at);
+    se3di_add_scaled(t, a->along, way.at);
+    double ground[3];
+    se3di_mul(a->m->mesh->at->R, way.n, ground);
+    if (se3di_mesh_leads_out(a->e, ground) &&
+        se3di_mesh_crosses(a->m->mesh->shape, a->m->center, place)) {
+        (void)se3di_mesh_face_of(a->m, a->e->triangle, &way.face);
+        note(a->m, &way);
+    }
+}
+
+void se3di_mesh_find_ways_off_edge(se3di_mesh_meeting *m, const se3di_mesh_edge *e)
+{
+    const int32_t kind = m->solid->shape->kind;
+    arc a = {.m = m, .e = e};
+    se3di_mesh_face own;
+    reach before, here;
+    if (kind == SE3DI_SHAPE_CAPSULE || kind == SE3DI_SHAPE_SPHERE) {
+        return;
+    }
+    (void)se3di_mesh_face_of(m, e->triangle, &own);
+    se3di_sub(e->b, e->a, a.along);
+    a.length = se3di_norm(a.along);
+    se3di_scale(1.0 / a.length, a.along, a.along);
+    se3di_copy(own.n, a.n0);
+    se3di_cross(a.along, a.n0, a.out);
+    double d[3];
+    se3di_sub(own.middle, e->a, d);
+    se3di_scale(se3di_dot(d, a.out) > 0.0 ? -1.0 : 1.0, a.out, a.out);
+    a.end = e->is_border ? 3.141592653589793
+                         : se3di_atan2(se3di_dot(e->other.n, a.out), se3di_dot(e->other.n, a.n0));
+    eval_reach(&a, a.end, &here);
+    eval_reach(&a, 0.0, &before);
+    if (!(before.depth > 0.0 && here.depth > 0.0)) {
+        return; /* all of the solid is in front of a face */
+    }
+    for (int k = 1; k <= PARTS && a.end > 0.0; ++k) {
+        eval_reach(&a, a.end * k / PARTS, &here);
+        if (before.slope < 0.0 && here.slope >= 0.0) {
+            find_least(&a, before, here, FEATURE + 0x20000000u + 4 * e->triangle);
+        }
+        before = here;
+    }
+}
+
+/* ---- which count ---- */
+
+/* Faces of one convex piece, as far as two can tell. */
+static int are_one(const se3di_mesh_face *f, const se3di_mesh_face *g)
+{
+    const int flat = se3di_dot(f->n, g->n) > SE3DI_MESH_COPLANAR;
+    return flat || (se3di_mesh_height(f, g->middle) < 0.0 && se3di_mesh_height(g, f->middle) < 0.0);
+}
+
+static int is_least(const se3di_mesh_meeting *m, int k)
+{
+    const se3di_mesh_way *way = &m->ways[k];
+    for (int other = 0; other < m->way_count; ++other) {
+        const double less = way->depth - m->ways[other].depth;
+        const int sooner = less > 0.0 || (!(less < 0.0) && other < k);
+        if (other != k && sooner && are_one(&way->face, &m->ways[other].face)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* A contact that is this way but for rounding becomes it. The lowest points of an upright rim lean
+ * to where they were, as on planes. */
+static int is_shown(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
+{
+    const int is_rim = m->solid->shape->kind == SE3DI_SHAPE_CYLINDER;
+    const double slack = is_rim ? RIM * m->solid->shape->bound : EQUAL * m->size;
+    double ground[3];
+    se3di_mul(m->mesh->at->R, way->n, ground);
+    se3di_scale(-1.0, ground, ground);
+    for (uint32_t k = 0; k < m->manifold->count; ++k) {
+        se3di_contact_point *p = &m->manifold->points[k];
+        double turn[3];
+        se3di_sub(p->normal, ground, turn);
+        if (se3di_norm(turn) < SE3DI_MESH_SAME && p->overlap > way->depth - slack) {
+            if (fabs(p->overlap - way->depth) < EQUAL * m->size) {
+                se3di_copy(ground, p->normal);
+                p->overlap = way->depth;
+            }
+            return 1;
+        }
+    }
+    return 0;
+}
+
+void se3di_mesh_add_ways(se3di_mesh_meeting *m)
+{
+    for (int k = 0; k < m->way_count; ++k) {
+        const se3di_mesh_way *way = &m->ways[k];
+        if (is_least(m, k) && !is_shown(m, way)) {
+            se3di_mesh_add(m, way->at, way->n, way->depth, se3di_core_radius(m->solid->shape),
+                           way->feature);
+        }
+    }
+}
