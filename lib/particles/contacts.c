@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts as they are: each is evaluated by itself, on copies, with springs that stay. */
+#include "particles/contacts.h"
+
 #include "base/sized.h"
-#include "particles/set.h"
 
 #include "math/vec3.h"
+#include "particles/grid.h"
+#include "particles/mesh.h"
+#include "particles/wall.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What particles are drawn from: random numbers, radii, places in a region. */
-#include "particles/set.h"
+
+#include "particles/draw.h"
 
 #include <math.h>
 

@@ -2,6 +2,8 @@
 #include "particles/fill.h"
 
 #include "math/vec3.h"
+#include "particles/draw.h"
+#include "particles/grid.h"
 
 #include <math.h>
 #include <string.h>

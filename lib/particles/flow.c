@@ -5,9 +5,13 @@
  * the forces, where it overlaps with no particle and no wall, so that no force changes by it. If
  * no place is found in TRIES draws the particle waits for the next step, with its radius: neither
  * the rate nor the distribution of the radii suffers.                  docs/theory/particles.md */
-#include "particles/set.h"
+
+#include "particles/flow.h"
 
 #include "math/vec3.h"
+#include "particles/draw.h"
+#include "particles/grid.h"
+#include "particles/wall.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels for x86-64 with AVX-512, chosen at run time.       docs/theory/particles.md */
-#include "particles/set.h"
+#include "particles/wall.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>

@@ -4,6 +4,7 @@
  *                                                                   docs/theory/contact-laws.md */
 #include "math/vec3.h"
 #include "particles/set.h"
+#include "particles/wall.h"
 
 #include <math.h>
 #include <string.h>

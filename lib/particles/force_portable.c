@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels in plain C, for every machine.                     docs/theory/particles.md */
-#include "particles/set.h"
+#include "particles/wall.h"
 
 #include "particles/force_plain.inc"
 

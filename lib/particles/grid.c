@@ -6,7 +6,11 @@
  * that a slab is a range of cells in every class and sorting by cell sorts by slab. A particle
  * looks into the cells of every class within its reach, of its own slab (behind itself) and of the
  * next one: every pair is found once and belongs to the lower slab.   docs/theory/particles.md */
-#include "particles/set.h"
+
+#include "particles/grid.h"
+#include "particles/flow.h"
+#include "particles/list.h"
+#include "particles/wall.h"
 
 #include <math.h>
 #include <string.h>

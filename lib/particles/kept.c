@@ -4,7 +4,8 @@
  * All arrays lie one after the other in one block of memory, those that change only with the lists
  * first: they are copied where the lists have changed. The set's record is kept as it is; where it
  * comes back, the addresses and sizes of the arrays stay what they are now. */
-#include "particles/set.h"
+
+#include "particles/kept.h"
 
 #include <stddef.h>
 #include <string.h>

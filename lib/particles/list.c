@@ -4,8 +4,12 @@
  * History waits in `carry` while lists change: entries {i, j, xi}, chained by i through key[] (the
  * first) and carry_next[]. They lie in the memory of the loads, which hold nothing while there are
  * no valid lists. If memory fails they stay there, and nothing is lost. */
+#include "particles/list.h"
+
 #include "math/vec3.h"
-#include "particles/set.h"
+#include "particles/grid.h"
+#include "particles/mesh.h"
+#include "particles/wall.h"
 
 #include <math.h>
 #include <string.h>

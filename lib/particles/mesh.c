@@ -2,9 +2,11 @@
 /* Particles on meshes: a sphere may touch one mesh in several places. A pair of a particle and a
  * mesh carries the history of all of them; from step to step a place is known by its normal, which
  * turns little (a rolling sphere's in the mesh's frame, also over an edge). */
+#include "particles/mesh.h"
+
 #include "contact/mesh.h"
 #include "math/vec3.h"
-#include "particles/set.h"
+#include "particles/wall.h"
 
 #include <string.h>
 

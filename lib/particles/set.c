@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Life time and editing of particle sets; nothing here moves a particle. */
 #include "particles/set.h"
+#include "particles/kept.h"
+#include "particles/list.h"
 
 #include <math.h>
 #include <string.h>

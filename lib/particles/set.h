@@ -373,7 +373,7 @@ static inline const se3di_kernels *se3di_particles_get_kernels(const se3di_parti
     return set->law == SE3DI_LAW_CALLBACK ? se3di_particle_kernels_callback() : set->kernels;
 }
 
-/* set.c: life time and editing. All-or-nothing; NO_MEMORY is the only failure. */
+/* Life time and editing: all-or-nothing; NO_MEMORY is the only failure. */
 void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator);
 void se3di_particles_destroy(se3di_particles *set);
 /* Deep copy into the uninitialised `copy`; on failure nothing is held. */
@@ -387,122 +387,9 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
 /* Remove where keep[index] is 0; the order of the others stays. The history must have been
  * collected. */
 void se3di_particles_filter(se3di_particles *set, const unsigned char *keep);
-/* A clone goes with a clone of the model, whose shapes its walls are from now on. */
-void se3di_particles_adopt(se3di_particles *set, const se3di_model *model);
-/* Take materials, shapes and settings from the model where it was edited since. */
-se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model);
-/* The mass of the lightest body that gives way to particles; infinite if none does. */
-double se3di_particles_lightest_body(const se3di_particles *set, const se3di_model *model);
-/* The index in the set's table of a material of the model, which is held from now on. Its users
- * must be counted where *first is 1. */
-se3d_status se3di_particles_hold(se3di_particles *set, const se3di_model *model, uint32_t material,
-                                 uint32_t *index, int *first);
 /* Grow an aligned block to hold `bytes`, keeping the first `keep` bytes. */
 se3d_status se3di_aligned_reserve(const se3d_allocator *allocator, se3di_aligned *memory,
                                   size_t bytes, size_t keep);
-/* kept.c: keep what a step changes, to come back to if it fails. Allocates only if the set has
- * grown. */
-se3d_status se3di_particles_keep(se3di_particles *set);
-void se3di_particles_come_back(se3di_particles *set); /* to what was kept last */
-void se3di_particles_forget(se3di_particles *set);    /* give its memory back */
-size_t se3di_particles_kept_memory(const se3di_particles *set);
 size_t se3di_particles_memory(const se3di_particles *set);
-
-/* grid.c, list.c: neighbours. */
-se3d_status se3di_particles_rebuild(se3di_particles *set); /* sort, list, active blocks */
-se3d_status se3di_particles_refresh(se3di_particles *set); /* active blocks from the list */
-/* Take the history out of the blocks; the lists are invalid then. */
-se3d_status se3di_particles_collect(se3di_particles *set);
-/* What was collected now belongs to particles of other indices (SE3DI_NO_INDEX: gone). */
-void se3di_particles_remap(se3di_particles *set, const uint32_t *new_index);
-/* Active blocks from the list and what was collected. */
-se3d_status se3di_particles_activate(se3di_particles *set);
-/* Candidates of walls. */
-se3d_status se3di_particles_list_walls(se3di_particles *set);
-/* Do something for every slab, on all threads at a time. */
-void se3di_particles_each_slab(se3di_particles *set, void (*work)(se3di_particles *, uint32_t));
-/* mesh.c: the same for pairs with meshes. */
-void se3di_particles_mesh_collect(se3di_particles *set);
-/* NULL: particles (walls) are as they were. */
-void se3di_particles_mesh_remap(se3di_particles *set, const uint32_t *new_index,
-                                const uint32_t *new_wall);
-se3d_status se3di_particles_mesh_activate(se3di_particles *set);
-void se3di_particles_mesh_forces(se3di_particles *set, const se3di_slab *slab,
-                                 se3di_force_task *task);
-/* Empty, of a wall. */
-void se3di_mesh_batch_begin(const se3di_particles *set, uint32_t wall, se3di_mesh_batch *batch);
-/* Append where the two touch now, with the history; returns 0 if there is no room. */
-int se3di_mesh_batch_add(const se3di_particles *set, const se3di_mesh_pair *pair,
-                         se3di_mesh_batch *batch);
-/* Grow an array to hold `needed` elements, a little more. */
-se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, size_t *capacity,
-                                 size_t needed);
-/* The vector between centres, to the nearest image. */
-void se3di_particles_wrap(const se3di_particles *set, double d[3]);
-/* A point in the frame of a wall's shape. */
-void se3di_wall_local(const se3di_wall *wall, const double x[3], double local[3]);
-/* The point of a wall's surface nearest to x, the normal there; the distance. */
-double se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3],
-                          double normal[3]);
-double se3di_wall_distance(const se3di_wall *wall, const double x[3]);
-/* Shapes are repeated with the period: if x is not within `reach` of the wall, but one of its
- * images is, make it that one. `length`: 0 without a period. */
-void se3di_wall_image(const se3di_wall *wall, const double length[3], double reach, double x[3]);
-/* The same with the periods of a set, to `out`. */
-void se3di_particles_image(const se3di_particles *set, const se3di_wall *wall, const double x[3],
-                           double reach, double out[3]);
-
-/* sweep.c: forces and motion. */
-/* Half kick of duration h/2 from the present forces and gravity. */
-void se3di_particles_kick(se3di_particles *set, double h);
-/* One or two half kicks of duration h/2 each and a drift by h, in one pass. */
-void se3di_particles_move(se3di_particles *set, int kicks, double h);
-/* The forces of all slabs, and for every slab, as soon as its forces are complete and nobody looks
- * at where it was, its motion. */
-void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
-                           const se3di_motion *motion);
-/* The larger one; NaN if one is NaN. */
-double se3di_larger(double a, double b);
-
-/* step.c: steps. */
-void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames);
-/* What a unit force on a wall does to its body, from now on: what its mass makes of it, or nothing,
- * where the bodies are moved by others (model NULL). */
-void se3di_particles_free_walls(se3di_particles *set, const se3di_model *model);
-/* Nothing moves and nothing will. */
-int se3di_particles_is_idle(const se3di_particles *set);
-/* Bring the lists up to date, evaluate all forces; springs advance by h (0: they stay). If
- * memory is missing, lists are made with a smaller skin, which needs none. */
-se3d_status se3di_particles_forces(se3di_particles *set, double h);
-/* After a failure: the forces are complete all the same. */
-int se3di_particles_is_complete(const se3di_particles *set, se3d_status status);
-/* Forces that belong to the state, with springs as they are. */
-se3d_status se3di_particles_prepare(se3di_particles *set);
-/* The automatic step with the model's materials. Infinite if there is nothing to resolve. */
-double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *model);
-/* One step of velocity Verlet; frames move the walls (NULL: they stay). */
-se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps,
-                                    const se3di_frame *frames);
-/* flow.c: sources, sinks, what has left. */
-/* What the sources give in the step to come, of duration h. */
-se3d_status se3di_sources_aim(se3di_particles *set, const se3di_model *model, double h);
-/* Insert what is due at the end of a step of duration h, between drift and forces. */
-se3d_status se3di_sources_feed(se3di_particles *set, double h);
-/* The sink that holds x, SE3DI_NO_INDEX: none. */
-uint32_t se3di_sinks_find(const se3di_particles *set, const double x[3]);
-/* Whether a particle is beyond the domain or falls without end. */
-int se3di_particles_is_out(const se3di_particles *set, size_t k);
-/* draw.c: splitmix64, uniform in [0, 1); a radius; a point such that a sphere of that
- * radius is within the box of a region; whether the region holds it. */
-double se3di_random_draw(uint64_t *state);
-double se3di_radii_draw(const se3di_radii *radii, uint64_t *state);
-void se3di_region_draw(const se3di_region *region, double radius, uint64_t *state, double x[3]);
-int se3di_region_holds(const se3di_region *region, const double x[3], double radius);
-
-/* contacts.c: contacts of the present lists as they are now; nothing changes. Counts all,
- * writes the first `capacity`. */
-se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity, void *contacts,
-                                     size_t size, size_t *count, double *force_max);
-uint64_t se3di_particles_hash(const se3di_particles *set);
 
 #endif

@@ -3,6 +3,11 @@
 
 #include "force/force.h"
 #include "math/vec3.h"
+#include "particles/flow.h"
+#include "particles/kept.h"
+#include "particles/step.h"
+#include "particles/sweep.h"
+#include "particles/sync.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,11 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Steps of particles: lists that hold what touches, forces, velocity Verlet, and what may fail.
  *                                                                      docs/theory/particles.md */
-#include "particles/set.h"
+
+#include "particles/step.h"
 
 #include "base/hash.h"
 #include "contact/encounter.h"
 #include "math/vec3.h"
+#include "particles/flow.h"
+#include "particles/grid.h"
+#include "particles/list.h"
+#include "particles/sweep.h"
+#include "particles/sync.h"
+#include "particles/wall.h"
 
 #include <math.h>
 #include <string.h>

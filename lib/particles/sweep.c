@@ -8,7 +8,9 @@
  * 0 2 1 4 3 ..., so that what it moves is still near it. Then it takes what nobody has begun from
  * the ends of the others' ranges: a few slabs do not divide evenly, and a thread may have lost its
  * processor. Who evaluates or moves a slab does not change the bits.   docs/theory/particles.md */
-#include "particles/set.h"
+
+#include "particles/sweep.h"
+#include "particles/mesh.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a set of particles takes from the model: materials and shapes. It keeps copies, and looks
  * again where the model was edited; the history of contacts goes along. */
-#include "particles/set.h"
+
+#include "particles/sync.h"
+#include "particles/list.h"
+#include "particles/mesh.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Walls as particles see them: how far they are, and which particles may touch them before the list
  * is built anew. */
+#include "particles/wall.h"
+
 #include "contact/mesh.h"
 #include "math/vec3.h"
-#include "particles/set.h"
+#include "particles/list.h"
 
 #include <math.h>
 

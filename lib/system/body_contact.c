@@ -2,6 +2,7 @@
 /* Contacts between bodies, read. */
 #include "contact/body_contacts.h"
 #include "math/vec3.h"
+#include "particles/contacts.h"
 #include "particles/set.h"
 #include "se3d/contact.h"
 #include "system/system_internal.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The particle sets that a system owns: found by name, cloned, saved and destroyed with it. */
+#include "particles/sync.h"
 #include "system/particles.h"
 
 #include <string.h>

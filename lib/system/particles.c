@@ -5,6 +5,10 @@
 #include "base/hash.h"
 #include "force/force.h"
 #include "math/vec3.h"
+#include "particles/flow.h"
+#include "particles/list.h"
+#include "particles/step.h"
+#include "particles/sync.h"
 
 #include <math.h>
 #include <string.h>

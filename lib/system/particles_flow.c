@@ -3,6 +3,7 @@
 #include "force/force.h"
 #include "math/vec3.h"
 #include "particles/fill.h"
+#include "particles/flow.h"
 #include "system/particles.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Particles and what they touch: wrenches on bodies, contacts as they are. */
 #include "math/vec3.h"
+#include "particles/contacts.h"
 #include "system/particles.h"
 
 #include <string.h>

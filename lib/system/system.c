@@ -7,6 +7,7 @@
 #include "base/hash.h"
 #include "joint/user.h"
 #include "math/vec3.h"
+#include "particles/step.h"
 #include "primitive/primitive.h"
 #include "primitive/turn_counter.h"
 

@@ -2,6 +2,7 @@
 /* Particles: editing, neighbours against a search of all pairs, conservation, walls, failures. */
 #include "check.h"
 #include "contact/restitution.h"
+#include "particles/grid.h"
 #include "se3d/se3d.h"
 #include "system/particles.h"
 

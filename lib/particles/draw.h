@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Random numbers (splitmix64), radii and places. */
+#ifndef SE3DI_PARTICLES_DRAW_H
+#define SE3DI_PARTICLES_DRAW_H
+
+#include "particles/set.h"
+
+/* Uniform in [0, 1); a radius; a point such that a sphere of that
+ * radius is within the box of a region; whether the region holds it. */
+double se3di_random_draw(uint64_t *state);
+double se3di_radii_draw(const se3di_radii *radii, uint64_t *state);
+void se3di_region_draw(const se3di_region *region, double radius, uint64_t *state, double x[3]);
+int se3di_region_holds(const se3di_region *region, const double x[3], double radius);
+
+#endif
