@@ -11,6 +11,7 @@
 #include "assembly/energy.h"
 #include "assembly/loads.h"
 #include "integrator/turns.h"
+#include "math/steps.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
@@ -156,7 +157,9 @@ static double choose_step(const se3di_equations *equations, double remaining, do
                           double shortest)
 {
     const se3di_assembly *assembly = &equations->assembly;
-    double h = step > 0.0 ? remaining / ceil(remaining / step - 1e-9) : remaining;
+    double h = step > 0.0 ? remaining / se3di_steps_count(remaining, step,
+                                                          assembly->model->time + remaining)
+                          : remaining;
     double turn = 0.0;
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         uint32_t body = assembly->free_body[k];

@@ -13,6 +13,7 @@
 #include "base/log.h"
 #include "contact/pace.h"
 #include "integrator/turns.h"
+#include "math/steps.h"
 #include "math/vec3.h"
 #include "nonlinear/ranks.h"
 #include "primitive/turn_counter.h"
@@ -355,7 +356,7 @@ static se3d_status choose_step(const se3di_run *run, double t_end, double *h)
     double rest = t_end - run->model->time;
     double asked = integration->settings.step;
     if (asked > 0.0) {
-        *h = rest / fmax(1.0, ceil(rest / asked - 1e-9));
+        *h = rest / se3di_steps_count(rest, asked, t_end);
         return se3di_contacts_check_step(run->model, pace_of(integration), *h, run->error);
     }
     *h = se3di_contacts_next_step(run->model, pace_of(integration), integration->settings.step_most,
@@ -446,7 +447,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
     run->refused = 1;
     SE3DI_TRY(se3di_jump_refuse(&run->equations.assembly, t_end, step, run->error));
     run->refused = 0;
-    SE3DI_TRY(begin_dynamics(run, remaining / fmax(1.0, ceil(remaining / step - 1e-9))));
+    SE3DI_TRY(begin_dynamics(run, remaining / se3di_steps_count(remaining, step, t_end)));
     if (!has_step_control(integration)) {
         return run_fixed_steps(run, t_end);
     }

@@ -15,6 +15,7 @@
 #include "contact/pace_stop.h"
 #include "force/force.h"
 #include "math/elementary.h"
+#include "math/steps.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -291,7 +292,7 @@ double se3di_contacts_next_step(const se3di_model *model, se3di_pace_kind kind, 
                                 double t_end)
 {
     double rest = t_end - model->time;
-    double step = rest / fmax(1.0, ceil(rest / h - 1e-9));
+    double step = rest / se3di_steps_count(rest, h, t_end);
     double paced = se3di_contacts_pace(model, kind, step);
     return paced < step && rest < 2.0 * paced ? 0.5 * rest : paced;
 }

@@ -9,6 +9,7 @@
  * docs/theory/verlet.md */
 #include "contact/pace.h"
 #include "integrator/lie_verlet.h"
+#include "math/steps.h"
 #include "particles/sets.h"
 
 #include <math.h>
@@ -144,7 +145,7 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
     se3d_status status = SE3D_OK;
     while (m.model->time < t_end && status >= 0 && status != SE3D_INFO_EVENT) {
         double rest = t_end - m.model->time;
-        double h = rest / fmax(1.0, ceil(rest / most - 1e-9));
+        double h = rest / se3di_steps_count(rest, most, t_end);
         status = se3di_equations_try_step(integration->equations, m.model->time);
         if (status >= 0 && asked) {
             status = se3di_contacts_check_step(m.model, SE3DI_PACE_EXPLICIT, h, m.error);
@@ -198,7 +199,7 @@ static se3d_status run(se3di_integration *integration, double t_end)
     double wanted = se3di_sets_step(model);
     h = model->contact.step > 0.0 ? fmin(h, model->contact.step) : h;
     h = wanted > 0.0 ? fmin(h, wanted) : h;
-    double count = fmax(1.0, ceil((t_end - model->time) / h - 1e-9));
+    double count = se3di_steps_count(t_end - model->time, h, t_end);
     if (count > SE3DI_STEPS_MOST) {
         return se3di_error_set(integration->equations->error, SE3D_ERR_STEP_COUNT,
                                "a step of %g s needs %g steps from t = %g s to %g s, must be at "

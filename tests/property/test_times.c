@@ -5,6 +5,7 @@
 #include "se3d/se3d.h"
 
 #include <float.h>
+#include <math.h>
 
 #define METHODS 10
 
@@ -62,6 +63,33 @@ static void a_run_may_go_to_where_steps_have_led(void)
     }
 }
 
+/* After hours of steps the rounding of the time is a part of a step: a run by steps of given
+ * length, in parts, took 16,736 steps in place of 10,000 at 1e5 s. All times are rounded. */
+static void runs_at_late_times_take_as_many_steps_as_early_ones(void)
+{
+    static const double starts[] = {0.0, -1e5, 1e5, 1e7};
+    static const int32_t methods[] = {SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET,
+                                      SE3D_METHOD_GENERALIZED_ALPHA, SE3D_METHOD_HHT};
+    for (size_t k = 0; k < 16; ++k) {
+        fall f;
+        se3d_solver_def def = se3d_solver_def_default();
+        se3d_solver_stats stats;
+        const double start = starts[k / 4];
+        double v[3];
+        def.method = methods[k % 4];
+        def.step = 1e-4;
+        make(&f, &def, start);
+        for (int part = 1; part <= 100; ++part) {
+            CHECK(se3d_solver_run(f.solver, start + 1e-3 * part) >= 0);
+        }
+        CHECK(!se3d_solver_get_stats(f.solver, &stats));
+        CHECK(stats.steps >= 1000 && stats.steps <= 1001);
+        CHECK(!se3d_body_get_velocity(f.system, f.body, v));
+        CHECK_NEAR(v[2], -0.981, 1e-9 + 9.81 * 1000.0 * DBL_EPSILON * fabs(start));
+        destroy(&f);
+    }
+}
+
 static void a_time_before_the_present_one_is_refused(void)
 {
     fall f;
@@ -94,6 +122,7 @@ static void no_horizon_is_none_at_negative_times(void)
 int main(void)
 {
     RUN(a_run_may_go_to_where_steps_have_led);
+    RUN(runs_at_late_times_take_as_many_steps_as_early_ones);
     RUN(a_time_before_the_present_one_is_refused);
     RUN(no_horizon_is_none_at_negative_times);
     return check_finish();

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Into how many equal steps a way in time is divided. */
+#ifndef SE3DI_MATH_STEPS_H
+#define SE3DI_MATH_STEPS_H
+
+#include <float.h>
+#include <math.h>
+
+/* As many steps of at most `step` as the time `rest` until `t_end` takes, at least 1; it may be
+ * longer than a number of steps by its rounding, which is that of the times and grows with them. */
+static inline double se3di_steps_count(double rest, double step, double t_end)
+{
+    const double rounding = 1e-9 + 4.0 * DBL_EPSILON * fabs(t_end) / step;
+    return fmax(1.0, ceil(rest / step - fmin(rounding, 0.5)));
+}
+
+#endif
