@@ -290,7 +290,7 @@ static void random_mechanisms_never_jam_nor_gain_energy(void)
     }
 }
 
-/* ---- friction that is none ---- */
+/* ---- null friction ---- */
 
 #define DOUBLE_PENDULUM(forces)                                                                    \
     "se3d: 1\nbodies:\n"                                                                           \
