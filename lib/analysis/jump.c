@@ -4,6 +4,8 @@
  * as the times are resolved. */
 #include "analysis/jump.h"
 
+#include "expression/expression.h"
+
 #include <math.h>
 #include <stdio.h>
 
@@ -150,7 +152,9 @@ int se3di_jump_find_kink(const se3di_assembly *assembly, double t_end, se3di_kin
     for (uint32_t timed = 0; timed < assembly->timed_count && range[1] > range[0]; ++timed) {
         const uint32_t row = assembly->timed_rows[timed];
         const search s = {&model->functions[model->rows[row].function], 1, 0};
-        if (!s.function->callback && look_for_kink(&s, range, kink)) {
+        const int is_smooth =
+            s.function->expression && se3di_expression_is_smooth(s.function->expression);
+        if (!s.function->callback && !is_smooth && look_for_kink(&s, range, kink)) {
             kink->row = row;
             range[1] = kink->t; /* an earlier one counts */
             found = 1;

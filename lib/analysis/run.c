@@ -143,7 +143,7 @@ static se3d_status build(se3di_run *run)
     run->equations.iterations_max = run->integration.settings.iterations_max;
     run->integration.equations = &run->equations;
     run->prepared = 1;
-    run->told_redundant = run->told_left_out = 0;
+    run->told_redundant = run->told_left_out = run->told_kink = 0;
     run->integration.step_error = (se3di_step_error){0.0, 0.0, 0.0};
     run->determined = 0;
     run->values_version = run->model->values_version;
@@ -434,6 +434,22 @@ static void tell_reach(se3di_run *run)
     }
 }
 
+/* Velocities jump with the rate; what the impulse does is in no account. */
+static void warn_of_kink(se3di_run *run, double t_end)
+{
+    se3di_kink kink;
+    char name[128];
+    if (run->told_kink || !se3di_jump_find_kink(&run->equations.assembly, t_end, &kink)) {
+        return;
+    }
+    run->told_kink = 1;
+    se3di_row_name(run->model, kink.row, name, sizeof name);
+    se3di_log_write(run->error, SE3D_LOG_WARNING,
+                    "t = %.9g s: the rate of %s jumps: velocities follow at the next step, but the "
+                    "energy does not count the work of the impulse; a smooth function avoids it",
+                    kink.t, name);
+}
+
 /* The method in use, to t_end or to where an event ends it or it has to be left. */
 static se3d_status run_method(se3di_run *run, double t_end)
 {
@@ -447,6 +463,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
     run->refused = 1;
     SE3DI_TRY(se3di_jump_refuse(&run->equations.assembly, t_end, step, run->error));
     run->refused = 0;
+    warn_of_kink(run, t_end);
     SE3DI_TRY(begin_dynamics(run, remaining / se3di_steps_count(remaining, step, t_end)));
     if (!has_step_control(integration)) {
         return run_fixed_steps(run, t_end);

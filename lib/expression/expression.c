@@ -2,6 +2,7 @@
 /* The public functions: one block of memory per expression, code and text behind the header. */
 #include "expression/expression.h"
 
+#include "expression/functions.h"
 #include "expression/names.h"
 #include "expression/parser.h"
 
@@ -226,6 +227,34 @@ se3d_status se3d_expression_eval_gradient(const se3d_expression *expression, con
 int se3d_expression_is_constant(const se3d_expression *expression)
 {
     return expression && expression->code_count == 1 && expression->code[0].op == SE3DI_OP_CONSTANT;
+}
+
+static int is_smooth(const se3di_instruction *in)
+{
+    switch (in->op) {
+    case SE3DI_OP_UNARY:
+        return se3di_function_is_smooth(in->function);
+    case SE3DI_OP_POWER:
+        return in->value >= 0.0 && in->value == floor(in->value);
+    case SE3DI_OP_BINARY:
+    case SE3DI_OP_SELECT:
+    case SE3DI_OP_STEP:
+    case SE3DI_OP_JUMP:
+    case SE3DI_OP_JUMP_IF_ZERO:
+        return 0;
+    default:
+        return 1;
+    }
+}
+
+int se3di_expression_is_smooth(const se3d_expression *expression)
+{
+    for (size_t k = 0; k < expression->code_count; ++k) {
+        if (!is_smooth(&expression->code[k])) {
+            return 0;
+        }
+    }
+    return 1;
 }
 
 const char *se3d_expression_get_text(const se3d_expression *expression)

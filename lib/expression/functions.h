@@ -38,6 +38,9 @@ extern const size_t se3di_function_count;
 /* Index of the function or operator called `name` (not terminated), or SE3DI_FUNCTION_NONE. */
 size_t se3di_function_find(const char *name, size_t length);
 
+/* Whether its derivatives exist wherever its value does (abs, sqrt, asin, mod have none at places). */
+int se3di_function_is_smooth(size_t function);
+
 /* u^c for a constant c: f, f', f''. Exact conventions at u = 0 and u < 0 for integer c. */
 void se3di_function_power(double u, double c, double d[3]);
 

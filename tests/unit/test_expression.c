@@ -403,6 +403,25 @@ static void only_the_branch_taken_counts(void)
     CHECK(jet_at("sign(sqrt(t))", -1, jet) == SE3D_ERR_NOT_FINITE);
 }
 
+static void what_may_have_kinks_is_known(void)
+{
+    static const char *const smooth[] = {"3", "pi/4*cos(2*t)", "t^3 - 2*t/(1 + t)",
+                                         "exp(-t)*tanh(1e4*t)"};
+    static const char *const kinked[] = {"abs(t)",        "sqrt(t^2)",       "(t^2)^0.5",
+                                         "if(t<1,0,t-1)", "max(t, 1)",       "mod(t, 1)",
+                                         "acos(cos(t))",  "step(t,0,2,3,4)", "hypot(t, L-2)"};
+    for (size_t k = 0; k < sizeof smooth / sizeof *smooth; ++k) {
+        se3d_expression *e = compile(smooth[k]);
+        CHECK(se3di_expression_is_smooth(e));
+        se3d_expression_destroy(e);
+    }
+    for (size_t k = 0; k < sizeof kinked / sizeof *kinked; ++k) {
+        se3d_expression *e = compile(kinked[k]);
+        CHECK(!se3di_expression_is_smooth(e));
+        se3d_expression_destroy(e);
+    }
+}
+
 static void constants_are_folded(void)
 {
     static const struct {
@@ -825,6 +844,7 @@ int main(void)
     RUN(kinks_follow_the_documented_conventions);
     RUN(singular_derivatives_along_other_variables_do_not_matter);
     RUN(only_the_branch_taken_counts);
+    RUN(what_may_have_kinks_is_known);
     RUN(constants_are_folded);
     RUN(every_bad_text_is_named_with_its_column);
     RUN(limits_are_kept);
