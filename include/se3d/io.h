@@ -281,8 +281,8 @@ typedef struct se3d_run_analysis {
                                bodies above */
     const char *left_out;    /* equations that are redundant but for the digits of their data, with
                                what they are off by at the end, "": none */
-    double tolerance;       /* that was asked for [relative]; 0: the analysis controls no errors */
-    double reached;         /* as se3d_solver_get_tolerance [relative] */
+    double tolerance;        /* that was asked for [relative]; 0: the analysis controls no errors */
+    double reached;          /* as se3d_solver_get_tolerance [relative] */
 } se3d_run_analysis;
 
 /* Count the analyses that a run began. @return the number; 0 for NULL. @since 0.1 */

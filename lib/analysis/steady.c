@@ -12,7 +12,7 @@
 #include <string.h>
 
 #define TURN     1e-3 /* rad, of the fastest body */
-#define CONSTANT 1e-7 /* relative change of coefficients that are constant */
+#define CONSTANT 1e-6 /* relative change of coefficients that are constant: .1 % a radian */
 #define SLOW     1e-6 /* of the frequencies: a motion that changes no coefficient */
 
 enum { BODY_AXES, CARRIER_AXES, GROUND_AXES, KINDS_OF_AXES };

@@ -13,7 +13,7 @@ se3d_status se3di_expression_clone(const se3d_expression *expression,
 /* Number of variables it was compiled for. */
 size_t se3di_expression_variable_count(const se3d_expression *expression);
 
-/* Whether it is known to have derivatives wherever it has a value: no |x|, no condition, no root. */
+/* Whether it has derivatives wherever it has a value, for certain: no |x|, condition or root. */
 int se3di_expression_is_smooth(const se3d_expression *expression);
 
 #endif

@@ -38,7 +38,7 @@ extern const size_t se3di_function_count;
 /* Index of the function or operator called `name` (not terminated), or SE3DI_FUNCTION_NONE. */
 size_t se3di_function_find(const char *name, size_t length);
 
-/* Whether its derivatives exist wherever its value does (abs, sqrt, asin, mod have none at places). */
+/* Whether it has derivatives wherever it has a value (abs, sqrt, asin, mod have not). */
 int se3di_function_is_smooth(size_t function);
 
 /* u^c for a constant c: f, f', f''. Exact conventions at u = 0 and u < 0 for integer c. */
