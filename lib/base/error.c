@@ -30,20 +30,13 @@ void se3di_error_format(char *text, size_t size, const char *format, va_list arg
     se3di_text_make_plain(text); /* a name may have been cut in a character */
 }
 
-/* Record the message behind its first `used` bytes. */
-static void record(se3di_error *error, se3d_status status, size_t used, const char *format,
-                   va_list arguments)
-{
-    se3di_error_format(error->message + used, sizeof error->message - used, format, arguments);
-    error->status = status;
-}
-
 se3d_status se3di_error_set(se3di_error *error, se3d_status status, const char *format, ...)
 {
     if (error) {
         va_list arguments;
         va_start(arguments, format);
-        record(error, status, 0, format, arguments);
+        se3di_error_format(error->message, sizeof error->message, format, arguments);
+        error->status = status;
         va_end(arguments);
         error->field[0] = '\0';
     }
@@ -57,9 +50,11 @@ se3d_status se3di_error_set_of(se3di_error *error, const char *field, se3d_statu
         va_list arguments;
         snprintf(error->message, sizeof error->message, "%s", field);
         snprintf(error->field, sizeof error->field, "%.*s", (int)strcspn(field, "[."), field);
+        const size_t used = strlen(error->message);
         va_start(arguments, format);
-        record(error, status, strlen(error->message), format, arguments);
+        se3di_error_format(error->message + used, sizeof error->message - used, format, arguments);
         va_end(arguments);
+        error->status = status;
     }
     return status;
 }

@@ -16,7 +16,11 @@ typedef struct text {
 
 static text schema, reference, written;
 
-static void put(text *t, const char *format, ...)
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+static void
+put(text *t, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);

@@ -48,7 +48,7 @@ static void close_squeezer(const squeezer *s)
 static double angle_of(const squeezer *s, const char *pin)
 {
     se3d_constraint joint;
-    double angle = NAN;
+    double angle = (double)NAN;
     CHECK(!se3d_constraint_find(s->system, pin, &joint));
     CHECK(!se3d_joint_get_coordinate(s->system, joint, SE3D_JOINT_COORDINATE_ANGLE, &angle, NULL,
                                      NULL));

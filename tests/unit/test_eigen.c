@@ -204,7 +204,7 @@ static void *no_memory(void *context, size_t size)
 static void bad_matrices_are_refused(void)
 {
     se3d_allocator allocator = se3di_alloc_default();
-    const double bad[2] = {NAN, INFINITY};
+    const double bad[2] = {(double)NAN, HUGE_VAL};
     for (int j = 0; j < 2; ++j) {
         for (int32_t k = 0; k < 9; ++k) {
             A[k] = k == 6 ? bad[j] : 1.0 + k;
