@@ -257,7 +257,8 @@ static se3d_status recall(se3di_run *run)
     if (!run->integration.method->advance || !(model->history[SE3DI_HISTORY_TIME] > model->time)) {
         return SE3D_OK;
     }
-    se3di_forces_recall(model);
+    se3di_forces_show(model, 1);
+    se3di_forces_stay(model);
     se3di_contacts_begin(model, 0.0, 1.0, 0);
     return model->contacts.pair_count > 0 ? se3di_contacts_show(model, model->time, run->error)
                                           : SE3D_OK;
@@ -724,23 +725,11 @@ static double last_accepted(const se3di_run *run, double t_end)
     return model->history[passed ? SE3DI_HISTORY_BEGIN : SE3DI_HISTORY_TIME];
 }
 
-/* The state at t: the end of an accepted step, or the beginning of the one that goes on after it,
- * which elements with a memory have seen the end of already. */
+/* The state at t: the end of an accepted step, or the beginning of the one after it. */
 static se3d_status show_accepted(se3di_run *run, double t)
 {
-    se3di_model *model = run->model;
-    const int passed = model->history[SE3DI_HISTORY_TIME] > t;
-    double *memory = run->equations.kept.memory.data;
-    se3di_user_begin(model);
-    if (passed && model->force_slots.count > 0) {
-        se3di_model_save_memory(model, memory);
-        se3di_forces_recall(model);
-    }
-    const se3d_status status = run->integration.method->run(&run->integration, t);
-    if (passed && model->force_slots.count > 0) {
-        se3di_model_restore_memory(model, memory);
-    }
-    return status;
+    se3di_user_begin(run->model);
+    return run->integration.method->run(&run->integration, t);
 }
 
 static void restore_before(se3di_run *run)

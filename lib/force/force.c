@@ -90,6 +90,7 @@ void se3di_stops_accept(se3di_model *model)
 void se3di_forces_accept(se3di_model *model)
 {
     se3di_frictions_take_loads(model, model->lambda);
+    model->shows_before = 0;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force_class *type = classes[model->forces[k].type];
         double *state = model->forces[k].state;
@@ -100,10 +101,25 @@ void se3di_forces_accept(se3di_model *model)
     }
 }
 
-void se3di_forces_recall(se3di_model *model)
+void se3di_forces_show(se3di_model *model, int is_before_end)
 {
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        double *state = model->forces[k].state;
-        memcpy(state, state + SE3DI_FORCE_BEFORE, SE3DI_FORCE_BEFORE * sizeof *state);
+    if (model->shows_before == is_before_end) {
+        return;
     }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        double *state = model->forces[k].state, now[SE3DI_FORCE_BEFORE];
+        memcpy(now, state, sizeof now);
+        memcpy(state, state + SE3DI_FORCE_BEFORE, sizeof now);
+        memcpy(state + SE3DI_FORCE_BEFORE, now, sizeof now);
+    }
+    model->shows_before = is_before_end;
+}
+
+void se3di_forces_stay(se3di_model *model)
+{
+    for (size_t k = 0; model->shows_before && k < model->force_slots.count; ++k) {
+        double *state = model->forces[k].state;
+        memcpy(state + SE3DI_FORCE_BEFORE, state, SE3DI_FORCE_BEFORE * sizeof *state);
+    }
+    model->shows_before = 0;
 }

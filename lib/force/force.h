@@ -69,8 +69,11 @@ se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench
 uint32_t se3di_forces_revise(se3di_model *model);
 /* The state of the model is accepted. */
 void se3di_forces_accept(se3di_model *model);
-/* The last accepted state is not taken: what was remembered before it. */
-void se3di_forces_recall(se3di_model *model);
+/* Whether a state before the end of the last accepted step is shown (1): what acts on it is as it
+ * was on the way there. What elements remember of the end is kept, to the bit. */
+void se3di_forces_show(se3di_model *model, int is_before_end);
+/* What is shown is the last accepted state: of an end after it nothing is remembered. */
+void se3di_forces_stay(se3di_model *model);
 /* Some element has a memory. */
 int se3di_forces_have_memory(const se3di_model *model);
 /* The element has a memory. */

@@ -14,6 +14,7 @@
 
 #include "assembly/energy.h"
 #include "contact/pace.h"
+#include "force/force.h"
 #include "math/elementary.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -393,6 +394,7 @@ static se3d_status advance(se3di_bdf *m, double t_end)
 {
     double longer;
     int order = (int)m->header[BDF_ORDER];
+    se3di_forces_show(m->assembly->model, 0);
     m->h = pace(m, t_end, &longer);
     for (int times = 1;; ++times, longer = 0.0) {
         errors e;
@@ -439,6 +441,7 @@ static se3d_status adopt(se3di_bdf *m)
     se3di_state_scale scale = {.length = se3di_state_length(model),
                                .speed = m->header[BDF_SPEED],
                                .spin = m->header[BDF_SPIN]};
+    se3di_forces_stay(model);
     se3di_bdf_drop_from(m, model->time);
     se3di_state_get(m->assembly, m->y);
     se3di_bdf_push(m, m->y, model->time);
@@ -514,6 +517,7 @@ static se3d_status publish(se3di_bdf *m, double t, int project)
 {
     const se3di_state_scale scale = se3di_bdf_get_scale(m);
     const int at_begin = !(t > m->header[BDF_BEGIN]) && m->header[BDF_POINTS] > 1.0;
+    se3di_forces_show(m->assembly->model, t < m->header[BDF_TIME]);
     if (t < m->header[BDF_TIME] && at_begin) { /* the end of the step before, to the bit */
         memcpy(m->y, m->points + m->count, m->count * sizeof *m->y);
     } else if (t < m->header[BDF_TIME]) {
@@ -548,6 +552,7 @@ static se3d_status step(se3di_integration *integration, double h)
     } else if (m.header[BDF_STARTS] > 0.0 && m.header[BDF_BEGIN] == t0) {
         m.header[BDF_POINTS] = 1.0; /* no step was made yet: without the state before the start */
     }
+    se3di_forces_show(m.assembly->model, 0);
     const int order = se3di_bdf_get_top(&m);
     const int is_bdf = se3di_bdf_is_even(&m, order, h);
     m.h = h;

@@ -72,6 +72,7 @@ typedef struct rk {
     double *y;          /* state of a stage */
     double *sum, *sum3; /* error estimates */
     double *memory;     /* [forces * SE3DI_FORCE_STATES] */
+    double *next;       /* derivative that the next step begins with */
     double tolerance;
     double fraction;        /* of the step, that a turn of friction asks for; 0: none does */
     se3di_kkt_settings kkt; /* of the model's linear solver, to come back to */
@@ -308,7 +309,7 @@ static void accept(rk *m, double h)
     memcpy(m->y, m->y + work, SE3DI_STATE_WORK * sizeof *m->y); /* y_1 before the projection */
     se3di_state_get(m->assembly, m->y1);
     memcpy(m->y1 + work, m->y, SE3DI_STATE_WORK * sizeof *m->y);
-    memcpy(m->f1, end_derivative(m), m->count * sizeof *m->f1);
+    memcpy(m->f1, m->next, m->count * sizeof *m->f1);
     grow_scale(m, m->f1);
     double dependent = se3di_kkt_get_dependent_rows(m->equations->kkt);
     m->header[RK_REDUNDANT] = fmin(m->header[RK_REDUNDANT], dependent);
@@ -318,12 +319,14 @@ static void accept(rk *m, double h)
 }
 
 /* Elements with a memory (stick or slip, stops) change it between steps: *error is raised to what
- * that says of the step, and the memory stays as it was if that is too much. */
+ * that says of the step, and the memory stays as it was if that is too much. The derivative after
+ * the change is the next step's; the interpolation of this one ends with that before. */
 static se3d_status settle_memory(rk *m, double h, double *error)
 {
     se3di_model *model = m->assembly->model;
     const double t = m->header[RK_T1] + h;
     m->fraction = 0.0;
+    m->next = end_derivative(m);
     if (!se3di_forces_have_memory(model)) {
         return SE3D_OK;
     }
@@ -337,9 +340,10 @@ static se3d_status settle_memory(rk *m, double h, double *error)
         se3di_model_restore_memory(model, m->memory);
         return SE3D_OK;
     }
-    return end.has_changed ? se3di_state_derivative(m->assembly, t, m->equations->x,
-                                                    m->equations->l, end_derivative(m))
-                           : SE3D_OK;
+    m->next = end.has_changed ? m->sum : m->next;
+    return end.has_changed
+               ? se3di_state_derivative(m->assembly, t, m->equations->x, m->equations->l, m->next)
+               : SE3D_OK;
 }
 
 /* All that may fail before the state is accepted; *error as from settle_memory. */
@@ -526,6 +530,7 @@ static se3d_status advance(rk *m, double t_end)
 {
     double h = m->header[RK_NEXT], header[RK_HEADER];
     memcpy(header, m->header, sizeof header);
+    se3di_forces_show(m->assembly->model, 0);
     se3di_state_set(m->assembly, m->y1);
     se3di_state_set_rates(m->assembly, m->f1);
     se3di_angles_accept(m->assembly->model); /* turns count from step to step, not from an output */
@@ -577,15 +582,16 @@ static se3d_status build_dense(rk *m)
 {
     const se3di_rk_tableau *tableau = m->tableau;
     double h = m->header[RK_T1] - m->header[RK_T0];
+    se3di_forces_show(m->assembly->model, 1);
     for (int k = tableau->stages + 1; k < tableau->total; ++k) {
         SE3DI_TRY(evaluate_stage(m, m->header[RK_T0], h, k));
     }
-    const double *f0 = m->K;
+    const double *f0 = m->K, *f1 = end_derivative(m);
     double *F0 = m->forms, *F1 = F0 + m->count, *F2 = F1 + m->count;
     for (size_t k = 0; k < m->count; ++k) {
         F0[k] = m->y1[k] - m->y0[k];
         F1[k] = h * f0[k] - F0[k];
-        F2[k] = 2.0 * F0[k] - h * (f0[k] + m->f1[k]);
+        F2[k] = 2.0 * F0[k] - h * (f0[k] + f1[k]);
     }
     for (int row = 0; row < tableau->dense_rows; ++row) {
         combine(m, NULL, h, tableau->d[row], tableau->total, F2 + (size_t)(row + 1) * m->count);
@@ -611,6 +617,7 @@ static void interpolate(const rk *m, double t, double *y)
 static se3d_status adopt(rk *m)
 {
     se3di_assembly *assembly = m->assembly;
+    se3di_forces_stay(assembly->model);
     m->header[RK_T1] = m->header[RK_T0] = assembly->model->time;
     m->header[RK_DENSE] = 0.0;
     se3di_state_get(assembly, m->y1);
@@ -625,6 +632,7 @@ static se3d_status adopt(rk *m)
 static se3d_status publish(rk *m, int at_end)
 {
     const se3di_state_scale scale = get_scale(m);
+    se3di_forces_show(m->assembly->model, !at_end);
     return se3di_state_publish(m->equations, at_end ? m->y1 : m->y0,
                                m->header[at_end ? RK_T1 : RK_T0], &scale, 0);
 }
@@ -733,6 +741,7 @@ se3d_status se3di_rk_step(se3di_integration *integration, double h)
     if (m.header[RK_T1] != m.assembly->model->time) {
         status = adopt(&m);
     }
+    se3di_forces_show(m.assembly->model, 0);
     m.tolerance = HUGE_VAL; /* no error control */
     status = status < 0 ? status : step_once(&m, h, &reported);
     se3di_state_end(m.equations, &m.kkt);
@@ -782,6 +791,7 @@ se3d_status se3di_rk_run(se3di_integration *integration, double t_end)
         return publish(&m, m.header[RK_T1] <= t_end);
     }
     interpolate(&m, t_end, m.y);
+    se3di_forces_show(m.assembly->model, 1);
     se3di_state_scale scale = get_scale(&m);
     return se3di_state_publish(m.equations, m.y, t_end, &scale, 1);
 }

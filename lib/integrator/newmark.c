@@ -183,9 +183,10 @@ static void grow_scales(const se3di_assembly *assembly, const se3di_newmark_hist
 static se3d_status adopt(se3di_integration *integration, const se3di_newmark *method, double h)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
-    const se3di_model *model = assembly->model;
+    se3di_model *model = assembly->model;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
     const double next = past.header[SE3DI_NEWMARK_NEXT];
+    se3di_forces_stay(model);
     SE3DI_TRY(restart(integration, method, h));
     const double redundant = past.header[SE3DI_NEWMARK_REDUNDANT];
     const double place = past.header[SE3DI_NEWMARK_PLACE];
@@ -236,6 +237,7 @@ static void load(se3di_assembly *assembly, const se3di_newmark_history *past)
 {
     se3di_model *model = assembly->model;
     const double *y = past->y;
+    se3di_forces_show(model, 0);
     for (uint32_t k = 0; k < assembly->body_count; ++k, y += SE3DI_STATE_SIZE) {
         se3di_frame *frame = &model->frames[assembly->free_body[k]];
         copy(frame->r, y, 3);

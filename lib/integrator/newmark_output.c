@@ -4,6 +4,7 @@
 #include "integrator/newmark.h"
 
 #include "assembly/loads.h"
+#include "force/friction.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 
@@ -130,6 +131,9 @@ static se3d_status set_accelerations(se3di_integration *integration, double t, d
                         : past.lambda_begin[k];
         }
         se3di_assembly_set_acceleration(assembly, guess);
+        if (model->shows_before) {
+            se3di_frictions_take_loads(model, model->lambda);
+        }
     }
     return SE3D_OK;
 }
@@ -147,6 +151,7 @@ se3d_status se3di_newmark_publish(se3di_integration *integration, double t)
         integration->work + 7 * (size_t)assembly->unknown_count + 2 * (size_t)assembly->row_count;
     const int is_end = !(end - t > SE3DI_NEWMARK_SAME_TIME * last);
     se3di_newmark_interpolate(integration, is_end ? end : t, y);
+    se3di_forces_show(assembly->model, !is_end);
     se3di_state_set(assembly, y);
     if (!is_end && t > header[SE3DI_NEWMARK_BEGIN]) { /* not the end of the step before */
         SE3DI_TRY(se3di_state_project(equations, t, &scale, 1e-15, 0));

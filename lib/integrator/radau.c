@@ -14,6 +14,7 @@
 
 #include "assembly/energy.h"
 #include "contact/pace.h"
+#include "force/force.h"
 #include "math/elementary.h"
 #include "math/quaternion.h"
 #include "primitive/turn_counter.h"
@@ -266,6 +267,7 @@ static se3d_status accept(se3di_radau *m, const history *past)
 static se3d_status begin_step(se3di_radau *m, se3di_integration *integration, const history *past)
 {
     se3di_radau_begin(m, integration);
+    se3di_forces_show(m->assembly->model, 0);
     m->t = past->header[RADAU_TIME];
     m->y0 = past->y1;
     m->scale = get_scale(past);
@@ -418,6 +420,7 @@ static se3d_status adopt(se3di_integration *integration)
     double *f1 = past.d; /* no use yet */
     se3di_state_scale scale = {.length = se3di_state_length(assembly->model)};
     const double next = past.header[RADAU_NEXT];
+    se3di_forces_stay(assembly->model);
     memset(past.header, 0, history_count(assembly) * sizeof *past.header);
     past.header[RADAU_NEXT] = next;
     se3di_state_get(assembly, past.y1);
@@ -457,6 +460,7 @@ static se3d_status publish(se3di_integration *integration, double t)
     const history past = get_history(assembly);
     const double *header = past.header;
     se3di_state_scale scale = get_scale(&past);
+    se3di_forces_show(assembly->model, t < header[RADAU_TIME]);
     if (!(t < header[RADAU_TIME])) {
         return se3di_state_publish(integration->equations, past.y1, header[RADAU_TIME], &scale, 0);
     }

@@ -70,7 +70,7 @@ void se3di_model_touch_state(se3di_model *model)
     if (!model->remembers) {
         return;
     }
-    model->remembers = 0;
+    model->remembers = model->shows_before = 0;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         memset(model->forces[k].state, 0, sizeof model->forces[k].state);
     }

@@ -136,7 +136,7 @@ typedef enum se3di_force_type {
     5 /* h or the components of a load (0, 1, 2), spring (3), damper (4) */
 #define SE3DI_FORCE_STATES                                                                         \
     16 /* what an element remembers of the accepted states: of the last one, */
-#define SE3DI_FORCE_BEFORE 8 /* and from here on, of the one before */
+#define SE3DI_FORCE_BEFORE 8 /* and from here on, of the way there from the one before */
 
 typedef struct se3di_force {
     char *name;
@@ -190,7 +190,8 @@ typedef struct se3di_model {
     uint32_t left_out_count;   /* rows that are */
     double left_out_gap;       /* the largest violation of those in an accepted state, relative, */
     uint32_t left_out_row;     /* its row; 0 after it was told */
-    int32_t reserved;
+    int32_t shows_before;      /* 1: the halves of what force elements remember are exchanged, see
+                                  se3di_forces_show */
 
     se3di_slots body_slots; /* count = bodies, [0] the ground */
     se3di_body *bodies;

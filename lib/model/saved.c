@@ -93,6 +93,7 @@ se3d_status se3di_saved_fill(se3di_saved *saved, const se3di_model *model,
     saved->contact_step = model->contacts.step;
     saved->work_valid = model->work_valid;
     saved->settled = model->settled;
+    saved->shows_before = model->shows_before;
     saved->history_tag = model->history_tag;
     saved->history_redundant = model->history_redundant;
     saved->history_inputs = model->history_inputs;
@@ -150,6 +151,7 @@ void se3di_saved_restore(const se3di_saved *saved, se3di_model *model)
     memcpy(model->power, saved->power, sizeof saved->power);
     model->work_valid = saved->work_valid;
     model->settled = saved->settled;
+    model->shows_before = saved->shows_before;
     model->remembers = 1;
     model->history_count = saved->history.count;
     model->history_tag = saved->history_tag;

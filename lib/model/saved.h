@@ -23,7 +23,7 @@ typedef struct se3di_saved {
     int32_t work_valid;
     int32_t ranks_known;
     uint32_t left_out_count, left_out_row;
-    int32_t reserved;
+    int32_t shows_before;
     double left_out_gap;
     se3di_saved_array frames;       /* se3di_frame */
     se3di_saved_array acceleration; /* [bodies * 6] */
