@@ -229,13 +229,18 @@ int se3d_expression_is_constant(const se3d_expression *expression)
     return expression && expression->code_count == 1 && expression->code[0].op == SE3DI_OP_CONSTANT;
 }
 
+static int is_whole_power(const se3di_instruction *in)
+{
+    return in->value >= 0.0 && in->value == floor(in->value);
+}
+
 static int is_smooth(const se3di_instruction *in)
 {
     switch (in->op) {
     case SE3DI_OP_UNARY:
         return se3di_function_is_smooth(in->function);
     case SE3DI_OP_POWER:
-        return in->value >= 0.0 && in->value == floor(in->value);
+        return is_whole_power(in);
     case SE3DI_OP_BINARY:
     case SE3DI_OP_SELECT:
     case SE3DI_OP_STEP:
@@ -247,14 +252,38 @@ static int is_smooth(const se3di_instruction *in)
     }
 }
 
+static int is_total(const se3di_instruction *in)
+{
+    switch (in->op) {
+    case SE3DI_OP_UNARY:
+    case SE3DI_OP_BINARY:
+        return se3di_function_is_total(in->function);
+    case SE3DI_OP_POWER:
+        return is_whole_power(in);
+    case SE3DI_OP_DIVIDE:
+    case SE3DI_OP_STEP:
+        return 0;
+    default:
+        return 1;
+    }
+}
+
 int se3di_expression_is_smooth(const se3d_expression *expression)
 {
-    for (size_t k = 0; k < expression->code_count; ++k) {
-        if (!is_smooth(&expression->code[k])) {
-            return 0;
-        }
+    size_t k = 0;
+    while (k < expression->code_count && is_smooth(&expression->code[k])) {
+        ++k;
     }
-    return 1;
+    return k == expression->code_count;
+}
+
+int se3di_expression_is_total(const se3d_expression *expression)
+{
+    size_t k = 0;
+    while (k < expression->code_count && is_total(&expression->code[k])) {
+        ++k;
+    }
+    return k == expression->code_count;
 }
 
 const char *se3d_expression_get_text(const se3d_expression *expression)

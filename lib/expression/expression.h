@@ -16,4 +16,7 @@ size_t se3di_expression_variable_count(const se3d_expression *expression);
 /* Whether it has derivatives wherever it has a value, for certain: no |x|, condition or root. */
 int se3di_expression_is_smooth(const se3d_expression *expression);
 
+/* Whether it is finite wherever its variables are, but for numbers that grow without bound. */
+int se3di_expression_is_total(const se3d_expression *expression);
+
 #endif

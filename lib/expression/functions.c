@@ -286,16 +286,29 @@ size_t se3di_function_find(const char *name, size_t length)
     return SE3DI_FUNCTION_NONE;
 }
 
-int se3di_function_is_smooth(size_t function)
+static int is_named(size_t function, const char *const *names)
 {
-    static const char *const names[] = {"exp", "log",  "log10", "sin",  "cos",
-                                        "tan", "atan", "sinh",  "cosh", "tanh"};
-    for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
-        if (strcmp(se3di_functions[function].name, names[k]) == 0) {
+    for (; *names; ++names) {
+        if (strcmp(se3di_functions[function].name, *names) == 0) {
             return 1;
         }
     }
     return 0;
+}
+
+int se3di_function_is_smooth(size_t function)
+{
+    static const char *const names[] = {"exp",  "log",  "log10", "sin",  "cos", "tan",
+                                        "atan", "sinh", "cosh",  "tanh", NULL};
+    return is_named(function, names);
+}
+
+int se3di_function_is_total(size_t function)
+{
+    static const char *const names[] = {"abs",   "sin",  "cos",   "atan", "tanh", "sign",
+                                        "floor", "ceil", "round", "<",    "<=",   ">",
+                                        ">=",    "==",   "!=",    NULL};
+    return is_named(function, names);
 }
 
 void se3di_function_power(double u, double c, double d[3])

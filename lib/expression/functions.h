@@ -41,6 +41,9 @@ size_t se3di_function_find(const char *name, size_t length);
 /* Whether it has derivatives wherever it has a value (abs, sqrt, asin, mod have not). */
 int se3di_function_is_smooth(size_t function);
 
+/* Whether it has a finite value and finite rates for every finite argument. */
+int se3di_function_is_total(size_t function);
+
 /* u^c for a constant c: f, f', f''. Exact conventions at u = 0 and u < 0 for integer c. */
 void se3di_function_power(double u, double c, double d[3]);
 

@@ -8,6 +8,7 @@
  * Between two steps of one run the half kicks of the particles are one pass.
  * docs/theory/verlet.md */
 #include "contact/pace.h"
+#include "expression/expression.h"
 #include "integrator/lie_verlet.h"
 #include "math/steps.h"
 #include "particles/sets.h"
@@ -40,7 +41,9 @@ static int has_callbacks(const se3di_model *model)
         has = has || model->forces[k].callback;
     }
     for (size_t k = 0; k < model->function_slots.count; ++k) {
-        has = has || model->functions[k].callback;
+        const se3d_expression *expression = model->functions[k].expression;
+        has = has || model->functions[k].callback ||
+              (expression && !se3di_expression_is_total(expression));
     }
     for (size_t k = 0; k < model->constraint_slots.count; ++k) {
         has = has || model->constraints[k].callback;
@@ -96,6 +99,22 @@ static se3d_status move_particles(verlet *m, double t1, se3d_status *contact)
     return status;
 }
 
+/* The second half of the step of the bodies. With particles, which have moved already, nobody is
+ * asked meanwhile whether the run is to end. */
+static se3d_status finish_bodies(verlet *m)
+{
+    se3di_guard *const guard = m->model->sets ? m->bodies.equations->guard : NULL;
+    if (guard) {
+        ++guard->muted;
+    }
+    se3d_status status = se3di_lie_verlet_kick(&m->bodies);
+    status = status < 0 ? status : se3di_lie_verlet_finish(&m->bodies);
+    if (guard) {
+        --guard->muted;
+    }
+    return status;
+}
+
 /* One step to t1 that leaves the last half kick of the particles open. */
 static se3d_status advance(verlet *m, double t1)
 {
@@ -110,8 +129,7 @@ static se3d_status advance(verlet *m, double t1)
     if (status >= 0 && m->model->sets) {
         status = move_particles(m, t1, &contact);
     }
-    status = status < 0 ? status : se3di_lie_verlet_kick(bodies);
-    status = status < 0 ? status : se3di_lie_verlet_finish(bodies);
+    status = status < 0 ? status : finish_bodies(m);
     const int comes_back = status < 0 && m->moved && m->keeps;
     if (m->moved && !comes_back) { /* else the kick before stays as it was */
         m->open = 1;

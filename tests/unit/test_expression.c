@@ -422,6 +422,23 @@ static void what_may_have_kinks_is_known(void)
     }
 }
 
+static void what_may_not_be_finite_is_known(void)
+{
+    static const char *const total[] = {"3", "pi/4*cos(2*t)", "t^3 - 2*t", "if(t<1,0,t-1)",
+                                        "max(abs(t), floor(2*t))"};
+    static const char *const partial[] = {"1/t", "sqrt(1-t)", "t^-1", "log(t)", "tan(t)", "exp(t)"};
+    for (size_t k = 0; k < sizeof total / sizeof *total; ++k) {
+        se3d_expression *e = compile(total[k]);
+        CHECK(se3di_expression_is_total(e));
+        se3d_expression_destroy(e);
+    }
+    for (size_t k = 0; k < sizeof partial / sizeof *partial; ++k) {
+        se3d_expression *e = compile(partial[k]);
+        CHECK(!se3di_expression_is_total(e));
+        se3d_expression_destroy(e);
+    }
+}
+
 static void constants_are_folded(void)
 {
     static const struct {
@@ -845,6 +862,7 @@ int main(void)
     RUN(singular_derivatives_along_other_variables_do_not_matter);
     RUN(only_the_branch_taken_counts);
     RUN(what_may_have_kinks_is_known);
+    RUN(what_may_not_be_finite_is_known);
     RUN(constants_are_folded);
     RUN(every_bad_text_is_named_with_its_column);
     RUN(limits_are_kept);
