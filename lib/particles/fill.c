@@ -119,8 +119,14 @@ static int cell_along(const packing *p, double x, int a)
 
 static void enter(packing *p, size_t k)
 {
-    const double *x = p->set->grains[k].x;
+    double x[3];
+    se3di_copy(p->set->grains[k].x, x);
     for (int a = 0; a < 3; ++a) {
+        if (p->set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) { /* the image nearest to the region */
+            const double period = p->set->upper[a] - p->set->lower[a];
+            const double off = x[a] - 0.5 * (p->def->lower[a] + p->def->upper[a]);
+            x[a] -= period * nearbyint(off / period);
+        }
         if (x[a] < p->def->lower[a] - p->size || x[a] > p->def->upper[a] + p->size) {
             return; /* too far to matter; those just outside are in the border cells */
         }
@@ -155,7 +161,9 @@ static int is_free(const packing *p, const double x[3], double radius)
         high[a] = cell_along(p, x[a] + p->size, a);
         if (p->set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
             /* images are in the border cells of the other side: a whole row is searched there */
-            int border = low[a] == 0 || high[a] == p->cells[a] - 1;
+            const double period = p->set->upper[a] - p->set->lower[a];
+            const int whole = p->def->upper[a] - p->def->lower[a] > period;
+            int border = whole || low[a] == 0 || high[a] == p->cells[a] - 1;
             low[a] = border ? 0 : low[a];
             high[a] = border ? p->cells[a] - 1 : high[a];
         }

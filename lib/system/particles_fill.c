@@ -78,10 +78,12 @@ se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fi
     size_t points;
     se3d_fill_def full = se3d_fill_def_default();
     SE3DI_TRY(se3di_check_fill(particles, def, &full, &material));
-    if (full.count == 0 || full.region != SE3D_FILL_REGION_BOX) { /* all may have to be looked at */
-        SE3DI_TRY(se3di_check_range(particles->system, "points of the lattice from lower to upper",
-                                    se3di_lattice_count(&full), 0.0, POINTS_MAX));
+    double looked_at = se3di_lattice_count(&full);
+    if (full.count > 0 && full.region == SE3D_FILL_REGION_BOX) { /* the first ones are taken */
+        looked_at = fmin(looked_at, (double)full.count);
     }
+    SE3DI_TRY(se3di_check_range(particles->system, "points of the lattice from lower to upper",
+                                looked_at, 0.0, POINTS_MAX));
     const size_t wanted = se3di_lattice_measure(&full, &points);
     SE3DI_TRY(se3di_particles_make_room(particles, wanted));
     se3di_lattice_fill(&particles->set, &full, material, points);

@@ -167,8 +167,59 @@ static void a_lattice_that_takes_for_ever_to_look_at_is_refused(void)
     close_bed(&b);
 }
 
+/* Two regions that meet across the border of a periodic domain share their room. */
+static void places_across_a_periodic_border_are_taken_once(void)
+{
+    static double x[3 * 200], v[3 * 200], w[3 * 200];
+    se3d_particles_def def = se3d_particles_def_default();
+    se3d_particles *set = NULL;
+    open_bed(&b);
+    def.boundary[0] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
+    def.upper[0] = def.upper[1] = def.upper[2] = 1.0;
+    CHECK(se3d_particles_create(b.system, &def, &set) == SE3D_OK);
+    b.fill.radius_min = b.fill.radius_max = 0.03;
+    b.fill.upper[1] = b.fill.upper[2] = 0.4;
+    b.fill.count = 40;
+    for (int k = 0; k < 3; ++k) {
+        b.fill.lower[0] = k == 0 ? 0.9 : k == 1 ? -0.05 : -0.3;
+        b.fill.upper[0] = k == 0 ? 1.05 : k == 1 ? 0.1 : 1.2; /* the last is longer than a period */
+        b.fill.seed = (uint64_t)k;
+        const se3d_status status = se3d_particles_fill_random(set, &b.fill);
+        CHECK(status == SE3D_OK || status == SE3D_ERR_NO_CONVERGENCE);
+    }
+    const size_t count = se3d_particles_count(set);
+    CHECK(count >= 80 && count <= 200);
+    CHECK(se3d_particles_get_all(set, count, x, v, w) == SE3D_OK);
+    for (size_t i = 0; i < count; ++i) {
+        for (size_t j = 0; j < i; ++j) {
+            double square = 0.0;
+            for (size_t a = 0; a < 3; ++a) {
+                const double d = x[3 * i + a] - x[3 * j + a];
+                square += a == 0 ? (d - nearbyint(d)) * (d - nearbyint(d)) : d * d;
+            }
+            CHECK(square > 0.06 * 0.06 * (1.0 - 1e-12));
+        }
+    }
+    se3d_particles_destroy(set);
+    close_bed(&b);
+}
+
+/* A count that cannot be meant is told at once. */
+static void a_lattice_of_too_many_particles_is_refused(void)
+{
+    open_bed(&b);
+    b.fill.radius_min = b.fill.radius_max = 0.03;
+    b.fill.upper[0] = b.fill.upper[1] = b.fill.upper[2] = 1e5;
+    b.fill.count = (size_t)1e15;
+    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_count(b.particles) == 0);
+    close_bed(&b);
+}
+
 int main(void)
 {
+    RUN(places_across_a_periodic_border_are_taken_once);
+    RUN(a_lattice_of_too_many_particles_is_refused);
     RUN(regions_hold_every_part_of_their_particles);
     RUN(radii_of_a_table_come_as_often_as_asked_for);
     RUN(tables_and_regions_are_checked);
