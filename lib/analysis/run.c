@@ -539,6 +539,8 @@ static se3d_status pass_kink(se3di_run *run, const se3di_kink *kink)
     se3di_equations *equations = &run->equations;
     const double before = kinetic_energy(model);
     char name[128];
+    /* a value that jumps with its rate is no motion either */
+    SE3DI_TRY(se3di_jump_refuse(&equations->assembly, kink->t, kink->t - model->time, run->error));
     model->time = kink->t;
     se3di_assembly_get_velocity(&equations->assembly, equations->probe);
     SE3DI_TRY(se3di_velocity_solve(equations, kink->t));

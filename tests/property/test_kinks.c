@@ -128,6 +128,24 @@ static void dynamics_tell_of_a_rate_that_jumps(void)
     se3d_system_destroy(system);
 }
 
+/* A value that jumps together with its rate is refused all the same. */
+static void values_that_jump_with_their_rates_are_refused(void)
+{
+    static const char *const values[] = {"if(t < 0.33333, 0, 1 + t)", "floor(3*t)*t"};
+    for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
+        notes said = {0};
+        se3d_system *system = make_cart(&said, values[k]);
+        se3d_solver *solver = NULL;
+        se3d_solver_def def = se3d_solver_def_default();
+        def.analysis = SE3D_ANALYSIS_INVERSE_DYNAMICS;
+        CHECK(!se3d_solver_create(system, &def, &solver));
+        CHECK(se3d_solver_run(solver, 0.5) == SE3D_ERR_INCONSISTENT);
+        CHECK_CONTAINS(se3d_system_get_error(system), "jumps from");
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(system);
+    }
+}
+
 static void smooth_rates_make_no_impulse(void)
 {
     static const char *const values[] = {"0.1*sin(20*t)", "0.01*tanh(200*(t-0.3))",
@@ -150,6 +168,7 @@ int main(void)
 {
     RUN(the_impulse_of_a_rate_that_jumps_is_told_and_its_work_counted);
     RUN(dynamics_tell_of_a_rate_that_jumps);
+    RUN(values_that_jump_with_their_rates_are_refused);
     RUN(smooth_rates_make_no_impulse);
     return check_finish();
 }
