@@ -192,6 +192,15 @@ FILE *se3di_partial_open(const char *path)
     return open_new(partial);
 }
 
+/* The file takes its name, in place of one that has it. */
+static bool replace(const char *partial, const char *path)
+{
+#if defined(_WIN32)
+    remove(path); /* rename does not replace there */
+#endif
+    return rename(partial, path) == 0;
+}
+
 bool se3di_partial_close(FILE *file, const char *path)
 {
     char partial[PATH_SIZE];
@@ -200,10 +209,7 @@ bool se3di_partial_close(FILE *file, const char *path)
     bool good = !ferror(file);
     format_partial(path, partial);
     good = fclose(file) == 0 && good;
-#if defined(_WIN32)
-    remove(path); /* rename does not replace there */
-#endif
-    if (good && rename(partial, path) == 0) {
+    if (good && replace(partial, path)) {
         return true;
     }
     const int why = errno ? errno : before ? before : ENOSPC; /* a write before has failed */
@@ -219,10 +225,7 @@ bool se3di_partial_keep(FILE *file, const char *path, uint64_t size)
         return false;
     }
     fclose(file);
-#if defined(_WIN32)
-    remove(path);
-#endif
-    rename(partial, path);
+    (void)replace(partial, path); /* else the rows stay where they are */
     return true;
 }
 
