@@ -497,22 +497,6 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
     return run->equations.redundant ? se3di_multipliers_reduce(&run->equations) : SE3D_OK;
 }
 
-static double kinetic_energy(const se3di_model *model)
-{
-    double twice = 0.0;
-    for (size_t k = 0; k < model->body_slots.count; ++k) {
-        const se3di_body *body = &model->bodies[k];
-        const se3di_frame *frame = &model->frames[k];
-        const double *w = frame->w, *J = body->J;
-        twice += body->fixed
-                     ? 0.0
-                     : body->mass * se3di_dot(frame->v, frame->v) + J[0] * w[0] * w[0] +
-                           J[1] * w[1] * w[1] + J[2] * w[2] * w[2] +
-                           2.0 * (J[3] * w[0] * w[1] + J[4] * w[1] * w[2] + J[5] * w[0] * w[2]);
-    }
-    return 0.5 * twice;
-}
-
 /* The impulses of the constraints since equations->probe, the velocities before:
  * C^T L = M (v- - v+). */
 static se3d_status find_impulses(se3di_equations *equations)
@@ -537,7 +521,7 @@ static se3d_status pass_kink(se3di_run *run, const se3di_kink *kink)
 {
     se3di_model *model = run->model;
     se3di_equations *equations = &run->equations;
-    const double before = kinetic_energy(model);
+    const double before = se3di_kinetic_energy(model);
     char name[128];
     /* a value that jumps with its rate is no motion either */
     SE3DI_TRY(se3di_jump_refuse(&equations->assembly, kink->t, kink->t - model->time, run->error));
@@ -545,7 +529,7 @@ static se3d_status pass_kink(se3di_run *run, const se3di_kink *kink)
     se3di_assembly_get_velocity(&equations->assembly, equations->probe);
     SE3DI_TRY(se3di_velocity_solve(equations, kink->t));
     SE3DI_TRY(find_impulses(equations));
-    const double work = kinetic_energy(model) - before;
+    const double work = se3di_kinetic_energy(model) - before;
     const double impulse = -equations->l[kink->row];
     model->work[2] += work;
     SE3DI_TRY(settle(run, kink->t));

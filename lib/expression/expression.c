@@ -268,22 +268,24 @@ static int is_total(const se3di_instruction *in)
     }
 }
 
-int se3di_expression_is_smooth(const se3d_expression *expression)
+static int holds_for_all(const se3d_expression *expression,
+                         int (*holds)(const se3di_instruction *in))
 {
     size_t k = 0;
-    while (k < expression->code_count && is_smooth(&expression->code[k])) {
+    while (k < expression->code_count && holds(&expression->code[k])) {
         ++k;
     }
     return k == expression->code_count;
 }
 
+int se3di_expression_is_smooth(const se3d_expression *expression)
+{
+    return holds_for_all(expression, is_smooth);
+}
+
 int se3di_expression_is_total(const se3d_expression *expression)
 {
-    size_t k = 0;
-    while (k < expression->code_count && is_total(&expression->code[k])) {
-        ++k;
-    }
-    return k == expression->code_count;
+    return holds_for_all(expression, is_total);
 }
 
 const char *se3d_expression_get_text(const se3d_expression *expression)

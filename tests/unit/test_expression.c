@@ -403,6 +403,16 @@ static void only_the_branch_taken_counts(void)
     CHECK(jet_at("sign(sqrt(t))", -1, jet) == SE3D_ERR_NOT_FINITE);
 }
 
+static void check_all(const char *const *texts, size_t count, int (*holds)(const se3d_expression *),
+                      int expected)
+{
+    for (size_t k = 0; k < count; ++k) {
+        se3d_expression *e = compile(texts[k]);
+        CHECK(holds(e) == expected);
+        se3d_expression_destroy(e);
+    }
+}
+
 static void what_may_have_kinks_is_known(void)
 {
     static const char *const smooth[] = {"3", "pi/4*cos(2*t)", "t^3 - 2*t/(1 + t)",
@@ -410,16 +420,8 @@ static void what_may_have_kinks_is_known(void)
     static const char *const kinked[] = {"abs(t)",        "sqrt(t^2)",       "(t^2)^0.5",
                                          "if(t<1,0,t-1)", "max(t, 1)",       "mod(t, 1)",
                                          "acos(cos(t))",  "step(t,0,2,3,4)", "hypot(t, L-2)"};
-    for (size_t k = 0; k < sizeof smooth / sizeof *smooth; ++k) {
-        se3d_expression *e = compile(smooth[k]);
-        CHECK(se3di_expression_is_smooth(e));
-        se3d_expression_destroy(e);
-    }
-    for (size_t k = 0; k < sizeof kinked / sizeof *kinked; ++k) {
-        se3d_expression *e = compile(kinked[k]);
-        CHECK(!se3di_expression_is_smooth(e));
-        se3d_expression_destroy(e);
-    }
+    check_all(smooth, sizeof smooth / sizeof *smooth, se3di_expression_is_smooth, 1);
+    check_all(kinked, sizeof kinked / sizeof *kinked, se3di_expression_is_smooth, 0);
 }
 
 static void what_may_not_be_finite_is_known(void)
@@ -427,16 +429,8 @@ static void what_may_not_be_finite_is_known(void)
     static const char *const total[] = {"3", "pi/4*cos(2*t)", "t^3 - 2*t", "if(t<1,0,t-1)",
                                         "max(abs(t), floor(2*t))"};
     static const char *const partial[] = {"1/t", "sqrt(1-t)", "t^-1", "log(t)", "tan(t)", "exp(t)"};
-    for (size_t k = 0; k < sizeof total / sizeof *total; ++k) {
-        se3d_expression *e = compile(total[k]);
-        CHECK(se3di_expression_is_total(e));
-        se3d_expression_destroy(e);
-    }
-    for (size_t k = 0; k < sizeof partial / sizeof *partial; ++k) {
-        se3d_expression *e = compile(partial[k]);
-        CHECK(!se3di_expression_is_total(e));
-        se3d_expression_destroy(e);
-    }
+    check_all(total, sizeof total / sizeof *total, se3di_expression_is_total, 1);
+    check_all(partial, sizeof partial / sizeof *partial, se3di_expression_is_total, 0);
 }
 
 static void constants_are_folded(void)
