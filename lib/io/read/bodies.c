@@ -98,6 +98,21 @@ bool se3di_read_key_body(se3di_reader *reader, const se3di_node *map, const char
     return true;
 }
 
+bool se3di_read_bodies_ij(se3di_reader *reader, const se3di_node *node, const char *what,
+                          const se3di_body_entry *bodies[2])
+{
+    if (!se3di_read_key_body(reader, node, "body_i", &bodies[0]) ||
+        !se3di_read_key_body(reader, node, "body_j", &bodies[1])) {
+        return false;
+    }
+    if (bodies[0] == bodies[1]) {
+        return se3di_reader_fail_key(reader, node, "body_j",
+                                     "is the same body as body_i, %s needs two different bodies",
+                                     what);
+    }
+    return true;
+}
+
 bool se3di_read_key_point(se3di_reader *reader, const se3di_node *map, const char *key,
                           const se3di_body_entry *body, double point[3])
 {

@@ -109,14 +109,8 @@ static bool read_primitive(se3di_reader *reader, const se3di_node *node, se3di_e
         return false;
     }
     def.type = (int32_t)index;
-    if (!se3di_read_key_body(reader, node, "body_i", &bodies[0]) ||
-        !se3di_read_key_body(reader, node, "body_j", &bodies[1])) {
+    if (!se3di_read_bodies_ij(reader, node, "a constraint", bodies)) {
         return false;
-    }
-    if (bodies[0] == bodies[1]) {
-        return se3di_reader_fail_key(
-            reader, node, "body_j",
-            "is the same body as body_i, a constraint needs two different bodies");
     }
     def.name = entry->name;
     def.body_i = bodies[0]->body;

@@ -16,21 +16,6 @@
 #include "io/read/elements.h"
 #include "io/read/objects.h"
 
-bool se3di_read_bodies_ij(se3di_reader *reader, const se3di_node *node, const char *what,
-                          const se3di_body_entry *bodies[2])
-{
-    if (!se3di_read_key_body(reader, node, "body_i", &bodies[0]) ||
-        !se3di_read_key_body(reader, node, "body_j", &bodies[1])) {
-        return false;
-    }
-    if (bodies[0] == bodies[1]) {
-        return se3di_reader_fail_key(reader, node, "body_j",
-                                     "is the same body as body_i, %s needs two different bodies",
-                                     what);
-    }
-    return true;
-}
-
 /* 6 numbers on the diagonal, or 6 rows of 6. */
 static bool read_matrix(se3di_reader *reader, const se3di_node *node, const char *key,
                         double matrix[36])

@@ -198,14 +198,8 @@ bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *n
     if (!type) {
         return se3di_reader_fail(reader, node, "a joint of type `%.60s` cannot be made", name);
     }
-    if (!se3di_read_key_body(reader, node, "body_i", &bodies[0]) ||
-        !se3di_read_key_body(reader, node, "body_j", &bodies[1])) {
+    if (!se3di_read_bodies_ij(reader, node, "a joint", bodies)) {
         return false;
-    }
-    if (bodies[0] == bodies[1]) {
-        return se3di_reader_fail_key(
-            reader, node, "body_j",
-            "is the same body as body_i, a joint needs two different bodies");
     }
     def.name = entry->name;
     def.body_i = bodies[0]->body;
