@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A file includes only its own folder, those before it, and public headers.
 
-The folders of lib/ are layers, those of lib/io its rooms. LAYERS and ROOMS give their orders, and the
+The folders of lib/ are layers, those of lib/io and lib/contact their rooms. LAYERS and ROOMS give their orders, and the
 tables of docs/architecture.md must give the same. No headers include each other in a circle. libse3d-io,
 the programs in tools/ and the examples see public headers only. With a folder as argument, that tree
 is checked instead of this one.
@@ -14,7 +14,8 @@ from pathlib import Path
 LAYERS = ("base math expression model primitive joint force contact particles formulation assembly "
           "linsol nonlinear integrator analysis system").split()
 # Folders that have folders of their own, in their order.
-ROOMS = {"io": "base document model channel read write run".split()}
+ROOMS = {"contact": "shape narrow bodies".split(),
+         "io": "base document model channel read write run".split()}
 # What the program in tools/se3d shares with libse3d-io, to whose static library it is linked.
 SHARED = ("io/base/file.h",)
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)

@@ -14,7 +14,7 @@
 
 #include "assembly/user.h"
 #include "base/text.h"
-#include "contact/body_contacts.h"
+#include "contact/bodies/body_contacts.h"
 #include "force/force.h"
 #include "linsol/rank.h"
 #include "nonlinear/ranks.h"

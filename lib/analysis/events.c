@@ -3,7 +3,7 @@
 
 #include "analysis/run.h"
 #include "base/busy.h"
-#include "contact/body_contacts.h"
+#include "contact/bodies/body_contacts.h"
 #include "integrator/state.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"

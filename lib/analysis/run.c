@@ -11,7 +11,7 @@
 #include "assembly/loads.h"
 #include "assembly/user.h"
 #include "base/log.h"
-#include "contact/pace.h"
+#include "contact/bodies/pace.h"
 #include "integrator/turns.h"
 #include "math/steps.h"
 #include "math/vec3.h"

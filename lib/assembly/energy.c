@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "assembly/energy.h"
 
-#include "contact/body_contacts.h"
+#include "contact/bodies/body_contacts.h"
 #include "force/force.h"
 #include "joint/user.h"
 #include "math/vec3.h"

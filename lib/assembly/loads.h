@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* All that acts on bodies: gravity and force elements (force/force.h) and contacts
- * (contact/body_contacts.h) together, as integrators see them; their energies are in energy.h. */
+ * (contact/bodies/body_contacts.h) together, as integrators see them; their energies are in
+ * energy.h. */
 #ifndef SE3DI_ASSEMBLY_LOADS_H
 #define SE3DI_ASSEMBLY_LOADS_H
 
-#include "contact/body_contacts.h"
+#include "contact/bodies/body_contacts.h"
 #include "force/force.h"
 
 /* Wrenches on all bodies, see se3di_forces_eval. */

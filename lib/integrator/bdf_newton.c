@@ -12,7 +12,7 @@
  * position is passed as if it were none, except within its square root.  docs/theory/bdf.md */
 #include "integrator/bdf.h"
 
-#include "contact/pace.h"
+#include "contact/bodies/pace.h"
 #include "force/friction.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"

@@ -4,7 +4,7 @@
 
 #include "assembly/energy.h"
 #include "assembly/loads.h"
-#include "contact/pace.h"
+#include "contact/bodies/pace.h"
 #include "integrator/state.h"
 #include "math/elementary.h"
 #include "math/vec3.h"

@@ -3,7 +3,7 @@
 
 #include "assembly/energy.h"
 #include "assembly/loads.h"
-#include "contact/pace.h"
+#include "contact/bodies/pace.h"
 #include "integrator/turns.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"

@@ -3,7 +3,7 @@
 #include "integrator/newmark.h"
 
 #include "assembly/loads.h"
-#include "contact/pace.h"
+#include "contact/bodies/pace.h"
 #include "force/friction.h"
 #include "math/quaternion.h"
 

@@ -13,7 +13,7 @@
 #include "integrator/memory.h"
 
 #include "assembly/energy.h"
-#include "contact/pace.h"
+#include "contact/bodies/pace.h"
 #include "force/force.h"
 #include "math/elementary.h"
 #include "math/quaternion.h"

@@ -7,7 +7,7 @@
  *
  * Between two steps of one run the half kicks of the particles are one pass.
  * docs/theory/verlet.md */
-#include "contact/pace.h"
+#include "contact/bodies/pace.h"
 #include "expression/expression.h"
 #include "integrator/lie_verlet.h"
 #include "math/steps.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What contacts between bodies remember of the last accepted state. Data only; see
- * contact/body_contacts.h. */
+ * contact/bodies/body_contacts.h. */
 #ifndef SE3DI_MODEL_BODY_CONTACT_H
 #define SE3DI_MODEL_BODY_CONTACT_H
 

@@ -227,7 +227,7 @@ typedef struct se3di_model {
     se3di_slots material_slots;
     se3di_material *materials;
     se3di_override *overrides; /* [materials * materials], symmetric */
-    se3di_pair *pairs;         /* the same: what they give, see contact/law.h */
+    se3di_pair *pairs;         /* the same: what they give, see contact/bodies/law.h */
     size_t material_capacity, override_capacity, pair_capacity;
     se3di_slots shape_slots;
     se3di_shape *shapes;

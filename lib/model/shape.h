@@ -84,7 +84,7 @@ typedef struct se3di_shape {
     double *vertices;           /* mesh, hull: [3 * vertex_count], shape frame */
     uint32_t *triangles;        /* [3 * triangle_count]; hull: its faces, seen from outside */
     size_t vertex_count, triangle_count;
-    void *tree; /* mesh: bounding volumes, see contact/mesh.h */
+    void *tree; /* mesh: bounding volumes, see contact/shape/mesh.h */
     size_t tree_bytes;
     int32_t closed; /* mesh: 1 with its triangles counter-clockwise seen from outside, -1 clockwise,
                        0 open or not of one sense */

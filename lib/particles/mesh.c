@@ -4,7 +4,7 @@
  * turns little (a rolling sphere's in the mesh's frame, also over an edge). */
 #include "particles/mesh.h"
 
-#include "contact/mesh.h"
+#include "contact/shape/mesh.h"
 #include "math/vec3.h"
 #include "particles/wall.h"
 

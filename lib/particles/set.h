@@ -16,8 +16,8 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/slots.h"
-#include "contact/law.h"
-#include "contact/shape.h"
+#include "contact/bodies/law.h"
+#include "contact/shape/shape.h"
 #include "model/model.h"
 #include "se3d/particles.h"
 

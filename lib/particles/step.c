@@ -5,7 +5,7 @@
 #include "particles/step.h"
 
 #include "base/hash.h"
-#include "contact/encounter.h"
+#include "contact/bodies/encounter.h"
 #include "math/vec3.h"
 #include "particles/flow.h"
 #include "particles/grid.h"

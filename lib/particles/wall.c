@@ -3,7 +3,7 @@
  * is built anew. */
 #include "particles/wall.h"
 
-#include "contact/mesh.h"
+#include "contact/shape/mesh.h"
 #include "math/vec3.h"
 #include "particles/list.h"
 

@@ -2,7 +2,7 @@
 /* The audit of energy where values of elements change between two steps. Elements evaluate
  * callbacks: the system is busy while they do. */
 #include "assembly/energy.h"
-#include "contact/body_contacts.h"
+#include "contact/bodies/body_contacts.h"
 #include "force/force.h"
 #include "system/system_internal.h"
 

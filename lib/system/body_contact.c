@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts between bodies, read. */
-#include "contact/body_contacts.h"
+#include "contact/bodies/body_contacts.h"
 #include "math/vec3.h"
 #include "particles/contacts.h"
 #include "particles/set.h"

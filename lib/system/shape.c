@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Shapes: creation and queries. */
-#include "contact/shape.h"
+#include "contact/shape/shape.h"
 
-#include "contact/hull.h"
-#include "contact/mesh.h"
+#include "contact/shape/hull.h"
+#include "contact/shape/mesh.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "system/particles.h"

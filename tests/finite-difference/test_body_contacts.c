@@ -2,7 +2,7 @@
 /* K and D of contacts between bodies against central differences of their wrenches, at random
  * states with velocities, sticking and slipping: the error falls with the square of the step. */
 #include "check.h"
-#include "contact/body_contacts.h"
+#include "contact/bodies/body_contacts.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "se3d/se3d.h"

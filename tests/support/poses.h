@@ -8,8 +8,8 @@
 
 #include "base/alloc.h"
 #include "check.h"
-#include "contact/hull.h"
-#include "contact/shape.h"
+#include "contact/shape/hull.h"
+#include "contact/shape/shape.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 

@@ -18,7 +18,7 @@
 #define SE3D_TESTS_SEPARATION_H
 
 #include "check.h"
-#include "contact/shape.h"
+#include "contact/shape/shape.h"
 #include "math/vec3.h"
 
 #define POLY_MOST 512

@@ -7,8 +7,8 @@
 
 #include "base/alloc.h"
 #include "check.h"
-#include "contact/mesh.h"
-#include "contact/shape.h"
+#include "contact/shape/mesh.h"
+#include "contact/shape/shape.h"
 #include "math/vec3.h"
 
 enum {

@@ -5,8 +5,8 @@
  * From any pose where two overlap by d along n, the pose that is moved by d - w along n overlaps by
  * w along n and by more in all other directions: the ball about the origin in the difference of the
  * two has moved to where it touches first. So no pose is ambiguous, and any depth is had. */
-#include "contact/hull.h"
-#include "contact/narrow_internal.h"
+#include "contact/narrow/internal.h"
+#include "contact/shape/hull.h"
 #include "support/poses.h"
 #include "support/separation.h"
 #include "support/surfaces.h"

@@ -2,7 +2,7 @@
 /* The narrow phase against brute force: the least of h_i(n) + h_j(-n) over all directions is the
  * overlap of two convex shapes, or minus their distance. */
 #include "check.h"
-#include "contact/narrow_internal.h"
+#include "contact/narrow/internal.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Particles: editing, neighbours against a search of all pairs, conservation, walls, failures. */
 #include "check.h"
-#include "contact/restitution.h"
+#include "contact/bodies/restitution.h"
 #include "particles/grid.h"
 #include "se3d/se3d.h"
 #include "system/particles.h"

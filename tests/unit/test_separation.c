@@ -4,8 +4,8 @@
  * them; a capsule or sphere, where the line or point is nearer than the radius; a cylinder, where
  * what of the triangle is between the planes of its caps comes nearer to the axis than its radius.
  * Each is asked with the solid larger and smaller by a margin, so that no pose is ambiguous. */
-#include "contact/mesh.h"
-#include "contact/narrow_internal.h"
+#include "contact/narrow/internal.h"
+#include "contact/shape/mesh.h"
 #include "support/poses.h"
 #include "support/separation.h"
 #include "support/surfaces.h"

@@ -3,7 +3,7 @@
 #ifndef SE3DI_PACE_STOP_H
 #define SE3DI_PACE_STOP_H
 
-#include "contact/pace.h"
+#include "contact/bodies/pace.h"
 
 /* The longest step from the last accepted state, at most h, that no impact on a stop asks to be
  * shorter. */

@@ -3,7 +3,7 @@
 #ifndef SE3DI_CONTACT_NARROW_INTERNAL_H
 #define SE3DI_CONTACT_NARROW_INTERNAL_H
 
-#include "contact/narrow.h"
+#include "contact/narrow/narrow.h"
 
 /* A shape where it is. */
 typedef struct se3di_solid {

@@ -3,7 +3,7 @@
 #ifndef SE3DI_CONTACT_NARROW_MESH_H
 #define SE3DI_CONTACT_NARROW_MESH_H
 
-#include "contact/narrow_internal.h"
+#include "contact/narrow/internal.h"
 
 #define SE3DI_MESH_COPLANAR 0.999 /* cosine of the angle of faces that are one */
 #define SE3DI_MESH_SAME     1e-6  /* of the solid's size: points that are one */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Convex hulls, point by point: the faces that see a new point give way to a cone from the edge
  * around them to the point. Points nearer to a face than rounding are on it. */
-#include "contact/hull.h"
+#include "contact/shape/hull.h"
 
 #include "math/vec3.h"
 

@@ -9,7 +9,7 @@
  *
  * in the tangent plane: a flat face (R infinite) takes the normal along, a corner (0) does not.
  * docs/theory/body-contact.md */
-#include "contact/encounter.h"
+#include "contact/bodies/encounter.h"
 #include "math/vec3.h"
 
 #include <math.h>

@@ -9,7 +9,7 @@
  * (Schwager and Poeschel 2007). Hertz has no closed form: in u = x / x_scale the equation is free
  * of parameters but alpha, and is integrated once per trial. Both fall monotonically from 1, so the
  * inverse is found by bisection.                                    docs/theory/contact-laws.md */
-#include "contact/restitution.h"
+#include "contact/bodies/restitution.h"
 #include "math/elementary.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
  * the speed s under the acceleration a, does not meet it before d / (s + sqrt(2 a d)): a step that
  * long lands where the impact begins, and the next one is a small part of T.
  * docs/theory/stop.md */
-#include "contact/pace_stop.h"
+#include "contact/bodies/pace_stop.h"
 
 #include "force/measure.h"
 #include "force/stop.h"

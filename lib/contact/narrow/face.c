@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Supports and faces of convex shapes. A capsule is a line with a radius about it, the others are
  * what they are. */
-#include "contact/narrow_internal.h"
+#include "contact/narrow/internal.h"
 
 #include "math/elementary.h"
 #include "math/vec3.h"

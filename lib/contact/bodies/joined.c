@@ -4,10 +4,10 @@
  * point of the other, and where the first is deeper within its shape than the second is away from
  * the other shape (a pin in its post, a slider on its rail), the two overlap however the joint
  * moves. Elsewhere an arm that falls meets the floor. docs/theory/body-contact.md */
-#include "contact/joined.h"
+#include "contact/bodies/joined.h"
 
-#include "contact/mesh.h"
-#include "contact/shape.h"
+#include "contact/shape/mesh.h"
+#include "contact/shape/shape.h"
 #include "math/vec3.h"
 
 #include <math.h>

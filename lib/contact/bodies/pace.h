@@ -4,7 +4,7 @@
 #ifndef SE3DI_CONTACT_PACE_H
 #define SE3DI_CONTACT_PACE_H
 
-#include "contact/body_contacts.h"
+#include "contact/bodies/body_contacts.h"
 
 typedef enum se3di_pace_kind {
     SE3DI_PACE_EXPLICIT, /* fixed steps: every contact is followed through its oscillation */

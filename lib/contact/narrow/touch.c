@@ -6,7 +6,7 @@
  * at the ends of what they have in common. Directions that differ little, as those of two faces
  * that lie on each other and of their edges, so give nearly the same points, and the least overlap
  * is never left for another one. */
-#include "contact/narrow_internal.h"
+#include "contact/narrow/internal.h"
 #include "math/vec3.h"
 
 #include <math.h>

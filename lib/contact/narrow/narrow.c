@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Which pair goes where; spheres and planes against everything. */
-#include "contact/narrow.h"
+#include "contact/narrow/narrow.h"
 
-#include "contact/narrow_internal.h"
+#include "contact/narrow/internal.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A user-defined law at one point where two bodies touch, and its derivatives by differences.
  * docs/theory/contact-laws.md */
-#include "contact/encounter.h"
+#include "contact/bodies/encounter.h"
 #include "math/vec3.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "contact/law.h"
+#include "contact/bodies/law.h"
 
-#include "contact/restitution.h"
+#include "contact/bodies/restitution.h"
 
 #include <math.h>
 

@@ -2,10 +2,10 @@
 /* Pairs of shapes whose bounds, larger by a margin, overlap are listed by sweep and prune along x;
  * the list holds as long as no shape has moved by half the margin. A visit that finds more movement
  * (a long step, or no list) looks at all pairs instead, in the same order, with the same result. */
-#include "contact/broad.h"
+#include "contact/bodies/broad.h"
 
-#include "contact/body_contacts.h"
-#include "contact/joined.h"
+#include "contact/bodies/body_contacts.h"
+#include "contact/bodies/joined.h"
 #include "math/vec3.h"
 
 #include <math.h>

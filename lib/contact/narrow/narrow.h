@@ -7,7 +7,7 @@
 #ifndef SE3DI_CONTACT_NARROW_H
 #define SE3DI_CONTACT_NARROW_H
 
-#include "contact/shape.h"
+#include "contact/shape/shape.h"
 
 #define SE3DI_MANIFOLD_POINTS 16
 

@@ -6,9 +6,9 @@
  * there. So triangles are visited from the nearest on, and one whose point lies on an earlier one
  * is left out: on the edge between coplanar triangles a sphere has one contact, in a corner as many
  * as there are faces, on a convex edge or vertex one.                      docs/theory/shapes.md */
-#include "contact/mesh.h"
+#include "contact/shape/mesh.h"
 
-#include "contact/shape.h"
+#include "contact/shape/shape.h"
 #include "math/vec3.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
  * the best of those of all its parts. Overlapping: the boundary of D nearest to the origin, by a
  * polytope inside D that grows where it is nearest (van den Bergen 2001). For polyhedra both end
  * exactly, for round bodies when a step gains less than 1e-12 of their size. */
-#include "contact/narrow_internal.h"
+#include "contact/narrow/internal.h"
 
 #include "math/vec3.h"
 

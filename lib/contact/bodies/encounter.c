@@ -12,7 +12,7 @@
  * begins the damping grows with the share of the step that is spent in contact: forces are
  * continuous where implicit methods look for a solution.              docs/theory/body-contact.md
  */
-#include "contact/encounter.h"
+#include "contact/bodies/encounter.h"
 
 #include "math/elementary.h"
 #include "math/inertia.h"

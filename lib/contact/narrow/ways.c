@@ -12,8 +12,8 @@
  * for all other least values of the reach are not over their own place. Of the ways off one piece
  * (faces each behind the other) only the least counts. What corners of the solid and edges of the
  * mesh have shown already is not said again.                 docs/theory/body-contact.md */
-#include "contact/mesh.h"
-#include "contact/narrow_mesh.h"
+#include "contact/narrow/mesh.h"
+#include "contact/shape/mesh.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
 

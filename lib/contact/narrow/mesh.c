@@ -6,9 +6,9 @@
  * triangles in one plane is that plane. Behind an edge that bulges towards the solid only the face
  * that is nearest counts. Edges of the mesh that bulge touch the solid as lines do. Round ends
  * touch as spheres do.                                          docs/theory/body-contact.md */
-#include "contact/narrow_mesh.h"
+#include "contact/narrow/mesh.h"
 
-#include "contact/mesh.h"
+#include "contact/shape/mesh.h"
 #include "math/vec3.h"
 
 #include <math.h>

@@ -9,10 +9,10 @@
  * g / (s + sqrt(2 a g)) do they touch. A step that long lands where contact begins, and the next
  * one is a small part of T: a contact is neither missed nor met too late.
  * docs/theory/body-contact.md */
-#include "contact/pace.h"
+#include "contact/bodies/pace.h"
 
-#include "contact/broad.h"
-#include "contact/pace_stop.h"
+#include "contact/bodies/broad.h"
+#include "contact/bodies/pace_stop.h"
 #include "force/force.h"
 #include "math/elementary.h"
 #include "math/steps.h"

@@ -11,7 +11,7 @@
  *   its slope changes its sign, or, of two rims, where the nearest points v = a - b lie along n:
  *       (v - (n.v) n) = 0,   Newton:  U^T (dv/dn - (n.v) 1) U x = -U^T v.
  *   Those near the polytope's direction are tried, the least is taken. */
-#include "contact/narrow_internal.h"
+#include "contact/narrow/internal.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
 

@@ -4,9 +4,9 @@
  * Outside, the nearest point is where a projection onto the solid ends; inside, it is on the
  * nearest face. The normal is the direction of local - point, turned outwards, and where the two
  * coincide that of the surface.                                           docs/theory/shapes.md */
-#include "contact/shape.h"
+#include "contact/shape/shape.h"
 
-#include "contact/mesh.h"
+#include "contact/shape/mesh.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
 

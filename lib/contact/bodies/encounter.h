@@ -4,7 +4,7 @@
 #ifndef SE3DI_CONTACT_ENCOUNTER_H
 #define SE3DI_CONTACT_ENCOUNTER_H
 
-#include "contact/narrow.h"
+#include "contact/narrow/narrow.h"
 #include "model/model.h"
 
 typedef struct se3di_encounter {

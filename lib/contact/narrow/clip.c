@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What looks at a face is cut off at the face's sides, along the normal of contact, and its corners
  * behind the face are the points of contact, each with its own overlap along that normal. */
-#include "contact/narrow_internal.h"
+#include "contact/narrow/internal.h"
 
 #include "math/vec3.h"
 

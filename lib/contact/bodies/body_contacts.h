@@ -8,7 +8,7 @@
 #ifndef SE3DI_CONTACT_BODY_CONTACTS_H
 #define SE3DI_CONTACT_BODY_CONTACTS_H
 
-#include "contact/encounter.h"
+#include "contact/bodies/encounter.h"
 
 /* Called for every point of contact, in an order that depends on the model only. */
 typedef se3d_status (*se3di_contact_visitor)(void *ctx, const se3di_encounter *encounter);

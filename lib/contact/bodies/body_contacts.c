@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts of bodies, evaluated and remembered. */
-#include "contact/body_contacts.h"
+#include "contact/bodies/body_contacts.h"
 
-#include "contact/broad.h"
+#include "contact/bodies/broad.h"
 #include "math/vec3.h"
 
 #include <math.h>
