@@ -5,6 +5,7 @@
     words      phrases that were thought in another language
     formulas   in a comment, text right after a formula is a formula that was broken: leave a line
     Markdown   at most 120 columns outside tables, code and links
+    conflicts  both sides of a merge, left in a file with their marks
 
 With `wrap FILE.md...` the paragraphs of these files are wrapped; with a folder as argument, that
 tree is checked instead of this one.
@@ -34,6 +35,7 @@ KINDS = {".c", ".h", ".inc", ".md", ".py", ".sh", ".yaml"}
 FOLDERS = ("include", "lib", "tools", "examples", "tests", "bench", "docs", "cmake", ".ci")
 ITEM = re.compile(r"\s*(?:(?:[-*+]|\d+\.) +)?")
 COMMENT = re.compile(r"/\*(?:(?!\*/).)*\*/", re.S)
+CONFLICT = re.compile(r"^(?:<{7}|>{7}) \S", re.M)
 BROKEN = re.compile(r"^ *\* {4,}\S[^\n]*\n *\* ?(?! )[^\s/@*][^\n]*", re.M)
 
 
@@ -74,6 +76,12 @@ def check_formulas(text, name, problems):
         for match in BROKEN.finditer(comment.group()):
             line = text.count("\n", 0, comment.start() + match.start()) + 2
             problems.append(f"{name}:{line}: text right after a formula, leave an empty line")
+
+
+def check_conflicts(text, name, problems):
+    for match in CONFLICT.finditer(text):
+        line = text.count("\n", 0, match.start()) + 1
+        problems.append(f"{name}:{line}: the mark of a conflict")
 
 
 def blocks(text):
@@ -142,6 +150,7 @@ def main():
         text, name = path.read_text(), str(path.relative_to(root))
         count += 1
         check_words(text, name, problems)
+        check_conflicts(text, name, problems)
         if path.suffix in (".c", ".h", ".inc"):
             check_formulas(text, name, problems)
         if path.suffix == ".md":

@@ -103,6 +103,8 @@ printf '%s\n' '/* Where it is square' ' * to its axis, a = 0:' ' *' ' *     F = 
 reject 'prose.h:1: `square to`' $language
 reject 'prose.h:1: .*Where' $language
 reject 'prose.h:5: text right after a formula' $language
+printf '%s\n' 'int a;' "$(printf '<%.0s' 1 2 3 4 5 6 7) HEAD" >lib/math/both.h
+reject 'both.h:2: the mark of a conflict' $language
 printf '%0121d b\n| %0130d |\n' 0 0 >docs/wide.md
 reject 'docs/wide.md:1: 123 columns' $language
 

@@ -5,11 +5,7 @@
  * directions is the depth. It is along one of these:
  *
  * - normals of faces and caps, products of two edges (the axis of a cylinder is one);
-<<<<<<< HEAD
  * - with a cylinder, directions perpendicular to an edge or axis: the derivative has one sign on
-=======
- * - for a cylinder, directions perpendicular to an edge or axis: the derivative has one sign on
->>>>>>> 6b73646 (Take the least way off ridges of meshes, tell the side of open surfaces as a whole)
  *   either side of a least value, so that bisection finds it to the last digit;
  * - for two rims any direction: descent, then Newton's method.
  *
