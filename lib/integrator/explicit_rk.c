@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/explicit_rk.h"
+#include "integrator/adaptive.h"
 #include "integrator/memory.h"
 
 #include "assembly/energy.h"
@@ -13,27 +14,22 @@
 #include <math.h>
 #include <string.h>
 
-/* The history: this header, then y_1, y'_1, y_0 and the coefficients of the interpolation. */
-enum {
-    RK_T1 = SE3DI_HISTORY_TIME,  /* the forward state's time */
-    RK_T0 = SE3DI_HISTORY_BEGIN, /* begin of the last step */
-    RK_NEXT,                     /* the next step */
-    RK_ERROR,                    /* error of the last step, relative to the tolerance */
-    RK_DENSE,                    /* 1: the interpolation is ready */
-    RK_REJECTED,                 /* 1: the last attempt was rejected */
-    RK_FORCED,                   /* steps that only a jump of the accelerations explained */
-    RK_LENGTH,                   /* scales */
-    RK_SPEED,
-    RK_SPIN,
-    RK_ENERGY,
-    RK_ENERGY_MIN, /* what the potential at the start says of the size of energies */
-    RK_REDUNDANT,  /* the fewest dependent rows so far */
-    RK_HELD,       /* signs in a row that stability limits the steps */
-    RK_FREE,       /* signs against it since */
-    RK_SINCE,      /* steps since the last look */
-    RK_RENEWED,    /* 1: something else acts since the last step */
-    RK_HEADER
-};
+/* The history begins with this, then y_1 (at at.time), y'_1, y_0 (at at.begin) and the coefficients
+ * of the interpolation. */
+typedef struct rk_past {
+    se3di_adaptive_history at;
+    se3di_state_scale scale;
+    double energy_least; /* what the potential at the start says of the size of energies */
+    double dense;        /* 1: the interpolation is ready */
+    double forced;       /* steps that only a jump of the accelerations explained */
+    double redundant;    /* the fewest dependent rows so far */
+    double held;         /* signs in a row that stability limits the steps */
+    double free;         /* signs against it since */
+    double since;        /* steps since the last look */
+} rk_past;
+
+#define RK_PAST (sizeof(rk_past) / sizeof(double))
+_Static_assert(sizeof(rk_past) == 17 * sizeof(double), "it is an array of double in the model");
 
 #define HELD_MIN    15.0 /* signs that are enough, and signs against that take them back */
 #define FREE_MIN    6.0
@@ -41,16 +37,17 @@ enum {
 #define DECAY_MIN   0.5  /* and least of it times a decay, where decays limit the step */
 #define HELD_EACH   8.0  /* steps between looks if there is no sign */
 #define FORCED_MAX  3
-#define SAFETY      0.8 /* a rejected step costs more than several that are this much shorter */
-#define GROWTH      3.0 /* largest, of a step: one small error may be chance */
-#define WORK_WEIGHT 0.1 /* of the error of works: it disturbs nothing but the audit of energy */
+#define LEAST_STEP  3e-14 /* of the time */
+#define SAFETY      0.8   /* a rejected step costs more than several that are this much shorter */
+#define GROWTH      3.0   /* largest, of a step: one small error may be chance */
+#define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
 
 #define RK_FORMS   (3 + SE3DI_RK_DENSE_MAX)
 #define RK_VECTORS (3 + RK_FORMS)
 
 size_t se3di_rk_history_count(const se3di_assembly *assembly)
 {
-    return RK_HEADER + RK_VECTORS * se3di_state_count(assembly);
+    return RK_PAST + RK_VECTORS * se3di_state_count(assembly);
 }
 
 /* Work: the stages, the state of a stage, and what the force elements remember. */
@@ -61,12 +58,12 @@ size_t se3di_rk_work_count(const se3di_assembly *assembly)
 }
 
 typedef struct rk {
+    se3di_adaptive step; /* first, so that it is found from the loop's */
     const se3di_rk_tableau *tableau;
-    se3di_integration *integration;
     se3di_equations *equations;
     se3di_assembly *assembly;
-    size_t count;   /* numbers of a state */
-    double *header; /* history */
+    size_t count; /* numbers of a state */
+    rk_past *past;
     double *y1, *f1, *y0, *forms;
     double *K;          /* [total][count] */
     double *y;          /* state of a stage */
@@ -74,7 +71,6 @@ typedef struct rk {
     double *memory;     /* [forces * SE3DI_FORCE_STATES] */
     double *next;       /* derivative that the next step begins with */
     double tolerance;
-    double fraction;        /* of the step, that a turn of friction asks for; 0: none does */
     se3di_kkt_settings kkt; /* of the model's linear solver, to come back to */
 } rk;
 
@@ -99,6 +95,11 @@ static double projection_accuracy(double tolerance)
     return fmin(1e-13, fmax(1e-15, 1e-6 * tolerance));
 }
 
+static rk_past *past_of(const se3di_model *model)
+{
+    return (rk_past *)(void *)model->history;
+}
+
 /* The parts of history and work. */
 static rk point(const se3di_integration *integration)
 {
@@ -110,11 +111,11 @@ static rk point(const se3di_integration *integration)
         .equations = integration->equations,
         .assembly = assembly,
         .count = count,
-        .header = history,
-        .y1 = history + RK_HEADER,
-        .f1 = history + RK_HEADER + count,
-        .y0 = history + RK_HEADER + 2 * count,
-        .forms = history + RK_HEADER + 3 * count,
+        .past = past_of(assembly->model),
+        .y1 = history + RK_PAST,
+        .f1 = history + RK_PAST + count,
+        .y0 = history + RK_PAST + 2 * count,
+        .forms = history + RK_PAST + 3 * count,
         .K = integration->work,
         .y = integration->work + SE3DI_RK_MAX * count,
         .sum = integration->work + (SE3DI_RK_MAX + 1) * count,
@@ -127,26 +128,18 @@ static rk point(const se3di_integration *integration)
 static rk begin(se3di_integration *integration)
 {
     rk m = point(integration);
-    m.integration = integration;
+    m.step.integration = integration;
     se3di_contacts_begin(m.assembly->model, 0.0, 1.0, 0);
     m.kkt =
         se3di_state_begin(m.equations, regularisation(m.tolerance), fmin(1e-6, 1e-3 * m.tolerance));
     return m;
 }
 
-static se3di_state_scale get_scale(const rk *m)
-{
-    return (se3di_state_scale){m->header[RK_LENGTH], m->header[RK_SPEED], m->header[RK_SPIN],
-                               m->header[RK_ENERGY]};
-}
-
 static void grow_scale(rk *m, const double *derivative)
 {
-    se3di_state_scale scale = get_scale(m);
-    se3di_state_scale_grow(m->assembly, derivative, &scale);
-    m->header[RK_SPEED] = scale.speed;
-    m->header[RK_SPIN] = scale.spin;
-    m->header[RK_ENERGY] = fmax(scale.energy, m->header[RK_ENERGY_MIN]);
+    se3di_state_scale *scale = &m->past->scale;
+    se3di_state_scale_grow(m->assembly, derivative, scale);
+    scale->energy = fmax(scale->energy, m->past->energy_least);
 }
 
 typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
@@ -219,10 +212,10 @@ static double measure(const rk *m, const double *error)
         v = parts[2] <= v ? v : parts[2];
         w = parts[3] <= w ? w : parts[3];
     }
-    r = sqrt(r) / m->header[RK_LENGTH] + 2.0 * sqrt(p);
-    v = sqrt(v) / m->header[RK_SPEED] + sqrt(w) / m->header[RK_SPIN];
+    r = sqrt(r) / m->past->scale.length + 2.0 * sqrt(p);
+    v = sqrt(v) / m->past->scale.speed + sqrt(w) / m->past->scale.spin;
     const double *work = error + m->count - SE3DI_STATE_WORK;
-    double e = se3di_norm(work) / m->header[RK_ENERGY];
+    double e = se3di_norm(work) / m->past->scale.energy;
     return (r + v + WORK_WEIGHT * e) / m->tolerance;
 }
 
@@ -245,9 +238,9 @@ static se3d_status make_stages(rk *m, double h)
 {
     memcpy(m->y0, m->y1, m->count * sizeof *m->y0);
     memcpy(m->K, m->f1, m->count * sizeof *m->K);
-    se3di_state_begin_step(m->equations, m->header[RK_REDUNDANT]);
+    se3di_state_begin_step(m->equations, m->past->redundant);
     for (int k = 1; k < m->tableau->stages; ++k) {
-        SE3DI_TRY(evaluate_stage(m, m->header[RK_T1], h, k));
+        SE3DI_TRY(evaluate_stage(m, m->past->at.time, h, k));
     }
     return SE3D_OK;
 }
@@ -268,8 +261,8 @@ static void arrive(rk *m, double h)
 /* The factorisation of the last evaluation, which was here or near, serves. */
 static se3d_status project(rk *m, double t)
 {
-    const se3di_state_scale scale = get_scale(m);
-    return se3di_state_project(m->equations, t, &scale, projection_accuracy(m->tolerance), 1);
+    return se3di_state_project(m->equations, t, &m->past->scale, projection_accuracy(m->tolerance),
+                               1);
 }
 
 /* Stages, error, projection. The derivative at the end is that before the projection, which moves
@@ -278,9 +271,9 @@ static se3d_status project(rk *m, double t)
 static se3d_status attempt(rk *m, double h, double *error)
 {
     const int uses_end = m->tableau->uses_end;
-    const double t = m->header[RK_T1] + h;
+    const double t = m->past->at.time + h;
     *error = HUGE_VAL;
-    m->fraction = 0.0;
+    m->step.fraction = 0.0;
     SE3DI_TRY(make_stages(m, h));
     *error = uses_end ? 0.0 : estimate_error(m, h);
     if (!(*error <= 1.0) && isfinite(m->tolerance)) {
@@ -296,15 +289,15 @@ static se3d_status attempt(rk *m, double h, double *error)
     /* near a singular position (more rows are dependent than have been all along) accelerations at
      * a state that violates the constraints are others */
     const double dependent = se3di_kkt_get_dependent_rows(m->equations->kkt);
-    return dependent > m->header[RK_REDUNDANT] ? evaluate(m, t, end_derivative(m)) : SE3D_OK;
+    return dependent > m->past->redundant ? evaluate(m, t, end_derivative(m)) : SE3D_OK;
 }
 
-/* The frames hold the projected y_1. */
-static void accept(rk *m, double h)
+/* The frames hold the projected y_1, at t. */
+static void accept(rk *m, double t)
 {
-    m->header[RK_T0] = m->header[RK_T1];
-    m->header[RK_T1] += h;
-    m->header[RK_DENSE] = m->header[RK_RENEWED] = 0.0;
+    m->past->at.begin = m->past->at.time;
+    m->past->at.time = t;
+    m->past->dense = m->past->at.renewed = 0.0;
     size_t work = m->count - SE3DI_STATE_WORK;
     memcpy(m->y, m->y + work, SE3DI_STATE_WORK * sizeof *m->y); /* y_1 before the projection */
     se3di_state_get(m->assembly, m->y1);
@@ -312,7 +305,7 @@ static void accept(rk *m, double h)
     memcpy(m->f1, m->next, m->count * sizeof *m->f1);
     grow_scale(m, m->f1);
     double dependent = se3di_kkt_get_dependent_rows(m->equations->kkt);
-    m->header[RK_REDUNDANT] = fmin(m->header[RK_REDUNDANT], dependent);
+    m->past->redundant = fmin(m->past->redundant, dependent);
     se3di_angles_accept(m->assembly->model);
     se3di_contacts_accept(m->assembly->model); /* force elements: settle_memory */
     ++m->equations->counters.steps;
@@ -324,18 +317,18 @@ static void accept(rk *m, double h)
 static se3d_status settle_memory(rk *m, double h, double *error)
 {
     se3di_model *model = m->assembly->model;
-    const double t = m->header[RK_T1] + h;
-    m->fraction = 0.0;
+    const double t = m->past->at.time + h;
+    m->step.fraction = 0.0;
     m->next = end_derivative(m);
     if (!se3di_forces_have_memory(model)) {
         return SE3D_OK;
     }
-    const se3di_state_scale scale = {.speed = m->header[RK_SPEED], .spin = m->header[RK_SPIN]};
     se3di_memory_end end;
-    const se3di_memory_step step = {t, h, m->tolerance, model->lambda, &scale, m->memory, m->sum};
+    const se3di_memory_step step = {t,         h,     m->tolerance, model->lambda, &m->past->scale,
+                                    m->memory, m->sum};
     SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
     *error = fmax(*error, end.error);
-    m->fraction = end.fraction;
+    m->step.fraction = end.fraction;
     if (!(*error <= 1.0)) {
         se3di_model_restore_memory(model, m->memory);
         return SE3D_OK;
@@ -354,7 +347,7 @@ static se3d_status prepare(rk *m, double h, double *error)
     if (!(*error <= 1.0)) {
         return SE3D_OK;
     }
-    se3d_status status = se3di_state_prepare(m->equations, m->header[RK_T1] + h);
+    se3d_status status = se3di_state_prepare(m->equations, m->past->at.time + h);
     if (status < 0 && se3di_forces_have_memory(model)) {
         se3di_model_restore_memory(model, m->memory);
     }
@@ -363,7 +356,7 @@ static se3d_status prepare(rk *m, double h, double *error)
 
 static se3d_status fail_small(rk *m, double h)
 {
-    double t = m->header[RK_T1];
+    double t = m->past->at.time;
     const se3d_status status =
         se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
                         "t = %g s: the step fell to %.3g s: the tolerance %g cannot be met here; "
@@ -374,28 +367,16 @@ static se3d_status fail_small(rk *m, double h)
     return status;
 }
 
-static double limit_step(const rk *m, double h)
-{
-    double limit = m->integration->settings.step;
-    return limit > 0.0 && h > limit ? limit : h;
-}
-
 /* The next step: PI control of the error (Gustafsson 1991). */
 static double next_step(const rk *m, double h, double error)
 {
     double exponent = 1.0 / m->tableau->order;
-    double before = fmax(m->header[RK_ERROR], 1e-4);
+    double before = fmax(m->past->at.error, 1e-4);
     double e = fmax(error, 1e-10);
     double factor = SAFETY * se3di_pow(e, -0.8 * exponent) * se3di_pow(e / before, -0.2 * exponent);
-    double largest = m->header[RK_REJECTED] != 0.0 ? 1.0 : GROWTH;
+    double largest = m->past->at.rejected != 0.0 ? 1.0 : GROWTH;
     h *= fmin(largest, fmax(0.2, factor));
-    return limit_step(m, h);
-}
-
-/* Below this a step is no longer shortened. */
-static double least_step(const rk *m)
-{
-    return 3e-14 * fmax(1e-3, fabs(m->header[RK_T1]));
+    return se3di_adaptive_limit(m->step.integration, h);
 }
 
 /* If the accelerations jump, as under a driver or a load that is switched, no step is short
@@ -403,8 +384,8 @@ static double least_step(const rk *m)
  * the jump times h. If no ordinary step follows, it was no jump. */
 static se3d_status cross_jump(rk *m, double h, double error)
 {
-    double tolerance = m->tolerance;
-    if (!(error * tolerance < 1e-3) || m->header[RK_FORCED] >= FORCED_MAX) {
+    const double t = m->past->at.time + h, tolerance = m->tolerance;
+    if (!(error * tolerance < 1e-3) || m->past->forced >= FORCED_MAX) {
         return fail_small(m, h);
     }
     m->tolerance = HUGE_VAL; /* no error control */
@@ -415,11 +396,10 @@ static se3d_status cross_jump(rk *m, double h, double error)
     if (!(error <= 1.0)) { /* nor is what it leads to a number */
         return fail_small(m, h);
     }
-    accept(m, h);
-    m->header[RK_FORCED] += 1.0;
-    m->header[RK_NEXT] = limit_step(m, 1e6 * h);
-    m->header[RK_ERROR] = 1e-2;
-    m->header[RK_REJECTED] = 0.0;
+    accept(m, t);
+    m->past->forced += 1.0;
+    m->past->at.next = se3di_adaptive_limit(m->step.integration, 1e6 * h);
+    m->past->at.error = 1e-2;
     return SE3D_OK;
 }
 
@@ -437,8 +417,8 @@ static double largest_growth(const rk *m)
  * h: what oscillates has none on the average. */
 static double decay_of(const rk *m, const double *y, const double *f)
 {
-    const double v = 1.0 / (m->header[RK_SPEED] * m->header[RK_SPEED]);
-    const double w = 1.0 / (m->header[RK_SPIN] * m->header[RK_SPIN]);
+    const double v = 1.0 / (m->past->scale.speed * m->past->scale.speed);
+    const double w = 1.0 / (m->past->scale.spin * m->past->scale.spin);
     double product = 0.0, square = 0.0;
     for (size_t k = 7; k + SE3DI_STATE_WORK < m->count; k += SE3DI_STATE_SIZE) {
         product += v * se3di_dot(y + k, f + k) + w * se3di_dot(y + k + 3, f + k + 3);
@@ -451,7 +431,7 @@ static double decay_of(const rk *m, const double *y, const double *f)
  * step (its projection) keep such a decay alive long before stability is lost. */
 static int is_held_by_decay(const rk *m, double h)
 {
-    const double rate = fmax(m->header[RK_SPEED] / m->header[RK_LENGTH], m->header[RK_SPIN]);
+    const double rate = fmax(m->past->scale.speed / m->past->scale.length, m->past->scale.spin);
     return h * rate < SLOW_MAX && decay_of(m, m->sum, m->sum3) > DECAY_MIN;
 }
 
@@ -463,15 +443,15 @@ static void watch_stability(rk *m, double h)
 {
     const se3di_rk_tableau *tableau = m->tableau;
     const int last = tableau->stages - 1, end = tableau->stages;
-    double difference[SE3DI_RK_MAX], *held = &m->header[RK_HELD], *free = &m->header[RK_FREE];
-    m->header[RK_SINCE] += 1.0;
-    if (se3di_kkt_get_dependent_rows(m->equations->kkt) > m->header[RK_REDUNDANT]) {
+    double difference[SE3DI_RK_MAX], *held = &m->past->held, *free = &m->past->free;
+    m->past->since += 1.0;
+    if (se3di_kkt_get_dependent_rows(m->equations->kkt) > m->past->redundant) {
         return;
     }
-    if (!(*held > 0.0) && m->header[RK_SINCE] < HELD_EACH) {
+    if (!(*held > 0.0) && m->past->since < HELD_EACH) {
         return;
     }
-    m->header[RK_SINCE] = 0.0;
+    m->past->since = 0.0;
     for (int k = 0; k < SE3DI_RK_MAX; ++k) {
         difference[k] = tableau->a[end][k] - tableau->a[last][k];
     }
@@ -494,33 +474,62 @@ static void watch_stability(rk *m, double h)
 
 int se3di_rk_is_held(const se3di_integration *integration)
 {
-    return integration->equations->assembly.model->history[RK_HELD] >= HELD_MIN;
+    return past_of(integration->equations->assembly.model)->held >= HELD_MIN;
 }
 
 /* The run is to end at the forward state. */
 static int must_leave(const rk *m)
 {
-    return m->integration->settings.leaves_stiff && m->header[RK_HELD] >= HELD_MIN;
+    return m->step.integration->settings.leaves_stiff && m->past->held >= HELD_MIN;
 }
 
-/* Nothing is learnt from attempts that end the run. */
-static se3d_status give_up(rk *m, const double *header, se3d_status status)
+/* ---- in the loop of all methods ---- */
+
+static rk *get_rk(se3di_adaptive *step)
 {
-    memcpy(m->header, header, RK_HEADER * sizeof *header);
-    return status;
+    return (rk *)(void *)step;
+}
+
+static double pace(se3di_adaptive *step, double h)
+{
+    const rk *m = get_rk(step);
+    h = se3di_state_limit_turn(m->assembly->model, largest_growth(m), h);
+    return se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
+}
+
+static se3d_status try_step(se3di_adaptive *step, double h, double *error)
+{
+    SE3DI_TRY(attempt(get_rk(step), h, error));
+    return *error <= 1.0 ? prepare(get_rk(step), h, error) : SE3D_OK;
 }
 
 /* The step h has met the tolerance: what follows for the next ones. */
-static void take(rk *m, double h, double error)
+static se3d_status take(se3di_adaptive *step, double h, double t, double error)
 {
-    accept(m, h);
-    if (m->integration->settings.leaves_stiff) {
+    rk *m = get_rk(step);
+    const double least = LEAST_STEP * fmax(1e-3, fabs(t));
+    accept(m, t);
+    if (step->integration->settings.leaves_stiff) {
         watch_stability(m, h);
     }
-    m->header[RK_NEXT] = next_step(m, h, error);
-    m->header[RK_ERROR] = error;
-    m->header[RK_REJECTED] = 0.0;
-    m->header[RK_FORCED] = h > 1e3 * least_step(m) ? 0.0 : m->header[RK_FORCED];
+    step->at->next = next_step(m, h, error);
+    step->at->error = error;
+    m->past->forced = h > 1e3 * least ? 0.0 : m->past->forced;
+    return SE3D_OK;
+}
+
+static double shrink(se3di_adaptive *step, double h, se3d_status status, double error)
+{
+    (void)h;
+    const double exponent = 1.0 / get_rk(step)->tableau->order;
+    const double factor =
+        status < 0 || !isfinite(error) ? 0.25 : SAFETY * se3di_pow(error, -exponent);
+    return fmax(0.2, fmin(0.9, factor));
+}
+
+static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status, double error)
+{
+    return status < 0 ? status : cross_jump(get_rk(step), h, error);
 }
 
 /* One accepted step with error control. What contacts remember belongs to the end of a step, and
@@ -528,63 +537,27 @@ static void take(rk *m, double h, double error)
  * one after a change of what acts, which may soon change again. */
 static se3d_status advance(rk *m, double t_end)
 {
-    double h = m->header[RK_NEXT], header[RK_HEADER];
-    memcpy(header, m->header, sizeof header);
-    se3di_forces_show(m->assembly->model, 0);
+    static const se3di_adaptive_class methods = {pace,   try_step,  take,
+                                                 shrink, surrender, LEAST_STEP};
+    se3di_model *model = m->assembly->model;
+    m->step.methods = &methods;
+    m->step.at = &m->past->at;
+    m->step.ends = model->contacts.pair_count > 0 || m->past->at.renewed > 0.0;
+    se3di_forces_show(model, 0);
     se3di_state_set(m->assembly, m->y1);
     se3di_state_set_rates(m->assembly, m->f1);
-    se3di_angles_accept(m->assembly->model); /* turns count from step to step, not from an output */
-    h = se3di_state_limit_turn(m->assembly->model, largest_growth(m), h);
-    h = se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
-    double rest = t_end - m->header[RK_T1];
-    const int ends = m->assembly->model->contacts.pair_count > 0 || m->header[RK_RENEWED] > 0.0;
-    double longer = ends && h > rest ? h : 0.0;
-    h = longer > 0.0 ? rest : h;
-    for (;;) {
-        double error;
-        se3d_status status = se3di_equations_try_step(m->equations, m->header[RK_T1]);
-        if (status < 0) {
-            return give_up(m, header, status);
-        }
-        status = attempt(m, h, &error);
-        if (status >= 0 && error <= 1.0) {
-            status = prepare(m, h, &error);
-        }
-        if (status == SE3D_ERR_NO_MEMORY) {
-            return give_up(m, header, status);
-        }
-        if (status >= 0 && error <= 1.0) {
-            take(m, h, error);
-            if (longer > 0.0) {
-                m->header[RK_NEXT] = fmax(longer, m->header[RK_NEXT]);
-                m->header[RK_T1] = t_end;
-            }
-            return SE3D_OK;
-        }
-        ++m->equations->counters.rejected;
-        m->header[RK_REJECTED] = 1.0;
-        double exponent = 1.0 / m->tableau->order;
-        double factor =
-            status < 0 || !isfinite(error) ? 0.25 : SAFETY * se3di_pow(error, -exponent);
-        const double before = h;
-        h *= status >= 0 && m->fraction > 0.0 ? m->fraction : fmax(0.2, fmin(0.9, factor));
-        if (!(h > least_step(m))) {
-            status = status < 0 ? status : cross_jump(m, before, error);
-            return status < 0 ? give_up(m, header, status) : status;
-        }
-        m->header[RK_NEXT] = h;
-        longer = 0.0;
-    }
+    se3di_angles_accept(model); /* turns count from step to step, not from an output */
+    return se3di_adaptive_advance(&m->step, t_end);
 }
 
 /* The interpolation of the last step; K still holds its stages. */
 static se3d_status build_dense(rk *m)
 {
     const se3di_rk_tableau *tableau = m->tableau;
-    double h = m->header[RK_T1] - m->header[RK_T0];
+    double h = m->past->at.time - m->past->at.begin;
     se3di_forces_show(m->assembly->model, 1);
     for (int k = tableau->stages + 1; k < tableau->total; ++k) {
-        SE3DI_TRY(evaluate_stage(m, m->header[RK_T0], h, k));
+        SE3DI_TRY(evaluate_stage(m, m->past->at.begin, h, k));
     }
     const double *f0 = m->K, *f1 = end_derivative(m);
     double *F0 = m->forms, *F1 = F0 + m->count, *F2 = F1 + m->count;
@@ -596,13 +569,13 @@ static se3d_status build_dense(rk *m)
     for (int row = 0; row < tableau->dense_rows; ++row) {
         combine(m, NULL, h, tableau->d[row], tableau->total, F2 + (size_t)(row + 1) * m->count);
     }
-    m->header[RK_DENSE] = 1.0;
+    m->past->dense = 1.0;
     return SE3D_OK;
 }
 
 static void interpolate(const rk *m, double t, double *y)
 {
-    double s = (t - m->header[RK_T0]) / (m->header[RK_T1] - m->header[RK_T0]);
+    double s = (t - m->past->at.begin) / (m->past->at.time - m->past->at.begin);
     int forms = 3 + m->tableau->dense_rows;
     for (size_t k = 0; k < m->count; ++k) {
         double sum = 0.0;
@@ -618,8 +591,8 @@ static se3d_status adopt(rk *m)
 {
     se3di_assembly *assembly = m->assembly;
     se3di_forces_stay(assembly->model);
-    m->header[RK_T1] = m->header[RK_T0] = assembly->model->time;
-    m->header[RK_DENSE] = 0.0;
+    m->past->at.time = m->past->at.begin = assembly->model->time;
+    m->past->dense = 0.0;
     se3di_state_get(assembly, m->y1);
     se3di_assembly_get_acceleration(assembly, m->equations->x);
     SE3DI_TRY(se3di_state_derivative(assembly, assembly->model->time, m->equations->x,
@@ -631,17 +604,16 @@ static se3d_status adopt(rk *m)
 /* The model's state is that at an end of the last step. */
 static se3d_status publish(rk *m, int at_end)
 {
-    const se3di_state_scale scale = get_scale(m);
+    const double t = at_end ? m->past->at.time : m->past->at.begin;
     se3di_forces_show(m->assembly->model, !at_end);
-    return se3di_state_publish(m->equations, at_end ? m->y1 : m->y0,
-                               m->header[at_end ? RK_T1 : RK_T0], &scale, 0);
+    return se3di_state_publish(m->equations, at_end ? m->y1 : m->y0, t, &m->past->scale, 0);
 }
 
 /* Hairer, Norsett, Wanner 1993, sec. II.4: from the derivative and its change over a small step. */
 static double choose_first(rk *m)
 {
     double d1 = measure(m, m->f1);
-    double limit = m->integration->settings.step;
+    double limit = m->step.integration->settings.step;
     double h0 = 0.01 / (fmax(d1 * m->tolerance, 1e-5));
     h0 = limit > 0.0 ? fmin(h0, limit) : h0;
     se3di_error ignored = {0};
@@ -652,7 +624,7 @@ static double choose_first(rk *m)
     }
     se3di_state_set(m->assembly, m->y);
     double d2 = 0.0;
-    if (evaluate(m, m->header[RK_T1] + h0, m->K) >= 0) {
+    if (evaluate(m, m->past->at.time + h0, m->K) >= 0) {
         for (size_t k = 0; k < m->count; ++k) {
             m->K[k] -= m->f1[k];
         }
@@ -671,20 +643,20 @@ se3d_status se3di_rk_start(se3di_integration *integration, double h)
 {
     (void)h; /* the first step is chosen */
     rk m = begin(integration);
-    memset(m.header, 0, RK_HEADER * sizeof *m.header);
+    memset(m.past, 0, sizeof *m.past);
     memset(m.y0, 0, (RK_FORMS + 1) * m.count * sizeof *m.y0);
-    m.header[RK_LENGTH] = se3di_state_length(m.assembly->model);
-    m.header[RK_ERROR] = 1e-2;
-    m.header[RK_REDUNDANT] = (double)m.assembly->row_count;
+    m.past->scale.length = se3di_state_length(m.assembly->model);
+    m.past->at.error = 1e-2;
+    m.past->redundant = (double)m.assembly->row_count;
     double potential;
     const se3di_model *model = m.assembly->model;
     se3d_status status = se3di_loads_potential(model, model->time, &potential);
     if (status >= 0) {
-        m.header[RK_ENERGY_MIN] = 1e-3 * fabs(potential);
+        m.past->energy_least = 1e-3 * fabs(potential);
         status = adopt(&m);
     }
     if (status >= 0) {
-        m.header[RK_NEXT] = choose_first(&m);
+        m.past->at.next = choose_first(&m);
     }
     se3di_state_end(m.equations, &m.kkt);
     return status;
@@ -694,7 +666,7 @@ se3d_status se3di_rk_renew(se3di_integration *integration)
 {
     rk m = begin(integration);
     const se3d_status status = adopt(&m);
-    m.header[RK_RENEWED] = 1.0;
+    m.past->at.renewed = 1.0;
     se3di_state_end(m.equations, &m.kkt);
     return status;
 }
@@ -713,7 +685,7 @@ static int reports_end(const rk *m)
 /* One step of h without error control; *reported: the accelerations at its end are the model's. */
 static se3d_status step_once(rk *m, double h, int *reported)
 {
-    const double t = m->header[RK_T1] + h;
+    const double t = m->past->at.time + h;
     double error = 0.0; /* none is asked for: what settle_memory adds decides */
     SE3DI_TRY(make_stages(m, h));
     *reported = reports_end(m);
@@ -729,7 +701,7 @@ static se3d_status step_once(rk *m, double h, int *reported)
         SE3DI_TRY(project(m, t));
     }
     SE3DI_TRY(prepare(m, h, &error));
-    accept(m, h);
+    accept(m, t);
     return SE3D_OK;
 }
 
@@ -738,7 +710,7 @@ se3d_status se3di_rk_step(se3di_integration *integration, double h)
     rk m = begin(integration);
     int reported = 0;
     se3d_status status = SE3D_OK;
-    if (m.header[RK_T1] != m.assembly->model->time) {
+    if (m.past->at.time != m.assembly->model->time) {
         status = adopt(&m);
     }
     se3di_forces_show(m.assembly->model, 0);
@@ -746,7 +718,7 @@ se3d_status se3di_rk_step(se3di_integration *integration, double h)
     status = status < 0 ? status : step_once(&m, h, &reported);
     se3di_state_end(m.equations, &m.kkt);
     if (status >= 0 && reported) {
-        return se3di_state_conclude(m.equations, m.y1, m.header[RK_T1]);
+        return se3di_state_conclude(m.equations, m.y1, m.past->at.time);
     }
     return status < 0 ? status : publish(&m, 1);
 }
@@ -754,10 +726,10 @@ se3d_status se3di_rk_step(se3di_integration *integration, double h)
 /* Forward steps until t_end is reached, and the interpolation where it is passed. */
 static se3d_status advance_to(rk *m, double t_end)
 {
-    while (m->header[RK_T1] < t_end && !must_leave(m)) {
+    while (m->past->at.time < t_end && !must_leave(m)) {
         SE3DI_TRY(advance(m, t_end));
     }
-    return m->header[RK_T1] > t_end && m->header[RK_DENSE] == 0.0 ? build_dense(m) : SE3D_OK;
+    return m->past->at.time > t_end && m->past->dense == 0.0 ? build_dense(m) : SE3D_OK;
 }
 
 se3d_status se3di_rk_advance(se3di_integration *integration, double t_end)
@@ -773,7 +745,7 @@ void se3di_rk_interpolate(const se3di_integration *integration, double t, double
 {
     const se3di_assembly *assembly = &integration->equations->assembly;
     const rk m = point(integration);
-    if (t < m.header[RK_T1]) {
+    if (t < m.past->at.time) {
         interpolate(&m, t, y);
     } else {
         memcpy(y, m.y1, se3di_state_count(assembly) * sizeof *y);
@@ -783,15 +755,14 @@ void se3di_rk_interpolate(const se3di_integration *integration, double t, double
 se3d_status se3di_rk_run(se3di_integration *integration, double t_end)
 {
     rk m = begin(integration);
-    const int at_begin = !(t_end > m.header[RK_T0]);
+    const int at_begin = !(t_end > m.past->at.begin);
     se3d_status status = at_begin ? SE3D_OK : advance_to(&m, t_end);
     se3di_state_end(m.equations, &m.kkt);
     SE3DI_TRY(status);
-    if (at_begin || m.header[RK_T1] <= t_end) { /* earlier where it leaves a stiff motion */
-        return publish(&m, m.header[RK_T1] <= t_end);
+    if (at_begin || m.past->at.time <= t_end) { /* earlier where it leaves a stiff motion */
+        return publish(&m, m.past->at.time <= t_end);
     }
     interpolate(&m, t_end, m.y);
     se3di_forces_show(m.assembly->model, 1);
-    se3di_state_scale scale = get_scale(&m);
-    return se3di_state_publish(m.equations, m.y, t_end, &scale, 1);
+    return se3di_state_publish(m.equations, m.y, t_end, &m.past->scale, 1);
 }

@@ -28,7 +28,19 @@ typedef struct se3di_integrator_settings {
 typedef struct se3di_integration se3di_integration;
 struct se3di_rk_tableau;
 
-/* The places in which methods with `advance` keep the end and the beginning of their last step. */
+/* The history of a method with `advance` begins with this. */
+typedef struct se3di_adaptive_history {
+    double time;     /* of the accepted state, the end of the last step [s] */
+    double begin;    /* of the last step [s] */
+    double next;     /* the next step [s] */
+    double error;    /* of the last step, relative to the tolerance */
+    double rejected; /* 1: an attempt at the step under way was rejected */
+    double renewed;  /* 1: something else acts since the last step */
+} se3di_adaptive_history;
+_Static_assert(sizeof(se3di_adaptive_history) == 6 * sizeof(double),
+               "it is an array of double in the model");
+
+/* The places of time and begin. */
 enum { SE3DI_HISTORY_TIME = 0, SE3DI_HISTORY_BEGIN = 1 };
 
 typedef struct se3di_integrator {

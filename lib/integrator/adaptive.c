@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "integrator/adaptive.h"
+
+#include "contact/bodies/pace.h"
+
+#include <math.h>
+
+double se3di_adaptive_limit(const se3di_integration *integration, double h)
+{
+    const double limit = integration->settings.step;
+    return limit > 0.0 && h > limit ? limit : h;
+}
+
+se3d_status se3di_adaptive_blame(const se3di_integration *integration, double t, double h,
+                                 se3d_status cause)
+{
+    const se3di_equations *equations = integration->equations;
+    if (cause >= 0) {
+        cause = se3di_error_set(equations->error, SE3D_ERR_STEP_SIZE,
+                                "t = %g s: the step fell to %.3g s: the tolerance %g cannot be met "
+                                "here; the motion is not smooth",
+                                t, h, integration->settings.tolerance);
+    }
+    se3di_contacts_blame(equations->assembly.model, equations->error);
+    return cause;
+}
+
+/* Whether a shorter step may do what this one did not. */
+static int may_shrink(se3d_status status)
+{
+    return status != SE3D_ERR_INTERRUPTED && status != SE3D_ERR_NO_MEMORY;
+}
+
+/* The step is tried once. @return OK with *error above 1: it is rejected */
+static se3d_status attempt(se3di_adaptive *step, double h, double t, double *error)
+{
+    *error = HUGE_VAL;
+    step->fraction = 0.0;
+    SE3DI_TRY(step->methods->attempt(step, h, error));
+    return *error <= 1.0 ? step->methods->accept(step, h, t, *error) : SE3D_OK;
+}
+
+/* Shorter and shorter steps, from h, which ends at *t. */
+static se3d_status try_steps(se3di_adaptive *step, double h, double t)
+{
+    const se3di_adaptive_class *methods = step->methods;
+    se3di_equations *equations = step->integration->equations;
+    const double begin = step->at->time;
+    const double least = methods->least * fmax(1e-3, fabs(begin));
+    for (step->tries = 1;; ++step->tries) {
+        double error;
+        SE3DI_TRY(se3di_equations_try_step(equations, begin));
+        const se3d_status status = attempt(step, h, t, &error);
+        if (status < 0 ? !may_shrink(status) : error <= 1.0) {
+            return status;
+        }
+        const double tried = h;
+        ++equations->counters.rejected;
+        step->at->rejected = 1.0;
+        h *= status >= 0 && step->fraction > 0.0 ? step->fraction
+                                                 : methods->shrink(step, h, status, error);
+        if (!(h > least)) {
+            return methods->surrender(step, tried, status, error);
+        }
+        step->at->next = h;
+        t = begin + h;
+    }
+}
+
+se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end)
+{
+    const se3di_adaptive_history before = *step->at;
+    const double rest = t_end - before.time;
+    const double h = step->methods->pace(step, before.next);
+    const int is_cut = step->ends && rest > 0.0 && h > rest;
+    const se3d_status status = try_steps(step, is_cut ? rest : h, is_cut ? t_end : before.time + h);
+    if (status < 0) { /* nothing is learnt from attempts that end the run */
+        *step->at = before;
+        return status;
+    }
+    step->at->rejected = 0.0;
+    if (is_cut && step->tries == 1) {
+        step->at->next = fmax(h, step->at->next);
+    }
+    return SE3D_OK;
+}
