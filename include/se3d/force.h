@@ -222,6 +222,35 @@ static inline se3d_stop_def se3d_stop_def_default(void)
 SE3D_API se3d_status se3d_force_create_stop(se3d_system *system, const se3d_stop_def *def,
                                             se3d_force *force);
 
+/* Effort: a generalised force along a coordinate of a joint, positive as it drives the coordinate
+ * up: a torque [N m] about the axis on j and its opposite on i, or a force [N]. Its value is a
+ * number that se3d_effort_set changes between steps, or a function. @since 0.1 */
+typedef struct se3d_effort_def {
+    size_t struct_size;
+    const char *name;      /* copied; NULL or unique among force elements */
+    se3d_constraint joint; /* required: a joint with the coordinate */
+    int32_t coordinate;    /* se3d_joint_coordinate */
+    int32_t reserved;
+    double value;           /* [N m, N]; default 0 */
+    se3d_function function; /* of (t, coordinate, rate), or null: `value` */
+} se3d_effort_def;
+
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_effort_def_default. @since 0.1 */
+SE3D_API void se3d_effort_def_init(se3d_effort_def *def, size_t size);
+
+/* Return the defaults. @since 0.1 */
+static inline se3d_effort_def se3d_effort_def_default(void)
+{
+    se3d_effort_def def;
+    se3d_effort_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Create an effort on a joint coordinate. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT,
+ * NO_MEMORY. @since 0.1 */
+SE3D_API se3d_status se3d_force_create_effort(se3d_system *system, const se3d_effort_def *def,
+                                              se3d_force *force);
+
 /* Compute what a user-defined element does to its bodies i and j at the time t [s]:
  *
  *     wrench  force on i [N] (ground frame, at the centre of mass), torque on i [N m] (body frame),
@@ -286,6 +315,32 @@ SE3D_API se3d_status se3d_force_set_value(se3d_system *system, se3d_force force,
  * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_value(const se3d_system *system, se3d_force force,
                                           double value[3]);
+
+/* Set the value of an effort; one that has a function stays with its function. It acts from the
+ * very start of the next step on.
+ * @param[in] value  along the coordinate [N m, N]
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (not finite, or no effort).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_effort_set(se3d_system *system, se3d_force force, double value);
+
+/* Get the value of an effort, as it was set.
+ * @param[out] value  along the coordinate [N m, N]
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (no effort).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_effort_get(const se3d_system *system, se3d_force force, double *value);
+
+/* Count the efforts of a system.
+ * @param[out] count  of force elements of this type
+ * @return OK, NULL.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_effort_count(const se3d_system *system, size_t *count);
+
+/* Set the values of all efforts as se3d_effort_set does, in one call; all or none is set.
+ * @param[in] count   as se3d_effort_count has it
+ * @param[in] values  [count], in the order in which the elements were created [N m, N]
+ * @return OK, NULL, INVALID_ARGUMENT (another count, a value is not finite).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_effort_set_all(se3d_system *system, size_t count, const double *values);
 
 /* A number that a force element has, with the unit and the range of its definition. @since 0.1 */
 typedef enum se3d_force_parameter {
@@ -374,15 +429,15 @@ SE3D_API se3d_status se3d_force_get_name(const se3d_system *system, se3d_force f
                                          const char **name);
 
 /* Get the type of a force element as in the model file.
- * @param[out] type  "tsda", "rsda", "force", "torque", "bushing", "friction", "stop", "callback";
- *                   static
+ * @param[out] type  "tsda", "rsda", "force", "torque", "bushing", "friction", "stop", "callback",
+ *                   "effort"; static
  * @return OK, NULL, STALE_HANDLE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_type(const se3d_system *system, se3d_force force,
                                          const char **type);
 
-/* Get the coordinate of a tsda, rsda, friction or stop and what acts against it, at the present
- * state. NULL ones are skipped.
+/* Get the coordinate of a tsda, rsda, friction or stop and what acts against it, or of an effort
+ * and what acts along it, at the present state. NULL ones are skipped.
  * @param[out] coordinate  length or displacement [m], angle [rad]
  * @param[out] rate        of the coordinate [m/s, rad/s]
  * @param[out] value       force f [N] or torque n [N m]

@@ -30,19 +30,24 @@ static double dot12(const double *a, const double *b)
     return sum;
 }
 
-void se3di_measure_term(const se3di_model *model, const se3di_term *term, int wants_H,
-                        se3di_measure *measure)
+static void measure_rate(const se3di_model *model, const se3di_term *term, se3di_measure *measure)
 {
     const se3di_frame *i = &model->frames[term->body_i];
     const se3di_frame *j = &model->frames[term->body_j];
-    const se3di_primitive *primitive = &se3di_primitives[term->type];
-    measure->value = se3di_term_value(model, term);
-    primitive->jacobian_romega(term, i, j, measure->g, measure->g + 6);
+    se3di_primitives[term->type].jacobian_romega(term, i, j, measure->g, measure->g + 6);
     pair_velocity(i, j, measure->u);
     measure->rate = dot12(measure->g, measure->u);
+}
+
+void se3di_measure_term(const se3di_model *model, const se3di_term *term, int wants_H,
+                        se3di_measure *measure)
+{
+    measure->value = se3di_term_value(model, term);
+    measure_rate(model, term, measure);
     if (wants_H) {
         memset(measure->H, 0, sizeof measure->H);
-        primitive->curvature_romega(term, i, j, 1.0, measure->H);
+        se3di_primitives[term->type].curvature_romega(
+            term, &model->frames[term->body_i], &model->frames[term->body_j], 1.0, measure->H);
     }
 }
 
@@ -92,6 +97,15 @@ static void init_term(const se3di_model *model, const se3di_force *force, se3di_
         const se3di_constraint *joint = &model->constraints[force->joint];
         se3di_displacement_term_init(term, &joint->frames, joint->bodies);
     }
+}
+
+void se3di_measure_gradient(const se3di_model *model, const se3di_force *force,
+                            se3di_measure *measure)
+{
+    se3di_term term;
+    init_term(model, force, &term);
+    measure->value = 0.0;
+    measure_rate(model, &term, measure);
 }
 
 int se3di_measure_force(const se3di_model *model, const se3di_force *force, int wants_H,

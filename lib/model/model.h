@@ -123,7 +123,8 @@ typedef struct se3di_angle {
     X(BUSHING, bushing)                                                                            \
     X(FRICTION, friction)                                                                          \
     X(STOP, stop)                                                                                  \
-    X(CALLBACK, callback)
+    X(CALLBACK, callback)                                                                          \
+    X(EFFORT, effort)
 
 typedef enum se3di_force_type {
 #define SE3DI_FORCE_ENUM(TYPE, name) SE3DI_FORCE_##TYPE,
@@ -148,13 +149,12 @@ typedef struct se3di_force {
     double k, c, rest;                       /* stiffness, damping, l0 or theta0 */
     double preload;                          /* of springs: value at rest */
     int32_t function[SE3DI_FORCE_FUNCTIONS]; /* -1: none */
-    int32_t joint;                           /* rsda, friction, stop: whose coordinate; -1: none */
-    int32_t angle;                           /* its turn counter; -1: none */
-    int32_t owns_angle;                      /* the turn counter is the element's own */
-    int32_t
-        coordinate; /* friction, stop: se3d_joint_coordinate, SE3DI_FORCE_LENGTH: of two points */
+    int32_t joint;      /* rsda, friction, stop, effort: whose coordinate; -1: none */
+    int32_t angle;      /* its turn counter; -1: none */
+    int32_t owns_angle; /* the turn counter is the element's own */
+    int32_t coordinate; /* friction, stop, effort: se3d_joint_coordinate, or SE3DI_FORCE_LENGTH */
     uint32_t users;
-    double value[3];    /* loads */
+    double value[3];    /* loads; effort: [0] */
     double low, high;   /* stop: free between; infinite: none */
     double restitution; /* stop */
     double mu, mu_static, radius, limit, viscous, presliding; /* friction, */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Force elements: creation and queries. */
-#include "force/force.h"
+#include "force/measure.h"
 
 #include "joint/joint.h"
 #include "math/vec3.h"
@@ -273,6 +273,14 @@ static se3d_status eval_reader(const se3d_system *system, se3d_force force, cons
                           se3di_force_eval(&system->model, data, system->model.time, effect));
 }
 
+/* The coordinate of an effort, which does not need it. */
+static double measure_coordinate(const se3d_system *system, const se3di_force *data)
+{
+    se3di_measure measure;
+    (void)se3di_measure_force(&system->model, data, 0, &measure);
+    return measure.value;
+}
+
 se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force, double *coordinate,
                                  double *rate, double *value)
 {
@@ -284,7 +292,8 @@ se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force, do
     }
     SE3DI_TRY(eval_reader(system, force, system, &effect));
     if (coordinate) {
-        *coordinate = effect.coordinate;
+        *coordinate =
+            data->type == SE3DI_FORCE_EFFORT ? measure_coordinate(system, data) : effect.coordinate;
     }
     if (rate) {
         *rate = effect.rate;

@@ -136,6 +136,27 @@ se3d_status se3d_force_create_stop(se3d_system *system, const se3d_stop_def *def
     return se3di_force_add(system, &data, force);
 }
 
+void se3d_effort_def_init(se3d_effort_def *def, size_t size)
+{
+    se3d_effort_def defaults = {.struct_size = size};
+    se3di_def_init(def, size, &defaults, sizeof defaults);
+}
+
+se3d_status se3d_force_create_effort(se3d_system *system, const se3d_effort_def *def,
+                                     se3d_force *force)
+{
+    SE3DI_TRY(se3di_force_begin(system, force));
+    se3d_effort_def full = se3d_effort_def_default();
+    SE3DI_TRY(se3di_check_def(system, "effort def", def, &full, sizeof full));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
+    se3di_force data = se3di_force_blank(SE3DI_FORCE_EFFORT, full.name);
+    SE3DI_TRY(find_coordinate(system, full.joint, full.coordinate, &data));
+    SE3DI_TRY(se3di_check_finite(system, "value", full.value));
+    SE3DI_TRY(se3di_find_function(system, "function", full.function, 3, &data.function[0]));
+    data.value[0] = full.value;
+    return se3di_force_add(system, &data, force);
+}
+
 se3d_status se3d_force_create_callback(se3d_system *system, const se3d_force_callback_def *def,
                                        se3d_force *force)
 {

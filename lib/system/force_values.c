@@ -258,6 +258,94 @@ se3d_status se3d_force_get_parameter(const se3d_system *system, se3d_force force
     return SE3D_OK;
 }
 
+static se3d_status find_effort(se3d_system *system, se3d_force force, uint32_t *index)
+{
+    SE3DI_TRY(se3di_find_force(system, "force", force, index));
+    const se3di_force *data = &system->model.forces[*index];
+    return data->type == SE3DI_FORCE_EFFORT ? SE3D_OK : fail_type(system, data, "effort");
+}
+
+/* @return whether it is another one */
+static int take_effort(se3di_model *model, uint32_t index, double value)
+{
+    double *at = &model->forces[index].value[0];
+    if (memcmp(at, &value, sizeof value) == 0) {
+        return 0;
+    }
+    *at = value;
+    return 1;
+}
+
+se3d_status se3d_effort_set(se3d_system *system, se3d_force force, double value)
+{
+    SE3DI_SET(system);
+    uint32_t index;
+    SE3DI_TRY(find_effort(system, force, &index));
+    SE3DI_TRY(se3di_check_finite(system, "value", value));
+    if (take_effort(&system->model, index, value)) {
+        se3di_model_touch_inputs(&system->model);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_effort_get(const se3d_system *system, se3d_force force, double *value)
+{
+    const se3di_force *data;
+    SE3DI_TRY(se3di_force_find_reader(system, force, value, &data));
+    if (data->type != SE3DI_FORCE_EFFORT) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    *value = data->value[0];
+    return SE3D_OK;
+}
+
+static size_t count_efforts(const se3di_model *model)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        count += model->forces[k].type == SE3DI_FORCE_EFFORT;
+    }
+    return count;
+}
+
+se3d_status se3d_effort_count(const se3d_system *system, size_t *count)
+{
+    if (count) {
+        *count = 0;
+    }
+    if (!system || !count) {
+        return SE3D_ERR_NULL;
+    }
+    *count = count_efforts(&system->model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_effort_set_all(se3d_system *system, size_t count, const double *values)
+{
+    SE3DI_SET(system);
+    se3di_model *model = &system->model;
+    const size_t efforts = count_efforts(model);
+    if (count != efforts) {
+        return SE3DI_FAIL_OF(system, "count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be %zu, one for each effort", count, efforts);
+    }
+    if (count == 0) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_check_pointer(system, "values", values));
+    SE3DI_TRY(se3di_check_finites(system, "values", values, (int)count));
+    int changes = 0;
+    for (uint32_t k = 0; k < model->force_slots.count; ++k) {
+        if (model->forces[k].type == SE3DI_FORCE_EFFORT) {
+            changes |= take_effort(model, k, *values++);
+        }
+    }
+    if (changes) {
+        se3di_model_touch_inputs(model);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3d_force_get_bushing(const se3d_system *system, se3d_force force, double K[36],
                                    double C[36])
 {

@@ -268,6 +268,34 @@ static void create_lower_stop(world *w)
     create_stop(w, 9.0, 10.0);
 }
 
+static void create_effort(world *w, int32_t coordinate, const char *text)
+{
+    se3d_force force;
+    se3d_effort_def def = se3d_effort_def_default();
+    def.joint = w->joint;
+    def.coordinate = coordinate;
+    def.value = 3.0;
+    if (text) {
+        def.function = make(w, text, "q", "qdot");
+    }
+    finish(w, se3d_force_create_effort(w->system, &def, &force));
+}
+
+static void create_torque_effort(world *w)
+{
+    create_effort(w, SE3D_JOINT_COORDINATE_ANGLE, NULL);
+}
+
+static void create_push_effort(world *w)
+{
+    create_effort(w, SE3D_JOINT_COORDINATE_DISPLACEMENT, NULL);
+}
+
+static void create_law_of_effort(world *w)
+{
+    create_effort(w, SE3D_JOINT_COORDINATE_DISPLACEMENT, "5*sin(q) - 2*qdot*(1 + q^2) + t");
+}
+
 /* A drag that depends on everything. */
 static se3d_status drag(void *ctx, double t, const se3d_body_motion motion[2], double wrench[12],
                         double *K, double *D)
@@ -369,7 +397,7 @@ static void jacobians_of_every_element(void)
         create_tsda,          create_rsda,           create_rsda_on_axes,    create_ground_load,
         create_follower_load, create_ground_torque,  create_follower_torque, create_bushing,
         create_small_bushing, create_sticking_hinge, create_slipping_slide,  create_upper_stop,
-        create_lower_stop,
+        create_lower_stop,    create_torque_effort,  create_push_effort,     create_law_of_effort,
     };
     for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
         jacobians_agree_with_differences(create[k], 1e-10);
@@ -426,6 +454,8 @@ static void power_balances_for_every_element(void)
                                        create_slipping_slide,
                                        create_upper_stop,
                                        create_lower_stop,
+                                       create_torque_effort,
+                                       create_law_of_effort,
                                        create_callback};
     for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
         for (int trial = 0; trial < 10; ++trial) {

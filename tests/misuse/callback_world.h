@@ -28,7 +28,7 @@ typedef struct world {
     se3d_body ball, bar, kite;
     se3d_marker marker;
     se3d_constraint pin, motor, guide, rail;
-    se3d_force push, load, spring, mount;
+    se3d_force push, load, spring, mount, turn;
     se3d_function value, constant, no_functions[3];
     se3d_shape pad;
     se3d_material stuff;
@@ -202,6 +202,9 @@ static void world_add_values(world *w)
     spring.k = 1.0;
     CHECK(!se3d_force_create_tsda(w->system, &spring, &w->spring));
     CHECK(!se3d_force_create_bushing(w->system, &mount, &w->mount));
+    se3d_effort_def turn = se3d_effort_def_default();
+    turn.joint = w->pin;
+    CHECK(!se3d_force_create_effort(w->system, &turn, &w->turn));
     rail.type = SE3D_PRIMITIVE_CD;
     rail.c[1] = 1.0;
     CHECK(!se3d_primitive_create(w->system, &rail, &w->rail));

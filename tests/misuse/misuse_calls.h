@@ -5,28 +5,11 @@
 #define SE3D_TESTS_MISUSE_CALLS_H
 
 #include "misuse/misuse_events.h"
+#include "misuse/misuse_fields.h"
+#include "misuse/misuse_forces.h"
 #include "misuse/misuse_inputs.h"
 #include "misuse/misuse_particles.h"
 #include "misuse/misuse_world.h"
-
-#define MEMBER(kind, type, name, count)                                                            \
-    {                                                                                              \
-        (kind), offsetof(type, name), (count)                                                      \
-    }
-#define END                                                                                        \
-    {                                                                                              \
-        0, 0, 0                                                                                    \
-    }
-
-/* Copy `def` into the arguments' storage. */
-#define STORE(def) memcpy(&a->storage, &(def), sizeof(def))
-
-static se3d_body ground_of(const arguments *a)
-{
-    se3d_body ground;
-    CHECK(!se3d_system_get_ground(a->system, &ground));
-    return ground;
-}
 
 static void define_body(arguments *a)
 {
@@ -116,124 +99,6 @@ static const field coupler_fields[] = {
     MEMBER('N', se3d_coupler_def, name, 1),     MEMBER('c', se3d_coupler_def, joint, 1),
     MEMBER('n', se3d_coupler_def, ratio, 2),    MEMBER('n', se3d_coupler_def, value, 1),
     MEMBER('f', se3d_coupler_def, function, 1), END};
-
-static void define_tsda(arguments *a)
-{
-    se3d_tsda_def def = se3d_tsda_def_default();
-    def.body_i = ground_of(a);
-    def.body_j = a->use.body;
-    def.point_j[0] = 1.0;
-    STORE(def);
-}
-static const field tsda_fields[] = {
-    MEMBER('N', se3d_tsda_def, name, 1),    MEMBER('b', se3d_tsda_def, body_i, 1),
-    MEMBER('b', se3d_tsda_def, body_j, 1),  MEMBER('n', se3d_tsda_def, point_i, 3),
-    MEMBER('n', se3d_tsda_def, point_j, 3), MEMBER('n', se3d_tsda_def, k, 1),
-    MEMBER('n', se3d_tsda_def, c, 1),       MEMBER('n', se3d_tsda_def, l0, 1),
-    MEMBER('f', se3d_tsda_def, h, 1),       END};
-
-static void define_rsda(arguments *a)
-{
-    se3d_rsda_def def = se3d_rsda_def_default();
-    def.joint = a->use.pin;
-    STORE(def);
-}
-static const field rsda_fields[] = {MEMBER('N', se3d_rsda_def, name, 1),
-                                    MEMBER('c', se3d_rsda_def, joint, 1),
-                                    MEMBER('n', se3d_rsda_def, k, 1),
-                                    MEMBER('n', se3d_rsda_def, c, 1),
-                                    MEMBER('n', se3d_rsda_def, theta0, 1),
-                                    MEMBER('f', se3d_rsda_def, h, 1),
-                                    END};
-
-static void define_load(arguments *a)
-{
-    se3d_load_def def = se3d_load_def_default();
-    def.body = a->use.body;
-    STORE(def);
-}
-static const field load_fields[] = {
-    MEMBER('N', se3d_load_def, name, 1),     MEMBER('b', se3d_load_def, body, 1),
-    MEMBER('n', se3d_load_def, point, 3),    MEMBER('n', se3d_load_def, value, 3),
-    MEMBER('f', se3d_load_def, function, 3), END};
-static const field torque_fields[] = {
-    MEMBER('N', se3d_load_def, name, 1), MEMBER('b', se3d_load_def, body, 1),
-    MEMBER('n', se3d_load_def, value, 3), MEMBER('f', se3d_load_def, function, 3), END};
-
-static void define_bushing(arguments *a)
-{
-    se3d_bushing_def def = se3d_bushing_def_default();
-    def.body_i = ground_of(a);
-    def.body_j = a->use.body;
-    STORE(def);
-}
-static const field bushing_fields[] = {MEMBER('N', se3d_bushing_def, name, 1),
-                                       MEMBER('b', se3d_bushing_def, body_i, 1),
-                                       MEMBER('b', se3d_bushing_def, body_j, 1),
-                                       MEMBER('n', se3d_bushing_def, point_i, 3),
-                                       MEMBER('n', se3d_bushing_def, point_j, 3),
-                                       MEMBER('n', se3d_bushing_def, orientation_i, 4),
-                                       MEMBER('n', se3d_bushing_def, orientation_j, 4),
-                                       MEMBER('n', se3d_bushing_def, K, 36),
-                                       MEMBER('n', se3d_bushing_def, C, 36),
-                                       END};
-
-static void define_friction(arguments *a)
-{
-    se3d_friction_def def = se3d_friction_def_default();
-    def.joint = a->use.pin;
-    def.mu = 0.1;
-    def.radius = 0.01;
-    STORE(def);
-}
-static const field friction_fields[] = {MEMBER('N', se3d_friction_def, name, 1),
-                                        MEMBER('c', se3d_friction_def, joint, 1),
-                                        MEMBER('n', se3d_friction_def, mu, 1),
-                                        MEMBER('n', se3d_friction_def, mu_static, 1),
-                                        MEMBER('n', se3d_friction_def, radius, 1),
-                                        MEMBER('n', se3d_friction_def, limit, 1),
-                                        MEMBER('n', se3d_friction_def, viscous, 1),
-                                        MEMBER('n', se3d_friction_def, presliding, 1),
-                                        MEMBER('n', se3d_friction_def, length, 1),
-                                        MEMBER('n', se3d_friction_def, width, 1),
-                                        MEMBER('n', se3d_friction_def, thrust_radius, 1),
-                                        END};
-
-/* Infinite bounds are allowed (none), a joint that is null too. */
-static void define_stop(arguments *a)
-{
-    se3d_stop_def def = se3d_stop_def_default();
-    def.body_i = ground_of(a);
-    def.body_j = a->use.body;
-    def.point_j[0] = 1.0;
-    def.upper = 2.0;
-    def.k = 1e5;
-    STORE(def);
-}
-static const field stop_fields[] = {
-    MEMBER('N', se3d_stop_def, name, 1),        MEMBER('b', se3d_stop_def, body_i, 1),
-    MEMBER('b', se3d_stop_def, body_j, 1),      MEMBER('n', se3d_stop_def, point_i, 3),
-    MEMBER('n', se3d_stop_def, point_j, 3),     MEMBER('n', se3d_stop_def, k, 1),
-    MEMBER('n', se3d_stop_def, restitution, 1), END};
-
-static se3d_status no_force(void *ctx, double t, const se3d_body_motion motion[2],
-                            double wrench[12], double *K, double *D)
-{
-    (void)ctx, (void)t, (void)motion, (void)K, (void)D;
-    memset(wrench, 0, 12 * sizeof *wrench);
-    return SE3D_OK;
-}
-static void define_callback(arguments *a)
-{
-    se3d_force_callback_def def = se3d_force_callback_def_default();
-    def.body_i = ground_of(a);
-    def.body_j = a->use.body;
-    def.callback = no_force;
-    STORE(def);
-}
-static const field callback_fields[] = {MEMBER('N', se3d_force_callback_def, name, 1),
-                                        MEMBER('b', se3d_force_callback_def, body_i, 1),
-                                        MEMBER('b', se3d_force_callback_def, body_j, 1), END};
 
 static se3d_status no_equation(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
                                double *jacobian, double *nu, double *gamma)
@@ -358,6 +223,7 @@ CALL(force_create_torque, a->system, a->def, a->out[0])
 CALL(force_create_bushing, a->system, a->def, a->out[0])
 CALL(force_create_friction, a->system, a->def, a->out[0])
 CALL(force_create_stop, a->system, a->def, a->out[0])
+CALL(force_create_effort, a->system, a->def, a->out[0])
 CALL(force_create_callback, a->system, a->def, a->out[0])
 CALL(force_destroy, a->system, a->use.force)
 CALL(force_find, a->system, a->text, a->out[0])
@@ -697,6 +563,7 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(bushing);
     CHECK_INIT(friction);
     CHECK_INIT(stop);
+    CHECK_INIT(effort);
     CHECK_INIT(force_callback);
     CHECK_INIT(function);
     CHECK_INIT(solver);
@@ -803,6 +670,7 @@ static const row rows[] = {
     {"se3d_force_create_friction", call_force_create_friction, "SDh0", define_friction,
      friction_fields},
     {"se3d_force_create_stop", call_force_create_stop, "SDh0", define_stop, stop_fields},
+    {"se3d_force_create_effort", call_force_create_effort, "SDh0", define_effort, effort_fields},
     {"se3d_force_create_callback", call_force_create_callback, "SDh0", define_callback,
      callback_fields},
     {"se3d_force_destroy", call_force_destroy, "SF", NULL, NULL},
@@ -859,6 +727,10 @@ static const row rows[] = {
     {"se3d_force_get_parameter", setters_reject_misuse, "", NULL, NULL},
     {"se3d_force_set_bushing", setters_reject_misuse, "", NULL, NULL},
     {"se3d_force_get_bushing", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_effort_set", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_effort_get", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_effort_count", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_effort_set_all", setters_reject_misuse, "", NULL, NULL},
     {"se3d_function_set_constant", setters_reject_misuse, "", NULL, NULL},
     {"se3d_constraint_set_value", setters_reject_misuse, "", NULL, NULL},
     {"se3d_system_touch", setters_reject_misuse, "", NULL, NULL},
@@ -901,6 +773,7 @@ static const row rows[] = {
     {"se3d_bushing_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_friction_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_stop_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_effort_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_force_callback_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_function_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_solver_def_init", definitions_are_never_overrun, "", NULL, NULL},

@@ -8,7 +8,7 @@
 #include <math.h>
 
 typedef struct settable {
-    se3d_force spring, load, bushing, stop, friction;
+    se3d_force spring, load, bushing, stop, friction, effort;
 } settable;
 
 static settable add_settable(arguments *a)
@@ -33,6 +33,9 @@ static settable add_settable(arguments *a)
     friction.joint = a->use.pin;
     friction.mu = 0.1;
     CHECK(!se3d_force_create_friction(a->system, &friction, &made.friction));
+    se3d_effort_def effort = se3d_effort_def_default();
+    effort.joint = a->use.pin;
+    CHECK(!se3d_force_create_effort(a->system, &effort, &made.effort));
     return made;
 }
 
@@ -42,6 +45,7 @@ static void remove_settable(arguments *a, const settable *made)
     CHECK(!se3d_force_destroy(a->system, made->bushing));
     CHECK(!se3d_force_destroy(a->system, made->stop));
     CHECK(!se3d_force_destroy(a->system, made->friction));
+    CHECK(!se3d_force_destroy(a->system, made->effort));
 }
 
 #define INVALID(call) CHECK((call) == SE3D_ERR_INVALID_ARGUMENT)
@@ -126,6 +130,36 @@ static void check_values(arguments *a, const settable *m)
     CHECK(se3d_force_get_bushing(a->system, m->bushing, K, NULL) == SE3D_ERR_NULL);
 }
 
+static void check_efforts(arguments *a, const settable *m)
+{
+    const double nan = (double)NAN, two[2] = {1.0, 2.0}, bad = (double)INFINITY;
+    double value = 0.0;
+    size_t count = 7;
+    CHECK(!se3d_effort_count(a->system, &count));
+    CHECK(count == 1);
+    CHECK(!se3d_effort_set(a->system, m->effort, 3.0));
+    INVALID(se3d_effort_set(a->system, m->effort, nan));
+    INVALID(se3d_effort_set(a->system, m->spring, 3.0));
+    INVALID(se3d_effort_get(a->system, m->spring, &value));
+    INVALID(se3d_effort_set_all(a->system, 2, two));
+    INVALID(se3d_effort_set_all(a->system, 0, two));
+    INVALID(se3d_effort_set_all(a->system, 1, &bad));
+    CHECK(!se3d_effort_get(a->system, m->effort, &value));
+    CHECK_NEAR(value, 3.0, 0.0);
+    CHECK(!se3d_effort_set_all(a->system, 1, two));
+    CHECK(!se3d_effort_get(a->system, m->effort, &value));
+    CHECK_NEAR(value, 1.0, 0.0);
+    CHECK(se3d_effort_set(NULL, m->effort, 1.0) == SE3D_ERR_NULL);
+    CHECK(se3d_effort_get(NULL, m->effort, &value) == SE3D_ERR_NULL);
+    CHECK(se3d_effort_get(a->system, m->effort, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_effort_set_all(NULL, 1, two) == SE3D_ERR_NULL);
+    CHECK(se3d_effort_set_all(a->system, 1, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_effort_count(NULL, &count) == SE3D_ERR_NULL && count == 0);
+    CHECK(se3d_effort_count(a->system, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_effort_set(a->system, (se3d_force){0, 0}, 1.0) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_effort_get(a->system, (se3d_force){0, 0}, &value) == SE3D_ERR_STALE_HANDLE);
+}
+
 static void check_prescribed(arguments *a)
 {
     se3d_function_def def = se3d_function_def_default();
@@ -155,6 +189,7 @@ static se3d_status setters_reject_misuse(arguments *a)
     double K[36] = {0.0}, value[3] = {0.0};
     check_parameters(a, &made);
     check_values(a, &made);
+    check_efforts(a, &made);
     check_prescribed(a);
     CHECK(se3d_force_set_value(a->system, none, value) == SE3D_ERR_STALE_HANDLE);
     CHECK(se3d_force_get_value(a->system, none, value) == SE3D_ERR_STALE_HANDLE);

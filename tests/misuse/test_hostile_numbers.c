@@ -266,6 +266,15 @@ static const field stop_fields[] = {
     NUMBERS(se3d_stop_def, upper),       NUMBERS(se3d_stop_def, k),
     NUMBERS(se3d_stop_def, restitution), FIELDS_END};
 
+FILL(se3d_effort_def, effort)
+{
+    def->joint = w->pin;
+    def->value = 1.0;
+}
+CREATE(se3d_effort_def, force_create_effort, se3d_force)
+static const field effort_fields[] = {INTEGER(se3d_effort_def, coordinate),
+                                      NUMBERS(se3d_effort_def, value), FIELDS_END};
+
 FILL(se3d_material_def, material)
 {
     (void)w;
@@ -521,6 +530,7 @@ static const subject subjects[] = {
     {"bushing", bushing_fields, fill_bushing, create_force_create_bushing, 0},
     {"friction", friction_fields, fill_friction, create_force_create_friction, 0},
     {"stop", stop_fields, fill_stop, create_force_create_stop, 0},
+    {"effort", effort_fields, fill_effort, create_force_create_effort, 0},
     {"stop between points", stop_fields, fill_stop_between, create_force_create_stop, 0},
     {"material", material_fields, fill_material, create_material, 0},
     {"material pair", pair_fields, fill_pair, create_pair, 0},

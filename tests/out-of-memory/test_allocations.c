@@ -239,6 +239,15 @@ static se3d_status make_rsda(workshop *w)
     return se3d_force_create_rsda(w->system, &def, &force);
 }
 
+static se3d_status make_effort(workshop *w)
+{
+    se3d_effort_def def = se3d_effort_def_default();
+    se3d_force force;
+    def.name = "motor";
+    def.joint = w->pin;
+    return se3d_force_create_effort(w->system, &def, &force);
+}
+
 static se3d_status make_load(workshop *w)
 {
     se3d_load_def def = se3d_load_def_default();
@@ -395,6 +404,7 @@ static const operation_row operations[] = {
     {"rack_pinion", make_rack_pinion},
     {"tsda", make_tsda},
     {"rsda", make_rsda},
+    {"effort", make_effort},
     {"load", make_load},
     {"torque", make_torque},
     {"expression", make_expression},

@@ -23,6 +23,8 @@
     "  - {type: rsda, joint: slide, k: {spline: [[-1, -9], [1, 9]]}, damper: 0.1*v}\n"             \
     "  - {type: tsda, body_i: a, body_j: b, k: 50, c: 1, l0: 1, spring: 5*x^3, h: \"0*t\"}\n"      \
     "  - {type: bushing, body_i: ground, body_j: b, at: [1.5, 0, 0], K: [1, 1, 1, 1, 1, 1]}\n"     \
+    "  - {type: effort, joint: pin, value: 1}\n"                                                   \
+    "  - {type: effort, joint: slide, coordinate: angle, value: t - q}\n"                          \
     "  - {type: stop, joint: slide, coordinate: displacement, upper: 1, k: 1e3}\n"
 
 static const char *const texts[] = {

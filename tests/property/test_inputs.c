@@ -27,6 +27,9 @@ typedef enum input {
     INPUT_GRAVITY,   /* acceleration along x, no torque */
     INPUT_PRELOAD,   /* of an rsda about the pin */
     INPUT_CONSTANT,  /* function of an rsda */
+    INPUT_EFFORT,    /* along the angle of the pin */
+    INPUT_EFFORTS,   /* all at once */
+    INPUT_HELD,      /* function of an effort */
     INPUT_CALLBACK,  /* force and torque, and se3d_system_touch */
     INPUT_FUNCTIONS, /* of a force and a torque */
     INPUTS
@@ -42,6 +45,22 @@ typedef struct world {
     input kind;
 } world;
 
+static int is_on_pin(input kind)
+{
+    return kind >= INPUT_PRELOAD && kind <= INPUT_HELD;
+}
+
+static void add_effort(world *w, int has_function)
+{
+    se3d_effort_def def = se3d_effort_def_default();
+    def.joint = w->pin;
+    def.coordinate = SE3D_JOINT_COORDINATE_ANGLE;
+    if (has_function) {
+        def.function = w->function;
+    }
+    CHECK(!se3d_force_create_effort(w->system, &def, &w->torque));
+}
+
 static void add_actuator(world *w)
 {
     se3d_joint_def pin = se3d_joint_def_default();
@@ -53,6 +72,10 @@ static void add_actuator(world *w)
     h.variables = names;
     h.variable_count = 3;
     CHECK(!se3d_function_create(w->system, &h, &w->function));
+    if (w->kind == INPUT_EFFORT || w->kind == INPUT_EFFORTS || w->kind == INPUT_HELD) {
+        add_effort(w, w->kind == INPUT_HELD);
+        return;
+    }
     se3d_rsda_def def = se3d_rsda_def_default();
     def.joint = w->pin;
     def.h = w->function;
@@ -87,7 +110,7 @@ static int make(world *w, input kind, int32_t method, int32_t formulation, int c
     se3d_body_def body = se3d_body_def_default();
     body.mass = body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
     CHECK(!se3d_body_create(w->system, &body, &w->body));
-    if (kind == INPUT_PRELOAD || kind == INPUT_CONSTANT) {
+    if (is_on_pin(kind)) {
         add_actuator(w);
     } else if (kind == INPUT_CALLBACK) {
         se3d_force_callback_def def = se3d_force_callback_def_default();
@@ -132,6 +155,13 @@ static void set_input(world *w, double u)
     case INPUT_CONSTANT:
         CHECK(!se3d_function_set_constant(w->system, w->function, -u));
         break;
+    case INPUT_EFFORT:
+        CHECK(!se3d_effort_set(w->system, w->torque, u));
+        break;
+    case INPUT_EFFORTS:
+        CHECK(!se3d_effort_set_all(w->system, 1, &u));
+        break;
+    case INPUT_HELD:
     case INPUT_FUNCTIONS:
         CHECK(!se3d_function_set_constant(w->system, w->function, u));
         break;
@@ -145,7 +175,7 @@ static void set_input(world *w, double u)
 /* The state is that of accelerations that were constant in each step. */
 static void check_motion(const world *w, double rate, double way)
 {
-    const int moves = w->kind != INPUT_PRELOAD && w->kind != INPUT_CONSTANT;
+    const int moves = !is_on_pin(w->kind);
     const int turns = w->kind != INPUT_GRAVITY;
     double v[3], r[3], p[4], omega[3];
     CHECK(!se3d_body_get_position(w->system, w->body, r));

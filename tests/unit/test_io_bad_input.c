@@ -302,6 +302,12 @@ static const bad_input table[] = {
      {"constraints[0].value: is 0", "must be > 0"}},
     /* forces */
     {WITH("forces: [{type: magnet}]"), 4, 17, {"`magnet` is not supported", "tsda", "stop"}},
+    {WITH("forces: [{type: effort}]"), 4, 10, {"forces[0].joint: is missing"}},
+    {WITH("forces: [{type: effort, joint: pin, value: s}]"), 4, 44, {"`s`", "qdot"}},
+    {WITH("forces: [{type: effort, joint: pin, coordinate: displacement}]"),
+     4,
+     49,
+     {"forces[0].coordinate: is `displacement`, which this joint does not have"}},
     {WITH("forces: [{type: bushing}]"), 4, 10, {"forces[0].body_i: is missing"}},
     {WITH("forces: [{type: bushing, body_i: bar, body_j: bar}]"), 4, 47, {"two different bodies"}},
     {WITH("forces: [{type: bushing, body_i: bar, body_j: ground, K: [1, 2]}]"),

@@ -49,14 +49,18 @@ static const quantity_name range_names[] = {{"coordinate", SE3DI_FORCE_COORDINAT
                                             {"rate", SE3DI_FORCE_RATE},
                                             {"force", SE3DI_FORCE_VALUE},
                                             {NULL, SE3DI_STEPS}};
+static const quantity_name effort_names[] = {{"coordinate", SE3DI_FORCE_COORDINATE},
+                                             {"rate", SE3DI_FORCE_RATE},
+                                             {"effort", SE3DI_FORCE_VALUE},
+                                             {NULL, SE3DI_STEPS}};
 static const quantity_name wrench_names[] = {
     {"force", SE3DI_WRENCH_FORCE}, {"torque", SE3DI_WRENCH_TORQUE}, {NULL, SE3DI_STEPS}};
 static const struct {
     const char *type;
     const quantity_name *names;
-} force_names[] = {{"tsda", tsda_names},    {"rsda", rsda_names},      {"friction", range_names},
-                   {"stop", range_names},   {"bushing", wrench_names}, {"force", wrench_names},
-                   {"torque", wrench_names}};
+} force_names[] = {{"tsda", tsda_names},    {"rsda", rsda_names},     {"friction", range_names},
+                   {"stop", range_names},   {"effort", effort_names}, {"bushing", wrench_names},
+                   {"force", wrench_names}, {"torque", wrench_names}};
 static const quantity_name system_names[] = {
     {"energy.kinetic", SE3DI_ENERGY_KINETIC},
     {"energy.potential", SE3DI_ENERGY_POTENTIAL},

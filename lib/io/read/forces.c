@@ -18,8 +18,8 @@
 
 static const char *const time_only[] = {"t", NULL};
 static const char *const frames[] = {"ground", "body", NULL}; /* of se3d_load_def.in_body_frame */
-static const char *const force_types[] = {"tsda", "rsda",  "bushing", "friction",
-                                          "stop", "force", "torque",  NULL};
+static const char *const force_types[] = {"tsda",   "rsda",  "bushing", "friction", "stop",
+                                          "effort", "force", "torque",  NULL};
 
 /* clang-format off */
 static const se3di_key force_keys[] = {
@@ -48,7 +48,7 @@ static const se3di_key force_keys[] = {
     {"preload", SE3DI_KIND_NUMBER, .types = " tsda rsda ", .standard = "0",
      .text = "force at l = l0 (torque at theta = theta0) and rest [N, N m]"},
     {"joint", SE3DI_KIND_JOINT, .types = " rsda ", .text = "a joint with an angle"},
-    {"joint", SE3DI_KIND_JOINT, .types = " friction stop ",
+    {"joint", SE3DI_KIND_JOINT, .types = " friction stop effort ",
      .text = "a joint with the coordinate"},
     {"theta0", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_rsda_def, theta0), .types = " rsda ",
      .standard = "0", .text = "free angle [rad]"},
@@ -74,7 +74,7 @@ static const se3di_key force_keys[] = {
          "rows of six"},
     {"C", SE3DI_KIND_MATRIX6, .types = " bushing ", .standard = "0",
      .text = "damping [N s/m, N s, N m s/rad]"},
-    {"coordinate", SE3DI_KIND_WORD, .types = " friction stop ", .words = se3di_coordinates,
+    {"coordinate", SE3DI_KIND_WORD, .types = " friction stop effort ", .words = se3di_coordinates,
      .text = "may be left out if the joint has one only"},
     {"mu", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_friction_def, mu),
      .types = " friction ", .standard = "0", .text = "coefficient of sliding"},
@@ -109,6 +109,9 @@ static const se3di_key force_keys[] = {
      .text = "frame of the body [m]"},
     {"frame", SE3DI_KIND_WORD, SE3DI_INTO(se3d_load_def, in_body_frame), .types = " force torque ",
      .words = frames, .standard = "ground", .text = "of value"},
+    {"value", SE3DI_KIND_FUNCTION, .types = " effort ", .standard = "0",
+     .text = "along the coordinate [N m, N]: a number, or a function of t, q, qdot: the "
+         "coordinate and its rate"},
     {"value", SE3DI_KIND_FUNCTIONS, .types = " force torque ",
      .text = "numbers or functions of t [N, N m]"},
     {.key = NULL}};
@@ -336,6 +339,7 @@ static bool read_force(se3di_reader *reader, const se3di_node *node)
                    {"rsda", read_rsda},
                    {"bushing", se3di_read_bushing},
                    {"friction", se3di_read_friction},
+                   {"effort", se3di_read_effort},
                    {"stop", se3di_read_stop}};
     const char *type = NULL;
     se3di_element_entry *entry = NULL;

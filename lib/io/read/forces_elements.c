@@ -8,6 +8,7 @@
 #include "io/base/rotation.h"
 #include "io/document/document.h"
 #include "io/document/fields.h"
+#include "io/document/function.h"
 #include "io/document/keys.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
@@ -154,6 +155,22 @@ bool se3di_read_friction(se3di_reader *reader, const se3di_node *node, se3di_ele
     def.name = entry->name;
     entry->coordinate = def.coordinate;
     const se3d_status status = se3d_force_create_friction(reader->system, &def, &entry->force);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+bool se3di_read_effort(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+{
+    static const char *const variables[] = {"t", "q", "qdot", NULL};
+    const se3di_node *value = se3di_node_get(node, "value");
+    se3d_effort_def def = se3d_effort_def_default();
+    if (!se3di_read_key_joint(reader, node, "joint", &def.joint) ||
+        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
+        (value && !se3di_read_function(reader, value, variables, &def.value, &def.function))) {
+        return false;
+    }
+    def.name = entry->name;
+    entry->coordinate = def.coordinate;
+    const se3d_status status = se3d_force_create_effort(reader->system, &def, &entry->force);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 

@@ -8,6 +8,7 @@
 
 bool se3di_read_bushing(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry);
 bool se3di_read_friction(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry);
+bool se3di_read_effort(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry);
 bool se3di_read_stop(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry);
 
 #endif
