@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 LAYERS = ("base math expression model primitive joint force contact particles formulation assembly "
-          "linsol nonlinear integrator analysis system").split()
+          "linsol tree nonlinear integrator analysis system").split()
 # Folders that have folders of their own, in their order.
 ROOMS = {"contact": "shape narrow bodies".split(),
          "io": "base document model channel read write run".split()}

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The recursions of the tree, compiled for several instruction levels from one source. */
+#ifndef SE3DI_TREE_CORE_H
+#define SE3DI_TREE_CORE_H
+
+#include "tree/tree.h"
+
+typedef struct se3di_tree_core {
+    /* links, S and biases, and the frames of the bodies */
+    void (*place)(se3di_tree *tree, const double *q, const double *qdot, se3di_frame *frames);
+    /* articulated inertias from the leaves to the root: U, D, e; returns 0 if some D is not > 0 */
+    int (*factor)(se3di_tree *tree, const double *effort);
+    /* accelerations from the root to the leaves */
+    void (*accelerate)(se3di_tree *tree, const double *e, double *qddot);
+    /* [nodes * 6] moment about P and force that the joint of each node exerts on it, at the
+     * accelerations of the links; `external` [nodes * 6] acts on it */
+    void (*transmit)(const se3di_tree *tree, const double *external, double *joint);
+} se3di_tree_core;
+
+const se3di_tree_core *se3di_tree_core_portable(void);
+const se3di_tree_core *se3di_tree_core_avx2(void);   /* NULL: not here */
+const se3di_tree_core *se3di_tree_core_avx512(void); /* the same */
+
+#endif

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The recursions of the tree in plain C.                    docs/theory/joint_coordinates.md */
+#include "tree/core.h"
+
+#include <math.h>
+
+#define fma_of(a, b, c) fma(a, b, c)
+
+#include "tree/core.inc"
+
+const se3di_tree_core *se3di_tree_core_portable(void)
+{
+    return &core_table;
+}

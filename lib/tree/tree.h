@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The model in joint coordinates: a spanning tree of joints, whose freedoms are the coordinates.
+ *
+ * Every moving body is a node. Its parent is the body on the other side of its joint, or the ground
+ * (all fixed bodies), to which bodies that no joint reaches are joined by six freedoms. Joints with
+ * the most equations come first, then the nearest to the ground, then the oldest. Parents have
+ * smaller numbers than their children. Constraints that are not on the tree are loop constraints
+ * (tree/loops.h); a driver of a joint with one freedom prescribes it.
+ *
+ *     a = X a_parent + c + S qddot         a: of the node's point, ground axes
+ *     M qddot + h = S^T wrench + effort    without loops; bodies come from articulated inertias
+ *
+ * Positions q and velocities qdot have different counts: three rotations are a unit quaternion,
+ * whose velocity is the relative angular velocity in the child's frame. The poses in the model are
+ * the truth; q is read from them and moves them.                docs/theory/joint_coordinates.md */
+#ifndef SE3DI_TREE_H
+#define SE3DI_TREE_H
+
+#include "model/model.h"
+
+/* X(NAME, name, positions, velocities). Of the child relative to the parent. Angles and
+ * displacements of revolute, prismatic, screw and cylindrical joints and the angle of a planar one
+ * are those of the joint (j relative to i), whichever side is the parent.
+ *
+ *     free         r (3), p (4);  v of the centre of mass, ground frame (3), w in the body (3)
+ *     fixed        none
+ *     revolute     angle
+ *     prismatic    displacement
+ *     screw        angle
+ *     cylindrical  angle, displacement
+ *     universal    turn of the cross about the parent's axis, of the child about its own
+ *     spherical    quaternion (4); w of the child relative to the parent, child's frame (3)
+ *     planar       two displacements along the parent's directions in the plane, angle */
+#define SE3DI_TREE_JOINT_LIST(X)                                                                   \
+    X(FREE, free, 7, 6)                                                                            \
+    X(FIXED, fixed, 0, 0)                                                                          \
+    X(REVOLUTE, revolute, 1, 1)                                                                    \
+    X(PRISMATIC, prismatic, 1, 1)                                                                  \
+    X(SCREW, screw, 1, 1)                                                                          \
+    X(CYLINDRICAL, cylindrical, 2, 2)                                                              \
+    X(UNIVERSAL, universal, 2, 2)                                                                  \
+    X(SPHERICAL, spherical, 4, 3)                                                                  \
+    X(PLANAR, planar, 3, 3)
+
+typedef enum se3di_tree_joint {
+#define SE3DI_TREE_ENUM(NAME, name, positions, velocities) SE3DI_TREE_##NAME,
+    SE3DI_TREE_JOINT_LIST(SE3DI_TREE_ENUM)
+#undef SE3DI_TREE_ENUM
+        SE3DI_TREE_JOINT_COUNT
+} se3di_tree_joint;
+
+/* What spares work in a node. */
+#define SE3DI_TREE_ALIGNED_PARENT 1 /* the joint's directions on the parent are its triad */
+#define SE3DI_TREE_ALIGNED_BODY   2 /* the triad is the body's frame, up to the sign of p */
+#define SE3DI_TREE_DIAGONAL       4 /* the inertia about the joint point, in the triad */
+#define SE3DI_TREE_GIVEN          8 /* the coordinate is prescribed */
+
+/* A node: what does not change with the state. Its triad is fixed in the body, at the joint point,
+ * its third direction along the axis. */
+typedef struct se3di_tree_node {
+    uint32_t body; /* dense index */
+    uint32_t parent_body;
+    int32_t parent;      /* node, -1: the ground */
+    int32_t type;        /* se3di_tree_joint */
+    int32_t constraint;  /* the joint, -1: free */
+    int32_t is_reversed; /* the child is body i of the joint */
+    int32_t angle;       /* turn counter, -1: none */
+    int32_t driver;      /* the constraint that prescribes the coordinate, -1: none */
+    uint32_t q, v;       /* the first of the node's */
+    int32_t q_count, v_count;
+    int32_t flags;
+    int32_t branch;    /* where children other than the next node add up, -1: there are none */
+    double zero;       /* the triads coincide at this angle */
+    double lead, base; /* screw: displacement = base + lead angle */
+    double C[4];       /* triad at angle zero -> parent's triad */
+    double r[3];       /* the parent's point -> the joint point on it, parent's triad */
+    double B[4];       /* body -> triad */
+    double s[3];       /* joint point -> centre of mass, triad */
+    double mass;
+    double J[6]; /* about the joint point, triad: xx yy zz xy xz yz */
+} se3di_tree_node;
+
+/* A node at a state, in ground axes. */
+typedef struct se3di_tree_link {
+    double t[4]; /* triad -> ground */
+    double W[9]; /* the same as a matrix */
+    double P[3]; /* joint point on the child */
+    double d[3]; /* from the parent's point to it */
+    double s[3]; /* from it to the centre of mass */
+    double w[3]; /* angular velocity */
+    double v[3]; /* velocity of P */
+    double c[6]; /* acceleration at qddot = 0, less what the parent's gives: angular, of P */
+    double a[6]; /* acceleration: angular, of P */
+} se3di_tree_link;
+
+/* Articulated inertia [I G^T; G M] and bias p: moments and forces from accelerations, about P. I
+ * and M: xx yy zz xy xz yz. */
+typedef struct se3di_tree_inertia {
+    double I[6], G[9], M[6], p[6];
+} se3di_tree_inertia;
+
+struct se3di_tree_core;
+
+typedef struct se3di_tree {
+    se3di_model *model;
+    uint64_t topology_version;
+    uint32_t count; /* nodes */
+    uint32_t q_count, v_count;
+    uint32_t branch_count;
+    uint32_t body_count;  /* dense */
+    uint32_t given_count; /* nodes whose coordinate is prescribed */
+    se3di_tree_node *nodes;
+    int32_t *node_of; /* [bodies] -1: fixed */
+    int32_t *tree_of; /* [constraints]: node of a joint or driver, -1: a loop's */
+    uint32_t constraint_count;
+    uint32_t reserved;
+    /* at the state that was placed last: */
+    se3di_tree_link *links;
+    double *S;                /* [velocities * 6]: angular, of P; ground axes */
+    double *U;                /* [velocities * 6]: articulated inertia times S */
+    double *D, *e;            /* [velocities]: S^T U; what acts on the coordinate */
+    double *given;            /* [velocities]: prescribed accelerations */
+    double *armature;         /* [velocities]: reflected inertia */
+    double *wrench;           /* [nodes * 6]: what acts on each: moment about P, force; ground */
+    double *q, *qdot, *qddot; /* scratch of the caller */
+    se3di_tree_inertia *branches;
+    se3di_frame *frames; /* [bodies]: scratch */
+    const struct se3di_tree_core *core;
+} se3di_tree;
+
+/* Build the tree of a model; on failure nothing is held. Coordinates can be read at once.
+ * @return OK, NO_MEMORY */
+se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, se3di_error *error);
+void se3di_tree_destroy(se3di_tree *tree);
+
+/* Take masses, the poses of fixed bodies, and which of the poses that satisfy a joint (half turns)
+ * is meant, from the model: after setters, and where a run begins. */
+void se3di_tree_refresh(se3di_tree *tree);
+
+/* Coordinates of the model's frames; refreshed. NULL: not wanted. */
+void se3di_tree_get(se3di_tree *tree, double *q, double *qdot);
+
+/* Coordinates -> frames [dense bodies], those of fixed bodies are left alone; links, S and biases
+ * follow. `frames` may be the model's. */
+void se3di_tree_place(se3di_tree *tree, const double *q, const double *qdot, se3di_frame *frames);
+
+/* Rates of the positions. */
+void se3di_tree_rates(const se3di_tree *tree, const double *q, const double *qdot, double *rates);
+/* out = q moved by the displacement dq [velocities]; out may be q. */
+void se3di_tree_move(const se3di_tree *tree, const double *q, const double *dq, double *out);
+
+/* With the state placed: take what acts on bodies, [dense bodies * 6] force (ground) and torque
+ * (body) as force/force.h has it; frames as placed. */
+void se3di_tree_take_wrenches(se3di_tree *tree, const se3di_frame *frames, const double *wrench);
+/* Articulated inertias with the wrenches taken and efforts [velocities] (NULL: zero): U, D, e.
+ * `given` holds accelerations of prescribed coordinates. @return OK, SINGULAR (D <= 0) */
+se3d_status se3di_tree_factor(se3di_tree *tree, const double *effort);
+/* Accelerations qddot [velocities] and those of all links, from U, D and e. */
+void se3di_tree_accelerate(se3di_tree *tree, const double *e, double *qddot);
+/* Accelerations of links that qddot gives. */
+void se3di_tree_propagate(se3di_tree *tree, const double *qddot);
+/* Accelerations of links -> bodies, [dense bodies * 6] a (ground), wdot (body); fixed: zero. */
+void se3di_tree_get_accelerations(const se3di_tree *tree, const se3di_frame *frames,
+                                  double *acceleration);
+
+#endif
