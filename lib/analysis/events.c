@@ -113,21 +113,13 @@ static const char *name_of(const se3di_event *event)
     return event->name ? event->name : "without a name";
 }
 
-/* Call the user's value. What contacts remember is that of the end of a dense step; within it
- * values that may use forces see those of the contacts there. */
+/* Call the user's value. */
 static se3d_status call_value(se3di_events *events, const se3di_event *event, double *value)
 {
     se3di_run *run = events->run;
-    const int shows = events->dense && !event->motion_only;
-    if (shows) {
-        SE3DI_TRY(se3di_contacts_show(run->model, run->model->time, run->error));
-    }
     const int32_t level = se3di_busy_raise(run->model->busy, SE3DI_BUSY_VALUE);
     const se3d_status status = event->value(event->ctx, events->system, value);
     se3di_busy_restore(run->model->busy, level);
-    if (shows) {
-        se3di_contacts_hide(run->model);
-    }
     return status >= 0 ? SE3D_OK
                        : se3di_error_set(run->error, SE3D_ERR_CALLBACK,
                                          "t = %g s: the value of the event %.100s could not be "
@@ -135,8 +127,8 @@ static se3d_status call_value(se3di_events *events, const se3di_event *event, do
                                          run->model->time, name_of(event));
 }
 
-/* The value at the model's state, less the level. */
-static se3d_status eval(se3di_events *events, uint32_t k, double *g)
+/* The value at the model's state, less the level, with the contacts that it shows. */
+static se3d_status eval_shown(se3di_events *events, uint32_t k, double *g)
 {
     const se3di_event *event = &events->list[k];
     const double t = events->run->model->time;
@@ -149,6 +141,43 @@ static se3d_status eval(se3di_events *events, uint32_t k, double *g)
     }
     *g = value - event->level;
     return SE3D_OK;
+}
+
+static uint32_t count_kind(const se3di_events *events, uint32_t from, uint32_t to, int motion)
+{
+    uint32_t count = 0;
+    for (uint32_t k = from; k < to; ++k) {
+        count += !events->list[k].motion_only == !motion;
+    }
+    return count;
+}
+
+/* The events from..to-1 of which motion_only is `motion`, at a node: g of the first is given. What
+ * contacts remember is that of the end of a dense step; values that may use forces within it see
+ * the contacts that are there, found once for all. */
+static se3d_status eval_kind(se3di_events *events, uint32_t from, uint32_t to, int motion,
+                             double *g, size_t stride)
+{
+    se3di_run *run = events->run;
+    const int shows = events->dense && !motion && count_kind(events, from, to, motion) > 0;
+    se3d_status status = SE3D_OK;
+    if (shows) {
+        SE3DI_TRY(se3di_contacts_show(run->model, run->model->time, run->error));
+    }
+    for (uint32_t k = from; k < to && status >= 0; ++k) {
+        if (!events->list[k].motion_only == !motion) {
+            status = eval_shown(events, k, &g[stride * (k - from)]);
+        }
+    }
+    if (shows) {
+        se3di_contacts_hide(run->model);
+    }
+    return status;
+}
+
+static se3d_status eval_one(se3di_events *events, uint32_t k, double *g)
+{
+    return eval_kind(events, k, k + 1, events->list[k].motion_only, g, 0);
 }
 
 /* Hermite's interpolation of n numbers: values a, b and derivatives da, db at the ends of h. */
@@ -267,14 +296,14 @@ static se3d_status eval_rough(void *ctx, double t, double *g)
     se3di_events *events = ctx;
     const int exact = events->dense && !events->list[events->looking_for].motion_only;
     SE3DI_TRY(exact ? set_exact(events, t) : set_rough(events, t));
-    return eval(events, events->looking_for, g);
+    return eval_one(events, events->looking_for, g);
 }
 
 static se3d_status eval_exact(void *ctx, double t, double *g)
 {
     se3di_events *events = ctx;
     SE3DI_TRY(set_exact(events, t));
-    return eval(events, events->looking_for, g);
+    return eval_one(events, events->looking_for, g);
 }
 
 /* The event is on record at t: what it does from there is new. */
@@ -293,10 +322,10 @@ static int has_happened_at(const se3di_events *events, uint32_t k, double t)
 /* Values of all events at node `node`, which is the state of the model. */
 static se3d_status eval_node(se3di_events *events, int node)
 {
-    for (uint32_t k = 0; k < events->slots.count; ++k) {
-        SE3DI_TRY(eval(events, k, &events->g[SE3DI_CROSSING_NODES * k + (size_t)node]));
-    }
-    return SE3D_OK;
+    const uint32_t count = (uint32_t)events->slots.count;
+    double *g = &events->g[node];
+    SE3DI_TRY(eval_kind(events, 0, count, 1, g, SE3DI_CROSSING_NODES));
+    return eval_kind(events, 0, count, 0, g, SE3DI_CROSSING_NODES);
 }
 
 /* This near to the level no side of it can be told: as asked for, at least its rounding. */
@@ -437,7 +466,7 @@ static se3d_status add_record(se3di_events *events, const se3di_event_hit *hit,
         return se3di_error_set(events->run->error, status, "no memory for an event");
     }
     SE3DI_TRY(set_exact(events, hit->time));
-    SE3DI_TRY(eval(events, hit->event, &g));
+    SE3DI_TRY(eval_one(events, hit->event, &g));
     *record = &events->records[events->record_count++];
     **record = (se3d_event_record){.time = hit->time,
                                    .value = g + event->level,
@@ -532,6 +561,22 @@ static se3d_status report(se3di_events *events, double t0, double t_end)
     return stop || changed ? SE3D_INFO_EVENT : SE3D_OK;
 }
 
+/* Values of all events at t, as eval_rough: the state is set once for all of a kind. */
+static se3d_status eval_ahead(se3di_events *events, int node, double t)
+{
+    const uint32_t count = (uint32_t)events->slots.count;
+    double *g = &events->g[node];
+    if (count_kind(events, 0, count, 1) > 0) {
+        SE3DI_TRY(set_rough(events, t));
+        SE3DI_TRY(eval_kind(events, 0, count, 1, g, SE3DI_CROSSING_NODES));
+    }
+    if (count_kind(events, 0, count, 0) > 0) {
+        SE3DI_TRY(set_exact(events, t));
+        SE3DI_TRY(eval_kind(events, 0, count, 0, g, SE3DI_CROSSING_NODES));
+    }
+    return SE3D_OK;
+}
+
 /* The hits of the step of dense output that is ahead. */
 static se3d_status look_ahead(se3di_events *events)
 {
@@ -543,20 +588,10 @@ static se3d_status look_ahead(se3di_events *events)
         return SE3D_OK;
     }
     events->looked = 0;
-    for (uint32_t k = 0; k < events->slots.count; ++k) {
-        events->looking_for = k;
-        SE3DI_TRY(eval_rough(events, begin, &events->g[SE3DI_CROSSING_NODES * k]));
-    }
+    SE3DI_TRY(eval_ahead(events, 0, begin));
     choose_nodes(events, begin, end);
     for (int node = 1; node < events->node_count; ++node) {
-        int is_set = 0;
-        for (uint32_t k = 0; k < events->slots.count; ++k) {
-            double *g = &events->g[SE3DI_CROSSING_NODES * k + (size_t)node];
-            events->looking_for = k;
-            const int shares = is_set && events->list[k].motion_only;
-            SE3DI_TRY(shares ? eval(events, k, g) : eval_rough(events, events->t[node], g));
-            is_set = 1;
-        }
+        SE3DI_TRY(eval_ahead(events, node, events->t[node]));
     }
     SE3DI_TRY(find_all_hits(events));
     events->looked = 1;

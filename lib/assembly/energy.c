@@ -93,10 +93,12 @@ static se3d_status eval_power(const se3di_model *model, double t, double power[3
     return driver_power(model, t, &power[2]);
 }
 
-se3d_status se3di_loads_potential(const se3di_model *model, double t, double *potential)
+se3d_status se3di_loads_potential(const se3di_model *model, double t, double *potential,
+                                  double *springs)
 {
     SE3DI_TRY(se3di_forces_potential(model, t, potential));
-    *potential += se3di_contacts_potential(model);
+    *springs = se3di_contacts_potential(model);
+    *potential += *springs;
     return SE3D_OK;
 }
 
@@ -123,8 +125,7 @@ se3d_status se3di_work_accept(se3di_model *model, double h)
     return SE3D_OK;
 }
 
-double se3di_work_lost(const se3di_model *model)
+double se3di_work_lost(const se3di_model *model, double springs)
 {
-    return model->work_valid > 0 ? model->work[0] - se3di_contacts_potential(model)
-                                 : model->work[0];
+    return model->work_valid > 0 ? model->work[0] - springs : model->work[0];
 }

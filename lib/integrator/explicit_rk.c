@@ -648,9 +648,9 @@ se3d_status se3di_rk_start(se3di_integration *integration, double h)
     m.past->scale.length = se3di_state_length(m.assembly->model);
     m.past->at.error = 1e-2;
     m.past->redundant = (double)m.assembly->row_count;
-    double potential;
+    double potential, springs;
     const se3di_model *model = m.assembly->model;
-    se3d_status status = se3di_loads_potential(model, model->time, &potential);
+    se3d_status status = se3di_loads_potential(model, model->time, &potential, &springs);
     if (status >= 0) {
         m.past->energy_least = 1e-3 * fabs(potential);
         status = adopt(&m);

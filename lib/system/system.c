@@ -5,6 +5,7 @@
 
 #include "assembly/energy.h"
 #include "base/hash.h"
+#include "contact/bodies/body_contacts.h"
 #include "joint/user.h"
 #include "math/vec3.h"
 #include "particles/step.h"
@@ -318,9 +319,10 @@ se3d_status se3d_system_get_energy_sized(const se3d_system *system, se3d_energy 
     se3d_energy full = {.kinetic = se3di_kinetic_energy(model)};
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
-    const se3d_status status = se3di_loads_potential(model, model->time, &full.potential);
+    double springs = 0.0; /* of contacts */
+    const se3d_status status = se3di_loads_potential(model, model->time, &full.potential, &springs);
     full.total = full.kinetic + full.potential;
-    full.dissipated = status < 0 ? 0.0 : se3di_work_lost(model);
+    full.dissipated = status < 0 ? 0.0 : se3di_work_lost(model, springs);
     SE3DI_TRY(se3di_read_end(&reading, status));
     return se3di_sized_give(energy, size, &full, sizeof full);
 }
@@ -336,7 +338,9 @@ se3d_status se3d_system_get_work_sized(const se3d_system *system, se3d_work *wor
     const double *done = system->model.work;
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
-    const double lost = se3di_work_lost(&system->model);
+    const double springs =
+        system->model.work_valid > 0 ? se3di_contacts_potential(&system->model) : 0.0;
+    const double lost = se3di_work_lost(&system->model, springs);
     const se3d_work full = {.dissipated = lost, .actuators = done[1], .drivers = done[2]};
     se3di_busy_unread(&reading);
     return se3di_sized_give(work, size, &full, sizeof full);

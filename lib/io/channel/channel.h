@@ -6,81 +6,93 @@
 #include "io/base/pool.h"
 #include "se3d/io.h"
 
-/* What a channel may give: columns, what computes it, how it changes in time, and its unit as
- * powers of the model's length, of 1/s and of its mass; of what may be a translation or a rotation,
- * the last number takes the larger. */
+/* What a channel may give: columns; the question that is asked of the system for it, and the first
+ * of its numbers in the answer; how it changes in time; and its unit as powers of the model's
+ * length, of 1/s and of its mass; of what may be a translation or a rotation, the last number takes
+ * the larger. */
 /* clang-format off */
 #define SE3DI_QUANTITY_LIST(X)                                                                     \
-    X(BODY_POSITION, 3, BODY, MOTION, 1, 0, 0, 0)                                                  \
-    X(BODY_ORIENTATION, 4, BODY, MOTION, 0, 0, 0, 0)                                               \
-    X(BODY_VELOCITY, 3, BODY, MOTION, 1, 1, 0, 0)                                                  \
-    X(BODY_ANGULAR_VELOCITY, 3, BODY, MOTION, 0, 1, 0, 0)                                          \
-    X(BODY_ACCELERATION, 3, BODY, SOLVED, 1, 2, 0, 0)                                              \
-    X(BODY_ANGULAR_ACCELERATION, 3, BODY, SOLVED, 0, 2, 0, 0)                                      \
-    X(BODY_CONTACT_FORCE, 3, BODY, SOLVED, 1, 2, 1, 0)                                             \
-    X(MARKER_POSITION, 3, BODY, MOTION, 1, 0, 0, 0)                                                \
-    X(MARKER_VELOCITY, 3, BODY, MOTION, 1, 1, 0, 0)                                                \
-    X(MARKER_ACCELERATION, 3, BODY, SOLVED, 1, 2, 0, 0)                                            \
-    X(WRENCH_FORCE, 3, ELEMENT, SOLVED, 1, 2, 1, 0)                                                \
-    X(WRENCH_TORQUE, 3, ELEMENT, SOLVED, 2, 2, 1, 0)                                               \
-    X(REACTION_FORCE, 3, ELEMENT, SOLVED, 1, 2, 1, 0)                                              \
-    X(REACTION_TORQUE, 3, ELEMENT, SOLVED, 2, 2, 1, 0)                                             \
-    X(JOINT_ANGLE, 1, ELEMENT, MOTION, 0, 0, 0, 0)                                                 \
-    X(JOINT_ANGLE_RATE, 1, ELEMENT, MOTION, 0, 1, 0, 0)                                            \
-    X(JOINT_DISPLACEMENT, 1, ELEMENT, MOTION, 1, 0, 0, 0)                                          \
-    X(JOINT_DISPLACEMENT_RATE, 1, ELEMENT, MOTION, 1, 1, 0, 0)                                     \
-    X(DRIVER_VALUE, 1, ELEMENT, SOLVED, 0, 0, 0, 1)                                                \
-    X(DRIVER_EFFORT, 1, ELEMENT, SOLVED, 1, 2, 1, 1)                                               \
-    X(FORCE_COORDINATE, 1, ELEMENT, MOTION, 0, 0, 0, 1)                                            \
-    X(FORCE_RATE, 1, ELEMENT, MOTION, 0, 1, 0, 1)                                                  \
-    X(FORCE_VALUE, 1, ELEMENT, SOLVED, 1, 2, 1, 1)                                                 \
-    X(ENERGY_KINETIC, 1, ENERGY, MOTION, 2, 2, 1, 0)                                               \
-    X(ENERGY_POTENTIAL, 1, ENERGY, MOTION, 2, 2, 1, 0)                                             \
-    X(ENERGY_TOTAL, 1, ENERGY, MOTION, 2, 2, 1, 0)                                                 \
-    X(ENERGY_DISSIPATED, 1, ENERGY, SOLVED, 2, 2, 1, 0)                                            \
-    X(ENERGY_BALANCE, 1, WORK, SOLVED, 2, 2, 1, 0)                                                 \
-    X(WORK_ACTUATORS, 1, WORK, SOLVED, 2, 2, 1, 0)                                                 \
-    X(WORK_DRIVERS, 1, WORK, SOLVED, 2, 2, 1, 0)                                                   \
-    X(VIOLATION_POSITION, 1, VIOLATION, SOLVED, 1, 0, 0, 0)                                        \
-    X(VIOLATION_VELOCITY, 1, VIOLATION, SOLVED, 1, 1, 0, 0)                                        \
-    X(VIOLATION_ACCELERATION, 1, VIOLATION, SOLVED, 1, 2, 0, 0)                                    \
-    X(CONTACTS_COUNT, 1, CONTACTS, JUMPS, 0, 0, 0, 0)                                              \
-    X(CONTACTS_FORCE_MAX, 1, CONTACTS, SOLVED, 1, 2, 1, 0)                                         \
-    X(PARTICLES_COUNT, 1, PARTICLES, JUMPS, 0, 0, 0, 0)                                            \
-    X(PARTICLES_LOST, 1, PARTICLES, JUMPS, 0, 0, 0, 0)                                             \
-    X(PARTICLES_ENERGY, 1, PARTICLES, SOLVED, 2, 2, 1, 0)                                          \
-    X(PARTICLES_LEFT, 1, PARTICLES, JUMPS, 0, 0, 0, 0)                                             \
-    X(SET_COUNT, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                       \
-    X(SET_LOST, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                        \
-    X(SET_LEFT, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                        \
-    X(SET_MASS, 1, FLOW, JUMPS, 0, 0, 1, 0)                                                        \
-    X(SET_ENERGY, 1, FLOW, SOLVED, 2, 2, 1, 0)                                                     \
-    X(SET_INSERTED, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                    \
-    X(SET_DEFERRED, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                    \
-    X(SET_WAITING, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                     \
-    X(SINK_COUNT, 1, FLOW, JUMPS, 0, 0, 0, 0)                                                      \
-    X(STEPS, 1, SOLVER, JUMPS, 0, 0, 0, 0)                                                         \
-    X(ITERATIONS, 1, SOLVER, JUMPS, 0, 0, 0, 0)
+    X(BODY_POSITION, 3, ITSELF, 0, MOTION, 1, 0, 0, 0)                                             \
+    X(BODY_ORIENTATION, 4, ITSELF, 0, MOTION, 0, 0, 0, 0)                                          \
+    X(BODY_VELOCITY, 3, ITSELF, 0, MOTION, 1, 1, 0, 0)                                             \
+    X(BODY_ANGULAR_VELOCITY, 3, ITSELF, 0, MOTION, 0, 1, 0, 0)                                     \
+    X(BODY_ACCELERATION, 3, ITSELF, 0, SOLVED, 1, 2, 0, 0)                                         \
+    X(BODY_ANGULAR_ACCELERATION, 3, ITSELF, 0, SOLVED, 0, 2, 0, 0)                                 \
+    X(BODY_CONTACT_FORCE, 3, ITSELF, 0, SOLVED, 1, 2, 1, 0)                                        \
+    X(MARKER_POSITION, 3, ITSELF, 0, MOTION, 1, 0, 0, 0)                                           \
+    X(MARKER_VELOCITY, 3, ITSELF, 0, MOTION, 1, 1, 0, 0)                                           \
+    X(MARKER_ACCELERATION, 3, ITSELF, 0, SOLVED, 1, 2, 0, 0)                                       \
+    X(WRENCH_FORCE, 3, WRENCH, 0, SOLVED, 1, 2, 1, 0)                                              \
+    X(WRENCH_TORQUE, 3, WRENCH, 3, SOLVED, 2, 2, 1, 0)                                             \
+    X(REACTION_FORCE, 3, REACTION, 0, SOLVED, 1, 2, 1, 0)                                          \
+    X(REACTION_TORQUE, 3, REACTION, 3, SOLVED, 2, 2, 1, 0)                                         \
+    X(JOINT_ANGLE, 1, JOINT_ANGLE, 0, MOTION, 0, 0, 0, 0)                                          \
+    X(JOINT_ANGLE_RATE, 1, JOINT_ANGLE, 1, MOTION, 0, 1, 0, 0)                                     \
+    X(JOINT_DISPLACEMENT, 1, JOINT_DISPLACEMENT, 0, MOTION, 1, 0, 0, 0)                            \
+    X(JOINT_DISPLACEMENT_RATE, 1, JOINT_DISPLACEMENT, 1, MOTION, 1, 1, 0, 0)                       \
+    X(DRIVER_VALUE, 1, DRIVER_VALUE, 0, SOLVED, 0, 0, 0, 1)                                        \
+    X(DRIVER_EFFORT, 1, DRIVER_EFFORT, 0, SOLVED, 1, 2, 1, 1)                                      \
+    X(FORCE_COORDINATE, 1, FORCE, 0, MOTION, 0, 0, 0, 1)                                           \
+    X(FORCE_RATE, 1, FORCE, 1, MOTION, 0, 1, 0, 1)                                                 \
+    X(FORCE_VALUE, 1, FORCE, 2, SOLVED, 1, 2, 1, 1)                                                \
+    X(ENERGY_KINETIC, 1, ENERGY, 0, MOTION, 2, 2, 1, 0)                                            \
+    X(ENERGY_POTENTIAL, 1, ENERGY, 1, MOTION, 2, 2, 1, 0)                                          \
+    X(ENERGY_TOTAL, 1, ENERGY, 2, MOTION, 2, 2, 1, 0)                                              \
+    X(ENERGY_DISSIPATED, 1, ENERGY, 3, SOLVED, 2, 2, 1, 0)                                         \
+    X(ENERGY_BALANCE, 1, WORK, 2, SOLVED, 2, 2, 1, 0)                                              \
+    X(WORK_ACTUATORS, 1, WORK, 0, SOLVED, 2, 2, 1, 0)                                              \
+    X(WORK_DRIVERS, 1, WORK, 1, SOLVED, 2, 2, 1, 0)                                                \
+    X(VIOLATION_POSITION, 1, VIOLATION, 0, SOLVED, 1, 0, 0, 0)                                     \
+    X(VIOLATION_VELOCITY, 1, VIOLATION, 1, SOLVED, 1, 1, 0, 0)                                     \
+    X(VIOLATION_ACCELERATION, 1, VIOLATION, 2, SOLVED, 1, 2, 0, 0)                                 \
+    X(CONTACTS_COUNT, 1, CONTACTS_COUNT, 0, JUMPS, 0, 0, 0, 0)                                     \
+    X(CONTACTS_FORCE_MAX, 1, CONTACTS_FORCE_MAX, 0, SOLVED, 1, 2, 1, 0)                            \
+    X(PARTICLES_COUNT, 1, PARTICLES, 0, JUMPS, 0, 0, 0, 0)                                         \
+    X(PARTICLES_LOST, 1, PARTICLES, 1, JUMPS, 0, 0, 0, 0)                                          \
+    X(PARTICLES_ENERGY, 1, PARTICLES, 3, SOLVED, 2, 2, 1, 0)                                       \
+    X(PARTICLES_LEFT, 1, PARTICLES, 2, JUMPS, 0, 0, 0, 0)                                          \
+    X(SET_COUNT, 1, TALLY, 0, JUMPS, 0, 0, 0, 0)                                                   \
+    X(SET_LOST, 1, TALLY, 1, JUMPS, 0, 0, 0, 0)                                                    \
+    X(SET_LEFT, 1, TALLY, 2, JUMPS, 0, 0, 0, 0)                                                    \
+    X(SET_MASS, 1, TALLY, 3, JUMPS, 0, 0, 1, 0)                                                    \
+    X(SET_ENERGY, 1, TALLY, 4, SOLVED, 2, 2, 1, 0)                                                 \
+    X(SET_INSERTED, 1, SOURCES, 0, JUMPS, 0, 0, 0, 0)                                              \
+    X(SET_DEFERRED, 1, SOURCES, 1, JUMPS, 0, 0, 0, 0)                                              \
+    X(SET_WAITING, 1, SOURCES, 2, JUMPS, 0, 0, 0, 0)                                               \
+    X(SINK_COUNT, 1, SINK, 0, JUMPS, 0, 0, 0, 0)                                                   \
+    X(STEPS, 1, SOLVER, 0, JUMPS, 0, 0, 0, 0)                                                      \
+    X(ITERATIONS, 1, SOLVER, 1, JUMPS, 0, 0, 0, 0)
 /* clang-format on */
 
-#define SE3DI_QUANTITY(name, width, group, nature, length, rate, mass, lever) SE3DI_##name,
+#define SE3DI_QUANTITY(name, width, question, first, nature, length, rate, mass, lever)            \
+    SE3DI_##name,
 typedef enum se3di_quantity {
     SE3DI_QUANTITY_LIST(SE3DI_QUANTITY) SE3DI_QUANTITY_COUNT
 } se3di_quantity;
 #undef SE3DI_QUANTITY
 
-/* What computes it. */
-typedef enum se3di_quantity_group {
-    SE3DI_GROUP_BODY, /* and markers */
-    SE3DI_GROUP_ELEMENT,
-    SE3DI_GROUP_ENERGY,
-    SE3DI_GROUP_WORK,
-    SE3DI_GROUP_VIOLATION,
-    SE3DI_GROUP_CONTACTS,
-    SE3DI_GROUP_PARTICLES,
-    SE3DI_GROUP_FLOW, /* sets and sinks */
-    SE3DI_GROUP_SOLVER
-} se3di_quantity_group;
+/* What is asked of the system: one answer may serve many channels. */
+typedef enum se3di_question {
+    SE3DI_ASK_ITSELF, /* of bodies and markers: nothing but the channel's own numbers */
+    SE3DI_ASK_REACTION,
+    SE3DI_ASK_WRENCH,
+    SE3DI_ASK_JOINT_ANGLE,
+    SE3DI_ASK_JOINT_DISPLACEMENT,
+    SE3DI_ASK_DRIVER_VALUE,
+    SE3DI_ASK_DRIVER_EFFORT,
+    SE3DI_ASK_FORCE,
+    SE3DI_ASK_ENERGY,
+    SE3DI_ASK_WORK,
+    SE3DI_ASK_VIOLATION,
+    SE3DI_ASK_CONTACTS_COUNT,
+    SE3DI_ASK_CONTACTS_FORCE_MAX,
+    SE3DI_ASK_PARTICLES,
+    SE3DI_ASK_TALLY,   /* of a set */
+    SE3DI_ASK_SOURCES, /* of a set */
+    SE3DI_ASK_SINK,
+    SE3DI_ASK_SOLVER,
+    SE3DI_QUESTION_COUNT
+} se3di_question;
 
 /* How it changes. */
 typedef enum se3di_quantity_nature {
@@ -112,7 +124,8 @@ bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel
  */
 bool se3di_channel_find_number(se3d_model *model, const char *name, se3di_channel *channel,
                                size_t *component, char *problem, size_t problem_size);
-se3di_quantity_group se3di_channel_get_group(const se3di_channel *channel);
+/* What is asked for it, and the first of its numbers in the answer. */
+se3di_question se3di_channel_get_question(const se3di_channel *channel, size_t *first);
 /* Whether its numbers change in time continuously, unlike counts. */
 bool se3di_channel_is_continuous(const se3di_channel *channel);
 /* Whether they follow from time, positions and velocities. */
@@ -125,8 +138,9 @@ se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count);
 size_t se3di_channel_get_width(const se3di_channel *channel);
 /* Write the name of column k to `text`. */
 void se3di_channel_format_column(const se3di_channel *channel, size_t k, char *text, size_t size);
-/* Compute the channel's numbers at the present state. */
-se3d_status se3di_channel_eval(const se3di_channel *channel, const se3d_system *system,
-                               const se3d_solver_stats *stats, double value[4]);
+struct se3di_sample;
+/* Compute the channel's numbers at the state of the sample (io/channel/sample.h). */
+se3d_status se3di_channel_eval(const se3di_channel *channel, struct se3di_sample *sample,
+                               double value[4]);
 
 #endif

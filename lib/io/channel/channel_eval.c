@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The numbers of channels at the present state. */
+#include <math.h>
 #include <string.h>
 
 #include "io/channel/channel.h"
 #include "io/channel/channel_flow.h"
+#include "io/channel/sample.h"
 
 static se3d_status eval_body(const se3di_channel *c, const se3d_system *system, double value[4])
 {
@@ -34,7 +36,7 @@ static se3d_status eval_body(const se3di_channel *c, const se3d_system *system, 
 
 /* What an element does to its body j at its point there; the system knows it at the centre of
  * mass. */
-static se3d_status eval_wrench(const se3di_channel *c, const se3d_system *system, double value[4])
+static se3d_status ask_wrench(const se3di_channel *c, const se3d_system *system, double numbers[6])
 {
     double w[6];
     double r[3];
@@ -53,67 +55,67 @@ static se3d_status eval_wrench(const se3di_channel *c, const se3d_system *system
     for (size_t k = 0; k < 3; ++k) {
         const size_t i = (k + 1) % 3;
         const size_t j = (k + 2) % 3;
-        value[k] =
-            c->quantity == SE3DI_WRENCH_FORCE ? w[k] : w[3 + k] - (s[i] * w[j] - s[j] * w[i]);
+        numbers[k] = w[k];
+        numbers[3 + k] = w[3 + k] - (s[i] * w[j] - s[j] * w[i]);
     }
     return SE3D_OK;
 }
 
-static se3d_status eval_element(const se3di_channel *c, const se3d_system *system, double value[4])
+static se3d_status ask_element(se3di_question question, const se3di_channel *c,
+                               const se3d_system *system, double numbers[6])
 {
-    double other[3];
-    se3d_status status;
-    switch (c->quantity) {
-    case SE3DI_REACTION_FORCE:
-        return se3d_constraint_get_reaction(system, c->constraint, value, other);
-    case SE3DI_WRENCH_FORCE:
-    case SE3DI_WRENCH_TORQUE:
-        return eval_wrench(c, system, value);
-    case SE3DI_REACTION_TORQUE:
-        return se3d_constraint_get_reaction(system, c->constraint, other, value);
-    case SE3DI_JOINT_ANGLE:
-    case SE3DI_JOINT_ANGLE_RATE:
-        status = se3d_joint_get_coordinate(system, c->constraint, SE3D_JOINT_COORDINATE_ANGLE,
-                                           &other[0], &other[1], &other[2]);
-        value[0] = other[c->quantity == SE3DI_JOINT_ANGLE_RATE];
-        return status;
-    case SE3DI_JOINT_DISPLACEMENT:
-    case SE3DI_JOINT_DISPLACEMENT_RATE:
-        status =
-            se3d_joint_get_coordinate(system, c->constraint, SE3D_JOINT_COORDINATE_DISPLACEMENT,
-                                      &other[0], &other[1], &other[2]);
-        value[0] = other[c->quantity == SE3DI_JOINT_DISPLACEMENT_RATE];
-        return status;
-    case SE3DI_DRIVER_VALUE:
-        return se3d_driver_get_value(system, c->constraint, value);
-    case SE3DI_DRIVER_EFFORT:
-        return se3d_driver_get_effort(system, c->constraint, value);
+    switch (question) {
+    case SE3DI_ASK_REACTION:
+        return se3d_constraint_get_reaction(system, c->constraint, numbers, numbers + 3);
+    case SE3DI_ASK_JOINT_ANGLE:
+        return se3d_joint_get_coordinate(system, c->constraint, SE3D_JOINT_COORDINATE_ANGLE,
+                                         numbers, numbers + 1, numbers + 2);
+    case SE3DI_ASK_JOINT_DISPLACEMENT:
+        return se3d_joint_get_coordinate(system, c->constraint, SE3D_JOINT_COORDINATE_DISPLACEMENT,
+                                         numbers, numbers + 1, numbers + 2);
+    case SE3DI_ASK_DRIVER_VALUE:
+        return se3d_driver_get_value(system, c->constraint, numbers);
+    case SE3DI_ASK_DRIVER_EFFORT:
+        return se3d_driver_get_effort(system, c->constraint, numbers);
+    case SE3DI_ASK_WRENCH:
+        return ask_wrench(c, system, numbers);
     default:
-        status = se3d_force_get_state(system, c->force, &other[0], &other[1], &other[2]);
-        value[0] = other[c->quantity == SE3DI_FORCE_COORDINATE ? 0
-                         : c->quantity == SE3DI_FORCE_RATE     ? 1
-                                                               : 2];
-        return status;
+        return se3d_force_get_state(system, c->force, numbers, numbers + 1, numbers + 2);
     }
 }
 
-static se3d_status eval_work(const se3di_channel *c, const se3d_system *system, double value[4])
+static se3d_status ask_energy(const se3d_system *system, double numbers[4])
 {
     se3d_energy energy = {0.0, 0.0, 0.0, 0.0};
-    se3d_work work = {0.0, 0.0, 0.0};
-    se3d_status status = se3d_system_get_work(system, &work);
-    if (status >= 0) {
-        status = se3d_system_get_energy(system, &energy);
-    }
-    value[0] =
-        c->quantity == SE3DI_WORK_ACTUATORS ? work.actuators
-        : c->quantity == SE3DI_WORK_DRIVERS
-            ? work.drivers
-            : energy.kinetic + energy.potential + work.dissipated - work.actuators - work.drivers;
+    const se3d_status status = se3d_system_get_energy(system, &energy);
+    numbers[0] = energy.kinetic;
+    numbers[1] = energy.potential;
+    numbers[2] = energy.total;
+    numbers[3] = energy.dissipated;
     return status;
 }
 
-static se3d_status eval_particles(const se3di_channel *c, double value[4])
+static se3d_status answer(se3di_question question, const se3di_channel *c, se3di_sample *sample,
+                          double numbers[SE3DI_ANSWER_NUMBERS]);
+
+/* Actuators, drivers, and what is left over of the energies. */
+static se3d_status ask_work(const se3di_channel *c, se3di_sample *sample, double numbers[3])
+{
+    double energy[SE3DI_ANSWER_NUMBERS];
+    se3d_work work = {0.0, 0.0, 0.0};
+    se3d_status status = se3d_system_get_work(sample->system, &work);
+    if (status >= 0) {
+        status = answer(SE3DI_ASK_ENERGY, c, sample, energy);
+    }
+    if (status >= 0) {
+        numbers[0] = work.actuators;
+        numbers[1] = work.drivers;
+        numbers[2] = energy[0] + energy[1] + work.dissipated - work.actuators - work.drivers;
+    }
+    return status;
+}
+
+static se3d_status ask_particles(const se3di_channel *c, double numbers[4])
 {
     se3d_particles_stats stats = {.steps = 0};
     se3d_particles_energy energy = {0.0, 0.0, 0.0};
@@ -121,76 +123,150 @@ static se3d_status eval_particles(const se3di_channel *c, double value[4])
     if (status >= 0) {
         status = se3d_particles_get_energy(c->particles, &energy);
     }
-    value[0] = c->quantity == SE3DI_PARTICLES_COUNT  ? (double)se3d_particles_count(c->particles)
-               : c->quantity == SE3DI_PARTICLES_LOST ? (double)stats.lost
-               : c->quantity == SE3DI_PARTICLES_LEFT
-                   ? (double)stats.left
-                   : energy.translation + energy.rotation + energy.potential;
+    numbers[0] = (double)se3d_particles_count(c->particles);
+    numbers[1] = (double)stats.lost;
+    numbers[2] = (double)stats.left;
+    numbers[3] = energy.translation + energy.rotation + energy.potential;
     return status;
 }
 
-/* The number of points, or the largest force at one. */
-static se3d_status eval_contacts(const se3di_channel *c, const se3d_system *system, double value[4])
+static se3d_status ask_contact_count(const se3di_channel *c, const se3d_system *system,
+                                     double *count)
 {
     se3d_particles_stats stats = {.steps = 0};
-    se3d_status status = SE3D_OK;
-    if (c->quantity == SE3DI_CONTACTS_FORCE_MAX) {
-        return se3d_system_get_contact_force_max(system, value);
-    }
-    if (c->particles) {
-        status = se3d_particles_get_stats(c->particles, &stats);
-    }
-    value[0] = (double)(se3d_system_count_contacts(system) + stats.contacts);
+    const se3d_status status =
+        c->particles ? se3d_particles_get_stats(c->particles, &stats) : SE3D_OK;
+    *count = (double)(se3d_system_count_contacts(system) + stats.contacts);
     return status;
 }
 
-static se3d_status eval_energy(const se3di_channel *c, const se3d_system *system, double value[4])
+static double norm(const double v[3])
 {
-    se3d_energy energy = {0.0, 0.0, 0.0, 0.0};
-    const se3d_status status = se3d_system_get_energy(system, &energy);
-    value[0] = c->quantity == SE3DI_ENERGY_KINETIC     ? energy.kinetic
-               : c->quantity == SE3DI_ENERGY_POTENTIAL ? energy.potential
-               : c->quantity == SE3DI_ENERGY_TOTAL     ? energy.total
-                                                       : energy.dissipated;
-    return status;
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-static se3d_status eval_violation(const se3di_channel *c, const se3d_system *system,
-                                  double value[4])
+/* The largest force of bodies, whose contacts are known. */
+static se3d_status find_body_max(se3di_sample *sample, double *largest)
 {
-    double violation[3] = {0.0, 0.0, 0.0};
-    const se3d_status status = se3d_system_get_violation(system, violation);
-    value[0] = violation[c->quantity == SE3DI_VIOLATION_POSITION   ? 0
-                         : c->quantity == SE3DI_VIOLATION_VELOCITY ? 1
-                                                                   : 2];
-    return status;
-}
-
-se3d_status se3di_channel_eval(const se3di_channel *channel, const se3d_system *system,
-                               const se3d_solver_stats *stats, double value[4])
-{
-    memset(value, 0, 4 * sizeof *value);
-    switch (se3di_channel_get_group(channel)) {
-    case SE3DI_GROUP_BODY:
-        return eval_body(channel, system, value);
-    case SE3DI_GROUP_ELEMENT:
-        return eval_element(channel, system, value);
-    case SE3DI_GROUP_ENERGY:
-        return eval_energy(channel, system, value);
-    case SE3DI_GROUP_WORK:
-        return eval_work(channel, system, value);
-    case SE3DI_GROUP_VIOLATION:
-        return eval_violation(channel, system, value);
-    case SE3DI_GROUP_CONTACTS:
-        return eval_contacts(channel, system, value);
-    case SE3DI_GROUP_PARTICLES:
-        return eval_particles(channel, value);
-    case SE3DI_GROUP_FLOW:
-        return se3di_grains_eval(channel, value);
-    case SE3DI_GROUP_SOLVER:
-        break;
+    const size_t count = se3d_system_count_contacts(sample->system);
+    se3d_contact *list = se3di_iopool_array(&sample->listing, count + 1, sizeof *list);
+    if (!list) {
+        return SE3D_ERR_NO_MEMORY;
     }
-    const bool steps = channel->quantity == SE3DI_STEPS;
-    value[0] = !stats ? 0.0 : steps ? (double)stats->steps : (double)stats->iterations;
+    const se3d_status status = se3d_system_get_contacts(sample->system, count, list);
+    for (size_t k = 0; k < count && status >= 0; ++k) {
+        *largest = fmax(*largest, norm(list[k].force));
+    }
+    return status;
+}
+
+/* The list of the contacts of particles serves files that show it, too. */
+static se3d_status ask_force_max(const se3di_channel *c, se3di_sample *sample, double *largest)
+{
+    se3di_particle_contacts contacts = {NULL, 0};
+    if (!c->particles || sample->state == 0) {
+        return se3d_system_get_contact_force_max(sample->system, largest);
+    }
+    se3d_status status = se3di_sample_list_contacts(sample, c->particles, &contacts);
+    for (size_t k = 0; k < contacts.count; ++k) {
+        *largest = fmax(*largest, norm(contacts.list[k].force));
+    }
+    return status < 0 ? status : find_body_max(sample, largest);
+}
+
+static se3d_status ask_solver(const se3d_solver_stats *stats, double numbers[2])
+{
+    numbers[0] = stats ? (double)stats->steps : 0.0;
+    numbers[1] = stats ? (double)stats->iterations : 0.0;
     return SE3D_OK;
+}
+
+static se3d_status ask(se3di_question question, const se3di_channel *c, se3di_sample *sample,
+                       double numbers[SE3DI_ANSWER_NUMBERS])
+{
+    const se3d_system *system = sample->system;
+    switch (question) {
+    case SE3DI_ASK_ENERGY:
+        return ask_energy(system, numbers);
+    case SE3DI_ASK_WORK:
+        return ask_work(c, sample, numbers);
+    case SE3DI_ASK_VIOLATION:
+        return se3d_system_get_violation(system, numbers);
+    case SE3DI_ASK_CONTACTS_COUNT:
+        return ask_contact_count(c, system, numbers);
+    case SE3DI_ASK_CONTACTS_FORCE_MAX:
+        return ask_force_max(c, sample, numbers);
+    case SE3DI_ASK_PARTICLES:
+        return ask_particles(c, numbers);
+    case SE3DI_ASK_TALLY:
+        return se3di_grains_ask_tally(c, numbers);
+    case SE3DI_ASK_SOURCES:
+        return se3di_grains_ask_sources(c, numbers);
+    case SE3DI_ASK_SINK:
+        return se3di_grains_ask_sink(c, numbers);
+    case SE3DI_ASK_SOLVER:
+        return ask_solver(sample->stats, numbers);
+    default:
+        return ask_element(question, c, system, numbers);
+    }
+}
+
+/* By which answers to a question are kept: 0 if there is one only. */
+static size_t element_of(se3di_question question, const se3di_channel *c)
+{
+    switch (question) {
+    case SE3DI_ASK_WRENCH:
+    case SE3DI_ASK_FORCE:
+        return c->force.index1;
+    case SE3DI_ASK_REACTION:
+    case SE3DI_ASK_JOINT_ANGLE:
+    case SE3DI_ASK_JOINT_DISPLACEMENT:
+    case SE3DI_ASK_DRIVER_VALUE:
+    case SE3DI_ASK_DRIVER_EFFORT:
+        return c->constraint.index1;
+    case SE3DI_ASK_TALLY:
+    case SE3DI_ASK_SOURCES:
+    case SE3DI_ASK_SINK:
+        return c->index;
+    default:
+        return 0;
+    }
+}
+
+/* As `ask`, once in a state; failures are not kept. */
+static se3d_status answer(se3di_question question, const se3di_channel *c, se3di_sample *sample,
+                          double numbers[SE3DI_ANSWER_NUMBERS])
+{
+    memset(numbers, 0, SE3DI_ANSWER_NUMBERS * sizeof *numbers);
+    if (sample->state == 0) {
+        return ask(question, c, sample, numbers);
+    }
+    se3di_answer *kept = se3di_sample_find(sample, question, element_of(question, c));
+    if (!kept) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    if (kept->state != sample->state) {
+        const se3d_status status = ask(question, c, sample, numbers);
+        if (status < 0) {
+            return status;
+        }
+        memcpy(kept->numbers, numbers, sizeof kept->numbers);
+        kept->state = sample->state;
+    }
+    memcpy(numbers, kept->numbers, sizeof kept->numbers);
+    return SE3D_OK;
+}
+
+se3d_status se3di_channel_eval(const se3di_channel *channel, se3di_sample *sample, double value[4])
+{
+    double numbers[SE3DI_ANSWER_NUMBERS];
+    size_t first = 0;
+    const se3di_question question = se3di_channel_get_question(channel, &first);
+    memset(value, 0, 4 * sizeof *value);
+    if (question == SE3DI_ASK_ITSELF) {
+        return eval_body(channel, sample->system, value);
+    }
+    const se3d_status status = answer(question, channel, sample, numbers);
+    memcpy(value, numbers + first, se3di_channel_get_width(channel) * sizeof *value);
+    return status;
 }

@@ -5,7 +5,9 @@
 
 #include "io/channel/channel.h"
 
-/* Quantities of a set or of a sink. */
-se3d_status se3di_grains_eval(const se3di_channel *channel, double *value);
+/* Answers to the questions of the same names (channel.h). */
+se3d_status se3di_grains_ask_tally(const se3di_channel *channel, double numbers[5]);
+se3d_status se3di_grains_ask_sources(const se3di_channel *channel, double numbers[3]);
+se3d_status se3di_grains_ask_sink(const se3di_channel *channel, double *count);
 
 #endif

@@ -46,14 +46,21 @@ static sizes measure(const se3d_system *system)
 }
 
 typedef struct quantity {
-    se3di_quantity_group group;
+    se3di_question question;
+    size_t first;
     se3di_quantity_nature nature;
     int width, length, rate, mass, lever;
 } quantity;
 
-#define QUANTITY(name, width, group, nature, length, rate, mass, lever)                            \
-    [SE3DI_##name] = {                                                                             \
-        SE3DI_GROUP_##group, SE3DI_NATURE_##nature, (width), (length), (rate), (mass), (lever)},
+#define QUANTITY(name, width, question, first, nature, length, rate, mass, lever)                  \
+    [SE3DI_##name] = {SE3DI_ASK_##question,                                                        \
+                      (first),                                                                     \
+                      SE3DI_NATURE_##nature,                                                       \
+                      (width),                                                                     \
+                      (length),                                                                    \
+                      (rate),                                                                      \
+                      (mass),                                                                      \
+                      (lever)},
 static const quantity quantities[SE3DI_QUANTITY_COUNT] = {SE3DI_QUANTITY_LIST(QUANTITY)};
 #undef QUANTITY
 
@@ -70,9 +77,10 @@ size_t se3di_channel_get_width(const se3di_channel *channel)
     return (size_t)quantities[channel->quantity].width;
 }
 
-se3di_quantity_group se3di_channel_get_group(const se3di_channel *channel)
+se3di_question se3di_channel_get_question(const se3di_channel *channel, size_t *first)
 {
-    return quantities[channel->quantity].group;
+    *first = quantities[channel->quantity].first;
+    return quantities[channel->quantity].question;
 }
 
 bool se3di_channel_is_continuous(const se3di_channel *channel)

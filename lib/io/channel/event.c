@@ -9,6 +9,7 @@
 #include "io/base/pool.h"
 #include "io/base/sized.h"
 #include "io/channel/channel.h"
+#include "io/channel/sample.h"
 #include "io/document/document.h"
 #include "io/model/model.h"
 
@@ -18,8 +19,11 @@ static se3d_status eval_source(void *ctx, const se3d_system *system, double *val
 {
     const se3di_event_source *source = ctx;
     double numbers[4];
-    const se3d_status status = se3di_channel_eval(&source->channel, system, NULL, numbers);
+    se3di_sample sample;
+    se3di_sample_init(&sample, system, &source->model->pool.allocator);
+    const se3d_status status = se3di_channel_eval(&source->channel, &sample, numbers);
     *value = numbers[source->component];
+    se3di_sample_destroy(&sample);
     return status;
 }
 

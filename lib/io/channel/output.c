@@ -6,6 +6,7 @@
 
 #include "io/base/sized.h"
 #include "io/channel/channel.h"
+#include "io/channel/sample.h"
 #include "io/model/model.h"
 
 double se3di_output_count_rows(const se3di_output_entry *output,
@@ -63,5 +64,10 @@ se3d_status se3d_model_get_channel_value(const se3d_model *model, size_t output,
     }
     const se3di_channel *channel = &model->outputs[output].channels[k];
     *width = se3di_channel_get_width(channel);
-    return se3di_channel_eval(channel, model->system, stats, value);
+    se3di_sample sample;
+    se3di_sample_init(&sample, model->system, &model->pool.allocator);
+    sample.stats = stats;
+    const se3d_status status = se3di_channel_eval(channel, &sample, value);
+    se3di_sample_destroy(&sample);
+    return status;
 }

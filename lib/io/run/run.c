@@ -21,6 +21,7 @@
 #include "io/channel/channel.h"
 #include "io/channel/event.h"
 #include "io/channel/output.h"
+#include "io/channel/sample.h"
 #include "io/document/document.h"
 #include "io/model/model.h"
 #include "io/run/run_events.h"
@@ -60,6 +61,8 @@ typedef struct runner {
     output_file *files;
     size_t file_count; /* open ones */
     se3d_solver *solver;
+    se3di_sample sample; /* what the rows of one time ask for */
+    se3d_solver_stats stats;
     double time; /* where the analysis before ended */
     bool stopped;
 } runner;
@@ -245,7 +248,7 @@ static se3d_status sample_list(runner *r, output_file *file)
     se3di_iopool pool;
     se3di_iopool_init(&pool, &r->model->pool.allocator);
     const se3d_status status =
-        file->entry->contacts ? se3di_contacts_write(r->model, &pool, &file->csv)
+        file->entry->contacts ? se3di_contacts_write(r->model, &r->sample, &pool, &file->csv)
                               : se3di_grains_write(r->model, &pool, file->entry->set, &file->csv);
     se3di_iopool_destroy(&pool);
     if (status < 0) {
@@ -254,24 +257,30 @@ static se3d_status sample_list(runner *r, output_file *file)
     return file->csv.failure ? fail_file(r, file) : SE3D_OK;
 }
 
+/* The rows that follow are of the present state. */
+static void begin_rows(runner *r)
+{
+    memset(&r->stats, 0, sizeof r->stats);
+    se3d_solver_get_stats(r->solver, &r->stats);
+    se3di_sample_renew(&r->sample, &r->stats);
+}
+
 static se3d_status sample(runner *r, output_file *file, double time)
 {
-    se3d_solver_stats stats;
     double *row = file->row;
     if (file->vtk) {
-        se3di_vtk_record(file->vtk, time); /* a failure is reported at the end: others go on */
+        se3di_vtk_record(file->vtk, &r->sample,
+                         time); /* a failure is reported at the end: others go on */
         return SE3D_OK;
     }
     if (file->entry->particles || file->entry->contacts) {
         return sample_list(r, file);
     }
-    memset(&stats, 0, sizeof stats);
-    se3d_solver_get_stats(r->solver, &stats);
     *row++ = time;
     for (size_t k = 0; k < file->entry->count; ++k) {
         const se3di_channel *channel = &file->entry->channels[k];
         double value[4];
-        const se3d_status status = se3di_channel_eval(channel, r->model->system, &stats, value);
+        const se3d_status status = se3di_channel_eval(channel, &r->sample, value);
         if (status < 0) {
             char text[600];
             snprintf(text, sizeof text, "the channel `%.300s` cannot be computed at t = %.9g: %s",
@@ -368,6 +377,7 @@ static bool next_time(const runner *r, double start, double duration, double *ti
 
 static se3d_status sample_files(runner *r, double start, double duration, double time)
 {
+    begin_rows(r);
     for (size_t k = 0; k < r->file_count; ++k) {
         output_file *file = &r->files[k];
         if (file->next > file->count) {
@@ -405,6 +415,7 @@ static double merge_times(const runner *r, double start, double duration, double
 static se3d_status sample_stop(runner *r, double time)
 {
     se3d_status status = SE3D_OK;
+    begin_rows(r);
     for (size_t k = 0; k < r->file_count && status >= 0; ++k) {
         status = sample(r, &r->files[k], time);
     }
@@ -724,7 +735,9 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
         return fail(&r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
     model->running = 1;
+    se3di_sample_init(&r.sample, model->system, &model->pool.allocator);
     const se3d_status status = run_all(&r);
+    se3di_sample_destroy(&r.sample);
     model->running = 0;
     *out = r.run;
     return status;

@@ -37,32 +37,7 @@ static void put_row(se3di_contact_rows *out, double time, const double point[3],
     }
 }
 
-/* The contacts of grains, at best in one pass over the forces: there are mostly as many as at the
- * end of the last step. */
-typedef struct grain_contacts {
-    se3d_particles_contact *list;
-    size_t count;
-} grain_contacts;
-
-static se3d_status get_particles(const se3d_particles *set, se3di_iopool *pool, grain_contacts *c)
-{
-    se3d_particles_stats stats = {.steps = 0};
-    const se3d_status status = se3d_particles_get_stats(set, &stats);
-    c->count = (size_t)stats.contacts;
-    for (int tries = 0; tries < 2 && status >= 0; ++tries) {
-        c->list = se3di_iopool_array(pool, c->count + 1, sizeof *c->list);
-        if (!c->list) {
-            return SE3D_ERR_NO_MEMORY;
-        }
-        if (se3d_particles_get_contacts(set, c->count, c->list) >= 0) {
-            return SE3D_OK;
-        }
-        c->count = se3d_particles_count_contacts(set);
-    }
-    return status < 0 ? status : SE3D_ERR_STATE;
-}
-
-static se3d_status add_particles(const se3d_model *model, const grain_contacts *grains,
+static se3d_status add_particles(const se3d_model *model, const se3di_particle_contacts *grains,
                                  se3di_contact_rows *out)
 {
     double time = 0.0;
@@ -104,14 +79,14 @@ static se3d_status add_bodies(const se3d_model *model, se3di_iopool *pool, size_
     return status;
 }
 
-se3d_status se3di_contacts_get_rows(const se3d_model *model, se3di_iopool *pool,
-                                    se3di_contact_rows *out)
+se3d_status se3di_contacts_get_rows(const se3d_model *model, se3di_sample *sample,
+                                    se3di_iopool *pool, se3di_contact_rows *out)
 {
     const size_t bodies = se3d_system_count_contacts(model->system);
-    grain_contacts grains = {NULL, 0};
+    se3di_particle_contacts grains = {NULL, 0};
     memset(out, 0, sizeof *out);
     if (model->grains) {
-        const se3d_status found = get_particles(model->grains->set, pool, &grains);
+        const se3d_status found = se3di_sample_list_contacts(sample, model->grains->set, &grains);
         if (found < 0) {
             return found;
         }
@@ -138,10 +113,11 @@ const char *se3di_contacts_get_column(size_t k)
     return names[k];
 }
 
-se3d_status se3di_contacts_write(const se3d_model *model, se3di_iopool *pool, se3di_csv *csv)
+se3d_status se3di_contacts_write(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
+                                 se3di_csv *csv)
 {
     se3di_contact_rows list;
-    const se3d_status status = se3di_contacts_get_rows(model, pool, &list);
+    const se3d_status status = se3di_contacts_get_rows(model, sample, pool, &list);
     for (size_t k = 0; k < list.count && status >= 0; ++k) {
         const double *row = list.rows + SE3DI_CONTACT_NUMBERS * k;
         se3di_csv_cell cells[SE3DI_CONTACT_COLUMNS] = {{NULL, row[0]},

@@ -3,6 +3,7 @@
 #ifndef SE3D_IO_CONTACT_LIST_H
 #define SE3D_IO_CONTACT_LIST_H
 
+#include "io/channel/sample.h"
 #include "io/model/model.h"
 #include "io/write/csv.h"
 
@@ -16,10 +17,11 @@ typedef struct se3di_contact_rows {
     size_t count;
 } se3di_contact_rows;
 
-/* Copy all contacts of the present state. */
-se3d_status se3di_contacts_get_rows(const se3d_model *model, se3di_iopool *pool,
-                                    se3di_contact_rows *rows);
+/* Copy all contacts of the state of the sample. */
+se3d_status se3di_contacts_get_rows(const se3d_model *model, se3di_sample *sample,
+                                    se3di_iopool *pool, se3di_contact_rows *rows);
 const char *se3di_contacts_get_column(size_t k);
-se3d_status se3di_contacts_write(const se3d_model *model, se3di_iopool *pool, se3di_csv *csv);
+se3d_status se3di_contacts_write(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
+                                 se3di_csv *csv);
 
 #endif

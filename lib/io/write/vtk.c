@@ -254,8 +254,10 @@ static bool write_bodies(se3di_vtk *vtk, const char *path)
     return se3di_vtk_file_write(&file, path);
 }
 
-static bool write_grains(const se3d_model *model, se3di_iopool *pool, const char *path)
+static bool write_grains(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
+                         const char *path)
 {
+    (void)sample;
     enum { W = SE3DI_GRAIN_COLUMNS };
     se3di_grain_rows grains;
     if (se3di_grains_get_rows(model, pool, &grains) < 0) {
@@ -276,11 +278,12 @@ static bool write_grains(const se3d_model *model, se3di_iopool *pool, const char
     return se3di_vtk_file_write(&file, path);
 }
 
-static bool write_contacts(const se3d_model *model, se3di_iopool *pool, const char *path)
+static bool write_contacts(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
+                           const char *path)
 {
     enum { W = SE3DI_CONTACT_NUMBERS };
     se3di_contact_rows list;
-    if (se3di_contacts_get_rows(model, pool, &list) < 0) {
+    if (se3di_contacts_get_rows(model, sample, pool, &list) < 0) {
         return false;
     }
     const double *rows = list.rows;
@@ -298,13 +301,14 @@ static bool write_contacts(const se3d_model *model, se3di_iopool *pool, const ch
 }
 
 /* Points with memory of their own. @return false: errno says why */
-static bool write_points(const se3di_vtk *vtk, const char *path,
-                         bool (*write)(const se3d_model *, se3di_iopool *, const char *))
+static bool write_points(const se3di_vtk *vtk, se3di_sample *sample, const char *path,
+                         bool (*write)(const se3d_model *, se3di_sample *, se3di_iopool *,
+                                       const char *))
 {
     se3di_iopool pool;
     se3di_iopool_init(&pool, &vtk->model->pool.allocator);
     errno = ENOMEM; /* unless something else fails */
-    const bool good = write(vtk->model, &pool, path);
+    const bool good = write(vtk->model, sample, &pool, path);
     const int why = errno;
     se3di_iopool_destroy(&pool);
     errno = why;
@@ -320,7 +324,7 @@ static bool has_part(const se3d_model *model, int part)
 
 static const char *const part_names[] = {"bodies", "grains", "contacts"};
 
-static bool write_state(se3di_vtk *vtk, size_t number)
+static bool write_state(se3di_vtk *vtk, se3di_sample *sample, size_t number)
 {
     char path[PATH_SIZE];
     bool good = true;
@@ -331,8 +335,9 @@ static bool write_state(se3di_vtk *vtk, size_t number)
         errno = ENAMETOOLONG;
         good = name_file(vtk, part_names[part], number, true, path) &&
                se3di_file_make_folders(path) &&
-               (part == 0 ? write_bodies(vtk, path)
-                          : write_points(vtk, path, part == 1 ? write_grains : write_contacts));
+               (part == 0
+                    ? write_bodies(vtk, path)
+                    : write_points(vtk, sample, path, part == 1 ? write_grains : write_contacts));
     }
     return good;
 }
@@ -348,7 +353,7 @@ static void forget_state(const se3di_vtk *vtk, size_t number)
     }
 }
 
-void se3di_vtk_record(se3di_vtk *vtk, double time)
+void se3di_vtk_record(se3di_vtk *vtk, se3di_sample *sample, double time)
 {
     if (vtk->failure != 0) {
         return;
@@ -363,7 +368,7 @@ void se3di_vtk_record(se3di_vtk *vtk, double time)
         return;
     }
     vtk->times = grown;
-    if (!write_state(vtk, vtk->count)) {
+    if (!write_state(vtk, sample, vtk->count)) {
         vtk->failure = errno ? errno : EIO;
         forget_state(vtk, vtk->count);
         return;
