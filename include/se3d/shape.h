@@ -18,7 +18,8 @@ typedef enum se3d_shape_type {
     SE3D_SHAPE_CAPSULE = 2,
     SE3D_SHAPE_CYLINDER = 3,
     SE3D_SHAPE_PLANE = 4,
-    SE3D_SHAPE_MESH = 5
+    SE3D_SHAPE_MESH = 5,
+    SE3D_SHAPE_HULL = 6 /* not the type of a shape of a model file, where it is a convex mesh */
 } se3d_shape_type;
 
 /* The definition of a shape; every kind takes its own of the last fields. Its frame is at its

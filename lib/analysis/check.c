@@ -610,7 +610,8 @@ static se3d_status report_meshes(se3di_check *check, const se3di_model *model)
     size_t pairs = 0;
     char more[60] = "";
     for (uint32_t b = 1; b < model->shape_slots.count; ++b) {
-        for (uint32_t a = 0; a < b && model->shapes[b].kind == SE3DI_SHAPE_MESH; ++a) {
+        for (uint32_t a = 0; a < b && se3di_shape_is(&model->shapes[b], SE3DI_SHAPE_IS_SURFACE);
+             ++a) {
             if (se3di_shapes_pass_through(model, a, b) && pairs++ == 0) {
                 first[0] = a;
                 first[1] = b;

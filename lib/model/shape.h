@@ -59,14 +59,30 @@ typedef struct se3di_contact_settings {
     void *ctx;
 } se3di_contact_settings;
 
+/* What a kind of shape is, for those who treat some kinds in a way of their own. */
+#define SE3DI_SHAPE_IS_BALL       1u  /* looks the same from all sides of its origin */
+#define SE3DI_SHAPE_IS_ROUND      2u  /* bends with `radius` where it is touched */
+#define SE3DI_SHAPE_IS_SWEPT      4u  /* all within `radius` of a core: a point or a line along z */
+#define SE3DI_SHAPE_HAS_RIMS      8u  /* two circles with `radius` at its ends along z */
+#define SE3DI_SHAPE_IS_SURFACE    16u /* triangles with two sides, and nothing between them */
+#define SE3DI_SHAPE_IS_HALF_SPACE 32u /* all that is below z = 0: without end */
+
+/* The kinds of shapes, X(KIND, name, traits): each has a se3di_shape_class_<name> in the file of
+ * this name in lib/contact/shape, and a SE3D_SHAPE_<KIND>. New ones go to the end. */
+#define SE3DI_SHAPE_LIST(X)                                                                        \
+    X(SPHERE, sphere, SE3DI_SHAPE_IS_BALL | SE3DI_SHAPE_IS_ROUND | SE3DI_SHAPE_IS_SWEPT)           \
+    X(BOX, box, 0u)                                                                                \
+    X(CAPSULE, capsule, SE3DI_SHAPE_IS_ROUND | SE3DI_SHAPE_IS_SWEPT)                               \
+    X(CYLINDER, cylinder, SE3DI_SHAPE_IS_ROUND | SE3DI_SHAPE_HAS_RIMS)                             \
+    X(PLANE, plane, SE3DI_SHAPE_IS_HALF_SPACE)                                                     \
+    X(MESH, mesh, SE3DI_SHAPE_IS_SURFACE)                                                          \
+    X(HULL, hull, 0u)
+
 typedef enum se3di_shape_kind {
-    SE3DI_SHAPE_SPHERE = 0,
-    SE3DI_SHAPE_BOX = 1,
-    SE3DI_SHAPE_CAPSULE = 2,
-    SE3DI_SHAPE_CYLINDER = 3,
-    SE3DI_SHAPE_PLANE = 4,
-    SE3DI_SHAPE_MESH = 5,
-    SE3DI_SHAPE_HULL = 6
+#define SE3DI_SHAPE_ENUM(KIND, name, traits) SE3DI_SHAPE_##KIND,
+    SE3DI_SHAPE_LIST(SE3DI_SHAPE_ENUM)
+#undef SE3DI_SHAPE_ENUM
+        SE3DI_SHAPE_COUNT
 } se3di_shape_kind;
 
 typedef struct se3di_shape {
@@ -93,5 +109,15 @@ typedef struct se3di_shape {
     int32_t reserved;
     double force[3], torque[3]; /* of bodies, on its body about the centre of mass, last accepted */
 } se3di_shape;
+
+/* Whether a shape is of a kind with one of these traits. Of a constant the compiler makes a mask of
+ * kinds, so that it costs as much as to compare the kind. */
+static inline int se3di_shape_is(const se3di_shape *shape, uint32_t traits)
+{
+#define SE3DI_SHAPE_MASK(KIND, name, has) | (((has)&traits) != 0) << SE3DI_SHAPE_##KIND
+    const uint32_t kinds = (uint32_t)(0 SE3DI_SHAPE_LIST(SE3DI_SHAPE_MASK));
+#undef SE3DI_SHAPE_MASK
+    return (int)(kinds >> shape->kind & 1u);
+}
 
 #endif

@@ -210,7 +210,7 @@ static int falls_for_ever(const se3di_particles *set, const double x[3])
     for (size_t k = 0; k < set->wall_count; ++k) {
         const se3di_wall *wall = &set->walls[k];
         double depth = se3di_dot(down, wall->pose.x);
-        if (wall->shape.kind == SE3DI_SHAPE_PLANE) {
+        if (se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE)) {
             const double n[3] = {wall->pose.R[2], wall->pose.R[5], wall->pose.R[8]};
             double d[3];
             se3di_sub(x, wall->pose.x, d);

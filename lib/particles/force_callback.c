@@ -197,7 +197,7 @@ static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
     }
     t.delta = g->radius - distance;
     t.arm_i = distance;
-    if (wall->shape.kind == SE3DI_SHAPE_SPHERE) {
+    if (se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_BALL)) {
         t.radius = g->radius * wall->shape.radius / (g->radius + wall->shape.radius);
     }
     se3di_sub(x, wall->pose.c, side); /* from the centre of mass to the point */

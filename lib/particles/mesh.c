@@ -14,7 +14,7 @@
 
 static int is_mesh(const se3di_wall *wall)
 {
-    return wall->shape.kind == SE3DI_SHAPE_MESH;
+    return se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_SURFACE);
 }
 
 /* The touch of the pair with the nearest normal that is not taken; -1: none. */

@@ -56,7 +56,7 @@ static double wall_shift(const se3di_particles *set, const se3di_wall *wall, con
     }
     double shift[3];
     se3di_sub(now->x, x, shift);
-    if (wall->shape.kind != SE3DI_SHAPE_PLANE) {
+    if (!se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE)) {
         double turn = 0.0;
         for (int k = 0; k < 9; ++k) {
             turn += (now->R[k] - R[k]) * (now->R[k] - R[k]);

@@ -44,7 +44,7 @@ double se3di_wall_distance(const se3di_wall *wall, const double x[3])
 static double least_distance(const se3di_wall *wall, const double x[3])
 {
     double d[3];
-    if (wall->shape.kind == SE3DI_SHAPE_PLANE) {
+    if (se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE)) {
         return -HUGE_VAL;
     }
     se3di_sub(x, wall->pose.x, d);
@@ -61,7 +61,8 @@ void se3di_wall_image(const se3di_wall *wall, const double length[3], double rea
     static const double shifts[3] = {0.0, 1.0, -1.0};
     int counts[3];
     for (int a = 0; a < 3; ++a) {
-        counts[a] = length[a] > 0.0 && wall->shape.kind != SE3DI_SHAPE_PLANE ? 3 : 1;
+        counts[a] =
+            length[a] > 0.0 && !se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE) ? 3 : 1;
     }
     const int images = counts[0] * counts[1] * counts[2];
     for (int k = 0; images > 1 && k < images; ++k) {
@@ -140,7 +141,7 @@ static se3d_status list_wall(se3di_particles *set, uint32_t i, uint32_t w)
     if (least_distance(wall, x) >= reach) {
         return SE3D_OK;
     }
-    if (wall->shape.kind == SE3DI_SHAPE_MESH) {
+    if (se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_SURFACE)) {
         SE3DI_TRY(list_faces(set, wall, x, reach));
         if (set->face_count == face_begin) {
             return SE3D_OK;
@@ -191,7 +192,7 @@ static parcel enclose(const se3di_particles *set, uint32_t begin, uint32_t end)
 static int is_clear(const se3di_wall *wall, const parcel *box, double skin)
 {
     double extent = se3di_norm(box->half);
-    if (wall->shape.kind == SE3DI_SHAPE_PLANE) {
+    if (se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE)) {
         const double *R = wall->pose.R;
         extent = fabs(R[2]) * box->half[0] + fabs(R[5]) * box->half[1] + fabs(R[8]) * box->half[2];
     }
@@ -199,7 +200,7 @@ static int is_clear(const se3di_wall *wall, const parcel *box, double skin)
     if (least_distance(wall, box->middle) >= reach) {
         return 1;
     }
-    if (wall->shape.kind != SE3DI_SHAPE_MESH) {
+    if (!se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_SURFACE)) {
         return se3di_wall_distance(wall, box->middle) >= reach;
     }
     double local[3];
@@ -219,7 +220,7 @@ static se3d_status list_slab(se3di_particles *set, const se3di_slab *slab)
     const int periodic = is_periodic(set);
     for (uint32_t w = 0; w < set->wall_count; ++w) {
         const se3di_wall *wall = &set->walls[w];
-        const int images = periodic && wall->shape.kind != SE3DI_SHAPE_PLANE;
+        const int images = periodic && !se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE);
         for (uint32_t p = 0; p * size < count; ++p) {
             if (!images && is_clear(wall, &parcels[p], set->skin)) {
                 continue;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Checks of arguments at the public boundary. */
 #include "base/text.h"
-#include "math/vec3.h"
+#include "math/direction.h"
 #include "system/system_internal.h"
 
 #include <math.h>
@@ -36,29 +36,15 @@ se3d_status se3di_check_finite(se3d_system *system, const char *what, double val
 se3d_status se3di_check_finites(se3d_system *system, const char *what, const double *values,
                                 int count)
 {
-    for (int k = 0; k < count; ++k) {
-        if (!isfinite(values[k])) {
-            return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
-                                 "[%d] = %g, must be finite", k, values[k]);
-        }
-    }
-    return SE3D_OK;
+    const se3d_status status = se3di_finites_check(what, values, count, &system->error);
+    return status < 0 ? se3di_log_error(&system->error, status) : SE3D_OK;
 }
 
 se3d_status se3di_check_direction(se3d_system *system, const char *what, const double values[3],
                                   double unit[3])
 {
-    SE3DI_TRY(se3di_check_finites(system, what, values, 3));
-    double largest = fmax(fabs(values[0]), fmax(fabs(values[1]), fabs(values[2])));
-    if (largest < 1e-150) {
-        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
-                             " = [%g, %g, %g], must be a direction (not zero)", values[0],
-                             values[1], values[2]);
-    }
-    double scaled[3];
-    se3di_scale(1.0 / largest, values, scaled);
-    se3di_scale(1.0 / se3di_norm(scaled), scaled, unit);
-    return SE3D_OK;
+    const se3d_status status = se3di_direction_read(what, values, unit, &system->error);
+    return status < 0 ? se3di_log_error(&system->error, status) : SE3D_OK;
 }
 
 se3d_status se3di_check_orientation(se3d_system *system, const char *what, const double p[4],

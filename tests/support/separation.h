@@ -14,7 +14,7 @@
 #define SE3D_TESTS_SEPARATION_H
 
 #include "check.h"
-#include "contact/shape/shape.h"
+#include "contact/shape/triangles.h"
 #include "math/vec3.h"
 
 #define POLY_MOST 512

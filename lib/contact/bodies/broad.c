@@ -23,13 +23,13 @@ static void center_of(const se3di_model *model, uint32_t shape, double x[3])
 
 static int are_open_meshes(const se3di_shape *a, const se3di_shape *b)
 {
-    return a->kind == SE3DI_SHAPE_MESH && b->kind == SE3DI_SHAPE_MESH && !a->convex && !b->convex;
+    return se3di_shape_is(a, SE3DI_SHAPE_IS_SURFACE) && se3di_shape_is(b, SE3DI_SHAPE_IS_SURFACE) &&
+           !se3di_narrow_is_known(a, b);
 }
 
-/* Kinds that have no contact with each other. */
-static int strangers(const se3di_shape *a, const se3di_shape *b)
+static int is_plane(const se3di_shape *s)
 {
-    return (a->kind == b->kind && a->kind == SE3DI_SHAPE_PLANE) || are_open_meshes(a, b);
+    return se3di_shape_is(s, SE3DI_SHAPE_IS_HALF_SPACE);
 }
 
 /* As far as it is the user's to say. */
@@ -45,7 +45,8 @@ static int are_meant_to_touch(const se3di_model *model, uint32_t a, uint32_t b)
 
 int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b)
 {
-    return !strangers(&model->shapes[a], &model->shapes[b]) && are_meant_to_touch(model, a, b);
+    return se3di_narrow_is_known(&model->shapes[a], &model->shapes[b]) &&
+           are_meant_to_touch(model, a, b);
 }
 
 int se3di_shapes_pass_through(const se3di_model *model, uint32_t a, uint32_t b)
@@ -62,7 +63,7 @@ double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j)
     se3di_sub(x[1], x[0], d);
     for (int k = 0; k < 2; ++k) {
         const se3di_shape *plane = s[k];
-        if (plane->kind == SE3DI_SHAPE_PLANE) {
+        if (is_plane(plane)) {
             const double up[3] = {plane->A[2], plane->A[5], plane->A[8]};
             double n[3];
             se3di_mul(model->frames[plane->body].A, up, n);
@@ -87,7 +88,7 @@ static int list_holds(const se3di_model *model, double share)
     }
     for (uint32_t k = 0; k < model->shape_slots.count; ++k) {
         double x[3], d[3];
-        int plane = model->shapes[k].kind == SE3DI_SHAPE_PLANE;
+        int plane = is_plane(&model->shapes[k]);
         if (plane && model->bodies[model->shapes[k].body].fixed) {
             continue;
         }
@@ -129,15 +130,13 @@ se3d_status se3di_broad_visit(const se3di_model *model, se3di_pair_visitor visit
 static double lower_end(const se3di_model *model, uint32_t shape)
 {
     const se3di_shape *s = &model->shapes[shape];
-    return s->kind == SE3DI_SHAPE_PLANE ? -HUGE_VAL
-                                        : model->contacts.reference[3 * (size_t)shape] - s->bound;
+    return is_plane(s) ? -HUGE_VAL : model->contacts.reference[3 * (size_t)shape] - s->bound;
 }
 
 static double upper_end(const se3di_model *model, uint32_t shape)
 {
     const se3di_shape *s = &model->shapes[shape];
-    return s->kind == SE3DI_SHAPE_PLANE ? HUGE_VAL
-                                        : model->contacts.reference[3 * (size_t)shape] + s->bound;
+    return is_plane(s) ? HUGE_VAL : model->contacts.reference[3 * (size_t)shape] + s->bound;
 }
 
 /* Nearly sorted from the last time. */

@@ -27,30 +27,6 @@
 #define LEAST_SHARE 0.01 /* of a step in contact: w does not grow further */
 #define SHARE_MIN   0.25 /* of the inverse of a point's own effective mass */
 
-double se3di_shape_contact_radius(const se3di_shape *shape)
-{
-    int round = shape->kind == SE3DI_SHAPE_SPHERE || shape->kind == SE3DI_SHAPE_CAPSULE ||
-                shape->kind == SE3DI_SHAPE_CYLINDER;
-    return round ? shape->radius : HUGE_VAL;
-}
-
-double se3di_shape_contact_size(const se3di_shape *shape)
-{
-    switch (shape->kind) {
-    case SE3DI_SHAPE_BOX:
-        return fmin(shape->half[0], fmin(shape->half[1], shape->half[2]));
-    case SE3DI_SHAPE_CYLINDER:
-        return fmin(shape->radius, shape->half_length);
-    case SE3DI_SHAPE_HULL:
-    case SE3DI_SHAPE_MESH:
-        return 0.5 * shape->bound;
-    case SE3DI_SHAPE_PLANE:
-        return HUGE_VAL;
-    default:
-        return shape->radius;
-    }
-}
-
 double se3di_shapes_contact_radius(const se3di_shape *i, const se3di_shape *j)
 {
     double curvature = 1.0 / se3di_shape_contact_radius(i) + 1.0 / se3di_shape_contact_radius(j);

@@ -47,12 +47,8 @@ typedef struct se3di_encounter_change {
     double v[2][3], w[2][3];
 } se3di_encounter_change;
 
-/* The radius of a shape where it touches; infinite: flat. */
-double se3di_shape_contact_radius(const se3di_shape *shape);
 /* R* of two round shapes in series; of two flat ones the smaller size. */
 double se3di_shapes_contact_radius(const se3di_shape *i, const se3di_shape *j);
-/* A length of the shape that overlaps are measured by. */
-double se3di_shape_contact_size(const se3di_shape *shape);
 
 /* Begin an encounter of which model, at, memory, shape_i and shape_j are set: all but the forces.
  */

@@ -22,7 +22,7 @@ static double distance_from(const se3di_shape *s, const double point[3])
     se3di_sub(point, s->x, d);
     se3di_mul_transposed(s->A, d, local);
     se3di_shape_nearest(s, local, at, n, &distance);
-    if (s->kind == SE3DI_SHAPE_MESH && s->closed != 0) {
+    if (se3di_shape_is(s, SE3DI_SHAPE_IS_SURFACE) && s->closed != 0) {
         double u[3], v[3];
         const uint32_t *t = s->triangles + 3 * se3di_mesh_nearest(s, local, at, &distance);
         se3di_sub(s->vertices + 3 * (size_t)t[1], s->vertices + 3 * (size_t)t[0], u);

@@ -139,7 +139,7 @@ static double turning_speed(const se3di_model *model, uint32_t shape, double cen
     se3di_mul(frame->A, s->x, center);
     se3di_add(center, frame->r, center);
     velocity_at(frame, center, v);
-    return s->kind == SE3DI_SHAPE_SPHERE || s->kind == SE3DI_SHAPE_PLANE
+    return se3di_shape_is(s, SE3DI_SHAPE_IS_BALL | SE3DI_SHAPE_IS_HALF_SPACE)
                ? 0.0
                : se3di_norm(frame->w) * s->bound;
 }
@@ -166,7 +166,7 @@ static int meet(const pace *p, uint32_t i, uint32_t j, double h, double *gap, do
     }
     double turning = turning_speed(model, i, x[0], v[0]) + turning_speed(model, j, x[1], v[1]);
     for (int k = 0; k < 2; ++k) { /* a plane that turns: as fast as it does where the other is */
-        if (s[k]->kind == SE3DI_SHAPE_PLANE) {
+        if (se3di_shape_is(s[k], SE3DI_SHAPE_IS_HALF_SPACE)) {
             const se3di_frame *frame = &model->frames[s[k]->body];
             velocity_at(frame, x[1 - k], v[k]);
             turning += se3di_norm(frame->w) * s[1 - k]->bound;
@@ -203,10 +203,10 @@ static void approaching(pace *p, uint32_t i, uint32_t j)
     if (!meet(p, i, j, p->step, &gap, &closing)) {
         return;
     }
-    double points =
-        model->shapes[i].kind == SE3DI_SHAPE_SPHERE || model->shapes[j].kind == SE3DI_SHAPE_SPHERE
-            ? 1.0
-            : FACE_POINTS;
+    double points = se3di_shape_is(&model->shapes[i], SE3DI_SHAPE_IS_BALL) ||
+                            se3di_shape_is(&model->shapes[j], SE3DI_SHAPE_IS_BALL)
+                        ? 1.0
+                        : FACE_POINTS;
     double time = contact_time(model, i, j, points * inverse_mass(model, i, j), closing);
     double size = smaller_size(model, i, j);
     if (p->checks && closing * p->step > PASSING * size) {

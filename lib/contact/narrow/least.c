@@ -74,13 +74,6 @@ static int bracket_take(bracket *b, double slope)
     return 1;
 }
 
-static void axis_of(const se3di_solid *solid, double out[3])
-{
-    out[0] = solid->at->R[2];
-    out[1] = solid->at->R[5];
-    out[2] = solid->at->R[8];
-}
-
 /* The distance of a point from a core, and the direction to it. */
 static double distance_from(const se3di_solid *solid, const double x[3], double n[3], double at[3])
 {
@@ -101,7 +94,7 @@ static double line_look(const se3di_solid *line, const se3di_solid *j, double t,
                         double on_line[3], double on_j[3], double *slope)
 {
     double u[3], from[3];
-    axis_of(line, u);
+    se3di_solid_axis(line, 2, u);
     se3di_copy(line->at->x, on_line);
     se3di_add_scaled(t, u, on_line);
     const double distance = distance_from(j, on_line, from, on_j);
@@ -207,17 +200,16 @@ static void add_hull_edges(search *s, const se3di_solid *solid, double sign)
 
 static void add_edges(search *s, const se3di_solid *solid, double sign)
 {
+    const uint32_t lines = se3di_shape_class_of(solid->shape)->lines;
     double axis[3];
-    if (solid->shape->kind == SE3DI_SHAPE_HULL) {
+    if (solid->shape->triangles) {
         add_hull_edges(s, solid, sign);
-        return;
     }
-    const int first = solid->shape->kind == SE3DI_SHAPE_BOX ? 0 : 2;
-    for (int a = first; a < 3; ++a) {
-        for (int c = 0; c < 3; ++c) {
-            axis[c] = solid->at->R[3 * c + a];
+    for (int a = 0; a < 3; ++a) {
+        if (lines >> a & 1u) {
+            se3di_solid_axis(solid, a, axis);
+            add_edge(s, axis);
         }
-        add_edge(s, axis);
     }
 }
 
@@ -261,7 +253,7 @@ static void add_rim_rate(const se3di_solid *solid, const double n[3], const doub
                          double out[3])
 {
     double z[3], side[3];
-    axis_of(solid, z);
+    se3di_solid_axis(solid, 2, z);
     se3di_copy(n, side);
     se3di_add_scaled(-se3di_dot(n, z), z, side);
     const double size = se3di_norm(side);
@@ -319,6 +311,11 @@ static void try_faces(search *s)
     }
 }
 
+static int has_rims(const se3di_solid *solid)
+{
+    return se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS);
+}
+
 static double polish(const se3di_solid *i, const se3di_solid *j, double overlap, double n[3])
 {
     search s = {.i = i, .j = j, .size = i->shape->bound + j->shape->bound, .least = HUGE_VAL};
@@ -339,7 +336,7 @@ static double polish(const se3di_solid *i, const se3di_solid *j, double overlap,
     for (int a = 0; a < s.count; ++a) {
         try_circle(&s, s.edge[a]);
     }
-    if (i->shape->kind == SE3DI_SHAPE_CYLINDER && j->shape->kind == SE3DI_SHAPE_CYLINDER) {
+    if (has_rims(i) && has_rims(j)) {
         try_rims(&s);
     }
     if (!(overlap < s.least - LOOSE * s.size)) {
@@ -351,12 +348,8 @@ static double polish(const se3di_solid *i, const se3di_solid *j, double overlap,
 
 static int is_line(const se3di_solid *solid)
 {
-    return solid->shape->kind == SE3DI_SHAPE_CAPSULE;
-}
-
-static int is_cylinder(const se3di_solid *solid)
-{
-    return solid->shape->kind == SE3DI_SHAPE_CYLINDER;
+    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SWEPT) &&
+           !se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_BALL);
 }
 
 double se3di_convex_least(const se3di_solid *i, const se3di_solid *j, double n[3], double on_i[3],
@@ -364,12 +357,12 @@ double se3di_convex_least(const se3di_solid *i, const se3di_solid *j, double n[3
 {
     const double radius = se3di_core_radius(i->shape) + se3di_core_radius(j->shape);
     const double apart = APART * (i->shape->bound + j->shape->bound);
-    if (is_line(i) && j->shape->kind != SE3DI_SHAPE_HULL) {
+    if (is_line(i) && !j->shape->triangles) {
         const double distance = line_distance(i, j, n, on_i, on_j);
         if (distance > apart) {
             return radius - distance;
         }
-    } else if (is_line(j) && i->shape->kind != SE3DI_SHAPE_HULL) {
+    } else if (is_line(j) && !i->shape->triangles) {
         const double distance = line_distance(j, i, n, on_j, on_i);
         if (distance > apart) {
             se3di_scale(-1.0, n, n);
@@ -377,7 +370,7 @@ double se3di_convex_least(const se3di_solid *i, const se3di_solid *j, double n[3
         }
     }
     double overlap = se3di_convex_distance(i, j, n, on_i, on_j);
-    if (overlap > 0.0 && (is_cylinder(i) || is_cylinder(j))) {
+    if (overlap > 0.0 && (has_rims(i) || has_rims(j))) {
         overlap = polish(i, j, overlap, n);
     }
     return radius + overlap;

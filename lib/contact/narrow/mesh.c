@@ -9,6 +9,7 @@
 #include "contact/narrow/mesh.h"
 
 #include "contact/shape/mesh.h"
+#include "contact/shape/triangles.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -357,18 +358,10 @@ static void meet_edges(void *ctx, uint32_t triangle)
 static void touch_corners(const meeting *m)
 {
     const se3di_shape *s = m->solid->shape;
+    const se3di_shape_class *kind = se3di_shape_class_of(s);
     double local[3], x[3];
-    uint32_t count = s->kind == SE3DI_SHAPE_HULL ? (uint32_t)s->vertex_count : 8;
-    for (uint32_t k = 0; k < count; ++k) {
-        if (s->kind == SE3DI_SHAPE_HULL) {
-            se3di_copy(s->vertices + 3 * (size_t)k, local);
-        } else {
-            for (uint32_t a = 0; a < 3; ++a) {
-                local[a] = k >> a & 1u ? s->half[a] : -s->half[a];
-            }
-        }
-        se3di_mul(m->solid->at->R, local, x);
-        se3di_add(m->solid->at->x, x, x);
+    for (uint32_t k = 0; kind->corner && kind->corner(s, k, local); ++k) {
+        se3di_solid_to_ground(m->solid, local, x);
         touch_corner(m, x, NULL, k);
     }
 }
@@ -376,14 +369,12 @@ static void touch_corners(const meeting *m)
 static void touch_ends(const meeting *m)
 {
     const se3di_shape *s = m->solid->shape;
-    const double *R = m->solid->at->R;
-    double axis[3] = {R[2], R[5], R[8]}, x[3];
-    for (uint32_t end = 0; end < (s->kind == SE3DI_SHAPE_SPHERE ? 1u : 2u); ++end) {
+    const int is_ball = se3di_shape_is(s, SE3DI_SHAPE_IS_BALL);
+    double axis[3], x[3];
+    se3di_solid_axis(m->solid, 2, axis);
+    for (uint32_t end = 0; end < (is_ball ? 1u : 2u); ++end) {
         se3di_copy(m->solid->at->x, x);
-        se3di_add_scaled(s->kind == SE3DI_SHAPE_SPHERE ? 0.0
-                         : end                         ? s->half_length
-                                                       : -s->half_length,
-                         axis, x);
+        se3di_add_scaled(is_ball ? 0.0 : end ? s->half_length : -s->half_length, axis, x);
         touch_ball(m, x, s->radius, end);
     }
 }
@@ -518,7 +509,7 @@ static void find_center(meeting *m)
 {
     const se3di_shape *s = m->solid->shape;
     double mean[3] = {0.0, 0.0, 0.0}, x[3];
-    for (size_t k = 0; k < s->vertex_count && s->kind == SE3DI_SHAPE_HULL; ++k) {
+    for (size_t k = 0; k < s->vertex_count; ++k) {
         se3di_add_scaled(1.0 / (double)s->vertex_count, s->vertices + 3 * k, mean);
     }
     se3di_mul(m->solid->at->R, mean, x);
@@ -535,20 +526,17 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
     m.solid = i;
     m.mesh = mesh;
     m.manifold = manifold;
-    m.size = s->kind == SE3DI_SHAPE_BOX        ? fmin(s->half[0], fmin(s->half[1], s->half[2]))
-             : s->kind == SE3DI_SHAPE_HULL     ? 0.5 * s->bound
-             : s->kind == SE3DI_SHAPE_CYLINDER ? fmin(s->radius, s->half_length)
-                                               : s->radius;
+    m.size = se3di_shape_contact_size(s);
     find_center(&m);
     find_side(&m);
-    if (s->kind == SE3DI_SHAPE_SPHERE || s->kind == SE3DI_SHAPE_CAPSULE) {
+    if (se3di_shape_is(s, SE3DI_SHAPE_IS_SWEPT)) {
         touch_ends(&m);
-    } else if (s->kind == SE3DI_SHAPE_CYLINDER) {
+    } else if (se3di_shape_is(s, SE3DI_SHAPE_HAS_RIMS)) {
         se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_rims, &m);
     } else {
         touch_corners(&m);
     }
-    if (s->kind != SE3DI_SHAPE_SPHERE) {
+    if (!se3di_shape_is(s, SE3DI_SHAPE_IS_BALL)) {
         se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_edges, &m);
         se3di_mesh_add_ways(&m);
         if (manifold->count == 0) {
@@ -561,17 +549,17 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
 #define WAYS 8 /* directions in the plane in which vertices are chosen */
 
 /* Of the vertices below a plane the deepest, and those farthest to all sides. */
-void se3di_narrow_mesh_plane(const se3di_solid *mesh, const double x[3], const double n[3],
-                             se3di_manifold *manifold)
+void se3di_plane_mesh(const se3di_solid *mesh, const se3di_solid *plane, se3di_manifold *manifold)
 {
     static const double turn[WAYS][2] = {{1.0, 0.0},  {0.7, 0.7},   {0.0, 1.0},  {-0.7, 0.7},
                                          {-1.0, 0.0}, {-0.7, -0.7}, {0.0, -1.0}, {0.7, -0.7}};
     const se3di_shape *s = mesh->shape;
-    double local_n[3], u[3], w[3], base[3], best[WAYS + 1];
+    double n[3], local_n[3], u[3], w[3], base[3], best[WAYS + 1];
     uint32_t chosen[WAYS + 1];
     meeting m = {.solid = mesh, .mesh = mesh, .size = s->bound, .manifold = manifold};
+    se3di_solid_axis(plane, 2, n);
     se3di_mul_transposed(mesh->at->R, n, local_n);
-    se3di_mesh_to_local(mesh, x, base);
+    se3di_mesh_to_local(mesh, plane->at->x, base);
     se3di_perpendicular(local_n, u);
     se3di_cross(local_n, u, w);
     for (int k = 0; k <= WAYS; ++k) {

@@ -11,13 +11,6 @@
 
 #define SE3DI_MANIFOLD_POINTS 16
 
-/* How a surface itself bends where it is touched: moving on by a length l along `u` turns its
- * normal by l / r[0], along n x u by l / r[1]. 0: a corner or edge; infinite: flat. */
-typedef struct se3di_bend {
-    double u[3]; /* unit, perpendicular to the normal */
-    double r[2];
-} se3di_bend;
-
 typedef struct se3di_contact_point {
     double point[3];  /* ground frame */
     double normal[3]; /* from the first shape to the second, ground frame */
@@ -34,8 +27,11 @@ typedef struct se3di_manifold {
     se3di_contact_point points[SE3DI_MANIFOLD_POINTS];
 } se3di_manifold;
 
-/* The points where shapes i and j touch; none if they are apart, or are two planes or two
- * meshes. */
+/* Whether there is contact between two shapes of these kinds; not between two planes, or two
+ * meshes of which none is convex. */
+int se3di_narrow_is_known(const se3di_shape *i, const se3di_shape *j);
+
+/* The points where shapes i and j touch; none if they are apart, or their pair is not known. */
 void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
                        const se3di_shape_pose *at_j, se3di_manifold *manifold);
 

@@ -31,13 +31,6 @@ typedef struct parting {
     int axis_i, axis_j;
 } parting;
 
-static void axis_of(const se3di_solid *solid, int a, double out[3])
-{
-    out[0] = solid->at->R[a];
-    out[1] = solid->at->R[3 + a];
-    out[2] = solid->at->R[6 + a];
-}
-
 /* Half the extent of a box along n. */
 static double extent(const se3di_solid *box, const double n[3])
 {
@@ -75,7 +68,7 @@ static void edge_middle(const se3di_solid *box, const double n[3], int a, double
     se3di_copy(box->at->x, out);
     for (int c = 0; c < 3; ++c) {
         double axis[3];
-        axis_of(box, c, axis);
+        se3di_solid_axis(box, c, axis);
         double side = se3di_dot(axis, n) < 0.0 ? -1.0 : 1.0;
         se3di_add_scaled(c == a ? 0.0 : side * box->shape->half[c], axis, out);
     }
@@ -100,13 +93,13 @@ static void bend_side(const se3di_solid *solid, const double n[3], se3di_bend *b
 {
     const se3di_shape *s = solid->shape;
     double u[3];
-    if (s->kind != SE3DI_SHAPE_CAPSULE && s->kind != SE3DI_SHAPE_CYLINDER) {
+    if (se3di_shape_class_of(s)->lines != SE3DI_AXES_Z) {
         return;
     }
-    axis_of(solid, 2, u);
+    se3di_solid_axis(solid, 2, u);
     if (fabs(se3di_dot(u, n)) < EXACT) {
         se3di_bend_set(bend, u, HUGE_VAL, s->radius);
-    } else if (s->kind == SE3DI_SHAPE_CAPSULE) {
+    } else if (se3di_shape_is(s, SE3DI_SHAPE_IS_SWEPT)) {
         bend->r[0] = bend->r[1] = s->radius;
     }
 }
@@ -125,8 +118,8 @@ static void point_touches(const parting *p, uint32_t feature, se3di_manifold *ma
     if (p->edges) {
         double u[3], w[3];
         c->feature += EDGES + (uint32_t)(3 * p->axis_i + p->axis_j);
-        axis_of(p->i, p->axis_i, u);
-        axis_of(p->j, p->axis_j, w);
+        se3di_solid_axis(p->i, p->axis_i, u);
+        se3di_solid_axis(p->j, p->axis_j, w);
         se3di_bend_set(&c->bend_i, u, HUGE_VAL, 0.0);
         se3di_bend_set(&c->bend_j, w, HUGE_VAL, 0.0);
         return;
@@ -275,8 +268,8 @@ static void find_crossing(const separation *best, parting *p)
     se3di_scale(-1.0, p->n, back);
     edge_middle(p->i, p->n, best->a, p->on_i);
     edge_middle(p->j, back, best->b, p->on_j);
-    axis_of(p->i, best->a, u);
-    axis_of(p->j, best->b, w);
+    se3di_solid_axis(p->i, best->a, u);
+    se3di_solid_axis(p->j, best->b, w);
     nearest_of_lines(p->on_i, u, p->on_j, w, &s, &t);
     se3di_add_scaled(s, u, p->on_i);
     se3di_add_scaled(t, w, p->on_j);
@@ -307,12 +300,12 @@ void se3di_narrow_boxes(const se3di_solid *i, const se3di_solid *j, se3di_manifo
     separation face_i = {.depth = HUGE_VAL}, face_j = face_i, edge = face_i;
     for (int a = 0; a < 3; ++a) {
         double u[3], w[3], axis[3];
-        axis_of(i, a, u);
+        se3di_solid_axis(i, a, u);
         try_axis(i, j, u, a, 0, &face_i);
-        axis_of(j, a, w);
+        se3di_solid_axis(j, a, w);
         try_axis(i, j, w, 0, a, &face_j);
         for (int b = 0; b < 3; ++b) {
-            axis_of(j, b, w);
+            se3di_solid_axis(j, b, w);
             se3di_cross(u, w, axis);
             double size = se3di_norm(axis);
             if (size > SKEW) {

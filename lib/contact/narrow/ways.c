@@ -14,6 +14,7 @@
  * mesh have shown already is not said again.                 docs/theory/body-contact.md */
 #include "contact/narrow/mesh.h"
 #include "contact/shape/mesh.h"
+#include "contact/shape/triangles.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
 
@@ -155,24 +156,24 @@ static void find_off_corner(se3di_mesh_meeting *m, const double x[3], se3di_mesh
         return;
     }
     se3di_copy(x, way->at);
-    if (solid->shape->kind == SE3DI_SHAPE_HULL) {
+    if (solid->shape->triangles) {
         try_hull_faces(m, x, way);
         return;
     }
-    const int box = solid->shape->kind == SE3DI_SHAPE_BOX;
+    const uint32_t flats = se3di_shape_class_of(solid->shape)->flats;
     for (int k = 0; k < 6; ++k) { /* of a cylinder the caps, and its side there */
         const double sign = k & 1 ? -1.0 : 1.0;
         double out[3];
         for (int c = 0; c < 3; ++c) {
             out[c] = sign * solid->at->R[3 * c + k / 2];
         }
-        if (box || k / 2 == 2) {
+        if (flats >> k / 2 & 1u) {
             try_corner(m, x, out, way);
         }
     }
     const double side[3] = {local[0], local[1], 0.0};
     const double size = se3di_norm(side);
-    if (!box && size > 0.0) {
+    if (se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS) && size > 0.0) {
         double out[3];
         se3di_mul(solid->at->R, side, out);
         se3di_scale(1.0 / size, out, out);
@@ -183,8 +184,7 @@ static void find_off_corner(se3di_mesh_meeting *m, const double x[3], se3di_mesh
 void se3di_mesh_find_ways(se3di_mesh_meeting *m, uint32_t triangle)
 {
     se3di_mesh_face f;
-    const int32_t kind = m->solid->shape->kind;
-    if (kind == SE3DI_SHAPE_CAPSULE || kind == SE3DI_SHAPE_SPHERE ||
+    if (se3di_shape_is(m->solid->shape, SE3DI_SHAPE_IS_SWEPT) ||
         !se3di_mesh_face_of(m, triangle, &f)) {
         return;
     }
@@ -266,11 +266,10 @@ static void find_least(const arc *a, reach low, reach high, uint32_t feature)
 
 void se3di_mesh_find_ways_off_edge(se3di_mesh_meeting *m, const se3di_mesh_edge *e)
 {
-    const int32_t kind = m->solid->shape->kind;
     arc a = {.m = m, .e = e};
     se3di_mesh_face own;
     reach before, here;
-    if (kind == SE3DI_SHAPE_CAPSULE || kind == SE3DI_SHAPE_SPHERE) {
+    if (se3di_shape_is(m->solid->shape, SE3DI_SHAPE_IS_SWEPT)) {
         return;
     }
     (void)se3di_mesh_face_of(m, e->triangle, &own);
@@ -324,7 +323,7 @@ static int is_least(const se3di_mesh_meeting *m, int k)
  * to where they were, as on planes. */
 static int is_shown(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
 {
-    const int is_rim = m->solid->shape->kind == SE3DI_SHAPE_CYLINDER;
+    const int is_rim = se3di_shape_is(m->solid->shape, SE3DI_SHAPE_HAS_RIMS);
     const double slack = is_rim ? RIM * m->solid->shape->bound : EQUAL * m->size;
     double ground[3];
     se3di_mul(m->mesh->at->R, way->n, ground);

@@ -3,10 +3,14 @@
  * around them to the point. Points nearer to a face than rounding are on it. */
 #include "contact/shape/hull.h"
 
+#include "contact/shape/triangles.h"
+#include "math/elementary.h"
 #include "math/vec3.h"
 
 #include <float.h>
 #include <math.h>
+
+#define VERTICES_MAX 10000
 
 typedef struct hull_face {
     uint32_t corner[3];
@@ -210,3 +214,229 @@ se3d_status se3di_hull_build(const se3d_allocator *allocator, const double *poin
     }
     return status;
 }
+
+/* The hull's corners and faces replace the given points; the arrays are the shape's own. */
+static se3d_status define_hull(const se3d_shape_def *def, const se3d_allocator *allocator,
+                               se3di_shape *shape, se3di_error *error)
+{
+    SE3DI_TRY(se3di_vertices_define(def, shape, error));
+    if (def->vertex_count > VERTICES_MAX) {
+        return se3di_error_set_of(error, "vertex_count", SE3D_ERR_INVALID_ARGUMENT,
+                                  " = %zu of a hull, must be at most %d", def->vertex_count,
+                                  VERTICES_MAX);
+    }
+    se3d_status status = se3di_hull_build(allocator, def->vertices, def->vertex_count, shape);
+    if (status == SE3D_ERR_INVALID_ARGUMENT) {
+        return se3di_error_set(error, status,
+                               "the %zu vertices of the hull lie in one plane, must span a volume",
+                               def->vertex_count);
+    }
+    return status < 0 ? se3di_error_set(error, status, "no memory for a hull") : SE3D_OK;
+}
+
+/* Of all triangles. */
+static void nearest_triangle(const se3di_shape *s, const double local[3], double point[3],
+                             double *distance)
+{
+    double least = HUGE_VAL;
+    for (size_t k = 0; k < s->triangle_count; ++k) {
+        const double *corner[3];
+        double here[3];
+        se3di_triangle_corners(s, k, corner);
+        double square = se3di_triangle_nearest(corner, local, here, NULL);
+        if (square < least) {
+            least = square;
+            se3di_copy(here, point);
+        }
+    }
+    *distance = sqrt(least);
+}
+
+static void nearest_hull(const se3di_shape *s, const double local[3], double point[3],
+                         double normal[3], double *distance)
+{
+    double depth = -HUGE_VAL; /* above the plane of the face that is seen best */
+    double outward[3] = {0.0, 0.0, 1.0};
+    for (size_t k = 0; k < s->triangle_count; ++k) {
+        const double *corner[3];
+        double n[3], d[3];
+        se3di_triangle_corners(s, k, corner);
+        se3di_triangle_normal(corner, n);
+        se3di_sub(local, corner[0], d);
+        double height = se3di_dot(d, n);
+        if (height > depth) {
+            depth = height;
+            se3di_copy(n, outward);
+        }
+    }
+    if (depth > 0.0) {
+        nearest_triangle(s, local, point, distance);
+        if (*distance > 1e-12 * s->bound) {
+            se3di_sub(local, point, normal);
+            se3di_scale(1.0 / *distance, normal, normal);
+            return;
+        }
+    }
+    *distance = depth;
+    se3di_copy(outward, normal);
+    se3di_copy(local, point);
+    se3di_add_scaled(-depth, outward, point);
+}
+
+static int corner_hull(const se3di_shape *s, uint32_t k, double out[3])
+{
+    if (k >= s->vertex_count) {
+        return 0;
+    }
+    se3di_copy(s->vertices + 3 * (size_t)k, out);
+    return 1;
+}
+
+/* The plane of a face: two directions in it, and its middle. */
+typedef struct face_plane {
+    const se3di_shape *s;
+    double u[3], w[3], center[3], n[3], level, slack;
+} face_plane;
+
+static int is_new(const face_plane *plane, uint32_t vertex, const uint32_t *list, int count)
+{
+    const double *x = plane->s->vertices + 3 * (size_t)vertex;
+    for (int k = 0; k < count; ++k) {
+        double d[3];
+        se3di_sub(plane->s->vertices + 3 * (size_t)list[k], x, d);
+        if (!(se3di_norm(d) > plane->slack)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Insert a corner of the polygon about the middle by its angle from u. */
+static void insert_corner(const face_plane *plane, uint32_t vertex, uint32_t *list, double *angle,
+                          int *count)
+{
+    double d[3];
+    se3di_sub(plane->s->vertices + 3 * (size_t)vertex, plane->center, d);
+    double turn = se3di_atan2(se3di_dot(d, plane->w), se3di_dot(d, plane->u));
+    int at = *count;
+    for (; at > 0 && angle[at - 1] > turn; --at) {
+        angle[at] = angle[at - 1];
+        list[at] = list[at - 1];
+    }
+    angle[at] = turn;
+    list[at] = vertex;
+    ++*count;
+}
+
+/* Whether the polygon turns left at its corner k. */
+static int is_corner(const face_plane *plane, const uint32_t *list, int count, int k)
+{
+    const double *v = plane->s->vertices;
+    const double *x = v + 3 * (size_t)list[k];
+    double before[3], after[3], turn[3];
+    se3di_sub(x, v + 3 * (size_t)list[(k + count - 1) % count], before);
+    se3di_sub(v + 3 * (size_t)list[(k + 1) % count], x, after);
+    se3di_cross(before, after, turn);
+    return se3di_dot(turn, plane->n) > plane->slack * plane->s->bound;
+}
+
+/* Vertices within the face and on its sides are no corners of it. */
+static void drop_inner(const face_plane *plane, uint32_t *list, int *count)
+{
+    for (int k = 0; *count > 3 && k < *count; ++k) {
+        if (!is_corner(plane, list, *count, k)) {
+            for (int c = k; c + 1 < *count; ++c) {
+                list[c] = list[c + 1];
+            }
+            --*count;
+            k = -1; /* all again */
+        }
+    }
+}
+
+static int is_on(const face_plane *plane, uint32_t vertex)
+{
+    return se3di_dot(plane->s->vertices + 3 * (size_t)vertex, plane->n) >
+           plane->level - plane->slack;
+}
+
+/* Of more corners than there is room for those that are farthest to all sides. */
+static void insert_farthest(const face_plane *plane, uint32_t *list, double *angle, int *count)
+{
+    *count = 0;
+    for (int k = 0; k < SE3DI_FACE_CORNERS; ++k) {
+        const double turn = 6.283185307179586 * k / SE3DI_FACE_CORNERS;
+        double way[3], most = -HUGE_VAL;
+        uint32_t best = 0;
+        se3di_scale(se3di_cos(turn), plane->u, way);
+        se3di_add_scaled(se3di_sin(turn), plane->w, way);
+        for (uint32_t v = 0; v < plane->s->vertex_count; ++v) {
+            const double far = se3di_dot(plane->s->vertices + 3 * (size_t)v, way);
+            if (far > most + plane->slack && is_on(plane, v)) {
+                most = far;
+                best = v;
+            }
+        }
+        if (is_new(plane, best, list, *count)) {
+            insert_corner(plane, best, list, angle, count);
+        }
+    }
+}
+
+/* All vertices in the plane of the triangle that looks along d best. */
+static void face_hull(const se3di_solid *solid, const double d[3], se3di_face *face)
+{
+    const se3di_shape *s = solid->shape;
+    double n[3] = {0.0, 0.0, 1.0}, best = -HUGE_VAL;
+    size_t triangle = 0;
+    for (size_t k = 0; k < s->triangle_count; ++k) {
+        const double *corner[3];
+        double here[3];
+        se3di_triangle_corners(s, k, corner);
+        se3di_triangle_normal(corner, here);
+        if (se3di_dot(here, d) > best + 1e-9) { /* of equal ones the first */
+            best = se3di_dot(here, d);
+            triangle = k;
+            se3di_copy(here, n);
+        }
+    }
+    face_plane plane = {.s = s, .slack = 1e-9 * s->bound};
+    plane.level = se3di_dot(s->vertices + 3 * (size_t)s->triangles[3 * triangle], n);
+    uint32_t list[SE3DI_FACE_CORNERS];
+    double angle[SE3DI_FACE_CORNERS];
+    for (size_t k = 0; k < 3; ++k) {
+        se3di_add_scaled(1.0 / 3.0, s->vertices + 3 * (size_t)s->triangles[3 * triangle + k],
+                         plane.center);
+    }
+    se3di_copy(n, plane.n);
+    se3di_perpendicular(n, plane.u);
+    se3di_cross(n, plane.u, plane.w);
+    face->count = 0;
+    for (uint32_t k = 0; k < s->vertex_count; ++k) {
+        if (!is_on(&plane, k) || !is_new(&plane, k, list, face->count)) {
+            continue;
+        }
+        if (face->count == SE3DI_FACE_CORNERS) {
+            insert_farthest(&plane, list, angle, &face->count);
+            break;
+        }
+        insert_corner(&plane, k, list, angle, &face->count);
+    }
+    drop_inner(&plane, list, &face->count);
+    face->id = (uint32_t)triangle;
+    se3di_mul(solid->at->R, n, face->normal);
+    for (int k = 0; k < face->count; ++k) {
+        se3di_solid_to_ground(solid, s->vertices + 3 * (size_t)list[k], face->corner[k]);
+    }
+}
+
+const se3di_shape_class se3di_shape_class_hull = {
+    .name = "hull",
+    .define = define_hull,
+    .bound = se3di_vertices_bound,
+    .size = se3di_vertices_size,
+    .nearest = nearest_hull,
+    .support = se3di_vertices_support,
+    .face = face_hull,
+    .corner = corner_hull,
+};

@@ -8,7 +8,7 @@
  * as there are faces, on a convex edge or vertex one.                      docs/theory/shapes.md */
 #include "contact/shape/mesh.h"
 
-#include "contact/shape/shape.h"
+#include "contact/shape/triangles.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -205,18 +205,11 @@ static double box_distance(const mesh_node *node, const double p[3])
     return sum;
 }
 
-static void find_corners(const se3di_shape *s, uint32_t triangle, const double *corner[3])
-{
-    for (int k = 0; k < 3; ++k) {
-        corner[k] = s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle + (size_t)k];
-    }
-}
-
 static double triangle_distance(const se3di_shape *s, uint32_t triangle, const double p[3],
                                 double point[3])
 {
     const double *corner[3];
-    find_corners(s, triangle, corner);
+    se3di_triangle_corners(s, triangle, corner);
     return se3di_triangle_nearest(corner, p, point, NULL);
 }
 
@@ -227,7 +220,7 @@ static int reaches(const se3di_shape *s, uint32_t triangle, const double p[3], d
 {
     const double *corner[3];
     double ab[3], ac[3], normal[3], d[3];
-    find_corners(s, triangle, corner);
+    se3di_triangle_corners(s, triangle, corner);
     se3di_sub(corner[1], corner[0], ab);
     se3di_sub(corner[2], corner[0], ac);
     se3di_sub(p, corner[0], d);
@@ -641,3 +634,52 @@ size_t se3di_mesh_contacts_among(const se3di_shape *shape, const uint32_t *faces
     }
     return choose_contacts(shape, list, found, local, radius, capacity, touch);
 }
+
+static se3d_status define_mesh(const se3d_shape_def *def, const se3d_allocator *allocator,
+                               se3di_shape *shape, se3di_error *error)
+{
+    SE3DI_TRY(se3di_vertices_define(def, shape, error));
+    SE3DI_TRY(se3di_shape_check_array(def->triangles, "triangles", error));
+    if (def->triangle_count < 1 || def->triangle_count > UINT32_MAX / 16) {
+        return se3di_error_set_of(error, "triangle_count", SE3D_ERR_INVALID_ARGUMENT,
+                                  " = %zu, must be at least 1 and at most %u", def->triangle_count,
+                                  UINT32_MAX / 16);
+    }
+    for (size_t k = 0; k < 3 * def->triangle_count; ++k) {
+        if (def->triangles[k] >= def->vertex_count) {
+            return se3di_error_set(error, SE3D_ERR_INVALID_ARGUMENT,
+                                   "triangles[%zu] = %u, must be less than vertex_count = %zu", k,
+                                   def->triangles[k], def->vertex_count);
+        }
+    }
+    se3d_status status = se3di_mesh_build(allocator, def->vertices, def->vertex_count,
+                                          def->triangles, def->triangle_count, shape);
+    if (status == SE3D_ERR_INVALID_ARGUMENT) {
+        return se3di_error_set(error, status, "none of the %zu triangles has an area",
+                               def->triangle_count);
+    }
+    return status < 0 ? se3di_error_set(error, status, "no memory for a mesh") : SE3D_OK;
+}
+
+static void nearest_mesh(const se3di_shape *s, const double local[3], double point[3],
+                         double normal[3], double *distance)
+{
+    size_t triangle = se3di_mesh_nearest(s, local, point, distance);
+    if (*distance > 0.0) {
+        se3di_sub(local, point, normal);
+        se3di_scale(1.0 / *distance, normal, normal);
+    } else {
+        const double *corner[3];
+        se3di_triangle_corners(s, triangle, corner);
+        se3di_triangle_normal(corner, normal);
+    }
+}
+
+const se3di_shape_class se3di_shape_class_mesh = {
+    .name = "mesh",
+    .define = define_mesh,
+    .bound = se3di_vertices_bound,
+    .size = se3di_vertices_size,
+    .nearest = nearest_mesh,
+    .support = se3di_vertices_support,
+};

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The list of points of a pair. */
+#include "contact/narrow/internal.h"
+#include "math/vec3.h"
+
+#include <math.h>
+
+void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double across)
+{
+    se3di_copy(u, bend->u);
+    bend->r[0] = along;
+    bend->r[1] = across;
+}
+
+static uint32_t shallowest(const se3di_manifold *manifold)
+{
+    uint32_t least = 0;
+    for (uint32_t k = 1; k < manifold->count; ++k) {
+        least = manifold->points[k].overlap < manifold->points[least].overlap ? k : least;
+    }
+    return least;
+}
+
+se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double point[3],
+                                        const double normal[3], double overlap, uint32_t feature)
+{
+    static const se3di_bend flat = {{0.0, 0.0, 0.0}, {HUGE_VAL, HUGE_VAL}};
+    uint32_t at = manifold->count;
+    if (at < SE3DI_MANIFOLD_POINTS) {
+        ++manifold->count;
+    } else {
+        at = shallowest(manifold);
+    }
+    se3di_contact_point *p = &manifold->points[at];
+    se3di_copy(point, p->point);
+    se3di_copy(normal, p->normal);
+    p->overlap = overlap;
+    p->share = 0.5;
+    p->feature = feature;
+    p->reserved = 0;
+    p->bend_i = p->bend_j = flat;
+    se3di_perpendicular(normal, p->bend_i.u);
+    se3di_copy(p->bend_i.u, p->bend_j.u);
+    return p;
+}

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Shapes on planes: half spaces without end. */
+#include "contact/narrow/internal.h"
+#include "math/vec3.h"
+
+#include <math.h>
+
+#define RIM_BIAS 1e-4 /* turn of a rim's points towards the shape's x axis, standing upright */
+#define RIM_TILT 1e-2 /* sine of the tilt above which there is none */
+
+typedef struct half_space {
+    const double *x; /* on it */
+    double n[3];     /* outward */
+} half_space;
+
+static half_space half_space_of(const se3di_solid *plane)
+{
+    half_space half = {.x = plane->at->x};
+    se3di_solid_axis(plane, 2, half.n);
+    return half;
+}
+
+/* A point of i with the radius about it, if it is below the plane j. */
+static se3di_contact_point *touch_plane(const half_space *plane, const double x[3], double radius,
+                                        uint32_t feature, se3di_manifold *manifold)
+{
+    double d[3], point[3], normal[3];
+    se3di_sub(x, plane->x, d);
+    double height = se3di_dot(d, plane->n);
+    if (!(height < radius)) {
+        return NULL;
+    }
+    se3di_copy(x, point);
+    se3di_add_scaled(-height, plane->n, point);
+    se3di_scale(-1.0, plane->n, normal);
+    se3di_contact_point *p = se3di_manifold_add(manifold, point, normal, radius - height, feature);
+    p->share = 1.0;
+    p->bend_i.r[0] = p->bend_i.r[1] = radius;
+    return p;
+}
+
+void se3di_plane_corners(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
+{
+    const half_space plane = half_space_of(j);
+    const se3di_shape_class *kind = se3di_shape_class_of(i->shape);
+    double local[3], x[3];
+    for (uint32_t k = 0; kind->corner(i->shape, k, local); ++k) {
+        se3di_solid_to_ground(i, local, x);
+        touch_plane(&plane, x, 0.0, k, manifold);
+    }
+}
+
+void se3di_plane_capsule(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
+{
+    const half_space plane = half_space_of(j);
+    double axis[3], x[3];
+    se3di_solid_axis(i, 2, axis);
+    for (uint32_t end = 0; end < 2; ++end) {
+        se3di_copy(i->at->x, x);
+        se3di_add_scaled(end ? i->shape->half_length : -i->shape->half_length, axis, x);
+        touch_plane(&plane, x, i->shape->radius, end, manifold);
+    }
+}
+
+/* The direction in which a rim is lowest. Upright it has none: it then leans to the shape's x axis,
+ * so that its points stay where they are on the body. */
+static double rim_direction(const se3di_solid *i, const double normal[3], const double axis[3],
+                            double out[3])
+{
+    double x[3];
+    se3di_scale(-1.0, normal, out);
+    se3di_add_scaled(-se3di_dot(out, axis), axis, out);
+    double tilt = se3di_norm(out);
+    double bias = tilt < RIM_TILT ? RIM_BIAS * (1.0 - tilt / RIM_TILT) : 0.0;
+    se3di_solid_axis(i, 0, x);
+    se3di_add_scaled(bias, x, out);
+    double size = se3di_norm(out);
+    if (size > 0.0) {
+        se3di_scale(1.0 / size, out, out);
+    } else {
+        se3di_copy(x, out);
+    }
+    return tilt;
+}
+
+double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double rim[8][3])
+{
+    double axis[3], low[3], side[3];
+    se3di_solid_axis(i, 2, axis);
+    double tilt = rim_direction(i, normal, axis, low);
+    se3di_cross(axis, low, side);
+    for (uint32_t k = 0; k < 8; ++k) {
+        double turn = k & 1u ? -i->shape->radius : i->shape->radius;
+        se3di_copy(i->at->x, rim[k]);
+        se3di_add_scaled(k & 4u ? i->shape->half_length : -i->shape->half_length, axis, rim[k]);
+        se3di_add_scaled(turn, k & 2u ? side : low, rim[k]);
+    }
+    return tilt;
+}
+
+void se3di_plane_cylinder(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
+{
+    const half_space plane = half_space_of(j);
+    double rim[8][3], axis[3], side[3];
+    double tilt = se3di_cylinder_rims(i, plane.n, rim);
+    se3di_solid_axis(i, 2, axis);
+    se3di_cross(plane.n, axis, side);
+    for (uint32_t k = 0; k < 8; ++k) {
+        se3di_contact_point *p = touch_plane(&plane, rim[k], 0.0, k, manifold);
+        if (p && k % 4 == 0 && tilt > RIM_TILT) {
+            se3di_scale(1.0 / se3di_norm(side), side, side);
+            se3di_bend_set(&p->bend_i, side, i->shape->radius / tilt, 0.0);
+        }
+    }
+}
+
+void se3di_plane_convex(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
+{
+    const half_space plane = half_space_of(j);
+    double down[3], lowest[3];
+    se3di_scale(-1.0, plane.n, down);
+    se3di_core_support(i, down, lowest);
+    touch_plane(&plane, lowest, se3di_core_radius(i->shape), 0, manifold);
+}

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What hulls and meshes share: vertices and triangles. */
+#ifndef SE3DI_CONTACT_TRIANGLES_H
+#define SE3DI_CONTACT_TRIANGLES_H
+
+#include "contact/shape/shape.h"
+
+/* The point of a triangle nearest to p; its barycentric coordinates to `weights` (zero on the far
+ * side of an edge or vertex) or NULL. Returns the squared distance. */
+double se3di_triangle_nearest(const double *const corner[3], const double p[3], double point[3],
+                              double weights[3]);
+static inline void se3di_triangle_corners(const se3di_shape *shape, size_t triangle,
+                                          const double *corner[3])
+{
+    for (size_t k = 0; k < 3; ++k) {
+        corner[k] = shape->vertices + 3 * (size_t)shape->triangles[3 * triangle + k];
+    }
+}
+
+/* The unit normal, counter-clockwise; zero of a triangle without area. */
+void se3di_triangle_normal(const double *const corner[3], double normal[3]);
+
+double se3di_vertices_bound(const se3di_shape *shape);
+double se3di_vertices_size(const se3di_shape *shape);
+void se3di_vertices_support(const se3di_shape *shape, const double d[3], double out[3]);
+/* Check the vertices of a definition and refer to them. @return OK, NULL, INVALID_ARGUMENT */
+se3d_status se3di_vertices_define(const se3d_shape_def *def, se3di_shape *shape,
+                                  se3di_error *error);
+/* `pointer` is not NULL. */
+se3d_status se3di_shape_check_array(const void *pointer, const char *name, se3di_error *error);
+
+#endif
