@@ -32,16 +32,16 @@ static int may_shrink(se3d_status status)
 }
 
 /* The step is tried once. @return OK with *error above 1: it is rejected */
-static se3d_status attempt(se3di_adaptive *step, double h, double t, double *error)
+static se3d_status attempt(se3di_adaptive *step, double h, double *error)
 {
     *error = HUGE_VAL;
     step->fraction = 0.0;
     SE3DI_TRY(step->methods->attempt(step, h, error));
-    return *error <= 1.0 ? step->methods->accept(step, h, t, *error) : SE3D_OK;
+    return *error <= 1.0 ? step->methods->accept(step, h, *error) : SE3D_OK;
 }
 
-/* Shorter and shorter steps, from h, which ends at *t. */
-static se3d_status try_steps(se3di_adaptive *step, double h, double t)
+/* Shorter and shorter steps, from h, which ends at step->t. */
+static se3d_status try_steps(se3di_adaptive *step, double h)
 {
     const se3di_adaptive_class *methods = step->methods;
     se3di_equations *equations = step->integration->equations;
@@ -50,7 +50,7 @@ static se3d_status try_steps(se3di_adaptive *step, double h, double t)
     for (step->tries = 1;; ++step->tries) {
         double error;
         SE3DI_TRY(se3di_equations_try_step(equations, begin));
-        const se3d_status status = attempt(step, h, t, &error);
+        const se3d_status status = attempt(step, h, &error);
         if (status < 0 ? !may_shrink(status) : error <= 1.0) {
             return status;
         }
@@ -63,7 +63,7 @@ static se3d_status try_steps(se3di_adaptive *step, double h, double t)
             return methods->surrender(step, tried, status, error);
         }
         step->at->next = h;
-        t = begin + h;
+        step->t = begin + h;
     }
 }
 
@@ -73,7 +73,8 @@ se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end)
     const double rest = t_end - before.time;
     const double h = step->methods->pace(step, before.next);
     const int is_cut = step->ends && rest > 0.0 && h > rest;
-    const se3d_status status = try_steps(step, is_cut ? rest : h, is_cut ? t_end : before.time + h);
+    step->t = is_cut ? t_end : before.time + h;
+    const se3d_status status = try_steps(step, is_cut ? rest : h);
     if (status < 0) { /* nothing is learnt from attempts that end the run */
         *step->at = before;
         return status;

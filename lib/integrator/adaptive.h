@@ -18,9 +18,9 @@ typedef struct se3di_adaptive_class {
     /* Try a step of h: *error is relative to the tolerance. Above 1, or on failure, nothing is
      * remembered of it. */
     se3d_status (*attempt)(se3di_adaptive *step, double h, double *error);
-    /* Take the step that was tried; it ends at t. The next one and the error go to the history; on
-     * failure it is rejected. */
-    se3d_status (*accept)(se3di_adaptive *step, double h, double t, double error);
+    /* Take the step that was tried; it ends at step->t. The next one and the error go to the
+     * history; on failure it is rejected. */
+    se3d_status (*accept)(se3di_adaptive *step, double h, double error);
     /* The factor for the step after one of h that was rejected, or has failed with `status`. */
     double (*shrink)(se3di_adaptive *step, double h, se3d_status status, double error);
     /* No step is short enough: the last one was h. @return the failure, or OK if a step was taken
@@ -36,6 +36,7 @@ struct se3di_adaptive {
     se3di_adaptive_history *at;
     double
         fraction;  /* of the step that was tried, that a turn of friction asks for; 0: none does */
+    double t;      /* the end of the step that is tried: time + h but for rounding */
     int32_t tries; /* of this step, from 1 */
     int32_t ends;  /* it may not go past the end of the run */
 };

@@ -9,6 +9,7 @@
  * nearly evenly behind the new one, and at the beginning, the step is one of radau, of order 5.
  * docs/theory/bdf.md */
 #include "integrator/bdf.h"
+#include "integrator/adaptive.h"
 #include "integrator/memory.h"
 #include "integrator/radau.h"
 
@@ -31,7 +32,7 @@
 
 size_t se3di_bdf_history_count(const se3di_assembly *assembly)
 {
-    return BDF_HEADER + SE3DI_BDF_POINTS_MAX * se3di_state_count(assembly);
+    return SE3DI_BDF_PAST + SE3DI_BDF_POINTS_MAX * se3di_state_count(assembly);
 }
 
 size_t se3di_bdf_work_count(const se3di_assembly *assembly)
@@ -54,13 +55,13 @@ void se3di_bdf_point(se3di_bdf *m, const se3di_integration *integration, size_t 
     *m = (se3di_bdf){.equations = integration->equations,
                      .assembly = assembly,
                      .count = count,
-                     .header = assembly->model->history,
+                     .past = (se3di_bdf_past *)(void *)assembly->model->history,
                      .base = integration->work + before,
                      .iterations_max = ITERATIONS_CONTROLLED,
                      .tolerance = 0.1 * fmax(integration->settings.tolerance, SE3DI_BDF_REACH)};
     m->accuracy = fmin(1e-13, fmax(1e-15, 1e-6 * m->tolerance));
-    m->times = m->header + BDF_TIMES;
-    m->points = m->header + BDF_HEADER;
+    m->times = m->past->times;
+    m->points = assembly->model->history + SE3DI_BDF_PAST;
     m->predicted = m->base + count;
     m->y = m->predicted + count;
     m->difference = m->y + count;
@@ -77,13 +78,6 @@ static se3di_bdf begin(se3di_integration *integration)
     return m;
 }
 
-se3di_state_scale se3di_bdf_get_scale(const se3di_bdf *m)
-{
-    return (se3di_state_scale){.length = m->header[BDF_LENGTH],
-                               .speed = m->header[BDF_SPEED],
-                               .spin = m->header[BDF_SPIN]};
-}
-
 int se3di_bdf_get_top(const se3di_bdf *m)
 {
     const int top = m->integration->settings.order;
@@ -97,9 +91,9 @@ static double measure(const se3di_bdf *m)
     for (size_t k = 0; k + SE3DI_STATE_WORK < m->count; k += SE3DI_STATE_SIZE) {
         const double *e = m->difference + k;
         const double turn = sqrt(e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6]);
-        const double q = se3di_norm(e) / m->header[BDF_LENGTH] + 2.0 * turn;
+        const double q = se3di_norm(e) / m->past->scale.length + 2.0 * turn;
         const double s =
-            se3di_norm(e + 7) / m->header[BDF_SPEED] + se3di_norm(e + 10) / m->header[BDF_SPIN];
+            se3di_norm(e + 7) / m->past->scale.speed + se3di_norm(e + 10) / m->past->scale.spin;
         r = q <= r ? r : q; /* NaN stays */
         v = s <= v ? v : s;
     }
@@ -128,6 +122,7 @@ static se3d_status leave_tangent(se3di_bdf *m, double *six)
  * amplifies it by the square of the inverse distance: no shorter step would help. */
 static se3d_status measure_tangent(se3di_bdf *m, double *error)
 {
+    const se3di_state_scale *scale = &m->past->scale;
     double largest[2] = {0.0, 0.0};
     for (int level = 0; level < 2; ++level) {
         for (size_t k = 0; k < m->assembly->body_count; ++k) {
@@ -142,9 +137,8 @@ static se3d_status measure_tangent(se3di_bdf *m, double *error)
         }
         SE3DI_TRY(leave_tangent(m, m->work));
         for (size_t k = 0; k < m->assembly->unknown_count; k += 6) {
-            const double part =
-                se3di_norm(m->work + k) / m->header[level ? BDF_SPEED : BDF_LENGTH] +
-                se3di_norm(m->work + k + 3) / (level ? m->header[BDF_SPIN] : 1.0);
+            const double part = se3di_norm(m->work + k) / (level ? scale->speed : scale->length) +
+                                se3di_norm(m->work + k + 3) / (level ? scale->spin : 1.0);
             largest[level] = part <= largest[level] ? largest[level] : part;
         }
     }
@@ -162,11 +156,10 @@ static void forget(const se3di_bdf *m)
  * too much for a controlled step, nothing is remembered. */
 static se3d_status settle(se3di_bdf *m, int is_controlled, double *error)
 {
-    const se3di_state_scale scale = se3di_bdf_get_scale(m);
     const double tolerance = is_controlled ? m->integration->settings.tolerance : HUGE_VAL;
     se3di_memory_end end;
     const se3di_memory_step step = {
-        m->t, m->h, tolerance, m->lambda, &scale, m->integration->newton.memory, m->work};
+        m->t, m->h, tolerance, m->lambda, &m->past->scale, m->integration->newton.memory, m->work};
     SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
     m->fraction = end.fraction;
     if (end.has_changed) { /* what stands still does so */
@@ -190,9 +183,8 @@ static se3d_status settle(se3di_bdf *m, int is_controlled, double *error)
 static se3d_status project_end(se3di_bdf *m)
 {
     const size_t bodies = m->count - SE3DI_STATE_WORK;
-    const se3di_state_scale scale = se3di_bdf_get_scale(m);
     double work[SE3DI_STATE_WORK];
-    SE3DI_TRY(se3di_state_project(m->equations, m->t, &scale, m->accuracy, 0));
+    SE3DI_TRY(se3di_state_project(m->equations, m->t, &m->past->scale, m->accuracy, 0));
     memcpy(work, m->y + bodies, sizeof work);
     se3di_state_get(m->assembly, m->y);
     memcpy(m->y + bodies, work, sizeof work);
@@ -207,11 +199,11 @@ static void take(se3di_bdf *m, const double *power, int order, int is_bdf)
         m->y[k] = m->base[k] + m->c * power[k - bodies];
     }
     se3di_bdf_push(m, m->y, m->t);
-    m->header[BDF_BEGIN] = m->header[BDF_TIME];
-    m->header[BDF_TIME] = m->t;
-    m->header[BDF_USED] = order;
-    m->header[BDF_SINCE] += 1.0;
-    m->header[BDF_RENEWED] = 0.0;
+    m->past->at.begin = m->past->at.time;
+    m->past->at.time = m->t;
+    m->past->used = order;
+    m->past->since += 1.0;
+    m->past->at.renewed = 0.0;
     se3di_angles_accept(m->assembly->model);
     se3di_contacts_accept(m->assembly->model); /* force elements: settle */
     ++m->equations->counters.steps;
@@ -221,7 +213,6 @@ static void take(se3di_bdf *m, const double *power, int order, int is_bdf)
 static se3d_status accept(se3di_bdf *m, int order, int is_bdf)
 {
     se3di_model *model = m->assembly->model;
-    se3di_state_scale scale = se3di_bdf_get_scale(m);
     double power[SE3DI_STATE_WORK];
     if (m->assembly->row_count > 0) {
         memcpy(model->lambda, m->lambda, m->assembly->row_count * sizeof *m->lambda);
@@ -236,9 +227,7 @@ static se3d_status accept(se3di_bdf *m, int order, int is_bdf)
         return status;
     }
     take(m, power, order, is_bdf);
-    se3di_state_scale_grow(m->assembly, m->difference, &scale);
-    m->header[BDF_SPEED] = scale.speed;
-    m->header[BDF_SPIN] = scale.spin;
+    se3di_state_scale_grow(m->assembly, m->difference, &m->past->scale);
     return SE3D_OK;
 }
 
@@ -270,7 +259,7 @@ static se3d_status measure_errors(se3di_bdf *m, int order, errors *e)
     if (order > 1) {
         SE3DI_TRY(measure_error(m, order - 1, is_tangent, &e->lower));
     }
-    if (order < se3di_bdf_get_top(m) && (int)m->header[BDF_POINTS] > order + 1) {
+    if (order < se3di_bdf_get_top(m) && (int)m->past->count > order + 1) {
         SE3DI_TRY(measure_error(m, order + 1, is_tangent, &e->higher));
     }
     return SE3D_OK;
@@ -294,31 +283,25 @@ static double factor_of(double error, int order)
 
 static void set_order(se3di_bdf *m, int order)
 {
-    if (order != (int)m->header[BDF_ORDER]) {
-        m->header[BDF_SINCE] = 0.0;
+    if (order != (int)m->past->order) {
+        m->past->since = 0.0;
     }
-    m->header[BDF_ORDER] = order;
-}
-
-static double limit_step(const se3di_bdf *m, double h)
-{
-    const double limit = m->integration->settings.step;
-    return limit > 0.0 && h > limit ? limit : h;
+    m->past->order = order;
 }
 
 /* At the beginning the order rises and the step doubles as long as the errors allow both. */
 static int grow_at_start(se3di_bdf *m, int order, const errors *e)
 {
-    if (m->header[BDF_STARTS] == 0.0) {
+    if (m->past->starts == 0.0) {
         return 0;
     }
     const int can_rise = order < se3di_bdf_get_top(m);
     if (!can_rise || e->lower < e->here || !(factor_of(e->here, order) >= GROWTH)) {
-        m->header[BDF_STARTS] = 0.0;
+        m->past->starts = 0.0;
         return 0;
     }
     set_order(m, order + 1);
-    m->header[BDF_STEP] = limit_step(m, GROWTH * m->h);
+    m->past->at.next = se3di_adaptive_limit(m->integration, GROWTH * m->h);
     return 1;
 }
 
@@ -334,8 +317,7 @@ static void adapt(se3di_bdf *m, int order, const errors *e)
         best = factor_of(e->lower, order - 1);
         chosen = order - 1;
     }
-    if (m->header[BDF_SINCE] > order && isfinite(e->higher) &&
-        factor_of(e->higher, order + 1) > best) {
+    if (m->past->since > order && isfinite(e->higher) && factor_of(e->higher, order + 1) > best) {
         best = factor_of(e->higher, order + 1);
         chosen = order + 1;
     }
@@ -346,90 +328,93 @@ static void adapt(se3di_bdf *m, int order, const errors *e)
     } else if (best < 1.0) {
         factor = fmax(0.5, fmin(0.9, best));
     }
-    m->header[BDF_STEP] = limit_step(m, factor * m->h);
+    m->past->at.next = se3di_adaptive_limit(m->integration, factor * m->h);
 }
 
-/* A step that was rejected `times` times: at a kink of the motion the states behind it say nothing
- * of what is ahead, and the order falls. The history stays as it is: a run that is interrupted here
- * begins the step anew. */
-static void shorten(se3di_bdf *m, int *order, double error, int times)
+/* ---- in the loop of all methods ---- */
+
+typedef struct controlled_step {
+    se3di_adaptive step; /* first, so that it is found from the loop's */
+    se3di_bdf m;
+    errors e;
+    int order;
+} controlled_step;
+
+static controlled_step *get_step(se3di_adaptive *step)
 {
-    if (times == 1 && isfinite(error)) {
-        m->h *= fmax(0.25, fmin(0.9, 0.9 * factor_of(error, *order)));
-    } else {
-        m->h *= 0.25;
+    return (controlled_step *)(void *)step;
+}
+
+/* No step over a contact that begins, nor of more than an angle's counter can follow. */
+static double pace(se3di_adaptive *step, double h)
+{
+    const se3di_model *model = get_step(step)->m.assembly->model;
+    return se3di_contacts_pace(model, SE3DI_PACE_ADAPTIVE, se3di_state_limit_turn(model, 0.0, h));
+}
+
+static se3d_status try_step(se3di_adaptive *step, double h, double *error)
+{
+    controlled_step *s = get_step(step);
+    s->m.h = h;
+    s->m.fraction = 0.0;
+    SE3DI_TRY(attempt(&s->m, s->order, &s->e));
+    if (s->e.here <= 1.0) {
+        SE3DI_TRY(settle(&s->m, 1, &s->e.here));
     }
-    *order = times > 2 ? 1 : *order;
+    *error = s->e.here;
+    step->fraction = s->m.fraction;
+    return SE3D_OK;
 }
 
-static se3d_status fail_small(const se3di_bdf *m, se3d_status cause)
+static se3d_status take_step(se3di_adaptive *step, double h, double error)
 {
-    if (cause >= 0) {
-        cause = se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
-                                "t = %g s: the step fell to %.3g s: the tolerance %g cannot "
-                                "be met here; the motion is not smooth",
-                                m->t, m->h, m->integration->settings.tolerance);
-    }
-    se3di_contacts_blame(m->assembly->model, m->equations->error);
-    return cause;
+    controlled_step *s = get_step(step);
+    se3di_bdf *m = &s->m;
+    (void)h;
+    (void)error;
+    SE3DI_TRY(accept(m, s->order, 1));
+    m->past->starts = step->tries > 1 ? 0.0 : m->past->starts;
+    set_order(m, s->order);
+    adapt(m, s->order, &s->e);
+    step->at->time = m->times[0] = step->t;
+    return SE3D_OK;
 }
 
-/* No step over a contact that begins, nor of more than an angle's counter can follow; and after a
- * change of what acts, which may soon change again, none over the end of the run: *longer is then
- * what it would have been, else 0. */
-static double pace(se3di_bdf *m, double t_end, double *longer)
+/* At a kink of the motion the states behind it say nothing of what is ahead, and the order falls.
+ * The history stays as it is: a run that is interrupted here begins the step anew. */
+static double shrink(se3di_adaptive *step, double h, se3d_status status, double error)
 {
-    const double rest = t_end - m->header[BDF_TIME];
-    se3di_state_set(m->assembly, m->points);
-    se3di_bdf_eval_rate(m, m->header[BDF_TIME], m->difference);
-    se3di_state_set_rates(m->assembly, m->difference);
-    double h = se3di_state_limit_turn(m->assembly->model, 0.0, m->header[BDF_STEP]);
-    h = se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
-    *longer = m->header[BDF_RENEWED] > 0.0 && rest > 0.0 && h > rest ? h : 0.0;
-    return *longer > 0.0 ? rest : h;
+    controlled_step *s = get_step(step);
+    const int says = step->tries == 1 && status >= 0 && isfinite(error);
+    const double factor = says ? fmax(0.25, fmin(0.9, 0.9 * factor_of(error, s->order))) : 0.25;
+    (void)h;
+    s->order = step->tries > 2 ? 1 : s->order;
+    return factor;
 }
 
-/* One accepted step with error control. */
-static se3d_status advance(se3di_bdf *m, double t_end)
+static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status, double error)
 {
-    double longer;
-    int order = (int)m->header[BDF_ORDER];
-    se3di_forces_show(m->assembly->model, 0);
-    m->h = pace(m, t_end, &longer);
-    for (int times = 1;; ++times, longer = 0.0) {
-        errors e;
-        m->fraction = 0.0;
-        SE3DI_TRY(se3di_equations_try_step(m->equations, m->header[BDF_TIME]));
-        se3d_status status = attempt(m, order, &e);
-        if (status >= 0 && e.here <= 1.0) {
-            status = settle(m, 1, &e.here);
-        }
-        if (status >= 0 && e.here <= 1.0) {
-            status = accept(m, order, 1);
-            if (status >= 0) {
-                m->header[BDF_STARTS] = times > 1 ? 0.0 : m->header[BDF_STARTS];
-                set_order(m, order);
-                adapt(m, order, &e);
-                if (longer > 0.0) {
-                    m->header[BDF_TIME] = m->times[0] = t_end;
-                    m->header[BDF_STEP] = fmax(longer, m->header[BDF_STEP]);
-                }
-                return SE3D_OK;
-            }
-        }
-        if (status == SE3D_ERR_INTERRUPTED || status == SE3D_ERR_NO_MEMORY) {
-            return status;
-        }
-        ++m->equations->counters.rejected;
-        if (status >= 0 && m->fraction > 0.0) {
-            m->h *= m->fraction;
-        } else {
-            shorten(m, &order, status < 0 ? HUGE_VAL : e.here, times);
-        }
-        if (!(m->h > 1e-12 * fmax(1e-3, fabs(m->t)))) {
-            return fail_small(m, status);
-        }
-    }
+    (void)error;
+    return se3di_adaptive_blame(step->integration, get_step(step)->m.t, h, status);
+}
+
+/* One accepted step with error control; after a change of what acts, which may soon change again,
+ * none over the end of the run. */
+static se3d_status advance(se3di_integration *integration, double t_end)
+{
+    static const se3di_adaptive_class methods = {pace,   try_step,  take_step,
+                                                 shrink, surrender, 1e-12};
+    controlled_step s = {.m = begin(integration)};
+    s.order = (int)s.m.past->order;
+    s.step = (se3di_adaptive){.methods = &methods,
+                              .integration = integration,
+                              .at = &s.m.past->at,
+                              .ends = s.m.past->at.renewed > 0.0};
+    se3di_forces_show(s.m.assembly->model, 0);
+    se3di_state_set(s.m.assembly, s.m.points);
+    se3di_bdf_eval_rate(&s.m, s.m.past->at.time, s.m.difference);
+    se3di_state_set_rates(s.m.assembly, s.m.difference);
+    return se3di_adaptive_advance(&s.step, t_end);
 }
 
 /* ---- begin, steps and runs ---- */
@@ -439,8 +424,8 @@ static se3d_status adopt(se3di_bdf *m)
 {
     se3di_model *model = m->assembly->model;
     se3di_state_scale scale = {.length = se3di_state_length(model),
-                               .speed = m->header[BDF_SPEED],
-                               .spin = m->header[BDF_SPIN]};
+                               .speed = m->past->scale.speed,
+                               .spin = m->past->scale.spin};
     se3di_forces_stay(model);
     se3di_bdf_drop_from(m, model->time);
     se3di_state_get(m->assembly, m->y);
@@ -449,10 +434,8 @@ static se3d_status adopt(se3di_bdf *m)
     SE3DI_TRY(se3di_state_derivative(m->assembly, model->time, m->acceleration, model->lambda,
                                      m->difference));
     se3di_state_scale_grow(m->assembly, m->difference, &scale);
-    m->header[BDF_TIME] = m->header[BDF_BEGIN] = model->time;
-    m->header[BDF_LENGTH] = scale.length;
-    m->header[BDF_SPEED] = scale.speed;
-    m->header[BDF_SPIN] = scale.spin;
+    m->past->at.time = m->past->at.begin = model->time;
+    m->past->scale = scale;
     return SE3D_OK;
 }
 
@@ -460,16 +443,16 @@ static se3d_status adopt(se3di_bdf *m)
  * accelerations make of the state: order 2 is there at once. */
 static void add_past(se3di_bdf *m, double h)
 {
-    const double t = m->header[BDF_TIME];
+    const double t = m->past->at.time;
     memcpy(m->y, m->points, m->count * sizeof *m->y);
-    m->header[BDF_POINTS] = 0.0;
+    m->past->count = 0.0;
     for (int j = 2; j > 0; --j) {
         se3di_bdf_extend(m, -j * h, m->predicted);
         se3di_bdf_push(m, m->predicted, t - j * h);
     }
     se3di_bdf_push(m, m->y, t);
-    m->header[BDF_USED] = se3di_bdf_get_top(m) > 1 ? 2.0 : 1.0;
-    set_order(m, (int)m->header[BDF_USED]);
+    m->past->used = se3di_bdf_get_top(m) > 1 ? 2.0 : 1.0;
+    set_order(m, (int)m->past->used);
 }
 
 static se3d_status start(se3di_integration *integration, double h)
@@ -478,11 +461,11 @@ static se3d_status start(se3di_integration *integration, double h)
     const double limit = integration->settings.step;
     const double first = fmin(1e-3, 0.1 * sqrt(m.tolerance));
     (void)h;
-    memset(m.header, 0, se3di_bdf_history_count(m.assembly) * sizeof *m.header);
+    memset(m.assembly->model->history, 0, se3di_bdf_history_count(m.assembly) * sizeof(double));
     SE3DI_TRY(adopt(&m));
-    m.header[BDF_STEP] = limit > 0.0 ? fmin(limit, first) : first;
-    m.header[BDF_STARTS] = 1.0;
-    add_past(&m, m.header[BDF_STEP]);
+    m.past->at.next = limit > 0.0 ? fmin(limit, first) : first;
+    m.past->starts = 1.0;
+    add_past(&m, m.past->at.next);
     return SE3D_OK;
 }
 
@@ -499,8 +482,8 @@ static se3d_status renew(se3di_integration *integration)
     }
     se3di_bdf_eval_rate(&m, t, m.base);
     SE3DI_TRY(adopt(&m));
-    if (m.header[BDF_POINTS] < 3.0) {
-        add_past(&m, m.header[BDF_STEP]);
+    if (m.past->count < 3.0) {
+        add_past(&m, m.past->at.next);
     } else {
         for (size_t k = 0; k < m.count; ++k) {
             m.difference[k] -= m.base[k];
@@ -508,32 +491,30 @@ static se3d_status renew(se3di_integration *integration)
         se3di_bdf_bend(&m, m.difference, work);
     }
     const double least = fmin(2.0, se3di_bdf_get_top(&m));
-    set_order(&m, (int)fmin(fmax(least, m.header[BDF_ORDER]), m.header[BDF_POINTS] - 1.0));
-    m.header[BDF_RENEWED] = 1.0;
+    set_order(&m, (int)fmin(fmax(least, m.past->order), m.past->count - 1.0));
+    m.past->at.renewed = 1.0;
     return SE3D_OK;
 }
 
 static se3d_status publish(se3di_bdf *m, double t, int project)
 {
-    const se3di_state_scale scale = se3di_bdf_get_scale(m);
-    const int at_begin = !(t > m->header[BDF_BEGIN]) && m->header[BDF_POINTS] > 1.0;
-    se3di_forces_show(m->assembly->model, t < m->header[BDF_TIME]);
-    if (t < m->header[BDF_TIME] && at_begin) { /* the end of the step before, to the bit */
+    const int at_begin = !(t > m->past->at.begin) && m->past->count > 1.0;
+    se3di_forces_show(m->assembly->model, t < m->past->at.time);
+    if (t < m->past->at.time && at_begin) { /* the end of the step before, to the bit */
         memcpy(m->y, m->points + m->count, m->count * sizeof *m->y);
-    } else if (t < m->header[BDF_TIME]) {
+    } else if (t < m->past->at.time) {
         se3di_bdf_eval(m, t, m->y);
     } else {
         memcpy(m->y, m->points, m->count * sizeof *m->y);
     }
-    return se3di_state_publish(m->equations, m->y, t, &scale, project);
+    return se3di_state_publish(m->equations, m->y, t, &m->past->scale, project);
 }
 
 /* y_1, accelerations and multipliers by a step of radau. */
 static se3d_status solve_by_radau(se3di_bdf *m)
 {
-    const se3di_state_scale scale = se3di_bdf_get_scale(m);
-    const se3di_radau_begin_state from = {m->points, m->header[BDF_TIME], &scale};
-    m->t = m->header[BDF_TIME] + m->h;
+    const se3di_radau_begin_state from = {m->points, m->past->at.time, &m->past->scale};
+    m->t = m->past->at.time + m->h;
     SE3DI_TRY(se3di_radau_make_step(m->integration, &from, m->h, m->y, m->acceleration));
     if (m->assembly->row_count > 0) {
         memcpy(m->lambda, m->assembly->model->lambda, m->assembly->row_count * sizeof *m->lambda);
@@ -547,10 +528,10 @@ static se3d_status step(se3di_integration *integration, double h)
     se3di_bdf m = begin(integration);
     const double t0 = m.assembly->model->time;
     double error = 0.0;
-    if (m.header[BDF_TIME] != t0) {
+    if (m.past->at.time != t0) {
         SE3DI_TRY(adopt(&m));
-    } else if (m.header[BDF_STARTS] > 0.0 && m.header[BDF_BEGIN] == t0) {
-        m.header[BDF_POINTS] = 1.0; /* no step was made yet: without the state before the start */
+    } else if (m.past->starts > 0.0 && m.past->at.begin == t0) {
+        m.past->count = 1.0; /* no step was made yet: without the state before the start */
     }
     se3di_forces_show(m.assembly->model, 0);
     const int order = se3di_bdf_get_top(&m);
@@ -565,16 +546,10 @@ static se3d_status step(se3di_integration *integration, double h)
     status = status < 0 ? status : settle(&m, 0, &error);
     status = status < 0 ? status : accept(&m, order, is_bdf);
     SE3DI_TRY(status);
-    m.header[BDF_TIME] = m.times[0] = t0 + h;
-    set_order(&m, 1 < order && m.header[BDF_POINTS] > 2.0 ? 2 : 1);
-    m.header[BDF_STEP] = limit_step(&m, h);
-    return publish(&m, m.header[BDF_TIME], 0);
-}
-
-static se3d_status advance_one(se3di_integration *integration, double t_end)
-{
-    se3di_bdf m = begin(integration);
-    return advance(&m, t_end);
+    m.past->at.time = m.times[0] = t0 + h;
+    set_order(&m, 1 < order && m.past->count > 2.0 ? 2 : 1);
+    m.past->at.next = se3di_adaptive_limit(integration, h);
+    return publish(&m, m.past->at.time, 0);
 }
 
 static void interpolate(const se3di_integration *integration, double t, double *y)
@@ -588,11 +563,11 @@ static se3d_status run(se3di_integration *integration, double t_end)
 {
     se3di_bdf m = begin(integration);
     se3d_status status = SE3D_OK;
-    while (m.header[BDF_TIME] < t_end && status >= 0) {
-        status = advance(&m, t_end);
+    while (m.past->at.time < t_end && status >= 0) {
+        status = advance(integration, t_end);
     }
     SE3DI_TRY(status);
-    return publish(&m, t_end, m.header[BDF_TIME] > t_end && t_end > m.header[BDF_BEGIN]);
+    return publish(&m, t_end, m.past->at.time > t_end && t_end > m.past->at.begin);
 }
 
 const se3di_integrator se3di_integrator_bdf = {
@@ -604,7 +579,7 @@ const se3di_integrator se3di_integrator_bdf = {
     .renew = renew,
     .step = step,
     .run = run,
-    .advance = advance_one,
+    .advance = advance,
     .interpolate = interpolate,
     .is_implicit = 1,
     .is_reduced = 1,

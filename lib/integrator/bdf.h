@@ -12,29 +12,27 @@
 #define SE3DI_BDF_POINTS_MAX (SE3DI_BDF_ORDER_MAX + 2)
 
 /* The history: this header and the accepted states, newest first. */
-enum {
-    BDF_TIME = SE3DI_HISTORY_TIME,   /* of the newest state */
-    BDF_BEGIN = SE3DI_HISTORY_BEGIN, /* of the last step */
-    BDF_STEP,                        /* the next one */
-    BDF_ORDER,                       /* of the next one */
-    BDF_USED,                        /* degree of the polynomial over the last step */
-    BDF_SINCE,                       /* steps since the order changed */
-    BDF_STARTS,                      /* 1: no step was rejected and no order found too high yet */
-    BDF_POINTS,                      /* states that there are */
-    BDF_LENGTH,                      /* scales */
-    BDF_SPEED,
-    BDF_SPIN,
-    BDF_RENEWED, /* 1: something else acts since the last step */
-    BDF_TIMES,   /* of the states */
-    BDF_HEADER = BDF_TIMES + SE3DI_BDF_POINTS_MAX
-};
+typedef struct se3di_bdf_past {
+    se3di_adaptive_history at;
+    se3di_state_scale scale;
+    double order;  /* of the next step */
+    double used;   /* degree of the polynomial over the last step */
+    double since;  /* steps since the order changed */
+    double starts; /* 1: no step was rejected and no order found too high yet */
+    double count;  /* states that there are, */
+    double times[SE3DI_BDF_POINTS_MAX];
+} se3di_bdf_past;
+
+#define SE3DI_BDF_PAST (sizeof(se3di_bdf_past) / sizeof(double))
+_Static_assert(sizeof(se3di_bdf_past) == (15 + SE3DI_BDF_POINTS_MAX) * sizeof(double),
+               "it is an array of double in the model");
 
 typedef struct se3di_bdf {
     se3di_integration *integration;
     se3di_equations *equations;
     se3di_assembly *assembly;
-    size_t count;   /* numbers of a state */
-    double *header; /* the history */
+    size_t count; /* numbers of a state */
+    se3di_bdf_past *past;
     double *times, *points;
     double *base;      /* of y_1 = base + c y'_1 */
     double *predicted; /* y_P */
@@ -57,7 +55,6 @@ size_t se3di_bdf_history_count(const se3di_assembly *assembly);
 size_t se3di_bdf_work_count(const se3di_assembly *assembly);
 void se3di_bdf_point(se3di_bdf *m, const se3di_integration *integration, size_t before);
 
-se3di_state_scale se3di_bdf_get_scale(const se3di_bdf *m);
 int se3di_bdf_get_top(const se3di_bdf *m); /* the highest order that may be used */
 
 /* ---- bdf_history.c ---- */

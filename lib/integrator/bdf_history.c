@@ -62,12 +62,12 @@ void se3di_bdf_push(se3di_bdf *m, const double *y, double t)
     memmove(m->times + 1, m->times, keep * sizeof *m->times);
     memcpy(m->points, y, m->count * sizeof *y);
     m->times[0] = t;
-    m->header[BDF_POINTS] = fmin(SE3DI_BDF_POINTS_MAX, m->header[BDF_POINTS] + 1.0);
+    m->past->count = fmin(SE3DI_BDF_POINTS_MAX, m->past->count + 1.0);
 }
 
 void se3di_bdf_drop_from(se3di_bdf *m, double t)
 {
-    int points = (int)m->header[BDF_POINTS];
+    int points = (int)m->past->count;
     int drop = 0;
     while (drop < points && !(m->times[drop] < t)) {
         ++drop;
@@ -76,13 +76,13 @@ void se3di_bdf_drop_from(se3di_bdf *m, double t)
     memmove(m->points, m->points + (size_t)drop * m->count,
             (size_t)points * m->count * sizeof *m->points);
     memmove(m->times, m->times + drop, (size_t)points * sizeof *m->times);
-    m->header[BDF_POINTS] = points;
+    m->past->count = points;
 }
 
 int se3di_bdf_is_even(const se3di_bdf *m, int order, double h)
 {
     static const double largest[SE3DI_BDF_ORDER_MAX + 1] = {0.0, HUGE_VAL, 1.6, 1.3, 1.15, 1.1};
-    if ((int)m->header[BDF_POINTS] <= order) {
+    if ((int)m->past->count <= order) {
         return 0;
     }
     for (int k = 0; k < order; ++k) {
@@ -97,7 +97,7 @@ int se3di_bdf_is_even(const se3di_bdf *m, int order, double h)
 void se3di_bdf_predict(se3di_bdf *m, int order)
 {
     weights w;
-    m->t = m->header[BDF_TIME] + m->h;
+    m->t = m->past->at.time + m->h;
     m->c = m->h / harmonic(order);
     eval_weights(m->times, order + 1, m->t, &w);
     for (size_t k = 0; k < m->count; ++k) {
@@ -134,7 +134,7 @@ void se3di_bdf_get_error(se3di_bdf *m, int order)
 void se3di_bdf_eval(const se3di_bdf *m, double t, double *y)
 {
     weights w;
-    const int count = (int)m->header[BDF_USED] + 1;
+    const int count = (int)m->past->used + 1;
     eval_weights(m->times, count, t, &w);
     for (size_t k = 0; k < m->count; ++k) {
         y[k] = m->points[k] + combine(m, w.value, count, k);
@@ -144,7 +144,7 @@ void se3di_bdf_eval(const se3di_bdf *m, double t, double *y)
 void se3di_bdf_eval_rate(const se3di_bdf *m, double t, double *rate)
 {
     weights w;
-    const int count = (int)fmin(m->header[BDF_USED] + 1.0, m->header[BDF_POINTS]);
+    const int count = (int)fmin(m->past->used + 1.0, m->past->count);
     eval_weights(m->times, count, t, &w);
     for (size_t k = 0; k < m->count; ++k) {
         rate[k] = combine(m, w.rate, count, k);
@@ -170,7 +170,7 @@ void se3di_bdf_extend(const se3di_bdf *m, double s, double *y)
 void se3di_bdf_bend(se3di_bdf *m, const double *jump, const double work[SE3DI_STATE_WORK])
 {
     const size_t first = m->count - SE3DI_STATE_WORK;
-    for (int j = 1; j < (int)m->header[BDF_POINTS]; ++j) {
+    for (int j = 1; j < (int)m->past->count; ++j) {
         const double s = m->times[j] - m->times[0];
         for (size_t k = 0; k + SE3DI_STATE_WORK < m->count; k += SE3DI_STATE_SIZE) {
             double *y = m->points + (size_t)j * m->count + k;

@@ -51,12 +51,11 @@ static void update_state(se3di_bdf *m)
 static se3d_status project_prediction(se3di_bdf *m)
 {
     const se3di_assembly *assembly = m->assembly;
-    const se3di_state_scale scale = se3di_bdf_get_scale(m);
     update_state(m);
     if (assembly->row_count == 0) {
         return SE3D_OK;
     }
-    SE3DI_TRY(se3di_state_project_positions(m->equations, m->t, &scale, m->accuracy));
+    SE3DI_TRY(se3di_state_project_positions(m->equations, m->t, &m->past->scale, m->accuracy));
     for (size_t k = 0; k < assembly->body_count; ++k) {
         const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
         double *base = m->base + k * SE3DI_STATE_SIZE;
@@ -79,8 +78,8 @@ static double measure(const se3di_bdf *m, const double *change)
     double largest = 0.0;
     for (size_t k = 0; k < 6 * (size_t)m->assembly->body_count; k += 6) {
         const double linear = se3di_norm(change + k), angular = se3di_norm(change + k + 3);
-        const double part = linear * (1.0 / m->header[BDF_SPEED] + m->c / m->header[BDF_LENGTH]) +
-                            angular * (1.0 / m->header[BDF_SPIN] + m->c);
+        const double part = linear * (1.0 / m->past->scale.speed + m->c / m->past->scale.length) +
+                            angular * (1.0 / m->past->scale.spin + m->c);
         largest = part <= largest ? largest : part; /* NaN stays */
     }
     return m->c * largest / m->tolerance;

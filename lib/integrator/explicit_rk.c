@@ -504,11 +504,11 @@ static se3d_status try_step(se3di_adaptive *step, double h, double *error)
 }
 
 /* The step h has met the tolerance: what follows for the next ones. */
-static se3d_status take(se3di_adaptive *step, double h, double t, double error)
+static se3d_status take(se3di_adaptive *step, double h, double error)
 {
     rk *m = get_rk(step);
-    const double least = LEAST_STEP * fmax(1e-3, fabs(t));
-    accept(m, t);
+    const double least = LEAST_STEP * fmax(1e-3, fabs(step->t));
+    accept(m, step->t);
     if (step->integration->settings.leaves_stiff) {
         watch_stability(m, h);
     }

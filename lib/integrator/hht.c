@@ -9,55 +9,14 @@
  * docs/theory/newmark.md */
 #include "integrator/newmark.h"
 
-static se3di_newmark parameters(const se3di_integration *integration)
+static se3di_newmark get_coefficients(const se3di_integrator_settings *settings)
 {
-    return (se3di_newmark){.alpha_m = 0.0, .alpha_f = -integration->settings.alpha};
-}
-
-static se3d_status start(se3di_integration *integration, double h)
-{
-    const se3di_newmark m = parameters(integration);
-    return se3di_newmark_start(integration, &m, h);
-}
-
-static se3d_status renew(se3di_integration *integration)
-{
-    const se3di_newmark m = parameters(integration);
-    return se3di_newmark_renew(integration, &m);
-}
-
-static se3d_status step(se3di_integration *integration, double h)
-{
-    const se3di_newmark m = parameters(integration);
-    return se3di_newmark_make_step(integration, &m, h);
-}
-
-static se3d_status run(se3di_integration *integration, double t_end)
-{
-    const se3di_newmark m = parameters(integration);
-    return se3di_newmark_run(integration, &m, t_end);
-}
-
-static se3d_status advance(se3di_integration *integration, double t_end)
-{
-    const se3di_newmark m = parameters(integration);
-    return se3di_newmark_advance(integration, &m, t_end);
+    return (se3di_newmark){.alpha_m = 0.0, .alpha_f = -settings->alpha};
 }
 
 const se3di_integrator se3di_integrator_hht = {
     .name = "hht",
     .tag = SE3D_METHOD_HHT,
-    .history_count = se3di_newmark_history_count,
-    .work_count = se3di_newmark_work_count,
-    .start = start,
-    .renew = renew,
-    .step = step,
-    .run = run,
-    .advance = advance,
-    .interpolate = se3di_newmark_interpolate,
-    .is_implicit = 1,
-    .is_reduced = 1,
-    .orders = 1u << 2,
-    .reach = SE3DI_NEWMARK_REACH,
-    .fixes_step = 1,
+    SE3DI_NEWMARK_METHOD,
+    .newmark = get_coefficients,
 };

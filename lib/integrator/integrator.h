@@ -27,6 +27,7 @@ typedef struct se3di_integrator_settings {
 
 typedef struct se3di_integration se3di_integration;
 struct se3di_rk_tableau;
+struct se3di_newmark;
 
 /* The history of a method with `advance` begins with this. */
 typedef struct se3di_adaptive_history {
@@ -71,7 +72,9 @@ typedef struct se3di_integrator {
      * settings.leaves_stiff `run` then ends where that was seen. */
     int (*is_held)(const se3di_integration *integration);
     const struct se3di_rk_tableau *tableau; /* of Runge-Kutta methods */
-    int32_t is_implicit;                    /* not 0: integration->newton is made */
+    /* Of the Newmark family: its coefficients. */
+    struct se3di_newmark (*newmark)(const se3di_integrator_settings *settings);
+    int32_t is_implicit; /* not 0: integration->newton is made */
     int32_t is_explicit; /* not 0: works with formulations in the fewest unknowns, */
     int32_t is_reduced;  /* and so do these implicit ones */
     uint32_t orders;     /* bit k: settings.order may be k; 0, the default one, always may */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/newmark.h"
+#include "integrator/adaptive.h"
 
 #include "assembly/energy.h"
 #include "assembly/loads.h"
@@ -42,8 +43,9 @@ size_t se3di_newmark_work_count(const se3di_assembly *assembly)
 se3di_newmark_history se3di_newmark_get_history(const se3di_assembly *assembly)
 {
     const size_t count = se3di_state_count(assembly), n = assembly->unknown_count;
-    se3di_newmark_history past = {.header = assembly->model->history};
-    past.y = past.header + SE3DI_NEWMARK_HEADER;
+    double *numbers = assembly->model->history;
+    se3di_newmark_history past = {.header = (se3di_newmark_header *)(void *)numbers};
+    past.y = numbers + SE3DI_NEWMARK_HEADER;
     past.y_begin = past.y + count;
     past.a = past.y_begin + count;
     past.vdot = past.a + n;
@@ -106,20 +108,26 @@ static se3d_status estimate_jerk(se3di_integration *integration, double h, const
     return SE3D_OK;
 }
 
-static double shift_of(const se3di_newmark *method)
+static se3di_newmark_header *header_of(const se3di_integration *integration)
 {
-    return method->alpha_m - method->alpha_f;
+    return se3di_newmark_get_history(&integration->equations->assembly).header;
+}
+
+/* delta */
+static double shift_of(const se3di_integration *integration)
+{
+    const se3di_newmark method = integration->method->newmark(&integration->settings);
+    return method.alpha_m - method.alpha_f;
 }
 
 /* a_n is vdot of the start itself, where that leaves it far enough from a; else it is moved to the
  * place that it has at equal steps of h. */
-static se3d_status place_start(se3di_integration *integration, const se3di_newmark *method,
-                               double h)
+static se3d_status place_start(se3di_integration *integration, double h)
 {
     const se3di_assembly *assembly = &integration->equations->assembly;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
-    const double shift = shift_of(method);
-    past.header[SE3DI_NEWMARK_PLACE] = 0.0;
+    const double shift = shift_of(integration);
+    past.header->place = 0.0;
     if (1.0 + shift >= SPAN_LEAST) {
         copy(past.a, past.vdot, assembly->unknown_count);
         return SE3D_OK;
@@ -128,12 +136,12 @@ static se3d_status place_start(se3di_integration *integration, const se3di_newma
     for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
         past.a[k] = past.vdot[k] + shift * h * past.a[k];
     }
-    past.header[SE3DI_NEWMARK_PLACE] = shift * h;
+    past.header->place = shift * h;
     return SE3D_OK;
 }
 
 /* vdot, lambda and a of the model's state, from which steps go on as from a start. */
-static se3d_status restart(se3di_integration *integration, const se3di_newmark *method, double h)
+static se3d_status restart(se3di_integration *integration, double h)
 {
     se3di_equations *equations = integration->equations;
     se3di_assembly *assembly = &equations->assembly;
@@ -142,11 +150,11 @@ static se3d_status restart(se3di_integration *integration, const se3di_newmark *
     SE3DI_TRY(se3di_acceleration_solve(equations, model->time));
     copy(past.vdot, equations->x, assembly->unknown_count);
     copy(past.lambda, model->lambda, assembly->row_count);
-    SE3DI_TRY(place_start(integration, method, h));
+    SE3DI_TRY(place_start(integration, h));
     se3di_assembly_set_acceleration(assembly, past.vdot);
     copy(model->lambda, past.lambda, assembly->row_count);
-    past.header[SE3DI_NEWMARK_LAST] = 0.0;
-    past.header[SE3DI_NEWMARK_REDUNDANT] = equations->redundant ? 1.0 : 0.0;
+    past.header->last = 0.0;
+    past.header->redundant = equations->redundant ? 1.0 : 0.0;
     return SE3D_OK;
 }
 
@@ -154,7 +162,7 @@ static se3d_status restart(se3di_integration *integration, const se3di_newmark *
  * length and a turn of 1 rad: [0] of translation, [1] of rotation. */
 static void find_scales(const se3di_assembly *assembly, const double *vdot, double scale[2])
 {
-    const double length = assembly->model->history[SE3DI_NEWMARK_LENGTH];
+    const double length = se3di_newmark_get_history(assembly).header->scale.length;
     double a = 0.0, wdot = 0.0;
     scale[0] = scale[1] = 1e-12;
     for (size_t k = 0; k < assembly->body_count; ++k) {
@@ -173,31 +181,30 @@ static void grow_scales(const se3di_assembly *assembly, const se3di_newmark_hist
 {
     double scale[2];
     find_scales(assembly, past->vdot, scale);
-    for (int k = 0; k < 2; ++k) {
-        double *kept = &past->header[SE3DI_NEWMARK_SPEED + k];
-        *kept = fmax(0.95 * *kept, scale[k]);
-    }
+    se3di_state_scale *kept = &past->header->scale;
+    kept->speed = fmax(0.95 * kept->speed, scale[0]);
+    kept->spin = fmax(0.95 * kept->spin, scale[1]);
 }
 
 /* The accepted state is the model's own. */
-static se3d_status adopt(se3di_integration *integration, const se3di_newmark *method, double h)
+static se3d_status adopt(se3di_integration *integration, double h)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
     se3di_model *model = assembly->model;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
-    const double next = past.header[SE3DI_NEWMARK_NEXT];
+    const double next = past.header->at.next;
     se3di_forces_stay(model);
-    SE3DI_TRY(restart(integration, method, h));
-    const double redundant = past.header[SE3DI_NEWMARK_REDUNDANT];
-    const double place = past.header[SE3DI_NEWMARK_PLACE];
-    memset(past.header, 0, SE3DI_NEWMARK_HEADER * sizeof *past.header);
-    past.header[SE3DI_NEWMARK_TIME] = past.header[SE3DI_NEWMARK_BEGIN] = model->time;
-    past.header[SE3DI_NEWMARK_END] = model->time;
-    past.header[SE3DI_NEWMARK_PLACE] = place;
-    past.header[SE3DI_NEWMARK_REDUNDANT] = redundant;
-    past.header[SE3DI_NEWMARK_LENGTH] = se3di_state_length(model);
-    past.header[SE3DI_NEWMARK_NEXT] = next;
-    copy(past.header + SE3DI_NEWMARK_POWER, model->power, SE3DI_STATE_WORK);
+    SE3DI_TRY(restart(integration, h));
+    const double redundant = past.header->redundant;
+    const double place = past.header->place;
+    memset(past.header, 0, sizeof *past.header);
+    past.header->at.time = past.header->at.begin = model->time;
+    past.header->end = model->time;
+    past.header->place = place;
+    past.header->redundant = redundant;
+    past.header->scale.length = se3di_state_length(model);
+    past.header->at.next = next;
+    copy(past.header->power, model->power, SE3DI_STATE_WORK);
     se3di_state_get(assembly, past.y);
     copy(past.y_begin, past.y, se3di_state_count(assembly));
     grow_scales(assembly, &past);
@@ -205,30 +212,27 @@ static se3d_status adopt(se3di_integration *integration, const se3di_newmark *me
 }
 
 /* A first step that is small against all that turns. */
-static double first_step(const se3di_integration *integration, const double *header)
+static double first_step(const se3di_integration *integration, const se3di_newmark_header *header)
 {
-    const double rate =
-        header[SE3DI_NEWMARK_SPIN] + header[SE3DI_NEWMARK_SPEED] / header[SE3DI_NEWMARK_LENGTH];
+    const double rate = header->scale.spin + header->scale.speed / header->scale.length;
     return fmin(1e-3, FIRST_STEP * sqrt(integration->settings.tolerance) / (1.0 + rate));
 }
 
-se3d_status se3di_newmark_start(se3di_integration *integration, const se3di_newmark *method,
-                                double h)
+se3d_status se3di_newmark_start(se3di_integration *integration, double h)
 {
-    double *header = integration->equations->assembly.model->history;
-    header[SE3DI_NEWMARK_NEXT] = 0.0;
-    SE3DI_TRY(adopt(integration, method, h));
-    header[SE3DI_NEWMARK_NEXT] = first_step(integration, header);
+    se3di_newmark_header *header = header_of(integration);
+    header->at.next = 0.0;
+    SE3DI_TRY(adopt(integration, h));
+    header->at.next = first_step(integration, header);
     return SE3D_OK;
 }
 
-se3d_status se3di_newmark_renew(se3di_integration *integration, const se3di_newmark *method)
+se3d_status se3di_newmark_renew(se3di_integration *integration)
 {
-    double *header = integration->equations->assembly.model->history;
-    SE3DI_TRY(adopt(integration, method,
-                    integration->settings.step > 0.0 ? integration->settings.step
-                                                     : header[SE3DI_NEWMARK_NEXT]));
-    header[SE3DI_NEWMARK_RENEWED] = 1.0;
+    se3di_newmark_header *header = header_of(integration);
+    SE3DI_TRY(adopt(integration, integration->settings.step > 0.0 ? integration->settings.step
+                                                                  : header->at.next));
+    header->at.renewed = 1.0;
     return SE3D_OK;
 }
 
@@ -247,20 +251,22 @@ static void load(se3di_assembly *assembly, const se3di_newmark_history *past)
         se3di_frame_update(frame);
     }
     copy(model->work, y, SE3DI_STATE_WORK);
-    copy(model->power, past->header + SE3DI_NEWMARK_POWER, SE3DI_STATE_WORK);
+    copy(model->power, past->header->power, SE3DI_STATE_WORK);
     copy(model->lambda, past->lambda, assembly->row_count);
     se3di_assembly_set_acceleration(assembly, past->vdot);
-    model->time = past->header[SE3DI_NEWMARK_END];
+    model->time = past->header->end;
     se3di_angles_accept(model);
 }
 
 /* alpha_m, beta, gamma of the step: such that a is at t + shift h, where a_n is at t_n + d_n. */
-static void set_coefficients(se3di_newmark_step *step, const se3di_newmark *method, double place)
+static void set_coefficients(se3di_newmark_step *step, double place)
 {
-    const double h = step->h;
-    const double span = h + shift_of(method) * h - place;
-    step->alpha_f = method->alpha_f;
-    step->alpha_m = (shift_of(method) + method->alpha_f) * h / span;
+    const se3di_integration *integration = step->integration;
+    const se3di_newmark method = integration->method->newmark(&integration->settings);
+    const double h = step->h, shift = shift_of(integration);
+    const double span = h + shift * h - place;
+    step->alpha_f = method.alpha_f;
+    step->alpha_m = (shift + method.alpha_f) * h / span;
     step->gamma = (0.5 * h - place) / span;
     step->beta = 0.25 * (step->gamma + 0.5) * (step->gamma + 0.5);
     const double part = (1.0 - step->alpha_f) / (1.0 - step->alpha_m);
@@ -272,7 +278,7 @@ static void set_coefficients(se3di_newmark_step *step, const se3di_newmark *meth
 static void move_history(const se3di_assembly *assembly, const se3di_newmark_history *past,
                          double shift, double h)
 {
-    double *place = &past->header[SE3DI_NEWMARK_PLACE];
+    double *place = &past->header->place;
     if (!(*place < 0.0) || h + shift * h - *place >= SPAN_LEAST * h) {
         return;
     }
@@ -287,7 +293,7 @@ static void move_history(const se3di_assembly *assembly, const se3di_newmark_his
 static void predict(se3di_newmark_step *step)
 {
     const se3di_newmark_history past = se3di_newmark_get_history(step->assembly);
-    const double last = past.header[SE3DI_NEWMARK_LAST];
+    const double last = past.header->last;
     const double ratio = last > 0.0 ? step->h / last : 0.0;
     for (uint32_t k = 0; k < step->assembly->unknown_count; ++k) {
         step->vdot[k] = past.vdot[k] + ratio * (past.vdot[k] - past.vdot_begin[k]);
@@ -295,8 +301,7 @@ static void predict(se3di_newmark_step *step)
     copy(step->lambda, past.lambda, step->assembly->row_count);
 }
 
-static se3di_newmark_step begin_step(se3di_integration *integration, const se3di_newmark *method,
-                                     double h)
+static se3di_newmark_step begin_step(se3di_integration *integration, double h)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
@@ -305,8 +310,8 @@ static se3di_newmark_step begin_step(se3di_integration *integration, const se3di
                                .equations = integration->equations,
                                .assembly = assembly,
                                .h = h,
-                               .t = past.header[SE3DI_NEWMARK_END] + h,
-                               .length = past.header[SE3DI_NEWMARK_LENGTH],
+                               .t = past.header->end + h,
+                               .length = past.header->scale.length,
                                .a_n = past.a,
                                .vdot_n = past.vdot,
                                .v_n = integration->work};
@@ -318,9 +323,9 @@ static se3di_newmark_step begin_step(se3di_integration *integration, const se3di
     step.dz = step.b + n;
     step.lambda = step.dz + n;
     step.c = step.lambda + assembly->row_count;
-    move_history(assembly, &past, shift_of(method), h);
-    set_coefficients(&step, method, past.header[SE3DI_NEWMARK_PLACE]);
-    integration->equations->redundant |= past.header[SE3DI_NEWMARK_REDUNDANT] > 0.0;
+    move_history(assembly, &past, shift_of(integration), h);
+    set_coefficients(&step, past.header->place);
+    integration->equations->redundant |= past.header->redundant > 0.0;
     se3di_assembly_get_velocity(assembly, step.v_n);
     predict(&step);
     return step;
@@ -331,9 +336,9 @@ static se3di_newmark_step begin_step(se3di_integration *integration, const se3di
 static double estimate_error(const se3di_newmark_step *step)
 {
     const se3di_newmark_history past = se3di_newmark_get_history(step->assembly);
-    const double *header = past.header;
-    const double last = header[SE3DI_NEWMARK_LAST], h = step->h;
-    const double place = header[SE3DI_NEWMARK_PLACE] / h;
+    const se3di_newmark_header *header = past.header;
+    const double last = header->last, h = step->h;
+    const double place = header->place / h;
     const double span = (0.5 - place) / step->gamma;
     const double constant = fabs(0.5 * place + step->beta * span - 1.0 / 6.0) + 1.0 / 12.0;
     double worst = 0.0, scale[2];
@@ -345,7 +350,8 @@ static double estimate_error(const se3di_newmark_step *step)
         const double mean = last > 0.0 ? (step->v_n[k] - before) / last : step->vdot_n[k];
         const double jerk = 2.0 * fabs((v - step->v_n[k]) / h - mean) / (h + last);
         const size_t kind = k % 6 / 3;
-        const double size = jerk / fmax(scale[kind], header[SE3DI_NEWMARK_SPEED + kind]);
+        const double size =
+            jerk / fmax(scale[kind], kind ? header->scale.spin : header->scale.speed);
         worst = size <= worst ? worst : size; /* NaN stays */
     }
     return constant * h * h * worst /
@@ -353,7 +359,7 @@ static double estimate_error(const se3di_newmark_step *step)
 }
 
 /* All that may fail is done. */
-static void accept(se3di_newmark_step *step, const se3di_newmark *method)
+static void accept(se3di_newmark_step *step)
 {
     se3di_assembly *assembly = step->assembly;
     se3di_model *model = assembly->model;
@@ -367,31 +373,30 @@ static void accept(se3di_newmark_step *step, const se3di_newmark *method)
     copy(past.lambda, step->lambda, assembly->row_count);
     copy(model->lambda, step->lambda, assembly->row_count);
     se3di_assembly_set_acceleration(assembly, step->vdot);
-    past.header[SE3DI_NEWMARK_BEGIN] = past.header[SE3DI_NEWMARK_END];
-    past.header[SE3DI_NEWMARK_TIME] = past.header[SE3DI_NEWMARK_END] = model->time = step->t;
-    copy(past.header + SE3DI_NEWMARK_POWER + SE3DI_STATE_WORK, past.header + SE3DI_NEWMARK_POWER,
-         SE3DI_STATE_WORK);
-    past.header[SE3DI_NEWMARK_PLACE] = shift_of(method) * step->h;
-    past.header[SE3DI_NEWMARK_LAST] = step->h;
-    past.header[SE3DI_NEWMARK_RENEWED] = 0.0;
-    past.header[SE3DI_NEWMARK_REDUNDANT] = step->equations->redundant ? 1.0 : 0.0;
+    past.header->at.begin = past.header->end;
+    past.header->at.time = past.header->end = model->time = step->t;
+    copy(past.header->power_begin, past.header->power, SE3DI_STATE_WORK);
+    past.header->place = shift_of(step->integration) * step->h;
+    past.header->last = step->h;
+    past.header->at.renewed = 0.0;
+    past.header->redundant = step->equations->redundant ? 1.0 : 0.0;
     se3di_angles_accept(model);
     se3di_loads_accept(model);
     ++step->equations->counters.steps;
 }
 
 /* What follows from the accepted state. */
-static se3d_status conclude(se3di_newmark_step *step, const se3di_newmark *method)
+static se3d_status conclude(se3di_newmark_step *step)
 {
     se3di_assembly *assembly = step->assembly;
     se3di_model *model = assembly->model;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
     se3d_status status = SE3D_OK;
     if (se3di_contacts_changed(model)) { /* accelerations have jumped */
-        status = restart(step->integration, method, step->h);
+        status = restart(step->integration, step->h);
     }
     status = status < 0 ? status : se3di_work_accept(model, step->h);
-    copy(past.header + SE3DI_NEWMARK_POWER, model->power, SE3DI_STATE_WORK);
+    copy(past.header->power, model->power, SE3DI_STATE_WORK);
     se3di_state_get(assembly, past.y);
     grow_scales(assembly, &past);
     return status;
@@ -399,14 +404,13 @@ static se3d_status conclude(se3di_newmark_step *step, const se3di_newmark *metho
 
 /* One step of h to t from the accepted state; on failure that is the model's. With an error, as
  * estimated, above `most` (0: any) it fails with STEP_SIZE. */
-static se3d_status step_to(se3di_integration *integration, const se3di_newmark *method, double h,
-                           double t, double most)
+static se3d_status step_to(se3di_integration *integration, double h, double t, double most)
 {
     se3di_equations *equations = integration->equations;
     se3di_assembly *assembly = &equations->assembly;
     se3di_model *model = assembly->model;
     SE3DI_TRY(se3di_equations_keep(equations));
-    se3di_newmark_step step = begin_step(integration, method, h);
+    se3di_newmark_step step = begin_step(integration, h);
     step.t = t;
     se3di_contacts_begin(model, h, step.velocity / h, 0);
     se3di_equations_save(equations);
@@ -419,8 +423,8 @@ static se3d_status step_to(se3di_integration *integration, const se3di_newmark *
         integration->error = status < 0 && !is_refused ? HUGE_VAL : integration->error;
     }
     if (status >= 0) {
-        accept(&step, method);
-        status = conclude(&step, method);
+        accept(&step);
+        status = conclude(&step);
     }
     if (status < 0) {
         se3di_equations_come_back(equations);
@@ -428,36 +432,33 @@ static se3d_status step_to(se3di_integration *integration, const se3di_newmark *
     return status;
 }
 
-se3d_status se3di_newmark_make_step(se3di_integration *integration, const se3di_newmark *method,
-                                    double h)
+se3d_status se3di_newmark_make_step(se3di_integration *integration, double h)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
-    double *header = past.header;
+    se3di_newmark_header *header = past.header;
     const double t0 = assembly->model->time;
-    if (fabs(header[SE3DI_NEWMARK_TIME] - t0) <=
-        SE3DI_NEWMARK_SAME_TIME * header[SE3DI_NEWMARK_LAST]) {
-        header[SE3DI_NEWMARK_TIME] = header[SE3DI_NEWMARK_END] = t0;
+    if (fabs(header->at.time - t0) <= SE3DI_NEWMARK_SAME_TIME * header->last) {
+        header->at.time = header->end = t0;
         load(assembly, &past);
     } else {
-        SE3DI_TRY(adopt(integration, method, h));
+        SE3DI_TRY(adopt(integration, h));
     }
-    SE3DI_TRY(step_to(integration, method, h, t0 + h, 0.0));
+    SE3DI_TRY(step_to(integration, h, t0 + h, 0.0));
     return se3di_newmark_publish(integration, t0 + h);
 }
 
 /* Steps of the length asked for, at equal distances from where they began. One that does not
  * converge (a singular position) is made in parts, a half or less of what remains of it. */
-static se3d_status advance_equally(se3di_integration *integration, const se3di_newmark *method,
-                                   double longest)
+static se3d_status advance_equally(se3di_integration *integration, double longest)
 {
     se3di_equations *equations = integration->equations;
     const se3di_model *model = equations->assembly.model;
-    double *header = model->history;
-    double *count = &header[SE3DI_NEWMARK_COUNT], h = integration->settings.step;
-    if (fabs(header[SE3DI_NEWMARK_EQUAL] - h) > SE3DI_NEWMARK_SAME_TIME * h) {
-        header[SE3DI_NEWMARK_ORIGIN] = header[SE3DI_NEWMARK_END];
-        header[SE3DI_NEWMARK_EQUAL] = h;
+    se3di_newmark_header *header = header_of(integration);
+    double *count = &header->count, h = integration->settings.step;
+    if (fabs(header->equal - h) > SE3DI_NEWMARK_SAME_TIME * h) {
+        header->origin = header->end;
+        header->equal = h;
         *count = 0.0;
     }
     SE3DI_TRY(se3di_equations_try_step(equations, model->time));
@@ -465,8 +466,7 @@ static se3d_status advance_equally(se3di_integration *integration, const se3di_n
     SE3DI_TRY(se3di_turns_check(equations, h, TURN_MAX));
     for (double part = fmin(floor(*count) + 1.0 - *count, longest / h);; part *= 0.5) {
         const double to = *count + part;
-        const se3d_status status =
-            step_to(integration, method, part * h, header[SE3DI_NEWMARK_ORIGIN] + to * h, 0.0);
+        const se3d_status status = step_to(integration, part * h, header->origin + to * h, 0.0);
         if (status >= 0) {
             *count = to;
         }
@@ -476,14 +476,17 @@ static se3d_status advance_equally(se3di_integration *integration, const se3di_n
     }
 }
 
-/* From the error of a step; a rejected one is at least shortened by a fifth. */
+static double factor_of(double error)
+{
+    return isfinite(error) ? 0.9 / sqrt(fmax(error, 1e-6)) : 0.25;
+}
+
+/* From the error of an accepted step; equal ones where they do. */
 static double next_step(double h, double error)
 {
-    const double factor = isfinite(error) ? 0.9 / sqrt(fmax(error, 1e-6)) : 0.25;
-    if (error <= 1.0) { /* equal steps where they do */
-        return factor > 1.2 ? h * fmin(2.0, factor) : fmin(1.0, factor) * h;
-    }
-    return h * fmin(0.8, fmax(0.1, factor));
+    const double factor = factor_of(error);
+    return error <= 1.0 ? (factor > 1.2 ? h * fmin(2.0, factor) : fmin(1.0, factor) * h)
+                        : h * fmin(0.8, fmax(0.1, factor));
 }
 
 /* No contact is stepped over, and nothing turns too far. */
@@ -499,20 +502,6 @@ static double limit_step(const se3di_integration *integration, double h)
     return se3di_contacts_pace(model, SE3DI_PACE_ADAPTIVE, h);
 }
 
-static se3d_status fail_small(const se3di_integration *integration, double t, se3d_status cause)
-{
-    const se3di_model *model = integration->equations->assembly.model;
-    if (cause == SE3D_ERR_STEP_SIZE && isfinite(integration->error)) {
-        cause =
-            se3di_error_set(integration->equations->error, cause,
-                            "t = %g s: the step fell to %.3g s: the tolerance %g cannot be "
-                            "met here; the motion is not smooth",
-                            t, model->history[SE3DI_NEWMARK_NEXT], integration->settings.tolerance);
-    }
-    se3di_contacts_blame(model, integration->equations->error);
-    return cause;
-}
-
 /* What the error of the next attempt may be, relative to the tolerance: where the one of the last
  * two has fallen with h, not with its square, the acceleration jumps, and no step gets over that
  * with a small error. */
@@ -524,72 +513,101 @@ static double get_most(const double h[2], const double error[2])
     return jumps ? JUMP_ERROR : 1.0;
 }
 
-static se3d_status advance_by_error(se3di_integration *integration, const se3di_newmark *method,
-                                    double longest)
+/* ---- in the loop of all methods ---- */
+
+typedef struct controlled_step {
+    se3di_adaptive step; /* first, so that it is found from the loop's */
+    double longest;
+    double tried[2], errors[2]; /* of the last two attempts */
+    double most;                /* what the error of this one may be */
+} controlled_step;
+
+static controlled_step *get_step(se3di_adaptive *step)
 {
-    se3di_equations *equations = integration->equations;
-    double *header = equations->assembly.model->history;
-    double *next = &header[SE3DI_NEWMARK_NEXT];
-    const double t = header[SE3DI_NEWMARK_END], before = *next;
-    double tried[2] = {0.0, 0.0}, errors[2] = {HUGE_VAL, HUGE_VAL};
-    for (;;) {
-        const double h = limit_step(integration, fmin(*next, longest));
-        const double most = get_most(tried, errors);
-        SE3DI_TRY(se3di_equations_try_step(equations, t));
-        const se3d_status status = step_to(integration, method, h, t + h, most);
-        if (status >= 0) {
-            const double wanted = next_step(h, integration->error);
-            *next = h < *next ? fmin(*next, fmax(2.0 * h, wanted)) : wanted;
-            if (most > 1.0) { /* differences over the jump say nothing of what follows */
-                *next = h;
-                header[SE3DI_NEWMARK_LAST] = 0.0;
-            }
-            return status;
-        }
-        if (status == SE3D_ERR_INTERRUPTED || status == SE3D_ERR_NO_MEMORY) {
-            *next = before;
-            return status;
-        }
-        ++equations->counters.rejected;
-        tried[0] = tried[1];
-        errors[0] = errors[1];
-        tried[1] = h;
-        errors[1] = integration->error;
-        *next = next_step(h, integration->error);
-        if (!(*next > 1e-12 * fmax(1e-3, fabs(t)))) {
-            const se3d_status failed = fail_small(integration, t, status);
-            *next = before; /* nothing is learnt from attempts that end the run */
-            return failed;
-        }
-    }
+    return (controlled_step *)(void *)step;
 }
 
-se3d_status se3di_newmark_advance(se3di_integration *integration, const se3di_newmark *method,
-                                  double t_end)
+static double pace(se3di_adaptive *step, double h)
+{
+    return limit_step(step->integration, fmin(h, get_step(step)->longest));
+}
+
+static se3d_status try_step(se3di_adaptive *step, double h, double *error)
+{
+    controlled_step *s = get_step(step);
+    s->most = get_most(s->tried, s->errors);
+    const double t = header_of(step->integration)->end + h;
+    const se3d_status status = step_to(step->integration, h, t, s->most);
+    *error = status < 0 ? HUGE_VAL : 0.0;
+    s->tried[0] = s->tried[1];
+    s->errors[0] = s->errors[1];
+    s->tried[1] = h;
+    s->errors[1] = step->integration->error;
+    return status;
+}
+
+/* It is taken already. */
+static se3d_status take(se3di_adaptive *step, double h, double error)
+{
+    double *next = &step->at->next;
+    const double wanted = next_step(h, step->integration->error);
+    (void)error;
+    *next = h < *next ? fmin(*next, fmax(2.0 * h, wanted)) : wanted;
+    if (get_step(step)->most > 1.0) { /* differences over the jump say nothing of what follows */
+        *next = h;
+        header_of(step->integration)->last = 0.0;
+    }
+    return SE3D_OK;
+}
+
+/* By a fifth at least. */
+static double shrink(se3di_adaptive *step, double h, se3d_status status, double error)
+{
+    (void)h;
+    (void)status;
+    (void)error;
+    return fmin(0.8, fmax(0.1, factor_of(step->integration->error)));
+}
+
+static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status, double error)
+{
+    const int is_error = status == SE3D_ERR_STEP_SIZE && isfinite(step->integration->error);
+    (void)error;
+    return se3di_adaptive_blame(step->integration, step->at->time, h, is_error ? SE3D_OK : status);
+}
+
+static se3d_status advance_by_error(se3di_integration *integration, double longest)
+{
+    static const se3di_adaptive_class methods = {pace, try_step, take, shrink, surrender, 1e-12};
+    controlled_step s = {.longest = longest, .errors = {HUGE_VAL, HUGE_VAL}};
+    s.step = (se3di_adaptive){
+        .methods = &methods, .integration = integration, .at = &header_of(integration)->at};
+    return se3di_adaptive_advance(&s.step, HUGE_VAL);
+}
+
+se3d_status se3di_newmark_advance(se3di_integration *integration, double t_end)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
-    double *header = past.header;
-    const double last = header[SE3DI_NEWMARK_END] - header[SE3DI_NEWMARK_BEGIN];
-    if (t_end - header[SE3DI_NEWMARK_END] <= SE3DI_NEWMARK_SAME_TIME * last) {
-        header[SE3DI_NEWMARK_TIME] = t_end;
+    se3di_newmark_header *header = past.header;
+    const double last = header->end - header->at.begin;
+    if (t_end - header->end <= SE3DI_NEWMARK_SAME_TIME * last) {
+        header->at.time = t_end;
         return SE3D_OK;
     }
     load(assembly, &past);
     /* what acts has changed, and may soon do so again: not past the end of the run */
-    const double longest =
-        header[SE3DI_NEWMARK_RENEWED] > 0.0 ? t_end - header[SE3DI_NEWMARK_END] : HUGE_VAL;
-    return integration->settings.step > 0.0 ? advance_equally(integration, method, longest)
-                                            : advance_by_error(integration, method, longest);
+    const double longest = header->at.renewed > 0.0 ? t_end - header->end : HUGE_VAL;
+    return integration->settings.step > 0.0 ? advance_equally(integration, longest)
+                                            : advance_by_error(integration, longest);
 }
 
-se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmark *method,
-                              double t_end)
+se3d_status se3di_newmark_run(se3di_integration *integration, double t_end)
 {
-    const double *header = integration->equations->assembly.model->history;
+    const se3di_newmark_header *header = header_of(integration);
     se3d_status status = SE3D_OK;
-    while (header[SE3DI_NEWMARK_TIME] < t_end && status >= 0) {
-        status = se3di_newmark_advance(integration, method, t_end);
+    while (header->at.time < t_end && status >= 0) {
+        status = se3di_newmark_advance(integration, t_end);
     }
     return status < 0 ? status : se3di_newmark_publish(integration, t_end);
 }

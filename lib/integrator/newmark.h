@@ -19,32 +19,33 @@
 /* Below it rounding of velocities, over the cube of the step, is what differences show. */
 #define SE3DI_NEWMARK_REACH 1e-11
 
+/* Of equal steps. */
 typedef struct se3di_newmark {
-    double alpha_m, alpha_f; /* of equal steps */
+    double alpha_m, alpha_f;
 } se3di_newmark;
 
-/* The history: this header, then the arrays of se3di_newmark_history. */
-enum {
-    SE3DI_NEWMARK_TIME = SE3DI_HISTORY_TIME, /* of the accepted state, as runs were asked for it */
-    SE3DI_NEWMARK_BEGIN = SE3DI_HISTORY_BEGIN, /* of the last step */
-    SE3DI_NEWMARK_END,                         /* of the last step, as it was computed */
-    SE3DI_NEWMARK_ORIGIN,                      /* where equal steps began */
-    SE3DI_NEWMARK_COUNT,                       /* of equal steps since then, */
-    SE3DI_NEWMARK_EQUAL,                       /* so long [s] */
-    SE3DI_NEWMARK_PLACE,                       /* of a, relative to the accepted state [s] */
-    SE3DI_NEWMARK_LAST,                        /* the last step [s], 0: none */
-    SE3DI_NEWMARK_NEXT,                        /* of step control [s], 0: none yet */
-    SE3DI_NEWMARK_REDUNDANT,                   /* rows are dependent */
-    SE3DI_NEWMARK_RENEWED,                     /* something else acts since the last step */
-    SE3DI_NEWMARK_LENGTH,                      /* scales */
-    SE3DI_NEWMARK_SPEED,
-    SE3DI_NEWMARK_SPIN,  /* follows SPEED */
-    SE3DI_NEWMARK_POWER, /* of the accepted state, three; then at the beginning of the last step */
-    SE3DI_NEWMARK_HEADER = SE3DI_NEWMARK_POWER + 2 * SE3DI_STATE_WORK
-};
+/* The history: this header, then the arrays of se3di_newmark_history. Of `at`, the time is that of
+ * the accepted state as runs were asked for it. */
+typedef struct se3di_newmark_header {
+    se3di_adaptive_history at;
+    se3di_state_scale scale;
+    double end;                           /* of the last step, as it was computed */
+    double origin;                        /* where equal steps began */
+    double count;                         /* of equal steps since then, */
+    double equal;                         /* so long [s] */
+    double place;                         /* of a, relative to the accepted state [s] */
+    double last;                          /* the last step [s], 0: none */
+    double redundant;                     /* rows are dependent */
+    double power[SE3DI_STATE_WORK];       /* of the accepted state */
+    double power_begin[SE3DI_STATE_WORK]; /* at the beginning of the last step */
+} se3di_newmark_header;
+
+#define SE3DI_NEWMARK_HEADER (sizeof(se3di_newmark_header) / sizeof(double))
+_Static_assert(sizeof(se3di_newmark_header) == (17 + 2 * SE3DI_STATE_WORK) * sizeof(double),
+               "it is an array of double in the model");
 
 typedef struct se3di_newmark_history {
-    double *header;
+    se3di_newmark_header *header;
     double *y, *y_begin;           /* the accepted state, that at the beginning of the last step */
     double *a;                     /* [unknowns] */
     double *vdot, *vdot_begin;     /* [unknowns] */
@@ -78,23 +79,28 @@ se3di_newmark_history se3di_newmark_get_history(const se3di_assembly *assembly);
 /* From a first guess of vdot and lambda. On success the frames are those of the end of the step. */
 se3d_status se3di_newmark_solve(se3di_newmark_step *step);
 
-/* The functions of a method's table. */
-se3d_status se3di_newmark_start(se3di_integration *integration, const se3di_newmark *method,
-                                double h);
-se3d_status se3di_newmark_renew(se3di_integration *integration, const se3di_newmark *method);
-/* From the model's state, by h. */
-se3d_status se3di_newmark_make_step(se3di_integration *integration, const se3di_newmark *method,
-                                    double h);
 #define SE3DI_NEWMARK_SAME_TIME 1e-9 /* of a step: two times are one */
+
+/* Functions of the table of methods. */
+se3d_status se3di_newmark_start(se3di_integration *integration, double h);
+se3d_status se3di_newmark_renew(se3di_integration *integration);
+/* From the model's state, by h. */
+se3d_status se3di_newmark_make_step(se3di_integration *integration, double h);
 /* The next step of the run, of the length asked for or with control of its error; none if the
  * last one has ended at t_end but for rounding. */
-se3d_status se3di_newmark_advance(se3di_integration *integration, const se3di_newmark *method,
-                                  double t_end);
+se3d_status se3di_newmark_advance(se3di_integration *integration, double t_end);
 /* Steps past t_end, where the model gets the state. */
-se3d_status se3di_newmark_run(se3di_integration *integration, const se3di_newmark *method,
-                              double t_end);
+se3d_status se3di_newmark_run(se3di_integration *integration, double t_end);
 void se3di_newmark_interpolate(const se3di_integration *integration, double t, double *y);
 /* Give the model the state at t, within the last step or at its end. */
 se3d_status se3di_newmark_publish(se3di_integration *integration, double t);
+
+/* What the entries of the family in the table of methods have, beside their own `newmark`. */
+#define SE3DI_NEWMARK_METHOD                                                                       \
+    .history_count = se3di_newmark_history_count, .work_count = se3di_newmark_work_count,          \
+    .start = se3di_newmark_start, .renew = se3di_newmark_renew, .step = se3di_newmark_make_step,   \
+    .run = se3di_newmark_run, .advance = se3di_newmark_advance,                                    \
+    .interpolate = se3di_newmark_interpolate, .is_implicit = 1, .is_reduced = 1,                   \
+    .orders = 1u << 2, .reach = SE3DI_NEWMARK_REACH, .fixes_step = 1
 
 #endif

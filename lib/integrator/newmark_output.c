@@ -59,7 +59,7 @@ void se3di_newmark_interpolate(const se3di_integration *integration, double t, d
 {
     const se3di_assembly *assembly = &integration->equations->assembly;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
-    const double begin = past.header[SE3DI_NEWMARK_BEGIN], end = past.header[SE3DI_NEWMARK_END];
+    const double begin = past.header->at.begin, end = past.header->end;
     const size_t count = se3di_state_count(assembly);
     if (!(t > begin && t < end)) { /* the ends to the bit */
         copy(y, t < end ? past.y_begin : past.y, count);
@@ -70,10 +70,8 @@ void se3di_newmark_interpolate(const se3di_integration *integration, double t, d
     for (; at + SE3DI_STATE_WORK < count; at += SE3DI_STATE_SIZE) {
         interpolate_body(past.y_begin + at, past.y + at, end - begin, s, y + at);
     }
-    const double *power =
-        past.header + SE3DI_NEWMARK_POWER; /* along a parabola to s, as the rule */
-    for (int k = 0; k < SE3DI_STATE_WORK; ++k, ++at) {
-        const double p1 = power[k], p0 = power[SE3DI_STATE_WORK + k];
+    for (int k = 0; k < SE3DI_STATE_WORK; ++k, ++at) { /* along a parabola to s, as the rule */
+        const double p1 = past.header->power[k], p0 = past.header->power_begin[k];
         y[at] = past.y_begin[at] + (end - begin) * s * (p0 + 0.5 * s * (p1 - p0));
     }
 }
@@ -142,21 +140,17 @@ se3d_status se3di_newmark_publish(se3di_integration *integration, double t)
 {
     se3di_equations *equations = integration->equations;
     se3di_assembly *assembly = &equations->assembly;
-    const double *header = assembly->model->history;
-    const double end = header[SE3DI_NEWMARK_END], last = end - header[SE3DI_NEWMARK_BEGIN];
-    const se3di_state_scale scale = {.length = header[SE3DI_NEWMARK_LENGTH],
-                                     .speed = header[SE3DI_NEWMARK_SPEED],
-                                     .spin = header[SE3DI_NEWMARK_SPIN]};
+    const se3di_newmark_header *header = se3di_newmark_get_history(assembly).header;
+    const double end = header->end, last = end - header->at.begin;
     double *y =
         integration->work + 7 * (size_t)assembly->unknown_count + 2 * (size_t)assembly->row_count;
     const int is_end = !(end - t > SE3DI_NEWMARK_SAME_TIME * last);
     se3di_newmark_interpolate(integration, is_end ? end : t, y);
     se3di_forces_show(assembly->model, !is_end);
     se3di_state_set(assembly, y);
-    if (!is_end && t > header[SE3DI_NEWMARK_BEGIN]) { /* not the end of the step before */
-        SE3DI_TRY(se3di_state_project(equations, t, &scale, 1e-15, 0));
+    if (!is_end && t > header->at.begin) { /* not the end of the step before */
+        SE3DI_TRY(se3di_state_project(equations, t, &header->scale, 1e-15, 0));
     }
-    SE3DI_TRY(
-        set_accelerations(integration, t, is_end ? 1.0 : (t - header[SE3DI_NEWMARK_BEGIN]) / last));
+    SE3DI_TRY(set_accelerations(integration, t, is_end ? 1.0 : (t - header->at.begin) / last));
     return se3di_state_conclude(equations, y, t);
 }

@@ -10,6 +10,7 @@
  * the Newton matrix (Hairer, Wanner 1996, sec. IV.8). Outputs are interpolated by the quartic that
  * has the derivatives of the stages and of the start of the step.  docs/theory/radau.md */
 #include "integrator/radau.h"
+#include "integrator/adaptive.h"
 #include "integrator/memory.h"
 
 #include "assembly/energy.h"
@@ -27,22 +28,19 @@
 
 /* The history: this header, the accepted state, then of the last step: its start, the increments of
  * the stages, d = h f_0 - h u'(0). */
-enum {
-    RADAU_TIME = SE3DI_HISTORY_TIME,   /* of the accepted state */
-    RADAU_BEGIN = SE3DI_HISTORY_BEGIN, /* of the last step */
-    RADAU_NEXT,                        /* the next step */
-    RADAU_LAST,                        /* the last one; 0: none */
-    RADAU_ERROR,                       /* of the last step, relative to the tolerance */
-    RADAU_REJECTED,                    /* 1: the last attempt was rejected */
-    RADAU_LENGTH,                      /* scales */
-    RADAU_SPEED,
-    RADAU_SPIN,
-    RADAU_RENEWED, /* 1: something else acts since the last step */
-    RADAU_HEADER
-};
+typedef struct radau_header {
+    se3di_adaptive_history at;
+    se3di_state_scale scale;
+    double last; /* the last step [s], 0: none */
+} radau_header;
+
+#define RADAU_HEADER (sizeof(radau_header) / sizeof(double))
+_Static_assert(sizeof(radau_header) == 11 * sizeof(double),
+               "it is an array of double in the model");
 
 typedef struct history {
-    double *header, *y1, *start, *Z, *d;
+    radau_header *header;
+    double *y1, *start, *Z, *d;
 } history;
 
 static size_t history_count(const se3di_assembly *assembly)
@@ -53,19 +51,13 @@ static size_t history_count(const se3di_assembly *assembly)
 static history get_history(const se3di_assembly *assembly)
 {
     size_t count = se3di_state_count(assembly);
-    history past = {.header = assembly->model->history};
-    past.y1 = past.header + RADAU_HEADER;
+    double *numbers = assembly->model->history;
+    history past = {.header = (radau_header *)(void *)numbers};
+    past.y1 = numbers + RADAU_HEADER;
     past.start = past.y1 + count;
     past.Z = past.start + count;
     past.d = past.Z + STAGES * count;
     return past;
-}
-
-static se3di_state_scale get_scale(const history *past)
-{
-    return (se3di_state_scale){.length = past->header[RADAU_LENGTH],
-                               .speed = past->header[RADAU_SPEED],
-                               .spin = past->header[RADAU_SPIN]};
 }
 
 /* The estimate is of order 3, the result of order 5 (Hairer, Wanner 1996, sec. IV.8). */
@@ -106,7 +98,7 @@ static double eval_quartic(double s)
 static void eval_polynomial(const history *past, size_t count, double t, double *y)
 {
     double l[STAGES];
-    const double s = (t - past->header[RADAU_TIME]) / past->header[RADAU_LAST] + 1.0;
+    const double s = (t - past->header->at.time) / past->header->last + 1.0;
     const double quartic = eval_quartic(s);
     eval_basis(s, l);
     for (size_t k = 0; k < count; ++k) {
@@ -119,7 +111,7 @@ static void eval_polynomial(const history *past, size_t count, double t, double 
  * multipliers those of the start: extrapolated, they would grow in dependent directions. */
 static void predict(se3di_radau *m, const history *past)
 {
-    const double last = past->header[RADAU_LAST];
+    const double last = past->header->last;
     const size_t count = m->count;
     const double *c = se3di_radau_c;
     for (int i = 0; i < STAGES; ++i) {
@@ -232,8 +224,8 @@ static se3d_status project_end(se3di_radau *m)
     return se3di_state_prepare(m->equations, m->t + m->h);
 }
 
-/* The step is solved and settled: project its end to rounding, and take it. */
-static se3d_status accept(se3di_radau *m, const history *past)
+/* The step is solved and settled: project its end to rounding, and take it as that of t. */
+static se3d_status accept(se3di_radau *m, const history *past, double t)
 {
     se3di_model *model = m->assembly->model;
     const size_t bodies = m->count - SE3DI_STATE_WORK;
@@ -250,13 +242,12 @@ static se3d_status accept(se3di_radau *m, const history *past)
     }
     se3di_state_get(m->assembly, past->y1);
     memcpy(past->y1 + bodies, end + bodies, SE3DI_STATE_WORK * sizeof *end);
-    past->header[RADAU_BEGIN] = m->t;
-    past->header[RADAU_TIME] = m->t + m->h;
-    past->header[RADAU_LAST] = m->h;
-    past->header[RADAU_RENEWED] = 0.0;
+    past->header->at.begin = m->t;
+    past->header->at.time = t;
+    past->header->last = m->h;
+    past->header->at.renewed = 0.0;
     se3di_state_scale_grow(m->assembly, m->f0, &m->scale);
-    past->header[RADAU_SPEED] = m->scale.speed;
-    past->header[RADAU_SPIN] = m->scale.spin;
+    past->header->scale = m->scale;
     se3di_angles_accept(model);
     se3di_contacts_accept(model); /* force elements: settle */
     ++m->equations->counters.steps;
@@ -268,9 +259,9 @@ static se3d_status begin_step(se3di_radau *m, se3di_integration *integration, co
 {
     se3di_radau_begin(m, integration);
     se3di_forces_show(m->assembly->model, 0);
-    m->t = past->header[RADAU_TIME];
+    m->t = past->header->at.time;
     m->y0 = past->y1;
-    m->scale = get_scale(past);
+    m->scale = past->header->scale;
     se3di_state_set(m->assembly, m->y0);
     return se3di_radau_prepare(m);
 }
@@ -298,8 +289,8 @@ se3d_status se3di_radau_make_step(se3di_integration *integration,
                                   const se3di_radau_begin_state *from, double h, double *y1,
                                   double *acceleration)
 {
-    double header[RADAU_HEADER] = {0.0}; /* no step before this one */
-    const history none = {.header = header};
+    radau_header header = {.last = 0.0}; /* no step before this one */
+    const history none = {.header = &header};
     se3di_radau m;
     double error;
     se3di_radau_begin(&m, integration);
@@ -318,96 +309,90 @@ se3d_status se3di_radau_make_step(se3di_integration *integration,
 /* Predictive control (Gustafsson 1994). */
 static double next_step(const se3di_radau *m, const history *past, double error)
 {
-    const double *header = past->header;
+    const radau_header *header = past->header;
     const double e = fmax(error, 1e-8);
     const double safety = 0.9 * 11.0 / (10.0 + m->iterations);
     double factor = safety * se3di_pow(e, -0.25);
-    if (header[RADAU_LAST] > 0.0 && header[RADAU_ERROR] > 0.0) {
+    if (header->last > 0.0 && header->at.error > 0.0) {
         const double predicted =
-            0.9 * m->h / header[RADAU_LAST] * se3di_pow(header[RADAU_ERROR] / (e * e), 0.25);
+            0.9 * m->h / header->last * se3di_pow(header->at.error / (e * e), 0.25);
         factor = fmin(factor, predicted);
     }
-    factor = fmin(header[RADAU_REJECTED] > 0.0 ? 1.0 : 8.0, fmax(0.2, factor));
-    const double limit = m->integration->settings.step;
-    const double h = factor * m->h;
-    return limit > 0.0 && h > limit ? limit : h;
+    factor = fmin(header->at.rejected > 0.0 ? 1.0 : 8.0, fmax(0.2, factor));
+    return se3di_adaptive_limit(m->integration, factor * m->h);
 }
 
-static se3d_status fail_small(const se3di_radau *m, double h, se3d_status cause)
+/* ---- in the loop of all methods ---- */
+
+typedef struct controlled_step {
+    se3di_adaptive step; /* first, so that it is found from the loop's */
+    se3di_radau m;
+    history past;
+    double inner; /* the tolerance of the estimate */
+} controlled_step;
+
+static controlled_step *get_step(se3di_adaptive *step)
 {
-    if (cause >= 0) {
-        cause = se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
-                                "t = %g s: the step fell to %.3g s: the tolerance %g cannot "
-                                "be met here; the motion is not smooth",
-                                m->t, h, m->integration->settings.tolerance);
+    return (controlled_step *)(void *)step;
+}
+
+static double pace(se3di_adaptive *step, double h)
+{
+    const se3di_model *model = get_step(step)->m.assembly->model;
+    return se3di_contacts_pace(model, SE3DI_PACE_ADAPTIVE, se3di_state_limit_turn(model, 0.0, h));
+}
+
+static se3d_status try_step(se3di_adaptive *step, double h, double *error)
+{
+    controlled_step *s = get_step(step);
+    SE3DI_TRY(attempt(&s->m, &s->past, s->inner, h, error));
+    if (*error <= 1.0) {
+        SE3DI_TRY(settle(&s->m, step->integration->settings.tolerance, error));
     }
+    step->fraction = s->m.fraction;
+    return SE3D_OK;
+}
+
+static se3d_status take(se3di_adaptive *step, double h, double error)
+{
+    controlled_step *s = get_step(step);
+    const double next = next_step(&s->m, &s->past, error);
+    (void)h;
+    SE3DI_TRY(accept(&s->m, &s->past, step->t));
+    step->at->next = next;
+    step->at->error = fmax(error, 1e-2);
+    return SE3D_OK;
+}
+
+static double shrink(se3di_adaptive *step, double h, se3d_status status, double error)
+{
+    (void)step;
+    (void)h;
+    return status < 0 ? 0.5 : fmin(0.9, fmax(0.1, 0.9 * se3di_pow(error, -0.25)));
+}
+
+static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status, double error)
+{
+    const se3di_radau *m = &get_step(step)->m;
+    (void)error;
     se3di_state_set(m->assembly, m->y0);
-    se3di_contacts_blame(m->assembly->model, m->equations->error);
-    return cause;
-}
-
-/* Nothing is learnt from attempts that end the run. */
-static se3d_status give_up(double *header, double next, double rejected, se3d_status status)
-{
-    header[RADAU_NEXT] = next;
-    header[RADAU_REJECTED] = rejected;
-    return status;
-}
-
-/* Of a step that was rejected. */
-static double shrink(const se3di_radau *m, se3d_status status, double error)
-{
-    if (status < 0) {
-        return 0.5;
-    }
-    return m->fraction > 0.0 ? m->fraction : fmin(0.9, fmax(0.1, 0.9 * se3di_pow(error, -0.25)));
+    return se3di_adaptive_blame(step->integration, m->t, h, status);
 }
 
 /* One accepted step with error control; the first one after a change of what acts, which may soon
  * change again, goes to t_end at most. */
 static se3d_status advance(se3di_integration *integration, double t_end)
 {
-    se3di_radau m;
-    const history past = get_history(&integration->equations->assembly);
-    double *header = past.header;
-    const double inner = inner_tolerance(integration->settings.tolerance);
-    const double was_next = header[RADAU_NEXT], was_rejected = header[RADAU_REJECTED];
-    SE3DI_TRY(begin_step(&m, integration, &past));
-    se3di_state_set_rates(m.assembly, m.f0);
-    double h = se3di_state_limit_turn(m.assembly->model, 0.0, header[RADAU_NEXT]);
-    h = se3di_contacts_pace(m.assembly->model, SE3DI_PACE_ADAPTIVE, h);
-    const double longer = header[RADAU_RENEWED] > 0.0 && h > t_end - m.t ? h : 0.0;
-    h = longer > 0.0 ? t_end - m.t : h;
-    for (int whole = 1;; whole = 0) {
-        double error = HUGE_VAL;
-        se3d_status status = se3di_equations_try_step(m.equations, m.t);
-        const int ends = status < 0;
-        status = ends ? status : attempt(&m, &past, inner, h, &error);
-        if (status >= 0 && error <= 1.0) {
-            status = settle(&m, integration->settings.tolerance, &error);
-        }
-        if (status >= 0 && error <= 1.0) {
-            const double next = next_step(&m, &past, error);
-            status = accept(&m, &past);
-            if (status >= 0) {
-                header[RADAU_NEXT] = whole ? fmax(longer, next) : next;
-                header[RADAU_TIME] = whole && longer > 0.0 ? t_end : header[RADAU_TIME];
-                header[RADAU_ERROR] = fmax(error, 1e-2);
-                header[RADAU_REJECTED] = 0.0;
-                return SE3D_OK;
-            }
-        }
-        if (ends || status == SE3D_ERR_INTERRUPTED || status == SE3D_ERR_NO_MEMORY) {
-            return give_up(header, was_next, was_rejected, status);
-        }
-        ++m.equations->counters.rejected;
-        header[RADAU_REJECTED] = 1.0;
-        h *= shrink(&m, status, error);
-        header[RADAU_NEXT] = h;
-        if (!(h > 1e-12 * fmax(1e-3, fabs(m.t)))) {
-            return give_up(header, was_next, was_rejected, fail_small(&m, h, status));
-        }
-    }
+    static const se3di_adaptive_class methods = {pace, try_step, take, shrink, surrender, 1e-12};
+    controlled_step s = {.past = get_history(&integration->equations->assembly),
+                         .inner = inner_tolerance(integration->settings.tolerance)};
+    s.step = (se3di_adaptive){.methods = &methods,
+                              .integration = integration,
+                              .at = &s.past.header->at,
+                              .ends = s.past.header->at.renewed > 0.0};
+    SE3DI_TRY(begin_step(&s.m, integration, &s.past));
+    se3di_state_set_rates(s.m.assembly, s.m.f0);
+    return se3di_adaptive_advance(&s.step, t_end);
 }
 
 /* The accepted state is the model's own. What step control has learnt is for `start` to forget: a
@@ -419,19 +404,17 @@ static se3d_status adopt(se3di_integration *integration)
     const history past = get_history(assembly);
     double *f1 = past.d; /* no use yet */
     se3di_state_scale scale = {.length = se3di_state_length(assembly->model)};
-    const double next = past.header[RADAU_NEXT];
+    const double next = past.header->at.next;
     se3di_forces_stay(assembly->model);
-    memset(past.header, 0, history_count(assembly) * sizeof *past.header);
-    past.header[RADAU_NEXT] = next;
+    memset(assembly->model->history, 0, history_count(assembly) * sizeof(double));
+    past.header->at.next = next;
     se3di_state_get(assembly, past.y1);
     se3di_assembly_get_acceleration(assembly, equations->x);
     SE3DI_TRY(se3di_state_derivative(assembly, assembly->model->time, equations->x,
                                      assembly->model->lambda, f1));
     se3di_state_scale_grow(assembly, f1, &scale);
-    past.header[RADAU_TIME] = past.header[RADAU_BEGIN] = assembly->model->time;
-    past.header[RADAU_LENGTH] = scale.length;
-    past.header[RADAU_SPEED] = scale.speed;
-    past.header[RADAU_SPIN] = scale.spin;
+    past.header->at.time = past.header->at.begin = assembly->model->time;
+    past.header->scale = scale;
     return SE3D_OK;
 }
 
@@ -442,7 +425,7 @@ static se3d_status start(se3di_integration *integration, double h)
     (void)h;
     SE3DI_TRY(adopt(integration));
     const double first = fmin(1e-3, sqrt(inner_tolerance(integration->settings.tolerance)));
-    past.header[RADAU_NEXT] = limit > 0.0 ? fmin(limit, first) : first;
+    past.header->at.next = limit > 0.0 ? fmin(limit, first) : first;
     return SE3D_OK;
 }
 
@@ -450,26 +433,25 @@ static se3d_status renew(se3di_integration *integration)
 {
     const history past = get_history(&integration->equations->assembly);
     SE3DI_TRY(adopt(integration));
-    past.header[RADAU_RENEWED] = 1.0;
+    past.header->at.renewed = 1.0;
     return SE3D_OK;
 }
 
 static se3d_status publish(se3di_integration *integration, double t)
 {
-    se3di_assembly *assembly = &integration->equations->assembly;
-    const history past = get_history(assembly);
-    const double *header = past.header;
-    se3di_state_scale scale = get_scale(&past);
-    se3di_forces_show(assembly->model, t < header[RADAU_TIME]);
-    if (!(t < header[RADAU_TIME])) {
-        return se3di_state_publish(integration->equations, past.y1, header[RADAU_TIME], &scale, 0);
+    se3di_equations *equations = integration->equations;
+    const history past = get_history(&equations->assembly);
+    const radau_header *header = past.header;
+    const int is_within = t > header->at.begin && t < header->at.time;
+    double *y = t < header->at.time ? past.start : past.y1;
+    se3di_forces_show(equations->assembly.model, t < header->at.time);
+    if (is_within) {
+        y = integration->work;
+        eval_polynomial(&past, se3di_state_count(&equations->assembly), t, y);
+    } else {
+        t = t < header->at.time ? header->at.begin : header->at.time;
     }
-    if (!(t > header[RADAU_BEGIN])) {
-        return se3di_state_publish(integration->equations, past.start, header[RADAU_BEGIN], &scale,
-                                   0);
-    }
-    eval_polynomial(&past, se3di_state_count(assembly), t, integration->work);
-    return se3di_state_publish(integration->equations, integration->work, t, &scale, 1);
+    return se3di_state_publish(equations, y, t, &header->scale, is_within);
 }
 
 /* One step of length h, solved to rounding. */
@@ -479,22 +461,15 @@ static se3d_status step(se3di_integration *integration, double h)
     const history past = get_history(&integration->equations->assembly);
     double error;
     const double t0 = integration->equations->assembly.model->time;
-    se3d_status status = past.header[RADAU_TIME] == t0 ? SE3D_OK : adopt(integration);
+    se3d_status status = past.header->at.time == t0 ? SE3D_OK : adopt(integration);
     status = status < 0 ? status : begin_step(&m, integration, &past);
     if (status >= 0) {
         status = attempt(&m, &past, 0.0, h, &error);
         error = 0.0; /* the step is taken as it is */
         status = status < 0 ? status : settle(&m, HUGE_VAL, &error);
-        status = status < 0 ? status : accept(&m, &past);
+        status = status < 0 ? status : accept(&m, &past, t0 + h);
     }
-    SE3DI_TRY(status);
-    past.header[RADAU_TIME] = t0 + h;
-    return publish(integration, t0 + h);
-}
-
-static se3d_status advance_one(se3di_integration *integration, double t_end)
-{
-    return advance(integration, t_end);
+    return status < 0 ? status : publish(integration, t0 + h);
 }
 
 static void interpolate(const se3di_integration *integration, double t, double *y)
@@ -502,10 +477,10 @@ static void interpolate(const se3di_integration *integration, double t, double *
     const se3di_assembly *assembly = &integration->equations->assembly;
     const history past = get_history(assembly);
     const size_t count = se3di_state_count(assembly);
-    if (t > past.header[RADAU_BEGIN] && t < past.header[RADAU_TIME]) {
+    if (t > past.header->at.begin && t < past.header->at.time) {
         eval_polynomial(&past, count, t, y);
     } else { /* the ends are the projected ones, to the bit */
-        memcpy(y, t < past.header[RADAU_TIME] ? past.start : past.y1, count * sizeof *y);
+        memcpy(y, t < past.header->at.time ? past.start : past.y1, count * sizeof *y);
     }
 }
 
@@ -513,7 +488,7 @@ static se3d_status run(se3di_integration *integration, double t_end)
 {
     const history past = get_history(&integration->equations->assembly);
     se3d_status status = SE3D_OK;
-    while (past.header[RADAU_TIME] < t_end && status >= 0) {
+    while (past.header->at.time < t_end && status >= 0) {
         status = advance(integration, t_end);
     }
     return status < 0 ? status : publish(integration, t_end);
@@ -528,7 +503,7 @@ const se3di_integrator se3di_integrator_radau = {
     .renew = renew,
     .step = step,
     .run = run,
-    .advance = advance_one,
+    .advance = advance,
     .interpolate = interpolate,
     .is_implicit = 1,
     .is_reduced = 1,
