@@ -71,6 +71,9 @@ void se3di_assembly_eval_jacobian(se3di_assembly *assembly);
 void se3di_assembly_eval_gamma(const se3di_assembly *assembly, double *gamma);
 /* Both, in one pass. */
 void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma);
+/* The same for some constraints only; the others' blocks and gamma are left as they are. */
+void se3di_assembly_eval_some_rows(se3di_assembly *assembly, const uint32_t *constraints,
+                                   uint32_t count, double *gamma);
 /* Mass blocks into H, or equal ones if it `levels`. */
 void se3di_assembly_eval_mass(se3di_assembly *assembly);
 /* From now on H weighs all bodies alike: by their mean mass, and by how far joints are from the

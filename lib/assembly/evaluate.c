@@ -169,23 +169,43 @@ void se3di_assembly_eval_gamma(const se3di_assembly *assembly, double *gamma)
     se3di_left_out_clear_values(assembly, gamma);
 }
 
-void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma)
+static void eval_rows_of(se3di_assembly *assembly, uint32_t joint, double *gamma)
 {
-    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
-        const se3di_constraint *constraint = &assembly->model->constraints[k];
-        if (assembly->is_fused[k]) {
-            se3di_fused_eval(assembly, k, gamma + constraint->row_begin);
-            continue;
-        }
-        eval_joint(assembly, k);
-        for (uint32_t r = 0; r < constraint->row_count; ++r) {
-            gamma[constraint->row_begin + r] = eval_row_gamma(assembly, constraint->row_begin + r);
-        }
+    const se3di_constraint *constraint = &assembly->model->constraints[joint];
+    if (assembly->is_fused[joint]) {
+        se3di_fused_eval(assembly, joint, gamma + constraint->row_begin);
+        return;
     }
+    eval_joint(assembly, joint);
+    for (uint32_t r = 0; r < constraint->row_count; ++r) {
+        gamma[constraint->row_begin + r] = eval_row_gamma(assembly, constraint->row_begin + r);
+    }
+}
+
+/* What is the same for all: user constraints, rows that are left out. */
+static void finish_rows(se3di_assembly *assembly, double *gamma)
+{
     se3di_user_eval_jacobian(assembly);
     se3di_user_eval_gamma(assembly, gamma);
     se3di_left_out_clear_blocks(assembly, assembly->C);
     se3di_left_out_clear_values(assembly, gamma);
+}
+
+void se3di_assembly_eval_rows(se3di_assembly *assembly, double *gamma)
+{
+    for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
+        eval_rows_of(assembly, k, gamma);
+    }
+    finish_rows(assembly, gamma);
+}
+
+void se3di_assembly_eval_some_rows(se3di_assembly *assembly, const uint32_t *constraints,
+                                   uint32_t count, double *gamma)
+{
+    for (uint32_t k = 0; k < count; ++k) {
+        eval_rows_of(assembly, constraints[k], gamma);
+    }
+    finish_rows(assembly, gamma);
 }
 
 void se3di_assembly_eval_mass(se3di_assembly *assembly)

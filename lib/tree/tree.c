@@ -269,7 +269,7 @@ static void find_drivers(se3di_tree *tree)
 /* ---- memory ---- */
 
 #define TREE_STRUCTURE 3
-#define TREE_VALUES    13
+#define TREE_VALUES    14
 
 static void list_structure(se3di_tree *t, builder_array list[TREE_STRUCTURE])
 {
@@ -297,6 +297,7 @@ static void list_values(se3di_tree *t, builder_array list[TREE_VALUES])
         {(void **)&t->qdot, v, number_size},
         {(void **)&t->qddot, v, number_size},
         {(void **)&t->branches, t->branch_count, sizeof *t->branches},
+        {(void **)&t->scratch, 12 * (size_t)t->count, number_size},
         {(void **)&t->frames, t->body_count, sizeof *t->frames},
     };
     memcpy(list, arrays, sizeof arrays);

@@ -124,6 +124,7 @@ typedef struct se3di_tree {
     double *wrench;           /* [nodes * 6]: what acts on each: moment about P, force; ground */
     double *q, *qdot, *qddot; /* scratch of the caller */
     se3di_tree_inertia *branches;
+    double *scratch;     /* [nodes * 12] */
     se3di_frame *frames; /* [bodies]: scratch */
     const struct se3di_tree_core *core;
 } se3di_tree;

@@ -7,7 +7,8 @@
 #include "assembly/loads.h"
 #include "nonlinear/equations.h"
 #include "tree/core.h"
-#include "tree/tree.h"
+#include "tree/loops.h"
+#include "tree/recursion.h"
 
 #include <stdlib.h>
 
@@ -59,13 +60,18 @@ typedef struct case_of {
     double q[NUMBERS], qdot[NUMBERS];
 } case_of;
 
-static void begin(case_of *c, uint64_t seed)
+static void begin_closed(case_of *c, uint64_t seed, int loops)
 {
-    tree_world_init(&c->world, seed, 1 + (int)(seed % TREE_BODIES_MAX), 0);
+    tree_world_init(&c->world, seed, 1 + (int)(seed % TREE_BODIES_MAX), loops);
     c->model = &c->world.system->model;
     CHECK(!se3di_tree_init(&c->tree, c->model, NULL));
     shake(&c->world, &c->tree, c->q, c->qdot);
     follow_turns(&c->tree, c->q);
+}
+
+static void begin(case_of *c, uint64_t seed)
+{
+    begin_closed(c, seed, 0);
 }
 
 static void end(case_of *c)
@@ -212,6 +218,188 @@ static void accelerations_are_those_of_the_maximal_equations(void)
     printf("largest difference of accelerations: %.2g\n", worst);
 }
 
+/* The same state, both ways: the largest difference of accelerations, and that of multipliers, both
+ * relative to the largest. Returns 0 where the constraints depend on each other. */
+static int compare_closed(case_of *c, double time, double *accelerations, double *multipliers)
+{
+    se3di_equations e;
+    se3di_tree_loops loops;
+    double acceleration[6 * (TREE_BODIES_MAX + 1)], joint[6 * TREE_BODIES_MAX];
+    double wrench[6 * (TREE_BODIES_MAX + 1)], lambda[16 * TREE_BODIES_MAX] = {0.0};
+    uint32_t failed;
+    const size_t count = 6 * c->model->body_slots.count, rows = c->model->row_count;
+    CHECK(!se3di_equations_init(&e, c->model, &se3di_formulation_romega, NULL));
+    if (se3di_acceleration_solve(&e, time) != SE3D_OK || e.redundant) {
+        se3di_equations_destroy(&e);
+        return 0;
+    }
+    CHECK(!se3di_tree_loops_init(&loops, &c->tree, &e.assembly, NULL));
+    CHECK(!se3di_loads_eval(c->model, time, wrench, &failed));
+    se3di_tree_take_wrenches(&c->tree, c->model->frames, wrench);
+    se3di_tree_take_given(&c->tree, &e.assembly);
+    CHECK(!se3di_tree_factor(&c->tree, NULL));
+    CHECK(se3di_tree_loops_factor(&loops) >= 0);
+    CHECK(se3di_tree_loops_accelerate(&loops, c->tree.qddot) >= 0);
+    se3di_tree_get_accelerations(&c->tree, c->model->frames, acceleration);
+    *accelerations = difference(acceleration, c->model->acceleration, count) /
+                     (1.0 + largest(c->model->acceleration, count));
+    se3di_tree_loops_add_wrenches(&loops, loops.lambda, c->tree.wrench);
+    c->tree.core->transmit(&c->tree, c->tree.wrench, joint);
+    memcpy(lambda, loops.lambda, rows * sizeof *lambda);
+    se3di_tree_multipliers(&c->tree, joint, NULL, lambda);
+    *multipliers =
+        difference(lambda, c->model->lambda, rows) / (1.0 + largest(c->model->lambda, rows));
+    se3di_tree_loops_destroy(&loops);
+    se3di_equations_destroy(&e);
+    return 1;
+}
+
+static void loops_and_reactions_are_those_of_the_maximal_equations(void)
+{
+    double worst[2] = {0.0, 0.0};
+    int tried = 0;
+    for (uint64_t seed = 0; seed < 3 * MECHANISMS; ++seed) {
+        case_of c;
+        double off[2];
+        begin_closed(&c, seed, (int)(seed % 4));
+        uint32_t rows = 0;
+        for (uint32_t k = 0; k < c.tree.constraint_count; ++k) {
+            rows += c.tree.tree_of[k] < 0 ? c.model->constraints[k].row_count : 0;
+        }
+        if ((rows + 3 <= c.tree.v_count || rows == 0) &&
+            compare_closed(&c, 0.0, &off[0], &off[1])) {
+            CHECK_NEAR(off[0], 0.0, 1e-11);
+            CHECK_NEAR(off[1], 0.0, 1e-11);
+            worst[0] = fmax(worst[0], off[0]);
+            worst[1] = fmax(worst[1], off[1]);
+            ++tried;
+        }
+        end(&c);
+    }
+    CHECK(tried > MECHANISMS);
+    printf("%d mechanisms, largest difference of accelerations %.2g, of multipliers %.2g\n", tried,
+           worst[0], worst[1]);
+}
+
+/* Drivers of most of the joints with an angle or a displacement. */
+static void drive(tree_world *w, const se3di_tree *tree)
+{
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const se3di_tree_node *n = &tree->nodes[k];
+        for (int s = 0; s < w->joint_count; ++s) {
+            const uint32_t index = se3di_slots_find(&w->system->model.constraint_slots,
+                                                    w->joints[s].index1, w->joints[s].generation);
+            se3d_driver_def def = se3d_driver_def_default();
+            se3d_constraint driver;
+            if ((int32_t)index != n->constraint || n->v_count > 2 || n->v_count < 1 ||
+                n->type == SE3DI_TREE_UNIVERSAL || tree_below(w, 3) == 0) {
+                continue;
+            }
+            def.joint = w->joints[s];
+            def.coordinate = n->type == SE3DI_TREE_PRISMATIC ? SE3D_JOINT_COORDINATE_DISPLACEMENT
+                                                             : SE3D_JOINT_COORDINATE_ANGLE;
+            CHECK(!se3d_function_create_expression(w->system, "sin(3*t)", &def.function));
+            CHECK(!se3d_driver_create(w->system, &def, &driver));
+        }
+    }
+}
+
+static void prescribed_coordinates_move_as_their_drivers_say(void)
+{
+    int given = 0;
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        case_of c;
+        double off[2];
+        begin_closed(&c, seed, seed % 3 == 0);
+        drive(&c.world, &c.tree);
+        se3di_tree_destroy(&c.tree);
+        CHECK(!se3di_tree_init(&c.tree, c.model, NULL));
+        shake(&c.world, &c.tree, c.q, c.qdot);
+        follow_turns(&c.tree, c.q);
+        uint32_t rows = c.tree.given_count;
+        for (uint32_t k = 0; k < c.tree.constraint_count; ++k) {
+            rows += c.tree.tree_of[k] < 0 ? c.model->constraints[k].row_count : 0;
+        }
+        if (rows + 2 <= c.tree.v_count && compare_closed(&c, 0.4, &off[0], &off[1])) {
+            CHECK_NEAR(off[0], 0.0, 1e-11);
+            CHECK_NEAR(off[1], 0.0, 1e-11);
+            given += (int)c.tree.given_count;
+        }
+        end(&c);
+    }
+    CHECK(given > 50);
+}
+
+/* Two bars and a coupler between two pivots, all hinges parallel: five equations close it, of which
+ * two are independent, and where it is flat the pose adds one dependence more. */
+static void build_window(tree_world *w, double angle)
+{
+    const double axis[3] = {0.0, 0.0, 1.0}, gravity[3] = {0.0, -9.81, 0.0};
+    const double c = cos(angle), s = sin(angle);
+    const double centres[3][3] = {
+        {0.5 * c, 0.5 * s, 0.0}, {c + 0.5, s, 0.0}, {1 + 0.5 * c, 0.5 * s, 0.0}};
+    const double pins[4][3] = {{0.0, 0.0, 0.0}, {c, s, 0.0}, {1 + c, s, 0.0}, {1.0, 0.0, 0.0}};
+    const int sides[4][2] = {{0, 1}, {1, 2}, {2, 3}, {0, 3}};
+    *w = (tree_world){.count = 1};
+    CHECK(!se3d_system_create(NULL, &w->system));
+    CHECK(!se3d_system_get_ground(w->system, &w->bodies[0]));
+    CHECK(!se3d_system_set_gravity(w->system, gravity));
+    for (int k = 0; k < 3; ++k) {
+        se3d_body_def def = se3d_body_def_default();
+        def.mass = 1.0;
+        def.inertia[0] = 1e-3;
+        def.inertia[1] = def.inertia[2] = 1.0 / 12.0;
+        memcpy(def.position, centres[k], sizeof def.position);
+        def.orientation[0] = k == 1 ? 1.0 : cos(0.5 * angle);
+        def.orientation[3] = k == 1 ? 0.0 : sin(0.5 * angle);
+        def.velocity[0] = k == 1 ? -2.0 * s : -s;
+        def.velocity[1] = k == 1 ? 2.0 * c : c;
+        def.angular_velocity[2] = k == 1 ? 0.0 : 2.0;
+        CHECK(!se3d_body_create(w->system, &def, &w->bodies[w->count++]));
+    }
+    for (int k = 0; k < 4; ++k) {
+        se3d_joint_def def = se3d_joint_def_default();
+        def.body_i = w->bodies[sides[k][0]];
+        def.body_j = w->bodies[sides[k][1]];
+        CHECK(!se3d_joint_def_set_frame(w->system, &def, pins[k], axis, NULL));
+        CHECK(!se3d_joint_create_revolute(w->system, &def, &w->joints[w->joint_count++]));
+    }
+}
+
+static void redundant_loops_and_singular_positions_give_the_same_accelerations(void)
+{
+    const double angles[5] = {1.0, 2.5, 1e-3, 1e-7, 0.0};
+    for (int k = 0; k < 5; ++k) {
+        tree_world w;
+        se3di_tree tree;
+        se3di_tree_loops loops;
+        se3di_equations e;
+        double acceleration[24], wrench[24];
+        uint32_t failed;
+        build_window(&w, angles[k]);
+        se3di_model *model = &w.system->model;
+        CHECK(!se3di_tree_init(&tree, model, NULL));
+        CHECK(tree.v_count == 3);
+        CHECK(!se3di_equations_init(&e, model, &se3di_formulation_romega, NULL));
+        CHECK(se3di_acceleration_solve(&e, 0.0) >= 0);
+        CHECK(!se3di_tree_loops_init(&loops, &tree, &e.assembly, NULL));
+        CHECK(loops.row_count == 5);
+        se3di_tree_get(&tree, tree.q, tree.qdot);
+        se3di_tree_place(&tree, tree.q, tree.qdot, model->frames);
+        CHECK(!se3di_loads_eval(model, 0.0, wrench, &failed));
+        se3di_tree_take_wrenches(&tree, model->frames, wrench);
+        CHECK(!se3di_tree_factor(&tree, NULL));
+        CHECK(se3di_tree_loops_factor(&loops) >= 0);
+        CHECK(se3di_tree_loops_accelerate(&loops, tree.qddot) >= 0);
+        se3di_tree_get_accelerations(&tree, model->frames, acceleration);
+        CHECK_NEAR(difference(acceleration, model->acceleration, 24), 0.0, k < 3 ? 1e-11 : 1e-6);
+        se3di_tree_loops_destroy(&loops);
+        se3di_equations_destroy(&e);
+        se3di_tree_destroy(&tree);
+        tree_world_destroy(&w);
+    }
+}
+
 static void all_instruction_levels_give_the_same_bits(void)
 {
     const se3di_tree_core *cores[3] = {se3di_tree_core_portable(), se3di_tree_core_avx2(),
@@ -241,6 +429,9 @@ int main(void)
     RUN(reading_gives_the_coordinates_back);
     RUN(coordinates_are_those_of_the_joints);
     RUN(accelerations_are_those_of_the_maximal_equations);
+    RUN(loops_and_reactions_are_those_of_the_maximal_equations);
+    RUN(prescribed_coordinates_move_as_their_drivers_say);
+    RUN(redundant_loops_and_singular_positions_give_the_same_accelerations);
     RUN(all_instruction_levels_give_the_same_bits);
     return check_finish();
 }

@@ -1,0 +1,451 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "tree/loops.h"
+
+#include "assembly/user.h"
+#include "math/vec3.h"
+#include "tree/recursion.h"
+
+#include <string.h>
+
+typedef struct loops_array {
+    void **data;
+    size_t count, size;
+} loops_array;
+
+#define LOOPS_STRUCTURE 9
+#define LOOPS_VALUES    10
+
+static void list_structure(se3di_tree_loops *l, loops_array list[LOOPS_STRUCTURE])
+{
+    const size_t n = l->tree->constraint_count;
+    const loops_array arrays[LOOPS_STRUCTURE] = {
+        {(void **)&l->constraints, n, sizeof *l->constraints},
+        {(void **)&l->rows, n, sizeof *l->rows},
+        {(void **)&l->row_begin, n + 1, sizeof *l->row_begin},
+        {(void **)&l->path_begin, n + 1, sizeof *l->path_begin},
+        {(void **)&l->path_node, l->path_count, sizeof *l->path_node},
+        {(void **)&l->path_parent, l->path_count, sizeof *l->path_parent},
+        {(void **)&l->member_begin, n + 1, sizeof *l->member_begin},
+        {(void **)&l->member, l->member_count, sizeof *l->member},
+        {(void **)&l->place_of, l->tree->count, sizeof *l->place_of},
+    };
+    memcpy(list, arrays, sizeof arrays);
+}
+
+static void list_values(se3di_tree_loops *l, loops_array list[LOOPS_VALUES])
+{
+    const size_t size = sizeof(double), v = l->tree->v_count;
+    const loops_array arrays[LOOPS_VALUES] = {
+        {(void **)&l->Y, l->value_count, size},
+        {(void **)&l->gamma, l->assembly->row_count, size},
+        {(void **)&l->lambda, l->assembly->row_count, size},
+        {(void **)&l->c, l->row_count, size},
+        {(void **)&l->target, l->row_count, size},
+        {(void **)&l->l, l->row_count, size},
+        {(void **)&l->y, v, size},
+        {(void **)&l->H, v, size},
+        {(void **)&l->b, v, size},
+        {(void **)&l->K, l->scratch_count, size},
+    };
+    memcpy(list, arrays, sizeof arrays);
+}
+
+static se3d_status allocate(const se3d_allocator *allocator, const loops_array *arrays, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        *arrays[k].data = se3di_alloc(allocator, arrays[k].count, arrays[k].size);
+        if (!*arrays[k].data) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+    }
+    return SE3D_OK;
+}
+
+static void release(const se3d_allocator *allocator, const loops_array *arrays, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        se3di_free(allocator, *arrays[k].data, arrays[k].count, arrays[k].size);
+        *arrays[k].data = NULL;
+    }
+}
+
+/* ---- structure ---- */
+
+/* Marks of the nodes between the bodies of a constraint and the ground; returns how many. */
+static size_t mark_path(const se3di_tree_loops *loops, uint32_t constraint, int32_t *mark)
+{
+    const se3di_assembly *a = loops->assembly;
+    const se3di_tree *tree = loops->tree;
+    size_t count = 0;
+    for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
+        int32_t node = tree->node_of[a->free_body[a->joint_body[k]]];
+        for (; node >= 0 && mark[node] != (int32_t)constraint + 1; ++count) {
+            mark[node] = (int32_t)constraint + 1;
+            node = tree->nodes[node].parent;
+        }
+    }
+    return count;
+}
+
+static int32_t freedoms_of(const se3di_tree_node *n)
+{
+    return n->flags & SE3DI_TREE_GIVEN ? 0 : n->v_count;
+}
+
+/* Sizes of everything; `mark` [nodes] zeroed. */
+static void measure_paths(se3di_tree_loops *loops, int32_t *mark)
+{
+    const se3di_tree *tree = loops->tree;
+    const se3di_model *model = tree->model;
+    for (uint32_t k = 0; k < tree->constraint_count; ++k) {
+        if (tree->tree_of[k] >= 0) {
+            continue;
+        }
+        const size_t rows = model->constraints[k].row_count;
+        const size_t path = mark_path(loops, k, mark);
+        size_t members = 0;
+        for (uint32_t i = 0; i < tree->count; ++i) {
+            members += mark[i] == (int32_t)k + 1 ? (size_t)freedoms_of(&tree->nodes[i]) : 0;
+        }
+        const size_t scratch = 6 * rows * path;
+        loops->path_count += path;
+        loops->member_count += members;
+        loops->value_count += rows * members;
+        loops->row_count += (uint32_t)rows;
+        loops->scratch_count = scratch > loops->scratch_count ? scratch : loops->scratch_count;
+    }
+}
+
+static void add_loop(se3di_tree_loops *loops, uint32_t constraint, int32_t *mark)
+{
+    const se3di_tree *tree = loops->tree;
+    const uint32_t k = loops->count++;
+    int32_t path = loops->path_begin[k], member = loops->member_begin[k];
+    loops->constraints[k] = constraint;
+    loops->rows[k] = (int32_t)tree->model->constraints[constraint].row_count;
+    (void)mark_path(loops, constraint, mark);
+    for (uint32_t i = tree->count; i-- > 0;) {
+        if (mark[i] != (int32_t)constraint + 1) {
+            continue;
+        }
+        loops->place_of[i] = path - loops->path_begin[k];
+        loops->path_node[path++] = (int32_t)i;
+        for (int32_t j = 0; j < freedoms_of(&tree->nodes[i]); ++j) {
+            loops->member[member++] = (int32_t)tree->nodes[i].v + j;
+        }
+    }
+    for (int32_t p = loops->path_begin[k]; p < path; ++p) {
+        const int32_t parent = tree->nodes[loops->path_node[p]].parent;
+        loops->path_parent[p] = parent < 0 ? -1 : loops->place_of[parent];
+    }
+    loops->path_begin[k + 1] = path;
+    loops->member_begin[k + 1] = member;
+    loops->row_begin[k + 1] = loops->row_begin[k] + (uint32_t)loops->rows[k];
+}
+
+static se3d_status create_kkt(se3di_tree_loops *loops)
+{
+    const se3di_kkt_pattern pattern = {
+        .body_count = loops->tree->v_count,
+        .joint_count = loops->count,
+        .joint_rows = loops->rows,
+        .joint_begin = loops->member_begin,
+        .joint_body = loops->member,
+        .body_size = 1,
+        .symmetric = true,
+        .body_kind = SE3DI_KKT_BODY_FULL,
+    };
+    SE3DI_TRY(se3di_kkt_create(&loops->tree->model->allocator, &pattern, SE3DI_KKT_STRUCTURED,
+                               &loops->kkt));
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        if (loops->rows[k] > loops->member_begin[k + 1] - loops->member_begin[k]) {
+            se3di_kkt_settings settings = se3di_kkt_get_settings(loops->kkt);
+            settings.regularise = SE3DI_KKT_REGULARISE_FIRST; /* more rows than freedoms */
+            se3di_kkt_set_settings(loops->kkt, &settings);
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status build(se3di_tree_loops *loops)
+{
+    se3di_tree *tree = loops->tree;
+    const se3d_allocator *allocator = &tree->model->allocator;
+    loops_array structure[LOOPS_STRUCTURE], values[LOOPS_VALUES];
+    int32_t *mark = se3di_alloc(allocator, tree->count, sizeof *mark);
+    if (!mark) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    measure_paths(loops, mark);
+    memset(mark, 0, tree->count * sizeof *mark);
+    list_structure(loops, structure);
+    se3d_status status = allocate(allocator, structure, LOOPS_STRUCTURE);
+    for (uint32_t k = 0; status >= 0 && k < tree->constraint_count; ++k) {
+        if (tree->tree_of[k] < 0) {
+            add_loop(loops, k, mark);
+        }
+    }
+    se3di_free(allocator, mark, tree->count, sizeof *mark);
+    SE3DI_TRY(status);
+    list_values(loops, values);
+    SE3DI_TRY(allocate(allocator, values, LOOPS_VALUES));
+    return create_kkt(loops);
+}
+
+se3d_status se3di_tree_loops_init(se3di_tree_loops *loops, se3di_tree *tree,
+                                  se3di_assembly *assembly, se3di_error *error)
+{
+    *loops = (se3di_tree_loops){.tree = tree, .assembly = assembly};
+    const se3d_status status = build(loops);
+    if (status < 0) {
+        se3di_tree_loops_destroy(loops);
+        return se3di_error_set(error, status, "no memory for the loops of the tree");
+    }
+    return SE3D_OK;
+}
+
+void se3di_tree_loops_destroy(se3di_tree_loops *loops)
+{
+    if (!loops->tree) {
+        return;
+    }
+    const se3d_allocator *allocator = &loops->tree->model->allocator;
+    loops_array structure[LOOPS_STRUCTURE], values[LOOPS_VALUES];
+    se3di_kkt_destroy(loops->kkt);
+    list_values(loops, values);
+    release(allocator, values, LOOPS_VALUES);
+    list_structure(loops, structure);
+    release(allocator, structure, LOOPS_STRUCTURE);
+    memset(loops, 0, sizeof *loops);
+}
+
+/* ---- rows ---- */
+
+void se3di_tree_take_given(se3di_tree *tree, const se3di_assembly *assembly)
+{
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const se3di_tree_node *n = &tree->nodes[k];
+        if (n->flags & SE3DI_TREE_GIVEN) {
+            const uint32_t row = tree->model->constraints[n->driver].row_begin;
+            const se3di_term *term = &tree->model->terms[tree->model->rows[row].term_begin];
+            tree->given[n->v] = assembly->f[3 * (size_t)row + 2] / term->coefficient;
+        }
+    }
+}
+
+/* A row of a body (to dr of the centre of mass, ground frame, and turns of the body frame) as one
+ * of its node: to angular acceleration and acceleration of P, ground axes. */
+static void row_to_link(const se3di_tree_link *link, const double A[9], const double row[6],
+                        double K[6])
+{
+    double x[3], y[3];
+    se3di_cross(link->s, row, x);
+    se3di_mul(A, row + 3, y);
+    se3di_add(x, y, K);
+    se3di_copy(row, K + 3);
+}
+
+/* Rows of a loop on its bodies into K; from `c` what the centre of mass has on its own. */
+static void load_rows(se3di_tree_loops *loops, uint32_t loop, double *c)
+{
+    const se3di_assembly *a = loops->assembly;
+    const se3di_tree *tree = loops->tree;
+    const uint32_t constraint = loops->constraints[loop];
+    const int32_t rows = loops->rows[loop];
+    const int32_t *nodes = loops->path_node + loops->path_begin[loop];
+    const size_t count = (size_t)(loops->path_begin[loop + 1] - loops->path_begin[loop]);
+    memset(loops->K, 0, 6 * (size_t)rows * count * sizeof *loops->K);
+    for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
+        const uint32_t body = a->free_body[a->joint_body[k]];
+        const int32_t node = tree->node_of[body];
+        const se3di_tree_link *link = &tree->links[node];
+        size_t place = 0;
+        double x[3], turning[3];
+        while (nodes[place] != node) {
+            ++place;
+        }
+        se3di_cross(link->w, link->s, x);
+        se3di_cross(link->w, x, turning);
+        for (int32_t r = 0; r < rows; ++r) {
+            const double *row = a->C + a->block_offset[k] + 6 * (size_t)r;
+            double K[6], *to = loops->K + 6 * (place * (size_t)rows + (size_t)r);
+            row_to_link(link, tree->model->frames[body].A, row, K);
+            for (int i = 0; i < 6; ++i) {
+                to[i] += K[i];
+            }
+            c[r] -= se3di_dot(row, turning);
+        }
+    }
+}
+
+/* What a node's freedoms and its bias take from a row; the rest K is its parent's. */
+static void pass_row(const se3di_tree *tree, int32_t node, double *K, double *Y, int32_t stride,
+                     double *c)
+{
+    const se3di_tree_node *n = &tree->nodes[node];
+    double bias[6];
+    for (int32_t j = freedoms_of(n) - 1; j >= 0; --j) {
+        const size_t v = n->v + (size_t)j;
+        const double *s = tree->S + 6 * v, *U = tree->U + 6 * v;
+        const double y = se3di_dot(K, s) + se3di_dot(K + 3, s + 3), rate = y / tree->D[v];
+        Y[j * stride] = y;
+        for (int i = 0; i < 6; ++i) {
+            K[i] -= U[i] * rate;
+        }
+    }
+    se3di_tree_bias(tree, (uint32_t)node, bias);
+    *c -= se3di_dot(K, bias) + se3di_dot(K + 3, bias + 3);
+}
+
+static void carry_down(se3di_tree_loops *loops, uint32_t loop, double *Y, double *c)
+{
+    const se3di_tree *tree = loops->tree;
+    const int32_t rows = loops->rows[loop];
+    const int32_t begin = loops->path_begin[loop];
+    for (int32_t p = begin; p < loops->path_begin[loop + 1]; ++p) {
+        const int32_t node = loops->path_node[p], parent = loops->path_parent[p];
+        const double *d = tree->links[node].d;
+        for (int32_t r = 0; r < rows; ++r) {
+            double *K = loops->K + 6 * (size_t)((p - begin) * rows + r);
+            pass_row(tree, node, K, Y + r, rows, &c[r]);
+            if (parent >= 0) {
+                double *to = loops->K + 6 * (size_t)(parent * rows + r), x[3];
+                se3di_cross(d, K + 3, x);
+                for (int i = 0; i < 3; ++i) {
+                    to[i] += K[i] + x[i];
+                    to[3 + i] += K[3 + i];
+                }
+            }
+        }
+        Y += rows * freedoms_of(&tree->nodes[node]);
+    }
+}
+
+se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops)
+{
+    se3di_tree *tree = loops->tree;
+    se3di_assembly_eval_some_rows(loops->assembly, loops->constraints, loops->count, loops->gamma);
+    double *Y = loops->Y;
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        double *c = loops->c + loops->row_begin[k];
+        const se3di_constraint *constraint = &tree->model->constraints[loops->constraints[k]];
+        memcpy(c, loops->gamma + constraint->row_begin, (size_t)loops->rows[k] * sizeof *c);
+        load_rows(loops, k, c);
+        carry_down(loops, k, Y, c);
+        Y += loops->rows[k] * (loops->member_begin[k + 1] - loops->member_begin[k]);
+    }
+    for (uint32_t v = 0; v < tree->v_count; ++v) {
+        loops->H[v] = tree->D[v];
+    }
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        if (tree->nodes[k].flags & SE3DI_TREE_GIVEN) {
+            loops->H[tree->nodes[k].v] = 1.0; /* in no row */
+            tree->e[tree->nodes[k].v] = 0.0;
+        }
+    }
+    SE3DI_TRY(se3di_user_report(tree->model, NULL));
+    const se3di_kkt_values values = {.body = loops->H, .joint = loops->Y};
+    return se3di_kkt_factor(loops->kkt, &values, NULL);
+}
+
+static se3d_status solve(se3di_tree_loops *loops, const double *b, const double *c)
+{
+    const se3di_kkt_values values = {.body = loops->H, .joint = loops->Y};
+    se3di_kkt_solve_info info = {0};
+    const se3d_status status =
+        se3di_kkt_solve(loops->kkt, &values, b, c, loops->y, loops->l, &info);
+    /* c may be all rounding; the caller checks what it needs of the rows */
+    return status == SE3D_ERR_NO_CONVERGENCE && !(info.residual_b > 1e-6) ? SE3D_OK : status;
+}
+
+se3d_status se3di_tree_loops_accelerate(se3di_tree_loops *loops, double *qddot)
+{
+    se3di_tree *tree = loops->tree;
+    const se3d_status status = solve(loops, tree->e, loops->c);
+    SE3DI_TRY(status);
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        const se3di_constraint *constraint = &tree->model->constraints[loops->constraints[k]];
+        memcpy(loops->lambda + constraint->row_begin, loops->l + loops->row_begin[k],
+               (size_t)loops->rows[k] * sizeof *loops->l);
+    }
+    for (uint32_t v = 0; v < tree->v_count; ++v) {
+        loops->b[v] = tree->D[v] * loops->y[v];
+    }
+    se3di_tree_accelerate(tree, loops->b, qddot);
+    return status;
+}
+
+se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *target, double *dq)
+{
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        const se3di_constraint *constraint =
+            &loops->tree->model->constraints[loops->constraints[k]];
+        memcpy(loops->target + loops->row_begin[k], target + constraint->row_begin,
+               (size_t)loops->rows[k] * sizeof *target);
+    }
+    const se3d_status status = solve(loops, NULL, loops->target);
+    SE3DI_TRY(status);
+    se3di_tree_spread(loops->tree, loops->y, dq);
+    return status;
+}
+
+void se3di_tree_loops_add_wrenches(const se3di_tree_loops *loops, const double *lambda,
+                                   double *wrench)
+{
+    const se3di_assembly *a = loops->assembly;
+    const se3di_tree *tree = loops->tree;
+    for (uint32_t loop = 0; loop < loops->count; ++loop) {
+        const uint32_t constraint = loops->constraints[loop];
+        const double *l = lambda + tree->model->constraints[constraint].row_begin;
+        for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
+            const uint32_t body = a->free_body[a->joint_body[k]];
+            const int32_t node = tree->node_of[body];
+            double sum[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, K[6];
+            for (int32_t r = 0; r < loops->rows[loop]; ++r) {
+                for (size_t i = 0; i < 6; ++i) {
+                    sum[i] += l[r] * a->C[a->block_offset[k] + 6 * (size_t)r + i];
+                }
+            }
+            row_to_link(&tree->links[node], tree->model->frames[body].A, sum, K);
+            for (size_t i = 0; i < 6; ++i) {
+                wrench[6 * (size_t)node + i] -= K[i];
+            }
+        }
+    }
+}
+
+/* Of the rows of a body: the freedoms between it and the ground. */
+static void add_jacobian(const se3di_tree *tree, uint32_t body, const double row[6], double *G)
+{
+    int32_t node = tree->node_of[body];
+    double K[6];
+    row_to_link(&tree->links[node], tree->model->frames[body].A, row, K);
+    while (node >= 0) {
+        const se3di_tree_node *n = &tree->nodes[node];
+        double x[3];
+        for (int32_t j = 0; j < n->v_count; ++j) {
+            const double *s = tree->S + 6 * (n->v + (size_t)j);
+            G[n->v + (size_t)j] += se3di_dot(K, s) + se3di_dot(K + 3, s + 3);
+        }
+        se3di_cross(tree->links[node].d, K + 3, x);
+        se3di_add(K, x, K);
+        node = n->parent;
+    }
+}
+
+void se3di_tree_loops_jacobian(const se3di_tree_loops *loops, double *G)
+{
+    const se3di_assembly *a = loops->assembly;
+    const size_t columns = loops->tree->v_count;
+    memset(G, 0, loops->row_count * columns * sizeof *G);
+    for (uint32_t loop = 0; loop < loops->count; ++loop) {
+        const uint32_t constraint = loops->constraints[loop];
+        for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
+            for (int32_t r = 0; r < loops->rows[loop]; ++r) {
+                add_jacobian(loops->tree, a->free_body[a->joint_body[k]],
+                             a->C + a->block_offset[k] + 6 * (size_t)r,
+                             G + (loops->row_begin[loop] + (size_t)r) * columns);
+            }
+        }
+    }
+}

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Loop constraints of a tree: cut joints, primitives, couplers, drivers that prescribe no
+ * coordinate of the tree, equations of users.
+ *
+ * With y = what each freedom adds on the way out of the articulated bodies (D y = e without loops)
+ * the mass matrix is diagonal, and a row of the constraints, carried down the tree, has one number
+ * for each freedom between its bodies and the ground:
+ *
+ *     [D  Y^T] [y     ]   [e ]
+ *     [Y  0  ] [lambda] = [c']
+ *
+ * solved by the KKT solver (linsol/kkt.h): order, regularisation, refinement and multipliers of
+ * least norm are its own.                                       docs/theory/joint_coordinates.md */
+#ifndef SE3DI_TREE_LOOPS_H
+#define SE3DI_TREE_LOOPS_H
+
+#include "assembly/assembly.h"
+#include "linsol/kkt.h"
+#include "tree/tree.h"
+
+typedef struct se3di_tree_loops {
+    se3di_tree *tree;
+    se3di_assembly *assembly; /* r-omega, of the same model */
+    se3di_kkt *kkt;
+    uint32_t count;     /* loop constraints */
+    uint32_t row_count; /* theirs */
+    uint32_t *constraints;
+    int32_t *rows;         /* of each */
+    uint32_t *row_begin;   /* [count + 1] its first among those of the loops */
+    int32_t *path_begin;   /* [count + 1] into the next two: nodes from its bodies to the ground, */
+    int32_t *path_node;    /* descending */
+    int32_t *path_parent;  /* place of the node's parent in the same path, -1: the ground */
+    int32_t *member_begin; /* [count + 1] freedoms of those nodes that are not prescribed */
+    int32_t *member;
+    size_t path_count, member_count, value_count, scratch_count;
+    double *Y;              /* [values]: rows x 1 for each member */
+    double *gamma;          /* [rows of the model] */
+    double *lambda;         /* [rows of the model]: of loops, others 0 */
+    double *c, *target, *l; /* [rows of the loops] */
+    double *y;              /* [velocities] */
+    double *H, *b;          /* [velocities] */
+    double *K;              /* rows on the nodes of one path */
+    int32_t *place_of;      /* [nodes]: scratch of the building */
+} se3di_tree_loops;
+
+/* On failure nothing is held. @return OK, NO_MEMORY */
+se3d_status se3di_tree_loops_init(se3di_tree_loops *loops, se3di_tree *tree,
+                                  se3di_assembly *assembly, se3di_error *error);
+void se3di_tree_loops_destroy(se3di_tree_loops *loops);
+
+/* Take the accelerations that drivers of tree coordinates prescribe; functions evaluated. */
+void se3di_tree_take_given(se3di_tree *tree, const se3di_assembly *assembly);
+
+/* After se3di_tree_factor at the model's frames, functions evaluated: evaluate the rows, carry them
+ * down and factor. @return OK, INFO_REDUNDANT, NOT_FINITE, SINGULAR, CALLBACK */
+se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops);
+/* Accelerations, and the multipliers of the loops. @return as se3di_kkt_solve */
+se3d_status se3di_tree_loops_accelerate(se3di_tree_loops *loops, double *qddot);
+/* The least dq in the metric of the masses whose rows are `target` [rows of the model]:
+ * corrections of positions and velocities. Prescribed coordinates stay. @return as
+ * se3di_kkt_solve */
+se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *target, double *dq);
+/* Add what the loops do with `lambda` [rows of the model] to wrenches [nodes * 6] about P. */
+void se3di_tree_loops_add_wrenches(const se3di_tree_loops *loops, const double *lambda,
+                                   double *wrench);
+/* G [rows of the loops x velocities], row-major: the Jacobian to the velocities of the tree. */
+void se3di_tree_loops_jacobian(const se3di_tree_loops *loops, double *G);
+
+#endif
