@@ -1,220 +1,351 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "analysis/modes.h"
 
-#include "base/error.h"
+#include "analysis/steady.h"
 #include "linsol/dense.h"
-#include "linsol/eigen.h"
 #include "math/elementary.h"
+#include "math/vec3.h"
+#include "nonlinear/ranks.h"
 
 #include <math.h>
 #include <string.h>
 
-static double largest(const double *A, size_t count)
+#define MODES_ARRAYS 10
+
+typedef struct modes_array {
+    double **data;
+    size_t count;
+} modes_array;
+
+static void list_arrays(se3di_modes *m, modes_array list[MODES_ARRAYS])
 {
-    double size = 0.0;
-    for (size_t k = 0; k < count; ++k) {
-        size = fmax(size, fabs(A[k]));
-    }
-    return size;
+    size_t f = m->f;
+    const modes_array arrays[MODES_ARRAYS] = {
+        {&m->M, f * f},
+        {&m->D, f * f},
+        {&m->K, f * f},
+        {&m->Z, f * m->n},
+        {&m->b, m->inputs * f},
+        {&m->c, m->outputs * f},
+        {&m->A, 4 * f * f},
+        {&m->B, m->inputs * 2 * f},
+        {&m->rotation, m->bodies * 9},
+        {&m->largest, 4 * f},
+    };
+    memcpy(list, arrays, sizeof arrays);
 }
 
-static int is_conservative(size_t f, const double *D, const double *K)
+void se3di_modes_destroy(se3di_modes *modes)
 {
-    double size = largest(K, f * f);
-    double skew = 0.0;
-    for (size_t r = 0; r < f; ++r) {
-        for (size_t c = 0; c < r; ++c) {
-            skew = fmax(skew, fabs(K[r * f + c] - K[c * f + r]));
+    const se3d_allocator *allocator = &modes->allocator;
+    modes_array arrays[MODES_ARRAYS];
+    list_arrays(modes, arrays);
+    for (int k = 0; k < MODES_ARRAYS; ++k) {
+        se3di_free(allocator, *arrays[k].data, arrays[k].count, sizeof(double));
+    }
+    se3di_free(allocator, modes->quantity, modes->outputs, sizeof *modes->quantity);
+    se3di_free(allocator, modes->free, modes->bodies, sizeof *modes->free);
+    se3di_eigen_destroy(allocator, &modes->eigen);
+}
+
+static se3d_status allocate(se3di_modes *m)
+{
+    modes_array arrays[MODES_ARRAYS];
+    list_arrays(m, arrays);
+    for (int k = 0; k < MODES_ARRAYS; ++k) {
+        *arrays[k].data = se3di_alloc(&m->allocator, arrays[k].count, sizeof(double));
+        if (!*arrays[k].data) {
+            return SE3D_ERR_NO_MEMORY;
         }
     }
-    return !(largest(D, f * f) > 0.0) && skew <= 1e-11 * size;
+    m->quantity = se3di_alloc(&m->allocator, m->outputs, sizeof *m->quantity);
+    m->free = se3di_alloc(&m->allocator, m->bodies, sizeof *m->free);
+    return m->quantity && m->free ? SE3D_OK : SE3D_ERR_NO_MEMORY;
 }
 
-static void add_mode(se3di_eigen *e, double re, double im, const double *y_re, const double *y_im)
+/* row [f] = Z g */
+static void fill_row(const se3di_linear *linear, const se3di_modes_port *port, double *row)
 {
-    size_t f = (size_t)e->f;
-    size_t k = (size_t)e->count++;
-    while (k > 0 && se3di_hypot(e->re[k - 1], e->im[k - 1]) > se3di_hypot(re, im)) {
-        e->re[k] = e->re[k - 1];
-        e->im[k] = e->im[k - 1];
-        memcpy(e->y_re + k * f, e->y_re + (k - 1) * f, f * sizeof *y_re);
-        memcpy(e->y_im + k * f, e->y_im + (k - 1) * f, f * sizeof *y_re);
-        --k;
+    const se3di_assembly *assembly = &linear->equations->assembly;
+    const int32_t free = assembly->free_index[port->body];
+    double g[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    double local[3];
+    se3di_mul_transposed(assembly->model->frames[port->body].A, port->direction, local);
+    if (port->turns) {
+        se3di_copy(local, g + 3);
+    } else {
+        se3di_copy(local, g);
+        se3di_cross(port->point, local, g + 3);
     }
-    e->re[k] = re;
-    e->im[k] = im;
-    memcpy(e->y_re + k * f, y_re, f * sizeof *y_re);
-    memset(e->y_im + k * f, 0, f * sizeof *y_re);
-    if (y_im) {
-        memcpy(e->y_im + k * f, y_im, f * sizeof *y_re);
+    for (size_t r = 0; r < (size_t)linear->freedoms; ++r) {
+        row[r] = 0.0;
+        for (size_t c = 0; c < 6 && free >= 0; ++c) {
+            row[r] += linear->Z[r * (size_t)linear->n + 6 * (size_t)free + c] * g[c];
+        }
     }
 }
 
-/* X <- L^-1 X on the columns of a row-major X [f f]. */
-static void solve_lower(size_t f, const double *L, double *X)
+/* A = [0 I; -M^-1 K, -M^-1 D], B = [0; M^-1 b], column by column. */
+static se3d_status fill_state_space(se3di_modes *m)
 {
-    for (size_t r = 0; r < f; ++r) {
-        for (size_t k = 0; k < r; ++k) {
-            for (size_t c = 0; c < f; ++c) {
-                X[r * f + c] -= L[r * f + k] * X[k * f + c];
+    size_t f = m->f;
+    size_t count = f * f + f;
+    double *LU = se3di_alloc(&m->allocator, count, sizeof *LU);
+    int32_t *pivot = se3di_alloc(&m->allocator, f, sizeof *pivot);
+    se3d_status status = LU && pivot ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    if (status >= 0) {
+        memcpy(LU, m->M, f * f * sizeof *LU);
+        status = se3di_dense_lu_factor((int32_t)f, LU, pivot);
+    }
+    for (size_t c = 0; status >= 0 && c < 2 * f + m->inputs; ++c) {
+        double *x = LU + f * f;
+        for (size_t r = 0; r < f; ++r) {
+            x[r] = c < f       ? -m->K[r * f + c]
+                   : c < 2 * f ? -m->D[r * f + c - f]
+                               : m->b[(c - 2 * f) * f + r];
+        }
+        se3di_dense_lu_solve((int32_t)f, LU, pivot, x);
+        for (size_t r = 0; r < f; ++r) {
+            if (c < 2 * f) {
+                m->A[(f + r) * 2 * f + c] = x[r];
+            } else {
+                m->B[(c - 2 * f) * 2 * f + f + r] = x[r];
             }
         }
-        for (size_t c = 0; c < f; ++c) {
-            X[r * f + c] /= L[r * f + r];
+    }
+    for (size_t r = 0; status >= 0 && r < f; ++r) {
+        m->A[r * 2 * f + f + r] = 1.0;
+    }
+    se3di_free(&m->allocator, LU, count, sizeof *LU);
+    se3di_free(&m->allocator, pivot, f, sizeof *pivot);
+    return status;
+}
+
+/* x [6] of one body, ground frame, of a real vector over freedoms. */
+static void expand(const se3di_modes *m, const double *y, size_t body, double x[6])
+{
+    double local[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    for (size_t r = 0; r < m->f && m->free[body] >= 0; ++r) {
+        for (size_t c = 0; c < 6; ++c) {
+            local[c] += m->Z[r * m->n + 6 * (size_t)m->free[body] + c] * y[r];
+        }
+    }
+    se3di_mul(m->rotation + 9 * body, local, x);
+    se3di_mul(m->rotation + 9 * body, local + 3, x + 3);
+}
+
+/* The largest component of mode k, as a complex number. */
+static void find_largest(const se3di_modes *m, size_t k, double scale[2])
+{
+    double best = 0.0;
+    scale[0] = 1.0;
+    scale[1] = 0.0;
+    for (size_t body = 0; body < m->bodies; ++body) {
+        double re[6], im[6];
+        expand(m, m->eigen.y_re + k * m->f, body, re);
+        expand(m, m->eigen.y_im + k * m->f, body, im);
+        for (int c = 0; c < 6; ++c) {
+            double size = se3di_hypot(re[c], im[c]);
+            if (size > best * (1.0 + 1e-9)) {
+                best = size;
+                scale[0] = re[c];
+                scale[1] = im[c];
+            }
         }
     }
 }
 
-static void transpose(size_t f, double *X)
+static se3d_status fill(const se3di_linear *linear, const se3di_modes_port *ports, se3di_modes *m)
 {
-    for (size_t r = 0; r < f; ++r) {
-        for (size_t c = 0; c < r; ++c) {
-            double kept = X[r * f + c];
-            X[r * f + c] = X[c * f + r];
-            X[c * f + r] = kept;
-        }
+    size_t f = m->f;
+    const se3di_assembly *assembly = &linear->equations->assembly;
+    memcpy(m->M, linear->Mr, f * f * sizeof *m->M);
+    memcpy(m->D, linear->Dr, f * f * sizeof *m->D);
+    memcpy(m->K, linear->Kr, f * f * sizeof *m->K);
+    memcpy(m->Z, linear->Z, f * m->n * sizeof *m->Z);
+    for (size_t k = 0; k < m->bodies; ++k) {
+        m->free[k] = assembly->free_index[k];
+        memcpy(m->rotation + 9 * k, assembly->model->frames[k].A, 9 * sizeof *m->rotation);
     }
-}
-
-/* x <- L^-T x */
-static void solve_upper(size_t f, const double *L, double *x)
-{
-    for (size_t r = f; r-- > 0;) {
-        for (size_t k = r + 1; k < f; ++k) {
-            x[r] -= L[k * f + r] * x[k];
-        }
-        x[r] /= L[r * f + r];
+    for (size_t k = 0; k < m->inputs; ++k) {
+        fill_row(linear, &ports[k], m->b + k * f);
     }
-}
-
-/* X <- L^-1 X L^-T */
-static void reduce(size_t f, const double *L, double *X)
-{
-    solve_lower(f, L, X);
-    transpose(f, X);
-    solve_lower(f, L, X);
-    transpose(f, X);
-}
-
-/* s^2 = -mu: L^-1 K L^-T v = mu v with M = L L^T, y = L^-T v. */
-static se3d_status solve_conservative(const se3d_allocator *allocator, const double *L,
-                                      const double *K, double *work, se3di_eigen *e)
-{
-    size_t f = (size_t)e->f;
-    double *S = work;
-    double *mu = work + f * f;
-    memcpy(S, K, f * f * sizeof *S);
-    reduce(f, L, S);
-    SE3DI_TRY(se3di_symmetric_eigen(allocator, e->f, S, mu));
-    double noise = 4e-16 * (double)f * fmax(fabs(mu[0]), fabs(mu[f - 1]));
-    for (size_t k = 0; k < f; ++k) {
-        double *y = S + k * f;
-        solve_upper(f, L, y);
-        double root = fabs(mu[k]) > noise ? sqrt(fabs(mu[k])) : 0.0;
-        if (mu[k] < -noise) {
-            add_mode(e, -root, 0.0, y, NULL);
-            add_mode(e, root, 0.0, y, NULL);
-        } else {
-            add_mode(e, 0.0, root, y, NULL);
-        }
+    for (size_t k = 0; k < m->outputs; ++k) {
+        fill_row(linear, &ports[m->inputs + k], m->c + k * f);
+    }
+    SE3DI_TRY(fill_state_space(m));
+    SE3DI_TRY(se3di_eigen_solve(&m->allocator, (int32_t)f, m->M, m->D, m->K, &m->eigen));
+    for (size_t k = 0; k < (size_t)m->eigen.count; ++k) {
+        find_largest(m, k, m->largest + 2 * k);
     }
     return SE3D_OK;
 }
 
-/* With M = L L^T, y = L^-T p and p' = w q, w the size of the frequencies:
- *
- *     [0                  w I          ] [p]     [p]
- *     [-L^-1 K L^-T / w  -L^-1 D L^-T  ] [q] = s [q] */
-static void fill_state_matrix(size_t f, const double *D, const double *K, double *A)
+/* Linearise and keep what the queries need. */
+static se3d_status make(se3di_modes *m, se3di_equations *equations, const se3di_modes_port *ports,
+                        const int32_t *quantity)
 {
-    double w = sqrt(largest(K, f * f));
-    w = w > 0.0 ? w : fmax(largest(D, f * f), 1e-300);
-    for (size_t r = 0; r < f; ++r) {
-        double *upper = A + r * 2 * f;
-        double *lower = A + (f + r) * 2 * f;
-        memset(upper, 0, 2 * f * sizeof *upper);
-        upper[f + r] = w;
-        for (size_t c = 0; c < f; ++c) {
-            lower[c] = -K[r * f + c] / w;
-            lower[f + c] = -D[r * f + c];
-        }
-    }
-}
-
-static se3d_status solve_damped(const se3d_allocator *allocator, const double *L, const double *D,
-                                const double *K, double *work, se3di_eigen *e)
-{
-    size_t f = (size_t)e->f;
-    double *D_reduced = work;
-    double *K_reduced = work + f * f;
-    double *A = work + 2 * f * f;
-    double *V = A + 4 * f * f;
-    double *re = V + 4 * f * f;
-    double *im = re + 2 * f;
-    memcpy(D_reduced, D, f * f * sizeof *D);
-    memcpy(K_reduced, K, f * f * sizeof *K);
-    reduce(f, L, D_reduced);
-    reduce(f, L, K_reduced);
-    fill_state_matrix(f, D_reduced, K_reduced, A);
-    SE3DI_TRY(se3di_general_eigen(allocator, 2 * e->f, A, re, im, V));
-    for (size_t k = 0; k < 2 * f; ++k) {
-        double *y_im = im[k] > 0.0 ? V + (k + 1) * 2 * f : NULL;
-        if (!isfinite(re[k]) || !isfinite(im[k]) || im[k] < 0.0) {
-            continue;
-        }
-        solve_upper(f, L, V + k * 2 * f);
-        if (y_im) {
-            solve_upper(f, L, y_im);
-        }
-        add_mode(e, re[k], im[k], V + k * 2 * f, y_im);
-    }
-    return SE3D_OK;
-}
-
-/* M = L L^T, zeros above the diagonal of L. */
-static se3d_status factor_mass(int32_t freedoms, const double *M, double *L)
-{
-    size_t f = (size_t)freedoms;
-    memcpy(L, M, f * f * sizeof *L);
-    SE3DI_TRY(se3di_dense_cholesky_factor(freedoms, L));
-    for (size_t r = 0; r < f; ++r) {
-        memset(L + r * f + r + 1, 0, (f - r - 1) * sizeof *L);
-    }
-    return SE3D_OK;
-}
-
-void se3di_eigen_destroy(const se3d_allocator *allocator, se3di_eigen *e)
-{
-    size_t f = (size_t)e->f;
-    se3di_free(allocator, e->re, 4 * f + 4 * f * f, sizeof(double));
-    memset(e, 0, sizeof *e);
-}
-
-se3d_status se3di_eigen_solve(const se3d_allocator *allocator, int32_t freedoms, const double *M,
-                              const double *D, const double *K, se3di_eigen *e)
-{
-    size_t f = (size_t)freedoms;
-    *e = (se3di_eigen){.f = freedoms};
-    if (f == 0) {
-        return SE3D_OK;
-    }
-    size_t work_count = 11 * f * f + 4 * f;
-    double *work = se3di_alloc(allocator, work_count, sizeof *work);
-    e->re = se3di_alloc(allocator, 4 * f + 4 * f * f, sizeof *e->re);
-    se3d_status status = work && e->re ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    const double time = equations->assembly.model->time;
+    se3di_linear linear;
+    SE3DI_TRY(se3di_ranks_decide(equations, time));
+    SE3DI_TRY(se3di_acceleration_solve(equations, time));
+    SE3DI_TRY(se3di_linear_init(&linear, equations));
+    se3d_status status = se3di_steady_linearise(&linear, time);
     if (status >= 0) {
-        e->im = e->re + 2 * f;
-        e->y_re = e->re + 4 * f;
-        e->y_im = e->y_re + 2 * f * f;
-        status = factor_mass(e->f, M, work);
+        m->f = (size_t)linear.freedoms;
+        m->n = (size_t)linear.n;
+        status = allocate(m);
     }
     if (status >= 0) {
-        status = is_conservative(f, D, K) ? solve_conservative(allocator, work, K, work + f * f, e)
-                                          : solve_damped(allocator, work, D, K, work + f * f, e);
+        memcpy(m->quantity, quantity, m->outputs * sizeof *quantity);
+        status = fill(&linear, ports, m);
     }
-    se3di_free(allocator, work, work_count, sizeof *work);
     if (status < 0) {
-        se3di_eigen_destroy(allocator, e);
+        se3di_modes_destroy(m);
     }
+    se3di_linear_destroy(&linear);
+    return status;
+}
+
+se3d_status se3di_modes_init(se3di_modes *modes, se3di_model *model, se3di_error *error,
+                             size_t inputs, size_t outputs, const se3di_modes_port *ports,
+                             const int32_t *quantity)
+{
+    se3di_equations equations;
+    *modes = (se3di_modes){.allocator = model->allocator,
+                           .inputs = inputs,
+                           .outputs = outputs,
+                           .bodies = model->body_slots.count};
+    SE3DI_TRY(se3di_equations_init(&equations, model, &se3di_formulation_romega, error));
+    se3di_error_clear(error);
+    const se3d_status status = make(modes, &equations, ports, quantity);
+    se3di_equations_destroy(&equations);
+    return status;
+}
+
+void se3di_modes_shape(const se3di_modes *modes, size_t k, size_t body, double real[6],
+                       double imaginary[6])
+{
+    double re[6], im[6];
+    const double *scale = modes->largest + 2 * k;
+    expand(modes, modes->eigen.y_re + k * modes->f, body, re);
+    expand(modes, modes->eigen.y_im + k * modes->f, body, im);
+    double square = scale[0] * scale[0] + scale[1] * scale[1];
+    for (int c = 0; c < 6; ++c) {
+        real[c] = (re[c] * scale[0] + im[c] * scale[1]) / square;
+        imaginary[c] = (im[c] * scale[0] - re[c] * scale[1]) / square;
+    }
+}
+
+/* Level of an output: 0 position, 1 velocity, 2 acceleration. */
+static int level_of(const se3di_modes *m, size_t output)
+{
+    return m->quantity[output] % 3;
+}
+
+static double c_entry(const se3di_modes *m, size_t output, size_t column)
+{
+    size_t f = m->f;
+    int level = level_of(m, output);
+    double sum = 0.0;
+    if (level < 2) {
+        size_t begin = level == 0 ? 0 : f;
+        return column >= begin && column < begin + f ? m->c[output * f + column - begin] : 0.0;
+    }
+    for (size_t r = 0; r < f; ++r) {
+        sum += m->c[output * f + r] * m->A[(f + r) * 2 * f + column];
+    }
+    return sum;
+}
+
+static double d_entry(const se3di_modes *m, size_t output, size_t input)
+{
+    double sum = 0.0;
+    for (size_t r = 0; level_of(m, output) == 2 && r < m->f; ++r) {
+        sum += m->c[output * m->f + r] * m->B[input * 2 * m->f + m->f + r];
+    }
+    return sum;
+}
+
+double se3di_modes_entry(const se3di_modes *m, int32_t matrix, size_t r, size_t c)
+{
+    size_t f = m->f;
+    switch (matrix) {
+    case SE3D_MODES_A:
+        return m->A[r * 2 * f + c];
+    case SE3D_MODES_B:
+        return m->B[c * 2 * f + r];
+    case SE3D_MODES_C:
+        return c_entry(m, r, c);
+    case SE3D_MODES_D:
+        return d_entry(m, r, c);
+    case SE3D_MODES_MASS:
+        return m->M[r * f + c];
+    case SE3D_MODES_DAMPING:
+        return m->D[r * f + c];
+    case SE3D_MODES_STIFFNESS:
+        return m->K[r * f + c];
+    default:
+        return m->Z[c * m->n + r];
+    }
+}
+
+void se3di_modes_size(const se3di_modes *modes, int32_t matrix, size_t size[2])
+{
+    const size_t f = modes->f;
+    const size_t sizes[8][2] = {{2 * f, 2 * f},
+                                {2 * f, modes->inputs},
+                                {modes->outputs, 2 * f},
+                                {modes->outputs, modes->inputs},
+                                {f, f},
+                                {f, f},
+                                {f, f},
+                                {modes->n, f}};
+    memcpy(size, sizes[matrix], sizeof sizes[matrix]);
+}
+
+/* (K - w^2 M + i w D) (x + i z) = b as a real system of 2 f. */
+static se3d_status solve_frequency(const se3di_modes *m, size_t input, double w, double *S,
+                                   double *x, int32_t *pivot)
+{
+    size_t f = m->f;
+    for (size_t r = 0; r < f; ++r) {
+        for (size_t c = 0; c < f; ++c) {
+            double stiffness = m->K[r * f + c] - w * w * m->M[r * f + c];
+            double damping = w * m->D[r * f + c];
+            S[r * 2 * f + c] = S[(f + r) * 2 * f + f + c] = stiffness;
+            S[r * 2 * f + f + c] = -damping;
+            S[(f + r) * 2 * f + c] = damping;
+        }
+        x[r] = m->b[input * f + r];
+        x[f + r] = 0.0;
+    }
+    SE3DI_TRY(se3di_dense_lu_factor((int32_t)(2 * f), S, pivot));
+    se3di_dense_lu_solve((int32_t)(2 * f), S, pivot, x);
+    return SE3D_OK;
+}
+
+se3d_status se3di_modes_transfer(const se3di_modes *modes, size_t input, size_t output, double w,
+                                 double h[2])
+{
+    size_t f = modes->f;
+    size_t count = 4 * f * f + 2 * f;
+    double *S = se3di_alloc(&modes->allocator, count, sizeof *S);
+    int32_t *pivot = se3di_alloc(&modes->allocator, 2 * f, sizeof *pivot);
+    se3d_status status = S && pivot ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    double g[2] = {0.0, 0.0};
+    if (status >= 0 && f > 0) {
+        double *x = S + 4 * f * f;
+        status = solve_frequency(modes, input, w, S, x, pivot);
+        for (size_t r = 0; status >= 0 && r < f; ++r) {
+            g[0] += modes->c[output * f + r] * x[r];
+            g[1] += modes->c[output * f + r] * x[f + r];
+        }
+    }
+    se3di_free(&modes->allocator, S, count, sizeof *S);
+    se3di_free(&modes->allocator, pivot, 2 * f, sizeof *pivot);
+    int level = level_of(modes, output); /* times (i w)^level */
+    h[0] = level == 0 ? g[0] : level == 1 ? -w * g[1] : -w * w * g[0];
+    h[1] = level == 0 ? g[1] : level == 1 ? w * g[0] : -w * w * g[1];
     return status;
 }

@@ -4,10 +4,13 @@
 #include "math/vec3.h"
 
 #include <assert.h>
+#include <string.h>
 
-void se3di_draft_init(se3di_draft *draft, const char *type, uint32_t body_i, uint32_t body_j)
+void se3di_draft_init(se3di_draft *draft, const char *type, const char *name, uint32_t body_i,
+                      uint32_t body_j)
 {
     *draft = (se3di_draft){.constraint = {.type = type, .body_count = 2, .angle = -1}};
+    memcpy(&draft->constraint.name, &name, sizeof name); /* copied by the model, never written */
     draft->constraint.bodies[0] = body_i;
     draft->constraint.bodies[1] = body_j;
     for (int k = 0; k < SE3D_COUPLER_TERMS_MAX; ++k) {

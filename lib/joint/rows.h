@@ -6,8 +6,10 @@
 
 #include "model/model.h"
 
-/* Begin a draft between two bodies: no rows, no angle, refers to no joints and no functions. */
-void se3di_draft_init(se3di_draft *draft, const char *type, uint32_t body_i, uint32_t body_j);
+/* Begin a draft between two bodies: no rows, no angle, refers to no joints and no functions. The
+ * name (NULL: none) stays the caller's. */
+void se3di_draft_init(se3di_draft *draft, const char *type, const char *name, uint32_t body_i,
+                      uint32_t body_j);
 
 /* Add an equation `sum of its terms = value`; names are static. */
 se3di_row *se3di_draft_add_row(se3di_draft *draft, const char *name, double value);

@@ -132,6 +132,19 @@ static inline void se3di_perpendicular(const double axis[3], double out[3])
     se3di_scale(1.0 / se3di_norm(e), e, out);
 }
 
+/* The unit vector along a finite one of any size. Returns 0 if it is zero. */
+static inline int se3di_unit(const double a[3], double out[3])
+{
+    const double largest = fmax(fabs(a[0]), fmax(fabs(a[1]), fabs(a[2])));
+    if (!(largest >= 1e-150)) {
+        return 0;
+    }
+    double scaled[3];
+    se3di_scale(1.0 / largest, a, scaled);
+    se3di_scale(1.0 / se3di_norm(scaled), scaled, out);
+    return 1;
+}
+
 static inline int se3di_is_finite(const double *values, int count)
 {
     for (int k = 0; k < count; ++k) {

@@ -100,6 +100,15 @@ void se3di_lattice_fill(se3di_particles *set, const se3d_fill_def *def, uint32_t
     }
 }
 
+double se3di_fill_most(const se3d_fill_def *def)
+{
+    double most = 1.0;
+    for (int a = 0; a < 3; ++a) {
+        most *= (def->upper[a] - def->lower[a]) / def->radius_min;
+    }
+    return most / (4.0 / 3.0 * 3.1415926535897932384626433832795);
+}
+
 /* Cells over the region with chains of the particles in them. */
 typedef struct packing {
     se3di_particles *set;

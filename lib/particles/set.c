@@ -42,6 +42,15 @@ static void aligned_free(const se3d_allocator *allocator, se3di_aligned *memory)
     *memory = (se3di_aligned){NULL, NULL, 0};
 }
 
+const se3di_kernels *se3di_particle_kernels_choose(int32_t portable)
+{
+    const se3di_kernels *best = portable ? NULL : se3di_particle_kernels_avx512();
+    if (!best && !portable) {
+        best = se3di_particle_kernels_avx2();
+    }
+    return best ? best : se3di_particle_kernels_portable();
+}
+
 void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator)
 {
     memset(set, 0, sizeof *set);
@@ -372,4 +381,22 @@ void se3di_particles_replace(se3di_particles *set, const se3di_particles *other)
     *set = *other;
     set->next = next;
     set->name = name;
+}
+
+se3d_status se3di_particles_remove(se3di_particles *set, size_t count, const uint32_t *ids)
+{
+    const size_t size = set->count;
+    unsigned char *keep = se3di_alloc(&set->allocator, size, 1);
+    if (!keep || se3di_particles_collect(set) < 0) {
+        se3di_free(&set->allocator, keep, size, 1);
+        return SE3D_ERR_NO_MEMORY;
+    }
+    memset(keep, 1, size);
+    for (size_t k = 0; k < count; ++k) {
+        keep[set->index_of[ids[k]]] = 0;
+    }
+    se3di_particles_filter(set, keep);
+    se3di_free(&set->allocator, keep, size, 1);
+    set->force_valid = 0;
+    return SE3D_OK;
 }

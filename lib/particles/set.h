@@ -358,6 +358,8 @@ const se3di_kernels *se3di_particle_kernels_portable(void); /* never NULL */
 const se3di_kernels *se3di_particle_kernels_fma(void);
 const se3di_kernels *se3di_particle_kernels_avx2(void);
 const se3di_kernels *se3di_particle_kernels_avx512(void);
+/* The fastest of the machine's; the portable ones where that is wanted. */
+const se3di_kernels *se3di_particle_kernels_choose(int32_t portable);
 
 /* Threads that have something to do. One number for everything: a pool whose size changes is made
  * anew each time. */
@@ -387,6 +389,8 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
 /* Remove where keep[index] is 0; the order of the others stays. The history must have been
  * collected. */
 void se3di_particles_filter(se3di_particles *set, const unsigned char *keep);
+/* Remove `count` live particles by their ids. */
+se3d_status se3di_particles_remove(se3di_particles *set, size_t count, const uint32_t *ids);
 /* Grow an aligned block to hold `bytes`, keeping the first `keep` bytes. */
 se3d_status se3di_aligned_reserve(const se3d_allocator *allocator, se3di_aligned *memory,
                                   size_t bytes, size_t keep);

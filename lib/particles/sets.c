@@ -137,6 +137,27 @@ double se3di_particles_want_step(const se3di_particles *set, const se3di_model *
     return isfinite(safe) ? safe : 0.0;
 }
 
+se3d_status se3di_particles_run(se3di_particles *set, const se3di_model *model, double h,
+                                double length, size_t steps, se3di_error *error)
+{
+    SE3DI_TRY(se3di_particles_check_step(set, model, h, error));
+    SE3DI_TRY(se3di_particles_place(set, model, error));
+    const int varies = set->source_count > 0 || model->gravity_function[0] >= 0 ||
+                       model->gravity_function[1] >= 0 || model->gravity_function[2] >= 0;
+    size_t done = 0;
+    do {
+        const size_t now = varies ? 1 : steps;
+        SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
+        SE3DI_TRY(se3di_particles_aim(set, model, length, error));
+        const se3d_status status = se3di_particles_advance(set, length, now, NULL);
+        if (status < 0) {
+            return se3di_particles_report(set, status, error);
+        }
+        done += now;
+    } while (done < steps);
+    return SE3D_OK;
+}
+
 static se3d_status begin(se3di_particles *set, const se3di_model *model, double h,
                          se3di_error *error)
 {

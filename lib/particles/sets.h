@@ -24,6 +24,11 @@ se3d_status se3di_particles_check_step(const se3di_particles *set, const se3di_m
 se3d_status se3di_particles_report(const se3di_particles *set, se3d_status status,
                                    se3di_error *error);
 
+/* Steps of length `length` of one set beside resting bodies; h is the one that it wanted, which is
+ * looked at. */
+se3d_status se3di_particles_run(se3di_particles *set, const se3di_model *model, double h,
+                                double length, size_t steps, se3di_error *error);
+
 /* The sets at the model's time, with forces that belong to the state. */
 se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error);
 /* Keep the sets as they are before a step; bring them back. */

@@ -275,12 +275,14 @@ se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model)
     return SE3D_OK;
 }
 
-se3d_status se3di_particles_hold(se3di_particles *set, const se3di_model *model, uint32_t material,
-                                 uint32_t *index, int *first)
+se3d_status se3di_particles_hold(se3di_particles *set, se3di_model *model, uint32_t material,
+                                 uint32_t *index)
 {
     SE3DI_TRY(use(set, model, material, index));
-    *first = !set->stuffs[*index].held;
-    set->stuffs[*index].held = 1;
-    set->topology_version = *first ? 0 : set->topology_version; /* pairs are missing */
+    if (!set->stuffs[*index].held) {
+        set->stuffs[*index].held = 1;
+        set->topology_version = 0; /* pairs are missing */
+        ++model->materials[material].users;
+    }
     return SE3D_OK;
 }

@@ -11,9 +11,9 @@ void se3di_particles_adopt(se3di_particles *set, const se3di_model *model);
 se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model);
 /* The mass of the lightest body that gives way to particles; infinite if none does. */
 double se3di_particles_lightest_body(const se3di_particles *set, const se3di_model *model);
-/* The index in the set's table of a material of the model, which is held from now on. Its users
- * must be counted where *first is 1. */
-se3d_status se3di_particles_hold(se3di_particles *set, const se3di_model *model, uint32_t material,
-                                 uint32_t *index, int *first);
+/* The index in the set's table of a material of the model, which is held from now on and counted as
+ * used. */
+se3d_status se3di_particles_hold(se3di_particles *set, se3di_model *model, uint32_t material,
+                                 uint32_t *index);
 
 #endif

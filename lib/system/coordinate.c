@@ -1,25 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "system/coordinate.h"
 
-#include "joint/rows.h"
-
-#include <string.h>
-
-int se3di_coordinate_term(const se3di_model *model, uint32_t joint, int32_t coordinate,
-                          se3di_term *term)
-{
-    const se3di_constraint *constraint = &model->constraints[joint];
-    if (coordinate == SE3D_JOINT_COORDINATE_ANGLE && constraint->angle >= 0) {
-        *term = model->angles[constraint->angle].term;
-        term->angle = constraint->angle;
-        return 1;
-    }
-    if (coordinate == SE3D_JOINT_COORDINATE_DISPLACEMENT && constraint->has_displacement) {
-        se3di_displacement_term_init(term, &constraint->frames, constraint->bodies);
-        return 1;
-    }
-    return 0;
-}
+#include "joint/equation.h"
 
 se3d_status se3di_check_coordinate(se3d_system *system, const char *what, uint32_t joint,
                                    int32_t coordinate, se3di_term *term)

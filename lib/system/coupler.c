@@ -2,33 +2,17 @@
 /* Public layer: linear relations of joint coordinates (coupler, gear, rack and pinion). One row
  * that copies the coordinates of the joints as terms; angles keep the joints' turn counters, so
  * that the relation holds over any number of turns.  docs/theory/joints.md */
-#include "joint/rows.h"
-#include "math/vec3.h"
-#include "primitive/turn_counter.h"
+#include "joint/draft.h"
 #include "system/coordinate.h"
 #include "system/system_internal.h"
 
+#include <math.h>
 #include <stdio.h>
 
 void se3d_coupler_def_init(se3d_coupler_def *def, size_t size)
 {
     se3d_coupler_def full = {.struct_size = size};
     se3di_def_init(def, size, &full, sizeof full);
-}
-
-/* Each body is listed once, in the order of the joints; reactions are reported at the points of the
- * first joint. */
-static void add_bodies(se3di_constraint *constraint, const se3di_constraint *joint)
-{
-    for (uint32_t b = 0; b < 2; ++b) {
-        uint32_t k = 0;
-        while (k < constraint->body_count && constraint->bodies[k] != joint->bodies[b]) {
-            ++k;
-        }
-        if (k == constraint->body_count) {
-            constraint->bodies[constraint->body_count++] = joint->bodies[b];
-        }
-    }
 }
 
 static se3d_status check_term(se3d_system *system, const se3d_coupler_def *def, size_t k,
@@ -55,13 +39,7 @@ static se3d_status check_term(se3d_system *system, const se3d_coupler_def *def, 
                                  i, k);
         }
     }
-    const se3di_constraint *source = &system->model.constraints[joint];
-    if (k == 0) {
-        draft->constraint.frames = source->frames;
-    }
-    add_bodies(&draft->constraint, source);
-    draft->constraint.joints[k] = (int32_t)joint;
-    se3di_draft_add_term(draft, &term, def->ratio[k]);
+    se3di_coupler_add_term(&system->model, joint, &term, def->ratio[k], draft);
     return SE3D_OK;
 }
 
@@ -75,10 +53,7 @@ static se3d_status draft_build(se3d_system *system, const char *type, const se3d
         return SE3DI_FAIL_OF(system, "count", SE3D_ERR_INVALID_ARGUMENT, " = %zu, must be 1 to %d",
                              def->count, SE3D_COUPLER_TERMS_MAX);
     }
-    se3di_draft_init(draft, type, 0, 0);
-    draft->constraint.body_count = 0;
-    draft->constraint.name = (char *)(uintptr_t)def->name; /* copied, never written to */
-    se3di_draft_add_row(draft, type, 0.0);
+    se3di_coupler_draft(type, def->name, draft);
     for (size_t k = 0; k < def->count; ++k) {
         SE3DI_TRY(check_term(system, def, k, draft));
     }
@@ -118,13 +93,12 @@ static se3d_status create_pair(se3d_system *system, const char *type, const se3d
 {
     se3di_draft draft;
     SE3DI_TRY(draft_build(system, type, def, &draft));
-    double value = se3di_term_value(&system->model, &draft.terms[0]) +
-                   se3di_term_value(&system->model, &draft.terms[1]);
+    se3di_draft_close(&system->model, &draft);
+    const double value = draft.rows[0].value;
     if (!isfinite(value)) {
         return SE3DI_FAIL(system, SE3D_ERR_NOT_FINITE, "the present value of a %s is %g", type,
                           value);
     }
-    draft.rows[0].value = value;
     return se3di_constraint_add(system, &draft, joint);
 }
 

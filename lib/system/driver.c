@@ -3,8 +3,8 @@
  * is taken modulo 2 pi: regular at every angle, no constraint is ever exchanged) or displacement.
  * The effort is -lambda, because the driver's virtual work on body j is -lambda per unit of the
  * coordinate.  docs/theory/reactions.md */
-#include "joint/rows.h"
-#include "math/vec3.h"
+#include "joint/draft.h"
+#include "joint/equation.h"
 #include "system/coordinate.h"
 #include "system/system_internal.h"
 
@@ -33,18 +33,9 @@ se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_def *user,
     SE3DI_TRY(se3di_check_coordinate(system, "coordinate", joint, def.coordinate, &term));
     SE3DI_TRY(se3di_find_function(system, "function", def.function, 1, &function));
     SE3DI_TRY(se3di_check_prescribed(system, def.value, function));
-    const se3di_constraint *source = &system->model.constraints[joint];
-    int is_angle = def.coordinate == SE3D_JOINT_COORDINATE_ANGLE;
     se3di_draft draft;
-    se3di_draft_init(&draft, "driver", source->bodies[0], source->bodies[1]);
-    draft.constraint.name = (char *)(uintptr_t)def.name; /* copied, never written to */
-    draft.constraint.frames = source->frames;
-    draft.constraint.joints[0] = (int32_t)joint;
-    draft.constraint.has_value = 1;
-    se3di_row *row = se3di_draft_add_row(&draft, is_angle ? "angle" : "displacement", def.value);
-    row->function = function;
-    row->wrap = is_angle;
-    se3di_draft_add_term(&draft, &term, 1.0);
+    se3di_driver_draft(&system->model, joint, def.coordinate, def.name,
+                       (se3di_prescribed){def.value, function}, &draft);
     return se3di_constraint_add(system, &draft, driver);
 }
 

@@ -1,24 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The particle sets that a system owns: found by name, cloned, saved and destroyed with it. */
+#include "particles/chain.h"
 #include "particles/sync.h"
 #include "system/particles.h"
-
-#include <string.h>
 
 static se3d_particles *owner_of(se3di_particles *set)
 {
     return (se3d_particles *)(void *)set;
-}
-
-void se3di_sets_link(se3d_particles *particles)
-{
-    se3di_model *model = &particles->system->model;
-    se3di_particles **last = &model->sets;
-    while (*last) {
-        last = &(*last)->next;
-    }
-    *last = &particles->set;
-    ++model->topology_version; /* the method may depend on it, and snapshots do */
 }
 
 static void unlink_copy(se3d_particles *particles)
@@ -30,19 +18,12 @@ static void unlink_copy(se3d_particles *particles)
     *link = particles->next;
 }
 
-void se3di_sets_unlink(se3d_particles *particles)
+void se3di_owner_unlink(se3d_particles *particles)
 {
-    se3di_model *model = &particles->system->model;
     if (particles->is_copy) {
         unlink_copy(particles);
-        return;
-    }
-    for (se3di_particles **link = &model->sets; *link; link = &(*link)->next) {
-        if (*link == &particles->set) {
-            *link = particles->set.next;
-            ++model->topology_version;
-            return;
-        }
+    } else {
+        se3di_sets_unlink(&particles->system->model, &particles->set);
     }
 }
 
@@ -54,7 +35,7 @@ void se3di_copies_orphan(se3d_system *system)
     system->copies = NULL;
 }
 
-void se3di_sets_destroy(se3di_model *model)
+void se3di_owners_destroy(se3di_model *model)
 {
     while (model->sets) {
         se3d_particles *particles = owner_of(model->sets);
@@ -64,7 +45,7 @@ void se3di_sets_destroy(se3di_model *model)
     }
 }
 
-se3d_status se3di_sets_clone(const se3d_system *system, se3d_system *copy)
+se3d_status se3di_owners_clone(const se3d_system *system, se3d_system *copy)
 {
     const se3d_allocator *allocator = &copy->model.allocator;
     se3di_particles **last = &copy->model.sets;
@@ -93,62 +74,13 @@ se3d_status se3di_sets_clone(const se3d_system *system, se3d_system *copy)
     return SE3D_OK;
 }
 
-void se3di_sets_forget(se3di_particles *saved, const se3d_allocator *allocator)
-{
-    while (saved) {
-        se3di_particles *set = saved;
-        saved = set->next;
-        se3di_particles_destroy(set);
-        se3di_free(allocator, set, 1, sizeof *set);
-    }
-}
-
-se3d_status se3di_sets_save(const se3di_particles *sets, const se3d_allocator *allocator,
-                            se3di_particles **saved)
-{
-    se3di_particles **last = saved;
-    *saved = NULL;
-    for (const se3di_particles *set = sets; set; set = set->next) {
-        se3di_particles *copy = se3di_alloc(allocator, 1, sizeof *copy);
-        if (!copy || se3di_particles_clone(set, copy) < 0) {
-            se3di_free(allocator, copy, 1, sizeof *copy);
-            se3di_sets_forget(*saved, allocator);
-            *saved = NULL;
-            return SE3D_ERR_NO_MEMORY;
-        }
-        *last = copy;
-        last = &copy->next;
-    }
-    return SE3D_OK;
-}
-
-void se3di_sets_take(se3di_model *model, se3di_particles *saved)
-{
-    for (se3di_particles *set = model->sets; set; set = set->next) {
-        se3di_particles *from = saved;
-        saved = from->next;
-        se3di_particles_replace(set, from);
-        se3di_free(&model->allocator, from, 1, sizeof *from);
-    }
-}
-
-static se3di_particles *find(const se3di_model *model, const char *name)
-{
-    for (se3di_particles *set = model->sets; set; set = set->next) {
-        if (set->name && strcmp(set->name, name) == 0) {
-            return set;
-        }
-    }
-    return NULL;
-}
-
 se3d_status se3di_check_particles_name(se3d_system *system, const char *name)
 {
     if (!name) {
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_check_name(system, name));
-    if (find(&system->model, name)) {
+    if (se3di_sets_find(&system->model, name)) {
         return SE3DI_FAIL_OF(system, "name", SE3D_ERR_INVALID_ARGUMENT,
                              " = \"%.64s\" is taken by other particles, must be unique", name);
     }
@@ -164,7 +96,7 @@ se3d_status se3d_particles_find(const se3d_system *system, const char *name,
     if (!system || !name || !particles) {
         return SE3D_ERR_NULL;
     }
-    se3di_particles *set = find(&system->model, name);
+    se3di_particles *set = se3di_sets_find(&system->model, name);
     *particles = set ? owner_of(set) : NULL;
     return set ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;
 }
@@ -199,10 +131,7 @@ se3d_status se3d_system_get_particles(const se3d_system *system, size_t index,
     if (!system || !particles) {
         return SE3D_ERR_NULL;
     }
-    se3di_particles *set = system->model.sets;
-    for (; set && index > 0; --index) {
-        set = set->next;
-    }
+    se3di_particles *set = se3di_sets_get(&system->model, index);
     *particles = set ? owner_of(set) : NULL;
     return set ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;
 }

@@ -2,10 +2,10 @@
 /* Particles: creation, bulk access, stepping. */
 #include "system/particles.h"
 
-#include "base/hash.h"
 #include "force/force.h"
 #include "math/vec3.h"
-#include "particles/flow.h"
+#include "particles/chain.h"
+#include "particles/energy.h"
 #include "particles/list.h"
 #include "particles/step.h"
 #include "particles/sync.h"
@@ -59,15 +59,6 @@ static se3d_status check_particles_def(se3d_system *system, const se3d_particles
     return check_domain(system, def);
 }
 
-static const se3di_kernels *choose_kernels(int32_t portable)
-{
-    const se3di_kernels *best = portable ? NULL : se3di_particle_kernels_avx512();
-    if (!best && !portable) {
-        best = se3di_particle_kernels_avx2();
-    }
-    return best ? best : se3di_particle_kernels_portable();
-}
-
 se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def *def,
                                   se3d_particles **out)
 {
@@ -93,7 +84,7 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
     particles->next = NULL;
     particles->is_copy = 0;
     set->threads = full.threads;
-    set->kernels = choose_kernels(full.portable);
+    set->kernels = se3di_particle_kernels_choose(full.portable);
     memcpy(set->boundary, full.boundary, sizeof set->boundary);
     memcpy(set->lower, full.lower, sizeof set->lower);
     memcpy(set->upper, full.upper, sizeof set->upper);
@@ -109,43 +100,19 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
             return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for the name of particles");
         }
     }
-    se3di_sets_link(particles);
+    se3di_sets_link(&system->model, set);
     *out = particles;
     return SE3D_OK;
-}
-
-/* Materials and functions know how many sets hold them. */
-void se3di_particles_count_users(se3d_particles *particles, int add)
-{
-    se3di_model *model = &particles->system->model;
-    for (size_t k = 0; k < particles->set.stuff_count; ++k) {
-        const se3di_stuff *stuff = &particles->set.stuffs[k];
-        if (stuff->held) {
-            uint32_t material = se3di_slots_find(&model->material_slots, stuff->handle.index1,
-                                                 stuff->handle.generation);
-            model->materials[material].users += add ? 1u : UINT32_MAX;
-        }
-    }
-    for (size_t k = 0; k < particles->set.source_count; ++k) {
-        se3di_handle handle = particles->set.sources[k].function;
-        uint32_t function =
-            se3di_slots_find(&model->function_slots, handle.index1, handle.generation);
-        if (function != SE3DI_NO_INDEX) {
-            model->functions[function].users += add ? 1u : UINT32_MAX;
-        }
-    }
 }
 
 se3d_status se3di_particles_use(se3d_particles *particles, se3d_material material, uint32_t *index)
 {
     se3d_system *system = particles->system;
     uint32_t dense;
-    int first = 0;
     SE3DI_TRY(se3di_find_material(system, "material", material, &dense));
-    if (se3di_particles_hold(&particles->set, &system->model, dense, index, &first) < 0) {
+    if (se3di_particles_hold(&particles->set, &system->model, dense, index) < 0) {
         return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a material");
     }
-    system->model.materials[dense].users += first ? 1u : 0u;
     return SE3D_OK;
 }
 
@@ -157,8 +124,8 @@ void se3d_particles_destroy(se3d_particles *particles)
     }
     const se3d_allocator allocator = particles->set.allocator;
     if (particles->system) {
-        se3di_particles_count_users(particles, 0);
-        se3di_sets_unlink(particles);
+        se3di_particles_count_users(&particles->set, &particles->system->model, 0);
+        se3di_owner_unlink(particles);
     }
     se3di_particles_destroy(&particles->set);
     se3di_free(&allocator, particles, 1, sizeof *particles);
@@ -187,7 +154,7 @@ se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles
     copy->is_copy = 1;
     copy->next = copy->system->copies;
     copy->system->copies = copy;
-    se3di_particles_count_users(copy, 1);
+    se3di_particles_count_users(&copy->set, &copy->system->model, 1);
     *out = copy;
     return SE3D_OK;
 }
@@ -205,9 +172,9 @@ se3d_status se3d_particles_restore(se3d_particles *particles, const se3d_particl
         return SE3DI_FAIL(particles->system, SE3D_ERR_NO_MEMORY,
                           "no memory to restore %zu particles", saved->set.count);
     }
-    se3di_particles_count_users(particles, 0);
+    se3di_particles_count_users(&particles->set, &particles->system->model, 0);
     se3di_particles_replace(&particles->set, &copy);
-    se3di_particles_count_users(particles, 1);
+    se3di_particles_count_users(&particles->set, &particles->system->model, 1);
     return SE3D_OK;
 }
 
@@ -303,19 +270,9 @@ se3d_status se3d_particles_remove(se3d_particles *particles, size_t count, const
     }
     SE3DI_TRY(se3di_check_pointer(particles->system, "ids", ids));
     SE3DI_TRY(check_ids(particles, count, ids));
-    size_t size = set->count;
-    unsigned char *keep = se3di_alloc(&set->allocator, size, 1);
-    if (!keep || se3di_particles_collect(set) < 0) {
-        se3di_free(&set->allocator, keep, size, 1);
+    if (se3di_particles_remove(set, count, ids) < 0) {
         return SE3DI_FAIL(particles->system, SE3D_ERR_NO_MEMORY, "no memory to remove particles");
     }
-    memset(keep, 1, size);
-    for (size_t k = 0; k < count; ++k) {
-        keep[set->index_of[ids[k]]] = 0;
-    }
-    se3di_particles_filter(set, keep);
-    se3di_free(&set->allocator, keep, size, 1);
-    set->force_valid = 0;
     return SE3D_OK;
 }
 
@@ -348,15 +305,6 @@ static se3d_status check_count(const se3d_particles *particles, size_t count)
     return count == particles->set.count ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;
 }
 
-/* The next live particle at or after *id; its index. */
-static size_t next(const se3di_particles *set, size_t *id)
-{
-    while (set->index_of[*id] == SE3DI_NO_INDEX) {
-        ++*id;
-    }
-    return set->index_of[(*id)++];
-}
-
 se3d_status se3d_particles_get_ids(const se3d_particles *particles, size_t count, uint32_t *ids)
 {
     SE3DI_TRY(check_count(particles, count));
@@ -365,7 +313,7 @@ se3d_status se3d_particles_get_ids(const se3d_particles *particles, size_t count
     }
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
-        ids[k] = particles->set.spins[next(&particles->set, &id)].id;
+        ids[k] = particles->set.spins[se3di_particles_next(&particles->set, &id)].id;
     }
     return SE3D_OK;
 }
@@ -378,7 +326,7 @@ se3d_status se3d_particles_get_tags(const se3d_particles *particles, size_t coun
     }
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
-        tags[k] = particles->set.spins[next(&particles->set, &id)].tag;
+        tags[k] = particles->set.spins[se3di_particles_next(&particles->set, &id)].tag;
     }
     return SE3D_OK;
 }
@@ -392,7 +340,8 @@ se3d_status se3d_particles_get_materials(const se3d_particles *particles, size_t
     }
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
-        uint32_t material = particles->set.spins[next(&particles->set, &id)].material;
+        uint32_t material =
+            particles->set.spins[se3di_particles_next(&particles->set, &id)].material;
         se3di_handle handle = particles->set.stuffs[material].handle;
         materials[k] = (se3d_material){handle.index1, handle.generation};
     }
@@ -407,7 +356,7 @@ se3d_status se3d_particles_get_radii(const se3d_particles *particles, size_t cou
     }
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
-        radius[k] = particles->set.grains[next(&particles->set, &id)].radius;
+        radius[k] = particles->set.grains[se3di_particles_next(&particles->set, &id)].radius;
     }
     return SE3D_OK;
 }
@@ -418,7 +367,7 @@ se3d_status se3d_particles_get_all(const se3d_particles *particles, size_t count
     SE3DI_TRY(check_count(particles, count));
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
-        size_t index = next(&particles->set, &id);
+        size_t index = se3di_particles_next(&particles->set, &id);
         const se3di_grain *grain = &particles->set.grains[index];
         if (r) {
             se3di_copy(grain->x, r + 3 * k);
@@ -450,7 +399,7 @@ se3d_status se3d_particles_set_all(se3d_particles *particles, size_t count, cons
     }
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
-        size_t index = next(set, &id);
+        size_t index = se3di_particles_next(set, &id);
         if (r) {
             se3di_copy(r + 3 * k, set->grains[index].x);
         }
@@ -472,7 +421,7 @@ se3d_status se3d_particles_get_forces(const se3d_particles *particles, size_t co
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
         static const se3di_load none; /* after an edit there are no forces yet */
-        size_t index = next(&particles->set, &id);
+        size_t index = se3di_particles_next(&particles->set, &id);
         const se3di_load *load = particles->set.list_valid ? &particles->set.loads[index] : &none;
         if (force) {
             se3di_copy(load->force, force + 3 * k);
@@ -484,34 +433,12 @@ se3d_status se3d_particles_get_forces(const se3d_particles *particles, size_t co
     return SE3D_OK;
 }
 
-static se3d_status advance(se3d_particles *particles, double h, size_t steps)
+static se3d_status advance(se3d_particles *particles, double h, double length, size_t steps)
 {
-    const se3di_model *model = &particles->system->model;
-    se3di_particles *set = &particles->set;
-    SE3DI_TRY(se3di_particles_place(set, model, &particles->system->error));
-    int varies = set->source_count > 0 || model->gravity_function[0] >= 0 ||
-                 model->gravity_function[1] >= 0 || model->gravity_function[2] >= 0;
-    size_t done = 0;
-    do {
-        size_t now = varies ? 1 : steps;
-        SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
-        SE3DI_TRY(se3di_particles_aim(set, model, h, &particles->system->error));
-        se3d_status status = se3di_particles_advance(set, h, now, NULL);
-        if (status < 0) {
-            return se3di_particles_report(set, status, &particles->system->error);
-        }
-        done += now;
-    } while (done < steps);
-    return SE3D_OK;
-}
-
-/* In steps of `length` where `h` is the one that is looked at. */
-static se3d_status check_and_advance(se3d_particles *particles, double h, double length,
-                                     size_t steps)
-{
-    SE3DI_TRY(se3di_particles_check_step(&particles->set, &particles->system->model, h,
-                                         &particles->system->error));
-    return advance(particles, length, steps);
+    se3d_system *system = particles->system;
+    se3di_work_begin(system);
+    return se3di_work_end(system, se3di_particles_run(&particles->set, &system->model, h, length,
+                                                      steps, &system->error));
 }
 
 se3d_status se3d_particles_step(se3d_particles *particles, size_t steps)
@@ -522,8 +449,7 @@ se3d_status se3d_particles_step(se3d_particles *particles, size_t steps)
         particles->set.time += h * (double)steps;
         return SE3D_OK;
     }
-    se3di_work_begin(particles->system);
-    return se3di_work_end(particles->system, check_and_advance(particles, h, h, steps));
+    return advance(particles, h, h, steps);
 }
 
 se3d_status se3d_particles_run(se3d_particles *particles, double time)
@@ -543,9 +469,7 @@ se3d_status se3d_particles_run(se3d_particles *particles, double time)
     }
     if (steps > 0.0 && !se3di_particles_is_idle(set)) {
         const double length = (time - set->time) / steps;
-        se3di_work_begin(particles->system);
-        SE3DI_TRY(se3di_work_end(particles->system,
-                                 check_and_advance(particles, h, length, (size_t)steps)));
+        SE3DI_TRY(advance(particles, h, length, (size_t)steps));
     }
     set->time = time;
     return SE3D_OK;
@@ -586,17 +510,6 @@ se3d_status se3di_particles_gravity(const se3d_particles *particles, double g[3]
         &reading, se3di_gravity_eval(&particles->system->model, particles->set.time, g, NULL));
 }
 
-void se3di_particles_energy(const se3di_particles *set, size_t k, const double g[3],
-                            double energy[3])
-{
-    const se3di_grain *grain = &set->grains[k];
-    const double *w = set->spins[k].w;
-    double mass = 1.0 / grain->inverse_mass;
-    energy[0] = 0.5 * mass * se3di_dot(grain->v, grain->v);
-    energy[1] = 0.2 * mass * grain->radius * grain->radius * se3di_dot(w, w);
-    energy[2] = -mass * se3di_dot(g, grain->x);
-}
-
 se3d_status se3d_particles_get_energy_sized(const se3d_particles *particles,
                                             se3d_particles_energy *energy, size_t size)
 {
@@ -604,18 +517,9 @@ se3d_status se3d_particles_get_energy_sized(const se3d_particles *particles,
     if (!energy) {
         return SE3D_ERR_NULL;
     }
-    se3d_particles_energy full = {0.0, 0.0, 0.0};
     double g[3];
     SE3DI_TRY(se3di_particles_gravity(particles, g));
-    size_t id = 0;
-    for (size_t k = 0; k < particles->set.count; ++k) {
-        size_t index = next(&particles->set, &id);
-        double share[3];
-        se3di_particles_energy(&particles->set, index, g, share);
-        full.translation += share[0];
-        full.rotation += share[1];
-        full.potential += share[2];
-    }
+    const se3d_particles_energy full = se3di_particles_energy(&particles->set, g);
     return se3di_sized_give(energy, size, &full, sizeof full);
 }
 
@@ -625,17 +529,7 @@ se3d_status se3d_particles_get_stats_sized(const se3d_particles *particles,
     if (!particles || !stats) {
         return SE3D_ERR_NULL;
     }
-    const se3di_particles *set = &particles->set;
-    se3d_particles_stats full = {.steps = set->steps,
-                                 .rebuilds = set->rebuilds,
-                                 .contacts = set->touching,
-                                 .lost = set->lost,
-                                 .bytes = se3di_particles_memory(set),
-                                 .threads = (uint64_t)set->team,
-                                 .left = set->lost};
-    for (size_t k = 0; k < set->count; ++k) {
-        full.left += (uint64_t)se3di_particles_is_out(set, k);
-    }
+    const se3d_particles_stats full = se3di_particles_stats(&particles->set);
     return se3di_sized_give(stats, size, &full, sizeof full);
 }
 

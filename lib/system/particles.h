@@ -27,29 +27,16 @@ se3d_status se3di_check_region(se3d_particles *particles, const double lower[3],
                                const double upper[3], int32_t region, int32_t axis, double size);
 /* Gravity at the set's time. */
 se3d_status se3di_particles_gravity(const se3d_particles *particles, double g[3]);
-/* Kinetic energies and the potential one of gravity g. */
-void se3di_particles_energy(const se3di_particles *set, size_t k, const double g[3],
-                            double energy[3]);
-/* Discount (add 0) or count what a set uses of the model. */
-void se3di_particles_count_users(se3d_particles *particles, int add);
-
 /* `name` is well formed and free among the sets; NULL always is. */
 se3d_status se3di_check_particles_name(se3d_system *system, const char *name);
 
-/* particle_sets.c: the sets that a system owns. */
-void se3di_sets_link(se3d_particles *particles);
-void se3di_sets_unlink(se3d_particles *particles);
-void se3di_sets_destroy(se3di_model *model);
+/* particle_sets.c: take out of the system; what it owns, destroyed or copied for its clone `copy`,
+ * which may hold some on failure. */
+void se3di_owner_unlink(se3d_particles *particles);
+void se3di_owners_destroy(se3di_model *model);
+se3d_status se3di_owners_clone(const se3d_system *system, se3d_system *copy);
 /* `system` goes: calls of the clones of its sets are refused from now on. */
 void se3di_copies_orphan(se3d_system *system);
-/* Copies of all sets of `system` for its clone `copy`; on failure `copy` may hold some. */
-se3d_status se3di_sets_clone(const se3d_system *system, se3d_system *copy);
-/* Copies of all sets as a chain; NO_MEMORY: none is held. */
-se3d_status se3di_sets_save(const se3di_particles *sets, const se3d_allocator *allocator,
-                            se3di_particles **saved);
-void se3di_sets_forget(se3di_particles *saved, const se3d_allocator *allocator);
-/* Give the model's sets what a chain of as many copies holds, and free the chain. */
-void se3di_sets_take(se3di_model *model, se3di_particles *saved);
 
 /* Room for `count` more particles. */
 se3d_status se3di_particles_make_room(se3d_particles *particles, size_t count);

@@ -96,11 +96,7 @@ se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fi
 /* Far too many are found before there is memory for them. */
 static se3d_status check_volume(se3d_particles *p, const se3d_fill_def *def)
 {
-    double most = 1.0;
-    for (int a = 0; a < 3; ++a) {
-        most *= (def->upper[a] - def->lower[a]) / def->radius_min;
-    }
-    most /= 4.0 / 3.0 * 3.1415926535897932384626433832795;
+    const double most = se3di_fill_most(def);
     if ((double)def->count > most) {
         return SE3DI_FAIL_OF(p->system, "count", SE3D_ERR_NO_CONVERGENCE,
                              " = %zu, the region has the volume of %.3g particles only", def->count,

@@ -2,6 +2,7 @@
 /* Sources and sinks of particles, tags and what is there of each. */
 #include "force/force.h"
 #include "math/vec3.h"
+#include "particles/energy.h"
 #include "particles/fill.h"
 #include "particles/flow.h"
 #include "system/particles.h"
@@ -230,21 +231,8 @@ se3d_status se3d_particles_get_tally_sized(const se3d_particles *particles, uint
     if (tag >= SE3D_PARTICLES_TAGS) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    const se3di_particles *set = &particles->set;
     double g[3];
-    se3d_particles_tally full = {.lost = set->lost_of[tag]};
     SE3DI_TRY(se3di_particles_gravity(particles, g));
-    for (size_t id = 0; id < set->id_count; ++id) { /* sums do not depend on the order in memory */
-        uint32_t k = set->index_of[id];
-        if (k == SE3DI_NO_INDEX || set->spins[k].tag != tag) {
-            continue;
-        }
-        double share[3];
-        se3di_particles_energy(set, k, g, share);
-        ++full.count;
-        full.outside += (uint64_t)se3di_particles_is_out(set, k);
-        full.mass += 1.0 / set->grains[k].inverse_mass;
-        full.energy += share[0] + share[1] + share[2];
-    }
+    const se3d_particles_tally full = se3di_particles_tally(&particles->set, tag, g);
     return se3di_sized_give(tally, size, &full, sizeof full);
 }

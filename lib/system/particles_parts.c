@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Particles and what they touch: wrenches on bodies, contacts as they are. */
-#include "math/vec3.h"
 #include "particles/contacts.h"
+#include "particles/energy.h"
 #include "system/particles.h"
 
 #include <string.h>
@@ -19,13 +19,8 @@ se3d_status se3d_particles_get_wrench(const se3d_particles *particles, se3d_body
     }
     memset(force, 0, 3 * sizeof *force);
     memset(torque, 0, 3 * sizeof *torque);
-    for (size_t k = 0; k < particles->set.wall_count; ++k) {
-        const se3di_wall *wall = &particles->set.walls[k];
-        if (wall->body.index1 == body.index1 && wall->body.generation == body.generation) {
-            se3di_add(force, wall->force, force);
-            se3di_add(torque, wall->torque, torque);
-        }
-    }
+    se3di_particles_push_body(&particles->set, (se3di_handle){body.index1, body.generation}, force,
+                              torque);
     return SE3D_OK;
 }
 

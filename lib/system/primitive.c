@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Public layer: primitives as constraints of their own. */
-#include "primitive/primitive.h"
-#include "joint/rows.h"
+#include "joint/draft.h"
 #include "math/vec3.h"
 #include "system/coordinate.h"
 #include "system/system_internal.h"
@@ -107,13 +106,6 @@ se3d_status se3d_primitive_create(se3d_system *system, const se3d_primitive_def 
     SE3DI_TRY(fill_term(system, &def, &term));
     SE3DI_TRY(se3di_find_function(system, "function", def.function, 1, &function));
     SE3DI_TRY(check_value(system, def.type, def.value, function));
-    const char *name = se3di_primitives[def.type].name;
-    se3di_draft_init(&draft, name, bodies[0], bodies[1]);
-    draft.constraint.name = (char *)(uintptr_t)def.name; /* copied, never written to */
-    draft.constraint.has_value = 1;
-    se3di_copy(term.s_i, draft.constraint.frames.point_i);
-    se3di_copy(term.s_j, draft.constraint.frames.point_j);
-    se3di_draft_add_row(&draft, name, def.value)->function = function;
-    se3di_draft_add_term(&draft, &term, 1.0);
+    se3di_primitive_draft(def.name, &term, (se3di_prescribed){def.value, function}, &draft);
     return se3di_constraint_add(system, &draft, constraint);
 }

@@ -1,40 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Public layer: reactions of constraints on their bodies.
- *
- *     F   = -Phi_r^T lambda                 force on the body, ground frame
- *     n   = -Phi_pi^T lambda                moment about its centre of mass, body frame
- *     T_P = A n + (r - P) x F               torque about the point P, ground frame
- *
- * docs/theory/reactions.md */
+/* Public layer: reactions of constraints on their bodies. */
+#include "joint/equation.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
-#include "system/coordinate.h"
 #include "system/system_internal.h"
-
-/* Force on the body in `slot` and its torque about `point` (NULL: the joint point on body j). */
-static void wrench_at(const se3di_model *model, const se3di_constraint *constraint, size_t slot,
-                      const double *point, double force[3], double torque[3])
-{
-    uint32_t body = constraint->bodies[slot];
-    double P[3], arm[3], moment[3];
-    if (point) {
-        se3di_copy(point, P);
-    } else {
-        const se3di_frame *j = &model->frames[constraint->bodies[1]];
-        se3di_mul(j->A, constraint->frames.point_j, P);
-        se3di_add(P, j->r, P);
-    }
-    se3di_constraint_wrench(model, constraint, body, force, torque);
-    se3di_sub(model->frames[body].r, P, arm);
-    se3di_cross(arm, force, moment);
-    se3di_add(torque, moment, torque);
-}
 
 se3d_status se3d_constraint_get_reaction(const se3d_system *system, se3d_constraint constraint,
                                          double force[3], double torque[3])
 {
     const double zero[3] = {0.0, 0.0, 0.0};
-    double F[3], T[3];
+    double wrench[6];
     if (force) {
         se3di_copy(zero, force);
     }
@@ -52,16 +27,16 @@ se3d_status se3d_constraint_get_reaction(const se3d_system *system, se3d_constra
     }
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
-    wrench_at(model, &model->constraints[index], 1, NULL, F, T);
+    se3di_constraint_reaction(model, &model->constraints[index], 1, NULL, wrench);
     se3di_busy_unread(&reading);
-    if (!se3di_is_finite(F, 3) || !se3di_is_finite(T, 3)) {
+    if (!se3di_is_finite(wrench, 6)) {
         return SE3D_ERR_NOT_FINITE;
     }
     if (force) {
-        se3di_copy(F, force);
+        se3di_copy(wrench, force);
     }
     if (torque) {
-        se3di_copy(T, torque);
+        se3di_copy(wrench + 3, torque);
     }
     return SE3D_OK;
 }
@@ -102,7 +77,7 @@ se3d_status se3d_constraint_get_reaction_at(const se3d_system *system, se3d_cons
     double result[6];
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
-    wrench_at(model, &model->constraints[index], slot, point, result, result + 3);
+    se3di_constraint_reaction(model, &model->constraints[index], slot, point, result);
     se3di_busy_unread(&reading);
     if (!in_ground) {
         wrench_rotate(model, frame, result);

@@ -4,6 +4,7 @@
 
 #include "math/quaternion.h"
 #include "math/vec3.h"
+#include "particles/energy.h"
 #include "system/particles.h"
 
 #include <math.h>
@@ -143,15 +144,9 @@ se3d_status se3d_shape_get_body(const se3d_system *system, se3d_shape shape, se3
 static void add_particles(const se3d_system *system, se3d_shape shape, double force[3],
                           double torque[3])
 {
+    const se3di_handle handle = {shape.index1, shape.generation};
     for (const se3di_particles *set = system->model.sets; set; set = set->next) {
-        for (size_t k = 0; k < set->wall_count; ++k) {
-            const se3di_wall *wall = &set->walls[k];
-            if (wall->handle.index1 == shape.index1 &&
-                wall->handle.generation == shape.generation) {
-                se3di_add(force, wall->force, force);
-                se3di_add(torque, wall->torque, torque);
-            }
-        }
+        se3di_particles_push_shape(set, handle, force, torque);
     }
 }
 

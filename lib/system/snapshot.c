@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Snapshots: everything that a step reads and writes, the integrator's history included. */
 #include "model/saved.h"
+#include "particles/chain.h"
 #include "system/particles.h"
 
 struct se3d_snapshot {

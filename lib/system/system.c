@@ -6,11 +6,9 @@
 #include "assembly/energy.h"
 #include "base/hash.h"
 #include "contact/bodies/body_contacts.h"
-#include "joint/user.h"
+#include "joint/equation.h"
 #include "math/vec3.h"
 #include "particles/step.h"
-#include "primitive/primitive.h"
-#include "primitive/turn_counter.h"
 
 #include <math.h>
 #include <string.h>
@@ -89,7 +87,7 @@ void se3d_system_destroy(se3d_system *system)
     const se3d_allocator allocator = system->model.allocator;
     se3di_solvers_orphan(system);
     se3di_copies_orphan(system);
-    se3di_sets_destroy(&system->model);
+    se3di_owners_destroy(&system->model);
     se3di_model_destroy(&system->model);
     se3di_free(&allocator, system, 1, sizeof *system);
 }
@@ -115,7 +113,7 @@ se3d_status se3d_system_clone(const se3d_system *system, se3d_system **out)
         return status;
     }
     begin_life(copy);
-    status = se3di_sets_clone(system, copy);
+    status = se3di_owners_clone(system, copy);
     if (status < 0) {
         se3d_system_destroy(copy);
         return status;
@@ -346,80 +344,6 @@ se3d_status se3d_system_get_work_sized(const se3d_system *system, se3d_work *wor
     return se3di_sized_give(work, size, &full, sizeof full);
 }
 
-/* |Phi|, |Phi_q qdot - nu| and |Phi_q qddot - gamma| of one equation, in r-omega. */
-static se3d_status measure_row(const se3di_model *model, const se3di_row *row, double gap[3])
-{
-    double jet[3] = {row->value, 0.0, 0.0};
-    if (row->function >= 0) {
-        SE3DI_TRY(se3di_function_eval(&model->functions[row->function], &model->time, jet, NULL));
-    }
-    gap[0] = se3di_row_violation(model, row, jet[0]);
-    gap[1] = -jet[1];
-    gap[2] = -jet[2];
-    for (uint32_t k = 0; k < row->term_count; ++k) {
-        const se3di_term *term = &model->terms[row->term_begin + k];
-        const se3di_primitive *primitive = &se3di_primitives[term->type];
-        const se3di_frame *i = &model->frames[term->body_i];
-        const se3di_frame *j = &model->frames[term->body_j];
-        const double *a_i = model->acceleration + 6 * term->body_i;
-        const double *a_j = model->acceleration + 6 * term->body_j;
-        double phi_i[6];
-        double phi_j[6];
-        primitive->jacobian_romega(term, i, j, phi_i, phi_j);
-        gap[1] += term->coefficient * (se3di_dot(phi_i, i->v) + se3di_dot(phi_i + 3, i->w) +
-                                       se3di_dot(phi_j, j->v) + se3di_dot(phi_j + 3, j->w));
-        gap[2] += term->coefficient *
-                  (se3di_dot(phi_i, a_i) + se3di_dot(phi_i + 3, a_i + 3) + se3di_dot(phi_j, a_j) +
-                   se3di_dot(phi_j + 3, a_j + 3) - primitive->gamma_romega(term, i, j));
-    }
-    return SE3D_OK;
-}
-
-static void take_largest(const double gap[3], double violation[3])
-{
-    for (int level = 0; level < 3; ++level) {
-        violation[level] = fmax(violation[level], fabs(gap[level]));
-    }
-}
-
-/* The same of the equations of a user constraint, into `violation`. */
-static se3d_status measure_user(const se3di_model *model, const se3di_constraint *constraint,
-                                double violation[3])
-{
-    se3di_user_values values;
-    SE3DI_TRY(se3di_user_eval(
-        model, constraint, model->time,
-        SE3DI_USER_PHI | SE3DI_USER_JACOBIAN | SE3DI_USER_NU | SE3DI_USER_GAMMA, &values));
-    for (uint32_t r = 0; r < constraint->row_count; ++r) {
-        double gap[3] = {values.phi[r], -values.nu[r], -values.gamma[r]};
-        for (uint32_t k = 0; k < se3di_user_body_count(constraint); ++k) {
-            uint32_t body = constraint->bodies[constraint->user_first + k];
-            const double *row = se3di_user_row(constraint, &values, r, k);
-            const double *a = model->acceleration + 6 * body;
-            const se3di_frame *frame = &model->frames[body];
-            gap[1] += se3di_dot(row, frame->v) + se3di_dot(row + 3, frame->w);
-            gap[2] += se3di_dot(row, a) + se3di_dot(row + 3, a + 3);
-        }
-        take_largest(gap, violation);
-    }
-    return SE3D_OK;
-}
-
-static se3d_status measure_all(const se3di_model *model, double violation[3])
-{
-    for (size_t k = 0; k < model->row_count; ++k) {
-        double gap[3];
-        SE3DI_TRY(measure_row(model, &model->rows[k], gap));
-        take_largest(gap, violation);
-    }
-    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
-        if (se3di_is_user(&model->constraints[k])) {
-            SE3DI_TRY(measure_user(model, &model->constraints[k], violation));
-        }
-    }
-    return SE3D_OK;
-}
-
 se3d_status se3d_system_get_violation(const se3d_system *system, double violation[3])
 {
     if (!system || !violation) {
@@ -428,7 +352,7 @@ se3d_status se3d_system_get_violation(const se3d_system *system, double violatio
     violation[0] = violation[1] = violation[2] = 0.0;
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
-    return se3di_read_end(&reading, measure_all(&system->model, violation));
+    return se3di_read_end(&reading, se3di_violation_measure(&system->model, violation));
 }
 
 uint64_t se3d_system_hash(const se3d_system *system)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Public layer: constraints whose equations a callback computes. */
-#include "joint/rows.h"
+#include "joint/draft.h"
 #include "system/coordinate.h"
 #include "system/system_internal.h"
 
@@ -49,9 +49,6 @@ static se3d_status find_bodies(se3d_system *system, const se3d_user_constraint_d
     return SE3D_OK;
 }
 
-static const char *const equation_names[SE3D_USER_EQUATIONS_MAX] = {"user_0", "user_1", "user_2",
-                                                                    "user_3", "user_4", "user_5"};
-
 se3d_status se3d_user_constraint_create(se3d_system *system, const se3d_user_constraint_def *user,
                                         se3d_constraint *constraint)
 {
@@ -68,17 +65,6 @@ se3d_status se3d_user_constraint_create(se3d_system *system, const se3d_user_con
         se3di_check_new_name(system, &system->model.constraint_slots, 0, "constraint", def.name));
     SE3DI_TRY(check_counts(system, &def));
     SE3DI_TRY(find_bodies(system, &def, bodies));
-    se3di_draft_init(&draft, "user", 0, bodies[0]);
-    draft.constraint.name = (char *)(uintptr_t)def.name; /* copied, never written to */
-    draft.constraint.callback = def.callback;
-    draft.constraint.ctx = def.ctx;
-    draft.constraint.user_first = def.body_count == 1;
-    for (int32_t k = 0; k < def.body_count && def.body_count > 1; ++k) {
-        draft.constraint.bodies[k] = bodies[k];
-    }
-    draft.constraint.body_count = def.body_count == 1 ? 2u : (uint32_t)def.body_count;
-    for (int32_t r = 0; r < def.equation_count; ++r) {
-        se3di_draft_add_row(&draft, equation_names[r], 0.0);
-    }
+    se3di_user_draft(&def, bodies, &draft);
     return se3di_constraint_add(system, &draft, constraint);
 }

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "particles/energy.h"
+
+#include "math/vec3.h"
+#include "particles/flow.h"
+
+/* Of particle k: translation, rotation, potential. */
+static void eval(const se3di_particles *set, size_t k, const double g[3], double energy[3])
+{
+    const se3di_grain *grain = &set->grains[k];
+    const double *w = set->spins[k].w;
+    double mass = 1.0 / grain->inverse_mass;
+    energy[0] = 0.5 * mass * se3di_dot(grain->v, grain->v);
+    energy[1] = 0.2 * mass * grain->radius * grain->radius * se3di_dot(w, w);
+    energy[2] = -mass * se3di_dot(g, grain->x);
+}
+
+se3d_particles_energy se3di_particles_energy(const se3di_particles *set, const double g[3])
+{
+    se3d_particles_energy sum = {0.0, 0.0, 0.0};
+    size_t id = 0;
+    for (size_t k = 0; k < set->count; ++k) {
+        double share[3];
+        eval(set, se3di_particles_next(set, &id), g, share);
+        sum.translation += share[0];
+        sum.rotation += share[1];
+        sum.potential += share[2];
+    }
+    return sum;
+}
+
+se3d_particles_tally se3di_particles_tally(const se3di_particles *set, uint32_t tag,
+                                           const double g[3])
+{
+    se3d_particles_tally tally = {.lost = set->lost_of[tag]};
+    size_t id = 0;
+    for (size_t n = 0; n < set->count; ++n) {
+        const size_t k = se3di_particles_next(set, &id);
+        if (set->spins[k].tag == tag) {
+            double share[3];
+            eval(set, k, g, share);
+            ++tally.count;
+            tally.outside += (uint64_t)se3di_particles_is_out(set, k);
+            tally.mass += 1.0 / set->grains[k].inverse_mass;
+            tally.energy += share[0] + share[1] + share[2];
+        }
+    }
+    return tally;
+}
+
+se3d_particles_stats se3di_particles_stats(const se3di_particles *set)
+{
+    se3d_particles_stats stats = {.steps = set->steps,
+                                  .rebuilds = set->rebuilds,
+                                  .contacts = set->touching,
+                                  .lost = set->lost,
+                                  .bytes = se3di_particles_memory(set),
+                                  .threads = (uint64_t)set->team,
+                                  .left = set->lost};
+    for (size_t k = 0; k < set->count; ++k) {
+        stats.left += (uint64_t)se3di_particles_is_out(set, k);
+    }
+    return stats;
+}
+
+static int is_same(se3di_handle a, se3di_handle b)
+{
+    return a.index1 == b.index1 && a.generation == b.generation;
+}
+
+void se3di_particles_push_body(const se3di_particles *set, se3di_handle body, double force[3],
+                               double torque[3])
+{
+    for (size_t k = 0; k < set->wall_count; ++k) {
+        if (is_same(set->walls[k].body, body)) {
+            se3di_add(force, set->walls[k].force, force);
+            se3di_add(torque, set->walls[k].torque, torque);
+        }
+    }
+}
+
+void se3di_particles_push_shape(const se3di_particles *set, se3di_handle shape, double force[3],
+                                double torque[3])
+{
+    for (size_t k = 0; k < set->wall_count; ++k) {
+        if (is_same(set->walls[k].handle, shape)) {
+            se3di_add(force, set->walls[k].force, force);
+            se3di_add(torque, set->walls[k].torque, torque);
+        }
+    }
+}
