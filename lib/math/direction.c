@@ -21,14 +21,10 @@ se3d_status se3di_direction_read(const char *what, const double values[3], doubl
                                  se3di_error *error)
 {
     SE3DI_TRY(se3di_finites_check(what, values, 3, error));
-    double largest = fmax(fabs(values[0]), fmax(fabs(values[1]), fabs(values[2])));
-    if (largest < 1e-150) {
+    if (!se3di_unit(values, unit)) {
         return se3di_error_set_of(error, what, SE3D_ERR_INVALID_ARGUMENT,
                                   " = [%g, %g, %g], must be a direction (not zero)", values[0],
                                   values[1], values[2]);
     }
-    double scaled[3];
-    se3di_scale(1.0 / largest, values, scaled);
-    se3di_scale(1.0 / se3di_norm(scaled), scaled, unit);
     return SE3D_OK;
 }
