@@ -14,6 +14,7 @@
 #include "io/read/materials.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
+#include "io/read/shape_kinds.h"
 
 static const char *const laws[] = {
     [SE3D_CONTACT_LAW_HOOKE] = "hooke", [SE3D_CONTACT_LAW_HERTZ_MINDLIN] = "hertz_mindlin", NULL};
@@ -159,9 +160,6 @@ static bool create_shape(se3di_reader *reader, const se3di_node *node,
 {
     const se3d_model_shape *shape = &entry->shape;
     const se3di_mesh *mesh = entry->mesh;
-    static se3d_status (*const create[])(se3d_system *, const se3d_shape_def *, se3d_shape *) = {
-        se3d_shape_create_sphere,   se3d_shape_create_box,   se3d_shape_create_capsule,
-        se3d_shape_create_cylinder, se3d_shape_create_plane, se3d_shape_create_mesh};
     se3d_shape_def def = se3d_shape_def_default();
     se3d_shape made;
     int32_t fixed = 0;
@@ -181,7 +179,8 @@ static bool create_shape(se3di_reader *reader, const se3di_node *node,
         def.triangle_count = mesh->triangle_count;
     }
     se3d_status status =
-        (entry->convex ? se3d_shape_create_hull : create[shape->type])(reader->system, &def, &made);
+        (entry->convex ? se3d_shape_create_hull : se3di_shape_row_of(shape)->create)(reader->system,
+                                                                                     &def, &made);
     if (status >= 0) {
         status = se3d_body_get_fixed(reader->system, shape->body, &fixed);
     }

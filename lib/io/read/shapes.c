@@ -17,55 +17,8 @@
 #include "io/read/mesh_file.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
+#include "io/read/shape_kinds.h"
 #include "io/read/solid.h"
-
-static const char *const shape_types[] = {[SE3D_SHAPE_SPHERE] = "sphere",
-                                          [SE3D_SHAPE_BOX] = "box",
-                                          [SE3D_SHAPE_CAPSULE] = "capsule",
-                                          [SE3D_SHAPE_CYLINDER] = "cylinder",
-                                          [SE3D_SHAPE_PLANE] = "plane",
-                                          [SE3D_SHAPE_MESH] = "mesh",
-                                          NULL};
-
-/* clang-format off */
-static const se3di_key shape_keys[] = {
-    {"name", SE3DI_KIND_NAME, .text = "for lists of contacts"},
-    {"group", SE3DI_KIND_COUNT, .most = 4294967295.0, .standard = "1",
-     .text = "bits: a and b touch if a.group & b.mask and b.group & a.mask are not zero"},
-    {"mask", SE3DI_KIND_COUNT, .most = 4294967295.0, .standard = "4294967295, all groups",
-     .text = "see group"},
-    {"contact", SE3DI_KIND_BOOL, .standard = "true",
-     .text = "false: nothing touches it, though it has a material"},
-    {"type", SE3DI_KIND_TYPE, .required = true, .text = ""},
-    {"size", SE3DI_KIND_VECTOR, .types = " box ", .text = "its edges [m], each > 0"},
-    {"radius", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " sphere capsule cylinder ",
-     .text = "[m]"},
-    {"length", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " capsule cylinder ",
-     .text = "along its z [m]; of a capsule between the centres of its ends"},
-    {"file", SE3DI_KIND_TEXT, .types = " mesh ",
-     .text = "STL (binary, ASCII) or OBJ, relative to the model file"},
-    {"scale", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_model_shape, scale),
-     .types = " mesh ", .standard = "1", .text = "factor, to metres"},
-    {"convex", SE3DI_KIND_BOOL, SE3DI_INTO(se3di_shape_entry, convex), .types = " mesh ",
-     .standard = "false", .text = "its convex hull touches in its place, also meshes"},
-    {"normal", SE3DI_KIND_DIRECTION, .types = " plane ", .standard = "[0, 0, 1]",
-     .text = "in place of an orientation"},
-    {"density", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " sphere box capsule cylinder mesh ",
-     .text = "[kg/m^3], for bodies without mass; a mesh must be closed"},
-    {"material", SE3DI_KIND_MATERIAL,
-     .text = "if there is contact or particles, what has one touches"},
-    {"position", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_model_shape, position),
-     .standard = "[0, 0, 0]", .text = "centre, body frame [m]"},
-    {"orientation", SE3DI_KIND_ORIENTATION, SE3DI_INTO(se3d_model_shape, orientation),
-     .standard = "that of the body", .text = "shape -> body"},
-    {"color", SE3DI_KIND_VECTOR, .text = "red, green, blue, 0 to 1"},
-    {.key = NULL}};
-const se3di_object se3di_object_shape = {
-    "shape",
-    "What a body looks like, weighs and touches with.",
-    shape_keys, shape_types,
-    NULL};
-/* clang-format on */
 
 static bool require(se3di_reader *reader, const se3di_node *node, const char *key)
 {
@@ -129,23 +82,22 @@ static bool read_triangles(se3di_reader *reader, const se3di_node *node, se3di_s
     return entry->mesh != NULL;
 }
 
+/* Whether all went well, as far as the kind of shape has this key. */
+static bool read_needed(se3di_reader *reader, const se3di_node *node, uint32_t needed,
+                        const char *key, double *value)
+{
+    return !needed || read_required(reader, node, key, value);
+}
+
 static bool read_dimensions(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
 {
     se3d_model_shape *shape = &entry->shape;
-    switch (shape->type) {
-    case SE3D_SHAPE_SPHERE:
-        return read_required(reader, node, "radius", &shape->radius);
-    case SE3D_SHAPE_BOX:
-        return read_size(reader, node, shape->size);
-    case SE3D_SHAPE_CAPSULE:
-    case SE3D_SHAPE_CYLINDER:
-        return read_required(reader, node, "radius", &shape->radius) &&
-               read_required(reader, node, "length", &shape->length);
-    case SE3D_SHAPE_PLANE:
-        return read_plane(reader, node, shape);
-    default:
-        return read_triangles(reader, node, entry);
-    }
+    const uint32_t keys = se3di_shape_row_of(shape)->keys;
+    return read_needed(reader, node, keys & SE3DI_SHAPE_NEEDS_RADIUS, "radius", &shape->radius) &&
+           read_needed(reader, node, keys & SE3DI_SHAPE_NEEDS_LENGTH, "length", &shape->length) &&
+           (!(keys & SE3DI_SHAPE_NEEDS_SIZE) || read_size(reader, node, shape->size)) &&
+           (!(keys & SE3DI_SHAPE_HAS_NORMAL) || read_plane(reader, node, shape)) &&
+           (!(keys & SE3DI_SHAPE_NEEDS_FILE) || read_triangles(reader, node, entry));
 }
 
 static bool read_color(se3di_reader *reader, const se3di_node *node, double color[3])
@@ -176,10 +128,10 @@ static bool read_shape(se3di_reader *reader, const se3di_node *node, se3di_shape
     entry->mesh = NULL;
     entry->convex = 0;
     *shape = standard;
-    if (!se3di_read_word(reader, se3di_node_get(node, "type"), shape_types, &index)) {
+    if (!se3di_read_word(reader, se3di_node_get(node, "type"), se3di_shape_names, &index)) {
         return false;
     }
-    shape->type = (int32_t)index;
+    shape->type = se3di_shape_types[index];
     return se3di_read_fields(reader, node, &se3di_object_shape, type, "se3d_model_shape", shape) &&
            read_dimensions(reader, node, entry) && read_color(reader, node, shape->color);
 }

@@ -16,8 +16,7 @@
 #include "io/document/document.h"
 #include "io/document/reader.h"
 #include "io/model/mesh.h"
-
-static const double pi = 3.14159265358979323846;
+#include "io/read/shape_kinds.h"
 
 static void set_diagonal(double x, double y, double z, double inertia[9])
 {
@@ -27,41 +26,16 @@ static void set_diagonal(double x, double y, double z, double inertia[9])
     inertia[8] = z;
 }
 
-/* Of solids whose centre is the origin; round ones about their z axis. */
 static void measure_simple(const se3d_model_shape *shape, double density, se3di_solid *solid)
 {
-    const double r2 = shape->radius * shape->radius;
-    const double length = shape->length;
-    const double ball = density * 4.0 / 3.0 * pi * r2 * shape->radius;
-    const double tube = density * pi * r2 * length;
-    const double across = tube * (3.0 * r2 + length * length) / 12.0;
+    const se3di_shape_row *row = se3di_shape_row_of(shape);
     const double *size = shape->size;
-    const double box = density * size[0] * size[1] * size[2] / 12.0;
-    double end;
-    switch (shape->type) {
-    case SE3D_SHAPE_SPHERE:
-        solid->mass = ball;
-        set_diagonal(0.4 * ball * r2, 0.4 * ball * r2, 0.4 * ball * r2, solid->inertia);
-        break;
-    case SE3D_SHAPE_BOX:
-        solid->mass = 12.0 * box;
-        set_diagonal(box * (size[1] * size[1] + size[2] * size[2]),
-                     box * (size[2] * size[2] + size[0] * size[0]),
-                     box * (size[0] * size[0] + size[1] * size[1]), solid->inertia);
-        break;
-    case SE3D_SHAPE_CYLINDER:
-        solid->mass = tube;
-        set_diagonal(across, across, 0.5 * tube * r2, solid->inertia);
-        break;
-    case SE3D_SHAPE_CAPSULE: /* a hemisphere's centre of mass is 3/8 r from its flat face */
-        end = ball * (0.4 * r2 + 0.25 * length * length + 0.375 * length * shape->radius);
-        solid->mass = tube + ball;
-        set_diagonal(across + end, across + end, 0.5 * tube * r2 + 0.4 * ball * r2, solid->inertia);
-        break;
-    default:
-        break;
+    if (row->weigh) {
+        double J[3];
+        row->weigh(shape, density, &solid->mass, J);
+        set_diagonal(J[0], J[1], J[2], solid->inertia);
     }
-    solid->size = shape->radius + length + size[0] + size[1] + size[2];
+    solid->size = shape->radius + shape->length + size[0] + size[1] + size[2];
 }
 
 /* An edge between points of different places. */

@@ -9,6 +9,7 @@
 #include "io/base/pool.h"
 #include "io/base/rotation.h"
 #include "io/model/model.h"
+#include "io/read/shape_kinds.h"
 #include "io/write/unit_mesh.h"
 
 static const double palette[][3] = {{0.20, 0.47, 0.72}, {0.85, 0.37, 0.27}, {0.25, 0.60, 0.42},
@@ -65,18 +66,16 @@ typedef struct box {
 static void widen_shape(const se3di_shape_entry *entry, const double *pose, box *b)
 {
     const se3d_model_shape *s = &entry->shape;
-    double half[3] = {s->radius, s->radius, s->radius};
+    const se3di_shape_row *row = se3di_shape_row_of(s);
+    double half[3] = {0.0, 0.0, 0.0};
     double turned[SE3DI_POSE];
     memcpy(turned, s->position, 3 * sizeof *turned);
     memcpy(turned + 3, s->orientation, 4 * sizeof *turned);
-    if (s->type == SE3D_SHAPE_PLANE) {
+    if (!row->enclose && !entry->mesh) {
         return;
     }
-    for (int i = 0; i < 3 && s->type == SE3D_SHAPE_BOX; ++i) {
-        half[i] = 0.5 * s->size[i];
-    }
-    if (s->type == SE3D_SHAPE_CYLINDER || s->type == SE3D_SHAPE_CAPSULE) {
-        half[2] = 0.5 * s->length + (s->type == SE3D_SHAPE_CAPSULE ? s->radius : 0.0);
+    if (row->enclose) {
+        row->enclose(s, half);
     }
     for (int k = 0; k < 8; ++k) {
         double at[3];
@@ -196,18 +195,22 @@ static void add(lister *l, const se3di_part *part)
     parts->list[parts->count++] = *part;
 }
 
-static void add_capsule(lister *l, const se3d_model_shape *s, se3di_part part)
+static void add_looks(lister *l, const se3d_model_shape *s, se3di_part part)
 {
+    static const se3di_unit units[] = {[SE3DI_LOOK_BOX] = SE3DI_UNIT_BOX,
+                                       [SE3DI_LOOK_SPHERE] = SE3DI_UNIT_SPHERE,
+                                       [SE3DI_LOOK_CYLINDER] = SE3DI_UNIT_CYLINDER};
+    se3di_look looks[SE3DI_LOOKS];
     double A[9];
-    part.unit = SE3DI_UNIT_CYLINDER;
-    stretch(&part, s->radius, s->radius, s->length);
-    add(l, &part);
-    part.unit = SE3DI_UNIT_SPHERE;
-    stretch(&part, s->radius, s->radius, s->radius);
+    const int count = se3di_shape_row_of(s)->draw(s, l->extent, looks);
     se3di_rotation_to_matrix(s->orientation, A);
-    for (int side = -1; side <= 1; side += 2) {
-        for (int i = 0; i < 3; ++i) {
-            part.position[i] = s->position[i] + 0.5 * side * s->length * A[3 * i + 2];
+    for (int k = 0; k < count; ++k) {
+        const se3di_look *look = &looks[k];
+        part.unit = units[look->unit];
+        stretch(&part, look->scale[0], look->scale[1], look->scale[2]);
+        part.color[3] = look->opacity;
+        for (int i = 0; i < 3 && fabs(look->z) > 0.0; ++i) {
+            part.position[i] = s->position[i] + look->z * A[3 * i + 2];
         }
         add(l, &part);
     }
@@ -216,28 +219,15 @@ static void add_capsule(lister *l, const se3d_model_shape *s, se3di_part part)
 static void add_shape(lister *l, const se3di_shape_entry *entry)
 {
     const se3d_model_shape *s = &entry->shape;
-    static const se3di_unit units[] = {SE3DI_UNIT_SPHERE,   SE3DI_UNIT_BOX, SE3DI_UNIT_CYLINDER,
-                                       SE3DI_UNIT_CYLINDER, SE3DI_UNIT_BOX, SE3DI_UNIT_BOX};
-    se3di_part part = make_part("shape", units[s->type], s->color[0] < 0.0 ? l->usual : s->color);
+    se3di_part part = make_part("shape", SE3DI_UNIT_BOX, s->color[0] < 0.0 ? l->usual : s->color);
     memcpy(part.position, s->position, sizeof part.position);
     memcpy(part.orientation, s->orientation, sizeof part.orientation);
-    stretch(&part, s->radius, s->radius, s->radius);
-    if (s->type == SE3D_SHAPE_CAPSULE) {
-        add_capsule(l, s, part);
-        return;
-    }
     if (entry->mesh) {
         part.mesh = entry->mesh;
-        stretch(&part, 1.0, 1.0, 1.0);
-    } else if (s->type == SE3D_SHAPE_BOX) {
-        memcpy(part.scale, s->size, sizeof part.scale);
-    } else if (s->type == SE3D_SHAPE_CYLINDER) {
-        part.scale[2] = s->length;
-    } else if (s->type == SE3D_SHAPE_PLANE) {
-        stretch(&part, 4.0 * l->extent, 4.0 * l->extent, 0.002 * l->extent);
-        part.color[3] = 0.4;
+        add(l, &part);
+    } else {
+        add_looks(l, s, part);
     }
-    add(l, &part);
 }
 
 /* Joints at body `k`: as body j they carry the joint's name and axis; without shapes the body is
