@@ -39,11 +39,12 @@ static void face_capsule(const se3di_solid *solid, const double d[3], se3di_face
 
 static int bend_capsule(const se3di_shape *s, const double local[3], double u[3], double r[2])
 {
+    const int is_side = fabs(local[2]) < s->half_length;
     u[0] = u[1] = 0.0;
     u[2] = 1.0;
-    r[0] = fabs(local[2]) < s->half_length ? HUGE_VAL : s->radius;
+    r[0] = is_side ? HUGE_VAL : s->radius;
     r[1] = s->radius;
-    return 1;
+    return is_side;
 }
 
 const se3di_shape_class se3di_shape_class_capsule = {
