@@ -28,6 +28,10 @@ typedef struct se3d_model_setting {
     const char *value; /* an expression */
 } se3d_model_setting;
 
+/* Called for each mistake of a model, in the order of the lines. `error` is valid during the call.
+ * @since 0.1 */
+typedef void (*se3d_model_report)(void *ctx, const se3d_model_error *error);
+
 /* How to read a model. Texts are as in the file; NULL: as the file says. @since 0.1 */
 typedef struct se3d_model_options {
     size_t struct_size;
@@ -39,10 +43,16 @@ typedef struct se3d_model_options {
     const char *method;                 /* of every dynamics analysis */
     const char *step;                   /* expression over the parameters [s] */
     const char *duration;               /* expression over the parameters [s] */
-    int32_t mass_optional; /* not 0: bodies without mass get 1 kg, 1 kg m^2 (geometry only) */
-    int32_t reserved;      /* 0 */
-    const char *tolerance; /* expression over the parameters, of every analysis */
+    int32_t mass_optional;    /* not 0: bodies without mass get 1 kg, 1 kg m^2 (geometry only) */
+    int32_t reserved;         /* 0 */
+    const char *tolerance;    /* expression over the parameters, of every analysis */
+    se3d_model_report report; /* of all mistakes, at most SE3D_MODEL_MISTAKES_MAX; NULL: reading
+                               * ends at the first one, which `error` has in any case */
+    void *report_ctx;         /* of `report` */
 } se3d_model_options;
+
+/* The largest number of mistakes that are reported of one model. @since 0.1 */
+enum { SE3D_MODEL_MISTAKES_MAX = 20 };
 
 /* Fill `options`, of `size` bytes, with the defaults: see se3d_model_options_default. @since 0.1 */
 SE3D_API void se3d_model_options_init(se3d_model_options *options, size_t size);

@@ -153,7 +153,28 @@ bodies:
     mass: -1
 END
 expect 'a bad model' 2 "$program" run "$dir/bad.yaml"
-is "$(cat "$dir/err")" "$dir/bad.yaml:4:11: bodies[0].mass: is -1, must be finite and > 0"
+is "$(cat "$dir/err")" "$dir/bad.yaml:4:11: bodies[0].mass: is -1, must be finite and > 0
+     4 |     mass: -1
+       |           ^"
+cat >"$dir/worse.yaml" <<'END'
+se3d: 1
+bodies:
+	- {name: bar}
+END
+expect 'a tab' 2 "$program" check "$dir/worse.yaml"
+has "$dir/err" '3:1: syntax error'
+cat >"$dir/worse.yaml" <<'END'
+se3d: 1
+bodies: [{name: größe, mass: 1, inertia: [1, 1]}, {name: b, mass: 1, inertia: [1, 1, 1], omega: 3}]
+joints: [{type: hinge, body_i: ground, body_j: größe, at: [0, 0, 0], axis: [0, 0, 1]}]
+END
+expect 'several mistakes' 2 "$program" check --json "$dir/worse.yaml"
+has "$dir/err" ':2:42: bodies[0].inertia: must be'
+has "$dir/err" ':2:90: bodies[1]: the key `omega` is unknown, did you mean `angular_velocity`?'
+has "$dir/err" ':3:17: joints[0].type: the joint type `hinge` is not supported, did you mean `revolute`?'
+has "$dir/err" '       |                 ^'
+has "$dir/err" '4 mistakes'
+has "$dir/out" '"mistakes": [{"line": 2, "column": 42, "message": '
 
 # From t = 0.95 s on the constraint asks for more than the rod can reach.
 cat >"$dir/reach.yaml" <<'END'

@@ -149,8 +149,42 @@ static void reading_and_running_survives_every_failed_allocation(void)
     remove(MESH);
 }
 
+static void count_mistake(void *ctx, const se3d_model_error *error)
+{
+    size_t *count = ctx;
+    *count += error->message[0] != '\0';
+}
+
+/* Without memory for a further reading, the mistakes that are known by then are reported. */
+static void mistakes_are_reported_with_any_memory(void)
+{
+    static const char text[] = "se3d: 1\nbodies: [{name: a, mas: -1}, {name: b, mass: x}]\n"
+                               "joints: [{name: j, type: hinge, body1: a, body2: b}]\n";
+    size_t most = 0;
+    int failed = 1;
+    for (size_t k = 1; failed; ++k) {
+        support_counting counting = {.fail_at = k, .for_ever = 0};
+        const se3d_allocator allocator = support_counting_allocator(&counting);
+        se3d_model_options options = se3d_model_options_default();
+        se3d_model_error error;
+        se3d_model *model = NULL;
+        size_t count = 0;
+        options.allocator = &allocator;
+        options.report = count_mistake;
+        options.report_ctx = &count;
+        const se3d_status status =
+            se3d_model_read_text(text, strlen(text), "m.yaml", &options, &model, &error);
+        CHECK(status == SE3D_ERR_NO_MEMORY || (status == SE3D_ERR_MODEL && count > 0));
+        CHECK(model == NULL && counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);
+        failed = counting.failed > 0;
+        most = count;
+    }
+    CHECK(most >= 5);
+}
+
 int main(void)
 {
     RUN(reading_and_running_survives_every_failed_allocation);
+    RUN(mistakes_are_reported_with_any_memory);
     return check_finish();
 }

@@ -569,6 +569,129 @@ static void every_bad_model_is_rejected_with_place_and_reason(void)
     }
 }
 
+typedef struct mistakes {
+    char text[4096];
+    size_t count, line;
+} mistakes;
+
+static void note_mistake(void *ctx, const se3d_model_error *error)
+{
+    mistakes *m = ctx;
+    const size_t used = strlen(m->text);
+    snprintf(m->text + used, sizeof m->text - used, "%s\n", error->message);
+    CHECK(error->line >= m->line || error->line == 0);
+    m->line = error->line;
+    ++m->count;
+}
+
+static mistakes find_mistakes(const char *text, se3d_model_error *error)
+{
+    mistakes m = {.count = 0};
+    se3d_model *model = NULL;
+    se3d_model_options options = se3d_model_options_default();
+    options.report = note_mistake;
+    options.report_ctx = &m;
+    CHECK(se3d_model_read_text(text, strlen(text), "m.yaml", &options, &model, error) ==
+          SE3D_ERR_MODEL);
+    CHECK(model == NULL);
+    return m;
+}
+
+/* Models of the table that hold a second mistake, by what is said of the first. */
+static int has_two_mistakes(const bad_input *bad)
+{
+    static const char *const first[] = {"no effect with `file`",
+                                        "`nam` is unknown",
+                                        "bodies[0]: the key `mas` is unknown",
+                                        "did you mean `revolute`",
+                                        "joints[0].body_j: no body is named `baz`",
+                                        "`dp3` is not supported",
+                                        "`ball` is not supported",
+                                        "`hinge` is not supported"};
+    for (size_t k = 0; k < sizeof first / sizeof *first; ++k) {
+        if (strcmp(bad->parts[0], first[k]) == 0) {
+            return 1;
+        }
+    }
+    return strcmp(bad->parts[0], "unknown") == 0 && strcmp(bad->parts[1], "table") == 0;
+}
+
+/* What follows from a mistake is not another one. */
+static void every_mistake_is_reported_once(void)
+{
+    for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+        se3d_model_error error;
+        const mistakes m = find_mistakes(table[k].text, &error);
+        const size_t count = has_two_mistakes(&table[k]) ? 2 : 1;
+        CHECK(m.count == count);
+        CHECK_CONTAINS(m.text, error.message);
+        if (m.count != count) {
+            fprintf(stderr, "%zu reports of\n%s%s", m.count, table[k].text, m.text);
+        }
+    }
+}
+
+/* A first draft with the habits of other tools: what is reported, line by line. */
+static void all_mistakes_of_a_draft_are_reported(void)
+{
+    static const char draft[] =
+        "se3d: 1\n"
+        "parameters: {L: 2, half: L/2 + w}\n"
+        "gravity: 9.81\n"
+        "bodies:\n"
+        "  - {name: crank, mas: -1, inertia: [1, 1, 1]}\n"
+        "  - {name: rod, mass: 1, inertia: [1, 1]}\n"
+        "  - {name: block, mass: 1, inertia: [1, 1, 1], pos: [half, 0]}\n"
+        "  - {mass: 2, inertia: [1, 1, 1]}\n"
+        "joints:\n"
+        "  - {name: a, type: hinge, body1: ground, body2: crank, "
+        "at: [0, 0, 0], axis: [0, 0, 1]}\n"
+        "  - {name: b, type: revolute, body_i: crank, body_j: rod, "
+        "at: [L, 0, 0], axis: [0, 0, 0]}\n"
+        "  - {name: c, type: prismatic, body_i: ground, body_j: blok, "
+        "at: [L, 0, 0], axis: [1, 0, 0]}\n"
+        "drivers: [{name: motor, joint: a, value: \"2*pi*T\"}]\n"
+        "forces: [{type: tsda, body_i: ground, body_j: block, k: 1e3}]\n"
+        "analysis: {type: dynamic, time: 2}\n"
+        "output: [{file: a.csv, channels: [block.postion, rod.position]}]\n";
+    static const char *const expected[] = {":2:32: parameters.half: `L/2 + w`",
+                                           ":3:10: gravity: is a single value",
+                                           ":5:19: bodies[0]: the key `mas`",
+                                           ":5:24: bodies[0].mass: is -1",
+                                           ":6:35: bodies[1].inertia: ",
+                                           ":7:48: bodies[2]: the key `pos`",
+                                           ":7:53: bodies[2].position: has 2",
+                                           ":8:5: bodies[3].name: is missing",
+                                           ":10:21: joints[0].type: ",
+                                           ":10:28: joints[0]: the key `body1`",
+                                           ":10:43: joints[0]: the key `body2`",
+                                           ":11:80: joints[1].axis: is [0, 0, 0]",
+                                           ":12:56: joints[2].body_j: ",
+                                           ":13:48: drivers[0].value: `2*pi*T`: unknown name 'T'",
+                                           ":15:18: analysis.type: ",
+                                           ":15:27: analysis: the key `time`",
+                                           ":16:35: output[0].channels[0]: ",
+                                           "did you mean `position`"};
+    se3d_model_error error;
+    const mistakes m = find_mistakes(draft, &error);
+    for (size_t k = 0; k < sizeof expected / sizeof *expected; ++k) {
+        CHECK_CONTAINS(m.text, expected[k]);
+    }
+    CHECK(m.count == sizeof expected / sizeof *expected - 1);
+    CHECK_CONTAINS(m.text, error.message);
+}
+
+static void a_report_ends_at_the_largest_number(void)
+{
+    char text[4096] = "se3d: 1\nbodies:\n";
+    for (int k = 0; k < 30; ++k) {
+        const size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, "  - {name: b%d, fixed: perhaps}\n", k);
+    }
+    se3d_model_error error;
+    CHECK(find_mistakes(text, &error).count == SE3D_MODEL_MISTAKES_MAX);
+}
+
 static void options_are_checked_like_the_file(void)
 {
     static const char text[] = "se3d: 1\nparameters: {L: 1}\n" BAR RUN_IT;
@@ -619,6 +742,9 @@ static void missing_arguments_are_named(void)
 int main(void)
 {
     RUN(every_bad_model_is_rejected_with_place_and_reason);
+    RUN(every_mistake_is_reported_once);
+    RUN(all_mistakes_of_a_draft_are_reported);
+    RUN(a_report_ends_at_the_largest_number);
     RUN(options_are_checked_like_the_file);
     RUN(missing_arguments_are_named);
     return check_finish();

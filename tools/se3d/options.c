@@ -162,13 +162,3 @@ se3d_model_options options_get_model(const options *o)
     how.duration = o->duration;
     return how;
 }
-
-int options_read_model(const options *o, const se3d_model_options *how, se3d_model **model)
-{
-    se3d_model_error error;
-    if (SE3D_FAILED(se3d_model_read_file(o->model, how, model, &error))) {
-        report_failure(o, "", error.message);
-        return EXIT_USAGE;
-    }
-    return EXIT_DONE;
-}

@@ -39,7 +39,7 @@ int options_read(options *o, const char *command, const char *allowed, int count
 /* The model options that the command line asks for. */
 se3d_model_options options_get_model(const options *o);
 
-/* Read the model. @return EXIT_DONE, or EXIT_USAGE after a message. */
+/* mistakes.c: read the model. @return EXIT_DONE, or EXIT_USAGE after its mistakes were shown. */
 int options_read_model(const options *o, const se3d_model_options *how, se3d_model **model);
 
 /* Print a failure as text or, with --json, as an object. */

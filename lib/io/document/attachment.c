@@ -57,5 +57,6 @@ bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const ch
         return se3di_reader_fail_memory(reader);
     }
     *size = good ? (size_t)length : 0;
+    reader->attached += *size;
     return good || fail(reader, map, file, "is empty, too large or cannot be read");
 }

@@ -20,6 +20,7 @@ typedef enum se3di_node_kind { SE3DI_NODE_SCALAR, SE3DI_NODE_LIST, SE3DI_NODE_MA
 typedef struct se3di_node {
     se3di_node_kind kind;
     bool plain;        /* scalar without quotes */
+    bool incomplete;   /* a part of it was taken out, see recovery.h */
     bool one_line;     /* scalar whose characters stand in the file as in `text`, on one line */
     size_t line;       /* 1-based; 0: not from the file (an option of the command line) */
     size_t column;     /* 1-based, in characters */

@@ -2,6 +2,7 @@
 /* The search for what was meant: edit distances. */
 #include "io/document/guess.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -38,6 +39,56 @@ static size_t edit_distance(const char *a, size_t na, const char *b, size_t nb)
     return rows[na % 3][nb];
 }
 
+/* Words of other programs for ours: " word=ours ". A word may have several. */
+static const char synonyms[] =
+    " hinge=revolute pin=revolute continuous=revolute slider=prismatic slide=prismatic "
+    "translational=prismatic ball=spherical weld=fixed rigid=fixed lock=fixed hooke=universal "
+    "cardan=universal helical=screw inline=point_on_line inplane=point_on_plane "
+    "rod=distance link=distance spring=tsda spring_damper=tsda torsion_spring=rsda "
+    "rotational_spring=rsda moment=torque cuboid=box block=box ball=sphere stl=mesh "
+    "body1=body_i body_1=body_i bodyA=body_i body_a=body_i parent=body_i from=body_i "
+    "body2=body_j body_2=body_j bodyB=body_j body_b=body_j child=body_j to=body_j "
+    "pos=position location=position origin=position com=position center=position at=position "
+    "xyz=position rot=orientation rotation=orientation quat=orientation quaternion=orientation "
+    "attitude=orientation quat=euler_parameters quaternion=euler_parameters euler=rpy vel=velocity "
+    "linear_velocity=velocity omega=angular_velocity angvel=angular_velocity m=mass I=inertia "
+    "J=inertia inertias=inertia anchor=at location=at position=at point=at pos=at pivot=at "
+    "direction=axis dir=axis p1=point_i p2=point_j point1=point_i point2=point_j "
+    "stiffness=k rate=k damping=c damper=c rest_length=l0 free_length=l0 length0=l0 "
+    "time=duration end=duration t_end=duration end_time=duration stop_time=duration tend=duration "
+    "dt=step timestep=step time_step=step h=step hmax=step integrator=method solver=method "
+    "tol=tolerance rtol=tolerance function=value motion=value expression=value law=value "
+    "parts=bodies links=bodies body=bodies connections=joints motors=drivers motions=drivers "
+    "drives=drivers springs=forces loads=forces params=parameters variables=parameters "
+    "constants=parameters outputs=output results=output simulation=analysis solver=analysis "
+    "run=analysis columns=channels signals=channels requests=channels interval=every "
+    "sampling=every filename=file path=file geometry=shapes visual=shapes geoms=shapes "
+    "dynamic=dynamics kinematic=kinematics transient=dynamics static=equilibrium "
+    "statics=equilibrium eigen=modes modal=modes linear=modes ground_frame=ground world=ground ";
+
+/* Equal but for capitals. */
+static bool differ_in_case(const char *a, const char *b)
+{
+    while (*a && (*a == *b || ((*a ^ *b) == 32 && (*a | 32) >= 'a' && (*a | 32) <= 'z'))) {
+        ++a;
+        ++b;
+    }
+    return *a == *b;
+}
+
+static bool is_synonym(const char *word, const char *candidate)
+{
+    const size_t nw = strlen(word);
+    const size_t nc = strlen(candidate);
+    for (const char *at = synonyms; nw > 0 && (at = strstr(at, word)) != NULL; ++at) {
+        if (at[-1] == ' ' && at[nw] == '=' && strncmp(at + nw + 1, candidate, nc) == 0 &&
+            at[nw + 1 + nc] == ' ') {
+            return true;
+        }
+    }
+    return false;
+}
+
 se3di_guess se3di_guess_begin(const char *word)
 {
     const se3di_guess guess = {word, NULL, SIZE_MAX};
@@ -51,8 +102,10 @@ void se3di_guess_offer(se3di_guess *guess, const char *candidate)
     if (na > GUESS_LENGTH_MAX || nb > GUESS_LENGTH_MAX || na == 0) {
         return;
     }
-    const size_t distance = edit_distance(guess->word, na, candidate, nb);
-    if (distance < guess->distance) {
+    const size_t distance =
+        is_synonym(guess->word, candidate) ? 0 : edit_distance(guess->word, na, candidate, nb);
+    if (distance < guess->distance ||
+        (distance == guess->distance && differ_in_case(guess->word, candidate))) {
         guess->distance = distance;
         guess->best = candidate;
     }

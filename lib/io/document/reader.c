@@ -18,6 +18,12 @@ static bool fail_at(se3di_reader *reader, size_t line, size_t column, const char
     return false;
 }
 
+bool se3di_reader_propose(se3di_reader *reader, const char *meant)
+{
+    reader->fault.meant = meant;
+    return false;
+}
+
 bool se3di_reader_fail(se3di_reader *reader, const se3di_node *node, const char *format, ...)
 {
     char path[256];
@@ -27,6 +33,7 @@ bool se3di_reader_fail(se3di_reader *reader, const se3di_node *node, const char 
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     se3di_node_format_path(node, path, sizeof path);
+    reader->fault = se3di_fault_of(node);
     return fail_at(reader, node->line, node->column, path, text);
 }
 
@@ -40,6 +47,7 @@ bool se3di_reader_fail_key(se3di_reader *reader, const se3di_node *map, const ch
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     const se3di_node *child = se3di_node_get(map, key);
+    reader->fault = se3di_fault_of(child ? child : map);
     if (child) {
         se3di_node_format_path(child, path, sizeof path);
         return fail_at(reader, child->line, child->column, path, text);
@@ -53,6 +61,7 @@ bool se3di_reader_fail_key(se3di_reader *reader, const se3di_node *map, const ch
 bool se3di_reader_fail_memory(se3di_reader *reader)
 {
     reader->status = SE3D_ERR_NO_MEMORY;
+    reader->fault = (se3di_fault){.node = NULL};
     se3di_document_report(reader->error, "", 0, 0, "", "out of memory");
     return false;
 }
@@ -92,9 +101,14 @@ static bool fail_unknown_key(se3di_reader *reader, const se3di_node *child,
     char list[480];
     se3di_guess guess = se3di_guess_begin(child->key);
     for (const se3di_key *row = object->keys; row->key; ++row) {
-        se3di_guess_offer(&guess, row->key);
+        if (!se3di_node_get(child->parent, row->key)) {
+            se3di_guess_offer(&guess, row->key);
+        }
     }
     const char *meant = se3di_guess_get(&guess);
+    reader->fault = se3di_fault_of(child);
+    reader->fault.meant = meant;
+    reader->fault.is_key = true;
     se3di_node_format_path(child->parent, path, sizeof path);
     if (meant) {
         snprintf(text, sizeof text, "the key `%.60s` is unknown, did you mean `%s`?", child->key,
@@ -132,6 +146,7 @@ static bool check_type_keys(se3di_reader *reader, const se3di_node *node,
             char text[640];
             se3di_node_format_path(child, path, sizeof path);
             se3di_object_list(object, type, ", ", list, sizeof list);
+            reader->fault = se3di_fault_of(child);
             snprintf(text, sizeof text, "`%s` has no such key, allowed are: %s", type, list);
             return fail_at(reader, child->key_line, child->key_column, path, text);
         }
@@ -157,9 +172,10 @@ static bool fail_unknown_type(se3di_reader *reader, const se3di_node *map, const
         return se3di_reader_fail(reader, node, "is %s, must be one of: %s",
                                  se3di_node_describe(node), list);
     }
-    return se3di_reader_fail(
-        reader, node, "the %s type `%.60s` is not supported, %s%s%s", object->name, text,
-        meant ? "did you mean `" : "allowed are: ", meant ? meant : list, meant ? "`?" : "");
+    se3di_reader_fail(reader, node, "the %s type `%.60s` is not supported, %s%s%s", object->name,
+                      text, meant ? "did you mean `" : "allowed are: ", meant ? meant : list,
+                      meant ? "`?" : "");
+    return se3di_reader_propose(reader, meant);
 }
 
 bool se3di_read_type(se3di_reader *reader, const se3di_node *node, const se3di_object *object,
@@ -211,8 +227,9 @@ bool se3di_read_word(se3di_reader *reader, const se3di_node *node, const char *c
                                  se3di_node_describe(node), list);
     }
     if (meant) {
-        return se3di_reader_fail(reader, node, "is `%.60s`, did you mean `%s`? Allowed are: %s",
-                                 node->text, meant, list);
+        se3di_reader_fail(reader, node, "is `%.60s`, did you mean `%s`? Allowed are: %s",
+                          node->text, meant, list);
+        return se3di_reader_propose(reader, meant);
     }
     return se3di_reader_fail(reader, node, "is `%.60s`, must be one of: %s", node->text, list);
 }

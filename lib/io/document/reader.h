@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Reports with place and path, keys, words and names: every function of a reader returns false
- * after it has reported why. The first error ends the reading. */
+ * after it has reported why. The first error ends the reading; recovery.h finds the next ones. */
 #ifndef SE3D_IO_READER_H
 #define SE3D_IO_READER_H
 
 #include "io/document/document.h"
 #include "io/document/keys.h"
+#include "io/document/recovery.h"
 
 typedef struct se3di_reader {
     se3d_model *model; /* what the sections fill; below only what values need of it */
@@ -17,6 +18,8 @@ typedef struct se3di_reader {
     const se3d_model_options *options;
     se3d_model_error *error;
     se3d_status status;
+    se3di_fault fault; /* what the report is about */
+    size_t attached;   /* bytes of other files that were read */
 } se3di_reader;
 
 /* Report about a node: "file:line:column: path: text". Always false. */
@@ -26,6 +29,9 @@ bool se3di_reader_fail(se3di_reader *reader, const se3di_node *node, const char 
 SE3DI_IO_FORMAT(4, 5)
 bool se3di_reader_fail_key(se3di_reader *reader, const se3di_node *map, const char *key,
                            const char *format, ...);
+/* Say what was meant in place of the text of the node that was reported; NULL: not known. Always
+ * false. */
+bool se3di_reader_propose(se3di_reader *reader, const char *meant);
 bool se3di_reader_fail_memory(se3di_reader *reader);
 /* Report the system's message about the element that `map` describes, at the key it names. */
 bool se3di_reader_fail_system(se3di_reader *reader, const se3di_node *map, se3d_status status);

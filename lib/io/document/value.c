@@ -65,6 +65,7 @@ static bool fail_expression(se3di_reader *reader, const se3di_node *node,
 {
     char word[64];
     char hint[96] = "";
+    const char *other = NULL; /* what the expression itself takes it for */
     se3di_node place = *node;
     const char *meant = guess_symbol(def, why->column, word);
     if (is_cut(node)) {
@@ -72,11 +73,14 @@ static bool fail_expression(se3di_reader *reader, const se3di_node *node,
                  " (inside [ ] and { } an expression with a comma needs quotes)");
     } else if (meant) {
         snprintf(hint, sizeof hint, ", did you mean `%.63s`?", meant);
+        other = strstr(why->message, ", did you mean");
     }
     if (node->one_line && why->column > 0) {
         place.column += why->column - 1 + (node->plain ? 0 : 1);
     }
-    return se3di_reader_fail(reader, &place, "`%.120s`: %s%s", node->text, why->message, hint);
+    const size_t length = other ? (size_t)(other - why->message) : strlen(why->message);
+    return se3di_reader_fail(reader, &place, "`%.120s`: %.*s%s", node->text, (int)length,
+                             why->message, hint);
 }
 
 static bool check_expression_node(se3di_reader *reader, const se3di_node *node)

@@ -73,9 +73,10 @@ static bool fail_unknown_body(se3di_reader *reader, const se3di_node *node)
         se3di_guess_offer(&guess, model->bodies[k].name);
     }
     const char *meant = se3di_guess_get(&guess);
-    return se3di_reader_fail(reader, node, "no body is named `%.60s`, %s%s%s", node->text,
-                             meant ? "did you mean `" : "must be `ground` or the name of a body",
-                             meant ? meant : "", meant ? "`?" : "");
+    se3di_reader_fail(reader, node, "no body is named `%.60s`, %s%s%s", node->text,
+                      meant ? "did you mean `" : "must be `ground` or the name of a body",
+                      meant ? meant : "", meant ? "`?" : "");
+    return se3di_reader_propose(reader, meant);
 }
 
 bool se3di_read_key_body(se3di_reader *reader, const se3di_node *map, const char *key,
@@ -179,7 +180,8 @@ static bool read_mass(se3di_reader *reader, const se3di_node *node, se3d_body_de
     if (def->fixed || (mass && inertia)) {
         return true;
     }
-    if (mass && !reader->options->mass_optional) {
+    const bool optional = reader->options->mass_optional || node->incomplete;
+    if (mass && !optional) {
         return se3di_reader_fail_key(reader, node, "inertia",
                                      "is missing, must be given with the mass [kg m^2]");
     }
@@ -191,7 +193,7 @@ static bool read_mass(se3di_reader *reader, const se3di_node *node, se3d_body_de
             return true;
         }
     }
-    if (!reader->options->mass_optional) {
+    if (!optional) {
         return se3di_reader_fail_key(reader, node, "mass",
                                      "is missing, must be finite and > 0 [kg] unless the body is "
                                      "fixed or its shapes have a density");

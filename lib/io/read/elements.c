@@ -83,9 +83,10 @@ bool se3di_read_key_joint(se3di_reader *reader, const se3di_node *map, const cha
         }
     }
     const char *meant = se3di_guess_get(&guess);
-    return se3di_reader_fail(reader, node, "no joint is named `%.60s`, %s%s%s", name,
-                             meant ? "did you mean `" : "must be the name of one of `joints`",
-                             meant ? meant : "", meant ? "`?" : "");
+    se3di_reader_fail(reader, node, "no joint is named `%.60s`, %s%s%s", name,
+                      meant ? "did you mean `" : "must be the name of one of `joints`",
+                      meant ? meant : "", meant ? "`?" : "");
+    return se3di_reader_propose(reader, meant);
 }
 
 bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3d_constraint joint,

@@ -11,6 +11,7 @@
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
+#include "io/read/mistakes.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
 
@@ -149,8 +150,21 @@ static bool read_model(se3di_reader *reader, const se3di_node *root)
            se3di_read_outputs(reader, root) && se3di_read_events(reader, root);
 }
 
-/* An empty model with its own memory. */
-static se3d_model *create_model(const se3d_allocator *allocator)
+se3d_status se3di_model_fill(se3di_attempt *attempt)
+{
+    se3d_model *model = attempt->model;
+    se3di_reader reader = {.model = model,
+                           .pool = &model->pool,
+                           .file = model->file,
+                           .options = attempt->options,
+                           .error = attempt->error};
+    const bool good = read_model(&reader, model->root);
+    attempt->fault = reader.fault;
+    attempt->attached = reader.attached;
+    return good ? SE3D_OK : reader.status < 0 ? reader.status : SE3D_ERR_MODEL;
+}
+
+se3d_model *se3di_model_create(const se3d_allocator *allocator)
 {
     se3di_iopool pool;
     se3di_iopool_init(&pool, allocator);
@@ -183,9 +197,9 @@ se3d_status se3d_model_read_text(const char *text, size_t length, const char *na
                                  se3d_model_error *error)
 {
     se3d_model_options used;
-    if (error) {
-        memset(error, 0, sizeof *error);
-    }
+    se3d_model_error own; /* reports are made of it */
+    error = error ? error : &own;
+    memset(error, 0, sizeof *error);
     if (out) {
         *out = NULL;
     }
@@ -195,7 +209,7 @@ se3d_status se3d_model_read_text(const char *text, size_t length, const char *na
     if (!text || !name || !out || (used.setting_count > 0 && !used.settings)) {
         return fail_early(error, SE3D_ERR_NULL, "", "text, name or out is NULL");
     }
-    se3d_model *model = create_model(used.allocator);
+    se3d_model *model = se3di_model_create(used.allocator);
     if (!model) {
         return fail_early(error, SE3D_ERR_NO_MEMORY, "", "out of memory");
     }
@@ -207,14 +221,13 @@ se3d_status se3d_model_read_text(const char *text, size_t length, const char *na
     } else {
         status = se3di_document_parse(&model->pool, model->file, text, length, &model->root, error);
     }
-    if (status >= 0) {
-        se3di_reader reader = {.model = model,
-                               .pool = &model->pool,
-                               .file = model->file,
-                               .options = &used,
-                               .error = error};
-        if (!read_model(&reader, model->root)) {
-            status = reader.status < 0 ? reader.status : SE3D_ERR_MODEL;
+    se3di_attempt attempt = {.model = model, .options = &used, .error = error};
+    if (status < 0) {
+        se3di_mistakes_report_one(&attempt, status);
+    } else {
+        status = se3di_model_fill(&attempt);
+        if (status == SE3D_ERR_MODEL && used.report) {
+            se3di_mistakes_report_all(&attempt, length);
         }
     }
     if (status < 0) {

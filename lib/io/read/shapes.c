@@ -178,9 +178,10 @@ static bool read_material(se3di_reader *reader, const se3di_node *node, double *
         se3di_guess_offer(&guess, known);
     }
     const char *meant = se3di_guess_get(&guess);
-    return se3di_reader_fail(reader, node, "no material is named `%.60s`%s%s%s", name,
-                             meant ? ", did you mean `" : "; list it under `materials`",
-                             meant ? meant : "", meant ? "`?" : "");
+    se3di_reader_fail(reader, node, "no material is named `%.60s`%s%s%s", name,
+                      meant ? ", did you mean `" : "; list it under `materials`",
+                      meant ? meant : "", meant ? "`?" : "");
+    return se3di_reader_propose(reader, meant);
 }
 
 /* Of the shape, else of the body, else of the shape's material; 0 if nobody says. */

@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Reading a model: its mistakes with the lines they are on. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "options.h"
+#include "text.h"
+
+enum { LINE_MAX = 4096, WIDTH = 100 /* characters of a line that are shown */ };
+
+typedef struct mistakes {
+    se3d_model_error list[SE3D_MODEL_MISTAKES_MAX];
+    size_t count;
+} mistakes;
+
+static void keep(void *ctx, const se3d_model_error *error)
+{
+    mistakes *m = ctx;
+    if (m->count < SE3D_MODEL_MISTAKES_MAX) {
+        m->list[m->count++] = *error;
+    }
+}
+
+/* Read on to a line of the file, counted in *at. @return whether it is there. */
+static int find_line(FILE *file, size_t line, size_t *at, char *text)
+{
+    while (*at < line) {
+        size_t length = 0;
+        int c = 0;
+        while ((c = fgetc(file)) != EOF && c != '\n') {
+            if (length + 1 < LINE_MAX) {
+                text[length++] = (char)(c == '\t' || c == '\r' ? ' ' : c);
+            }
+        }
+        text[length] = '\0';
+        if (c == EOF && length == 0) {
+            return 0;
+        }
+        ++*at;
+    }
+    return 1;
+}
+
+/* The byte at which the character of this column begins, from 1. */
+static size_t find_column(const char *text, size_t column)
+{
+    size_t byte = 0;
+    for (size_t k = 1; k < column && text[byte]; ++k) {
+        const size_t length = se3d_text_get_character(text + byte);
+        byte += length > 0 ? length : 1;
+    }
+    return byte;
+}
+
+/* The line with a mark below the column; of a long one, what is around it. */
+static void show_line(const se3d_model_error *error, const char *line)
+{
+    char part[4 * WIDTH + 1];
+    const size_t first = error->column > WIDTH * 3 / 4 ? error->column - WIDTH / 2 : 1;
+    const size_t from = find_column(line, first);
+    const size_t length = find_column(line + from, WIDTH + 1);
+    memcpy(part, line + from, length);
+    part[length] = '\0';
+    fprintf(stderr, "%6zu | ", error->line);
+    text_put_plain(stderr, part);
+    fprintf(stderr, "\n       | %*s^\n", (int)(error->column - first), "");
+}
+
+static void show(const options *o, const mistakes *m)
+{
+    char line[LINE_MAX];
+    size_t at = 0;
+    FILE *file = fopen(o->model, "rb");
+    for (size_t k = 0; k < m->count; ++k) {
+        const se3d_model_error *error = &m->list[k];
+        fprintf(stderr, "%s\n", error->message);
+        /* They come in the order of the lines; `line` holds the last one that was read. */
+        if (file && error->line > 0 && error->column > 0 && error->column < LINE_MAX &&
+            find_line(file, error->line, &at, line)) {
+            show_line(error, line);
+        }
+    }
+    if (m->count > 1) {
+        fprintf(stderr, "%zu mistakes%s\n", m->count,
+                m->count == SE3D_MODEL_MISTAKES_MAX ? ", there may be more" : "");
+    }
+    if (file) {
+        fclose(file);
+    }
+}
+
+static void print_json(const mistakes *m, const char *message)
+{
+    fputs("{\"status\": \"error\", \"message\": ", stdout);
+    json_put_text(message);
+    fputs(", \"mistakes\": [", stdout);
+    for (size_t k = 0; k < m->count; ++k) {
+        printf("%s{\"line\": %zu, \"column\": %zu, \"message\": ", k > 0 ? ", " : "",
+               m->list[k].line, m->list[k].column);
+        json_put_text(m->list[k].message);
+        fputs("}", stdout);
+    }
+    fputs("]}\n", stdout);
+}
+
+int options_read_model(const options *o, const se3d_model_options *how, se3d_model **model)
+{
+    mistakes m = {.count = 0};
+    se3d_model_error error;
+    se3d_model_options with = *how;
+    with.report = keep;
+    with.report_ctx = &m;
+    if (!SE3D_FAILED(se3d_model_read_file(o->model, &with, model, &error))) {
+        return EXIT_DONE;
+    }
+    if (m.count == 0) {
+        report_failure(o, "", error.message);
+        return EXIT_USAGE;
+    }
+    show(o, &m);
+    if (o->json) {
+        print_json(&m, error.message);
+    }
+    return EXIT_USAGE;
+}
