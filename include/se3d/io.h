@@ -293,6 +293,7 @@ typedef struct se3d_run_analysis {
                                what they are off by at the end, "": none */
     double tolerance;        /* that was asked for [relative]; 0: the analysis controls no errors */
     double reached;          /* as se3d_solver_get_tolerance [relative] */
+    double step;             /* as se3d_solver_get_step [s] */
 } se3d_run_analysis;
 
 /* Count the analyses that a run began. @return the number; 0 for NULL. @since 0.1 */

@@ -55,10 +55,12 @@ typedef struct se3d_solver_def {
     int32_t method;      /* se3d_method, dynamics only, default AUTO */
     int32_t order;       /* bdf: 1..5, rattle: 2, 4, others: the one they have; 0: the default */
     /* Of generalized_alpha, hht, rattle, verlet: fixed; of the others: the largest one; >= 1e-15
-     * [s]; 0: chosen by the error, but rattle and verlet take 1 ms (less at contacts and stops)
-     * and warn in the log, with its size, if the error that adds up is large. */
+     * [s]; 0: chosen by the error. rattle and verlet choose equal steps once, to the tolerance, by
+     * trial steps ahead (se3d_solver_get_step); contacts and stops shorten them, and where they
+     * turn out to be too long they are halved and the log is warned. Beside particles verlet
+     * takes at most 1 ms. */
     double step;
-    double tolerance;       /* relative error of adaptive methods, 1e-14..0.1; 0: 1e-6. Below what a
+    double tolerance;       /* relative error if steps are chosen, 1e-14..0.1; 0: 1e-6. Below what a
                                method reaches it works at that (se3d_solver_get_tolerance) */
     double spectral_radius; /* generalized_alpha: at infinite frequency, 0..1, default 0.9 */
     double alpha;           /* hht: -1/3..0, default -0.1 */
@@ -168,6 +170,14 @@ static inline se3d_status se3d_solver_get_start_change(const se3d_solver *solver
  * @return OK, NULL.
  * @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_tolerance(const se3d_solver *solver, double *tolerance);
+
+/* Get the length of equal steps of a run: the one that was given, or the one that rattle and verlet
+ * have chosen, which clones and snapshots of the system go on with.
+ * @param[out] step  [s]; 0: the method adapts its steps, or none was chosen yet, or the system is
+ *                   gone
+ * @return OK, NULL.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_solver_get_step(const se3d_solver *solver, double *step);
 
 /* Get the method in use; of AUTO the one that it picked.
  * @param[out] name  "generalized_alpha", ...; static

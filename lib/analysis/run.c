@@ -55,6 +55,7 @@ void se3di_run_destroy(se3di_run *run)
     release(run);
     se3di_events_destroy(&run->events);
     se3di_saved_destroy(&run->before, &run->model->allocator);
+    se3di_saved_destroy(&run->integration.before_trials, &run->model->allocator);
 }
 
 /* Steps and failures allocate nothing. */
@@ -144,7 +145,6 @@ static se3d_status build(se3di_run *run)
     run->integration.equations = &run->equations;
     run->prepared = 1;
     run->told_redundant = run->told_left_out = run->told_kink = 0;
-    run->integration.step_error = (se3di_step_error){0.0, 0.0, 0.0};
     run->determined = 0;
     run->values_version = run->model->values_version;
     if (is_driven(run)) {
@@ -351,17 +351,16 @@ static se3di_pace_kind pace_of(const se3di_integration *integration)
 }
 
 /* The next step on the way to t_end: of the length that was asked for, or as contacts need it. */
-static se3d_status choose_step(const se3di_run *run, double t_end, double *h)
+static se3d_status choose_step(se3di_run *run, double t_end, double *h)
 {
-    const se3di_integration *integration = &run->integration;
+    se3di_integration *integration = &run->integration;
     double rest = t_end - run->model->time;
     double asked = integration->settings.step;
     if (asked > 0.0) {
         *h = rest / se3di_steps_count(rest, asked, t_end);
         return se3di_contacts_check_step(run->model, pace_of(integration), *h, run->error);
     }
-    *h = se3di_contacts_next_step(run->model, pace_of(integration), integration->settings.step_most,
-                                  t_end);
+    *h = se3di_equal_steps_next(integration, integration->settings.step_most, t_end);
     return SE3D_OK;
 }
 
@@ -389,7 +388,7 @@ static se3d_status run_fixed_steps(se3di_run *run, double t_end)
         SE3DI_TRY(se3di_watch_begin(&run->equations));
         SE3DI_TRY(step_dynamics(run, h));
         model->time = last ? t_end : model->time;
-        se3di_step_error_add(&run->integration, h);
+        se3di_equal_steps_watch(&run->integration, h);
         const se3d_status status = se3di_watch_end(&run->equations);
         if (status != SE3D_OK) {
             return status;
@@ -451,21 +450,41 @@ static void warn_of_kink(se3di_run *run, double t_end)
                     kink.t, name);
 }
 
+/* The longest step of methods that control no error, if none was given; stable, and exact. */
+static double longest_step(const se3di_integration *integration)
+{
+    const se3di_model *model = integration->equations->assembly.model;
+    const double stable = integration->method->is_implicit ? HUGE_VAL : se3di_stiffness_step(model);
+    return se3di_equal_steps_are_chosen(integration) ? stable : fmin(STEP_DEFAULT, stable);
+}
+
+/* Equal steps, chosen before the first one. */
+static se3d_status choose_steps(se3di_run *run, double t_end)
+{
+    se3di_integration *integration = &run->integration;
+    SE3DI_TRY(se3di_equal_steps_choose(integration, fmax(t_end, run->horizon)));
+    if (se3di_equal_steps_are_chosen(integration)) {
+        integration->settings.step_most =
+            fmin(integration->settings.step_most, se3di_equal_steps_get(integration, run->model));
+    }
+    return SE3D_OK;
+}
+
 /* The method in use, to t_end or to where an event ends it or it has to be left. */
 static se3d_status run_method(se3di_run *run, double t_end)
 {
     se3di_integration *integration = &run->integration;
-    integration->settings.step_most = integration->method->is_implicit
-                                          ? STEP_DEFAULT
-                                          : fmin(STEP_DEFAULT, se3di_stiffness_step(run->model));
-    double step = integration->settings.step > 0.0 ? integration->settings.step
-                                                   : integration->settings.step_most;
+    integration->settings.step_most = longest_step(integration);
+    double step = integration->settings.step > 0.0
+                      ? integration->settings.step
+                      : fmin(STEP_DEFAULT, integration->settings.step_most);
     const double remaining = t_end - run->model->time;
     run->refused = 1;
     SE3DI_TRY(se3di_jump_refuse(&run->equations.assembly, t_end, step, run->error));
     run->refused = 0;
     warn_of_kink(run, t_end);
     SE3DI_TRY(begin_dynamics(run, remaining / se3di_steps_count(remaining, step, t_end)));
+    SE3DI_TRY(choose_steps(run, t_end));
     if (!has_step_control(integration)) {
         return run_fixed_steps(run, t_end);
     }

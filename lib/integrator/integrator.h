@@ -8,7 +8,7 @@
 #ifndef SE3DI_INTEGRATOR_H
 #define SE3DI_INTEGRATOR_H
 
-#include "integrator/step_error.h"
+#include "integrator/equal_steps.h"
 #include "nonlinear/equations.h"
 #include "nonlinear/newton.h"
 #include "se3d/solver.h"
@@ -74,13 +74,13 @@ typedef struct se3di_integrator {
     const struct se3di_rk_tableau *tableau; /* of Runge-Kutta methods */
     /* Of the Newmark family: its coefficients. */
     struct se3di_newmark (*newmark)(const se3di_integrator_settings *settings);
-    int32_t is_implicit; /* not 0: integration->newton is made */
-    int32_t is_explicit; /* not 0: works with formulations in the fewest unknowns, */
-    int32_t is_reduced;  /* and so do these implicit ones */
-    uint32_t orders;     /* bit k: settings.order may be k; 0, the default one, always may */
-    double reach;        /* smallest tolerance that its control of errors meets; 0: it has none */
-    int32_t fixes_step;  /* not 0: with settings.step, errors are not controlled */
-    int32_t reserved;
+    int32_t is_implicit;  /* not 0: integration->newton is made */
+    int32_t is_explicit;  /* not 0: works with formulations in the fewest unknowns, */
+    int32_t is_reduced;   /* and so do these implicit ones */
+    uint32_t orders;      /* bit k: settings.order may be k; 0, the default one, always may */
+    double reach;         /* smallest tolerance that its control of errors meets; 0: it has none */
+    int32_t fixes_step;   /* not 0: with settings.step, errors are not controlled */
+    int32_t chooses_step; /* not 0: without one, equal steps are chosen (equal_steps.h) */
 } se3di_integrator;
 
 struct se3di_integration {
@@ -90,7 +90,9 @@ struct se3di_integration {
     double *work;
     double error;        /* of the last step, relative to the tolerance, if it is controlled */
     se3di_newton newton; /* of implicit methods */
-    se3di_step_error step_error; /* of steps that nobody gave */
+    se3di_saved before_trials; /* of steps whose length is chosen */
+    int32_t is_paced;          /* contacts or stops have shortened the step under way */
+    int32_t reserved;
 };
 
 /* The methods but AUTO, X(METHOD, name): se3di_integrator_<name> is the table of

@@ -20,7 +20,7 @@
 
 size_t se3di_lie_verlet_history_count(const se3di_assembly *assembly)
 {
-    return 1 + se3di_lie_friction_history_count(assembly->model);
+    return SE3DI_EQUAL_HEADER + se3di_lie_friction_history_count(assembly->model);
 }
 
 size_t se3di_lie_verlet_work_count(const se3di_assembly *assembly)
@@ -34,14 +34,16 @@ se3d_status se3di_lie_verlet_start(se3di_integration *integration, double h)
 {
     (void)h;
     se3di_model *model = integration->equations->assembly.model;
-    model->history[0] = 0.0; /* not empty */
-    se3di_lie_friction_start(model, model->history + 1);
+    memset(model->history, 0, SE3DI_EQUAL_HEADER * sizeof *model->history);
+    se3di_lie_friction_start(model, model->history + SE3DI_EQUAL_HEADER);
     return SE3D_OK;
 }
 
 se3d_status se3di_lie_verlet_renew(se3di_integration *integration)
 {
-    return se3di_lie_verlet_start(integration, 0.0);
+    se3di_model *model = integration->equations->assembly.model;
+    se3di_lie_friction_start(model, model->history + SE3DI_EQUAL_HEADER);
+    return SE3D_OK;
 }
 
 se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int force_iterations)
@@ -56,7 +58,7 @@ se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int forc
     m.half = m.best + assembly->row_count;
     m.last = m.half + 6 * (size_t)assembly->body_count;
     m.friction = se3di_lie_friction_begin(m.equations, m.last + assembly->unknown_count,
-                                          assembly->model->history + 1);
+                                          assembly->model->history + SE3DI_EQUAL_HEADER);
     return m;
 }
 

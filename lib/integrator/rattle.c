@@ -77,5 +77,6 @@ const se3di_integrator se3di_integrator_rattle = {
     .start = se3di_lie_verlet_start,
     .renew = se3di_lie_verlet_renew,
     .step = step,
+    .chooses_step = 1,
     .orders = 1u << 2 | 1u << 4,
 };

@@ -162,13 +162,14 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
     verlet m = begin(integration);
     se3d_status status = SE3D_OK;
     while (m.model->time < t_end && status >= 0 && status != SE3D_INFO_EVENT) {
+        most = asked || m.model->sets ? most : integration->settings.step_most;
         double rest = t_end - m.model->time;
         double h = rest / se3di_steps_count(rest, most, t_end);
         status = se3di_equations_try_step(integration->equations, m.model->time);
         if (status >= 0 && asked) {
             status = se3di_contacts_check_step(m.model, SE3DI_PACE_EXPLICIT, h, m.error);
         } else if (status >= 0) {
-            h = se3di_contacts_next_step(m.model, SE3DI_PACE_EXPLICIT, most, t_end);
+            h = se3di_equal_steps_next(integration, most, t_end);
         }
         if (m.open && fabs(h - m.h) > 1e-9 * h) {
             close_kick(&m);
@@ -177,7 +178,7 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
         status = status < 0 ? status : se3di_watch_begin(integration->equations);
         status = status < 0 ? status : advance(&m, t1);
         if (status >= 0) {
-            se3di_step_error_add(integration, m.bodies.h);
+            se3di_equal_steps_watch(integration, m.bodies.h);
         }
         status = status < 0 ? status : se3di_watch_end(integration->equations);
     }
@@ -240,5 +241,6 @@ const se3di_integrator se3di_integrator_verlet = {
     .accelerate = accelerate,
     .step = step,
     .run = run,
+    .chooses_step = 1,
     .orders = 1u << 2,
 };

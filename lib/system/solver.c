@@ -266,6 +266,17 @@ se3d_status se3d_solver_get_tolerance(const se3d_solver *solver, double *toleran
     return SE3D_OK;
 }
 
+se3d_status se3d_solver_get_step(const se3d_solver *solver, double *step)
+{
+    if (!solver || !step) {
+        return SE3D_ERR_NULL;
+    }
+    *step = solver->system && solver->run.analysis == SE3D_ANALYSIS_DYNAMICS
+                ? se3di_equal_steps_get(&solver->run.integration, &solver->system->model)
+                : 0.0;
+    return SE3D_OK;
+}
+
 se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name)
 {
     if (!solver || !name) {

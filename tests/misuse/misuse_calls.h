@@ -252,6 +252,7 @@ CALL(solver_get_stats, a->solver, a->out[0])
 CALL(solver_get_start_change, a->solver, a->out[0])
 CALL(solver_get_method, a->solver, a->out[0])
 CALL(solver_get_tolerance, a->solver, a->out[0])
+CALL(solver_get_step, a->solver, a->out[0])
 CALL(solver_get_switch, a->solver, a->out[0], a->out[1])
 static se3d_status call_check_create(arguments *a)
 {
@@ -691,6 +692,7 @@ static const row rows[] = {
     {"se3d_solver_get_start_change", call_solver_get_start_change, "vo0", NULL, NULL},
     {"se3d_solver_get_method", call_solver_get_method, "vo0", NULL, NULL},
     {"se3d_solver_get_tolerance", call_solver_get_tolerance, "vo0", NULL, NULL},
+    {"se3d_solver_get_step", call_solver_get_step, "vo0", NULL, NULL},
     {"se3d_solver_get_switch", call_solver_get_switch, "vo0o1", NULL, NULL},
     {"se3d_check_create", call_check_create, "Sh0", NULL, NULL},
     {"se3d_check_get_summary", call_check_get_summary, "k", define_summary, NULL},

@@ -100,6 +100,9 @@ static void print_analysis(const se3d_run_analysis *a)
         printf("  auto left %s for %s at t = %.9g s: the motion became stiff\n", a->left, a->method,
                a->left_at);
     }
+    if (a->step > 0.0) {
+        printf("  equal steps of %.6g s\n", a->step);
+    }
     if (a->reached > a->tolerance) {
         printf("  the tolerance %g is smaller than what %s reaches; %.3g was used\n", a->tolerance,
                a->method, a->reached);
@@ -242,6 +245,10 @@ static void json_put_analysis(const se3d_run_analysis *a)
         json_put_number(a->tolerance);
         fputs(", \"tolerance_reached\": ", stdout);
         json_put_number(a->reached);
+    }
+    if (a->step > 0.0) {
+        fputs(", \"step\": ", stdout);
+        json_put_number(a->step);
     }
     json_put_start(a);
     json_put_left_out(a);

@@ -40,7 +40,7 @@ static const se3di_key analysis_keys[] = {
     {"order", SE3DI_KIND_COUNT, .most = 20.0, .standard = "chosen",
      .text = "of bdf (1 to 5) and rattle (2, 4)"},
     {"step", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
-     .standard = "chosen by the error, or 1 ms for rattle and verlet",
+     .standard = "chosen by the error; rattle and verlet choose equal steps",
      .text = "the fixed step of generalized_alpha, hht, rattle, verlet, or the largest one [s]"},
     {"tolerance", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
      .text = "relative error, 1e-14 to 0.1, replaced by --tolerance; a method works at the least "

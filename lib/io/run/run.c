@@ -521,6 +521,7 @@ static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analys
             se3d_solver_get_method(r->solver, &method);
             se3d_solver_get_switch(r->solver, &done->left_at, &left);
             se3d_solver_get_tolerance(r->solver, &done->reached);
+            se3d_solver_get_step(r->solver, &done->step);
             const double asked = entry->solver.tolerance > 0.0 ? entry->solver.tolerance : 1e-6;
             done->tolerance = done->reached > 0.0 ? asked : 0.0;
         }

@@ -1,0 +1,324 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "integrator/equal_steps.h"
+
+#include "assembly/user.h"
+#include "base/log.h"
+#include "contact/bodies/pace.h"
+#include "integrator/integrator.h"
+#include "integrator/state.h"
+#include "math/steps.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define TRIALS_MAX  2000 /* steps that are tried */
+#define TRIAL_ERROR 1e-4 /* of a trial step */
+#define SHORTEST    1e-9 /* trial, of the run */
+#define STEP_LONG   1e-3 /* s: not longer, unless the trials came to the end of a long run */
+#define SPAN_PART   1e-2 /* of that run */
+#define TURN_MOST   1.0  /* rad, of a body in a step */
+#define FACTOR_4    5.0  /* the error of order 4 over the square of that of order 2 */
+#define MUCH        4.0  /* over the tolerance, */
+#define PHASE       0.3  /* rad of the motion that it is so in: the step was too long */
+#define PART_LEAST  1e-3 /* of the first step */
+
+static int are_chosen(const se3di_integration *integration, const se3di_model *model)
+{
+    return integration->method->chooses_step && !(integration->settings.step > 0.0) &&
+           !(model->contact.step > 0.0) && !model->sets;
+}
+
+int se3di_equal_steps_are_chosen(const se3di_integration *integration)
+{
+    return are_chosen(integration, integration->equations->assembly.model);
+}
+
+double se3di_equal_steps_get(const se3di_integration *integration, const se3di_model *model)
+{
+    const se3di_integrator *method = integration->method;
+    if (integration->settings.step > 0.0 && (method->fixes_step || method->chooses_step)) {
+        return integration->settings.step;
+    }
+    return are_chosen(integration, model) && model->history_tag / 2 == method->tag
+               ? model->history[SE3DI_EQUAL_STEP]
+               : 0.0;
+}
+
+double se3di_equal_steps_next(se3di_integration *integration, double most, double t_end)
+{
+    const se3di_model *model = integration->equations->assembly.model;
+    const double rest = t_end - model->time;
+    const double equal = rest / se3di_steps_count(rest, most, t_end);
+    const se3di_pace_kind kind =
+        integration->method->is_implicit ? SE3DI_PACE_IMPLICIT : SE3DI_PACE_EXPLICIT;
+    const double h = se3di_contacts_next_step(model, kind, most, t_end);
+    integration->is_paced = h < (1.0 - 1e-9) * equal;
+    return h;
+}
+
+/* How much the accelerations of a body (dense index) have changed since `before`: of its centre
+ * [0], of its turn [1]. */
+static void get_change(const se3di_model *model, uint32_t body, const double *before,
+                       double change[2])
+{
+    double d[6];
+    for (size_t c = 0; c < 6; ++c) {
+        d[c] = model->acceleration[6 * (size_t)body + c] - before[6 * (size_t)body + c];
+    }
+    change[0] = se3di_norm(d);
+    change[1] = se3di_norm(d + 3);
+}
+
+/* Speeds of late, or what accelerations make on the way of the mechanism's length and a turn of
+ * 1 rad. @return the error of a step of order 2 */
+static double measure(const se3di_equations *equations, double h, double *speed, double *spin)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    const se3di_model *model = assembly->model;
+    double v = 1e-12, w = 1e-12, a = 0.0, wdot = 0.0, most[2] = {0.0, 0.0};
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const uint32_t body = assembly->free_body[k];
+        const double *acceleration = model->acceleration + 6 * (size_t)body;
+        double change[2];
+        get_change(model, body, equations->kept.acceleration.data, change);
+        most[0] = fmax(most[0], change[0]);
+        most[1] = fmax(most[1], change[1]);
+        v = fmax(v, se3di_norm(model->frames[body].v));
+        w = fmax(w, se3di_norm(model->frames[body].w));
+        a = fmax(a, se3di_norm(acceleration));
+        wdot = fmax(wdot, se3di_norm(acceleration + 3));
+    }
+    *speed = fmax(0.95 * *speed, fmax(v, sqrt(a * se3di_state_length(model))));
+    *spin = fmax(0.95 * *spin, fmax(w, sqrt(wdot)));
+    return h / 12.0 * fmax(most[0] / *speed, most[1] / *spin);
+}
+
+static double error_of(const se3di_integration *integration, double e2)
+{
+    return integration->settings.order == 4 ? FACTOR_4 * e2 * e2 : e2;
+}
+
+/* By how much a step with this error may be longer. */
+static double factor_of(const se3di_integration *integration, double e2)
+{
+    const double ratio = integration->settings.tolerance / fmax(error_of(integration, e2), 1e-30);
+    return integration->settings.order == 4 ? sqrt(sqrt(ratio)) : sqrt(ratio);
+}
+
+/* 1, 2 or 5 times a power of ten: rows at round times then divide into equal steps. */
+static double round_down(double h)
+{
+    double power = 1.0;
+    while (power > h) {
+        power /= 10.0;
+    }
+    while (10.0 * power <= h) {
+        power *= 10.0;
+    }
+    return h >= 5.0 * power ? 5.0 * power : h >= 2.0 * power ? 2.0 * power : power;
+}
+
+typedef struct trial {
+    se3di_integration *integration;
+    double begin, t_end, h;
+    double wanted;      /* the step that the errors so far ask for */
+    double speed, spin; /* of late */
+    double most_spin;
+    double last, last_h; /* error and length of the attempt before, which was refused; 0: none */
+} trial;
+
+static double largest_spin(const se3di_model *model)
+{
+    double spin = 0.0;
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        spin = fmax(spin, se3di_norm(model->frames[k].w));
+    }
+    return spin;
+}
+
+/* The step was made: is it exact enough to go on from it, and what does it say? */
+static void judge(trial *t, double h)
+{
+    se3di_equations *equations = t->integration->equations;
+    double speed = t->speed, spin = t->spin;
+    const double e = measure(equations, h, &speed, &spin);
+    const int jumps =
+        t->last_h > 0.0 && e * t->last_h > t->last * h * sqrt(h / t->last_h) && h < 0.5 * t->last_h;
+    if (e > TRIAL_ERROR && !jumps && h > SHORTEST * (t->t_end - t->begin)) {
+        t->last = e;
+        t->last_h = h;
+        t->h = h * fmax(0.1, fmin(0.4, 0.8 * sqrt(TRIAL_ERROR / e)));
+        se3di_equations_come_back(equations);
+        return;
+    }
+    t->speed = speed;
+    t->spin = spin;
+    t->most_spin = fmax(t->most_spin, largest_spin(equations->assembly.model));
+    t->last_h = 0.0;
+    if (!jumps) {
+        t->wanted = fmin(t->wanted, h * factor_of(t->integration, e));
+        t->h = fmin(2.0 * h, 0.8 * h * sqrt(TRIAL_ERROR / fmax(e, 1e-30)));
+    }
+}
+
+/* A bare step, which nobody counts or watches. */
+static se3d_status try_step(trial *t, double h)
+{
+    se3di_integration *integration = t->integration;
+    const se3d_status status = integration->method->step(integration, h);
+    if (status >= 0) {
+        judge(t, h);
+    } else {
+        t->h = 0.25 * h;
+    }
+    return status;
+}
+
+static int ends_trials(se3d_status status)
+{
+    return status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED ||
+           status == SE3D_ERR_CALLBACK;
+}
+
+/* Steps ahead until the end, or until there were enough. */
+static se3d_status try_steps(trial *t)
+{
+    se3di_integration *integration = t->integration;
+    const se3di_model *model = integration->equations->assembly.model;
+    for (int k = 0; k < TRIALS_MAX && model->time < t->t_end; ++k) {
+        const double spin = largest_spin(model);
+        const double most = t->h * spin > TURN_MOST ? TURN_MOST / spin : t->h;
+        const double h = se3di_equal_steps_next(integration, most, t->t_end);
+        const double wanted = t->wanted, longest = t->h;
+        if (!(model->time + h > model->time)) {
+            return SE3D_OK;
+        }
+        const se3d_status status = try_step(t, h);
+        if (ends_trials(status)) {
+            return status;
+        }
+        if (integration->is_paced) { /* by contacts or stops, in which accelerations jump */
+            t->wanted = wanted;
+            t->h = status < 0 ? t->h : longest;
+        }
+        if (status < 0 && !(h > SHORTEST * (t->t_end - t->begin))) {
+            return SE3D_OK;
+        }
+    }
+    return SE3D_OK;
+}
+
+/* With the model's state kept. */
+static se3d_status choose(trial *t)
+{
+    se3di_equations *equations = t->integration->equations;
+    const se3di_watch *const watch = equations->watch;
+    se3di_guard *const guard = equations->guard;
+    se3di_error *const error = equations->error;
+    const se3di_counters counters = equations->counters;
+    const se3di_guard before = guard ? *guard : (se3di_guard){0};
+    se3di_error ignored = {0};
+    equations->watch = NULL;
+    equations->error = &ignored;
+    const se3d_status status = try_steps(t);
+    equations->watch = watch;
+    equations->error = error;
+    equations->counters.steps = counters.steps;
+    if (guard) {
+        const int32_t came = guard->came;
+        *guard = before;
+        guard->came = came;
+    }
+    return status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED
+               ? se3di_error_set(error, status, "%s", ignored.message)
+               : SE3D_OK;
+}
+
+/* What the trials say, as a round number. */
+static double conclude(const trial *t, int came_to_end)
+{
+    const se3di_integration *integration = t->integration;
+    const double span = t->t_end - t->begin, stable = integration->settings.step_most;
+    double longest = came_to_end ? fmax(STEP_LONG, SPAN_PART * span) : STEP_LONG;
+    longest = fmin(longest, stable);
+    longest = t->most_spin * longest > TURN_MOST ? TURN_MOST / t->most_spin : longest;
+    return round_down(fmax(fmin(t->wanted, longest), SHORTEST * span));
+}
+
+se3d_status se3di_equal_steps_choose(se3di_integration *integration, double t_end)
+{
+    se3di_equations *equations = integration->equations;
+    se3di_model *model = equations->assembly.model;
+    if (!se3di_equal_steps_are_chosen(integration) || model->history[SE3DI_EQUAL_STEP] > 0.0) {
+        return SE3D_OK;
+    }
+    if (se3di_saved_fill(&integration->before_trials, model, &model->allocator) < 0) {
+        return se3di_error_set(equations->error, SE3D_ERR_NO_MEMORY, "no memory to choose a step");
+    }
+    trial t = {.integration = integration,
+               .begin = model->time,
+               .t_end = t_end,
+               .h = fmin(STEP_LONG, integration->settings.step_most),
+               .wanted = HUGE_VAL};
+    const se3d_status status = choose(&t);
+    const int came_to_end = !(model->time < t_end);
+    const se3d_status room = se3di_saved_reserve(&integration->before_trials, model);
+    if (room >= 0) {
+        se3di_saved_restore(&integration->before_trials, model);
+    }
+    SE3DI_TRY(status);
+    SE3DI_TRY(room);
+    se3di_user_begin(model);
+    model->history[SE3DI_EQUAL_STEP] = model->history[SE3DI_EQUAL_FIRST] =
+        conclude(&t, came_to_end);
+    return SE3D_OK;
+}
+
+/* Half the step from here on, if it is not very short already. */
+static void shorten(se3di_integration *integration, double part)
+{
+    const se3di_model *model = integration->equations->assembly.model;
+    double *header = model->history;
+    const double before = header[SE3DI_EQUAL_STEP];
+    header[SE3DI_EQUAL_OVER] = 0.0;
+    if (before > PART_LEAST * header[SE3DI_EQUAL_FIRST]) {
+        header[SE3DI_EQUAL_STEP] = integration->settings.step_most = 0.5 * before;
+    }
+    const double told = header[SE3DI_EQUAL_FIRST] / before * part;
+    if (told < 10.0 * header[SE3DI_EQUAL_TOLD]) {
+        return;
+    }
+    header[SE3DI_EQUAL_TOLD] = told;
+    se3di_log_write(integration->equations->error, SE3D_LOG_WARNING,
+                    "t = %g s: the step of %.3g s that %s chose at its start is too long here: the "
+                    "error of a step is %.2g, the tolerance %g; steps of %.3g s follow",
+                    model->time, before, integration->method->name,
+                    part * integration->settings.tolerance, integration->settings.tolerance,
+                    header[SE3DI_EQUAL_STEP]);
+}
+
+/* How many steps that are MUCH too long a motion of so much phase is: of frequency w, in equal
+ * steps of h, it has the error (w h)^2/12. Singular positions are passed in less. */
+static double steps_of_phase(const se3di_integration *integration)
+{
+    const double tolerance = integration->settings.tolerance;
+    const double e2 = integration->settings.order == 4 ? sqrt(tolerance / FACTOR_4) : tolerance;
+    return fmax(3.0, PHASE / sqrt(12.0 * MUCH * e2));
+}
+
+void se3di_equal_steps_watch(se3di_integration *integration, double h)
+{
+    se3di_equations *equations = integration->equations;
+    double *header = equations->assembly.model->history;
+    if (!se3di_equal_steps_are_chosen(integration) || !(header[SE3DI_EQUAL_STEP] > 0.0)) {
+        return;
+    }
+    const double e2 = measure(equations, h, &header[SE3DI_EQUAL_SPEED], &header[SE3DI_EQUAL_SPIN]);
+    const double part = error_of(integration, e2) / integration->settings.tolerance;
+    const double is_over = part > MUCH && !integration->is_paced ? 1.0 : -1.0;
+    header[SE3DI_EQUAL_OVER] = fmax(0.0, header[SE3DI_EQUAL_OVER] + is_over);
+    if (header[SE3DI_EQUAL_OVER] >= steps_of_phase(integration)) {
+        shorten(integration, part);
+    }
+}

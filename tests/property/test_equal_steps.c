@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Methods that are named without step and tolerance: each is near the truth, as rattle and verlet
+ * choose the length of their equal steps; and what becomes of that choice. */
+#include "golden/mechanisms.h"
+#include "support/text_model.h"
+
+static const char pendulum[] = "{se3d: 1, bodies: [{name: a, mass: 1, inertia: [0.01, 0.0833, "
+                               "0.0833], position: [0.5, 0, 0]}],"
+                               "joints: [{name: s, type: revolute, body_i: ground, body_j: a, at: "
+                               "[0, 0, 0], axis: [0, 1, 0]}],"
+                               "analysis: {type: dynamics, duration: 2}}";
+static const char double_pendulum[] =
+    "{se3d: 1, bodies: ["
+    "{name: a, mass: 1, inertia: [0.01, 0.02, 0.03], position: [0.5, 0, 0], velocity: [0, 0.75, 0],"
+    " angular_velocity: [0, 0, 1.5]},"
+    "{name: b, mass: 1, inertia: [0.01, 0.02, 0.03], position: [1.5, 0, 0], velocity: [0, 1.5, "
+    "0]}],"
+    "joints: [{name: s, type: spherical, body_i: ground, body_j: a, at: [0, 0, 0]},"
+    "         {name: t, type: spherical, body_i: a, body_j: b, at: [1, 0, 0]}],"
+    "analysis: {type: dynamics, duration: 1}}";
+static const char spun_up[] =
+    "{se3d: 1, bodies: [{name: a, mass: 1, inertia: [0.01, 0.0833, 0.0833], position: [0.5, 0, "
+    "0]}],"
+    "joints: [{name: s, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, "
+    "0]}],"
+    "forces: [{name: m, type: torque, body: a, value: [\"0\", \"20*t^2\", \"0\"]}],"
+    "analysis: {type: dynamics, duration: 2}}";
+
+enum { POINTS = 10, BODIES_MAX = 8, COLUMNS = 6 * BODIES_MAX };
+
+/* Positions and velocities of all bodies of a run of `duration` at POINTS times. */
+typedef struct motion {
+    double value[POINTS][COLUMNS];
+} motion;
+
+static void look(const se3d_system *system, double *row)
+{
+    se3d_body body = {0, 0};
+    for (int k = 0; k < BODIES_MAX && k + 1 < (int)se3d_system_count_bodies(system); ++k) {
+        if (se3d_system_get_body(system, (size_t)k + 1, &body) >= 0) {
+            CHECK(!se3d_body_get_position(system, body, row + 6 * k));
+            CHECK(!se3d_body_get_velocity(system, body, row + 6 * k + 3));
+        }
+    }
+}
+
+static motion follow(se3d_system *system, const se3d_solver_def *def, double duration)
+{
+    motion m = {{{0.0}}};
+    se3d_solver *solver = NULL;
+    se3d_solver_def full = *def;
+    full.horizon = duration;
+    CHECK(!se3d_solver_create(system, &full, &solver));
+    for (int k = 0; k < POINTS; ++k) {
+        CHECK(se3d_solver_run(solver, duration * (k + 1) / POINTS) >= 0);
+        look(system, m.value[k]);
+    }
+    se3d_solver_destroy(solver);
+    return m;
+}
+
+static double gap(const motion *a, const motion *b)
+{
+    double worst = 0.0;
+    for (int c = 0; c < COLUMNS; ++c) {
+        double most = 0.0, size = 0.0;
+        for (int k = 0; k < POINTS; ++k) {
+            most = fmax(most, fabs(a->value[k][c] - b->value[k][c]));
+            size = fmax(size, fabs(b->value[k][c]));
+        }
+        worst = size > 1e-6 && !(most <= worst * size) ? most / size : worst;
+    }
+    return worst;
+}
+
+static se3d_system *open_copy(const char *text)
+{
+    text_model m = text_model_open(text, -1, -1, 0.0);
+    se3d_system *copy = NULL;
+    CHECK(!se3d_system_clone(m.system, &copy));
+    text_model_close(&m);
+    return copy;
+}
+
+static se3d_system *open_squeezer(void)
+{
+    se3d_model *model = NULL;
+    se3d_model_error error;
+    se3d_system *copy = NULL;
+    CHECK(!se3d_model_read_file("examples/models/andrews.yaml", NULL, &model, &error));
+    CHECK(!se3d_system_clone(se3d_model_get_system(model), &copy));
+    se3d_model_destroy(model);
+    return copy;
+}
+
+static se3d_system *open_mechanism(int k)
+{
+    switch (k) {
+    case 0:
+        return open_copy(pendulum);
+    case 1:
+        return open_copy(double_pendulum);
+    case 2:
+        return create_windows(2, se3d_joint_create_revolute).system;
+    default:
+        return open_squeezer();
+    }
+}
+
+static void every_method_is_near_the_truth_without_step_and_tolerance(void)
+{
+    static const double duration[4] = {2.0, 1.0, 1.5, 0.01};
+    for (int k = 0; k < 4; ++k) {
+        se3d_system *system = open_mechanism(k);
+        se3d_system *copy = NULL;
+        se3d_solver_def def = se3d_solver_def_default();
+        def.method = SE3D_METHOD_DOP853;
+        def.tolerance = 1e-11;
+        CHECK(!se3d_system_clone(system, &copy));
+        const motion truth = follow(copy, &def, duration[k]);
+        se3d_system_destroy(copy);
+        for (int32_t method = 0; se3d_method_get_name(method)[0]; ++method) {
+            for (int order = 0; order <= (method == SE3D_METHOD_RATTLE ? 4 : 0); order += 4) {
+                def = se3d_solver_def_default();
+                def.method = method;
+                def.order = order;
+                CHECK(!se3d_system_clone(system, &copy));
+                const motion got = follow(copy, &def, duration[k]);
+                const double worst = gap(&got, &truth);
+                printf("mechanism %d, %s %d: %.1e\n", k, se3d_method_get_name(method), order,
+                       worst);
+                CHECK(worst <= 1e-4);
+                se3d_system_destroy(copy);
+            }
+        }
+        se3d_system_destroy(system);
+    }
+}
+
+static void the_error_falls_with_the_tolerance(void)
+{
+    for (int order = 2; order <= 4; order += 2) {
+        double error[2];
+        se3d_solver_def def = se3d_solver_def_default();
+        def.method = SE3D_METHOD_DOP853;
+        def.tolerance = 1e-12;
+        se3d_system *system = open_copy(double_pendulum);
+        const motion truth = follow(system, &def, 1.0);
+        se3d_system_destroy(system);
+        for (int k = 0; k < 2; ++k) {
+            system = open_copy(double_pendulum);
+            def.method = SE3D_METHOD_RATTLE;
+            def.order = order;
+            def.tolerance = k ? 1e-6 : 1e-4;
+            const motion got = follow(system, &def, 1.0);
+            error[k] = gap(&got, &truth);
+            CHECK(error[k] < 30.0 * def.tolerance);
+            se3d_system_destroy(system);
+        }
+        CHECK(error[1] < 0.1 * error[0]);
+    }
+}
+
+static void the_choice_goes_on_in_clones_and_snapshots(void)
+{
+    static const int32_t methods[2] = {SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET};
+    for (int k = 0; k < 2; ++k) {
+        se3d_system *system = open_copy(double_pendulum), *copy = NULL;
+        se3d_snapshot *snapshot = NULL;
+        se3d_solver *solver = NULL, *other = NULL;
+        se3d_solver_def def = se3d_solver_def_default();
+        def.method = methods[k];
+        def.horizon = 1.0;
+        double step = -1.0, again = -1.0;
+        CHECK(!se3d_solver_create(system, &def, &solver));
+        CHECK(!se3d_solver_get_step(solver, &step) && !(fabs(step) > 0.0));
+        CHECK(!se3d_solver_run(solver, 0.3));
+        CHECK(!se3d_solver_get_step(solver, &step) && step > 1e-6 && step < 1e-3);
+        CHECK(!se3d_system_clone(system, &copy));
+        CHECK(!se3d_snapshot_create(system, &snapshot));
+        CHECK(!se3d_solver_run(solver, 0.6));
+        const uint64_t hash = se3d_system_hash(system);
+        CHECK(!se3d_solver_create(copy, &def, &other) && !se3d_solver_run(other, 0.6));
+        CHECK(!se3d_solver_get_step(other, &again) && !(fabs(again - step) > 0.0));
+        CHECK(se3d_system_hash(copy) == hash);
+        CHECK(!se3d_snapshot_restore(snapshot, system) && !se3d_solver_run(solver, 0.6));
+        CHECK(se3d_system_hash(system) == hash);
+        se3d_snapshot_destroy(snapshot);
+        se3d_solver_destroy(other);
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(copy);
+        se3d_system_destroy(system);
+    }
+}
+
+static void steps_are_equal_and_a_given_one_is_reported(void)
+{
+    se3d_system *system = open_copy(pendulum);
+    se3d_solver *solver = NULL;
+    se3d_solver_stats stats;
+    se3d_solver_def def = se3d_solver_def_default();
+    double step = 0.0;
+    def.method = SE3D_METHOD_RATTLE;
+    CHECK(!se3d_solver_create(system, &def, &solver) && !se3d_solver_run(solver, 1.0));
+    CHECK(!se3d_solver_get_step(solver, &step) && !se3d_solver_get_stats(solver, &stats));
+    CHECK_NEAR((double)stats.steps * step, 1.0, 1e-12);
+    se3d_solver_destroy(solver);
+    def.step = 2e-3;
+    CHECK(!se3d_solver_create(system, &def, &solver) && !se3d_solver_get_step(solver, &step));
+    CHECK_NEAR(step, 2e-3, 0.0);
+    se3d_solver_destroy(solver);
+    def.method = SE3D_METHOD_DOP853; /* the largest one, not equal ones */
+    CHECK(!se3d_solver_create(system, &def, &solver) && !se3d_solver_get_step(solver, &step));
+    CHECK_NEAR(step, 0.0, 0.0);
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(system);
+}
+
+/* From rest, in frames that know nothing of what comes: the choice is far too long, and mended (the
+ * log is told: unit.log). */
+static void a_choice_that_turns_out_wrong_is_mended(void)
+{
+    se3d_solver_def def = se3d_solver_def_default();
+    double first = 0.0, step = 0.0;
+    text_model m = text_model_open(spun_up, SE3D_METHOD_RATTLE, -1, 0.0);
+    for (int frame = 1; frame <= 120; ++frame) {
+        CHECK(se3d_solver_run(m.solver, frame / 60.0) >= 0);
+        CHECK(!se3d_solver_get_step(m.solver, frame == 1 ? &first : &step));
+    }
+    CHECK(step > 0.0 && step < 0.1 * first);
+    motion got = {{{0.0}}}, truth = {{{0.0}}};
+    look(m.system, got.value[0]);
+    text_model_close(&m);
+    m = text_model_open(spun_up, SE3D_METHOD_DOP853, -1, 0.0);
+    def.tolerance = 1e-11;
+    se3d_solver *solver = NULL;
+    CHECK(!se3d_solver_create(m.system, &def, &solver) && !se3d_solver_run(solver, 2.0));
+    look(m.system, truth.value[0]);
+    for (int c = 0; c < 6; ++c) {
+        CHECK_NEAR(got.value[0][c], truth.value[0][c], 1e-2 * (c < 3 ? 0.5 : 100.0));
+    }
+    se3d_solver_destroy(solver);
+    text_model_close(&m);
+}
+
+int main(void)
+{
+    RUN(every_method_is_near_the_truth_without_step_and_tolerance);
+    RUN(the_error_falls_with_the_tolerance);
+    RUN(the_choice_goes_on_in_clones_and_snapshots);
+    RUN(steps_are_equal_and_a_given_one_is_reported);
+    RUN(a_choice_that_turns_out_wrong_is_mended);
+    return check_finish();
+}
