@@ -44,7 +44,7 @@ build_peer() {
     fi
 }
 
-# flags PACKAGE: what pkg-config says, nothing where it is missing
+# flags PACKAGE: what pkg-config says, nothing if it is missing
 flags() {
     pkg-config --cflags --libs "$1" 2>/dev/null
 }

@@ -38,7 +38,7 @@ typedef struct se3d_event_record {
     const char *name;  /* of the event, "" for none; owned by the event */
     se3d_event event;  /* which one */
     int32_t direction; /* RISING or FALLING */
-    int32_t action;    /* STOP where the run ended there */
+    int32_t action;    /* STOP if the run ended with it */
 } se3d_event_record;
 
 /* Called at every event with the system in its state there. It may read everything, copy the system

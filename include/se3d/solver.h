@@ -66,7 +66,7 @@ typedef struct se3d_solver_def {
     double alpha;           /* hht: -1/3..0, default -0.1 */
     size_t iterations_max;  /* Newton iterations per step; 0: 25 */
     uint64_t steps_max;     /* steps that a run may try; 0: 1e9 */
-    double horizon; /* where runs go on to this time [s], their steps are counted together and
+    double horizon;         /* if runs go on to this time [s], their steps are counted together and
                        foreseen up to it; 0, or not after t_end: each run by itself */
     se3d_interrupt interrupt; /* asked whether a run is to end now; NULL: none */
     void *interrupt_ctx;      /* of `interrupt` */

@@ -29,7 +29,7 @@
 #define ROWS_SMALL     300  /* of a model: no open ends are taken off */
 #define FITS           1e-9 /* violation of assembled poses, relative to the model's size */
 #define RANK_ASSEMBLED 1e-8 /* relative size of a row's independent part */
-#define RANK_VIOLATED  1e-5 /* where the poses are of least violation only */
+#define RANK_VIOLATED  1e-5 /* if the poses are of least violation only */
 #define NAMES_MAX      12   /* in one message */
 #define TEXT_SIZE      2048
 #define NAME_SIZE      128

@@ -23,7 +23,7 @@ typedef struct se3di_crossing_function {
     int count;         /* of nodes */
     double band;       /* >= 0: this near to zero no side can be told */
     int32_t direction; /* +1: rising, -1: falling, 0: both */
-    int32_t side;      /* of the beginning where that is in the band: -1, +1, or 0 for none */
+    int32_t side;      /* of the beginning if that is in the band: -1, +1, or 0 for none */
 } se3di_crossing_function;
 
 typedef struct se3di_crossing {

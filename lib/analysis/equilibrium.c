@@ -28,10 +28,10 @@
 #define TRIALS       40    /* dampings in one iteration */
 #define TURN_MAX     0.5   /* rad in one step */
 #define DAMPING_MIN  1e-10 /* of the largest stiffness / mass: below it none */
-#define DAMPING_JUMP 1e-4  /* where there was none */
+#define DAMPING_JUMP 1e-4  /* if there was none */
 #define DAMPING_STEP 8.0
 #define DAMPING_FREE 1e-7 /* so little does not shorten a step much */
-#define BALANCE_MAX  1e-9 /* of the largest force, where damping does */
+#define BALANCE_MAX  1e-9 /* of the largest force, if damping does */
 #define HALVINGS     3    /* of a step that leads too far from the constraints */
 #define RATIO_MIN    0.05 /* of the predicted work, or the step is not taken */
 #define STALLED      8    /* iterations without a better balance */
@@ -152,7 +152,7 @@ static int solve_step(statics *s, int *too_long)
     return !*too_long;
 }
 
-/* The step with as little damping as leads downhill and not too far: where the stiffness has
+/* The step with as little damping as leads downhill and not too far: if the stiffness has
  * negative curvature without, of its convex part. */
 static se3d_status compute_step(statics *s)
 {
@@ -245,7 +245,7 @@ typedef struct history {
     int32_t stalled;
 } history;
 
-/* Steps at rounding; or no better balance for a while, where steps are noise along freedoms that
+/* Steps at rounding; or no better balance for a while, if steps are noise along freedoms that
  * nothing holds. Not where only the damping holds them short. */
 static int has_converged(const statics *s, history *progress)
 {

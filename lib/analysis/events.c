@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The samples of a step; more finely after its beginning where a value begins at its level, which
+/* The samples of a step; more finely after its beginning if a value begins at its level, which
  * it may reach again soon. */
 static const double plain_nodes[] = {0.0, 0.25, 0.5, 0.75, 1.0};
 static const double fine_nodes[] = {0.0, 1e-4, 1e-2, 0.1, 0.25, 0.5, 0.75, 1.0};

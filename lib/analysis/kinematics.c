@@ -181,7 +181,7 @@ static int shorter_may_help(se3d_status status)
 }
 
 /* A step of h from the accepted state, or of a half of it, of a quarter ...; *h becomes the one
- * that was made, to t_end exactly where `last` stays. */
+ * that was made, to t_end exactly if `last` stays. */
 static se3d_status step_or_less(se3di_equations *equations, double t_end, double *h, int *last)
 {
     const se3di_model *model = equations->assembly.model;

@@ -302,7 +302,7 @@ static se3d_status start_history(se3di_run *run, double h)
     return SE3D_OK;
 }
 
-/* The state that a call comes back to where it cannot reach another one. Methods that step up to a
+/* The state that a call comes back to if it cannot reach another one. Methods that step up to a
  * time keep each step's own. */
 static se3d_status keep_state(se3di_run *run)
 {
@@ -747,7 +747,7 @@ static void restore_before(se3di_run *run)
     }
 }
 
-/* After a failure: the state of the last accepted step, to the bit; or, where its accelerations
+/* After a failure: the state of the last accepted step, to the bit; or, if its accelerations
  * cannot be computed any more, that of before the call. Methods without dense output, and steps of
  * kinematics, have come back to theirs by themselves. */
 static void recover(se3di_run *run, double t_end)

@@ -47,7 +47,7 @@ static void measure(const se3di_model *model, double *decay, double *oscillation
                             body_rate(&model->bodies[force->body_j], effect.D + 6 * 13);
         const double square = body_rate(&model->bodies[force->body_i], effect.K) +
                               body_rate(&model->bodies[force->body_j], effect.K + 6 * 13);
-        *decay = rate > *decay ? rate : *decay; /* not where it is NaN */
+        *decay = rate > *decay ? rate : *decay; /* not if it is NaN */
         *oscillation = square > *oscillation * *oscillation ? sqrt(square) : *oscillation;
     }
 }

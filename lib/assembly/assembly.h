@@ -60,7 +60,7 @@ se3d_status se3di_assembly_init(se3di_assembly *assembly, se3di_model *model,
 void se3di_assembly_destroy(se3di_assembly *assembly);
 
 /* Functions of time at t, for all that follows. */
-/* Take the prescribed values of rows without a function from the model, where they have changed. */
+/* Take the prescribed values of rows without a function from the model, if they have changed. */
 void se3di_assembly_take_values(se3di_assembly *assembly);
 se3d_status se3di_assembly_eval_functions(se3di_assembly *assembly, double t, se3di_error *error);
 /* Phi [rows]; with `functions` evaluated. */
@@ -102,7 +102,7 @@ void se3di_assembly_set_velocity(se3di_assembly *assembly, const double *qdot);
 void se3di_assembly_get_acceleration(const se3di_assembly *assembly, double *qddot);
 void se3di_assembly_set_acceleration(se3di_assembly *assembly, const double *qddot);
 
-/* Name of a row: "pin.cd_x", or "joint 3.cd_x" where the constraint has no name. */
+/* Name of a row: "pin.cd_x", or "joint 3.cd_x" if the constraint has no name. */
 void se3di_row_name(const se3di_model *model, uint32_t row, char *text, size_t size);
 
 #endif

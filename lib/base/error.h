@@ -44,7 +44,7 @@ se3di_error_format(char *text, size_t size, const char *format, va_list argument
 /* Forget the last error. */
 void se3di_error_clear(se3di_error *error);
 
-/* Return from the calling function where `call` failed; information (> 0) passes. */
+/* Return from the calling function if `call` failed; information (> 0) passes. */
 #define SE3DI_TRY(call)                                                                            \
     do {                                                                                           \
         se3d_status se3di_try_status = (call);                                                     \

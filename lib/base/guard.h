@@ -22,7 +22,7 @@ typedef struct se3di_guard {
     int32_t muted; /* not 0: what is under way is short and must be finished */
 } se3di_guard;
 
-/* How a run goes, where it takes too many steps. */
+/* How a run goes, if it takes too many steps. */
 typedef struct se3di_guard_pace {
     double steps;    /* tried so far */
     double length;   /* of the last ones [s]; 0: the time stands still */

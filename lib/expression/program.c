@@ -84,7 +84,7 @@ se3d_status se3di_program_unary(se3di_program *program, size_t function, se3di_o
                  a);
 }
 
-/* a op c with a number c: drop c's instruction where one operation with a number does. */
+/* a op c with a number c: drop c's instruction if one operation with a number does. */
 static se3d_status apply_right_constant(se3di_program *program, se3di_op op, se3di_operand *a,
                                         double c, int *done)
 {

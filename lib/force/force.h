@@ -81,7 +81,7 @@ int se3di_force_is_history_dependent(const se3di_force *force);
 
 /* The largest force while it sticks, or slips. */
 double se3di_friction_limit(const se3di_force *force, int slips);
-/* Slower than this [m/s, rad/s] a coordinate is at rest where a run begins. */
+/* Slower than this [m/s, rad/s] a coordinate is at rest when a run begins. */
 #define SE3DI_FRICTION_REST 1e-8
 /* The force against the coordinate without its viscous part; and remember that it is n, sticking
  * (mode 0) or slipping. */

@@ -26,7 +26,7 @@
 
 #define GROWTH 2.0 /* of a step at most */
 
-/* Newton iterations: a shorter step is worth more than many, where it can be had. */
+/* Newton iterations: a shorter step is worth more than many, if it can be had. */
 #define ITERATIONS_CONTROLLED 10
 #define ITERATIONS_STEP       25
 
@@ -117,7 +117,7 @@ static se3d_status leave_tangent(se3di_bdf *m, double *six)
     return SE3D_OK;
 }
 
-/* The same of its part in the directions that the constraints leave, where the equations are
+/* The same of its part in the directions that the constraints leave, if the equations are
  * factored. The others are as good as rounding is in the projection, which near a singular position
  * amplifies it by the square of the inverse distance: no shorter step would help. */
 static se3d_status measure_tangent(se3di_bdf *m, double *error)

@@ -34,7 +34,7 @@ _Static_assert(sizeof(rk_past) == 17 * sizeof(double), "it is an array of double
 #define HELD_MIN    15.0 /* signs that are enough, and signs against that take them back */
 #define FREE_MIN    6.0
 #define SLOW_MAX    0.01 /* most of a step times the rate of the motion, */
-#define DECAY_MIN   0.5  /* and least of it times a decay, where decays limit the step */
+#define DECAY_MIN   0.5  /* and least of it times a decay, if decays limit the step */
 #define HELD_EACH   8.0  /* steps between looks if there is no sign */
 #define FORCED_MAX  3
 #define LEAST_STEP  3e-14 /* of the time */
@@ -533,7 +533,7 @@ static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status,
 }
 
 /* One accepted step with error control. What contacts remember belongs to the end of a step, and
- * cannot be interpolated: where shapes are near each other steps end at t_end. So does the first
+ * cannot be interpolated: if shapes are near each other steps end at t_end. So does the first
  * one after a change of what acts, which may soon change again. */
 static se3d_status advance(rk *m, double t_end)
 {
@@ -759,7 +759,7 @@ se3d_status se3di_rk_run(se3di_integration *integration, double t_end)
     se3d_status status = at_begin ? SE3D_OK : advance_to(&m, t_end);
     se3di_state_end(m.equations, &m.kkt);
     SE3DI_TRY(status);
-    if (at_begin || m.past->at.time <= t_end) { /* earlier where it leaves a stiff motion */
+    if (at_begin || m.past->at.time <= t_end) { /* earlier if it leaves a stiff motion */
         return publish(&m, m.past->at.time <= t_end);
     }
     interpolate(&m, t_end, m.y);

@@ -21,7 +21,7 @@ typedef struct se3di_integrator_settings {
     double alpha;           /* hht */
     int32_t iterations_max;
     int32_t order;
-    int32_t leaves_stiff; /* a run ends where the method is held by stability */
+    int32_t leaves_stiff; /* a run ends if the method is held by stability */
     int32_t reserved;
 } se3di_integrator_settings;
 

@@ -83,7 +83,7 @@ static void eval_unit(const se3di_assembly *assembly, const se3di_force *force, 
     }
 }
 
-/* b += n Q; or returns Q . b where `dot` is set. */
+/* b += n Q; or returns Q . b if `dot` is set. */
 static double visit_blocks(const se3di_assembly *assembly, const se3di_force *force,
                            const double Q[16], double n, int dot, double *b)
 {

@@ -222,7 +222,7 @@ static double eval_gap(se3di_lie_verlet *m)
 }
 
 /* Near a singular position the constraint forces of q_0 have no leverage on some constraints at
- * q_1, or the opposite one where the step goes through it: what gap they leave there is closed
+ * q_1, or the opposite one if the step goes through it: what gap they leave there is closed
  * along the constraint forces of q_1, and the velocities follow the displacements. */
 static se3d_status close_gap(se3di_lie_verlet *m)
 {

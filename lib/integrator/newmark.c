@@ -17,7 +17,7 @@
 #define SPAN_LEAST  0.5  /* from a_n to a, over the step */
 #define FIRST_STEP  0.3  /* of the root of the tolerance, over the rates */
 #define PART_LEAST  0.01 /* of an equal step that does not converge */
-#define JUMP_ERROR  30.0 /* over the tolerance, where the acceleration jumps */
+#define JUMP_ERROR  30.0 /* over the tolerance, if the acceleration jumps */
 
 /* memcpy if count may be zero and the pointers NULL. */
 static void copy(double *to, const double *from, size_t count)
@@ -120,7 +120,7 @@ static double shift_of(const se3di_integration *integration)
     return method.alpha_m - method.alpha_f;
 }
 
-/* a_n is vdot of the start itself, where that leaves it far enough from a; else it is moved to the
+/* a_n is vdot of the start itself, if that leaves it far enough from a; else it is moved to the
  * place that it has at equal steps of h. */
 static se3d_status place_start(se3di_integration *integration, double h)
 {
@@ -502,7 +502,7 @@ static double limit_step(const se3di_integration *integration, double h)
     return se3di_contacts_pace(model, SE3DI_PACE_ADAPTIVE, h);
 }
 
-/* What the error of the next attempt may be, relative to the tolerance: where the one of the last
+/* What the error of the next attempt may be, relative to the tolerance: if the one of the last
  * two has fallen with h, not with its square, the acceleration jumps, and no step gets over that
  * with a small error. */
 static double get_most(const double h[2], const double error[2])

@@ -282,8 +282,8 @@ static int has_converged(const se3di_newmark_step *step)
            change <= 1e-15 * largest(step->v_n, n) || (shift <= 1e-11 && rate > 0.3);
 }
 
-/* Newton with the mass matrix alone if there are no force elements; with the exact matrix where
- * there are, or where the other one does not do. */
+/* Newton with the mass matrix alone if there are no force elements; with the exact matrix if
+ * there are, or if the other one does not do. */
 static se3d_status iterate_to_convergence(se3di_newmark_step *step)
 {
     const int32_t limit = step->integration->settings.iterations_max;

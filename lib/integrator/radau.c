@@ -146,7 +146,7 @@ static void set_defect(const se3di_radau *m, double *d)
 }
 
 /* The state of a solved stage, with its multipliers. Those of inner stages are of a lower order
- * than the motion: where they load friction, better ones follow from the state. */
+ * than the motion: if they load friction, better ones follow from the state. */
 static se3d_status set_stage(se3di_radau *m, int i)
 {
     se3di_equations *equations = m->equations;

@@ -40,7 +40,7 @@ typedef struct se3di_radau {
     double *ul;     /* of multipliers, transformed [rows] */
     double *C1;     /* constraints of the Newton matrix */
     double *vdot, *none, *sum, *sum_q;
-    double *normal;      /* what is projected away of a correction; 0 where stages are not */
+    double *normal;      /* what is projected away of a correction; 0 if stages are not */
     double fraction;     /* of the step, that a turn of friction asks for; 0: none does */
     double size, before; /* of the last two corrections, relative to the tolerance */
     int iterations, iterations_max;

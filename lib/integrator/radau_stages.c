@@ -282,7 +282,7 @@ static se3d_status solve_normal(se3di_radau *m, const double *vector)
     return se3di_equations_solve(equations);
 }
 
-/* The same where residuals are accelerations: those against the constraints, too, of which only the
+/* The same if residuals are accelerations: those against the constraints, too, of which only the
  * tangent part is seen by forces: they do not feel what is projected away. */
 static se3d_status set_missing(se3di_radau *m)
 {
@@ -467,7 +467,7 @@ static se3d_status iterate(se3di_radau *m, int refactor)
     return isfinite(m->size) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
-/* A faster fall than RATE_MIN says nothing of what remains: where a stop or a contact comes and
+/* A faster fall than RATE_MIN says nothing of what remains: if a stop or a contact comes and
  * goes between iterations, corrections blow up and fall back by many orders. */
 static int has_converged(const se3di_radau *m, double rate)
 {

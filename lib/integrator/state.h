@@ -26,14 +26,14 @@ void se3di_state_set(se3di_assembly *assembly, const double *y);
  * without showing it, whatever it has shown last. */
 void se3di_state_set_rates(se3di_assembly *assembly, const double *derivative);
 /* y' at t from the frames, the accelerations `qddot` [unknowns] and the multipliers l [rows], which
- * become those of the model where powers depend on them. */
+ * become those of the model if powers depend on them. */
 se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const double *qddot,
                                    const double *l, double *derivative);
 
 /* Before a series of evaluations: the mass if it is constant, and the linear solver's settings
  * for the regularisation `eps`; after it: the settings as they were. Near singular positions an
  * acceleration is then a smooth function of the state: eps and the two refinements act as a filter,
- * (eps / (eps + sigma^2))^3 of a constraint direction of relative size sigma is not enforced, where
+ * (eps / (eps + sigma^2))^3 of a constraint direction of relative size sigma is not enforced, if
  * its multiplier has no leverage anyway; errors are amplified by eps^(-1/2) at most. */
 se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, double accuracy);
 /* Before the evaluations of one step: what changes little within it (and must not depend on the
@@ -67,7 +67,7 @@ se3d_status se3di_state_project_positions(se3di_equations *equations, double t,
 void se3di_state_split_force(const se3di_assembly *assembly, const se3di_frame *frame,
                              const double *generalised, double force[3], double torque[3]);
 
-/* A step of at most h in which no joint angle turns by as much as its counter cannot follow, where
+/* A step of at most h in which no joint angle turns by as much as its counter cannot follow, if
  * rates grow by at most `growth` [rad/s^2]. */
 double se3di_state_limit_turn(const se3di_model *model, double growth, double h);
 

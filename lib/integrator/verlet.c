@@ -28,7 +28,7 @@ typedef struct verlet {
     double h;     /* of the last step, whose second half kick of the particles is `open` */
     int32_t open;
     int32_t moved; /* the particles were, in the step under way */
-    int32_t keeps; /* they come back where it fails */
+    int32_t keeps; /* they come back if it fails */
     int32_t reserved;
 } verlet;
 
@@ -85,7 +85,7 @@ static void account(const verlet *m)
 }
 
 /* The particles to t1, and what they do to the bodies there; *contact as se3di_sets_forces has it.
- * Nothing has moved where room is missing. */
+ * Nothing has moved if room is missing. */
 static se3d_status move_particles(verlet *m, double t1, se3d_status *contact)
 {
     SE3DI_TRY(se3di_contacts_reserve(m->model, t1, m->error)); /* no failure for memory later */
@@ -156,7 +156,7 @@ static se3d_status finish(verlet *m, se3d_status status)
     return status;
 }
 
-/* Steps of `most`, equal ones if it was asked for, or shorter where bodies touch. */
+/* Steps of `most`, equal ones if it was asked for, or shorter if bodies touch. */
 static se3d_status run_steps(se3di_integration *integration, double t_end, double most, int asked)
 {
     verlet m = begin(integration);

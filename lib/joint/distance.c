@@ -3,7 +3,7 @@
  *
  *     d                    d . d = distance^2
  *
- * 1 equation, 5 freedoms. Degenerate where the points coincide (gradient 2 d), which a distance > 0
+ * 1 equation, 5 freedoms. Degenerate if the points coincide (gradient 2 d), which a distance > 0
  * excludes.  docs/theory/joints.md */
 #include "joint/joint.h"
 #include "joint/rows.h"

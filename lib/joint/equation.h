@@ -24,7 +24,7 @@ se3d_status se3di_equation_jacobian(const se3di_model *model, const se3di_constr
                                     double out[7]);
 
 /* What a constraint does to one body: force and moment about the centre of mass, ground frame. Not
- * a number where a callback fails. */
+ * a number if a callback fails. */
 void se3di_constraint_wrench(const se3di_model *model, const se3di_constraint *constraint,
                              uint32_t body, double force[3], double torque[3]);
 /* What it does to its body in `slot`: {force, torque about `point`}, ground frame; NULL: the joint

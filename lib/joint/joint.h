@@ -75,7 +75,7 @@ int se3di_joint_triad_build(const double axis[3], const double *ref, double ref_
 void se3di_joint_ref_match(const se3di_joint_frames *frames, double angle, const se3di_frame *i,
                            const se3di_frame *j, double ref_j[3]);
 
-/* The turn counter of a joint: angle = `offset` where ref_i and ref_j coincide; its start is the
+/* The turn counter of a joint: angle = `offset` when ref_i and ref_j coincide; its start is the
  * value in the given poses nearest to `near`. */
 void se3di_joint_angle_init(const se3di_joint_frames *frames, const uint32_t bodies[2],
                             double offset, se3di_angle *angle);

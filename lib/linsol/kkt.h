@@ -4,7 +4,7 @@
  *     [ H   B ] [x]   [b]
  *     [ C   0 ] [l] = [c]
  *
- * H holds an n x n block per body and, where stiff elements couple bodies, blocks H_ij and H_ji;
+ * H holds an n x n block per body and, if stiff elements couple bodies, blocks H_ij and H_ji;
  * C holds an m x n block per joint and free body of it; B = C^T in symmetric mode. Redundant rows
  * of C are allowed: x is exact all the same and l is the solution of least 2-norm.
  *
@@ -83,21 +83,21 @@ typedef struct se3di_kkt_layout {
 } se3di_kkt_layout;
 
 typedef enum se3di_kkt_regularise {
-    SE3DI_KKT_REGULARISE_AUTO = 0,  /* at once where the graph has loops, else when needed */
+    SE3DI_KKT_REGULARISE_AUTO = 0,  /* at once if the graph has loops, else when needed */
     SE3DI_KKT_REGULARISE_FIRST = 1, /* redundancy is expected: always at once */
     SE3DI_KKT_REGULARISE_LATE = 2   /* none is expected: only after a pivot vanished */
 } se3di_kkt_regularise;
 
 typedef struct se3di_kkt_settings {
     double eps;       /* regularisation relative to diag(C H^-1 B); 1e-10 */
-    double eps_min;   /* where rows are nearly dependent it may fall to this; 1e-14; eps: they are
+    double eps_min;   /* if rows are nearly dependent it may fall to this; 1e-14; eps: they are
                          filtered, and the solution does not jump where they become dependent */
     double tolerance; /* of the relative residual; 1e-15 */
     int32_t max_refinements;
     se3di_kkt_regularise regularise;
     bool always_check;      /* compute the residual also if the pivots promise the tolerance */
     bool any_multipliers;   /* of dependent rows: they need not be those of least norm */
-    bool iterated;          /* the caller iterates on the exact residual (Newton): where E = 0, that
+    bool iterated;          /* the caller iterates on the exact residual (Newton): if E = 0, that
                                corrects what a solution leaves, and it is not looked at */
     int32_t redundant_rows; /* with any_multipliers: rows known to depend on the others */
 } se3di_kkt_settings;

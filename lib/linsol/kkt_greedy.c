@@ -48,7 +48,7 @@ static int32_t join_anchors(int32_t a, int32_t b)
     return b == ANCHOR_NONE ? a : ANCHOR_MANY;
 }
 
-/* Anchor of the component that eliminating joint `node` would make; ANCHOR_MANY where it may not
+/* Anchor of the component that eliminating joint `node` would make; ANCHOR_MANY if it may not
  * go. So it never goes before all its bodies: it has two, or one and the ground. */
 static int32_t joint_anchor(const greedy *g, int32_t node)
 {

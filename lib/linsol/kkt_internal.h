@@ -39,7 +39,7 @@ typedef struct se3di_kkt_source {
 } se3di_kkt_source;
 
 typedef struct se3di_kkt_core {
-    /* Gather the values and eliminate all nodes; where a right-hand side is expected, also the
+    /* Gather the values and eliminate all nodes; if a right-hand side is expected, also the
      * forward half of its solution, in kkt->z. */
     void (*factor)(se3di_kkt *kkt, const se3di_kkt_values *values);
     /* Overwrite the right-hand side in kkt->z by the solution (of an expected one: the second
@@ -123,7 +123,7 @@ struct se3di_kkt {
     double *saved_l, *saved_x; /* multipliers of rows and of normalisations */
     double *magnitude;         /* [unknown_count]: work of the residual */
     double scale_b, scale_c;
-    double *ratio; /* [row_count]: where some pivot is small, each relative to its weight */
+    double *ratio; /* [row_count]: if some pivot is small, each relative to its weight */
     double
         ratio_bound; /* pivots of dependent rows are below this multiple of `ratio`; 0: unknown */
     kkt_hold hold;
@@ -169,7 +169,7 @@ se3d_status se3di_kkt_fill_create(const se3di_kkt *kkt, const int32_t *node_at,
                                   se3di_kkt_fill *fill);
 void se3di_kkt_fill_destroy(const se3di_kkt *kkt, se3di_kkt_fill *fill);
 /* Estimated vector operations of eliminating a node of `size` with neighbours of these sizes;
- * `free` where it is a body whose block is still the mass block of SE3DI_KKT_BODY_MASS. */
+ * `free` if it is a body whose block is still the mass block of SE3DI_KKT_BODY_MASS. */
 double se3di_kkt_node_cost(int32_t size, const int32_t *near_size, int32_t degree, bool is_mass);
 
 /* kkt_order.c: choose the elimination order, into kkt->node_at. */

@@ -12,7 +12,7 @@
 
 static const double pivot_vanishes = 1e-12; /* relative; then E = 0 is given up */
 static const double pivot_is_good = 1e-4;   /* relative; then a solve with E = 0 needs no check */
-static const double pivot_is_safe = 1e-11;  /* the same where bodies go before their joints */
+static const double pivot_is_safe = 1e-11;  /* the same if bodies go before their joints */
 static const double noise_matters = 1e3;    /* times the tolerance of solutions: rounding / pivot */
 static const double weight_range = 1e4;
 
@@ -322,7 +322,7 @@ static double least_good_pivot(const se3di_kkt *kkt)
 
 /* How many refinements reach the tolerance for certain, -1 if only a look at the residual can
  * tell. With E = 0 and bodies before their joints, S = C H^-1 C^T is factored as Cholesky does: the
- * residual of l is at rounding whatever the pivots, that of x at rounding / pivot where C^T l
+ * residual of l is at rounding whatever the pivots, that of x at rounding / pivot if C^T l
  * nearly cancels (a lever that is long beside the radius of gyration). With E > 0 a solution leaves
  * eps / sigma of the error. A row that is not known to be redundant and seems dependent is nearly
  * so: sigma is small. */

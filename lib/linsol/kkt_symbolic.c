@@ -143,7 +143,7 @@ static void add_body_sources(const source_list *list)
     }
 }
 
-/* `upper` receives H_ij where i goes first, else H_ji; `lower` the transpose of the other one. */
+/* `upper` receives H_ij if i goes first, else H_ji; `lower` the transpose of the other one. */
 static void add_coupling_sources(const source_list *list)
 {
     const se3di_kkt *kkt = list->kkt;

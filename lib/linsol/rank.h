@@ -3,7 +3,7 @@
  * each is a combination, and which freedoms are left.
  *
  * The rank is that of a QR factorisation of C^T with column pivoting. Rows are then
- * taken in order: a row is redundant where it depends on rows before it, so that it is the later
+ * taken in order: a row is redundant if it depends on rows before it, so that it is the later
  * duplicate of an earlier equation that is named.                            docs/theory/kkt.md */
 #ifndef SE3DI_LINSOL_RANK_H
 #define SE3DI_LINSOL_RANK_H

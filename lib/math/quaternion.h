@@ -15,7 +15,7 @@
 
 #include "math/vec3.h"
 
-/* For any p; a rotation where |p| = 1. */
+/* For any p; a rotation if |p| = 1. */
 static inline void se3di_quat_to_matrix(const double p[4], double A[9])
 {
     const double s00 = p[0] * p[0];

@@ -71,7 +71,7 @@ typedef struct se3di_joint_frames {
     double axis_j[3], ref_j[3], third_j[3];
 } se3di_joint_frames;
 
-/* What the rows of a constraint are together, where they can be evaluated in one pass
+/* What the rows of a constraint are together, if they can be evaluated in one pass
  * (assembly/fused.h). */
 typedef enum se3di_row_pattern {
     SE3DI_PATTERN_NONE = 0,
@@ -239,7 +239,7 @@ typedef struct se3di_model {
     size_t history_count, history_capacity;
     int64_t history_redundant;               /* not 0: on the way rows were dependent */
     uint64_t history_tag;                    /* who wrote it; 0: nobody */
-    uint64_t history_stamp;                  /* changes where it does other than by steps forward */
+    uint64_t history_stamp;                  /* changes when it does other than by steps forward */
     uint64_t history_inputs, history_values; /* the versions that it belongs to */
 
     se3di_user_failure user_failure; /* see assembly/user.h */

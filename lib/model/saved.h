@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A copy of all that a step reads and writes, an integrator's history included, without particle
  * sets: snapshots, and what the search for events comes back to. Filling it again allocates only
- * where the model has grown. */
+ * if the model has grown. */
 #ifndef SE3DI_MODEL_SAVED_H
 #define SE3DI_MODEL_SAVED_H
 

@@ -478,7 +478,7 @@ static void make_tangent(const se3di_equations *equations, double *qdot)
     }
 }
 
-/* Any velocity y is recovered from C x = C y where the constraints leave no freedom. */
+/* Any velocity y is recovered from C x = C y if the constraints leave no freedom. */
 se3d_status se3di_equations_probe(se3di_equations *equations, double *worst, uint32_t *body)
 {
     const se3di_assembly *assembly = &equations->assembly;

@@ -77,7 +77,7 @@ se3d_status se3di_velocity_solve(se3di_equations *equations, double t);
 se3d_status se3di_acceleration_solve(se3di_equations *equations, double t);
 
 /* Replace the model's multipliers by those of least 2-norm with the same forces on the bodies,
- * where rows are dependent: those of an integrator hold at a configuration of its own. */
+ * if rows are dependent: those of an integrator hold at a configuration of its own. */
 se3d_status se3di_multipliers_reduce(se3di_equations *equations);
 
 /* The largest violation of a position equation relative to its scale, with what is open in words;
@@ -110,9 +110,9 @@ static inline se3d_status se3di_watch_end(const se3di_equations *equations)
     return equations->watch ? equations->watch->end_step(equations->watch->ctx) : SE3D_OK;
 }
 
-/* Asked in every iteration: fails with INTERRUPTED where the caller wants an end. */
+/* Asked in every iteration: fails with INTERRUPTED if the caller wants an end. */
 se3d_status se3di_equations_ask(const se3di_equations *equations);
-/* Asked before every step from t that is tried: fails with INTERRUPTED, or with STEP_COUNT where
+/* Asked before every step from t that is tried: fails with INTERRUPTED, or with STEP_COUNT if
  * the run takes too many. */
 se3d_status se3di_equations_try_step(const se3di_equations *equations, double t);
 

@@ -4,10 +4,10 @@
  *
  *     a = a_0 - P n,   |n_k| <= F_k:    a_k = 0 inside,   a_k >= 0 at F_k,   a_k <= 0 at -F_k
  *
- * which is the least of n.Pn/2 - a_0.n in a box: a exists and is unique, n where P is definite. Of
+ * which is the least of n.Pn/2 - a_0.n in a box: a exists and is unique, n if P is definite. Of
  * several n the one of least sum of S_k n_k^2, by proximal steps: S is added to the diagonal, the
  * solution becomes the centre, a few times. Each step tries all that contradicts at once (a
- * semismooth Newton method, some three rounds), and where that goes round an active set, one
+ * semismooth Newton method, some three rounds), and if that goes round an active set, one
  * element at a time, whose objective falls: it ends always.  docs/theory/friction.md */
 #ifndef SE3DI_FRICTION_BOX_H
 #define SE3DI_FRICTION_BOX_H

@@ -19,7 +19,7 @@
 #define SHARING           1e-7 /* relative stiffness against one element holding all, and */
 #define SHARING_RANGE     1e4  /* the most that a weaker element has of it */
 #define CENTRES           8
-#define ADVANCE           0.25 /* of s; halved where it fails, */
+#define ADVANCE           0.25 /* of s; halved if it fails, */
 #define ADVANCE_MIN       1e-3 /* to this */
 
 typedef se3di_friction_system friction;

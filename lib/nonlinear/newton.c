@@ -125,7 +125,7 @@ static se3di_kkt_values values_of(const se3di_newton *newton)
         .joint_b = newton->has_columns ? newton->columns : newton->equations->assembly.C};
 }
 
-/* What multipliers do to the bodies, where some of them load friction. */
+/* What multipliers do to the bodies, if some of them load friction. */
 static void set_columns(se3di_newton *newton, const double *lambda)
 {
     const se3di_assembly *assembly = &newton->equations->assembly;

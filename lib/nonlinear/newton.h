@@ -20,7 +20,7 @@
 #include "nonlinear/equations.h"
 
 /* What a test asks for: every iteration of an implicit step factors anew, so that convergence is
- * quadratic where the matrix is exact; the sizes of the corrections are kept. */
+ * quadratic if the matrix is exact; the sizes of the corrections are kept. */
 typedef struct se3di_newton_trace {
     double size[16];
     int32_t count;
@@ -59,7 +59,7 @@ se3d_status se3di_newton_factor(se3di_newton *newton, double t, const double *vd
 se3d_status se3di_newton_factor_velocities(se3di_newton *newton, double t, const double *vdot,
                                            const double *lambda, const double *step,
                                            const se3di_newton_weights *weights);
-/* Those, where a body has turned on the way of the step, at the
+/* Those, if a body has turned on the way of the step, at the
  * weight c = dv/dvdot, by (I - c/2 Omega(w))^-1; dx/dvdot = c^2. Unknowns (v, w) only. */
 se3d_status se3di_newton_factor_rates(se3di_newton *newton, double t, const double *vdot,
                                       const double *lambda, double c);

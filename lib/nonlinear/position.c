@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Positions: min |dq|_M with Phi(q, t) = 0, by Newton with line search; where that stalls (far from
+/* Positions: min |dq|_M with Phi(q, t) = 0, by Newton with line search; if that stalls (far from
  * a solution, or if there is none) by damped Gauss-Newton (Levenberg-Marquardt: the KKT system
  * with a large regularisation), which ends in the least sum of squared violations. A stationary
  * violation means that the constraints cannot be met from here: the gap is named.
@@ -313,7 +313,7 @@ double se3di_position_measure(se3di_equations *equations, char *text, size_t siz
     return problem.worst;
 }
 
-/* ", the driver push locks", where a driver has a part in the gap. */
+/* ", the driver push locks", if a driver has a part in the gap. */
 static void describe_lock(const se3di_equations *equations, char *text, size_t size)
 {
     const se3di_assembly *assembly = &equations->assembly;
@@ -334,7 +334,7 @@ static void describe_lock(const se3di_equations *equations, char *text, size_t s
     }
 }
 
-/* ", but body a is held", where all bodies of an open constraint that could move are. */
+/* ", but body a is held", if all bodies of an open constraint that could move are. */
 static int describe_held(const se3di_equations *equations, char *text, size_t size)
 {
     const se3di_assembly *assembly = &equations->assembly;

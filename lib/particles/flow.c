@@ -107,7 +107,7 @@ static int is_due(const se3di_particles *set, se3di_source *source)
            source->owed >= price(set, source) * (1.0 - 1e-9);
 }
 
-/* Room for one more; a quarter more than that where memory has to grow. */
+/* Room for one more; a quarter more than that if memory has to grow. */
 static se3d_status make_room(se3di_particles *set)
 {
     size_t wanted = set->count + 1;

@@ -2,7 +2,7 @@
 /* The state of a set before a step that may fail after the particles have moved.
  *
  * All arrays lie one after the other in one block of memory, those that change only with the lists
- * first: they are copied where the lists have changed. The set's record is kept as it is; where it
+ * first: they are copied if the lists have changed. The set's record is kept as it is; if it
  * comes back, the addresses and sizes of the arrays stay what they are now. */
 
 #include "particles/kept.h"

@@ -273,7 +273,7 @@ typedef struct se3di_particles {
     uint32_t *faces; /* triangles of meshes, see se3di_near_wall */
     size_t face_count, face_capacity;
     se3di_carry *carry; /* in the memory of the loads, while list_valid is 0 */
-    double *carry_roll; /* [4 * carry] where rolling */
+    double *carry_roll; /* [4 * carry] if rolling */
     uint32_t *carry_next;
     size_t carry_count, carry_roll_capacity, carry_next_capacity;
     int32_t carry_rolling;       /* carry_roll has been filled */
@@ -358,7 +358,7 @@ const se3di_kernels *se3di_particle_kernels_portable(void); /* never NULL */
 const se3di_kernels *se3di_particle_kernels_fma(void);
 const se3di_kernels *se3di_particle_kernels_avx2(void);
 const se3di_kernels *se3di_particle_kernels_avx512(void);
-/* The fastest of the machine's; the portable ones where that is wanted. */
+/* The fastest of the machine's; the portable ones if that is wanted. */
 const se3di_kernels *se3di_particle_kernels_choose(int32_t portable);
 
 /* Threads that have something to do. One number for everything: a pool whose size changes is made
@@ -386,7 +386,7 @@ se3d_status se3di_particles_reserve(se3di_particles *set, size_t count);
 /* Append; room must have been reserved. Returns the id. */
 uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double radius,
                                 const double x[3], const double v[3], const double w[3]);
-/* Remove where keep[index] is 0; the order of the others stays. The history must have been
+/* Remove those with keep[index] 0; the order of the others stays. The history must have been
  * collected. */
 void se3di_particles_filter(se3di_particles *set, const unsigned char *keep);
 /* Remove `count` live particles by their ids. */

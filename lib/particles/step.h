@@ -8,7 +8,7 @@
 /* Place the walls where the frames of their bodies are. */
 void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames);
 /* What a unit force on a wall does to its body, from now on: what its mass makes of it, or nothing,
- * where the bodies are moved by others (model NULL). */
+ * if the bodies are moved by others (model NULL). */
 void se3di_particles_free_walls(se3di_particles *set, const se3di_model *model);
 /* Nothing moves and nothing will. */
 int se3di_particles_is_idle(const se3di_particles *set);

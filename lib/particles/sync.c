@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a set of particles takes from the model: materials and shapes. It keeps copies, and looks
- * again where the model was edited; the history of contacts goes along. */
+ * again when the model was edited; the history of contacts goes along. */
 
 #include "particles/sync.h"
 #include "particles/list.h"

@@ -7,7 +7,7 @@
 
 /* A clone goes with a clone of the model, whose shapes its walls are from now on. */
 void se3di_particles_adopt(se3di_particles *set, const se3di_model *model);
-/* Take materials, shapes and settings from the model where it was edited since. */
+/* Take materials, shapes and settings from the model if it was edited since. */
 se3d_status se3di_particles_sync(se3di_particles *set, const se3di_model *model);
 /* The mass of the lightest body that gives way to particles; infinite if none does. */
 double se3di_particles_lightest_body(const se3di_particles *set, const se3di_model *model);

@@ -10,7 +10,7 @@
 #include <math.h>
 
 #define PARCEL   8    /* particles that are compared with a wall together */
-#define PARCELS  256  /* of a slab; where it has more particles, parcels are larger */
+#define PARCELS  256  /* of a slab; if it has more particles, parcels are larger */
 #define ROUNDING 1e-9 /* of a distance */
 
 void se3di_wall_local(const se3di_wall *wall, const double x[3], double local[3])

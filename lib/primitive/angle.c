@@ -10,7 +10,7 @@
  *     theta_qq = curvature of DP1(m, a_j) - theta_q^T rho_q - rho_q^T theta_q
  *     in both formulations.
  *
- * Removes one rotational degree of freedom, at every angle; degenerate only where a_j is parallel
+ * Removes one rotational degree of freedom, at every angle; degenerate only if a_j is parallel
  * to b_i (q = 0): all functions are NaN there.  docs/theory/angle.md */
 #include "math/elementary.h"
 #include "primitive/dot.h"

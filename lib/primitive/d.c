@@ -8,7 +8,7 @@
  *     r-omega   d'' = A_j (w_j x (w_j x s_j)) - A_i (w_i x (w_i x s_i))
  *     r-p       d'' = B(pdot_j,s_j) pdot_j - B(pdot_i,s_i) pdot_i
  *
- * Removes one degree of freedom; degenerate where the points coincide (d = 0: the Jacobian
+ * Removes one degree of freedom; degenerate if the points coincide (d = 0: the Jacobian
  * vanishes; use three CD instead).  docs/theory/d.md */
 #include "primitive/kernel.h"
 #include "primitive/table.h"

@@ -9,7 +9,7 @@
  *               gamma = - A_j a_j . B(pdot_i,a_i) pdot_i - A_i a_i . B(pdot_j,a_j) pdot_j
  *                       - 2 B(p_i,a_i) pdot_i . B(p_j,a_j) pdot_j
  *
- * Removes one rotational degree of freedom; degenerate where the directions are parallel (all
+ * Removes one rotational degree of freedom; degenerate if the directions are parallel (all
  * derivatives of first order vanish).  docs/theory/dp1.md */
 #include "primitive/dot.h"
 #include "primitive/table.h"

@@ -9,7 +9,7 @@
  *     gamma   = - n.d'' - y.u'' - z.v'' - 2 [d.(udot x vdot) + ddot.(udot x v + u x vdot)]
  *     u'', v'', d'': velocity parts, as in dp1.c and dp2.c
  *
- * Removes one degree of freedom; degenerate where u and v are parallel and d = 0.
+ * Removes one degree of freedom; degenerate if u and v are parallel and d = 0.
  * docs/theory/triple.md */
 #include "primitive/kernel.h"
 #include "primitive/table.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The audit of energy where values of elements change between two steps. Elements evaluate
+/* The audit of energy when values of elements change between two steps. Elements evaluate
  * callbacks: the system is busy while they do. */
 #include "assembly/energy.h"
 #include "contact/bodies/body_contacts.h"

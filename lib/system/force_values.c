@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Values of force elements: checked where they are created, set and read between steps. */
+/* Values of force elements: checked when they are created, set and read between steps. */
 #include "force/force.h"
 #include "force/stop.h"
 #include "math/vec3.h"

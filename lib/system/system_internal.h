@@ -104,7 +104,7 @@ se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_func
                                 uint32_t variables, int32_t *index);
 
 /* The audit of energy over a change of values: what it makes of the energies is work of actuators.
- * Before the change: the energy that it may change (0 if nothing is audited, not a number where
+ * Before the change: the energy that it may change (0 if nothing is audited, not a number if
  * a callback fails: then the audit begins anew); after it. Of a force element alone; of bodies,
  * gravity and all elements; of contacts. */
 double se3di_audit_force(const se3di_model *model, const se3di_force *force);

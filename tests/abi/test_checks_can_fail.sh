@@ -103,6 +103,9 @@ printf '%s\n' '/* Where it is square' ' * to its axis, a = 0:' ' *' ' *     F = 
 reject 'prose.h:1: `square to`' $language
 reject 'prose.h:1: .*Where' $language
 reject 'prose.h:5: text right after a formula' $language
+printf '%s\n' '/* The list is read; where it' ' * fails nothing has changed. Degenerate where a = b. */' >lib/math/cases.h
+reject 'cases.h:1: `; where it`' $language
+reject 'cases.h:2: `Degenerate where`' $language
 printf '%s\n' 'int a;' "$(printf '<%.0s' 1 2 3 4 5 6 7) HEAD" >lib/math/both.h
 reject 'both.h:2: the mark of a conflict' $language
 printf '%0121d b\n| %0130d |\n' 0 0 >docs/wide.md

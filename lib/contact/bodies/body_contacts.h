@@ -43,7 +43,7 @@ int se3di_contacts_changed(const se3di_model *model);
 /* The state of the model at t is about to be accepted. On failure nothing is remembered of it.
  * @return OK, NO_MEMORY, STEP_SIZE (two shapes overlap too much: the message names them) */
 se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *error);
-/* The same however much they overlap: where poses are only looked at. */
+/* The same however much they overlap: if poses are only looked at. */
 se3d_status se3di_contacts_prepare_any(se3di_model *model, double t, se3di_error *error);
 void se3di_contacts_accept(se3di_model *model);
 /* Let readers see the contacts of the present state, which lies within a step that was accepted,

@@ -22,7 +22,7 @@ typedef struct se3di_encounter {
     double turned[2][3];        /* J^-1 lever, ground frame */
     double alone;               /* 1/m* of this point alone */
     double shared;              /* 1/m* among the points of its pair of shapes */
-    double inverse_mass;        /* 1/m*: shared, of the last accepted state where it touched then */
+    double inverse_mass;        /* 1/m*: shared, of the last accepted state if it touched then */
     double root_mass;           /* sqrt(m*) */
     double s, root;             /* 1 or sqrt(R* overlap); sqrt(s) */
     double onset;               /* factor of the damping of a new contact */

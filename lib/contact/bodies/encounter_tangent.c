@@ -258,7 +258,7 @@ static void move_memory(const se3di_encounter *e, const se3di_encounter_change *
     project_rate(n, d->n, raw, turn, d->rho);
 }
 
-/* d of f = x cap / |x| where it is capped, of x if it is not. */
+/* d of f = x cap / |x| if it is capped, of x if it is not. */
 static void cap_rate(double factor, double cap, double dcap, const double x[3], const double dx[3],
                      double out[3])
 {

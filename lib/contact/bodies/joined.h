@@ -6,7 +6,7 @@
 #include "model/model.h"
 
 /* Whether a constraint keeps two shapes from touching: one between their bodies; with a fixed body
- * only where the shapes overlap at the joint, or it leaves no freedom. */
+ * only if the shapes overlap at the joint, or it leaves no freedom. */
 int se3di_shapes_are_joined(const se3di_model *model, uint32_t a, uint32_t b);
 
 #endif

@@ -271,7 +271,7 @@ int se3di_mesh_leads_out(const edge *e, const double n[3])
     return w.open;
 }
 
-/* Contacts with the edge as a line, by ways that lead out; where they lead over its end, also from
+/* Contacts with the edge as a line, by ways that lead out; if they lead over its end, also from
  * there. */
 static void add_lines(const meeting *m, const se3di_manifold *lines, const edge *e,
                       uint32_t feature)

@@ -40,7 +40,7 @@ typedef struct se3di_mesh_edge {
     uint32_t triangle;
     int is_flat; /* or bulges away, or is another triangle's */
     int is_border;
-    se3di_mesh_face other; /* beyond it, where it is no border */
+    se3di_mesh_face other; /* beyond it, if it is no border */
 } se3di_mesh_edge;
 
 void se3di_mesh_to_local(const se3di_solid *mesh, const double x[3], double local[3]);

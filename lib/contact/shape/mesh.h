@@ -28,7 +28,7 @@ size_t se3di_mesh_nearest(const se3di_shape *shape, const double local[3], doubl
 size_t se3di_mesh_contacts(const se3di_shape *shape, const double local[3], double radius,
                            size_t capacity, se3di_touch *touch);
 
-/* The same where all triangles within the radius are among these, in the order of the tree. */
+/* The same if all triangles within the radius are among these, in the order of the tree. */
 size_t se3di_mesh_contacts_among(const se3di_shape *shape, const uint32_t *faces, size_t face_count,
                                  const double local[3], double radius, size_t capacity,
                                  se3di_touch *touch);

@@ -56,7 +56,7 @@ double se3di_triangle_nearest(const double *const corner[3], const double p[3], 
         inside = inside && w[k] > 0.0;
     }
     double d[3] = {0.0, 0.0, 0.0};
-    if (inside) { /* more exactly along the normal, which matters where p is near */
+    if (inside) { /* more exactly along the normal, which matters if p is near */
         se3di_scale(se3di_dot(q[0], normal) / square, normal, d);
     } else {
         find_on_sides(q, w);

@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 /* The path of `file`, which is relative, in `folder`. @return false: errno says why: too long, or
- * ELOOP where a symbolic link leads out of the folder. */
+ * ELOOP if a symbolic link leads out of the folder. */
 bool se3di_file_join(const char *folder, const char *file, char *path, size_t size);
 /* Make the folders that a path of a file needs. @return false: errno says why. */
 bool se3di_file_make_folders(const char *path);
@@ -20,7 +20,7 @@ FILE *se3di_file_open(const char *path);
  * says why, and nothing is left. */
 FILE *se3di_partial_open(const char *path);
 bool se3di_partial_close(FILE *file, const char *path);
-/* Cut the file to its first `size` bytes and give it its name, after a write has failed; where it
+/* Cut the file to its first `size` bytes and give it its name, after a write has failed; if it
  * cannot have it, it keeps the temporary one. @return false: nothing is left. */
 bool se3di_partial_keep(FILE *file, const char *path, uint64_t size);
 /* Close without keeping anything. */

@@ -117,7 +117,7 @@ static void offer_one(offer *o, const char *name, se3di_quantity quantity)
     offer_names(o, names);
 }
 
-/* Coordinates of a joint; `rate` is that of the angle where it has both. */
+/* Coordinates of a joint; `rate` is that of the angle if it has both. */
 static void offer_coordinates(offer *o, const se3d_system *system, se3d_constraint joint)
 {
     double value[3];

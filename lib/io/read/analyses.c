@@ -15,7 +15,7 @@
 
 #define STEP_MIN       1e-15 /* s */
 #define STEP_DEFAULT   1e-3  /* s, of methods with fixed steps */
-#define STEPS_MAX      1e9   /* where the file says nothing */
+#define STEPS_MAX      1e9   /* if the file says nothing */
 #define STEPS_MAX_MOST 1e15
 #define TIME_MAX       1e9 /* s, thirty years */
 

@@ -6,7 +6,7 @@
 #include "io/document/reader.h"
 #include "io/model/model.h"
 
-/* The material that the value of `key` names, which is made where it is needed first. */
+/* The material that the value of `key` names, which is made when it is needed first. */
 bool se3di_read_key_material(se3di_reader *reader, const se3di_node *map, const char *key,
                              se3d_material *material);
 /* The material of a name. @return false: there is none, or (reader->status < 0) it is refused. */

@@ -13,7 +13,7 @@ typedef struct se3di_contact_rows {
     double *rows; /* [count * SE3DI_CONTACT_NUMBERS]: time, point, normal, overlap, normal force,
                      tangential force */
     const char **kinds, **a, **b;
-    double *id_a, *id_b; /* where the names are NULL */
+    double *id_a, *id_b; /* if the names are NULL */
     size_t count;
 } se3di_contact_rows;
 
