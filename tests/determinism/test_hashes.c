@@ -13,7 +13,7 @@
 #include "linsol/kkt_internal.h"
 #include "particles/set.h"
 #include "support/analyses.h"
-#include "support/bed.h"
+#include "support/avalanche.h"
 #include "support/models.h"
 #include "support/scene.h"
 
@@ -197,7 +197,7 @@ static const double strong[3] = {-300.0, 0.0, -400.0};
 static uint64_t run_bed(const row *r, int32_t threads)
 {
     bed b;
-    bed_init(&b, threads, 0, r->law);
+    avalanche_open(&b, threads, 0, r->law);
     CHECK(se3d_system_set_gravity(b.system, strong) == SE3D_OK);
     CHECK(se3d_particles_step(b.particles, 600) == SE3D_OK);
     CHECK(se3d_particles_count_contacts(b.particles) > 100);
@@ -214,7 +214,7 @@ static uint64_t run_pushed(const row *r, int32_t threads)
                         v[3] = {0.5, 0.0, -2.0};
     static const double axis[3] = {0.6, 0.0, 0.8};
     bed b;
-    bed_init(&b, threads, 0, r->law);
+    avalanche_open(&b, threads, 0, r->law);
     CHECK(se3d_system_set_gravity(b.system, strong) == SE3D_OK);
     scene s = {.system = b.system};
     se3d_material_def stuff = scene_stuff(0.4, 0.5, 2e4);

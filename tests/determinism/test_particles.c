@@ -3,12 +3,12 @@
  * middle. */
 #include "check.h"
 #include "se3d/se3d.h"
-#include "support/bed.h"
+#include "support/avalanche.h"
 
 static uint64_t run(int32_t threads, int32_t portable, int32_t law)
 {
     bed b;
-    bed_init(&b, threads, portable, law);
+    avalanche_open(&b, threads, portable, law);
     CHECK(se3d_particles_step(b.particles, 3000) == SE3D_OK);
     se3d_particles *copy; /* goes on from the middle */
     CHECK(se3d_particles_clone(b.particles, &copy) == SE3D_OK);
@@ -77,8 +77,8 @@ static void bits_of_a_large_set_do_not_depend_on_the_number_of_threads(void)
 static void bits_do_not_depend_on_how_a_run_is_cut(void)
 {
     bed a, b;
-    bed_init(&a, 1, 0, SE3D_CONTACT_LAW_HOOKE);
-    bed_init(&b, 1, 0, SE3D_CONTACT_LAW_HOOKE);
+    avalanche_open(&a, 1, 0, SE3D_CONTACT_LAW_HOOKE);
+    avalanche_open(&b, 1, 0, SE3D_CONTACT_LAW_HOOKE);
     CHECK(se3d_particles_step(a.particles, 3000) == SE3D_OK);
     for (size_t k = 0; k < 3000; k += 1 + k % 7) {
         size_t steps = 1 + k % 7;
@@ -92,7 +92,7 @@ static void bits_do_not_depend_on_how_a_run_is_cut(void)
 static void copies_and_restored_states_continue_with_the_same_bits(void)
 {
     bed b;
-    bed_init(&b, 1, 0, SE3D_CONTACT_LAW_HERTZ_MINDLIN);
+    avalanche_open(&b, 1, 0, SE3D_CONTACT_LAW_HERTZ_MINDLIN);
     se3d_particles *copy;
     CHECK(se3d_particles_step(b.particles, 2345) == SE3D_OK);
     CHECK(se3d_particles_clone(b.particles, &copy) == SE3D_OK);
@@ -113,8 +113,8 @@ static void copies_and_restored_states_continue_with_the_same_bits(void)
 static void queries_change_nothing(void)
 {
     bed a, b;
-    bed_init(&a, 1, 0, SE3D_CONTACT_LAW_HOOKE);
-    bed_init(&b, 1, 0, SE3D_CONTACT_LAW_HOOKE);
+    avalanche_open(&a, 1, 0, SE3D_CONTACT_LAW_HOOKE);
+    avalanche_open(&b, 1, 0, SE3D_CONTACT_LAW_HOOKE);
     static se3d_particles_contact contacts[20000];
     for (int k = 0; k < 20; ++k) {
         CHECK(se3d_particles_step(a.particles, 150) == SE3D_OK);

@@ -3,6 +3,7 @@
  * its tilt, a cart. In an explicit method with a given step, one with control of the error and an
  * implicit one, in both formulations. */
 #include "support/scene_choices.h"
+#include "support/world.h"
 
 /* A disk that a driver turns about the vertical with `speed`, with a plane on it. */
 static void turntable(scene *s, double speed)
@@ -212,12 +213,7 @@ static void a_cart_rolls_down_a_slope(void)
             const double x = wheel & 1 ? 0.4 : -0.4, y = wheel & 2 ? 0.25 : -0.25;
             const double at[3] = {r[0] + x * along[0], y, r[2] + x * along[2]};
             se3d_body ball = scene_ball(&s, R, mw, at, scene_zero);
-            se3d_joint_def pin = se3d_joint_def_default();
-            se3d_constraint joint;
-            pin.body_i = frame;
-            pin.body_j = ball;
-            CHECK(se3d_joint_def_set_frame(s.system, &pin, at, about_y, NULL) == SE3D_OK);
-            CHECK(se3d_joint_create_revolute(s.system, &pin, &joint) == SE3D_OK);
+            (void)world_join(s.system, se3d_joint_create_revolute, NULL, frame, ball, at, about_y);
         }
         scene_solve(&s, choices[n].method, choices[n].formulation, 0.0, 1e-6);
         scene_run(&s, 0.3);

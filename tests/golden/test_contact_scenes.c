@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Rows of balls, free, touching and hung up, against closed forms and a chain of springs. */
 #include "support/scene.h"
+#include "support/world.h"
 
 /* Three equal balls with gaps, the first at 1 m/s: each blow passes on (1 + e)/2 of the speed. */
 static void a_row_of_balls_passes_the_blow_on(void)
@@ -95,13 +96,8 @@ static se3d_body pendulum(scene *s, double x, double angle, double R)
     const double r[3] = {x - sin(angle), 0.0, -cos(angle)}, axis[3] = {0.0, 1.0, 0.0};
     const double at[3] = {x, 0.0, 0.0};
     se3d_body ball = scene_ball(s, R, 1.0, r, scene_zero);
-    se3d_joint_def def = se3d_joint_def_default();
-    se3d_constraint joint;
     scene_turn(s, ball, axis, angle);
-    def.body_i = scene_ground(s);
-    def.body_j = ball;
-    CHECK(se3d_joint_def_set_frame(s->system, &def, at, axis, NULL) == SE3D_OK);
-    CHECK(se3d_joint_create_revolute(s->system, &def, &joint) == SE3D_OK);
+    (void)world_join(s->system, se3d_joint_create_revolute, NULL, scene_ground(s), ball, at, axis);
     return ball;
 }
 

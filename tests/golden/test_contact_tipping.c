@@ -2,6 +2,7 @@
 /* What tips, what slides, what is held and what falls: boxes on inclines and pushed, a gripper,
  * dominoes, a coin. */
 #include "support/scene_choices.h"
+#include "support/world.h"
 
 static const double about_y[3] = {0.0, 1.0, 0.0};
 
@@ -109,12 +110,8 @@ static void a_pushed_box_slides_or_tips(void)
 static se3d_constraint slide(scene *s, se3d_body parent, se3d_body child, const double r[3],
                              const double along[3])
 {
-    se3d_joint_def def = se3d_joint_def_default();
     se3d_constraint joint;
-    def.body_i = parent;
-    def.body_j = child;
-    CHECK(se3d_joint_def_set_frame(s->system, &def, r, along, NULL) == SE3D_OK);
-    CHECK(se3d_joint_create_prismatic(s->system, &def, &joint) == SE3D_OK);
+    joint = world_join(s->system, se3d_joint_create_prismatic, NULL, parent, child, r, along);
     return joint;
 }
 

@@ -3,50 +3,28 @@
  * tests 1 and 2), rolling and slipping, static stacks. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/bed.h"
 
 #define PI 3.1415926535897932384626433832795
 #define G  9.81
 
-typedef struct bed {
-    se3d_system *system;
-    se3d_particles *particles;
-    se3d_material material;
-} bed;
-
-static void bed_init(bed *b, se3d_contact_law law, double g, const se3d_material_def *material)
+/* Gravity g downwards. */
+static void open_bed(bed *b, se3d_contact_law law, double g, const se3d_material_def *material)
 {
-    se3d_system_def def = se3d_system_def_default();
-    def.gravity[2] = -g;
-    CHECK(se3d_system_create(&def, &b->system) == SE3D_OK);
-    se3d_contact_settings contact = se3d_contact_settings_default();
-    contact.law = (int32_t)law;
-    CHECK(se3d_system_set_contact(b->system, &contact) == SE3D_OK);
-    CHECK(se3d_particles_create(b->system, NULL, &b->particles) == SE3D_OK);
-    CHECK(se3d_material_create(b->system, material, &b->material) == SE3D_OK);
-}
-
-static void bed_destroy(bed *b)
-{
-    se3d_particles_destroy(b->particles);
-    se3d_system_destroy(b->system);
+    const double down[3] = {0.0, 0.0, -g};
+    bed_open(b, (int32_t)law, down, NULL, material);
 }
 
 static se3d_shape floor_at(bed *b, double z, double nx, double nz)
 {
-    se3d_shape_def def = se3d_shape_def_default();
-    se3d_shape wall;
-    def.material = b->material;
-    def.position[2] = z;
-    def.normal[0] = nx;
-    def.normal[2] = nz;
-    CHECK(se3d_shape_create_plane(b->system, &def, &wall) == SE3D_OK);
-    return wall;
+    const double at[3] = {0.0, 0.0, z}, normal[3] = {nx, 0.0, nz};
+    return bed_add_plane(b, at, normal);
 }
 
 static void add(bed *b, double x, double z, double radius, const double v[3], const double w[3])
 {
     const double r[3] = {x, 0.0, z};
-    CHECK(se3d_particles_add(b->particles, b->material, 1, r, &radius, v, w, NULL) == SE3D_OK);
+    bed_add(b, r, radius, v, w);
 }
 
 static se3d_material_def stuff(void)
@@ -71,7 +49,7 @@ static double impact(se3d_contact_law law, const se3d_material_def *def, int wal
                      double v, double divide, double out[3])
 {
     bed b;
-    bed_init(&b, law, 0.0, def);
+    open_bed(&b, law, 0.0, def);
     const double down[3] = {0.0, 0.0, wall ? -v : -0.5 * v}, up[3] = {0.0, 0.0, 0.5 * v};
     double step;
     add(&b, 0.0, wall ? radius : 2.0 * radius, radius, down, NULL);
@@ -96,7 +74,7 @@ static double impact(se3d_contact_law law, const se3d_material_def *def, int wal
         ++steps;
     } while (steps < 10000000 && se3d_particles_count_contacts(b.particles) > 0);
     out[2] = (double)steps * step;
-    bed_destroy(&b);
+    bed_close(&b);
     return (wall ? u[2] : u[2] - u[5]) / v;
 }
 
@@ -173,7 +151,7 @@ static void impact_on_a_rigid_wall_is_that_of_hertz(void)
     def.poisson = 0.30;
     def.density = 2699.0;
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HERTZ_MINDLIN, 0.0, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HERTZ_MINDLIN, 0.0, &def);
     const double v[3] = {0.0, 0.0, -0.2};
     se3d_material rigid;
     def.young = 70e18;
@@ -198,7 +176,7 @@ static void impact_on_a_rigid_wall_is_that_of_hertz(void)
     CHECK_NEAR(overlap / 49.717e-6, 1.0, 1e-4);
     CHECK_NEAR(force / 11369.9, 1.0, 1e-4);
     CHECK_NEAR((double)steps * step / 731.66e-6, 1.0, 1e-3);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 /* A sphere at rest in its dent on the floor. */
@@ -213,7 +191,7 @@ static void slipping_becomes_rolling(void)
     def.friction = 0.3;
     def.restitution = 0.1;
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
     const double v0 = 1.0, v[3] = {1.0, 0.0, 0.0};
     settle_on_floor(&b, 0.005, G, v, NULL);
     floor_at(&b, 0.0, 0.0, 1.0);
@@ -226,7 +204,7 @@ static void slipping_becomes_rolling(void)
     CHECK_NEAR(u[0], 5.0 / 7.0 * v0, 1e-3);
     CHECK_NEAR(w[1] * 0.005, u[0], 2e-3);
     CHECK_NEAR(r[0], 12.0 / 49.0 * v0 * v0 / (0.3 * G) + 5.0 / 7.0 * v0 * 0.5 * t, 3e-4);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void spin_on_the_spot_becomes_rolling(void)
@@ -234,7 +212,7 @@ static void spin_on_the_spot_becomes_rolling(void)
     se3d_material_def def = stuff();
     def.restitution = 0.1;
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
     const double w0[3] = {0.0, 100.0, 0.0};
     double u[3];
     settle_on_floor(&b, 0.005, G, NULL, w0);
@@ -242,7 +220,7 @@ static void spin_on_the_spot_becomes_rolling(void)
     CHECK(se3d_particles_run(b.particles, 0.2) == SE3D_OK);
     CHECK(se3d_particles_get_all(b.particles, 1, NULL, u, NULL) == SE3D_OK);
     CHECK_NEAR(u[0], 2.0 / 7.0 * 100.0 * 0.005, 1e-3);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 /* Acceleration down an incline after it has become steady. */
@@ -253,7 +231,7 @@ static double incline(double angle, double mu, double rolling)
     def.restitution = 0.1;
     def.rolling_friction = rolling;
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 0.0, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HOOKE, 0.0, &def);
     const double g[3] = {G * sin(angle), 0.0, -G * cos(angle)};
     CHECK(se3d_system_set_gravity(b.system, g) == SE3D_OK);
     settle_on_floor(&b, 0.005, G * cos(angle), NULL, NULL);
@@ -263,7 +241,7 @@ static double incline(double angle, double mu, double rolling)
     CHECK(se3d_particles_get_all(b.particles, 1, NULL, u0, NULL) == SE3D_OK);
     CHECK(se3d_particles_run(b.particles, 0.3) == SE3D_OK);
     CHECK(se3d_particles_get_all(b.particles, 1, NULL, u1, NULL) == SE3D_OK);
-    bed_destroy(&b);
+    bed_close(&b);
     return (u1[0] - u0[0]) / 0.2;
 }
 
@@ -287,7 +265,7 @@ static void torsional_resistance_stops_spin_about_the_normal(void)
     def.restitution = 0.1;
     def.torsional_friction = 0.05;
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
     const double w0[3] = {0.0, 0.0, 50.0};
     double w[3];
     settle_on_floor(&b, 0.005, G, NULL, w0);
@@ -300,7 +278,7 @@ static void torsional_resistance_stops_spin_about_the_normal(void)
     CHECK(se3d_particles_run(b.particles, 0.5) == SE3D_OK);
     CHECK(se3d_particles_get_all(b.particles, 1, NULL, NULL, w) == SE3D_OK);
     CHECK_NEAR(w[2], 0.0, 1e-3);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void two_spheres_squeezed_between_walls_balance(void)
@@ -310,7 +288,7 @@ static void two_spheres_squeezed_between_walls_balance(void)
     def.restitution = 0.05;
     def.density = 20000.0;
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
     add(&b, 0.0, 0.45e-3, 0.5e-3, NULL, NULL);
     def.density = 10000.0;
     CHECK(se3d_material_create(b.system, &def, &b.material) == SE3D_OK);
@@ -322,7 +300,7 @@ static void two_spheres_squeezed_between_walls_balance(void)
     CHECK(se3d_particles_get_all(b.particles, 2, r, NULL, NULL) == SE3D_OK);
     CHECK_NEAR(r[2], 433.247725e-6, 2e-12);
     CHECK_NEAR(r[5], 1366.598180e-6, 2e-12);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void chain_stands_as_it_must(se3d_contact_law law)
@@ -331,7 +309,7 @@ static void chain_stands_as_it_must(se3d_contact_law law)
     def.restitution = 0.05;
     def.young = 1e8;
     bed b;
-    bed_init(&b, law, G, &def);
+    open_bed(&b, law, G, &def);
     const int n = 10;
     const double R = 0.005, weight = mass_of(R) * G;
     double modulus = 1e8 / (2.0 * (1.0 - 0.09));
@@ -354,7 +332,7 @@ static void chain_stands_as_it_must(se3d_contact_law law)
     }
     CHECK(se3d_shape_get_wrench(b.system, bottom, force, torque) == SE3D_OK);
     CHECK_NEAR(force[2] / (n * weight), -1.0, 1e-7);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void hooke_chain_stands_as_it_must(void)
@@ -372,7 +350,7 @@ static void stack_does_not_creep(void)
     se3d_material_def def = stuff();
     def.restitution = 0.05;
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HOOKE, G, &def);
     for (int k = 0; k < 10; ++k) {
         add(&b, 0.0, 0.005 * (2.0 * k + 1.0), 0.005, NULL, NULL);
     }
@@ -385,7 +363,7 @@ static void stack_does_not_creep(void)
     for (int k = 0; k < 30; ++k) {
         CHECK_NEAR(after[k], before[k], 1e-10); /* of a radius of 5 mm, in 1 s */
     }
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void impact_without_slip_reverses_the_contact_point(void)
@@ -394,7 +372,7 @@ static void impact_without_slip_reverses_the_contact_point(void)
     def.friction = 1e6;
     def.stiffness = 2.5e8; /* the arm is shorter by the overlap: small */
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 0.0, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HOOKE, 0.0, &def);
     const double v[3] = {0.3, 0.0, -1.0}, w[3] = {0.0, 20.0, 0.0};
     add(&b, 0.0, 0.005, 0.005, v, w);
     floor_at(&b, 0.0, 0.0, 1.0);
@@ -407,7 +385,7 @@ static void impact_without_slip_reverses_the_contact_point(void)
     CHECK_NEAR(u[2], 1.0, 1e-5);
     /* the angular momentum about the contact point does not change */
     CHECK_NEAR(u[0] + 0.4 * 0.005 * s[1], v[0] + 0.4 * 0.005 * w[1], 1e-3);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void sliding_impact_obeys_coulomb(void)
@@ -416,7 +394,7 @@ static void sliding_impact_obeys_coulomb(void)
     def.friction = 0.1;
     def.stiffness = 2.5e8; /* the arm is shorter by the overlap: small */
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 0.0, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HOOKE, 0.0, &def);
     const double v[3] = {5.0, 0.0, -1.0};
     add(&b, 0.0, 0.005, 0.005, v, NULL);
     floor_at(&b, 0.0, 0.0, 1.0);
@@ -427,7 +405,7 @@ static void sliding_impact_obeys_coulomb(void)
     CHECK(se3d_particles_get_all(b.particles, 1, NULL, u, s) == SE3D_OK);
     CHECK_NEAR(u[0], 5.0 - 0.1 * 2.0, 2e-4); /* dv = -mu (1 + e) vn */
     CHECK_NEAR(s[1] * 0.005 * 0.4, 0.1 * 2.0, 2e-4);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 int main(void)

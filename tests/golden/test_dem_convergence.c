@@ -5,6 +5,7 @@
  * of docs/theory/contact-laws.md. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/bed.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -30,28 +31,20 @@ typedef struct form {
     double order; /* least that is expected */
 } form;
 
-typedef struct bed {
-    se3d_system *system;
-    se3d_particles *particles;
-    se3d_material material;
-    int wall;
-} bed;
-
 /* What the impacts have shown so far. */
 typedef struct record {
     double overlap[PHASES], before[PHASES], since[PHASES], until[PHASES];
 } record;
 
-static bed bed_create(se3d_contact_law law, double e, double friction, int wall)
+typedef struct field {
+    bed bed;
+    int wall;
+} field;
+
+static field open_field(se3d_contact_law law, double e, double friction, int wall)
 {
-    bed b = {.wall = wall};
-    se3d_system_def system = se3d_system_def_default();
-    system.gravity[2] = 0.0;
-    CHECK(se3d_system_create(&system, &b.system) == SE3D_OK);
-    se3d_contact_settings contact = se3d_contact_settings_default();
-    contact.law = (int32_t)law;
-    CHECK(se3d_system_set_contact(b.system, &contact) == SE3D_OK);
-    CHECK(se3d_particles_create(b.system, NULL, &b.particles) == SE3D_OK);
+    const double none[3] = {0.0, 0.0, 0.0}, up[3] = {0.0, 0.0, 1.0};
+    field f = {.wall = wall};
     se3d_material_def def = se3d_material_def_default();
     def.density = DENSE;
     def.stiffness = STIFF;
@@ -59,38 +52,29 @@ static bed bed_create(se3d_contact_law law, double e, double friction, int wall)
     def.poisson = 0.3;
     def.restitution = e;
     def.friction = friction;
-    CHECK(se3d_material_create(b.system, &def, &b.material) == SE3D_OK);
+    bed_open(&f.bed, (int32_t)law, none, NULL, &def);
     if (wall) {
-        se3d_shape_def floor = se3d_shape_def_default();
-        se3d_shape shape;
-        floor.material = b.material;
-        CHECK(se3d_shape_create_plane(b.system, &floor, &shape) == SE3D_OK);
+        (void)bed_add_plane(&f.bed, none, up);
     }
-    return b;
-}
-
-static void bed_destroy(bed *b)
-{
-    se3d_particles_destroy(b->particles);
-    se3d_system_destroy(b->system);
+    return f;
 }
 
 /* A sphere above the floor or above another, and how fast it comes. */
-static void add_impact(bed *b, int n, double gap, double slide)
+static void add_impact(field *b, int n, double gap, double slide)
 {
     const double x = 0.1 * (n % 8), y = 0.1 * (n / 8), radius[2] = {RADIUS, RADIUS};
     const double r[6] = {x, y, (b->wall ? RADIUS : 2.0 * RADIUS) + gap, x, y, 0.0};
     const double v[6] = {slide, 0.0, b->wall ? -SPEED : -0.5 * SPEED, 0.0, 0.0, 0.5 * SPEED};
-    CHECK(se3d_particles_add(b->particles, b->material, b->wall ? 1 : 2, r, radius, v, NULL,
+    CHECK(se3d_particles_add(b->bed.particles, b->bed.material, b->wall ? 1 : 2, r, radius, v, NULL,
                              NULL) == SE3D_OK);
 }
 
 /* Times of touching by linear interpolation of the overlap. */
-static void watch(const bed *b, double t, double h, record *seen)
+static void watch(const field *b, double t, double h, record *seen)
 {
     double r[6 * PHASES];
     const size_t each = b->wall ? 1 : 2;
-    CHECK(se3d_particles_get_all(b->particles, PHASES * each, r, NULL, NULL) == SE3D_OK);
+    CHECK(se3d_particles_get_all(b->bed.particles, PHASES * each, r, NULL, NULL) == SE3D_OK);
     for (size_t n = 0; n < PHASES; ++n) {
         const double *at = r + 3 * n * each;
         double overlap = b->wall ? RADIUS - at[2] : 2.0 * RADIUS - (at[2] - at[5]);
@@ -122,32 +106,32 @@ static double found(const form *f, const record *seen, size_t n, const double v[
 /* Root mean square of the relative error over all phases. */
 static double error_of(const form *f, double divide)
 {
-    bed b = bed_create(f->law, f->e, f->what == SLIDING ? MU : 0.0, f->wall);
+    field b = open_field(f->law, f->e, f->what == SLIDING ? MU : 0.0, f->wall);
     const size_t each = f->wall ? 1 : 2;
     const double slide = f->what == SLIDING ? SLIDE : 0.0;
     record seen = {.before = {0.0}};
     double step, sum = 0.0, v[6 * PHASES];
     add_impact(&b, 0, 1e-3 * RADIUS, slide);
-    CHECK(se3d_particles_get_step(b.particles, &step) == SE3D_OK);
+    CHECK(se3d_particles_get_step(b.bed.particles, &step) == SE3D_OK);
     for (int n = 1; n < PHASES; ++n) {
         add_impact(&b, n, 1e-3 * RADIUS + step * SPEED * n / PHASES, slide);
     }
     step /= divide;
-    CHECK(se3d_particles_set_step(b.particles, step) == SE3D_OK);
+    CHECK(se3d_particles_set_step(b.bed.particles, step) == SE3D_OK);
     for (size_t n = 0; n < PHASES; ++n) {
         seen.before[n] = -1.0;
     }
     for (int k = 1; k < (int)(400 * divide); ++k) {
-        CHECK(se3d_particles_step(b.particles, 1) == SE3D_OK);
+        CHECK(se3d_particles_step(b.bed.particles, 1) == SE3D_OK);
         watch(&b, k * step, step, &seen);
     }
-    CHECK(se3d_particles_count_contacts(b.particles) == 0);
-    CHECK(se3d_particles_get_all(b.particles, PHASES * each, NULL, v, NULL) == SE3D_OK);
+    CHECK(se3d_particles_count_contacts(b.bed.particles) == 0);
+    CHECK(se3d_particles_get_all(b.bed.particles, PHASES * each, NULL, v, NULL) == SE3D_OK);
     for (size_t n = 0; n < PHASES; ++n) {
         double error = found(f, &seen, n, v + 3 * n * each) / f->exact - 1.0;
         sum += error * error;
     }
-    bed_destroy(&b);
+    bed_close(&b.bed);
     return sqrt(sum / PHASES);
 }
 
@@ -202,7 +186,7 @@ static void errors_fall_with_the_step(void)
 static void roll(double steps_of, double rolling, double torsion, const double start[3], double t,
                  double out[3])
 {
-    bed b = bed_create(SE3D_CONTACT_LAW_HOOKE, 0.3, 0.3, 0);
+    field b = open_field(SE3D_CONTACT_LAW_HOOKE, 0.3, 0.3, 0);
     const double g[3] = {0.0, 0.0, -9.81}, radius = RADIUS;
     const double r[3] = {0.0, 0.0, RADIUS - mass() * 9.81 / STIFF};
     const double v[3] = {start[0], 0.0, 0.0}, w[3] = {0.0, start[1], start[2]};
@@ -210,25 +194,26 @@ static void roll(double steps_of, double rolling, double torsion, const double s
     se3d_shape_def floor = se3d_shape_def_default();
     se3d_shape shape;
     se3d_material_def def = se3d_material_def_default();
-    CHECK(se3d_system_set_gravity(b.system, g) == SE3D_OK);
+    CHECK(se3d_system_set_gravity(b.bed.system, g) == SE3D_OK);
     def.density = DENSE;
     def.stiffness = STIFF;
     def.restitution = 0.3;
     def.friction = 0.3;
     def.rolling_friction = rolling;
     def.torsional_friction = torsion;
-    CHECK(se3d_material_create(b.system, &def, &b.material) == SE3D_OK);
-    floor.material = b.material;
-    CHECK(se3d_shape_create_plane(b.system, &floor, &shape) == SE3D_OK);
-    CHECK(se3d_particles_add(b.particles, b.material, 1, r, &radius, v, w, NULL) == SE3D_OK);
-    CHECK(se3d_particles_get_step(b.particles, &step) == SE3D_OK);
-    CHECK(se3d_particles_set_step(b.particles, step * steps_of) == SE3D_OK);
-    CHECK(se3d_particles_run(b.particles, t) == SE3D_OK);
-    CHECK(se3d_particles_get_all(b.particles, 1, NULL, u, s) == SE3D_OK);
+    CHECK(se3d_material_create(b.bed.system, &def, &b.bed.material) == SE3D_OK);
+    floor.material = b.bed.material;
+    CHECK(se3d_shape_create_plane(b.bed.system, &floor, &shape) == SE3D_OK);
+    CHECK(se3d_particles_add(b.bed.particles, b.bed.material, 1, r, &radius, v, w, NULL) ==
+          SE3D_OK);
+    CHECK(se3d_particles_get_step(b.bed.particles, &step) == SE3D_OK);
+    CHECK(se3d_particles_set_step(b.bed.particles, step * steps_of) == SE3D_OK);
+    CHECK(se3d_particles_run(b.bed.particles, t) == SE3D_OK);
+    CHECK(se3d_particles_get_all(b.bed.particles, 1, NULL, u, s) == SE3D_OK);
     out[0] = u[0];
     out[1] = s[1];
     out[2] = s[2];
-    bed_destroy(&b);
+    bed_close(&b.bed);
 }
 
 static void forms_with_constant_forces_hold_at_any_step(void)

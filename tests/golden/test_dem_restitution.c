@@ -3,6 +3,7 @@
  * the part of a step in which they meet: a hundred impacts at random phases each. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/bed.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,38 +18,25 @@ typedef struct kind {
     double e, v, divide;       /* divide: of the automatic step */
 } kind;
 
-typedef struct bed {
-    se3d_system *system;
-    se3d_particles *particles;
-    se3d_material material;
-    double step;
-} bed;
-
 static double draw(uint32_t *state)
 {
     *state = *state * 1664525u + 1013904223u;
     return *state / 4294967296.0;
 }
 
-static bed bed_create(const kind *k)
+static bed open_bed(const kind *k)
 {
+    const double none[3] = {0.0, 0.0, 0.0};
     bed b;
-    se3d_system_def system = se3d_system_def_default();
-    system.gravity[2] = 0.0;
-    CHECK(se3d_system_create(&system, &b.system) == SE3D_OK);
-    se3d_contact_settings contact = se3d_contact_settings_default();
-    contact.law = (int32_t)k->law;
-    CHECK(se3d_system_set_contact(b.system, &contact) == SE3D_OK);
     se3d_particles_def set = se3d_particles_def_default();
-    set.portable = k->portable;
-    CHECK(se3d_particles_create(b.system, &set, &b.particles) == SE3D_OK);
     se3d_material_def def = se3d_material_def_default();
+    set.portable = k->portable;
     def.density = 2500.0;
     def.stiffness = 4e6; /* 10 m/s within the allowed overlap */
     def.young = 1e9;
     def.poisson = 0.3;
     def.restitution = k->e;
-    CHECK(se3d_material_create(b.system, &def, &b.material) == SE3D_OK);
+    bed_open(&b, (int32_t)k->law, none, &set, &def);
     return b;
 }
 
@@ -67,20 +55,19 @@ static void add_column(bed *b, const kind *k, int n, double gap)
 /* The largest error of the restitution over all phases; *mean: of all. */
 static double worst_error(const kind *k, double *mean)
 {
-    bed b = bed_create(k);
+    bed b = open_bed(k);
+    double step;
     uint32_t seed = 7u;
     if (k->wall) {
-        se3d_shape_def floor = se3d_shape_def_default();
-        se3d_shape shape;
-        floor.material = b.material;
-        CHECK(se3d_shape_create_plane(b.system, &floor, &shape) == SE3D_OK);
+        const double at[3] = {0.0, 0.0, 0.0}, up[3] = {0.0, 0.0, 1.0};
+        (void)bed_add_plane(&b, at, up);
     }
     add_column(&b, k, 0, 1e-6 * RADIUS); /* for the step */
-    CHECK(se3d_particles_get_step(b.particles, &b.step) == SE3D_OK);
-    b.step /= k->divide;
-    CHECK(se3d_particles_set_step(b.particles, b.step) == SE3D_OK);
+    CHECK(se3d_particles_get_step(b.particles, &step) == SE3D_OK);
+    step /= k->divide;
+    CHECK(se3d_particles_set_step(b.particles, step) == SE3D_OK);
     for (int n = 1; n < IMPACTS; ++n) {
-        add_column(&b, k, n, (2.0 + draw(&seed)) * b.step * k->v);
+        add_column(&b, k, n, (2.0 + draw(&seed)) * step * k->v);
     }
     const size_t count = se3d_particles_count(b.particles), each = k->wall ? 1 : 2;
     double *v = calloc(3 * count, sizeof *v);
@@ -98,8 +85,7 @@ static double worst_error(const kind *k, double *mean)
         *mean += (e - k->e) / IMPACTS;
     }
     free(v);
-    se3d_particles_destroy(b.particles);
-    se3d_system_destroy(b.system);
+    bed_close(&b);
     return worst;
 }
 

@@ -3,7 +3,7 @@
  * largest value, over the whole range, in both formulations, with joints that leave no equation
  * over and with plain revolutes, whose equations are redundant in a plane. The references are
  * exact; what is allowed is rounding, enlarged by the condition of the mechanisms (about 1e3). */
-#include "golden/mechanisms.h"
+#include "support/mechanisms.h"
 
 #define COLUMNS_MAX 96
 #define ROWS_MAX    128

@@ -4,6 +4,7 @@
 
 #include "se3d/modes.h"
 #include "se3d/se3d.h"
+#include "support/world.h"
 
 #include <stdlib.h>
 
@@ -302,14 +303,10 @@ static void spring_mass_chains_vibrate_at_their_frequencies(void)
         se3d_system *system = begin(origin, &ground);
         mass[0] = mass[N + 1] = ground;
         for (int k = 1; k <= N; ++k) {
-            se3d_constraint slide;
             mass[k] = add_bar(system, 2.0, 0.1, k, 0.0, 0.3 * k);
             const double at[3] = {k, 0.0, 0.0};
-            se3d_joint_def def = se3d_joint_def_default();
-            def.body_i = ground;
-            def.body_j = mass[k];
-            CHECK(se3d_joint_def_set_frame(system, &def, at, along_x, NULL) == SE3D_OK);
-            CHECK(se3d_joint_create_prismatic(system, &def, &slide) == SE3D_OK);
+            (void)world_join(system, se3d_joint_create_prismatic, NULL, ground, mass[k], at,
+                             along_x);
         }
         for (int k = 0; k <= N; ++k) {
             se3d_force force;
@@ -396,7 +393,6 @@ static void a_spinning_top_precesses_and_nutates(void)
     const double gravity[3] = {0.0, 0.0, -9.81};
     const double J1 = Jt + m * l * l;
     se3d_body ground, top;
-    se3d_constraint ball;
     se3d_system *system = begin(gravity, &ground);
     se3d_body_def def = se3d_body_def_default();
     def.mass = m;
@@ -405,11 +401,7 @@ static void a_spinning_top_precesses_and_nutates(void)
     def.position[2] = l;
     def.angular_velocity[2] = w;
     CHECK(se3d_body_create(system, &def, &top) == SE3D_OK);
-    se3d_joint_def joint = se3d_joint_def_default();
-    joint.body_i = ground;
-    joint.body_j = top;
-    CHECK(se3d_joint_def_set_frame(system, &joint, origin, along_z, NULL) == SE3D_OK);
-    CHECK(se3d_joint_create_spherical(system, &joint, &ball) == SE3D_OK);
+    (void)world_join(system, se3d_joint_create_spherical, NULL, ground, top, origin, along_z);
     se3d_modes *modes = linearise(system, NULL);
     double root = sqrt(J3 * J3 * w * w - 4.0 * J1 * m * 9.81 * l);
     CHECK(J3 * J3 * w * w < 4.0 * J1 * m * 9.81 * l || root > 0.0);
@@ -432,15 +424,10 @@ static void transfer_functions_and_matrices_of_an_oscillator(void)
 {
     const double m = 2.0, c = 3.0, k = 50.0;
     se3d_body ground;
-    se3d_constraint slide;
     se3d_force force;
     se3d_system *system = begin(origin, &ground);
     se3d_body mass = add_bar(system, m, 0.1, 0.0, 0.0, 0.0);
-    se3d_joint_def joint = se3d_joint_def_default();
-    joint.body_i = ground;
-    joint.body_j = mass;
-    CHECK(se3d_joint_def_set_frame(system, &joint, origin, along_x, NULL) == SE3D_OK);
-    CHECK(se3d_joint_create_prismatic(system, &joint, &slide) == SE3D_OK);
+    (void)world_join(system, se3d_joint_create_prismatic, NULL, ground, mass, origin, along_x);
     se3d_tsda_def spring = se3d_tsda_def_default();
     spring.body_i = ground;
     spring.body_j = mass;
@@ -533,14 +520,9 @@ static se3d_system *make_skew_pair(int has_jacobian, se3d_body body[MASSES])
     se3d_force_callback_def def = se3d_force_callback_def_default();
     se3d_force force;
     for (int k = 0; k < MASSES; ++k) {
-        se3d_constraint slide;
         body[k] = add_bar(system, masses[k], 0.1, 0.0, k, 0.3 * k);
         const double at[3] = {0.0, k, 0.0};
-        se3d_joint_def joint = se3d_joint_def_default();
-        joint.body_i = ground;
-        joint.body_j = body[k];
-        CHECK(se3d_joint_def_set_frame(system, &joint, at, along_x, NULL) == SE3D_OK);
-        CHECK(se3d_joint_create_prismatic(system, &joint, &slide) == SE3D_OK);
+        (void)world_join(system, se3d_joint_create_prismatic, NULL, ground, body[k], at, along_x);
     }
     def.body_i = body[0];
     def.body_j = body[1];

@@ -3,16 +3,11 @@
  * planes that they are, corners. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/bed.h"
 
 #include <stdlib.h>
 
 #define R 0.01
-
-typedef struct bed {
-    se3d_system *system;
-    se3d_particles *particles;
-    se3d_material material;
-} bed;
 
 static se3d_material_def stuff(void)
 {
@@ -23,22 +18,11 @@ static se3d_material_def stuff(void)
     return def;
 }
 
-static void bed_init(bed *b, se3d_contact_law law, double g, const se3d_material_def *material)
+/* Gravity g downwards. */
+static void open_bed(bed *b, se3d_contact_law law, double g, const se3d_material_def *material)
 {
-    se3d_system_def def = se3d_system_def_default();
-    se3d_contact_settings contact = se3d_contact_settings_default();
-    def.gravity[2] = -g;
-    contact.law = (int32_t)law;
-    CHECK(se3d_system_create(&def, &b->system) == SE3D_OK);
-    CHECK(se3d_system_set_contact(b->system, &contact) == SE3D_OK);
-    CHECK(se3d_particles_create(b->system, NULL, &b->particles) == SE3D_OK);
-    CHECK(se3d_material_create(b->system, material, &b->material) == SE3D_OK);
-}
-
-static void bed_destroy(bed *b)
-{
-    se3d_particles_destroy(b->particles);
-    se3d_system_destroy(b->system);
+    const double down[3] = {0.0, 0.0, -g};
+    bed_open(b, (int32_t)law, down, NULL, material);
 }
 
 enum { PLANE, BOX, HULL, MESH, CYLINDER, SPHERE, CAPSULE, KINDS };
@@ -101,7 +85,7 @@ static double rebound(int kind, se3d_contact_law law, double e, double speed)
     def.stiffness = 1e6 * (speed > 1.0 ? 20.0 : 1.0);
     def.young = 1e9 * (speed > 1.0 ? 20.0 : 1.0);
     bed b;
-    bed_init(&b, law, 0.0, &def);
+    open_bed(&b, law, 0.0, &def);
     (void)shape_under(&b, kind);
     const double r[3] = {0.013, 0.0, R + 1e-6}, v[3] = {0.0, 0.0, -speed}, radius = R;
     const double over[3] = {0.0, 0.0, R + 1e-6};
@@ -115,7 +99,7 @@ static double rebound(int kind, se3d_contact_law law, double e, double speed)
         CHECK(se3d_particles_step(b.particles, 1) == SE3D_OK);
         CHECK(se3d_particles_get_all(b.particles, 1, at, now, NULL) == SE3D_OK);
     }
-    bed_destroy(&b);
+    bed_close(&b);
     return now[2] / speed;
 }
 
@@ -140,7 +124,7 @@ static void sliding_spheres_roll_in_the_end_on_flat_shapes(void)
         def.stiffness = 1e5;
         def.friction = 0.3;
         bed b;
-        bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
+        open_bed(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
         se3d_shape shape = shape_under(&b, kind);
         double weight = 2500.0 * 4.0 / 3.0 * 3.14159265358979323846 * R * R * R * 9.81;
         const double r[3] = {-0.3, -0.15, R - weight / 1e5}, v[3] = {0.5, 0.3, 0.0}, radius = R;
@@ -162,7 +146,7 @@ static void sliding_spheres_roll_in_the_end_on_flat_shapes(void)
         for (int a = 0; a < 2; ++a) {
             CHECK_NEAR(end[kind][a], end[PLANE][a], 1e-11);
         }
-        bed_destroy(&b);
+        bed_close(&b);
     }
 }
 
@@ -177,7 +161,7 @@ static void rolling_and_spinning_are_resisted_on_flat_shapes(void)
         def.rolling_friction = 0.02;
         def.torsional_friction = 0.03;
         bed b;
-        bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
+        open_bed(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
         (void)shape_under(&b, kind);
         const double depth = 2500.0 * 4.0 / 3.0 * 3.14159265358979323846 * R * R * R * 9.81 / 1e5;
         const double r[6] = {-0.3, -0.15, R - depth, 0.2, 0.17, R - depth};
@@ -189,7 +173,7 @@ static void rolling_and_spinning_are_resisted_on_flat_shapes(void)
         CHECK(se3d_particles_get_all(b.particles, 2, NULL, now, spin) == SE3D_OK);
         CHECK_NEAR(now[0], 0.5 - 5.0 / 7.0 * 0.02 * 9.81 * 0.5, 2e-4);
         CHECK_NEAR(spin[5], 50.0 - 0.03 * 9.81 / (0.4 * R) * 0.5, 0.02);
-        bed_destroy(&b);
+        bed_close(&b);
     }
 }
 
@@ -199,7 +183,7 @@ static void body_feels_the_opposite_of_what_the_particles_do(void)
     se3d_material_def def = stuff();
     def.rolling_friction = 0.05;
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HERTZ_MINDLIN, 9.81, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HERTZ_MINDLIN, 9.81, &def);
     se3d_body_def body = se3d_body_def_default();
     se3d_body tray;
     body.mass = body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
@@ -279,7 +263,7 @@ static void body_feels_the_opposite_of_what_the_particles_do(void)
         free(list);
     }
     CHECK(most > 20);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 /* In the corner of three triangles a sphere has three contacts, and stays. */
@@ -291,7 +275,7 @@ static void sphere_rests_in_a_corner_of_a_mesh(void)
     def.restitution = 0.1;
     def.stiffness = 1e5;
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
     se3d_shape_def shape = se3d_shape_def_default();
     se3d_shape corner;
     shape.material = b.material;
@@ -328,7 +312,7 @@ static void sphere_rests_in_a_corner_of_a_mesh(void)
     CHECK(se3d_particles_run(copy, 0.91) == SE3D_OK);
     CHECK(se3d_particles_hash(copy) == se3d_particles_hash(b.particles));
     se3d_particles_destroy(copy);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 /* Filters, and shapes that go while particles lie on them. */
@@ -336,7 +320,7 @@ static void filters_and_destroyed_shapes_are_obeyed(void)
 {
     se3d_material_def def = stuff();
     bed b;
-    bed_init(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
+    open_bed(&b, SE3D_CONTACT_LAW_HOOKE, 9.81, &def);
     se3d_shape_def shape = se3d_shape_def_default();
     se3d_shape plane, other;
     shape.material = b.material;
@@ -362,7 +346,7 @@ static void filters_and_destroyed_shapes_are_obeyed(void)
     CHECK(se3d_particles_get_all(b.particles, 1, at, NULL, NULL) == SE3D_OK);
     CHECK(at[2] < -1.0);
     CHECK(se3d_material_destroy(b.system, b.material) == SE3D_ERR_IN_USE);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 int main(void)

@@ -2,7 +2,7 @@
 /* IFToMM benchmark A02 (tests/data/README.md) with plain 3-D revolutes, 3 redundant equations a
  * window: ten flat positions in 10 s, where the mechanism could also fold. Energy does not tell the
  * branches apart, the tip does: on a wrong one it is off by metres. */
-#include "golden/mechanisms.h"
+#include "support/mechanisms.h"
 
 #define ROWS 101
 

@@ -2,7 +2,7 @@
 /* bdf with steps by the caller: the order that was asked for in positions, velocities and
  * multipliers, at equal steps and at steps that change; and with error control through singular
  * positions, in as many steps as elsewhere. */
-#include "golden/mechanisms.h"
+#include "support/mechanisms.h"
 
 /* A pendulum of two bars, on a ball joint and a hinge, thrown sideways. */
 typedef struct outcome {

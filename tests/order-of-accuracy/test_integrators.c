@@ -6,6 +6,7 @@
  * a slope measured at finite steps (0.35 per doubling), up to a floor of rounding. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/world.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -28,35 +29,23 @@ typedef struct sample {
 
 static void must(const world *w, se3d_status status)
 {
-    if (status < 0) {
-        fprintf(stderr, "%s: %s\n", check_case, se3d_system_get_error(w->system));
-        exit(1);
-    }
-    CHECK(status >= 0);
+    world_must(w->system, status, "a call of the test");
 }
 
 static void add_body(world *w, const double r[3], const double J[3], double mass)
 {
-    se3d_body_def def = se3d_body_def_default();
-    def.mass = mass;
-    memcpy(def.position, r, 3 * sizeof *r);
-    memcpy(def.inertia, J, 3 * sizeof *J);
-    must(w, se3d_body_create(w->system, &def, &w->bodies[w->body_count++]));
+    w->bodies[w->body_count++] = world_add_body(w->system, mass, J, r);
 }
 
 /* A joint at a point; i = -1 is the ground. */
 static void add_joint(world *w, int i, int j, const double at[3], const double axis[3])
 {
-    se3d_joint_def def = se3d_joint_def_default();
+    const double upward[3] = {0.0, 0.0, 1.0};
     se3d_body ground;
     must(w, se3d_system_get_ground(w->system, &ground));
-    def.body_i = i < 0 ? ground : w->bodies[i];
-    def.body_j = j < 0 ? ground : w->bodies[j];
-    const double upward[3] = {0.0, 0.0, 1.0};
-    must(w, se3d_joint_def_set_frame(w->system, &def, at, axis ? axis : upward, NULL));
-    se3d_constraint *joint = &w->joints[w->joint_count++];
-    must(w, axis ? se3d_joint_create_revolute(w->system, &def, joint)
-                 : se3d_joint_create_spherical(w->system, &def, joint));
+    w->joints[w->joint_count++] = world_join(
+        w->system, axis ? se3d_joint_create_revolute : se3d_joint_create_spherical, NULL,
+        i < 0 ? ground : w->bodies[i], j < 0 ? ground : w->bodies[j], at, axis ? axis : upward);
 }
 
 static void set_spin(const world *w, int body, double x, double y, double z)

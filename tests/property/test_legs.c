@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A falling robot with four legs, each a parallelogram of plain hinges with three redundant
  * equations, which folds flat on its way, out of step with the others; no force is small there. */
-#include "golden/mechanisms.h"
+#include "support/mechanisms.h"
 
 typedef struct leg {
     double axis[3], u[3], w[3], hip[3];

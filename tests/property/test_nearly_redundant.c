@@ -6,6 +6,7 @@
 
 #include "se3d/check.h"
 #include "se3d/modes.h"
+#include "support/world.h"
 
 #define NEAR                                                                                       \
     3e-5 /* what the inaccuracy of the data may make of a position [m] or an angle [rad]           \
@@ -487,15 +488,10 @@ static se3d_body add_shaft(se3d_system *system, double lean)
     return shaft;
 }
 
-static void add_joint(se3d_system *system, se3d_body i, se3d_body j, double lean,
-                      se3d_constraint *joint)
+static se3d_constraint add_joint(se3d_system *system, se3d_body i, se3d_body j, double lean)
 {
     const double at[3] = {0.0, 0.0, 0.0}, axis[3] = {cos(lean), sin(lean), 0.0};
-    se3d_joint_def def = se3d_joint_def_default();
-    def.body_i = i;
-    def.body_j = j;
-    CHECK(!se3d_joint_def_set_frame(system, &def, at, axis, NULL));
-    CHECK(!se3d_joint_create_revolute(system, &def, joint));
+    return world_join(system, se3d_joint_create_revolute, NULL, i, j, at, axis);
 }
 
 /* Two shafts at an angle of .022 rad by a universal joint and, from half way between its extremes,
@@ -515,8 +511,8 @@ static void a_row_that_constrains_after_all_is_told(void)
     CHECK(!se3d_system_create(&world, &system));
     CHECK(!se3d_system_get_ground(system, &ground));
     se3d_body a = add_shaft(system, 0.0), b = add_shaft(system, lean);
-    add_joint(system, ground, a, 0.0, &joints[0]);
-    add_joint(system, ground, b, lean, &joints[1]);
+    joints[0] = add_joint(system, ground, a, 0.0);
+    joints[1] = add_joint(system, ground, b, lean);
     const double s = sqrt(0.5);
     se3d_joint_def def = se3d_joint_def_default();
     def.body_i = a;

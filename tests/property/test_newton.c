@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "check.h"
+#include "support/world.h"
 #include "system/solver.h"
 
 typedef struct world {
@@ -15,10 +16,7 @@ typedef struct world {
 
 static void must(const world *w, se3d_status status)
 {
-    if (status < 0) {
-        fprintf(stderr, "%s: %s\n", check_case, se3d_system_get_error(w->system));
-        exit(1);
-    }
+    world_must(w->system, status, "a call of the test");
 }
 
 static void add_body(world *w, int k, const double r[3], const double spin[3])
@@ -33,8 +31,6 @@ static void add_body(world *w, int k, const double r[3], const double spin[3])
     memcpy(def.angular_velocity, spin, sizeof def.angular_velocity);
     must(w, se3d_body_create(w->system, &def, &w->body[k]));
 }
-
-typedef se3d_status (*joint_create)(se3d_system *, const se3d_joint_def *, se3d_constraint *);
 
 static void add_joint(const world *w, joint_create create, se3d_body i, se3d_body j,
                       const double at[3], const double axis[3])

@@ -4,6 +4,7 @@
 #include "check.h"
 #include "math/quaternion.h"
 #include "se3d/se3d.h"
+#include "support/world.h"
 
 #define PI 3.14159265358979323846
 
@@ -11,14 +12,8 @@ static const int32_t methods[2] = {SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET};
 
 static se3d_solver *solver_of(se3d_system *system, int32_t method, int rp, double step)
 {
-    se3d_solver_def def = se3d_solver_def_default();
-    se3d_solver *solver = NULL;
-    def.analysis = SE3D_ANALYSIS_DYNAMICS;
-    def.formulation = rp ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA;
-    def.method = method;
-    def.step = step;
-    CHECK(!se3d_solver_create(system, &def, &solver));
-    return solver;
+    return world_solver(system, SE3D_ANALYSIS_DYNAMICS, method,
+                        rp ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA, step);
 }
 
 static se3d_body add_top(se3d_system *system, const double w[3])
@@ -139,12 +134,8 @@ static se3d_body add_link(se3d_system *system, double x, double z, double J)
 static se3d_constraint add_pin(se3d_system *system, se3d_body i, se3d_body j, double x, double z)
 {
     const double at[3] = {x, 0.0, z}, axis[3] = {0.0, 1.0, 0.0};
-    se3d_joint_def def = se3d_joint_def_default();
     se3d_constraint pin;
-    def.body_i = i;
-    def.body_j = j;
-    CHECK(!se3d_joint_def_set_frame(system, &def, at, axis, NULL));
-    CHECK(!se3d_joint_create_revolute(system, &def, &pin));
+    pin = world_join(system, se3d_joint_create_revolute, NULL, i, j, at, axis);
     return pin;
 }
 

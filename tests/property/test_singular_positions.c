@@ -5,6 +5,7 @@
  * the limits of those on both sides. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/world.h"
 
 #define PI 3.14159265358979323846
 
@@ -33,16 +34,10 @@ static se3d_body add_bar(linkage *l, const double a[2], const double b[2])
 static se3d_constraint add_joint(linkage *l, se3d_body i, se3d_body j, const double at[2],
                                  int slides)
 {
-    se3d_joint_def def = se3d_joint_def_default();
-    se3d_constraint joint;
     const double point[3] = {at[0], at[1], 0.0};
     const double axis[3] = {slides ? 1.0 : 0.0, 0.0, slides ? 0.0 : 1.0};
-    def.body_i = i;
-    def.body_j = j;
-    CHECK(!se3d_joint_def_set_frame(l->system, &def, point, axis, NULL));
-    CHECK(!(slides ? se3d_joint_create_prismatic : se3d_joint_create_revolute)(l->system, &def,
-                                                                               &joint));
-    return joint;
+    return world_join(l->system, slides ? se3d_joint_create_prismatic : se3d_joint_create_revolute,
+                      NULL, i, j, point, axis);
 }
 
 /* The crank turns by `text`(t) from `start`. */
@@ -69,12 +64,8 @@ static void open_linkage(linkage *l, int slider, double start, const char *text)
 
 static se3d_solver *solver_of(linkage *l, int rp)
 {
-    se3d_solver_def def = se3d_solver_def_default();
-    se3d_solver *solver = NULL;
-    def.analysis = SE3D_ANALYSIS_INVERSE_DYNAMICS;
-    def.formulation = rp ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA;
-    CHECK(!se3d_solver_create(l->system, &def, &solver));
-    return solver;
+    return world_solver(l->system, SE3D_ANALYSIS_INVERSE_DYNAMICS, SE3D_METHOD_AUTO,
+                        rp ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA, 0.0);
 }
 
 /* The coupler of a parallelogram only shifts: its centre turns as the crank's end does. */

@@ -4,6 +4,7 @@
  * form; callbacks that fail. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/world.h"
 
 #include <stdlib.h>
 
@@ -118,12 +119,8 @@ static void open_world(world *w, int by_callback, double rate)
         }
         CHECK(!se3d_body_create(w->system, &def, &w->body[k]));
     }
-    se3d_joint_def pin = se3d_joint_def_default();
     const double at[3] = {0, 0, 0}, axis[3] = {0, 1, 0};
-    pin.body_i = ground;
-    pin.body_j = w->body[0];
-    CHECK(!se3d_joint_def_set_frame(w->system, &pin, at, axis, NULL));
-    CHECK(!se3d_joint_create_revolute(w->system, &pin, &w->pin));
+    w->pin = world_join(w->system, se3d_joint_create_revolute, NULL, ground, w->body[0], at, axis);
     if (by_callback) {
         se3d_user_constraint_def def = se3d_user_constraint_def_default();
         def.name = "link";

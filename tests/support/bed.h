@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A bed of particles for tests. */
+/* A bed for tests: a system with one set of particles and one material. */
 #ifndef SE3D_TESTS_SUPPORT_BED_H
 #define SE3D_TESTS_SUPPORT_BED_H
 
@@ -9,63 +9,45 @@
 typedef struct bed {
     se3d_system *system;
     se3d_particles *particles;
+    se3d_material material;
 } bed;
 
-/* An avalanche in a box: two sizes, two materials, rolling resistance, tilted gravity. */
-static inline void bed_init(bed *b, int32_t threads, int32_t portable, int32_t law)
+/* `set` NULL: the default one. */
+static inline void bed_open(bed *b, int32_t law, const double gravity[3],
+                            const se3d_particles_def *set, const se3d_material_def *material)
 {
     se3d_system_def system = se3d_system_def_default();
-    system.gravity[0] = system.gravity[2] = -9.81 * sqrt(0.5);
-    CHECK(se3d_system_create(&system, &b->system) == SE3D_OK);
-    se3d_particles_def def = se3d_particles_def_default();
-    def.threads = threads;
-    def.portable = portable;
     se3d_contact_settings contact = se3d_contact_settings_default();
+    memcpy(system.gravity, gravity, sizeof system.gravity);
     contact.law = law;
+    CHECK(se3d_system_create(&system, &b->system) == SE3D_OK);
     CHECK(se3d_system_set_contact(b->system, &contact) == SE3D_OK);
-    CHECK(se3d_particles_create(b->system, &def, &b->particles) == SE3D_OK);
-    se3d_material material[2];
-    for (int k = 0; k < 2; ++k) {
-        se3d_material_def stuff = se3d_material_def_default();
-        stuff.density = 2500.0 + 500.0 * k;
-        stuff.stiffness = 2e4 + 1e4 * k;
-        stuff.young = 1e8;
-        stuff.rolling_friction = 0.02 * k;
-        stuff.restitution = 0.6;
-        CHECK(se3d_material_create(b->system, &stuff, &material[k]) == SE3D_OK);
-    }
-    static const double normals[5][3] = {
-        {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}};
-    for (int k = 0; k < 5; ++k) {
-        se3d_shape_def wall = se3d_shape_def_default();
-        se3d_shape handle;
-        wall.material = material[0];
-        memcpy(wall.normal, normals[k], sizeof wall.normal);
-        wall.position[0] = k == 2 ? 0.3 : 0.0;
-        wall.position[1] = k == 4 ? 0.06 : 0.0;
-        CHECK(se3d_shape_create_plane(b->system, &wall, &handle) == SE3D_OK);
-    }
-    for (int k = 0; k < 2; ++k) {
-        se3d_fill_def fill = se3d_fill_def_default();
-        fill.material = material[k];
-        fill.lower[0] = 0.12 * k;
-        fill.upper[0] = 0.12 * k + 0.12;
-        fill.upper[1] = 0.06;
-        fill.upper[2] = 0.12;
-        fill.radius_min = 0.003;
-        fill.radius_max = 0.005;
-        fill.jitter = 0.0003;
-        fill.seed = 11;
-        CHECK(se3d_particles_fill_lattice(b->particles, &fill, NULL) == SE3D_OK);
-    }
-    CHECK(se3d_particles_count(b->particles) > 500);
-    CHECK(se3d_particles_set_step(b->particles, 1e-5) == SE3D_OK);
+    CHECK(se3d_particles_create(b->system, set, &b->particles) == SE3D_OK);
+    CHECK(se3d_material_create(b->system, material, &b->material) == SE3D_OK);
 }
 
-static inline void bed_destroy(bed *b)
+static inline void bed_close(bed *b)
 {
     se3d_particles_destroy(b->particles);
     se3d_system_destroy(b->system);
+}
+
+/* A wall at rest. */
+static inline se3d_shape bed_add_plane(const bed *b, const double at[3], const double normal[3])
+{
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape wall;
+    def.material = b->material;
+    memcpy(def.position, at, sizeof def.position);
+    memcpy(def.normal, normal, sizeof def.normal);
+    CHECK(se3d_shape_create_plane(b->system, &def, &wall) == SE3D_OK);
+    return wall;
+}
+
+static inline void bed_add(const bed *b, const double r[3], double radius, const double v[3],
+                           const double w[3])
+{
+    CHECK(se3d_particles_add(b->particles, b->material, 1, r, &radius, v, w, NULL) == SE3D_OK);
 }
 
 #endif

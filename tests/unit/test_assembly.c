@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Assembly: from rough poses to consistent positions, velocities and accelerations; what cannot be
  * met is named with its gap. */
-#include "golden/mechanisms.h"
+#include "support/mechanisms.h"
 
 #define LOOPS 5
 

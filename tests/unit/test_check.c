@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Reports on constraints: counts, ranks, names, contradictions; multipliers of least norm. */
-#include "golden/mechanisms.h"
+#include "support/mechanisms.h"
 
 #include "base/alloc.h"
 #include "linsol/rank.h"

@@ -4,6 +4,7 @@
 #include "check.h"
 
 #include "se3d/se3d.h"
+#include "support/world.h"
 
 typedef struct slide {
     se3d_system *system;
@@ -23,11 +24,8 @@ static void build_slide(slide *s, double slope)
     def.mass = 2.0;
     def.inertia[0] = def.inertia[1] = def.inertia[2] = 0.1;
     CHECK(se3d_body_create(s->system, &def, &s->block) == SE3D_OK);
-    se3d_joint_def joint = se3d_joint_def_default();
-    joint.body_i = s->ground;
-    joint.body_j = s->block;
-    CHECK(se3d_joint_def_set_frame(s->system, &joint, at, axis, NULL) == SE3D_OK);
-    CHECK(se3d_joint_create_prismatic(s->system, &joint, &s->joint) == SE3D_OK);
+    s->joint =
+        world_join(s->system, se3d_joint_create_prismatic, NULL, s->ground, s->block, at, axis);
 }
 
 static void add_friction(slide *s, double mu)

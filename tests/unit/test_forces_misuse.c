@@ -6,6 +6,7 @@
 #include "se3d/modes.h"
 #include "se3d/se3d.h"
 #include "support/counting.h"
+#include "support/world.h"
 
 typedef struct world {
     support_counting counting;
@@ -30,11 +31,8 @@ static void build(world *w)
     body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
     body.position[2] = -0.5;
     CHECK(se3d_body_create(w->system, &body, &w->body) == SE3D_OK);
-    se3d_joint_def joint = se3d_joint_def_default();
-    joint.body_i = w->ground;
-    joint.body_j = w->body;
-    CHECK(se3d_joint_def_set_frame(w->system, &joint, at, axis, NULL) == SE3D_OK);
-    CHECK(se3d_joint_create_revolute(w->system, &joint, &w->joint) == SE3D_OK);
+    w->joint =
+        world_join(w->system, se3d_joint_create_revolute, NULL, w->ground, w->body, at, axis);
 }
 
 static void finish(world *w)

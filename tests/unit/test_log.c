@@ -3,6 +3,7 @@
  * once, none with an effect on results. And how much of a start was changed. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/world.h"
 
 typedef struct sheet {
     se3d_system *system;
@@ -52,24 +53,15 @@ static se3d_body add_bar(const sheet *s, const char *name, double x)
 
 static se3d_constraint add_pin(const sheet *s, se3d_body body, const char *name)
 {
-    se3d_constraint pin;
-    se3d_joint_def def = se3d_joint_def_default();
     const double at[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 1.0, 0.0};
-    CHECK(!se3d_system_get_ground(s->system, &def.body_i));
-    def.body_j = body;
-    def.name = name;
-    CHECK(!se3d_joint_def_set_frame(s->system, &def, at, axis, NULL));
-    CHECK(!se3d_joint_create_revolute(s->system, &def, &pin));
-    return pin;
+    se3d_body ground;
+    CHECK(!se3d_system_get_ground(s->system, &ground));
+    return world_join(s->system, se3d_joint_create_revolute, name, ground, body, at, axis);
 }
 
 static se3d_solver *solver_of(const sheet *s, int32_t analysis)
 {
-    se3d_solver *solver = NULL;
-    se3d_solver_def def = se3d_solver_def_default();
-    def.analysis = analysis;
-    CHECK(!se3d_solver_create(s->system, &def, &solver));
-    return solver;
+    return world_solver(s->system, analysis, SE3D_METHOD_AUTO, SE3D_FORMULATION_ROMEGA, 0.0);
 }
 
 static int total(const sheet *s)

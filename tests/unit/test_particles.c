@@ -4,17 +4,12 @@
 #include "contact/bodies/restitution.h"
 #include "particles/grid.h"
 #include "se3d/se3d.h"
+#include "support/bed.h"
 #include "system/particles.h"
 
 #include <stdlib.h>
 
 #define PI 3.1415926535897932384626433832795
-
-typedef struct bed {
-    se3d_system *system;
-    se3d_particles *particles;
-    se3d_material material;
-} bed;
 
 static se3d_material_def stuff(void)
 {
@@ -27,34 +22,12 @@ static se3d_material_def stuff(void)
     return def;
 }
 
-static void bed_init(bed *b, const se3d_particles_def *def, const double g[3],
-                     const se3d_material_def *material)
-{
-    se3d_system_def system = se3d_system_def_default();
-    memcpy(system.gravity, g, sizeof system.gravity);
-    CHECK(se3d_system_create(&system, &b->system) == SE3D_OK);
-    CHECK(se3d_particles_create(b->system, def, &b->particles) == SE3D_OK);
-    CHECK(se3d_material_create(b->system, material, &b->material) == SE3D_OK);
-}
-
-static void bed_destroy(bed *b)
-{
-    se3d_particles_destroy(b->particles);
-    se3d_system_destroy(b->system);
-}
-
 static const double none[3] = {0.0, 0.0, 0.0}, down[3] = {0.0, 0.0, -9.81};
 
 static se3d_shape plane_at(bed *b, double x, double y, double z, double nx, double ny, double nz)
 {
-    se3d_shape_def def = se3d_shape_def_default();
-    se3d_shape wall;
-    def.material = b->material;
     const double point[3] = {x, y, z}, normal[3] = {nx, ny, nz};
-    memcpy(def.position, point, sizeof point);
-    memcpy(def.normal, normal, sizeof normal);
-    CHECK(se3d_shape_create_plane(b->system, &def, &wall) == SE3D_OK);
-    return wall;
+    return bed_add_plane(b, point, normal);
 }
 
 static void box_around(bed *b, double width)
@@ -142,7 +115,7 @@ static void neighbours_are_those_of_a_search_of_all_pairs(void)
                 k >> a & 1 ? SE3D_DOMAIN_BOUNDARY_PERIODIC : SE3D_DOMAIN_BOUNDARY_OPEN;
             def.upper[a] = a == 2 ? 1.2 : 0.5;
         }
-        bed_init(&b, &def, none, &material);
+        bed_open(&b, SE3D_CONTACT_LAW_HOOKE, none, &def, &material);
         double ratio = k < 8 ? 1.0 : k < 16 ? 3.0 : 25.0;
         se3d_fill_def fill = region(&b, 0.5, 1.2, 0.05 / ratio, 0.05);
         fill.count = k < 8 ? 60 : 100;
@@ -155,7 +128,7 @@ static void neighbours_are_those_of_a_search_of_all_pairs(void)
         CHECK(se3d_particles_step(b.particles, 1) == SE3D_OK);
         CHECK(se3d_particles_count_contacts(b.particles) == 0); /* nothing overlaps */
         check_list(&b.particles->set);
-        bed_destroy(&b);
+        bed_close(&b);
     }
 }
 
@@ -196,7 +169,7 @@ static void free_cloud(se3d_contact_law law, double restitution, double rolling,
     material.restitution = restitution;
     material.rolling_friction = material.torsional_friction = rolling;
     bed b;
-    bed_init(&b, &def, none, &material);
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, none, &def, &material);
     se3d_contact_settings contact = se3d_contact_settings_default();
     contact.law = (int32_t)law;
     CHECK(se3d_system_set_contact(b.system, &contact) == SE3D_OK);
@@ -228,7 +201,7 @@ static void free_cloud(se3d_contact_law law, double restitution, double rolling,
         CHECK_NEAR(l1[a], l0[a], 1e-15);
     }
     CHECK(e1 < e0 * (restitution < 1.0 ? 0.95 : 1.001));
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void free_cloud_conserves_momentum_and_angular_momentum(void)
@@ -247,7 +220,7 @@ static void frictionless_elastic_cloud_keeps_its_energy(void)
     double drift[2];
     for (int fine = 0; fine < 2; ++fine) {
         bed b;
-        bed_init(&b, NULL, none, &material);
+        bed_open(&b, SE3D_CONTACT_LAW_HOOKE, none, NULL, &material);
         const double r[6] = {0.0, 0.0, 0.0, 0.0099, 0.002, 0.0}, radius[2] = {0.005, 0.005};
         const double v[6] = {0.5, 0.0, 0.0, -0.5, 0.0, 0.0};
         CHECK(se3d_particles_add(b.particles, b.material, 2, r, radius, v, NULL, NULL) == SE3D_OK);
@@ -262,7 +235,7 @@ static void frictionless_elastic_cloud_keeps_its_energy(void)
         double d = sqrt(0.0099 * 0.0099 + 0.002 * 0.002);
         double overlap = 0.01 - d > 0.0 ? 0.01 - d : 0.0;
         drift[fine] = fabs(e1 / (e0 + 0.5 * 2.5e4 * overlap * overlap) - 1.0);
-        bed_destroy(&b);
+        bed_close(&b);
     }
     CHECK(drift[0] < 2e-3);
     CHECK(drift[1] < drift[0] / 3.0 + 1e-12);
@@ -275,7 +248,7 @@ static void settled_box_weighs_what_it_holds(void)
     material.stiffness = 2.5e3; /* long steps */
     material.rolling_friction = 0.05;
     bed b;
-    bed_init(&b, NULL, down, &material);
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, down, NULL, &material);
     box_around(&b, 0.044);
     se3d_fill_def fill = region(&b, 0.044, 0.055, 0.004, 0.005);
     fill.jitter = 0.0004;
@@ -306,7 +279,7 @@ static void settled_box_weighs_what_it_holds(void)
     CHECK(walls > 16 && contacts - walls > 100);
     CHECK_NEAR(on_walls / weight, 1.0, 1e-5);
     free(list);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 /* The largest change of a coordinate since the last call; r: [6 * n], then and now. */
@@ -328,7 +301,7 @@ static void pile_does_not_creep(void)
     material.stiffness = 2.5e3;        /* long steps */
     material.rolling_friction = 0.005; /* one that lies alone would roll for ever */
     bed b;
-    bed_init(&b, NULL, down, &material);
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, down, NULL, &material);
     box_around(&b, 0.044);
     se3d_fill_def fill = region(&b, 0.044, 0.055, 0.005, 0.005);
     fill.jitter = 0.0004;
@@ -345,7 +318,7 @@ static void pile_does_not_creep(void)
     CHECK(se3d_particles_run(b.particles, t + 0.5) == SE3D_OK);
     CHECK_NEAR(distance_moved(&b, n, r), 0.0, 2e-10); /* in 1 s */
     free(r);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void body_with_a_wall_carries_the_particles_and_feels_them(void)
@@ -353,7 +326,7 @@ static void body_with_a_wall_carries_the_particles_and_feels_them(void)
     se3d_material_def material = stuff();
     material.restitution = 0.1;
     bed b;
-    bed_init(&b, NULL, down, &material);
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, down, NULL, &material);
     se3d_body_def body = se3d_body_def_default();
     se3d_body tray;
     body.mass = 1.0;
@@ -395,14 +368,14 @@ static void body_with_a_wall_carries_the_particles_and_feels_them(void)
     CHECK(se3d_particles_get_all(b.particles, 1, x, NULL, NULL) == SE3D_OK);
     CHECK(x[2] < -1.0); /* nothing holds it */
     CHECK(se3d_body_destroy(b.system, tray) == SE3D_OK);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void particles_are_added_and_removed_while_others_touch(void)
 {
     se3d_material_def material = stuff();
     bed b;
-    bed_init(&b, NULL, down, &material);
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, down, NULL, &material);
     plane_at(&b, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0);
     const double r[6] = {0.0, 0.0, 0.0049, 0.0, 0.0, 0.0148}, radius[2] = {0.005, 0.005};
     uint32_t first, ids[3];
@@ -430,7 +403,7 @@ static void particles_are_added_and_removed_while_others_touch(void)
     CHECK(se3d_particles_get_all(b.particles, 2, after, NULL, NULL) == SE3D_OK);
     CHECK(after[2] > before[2]); /* relieved */
     CHECK(se3d_particles_get_all(b.particles, 3, after, NULL, NULL) == SE3D_ERR_INVALID_ARGUMENT);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void particles_that_leave_are_counted(void)
@@ -441,7 +414,7 @@ static void particles_that_leave_are_counted(void)
     def.upper[2] = 10.0;
     se3d_material_def material = stuff();
     bed b;
-    bed_init(&b, &def, down, &material);
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, down, &def, &material);
     se3d_fill_def fill = region(&b, 0.1, 0.1, 0.005, 0.005);
     size_t count;
     CHECK(se3d_particles_fill_lattice(b.particles, &fill, &count) == SE3D_OK);
@@ -453,14 +426,14 @@ static void particles_that_leave_are_counted(void)
     CHECK(se3d_particles_get_stats(b.particles, &stats) == SE3D_OK);
     CHECK(stats.lost == 729 && se3d_particles_count(b.particles) == 0);
     CHECK(se3d_particles_step(b.particles, 10) == SE3D_OK); /* an empty set is fine */
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void pair_overrides_hold(void)
 {
     se3d_material_def material = stuff();
     bed b;
-    bed_init(&b, NULL, none, &material);
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, none, NULL, &material);
     se3d_material_pair_def pair = se3d_material_pair_def_default();
     pair.restitution = 0.3;
     CHECK(se3d_material_set_pair(b.system, b.material, b.material, &pair) == SE3D_OK);
@@ -473,14 +446,14 @@ static void pair_overrides_hold(void)
     CHECK(se3d_particles_step(b.particles, 8 * 600) == SE3D_OK);
     CHECK(se3d_particles_get_all(b.particles, 2, NULL, u, NULL) == SE3D_OK);
     CHECK_NEAR((u[3] - u[0]) / 0.2, 0.3, 1e-3);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void too_much_overlap_names_particle_and_time(void)
 {
     se3d_material_def material = stuff();
     bed b;
-    bed_init(&b, NULL, none, &material);
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, none, NULL, &material);
     const double r[9] = {1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.012, 0.0, 0.0};
     const double radius[3] = {0.005, 0.005, 0.005};
     const double v[9] = {0.0, 0.0, 0.0, 50.0, 0.0, 0.0, -50.0, 0.0, 0.0};
@@ -492,14 +465,14 @@ static void too_much_overlap_names_particle_and_time(void)
     CHECK(se3d_particles_set_step(b.particles, 1.0) == SE3D_OK);
     CHECK(se3d_particles_step(b.particles, 1) == SE3D_ERR_STEP_SIZE);
     CHECK_CONTAINS(se3d_system_get_error(b.system), "step = 1 s");
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 static void what_was_placed_into_another_is_told_so(void)
 {
     se3d_material_def material = stuff();
     bed b;
-    bed_init(&b, NULL, none, &material);
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, none, NULL, &material);
     se3d_shape_def def = se3d_shape_def_default();
     se3d_shape post;
     def.name = "post";
@@ -512,7 +485,7 @@ static void what_was_placed_into_another_is_told_so(void)
     CHECK_CONTAINS(se3d_system_get_error(b.system),
                    "particle 1 and the shape post overlap by 0.6 ");
     CHECK_CONTAINS(se3d_system_get_error(b.system), "they were placed with this overlap");
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 /* An overlap beyond the limit is told when the step that ends with it is complete: the state is
@@ -525,8 +498,8 @@ static void run_goes_on_after_too_much_overlap(void)
     const double v[6] = {3.0, 0.0, 0.0, -3.0, 0.0, 0.0};
     bed strict, free;
     material.stiffness = 1e5;
-    bed_init(&strict, NULL, none, &material);
-    bed_init(&free, NULL, none, &material);
+    bed_open(&strict, SE3D_CONTACT_LAW_HOOKE, none, NULL, &material);
+    bed_open(&free, SE3D_CONTACT_LAW_HOOKE, none, NULL, &material);
     contact.overlap_limit = 0.05;
     CHECK(se3d_system_set_contact(strict.system, &contact) == SE3D_OK);
     contact.overlap_limit = 1.0;
@@ -552,15 +525,15 @@ static void run_goes_on_after_too_much_overlap(void)
         CHECK(se3d_particles_count_contacts(b->particles) == 0);
     }
     CHECK(se3d_particles_hash(strict.particles) == se3d_particles_hash(free.particles));
-    bed_destroy(&strict);
-    bed_destroy(&free);
+    bed_close(&strict);
+    bed_close(&free);
 }
 
 static void packing_that_cannot_fit_changes_nothing(void)
 {
     se3d_material_def material = stuff();
     bed b;
-    bed_init(&b, NULL, none, &material);
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, none, NULL, &material);
     se3d_fill_def fill = region(&b, 0.05, 0.05, 0.005, 0.005);
     fill.count = 200;
     CHECK(se3d_particles_fill_random(b.particles, &fill) == SE3D_ERR_NO_CONVERGENCE);
@@ -568,7 +541,7 @@ static void packing_that_cannot_fit_changes_nothing(void)
     fill.count = 30;
     CHECK(se3d_particles_fill_random(b.particles, &fill) == SE3D_OK);
     CHECK(se3d_particles_count(b.particles) == 30);
-    bed_destroy(&b);
+    bed_close(&b);
 }
 
 int main(void)

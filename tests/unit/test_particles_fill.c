@@ -3,46 +3,41 @@
  */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/bed.h"
 
 #include <math.h>
 
 #define MOST 5000
 
-typedef struct bed {
-    se3d_system *system;
-    se3d_particles *particles;
+typedef struct filled {
+    bed bed;
     se3d_fill_def fill;
     double r[3 * MOST], radius[MOST];
     size_t count;
-} bed;
+} filled;
 
-static void open_bed(bed *b)
+static void open_bed(filled *b)
 {
+    const double down[3] = {0.0, 0.0, -9.81};
     se3d_material_def stuff = se3d_material_def_default();
-    CHECK(se3d_system_create(NULL, &b->system) == SE3D_OK);
-    CHECK(se3d_particles_create(b->system, NULL, &b->particles) == SE3D_OK);
     stuff.density = 2500.0;
     stuff.stiffness = 1e4;
+    bed_open(&b->bed, SE3D_CONTACT_LAW_HOOKE, down, NULL, &stuff);
     b->fill = se3d_fill_def_default();
-    CHECK(se3d_material_create(b->system, &stuff, &b->fill.material) == SE3D_OK);
+    b->fill.material = b->bed.material;
     b->fill.seed = 5;
 }
 
-static void close_bed(bed *b)
+static void read_bed(filled *b)
 {
-    se3d_system_destroy(b->system);
-}
-
-static void read_bed(bed *b)
-{
-    b->count = se3d_particles_count(b->particles);
+    b->count = se3d_particles_count(b->bed.particles);
     CHECK(b->count <= MOST);
-    CHECK(se3d_particles_get_all(b->particles, b->count, b->r, NULL, NULL) == SE3D_OK);
-    CHECK(se3d_particles_get_radii(b->particles, b->count, b->radius) == SE3D_OK);
+    CHECK(se3d_particles_get_all(b->bed.particles, b->count, b->r, NULL, NULL) == SE3D_OK);
+    CHECK(se3d_particles_get_radii(b->bed.particles, b->count, b->radius) == SE3D_OK);
 }
 
 /* The largest distance of any point of a particle from the axis (or the centre: axis -1). */
-static double reach(const bed *b, const double centre[3], int axis)
+static double reach(const filled *b, const double centre[3], int axis)
 {
     double most = 0.0;
     for (size_t k = 0; k < b->count; ++k) {
@@ -56,7 +51,7 @@ static double reach(const bed *b, const double centre[3], int axis)
     return most;
 }
 
-static bed b; /* large */
+static filled b; /* large */
 
 static void regions_hold_every_part_of_their_particles(void)
 {
@@ -76,14 +71,15 @@ static void regions_hold_every_part_of_their_particles(void)
             b.fill.jitter = packing ? 0.0 : 0.001;
             b.fill.count = packing ? 700 : 0;
             size_t added = 700;
-            CHECK((packing ? se3d_particles_fill_random(b.particles, &b.fill)
-                           : se3d_particles_fill_lattice(b.particles, &b.fill, &added)) == SE3D_OK);
+            CHECK((packing
+                       ? se3d_particles_fill_random(b.bed.particles, &b.fill)
+                       : se3d_particles_fill_lattice(b.bed.particles, &b.fill, &added)) == SE3D_OK);
             read_bed(&b);
             CHECK(b.count == added);
             CHECK(b.count > 500); /* the volume is used: boxes hold 5832 or 2592 on the lattice */
             double most = reach(&b, centre, axis);
             CHECK(most <= 0.2 * (1.0 + 1e-12) && most > 0.19);
-            close_bed(&b);
+            bed_close(&b.bed);
         }
     }
 }
@@ -98,7 +94,7 @@ static void radii_of_a_table_come_as_often_as_asked_for(void)
     b.fill.radii = radii;
     b.fill.weights = weights;
     b.fill.radius_count = 4;
-    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_OK);
+    CHECK(se3d_particles_fill_lattice(b.bed.particles, &b.fill, NULL) == SE3D_OK);
     read_bed(&b);
     size_t seen[4] = {0, 0, 0, 0};
     for (size_t k = 0; k < b.count; ++k) {
@@ -116,8 +112,9 @@ static void radii_of_a_table_come_as_often_as_asked_for(void)
     b.fill.upper[0] = 1.32;
     size_t added = 0;
     b.fill.count = 1000;
-    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, &added) == SE3D_OK && added == 1000);
-    close_bed(&b);
+    CHECK(se3d_particles_fill_lattice(b.bed.particles, &b.fill, &added) == SE3D_OK &&
+          added == 1000);
+    bed_close(&b.bed);
 }
 
 static void tables_and_regions_are_checked(void)
@@ -128,24 +125,24 @@ static void tables_and_regions_are_checked(void)
         b.fill.upper[a] = 0.1;
     }
     b.fill.radius_count = 2;
-    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_fill_lattice(b.bed.particles, &b.fill, NULL) == SE3D_ERR_NULL);
     b.fill.radii = radii;
-    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
-    CHECK_CONTAINS(se3d_system_get_error(b.system), "radii = -0.01");
+    CHECK(se3d_particles_fill_lattice(b.bed.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(b.bed.system), "radii = -0.01");
     b.fill.radius_count = 1;
     b.fill.weights = weights;
-    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
-    CHECK_CONTAINS(se3d_system_get_error(b.system), "weights");
+    CHECK(se3d_particles_fill_lattice(b.bed.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(b.bed.system), "weights");
     b.fill.weights = NULL;
     b.fill.region = 3;
-    CHECK(se3d_particles_fill_random(b.particles, &b.fill) == SE3D_ERR_INVALID_ARGUMENT);
-    CHECK_CONTAINS(se3d_system_get_error(b.system), "region = 3");
+    CHECK(se3d_particles_fill_random(b.bed.particles, &b.fill) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(b.bed.system), "region = 3");
     b.fill.region = SE3D_FILL_REGION_CYLINDER;
     b.fill.axis = -1;
-    CHECK(se3d_particles_fill_random(b.particles, &b.fill) == SE3D_ERR_INVALID_ARGUMENT);
-    CHECK_CONTAINS(se3d_system_get_error(b.system), "axis = -1");
-    CHECK(se3d_particles_count(b.particles) == 0);
-    close_bed(&b);
+    CHECK(se3d_particles_fill_random(b.bed.particles, &b.fill) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(b.bed.system), "axis = -1");
+    CHECK(se3d_particles_count(b.bed.particles) == 0);
+    bed_close(&b.bed);
 }
 
 /* Most of its points are outside the cylinder, so that few particles may take for ever to place. */
@@ -158,13 +155,14 @@ static void a_lattice_that_takes_for_ever_to_look_at_is_refused(void)
     b.fill.radius_min = b.fill.radius_max = 0.01;
     b.fill.upper[0] = b.fill.upper[2] = 1.0;
     b.fill.upper[1] = 1e21;
-    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
-    CHECK_CONTAINS(se3d_system_get_error(b.system), "points of the lattice from lower to upper");
-    CHECK(se3d_particles_count(b.particles) == 0);
+    CHECK(se3d_particles_fill_lattice(b.bed.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(b.bed.system),
+                   "points of the lattice from lower to upper");
+    CHECK(se3d_particles_count(b.bed.particles) == 0);
     b.fill.region = SE3D_FILL_REGION_BOX;
-    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_OK);
-    CHECK(se3d_particles_count(b.particles) == 3);
-    close_bed(&b);
+    CHECK(se3d_particles_fill_lattice(b.bed.particles, &b.fill, NULL) == SE3D_OK);
+    CHECK(se3d_particles_count(b.bed.particles) == 3);
+    bed_close(&b.bed);
 }
 
 /* Two regions that meet across the border of a periodic domain share their room. */
@@ -176,7 +174,7 @@ static void places_across_a_periodic_border_are_taken_once(void)
     open_bed(&b);
     def.boundary[0] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
     def.upper[0] = def.upper[1] = def.upper[2] = 1.0;
-    CHECK(se3d_particles_create(b.system, &def, &set) == SE3D_OK);
+    CHECK(se3d_particles_create(b.bed.system, &def, &set) == SE3D_OK);
     b.fill.radius_min = b.fill.radius_max = 0.03;
     b.fill.upper[1] = b.fill.upper[2] = 0.4;
     b.fill.count = 40;
@@ -201,7 +199,7 @@ static void places_across_a_periodic_border_are_taken_once(void)
         }
     }
     se3d_particles_destroy(set);
-    close_bed(&b);
+    bed_close(&b.bed);
 }
 
 /* A count that cannot be meant is told at once. */
@@ -211,9 +209,9 @@ static void a_lattice_of_too_many_particles_is_refused(void)
     b.fill.radius_min = b.fill.radius_max = 0.03;
     b.fill.upper[0] = b.fill.upper[1] = b.fill.upper[2] = 1e5;
     b.fill.count = (size_t)1e15;
-    CHECK(se3d_particles_fill_lattice(b.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
-    CHECK(se3d_particles_count(b.particles) == 0);
-    close_bed(&b);
+    CHECK(se3d_particles_fill_lattice(b.bed.particles, &b.fill, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_count(b.bed.particles) == 0);
+    bed_close(&b.bed);
 }
 
 int main(void)

@@ -3,52 +3,43 @@
  */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/bed.h"
 
 #include <math.h>
 
 #define MOST 3000
 
-typedef struct bed {
-    se3d_system *system;
-    se3d_particles *particles;
-    se3d_material material;
+typedef struct filled {
+    bed bed;
     se3d_fill_def fill;
     double r[3 * MOST], v[3 * MOST], radius[MOST];
     size_t count;
-} bed;
+} filled;
 
-static bed b; /* large */
+static filled b; /* large */
 
 static void open_bed(double gravity, const se3d_particles_def *def)
 {
-    se3d_system_def system = se3d_system_def_default();
+    const double down[3] = {0.0, 0.0, -gravity};
     se3d_material_def stuff = se3d_material_def_default();
-    system.gravity[2] = -gravity;
-    CHECK(se3d_system_create(&system, &b.system) == SE3D_OK);
-    CHECK(se3d_particles_create(b.system, def, &b.particles) == SE3D_OK);
     stuff.density = 2500.0;
     stuff.stiffness = 1e4;
-    CHECK(se3d_material_create(b.system, &stuff, &b.material) == SE3D_OK);
+    bed_open(&b.bed, SE3D_CONTACT_LAW_HOOKE, down, def, &stuff);
     b.fill = se3d_fill_def_default();
-    b.fill.material = b.material;
+    b.fill.material = b.bed.material;
     b.fill.radius_min = b.fill.radius_max = 0.005;
     b.fill.upper[0] = b.fill.upper[1] = 0.1;
     b.fill.upper[2] = 0.02;
     b.fill.seed = 3;
-    CHECK(se3d_particles_set_step(b.particles, 4e-5) == SE3D_OK);
-}
-
-static void close_bed(void)
-{
-    se3d_system_destroy(b.system);
+    CHECK(se3d_particles_set_step(b.bed.particles, 4e-5) == SE3D_OK);
 }
 
 static void read_bed(void)
 {
-    b.count = se3d_particles_count(b.particles);
+    b.count = se3d_particles_count(b.bed.particles);
     CHECK(b.count <= MOST);
-    CHECK(se3d_particles_get_all(b.particles, b.count, b.r, b.v, NULL) == SE3D_OK);
-    CHECK(se3d_particles_get_radii(b.particles, b.count, b.radius) == SE3D_OK);
+    CHECK(se3d_particles_get_all(b.bed.particles, b.count, b.r, b.v, NULL) == SE3D_OK);
+    CHECK(se3d_particles_get_radii(b.bed.particles, b.count, b.radius) == SE3D_OK);
 }
 
 static se3d_particles_source_def source_of(double rate)
@@ -62,7 +53,7 @@ static se3d_particles_source_def source_of(double rate)
 static se3d_particles_source_stats stats_of(uint32_t source)
 {
     se3d_particles_source_stats stats = {0, 0, 0.0, 0.0};
-    CHECK(se3d_particles_get_source_stats(b.particles, source, &stats) == SE3D_OK);
+    CHECK(se3d_particles_get_source_stats(b.bed.particles, source, &stats) == SE3D_OK);
     return stats;
 }
 
@@ -93,12 +84,12 @@ static void source_gives_its_rate_with_its_velocity(void)
     se3d_particles_source_def def = source_of(250.0);
     def.start = 0.1;
     def.stop = 0.5;
-    CHECK(se3d_particles_add_source(b.particles, &def, &source) == SE3D_OK);
+    CHECK(se3d_particles_add_source(b.bed.particles, &def, &source) == SE3D_OK);
     CHECK(source == 0);
-    CHECK(se3d_particles_run(b.particles, 0.0998) == SE3D_OK);
-    CHECK(se3d_particles_count(b.particles) == 0);
-    CHECK(se3d_particles_run(b.particles, 0.3001) == SE3D_OK);
-    CHECK(se3d_particles_count(b.particles) == 50);
+    CHECK(se3d_particles_run(b.bed.particles, 0.0998) == SE3D_OK);
+    CHECK(se3d_particles_count(b.bed.particles) == 0);
+    CHECK(se3d_particles_run(b.bed.particles, 0.3001) == SE3D_OK);
+    CHECK(se3d_particles_count(b.bed.particles) == 50);
     read_bed();
     CHECK(worst_overlap() <= 0.0);
     for (size_t k = 0; k < b.count; ++k) { /* v_z^2 - v_0^2 = 2 g (z_0 - z), z_0 in the region */
@@ -106,14 +97,14 @@ static void source_gives_its_rate_with_its_velocity(void)
         CHECK_NEAR(b.v[3 * k], 0.25, 1e-14);
         CHECK(z0 > 0.005 - 1e-6 && z0 < 0.015 + 1e-6);
     }
-    CHECK(se3d_particles_run(b.particles, 0.8) == SE3D_OK);
+    CHECK(se3d_particles_run(b.bed.particles, 0.8) == SE3D_OK);
     se3d_particles_tally tally;
-    CHECK(se3d_particles_get_tally(b.particles, 5, &tally) == SE3D_OK);
+    CHECK(se3d_particles_get_tally(b.bed.particles, 5, &tally) == SE3D_OK);
     CHECK(stats_of(0).inserted == 100 && tally.count == 100 && stats_of(0).deferred == 0);
     CHECK_NEAR(tally.mass, stats_of(0).mass, 1e-12);
-    CHECK(se3d_particles_get_tally(b.particles, 0, &tally) == SE3D_OK);
+    CHECK(se3d_particles_get_tally(b.bed.particles, 0, &tally) == SE3D_OK);
     CHECK(tally.count == 0 && !(tally.energy > 0.0));
-    close_bed();
+    bed_close(&b.bed);
 }
 
 static void rate_may_be_a_function_and_a_mass(void)
@@ -127,10 +118,10 @@ static void rate_may_be_a_function_and_a_mass(void)
     b.fill.velocity[2] = -1.0;
     def = source_of(0.0);
     def.per_mass = 1;
-    CHECK(se3d_function_create_expression(b.system, "0.3*t", &def.function) == SE3D_OK);
-    CHECK(se3d_particles_add_source(b.particles, &def, NULL) == SE3D_OK);
-    CHECK(se3d_function_destroy(b.system, def.function) == SE3D_ERR_IN_USE);
-    CHECK(se3d_particles_run(b.particles, 1.0) == SE3D_OK);
+    CHECK(se3d_function_create_expression(b.bed.system, "0.3*t", &def.function) == SE3D_OK);
+    CHECK(se3d_particles_add_source(b.bed.particles, &def, NULL) == SE3D_OK);
+    CHECK(se3d_function_destroy(b.bed.system, def.function) == SE3D_ERR_IN_USE);
+    CHECK(se3d_particles_run(b.bed.particles, 1.0) == SE3D_OK);
     /* 0.15 kg, but for less than the mass of one. */
     CHECK(stats_of(0).mass <= 0.15 + 1e-9 && stats_of(0).mass > 0.15 - 7e-4);
     CHECK(stats_of(0).deferred == 0);
@@ -143,11 +134,11 @@ static void rate_may_be_a_function_and_a_mass(void)
     CHECK_NEAR(of[0], 4.0 / 7.0, 0.08);
     CHECK_NEAR(of[1], 2.0 / 7.0, 0.08);
     CHECK_NEAR(of[2], 1.0 / 7.0, 0.08);
-    CHECK(se3d_particles_remove_source(b.particles, 0) == SE3D_OK);
-    CHECK(se3d_function_destroy(b.system, def.function) == SE3D_OK);
-    CHECK(se3d_particles_run(b.particles, 1.1) == SE3D_OK);
-    CHECK(se3d_particles_count(b.particles) == b.count);
-    close_bed();
+    CHECK(se3d_particles_remove_source(b.bed.particles, 0) == SE3D_OK);
+    CHECK(se3d_function_destroy(b.bed.system, def.function) == SE3D_OK);
+    CHECK(se3d_particles_run(b.bed.particles, 1.1) == SE3D_OK);
+    CHECK(se3d_particles_count(b.bed.particles) == b.count);
+    bed_close(&b.bed);
 }
 
 static void what_finds_no_room_waits(void)
@@ -155,14 +146,14 @@ static void what_finds_no_room_waits(void)
     open_bed(0.0, NULL);
     se3d_shape_def wall = se3d_shape_def_default(); /* a ball in the middle of the region */
     se3d_shape ball;
-    wall.material = b.material;
+    wall.material = b.bed.material;
     wall.radius = 0.02;
     wall.position[0] = wall.position[1] = 0.05;
-    CHECK(se3d_shape_create_sphere(b.system, &wall, &ball) == SE3D_OK);
+    CHECK(se3d_shape_create_sphere(b.bed.system, &wall, &ball) == SE3D_OK);
     b.fill.count = 1000;
     se3d_particles_source_def def = source_of(2000.0);
-    CHECK(se3d_particles_add_source(b.particles, &def, NULL) == SE3D_OK);
-    CHECK(se3d_particles_run(b.particles, 0.2) == SE3D_OK);
+    CHECK(se3d_particles_add_source(b.bed.particles, &def, NULL) == SE3D_OK);
+    CHECK(se3d_particles_run(b.bed.particles, 0.2) == SE3D_OK);
     read_bed();
     CHECK(b.count > 60 && b.count < 120);
     CHECK(worst_overlap() <= 0.0);
@@ -173,7 +164,7 @@ static void what_finds_no_room_waits(void)
     CHECK(stats_of(0).deferred > 0);
     CHECK_NEAR(stats_of(0).waiting + (double)stats_of(0).inserted, 400.0, 1e-6);
     CHECK(stats_of(0).inserted == b.count);
-    close_bed();
+    bed_close(&b.bed);
 }
 
 static void source_ends_at_its_maximum(void)
@@ -182,14 +173,14 @@ static void source_ends_at_its_maximum(void)
     b.fill.count = 30;
     se3d_particles_source_def def = source_of(500.0);
     def.every = 0.02;
-    CHECK(se3d_particles_add_source(b.particles, &def, NULL) == SE3D_OK);
-    CHECK(se3d_particles_run(b.particles, 0.0204) == SE3D_OK);
-    CHECK(se3d_particles_count(b.particles) == 1); /* the next are due 20 ms after the first */
-    CHECK(se3d_particles_run(b.particles, 0.0234) == SE3D_OK);
-    CHECK(se3d_particles_count(b.particles) > 8);
-    CHECK(se3d_particles_run(b.particles, 0.4) == SE3D_OK);
-    CHECK(se3d_particles_count(b.particles) == 30 && stats_of(0).waiting <= 0.0);
-    close_bed();
+    CHECK(se3d_particles_add_source(b.bed.particles, &def, NULL) == SE3D_OK);
+    CHECK(se3d_particles_run(b.bed.particles, 0.0204) == SE3D_OK);
+    CHECK(se3d_particles_count(b.bed.particles) == 1); /* the next are due 20 ms after the first */
+    CHECK(se3d_particles_run(b.bed.particles, 0.0234) == SE3D_OK);
+    CHECK(se3d_particles_count(b.bed.particles) > 8);
+    CHECK(se3d_particles_run(b.bed.particles, 0.4) == SE3D_OK);
+    CHECK(se3d_particles_count(b.bed.particles) == 30 && stats_of(0).waiting <= 0.0);
+    bed_close(&b.bed);
 }
 
 /* A chute: grains fall from a source through a heap on a plate into a sink. */
@@ -201,43 +192,43 @@ static void open_chute(int threads)
     se3d_shape shape;
     set.threads = threads;
     open_bed(10.0, &set);
-    plate.material = b.material;
+    plate.material = b.bed.material;
     plate.size[0] = plate.size[1] = 0.06;
     plate.size[2] = 0.01;
     plate.position[0] = plate.position[1] = 0.05;
     plate.position[2] = -0.05;
-    CHECK(se3d_shape_create_box(b.system, &plate, &shape) == SE3D_OK);
+    CHECK(se3d_shape_create_box(b.bed.system, &plate, &shape) == SE3D_OK);
     sink.normal[2] = 1.0;
     sink.point[2] = -0.12;
-    CHECK(se3d_particles_add_sink(b.particles, &sink, NULL) == SE3D_OK);
+    CHECK(se3d_particles_add_sink(b.bed.particles, &sink, NULL) == SE3D_OK);
     se3d_particles_source_def def = source_of(1500.0);
     b.fill.radius_min = 0.003;
     b.fill.velocity[2] = -0.5;
-    CHECK(se3d_particles_add_source(b.particles, &def, NULL) == SE3D_OK);
+    CHECK(se3d_particles_add_source(b.bed.particles, &def, NULL) == SE3D_OK);
 }
 
 static void chute_gives_the_same_bits_however_it_is_run(void)
 {
     se3d_particles *copy;
     open_chute(1);
-    CHECK(se3d_particles_step(b.particles, 6000) == SE3D_OK);
-    uint64_t hash = se3d_particles_hash(b.particles);
+    CHECK(se3d_particles_step(b.bed.particles, 6000) == SE3D_OK);
+    uint64_t hash = se3d_particles_hash(b.bed.particles);
     uint64_t lost = 0;
-    CHECK(se3d_particles_get_sink_count(b.particles, 0, &lost) == SE3D_OK);
+    CHECK(se3d_particles_get_sink_count(b.bed.particles, 0, &lost) == SE3D_OK);
     CHECK(lost > 50);
-    CHECK(stats_of(0).inserted == lost + se3d_particles_count(b.particles));
-    close_bed();
+    CHECK(stats_of(0).inserted == lost + se3d_particles_count(b.bed.particles));
+    bed_close(&b.bed);
     open_chute(3); /* other threads, in pieces, over a copy */
     for (size_t done = 0; done < 3600; done += 300) {
-        CHECK(se3d_particles_step(b.particles, 300) == SE3D_OK);
+        CHECK(se3d_particles_step(b.bed.particles, 300) == SE3D_OK);
     }
-    CHECK(se3d_particles_clone(b.particles, &copy) == SE3D_OK);
-    CHECK(se3d_particles_step(b.particles, 1333) == SE3D_OK);
-    CHECK(se3d_particles_restore(b.particles, copy) == SE3D_OK);
+    CHECK(se3d_particles_clone(b.bed.particles, &copy) == SE3D_OK);
+    CHECK(se3d_particles_step(b.bed.particles, 1333) == SE3D_OK);
+    CHECK(se3d_particles_restore(b.bed.particles, copy) == SE3D_OK);
     se3d_particles_destroy(copy);
-    CHECK(se3d_particles_step(b.particles, 2400) == SE3D_OK);
-    CHECK(se3d_particles_hash(b.particles) == hash);
-    close_bed();
+    CHECK(se3d_particles_step(b.bed.particles, 2400) == SE3D_OK);
+    CHECK(se3d_particles_hash(b.bed.particles) == hash);
+    bed_close(&b.bed);
 }
 
 static void snapshots_and_clones_of_the_system_include_sources(void)
@@ -246,20 +237,20 @@ static void snapshots_and_clones_of_the_system_include_sources(void)
     se3d_snapshot *snapshot;
     se3d_particles *other;
     open_chute(1);
-    CHECK(se3d_particles_run(b.particles, 0.1) == SE3D_OK);
-    CHECK(se3d_snapshot_create(b.system, &snapshot) == SE3D_OK);
-    CHECK(se3d_system_clone(b.system, &clone) == SE3D_OK);
+    CHECK(se3d_particles_run(b.bed.particles, 0.1) == SE3D_OK);
+    CHECK(se3d_snapshot_create(b.bed.system, &snapshot) == SE3D_OK);
+    CHECK(se3d_system_clone(b.bed.system, &clone) == SE3D_OK);
     CHECK(se3d_system_get_particles(clone, 0, &other) == SE3D_OK);
-    CHECK(se3d_particles_run(b.particles, 0.2) == SE3D_OK);
+    CHECK(se3d_particles_run(b.bed.particles, 0.2) == SE3D_OK);
     CHECK(se3d_particles_run(other, 0.2) == SE3D_OK);
-    uint64_t hash = se3d_particles_hash(b.particles);
+    uint64_t hash = se3d_particles_hash(b.bed.particles);
     CHECK(se3d_particles_hash(other) == hash);
-    CHECK(se3d_snapshot_restore(snapshot, b.system) == SE3D_OK);
-    CHECK(se3d_particles_run(b.particles, 0.2) == SE3D_OK);
-    CHECK(se3d_particles_hash(b.particles) == hash);
+    CHECK(se3d_snapshot_restore(snapshot, b.bed.system) == SE3D_OK);
+    CHECK(se3d_particles_run(b.bed.particles, 0.2) == SE3D_OK);
+    CHECK(se3d_particles_hash(b.bed.particles) == hash);
     se3d_snapshot_destroy(snapshot);
     se3d_system_destroy(clone);
-    close_bed();
+    bed_close(&b.bed);
 }
 
 static void insertion_does_not_disturb_others(void)
@@ -271,20 +262,21 @@ static void insertion_does_not_disturb_others(void)
         se3d_shape shape;
         uint32_t first;
         open_bed(10.0, NULL);
-        plane.material = b.material;
+        plane.material = b.bed.material;
         plane.normal[2] = 1.0;
         plane.position[2] = -0.015;
-        CHECK(se3d_shape_create_plane(b.system, &plane, &shape) == SE3D_OK);
-        CHECK(!se3d_particles_add(b.particles, b.material, 1, r, &radius, NULL, NULL, &first));
+        CHECK(se3d_shape_create_plane(b.bed.system, &plane, &shape) == SE3D_OK);
+        CHECK(!se3d_particles_add(b.bed.particles, b.bed.material, 1, r, &radius, NULL, NULL,
+                                  &first));
         se3d_particles_source_def def = source_of(1000.0);
         if (feeding) {
-            CHECK(se3d_particles_add_source(b.particles, &def, NULL) == SE3D_OK);
+            CHECK(se3d_particles_add_source(b.bed.particles, &def, NULL) == SE3D_OK);
         }
-        CHECK(se3d_particles_run(b.particles, 0.1) == SE3D_OK);
+        CHECK(se3d_particles_run(b.bed.particles, 0.1) == SE3D_OK);
         read_bed();
         CHECK(feeding ? b.count > 50 : b.count == 1);
         z[feeding] = b.r[2];
-        close_bed();
+        bed_close(&b.bed);
     }
     CHECK_NEAR(z[1], z[0], 1e-15);
 }
@@ -299,8 +291,8 @@ static void sinks_remove_what_is_in_their_region(void)
     uint64_t count[3];
     uint32_t number;
     open_bed(0.0, NULL);
-    CHECK(!se3d_particles_add(b.particles, b.material, 5, r, radius, NULL, NULL, NULL));
-    CHECK(se3d_particles_set_tags(b.particles, 2, tagged, 9) == SE3D_OK);
+    CHECK(!se3d_particles_add(b.bed.particles, b.bed.material, 5, r, radius, NULL, NULL, NULL));
+    CHECK(se3d_particles_set_tags(b.bed.particles, 2, tagged, 9) == SE3D_OK);
     for (int a = 0; a < 3; ++a) {
         box.lower[a] = ball.lower[a] = -1.0;
         box.upper[a] = ball.upper[a] = 1.0;
@@ -310,26 +302,26 @@ static void sinks_remove_what_is_in_their_region(void)
     ball.region = SE3D_FILL_REGION_SPHERE;
     plane.normal[0] = -2.0;
     plane.point[0] = 4.0;
-    CHECK(!se3d_particles_add_sink(b.particles, &box, &number) && number == 0);
-    CHECK(!se3d_particles_add_sink(b.particles, &ball, &number) && number == 1);
-    CHECK(!se3d_particles_add_sink(b.particles, &plane, &number) && number == 2);
-    CHECK(se3d_particles_step(b.particles, 1) == SE3D_OK);
+    CHECK(!se3d_particles_add_sink(b.bed.particles, &box, &number) && number == 0);
+    CHECK(!se3d_particles_add_sink(b.bed.particles, &ball, &number) && number == 1);
+    CHECK(!se3d_particles_add_sink(b.bed.particles, &plane, &number) && number == 2);
+    CHECK(se3d_particles_step(b.bed.particles, 1) == SE3D_OK);
     for (uint32_t k = 0; k < 3; ++k) {
-        CHECK(se3d_particles_get_sink_count(b.particles, k, &count[k]) == SE3D_OK);
+        CHECK(se3d_particles_get_sink_count(b.bed.particles, k, &count[k]) == SE3D_OK);
     }
     CHECK(count[0] == 2 && count[1] == 1 && count[2] == 1);
     uint32_t ids[1], tags[1];
-    CHECK(se3d_particles_get_ids(b.particles, 1, ids) == SE3D_OK && ids[0] == 1);
-    CHECK(se3d_particles_get_tags(b.particles, 1, tags) == SE3D_OK && tags[0] == 0);
+    CHECK(se3d_particles_get_ids(b.bed.particles, 1, ids) == SE3D_OK && ids[0] == 1);
+    CHECK(se3d_particles_get_tags(b.bed.particles, 1, tags) == SE3D_OK && tags[0] == 0);
     se3d_particles_tally tally;
-    CHECK(se3d_particles_get_tally(b.particles, 9, &tally) == SE3D_OK);
+    CHECK(se3d_particles_get_tally(b.bed.particles, 9, &tally) == SE3D_OK);
     CHECK(tally.lost == 2 && tally.count == 0);
-    CHECK(se3d_particles_get_tally(b.particles, 0, &tally) == SE3D_OK);
+    CHECK(se3d_particles_get_tally(b.bed.particles, 0, &tally) == SE3D_OK);
     CHECK(tally.lost == 2 && tally.count == 1);
     se3d_particles_stats stats;
-    CHECK(se3d_particles_get_stats(b.particles, &stats) == SE3D_OK);
+    CHECK(se3d_particles_get_stats(b.bed.particles, &stats) == SE3D_OK);
     CHECK(stats.lost == 4 && stats.left == 4);
-    close_bed();
+    bed_close(&b.bed);
 }
 
 static void what_leaves_an_open_domain_is_counted(void)
@@ -341,13 +333,13 @@ static void what_leaves_an_open_domain_is_counted(void)
     def.lower[0] = -1.0;
     def.upper[0] = 1.0;
     open_bed(0.0, &def);
-    CHECK(!se3d_particles_add(b.particles, b.material, 2, r, radius, v, NULL, NULL));
-    CHECK(se3d_particles_run(b.particles, 0.4) == SE3D_OK);
-    CHECK(se3d_particles_get_stats(b.particles, &stats) == SE3D_OK && stats.left == 0);
-    CHECK(se3d_particles_run(b.particles, 0.6) == SE3D_OK);
-    CHECK(se3d_particles_get_stats(b.particles, &stats) == SE3D_OK);
-    CHECK(stats.left == 1 && stats.lost == 0 && se3d_particles_count(b.particles) == 2);
-    close_bed();
+    CHECK(!se3d_particles_add(b.bed.particles, b.bed.material, 2, r, radius, v, NULL, NULL));
+    CHECK(se3d_particles_run(b.bed.particles, 0.4) == SE3D_OK);
+    CHECK(se3d_particles_get_stats(b.bed.particles, &stats) == SE3D_OK && stats.left == 0);
+    CHECK(se3d_particles_run(b.bed.particles, 0.6) == SE3D_OK);
+    CHECK(se3d_particles_get_stats(b.bed.particles, &stats) == SE3D_OK);
+    CHECK(stats.left == 1 && stats.lost == 0 && se3d_particles_count(b.bed.particles) == 2);
+    bed_close(&b.bed);
 }
 
 /* Two grains fall: one onto a plate, one beside it. */
@@ -359,22 +351,22 @@ static void fall_without_end_is_counted(void)
         se3d_shape shape;
         se3d_particles_stats stats;
         open_bed(10.0, NULL);
-        def.material = b.material;
+        def.material = b.bed.material;
         def.size[0] = def.size[1] = 0.2;
         def.size[2] = 0.02;
-        CHECK(se3d_shape_create_box(b.system, &def, &shape) == SE3D_OK);
+        CHECK(se3d_shape_create_box(b.bed.system, &def, &shape) == SE3D_OK);
         def.normal[2] = 1.0;
         def.position[2] = -20.0;
         if (floor) {
-            CHECK(se3d_shape_create_plane(b.system, &def, &shape) == SE3D_OK);
+            CHECK(se3d_shape_create_plane(b.bed.system, &def, &shape) == SE3D_OK);
         }
-        CHECK(!se3d_particles_add(b.particles, b.material, 2, r, radius, NULL, NULL, NULL));
-        CHECK(se3d_particles_run(b.particles, 0.1) == SE3D_OK);
-        CHECK(se3d_particles_get_stats(b.particles, &stats) == SE3D_OK && stats.left == 0);
-        CHECK(se3d_particles_run(b.particles, 1.0) == SE3D_OK);
-        CHECK(se3d_particles_get_stats(b.particles, &stats) == SE3D_OK);
+        CHECK(!se3d_particles_add(b.bed.particles, b.bed.material, 2, r, radius, NULL, NULL, NULL));
+        CHECK(se3d_particles_run(b.bed.particles, 0.1) == SE3D_OK);
+        CHECK(se3d_particles_get_stats(b.bed.particles, &stats) == SE3D_OK && stats.left == 0);
+        CHECK(se3d_particles_run(b.bed.particles, 1.0) == SE3D_OK);
+        CHECK(se3d_particles_get_stats(b.bed.particles, &stats) == SE3D_OK);
         CHECK(stats.left == (floor ? 0 : 1));
-        close_bed();
+        bed_close(&b.bed);
     }
 }
 
@@ -384,21 +376,22 @@ static void verlet_moves_what_a_source_gives(void)
     se3d_solver_def how = se3d_solver_def_default();
     se3d_solver *solver;
     open_bed(10.0, NULL);
-    CHECK(se3d_particles_set_step(b.particles, 0.0) == SE3D_OK);
+    CHECK(se3d_particles_set_step(b.bed.particles, 0.0) == SE3D_OK);
     b.fill.velocity[2] = -1.0;
     se3d_particles_source_def def = source_of(300.0);
-    CHECK(se3d_particles_add_source(b.particles, &def, NULL) == SE3D_OK);
+    CHECK(se3d_particles_add_source(b.bed.particles, &def, NULL) == SE3D_OK);
     how.analysis = SE3D_ANALYSIS_DYNAMICS;
     how.method = SE3D_METHOD_VERLET;
-    CHECK(!SE3D_FAILED(se3d_solver_create(b.system, &how, &solver)));
+    CHECK(!SE3D_FAILED(se3d_solver_create(b.bed.system, &how, &solver)));
     double step = 0.0;
-    CHECK(se3d_particles_get_step(b.particles, &step) == SE3D_OK && step > 1e-6 && step < 1e-3);
+    CHECK(se3d_particles_get_step(b.bed.particles, &step) == SE3D_OK && step > 1e-6 && step < 1e-3);
     CHECK(!SE3D_FAILED(se3d_solver_run(solver, 0.5)));
-    CHECK(se3d_particles_count(b.particles) == 150 || se3d_particles_count(b.particles) == 149);
+    CHECK(se3d_particles_count(b.bed.particles) == 150 ||
+          se3d_particles_count(b.bed.particles) == 149);
     read_bed();
     CHECK(worst_overlap() <= 0.0);
     se3d_solver_destroy(solver);
-    close_bed();
+    bed_close(&b.bed);
 }
 
 int main(void)

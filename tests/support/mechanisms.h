@@ -4,10 +4,7 @@
 #ifndef SE3D_TESTS_MECHANISMS_H
 #define SE3D_TESTS_MECHANISMS_H
 
-#include "check.h"
-#include "se3d/se3d.h"
-
-#include <stdlib.h>
+#include "support/world.h"
 
 #define PI 3.14159265358979323846
 
@@ -17,16 +14,7 @@ typedef struct world {
     se3d_solver *solver;
 } world;
 
-/* Stop the test program where building a model fails: nothing after it would mean anything. */
-static inline void must(const world *w, se3d_status status, const char *text)
-{
-    CHECK(status >= 0);
-    if (status < 0) {
-        fprintf(stderr, "%s: %s\n", text, w->system ? se3d_system_get_error(w->system) : "");
-        exit(1);
-    }
-}
-#define MUST(w, call) must((w), (call), #call)
+#define MUST(w, call) world_must((w)->system, (call), #call)
 
 static inline world world_create(void)
 {
@@ -65,21 +53,12 @@ static inline se3d_body add_bar(world *w, const char *name, const double from[2]
     return body;
 }
 
-typedef se3d_status (*joint_create)(se3d_system *, const se3d_joint_def *, se3d_constraint *);
-
 /* A joint at (x, y, 0) with the axis given. */
 static inline se3d_constraint add_joint(world *w, joint_create create, const char *name,
                                         se3d_body i, se3d_body j, const double at[3],
                                         const double axis[3])
 {
-    se3d_constraint joint;
-    se3d_joint_def def = se3d_joint_def_default();
-    def.name = name;
-    def.body_i = i;
-    def.body_j = j;
-    MUST(w, se3d_joint_def_set_frame(w->system, &def, at, axis, NULL));
-    MUST(w, create(w->system, &def, &joint));
-    return joint;
+    return world_join(w->system, create, name, i, j, at, axis);
 }
 
 static inline se3d_constraint add_pin(world *w, const char *name, se3d_body i, se3d_body j,
