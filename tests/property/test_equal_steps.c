@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Methods that are named without step and tolerance: each is near the truth, as rattle and verlet
  * choose the length of their equal steps; and what becomes of that choice. */
-#include "golden/mechanisms.h"
+#include "support/mechanisms.h"
 #include "support/text_model.h"
 
 static const char pendulum[] = "{se3d: 1, bodies: [{name: a, mass: 1, inertia: [0.01, 0.0833, "
