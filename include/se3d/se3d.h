@@ -30,6 +30,7 @@
 #include "se3d/check.h"
 #include "se3d/constraint.h"
 #include "se3d/contact.h"
+#include "se3d/coordinates.h"
 #include "se3d/elementary.h"
 #include "se3d/event.h"
 #include "se3d/expression.h"

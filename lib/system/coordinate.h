@@ -17,6 +17,9 @@ se3d_status se3di_check_distinct(se3d_system *system, const uint32_t bodies[2]);
 /* If there is no function of time, `value` is finite. */
 se3d_status se3di_check_prescribed(se3d_system *system, double value, int32_t function);
 
+/* The joint coordinates of a system outlive it, empty. */
+void se3di_coordinates_orphan(se3d_system *system);
+
 /* Add a validated draft to the model and return its handle. */
 se3d_status se3di_constraint_add(se3d_system *system, const se3di_draft *draft,
                                  se3d_constraint *constraint);

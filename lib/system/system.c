@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Systems: creation, gravity, time, counts, energy, violation, hash. */
+#include "system/coordinate.h"
 #include "system/particles.h"
 #include "system/solver.h"
 
@@ -49,6 +50,7 @@ static void begin_life(se3d_system *system)
     system->log.busy = &system->busy;
     system->error.log = &system->log;
     system->solvers = NULL;
+    system->coordinates = NULL;
     system->copies = NULL;
 }
 
@@ -86,6 +88,7 @@ void se3d_system_destroy(se3d_system *system)
     }
     const se3d_allocator allocator = system->model.allocator;
     se3di_solvers_orphan(system);
+    se3di_coordinates_orphan(system);
     se3di_copies_orphan(system);
     se3di_owners_destroy(&system->model);
     se3di_model_destroy(&system->model);

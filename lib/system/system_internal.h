@@ -14,9 +14,10 @@ struct se3d_system {
     se3di_model model;
     se3di_error error;
     se3di_logger log;
-    se3di_busy busy;               /* the model points to it */
-    struct se3d_solver *solvers;   /* that live, in a chain */
-    struct se3d_particles *copies; /* clones of particle sets that live, in a chain */
+    se3di_busy busy;                      /* the model points to it */
+    struct se3d_solver *solvers;          /* that live, in a chain */
+    struct se3d_coordinates *coordinates; /* that live, in a chain */
+    struct se3d_particles *copies;        /* clones of particle sets that live, in a chain */
 };
 
 /* Record an error on the system, log it, and return its status. */

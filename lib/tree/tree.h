@@ -118,7 +118,7 @@ typedef struct se3di_tree {
     se3di_tree_link *links;
     double *S;                /* [velocities * 6]: angular, of P; ground axes */
     double *U;                /* [velocities * 6]: articulated inertia times S */
-    double *D, *e;            /* [velocities]: S^T U; what acts on the coordinate */
+    double *D, *R, *e;        /* [velocities]: S^T U, its inverse; what acts on the coordinate */
     double *given;            /* [velocities]: prescribed accelerations */
     double *armature;         /* [velocities]: reflected inertia */
     double *wrench;           /* [nodes * 6]: what acts on each: moment about P, force; ground */

@@ -13,6 +13,85 @@
         CHECK(se3d_system_get_error(a->system)[0] != 0);                                           \
     } while (0)
 
+static se3d_status coordinates_reject_misuse(arguments *a)
+{
+    se3d_coordinates *c = NULL;
+    double q[64] = {0.0}, x[64] = {0.0};
+    static double M[4096];
+    size_t n = 0;
+    const double nan = (double)NAN, wrench[6] = {0.0};
+    CHECK(se3d_coordinates_create(NULL, &c) == SE3D_ERR_NULL && !c);
+    REJECTED(se3d_coordinates_create(a->system, NULL), SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_count(NULL) == 0 && se3d_coordinates_count_positions(NULL) == 0 &&
+          se3d_coordinates_count_loop_rows(NULL) == 0);
+    CHECK(se3d_coordinates_get_entry(NULL, 0, NULL, NULL, NULL, NULL, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_get(NULL, q, x) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_set(NULL, q, x) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_move(NULL, q, x, q) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_compute_accelerations(NULL, x, x) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_compute_efforts(NULL, x, x) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_compute_gravity(NULL, x) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_compute_mass_matrix(NULL, M) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_multiply_mass(NULL, x, q) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_solve_mass(NULL, x, q) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_compute_jacobian(NULL, a->use.marker, M, M) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_compute_transposed(NULL, a->use.marker, wrench, x) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_compute_momentum(NULL, x, M) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_compute_loop_jacobian(NULL, M) == SE3D_ERR_NULL);
+    CHECK(se3d_coordinates_compute_null_space(NULL, M, &n) == SE3D_ERR_NULL);
+    se3d_coordinates_destroy(NULL);
+
+    CHECK(!se3d_coordinates_create(a->system, &c));
+    const size_t count = se3d_coordinates_count(c);
+    CHECK(count > 0 && count <= 64 && se3d_coordinates_count_positions(c) <= 64);
+    REJECTED(se3d_coordinates_get_entry(c, count, NULL, NULL, NULL, NULL, NULL),
+             SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_coordinates_move(c, NULL, x, q), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_compute_accelerations(c, NULL, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_compute_efforts(c, NULL, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_compute_gravity(c, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_compute_mass_matrix(c, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_multiply_mass(c, NULL, x), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_multiply_mass(c, x, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_solve_mass(c, NULL, x), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_solve_mass(c, x, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_compute_transposed(c, a->use.marker, NULL, x), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_compute_transposed(c, a->use.marker, wrench, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_compute_loop_jacobian(c, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_compute_null_space(c, NULL, &n), SE3D_ERR_NULL);
+    REJECTED(se3d_coordinates_compute_null_space(c, M, NULL), SE3D_ERR_NULL);
+    se3d_marker stale = a->use.marker;
+    stale.generation ^= 1;
+    REJECTED(se3d_coordinates_compute_jacobian(c, stale, M, NULL), SE3D_ERR_STALE_HANDLE);
+    REJECTED(se3d_coordinates_compute_transposed(c, stale, wrench, x), SE3D_ERR_STALE_HANDLE);
+    CHECK(!se3d_coordinates_compute_momentum(c, NULL, NULL));
+    CHECK(!se3d_coordinates_get(c, q, x));
+    const uint64_t before = se3d_system_hash(a->system);
+    x[0] = nan;
+    REJECTED(se3d_coordinates_set(c, NULL, x), SE3D_ERR_NOT_FINITE);
+    REJECTED(se3d_coordinates_compute_accelerations(c, x, x + 1), SE3D_ERR_NOT_FINITE);
+    REJECTED(se3d_coordinates_compute_efforts(c, x, x + 1), SE3D_ERR_NOT_FINITE);
+    q[0] = nan;
+    REJECTED(se3d_coordinates_set(c, q, NULL), SE3D_ERR_NOT_FINITE);
+    CHECK(se3d_system_hash(a->system) == before);
+    se3d_body_def body = body_def("another");
+    se3d_body other;
+    CHECK(!se3d_body_create(a->system, &body, &other));
+    REJECTED(se3d_coordinates_get(c, q, x), SE3D_ERR_STATE);
+    REJECTED(se3d_coordinates_compute_mass_matrix(c, M), SE3D_ERR_STATE);
+    se3d_coordinates_destroy(c);
+
+    /* A ball that is turned by nothing. */
+    se3d_system *system = NULL;
+    CHECK(!se3d_system_create(NULL, &system) && !se3d_body_create(system, &body, &other));
+    CHECK(!se3d_coordinates_create(system, &c));
+    memset(q, 0, sizeof q);
+    CHECK(se3d_coordinates_set(c, q, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    se3d_coordinates_destroy(c);
+    se3d_system_destroy(system);
+    return SE3D_OK;
+}
+
 static se3d_status modes_reject_misuse(arguments *a)
 {
     se3d_modes *modes = NULL;

@@ -343,7 +343,7 @@ static void every_public_function_on_a_system_has_a_row(void)
 {
     static const char *const headers[] = {"body",   "constraint", "contact",  "event",
                                           "force",  "joint",      "function", "particles",
-                                          "solver", "system",     "modes"};
+                                          "solver", "system",     "modes",    "coordinates"};
     static char text[200000];
     const char *folder = getenv("SE3D_SOURCE_DIR");
     int count = 0;

@@ -385,6 +385,29 @@ static se3d_status make_check(workshop *w)
     return status;
 }
 
+/* With a joint that closes a loop. */
+static se3d_status make_coordinates(workshop *w)
+{
+    se3d_coordinates *coordinates = NULL;
+    se3d_constraint loop = {0, 0};
+    double N[64];
+    size_t freedoms;
+    const se3d_joint_def def = joint_between(w, w->body[0], w->body[1]);
+    se3d_status status = se3d_joint_create_parallel(w->system, &def, &loop);
+    if (status >= 0) {
+        status = se3d_coordinates_create(w->system, &coordinates);
+        CHECK((status >= 0) == (coordinates != NULL));
+    }
+    if (status >= 0) {
+        status = se3d_coordinates_compute_null_space(coordinates, N, &freedoms);
+    }
+    se3d_coordinates_destroy(coordinates);
+    if (loop.index1 > 0) {
+        CHECK(se3d_constraint_destroy(w->system, loop) == SE3D_OK);
+    }
+    return status;
+}
+
 typedef struct operation_row {
     const char *name;
     operation run;
@@ -414,6 +437,7 @@ static const operation_row operations[] = {
     {"particles", make_particles},
     {"source and sink", make_source_and_sink},
     {"check", make_check},
+    {"coordinates", make_coordinates},
 };
 
 typedef struct census {
