@@ -20,6 +20,13 @@ typedef enum se3d_analysis {
     SE3D_ANALYSIS_EQUILIBRIUM = 4       /* static position */
 } se3d_analysis;
 
+/* Get the name of an analysis as in a model file ("assembly", "dynamics"). The analyses have the
+ * numbers from 0 to the one before the first without a name.
+ * @param[in] analysis  se3d_analysis, or any number
+ * @return the name, static; "" if no analysis has that number.
+ * @since 0.1 */
+SE3D_API const char *se3d_analysis_get_name(int32_t analysis);
+
 /* How a solver of dynamics steps in time. @since 0.1 */
 typedef enum se3d_method {
     SE3D_METHOD_AUTO = 0,

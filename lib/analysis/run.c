@@ -122,8 +122,7 @@ static void choose_method(se3di_run *run)
 /* The motion is to follow from constraints and drivers alone. */
 static int is_driven(const se3di_run *run)
 {
-    return run->analysis == SE3D_ANALYSIS_KINEMATICS ||
-           run->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS;
+    return se3di_analysis_is(run->analysis, SE3DI_ANALYSIS_IS_DRIVEN);
 }
 
 /* Build what the model's structure decides. */
@@ -765,8 +764,8 @@ static void recover(se3di_run *run, double t_end)
             restore_before(run);
         }
         --run->guard.muted;
-    } else if (!(model->time > run->before.time) || run->analysis == SE3D_ANALYSIS_EQUILIBRIUM ||
-               run->analysis == SE3D_ANALYSIS_ASSEMBLY) {
+    } else if (!(model->time > run->before.time) ||
+               !se3di_analysis_is(run->analysis, SE3DI_ANALYSIS_HAS_MOTION)) {
         restore_before(run);
     }
     *run->error = cause;

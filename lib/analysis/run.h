@@ -4,6 +4,7 @@
 #define SE3DI_RUN_H
 
 #include "analysis/events.h"
+#include "analysis/kinds.h"
 #include "analysis/start_change.h"
 #include "integrator/integrator.h"
 

@@ -48,7 +48,7 @@ static se3d_status check_name(const se3d_solver *solver, const char *name)
 static se3d_status check_analysis(const se3d_solver *solver)
 {
     const int32_t analysis = solver->run.analysis;
-    if (analysis == SE3D_ANALYSIS_ASSEMBLY || analysis == SE3D_ANALYSIS_EQUILIBRIUM) {
+    if (!se3di_analysis_is(analysis, SE3DI_ANALYSIS_HAS_MOTION)) {
         return SE3DI_FAIL_OF(solver->system, "analysis", SE3D_ERR_UNSUPPORTED,
                              " = %d has no motion, and so no events", (int)analysis);
     }

@@ -60,6 +60,11 @@ const char *se3d_method_get_name(int32_t method)
     return method == SE3D_METHOD_AUTO ? "auto" : found ? found->name : "";
 }
 
+const char *se3d_analysis_get_name(int32_t analysis)
+{
+    return se3di_analysis_get_name(analysis);
+}
+
 const char *se3d_formulation_get_name(int32_t formulation)
 {
     const se3di_formulation *found = se3di_formulation_find(formulation);
@@ -88,7 +93,7 @@ static se3d_status check_order(se3d_system *system, const se3d_solver_def *def)
 
 static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def)
 {
-    if (def->analysis < SE3D_ANALYSIS_ASSEMBLY || def->analysis > SE3D_ANALYSIS_EQUILIBRIUM) {
+    if (!*se3di_analysis_get_name(def->analysis)) {
         return SE3DI_FAIL_OF(system, "analysis", SE3D_ERR_INVALID_ARGUMENT,
                              " = %d, must be one of se3d_analysis", (int)def->analysis);
     }

@@ -504,6 +504,8 @@ static se3d_status texts_are_never_null(arguments *a)
     CHECK(strcmp(se3d_method_get_name(SE3D_METHOD_RK4), "rk4") == 0);
     CHECK(strcmp(se3d_method_get_name(SE3D_METHOD_AUTO), "auto") == 0);
     CHECK(strcmp(se3d_method_get_name(-1), "") == 0 && !*se3d_method_get_name(INT32_MAX));
+    CHECK(strcmp(se3d_analysis_get_name(SE3D_ANALYSIS_EQUILIBRIUM), "equilibrium") == 0);
+    CHECK(!*se3d_analysis_get_name(-1) && !*se3d_analysis_get_name(INT32_MAX));
     CHECK(strcmp(se3d_formulation_get_name(SE3D_FORMULATION_RP), "rp") == 0);
     CHECK(!*se3d_formulation_get_name(-7) && !*se3d_formulation_get_name(99));
     CHECK(se3d_system_get_error(NULL) != NULL);
@@ -756,6 +758,7 @@ static const row rows[] = {
     {"se3d_text_get_character", texts_are_never_null, "", NULL, NULL},
     {"se3d_version_get_text", texts_are_never_null, "", NULL, NULL},
     {"se3d_method_get_name", texts_are_never_null, "", NULL, NULL},
+    {"se3d_analysis_get_name", texts_are_never_null, "", NULL, NULL},
     {"se3d_formulation_get_name", texts_are_never_null, "", NULL, NULL},
     {"se3d_system_get_error", texts_are_never_null, "", NULL, NULL},
     {"se3d_system_get_error_field", texts_are_never_null, "", NULL, NULL},

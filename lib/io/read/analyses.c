@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `analysis`. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "io/base/pool.h"
@@ -19,18 +20,18 @@
 #define STEPS_MAX_MOST 1e15
 #define TIME_MAX       1e9 /* s, thirty years */
 
-enum { TYPE_MODES = 5 }; /* the others are se3d_analysis */
-static const char *const types[] = {[SE3D_ANALYSIS_ASSEMBLY] = "assembly",
-                                    [SE3D_ANALYSIS_KINEMATICS] = "kinematics",
-                                    [SE3D_ANALYSIS_INVERSE_DYNAMICS] = "inverse_dynamics",
-                                    [SE3D_ANALYSIS_DYNAMICS] = "dynamics",
-                                    [SE3D_ANALYSIS_EQUILIBRIUM] = "equilibrium",
-                                    [TYPE_MODES] = "modes",
-                                    NULL};
+static const char modes[] = "modes";
+
+/* The analyses of the library, and behind the last one those about an equilibrium. */
+static const char *name_of_type(int32_t type)
+{
+    const char *name = se3d_analysis_get_name(type);
+    return !*name && *se3d_analysis_get_name(type - 1) ? modes : name;
+}
 
 /* clang-format off */
 static const se3di_key analysis_keys[] = {
-    {"type", SE3DI_KIND_WORD, .words = types, .required = true, .text = ""},
+    {"type", SE3DI_KIND_WORD, .name_of = name_of_type, .required = true, .text = ""},
     {"formulation", SE3DI_KIND_WORD, .name_of = se3d_formulation_get_name, .standard = "romega",
      .text = "what describes turns: angular velocities, or Euler parameters"},
     {"method", SE3DI_KIND_WORD, .name_of = se3d_method_get_name, .standard = "auto",
@@ -98,6 +99,17 @@ static bool read_word(se3di_reader *reader, const se3di_node *node, const char *
     return se3di_read_word(reader, node, words, word);
 }
 
+static bool fail_missing_type(se3di_reader *reader, const se3di_node *node)
+{
+    char list[256] = "";
+    size_t used = 0;
+    for (int32_t type = 0; *name_of_type(type) && used < sizeof list; ++type) {
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", type > 0 ? ", " : "",
+                                 name_of_type(type));
+    }
+    return se3di_reader_fail_key(reader, node, "type", "is missing, must be one of: %s", list);
+}
+
 static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry,
                        int32_t *chosen)
 {
@@ -111,15 +123,13 @@ static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analy
         replaced(reader, se3di_node_get(node, "method"), "--method", options->method);
     size_t word = SE3D_ANALYSIS_DYNAMICS;
     if (node && !type) {
-        return se3di_reader_fail_key(reader, node, "type",
-                                     "is missing, must be one of: assembly, kinematics, "
-                                     "inverse_dynamics, dynamics, equilibrium, modes");
+        return fail_missing_type(reader, node);
     }
-    if (type && !se3di_read_word(reader, type, types, &word)) {
+    if (type && !read_word(reader, type, "type", &word)) {
         return false;
     }
-    entry->analysis.type = types[word];
-    solver->analysis = word == TYPE_MODES ? SE3D_ANALYSIS_EQUILIBRIUM : (int32_t)word;
+    entry->analysis.type = name_of_type((int32_t)word);
+    solver->analysis = entry->analysis.type == modes ? SE3D_ANALYSIS_EQUILIBRIUM : (int32_t)word;
     word = SE3D_FORMULATION_ROMEGA;
     if (formulation && !read_word(reader, formulation, "formulation", &word)) {
         return false;
