@@ -320,7 +320,7 @@ static double triad(void)
  * forces; the blocks of its pairs (8 of 256 bytes), of which the springs are written. */
 static void roofline(double contacts, double rate)
 {
-    const double move = 2.0 * (64.0 + 32.0 + 64.0); /* grain, spin and load, read and written */
+    const double move = 2.0 * (64.0 + 32.0 + 64.0); /* particle, spin and load, read and written */
     const double force = 64.0 + 32.0 + 2.0 * 64.0;
     const double pair = (256.0 + 192.0) / 8.0;
     double bytes = move + force + contacts * pair;

@@ -3,6 +3,7 @@
 """The English of documentation, comments and messages, as docs/glossary.md has it.
 
     words      phrases that were thought in another language
+    synonyms   in identifiers and comments of C files, a second word for a thing that has one
     formulas   in a comment, text right after a formula is a formula that was broken: leave a line
     Markdown   at most 120 columns outside tables, code and links
     conflicts  both sides of a merge, left in a file with their marks
@@ -37,6 +38,8 @@ BANNED = (
     (r"come to a dead point\b", "reached a dead point"),
     (r"of nothing has\b", "of zero has"),
 )
+SYNONYM = re.compile(r"(?i:grain)s?(?![a-z])")
+STRING = re.compile(r'"(?:\\.|[^"\\\n])*"')
 KINDS = {".c", ".h", ".inc", ".md", ".py", ".sh", ".yaml"}
 FOLDERS = ("include", "lib", "tools", "examples", "tests", "bench", "docs", "cmake", ".ci")
 ITEM = re.compile(r"\s*(?:(?:[-*+]|\d+\.) +)?")
@@ -75,6 +78,13 @@ def check_words(text, name, problems):
             line = text.count("\n", 0, match.start()) + 1
             words = " ".join(match.group().replace("\0", "").split())
             problems.append(f"{name}:{line}: `{words[:60]}`: {better}")
+
+
+def check_synonyms(text, name, problems):
+    """What users read or write in strings may have a name of its own: files, data."""
+    for match in SYNONYM.finditer(STRING.sub(lambda m: " " * len(m.group()), text)):
+        line = text.count("\n", 0, match.start()) + 1
+        problems.append(f"{name}:{line}: `{match.group()}`: particle")
 
 
 def check_formulas(text, name, problems):
@@ -159,6 +169,7 @@ def main():
         check_conflicts(text, name, problems)
         if path.suffix in (".c", ".h", ".inc"):
             check_formulas(text, name, problems)
+            check_synonyms(text, name, problems)
         if path.suffix == ".md":
             check_markdown(text, name, problems)
     print("\n".join(problems + [f"language: {count} files, {len(problems)} problems"]))

@@ -14,7 +14,7 @@
 
 /* Two particles and the partner of unused lanes, with all that a kernel reads and writes. */
 typedef struct couple {
-    _Alignas(64) se3di_grain grains[3];
+    _Alignas(64) se3di_particle particles[3];
     _Alignas(64) se3di_load loads[3];
     _Alignas(64) se3di_block block;
     _Alignas(64) se3di_spin spins[3];
@@ -27,12 +27,12 @@ static void copy_lane(const se3di_particles *set, const se3di_block *block, cons
                       int lane, couple *c)
 {
     memset(c, 0, sizeof *c);
-    for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
+    for (int k = 0; k < SE3DI_PARTICLE_LANES; ++k) {
         c->block.i[k] = c->block.j[k] = 2;
     }
-    c->grains[2].inverse_mass = 1.0;
+    c->particles[2].inverse_mass = 1.0;
     c->block.i[0] = 0;
-    c->grains[0] = set->grains[block->i[lane]];
+    c->particles[0] = set->particles[block->i[lane]];
     c->spins[0] = set->spins[block->i[lane]];
     for (int a = 0; a < 3; ++a) {
         c->block.xi[a][0] = block->xi[a][lane];
@@ -45,7 +45,7 @@ static void copy_lane(const se3di_particles *set, const se3di_block *block, cons
 static se3di_force_task task_of(const se3di_particles *set, couple *c)
 {
     return (se3di_force_task){
-        .grains = c->grains,
+        .particles = c->particles,
         .spins = c->spins,
         .loads = c->loads,
         .blocks = &c->block,
@@ -82,23 +82,23 @@ static int pair_contact(const se3di_particles *set, uint32_t b, int lane,
     couple c;
     copy_lane(set, &set->blocks[b], roll_of(set, b), lane, &c);
     c.block.j[0] = 1;
-    c.grains[1] = set->grains[set->blocks[b].j[lane]];
+    c.particles[1] = set->particles[set->blocks[b].j[lane]];
     c.spins[1] = set->spins[set->blocks[b].j[lane]];
     double d[3];
     for (int a = 0; a < 3; ++a) {
-        d[a] = c.grains[0].x[a] - c.grains[1].x[a];
+        d[a] = c.particles[0].x[a] - c.particles[1].x[a];
     }
     se3di_particles_wrap(set, d);
     double distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    double overlap = c.grains[0].radius + c.grains[1].radius - distance;
+    double overlap = c.particles[0].radius + c.particles[1].radius - distance;
     if (!(overlap > 0.0 && distance > 0.0)) {
         return 0;
     }
-    double arm = c.grains[0].radius - 0.5 * overlap;
+    double arm = c.particles[0].radius - 0.5 * overlap;
     for (int a = 0; a < 3; ++a) {
-        c.grains[1].x[a] = c.grains[0].x[a] - d[a];
+        c.particles[1].x[a] = c.particles[0].x[a] - d[a];
         out->normal[a] = d[a] / distance;
-        out->point[a] = c.grains[0].x[a] - d[a] * (arm / distance);
+        out->point[a] = c.particles[0].x[a] - d[a] * (arm / distance);
     }
     out->overlap = overlap;
     se3di_force_task task = task_of(set, &c);
@@ -115,8 +115,8 @@ static int wall_contact(const se3di_particles *set, couple *c, const se3di_given
                         se3d_particles_contact *out)
 {
     double x[3], normal[3];
-    se3di_particles_image(set, &c->wall, c->grains[0].x, c->grains[0].radius, x);
-    se3di_copy(x, c->grains[0].x); /* the copy touches where it is */
+    se3di_particles_image(set, &c->wall, c->particles[0].x, c->particles[0].radius, x);
+    se3di_copy(x, c->particles[0].x); /* the copy touches where it is */
     double distance = se3di_wall_nearest(&c->wall, x, out->point, normal);
     se3di_given here = {.distance = {distance}};
     for (int a = 0; a < 3; ++a) {
@@ -128,13 +128,13 @@ static int wall_contact(const se3di_particles *set, couple *c, const se3di_given
             out->point[a] = x[a] - here.distance[0] * here.normal[a][0];
         }
     }
-    if (!(here.distance[0] < c->grains[0].radius)) {
+    if (!(here.distance[0] < c->particles[0].radius)) {
         return 0;
     }
     for (int a = 0; a < 3; ++a) {
         out->normal[a] = here.normal[a][0];
     }
-    out->overlap = c->grains[0].radius - here.distance[0];
+    out->overlap = c->particles[0].radius - here.distance[0];
     c->block.j[0] = 0;
     se3di_force_task task = task_of(set, c);
     task.given = &here;
@@ -166,7 +166,7 @@ static void list_blocks(const se3di_particles *set, const se3di_slab *slab, cont
 {
     for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
         const se3di_block *block = &set->blocks[b];
-        for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
+        for (int lane = 0; lane < SE3DI_PARTICLE_LANES; ++lane) {
             se3d_particles_contact contact;
             if (block->i[lane] >= set->count) {
                 continue;

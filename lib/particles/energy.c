@@ -7,12 +7,12 @@
 /* Of particle k: translation, rotation, potential. */
 static void eval(const se3di_particles *set, size_t k, const double g[3], double energy[3])
 {
-    const se3di_grain *grain = &set->grains[k];
+    const se3di_particle *particle = &set->particles[k];
     const double *w = set->spins[k].w;
-    double mass = 1.0 / grain->inverse_mass;
-    energy[0] = 0.5 * mass * se3di_dot(grain->v, grain->v);
-    energy[1] = 0.2 * mass * grain->radius * grain->radius * se3di_dot(w, w);
-    energy[2] = -mass * se3di_dot(g, grain->x);
+    double mass = 1.0 / particle->inverse_mass;
+    energy[0] = 0.5 * mass * se3di_dot(particle->v, particle->v);
+    energy[1] = 0.2 * mass * particle->radius * particle->radius * se3di_dot(w, w);
+    energy[2] = -mass * se3di_dot(g, particle->x);
 }
 
 se3d_particles_energy se3di_particles_energy(const se3di_particles *set, const double g[3])
@@ -41,7 +41,7 @@ se3d_particles_tally se3di_particles_tally(const se3di_particles *set, uint32_t 
             eval(set, k, g, share);
             ++tally.count;
             tally.outside += (uint64_t)se3di_particles_is_out(set, k);
-            tally.mass += 1.0 / set->grains[k].inverse_mass;
+            tally.mass += 1.0 / set->particles[k].inverse_mass;
             tally.energy += share[0] + share[1] + share[2];
         }
     }

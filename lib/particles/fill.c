@@ -129,7 +129,7 @@ static int cell_along(const packing *p, double x, int a)
 static void enter(packing *p, size_t k)
 {
     double x[3];
-    se3di_copy(p->set->grains[k].x, x);
+    se3di_copy(p->set->particles[k].x, x);
     for (int a = 0; a < 3; ++a) {
         if (p->set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) { /* the image nearest to the region */
             const double period = p->set->upper[a] - p->set->lower[a];
@@ -151,7 +151,7 @@ static void enter(packing *p, size_t k)
 static int cell_is_free(const packing *p, size_t cell, const double x[3], double radius)
 {
     for (uint32_t k = p->head[cell]; k != SE3DI_NO_INDEX; k = p->next[k]) {
-        const se3di_grain *g = &p->set->grains[k];
+        const se3di_particle *g = &p->set->particles[k];
         double d[3];
         se3di_sub(g->x, x, d);
         se3di_particles_wrap(p->set, d);
@@ -195,7 +195,7 @@ static se3d_status packing_init(packing *p, se3di_particles *set, const se3d_fil
 {
     double largest = def->radius_max;
     for (size_t k = 0; k < set->count; ++k) {
-        largest = fmax(largest, set->grains[k].radius);
+        largest = fmax(largest, set->particles[k].radius);
     }
     *p = (packing){.set = set, .def = def, .size = 2.0 * largest, .head_count = 1};
     p->room = set->count + def->count;

@@ -39,7 +39,7 @@ static size_t gather(se3di_particles *set, const se3di_source *source)
 {
     size_t count = 0;
     for (size_t k = 0; k < set->count; ++k) {
-        const se3di_grain *g = &set->grains[k];
+        const se3di_particle *g = &set->particles[k];
         double d[3], away = -HUGE_VAL;
         for (int a = 0; a < 3; ++a) {
             d[a] = g->x[a] - 0.5 * (source->region.lower[a] + source->region.upper[a]);
@@ -59,7 +59,7 @@ static size_t gather(se3di_particles *set, const se3di_source *source)
 static int is_free(const se3di_particles *set, const double x[3], double radius, size_t near)
 {
     for (size_t k = 0; k < near; ++k) {
-        const se3di_grain *g = &set->grains[set->order[k]];
+        const se3di_particle *g = &set->particles[set->order[k]];
         double d[3];
         se3di_sub(g->x, x, d);
         se3di_particles_wrap(set, d);
@@ -136,7 +136,7 @@ static se3d_status insert(se3di_particles *set, se3di_source *source, double h)
         (void)se3di_particles_append(set, source->material, source->next, x, v, NULL);
         set->spins[set->count - 1].tag = (uint16_t)source->tag;
         source->owed -= cost;
-        source->mass += 1.0 / set->grains[set->count - 1].inverse_mass;
+        source->mass += 1.0 / set->particles[set->count - 1].inverse_mass;
         source->next = 0.0;
         source->waiting = 0;
         ++source->inserted;
@@ -227,7 +227,7 @@ static int falls_for_ever(const se3di_particles *set, const double x[3])
 
 int se3di_particles_is_out(const se3di_particles *set, size_t k)
 {
-    const double *x = set->grains[k].x;
+    const double *x = set->particles[k].x;
     int bounded = 0;
     for (int a = 0; a < 3; ++a) {
         int given = set->upper[a] > set->lower[a];

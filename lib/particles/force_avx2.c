@@ -73,12 +73,12 @@ V_INLINE void transpose(const V in[4], V out[4])
     out[3] = _mm256_permute2f128_pd(b, d, 0x31);
 }
 
-V_INLINE void load_grains(const se3di_grain *grains, const uint32_t *i, V out[8])
+V_INLINE void load_particles(const se3di_particle *particles, const uint32_t *i, V out[8])
 {
     V low[4], high[4];
     for (int k = 0; k < 4; ++k) {
-        low[k] = _mm256_load_pd(grains[i[k]].x);
-        high[k] = _mm256_load_pd(grains[i[k]].v);
+        low[k] = _mm256_load_pd(particles[i[k]].x);
+        high[k] = _mm256_load_pd(particles[i[k]].v);
     }
     transpose(low, out);
     transpose(high, out + 4);

@@ -82,11 +82,11 @@ V_INLINE void transpose(const V in[8], V out[8])
     }
 }
 
-V_INLINE void load_grains(const se3di_grain *grains, const uint32_t *i, V out[8])
+V_INLINE void load_particles(const se3di_particle *particles, const uint32_t *i, V out[8])
 {
     V rows[8];
     for (int k = 0; k < 8; ++k) {
-        rows[k] = _mm512_load_pd(&grains[i[k]]);
+        rows[k] = _mm512_load_pd(&particles[i[k]]);
     }
     transpose(rows, out);
 }

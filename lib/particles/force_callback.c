@@ -110,7 +110,7 @@ static const double zero[3] = {0.0, 0.0, 0.0};
 static void pair_lane(se3di_force_task *task, se3di_block *block, int lane)
 {
     const uint32_t i = block->i[lane], j = block->j[lane];
-    const se3di_grain *gi = &task->grains[i], *gj = &task->grains[j];
+    const se3di_particle *gi = &task->particles[i], *gj = &task->particles[j];
     double d[3], xi[3], force[3], lever[3], moment[3];
     for (int a = 0; a < 3; ++a) {
         d[a] = gi->x[a] - gj->x[a];
@@ -148,7 +148,7 @@ static void pairs(se3di_force_task *task)
 {
     for (uint32_t b = task->begin; b < task->end; ++b) {
         se3di_block *block = &task->blocks[b];
-        for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
+        for (int lane = 0; lane < SE3DI_PARTICLE_LANES; ++lane) {
             if (block->i[lane] != block->j[lane]) {
                 pair_lane(task, block, lane);
             }
@@ -173,7 +173,7 @@ static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
     se3di_block *block = &task->blocks[b];
     const uint32_t i = block->i[lane];
     const se3di_wall *wall = &task->walls[block->j[0]];
-    const se3di_grain *g = &task->grains[i];
+    const se3di_particle *g = &task->particles[i];
     double point[3], at[3], side[3], turn[3], xi[3], force[3], lever[3], moment[3];
     touch t = {.radius = g->radius,
                .w_i = task->spins[i].w,
@@ -227,7 +227,7 @@ static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
 static void walls(se3di_force_task *task)
 {
     for (uint32_t b = task->begin; b < task->end; ++b) {
-        for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
+        for (int lane = 0; lane < SE3DI_PARTICLE_LANES; ++lane) {
             wall_lane(task, b, lane);
         }
     }

@@ -32,7 +32,7 @@ typedef struct grid {
     double thickness;
     int slabs;
     uint32_t per_slab; /* cells */
-    grid_class classes[SE3DI_GRAIN_CLASSES];
+    grid_class classes[SE3DI_PARTICLE_CLASSES];
 } grid;
 
 void se3di_particles_wrap(const se3di_particles *set, double d[3])
@@ -49,7 +49,7 @@ void se3di_particles_wrap(const se3di_particles *set, double d[3])
 static int class_of(double radius, double largest)
 {
     int c = 0;
-    for (double limit = 0.5 * largest; radius <= limit && c < SE3DI_GRAIN_CLASSES - 1;
+    for (double limit = 0.5 * largest; radius <= limit && c < SE3DI_PARTICLE_CLASSES - 1;
          limit *= 0.5) {
         ++c;
     }
@@ -61,7 +61,7 @@ static size_t leave(se3di_particles *set)
 {
     size_t gone = 0;
     for (size_t k = 0; k < set->count; ++k) {
-        double *x = set->grains[k].x;
+        double *x = set->particles[k].x;
         set->order[k] = 1;
         for (int a = 0; a < 3; ++a) {
             double length = set->upper[a] - set->lower[a];
@@ -105,18 +105,18 @@ static double measure(se3di_particles *set, grid *g)
     double sum = 0.0;
     set->uniform = set->stuff_count == 1;
     for (size_t k = 0; k < set->count; ++k) {
-        const se3di_grain *grain = &set->grains[k];
-        largest = fmax(largest, grain->radius);
-        sum += grain->radius;
-        set->uniform = set->uniform && grain->radius == set->grains[0].radius;
+        const se3di_particle *particle = &set->particles[k];
+        largest = fmax(largest, particle->radius);
+        sum += particle->radius;
+        set->uniform = set->uniform && particle->radius == set->particles[0].radius;
         for (int a = 0; a < 3; ++a) {
-            set->low[a] = k == 0 ? grain->x[a] : fmin(set->low[a], grain->x[a]);
-            set->high[a] = k == 0 ? grain->x[a] : fmax(set->high[a], grain->x[a]);
+            set->low[a] = k == 0 ? particle->x[a] : fmin(set->low[a], particle->x[a]);
+            set->high[a] = k == 0 ? particle->x[a] : fmax(set->high[a], particle->x[a]);
         }
     }
     set->skin = set->count > 0 ? set->skin_ratio * 2.0 * sum / (double)set->count : 0.0;
     for (size_t k = 0; k < set->count; ++k) {
-        double radius = set->grains[k].radius;
+        double radius = set->particles[k].radius;
         grid_class *c = &g->classes[class_of(radius, largest)];
         c->radius = fmax(c->radius, radius);
     }
@@ -157,7 +157,7 @@ static int division(double length, double size, double most)
 static double divide(const se3di_particles *set, grid *g, double largest, double scale)
 {
     double reach = 2.0 * largest + set->skin;
-    g->slabs = division(g->extent[2], reach, SE3DI_GRAIN_SLABS_MAX);
+    g->slabs = division(g->extent[2], reach, SE3DI_PARTICLE_SLABS_MAX);
     if (g->periodic[2]) { /* all axes are */
         g->slabs = g->slabs < 4 ? 1 : g->slabs - g->slabs % 2;
     }
@@ -166,7 +166,7 @@ static double divide(const se3di_particles *set, grid *g, double largest, double
         g->thickness = g->extent[2] / g->slabs;
     }
     double total = 0.0;
-    for (int c = 0; c < SE3DI_GRAIN_CLASSES; ++c) {
+    for (int c = 0; c < SE3DI_PARTICLE_CLASSES; ++c) {
         grid_class *here = &g->classes[c];
         if (here->radius <= 0.0) {
             continue;
@@ -212,17 +212,17 @@ static void permute(se3di_particles *set)
         set->key[order[k]] = (uint32_t)k;
     }
     for (size_t start = 0; start < n; ++start) {
-        se3di_grain grain = set->grains[start];
+        se3di_particle particle = set->particles[start];
         se3di_spin spin = set->spins[start];
         size_t k = start;
         while (order[k] != start) {
             size_t from = order[k];
-            set->grains[k] = set->grains[from];
+            set->particles[k] = set->particles[from];
             set->spins[k] = set->spins[from];
             order[k] = (uint32_t)k; /* done */
             k = from;
         }
-        set->grains[k] = grain;
+        set->particles[k] = particle;
         set->spins[k] = spin;
         order[k] = (uint32_t)k;
     }
@@ -238,8 +238,8 @@ static void sort(se3di_particles *set, const grid *g, double largest, size_t tot
 {
     memset(set->cells, 0, (total + 2) * sizeof *set->cells);
     for (size_t k = 0; k < set->count; ++k) {
-        int c = class_of(set->grains[k].radius, largest);
-        set->key[k] = cell_of(g, set->grains[k].x, c);
+        int c = class_of(set->particles[k].radius, largest);
+        set->key[k] = cell_of(g, set->particles[k].x, c);
         ++set->cells[set->key[k] + 2];
     }
     for (size_t k = 1; k <= total; ++k) {
@@ -270,11 +270,11 @@ typedef struct search {
 /* Append those of cells [begin, end) of the sorted particles that are near. */
 static void append(se3di_particles *set, const search *q, uint32_t begin, uint32_t end)
 {
-    const se3di_grain *gi = &set->grains[q->i];
+    const se3di_particle *gi = &set->particles[q->i];
     double border = gi->radius + set->skin;
     int wraps = q->g->periodic[0] || q->g->periodic[1] || q->g->periodic[2];
     for (uint32_t j = begin; j < end; ++j) {
-        const se3di_grain *gj = &set->grains[j];
+        const se3di_particle *gj = &set->particles[j];
         double d[3] = {gi->x[0] - gj->x[0], gi->x[1] - gj->x[1], gi->x[2] - gj->x[2]};
         if (wraps) {
             se3di_particles_wrap(set, d);
@@ -364,17 +364,17 @@ static se3d_status search_slab(se3di_particles *set, const search *q, int s, int
 /* Partners of particle i of slab s. */
 static se3d_status search_particle(se3di_particles *set, const grid *g, int s, uint32_t i)
 {
-    const se3di_grain *grain = &set->grains[i];
+    const se3di_particle *particle = &set->particles[i];
     search q = {.g = g, .i = i};
     for (int k = 0; k < 3; ++k) {
-        q.x[k] = grain->x[g->axis[k]] - g->low[k];
+        q.x[k] = particle->x[g->axis[k]] - g->low[k];
     }
-    for (int c = 0; c < SE3DI_GRAIN_CLASSES; ++c) {
+    for (int c = 0; c < SE3DI_PARTICLE_CLASSES; ++c) {
         q.c = &g->classes[c];
         if (q.c->radius <= 0.0) {
             continue;
         }
-        q.reach = grain->radius + q.c->radius + set->skin;
+        q.reach = particle->radius + q.c->radius + set->skin;
         SE3DI_TRY(search_slab(set, &q, s, s, i + 1));
         if (s + 1 < g->slabs) {
             SE3DI_TRY(search_slab(set, &q, s + 1, s + 1, 0));
@@ -458,7 +458,7 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
     }
     SE3DI_TRY(list_all(set, &g));
     for (size_t k = 0; k < set->count; ++k) {
-        memcpy(set->origin + 3 * k, set->grains[k].x, sizeof set->grains[k].x);
+        memcpy(set->origin + 3 * k, set->particles[k].x, sizeof set->particles[k].x);
     }
     for (size_t k = 0; k < set->wall_count; ++k) {
         se3di_wall *wall = &set->walls[k];

@@ -42,7 +42,7 @@ static void list_parts(const se3di_particles *set, part parts[PARTS])
         {set->mesh_old, old * sizeof *set->mesh_old},
         {set->carry_next, carry * sizeof *set->carry_next},
         {set->carry_roll, set->carry_rolling ? 4 * carry * sizeof *set->carry_roll : 0},
-        {set->grains, set->count * sizeof *set->grains},
+        {set->particles, set->count * sizeof *set->particles},
         {set->spins, set->count * sizeof *set->spins},
         {set->loads, loads},
         {set->carry, carry * sizeof *set->carry},
@@ -84,7 +84,7 @@ static size_t room_of(const se3di_particles *set)
     return sizeof(uint32_t) * (set->list_capacity + set->first_capacity + set->face_capacity +
                                set->index_capacity + set->carry_next_capacity) +
            sizeof(double) * (3 * set->capacity + set->carry_roll_capacity) +
-           set->near_capacity * sizeof *set->near_walls + set->grain_memory.bytes +
+           set->near_capacity * sizeof *set->near_walls + set->particle_memory.bytes +
            set->spin_memory.bytes + set->load_memory.bytes + set->block_memory.bytes +
            set->roll_memory.bytes +
            (set->mesh_capacity + set->mesh_old_capacity) * sizeof *set->mesh_pairs +
@@ -141,12 +141,12 @@ se3d_status se3di_particles_keep(se3di_particles *set)
     X(name)                                                                                        \
     X(kept)                                                                                        \
     X(capacity)                                                                                    \
-    X(grain_memory)                                                                                \
+    X(particle_memory)                                                                             \
     X(spin_memory)                                                                                 \
     X(load_memory)                                                                                 \
     X(block_memory)                                                                                \
     X(roll_memory)                                                                                 \
-    X(grains)                                                                                      \
+    X(particles)                                                                                   \
     X(spins)                                                                                       \
     X(loads)                                                                                       \
     X(carry)                                                                                       \
@@ -191,13 +191,13 @@ void se3di_particles_come_back(se3di_particles *set)
 #undef STAY
     list_parts(set, parts);
     copy_parts(parts, PARTS, set->kept->data, 1);
-    if (set->grains) {
-        set->grains[set->capacity] = (se3di_grain){.inverse_mass = 1.0}; /* of unused lanes */
+    if (set->particles) {
+        set->particles[set->capacity] = (se3di_particle){.inverse_mass = 1.0}; /* of unused lanes */
     }
     for (uint32_t b = 0; now.capacity != set->kept->set.capacity && b < set->block_count; ++b) {
         se3di_block *block = &set->blocks[b];
         const uint32_t unused = (uint32_t)set->kept->set.capacity;
-        for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) { /* they point behind the others */
+        for (int k = 0; k < SE3DI_PARTICLE_LANES; ++k) { /* they point behind the others */
             block->i[k] = block->i[k] == unused ? (uint32_t)set->capacity : block->i[k];
             block->j[k] = block->j[k] == unused ? (uint32_t)set->capacity : block->j[k];
         }

@@ -105,7 +105,7 @@ static void count_slab(se3di_particles *set, uint32_t s)
     se3di_slab *slab = &set->slabs[s];
     slab->moved = 0;
     for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
-        for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
+        for (int lane = 0; lane < SE3DI_PARTICLE_LANES; ++lane) {
             slab->moved += (size_t)lane_moved(set, b, lane);
         }
     }
@@ -116,7 +116,7 @@ static void collect_slab(se3di_particles *set, uint32_t s)
 {
     se3di_slab *slab = &set->slabs[s];
     for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
-        for (int lane = 0; lane < SE3DI_GRAIN_LANES; ++lane) {
+        for (int lane = 0; lane < SE3DI_PARTICLE_LANES; ++lane) {
             if (lane_moved(set, b, lane)) {
                 collect_lane(set, slab->moved++, b, lane, b >= slab->wall_begin);
             }
@@ -215,7 +215,7 @@ static void open_block(se3di_particles *set, cursor *at)
 {
     se3di_block *block = &set->blocks[at->next];
     memset(block, 0, sizeof *block);
-    for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
+    for (int k = 0; k < SE3DI_PARTICLE_LANES; ++k) {
         block->i[k] = block->j[k] = (uint32_t)set->capacity;
     }
     if (set->rolls) {
@@ -228,7 +228,7 @@ static void open_block(se3di_particles *set, cursor *at)
 /* Add a pair with its history. */
 static void push(se3di_particles *set, uint32_t i, uint32_t j, cursor *where)
 {
-    if (where->lane == SE3DI_GRAIN_LANES) {
+    if (where->lane == SE3DI_PARTICLE_LANES) {
         open_block(set, where);
     }
     se3di_block *block = &set->blocks[where->next - 1];
@@ -258,7 +258,7 @@ static void push(se3di_particles *set, uint32_t i, uint32_t j, cursor *where)
 
 static uint32_t blocks_of(size_t pairs)
 {
-    return (uint32_t)((pairs + SE3DI_GRAIN_LANES - 1) / SE3DI_GRAIN_LANES);
+    return (uint32_t)((pairs + SE3DI_PARTICLE_LANES - 1) / SE3DI_PARTICLE_LANES);
 }
 
 /* Returns how many blocks the pairs of a slab need, and adds how many there are. */
@@ -270,10 +270,10 @@ static uint32_t mark_pairs(se3di_particles *set, const se3di_slab *slab, size_t 
         periodic |= set->boundary[a] == SE3DI_BOUNDARY_PERIODIC;
     }
     for (uint32_t i = slab->begin; i < slab->end; ++i) {
-        const se3di_grain *gi = &set->grains[i];
+        const se3di_particle *gi = &set->particles[i];
         for (uint32_t k = set->first[i]; k < set->first[i + 1]; ++k) {
             uint32_t j = set->list[k] & ~SE3DI_LIST_ACTIVE;
-            const se3di_grain *gj = &set->grains[j];
+            const se3di_particle *gj = &set->particles[j];
             double d[3] = {gi->x[0] - gj->x[0], gi->x[1] - gj->x[1], gi->x[2] - gj->x[2]};
             if (periodic) {
                 se3di_particles_wrap(set, d);
@@ -290,9 +290,9 @@ static uint32_t mark_pairs(se3di_particles *set, const se3di_slab *slab, size_t 
 
 static int is_near_wall(const se3di_particles *set, const se3di_wall *wall, uint32_t i)
 {
-    const double reach = set->grains[i].radius + set->near;
+    const double reach = set->particles[i].radius + set->near;
     double x[3];
-    se3di_particles_image(set, wall, set->grains[i].x, reach, x);
+    se3di_particles_image(set, wall, set->particles[i].x, reach, x);
     return se3di_wall_distance(wall, x) < reach;
 }
 
@@ -333,7 +333,7 @@ static void mark_slab(se3di_particles *set, uint32_t s)
 static void fill_slab(se3di_particles *set, uint32_t s)
 {
     const se3di_slab *slab = &set->slabs[s];
-    cursor at = {slab->pair_begin, SE3DI_GRAIN_LANES};
+    cursor at = {slab->pair_begin, SE3DI_PARTICLE_LANES};
     for (uint32_t i = slab->begin; i < slab->end; ++i) {
         for (uint32_t k = set->first[i]; k < set->first[i + 1]; ++k) {
             if (set->list[k] & SE3DI_LIST_ACTIVE) {
@@ -346,7 +346,7 @@ static void fill_slab(se3di_particles *set, uint32_t s)
         uint32_t i = set->near_walls[k].i;
         uint32_t w = set->near_walls[k].wall;
         if (i & SE3DI_LIST_ACTIVE) {
-            at.lane = w == last ? at.lane : SE3DI_GRAIN_LANES;
+            at.lane = w == last ? at.lane : SE3DI_PARTICLE_LANES;
             last = w;
             push(set, i & ~SE3DI_LIST_ACTIVE, SE3DI_CARRY_WALL | w, &at);
             set->blocks[at.next - 1].j[0] = w;

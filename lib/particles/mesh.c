@@ -40,7 +40,7 @@ void se3di_mesh_batch_begin(const se3di_particles *set, uint32_t wall, se3di_mes
         memset(&batch->roll, 0, sizeof batch->roll);
     }
     batch->count = 0;
-    for (int k = 0; k < SE3DI_GRAIN_LANES; ++k) {
+    for (int k = 0; k < SE3DI_PARTICLE_LANES; ++k) {
         batch->block.i[k] = batch->block.j[k] = (uint32_t)set->capacity;
         batch->given.distance[k] = 1e300;
     }
@@ -52,7 +52,7 @@ static void locate(const se3di_particles *set, const se3di_mesh_pair *pair, doub
 {
     const se3di_wall *wall = &set->walls[pair->wall];
     double x[3];
-    se3di_particles_image(set, wall, set->grains[pair->i].x, reach, x);
+    se3di_particles_image(set, wall, set->particles[pair->i].x, reach, x);
     se3di_wall_local(wall, x, local);
 }
 
@@ -60,14 +60,14 @@ int se3di_mesh_batch_add(const se3di_particles *set, const se3di_mesh_pair *pair
                          se3di_mesh_batch *batch)
 {
     const se3di_wall *wall = &set->walls[pair->wall];
-    const double radius = set->grains[pair->i].radius;
+    const double radius = set->particles[pair->i].radius;
     se3di_touch touches[SE3DI_MESH_TOUCHES];
     double local[3];
     locate(set, pair, radius, local);
     const size_t count =
         se3di_mesh_contacts_among(&wall->shape, set->faces + pair->face_begin, pair->face_count,
                                   local, radius, SE3DI_MESH_TOUCHES, touches);
-    if (batch->block.j[0] != pair->wall || batch->count + count > SE3DI_GRAIN_LANES) {
+    if (batch->block.j[0] != pair->wall || batch->count + count > SE3DI_PARTICLE_LANES) {
         return 0;
     }
     unsigned taken = 0;
@@ -215,7 +215,7 @@ static se3d_status push(se3di_particles *set, const se3di_near_wall *near)
 static int is_active(const se3di_particles *set, const se3di_near_wall *near)
 {
     const se3di_mesh_pair pair = {.i = near->i & ~SE3DI_LIST_ACTIVE, .wall = near->wall};
-    const double reach = set->grains[pair.i].radius + set->near;
+    const double reach = set->particles[pair.i].radius + set->near;
     double local[3];
     locate(set, &pair, reach, local);
     return se3di_mesh_is_near(&set->walls[pair.wall].shape, set->faces + near->face_begin,

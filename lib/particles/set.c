@@ -71,7 +71,7 @@ void se3di_particles_destroy(se3di_particles *set)
     se3di_free(a, set->stuffs, set->stuff_capacity, sizeof *set->stuffs);
     se3di_free(a, set->pairs, set->pair_capacity, sizeof *set->pairs);
     se3di_free(a, set->walls, set->wall_capacity, sizeof *set->walls);
-    aligned_free(a, &set->grain_memory);
+    aligned_free(a, &set->particle_memory);
     aligned_free(a, &set->spin_memory);
     aligned_free(a, &set->load_memory);
     aligned_free(a, &set->block_memory);
@@ -112,7 +112,7 @@ static size_t roll_bytes(const se3di_particles *set)
 
 size_t se3di_particles_memory(const se3di_particles *set)
 {
-    return set->grain_memory.bytes + set->spin_memory.bytes + set->load_memory.bytes +
+    return set->particle_memory.bytes + set->spin_memory.bytes + set->load_memory.bytes +
            set->block_memory.bytes + set->roll_memory.bytes +
            set->capacity * (3 * sizeof(double) + 2 * sizeof(uint32_t)) +
            sizeof(uint32_t) * (set->index_capacity + set->cell_capacity + set->first_capacity +
@@ -144,7 +144,7 @@ static se3d_status resize(const se3d_allocator *a, void **to, const void *old, s
 
 static void set_dummy(se3di_particles *set)
 {
-    set->grains[set->capacity] = (se3di_grain){.inverse_mass = 1.0};
+    set->particles[set->capacity] = (se3di_particle){.inverse_mass = 1.0};
 }
 
 static se3d_status reserve_records(se3di_particles *set, size_t count)
@@ -152,8 +152,8 @@ static se3d_status reserve_records(se3di_particles *set, size_t count)
     const se3d_allocator *a = &set->allocator;
     size_t n = set->count;
     se3d_status status = se3di_aligned_reserve(
-        a, &set->grain_memory, (count + 1) * sizeof(se3di_grain), n * sizeof(se3di_grain));
-    set->grains = set->grain_memory.data;
+        a, &set->particle_memory, (count + 1) * sizeof(se3di_particle), n * sizeof(se3di_particle));
+    set->particles = set->particle_memory.data;
     SE3DI_TRY(status);
     status = se3di_aligned_reserve(a, &set->spin_memory, (count + 1) * sizeof(se3di_spin),
                                    n * sizeof(se3di_spin));
@@ -222,9 +222,9 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
         set->stuffs[material].material.density * (4.0 / 3.0 * pi * radius * radius * radius);
     size_t k = set->count++;
     uint32_t id = (uint32_t)set->id_count++;
-    set->grains[k] = (se3di_grain){.radius = radius, .inverse_mass = 1.0 / mass};
-    memcpy(set->grains[k].x, x, sizeof set->grains[k].x);
-    memcpy(set->grains[k].v, v ? v : rest, sizeof set->grains[k].v);
+    set->particles[k] = (se3di_particle){.radius = radius, .inverse_mass = 1.0 / mass};
+    memcpy(set->particles[k].x, x, sizeof set->particles[k].x);
+    memcpy(set->particles[k].v, v ? v : rest, sizeof set->particles[k].v);
     set->spins[k] = (se3di_spin){.material = (uint16_t)material, .id = id};
     memcpy(set->spins[k].w, w ? w : rest, sizeof set->spins[k].w);
     set->index_of[id] = (uint32_t)k;
@@ -246,7 +246,7 @@ void se3di_particles_filter(se3di_particles *set, const unsigned char *keep)
             continue;
         }
         set->order[k] = (uint32_t)to;
-        set->grains[to] = set->grains[k];
+        set->particles[to] = set->particles[k];
         set->spins[to] = set->spins[k];
         set->index_of[set->spins[to].id] = (uint32_t)to;
         ++to;
@@ -321,7 +321,7 @@ static se3d_status copy_aligned(const se3di_particles *from, se3di_particles *to
         se3di_aligned *to;
         size_t used;
     } parts[] = {
-        {&from->grain_memory, &to->grain_memory, from->count * sizeof *from->grains},
+        {&from->particle_memory, &to->particle_memory, from->count * sizeof *from->particles},
         {&from->spin_memory, &to->spin_memory, from->count * sizeof *from->spins},
         {&from->load_memory, &to->load_memory,
          from->list_valid ? from->count * sizeof *from->loads
@@ -335,13 +335,13 @@ static se3d_status copy_aligned(const se3di_particles *from, se3di_particles *to
             memcpy(parts[k].to->data, parts[k].from->data, parts[k].used);
         }
     }
-    to->grains = to->grain_memory.data;
+    to->particles = to->particle_memory.data;
     to->spins = to->spin_memory.data;
     to->loads = to->load_memory.data;
     to->carry = to->load_memory.data;
     to->blocks = to->block_memory.data;
     to->rolls = to->roll_memory.data;
-    if (to->grains) {
+    if (to->particles) {
         set_dummy(to);
     }
     return SE3D_OK;
@@ -354,9 +354,9 @@ se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *c
     copy->next = NULL;
     copy->name = NULL;
     copy->kept = NULL;
-    copy->grain_memory = copy->spin_memory = copy->load_memory = none;
+    copy->particle_memory = copy->spin_memory = copy->load_memory = none;
     copy->block_memory = copy->roll_memory = none;
-    copy->grains = NULL;
+    copy->particles = NULL;
     copy->spins = NULL;
     copy->loads = NULL;
     copy->carry = NULL;

@@ -21,16 +21,16 @@
 #include "model/model.h"
 #include "se3d/particles.h"
 
-#define SE3DI_GRAIN_LANES     8  /* pairs of a block */
-#define SE3DI_GRAIN_CLASSES   12 /* size classes: each twice the radius of the one before */
-#define SE3DI_GRAIN_SLABS_MAX 64
-#define SE3DI_PERIOD_LEAST    4.04 /* of the largest radius: least length along a periodic axis */
+#define SE3DI_PARTICLE_LANES     8  /* pairs of a block */
+#define SE3DI_PARTICLE_CLASSES   12 /* size classes: each twice the radius of the one before */
+#define SE3DI_PARTICLE_SLABS_MAX 64
+#define SE3DI_PERIOD_LEAST       4.04 /* of the largest radius: least length along an axis */
 
 /* One cache line: what nearly every pass reads. */
-typedef struct se3di_grain {
+typedef struct se3di_particle {
     double x[3], radius;
     double v[3], inverse_mass;
-} se3di_grain;
+} se3di_particle;
 
 typedef struct se3di_spin {
     double w[3]; /* ground frame: the same as the body frame for a sphere */
@@ -46,13 +46,13 @@ typedef struct se3di_load {
 /* Pairs i, j (force on i along x_i - x_j); unused lanes are i = j = capacity, a particle that
  * nothing touches. Walls: j[0] is the wall. */
 typedef struct se3di_block {
-    uint32_t i[SE3DI_GRAIN_LANES], j[SE3DI_GRAIN_LANES];
-    double xi[3][SE3DI_GRAIN_LANES]; /* displacement of i relative to j while touching */
+    uint32_t i[SE3DI_PARTICLE_LANES], j[SE3DI_PARTICLE_LANES];
+    double xi[3][SE3DI_PARTICLE_LANES]; /* displacement of i relative to j while touching */
 } se3di_block;
 
 /* Rolling displacement [0..2] and twist [3], beside a block where a material resists rolling. */
 typedef struct se3di_roll {
-    double rho[4][SE3DI_GRAIN_LANES];
+    double rho[4][SE3DI_PARTICLE_LANES];
 } se3di_roll;
 
 /* History on its way from one list to the next. */
@@ -111,7 +111,7 @@ typedef struct se3di_mesh_pair {
 
 /* Distances and normals (towards the particles, ground frame) of the lanes of a block. */
 typedef struct se3di_given {
-    double normal[3][SE3DI_GRAIN_LANES], distance[SE3DI_GRAIN_LANES];
+    double normal[3][SE3DI_PARTICLE_LANES], distance[SE3DI_PARTICLE_LANES];
 } se3di_given;
 
 /* The touches of a few pairs with one mesh as they are now, for a kernel. */
@@ -119,7 +119,7 @@ typedef struct se3di_mesh_batch {
     _Alignas(64) se3di_block block;
     _Alignas(64) se3di_given given;
     se3di_roll roll;
-    double local[SE3DI_GRAIN_LANES][3]; /* normals, mesh frame */
+    double local[SE3DI_PARTICLE_LANES][3]; /* normals, mesh frame */
     uint32_t count, reserved;
 } se3di_mesh_batch;
 
@@ -243,8 +243,8 @@ typedef struct se3di_particles {
     size_t wall_count, wall_capacity;
 
     size_t count, capacity; /* capacity + 1 records: the last is the unused lane's partner */
-    se3di_aligned grain_memory, spin_memory, load_memory;
-    se3di_grain *grains;
+    se3di_aligned particle_memory, spin_memory, load_memory;
+    se3di_particle *particles;
     se3di_spin *spins;
     se3di_load *loads;  /* hold nothing while list_valid is 0 */
     double *origin;     /* [3 * capacity] positions where the list was built */
@@ -262,7 +262,7 @@ typedef struct se3di_particles {
     size_t first_capacity;
     uint32_t *list;
     size_t list_count, list_capacity;
-    se3di_slab slabs[SE3DI_GRAIN_SLABS_MAX];
+    se3di_slab slabs[SE3DI_PARTICLE_SLABS_MAX];
     uint32_t slab_count;
     se3di_aligned block_memory, roll_memory;
     se3di_block *blocks;
@@ -315,7 +315,7 @@ typedef struct se3di_particles {
 
 /* What a force kernel works on. */
 typedef struct se3di_force_task {
-    const se3di_grain *grains;
+    const se3di_particle *particles;
     const se3di_spin *spins;
     se3di_load *loads;
     se3di_block *blocks;

@@ -95,7 +95,7 @@ static void measure_motion(se3di_particles *set)
 {
     double most = 0.0;
     for (size_t k = 0; k < set->count; ++k) {
-        const double *x = set->grains[k].x;
+        const double *x = set->particles[k].x;
         const double *o = set->origin + 3 * k;
         double d[3] = {x[0] - o[0], x[1] - o[1], x[2] - o[2]};
         most = se3di_larger(most, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
@@ -132,14 +132,14 @@ static void note_overlap(se3di_particles *set, uint32_t i, uint32_t j, uint32_t 
 }
 
 /* The place where it was a drift of length `back` ago. */
-static void place_before(const se3di_grain *g, double back, double x[3])
+static void place_before(const se3di_particle *g, double back, double x[3])
 {
     se3di_copy(g->x, x);
     se3di_add_scaled(-back, g->v, x);
 }
 
-static double pair_overlap(const se3di_particles *set, const se3di_grain *i, const se3di_grain *j,
-                           double back)
+static double pair_overlap(const se3di_particles *set, const se3di_particle *i,
+                           const se3di_particle *j, double back)
 {
     double d[3], at[3];
     place_before(i, back, d);
@@ -149,7 +149,7 @@ static double pair_overlap(const se3di_particles *set, const se3di_grain *i, con
     return (i->radius + j->radius - se3di_norm(d)) / fmin(i->radius, j->radius);
 }
 
-static double wall_overlap(const se3di_particles *set, uint32_t wall, const se3di_grain *i,
+static double wall_overlap(const se3di_particles *set, uint32_t wall, const se3di_particle *i,
                            double back)
 {
     double at[3], x[3];
@@ -169,21 +169,21 @@ static void find_overlap(se3di_particles *set, double back, int placed)
         const se3di_slab *slab = &set->slabs[s];
         for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
             const se3di_block *block = &set->blocks[b];
-            for (int k = 0; k < SE3DI_GRAIN_LANES && block->i[k] < set->count; ++k) {
-                const se3di_grain *i = &set->grains[block->i[k]];
+            for (int k = 0; k < SE3DI_PARTICLE_LANES && block->i[k] < set->count; ++k) {
+                const se3di_particle *i = &set->particles[block->i[k]];
                 if (b >= slab->wall_begin) {
                     note_overlap(set, block->i[k], 0, block->j[0],
                                  wall_overlap(set, block->j[0], i, back));
                 } else {
                     note_overlap(set, block->i[k], block->j[k], SE3DI_NO_INDEX,
-                                 pair_overlap(set, i, &set->grains[block->j[k]], back));
+                                 pair_overlap(set, i, &set->particles[block->j[k]], back));
                 }
             }
         }
         for (uint32_t k = slab->mesh_begin; k < slab->mesh_end; ++k) {
             const se3di_mesh_pair *pair = &set->mesh_pairs[k];
             note_overlap(set, pair->i, 0, pair->wall,
-                         wall_overlap(set, pair->wall, &set->grains[pair->i], back));
+                         wall_overlap(set, pair->wall, &set->particles[pair->i], back));
         }
     }
 }
@@ -191,7 +191,7 @@ static void find_overlap(se3di_particles *set, double back, int placed)
 static se3d_status find_not_finite(se3di_particles *set)
 {
     for (size_t k = 0; k < set->count; ++k) {
-        const se3di_grain *g = &set->grains[k];
+        const se3di_particle *g = &set->particles[k];
         double sum = g->x[0] + g->x[1] + g->x[2] + g->v[0] + g->v[1] + g->v[2];
         if (!isfinite(sum)) {
             set->failed = set->spins[k].id;
@@ -231,7 +231,7 @@ static void sum_walls(se3di_particles *set)
 static se3di_force_task prepare(se3di_particles *set, double h)
 {
     se3di_force_task task = {
-        .grains = set->grains,
+        .particles = set->particles,
         .spins = set->spins,
         .loads = set->loads,
         .blocks = set->blocks,
@@ -336,8 +336,8 @@ double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *
         const se3di_stuff *stuff = &set->stuffs[s];
         for (size_t k = 0; stuff->held && k < set->count; ++k) {
             if (set->spins[k].material == s) {
-                lightest = fmin(lightest, 1.0 / set->grains[k].inverse_mass);
-                smallest = fmin(smallest, set->grains[k].radius);
+                lightest = fmin(lightest, 1.0 / set->particles[k].inverse_mass);
+                smallest = fmin(smallest, set->particles[k].radius);
             }
         }
         for (size_t k = 0; stuff->held && k < set->source_count; ++k) {
@@ -409,7 +409,7 @@ uint64_t se3di_particles_hash(const se3di_particles *set)
     for (size_t id = 0; id < set->id_count; ++id) {
         uint32_t k = set->index_of[id];
         if (k != SE3DI_NO_INDEX) {
-            hash = se3di_hash_bytes(hash, &set->grains[k], sizeof set->grains[k]);
+            hash = se3di_hash_bytes(hash, &set->particles[k], sizeof set->particles[k]);
             hash = se3di_hash_bytes(hash, set->spins[k].w, sizeof set->spins[k].w);
         }
     }

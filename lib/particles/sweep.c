@@ -36,24 +36,24 @@ static inline double move_kicked(se3di_particles *set, size_t begin, size_t end,
     const int drifts = drift != 0.0;
     double fastest = 0.0;
     for (size_t k = begin; k < end; ++k) {
-        se3di_grain *grain = &set->grains[k];
+        se3di_particle *particle = &set->particles[k];
         se3di_spin *spin = &set->spins[k];
         se3di_load *load = &set->loads[k];
-        const double mobility = grain->inverse_mass;
-        const double turn = 2.5 * mobility / (grain->radius * grain->radius);
+        const double mobility = particle->inverse_mass;
+        const double turn = 2.5 * mobility / (particle->radius * particle->radius);
         double v2 = 0.0;
         for (int a = 0; a < 3; ++a) {
             const double dv = half * (load->force[a] * mobility + set->gravity[a]);
             const double dw = half * (load->torque[a] * turn);
-            double v = grain->v[a], w = spin->w[a];
+            double v = particle->v[a], w = spin->w[a];
             for (int n = 0; n < kicks; ++n) {
                 v += dv;
                 w += dw;
             }
-            grain->v[a] = v;
+            particle->v[a] = v;
             spin->w[a] = w;
             v2 += v * v;
-            grain->x[a] += drift * v;
+            particle->x[a] += drift * v;
         }
         fastest = v2 <= fastest ? fastest : v2; /* NaN stays */
         if (drifts) {

@@ -215,7 +215,7 @@ static se3d_status reserve_sums(se3di_particles *set)
 {
     void *memory = set->wall_sums;
     se3d_status status = reserve(set, &memory, &set->wall_sum_capacity,
-                                 6 * set->wall_count * SE3DI_GRAIN_SLABS_MAX, sizeof(double));
+                                 6 * set->wall_count * SE3DI_PARTICLE_SLABS_MAX, sizeof(double));
     set->wall_sums = memory;
     return status;
 }

@@ -132,7 +132,7 @@ static se3d_status list_faces(se3di_particles *set, const se3di_wall *wall, cons
 /* One particle and one wall. */
 static se3d_status list_wall(se3di_particles *set, uint32_t i, uint32_t w)
 {
-    const se3di_grain *g = &set->grains[i];
+    const se3di_particle *g = &set->particles[i];
     const se3di_wall *wall = &set->walls[w];
     const double reach = g->radius + set->skin;
     const size_t face_begin = set->face_count;
@@ -170,10 +170,10 @@ static parcel enclose(const se3di_particles *set, uint32_t begin, uint32_t end)
 {
     parcel box = {.radius = 0.0};
     double low[3], high[3];
-    se3di_copy(set->grains[begin].x, low);
+    se3di_copy(set->particles[begin].x, low);
     se3di_copy(low, high);
     for (uint32_t i = begin; i < end; ++i) {
-        const se3di_grain *g = &set->grains[i];
+        const se3di_particle *g = &set->particles[i];
         for (int a = 0; a < 3; ++a) {
             low[a] = g->x[a] < low[a] ? g->x[a] : low[a];
             high[a] = g->x[a] > high[a] ? g->x[a] : high[a];

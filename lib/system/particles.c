@@ -356,7 +356,7 @@ se3d_status se3d_particles_get_radii(const se3d_particles *particles, size_t cou
     }
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
-        radius[k] = particles->set.grains[se3di_particles_next(&particles->set, &id)].radius;
+        radius[k] = particles->set.particles[se3di_particles_next(&particles->set, &id)].radius;
     }
     return SE3D_OK;
 }
@@ -368,12 +368,12 @@ se3d_status se3d_particles_get_all(const se3d_particles *particles, size_t count
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
         size_t index = se3di_particles_next(&particles->set, &id);
-        const se3di_grain *grain = &particles->set.grains[index];
+        const se3di_particle *particle = &particles->set.particles[index];
         if (r) {
-            se3di_copy(grain->x, r + 3 * k);
+            se3di_copy(particle->x, r + 3 * k);
         }
         if (v) {
-            se3di_copy(grain->v, v + 3 * k);
+            se3di_copy(particle->v, v + 3 * k);
         }
         if (w) {
             se3di_copy(particles->set.spins[index].w, w + 3 * k);
@@ -401,10 +401,10 @@ se3d_status se3d_particles_set_all(se3d_particles *particles, size_t count, cons
     for (size_t k = 0; k < count; ++k) {
         size_t index = se3di_particles_next(set, &id);
         if (r) {
-            se3di_copy(r + 3 * k, set->grains[index].x);
+            se3di_copy(r + 3 * k, set->particles[index].x);
         }
         if (v) {
-            se3di_copy(v + 3 * k, set->grains[index].v);
+            se3di_copy(v + 3 * k, set->particles[index].v);
         }
         if (w) {
             se3di_copy(w + 3 * k, set->spins[index].w);

@@ -102,6 +102,9 @@ language="python3 tools/check_language.py"
 printf '%s\n' '/* Where it is square' ' * to its axis, a = 0:' ' *' ' *     F = m (a +' ' * g)' ' */' >lib/math/prose.h
 reject 'prose.h:1: `square to`' $language
 reject 'prose.h:1: .*Where' $language
+printf '%s\n' '/* A grain. */' 'const char *se3di_heap = "grain";' 'int se3di_grains;' >lib/math/words.h
+reject 'words.h:1: `grain`: particle' $language
+reject 'words.h:3: `grains`: particle' $language
 reject 'prose.h:5: text right after a formula' $language
 printf '%s\n' '/* The list is read; where it' ' * fails nothing has changed. Degenerate where a = b. */' >lib/math/cases.h
 reject 'cases.h:1: `; where it`' $language

@@ -191,7 +191,7 @@ static uint64_t run_scene(const row *r, int32_t threads)
     return hash;
 }
 
-/* The grains of a bed meet at once. */
+/* The particles of a bed meet at once. */
 static const double strong[3] = {-300.0, 0.0, -400.0};
 
 static uint64_t run_bed(const row *r, int32_t threads)

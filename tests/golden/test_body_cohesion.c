@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Cohesion between bodies: the same law as between grains, and its energy. */
+/* Cohesion between bodies: the same law as between particles, and its energy. */
 #include "check.h"
 #include "se3d/se3d.h"
 
@@ -81,7 +81,7 @@ static double force_at(int32_t law, double cohesion, double adhesion, double del
     return force[2];
 }
 
-static void attraction_is_that_of_grains(void)
+static void attraction_is_that_of_particles(void)
 {
     const double pi = 3.14159265358979323846;
     for (int32_t law = 0; law < 2; ++law) {
@@ -146,7 +146,7 @@ static void a_ball_hangs_where_it_sticks(void)
 
 int main(void)
 {
-    RUN(attraction_is_that_of_grains);
+    RUN(attraction_is_that_of_particles);
     RUN(parting_takes_the_work_of_the_law);
     RUN(a_ball_hangs_where_it_sticks);
     return check_finish();

@@ -14,7 +14,7 @@
 typedef struct world {
     se3d_model *model;
     se3d_system *system;
-    se3d_particles *grains;
+    se3d_particles *particles;
     se3d_solver *solver;
     double r[3 * MOST], radius[MOST];
     size_t count;
@@ -29,7 +29,7 @@ static void open_world(world *w, const char *name)
     snprintf(path, sizeof path, "%.500s/examples/models/%s.yaml", root ? root : ".", name);
     CHECK(!se3d_model_read_file(path, NULL, &w->model, &error));
     w->system = se3d_model_get_system(w->model);
-    CHECK(!se3d_particles_find(w->system, "particles", &w->grains));
+    CHECK(!se3d_particles_find(w->system, "particles", &w->particles));
     CHECK(!se3d_model_get_solver(w->model, 0, &def));
     CHECK(!se3d_solver_create(w->system, &def, &w->solver));
 }
@@ -47,10 +47,10 @@ static void go(world *w, double t)
         fprintf(stderr, "%s\n", se3d_system_get_error(w->system));
     }
     CHECK(status >= 0);
-    w->count = se3d_particles_count(w->grains);
+    w->count = se3d_particles_count(w->particles);
     CHECK(w->count <= MOST);
-    CHECK(!se3d_particles_get_all(w->grains, w->count, w->r, NULL, NULL));
-    CHECK(!se3d_particles_get_radii(w->grains, w->count, w->radius));
+    CHECK(!se3d_particles_get_all(w->particles, w->count, w->r, NULL, NULL));
+    CHECK(!se3d_particles_get_radii(w->particles, w->count, w->radius));
 }
 
 static double mass_of(const world *w, size_t k)
@@ -84,7 +84,7 @@ static void hopper_discharges_through_its_gate_and_loses_nothing(void)
     double centre[3], before, middle, after;
     se3d_particles_stats stats;
     open_world(&w, "hopper");
-    size_t all = se3d_particles_count(w.grains);
+    size_t all = se3d_particles_count(w.particles);
     go(&w, 0.19);
     CHECK(w.count == all);
     before = mass_above(&w, -0.01, centre);
@@ -96,7 +96,7 @@ static void hopper_discharges_through_its_gate_and_loses_nothing(void)
     CHECK(middle < 0.97 * before);
     CHECK(middle - after > 0.1 * before);
     go(&w, 0.5);
-    CHECK(!se3d_particles_get_stats(w.grains, &stats));
+    CHECK(!se3d_particles_get_stats(w.particles, &stats));
     CHECK(stats.lost > 50 && w.count + stats.lost == all);
     close_world(&w);
 }

@@ -19,7 +19,7 @@
 
 typedef struct bed {
     se3d_system *system;
-    se3d_particles *grains;
+    se3d_particles *particles;
     se3d_material material;
     double r[3 * MOST], radius[MOST];
     size_t count;
@@ -35,7 +35,7 @@ static void open_bed(double depth, double friction, double rolling)
     CHECK(!se3d_system_create(NULL, &b.system));
     def.boundary[1] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
     def.upper[1] = depth;
-    CHECK(!se3d_particles_create(b.system, &def, &b.grains));
+    CHECK(!se3d_particles_create(b.system, &def, &b.particles));
     stuff.density = 2500.0;
     stuff.stiffness = 1000.0;
     stuff.friction = friction;
@@ -70,20 +70,20 @@ static void fill(double x0, double x1, double depth, double z0, double z1, doubl
     def.radius_max = 1.1 * radius;
     def.jitter = 0.05 * radius;
     def.seed = b.seed;
-    CHECK(!se3d_particles_fill_lattice(b.grains, &def, NULL));
+    CHECK(!se3d_particles_fill_lattice(b.particles, &def, NULL));
 }
 
 static void run(double t)
 {
-    se3d_status status = se3d_particles_run(b.grains, t);
+    se3d_status status = se3d_particles_run(b.particles, t);
     if (status < 0) {
         fprintf(stderr, "%s\n", se3d_system_get_error(b.system));
     }
     CHECK(status >= 0);
-    b.count = se3d_particles_count(b.grains);
+    b.count = se3d_particles_count(b.particles);
     CHECK(b.count <= MOST);
-    CHECK(!se3d_particles_get_all(b.grains, b.count, b.r, NULL, NULL));
-    CHECK(!se3d_particles_get_radii(b.grains, b.count, b.radius));
+    CHECK(!se3d_particles_get_all(b.particles, b.count, b.r, NULL, NULL));
+    CHECK(!se3d_particles_get_radii(b.particles, b.count, b.radius));
 }
 
 static double mass_between(double low, double high)
@@ -148,7 +148,7 @@ static void discharge_through_a_slot_follows_beverloo(void)
 }
 
 /* The slope of what a column leaves behind as it slumps, from the height of the layer's surface at
- * rest: least squares over its grains that are on top. */
+ * rest: least squares over its particles that are on top. */
 static double slump(double friction, double rolling)
 {
     const double d = 0.01, depth = 3.0 * d;

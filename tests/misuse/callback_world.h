@@ -23,7 +23,7 @@ static const char *const kind_names[KIND_COUNT] = {"force",     "function", "con
 typedef struct world {
     se3d_system *system;
     se3d_solver *solver;
-    se3d_particles *grains; /* NULL: none */
+    se3d_particles *particles; /* NULL: none */
     se3d_snapshot *snapshot;
     se3d_body ball, bar, kite;
     se3d_marker marker;
@@ -231,26 +231,26 @@ static void world_add_contact(world *w)
     CHECK(!se3d_shape_create_sphere(w->system, &shape, &w->pad));
 }
 
-static void world_add_grains(world *w)
+static void world_add_particles(world *w)
 {
     const double r[9] = {2.0, 0.0, 0.0299, 2.0, 0.0595, 0.0299, 2.0, 0.2, 0.0299};
     const double radius[3] = {0.03, 0.03, 0.03};
     se3d_fill_def fill = se3d_fill_def_default();
     se3d_particles_source_def source = se3d_particles_source_def_default();
     se3d_particles_sink_def sink = se3d_particles_sink_def_default();
-    CHECK(!se3d_particles_create(w->system, NULL, &w->grains));
-    CHECK(!se3d_particles_add(w->grains, w->stuff, 3, r, radius, NULL, NULL, NULL));
+    CHECK(!se3d_particles_create(w->system, NULL, &w->particles));
+    CHECK(!se3d_particles_add(w->particles, w->stuff, 3, r, radius, NULL, NULL, NULL));
     fill.material = w->stuff;
     fill.lower[0] = fill.lower[1] = fill.lower[2] = 5.0;
     fill.upper[0] = fill.upper[1] = fill.upper[2] = 6.0;
     fill.radius_min = fill.radius_max = 0.03;
     source.fill = &fill;
     source.function = w->value;
-    CHECK(!se3d_particles_add_source(w->grains, &source, &w->ids[0]));
+    CHECK(!se3d_particles_add_source(w->particles, &source, &w->ids[0]));
     sink.upper[0] = sink.lower[0] = -9.0;
     sink.upper[0] = sink.upper[1] = sink.upper[2] = -8.0;
     sink.lower[1] = sink.lower[2] = -9.0;
-    CHECK(!se3d_particles_add_sink(w->grains, &sink, &w->ids[0]));
+    CHECK(!se3d_particles_add_sink(w->particles, &sink, &w->ids[0]));
     w->ids[0] = 0;
 }
 
@@ -280,7 +280,7 @@ static void world_open(world *w, int32_t method)
     world_add_values(w);
     world_add_contact(w);
     if (method == SE3D_METHOD_VERLET) {
-        world_add_grains(w);
+        world_add_particles(w);
     }
     world_add_solver(w, method);
     CHECK(!se3d_snapshot_create(w->system, &w->snapshot));

@@ -8,7 +8,7 @@
 #include "check.h"
 #include "se3d/se3d.h"
 
-/* A hinged and a sliding body, a ball over a floor, a few grains beside it. */
+/* A hinged and a sliding body, a ball over a floor, a few particles beside it. */
 typedef struct world {
     se3d_system *system;
     se3d_body ground, hinged, sliding, ball;
@@ -50,7 +50,7 @@ typedef struct subject {
     const field *fields;
     void (*fill)(world *w, void *def);
     se3d_status (*create)(world *w, const void *def);
-    int with_grains;
+    int with_particles;
 } subject;
 
 static inline se3d_body world_body(world *w, const char *name, double x, double z)
@@ -82,7 +82,7 @@ static inline void world_touch(world *w)
     CHECK(se3d_shape_create_sphere(w->system, &shape, &made) == SE3D_OK);
 }
 
-static inline void world_add_grains(world *w)
+static inline void world_add_particles(world *w)
 {
     se3d_particles_def def = se3d_particles_def_default();
     const double r[6] = {3.0, 0.0, 0.1, 3.5, 0.0, 0.2};
@@ -92,7 +92,7 @@ static inline void world_add_grains(world *w)
     CHECK(se3d_particles_add(w->set, w->material, 2, r, radius, NULL, NULL, &first) == SE3D_OK);
 }
 
-static inline void world_open(world *w, int with_grains)
+static inline void world_open(world *w, int with_particles)
 {
     memset(w, 0, sizeof *w);
     se3d_joint_def joint = se3d_joint_def_default();
@@ -113,11 +113,11 @@ static inline void world_open(world *w, int with_grains)
     joint.point_j[0] = 1.0;
     CHECK(se3d_joint_create_prismatic(w->system, &joint, &w->slide) == SE3D_OK);
     world_touch(w);
-    if (with_grains) {
-        world_add_grains(w);
+    if (with_particles) {
+        world_add_particles(w);
     }
-    how.method = with_grains ? SE3D_METHOD_VERLET : SE3D_METHOD_GENERALIZED_ALPHA;
-    how.step = with_grains ? 0.0 : 5e-4;
+    how.method = with_particles ? SE3D_METHOD_VERLET : SE3D_METHOD_GENERALIZED_ALPHA;
+    how.step = with_particles ? 0.0 : 5e-4;
     CHECK(se3d_solver_create(w->system, &how, &w->solver) == SE3D_OK);
 }
 

@@ -58,10 +58,10 @@ static const row rows[] = {
 };
 #define ROWS (sizeof rows / sizeof *rows)
 
-/* Of grains if there are none. */
+/* Of particles if there are none. */
 static int is_void(const row *r, const world *w)
 {
-    return !w->grains && strncmp(r->name, "se3d_particles_", 15) == 0 &&
+    return !w->particles && strncmp(r->name, "se3d_particles_", 15) == 0 &&
            strcmp(r->name, "se3d_particles_create") != 0;
 }
 
@@ -267,9 +267,9 @@ static void particles_that_run_alone_are_guarded(void)
         w.kind = KIND_LAW;
         w.at = 1;
         w.meddle = k == 0 ? NULL : meddle_with_all;
-        CHECK(!se3d_particles_run(w.grains, DURATION) && !se3d_system_is_busy(w.system));
+        CHECK(!se3d_particles_run(w.particles, DURATION) && !se3d_system_is_busy(w.system));
         CHECK(w.calls[KIND_LAW] > 0);
-        hash[k] = se3d_particles_hash(w.grains);
+        hash[k] = se3d_particles_hash(w.particles);
         world_close(&w);
     }
     CHECK(hash[0] == hash[1]);

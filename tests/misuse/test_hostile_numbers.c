@@ -621,7 +621,7 @@ static int try_value(const subject *s, const field *f, size_t n, size_t k)
     def_storage def;
     char text[40];
     memset(&def, 0, sizeof def);
-    world_open(&w, s->with_grains);
+    world_open(&w, s->with_particles);
     s->fill(&w, &def);
     const int there = spoil((char *)&def, f, n, k, text);
     if (there) {
@@ -643,7 +643,7 @@ static void good_definitions_are_taken_and_run(void)
         world w;
         def_storage def;
         memset(&def, 0, sizeof def);
-        world_open(&w, subjects[k].with_grains);
+        world_open(&w, subjects[k].with_particles);
         subjects[k].fill(&w, &def);
         snprintf(where, sizeof where, "%s", subjects[k].name);
         expect(subjects[k].create(&w, &def) >= 0, "refused", se3d_system_get_error(w.system));

@@ -7,7 +7,7 @@
 static void leave_behind(world *w, se3d_particles **copy)
 {
     world_open(w, SE3D_METHOD_VERLET);
-    CHECK(!se3d_particles_clone(w->grains, copy));
+    CHECK(!se3d_particles_clone(w->particles, copy));
     CHECK(!se3d_solver_run(w->solver, 0.01));
     CHECK(se3d_solver_count_event_records(w->solver) > 0);
     se3d_snapshot_destroy(w->snapshot);

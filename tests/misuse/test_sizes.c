@@ -10,8 +10,8 @@
 
 typedef struct place {
     world w;
-    se3d_system *pair; /* of grains that touch */
-    se3d_particles *grains;
+    se3d_system *pair; /* of particles that touch */
+    se3d_particles *particles;
     se3d_modes *modes;
     se3d_model *model;
     se3d_run *run;
@@ -33,11 +33,11 @@ FILL(solver_get_start_change, se3d_start_change, p->w.solver)
 FILL(solver_get_event_record, se3d_event_record, p->w.solver, 0)
 FILL(modes_get_eigenvalue, se3d_eigenvalue, p->modes, 0)
 FILL(system_get_contacts, se3d_contact, p->w.system, 1)
-FILL(particles_get_source_stats, se3d_particles_source_stats, p->w.grains, 0)
-FILL(particles_get_tally, se3d_particles_tally, p->w.grains, 0)
-FILL(particles_get_contacts, se3d_particles_contact, p->grains, 1)
-FILL(particles_get_energy, se3d_particles_energy, p->w.grains)
-FILL(particles_get_stats, se3d_particles_stats, p->w.grains)
+FILL(particles_get_source_stats, se3d_particles_source_stats, p->w.particles, 0)
+FILL(particles_get_tally, se3d_particles_tally, p->w.particles, 0)
+FILL(particles_get_contacts, se3d_particles_contact, p->particles, 1)
+FILL(particles_get_energy, se3d_particles_energy, p->w.particles)
+FILL(particles_get_stats, se3d_particles_stats, p->w.particles)
 FILL(model_get_analysis, se3d_model_analysis, p->model, 0)
 FILL(model_get_output, se3d_model_output, p->model, 0)
 FILL(model_get_shape, se3d_model_shape, p->model, 0)
@@ -100,9 +100,9 @@ static void open_pair(place *p)
     stuff.stiffness = 1e4;
     CHECK(!se3d_system_create(NULL, &p->pair));
     CHECK(!se3d_material_create(p->pair, &stuff, &material));
-    CHECK(!se3d_particles_create(p->pair, NULL, &p->grains));
-    CHECK(!se3d_particles_add(p->grains, material, 2, r, radius, NULL, NULL, NULL));
-    CHECK(!se3d_particles_step(p->grains, 1));
+    CHECK(!se3d_particles_create(p->pair, NULL, &p->particles));
+    CHECK(!se3d_particles_add(p->particles, material, 2, r, radius, NULL, NULL, NULL));
+    CHECK(!se3d_particles_step(p->particles, 1));
 }
 
 static void open_place(place *p)

@@ -31,8 +31,8 @@ static void add_shape(world *w, se3d_material material, se3d_body body, const do
     CHECK(se3d_shape_create_box(w->system, &def, &shape) == SE3D_OK);
 }
 
-/* Grains fall into a bucket that hangs on a spring; a mesh is in it, and grains roll with friction.
- */
+/* Particles fall into a bucket that hangs on a spring; a mesh is in it, and particles roll with
+ * friction. */
 static se3d_status do_nothing(void *ctx, double t, const se3d_body_motion motion[2],
                               double wrench[12], double *K, double *D)
 {

@@ -59,9 +59,9 @@ enum {
     SCENE_MEMORY,
     SCENE_CONTACT,
     SCENE_EVENT,
-    SCENES,       /* of dynamics */
-    SCENE_DRIVEN, /* the bar alone, its motion determined */
-    SCENE_GRAINS  /* particles on the bar, for verlet */
+    SCENES,         /* of dynamics */
+    SCENE_DRIVEN,   /* the bar alone, its motion determined */
+    SCENE_PARTICLES /* particles on the bar, for verlet */
 };
 
 typedef struct world {
@@ -69,7 +69,7 @@ typedef struct world {
     se3d_solver *solver;
     se3d_body a, b;
     se3d_constraint pin;
-    se3d_particles *grains; /* NULL: none */
+    se3d_particles *particles; /* NULL: none */
 } world;
 
 static void add_push(const world *w, se3d_body ground)
@@ -156,7 +156,7 @@ static void add_floor(const world *w)
 }
 
 /* Particles in two layers on the bar, which they leave in the run, and a mesh beside it. */
-static void add_grains(world *w)
+static void add_particles(world *w)
 {
     static const double corners[9] = {0.0, -1.0, -0.06, 2.0, -1.0, -0.06, 1.0, 2.0, -0.06};
     static const uint32_t corner[3] = {0, 1, 2};
@@ -185,14 +185,14 @@ static void add_grains(world *w)
         r[k][1] = 0.0;
         r[k][2] = 0.0699 + 0.0395 * (k / 10);
     }
-    CHECK(!se3d_particles_create(w->system, &def, &w->grains));
-    CHECK(!se3d_particles_add(w->grains, shape.material, 20, r[0], radii, NULL, NULL, NULL));
+    CHECK(!se3d_particles_create(w->system, &def, &w->particles));
+    CHECK(!se3d_particles_add(w->particles, shape.material, 20, r[0], radii, NULL, NULL, NULL));
 }
 
 /* Of a step. */
 static double length_of(int scene)
 {
-    return scene == SCENE_GRAINS ? 1.0 / 16384.0 : 1.0 / 256.0;
+    return scene == SCENE_PARTICLES ? 1.0 / 16384.0 : 1.0 / 256.0;
 }
 
 /* A bar on a pin, and a body on a spring at its end. */
@@ -205,7 +205,7 @@ static void make(world *w, int scene, int32_t analysis, int32_t method)
     se3d_force made;
     calls = fails_at = 0;
     for_ever = 0;
-    w->grains = NULL;
+    w->particles = NULL;
     CHECK(!se3d_system_create(NULL, &w->system));
     CHECK(!se3d_system_get_ground(w->system, &ground));
     body.mass = 1.0;
@@ -245,8 +245,8 @@ static void make(world *w, int scene, int32_t analysis, int32_t method)
         add_memories(w);
     } else if (scene == SCENE_CONTACT) {
         add_floor(w);
-    } else if (scene == SCENE_GRAINS) {
-        add_grains(w);
+    } else if (scene == SCENE_PARTICLES) {
+        add_particles(w);
     }
     se3d_solver_def def = se3d_solver_def_default();
     def.analysis = analysis;
@@ -266,7 +266,7 @@ static void make(world *w, int scene, int32_t analysis, int32_t method)
 static void destroy(world *w)
 {
     se3d_solver_destroy(w->solver);
-    se3d_particles_destroy(w->grains);
+    se3d_particles_destroy(w->particles);
     se3d_system_destroy(w->system);
 }
 
@@ -276,12 +276,13 @@ static const double ends[CALLS] = {0.0, 0.0625, 0.0, 0.125, 0.1484375};
 
 static double end_of(const world *w, int k)
 {
-    return w->grains ? 0.25 * ends[k] : ends[k];
+    return w->particles ? 0.25 * ends[k] : ends[k];
 }
 
 static se3d_status call(const world *w, int k)
 {
-    return k == 2 ? se3d_solver_step(w->solver, length_of(w->grains ? SCENE_GRAINS : SCENE_FORCE))
+    return k == 2 ? se3d_solver_step(w->solver,
+                                     length_of(w->particles ? SCENE_PARTICLES : SCENE_FORCE))
                   : se3d_solver_run(w->solver, end_of(w, k));
 }
 
@@ -289,7 +290,7 @@ static se3d_status call(const world *w, int k)
 static uint64_t hash_of(const world *w)
 {
     const uint64_t bodies = se3d_system_hash(w->system);
-    return w->grains ? 31 * bodies + se3d_particles_hash(w->grains) : bodies;
+    return w->particles ? 31 * bodies + se3d_particles_hash(w->particles) : bodies;
 }
 
 /* The k-th call is to be made again, or to go on, where it has come to t. */
@@ -396,7 +397,7 @@ static void a_failure_leaves_the_last_accepted_step_in_every_method(void)
 
 static void particles_come_back_with_the_bodies(void)
 {
-    fail_everywhere(SCENE_GRAINS, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_VERLET);
+    fail_everywhere(SCENE_PARTICLES, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_VERLET);
 }
 
 static void so_it_does_in_every_analysis(void)

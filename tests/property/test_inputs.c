@@ -503,12 +503,12 @@ static void prescribed_values_are_met_from_the_next_step_on(void)
     }
 }
 
-/* A ball and a grain on a plane, pressed in by 1e-4 m, without gravity. */
+/* A ball and a particle on a plane, pressed in by 1e-4 m, without gravity. */
 static void materials_act_from_the_next_step_on(void)
 {
     const double none[3] = {0.0, 0.0, 0.0}, depth = 1e-4, k0 = 1e4,
                  mass = 4.0 / 3.0 * 3.14159265358979324;
-    for (int grain = 0; grain < 2; ++grain) {
+    for (int particle = 0; particle < 2; ++particle) {
         for (int pair = 0; pair < 2; ++pair) {
             se3d_system *system = NULL;
             se3d_solver *solver = NULL;
@@ -527,7 +527,7 @@ static void materials_act_from_the_next_step_on(void)
             se3d_shape_def plane = se3d_shape_def_default();
             plane.material = material;
             CHECK(!se3d_shape_create_plane(system, &plane, &shape));
-            if (grain) {
+            if (particle) {
                 se3d_particles_def make_set = se3d_particles_def_default();
                 CHECK(!se3d_particles_create(system, &make_set, &set));
                 CHECK(!se3d_particles_add(set, material, 1, x, &radius, NULL, NULL, NULL));
@@ -556,7 +556,7 @@ static void materials_act_from_the_next_step_on(void)
                 const double a0 = k * (1.0 - z) / mass;
                 z += h * speed + 0.5 * h * h * a0;
                 speed += 0.5 * h * (a0 + k * (1.0 - z) / mass);
-                if (grain) {
+                if (particle) {
                     CHECK(!se3d_particles_get_all(set, 1, x, v, NULL));
                 } else {
                     CHECK(!se3d_body_get_position(system, ball, x));

@@ -9,7 +9,7 @@
 
 typedef struct world {
     se3d_system *system;
-    se3d_particles *grains;
+    se3d_particles *particles;
     se3d_material material;
     se3d_body body;
     se3d_solver *solver;
@@ -23,7 +23,7 @@ static void open_world(world *w, const double gravity[3])
     CHECK(se3d_system_create(&def, &w->system) == SE3D_OK);
     se3d_particles_def set = se3d_particles_def_default();
     set.name = "sand";
-    CHECK(se3d_particles_create(w->system, &set, &w->grains) == SE3D_OK);
+    CHECK(se3d_particles_create(w->system, &set, &w->particles) == SE3D_OK);
     se3d_material_def stuff = se3d_material_def_default();
     stuff.density = 2500.0;
     stuff.stiffness = 1e4;
@@ -79,7 +79,7 @@ static void fill(world *w, const double lower[3], const double upper[3], const d
     def.jitter = 0.001;
     def.seed = 3;
     memcpy(def.velocity, v, sizeof def.velocity);
-    CHECK(se3d_particles_fill_lattice(w->grains, &def, NULL) == SE3D_OK);
+    CHECK(se3d_particles_fill_lattice(w->particles, &def, NULL) == SE3D_OK);
 }
 
 static void solve(world *w, int32_t formulation)
@@ -130,10 +130,10 @@ static void measure_momentum(const world *w, double sum[6], double *size)
         spin[k] -= r[k];
     }
     add_momentum(r, v, spin, sum, size);
-    size_t n = se3d_particles_count(w->grains);
+    size_t n = se3d_particles_count(w->particles);
     CHECK(n <= 1000);
-    CHECK(!se3d_particles_get_all(w->grains, n, x, xdot, turn));
-    CHECK(!se3d_particles_get_radii(w->grains, n, radius));
+    CHECK(!se3d_particles_get_all(w->particles, n, x, xdot, turn));
+    CHECK(!se3d_particles_get_radii(w->particles, n, radius));
     for (size_t i = 0; i < n; ++i) {
         double m = 2500.0 * 4.0 / 3.0 * 3.14159265358979323846 * pow(radius[i], 3.0);
         for (int k = 0; k < 3; ++k) {
@@ -174,7 +174,7 @@ static void momentum_of_bodies_and_particles_is_kept_to_rounding(void)
         add_box(&w, w.body, none, size);
         fill(&w, (double[3]){0.02, -0.08, 0.05}, (double[3]){0.2, 0.05, 0.12},
              (double[3]){0.1, 0.2, -1.5});
-        CHECK(se3d_particles_count(w.grains) > 40);
+        CHECK(se3d_particles_count(w.particles) > 40);
         measure_momentum(&w, before, &scale);
         solve(&w, formulation);
         go(&w, 0.2);
@@ -192,8 +192,8 @@ static void momentum_of_bodies_and_particles_is_kept_to_rounding(void)
 }
 
 /* A tray of 5 walls hangs by a revolute joint far above, damped: at rest the pin carries tray and
- * grains. */
-static void a_joint_carries_the_grains_in_its_tray(void)
+ * particles. */
+static void a_joint_carries_the_particles_in_its_tray(void)
 {
     const double g[3] = {0.0, 0.0, -9.81};
     world w;
@@ -221,9 +221,9 @@ static void a_joint_carries_the_grains_in_its_tray(void)
     solve(&w, SE3D_FORMULATION_ROMEGA);
     go(&w, 1.5);
     double mass = 2.0, radius[200], reaction[3], torque[3], violation[3];
-    size_t n = se3d_particles_count(w.grains);
+    size_t n = se3d_particles_count(w.particles);
     CHECK(n > 10 && n < 200);
-    CHECK(!se3d_particles_get_radii(w.grains, n, radius));
+    CHECK(!se3d_particles_get_radii(w.particles, n, radius));
     for (size_t k = 0; k < n; ++k) {
         mass += 2500.0 * 4.0 / 3.0 * 3.14159265358979323846 * pow(radius[k], 3.0);
     }
@@ -236,7 +236,7 @@ static void a_joint_carries_the_grains_in_its_tray(void)
     close_world(&w);
 }
 
-/* A driven blade pushes grains on a floor. */
+/* A driven blade pushes particles on a floor. */
 static void open_blade(world *w)
 {
     open_world(w, (double[3]){0.0, 0.0, -9.81});
@@ -276,18 +276,18 @@ static void a_snapshot_and_a_clone_continue_with_the_same_bits(void)
     CHECK(se3d_system_hash(clone) == middle);
     go(&w, 0.1);
     uint64_t end = se3d_system_hash(w.system);
-    uint64_t grains = se3d_particles_hash(w.grains);
+    uint64_t particles = se3d_particles_hash(w.particles);
     CHECK(end != middle);
     CHECK(!se3d_snapshot_restore(snapshot, w.system));
     CHECK(se3d_system_hash(w.system) == middle);
     go(&w, 0.1);
-    CHECK(se3d_system_hash(w.system) == end && se3d_particles_hash(w.grains) == grains);
+    CHECK(se3d_system_hash(w.system) == end && se3d_particles_hash(w.particles) == particles);
     CHECK(!se3d_solver_create(clone, &def, &solver));
     CHECK(se3d_solver_run(solver, 0.1) >= 0);
     CHECK(se3d_system_hash(clone) == end);
     CHECK(se3d_system_count_particles(clone) == 1);
-    CHECK(!se3d_particles_find(clone, "sand", &copy) && copy != w.grains);
-    CHECK(se3d_particles_hash(copy) == grains);
+    CHECK(!se3d_particles_find(clone, "sand", &copy) && copy != w.particles);
+    CHECK(se3d_particles_hash(copy) == particles);
     se3d_solver_destroy(solver);
     se3d_system_destroy(clone);
     se3d_snapshot_destroy(snapshot);
@@ -302,7 +302,7 @@ static void auto_is_verlet_where_there_are_particles(void)
     open_blade(&w);
     go(&w, 0.01);
     CHECK(!se3d_solver_get_method(w.solver, &name) && strcmp(name, "verlet") == 0);
-    CHECK(!se3d_system_get_time(w.system, &t) && !se3d_particles_get_time(w.grains, &time));
+    CHECK(!se3d_system_get_time(w.system, &t) && !se3d_particles_get_time(w.particles, &time));
     CHECK(t == 0.01 && time == 0.01);
     CHECK(!se3d_body_get_position(w.system, w.body, r));
     CHECK_NEAR(r[0], -0.1 + 0.1 * 0.01, 1e-14);
@@ -317,12 +317,12 @@ static void too_large_an_overlap_is_named_and_leaves_one_time_for_all(void)
     open_world(&w, (double[3]){0.0, 0.0, 0.0});
     add_floor(&w, 0.0);
     add_body(&w, 1.0, (double[3]){1.0, 0.0, 0.0}, (double[3]){0.1, 0.1, 0.1});
-    CHECK(!se3d_particles_add(w.grains, w.material, 1, x, &radius, v, NULL, NULL));
+    CHECK(!se3d_particles_add(w.particles, w.material, 1, x, &radius, v, NULL, NULL));
     solve(&w, SE3D_FORMULATION_ROMEGA);
     CHECK(se3d_solver_run(w.solver, 0.1) == SE3D_ERR_STEP_SIZE);
     CHECK_CONTAINS(se3d_system_get_error(w.system),
                    "particle 0 of sand and the shape without a name overlap by");
-    CHECK(!se3d_system_get_time(w.system, &t) && !se3d_particles_get_time(w.grains, &time));
+    CHECK(!se3d_system_get_time(w.system, &t) && !se3d_particles_get_time(w.particles, &time));
     CHECK(t == time && t > 0.0023 && t < 0.0026);
     CHECK_CONTAINS(se3d_system_get_error(w.system), "at time 0.00");
     close_world(&w);
@@ -331,7 +331,7 @@ static void too_large_an_overlap_is_named_and_leaves_one_time_for_all(void)
 int main(void)
 {
     RUN(momentum_of_bodies_and_particles_is_kept_to_rounding);
-    RUN(a_joint_carries_the_grains_in_its_tray);
+    RUN(a_joint_carries_the_particles_in_its_tray);
     RUN(a_snapshot_and_a_clone_continue_with_the_same_bits);
     RUN(auto_is_verlet_where_there_are_particles);
     RUN(too_large_an_overlap_is_named_and_leaves_one_time_for_all);

@@ -122,8 +122,8 @@ static void check_lists(world *w, se3d_particles *set)
     w->law.calls = NULL;
 }
 
-/* Grains fall through each other onto a plane, a sphere and a mesh. */
-static void run_grains(world *w, int threads, double *r, double *v, double *spin)
+/* Particles fall through each other onto a plane, a sphere and a mesh. */
+static void run_particles(world *w, int threads, double *r, double *v, double *spin)
 {
     se3d_particles *set;
     se3d_particles_def def = se3d_particles_def_default();
@@ -156,7 +156,7 @@ static void particles_with_a_copy_of_hooke_move_as_with_hooke(void)
     for (int own = 0; own < 2; ++own) {
         world w;
         open_world(&w, own, 9.81);
-        run_grains(&w, 1, r[own], v[own], spin[own]);
+        run_particles(&w, 1, r[own], v[own], spin[own]);
         se3d_system_destroy(w.system);
     }
     for (int k = 0; k < 180; ++k) {
@@ -173,7 +173,7 @@ static void threads_do_not_change_the_bits_of_a_law(void)
         world w;
         open_world(&w, 1, 9.81);
         w.law.twist = 1e-3;
-        run_grains(&w, k == 0 ? 1 : 3, r[k], v[k], spin[k]);
+        run_particles(&w, k == 0 ? 1 : 3, r[k], v[k], spin[k]);
         se3d_system_destroy(w.system);
     }
     CHECK(memcmp(r[0], r[1], sizeof r[0]) == 0 && memcmp(spin[0], spin[1], sizeof spin[0]) == 0);

@@ -12,12 +12,12 @@
 #define BODY(x) "se3d: 1\nbodies:\n  - {name: bar, " x "}\n"
 #define WITH(x) "se3d: 1\n" BAR PIN x "\n"
 
-#define GRAINS(x)                                                                                  \
+#define PARTICLES(x)                                                                               \
     "se3d: 1\nmaterials: [{name: glass, density: 2500, stiffness: 1e5}]\nparticles: [{" x "}]\n"
 #define SHAPES(x)                                                                                  \
     "se3d: 1\ncontact: {}\nmaterials: [{name: glass, density: 2500, stiffness: 1e5}]\n"            \
     "bodies: [{name: b, fixed: true, shapes: [{type: sphere, " x "}]}]\n"
-#define GLASS GRAINS("material: glass, radius: 0.1, upper: [1, 1, 1]")
+#define GLASS PARTICLES("material: glass, radius: 0.1, upper: [1, 1, 1]")
 
 typedef struct bad_input {
     const char *text;
@@ -47,24 +47,30 @@ static const bad_input table[] = {
     {"se3d: one\n", 1, 7, {"se3d: `one`"}},
     {"se3d: 1\nbodys: []\n", 2, 1, {"the key `bodys` is unknown", "did you mean `bodies`"}},
     {"se3d: 1\nzzz: 1\n", 2, 1, {"`zzz` is unknown", "allowed are", "gravity"}},
-    {GRAINS("material: sand, radius: 0.1"), 3, 24, {"particles[0].material: no material is named"}},
-    {GRAINS("radius: 0.1"), 3, 13, {"particles[0].material: is missing"}},
-    {GRAINS("material: glass, lower: [0, 0, 0]"), 3, 13, {"particles[0].radius: is missing"}},
-    {GRAINS("material: glass, radius: 0"), 3, 0, {"radius: is 0", "> 0"}},
-    {GRAINS("material: glass, radius: 1, upper: [9, 9, 9], count: 1.5"), 3, 0, {"whole number"}},
-    {GRAINS("material: glass, radius: 1, packing: dense"), 3, 0, {"lattice, random"}},
-#define FED(x) GRAINS("material: glass, radius: 0.1, upper: [1, 1, 1], source: {" x "}")
-    {GRAINS("material: glass, file: nowhere.csv"), 3, 0, {"file: `nowhere.csv`: the file cannot"}},
-    {GRAINS("material: glass, file: a.csv, radius: 1"), 3, 0, {"no effect with `file`"}},
-    {GRAINS("material: glass, name: a.b, radius: 1"), 3, 0, {"name"}},
-    {GRAINS("material: glass, name: ground, radius: 1"), 3, 0, {"`ground` is taken"}},
+    {PARTICLES("material: sand, radius: 0.1"),
+     3,
+     24,
+     {"particles[0].material: no material is named"}},
+    {PARTICLES("radius: 0.1"), 3, 13, {"particles[0].material: is missing"}},
+    {PARTICLES("material: glass, lower: [0, 0, 0]"), 3, 13, {"particles[0].radius: is missing"}},
+    {PARTICLES("material: glass, radius: 0"), 3, 0, {"radius: is 0", "> 0"}},
+    {PARTICLES("material: glass, radius: 1, upper: [9, 9, 9], count: 1.5"), 3, 0, {"whole number"}},
+    {PARTICLES("material: glass, radius: 1, packing: dense"), 3, 0, {"lattice, random"}},
+#define FED(x) PARTICLES("material: glass, radius: 0.1, upper: [1, 1, 1], source: {" x "}")
+    {PARTICLES("material: glass, file: nowhere.csv"),
+     3,
+     0,
+     {"file: `nowhere.csv`: the file cannot"}},
+    {PARTICLES("material: glass, file: a.csv, radius: 1"), 3, 0, {"no effect with `file`"}},
+    {PARTICLES("material: glass, name: a.b, radius: 1"), 3, 0, {"name"}},
+    {PARTICLES("material: glass, name: ground, radius: 1"), 3, 0, {"`ground` is taken"}},
     {FED("rate: 1, mass_rate: 1"), 3, 0, {"source: must have either `rate`"}},
     {FED("start: 1"), 3, 0, {"source: must have either `rate`"}},
     {FED("rate: -1"), 3, 0, {"source.rate: is -1", ">= 0"}},
     {FED("rate: 2*u"), 3, 0, {"source.rate"}},
     {FED("rate: 1, until: 3"), 3, 0, {"`until` is unknown"}},
     {FED("rate: 1, every: -1"), 3, 0, {"source.every: is -1"}},
-    {GRAINS("material: glass, radius: 0.1, source: {rate: 1}, spacing: 1"),
+    {PARTICLES("material: glass, radius: 0.1, source: {rate: 1}, spacing: 1"),
      3,
      0,
      {"with `source`"}},
@@ -117,7 +123,7 @@ static const bad_input table[] = {
      0,
      0,
      {"radius: is 0.1 m", "periodic along y and only 0.3 m long"}},
-    {GRAINS("material: glass, radius: 0.1, upper: [1, 1, 1], packing: random, count: 300"),
+    {PARTICLES("material: glass, radius: 0.1, upper: [1, 1, 1], packing: random, count: 300"),
      0,
      0,
      {"count: is 300", "the volume of 239 particles only"}},
@@ -127,22 +133,23 @@ static const bad_input table[] = {
      5,
      18,
      {"analysis.type: is `equilibrium`", "must be dynamics or kinematics"}},
-    {GRAINS("material: glass, radius: 0.1, lower: [0, 0, 0], upper: [1, 1, 1]") "analysis: {type: "
-                                                                                "dynamics, "
-                                                                                "duration: 1, "
-                                                                                "method: hht}\n",
+    {PARTICLES(
+         "material: glass, radius: 0.1, lower: [0, 0, 0], upper: [1, 1, 1]") "analysis: {type: "
+                                                                             "dynamics, "
+                                                                             "duration: 1, "
+                                                                             "method: hht}\n",
      4,
      49,
      {"analysis.method: must be verlet"}},
-    {GRAINS("material: glass, radius: {tables: []}"), 3, 0, {"unknown", "table"}},
-    {GRAINS("material: glass, radius: {table: []}"), 3, 0, {"[[radius, frequency], ...]"}},
-    {GRAINS("material: glass, radius: {table: [[0.1]]}"), 3, 0, {"radius.table[0]"}},
-    {GRAINS("material: glass, radius: 0.1, region: cone"), 3, 0, {"region: ", "cylinder"}},
-    {GRAINS("material: glass, radius: 0.1, axis: x"),
+    {PARTICLES("material: glass, radius: {tables: []}"), 3, 0, {"unknown", "table"}},
+    {PARTICLES("material: glass, radius: {table: []}"), 3, 0, {"[[radius, frequency], ...]"}},
+    {PARTICLES("material: glass, radius: {table: [[0.1]]}"), 3, 0, {"radius.table[0]"}},
+    {PARTICLES("material: glass, radius: 0.1, region: cone"), 3, 0, {"region: ", "cylinder"}},
+    {PARTICLES("material: glass, radius: 0.1, axis: x"),
      3,
      0,
      {"axis: is only for `region: cylinder`"}},
-    {GRAINS("material: glass, radius: {table: [[0.1, 0]]}, lower: [0, 0, 0], upper: [1, 1, 1]"),
+    {PARTICLES("material: glass, radius: {table: [[0.1, 0]]}, lower: [0, 0, 0], upper: [1, 1, 1]"),
      3,
      0,
      {"weights"}},

@@ -10,8 +10,8 @@
 #define MODEL(shapes, entry)                                                                       \
     "se3d: 1\ncontact: {}\nmaterials: [{name: m, density: 1, stiffness: 1e4}]\n"                   \
     "bodies: [{name: b, fixed: true, shapes: [" shapes "]}]\n" entry
-#define GRAINS(file) MODEL("", "particles: [{material: m, file: " file "}]\n")
-#define MESH(file)   MODEL("{type: mesh, material: m, file: " file "}", "")
+#define PARTICLES(file) MODEL("", "particles: [{material: m, file: " file "}]\n")
+#define MESH(file)      MODEL("{type: mesh, material: m, file: " file "}", "")
 
 /* `text` with a mark and CR LF in place of LF. @return its length */
 static size_t as_elsewhere(const char *text, char *to, size_t size)
@@ -67,7 +67,7 @@ static void errors_of_such_models_have_the_same_places(void)
 
 static void tables_and_meshes_with_a_mark_and_crlf_are_read(void)
 {
-    static const char *const models[] = {GRAINS("se3d_test.csv"), MESH("se3d_test.stl"),
+    static const char *const models[] = {PARTICLES("se3d_test.csv"), MESH("se3d_test.stl"),
                                          MESH("se3d_test.obj")};
     write_as_elsewhere("se3d_test.csv", "x,y,z,radius,material\n0,0,0,0.1,m\n\n1,0,0,0.1,m\n");
     write_as_elsewhere("se3d_test.stl",
@@ -91,7 +91,7 @@ static void tables_and_meshes_with_a_mark_and_crlf_are_read(void)
 /* Such as /etc/passwd: the first words of a line are shown, and nothing that moves a cursor. */
 static void little_of_another_file_is_shown(void)
 {
-    static const char *const models[] = {GRAINS("se3d_test.csv"), MESH("se3d_test.stl"),
+    static const char *const models[] = {PARTICLES("se3d_test.csv"), MESH("se3d_test.stl"),
                                          MESH("se3d_test.obj")};
     static const char secret[] = "root:\x1b[2J:0:0:a-long-line-with-a-secret:/root\nmore-secret\n";
     scratch_write("se3d_test.csv", secret, sizeof secret - 1);
@@ -110,7 +110,7 @@ static void little_of_another_file_is_shown(void)
 
 static void what_is_no_plain_file_is_refused_and_not_waited_for(void)
 {
-    static const char *const models[] = {GRAINS("/dev/zero"), GRAINS("."), MESH("/dev/null")};
+    static const char *const models[] = {PARTICLES("/dev/zero"), PARTICLES("."), MESH("/dev/null")};
     for (size_t k = 0; k < sizeof models / sizeof *models; ++k) {
         se3d_model_error error = {0, 0, ""};
         CHECK(!scratch_read_model(models[k], &error));

@@ -38,8 +38,8 @@ static const char *results_folder(void)
     return folder;
 }
 
-/* Number `column` of line `line` (0: the header) of grains.csv. */
-static double grain(size_t line, size_t column)
+/* Number `column` of line `line` (0: the header) of particles.csv. */
+static double particle(size_t line, size_t column)
 {
     char text[1000] = "";
     snprintf(text, sizeof text, "%s/grains.csv", results_folder());
@@ -73,7 +73,7 @@ static double channel(const se3d_model *model, size_t k)
     "output:\n  - {file: s.csv, every: 0.05, channels: [contacts.count, particles.count, "         \
     "particles.lost, particles.energy]}\n  - {file: grains.csv, every: 0.1, particles: true}\n"
 
-static void grain_falls_and_bounces_with_its_restitution(void)
+static void particle_falls_and_bounces_with_its_restitution(void)
 {
     se3d_status status = SE3D_OK;
     se3d_model *model =
@@ -83,12 +83,12 @@ static void grain_falls_and_bounces_with_its_restitution(void)
     CHECK(status >= 0);
     const double pi = acos(-1.0);
     const double mass = 2500.0 * 4.0 / 3.0 * pi * 1e-6;
-    CHECK_NEAR(grain(1, 0), 0.0, 0.0);
-    CHECK_NEAR(grain(1, 2), 0.01, 0.0);
-    CHECK_NEAR(grain(1, 5), 0.5, 1e-12);
-    CHECK_NEAR(grain(3, 0), 0.2, 1e-12);
-    CHECK_NEAR(grain(3, 5), 0.5 - 0.5 * 9.81 * 0.04, 1e-9);
-    CHECK_NEAR(grain(3, 8), -9.81 * 0.2, 1e-9);
+    CHECK_NEAR(particle(1, 0), 0.0, 0.0);
+    CHECK_NEAR(particle(1, 2), 0.01, 0.0);
+    CHECK_NEAR(particle(1, 5), 0.5, 1e-12);
+    CHECK_NEAR(particle(3, 0), 0.2, 1e-12);
+    CHECK_NEAR(particle(3, 5), 0.5 - 0.5 * 9.81 * 0.04, 1e-9);
+    CHECK_NEAR(particle(3, 8), -9.81 * 0.2, 1e-9);
     /* The energy of the second flight is e^2 of the first: heights above the touching centre. */
     const double energy = channel(model, 3);
     CHECK_NEAR(energy, mass * 9.81 * (0.01 + 0.64 * 0.49), 5e-3 * energy);
@@ -98,9 +98,9 @@ static void grain_falls_and_bounces_with_its_restitution(void)
     se3d_model_destroy(model);
 }
 
-/* A piston at 2 m/s throws a grain at rest to (1 + e) 2 m/s, within what the automatic step keeps
- * of the restitution. */
-static void driven_wall_throws_a_grain(void)
+/* A piston at 2 m/s throws a particle at rest to (1 + e) 2 m/s, within what the automatic step
+ * keeps of the restitution. */
+static void driven_wall_throws_a_particle(void)
 {
     se3d_status status = SE3D_OK;
     se3d_model *model = run_model(
@@ -113,14 +113,14 @@ static void driven_wall_throws_a_grain(void)
               "analysis: {type: kinematics, duration: 0.2}\n" OUTPUT,
         results_folder(), &status);
     CHECK(status >= 0);
-    CHECK_NEAR(grain(2, 8), 3.6, 8e-3);
-    CHECK_NEAR(grain(3, 8), 3.6, 8e-3);
+    CHECK_NEAR(particle(2, 8), 3.6, 8e-3);
+    CHECK_NEAR(particle(3, 8), 3.6, 8e-3);
     /* It was touched when the piston's face, at 0.35, had gone 0.14 m: at 0.07 s. */
-    CHECK_NEAR(grain(3, 5), 0.5 + 3.6 * 0.13, 4e-3);
+    CHECK_NEAR(particle(3, 5), 0.5 + 3.6 * 0.13, 4e-3);
     se3d_model_destroy(model);
 }
 
-static void grains_that_leave_through_a_sink_are_counted(void)
+static void particles_that_leave_through_a_sink_are_counted(void)
 {
     se3d_status status = SE3D_OK;
     se3d_model *model =
@@ -235,7 +235,7 @@ static void tables_are_refused_with_line_and_column(void)
     }
 }
 
-/* Two grains rest on a plane, one on the other's side of a wall: contacts carry the weight. */
+/* Two particles rest on a plane, one on the other's side of a wall: contacts carry the weight. */
 static void contacts_are_listed_with_their_forces(void)
 {
     static char text[20000];
@@ -262,7 +262,7 @@ static void contacts_are_listed_with_their_forces(void)
     const double pi = acos(-1.0);
     const double weight = 9.81 * 2500.0 * 4.0 / 3.0 * pi * 1e-6;
     CHECK_NEAR(v[2], 0.0, 1e-12);  /* on the plane */
-    CHECK_NEAR(v[5], -1.0, 1e-12); /* from the grain to the floor */
+    CHECK_NEAR(v[5], -1.0, 1e-12); /* from the particle to the floor */
     CHECK_NEAR(v[7], weight, 1e-3 * weight);
     CHECK_NEAR(v[6], weight / 1e4, 1e-2 * weight / 1e4);
 }
@@ -298,8 +298,8 @@ int main(void)
     RUN(tables_are_refused_with_line_and_column);
     RUN(contacts_are_listed_with_their_forces);
     RUN(chute_counts_what_flows);
-    RUN(grain_falls_and_bounces_with_its_restitution);
-    RUN(driven_wall_throws_a_grain);
-    RUN(grains_that_leave_through_a_sink_are_counted);
+    RUN(particle_falls_and_bounces_with_its_restitution);
+    RUN(driven_wall_throws_a_particle);
+    RUN(particles_that_leave_through_a_sink_are_counted);
     return check_finish();
 }

@@ -121,7 +121,7 @@ static void energies_at_an_event_take_one_evaluation_of_the_forces(void)
     CHECK_NEAR((double)two, (double)one, 0.0);
 }
 
-#define GRAINS                                                                                     \
+#define PARTICLES                                                                                  \
     "se3d: 1\nmaterials: [{name: glass, density: 2500, stiffness: 1e4}]\n"                         \
     "particles: [{material: glass, radius: 0.01, count: 2, lower: [-0.05, -0.011, -0.0119], "      \
     "upper: [0.05, 0.011, 0.0101], velocity: [0, 0, 0]}]\n"                                        \
@@ -131,13 +131,14 @@ static void energies_at_an_event_take_one_evaluation_of_the_forces(void)
 
 static void contacts_of_a_time_take_one_evaluation_of_the_forces(void)
 {
-    const size_t none =
-        run(GRAINS, "output: [{file: a.csv, every: 0.01, channels: [particles.count]}]\n", set_law);
+    const size_t none = run(
+        PARTICLES, "output: [{file: a.csv, every: 0.01, channels: [particles.count]}]\n", set_law);
     const size_t one =
-        run(GRAINS, "output: [{file: c.csv, every: 0.01, contacts: true}]\n", set_law);
-    const size_t largest = run(
-        GRAINS, "output: [{file: a.csv, every: 0.01, channels: [contacts.force_max]}]\n", set_law);
-    const size_t all = run(GRAINS,
+        run(PARTICLES, "output: [{file: c.csv, every: 0.01, contacts: true}]\n", set_law);
+    const size_t largest =
+        run(PARTICLES, "output: [{file: a.csv, every: 0.01, channels: [contacts.force_max]}]\n",
+            set_law);
+    const size_t all = run(PARTICLES,
                            "output:\n  - {file: c.csv, every: 0.01, contacts: true}\n"
                            "  - {file: d.csv, every: 0.01, contacts: true}\n"
                            "  - {vtk: e.pvd, every: 0.01}\n"

@@ -76,10 +76,10 @@ static void check_list(const se3di_particles *set)
         for (size_t j = i + 1; j < set->count; ++j) {
             double d[3];
             for (int a = 0; a < 3; ++a) {
-                d[a] = set->grains[i].x[a] - set->grains[j].x[a];
+                d[a] = set->particles[i].x[a] - set->particles[j].x[a];
             }
             se3di_particles_wrap(set, d);
-            double reach = set->grains[i].radius + set->grains[j].radius + set->skin;
+            double reach = set->particles[i].radius + set->particles[j].radius + set->skin;
             expected += d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach;
         }
     }

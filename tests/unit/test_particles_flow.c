@@ -183,7 +183,7 @@ static void source_ends_at_its_maximum(void)
     bed_close(&b.bed);
 }
 
-/* A chute: grains fall from a source through a heap on a plate into a sink. */
+/* A chute: particles fall from a source through a heap on a plate into a sink. */
 static void open_chute(int threads)
 {
     se3d_particles_def set = se3d_particles_def_default();
@@ -342,7 +342,7 @@ static void what_leaves_an_open_domain_is_counted(void)
     bed_close(&b.bed);
 }
 
-/* Two grains fall: one onto a plate, one beside it. */
+/* Two particles fall: one onto a plate, one beside it. */
 static void fall_without_end_is_counted(void)
 {
     for (int floor = 0; floor < 2; ++floor) {

@@ -12,15 +12,15 @@
 
 static const char header[] = "time,id,radius,x,y,z,";
 
-enum { LINE = 1024, GRAINS_MAX = 1 << 22, BYTES_MAX = 16 << 20, ABSENT = 65535 };
+enum { LINE = 1024, PARTICLES_MAX = 1 << 22, BYTES_MAX = 16 << 20, ABSENT = 65535 };
 
 /* The beginning of a row. */
-typedef struct grain {
+typedef struct particle {
     double time;
     double id;
     double radius;
     double r[3];
-} grain;
+} particle;
 
 typedef struct pack {
     double low[3], high[3];
@@ -57,7 +57,7 @@ int snapshots_is(const char *path)
     return is;
 }
 
-static int read_grain(FILE *file, grain *g)
+static int read_particle(FILE *file, particle *g)
 {
     char line[LINE];
     double *const into[6] = {&g->time, &g->id, &g->radius, &g->r[0], &g->r[1], &g->r[2]};
@@ -93,13 +93,13 @@ static FILE *open_rows(const char *path)
 /* The first reading: how many, and within which box. */
 static int survey(pack *p, const char *path)
 {
-    grain g;
+    particle g;
     double time = 0.0;
     FILE *file = open_rows(path);
     if (!file) {
         return 0;
     }
-    for (size_t rows = 0; read_grain(file, &g); ++rows) {
+    for (size_t rows = 0; read_particle(file, &g); ++rows) {
         if (rows == 0) {
             p->first = p->last = g.id;
             memcpy(p->low, g.r, sizeof g.r);
@@ -118,7 +118,7 @@ static int survey(pack *p, const char *path)
     return 1;
 }
 
-static void put_place(pack *p, const grain *g)
+static void put_place(pack *p, const particle *g)
 {
     const size_t k = (size_t)(g->id - p->first);
     p->radii[k] = (float)g->radius;
@@ -146,12 +146,12 @@ static void put_snapshot(FILE *out, const pack *p, size_t number)
 /* The second reading: the snapshots, then what belongs to all. */
 static void put_all(FILE *out, pack *p, FILE *file, double *times)
 {
-    grain g;
+    particle g;
     size_t number = 0;
     size_t kept = 0;
     double time = 0.0;
     fputs("{\"frames\":[", out);
-    while (read_grain(file, &g)) {
+    while (read_particle(file, &g)) {
         if (number == 0 || g.time > time) {
             put_snapshot(out, p, number++);
             memset(p->places, 0xff, 6 * count_of(p));
@@ -182,7 +182,7 @@ int snapshots_put(FILE *out, const char *command, const char *path)
         fprintf(stderr, "se3d %s: %s: %s\n", command, path, strerror(errno));
         return 0;
     }
-    if (p.snapshots == 0 || !(p.last - p.first < GRAINS_MAX)) {
+    if (p.snapshots == 0 || !(p.last - p.first < PARTICLES_MAX)) {
         fputs("null", out);
         return 1;
     }

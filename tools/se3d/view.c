@@ -184,8 +184,8 @@ typedef struct page {
     int is_passing; /* the cache is a folder of this page alone */
     char *glb;
     size_t glb_size;
-    table results;                /* empty: there are none */
-    char grains[PATH_SIZE + 300]; /* file of snapshots; "": none */
+    table results;                   /* empty: there are none */
+    char particles[PATH_SIZE + 300]; /* file of snapshots; "": none */
     const char *command;
 } page;
 
@@ -203,8 +203,8 @@ static int put_page(FILE *file, const page *p)
     fputs("</script>\n<script type=\"application/json\" id=\"results\">", file);
     good = good && put_table(file, &p->results);
     fputs("</script>\n<script type=\"application/json\" id=\"grains\">", file);
-    if (p->grains[0]) {
-        good = good && snapshots_put(file, p->command, p->grains);
+    if (p->particles[0]) {
+        good = good && snapshots_put(file, p->command, p->particles);
     } else {
         fputs("null", file);
     }
@@ -299,8 +299,8 @@ int view_write(const char *command, const char *folder, const char *path)
                 name, folder);
     } else if (!find_results(folder, 0, name, sizeof name) ||
                table_read(&p->results, command, name)) {
-        if (!find_results(folder, 1, p->grains, sizeof p->grains)) {
-            p->grains[0] = '\0';
+        if (!find_results(folder, 1, p->particles, sizeof p->particles)) {
+            p->particles[0] = '\0';
         }
         code = prepare(p, command);
         code = code == EXIT_DONE ? write_page(p, path) : code;

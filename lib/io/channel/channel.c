@@ -10,8 +10,8 @@
 #include "io/document/document.h"
 #include "io/document/guess.h"
 #include "io/document/keys.h"
-#include "io/model/grains.h"
 #include "io/model/model.h"
+#include "io/model/tagged.h"
 
 enum { DEFAULT_ELEMENTS_MAX = 100 };
 
@@ -239,7 +239,7 @@ static bool find_contacts(const se3d_model *model, const char *name, se3di_chann
     for (const quantity_name *q = contact_names; q->name; ++q) {
         if (strcmp(q->name, name) == 0) {
             channel->quantity = q->quantity;
-            channel->particles = model->grains ? model->grains->set : NULL;
+            channel->particles = model->particles ? model->particles->set : NULL;
             return true;
         }
     }
@@ -248,10 +248,10 @@ static bool find_contacts(const se3d_model *model, const char *name, se3di_chann
 
 static bool find_particles(const se3d_model *model, const char *name, se3di_channel *channel)
 {
-    for (const quantity_name *q = particle_names; model->grains && q->name; ++q) {
+    for (const quantity_name *q = particle_names; model->particles && q->name; ++q) {
         if (strcmp(q->name, name) == 0) {
             channel->quantity = q->quantity;
-            channel->particles = model->grains->set;
+            channel->particles = model->particles->set;
             return true;
         }
     }
@@ -329,13 +329,13 @@ static bool find_marker(const se3d_model *model, const se3di_body_entry *body, c
 /* A set of particles or a sink; returns whether there is one of that name. */
 static bool find_flow(const se3d_model *model, const char *head, se3di_channel *channel, offer *o)
 {
-    const size_t set = se3di_grains_find_set(model->grains, head);
-    const size_t sink = se3di_grains_find_sink(model->grains, head);
+    const size_t set = se3di_tagged_find_set(model->particles, head);
+    const size_t sink = se3di_tagged_find_sink(model->particles, head);
     if (set == SIZE_MAX && sink == SIZE_MAX) {
         return false;
     }
-    channel->grains = model->grains;
-    channel->particles = model->grains->set;
+    channel->tagged = model->particles;
+    channel->particles = model->particles->set;
     channel->index = (uint32_t)(set != SIZE_MAX ? set : sink);
     offer_names(o, set != SIZE_MAX ? set_names : sink_names);
     return true;
@@ -488,7 +488,7 @@ static void list_one(channel_list *c, se3di_channel channel, const char *const p
 
 static bool has_contacts(const se3d_model *model)
 {
-    return se3di_node_get(model->root, "contact") || model->grains;
+    return se3di_node_get(model->root, "contact") || model->particles;
 }
 
 static void list_bodies(channel_list *c)
@@ -555,13 +555,13 @@ se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count)
     }
     for (const quantity_name *q = contact_names; has_contacts(model) && q->name && !c.failed; ++q) {
         const char *const parts[3] = {q->name, NULL, NULL};
-        const se3di_channel channel = {.quantity = q->quantity,
-                                       .particles = model->grains ? model->grains->set : NULL};
+        const se3di_channel channel = {
+            .quantity = q->quantity, .particles = model->particles ? model->particles->set : NULL};
         list_one(&c, channel, parts);
     }
-    for (const quantity_name *q = particle_names; model->grains && q->name && !c.failed; ++q) {
+    for (const quantity_name *q = particle_names; model->particles && q->name && !c.failed; ++q) {
         const char *const parts[3] = {q->name, NULL, NULL};
-        const se3di_channel channel = {.quantity = q->quantity, .particles = model->grains->set};
+        const se3di_channel channel = {.quantity = q->quantity, .particles = model->particles->set};
         list_one(&c, channel, parts);
     }
     *count = c.failed ? 0 : c.count;

@@ -110,7 +110,7 @@ typedef struct se3di_channel {
     se3d_constraint constraint;
     se3d_force force;
     const se3d_particles *particles;
-    const struct se3di_grains *grains; /* of sets and sinks */
+    const struct se3di_tagged *tagged; /* of sets and sinks */
     uint32_t index;                    /* tag of a set, number of a sink */
     uint32_t reserved;
     double point[3]; /* of `body`, where a wrench acts */

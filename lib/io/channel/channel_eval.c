@@ -199,11 +199,11 @@ static se3d_status ask(se3di_question question, const se3di_channel *c, se3di_sa
     case SE3DI_ASK_PARTICLES:
         return ask_particles(c, numbers);
     case SE3DI_ASK_TALLY:
-        return se3di_grains_ask_tally(c, numbers);
+        return se3di_tagged_ask_tally(c, numbers);
     case SE3DI_ASK_SOURCES:
-        return se3di_grains_ask_sources(c, numbers);
+        return se3di_tagged_ask_sources(c, numbers);
     case SE3DI_ASK_SINK:
-        return se3di_grains_ask_sink(c, numbers);
+        return se3di_tagged_ask_sink(c, numbers);
     case SE3DI_ASK_SOLVER:
         return ask_solver(sample->stats, numbers);
     default:

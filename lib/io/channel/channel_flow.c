@@ -3,14 +3,14 @@
 #include "io/channel/channel_flow.h"
 
 #include "io/channel/channel.h"
-#include "io/model/grains.h"
+#include "io/model/tagged.h"
 
 /* What the sources of the set have done. */
-se3d_status se3di_grains_ask_sources(const se3di_channel *c, double numbers[3])
+se3d_status se3di_tagged_ask_sources(const se3di_channel *c, double numbers[3])
 {
-    for (uint32_t k = 0; k < c->grains->source_count; ++k) {
+    for (uint32_t k = 0; k < c->tagged->source_count; ++k) {
         se3d_particles_source_stats stats;
-        if (c->grains->source_tags[k] != c->index) {
+        if (c->tagged->source_tags[k] != c->index) {
             continue;
         }
         const se3d_status status = se3d_particles_get_source_stats(c->particles, k, &stats);
@@ -24,7 +24,7 @@ se3d_status se3di_grains_ask_sources(const se3di_channel *c, double numbers[3])
     return SE3D_OK;
 }
 
-se3d_status se3di_grains_ask_tally(const se3di_channel *c, double numbers[5])
+se3d_status se3di_tagged_ask_tally(const se3di_channel *c, double numbers[5])
 {
     se3d_particles_tally tally;
     const se3d_status status = se3d_particles_get_tally(c->particles, c->index, &tally);
@@ -38,7 +38,7 @@ se3d_status se3di_grains_ask_tally(const se3di_channel *c, double numbers[5])
     return status;
 }
 
-se3d_status se3di_grains_ask_sink(const se3di_channel *c, double *count)
+se3d_status se3di_tagged_ask_sink(const se3di_channel *c, double *count)
 {
     uint64_t absorbed = 0;
     const se3d_status status = se3d_particles_get_sink_count(c->particles, c->index, &absorbed);

@@ -4,8 +4,8 @@
 #define SE3D_IO_MODEL_H
 
 #include "io/document/document.h"
-#include "io/model/grains.h"
 #include "io/model/mesh.h"
+#include "io/model/tagged.h"
 
 typedef struct se3di_body_entry {
     const char *name;
@@ -103,7 +103,7 @@ struct se3d_model {
     size_t analysis_count;
     se3d_material *materials;           /* in the order of the file; null: not needed yet */
     bool moving_shapes;                 /* some shape that touches is on a body that is not fixed */
-    se3di_grains *grains;               /* NULL: no particles */
+    se3di_tagged *particles;            /* NULL: no particles */
     struct se3di_output_entry *outputs; /* io/channel/output.h */
     size_t output_count;
     struct se3di_event_entry *events; /* io/channel/event.h */

@@ -12,8 +12,8 @@
 #include "io/document/keys.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
-#include "io/model/grains.h"
 #include "io/model/model.h"
+#include "io/model/tagged.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
 
@@ -114,15 +114,15 @@ static bool read_snapshots(se3di_reader *reader, const se3di_node *node, se3di_o
     const se3d_model *model = reader->model;
     int32_t wanted = 0;
     output->set = -1;
-    if (child && child->kind == SE3DI_NODE_SCALAR && model->grains) {
-        const size_t set = se3di_grains_find_set(model->grains, child->text);
+    if (child && child->kind == SE3DI_NODE_SCALAR && model->particles) {
+        const size_t set = se3di_tagged_find_set(model->particles, child->text);
         output->set = set == SIZE_MAX ? -1 : (int32_t)set;
         wanted = output->set >= 0;
     }
     if (child && !wanted && !se3di_read_bool(reader, child, &wanted)) {
         return false;
     }
-    if (wanted && !model->grains) {
+    if (wanted && !model->particles) {
         return se3di_reader_fail(reader, child, "is true, but the model has no `particles`");
     }
     output->particles = wanted != 0;
@@ -137,7 +137,7 @@ static bool read_contacts(se3di_reader *reader, const se3di_node *node, se3di_ou
     if (!se3di_read_key(reader, node, &se3di_object_output, NULL, "contacts", &wanted)) {
         return false;
     }
-    if (wanted && !se3di_node_get(reader->model->root, "contact") && !reader->model->grains) {
+    if (wanted && !se3di_node_get(reader->model->root, "contact") && !reader->model->particles) {
         return se3di_reader_fail(reader, child,
                                  "is true, but the model has no `contact` and no `particles`");
     }

@@ -11,11 +11,11 @@
 #include "io/document/keys.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
-#include "io/model/grains.h"
 #include "io/model/model.h"
-#include "io/read/grain_table.h"
+#include "io/model/tagged.h"
 #include "io/read/materials.h"
 #include "io/read/objects.h"
+#include "io/read/particle_table.h"
 #include "io/read/sections.h"
 
 enum { LATTICE = 0, RANDOM = 1 };
@@ -150,7 +150,7 @@ static bool create_set(se3di_reader *reader, const se3di_node *contact)
     def.threads = (int32_t)threads;
     def.name = "particles";
     const se3d_status status =
-        se3d_particles_create(reader->system, &def, &reader->model->grains->set);
+        se3d_particles_create(reader->system, &def, &reader->model->particles->set);
     return status < 0
                ? se3di_reader_fail_system(reader, contact ? contact : reader->model->root, status)
                : true;
@@ -163,8 +163,8 @@ static bool check_free(se3di_reader *reader, const se3di_node *node, const char 
     const se3d_model *model = reader->model;
     if (se3di_keys_contain(words, name) || se3di_ionames_find(&model->body_names, name, NULL) ||
         se3di_ionames_find(&model->element_names, name, NULL) ||
-        se3di_grains_find_set(model->grains, name) != SIZE_MAX ||
-        se3di_grains_find_sink(model->grains, name) != SIZE_MAX) {
+        se3di_tagged_find_set(model->particles, name) != SIZE_MAX ||
+        se3di_tagged_find_sink(model->particles, name) != SIZE_MAX) {
         return se3di_reader_fail(reader, node, "`%.60s` is taken, must differ from other names",
                                  name);
     }
@@ -249,7 +249,7 @@ static bool read_radius(se3di_reader *reader, const se3di_node *node, se3d_fill_
 /* The tag of the set that an entry names, a new one if the name is new; 0 without a name. */
 static bool read_set(se3di_reader *reader, const se3di_node *node, uint32_t *tag)
 {
-    se3di_grains *grains = reader->model->grains;
+    se3di_tagged *particles = reader->model->particles;
     const se3di_node *child = se3di_node_get(node, "name");
     const char *name = NULL;
     *tag = 0;
@@ -259,7 +259,7 @@ static bool read_set(se3di_reader *reader, const se3di_node *node, uint32_t *tag
     if (!se3di_read_name(reader, child, &name)) {
         return false;
     }
-    const size_t known = se3di_grains_find_set(grains, name);
+    const size_t known = se3di_tagged_find_set(particles, name);
     if (known != SIZE_MAX) {
         *tag = (uint32_t)known;
         return true;
@@ -267,12 +267,12 @@ static bool read_set(se3di_reader *reader, const se3di_node *node, uint32_t *tag
     if (!check_free(reader, child, name)) {
         return false;
     }
-    if (grains->set_count == SE3D_PARTICLES_TAGS) {
+    if (particles->set_count == SE3D_PARTICLES_TAGS) {
         return se3di_reader_fail(reader, child, "there are more than %d names of particles",
                                  SE3D_PARTICLES_TAGS - 1);
     }
-    *tag = (uint32_t)grains->set_count;
-    grains->sets[grains->set_count++] = name;
+    *tag = (uint32_t)particles->set_count;
+    particles->sets[particles->set_count++] = name;
     return true;
 }
 
@@ -312,7 +312,7 @@ static bool read_rate(se3di_reader *reader, const se3di_node *source,
 
 static bool read_source(se3di_reader *reader, const se3di_node *node, se3d_fill_def *fill)
 {
-    se3di_grains *grains = reader->model->grains;
+    se3di_tagged *particles = reader->model->particles;
     const se3di_node *child = se3di_node_get(node, "source");
     se3d_particles_source_def def = se3d_particles_source_def_default();
     double most = 0.0;
@@ -326,14 +326,15 @@ static bool read_source(se3di_reader *reader, const se3di_node *node, se3d_fill_
         return false;
     }
     fill->count = (size_t)most;
-    uint32_t *grown = se3di_iopool_grow(reader->pool, grains->source_tags, grains->source_count,
-                                        &grains->source_capacity, sizeof *grown);
+    uint32_t *grown =
+        se3di_iopool_grow(reader->pool, particles->source_tags, particles->source_count,
+                          &particles->source_capacity, sizeof *grown);
     if (!grown) {
         return se3di_reader_fail_memory(reader);
     }
-    grains->source_tags = grown;
-    grains->source_tags[grains->source_count++] = fill->tag;
-    const se3d_status status = se3d_particles_add_source(grains->set, &def, NULL);
+    particles->source_tags = grown;
+    particles->source_tags[particles->source_count++] = fill->tag;
+    const se3d_status status = se3d_particles_add_source(particles->set, &def, NULL);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
@@ -341,7 +342,7 @@ static bool read_source(se3di_reader *reader, const se3di_node *node, se3d_fill_
 static bool read_fill(se3di_reader *reader, const se3di_node *node, se3d_fill_def *def)
 {
     const se3di_object *object = &se3di_object_particles;
-    se3d_particles *set = reader->model->grains->set;
+    se3d_particles *set = reader->model->particles->set;
     double count = 0.0;
     double seed = 0.0;
     int32_t packing = LATTICE;
@@ -373,14 +374,14 @@ static bool read_entry(se3di_reader *reader, const se3di_node *node)
     }
     if (se3di_node_get(node, "file")) {
         return check_beside(reader, node, "file", " name material file ") &&
-               se3di_read_grain_table(reader, node, def.material, def.tag);
+               se3di_read_particle_table(reader, node, def.material, def.tag);
     }
     return read_fill(reader, node, &def);
 }
 
 static bool read_sink(se3di_reader *reader, const se3di_node *node)
 {
-    se3di_grains *grains = reader->model->grains;
+    se3di_tagged *particles = reader->model->particles;
     const se3di_node *name = se3di_node_get(node, "name");
     const char *text = NULL;
     se3d_particles_sink_def def = se3d_particles_sink_def_default();
@@ -398,16 +399,17 @@ static bool read_sink(se3di_reader *reader, const se3di_node *node)
         return se3di_reader_fail(reader, node,
                                  "must have `lower` and `upper`, or the `normal` of a plane");
     }
-    grains->sinks[grains->sink_count++] = text;
-    const se3d_status status = se3d_particles_add_sink(grains->set, &def, NULL);
+    particles->sinks[particles->sink_count++] = text;
+    const se3d_status status = se3d_particles_add_sink(particles->set, &def, NULL);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
 static bool read_sinks(se3di_reader *reader, const se3di_node *list)
 {
-    se3di_grains *grains = reader->model->grains;
-    grains->sinks = se3di_iopool_array(reader->pool, list ? list->count : 1, sizeof *grains->sinks);
-    if (!grains->sinks) {
+    se3di_tagged *particles = reader->model->particles;
+    particles->sinks =
+        se3di_iopool_array(reader->pool, list ? list->count : 1, sizeof *particles->sinks);
+    if (!particles->sinks) {
         return se3di_reader_fail_memory(reader);
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
@@ -460,12 +462,12 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
     if (!list) {
         return true;
     }
-    model->grains = se3di_iopool_alloc(&model->pool, sizeof *model->grains);
-    if (!model->grains) {
+    model->particles = se3di_iopool_alloc(&model->pool, sizeof *model->particles);
+    if (!model->particles) {
         return se3di_reader_fail_memory(reader);
     }
-    model->grains->moving_walls = model->moving_shapes;
-    model->grains->set_count = 1; /* those without a name */
+    model->particles->moving_walls = model->moving_shapes;
+    model->particles->set_count = 1; /* those without a name */
     if (!create_set(reader, contact) || !read_sinks(reader, sinks)) {
         return false;
     }

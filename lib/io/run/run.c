@@ -25,11 +25,11 @@
 #include "io/document/document.h"
 #include "io/model/model.h"
 #include "io/run/run_events.h"
-#include "io/run/run_grains.h"
 #include "io/run/run_modes.h"
+#include "io/run/run_particles.h"
 #include "io/write/contact_list.h"
 #include "io/write/csv.h"
-#include "io/write/grain_list.h"
+#include "io/write/particle_list.h"
 #include "io/write/vtk.h"
 
 typedef struct output_file {
@@ -145,7 +145,7 @@ static se3d_status open_file(runner *r, const se3di_output_entry *entry)
     if (entry->vtk) {
         return open_vtk(r, entry, path);
     }
-    columns = entry->particles  ? (size_t)SE3DI_GRAIN_COLUMNS + 1
+    columns = entry->particles  ? (size_t)SE3DI_PARTICLE_COLUMNS + 1
               : entry->contacts ? (size_t)SE3DI_CONTACT_COLUMNS
                                 : columns;
     for (size_t k = 0; k < entry->count; ++k) {
@@ -162,7 +162,7 @@ static se3d_status open_file(runner *r, const se3di_output_entry *entry)
     ++r->file_count;
     for (size_t k = 0; k < columns && (entry->particles || entry->contacts); ++k) {
         se3di_csv_put_name(&file->csv,
-                           entry->particles ? se3di_grains_get_column(k)
+                           entry->particles ? se3di_tagged_get_column(k)
                                             : se3di_contacts_get_column(k),
                            k + 1 == columns);
     }
@@ -249,7 +249,7 @@ static se3d_status sample_list(runner *r, output_file *file)
     se3di_iopool_init(&pool, &r->model->pool.allocator);
     const se3d_status status =
         file->entry->contacts ? se3di_contacts_write(r->model, &r->sample, &pool, &file->csv)
-                              : se3di_grains_write(r->model, &pool, file->entry->set, &file->csv);
+                              : se3di_tagged_write(r->model, &pool, file->entry->set, &file->csv);
     se3di_iopool_destroy(&pool);
     if (status < 0) {
         return fail(r, status, se3d_status_get_text(status));
@@ -440,8 +440,8 @@ static se3d_status run_rows(runner *r, size_t index, const se3di_analysis_entry 
     double reached = -HUGE_VAL; /* the last rows are of then */
     while (next_time(r, start, duration, &time) && !r->stopped) {
         time = merge_times(r, start, duration, time);
-        last = r->model->grains ? se3di_grains_advance(r->model, &entry->solver, r->solver, time)
-                                : se3d_solver_run(r->solver, time);
+        last = r->model->particles ? se3di_tagged_advance(r->model, &entry->solver, r->solver, time)
+                                   : se3d_solver_run(r->solver, time);
         if (last < 0 && last != SE3D_ERR_INTERRUPTED) {
             return fail_analysis(r, entry, last, time);
         }
@@ -697,9 +697,9 @@ static se3d_status run_all(runner *r)
         status = run_analysis(r, k);
     }
     const se3d_status summed =
-        r->model->grains ? se3di_grains_sum_up(r->model->grains, &r->run->pool, &r->run->particles,
-                                               &r->run->particles_count)
-                         : SE3D_OK;
+        r->model->particles ? se3di_tagged_sum_up(r->model->particles, &r->run->pool,
+                                                  &r->run->particles, &r->run->particles_count)
+                            : SE3D_OK;
     if (summed < 0 && status >= 0) {
         status = fail(r, summed, "out of memory");
     }

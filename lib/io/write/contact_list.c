@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "io/model/grains.h"
+#include "io/model/tagged.h"
 
 static const char *shape_name(const se3d_model *model, se3d_shape shape)
 {
@@ -37,13 +37,13 @@ static void put_row(se3di_contact_rows *out, double time, const double point[3],
     }
 }
 
-static se3d_status add_particles(const se3d_model *model, const se3di_particle_contacts *grains,
+static se3d_status add_particles(const se3d_model *model, const se3di_particle_contacts *particles,
                                  se3di_contact_rows *out)
 {
     double time = 0.0;
-    const se3d_particles_contact *list = grains->list;
-    const size_t count = grains->count;
-    const se3d_status status = se3d_particles_get_time(model->grains->set, &time);
+    const se3d_particles_contact *list = particles->list;
+    const size_t count = particles->count;
+    const se3d_status status = se3d_particles_get_time(model->particles->set, &time);
     for (size_t k = 0; k < count && status >= 0; ++k) {
         const se3d_particles_contact *c = &list[k];
         const bool wall = c->shape.index1 != 0;
@@ -83,15 +83,16 @@ se3d_status se3di_contacts_get_rows(const se3d_model *model, se3di_sample *sampl
                                     se3di_iopool *pool, se3di_contact_rows *out)
 {
     const size_t bodies = se3d_system_count_contacts(model->system);
-    se3di_particle_contacts grains = {NULL, 0};
+    se3di_particle_contacts particles = {NULL, 0};
     memset(out, 0, sizeof *out);
-    if (model->grains) {
-        const se3d_status found = se3di_sample_list_contacts(sample, model->grains->set, &grains);
+    if (model->particles) {
+        const se3d_status found =
+            se3di_sample_list_contacts(sample, model->particles->set, &particles);
         if (found < 0) {
             return found;
         }
     }
-    const size_t room = bodies + grains.count + 1;
+    const size_t room = bodies + particles.count + 1;
     out->rows = se3di_iopool_array(pool, room, SE3DI_CONTACT_NUMBERS * sizeof *out->rows);
     out->kinds = se3di_iopool_array(pool, room, sizeof *out->kinds);
     out->a = se3di_iopool_array(pool, room, sizeof *out->a);
@@ -102,7 +103,7 @@ se3d_status se3di_contacts_get_rows(const se3d_model *model, se3di_sample *sampl
         return SE3D_ERR_NO_MEMORY;
     }
     const se3d_status status = bodies > 0 ? add_bodies(model, pool, bodies, out) : SE3D_OK;
-    return status < 0 || grains.count == 0 ? status : add_particles(model, &grains, out);
+    return status < 0 || particles.count == 0 ? status : add_particles(model, &particles, out);
 }
 
 const char *se3di_contacts_get_column(size_t k)

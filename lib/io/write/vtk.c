@@ -13,7 +13,7 @@
 #include "io/write/contact_list.h"
 #include "io/write/csv.h"
 #include "io/write/drawing.h"
-#include "io/write/grain_list.h"
+#include "io/write/particle_list.h"
 #include "io/write/unit_mesh.h"
 #include "io/write/vtk_file.h"
 
@@ -254,17 +254,17 @@ static bool write_bodies(se3di_vtk *vtk, const char *path)
     return se3di_vtk_file_write(&file, path);
 }
 
-static bool write_grains(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
-                         const char *path)
+static bool write_particles(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
+                            const char *path)
 {
     (void)sample;
-    enum { W = SE3DI_GRAIN_COLUMNS };
-    se3di_grain_rows grains;
-    if (se3di_grains_get_rows(model, pool, &grains) < 0) {
+    enum { W = SE3DI_PARTICLE_COLUMNS };
+    se3di_particle_rows particles;
+    if (se3di_tagged_get_rows(model, pool, &particles) < 0) {
         return false;
     }
-    const double *rows = grains.rows;
-    const size_t n = grains.count;
+    const double *rows = particles.rows;
+    const size_t n = particles.count;
     /* The columns of a row: time, id, radius, position, velocity, angular velocity. */
     const se3di_vtk_array arrays[] = {
         {SE3DI_VTK_POINT_DATA, "radius", rows + 2, n, 1, W, 0.0, 0.0, false},
@@ -318,8 +318,8 @@ static bool write_points(const se3di_vtk *vtk, se3di_sample *sample, const char 
 /* A series of its own for what the model has. */
 static bool has_part(const se3d_model *model, int part)
 {
-    return part == 0 || (part == 1 && model->grains) ||
-           (part == 2 && (model->grains || se3di_node_get(model->root, "contact")));
+    return part == 0 || (part == 1 && model->particles) ||
+           (part == 2 && (model->particles || se3di_node_get(model->root, "contact")));
 }
 
 static const char *const part_names[] = {"bodies", "grains", "contacts"};
@@ -333,11 +333,11 @@ static bool write_state(se3di_vtk *vtk, se3di_sample *sample, size_t number)
             continue;
         }
         errno = ENAMETOOLONG;
-        good = name_file(vtk, part_names[part], number, true, path) &&
-               se3di_file_make_folders(path) &&
-               (part == 0
-                    ? write_bodies(vtk, path)
-                    : write_points(vtk, sample, path, part == 1 ? write_grains : write_contacts));
+        good =
+            name_file(vtk, part_names[part], number, true, path) && se3di_file_make_folders(path) &&
+            (part == 0
+                 ? write_bodies(vtk, path)
+                 : write_points(vtk, sample, path, part == 1 ? write_particles : write_contacts));
     }
     return good;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `particles` of a model. */
-#ifndef SE3D_IO_GRAINS_H
-#define SE3D_IO_GRAINS_H
+#ifndef SE3D_IO_PARTICLES_H
+#define SE3D_IO_PARTICLES_H
 
 #include <stdbool.h>
 
@@ -9,7 +9,7 @@
 
 /* All particles of a model are one set, so that they touch each other; what the file calls a set is
  * a tag in it: sets[0] are those without a name. */
-typedef struct se3di_grains {
+typedef struct se3di_tagged {
     se3d_particles *set;
     bool moving_walls; /* some shape is on a body that is not fixed */
     const char *sets[SE3D_PARTICLES_TAGS];
@@ -18,10 +18,10 @@ typedef struct se3di_grains {
     size_t source_count, source_capacity;
     const char **sinks;
     size_t sink_count;
-} se3di_grains;
+} se3di_tagged;
 
 /* The index of a name, SIZE_MAX: none. */
-size_t se3di_grains_find_set(const se3di_grains *grains, const char *name);
-size_t se3di_grains_find_sink(const se3di_grains *grains, const char *name);
+size_t se3di_tagged_find_set(const se3di_tagged *particles, const char *name);
+size_t se3di_tagged_find_sink(const se3di_tagged *particles, const char *name);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Sets and sinks by their names. */
-#include "io/model/grains.h"
+#include "io/model/tagged.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -15,12 +15,12 @@ static size_t find_name(const char *const *names, size_t count, const char *name
     return SIZE_MAX;
 }
 
-size_t se3di_grains_find_set(const se3di_grains *grains, const char *name)
+size_t se3di_tagged_find_set(const se3di_tagged *particles, const char *name)
 {
-    return grains ? find_name(grains->sets, grains->set_count, name) : SIZE_MAX;
+    return particles ? find_name(particles->sets, particles->set_count, name) : SIZE_MAX;
 }
 
-size_t se3di_grains_find_sink(const se3di_grains *grains, const char *name)
+size_t se3di_tagged_find_sink(const se3di_tagged *particles, const char *name)
 {
-    return grains ? find_name(grains->sinks, grains->sink_count, name) : SIZE_MAX;
+    return particles ? find_name(particles->sinks, particles->sink_count, name) : SIZE_MAX;
 }

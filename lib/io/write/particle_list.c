@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Snapshots of particles, in ascending order of the ids. */
-#include "io/write/grain_list.h"
+#include "io/write/particle_list.h"
 
 #include <string.h>
 
 #include "io/base/pool.h"
 #include "io/document/document.h"
-#include "io/model/grains.h"
 #include "io/model/model.h"
+#include "io/model/tagged.h"
 #include "io/write/csv.h"
 
-const char *se3di_grains_get_column(size_t k)
+const char *se3di_tagged_get_column(size_t k)
 {
-    static const char *const names[SE3DI_GRAIN_COLUMNS + 1] = {
+    static const char *const names[SE3DI_PARTICLE_COLUMNS + 1] = {
         "time", "id", "radius", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "material"};
     return names[k];
 }
@@ -32,7 +32,7 @@ static const char *name_of(const se3d_model *model, se3d_material material)
 
 /* Numbers of all particles, [n], [n], [3 n] ... in turn. */
 static se3d_status read_set(const se3d_particles *set, size_t n, double *numbers, uint32_t *ids,
-                            se3di_grain_rows *out, se3d_material *materials)
+                            se3di_particle_rows *out, se3d_material *materials)
 {
     se3d_status status = se3d_particles_get_ids(set, n, ids);
     if (status >= 0) {
@@ -47,11 +47,11 @@ static se3d_status read_set(const se3d_particles *set, size_t n, double *numbers
     return status < 0 ? status : se3d_particles_get_materials(set, n, materials);
 }
 
-se3d_status se3di_grains_get_rows(const se3d_model *model, se3di_iopool *pool,
-                                  se3di_grain_rows *out)
+se3d_status se3di_tagged_get_rows(const se3d_model *model, se3di_iopool *pool,
+                                  se3di_particle_rows *out)
 {
-    enum { WIDTH = SE3DI_GRAIN_COLUMNS };
-    const se3d_particles *set = model->grains->set;
+    enum { WIDTH = SE3DI_PARTICLE_COLUMNS };
+    const se3d_particles *set = model->particles->set;
     const size_t n = se3d_particles_count(set);
     uint32_t *ids = se3di_iopool_array(pool, n + 1, sizeof *ids);
     double *numbers = se3di_iopool_array(pool, 10 * n + 1, sizeof *numbers);
@@ -82,21 +82,21 @@ se3d_status se3di_grains_get_rows(const se3d_model *model, se3di_iopool *pool,
     return status;
 }
 
-se3d_status se3di_grains_write(const se3d_model *model, se3di_iopool *pool, int32_t set,
+se3d_status se3di_tagged_write(const se3d_model *model, se3di_iopool *pool, int32_t set,
                                struct se3di_csv *csv)
 {
-    se3di_grain_rows grains;
-    se3di_csv_cell cells[SE3DI_GRAIN_COLUMNS + 1] = {{NULL, 0.0}};
-    const se3d_status status = se3di_grains_get_rows(model, pool, &grains);
-    for (size_t k = 0; k < grains.count; ++k) {
-        if (set >= 0 && grains.tags[k] != (uint32_t)set) {
+    se3di_particle_rows particles;
+    se3di_csv_cell cells[SE3DI_PARTICLE_COLUMNS + 1] = {{NULL, 0.0}};
+    const se3d_status status = se3di_tagged_get_rows(model, pool, &particles);
+    for (size_t k = 0; k < particles.count; ++k) {
+        if (set >= 0 && particles.tags[k] != (uint32_t)set) {
             continue;
         }
-        for (size_t c = 0; c < SE3DI_GRAIN_COLUMNS; ++c) {
-            cells[c].number = grains.rows[SE3DI_GRAIN_COLUMNS * k + c];
+        for (size_t c = 0; c < SE3DI_PARTICLE_COLUMNS; ++c) {
+            cells[c].number = particles.rows[SE3DI_PARTICLE_COLUMNS * k + c];
         }
-        cells[SE3DI_GRAIN_COLUMNS].text = grains.materials[k];
-        se3di_csv_put_cells(csv, cells, SE3DI_GRAIN_COLUMNS + 1);
+        cells[SE3DI_PARTICLE_COLUMNS].text = particles.materials[k];
+        se3di_csv_put_cells(csv, cells, SE3DI_PARTICLE_COLUMNS + 1);
     }
     return status;
 }

@@ -2,7 +2,7 @@
 /* Particles from a CSV file: columns by their names, in any order. Of a file with several times (as
  * an output with `particles` writes it) the rows of the last one are taken. Errors say the line and
  * the column. */
-#include "io/read/grain_table.h"
+#include "io/read/particle_table.h"
 
 #include <locale.h>
 #include <math.h>
@@ -13,8 +13,8 @@
 #include "io/document/attachment.h"
 #include "io/document/document.h"
 #include "io/document/reader.h"
-#include "io/model/grains.h"
 #include "io/model/model.h"
+#include "io/model/tagged.h"
 #include "io/read/materials.h"
 
 enum {
@@ -233,7 +233,7 @@ static bool allocate(table *t)
 /* Rows of one material after the other, in the order of the file. */
 static bool add_rows(const table *t, uint32_t tag)
 {
-    se3d_particles *set = t->reader->model->grains->set;
+    se3d_particles *set = t->reader->model->particles->set;
     for (size_t begin = 0, end; begin < t->count; begin = end) {
         uint32_t first = 0;
         for (end = begin + 1;
@@ -252,8 +252,8 @@ static bool add_rows(const table *t, uint32_t tag)
     return true;
 }
 
-bool se3di_read_grain_table(se3di_reader *reader, const se3di_node *node, se3d_material material,
-                            uint32_t tag)
+bool se3di_read_particle_table(se3di_reader *reader, const se3di_node *node, se3d_material material,
+                               uint32_t tag)
 {
     se3di_iopool pool;
     table t = {.reader = reader, .node = node, .pool = &pool, .line = 1, .material = material};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Grains against bodies that give way: the given restitution is the one obtained, however light the
- * body is and wherever it is hit. */
+/* Particles against bodies that give way: the given restitution is the one obtained, however light
+ * the body is and wherever it is hit. */
 #include "check.h"
 #include "se3d/se3d.h"
 
@@ -14,9 +14,9 @@ typedef struct scene {
     se3d_solver *solver;
 } scene;
 
-static const double grain_mass = 2500.0 * 4.0 / 3.0 * PI * R * R * R;
+static const double particle_mass = 2500.0 * 4.0 / 3.0 * PI * R * R * R;
 
-/* A box of 0.1 x 0.1 x 0.04 m with its top at z = 0, `ratio` times as heavy as a grain. */
+/* A box of 0.1 x 0.1 x 0.04 m with its top at z = 0, `ratio` times as heavy as a particle. */
 static void open_scene(scene *s, se3d_contact_law law, double ratio, se3d_material *material)
 {
     se3d_system_def def = se3d_system_def_default();
@@ -33,7 +33,7 @@ static void open_scene(scene *s, se3d_contact_law law, double ratio, se3d_materi
     what.restitution = 0.5;
     CHECK(se3d_material_create(s->system, &what, material) == SE3D_OK);
     se3d_body_def body = se3d_body_def_default();
-    body.mass = ratio * grain_mass;
+    body.mass = ratio * particle_mass;
     body.inertia[0] = body.inertia[1] = body.mass * (0.01 + 0.0016) / 12.0;
     body.inertia[2] = body.mass * 0.02 / 12.0;
     body.position[2] = -0.02;
@@ -63,7 +63,7 @@ static void go(scene *s, double time)
     CHECK(se3d_solver_run(s->solver, time) == SE3D_OK);
 }
 
-/* A grain falls on the box at x, y with 1 m/s; returns how fast it leaves the point that it hit. */
+/* A particle falls on the box at x, y with 1 m/s; returns how fast it leaves the point it hit. */
 static double rebound(se3d_contact_law law, double ratio, double x, double y)
 {
     scene s;
@@ -104,7 +104,7 @@ static se3d_status spring_law(void *ctx, const se3d_contact_input *in, se3d_cont
 }
 
 /* A body of a box, a mesh, a cylinder and a sphere in a row along y, seven times as heavy as a
- * grain. */
+ * particle. */
 static void add_shapes(const scene *s, se3d_material material)
 {
     static const double corners[12] = {0.01,  0.0,   0.0,   -0.01, 0.01, -0.01,
@@ -131,12 +131,13 @@ static void add_shapes(const scene *s, se3d_material material)
     CHECK(se3d_shape_create_sphere(s->system, &def, &shape) == SE3D_OK);
 }
 
-#define PERIOD 0.2
-#define GRAINS 8
+#define PERIOD    0.2
+#define PARTICLES 8
 
-/* Eight grains hit the body at x from both sides in a domain with a period along x; writes their
- * velocities and spins and those of the body, and the forces on the grains at a moment. */
-static void collide(double x, int callback, double out[6 * GRAINS + 6], double press[3 * GRAINS])
+/* Eight particles hit the body at x from both sides in a domain with a period along x; writes their
+ * velocities and spins and those of the body, and the forces on the particles at a moment. */
+static void collide(double x, int callback, double out[6 * PARTICLES + 6],
+                    double press[3 * PARTICLES])
 {
     scene s = {0};
     se3d_system_def world = se3d_system_def_default();
@@ -153,8 +154,8 @@ static void collide(double x, int callback, double out[6 * GRAINS + 6], double p
     stuff.stiffness = 1e5;
     CHECK(se3d_material_create(s.system, &stuff, &material) == SE3D_OK);
     se3d_body_def body = se3d_body_def_default();
-    body.mass = 7.0 * grain_mass;
-    body.inertia[0] = body.inertia[1] = body.inertia[2] = 1e-4 * grain_mass * 20.0;
+    body.mass = 7.0 * particle_mass;
+    body.inertia[0] = body.inertia[1] = body.inertia[2] = 1e-4 * particle_mass * 20.0;
     body.position[0] = x;
     CHECK(se3d_body_create(s.system, &body, &s.body) == SE3D_OK);
     add_shapes(&s, material);
@@ -163,7 +164,7 @@ static void collide(double x, int callback, double out[6 * GRAINS + 6], double p
     domain.lower[0] = -0.5 * PERIOD;
     domain.upper[0] = 0.5 * PERIOD;
     CHECK(se3d_particles_create(s.system, &domain, &s.particles) == SE3D_OK);
-    for (int k = 0; k < GRAINS; ++k) {
+    for (int k = 0; k < PARTICLES; ++k) {
         const double side = k % 2 ? 1.0 : -1.0, radius = R;
         double at = x + side * (0.0215 + 0.0003 * k);
         at -= PERIOD * floor(at / PERIOD + 0.5);
@@ -172,34 +173,35 @@ static void collide(double x, int callback, double out[6 * GRAINS + 6], double p
         CHECK(se3d_particles_add(s.particles, material, 1, r, &radius, v, w, NULL) == SE3D_OK);
     }
     go(&s, 0.0025);
-    CHECK(se3d_particles_get_forces(s.particles, GRAINS, press, NULL) == SE3D_OK);
+    CHECK(se3d_particles_get_forces(s.particles, PARTICLES, press, NULL) == SE3D_OK);
     CHECK(se3d_solver_run(s.solver, 0.008) == SE3D_OK);
-    CHECK(se3d_particles_get_all(s.particles, GRAINS, NULL, out, out + 3 * GRAINS) == SE3D_OK);
-    CHECK(se3d_body_get_velocity(s.system, s.body, out + 6 * GRAINS) == SE3D_OK);
-    CHECK(se3d_body_get_angular_velocity(s.system, s.body, out + 6 * GRAINS + 3) == SE3D_OK);
+    CHECK(se3d_particles_get_all(s.particles, PARTICLES, NULL, out, out + 3 * PARTICLES) ==
+          SE3D_OK);
+    CHECK(se3d_body_get_velocity(s.system, s.body, out + 6 * PARTICLES) == SE3D_OK);
+    CHECK(se3d_body_get_angular_velocity(s.system, s.body, out + 6 * PARTICLES + 3) == SE3D_OK);
     close_scene(&s);
 }
 
-/* The place of the body in the period makes no difference, nor do grains that meet it across. */
+/* The place of the body in the period makes no difference, nor do particles that meet it across. */
 static void shapes_are_repeated_with_the_period(void)
 {
     for (int callback = 0; callback < 2; ++callback) {
-        double inside[6 * GRAINS + 6], there[6 * GRAINS + 6];
-        double press[3 * GRAINS], press_there[3 * GRAINS], scale = 0.0;
+        double inside[6 * PARTICLES + 6], there[6 * PARTICLES + 6];
+        double press[3 * PARTICLES], press_there[3 * PARTICLES], scale = 0.0;
         collide(0.0, callback, inside, press);
         const double places[4] = {0.1, -0.1, 0.0931, -0.088};
         for (int k = 0; k < 4; ++k) {
             collide(places[k], callback, there, press_there);
-            for (int n = 0; n < 6 * GRAINS + 6; ++n) {
+            for (int n = 0; n < 6 * PARTICLES + 6; ++n) {
                 CHECK_NEAR(there[n], inside[n], 1e-7 * (1.0 + fabs(inside[n])));
             }
-            for (int n = 0; n < 3 * GRAINS; ++n) {
+            for (int n = 0; n < 3 * PARTICLES; ++n) {
                 CHECK_NEAR(press_there[n], press[n], 1e-5);
                 scale = fmax(scale, fabs(press[n]));
             }
         }
         CHECK(scale > 1.0);
-        for (int n = 0; n < GRAINS; ++n) { /* all have been stopped or thrown back */
+        for (int n = 0; n < PARTICLES; ++n) { /* all have been stopped or thrown back */
             CHECK(inside[3 * n] * (n % 2 ? 1.0 : -1.0) > -0.5);
         }
     }

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Snapshots of particles. */
+#ifndef SE3D_IO_PARTICLE_LIST_H
+#define SE3D_IO_PARTICLE_LIST_H
+
+#include "io/model/model.h"
+#include "io/write/csv.h"
+
+enum { SE3DI_PARTICLE_COLUMNS = 12 };
+
+/* Particles as they are, in ascending order of the ids. */
+typedef struct se3di_particle_rows {
+    double *rows; /* [count * SE3DI_PARTICLE_COLUMNS] */
+    uint32_t *tags;
+    const char **materials; /* names */
+    size_t count;
+} se3di_particle_rows;
+
+/* Names of the columns of a snapshot; after the numbers the material. */
+const char *se3di_tagged_get_column(size_t k);
+/* Copy all particles. */
+se3d_status se3di_tagged_get_rows(const se3d_model *model, se3di_iopool *pool,
+                                  se3di_particle_rows *rows);
+/* Write a row for each particle of a set (-1: of all). */
+se3d_status se3di_tagged_write(const se3d_model *model, se3di_iopool *pool, int32_t set,
+                               se3di_csv *csv);
+
+#endif
