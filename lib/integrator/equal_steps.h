@@ -34,7 +34,7 @@ int se3di_equal_steps_are_chosen(const struct se3di_integration *integration);
 /* Choose the step of a run to t_end, if that is to be done: the model, its history and memories
  * are as they were but for the choice. @return OK, NO_MEMORY, INTERRUPTED */
 se3d_status se3di_equal_steps_choose(struct se3di_integration *integration, double t_end);
-/* The next of equal steps of at most `most` to t_end, or shorter where contacts or stops want it
+/* The next of equal steps of at most `most` to t_end, or shorter if contacts or stops want it
  * to be (settings.step is not given). */
 double se3di_equal_steps_next(struct se3di_integration *integration, double most, double t_end);
 /* After such a step of h, whose start is in equations->kept. */
