@@ -49,6 +49,8 @@ typedef struct se3d_model_options {
     se3d_model_report report; /* of all mistakes, at most SE3D_MODEL_MISTAKES_MAX; NULL: reading
                                * ends at the first one, which `error` has in any case */
     void *report_ctx;         /* of `report` */
+    se3d_log_callback log;    /* of the model's system; NULL: silent */
+    void *log_ctx;            /* of `log` */
 } se3d_model_options;
 
 /* The largest number of mistakes that are reported of one model. @since 0.1 */

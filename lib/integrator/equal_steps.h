@@ -7,8 +7,8 @@
  *     order 2   e = h |a_1 - a_0| / (12 |v|)        order 4   e = 5 e_2^2
  *
  * and aims at the tolerance. What was chosen is watched: where a part of the motion has much
- * more, and not only a place in it, steps become half as long from there on, and the log says so. Steps that
- * contacts or stops shorten, and accelerations that jump, say nothing of it.
+ * more, and not only a place in it, steps become half as long from there on, and the log says so.
+ * Steps that contacts or stops shorten, and accelerations that jump, say nothing of it.
  * docs/theory/rattle.md */
 #ifndef SE3DI_EQUAL_STEPS_H
 #define SE3DI_EQUAL_STEPS_H

@@ -76,5 +76,7 @@ typedef struct progress {
 void progress_begin(progress *p, int quiet, size_t count);
 int progress_show(void *ctx, size_t analysis, double time, double fraction);
 void progress_end(progress *p);
+/* Make its line free for a message. */
+void progress_clear(void);
 
 #endif

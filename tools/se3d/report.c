@@ -79,9 +79,16 @@ int progress_show(void *ctx, size_t analysis, double time, double fraction)
     return 0;
 }
 
+void progress_clear(void)
+{
+    if (is_terminal()) {
+        fprintf(stderr, "\r%75s\r", "");
+    }
+}
+
 void progress_end(progress *p)
 {
     if (p->active && p->percent >= 0) {
-        fprintf(stderr, "\r%75s\r", "");
+        progress_clear();
     }
 }

@@ -9,6 +9,7 @@
 #include "notes.h"
 #include "options.h"
 #include "pictures.h"
+#include "warnings.h"
 
 static const char help[] =
     "se3d run MODEL [options]\n"
@@ -26,7 +27,7 @@ static const char help[] =
     "  --tolerance E          relative error of methods that control it\n"
     "  --duration T           duration [s]\n"
     "  --quiet                print nothing but errors\n"
-    "  --json                 print the summary as JSON\n"
+    "  --json                 print the summary as JSON, with the warnings\n"
     "\n"
     "Exit code: 0 done; 1 the analysis failed or was ended by Ctrl-C or SIGTERM (results so far\n"
     "are on disk); 2 bad usage or model.\n";
@@ -312,8 +313,14 @@ static void json_put_pictures(const se3d_model *model)
     }
 }
 
+/* What the user should know beside results. */
+typedef struct told {
+    notes notes;
+    const warnings *warnings;
+} told;
+
 static void print_json(const options *o, const se3d_model *model, const se3d_run *run,
-                       const char *message, const notes *n)
+                       const char *message, const told *n)
 {
     printf("{\"status\": \"%s\", \"model\": ", message[0] ? "failed" : "done");
     json_put_text(o->model);
@@ -344,11 +351,18 @@ static void print_json(const options *o, const se3d_model *model, const se3d_run
                    se3d_system_count_passing_meshes(
                        se3d_model_get_system((se3d_model *)(uintptr_t)model), NULL, NULL));
     fputs(", \"notes\": [", stdout);
-    for (size_t k = 0; k < n->count; ++k) {
+    for (size_t k = 0; k < n->notes.count; ++k) {
         fputs(k > 0 ? ", " : "", stdout);
-        json_put_text(n->text[k]);
+        json_put_text(n->notes.text[k]);
     }
-    fputs("]}\n", stdout);
+    fputs("], \"warnings\": [", stdout);
+    for (size_t k = 0; k < n->warnings->count; ++k) {
+        fputs(k > 0 ? ", " : "", stdout);
+        json_put_text(n->warnings->text[k]);
+    }
+    fputs("]", stdout);
+    json_put_count("more_warnings", n->warnings->more);
+    fputs("}\n", stdout);
 }
 
 /* The folder for the results; free it. */
@@ -411,26 +425,30 @@ static int write_scene(const watcher *w, const char *folder, se3d_model_error *e
     return 0;
 }
 
-static void print_result(const options *o, se3d_model *model, const se3d_run *run,
+static void print_result(const warnings *warned, se3d_model *model, const se3d_run *run,
                          const char *message)
 {
-    notes n;
+    const options *o = warned->o;
+    told n = {.warnings = warned};
     if (o->json || !o->quiet) {
-        notes_collect(&n, model, run);
+        notes_collect(&n.notes, model, run);
     }
+    warnings_conclude(warned);
     if (o->json) {
         print_json(o, model, run, message, &n);
     } else if (!o->quiet) {
         print_text(model, run);
-        for (size_t k = 0; k < n.count; ++k) {
-            printf("note: %s\n", n.text[k]);
+        for (size_t k = 0; k < n.notes.count; ++k) {
+            printf("note: %s\n", n.notes.text[k]);
         }
     }
 }
 
 /* Run, and leave the results and the scene in `folder`. */
-static int run_into(const options *o, se3d_model *model, const char *folder, se3d_scene **scene)
+static int run_into(const warnings *warned, se3d_model *model, const char *folder,
+                    se3d_scene **scene)
 {
+    const options *o = warned->o;
     se3d_run_options how = se3d_run_options_default();
     se3d_run *run = NULL;
     se3d_model_error error = {.message = ""};
@@ -456,7 +474,7 @@ static int run_into(const options *o, se3d_model *model, const char *folder, se3
     const int nothing = se3d_run_count_files(run) == 0;
     se3d_model_error lost;
     const int drawn = nothing || write_scene(&w, folder, failed ? &lost : &error);
-    print_result(o, model, run, error.message);
+    print_result(warned, model, run, error.message);
     if (failed || !drawn) {
         fflush(stdout);
         fprintf(stderr, "%s: %s\n", o->model, error.message);
@@ -473,8 +491,9 @@ static int run_into(const options *o, se3d_model *model, const char *folder, se3
 }
 
 /* `pictures`: the type of those to make, "" for none, NULL for all. */
-static int run_model(const options *o, se3d_model *model, const char *pictures)
+static int run_model(const warnings *warned, se3d_model *model, const char *pictures)
 {
+    const options *o = warned->o;
     char *made = results_folder(o, model);
     const char *folder = o->directory ? o->directory : made;
     se3d_scene *scene = NULL;
@@ -482,7 +501,7 @@ static int run_model(const options *o, se3d_model *model, const char *pictures)
         report_failure(o, o->model, "out of memory");
         return EXIT_FAILED;
     }
-    int code = run_into(o, model, folder, &scene);
+    int code = run_into(warned, model, folder, &scene);
     if (scene && pictures_make(model, scene, folder, pictures, o->quiet || o->json) != EXIT_DONE) {
         code = code == EXIT_DONE ? EXIT_FAILED : code;
     }
@@ -514,7 +533,10 @@ int run_for_plots(const char *path, int quiet, int draw, char *csv, size_t size)
     memset(&o, 0, sizeof o);
     o.model = path;
     o.quiet = quiet;
-    const se3d_model_options how = options_get_model(&o);
+    warnings warned = {.o = &o};
+    se3d_model_options how = options_get_model(&o);
+    how.log = warnings_add;
+    how.log_ctx = &warned;
     int code = options_read_model(&o, &how, &model);
     if (code != EXIT_DONE) {
         return code;
@@ -529,7 +551,7 @@ int run_for_plots(const char *path, int quiet, int draw, char *csv, size_t size)
         fprintf(stderr, "se3d plot: %s: there is nothing to run and draw\n", path);
         code = EXIT_USAGE;
     } else {
-        code = run_model(&o, model, draw && asked ? "plot" : "");
+        code = run_model(&warned, model, draw && asked ? "plot" : "");
     }
     if (draw && asked) {
         csv[0] = '\0'; /* drawn already */
@@ -549,7 +571,10 @@ int command_run(int count, char *const *words)
         fputs(o.help ? help : "", stdout);
         return code;
     }
-    const se3d_model_options how = options_get_model(&o);
+    warnings warned = {.o = &o};
+    se3d_model_options how = options_get_model(&o);
+    how.log = warnings_add;
+    how.log_ctx = &warned;
     code = options_read_model(&o, &how, &model);
     if (code != EXIT_DONE) {
         return code;
@@ -560,7 +585,7 @@ int command_run(int count, char *const *words)
                        "the model, or give --analysis and --duration");
         code = EXIT_USAGE;
     } else {
-        code = run_model(&o, model, NULL);
+        code = run_model(&warned, model, NULL);
     }
     se3d_model_destroy(model);
     return code;

@@ -131,6 +131,8 @@ static bool read_gravity(se3di_reader *reader, const se3di_node *root)
 static bool create_system(se3di_reader *reader, const se3di_node *root)
 {
     se3d_system_def def = se3d_system_def_default();
+    def.log = reader->options->log;
+    def.log_ctx = reader->options->log_ctx;
     def.allocator = &reader->pool->allocator;
     if (SE3D_FAILED(se3d_system_create(&def, &reader->model->system))) {
         return se3di_reader_fail_memory(reader);

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What the library warns of reaches the user of `se3d run`: once, on standard error or, with --json,
+# in the report. Run with SE3D_PROGRAM and SE3D_SOURCE_DIR set.
+set -u
+. "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
+
+# A pendulum with more sections of a model file, with its analysis.
+model()
+{
+    cat >"$dir/$1.yaml" <<EOF
+se3d: 1
+bodies:
+  - {name: a, mass: 1, inertia: [0.01, 0.1, 0.1], position: [0.5, 0, 0]$3}
+joints:
+  - {name: s, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, 0]}
+$2
+output: [{file: o.csv, every: 0.05, channels: [a.position]}]
+EOF
+}
+# How many lines of standard output and error hold a text.
+lines() { cat "$dir/out" "$dir/err" | grep -c "$1"; }
+
+dynamics='analysis: {type: dynamics, duration: 1}'
+model kink "drivers:
+  - {name: d, joint: s, coordinate: angle, value: \"max(0, t - 0.5)\"}
+$dynamics" ''
+expect 'a rate that jumps' 0 "$program" run "$dir/kink.yaml" -o "$dir/r" --method radau
+has "$dir/err" "$dir/kink.yaml: warning: t = 0.5 s: the rate of d.angle jumps"
+is "$(wc -l <"$dir/err" | tr -d ' ')" 1
+expect 'quiet' 0 "$program" run "$dir/kink.yaml" -o "$dir/r" --method radau -q
+is "$(cat "$dir/out" "$dir/err")" ''
+expect 'json' 0 "$program" run "$dir/kink.yaml" -o "$dir/r" --method radau --json
+has "$dir/out" '"warnings": ["t = 0.5 s: the rate of d.angle jumps'
+is "$(cat "$dir/err")" ''
+expect 'nothing to warn of' 0 "$program" run "$models/pendulum.yaml" -o "$dir/r" --json --duration 0.1
+has "$dir/out" '"warnings": [], "more_warnings": 0'
+
+model twice "analysis:
+  - {type: dynamics, duration: 0.6, method: radau}
+  - {type: dynamics, duration: 0.6, method: radau}
+drivers:
+  - {name: d, joint: s, coordinate: angle, value: \"0.1*abs(sin(pi*t/0.6))\"}" ''
+expect 'two analyses that warn of the same' 0 "$program" run "$dir/twice.yaml" -o "$dir/r"
+is "$(lines 'the rate of d.angle jumps')" 1
+
+model long "analysis: {type: dynamics, duration: 0.2, method: rattle, tolerance: 1e-4}" ''
+expect 'equal steps that are reported' 0 "$program" run "$dir/long.yaml" -o "$dir/r"
+is "$(lines 'equal steps of ')" 1
+expect 'and in the report' 0 "$program" run "$dir/long.yaml" -o "$dir/r" --json
+has "$dir/out" '"step": '
+
+# What the report shows anyway is not warned of beside it.
+model start "$dynamics" ', velocity: [0, 0, 1]'
+expect 'velocities that do not fit' 0 "$program" run "$dir/start.yaml" -o "$dir/r"
+is "$(lines 'velocities do not fit')" 1
+expect 'velocities that do not fit, json' 0 "$program" run "$dir/start.yaml" -o "$dir/r" --json
+has "$dir/out" '"warnings": ["t = 0 s: the given velocities do not fit'
+expect 'a tolerance that is not reached' 0 "$program" run "$models/pendulum_free.yaml" -o "$dir/r" \
+    --tolerance 1e-14 --duration 0.1 --method dop853
+is "$(lines 'is smaller than what')" 1
+expect 'redundant constraints' 0 "$program" run "$models/andrews.yaml" -o "$dir/r" --duration 0.001
+is "$(lines 'redundant')" 1
+is "$(cat "$dir/err")" ''
+finish

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "warnings.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* The report shows these, too, with more of them: as the outcome of an analysis or below it. */
+static const char *const reported[] = {
+    "there are redundant constraints",
+    "the given positions do not fit",
+    "the given velocities do not fit",
+    "is smaller than what ",
+};
+
+static int is_reported(const char *message)
+{
+    for (size_t k = 0; k < sizeof reported / sizeof *reported; ++k) {
+        if (strstr(message, reported[k])) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Without the time at which it was said. */
+static const char *sentence_of(const char *message)
+{
+    const char *after = strncmp(message, "t = ", 4) == 0 ? strstr(message, " s: ") : NULL;
+    return after ? after : message;
+}
+
+static int is_known(const warnings *w, const char *message)
+{
+    for (size_t k = 0; k < w->count; ++k) {
+        if (strcmp(sentence_of(w->text[k]), sentence_of(message)) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+void warnings_add(void *ctx, se3d_log_level level, const char *message)
+{
+    warnings *w = ctx;
+    if (level != SE3D_LOG_WARNING || is_known(w, message)) {
+        return; /* failures end the run, and are told then; the report has the rest */
+    }
+    if (w->count == WARNINGS_MAX) {
+        ++w->more;
+        return;
+    }
+    snprintf(w->text[w->count++], WARNING_SIZE, "%s", message);
+    if (!w->o->quiet && !w->o->json && !is_reported(message)) {
+        progress_clear();
+        fprintf(stderr, "%s: warning: %s\n", w->o->model, message);
+    }
+}
+
+void warnings_conclude(const warnings *w)
+{
+    if (w->more > 0 && !w->o->quiet && !w->o->json) {
+        fprintf(stderr, "%s: warning: %zu more warnings like these\n", w->o->model, w->more);
+    }
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What the library warns of while a model runs: shown at once, each once, and kept for the JSON
+ * report. */
+#ifndef SE3D_TOOL_WARNINGS_H
+#define SE3D_TOOL_WARNINGS_H
+
+#include "options.h"
+
+enum { WARNINGS_MAX = 40, WARNING_SIZE = 520 };
+
+typedef struct warnings {
+    const options *o;
+    size_t count;
+    size_t more; /* that found no room */
+    char text[WARNINGS_MAX][WARNING_SIZE];
+} warnings;
+
+/* A se3d_log_callback; ctx: the warnings. */
+void warnings_add(void *ctx, se3d_log_level level, const char *message);
+/* After the run, how many were not shown. */
+void warnings_conclude(const warnings *w);
+
+#endif
