@@ -29,12 +29,19 @@ static void measure(const se3di_tree *tree, const se3di_tree_node *n, const doub
     const se3di_joint_frames *f = &c->frames;
     const se3di_frame *i = &tree->model->frames[c->bodies[0]];
     const se3di_frame *j = &tree->model->frames[c->bodies[1]];
-    se3di_mul(i->A, f->ref_i, x->ref);
-    se3di_mul(i->A, f->third_i, x->third);
-    se3di_mul(i->A, f->axis_i, x->axis);
-    se3di_mul(j->A, f->third_j, x->third_j);
-    se3di_mul(j->A, f->axis_j, x->axis_j);
-    x->sigma = se3di_dot(x->axis, x->axis_j) < 0.0 ? -1.0 : 1.0;
+    const int32_t type = n->type;
+    if (type != SE3DI_TREE_SPHERICAL && type != SE3DI_TREE_UNIVERSAL) {
+        se3di_mul(i->A, f->ref_i, x->ref);
+        se3di_mul(i->A, f->third_i, x->third);
+    }
+    if (type != SE3DI_TREE_SPHERICAL) {
+        se3di_mul(i->A, f->axis_i, x->axis);
+        se3di_mul(j->A, f->axis_j, x->axis_j);
+        x->sigma = se3di_dot(x->axis, x->axis_j) < 0.0 ? -1.0 : 1.0;
+    }
+    if (type == SE3DI_TREE_FIXED || type == SE3DI_TREE_PRISMATIC) {
+        se3di_mul(j->A, f->third_j, x->third_j);
+    }
     se3di_copy(joint, x->N);
     se3di_copy(joint + 3, x->F);
     if (n->is_reversed) { /* about P_i, on body i: the opposite acts on j */

@@ -269,7 +269,7 @@ static void find_drivers(se3di_tree *tree)
 /* ---- memory ---- */
 
 #define TREE_STRUCTURE 3
-#define TREE_VALUES    15
+#define TREE_VALUES    17
 
 static void list_structure(se3di_tree *t, builder_array list[TREE_STRUCTURE])
 {
@@ -290,6 +290,8 @@ static void list_values(se3di_tree *t, builder_array list[TREE_VALUES])
         {(void **)&t->U, 6 * v, number_size},
         {(void **)&t->D, v, number_size},
         {(void **)&t->R, v, number_size},
+        {(void **)&t->V, 6 * v, number_size},
+        {(void **)&t->k, v, number_size},
         {(void **)&t->e, v, number_size},
         {(void **)&t->given, v, number_size},
         {(void **)&t->armature, v, number_size},

@@ -119,6 +119,7 @@ typedef struct se3di_tree {
     double *S;                /* [velocities * 6]: angular, of P; ground axes */
     double *U;                /* [velocities * 6]: articulated inertia times S */
     double *D, *R, *e;        /* [velocities]: S^T U, its inverse; what acts on the coordinate */
+    double *V, *k;            /* revolutes: U / D about the parent's point; U . c / D */
     double *given;            /* [velocities]: prescribed accelerations */
     double *armature;         /* [velocities]: reflected inertia */
     double *wrench;           /* [nodes * 6]: what acts on each: moment about P, force; ground */
