@@ -40,11 +40,7 @@ static se3d_status check_mass(se3d_system *system, double mass, const double ine
 
 se3d_status se3d_body_create(se3d_system *system, const se3d_body_def *def, se3d_body *body)
 {
-    if (body) {
-        *body = (se3d_body){0, 0};
-    }
-    SE3DI_EDIT(system);
-    SE3DI_TRY(se3di_check_pointer(system, "body", body));
+    SE3DI_CREATE(system, body);
     se3d_body_def full = se3d_body_def_default();
     SE3DI_TRY(se3di_check_def(system, "body def", def, &full, sizeof full));
     SE3DI_TRY(se3di_check_new_name(system, &system->model.body_slots, 0, "body", full.name));
@@ -104,25 +100,12 @@ se3d_status se3d_body_destroy(se3d_system *system, se3d_body body)
 static se3d_status find_reader(const se3d_system *system, se3d_body body, const void *out,
                                uint32_t *index)
 {
-    if (!system || !out) {
-        return SE3D_ERR_NULL;
-    }
-    *index = se3di_slots_find(&system->model.body_slots, body.index1, body.generation);
-    return *index == SE3DI_NO_INDEX ? SE3D_ERR_STALE_HANDLE : SE3D_OK;
+    return se3di_read_index(SE3DI_SLOTS(system, body), SE3DI_HANDLE(body), out, index);
 }
 
 se3d_status se3d_body_find(const se3d_system *system, const char *name, se3d_body *body)
 {
-    if (body) {
-        *body = (se3d_body){0, 0};
-    }
-    if (!system || !name || !body) {
-        return SE3D_ERR_NULL;
-    }
-    se3di_handle handle = {0, 0};
-    SE3DI_TRY(se3di_find_named(&system->model.body_slots, name, &handle));
-    *body = (se3d_body){handle.index1, handle.generation};
-    return SE3D_OK;
+    return se3di_read_named(SE3DI_SLOTS(system, body), name, body);
 }
 
 se3d_status se3d_body_get_name(const se3d_system *system, se3d_body body, const char **name)
@@ -273,6 +256,18 @@ static se3d_status check_movable(se3d_system *system, uint32_t index, const char
     return SE3D_OK;
 }
 
+/* The same of a velocity. */
+static se3d_status find_moving(se3d_system *system, se3d_body body, const char *what,
+                               const double *values, uint32_t *index)
+{
+    SE3DI_TRY(find_writer(system, body, what, values, index));
+    if (system->model.bodies[*index].fixed) {
+        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                             " of a fixed body cannot be set");
+    }
+    return se3di_check_finites(system, what, values, 3);
+}
+
 se3d_status se3d_body_set_position(se3d_system *system, se3d_body body, const double r[3])
 {
     uint32_t index;
@@ -303,12 +298,7 @@ se3d_status se3d_body_set_velocity(se3d_system *system, se3d_body body, const do
 {
     uint32_t index;
     SE3DI_SET(system);
-    SE3DI_TRY(find_writer(system, body, "velocity", v, &index));
-    if (system->model.bodies[index].fixed) {
-        return SE3DI_FAIL_OF(system, "velocity", SE3D_ERR_INVALID_ARGUMENT,
-                             " of a fixed body cannot be set");
-    }
-    SE3DI_TRY(se3di_check_finites(system, "velocity", v, 3));
+    SE3DI_TRY(find_moving(system, body, "velocity", v, &index));
     se3di_copy(v, system->model.frames[index].v);
     se3di_model_touch_state(&system->model);
     return SE3D_OK;
@@ -318,12 +308,7 @@ se3d_status se3d_body_set_angular_velocity(se3d_system *system, se3d_body body, 
 {
     uint32_t index;
     SE3DI_SET(system);
-    SE3DI_TRY(find_writer(system, body, "angular_velocity", w, &index));
-    if (system->model.bodies[index].fixed) {
-        return SE3DI_FAIL_OF(system, "angular_velocity", SE3D_ERR_INVALID_ARGUMENT,
-                             " of a fixed body cannot be set");
-    }
-    SE3DI_TRY(se3di_check_finites(system, "angular_velocity", w, 3));
+    SE3DI_TRY(find_moving(system, body, "angular_velocity", w, &index));
     se3di_copy(w, system->model.frames[index].w);
     se3di_frame_update(&system->model.frames[index]);
     se3di_model_touch_state(&system->model);

@@ -5,6 +5,7 @@
 #include "system/system_internal.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 void se3di_def_init(void *def, size_t size, const void *defaults, size_t full)
@@ -104,39 +105,18 @@ static se3d_status find(se3d_system *system, const se3di_slots *slots, const cha
     return SE3DI_FAIL_OF(system, what, SE3D_ERR_STALE_HANDLE, " %s", reason);
 }
 
-se3d_status se3di_find_body(se3d_system *system, const char *what, se3d_body body, uint32_t *index)
-{
-    return find(system, &system->model.body_slots, what,
-                (se3di_handle){body.index1, body.generation}, index);
-}
+#define FIND(kind)                                                                                 \
+    se3d_status se3di_find_##kind(se3d_system *system, const char *what, se3d_##kind handle,       \
+                                  uint32_t *index)                                                 \
+    {                                                                                              \
+        return find(system, &system->model.kind##_slots, what, SE3DI_HANDLE(handle), index);       \
+    }
 
-se3d_status se3di_find_marker(se3d_system *system, const char *what, se3d_marker marker,
-                              uint32_t *index)
-{
-    return find(system, &system->model.marker_slots, what,
-                (se3di_handle){marker.index1, marker.generation}, index);
-}
-
-se3d_status se3di_find_material(se3d_system *system, const char *what, se3d_material material,
-                                uint32_t *index)
-{
-    return find(system, &system->model.material_slots, what,
-                (se3di_handle){material.index1, material.generation}, index);
-}
-
-se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_constraint constraint,
-                                  uint32_t *index)
-{
-    return find(system, &system->model.constraint_slots, what,
-                (se3di_handle){constraint.index1, constraint.generation}, index);
-}
-
-se3d_status se3di_find_force(se3d_system *system, const char *what, se3d_force force,
-                             uint32_t *index)
-{
-    return find(system, &system->model.force_slots, what,
-                (se3di_handle){force.index1, force.generation}, index);
-}
+FIND(body)
+FIND(marker)
+FIND(material)
+FIND(constraint)
+FIND(force)
 
 se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_function function,
                                 uint32_t variables, int32_t *index)
@@ -146,8 +126,7 @@ se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_func
         return SE3D_OK;
     }
     uint32_t dense;
-    SE3DI_TRY(find(system, &system->model.function_slots, what,
-                   (se3di_handle){function.index1, function.generation}, &dense));
+    SE3DI_TRY(find(system, &system->model.function_slots, what, SE3DI_HANDLE(function), &dense));
     uint32_t count = system->model.functions[dense].variable_count;
     if (count > variables) {
         return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
@@ -183,12 +162,45 @@ se3d_status se3di_check_new_name(se3d_system *system, const se3di_slots *slots, 
     return SE3D_OK;
 }
 
-se3d_status se3di_find_named(const se3di_slots *slots, const char *name, se3di_handle *handle)
+_Static_assert(sizeof(se3d_body) == sizeof(se3di_handle) &&
+                   offsetof(se3d_body, generation) == offsetof(se3di_handle, generation),
+               "public handles are written as internal ones");
+
+static se3d_status give(const se3di_slots *slots, uint32_t index, void *handle)
 {
-    const uint32_t index = se3di_slots_find_name(slots, 0, name);
-    if (index == SE3DI_NO_INDEX) {
-        return SE3D_ERR_INVALID_ARGUMENT;
+    se3di_handle found = {0, 0};
+    if (index != SE3DI_NO_INDEX) {
+        found = se3di_slots_handle(slots, index);
     }
-    *handle = se3di_slots_handle(slots, index);
-    return SE3D_OK;
+    memcpy(handle, &found, sizeof found);
+    return index == SE3DI_NO_INDEX ? SE3D_ERR_INVALID_ARGUMENT : SE3D_OK;
+}
+
+se3d_status se3di_read_named(const se3di_slots *slots, const char *name, void *handle)
+{
+    if (handle) {
+        (void)give(slots, SE3DI_NO_INDEX, handle);
+    }
+    return slots && name && handle ? give(slots, se3di_slots_find_name(slots, 0, name), handle)
+                                   : SE3D_ERR_NULL;
+}
+
+se3d_status se3di_read_handle(const se3di_slots *slots, size_t index, void *handle)
+{
+    if (handle) {
+        (void)give(slots, SE3DI_NO_INDEX, handle);
+    }
+    return slots && handle
+               ? give(slots, index < slots->count ? (uint32_t)index : SE3DI_NO_INDEX, handle)
+               : SE3D_ERR_NULL;
+}
+
+se3d_status se3di_read_index(const se3di_slots *slots, se3di_handle handle, const void *out,
+                             uint32_t *index)
+{
+    if (!slots || !out) {
+        return SE3D_ERR_NULL;
+    }
+    *index = se3di_slots_find(slots, handle.index1, handle.generation);
+    return *index == SE3DI_NO_INDEX ? SE3D_ERR_STALE_HANDLE : SE3D_OK;
 }

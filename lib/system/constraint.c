@@ -32,16 +32,7 @@ se3d_status se3d_constraint_destroy(se3d_system *system, se3d_constraint constra
 se3d_status se3d_constraint_find(const se3d_system *system, const char *name,
                                  se3d_constraint *constraint)
 {
-    if (constraint) {
-        *constraint = (se3d_constraint){0, 0};
-    }
-    if (!system || !name || !constraint) {
-        return SE3D_ERR_NULL;
-    }
-    se3di_handle handle = {0, 0};
-    SE3DI_TRY(se3di_find_named(&system->model.constraint_slots, name, &handle));
-    *constraint = (se3d_constraint){handle.index1, handle.generation};
-    return SE3D_OK;
+    return se3di_read_named(SE3DI_SLOTS(system, constraint), name, constraint);
 }
 
 /* Find a constraint for a getter with one output. */

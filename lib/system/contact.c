@@ -142,11 +142,7 @@ static se3di_material read_material(const se3d_material_def *def)
 se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *def,
                                  se3d_material *material)
 {
-    if (material) {
-        *material = (se3d_material){0, 0};
-    }
-    SE3DI_EDIT(system);
-    SE3DI_TRY(se3di_check_pointer(system, "material", material));
+    SE3DI_CREATE(system, material);
     se3d_material_def full = se3d_material_def_default();
     SE3DI_TRY(se3di_check_def(system, "material def", def, &full, sizeof full));
     SE3DI_TRY(check_material(system, &full));

@@ -17,11 +17,7 @@ void se3d_driver_def_init(se3d_driver_def *def, size_t size)
 se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_def *user,
                                se3d_constraint *driver)
 {
-    if (driver) {
-        *driver = (se3d_constraint){0, 0};
-    }
-    SE3DI_EDIT(system);
-    SE3DI_TRY(se3di_check_pointer(system, "driver", driver));
+    SE3DI_CREATE(system, driver);
     se3d_driver_def def = se3d_driver_def_default();
     uint32_t joint;
     se3di_term term;

@@ -212,28 +212,14 @@ se3d_status se3d_force_destroy(se3d_system *system, se3d_force force)
 
 se3d_status se3d_force_find(const se3d_system *system, const char *name, se3d_force *force)
 {
-    if (force) {
-        *force = (se3d_force){0, 0};
-    }
-    if (!system || !name || !force) {
-        return SE3D_ERR_NULL;
-    }
-    se3di_handle handle = {0, 0};
-    SE3DI_TRY(se3di_find_named(&system->model.force_slots, name, &handle));
-    *force = (se3d_force){handle.index1, handle.generation};
-    return SE3D_OK;
+    return se3di_read_named(SE3DI_SLOTS(system, force), name, force);
 }
 
 se3d_status se3di_force_find_reader(const se3d_system *system, se3d_force force, const void *out,
                                     const se3di_force **data)
 {
-    if (!system || !out) {
-        return SE3D_ERR_NULL;
-    }
-    uint32_t index = se3di_slots_find(&system->model.force_slots, force.index1, force.generation);
-    if (index == SE3DI_NO_INDEX) {
-        return SE3D_ERR_STALE_HANDLE;
-    }
+    uint32_t index;
+    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, force), SE3DI_HANDLE(force), out, &index));
     *data = &system->model.forces[index];
     return SE3D_OK;
 }

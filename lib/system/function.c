@@ -117,11 +117,7 @@ static se3d_status make_table(se3d_system *system, const se3d_function_def *def,
 se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *def,
                                  se3d_function *function)
 {
-    if (function) {
-        *function = (se3d_function){0, 0};
-    }
-    SE3DI_EDIT(system);
-    SE3DI_TRY(se3di_check_pointer(system, "function", function));
+    SE3DI_CREATE(system, function);
     se3d_function_def full = se3d_function_def_default();
     SE3DI_TRY(se3di_check_def(system, "function def", def, &full, sizeof full));
     SE3DI_TRY(check_kind(system, &full));

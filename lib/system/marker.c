@@ -14,11 +14,7 @@ void se3d_marker_def_init(se3d_marker_def *def, size_t size)
 
 se3d_status se3d_marker_create(se3d_system *system, const se3d_marker_def *def, se3d_marker *marker)
 {
-    if (marker) {
-        *marker = (se3d_marker){0, 0};
-    }
-    SE3DI_EDIT(system);
-    SE3DI_TRY(se3di_check_pointer(system, "marker", marker));
+    SE3DI_CREATE(system, marker);
     se3d_marker_def full = se3d_marker_def_default();
     se3di_marker data = {0};
     SE3DI_TRY(se3di_check_def(system, "marker def", def, &full, sizeof full));
@@ -50,14 +46,8 @@ se3d_status se3d_marker_destroy(se3d_system *system, se3d_marker marker)
 static se3d_status find_reader(const se3d_system *system, se3d_marker marker, const void *out,
                                const se3di_marker **data)
 {
-    if (!system || !out) {
-        return SE3D_ERR_NULL;
-    }
-    uint32_t index =
-        se3di_slots_find(&system->model.marker_slots, marker.index1, marker.generation);
-    if (index == SE3DI_NO_INDEX) {
-        return SE3D_ERR_STALE_HANDLE;
-    }
+    uint32_t index;
+    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, marker), SE3DI_HANDLE(marker), out, &index));
     *data = &system->model.markers[index];
     return SE3D_OK;
 }

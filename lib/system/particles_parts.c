@@ -19,8 +19,7 @@ se3d_status se3d_particles_get_wrench(const se3d_particles *particles, se3d_body
     }
     memset(force, 0, 3 * sizeof *force);
     memset(torque, 0, 3 * sizeof *torque);
-    se3di_particles_push_body(&particles->set, (se3di_handle){body.index1, body.generation}, force,
-                              torque);
+    se3di_particles_push_body(&particles->set, SE3DI_HANDLE(body), force, torque);
     return SE3D_OK;
 }
 

@@ -83,11 +83,7 @@ se3d_status se3d_constraint_set_value(se3d_system *system, se3d_constraint handl
 se3d_status se3d_primitive_create(se3d_system *system, const se3d_primitive_def *user,
                                   se3d_constraint *constraint)
 {
-    if (constraint) {
-        *constraint = (se3d_constraint){0, 0};
-    }
-    SE3DI_EDIT(system);
-    SE3DI_TRY(se3di_check_pointer(system, "constraint", constraint));
+    SE3DI_CREATE(system, constraint);
     se3d_primitive_def def = se3d_primitive_def_default();
     uint32_t bodies[2];
     int32_t function;

@@ -94,29 +94,15 @@ se3d_status se3d_shape_destroy(se3d_system *system, se3d_shape shape)
 static se3d_status find_reader(const se3d_system *system, se3d_shape shape, const void *out,
                                const se3di_shape **data)
 {
-    if (!system || !out) {
-        return SE3D_ERR_NULL;
-    }
-    uint32_t index = se3di_slots_find(&system->model.shape_slots, shape.index1, shape.generation);
-    if (index == SE3DI_NO_INDEX) {
-        return SE3D_ERR_STALE_HANDLE;
-    }
+    uint32_t index;
+    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, shape), SE3DI_HANDLE(shape), out, &index));
     *data = &system->model.shapes[index];
     return SE3D_OK;
 }
 
 se3d_status se3d_shape_find(const se3d_system *system, const char *name, se3d_shape *shape)
 {
-    if (shape) {
-        *shape = (se3d_shape){0, 0};
-    }
-    if (!system || !name || !shape) {
-        return SE3D_ERR_NULL;
-    }
-    se3di_handle handle = {0, 0};
-    SE3DI_TRY(se3di_find_named(&system->model.shape_slots, name, &handle));
-    *shape = (se3d_shape){handle.index1, handle.generation};
-    return SE3D_OK;
+    return se3di_read_named(SE3DI_SLOTS(system, shape), name, shape);
 }
 
 se3d_status se3d_shape_get_name(const se3d_system *system, se3d_shape shape, const char **name)

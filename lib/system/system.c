@@ -242,72 +242,25 @@ size_t se3d_system_count_forces(const se3d_system *system)
     return system ? system->model.force_slots.count : 0;
 }
 
-/* Handle at `index`; null if there is none. */
-static se3d_status get_handle(const se3di_slots *slots, size_t index, se3di_handle *handle)
-{
-    *handle = (se3di_handle){0, 0};
-    if (index >= slots->count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    *handle = se3di_slots_handle(slots, (uint32_t)index);
-    return SE3D_OK;
-}
-
 se3d_status se3d_system_get_body(const se3d_system *system, size_t index, se3d_body *body)
 {
-    if (body) {
-        *body = (se3d_body){0, 0};
-    }
-    if (!system || !body) {
-        return SE3D_ERR_NULL;
-    }
-    se3di_handle handle;
-    SE3DI_TRY(get_handle(&system->model.body_slots, index, &handle));
-    *body = (se3d_body){handle.index1, handle.generation};
-    return SE3D_OK;
+    return se3di_read_handle(SE3DI_SLOTS(system, body), index, body);
 }
 
 se3d_status se3d_system_get_marker(const se3d_system *system, size_t index, se3d_marker *marker)
 {
-    if (marker) {
-        *marker = (se3d_marker){0, 0};
-    }
-    if (!system || !marker) {
-        return SE3D_ERR_NULL;
-    }
-    se3di_handle handle;
-    SE3DI_TRY(get_handle(&system->model.marker_slots, index, &handle));
-    *marker = (se3d_marker){handle.index1, handle.generation};
-    return SE3D_OK;
+    return se3di_read_handle(SE3DI_SLOTS(system, marker), index, marker);
 }
 
 se3d_status se3d_system_get_constraint(const se3d_system *system, size_t index,
                                        se3d_constraint *constraint)
 {
-    if (constraint) {
-        *constraint = (se3d_constraint){0, 0};
-    }
-    if (!system || !constraint) {
-        return SE3D_ERR_NULL;
-    }
-    se3di_handle handle;
-    SE3DI_TRY(get_handle(&system->model.constraint_slots, index, &handle));
-    *constraint = (se3d_constraint){handle.index1, handle.generation};
-    return SE3D_OK;
+    return se3di_read_handle(SE3DI_SLOTS(system, constraint), index, constraint);
 }
 
 se3d_status se3d_system_get_force(const se3d_system *system, size_t index, se3d_force *force)
 {
-    if (force) {
-        *force = (se3d_force){0, 0};
-    }
-    if (!system || !force) {
-        return SE3D_ERR_NULL;
-    }
-    se3di_handle handle;
-    SE3DI_TRY(get_handle(&system->model.force_slots, index, &handle));
-    *force = (se3d_force){handle.index1, handle.generation};
-    return SE3D_OK;
+    return se3di_read_handle(SE3DI_SLOTS(system, force), index, force);
 }
 
 se3d_status se3d_system_get_energy_sized(const se3d_system *system, se3d_energy *energy,

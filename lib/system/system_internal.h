@@ -33,6 +33,15 @@ struct se3d_system {
 se3d_status se3di_enter(se3d_system *system, se3di_busy_level most, const char *function);
 /* It changes the structure, or works for long: not from callbacks. */
 #define SE3DI_EDIT(system) SE3DI_TRY(se3di_enter(system, SE3DI_BUSY_FREE, __func__))
+/* It creates an element, whose handle is null until it exists. */
+#define SE3DI_CREATE(system, handle)                                                               \
+    do {                                                                                           \
+        if (handle) {                                                                              \
+            (handle)->index1 = (handle)->generation = 0;                                           \
+        }                                                                                          \
+        SE3DI_EDIT(system);                                                                        \
+        SE3DI_TRY(se3di_check_pointer(system, #handle, handle));                                   \
+    } while (0)
 /* It sets values or the state: also from the callbacks of events. */
 #define SE3DI_SET(system) SE3DI_TRY(se3di_enter(system, SE3DI_BUSY_EVENT, __func__))
 /* The same through an owner that belongs to a system (a solver, particles). */
@@ -121,7 +130,16 @@ se3d_status se3di_check_name(se3d_system *system, const char *name);
  * `what`; markers: among those of `owner`, others: 0. NULL always is. */
 se3d_status se3di_check_new_name(se3d_system *system, const se3di_slots *slots, uint32_t owner,
                                  const char *what, const char *name);
-/* The handle of an element by its name; left alone if there is none. */
-se3d_status se3di_find_named(const se3di_slots *slots, const char *name, se3di_handle *handle);
+/* Readers record no message. SLOTS are those of a kind of elements, NULL if `system` is; `handle`
+ * points to a public one, which is null on failure.
+ * @return OK, NULL (slots, handle, name, out), STALE_HANDLE, INVALID_ARGUMENT (no such element) */
+#define SE3DI_SLOTS(system, kind) ((system) ? &(system)->model.kind##_slots : NULL)
+se3d_status se3di_read_named(const se3di_slots *slots, const char *name, void *handle);
+se3d_status se3di_read_handle(const se3di_slots *slots, size_t index, void *handle);
+/* The dense index of an element, to write something of it to `out`. */
+se3d_status se3di_read_index(const se3di_slots *slots, se3di_handle handle, const void *out,
+                             uint32_t *index);
+/* A public handle as an internal one. */
+#define SE3DI_HANDLE(handle) ((se3di_handle){(handle).index1, (handle).generation})
 
 #endif

@@ -52,11 +52,7 @@ static se3d_status find_bodies(se3d_system *system, const se3d_user_constraint_d
 se3d_status se3d_user_constraint_create(se3d_system *system, const se3d_user_constraint_def *user,
                                         se3d_constraint *constraint)
 {
-    if (constraint) {
-        *constraint = (se3d_constraint){0, 0};
-    }
-    SE3DI_EDIT(system);
-    SE3DI_TRY(se3di_check_pointer(system, "constraint", constraint));
+    SE3DI_CREATE(system, constraint);
     se3d_user_constraint_def def = se3d_user_constraint_def_default();
     uint32_t bodies[SE3D_USER_BODIES_MAX] = {0};
     se3di_draft draft;
