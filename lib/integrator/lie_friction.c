@@ -3,6 +3,7 @@
 
 #include "force/friction.h"
 #include "force/measure.h"
+#include "nonlinear/friction_system.h"
 
 #include <math.h>
 #include <string.h>
@@ -68,21 +69,6 @@ static se3di_force *next_element(const se3di_lie_friction *f, size_t *at)
     return &forces[(*at)++];
 }
 
-/* Generalised force of a unit on the coordinate, on bodies i and j; zero on fixed ones. */
-static void eval_unit(const se3di_assembly *assembly, const se3di_force *force, double Q[16])
-{
-    const uint32_t bodies[2] = {force->body_i, force->body_j};
-    se3di_measure measure;
-    memset(Q, 0, 16 * sizeof *Q);
-    (void)se3di_measure_force(assembly->model, force, 0, &measure);
-    for (int k = 0; k < 2; ++k) {
-        if (assembly->free_index[bodies[k]] >= 0) {
-            assembly->formulation->add_wrench(&assembly->model->frames[bodies[k]],
-                                              measure.g + 6 * k, measure.g + 6 * k + 3, Q + 8 * k);
-        }
-    }
-}
-
 /* b += n Q; or returns Q . b if `dot` is set. */
 static double visit_blocks(const se3di_assembly *assembly, const se3di_force *force,
                            const double Q[16], double n, int dot, double *b)
@@ -142,7 +128,7 @@ se3d_status se3di_lie_friction_prepare(se3di_lie_friction *f)
     size_t at = 0;
     silence(f);
     for (uint32_t k = 0; k < f->count; ++k) {
-        eval_unit(assembly, next_element(f, &at), f->Q + 16 * (size_t)k);
+        se3di_friction_unit(assembly, next_element(f, &at), f->Q + 16 * (size_t)k);
     }
     at = 0;
     for (uint32_t k = 0; k < f->count; ++k) {

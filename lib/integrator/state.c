@@ -124,31 +124,26 @@ void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *setti
     se3di_kkt_set_settings(equations->kkt, settings);
 }
 
-static se3d_status factor(se3di_equations *equations, double t)
+/* The solver keeps blocks that do not change. */
+static void eval_mass(se3di_assembly *assembly)
 {
-    se3di_assembly *assembly = &equations->assembly;
     if (assembly->formulation->block != 6) {
         se3di_assembly_eval_mass(assembly);
     }
-    se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
-    ++equations->counters.factorizations;
-    se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
-    return status < 0 ? se3di_error_set(equations->error, status,
-                                        "t = %g s: the equations are singular or not finite", t)
-                      : SE3D_OK;
+}
+
+static se3d_status factor(se3di_equations *equations, double t)
+{
+    eval_mass(&equations->assembly);
+    return se3di_equations_factor_values(equations, t, 0);
 }
 
 se3d_status se3di_state_evaluate(se3di_equations *equations, double t)
 {
-    se3di_assembly *assembly = &equations->assembly;
-    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
-    se3di_assembly_eval_rows(assembly, equations->c);
-    se3di_friction_system_begin(equations);
-    SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
-    se3di_kkt_expect(equations->kkt, equations->b, equations->c);
-    SE3DI_TRY(factor(equations, t));
+    SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
+    eval_mass(&equations->assembly);
     ++equations->counters.evaluations;
-    SE3DI_TRY(se3di_equations_solve(equations));
+    SE3DI_TRY(se3di_equations_accelerate(equations, t, 0));
     return se3di_friction_system_finish(equations, t);
 }
 

@@ -235,11 +235,10 @@ static void release_held(se3di_equations *equations)
     }
 }
 
-/* Factor H and C as they have been evaluated. */
-static se3d_status factor_values(se3di_equations *equations)
+/* What an analysis asks before it factors: no callback has failed; held bodies stay. */
+static se3d_status check_values(se3di_equations *equations)
 {
-    se3di_assembly *assembly = &equations->assembly;
-    const se3d_status reported = se3di_user_report(assembly->model, equations->error);
+    const se3d_status reported = se3di_user_report(equations->assembly.model, equations->error);
     if (reported < 0) {
         se3di_kkt_expect(equations->kkt, NULL,
                          NULL); /* or another solution would be taken for it */
@@ -248,19 +247,25 @@ static se3d_status factor_values(se3di_equations *equations)
     if (equations->hold) {
         release_held(equations);
     }
-    se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
-    ++equations->counters.factorizations;
-    se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
-    if (status == SE3D_ERR_NOT_FINITE) {
-        return se3di_error_set(equations->error, status,
-                               "t = %g s: the equations are not finite: an angle has no direction, "
-                               "or the state has diverged",
-                               assembly->model->time);
+    return SE3D_OK;
+}
+
+se3d_status se3di_equations_factor_values(se3di_equations *equations, double t, int is_checked)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    if (is_checked) {
+        SE3DI_TRY(check_values(equations));
     }
+    const se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
+    ++equations->counters.factorizations;
+    const se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
     if (status < 0) {
-        return se3di_error_set(equations->error, status,
-                               "t = %g s: the mass matrix of a body is singular",
-                               assembly->model->time);
+        const char *what = !is_checked ? "the equations are singular or not finite"
+                           : status == SE3D_ERR_NOT_FINITE
+                               ? "the equations are not finite: an angle has no direction, or the "
+                                 "state has diverged"
+                               : "the mass matrix of a body is singular";
+        return se3di_error_set(equations->error, status, "t = %g s: %s", t, what);
     }
     return status;
 }
@@ -269,27 +274,33 @@ se3d_status se3di_equations_factor(se3di_equations *equations)
 {
     se3di_assembly_eval_mass(&equations->assembly);
     se3di_assembly_eval_jacobian(&equations->assembly);
-    return factor_values(equations);
+    return se3di_equations_factor_values(equations, equations->assembly.model->time, 1);
+}
+
+se3d_status se3di_equations_solve_by(se3di_equations *equations, se3di_kkt *kkt,
+                                     const se3di_kkt_values *values)
+{
+    ++equations->counters.solves;
+    se3di_kkt_solve_info info = {0};
+    se3d_status status =
+        se3di_kkt_solve(kkt, values, equations->b, equations->c, equations->x, equations->l, &info);
+    if (status == SE3D_ERR_NO_CONVERGENCE && !(info.residual_b > 1e-6)) {
+        status = SE3D_OK; /* c may be all rounding; the caller checks what it needs of C x = c */
+    }
+    if (status < 0) {
+        return se3di_error_set(
+            equations->error, status, "t = %g s: %s", equations->assembly.model->time,
+            status == SE3D_ERR_NOT_FINITE ? "the solution of the linear equations is not finite"
+                                          : "the linear equations could not be solved");
+    }
+    return status;
 }
 
 se3d_status se3di_equations_solve(se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
-    se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
-    ++equations->counters.solves;
-    se3di_kkt_solve_info info = {0};
-    se3d_status status = se3di_kkt_solve(equations->kkt, &values, equations->b, equations->c,
-                                         equations->x, equations->l, &info);
-    if (status == SE3D_ERR_NO_CONVERGENCE && !(info.residual_b > 1e-6)) {
-        status = SE3D_OK; /* c may be all rounding; the caller checks what it needs of C x = c */
-    }
-    if (status < 0) {
-        return se3di_error_set(equations->error, status, "t = %g s: %s", assembly->model->time,
-                               status == SE3D_ERR_NOT_FINITE
-                                   ? "the solution of the linear equations is not finite"
-                                   : "the linear equations could not be solved");
-    }
-    return status;
+    const se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
+    return se3di_equations_solve_by(equations, equations->kkt, &values);
 }
 
 /* b = H qdot: the weights of the present velocities. */
@@ -374,6 +385,23 @@ se3d_status se3di_velocity_solve(se3di_equations *equations, double t)
     return SE3D_OK;
 }
 
+/* C and the right-hand sides of accelerations: b of all loads but friction that may stick, c. */
+static se3d_status eval_accelerated(se3di_equations *equations, double t)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    se3di_assembly_eval_rows(assembly, equations->c);
+    se3di_friction_system_begin(equations);
+    return se3di_assembly_eval_forces(assembly, t, equations->b, equations->error);
+}
+
+se3d_status se3di_equations_accelerate(se3di_equations *equations, double t, int is_checked)
+{
+    SE3DI_TRY(eval_accelerated(equations, t));
+    se3di_kkt_expect(equations->kkt, equations->b, equations->c);
+    SE3DI_TRY(se3di_equations_factor_values(equations, t, is_checked));
+    return se3di_equations_solve(equations);
+}
+
 /* Of a motion that the constraints determine, H weighing all bodies alike: accelerations from the
  * constraints alone, then C^T lambda = Q - M qddot, as H qddot + C^T lambda = Q - (M - H) qddot. So
  * masses decide on no rank. */
@@ -381,10 +409,8 @@ static se3d_status solve_driven(se3di_equations *equations, double t)
 {
     se3di_assembly *assembly = &equations->assembly;
     se3di_assembly_eval_mass(assembly);
-    se3di_assembly_eval_rows(assembly, equations->c);
-    se3di_friction_system_begin(equations);
-    SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
-    SE3DI_TRY(factor_values(equations));
+    SE3DI_TRY(eval_accelerated(equations, t));
+    SE3DI_TRY(se3di_equations_factor_values(equations, equations->assembly.model->time, 1));
     SE3DI_TRY(se3di_equations_solve(equations));
     se3di_assembly_subtract_inertia(assembly, equations->x, equations->b);
     se3di_assembly_mul_mass(assembly, equations->x, equations->probe);
@@ -394,17 +420,10 @@ static se3d_status solve_driven(se3di_equations *equations, double t)
     return se3di_equations_solve(equations);
 }
 
-/* Accelerations and multipliers together. */
 static se3d_status solve_free(se3di_equations *equations, double t)
 {
-    se3di_assembly *assembly = &equations->assembly;
-    se3di_assembly_eval_mass(assembly);
-    se3di_assembly_eval_rows(assembly, equations->c);
-    se3di_friction_system_begin(equations);
-    SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
-    se3di_kkt_expect(equations->kkt, equations->b, equations->c);
-    SE3DI_TRY(factor_values(equations));
-    return se3di_equations_solve(equations);
+    se3di_assembly_eval_mass(&equations->assembly);
+    return se3di_equations_accelerate(equations, t, 1);
 }
 
 se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)

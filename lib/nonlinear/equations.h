@@ -64,8 +64,17 @@ void se3di_equations_suit_masses(const se3di_equations *equations);
 
 /* Evaluate mass and Jacobian at the present state and factor. */
 se3d_status se3di_equations_factor(se3di_equations *equations);
+/* Factor mass and Jacobian as they have been evaluated. Checked: callbacks have not failed, held
+ * bodies stay, the message names the cause. A stage of a step, which may fail, is not checked. */
+se3d_status se3di_equations_factor_values(se3di_equations *equations, double t, int is_checked);
+/* Accelerations and multipliers, x and l, of the state and its mass as evaluated; friction that may
+ * stick remains to be added. */
+se3d_status se3di_equations_accelerate(se3di_equations *equations, double t, int is_checked);
 /* Solve for b, c into x, l. */
 se3d_status se3di_equations_solve(se3di_equations *equations);
+/* The same by other factors, of `values`. */
+se3d_status se3di_equations_solve_by(se3di_equations *equations, se3di_kkt *kkt,
+                                     const se3di_kkt_values *values);
 
 /* Consistent levels of the state at t. Positions: @return OK, INCONSISTENT (stationary gap),
  * NO_CONVERGENCE, NOT_FINITE; the poses are then the best ones found, the caller restores. */

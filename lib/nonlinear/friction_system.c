@@ -114,8 +114,7 @@ void se3di_friction_system_destroy(friction *s, const se3di_assembly *assembly)
 
 /* Units. */
 
-/* Generalised force of a unit on the coordinate, on bodies i and j; zero on fixed ones. */
-static void eval_unit(const se3di_assembly *assembly, const se3di_force *force, double Q[16])
+void se3di_friction_unit(const se3di_assembly *assembly, const se3di_force *force, double Q[16])
 {
     const uint32_t bodies[2] = {force->body_i, force->body_j};
     se3di_measure measure;
@@ -163,7 +162,7 @@ double se3di_friction_system_acceleration(const se3di_equations *equations, uint
     const se3di_assembly *assembly = &equations->assembly;
     const se3di_force *force = se3di_friction_element(equations, k);
     double Q[16];
-    eval_unit(assembly, force, Q);
+    se3di_friction_unit(assembly, force, Q);
     return dot_unit(assembly, force, Q, equations->x) + se3di_measure_curve(assembly->model, force);
 }
 
@@ -175,7 +174,7 @@ static se3d_status solve_units(se3di_equations *equations)
     const size_t n = assembly->unknown_count, rows = assembly->row_count;
     for (uint32_t u = 0; u < s->active; ++u) {
         const uint32_t k = s->unknown[u];
-        eval_unit(assembly, se3di_friction_element(equations, k), s->Q + 16 * (size_t)k);
+        se3di_friction_unit(assembly, se3di_friction_element(equations, k), s->Q + 16 * (size_t)k);
         memset(equations->b, 0, n * sizeof *equations->b);
         for (size_t r = 0; r < rows; ++r) {
             equations->c[r] = 0.0;
@@ -312,7 +311,7 @@ static void add_columns(const se3di_assembly *assembly, const se3di_force *force
     se3di_friction_reaction(model, force, lambda, R);
     se3di_friction_reaction_rows(model, force, rows);
     (void)se3di_friction_load(model, force, R, gradient);
-    eval_unit(assembly, force, Q);
+    se3di_friction_unit(assembly, force, Q);
     for (int32_t at = assembly->joint_begin[force->joint];
          at < assembly->joint_begin[force->joint + 1]; ++at) {
         const int second = assembly->free_index[bodies[1]] == assembly->joint_body[at];

@@ -76,4 +76,8 @@ int se3di_friction_system_can_hold(const struct se3di_equations *equations, uint
  * slips. @return whether anything does */
 int se3di_frictions_add_columns(const se3di_assembly *assembly, const double *lambda, double *B);
 
+/* Generalised force of a unit on the coordinate of an element, on bodies i and j; zero on fixed
+ * ones. */
+void se3di_friction_unit(const se3di_assembly *assembly, const se3di_force *force, double Q[16]);
+
 #endif

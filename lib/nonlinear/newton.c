@@ -225,23 +225,8 @@ se3d_status se3di_newton_factor_rates(se3di_newton *newton, double t, const doub
 
 se3d_status se3di_newton_solve_displacement(se3di_newton *newton)
 {
-    se3di_equations *equations = newton->equations;
-    const se3di_assembly *assembly = &equations->assembly;
-    se3di_kkt_values values = values_of(newton);
-    se3di_kkt_solve_info info = {0};
-    ++equations->counters.solves;
-    se3d_status status = se3di_kkt_solve(newton->kkt, &values, equations->b, equations->c,
-                                         equations->x, equations->l, &info);
-    if (status == SE3D_ERR_NO_CONVERGENCE && !(info.residual_b > 1e-6)) {
-        status = SE3D_OK; /* Newton goes on with what there is */
-    }
-    if (status < 0) {
-        return se3di_error_set(equations->error, status, "t = %g s: %s", assembly->model->time,
-                               status == SE3D_ERR_NOT_FINITE
-                                   ? "the solution of the linear equations is not finite"
-                                   : "the linear equations could not be solved");
-    }
-    return status;
+    const se3di_kkt_values values = values_of(newton);
+    return se3di_equations_solve_by(newton->equations, newton->kkt, &values);
 }
 
 void se3di_newton_add_matrix(const se3di_newton *newton, const double *x, double *out)
