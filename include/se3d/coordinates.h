@@ -91,7 +91,7 @@ SE3D_API se3d_status se3d_coordinates_move(se3d_coordinates *coordinates, const 
                                            const double *dq, double *out);
 
 /* Compute accelerations at the present state: articulated bodies, equations of loops and drivers
- * included, forces of the elements included.
+ * included, forces of the elements included; friction is what the last analysis left of it.
  * @param[in] effort  [velocities] that act along the coordinates besides [N, N m]; NULL: none
  * @param[out] qddot  [velocities]
  * @return OK, INFO_REDUNDANT, NULL, STATE, SINGULAR, NOT_FINITE, NO_CONVERGENCE, CALLBACK.

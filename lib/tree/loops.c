@@ -195,7 +195,7 @@ static se3d_status build(se3di_tree_loops *loops)
 se3d_status se3di_tree_loops_init(se3di_tree_loops *loops, se3di_tree *tree,
                                   se3di_assembly *assembly, se3di_error *error)
 {
-    *loops = (se3di_tree_loops){.tree = tree, .assembly = assembly};
+    *loops = (se3di_tree_loops){.tree = tree, .assembly = assembly, .error = error};
     const se3d_status status = build(loops);
     if (status < 0) {
         se3di_tree_loops_destroy(loops);
@@ -343,7 +343,7 @@ se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops)
             tree->e[tree->nodes[k].v] = 0.0;
         }
     }
-    SE3DI_TRY(se3di_user_report(tree->model, NULL));
+    SE3DI_TRY(se3di_user_report(tree->model, loops->error));
     const se3di_kkt_values values = {.body = loops->H, .joint = loops->Y};
     return se3di_kkt_factor(loops->kkt, &values, NULL);
 }

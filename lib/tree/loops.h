@@ -22,6 +22,7 @@ typedef struct se3di_tree_loops {
     se3di_tree *tree;
     se3di_assembly *assembly; /* r-omega, of the same model */
     se3di_kkt *kkt;
+    se3di_error *error; /* where failures of callbacks are recorded; NULL: nowhere */
     uint32_t count;     /* loop constraints */
     uint32_t row_count; /* theirs */
     uint32_t *constraints;
@@ -43,7 +44,7 @@ typedef struct se3di_tree_loops {
     int32_t *place_of;      /* [nodes]: scratch of the building */
 } se3di_tree_loops;
 
-/* On failure nothing is held. @return OK, NO_MEMORY */
+/* On failure nothing is held; `error` (NULL: none) is kept. @return OK, NO_MEMORY */
 se3d_status se3di_tree_loops_init(se3di_tree_loops *loops, se3di_tree *tree,
                                   se3di_assembly *assembly, se3di_error *error);
 void se3di_tree_loops_destroy(se3di_tree_loops *loops);

@@ -5,6 +5,7 @@
 #include "support/counting.h"
 #include "support/tree_world.h"
 
+#include "nonlinear/equations.h"
 #include "se3d/coordinates.h"
 
 enum { MECHANISMS = 40, SIZE = 7 * TREE_BODIES_MAX };
@@ -267,6 +268,34 @@ static void the_null_space_is_what_loops_leave(void)
     CHECK(tried > MECHANISMS / 4);
 }
 
+/* The acceleration of the marker by coordinates, J qddot + rate qdot, is that of the KKT system. */
+static void accelerations_of_closed_loops_are_those_of_the_bodies(void)
+{
+    static double J[6 * SIZE], rate[6 * SIZE];
+    int tried = 0;
+    for (uint64_t seed = 0; seed < 2 * MECHANISMS; ++seed) {
+        setting s;
+        se3di_equations e;
+        double qddot[SIZE], a[3];
+        begin(&s, seed, 1 + (int)(seed % 2));
+        CHECK(!se3di_equations_init(&e, &s.system->model, &se3di_formulation_romega, NULL));
+        if (se3di_acceleration_solve(&e, 0.0) == SE3D_OK && !e.redundant) {
+            CHECK(!se3d_coordinates_compute_accelerations(s.c, NULL, qddot));
+            CHECK(!se3d_coordinates_compute_jacobian(s.c, s.marker, J, rate));
+            CHECK(!se3d_marker_get_acceleration(s.system, s.marker, a));
+            for (size_t k = 0; k < 3; ++k) {
+                const double *row = J + (3 + k) * s.n, *change = rate + (3 + k) * s.n;
+                CHECK_NEAR(dot(row, qddot, s.n) + dot(change, s.qdot, s.n), a[k],
+                           1e-9 * (1.0 + fabs(a[k])));
+            }
+            tried += se3d_coordinates_count_loop_rows(s.c) > 0;
+        }
+        se3di_equations_destroy(&e);
+        end(&s);
+    }
+    CHECK(tried > MECHANISMS / 2);
+}
+
 static void every_velocity_has_its_joint_and_body(void)
 {
     for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
@@ -356,6 +385,7 @@ int main(void)
     RUN(momentum_is_its_matrix_times_the_velocities);
     RUN(gravity_is_the_bias_at_rest);
     RUN(the_null_space_is_what_loops_leave);
+    RUN(accelerations_of_closed_loops_are_those_of_the_bodies);
     RUN(every_velocity_has_its_joint_and_body);
     RUN(calls_see_setters_and_leave_the_state_alone);
     RUN(what_is_made_once_allocates_no_more_and_is_given_back);
