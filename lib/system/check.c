@@ -105,18 +105,35 @@ static se3d_status find(se3d_system *system, const se3di_slots *slots, const cha
     return SE3DI_FAIL_OF(system, what, SE3D_ERR_STALE_HANDLE, " %s", reason);
 }
 
-#define FIND(kind)                                                                                 \
-    se3d_status se3di_find_##kind(se3d_system *system, const char *what, se3d_##kind handle,       \
-                                  uint32_t *index)                                                 \
-    {                                                                                              \
-        return find(system, &system->model.kind##_slots, what, SE3DI_HANDLE(handle), index);       \
-    }
+se3d_status se3di_find_body(se3d_system *system, const char *what, se3d_body handle,
+                            uint32_t *index)
+{
+    return find(system, &system->model.body_slots, what, SE3DI_HANDLE(handle), index);
+}
 
-FIND(body)
-FIND(marker)
-FIND(material)
-FIND(constraint)
-FIND(force)
+se3d_status se3di_find_marker(se3d_system *system, const char *what, se3d_marker handle,
+                              uint32_t *index)
+{
+    return find(system, &system->model.marker_slots, what, SE3DI_HANDLE(handle), index);
+}
+
+se3d_status se3di_find_material(se3d_system *system, const char *what, se3d_material handle,
+                                uint32_t *index)
+{
+    return find(system, &system->model.material_slots, what, SE3DI_HANDLE(handle), index);
+}
+
+se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_constraint handle,
+                                  uint32_t *index)
+{
+    return find(system, &system->model.constraint_slots, what, SE3DI_HANDLE(handle), index);
+}
+
+se3d_status se3di_find_force(se3d_system *system, const char *what, se3d_force handle,
+                             uint32_t *index)
+{
+    return find(system, &system->model.force_slots, what, SE3DI_HANDLE(handle), index);
+}
 
 se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_function function,
                                 uint32_t variables, int32_t *index)
