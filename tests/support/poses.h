@@ -44,10 +44,11 @@ static inline void poses_turn(uint64_t *seed, se3di_shape_pose *pose)
     se3di_quat_to_matrix(p, pose->R);
 }
 
-/* Turned as another one, its axes exchanged, but for an angle of 1e-12 to .1. */
-static inline void poses_lean(uint64_t *seed, const se3di_shape_pose *as, se3di_shape_pose *pose)
+/* Turned as another one, its axes exchanged, but for an angle between powers of ten. */
+static inline void poses_turn_slightly(uint64_t *seed, const se3di_shape_pose *as, double least,
+                                       double most, se3di_shape_pose *pose)
 {
-    const double angle = pow(10.0, poses_between(seed, -12.0, -1.0));
+    const double angle = pow(10.0, poses_between(seed, least, most));
     const int first = (int)poses_between(seed, 0.0, 2.999);
     double q[4] = {1.0, 0.0, 0.0, 0.0}, p[4], turn[9], mixed[9];
     for (int k = 1; k < 4; ++k) {
@@ -61,6 +62,11 @@ static inline void poses_lean(uint64_t *seed, const se3di_shape_pose *as, se3di_
         }
     }
     se3di_mat_mul(turn, mixed, pose->R);
+}
+
+static inline void poses_lean(uint64_t *seed, const se3di_shape_pose *as, se3di_shape_pose *pose)
+{
+    poses_turn_slightly(seed, as, -12.0, -1.0, pose);
 }
 
 /* A shape with room for a hull of its own. */

@@ -27,6 +27,7 @@ enum {
 
 typedef struct surface {
     const char *name;
+    int which;
     double points[3 * SURFACE_GRID * SURFACE_GRID];
     uint32_t faces[3 * SURFACE_FACES];
     double middle[SURFACE_FACES][3], bound[SURFACE_FACES]; /* a ball about each face */
@@ -155,6 +156,7 @@ static inline void surface_make(int which, surface *s)
                                        {-0.1, -0.1}, {-0.1, 0.5}, {-0.5, 0.5}};
     const se3d_allocator allocator = se3di_alloc_default();
     s->name = names[which];
+    s->which = which;
     if (which < SURFACE_BLOCK) {
         surface_field(which, s);
     } else if (which < SURFACE_DENT) {

@@ -238,7 +238,7 @@ static void solid_below(const surface *s, se3di_shape *hull)
 }
 
 /* Meshes that bulge are the convex solids below them. */
-static void check_surface(int kind, int which, int poses)
+static void check_surface(int kind, int which, int poses, int parallel)
 {
     static surface s;
     const se3d_allocator allocator = se3di_alloc_default();
@@ -253,6 +253,9 @@ static void check_surface(int kind, int which, int poses)
         double n[3], local[3], up[3];
         poses_random_solid(kinds[kind], &seed, &solid);
         random_pair(&at, &of, &seed);
+        if (parallel) {
+            poses_turn_slightly(&seed, &of, -9.5, -6.0, &at);
+        }
         for (int c = 0; c < 2; ++c) {
             local[c] = 0.5 * check_random(&seed);
         }
@@ -288,9 +291,42 @@ static void check_surface(int kind, int which, int poses)
 static void meshes_that_bulge_are_as_deep_as_what_is_below_them(void)
 {
     for (int kind = 0; kind < KINDS; ++kind) {
-        check_surface(kind, SURFACE_ROOF, poses_count(400));
-        check_surface(kind, SURFACE_DOME, poses_count(400) / 20);
+        check_surface(kind, SURFACE_ROOF, poses_count(400), 0);
+        check_surface(kind, SURFACE_DOME, poses_count(400) / 20, 0);
     }
+}
+
+/* Edges at an angle of 1e-8 have a product, and the nearest face of the polytope is a sliver. A way
+ * off a corner of the ridge that leads into its other half by 5e-7 rad is not a way off it. */
+static void solids_nearly_parallel_to_a_ridge_are_as_deep_as_others(void)
+{
+    check_surface(0, SURFACE_ROOF, poses_count(1500), 1);
+    check_surface(2, SURFACE_ROOF, poses_count(1500), 1);
+}
+
+/* Rounding stops the polytope at a sliver, 2.6 cm too deep: the search goes on with other faces. */
+static void a_cylinder_along_a_block_is_not_held_by_a_sliver(void)
+{
+    static surface s;
+    const double wanted = 0.019049523563811881;
+    se3di_shape drum = {.kind = SE3DI_SHAPE_CYLINDER,
+                        .radius = 0.11149345128748681,
+                        .half_length = 0.14365728673125425};
+    const se3di_shape_pose at = {
+        .x = {-0.58962651285940793, 0.13276203820508622, 0.10464354792061796},
+        .R = {0.99841508289598024, -0.051161347270346449, 0.023448641566112732,
+              -0.049445874127400043, -0.99641301945169459, -0.068674596460075107,
+              0.026878016623075523, 0.06740631433819734, -0.99736350495180526}};
+    const se3di_shape_pose of = {
+        .R = {0.023448641566330031, 0.9984150828959325, -0.05116134727117827, -0.068674596461114068,
+              -0.049445874128187545, -0.9964130194515739, -0.99736350495172865,
+              0.026878016623399725, 0.067406314339202161}};
+    se3di_manifold m;
+    surface_make(SURFACE_BLOCK, &s);
+    drum.bound = se3di_shape_bound(&drum);
+    se3di_narrow_find(&drum, &at, &s.shape, &of, &m);
+    CHECK(m.count > 0 && fabs(deepest(&m)->overlap - wanted) < SAME);
+    surface_release(&s);
 }
 
 int main(void)
@@ -298,5 +334,7 @@ int main(void)
     RUN(convex_meshes_are_as_deep_as_what_they_enclose);
     RUN(overlaps_and_normals_are_those_of_the_least_translation);
     RUN(meshes_that_bulge_are_as_deep_as_what_is_below_them);
+    RUN(solids_nearly_parallel_to_a_ridge_are_as_deep_as_others);
+    RUN(a_cylinder_along_a_block_is_not_held_by_a_sliver);
     return check_finish();
 }

@@ -20,7 +20,11 @@
 #define VERTICES    160
 #define FACES       (4 * VERTICES) /* twice what lives, for a step's new ones */
 #define GAIN        1e-12          /* relative; smaller ones end a search */
-#define PLANE_SLACK 1e-13          /* relative; a face is not seen from closer to its plane */
+#define ROUND       2e-4  /* of the size: between a face and its reach, near a round body */
+#define SETTLED     0.015 /* rad */
+#define SLIVER      1e-4  /* sine of the angle of a face below which it is one */
+#define APART       1e-9  /* of the size: cores that are */
+#define PLANE_SLACK 1e-13 /* relative; a face is not seen from closer to its plane */
 
 typedef struct vertex {
     double p[3], a[3], b[3]; /* p = a - b */
@@ -29,6 +33,8 @@ typedef struct vertex {
 typedef struct difference {
     const se3di_solid *i, *j;
     double size;
+    int is_round; /* by one cylinder: two may have rims that meet near an axis, where the overlap is
+                     known only from close by */
 } difference;
 
 static void support(const difference *D, const double d[3], vertex *v)
@@ -206,10 +212,18 @@ static void witness(const vertex *v, const double *weight, int count, double a[3
 
 typedef struct polytope_face {
     int v[3];
-    int alive;
-    double n[3]; /* outward */
+    int alive, done;
+    int is_sliver; /* rounding has turned its normal */
+    double n[3];   /* outward */
     double distance;
 } polytope_face;
+
+/* The least reach so far, its direction and the nearest points of the two. */
+typedef struct least_reach {
+    double reach, n[3], a[3], b[3];
+    int is_settled; /* no other direction near it has a lesser one */
+    int is_sliver;
+} least_reach;
 
 typedef struct polytope {
     const difference *D;
@@ -230,7 +244,9 @@ static void add_face(polytope *P, int a, int b, int c)
     se3di_sub(P->v[c].p, P->v[a].p, ac);
     se3di_cross(ab, ac, f->n);
     double size = se3di_norm(f->n);
-    if (size > DBL_EPSILON * se3di_norm(ab) * se3di_norm(ac)) {
+    const double edges = se3di_norm(ab) * se3di_norm(ac);
+    if (size > DBL_EPSILON * edges) {
+        f->is_sliver = size < SLIVER * edges;
         se3di_scale(1.0 / size, f->n, f->n);
         f->distance = se3di_dot(f->n, P->v[a].p);
     }
@@ -290,18 +306,6 @@ static void begin(polytope *P, const simplex *s)
     for (int k = 0; k < 4; ++k) {
         add_face(P, faces[k][0], faces[k][inward ? 2 : 1], faces[k][inward ? 1 : 2]);
     }
-}
-
-static polytope_face *nearest_face(polytope *P)
-{
-    polytope_face *best = NULL;
-    for (int k = 0; k < P->face_count; ++k) {
-        polytope_face *f = &P->face[k];
-        if (f->alive && f->distance < HUGE_VAL && (!best || f->distance < best->distance)) {
-            best = f;
-        }
-    }
-    return best;
 }
 
 /* The edge a -> b of a dead face is on the horizon where the face beyond it lives. */
@@ -369,36 +373,56 @@ static void find_witness(const polytope *P, const polytope_face *nearest, double
     }
 }
 
-/* The normal with the least reach of D that a nearest face has had; the reach is the overlap. If
- * rounding has spoilt the polytope (it no longer grows) the search ends. */
-static double expand(polytope *P, double normal[3], double a[3], double b[3])
+/* A face that may have a lesser reach behind it: not near the direction that is settled. */
+static polytope_face *next_face(polytope *P, const least_reach *best)
 {
-    polytope_face best = {.distance = 0.0};
-    double least = HUGE_VAL, bound = -HUGE_VAL;
-    for (;;) {
-        polytope_face *f = nearest_face(P);
-        if (!f || P->vertex_count == VERTICES || f->distance < bound - 1e-9 * P->D->size) {
+    polytope_face *next = NULL;
+    for (int k = 0; k < P->face_count; ++k) {
+        polytope_face *f = &P->face[k];
+        double turn[3];
+        if (!f->alive || f->done || !(f->distance < (next ? next->distance : HUGE_VAL))) {
+            continue;
+        }
+        se3di_sub(f->n, best->n, turn);
+        if (!best->is_settled || se3di_dot(turn, turn) > SETTLED * SETTLED) {
+            next = f;
+        }
+    }
+    return next;
+}
+
+/* The normal with the least reach of D that a nearest face has had; the reach is the overlap. Near
+ * a face of a round body the least reach is found at once, and what is left is to know that no
+ * other face has a lesser one behind it. A face that cannot grow for rounding is left, the search
+ * goes on with the next: every reach is a bound. */
+static void expand(polytope *P, least_reach *best)
+{
+    const double same = GAIN * P->D->size;
+    while (P->vertex_count < VERTICES) {
+        polytope_face *f = next_face(P, best);
+        if (!f || !(f->distance < best->reach - same)) {
             break;
         }
         vertex *v = &P->v[P->vertex_count];
         support(P->D, f->n, v);
-        double reach = se3di_dot(v->p, f->n);
-        bound = f->distance;
-        if (reach < least) {
-            least = reach;
-            best = *f;
-            find_witness(P, &best, a, b);
+        const double reach = se3di_dot(v->p, f->n);
+        if (reach < best->reach) {
+            best->reach = reach;
+            best->is_settled = 0;
+            best->is_sliver = f->is_sliver;
+            se3di_copy(f->n, best->n);
+            find_witness(P, f, best->a, best->b);
+            if (P->D->is_round && reach - f->distance < ROUND * P->D->size) {
+                best->is_settled =
+                    se3di_convex_polish(P->D->i, P->D->j, best->n, best->a, best->b, &best->reach);
+            }
         }
-        if (reach - f->distance <= GAIN * P->D->size) {
-            break;
-        }
-        ++P->vertex_count;
-        if (!grow(P, P->vertex_count - 1)) {
-            break;
+        f->done = 1;
+        if (reach - f->distance > same && grow(P, P->vertex_count)) {
+            ++P->vertex_count;
         }
     }
-    se3di_copy(best.n, normal);
-    return least < HUGE_VAL ? fmax(least, 0.0) : 0.0;
+    best->reach = best->reach < HUGE_VAL ? fmax(best->reach, 0.0) : 0.0;
 }
 
 /* Cores without volume in their difference (crossing lines): perpendicular to both. */
@@ -427,21 +451,35 @@ static double flat_normal(const difference *D, const simplex *s, double normal[3
     return 0.0;
 }
 
+static int has_rims(const se3di_solid *solid)
+{
+    return se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS);
+}
+
 static double size_of(const se3di_solid *solid)
 {
     return solid->shape->bound;
 }
 
+int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double distance)
+{
+    difference D = {i, j, size_of(i) + size_of(j), 0};
+    simplex s;
+    double point[3];
+    memset(&s, 0, sizeof s);
+    return walk(&D, &s, point) > fmax(distance, APART * D.size);
+}
+
 double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],
                              double on_i[3], double on_j[3])
 {
-    difference D = {i, j, size_of(i) + size_of(j)};
+    difference D = {i, j, size_of(i) + size_of(j), has_rims(i) != has_rims(j)};
     simplex s;
     double point[3];
     memset(&s, 0, sizeof s);
     double distance = walk(&D, &s, point);
     witness(s.v, s.weight, s.count, on_i, on_j);
-    if (distance > 1e-9 * D.size) {
+    if (distance > APART * D.size) {
         se3di_scale(-1.0 / distance, point, normal); /* point = a - b, from j to i */
         return -distance;
     }
@@ -449,7 +487,15 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
         return flat_normal(&D, &s, normal);
     }
     polytope P;
+    least_reach best = {.reach = HUGE_VAL};
     P.D = &D;
     begin(&P, &s);
-    return expand(&P, normal, on_i, on_j);
+    expand(&P, &best);
+    if (!best.is_settled && (best.is_sliver || has_rims(i) || has_rims(j))) {
+        (void)se3di_convex_polish(i, j, best.n, best.a, best.b, &best.reach);
+    }
+    se3di_copy(best.n, normal);
+    se3di_copy(best.a, on_i);
+    se3di_copy(best.b, on_j);
+    return best.reach;
 }

@@ -15,6 +15,14 @@ void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double ac
 double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],
                              double on_i[3], double on_j[3]);
 
+/* Whether the cores of two are apart by more than a distance. */
+int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double distance);
+
+/* Replace a direction that is near the one of the least overlap, the points of the cores that are
+ * farthest in each other and the overlap by those to rounding. Returns whether there is one. */
+int se3di_convex_polish(const se3di_solid *i, const se3di_solid *j, double n[3], double a[3],
+                        double b[3], double *overlap);
+
 /* The same to rounding and with the radii about the cores: the overlap, negative: the distance. */
 double se3di_convex_least(const se3di_solid *i, const se3di_solid *j, double normal[3],
                           double on_i[3], double on_j[3]);
@@ -31,8 +39,10 @@ void se3di_plane_capsule(const se3di_solid *i, const se3di_solid *plane, se3di_m
 void se3di_plane_cylinder(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_convex(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_mesh(const se3di_solid *mesh, const se3di_solid *plane, se3di_manifold *manifold);
-/* Four points of each rim of a cylinder: the lowest one towards a face with this normal, and at
- * right angles. Returns the sine of the tilt. */
+/* Four points of each rim of a cylinder: the lowest one towards a face with this normal, that
+ * across it, and at right angles; if it stands about upright they are turned a little, so that the
+ * lowest is less low than the rim, by less than 3.1e-5 of its radius. Returns the sine of the
+ * tilt. */
 double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double rim[8][3]);
 /* Contact of the face `reference` (of i; `flip`: of j) with what of the other looks at it, with
  * overlaps along the unit `along`, outward from the face. */

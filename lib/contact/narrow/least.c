@@ -21,10 +21,16 @@
 #define TIE     1e-15 /* of the size: of equal directions the first */
 #define LOOSE   1e-11 /* of the size: by how much the polytope's own may be less */
 #define EDGES   12
+#define SLIGHT  1e-4  /* sine; lines that are more nearly parallel cross nowhere in particular */
+#define SKEW    1e-9  /* sine; edges that are more nearly parallel have no product */
 #define EXACT   1e-15 /* of the first bracket */
 #define LOOKS   200
-#define NEWTONS 8
-#define APART   1e-9 /* of the size: cores that are */
+#define NEWTONS 30
+#define SHORTER 20
+#define LAST    1e-6  /* rad; steps so small are taken as they are */
+#define DONE    1e-12 /* rad; the step after is below rounding */
+#define FLAT    1e-6  /* of the size: a curvature below which the overlap is not convex */
+#define APART   1e-9  /* of the size: cores that are */
 
 /* The place where a slope is zero, between one where it is negative and one where it is positive:
  * by secants that keep both (the Illinois rule), by halves if these do not close in (a slope that
@@ -72,6 +78,11 @@ static int bracket_take(bracket *b, double slope)
         b->last = 1;
     }
     return 1;
+}
+
+static int has_rims(const se3di_solid *solid)
+{
+    return se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS);
 }
 
 /* The distance of a point from a core, and the direction to it. */
@@ -126,13 +137,20 @@ static double line_distance(const se3di_solid *line, const se3di_solid *j, doubl
     return distance;
 }
 
+/* Of a solid the edges that are nearly perpendicular to a direction, unit, and the squares of their
+ * distances from the place of contact. */
+typedef struct near_edges {
+    int count;
+    double edge[EDGES][3], square[EDGES];
+} near_edges;
+
 typedef struct search {
     const se3di_solid *i, *j;
     double size;
     double about[3]; /* near which */
     double least, n[3];
-    int count;
-    double edge[2 * EDGES][3]; /* nearly perpendicular to `about`, unit */
+    double a[3], b[3]; /* the points of the two that are farthest in each other */
+    near_edges of_i, of_j;
 } search;
 
 /* h(n); v: the difference of the farthest points. */
@@ -146,69 +164,147 @@ static double overlap_along(const search *s, const double n[3], double v[3])
     return se3di_dot(v, n);
 }
 
-static void try_direction(search *s, const double direction[3], double margin)
+/* Returns whether the overlap along it is less than all before. */
+static int try_direction(search *s, const double direction[3])
 {
     const double size = se3di_norm(direction);
     if (!(size > 0.0)) {
-        return;
+        return 0;
     }
     double n[3], turn[3], v[3];
     const double sign = se3di_dot(direction, s->about) < 0.0 ? -1.0 : 1.0;
     se3di_scale(sign / size, direction, n);
     se3di_sub(n, s->about, turn);
     if (se3di_norm(turn) > NEAR) {
-        return;
+        return 0;
     }
     const double here = overlap_along(s, n, v);
-    if (here < s->least - margin * s->size) {
-        s->least = here;
-        se3di_copy(n, s->n);
+    if (!(here < s->least - TIE * s->size)) {
+        return 0;
+    }
+    s->least = here;
+    se3di_copy(n, s->n);
+    return 1;
+}
+
+/* A face or line of the one, of j or of i, is touched at the lowest point of the other. */
+static void touch_lowest(search *s, int of_j)
+{
+    double back[3];
+    se3di_scale(-1.0, s->n, back);
+    if (of_j) {
+        se3di_core_support(s->i, s->n, s->a);
+        se3di_copy(s->a, s->b);
+        se3di_add_scaled(-s->least, s->n, s->b);
+    } else {
+        se3di_core_support(s->j, back, s->b);
+        se3di_copy(s->b, s->a);
+        se3di_add_scaled(s->least, s->n, s->a);
     }
 }
 
-static void add_edge(search *s, const double e[3])
+/* Two lines through the lowest points of the two touch where they cross. */
+static void touch_crossing(search *s, const double e[3], const double f[3])
+{
+    double back[3], p[3], q[3], d[3], across[3], moment[3];
+    se3di_cross(e, f, across);
+    const double square = se3di_dot(across, across);
+    if (square < SLIGHT * SLIGHT) {
+        return; /* about parallel: the points that were found before */
+    }
+    se3di_scale(-1.0, s->n, back);
+    se3di_core_support(s->i, s->n, p);
+    se3di_core_support(s->j, back, q);
+    se3di_sub(q, p, d);
+    se3di_cross(d, f, moment);
+    se3di_add_scaled(se3di_dot(moment, across) / square, e, p);
+    se3di_copy(p, s->a);
+    se3di_copy(p, s->b);
+    se3di_add_scaled(-s->least, s->n, s->b);
+}
+
+/* Of many the nearest are kept. */
+static void add_edge(near_edges *list, const double about[3], const double e[3], double square)
 {
     const double size = se3di_norm(e);
-    if (s->count < 2 * EDGES && size > 0.0 && fabs(se3di_dot(e, s->about)) < NEAR * size) {
-        se3di_scale(1.0 / size, e, s->edge[s->count++]);
+    if (!(size > 0.0 && fabs(se3di_dot(e, about)) < NEAR * size)) {
+        return;
     }
+    int at = list->count;
+    if (at == EDGES) {
+        at = 0;
+        for (int k = 1; k < EDGES; ++k) {
+            at = list->square[k] > list->square[at] ? k : at;
+        }
+        if (!(square < list->square[at])) {
+            return;
+        }
+    }
+    se3di_scale(1.0 / size, e, list->edge[at]);
+    list->square[at] = square;
+    list->count += at == list->count;
 }
 
-/* Sides of the faces that are about as far along `way` as anything of the hull. */
-static void add_hull_edges(search *s, const se3di_solid *solid, double sign)
+/* Sides of the faces that are about as far along `way` as anything of the hull; x: the place of
+ * contact. */
+static void add_hull_edges(const se3di_solid *solid, const double way[3], const double x[3],
+                           near_edges *list)
 {
     const se3di_shape *shape = solid->shape;
-    double way[3], local[3], top[3];
-    se3di_scale(sign, s->about, way);
+    double local[3], at[3], arm[3], most = -HUGE_VAL;
     se3di_mul_transposed(solid->at->R, way, local);
-    se3di_core_support(solid, way, top);
-    se3di_sub(top, solid->at->x, top);
-    const double level = se3di_dot(top, way) - NEAR * shape->bound;
+    se3di_sub(x, solid->at->x, arm);
+    se3di_mul_transposed(solid->at->R, arm, at);
+    for (size_t k = 0; k < shape->vertex_count; ++k) {
+        most = fmax(most, se3di_dot(shape->vertices + 3 * k, local));
+    }
     for (size_t k = 0; k < 3 * shape->triangle_count; ++k) {
         const uint32_t *t = shape->triangles + k / 3 * 3;
         const double *a = shape->vertices + 3 * (size_t)t[k % 3];
         const double *b = shape->vertices + 3 * (size_t)t[(k + 1) % 3];
-        double d[3], e[3];
+        const double level = most - NEAR * shape->bound;
+        double d[3], e[3], from[3];
         if (t[k % 3] < t[(k + 1) % 3] && se3di_dot(a, local) > level &&
             se3di_dot(b, local) > level) {
             se3di_sub(b, a, d);
+            se3di_sub(at, a, from);
+            const double share = se3di_dot(from, d) / se3di_dot(d, d);
+            se3di_add_scaled(-fmin(1.0, fmax(0.0, share)), d, from);
             se3di_mul(solid->at->R, d, e);
-            add_edge(s, e);
+            add_edge(list, way, e, se3di_dot(from, from));
         }
     }
 }
 
-static void add_edges(search *s, const se3di_solid *solid, double sign)
+static void add_edges(const search *s, const se3di_solid *solid, double sign, const double x[3],
+                      near_edges *list)
 {
     const uint32_t lines = se3di_shape_class_of(solid->shape)->lines;
-    double axis[3];
+    double axis[3], way[3];
+    se3di_scale(sign, s->about, way);
+    list->count = 0;
     if (solid->shape->triangles) {
-        add_hull_edges(s, solid, sign);
+        add_hull_edges(solid, way, x, list);
     }
     for (int a = 0; a < 3; ++a) {
         if (lines >> a & 1u) {
             se3di_solid_axis(solid, a, axis);
-            add_edge(s, axis);
+            add_edge(list, way, axis, 0.0);
+        }
+    }
+}
+
+/* Perpendicular to both edges, also if these are nearly parallel. */
+static void try_product(search *s, const double e[3], const double f[3])
+{
+    double n[3];
+    se3di_cross(e, f, n);
+    const double size = se3di_norm(n);
+    if (size > SKEW) {
+        se3di_scale(1.0 / size, n, n);
+        se3di_add_scaled(-se3di_dot(n, f), f, n);
+        if (try_direction(s, n)) {
+            touch_crossing(s, e, f);
         }
     }
 }
@@ -228,7 +324,7 @@ static double look_along(const search *s, const double u[3], const double w[3], 
 }
 
 /* The place where the slope changes its sign on the directions perpendicular to an edge. */
-static void try_circle(search *s, const double e[3])
+static void try_circle(search *s, const double e[3], int of_j)
 {
     bracket b = {.low = -NEAR, .high = NEAR, .width = 2.0 * NEAR};
     double u[3], w[3], n[3];
@@ -244,7 +340,9 @@ static void try_circle(search *s, const double e[3])
     while (b.count < LOOKS && bracket_look(&b) &&
            bracket_take(&b, look_along(s, u, w, b.next, n))) {
     }
-    try_direction(s, n, TIE);
+    if (try_direction(s, n)) {
+        touch_lowest(s, of_j);
+    }
 }
 
 /* Add what a rim moves by as n turns along u: R/|s| (u - (u.z) z - (u.s) s), s the unit part of n
@@ -266,33 +364,68 @@ static void add_rim_rate(const se3di_solid *solid, const double n[3], const doub
     }
 }
 
+/* The step towards the least overlap in the plane of u: Newton's where the overlap is convex,
+ * turned to where it falls where it is not. */
+static void rim_step(const search *s, const double n[3], double step[3])
+{
+    double u[2][3], v[3], A[2][2], f[2];
+    const double along = overlap_along(s, n, v);
+    se3di_perpendicular(n, u[0]);
+    se3di_cross(n, u[0], u[1]);
+    for (int c = 0; c < 2; ++c) {
+        double rate[3] = {0.0, 0.0, 0.0};
+        add_rim_rate(s->i, n, u[c], rate);
+        add_rim_rate(s->j, n, u[c], rate);
+        for (int r = 0; r < 2; ++r) {
+            A[r][c] = se3di_dot(rate, u[r]) - (r == c ? along : 0.0);
+        }
+        f[c] = -se3di_dot(v, u[c]);
+    }
+    const double cross = 0.5 * (A[0][1] + A[1][0]);
+    const double mean = 0.5 * (A[0][0] + A[1][1]);
+    const double half = 0.5 * (A[0][0] - A[1][1]);
+    const double least = mean - sqrt(half * half + cross * cross);
+    const double raise = least > FLAT * s->size ? 0.0 : FLAT * s->size - least;
+    const double det = (A[0][0] + raise) * (A[1][1] + raise) - cross * cross;
+    se3di_scale(((A[1][1] + raise) * f[0] - cross * f[1]) / det, u[0], step);
+    se3di_add_scaled(((A[0][0] + raise) * f[1] - cross * f[0]) / det, u[1], step);
+}
+
+/* Newton's method, with steps that are shortened until the overlap is less. */
 static void try_rims(search *s)
 {
-    double n[3];
+    double n[3], v[3];
     se3di_copy(s->about, n);
+    double here = overlap_along(s, n, v);
     for (int k = 0; k < NEWTONS; ++k) {
-        double u[2][3], v[3], A[2][2], f[2];
-        const double along = overlap_along(s, n, v);
-        se3di_perpendicular(n, u[0]);
-        se3di_cross(n, u[0], u[1]);
-        for (int c = 0; c < 2; ++c) {
-            double rate[3] = {0.0, 0.0, 0.0};
-            add_rim_rate(s->i, n, u[c], rate);
-            add_rim_rate(s->j, n, u[c], rate);
-            for (int r = 0; r < 2; ++r) {
-                A[r][c] = se3di_dot(rate, u[r]) - (r == c ? along : 0.0);
+        double step[3], next[3], then = HUGE_VAL;
+        rim_step(s, n, step);
+        const double size = se3di_norm(step);
+        if (!(size > 0.0)) {
+            break;
+        }
+        double share = fmin(1.0, NEAR / size);
+        for (int c = 0; c < SHORTER && !(then < here); ++c, share *= 0.5) {
+            se3di_copy(n, next);
+            se3di_add_scaled(share, step, next);
+            se3di_scale(1.0 / se3di_norm(next), next, next);
+            then = overlap_along(s, next, v);
+            if (size < LAST) {
+                break; /* rounding decides which is less */
             }
-            f[c] = -se3di_dot(v, u[c]);
         }
-        const double det = A[0][0] * A[1][1] - A[0][1] * A[1][0];
-        if (!(fabs(det) > 0.0)) {
-            return;
+        if (!(then < here) && size >= LAST) {
+            break;
         }
-        se3di_add_scaled((A[1][1] * f[0] - A[0][1] * f[1]) / det, u[0], n);
-        se3di_add_scaled((A[0][0] * f[1] - A[1][0] * f[0]) / det, u[1], n);
-        se3di_scale(1.0 / se3di_norm(n), n, n);
+        se3di_copy(next, n);
+        here = then;
+        if (size < DONE) {
+            break;
+        }
     }
-    try_direction(s, n, TIE);
+    if (try_direction(s, n)) {
+        touch_lowest(s, 0);
+    }
 }
 
 /* Faces and caps. */
@@ -302,48 +435,48 @@ static void try_faces(search *s)
     double back[3];
     se3di_scale(-1.0, s->about, back);
     se3di_face_find(s->i, s->about, &face);
-    if (face.count > 2) {
-        try_direction(s, face.normal, TIE);
+    if (face.count > 2 && try_direction(s, face.normal)) {
+        touch_lowest(s, 0);
     }
     se3di_face_find(s->j, back, &face);
-    if (face.count > 2) {
-        try_direction(s, face.normal, TIE);
+    if (face.count > 2 && try_direction(s, face.normal)) {
+        touch_lowest(s, 1);
     }
 }
 
-static int has_rims(const se3di_solid *solid)
-{
-    return se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS);
-}
-
-static double polish(const se3di_solid *i, const se3di_solid *j, double overlap, double n[3])
+int se3di_convex_polish(const se3di_solid *i, const se3di_solid *j, double n[3], double a[3],
+                        double b[3], double *overlap)
 {
     search s = {.i = i, .j = j, .size = i->shape->bound + j->shape->bound, .least = HUGE_VAL};
     se3di_copy(n, s.about);
+    se3di_copy(a, s.a);
+    se3di_copy(b, s.b);
     try_faces(&s);
-    add_edges(&s, i, 1.0);
-    const int of_i = s.count;
-    add_edges(&s, j, -1.0);
-    for (int a = 0; a < of_i; ++a) {
-        for (int b = of_i; b < s.count; ++b) {
-            double product[3];
-            se3di_cross(s.edge[a], s.edge[b], product);
-            if (se3di_norm(product) > 1e-9) {
-                try_direction(&s, product, TIE);
-            }
+    add_edges(&s, i, 1.0, a, &s.of_i);
+    add_edges(&s, j, -1.0, b, &s.of_j);
+    for (int k = 0; k < s.of_i.count; ++k) {
+        for (int c = 0; c < s.of_j.count; ++c) {
+            try_product(&s, s.of_i.edge[k], s.of_j.edge[c]);
         }
     }
-    for (int a = 0; a < s.count; ++a) {
-        try_circle(&s, s.edge[a]);
+    const int is_round = has_rims(i) || has_rims(j);
+    for (int k = 0; k < s.of_i.count && is_round; ++k) {
+        try_circle(&s, s.of_i.edge[k], 0);
+    }
+    for (int k = 0; k < s.of_j.count && is_round; ++k) {
+        try_circle(&s, s.of_j.edge[k], 1);
     }
     if (has_rims(i) && has_rims(j)) {
         try_rims(&s);
     }
-    if (!(overlap < s.least - LOOSE * s.size)) {
-        se3di_copy(s.n, n);
-        return s.least;
+    if (*overlap < s.least - LOOSE * s.size) {
+        return 0;
     }
-    return overlap;
+    se3di_copy(s.n, n);
+    se3di_copy(s.a, a);
+    se3di_copy(s.b, b);
+    *overlap = s.least;
+    return 1;
 }
 
 static int is_line(const se3di_solid *solid)
@@ -369,9 +502,5 @@ double se3di_convex_least(const se3di_solid *i, const se3di_solid *j, double n[3
             return radius - distance;
         }
     }
-    double overlap = se3di_convex_distance(i, j, n, on_i, on_j);
-    if (overlap > 0.0 && (has_rims(i) || has_rims(j))) {
-        overlap = polish(i, j, overlap, n);
-    }
-    return radius + overlap;
+    return radius + se3di_convex_distance(i, j, n, on_i, on_j);
 }

@@ -20,6 +20,7 @@
 #define BESIDE   0.2 /* of the solid's size: an edge that a solid is past may be what it rests on */
 #define COPLANAR SE3DI_MESH_COPLANAR
 #define SAME     SE3DI_MESH_SAME
+#define ACROSS   1e-10 /* cosine of a way from an edge that is perpendicular to it */
 
 typedef se3di_mesh_face face;
 typedef se3di_mesh_meeting meeting;
@@ -80,11 +81,16 @@ void se3di_mesh_add(const meeting *m, const double at[3], const double n[3], dou
     se3di_mul(m->mesh->at->R, n, normal);
     se3di_scale(-1.0, normal, normal);
     for (uint32_t k = 0; k < m->manifold->count; ++k) {
-        const se3di_contact_point *p = &m->manifold->points[k];
+        se3di_contact_point *p = &m->manifold->points[k];
         se3di_sub(p->point, point, d);
-        if (se3di_norm(d) < SAME * m->size && se3di_dot(p->normal, normal) > COPLANAR) {
-            return;
+        if (!(se3di_norm(d) < SAME * m->size && se3di_dot(p->normal, normal) > COPLANAR)) {
+            continue;
         }
+        if (radius > 0.0 && overlap > p->overlap) { /* a line's end; the line is nearer */
+            se3di_copy(normal, p->normal);
+            p->overlap = overlap;
+        }
+        return;
     }
     se3di_contact_point *p = se3di_manifold_add(m->manifold, point, normal, overlap, feature);
     p->share = 1.0;
@@ -143,6 +149,30 @@ static void meet_wall(void *ctx, uint32_t triangle)
                             se3di_mesh_height(&other, h->x) < 0.0);
 }
 
+se3di_shape se3di_mesh_flat(const meeting *m, uint32_t triangle, double corners[9])
+{
+    static const uint32_t whole[3] = {0, 1, 2};
+    for (uint32_t k = 0; k < 3; ++k) {
+        se3di_copy(se3di_mesh_corner(m->mesh->shape, triangle, k), corners + 3 * (size_t)k);
+    }
+    return (se3di_shape){.kind = SE3DI_SHAPE_HULL,
+                         .bound = m->mesh->shape->bound,
+                         .vertices = corners,
+                         .triangles = (uint32_t *)(uintptr_t)whole,
+                         .vertex_count = 3,
+                         .triangle_count = 1};
+}
+
+int se3di_mesh_overlaps(const meeting *m, uint32_t triangle)
+{
+    double corners[9];
+    const se3di_shape flat = se3di_mesh_flat(m, triangle, corners);
+    const se3di_solid other = {&flat, m->mesh->at};
+    return !se3di_convex_are_apart(m->solid, &other, se3di_core_radius(m->solid->shape));
+}
+
+/* A face counts for what is over it; beyond its end where another one stands up there, if the solid
+ * overlaps it: what is behind the planes of both is in a hollow between the two. */
 static void meet_corner(void *ctx, uint32_t triangle)
 {
     corner_faces *c = ctx;
@@ -163,11 +193,44 @@ static void meet_corner(void *ctx, uint32_t triangle)
     if (se3di_triangle_nearest(corner, foot, at, NULL) > SAME * SAME * m->size * m->size) {
         hollow h = {m, &f, c->x, 0};
         se3di_mesh_visit(m->mesh->shape, at, SAME * m->size, meet_wall, &h);
-        if (!h.found) {
+        if (!h.found || !se3di_mesh_overlaps(m, triangle)) {
             return;
         }
     }
     keep_face(c, &f, -height);
+}
+
+/* Whether the solid overlaps a triangle in the plane of a face near a corner of it. */
+typedef struct plane_met {
+    const meeting *m;
+    const face *own;
+    int found;
+} plane_met;
+
+static void meet_plane(void *ctx, uint32_t triangle)
+{
+    plane_met *p = ctx;
+    face f;
+    if (!p->found && se3di_mesh_face_of(p->m, triangle, &f) &&
+        se3di_dot(f.n, p->own->n) > COPLANAR &&
+        fabs(se3di_mesh_height(p->own, f.middle)) < p->m->size) {
+        p->found = se3di_mesh_overlaps(p->m, triangle);
+    }
+}
+
+/* Of several faces that a corner is behind those count that the solid overlaps: others are across
+ * the body that the corner is in. The least deep one is where it went in. */
+static int is_met(const corner_faces *c, int k)
+{
+    int least = 0;
+    for (int other = 1; other < c->count; ++other) {
+        least = c->depth[other] < c->depth[least] ? other : least;
+    }
+    plane_met here = {c->m, &c->list[k], k == least};
+    if (!here.found) {
+        se3di_mesh_visit(c->m->mesh->shape, c->x, c->m->size, meet_plane, &here);
+    }
+    return here.found;
 }
 
 /* A corner of the solid, ground frame; `only`: on faces of this normal (mesh frame), or NULL. */
@@ -183,6 +246,9 @@ static void touch_corner(const meeting *m, const double x[3], const double *only
         double at[3];
         if (!(c.depth[k] > 0.0) || (only && se3di_dot(c.list[k].n, only) < COPLANAR)) {
             continue; /* it only keeps others from counting */
+        }
+        if (!is_met(&c, k)) {
+            continue;
         }
         se3di_copy(c.x, at);
         se3di_add_scaled(c.depth[k], c.list[k].n, at);
@@ -220,6 +286,7 @@ static void meet_neighbour(void *ctx, uint32_t triangle)
     e->is_flat = e->is_flat || continues || !bulges || triangle < e->triangle;
     e->is_border = 0;
     e->other = other;
+    e->beyond = triangle;
 }
 
 /* A direction away from an edge: whether it leads out between its faces, not through them. */
@@ -238,7 +305,8 @@ static void meet_wedge(void *ctx, uint32_t triangle)
     se3di_sub(w->e->b, w->e->a, along);
     se3di_sub(f.middle, w->e->middle, inward);
     se3di_add_scaled(-se3di_dot(inward, along) / se3di_dot(along, along), along, inward);
-    w->open = w->open && se3di_dot(w->n, inward) < SAME * se3di_norm(inward);
+    const double least = SE3DI_MESH_OUT * (se3di_norm(along) + se3di_norm(inward));
+    w->open = w->open && se3di_dot(w->n, inward) < least;
 }
 
 /* An edge as a line without thickness. */
@@ -272,25 +340,37 @@ int se3di_mesh_leads_out(const edge *e, const double n[3])
 }
 
 /* Contacts with the edge as a line, by ways that lead out; if they lead over its end, also from
- * there. */
-static void add_lines(const meeting *m, const se3di_manifold *lines, const edge *e,
-                      uint32_t feature)
+ * there. A round end leaves along a way that is perpendicular but for what its search leaves. */
+static void add_lines(meeting *m, const se3di_manifold *lines, const edge *e, uint32_t feature)
 {
+    se3di_mesh_way way = {.feature = feature, .triangle = e->triangle, .beyond = e->beyond};
     double along[3];
     se3di_sub(e->b, e->a, along);
+    const double radius = se3di_core_radius(m->solid->shape);
+    const double least = radius > 0.0 ? SAME : ACROSS;
     for (uint32_t k = 0; k < lines->count; ++k) {
         double here[3], back[3], n[3];
         se3di_scale(-1.0, lines->points[k].normal, back);
         se3di_mul_transposed(m->mesh->at->R, back, n);
         const double over = se3di_dot(n, along) / se3di_norm(along);
-        const int ends = fabs(over) > SAME;
+        const int ends = fabs(over) > least;
         if (se3di_mesh_leads_out(e, back) &&
             (!ends || se3di_mesh_leads_off(m, over > 0.0 ? e->b : e->a, n))) {
             se3di_mesh_to_local(m->mesh, lines->points[k].point, here);
-            se3di_mesh_add(m, here, n, lines->points[k].overlap, se3di_core_radius(m->solid->shape),
-                           feature + k);
+            se3di_add_scaled(0.5 * lines->points[k].overlap, n, here); /* on the edge */
+            se3di_mesh_add(m, here, n, lines->points[k].overlap, radius, feature + k);
+            if (lines->points[k].overlap > way.depth) {
+                way.depth = lines->points[k].overlap;
+                se3di_copy(n, way.n);
+                se3di_copy(here, way.at);
+            }
         }
     }
+    if (radius > 0.0) {
+        return; /* one round end touches it: no way off for the other */
+    }
+    (void)se3di_mesh_face_of(m, e->triangle, &way.face);
+    se3di_mesh_note(m, &way);
 }
 
 /* The ball about the solid does not come near the edge. */
@@ -347,6 +427,7 @@ static void meet_edges(void *ctx, uint32_t triangle)
                   .a = se3di_mesh_corner(s, triangle, k),
                   .b = se3di_mesh_corner(s, triangle, k + 1),
                   .triangle = triangle,
+                  .beyond = triangle,
                   .is_border = 1};
         se3di_add(e.a, e.b, e.middle);
         se3di_scale(0.5, e.middle, e.middle);
@@ -407,47 +488,43 @@ static void meet_rims(void *ctx, uint32_t triangle)
 }
 
 /* A triangle that a solid cuts through if none of its corners and no edge of the mesh that
- * bulges touch (sharp ones, in hollows): pushed apart as convex shapes are, but not through the
- * surface. */
+ * bulges touch (sharp ones, in hollows): pushed apart as convex shapes are. */
 static void meet_rest(void *ctx, uint32_t triangle)
 {
-    static const uint32_t whole[3] = {0, 1, 2};
     const meeting *m = ctx;
-    double corners[9], down[3], lowest[3], n[3], back[3], on_i[3], on_j[3];
+    double corners[9], n[3], back[3], on_i[3], on_j[3];
+    const se3di_shape flat = se3di_mesh_flat(m, triangle, corners);
+    const se3di_solid other = {&flat, m->mesh->at};
     face f;
     if (!se3di_mesh_face_of(m, triangle, &f)) {
         return;
     }
-    se3di_mul(m->mesh->at->R, f.n, down);
-    se3di_scale(-1.0, down, down);
-    se3di_core_support(m->solid, down, lowest);
-    se3di_mesh_to_local(m->mesh, lowest, lowest);
-    const double radius = se3di_core_radius(m->solid->shape);
-    double depth = radius - se3di_mesh_height(&f, lowest);
-    if (!(depth > 0.0)) {
-        return; /* all of it is in front */
-    }
-    for (uint32_t k = 0; k < 3; ++k) {
-        se3di_copy(se3di_mesh_corner(m->mesh->shape, triangle, k), corners + 3 * (size_t)k);
-    }
-    const se3di_shape flat = {.kind = SE3DI_SHAPE_HULL,
-                              .bound = m->mesh->shape->bound,
-                              .vertices = corners,
-                              .triangles = (uint32_t *)(uintptr_t)whole,
-                              .vertex_count = 3,
-                              .triangle_count = 1};
-    const se3di_solid other = {&flat, m->mesh->at};
     const double overlap = se3di_convex_least(m->solid, &other, n, on_i, on_j);
-    if (!(overlap > 0.0)) {
-        return;
-    }
-    se3di_mesh_to_local(m->mesh, on_j, on_j);
     se3di_mul_transposed(m->mesh->at->R, n, back);
     se3di_scale(-1.0, back, back);
-    if (se3di_dot(back, f.n) < 0.0) {
-        se3di_mesh_add(m, on_j, f.n, depth, radius, 0x40000000u + triangle);
-    } else {
-        se3di_mesh_add(m, on_j, back, overlap, radius, 0x40000000u + triangle);
+    if (overlap > 0.0 && !(se3di_dot(back, f.n) < 0.0)) {
+        se3di_mesh_to_local(m->mesh, on_j, on_j);
+        se3di_mesh_add(m, on_j, back, overlap, se3di_core_radius(m->solid->shape),
+                       0x40000000u + triangle);
+    }
+}
+
+/* If that leads through the surface everywhere, off the face. */
+static void meet_through(void *ctx, uint32_t triangle)
+{
+    const meeting *m = ctx;
+    double corners[9], lowest[3], n[3], on_i[3], on_j[3];
+    const se3di_shape flat = se3di_mesh_flat(m, triangle, corners);
+    const se3di_solid other = {&flat, m->mesh->at};
+    face f;
+    if (!se3di_mesh_face_of(m, triangle, &f)) {
+        return;
+    }
+    const double radius = se3di_mesh_lowest(m, f.n, lowest);
+    const double depth = radius - se3di_mesh_height(&f, lowest);
+    if (depth > 0.0 && se3di_convex_least(m->solid, &other, n, on_i, on_j) > 0.0) {
+        se3di_add_scaled(depth - radius, f.n, lowest);
+        se3di_mesh_add(m, lowest, f.n, depth, radius, 0x40000000u + triangle);
     }
 }
 
@@ -541,6 +618,9 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
         se3di_mesh_add_ways(&m);
         if (manifold->count == 0) {
             se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_rest, &m);
+        }
+        if (manifold->count == 0) {
+            se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_through, &m);
         }
         separate_features(manifold);
     }

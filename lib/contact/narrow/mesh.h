@@ -7,6 +7,7 @@
 
 #define SE3DI_MESH_COPLANAR 0.999 /* cosine of the angle of faces that are one */
 #define SE3DI_MESH_SAME     1e-6  /* of the solid's size: points that are one */
+#define SE3DI_MESH_OUT      1e-12 /* a direction that leads into a face by less leads out */
 #define SE3DI_MESH_WAYS     24
 
 /* All in the frame of the mesh. */
@@ -18,7 +19,9 @@ typedef struct se3di_mesh_face {
 typedef struct se3di_mesh_way {
     double n[3], depth, at[3]; /* to the solid; the place of the surface that is left last */
     se3di_mesh_face face;      /* that has the place */
-    uint32_t feature, reserved;
+    uint32_t feature;
+    uint32_t triangle, beyond; /* of the place */
+    uint32_t reserved;
 } se3di_mesh_way;
 
 typedef struct se3di_mesh_meeting {
@@ -37,8 +40,8 @@ typedef struct se3di_mesh_edge {
     const se3di_mesh_meeting *m;
     const double *a, *b; /* its ends */
     double middle[3];
-    uint32_t triangle;
-    int is_flat; /* or bulges away, or is another triangle's */
+    uint32_t triangle, beyond; /* the same at a border */
+    int is_flat;               /* or bulges away, or is another triangle's */
     int is_border;
     se3di_mesh_face other; /* beyond it, if it is no border */
 } se3di_mesh_edge;
@@ -50,6 +53,9 @@ int se3di_mesh_face_of(const se3di_mesh_meeting *m, uint32_t triangle, se3di_mes
 double se3di_mesh_height(const se3di_mesh_face *f, const double x[3]);
 /* The lowest point of the solid's core along the unit n; returns how far its surface is below. */
 double se3di_mesh_lowest(const se3di_mesh_meeting *m, const double n[3], double at[3]);
+/* A triangle as a solid of its own, with room for its corners; whether the solid overlaps it. */
+se3di_shape se3di_mesh_flat(const se3di_mesh_meeting *m, uint32_t triangle, double corners[9]);
+int se3di_mesh_overlaps(const se3di_mesh_meeting *m, uint32_t triangle);
 /* Whether a direction leads out between the faces at an edge, not through them. */
 int se3di_mesh_leads_out(const se3di_mesh_edge *e, const double n[3]);
 /* The same at a corner of the mesh; n in its frame. */
@@ -58,6 +64,8 @@ int se3di_mesh_leads_off(const se3di_mesh_meeting *m, const double x[3], const d
 void se3di_mesh_add(const se3di_mesh_meeting *m, const double at[3], const double n[3],
                     double overlap, double radius, uint32_t feature);
 
+/* Keep a way if it is among the least deep. */
+void se3di_mesh_note(se3di_mesh_meeting *m, const se3di_mesh_way *way);
 /* Note the ways off a face; off its corners; off an edge that bulges. */
 void se3di_mesh_find_ways(se3di_mesh_meeting *m, uint32_t triangle);
 void se3di_mesh_find_ways_off_edge(se3di_mesh_meeting *m, const se3di_mesh_edge *e);

@@ -98,13 +98,18 @@ double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double 
     return tilt;
 }
 
+/* The lowest point of a rim that stands about upright is to one side, and less low. */
 void se3di_plane_cylinder(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     const half_space plane = half_space_of(j);
-    double rim[8][3], axis[3], side[3];
+    double rim[8][3], axis[3], side[3], low[3];
     double tilt = se3di_cylinder_rims(i, plane.n, rim);
     se3di_solid_axis(i, 2, axis);
     se3di_cross(plane.n, axis, side);
+    se3di_sub(rim[0], rim[1], low);
+    const double lift = tilt * i->shape->radius + 0.5 * se3di_dot(low, plane.n);
+    se3di_add_scaled(-lift, plane.n, rim[0]);
+    se3di_add_scaled(-lift, plane.n, rim[4]);
     for (uint32_t k = 0; k < 8; ++k) {
         se3di_contact_point *p = touch_plane(&plane, rim[k], 0.0, k, manifold);
         if (p && k % 4 == 0 && tilt > RIM_TILT) {

@@ -24,7 +24,8 @@
 #define PARTS    12 /* of the angle between two faces */
 #define HALVINGS 60
 #define EQUAL    1e-9        /* of the size: depths that are one */
-#define RIM      1e-5        /* of the size: by how much points of an upright rim are too shallow */
+#define RIM      3.1e-5      /* of the size: by how much points of an upright rim are too shallow */
+#define INWARD   1e-3        /* of the way to the middle of a face */
 #define FEATURE  0xc0000000u /* of ways: not those of corners, edges and triangles */
 
 double se3di_mesh_lowest(const se3di_mesh_meeting *m, const double n[3], double at[3])
@@ -38,7 +39,7 @@ double se3di_mesh_lowest(const se3di_mesh_meeting *m, const double n[3], double 
     return radius;
 }
 
-static void note(se3di_mesh_meeting *m, const se3di_mesh_way *way)
+void se3di_mesh_note(se3di_mesh_meeting *m, const se3di_mesh_way *way)
 {
     int at = m->way_count;
     if (!(way->depth > 0.0 && way->depth < m->size)) {
@@ -62,7 +63,8 @@ static void note(se3di_mesh_meeting *m, const se3di_mesh_way *way)
 static void find_off_face(se3di_mesh_meeting *m, const se3di_mesh_face *f, uint32_t triangle)
 {
     const double *corner[3];
-    se3di_mesh_way way = {.feature = FEATURE + 4 * triangle, .face = *f};
+    se3di_mesh_way way = {
+        .feature = FEATURE + 4 * triangle, .face = *f, .triangle = triangle, .beyond = triangle};
     double low[3], near[3];
     const double radius = se3di_mesh_lowest(m, f->n, low);
     se3di_copy(f->n, way.n);
@@ -79,7 +81,7 @@ static void find_off_face(se3di_mesh_meeting *m, const se3di_mesh_face *f, uint3
     se3di_add_scaled(-radius, f->n, low);
     if (se3di_triangle_nearest(corner, way.at, near, NULL) < least * least &&
         se3di_mesh_crosses(m->mesh->shape, m->center, low)) {
-        note(m, &way);
+        se3di_mesh_note(m, &way);
     }
 }
 
@@ -97,7 +99,8 @@ static void meet_fan(void *ctx, uint32_t triangle)
     for (uint32_t k = 0; k < 3; ++k) {
         double d[3];
         se3di_sub(se3di_mesh_corner(f->m->mesh->shape, triangle, k), f->x, d);
-        f->open = f->open && !(se3di_dot(d, f->n) > SE3DI_MESH_SAME * se3di_norm(d));
+        const double least = SE3DI_MESH_OUT * (f->m->size + se3di_norm(d));
+        f->open = f->open && !(se3di_dot(d, f->n) > least);
     }
 }
 
@@ -122,7 +125,7 @@ static void try_corner(se3di_mesh_meeting *m, const double x[3], const double ou
         return;
     }
     if (se3di_mesh_leads_off(m, x, way->n)) {
-        note(m, way);
+        se3di_mesh_note(m, way);
     }
 }
 
@@ -190,7 +193,10 @@ void se3di_mesh_find_ways(se3di_mesh_meeting *m, uint32_t triangle)
     }
     find_off_face(m, &f, triangle);
     for (uint32_t k = 0; k < 3; ++k) {
-        se3di_mesh_way way = {.feature = FEATURE + 4 * triangle + 1 + k, .face = f};
+        se3di_mesh_way way = {.feature = FEATURE + 4 * triangle + 1 + k,
+                              .face = f,
+                              .triangle = triangle,
+                              .beyond = triangle};
         find_off_corner(m, se3di_mesh_corner(m->mesh->shape, triangle, k), &way);
     }
 }
@@ -241,7 +247,10 @@ static void find_least(const arc *a, reach low, reach high, uint32_t feature)
             high = middle;
         }
     }
-    se3di_mesh_way way = {.depth = high.depth, .feature = feature};
+    se3di_mesh_way way = {.depth = high.depth,
+                          .feature = feature,
+                          .triangle = a->e->triangle,
+                          .beyond = a->e->beyond};
     double place[3], d[3];
     const double share = low.slope < high.slope ? low.slope / (low.slope - high.slope) : 0.0;
     se3di_sub(high.low, low.low, d);
@@ -260,7 +269,7 @@ static void find_least(const arc *a, reach low, reach high, uint32_t feature)
     if (se3di_mesh_leads_out(a->e, ground) &&
         se3di_mesh_crosses(a->m->mesh->shape, a->m->center, place)) {
         (void)se3di_mesh_face_of(a->m, a->e->triangle, &way.face);
-        note(a->m, &way);
+        se3di_mesh_note(a->m, &way);
     }
 }
 
@@ -299,32 +308,51 @@ void se3di_mesh_find_ways_off_edge(se3di_mesh_meeting *m, const se3di_mesh_edge 
 
 /* ---- which count ---- */
 
-/* Faces of one convex piece, as far as two can tell. */
-static int are_one(const se3di_mesh_face *f, const se3di_mesh_face *g)
+/* Faces of one convex piece: each behind the other, and what is between their places, too. */
+static int are_one(const se3di_mesh_meeting *m, const se3di_mesh_face *f, const double at_f[3],
+                   const se3di_mesh_face *g, const double at_g[3])
 {
     const int flat = se3di_dot(f->n, g->n) > SE3DI_MESH_COPLANAR;
-    return flat || (se3di_mesh_height(f, g->middle) < 0.0 && se3di_mesh_height(g, f->middle) < 0.0);
+    if (!flat &&
+        !(se3di_mesh_height(f, g->middle) < 0.0 && se3di_mesh_height(g, f->middle) < 0.0)) {
+        return 0;
+    }
+    double middle[3], d[3];
+    se3di_sub(at_g, at_f, d);
+    if (se3di_norm(d) < SE3DI_MESH_SAME * m->size) {
+        return 1;
+    }
+    se3di_copy(at_f, middle);
+    se3di_add_scaled(0.5, d, middle);
+    for (int k = 0; k < 3; ++k) { /* off an edge that both are on, it may be sharp */
+        middle[k] += INWARD * (0.5 * (f->middle[k] + g->middle[k]) - middle[k]);
+    }
+    se3di_add_scaled(-SE3DI_MESH_SAME * m->size, f->n, middle);
+    se3di_add_scaled(-SE3DI_MESH_SAME * m->size, g->n, middle);
+    return se3di_mesh_crosses(m->mesh->shape, m->center, middle);
 }
 
 static int is_least(const se3di_mesh_meeting *m, int k)
 {
     const se3di_mesh_way *way = &m->ways[k];
     for (int other = 0; other < m->way_count; ++other) {
-        const double less = way->depth - m->ways[other].depth;
-        const int sooner = less > 0.0 || (!(less < 0.0) && other < k);
-        if (other != k && sooner && are_one(&way->face, &m->ways[other].face)) {
+        const se3di_mesh_way *sooner = &m->ways[other];
+        const double less = way->depth - sooner->depth;
+        if (other != k && (less > 0.0 || (!(less < 0.0) && other < k)) &&
+            are_one(m, &way->face, way->at, &sooner->face, sooner->at)) {
             return 0;
         }
     }
     return 1;
 }
 
-/* A contact that is this way but for rounding becomes it. The lowest points of an upright rim lean
- * to where they were, as on planes. */
+/* A contact that is this way but for rounding becomes it, as does the lowest point of an upright
+ * rim. */
 static int is_shown(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
 {
     const int is_rim = se3di_shape_is(m->solid->shape, SE3DI_SHAPE_HAS_RIMS);
     const double slack = is_rim ? RIM * m->solid->shape->bound : EQUAL * m->size;
+    se3di_contact_point *deepest = NULL;
     double ground[3];
     se3di_mul(m->mesh->at->R, way->n, ground);
     se3di_scale(-1.0, ground, ground);
@@ -332,24 +360,70 @@ static int is_shown(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
         se3di_contact_point *p = &m->manifold->points[k];
         double turn[3];
         se3di_sub(p->normal, ground, turn);
-        if (se3di_norm(turn) < SE3DI_MESH_SAME && p->overlap > way->depth - slack) {
-            if (fabs(p->overlap - way->depth) < EQUAL * m->size) {
-                se3di_copy(ground, p->normal);
-                p->overlap = way->depth;
-            }
-            return 1;
+        if (se3di_norm(turn) < SE3DI_MESH_SAME && (!deepest || p->overlap > deepest->overlap)) {
+            deepest = p;
         }
     }
-    return 0;
+    if (!deepest || !(deepest->overlap > way->depth - slack)) {
+        return 0;
+    }
+    if (deepest->overlap < way->depth + slack) {
+        se3di_copy(ground, deepest->normal);
+        deepest->overlap = way->depth;
+    }
+    return 1;
+}
+
+/* No contact with a piece is deeper than its least way. */
+static void limit(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
+{
+    for (uint32_t k = 0; k < m->manifold->count; ++k) {
+        se3di_contact_point *p = &m->manifold->points[k];
+        se3di_mesh_face f;
+        double d[3];
+        if (!(p->overlap > way->depth)) {
+            continue;
+        }
+        se3di_sub(p->point, m->mesh->at->x, d);
+        se3di_mul_transposed(m->mesh->at->R, d, f.corner);
+        se3di_copy(f.corner, f.middle);
+        se3di_mul_transposed(m->mesh->at->R, p->normal, d);
+        se3di_scale(-1.0, d, f.n);
+        if (are_one(m, &way->face, way->at, &f, f.corner)) {
+            p->overlap = way->depth;
+        }
+    }
+}
+
+/* Off parts of the surface that the solid overlaps: a face, or one of those at an edge. */
+static void keep_met(se3di_mesh_meeting *m)
+{
+    int kept = 0;
+    for (int k = 0; k < m->way_count; ++k) {
+        const se3di_mesh_way way = m->ways[k];
+        if (se3di_mesh_overlaps(m, way.triangle) ||
+            (way.beyond != way.triangle && se3di_mesh_overlaps(m, way.beyond))) {
+            m->ways[kept++] = way;
+        }
+    }
+    m->way_count = kept;
 }
 
 void se3di_mesh_add_ways(se3di_mesh_meeting *m)
 {
+    int least[SE3DI_MESH_WAYS];
+    keep_met(m);
     for (int k = 0; k < m->way_count; ++k) {
-        const se3di_mesh_way *way = &m->ways[k];
-        if (is_least(m, k) && !is_shown(m, way)) {
+        least[k] = is_least(m, k);
+        if (least[k] && !is_shown(m, &m->ways[k])) {
+            const se3di_mesh_way *way = &m->ways[k];
             se3di_mesh_add(m, way->at, way->n, way->depth, se3di_core_radius(m->solid->shape),
                            way->feature);
+        }
+    }
+    for (int k = 0; k < m->way_count; ++k) {
+        if (least[k]) {
+            limit(m, &m->ways[k]);
         }
     }
 }
