@@ -254,50 +254,59 @@ static bool write_bodies(se3di_vtk *vtk, const char *path)
     return se3di_vtk_file_write(&file, path);
 }
 
+/* A part of each row of a table of points. */
+typedef struct column {
+    const char *name;
+    size_t first, width;
+    bool is_integer;
+} column;
+
+enum { COLUMNS_MOST = 4 };
+
+/* The rows of a table as points with what their columns say; the place is at `place`. */
+static bool write_rows(const char *path, const double *rows, size_t n, size_t width, size_t place,
+                       const column columns[COLUMNS_MOST])
+{
+    se3di_vtk_array arrays[COLUMNS_MOST + 3];
+    for (size_t k = 0; k < COLUMNS_MOST; ++k) {
+        const column *c = &columns[k];
+        arrays[k] = (se3di_vtk_array){
+            SE3DI_VTK_POINT_DATA, c->name, rows + c->first, n, c->width, width, 0.0, 0.0,
+            c->is_integer};
+    }
+    se3di_vtk_array *points = arrays + COLUMNS_MOST;
+    points[0] =
+        (se3di_vtk_array){SE3DI_VTK_POINTS, "points", rows + place, n, 3, width, 0.0, 0.0, false};
+    points[1] = (se3di_vtk_array){SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true};
+    points[2] = (se3di_vtk_array){SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true};
+    const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
+    return se3di_vtk_file_write(&file, path);
+}
+
 static bool write_particles(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
                             const char *path)
 {
-    (void)sample;
-    enum { W = SE3DI_PARTICLE_COLUMNS };
-    se3di_particle_rows particles;
-    if (se3di_tagged_get_rows(model, pool, &particles) < 0) {
-        return false;
-    }
-    const double *rows = particles.rows;
-    const size_t n = particles.count;
     /* The columns of a row: time, id, radius, position, velocity, angular velocity. */
-    const se3di_vtk_array arrays[] = {
-        {SE3DI_VTK_POINT_DATA, "radius", rows + 2, n, 1, W, 0.0, 0.0, false},
-        {SE3DI_VTK_POINT_DATA, "velocity", rows + 6, n, 3, W, 0.0, 0.0, false},
-        {SE3DI_VTK_POINT_DATA, "angular_velocity", rows + 9, n, 3, W, 0.0, 0.0, false},
-        {SE3DI_VTK_POINT_DATA, "id", rows + 1, n, 1, W, 0.0, 0.0, true},
-        {SE3DI_VTK_POINTS, "points", rows + 3, n, 3, W, 0.0, 0.0, false},
-        {SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true},
-        {SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true}};
-    const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
-    return se3di_vtk_file_write(&file, path);
+    static const column columns[COLUMNS_MOST] = {{"radius", 2, 1, false},
+                                                 {"velocity", 6, 3, false},
+                                                 {"angular_velocity", 9, 3, false},
+                                                 {"id", 1, 1, true}};
+    se3di_particle_rows list;
+    (void)sample;
+    return se3di_tagged_get_rows(model, pool, &list) >= 0 &&
+           write_rows(path, list.rows, list.count, SE3DI_PARTICLE_COLUMNS, 3, columns);
 }
 
 static bool write_contacts(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
                            const char *path)
 {
-    enum { W = SE3DI_CONTACT_NUMBERS };
+    static const column columns[COLUMNS_MOST] = {{"normal", 4, 3, false},
+                                                 {"overlap", 7, 1, false},
+                                                 {"normal_force", 8, 1, false},
+                                                 {"tangential_force", 9, 3, false}};
     se3di_contact_rows list;
-    if (se3di_contacts_get_rows(model, sample, pool, &list) < 0) {
-        return false;
-    }
-    const double *rows = list.rows;
-    const size_t n = list.count;
-    const se3di_vtk_array arrays[] = {
-        {SE3DI_VTK_POINT_DATA, "normal", rows + 4, n, 3, W, 0.0, 0.0, false},
-        {SE3DI_VTK_POINT_DATA, "overlap", rows + 7, n, 1, W, 0.0, 0.0, false},
-        {SE3DI_VTK_POINT_DATA, "normal_force", rows + 8, n, 1, W, 0.0, 0.0, false},
-        {SE3DI_VTK_POINT_DATA, "tangential_force", rows + 9, n, 3, W, 0.0, 0.0, false},
-        {SE3DI_VTK_POINTS, "points", rows + 1, n, 3, W, 0.0, 0.0, false},
-        {SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true},
-        {SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true}};
-    const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
-    return se3di_vtk_file_write(&file, path);
+    return se3di_contacts_get_rows(model, sample, pool, &list) >= 0 &&
+           write_rows(path, list.rows, list.count, SE3DI_CONTACT_NUMBERS, 1, columns);
 }
 
 /* Points with memory of their own. @return false: errno says why */
