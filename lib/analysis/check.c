@@ -624,11 +624,12 @@ static se3d_status report_meshes(se3di_check *check, const se3di_model *model)
     if (pairs > 1) {
         snprintf(more, sizeof more, " (and %zu more pairs)", pairs - 1);
     }
-    return add_message(check,
-                       "the meshes %.100s and %.100s%s pass through each other: meshes do not "
-                       "touch meshes; make one of them convex, or build it from other shapes",
-                       se3di_shape_describe(model, first[0]), se3di_shape_describe(model, first[1]),
-                       more);
+    return add_message(
+        check,
+        "the meshes %.100s and %.100s%s pass through each other: neither is convex or "
+        "can be taken apart; close one, make it simpler, or build it from other "
+        "shapes",
+        se3di_shape_describe(model, first[0]), se3di_shape_describe(model, first[1]), more);
 }
 
 se3d_status se3di_check_init(se3di_check *check, se3di_model *model, se3di_error *error)

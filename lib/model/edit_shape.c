@@ -21,6 +21,12 @@ static se3d_status own_block(const se3d_allocator *allocator, const void *origin
 
 void se3di_shape_release(const se3d_allocator *allocator, se3di_shape *shape)
 {
+    for (size_t k = 0; k < shape->piece_count; ++k) { /* which have no pieces themselves */
+        se3di_shape_release(allocator, &shape->pieces[k]);
+    }
+    se3di_free(allocator, shape->pieces, shape->piece_count, sizeof *shape->pieces);
+    shape->pieces = NULL;
+    shape->piece_count = 0;
     se3di_text_free(allocator, shape->name);
     se3di_free(allocator, shape->vertices, 3 * shape->vertex_count, sizeof(double));
     se3di_free(allocator, shape->triangles, 3 * shape->triangle_count, sizeof(uint32_t));
@@ -30,6 +36,27 @@ void se3di_shape_release(const se3d_allocator *allocator, se3di_shape *shape)
     shape->triangles = NULL;
     shape->tree = NULL;
     shape->vertex_count = shape->triangle_count = shape->tree_bytes = 0;
+}
+
+static se3d_status own_pieces(const se3d_allocator *allocator, const se3di_shape *from,
+                              se3di_shape *shape)
+{
+    shape->pieces = NULL;
+    shape->piece_count = 0;
+    if (from->piece_count == 0) {
+        return SE3D_OK;
+    }
+    shape->pieces = se3di_alloc(allocator, from->piece_count, sizeof *shape->pieces);
+    if (!shape->pieces) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    shape->piece_count = from->piece_count;
+    se3d_status status = SE3D_OK;
+    for (size_t k = 0; k < from->piece_count && status >= 0; ++k) {
+        shape->pieces[k] = from->pieces[k];
+        status = se3di_shape_own(allocator, &shape->pieces[k]);
+    }
+    return status;
 }
 
 se3d_status se3di_shape_own(const se3d_allocator *allocator, se3di_shape *shape)
@@ -53,6 +80,9 @@ se3d_status se3di_shape_own(const se3d_allocator *allocator, se3di_shape *shape)
     shape->vertices = vertices;
     shape->triangles = triangles;
     shape->tree = tree;
+    if (own_pieces(allocator, &from, shape) < 0) {
+        status = SE3D_ERR_NO_MEMORY;
+    }
     if (status < 0) {
         se3di_shape_release(allocator, shape);
     }

@@ -102,6 +102,8 @@ typedef struct se3di_shape {
     size_t vertex_count, triangle_count;
     void *tree; /* mesh: bounding volumes, see contact/shape/mesh.h */
     size_t tree_bytes;
+    struct se3di_shape *pieces; /* mesh: hulls that make it up, see contact/shape/pieces.h */
+    size_t piece_count;         /* 0: it is open or convex, or they would be too many */
     int32_t closed; /* mesh: 1 with its triangles counter-clockwise seen from outside, -1 clockwise,
                        0 open or not of one sense */
     int32_t convex; /* mesh: closed, and the hull of its vertices */

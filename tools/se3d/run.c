@@ -155,7 +155,8 @@ static void print_passing(const se3d_model *model)
         if (pairs > 1) {
             printf(" (and %zu more pairs)", pairs - 1);
         }
-        puts(" pass through each other: make one of them convex, or build it from other shapes");
+        puts(" pass through each other: close one of them, make it simpler, or build it from other "
+             "shapes");
     }
 }
 

@@ -8,6 +8,10 @@
 /* Append a point; if the manifold is full the shallowest gives way. */
 se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double point[3],
                                         const double normal[3], double overlap, uint32_t feature);
+/* As if the other shape came first. */
+void se3di_manifold_mirror(se3di_manifold *manifold);
+/* Points are told apart by their features: change those that several have. */
+void se3di_manifold_separate(se3di_manifold *manifold);
 void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double across);
 
 /* Two convex shapes: the normal from i to j along which the least translation of j (the overlap)
@@ -34,6 +38,9 @@ void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manif
 void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold);
 /* On a plane: the corners of a shape that has some; a capsule; a cylinder; of any other convex
  * shape the lowest point; a mesh. */
+/* Two meshes, of which at least one has convex pieces. */
+void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
+double se3di_narrow_meshes_gap(const se3di_solid *i, const se3di_solid *j, double normal[3]);
 void se3di_plane_corners(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_capsule(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_cylinder(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);

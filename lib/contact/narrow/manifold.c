@@ -43,3 +43,27 @@ se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double p
     se3di_copy(p->bend_i.u, p->bend_j.u);
     return p;
 }
+
+void se3di_manifold_mirror(se3di_manifold *manifold)
+{
+    for (uint32_t k = 0; k < manifold->count; ++k) {
+        se3di_contact_point *p = &manifold->points[k];
+        se3di_bend bend = p->bend_i;
+        se3di_scale(-1.0, p->normal, p->normal);
+        p->share = 1.0 - p->share;
+        p->bend_i = p->bend_j;
+        p->bend_j = bend;
+    }
+}
+
+void se3di_manifold_separate(se3di_manifold *manifold)
+{
+    for (uint32_t k = 1; k < manifold->count; ++k) {
+        for (uint32_t other = 0; other < k; ++other) {
+            if (manifold->points[other].feature == manifold->points[k].feature) {
+                manifold->points[k].feature += 0x01000000u;
+                other = UINT32_MAX; /* all again */
+            }
+        }
+    }
+}

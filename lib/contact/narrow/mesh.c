@@ -528,19 +528,6 @@ static void meet_through(void *ctx, uint32_t triangle)
     }
 }
 
-/* Points are told apart by their features. */
-static void separate_features(se3di_manifold *manifold)
-{
-    for (uint32_t k = 1; k < manifold->count; ++k) {
-        for (uint32_t other = 0; other < k; ++other) {
-            if (manifold->points[other].feature == manifold->points[k].feature) {
-                manifold->points[k].feature += 0x01000000u;
-                other = UINT32_MAX; /* all again */
-            }
-        }
-    }
-}
-
 /* The side of an open surface that the solid's centre is on is that of the nearest place of it; on
  * an edge that of the face which is seen best from the centre. */
 typedef struct side {
@@ -622,7 +609,7 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
         if (manifold->count == 0) {
             se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_through, &m);
         }
-        separate_features(manifold);
+        se3di_manifold_separate(manifold);
     }
 }
 

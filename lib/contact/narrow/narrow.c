@@ -97,7 +97,7 @@ typedef struct pair {
     measurer gap;
 } pair;
 
-/* What serves all kinds; two half spaces, or two surfaces, have no contact. */
+/* What serves all kinds; two half spaces have no contact. */
 static const pair general[GROUPS][GROUPS] = {
     [BALL] = {[BALL] = {se3di_narrow_sphere, sphere_gap},
               [CONVEX] = {se3di_narrow_sphere, sphere_gap},
@@ -106,7 +106,8 @@ static const pair general[GROUPS][GROUPS] = {
     [CONVEX] = {[CONVEX] = {se3di_narrow_convex, convex_gap},
                 [SURFACE] = {se3di_narrow_mesh, mesh_gap},
                 [HALF_SPACE] = {se3di_plane_convex, plane_gap}},
-    [SURFACE] = {[HALF_SPACE] = {se3di_plane_mesh, plane_gap}},
+    [SURFACE] = {[SURFACE] = {se3di_narrow_meshes, se3di_narrow_meshes_gap},
+                 [HALF_SPACE] = {se3di_plane_mesh, plane_gap}},
 };
 
 /* Pairs of kinds that have something better, or more points. */
@@ -117,18 +118,6 @@ static const finder special[SE3DI_SHAPE_COUNT][SE3DI_SHAPE_COUNT] = {
     [SE3DI_SHAPE_CYLINDER] = {[SE3DI_SHAPE_PLANE] = se3di_plane_cylinder},
     [SE3DI_SHAPE_HULL] = {[SE3DI_SHAPE_PLANE] = se3di_plane_corners},
 };
-
-static void mirror(se3di_manifold *manifold)
-{
-    for (uint32_t k = 0; k < manifold->count; ++k) {
-        se3di_contact_point *p = &manifold->points[k];
-        se3di_bend bend = p->bend_i;
-        se3di_scale(-1.0, p->normal, p->normal);
-        p->share = 1.0 - p->share;
-        p->bend_i = p->bend_j;
-        p->bend_j = bend;
-    }
-}
 
 /* A mesh that is convex is the hull of its vertices, but for spheres and planes. */
 static const se3di_shape *as_hull(const se3di_shape *shape, const se3di_shape *other,
@@ -143,11 +132,14 @@ static const se3di_shape *as_hull(const se3di_shape *shape, const se3di_shape *o
     return hull;
 }
 
+/* Of two surfaces one must be convex or have convex pieces. */
 int se3di_narrow_is_known(const se3di_shape *i, const se3di_shape *j)
 {
     const group a = group_of(i), b = group_of(j);
-    const int is_hull = a == SURFACE && b == SURFACE && (i->convex || j->convex);
-    return is_hull || general[a][b].find || general[b][a].find;
+    if (a == SURFACE && b == SURFACE) {
+        return i->convex || j->convex || i->piece_count + j->piece_count > 0;
+    }
+    return general[a][b].find || general[b][a].find;
 }
 
 void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
@@ -167,7 +159,7 @@ void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const
         find(first, second, manifold);
     }
     if (is_turned) {
-        mirror(manifold);
+        se3di_manifold_mirror(manifold);
     }
 }
 

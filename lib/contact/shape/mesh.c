@@ -8,6 +8,7 @@
  * as there are faces, on a convex edge or vertex one.                      docs/theory/shapes.md */
 #include "contact/shape/mesh.h"
 
+#include "contact/shape/pieces.h"
 #include "contact/shape/triangles.h"
 #include "math/vec3.h"
 
@@ -155,6 +156,7 @@ static se3d_status fill(const se3d_allocator *allocator, const double *vertices,
         memcpy(shape->tree, nodes, shape->tree_bytes);
         status = find_sense(allocator, shape);
         shape->convex = make_convex(shape);
+        status = status < 0 ? status : se3di_pieces_build(allocator, shape);
     }
     se3di_free(allocator, nodes, most, sizeof *nodes);
     return status;

@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Two meshes: the convex pieces of one on the surface of the other. What a piece finds that leads
+ * into another piece of the same mesh is no way out, and the other finds a better one there; places
+ * that several find count once.                                    docs/theory/body-contact.md */
+#include "contact/narrow/internal.h"
+#include "contact/narrow/mesh.h"
+#include "contact/shape/mesh.h"
+#include "math/vec3.h"
+
+#include <math.h>
+
+#define BEYOND      1e-6 /* of the size: past the place where the way ends */
+#define PIECE_SHIFT 26   /* of features: the low bits are triangles and corners */
+
+static void place(const se3di_solid *mesh, const se3di_shape *piece, se3di_shape_pose *at)
+{
+    *at = *mesh->at;
+    se3di_solid_to_ground(mesh, piece->x, at->x);
+}
+
+/* Whether x (the mesh's frame) is within a piece or, by the slack, on its surface. */
+static int is_within(const se3di_shape *piece, const double x[3], double slack)
+{
+    double d[3];
+    se3di_sub(x, piece->x, d);
+    for (size_t k = 0; k < piece->triangle_count; ++k) {
+        const double *corner[3];
+        double u[3], v[3], n[3];
+        for (size_t c = 0; c < 3; ++c) {
+            corner[c] = piece->vertices + 3 * (size_t)piece->triangles[3 * k + c];
+        }
+        se3di_sub(corner[1], corner[0], u);
+        se3di_sub(corner[2], corner[0], v);
+        se3di_cross(u, v, n);
+        se3di_sub(d, corner[0], u);
+        if (!(se3di_dot(u, n) < slack * se3di_norm(n))) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* The other one leaves piece k where another begins, or slides along the surface of that. */
+static int stays_within(const se3di_solid *i, size_t k, const se3di_contact_point *p)
+{
+    const double beyond = BEYOND * i->shape->bound;
+    double x[3], local[3];
+    se3di_copy(p->point, x);
+    se3di_add_scaled(p->overlap + beyond, p->normal, x);
+    se3di_mesh_to_local(i, x, local);
+    for (size_t other = 0; other < i->shape->piece_count; ++other) {
+        if (other != k && is_within(&i->shape->pieces[other], local, 0.1 * beyond)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static int is_known(const se3di_manifold *manifold, const se3di_contact_point *p, double slack)
+{
+    for (uint32_t k = 0; k < manifold->count; ++k) {
+        const se3di_contact_point *other = &manifold->points[k];
+        double d[3];
+        se3di_sub(other->point, p->point, d);
+        if (se3di_norm(d) < slack && se3di_dot(other->normal, p->normal) > SE3DI_MESH_COPLANAR) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* What one piece finds. */
+static void add_piece(const se3di_solid *i, size_t k, const se3di_solid *mesh,
+                      se3di_manifold *manifold)
+{
+    const se3di_shape *piece = &i->shape->pieces[k];
+    se3di_shape_pose at;
+    se3di_manifold own = {.count = 0};
+    double local[3];
+    place(i, piece, &at);
+    se3di_mesh_to_local(mesh, at.x, local);
+    if (se3di_mesh_is_clear(mesh->shape, local, piece->bound)) {
+        return;
+    }
+    const se3di_solid solid = {piece, &at};
+    se3di_narrow_mesh(&solid, mesh, &own);
+    for (uint32_t n = 0; n < own.count; ++n) {
+        const se3di_contact_point *from = &own.points[n];
+        if (stays_within(i, k, from) ||
+            is_known(manifold, from, SE3DI_MESH_SAME * i->shape->bound)) {
+            continue;
+        }
+        se3di_contact_point *p =
+            se3di_manifold_add(manifold, from->point, from->normal, from->overlap, from->feature);
+        *p = *from;
+        p->feature += (uint32_t)k << PIECE_SHIFT;
+    }
+}
+
+/* The one with the fewer pieces is taken apart. */
+static int is_second(const se3di_solid *i, const se3di_solid *j)
+{
+    const size_t a = i->shape->piece_count, b = j->shape->piece_count;
+    return b > 0 && (a == 0 || b < a);
+}
+
+void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
+{
+    const int turned = is_second(i, j);
+    const se3di_solid *cut = turned ? j : i, *whole = turned ? i : j;
+    for (size_t k = 0; k < cut->shape->piece_count; ++k) {
+        add_piece(cut, k, whole, manifold);
+    }
+    se3di_manifold_separate(manifold);
+    if (turned) {
+        se3di_manifold_mirror(manifold);
+    }
+}
+
+double se3di_narrow_meshes_gap(const se3di_solid *i, const se3di_solid *j, double normal[3])
+{
+    const int turned = is_second(i, j);
+    const se3di_solid *cut = turned ? j : i, *whole = turned ? i : j;
+    double gap = HUGE_VAL;
+    for (size_t k = 0; k < cut->shape->piece_count; ++k) {
+        se3di_shape_pose at;
+        double local[3], point[3], distance;
+        place(cut, &cut->shape->pieces[k], &at);
+        se3di_mesh_to_local(whole, at.x, local);
+        (void)se3di_mesh_nearest(whole->shape, local, point, &distance);
+        gap = fmin(gap, distance - cut->shape->pieces[k].bound);
+    }
+    se3di_scale(0.0, normal, normal); /* not known */
+    return gap;
+}
