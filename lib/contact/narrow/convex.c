@@ -393,16 +393,19 @@ static polytope_face *next_face(polytope *P, const least_reach *best)
 
 /* The normal with the least reach of D that a nearest face has had; the reach is the overlap. Near
  * a face of a round body the least reach is found at once, and what is left is to know that no
- * other face has a lesser one behind it. A face that cannot grow for rounding is left, the search
- * goes on with the next: every reach is a bound. */
+ * other face has a lesser one behind it. A face that cannot grow for rounding is left there, the
+ * search goes on with the next: every reach is a bound. */
 static void expand(polytope *P, least_reach *best)
 {
     const double same = GAIN * P->D->size;
+    double bound = -HUGE_VAL;
     while (P->vertex_count < VERTICES) {
         polytope_face *f = next_face(P, best);
-        if (!f || !(f->distance < best->reach - same)) {
+        const int is_spoilt = f && f->distance < bound - APART * P->D->size;
+        if (!f || !(f->distance < best->reach - same) || (is_spoilt && !P->D->is_round)) {
             break;
         }
+        bound = f->distance;
         vertex *v = &P->v[P->vertex_count];
         support(P->D, f->n, v);
         const double reach = se3di_dot(v->p, f->n);
@@ -420,6 +423,8 @@ static void expand(polytope *P, least_reach *best)
         f->done = 1;
         if (reach - f->distance > same && grow(P, P->vertex_count)) {
             ++P->vertex_count;
+        } else if (!P->D->is_round) {
+            break; /* what rounding has turned is set right at the end */
         }
     }
     best->reach = best->reach < HUGE_VAL ? fmax(best->reach, 0.0) : 0.0;
