@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "analysis/driver_step.h"
 
-#include "analysis/jump.h"
+#include "nonlinear/jump.h"
 
 #include <math.h>
 

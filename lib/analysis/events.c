@@ -622,6 +622,9 @@ se3d_status se3di_events_run(se3di_events *events, double t_end)
                 return method->run(&run->integration, t);
             }
             SE3DI_TRY(method->advance(&run->integration, t_end));
+            if (run->integration.at_kink) {
+                return method->run(&run->integration, t);
+            }
         }
         const se3di_counters before = run->equations.counters;
         se3d_status status = look_ahead(events);

@@ -51,6 +51,22 @@ se3d_status se3di_friction_renew(se3di_equations *equations)
     return system->count > 0 ? find_holds(equations, system->count) : SE3D_OK;
 }
 
+se3d_status se3di_friction_pass(se3di_equations *equations)
+{
+    se3di_model *model = equations->assembly.model;
+    for (uint32_t k = 0; k < equations->friction.count; ++k) {
+        se3di_force *force = &model->forces[equations->friction.element[k]];
+        se3di_measure measure;
+        (void)se3di_measure_force(model, force, 0, &measure);
+        const double mode = force->state[SE3DI_FRICTION_MODE];
+        const int goes_on = se3di_friction_sticks(force)
+                                ? fabs(measure.rate) <= SE3DI_FRICTION_REST
+                                : mode * measure.rate > SE3DI_FRICTION_REST;
+        force->state[SE3DI_FRICTION_SET] = goes_on ? force->state[SE3DI_FRICTION_SET] : 0.0;
+    }
+    return se3di_friction_renew(equations);
+}
+
 /* Slip as the coordinate moves. Nothing is held: a motion alone does not say with which force. */
 static void follow_motion(se3di_equations *equations)
 {

@@ -12,6 +12,8 @@ se3d_status se3di_friction_start(se3di_equations *equations);
 /* The same if something else acts from here on: what rests holds with another force. Without
  * friction nothing happens. */
 se3d_status se3di_friction_renew(se3di_equations *equations);
+/* The same where velocities have jumped: what moves otherwise than it did is taken up anew. */
+se3d_status se3di_friction_pass(se3di_equations *equations);
 
 /* If drivers determine the motion: friction slips as its coordinate moves, under the load of the
  * reactions that come out; what is at rest takes none. At a consistent state at t, whose

@@ -6,12 +6,12 @@
 
 #include "analysis/driver_step.h"
 #include "analysis/friction_start.h"
-#include "analysis/jump.h"
 #include "analysis/singular.h"
 #include "assembly/energy.h"
 #include "assembly/loads.h"
 #include "integrator/turns.h"
 #include "math/steps.h"
+#include "nonlinear/jump.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>

@@ -5,16 +5,18 @@
 #include "analysis/dead_point.h"
 #include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
-#include "analysis/jump.h"
 #include "analysis/stiffness.h"
 #include "assembly/energy.h"
 #include "assembly/loads.h"
 #include "assembly/user.h"
 #include "base/log.h"
 #include "contact/bodies/pace.h"
+#include "integrator/kink_step.h"
 #include "integrator/turns.h"
 #include "math/steps.h"
 #include "math/vec3.h"
+#include "nonlinear/jump.h"
+#include "nonlinear/kink.h"
 #include "nonlinear/ranks.h"
 #include "primitive/turn_counter.h"
 
@@ -143,7 +145,7 @@ static se3d_status build(se3di_run *run)
     run->equations.iterations_max = run->integration.settings.iterations_max;
     run->integration.equations = &run->equations;
     run->prepared = 1;
-    run->told_redundant = run->told_left_out = run->told_kink = 0;
+    run->told_redundant = run->told_left_out = 0;
     run->determined = 0;
     run->values_version = run->model->values_version;
     if (is_driven(run)) {
@@ -286,12 +288,10 @@ static se3d_status renew(se3di_run *run, int whole)
     return SE3D_OK;
 }
 
-/* Dynamics starts from a consistent state, where the audit of energy begins. */
-static se3d_status start_history(se3di_run *run, double h)
+/* The method starts from a consistent state, where the audit of energy begins if it is void. */
+static se3d_status start_method(se3di_run *run, double h)
 {
     se3di_model *model = run->model;
-    SE3DI_TRY(settle(run, model->time));
-    SE3DI_TRY(se3di_friction_start(&run->equations));
     SE3DI_TRY(se3di_work_accept(model, 0.0));
     SE3DI_TRY(run->integration.method->start(&run->integration, h));
     model->history_count = run->integration.method->history_count(&run->equations.assembly);
@@ -299,6 +299,36 @@ static se3d_status start_history(se3di_run *run, double h)
     mark_history(model);
     ++model->history_stamp;
     return SE3D_OK;
+}
+
+static se3d_status start_history(se3di_run *run, double h)
+{
+    SE3DI_TRY(settle(run, run->model->time));
+    SE3DI_TRY(se3di_friction_start(&run->equations));
+    return start_method(run, h);
+}
+
+/* On the other side of a kink, with the velocities there. */
+static se3d_status go_on_behind(se3di_run *run, const se3di_kink *kink, double h)
+{
+    SE3DI_TRY(se3di_kink_pass(&run->equations, kink));
+    SE3DI_TRY(settle(run, kink->t));
+    if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
+        return se3di_work_accept(run->model, 0.0);
+    }
+    SE3DI_TRY(se3di_friction_pass(&run->equations));
+    return start_method(run, h);
+}
+
+/* Over a kink, at which the model is; on failure it stays there. */
+static se3d_status pass_kink(se3di_run *run, const se3di_kink *kink, double h)
+{
+    SE3DI_TRY(se3di_equations_keep(&run->equations));
+    const se3d_status status = go_on_behind(run, kink, h);
+    if (status < 0) {
+        se3di_equations_come_back(&run->equations);
+    }
+    return status;
 }
 
 /* The state that a call comes back to if it cannot reach another one. Methods that step up to a
@@ -337,10 +367,12 @@ static int has_step_control(const se3di_integration *integration)
     return integration->method->run != NULL;
 }
 
-static se3d_status watched_step(se3di_run *run, double h)
+/* By h, to t. */
+static se3d_status watched_step(se3di_run *run, double h, double t)
 {
     SE3DI_TRY(se3di_watch_begin(&run->equations));
     SE3DI_TRY(se3di_run_make_step(run, h));
+    run->model->time = t;
     return se3di_watch_end(&run->equations);
 }
 
@@ -380,13 +412,18 @@ static se3d_status run_fixed_steps(se3di_run *run, double t_end)
 {
     se3di_model *model = run->model;
     while (model->time < t_end) {
+        const double rest = t_end - model->time;
         double h;
         SE3DI_TRY(se3di_equations_try_step(&run->equations, model->time));
         SE3DI_TRY(choose_step(run, t_end, &h));
-        int last = t_end - model->time <= (1.0 + 1e-9) * h;
+        double end = rest <= (1.0 + 1e-9) * h ? t_end : model->time + h;
+        h = se3di_kink_step(&run->integration, model->time, h, fmin(2.0 * h, rest), &end);
+        if (run->integration.at_kink) {
+            break;
+        }
         SE3DI_TRY(se3di_watch_begin(&run->equations));
         SE3DI_TRY(step_dynamics(run, h));
-        model->time = last ? t_end : model->time;
+        model->time = end;
         se3di_equal_steps_watch(&run->integration, h);
         const se3d_status status = se3di_watch_end(&run->equations);
         if (status != SE3D_OK) {
@@ -433,20 +470,17 @@ static void tell_reach(se3di_run *run)
     }
 }
 
-/* Velocities jump with the rate; what the impulse does is in no account. */
-static void warn_of_kink(se3di_run *run, double t_end)
+/* To t_end, or to where a prescribed rate jumps. */
+static se3d_status run_smoothly(se3di_run *run, double t_end)
 {
-    se3di_kink kink;
-    char name[128];
-    if (run->told_kink || !se3di_jump_find_kink(&run->equations.assembly, t_end, &kink)) {
-        return;
+    se3di_integration *integration = &run->integration;
+    integration->at_kink = 0;
+    if (!has_step_control(integration)) {
+        return run_fixed_steps(run, t_end);
     }
-    run->told_kink = 1;
-    se3di_row_name(run->model, kink.row, name, sizeof name);
-    se3di_log_write(run->error, SE3D_LOG_WARNING,
-                    "t = %.9g s: the rate of %s jumps: velocities follow at the next step, but the "
-                    "energy does not count the work of the impulse; a smooth function avoids it",
-                    kink.t, name);
+    return run->equations.watch && integration->method->advance
+               ? se3di_events_run(&run->events, t_end)
+               : integration->method->run(integration, t_end);
 }
 
 /* The longest step of methods that control no error, if none was given; stable, and exact. */
@@ -481,16 +515,19 @@ static se3d_status run_method(se3di_run *run, double t_end)
     run->refused = 1;
     SE3DI_TRY(se3di_jump_refuse(&run->equations.assembly, t_end, step, run->error));
     run->refused = 0;
-    warn_of_kink(run, t_end);
-    SE3DI_TRY(begin_dynamics(run, remaining / se3di_steps_count(remaining, step, t_end)));
+    step = remaining / se3di_steps_count(remaining, step, t_end);
+    SE3DI_TRY(begin_dynamics(run, step));
     SE3DI_TRY(choose_steps(run, t_end));
-    if (!has_step_control(integration)) {
-        return run_fixed_steps(run, t_end);
+    if (has_step_control(integration)) {
+        tell_reach(run);
     }
-    tell_reach(run);
-    return run->equations.watch && integration->method->advance
-               ? se3di_events_run(&run->events, t_end)
-               : integration->method->run(integration, t_end);
+    for (;;) {
+        const se3d_status status = run_smoothly(run, t_end);
+        if (status < 0 || status == SE3D_INFO_EVENT || !integration->at_kink) {
+            return status;
+        }
+        SE3DI_TRY(pass_kink(run, &integration->kink, step));
+    }
 }
 
 static se3d_status run_dynamics(se3di_run *run, double t_end)
@@ -515,53 +552,6 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
     return run->equations.redundant ? se3di_multipliers_reduce(&run->equations) : SE3D_OK;
 }
 
-/* The impulses of the constraints since equations->probe, the velocities before:
- * C^T L = M (v- - v+). */
-static se3d_status find_impulses(se3di_equations *equations)
-{
-    const se3di_assembly *assembly = &equations->assembly;
-    se3di_assembly_get_velocity(assembly, equations->x);
-    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
-        equations->probe[k] = equations->x[k] - equations->probe[k];
-        equations->b[k] = 0.0;
-    }
-    se3di_assembly_subtract_inertia(assembly, equations->probe, equations->b);
-    memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
-    return se3di_equations_solve(equations);
-}
-
-/* A prescribed rate jumps: velocities do by the impulses L of the constraints,
- *
- *     M dv + Phi_q^T L = 0,  Phi_q v = nu,
- *
- * whose work is that of the drivers. */
-static se3d_status pass_kink(se3di_run *run, const se3di_kink *kink)
-{
-    se3di_model *model = run->model;
-    se3di_equations *equations = &run->equations;
-    const double before = se3di_kinetic_energy(model);
-    char name[128];
-    /* a value that jumps with its rate is no motion either */
-    SE3DI_TRY(se3di_jump_refuse(&equations->assembly, kink->t, kink->t - model->time, run->error));
-    model->time = kink->t;
-    se3di_assembly_get_velocity(&equations->assembly, equations->probe);
-    SE3DI_TRY(se3di_velocity_solve(equations, kink->t));
-    SE3DI_TRY(find_impulses(equations));
-    const double work = se3di_kinetic_energy(model) - before;
-    const double impulse = -equations->l[kink->row];
-    model->work[2] += work;
-    SE3DI_TRY(settle(run, kink->t));
-    SE3DI_TRY(se3di_work_accept(model, 0.0));
-    se3di_row_name(model, kink->row, name, sizeof name);
-    se3di_log_write(run->error, SE3D_LOG_WARNING,
-                    "t = %.9g s: the rate of %s jumps: an impulse of %.6g %s acts, a reaction "
-                    "without bound for no time, and all impulses do the work %.6g J",
-                    kink->t, name, impulse,
-                    strcmp(se3di_row_get_unit(model, kink->row), " rad") == 0 ? "N m s" : "N s",
-                    work);
-    return SE3D_OK;
-}
-
 static se3d_status run_kinematics(se3di_run *run, double t_end)
 {
     if (!run->model->settled || !run->determined || !(t_end > run->model->time)) {
@@ -578,17 +568,13 @@ static se3d_status run_kinematics(se3di_run *run, double t_end)
     }
     se3di_kink kink;
     const double step = run->integration.settings.step;
-    while (run->equations.audits && se3di_jump_find_kink(&run->equations.assembly, t_end, &kink)) {
+    while (run->equations.audits &&
+           se3di_kink_find(&run->equations.assembly, run->model->time, t_end, &kink)) {
         const se3d_status status = se3di_kinematics_run(&run->equations, kink.t_before, step);
         if (status < 0 || status == SE3D_INFO_EVENT) {
             return status;
         }
-        SE3DI_TRY(se3di_equations_keep(&run->equations));
-        const se3d_status passed = pass_kink(run, &kink);
-        if (passed < 0) {
-            se3di_equations_come_back(&run->equations);
-            return passed;
-        }
+        SE3DI_TRY(pass_kink(run, &kink, 0.0));
     }
     return se3di_kinematics_run(&run->equations, t_end, step);
 }
@@ -687,11 +673,26 @@ static se3d_status run_to(se3di_run *run, double t_end)
                : information(run);
 }
 
+/* A step of h, in parts where prescribed rates jump within it. */
 static se3d_status run_step(se3di_run *run, double h)
 {
+    se3di_integration *integration = &run->integration;
+    const se3di_model *model = run->model;
+    const double t_end = model->time + h;
     SE3DI_TRY(begin_dynamics(run, h));
-    const se3d_status status = watched_step(run, h);
-    return status < 0 || status == SE3D_INFO_EVENT ? status : information(run);
+    while (model->time < t_end) {
+        double end = t_end;
+        integration->at_kink = 0;
+        h = se3di_kink_step(integration, model->time, h, h, &end);
+        const se3d_status status = integration->at_kink
+                                       ? pass_kink(run, &integration->kink, t_end - model->time)
+                                       : watched_step(run, h, end);
+        if (status < 0 || status == SE3D_INFO_EVENT) {
+            return status;
+        }
+        h = t_end - model->time;
+    }
+    return information(run);
 }
 
 se3d_status se3di_run_make_step(se3di_run *run, double h)

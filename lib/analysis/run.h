@@ -29,13 +29,11 @@ typedef struct se3di_run {
     double horizon;          /* runs go on to here [s] */
     se3di_saved before;      /* the state that the call under way began with, where */
     uint64_t before_version;
-    int32_t has_before;       /* it was kept */
-    int32_t steps_once;       /* the call is one step */
-    se3di_start_change start; /* of the last start that the user gave */
-    int32_t told_redundant;   /* the log was told of these equations, */
-    int32_t told_left_out;    /* and that rows that are left out are off */
-    int32_t told_kink;        /* and that a prescribed rate jumps under dynamics */
-    int32_t reserved;
+    int32_t has_before;                 /* it was kept */
+    int32_t steps_once;                 /* the call is one step */
+    se3di_start_change start;           /* of the last start that the user gave */
+    int32_t told_redundant;             /* the log was told of these equations, */
+    int32_t told_left_out;              /* and that rows that are left out are off */
     const se3di_integrator *told_reach; /* the log was told what this method reaches */
 } se3di_run;
 

@@ -2,6 +2,7 @@
 #include "integrator/adaptive.h"
 
 #include "contact/bodies/pace.h"
+#include "integrator/kink_step.h"
 
 #include <math.h>
 
@@ -71,17 +72,22 @@ se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end)
 {
     const se3di_adaptive_history before = *step->at;
     const double rest = t_end - before.time;
-    const double h = step->methods->pace(step, before.next);
-    const int is_cut = step->ends && rest > 0.0 && h > rest;
-    step->t = is_cut ? t_end : before.time + h;
-    const se3d_status status = try_steps(step, is_cut ? rest : h);
+    const double paced = step->methods->pace(step, before.next);
+    const int is_cut = step->ends && rest > 0.0 && paced > rest;
+    step->t = is_cut ? t_end : before.time + paced;
+    const double most = is_cut ? rest : paced;
+    const double h = se3di_kink_step(step->integration, before.time, most, 2.0 * most, &step->t);
+    if (step->integration->at_kink) {
+        return SE3D_OK;
+    }
+    const se3d_status status = try_steps(step, h);
     if (status < 0) { /* nothing is learnt from attempts that end the run */
         *step->at = before;
         return status;
     }
     step->at->rejected = 0.0;
     if (is_cut && step->tries == 1) {
-        step->at->next = fmax(h, step->at->next);
+        step->at->next = fmax(paced, step->at->next);
     }
     return SE3D_OK;
 }

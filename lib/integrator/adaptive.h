@@ -41,7 +41,8 @@ struct se3di_adaptive {
     int32_t ends;  /* it may not go past the end of the run */
 };
 
-/* One accepted step; towards t_end, not past it if step->ends. */
+/* One accepted step; towards t_end, not past it if step->ends; none at a kink
+ * (integrator/kink_step.h). */
 se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end);
 
 /* h, or settings.step if that is less. */

@@ -563,10 +563,11 @@ static se3d_status run(se3di_integration *integration, double t_end)
 {
     se3di_bdf m = begin(integration);
     se3d_status status = SE3D_OK;
-    while (m.past->at.time < t_end && status >= 0) {
+    while (m.past->at.time < t_end && status >= 0 && !integration->at_kink) {
         status = advance(integration, t_end);
     }
     SE3DI_TRY(status);
+    t_end = fmin(t_end, m.past->at.time);
     return publish(&m, t_end, m.past->at.time > t_end && t_end > m.past->at.begin);
 }
 

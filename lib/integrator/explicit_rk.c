@@ -726,7 +726,7 @@ se3d_status se3di_rk_step(se3di_integration *integration, double h)
 /* Forward steps until t_end is reached, and the interpolation where it is passed. */
 static se3d_status advance_to(rk *m, double t_end)
 {
-    while (m->past->at.time < t_end && !must_leave(m)) {
+    while (m->past->at.time < t_end && !must_leave(m) && !m->step.integration->at_kink) {
         SE3DI_TRY(advance(m, t_end));
     }
     return m->past->at.time > t_end && m->past->dense == 0.0 ? build_dense(m) : SE3D_OK;
@@ -736,7 +736,7 @@ se3d_status se3di_rk_advance(se3di_integration *integration, double t_end)
 {
     rk m = begin(integration);
     se3d_status status = advance(&m, t_end);
-    status = status < 0 ? status : build_dense(&m);
+    status = status < 0 || integration->at_kink ? status : build_dense(&m);
     se3di_state_end(m.equations, &m.kkt);
     return status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/newmark.h"
 #include "integrator/adaptive.h"
+#include "integrator/kink_step.h"
 
 #include "assembly/energy.h"
 #include "assembly/loads.h"
@@ -464,11 +465,18 @@ static se3d_status advance_equally(se3di_integration *integration, double longes
     SE3DI_TRY(se3di_equations_try_step(equations, model->time));
     SE3DI_TRY(se3di_contacts_check_step(model, SE3DI_PACE_IMPLICIT, h, equations->error));
     SE3DI_TRY(se3di_turns_check(equations, h, TURN_MAX));
-    for (double part = fmin(floor(*count) + 1.0 - *count, longest / h);; part *= 0.5) {
-        const double to = *count + part;
-        const se3d_status status = step_to(integration, part * h, header->origin + to * h, 0.0);
+    double part = floor(*count) + 1.0 - *count;
+    part = fmin(part > SE3DI_NEWMARK_SAME_TIME ? part : 1.0, longest / h);
+    double end = header->origin + (*count + part) * h;
+    const double length = se3di_kink_step(integration, header->end, part * h, 2.0 * part * h, &end);
+    if (integration->at_kink) {
+        return SE3D_OK;
+    }
+    part = length < part * h ? length / h : part;
+    for (;; part *= 0.5, end = header->origin + (*count + part) * h) {
+        const se3d_status status = step_to(integration, part * h, end, 0.0);
         if (status >= 0) {
-            *count = to;
+            *count += part;
         }
         if (status != SE3D_ERR_NO_CONVERGENCE || part <= PART_LEAST) {
             return status;
@@ -536,8 +544,7 @@ static se3d_status try_step(se3di_adaptive *step, double h, double *error)
 {
     controlled_step *s = get_step(step);
     s->most = get_most(s->tried, s->errors);
-    const double t = header_of(step->integration)->end + h;
-    const se3d_status status = step_to(step->integration, h, t, s->most);
+    const se3d_status status = step_to(step->integration, h, step->t, s->most);
     *error = status < 0 ? HUGE_VAL : 0.0;
     s->tried[0] = s->tried[1];
     s->errors[0] = s->errors[1];
@@ -582,6 +589,7 @@ static se3d_status advance_by_error(se3di_integration *integration, double longe
     controlled_step s = {.longest = longest, .errors = {HUGE_VAL, HUGE_VAL}};
     s.step = (se3di_adaptive){
         .methods = &methods, .integration = integration, .at = &header_of(integration)->at};
+    s.step.at->time = header_of(integration)->end;
     return se3di_adaptive_advance(&s.step, HUGE_VAL);
 }
 
@@ -590,8 +598,13 @@ se3d_status se3di_newmark_advance(se3di_integration *integration, double t_end)
     se3di_assembly *assembly = &integration->equations->assembly;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
     se3di_newmark_header *header = past.header;
-    const double last = header->end - header->at.begin;
-    if (t_end - header->end <= SE3DI_NEWMARK_SAME_TIME * last) {
+    const double last = header->end - header->at.begin, rest = t_end - header->end;
+    if (rest <= SE3DI_NEWMARK_SAME_TIME * last) {
+        double end;
+        (void)se3di_kink_step(integration, header->end, rest, rest, &end);
+        if (integration->at_kink) {
+            return SE3D_OK;
+        }
         header->at.time = t_end;
         return SE3D_OK;
     }
@@ -606,8 +619,8 @@ se3d_status se3di_newmark_run(se3di_integration *integration, double t_end)
 {
     const se3di_newmark_header *header = header_of(integration);
     se3d_status status = SE3D_OK;
-    while (header->at.time < t_end && status >= 0) {
+    while (header->at.time < t_end && status >= 0 && !integration->at_kink) {
         status = se3di_newmark_advance(integration, t_end);
     }
-    return status < 0 ? status : se3di_newmark_publish(integration, t_end);
+    return status < 0 ? status : se3di_newmark_publish(integration, fmin(t_end, header->at.time));
 }

@@ -488,7 +488,7 @@ static se3d_status run(se3di_integration *integration, double t_end)
 {
     const history past = get_history(&integration->equations->assembly);
     se3d_status status = SE3D_OK;
-    while (past.header->at.time < t_end && status >= 0) {
+    while (past.header->at.time < t_end && status >= 0 && !integration->at_kink) {
         status = advance(integration, t_end);
     }
     return status < 0 ? status : publish(integration, t_end);

@@ -9,6 +9,7 @@
  * docs/theory/verlet.md */
 #include "contact/bodies/pace.h"
 #include "expression/expression.h"
+#include "integrator/kink_step.h"
 #include "integrator/lie_verlet.h"
 #include "math/steps.h"
 #include "particles/sets.h"
@@ -171,10 +172,14 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
         } else if (status >= 0) {
             h = se3di_equal_steps_next(integration, most, t_end);
         }
+        double t1 = rest > (1.0 + 1e-9) * h ? m.model->time + h : t_end;
+        h = se3di_kink_step(integration, m.model->time, h, fmin(2.0 * h, rest), &t1);
+        if (integration->at_kink) {
+            break;
+        }
         if (m.open && fabs(h - m.h) > 1e-9 * h) {
             close_kick(&m);
         }
-        double t1 = rest > (1.0 + 1e-9) * h ? m.model->time + h : t_end;
         status = status < 0 ? status : se3di_watch_begin(integration->equations);
         status = status < 0 ? status : advance(&m, t1);
         if (status >= 0) {

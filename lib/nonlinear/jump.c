@@ -2,19 +2,21 @@
 /* A smooth f obeys f1 - f0 = h/2 (f0' + f1') + O(h^3). If it does not, the interval is halved,
  * always towards the half that misses more; f jumps if it still changes in the last one, as short
  * as the times are resolved. */
-#include "analysis/jump.h"
+#include "nonlinear/jump.h"
 
 #include "expression/expression.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#define LEAST      1e-6  /* relative: smaller ones are no jump */
-#define RESOLVED   4e-16 /* relative length of the last interval */
-#define PARTS_MAX  64.0  /* of one run */
-#define KINK_STEP  1e-2  /* s, between looks at a rate, */
-#define KINK_PARTS 1e3   /* but no more of a run */
-#define TWO_PI     6.283185307179586
+#define LEAST     1e-6      /* relative: smaller ones are no jump */
+#define RESOLVED  4e-16     /* relative length of the last interval */
+#define PARTS_MAX 64.0      /* of one run */
+#define CELL      0.0078125 /* s, between looks for kinks: a power of two, */
+#define CELLS_MAX 1024.0    /* twice, four times ... as much if there were more of them */
+#define DEPTH_MAX 8         /* of parts of a cell */
+#define LEFT_MOST 0.4       /* of what a rule misses, by halving: a smooth function leaves 1/4 */
+#define TWO_PI    6.283185307179586
 
 typedef struct point {
     double t, f, d; /* time, value, derivative */
@@ -116,47 +118,109 @@ static int has_limits(const search *s, const point *a, const point *b, double ap
            fabs(outer[0].f - a->f) <= most && fabs(outer[1].f - b->f) <= most;
 }
 
-/* The first jump of one rate. */
-static int look_for_kink(const search *s, const double range[2], se3di_kink *kink)
+/* The kink that `jump` of `s` is, if it is one. */
+static int refine(const search *s, const se3di_jump *jump, double apart, se3di_kink *kink)
 {
-    const double span = range[1] - range[0];
-    const int parts = (int)fmin(KINK_PARTS, fmax(8.0, ceil(span / KINK_STEP)));
-    for (int k = 0; k < parts; ++k) {
-        const double part[2] = {range[0] + span * k / parts,
-                                k < parts - 1 ? range[0] + span * (k + 1) / parts : range[1]};
-        se3di_jump jump;
-        if (!look(s, part, 1, &jump)) {
-            continue;
-        }
-        point after = {.t = jump.t, .f = jump.after};
-        point before = {.t = nextafter(jump.t, -HUGE_VAL), .f = jump.before};
-        for (int back = 0; back < 8 && eval(s, before.t, &before) &&
-                           fabs(before.f - jump.before) > fabs(before.f - jump.after);
-             ++back) {
-            after.t = before.t; /* it is within the last few steps of rounding */
-            before.t = nextafter(before.t, -HUGE_VAL);
-        }
-        if (has_limits(s, &before, &after, 1e-8 * fmax(part[1] - part[0], 1e-3))) {
-            *kink = (se3di_kink){.t = after.t, .t_before = before.t};
-            return 1;
+    point after = {.t = jump->t, .f = jump->after};
+    point before = {.t = nextafter(jump->t, -HUGE_VAL), .f = jump->before};
+    for (int back = 0; back < 8 && eval(s, before.t, &before) &&
+                       fabs(before.f - jump->before) > fabs(before.f - jump->after);
+         ++back) {
+        after.t = before.t; /* it is within the last few steps of rounding */
+        before.t = nextafter(before.t, -HUGE_VAL);
+    }
+    kink->t = after.t;
+    kink->t_before = before.t;
+    kink->derivative = s->derivative;
+    return has_limits(s, &before, &after, 1e-8 * fmax(apart, 1e-3));
+}
+
+/* One kink, of the rate or of the value, between a and b. */
+static int look_for_kink(const search *value, double a, double b, se3di_kink *kink)
+{
+    const double range[2] = {a, b};
+    const search rate = {value->function, 1, 0};
+    se3di_jump jump;
+    return (look(&rate, range, 1, &jump) && refine(&rate, &jump, b - a, kink)) ||
+           (look(value, range, 1, &jump) && refine(value, &jump, b - a, kink));
+}
+
+/* The rate may jump up and down between a and b, with equal rates at both ends: what the
+ * trapezoidal rule misses of the value does not fall as it should where the part is halved. */
+static int hides_kinks(const search *value, double a, double b)
+{
+    point left, middle, right;
+    if (!eval(value, a, &left) || !eval(value, a + 0.5 * (b - a), &middle) ||
+        !eval(value, b, &right)) {
+        return 0;
+    }
+    const double whole = miss(value, &left, &right);
+    const double halves = miss(value, &left, &middle) + miss(value, &middle, &right);
+    return whole > LEAST * fmax(fmax(fabs(left.f), fabs(right.f)), 1e-3) &&
+           halves > LEFT_MOST * whole;
+}
+
+/* The first kink after `from` between a and b. */
+static int find_first(const search *value, const double range[2], double from, int depth,
+                      se3di_kink *kink)
+{
+    const double a = range[0], b = range[1];
+    se3di_kink one;
+    if (!(b > from) || !(b > a) || depth > DEPTH_MAX) {
+        return 0;
+    }
+    const int found = look_for_kink(value, a, b, &one);
+    if (!found && !hides_kinks(value, a, b)) {
+        return 0;
+    }
+    const double middle = a + 0.5 * (b - a);
+    const double first[2] = {a, found ? one.t_before : middle};
+    const double second[2] = {found ? one.t : middle, b};
+    if (find_first(value, first, from, depth + 1, kink)) {
+        return 1;
+    }
+    if (found && one.t > from) {
+        *kink = one;
+        return 1;
+    }
+    return find_first(value, second, from, depth + 1, kink);
+}
+
+/* Of one function, up to `to`. */
+static int find_in_cells(const search *value, double from, double to, se3di_kink *kink)
+{
+    double cell = CELL;
+    while (to - from > CELLS_MAX * cell) {
+        cell *= 2.0;
+    }
+    for (double k = floor(from / cell); k * cell < to; k += 1.0) {
+        const double range[2] = {k * cell, (k + 1.0) * cell};
+        if (find_first(value, range, from, 0, kink)) {
+            return kink->t <= to;
         }
     }
     return 0;
 }
 
-int se3di_jump_find_kink(const se3di_assembly *assembly, double t_end, se3di_kink *kink)
+static int may_have_kinks(const se3di_function *function)
+{
+    return !function->callback && function->expression &&
+           !se3di_expression_is_smooth(function->expression);
+}
+
+int se3di_kink_find(const se3di_assembly *assembly, double from, double to, se3di_kink *kink)
 {
     const se3di_model *model = assembly->model;
-    double range[2] = {model->time, t_end};
     int found = 0;
-    for (uint32_t timed = 0; timed < assembly->timed_count && range[1] > range[0]; ++timed) {
+    for (uint32_t timed = 0; timed < assembly->timed_count && to > from; ++timed) {
         const uint32_t row = assembly->timed_rows[timed];
-        const search s = {&model->functions[model->rows[row].function], 1, 0};
-        const int is_smooth =
-            s.function->expression && se3di_expression_is_smooth(s.function->expression);
-        if (!s.function->callback && !is_smooth && look_for_kink(&s, range, kink)) {
+        const search value = {&model->functions[model->rows[row].function], 0,
+                              model->rows[row].wrap};
+        se3di_kink one;
+        if (may_have_kinks(value.function) && find_in_cells(&value, from, to, &one)) {
+            *kink = one;
             kink->row = row;
-            range[1] = kink->t; /* an earlier one counts */
+            to = nextafter(one.t, -HUGE_VAL); /* an earlier one counts */
             found = 1;
         }
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Prescribed values that jump (floor, mod, sign, if): no motion follows them. */
-#ifndef SE3DI_ANALYSIS_JUMP_H
-#define SE3DI_ANALYSIS_JUMP_H
+#ifndef SE3DI_JUMP_H
+#define SE3DI_JUMP_H
 
 #include "assembly/assembly.h"
 
@@ -25,15 +25,16 @@ se3d_status se3di_jump_refuse(const se3di_assembly *assembly, double t_end, doub
 /* "the value of drive.angle jumps from 0 to 2 at t = 0.95 s". */
 void se3di_jump_format(const se3di_model *model, const se3di_jump *jump, char *text, size_t size);
 
-/* A rate that jumps, between neighbouring times. */
+/* A rate (or value) that jumps, between neighbouring times. */
 typedef struct se3di_kink {
     double t, t_before;
     uint32_t row;
-    int32_t reserved;
+    int32_t derivative; /* 1: the rate jumps, 0: the value */
 } se3di_kink;
 
-/* The first jump of a prescribed rate after the model's time and up to t_end. Returns whether there
- * is one. Functions by callback are not looked at. */
-int se3di_jump_find_kink(const se3di_assembly *assembly, double t_end, se3di_kink *kink);
+/* The first such jump after `from` and not after `to`. What is found in which part of time does not
+ * depend on where the search begins and ends. Returns whether there is one. Functions by callback
+ * are not looked at. */
+int se3di_kink_find(const se3di_assembly *assembly, double from, double to, se3di_kink *kink);
 
 #endif
