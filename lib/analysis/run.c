@@ -421,6 +421,7 @@ static se3d_status run_fixed_steps(se3di_run *run, double t_end)
         if (run->integration.at_kink) {
             break;
         }
+        h = se3di_step_length(model->time, end, h);
         SE3DI_TRY(se3di_watch_begin(&run->equations));
         SE3DI_TRY(step_dynamics(run, h));
         model->time = end;
@@ -495,6 +496,7 @@ static double longest_step(const se3di_integration *integration)
 static se3d_status choose_steps(se3di_run *run, double t_end)
 {
     se3di_integration *integration = &run->integration;
+    integration->settings.step_most = longest_step(integration);
     SE3DI_TRY(se3di_equal_steps_choose(integration, fmax(t_end, run->horizon)));
     if (se3di_equal_steps_are_chosen(integration)) {
         integration->settings.step_most =
@@ -517,11 +519,11 @@ static se3d_status run_method(se3di_run *run, double t_end)
     run->refused = 0;
     step = remaining / se3di_steps_count(remaining, step, t_end);
     SE3DI_TRY(begin_dynamics(run, step));
-    SE3DI_TRY(choose_steps(run, t_end));
     if (has_step_control(integration)) {
         tell_reach(run);
     }
     for (;;) {
+        SE3DI_TRY(choose_steps(run, t_end));
         const se3d_status status = run_smoothly(run, t_end);
         if (status < 0 || status == SE3D_INFO_EVENT || !integration->at_kink) {
             return status;

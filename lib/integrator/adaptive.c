@@ -3,6 +3,7 @@
 
 #include "contact/bodies/pace.h"
 #include "integrator/kink_step.h"
+#include "math/steps.h"
 
 #include <math.h>
 
@@ -41,30 +42,30 @@ static se3d_status attempt(se3di_adaptive *step, double h, double *error)
     return *error <= 1.0 ? step->methods->accept(step, h, *error) : SE3D_OK;
 }
 
-/* Shorter and shorter steps, from h, which ends at step->t. */
-static se3d_status try_steps(se3di_adaptive *step, double h)
+/* Shorter and shorter steps, the first one of `next` to step->t. */
+static se3d_status try_steps(se3di_adaptive *step, double next)
 {
     const se3di_adaptive_class *methods = step->methods;
     se3di_equations *equations = step->integration->equations;
     const double begin = step->at->time;
     const double least = methods->least * fmax(1e-3, fabs(begin));
     for (step->tries = 1;; ++step->tries) {
+        const double h = se3di_step_length(begin, step->t, next);
         double error;
         SE3DI_TRY(se3di_equations_try_step(equations, begin));
         const se3d_status status = attempt(step, h, &error);
         if (status < 0 ? !may_shrink(status) : error <= 1.0) {
             return status;
         }
-        const double tried = h;
         ++equations->counters.rejected;
         step->at->rejected = 1.0;
-        h *= status >= 0 && step->fraction > 0.0 ? step->fraction
-                                                 : methods->shrink(step, h, status, error);
-        if (!(h > least)) {
-            return methods->surrender(step, tried, status, error);
+        const int has_turned = status >= 0 && step->fraction > 0.0;
+        next = h * (has_turned ? step->fraction : methods->shrink(step, h, status, error));
+        if (!(next > least)) {
+            return methods->surrender(step, h, status, error);
         }
-        step->at->next = h;
-        step->t = begin + h;
+        step->at->next = next;
+        step->t = begin + next;
     }
 }
 

@@ -447,8 +447,9 @@ static void add_past(se3di_bdf *m, double h)
     memcpy(m->y, m->points, m->count * sizeof *m->y);
     m->past->count = 0.0;
     for (int j = 2; j > 0; --j) {
-        se3di_bdf_extend(m, -j * h, m->predicted);
-        se3di_bdf_push(m, m->predicted, t - j * h);
+        const double before = t - j * h;
+        se3di_bdf_extend(m, before - t, m->predicted);
+        se3di_bdf_push(m, m->predicted, before);
     }
     se3di_bdf_push(m, m->y, t);
     m->past->used = se3di_bdf_get_top(m) > 1 ? 2.0 : 1.0;

@@ -7,6 +7,7 @@
 #include "assembly/loads.h"
 #include "contact/bodies/pace.h"
 #include "integrator/turns.h"
+#include "math/steps.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
 
@@ -446,6 +447,7 @@ se3d_status se3di_newmark_make_step(se3di_integration *integration, double h)
         SE3DI_TRY(adopt(integration, h));
     }
     SE3DI_TRY(step_to(integration, h, t0 + h, 0.0));
+    header->equal = 0.0; /* steps of a run begin anew */
     return se3di_newmark_publish(integration, t0 + h);
 }
 
@@ -468,13 +470,14 @@ static se3d_status advance_equally(se3di_integration *integration, double longes
     double part = floor(*count) + 1.0 - *count;
     part = fmin(part > SE3DI_NEWMARK_SAME_TIME ? part : 1.0, longest / h);
     double end = header->origin + (*count + part) * h;
-    const double length = se3di_kink_step(integration, header->end, part * h, 2.0 * part * h, &end);
+    const double most = se3di_kink_step(integration, header->end, part * h, 2.0 * part * h, &end);
     if (integration->at_kink) {
         return SE3D_OK;
     }
-    part = length < part * h ? length / h : part;
+    part = most < part * h ? most / h : part;
     for (;; part *= 0.5, end = header->origin + (*count + part) * h) {
-        const se3d_status status = step_to(integration, part * h, end, 0.0);
+        const double length = se3di_step_length(header->end, end, part * h);
+        const se3d_status status = step_to(integration, length, end, 0.0);
         if (status >= 0) {
             *count += part;
         }
