@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Preparation and control of a run. */
 #include "analysis/run.h"
+#include "analysis/run_end.h"
 
 #include "analysis/dead_point.h"
 #include "analysis/equilibrium.h"
@@ -26,7 +27,6 @@
 
 #define STEP_DEFAULT 1e-3 /* s, of fixed-step methods */
 #define TURN_MAX     3.0  /* rad, of a body in a step of an implicit method */
-#define LEFT_OUT_MAX 1e-4 /* how far rows that are left out may be off, relative */
 
 void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error, se3d_system *system)
 {
@@ -239,7 +239,7 @@ static se3d_status settle(se3di_run *run, double t)
     return SE3D_OK;
 }
 
-static uint64_t history_tag(const se3di_run *run)
+uint64_t se3di_run_get_history_tag(const se3di_run *run)
 {
     return 2 * run->integration.method->tag + (uint64_t)run->formulation->id;
 }
@@ -295,7 +295,7 @@ static se3d_status start_method(se3di_run *run, double h)
     SE3DI_TRY(se3di_work_accept(model, 0.0));
     SE3DI_TRY(run->integration.method->start(&run->integration, h));
     model->history_count = run->integration.method->history_count(&run->equations.assembly);
-    model->history_tag = history_tag(run);
+    model->history_tag = se3di_run_get_history_tag(run);
     mark_history(model);
     ++model->history_stamp;
     return SE3D_OK;
@@ -349,7 +349,7 @@ static se3d_status keep_state(se3di_run *run)
 static se3d_status begin_dynamics(se3di_run *run, double h)
 {
     se3di_model *model = run->model;
-    const int has_history = model->history_tag == history_tag(run);
+    const int has_history = model->history_tag == se3di_run_get_history_tag(run);
     const int goes_on = has_history && model->history_inputs == model->inputs_version;
     run->equations.redundant |= has_history && model->history_redundant > 0; /* whoever made it */
     if (!goes_on || run->integration.method->advance) {
@@ -439,7 +439,8 @@ static int must_switch(const se3di_run *run)
 {
     const se3di_integration *integration = &run->integration;
     return integration->settings.leaves_stiff && integration->method->is_held &&
-           run->model->history_tag == history_tag(run) && integration->method->is_held(integration);
+           run->model->history_tag == se3di_run_get_history_tag(run) &&
+           integration->method->is_held(integration);
 }
 
 /* From the present state by a method for stiff motions. */
@@ -454,21 +455,6 @@ static se3d_status switch_method(se3di_run *run)
                     run->left->name, run->integration.method->name);
     SE3DI_TRY(build(run));
     return prepare(run);
-}
-
-/* The log is told if the tolerance that is asked for is smaller than what the method reaches. */
-static void tell_reach(se3di_run *run)
-{
-    const se3di_integration *integration = &run->integration;
-    const double tolerance =
-        se3di_integrator_get_tolerance(integration->method, &integration->settings);
-    if (tolerance > integration->settings.tolerance && run->told_reach != integration->method) {
-        run->told_reach = integration->method;
-        se3di_log_write(run->error, SE3D_LOG_WARNING,
-                        "t = %g s: the tolerance %g is smaller than what %s reaches; %.3g is used",
-                        run->model->time, integration->settings.tolerance,
-                        integration->method->name, tolerance);
-    }
 }
 
 /* To t_end, or to where a prescribed rate jumps. */
@@ -520,7 +506,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
     step = remaining / se3di_steps_count(remaining, step, t_end);
     SE3DI_TRY(begin_dynamics(run, step));
     if (has_step_control(integration)) {
-        tell_reach(run);
+        se3di_run_tell_reach(run);
     }
     for (;;) {
         SE3DI_TRY(choose_steps(run, t_end));
@@ -536,7 +522,7 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
 {
     if (!(t_end > run->model->time)) {
         SE3DI_TRY(keep_state(run));
-        if (run->model->history_tag == history_tag(run)) {
+        if (run->model->history_tag == se3di_run_get_history_tag(run)) {
             return renew(run, 1);
         }
         SE3DI_TRY(settle(run, t_end));
@@ -593,57 +579,6 @@ static se3d_status run_equilibrium(se3di_run *run, double t_end)
     return status;
 }
 
-/* A row that was left out constrains the mechanism after all. */
-static void warn_of_rows(se3di_run *run)
-{
-    se3di_model *model = run->model;
-    char name[128];
-    if (!(model->left_out_gap > LEFT_OUT_MAX) || run->told_left_out) {
-        return;
-    }
-    run->told_left_out = 1;
-    se3di_row_name(model, model->left_out_row, name, sizeof name);
-    se3di_log_write(run->error, SE3D_LOG_WARNING,
-                    "t = %g s: the equation %s was left out, as it seemed to be redundant but for "
-                    "the digits of its data, but the mechanism has left it by %.2g of its size: "
-                    "give positions, axes and dimensions more digits",
-                    model->time, name, model->left_out_gap);
-}
-
-/* Which rows are not among the equations. */
-static void tell_rows(se3di_run *run)
-{
-    char rows[400];
-    if (run->model->left_out_count == 0 || run->told_redundant) {
-        return;
-    }
-    run->told_redundant = 1;
-    se3di_ranks_describe(run->model, rows, sizeof rows);
-    se3di_log_write(
-        run->error, SE3D_LOG_INFO,
-        "t = %g s: %u equation%s redundant but for the digits of %s data, and left out: "
-        "%s",
-        run->model->time, (unsigned)run->model->left_out_count,
-        run->model->left_out_count == 1 ? " is" : "s are",
-        run->model->left_out_count == 1 ? "its" : "their", rows);
-}
-
-static se3d_status information(se3di_run *run)
-{
-    tell_rows(run);
-    warn_of_rows(run);
-    run->equations.redundant |= run->model->left_out_count > 0;
-    if (run->equations.redundant && !run->told_redundant) {
-        run->told_redundant = 1;
-        se3di_log_write(run->error, SE3D_LOG_WARNING,
-                        "t = %g s: there are redundant constraints; their reactions are the "
-                        "minimum-norm ones; se3d_check names them",
-                        run->model->time);
-    }
-    run->model->history_redundant = run->equations.redundant;
-    return run->equations.redundant ? SE3D_INFO_REDUNDANT : SE3D_OK;
-}
-
 static se3d_status run_to(se3di_run *run, double t_end)
 {
     se3d_status status =
@@ -672,7 +607,7 @@ static se3d_status run_to(se3di_run *run, double t_end)
     }
     return status == SE3D_INFO_EVENT || status == SE3D_INFO_UNSTABLE || status == SE3D_INFO_NEUTRAL
                ? status
-               : information(run);
+               : se3di_run_inform(run);
 }
 
 /* A step of h, in parts where prescribed rates jump within it. */
@@ -694,7 +629,7 @@ static se3d_status run_step(se3di_run *run, double h)
         }
         h = t_end - model->time;
     }
-    return information(run);
+    return se3di_run_inform(run);
 }
 
 se3d_status se3di_run_make_step(se3di_run *run, double h)
@@ -706,111 +641,6 @@ se3d_status se3di_run_make_step(se3di_run *run, double h)
                                    ? step_dynamics(run, h)
                                    : se3di_kinematics_step(equations, h);
     equations->watch = watch;
-    return status;
-}
-
-/* The last accepted step that a method with dense output may show, which has gone on to t_end at
- * least; with events, the last one that they were looked for in. */
-static double last_accepted(const se3di_run *run, double t_end)
-{
-    const se3di_model *model = run->model;
-    const int has_history =
-        run->integration.method->advance && model->history_tag == history_tag(run);
-    if (!has_history || run->steps_once) {
-        return run->before.time;
-    }
-    if (run->equations.watch) {
-        return run->events.reached;
-    }
-    if (model->history_inputs != model->inputs_version) { /* that step was under other loads */
-        return run->before.time;
-    }
-    const int passed = model->history[SE3DI_HISTORY_TIME] > t_end;
-    if (passed && model->contacts.pair_count > 0) { /* they remember the end of the step */
-        return run->before.time;
-    }
-    return model->history[passed ? SE3DI_HISTORY_BEGIN : SE3DI_HISTORY_TIME];
-}
-
-/* The state at t: the end of an accepted step, or the beginning of the one after it. */
-static se3d_status show_accepted(se3di_run *run, double t)
-{
-    se3di_user_begin(run->model);
-    return run->integration.method->run(&run->integration, t);
-}
-
-static void restore_before(se3di_run *run)
-{
-    se3di_model *model = run->model;
-    if (run->before_version == model->topology_version && se3di_saved_fits(&run->before, model) &&
-        se3di_saved_reserve(&run->before, model) >= 0) {
-        se3di_saved_restore(&run->before, model);
-        se3di_events_forget(&run->events, model->time);
-    }
-}
-
-/* After a failure: the state of the last accepted step, to the bit; or, if its accelerations
- * cannot be computed any more, that of before the call. Methods without dense output, and steps of
- * kinematics, have come back to theirs by themselves. */
-static void recover(se3di_run *run, double t_end)
-{
-    se3di_model *model = run->model;
-    const se3di_integrator *method = run->integration.method;
-    const se3di_error cause = *run->error;
-    if (!run->prepared || !run->has_before) {
-        return;
-    }
-    if (run->analysis == SE3D_ANALYSIS_DYNAMICS && method->advance) {
-        const double t = last_accepted(run, t_end);
-        ++run->guard.muted;
-        if (!(t > run->before.time) || show_accepted(run, t) < 0) {
-            restore_before(run);
-        }
-        --run->guard.muted;
-    } else if (!(model->time > run->before.time) ||
-               !se3di_analysis_is(run->analysis, SE3DI_ANALYSIS_HAS_MOTION)) {
-        restore_before(run);
-    }
-    *run->error = cause;
-}
-
-/* If dynamics fails near a prescribed value or rate that jumps, that is why. */
-static void blame_jump(const se3di_run *run, double t_end)
-{
-    const double now = run->model->time;
-    const double near = fmax(2.0 * run->integration.settings.step, t_end - now);
-    const double range[2] = {now - 1e-9 * fabs(now), now + near}; /* steps may pass t_end */
-    se3di_jump jump;
-    char text[300];
-    if (se3di_jump_find(&run->equations.assembly, range, 16, 1, &jump)) {
-        const se3di_error before = *run->error;
-        se3di_jump_format(run->model, &jump, text, sizeof text);
-        if (strstr(before.message, text)) {
-            return; /* it was refused */
-        }
-        se3di_error_set(run->error, before.status, "%s (%.200s)", text, before.message);
-    }
-}
-
-/* A callback that failed is the reason for whatever else did. */
-static se3d_status explain(se3di_run *run, se3d_status status, double t_end)
-{
-    se3di_model *model = run->model;
-    if (status < 0 && run->guard.came) {
-        return se3di_error_set(run->error, SE3D_ERR_INTERRUPTED, "interrupted at t = %.9g s",
-                               model->time);
-    }
-    if (status == SE3D_ERR_CALLBACK && model->user_failure.status >= 0) {
-        se3di_user_find_failure(model); /* the one that failed as the power was computed */
-    }
-    if (status < 0 && model->user_failure.status == SE3D_ERR_CALLBACK) {
-        return se3di_user_report(model, run->error);
-    }
-    if (status < 0 && status != SE3D_ERR_NO_MEMORY && status != SE3D_ERR_CALLBACK &&
-        run->analysis == SE3D_ANALYSIS_DYNAMICS && !run->refused &&
-        run->equations.assembly.topology_version == model->topology_version) {
-        blame_jump(run, t_end);
-    }
     return status;
 }
 
@@ -832,15 +662,7 @@ static se3d_status conclude(se3di_run *run, se3d_status status, double t_end, se
         run->error->status = run->error->status < 0 ? run->error->status : told;
         return status;
     }
-    status = explain(run, status, t_end);
-    if (run->error->status != status) { /* the powers of elements have no message of their own */
-        se3di_error_set(run->error, status,
-                        "t = %.9g s: a function or callback failed, or is not finite, while the "
-                        "work of forces and drivers was computed",
-                        run->model->time);
-    }
-    recover(run, t_end);
-    return status;
+    return se3di_run_fail(run, status, t_end);
 }
 
 /* Runs on the way to one horizon are counted together. */

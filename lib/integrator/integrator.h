@@ -93,8 +93,8 @@ struct se3di_integration {
     se3di_newton newton; /* of implicit methods */
     se3di_saved before_trials; /* of steps whose length is chosen */
     int32_t is_paced;          /* contacts or stops have shortened the step under way */
-    se3di_kink kink;             /* where the accepted state is, if */
-    int32_t at_kink;             /* no step can be made before it was passed */
+    se3di_kink kink;           /* where the accepted state is, if */
+    int32_t at_kink;           /* no step can be made before it was passed */
     int32_t reserved;
 };
 

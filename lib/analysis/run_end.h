@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Parts of analysis/run.c: how runs end. */
+#ifndef SE3DI_ANALYSIS_RUN_END_H
+#define SE3DI_ANALYSIS_RUN_END_H
+
+#include "analysis/run.h"
+
+/* Who writes the history: the method in the formulation. */
+uint64_t se3di_run_get_history_tag(const se3di_run *run);
+
+/* A run to t_end has failed: the message says why, and the model comes back to the last accepted
+ * state. @return the status */
+se3d_status se3di_run_fail(se3di_run *run, se3d_status status, double t_end);
+
+/* The log is told if the tolerance that is asked for is smaller than what the method reaches. */
+void se3di_run_tell_reach(se3di_run *run);
+/* What was found of redundant equations goes to the log. @return OK, INFO_REDUNDANT */
+se3d_status se3di_run_inform(se3di_run *run);
+
+#endif

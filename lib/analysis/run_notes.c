@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What the log is told of a run, once. */
+#include "analysis/run_end.h"
+
+#include "base/log.h"
+#include "nonlinear/ranks.h"
+
+#define LEFT_OUT_MAX 1e-4 /* how far rows that are left out may be off, relative */
+
+/* The log is told if the tolerance that is asked for is smaller than what the method reaches. */
+void se3di_run_tell_reach(se3di_run *run)
+{
+    const se3di_integration *integration = &run->integration;
+    const double tolerance =
+        se3di_integrator_get_tolerance(integration->method, &integration->settings);
+    if (tolerance > integration->settings.tolerance && run->told_reach != integration->method) {
+        run->told_reach = integration->method;
+        se3di_log_write(run->error, SE3D_LOG_WARNING,
+                        "t = %g s: the tolerance %g is smaller than what %s reaches; %.3g is used",
+                        run->model->time, integration->settings.tolerance,
+                        integration->method->name, tolerance);
+    }
+}
+
+/* A row that was left out constrains the mechanism after all. */
+static void warn_of_rows(se3di_run *run)
+{
+    se3di_model *model = run->model;
+    char name[128];
+    if (!(model->left_out_gap > LEFT_OUT_MAX) || run->told_left_out) {
+        return;
+    }
+    run->told_left_out = 1;
+    se3di_row_name(model, model->left_out_row, name, sizeof name);
+    se3di_log_write(run->error, SE3D_LOG_WARNING,
+                    "t = %g s: the equation %s was left out, as it seemed to be redundant but for "
+                    "the digits of its data, but the mechanism has left it by %.2g of its size: "
+                    "give positions, axes and dimensions more digits",
+                    model->time, name, model->left_out_gap);
+}
+
+/* Which rows are not among the equations. */
+static void tell_rows(se3di_run *run)
+{
+    char rows[400];
+    if (run->model->left_out_count == 0 || run->told_redundant) {
+        return;
+    }
+    run->told_redundant = 1;
+    se3di_ranks_describe(run->model, rows, sizeof rows);
+    se3di_log_write(
+        run->error, SE3D_LOG_INFO,
+        "t = %g s: %u equation%s redundant but for the digits of %s data, and left out: "
+        "%s",
+        run->model->time, (unsigned)run->model->left_out_count,
+        run->model->left_out_count == 1 ? " is" : "s are",
+        run->model->left_out_count == 1 ? "its" : "their", rows);
+}
+
+se3d_status se3di_run_inform(se3di_run *run)
+{
+    tell_rows(run);
+    warn_of_rows(run);
+    run->equations.redundant |= run->model->left_out_count > 0;
+    if (run->equations.redundant && !run->told_redundant) {
+        run->told_redundant = 1;
+        se3di_log_write(run->error, SE3D_LOG_WARNING,
+                        "t = %g s: there are redundant constraints; their reactions are the "
+                        "minimum-norm ones; se3d_check names them",
+                        run->model->time);
+    }
+    run->model->history_redundant = run->equations.redundant;
+    return run->equations.redundant ? SE3D_INFO_REDUNDANT : SE3D_OK;
+}
