@@ -33,8 +33,9 @@ typedef struct verlet {
     int32_t reserved;
 } verlet;
 
-/* The user's own functions may fail with the particles moved: then these are kept before each step.
- * That costs as much as half a step of theirs, so it is not done for what hardly ever fails. */
+/* The user's own functions, and friction that jams, may fail with the particles moved: then these
+ * are kept before each step. That costs as much as half a step of theirs, so it is not done for
+ * what hardly ever fails. */
 static int has_callbacks(const se3di_model *model)
 {
     int has = model->contact.callback != NULL;
@@ -62,7 +63,7 @@ static verlet begin(se3di_integration *integration)
     if (m.model->sets) {
         se3di_sets_push(m.model, m.push);
         assembly->push = m.push;
-        m.keeps = has_callbacks(m.model);
+        m.keeps = has_callbacks(m.model) || m.bodies.friction.count > 0;
     }
     return m;
 }

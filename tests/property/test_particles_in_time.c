@@ -2,6 +2,7 @@
 /* Particles and bodies stay at one time, whatever ends a run of verlet. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/text_model.h"
 
 #define STEP 1e-4
 #define TIME 0.005
@@ -122,8 +123,47 @@ static void stopped_by_a_formula_they_are_at_one_time(void)
     }
 }
 
+/* A linkage whose friction raises its own load without end, in the first step. */
+static const char jamming[] =
+    "se3d: 1\nbodies:\n"
+    "  - {name: block, mass: 1, inertia: [1, 1, 1]}\n"
+    "  - {name: rod, mass: 1, inertia: [0.1, 0.1, 0.1], position: [-0.5, 0, 0.5]}\n"
+    "  - {name: push, mass: 1, inertia: [1, 1, 1], position: [-1, 0, 1]}\n"
+    "joints:\n"
+    "  - {name: x, type: prismatic, body_i: ground, body_j: block, at: [0, 0, 0], axis: [1, 0, "
+    "0]}\n"
+    "  - {name: a, type: revolute, body_i: block, body_j: rod, at: [0, 0, 0], axis: [0, 1, 0]}\n"
+    "  - {name: b, type: spherical, body_i: rod, body_j: push, at: [-1, 0, 1]}\n"
+    "  - {name: z, type: prismatic, body_i: ground, body_j: push, at: [-1, 0, 1], axis: [0, 0, "
+    "1]}\n"
+    "drivers: [{name: m, joint: z, value: \"-0.1*t\"}]\n"
+    "forces: [{name: f, type: friction, joint: x, mu: 0.8},\n"
+    "  {type: force, body: block, value: [-7, 0, 0]}]\n"
+    "analysis: {type: dynamics, duration: 1, method: verlet}\n";
+
+static void stopped_by_friction_that_jams_they_are_at_one_time(void)
+{
+    text_model m = text_model_open(jamming, -1, -1, 1e-3);
+    const double at[3] = {5.0, 0.0, 0.0}, v[3] = {1.0, 0.0, 0.0}, radius = 0.02;
+    world w = {.system = m.system, .solver = m.solver};
+    se3d_material stone;
+    se3d_material_def material = se3d_material_def_default();
+    material.density = 2500.0;
+    material.stiffness = 1e4;
+    CHECK(!se3d_material_create(w.system, &material, &stone));
+    se3d_particles_def set = se3d_particles_def_default();
+    CHECK(!se3d_particles_create(w.system, &set, &w.particles));
+    CHECK(!se3d_particles_add(w.particles, stone, 1, at, &radius, v, NULL, NULL));
+    CHECK(se3d_solver_run(m.solver, 0.1) == SE3D_ERR_NO_CONVERGENCE);
+    CHECK_CONTAINS(se3d_system_get_error(m.system), "friction jams");
+    check_time(&w);
+    se3d_particles_destroy(w.particles);
+    text_model_close(&m);
+}
+
 int main(void)
 {
+    RUN(stopped_by_friction_that_jams_they_are_at_one_time);
     RUN(interrupted_at_any_question_they_are_at_one_time);
     RUN(stopped_by_a_formula_they_are_at_one_time);
     return check_finish();
