@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The bench's driver of this library. METHOD: dop853, rk45, rk4, generalized_alpha, hht, bdf,
- * radau, rattle, with /rp behind it for Euler parameters; step_dop853, step_rk45 and step_rk4 make
- * equal steps without error control, as the other engines' RK4 does. */
+ * radau, rattle, with /rp behind it for Euler parameters, /joint for joint coordinates;
+ * step_dop853, step_rk45 and step_rk4 make equal steps without error control, as the other engines'
+ * RK4 does. */
 #define _POSIX_C_SOURCE 200809L
 #include "driver.h"
 #include "mechanisms.h"
@@ -21,7 +22,7 @@ static int find_method(const char *text, se3d_solver_def *def)
         {"step_rk45", SE3D_METHOD_RK45, 1},
     };
     size_t length = strcspn(text, "/");
-    def->formulation = text[length] ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA;
+    def->formulation = bench_formulation(text);
     for (size_t k = 0; k < sizeof methods / sizeof methods[0]; ++k) {
         if (strlen(methods[k].name) == length && strncmp(text, methods[k].name, length) == 0) {
             def->method = methods[k].method;

@@ -127,4 +127,16 @@ static inline bench_mechanism bench_build(char kind, int n)
     return m;
 }
 
+/* Of METHOD/FORMULATION. */
+static inline int32_t bench_formulation(const char *method)
+{
+    const char *slash = strchr(method, '/');
+    for (int32_t k = 0; slash && *se3d_formulation_get_name(k); ++k) {
+        if (strcmp(slash + 1, se3d_formulation_get_name(k)) == 0) {
+            return k;
+        }
+    }
+    return SE3D_FORMULATION_ROMEGA;
+}
+
 #endif

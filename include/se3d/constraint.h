@@ -12,10 +12,12 @@
 extern "C" {
 #endif
 
-/* The two formulations; both give the same motion. @since 0.1 */
+/* The formulations; all give the same motion. @since 0.1 */
 typedef enum se3d_formulation {
     SE3D_FORMULATION_ROMEGA = 0, /* unknowns: position and virtual rotation (angular velocity) */
-    SE3D_FORMULATION_RP = 1      /* unknowns: position and Euler parameters with p.p - 1 = 0 */
+    SE3D_FORMULATION_RP = 1,     /* unknowns: position and Euler parameters with p.p - 1 = 0 */
+    SE3D_FORMULATION_JOINT = 2 /* the coordinates of a tree of joints are integrated (dop853, rk45,
+                                    rk4); elsewhere as ROMEGA */
 } se3d_formulation;
 
 /* The primitives, with d_ij = r_j + A_j s_j - r_i - A_i s_i, directions a_i and a_j in body frames,

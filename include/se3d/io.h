@@ -277,7 +277,7 @@ SE3D_API void se3d_run_destroy(se3d_run *run);
 /* The report on one analysis. @since 0.1 */
 typedef struct se3d_run_analysis {
     const char *type;        /* owned by the run, as all texts below */
-    const char *formulation; /* "rp", "romega" */
+    const char *formulation; /* "rp", "romega", "joint" */
     const char *method;      /* in use; "" if the analysis has none */
     int32_t status;          /* se3d_status */
     int32_t reserved;        /* 0 */

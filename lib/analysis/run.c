@@ -100,7 +100,7 @@ static se3d_status allocate_work(se3di_run *run)
 
 static int is_history_of(const se3di_model *model, int32_t method)
 {
-    return model->history_tag / 2 == (uint64_t)method;
+    return model->history_tag / SE3DI_HISTORY_TAGS == (uint64_t)method;
 }
 
 /* auto: particles move by verlet only; strong dampers hold explicit methods to small steps, or have
@@ -241,7 +241,7 @@ static se3d_status settle(se3di_run *run, double t)
 
 uint64_t se3di_run_get_history_tag(const se3di_run *run)
 {
-    return 2 * run->integration.method->tag + (uint64_t)run->formulation->id;
+    return SE3DI_HISTORY_TAGS * run->integration.method->tag + (uint64_t)run->formulation->id;
 }
 
 /* The history belongs to what acts on the model now. */

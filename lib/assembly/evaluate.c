@@ -245,8 +245,7 @@ void se3di_assembly_level(se3di_assembly *assembly)
     assembly->levels = 1;
 }
 
-se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, double *b,
-                                       se3di_error *error)
+se3d_status se3di_assembly_eval_wrenches(se3di_assembly *assembly, double t, se3di_error *error)
 {
     const se3di_model *model = assembly->model;
     uint32_t failed = 0;
@@ -263,6 +262,14 @@ se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, doubl
     for (size_t k = 0; assembly->push && k < 6 * (size_t)assembly->dense_count; ++k) {
         assembly->wrench[k] += assembly->push[k];
     }
+    return SE3D_OK;
+}
+
+se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, double *b,
+                                       se3di_error *error)
+{
+    const se3di_model *model = assembly->model;
+    SE3DI_TRY(se3di_assembly_eval_wrenches(assembly, t, error));
     int32_t block = assembly->formulation->block;
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         uint32_t body = assembly->free_body[k];

@@ -52,6 +52,8 @@ typedef struct se3di_formulation {
 
 extern const se3di_formulation se3di_formulation_romega;
 extern const se3di_formulation se3di_formulation_rp;
+/* r-omega, for runs in joint coordinates, see integrator/motion.h. */
+extern const se3di_formulation se3di_formulation_joint;
 /* r-p with the normalisation eliminated: 6 unknowns per body, and the curvature of r-omega. */
 extern const se3di_formulation se3di_formulation_rp_tangent;
 

@@ -105,23 +105,25 @@ void se3di_formulation_set_plain(const se3di_frame *frame, const double accelera
     memcpy(qddot, acceleration, 6 * sizeof *qddot);
 }
 
+#define ROMEGA_TABLE                                                                               \
+    .size = 6, .block = 6, .mass = mass, .velocity_terms = velocity_terms,                         \
+    .add_wrench = add_wrench, .jacobian = jacobian, .gamma = gamma_of, .curvature = curvature,     \
+    .move = move, .normalisation = se3di_formulation_no_normalisation,                             \
+    .get_velocity = get_velocity, .set_velocity = set_velocity,                                    \
+    .get_acceleration = se3di_formulation_get_plain,                                               \
+    .set_acceleration = se3di_formulation_set_plain
+
 const se3di_formulation se3di_formulation_romega = {
     .name = "romega",
     .id = SE3D_FORMULATION_ROMEGA,
-    .size = 6,
-    .block = 6,
-    .mass = mass,
-    .velocity_terms = velocity_terms,
-    .add_wrench = add_wrench,
-    .jacobian = jacobian,
-    .gamma = gamma_of,
-    .curvature = curvature,
-    .move = move,
-    .normalisation = se3di_formulation_no_normalisation,
-    .get_velocity = get_velocity,
-    .set_velocity = set_velocity,
-    .get_acceleration = se3di_formulation_get_plain,
-    .set_acceleration = se3di_formulation_set_plain,
+    ROMEGA_TABLE,
+};
+
+/* Equations of bodies are those of r-omega. */
+const se3di_formulation se3di_formulation_joint = {
+    .name = "joint",
+    .id = SE3D_FORMULATION_JOINT,
+    ROMEGA_TABLE,
 };
 
 const se3di_formulation *se3di_formulation_find(int32_t id)
@@ -131,6 +133,8 @@ const se3di_formulation *se3di_formulation_find(int32_t id)
         return &se3di_formulation_romega;
     case SE3D_FORMULATION_RP:
         return &se3di_formulation_rp;
+    case SE3D_FORMULATION_JOINT:
+        return &se3di_formulation_joint;
     default:
         return NULL;
     }

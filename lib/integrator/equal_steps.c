@@ -40,7 +40,7 @@ double se3di_equal_steps_get(const se3di_integration *integration, const se3di_m
     if (integration->settings.step > 0.0 && (method->fixes_step || method->chooses_step)) {
         return integration->settings.step;
     }
-    return are_chosen(integration, model) && model->history_tag / 2 == method->tag
+    return are_chosen(integration, model) && model->history_tag / SE3DI_HISTORY_TAGS == method->tag
                ? model->history[SE3DI_EQUAL_STEP]
                : 0.0;
 }

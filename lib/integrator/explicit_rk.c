@@ -6,7 +6,7 @@
 #include "assembly/energy.h"
 #include "assembly/loads.h"
 #include "contact/bodies/pace.h"
-#include "integrator/state.h"
+#include "integrator/motion.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -50,16 +50,18 @@ size_t se3di_rk_history_count(const se3di_assembly *assembly)
     return RK_PAST + RK_VECTORS * se3di_state_count(assembly);
 }
 
-/* Work: the stages, the state of a stage, and what the force elements remember. */
+/* Work: the stages, the state of a stage, what the force elements remember, and two changes of the
+ * state as the bodies see them. */
 size_t se3di_rk_work_count(const se3di_assembly *assembly)
 {
     size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
-    return (SE3DI_RK_MAX + 3) * se3di_state_count(assembly) + memories;
+    return (SE3DI_RK_MAX + 5) * se3di_state_count(assembly) + memories;
 }
 
 typedef struct rk {
     se3di_adaptive step; /* first, so that it is found from the loop's */
     const se3di_rk_tableau *tableau;
+    const se3di_motion *motion;
     se3di_equations *equations;
     se3di_assembly *assembly;
     size_t count; /* numbers of a state */
@@ -69,6 +71,7 @@ typedef struct rk {
     double *y;          /* state of a stage */
     double *sum, *sum3; /* error estimates */
     double *memory;     /* [forces * SE3DI_FORCE_STATES] */
+    double *bodies[2];  /* a change of the state as the bodies see it */
     double *next;       /* derivative that the next step begins with */
     double tolerance;
     se3di_kkt_settings kkt; /* of the model's linear solver, to come back to */
@@ -104,10 +107,14 @@ static rk_past *past_of(const se3di_model *model)
 static rk point(const se3di_integration *integration)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
-    size_t count = se3di_state_count(assembly);
+    const se3di_motion *motion = se3di_motion_find(integration->equations);
+    const size_t count = motion->count(integration->equations);
+    const size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
     double *history = assembly->model->history;
+    double *memory = integration->work + (SE3DI_RK_MAX + 3) * count;
     return (rk){
         .tableau = integration->method->tableau,
+        .motion = motion,
         .equations = integration->equations,
         .assembly = assembly,
         .count = count,
@@ -120,7 +127,8 @@ static rk point(const se3di_integration *integration)
         .y = integration->work + SE3DI_RK_MAX * count,
         .sum = integration->work + (SE3DI_RK_MAX + 1) * count,
         .sum3 = integration->work + (SE3DI_RK_MAX + 2) * count,
-        .memory = integration->work + (SE3DI_RK_MAX + 3) * count,
+        .memory = memory,
+        .bodies = {memory + memories, memory + memories + se3di_state_count(assembly)},
         .tolerance = inner_tolerance(integration->settings.tolerance),
     };
 }
@@ -135,10 +143,16 @@ static rk begin(se3di_integration *integration)
     return m;
 }
 
-static void grow_scale(rk *m, const double *derivative)
+/* y'_1 as the bodies see it; y_1 was set last. */
+static const double *get_rates(const rk *m)
+{
+    return m->motion->get_rates(m->equations, m->f1, m->bodies[0]);
+}
+
+static void grow_scale(rk *m)
 {
     se3di_state_scale *scale = &m->past->scale;
-    se3di_state_scale_grow(m->assembly, derivative, scale);
+    se3di_state_scale_grow(m->assembly, get_rates(m), scale);
     scale->energy = fmax(scale->energy, m->past->energy_least);
 }
 
@@ -184,17 +198,16 @@ static void combine(const rk *m, const double *base, double h, const double *coe
     }
 }
 
-/* Derivative at the frames, into K[stage]. */
+/* Derivative at the state that was set last. */
 static se3d_status evaluate(rk *m, double t, double *derivative)
 {
-    SE3DI_TRY(se3di_state_evaluate(m->equations, t));
-    return se3di_state_derivative(m->assembly, t, m->equations->x, m->equations->l, derivative);
+    return m->motion->evaluate(m->equations, t, derivative);
 }
 
 static se3d_status evaluate_stage(rk *m, double t, double h, int stage)
 {
     combine(m, m->y0, h, m->tableau->a[stage], stage, m->y);
-    se3di_state_set(m->assembly, m->y);
+    m->motion->set(m->equations, m->y);
     return evaluate(m, t + m->tableau->c[stage] * h, m->K + (size_t)stage * m->count);
 }
 
@@ -202,8 +215,9 @@ static se3d_status evaluate_stage(rk *m, double t, double h, int stage)
 static double measure(const rk *m, const double *error)
 {
     double r = 0.0, p = 0.0, v = 0.0, w = 0.0;
-    for (size_t k = 0; k + SE3DI_STATE_WORK < m->count; k += SE3DI_STATE_SIZE) {
-        const double *e = error + k;
+    const double *end = m->motion->spread(m->equations, error, m->bodies[0]);
+    for (size_t k = 0; k < m->assembly->body_count; ++k, end += SE3DI_STATE_SIZE) {
+        const double *e = end;
         double turn = e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6];
         double parts[4] = {se3di_dot(e, e), turn, se3di_dot(e + 7, e + 7),
                            se3di_dot(e + 10, e + 10)};
@@ -214,8 +228,7 @@ static double measure(const rk *m, const double *error)
     }
     r = sqrt(r) / m->past->scale.length + 2.0 * sqrt(p);
     v = sqrt(v) / m->past->scale.speed + sqrt(w) / m->past->scale.spin;
-    const double *work = error + m->count - SE3DI_STATE_WORK;
-    double e = se3di_norm(work) / m->past->scale.energy;
+    double e = se3di_norm(end) / m->past->scale.energy;
     return (r + v + WORK_WEIGHT * e) / m->tolerance;
 }
 
@@ -255,14 +268,14 @@ static void arrive(rk *m, double h)
 {
     const int stages = m->tableau->stages;
     combine(m, m->y0, h, m->tableau->a[stages], stages, m->y);
-    se3di_state_set(m->assembly, m->y);
+    m->motion->set(m->equations, m->y);
 }
 
 /* The factorisation of the last evaluation, which was here or near, serves. */
 static se3d_status project(rk *m, double t)
 {
-    return se3di_state_project(m->equations, t, &m->past->scale, projection_accuracy(m->tolerance),
-                               1);
+    return m->motion->project(m->equations, t, &m->past->scale, projection_accuracy(m->tolerance),
+                              1);
 }
 
 /* Stages, error, projection. The derivative at the end is that before the projection, which moves
@@ -288,7 +301,7 @@ static se3d_status attempt(rk *m, double h, double *error)
     SE3DI_TRY(project(m, t));
     /* near a singular position (more rows are dependent than have been all along) accelerations at
      * a state that violates the constraints are others */
-    const double dependent = se3di_kkt_get_dependent_rows(m->equations->kkt);
+    const double dependent = m->motion->count_dependent(m->equations);
     return dependent > m->past->redundant ? evaluate(m, t, end_derivative(m)) : SE3D_OK;
 }
 
@@ -298,13 +311,12 @@ static void accept(rk *m, double t)
     m->past->at.begin = m->past->at.time;
     m->past->at.time = t;
     m->past->dense = m->past->at.renewed = 0.0;
-    size_t work = m->count - SE3DI_STATE_WORK;
-    memcpy(m->y, m->y + work, SE3DI_STATE_WORK * sizeof *m->y); /* y_1 before the projection */
-    se3di_state_get(m->assembly, m->y1);
-    memcpy(m->y1 + work, m->y, SE3DI_STATE_WORK * sizeof *m->y);
+    const size_t work = m->count - SE3DI_STATE_WORK;
+    m->motion->keep(m->equations, m->y1);
+    memcpy(m->y1 + work, m->y + work, SE3DI_STATE_WORK * sizeof *m->y);
     memcpy(m->f1, m->next, m->count * sizeof *m->f1);
-    grow_scale(m, m->f1);
-    double dependent = se3di_kkt_get_dependent_rows(m->equations->kkt);
+    grow_scale(m);
+    double dependent = m->motion->count_dependent(m->equations);
     m->past->redundant = fmin(m->past->redundant, dependent);
     se3di_angles_accept(m->assembly->model);
     se3di_contacts_accept(m->assembly->model); /* force elements: settle_memory */
@@ -324,8 +336,8 @@ static se3d_status settle_memory(rk *m, double h, double *error)
         return SE3D_OK;
     }
     se3di_memory_end end;
-    const se3di_memory_step step = {t,         h,     m->tolerance, model->lambda, &m->past->scale,
-                                    m->memory, m->sum};
+    const se3di_memory_step step = {
+        t, h, m->tolerance, model->lambda, &m->past->scale, m->memory, m->bodies[0]};
     SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
     *error = fmax(*error, end.error);
     m->step.fraction = end.fraction;
@@ -334,9 +346,7 @@ static se3d_status settle_memory(rk *m, double h, double *error)
         return SE3D_OK;
     }
     m->next = end.has_changed ? m->sum : m->next;
-    return end.has_changed
-               ? se3di_state_derivative(m->assembly, t, m->equations->x, m->equations->l, m->next)
-               : SE3D_OK;
+    return end.has_changed ? m->motion->derive(m->equations, t, m->equations->l, m->next) : SE3D_OK;
 }
 
 /* All that may fail before the state is accepted; *error as from settle_memory. */
@@ -362,7 +372,7 @@ static se3d_status fail_small(rk *m, double h)
                         "t = %g s: the step fell to %.3g s: the tolerance %g cannot be met here; "
                         "the motion is not smooth, or stiff (try generalized_alpha or radau)",
                         t, h, m->tolerance);
-    se3di_state_set(m->assembly, m->y1);
+    m->motion->set(m->equations, m->y1);
     se3di_contacts_blame(m->assembly->model, m->equations->error);
     return status;
 }
@@ -406,21 +416,25 @@ static se3d_status cross_jump(rk *m, double h, double error)
 /* Bound on how fast a relative angular velocity grows at the forward state. */
 static double largest_growth(const rk *m)
 {
+    const se3di_assembly *assembly = m->assembly;
     double largest = 0.0;
-    for (size_t k = 0; k < m->assembly->body_count; ++k) {
-        largest = fmax(largest, se3di_norm(m->f1 + SE3DI_STATE_SIZE * k + 10));
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const size_t body = assembly->free_body[k];
+        largest = fmax(largest, se3di_norm(assembly->model->acceleration + 6 * body + 3));
     }
     return 2.0 * largest;
 }
 
 /* h lambda of a decay that is in the differences `y` of velocities and `f` of accelerations times
  * h: what oscillates has none on the average. */
-static double decay_of(const rk *m, const double *y, const double *f)
+static double decay_of(const rk *m, const double *y_change, const double *f_change)
 {
+    const double *y = m->motion->spread(m->equations, y_change, m->bodies[0]);
+    const double *f = m->motion->spread(m->equations, f_change, m->bodies[1]);
     const double v = 1.0 / (m->past->scale.speed * m->past->scale.speed);
     const double w = 1.0 / (m->past->scale.spin * m->past->scale.spin);
     double product = 0.0, square = 0.0;
-    for (size_t k = 7; k + SE3DI_STATE_WORK < m->count; k += SE3DI_STATE_SIZE) {
+    for (size_t k = 7; k < SE3DI_STATE_SIZE * m->assembly->body_count; k += SE3DI_STATE_SIZE) {
         product += v * se3di_dot(y + k, f + k) + w * se3di_dot(y + k + 3, f + k + 3);
         square += v * se3di_dot(y + k, y + k) + w * se3di_dot(y + k + 3, y + k + 3);
     }
@@ -445,7 +459,7 @@ static void watch_stability(rk *m, double h)
     const int last = tableau->stages - 1, end = tableau->stages;
     double difference[SE3DI_RK_MAX], *held = &m->past->held, *free = &m->past->free;
     m->past->since += 1.0;
-    if (se3di_kkt_get_dependent_rows(m->equations->kkt) > m->past->redundant) {
+    if (m->motion->count_dependent(m->equations) > m->past->redundant) {
         return;
     }
     if (!(*held > 0.0) && m->past->since < HELD_EACH) {
@@ -544,8 +558,8 @@ static se3d_status advance(rk *m, double t_end)
     m->step.at = &m->past->at;
     m->step.ends = model->contacts.pair_count > 0 || m->past->at.renewed > 0.0;
     se3di_forces_show(model, 0);
-    se3di_state_set(m->assembly, m->y1);
-    se3di_state_set_rates(m->assembly, m->f1);
+    m->motion->set(m->equations, m->y1);
+    se3di_state_set_rates(m->assembly, get_rates(m));
     se3di_angles_accept(model); /* turns count from step to step, not from an output */
     return se3di_adaptive_advance(&m->step, t_end);
 }
@@ -593,12 +607,23 @@ static se3d_status adopt(rk *m)
     se3di_forces_stay(assembly->model);
     m->past->at.time = m->past->at.begin = assembly->model->time;
     m->past->dense = 0.0;
-    se3di_state_get(assembly, m->y1);
+    m->motion->get(m->equations, m->y1);
     se3di_assembly_get_acceleration(assembly, m->equations->x);
-    SE3DI_TRY(se3di_state_derivative(assembly, assembly->model->time, m->equations->x,
-                                     assembly->model->lambda, m->f1));
-    grow_scale(m, m->f1);
+    SE3DI_TRY(
+        m->motion->derive(m->equations, assembly->model->time, assembly->model->lambda, m->f1));
+    grow_scale(m);
     return SE3D_OK;
+}
+
+/* The model's state is y, at t. */
+static se3d_status show(rk *m, const double *y, double t, int project)
+{
+    m->motion->set(m->equations, y);
+    if (project) {
+        SE3DI_TRY(m->motion->project(m->equations, t, &m->past->scale, 1e-15, 0));
+    }
+    SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
+    return se3di_state_conclude(m->equations, y + m->count - SE3DI_STATE_WORK, t);
 }
 
 /* The model's state is that at an end of the last step. */
@@ -606,7 +631,7 @@ static se3d_status publish(rk *m, int at_end)
 {
     const double t = at_end ? m->past->at.time : m->past->at.begin;
     se3di_forces_show(m->assembly->model, !at_end);
-    return se3di_state_publish(m->equations, at_end ? m->y1 : m->y0, t, &m->past->scale, 0);
+    return show(m, at_end ? m->y1 : m->y0, t, 0);
 }
 
 /* Hairer, Norsett, Wanner 1993, sec. II.4: from the derivative and its change over a small step. */
@@ -622,7 +647,7 @@ static double choose_first(rk *m)
     for (size_t k = 0; k < m->count; ++k) {
         m->y[k] = m->y1[k] + h0 * m->f1[k];
     }
-    se3di_state_set(m->assembly, m->y);
+    m->motion->set(m->equations, m->y);
     double d2 = 0.0;
     if (evaluate(m, m->past->at.time + h0, m->K) >= 0) {
         for (size_t k = 0; k < m->count; ++k) {
@@ -630,7 +655,7 @@ static double choose_first(rk *m)
         }
         d2 = measure(m, m->K) / h0;
     }
-    se3di_state_set(m->assembly, m->y1);
+    m->motion->set(m->equations, m->y1);
     m->equations->error = error;
     double d = fmax(d1 * m->tolerance, 1e-3 / h0);
     double h1 = se3di_pow(0.01 / (fmax(d, sqrt(fmax(d2, 0.0) * m->tolerance)) / m->tolerance),
@@ -679,7 +704,7 @@ static int reports_end(const rk *m)
 {
     const se3di_model *model = m->assembly->model;
     return !se3di_forces_have_memory(model) && model->shape_slots.count <= 1 &&
-           se3di_kkt_get_dependent_rows(m->equations->kkt) == 0;
+           m->motion->count_dependent(m->equations) == 0;
 }
 
 /* One step of h without error control; *reported: the accelerations at its end are the model's. */
@@ -694,8 +719,8 @@ static se3d_status step_once(rk *m, double h, int *reported)
         SE3DI_TRY(project(m, t));
         se3di_state_end(m->equations, &m->kkt);
         SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
-        SE3DI_TRY(se3di_state_derivative(m->assembly, t, m->equations->x,
-                                         m->assembly->model->lambda, end_derivative(m)));
+        SE3DI_TRY(
+            m->motion->derive(m->equations, t, m->assembly->model->lambda, end_derivative(m)));
     } else {
         SE3DI_TRY(evaluate(m, t, end_derivative(m)));
         SE3DI_TRY(project(m, t));
@@ -718,7 +743,8 @@ se3d_status se3di_rk_step(se3di_integration *integration, double h)
     status = status < 0 ? status : step_once(&m, h, &reported);
     se3di_state_end(m.equations, &m.kkt);
     if (status >= 0 && reported) {
-        return se3di_state_conclude(m.equations, m.y1, m.past->at.time);
+        return se3di_state_conclude(m.equations, m.y1 + m.count - SE3DI_STATE_WORK,
+                                    m.past->at.time);
     }
     return status < 0 ? status : publish(&m, 1);
 }
@@ -743,13 +769,12 @@ se3d_status se3di_rk_advance(se3di_integration *integration, double t_end)
 
 void se3di_rk_interpolate(const se3di_integration *integration, double t, double *y)
 {
-    const se3di_assembly *assembly = &integration->equations->assembly;
     const rk m = point(integration);
-    if (t < m.past->at.time) {
-        interpolate(&m, t, y);
-    } else {
-        memcpy(y, m.y1, se3di_state_count(assembly) * sizeof *y);
+    const int is_within = t < m.past->at.time;
+    if (is_within) {
+        interpolate(&m, t, m.y);
     }
+    m.motion->show(m.equations, is_within ? m.y : m.y1, y);
 }
 
 se3d_status se3di_rk_run(se3di_integration *integration, double t_end)
@@ -764,5 +789,5 @@ se3d_status se3di_rk_run(se3di_integration *integration, double t_end)
     }
     interpolate(&m, t_end, m.y);
     se3di_forces_show(m.assembly->model, 1);
-    return se3di_state_publish(m.equations, m.y, t_end, &m.past->scale, 1);
+    return show(&m, m.y, t_end, 1);
 }

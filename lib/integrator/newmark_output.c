@@ -152,5 +152,5 @@ se3d_status se3di_newmark_publish(se3di_integration *integration, double t)
         SE3DI_TRY(se3di_state_project(equations, t, &header->scale, 1e-15, 0));
     }
     SE3DI_TRY(set_accelerations(integration, t, is_end ? 1.0 : (t - header->at.begin) / last));
-    return se3di_state_conclude(equations, y, t);
+    return se3di_state_conclude(equations, y + se3di_state_count(assembly) - SE3DI_STATE_WORK, t);
 }

@@ -18,14 +18,18 @@ size_t se3di_state_count(const se3di_assembly *assembly)
     return SE3DI_STATE_SIZE * (size_t)assembly->body_count + SE3DI_STATE_WORK;
 }
 
+void se3di_state_pack(const se3di_frame *frame, double *y)
+{
+    memcpy(y, frame->r, 3 * sizeof *y);
+    memcpy(y + 3, frame->p, 4 * sizeof *y);
+    memcpy(y + 7, frame->v, 3 * sizeof *y);
+    memcpy(y + 10, frame->w, 3 * sizeof *y);
+}
+
 void se3di_state_get(const se3di_assembly *assembly, double *y)
 {
     for (uint32_t k = 0; k < assembly->body_count; ++k, y += SE3DI_STATE_SIZE) {
-        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
-        memcpy(y, frame->r, 3 * sizeof *y);
-        memcpy(y + 3, frame->p, 4 * sizeof *y);
-        memcpy(y + 7, frame->v, 3 * sizeof *y);
-        memcpy(y + 10, frame->w, 3 * sizeof *y);
+        se3di_state_pack(&assembly->model->frames[assembly->free_body[k]], y);
     }
     memcpy(y, assembly->model->work, SE3DI_STATE_WORK * sizeof *y);
 }
@@ -59,10 +63,23 @@ static int has_power(const se3di_assembly *assembly)
            model->gravity_function[2] >= 0;
 }
 
+se3d_status se3di_state_powers(se3di_assembly *assembly, double t, const double *l, double power[3])
+{
+    se3di_model *model = assembly->model;
+    memset(power, 0, SE3DI_STATE_WORK * sizeof *power);
+    if (!has_power(assembly)) {
+        return SE3D_OK;
+    }
+    if (l && assembly->row_count > 0 && l != model->lambda) {
+        memcpy(model->lambda, l, assembly->row_count * sizeof *l);
+    }
+    return se3di_loads_power(model, t, power);
+}
+
 se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const double *qddot,
                                    const double *l, double *derivative)
 {
-    se3di_model *model = assembly->model;
+    const se3di_model *model = assembly->model;
     size_t block = (size_t)assembly->formulation->block;
     double *out = derivative;
     for (uint32_t k = 0; k < assembly->body_count; ++k, out += SE3DI_STATE_SIZE) {
@@ -71,14 +88,7 @@ se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const dou
         memcpy(out + 3, frame->pdot, 4 * sizeof *out);
         assembly->formulation->get_acceleration(frame, qddot + k * block, out + 7);
     }
-    memset(out, 0, SE3DI_STATE_WORK * sizeof *out);
-    if (!has_power(assembly)) {
-        return SE3D_OK;
-    }
-    if (assembly->row_count > 0 && l != model->lambda) {
-        memcpy(model->lambda, l, assembly->row_count * sizeof *l);
-    }
-    return se3di_loads_power(model, t, out);
+    return se3di_state_powers(assembly, t, l, out);
 }
 
 se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, double accuracy)
@@ -401,13 +411,12 @@ se3d_status se3di_state_prepare(se3di_equations *equations, double t)
     return se3di_loads_prepare(model, t, equations->error);
 }
 
-se3d_status se3di_state_conclude(se3di_equations *equations, const double *y, double t)
+se3d_status se3di_state_conclude(se3di_equations *equations, const double *work, double t)
 {
     se3di_model *model = equations->assembly.model;
     se3di_angles_accept(model);
     model->time = t;
-    memcpy(model->work, y + SE3DI_STATE_SIZE * (size_t)equations->assembly.body_count,
-           sizeof model->work);
+    memcpy(model->work, work, sizeof model->work);
     model->work_valid = 1;
     return se3di_loads_power(model, t, model->power);
 }
@@ -420,5 +429,6 @@ se3d_status se3di_state_publish(se3di_equations *equations, const double *y, dou
         SE3DI_TRY(se3di_state_project(equations, t, scale, 1e-15, 0));
     }
     SE3DI_TRY(se3di_acceleration_solve(equations, t));
-    return se3di_state_conclude(equations, y, t);
+    return se3di_state_conclude(equations,
+                                y + SE3DI_STATE_SIZE * (size_t)equations->assembly.body_count, t);
 }

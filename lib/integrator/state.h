@@ -19,6 +19,8 @@ typedef struct se3di_state_scale {
 } se3di_state_scale;
 
 size_t se3di_state_count(const se3di_assembly *assembly);
+/* r, p, v, w of one body. */
+void se3di_state_pack(const se3di_frame *frame, double *y);
 void se3di_state_get(const se3di_assembly *assembly, double *y);
 /* Sets the frames; p is normalised on the way. */
 void se3di_state_set(se3di_assembly *assembly, const double *y);
@@ -29,6 +31,10 @@ void se3di_state_set_rates(se3di_assembly *assembly, const double *derivative);
  * become those of the model if powers depend on them. */
 se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const double *qddot,
                                    const double *l, double *derivative);
+
+/* Its last three numbers; l NULL: no power depends on multipliers. */
+se3d_status se3di_state_powers(se3di_assembly *assembly, double t, const double *l,
+                               double power[3]);
 
 /* Before a series of evaluations: the mass if it is constant, and the linear solver's settings
  * for the regularisation `eps`; after it: the settings as they were. Near singular positions an
@@ -85,7 +91,7 @@ se3d_status se3di_state_prepare(se3di_equations *equations, double t);
  * one. */
 se3d_status se3di_state_publish(se3di_equations *equations, const double *y, double t,
                                 const se3di_state_scale *scale, int project);
-/* The last part of it: frames, accelerations and multipliers are those of y at t already. */
-se3d_status se3di_state_conclude(se3di_equations *equations, const double *y, double t);
+/* The last part of it: frames, accelerations and multipliers are those at t already. */
+se3d_status se3di_state_conclude(se3di_equations *equations, const double *work, double t);
 
 #endif

@@ -183,6 +183,7 @@ typedef struct se3di_model {
     uint64_t inputs_version;   /* changes when values of elements, masses or gravity change, or what
                                   callbacks compute: what acts on the state, not the state itself */
     uint64_t contact_version;  /* changes when materials or the law of contact do */
+    uint64_t masses_version;   /* changes when a mass or an inertia does */
     uint64_t values_version;   /* changes when prescribed values do: positions have to follow */
     int32_t settled;           /* the state is an analysis' own; 0 after the user set one */
     int32_t remembers;         /* an analysis may have left something in forces, shapes, contacts */

@@ -45,8 +45,14 @@ static int has_light_body(const se3di_assembly *assembly)
     return least[0] < LIGHT * most[0] || least[1] < LIGHT * most[1];
 }
 
-void se3di_equations_suit_masses(const se3di_equations *equations)
+void se3di_equations_suit_masses(se3di_equations *equations)
 {
+    const se3di_model *model = equations->assembly.model;
+    if (equations->tree &&
+        (equations->masses_version != model->masses_version || !model->settled)) {
+        se3di_tree_refresh(equations->tree);
+        equations->masses_version = model->masses_version;
+    }
     se3di_kkt_settings settings = se3di_kkt_get_settings(equations->kkt);
     settings.regularise = has_light_body(&equations->assembly) ? SE3DI_KKT_REGULARISE_LATE
                                                                : SE3DI_KKT_REGULARISE_AUTO;
@@ -58,11 +64,59 @@ static double *alloc_doubles(const se3di_equations *equations, size_t count)
     return se3di_alloc(&equations->assembly.model->allocator, count, sizeof(double));
 }
 
+static int has_loops(const se3di_tree *tree)
+{
+    int found = 0;
+    for (uint32_t k = 0; k < tree->constraint_count; ++k) {
+        found |= tree->tree_of[k] < 0;
+    }
+    return found;
+}
+
+static se3d_status create_tree(se3di_equations *equations)
+{
+    se3di_model *model = equations->assembly.model;
+    if (equations->assembly.formulation->id != SE3D_FORMULATION_JOINT) {
+        return SE3D_OK;
+    }
+    se3di_tree *tree = se3di_alloc(&model->allocator, 1, sizeof *tree);
+    if (!tree) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    const se3d_status status = se3di_tree_init(tree, model, equations->error);
+    if (status < 0) {
+        se3di_free(&model->allocator, tree, 1, sizeof *tree);
+        return status;
+    }
+    equations->tree = tree;
+    equations->has_loops = has_loops(tree);
+    /* nothing but the tree constrains the motion, and nothing that acts depends on multipliers */
+    equations->is_open_tree =
+        tree->given_count == 0 && equations->friction.count == 0 && !equations->has_loops;
+    equations->masses_version = model->masses_version;
+    equations->joint_before = alloc_doubles(equations, tree->q_count);
+    equations->joint_moves = alloc_doubles(equations, 12 * (size_t)tree->count);
+    return equations->joint_before && equations->joint_moves ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+}
+
+static void destroy_tree(se3di_equations *equations)
+{
+    const se3d_allocator *allocator = &equations->assembly.model->allocator;
+    if (equations->tree) {
+        se3di_free(allocator, equations->joint_before, equations->tree->q_count, sizeof(double));
+        se3di_free(allocator, equations->joint_moves, 12 * (size_t)equations->tree->count,
+                   sizeof(double));
+        se3di_tree_destroy(equations->tree);
+        se3di_free(allocator, equations->tree, 1, sizeof *equations->tree);
+    }
+}
+
 static se3d_status allocate(se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(create_kkt(equations));
     SE3DI_TRY(se3di_friction_system_init(&equations->friction, assembly));
+    SE3DI_TRY(create_tree(equations));
     se3di_equations_suit_masses(equations);
     equations->b = alloc_doubles(equations, assembly->unknown_count);
     equations->x = alloc_doubles(equations, assembly->unknown_count);
@@ -104,6 +158,7 @@ void se3di_equations_destroy(se3di_equations *equations)
     }
     const se3d_allocator *allocator = &assembly->model->allocator;
     se3di_kkt_destroy(equations->kkt);
+    destroy_tree(equations);
     se3di_friction_system_destroy(&equations->friction, assembly);
     se3di_free(allocator, equations->b, assembly->unknown_count, sizeof(double));
     se3di_free(allocator, equations->x, assembly->unknown_count, sizeof(double));

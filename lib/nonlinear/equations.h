@@ -17,6 +17,7 @@
 #include "model/saved.h"
 #include "nonlinear/friction_system.h"
 #include "primitive/scale.h"
+#include "tree/tree.h"
 
 typedef struct se3di_counters {
     uint64_t steps, rejected, iterations, evaluations, factorizations, solves;
@@ -53,14 +54,20 @@ typedef struct se3di_equations {
     int32_t keeps;                 /* `kept` is what a failure has to come back to */
     int32_t reserved;
     se3di_friction_system friction;
+    se3di_tree *tree;        /* joint coordinates, NULL: another formulation */
+    double *joint_before;    /* [positions of the tree] */
+    double *joint_moves;     /* [nodes of the tree * 12] */
+    uint64_t masses_version; /* that the tree has */
+    int32_t is_open_tree;    /* nothing else constrains it, no force needs a multiplier */
+    int32_t has_loops;       /* some constraint is not on the tree */
 } se3di_equations;
 
 se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
                                  const se3di_formulation *formulation, se3di_error *error);
 void se3di_equations_destroy(se3di_equations *equations);
-/* Masses have changed: rows of light bodies are told from dependent ones by elimination without
- * regularisation. */
-void se3di_equations_suit_masses(const se3di_equations *equations);
+/* Masses or poses may have changed: rows of light bodies are told from dependent ones by
+ * elimination without regularisation, and the tree takes them. */
+void se3di_equations_suit_masses(se3di_equations *equations);
 
 /* Evaluate mass and Jacobian at the present state and factor. */
 se3d_status se3di_equations_factor(se3di_equations *equations);

@@ -175,6 +175,7 @@ se3d_status se3d_body_set_mass(se3d_system *system, se3d_body body, double mass,
     model->bodies[index].mass = mass;
     memcpy(model->bodies[index].J, inertia, 6 * sizeof *inertia);
     se3di_audit_change(model, before);
+    ++model->masses_version;
     se3di_model_touch_contact(model); /* its damping goes by the mass */
     return SE3D_OK;
 }

@@ -99,7 +99,7 @@ static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def
     }
     if (!se3di_formulation_find(def->formulation)) {
         return SE3DI_FAIL_OF(system, "formulation", SE3D_ERR_INVALID_ARGUMENT,
-                             " = %d, must be SE3D_FORMULATION_ROMEGA or _RP",
+                             " = %d, must be SE3D_FORMULATION_ROMEGA, _RP or _JOINT",
                              (int)def->formulation);
     }
     if (!se3di_integrator_find(def->method)) {

@@ -35,7 +35,7 @@ static uint64_t run_whole(const support_analysis *row, int32_t formulation)
 static void every_run_gives_the_same_bits(void)
 {
     for (size_t k = 0; k < SUPPORT_ANALYSES; ++k) {
-        for (int32_t formulation = 0; formulation < 2; ++formulation) {
+        for (int32_t formulation = 0; formulation < 3; ++formulation) {
             uint64_t first = run_whole(&support_analyses[k], formulation);
             CHECK(first == run_whole(&support_analyses[k], formulation));
         }
@@ -45,9 +45,9 @@ static void every_run_gives_the_same_bits(void)
 
 static void clones_continue_with_the_same_bits(void)
 {
-    for (size_t k = 0; k < 2 * SUPPORT_ANALYSES; ++k) {
-        const support_analysis *row = &support_analyses[k / 2];
-        int32_t formulation = (int32_t)(k % 2);
+    for (size_t k = 0; k < 3 * SUPPORT_ANALYSES; ++k) {
+        const support_analysis *row = &support_analyses[k / 3];
+        int32_t formulation = (int32_t)(k % 3);
         support_model model;
         se3d_system *clone = NULL;
         support_model_make(&model, row->mechanism, row->count);
@@ -66,9 +66,9 @@ static void clones_continue_with_the_same_bits(void)
 
 static void snapshots_continue_with_the_same_bits(void)
 {
-    for (size_t k = 0; k < 2 * SUPPORT_ANALYSES; ++k) {
-        const support_analysis *row = &support_analyses[k / 2];
-        int32_t formulation = (int32_t)(k % 2);
+    for (size_t k = 0; k < 3 * SUPPORT_ANALYSES; ++k) {
+        const support_analysis *row = &support_analyses[k / 3];
+        int32_t formulation = (int32_t)(k % 3);
         support_model model;
         se3d_snapshot *snapshot = NULL;
         support_model_make(&model, row->mechanism, row->count);
@@ -89,8 +89,8 @@ static void snapshots_continue_with_the_same_bits(void)
 /* A snapshot in the middle of one solver's run: the solver itself must not carry state. */
 static void solvers_carry_no_state_of_their_own(void)
 {
-    for (size_t k = 0; k < 2 * SUPPORT_ANALYSES; ++k) {
-        const support_analysis *row = &support_analyses[k / 2];
+    for (size_t k = 0; k < 3 * SUPPORT_ANALYSES; ++k) {
+        const support_analysis *row = &support_analyses[k / 3];
         support_model model;
         se3d_snapshot *snapshot = NULL;
         se3d_solver *solver = NULL;
@@ -160,8 +160,8 @@ static void check_same_reactions(const support_model *a, const support_model *b,
  * rounding of positions by the square of the step, and redundant rows (four_bar) amplify it. */
 static void numbering_does_not_change_the_physics(void)
 {
-    for (size_t k = 0; k < 2 * SUPPORT_ANALYSES; ++k) {
-        const support_analysis *row = &support_analyses[k / 2];
+    for (size_t k = 0; k < 3 * SUPPORT_ANALYSES; ++k) {
+        const support_analysis *row = &support_analyses[k / 3];
         support_plan plan;
         support_model model[2];
         support_plan_make(&plan, row->mechanism, row->count);

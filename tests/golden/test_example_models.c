@@ -104,13 +104,13 @@ static double file_number(const example *e, const char *suffix, size_t row, size
     return value;
 }
 
-static const char *const formulations[] = {"romega", "rp"};
+static const char *const formulations[] = {"romega", "rp", "joint"};
 
 /* x = 1/2 g (sin - mu cos) t^2; sliding begins within the first step, and the load follows
  * from step to step. */
 static void block_above_the_friction_angle_slides_as_coulomb_says(void)
 {
-    for (int f = 0; f < 2; ++f) {
+    for (int f = 0; f < 3; ++f) {
         example e = run_example("incline_friction", NULL, NULL, formulations[f]);
         const double slope = acos(-1.0) / 6.0;
         const double a = 9.81 * (sin(slope) - 0.3 * cos(slope));
@@ -189,7 +189,7 @@ static void bar_comes_to_rest_where_its_moments_balance(void)
 /* 0.2 T0 of load: w = 0.8 w0, and w^2 as in the head of the file. */
 static void governor_finds_its_steady_motion(void)
 {
-    for (int f = 0; f < 2; ++f) {
+    for (int f = 0; f < 3; ++f) {
         example e = run_example("flyball_governor", NULL, NULL, formulations[f]);
         const double w = channel_of(&e, "bearing.rate", 0);
         const double alpha = channel_of(&e, "pivot_right.angle", 0);
@@ -234,7 +234,7 @@ static void suspension_steers_and_travels_as_its_distances_say(void)
 {
     static const double wheel[] = {-0.00957547201023548, 0.606452650033026, 0.2564663452836};
     static const double contact[] = {-0.00420306653600744, 0.607418404850378, 0.0285316954888546};
-    for (int f = 0; f < 2; ++f) {
+    for (int f = 0; f < 3; ++f) {
         example e = run_example("suspension", "end", "0.3", formulations[f]);
         for (size_t k = 0; k < 3; ++k) {
             CHECK_NEAR(channel_of(&e, "upright.wheel_centre.position", k), wheel[k], 1e-13);
@@ -258,7 +258,7 @@ static void andrews_squeezer_ends_at_the_published_angles(void)
                  {"B.angle", 0.04082224013073101}, {"H.angle", -0.5347301163226948},
                  {"A5.angle", 0.5244099658805304}, {"G.angle", 0.5347301163226948},
                  {"A7.angle", 1.048080741042263}};
-    for (int f = 0; f < 2; ++f) {
+    for (int f = 0; f < 3; ++f) {
         example e = run_example("andrews", NULL, NULL, formulations[f]);
         for (size_t k = 0; k < sizeof table / sizeof table[0]; ++k) {
             CHECK_NEAR(channel_of(&e, table[k].channel, 0), table[k].angle, 2e-9);
@@ -304,7 +304,7 @@ static void overconstrained_loop_has_the_same_reactions_by_every_method(void)
                  {"generalized_alpha", 2e-2}};
     example exact = run_example("bricard", NULL, NULL, "romega");
     for (size_t m = 0; m < sizeof table / sizeof table[0]; ++m) {
-        for (int f = 0; f < 2; ++f) {
+        for (int f = 0; f < 3; ++f) {
             example e = run_by("bricard", NULL, NULL, formulations[f], table[m].method);
             for (size_t k = 0; k < 3; ++k) {
                 CHECK_NEAR(channel_of(&e, "c.force", k), channel_of(&exact, "c.force", k),

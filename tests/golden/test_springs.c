@@ -191,7 +191,7 @@ static double trajectory_error(build_problem build, se3d_joint_coordinate coordi
 static void check_order(build_problem build, se3d_joint_coordinate coordinate, int columns,
                         double size)
 {
-    for (int32_t formulation = 0; formulation < 2; ++formulation) {
+    for (int32_t formulation = 0; formulation < 3; ++formulation) {
         for (int32_t method = SE3D_METHOD_GENERALIZED_ALPHA; method <= SE3D_METHOD_HHT; ++method) {
             double coarse = trajectory_error(build, coordinate, columns, method, formulation, 2e-3);
             double fine = trajectory_error(build, coordinate, columns, method, formulation, 1e-3);

@@ -196,7 +196,7 @@ static void check_method(const method_row *row)
     for (int p = 0; p < 3; ++p) {
         sample reference = run(problems[p].build, &exact, SE3D_FORMULATION_ROMEGA,
                                problems[p].duration, problems[p].reference_steps);
-        for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_RP; ++f) {
+        for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_JOINT; ++f) {
             sample coarse = run(problems[p].build, row, f, problems[p].duration, row->steps[p]);
             sample fine = run(problems[p].build, row, f, problems[p].duration, 2 * row->steps[p]);
             for (int group = 0; group < GROUPS; ++group) {
@@ -334,7 +334,7 @@ static void check_control(int32_t method, double order, const double tolerance[2
     for (int p = 0; p < 3; ++p) {
         sample reference = run(problems[p].build, &exact, SE3D_FORMULATION_ROMEGA,
                                problems[p].duration, problems[p].reference_steps);
-        for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_RP; ++f) {
+        for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_JOINT; ++f) {
             double errors[2];
             CHECK(measure_control(p, &row, f, &reference, tolerance, errors) > order);
             CHECK(errors[0] < factor * tolerance[0] && errors[1] < factor * tolerance[1]);

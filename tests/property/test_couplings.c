@@ -149,7 +149,7 @@ static void check_equal_gears(double J, int32_t method, int32_t formulation)
 static void equal_gears_share_the_effort_in_every_method(void)
 {
     for (int32_t method = SE3D_METHOD_AUTO; method <= SE3D_METHOD_RK4; ++method) {
-        for (int32_t formulation = 0; formulation < 2; ++formulation) {
+        for (int32_t formulation = 0; formulation < 3; ++formulation) {
             check_equal_gears(0.05, method, formulation);
             check_equal_gears(5e-9, method, formulation); /* a wheel of nearly nothing */
         }

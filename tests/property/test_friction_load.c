@@ -181,7 +181,7 @@ static void the_default_is_under_error_control_with_friction(void)
 static void check_carriage(const char *text, double N)
 {
     for (size_t run = 0; run < METHODS; ++run) {
-        for (int32_t formulation = 0; formulation < 2; ++formulation) {
+        for (int32_t formulation = 0; formulation < 3; ++formulation) {
             text_model m = text_model_open(text, methods[run], formulation, 0.0);
             CHECK(text_model_run(&m, 0.1));
             CHECK_NEAR(text_model_get(&m, 0, 0), 0.1 * N, 1e-8 * N);

@@ -220,9 +220,8 @@ static void held_inputs_are_exact_in_every_method(void)
 {
     for (int kind = 0; kind < INPUTS; ++kind) {
         for (int32_t method = 0; method < method_count(); ++method) {
-            for (int k = 0; k < 4; ++k) {
-                hold_and_change((input)kind, method,
-                                k / 2 ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA, k % 2);
+            for (int k = 0; k < 6; ++k) {
+                hold_and_change((input)kind, method, k / 2, k % 2);
             }
         }
     }
@@ -427,7 +426,7 @@ static void change_and_compare(const bars *w, se3d_solver *solver, const se3d_so
 static void all_values_act_from_the_next_step_on(void)
 {
     for (int32_t method = 0; method < method_count(); ++method) {
-        for (int32_t formulation = 0; formulation < 2; ++formulation) {
+        for (int32_t formulation = 0; formulation < 3; ++formulation) {
             bars w;
             se3d_solver *solver = NULL;
             se3d_solver_def def = se3d_solver_def_default();

@@ -152,7 +152,7 @@ static uint64_t hash_of(int32_t method, int32_t formulation, unsigned char filli
 static void nothing_depends_on_what_lies_about(void)
 {
     for (int32_t method = SE3D_METHOD_AUTO; method <= SE3D_METHOD_RK4; ++method) {
-        for (int32_t formulation = 0; formulation < 2; ++formulation) {
+        for (int32_t formulation = 0; formulation < 3; ++formulation) {
             const uint64_t hash = hash_of(method, formulation, 0);
             CHECK(hash_of(method, formulation, 0xFF) == hash); /* doubles: not a number */
             CHECK(hash_of(method, formulation, 0x7E) == hash); /* huge */

@@ -308,6 +308,11 @@ static int try_mechanism(uint64_t seed)
         CHECK((a.status < 0) == (b.status < 0));
         return 0;
     }
+    const outcome j = run(seed, SE3D_FORMULATION_JOINT, SE3D_METHOD_DOP853, 1e-10, 0.0);
+    CHECK(j.status >= 0);
+    expect(seed, "joint coordinates against r-omega", gap(&a, &j), 1e-7);
+    expect(seed, "energy in joint coordinates", j.balance, 1e-8);
+    expect(seed, "momentum in joint coordinates", j.drift, 1e-9);
     const outcome c = run(seed, SE3D_FORMULATION_ROMEGA, SE3D_METHOD_RADAU, 1e-9, 0.0);
     const outcome d = run(seed, SE3D_FORMULATION_RP, SE3D_METHOD_RADAU, 1e-9, 0.0);
     CHECK(c.status >= 0 && d.status >= 0);

@@ -20,7 +20,7 @@ static const char help[] =
     "  --set NAME=VALUE       replace a parameter; VALUE is an expression; may be repeated\n"
     "  --analysis T           assembly, kinematics, inverse_dynamics, dynamics, equilibrium,\n"
     "                         modes\n"
-    "  --formulation F        romega, rp\n"
+    "  --formulation F        romega, rp, joint\n"
     "  --method M             auto, generalized_alpha, hht, dop853, rk45, rk4, bdf, radau, rattle, "
     "verlet\n"
     "  --step H               step [s]\n"

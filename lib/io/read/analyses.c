@@ -33,7 +33,8 @@ static const char *name_of_type(int32_t type)
 static const se3di_key analysis_keys[] = {
     {"type", SE3DI_KIND_WORD, .name_of = name_of_type, .required = true, .text = ""},
     {"formulation", SE3DI_KIND_WORD, .name_of = se3d_formulation_get_name, .standard = "romega",
-     .text = "what describes turns: angular velocities, or Euler parameters"},
+     .text = "what describes the motion: angular velocities, Euler parameters, or coordinates of "
+         "joints (dop853, rk45, rk4; elsewhere as romega)"},
     {"method", SE3DI_KIND_WORD, .name_of = se3d_method_get_name, .standard = "auto",
      .text = "of dynamics; auto: verlet with particles, radau if a damper's decay is 20000 "
          "times faster than the motion, else dop853, which it leaves for radau if stability "

@@ -580,7 +580,7 @@ static se3d_status run_analysis(runner *r, size_t index)
     const double start = isnan(entry->analysis.start) ? r->time : entry->analysis.start;
     const clock_t begin = clock();
     done->type = copy_text(r, entry->analysis.type);
-    done->formulation = entry->solver.formulation == SE3D_FORMULATION_RP ? "rp" : "romega";
+    done->formulation = se3d_formulation_get_name(entry->solver.formulation);
     done->method = "";
     done->start = start;
     done->end = start;

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The state of explicit methods as that of the bodies. */
+#include "integrator/motion.h"
+
+#include <string.h>
+
+static size_t count(const se3di_equations *equations)
+{
+    return se3di_state_count(&equations->assembly);
+}
+
+static void get(se3di_equations *equations, double *y)
+{
+    se3di_state_get(&equations->assembly, y);
+}
+
+static void set(se3di_equations *equations, const double *y)
+{
+    se3di_state_set(&equations->assembly, y);
+}
+
+static se3d_status derive(se3di_equations *equations, double t, const double *l, double *derivative)
+{
+    return se3di_state_derivative(&equations->assembly, t, equations->x, l, derivative);
+}
+
+static se3d_status evaluate(se3di_equations *equations, double t, double *derivative)
+{
+    SE3DI_TRY(se3di_state_evaluate(equations, t));
+    return derive(equations, t, equations->l, derivative);
+}
+
+/* Changes and rates are those of the bodies already. */
+static const double *pass(se3di_equations *equations, const double *y, double *out)
+{
+    (void)equations, (void)out;
+    return y;
+}
+
+static void show(se3di_equations *equations, const double *y, double *bodies)
+{
+    memcpy(bodies, y, se3di_state_count(&equations->assembly) * sizeof *y);
+}
+
+static double count_dependent(const se3di_equations *equations)
+{
+    return se3di_kkt_get_dependent_rows(equations->kkt);
+}
+
+const se3di_motion se3di_motion_bodies = {
+    .count = count,
+    .get = get,
+    .set = set,
+    .get_rates = pass,
+    .evaluate = evaluate,
+    .derive = derive,
+    .spread = pass,
+    .project = se3di_state_project,
+    .keep = get,
+    .show = show,
+    .count_dependent = count_dependent,
+};
+
+const se3di_motion *se3di_motion_find(const se3di_equations *equations)
+{
+    return equations->tree && equations->assembly.model->left_out_count == 0 ? &se3di_motion_joints
+                                                                             : &se3di_motion_bodies;
+}

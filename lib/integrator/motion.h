@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What explicit methods integrate: the state as a vector y with y' = f(t, y), its three last
+ * numbers the works. Behind one table:
+ *
+ *     bodies   y = (r, p, v, w) of every free body, see state.h; projected after every step
+ *     joints   y = (q, qdot) of the tree (tree/tree.h); on it constraints hold by themselves
+ *
+ * Whatever the state, force elements, events and outputs see the frames of the model. */
+#ifndef SE3DI_MOTION_H
+#define SE3DI_MOTION_H
+
+#include "integrator/state.h"
+
+typedef struct se3di_motion {
+    /* Numbers of a state, at most se3di_state_count. */
+    size_t (*count)(const se3di_equations *equations);
+    /* The state of the model. */
+    void (*get)(se3di_equations *equations, double *y);
+    /* y becomes the state of the model's frames; what follows is evaluated there. */
+    void (*set)(se3di_equations *equations, const double *y);
+    /* y' of the state that was set last in the places of state.h, (a, wdot) at least; `out`
+     * [se3di_state_count] may not be needed. */
+    const double *(*get_rates)(se3di_equations *equations, const double *derivative, double *out);
+    /* y' at t of the state that was set last. */
+    se3d_status (*evaluate)(se3di_equations *equations, double t, double *derivative);
+    /* The same from accelerations in equations->x and multipliers l [rows]. */
+    se3d_status (*derive)(se3di_equations *equations, double t, const double *l,
+                          double *derivative);
+    /* What a small change of y, at the state that was set last, is for the bodies: (dr, turn / 2
+     * as of p, dv, dw) in the places of state.h; `out` [se3di_state_count] may not be needed. */
+    const double *(*spread)(se3di_equations *equations, const double *change, double *out);
+    /* The state that was set onto its constraints at t, see se3di_state_project. */
+    se3d_status (*project)(se3di_equations *equations, double t, const se3di_state_scale *scale,
+                           double accuracy, int is_factored);
+    /* That state as a vector: all but the works. */
+    void (*keep)(se3di_equations *equations, double *y);
+    /* y in the places of state.h; the model is left alone. */
+    void (*show)(se3di_equations *equations, const double *y, double *bodies);
+    /* Rows that were dependent in the last evaluation. */
+    double (*count_dependent)(const se3di_equations *equations);
+} se3di_motion;
+
+extern const se3di_motion se3di_motion_bodies, se3di_motion_joints;
+
+/* Of the model as it is: joints if the formulation has a tree and no row is left out of it. */
+const se3di_motion *se3di_motion_find(const se3di_equations *equations);
+
+#endif

@@ -1,0 +1,420 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The state of explicit methods in joint coordinates: y = (q, qdot) and the works.
+ *
+ * qddot comes from articulated bodies; with loops, or friction that needs the loads of joints, from
+ * the equations of the bodies, which have all rows: it is what these accelerations are at the
+ * joints,
+ *
+ *     S qddot = (alpha, a) - (alpha_p, a_p + alpha_p x d) - c    least squares, exact on the tree
+ *
+ * Only loops need projection.  docs/theory/joint_coordinates.md */
+#include "integrator/motion.h"
+
+#include "assembly/energy.h"
+#include "math/quaternion.h"
+#include "math/vec3.h"
+#include "tree/core.h"
+#include "tree/loops.h"
+#include "tree/recursion.h"
+
+#include <math.h>
+#include <string.h>
+
+#define FREEDOMS_MAX 6
+#define TURN         6.283185307179586
+
+static size_t count(const se3di_equations *equations)
+{
+    const se3di_tree *tree = equations->tree;
+    return (size_t)tree->q_count + tree->v_count + SE3DI_STATE_WORK;
+}
+
+/* The quaternion in the positions of a node, NULL: it has none. */
+static double *quaternion_of(const se3di_tree_node *node, double *q)
+{
+    return node->type == SE3DI_TREE_FREE        ? q + node->q + 3
+           : node->type == SE3DI_TREE_SPHERICAL ? q + node->q
+                                                : NULL;
+}
+
+static void normalise(const se3di_tree *tree, double *q)
+{
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        double *p = quaternion_of(&tree->nodes[k], q);
+        if (p) {
+            se3di_quat_normalize(p, p);
+        }
+    }
+}
+
+/* tree->q, tree->qdot and the links are the state that was set last. */
+static void place(se3di_equations *equations)
+{
+    se3di_tree *tree = equations->tree;
+    se3di_tree_place(tree, tree->q, tree->qdot, equations->assembly.model->frames);
+}
+
+static void set(se3di_equations *equations, const double *y)
+{
+    se3di_tree *tree = equations->tree;
+    memcpy(tree->q, y, tree->q_count * sizeof *y);
+    memcpy(tree->qdot, y + tree->q_count, tree->v_count * sizeof *y);
+    normalise(tree, tree->q);
+    place(equations);
+}
+
+static void keep(se3di_equations *equations, double *y)
+{
+    const se3di_tree *tree = equations->tree;
+    memcpy(y, tree->q, tree->q_count * sizeof *y);
+    memcpy(y + tree->q_count, tree->qdot, tree->v_count * sizeof *y);
+}
+
+static void get(se3di_equations *equations, double *y)
+{
+    se3di_tree *tree = equations->tree;
+    const se3di_model *model = equations->assembly.model;
+    se3di_tree_get(tree, tree->q, tree->qdot);
+    normalise(tree, tree->q);
+    se3di_tree_place(tree, tree->q, tree->qdot, tree->frames);
+    keep(equations, y);
+    memcpy(y + tree->q_count + tree->v_count, model->work, sizeof model->work);
+}
+
+/* Of a body: a (ground), wdot (body), from those of its node's point. */
+static void body_acceleration(const se3di_tree_link *link, const se3di_frame *frame, double *out)
+{
+    double turning[3], x[3];
+    se3di_cross(link->a, link->s, x);
+    se3di_add(link->a + 3, x, out);
+    se3di_cross(link->w, link->s, turning);
+    se3di_cross(link->w, turning, x);
+    se3di_add(out, x, out);
+    se3di_mul_transposed(frame->A, link->a, out + 3);
+}
+
+static const double *get_rates(se3di_equations *equations, const double *derivative, double *out)
+{
+    se3di_tree *tree = equations->tree;
+    const se3di_assembly *assembly = &equations->assembly;
+    se3di_tree_propagate(tree, derivative + tree->q_count);
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const uint32_t body = tree->nodes[k].body;
+        body_acceleration(&tree->links[k], &assembly->model->frames[body],
+                          out + SE3DI_STATE_SIZE * (size_t)assembly->free_index[body] + 7);
+    }
+    return out;
+}
+
+/* Rates of positions and works beside the accelerations. */
+static se3d_status complete(se3di_equations *equations, double t, const double *l,
+                            double *derivative)
+{
+    const se3di_tree *tree = equations->tree;
+    se3di_tree_rates(tree, tree->q, tree->qdot, derivative);
+    return se3di_state_powers(&equations->assembly, t, l,
+                              derivative + tree->q_count + tree->v_count);
+}
+
+/* ---- accelerations of bodies -> joints ---- */
+
+/* Of a node's point: angular, linear. */
+static void point_acceleration(const se3di_tree_link *link, const se3di_frame *frame,
+                               const double acceleration[6], double a[6])
+{
+    double turning[3], x[3];
+    se3di_mul(frame->A, acceleration + 3, a);
+    se3di_cross(a, link->s, x);
+    se3di_sub(acceleration, x, a + 3);
+    se3di_cross(link->w, link->s, turning);
+    se3di_cross(link->w, turning, x);
+    se3di_sub(a + 3, x, a + 3);
+}
+
+/* The part of a node's acceleration that its own freedoms make. */
+static void own_acceleration(const se3di_tree *tree, const se3di_tree_node *node, double own[6])
+{
+    const se3di_tree_link *link = &tree->links[node - tree->nodes];
+    double x[3];
+    for (int k = 0; k < 6; ++k) {
+        own[k] = link->a[k] - link->c[k];
+    }
+    if (node->parent >= 0) {
+        const double *a = tree->links[node->parent].a;
+        se3di_cross(a, link->d, x);
+        for (int k = 0; k < 3; ++k) {
+            own[k] -= a[k];
+            own[3 + k] -= a[3 + k] + x[k];
+        }
+    }
+}
+
+/* x: G x = x with G symmetric and positive [n * n], by Cholesky; G is overwritten. */
+static void solve_small(int n, double *G, double *x)
+{
+    for (int r = 0; r < n; ++r) {
+        for (int c = 0; c <= r; ++c) {
+            double sum = G[n * r + c];
+            for (int k = 0; k < c; ++k) {
+                sum -= G[n * r + k] * G[n * c + k];
+            }
+            G[n * r + c] = c < r ? sum / G[n * c + c] : sqrt(sum);
+        }
+        for (int k = 0; k < r; ++k) {
+            x[r] -= G[n * r + k] * x[k];
+        }
+        x[r] /= G[n * r + r];
+    }
+    for (int r = n - 1; r >= 0; --r) {
+        for (int k = r + 1; k < n; ++k) {
+            x[r] -= G[n * k + r] * x[k];
+        }
+        x[r] /= G[n * r + r];
+    }
+}
+
+static void fit(const double *S, int n, const double own[6], double *qddot)
+{
+    double G[FREEDOMS_MAX * FREEDOMS_MAX];
+    for (int r = 0; r < n; ++r) {
+        qddot[r] = 0.0;
+        for (int k = 0; k < 6; ++k) {
+            qddot[r] += S[6 * r + k] * own[k];
+        }
+        for (int c = 0; c <= r; ++c) {
+            G[n * r + c] = 0.0;
+            for (int k = 0; k < 6; ++k) {
+                G[n * r + c] += S[6 * r + k] * S[6 * c + k];
+            }
+        }
+    }
+    solve_small(n, G, qddot);
+}
+
+static se3d_status derive(se3di_equations *equations, double t, const double *l, double *derivative)
+{
+    se3di_tree *tree = equations->tree;
+    const se3di_assembly *assembly = &equations->assembly;
+    const se3di_frame *frames = assembly->model->frames;
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const se3di_tree_node *node = &tree->nodes[k];
+        const double *x = equations->x + 6 * (size_t)assembly->free_index[node->body];
+        double own[6];
+        point_acceleration(&tree->links[k], &frames[node->body], x, tree->links[k].a);
+        own_acceleration(tree, node, own);
+        fit(tree->S + 6 * (size_t)node->v, node->v_count, own,
+            derivative + tree->q_count + node->v);
+    }
+    return complete(equations, t, l, derivative);
+}
+
+/* ---- evaluation ---- */
+
+/* Nothing but the tree constrains the motion, and nothing that acts depends on multipliers. */
+static int is_open(const se3di_equations *equations)
+{
+    return equations->is_open_tree;
+}
+
+/* There are rows besides those of the tree, or friction needs the loads of joints. */
+static int is_loaded(const se3di_equations *equations)
+{
+    return equations->has_loops || equations->friction.count > 0;
+}
+
+static se3d_status solve_tree(se3di_tree *tree, double *qddot)
+{
+    SE3DI_TRY(se3di_tree_factor(tree, NULL));
+    se3di_tree_accelerate(tree, tree->e, qddot);
+    return SE3D_OK;
+}
+
+/* Multipliers of all rows into equations->l, if drivers have a power. */
+static const double *find_multipliers(se3di_equations *equations)
+{
+    const se3di_tree *tree = equations->tree;
+    if (equations->assembly.timed_count == 0) {
+        return NULL;
+    }
+    tree->core->transmit(tree, tree->wrench, equations->joint_moves);
+    se3di_tree_multipliers(tree, equations->joint_moves, NULL, equations->l);
+    return equations->l;
+}
+
+static se3d_status evaluate_tree(se3di_equations *equations, double t, double *derivative)
+{
+    se3di_tree *tree = equations->tree;
+    se3di_assembly *assembly = &equations->assembly;
+    double *qddot = derivative + tree->q_count;
+    if (!is_open(equations)) {
+        SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+        se3di_tree_take_given(tree, assembly);
+    }
+    SE3DI_TRY(se3di_assembly_eval_wrenches(assembly, t, equations->error));
+    se3di_tree_take_wrenches(tree, assembly->model->frames, assembly->wrench);
+    ++equations->counters.evaluations;
+    se3d_status status = solve_tree(tree, qddot);
+    for (uint32_t k = 0; k < tree->v_count && status >= 0; ++k) {
+        status = isfinite(qddot[k]) ? status : SE3D_ERR_NOT_FINITE;
+    }
+    if (status < 0) {
+        return se3di_error_set(equations->error, status,
+                               "t = %g s: the equations are singular or not finite", t);
+    }
+    return complete(equations, t, find_multipliers(equations), derivative);
+}
+
+static se3d_status evaluate(se3di_equations *equations, double t, double *derivative)
+{
+    if (!is_loaded(equations)) {
+        return evaluate_tree(equations, t, derivative);
+    }
+    SE3DI_TRY(se3di_state_evaluate(equations, t));
+    return derive(equations, t, equations->l, derivative);
+}
+
+/* ---- projection ---- */
+
+/* Angles and quaternions continue those before: what is interpolated between must not jump. */
+static void continue_turns(const se3di_tree *tree, double *q, double *before)
+{
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const se3di_tree_node *node = &tree->nodes[k];
+        double *p = quaternion_of(node, q), *old = quaternion_of(node, before);
+        if (p && p[0] * old[0] + p[1] * old[1] + p[2] * old[2] + p[3] * old[3] < 0.0) {
+            for (int c = 0; c < 4; ++c) {
+                p[c] = -p[c];
+            }
+        }
+        for (int c = 0; node->type == SE3DI_TREE_UNIVERSAL && c < 2; ++c) {
+            q[node->q + (uint32_t)c] +=
+                TURN * nearbyint((before[node->q + (uint32_t)c] - q[node->q + (uint32_t)c]) / TURN);
+        }
+    }
+}
+
+static se3d_status project(se3di_equations *equations, double t, const se3di_state_scale *scale,
+                           double accuracy, int is_factored)
+{
+    se3di_tree *tree = equations->tree;
+    if (is_open(equations)) {
+        return SE3D_OK;
+    }
+    const int serves = is_factored && is_loaded(equations); /* the bodies' equations */
+    SE3DI_TRY(se3di_state_project(equations, t, scale, accuracy, serves));
+    double *before = equations->joint_before;
+    memcpy(before, tree->q, tree->q_count * sizeof *before);
+    se3di_tree_get(tree, tree->q, tree->qdot);
+    normalise(tree, tree->q);
+    continue_turns(tree, tree->q, before);
+    place(equations);
+    return SE3D_OK;
+}
+
+/* ---- what a change is for the bodies ---- */
+
+/* A change of positions as one along the freedoms: turns of quaternions in the child's frame. */
+static void make_displacement(const se3di_tree_node *node, const double *q, const double *change,
+                              double dq[FREEDOMS_MAX])
+{
+    const int has_way = node->type == SE3DI_TREE_FREE;
+    if (!has_way && node->type != SE3DI_TREE_SPHERICAL) {
+        memcpy(dq, change + node->q, (size_t)node->v_count * sizeof *dq);
+        return;
+    }
+    const size_t at = node->q + (has_way ? 3u : 0u);
+    if (has_way) {
+        se3di_copy(change + node->q, dq);
+    }
+    se3di_g_mul(q + at, change + at, dq + (has_way ? 3 : 0));
+    se3di_scale(2.0, dq + (has_way ? 3 : 0), dq + (has_way ? 3 : 0));
+}
+
+/* (turn, way of the point) of a node that moves by dq on a parent that moves by `parent`. */
+static void carry(const double *S, int n, const double d[3], const double *dq, const double *parent,
+                  double out[6])
+{
+    double x[3] = {0.0, 0.0, 0.0};
+    if (parent) {
+        se3di_cross(parent, d, x);
+    }
+    for (int k = 0; k < 3; ++k) {
+        out[k] = parent ? parent[k] : 0.0;
+        out[3 + k] = parent ? parent[3 + k] + x[k] : 0.0;
+    }
+    for (int c = 0; c < n; ++c) {
+        for (int k = 0; k < 6; ++k) {
+            out[k] += dq[c] * S[6 * c + k];
+        }
+    }
+}
+
+/* Half a turn, or a turn: `turn` times it, to p or w; the way of the centre of mass to r or v. */
+static void put(const double motion[6], const double s[3], double turn, double *way, double *angle)
+{
+    double x[3];
+    se3di_cross(motion, s, x);
+    se3di_add(motion + 3, x, way);
+    se3di_scale(turn, motion, angle);
+}
+
+/* The rate of a change is taken in the frames that move with it: the difference is a turn of the
+ * velocities, which the turn itself measures as much. */
+static const double *spread(se3di_equations *equations, const double *change, double *out)
+{
+    const se3di_tree *tree = equations->tree;
+    const se3di_assembly *assembly = &equations->assembly;
+    double(*way)[6] = (double(*)[6])(void *)equations->joint_moves, (*rate)[6] = way + tree->count;
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const se3di_tree_node *node = &tree->nodes[k];
+        const se3di_tree_link *link = &tree->links[k];
+        const double *S = tree->S + 6 * (size_t)node->v;
+        const size_t p = node->parent >= 0 ? (size_t)node->parent : 0;
+        const int is_rooted = node->parent < 0;
+        double *to = out + SE3DI_STATE_SIZE * (size_t)assembly->free_index[node->body];
+        double dq[FREEDOMS_MAX];
+        make_displacement(node, tree->q, change, dq);
+        carry(S, node->v_count, link->d, dq, is_rooted ? NULL : way[p], way[k]);
+        carry(S, node->v_count, link->d, change + tree->q_count + node->v,
+              is_rooted ? NULL : rate[p], rate[k]);
+        put(way[k], link->s, 0.5, to, to + 3);
+        to[6] = 0.0;
+        put(rate[k], link->s, 1.0, to + 7, to + 10);
+    }
+    memcpy(out + se3di_state_count(assembly) - SE3DI_STATE_WORK,
+           change + tree->q_count + tree->v_count, SE3DI_STATE_WORK * sizeof *out);
+    return out;
+}
+
+static void show(se3di_equations *equations, const double *y, double *bodies)
+{
+    se3di_tree *tree = equations->tree;
+    const se3di_assembly *assembly = &equations->assembly;
+    memcpy(tree->q, y, tree->q_count * sizeof *y);
+    memcpy(tree->qdot, y + tree->q_count, tree->v_count * sizeof *y);
+    normalise(tree, tree->q);
+    se3di_tree_place(tree, tree->q, tree->qdot, tree->frames);
+    for (uint32_t k = 0; k < assembly->body_count; ++k, bodies += SE3DI_STATE_SIZE) {
+        se3di_state_pack(&tree->frames[assembly->free_body[k]], bodies);
+    }
+    memcpy(bodies, y + tree->q_count + tree->v_count, SE3DI_STATE_WORK * sizeof *bodies);
+}
+
+static double count_dependent(const se3di_equations *equations)
+{
+    return is_loaded(equations) ? se3di_kkt_get_dependent_rows(equations->kkt) : 0.0;
+}
+
+const se3di_motion se3di_motion_joints = {
+    .count = count,
+    .get = get,
+    .set = set,
+    .get_rates = get_rates,
+    .evaluate = evaluate,
+    .derive = derive,
+    .spread = spread,
+    .project = project,
+    .keep = keep,
+    .show = show,
+    .count_dependent = count_dependent,
+};
