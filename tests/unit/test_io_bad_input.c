@@ -247,6 +247,7 @@ static const bad_input table[] = {
     /* joints */
     {"se3d: 1\n" BAR "joints: [{type: hinge}]\n", 3, 17, {"`hinge` is not supported", "revolute"}},
     {"se3d: 1\n" BAR "joints: [{type: revolut}]\n", 3, 17, {"did you mean `revolute`"}},
+    {"se3d: 1\n" BAR "joints: [{type: ' '}]\n", 3, 17, {"` ` is not supported, allowed are"}},
     {"se3d: 1\n" BAR "joints: [{name: a}]\n", 3, 10, {"joints[0].type: is missing"}},
     {"se3d: 1\n" BAR "joints: [{type: revolute, body_i: ground, body_j: baz, at: [0,0,0]}]\n",
      3,
@@ -688,6 +689,38 @@ static void all_mistakes_of_a_draft_are_reported(void)
     CHECK_CONTAINS(m.text, error.message);
 }
 
+/* The same words do not make two mistakes one. */
+static void equal_mistakes_of_different_things_are_all_reported(void)
+{
+    static const char text[] = "se3d: 1\n"
+                               "bodies:\n"
+                               "  - {name: a, fixed: true}\n"
+                               "  - {fixed: true}\n"
+                               "  - {fixed: true}\n"
+                               "  - {name: b, fixed: true, position: [w, w, w]}\n";
+    se3d_model_error error;
+    const mistakes m = find_mistakes(text, &error);
+    CHECK_CONTAINS(m.text, ":4:5: bodies[1].name: is missing");
+    CHECK_CONTAINS(m.text, ":5:5: bodies[2].name: is missing");
+    CHECK_CONTAINS(m.text, ":6:39: bodies[3].position[0]: `w`");
+    CHECK(m.count == 3);
+}
+
+/* An expression that is cut at a comma has two halves, not any number of them. */
+static void halves_of_an_expression_are_taken_out_with_each_other_only(void)
+{
+    static const char text[] =
+        "se3d: 1\n"
+        "bodies: [{name: \"a(\", fixed: true}]\n"
+        "output:\n"
+        "  - {file: o.csv, channels: [\"a(.position\", \"a(.foo\", \"x)\", \"y)\"]}\n";
+    se3d_model_error error;
+    const mistakes m = find_mistakes(text, &error);
+    CHECK_CONTAINS(m.text, "`a(` has no channel `foo`");
+    CHECK_CONTAINS(m.text, "channels[3]");
+    CHECK(m.count == 2);
+}
+
 static void a_report_ends_at_the_largest_number(void)
 {
     char text[4096] = "se3d: 1\nbodies:\n";
@@ -751,6 +784,8 @@ int main(void)
     RUN(every_bad_model_is_rejected_with_place_and_reason);
     RUN(every_mistake_is_reported_once);
     RUN(all_mistakes_of_a_draft_are_reported);
+    RUN(equal_mistakes_of_different_things_are_all_reported);
+    RUN(halves_of_an_expression_are_taken_out_with_each_other_only);
     RUN(a_report_ends_at_the_largest_number);
     RUN(options_are_checked_like_the_file);
     RUN(missing_arguments_are_named);

@@ -80,7 +80,7 @@ static bool is_synonym(const char *word, const char *candidate)
 {
     const size_t nw = strlen(word);
     const size_t nc = strlen(candidate);
-    for (const char *at = synonyms; nw > 0 && (at = strstr(at, word)) != NULL; ++at) {
+    for (const char *at = synonyms + 1; nw > 0 && (at = strstr(at, word)) != NULL; ++at) {
         if (at[-1] == ' ' && at[nw] == '=' && strncmp(at + nw + 1, candidate, nc) == 0 &&
             at[nw + 1 + nc] == ' ') {
             return true;

@@ -111,15 +111,21 @@ static const char *part_of(const se3di_node *node, bool begins)
     return begins ? open && !close ? text : NULL : close && !open ? text : NULL;
 }
 
-static bool take_out(se3di_recovery *recovery, se3di_node *node)
+static se3di_node *find_before(const se3di_node *node)
+{
+    se3di_node *before = NULL;
+    for (se3di_node *child = node->parent->first; child != node; child = child->next) {
+        before = child;
+    }
+    return before;
+}
+
+static bool take_out_alone(se3di_recovery *recovery, const se3di_node *node)
 {
     se3di_node *parent = node->parent;
-    se3di_node *before = NULL;
+    se3di_node *before = find_before(node);
     if (is_foundation(recovery, node) || !note_names(recovery, node)) {
         return false;
-    }
-    for (se3di_node *child = parent->first; child != node; child = child->next) {
-        before = child;
     }
     if (before) {
         before->next = node->next;
@@ -129,10 +135,20 @@ static bool take_out(se3di_recovery *recovery, se3di_node *node)
     parent->last = parent->last == node ? before : parent->last;
     --parent->count;
     mark_incomplete(recovery, node);
+    return true;
+}
+
+/* With the other half of an expression that was cut at a comma. */
+static bool take_out(se3di_recovery *recovery, const se3di_node *node)
+{
+    const se3di_node *half = NULL;
     if (part_of(node, true) && part_of(node->next, false)) {
-        return take_out(recovery, node->next);
+        half = node->next;
+    } else if (part_of(node, false)) {
+        const se3di_node *before = find_before(node);
+        half = part_of(before, true) ? before : NULL;
     }
-    return !part_of(node, false) || !part_of(before, true) || take_out(recovery, before);
+    return take_out_alone(recovery, node) && (!half || take_out_alone(recovery, half));
 }
 
 /* Put what was meant in its place. */

@@ -33,12 +33,17 @@ static const char *find_text(const char *message)
     return text ? text : message;
 }
 
-/* Whether the same was said of another part of the same thing. */
+/* Whether the same was said of another part of the same thing. Things of a list are no parts: they
+ * have mistakes of their own. */
 static bool is_repeated(const search *s, const se3d_model_error *error, const se3di_fault *fault)
 {
-    for (size_t k = 0; fault->node && k < s->count; ++k) {
-        if (s->parents[k] == fault->node->parent &&
-            strcmp(find_text(s->list[k].message), find_text(error->message)) == 0) {
+    const se3di_node *node = fault->node;
+    const char *text = find_text(error->message);
+    if (!node || node->kind == SE3DI_NODE_MAP) {
+        return false;
+    }
+    for (size_t k = 0; k < s->count; ++k) {
+        if (s->parents[k] == node->parent && strcmp(find_text(s->list[k].message), text) == 0) {
             return true;
         }
     }
