@@ -175,6 +175,18 @@ has "$dir/err" ':3:17: joints[0].type: the joint type `hinge` is not supported, 
 has "$dir/err" '       |                 ^'
 has "$dir/err" '4 mistakes'
 has "$dir/out" '"mistakes": [{"line": 2, "column": 42, "message": '
+printf '\357\273\277se3d: 2\n' >"$dir/worse.yaml"
+expect 'a mark of the byte order' 2 "$program" check "$dir/worse.yaml"
+has "$dir/err" '     1 | se3d: 2'
+printf 'se3d: 1\r# other\302\205# ends\342\200\250bodies: [{name: a, mass: foo}]\r\n' >"$dir/worse.yaml"
+expect 'other ends of lines' 2 "$program" check "$dir/worse.yaml"
+has "$dir/err" ':4:26: bodies[0].mass: '
+has "$dir/err" '     4 | bodies: [{name: a, mass: foo}]'
+if mkfifo "$dir/pipe" 2>/dev/null; then
+    cat "$dir/worse.yaml" >"$dir/pipe" &
+    expect 'a pipe, which is read once' 2 "$program" check "$dir/pipe"
+    has "$dir/err" ':4:26: bodies[0].mass: '
+fi
 
 # From t = 0.95 s on the constraint asks for more than the rod can reach.
 cat >"$dir/reach.yaml" <<'END'

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Reading a model: its mistakes with the lines they are on. */
-#include <inttypes.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "file.h"
 #include "options.h"
 #include "text.h"
 
@@ -22,22 +23,42 @@ static void keep(void *ctx, const se3d_model_error *error)
     }
 }
 
+/* The rest of a line, which ends as lines of YAML do, with blanks for tabs. @return whether there
+ * was one. */
+static int read_line(FILE *file, char *text)
+{
+    size_t length = 0;
+    uint32_t last = 0; /* three bytes */
+    int c = 0;
+    while ((c = fgetc(file)) != EOF && c != '\n' && c != '\r') {
+        last = (last << 8 | (uint32_t)c) & 0xFFFFFF;
+        if (length + 1 < LINE_MAX) {
+            text[length++] = (char)(c == '\t' ? ' ' : c);
+        }
+        if ((last & 0xFFFF) == 0xC285 || last == 0xE280A8 || last == 0xE280A9) {
+            break; /* U+0085, U+2028, U+2029 */
+        }
+    }
+    text[length] = '\0';
+    const int next = c == '\r' ? fgetc(file) : '\n';
+    if (next != '\n') {
+        ungetc(next, file);
+    }
+    return c != EOF || length > 0;
+}
+
 /* Read on to a line of the file, counted in *at. @return whether it is there. */
 static int find_line(FILE *file, size_t line, size_t *at, char *text)
 {
+    static const char mark[] = "\xEF\xBB\xBF"; /* of the byte order: no character of the line */
+    const size_t size = sizeof mark - 1;
     while (*at < line) {
-        size_t length = 0;
-        int c = 0;
-        while ((c = fgetc(file)) != EOF && c != '\n') {
-            if (length + 1 < LINE_MAX) {
-                text[length++] = (char)(c == '\t' || c == '\r' ? ' ' : c);
-            }
-        }
-        text[length] = '\0';
-        if (c == EOF && length == 0) {
+        if (!read_line(file, text)) {
             return 0;
         }
-        ++*at;
+        if ((*at)++ == 0 && strncmp(text, mark, size) == 0) {
+            memmove(text, text + size, strlen(text + size) + 1);
+        }
     }
     return 1;
 }
@@ -71,7 +92,7 @@ static void show(const options *o, const mistakes *m)
 {
     char line[LINE_MAX];
     size_t at = 0;
-    FILE *file = fopen(o->model, "rb");
+    FILE *file = se3di_file_open(o->model); /* what is no regular file cannot be read twice */
     for (size_t k = 0; k < m->count; ++k) {
         const se3d_model_error *error = &m->list[k];
         fprintf(stderr, "%s\n", error->message);
