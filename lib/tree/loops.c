@@ -5,7 +5,11 @@
 #include "math/vec3.h"
 #include "tree/recursion.h"
 
+#include <math.h>
 #include <string.h>
+
+/* Less than this part of what it comes from is rounding, and what poses leave of the equations. */
+#define NOISE 1e-9
 
 typedef struct loops_array {
     void **data;
@@ -13,7 +17,7 @@ typedef struct loops_array {
 } loops_array;
 
 #define LOOPS_STRUCTURE 9
-#define LOOPS_VALUES    10
+#define LOOPS_VALUES    12
 
 static void list_structure(se3di_tree_loops *l, loops_array list[LOOPS_STRUCTURE])
 {
@@ -46,6 +50,8 @@ static void list_values(se3di_tree_loops *l, loops_array list[LOOPS_VALUES])
         {(void **)&l->H, v, size},
         {(void **)&l->b, v, size},
         {(void **)&l->K, l->scratch_count, size},
+        {(void **)&l->size, l->scratch_count / 3, size},
+        {(void **)&l->noise, v, size},
     };
     memcpy(list, arrays, sizeof arrays);
 }
@@ -245,6 +251,21 @@ static void row_to_link(const se3di_tree_link *link, const double A[9], const do
     se3di_copy(row, K + 3);
 }
 
+/* The sizes of the two halves of a row before its parts cancel: rounding is relative to them. */
+static void add_sizes(const double K[6], double factor, double size[2])
+{
+    size[0] += factor * se3di_norm(K);
+    size[1] += factor * se3di_norm(K + 3);
+}
+
+/* The same of a row of a body, as row_to_link takes it. */
+static void add_row_sizes(const se3di_tree_link *link, const double row[6], double size[2])
+{
+    const double force = se3di_norm(row);
+    size[0] += se3di_norm(link->s) * force + se3di_norm(row + 3);
+    size[1] += force;
+}
+
 /* Rows of a loop on its bodies into K; from `c` what the centre of mass has on its own. */
 static void load_rows(se3di_tree_loops *loops, uint32_t loop, double *c)
 {
@@ -255,6 +276,7 @@ static void load_rows(se3di_tree_loops *loops, uint32_t loop, double *c)
     const int32_t *nodes = loops->path_node + loops->path_begin[loop];
     const size_t count = (size_t)(loops->path_begin[loop + 1] - loops->path_begin[loop]);
     memset(loops->K, 0, 6 * (size_t)rows * count * sizeof *loops->K);
+    memset(loops->size, 0, 2 * (size_t)rows * count * sizeof *loops->size);
     for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
         const uint32_t body = a->free_body[a->joint_body[k]];
         const int32_t node = tree->node_of[body];
@@ -268,8 +290,10 @@ static void load_rows(se3di_tree_loops *loops, uint32_t loop, double *c)
         se3di_cross(link->w, x, turning);
         for (int32_t r = 0; r < rows; ++r) {
             const double *row = a->C + a->block_offset[k] + 6 * (size_t)r;
-            double K[6], *to = loops->K + 6 * (place * (size_t)rows + (size_t)r);
+            const size_t at = place * (size_t)rows + (size_t)r;
+            double K[6], *to = loops->K + 6 * at;
             row_to_link(link, tree->model->frames[body].A, row, K);
+            add_row_sizes(link, row, loops->size + 2 * at);
             for (int i = 0; i < 6; ++i) {
                 to[i] += K[i];
             }
@@ -278,20 +302,31 @@ static void load_rows(se3di_tree_loops *loops, uint32_t loop, double *c)
     }
 }
 
+/* y = K . S, exactly zero if it is rounding: a row that the tree implies is empty, and no equation
+ * is made of what is left of it. */
+static double without_noise(double y, const double s[6], const double size[2])
+{
+    double parts[2] = {0.0, 0.0};
+    add_sizes(s, 1.0, parts);
+    return fabs(y) <= NOISE * (parts[0] * size[0] + parts[1] * size[1]) ? 0.0 : y;
+}
+
 /* What a node's freedoms and its bias take from a row; the rest K is its parent's. */
-static void pass_row(const se3di_tree *tree, int32_t node, double *K, double *Y, int32_t stride,
-                     double *c)
+static void pass_row(const se3di_tree *tree, int32_t node, double *K, double *size, double *Y,
+                     int32_t stride, double *c)
 {
     const se3di_tree_node *n = &tree->nodes[node];
     double bias[6];
     for (int32_t j = freedoms_of(n) - 1; j >= 0; --j) {
         const size_t v = n->v + (size_t)j;
         const double *s = tree->S + 6 * v, *U = tree->U + 6 * v;
-        const double y = se3di_dot(K, s) + se3di_dot(K + 3, s + 3), rate = y / tree->D[v];
+        const double y = without_noise(se3di_dot(K, s) + se3di_dot(K + 3, s + 3), s, size);
+        const double rate = y / tree->D[v];
         Y[j * stride] = y;
         for (int i = 0; i < 6; ++i) {
             K[i] -= U[i] * rate;
         }
+        add_sizes(U, fabs(rate), size);
     }
     se3di_tree_bias(tree, (uint32_t)node, bias);
     *c -= se3di_dot(K, bias) + se3di_dot(K + 3, bias + 3);
@@ -306,11 +341,15 @@ static void carry_down(se3di_tree_loops *loops, uint32_t loop, double *Y, double
         const int32_t node = loops->path_node[p], parent = loops->path_parent[p];
         const double *d = tree->links[node].d;
         for (int32_t r = 0; r < rows; ++r) {
-            double *K = loops->K + 6 * (size_t)((p - begin) * rows + r);
-            pass_row(tree, node, K, Y + r, rows, &c[r]);
+            const size_t at = (size_t)((p - begin) * rows + r);
+            double *K = loops->K + 6 * at, *size = loops->size + 2 * at;
+            pass_row(tree, node, K, size, Y + r, rows, &c[r]);
             if (parent >= 0) {
-                double *to = loops->K + 6 * (size_t)(parent * rows + r), x[3];
+                const size_t place = (size_t)(parent * rows + r);
+                double *to = loops->K + 6 * place, x[3];
                 se3di_cross(d, K + 3, x);
+                loops->size[2 * place] += size[0] + se3di_norm(d) * size[1];
+                loops->size[2 * place + 1] += size[1];
                 for (int i = 0; i < 3; ++i) {
                     to[i] += K[i] + x[i];
                     to[3 + i] += K[3 + i];
@@ -414,38 +453,54 @@ void se3di_tree_loops_add_wrenches(const se3di_tree_loops *loops, const double *
     }
 }
 
-/* Of the rows of a body: the freedoms between it and the ground. */
-static void add_jacobian(const se3di_tree *tree, uint32_t body, const double row[6], double *G)
+/* Of the rows of a body: the freedoms between it and the ground, and the rounding of each. */
+static void add_jacobian(const se3di_tree *tree, uint32_t body, const double row[6], double *G,
+                         double *noise)
 {
     int32_t node = tree->node_of[body];
-    double K[6];
+    double K[6], size[2] = {0.0, 0.0};
     row_to_link(&tree->links[node], tree->model->frames[body].A, row, K);
+    add_row_sizes(&tree->links[node], row, size);
     while (node >= 0) {
         const se3di_tree_node *n = &tree->nodes[node];
         double x[3];
         for (int32_t j = 0; j < n->v_count; ++j) {
             const double *s = tree->S + 6 * (n->v + (size_t)j);
+            double parts[2] = {0.0, 0.0};
+            add_sizes(s, 1.0, parts);
             G[n->v + (size_t)j] += se3di_dot(K, s) + se3di_dot(K + 3, s + 3);
+            noise[n->v + (size_t)j] += NOISE * (parts[0] * size[0] + parts[1] * size[1]);
         }
+        size[0] += se3di_norm(tree->links[node].d) * size[1];
         se3di_cross(tree->links[node].d, K + 3, x);
         se3di_add(K, x, K);
         node = n->parent;
     }
 }
 
-void se3di_tree_loops_jacobian(const se3di_tree_loops *loops, double *G)
+/* A row of a loop. */
+static void fill_jacobian(const se3di_tree_loops *loops, uint32_t loop, size_t row, double *G)
 {
     const se3di_assembly *a = loops->assembly;
     const size_t columns = loops->tree->v_count;
+    const uint32_t constraint = loops->constraints[loop];
+    memset(loops->noise, 0, columns * sizeof *loops->noise);
+    for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
+        add_jacobian(loops->tree, a->free_body[a->joint_body[k]],
+                     a->C + a->block_offset[k] + 6 * row, G, loops->noise);
+    }
+    for (size_t v = 0; v < columns; ++v) {
+        G[v] = fabs(G[v]) <= loops->noise[v] ? 0.0 : G[v];
+    }
+}
+
+void se3di_tree_loops_jacobian(const se3di_tree_loops *loops, double *G)
+{
+    const size_t columns = loops->tree->v_count;
     memset(G, 0, loops->row_count * columns * sizeof *G);
     for (uint32_t loop = 0; loop < loops->count; ++loop) {
-        const uint32_t constraint = loops->constraints[loop];
-        for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
-            for (int32_t r = 0; r < loops->rows[loop]; ++r) {
-                add_jacobian(loops->tree, a->free_body[a->joint_body[k]],
-                             a->C + a->block_offset[k] + 6 * (size_t)r,
-                             G + (loops->row_begin[loop] + (size_t)r) * columns);
-            }
+        for (size_t row = 0; row < (size_t)loops->rows[loop]; ++row) {
+            fill_jacobian(loops, loop, row, G + (loops->row_begin[loop] + row) * columns);
         }
     }
 }

@@ -40,7 +40,9 @@ typedef struct se3di_tree_loops {
     double *c, *target, *l; /* [rows of the loops] */
     double *y;              /* [velocities] */
     double *H, *b;          /* [velocities] */
-    double *K;              /* rows on the nodes of one path */
+    double *K;              /* rows on the nodes of one path, */
+    double *size;           /* and the sizes of their halves before parts cancel */
+    double *noise;          /* [velocities]: rounding of a row */
     int32_t *place_of;      /* [nodes]: scratch of the building */
 } se3di_tree_loops;
 

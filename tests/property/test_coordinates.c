@@ -296,6 +296,60 @@ static void accelerations_of_closed_loops_are_those_of_the_bodies(void)
     CHECK(tried > MECHANISMS / 2);
 }
 
+/* Each revolute and each ball of a world once more, where it is. @return how many */
+static int double_joints(se3d_system *system)
+{
+    const se3di_model *model = &system->model;
+    const size_t count = model->constraint_slots.count;
+    int added = 0;
+    for (size_t k = 0; k < count; ++k) {
+        const se3di_constraint *c = &model->constraints[k];
+        const int turns = strcmp(c->type, "revolute") == 0;
+        se3d_joint_def def = se3d_joint_def_default();
+        se3d_constraint joint;
+        if (!turns && strcmp(c->type, "spherical") != 0) {
+            continue;
+        }
+        CHECK(!se3d_system_get_body(system, c->bodies[0], &def.body_i));
+        CHECK(!se3d_system_get_body(system, c->bodies[1], &def.body_j));
+        se3di_copy(c->frames.point_i, def.point_i);
+        se3di_copy(c->frames.point_j, def.point_j);
+        se3di_copy(c->frames.axis_i, def.axis_i);
+        se3di_copy(c->frames.axis_j, def.axis_j);
+        CHECK(!(turns ? se3d_joint_create_revolute : se3d_joint_create_spherical)(system, &def,
+                                                                                  &joint));
+        ++added;
+    }
+    return added;
+}
+
+/* What is left of its rows on the tree is rounding, and no equation. */
+static void a_joint_that_is_there_twice_changes_nothing(void)
+{
+    static double N[SIZE * SIZE];
+    int tried = 0;
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        setting s;
+        double once[SIZE], twice[SIZE], scale = 1.0;
+        size_t freedoms;
+        begin(&s, seed, 0);
+        CHECK(!se3d_coordinates_compute_accelerations(s.c, NULL, once));
+        tried += double_joints(s.system) > 0;
+        se3d_coordinates_destroy(s.c);
+        CHECK(!se3d_coordinates_create(s.system, &s.c));
+        CHECK(se3d_coordinates_count(s.c) == s.n);
+        CHECK(!se3d_coordinates_compute_null_space(s.c, N, &freedoms));
+        CHECK(freedoms == s.n);
+        CHECK(se3d_coordinates_compute_accelerations(s.c, NULL, twice) >= 0);
+        for (size_t k = 0; k < s.n; ++k) {
+            scale = fmax(scale, fabs(once[k]));
+        }
+        CHECK_NEAR(difference(once, twice, s.n), 0.0, 1e-9 * scale);
+        end(&s);
+    }
+    CHECK(tried > MECHANISMS / 2);
+}
+
 static void every_velocity_has_its_joint_and_body(void)
 {
     for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
@@ -386,6 +440,7 @@ int main(void)
     RUN(gravity_is_the_bias_at_rest);
     RUN(the_null_space_is_what_loops_leave);
     RUN(accelerations_of_closed_loops_are_those_of_the_bodies);
+    RUN(a_joint_that_is_there_twice_changes_nothing);
     RUN(every_velocity_has_its_joint_and_body);
     RUN(calls_see_setters_and_leave_the_state_alone);
     RUN(what_is_made_once_allocates_no_more_and_is_given_back);
