@@ -76,7 +76,8 @@ SE3D_API se3d_status se3d_coordinates_get(se3d_coordinates *coordinates, double 
  * they are.
  * @param[in] q     [positions] [rad, m]
  * @param[in] qdot  [velocities] [rad/s, m/s]
- * @return OK, NULL, STATE, NOT_FINITE, INVALID_ARGUMENT (a quaternion of zero).
+ * @return OK, NULL, STATE, NOT_FINITE (also of what follows for the bodies), INVALID_ARGUMENT (a
+ * quaternion of zero, or too long); nothing is set then.
  * @since 0.1 */
 SE3D_API se3d_status se3d_coordinates_set(se3d_coordinates *coordinates, const double *q,
                                           const double *qdot);

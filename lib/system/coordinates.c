@@ -256,10 +256,29 @@ static se3d_status check_quaternions(const se3d_coordinates *c, const double *q)
     for (uint32_t k = 0; q && k < c->tree.count; ++k) {
         const se3di_tree_node *n = &c->tree.nodes[k];
         const size_t at = n->q + (n->type == SE3DI_TREE_FREE ? 3 : 0);
-        const int has = n->type == SE3DI_TREE_FREE || n->type == SE3DI_TREE_SPHERICAL;
-        if (has && !(fabs(q[at]) + fabs(q[at + 1]) + fabs(q[at + 2]) + fabs(q[at + 3]) > 1e-6)) {
+        if (n->type != SE3DI_TREE_FREE && n->type != SE3DI_TREE_SPHERICAL) {
+            continue;
+        }
+        const double *p = q + at;
+        const double norm = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+        if (!(norm > 1e-6 && norm < HUGE_VAL)) {
             return SE3DI_FAIL_OF(c->system, "q", SE3D_ERR_INVALID_ARGUMENT,
-                                 "[%zu] to [%zu] are a quaternion of zero", at, at + 3);
+                                 "[%zu] to [%zu] are a quaternion of length %g", at, at + 3, norm);
+        }
+    }
+    return SE3D_OK;
+}
+
+/* What large coordinates give is finite, too. */
+static se3d_status check_frames(const se3d_coordinates *c)
+{
+    for (uint32_t k = 0; k < c->tree.count; ++k) {
+        const se3di_frame *frame = &c->tree.frames[c->tree.nodes[k].body];
+        for (int i = 0; i < 3; ++i) {
+            if (!isfinite(frame->r[i]) || !isfinite(frame->v[i]) || !isfinite(frame->w[i])) {
+                return SE3DI_FAIL(c->system, SE3D_ERR_NOT_FINITE,
+                                  "the coordinates give a body no finite position or velocity");
+            }
         }
     }
     return SE3D_OK;
@@ -295,6 +314,8 @@ se3d_status se3d_coordinates_set(se3d_coordinates *coordinates, const double *q,
     if (qdot) {
         memcpy(c->qdot, qdot, c->velocities * sizeof *qdot);
     }
+    se3di_tree_place(&c->tree, c->q, c->qdot, c->tree.frames);
+    SE3DI_TRY(check_frames(c));
     se3di_tree_place(&c->tree, c->q, c->qdot, c->system->model.frames);
     set_turns(c, c->q);
     if (q) {

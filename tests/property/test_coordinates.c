@@ -350,6 +350,41 @@ static void a_joint_that_is_there_twice_changes_nothing(void)
     CHECK(tried > MECHANISMS / 2);
 }
 
+/* A quaternion that overflows, and velocities of bodies that do. */
+static void what_cannot_be_set_leaves_the_state_alone(void)
+{
+    int lengths = 0, rates = 0;
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        setting s;
+        double q[SIZE], qdot[SIZE];
+        begin(&s, seed, 0);
+        const uint64_t before = se3d_system_hash(s.system);
+        for (size_t k = 0; k < s.positions; ++k) {
+            q[k] = 1e200;
+        }
+        for (size_t k = 0; k < s.n; ++k) {
+            qdot[k] = 1.7e308;
+        }
+        const se3d_status length = se3d_coordinates_set(s.c, q, NULL);
+        const uint64_t after = se3d_system_hash(s.system);
+        const se3d_status rate = se3d_coordinates_set(s.c, NULL, qdot);
+        CHECK(length == SE3D_OK || (length == SE3D_ERR_INVALID_ARGUMENT && after == before));
+        CHECK(rate == SE3D_OK || rate == SE3D_ERR_NOT_FINITE);
+        CHECK(rate == SE3D_OK || se3d_system_hash(s.system) == after);
+        for (int k = 0; k < s.world.count; ++k) {
+            double p[4], v[6];
+            CHECK(!se3d_body_get_orientation(s.system, s.world.bodies[k], p));
+            CHECK_NEAR(dot(p, p, 4), 1.0, 1e-9);
+            CHECK(!se3d_body_get_velocity(s.system, s.world.bodies[k], v));
+            CHECK(isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]));
+        }
+        lengths += length < 0;
+        rates += rate < 0;
+        end(&s);
+    }
+    CHECK(lengths > 0 && rates > 0);
+}
+
 static void every_velocity_has_its_joint_and_body(void)
 {
     for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
@@ -441,6 +476,7 @@ int main(void)
     RUN(the_null_space_is_what_loops_leave);
     RUN(accelerations_of_closed_loops_are_those_of_the_bodies);
     RUN(a_joint_that_is_there_twice_changes_nothing);
+    RUN(what_cannot_be_set_leaves_the_state_alone);
     RUN(every_velocity_has_its_joint_and_body);
     RUN(calls_see_setters_and_leave_the_state_alone);
     RUN(what_is_made_once_allocates_no_more_and_is_given_back);
