@@ -30,6 +30,7 @@ static void measure(const se3di_tree *tree, const se3di_tree_node *n, const doub
     const se3di_frame *i = &tree->model->frames[c->bodies[0]];
     const se3di_frame *j = &tree->model->frames[c->bodies[1]];
     const int32_t type = n->type;
+    *x = (exertion){.sigma = 1.0};
     if (type != SE3DI_TREE_SPHERICAL && type != SE3DI_TREE_UNIVERSAL) {
         se3di_mul(i->A, f->ref_i, x->ref);
         se3di_mul(i->A, f->third_i, x->third);
