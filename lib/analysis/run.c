@@ -505,6 +505,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
     run->refused = 0;
     step = remaining / se3di_steps_count(remaining, step, t_end);
     SE3DI_TRY(begin_dynamics(run, step));
+    se3di_run_tell_bodies(run);
     if (has_step_control(integration)) {
         se3di_run_tell_reach(run);
     }

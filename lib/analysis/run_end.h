@@ -14,6 +14,8 @@ se3d_status se3di_run_fail(se3di_run *run, se3d_status status, double t_end);
 
 /* The log is told if the tolerance that is asked for is smaller than what the method reaches. */
 void se3di_run_tell_reach(se3di_run *run);
+/* ... if joint coordinates are asked for and the method does not integrate them. */
+void se3di_run_tell_bodies(se3di_run *run);
 /* What was found of redundant equations goes to the log. @return OK, INFO_REDUNDANT */
 se3d_status se3di_run_inform(se3di_run *run);
 

@@ -22,6 +22,19 @@ void se3di_run_tell_reach(se3di_run *run)
     }
 }
 
+void se3di_run_tell_bodies(se3di_run *run)
+{
+    const se3di_integrator *method = run->integration.method;
+    if (run->formulation->id == SE3D_FORMULATION_JOINT && !method->tableau &&
+        run->told_bodies != method) {
+        run->told_bodies = method;
+        se3di_log_write(run->error, SE3D_LOG_WARNING,
+                        "t = %g s: %s works with the coordinates of bodies, as r-omega: joint "
+                        "coordinates are integrated by dop853, rk45 and rk4",
+                        run->model->time, method->name);
+    }
+}
+
 /* A row that was left out constrains the mechanism after all. */
 static void warn_of_rows(se3di_run *run)
 {

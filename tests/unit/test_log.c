@@ -110,6 +110,30 @@ static void redundant_constraints_are_logged_once(void)
     se3d_system_destroy(s.system);
 }
 
+static void a_method_without_joint_coordinates_is_logged_once(void)
+{
+    static const struct {
+        int32_t method;
+        int warnings;
+    } cases[] = {{SE3D_METHOD_DOP853, 0}, {SE3D_METHOD_RK4, 0}, {SE3D_METHOD_BDF, 1},
+                 {SE3D_METHOD_RADAU, 1},  {SE3D_METHOD_HHT, 1}, {SE3D_METHOD_RATTLE, 1}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+        sheet s;
+        open_sheet(&s, 0);
+        add_pin(&s, add_bar(&s, "bar", 1.0), "pin");
+        se3d_solver *solver = world_solver(s.system, SE3D_ANALYSIS_DYNAMICS, cases[k].method,
+                                           SE3D_FORMULATION_JOINT, 0.0);
+        CHECK(!se3d_solver_run(solver, 0.01));
+        CHECK(!se3d_solver_run(solver, 0.02));
+        CHECK(s.lines[SE3D_LOG_WARNING] == cases[k].warnings);
+        if (cases[k].warnings) {
+            CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "works with the coordinates of bodies");
+        }
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(s.system);
+    }
+}
+
 /* What is used is told once, and so is that errors are not controlled. */
 static void a_tolerance_that_is_not_reached_is_logged_once(void)
 {
@@ -343,6 +367,7 @@ int main(void)
     RUN(every_failure_is_logged_once);
     RUN(redundant_constraints_are_logged_once);
     RUN(a_change_of_method_is_logged);
+    RUN(a_method_without_joint_coordinates_is_logged_once);
     RUN(a_tolerance_that_is_not_reached_is_logged_once);
     RUN(velocities_that_do_not_fit_are_told);
     RUN(positions_that_do_not_fit_are_told);
