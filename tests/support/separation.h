@@ -389,7 +389,7 @@ static inline double segment_triangle(const double a[2][3], const double corner[
         }
     }
     for (int k = 0; k < 3; ++k) {
-        double side[2][3], p[3], q[3];
+        double side[2][3], p[3] = {0.0}, q[3] = {0.0};
         se3di_copy(corner[k], side[0]);
         se3di_copy(corner[(k + 1) % 3], side[1]);
         const double here = segments_apart(a, (const double(*)[3])side, p, q);
