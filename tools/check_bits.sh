@@ -14,8 +14,6 @@ cd "$(dirname "$0")/.."
 . tools/setup.sh
 name=$1
 out=build/bits-$name
-layers="base math expression model primitive joint force contact particles formulation assembly \
-linsol nonlinear integrator analysis system"
 flags="-std=c11 -ffp-contract=off -Ilib -Iinclude -Itests"
 libraries="-lamd -lsuitesparseconfig -lm"
 run=
@@ -54,10 +52,8 @@ esac
 [ "$name" = arm64 ] || flags="$flags -I/usr/include/suitesparse"
 
 mkdir -p "$out"
-sources="tests/determinism/test_hashes.c tests/support/models.c"
-for layer in $layers; do
-    sources="$sources $(ls lib/"$layer"/*.c)"
-done
+sources="tests/determinism/test_hashes.c tests/support/models.c
+$(find lib -path lib/io -prune -o -name '*.c' -print | sort)"
 # shellcheck disable=SC2086
 printf '%s\n' $sources >"$out/sources"
 newest=$(find lib include tests/support tests/check.h -newer "$out/done" \( -name '*.h' -o -name '*.inc' \) 2>/dev/null |
