@@ -5,6 +5,7 @@
 #include "contact/narrow/internal.h"
 #include "contact/narrow/mesh.h"
 #include "contact/shape/mesh.h"
+#include "contact/shape/triangles.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -26,9 +27,7 @@ static int is_within(const se3di_shape *piece, const double x[3], double slack)
     for (size_t k = 0; k < piece->triangle_count; ++k) {
         const double *corner[3];
         double u[3], v[3], n[3];
-        for (size_t c = 0; c < 3; ++c) {
-            corner[c] = piece->vertices + 3 * (size_t)piece->triangles[3 * k + c];
-        }
+        se3di_triangle_corners(piece, k, corner);
         se3di_sub(corner[1], corner[0], u);
         se3di_sub(corner[2], corner[0], v);
         se3di_cross(u, v, n);

@@ -14,6 +14,7 @@
 #include "contact/shape/cell.h"
 #include "contact/shape/hull.h"
 #include "contact/shape/shape.h"
+#include "contact/shape/triangles.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -305,9 +306,7 @@ static int is_part_of(const cutter *c, const se3di_shape *a, const se3di_shape *
     for (size_t k = 0; k < b->triangle_count; ++k) {
         const double *corner[3];
         double u[3], v[3], n[3];
-        for (size_t i = 0; i < 3; ++i) {
-            corner[i] = b->vertices + 3 * (size_t)b->triangles[3 * k + i];
-        }
+        se3di_triangle_corners(b, k, corner);
         se3di_sub(corner[1], corner[0], u);
         se3di_sub(corner[2], corner[0], v);
         se3di_cross(u, v, n);
