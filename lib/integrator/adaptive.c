@@ -3,9 +3,16 @@
 
 #include "contact/bodies/pace.h"
 #include "integrator/kink_step.h"
+#include "integrator/state.h"
 #include "math/steps.h"
 
 #include <math.h>
+
+double se3di_adaptive_pace(se3di_adaptive *step, double h)
+{
+    const se3di_model *model = step->integration->equations->assembly.model;
+    return se3di_contacts_pace(model, SE3DI_PACE_ADAPTIVE, se3di_state_limit_turn(model, 0.0, h));
+}
 
 double se3di_adaptive_limit(const se3di_integration *integration, double h)
 {

@@ -45,6 +45,10 @@ struct se3di_adaptive {
  * (integrator/kink_step.h). */
 se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end);
 
+/* A pace of methods that need no more: no step over a contact that begins, nor of more than an
+ * angle's counter can follow. */
+double se3di_adaptive_pace(se3di_adaptive *step, double h);
+
 /* h, or settings.step if that is less. */
 double se3di_adaptive_limit(const se3di_integration *integration, double h);
 

@@ -336,12 +336,6 @@ static controlled_step *get_step(se3di_adaptive *step)
     return (controlled_step *)(void *)step;
 }
 
-static double pace(se3di_adaptive *step, double h)
-{
-    const se3di_model *model = get_step(step)->m.assembly->model;
-    return se3di_contacts_pace(model, SE3DI_PACE_ADAPTIVE, se3di_state_limit_turn(model, 0.0, h));
-}
-
 static se3d_status try_step(se3di_adaptive *step, double h, double *error)
 {
     controlled_step *s = get_step(step);
@@ -383,7 +377,8 @@ static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status,
  * change again, goes to t_end at most. */
 static se3d_status advance(se3di_integration *integration, double t_end)
 {
-    static const se3di_adaptive_class methods = {pace, try_step, take, shrink, surrender, 1e-12};
+    static const se3di_adaptive_class methods = {se3di_adaptive_pace, try_step, take, shrink,
+                                                 surrender,           1e-12};
     controlled_step s = {.past = get_history(&integration->equations->assembly),
                          .inner = inner_tolerance(integration->settings.tolerance)};
     s.step = (se3di_adaptive){.methods = &methods,
