@@ -76,66 +76,53 @@ static const char *const schema_head =
 #define EXACTLY(count)      "\"minItems\": " #count ", \"maxItems\": " #count
 #define LIST(items)         "\"type\": [\"array\", \"null\"], \"items\": " items
 
-/* How the schema and the reference describe a kind; %s: the name of an object. */
-typedef struct kind_text {
-    const char *schema;
-    const char *words;
-} kind_text;
-
-static const kind_text kinds[SE3DI_KIND_END] = {
-    [SE3DI_KIND_NUMBER] = {REFERENCE("number"), "number"},
-    [SE3DI_KIND_VECTOR] = {REFERENCE("vector"), "3 numbers"},
-    [SE3DI_KIND_DIRECTION] = {REFERENCE("vector"), "direction"},
-    [SE3DI_KIND_ORIENTATION] = {REFERENCE("orientation"), "[orientation](#orientations)"},
-    [SE3DI_KIND_BOOL] = {"\"type\": \"boolean\"", "`true` or `false`"},
-    [SE3DI_KIND_WORD] = {NULL, NULL},
-    [SE3DI_KIND_TEXT] = {"\"type\": \"string\"", "text"},
-    [SE3DI_KIND_NAME] = {REFERENCE("name"), "name"},
-    [SE3DI_KIND_COUNT] = {"\"type\": [\"integer\", \"string\"]", "whole number"},
-    [SE3DI_KIND_TYPE] = {NULL, NULL},
-    [SE3DI_KIND_TITLE] = {"\"type\": [\"string\", \"number\"]", "text"},
-    [SE3DI_KIND_VERSION] = {"\"const\": 1", "1"},
-    [SE3DI_KIND_PARAMETERS] = {"\"type\": [\"object\", \"null\"], \"additionalProperties\": "
-                               "{" REFERENCE("number") "}",
-                               "map"},
-    [SE3DI_KIND_FILE] = {"\"type\": \"string\"", "file name"},
-    [SE3DI_KIND_BODY] = {REFERENCE("name"), "body"},
-    [SE3DI_KIND_JOINT] = {REFERENCE("name"), "joint"},
-    [SE3DI_KIND_MATERIAL] = {REFERENCE("name"), "material"},
-    [SE3DI_KIND_POINT] = {REFERENCE("point"), "3 numbers or marker"},
-    [SE3DI_KIND_FUNCTION] = {REFERENCE("function"), "function"},
-    [SE3DI_KIND_FUNCTIONS] = {ITEMS("function", EXACTLY(3)), "3 functions"},
-    [SE3DI_KIND_COEFFICIENT] = {REFERENCE("coefficient"), "number or table"},
-    [SE3DI_KIND_MATRIX3] = {ITEMS("vector", EXACTLY(3)), "3 rows of 3 numbers"},
-    [SE3DI_KIND_MATRIX6] = {REFERENCE("matrix6"), "6 numbers or 6 rows of 6"},
-    [SE3DI_KIND_EULER_PARAMETERS] = {ITEMS("number", EXACTLY(4)), "4 numbers"},
-    [SE3DI_KIND_INERTIA] = {"\"type\": \"array\", \"anyOf\": ["
-                            "{\"items\": {" REFERENCE("number") "}, " EXACTLY(
-                                3) "}, "
-                                   "{\"items\": {" REFERENCE("number") "}, " EXACTLY(
-                                       6) "}, "
-                                          "{\"items\": {" REFERENCE("vector") "}, " EXACTLY(3) "}]",
-                            "3 or 6 numbers, or 3 rows of 3"},
-    [SE3DI_KIND_RADIUS] = {"\"anyOf\": [{" REFERENCE("radius") "}, {" REFERENCE(
-                               "number") "}, {" REFERENCE("pair_of_numbers") "}]",
-                           "number, 2 numbers or `{table: [[radius, frequency], ...]}`"},
-    [SE3DI_KIND_BOUNDARY] = {NULL, NULL},
-    [SE3DI_KIND_POINTS] = {ITEMS("pair_of_numbers", "\"minItems\": 2"), "pairs of numbers"},
-    [SE3DI_KIND_PAIRS] = {ITEMS("pair_of_numbers", "\"minItems\": 1"), "pairs of numbers"},
-    [SE3DI_KIND_CHANNELS] = {LIST("{\"type\": \"string\"}"), "list of [channels](#output)"},
-    [SE3DI_KIND_SNAPSHOTS] = {"\"type\": [\"boolean\", \"string\"]", "`true` or name of a set"},
-    [SE3DI_KIND_OBJECT] = {REFERENCE("%s"), "map"},
-    [SE3DI_KIND_LIST] = {LIST("{" REFERENCE("%s") "}"), "list"},
-    [SE3DI_KIND_ONE_OR_LIST] = {"\"anyOf\": [{" REFERENCE("%s") "}, {\"type\": \"array\", "
-                                                                "\"items\": {" REFERENCE(
-                                                                    "%s") "}}]",
-                                "map or list"},
-    [SE3DI_KIND_TERMS] = {"\"type\": \"array\", \"minItems\": 1, \"maxItems\": 4, \"items\": "
-                          "{" REFERENCE("%s") "}",
-                          "1 to 4 maps"},
+/* How the schema describes a kind; %s: the name of an object. */
+static const char *const kinds[SE3DI_KIND_END] = {
+    [SE3DI_KIND_NUMBER] = REFERENCE("number"),
+    [SE3DI_KIND_VECTOR] = REFERENCE("vector"),
+    [SE3DI_KIND_DIRECTION] = REFERENCE("vector"),
+    [SE3DI_KIND_ORIENTATION] = REFERENCE("orientation"),
+    [SE3DI_KIND_BOOL] = "\"type\": \"boolean\"",
+    [SE3DI_KIND_WORD] = NULL,
+    [SE3DI_KIND_TEXT] = "\"type\": \"string\"",
+    [SE3DI_KIND_NAME] = REFERENCE("name"),
+    [SE3DI_KIND_COUNT] = "\"type\": [\"integer\", \"string\"]",
+    [SE3DI_KIND_TYPE] = NULL,
+    [SE3DI_KIND_TITLE] = "\"type\": [\"string\", \"number\"]",
+    [SE3DI_KIND_VERSION] = "\"const\": 1",
+    [SE3DI_KIND_PARAMETERS] = "\"type\": [\"object\", \"null\"], \"additionalProperties\": "
+                              "{" REFERENCE("number") "}",
+    [SE3DI_KIND_FILE] = "\"type\": \"string\"",
+    [SE3DI_KIND_BODY] = REFERENCE("name"),
+    [SE3DI_KIND_JOINT] = REFERENCE("name"),
+    [SE3DI_KIND_MATERIAL] = REFERENCE("name"),
+    [SE3DI_KIND_POINT] = REFERENCE("point"),
+    [SE3DI_KIND_FUNCTION] = REFERENCE("function"),
+    [SE3DI_KIND_FUNCTIONS] = ITEMS("function", EXACTLY(3)),
+    [SE3DI_KIND_COEFFICIENT] = REFERENCE("coefficient"),
+    [SE3DI_KIND_MATRIX3] = ITEMS("vector", EXACTLY(3)),
+    [SE3DI_KIND_MATRIX6] = REFERENCE("matrix6"),
+    [SE3DI_KIND_EULER_PARAMETERS] = ITEMS("number", EXACTLY(4)),
+    [SE3DI_KIND_INERTIA] = "\"type\": \"array\", \"anyOf\": ["
+                           "{\"items\": {" REFERENCE("number") "}, " EXACTLY(
+                               3) "}, "
+                                  "{\"items\": {" REFERENCE("number") "}, " EXACTLY(
+                                      6) "}, "
+                                         "{\"items\": {" REFERENCE("vector") "}, " EXACTLY(3) "}]",
+    [SE3DI_KIND_RADIUS] = "\"anyOf\": [{" REFERENCE("radius") "}, {" REFERENCE(
+        "number") "}, {" REFERENCE("pair_of_numbers") "}]",
+    [SE3DI_KIND_BOUNDARY] = NULL,
+    [SE3DI_KIND_POINTS] = ITEMS("pair_of_numbers", "\"minItems\": 2"),
+    [SE3DI_KIND_PAIRS] = ITEMS("pair_of_numbers", "\"minItems\": 1"),
+    [SE3DI_KIND_CHANNELS] = LIST("{\"type\": \"string\"}"),
+    [SE3DI_KIND_SNAPSHOTS] = "\"type\": [\"boolean\", \"string\"]",
+    [SE3DI_KIND_OBJECT] = REFERENCE("%s"),
+    [SE3DI_KIND_LIST] = LIST("{" REFERENCE("%s") "}"),
+    [SE3DI_KIND_ONE_OR_LIST] = "\"anyOf\": [{" REFERENCE("%s") "}, {\"type\": \"array\", "
+                                                               "\"items\": {" REFERENCE("%s") "}}]",
+    [SE3DI_KIND_TERMS] = "\"type\": \"array\", \"minItems\": 1, \"maxItems\": 4, \"items\": "
+                         "{" REFERENCE("%s") "}",
 };
-
-static const char *const range_texts[] = {"", "> 0", ">= 0", "0.01 to 1"};
 
 /* "a", "b", ... of the words behind `mark` "\"" or "`". */
 static void put_words(text *t, const char *const *words, const char *mark, const char *between)
@@ -200,13 +187,13 @@ static void put_schema_kind(text *t, const se3di_object *object, const se3di_key
         put_row_words(t, object, row, "\"");
         put(t, "]}, " EXACTLY(3));
     } else if (row->object) {
-        const char *from = kinds[row->kind].schema;
+        const char *from = kinds[row->kind];
         for (const char *at; (at = strstr(from, "%s")) != NULL; from = at + 2) {
             put(t, "%.*s%s", (int)(at - from), from, row->object);
         }
         put(t, "%s", from);
     } else {
-        put(t, "%s", kinds[row->kind].schema);
+        put(t, "%s", kinds[row->kind]);
     }
     if (row->kind == SE3DI_KIND_FILE && row->words) {
         put(t, ", \"pattern\": \"\\\\.(");
@@ -227,7 +214,7 @@ static void put_schema_text(text *t, const se3di_object *object, const se3di_key
     }
     put_json_text(t, row->text);
     if (row->range != SE3DI_ANY) {
-        put(t, "%s%s", row->text[0] ? ", " : "", range_texts[row->range]);
+        put(t, "%s%s", row->text[0] ? ", " : "", se3di_range_get_text(row->range));
     }
     if (row->standard) {
         put(t, "%sdefault ", t->length > start ? "; " : "");
@@ -313,14 +300,9 @@ static void put_reference_row(text *t, const se3di_object *object, const se3di_k
         put_types(t, object, row, "`");
         put(t, " | ");
     }
-    if (row->kind == SE3DI_KIND_TYPE || row->kind == SE3DI_KIND_WORD ||
-        row->kind == SE3DI_KIND_BOUNDARY) {
-        put(t, "%s", row->kind == SE3DI_KIND_BOUNDARY ? "3 of " : "");
-        put_row_words(t, object, row, "`");
-    } else {
-        put(t, "%s", kinds[row->kind].words);
-    }
-    put(t, "%s%s | ", row->range == SE3DI_ANY ? "" : " ", range_texts[row->range]);
+    char is[2000];
+    se3di_key_describe(object, row, is, sizeof is);
+    put(t, "%s | ", is);
     put(t, "%s | %s |\n",
         row->required   ? "required"
         : row->standard ? row->standard

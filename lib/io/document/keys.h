@@ -99,4 +99,9 @@ void se3di_key_list_words(const se3di_key *key, const char *words[SE3DI_WORDS_MA
 void se3di_object_list(const se3di_object *object, const char *type, const char *separator,
                        char *text, size_t size);
 
+/* kinds.c: "> 0" and the like, "" if all finite numbers may stand there. */
+const char *se3di_range_get_text(se3di_range range);
+/* Write what may stand under a key, "number > 0" or "`one`, `other`", with the marks of Markdown. */
+void se3di_key_describe(const se3di_object *object, const se3di_key *row, char *text, size_t size);
+
 #endif
