@@ -3,10 +3,8 @@
 #ifndef SE3D_TESTS_MISUSE_HOSTILE_WORLD_H
 #define SE3D_TESTS_MISUSE_HOSTILE_WORLD_H
 
-#include <stddef.h>
-
 #include "check.h"
-#include "se3d/se3d.h"
+#include "misuse/element_defs.h"
 
 /* A hinged and a sliding body, a ball over a floor, a few particles beside it. */
 typedef struct world {
@@ -24,25 +22,6 @@ typedef union def_storage {
     size_t struct_size;
     double numbers[200];
 } def_storage;
-
-typedef struct field {
-    const char *name;
-    size_t offset, size, count;
-    char kind; /* d double, i int32_t, u uint32_t, z size_t */
-} field;
-
-#define FIELD(type, member, kind, unit)                                                            \
-    {                                                                                              \
-#member, offsetof(type, member), sizeof(unit), sizeof(((type *)0)->member) / sizeof(unit), \
-            kind                                                                                   \
-    }
-#define NUMBERS(type, member) FIELD(type, member, 'd', double)
-#define INTEGER(type, member) FIELD(type, member, 'i', int32_t)
-#define SIZE(type, member)    FIELD(type, member, 'z', size_t)
-#define FIELDS_END                                                                                 \
-    {                                                                                              \
-        NULL, 0, 0, 0, 0                                                                           \
-    }
 
 /* One kind of definition: its fields, good values, and the call that takes it. */
 typedef struct subject {

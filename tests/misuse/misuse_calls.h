@@ -6,7 +6,6 @@
 
 #include "misuse/misuse_events.h"
 #include "misuse/misuse_fields.h"
-#include "misuse/misuse_forces.h"
 #include "misuse/misuse_inputs.h"
 #include "misuse/misuse_particles.h"
 #include "misuse/misuse_world.h"
@@ -16,14 +15,14 @@ static void define_body(arguments *a)
     se3d_body_def def = body_def("new");
     STORE(def);
 }
-static const field body_fields[] = {MEMBER('N', se3d_body_def, name, 1),
-                                    MEMBER('n', se3d_body_def, mass, 1),
-                                    MEMBER('n', se3d_body_def, inertia, 6),
-                                    MEMBER('n', se3d_body_def, position, 3),
-                                    MEMBER('n', se3d_body_def, orientation, 4),
-                                    MEMBER('n', se3d_body_def, velocity, 3),
-                                    MEMBER('n', se3d_body_def, angular_velocity, 3),
-                                    END};
+static const field body_fields[] = {NAME(se3d_body_def),
+                                    NUMBERS(se3d_body_def, mass),
+                                    NUMBERS(se3d_body_def, inertia),
+                                    NUMBERS(se3d_body_def, position),
+                                    NUMBERS(se3d_body_def, orientation),
+                                    NUMBERS(se3d_body_def, velocity),
+                                    NUMBERS(se3d_body_def, angular_velocity),
+                                    FIELDS_END};
 
 static void define_marker(arguments *a)
 {
@@ -31,9 +30,9 @@ static void define_marker(arguments *a)
     def.body = a->use.body;
     STORE(def);
 }
-static const field marker_fields[] = {
-    MEMBER('N', se3d_marker_def, name, 1), MEMBER('b', se3d_marker_def, body, 1),
-    MEMBER('n', se3d_marker_def, position, 3), MEMBER('n', se3d_marker_def, orientation, 4), END};
+static const field marker_fields[] = {NAME(se3d_marker_def), BODY(se3d_marker_def, body),
+                                      NUMBERS(se3d_marker_def, position),
+                                      NUMBERS(se3d_marker_def, orientation), FIELDS_END};
 
 static void define_primitive(arguments *a)
 {
@@ -45,11 +44,14 @@ static void define_primitive(arguments *a)
     def.function = a->use.function;
     STORE(def);
 }
-static const field primitive_fields[] = {
-    MEMBER('N', se3d_primitive_def, name, 1),     MEMBER('b', se3d_primitive_def, body_i, 1),
-    MEMBER('b', se3d_primitive_def, body_j, 1),   MEMBER('n', se3d_primitive_def, point_i, 3),
-    MEMBER('n', se3d_primitive_def, point_j, 3),  MEMBER('n', se3d_primitive_def, c, 3),
-    MEMBER('f', se3d_primitive_def, function, 1), END};
+static const field primitive_fields[] = {NAME(se3d_primitive_def),
+                                         BODY(se3d_primitive_def, body_i),
+                                         BODY(se3d_primitive_def, body_j),
+                                         NUMBERS(se3d_primitive_def, point_i),
+                                         NUMBERS(se3d_primitive_def, point_j),
+                                         NUMBERS(se3d_primitive_def, c),
+                                         FUNCTION(se3d_primitive_def, function),
+                                         FIELDS_END};
 
 static void define_driver(arguments *a)
 {
@@ -57,33 +59,9 @@ static void define_driver(arguments *a)
     def.joint = a->use.pin;
     STORE(def);
 }
-static const field driver_fields[] = {
-    MEMBER('N', se3d_driver_def, name, 1), MEMBER('c', se3d_driver_def, joint, 1),
-    MEMBER('n', se3d_driver_def, value, 1), MEMBER('f', se3d_driver_def, function, 1), END};
-
-static void define_joint(arguments *a)
-{
-    se3d_joint_def def = se3d_joint_def_default();
-    def.body_i = ground_of(a);
-    def.body_j = a->use.body;
-    def.point_j[0] = def.distance = def.pitch = 1.0;
-    STORE(def);
-}
-static void define_crossed(arguments *a)
-{
-    define_joint(a);
-    const double across[3] = {1.0, 0.0, 0.0};
-    memcpy((char *)&a->storage + offsetof(se3d_joint_def, axis_j), across, sizeof across);
-}
-static const field joint_fields[] = {MEMBER('N', se3d_joint_def, name, 1),
-                                     MEMBER('b', se3d_joint_def, body_i, 1),
-                                     MEMBER('b', se3d_joint_def, body_j, 1),
-                                     MEMBER('n', se3d_joint_def, point_i, 3),
-                                     MEMBER('n', se3d_joint_def, point_j, 3),
-                                     MEMBER('n', se3d_joint_def, axis_i, 3),
-                                     MEMBER('n', se3d_joint_def, axis_j, 3),
-                                     MEMBER('n', se3d_joint_def, angle0, 1),
-                                     END};
+static const field driver_fields[] = {NAME(se3d_driver_def), JOINT(se3d_driver_def, joint),
+                                      NUMBERS(se3d_driver_def, value),
+                                      FUNCTION(se3d_driver_def, function), FIELDS_END};
 
 static void define_coupler(arguments *a)
 {
@@ -96,9 +74,12 @@ static void define_coupler(arguments *a)
     STORE(def);
 }
 static const field coupler_fields[] = {
-    MEMBER('N', se3d_coupler_def, name, 1),     MEMBER('c', se3d_coupler_def, joint, 1),
-    MEMBER('n', se3d_coupler_def, ratio, 2),    MEMBER('n', se3d_coupler_def, value, 1),
-    MEMBER('f', se3d_coupler_def, function, 1), END};
+    NAME(se3d_coupler_def),
+    {"joint", offsetof(se3d_coupler_def, joint), sizeof(se3d_constraint), 1, 'c'},
+    {"ratio", offsetof(se3d_coupler_def, ratio), sizeof(double), 2, 'd'},
+    NUMBERS(se3d_coupler_def, value),
+    FUNCTION(se3d_coupler_def, function),
+    FIELDS_END};
 
 static se3d_status no_equation(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
                                double *jacobian, double *nu, double *gamma)
@@ -122,17 +103,16 @@ static void define_user_constraint(arguments *a)
     def.callback = no_equation;
     STORE(def);
 }
-static const field user_constraint_fields[] = {MEMBER('N', se3d_user_constraint_def, name, 1),
-                                               MEMBER('b', se3d_user_constraint_def, bodies[0], 1),
-                                               MEMBER('b', se3d_user_constraint_def, bodies[1], 1),
-                                               END};
+static const field user_constraint_fields[] = {
+    NAME(se3d_user_constraint_def), BODY(se3d_user_constraint_def, bodies[0]),
+    BODY(se3d_user_constraint_def, bodies[1]), FIELDS_END};
 
 static void define_function(arguments *a)
 {
     se3d_function_def def = se3d_function_def_default();
     STORE(def);
 }
-static const field function_fields[] = {MEMBER('n', se3d_function_def, constant, 1), END};
+static const field function_fields[] = {NUMBERS(se3d_function_def, constant), FIELDS_END};
 
 static void define_solver(arguments *a)
 {
@@ -140,8 +120,8 @@ static void define_solver(arguments *a)
     STORE(def);
 }
 static const field solver_fields[] = {
-    MEMBER('n', se3d_solver_def, step, 1), MEMBER('n', se3d_solver_def, tolerance, 1),
-    MEMBER('n', se3d_solver_def, spectral_radius, 1), MEMBER('n', se3d_solver_def, alpha, 1), END};
+    NUMBERS(se3d_solver_def, step), NUMBERS(se3d_solver_def, tolerance),
+    NUMBERS(se3d_solver_def, spectral_radius), NUMBERS(se3d_solver_def, alpha), FIELDS_END};
 
 static void define_summary(arguments *a)
 {
@@ -194,37 +174,30 @@ CALL(constraint_get_reaction_at, a->system, a->use.pin, a->index, a->in, (se3d_m
 CALL(driver_get_value, a->system, a->use.driver, a->out[0])
 CALL(driver_get_effort, a->system, a->use.driver, a->out[0])
 CALL(driver_create, a->system, a->def, a->out[0])
-CALL(joint_create_fixed, a->system, a->def, a->out[0])
-CALL(joint_create_revolute, a->system, a->def, a->out[0])
-CALL(joint_create_prismatic, a->system, a->def, a->out[0])
-CALL(joint_create_cylindrical, a->system, a->def, a->out[0])
-CALL(joint_create_spherical, a->system, a->def, a->out[0])
-CALL(joint_create_universal, a->system, a->def, a->out[0])
-CALL(joint_create_planar, a->system, a->def, a->out[0])
-CALL(joint_create_screw, a->system, a->def, a->out[0])
-CALL(joint_create_point_on_line, a->system, a->def, a->out[0])
-CALL(joint_create_point_on_plane, a->system, a->def, a->out[0])
-CALL(joint_create_distance, a->system, a->def, a->out[0])
-CALL(joint_create_revolute_spherical, a->system, a->def, a->out[0])
-CALL(joint_create_revolute_cylindrical, a->system, a->def, a->out[0])
-CALL(joint_create_parallel, a->system, a->def, a->out[0])
-CALL(joint_create_perpendicular, a->system, a->def, a->out[0])
-CALL(joint_create_orientation, a->system, a->def, a->out[0])
-CALL(joint_create_perpendicular1, a->system, a->def, a->out[0])
-CALL(joint_create_perpendicular2, a->system, a->def, a->out[0])
 CALL(joint_get_coordinate, a->system, a->use.pin, SE3D_JOINT_COORDINATE_ANGLE, a->out[0], a->out[1],
      a->out[2])
+/* What the lists create: the call and its definition. */
+#define CREATE_WITH(function, name)                                                                \
+    CALL(function, a->system, a->def, a->out[0])                                                   \
+    static void define_##name(arguments *a)                                                        \
+    {                                                                                              \
+        const site at = site_of(a);                                                                \
+        fill_##name(&at, &a->storage);                                                             \
+    }
+#define CREATE_JOINT(type, flags) CREATE_WITH(joint_create_##type, type)
+#define CREATE_FORCE(name, def)   CREATE_WITH(force_create_##name, name)
+#define DEFINE_VARIANT(variant, name)                                                              \
+    static void define_##variant(arguments *a)                                                     \
+    {                                                                                              \
+        const site at = site_of(a);                                                                \
+        fill_##variant(&at, &a->storage);                                                          \
+    }
+SE3DI_JOINT_LIST(CREATE_JOINT)
+FORCE_LIST(CREATE_FORCE)
+FORCE_VARIANT_LIST(DEFINE_VARIANT)
+
 CALL(joint_create_coupler, a->system, a->def, a->out[0])
 CALL(joint_create_rack_pinion, a->system, NULL, a->use.pin, a->use.slide, a->number, a->out[0])
-CALL(force_create_tsda, a->system, a->def, a->out[0])
-CALL(force_create_rsda, a->system, a->def, a->out[0])
-CALL(force_create_load, a->system, a->def, a->out[0])
-CALL(force_create_torque, a->system, a->def, a->out[0])
-CALL(force_create_bushing, a->system, a->def, a->out[0])
-CALL(force_create_friction, a->system, a->def, a->out[0])
-CALL(force_create_stop, a->system, a->def, a->out[0])
-CALL(force_create_effort, a->system, a->def, a->out[0])
-CALL(force_create_callback, a->system, a->def, a->out[0])
 CALL(force_destroy, a->system, a->use.force)
 CALL(force_find, a->system, a->text, a->out[0])
 CALL(force_get_name, a->system, a->use.force, a->out[0])
@@ -549,6 +522,8 @@ static se3d_status unknown_functions_are_not_a_number(arguments *a)
         }                                                                                          \
     } while (0)
 
+#define CHECK_FORCE_INIT(name, def) CHECK_INIT(def);
+
 static se3d_status definitions_are_never_overrun(arguments *a)
 {
     (void)a;
@@ -560,14 +535,7 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(joint);
     CHECK_INIT(coupler);
     CHECK_INIT(driver);
-    CHECK_INIT(tsda);
-    CHECK_INIT(rsda);
-    CHECK_INIT(load);
-    CHECK_INIT(bushing);
-    CHECK_INIT(friction);
-    CHECK_INIT(stop);
-    CHECK_INIT(effort);
-    CHECK_INIT(force_callback);
+    FORCE_LIST(CHECK_FORCE_INIT)
     CHECK_INIT(function);
     CHECK_INIT(solver);
     CHECK_INIT(event);
@@ -584,8 +552,21 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     return SE3D_OK;
 }
 
+#define JOINT_ROW(type, flags)                                                                     \
+    {"se3d_joint_create_" #type, call_joint_create_##type, "SDh0", define_##type, joint_fields},
+#define FORCE_ROWS(name, def)                                                                      \
+    {"se3d_force_create_" #name, call_force_create_##name, "SDh0", define_##name, name##_fields},  \
+        {"se3d_" #def "_def_init", definitions_are_never_overrun, "", NULL, NULL},
+#define FORCE_VARIANT_ROW(variant, name)                                                           \
+    {"se3d_force_create_" #name, call_force_create_##name, "SDh0", define_##variant,               \
+     variant##_fields},
+#define SHAPE_ROW(KIND, name, traits)                                                              \
+    {"se3d_shape_create_" #name, shapes_reject_misuse, "", NULL, NULL},
+
 static const row rows[] = {
-    {"se3d_body_get_position", call_body_get_position, "sbo0", NULL, NULL},
+    SE3DI_JOINT_LIST(JOINT_ROW) FORCE_LIST(FORCE_ROWS) FORCE_VARIANT_LIST(FORCE_VARIANT_ROW)
+        SE3DI_SHAPE_LIST(SHAPE_ROW){"se3d_body_get_position", call_body_get_position, "sbo0", NULL,
+                                    NULL},
     {"se3d_body_get_velocity", call_body_get_velocity, "sbo0", NULL, NULL},
     {"se3d_body_get_angular_velocity", call_body_get_angular_velocity, "sbo0", NULL, NULL},
     {"se3d_body_get_acceleration", call_body_get_acceleration, "sbo0", NULL, NULL},
@@ -630,52 +611,10 @@ static const row rows[] = {
     {"se3d_driver_get_value", call_driver_get_value, "sco0", NULL, NULL},
     {"se3d_driver_get_effort", call_driver_get_effort, "sco0", NULL, NULL},
     {"se3d_driver_create", call_driver_create, "SDh0", define_driver, driver_fields},
-    {"se3d_joint_create_fixed", call_joint_create_fixed, "SDh0", define_joint, joint_fields},
-    {"se3d_joint_create_revolute", call_joint_create_revolute, "SDh0", define_joint, joint_fields},
-    {"se3d_joint_create_prismatic", call_joint_create_prismatic, "SDh0", define_joint,
-     joint_fields},
-    {"se3d_joint_create_cylindrical", call_joint_create_cylindrical, "SDh0", define_joint,
-     joint_fields},
-    {"se3d_joint_create_spherical", call_joint_create_spherical, "SDh0", define_joint,
-     joint_fields},
-    {"se3d_joint_create_universal", call_joint_create_universal, "SDh0", define_crossed,
-     joint_fields},
-    {"se3d_joint_create_planar", call_joint_create_planar, "SDh0", define_joint, joint_fields},
-    {"se3d_joint_create_screw", call_joint_create_screw, "SDh0", define_joint, joint_fields},
-    {"se3d_joint_create_point_on_line", call_joint_create_point_on_line, "SDh0", define_joint,
-     joint_fields},
-    {"se3d_joint_create_point_on_plane", call_joint_create_point_on_plane, "SDh0", define_joint,
-     joint_fields},
-    {"se3d_joint_create_distance", call_joint_create_distance, "SDh0", define_joint, joint_fields},
-    {"se3d_joint_create_revolute_spherical", call_joint_create_revolute_spherical, "SDh0",
-     define_joint, joint_fields},
-    {"se3d_joint_create_revolute_cylindrical", call_joint_create_revolute_cylindrical, "SDh0",
-     define_crossed, joint_fields},
-    {"se3d_joint_create_parallel", call_joint_create_parallel, "SDh0", define_joint, joint_fields},
-    {"se3d_joint_create_perpendicular", call_joint_create_perpendicular, "SDh0", define_crossed,
-     joint_fields},
-    {"se3d_joint_create_orientation", call_joint_create_orientation, "SDh0", define_joint,
-     joint_fields},
-    {"se3d_joint_create_perpendicular1", call_joint_create_perpendicular1, "SDh0", define_crossed,
-     joint_fields},
-    {"se3d_joint_create_perpendicular2", call_joint_create_perpendicular2, "SDh0", define_joint,
-     joint_fields},
     {"se3d_joint_get_coordinate", call_joint_get_coordinate, "sc", NULL, NULL},
     {"se3d_joint_create_coupler", call_joint_create_coupler, "SDh0", define_coupler,
      coupler_fields},
     {"se3d_joint_create_rack_pinion", call_joint_create_rack_pinion, "Scdnh0", NULL, NULL},
-    {"se3d_force_create_tsda", call_force_create_tsda, "SDh0", define_tsda, tsda_fields},
-    {"se3d_force_create_rsda", call_force_create_rsda, "SDh0", define_rsda, rsda_fields},
-    {"se3d_force_create_load", call_force_create_load, "SDh0", define_load, load_fields},
-    {"se3d_force_create_torque", call_force_create_torque, "SDh0", define_load, torque_fields},
-    {"se3d_force_create_bushing", call_force_create_bushing, "SDh0", define_bushing,
-     bushing_fields},
-    {"se3d_force_create_friction", call_force_create_friction, "SDh0", define_friction,
-     friction_fields},
-    {"se3d_force_create_stop", call_force_create_stop, "SDh0", define_stop, stop_fields},
-    {"se3d_force_create_effort", call_force_create_effort, "SDh0", define_effort, effort_fields},
-    {"se3d_force_create_callback", call_force_create_callback, "SDh0", define_callback,
-     callback_fields},
     {"se3d_force_destroy", call_force_destroy, "SF", NULL, NULL},
     {"se3d_force_find", call_force_find, "sth0", NULL, NULL},
     {"se3d_force_get_name", call_force_get_name, "sFo0", NULL, NULL},
@@ -772,14 +711,6 @@ static const row rows[] = {
     {"se3d_joint_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_coupler_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_driver_def_init", definitions_are_never_overrun, "", NULL, NULL},
-    {"se3d_tsda_def_init", definitions_are_never_overrun, "", NULL, NULL},
-    {"se3d_rsda_def_init", definitions_are_never_overrun, "", NULL, NULL},
-    {"se3d_load_def_init", definitions_are_never_overrun, "", NULL, NULL},
-    {"se3d_bushing_def_init", definitions_are_never_overrun, "", NULL, NULL},
-    {"se3d_friction_def_init", definitions_are_never_overrun, "", NULL, NULL},
-    {"se3d_stop_def_init", definitions_are_never_overrun, "", NULL, NULL},
-    {"se3d_effort_def_init", definitions_are_never_overrun, "", NULL, NULL},
-    {"se3d_force_callback_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_function_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_solver_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_expression_def_init", definitions_are_never_overrun, "", NULL, NULL},
@@ -855,13 +786,6 @@ static const row rows[] = {
     {"se3d_material_set", materials_reject_misuse, "", NULL, NULL},
     {"se3d_material_get", materials_reject_misuse, "", NULL, NULL},
     {"se3d_material_set_pair", materials_reject_misuse, "", NULL, NULL},
-    {"se3d_shape_create_sphere", shapes_reject_misuse, "", NULL, NULL},
-    {"se3d_shape_create_box", shapes_reject_misuse, "", NULL, NULL},
-    {"se3d_shape_create_capsule", shapes_reject_misuse, "", NULL, NULL},
-    {"se3d_shape_create_cylinder", shapes_reject_misuse, "", NULL, NULL},
-    {"se3d_shape_create_plane", shapes_reject_misuse, "", NULL, NULL},
-    {"se3d_shape_create_mesh", shapes_reject_misuse, "", NULL, NULL},
-    {"se3d_shape_create_hull", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_destroy", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_find", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_get_name", shapes_reject_misuse, "", NULL, NULL},

@@ -4,6 +4,7 @@
 #define SE3D_TESTS_MISUSE_PARTICLES_H
 
 #include "misuse/misuse_world.h"
+#include "model/shape.h"
 
 /* `call` fails with `status`, and a message says so. */
 #define REJECTED(call, status)                                                                     \
@@ -341,9 +342,10 @@ static se3d_status contacts_reject_misuse(arguments *a)
 static se3d_status shapes_reject_misuse(arguments *a)
 {
     se3d_status (*const create[])(se3d_system *, const se3d_shape_def *, se3d_shape *) = {
-        se3d_shape_create_sphere,   se3d_shape_create_box,   se3d_shape_create_capsule,
-        se3d_shape_create_cylinder, se3d_shape_create_plane, se3d_shape_create_hull,
-        se3d_shape_create_mesh};
+#define CREATE_SHAPE(KIND, name, traits) se3d_shape_create_##name,
+        SE3DI_SHAPE_LIST(CREATE_SHAPE)
+#undef CREATE_SHAPE
+    };
     const double corners[12] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const double flat[12] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0};
     const uint32_t faces[6] = {0, 1, 2, 0, 1, 3}, beyond[6] = {0, 1, 2, 0, 1, 4};

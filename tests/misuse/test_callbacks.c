@@ -7,6 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "joint/joint.h"
+#include "model/model.h"
+
 #define DURATION 0.02
 
 typedef enum effect { EDITS = 0, SETS = 1, READS = 2 } effect;

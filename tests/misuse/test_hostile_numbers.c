@@ -29,9 +29,9 @@ static void expect(int holds, const char *what, const char *message)
 
 /* ------------------------------------------------------------------ what is defined */
 
-#define FILL(type, name)                                                                           \
+#define FILL_IN(type, name)                                                                        \
     static void set_##name(world *w, type *def);                                                   \
-    static void fill_##name(world *w, void *storage)                                               \
+    static void fill_in_##name(world *w, void *storage)                                            \
     {                                                                                              \
         type *def = storage;                                                                       \
         *def = type##_default();                                                                   \
@@ -46,7 +46,7 @@ static void expect(int holds, const char *what, const char *message)
         return se3d_##function(w->system, def, &made);                                             \
     }
 
-FILL(se3d_body_def, body)
+FILL_IN(se3d_body_def, body)
 {
     (void)w;
     def->mass = 1.0;
@@ -59,7 +59,7 @@ static const field body_fields[] = {
     NUMBERS(se3d_body_def, velocity), NUMBERS(se3d_body_def, angular_velocity),
     INTEGER(se3d_body_def, fixed),    FIELDS_END};
 
-FILL(se3d_marker_def, marker)
+FILL_IN(se3d_marker_def, marker)
 {
     def->body = w->ball;
 }
@@ -67,53 +67,8 @@ CREATE(se3d_marker_def, marker_create, se3d_marker)
 static const field marker_fields[] = {NUMBERS(se3d_marker_def, position),
                                       NUMBERS(se3d_marker_def, orientation), FIELDS_END};
 
-FILL(se3d_joint_def, joint)
-{
-    def->body_i = w->ground;
-    def->body_j = w->ball;
-    def->point_i[2] = 0.0999;
-    def->pitch = 0.1;
-    def->distance = 0.5;
-}
-static void fill_at_distance(world *w, void *storage)
-{
-    fill_joint(w, storage);
-    ((se3d_joint_def *)storage)->point_i[0] = -0.5;
-}
-static void fill_cross(world *w, void *storage)
-{
-    se3d_joint_def *def = storage;
-    fill_joint(w, storage);
-    def->axis_j[0] = 1.0;
-    def->axis_j[2] = 0.0;
-}
-static const field joint_fields[] = {
-    NUMBERS(se3d_joint_def, point_i),  NUMBERS(se3d_joint_def, point_j),
-    NUMBERS(se3d_joint_def, axis_i),   NUMBERS(se3d_joint_def, axis_j),
-    NUMBERS(se3d_joint_def, ref_i),    NUMBERS(se3d_joint_def, ref_j),
-    NUMBERS(se3d_joint_def, angle0),   NUMBERS(se3d_joint_def, pitch),
-    NUMBERS(se3d_joint_def, distance), FIELDS_END};
-CREATE(se3d_joint_def, joint_create_fixed, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_revolute, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_prismatic, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_cylindrical, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_spherical, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_universal, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_planar, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_screw, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_point_on_line, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_point_on_plane, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_distance, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_revolute_spherical, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_revolute_cylindrical, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_parallel, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_perpendicular, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_orientation, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_perpendicular1, se3d_constraint)
-CREATE(se3d_joint_def, joint_create_perpendicular2, se3d_constraint)
-
 #define PRIMITIVE(what, TYPE)                                                                      \
-    FILL(se3d_primitive_def, what)                                                                 \
+    FILL_IN(se3d_primitive_def, what)                                                              \
     {                                                                                              \
         def->type = SE3D_PRIMITIVE_##TYPE;                                                         \
         def->body_i = w->ground;                                                                   \
@@ -134,7 +89,7 @@ static const field primitive_fields[] = {
     NUMBERS(se3d_primitive_def, point_j), NUMBERS(se3d_primitive_def, c),
     NUMBERS(se3d_primitive_def, value),   FIELDS_END};
 
-FILL(se3d_coupler_def, coupler)
+FILL_IN(se3d_coupler_def, coupler)
 {
     def->joint[0] = w->pin;
     def->joint[1] = w->slide;
@@ -151,7 +106,7 @@ static const field coupler_fields[] = {
     NUMBERS(se3d_coupler_def, value),
     FIELDS_END};
 
-FILL(se3d_driver_def, driver)
+FILL_IN(se3d_driver_def, driver)
 {
     def->joint = w->pin;
 }
@@ -159,123 +114,7 @@ CREATE(se3d_driver_def, driver_create, se3d_constraint)
 static const field driver_fields[] = {INTEGER(se3d_driver_def, coordinate),
                                       NUMBERS(se3d_driver_def, value), FIELDS_END};
 
-FILL(se3d_tsda_def, tsda)
-{
-    def->body_i = w->ground;
-    def->body_j = w->ball;
-    def->point_i[2] = 1.0;
-    def->k = 100.0;
-    def->c = 1.0;
-    def->l0 = 0.5;
-}
-CREATE(se3d_tsda_def, force_create_tsda, se3d_force)
-static const field tsda_fields[] = {NUMBERS(se3d_tsda_def, point_i),
-                                    NUMBERS(se3d_tsda_def, point_j),
-                                    NUMBERS(se3d_tsda_def, k),
-                                    NUMBERS(se3d_tsda_def, c),
-                                    NUMBERS(se3d_tsda_def, l0),
-                                    NUMBERS(se3d_tsda_def, preload),
-                                    FIELDS_END};
-
-FILL(se3d_rsda_def, rsda)
-{
-    def->joint = w->pin;
-    def->k = 10.0;
-    def->c = 0.1;
-}
-FILL(se3d_rsda_def, rsda_between)
-{
-    def->body_i = w->ground;
-    def->body_j = w->ball;
-    def->axis_i[2] = 1.0;
-    def->k = 10.0;
-}
-CREATE(se3d_rsda_def, force_create_rsda, se3d_force)
-static const field rsda_fields[] = {
-    NUMBERS(se3d_rsda_def, k),       NUMBERS(se3d_rsda_def, c),      NUMBERS(se3d_rsda_def, theta0),
-    NUMBERS(se3d_rsda_def, preload), NUMBERS(se3d_rsda_def, axis_i), NUMBERS(se3d_rsda_def, ref_i),
-    NUMBERS(se3d_rsda_def, ref_j),   NUMBERS(se3d_rsda_def, angle0), FIELDS_END};
-
-FILL(se3d_load_def, load)
-{
-    def->body = w->ball;
-    def->value[0] = 1.0;
-}
-CREATE(se3d_load_def, force_create_load, se3d_force)
-CREATE(se3d_load_def, force_create_torque, se3d_force)
-static const field load_fields[] = {NUMBERS(se3d_load_def, point), NUMBERS(se3d_load_def, value),
-                                    INTEGER(se3d_load_def, in_body_frame), FIELDS_END};
-
-FILL(se3d_bushing_def, bushing)
-{
-    def->body_i = w->ground;
-    def->body_j = w->ball;
-    for (int k = 0; k < 6; ++k) {
-        def->K[7 * k] = 100.0;
-        def->C[7 * k] = 1.0;
-    }
-}
-CREATE(se3d_bushing_def, force_create_bushing, se3d_force)
-static const field bushing_fields[] = {NUMBERS(se3d_bushing_def, point_i),
-                                       NUMBERS(se3d_bushing_def, point_j),
-                                       NUMBERS(se3d_bushing_def, orientation_i),
-                                       NUMBERS(se3d_bushing_def, orientation_j),
-                                       NUMBERS(se3d_bushing_def, K),
-                                       NUMBERS(se3d_bushing_def, C),
-                                       FIELDS_END};
-
-FILL(se3d_friction_def, friction)
-{
-    def->joint = w->pin;
-    def->mu = 0.3;
-    def->mu_static = 0.4;
-    def->radius = 0.01;
-    def->limit = 0.1;
-}
-CREATE(se3d_friction_def, force_create_friction, se3d_force)
-static const field friction_fields[] = {INTEGER(se3d_friction_def, coordinate),
-                                        NUMBERS(se3d_friction_def, mu),
-                                        NUMBERS(se3d_friction_def, mu_static),
-                                        NUMBERS(se3d_friction_def, radius),
-                                        NUMBERS(se3d_friction_def, limit),
-                                        NUMBERS(se3d_friction_def, viscous),
-                                        NUMBERS(se3d_friction_def, presliding),
-                                        NUMBERS(se3d_friction_def, length),
-                                        NUMBERS(se3d_friction_def, width),
-                                        NUMBERS(se3d_friction_def, thrust_radius),
-                                        FIELDS_END};
-
-FILL(se3d_stop_def, stop)
-{
-    def->joint = w->pin;
-    def->upper = 1.0;
-    def->k = 1000.0;
-}
-FILL(se3d_stop_def, stop_between)
-{
-    def->body_i = w->ground;
-    def->body_j = w->ball;
-    def->point_i[2] = 1.0;
-    def->upper = 1.0;
-    def->k = 1000.0;
-}
-CREATE(se3d_stop_def, force_create_stop, se3d_force)
-static const field stop_fields[] = {
-    INTEGER(se3d_stop_def, coordinate),  NUMBERS(se3d_stop_def, point_i),
-    NUMBERS(se3d_stop_def, point_j),     NUMBERS(se3d_stop_def, lower),
-    NUMBERS(se3d_stop_def, upper),       NUMBERS(se3d_stop_def, k),
-    NUMBERS(se3d_stop_def, restitution), FIELDS_END};
-
-FILL(se3d_effort_def, effort)
-{
-    def->joint = w->pin;
-    def->value = 1.0;
-}
-CREATE(se3d_effort_def, force_create_effort, se3d_force)
-static const field effort_fields[] = {INTEGER(se3d_effort_def, coordinate),
-                                      NUMBERS(se3d_effort_def, value), FIELDS_END};
-
-FILL(se3d_material_def, material)
+FILL_IN(se3d_material_def, material)
 {
     (void)w;
     def->density = 1000.0;
@@ -307,7 +146,7 @@ static const field material_fields[] = {NUMBERS(se3d_material_def, density),
                                         NUMBERS(se3d_material_def, adhesion),
                                         FIELDS_END};
 
-FILL(se3d_material_pair_def, pair)
+FILL_IN(se3d_material_pair_def, pair)
 {
     (void)w;
     def->friction = 0.3;
@@ -325,7 +164,7 @@ static const field pair_fields[] = {NUMBERS(se3d_material_pair_def, friction),
                                     NUMBERS(se3d_material_pair_def, adhesion),
                                     FIELDS_END};
 
-FILL(se3d_contact_settings, settings)
+FILL_IN(se3d_contact_settings, settings)
 {
     (void)w;
     (void)def;
@@ -338,37 +177,7 @@ static const field settings_fields[] = {INTEGER(se3d_contact_settings, law),
                                         NUMBERS(se3d_contact_settings, step),
                                         NUMBERS(se3d_contact_settings, overlap_limit), FIELDS_END};
 
-static const double corners[12] = {0, 0, 0, 0.1, 0, 0, 0, 0.1, 0, 0, 0, 0.1};
-static const uint32_t faces[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
-
-FILL(se3d_shape_def, shape)
-{
-    def->body = w->ball;
-    def->material = w->material;
-    def->position[2] = 0.05;
-    def->size[0] = def->size[1] = def->size[2] = 0.1;
-    def->radius = 0.05;
-    def->length = 0.1;
-    def->vertices = corners;
-    def->triangles = faces;
-    def->vertex_count = def->triangle_count = 4;
-}
-static const field shape_fields[] = {NUMBERS(se3d_shape_def, position),
-                                     NUMBERS(se3d_shape_def, orientation),
-                                     NUMBERS(se3d_shape_def, normal),
-                                     NUMBERS(se3d_shape_def, size),
-                                     NUMBERS(se3d_shape_def, radius),
-                                     NUMBERS(se3d_shape_def, length),
-                                     FIELDS_END};
-CREATE(se3d_shape_def, shape_create_sphere, se3d_shape)
-CREATE(se3d_shape_def, shape_create_box, se3d_shape)
-CREATE(se3d_shape_def, shape_create_capsule, se3d_shape)
-CREATE(se3d_shape_def, shape_create_cylinder, se3d_shape)
-CREATE(se3d_shape_def, shape_create_plane, se3d_shape)
-CREATE(se3d_shape_def, shape_create_hull, se3d_shape)
-CREATE(se3d_shape_def, shape_create_mesh, se3d_shape)
-
-FILL(se3d_particles_def, particles)
+FILL_IN(se3d_particles_def, particles)
 {
     (void)w;
     def->boundary[0] = SE3D_DOMAIN_BOUNDARY_OPEN;
@@ -390,7 +199,7 @@ static const field particles_fields[] = {
     NUMBERS(se3d_particles_def, upper),    NUMBERS(se3d_particles_def, step),
     NUMBERS(se3d_particles_def, skin),     FIELDS_END};
 
-FILL(se3d_fill_def, region)
+FILL_IN(se3d_fill_def, region)
 {
     def->material = w->material;
     def->count = 4;
@@ -417,9 +226,9 @@ static const field region_fields[] = {
     NUMBERS(se3d_fill_def, velocity),   INTEGER(se3d_fill_def, region),
     INTEGER(se3d_fill_def, axis),       FIELDS_END};
 
-FILL(se3d_particles_source_def, source)
+FILL_IN(se3d_particles_source_def, source)
 {
-    fill_region(w, &w->fill);
+    fill_in_region(w, &w->fill);
     def->fill = &w->fill;
     def->rate = 10.0;
 }
@@ -433,7 +242,7 @@ static const field source_fields[] = {
     NUMBERS(se3d_particles_source_def, stop),     NUMBERS(se3d_particles_source_def, every),
     INTEGER(se3d_particles_source_def, per_mass), FIELDS_END};
 
-FILL(se3d_particles_sink_def, sink)
+FILL_IN(se3d_particles_sink_def, sink)
 {
     (void)w;
     def->upper[0] = def->upper[1] = def->upper[2] = 1.0;
@@ -459,7 +268,7 @@ static se3d_status get_height(void *ctx, const se3d_system *system, double *valu
     return status;
 }
 
-FILL(se3d_event_def, event)
+FILL_IN(se3d_event_def, event)
 {
     def->value = get_height;
     def->ctx = w;
@@ -474,7 +283,7 @@ static const field event_fields[] = {
     INTEGER(se3d_event_def, action),     INTEGER(se3d_event_def, motion_only),
     NUMBERS(se3d_event_def, hysteresis), FIELDS_END};
 
-FILL(se3d_function_def, function)
+FILL_IN(se3d_function_def, function)
 {
     (void)w;
     (void)def;
@@ -482,73 +291,55 @@ FILL(se3d_function_def, function)
 CREATE(se3d_function_def, function_create, se3d_function)
 static const field function_fields[] = {NUMBERS(se3d_function_def, constant), FIELDS_END};
 
-#define JOINT(type)                                                                                \
+/* What the lists of the library and FORCE_LIST create. */
+static site site_of(const world *w)
+{
+    return (site){w->ground, w->ball, w->pin, w->material};
+}
+#define LISTED(definition, function, handle)                                                       \
+    static void fill_in_##definition(world *w, void *storage)                                      \
     {                                                                                              \
-#type, joint_fields, fill_joint, create_joint_create_##type, 0                             \
-    }
-#define JOINT_WITH(type, fill)                                                                     \
+        const site at = site_of(w);                                                                \
+        fill_##definition(&at, storage);                                                           \
+    }                                                                                              \
+    static se3d_status create_##definition(world *w, const void *def)                              \
     {                                                                                              \
-#type, joint_fields, fill, create_joint_create_##type, 0                                   \
+        handle made;                                                                               \
+        return se3d_##function(w->system, def, &made);                                             \
     }
-#define SHAPE(type)                                                                                \
-    {                                                                                              \
-#type, shape_fields, fill_shape, create_shape_create_##type, 0                             \
-    }
+#define JOINT_FUNCTIONS(type, flags)        LISTED(type, joint_create_##type, se3d_constraint)
+#define FORCE_FUNCTIONS(name, def)          LISTED(name, force_create_##name, se3d_force)
+#define VARIANT_FUNCTIONS(variant, name)    LISTED(variant, force_create_##name, se3d_force)
+#define SHAPE_FUNCTIONS(KIND, name, traits) LISTED(name, shape_create_##name, se3d_shape)
+#define SUBJECT(name, fields)               {#name, fields, fill_in_##name, create_##name, 0},
+#define JOINT_SUBJECT(type, flags)          SUBJECT(type, joint_fields)
+#define FORCE_SUBJECT(name, other)          SUBJECT(name, name##_fields)
+#define SHAPE_SUBJECT(KIND, name, traits)   SUBJECT(name, shape_fields)
+SE3DI_JOINT_LIST(JOINT_FUNCTIONS)
+FORCE_LIST(FORCE_FUNCTIONS)
+FORCE_VARIANT_LIST(VARIANT_FUNCTIONS)
+SE3DI_SHAPE_LIST(SHAPE_FUNCTIONS)
 
 static const subject subjects[] = {
-    {"body", body_fields, fill_body, create_body_create, 0},
-    {"marker", marker_fields, fill_marker, create_marker_create, 0},
-    JOINT(fixed),
-    JOINT(revolute),
-    JOINT(prismatic),
-    JOINT(cylindrical),
-    JOINT(spherical),
-    JOINT_WITH(universal, fill_cross),
-    JOINT(planar),
-    JOINT(screw),
-    JOINT(point_on_line),
-    JOINT(point_on_plane),
-    JOINT_WITH(distance, fill_at_distance),
-    JOINT_WITH(revolute_spherical, fill_at_distance),
-    JOINT_WITH(revolute_cylindrical, fill_at_distance),
-    JOINT(parallel),
-    JOINT_WITH(perpendicular, fill_cross),
-    JOINT(orientation),
-    JOINT(perpendicular1),
-    JOINT_WITH(perpendicular2, fill_cross),
-    {"dp1", primitive_fields, fill_dp1, create_primitive_create, 0},
-    {"dp2", primitive_fields, fill_dp2, create_primitive_create, 0},
-    {"d", primitive_fields, fill_d, create_primitive_create, 0},
-    {"cd", primitive_fields, fill_cd, create_primitive_create, 0},
-    {"coupler", coupler_fields, fill_coupler, create_joint_create_coupler, 0},
-    {"driver", driver_fields, fill_driver, create_driver_create, 0},
-    {"tsda", tsda_fields, fill_tsda, create_force_create_tsda, 0},
-    {"rsda", rsda_fields, fill_rsda, create_force_create_rsda, 0},
-    {"rsda between bodies", rsda_fields, fill_rsda_between, create_force_create_rsda, 0},
-    {"load", load_fields, fill_load, create_force_create_load, 0},
-    {"torque", load_fields, fill_load, create_force_create_torque, 0},
-    {"bushing", bushing_fields, fill_bushing, create_force_create_bushing, 0},
-    {"friction", friction_fields, fill_friction, create_force_create_friction, 0},
-    {"stop", stop_fields, fill_stop, create_force_create_stop, 0},
-    {"effort", effort_fields, fill_effort, create_force_create_effort, 0},
-    {"stop between points", stop_fields, fill_stop_between, create_force_create_stop, 0},
-    {"material", material_fields, fill_material, create_material, 0},
-    {"material pair", pair_fields, fill_pair, create_pair, 0},
-    {"contact settings", settings_fields, fill_settings, create_settings, 0},
-    SHAPE(sphere),
-    SHAPE(box),
-    SHAPE(capsule),
-    SHAPE(cylinder),
-    SHAPE(plane),
-    SHAPE(hull),
-    SHAPE(mesh),
-    {"particles", particles_fields, fill_particles, create_particles, 0},
-    {"lattice", region_fields, fill_region, create_lattice, 1},
-    {"random filling", region_fields, fill_region, create_random, 1},
-    {"source", source_fields, fill_source, create_source, 1},
-    {"sink", sink_fields, fill_sink, create_sink, 1},
-    {"event", event_fields, fill_event, create_event, 0},
-    {"function", function_fields, fill_function, create_function_create, 0},
+    SE3DI_JOINT_LIST(JOINT_SUBJECT) FORCE_LIST(FORCE_SUBJECT) FORCE_VARIANT_LIST(FORCE_SUBJECT)
+        SE3DI_SHAPE_LIST(SHAPE_SUBJECT){"body", body_fields, fill_in_body, create_body_create, 0},
+    {"marker", marker_fields, fill_in_marker, create_marker_create, 0},
+    {"dp1", primitive_fields, fill_in_dp1, create_primitive_create, 0},
+    {"dp2", primitive_fields, fill_in_dp2, create_primitive_create, 0},
+    {"d", primitive_fields, fill_in_d, create_primitive_create, 0},
+    {"cd", primitive_fields, fill_in_cd, create_primitive_create, 0},
+    {"coupler", coupler_fields, fill_in_coupler, create_joint_create_coupler, 0},
+    {"driver", driver_fields, fill_in_driver, create_driver_create, 0},
+    {"material", material_fields, fill_in_material, create_material, 0},
+    {"material pair", pair_fields, fill_in_pair, create_pair, 0},
+    {"contact settings", settings_fields, fill_in_settings, create_settings, 0},
+    {"particles", particles_fields, fill_in_particles, create_particles, 0},
+    {"lattice", region_fields, fill_in_region, create_lattice, 1},
+    {"random filling", region_fields, fill_in_region, create_random, 1},
+    {"source", source_fields, fill_in_source, create_source, 1},
+    {"sink", sink_fields, fill_in_sink, create_sink, 1},
+    {"event", event_fields, fill_in_event, create_event, 0},
+    {"function", function_fields, fill_in_function, create_function_create, 0},
 };
 #define SUBJECTS (sizeof subjects / sizeof subjects[0])
 

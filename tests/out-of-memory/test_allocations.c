@@ -2,6 +2,7 @@
 /* The k-th allocation fails, once or for ever, for every k until the operation succeeds: the
  * failure is reported, nothing changed, nothing leaks, and a second attempt succeeds. */
 #include "check.h"
+#include "misuse/element_defs.h"
 #include "support/analyses.h"
 #include "support/counting.h"
 #include "support/models.h"
@@ -58,56 +59,26 @@ static void workshop_close(workshop *w)
 /* Operations on a workshop; each leaves nothing behind where it fails. */
 typedef se3d_status (*operation)(workshop *w);
 
-#define JOINT_OPERATION(type)                                                                      \
-    static se3d_status make_##type(workshop *w)                                                    \
+static site site_of(const workshop *w)
+{
+    return (site){.ground = w->body[1], .body = w->body[0], .pin = w->pin};
+}
+
+#define OPERATION(kind, name, handle)                                                              \
+    static se3d_status make_##name(workshop *w)                                                    \
     {                                                                                              \
-        se3d_joint_def def = joint_between(w, w->body[0], w->body[1]);                             \
-        se3d_constraint joint;                                                                     \
-        def.distance = 1.0;                                                                        \
-        def.pitch = 0.1;                                                                           \
-        def.point_j[0] = 1.0;                                                                      \
-        def.axis_j[0] = CROSSED_##type;                                                            \
-        def.axis_j[2] = 1.0 - CROSSED_##type;                                                      \
-        return se3d_joint_create_##type(w->system, &def, &joint);                                  \
+        static const char *const text = "made";                                                    \
+        const site at = site_of(w);                                                                \
+        double def[200];                                                                           \
+        handle made;                                                                               \
+        fill_##name(&at, def);                                                                     \
+        memcpy((char *)def + sizeof(size_t), &text, sizeof text);                                  \
+        return se3d_##kind##_create_##name(w->system, (const void *)def, &made);                   \
     }
-#define CROSSED_fixed                0.0
-#define CROSSED_revolute             0.0
-#define CROSSED_prismatic            0.0
-#define CROSSED_cylindrical          0.0
-#define CROSSED_spherical            0.0
-#define CROSSED_universal            1.0
-#define CROSSED_planar               0.0
-#define CROSSED_screw                0.0
-#define CROSSED_point_on_line        0.0
-#define CROSSED_point_on_plane       0.0
-#define CROSSED_distance             0.0
-#define CROSSED_revolute_spherical   0.0
-#define CROSSED_revolute_cylindrical 1.0
-#define CROSSED_parallel             0.0
-#define CROSSED_perpendicular        1.0
-#define CROSSED_orientation          0.0
-#define CROSSED_perpendicular1       1.0
-#define CROSSED_perpendicular2       0.0
-#define JOINT_LIST(X)                                                                              \
-    X(fixed)                                                                                       \
-    X(revolute)                                                                                    \
-    X(prismatic)                                                                                   \
-    X(cylindrical)                                                                                 \
-    X(spherical)                                                                                   \
-    X(universal)                                                                                   \
-    X(planar)                                                                                      \
-    X(screw)                                                                                       \
-    X(point_on_line)                                                                               \
-    X(point_on_plane)                                                                              \
-    X(distance)                                                                                    \
-    X(revolute_spherical)                                                                          \
-    X(revolute_cylindrical)                                                                        \
-    X(parallel)                                                                                    \
-    X(perpendicular)                                                                               \
-    X(orientation)                                                                                 \
-    X(perpendicular1)                                                                              \
-    X(perpendicular2)
-JOINT_LIST(JOINT_OPERATION)
+#define JOINT_OPERATION(type, flags) OPERATION(joint, type, se3d_constraint)
+#define FORCE_OPERATION(name, def)   OPERATION(force, name, se3d_force)
+SE3DI_JOINT_LIST(JOINT_OPERATION)
+FORCE_LIST(FORCE_OPERATION)
 
 static se3d_status make_body(workshop *w)
 {
@@ -218,37 +189,7 @@ static se3d_status make_rack_pinion(workshop *w)
     return se3d_joint_create_rack_pinion(w->system, "rack", w->pin, w->slide, 0.1, &joint);
 }
 
-static se3d_status make_tsda(workshop *w)
-{
-    se3d_tsda_def def = se3d_tsda_def_default();
-    se3d_force force;
-    def.name = "spring";
-    def.body_i = w->body[0];
-    def.body_j = w->body[1];
-    def.point_j[0] = 1.0;
-    def.k = 1.0;
-    return se3d_force_create_tsda(w->system, &def, &force);
-}
-
-static se3d_status make_rsda(workshop *w)
-{
-    se3d_rsda_def def = se3d_rsda_def_default();
-    se3d_force force;
-    def.name = "spring";
-    def.joint = w->pin;
-    return se3d_force_create_rsda(w->system, &def, &force);
-}
-
-static se3d_status make_effort(workshop *w)
-{
-    se3d_effort_def def = se3d_effort_def_default();
-    se3d_force force;
-    def.name = "motor";
-    def.joint = w->pin;
-    return se3d_force_create_effort(w->system, &def, &force);
-}
-
-static se3d_status make_load(workshop *w)
+static se3d_status make_load_of_time(workshop *w)
 {
     se3d_load_def def = se3d_load_def_default();
     se3d_force force;
@@ -256,15 +197,6 @@ static se3d_status make_load(workshop *w)
     def.body = w->body[0];
     def.function[1] = w->of_time;
     return se3d_force_create_load(w->system, &def, &force);
-}
-
-static se3d_status make_torque(workshop *w)
-{
-    se3d_load_def def = se3d_load_def_default();
-    se3d_force force;
-    def.name = "turn";
-    def.body = w->body[0];
-    return se3d_force_create_torque(w->system, &def, &force);
 }
 
 static se3d_status make_expression(workshop *w)
@@ -413,9 +345,9 @@ typedef struct operation_row {
     operation run;
 } operation_row;
 
-#define JOINT_ROW(type) {#type, make_##type},
+#define ROW(name, ignored) {#name, make_##name},
 static const operation_row operations[] = {
-    JOINT_LIST(JOINT_ROW){"body", make_body},
+    SE3DI_JOINT_LIST(ROW) FORCE_LIST(ROW){"body", make_body},
     {"marker", make_marker},
     {"dp1", make_dp1},
     {"dp2", make_dp2},
@@ -425,11 +357,7 @@ static const operation_row operations[] = {
     {"driver", make_driver},
     {"coupler", make_coupler},
     {"rack_pinion", make_rack_pinion},
-    {"tsda", make_tsda},
-    {"rsda", make_rsda},
-    {"effort", make_effort},
-    {"load", make_load},
-    {"torque", make_torque},
+    {"load of time", make_load_of_time},
     {"expression", make_expression},
     {"table", make_table},
     {"clone", make_clone},
