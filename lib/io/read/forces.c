@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* `forces`: springs (tsda, rsda) and loads (force, torque); the others: forces_elements.c. */
+/* `forces`: keys of all types, and readers of all but bushings. */
 #include <string.h>
 
 #include "io/base/rotation.h"
@@ -12,7 +12,7 @@
 #include "io/model/model.h"
 #include "io/read/bodies.h"
 #include "io/read/elements.h"
-#include "io/read/forces_elements.h"
+#include "io/read/forces_bushing.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
 
@@ -295,6 +295,89 @@ static bool read_rsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
+static bool read_friction(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+{
+    se3d_friction_def def = se3d_friction_def_default();
+    if (!se3di_read_key_joint(reader, node, "joint", &def.joint) ||
+        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
+        !se3di_read_fields(reader, node, &se3di_object_force, "friction", "se3d_friction_def",
+                           &def)) {
+        return false;
+    }
+    if (def.coordinate == SE3D_JOINT_COORDINATE_ANGLE && def.mu > 0.0 && !(def.radius > 0.0) &&
+        !(def.thrust_radius > 0.0)) {
+        return se3di_reader_fail_key(reader, node, "radius",
+                                     "is missing, friction with `mu` on an angle needs the radius "
+                                     "of the bearing [m] > 0");
+    }
+    def.name = entry->name;
+    entry->coordinate = def.coordinate;
+    const se3d_status status = se3d_force_create_friction(reader->system, &def, &entry->force);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+static bool read_effort(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+{
+    static const char *const variables[] = {"t", "q", "qdot", NULL};
+    const se3di_node *value = se3di_node_get(node, "value");
+    se3d_effort_def def = se3d_effort_def_default();
+    if (!se3di_read_key_joint(reader, node, "joint", &def.joint) ||
+        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
+        (value && !se3di_read_function(reader, value, variables, &def.value, &def.function))) {
+        return false;
+    }
+    def.name = entry->name;
+    entry->coordinate = def.coordinate;
+    const se3d_status status = se3d_force_create_effort(reader->system, &def, &entry->force);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+/* The coordinate of a joint, or two points whose distance it is. */
+static bool read_stop_place(se3di_reader *reader, const se3di_node *node, se3d_stop_def *def)
+{
+    const se3di_body_entry *bodies[2] = {NULL, NULL};
+    if (!se3di_node_get(node, "joint") && se3di_node_get(node, "body_j")) {
+        if (!se3di_read_bodies_ij(reader, node, "a stop", bodies) ||
+            !se3di_read_key_point(reader, node, "point_i", bodies[0], def->point_i) ||
+            !se3di_read_key_point(reader, node, "point_j", bodies[1], def->point_j)) {
+            return false;
+        }
+        def->body_i = bodies[0]->body;
+        def->body_j = bodies[1]->body;
+        return true;
+    }
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (se3di_node_get(node, "joint") &&
+            se3di_keys_contain(" body_i body_j point_i point_j ", child->key)) {
+            return se3di_reader_fail(reader, child, "cannot be combined with `joint`");
+        }
+    }
+    return se3di_read_key_joint(reader, node, "joint", &def->joint) &&
+           se3di_read_key_coordinate(reader, node, def->joint, &def->coordinate);
+}
+
+static bool read_stop(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+{
+    se3d_stop_def def = se3d_stop_def_default();
+    if (!read_stop_place(reader, node, &def) ||
+        !se3di_read_fields(reader, node, &se3di_object_force, "stop", "se3d_stop_def", &def)) {
+        return false;
+    }
+    if (!se3di_node_get(node, "lower") && !se3di_node_get(node, "upper")) {
+        return se3di_reader_fail_key(reader, node, "upper",
+                                     "is missing, a stop needs `lower`, `upper` or both");
+    }
+    if (!se3di_node_get(node, "k")) {
+        return se3di_reader_fail_key(reader, node, "k",
+                                     "is missing, a stop needs its stiffness > 0");
+    }
+    def.name = entry->name;
+    entry->coordinate =
+        se3di_node_get(node, "joint") ? def.coordinate : SE3D_JOINT_COORDINATE_DISPLACEMENT;
+    const se3d_status status = se3d_force_create_stop(reader->system, &def, &entry->force);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
 /* A force at a point or a torque: three components, each a number or a function of time. */
 static bool read_load(se3di_reader *reader, const se3di_node *node, const char *type,
                       se3di_element_entry *entry)
@@ -335,12 +418,9 @@ static bool read_force(se3di_reader *reader, const se3di_node *node)
     static const struct {
         const char *type;
         read_element read;
-    } readers[] = {{"tsda", read_tsda},
-                   {"rsda", read_rsda},
-                   {"bushing", se3di_read_bushing},
-                   {"friction", se3di_read_friction},
-                   {"effort", se3di_read_effort},
-                   {"stop", se3di_read_stop}};
+    } readers[] = {
+        {"tsda", read_tsda},         {"rsda", read_rsda},     {"bushing", se3di_read_bushing},
+        {"friction", read_friction}, {"effort", read_effort}, {"stop", read_stop}};
     const char *type = NULL;
     se3di_element_entry *entry = NULL;
     if (!se3di_read_type(reader, node, &se3di_object_force, &type) ||
