@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Headers, libraries, CMake package `se3d`, se3d.pc and se3d-io.pc.
+# Headers, libraries, CMake package `se3d`, se3d.pc and se3d-io.pc; the program with its pages of the manual, completion
+# and viewer; documents. Components: runtime, development, program, documentation.
 include(CMakePackageConfigHelpers)
 
 set(se3d_cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/se3d")
 set(se3d_pc_dir "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/se3d" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
-        FILES_MATCHING PATTERN "*.h")
+        COMPONENT development FILES_MATCHING PATTERN "*.h")
 
 # Shared and static targets are exported apart: only the static ones need our dependencies.
 set(se3d_shared_targets se3d)
@@ -17,10 +18,10 @@ if(TARGET se3d_io)
 endif()
 foreach(kind shared static)
     install(TARGETS ${se3d_${kind}_targets} EXPORT se3d-${kind}-targets
-            LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
-            ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
-            RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
-    install(EXPORT se3d-${kind}-targets NAMESPACE se3d:: DESTINATION "${se3d_cmake_dir}")
+            LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT runtime NAMELINK_COMPONENT development
+            ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development
+            RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT runtime)
+    install(EXPORT se3d-${kind}-targets NAMESPACE se3d:: DESTINATION "${se3d_cmake_dir}" COMPONENT development)
 endforeach()
 
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/se3d-config.cmake.in"
@@ -31,7 +32,7 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/se3d-config-version.cmak
 install(FILES "${PROJECT_BINARY_DIR}/se3d-config.cmake"
               "${PROJECT_BINARY_DIR}/se3d-config-version.cmake"
               "${PROJECT_SOURCE_DIR}/cmake/se3d-dependencies.cmake"
-        DESTINATION "${se3d_cmake_dir}")
+        DESTINATION "${se3d_cmake_dir}" COMPONENT development)
 
 # The prefix is taken from where the .pc file lies, so that an installed tree may be moved.
 if(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
@@ -68,23 +69,58 @@ foreach(pc se3d se3d-io)
     if(pc STREQUAL "se3d" OR TARGET se3d_io)
         configure_file("${PROJECT_SOURCE_DIR}/pkgconfig/${pc}.pc.in"
                        "${PROJECT_BINARY_DIR}/${pc}.pc" @ONLY)
-        install(FILES "${PROJECT_BINARY_DIR}/${pc}.pc" DESTINATION "${se3d_pc_dir}")
+        install(FILES "${PROJECT_BINARY_DIR}/${pc}.pc" DESTINATION "${se3d_pc_dir}" COMPONENT development)
     endif()
 endforeach()
+
+# Documents. The schema lies where editors are pointed at it.
+foreach(name LICENSE README.md CHANGELOG.md)
+    install(FILES "${PROJECT_SOURCE_DIR}/${name}" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
+endforeach()
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/examples/models" DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples"
+        COMPONENT documentation)
+install(FILES "${PROJECT_SOURCE_DIR}/docs/se3d.schema.json" DESTINATION "${CMAKE_INSTALL_DATADIR}/se3d"
+        COMPONENT program)
+
+# The pages of the manual and the completion of shells are what the program says of itself; a program for another machine
+# needs an emulator for that (CMAKE_CROSSCOMPILING_EMULATOR).
+if(TARGET se3d_program)
+    install(TARGETS se3d_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
+endif()
+if(TARGET se3d_program AND UNIX AND (NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR))
+    set(se3d_manual_dir "${PROJECT_BINARY_DIR}/manual")
+    set(se3d_manual "")
+    # se3d_manual_page(<file> <where to> <words of the program>...)
+    function(se3d_manual_page file folder)
+        set(path "${se3d_manual_dir}/${file}")
+        add_custom_command(OUTPUT "${path}" DEPENDS se3d_program VERBATIM
+            COMMAND "${CMAKE_COMMAND}" -E make_directory "${se3d_manual_dir}"
+            COMMAND se3d_program ${ARGN} > "${path}")
+        install(FILES "${path}" DESTINATION "${folder}" COMPONENT program)
+        set(se3d_manual ${se3d_manual} "${path}" PARENT_SCOPE)
+    endfunction()
+    se3d_manual_page(se3d.1 "${CMAKE_INSTALL_MANDIR}/man1" help --man)
+    se3d_manual_page(se3d-model.5 "${CMAKE_INSTALL_MANDIR}/man5" explain --man)
+    se3d_manual_page(se3d "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" completion bash)
+    se3d_manual_page(_se3d "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions" completion zsh)
+    se3d_manual_page(se3d.fish "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d" completion fish)
+    add_custom_target(se3d_manual ALL DEPENDS ${se3d_manual})
+endif()
 
 # What `se3d view` and `se3d video` make their page of. three.js comes from npm or libjs-three when it is installed; where
 # neither is there, the page's first user makes it.
 if(TARGET se3d_program)
     option(SE3D_BUNDLE_VIEWER "Install three.js with the viewer" ${PROJECT_IS_TOP_LEVEL})
     set(se3d_viewer_dir "${CMAKE_INSTALL_DATADIR}/se3d/viewer")
-    install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/viewer/" DESTINATION "${se3d_viewer_dir}")
+    install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/viewer/" DESTINATION "${se3d_viewer_dir}" COMPONENT program)
     if(SE3D_BUNDLE_VIEWER AND UNIX)
         install(CODE "
             execute_process(COMMAND sh \"${PROJECT_SOURCE_DIR}/tools/viewer/build.sh\" \"${PROJECT_BINARY_DIR}/viewer\"
                             RESULT_VARIABLE se3d_viewer_failed)
             if(se3d_viewer_failed)
                 message(STATUS \"three.js is not installed with the viewer; it will be made at its first use\")
-            endif()")
-        install(FILES "${PROJECT_BINARY_DIR}/viewer/three.js" DESTINATION "${se3d_viewer_dir}" OPTIONAL)
+            endif()" COMPONENT program)
+        install(FILES "${PROJECT_BINARY_DIR}/viewer/three.js" DESTINATION "${se3d_viewer_dir}" COMPONENT program OPTIONAL)
     endif()
 endif()

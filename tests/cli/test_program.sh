@@ -332,7 +332,10 @@ for method in radau bdf dop853 'rk45 --step 1e-7' 'rk4 --step 1e-7' 'hht --step 
         expect "$method ended by $signal" 1 wait $child
         has "$dir/err.row" 'ended by the user at t = '
         is "$(ls "$dir/row" | tr '\n' ' ')" 'row.csv scene.glb '
-        is "$(awk -F, 'END { print NR, NF, ($1 > 0 && $1 < 50) }' "$dir/row/row.csv")" '3 4 1'
+        # The last row is the end, or the start if the first step was not made yet.
+        rows='3 4 1'
+        ! grep -q 'ended by the user at t = 0 s' "$dir/err.row" || rows='2 4 0'
+        is "$(awk -F, 'END { print NR, NF, ($1 > 0 && $1 < 50) }' "$dir/row/row.csv")" "$rows"
     done
 done
 

@@ -124,14 +124,6 @@ static const char *const kinds[SE3DI_KIND_END] = {
                          "{" REFERENCE("%s") "}",
 };
 
-/* "a", "b", ... of the words behind `mark` "\"" or "`". */
-static void put_words(text *t, const char *const *words, const char *mark, const char *between)
-{
-    for (size_t k = 0; words[k]; ++k) {
-        put(t, "%s%s%s%s", k > 0 ? between : "", mark, words[k], mark);
-    }
-}
-
 /* A text in JSON, without the addresses of its links. */
 static void put_json_text(text *t, const char *from)
 {
@@ -168,23 +160,26 @@ static void put_types(text *t, const se3di_object *object, const se3di_key *row,
     }
 }
 
-static void put_row_words(text *t, const se3di_object *object, const se3di_key *row,
-                          const char *mark)
+/* "a", "b", ... of the words of a row. */
+static void put_row_words(text *t, const se3di_object *object, const se3di_key *row)
 {
-    const char *words[SE3DI_WORDS_MAX + 1];
-    se3di_key_list_words(row, words);
-    put_words(t, row->kind == SE3DI_KIND_TYPE ? object->types : words, mark, ", ");
+    const char *own[SE3DI_WORDS_MAX + 1];
+    se3di_key_list_words(row, own);
+    const char *const *words = row->kind == SE3DI_KIND_TYPE ? object->types : own;
+    for (size_t k = 0; words[k]; ++k) {
+        put(t, "%s\"%s\"", k > 0 ? ", " : "", words[k]);
+    }
 }
 
 static void put_schema_kind(text *t, const se3di_object *object, const se3di_key *row)
 {
     if (row->kind == SE3DI_KIND_WORD || row->kind == SE3DI_KIND_TYPE) {
         put(t, "\"enum\": [");
-        put_row_words(t, object, row, "\"");
+        put_row_words(t, object, row);
         put(t, "]");
     } else if (row->kind == SE3DI_KIND_BOUNDARY) {
         put(t, "\"type\": \"array\", \"items\": {\"enum\": [");
-        put_row_words(t, object, row, "\"");
+        put_row_words(t, object, row);
         put(t, "]}, " EXACTLY(3));
     } else if (row->object) {
         const char *from = kinds[row->kind];

@@ -20,13 +20,27 @@ tree() {
     for header in "$SE3D_SOURCE_DIR"/include/se3d/*.h; do
         [ -f "$prefix/include/se3d/${header##*/}" ] || fail "not installed: ${header##*/}"
     done
+    for document in LICENSE README.md CHANGELOG.md docs/api.md docs/model-file/reference.md examples/models/fourbar.yaml; do
+        [ -f "$prefix/share/doc/se3d/$document" ] || fail "not installed: $document"
+    done
     if grep -rl "$SE3D_SOURCE_DIR" "$prefix" --include=*.cmake --include=*.pc; then
         fail "installed files name the source folder"
     fi
     if [ -n "${SE3D_PROGRAM:-}" ]; then
         [ -x "$prefix/bin/se3d" ] || fail "the program is not installed"
+        manual
         view
     fi
+}
+
+# What the program says of itself is installed with it.
+manual() {
+    [ -f "$prefix/share/se3d/se3d.schema.json" ] || fail "the schema is not installed"
+    "$prefix/bin/se3d" help --man | cmp - "$prefix/share/man/man1/se3d.1" || fail "se3d(1) is another text"
+    "$prefix/bin/se3d" explain --man | cmp - "$prefix/share/man/man5/se3d-model.5" || fail "se3d-model(5) is another text"
+    for completion in bash-completion/completions/se3d zsh/vendor-completions/_se3d fish/vendor_completions.d/se3d.fish; do
+        [ -s "$prefix/share/$completion" ] || fail "not installed: $completion"
+    done
 }
 
 # An installed program finds the parts of its page, and needs nothing else where three.js lies beside them.
@@ -126,6 +140,22 @@ find_package() {
     "$CMAKE" --build "$work/project/build" >"$work/project/log" 2>&1 ||
         { cat "$work/project/log"; exit 1; }
     "$CMAKE" -E chdir "$work/project/build" ctest --output-on-failure --no-tests=error
+}
+
+# The sources as a part of another project: only the libraries are built, and none of our options or settings leaks.
+add_subdirectory() {
+    rm -rf "$work/embedded"
+    mkdir -p "$work/embedded"
+    cp "$here/consumer.c" "$work/embedded/consumer.c"
+    cp "$here/embedded_CMakeLists.txt" "$work/embedded/CMakeLists.txt"
+    "$CMAKE" -S "$work/embedded" -B "$work/embedded/build" -DCMAKE_C_COMPILER="$CC" -DCMAKE_BUILD_TYPE=Debug "-DSE3D_SOURCE_DIR=$SE3D_SOURCE_DIR" \
+        >"$work/embedded/log" 2>&1 || { cat "$work/embedded/log"; exit 1; }
+    "$CMAKE" --build "$work/embedded/build" --parallel 2 >"$work/embedded/log" 2>&1 || { cat "$work/embedded/log"; exit 1; }
+    "$CMAKE" -E chdir "$work/embedded/build" ctest --output-on-failure --no-tests=error
+    "$CMAKE" --install "$work/embedded/build" --prefix "$work/embedded/installed" >"$work/embedded/log"
+    if find "$work/embedded/installed" -name '*se3d*' 2>/dev/null | grep .; then
+        fail "the project installs libse3d"
+    fi
 }
 
 "$1"

@@ -6,15 +6,6 @@
 #include "options.h"
 #include "text.h"
 
-static const char help[] =
-    "se3d check MODEL [--set NAME=VALUE]... [--json]\n"
-    "\n"
-    "Reads a model and says how many bodies, equations and degrees of freedom it has at its "
-    "present\n"
-    "pose, and names redundant and inconsistent constraints and bodies that nothing holds.\n"
-    "\n"
-    "Exit code: 0 done; 1 constraints contradict each other; 2 bad usage or model.\n";
-
 static void print_text(const se3d_model *model, const se3d_check_summary *s,
                        const se3d_check *check)
 {
@@ -77,13 +68,12 @@ static int check_model(const options *o, se3d_model *model)
     return summary.inconsistent > 0 ? EXIT_FAILED : EXIT_DONE;
 }
 
-int command_check(int count, char *const *words)
+static int command_check(int count, char *const *words)
 {
     options o;
     se3d_model *model = NULL;
-    int code = options_read(&o, "check", " --set --quiet -q --json ", count, words);
+    int code = options_read(&o, &check_entry, count, words);
     if (code != EXIT_DONE || o.help) {
-        fputs(o.help ? help : "", stdout);
         return code;
     }
     se3d_model_options how = options_get_model(&o);
@@ -95,3 +85,24 @@ int command_check(int count, char *const *words)
     se3d_model_destroy(model);
     return code;
 }
+
+const command_entry check_entry = {
+    .name = "check",
+    .run = command_check,
+    .operands = "MODEL",
+    .files = "yaml yml json",
+    .summary = "count equations and freedoms, name redundant constraints",
+    .text = "Reads a model and says how many bodies, equations and degrees of freedom it "
+            "has at its present pose, and names redundant and inconsistent constraints "
+            "and bodies that nothing holds.",
+    .options =
+        (const command_option[]){{"--set", NULL, "NAME=VALUE",
+                                  "replace a parameter; VALUE is an expression; may be repeated"},
+                                 {"--quiet", "-q", NULL, "print nothing but errors"},
+                                 {"--json", NULL, NULL, "print the counts and messages as JSON"},
+                                 {0}},
+    .examples = (const command_example[]){{"check suspension.yaml", "what the joints leave free"},
+                                          {"check suspension.yaml --json", "the same for programs"},
+                                          {0}},
+    .exits = "0 done; 1 constraints contradict each other; 2 bad usage or model.",
+};

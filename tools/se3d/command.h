@@ -20,7 +20,7 @@ typedef struct command_example {
     const char *text;
 } command_example;
 
-typedef struct command {
+typedef struct command_entry {
     const char *name;
     int (*run)(int count, char *const *words); /* the words after the name; the exit code */
     const char *operands;                      /* MODEL, DIR ... */
@@ -30,20 +30,20 @@ typedef struct command {
     const command_option *options;
     const command_example *examples;
     const char *exits; /* what the exit codes mean */
-} command;
+} command_entry;
 
-extern const command run_entry, check_entry, evaluate_entry, plot_entry, view_entry, video_entry,
-    explain_entry, completion_entry, help_entry;
+extern const command_entry run_entry, check_entry, evaluate_entry, plot_entry, view_entry,
+    video_entry, explain_entry, completion_entry, help_entry;
 
 /* The k-th command, NULL behind the last. */
-const command *command_get(size_t k);
+const command_entry *command_get(size_t k);
 /* The command of a name, NULL: there is none. */
-const command *command_find(const char *name);
+const command_entry *command_find(const char *name);
 /* The option of a command that has this name, NULL: there is none. */
-const command_option *command_find_option(const command *c, const char *name);
+const command_option *command_find_option(const command_entry *c, const char *name);
 
 /* command_help.c: the text of `se3d COMMAND --help`, and that of `se3d --help`. */
-void command_print_help(const command *c);
+void command_print_help(const command_entry *c);
 void command_print_overview(FILE *file);
 /* The text of an option with the names of lists in the place of "{methods}" and the like. */
 void command_expand(const char *text, char *out, size_t size);

@@ -7,23 +7,6 @@
 
 #include "options.h"
 
-static const char help[] =
-    "se3d evaluate MODEL [--time T] [--csv] [--set NAME=VALUE]...\n"
-    "\n"
-    "Prints, for every equation of every constraint at the positions and velocities in the file:\n"
-    "Phi, nu (Phi_q qdot = nu), gamma (Phi_q qddot = gamma) of both formulations, and the "
-    "Jacobian\n"
-    "with respect to position (Phi_r), Euler parameters (Phi_p, r-p formulation) and virtual\n"
-    "rotation in the body frame (Phi_pi, r-omega) of each body. The last rows are p.p - 1 of "
-    "every\n"
-    "movable body, which belong to r-p only. Bodies need no mass here.\n"
-    "\n"
-    "  --time T   the time of the functions of time [s] (default 0)\n"
-    "  --csv      one line an equation: constraint, type, equation, phi, nu, gamma_rp,\n"
-    "             gamma_romega, then for body i, j (and 3, 4 ... of couplings): body_i, phi_r_i.x "
-    "y z,\n"
-    "             phi_p_i.e0 e1 e2 e3, phi_pi_i.x y z; fields that do not apply are empty\n";
-
 enum { SLOTS_MAX = 16 };
 
 /* All equations of one constraint. */
@@ -298,13 +281,12 @@ static int evaluate_model(const options *o, se3d_model *model)
     return EXIT_DONE;
 }
 
-int command_evaluate(int count, char *const *words)
+static int command_evaluate(int count, char *const *words)
 {
     options o;
     se3d_model *model = NULL;
-    int code = options_read(&o, "evaluate", " --set --time --csv ", count, words);
+    int code = options_read(&o, &evaluate_entry, count, words);
     if (code != EXIT_DONE || o.help) {
-        fputs(o.help ? help : "", stdout);
         return code;
     }
     se3d_model_options how = options_get_model(&o);
@@ -316,3 +298,32 @@ int command_evaluate(int count, char *const *words)
     se3d_model_destroy(model);
     return code;
 }
+
+const command_entry evaluate_entry = {
+    .name = "evaluate",
+    .run = command_evaluate,
+    .operands = "MODEL",
+    .files = "yaml yml json",
+    .summary = "print Phi, nu, gamma and the Jacobian of every constraint",
+    .text = "Prints, for every equation of every constraint at the positions and "
+            "velocities in the file: Phi, nu (Phi_q qdot = nu), gamma (Phi_q qddot = "
+            "gamma) of both formulations, and the Jacobian with respect to position "
+            "(Phi_r), Euler parameters (Phi_p, r-p formulation) and virtual rotation in "
+            "the body frame (Phi_pi, r-omega) of each body. The last rows are p.p - 1 of "
+            "every movable body, which belong to r-p only. Bodies need no mass here.",
+    .options =
+        (const command_option[]){
+            {"--set", NULL, "NAME=VALUE",
+             "replace a parameter; VALUE is an expression; may be repeated"},
+            {"--time", NULL, "T", "the time of the functions of time [s] (default 0)"},
+            {"--csv", NULL, NULL,
+             "one line an equation: constraint, type, equation, phi, nu, gamma_rp, gamma_romega, "
+             "then for body i, j (and 3, 4 ... of couplings): body_i, phi_r_i.x y z, phi_p_i.e0 e1 "
+             "e2 e3, phi_pi_i.x y z; fields that do not apply are empty"},
+            {0}},
+    .examples = (const command_example[]){{"evaluate pendulum.yaml --time 0.5",
+                                           "the equations half a second after the start"},
+                                          {"evaluate pendulum.yaml --csv", "a table"},
+                                          {0}},
+    .exits = "0 done; 1 the constraints cannot be evaluated; 2 bad usage or model.",
+};

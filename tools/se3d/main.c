@@ -3,59 +3,48 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/document/guess.h"
 #include "options.h"
 
-static const char help[] =
-    "se3d COMMAND ...: constrained rigid multibody dynamics in three dimensions\n"
-    "\n"
-    "  se3d run MODEL        run a model's analyses, write results as CSV\n"
-    "  se3d check MODEL      count equations and freedoms, name redundant constraints\n"
-    "  se3d evaluate MODEL   print Phi, nu, gamma and the Jacobian of every constraint\n"
-    "  se3d plot FILE.csv    draw results as SVG and PNG\n"
-    "  se3d view DIR         make one HTML file that shows results in 3-D\n"
-    "  se3d video DIR        make an MP4 film of results in 3-D\n"
-    "  se3d --version        print the version\n"
-    "\n"
-    "`se3d COMMAND --help` says more. The model file: docs/model-file/reference.md.\n"
-    "Exit code: 0 done; 1 the analysis failed; 2 bad usage or bad model.\n";
-
-typedef struct command {
-    const char *name;
-    int (*run)(int count, char *const *words);
-} command;
-
-static const command commands[] = {{"run", command_run},           {"check", command_check},
-                                   {"evaluate", command_evaluate}, {"plot", command_plot},
-                                   {"view", command_view},         {"video", command_video}};
+int command_report_unknown(const char *name)
+{
+    se3di_guess guess = se3di_guess_begin(name);
+    fprintf(stderr, "se3d: unknown command `%s`; there are:", name);
+    for (size_t k = 0; command_get(k); ++k) {
+        se3di_guess_offer(&guess, command_get(k)->name);
+        fprintf(stderr, "%s %s", k > 0 ? "," : "", command_get(k)->name);
+    }
+    const char *best = se3di_guess_get(&guess);
+    if (best) {
+        fprintf(stderr, "; did you mean `%s`?\n", best);
+    } else {
+        fputs("; see `se3d help`\n", stderr);
+    }
+    return EXIT_USAGE;
+}
 
 static int dispatch(int count, char *const *words)
 {
     const char *name = words[0];
-    for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k) {
-        if (strcmp(commands[k].name, name) == 0) {
-            return commands[k].run(count - 1, words + 1);
-        }
+    const command_entry *c = command_find(name);
+    if (c) {
+        return c->run(count - 1, words + 1);
     }
-    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
-        fputs(help, stdout);
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
+        command_print_overview(stdout);
         return EXIT_DONE;
     }
-    if (strcmp(name, "--version") == 0) {
+    if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) {
         printf("se3d %s\n", se3d_version_get_text());
         return EXIT_DONE;
     }
-    fprintf(stderr, "se3d: unknown command `%s`; there are:", name);
-    for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k) {
-        fprintf(stderr, "%s %s", k > 0 ? "," : "", commands[k].name);
-    }
-    fputs("; see `se3d --help`\n", stderr);
-    return EXIT_USAGE;
+    return command_report_unknown(name);
 }
 
 int main(int argc, char **argv)
 {
     if (argc < 2) {
-        fputs(help, stderr);
+        command_print_overview(stderr);
         return EXIT_USAGE;
     }
     const int code = dispatch(argc - 1, argv + 1);

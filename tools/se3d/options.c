@@ -7,15 +7,8 @@
 
 static int usage_error(const char *command, const char *what, const char *word)
 {
-    fprintf(stderr, "se3d %s: %s `%s`; see `se3d %s --help`\n", command, what, word, command);
+    fprintf(stderr, "se3d %s: %s `%s`; see `se3d help %s`\n", command, what, word, command);
     return EXIT_USAGE;
-}
-
-static int is_allowed(const char *allowed, const char *name)
-{
-    char word[40];
-    const int length = snprintf(word, sizeof word, " %s ", name);
-    return length > 0 && (size_t)length < sizeof word && strstr(allowed, word) != NULL;
 }
 
 static int add_setting(options *o, const char *command, const char *text)
@@ -70,6 +63,9 @@ static int *flag_target(options *o, const char *name)
     if (strcmp(name, "--csv") == 0) {
         return &o->csv;
     }
+    if (strcmp(name, "--man") == 0) {
+        return &o->man;
+    }
     return strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 ? &o->help : NULL;
 }
 
@@ -90,36 +86,51 @@ static int read_valued(options *o, const char *command, const char *name, const 
 }
 
 /* @return words used, 0: an error that was reported. */
-static int read_option(options *o, const char *command, const char *allowed, int count,
-                       char *const *words)
+static int read_option(options *o, const command_entry *c, int count, char *const *words)
 {
     char name[40];
     const char *word = words[0];
     const char *equals = strncmp(word, "--", 2) == 0 ? strchr(word, '=') : NULL;
     const size_t length = equals ? (size_t)(equals - word) : strlen(word);
     if (length >= sizeof name) {
-        usage_error(command, "unknown option", word);
+        usage_error(c->name, "unknown option", word);
         return 0;
     }
     memcpy(name, word, length);
     name[length] = '\0';
     int *flag = flag_target(o, name);
-    if (flag == &o->help || (flag && !equals && is_allowed(allowed, name))) {
+    if (flag == &o->help || (flag && !equals && command_find_option(c, name))) {
         *flag = 1;
         return 1;
     }
-    if (flag || !is_allowed(allowed, name)) {
-        usage_error(command, "unknown option", word);
+    if (flag || !command_find_option(c, name)) {
+        usage_error(c->name, "unknown option", word);
         return 0;
     }
     if (equals) {
-        return read_valued(o, command, name, equals + 1, 1);
+        return read_valued(o, c->name, name, equals + 1, 1);
     }
-    return read_valued(o, command, name, count > 1 ? words[1] : NULL, 2);
+    return read_valued(o, c->name, name, count > 1 ? words[1] : NULL, 2);
 }
 
-int options_read(options *o, const char *command, const char *allowed, int count,
-                 char *const *words)
+/* What is missing where no operand is given. */
+static int report_no_operand(const command_entry *c)
+{
+    static const struct {
+        const char *operands;
+        const char *text;
+    } table[] = {{"MODEL", "which model? Give a file"},
+                 {"DIR", "which results? Give the folder that `se3d run` wrote"},
+                 {"SHELL", "which shell? Give bash, zsh or fish"}};
+    for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+        if (strcmp(table[k].operands, c->operands) == 0) {
+            fprintf(stderr, "se3d %s: %s; see `se3d help %s`\n", c->name, table[k].text, c->name);
+        }
+    }
+    return EXIT_USAGE;
+}
+
+int options_read(options *o, const command_entry *c, int count, char *const *words)
 {
     int options_end = 0;
     memset(o, 0, sizeof *o);
@@ -129,24 +140,23 @@ int options_read(options *o, const char *command, const char *allowed, int count
             options_end = 1;
             ++k;
         } else if (!options_end && word[0] == '-' && word[1]) {
-            const int used = read_option(o, command, allowed, count - k, words + k);
+            const int used = read_option(o, c, count - k, words + k);
             if (used == 0) {
                 return EXIT_USAGE;
             }
             k += used;
         } else if (o->model) {
-            return usage_error(command, "one model at a time, unexpected argument", word);
+            return usage_error(c->name, "one operand at a time, unexpected argument", word);
         } else {
             o->model = word;
             ++k;
         }
     }
-    if (!o->model && !o->help) {
-        fprintf(stderr, "se3d %s: which model? Give a file, see `se3d %s --help`\n", command,
-                command);
-        return EXIT_USAGE;
+    if (o->help) {
+        command_print_help(c);
+        return EXIT_DONE;
     }
-    return EXIT_DONE;
+    return o->model || c->operands[0] == '[' ? EXIT_DONE : report_no_operand(c);
 }
 
 se3d_model_options options_get_model(const options *o)

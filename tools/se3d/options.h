@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "command.h"
 #include "se3d/io.h"
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
@@ -28,13 +29,13 @@ typedef struct options {
     int quiet;
     int json;
     int csv;
-    int help;
+    int man;
+    int help; /* it was printed */
 } options;
 
-/* Read the words after the command. `allowed` lists its options, separated by blanks, with a blank
- * at each end. @return EXIT_DONE, or EXIT_USAGE after a message. */
-int options_read(options *o, const char *command, const char *allowed, int count,
-                 char *const *words);
+/* Read the words after the command by its table; with --help among them, print the command's help.
+ * @return EXIT_DONE, or EXIT_USAGE after a message. */
+int options_read(options *o, const command_entry *c, int count, char *const *words);
 
 /* The model options that the command line asks for. */
 se3d_model_options options_get_model(const options *o);
@@ -45,13 +46,8 @@ int options_read_model(const options *o, const se3d_model_options *how, se3d_mod
 /* Print a failure as text or, with --json, as an object. */
 void report_failure(const options *o, const char *command, const char *message);
 
-/* Commands: the arguments after the command's name; the exit code. */
-int command_run(int count, char *const *words);
-int command_check(int count, char *const *words);
-int command_evaluate(int count, char *const *words);
-int command_plot(int count, char *const *words);
-int command_view(int count, char *const *words);
-int command_video(int count, char *const *words);
+/* Say that there is no such command, and which was probably meant. @return EXIT_USAGE */
+int command_report_unknown(const char *name);
 
 /* What `se3d plot` does with its words. */
 int plot_files(int count, const char *const *words);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "child.h"
+#include "command.h"
 #include "file.h"
 #include "interrupt.h"
 #include "options.h"
@@ -16,31 +17,10 @@
 
 enum { PATH_SIZE = 4096 };
 
-static const char help[] =
-    "se3d plot FILE.csv|MODEL... [-x CHANNEL] [-y CHANNEL]... [-o FILE] [--fft]\n"
-    "\n"
-    "Draws results as FILE.svg and FILE.png, beside the first CSV file; the gnuplot script is "
-    "kept\n"
-    "as FILE.gp. Curves of one quantity share a frame; several files are compared in it. A "
-    "channel\n"
-    "is a column (pin.force.z), all components of one (pin.force) or all of an element (pin).\n"
-    "A model is run first, into results/<model>; without options, the plots that its `output` "
-    "asks\n"
-    "for are drawn.\n"
-    "\n"
-    "  -x CHANNEL   horizontal axis (default time); a channel makes a phase plot\n"
-    "  -y CHANNEL   what to draw; may be repeated (default: position, velocity, acceleration and\n"
-    "               the reactions)\n"
-    "  -o FILE      name of the picture; .svg or .png is replaced by each\n"
-    "  --fft        amplitude over frequency; the spectrum is kept as FILE.fft.csv\n"
-    "  --quiet      print nothing but errors\n"
-    "\n"
-    "Exit code: 0 done; 1 a file or program failed; 2 bad usage.\n";
-
 static int take_value(plot *p, const char *name, const char *value)
 {
     if (!value) {
-        fprintf(stderr, "se3d plot: a value is missing after `%s`; see `se3d plot --help`\n", name);
+        fprintf(stderr, "se3d plot: a value is missing after `%s`; see `se3d help plot`\n", name);
         return EXIT_USAGE;
     }
     if (strcmp(name, "-x") == 0) {
@@ -75,7 +55,7 @@ static int read_word(plot *p, const char *word)
     } else if (strcmp(word, "--quiet") == 0 || strcmp(word, "-q") == 0) {
         p->quiet = 1;
     } else if (word[0] == '-') {
-        fprintf(stderr, "se3d plot: unknown option `%s`; see `se3d plot --help`\n", word);
+        fprintf(stderr, "se3d plot: unknown option `%s`; see `se3d help plot`\n", word);
         return EXIT_USAGE;
     } else {
         return add_file(p, word);
@@ -104,7 +84,7 @@ static int read_words(plot *p, int count, const char *const *words)
         }
     }
     if (p->file_count == 0 && !p->help) {
-        fputs("se3d plot: which results? Give a CSV file, see `se3d plot --help`\n", stderr);
+        fputs("se3d plot: which results? Give a CSV file, see `se3d help plot`\n", stderr);
         return EXIT_USAGE;
     }
     return EXIT_DONE;
@@ -266,7 +246,7 @@ int plot_files(int count, const char *const *words)
     }
     int code = read_words(p, count, words);
     if (code == EXIT_DONE && p->help) {
-        fputs(help, stdout);
+        command_print_help(&plot_entry);
     } else if (code == EXIT_DONE) {
         code = run_models(p);
         if (code == EXIT_DONE && !p->done) {
@@ -280,8 +260,38 @@ int plot_files(int count, const char *const *words)
     return code;
 }
 
-int command_plot(int count, char *const *words)
+static int command_plot(int count, char *const *words)
 {
     interrupt_begin();
     return plot_files(count, (const char *const *)words);
 }
+
+const command_entry plot_entry = {
+    .name = "plot",
+    .run = command_plot,
+    .operands = "FILE.csv|MODEL...",
+    .files = "csv yaml yml json",
+    .summary = "draw results as SVG and PNG",
+    .text = "Draws results as FILE.svg and FILE.png, beside the first CSV file; the "
+            "gnuplot script is kept as FILE.gp. Curves of one quantity share a frame; "
+            "several files are compared in it. A channel is a column (pin.force.z), all "
+            "components of one (pin.force) or all of an element (pin). A model is run "
+            "first, into results/<model>; without options, the plots that its `output` "
+            "asks for are drawn.",
+    .options =
+        (const command_option[]){
+            {"-x", NULL, "CHANNEL", "horizontal axis (default time); a channel makes a phase plot"},
+            {"-y", NULL, "CHANNEL",
+             "what to draw; may be repeated (default: position, velocity, acceleration and the "
+             "reactions)"},
+            {"-o", NULL, "FILE", "name of the picture; .svg or .png is replaced by each"},
+            {"--fft", NULL, NULL, "amplitude over frequency; the spectrum is kept as FILE.fft.csv"},
+            {"--quiet", "-q", NULL, "print nothing but errors"},
+            {0}},
+    .examples =
+        (const command_example[]){
+            {"plot results/pendulum/pendulum.csv -y pin.force", "the reaction over time"},
+            {"plot a.csv b.csv -y bar.position.z -o compared", "two runs in one frame"},
+            {0}},
+    .exits = "0 done; 1 a file or program failed; 2 bad usage.",
+};

@@ -11,27 +11,6 @@
 #include "pictures.h"
 #include "warnings.h"
 
-static const char help[] =
-    "se3d run MODEL [options]\n"
-    "\n"
-    "Runs the analyses of a model file one after the other and writes its results as CSV files.\n"
-    "\n"
-    "  -o DIR                 folder for the results, made if missing (default: results/<model>)\n"
-    "  --set NAME=VALUE       replace a parameter; VALUE is an expression; may be repeated\n"
-    "  --analysis T           assembly, kinematics, inverse_dynamics, dynamics, equilibrium,\n"
-    "                         modes\n"
-    "  --formulation F        romega, rp, joint\n"
-    "  --method M             auto, generalized_alpha, hht, dop853, rk45, rk4, bdf, radau, rattle, "
-    "verlet\n"
-    "  --step H               step [s]\n"
-    "  --tolerance E          relative error of methods that control it\n"
-    "  --duration T           duration [s]\n"
-    "  --quiet                print nothing but errors\n"
-    "  --json                 print the summary as JSON, with the warnings\n"
-    "\n"
-    "Exit code: 0 done; 1 the analysis failed or was ended by Ctrl-C or SIGTERM (results so far\n"
-    "are on disk); 2 bad usage or model.\n";
-
 static const char *outcome(const se3d_run_analysis *a)
 {
     if (a->status < 0) {
@@ -561,15 +540,12 @@ int run_for_plots(const char *path, int quiet, int draw, char *csv, size_t size)
     return code;
 }
 
-int command_run(int count, char *const *words)
+static int command_run(int count, char *const *words)
 {
-    static const char allowed[] = " -o --output --set --analysis --formulation --method --step "
-                                  "--tolerance --duration --quiet -q --json ";
     options o;
     se3d_model *model = NULL;
-    int code = options_read(&o, "run", allowed, count, words);
+    int code = options_read(&o, &run_entry, count, words);
     if (code != EXIT_DONE || o.help) {
-        fputs(o.help ? help : "", stdout);
         return code;
     }
     warnings warned = {.o = &o};
@@ -591,3 +567,36 @@ int command_run(int count, char *const *words)
     se3d_model_destroy(model);
     return code;
 }
+
+const command_entry run_entry = {
+    .name = "run",
+    .run = command_run,
+    .operands = "MODEL",
+    .files = "yaml yml json",
+    .summary = "run the analyses of a model, write results as CSV",
+    .text = "Runs the analyses of a model file one after the other and writes its "
+            "results as CSV files.",
+    .options =
+        (const command_option[]){
+            {"--output", "-o", "DIR",
+             "folder for the results, made if missing (default: results/<model>)"},
+            {"--set", NULL, "NAME=VALUE",
+             "replace a parameter; VALUE is an expression; may be repeated"},
+            {"--analysis", NULL, "T", "instead of those of the model: {analyses}, modes"},
+            {"--formulation", NULL, "F", "{formulations}"},
+            {"--method", NULL, "M", "{methods}"},
+            {"--step", NULL, "H", "step [s]"},
+            {"--tolerance", NULL, "E", "relative error of methods that control it"},
+            {"--duration", NULL, "T", "duration [s]"},
+            {"--quiet", "-q", NULL, "print nothing but errors"},
+            {"--json", NULL, NULL, "print the summary as JSON, with the warnings"},
+            {0}},
+    .examples = (const command_example[]){{"run pendulum.yaml", "results in results/pendulum"},
+                                          {"run fourbar.yaml --set l=0.3 -o short",
+                                           "another length, results in short"},
+                                          {"run car.yaml --method radau --tolerance 1e-8 --json",
+                                           "another method and tolerance, a summary for programs"},
+                                          {0}},
+    .exits = "0 done; 1 the analysis failed or was ended by Ctrl-C or SIGTERM (results so "
+             "far are on disk); 2 bad usage or model.",
+};

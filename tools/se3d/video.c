@@ -17,18 +17,6 @@
 
 enum { RATE = 30, FRAMES_MAX = 60 * 60 * RATE, PATH_SIZE = 4096, START_SECONDS = 60 };
 
-static const char help[] =
-    "se3d video DIR [-o FILE.mp4] [--speed S] [--view A,E]\n"
-    "\n"
-    "Makes a film (default DIR/motion.mp4; 1280 x 720, 30 pictures a second, H.264) of the "
-    "results\n"
-    "in DIR, as `se3d run` left them: what `se3d view` shows. It needs chromium and ffmpeg.\n"
-    "\n"
-    "  -o FILE.mp4   where to (default: DIR/motion.mp4)\n"
-    "  --speed S     seconds of motion in a second of film (default 1: real time)\n"
-    "  --view A,E    from where: azimuth from x to y and elevation [degrees] (default -52,20)\n"
-    "  --quiet       print nothing but errors, show no progress\n";
-
 typedef struct film {
     const char *path;
     FILE *file;             /* begun before the work, so that the message comes early */
@@ -260,16 +248,14 @@ static int read_view(const char *text, double view[2])
     return 1;
 }
 
-int command_video(int count, char *const *words)
+static int command_video(int count, char *const *words)
 {
     double view[2] = {usual_view[0], usual_view[1]};
     char path[PATH_SIZE + 64];
     char *rest = NULL;
     options o;
-    const int code =
-        options_read(&o, "video", " -o --output --speed --view --quiet -q ", count, words);
+    const int code = options_read(&o, &video_entry, count, words);
     if (code != EXIT_DONE || o.help) {
-        fputs(o.help ? help : "", stdout);
         return code;
     }
     const double speed = o.speed ? strtod(o.speed, &rest) : 1.0;
@@ -283,3 +269,27 @@ int command_video(int count, char *const *words)
     snprintf(path, sizeof path, "%.4000s/motion.mp4", o.model);
     return write_film(o.model, o.directory ? o.directory : path, speed, view, o.quiet);
 }
+
+const command_entry video_entry = {
+    .name = "video",
+    .run = command_video,
+    .operands = "DIR",
+    .files = "",
+    .summary = "make an MP4 film of results in 3-D",
+    .text = "Makes a film (default DIR/motion.mp4; 1280 x 720, 30 pictures a second, "
+            "H.264) of the results in DIR, as `se3d run` left them: what `se3d view` "
+            "shows. It needs chromium and ffmpeg.",
+    .options =
+        (const command_option[]){
+            {"--output", "-o", "FILE.mp4", "where to (default: DIR/motion.mp4)"},
+            {"--speed", NULL, "S", "seconds of motion in a second of film (default 1: real time)"},
+            {"--view", NULL, "A,E",
+             "from where: azimuth from x to y and elevation [degrees] (default -52,20)"},
+            {"--quiet", "-q", NULL, "print nothing but errors, show no progress"},
+            {0}},
+    .examples = (const command_example[]){{"video results/pendulum", "results/pendulum/motion.mp4"},
+                                          {"video results/drum --speed 0.1 --view 0,10",
+                                           "ten times slower, from the side"},
+                                          {0}},
+    .exits = "0 done; 1 a file or program failed; 2 bad usage.",
+};

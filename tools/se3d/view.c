@@ -22,15 +22,6 @@
 
 enum { RESULTS_SIZE = 120 * 1024, PATH_SIZE = 4096 };
 
-static const char help[] =
-    "se3d view DIR [-o FILE.html]\n"
-    "\n"
-    "Writes one HTML file (default DIR/scene.html) that shows the results in DIR, as `se3d run`\n"
-    "left them, in any browser and without a network: the motion in 3-D beside a plot of a\n"
-    "channel. Keys: space plays, arrows step, + and - change the speed, b follows a body, f shows\n"
-    "frames, r reactions, t traces, d is for dark; drag turns, shift-drag moves, the wheel "
-    "zooms.\n";
-
 static char *read_whole(const char *path, size_t *size)
 {
     FILE *file = se3di_file_open(path);
@@ -314,14 +305,13 @@ int view_write(const char *command, const char *folder, const char *path)
     return code;
 }
 
-int command_view(int count, char *const *words)
+static int command_view(int count, char *const *words)
 {
     char path[PATH_SIZE + 64];
     options o;
     interrupt_begin();
-    int code = options_read(&o, "view", " -o --output --quiet -q ", count, words);
+    int code = options_read(&o, &view_entry, count, words);
     if (code != EXIT_DONE || o.help) {
-        fputs(o.help ? help : "", stdout);
         return code;
     }
     snprintf(path, sizeof path, "%.4000s/scene.html", o.model);
@@ -331,3 +321,24 @@ int command_view(int count, char *const *words)
     }
     return code;
 }
+
+const command_entry view_entry = {
+    .name = "view",
+    .run = command_view,
+    .operands = "DIR",
+    .files = "",
+    .summary = "make one HTML file that shows results in 3-D",
+    .text = "Writes one HTML file (default DIR/scene.html) that shows the results in "
+            "DIR, as `se3d run` left them, in any browser and without a network: the "
+            "motion in 3-D beside a plot of a channel. Keys: space plays, arrows step, + "
+            "and - change the speed, b follows a body, f shows frames, r reactions, t "
+            "traces, d is for dark; drag turns, shift-drag moves, the wheel zooms.",
+    .options = (const command_option[]){{"--output", "-o", "FILE.html",
+                                         "where to (default: DIR/scene.html)"},
+                                        {"--quiet", "-q", NULL, "print nothing but errors"},
+                                        {0}},
+    .examples = (const command_example[]){{"view results/pendulum", "results/pendulum/scene.html"},
+                                          {"view results/pendulum -o page.html", "another file"},
+                                          {0}},
+    .exits = "0 done; 1 a file or program failed; 2 bad usage.",
+};

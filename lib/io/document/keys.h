@@ -101,7 +101,7 @@ void se3di_object_list(const se3di_object *object, const char *type, const char 
 
 /* kinds.c: "> 0" and the like, "" if all finite numbers may stand there. */
 const char *se3di_range_get_text(se3di_range range);
-/* Write what may stand under a key, "number > 0" or "`one`, `other`", with the marks of Markdown. */
+/* Write what may stand under a key, "number > 0" or "`one`, `other`", as Markdown. */
 void se3di_key_describe(const se3di_object *object, const se3di_key *row, char *text, size_t size);
 
 #endif
