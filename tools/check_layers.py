@@ -17,7 +17,7 @@ LAYERS = ("base math expression model primitive joint force contact particles fo
 ROOMS = {"contact": "shape narrow bodies".split(),
          "io": "base document model channel read write run".split()}
 # What the program in tools/se3d shares with libse3d-io, to whose static library it is linked.
-SHARED = ("io/base/file.h",)
+SHARED = ("io/base/file.h", "io/document/guess.h", "io/read/objects.h")
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 TABLE_ROW = re.compile(r"^\| `([\w/]+)` \|", re.M)
 

@@ -45,7 +45,7 @@ void command_expand(const char *text, char *out, size_t size)
     }
 }
 
-/* Print words from column `start` on, broken before column COLUMNS; "\n" in the text ends a line. */
+/* Print words from column `start` on, broken before column COLUMNS; "\n" ends a line. */
 static void put_wrapped(const char *text, int start)
 {
     int column = start;
