@@ -52,13 +52,6 @@ static void measure(const se3di_model *model, double *decay, double *oscillation
     }
 }
 
-double se3di_stiffness_rate(const se3di_model *model)
-{
-    double decay, oscillation;
-    measure(model, &decay, &oscillation);
-    return decay;
-}
-
 double se3di_stiffness_step(const se3di_model *model)
 {
     double decay, oscillation;
@@ -67,7 +60,9 @@ double se3di_stiffness_step(const se3di_model *model)
     return rate > 0.0 ? STEP_ANGLE / rate : HUGE_VAL; /* a host may trap divisions by 0 */
 }
 
-double se3di_stiffness_motion(const se3di_model *model)
+/* The rate of the motion that one wants to see [1/s]: of a pendulum as long as the model is large,
+ * and of the spins; 1 if there is neither. */
+static double rate_of_motion(const se3di_model *model)
 {
     double spin = 0.0;
     for (size_t k = 0; k < model->body_slots.count; ++k) {
@@ -79,5 +74,7 @@ double se3di_stiffness_motion(const se3di_model *model)
 
 int se3di_stiffness_is_stiff(const se3di_model *model)
 {
-    return se3di_stiffness_rate(model) > STIFF_RATIO * se3di_stiffness_motion(model);
+    double decay, oscillation;
+    measure(model, &decay, &oscillation);
+    return decay > STIFF_RATIO * rate_of_motion(model);
 }

@@ -52,15 +52,10 @@ se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench
     return SE3D_OK;
 }
 
-int se3di_force_is_history_dependent(const se3di_force *force)
-{
-    return classes[force->type]->accept != NULL;
-}
-
 int se3di_forces_have_memory(const se3di_model *model)
 {
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (se3di_force_is_history_dependent(&model->forces[k])) {
+        if (classes[model->forces[k].type]->accept) {
             return 1;
         }
     }

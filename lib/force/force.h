@@ -76,8 +76,6 @@ void se3di_forces_show(se3di_model *model, int is_before_end);
 void se3di_forces_stay(se3di_model *model);
 /* Some element has a memory. */
 int se3di_forces_have_memory(const se3di_model *model);
-/* The element has a memory. */
-int se3di_force_is_history_dependent(const se3di_force *force);
 
 /* The largest force while it sticks, or slips. */
 double se3di_friction_limit(const se3di_force *force, int slips);

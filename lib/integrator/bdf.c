@@ -30,24 +30,20 @@
 #define ITERATIONS_CONTROLLED 10
 #define ITERATIONS_STEP       25
 
-size_t se3di_bdf_history_count(const se3di_assembly *assembly)
+static size_t history_count(const se3di_assembly *assembly)
 {
     return SE3DI_BDF_PAST + SE3DI_BDF_POINTS_MAX * se3di_state_count(assembly);
-}
-
-size_t se3di_bdf_work_count(const se3di_assembly *assembly)
-{
-    return 4 * se3di_state_count(assembly) + 2 * (size_t)assembly->unknown_count +
-           assembly->row_count;
 }
 
 /* Behind what the steps of radau need. */
 static size_t work_count(const se3di_assembly *assembly)
 {
-    return se3di_radau_work_count(assembly) + se3di_bdf_work_count(assembly);
+    return se3di_radau_work_count(assembly) + 4 * se3di_state_count(assembly) +
+           2 * (size_t)assembly->unknown_count + assembly->row_count;
 }
 
-void se3di_bdf_point(se3di_bdf *m, const se3di_integration *integration, size_t before)
+/* Its arrays: behind the first `before` numbers of the work. */
+static void point_into(se3di_bdf *m, const se3di_integration *integration, size_t before)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
     const size_t count = se3di_state_count(assembly);
@@ -73,12 +69,13 @@ void se3di_bdf_point(se3di_bdf *m, const se3di_integration *integration, size_t 
 static se3di_bdf begin(se3di_integration *integration)
 {
     se3di_bdf m;
-    se3di_bdf_point(&m, integration, se3di_radau_work_count(&integration->equations->assembly));
+    point_into(&m, integration, se3di_radau_work_count(&integration->equations->assembly));
     m.integration = integration;
     return m;
 }
 
-int se3di_bdf_get_top(const se3di_bdf *m)
+/* The highest order that may be used. */
+static int get_top(const se3di_bdf *m)
 {
     const int top = m->integration->settings.order;
     return top >= 1 && top <= SE3DI_BDF_ORDER_MAX ? top : SE3DI_BDF_ORDER_MAX;
@@ -259,7 +256,7 @@ static se3d_status measure_errors(se3di_bdf *m, int order, errors *e)
     if (order > 1) {
         SE3DI_TRY(measure_error(m, order - 1, is_tangent, &e->lower));
     }
-    if (order < se3di_bdf_get_top(m) && (int)m->past->count > order + 1) {
+    if (order < get_top(m) && (int)m->past->count > order + 1) {
         SE3DI_TRY(measure_error(m, order + 1, is_tangent, &e->higher));
     }
     return SE3D_OK;
@@ -295,7 +292,7 @@ static int grow_at_start(se3di_bdf *m, int order, const errors *e)
     if (m->past->starts == 0.0) {
         return 0;
     }
-    const int can_rise = order < se3di_bdf_get_top(m);
+    const int can_rise = order < get_top(m);
     if (!can_rise || e->lower < e->here || !(factor_of(e->here, order) >= GROWTH)) {
         m->past->starts = 0.0;
         return 0;
@@ -445,7 +442,7 @@ static void add_past(se3di_bdf *m, double h)
         se3di_bdf_push(m, m->predicted, before);
     }
     se3di_bdf_push(m, m->y, t);
-    m->past->used = se3di_bdf_get_top(m) > 1 ? 2.0 : 1.0;
+    m->past->used = get_top(m) > 1 ? 2.0 : 1.0;
     set_order(m, (int)m->past->used);
 }
 
@@ -455,7 +452,7 @@ static se3d_status start(se3di_integration *integration, double h)
     const double limit = integration->settings.step;
     const double first = fmin(1e-3, 0.1 * sqrt(m.tolerance));
     (void)h;
-    memset(m.assembly->model->history, 0, se3di_bdf_history_count(m.assembly) * sizeof(double));
+    memset(m.assembly->model->history, 0, history_count(m.assembly) * sizeof(double));
     SE3DI_TRY(adopt(&m));
     m.past->at.next = limit > 0.0 ? fmin(limit, first) : first;
     m.past->starts = 1.0;
@@ -484,7 +481,7 @@ static se3d_status renew(se3di_integration *integration)
         }
         se3di_bdf_bend(&m, m.difference, work);
     }
-    const double least = fmin(2.0, se3di_bdf_get_top(&m));
+    const double least = fmin(2.0, get_top(&m));
     set_order(&m, (int)fmin(fmax(least, m.past->order), m.past->count - 1.0));
     m.past->at.renewed = 1.0;
     return SE3D_OK;
@@ -528,7 +525,7 @@ static se3d_status step(se3di_integration *integration, double h)
         m.past->count = 1.0; /* no step was made yet: without the state before the start */
     }
     se3di_forces_show(m.assembly->model, 0);
-    const int order = se3di_bdf_get_top(&m);
+    const int order = get_top(&m);
     const int is_bdf = se3di_bdf_is_even(&m, order, h);
     m.h = h;
     m.iterations_max = ITERATIONS_STEP;
@@ -549,7 +546,7 @@ static se3d_status step(se3di_integration *integration, double h)
 static void interpolate(const se3di_integration *integration, double t, double *y)
 {
     se3di_bdf m;
-    se3di_bdf_point(&m, integration, se3di_radau_work_count(&integration->equations->assembly));
+    point_into(&m, integration, se3di_radau_work_count(&integration->equations->assembly));
     se3di_bdf_eval(&m, t, y);
 }
 
@@ -568,7 +565,7 @@ static se3d_status run(se3di_integration *integration, double t_end)
 const se3di_integrator se3di_integrator_bdf = {
     .name = "bdf",
     .tag = SE3D_METHOD_BDF,
-    .history_count = se3di_bdf_history_count,
+    .history_count = history_count,
     .work_count = work_count,
     .start = start,
     .renew = renew,

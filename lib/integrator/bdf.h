@@ -50,13 +50,6 @@ typedef struct se3di_bdf {
     int32_t reserved;
 } se3di_bdf;
 
-size_t se3di_bdf_history_count(const se3di_assembly *assembly);
-/* Behind the first `before` numbers. */
-size_t se3di_bdf_work_count(const se3di_assembly *assembly);
-void se3di_bdf_point(se3di_bdf *m, const se3di_integration *integration, size_t before);
-
-int se3di_bdf_get_top(const se3di_bdf *m); /* the highest order that may be used */
-
 /* ---- bdf_history.c ---- */
 
 /* The newest state is y at t. */

@@ -158,8 +158,10 @@ se3d_status se3di_equation_jacobian(const se3di_model *model, const se3di_constr
     return se3di_is_finite(out, 7) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
-void se3di_constraint_wrench(const se3di_model *model, const se3di_constraint *constraint,
-                             uint32_t body, double force[3], double torque[3])
+/* What a constraint does to one body: force and moment about the centre of mass, ground frame. Not
+ * a number if a callback fails. */
+static void compute_wrench(const se3di_model *model, const se3di_constraint *constraint,
+                           uint32_t body, double force[3], double torque[3])
 {
     double moment[3] = {0.0, 0.0, 0.0}; /* body frame */
     memset(force, 0, 3 * sizeof *force);
@@ -187,7 +189,7 @@ void se3di_constraint_reaction(const se3di_model *model, const se3di_constraint 
         se3di_mul(j->A, constraint->frames.point_j, P);
         se3di_add(P, j->r, P);
     }
-    se3di_constraint_wrench(model, constraint, body, wrench, wrench + 3);
+    compute_wrench(model, constraint, body, wrench, wrench + 3);
     se3di_sub(model->frames[body].r, P, arm);
     se3di_cross(arm, wrench, moment);
     se3di_add(wrench + 3, moment, wrench + 3);

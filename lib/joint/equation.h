@@ -23,10 +23,6 @@ se3d_status se3di_equation_jacobian(const se3di_model *model, const se3di_constr
                                     uint32_t r, se3d_formulation formulation, uint32_t body,
                                     double out[7]);
 
-/* What a constraint does to one body: force and moment about the centre of mass, ground frame. Not
- * a number if a callback fails. */
-void se3di_constraint_wrench(const se3di_model *model, const se3di_constraint *constraint,
-                             uint32_t body, double force[3], double torque[3]);
 /* What it does to its body in `slot`: {force, torque about `point`}, ground frame; NULL: the joint
  * point on body j.
  *

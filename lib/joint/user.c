@@ -8,8 +8,9 @@
 
 #define STEP 1e-6 /* of central differences; [m], [rad] */
 
-void se3di_user_get_motion(const se3di_model *model, const se3di_constraint *constraint,
-                           se3d_body_motion motion[SE3D_USER_BODIES_MAX])
+/* What the callback sees of its bodies. */
+static void get_motion(const se3di_model *model, const se3di_constraint *constraint,
+                       se3d_body_motion motion[SE3D_USER_BODIES_MAX])
 {
     for (uint32_t k = 0; k < se3di_user_body_count(constraint); ++k) {
         const se3di_frame *frame = &model->frames[constraint->bodies[constraint->user_first + k]];
@@ -20,8 +21,10 @@ void se3di_user_get_motion(const se3di_model *model, const se3di_constraint *con
     }
 }
 
-se3d_status se3di_user_call(const se3di_constraint *constraint, double t,
-                            const se3d_body_motion *motion, int wanted, se3di_user_values *values)
+/* Call with `motion`; what is not wanted is zero, and so is all on failure.
+ * @return OK, CALLBACK, NOT_FINITE */
+static se3d_status call(const se3di_constraint *constraint, double t,
+                        const se3d_body_motion *motion, int wanted, se3di_user_values *values)
 {
     memset(values, 0, sizeof *values);
     se3d_status status = constraint->callback(
@@ -45,8 +48,8 @@ se3d_status se3di_user_eval(const se3di_model *model, const se3di_constraint *co
                             int wanted, se3di_user_values *values)
 {
     se3d_body_motion motion[SE3D_USER_BODIES_MAX];
-    se3di_user_get_motion(model, constraint, motion);
-    return se3di_user_call(constraint, t, motion, wanted, values);
+    get_motion(model, constraint, motion);
+    return call(constraint, t, motion, wanted, values);
 }
 
 /* Displace coordinate k (0 .. 5 of the first body, 6 .. 11 of the second, ...). */
@@ -83,8 +86,8 @@ se3d_status se3di_user_curvature(const se3di_model *model, const se3di_constrain
     se3d_body_motion motion[SE3D_USER_BODIES_MAX];
     se3d_body_motion moved[SE3D_USER_BODIES_MAX];
     se3di_user_values values;
-    se3di_user_get_motion(model, constraint, motion);
-    SE3DI_TRY(se3di_user_call(constraint, t, motion, SE3DI_USER_JACOBIAN, &values));
+    get_motion(model, constraint, motion);
+    SE3DI_TRY(call(constraint, t, motion, SE3DI_USER_JACOBIAN, &values));
     memset(g, 0, n * sizeof *g);
     add_forces(constraint, &values, lambda, 1.0, g);
     for (uint32_t k = 0; k < n; ++k) {
@@ -93,7 +96,7 @@ se3d_status se3di_user_curvature(const se3di_model *model, const se3di_constrain
             double by = side == 0 ? STEP : -STEP;
             memcpy(moved, motion, sizeof moved);
             displace(moved, k, by);
-            SE3DI_TRY(se3di_user_call(constraint, t, moved, SE3DI_USER_JACOBIAN, &values));
+            SE3DI_TRY(call(constraint, t, moved, SE3DI_USER_JACOBIAN, &values));
             add_forces(constraint, &values, lambda, 0.5 / by, column);
         }
         for (uint32_t r = 0; r < n; ++r) {

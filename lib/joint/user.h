@@ -41,15 +41,6 @@ static inline const double *se3di_user_row(const se3di_constraint *constraint,
     return values->jacobian + 6 * (size_t)(r * se3di_user_body_count(constraint) + k);
 }
 
-/* What the callback sees of its bodies. */
-void se3di_user_get_motion(const se3di_model *model, const se3di_constraint *constraint,
-                           se3d_body_motion motion[SE3D_USER_BODIES_MAX]);
-
-/* Call with `motion`; what is not wanted is zero, and so is all on failure.
- * @return OK, CALLBACK, NOT_FINITE */
-se3d_status se3di_user_call(const se3di_constraint *constraint, double t,
-                            const se3d_body_motion *motion, int wanted, se3di_user_values *values);
-
 /* At the present state. */
 se3d_status se3di_user_eval(const se3di_model *model, const se3di_constraint *constraint, double t,
                             int wanted, se3di_user_values *values);

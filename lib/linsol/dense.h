@@ -16,11 +16,5 @@ void se3di_dense_lu_solve(int32_t n, const double *A, const int32_t *pivot, doub
 /* A = L L^T in place (lower triangle; the upper is not touched). SE3D_ERR_SINGULAR if A is not
  * positive definite. */
 se3d_status se3di_dense_cholesky_factor(int32_t n, double *A);
-void se3di_dense_cholesky_solve(int32_t n, const double *L, double *b);
-
-/* A = L D L^T in place, no pivoting: unit L below, D on the diagonal. SE3D_ERR_SINGULAR if a
- * pivot is zero or not finite. */
-se3d_status se3di_dense_ldl_factor(int32_t n, double *A);
-void se3di_dense_ldl_solve(int32_t n, const double *A, double *b);
 
 #endif

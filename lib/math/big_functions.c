@@ -356,19 +356,3 @@ double se3di_big_hypot(double x, double y)
     a = se3di_big_root(&a);
     return se3di_big_round(&a);
 }
-
-/* 1 <= x < 8 */
-double se3di_big_cbrt(double x)
-{
-    double start = 0.85 + x * (0.19 - 0.006 * x);
-    for (int k = 0; k < 4; ++k) {
-        start -= (start * start * start - x) / (3.0 * start * start);
-    }
-    big a = se3di_big_from(x), y = se3di_big_from(start);
-    for (int k = 0; k < 3; ++k) { /* (2 y + x / y^2)/3 */
-        big square = MUL(y, y), t = DIV(a, square), twice = SHIFT(y, 1);
-        t = ADD(t, twice);
-        y = se3di_big_divide_by(&t, 3);
-    }
-    return se3di_big_round(&y);
-}

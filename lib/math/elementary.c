@@ -320,19 +320,3 @@ double se3di_hypot(double x, double y)
     }
     return se3di_big_hypot(large, small);
 }
-
-double se3di_cbrt(double x)
-{
-    int exponent;
-    double out;
-    if (x == 0.0 || !(fabs(x) < HUGE_VAL)) {
-        return x;
-    }
-    double m = frexp(fabs(x), &exponent); /* in [1/2, 1) */
-    int third = (exponent + 1200 - 1) / 3 - 400;
-    m = ldexp(m, exponent - 3 * third);
-    if (!fast()->cbrt(m, &out)) {
-        out = se3di_big_cbrt(m);
-    }
-    return copysign(ldexp(out, third), x);
-}

@@ -22,6 +22,5 @@ double se3di_sinh(double x);
 double se3di_cosh(double x);
 double se3di_tanh(double x);
 double se3di_hypot(double x, double y);
-double se3di_cbrt(double x);
 
 #endif

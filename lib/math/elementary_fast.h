@@ -27,7 +27,6 @@ typedef struct se3di_fast {
     int (*cosh)(double x, double *out);
     int (*tanh)(double x, double *out);
     int (*hypot)(double x, double y, double *out);
-    int (*cbrt)(double x, double *out);
 } se3di_fast;
 
 extern const se3di_fast se3di_fast_plain;
@@ -51,7 +50,6 @@ double se3di_big_sinh(double x);
 double se3di_big_cosh(double x);
 double se3di_big_tanh(double x);
 double se3di_big_hypot(double x, double y);
-double se3di_big_cbrt(double x);
 void se3di_big_reduce(double x, se3di_reduced *out);
 
 #endif

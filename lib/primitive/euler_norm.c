@@ -7,21 +7,7 @@ double se3di_euler_norm_value(const double p[4])
     return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3] - 1.0;
 }
 
-void se3di_euler_norm_jacobian(const double p[4], double phi_p[4])
-{
-    for (int k = 0; k < 4; ++k) {
-        phi_p[k] = 2.0 * p[k];
-    }
-}
-
 double se3di_euler_norm_gamma(const double pdot[4])
 {
     return -2.0 * (pdot[0] * pdot[0] + pdot[1] * pdot[1] + pdot[2] * pdot[2] + pdot[3] * pdot[3]);
-}
-
-void se3di_euler_norm_curvature(double lambda, double *block, int n)
-{
-    for (int k = 0; k < 4; ++k) {
-        block[n * k + k] += 2.0 * lambda;
-    }
 }

@@ -10,10 +10,6 @@
 #define SE3DI_PRIMITIVE_EULER_NORM_H
 
 double se3di_euler_norm_value(const double p[4]);
-void se3di_euler_norm_jacobian(const double p[4], double phi_p[4]);
 double se3di_euler_norm_gamma(const double pdot[4]);
-
-/* Added to the p, p block of a matrix with n columns. */
-void se3di_euler_norm_curvature(double lambda, double *block, int n);
 
 #endif

@@ -112,11 +112,6 @@ static const struct {
     {"log1p", se3di_log1p, 0x1.e000000000000p-20, 0x1.dfffe3e002328p-20},
     {"log1p", se3di_log1p, -0x1.6000000000000p-40, -0x1.6000000000f20p-40},
     {"log1p", se3di_log1p, 0x1.8000000000000p+70, 0x1.8767f8ebb2e8ep+5},
-    {"cbrt", se3di_cbrt, 0x1.9b78223aa307cp+1, 0x1.79d15d0e8d59cp+0},
-    {"cbrt", se3di_cbrt, 0x0.0000000000001p-1022, 0x1.0p-358},
-    {"cbrt", se3di_cbrt, 0x1.fffffffffffffp+1023, 0x1.428a2f98d728bp+341},
-    {"cbrt", se3di_cbrt, -0x1.b000000000000p+4, -0x1.8000000000000p+1},
-    {"cbrt", se3di_cbrt, 0x1.79d15d0e8d59cp+1, 0x1.6f39494c65bcap+0},
 };
 
 static const struct {
@@ -185,7 +180,6 @@ static const struct {
     {"sinh", se3di_sinh, 0.0, INF, -INF, 0x1.2cd9fc44eb982p+0},
     {"cosh", se3di_cosh, 1.0, INF, INF, 0x1.8b07551d9f55p+0},
     {"tanh", se3di_tanh, 0.0, 1.0, -1.0, 0x1.85efab514f394p-1},
-    {"cbrt", se3di_cbrt, 0.0, INF, -INF, 1.0},
 };
 
 static void special_cases_are_those_of_c(void)
@@ -203,8 +197,7 @@ static void special_cases_are_those_of_c(void)
                         f != se3di_cosh && f != se3di_acos;
         CHECK(odd == (signbit(minus) && minus == 0.0));
         if (odd) {
-            check_same(special[k].name, 0x1p-1074, 0.0, f(0x1p-1074),
-                       f == se3di_cbrt ? 0x1p-358 : 0x1p-1074);
+            check_same(special[k].name, 0x1p-1074, 0.0, f(0x1p-1074), 0x1p-1074);
         }
     }
     CHECK(isnan(se3di_log(-1.0)) && isnan(se3di_log10(-1.0)) && isnan(se3di_log1p(-2.0)));
@@ -262,7 +255,6 @@ static const struct {
     {"sinh", se3di_sinh, se3di_big_sinh, -20.0, 20.0},
     {"cosh", se3di_cosh, se3di_big_cosh, -20.0, 20.0},
     {"tanh", se3di_tanh, se3di_big_tanh, -20.0, 20.0},
-    {"cbrt", se3di_cbrt, se3di_big_cbrt, 1.0, 8.0},
 };
 #define RANGES (sizeof ranges / sizeof ranges[0])
 
@@ -307,10 +299,6 @@ static void exact_results_and_ties_are_rounded_to_even(void)
         const double i = floor(between(&seed, 1.0, 0x1p27)), j = floor(between(&seed, 1.0, 2e6));
         check_same("pow", i, 2.0, se3di_pow(i, 2.0), i * i);
         check_same("pow", j, 3.0, se3di_pow(i * i, 0.5), se3di_pow(i, 1.0));
-        check_same(
-            "cbrt", j, 0.0,
-            se3di_cbrt(n < 100 ? -floor(j / 20.0) * floor(j / 20.0) * floor(j / 20.0) : 27.0),
-            n < 100 ? -floor(j / 20.0) : 3.0);
         check_same("hypot", 3.0 * i, 4.0 * i, se3di_hypot(3.0 * i, 4.0 * i), 5.0 * i);
     }
     check_same("pow", 0x1.8p26, 2.0, se3di_pow(0x1.8000001p27, 2.0),
@@ -326,17 +314,17 @@ static void exact_results_and_ties_are_rounded_to_even(void)
 static void both_first_phases_give_the_same_bits(void)
 {
     const se3di_fast *a = &se3di_fast_plain, *b = &se3di_fast_fused;
-    int (*const f[2][10])(double, double *) = {
-        {a->exp, a->log, a->log10, a->log1p, a->asin, a->acos, a->sinh, a->cosh, a->tanh, a->cbrt},
-        {b->exp, b->log, b->log10, b->log1p, b->asin, b->acos, b->sinh, b->cosh, b->tanh, b->cbrt}};
+    int (*const f[2][9])(double, double *) = {
+        {a->exp, a->log, a->log10, a->log1p, a->asin, a->acos, a->sinh, a->cosh, a->tanh},
+        {b->exp, b->log, b->log10, b->log1p, b->asin, b->acos, b->sinh, b->cosh, b->tanh}};
     uint64_t seed = 5;
     if (!__builtin_cpu_supports("fma")) {
         printf("skipped: this machine has no FMA\n");
         return;
     }
     for (int n = 0; n < 20000; ++n) {
-        const int k = n % 10;
-        const double x = k == 9 ? between(&seed, 1.0, 8.0) : between(&seed, 1e-6, 1.0);
+        const int k = n % 9;
+        const double x = between(&seed, 1e-6, 1.0);
         const double y = between(&seed, -30.0, 30.0);
         double one[2] = {0.0, 0.0}, two[2] = {0.0, 0.0};
         CHECK(f[0][k](x, one) == f[1][k](x, two) && same(one[0], two[0]));
@@ -400,7 +388,7 @@ static void all_agree_with_mpfr(void)
         {"tan", se3di_tan, mpfr_tan, 20.0},       {"asin", se3di_asin, mpfr_asin, 1.0},
         {"acos", se3di_acos, mpfr_acos, 1.0},     {"atan", se3di_atan, mpfr_atan, 5.0},
         {"sinh", se3di_sinh, mpfr_sinh, 30.0},    {"cosh", se3di_cosh, mpfr_cosh, 30.0},
-        {"tanh", se3di_tanh, mpfr_tanh, 20.0},    {"cbrt", se3di_cbrt, mpfr_cbrt, 9.0},
+        {"tanh", se3di_tanh, mpfr_tanh, 20.0},
     };
     static const struct {
         const char *name;

@@ -39,7 +39,8 @@ void se3di_drawing_to_ground(const double pose[SE3DI_POSE], const double local[3
     }
 }
 
-size_t se3di_drawing_find_body(const se3d_model *model, se3d_body body)
+/* The index of a body's entry. */
+static size_t find_body(const se3d_model *model, se3d_body body)
 {
     for (size_t k = 0; k < model->body_count; ++k) {
         if (model->bodies[k].body.index1 == body.index1) {
@@ -97,8 +98,8 @@ static void widen_all(const se3d_model *model, const double *poses, box *b)
     for (size_t e = 0; e < model->element_count; ++e) {
         const se3di_element_entry *entry = &model->elements[e];
         if (entry->drawn > 0) {
-            const size_t i = se3di_drawing_find_body(model, entry->body_i);
-            const size_t j = se3di_drawing_find_body(model, entry->body_j);
+            const size_t i = find_body(model, entry->body_i);
+            const size_t j = find_body(model, entry->body_j);
             se3di_drawing_to_ground(poses + SE3DI_POSE * i, entry->point_i, at);
             widen(at, b->low, b->high);
             se3di_drawing_to_ground(poses + SE3DI_POSE * j, entry->point_j, at);
@@ -109,7 +110,7 @@ static void widen_all(const se3d_model *model, const double *poses, box *b)
         widen(poses + SE3DI_POSE * k, b->low, b->high);
     }
     for (size_t k = 0; k < model->shape_count; ++k) {
-        const size_t body = se3di_drawing_find_body(model, model->shapes[k].shape.body);
+        const size_t body = find_body(model, model->shapes[k].shape.body);
         widen_shape(&model->shapes[k], poses + SE3DI_POSE * body, b);
     }
 }
@@ -240,8 +241,8 @@ static void add_joints(lister *l, size_t k, bool bare)
     const double r = 0.02 * l->extent;
     for (size_t e = 0; e < model->element_count; ++e) {
         const se3di_element_entry *entry = &model->elements[e];
-        const bool is_j = entry->drawn > 0 && se3di_drawing_find_body(model, entry->body_j) == k;
-        const bool is_i = entry->drawn > 0 && se3di_drawing_find_body(model, entry->body_i) == k;
+        const bool is_j = entry->drawn > 0 && find_body(model, entry->body_j) == k;
+        const bool is_i = entry->drawn > 0 && find_body(model, entry->body_i) == k;
         if (!is_i && !is_j) {
             continue;
         }
@@ -271,7 +272,7 @@ bool se3di_drawing_list(const se3d_model *model, size_t k, double extent, se3di_
     lister l = {model, pool, parts, extent, palette[(k + 6) % 7], false};
     bool bare = k > 0;
     for (size_t s = 0; s < model->shape_count; ++s) {
-        if (se3di_drawing_find_body(model, model->shapes[s].shape.body) == k) {
+        if (find_body(model, model->shapes[s].shape.body) == k) {
             add_shape(&l, &model->shapes[s]);
             bare = false;
         }
@@ -290,8 +291,8 @@ se3di_part se3di_drawing_get_spring(const se3d_model *model, const se3di_element
                                     double extent, const double *poses)
 {
     static const double color[3] = {0.75, 0.55, 0.10};
-    const size_t i = se3di_drawing_find_body(model, spring->body_i);
-    const size_t j = se3di_drawing_find_body(model, spring->body_j);
+    const size_t i = find_body(model, spring->body_i);
+    const size_t j = find_body(model, spring->body_j);
     se3di_part part = make_part(spring->name, SE3DI_UNIT_SPRING, color);
     double a[3];
     double b[3];

@@ -43,8 +43,6 @@ bool se3di_drawing_list(const se3d_model *model, size_t k, double extent, se3di_
 /* A spring at the given poses of all bodies, in the ground frame. */
 se3di_part se3di_drawing_get_spring(const se3d_model *model, const se3di_element_entry *spring,
                                     double extent, const double *poses);
-/* The index of a body's entry. */
-size_t se3di_drawing_find_body(const se3d_model *model, se3d_body body);
 /* A point of a body in the ground frame. */
 void se3di_drawing_to_ground(const double pose[SE3DI_POSE], const double local[3],
                              double ground[3]);
