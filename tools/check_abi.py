@@ -86,16 +86,19 @@ def declared(headers):
     return exported, forgotten
 
 
+IO_HEADERS = ("io.h", "import.h")  # of libse3d-io
+
+
 def public_functions():
     """Library -> its functions; and problems found on the way."""
-    core_headers = sorted(h for h in HEADERS.glob("*.h") if h.name != "io.h")
+    core_headers = sorted(h for h in HEADERS.glob("*.h") if h.name not in IO_HEADERS)
     core, forgotten = declared(core_headers)
     problems = [f"{name}: declared without SE3D_API" for name in sorted(forgotten)]
     functions = {"se3d": core}
     if (HEADERS / "io.h").exists():
-        every, forgotten = declared([HEADERS / "io.h"])
+        every, forgotten = declared([HEADERS / name for name in IO_HEADERS])
         functions["se3d-io"] = every - core
-        problems += [f"{name}: declared without SE3D_API in io.h"
+        problems += [f"{name}: declared without SE3D_API in {' or '.join(IO_HEADERS)}"
                      for name in sorted(forgotten) if name not in core]
     umbrella = HEADERS / "se3d.h"
     if umbrella.exists():

@@ -6,7 +6,7 @@
 #                                  if one could not be had, after installing the others
 #     se3d_jobs                    prints the number of processors
 
-SE3D_BUILD_PACKAGES="gcc libc6-dev make cmake pkg-config libsuitesparse-dev libyaml-dev"
+SE3D_BUILD_PACKAGES="gcc libc6-dev make cmake pkg-config libsuitesparse-dev libyaml-dev libexpat1-dev"
 SE3D_TEST_PACKAGES="$SE3D_BUILD_PACKAGES g++ binutils python3"
 SE3D_PICTURE_PACKAGES="gnuplot-nox chromium ffmpeg nodejs npm python3-vtk9"
 SE3D_CI_PACKAGES="$SE3D_TEST_PACKAGES clang clang-format-14 valgrind libmpfr-dev \

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "check.h"
+#include "se3d/import.h"
 #include "se3d/io.h"
 
 static const char text[] =
@@ -308,12 +309,67 @@ static void scene_write(const world *w)
     CHECK(error.message[0] == '\0');
 }
 
+static void model_import_file(const world *w)
+{
+    se3d_model_import *import = NULL;
+    se3d_model_import_options how = se3d_model_import_options_default();
+    se3d_model_error error;
+    (void)w;
+    IS(se3d_model_import_file(NULL, NULL, &import, &error), SE3D_ERR_NULL);
+    IS(se3d_model_import_file("a.urdf", NULL, NULL, &error), SE3D_ERR_NULL);
+    IS(se3d_model_import_file("/dev/null", NULL, &import, &error), SE3D_ERR_IO);
+    CHECK_CONTAINS(error.message, "/dev/null");
+    IS(se3d_model_import_file("/none/a.urdf", NULL, &import, NULL), SE3D_ERR_IO);
+    how.struct_size = 1;
+    IS(se3d_model_import_file("a.urdf", &how, &import, &error), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(import == NULL);
+}
+
+static void model_import_text(const world *w)
+{
+    se3d_model_import *import = NULL;
+    se3d_model_import_options how = se3d_model_import_options_default();
+    se3d_model_error error;
+    (void)w;
+    IS(se3d_model_import_text(NULL, 0, "a", NULL, &import, &error), SE3D_ERR_NULL);
+    IS(se3d_model_import_text("", 0, NULL, NULL, &import, &error), SE3D_ERR_NULL);
+    IS(se3d_model_import_text("", 0, "a", NULL, NULL, &error), SE3D_ERR_NULL);
+    IS(se3d_model_import_text("nothing", 7, "a", NULL, &import, NULL), SE3D_ERR_MODEL);
+    how.format = "dwg";
+    IS(se3d_model_import_text("nothing", 7, "a", &how, &import, &error), SE3D_ERR_MODEL);
+    CHECK_CONTAINS(error.message, "`dwg` is not known");
+    how.struct_size = 100000;
+    IS(se3d_model_import_text("", 0, "a", &how, &import, &error), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(import == NULL);
+}
+
+static void model_import_nothing(const world *w)
+{
+    se3d_model_import_note note;
+    size_t length = 1;
+    (void)w;
+    se3d_model_import_options_init(NULL, 8);
+    CHECK(se3d_model_import_count_notes(NULL) == 0);
+    CHECK(se3d_model_import_count_lost(NULL) == 0);
+    CHECK(se3d_model_import_get_text(NULL, &length)[0] == '\0' && length == 0);
+    CHECK(se3d_model_import_get_text(NULL, NULL)[0] == '\0');
+    CHECK(se3d_model_import_get_format(NULL)[0] == '\0');
+    IS(se3d_model_import_get_note(NULL, 0, &note), SE3D_ERR_NULL);
+    se3d_model_import_destroy(NULL);
+}
+
 static const struct {
     const char *names; /* with a blank at each end */
     void (*check)(const world *w);
 } rows[] = {
     {" se3d_model_read_file ", model_read_file},
     {" se3d_model_read_text ", model_read_text},
+    {" se3d_model_import_file ", model_import_file},
+    {" se3d_model_import_text ", model_import_text},
+    {" se3d_model_import_options_init se3d_model_import_count_notes se3d_model_import_count_lost "
+     "se3d_model_import_get_text se3d_model_import_get_format se3d_model_import_get_note "
+     "se3d_model_import_destroy ",
+     model_import_nothing},
     {" se3d_model_options_init ", model_options_init},
     {" se3d_run_options_init ", run_options_init},
     {" se3d_model_destroy se3d_run_destroy se3d_scene_destroy ", destroyers},

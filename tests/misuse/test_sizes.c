@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "misuse/callback_world.h"
+#include "se3d/import.h"
 #include "se3d/io.h"
 
 #define MARK 0xA5
@@ -15,6 +16,7 @@ typedef struct place {
     se3d_modes *modes;
     se3d_model *model;
     se3d_run *run;
+    se3d_model_import *import;
 } place;
 
 #define FILL(name, type, ...)                                                                      \
@@ -45,6 +47,9 @@ FILL(model_get_picture, se3d_model_picture, p->model, 0)
 FILL(run_get_analysis, se3d_run_analysis, p->run, 0)
 FILL(run_get_particles, se3d_run_particles, p->run, 0)
 FILL(run_get_event, se3d_run_event, p->run, 0)
+#if defined(SE3D_HAS_EXPAT)
+FILL(model_import_get_note, se3d_model_import_note, p->import, 0)
+#endif
 FILL(run_get_file, se3d_run_file, p->run, 0)
 
 typedef struct filler {
@@ -79,6 +84,9 @@ static const filler fillers[] = {
     ROW(run_get_particles, se3d_run_particles),
     ROW(run_get_event, se3d_run_event),
     ROW(run_get_file, se3d_run_file),
+#if defined(SE3D_HAS_EXPAT)
+    ROW(model_import_get_note, se3d_model_import_note),
+#endif
 };
 
 static const char text[] =
@@ -105,6 +113,16 @@ static void open_pair(place *p)
     CHECK(!se3d_particles_step(p->particles, 1));
 }
 
+static void open_import(place *p)
+{
+#if defined(SE3D_HAS_EXPAT)
+    static const char robot[] = "<robot name=\"r\"><link name=\"a\"/><gazebo/></robot>";
+    CHECK(!se3d_model_import_text(robot, strlen(robot), "r.urdf", NULL, &p->import, NULL));
+#else
+    p->import = NULL;
+#endif
+}
+
 static void open_place(place *p)
 {
     const char *build = getenv("SE3D_BUILD_DIR");
@@ -115,6 +133,7 @@ static void open_place(place *p)
     how.directory = folder;
     memset(p, 0, sizeof *p);
     open_pair(p);
+    open_import(p);
     world_open(&p->w, SE3D_METHOD_VERLET);
     CHECK(!se3d_solver_run(p->w.solver, 0.005));
     CHECK(!se3d_modes_create(p->w.system, NULL, &p->modes));
@@ -127,6 +146,7 @@ static void open_place(place *p)
 
 static void close_place(place *p)
 {
+    se3d_model_import_destroy(p->import);
     se3d_run_destroy(p->run);
     se3d_model_destroy(p->model);
     se3d_modes_destroy(p->modes);

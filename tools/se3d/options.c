@@ -43,7 +43,7 @@ static const char **value_target(options *o, const char *name)
                  {"--method", &o->method},     {"--step", &o->step},
                  {"--duration", &o->duration}, {"--tolerance", &o->tolerance},
                  {"--time", &o->time},         {"--speed", &o->speed},
-                 {"--view", &o->view}};
+                 {"--view", &o->view},         {"--format", &o->format}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;
@@ -65,6 +65,15 @@ static int *flag_target(options *o, const char *name)
     }
     if (strcmp(name, "--man") == 0) {
         return &o->man;
+    }
+    if (strcmp(name, "--partial") == 0) {
+        return &o->partial;
+    }
+    if (strcmp(name, "--merge-fixed") == 0) {
+        return &o->merge_fixed;
+    }
+    if (strcmp(name, "--free-base") == 0) {
+        return &o->free_base;
     }
     return strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 ? &o->help : NULL;
 }

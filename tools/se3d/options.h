@@ -23,6 +23,7 @@ typedef struct options {
     const char *time;
     const char *speed;
     const char *view;
+    const char *format;
     se3d_model_setting settings[SETTINGS_MAX];
     char names[SETTINGS_MAX][64];
     size_t setting_count;
@@ -30,6 +31,9 @@ typedef struct options {
     int json;
     int csv;
     int man;
+    int partial;
+    int merge_fixed;
+    int free_base;
     int help; /* it was printed */
 } options;
 

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The formats that are imported: each fills a machine from a text. @return false: the machine has
+ * failed, with a message. */
+#ifndef SE3D_IO_IMPORT_FORMATS_H
+#define SE3D_IO_IMPORT_FORMATS_H
+
+#include "io/import/machine.h"
+#include "io/import/xml.h"
+
+bool se3di_import_urdf(se3di_machine *m, const se3di_xml *root);
+
+#endif

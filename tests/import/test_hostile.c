@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Files of other formats that are malformed or meant to harm: each ends in one message that says
+ * where and what, whatever memory there is. */
+#include <stdlib.h>
+
+#include "check.h"
+#include "se3d/import.h"
+
+#define ROBOT(x) "<robot name=\"r\">\n" x "</robot>"
+#define LINKS    "<link name=\"a\"/><link name=\"b\"/>\n"
+#define JOINT(x)                                                                                   \
+    ROBOT(LINKS "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/>" x    \
+                "</joint>")
+
+typedef struct bad_file {
+    const char *name, *text;
+    size_t line;
+    const char *parts[2];
+} bad_file;
+
+static const bad_file table[] = {
+    {"a.urdf", "", 0, {"no format that is known", NULL}},
+    {"a.urdf", "  \n", 0, {"no format that is known", NULL}},
+    {"a.txt", "hello", 0, {"no format that is known", NULL}},
+#if defined(SE3D_HAS_EXPAT)
+    {"a.urdf", "<robot>", 1, {"no valid XML", NULL}},
+    {"a.urdf", "<robot></robots>", 1, {"no valid XML", "mismatched"}},
+    {"a.urdf", "<robot/><robot/>", 1, {"no valid XML", NULL}},
+    {"a.urdf", "<html/>", 1, {"<html>", "<robot>"}},
+    {"a.urdf", "<robot/>", 1, {"no <link>", NULL}},
+    {"a.urdf",
+     "<!DOCTYPE r [<!ENTITY a \"aaaa\"><!ENTITY b \"&a;&a;&a;\">]>\n<robot name=\"&b;\"/>",
+     1,
+     {"entities are not allowed", NULL}},
+    {"a.urdf",
+     "<!DOCTYPE r [<!ENTITY x SYSTEM \"file:///etc/passwd\">]>\n<robot>&x;</robot>",
+     1,
+     {"entities are not allowed", NULL}},
+    {"a.urdf",
+     "<!DOCTYPE r [<!ENTITY % p \"x\"> %p;]>\n<robot/>",
+     1,
+     {"entities are not allowed", NULL}},
+    {"a.urdf", ROBOT("<link/>"), 2, {"<link> has no `name`", NULL}},
+    {"a.urdf", ROBOT("<link name=\"a\"/>\n<link name=\"a\"/>"), 3, {"two links `a`", NULL}},
+    {"a.urdf", ROBOT("<xacro:macro name=\"a\"/>"), 2, {"expand", NULL}},
+    {"a.urdf",
+     "<robot xmlns:xacro=\"x\"><link name=\"a\"/>\n<xacro:macro name=\"a\"/></robot>",
+     2,
+     {"xacro:macro", "expand"}},
+    {"a.urdf", ROBOT(LINKS "<joint name=\"j\"/>"), 3, {"<joint> has no `type`", NULL}},
+    {"a.urdf", ROBOT(LINKS "<joint name=\"j\" type=\"hinge\"/>"), 3, {"hinge", "revolute"}},
+    {"a.urdf", ROBOT(LINKS "<joint name=\"j\" type=\"fixed\"/>"), 3, {"no <parent>", NULL}},
+    {"a.urdf",
+     ROBOT(LINKS "<joint name=\"j\" type=\"fixed\"><parent link=\"c\"/></joint>"),
+     3,
+     {"no link `c`", NULL}},
+    {"a.urdf", JOINT("<axis xyz=\"0 0 0\"/>"), 3, {"axis", "zero"}},
+    {"a.urdf", JOINT("<axis xyz=\"1 0\"/>"), 3, {"must be 3 numbers", NULL}},
+    {"a.urdf", JOINT("<axis xyz=\"1 0 nan\"/>"), 3, {"must be 3 numbers", NULL}},
+    {"a.urdf", JOINT("<axis xyz=\"1 0 1e999\"/>"), 3, {"must be 3 numbers", NULL}},
+    {"a.urdf", JOINT("<axis xyz=\"1 0 0x10\"/>"), 3, {"must be 3 numbers", NULL}},
+    {"a.urdf", JOINT("<origin xyz=\"1,0,0\"/>"), 3, {"must be 3 numbers", NULL}},
+    {"a.urdf", JOINT("<origin quat_xyzw=\"0 0 0 0\"/>"), 3, {"quat_xyzw", NULL}},
+    {"a.urdf", JOINT("<limit lower=\"low\"/>"), 3, {"lower", "must be 1 number"}},
+    {"a.urdf", JOINT("<mimic joint=\"k\"/>"), 3, {"no joint `k`", NULL}},
+    {"a.urdf", JOINT("<mimic joint=\"j\"/>"), 3, {"mimics itself", NULL}},
+    {"a.urdf",
+     ROBOT("<link name=\"a\"><inertial><mass value=\"-1\"/></inertial></link>"),
+     2,
+     {"-1 kg", "negative"}},
+    {"a.urdf",
+     ROBOT(LINKS
+           "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>"
+           "<joint name=\"k\" type=\"fixed\"><parent link=\"b\"/><child link=\"a\"/></joint>"),
+     2,
+     {"circle", NULL}},
+    {"a.urdf",
+     ROBOT(LINKS
+           "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>\n"
+           "<joint name=\"k\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>"),
+     4,
+     {"child of two joints", NULL}},
+#else
+    {"a.urdf", "<robot/>", 0, {"expat", NULL}},
+#endif
+};
+
+static void every_bad_file_gets_a_message(void)
+{
+    for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+        const bad_file *bad = &table[k];
+        se3d_model_import *import = NULL;
+        se3d_model_error error;
+        const se3d_status status =
+            se3d_model_import_text(bad->text, strlen(bad->text), bad->name, NULL, &import, &error);
+        if (status != SE3D_ERR_MODEL || import) {
+            fprintf(stderr, "row %zu was taken: %s\n", k, bad->text);
+        }
+        CHECK(status == SE3D_ERR_MODEL && !import);
+        CHECK(bad->line == 0 || error.line == bad->line);
+        for (int p = 0; p < 2 && bad->parts[p]; ++p) {
+            if (!strstr(error.message, bad->parts[p])) {
+                fprintf(stderr, "row %zu: `%s` lacks `%s`\n", k, error.message, bad->parts[p]);
+            }
+            CHECK(strstr(error.message, bad->parts[p]) != NULL);
+        }
+    }
+}
+
+/* Memory that ends after some allocations. */
+typedef struct purse {
+    size_t left;
+} purse;
+
+static void *take(void *ctx, size_t size)
+{
+    purse *p = ctx;
+    return p->left > 0 ? (--p->left, malloc(size)) : NULL;
+}
+
+static void *retake(void *ctx, void *block, size_t old, size_t size)
+{
+    purse *p = ctx;
+    (void)old;
+    return p->left > 0 ? (--p->left, realloc(block, size)) : NULL;
+}
+
+static void give(void *ctx, void *block, size_t size)
+{
+    (void)ctx, (void)size;
+    free(block);
+}
+
+static void sweep(const char *name)
+{
+    char path[1024];
+    const char *source = getenv("SE3D_SOURCE_DIR");
+    snprintf(path, sizeof path, "%s/tests/import/%s", source ? source : ".", name);
+    se3d_status status = SE3D_ERR_NO_MEMORY;
+    size_t allowed = 0;
+    while (status == SE3D_ERR_NO_MEMORY && allowed < 100000) {
+        purse p = {allowed++};
+        const se3d_allocator allocator = {take, retake, give, &p};
+        se3d_model_import_options how = se3d_model_import_options_default();
+        se3d_model_import *import = NULL;
+        se3d_model_error error;
+        how.allocator = &allocator;
+        status = se3d_model_import_file(path, &how, &import, &error);
+        CHECK((status >= 0) == (import != NULL));
+        CHECK(status >= 0 || strstr(error.message, "out of memory"));
+        se3d_model_import_destroy(import);
+    }
+    CHECK(status == SE3D_OK);
+    CHECK(allowed > 2);
+}
+
+static void memory_may_end_anywhere(void)
+{
+#if defined(SE3D_HAS_EXPAT)
+    sweep("arm.urdf");
+#endif
+}
+
+#if defined(SE3D_HAS_EXPAT)
+static void depth_and_number_of_elements_are_bounded(void)
+{
+    enum { DEPTH = 100000 };
+    char *text = malloc(3 * DEPTH + 100);
+    se3d_model_import *import = NULL;
+    se3d_model_error error;
+    CHECK(text != NULL);
+    for (size_t k = 0; k < DEPTH; ++k) {
+        memcpy(text + 3 * k, "<a>", 4);
+    }
+    CHECK(se3d_model_import_text(text, 3 * DEPTH, "a.urdf", NULL, &import, &error) ==
+          SE3D_ERR_MODEL);
+    CHECK(strstr(error.message, "deeper than 64") != NULL);
+    strcpy(text, "<a>");
+    for (size_t k = 1; k < 3 * DEPTH / 4; ++k) {
+        memcpy(text + 4 * k - 1, "<b/>", 5);
+    }
+    CHECK(se3d_model_import_text(text, strlen(text), "a.urdf", NULL, &import, &error) ==
+          SE3D_ERR_MODEL);
+    CHECK(strstr(error.message, "no valid XML") != NULL); /* 75,000 are fine, but not closed */
+    free(text);
+}
+#endif
+
+static void what_was_imported_can_be_asked(void)
+{
+#if defined(SE3D_HAS_EXPAT)
+    static const char text[] = ROBOT(
+        "<link name=\"a.b\"/><link name=\"c\"><inertial><mass value=\"1\"/></inertial>"
+        "<visual><geometry><mesh filename=\"none.dae\"/></geometry></visual></link>"
+        "<joint name=\"j\" type=\"revolute\"><parent link=\"a.b\"/><child link=\"c\"/></joint>");
+    se3d_model_import *import = NULL;
+    se3d_model_import_note note;
+    se3d_model *model = NULL;
+    size_t length = 0;
+    CHECK(se3d_model_import_text(text, strlen(text), "x/a.urdf", NULL, &import, NULL) == SE3D_OK);
+    CHECK(strcmp(se3d_model_import_get_format(import), "URDF") == 0);
+    CHECK(se3d_model_import_count_lost(import) == 1);
+    CHECK(se3d_model_import_count_notes(import) == 3);
+    CHECK(se3d_model_import_get_note(import, 0, &note) == SE3D_OK);
+    CHECK(note.kind == SE3D_IMPORT_LOST && note.line == 2 && strstr(note.message, "assimp"));
+    CHECK(se3d_model_import_get_note(import, 3, &note) == SE3D_ERR_INVALID_ARGUMENT);
+    const char *made = se3d_model_import_get_text(import, &length);
+    CHECK(strlen(made) == length);
+    CHECK(se3d_model_read_text(made, length, "a.yaml", NULL, &model, NULL) == SE3D_OK);
+    se3d_model_destroy(model);
+    se3d_model_import_destroy(import);
+#endif
+}
+
+static void arguments_are_checked(void)
+{
+    se3d_model_import *import = NULL;
+    se3d_model_import_note note;
+    se3d_model_error error;
+    se3d_model_import_options how = {.struct_size = 3};
+    CHECK(se3d_model_import_text(NULL, 0, "a", NULL, &import, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_model_import_text("", 0, NULL, NULL, &import, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_model_import_text("", 0, "a", NULL, NULL, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_model_import_text("", 0, "a", &how, &import, &error) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_model_import_file(NULL, NULL, &import, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_model_import_file("/none", NULL, &import, &error) == SE3D_ERR_IO);
+    CHECK(se3d_model_import_file("/", NULL, &import, &error) == SE3D_ERR_IO);
+    CHECK(se3d_model_import_file("a", &how, &import, &error) == SE3D_ERR_INVALID_ARGUMENT);
+    how = se3d_model_import_options_default();
+    how.format = "dwg";
+    CHECK(se3d_model_import_text("<a/>", 4, "a", &how, &import, &error) == SE3D_ERR_MODEL);
+    CHECK(strstr(error.message, "`dwg` is not known") != NULL);
+    CHECK(se3d_model_import_get_note(NULL, 0, &note) == SE3D_ERR_NULL);
+    CHECK(se3d_model_import_count_notes(NULL) == 0 && se3d_model_import_count_lost(NULL) == 0);
+    CHECK(se3d_model_import_get_text(NULL, NULL)[0] == '\0');
+    CHECK(se3d_model_import_get_format(NULL)[0] == '\0');
+    se3d_model_import_destroy(NULL);
+}
+
+int main(void)
+{
+    RUN(every_bad_file_gets_a_message);
+    RUN(memory_may_end_anywhere);
+#if defined(SE3D_HAS_EXPAT)
+    RUN(depth_and_number_of_elements_are_bounded);
+#endif
+    RUN(what_was_imported_can_be_asked);
+    RUN(arguments_are_checked);
+    return check_finish();
+}
