@@ -101,6 +101,11 @@ if(TARGET se3d_program AND UNIX AND (NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMP
         add_custom_command(OUTPUT "${path}" DEPENDS se3d_program VERBATIM
             COMMAND "${CMAKE_COMMAND}" -E make_directory "${se3d_manual_dir}"
             COMMAND se3d_program ${ARGN} > "${path}")
+        if(SE3D_DEBIAN AND folder MATCHES "/man[1-9]$")
+            add_custom_command(OUTPUT "${path}.gz" DEPENDS "${path}" VERBATIM
+                COMMAND gzip -9 -n -f -k "${path}")
+            string(APPEND path ".gz")
+        endif()
         install(FILES "${path}" DESTINATION "${folder}" COMPONENT program)
         set(se3d_manual ${se3d_manual} "${path}" PARENT_SCOPE)
     endfunction()
@@ -117,7 +122,9 @@ endif()
 if(TARGET se3d_program)
     option(SE3D_BUNDLE_VIEWER "Install three.js with the viewer" ${PROJECT_IS_TOP_LEVEL})
     set(se3d_viewer_dir "${CMAKE_INSTALL_DATADIR}/se3d/viewer")
-    install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/viewer/" DESTINATION "${se3d_viewer_dir}" COMPONENT program)
+    install(DIRECTORY "${PROJECT_SOURCE_DIR}/tools/viewer/" DESTINATION "${se3d_viewer_dir}" COMPONENT program
+            PATTERN "*.sh" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+                                       WORLD_READ WORLD_EXECUTE)
     if(SE3D_BUNDLE_VIEWER AND UNIX)
         install(CODE "
             execute_process(COMMAND sh \"${PROJECT_SOURCE_DIR}/tools/viewer/build.sh\" \"${PROJECT_BINARY_DIR}/viewer\"
