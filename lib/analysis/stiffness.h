@@ -9,8 +9,8 @@
  * present state; infinite if there is none. */
 double se3di_stiffness_step(const se3di_model *model);
 /* An explicit method would be held to steps by decays that are long over: the fastest that a
- * spring-damper or bushing forces on its free bodies, tr(M^-1 D), D = -d wrench / d velocity, against
- * the motion that one wants to see. */
+ * spring-damper or bushing forces on its free bodies, tr(M^-1 D), D = -d wrench / d velocity, is
+ * much faster than the motion that one wants to see. */
 int se3di_stiffness_is_stiff(const se3di_model *model);
 
 #endif
