@@ -2,15 +2,12 @@
 /* The KKT kernels for x86-64 with AVX2 and FMA, chosen at run time.          docs/theory/kkt.md */
 #include "linsol/kkt_internal.h"
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#include "base/target.h"
+
+#if defined(SE3DI_TARGETS)
 #include <immintrin.h>
 
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2,fma")
-#endif
+SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX2)
 
 typedef struct v8 {
     __m256d low, high;
@@ -122,15 +119,11 @@ V8_INLINE double s_fnma(double acc, double a, double b)
 
 #include "linsol/kkt_core.inc"
 
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
+SE3DI_TARGET_END
 
 const se3di_kkt_core *se3di_kkt_core_avx2(void)
 {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? &core_table : NULL;
+    return se3di_has_avx2() ? &core_table : NULL;
 }
 
 #else

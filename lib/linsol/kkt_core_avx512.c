@@ -2,16 +2,12 @@
 /* The KKT kernels for x86-64 with AVX-512, chosen at run time.          docs/theory/kkt.md */
 #include "linsol/kkt_internal.h"
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#include "base/target.h"
+
+#if defined(SE3DI_TARGETS)
 #include <immintrin.h>
 
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512dq,avx2,fma"))),        \
-                             apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512vl,avx512dq,avx2,fma")
-#endif
+SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX512)
 
 typedef __m512d v8;
 
@@ -102,17 +98,11 @@ V8_INLINE double s_fnma(double acc, double a, double b)
 
 #include "linsol/kkt_core.inc"
 
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
+SE3DI_TARGET_END
 
 const se3di_kkt_core *se3di_kkt_core_avx512(void)
 {
-    bool has = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-               __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("fma");
-    return has ? &core_table : NULL;
+    return se3di_has_avx512() ? &core_table : NULL;
 }
 
 #else

@@ -2,15 +2,12 @@
 /* The force kernels for x86-64 with AVX2 and FMA, chosen at run time.  docs/theory/particles.md */
 #include "particles/wall.h"
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#include "base/target.h"
+
+#if defined(SE3DI_TARGETS)
 #include <immintrin.h>
 
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2,fma")
-#endif
+SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX2)
 
 #define LANES    4
 #define V_INLINE static inline __attribute__((always_inline))
@@ -137,16 +134,12 @@ V_INLINE void add_held(se3di_load *load, const se3di_load *held)
 
 #include "particles/force.inc"
 
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
+SE3DI_TARGET_END
 
 const se3di_kernels *se3di_particle_kernels_avx2(void)
 {
     static const se3di_kernels table = {"avx2", pairs, walls};
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? &table : NULL;
+    return se3di_has_avx2() ? &table : NULL;
 }
 
 #else

@@ -2,15 +2,15 @@
 /* The force kernels for x86-64 with AVX-512, chosen at run time.       docs/theory/particles.md */
 #include "particles/wall.h"
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#include "base/target.h"
+
+#if defined(SE3DI_TARGETS)
 #include <immintrin.h>
 
 #if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx512f,avx512vl,avx512dq,avx2,fma"))),        \
-                             apply_to = function)
+SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX512)
 #else
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512vl,avx512dq,avx2,fma,prefer-vector-width=512")
+SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX512 ",prefer-vector-width=512")
 #endif
 
 #define LANES    8
@@ -128,18 +128,12 @@ V_INLINE void add_loads(se3di_load *loads, const uint32_t *i, const V force[3], 
 
 #include "particles/force.inc"
 
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
+SE3DI_TARGET_END
 
 const se3di_kernels *se3di_particle_kernels_avx512(void)
 {
     static const se3di_kernels table = {"avx512", pairs, walls};
-    int has = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-              __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("fma");
-    return has ? &table : NULL;
+    return se3di_has_avx512() ? &table : NULL;
 }
 
 #else

@@ -3,27 +3,20 @@
  * what is chosen if no vectors are wanted.                          docs/theory/particles.md */
 #include "particles/wall.h"
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#include "base/target.h"
 
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx,fma"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx,fma")
-#endif
+#if defined(SE3DI_TARGETS)
+
+SE3DI_TARGET_BEGIN(SE3DI_TARGET_FMA)
 
 #include "particles/force_plain.inc"
 
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
+SE3DI_TARGET_END
 
 const se3di_kernels *se3di_particle_kernels_fma(void)
 {
     static const se3di_kernels table = {"fma", pairs, walls};
-    return __builtin_cpu_supports("avx") && __builtin_cpu_supports("fma") ? &table : NULL;
+    return se3di_has_fma() ? &table : NULL;
 }
 
 #else
