@@ -339,8 +339,9 @@ int se3di_mesh_leads_out(const edge *e, const double n[3])
     return w.open;
 }
 
-/* Contacts with the edge as a line, by ways that lead out; if they lead over its end, also from
- * there. A round end leaves along a way that is perpendicular but for what its search leaves. */
+/* Contacts with the edge as a line, by ways that lead out (where pieces do not tell which these
+ * are); if they lead over its end, also from there. A round end leaves along a way that is
+ * perpendicular but for what its search leaves. */
 static void add_lines(meeting *m, const se3di_manifold *lines, const edge *e, uint32_t feature)
 {
     se3di_mesh_way way = {.feature = feature, .triangle = e->triangle, .beyond = e->beyond};
@@ -354,8 +355,8 @@ static void add_lines(meeting *m, const se3di_manifold *lines, const edge *e, ui
         se3di_mul_transposed(m->mesh->at->R, back, n);
         const double over = se3di_dot(n, along) / se3di_norm(along);
         const int ends = fabs(over) > least;
-        if (se3di_mesh_leads_out(e, back) &&
-            (!ends || se3di_mesh_leads_off(m, over > 0.0 ? e->b : e->a, n))) {
+        if (m->has_pieces || (se3di_mesh_leads_out(e, back) &&
+                              (!ends || se3di_mesh_leads_off(m, over > 0.0 ? e->b : e->a, n)))) {
             se3di_mesh_to_local(m->mesh, lines->points[k].point, here);
             se3di_add_scaled(0.5 * lines->points[k].overlap, n, here); /* on the edge */
             se3di_mesh_add(m, here, n, lines->points[k].overlap, radius, feature + k);
@@ -408,7 +409,9 @@ static void touch_edge(meeting *m, edge *e, uint32_t feature)
         se3di_narrow_convex(m->solid, &segment, &lines);
         add_lines(m, &lines, e, feature);
     }
-    se3di_mesh_find_ways_off_edge(m, e);
+    if (!m->has_pieces) {
+        se3di_mesh_find_ways_off_edge(m, e);
+    }
 }
 
 static void meet_edges(void *ctx, uint32_t triangle)
@@ -433,7 +436,9 @@ static void meet_edges(void *ctx, uint32_t triangle)
         se3di_scale(0.5, e.middle, e.middle);
         touch_edge(m, &e, 0x80000000u + 16 * (3 * triangle + k));
     }
-    se3di_mesh_find_ways(m, triangle);
+    if (!m->has_pieces) {
+        se3di_mesh_find_ways(m, triangle);
+    }
 }
 
 static void touch_corners(const meeting *m)
@@ -582,35 +587,50 @@ static void find_center(meeting *m)
     se3di_mesh_to_local(m->mesh, m->solid->at->x, m->origin);
 }
 
+void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
+                     meeting *m)
+{
+    const se3di_shape *s = i->shape;
+    memset(m, 0, offsetof(meeting, ways));
+    m->solid = i;
+    m->mesh = mesh;
+    m->manifold = manifold;
+    m->size = se3di_shape_contact_size(s);
+    m->has_pieces = mesh->shape->piece_count > 0 && !se3di_shape_is(s, SE3DI_SHAPE_IS_SWEPT);
+    find_center(m);
+    find_side(m);
+    if (se3di_shape_is(s, SE3DI_SHAPE_IS_SWEPT)) {
+        touch_ends(m);
+    } else if (se3di_shape_is(s, SE3DI_SHAPE_HAS_RIMS)) {
+        se3di_mesh_visit(mesh->shape, m->origin, s->bound, meet_rims, m);
+    } else {
+        touch_corners(m);
+    }
+    if (!se3di_shape_is(s, SE3DI_SHAPE_IS_BALL)) {
+        se3di_mesh_visit(mesh->shape, m->origin, s->bound, meet_edges, m);
+    }
+}
+
 void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
 {
     const se3di_shape *s = i->shape;
     meeting m;
-    memset(&m, 0, offsetof(meeting, ways));
-    m.solid = i;
-    m.mesh = mesh;
-    m.manifold = manifold;
-    m.size = se3di_shape_contact_size(s);
-    find_center(&m);
-    find_side(&m);
-    if (se3di_shape_is(s, SE3DI_SHAPE_IS_SWEPT)) {
-        touch_ends(&m);
-    } else if (se3di_shape_is(s, SE3DI_SHAPE_HAS_RIMS)) {
-        se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_rims, &m);
+    se3di_mesh_find(i, mesh, manifold, &m);
+    if (se3di_shape_is(s, SE3DI_SHAPE_IS_BALL)) {
+        return;
+    }
+    if (m.has_pieces) {
+        se3di_narrow_judge(i, mesh, manifold);
     } else {
-        touch_corners(&m);
-    }
-    if (!se3di_shape_is(s, SE3DI_SHAPE_IS_BALL)) {
-        se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_edges, &m);
         se3di_mesh_add_ways(&m);
-        if (manifold->count == 0) {
-            se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_rest, &m);
-        }
-        if (manifold->count == 0) {
-            se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_through, &m);
-        }
-        se3di_manifold_separate(manifold);
     }
+    if (manifold->count == 0) {
+        se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_rest, &m);
+    }
+    if (manifold->count == 0) {
+        se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_through, &m);
+    }
+    se3di_manifold_separate(manifold);
 }
 
 #define WAYS 8 /* directions in the plane in which vertices are chosen */

@@ -32,6 +32,8 @@ typedef struct se3di_mesh_meeting {
     int sense; /* of the triangles: 1 counter-clockwise seen from the solid, -1 clockwise, 0: each
                   for itself */
     int way_count;
+    int has_pieces; /* which tell the ways off it */
+    int reserved;
     se3di_manifold *manifold;
     se3di_mesh_way ways[SE3DI_MESH_WAYS];
 } se3di_mesh_meeting;
@@ -71,5 +73,14 @@ void se3di_mesh_find_ways(se3di_mesh_meeting *m, uint32_t triangle);
 void se3di_mesh_find_ways_off_edge(se3di_mesh_meeting *m, const se3di_mesh_edge *e);
 /* Of each part of the surface that bulges the least way, if no contact is as deep there. */
 void se3di_mesh_add_ways(se3di_mesh_meeting *m);
+
+/* Whether x (the mesh's frame) is within a piece or, by the slack, on its surface. */
+int se3di_piece_holds(const se3di_shape *piece, const double x[3], double slack);
+/* The places where corners, round ends and edges touch; what else there is of a solid is `m`. */
+void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
+                     se3di_mesh_meeting *m);
+/* Of contacts of a solid, or a mesh that convex pieces make up, with such a mesh keep those that
+ * are ways out of the pieces, and add what is missing. */
+void se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold);
 
 #endif

@@ -19,8 +19,7 @@ static void place(const se3di_solid *mesh, const se3di_shape *piece, se3di_shape
     se3di_solid_to_ground(mesh, piece->x, at->x);
 }
 
-/* Whether x (the mesh's frame) is within a piece or, by the slack, on its surface. */
-static int is_within(const se3di_shape *piece, const double x[3], double slack)
+int se3di_piece_holds(const se3di_shape *piece, const double x[3], double slack)
 {
     double d[3];
     se3di_sub(x, piece->x, d);
@@ -48,7 +47,7 @@ static int stays_within(const se3di_solid *i, size_t k, const se3di_contact_poin
     se3di_add_scaled(p->overlap + beyond, p->normal, x);
     se3di_mesh_to_local(i, x, local);
     for (size_t other = 0; other < i->shape->piece_count; ++other) {
-        if (other != k && is_within(&i->shape->pieces[other], local, 0.1 * beyond)) {
+        if (other != k && se3di_piece_holds(&i->shape->pieces[other], local, 0.1 * beyond)) {
             return 1;
         }
     }
@@ -82,7 +81,12 @@ static void add_piece(const se3di_solid *i, size_t k, const se3di_solid *mesh,
         return;
     }
     const se3di_solid solid = {piece, &at};
-    se3di_narrow_mesh(&solid, mesh, &own);
+    if (mesh->shape->piece_count > 0) {
+        se3di_mesh_meeting m;
+        se3di_mesh_find(&solid, mesh, &own, &m);
+    } else {
+        se3di_narrow_mesh(&solid, mesh, &own);
+    }
     for (uint32_t n = 0; n < own.count; ++n) {
         const se3di_contact_point *from = &own.points[n];
         if (stays_within(i, k, from) ||
@@ -109,6 +113,9 @@ void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manif
     const se3di_solid *cut = turned ? j : i, *whole = turned ? i : j;
     for (size_t k = 0; k < cut->shape->piece_count; ++k) {
         add_piece(cut, k, whole, manifold);
+    }
+    if (whole->shape->piece_count > 0) {
+        se3di_narrow_judge(cut, whole, manifold);
     }
     se3di_manifold_separate(manifold);
     if (turned) {

@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Solids on closed meshes that convex pieces make up: which contacts are ways out.
+ *
+ * Off a convex piece a solid comes by the least translation, which two convex shapes have exactly.
+ * It is a way out of the mesh if the solid, moved by it, is off all other pieces, too, near a place
+ * where it leaves the surface: not if that place is a cut, where the body goes on. In a hollow the
+ * ways of two pieces are taken together if neither makes the other superfluous.
+ *
+ * Corners, edges and rims show where there is contact; but of a thin plate that a solid goes into
+ * from above they also show the faces that it is behind at the sides. So what is not along a way
+ * out of a piece does not count, and no contact is deeper than that way. What they do not show of a
+ * way out is added.                                            docs/theory/body-contact.md */
+#include "contact/narrow/mesh.h"
+#include "math/vec3.h"
+
+#include <math.h>
+
+#define WAYS_MOST   64
+#define ALONG       0.985 /* cosine: a contact is along a way */
+#define LEAN        1.02  /* by how much it may be deeper then */
+#define NEAR_DEPTHS 10.0  /* near a place: depths */
+#define NEAR_LEAST  1e-5  /* the same: of a piece, at least and at most */
+#define NEAR_MOST   1e-1
+#define WITHIN      1e-2   /* of that: so far within a piece the other one is in it */
+#define EXACT       1e-9   /* of the size: depths that are one */
+#define RIM         3.1e-5 /* of the size: by how much points of an upright rim are too shallow */
+#define FEATURE     0xa0000000u
+
+/* How a piece of the one (all of it if it is convex) comes off a piece of the other. */
+typedef struct way {
+    const se3di_shape *own, *piece;
+    se3di_shape_pose at, of;
+    int is_out;
+    double depth, n[3]; /* into the piece, ground frame */
+} way;
+
+typedef struct ways {
+    const se3di_solid *i, *mesh;
+    double size;
+    se3di_manifold *manifold;
+    int count;
+    way list[WAYS_MOST];    /* of those that overlap */
+    se3di_manifold touched; /* of one */
+} ways;
+
+/* Whether what moves, by `by`, is off what of a piece is near x, but for its border. */
+static int is_off(const way *w, const double by[3], const double x[3], double depth)
+{
+    const double share = fmin(NEAR_MOST, fmax(NEAR_LEAST, NEAR_DEPTHS * depth / w->piece->bound));
+    se3di_shape_pose moved = w->at, small = w->of;
+    double d[3];
+    se3di_add(moved.x, by, moved.x);
+    se3di_sub(w->of.x, x, d);
+    se3di_copy(x, small.x);
+    se3di_add_scaled(share, d, small.x);
+    for (int k = 0; k < 9; ++k) {
+        small.R[k] *= share * (1.0 - WITHIN);
+    }
+    const se3di_solid solid = {w->own, &moved}, part = {w->piece, &small};
+    return se3di_convex_are_apart(&solid, &part, se3di_core_radius(w->own));
+}
+
+/* Whether a place where it leaves is on the surface of the mesh. */
+static int is_open(const ways *all, int k, const double x[3])
+{
+    const way *own = &all->list[k];
+    double local[3], by[3], both[3], other_by[3];
+    se3di_mesh_to_local(all->mesh, x, local);
+    se3di_scale(-own->depth, own->n, by);
+    for (int c = 0; c < all->count; ++c) {
+        const way *other = &all->list[c];
+        const double slack = fmax(own->depth, other->depth);
+        if (c == k || !se3di_piece_holds(other->piece, local, slack) ||
+            is_off(other, by, x, own->depth)) {
+            continue;
+        }
+        se3di_scale(-other->depth, other->n, other_by);
+        se3di_add(by, other_by, both);
+        if (!is_off(other, both, x, own->depth) || is_off(own, other_by, x, own->depth)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static void touch(ways *all, const way *w)
+{
+    const se3di_solid own = {w->own, &w->at}, piece = {w->piece, &w->of};
+    all->touched.count = 0;
+    se3di_narrow_convex(&own, &piece, &all->touched);
+}
+
+/* The part of a shape; the shape itself if it is convex. */
+static const se3di_shape *place_part(const se3di_solid *solid, size_t k, se3di_shape_pose *at)
+{
+    const se3di_shape *s = solid->shape;
+    *at = *solid->at;
+    if (s->piece_count == 0) {
+        return s;
+    }
+    se3di_solid_to_ground(solid, s->pieces[k].x, at->x);
+    return &s->pieces[k];
+}
+
+static void find_overlap(ways *all, size_t a, size_t b)
+{
+    way *w = &all->list[all->count];
+    double d[3];
+    w->own = place_part(all->i, a, &w->at);
+    w->piece = place_part(all->mesh, b, &w->of);
+    w->is_out = 0;
+    w->depth = 0.0;
+    se3di_sub(w->of.x, w->at.x, d);
+    if (!(se3di_norm(d) < w->piece->bound + w->own->bound)) {
+        return;
+    }
+    touch(all, w);
+    for (uint32_t c = 0; c < all->touched.count; ++c) {
+        if (all->touched.points[c].overlap > w->depth) {
+            w->depth = all->touched.points[c].overlap;
+            se3di_copy(all->touched.points[c].normal, w->n);
+        }
+    }
+    all->count += w->depth > 0.0;
+}
+
+static void find_overlaps(ways *all)
+{
+    const size_t parts = all->i->shape->piece_count;
+    for (size_t a = 0; a < (parts > 0 ? parts : 1); ++a) {
+        for (size_t b = 0; b < all->mesh->shape->piece_count && all->count < WAYS_MOST; ++b) {
+            find_overlap(all, a, b);
+        }
+    }
+}
+
+/* Returns how many there are. */
+static int find_ways_out(ways *all)
+{
+    int found = 0;
+    for (int k = 0; k < all->count; ++k) {
+        way *w = &all->list[k];
+        w->is_out = all->count == 1;
+        if (!w->is_out) {
+            touch(all, w);
+        }
+        for (uint32_t c = 0; c < all->touched.count && !w->is_out; ++c) {
+            double x[3];
+            se3di_copy(all->touched.points[c].point, x);
+            se3di_add_scaled(-0.5 * all->touched.points[c].overlap, w->n, x);
+            w->is_out = is_open(all, k, x);
+        }
+        found += w->is_out;
+    }
+    return found;
+}
+
+/* Cut a contact down to the ways out of the pieces that it is on, or of any if none of those has
+ * one; returns whether there is one. */
+static int is_along(const ways *all, se3di_contact_point *c)
+{
+    double local[3], most[2] = {0.0, 0.0};
+    int is_on = 0;
+    se3di_mesh_to_local(all->mesh, c->point, local);
+    for (int k = 0; k < all->count; ++k) {
+        const way *w = &all->list[k];
+        const int along =
+            se3di_dot(w->n, c->normal) > ALONG && c->overlap < LEAN * w->depth + EXACT * all->size;
+        const int on = se3di_piece_holds(w->piece, local, w->depth + EXACT * all->size);
+        if (w->is_out) {
+            is_on |= on;
+            most[0] = along && on ? fmax(most[0], w->depth) : most[0];
+            most[1] = along ? fmax(most[1], w->depth) : most[1];
+        }
+    }
+    const double limit = most[is_on ? 0 : 1];
+    c->overlap = fmin(c->overlap, limit);
+    return limit > 0.0;
+}
+
+/* The way out of piece k as the deepest contact along it; if there is none, added. */
+static void show(ways *all, int k)
+{
+    const way *w = &all->list[k];
+    const double slack =
+        se3di_shape_is(w->own, SE3DI_SHAPE_HAS_RIMS) ? RIM * w->own->bound : EXACT * all->size;
+    se3di_contact_point *deepest = NULL;
+    for (uint32_t c = 0; c < all->manifold->count; ++c) {
+        se3di_contact_point *at = &all->manifold->points[c];
+        double turn[3];
+        se3di_sub(at->normal, w->n, turn);
+        if (se3di_norm(turn) < SE3DI_MESH_SAME && (!deepest || at->overlap > deepest->overlap)) {
+            deepest = at;
+        }
+    }
+    if (deepest && deepest->overlap > w->depth - slack) {
+        if (deepest->overlap < w->depth + EXACT * all->size) {
+            se3di_copy(w->n, deepest->normal);
+            deepest->overlap = w->depth;
+        }
+        return;
+    }
+    touch(all, w);
+    for (uint32_t c = 0; c < all->touched.count; ++c) {
+        const se3di_contact_point *from = &all->touched.points[c];
+        if (!(from->overlap < w->depth)) {
+            se3di_contact_point *to = se3di_manifold_add(all->manifold, from->point, w->n, w->depth,
+                                                         FEATURE + (uint32_t)k);
+            se3di_add_scaled(-0.5 * w->depth, w->n, to->point); /* on the mesh */
+            to->share = 1.0;
+            to->bend_i = from->bend_i;
+            to->bend_j = from->bend_j;
+            return;
+        }
+    }
+}
+
+void se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
+{
+    ways all;
+    uint32_t kept = 0;
+    all.i = i;
+    all.mesh = mesh;
+    all.size = se3di_shape_contact_size(i->shape);
+    all.manifold = manifold;
+    all.count = 0;
+    find_overlaps(&all);
+    if (find_ways_out(&all) == 0) {
+        return;
+    }
+    for (uint32_t k = 0; k < manifold->count; ++k) {
+        se3di_contact_point *c = &manifold->points[k];
+        if (is_along(&all, c)) {
+            manifold->points[kept++] = *c;
+        }
+    }
+    manifold->count = kept;
+    for (int k = 0; k < all.count; ++k) {
+        if (all.list[k].is_out) {
+            show(&all, k);
+        }
+    }
+}
