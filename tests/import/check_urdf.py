@@ -167,6 +167,26 @@ def compare(text, names, robot, q, what):
         tool.near(f"{what}: the effort of {name}", table[column][0], value, 1e-9)
 
 
+def meshes():
+    """A mesh of a package beside the file is found, and seen from the folder of the model."""
+    folder = tool.WORK / "ws" / "arm_description"
+    (folder / "urdf").mkdir(parents=True, exist_ok=True)
+    (folder / "meshes").mkdir(exist_ok=True)
+    (folder / "meshes" / "a.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+    path = folder / "urdf" / "part.urdf"
+    visual = "<visual><geometry><mesh filename='package://arm_description/meshes/{}' scale='{}'/></geometry></visual>"
+    path.write_text("<robot name='r'><link name='a'>" + visual.format("a.obj", "2 2 2") +
+                    visual.format("a.obj", "1 2 1") + visual.format("b.obj", "1 1 1") +
+                    visual.format("c.dae", "1 1 1") + "</link></robot>")
+    text, notes = tool.convert(path, code=1)
+    tool.check("type: mesh, file: ws/arm_description/meshes/a.obj, scale: 2" in text, f"the mesh: {text}")
+    tool.check([n["kind"] for n in notes] == ["lost"] * 3, f"notes are {notes}")
+    tool.check("assimp" in notes[2]["message"], "how to convert it")
+    tool.convert(path, "--partial")
+    tool.run("urdf_mesh", text + "output: [{file: results.csv, channels: [a.position]}]\n")
+
+
 def main():
     robot = xml.parse(tool.SOURCE / "arm.urdf").getroot()
     states = [{"shoulder": (0.0, 0, 0), "elbow.1": (0.0, 0, 0), "slide": (0.0, 0, 0), "grip_a": (0.0, 0, 0)},
@@ -185,6 +205,7 @@ def main():
     tool.check("lower: -2.5, upper: 2.5, k: stop_k_angle" in text, "the stop")
     free, _ = tool.convert("arm.urdf", "--free-base")
     tool.check("fixed: true" in free, "a base on the world stays there")
+    meshes()
     # it runs with what it has
     text, _ = tool.convert("arm.urdf")
     table = tool.run("urdf_free", text + "output: [{file: results.csv, channels: [energy.balance]}]\n",

@@ -22,6 +22,19 @@ static const bad_file table[] = {
     {"a.urdf", "", 0, {"no format that is known", NULL}},
     {"a.urdf", "  \n", 0, {"no format that is known", NULL}},
     {"a.txt", "hello", 0, {"no format that is known", NULL}},
+    {"a.adm", "", 0, {"no PART that moves", NULL}},
+    {"a.adm", "title\nPART/1, GROUND\n", 0, {"no PART that moves", NULL}},
+    {"a.adm", "title\n\nTHING/1\n", 3, {"THING/1", "no statement"}},
+    {"a.adm", "title\nPART/2, MASS=1\nPART/2\n", 3, {"PART/2", "twice"}},
+    {"a.adm", "title\nPART/2, MASS=x\n", 2, {"MASS = x", "numbers"}},
+    {"a.adm", "title\nPART/2, QG=1,2,3,4\n", 2, {"QG", "at most 3"}},
+    {"a.adm", "title\nPART/2, CM=7\n", 2, {"CM", "MARKER"}},
+    {"a.adm", "title\nMARKER/2\n", 2, {"on no PART", NULL}},
+    {"a.adm", "title\nPART/2, MASS=1, ZG=0,0,0\n", 2, {"give no axes", NULL}},
+    {"a.adm", "title\nUNITS/LENGTH=ELL\n", 2, {"ELL", "not known"}},
+    {"a.adm", "title\nPART/2\nJOINT/1, REVOLUTE, I=1, J=2\n", 3, {"JOINT/1", "MARKER"}},
+    {"a.adm", "title\nPART/2\nMARKER/1\nJOINT/1, REVOLUTE, I=1, J=1\n", 4, {"one part", NULL}},
+    {"a.adm", "title\nPART/2\nMOTION/1, JOINT=7, FUNCTION=1\n", 3, {"no JOINT/7", NULL}},
 #if defined(SE3D_HAS_EXPAT)
     {"a.urdf", "<robot>", 1, {"no valid XML", NULL}},
     {"a.urdf", "<robot></robots>", 1, {"no valid XML", "mismatched"}},
@@ -156,6 +169,7 @@ static void sweep(const char *name)
 
 static void memory_may_end_anywhere(void)
 {
+    sweep("crank.adm");
 #if defined(SE3D_HAS_EXPAT)
     sweep("arm.urdf");
 #endif

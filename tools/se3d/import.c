@@ -133,16 +133,17 @@ const command_entry import_entry = {
     .name = "import",
     .run = command_import,
     .operands = "FILE",
-    .files = "urdf",
+    .files = "urdf adm",
     .summary = "make a model file of a model of another program",
-    .text = "Makes a model file of a robot in URDF. What cannot be carried, was changed or has "
+    .text = "Makes a model file of a robot in URDF, or an Adams data set. What cannot be carried, "
+            "was changed or has "
             "another name is listed with its line, and stands at the beginning of the model file, "
             "too. docs/import.md says what becomes of what.",
     .options =
         (const command_option[]){
             {"--output", "-o", "MODEL.yaml", "the model file; without it, it is printed"},
             {"--partial", NULL, NULL, "exit code 0 although something could not be carried"},
-            {"--format", NULL, "FORMAT", "urdf, where the file does not tell"},
+            {"--format", NULL, "FORMAT", "urdf or adams, where the file does not tell"},
             {"--merge-fixed", NULL, NULL, "links on fixed joints become one body"},
             {"--free-base", NULL, NULL, "the root of a robot may move; otherwise it is fixed"},
             {"--quiet", "-q", NULL, "list only what could not be carried"},
@@ -151,6 +152,7 @@ const command_entry import_entry = {
     .examples =
         (const command_example[]){
             {"import robot.urdf -o robot.yaml", "a robot, and what is different from its file"},
+            {"import car.adm -o car.yaml --partial", "an Adams model, whatever is missing"},
             {"import robot.urdf --merge-fixed -o robot.yaml", "with fewer bodies"},
             {0}},
     .exits = "0 done; 1 something could not be carried (the model file is written all the same), "

@@ -8,5 +8,6 @@
 #include "io/import/xml.h"
 
 bool se3di_import_urdf(se3di_machine *m, const se3di_xml *root);
+bool se3di_import_adams(se3di_machine *m, const char *text, size_t length);
 
 #endif

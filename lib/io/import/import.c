@@ -33,7 +33,7 @@ typedef struct xml_format {
 
 static const xml_format xml_formats[] = {{"urdf", "URDF", "robot", se3di_import_urdf}};
 
-#define FORMATS "urdf"
+#define FORMATS "urdf (.urdf) or adams (.adm)"
 
 void se3d_model_import_options_init(se3d_model_import_options *options, size_t size)
 {
@@ -72,17 +72,28 @@ static char first_character(const char *text, size_t length)
     return '\0';
 }
 
+static bool has_ending(const char *name, const char *ending)
+{
+    const size_t length = strlen(name);
+    const size_t size = strlen(ending);
+    return length > size && se3di_scan_equal(name + length - size, ending);
+}
+
 static bool import_any(se3di_machine *m, const char *text, size_t length)
 {
     const char *format = m->options->format;
     const char first = first_character(text, length);
-    bool known = !format;
+    bool known = !format || se3di_scan_equal(format, "adams");
     for (size_t k = 0; k < sizeof xml_formats / sizeof *xml_formats; ++k) {
         known = known || se3di_scan_equal(format, xml_formats[k].option);
     }
     if (!known) {
         return se3di_machine_fail(m, 0, 0, "the format `%.40s` is not known, must be " FORMATS,
                                   format);
+    }
+    if (format ? se3di_scan_equal(format, "adams") : has_ending(m->file, ".adm")) {
+        m->format = "Adams";
+        return se3di_import_adams(m, text, length);
     }
     if (first == '<' || format) {
         return import_xml(m, text, length);

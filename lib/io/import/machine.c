@@ -147,7 +147,8 @@ const char *se3di_machine_quote(se3di_machine *m, const char *text)
                                           "True", "False", "Null", "Yes", "No", "On", "Off",
                                           "TRUE", "FALSE", "NULL", "YES", "NO", "ON", "OFF"};
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
-    static const char more[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789/-+";
+    static const char more[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789/-+.";
     bool plain = strspn(text, letters) > 0 && !text[strspn(text, more)];
     for (size_t k = 0; plain && k < sizeof special / sizeof *special; ++k) {
         plain = strcmp(text, special[k]) != 0;

@@ -92,3 +92,17 @@ bool se3di_scan_equal(const char *a, const char *b)
 {
     return se3di_scan_equal_part(a, strlen(a), b);
 }
+
+bool se3di_scan_begins(const char *text, const char *part)
+{
+    while (*part && lower(*text) == lower(*part)) {
+        ++text;
+        ++part;
+    }
+    return !*part;
+}
+
+bool se3di_scan_numeric(const char *text)
+{
+    return *text && !text[strspn(text, "0123456789+-.,eEdD \t")];
+}

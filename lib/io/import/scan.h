@@ -15,5 +15,9 @@ int se3di_scan_numbers(const char *text, double *values, int room);
 bool se3di_scan_equal(const char *a, const char *b);
 /* The same for the first `length` characters of a, which are all of b. */
 bool se3di_scan_equal_part(const char *a, size_t length, const char *b);
+/* Whether `text` begins with `part`, without regard to case. */
+bool se3di_scan_begins(const char *text, const char *part);
+/* Whether the text begins with a number and has no letters but those of exponents and degrees. */
+bool se3di_scan_numeric(const char *text);
 
 #endif
