@@ -52,8 +52,11 @@ endforeach()
 # Those who link statically need -L for what does not lie in the compiler's own folders.
 set(SE3D_PC_LINK_FOLDERS "")
 foreach(library amd yaml expat)
+    if(NOT SE3D_${library}_LIBRARY)
+        continue()
+    endif()
     cmake_path(GET SE3D_${library}_LIBRARY PARENT_PATH folder)
-    if(TARGET se3d_deps::${library} AND folder AND NOT folder IN_LIST CMAKE_C_IMPLICIT_LINK_DIRECTORIES
+    if(folder AND NOT folder IN_LIST CMAKE_C_IMPLICIT_LINK_DIRECTORIES
        AND NOT SE3D_PC_LINK_FOLDERS MATCHES "-L${folder}( |$)")
         string(APPEND SE3D_PC_LINK_FOLDERS " -L${folder}")
     endif()
