@@ -40,11 +40,16 @@ static const char *const schema_head =
     "  \"$ref\": \"#/$defs/model\",\n"
     "  \"$defs\": {\n"
     "    \"number\": {\n"
-    "      \"description\": \"A number, or an expression over the parameters, pi and deg.\",\n"
+    "      \"description\": \"A number with or without a unit, or an expression over the "
+    "parameters.\",\n"
     "      \"type\": [\"number\", \"string\"]\n"
     "    },\n"
-    "    \"vector\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, "
-    "\"minItems\": 3, \"maxItems\": 3},\n"
+    "    \"vector\": {\n"
+    "      \"description\": \"Three numbers, or the name of a point or an expression over "
+    "points.\",\n"
+    "      \"type\": [\"array\", \"string\"], \"items\": {\"$ref\": \"#/$defs/number\"}, "
+    "\"minItems\": 3, \"maxItems\": 3\n"
+    "    },\n"
     "    \"pair_of_numbers\": {\"type\": \"array\", \"items\": {\"$ref\": \"#/$defs/number\"}, "
     "\"minItems\": 2, \"maxItems\": 2},\n"
     "    \"name\": {\"description\": \"1 to 100 characters, none of . , ; \\\" ' ` [ ] { }\", "
@@ -91,7 +96,9 @@ static const char *const kinds[SE3DI_KIND_END] = {
     [SE3DI_KIND_TITLE] = "\"type\": [\"string\", \"number\"]",
     [SE3DI_KIND_VERSION] = "\"const\": 1",
     [SE3DI_KIND_PARAMETERS] = "\"type\": [\"object\", \"null\"], \"additionalProperties\": "
-                              "{" REFERENCE("number") "}",
+                              "{\"anyOf\": [{" REFERENCE("number") "}, {" REFERENCE("vector") "}]}",
+    [SE3DI_KIND_NAMED_POINTS] = "\"type\": [\"object\", \"null\"], "
+                                "\"additionalProperties\": {" REFERENCE("vector") "}",
     [SE3DI_KIND_FILE] = "\"type\": \"string\"",
     [SE3DI_KIND_BODY] = REFERENCE("name"),
     [SE3DI_KIND_JOINT] = REFERENCE("name"),

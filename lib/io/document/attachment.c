@@ -27,13 +27,14 @@ static const char *find(const se3di_reader *reader, se3di_iopool *pool, const ch
     return path;
 }
 
-static bool fail(se3di_reader *reader, const se3di_node *map, const char *file, const char *what)
+static bool fail(se3di_reader *reader, const se3di_node *map, const char *key, const char *file,
+                 const char *what)
 {
-    return se3di_reader_fail_key(reader, map, "file", "`%.200s`: the file %s", file, what);
+    return se3di_reader_fail_key(reader, map, key, "`%.200s`: the file %s", file, what);
 }
 
-bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const char *file,
-                           se3di_iopool *pool, char **text, size_t *size)
+bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const char *key,
+                           const char *file, se3di_iopool *pool, char **text, size_t *size)
 {
     const char *path = find(reader, pool, file);
     if (!path) {
@@ -43,7 +44,7 @@ bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const ch
     FILE *stream = se3di_file_open(path);
     if (!stream) {
         const bool other = errno == EISDIR || errno == EINVAL;
-        return fail(reader, map, file,
+        return fail(reader, map, key, file,
                     other ? "is a folder, a pipe or a device, must be a regular file"
                           : "cannot be opened");
     }
@@ -58,5 +59,5 @@ bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const ch
     }
     *size = good ? (size_t)length : 0;
     reader->attached += *size;
-    return good || fail(reader, map, file, "is empty, too large or cannot be read");
+    return good || fail(reader, map, key, file, "is empty, too large or cannot be read");
 }

@@ -5,9 +5,9 @@
 
 #include "io/document/reader.h"
 
-/* Load the file that the key `file` of a map names, relative to the model, to memory of `pool`; a
- * zero follows it. */
-bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const char *file,
-                           se3di_iopool *pool, char **text, size_t *size);
+/* Load the file that a key of a map names, relative to the model, to memory of `pool`; a zero
+ * follows it. */
+bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const char *key,
+                           const char *file, se3di_iopool *pool, char **text, size_t *size);
 
 #endif

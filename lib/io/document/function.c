@@ -3,6 +3,7 @@
 #include "io/document/function.h"
 
 #include "io/base/pool.h"
+#include "io/document/amount.h"
 #include "io/document/document.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
@@ -30,7 +31,8 @@ static bool create_expression(se3di_reader *reader, const se3di_node *node,
 }
 
 /* {spline: [[x, y], ...]}: C2 through the points. */
-static bool read_spline(se3di_reader *reader, const se3di_node *node, se3d_function *function)
+static bool read_spline(se3di_reader *reader, const se3di_node *node, const char *variable,
+                        se3d_function *function)
 {
     if (!se3di_read_keys(reader, node, &se3di_object_spline)) {
         return false;
@@ -48,7 +50,7 @@ static bool read_spline(se3di_reader *reader, const se3di_node *node, se3d_funct
     size_t k = 0;
     for (const se3di_node *point = list->first; point; point = point->next, ++k) {
         double pair[2];
-        if (!se3di_read_vector(reader, point, 2, pair)) {
+        if (!se3di_read_pair_of(reader, point, variable, node, pair)) {
             return false;
         }
         if (k > 0 && !(pair[0] > x[k - 1])) {
@@ -66,6 +68,20 @@ static bool read_spline(se3di_reader *reader, const se3di_node *node, se3d_funct
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
+/* A number or a function with vectors or units, in the unit of its key. */
+static bool read_quantity(se3di_reader *reader, const se3di_node *node,
+                          const char *const *variables, se3di_amount *q)
+{
+    if (!se3di_check_expression(reader, node) || !se3di_amount_eval(reader, node, variables, q)) {
+        return false;
+    }
+    if (q->rank != 1) {
+        return se3di_reader_fail(reader, node, "`%.120s` is a vector, must be a number",
+                                 node->text);
+    }
+    return se3di_amount_take(reader, node, node, q);
+}
+
 bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const char *const *variables,
                          double *value, se3d_function *function)
 {
@@ -74,7 +90,7 @@ bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const cha
         ++count;
     }
     if (node->kind == SE3DI_NODE_MAP) {
-        return read_spline(reader, node, function);
+        return read_spline(reader, node, variables[0], function);
     }
     if (node->kind != SE3DI_NODE_SCALAR || se3di_node_is_null(node)) {
         return se3di_reader_fail(reader, node,
@@ -84,8 +100,22 @@ bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const cha
     }
     se3d_expression_def def = se3d_expression_def_default();
     se3d_expression *expression = NULL;
+    se3di_node plain = *node;
     def.variables = variables;
     def.variable_count = count;
+    if (se3di_amount_is_needed(reader, node->text)) {
+        se3di_amount q;
+        if (!read_quantity(reader, node, variables, &q)) {
+            return false;
+        }
+        if (!q.text[0]) {
+            *value = q.v[0];
+            return se3di_check_number(reader, node, SE3DI_ANY, *value);
+        }
+        plain.text = q.text[0];
+        plain.one_line = false;
+    }
+    node = &plain;
     if (!se3di_read_compile(reader, node, &def, &expression)) {
         return false;
     }

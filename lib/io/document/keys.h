@@ -26,6 +26,7 @@ typedef enum se3di_kind {
     SE3DI_KIND_TITLE,
     SE3DI_KIND_VERSION,
     SE3DI_KIND_PARAMETERS,
+    SE3DI_KIND_NAMED_POINTS,
     SE3DI_KIND_FILE,        /* ends with one of `words`, if there are some */
     SE3DI_KIND_BODY,        /* the name of one, also of the ground */
     SE3DI_KIND_JOINT,       /* the name of one */

@@ -8,7 +8,7 @@
 /* With the marks of Markdown. */
 static const char *const kind_texts[SE3DI_KIND_END] = {
     [SE3DI_KIND_NUMBER] = "number",
-    [SE3DI_KIND_VECTOR] = "3 numbers",
+    [SE3DI_KIND_VECTOR] = "[vector](#points)",
     [SE3DI_KIND_DIRECTION] = "direction",
     [SE3DI_KIND_ORIENTATION] = "[orientation](#orientations)",
     [SE3DI_KIND_BOOL] = "`true` or `false`",
@@ -18,11 +18,12 @@ static const char *const kind_texts[SE3DI_KIND_END] = {
     [SE3DI_KIND_TITLE] = "text",
     [SE3DI_KIND_VERSION] = "1",
     [SE3DI_KIND_PARAMETERS] = "map",
+    [SE3DI_KIND_NAMED_POINTS] = "map",
     [SE3DI_KIND_FILE] = "file name",
     [SE3DI_KIND_BODY] = "body",
     [SE3DI_KIND_JOINT] = "joint",
     [SE3DI_KIND_MATERIAL] = "material",
-    [SE3DI_KIND_POINT] = "3 numbers or marker",
+    [SE3DI_KIND_POINT] = "[vector](#points) or marker",
     [SE3DI_KIND_FUNCTION] = "function",
     [SE3DI_KIND_FUNCTIONS] = "3 functions",
     [SE3DI_KIND_COEFFICIENT] = "number or table",

@@ -127,8 +127,9 @@ bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_o
         return se3di_reader_fail(reader, node, "is %s, must be a map such as {%s: ...}",
                                  se3di_node_describe(node), object->keys[0].key);
     }
-    for (const se3di_node *child = node->first; child; child = child->next) {
-        if (!se3di_object_find(object, NULL, child->key)) {
+    for (se3di_node *child = node->first; child; child = child->next) {
+        child->row = se3di_object_find(object, NULL, child->key);
+        if (!child->row) {
             return fail_unknown_key(reader, child, object);
         }
     }
@@ -139,8 +140,9 @@ bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_o
 static bool check_type_keys(se3di_reader *reader, const se3di_node *node,
                             const se3di_object *object, const char *type)
 {
-    for (const se3di_node *child = node->first; child; child = child->next) {
-        if (!se3di_object_find(object, type, child->key)) {
+    for (se3di_node *child = node->first; child; child = child->next) {
+        child->row = se3di_object_find(object, type, child->key);
+        if (!child->row) {
             char path[256];
             char list[480];
             char text[640];

@@ -7,14 +7,15 @@
 #include "io/document/document.h"
 #include "io/document/keys.h"
 #include "io/document/recovery.h"
+#include "io/document/scope.h"
 
 typedef struct se3di_reader {
     se3d_model *model; /* what the sections fill; below only what values need of it */
     se3di_iopool *pool;
     const char *file;
-    se3d_system *system;                   /* NULL: not made yet */
-    const se3d_expression_symbol *symbols; /* the parameters */
-    size_t symbol_count;
+    se3d_system *system;      /* NULL: not made yet */
+    const se3di_scope *scope; /* names and units of the file */
+    int alternative;          /* of the units of a key, "[m, rad]": 0, 1, ...; negative: any */
     const se3d_model_options *options;
     se3d_model_error *error;
     se3d_status status;

@@ -69,7 +69,7 @@ static bool note_names(se3di_recovery *recovery, const se3di_node *node)
     if (node->key && node->text && strcmp(node->key, "name") == 0) {
         return add_lost(recovery, node->text);
     }
-    if (parent->key && strcmp(parent->key, "parameters") == 0) {
+    if (parent->key && se3di_keys_contain(" parameters points point_table ", parent->key)) {
         return add_lost(recovery, node->key);
     }
     if (!name && parent->kind == SE3DI_NODE_LIST && parent->key) { /* joint1 of `joints` */
@@ -85,9 +85,10 @@ static bool note_names(se3di_recovery *recovery, const se3di_node *node)
 static bool is_foundation(const se3di_recovery *recovery, const se3di_node *node)
 {
     return node->parent == recovery->root &&
-           se3di_keys_contain(" se3d parameters bodies joints drivers constraints forces materials "
-                              "contact particles analysis ",
-                              node->key);
+           se3di_keys_contain(
+               " se3d parameters points units bodies joints drivers constraints forces materials "
+               "contact particles analysis ",
+               node->key);
 }
 
 /* A list of a section goes on without one of its things; a thing or a value not without a part. */

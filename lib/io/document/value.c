@@ -8,6 +8,7 @@
 
 #include "io/base/elementary.h"
 #include "io/base/rotation.h"
+#include "io/document/amount.h"
 #include "io/document/document.h"
 #include "io/document/guess.h"
 #include "io/document/reader.h"
@@ -83,7 +84,7 @@ static bool fail_expression(se3di_reader *reader, const se3di_node *node,
                              why->message, hint);
 }
 
-static bool check_expression_node(se3di_reader *reader, const se3di_node *node)
+bool se3di_check_expression(se3di_reader *reader, const se3di_node *node)
 {
     if (node->kind != SE3DI_NODE_SCALAR || se3di_node_is_null(node)) {
         return se3di_reader_fail(reader, node, "is %s, must be a number or an expression",
@@ -104,14 +105,14 @@ bool se3di_read_compile(se3di_reader *reader, const se3di_node *node, se3d_expre
                         se3d_expression **expression)
 {
     se3d_expression_error why;
-    if (!check_expression_node(reader, node)) {
+    if (!se3di_check_expression(reader, node)) {
         return false;
     }
     def->text = node->text;
     def->allocator = &reader->pool->allocator;
     if (!def->symbols) {
-        def->symbols = reader->symbols;
-        def->symbol_count = reader->symbol_count;
+        def->symbols = reader->scope->symbols;
+        def->symbol_count = reader->scope->symbol_count;
     }
     const se3d_status status = se3d_expression_create(def, expression, &why);
     if (status == SE3D_ERR_NO_MEMORY) {
@@ -132,19 +133,28 @@ bool se3di_read_constant(se3di_reader *reader, const se3di_node *node,
     return true;
 }
 
-bool se3di_read_expression(se3di_reader *reader, const se3di_node *node,
-                           const se3d_expression_symbol *symbols, size_t count, double *value)
+static bool read_plain(se3di_reader *reader, const se3di_node *node, double *value)
 {
     se3d_expression_def def = se3d_expression_def_default();
     se3d_expression *expression = NULL;
-    def.symbols = symbols;
-    def.symbol_count = count;
     if (!se3di_read_compile(reader, node, &def, &expression)) {
         return false;
     }
     const bool good = se3di_read_constant(reader, node, expression, value);
     se3d_expression_destroy(expression);
     return good;
+}
+
+bool se3di_read_amount(se3di_reader *reader, const se3di_node *node, se3di_amount *value)
+{
+    if (!se3di_check_expression(reader, node)) {
+        return false;
+    }
+    if (se3di_amount_is_needed(reader, node->text)) {
+        return se3di_amount_eval(reader, node, NULL, value);
+    }
+    *value = (se3di_amount){.rank = 1};
+    return read_plain(reader, node, &value->v[0]);
 }
 
 /* "-1", or "2*q = -1" if the text is not the number itself. */
@@ -177,11 +187,42 @@ bool se3di_check_number(se3di_reader *reader, const se3di_node *node, se3di_rang
     return true;
 }
 
+static bool read_single(se3di_reader *reader, const se3di_node *node, se3di_amount *q)
+{
+    return se3di_read_amount(reader, node, q) &&
+           (q->rank == 1 ||
+            se3di_reader_fail(reader, node, "`%.120s` is a vector, must be a number", node->text));
+}
+
 bool se3di_read_number(se3di_reader *reader, const se3di_node *node, se3di_range range,
                        double *value)
 {
-    return se3di_read_expression(reader, node, reader->symbols, reader->symbol_count, value) &&
-           se3di_check_number(reader, node, range, *value);
+    se3di_amount q;
+    if (!read_single(reader, node, &q) || !se3di_amount_take(reader, node, node, &q)) {
+        return false;
+    }
+    *value = q.v[0];
+    return se3di_check_number(reader, node, range, *value);
+}
+
+bool se3di_read_pair_of(se3di_reader *reader, const se3di_node *node, const char *variable,
+                        const se3di_node *key, double pair[2])
+{
+    se3di_amount x;
+    se3di_amount y;
+    if (node->kind != SE3DI_NODE_LIST || node->count != 2) {
+        return se3di_read_vector(reader, node, 2, pair); /* says why not */
+    }
+    if (!read_single(reader, node->first, &x) || !read_single(reader, node->last, &y) ||
+        !(variable ? se3di_amount_take_variable(reader, node->first, variable, &x)
+                   : se3di_amount_take(reader, node->first, key, &x)) ||
+        (variable && !se3di_amount_take(reader, node->last, key, &y))) {
+        return false;
+    }
+    pair[0] = x.v[0];
+    pair[1] = y.v[0];
+    return se3di_check_number(reader, node->first, SE3DI_ANY, pair[0]) &&
+           se3di_check_number(reader, node->last, SE3DI_ANY, pair[1]);
 }
 
 bool se3di_read_key_number(se3di_reader *reader, const se3di_node *map, const char *key,
@@ -220,8 +261,34 @@ bool se3di_read_key_count(se3di_reader *reader, const se3di_node *map, const cha
     return true;
 }
 
+/* A point or vector in one text: its name, or an expression. */
+static bool read_vector_text(se3di_reader *reader, const se3di_node *node, double value[3])
+{
+    se3di_amount q;
+    if (!se3di_amount_eval(reader, node, NULL, &q)) {
+        return false;
+    }
+    if (q.rank != 3) {
+        return se3di_reader_fail(reader, node,
+                                 "is a single value, must be a list of 3 numbers or a point");
+    }
+    if (!se3di_amount_take(reader, node, node, &q)) {
+        return false;
+    }
+    for (size_t k = 0; k < 3; ++k) {
+        if (!se3di_check_number(reader, node, SE3DI_ANY, q.v[k])) {
+            return false;
+        }
+        value[k] = q.v[k];
+    }
+    return true;
+}
+
 bool se3di_read_vector(se3di_reader *reader, const se3di_node *node, size_t size, double *value)
 {
+    if (node->kind == SE3DI_NODE_SCALAR && size == 3 && !se3di_node_is_null(node)) {
+        return read_vector_text(reader, node, value);
+    }
     if (node->kind != SE3DI_NODE_LIST) {
         return se3di_reader_fail(reader, node, "is %s, must be a list of %zu numbers",
                                  se3di_node_describe(node), size);

@@ -37,8 +37,13 @@ bool se3di_read_constant(se3di_reader *reader, const se3di_node *node,
 /* A number that was read lies in a range, and not beyond what mechanics can do with. */
 bool se3di_check_number(se3di_reader *reader, const se3di_node *node, se3di_range range,
                         double value);
-/* Evaluate the text of `node` as an expression over `symbols`. */
-bool se3di_read_expression(se3di_reader *reader, const se3di_node *node,
-                           const se3d_expression_symbol *symbols, size_t count, double *value);
+/* Two numbers: of a variable and what a function under `key` gives for it; variable NULL: of `key`
+ * and a number. */
+bool se3di_read_pair_of(se3di_reader *reader, const se3di_node *node, const char *variable,
+                        const se3di_node *key, double pair[2]);
+/* The text of `node` stands for an expression: it is not empty, "nan" and so on. */
+bool se3di_check_expression(se3di_reader *reader, const se3di_node *node);
+/* What the text of `node` is, with its unit. */
+bool se3di_read_amount(se3di_reader *reader, const se3di_node *node, se3di_amount *value);
 
 #endif

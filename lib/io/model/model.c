@@ -38,11 +38,10 @@ se3d_status se3d_model_get_parameter(const se3d_model *model, const char *name, 
     if (!model || !name || !value) {
         return SE3D_ERR_NULL;
     }
-    for (size_t k = 0; k < model->symbol_count; ++k) {
-        if (strcmp(model->symbols[k].name, name) == 0) {
-            *value = model->symbols[k].value;
-            return SE3D_OK;
-        }
+    const se3di_amount *known = model->scope ? se3di_scope_find(model->scope, name) : NULL;
+    if (known && known->rank == 1) {
+        *value = known->v[0];
+        return SE3D_OK;
     }
     return SE3D_ERR_INVALID_ARGUMENT;
 }

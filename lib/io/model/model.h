@@ -4,6 +4,7 @@
 #define SE3D_IO_MODEL_H
 
 #include "io/document/document.h"
+#include "io/document/scope.h"
 #include "io/model/mesh.h"
 #include "io/model/tagged.h"
 
@@ -86,8 +87,7 @@ struct se3d_model {
     const char *name;
     const char *title;
     se3di_node *root;
-    const se3d_expression_symbol *symbols; /* the parameters */
-    size_t symbol_count;
+    se3di_scope *scope;       /* parameters and points */
     se3di_body_entry *bodies; /* [0] is the ground */
     size_t body_count, body_capacity;
     se3di_ionames body_names;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "io/base/pool.h"
+#include "io/base/rotation.h"
 #include "io/document/document.h"
 #include "io/document/fields.h"
 #include "io/document/guess.h"
@@ -54,6 +55,8 @@ static const se3di_key marker_keys[] = {
     {"name", SE3DI_KIND_NAME, .required = true, .text = "unique among the markers of the body"},
     {"position", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_marker_def, position),
      .standard = "[0, 0, 0]", .text = "body frame [m]"},
+    {"at", SE3DI_KIND_VECTOR,
+     .text = "in place of position: at the given pose, ground frame [m]"},
     {"orientation", SE3DI_KIND_ORIENTATION, SE3DI_INTO(se3d_marker_def, orientation),
      .standard = "that of the body", .text = "marker -> body"},
     {.key = NULL}};
@@ -122,7 +125,13 @@ bool se3di_read_key_point(se3di_reader *reader, const se3di_node *map, const cha
     if (!node || node->kind != SE3DI_NODE_SCALAR) {
         return !node || se3di_read_vector(reader, node, 3, point);
     }
-    if (!se3di_ionames_find(&body->markers, node->text, &index)) {
+    const bool is_marker = se3di_ionames_find(&body->markers, node->text, &index);
+    const bool is_name =
+        se3di_text_is_identifier(node->text) && !se3di_scope_find(reader->scope, node->text);
+    if (!is_marker && !is_name) {
+        return se3di_read_vector(reader, node, 3, point);
+    }
+    if (!is_marker) {
         return se3di_reader_fail(reader, node,
                                  "`%.60s` is not a marker of `%.60s`, must be a list of 3 numbers "
                                  "or the name of a marker of that body",
@@ -130,6 +139,38 @@ bool se3di_read_key_point(se3di_reader *reader, const se3di_node *map, const cha
     }
     memcpy(point, reader->model->markers[index].position, 3 * sizeof *point);
     return true;
+}
+
+bool se3di_ground_to_body(se3di_reader *reader, se3d_body body, const double ground[3],
+                          double local[3])
+{
+    const se3d_system *system = reader->system;
+    double r[3];
+    double p[4];
+    if (SE3D_FAILED(se3d_body_get_position(system, body, r)) ||
+        SE3D_FAILED(se3d_body_get_orientation(system, body, p))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    const double d[3] = {ground[0] - r[0], ground[1] - r[1], ground[2] - r[2]};
+    se3di_rotation_apply_inverse(p, d, local);
+    return true;
+}
+
+bool se3di_read_key_place(se3di_reader *reader, const se3di_node *map, const char *key,
+                          const char *at, const se3di_body_entry *body, double point[3])
+{
+    double ground[3];
+    if (!se3di_node_get(map, at)) {
+        return se3di_read_key_point(reader, map, key, body, point);
+    }
+    if (se3di_node_get(map, key)) {
+        return se3di_reader_fail_key(reader, map, at,
+                                     "cannot be combined with %s: give the point in the ground "
+                                     "frame or in that of the body",
+                                     key);
+    }
+    return se3di_read_key_vector(reader, map, at, ground) &&
+           se3di_ground_to_body(reader, body->body, ground, point);
 }
 
 /* 3 diagonal entries, 6 as in the definition, or the rows of the symmetric matrix. */
@@ -228,6 +269,9 @@ static bool read_markers(se3di_reader *reader, const se3di_node *body, size_t en
             return false;
         }
         se3di_body_entry *owner = &model->bodies[entry];
+        if (!se3di_read_key_place(reader, node, "position", "at", owner, def.position)) {
+            return false;
+        }
         if (se3di_ionames_find(&owner->markers, marker.name, NULL)) {
             return se3di_reader_fail(reader, name, "`%.60s` is the name of two markers",
                                      marker.name);

@@ -17,4 +17,11 @@ bool se3di_read_bodies_ij(se3di_reader *reader, const se3di_node *node, const ch
 bool se3di_read_key_point(se3di_reader *reader, const se3di_node *map, const char *key,
                           const se3di_body_entry *body, double point[3]);
 
+/* A point of the ground frame in the frame of a body, as it stands. */
+bool se3di_ground_to_body(se3di_reader *reader, se3d_body body, const double ground[3],
+                          double local[3]);
+/* The point under `key`, in the frame of a body, or under `at`, in the ground frame. */
+bool se3di_read_key_place(se3di_reader *reader, const se3di_node *map, const char *key,
+                          const char *at, const se3di_body_entry *body, double point[3]);
+
 #endif

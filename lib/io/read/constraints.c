@@ -38,16 +38,21 @@ static const se3di_key constraint_keys[] = {
      .text = "frame of body j [m]"},
     {"c", SE3DI_KIND_DIRECTION, .types = " cd ", .text = "ground frame"},
     {"value", SE3DI_KIND_FUNCTION, .types = " dp1 dp2 d cd ", .standard = "0",
-     .text = "what the expression of the primitive is equal to; a function of t makes it a driver"},
+     .text = "what the expression of the primitive is equal to [1, m, m^2, m]; a function of t "
+         "makes it a driver"},
+    {"at", SE3DI_KIND_VECTOR, .types = " dp2 d cd ",
+     .text = "in place of point_i: at the given pose, ground frame [m]"},
+    {"at_2", SE3DI_KIND_VECTOR, .types = " dp2 d cd ",
+     .text = "in place of point_j: at the given pose, ground frame [m]"},
     {"at", SE3DI_KIND_VECTOR, .types = " perpendicular1 perpendicular2 ",
-     .text = "as of a joint"},
+     .text = "as of a joint [m]"},
     {"axis", SE3DI_KIND_DIRECTION, .types = " perpendicular1 perpendicular2 ",
      .text = "as of a joint"},
     {"axis_i", SE3DI_KIND_DIRECTION, .types = " perpendicular1 perpendicular2 ",
      .text = "as of a joint"},
     {"axis_j", SE3DI_KIND_DIRECTION, .types = " perpendicular1 ", .text = "as of a joint"},
     {"axis_2", SE3DI_KIND_DIRECTION, .types = " perpendicular1 ", .text = "as of a joint"},
-    {"at_2", SE3DI_KIND_VECTOR, .types = " perpendicular2 ", .text = "as of a joint"},
+    {"at_2", SE3DI_KIND_VECTOR, .types = " perpendicular2 ", .text = "as of a joint [m]"},
     {.key = NULL}};
 const se3di_object se3di_object_constraint = {
     "constraint",
@@ -78,8 +83,8 @@ static bool read_geometry(se3di_reader *reader, const se3di_node *node,
             return false;
         }
     }
-    return se3di_read_key_point(reader, node, "point_i", bodies[0], def->point_i) &&
-           se3di_read_key_point(reader, node, "point_j", bodies[1], def->point_j);
+    return se3di_read_key_place(reader, node, "point_i", "at", bodies[0], def->point_i) &&
+           se3di_read_key_place(reader, node, "point_j", "at_2", bodies[1], def->point_j);
 }
 
 static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_primitive_def *def)
@@ -88,6 +93,7 @@ static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_primit
     if (!value) {
         return def->type != SE3D_PRIMITIVE_D || require(reader, node, "value", "d");
     }
+    reader->alternative = def->type;
     if (!se3di_read_function(reader, value, time_only, &def->value, &def->function)) {
         return false;
     }

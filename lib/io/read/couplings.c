@@ -98,6 +98,7 @@ bool se3di_read_coupler(se3di_reader *reader, const se3di_node *node, se3di_elem
             return false;
         }
     }
+    reader->alternative = -1; /* of sums of angles and displacements */
     if (value && !se3di_read_function(reader, value, time_only, &def.value, &def.function)) {
         return false;
     }

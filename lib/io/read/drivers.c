@@ -14,7 +14,8 @@ static const se3di_key driver_keys[] = {
     {"joint", SE3DI_KIND_JOINT, .required = true, .text = ""},
     {"coordinate", SE3DI_KIND_WORD, .words = se3di_coordinates,
      .text = "may be left out if the joint has one only"},
-    {"value", SE3DI_KIND_FUNCTION, .required = true, .text = "a number or a function of t"},
+    {"value", SE3DI_KIND_FUNCTION, .required = true,
+     .text = "a number or a function of t [m, rad]"},
     {.key = NULL}};
 const se3di_object se3di_object_driver = {
     "driver",

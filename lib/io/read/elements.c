@@ -53,6 +53,7 @@ bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_elem
     (*entry)->name = name;
     (*entry)->node = node;
     (*entry)->kind = kind;
+    reader->alternative = 0;
     return true;
 }
 
@@ -89,8 +90,8 @@ bool se3di_read_key_joint(se3di_reader *reader, const se3di_node *map, const cha
     return se3di_reader_propose(reader, meant);
 }
 
-bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3d_constraint joint,
-                               int32_t *coordinate)
+static bool read_coordinate(se3di_reader *reader, const se3di_node *node, se3d_constraint joint,
+                            int32_t *coordinate)
 {
     const se3d_system *system = reader->system;
     const se3di_node *child = se3di_node_get(node, "coordinate");
@@ -124,4 +125,12 @@ bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3
     }
     *coordinate = (int32_t)word;
     return true;
+}
+
+bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3d_constraint joint,
+                               int32_t *coordinate)
+{
+    const bool good = read_coordinate(reader, node, joint, coordinate);
+    reader->alternative = good && *coordinate == SE3D_JOINT_COORDINATE_ANGLE ? 1 : 0;
+    return good;
 }

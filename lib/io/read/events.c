@@ -65,6 +65,7 @@ static bool read_event(se3di_reader *reader, const se3di_node *node, se3di_event
         return se3di_reader_fail_key(reader, node, "channel",
                                      "is missing, must be a channel such as pin.angle");
     }
+    reader->alternative = -1; /* the channel's, whatever that is */
     if (!se3di_read_fields(reader, node, &se3di_object_event, NULL, "se3di_event_entry", event)) {
         return false;
     }

@@ -40,11 +40,11 @@ static const se3di_key force_keys[] = {
     {"l0", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_tsda_def, l0), .types = " tsda ",
      .standard = "0", .text = "free length [m]"},
     {"h", SE3DI_KIND_FUNCTION, .types = " tsda rsda ",
-     .text = "actuator: a function of t, l, ldot (tsda) or t, theta, thetadot (rsda)"},
+     .text = "actuator [N, N m]: a function of t, l, ldot (tsda) or t, theta, thetadot (rsda)"},
     {"spring", SE3DI_KIND_FUNCTION, .types = " tsda rsda ",
-     .text = "elastic force of x = l - l0 or theta - theta0, beside k"},
+     .text = "elastic force [N, N m] of x = l - l0 or theta - theta0, beside k"},
     {"damper", SE3DI_KIND_FUNCTION, .types = " tsda rsda ",
-     .text = "damping force of v, the rate, beside c"},
+     .text = "damping force [N, N m] of v, the rate, beside c"},
     {"preload", SE3DI_KIND_NUMBER, .types = " tsda rsda ", .standard = "0",
      .text = "force at l = l0 (torque at theta = theta0) and rest [N, N m]"},
     {"joint", SE3DI_KIND_JOINT, .types = " rsda ", .text = "a joint with an angle"},
@@ -65,6 +65,10 @@ static const se3di_key force_keys[] = {
      .text = "without a joint: the angle at the given pose [rad]"},
     {"at", SE3DI_KIND_VECTOR, .types = " bushing ",
      .text = "its point at the given pose, ground frame [m]"},
+    {"at", SE3DI_KIND_VECTOR, .types = " force tsda stop ",
+     .text = "in place of point or point_i: at the given pose, ground frame [m]"},
+    {"at_2", SE3DI_KIND_VECTOR, .types = " tsda stop ",
+     .text = "in place of point_j: at the given pose, ground frame [m]"},
     {"orientation", SE3DI_KIND_ORIENTATION, .types = " bushing ",
      .text = "with at: its axes in the ground frame"},
     {"orientation_i", SE3DI_KIND_ORIENTATION, .types = " bushing ", .text = "its axes on body i"},
@@ -110,7 +114,7 @@ static const se3di_key force_keys[] = {
     {"frame", SE3DI_KIND_WORD, SE3DI_INTO(se3d_load_def, in_body_frame), .types = " force torque ",
      .words = frames, .standard = "ground", .text = "of value"},
     {"value", SE3DI_KIND_FUNCTION, .types = " effort ", .standard = "0",
-     .text = "along the coordinate [N m, N]: a number, or a function of t, q, qdot: the "
+     .text = "along the coordinate [N, N m]: a number, or a function of t, q, qdot: the "
          "coordinate and its rate"},
     {"value", SE3DI_KIND_FUNCTIONS, .types = " force torque ",
      .text = "numbers or functions of t [N, N m]"},
@@ -190,8 +194,8 @@ static bool read_tsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
     se3d_tsda_def def = se3d_tsda_def_default();
     spring_values v;
     if (!se3di_read_bodies_ij(reader, node, "a spring", bodies) ||
-        !se3di_read_key_point(reader, node, "point_i", bodies[0], def.point_i) ||
-        !se3di_read_key_point(reader, node, "point_j", bodies[1], def.point_j) ||
+        !se3di_read_key_place(reader, node, "point_i", "at", bodies[0], def.point_i) ||
+        !se3di_read_key_place(reader, node, "point_j", "at_2", bodies[1], def.point_j) ||
         !se3di_read_fields(reader, node, &se3di_object_force, "tsda", "se3d_tsda_def", &def) ||
         !read_spring(reader, node, variables, &v)) {
         return false;
@@ -279,6 +283,7 @@ static bool read_rsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
     static const char *const variables[] = {"t", "theta", "thetadot", NULL};
     se3d_rsda_def def = se3d_rsda_def_default();
     spring_values v;
+    reader->alternative = 1;
     if (!read_rsda_place(reader, node, &def) ||
         !se3di_read_fields(reader, node, &se3di_object_force, "rsda", "se3d_rsda_def", &def) ||
         !read_spring(reader, node, variables, &v)) {
@@ -336,10 +341,11 @@ static bool read_effort(se3di_reader *reader, const se3di_node *node, se3di_elem
 static bool read_stop_place(se3di_reader *reader, const se3di_node *node, se3d_stop_def *def)
 {
     const se3di_body_entry *bodies[2] = {NULL, NULL};
+    reader->alternative = 0;
     if (!se3di_node_get(node, "joint") && se3di_node_get(node, "body_j")) {
         if (!se3di_read_bodies_ij(reader, node, "a stop", bodies) ||
-            !se3di_read_key_point(reader, node, "point_i", bodies[0], def->point_i) ||
-            !se3di_read_key_point(reader, node, "point_j", bodies[1], def->point_j)) {
+            !se3di_read_key_place(reader, node, "point_i", "at", bodies[0], def->point_i) ||
+            !se3di_read_key_place(reader, node, "point_j", "at_2", bodies[1], def->point_j)) {
             return false;
         }
         def->body_i = bodies[0]->body;
@@ -348,7 +354,7 @@ static bool read_stop_place(se3di_reader *reader, const se3di_node *node, se3d_s
     }
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (se3di_node_get(node, "joint") &&
-            se3di_keys_contain(" body_i body_j point_i point_j ", child->key)) {
+            se3di_keys_contain(" body_i body_j point_i point_j at at_2 ", child->key)) {
             return se3di_reader_fail(reader, child, "cannot be combined with `joint`");
         }
     }
@@ -386,7 +392,7 @@ static bool read_load(se3di_reader *reader, const se3di_node *node, const char *
     const se3di_node *value = se3di_node_get(node, "value");
     se3d_load_def def = se3d_load_def_default();
     if (!se3di_read_key_body(reader, node, "body", &body) ||
-        !se3di_read_key_point(reader, node, "point", body, def.point) ||
+        !se3di_read_key_place(reader, node, "point", "at", body, def.point) ||
         !se3di_read_fields(reader, node, &se3di_object_force, type, "se3d_load_def", &def)) {
         return false;
     }
@@ -395,6 +401,7 @@ static bool read_load(se3di_reader *reader, const se3di_node *node, const char *
                                      "must be a list of 3 numbers or expressions in t");
     }
     const se3di_node *part = value->first;
+    reader->alternative = strcmp(type, "torque") == 0;
     for (size_t k = 0; k < 3; ++k, part = part->next) {
         if (!se3di_read_function(reader, part, time_only, &def.value[k], &def.function[k])) {
             return false;

@@ -17,12 +17,27 @@
 #include "io/read/elements.h"
 #include "io/read/objects.h"
 
+/* Force over displacement, force over angle or moment over displacement, moment over angle. */
+static bool read_row(se3di_reader *reader, const se3di_node *node, size_t row, double values[6])
+{
+    size_t k = 0;
+    if (node->kind != SE3DI_NODE_LIST || node->count != 6) {
+        return se3di_read_vector(reader, node, 6, values); /* says why not */
+    }
+    for (const se3di_node *part = node->first; part; part = part->next, ++k) {
+        reader->alternative = (row >= 3) + (k >= 3);
+        if (!se3di_read_number(reader, part, SE3DI_ANY, &values[k])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* 6 numbers on the diagonal, or 6 rows of 6. */
 static bool read_matrix(se3di_reader *reader, const se3di_node *node, const char *key,
                         double matrix[36])
 {
     const se3di_node *child = se3di_node_get(node, key);
-    double diagonal[6];
     size_t row = 0;
     if (!child) {
         return true;
@@ -33,16 +48,16 @@ static bool read_matrix(se3di_reader *reader, const se3di_node *node, const char
                                  "or 6 rows of 6 numbers");
     }
     if (child->first->kind != SE3DI_NODE_LIST) {
-        if (!se3di_read_vector(reader, child, 6, diagonal)) {
-            return false;
-        }
-        for (size_t k = 0; k < 6; ++k) {
-            matrix[7 * k] = diagonal[k];
+        for (const se3di_node *part = child->first; part; part = part->next, ++row) {
+            reader->alternative = row < 3 ? 0 : 2;
+            if (!se3di_read_number(reader, part, SE3DI_ANY, &matrix[7 * row])) {
+                return false;
+            }
         }
         return true;
     }
-    for (const se3di_node *part = child->first; part; part = part->next) {
-        if (!se3di_read_vector(reader, part, 6, &matrix[6 * row++])) {
+    for (const se3di_node *part = child->first; part; part = part->next, ++row) {
+        if (!read_row(reader, part, row, &matrix[6 * row])) {
             return false;
         }
     }

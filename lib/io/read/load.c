@@ -43,6 +43,13 @@ static const se3di_key model_keys[] = {
     {"title", SE3DI_KIND_TITLE, .text = "text"},
     {"parameters", SE3DI_KIND_PARAMETERS,
      .text = "names and their values or expressions, in any order; replaced by --set NAME=VALUE"},
+    {"points", SE3DI_KIND_NAMED_POINTS,
+     .text = "names and their coordinates [m], ground frame: a list of three or an expression, in "
+         "any order, also over the parameters; used by their names"},
+    {"point_table", SE3DI_KIND_TEXT,
+     .text = "CSV file of points, relative to the model file: columns name, x, y, z [m]"},
+    {"units", SE3DI_KIND_OBJECT, .object = "units",
+     .text = "what numbers without a unit are in"},
     {"gravity", SE3DI_KIND_FUNCTIONS, .standard = "[0, 0, -9.81]",
      .text = "ground frame [m/s^2], numbers or functions of t"},
     {"materials", SE3DI_KIND_LIST, .object = "material",
@@ -155,7 +162,9 @@ static bool read_model(se3di_reader *reader, const se3di_node *root)
 se3d_status se3di_model_fill(se3di_attempt *attempt)
 {
     se3d_model *model = attempt->model;
+    const se3di_scope nothing = {.units = se3di_units_si()};
     se3di_reader reader = {.model = model,
+                           .scope = &nothing,
                            .pool = &model->pool,
                            .file = model->file,
                            .options = attempt->options,

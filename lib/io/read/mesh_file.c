@@ -321,7 +321,7 @@ static bool read_file(scanner *s)
     char *text = NULL;
     size_t size = 0;
     se3di_iopool_init(&pool, &s->reader->pool->allocator);
-    bool good = se3di_read_attachment(s->reader, s->shape, s->file, &pool, &text, &size);
+    bool good = se3di_read_attachment(s->reader, s->shape, "file", s->file, &pool, &text, &size);
     if (good) {
         s->at = text;
         s->end = text + size;

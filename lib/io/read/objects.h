@@ -8,6 +8,7 @@
 /* In the order of the schema. */
 #define SE3DI_OBJECT_LIST(X)                                                                       \
     X(model)                                                                                       \
+    X(units)                                                                                       \
     X(spline)                                                                                      \
     X(orientation)                                                                                 \
     X(shape)                                                                                       \

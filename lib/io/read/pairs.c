@@ -45,22 +45,6 @@ static bool is_local(const se3di_node *node)
     return false;
 }
 
-/* A point of the ground frame in the frame of a body. */
-static bool to_body_point(se3di_reader *reader, se3d_body body, const double ground[3],
-                          double local[3])
-{
-    const se3d_system *system = reader->system;
-    double r[3];
-    double p[4];
-    if (SE3D_FAILED(se3d_body_get_position(system, body, r)) ||
-        SE3D_FAILED(se3d_body_get_orientation(system, body, p))) {
-        return se3di_reader_fail_memory(reader);
-    }
-    const double d[3] = {ground[0] - r[0], ground[1] - r[1], ground[2] - r[2]};
-    se3di_rotation_apply_inverse(p, d, local);
-    return true;
-}
-
 static bool to_body_axis(se3di_reader *reader, se3d_body body, const double ground[3],
                          double local[3])
 {
@@ -161,7 +145,7 @@ static bool read_global(se3di_reader *reader, const se3di_node *node, const join
     if (status < 0) {
         return se3di_reader_fail_system(reader, node, status);
     }
-    return (!has(node, "at_2") || to_body_point(reader, def->body_j, at_2, def->point_j)) &&
+    return (!has(node, "at_2") || se3di_ground_to_body(reader, def->body_j, at_2, def->point_j)) &&
            (!has(node, "axis_2") || to_body_axis(reader, def->body_j, axis_2, def->axis_j));
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Parameters: numbers and expressions over one another, in any order.
+/* Parameters and points: numbers, vectors and expressions over one another, in any order.
  *
  * Each is evaluated after those that its text names (depth first over an explicit stack, so that
  * long chains need no recursion); one that is met again while it waits is part of a cycle. */
@@ -7,18 +7,24 @@
 #include <string.h>
 
 #include "io/base/pool.h"
+#include "io/document/amount.h"
 #include "io/document/document.h"
+#include "io/document/formula.h"
 #include "io/document/guess.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
+#include "io/read/point_table.h"
 #include "io/read/sections.h"
+#include "io/read/units.h"
 
 typedef enum parameter_state { NEW = 0, WAITING = 1, DONE = 2 } parameter_state;
 
 typedef struct parameter {
     const se3di_node *node;
-    const char *text; /* where the search for names goes on */
+    const char *text;        /* where the search for names goes on */
+    const se3di_node *place; /* of the list's entry that it is in; NULL: no list */
+    bool is_point;
     parameter_state state;
 } parameter;
 
@@ -29,8 +35,7 @@ typedef struct resolver {
     se3di_ionames names;
     size_t *stack;
     size_t depth;
-    se3d_expression_symbol *symbols; /* of those that are done */
-    size_t done;
+    se3di_scope *scope; /* those that are done */
 } resolver;
 
 static const char *const reserved[] = {"t", "pi", "deg", "ground", NULL};
@@ -73,20 +78,22 @@ static bool check_name(se3di_reader *reader, const se3di_node *node)
     return true;
 }
 
-/* The next name of a parameter in the text, from *text on; numbers such as 1e5 are passed over. */
+/* The next name of a parameter or point in the text, from *text on; numbers such as 1e5 are passed
+ * over, and the component behind a point. */
 static bool next_name(const resolver *r, const char **text, size_t *index)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
-    static const char more[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789.";
+    static const char more[] = ".abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
     char word[64];
     const char *at = *text;
     while (*at) {
-        const size_t length = strspn(at, more);
+        const bool is_word = strspn(at, letters) > 0;
+        const size_t length = strspn(at, is_word ? more + 1 : more);
         if (length == 0) {
             ++at;
             continue;
         }
-        if (strspn(at, letters) > 0 && length < sizeof word) {
+        if (is_word && length < sizeof word) {
             memcpy(word, at, length);
             word[length] = '\0';
             if (se3di_ionames_find(&r->names, word, index)) {
@@ -116,18 +123,73 @@ static bool fail_cycle(resolver *r, size_t again)
                              r->list[again].node->key);
 }
 
+/* The next name in the text, or in those of the entries of a list. */
+static bool next_name_of(const resolver *r, parameter *p, size_t *index)
+{
+    while (!next_name(r, &p->text, index)) {
+        p->place = p->place ? p->place->next : NULL;
+        if (!p->place) {
+            return false;
+        }
+        p->text = p->place->text ? p->place->text : "";
+    }
+    return true;
+}
+
+/* A list of three numbers that are alike. */
+static bool read_list(se3di_reader *reader, const se3di_node *node, se3di_amount *value)
+{
+    se3di_amount part[3];
+    size_t k = 0;
+    if (node->count != 3) {
+        return se3di_reader_fail(
+            reader, node, "has %zu entries, must be a number or a list of 3 numbers", node->count);
+    }
+    for (const se3di_node *child = node->first; child; child = child->next, ++k) {
+        if (!se3di_read_amount(reader, child, &part[k])) {
+            return false;
+        }
+        if (part[k].rank != 1) {
+            return se3di_reader_fail(reader, child, "`%.120s` is a vector, must be a number",
+                                     child->text);
+        }
+    }
+    se3di_formula f = {.reader = reader, .node = node, .text = ""};
+    for (int round = 0; round < 2; ++round) {
+        if (!se3di_formula_unify(&f, f.text, &part[0], &part[1]) ||
+            !se3di_formula_unify(&f, f.text, &part[0], &part[2])) {
+            return false;
+        }
+    }
+    *value = part[0];
+    value->rank = 3;
+    for (k = 0; k < 3; ++k) {
+        value->v[k] = part[k].v[0];
+    }
+    return true;
+}
+
+/* A point is a length, whatever is written. */
+static bool read_point(se3di_reader *reader, const se3di_node *node, se3di_amount *value)
+{
+    *value = (se3di_amount){.rank = 3, .hard = true, .dimension = {1, 0, 0, 0}};
+    return se3di_read_vector(reader, node, 3, value->v);
+}
+
 static bool finish(resolver *r, size_t index)
 {
     parameter *p = &r->list[index];
-    double value = 0.0;
-    if (!se3di_read_expression(r->reader, p->node, r->symbols, r->done, &value)) {
+    se3di_amount value;
+    const bool good = p->is_point ? read_point(r->reader, p->node, &value)
+                      : p->node->kind == SE3DI_NODE_LIST
+                          ? read_list(r->reader, p->node, &value)
+                          : se3di_read_amount(r->reader, p->node, &value);
+    if (!good) {
         return false;
     }
-    r->symbols[r->done].name = p->node->key;
-    r->symbols[r->done].value = value;
-    ++r->done;
     p->state = DONE;
-    return true;
+    return se3di_scope_add(r->scope, r->reader->pool, p->node->key, &value) ||
+           se3di_reader_fail_memory(r->reader);
 }
 
 static bool resolve(resolver *r, size_t start)
@@ -138,7 +200,7 @@ static bool resolve(resolver *r, size_t start)
     while (r->depth > 0) {
         parameter *p = &r->list[r->stack[r->depth - 1]];
         size_t index = 0;
-        if (!next_name(r, &p->text, &index)) {
+        if (!next_name_of(r, p, &index)) {
             if (!finish(r, r->stack[r->depth - 1])) {
                 return false;
             }
@@ -191,23 +253,34 @@ static bool apply_settings(resolver *r)
                                                     : "it has none",
                                      meant ? meant : list, meant ? "`?" : "");
         }
+        node->row = r->list[index].node->row;
+        node->parent = r->list[index].node->parent;
         r->list[index].node = node;
         r->list[index].text = node->text;
+        r->list[index].place = NULL;
     }
     return true;
 }
 
-static bool collect(resolver *r, const se3di_node *map)
+static bool collect(resolver *r, const se3di_node *map, bool is_point)
 {
     if (!map) {
         return true;
     }
     for (const se3di_node *node = map->first; node; node = node->next) {
+        parameter *p = &r->list[r->count];
         if (!check_name(r->reader, node)) {
             return false;
         }
-        r->list[r->count].node = node;
-        r->list[r->count].text = node->text ? node->text : "";
+        if (se3di_ionames_find(&r->names, node->key, NULL)) {
+            return se3di_reader_fail(r->reader, node,
+                                     "is the name of two: parameters and points must have "
+                                     "different names");
+        }
+        p->node = node;
+        p->is_point = is_point;
+        p->place = node->kind == SE3DI_NODE_LIST ? node->first : NULL;
+        p->text = node->text ? node->text : p->place && p->place->text ? p->place->text : "";
         if (!se3di_ionames_add(&r->names, r->reader->pool, node->key, r->count++)) {
             return se3di_reader_fail_memory(r->reader);
         }
@@ -215,26 +288,48 @@ static bool collect(resolver *r, const se3di_node *map)
     return true;
 }
 
+/* The map under `key`, or nothing. */
+static bool find_map(se3di_reader *reader, const se3di_node *root, const char *key,
+                     const char *example, const se3di_node **map)
+{
+    *map = se3di_node_get(root, key);
+    if (*map && se3di_node_is_null(*map)) {
+        *map = NULL;
+    }
+    return !*map || (*map)->kind == SE3DI_NODE_MAP ||
+           se3di_reader_fail(reader, *map, "is %s, must be a map such as %s",
+                             se3di_node_describe(*map), example);
+}
+
 bool se3di_read_parameters(se3di_reader *reader, const se3di_node *root)
 {
     se3di_iopool *pool = reader->pool;
-    const se3di_node *map = se3di_node_get(root, "parameters");
-    if (map && se3di_node_is_null(map)) {
-        map = NULL;
-    }
-    if (map && map->kind != SE3DI_NODE_MAP) {
-        return se3di_reader_fail(reader, map, "is %s, must be a map such as {L: 2}",
-                                 se3di_node_describe(map));
-    }
-    const size_t count = map ? map->count : 0;
-    resolver r = {.reader = reader};
-    r.list = se3di_iopool_array(pool, count, sizeof *r.list);
-    r.stack = se3di_iopool_array(pool, count, sizeof *r.stack);
-    r.symbols = se3di_iopool_array(pool, count, sizeof *r.symbols);
-    if (!r.list || !r.stack || !r.symbols) {
+    const se3di_node *map = NULL;
+    const se3di_node *points = NULL;
+    const se3di_node *table = NULL;
+    resolver r = {.reader = reader, .scope = se3di_iopool_alloc(pool, sizeof *r.scope)};
+    if (!r.scope) {
         return se3di_reader_fail_memory(reader);
     }
-    if (!collect(&r, map) || !apply_settings(&r)) {
+    r.scope->units = se3di_units_si();
+    if (!find_map(reader, root, "parameters", "{L: 2}", &map) ||
+        !find_map(reader, root, "points", "{hub: [0, 1, 2]}", &points) ||
+        !se3di_read_units(reader, root, &r.scope->units)) {
+        return false;
+    }
+    reader->scope = reader->model->scope = r.scope;
+    if (!se3di_read_point_table(reader, root, &table)) {
+        return false;
+    }
+    const size_t count =
+        (map ? map->count : 0) + (points ? points->count : 0) + (table ? table->count : 0);
+    r.list = se3di_iopool_array(pool, count, sizeof *r.list);
+    r.stack = se3di_iopool_array(pool, count, sizeof *r.stack);
+    if (!r.list || !r.stack) {
+        return se3di_reader_fail_memory(reader);
+    }
+    if (!collect(&r, map, false) || !collect(&r, points, true) || !collect(&r, table, true) ||
+        !apply_settings(&r)) {
         return false;
     }
     for (size_t k = 0; k < r.count; ++k) {
@@ -242,7 +337,5 @@ bool se3di_read_parameters(se3di_reader *reader, const se3di_node *root)
             return false;
         }
     }
-    reader->symbols = reader->model->symbols = r.symbols;
-    reader->symbol_count = reader->model->symbol_count = r.done;
     return true;
 }

@@ -260,7 +260,7 @@ bool se3di_read_particle_table(se3di_reader *reader, const se3di_node *node, se3
     size_t size = 0;
     se3di_iopool_init(&pool, &reader->pool->allocator);
     bool good = se3di_read_text(reader, se3di_node_get(node, "file"), &t.file) &&
-                se3di_read_attachment(reader, node, t.file, &pool, &t.at, &size);
+                se3di_read_attachment(reader, node, "file", t.file, &pool, &t.at, &size);
     if (good && memchr(t.at, '\0', size)) {
         good = se3di_reader_fail_key(reader, node, "file", "`%.200s` is not a text", t.file);
     }

@@ -190,7 +190,7 @@ static bool read_radius_table(se3di_reader *reader, const se3di_node *radius, se
     size_t k = 0;
     for (const se3di_node *pair = table->first; pair; pair = pair->next, ++k) {
         double values[2];
-        if (!se3di_read_vector(reader, pair, 2, values)) {
+        if (!se3di_read_pair_of(reader, pair, NULL, radius, values)) {
             return false;
         }
         numbers[k] = values[0];

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Names of a file. */
+#include "io/document/scope.h"
+
+bool se3di_scope_add(se3di_scope *scope, se3di_iopool *pool, const char *name,
+                     const se3di_amount *value)
+{
+    se3di_named *list =
+        se3di_iopool_grow(pool, scope->list, scope->count, &scope->capacity, sizeof *list);
+    se3d_expression_symbol *symbols = se3di_iopool_grow(pool, scope->symbols, scope->symbol_count,
+                                                        &scope->symbol_capacity, sizeof *symbols);
+    if (!list || !symbols || !se3di_ionames_add(&scope->names, pool, name, scope->count)) {
+        return false;
+    }
+    scope->list = list;
+    scope->symbols = symbols;
+    list[scope->count++] = (se3di_named){name, *value};
+    if (value->rank == 1 && !value->hard) {
+        symbols[scope->symbol_count++] = (se3d_expression_symbol){name, value->v[0]};
+    }
+    return true;
+}
+
+const se3di_amount *se3di_scope_find(const se3di_scope *scope, const char *name)
+{
+    size_t index = 0;
+    return se3di_ionames_find(&scope->names, name, &index) ? &scope->list[index].value : NULL;
+}
