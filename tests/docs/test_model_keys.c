@@ -97,6 +97,11 @@ static const char *const kinds[SE3DI_KIND_END] = {
     [SE3DI_KIND_VERSION] = "\"const\": 1",
     [SE3DI_KIND_PARAMETERS] = "\"type\": [\"object\", \"null\"], \"additionalProperties\": "
                               "{\"anyOf\": [{" REFERENCE("number") "}, {" REFERENCE("vector") "}]}",
+    [SE3DI_KIND_CONDITION] = "\"type\": [\"boolean\", \"number\", \"string\"]",
+    [SE3DI_KIND_PARTS] = "\"type\": [\"object\", \"null\"], \"additionalProperties\": "
+                         "{" REFERENCE("%s") "}",
+    [SE3DI_KIND_VALUES] = "\"type\": [\"object\", \"null\"], \"additionalProperties\": "
+                          "{\"anyOf\": [{" REFERENCE("number") "}, {" REFERENCE("vector") "}]}",
     [SE3DI_KIND_NAMED_POINTS] = "\"type\": [\"object\", \"null\"], "
                                 "\"additionalProperties\": {" REFERENCE("vector") "}",
     [SE3DI_KIND_FILE] = "\"type\": \"string\"",

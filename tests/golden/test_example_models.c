@@ -247,6 +247,26 @@ static void suspension_steers_and_travels_as_its_distances_say(void)
     }
 }
 
+/* The wheels go where the road lifts them, alike on both sides to the last bit. */
+static void axle_of_one_corner_is_symmetric(void)
+{
+    for (int f = 0; f < 3; ++f) {
+        example e = run_example("axle", NULL, NULL, formulations[f]);
+        const double left[] = {channel_of(&e, "left_upright.position", 0),
+                               0.0 - channel_of(&e, "left_upright.position", 1),
+                               channel_of(&e, "left_upright.position", 2)};
+        for (size_t k = 0; k < 3; ++k) {
+            CHECK_NEAR(channel_of(&e, "right_upright.position", k), left[k], 0.0);
+        }
+        CHECK_NEAR(left[2], 0.25, 1e-12);
+        CHECK_NEAR(channel_of(&e, "left_upper_pin.angle", 0),
+                   channel_of(&e, "right_upper_pin.angle", 0), 1e-14);
+        CHECK_NEAR(channel_of(&e, "left_spring.force", 0), channel_of(&e, "right_spring.force", 0),
+                   1e-9);
+        close_example(&e);
+    }
+}
+
 /* The reference solution of the Test Set for IVP Solvers (Mazzia and Magherini 2008), which is
  * given for angles that begin with the same digits. */
 static void andrews_squeezer_ends_at_the_published_angles(void)
@@ -328,6 +348,7 @@ int main(void)
     RUN(governor_finds_its_steady_motion);
     RUN(quarter_car_settles_and_its_tyre_never_pulls);
     RUN(suspension_steers_and_travels_as_its_distances_say);
+    RUN(axle_of_one_corner_is_symmetric);
     RUN(andrews_squeezer_ends_at_the_published_angles);
     RUN(suspension_settles_behind_the_kerb);
     RUN(overconstrained_loop_has_the_same_reactions_by_every_method);

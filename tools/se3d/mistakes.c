@@ -88,26 +88,46 @@ static void show_line(const se3d_model_error *error, const char *line)
     fprintf(stderr, "\n       | %*s^\n", (int)(error->column - first), "");
 }
 
-static void show(const options *o, const mistakes *m)
+/* The file that a message begins with: that of the model, or one that it includes. */
+static void get_file(const options *o, const se3d_model_error *error, char *file, size_t size)
 {
+    char place[64];
+    snprintf(place, sizeof place, ":%zu:%zu: ", error->line, error->column);
+    const char *end = strstr(error->message, place);
+    if (end && (size_t)(end - error->message) < size) {
+        snprintf(file, size, "%.*s", (int)(end - error->message), error->message);
+    } else {
+        snprintf(file, size, "%s", o->model);
+    }
+}
+
+static void show_mistake(const options *o, const se3d_model_error *error)
+{
+    char path[1024];
     char line[LINE_MAX];
     size_t at = 0;
-    FILE *file = se3di_file_open(o->model); /* what is no regular file cannot be read twice */
+    fprintf(stderr, "%s\n", error->message);
+    if (error->line == 0 || error->column == 0 || error->column >= LINE_MAX) {
+        return;
+    }
+    get_file(o, error, path, sizeof path);
+    FILE *file = se3di_file_open(path); /* what is no regular file cannot be read twice */
+    if (file && find_line(file, error->line, &at, line)) {
+        show_line(error, line);
+    }
+    if (file) {
+        fclose(file);
+    }
+}
+
+static void show(const options *o, const mistakes *m)
+{
     for (size_t k = 0; k < m->count; ++k) {
-        const se3d_model_error *error = &m->list[k];
-        fprintf(stderr, "%s\n", error->message);
-        /* They come in the order of the lines; `line` holds the last one that was read. */
-        if (file && error->line > 0 && error->column > 0 && error->column < LINE_MAX &&
-            find_line(file, error->line, &at, line)) {
-            show_line(error, line);
-        }
+        show_mistake(o, &m->list[k]);
     }
     if (m->count > 1) {
         fprintf(stderr, "%zu mistakes%s\n", m->count,
                 m->count == SE3D_MODEL_MISTAKES_MAX ? ", there may be more" : "");
-    }
-    if (file) {
-        fclose(file);
     }
 }
 

@@ -14,7 +14,7 @@
 enum { FILE_BYTES_MAX = 1 << 28 };
 
 /* The path beside the model file; absolute ones stay. */
-static const char *find(const se3di_reader *reader, se3di_iopool *pool, const char *file)
+const char *se3di_find_attachment(const se3di_reader *reader, se3di_iopool *pool, const char *file)
 {
     const char *model = reader->file;
     const char *slash = model ? strrchr(model, '/') : NULL;
@@ -36,7 +36,7 @@ static bool fail(se3di_reader *reader, const se3di_node *map, const char *key, c
 bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const char *key,
                            const char *file, se3di_iopool *pool, char **text, size_t *size)
 {
-    const char *path = find(reader, pool, file);
+    const char *path = se3di_find_attachment(reader, pool, file);
     if (!path) {
         return se3di_reader_fail_memory(reader);
     }

@@ -312,6 +312,9 @@ se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const cha
         fail_at(&b, start, NULL, "is empty, must be a map that begins with `se3d: 1`");
     }
     *root = b.status == SE3D_OK ? b.root : NULL;
+    if (*root) {
+        (*root)->file = file;
+    }
     return b.status;
 }
 

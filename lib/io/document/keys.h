@@ -27,6 +27,9 @@ typedef enum se3di_kind {
     SE3DI_KIND_VERSION,
     SE3DI_KIND_PARAMETERS,
     SE3DI_KIND_NAMED_POINTS,
+    SE3DI_KIND_CONDITION,   /* true, false, or an expression */
+    SE3DI_KIND_PARTS,       /* names and objects */
+    SE3DI_KIND_VALUES,      /* names and numbers or vectors */
     SE3DI_KIND_FILE,        /* ends with one of `words`, if there are some */
     SE3DI_KIND_BODY,        /* the name of one, also of the ground */
     SE3DI_KIND_JOINT,       /* the name of one */

@@ -10,11 +10,39 @@
 #include "io/document/guess.h"
 #include "io/document/keys.h"
 
-static bool fail_at(se3di_reader *reader, size_t line, size_t column, const char *path,
-                    const char *text)
+static const se3di_node *root_of(const se3di_node *node, const se3di_node *stop)
 {
+    while (node->parent && node != stop) {
+        node = node->parent;
+    }
+    return node;
+}
+
+/* Behind a message about a node of a part: where the part is included, and that where. */
+static void append_chain(const se3di_reader *reader, const se3di_node *node, char *text,
+                         size_t size)
+{
+    const se3di_component *part = reader->part;
+    if (!part || root_of(node, part->root) != part->root) {
+        return;
+    }
+    for (; part->caller; part = part->parent) {
+        const size_t used = strlen(text);
+        snprintf(text + used, size - used, "%s%.200s:%zu:%zu",
+                 part == reader->part ? "; included at " : ", ", part->parent->file,
+                 part->caller->line, part->caller->column);
+    }
+}
+
+static bool fail_at(se3di_reader *reader, const se3di_node *node, size_t line, size_t column,
+                    const char *path, const char *text)
+{
+    char whole[900];
+    const char *file = root_of(node, NULL)->file;
     reader->status = SE3D_ERR_MODEL;
-    se3di_document_report(reader->error, reader->file, line, column, path, text);
+    snprintf(whole, sizeof whole, "%s", text);
+    append_chain(reader, node, whole, sizeof whole);
+    se3di_document_report(reader->error, file ? file : reader->file, line, column, path, whole);
     return false;
 }
 
@@ -34,7 +62,7 @@ bool se3di_reader_fail(se3di_reader *reader, const se3di_node *node, const char 
     va_end(arguments);
     se3di_node_format_path(node, path, sizeof path);
     reader->fault = se3di_fault_of(node);
-    return fail_at(reader, node->line, node->column, path, text);
+    return fail_at(reader, node, node->line, node->column, path, text);
 }
 
 bool se3di_reader_fail_key(se3di_reader *reader, const se3di_node *map, const char *key,
@@ -50,12 +78,12 @@ bool se3di_reader_fail_key(se3di_reader *reader, const se3di_node *map, const ch
     reader->fault = se3di_fault_of(child ? child : map);
     if (child) {
         se3di_node_format_path(child, path, sizeof path);
-        return fail_at(reader, child->line, child->column, path, text);
+        return fail_at(reader, child, child->line, child->column, path, text);
     }
     se3di_node_format_path(map, path, sizeof path);
     const size_t used = strlen(path);
     snprintf(path + used, sizeof path - used, "%s%.80s", used > 0 ? "." : "", key);
-    return fail_at(reader, map->line, map->column, path, text);
+    return fail_at(reader, map, map->line, map->column, path, text);
 }
 
 bool se3di_reader_fail_memory(se3di_reader *reader)
@@ -105,12 +133,18 @@ static bool fail_unknown_key(se3di_reader *reader, const se3di_node *child,
             se3di_guess_offer(&guess, row->key);
         }
     }
-    const char *meant = se3di_guess_get(&guess);
+    const bool is_cut = (strchr(child->key, '(') != NULL) != (strchr(child->key, ')') != NULL);
+    const char *meant = is_cut ? NULL : se3di_guess_get(&guess);
     reader->fault = se3di_fault_of(child);
     reader->fault.meant = meant;
     reader->fault.is_key = true;
     se3di_node_format_path(child->parent, path, sizeof path);
-    if (meant) {
+    if (is_cut) {
+        snprintf(text, sizeof text,
+                 "`%.60s` is the rest of an expression that was cut at a comma: inside { } an "
+                 "expression with a comma needs quotes",
+                 child->key);
+    } else if (meant) {
         snprintf(text, sizeof text, "the key `%.60s` is unknown, did you mean `%s`?", child->key,
                  meant);
     } else {
@@ -118,7 +152,7 @@ static bool fail_unknown_key(se3di_reader *reader, const se3di_node *child,
         snprintf(text, sizeof text, "the key `%.60s` is unknown, allowed are: %s", child->key,
                  list);
     }
-    return fail_at(reader, child->key_line, child->key_column, path, text);
+    return fail_at(reader, child, child->key_line, child->key_column, path, text);
 }
 
 bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_object *object)
@@ -150,7 +184,7 @@ static bool check_type_keys(se3di_reader *reader, const se3di_node *node,
             se3di_object_list(object, type, ", ", list, sizeof list);
             reader->fault = se3di_fault_of(child);
             snprintf(text, sizeof text, "`%s` has no such key, allowed are: %s", type, list);
-            return fail_at(reader, child->key_line, child->key_column, path, text);
+            return fail_at(reader, child, child->key_line, child->key_column, path, text);
         }
     }
     return true;
@@ -271,7 +305,7 @@ static bool is_plain(const char *text)
 
 bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **name)
 {
-    if (!se3di_read_text(reader, node, name)) {
+    if (!se3di_read_reference(reader, node, name)) {
         return false;
     }
     const char *text = *name;
@@ -286,6 +320,53 @@ bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **
                                  text);
     }
     return true;
+}
+
+const char *se3di_reader_prefix(se3di_reader *reader, const char *name)
+{
+    const char *prefix = reader->part ? reader->part->prefix : "";
+    const size_t length = strlen(prefix);
+    char *whole =
+        length > 0 ? se3di_iopool_array(reader->pool, length + strlen(name) + 1, 1) : NULL;
+    if (length == 0) {
+        return name;
+    }
+    if (!whole) {
+        se3di_reader_fail_memory(reader);
+        return NULL;
+    }
+    memcpy(whole, prefix, length);
+    memcpy(whole + length, name, strlen(name) + 1);
+    return whole;
+}
+
+bool se3di_read_part_name(se3di_reader *reader, const se3di_node *node, const char **name)
+{
+    const char *text = NULL;
+    if (!se3di_read_name(reader, node, &text)) {
+        return false;
+    }
+    *name = se3di_reader_prefix(reader, text);
+    if (*name && strlen(*name) > 100) {
+        return se3di_reader_fail(reader, node,
+                                 "the name `%.60s...` has %zu characters with its prefix, at most "
+                                 "100 are allowed",
+                                 *name, strlen(*name));
+    }
+    return *name != NULL;
+}
+
+bool se3di_reader_find(se3di_reader *reader, const se3di_ionames *names, const char *name,
+                       size_t *index)
+{
+    char whole[256];
+    for (const se3di_component *part = reader->part; part; part = part->parent) {
+        snprintf(whole, sizeof whole, "%.110s%.110s", part->prefix, name);
+        if (se3di_ionames_find(names, whole, index)) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /* Parts between '/' are not empty, "." or "..". */

@@ -6,6 +6,7 @@
 
 #include "io/document/document.h"
 #include "io/document/keys.h"
+#include "io/document/part.h"
 #include "io/document/recovery.h"
 #include "io/document/scope.h"
 
@@ -13,9 +14,10 @@ typedef struct se3di_reader {
     se3d_model *model; /* what the sections fill; below only what values need of it */
     se3di_iopool *pool;
     const char *file;
-    se3d_system *system;      /* NULL: not made yet */
-    const se3di_scope *scope; /* names and units of the file */
-    int alternative;          /* of the units of a key, "[m, rad]": 0, 1, ...; negative: any */
+    se3d_system *system;         /* NULL: not made yet */
+    const se3di_component *part; /* where it stands; NULL: not known yet */
+    const se3di_scope *scope;    /* names and units of the file */
+    int alternative;             /* of the units of a key, "[m, rad]": 0, 1, ...; negative: any */
     const se3d_model_options *options;
     se3d_model_error *error;
     se3d_status status;
@@ -52,6 +54,17 @@ bool se3di_read_text(se3di_reader *reader, const se3di_node *node, const char **
 bool se3di_read_bool(se3di_reader *reader, const se3di_node *node, int32_t *value);
 /* A name that other things refer to: not empty, without blanks at its ends, dots, commas, ... */
 bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **name);
+
+/* A text in which expressions in braces stand for whole numbers: "link{i - 1}". */
+bool se3di_read_reference(se3di_reader *reader, const se3di_node *node, const char **name);
+/* Whether the condition under `when` holds, or there is none. */
+bool se3di_read_when(se3di_reader *reader, const se3di_node *map, bool *wanted);
+/* The name under which a part's thing goes: with the part's prefix. */
+bool se3di_read_part_name(se3di_reader *reader, const se3di_node *node, const char **name);
+const char *se3di_reader_prefix(se3di_reader *reader, const char *name);
+/* What is called `name` by those of a part: a thing of it, else of those that include it. */
+bool se3di_reader_find(se3di_reader *reader, const se3di_ionames *names, const char *name,
+                       size_t *index);
 
 /* The name of a file inside the results folder: relative, without "..", "." and "//". */
 bool se3di_read_file_name(se3di_reader *reader, const se3di_node *node, const char **name);

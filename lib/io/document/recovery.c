@@ -81,23 +81,31 @@ static bool note_names(se3di_recovery *recovery, const se3di_node *node)
     return true;
 }
 
-/* Sections whose things others refer to, or that decide what others must say. */
-static bool is_foundation(const se3di_recovery *recovery, const se3di_node *node)
+/* The root of a document, or an entry of `parts`: what has sections. */
+static bool has_sections(const se3di_node *node)
 {
-    return node->parent == recovery->root &&
+    const se3di_node *parent = node->parent;
+    return !parent || (parent->key && strcmp(parent->key, "parts") == 0 && parent->parent &&
+                       !parent->parent->parent);
+}
+
+/* Sections whose things others refer to, or that decide what others must say. */
+static bool is_foundation(const se3di_node *node)
+{
+    return !node->parent->parent &&
            se3di_keys_contain(
                " se3d parameters points units bodies joints drivers constraints forces materials "
-               "contact particles analysis ",
+               "contact particles analysis include instances parts ",
                node->key);
 }
 
 /* A list of a section goes on without one of its things; a thing or a value not without a part. */
-static void mark_incomplete(const se3di_recovery *recovery, const se3di_node *out)
+static void mark_incomplete(const se3di_node *out)
 {
     const bool thing = out->kind == SE3DI_NODE_MAP;
     se3di_node *node = out->parent;
-    while (node != recovery->root &&
-           !(thing && node->kind == SE3DI_NODE_LIST && node->parent == recovery->root)) {
+    while (!has_sections(node) &&
+           !(thing && node->kind == SE3DI_NODE_LIST && has_sections(node->parent))) {
         node->incomplete = true;
         node = node->parent;
     }
@@ -125,7 +133,7 @@ static bool take_out_alone(se3di_recovery *recovery, const se3di_node *node)
 {
     se3di_node *parent = node->parent;
     se3di_node *before = find_before(node);
-    if (is_foundation(recovery, node) || !note_names(recovery, node)) {
+    if (!parent || is_foundation(node) || !note_names(recovery, node)) {
         return false;
     }
     if (before) {
@@ -135,7 +143,7 @@ static bool take_out_alone(se3di_recovery *recovery, const se3di_node *node)
     }
     parent->last = parent->last == node ? before : parent->last;
     --parent->count;
-    mark_incomplete(recovery, node);
+    mark_incomplete(node);
     return true;
 }
 

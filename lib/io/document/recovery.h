@@ -19,7 +19,6 @@ se3di_fault se3di_fault_of(const se3di_node *node);
 /* One search for mistakes. */
 typedef struct se3di_recovery {
     se3di_iopool *pool;
-    const se3di_node *root;
     const char **lost; /* names of what was taken out */
     size_t lost_count, lost_capacity;
 } se3di_recovery;

@@ -8,6 +8,8 @@
 
 typedef struct se3di_mesh {
     const char *file;
+    const char *model; /* the file that names it */
+    int mirror;        /* the axis that is turned round; -1: none */
     double scale;
     struct se3di_mesh *next; /* of the model */
     double *points;          /* [3 * point_count], scaled */

@@ -4,13 +4,15 @@
 #define SE3D_IO_MODEL_H
 
 #include "io/document/document.h"
+#include "io/document/part.h"
 #include "io/document/scope.h"
 #include "io/model/mesh.h"
 #include "io/model/tagged.h"
 
 typedef struct se3di_body_entry {
     const char *name;
-    const se3di_node *node; /* NULL: the ground */
+    const se3di_node *node;      /* NULL: the ground */
+    const se3di_component *part; /* that has it */
     se3d_body body;
     se3di_ionames markers; /* to indices of se3d_model.markers */
 } se3di_body_entry;
@@ -40,6 +42,7 @@ typedef struct se3di_element_entry {
     double point[3]; /* where */
     /* How it is drawn: a pair with points (1), also with an axis (2), a spring (3); 0: not. */
     int32_t drawn;
+    bool is_turned;     /* mirrored joint whose angle counts the other way round */
     int32_t coordinate; /* se3d_joint_coordinate of a driver, friction or stop */
     se3d_body body_i;
     se3d_body body_j;
@@ -74,7 +77,9 @@ bool se3di_analysis_has_motion(const se3di_analysis_entry *entry);
 typedef struct se3di_shape_entry {
     se3d_model_shape shape;
     const se3di_mesh *mesh; /* NULL: the shape is another one */
-    int32_t convex;         /* mesh: its hull touches */
+    const se3di_node *node;
+    const se3di_component *part; /* that has it */
+    int32_t convex;              /* mesh: its hull touches */
     int32_t reserved;
 } se3di_shape_entry;
 
@@ -87,7 +92,8 @@ struct se3d_model {
     const char *name;
     const char *title;
     se3di_node *root;
-    se3di_scope *scope;       /* parameters and points */
+    se3di_component *parts;   /* the first is the model's file, then all that it is made of */
+    const se3di_scope *scope; /* parameters and points */
     se3di_body_entry *bodies; /* [0] is the ground */
     size_t body_count, body_capacity;
     se3di_ionames body_names;

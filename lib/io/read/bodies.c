@@ -21,6 +21,7 @@
 /* clang-format off */
 static const se3di_key body_keys[] = {
     {"name", SE3DI_KIND_NAME, .required = true, .text = "unique among the bodies"},
+    {"when", SE3DI_KIND_CONDITION, .text = "it is there only if this holds"},
     {"fixed", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_body_def, fixed), .standard = "false",
      .text = "immovable, like the ground; needs no mass"},
     {"held", SE3DI_KIND_BOOL, .standard = "false",
@@ -92,10 +93,11 @@ bool se3di_read_key_body(se3di_reader *reader, const se3di_node *map, const char
         return se3di_reader_fail_key(reader, map, key,
                                      "is missing, must be `ground` or the name of a body");
     }
-    if (!se3di_read_text(reader, node, &name)) {
+    if (!se3di_read_reference(reader, node, &name)) {
         return false;
     }
-    if (!se3di_ionames_find(&reader->model->body_names, name, &index)) {
+    if (strcmp(name, "ground") != 0 &&
+        !se3di_reader_find(reader, &reader->model->body_names, name, &index)) {
         return fail_unknown_body(reader, node);
     }
     *entry = &reader->model->bodies[index];
@@ -123,13 +125,15 @@ bool se3di_read_key_point(se3di_reader *reader, const se3di_node *map, const cha
     const se3di_node *node = se3di_node_get(map, key);
     size_t index = 0;
     if (!node || node->kind != SE3DI_NODE_SCALAR) {
-        return !node || se3di_read_vector(reader, node, 3, point);
+        return !node || (se3di_read_vector(reader, node, 3, point) &&
+                         se3di_place_on_body(reader, node, body, point));
     }
     const bool is_marker = se3di_ionames_find(&body->markers, node->text, &index);
     const bool is_name =
         se3di_text_is_identifier(node->text) && !se3di_scope_find(reader->scope, node->text);
     if (!is_marker && !is_name) {
-        return se3di_read_vector(reader, node, 3, point);
+        return se3di_read_vector(reader, node, 3, point) &&
+               se3di_place_on_body(reader, node, body, point);
     }
     if (!is_marker) {
         return se3di_reader_fail(reader, node,
@@ -156,6 +160,67 @@ bool se3di_ground_to_body(se3di_reader *reader, se3d_body body, const double gro
     return true;
 }
 
+/* Vectors that are said in the frame of a body: of one of the part it turns with it, on the ground
+ * it is put where the part is. */
+static bool place_on_body(se3di_reader *reader, const se3di_node *node,
+                          const se3di_body_entry *body,
+                          void (*on_ground)(const se3di_placement *, double[3]),
+                          void (*on_body)(const se3di_placement *, double[3]), double v[3])
+{
+    const se3di_placement *place = &reader->part->place;
+    if (body == &reader->model->bodies[0]) {
+        on_ground(place, v);
+    } else if (body->part == reader->part) {
+        on_body(place, v);
+    } else if (place->mirror >= 0) {
+        return se3di_reader_fail(reader, node,
+                                 "is said in the frame of `%.60s`, which is no body of this part: "
+                                 "a part that is mirrored must say it in the ground frame",
+                                 body->name);
+    }
+    return true;
+}
+
+bool se3di_place_on_body(se3di_reader *reader, const se3di_node *node, const se3di_body_entry *body,
+                         double point[3])
+{
+    return place_on_body(reader, node, body, se3di_place_point, se3di_flip_vector, point);
+}
+
+bool se3di_read_key_body_direction(se3di_reader *reader, const se3di_node *map, const char *key,
+                                   const se3di_body_entry *body, bool is_axial, double v[3])
+{
+    const se3di_node *node = se3di_node_get(map, key);
+    return !node ||
+           (se3di_read_key_direction(reader, map, key, v) &&
+            place_on_body(reader, node, body, is_axial ? se3di_place_axial : se3di_place_vector,
+                          is_axial ? se3di_flip_axial : se3di_flip_vector, v));
+}
+
+bool se3di_read_key_ground_point(se3di_reader *reader, const se3di_node *map, const char *key,
+                                 double point[3])
+{
+    if (!se3di_read_key_vector(reader, map, key, point)) {
+        return false;
+    }
+    if (se3di_node_get(map, key)) {
+        se3di_place_point(&reader->part->place, point);
+    }
+    return true;
+}
+
+bool se3di_read_key_ground_direction(se3di_reader *reader, const se3di_node *map, const char *key,
+                                     bool is_axial, double v[3])
+{
+    if (!se3di_read_key_direction(reader, map, key, v)) {
+        return false;
+    }
+    if (se3di_node_get(map, key)) {
+        (is_axial ? se3di_place_axial : se3di_place_vector)(&reader->part->place, v);
+    }
+    return true;
+}
+
 bool se3di_read_key_place(se3di_reader *reader, const se3di_node *map, const char *key,
                           const char *at, const se3di_body_entry *body, double point[3])
 {
@@ -169,7 +234,7 @@ bool se3di_read_key_place(se3di_reader *reader, const se3di_node *map, const cha
                                      "frame or in that of the body",
                                      key);
     }
-    return se3di_read_key_vector(reader, map, at, ground) &&
+    return se3di_read_key_ground_point(reader, map, at, ground) &&
            se3di_ground_to_body(reader, body->body, ground, point);
 }
 
@@ -269,9 +334,13 @@ static bool read_markers(se3di_reader *reader, const se3di_node *body, size_t en
             return false;
         }
         se3di_body_entry *owner = &model->bodies[entry];
-        if (!se3di_read_key_place(reader, node, "position", "at", owner, def.position)) {
+        if (se3di_node_get(node, "at")
+                ? !se3di_read_key_place(reader, node, "position", "at", owner, def.position)
+                : !se3di_place_on_body(reader, node, owner, def.position)) {
             return false;
         }
+        (entry == 0 ? se3di_place_orientation : se3di_flip_orientation)(&reader->part->place,
+                                                                        def.orientation);
         if (se3di_ionames_find(&owner->markers, marker.name, NULL)) {
             return se3di_reader_fail(reader, name, "`%.60s` is the name of two markers",
                                      marker.name);
@@ -305,7 +374,7 @@ static bool add_body(se3di_reader *reader, const char *name, const se3di_node *n
         return se3di_reader_fail_memory(reader);
     }
     model->bodies = grown;
-    const se3di_body_entry entry = {.name = name, .node = node, .body = body};
+    const se3di_body_entry entry = {.name = name, .node = node, .part = reader->part, .body = body};
     model->bodies[model->body_count++] = entry;
     return true;
 }
@@ -313,10 +382,11 @@ static bool add_body(se3di_reader *reader, const char *name, const se3di_node *n
 /* `ground` may be listed to give it markers and shapes. */
 static bool read_ground(se3di_reader *reader, const se3di_node *node)
 {
-    if (reader->model->bodies[0].node) {
+    if (reader->model->bodies[0].node && reader->model->bodies[0].part == reader->part) {
         return se3di_reader_fail(reader, node, "`ground` is listed twice");
     }
     reader->model->bodies[0].node = node;
+    reader->model->bodies[0].part = reader->part;
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (!se3di_keys_contain(" name markers shapes ", child->key)) {
             return se3di_reader_fail(reader, child,
@@ -334,7 +404,11 @@ static bool read_body_name(se3di_reader *reader, const se3di_node *node, const c
     if (!child) {
         return se3di_reader_fail_key(reader, node, "name", "is missing, every body needs one");
     }
-    if (!se3di_read_name(reader, child, name)) {
+    if (child->text && strcmp(child->text, "ground") == 0) {
+        *name = child->text;
+        return true;
+    }
+    if (!se3di_read_part_name(reader, child, name)) {
         return false;
     }
     if (se3di_keys_contain(words, *name)) {
@@ -345,6 +419,16 @@ static bool read_body_name(se3di_reader *reader, const se3di_node *node, const c
         return se3di_reader_fail(reader, child, "`%.60s` is the name of two bodies", *name);
     }
     return true;
+}
+
+static void place_body(const se3di_reader *reader, se3d_body_def *def)
+{
+    const se3di_placement *place = &reader->part->place;
+    se3di_place_point(place, def->position);
+    se3di_place_orientation(place, def->orientation);
+    se3di_place_vector(place, def->velocity);
+    se3di_flip_axial(place, def->angular_velocity);
+    se3di_flip_inertia(place, def->inertia);
 }
 
 static bool read_body(se3di_reader *reader, const se3di_node *node)
@@ -365,6 +449,7 @@ static bool read_body(se3di_reader *reader, const se3di_node *node)
         !read_mass(reader, node, &def)) {
         return false;
     }
+    place_body(reader, &def);
     def.name = name;
     se3d_status status = se3d_body_create(reader->system, &def, &body);
     if (status >= 0 && is_held) {
@@ -383,12 +468,14 @@ bool se3di_read_bodies(se3di_reader *reader, const se3di_node *root)
     const se3di_node *list = NULL;
     se3d_body ground;
     const se3d_status status = se3d_system_get_ground(reader->system, &ground);
-    if (status < 0 || !add_body(reader, "ground", NULL, ground) ||
+    if (status < 0 ||
+        (reader->model->body_count == 0 && !add_body(reader, "ground", NULL, ground)) ||
         !se3di_read_list(reader, root, "bodies", &list)) {
         return false;
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!read_body(reader, node)) {
+        bool wanted = true;
+        if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_body(reader, node))) {
             return false;
         }
     }

@@ -17,6 +17,17 @@ bool se3di_read_bodies_ij(se3di_reader *reader, const se3di_node *node, const ch
 bool se3di_read_key_point(se3di_reader *reader, const se3di_node *map, const char *key,
                           const se3di_body_entry *body, double point[3]);
 
+/* A point or direction of the part's ground frame, where the part is put; left alone if there is
+ * none. An axial direction is one by which angles count. */
+bool se3di_read_key_ground_point(se3di_reader *reader, const se3di_node *map, const char *key,
+                                 double point[3]);
+bool se3di_read_key_ground_direction(se3di_reader *reader, const se3di_node *map, const char *key,
+                                     bool is_axial, double v[3]);
+/* The same in the frame of a body. */
+bool se3di_read_key_body_direction(se3di_reader *reader, const se3di_node *map, const char *key,
+                                   const se3di_body_entry *body, bool is_axial, double v[3]);
+bool se3di_place_on_body(se3di_reader *reader, const se3di_node *node, const se3di_body_entry *body,
+                         double point[3]);
 /* A point of the ground frame in the frame of a body, as it stands. */
 bool se3di_ground_to_body(se3di_reader *reader, se3d_body body, const double ground[3],
                           double local[3]);

@@ -27,6 +27,7 @@ static const char *const constraint_types[] = {PRIMITIVES, "perpendicular1", "pe
 static const se3di_key constraint_keys[] = {
     {"name", SE3DI_KIND_NAME, .standard = "constraint1, constraint2, ...",
      .text = "unique among joints, drivers, constraints and forces"},
+    {"when", SE3DI_KIND_CONDITION, .text = "it is there only if this holds"},
     {"type", SE3DI_KIND_TYPE, .required = true, .text = ""},
     {"body_i", SE3DI_KIND_BODY, .required = true, .text = ""},
     {"body_j", SE3DI_KIND_BODY, .required = true, .text = ""},
@@ -79,7 +80,10 @@ static bool read_geometry(se3di_reader *reader, const se3di_node *node,
             !require(reader, node, directions[k], primitive_types[def->type])) {
             return false;
         }
-        if (!se3di_read_key_direction(reader, node, directions[k], targets[k])) {
+        if (k < 2 ? !se3di_read_key_body_direction(reader, node, directions[k], bodies[k], false,
+                                                   targets[k])
+                  : !se3di_read_key_ground_direction(reader, node, directions[k], false,
+                                                     targets[k])) {
             return false;
         }
     }
@@ -137,6 +141,13 @@ bool se3di_read_constraints(se3di_reader *reader, const se3di_node *root)
         return false;
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        bool wanted = true;
+        if (!se3di_read_when(reader, node, &wanted)) {
+            return false;
+        }
+        if (!wanted) {
+            continue;
+        }
         if (!se3di_read_type(reader, node, &se3di_object_constraint, &type) ||
             !se3di_read_element(reader, node, SE3DI_ELEMENT_CONSTRAINT, &entry)) {
             return false;

@@ -11,6 +11,7 @@
 #include "io/document/value.h"
 #include "io/model/mesh.h"
 #include "io/model/model.h"
+#include "io/read/include.h"
 #include "io/read/materials.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
@@ -188,25 +189,23 @@ static bool create_shape(se3di_reader *reader, const se3di_node *node,
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
-/* Shapes were read in the order of the bodies. */
-static bool create_shapes(se3di_reader *reader, const se3di_node *root)
+/* Each in the part that has it. */
+static bool create_shapes(se3di_reader *reader)
 {
-    const se3di_node *bodies = se3di_node_get(root, "bodies");
-    size_t index = 0;
-    for (const se3di_node *body = bodies ? bodies->first : NULL; body; body = body->next) {
-        const se3di_node *shapes = se3di_node_get(body, "shapes");
-        for (const se3di_node *node = shapes ? shapes->first : NULL; node; node = node->next) {
-            const se3di_shape_entry *entry = &reader->model->shapes[index++];
-            int32_t wanted = 1;
-            if (!se3di_read_key(reader, node, &se3di_object_shape, NULL, "contact", &wanted)) {
-                return false;
-            }
-            if (wanted && se3di_node_get(node, "material") && !create_shape(reader, node, entry)) {
-                return false;
-            }
-        }
+    const se3di_component *main = reader->part;
+    bool good = true;
+    for (size_t k = 0; good && k < reader->model->shape_count; ++k) {
+        const se3di_shape_entry *entry = &reader->model->shapes[k];
+        int32_t wanted = 1;
+        se3di_reader_enter(reader, entry->part);
+        good = se3di_read_key(reader, entry->node, &se3di_object_shape, NULL, "contact", &wanted) &&
+               (!wanted || !se3di_node_get(entry->node, "material") ||
+                create_shape(reader, entry->node, entry));
     }
-    return true;
+    if (good) { /* else the report is about the part that it stands in */
+        se3di_reader_enter(reader, main);
+    }
+    return good;
 }
 
 bool se3di_read_contact(se3di_reader *reader, const se3di_node *root)
@@ -222,6 +221,6 @@ bool se3di_read_contact(se3di_reader *reader, const se3di_node *root)
     if (!model->materials) {
         return se3di_reader_fail_memory(reader);
     }
-    return (!contact || read_settings(reader, contact)) && create_shapes(reader, root) &&
+    return (!contact || read_settings(reader, contact)) && create_shapes(reader) &&
            (!contact || read_pairs(reader, contact));
 }

@@ -36,7 +36,8 @@ bool se3di_read_gear(se3di_reader *reader, const se3di_node *node, se3di_element
     se3d_constraint second;
     double ratio = 0.0;
     if (!se3di_read_key_joint(reader, node, "joint_1", &first) ||
-        !se3di_read_key_joint(reader, node, "joint_2", &second)) {
+        !se3di_read_key_joint(reader, node, "joint_2", &second) ||
+        !se3di_check_angle(reader, node, first) || !se3di_check_angle(reader, node, second)) {
         return false;
     }
     if (first.index1 == second.index1) {
@@ -61,7 +62,8 @@ bool se3di_read_rack(se3di_reader *reader, const se3di_node *node, se3di_element
     se3d_constraint rack;
     double radius = 0.0;
     if (!se3di_read_key_joint(reader, node, "pinion", &pinion) ||
-        !se3di_read_key_joint(reader, node, "rack", &rack)) {
+        !se3di_read_key_joint(reader, node, "rack", &rack) ||
+        !se3di_check_angle(reader, node, pinion)) {
         return false;
     }
     if (!se3di_node_get(node, "radius")) {

@@ -11,6 +11,7 @@ static const char *const time_only[] = {"t", NULL};
 static const se3di_key driver_keys[] = {
     {"name", SE3DI_KIND_NAME, .standard = "driver1, driver2, ...",
      .text = "unique among joints, drivers, constraints and forces"},
+    {"when", SE3DI_KIND_CONDITION, .text = "it is there only if this holds"},
     {"joint", SE3DI_KIND_JOINT, .required = true, .text = ""},
     {"coordinate", SE3DI_KIND_WORD, .words = se3di_coordinates,
      .text = "may be left out if the joint has one only"},
@@ -56,7 +57,8 @@ bool se3di_read_drivers(se3di_reader *reader, const se3di_node *root)
         return false;
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!read_driver(reader, node)) {
+        bool wanted = true;
+        if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_driver(reader, node))) {
             return false;
         }
     }

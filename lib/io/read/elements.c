@@ -23,13 +23,14 @@ bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_elem
     se3d_model *model = reader->model;
     const se3di_node *child = se3di_node_get(node, "name");
     const char *name = NULL;
-    if (child && !se3di_read_name(reader, child, &name)) {
+    if (child && !se3di_read_part_name(reader, child, &name)) {
         return false;
     }
     if (!child) {
         char made[48];
         snprintf(made, sizeof made, "%s%zu", kind_texts[kind], node->index + 1);
         name = se3di_iopool_copy(&model->pool, made, strlen(made));
+        name = name ? se3di_reader_prefix(reader, name) : NULL;
         if (!name) {
             return se3di_reader_fail_memory(reader);
         }
@@ -67,10 +68,10 @@ bool se3di_read_key_joint(se3di_reader *reader, const se3di_node *map, const cha
     if (!node) {
         return se3di_reader_fail_key(reader, map, key, "is missing, must be the name of a joint");
     }
-    if (!se3di_read_text(reader, node, &name)) {
+    if (!se3di_read_reference(reader, node, &name)) {
         return false;
     }
-    if (se3di_ionames_find(&model->element_names, name, &index) &&
+    if (se3di_reader_find(reader, &model->element_names, name, &index) &&
         model->elements[index].kind == SE3DI_ELEMENT_JOINT) {
         *joint = model->elements[index].constraint;
         return joint->index1 != 0 ||
@@ -131,6 +132,23 @@ bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3
                                int32_t *coordinate)
 {
     const bool good = read_coordinate(reader, node, joint, coordinate);
-    reader->alternative = good && *coordinate == SE3D_JOINT_COORDINATE_ANGLE ? 1 : 0;
-    return good;
+    const bool angle = good && *coordinate == SE3D_JOINT_COORDINATE_ANGLE;
+    reader->alternative = angle ? 1 : 0;
+    return good && (!angle || se3di_check_angle(reader, node, joint));
+}
+
+bool se3di_check_angle(se3di_reader *reader, const se3di_node *node, se3d_constraint joint)
+{
+    const se3d_model *model = reader->model;
+    for (size_t k = 0; reader->part->place.mirror >= 0 && k < model->element_count; ++k) {
+        const se3di_element_entry *entry = &model->elements[k];
+        if (entry->is_turned && entry->constraint.index1 == joint.index1) {
+            return se3di_reader_fail(reader, node,
+                                     "uses the angle of `%.60s`: in a part that is mirrored it "
+                                     "cannot count both its angle and its displacement as in the "
+                                     "given one",
+                                     entry->name);
+        }
+    }
+    return true;
 }

@@ -19,4 +19,7 @@ bool se3di_read_key_joint(se3di_reader *reader, const se3di_node *map, const cha
 bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *map, se3d_constraint joint,
                                int32_t *coordinate);
 
+/* The angle of a joint may be used: it counts as in a part that is not mirrored. */
+bool se3di_check_angle(se3di_reader *reader, const se3di_node *node, se3d_constraint joint);
+
 #endif

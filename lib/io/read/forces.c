@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `forces`: keys of all types, and readers of all but bushings. */
+#include <stdio.h>
 #include <string.h>
 
 #include "io/base/rotation.h"
@@ -25,6 +26,7 @@ static const char *const force_types[] = {"tsda",   "rsda",  "bushing", "frictio
 static const se3di_key force_keys[] = {
     {"name", SE3DI_KIND_NAME, .standard = "force1, force2, ...",
      .text = "unique among joints, drivers, constraints and forces"},
+    {"when", SE3DI_KIND_CONDITION, .text = "it is there only if this holds"},
     {"type", SE3DI_KIND_TYPE, .required = true, .text = ""},
     {"body_i", SE3DI_KIND_BODY, .types = " tsda rsda bushing stop ", .text = ""},
     {"body_j", SE3DI_KIND_BODY, .types = " tsda rsda bushing stop ", .text = ""},
@@ -219,7 +221,8 @@ static bool read_tsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
 }
 
 /* Directions of an rsda without a joint: in the ground frame, or in those of the bodies. */
-static bool read_axes(se3di_reader *reader, const se3di_node *node, se3d_rsda_def *def)
+static bool read_axes(se3di_reader *reader, const se3di_node *node,
+                      const se3di_body_entry *const bodies[2], se3d_rsda_def *def)
 {
     double axis[3];
     double ref[3];
@@ -236,13 +239,14 @@ static bool read_axes(se3di_reader *reader, const se3di_node *node, se3d_rsda_de
             "frame), or axis_i, ref_i, ref_j");
     }
     if (!global) {
-        return se3di_read_key_direction(reader, node, "axis_i", def->axis_i) &&
-               se3di_read_key_direction(reader, node, "ref_i", def->ref_i) &&
-               se3di_read_key_direction(reader, node, "ref_j", def->ref_j);
+        return se3di_read_key_body_direction(reader, node, "axis_i", bodies[0], true,
+                                             def->axis_i) &&
+               se3di_read_key_body_direction(reader, node, "ref_i", bodies[0], false, def->ref_i) &&
+               se3di_read_key_body_direction(reader, node, "ref_j", bodies[1], false, def->ref_j);
     }
     double p[4];
-    if (!se3di_read_key_direction(reader, node, "axis", axis) ||
-        !se3di_read_key_direction(reader, node, "ref", ref)) {
+    if (!se3di_read_key_ground_direction(reader, node, "axis", true, axis) ||
+        !se3di_read_key_ground_direction(reader, node, "ref", false, ref)) {
         return false;
     }
     if (SE3D_FAILED(se3d_body_get_orientation(reader->system, def->body_i, p))) {
@@ -265,7 +269,7 @@ static bool read_rsda_place(se3di_reader *reader, const se3di_node *node, se3d_r
         }
         def->body_i = bodies[0]->body;
         def->body_j = bodies[1]->body;
-        return read_axes(reader, node, def) &&
+        return read_axes(reader, node, bodies, def) &&
                se3di_read_key(reader, node, &se3di_object_force, "rsda", "angle0", &def->angle0);
     }
     for (const se3di_node *child = node->first; child; child = child->next) {
@@ -384,6 +388,48 @@ static bool read_stop(se3di_reader *reader, const se3di_node *node, se3di_elemen
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
+/* The components in the frame that the part is put in: sums of the given ones, M f. */
+static bool read_placed_load(se3di_reader *reader, const se3di_node *value,
+                             const se3di_body_entry *body, bool is_torque, se3d_load_def *def)
+{
+    const se3di_placement *place = &reader->part->place;
+    const bool own = def->in_body_frame && body->part == reader->part;
+    for (size_t i = 0; i < 3; ++i) {
+        se3di_node sum = *value->first;
+        char text[SE3D_EXPRESSION_TEXT_MAX + 1] = "0";
+        size_t used = 1;
+        const se3di_node *part = value->first;
+        for (size_t j = 0; j < 3; ++j, part = part->next) {
+            double column[3] = {j == 0, j == 1, j == 2};
+            if (own) {
+                (is_torque ? se3di_flip_axial : se3di_flip_vector)(place, column);
+            } else if (!def->in_body_frame) {
+                (is_torque ? se3di_place_axial : se3di_place_vector)(place, column);
+            }
+            if (!part->text) {
+                return se3di_reader_fail(reader, part,
+                                         "is %s, must be a number or an expression in t in a part "
+                                         "that is turned or mirrored",
+                                         se3di_node_describe(part));
+            }
+            if (column[i] != 0.0 && used < sizeof text) {
+                used += (size_t)snprintf(text + used, sizeof text - used, "+%.17g*(%s)", column[i],
+                                         part->text);
+            }
+        }
+        if (used >= sizeof text) {
+            return se3di_reader_fail(reader, value, "is too long, at most %d characters",
+                                     SE3D_EXPRESSION_TEXT_MAX);
+        }
+        sum.text = text[1] == '+' ? text + 2 : text;
+        sum.one_line = false;
+        if (!se3di_read_function(reader, &sum, time_only, &def->value[i], &def->function[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* A force at a point or a torque: three components, each a number or a function of time. */
 static bool read_load(se3di_reader *reader, const se3di_node *node, const char *type,
                       se3di_element_entry *entry)
@@ -402,9 +448,15 @@ static bool read_load(se3di_reader *reader, const se3di_node *node, const char *
     }
     const se3di_node *part = value->first;
     reader->alternative = strcmp(type, "torque") == 0;
-    for (size_t k = 0; k < 3; ++k, part = part->next) {
-        if (!se3di_read_function(reader, part, time_only, &def.value[k], &def.function[k])) {
+    if (reader->part->place.turns) {
+        if (!read_placed_load(reader, value, body, strcmp(type, "torque") == 0, &def)) {
             return false;
+        }
+    } else {
+        for (size_t k = 0; k < 3; ++k, part = part->next) {
+            if (!se3di_read_function(reader, part, time_only, &def.value[k], &def.function[k])) {
+                return false;
+            }
         }
     }
     entry->body = body->body;
@@ -449,7 +501,8 @@ bool se3di_read_forces(se3di_reader *reader, const se3di_node *root)
         return false;
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!read_force(reader, node)) {
+        bool wanted = true;
+        if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_force(reader, node))) {
             return false;
         }
     }

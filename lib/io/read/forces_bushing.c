@@ -96,6 +96,29 @@ static bool place(se3di_reader *reader, se3d_body body, const double at[3], cons
     return true;
 }
 
+static bool read_axes(se3di_reader *reader, const se3di_node *node, const char *key,
+                      const se3di_body_entry *body, double p[4])
+{
+    const bool is_ground = body == &reader->model->bodies[0];
+    if (!se3di_read_orientation(reader, se3di_node_get(node, key), p)) {
+        return false;
+    }
+    (is_ground ? se3di_place_orientation : se3di_flip_orientation)(&reader->part->place, p);
+    return true;
+}
+
+/* Products of a polar and an axial component, and of the mirrored axis and another, change sign. */
+static void mirror(const se3di_placement *place, double K[36])
+{
+    for (int i = 0; place->mirror >= 0 && i < 6; ++i) {
+        for (int j = 0; j < 6; ++j) {
+            const bool turned =
+                ((i % 3 == place->mirror) != (i >= 3)) != ((j % 3 == place->mirror) != (j >= 3));
+            K[6 * i + j] = turned ? 0.0 - K[6 * i + j] : K[6 * i + j];
+        }
+    }
+}
+
 static bool read_frames(se3di_reader *reader, const se3di_node *node,
                         const se3di_body_entry *const bodies[2], se3d_bushing_def *def)
 {
@@ -115,14 +138,15 @@ static bool read_frames(se3di_reader *reader, const se3di_node *node,
     if (!global) {
         return se3di_read_key_point(reader, node, "point_i", bodies[0], def->point_i) &&
                se3di_read_key_point(reader, node, "point_j", bodies[1], def->point_j) &&
-               se3di_read_orientation(reader, se3di_node_get(node, "orientation_i"),
-                                      def->orientation_i) &&
-               se3di_read_orientation(reader, se3di_node_get(node, "orientation_j"),
-                                      def->orientation_j);
+               read_axes(reader, node, "orientation_i", bodies[0], def->orientation_i) &&
+               read_axes(reader, node, "orientation_j", bodies[1], def->orientation_j);
     }
-    return se3di_read_key_vector(reader, node, "at", at) &&
-           se3di_read_key_orientation(reader, node, frame) &&
-           place(reader, bodies[0]->body, at, frame, def->point_i, def->orientation_i) &&
+    if (!se3di_read_key_ground_point(reader, node, "at", at) ||
+        !se3di_read_key_orientation(reader, node, frame)) {
+        return false;
+    }
+    se3di_place_orientation(&reader->part->place, frame);
+    return place(reader, bodies[0]->body, at, frame, def->point_i, def->orientation_i) &&
            place(reader, bodies[1]->body, at, frame, def->point_j, def->orientation_j);
 }
 
@@ -143,6 +167,8 @@ bool se3di_read_bushing(se3di_reader *reader, const se3di_node *node, se3di_elem
                                          k / 6 + 1, k % 6 + 1, off);
         }
     }
+    mirror(&reader->part->place, def.K);
+    mirror(&reader->part->place, def.C);
     def.name = entry->name;
     def.body_i = bodies[0]->body;
     def.body_j = bodies[1]->body;

@@ -23,6 +23,7 @@ static const char *const joint_types[] = {SE3DI_TURNING_LIST(NAME) SE3DI_DISTANC
 static const se3di_key joint_keys[] = {
     {"name", SE3DI_KIND_NAME, .standard = "joint1, joint2, ...",
      .text = "unique among joints, drivers, constraints and forces"},
+    {"when", SE3DI_KIND_CONDITION, .text = "it is there only if this holds"},
     {"type", SE3DI_KIND_TYPE, .required = true, .text = ""},
     {"body_i", SE3DI_KIND_BODY, .types = PAIRS, .text = "the reference"},
     {"body_j", SE3DI_KIND_BODY, .types = PAIRS, .text = "moves relative to body_i"},
@@ -113,8 +114,10 @@ bool se3di_read_joints(se3di_reader *reader, const se3di_node *root)
     }
     for (int round = 0; round < 2; ++round) {
         for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-            if (!se3di_read_type(reader, node, &se3di_object_joint, &type) ||
-                ((find_coupling(type) != NULL) == (round == 1) &&
+            bool wanted = true;
+            if (!se3di_read_when(reader, node, &wanted) ||
+                !se3di_read_type(reader, node, &se3di_object_joint, &type) ||
+                (wanted && (find_coupling(type) != NULL) == (round == 1) &&
                  !read_joint(reader, node, type))) {
                 return false;
             }

@@ -11,6 +11,7 @@
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
+#include "io/read/include.h"
 #include "io/read/mistakes.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
@@ -54,6 +55,10 @@ static const se3di_key model_keys[] = {
      .text = "ground frame [m/s^2], numbers or functions of t"},
     {"materials", SE3DI_KIND_LIST, .object = "material",
      .text = "what bodies and particles are made of"},
+    {"include", SE3DI_KIND_LIST, .object = "instance",
+     .text = "other files as parts of this model"},
+    {"parts", SE3DI_KIND_PARTS, .object = "part", .text = "parts by their names, for instances"},
+    {"instances", SE3DI_KIND_LIST, .object = "instance", .text = "where these parts are"},
     {"bodies", SE3DI_KIND_LIST, .object = "body",
      .text = "moving and fixed bodies; ground is always there"},
     {"joints", SE3DI_KIND_LIST, .object = "joint", .text = "joints"},
@@ -148,15 +153,31 @@ static bool create_system(se3di_reader *reader, const se3di_node *root)
     return read_gravity(reader, root);
 }
 
-static bool read_model(se3di_reader *reader, const se3di_node *root)
+/* A section of every part. */
+static bool read_section(se3di_reader *reader,
+                         bool (*read)(se3di_reader *reader, const se3di_node *root))
 {
-    return read_head(reader, root) && se3di_read_parameters(reader, root) &&
+    for (const se3di_component *part = reader->model->parts; part; part = part->next) {
+        se3di_reader_enter(reader, part);
+        if (!read(reader, part->root)) {
+            return false;
+        }
+    }
+    se3di_reader_enter(reader, reader->model->parts);
+    return true;
+}
+
+static bool read_model(se3di_reader *reader, se3di_library *library, const se3di_node *root)
+{
+    return read_head(reader, root) && se3di_read_main_part(reader, root) &&
            create_system(reader, root) && se3di_read_materials(reader, root) &&
-           se3di_read_bodies(reader, root) && se3di_read_joints(reader, root) &&
-           se3di_read_constraints(reader, root) && se3di_read_drivers(reader, root) &&
-           se3di_read_forces(reader, root) && se3di_read_analyses(reader, root) &&
-           se3di_read_contact(reader, root) && se3di_read_particles(reader, root) &&
-           se3di_read_outputs(reader, root) && se3di_read_events(reader, root);
+           se3di_read_parts(reader, library) && read_section(reader, se3di_read_bodies) &&
+           read_section(reader, se3di_read_joints) &&
+           read_section(reader, se3di_read_constraints) &&
+           read_section(reader, se3di_read_drivers) && read_section(reader, se3di_read_forces) &&
+           se3di_read_analyses(reader, root) && se3di_read_contact(reader, root) &&
+           se3di_read_particles(reader, root) && se3di_read_outputs(reader, root) &&
+           se3di_read_events(reader, root);
 }
 
 se3d_status se3di_model_fill(se3di_attempt *attempt)
@@ -169,7 +190,7 @@ se3d_status se3di_model_fill(se3di_attempt *attempt)
                            .file = model->file,
                            .options = attempt->options,
                            .error = attempt->error};
-    const bool good = read_model(&reader, model->root);
+    const bool good = read_model(&reader, attempt->library, model->root);
     attempt->fault = reader.fault;
     attempt->attached = reader.attached;
     return good ? SE3D_OK : reader.status < 0 ? reader.status : SE3D_ERR_MODEL;
@@ -232,7 +253,8 @@ se3d_status se3d_model_read_text(const char *text, size_t length, const char *na
     } else {
         status = se3di_document_parse(&model->pool, model->file, text, length, &model->root, error);
     }
-    se3di_attempt attempt = {.model = model, .options = &used, .error = error};
+    se3di_library library = {.pool = &model->pool};
+    se3di_attempt attempt = {.model = model, .options = &used, .error = error, .library = &library};
     if (status < 0) {
         se3di_mistakes_report_one(&attempt, status);
     } else {

@@ -337,7 +337,8 @@ const se3di_mesh *se3di_read_mesh(se3di_reader *reader, const se3di_node *shape,
 {
     se3d_model *model = reader->model;
     se3di_mesh *mesh = model->meshes;
-    while (mesh && (strcmp(mesh->file, file) != 0 || mesh->scale < scale || mesh->scale > scale)) {
+    while (mesh && (strcmp(mesh->file, file) != 0 || strcmp(mesh->model, reader->file) != 0 ||
+                    mesh->scale < scale || mesh->scale > scale || mesh->mirror >= 0)) {
         mesh = mesh->next;
     }
     if (mesh) {
@@ -354,8 +355,54 @@ const se3di_mesh *se3di_read_mesh(se3di_reader *reader, const se3di_node *shape,
         return NULL;
     }
     mesh->file = file;
+    mesh->model = reader->file;
+    mesh->mirror = -1;
     mesh->scale = scale;
     mesh->next = model->meshes;
     model->meshes = mesh;
     return mesh;
+}
+
+/* Its triangles run the other way round then. */
+static void copy_mirrored(const se3di_mesh *mesh, int axis, se3di_mesh *copy)
+{
+    memcpy(copy->points, mesh->points, 3 * mesh->point_count * sizeof *mesh->points);
+    memcpy(copy->triangles, mesh->triangles, 3 * mesh->triangle_count * sizeof *mesh->triangles);
+    for (size_t k = 0; k < mesh->point_count; ++k) {
+        copy->points[3 * k + (size_t)axis] = 0.0 - copy->points[3 * k + (size_t)axis];
+    }
+    for (size_t k = 0; k < mesh->triangle_count; ++k) {
+        copy->triangles[3 * k + 1] = mesh->triangles[3 * k + 2];
+        copy->triangles[3 * k + 2] = mesh->triangles[3 * k + 1];
+    }
+    copy->low[axis] = 0.0 - mesh->high[axis];
+    copy->high[axis] = 0.0 - mesh->low[axis];
+}
+
+const se3di_mesh *se3di_mirror_mesh(se3di_reader *reader, const se3di_mesh *mesh, int axis)
+{
+    se3d_model *model = reader->model;
+    for (se3di_mesh *known = model->meshes; known; known = known->next) {
+        if (known->mirror == axis && known->scale <= mesh->scale && known->scale >= mesh->scale &&
+            strcmp(known->file, mesh->file) == 0 && strcmp(known->model, mesh->model) == 0) {
+            return known;
+        }
+    }
+    se3di_mesh *copy = se3di_iopool_alloc(&model->pool, sizeof *copy);
+    if (copy) {
+        *copy = *mesh;
+        copy->points =
+            se3di_iopool_array(&model->pool, mesh->point_count, 3 * sizeof *copy->points);
+        copy->triangles =
+            se3di_iopool_array(&model->pool, mesh->triangle_count, 3 * sizeof *copy->triangles);
+    }
+    if (!copy || !copy->points || !copy->triangles) {
+        se3di_reader_fail_memory(reader);
+        return NULL;
+    }
+    copy_mirrored(mesh, axis, copy);
+    copy->mirror = axis;
+    copy->next = model->meshes;
+    model->meshes = copy;
+    return copy;
 }

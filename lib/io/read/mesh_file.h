@@ -11,5 +11,7 @@
  * and in the mesh. */
 const se3di_mesh *se3di_read_mesh(se3di_reader *reader, const se3di_node *shape, const char *file,
                                   double scale);
+/* The mesh with one axis turned round; NULL: out of memory. */
+const se3di_mesh *se3di_mirror_mesh(se3di_reader *reader, const se3di_mesh *mesh, int axis);
 
 #endif

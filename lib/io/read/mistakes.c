@@ -114,7 +114,6 @@ void se3di_mistakes_report_all(se3di_attempt *attempt, size_t length)
         return;
     }
     s->recovery.pool = &model->pool;
-    s->recovery.root = model->root;
     look_further(s, attempt, length);
     for (size_t k = 0; k < s->count; ++k) {
         attempt->options->report(attempt->options->report_ctx, &s->list[k]);

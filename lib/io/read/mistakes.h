@@ -7,10 +7,13 @@
 #include "io/document/recovery.h"
 #include "io/model/model.h"
 
+#include "io/read/include.h"
+
 typedef struct se3di_attempt {
     se3d_model *model; /* with its file, name and root */
     const se3d_model_options *options;
     se3d_model_error *error; /* not NULL; of the first mistake */
+    se3di_library *library;  /* files that were included */
     se3di_fault fault;       /* what it is about */
     size_t attached;         /* bytes of other files that were read */
 } se3di_attempt;

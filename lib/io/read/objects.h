@@ -8,6 +8,8 @@
 /* In the order of the schema. */
 #define SE3DI_OBJECT_LIST(X)                                                                       \
     X(model)                                                                                       \
+    X(instance)                                                                                    \
+    X(part)                                                                                        \
     X(units)                                                                                       \
     X(spline)                                                                                      \
     X(orientation)                                                                                 \

@@ -56,6 +56,12 @@ static bool to_body_axis(se3di_reader *reader, se3d_body body, const double grou
     return true;
 }
 
+/* Mirrored, its axis turns with the displacement; of other joints with the angle. */
+static bool has_travel(const joint_type *type)
+{
+    return se3di_keys_contain(" prismatic cylindrical screw ", type->name);
+}
+
 static bool read_local(se3di_reader *reader, const se3di_node *node, const joint_type *type,
                        const se3di_body_entry *bodies[2], se3d_joint_def *def)
 {
@@ -81,12 +87,13 @@ static bool read_local(se3di_reader *reader, const se3di_node *node, const joint
         return se3di_reader_fail_key(reader, node, "axis_j", "is missing, `%s` needs it",
                                      type->name);
     }
+    const bool axial = !has_travel(type);
     return se3di_read_key_point(reader, node, "point_i", bodies[0], def->point_i) &&
            se3di_read_key_point(reader, node, "point_j", bodies[1], def->point_j) &&
-           se3di_read_key_direction(reader, node, "axis_i", def->axis_i) &&
-           se3di_read_key_direction(reader, node, "axis_j", def->axis_j) &&
-           se3di_read_key_direction(reader, node, "ref_i", def->ref_i) &&
-           se3di_read_key_direction(reader, node, "ref_j", def->ref_j);
+           se3di_read_key_body_direction(reader, node, "axis_i", bodies[0], axial, def->axis_i) &&
+           se3di_read_key_body_direction(reader, node, "axis_j", bodies[1], axial, def->axis_j) &&
+           se3di_read_key_body_direction(reader, node, "ref_i", bodies[0], false, def->ref_i) &&
+           se3di_read_key_body_direction(reader, node, "ref_j", bodies[1], false, def->ref_j);
 }
 
 static bool check_global(se3di_reader *reader, const se3di_node *node, const joint_type *type)
@@ -133,11 +140,12 @@ static bool read_global(se3di_reader *reader, const se3di_node *node, const join
     if (!has(node, "at") && SE3D_FAILED(se3d_body_get_position(reader->system, def->body_j, at))) {
         return se3di_reader_fail_memory(reader);
     }
-    if (!se3di_read_key_vector(reader, node, "at", at) ||
-        !se3di_read_key_vector(reader, node, "at_2", at_2) ||
-        !se3di_read_key_direction(reader, node, "axis", axis) ||
-        !se3di_read_key_direction(reader, node, "axis_2", axis_2) ||
-        !se3di_read_key_direction(reader, node, "ref", ref)) {
+    const bool axial = !has_travel(type);
+    if (!se3di_read_key_ground_point(reader, node, "at", at) ||
+        !se3di_read_key_ground_point(reader, node, "at_2", at_2) ||
+        !se3di_read_key_ground_direction(reader, node, "axis", axial, axis) ||
+        !se3di_read_key_ground_direction(reader, node, "axis_2", axial, axis_2) ||
+        !se3di_read_key_ground_direction(reader, node, "ref", false, ref)) {
         return false;
     }
     const se3d_status status =
@@ -194,6 +202,11 @@ bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *n
     if (is_local(node) ? !read_local(reader, node, type, bodies, &def)
                        : !read_global(reader, node, type, &def)) {
         return false;
+    }
+    if (reader->part->place.mirror >= 0 && has_travel(type)) {
+        entry->is_turned = true;
+        def.angle0 = 0.0 - def.angle0;
+        def.pitch = 0.0 - def.pitch;
     }
     entry->body_i = def.body_i;
     entry->body_j = def.body_j;

@@ -14,6 +14,7 @@
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
+#include "io/read/parameters.h"
 #include "io/read/point_table.h"
 #include "io/read/sections.h"
 #include "io/read/units.h"
@@ -25,6 +26,7 @@ typedef struct parameter {
     const char *text;        /* where the search for names goes on */
     const se3di_node *place; /* of the list's entry that it is in; NULL: no list */
     bool is_point;
+    const se3di_amount *given; /* by the entry that includes the part; NULL: its own */
     parameter_state state;
 } parameter;
 
@@ -35,7 +37,8 @@ typedef struct resolver {
     se3di_ionames names;
     size_t *stack;
     size_t depth;
-    se3di_scope *scope; /* those that are done */
+    se3di_scope *scope;            /* those that are done */
+    const se3di_component *caller; /* NULL: the model itself */
 } resolver;
 
 static const char *const reserved[] = {"t", "pi", "deg", "ground", NULL};
@@ -169,6 +172,35 @@ static bool read_list(se3di_reader *reader, const se3di_node *node, se3di_amount
     return true;
 }
 
+bool se3di_read_value(se3di_reader *reader, const se3di_node *node, se3di_amount *value)
+{
+    return node->kind == SE3DI_NODE_LIST ? read_list(reader, node, value)
+                                         : se3di_read_amount(reader, node, value);
+}
+
+/* What the caller gives for a point is in the units of the caller. */
+static bool take_given(const resolver *r, const parameter *p, se3di_amount *value)
+{
+    const se3di_measure metre = {{1, 0, 0, 0}, 1.0, 1.0};
+    *value = *p->given;
+    if (!p->is_point) {
+        return true;
+    }
+    if (value->rank != 3 ||
+        (value->hard && !se3di_dimension_fits(value->dimension, metre.dimension))) {
+        return se3di_reader_fail(r->reader, p->node, "is a point, but what is given for it is not");
+    }
+    if (!value->hard) {
+        const se3di_measure unit = se3di_units_of(&r->caller->scope->units, metre.dimension);
+        for (size_t k = 0; k < 3; ++k) {
+            value->v[k] = value->v[k] * unit.times / unit.over;
+        }
+    }
+    value->hard = true;
+    value->dimension = metre.dimension;
+    return true;
+}
+
 /* A point is a length, whatever is written. */
 static bool read_point(se3di_reader *reader, const se3di_node *node, se3di_amount *value)
 {
@@ -180,10 +212,9 @@ static bool finish(resolver *r, size_t index)
 {
     parameter *p = &r->list[index];
     se3di_amount value;
-    const bool good = p->is_point ? read_point(r->reader, p->node, &value)
-                      : p->node->kind == SE3DI_NODE_LIST
-                          ? read_list(r->reader, p->node, &value)
-                          : se3di_read_amount(r->reader, p->node, &value);
+    const bool good = p->given      ? take_given(r, p, &value)
+                      : p->is_point ? read_point(r->reader, p->node, &value)
+                                    : se3di_read_value(r->reader, p->node, &value);
     if (!good) {
         return false;
     }
@@ -301,35 +332,90 @@ static bool find_map(se3di_reader *reader, const se3di_node *root, const char *k
                              se3di_node_describe(*map), example);
 }
 
-bool se3di_read_parameters(se3di_reader *reader, const se3di_node *root)
+/* Put the values that the entry gives in the place of the part's own. */
+static bool apply_given(resolver *r, const se3di_given *given)
+{
+    const se3di_node *node = given->node ? given->node->first : NULL;
+    for (size_t k = 0; k < given->count; ++k, node = node->next) {
+        size_t index = 0;
+        se3di_guess guess = se3di_guess_begin(node->key);
+        if (!se3di_ionames_find(&r->names, node->key, &index)) {
+            for (size_t i = 0; i < r->count; ++i) {
+                se3di_guess_offer(&guess, r->list[i].node->key);
+            }
+            const char *meant = se3di_guess_get(&guess);
+            r->reader->part = r->caller; /* whose mistake it is */
+            return se3di_reader_fail(
+                r->reader, node, "the part has no such parameter or point%s%s%s",
+                meant ? ", did you mean `" : "", meant ? meant : "", meant ? "`?" : "");
+        }
+        r->list[index].given = &given->values[k];
+        r->list[index].text = "";
+        r->list[index].place = NULL;
+    }
+    size_t counter = 0;
+    if (!given->index) {
+        return true;
+    }
+    if (!se3di_ionames_find(&r->names, given->index, &counter)) {
+        return se3di_scope_add(r->scope, r->reader->pool, given->index, &given->i) ||
+               se3di_reader_fail_memory(r->reader);
+    }
+    r->list[counter].given = &given->i;
+    r->list[counter].text = "";
+    return true;
+}
+
+/* The maps of a part: its parameters, its points, and those of its table. */
+static bool find_maps(se3di_reader *reader, const se3di_component *part, se3di_scope *scope,
+                      const se3di_node *maps[3])
+{
+    const se3di_node *root = part->root;
+    if (!find_map(reader, root, "parameters", "{L: 2}", &maps[0]) ||
+        !find_map(reader, root, "points", "{hub: [0, 1, 2]}", &maps[1]) ||
+        !se3di_read_units(reader, root, &scope->units)) {
+        return false;
+    }
+    reader->scope = scope;
+    return se3di_read_point_table(reader, root, &maps[2]);
+}
+
+/* Units of a file are those of its parts, too. */
+static se3di_units first_units(const se3di_component *part)
+{
+    const se3di_component *file = part;
+    while (file->root->parent && file->parent) {
+        file = file->parent;
+    }
+    return file != part && file->scope ? file->scope->units : se3di_units_si();
+}
+
+bool se3di_read_parameters(se3di_reader *reader, se3di_component *part, const se3di_given *given)
 {
     se3di_iopool *pool = reader->pool;
-    const se3di_node *map = NULL;
-    const se3di_node *points = NULL;
-    const se3di_node *table = NULL;
-    resolver r = {.reader = reader, .scope = se3di_iopool_alloc(pool, sizeof *r.scope)};
+    const se3di_node *maps[3] = {NULL, NULL, NULL};
+    resolver r = {.reader = reader,
+                  .scope = se3di_iopool_alloc(pool, sizeof *r.scope),
+                  .caller = part->parent};
+    size_t count = 0;
     if (!r.scope) {
         return se3di_reader_fail_memory(reader);
     }
-    r.scope->units = se3di_units_si();
-    if (!find_map(reader, root, "parameters", "{L: 2}", &map) ||
-        !find_map(reader, root, "points", "{hub: [0, 1, 2]}", &points) ||
-        !se3di_read_units(reader, root, &r.scope->units)) {
+    r.scope->units = first_units(part);
+    part->scope = r.scope;
+    if (!find_maps(reader, part, r.scope, maps)) {
         return false;
     }
-    reader->scope = reader->model->scope = r.scope;
-    if (!se3di_read_point_table(reader, root, &table)) {
-        return false;
+    for (size_t k = 0; k < 3; ++k) {
+        count += maps[k] ? maps[k]->count : 0;
     }
-    const size_t count =
-        (map ? map->count : 0) + (points ? points->count : 0) + (table ? table->count : 0);
     r.list = se3di_iopool_array(pool, count, sizeof *r.list);
     r.stack = se3di_iopool_array(pool, count, sizeof *r.stack);
     if (!r.list || !r.stack) {
         return se3di_reader_fail_memory(reader);
     }
-    if (!collect(&r, map, false) || !collect(&r, points, true) || !collect(&r, table, true) ||
-        !apply_settings(&r)) {
+    if (!collect(&r, maps[0], false) || !collect(&r, maps[1], true) ||
+        !collect(&r, maps[2], true) || !(given ? apply_given(&r, given) : apply_settings(&r))) {
         return false;
     }
     for (size_t k = 0; k < r.count; ++k) {

@@ -5,7 +5,6 @@
 
 #include "io/document/reader.h"
 
-bool se3di_read_parameters(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_materials(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_bodies(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_joints(se3di_reader *reader, const se3di_node *root);

@@ -136,6 +136,29 @@ static bool read_shape(se3di_reader *reader, const se3di_node *node, se3di_shape
            read_dimensions(reader, node, entry) && read_color(reader, node, shape->color);
 }
 
+/* The place of its part. A plane that is mirrored along its normal keeps the side it is on: its x
+ * axis is turned round in place of z. */
+static bool place_shape(se3di_reader *reader, bool on_ground, se3di_shape_entry *entry)
+{
+    const se3di_placement *place = &reader->part->place;
+    se3d_model_shape *shape = &entry->shape;
+    (on_ground ? se3di_place_point : se3di_flip_vector)(place, shape->position);
+    (on_ground ? se3di_place_orientation : se3di_flip_orientation)(place, shape->orientation);
+    if (place->mirror == 2 && shape->type == SE3D_SHAPE_PLANE) {
+        const double p[4] = {shape->orientation[0], shape->orientation[1], shape->orientation[2],
+                             shape->orientation[3]};
+        shape->orientation[0] = 0.0 - p[2]; /* times half a turn about y */
+        shape->orientation[1] = 0.0 - p[3];
+        shape->orientation[2] = p[0];
+        shape->orientation[3] = p[1];
+    }
+    if (entry->mesh && place->mirror >= 0) {
+        entry->mesh = se3di_mirror_mesh(reader, entry->mesh, place->mirror);
+        return entry->mesh != NULL;
+    }
+    return true;
+}
+
 bool se3di_read_shapes(se3di_reader *reader, const se3di_node *body, size_t entry)
 {
     se3d_model *model = reader->model;
@@ -148,6 +171,11 @@ bool se3di_read_shapes(se3di_reader *reader, const se3di_node *body, size_t entr
         if (!read_shape(reader, node, &made)) {
             return false;
         }
+        if (!place_shape(reader, entry == 0, &made)) {
+            return false;
+        }
+        made.node = node;
+        made.part = reader->part;
         made.shape.body = model->bodies[entry].body;
         se3di_shape_entry *grown = se3di_iopool_grow(
             &model->pool, model->shapes, model->shape_count, &model->shape_capacity, sizeof *grown);
