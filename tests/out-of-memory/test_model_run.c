@@ -65,6 +65,24 @@ static const char *const texts[] = {
     "[0.5, 0.5, 0.5]}]\nbodies: [{name: ground, shapes: [{type: plane, material: m}]}]\n"
     "analysis: {type: dynamics, duration: 0.01}\noutput: [{file: s.csv, every: 0.01, channels: "
     "[contacts.count]}, {file: g.csv, every: 0.01, particles: true}]\n",
+    /* Points, units and parts. */
+    "se3d: 1\n"
+    "units: {length: mm}\n"
+    "parameters: {v: [0, 1 m, 2], n: 2}\n"
+    "points: {p: \"mid(q, v)\", q: \"[0, norm(v), 30 mm]\"}\n"
+    "parts:\n"
+    "  side:\n"
+    "    parameters: {m: 1}\n"
+    "    points: {a: [0, 100, 0]}\n"
+    "    bodies: [{name: b, density: 6, position: a, shapes: [{type: mesh, file: " MESH ",\n"
+    "      position: [-250, -250, -250]}], markers: [{name: m, at: a}]}]\n"
+    "    joints: [{name: pin, type: revolute, body_i: ground, body_j: b, at: a, axis: [1, 0, 0]}]\n"
+    "    forces: [{name: f, type: force, body: b, at: a, value: [0, \"2 N/s*a.y/1 m*t\", 0]}]\n"
+    "instances:\n"
+    "  - {part: side, prefix: \"s{i}_\", repeat: n, when: i < 2, parameters: {a: p, m: 2}}\n"
+    "  - {part: side, prefix: t_, mirror: y, position: q}\n"
+    "analysis: {type: dynamics, duration: 0.01, step: 0.005}\n"
+    "output: [{file: parts.csv, channels: [s1_b.position, t_pin.angle]}]\n",
 };
 
 typedef struct attempt {
