@@ -194,10 +194,15 @@ static void check_and_move(se3d_model *model)
     se3d_solver_destroy(solver);
 }
 
-/* Nothing in a message may move a cursor; it begins with the place. */
+/* Nothing in a message may move a cursor; it begins with the place, in the file or in one that it
+ * includes. */
 static int is_message(const char *text, const char *path)
 {
-    int printable = strncmp(text, path, strlen(path)) == 0;
+    const char *slash = strrchr(path, '/');
+    const size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
+    int printable =
+        strncmp(text, path, strlen(path)) == 0 ||
+        (strncmp(text, path, folder) == 0 && strstr(text, "; included at ") && strstr(text, path));
     for (const char *c = text; *c; ++c) {
         printable = printable && (unsigned char)*c >= ' ' && *c != 0x7F;
     }
