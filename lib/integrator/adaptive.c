@@ -8,6 +8,11 @@
 
 #include <math.h>
 
+int se3di_adaptive_ends(const se3di_integration *integration, const se3di_adaptive_history *at)
+{
+    return at->renewed > 0.0 || integration->equations->assembly.model->contacts.pair_count > 0;
+}
+
 double se3di_adaptive_pace(se3di_adaptive *step, double h)
 {
     const se3di_model *model = step->integration->equations->assembly.model;

@@ -45,6 +45,11 @@ struct se3di_adaptive {
  * (integrator/kink_step.h). */
 se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end);
 
+/* Whether the next step may not go past the end of the run: what acts has changed and may soon do
+ * so again; or shapes touch or are near, where forces and accelerations follow from what contacts
+ * remember of the end of a step, and cannot be told within it. */
+int se3di_adaptive_ends(const se3di_integration *integration, const se3di_adaptive_history *at);
+
 /* A pace of methods that need no more: no step over a contact that begins, nor of more than an
  * angle's counter can follow. */
 double se3di_adaptive_pace(se3di_adaptive *step, double h);

@@ -388,8 +388,7 @@ static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status,
     return se3di_adaptive_blame(step->integration, get_step(step)->m.t, h, status);
 }
 
-/* One accepted step with error control; after a change of what acts, which may soon change again,
- * none over the end of the run. */
+/* One accepted step with error control. */
 static se3d_status advance(se3di_integration *integration, double t_end)
 {
     static const se3di_adaptive_class methods = {se3di_adaptive_pace, try_step, take_step, shrink,
@@ -399,7 +398,7 @@ static se3d_status advance(se3di_integration *integration, double t_end)
     s.step = (se3di_adaptive){.methods = &methods,
                               .integration = integration,
                               .at = &s.m.past->at,
-                              .ends = s.m.past->at.renewed > 0.0};
+                              .ends = se3di_adaptive_ends(integration, &s.m.past->at)};
     se3di_forces_show(s.m.assembly->model, 0);
     se3di_state_set(s.m.assembly, s.m.points);
     se3di_bdf_eval_rate(&s.m, s.m.past->at.time, s.m.difference);

@@ -556,7 +556,7 @@ static se3d_status advance(rk *m, double t_end)
     se3di_model *model = m->assembly->model;
     m->step.methods = &methods;
     m->step.at = &m->past->at;
-    m->step.ends = model->contacts.pair_count > 0 || m->past->at.renewed > 0.0;
+    m->step.ends = se3di_adaptive_ends(m->step.integration, &m->past->at);
     se3di_forces_show(model, 0);
     m->motion->set(m->equations, m->y1);
     se3di_state_set_rates(m->assembly, get_rates(m));
@@ -623,6 +623,7 @@ static se3d_status show(rk *m, const double *y, double t, int project)
         SE3DI_TRY(m->motion->project(m->equations, t, &m->past->scale, 1e-15, 0));
     }
     SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
+    se3di_contacts_renew_forces(m->assembly->model);
     return se3di_state_conclude(m->equations, y + m->count - SE3DI_STATE_WORK, t);
 }
 

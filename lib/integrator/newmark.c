@@ -586,14 +586,18 @@ static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status,
     return se3di_adaptive_blame(step->integration, step->at->time, h, is_error ? SE3D_OK : status);
 }
 
-static se3d_status advance_by_error(se3di_integration *integration, double longest)
+/* To t_end at most if it `ends` there. */
+static se3d_status advance_by_error(se3di_integration *integration, double t_end, int ends)
 {
     static const se3di_adaptive_class methods = {pace, try_step, take, shrink, surrender, 1e-12};
-    controlled_step s = {.longest = longest, .errors = {HUGE_VAL, HUGE_VAL}};
-    s.step = (se3di_adaptive){
-        .methods = &methods, .integration = integration, .at = &header_of(integration)->at};
-    s.step.at->time = header_of(integration)->end;
-    return se3di_adaptive_advance(&s.step, HUGE_VAL);
+    const double end = header_of(integration)->end;
+    controlled_step s = {.longest = ends ? t_end - end : HUGE_VAL, .errors = {HUGE_VAL, HUGE_VAL}};
+    s.step = (se3di_adaptive){.methods = &methods,
+                              .integration = integration,
+                              .at = &header_of(integration)->at,
+                              .ends = ends};
+    s.step.at->time = end;
+    return se3di_adaptive_advance(&s.step, t_end);
 }
 
 se3d_status se3di_newmark_advance(se3di_integration *integration, double t_end)
@@ -612,10 +616,10 @@ se3d_status se3di_newmark_advance(se3di_integration *integration, double t_end)
         return SE3D_OK;
     }
     load(assembly, &past);
-    /* what acts has changed, and may soon do so again: not past the end of the run */
-    const double longest = header->at.renewed > 0.0 ? t_end - header->end : HUGE_VAL;
+    const int ends = se3di_adaptive_ends(integration, &header->at);
+    const double longest = ends ? t_end - header->end : HUGE_VAL;
     return integration->settings.step > 0.0 ? advance_equally(integration, longest)
-                                            : advance_by_error(integration, longest);
+                                            : advance_by_error(integration, t_end, ends);
 }
 
 se3d_status se3di_newmark_run(se3di_integration *integration, double t_end)

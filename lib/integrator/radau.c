@@ -373,8 +373,7 @@ static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status,
     return se3di_adaptive_blame(step->integration, m->t, h, status);
 }
 
-/* One accepted step with error control; the first one after a change of what acts, which may soon
- * change again, goes to t_end at most. */
+/* One accepted step with error control. */
 static se3d_status advance(se3di_integration *integration, double t_end)
 {
     static const se3di_adaptive_class methods = {se3di_adaptive_pace, try_step, take, shrink,
@@ -384,7 +383,7 @@ static se3d_status advance(se3di_integration *integration, double t_end)
     s.step = (se3di_adaptive){.methods = &methods,
                               .integration = integration,
                               .at = &s.past.header->at,
-                              .ends = s.past.header->at.renewed > 0.0};
+                              .ends = se3di_adaptive_ends(integration, &s.past.header->at)};
     SE3DI_TRY(begin_step(&s.m, integration, &s.past));
     se3di_state_set_rates(s.m.assembly, s.m.f0);
     return se3di_adaptive_advance(&s.step, t_end);

@@ -4,6 +4,7 @@
 #include "assembly/energy.h"
 #include "assembly/loads.h"
 #include "assembly/user.h"
+#include "contact/bodies/body_contacts.h"
 #include "force/friction.h"
 #include "force/measure.h"
 #include "math/quaternion.h"
@@ -429,6 +430,7 @@ se3d_status se3di_state_publish(se3di_equations *equations, const double *y, dou
         SE3DI_TRY(se3di_state_project(equations, t, scale, 1e-15, 0));
     }
     SE3DI_TRY(se3di_acceleration_solve(equations, t));
+    se3di_contacts_renew_forces(equations->assembly.model);
     return se3di_state_conclude(equations,
                                 y + SE3DI_STATE_SIZE * (size_t)equations->assembly.body_count, t);
 }

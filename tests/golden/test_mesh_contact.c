@@ -143,7 +143,7 @@ static void a_box_rests_in_a_corner_of_three_faces(void)
     CHECK(se3d_body_get_position(s.system, body, at) == SE3D_OK);
     CHECK(se3d_system_count_contacts(s.system) == 12);
     for (int a = 0; a < 3; ++a) {
-        CHECK_NEAR(force[a], -2.0 * g[a], 1e-4);
+        CHECK_NEAR(force[a], -2.0 * g[a], 1e-3); /* a gap of 1e-9 of the box */
         CHECK_NEAR(0.1 - at[a], -2.0 * g[a] / 4e5, 1e-7);
     }
     scene_end(&s);

@@ -280,6 +280,27 @@ void se3di_contacts_accept(se3di_model *model)
     c->next_count = 0;
 }
 
+static se3d_status renew_force(void *ctx, const se3di_encounter *e)
+{
+    se3di_body_contacts *contacts = ctx;
+    if (e->memory && !e->failed) {
+        se3di_body_contact now;
+        se3di_body_contact *record = &contacts->list[e->memory - contacts->list];
+        se3di_encounter_record(e, &now);
+        se3di_copy(now.force, record->force);
+        se3di_copy(now.torque, record->torque);
+    }
+    return SE3D_OK;
+}
+
+void se3di_contacts_renew_forces(se3di_model *model)
+{
+    if (model->contacts.count > 0) {
+        (void)se3di_contacts_visit(model, renew_force, &model->contacts);
+        sum_shapes(model);
+    }
+}
+
 se3d_status se3di_contacts_show(se3di_model *model, double t, se3di_error *error)
 {
     SE3DI_TRY(note_all(model, t, model->contact.overlap_limit, error));

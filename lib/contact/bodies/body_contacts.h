@@ -46,6 +46,10 @@ se3d_status se3di_contacts_prepare(se3di_model *model, double t, se3di_error *er
 /* The same however much they overlap: if poses are only looked at. */
 se3d_status se3di_contacts_prepare_any(se3di_model *model, double t, se3di_error *error);
 void se3di_contacts_accept(se3di_model *model);
+/* The forces of the contacts of the accepted state, which is the model's, as they are with what was
+ * remembered of it: those that the accelerations there are made of, which what was remembered
+ * before may have made others. Nothing else changes. */
+void se3di_contacts_renew_forces(se3di_model *model);
 /* Let readers see the contacts of the present state, which lies within a step that was accepted,
  * among the pairs of that step; what is remembered is kept until se3di_contacts_hide. On failure
  * nothing is shown, and there is nothing to hide. @return as se3di_contacts_prepare */
