@@ -3,6 +3,7 @@
 
 #include "contact/bodies/pace.h"
 #include "integrator/kink_step.h"
+#include "integrator/pulse_step.h"
 #include "integrator/state.h"
 #include "math/steps.h"
 
@@ -86,9 +87,12 @@ se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end)
     const se3di_adaptive_history before = *step->at;
     const double rest = t_end - before.time;
     const double paced = step->methods->pace(step, before.next);
-    const int is_cut = step->ends && rest > 0.0 && paced > rest;
-    step->t = is_cut ? t_end : before.time + paced;
-    const double most = is_cut ? rest : paced;
+    const int ends = step->ends && rest > 0.0 && paced > rest;
+    const double whole = ends ? rest : paced;
+    const double most =
+        se3di_pulse_step(&step->integration->equations->assembly, before.time, whole);
+    const int is_cut = ends && !(most < whole);
+    step->t = is_cut ? t_end : before.time + most;
     const double h = se3di_kink_step(step->integration, before.time, most, 2.0 * most, &step->t);
     if (step->integration->at_kink) {
         return SE3D_OK;

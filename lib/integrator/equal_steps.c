@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "contact/bodies/pace.h"
 #include "integrator/integrator.h"
+#include "integrator/pulse_step.h"
 #include "integrator/state.h"
 #include "math/steps.h"
 #include "math/vec3.h"
@@ -189,7 +190,8 @@ static se3d_status try_steps(trial *t)
     for (int k = 0; k < TRIALS_MAX && model->time < t->t_end; ++k) {
         const double spin = largest_spin(model);
         const double most = t->h * spin > TURN_MOST ? TURN_MOST / spin : t->h;
-        const double h = se3di_equal_steps_next(integration, most, t->t_end);
+        const double next = se3di_equal_steps_next(integration, most, t->t_end);
+        const double h = se3di_pulse_step(&integration->equations->assembly, model->time, next);
         const double wanted = t->wanted, longest = t->h;
         if (!(model->time + h > model->time)) {
             return SE3D_OK;
