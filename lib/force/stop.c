@@ -10,7 +10,8 @@
  *     v dv / (1 + d v/v0) = -(k/m) delta ddelta    from v0 to -e v0 gives
  *     d (1 + e) = ln((1 + d)/(1 - d e))
  *
- * state: [0] v0.  docs/theory/stop.md */
+ * state: [0] v0; [1], [2] the coordinate and its rate at the last accepted state.
+ * docs/theory/stop.md */
 #include "force/stop.h"
 #include "force/measure.h"
 #include "math/elementary.h"
@@ -83,6 +84,42 @@ static void accept_stop(const se3di_model *model, se3di_force *force)
     } else if (!(force->state[0] > 0.0)) { /* it begins inside */
         force->state[0] = fmax(fabs(measure.rate), SPEED_MIN);
     }
+    force->state[1] = measure.value;
+    force->state[2] = measure.rate;
+}
+
+/* Hermite's cubic from a to b at the part s of h, and its slope. */
+static double eval_cubic(const double a[2], const double b[2], double h, double s, double *slope)
+{
+    const double d = b[0] - a[0] - h * a[1], e = h * (b[1] - a[1]);
+    *slope = a[1] + s * (6.0 * d - 2.0 * e + 3.0 * s * (e - 2.0 * d)) / h;
+    return a[0] + s * (h * a[1] + s * (3.0 * d - e + s * (e - 2.0 * d)));
+}
+
+double se3di_stop_review(const se3di_model *model, const se3di_force *force, double h, double *part)
+{
+    const double begin[2] = {force->state[1], force->state[2]};
+    double inside = 1.0, outside = 0.0, slope = 0.0;
+    se3di_measure measure;
+    *part = 0.0;
+    (void)se3di_measure_force(model, force, 0, &measure);
+    if (fabs(penetration(force, begin[0])) > 0.0 ||
+        !(fabs(penetration(force, measure.value)) > 0.0)) {
+        return 0.0;
+    }
+    const double end[2] = {measure.value, measure.rate};
+    for (int k = 0; k < 60; ++k) {
+        const double middle = 0.5 * (outside + inside);
+        const double x = eval_cubic(begin, end, h, middle, &slope);
+        if (fabs(penetration(force, x)) > 0.0) {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    (void)eval_cubic(begin, end, h, inside, &slope);
+    *part = inside;
+    return fabs(fabs(slope) - fmax(force->state[0], SPEED_MIN));
 }
 
 const se3di_force_class se3di_force_class_stop = {

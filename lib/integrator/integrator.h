@@ -92,6 +92,7 @@ struct se3di_integration {
     se3di_integrator_settings settings;
     double *work;
     double error;        /* of the last step, relative to the tolerance, if it is controlled */
+    double fraction;     /* of a step that was refused, to where an impact begins; 0: none */
     se3di_newton newton; /* of implicit methods */
     se3di_saved before_trials; /* of steps whose length is chosen */
     int32_t is_paced;          /* contacts or stops have shortened the step under way */

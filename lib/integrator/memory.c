@@ -3,13 +3,15 @@
 
 #include "force/friction.h"
 #include "force/measure.h"
+#include "force/stop.h"
 #include "math/vec3.h"
 
 #include <math.h>
 #include <string.h>
 
 #define STANDING 1e-2 /* of the tolerance: slower is standing still */
-#define LANDING  0.5  /* of the tolerance: how far beyond the turn a step is aimed */
+#define LANDING                                                                                    \
+    0.5 /* of the tolerance: how far beyond the turn, or before the stop, a step is aimed */
 
 static se3di_force *element_of(const se3di_equations *equations, uint32_t k)
 {
@@ -174,6 +176,28 @@ static se3d_status change_modes(se3di_equations *equations, double t,
     return SE3D_OK;
 }
 
+double se3di_memory_review_stops(const se3di_model *model, double h, double tolerance,
+                                 const se3di_state_scale *scale, double *fraction)
+{
+    double worst = 0.0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force *force = &model->forces[k];
+        const int turns = force->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
+        double part = 0.0;
+        if (force->type != SE3DI_FORCE_STOP) {
+            continue;
+        }
+        const double gap = se3di_stop_review(model, force, h, &part);
+        const double error = gap / (tolerance * (turns ? scale->spin : scale->speed));
+        if (error > 1.0) {
+            part *= 1.0 - LANDING / error;
+            *fraction = *fraction > 0.0 ? fmin(*fraction, part) : part;
+        }
+        worst = error <= worst ? worst : error; /* NaN stays */
+    }
+    return worst;
+}
+
 se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_step *step,
                                 se3di_memory_end *end)
 {
@@ -184,6 +208,7 @@ se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_s
     uint32_t broken = 0;
     *end = (se3di_memory_end){0.0, 0.0, 0, 0};
     se3di_model_save_memory(model, memory);
+    end->error = se3di_memory_review_stops(model, h, tolerance, scale, &end->fraction);
     if (equations->friction.count > 0) {
         se3di_frictions_take_loads(model, lambda);
         if (equations->assembly.row_count > 0 && lambda != model->lambda) {

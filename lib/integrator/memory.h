@@ -24,6 +24,12 @@ typedef struct se3di_memory_step {
     double *work;   /* [unknowns] */
 } se3di_memory_step;
 
+/* What the speeds of impacts on stops that begin within a step of h differ from those that are
+ * remembered, relative to the scales and the tolerance; above 1, *fraction is the part of the step
+ * that ends where the first of them begins. */
+double se3di_memory_review_stops(const se3di_model *model, double h, double tolerance,
+                                 const se3di_state_scale *scale, double *fraction);
+
 /* At the end of a step, at the state of the model: let the force elements remember it. What slips
  * and has turned comes to a stand, or slips on the other way: what it went against its direction is
  * error, relative to the scales and the tolerance; and so is what an element that breaks loose

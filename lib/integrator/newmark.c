@@ -2,6 +2,7 @@
 #include "integrator/newmark.h"
 #include "integrator/adaptive.h"
 #include "integrator/kink_step.h"
+#include "integrator/memory.h"
 
 #include "assembly/energy.h"
 #include "assembly/loads.h"
@@ -404,6 +405,18 @@ static se3d_status conclude(se3di_newmark_step *step)
     return status;
 }
 
+/* An impact on a stop begins within the step, and not at the speed that the step begins with:
+ * integration->fraction is the part to where it begins. */
+static int misses_impact(const se3di_newmark_step *step)
+{
+    se3di_integration *integration = step->integration;
+    const se3di_state_scale *scale = &header_of(integration)->scale;
+    const double tolerance = fmax(integration->settings.tolerance, SE3DI_NEWMARK_REACH);
+    const double error = se3di_memory_review_stops(step->assembly->model, step->h, tolerance, scale,
+                                                   &integration->fraction);
+    return error > 1.0;
+}
+
 /* One step of h to t from the accepted state; on failure that is the model's. With an error, as
  * estimated, above `most` (0: any) it fails with STEP_SIZE. */
 static se3d_status step_to(se3di_integration *integration, double h, double t, double most)
@@ -418,9 +431,11 @@ static se3d_status step_to(se3di_integration *integration, double h, double t, d
     se3di_equations_save(equations);
     se3d_status status = se3di_newmark_solve(&step);
     integration->error = HUGE_VAL;
+    integration->fraction = 0.0;
     if (status >= 0) {
         integration->error = most > 0.0 ? estimate_error(&step) : 0.0;
-        const int is_refused = !(integration->error <= most);
+        const int misses = most > 0.0 && misses_impact(&step);
+        const int is_refused = misses || !(integration->error <= most);
         status = is_refused ? SE3D_ERR_STEP_SIZE : se3di_state_prepare(equations, t);
         integration->error = status < 0 && !is_refused ? HUGE_VAL : integration->error;
     }
@@ -549,6 +564,10 @@ static se3d_status try_step(se3di_adaptive *step, double h, double *error)
     s->most = get_most(s->tried, s->errors);
     const se3d_status status = step_to(step->integration, h, step->t, s->most);
     *error = status < 0 ? HUGE_VAL : 0.0;
+    step->fraction = step->integration->fraction;
+    if (status == SE3D_ERR_STEP_SIZE && step->fraction > 0.0) {
+        return SE3D_OK; /* it is tried again up to the impact */
+    }
     s->tried[0] = s->tried[1];
     s->errors[0] = s->errors[1];
     s->tried[1] = h;

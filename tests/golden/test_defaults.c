@@ -17,21 +17,21 @@ typedef struct table {
     int columns;
 } table;
 
-/* Examples that need another reference, and what is known to be worse: the tolerance is of motions
- * relative to the size of a model. Small displacements of a large one, and forces of stiff contacts
- * at a shift of that size, have larger errors relative to themselves. */
+/* Examples that need another reference: stiff ones, and contacts that slip and stick, whose springs
+ * are of the ends of steps: these must be short (`step`: the longest one, 0: any). At the defaults
+ * such steps are followed, but what a contact forgets within one is not estimated. */
 static const struct special {
     const char *name;
     int32_t method;
     int32_t reserved;
-    double tolerance, accuracy;
+    double tolerance, step, accuracy;
 } specials[] = {
-    {"", SE3D_METHOD_DOP853, 0, 1e-11, 1e-5},
-    {"quarter_car.yaml", SE3D_METHOD_DOP853, 0, 1e-9, 2e-4},
-    {"suspension_kerb.yaml", SE3D_METHOD_RADAU, 0, 1e-9, 1e-5},
-    {"incline.yaml", SE3D_METHOD_RADAU, 0, 1e-9, 3e-2},
-    {"landing_gear.yaml", SE3D_METHOD_DOP853, 0, 1e-9, 5e-3},
+    {"", SE3D_METHOD_DOP853, 0, 1e-11, 0.0, 1e-5},
+    {"suspension_kerb.yaml", SE3D_METHOD_RADAU, 0, 1e-9, 0.0, 1e-5},
+    {"incline.yaml", SE3D_METHOD_DOP853, 0, 1e-8, 3e-5, 5e-4},
 };
+
+static const struct special defaults = {"", SE3D_METHOD_AUTO, 0, 0.0, 0.0, 0.0};
 
 static const struct special *special_of(const char *name)
 {
@@ -67,8 +67,8 @@ static void sample(const se3d_model *model, table *t, int row)
     }
 }
 
-/* The analyses before the one at `index` as they are, that one with `method` and `tolerance`. */
-static void run_model(const char *path, size_t index, int32_t method, double tolerance, table *t)
+/* The analyses before the one at `index` as they are, that one as `how` says. */
+static void run_model(const char *path, size_t index, const struct special *how, table *t)
 {
     se3d_model *model = NULL;
     se3d_model_error error;
@@ -84,9 +84,9 @@ static void run_model(const char *path, size_t index, int32_t method, double tol
         }
         CHECK(!se3d_model_get_solver(model, k, &def));
         if (k == index) {
-            def.method = method;
-            def.tolerance = tolerance;
-            def.step = 0.0;
+            def.method = how->method;
+            def.tolerance = how->tolerance;
+            def.step = how->step;
         }
         CHECK(!se3d_solver_create(se3d_model_get_system(model), &def, &solver));
         begin = isnan(analysis.start) ? begin : analysis.start;
@@ -144,8 +144,8 @@ static int check_example(const char *path, const char *name)
         se3d_model_analysis analysis;
         CHECK(!se3d_model_get_analysis(model, k, &analysis));
         if (strcmp(analysis.type, "dynamics") == 0) {
-            run_model(path, k, SE3D_METHOD_AUTO, 0.0, &got);
-            run_model(path, k, special->method, special->tolerance, &truth);
+            run_model(path, k, &defaults, &got);
+            run_model(path, k, special, &truth);
             const double worst = compare(name, &got, &truth, special->accuracy);
             printf("%-30s %.1e\n", name, worst);
             CHECK(worst <= special->accuracy);
