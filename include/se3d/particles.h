@@ -238,7 +238,7 @@ static inline se3d_status se3d_particles_get_source_stats(const se3d_particles *
 SE3D_API se3d_status se3d_particles_remove_source(se3d_particles *particles, uint32_t source);
 
 /* A sink: particles whose centre is in the region, or behind the plane, are removed and counted as
- * lost, at the latest when they have moved by half of the skin. @since 0.1 */
+ * lost, at the latest when they have moved by the skin. @since 0.1 */
 typedef struct se3d_particles_sink_def {
     size_t struct_size;
     double lower[3], upper[3]; /* [m], without a plane */

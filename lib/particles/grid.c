@@ -10,6 +10,7 @@
 #include "particles/grid.h"
 #include "particles/flow.h"
 #include "particles/list.h"
+#include "particles/reach.h"
 #include "particles/wall.h"
 
 #include <math.h>
@@ -156,7 +157,7 @@ static int division(double length, double size, double most)
 /* Cells of all classes at `scale` times the least size. */
 static double divide(const se3di_particles *set, grid *g, double largest, double scale)
 {
-    double reach = 2.0 * largest + set->skin;
+    double reach = 2.0 * (largest + set->stretch);
     g->slabs = division(g->extent[2], reach, SE3DI_PARTICLE_SLABS_MAX);
     if (g->periodic[2]) { /* all axes are */
         g->slabs = g->slabs < 4 ? 1 : g->slabs - g->slabs % 2;
@@ -271,7 +272,8 @@ typedef struct search {
 static void append(se3di_particles *set, const search *q, uint32_t begin, uint32_t end)
 {
     const se3di_particle *gi = &set->particles[q->i];
-    double border = gi->radius + set->skin;
+    const double *stretch = se3di_particles_reach(set);
+    double border = gi->radius + stretch[q->i];
     int wraps = q->g->periodic[0] || q->g->periodic[1] || q->g->periodic[2];
     for (uint32_t j = begin; j < end; ++j) {
         const se3di_particle *gj = &set->particles[j];
@@ -279,7 +281,7 @@ static void append(se3di_particles *set, const search *q, uint32_t begin, uint32
         if (wraps) {
             se3di_particles_wrap(set, d);
         }
-        double reach = border + gj->radius;
+        double reach = border + gj->radius + stretch[j];
         if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach) {
             set->list[set->list_count++] = j;
         }
@@ -374,7 +376,7 @@ static se3d_status search_particle(se3di_particles *set, const grid *g, int s, u
         if (q.c->radius <= 0.0) {
             continue;
         }
-        q.reach = particle->radius + q.c->radius + set->skin;
+        q.reach = particle->radius + q.c->radius + se3di_particles_reach(set)[i] + set->stretch;
         SE3DI_TRY(search_slab(set, &q, s, s, i + 1));
         if (s + 1 < g->slabs) {
             SE3DI_TRY(search_slab(set, &q, s + 1, s + 1, 0));
@@ -423,6 +425,7 @@ static se3d_status list_all(se3di_particles *set, const grid *g)
 {
     const double least = 1e-3 * set->skin;
     for (;;) {
+        se3di_particles_set_reach(set);
         se3d_status status = set->count > 0 ? search_all(set, g) : SE3D_OK;
         if (status == SE3D_OK) {
             status = se3di_particles_list_walls(set);
@@ -444,15 +447,18 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
     set->slab_count = 0;
     if (set->count > 0) {
         size_t cells = 0;
+        double room = HUGE_VAL; /* for the reaches of two */
         choose_axes(set, &g);
         for (int k = 0; k < 3; ++k) { /* no pair may meet twice */
             if (g.periodic[k] && g.extent[k] < SE3DI_PERIOD_LEAST * largest) {
                 return SE3D_ERR_UNSUPPORTED;
             }
             if (g.periodic[k]) {
-                set->skin = fmin(set->skin, 0.4999 * g.extent[k] - 2.0 * largest);
+                room = fmin(room, 0.4999 * g.extent[k] - 2.0 * largest);
             }
         }
+        set->skin = fmin(set->skin, room);
+        se3di_particles_stretch(set, room);
         SE3DI_TRY(divide_all(set, &g, largest, &cells));
         sort(set, &g, largest, cells);
     }
@@ -465,7 +471,6 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
         memcpy(wall->old_x, wall->pose.x, sizeof wall->old_x);
         memcpy(wall->old_R, wall->pose.R, sizeof wall->old_R);
     }
-    set->moved = 0.0;
     ++set->rebuilds;
     return se3di_particles_activate(set);
 }

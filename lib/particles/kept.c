@@ -23,7 +23,7 @@ typedef struct part {
     size_t bytes;
 } part;
 
-enum { PARTS_SLOW = 9, PARTS = 19 };
+enum { PARTS_SLOW = 11, PARTS = 21 };
 
 /* The arrays in use of a set: those that change with the lists, then the others. */
 static void list_parts(const se3di_particles *set, part parts[PARTS])
@@ -38,6 +38,8 @@ static void list_parts(const se3di_particles *set, part parts[PARTS])
         {set->near_walls, set->near_count * sizeof *set->near_walls},
         {set->faces, set->face_count * sizeof *set->faces},
         {set->origin, 3 * set->count * sizeof *set->origin},
+        {se3di_particles_reach(set), set->count * sizeof *set->origin},
+        {se3di_particles_wear(set), set->count * sizeof *set->origin},
         {set->index_of, set->id_count * sizeof *set->index_of},
         {set->mesh_old, old * sizeof *set->mesh_old},
         {set->carry_next, carry * sizeof *set->carry_next},
@@ -83,7 +85,7 @@ static size_t room_of(const se3di_particles *set)
 {
     return sizeof(uint32_t) * (set->list_capacity + set->first_capacity + set->face_capacity +
                                set->index_capacity + set->carry_next_capacity) +
-           sizeof(double) * (3 * set->capacity + set->carry_roll_capacity) +
+           sizeof(double) * (SE3DI_ORIGIN_SIZE * set->capacity + set->carry_roll_capacity) +
            set->near_capacity * sizeof *set->near_walls + set->particle_memory.bytes +
            set->spin_memory.bytes + set->load_memory.bytes + set->block_memory.bytes +
            set->roll_memory.bytes +

@@ -6,18 +6,15 @@
  * no valid lists. If memory fails they stay there, and nothing is lost. */
 #include "particles/list.h"
 
-#include "math/vec3.h"
 #include "particles/grid.h"
 #include "particles/mesh.h"
+#include "particles/reach.h"
 #include "particles/wall.h"
 
-#include <math.h>
 #include <string.h>
 
-/* Active pairs are expected to last about this many steps. */
-#define NEAR_STEPS 24.0
-/* ... and are wider than touching by this part of the skin. */
-#define NEAR_LEAST 0.02
+/* Of small reaches, if memory is missing; less is nothing. */
+#define SCALE_LEAST 1e-3
 
 se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, size_t *capacity,
                                  size_t needed)
@@ -264,6 +261,7 @@ static uint32_t blocks_of(size_t pairs)
 /* Returns how many blocks the pairs of a slab need, and adds how many there are. */
 static uint32_t mark_pairs(se3di_particles *set, const se3di_slab *slab, size_t *pairs)
 {
+    const double *near = se3di_particles_wear(set);
     int periodic = 0;
     size_t count = 0;
     for (int a = 0; a < 3; ++a) {
@@ -278,7 +276,7 @@ static uint32_t mark_pairs(se3di_particles *set, const se3di_slab *slab, size_t 
             if (periodic) {
                 se3di_particles_wrap(set, d);
             }
-            double reach = gi->radius + gj->radius + set->near;
+            double reach = gi->radius + gj->radius + near[i] + near[j];
             int active = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach;
             set->list[k] = active ? j | SE3DI_LIST_ACTIVE : j;
             count += (size_t)active;
@@ -290,7 +288,7 @@ static uint32_t mark_pairs(se3di_particles *set, const se3di_slab *slab, size_t 
 
 static int is_near_wall(const se3di_particles *set, const se3di_wall *wall, uint32_t i)
 {
-    const double reach = set->particles[i].radius + set->near;
+    const double reach = set->particles[i].radius + se3di_particles_wear(set)[i] + wall->near_reach;
     double x[3];
     se3di_particles_image(set, wall, set->particles[i].x, reach, x);
     return se3di_wall_distance(wall, x) < reach;
@@ -375,8 +373,8 @@ static size_t place_slabs(se3di_particles *set, size_t *pairs)
  * that this cannot fail; fewer if memory is missing. */
 static se3d_status choose_active(se3di_particles *set)
 {
-    const double least = 1e-3 * set->near;
-    for (;;) {
+    for (double scale = 1.0;; scale = scale > SCALE_LEAST ? 0.5 * scale : 0.0) {
+        se3di_particles_set_wear(set, scale);
         se3di_particles_each_slab(set, mark_slab);
         size_t pairs;
         size_t count = place_slabs(set, &pairs);
@@ -388,27 +386,20 @@ static se3d_status choose_active(se3di_particles *set)
             status = se3di_particles_mesh_activate(set);
         }
         set->block_count = status == SE3D_OK ? (uint32_t)count : 0;
-        if (status == SE3D_OK || !(set->near > 0.0)) {
+        if (status == SE3D_OK || !(scale > 0.0)) {
             return status;
         }
         set->starved = 1;
-        set->near = set->near > least ? 0.5 * set->near : 0.0;
     }
 }
 
 se3d_status se3di_particles_activate(se3di_particles *set)
 {
-    set->near = fmin(set->skin, fmax(NEAR_LEAST * set->skin, 2.0 * NEAR_STEPS * set->pace));
     SE3DI_TRY(choose_active(set));
     chain(set);
     se3di_particles_each_slab(set, fill_slab);
     set->mesh_old_count = 0;
-    for (size_t k = 0; k < set->wall_count; ++k) {
-        se3di_wall *wall = &set->walls[k];
-        se3di_copy(wall->pose.x, wall->near_x);
-        memcpy(wall->near_R, wall->pose.R, sizeof wall->near_R);
-    }
-    set->moved_near = set->moved;
+    se3di_particles_begin_wear(set);
     set->carry_count = 0;
     set->list_valid = 1;
     if (set->count > 0) {

@@ -215,7 +215,8 @@ static se3d_status push(se3di_particles *set, const se3di_near_wall *near)
 static int is_active(const se3di_particles *set, const se3di_near_wall *near)
 {
     const se3di_mesh_pair pair = {.i = near->i & ~SE3DI_LIST_ACTIVE, .wall = near->wall};
-    const double reach = set->particles[pair.i].radius + set->near;
+    const double reach = set->particles[pair.i].radius + se3di_particles_wear(set)[pair.i] +
+                         set->walls[pair.wall].near_reach;
     double local[3];
     locate(set, &pair, reach, local);
     return se3di_mesh_is_near(&set->walls[pair.wall].shape, set->faces + near->face_begin,

@@ -76,7 +76,7 @@ void se3di_particles_destroy(se3di_particles *set)
     aligned_free(a, &set->load_memory);
     aligned_free(a, &set->block_memory);
     aligned_free(a, &set->roll_memory);
-    se3di_free(a, set->origin, 3 * set->capacity, sizeof(double));
+    se3di_free(a, set->origin, SE3DI_ORIGIN_SIZE * set->capacity, sizeof(double));
     se3di_free(a, set->order, set->capacity, sizeof *set->order);
     se3di_free(a, set->key, set->capacity, sizeof *set->key);
     se3di_free(a, set->index_of, set->index_capacity, sizeof *set->index_of);
@@ -114,7 +114,7 @@ size_t se3di_particles_memory(const se3di_particles *set)
 {
     return set->particle_memory.bytes + set->spin_memory.bytes + set->load_memory.bytes +
            set->block_memory.bytes + set->roll_memory.bytes +
-           set->capacity * (3 * sizeof(double) + 2 * sizeof(uint32_t)) +
+           set->capacity * (SE3DI_ORIGIN_SIZE * sizeof(double) + 2 * sizeof(uint32_t)) +
            sizeof(uint32_t) * (set->index_capacity + set->cell_capacity + set->first_capacity +
                                set->list_capacity + set->face_capacity + set->carry_next_capacity) +
            set->near_capacity * sizeof *set->near_walls +
@@ -172,23 +172,24 @@ static se3d_status reserve_arrays(se3di_particles *set, size_t count)
     void *origin = NULL;
     void *order = NULL;
     void *key = NULL;
-    int failed = resize(a, &origin, NULL, 0, 3 * count, sizeof(double)) < 0 ||
+    int failed = resize(a, &origin, NULL, 0, SE3DI_ORIGIN_SIZE * count, sizeof(double)) < 0 ||
                  resize(a, &order, NULL, 0, count, sizeof(uint32_t)) < 0 ||
                  resize(a, &key, NULL, 0, count, sizeof(uint32_t)) < 0 ||
                  reserve_records(set, count) < 0;
     if (failed) {
-        se3di_free(a, origin, 3 * count, sizeof(double));
+        se3di_free(a, origin, SE3DI_ORIGIN_SIZE * count, sizeof(double));
         se3di_free(a, order, count, sizeof(uint32_t));
         se3di_free(a, key, count, sizeof(uint32_t));
         return SE3D_ERR_NO_MEMORY;
     }
-    se3di_free(a, set->origin, 3 * set->capacity, sizeof(double));
+    se3di_free(a, set->origin, SE3DI_ORIGIN_SIZE * set->capacity, sizeof(double));
     se3di_free(a, set->order, set->capacity, sizeof(uint32_t));
     se3di_free(a, set->key, set->capacity, sizeof(uint32_t));
     set->origin = origin;
     set->order = order;
     set->key = key;
     set->capacity = count;
+    memset(se3di_particles_wear(set), 0, count * sizeof(double)); /* motion reads it at once */
     set_dummy(set);
     return SE3D_OK;
 }
@@ -263,7 +264,7 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         const void *from;
         size_t count, size;
     } parts[] = {
-        {&to->origin, from->origin, 3 * from->capacity, sizeof(double)},
+        {&to->origin, from->origin, SE3DI_ORIGIN_SIZE * from->capacity, sizeof(double)},
         {&to->order, from->order, from->capacity, sizeof(uint32_t)},
         {&to->key, from->key, from->capacity, sizeof(uint32_t)},
         {&to->index_of, from->index_of, from->index_capacity, sizeof(uint32_t)},

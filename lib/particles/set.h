@@ -6,10 +6,10 @@
  * slabs, may be worked on at the same time: every particle receives its forces in the same order
  * for any number of threads.
  *
- * Two lists: `list`, per particle the partners nearer than `skin`, rebuilt when something may have
- * moved by half of it; and blocks of active pairs, those nearer than `near` (a small part of
- * the skin, chosen by the speed), which carry the history of the tangential springs beside the
- * indices, and are what the force kernels read. */
+ * Two lists: `list`, per particle the partners nearer than the reaches of the two together; and
+ * blocks of active pairs, those nearer than their small reaches, which carry the history of the
+ * tangential springs beside the indices, and are what the force kernels read. A reach is how far a
+ * particle (a wall) may move before the list or the blocks are made anew: more for fast ones. */
 #ifndef SE3DI_PARTICLES_SET_H
 #define SE3DI_PARTICLES_SET_H
 
@@ -25,6 +25,7 @@
 #define SE3DI_PARTICLE_CLASSES   12 /* size classes: each twice the radius of the one before */
 #define SE3DI_PARTICLE_SLABS_MAX 64
 #define SE3DI_PERIOD_LEAST       4.04 /* of the largest radius: least length along an axis */
+#define SE3DI_ORIGIN_SIZE        5
 
 /* One cache line: what nearly every pass reads. */
 typedef struct se3di_particle {
@@ -80,11 +81,13 @@ typedef struct se3di_wall {
     uint32_t material; /* in the set's table */
     int32_t loose;     /* nothing but forces moves the body: it gives way where it is hit */
     se3di_shape_pose pose;
-    double inverse_mass;       /* of a body that gives way; 0: it moves as it is told */
-    double turn[9];            /* its inverse inertia, ground frame */
-    double old_x[3], old_R[9]; /* pose where the list was built */
-    double near_x[3], near_R[9];
-    double force[3], torque[3]; /* on the body, about its centre of mass, last evaluation */
+    double inverse_mass;         /* of a body that gives way; 0: it moves as it is told */
+    double turn[9];              /* its inverse inertia, ground frame */
+    double old_x[3], old_R[9];   /* pose where the list was built, */
+    double near_x[3], near_R[9]; /* and the active blocks */
+    double reach, near_reach;    /* how far it may move before they are made anew, */
+    double pace;                 /* and how far it is expected to move in a step */
+    double force[3], torque[3];  /* on the body, about its centre of mass, last evaluation */
 } se3di_wall;
 
 /* The place where a particle touches a mesh. */
@@ -138,7 +141,8 @@ typedef struct se3di_slab {
     size_t moved;                  /* springs that hold something */
     uint32_t mesh_begin, mesh_end; /* pairs with meshes */
     double overlap;                /* largest excess over what is allowed */
-    double fastest;                /* squared speed after the last motion */
+    double fastest;                /* squared speed after the last motion, */
+    double hasty;                  /* the same over the squared small reach */
     uint64_t touching;
     se3di_law_failure failure;
     int32_t begun;  /* in this sweep somebody evaluates its forces, */
@@ -247,14 +251,16 @@ typedef struct se3di_particles {
     se3di_particle *particles;
     se3di_spin *spins;
     se3di_load *loads;  /* hold nothing while list_valid is 0 */
-    double *origin;     /* [3 * capacity] positions where the list was built */
+    double *origin;     /* [SE3DI_ORIGIN_SIZE * capacity] positions where the list was built, then
+                         * se3di_particles_reach(), se3di_particles_wear() */
     uint32_t *index_of; /* id -> index, SE3DI_NO_INDEX: gone */
     size_t id_count, index_capacity;
     uint32_t *order; /* [capacity] scratch of sorting */
     uint32_t *key;   /* [capacity] */
 
     /* grid and lists */
-    double skin, near;
+    double skin;            /* reach of two slow particles together, and the most of one */
+    double stretch;         /* largest reach of one */
     double low[3], high[3]; /* the box of all centres where the list was built */
     uint32_t *cells;        /* first particle of each cell, over all slabs and classes */
     size_t cell_capacity;
@@ -286,9 +292,11 @@ typedef struct se3di_particles {
     size_t wall_sum_capacity;
 
     /* motion since the lists were built */
-    double pace;       /* largest distance of the last drift */
-    double moved;      /* bound on what a particle moved since the list was built */
-    double moved_near; /* the same at the building of the active blocks */
+    double pace;         /* largest distance of the last drift, */
+    double drift;        /* how long it was [s] */
+    double worn;         /* part of its small reach that a particle may have moved since the active
+                          * blocks were made */
+    uint64_t steps_near; /* steps when they were made */
 
     /* what is told */
     uint64_t steps, rebuilds, refreshes, lost;
@@ -373,6 +381,19 @@ static inline int32_t se3di_particles_team(const se3di_particles *set)
 static inline const se3di_kernels *se3di_particles_get_kernels(const se3di_particles *set)
 {
     return set->law == SE3DI_LAW_CALLBACK ? se3di_particle_kernels_callback() : set->kernels;
+}
+
+/* [count] How far each particle may move before the list is built anew. */
+static inline double *se3di_particles_reach(const se3di_particles *set)
+{
+    return set->origin + 3 * set->capacity;
+}
+
+/* [count] The inverse square of the same for the active blocks; while they are being made, the
+ * distance itself. */
+static inline double *se3di_particles_wear(const se3di_particles *set)
+{
+    return set->origin + 4 * set->capacity;
 }
 
 /* Life time and editing: all-or-nothing; NO_MEMORY is the only failure. */

@@ -10,6 +10,7 @@
 #include "particles/flow.h"
 #include "particles/grid.h"
 #include "particles/list.h"
+#include "particles/reach.h"
 #include "particles/sweep.h"
 #include "particles/sync.h"
 #include "particles/wall.h"
@@ -45,79 +46,14 @@ void se3di_particles_free_walls(se3di_particles *set, const se3di_model *model)
     }
 }
 
-/* The farthest that a wall's surface is from where it was, where particles may touch it: of a plane
- * at the corners of the box of all particles, of others at most |shift| + angle * bound. */
-static double wall_shift(const se3di_particles *set, const se3di_wall *wall, const double x[3],
-                         const double R[9])
-{
-    const se3di_shape_pose *now = &wall->pose;
-    if (memcmp(x, now->x, sizeof now->x) == 0 && memcmp(R, now->R, sizeof now->R) == 0) {
-        return 0.0;
-    }
-    double shift[3];
-    se3di_sub(now->x, x, shift);
-    if (!se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE)) {
-        double turn = 0.0;
-        for (int k = 0; k < 9; ++k) {
-            turn += (now->R[k] - R[k]) * (now->R[k] - R[k]);
-        }
-        return se3di_norm(shift) + sqrt(0.5 * turn) * wall->shape.bound;
-    }
-    double most = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-        double change = 0.0;
-        for (int a = 0; a < 3; ++a) {
-            double p = corner >> a & 1 ? set->high[a] + set->skin : set->low[a] - set->skin;
-            change += now->R[3 * a + 2] * (p - now->x[a]) - R[3 * a + 2] * (p - x[a]);
-        }
-        most = fmax(most, fabs(change));
-    }
-    return most;
-}
-
-/* How much of the skin (of near) may have been used up: two particles, or one and a wall. */
-static void motion(const se3di_particles *set, double *since_list, double *since_near)
-{
-    double near = set->moved - set->moved_near;
-    *since_list = 2.0 * set->moved;
-    *since_near = 2.0 * near;
-    for (size_t k = 0; k < set->wall_count; ++k) {
-        const se3di_wall *wall = &set->walls[k];
-        double far = wall_shift(set, wall, wall->old_x, wall->old_R);
-        double close = wall_shift(set, wall, wall->near_x, wall->near_R);
-        *since_list = se3di_larger(*since_list, set->moved + far);
-        *since_near = se3di_larger(*since_near, near + close);
-    }
-}
-
-/* The bound on the motion, replaced by the motion itself. */
-static void measure_motion(se3di_particles *set)
-{
-    double most = 0.0;
-    for (size_t k = 0; k < set->count; ++k) {
-        const double *x = set->particles[k].x;
-        const double *o = set->origin + 3 * k;
-        double d[3] = {x[0] - o[0], x[1] - o[1], x[2] - o[2]};
-        most = se3di_larger(most, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    }
-    set->moved = sqrt(most);
-}
-
 /* Lists that hold every pair that touches. */
 static se3d_status update_lists(se3di_particles *set)
 {
-    if (!set->list_valid) {
-        return se3di_particles_rebuild(set);
+    if (set->list_valid && se3di_particles_blocks_hold(set)) {
+        return SE3D_OK;
     }
-    double since_list, since_near;
-    motion(set, &since_list, &since_near);
-    if (!(since_list < set->skin)) {
-        measure_motion(set);
-        motion(set, &since_list, &since_near);
-        return since_list < 0.8 * set->skin ? se3di_particles_refresh(set)
-                                            : se3di_particles_rebuild(set);
-    }
-    return since_near < set->near ? SE3D_OK : se3di_particles_refresh(set);
+    return set->list_valid && se3di_particles_list_holds(set) ? se3di_particles_refresh(set)
+                                                              : se3di_particles_rebuild(set);
 }
 
 /* Of particle i with particle j, or with a wall. */
@@ -262,7 +198,7 @@ static se3di_force_task prepare(se3di_particles *set, double h)
  * missing. STEP_SIZE: an overlap is too large, but all is done. */
 static se3d_status evaluate(se3di_particles *set, double h, se3di_motion *motion)
 {
-    if (!isfinite(set->moved)) {
+    if (!isfinite(set->worn)) {
         SE3DI_TRY(find_not_finite(set));
     }
     set->starved = 0;

@@ -27,14 +27,25 @@ double se3di_larger(double a, double b)
     return b <= a || a != a ? a : b;
 }
 
-/* Returns the largest squared speed of particles [begin, end), NaN if one is NaN. `kicks` is a
- * constant at every call: the loop over it is unrolled. */
-static inline double move_kicked(se3di_particles *set, size_t begin, size_t end, int kicks,
-                                 const se3di_motion *motion)
+/* The largest of some particles; NaN if one is NaN. */
+typedef struct haste {
+    double fastest; /* squared speed */
+    double hasty;   /* the same over the squared small reach */
+} haste;
+
+static haste hastier(haste a, haste b)
+{
+    return (haste){se3di_larger(a.fastest, b.fastest), se3di_larger(a.hasty, b.hasty)};
+}
+
+/* Of particles [begin, end). `kicks` is a constant at every call: the loop over it is unrolled. */
+static inline haste move_kicked(se3di_particles *set, size_t begin, size_t end, int kicks,
+                                const se3di_motion *motion)
 {
     const double half = 0.5 * motion->h, drift = motion->drift;
     const int drifts = drift != 0.0;
-    double fastest = 0.0;
+    const double *wear = se3di_particles_wear(set);
+    haste most = {0.0, 0.0};
     for (size_t k = begin; k < end; ++k) {
         se3di_particle *particle = &set->particles[k];
         se3di_spin *spin = &set->spins[k];
@@ -55,15 +66,17 @@ static inline double move_kicked(se3di_particles *set, size_t begin, size_t end,
             v2 += v * v;
             particle->x[a] += drift * v;
         }
-        fastest = v2 <= fastest ? fastest : v2; /* NaN stays */
+        const double worn = v2 * wear[k];
+        most.fastest = v2 <= most.fastest ? most.fastest : v2; /* NaN stays */
+        most.hasty = worn <= most.hasty ? most.hasty : worn;
         if (drifts) {
             *load = (se3di_load){{0.0}, {0.0}};
         }
     }
-    return fastest;
+    return most;
 }
 
-static double move_range(se3di_particles *set, size_t begin, size_t end, const se3di_motion *motion)
+static haste move_range(se3di_particles *set, size_t begin, size_t end, const se3di_motion *motion)
 {
     switch (motion->kicks) {
     case 0:
@@ -76,11 +89,12 @@ static double move_range(se3di_particles *set, size_t begin, size_t end, const s
 }
 
 /* What the lists and forces must know of a drift. */
-static void note_motion(se3di_particles *set, const se3di_motion *motion, double fastest)
+static void note_motion(se3di_particles *set, const se3di_motion *motion, haste most)
 {
     if (motion->drift != 0.0) {
-        set->pace = sqrt(fastest) * fabs(motion->drift);
-        set->moved += set->pace;
+        set->drift = fabs(motion->drift);
+        set->pace = sqrt(most.fastest) * set->drift;
+        set->worn += sqrt(most.hasty) * set->drift;
         set->force_valid = 0;
     }
 }
@@ -89,7 +103,7 @@ static void note_motion(se3di_particles *set, const se3di_motion *motion, double
 
 static void pass(se3di_particles *set, const se3di_motion *motion)
 {
-    double fastest_of[PASS_PARTS];
+    haste most_of[PASS_PARTS];
     size_t part = set->count / PASS_PARTS + 1;
 #ifdef _OPENMP
     const int32_t team = se3di_particles_team(set);
@@ -98,13 +112,13 @@ static void pass(se3di_particles *set, const se3di_motion *motion)
     for (size_t c = 0; c < PASS_PARTS; ++c) {
         size_t begin = c * part < set->count ? c * part : set->count;
         size_t end = begin + part < set->count ? begin + part : set->count;
-        fastest_of[c] = move_range(set, begin, end, motion);
+        most_of[c] = move_range(set, begin, end, motion);
     }
-    double fastest = 0.0;
+    haste most = {0.0, 0.0};
     for (size_t c = 0; c < PASS_PARTS; ++c) {
-        fastest = se3di_larger(fastest, fastest_of[c]);
+        most = hastier(most, most_of[c]);
     }
-    note_motion(set, motion, fastest);
+    note_motion(set, motion, most);
 }
 
 void se3di_particles_kick(se3di_particles *set, double h)
@@ -230,7 +244,9 @@ static void move(const sweep *w, uint32_t s)
     forces(w, s);
     await(set, before);
     await(set, s);
-    slab->fastest = move_range(set, slab->begin, slab->end, w->motion);
+    const haste most = move_range(set, slab->begin, slab->end, w->motion);
+    slab->fastest = most.fastest;
+    slab->hasty = most.hasty;
 }
 
 /* What others wait for comes first, what waits for others last. */
@@ -333,9 +349,9 @@ void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
     } else {
         sweep_share(&w, 0, 1);
     }
-    double fastest = 0.0;
+    haste most = {0.0, 0.0};
     for (uint32_t s = 0; s < set->slab_count; ++s) {
-        fastest = se3di_larger(fastest, set->slabs[s].fastest);
+        most = hastier(most, (haste){set->slabs[s].fastest, set->slabs[s].hasty});
     }
-    note_motion(set, motion, fastest);
+    note_motion(set, motion, most);
 }

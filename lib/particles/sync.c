@@ -157,6 +157,10 @@ static size_t fill_walls(const se3di_particles *set, const se3di_model *model, s
         wall->body = se3di_slots_handle(&model->body_slots, shape->body);
         wall->loose = is_loose(model, shape->body);
         se3di_shape_place(shape, &model->frames[shape->body], &wall->pose);
+        if (old == SE3DI_NO_INDEX) { /* at rest so far */
+            memcpy(wall->near_x, wall->pose.x, sizeof wall->near_x);
+            memcpy(wall->near_R, wall->pose.R, sizeof wall->near_R);
+        }
         se3di_handle material =
             se3di_slots_handle(&model->material_slots, (uint32_t)shape->material);
         for (size_t s = 0; s < set->stuff_count; ++s) {

@@ -134,7 +134,7 @@ static se3d_status list_wall(se3di_particles *set, uint32_t i, uint32_t w)
 {
     const se3di_particle *g = &set->particles[i];
     const se3di_wall *wall = &set->walls[w];
-    const double reach = g->radius + set->skin;
+    const double reach = g->radius + se3di_particles_reach(set)[i] + wall->reach;
     const size_t face_begin = set->face_count;
     double x[3];
     se3di_particles_image(set, wall, g->x, reach, x);
@@ -163,7 +163,7 @@ static se3d_status list_wall(se3di_particles *set, uint32_t i, uint32_t w)
  * from a wall is known for many at a time. */
 typedef struct parcel {
     double middle[3], half[3];
-    double radius; /* the largest */
+    double radius; /* the largest, with its reach */
 } parcel;
 
 static parcel enclose(const se3di_particles *set, uint32_t begin, uint32_t end)
@@ -178,7 +178,8 @@ static parcel enclose(const se3di_particles *set, uint32_t begin, uint32_t end)
             low[a] = g->x[a] < low[a] ? g->x[a] : low[a];
             high[a] = g->x[a] > high[a] ? g->x[a] : high[a];
         }
-        box.radius = g->radius > box.radius ? g->radius : box.radius;
+        const double radius = g->radius + se3di_particles_reach(set)[i];
+        box.radius = radius > box.radius ? radius : box.radius;
     }
     for (int a = 0; a < 3; ++a) {
         box.middle[a] = 0.5 * (low[a] + high[a]);
@@ -187,16 +188,16 @@ static parcel enclose(const se3di_particles *set, uint32_t begin, uint32_t end)
     return box;
 }
 
-/* Whether no particle of the parcel is nearer to the wall than the skin, by its box; or, but for
+/* Whether no particle of the parcel is nearer to the wall than the reaches, by its box; or, but for
  * planes, by the sphere around that. */
-static int is_clear(const se3di_wall *wall, const parcel *box, double skin)
+static int is_clear(const se3di_wall *wall, const parcel *box)
 {
     double extent = se3di_norm(box->half);
     if (se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE)) {
         const double *R = wall->pose.R;
         extent = fabs(R[2]) * box->half[0] + fabs(R[5]) * box->half[1] + fabs(R[8]) * box->half[2];
     }
-    const double reach = (extent + box->radius + skin) * (1.0 + ROUNDING);
+    const double reach = (extent + box->radius + wall->reach) * (1.0 + ROUNDING);
     if (least_distance(wall, box->middle) >= reach) {
         return 1;
     }
@@ -222,7 +223,7 @@ static se3d_status list_slab(se3di_particles *set, const se3di_slab *slab)
         const se3di_wall *wall = &set->walls[w];
         const int images = periodic && !se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE);
         for (uint32_t p = 0; p * size < count; ++p) {
-            if (!images && is_clear(wall, &parcels[p], set->skin)) {
+            if (!images && is_clear(wall, &parcels[p])) {
                 continue;
             }
             for (uint32_t i = p * size; i < (p + 1) * size && i < count; ++i) {

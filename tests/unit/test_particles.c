@@ -68,9 +68,10 @@ static void restitution_and_damping_are_inverse(void)
     CHECK_NEAR(se3di_restitution_hooke(1.0), exp(-2.0), 1e-12);
 }
 
-/* Every pair nearer than the skin is in the list, once, and owned by a slab as it must be. */
+/* Every pair nearer than its reaches is in the list, once, and owned by a slab as it must be. */
 static void check_list(const se3di_particles *set)
 {
+    const double *stretch = se3di_particles_reach(set);
     size_t expected = 0, found = 0;
     for (size_t i = 0; i < set->count; ++i) {
         for (size_t j = i + 1; j < set->count; ++j) {
@@ -79,7 +80,8 @@ static void check_list(const se3di_particles *set)
                 d[a] = set->particles[i].x[a] - set->particles[j].x[a];
             }
             se3di_particles_wrap(set, d);
-            double reach = set->particles[i].radius + set->particles[j].radius + set->skin;
+            const double reach =
+                set->particles[i].radius + set->particles[j].radius + stretch[i] + stretch[j];
             expected += d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach;
         }
     }
