@@ -73,9 +73,11 @@ double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j)
     return se3di_norm(d) - s[0]->bound - s[1]->bound;
 }
 
+/* Never of one body: the planes of a drum would all be. */
 static int near(const se3di_model *model, uint32_t i, uint32_t j, double margin)
 {
-    return se3di_shapes_gap_bound(model, i, j) < margin;
+    return model->shapes[i].body != model->shapes[j].body &&
+           se3di_shapes_gap_bound(model, i, j) < margin;
 }
 
 /* The list of pairs covers the present poses, with a share of the margin left. */

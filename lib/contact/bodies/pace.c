@@ -161,7 +161,8 @@ static int meet(const pace *p, uint32_t i, uint32_t j, double h, double *gap, do
     const se3di_model *model = p->model;
     const se3di_shape *s[2] = {&model->shapes[i], &model->shapes[j]};
     double x[2][3], v[2][3], n[3];
-    if (model->bodies[s[0]->body].fixed && model->bodies[s[1]->body].fixed) {
+    if (s[0]->body == s[1]->body ||
+        (model->bodies[s[0]->body].fixed && model->bodies[s[1]->body].fixed)) {
         return 0;
     }
     double turning = turning_speed(model, i, x[0], v[0]) + turning_speed(model, j, x[1], v[1]);
