@@ -29,6 +29,12 @@ typedef struct mesh_node {
     uint32_t right, reserved;
 } mesh_node;
 
+/* A triangle a, b, c as the foot of a perpendicular needs it, behind the nodes in shape->tree. */
+typedef struct facet {
+    double a[3], normal[3];  /* of unit length */
+    double to_b[3], to_c[3]; /* dot products with x - a: parts of b - a and c - a in its foot */
+} facet;
+
 typedef struct builder {
     const double *vertices;
     uint32_t *triangles;
@@ -129,6 +135,32 @@ static int has_area(const double *vertices, const uint32_t *triangle)
     return se3di_dot(n, n) > 0.0;
 }
 
+static facet *facets_of(const se3di_shape *s)
+{
+    char *end = (char *)s->tree + s->tree_bytes;
+    return (facet *)(void *)end - s->triangle_count;
+}
+
+static void fill_facets(se3di_shape *s)
+{
+    for (size_t k = 0; k < s->triangle_count; ++k) {
+        const double *corner[3];
+        double ab[3], ac[3], normal[3];
+        facet *f = facets_of(s) + k;
+        se3di_triangle_corners(s, k, corner);
+        se3di_copy(corner[0], f->a);
+        se3di_sub(corner[1], corner[0], ab);
+        se3di_sub(corner[2], corner[0], ac);
+        se3di_cross(ab, ac, normal);
+        const double square = se3di_dot(normal, normal);
+        se3di_scale(1.0 / sqrt(square), normal, f->normal);
+        se3di_cross(ac, normal, f->to_b);
+        se3di_cross(normal, ab, f->to_c);
+        se3di_scale(1.0 / square, f->to_b, f->to_b);
+        se3di_scale(1.0 / square, f->to_c, f->to_c);
+    }
+}
+
 static se3d_status find_sense(const se3d_allocator *allocator, se3di_shape *s);
 static int32_t make_convex(se3di_shape *s);
 
@@ -150,10 +182,12 @@ static se3d_status fill(const se3d_allocator *allocator, const double *vertices,
     builder b = {vertices, shape->triangles, nodes, 0};
     build(&b, 0, kept);
     se3d_status status = SE3D_ERR_NO_MEMORY;
-    shape->tree = se3di_alloc(allocator, b.node_count * sizeof *nodes, 1);
+    const size_t bytes = b.node_count * sizeof *nodes + kept * sizeof(facet);
+    shape->tree = se3di_alloc(allocator, bytes, 1);
     if (shape->tree) {
-        shape->tree_bytes = b.node_count * sizeof *nodes;
-        memcpy(shape->tree, nodes, shape->tree_bytes);
+        shape->tree_bytes = bytes;
+        memcpy(shape->tree, nodes, b.node_count * sizeof *nodes);
+        fill_facets(shape);
         status = find_sense(allocator, shape);
         shape->convex = make_convex(shape);
         status = status < 0 ? status : se3di_pieces_build(allocator, shape);
@@ -215,23 +249,26 @@ static double triangle_distance(const se3di_shape *s, uint32_t triangle, const d
     return se3di_triangle_nearest(corner, p, point, NULL);
 }
 
-/* Whether a triangle is within reach, with its point and squared distance; most are not, and their
- * planes tell it for a few operations. */
+/* Whether a triangle is within reach, with its point and squared distance; of most its plane tells
+ * it for a few operations, or the foot of the perpendicular is in it. */
 static int reaches(const se3di_shape *s, uint32_t triangle, const double p[3], double reach,
                    double point[3], double *square)
 {
-    const double *corner[3];
-    double ab[3], ac[3], normal[3], d[3];
-    se3di_triangle_corners(s, triangle, corner);
-    se3di_sub(corner[1], corner[0], ab);
-    se3di_sub(corner[2], corner[0], ac);
-    se3di_sub(p, corner[0], d);
-    se3di_cross(ab, ac, normal);
-    const double height = se3di_dot(d, normal);
-    if (height * height > (1.0 + 1e-9) * reach * se3di_dot(normal, normal)) {
+    const facet *f = facets_of(s) + triangle;
+    double d[3];
+    se3di_sub(p, f->a, d);
+    const double height = se3di_dot(d, f->normal);
+    if (height * height > (1.0 + 1e-9) * reach) {
         return 0;
     }
-    *square = se3di_triangle_nearest(corner, p, point, NULL);
+    const double b = se3di_dot(d, f->to_b), c = se3di_dot(d, f->to_c);
+    if (b > 0.0 && c > 0.0 && b + c < 1.0) {
+        se3di_copy(p, point);
+        se3di_add_scaled(-height, f->normal, point);
+        *square = height * height;
+    } else {
+        *square = triangle_distance(s, triangle, p, point);
+    }
     return *square < reach;
 }
 
@@ -578,9 +615,9 @@ static size_t gather(const se3di_shape *s, const double local[3], double radius,
 static int leads_on(const se3di_shape *s, const candidate *list, size_t k, double tolerance)
 {
     for (size_t other = 0; other < k; ++other) {
-        double point[3];
-        if (triangle_distance(s, list[other].triangle, list[k].point, point) <=
-            tolerance * tolerance) {
+        double point[3], square;
+        if (reaches(s, list[other].triangle, list[k].point, tolerance * tolerance, point,
+                    &square)) {
             return 1;
         }
     }
