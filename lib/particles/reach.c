@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* How far each particle and wall may move before lists are made anew: its reach. Two that are nearer
- * than their reaches together are in the list; two that touch later were nearer then. So few fast
- * particles cost the others neither long lists nor many. A step wears a reach by the part of it
- * that the particle moved; the largest parts of all steps are added up.
+/* How far each particle and wall may move before lists are made anew: its reach. Two that are
+ * nearer than their reaches together are in the list; two that touch later were nearer then. So
+ * few fast particles cost the others neither long lists nor many. A step wears a reach by the part
+ * of it that the particle moved; the largest parts of all steps are added up.
  *                                                                      docs/theory/particles.md */
 #include "particles/reach.h"
 
