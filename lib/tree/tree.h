@@ -120,6 +120,7 @@ typedef struct se3di_tree {
     double *U;                /* [velocities * 6]: articulated inertia times S */
     double *D, *R, *e;        /* [velocities]: S^T U, its inverse; what acts on the coordinate */
     double *V, *k;            /* revolutes: U / D about the parent's point; U . c / D */
+                              /* balls: V[j] of a turn is U . S_j / D of those before it */
     double *given;            /* [velocities]: prescribed accelerations */
     double *armature;         /* [velocities]: reflected inertia */
     double *wrench;           /* [nodes * 6]: what acts on each: moment about P, force; ground */
