@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The state of explicit methods in joint coordinates: y = (q, qdot) and the works.
  *
- * qddot comes from articulated bodies; with loops, or friction that needs the loads of joints, from
- * the equations of the bodies, which have all rows: it is what these accelerations are at the
- * joints,
+ * qddot comes from articulated bodies and the rows of loops that the tree does not imply; with
+ * friction that needs the loads of joints, and with loops at the tightest tolerances, from the
+ * equations of the bodies, which have all rows: it is what these accelerations are at the joints,
  *
  *     S qddot = (alpha, a) - (alpha_p, a_p + alpha_p x d) - c    least squares, exact on the tree
  *
@@ -216,29 +216,43 @@ static int is_open(const se3di_equations *equations)
     return equations->is_open_tree;
 }
 
-/* There are rows besides those of the tree, or friction needs the loads of joints. */
+/* Accelerations come from the equations of the bodies: friction needs the loads of joints, or loops
+ * are to have the least noise. */
 static int is_loaded(const se3di_equations *equations)
 {
-    return equations->has_loops || equations->friction.count > 0;
-}
-
-static se3d_status solve_tree(se3di_tree *tree, double *qddot)
-{
-    SE3DI_TRY(se3di_tree_factor(tree, NULL));
-    se3di_tree_accelerate(tree, tree->e, qddot);
-    return SE3D_OK;
+    return equations->friction.count > 0 || (equations->has_loops && !equations->takes_rows);
 }
 
 /* Multipliers of all rows into equations->l, if drivers have a power. */
 static const double *find_multipliers(se3di_equations *equations)
 {
     const se3di_tree *tree = equations->tree;
-    if (equations->assembly.timed_count == 0) {
+    if (equations->assembly.timed_count == 0 && equations->assembly.user_count == 0) {
         return NULL;
     }
-    tree->core->transmit(tree, tree->wrench, equations->joint_moves);
-    se3di_tree_multipliers(tree, equations->joint_moves, NULL, equations->l);
+    double *joint = equations->joint_moves, *wrench = joint + 6 * (size_t)tree->count;
+    memcpy(wrench, tree->wrench, 6 * (size_t)tree->count * sizeof *wrench);
+    if (equations->has_loops) {
+        const double *lambda = equations->loops.lambda;
+        memcpy(equations->l, lambda, equations->assembly.row_count * sizeof *lambda);
+        se3di_tree_loops_add_wrenches(&equations->loops, lambda, wrench);
+    }
+    tree->core->transmit(tree, wrench, joint);
+    se3di_tree_multipliers(tree, joint, NULL, equations->l);
     return equations->l;
+}
+
+/* Accelerations of the tree from what acts; with loops their multipliers, too. */
+static se3d_status solve_motion(se3di_equations *equations, double *qddot)
+{
+    se3di_tree *tree = equations->tree;
+    SE3DI_TRY(se3di_tree_factor(tree, NULL));
+    if (!equations->has_loops) {
+        se3di_tree_accelerate(tree, tree->e, qddot);
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_tree_loops_factor(&equations->loops));
+    return se3di_tree_loops_accelerate(&equations->loops, qddot);
 }
 
 static se3d_status evaluate_tree(se3di_equations *equations, double t, double *derivative)
@@ -253,7 +267,7 @@ static se3d_status evaluate_tree(se3di_equations *equations, double t, double *d
     SE3DI_TRY(se3di_assembly_eval_wrenches(assembly, t, equations->error));
     se3di_tree_take_wrenches(tree, assembly->model->frames, assembly->wrench);
     ++equations->counters.evaluations;
-    se3d_status status = solve_tree(tree, qddot);
+    se3d_status status = solve_motion(equations, qddot);
     for (uint32_t k = 0; k < tree->v_count && status >= 0; ++k) {
         status = isfinite(qddot[k]) ? status : SE3D_ERR_NOT_FINITE;
     }
@@ -402,7 +416,9 @@ static void show(se3di_equations *equations, const double *y, double *bodies)
 
 static double count_dependent(const se3di_equations *equations)
 {
-    return is_loaded(equations) ? se3di_kkt_get_dependent_rows(equations->kkt) : 0.0;
+    return is_loaded(equations)   ? se3di_kkt_get_dependent_rows(equations->kkt)
+           : equations->has_loops ? se3di_kkt_get_dependent_rows(equations->loops.kkt)
+                                  : 0.0;
 }
 
 const se3di_motion se3di_motion_joints = {

@@ -14,6 +14,10 @@
 #include <math.h>
 #include <string.h>
 
+/* A wider filter is asked for where the noise of accelerations near singular positions matters:
+ * that of rows on the tree is larger, all of the violation being in few of them. */
+#define ROWS_EPS 1.5e-10
+
 size_t se3di_state_count(const se3di_assembly *assembly)
 {
     return SE3DI_STATE_SIZE * (size_t)assembly->body_count + SE3DI_STATE_WORK;
@@ -101,6 +105,7 @@ se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, dou
     settings.always_check = false;
     settings.any_multipliers = !has_power(&equations->assembly);
     se3di_kkt_set_settings(equations->kkt, &settings);
+    equations->takes_rows = equations->has_loops && !(eps > ROWS_EPS);
     if (equations->assembly.formulation->block == 6) {
         se3di_assembly_eval_mass(&equations->assembly);
     }
@@ -112,6 +117,9 @@ void se3di_state_begin_step(se3di_equations *equations, double redundant)
     se3di_kkt_settings settings = se3di_kkt_get_settings(equations->kkt);
     settings.redundant_rows = (int32_t)redundant;
     se3di_kkt_set_settings(equations->kkt, &settings);
+    if (equations->takes_rows) {
+        se3di_tree_loops_filter(&equations->loops, &settings);
+    }
     se3di_kkt_hold(equations->kkt, equations->assembly.formulation->block == 6);
 }
 

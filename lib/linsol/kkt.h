@@ -71,6 +71,8 @@ typedef struct se3di_kkt_values {
     const double *coupling_lower; /* H_ji, n x n each; unsymmetric mode only */
     const double *joint;          /* C: m x n for each entry of joint_body, see layout */
     const double *joint_b;        /* unsymmetric mode only: B transposed, laid out exactly as C */
+    const double *weight;         /* [row_count]: sizes that rows are measured by, if their own may
+                                     vanish; NULL: diag(C H^-1 B) */
 } se3di_kkt_values;
 
 /* The places of things. x: body i at i * body_size; l and c: joint j at row_offset[j]. */

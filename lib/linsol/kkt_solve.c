@@ -31,6 +31,17 @@ static double middle_weight(se3di_kkt *kkt)
     return high > 0.0 && high < HUGE_VAL ? sqrt(low) * sqrt(high) : 1.0;
 }
 
+static void weigh(se3di_kkt *kkt, const se3di_kkt_values *values)
+{
+    for (size_t i = 0; values->weight && i < kkt->layout.row_count; ++i) {
+        kkt->weight[i] = values->weight[i];
+    }
+    if (!values->weight) {
+        kkt->core->weigh(kkt, values);
+    }
+    kkt->middle = middle_weight(kkt);
+}
+
 /* (b, c) in the caller's order into kkt->z in the order of elimination; gather: back. */
 static void scatter(se3di_kkt *kkt, const double *b, const double *c)
 {
@@ -155,8 +166,7 @@ se3d_status se3di_kkt_factor(se3di_kkt *kkt, const se3di_kkt_values *values,
 {
     kkt->factorisations = 0;
     if (kkt->hold != KKT_HELD) {
-        kkt->core->weigh(kkt, values);
-        kkt->middle = middle_weight(kkt);
+        weigh(kkt, values);
     }
     factor_suitably(kkt, values);
     kkt->hold = kkt->hold != KKT_FREE && kkt->finite ? KKT_HELD : kkt->hold;

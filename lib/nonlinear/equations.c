@@ -94,6 +94,10 @@ static se3d_status create_tree(se3di_equations *equations)
     equations->is_open_tree =
         tree->given_count == 0 && equations->friction.count == 0 && !equations->has_loops;
     equations->masses_version = model->masses_version;
+    if (equations->has_loops) {
+        SE3DI_TRY(
+            se3di_tree_loops_init(&equations->loops, tree, &equations->assembly, equations->error));
+    }
     equations->joint_before = alloc_doubles(equations, tree->q_count);
     equations->joint_moves = alloc_doubles(equations, 12 * (size_t)tree->count);
     return equations->joint_before && equations->joint_moves ? SE3D_OK : SE3D_ERR_NO_MEMORY;
@@ -103,6 +107,7 @@ static void destroy_tree(se3di_equations *equations)
 {
     const se3d_allocator *allocator = &equations->assembly.model->allocator;
     if (equations->tree) {
+        se3di_tree_loops_destroy(&equations->loops);
         se3di_free(allocator, equations->joint_before, equations->tree->q_count, sizeof(double));
         se3di_free(allocator, equations->joint_moves, 12 * (size_t)equations->tree->count,
                    sizeof(double));

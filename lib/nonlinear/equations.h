@@ -17,6 +17,7 @@
 #include "model/saved.h"
 #include "nonlinear/friction_system.h"
 #include "primitive/scale.h"
+#include "tree/loops.h"
 #include "tree/tree.h"
 
 typedef struct se3di_counters {
@@ -55,11 +56,13 @@ typedef struct se3di_equations {
     int32_t reserved;
     se3di_friction_system friction;
     se3di_tree *tree;        /* joint coordinates, NULL: another formulation */
+    se3di_tree_loops loops;  /* its loop constraints, if there are any */
     double *joint_before;    /* [positions of the tree] */
     double *joint_moves;     /* [nodes of the tree * 12] */
     uint64_t masses_version; /* that the tree has */
     int32_t is_open_tree;    /* nothing else constrains it, no force needs a multiplier */
     int32_t has_loops;       /* some constraint is not on the tree */
+    int32_t takes_rows;      /* stages take the loops' rows on the tree, not all equations */
 } se3di_equations;
 
 se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,

@@ -11,13 +11,19 @@
 /* Less than this part of what it comes from is rounding, and what poses leave of the equations. */
 #define NOISE 1e-9
 
+/* Stages keep symmetries of the motion only if the regularisation leaves nothing: what it leaves
+ * grows with the inverse square of the distance to a singular position. There a fixed number of
+ * refinements filters. */
+#define TOLERANCE   1e-15
+#define REFINEMENTS 3
+
 typedef struct loops_array {
     void **data;
     size_t count, size;
 } loops_array;
 
-#define LOOPS_STRUCTURE 9
-#define LOOPS_VALUES    12
+#define LOOPS_STRUCTURE 11
+#define LOOPS_VALUES    13
 
 static void list_structure(se3di_tree_loops *l, loops_array list[LOOPS_STRUCTURE])
 {
@@ -26,6 +32,8 @@ static void list_structure(se3di_tree_loops *l, loops_array list[LOOPS_STRUCTURE
         {(void **)&l->constraints, n, sizeof *l->constraints},
         {(void **)&l->rows, n, sizeof *l->rows},
         {(void **)&l->row_begin, n + 1, sizeof *l->row_begin},
+        {(void **)&l->kept, l->row_count, sizeof *l->kept},
+        {(void **)&l->kept_count, n, sizeof *l->kept_count},
         {(void **)&l->path_begin, n + 1, sizeof *l->path_begin},
         {(void **)&l->path_node, l->path_count, sizeof *l->path_node},
         {(void **)&l->path_parent, l->path_count, sizeof *l->path_parent},
@@ -46,6 +54,7 @@ static void list_values(se3di_tree_loops *l, loops_array list[LOOPS_VALUES])
         {(void **)&l->c, l->row_count, size},
         {(void **)&l->target, l->row_count, size},
         {(void **)&l->l, l->row_count, size},
+        {(void **)&l->weight, l->row_count, size},
         {(void **)&l->y, v, size},
         {(void **)&l->H, v, size},
         {(void **)&l->b, v, size},
@@ -154,7 +163,7 @@ static se3d_status create_kkt(se3di_tree_loops *loops)
     const se3di_kkt_pattern pattern = {
         .body_count = loops->tree->v_count,
         .joint_count = loops->count,
-        .joint_rows = loops->rows,
+        .joint_rows = loops->kept_count,
         .joint_begin = loops->member_begin,
         .joint_body = loops->member,
         .body_size = 1,
@@ -164,7 +173,7 @@ static se3d_status create_kkt(se3di_tree_loops *loops)
     SE3DI_TRY(se3di_kkt_create(&loops->tree->model->allocator, &pattern, SE3DI_KKT_STRUCTURED,
                                &loops->kkt));
     for (uint32_t k = 0; k < loops->count; ++k) {
-        if (loops->rows[k] > loops->member_begin[k + 1] - loops->member_begin[k]) {
+        if (loops->kept_count[k] > loops->member_begin[k + 1] - loops->member_begin[k]) {
             se3di_kkt_settings settings = se3di_kkt_get_settings(loops->kkt);
             settings.regularise = SE3DI_KKT_REGULARISE_FIRST; /* more rows than freedoms */
             se3di_kkt_set_settings(loops->kkt, &settings);
@@ -195,6 +204,7 @@ static se3d_status build(se3di_tree_loops *loops)
     SE3DI_TRY(status);
     list_values(loops, values);
     SE3DI_TRY(allocate(allocator, values, LOOPS_VALUES));
+    se3di_tree_loops_keep_rows(loops);
     return create_kkt(loops);
 }
 
@@ -225,6 +235,18 @@ void se3di_tree_loops_destroy(se3di_tree_loops *loops)
     memset(loops, 0, sizeof *loops);
 }
 
+void se3di_tree_loops_filter(se3di_tree_loops *loops, const se3di_kkt_settings *settings)
+{
+    se3di_kkt_settings own = *settings;
+    own.tolerance = TOLERANCE;
+    own.max_refinements = REFINEMENTS;
+    if (own.regularise == SE3DI_KKT_REGULARISE_AUTO) {
+        own.regularise =
+            SE3DI_KKT_REGULARISE_FIRST; /* the graph of the rows has no loop, they do */
+    }
+    se3di_kkt_set_settings(loops->kkt, &own);
+}
+
 /* ---- rows ---- */
 
 void se3di_tree_take_given(se3di_tree *tree, const se3di_assembly *assembly)
@@ -251,30 +273,47 @@ static void row_to_link(const se3di_tree_link *link, const double A[9], const do
     se3di_copy(row, K + 3);
 }
 
+static double size_of(const double x[3])
+{
+    return fabs(x[0]) + fabs(x[1]) + fabs(x[2]);
+}
+
 /* The sizes of the two halves of a row before its parts cancel: rounding is relative to them. */
 static void add_sizes(const double K[6], double factor, double size[2])
 {
-    size[0] += factor * se3di_norm(K);
-    size[1] += factor * se3di_norm(K + 3);
+    size[0] += factor * size_of(K);
+    size[1] += factor * size_of(K + 3);
 }
 
 /* The same of a row of a body, as row_to_link takes it. */
 static void add_row_sizes(const se3di_tree_link *link, const double row[6], double size[2])
 {
-    const double force = se3di_norm(row);
-    size[0] += se3di_norm(link->s) * force + se3di_norm(row + 3);
+    const double force = size_of(row);
+    size[0] += size_of(link->s) * force + size_of(row + 3);
     size[1] += force;
 }
 
+/* What a row gives of its body's mobility. */
+static double row_weight(const se3di_body *body, const double row[6])
+{
+    double weight = se3di_dot(row, row) / body->mass;
+    for (int k = 0; k < 3; ++k) {
+        weight += row[3 + k] * row[3 + k] / body->J[k];
+    }
+    return weight;
+}
+
 /* Rows of a loop on its bodies into K; from `c` what the centre of mass has on its own. */
-static void load_rows(se3di_tree_loops *loops, uint32_t loop, double *c)
+static void load_rows(se3di_tree_loops *loops, uint32_t loop, double *c, double *weight)
 {
     const se3di_assembly *a = loops->assembly;
     const se3di_tree *tree = loops->tree;
     const uint32_t constraint = loops->constraints[loop];
-    const int32_t rows = loops->rows[loop];
+    const int32_t rows = loops->kept_count[loop];
+    const int32_t *kept = loops->kept + loops->row_begin[loop];
     const int32_t *nodes = loops->path_node + loops->path_begin[loop];
     const size_t count = (size_t)(loops->path_begin[loop + 1] - loops->path_begin[loop]);
+    memset(weight, 0, (size_t)rows * sizeof *weight);
     memset(loops->K, 0, 6 * (size_t)rows * count * sizeof *loops->K);
     memset(loops->size, 0, 2 * (size_t)rows * count * sizeof *loops->size);
     for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
@@ -289,11 +328,12 @@ static void load_rows(se3di_tree_loops *loops, uint32_t loop, double *c)
         se3di_cross(link->w, link->s, x);
         se3di_cross(link->w, x, turning);
         for (int32_t r = 0; r < rows; ++r) {
-            const double *row = a->C + a->block_offset[k] + 6 * (size_t)r;
+            const double *row = a->C + a->block_offset[k] + 6 * (size_t)kept[r];
             const size_t at = place * (size_t)rows + (size_t)r;
             double K[6], *to = loops->K + 6 * at;
             row_to_link(link, tree->model->frames[body].A, row, K);
             add_row_sizes(link, row, loops->size + 2 * at);
+            weight[r] += row_weight(&tree->model->bodies[body], row);
             for (int i = 0; i < 6; ++i) {
                 to[i] += K[i];
             }
@@ -335,7 +375,7 @@ static void pass_row(const se3di_tree *tree, int32_t node, double *K, double *si
 static void carry_down(se3di_tree_loops *loops, uint32_t loop, double *Y, double *c)
 {
     const se3di_tree *tree = loops->tree;
-    const int32_t rows = loops->rows[loop];
+    const int32_t rows = loops->kept_count[loop];
     const int32_t begin = loops->path_begin[loop];
     for (int32_t p = begin; p < loops->path_begin[loop + 1]; ++p) {
         const int32_t node = loops->path_node[p], parent = loops->path_parent[p];
@@ -348,7 +388,7 @@ static void carry_down(se3di_tree_loops *loops, uint32_t loop, double *Y, double
                 const size_t place = (size_t)(parent * rows + r);
                 double *to = loops->K + 6 * place, x[3];
                 se3di_cross(d, K + 3, x);
-                loops->size[2 * place] += size[0] + se3di_norm(d) * size[1];
+                loops->size[2 * place] += size[0] + size_of(d) * size[1];
                 loops->size[2 * place + 1] += size[1];
                 for (int i = 0; i < 3; ++i) {
                     to[i] += K[i] + x[i];
@@ -360,18 +400,42 @@ static void carry_down(se3di_tree_loops *loops, uint32_t loop, double *Y, double
     }
 }
 
+/* out: those of the rows that are kept, of all loops one after the other; from `values` [rows of
+ * the model]. */
+static void gather_rows(const se3di_tree_loops *loops, const double *values, double *out)
+{
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        const uint32_t begin = loops->tree->model->constraints[loops->constraints[k]].row_begin;
+        for (int32_t r = 0; r < loops->kept_count[k]; ++r) {
+            *out++ = values[begin + (uint32_t)loops->kept[loops->row_begin[k] + (uint32_t)r]];
+        }
+    }
+}
+
+/* The other way; rows that the tree implies get none. */
+static void scatter_rows(const se3di_tree_loops *loops, const double *values, double *out)
+{
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        const uint32_t begin = loops->tree->model->constraints[loops->constraints[k]].row_begin;
+        memset(out + begin, 0, (size_t)loops->rows[k] * sizeof *out);
+        for (int32_t r = 0; r < loops->kept_count[k]; ++r) {
+            out[begin + (uint32_t)loops->kept[loops->row_begin[k] + (uint32_t)r]] = *values++;
+        }
+    }
+}
+
 se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops)
 {
     se3di_tree *tree = loops->tree;
     se3di_assembly_eval_some_rows(loops->assembly, loops->constraints, loops->count, loops->gamma);
-    double *Y = loops->Y;
+    gather_rows(loops, loops->gamma, loops->c);
+    double *Y = loops->Y, *c = loops->c, *weight = loops->weight;
     for (uint32_t k = 0; k < loops->count; ++k) {
-        double *c = loops->c + loops->row_begin[k];
-        const se3di_constraint *constraint = &tree->model->constraints[loops->constraints[k]];
-        memcpy(c, loops->gamma + constraint->row_begin, (size_t)loops->rows[k] * sizeof *c);
-        load_rows(loops, k, c);
+        load_rows(loops, k, c, weight);
         carry_down(loops, k, Y, c);
-        Y += loops->rows[k] * (loops->member_begin[k + 1] - loops->member_begin[k]);
+        Y += loops->kept_count[k] * (loops->member_begin[k + 1] - loops->member_begin[k]);
+        c += loops->kept_count[k];
+        weight += loops->kept_count[k];
     }
     for (uint32_t v = 0; v < tree->v_count; ++v) {
         loops->H[v] = tree->D[v];
@@ -383,13 +447,13 @@ se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops)
         }
     }
     SE3DI_TRY(se3di_user_report(tree->model, loops->error));
-    const se3di_kkt_values values = {.body = loops->H, .joint = loops->Y};
+    const se3di_kkt_values values = {.body = loops->H, .joint = loops->Y, .weight = loops->weight};
     return se3di_kkt_factor(loops->kkt, &values, NULL);
 }
 
 static se3d_status solve(se3di_tree_loops *loops, const double *b, const double *c)
 {
-    const se3di_kkt_values values = {.body = loops->H, .joint = loops->Y};
+    const se3di_kkt_values values = {.body = loops->H, .joint = loops->Y, .weight = loops->weight};
     se3di_kkt_solve_info info = {0};
     const se3d_status status =
         se3di_kkt_solve(loops->kkt, &values, b, c, loops->y, loops->l, &info);
@@ -402,11 +466,7 @@ se3d_status se3di_tree_loops_accelerate(se3di_tree_loops *loops, double *qddot)
     se3di_tree *tree = loops->tree;
     const se3d_status status = solve(loops, tree->e, loops->c);
     SE3DI_TRY(status);
-    for (uint32_t k = 0; k < loops->count; ++k) {
-        const se3di_constraint *constraint = &tree->model->constraints[loops->constraints[k]];
-        memcpy(loops->lambda + constraint->row_begin, loops->l + loops->row_begin[k],
-               (size_t)loops->rows[k] * sizeof *loops->l);
-    }
+    scatter_rows(loops, loops->l, loops->lambda);
     for (uint32_t v = 0; v < tree->v_count; ++v) {
         loops->b[v] = tree->D[v] * loops->y[v];
     }
@@ -416,12 +476,7 @@ se3d_status se3di_tree_loops_accelerate(se3di_tree_loops *loops, double *qddot)
 
 se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *target, double *dq)
 {
-    for (uint32_t k = 0; k < loops->count; ++k) {
-        const se3di_constraint *constraint =
-            &loops->tree->model->constraints[loops->constraints[k]];
-        memcpy(loops->target + loops->row_begin[k], target + constraint->row_begin,
-               (size_t)loops->rows[k] * sizeof *target);
-    }
+    gather_rows(loops, target, loops->target);
     const se3d_status status = solve(loops, NULL, loops->target);
     SE3DI_TRY(status);
     se3di_tree_spread(loops->tree, loops->y, dq);
@@ -471,15 +526,14 @@ static void add_jacobian(const se3di_tree *tree, uint32_t body, const double row
             G[n->v + (size_t)j] += se3di_dot(K, s) + se3di_dot(K + 3, s + 3);
             noise[n->v + (size_t)j] += NOISE * (parts[0] * size[0] + parts[1] * size[1]);
         }
-        size[0] += se3di_norm(tree->links[node].d) * size[1];
+        size[0] += size_of(tree->links[node].d) * size[1];
         se3di_cross(tree->links[node].d, K + 3, x);
         se3di_add(K, x, K);
         node = n->parent;
     }
 }
 
-/* A row of a loop. */
-static void fill_jacobian(const se3di_tree_loops *loops, uint32_t loop, size_t row, double *G)
+void se3di_tree_loops_row(const se3di_tree_loops *loops, uint32_t loop, size_t row, double *G)
 {
     const se3di_assembly *a = loops->assembly;
     const size_t columns = loops->tree->v_count;
@@ -500,7 +554,7 @@ void se3di_tree_loops_jacobian(const se3di_tree_loops *loops, double *G)
     memset(G, 0, loops->row_count * columns * sizeof *G);
     for (uint32_t loop = 0; loop < loops->count; ++loop) {
         for (size_t row = 0; row < (size_t)loops->rows[loop]; ++row) {
-            fill_jacobian(loops, loop, row, G + (loops->row_begin[loop] + row) * columns);
+            se3di_tree_loops_row(loops, loop, row, G + (loops->row_begin[loop] + row) * columns);
         }
     }
 }

@@ -28,6 +28,8 @@ typedef struct se3di_tree_loops {
     uint32_t *constraints;
     int32_t *rows;         /* of each */
     uint32_t *row_begin;   /* [count + 1] its first among those of the loops */
+    int32_t *kept;         /* [rows of the loops]: the rows of each that the tree does not imply */
+    int32_t *kept_count;   /* how many of them */
     int32_t *path_begin;   /* [count + 1] into the next two: nodes from its bodies to the ground, */
     int32_t *path_node;    /* descending */
     int32_t *path_parent;  /* place of the node's parent in the same path, -1: the ground */
@@ -37,7 +39,9 @@ typedef struct se3di_tree_loops {
     double *Y;              /* [values]: rows x 1 for each member */
     double *gamma;          /* [rows of the model] */
     double *lambda;         /* [rows of the model]: of loops, others 0 */
-    double *c, *target, *l; /* [rows of the loops] */
+    double *c, *target, *l; /* [rows of the loops]: of those that are kept */
+    double *weight;         /* [rows of the loops]: sizes of C M^-1 C^T of the bodies, which, unlike
+                               those of Y D^-1 Y^T, do not vanish at singular positions */
     double *y;              /* [velocities] */
     double *H, *b;          /* [velocities] */
     double *K;              /* rows on the nodes of one path, */
@@ -46,10 +50,14 @@ typedef struct se3di_tree_loops {
     int32_t *place_of;      /* [nodes]: scratch of the building */
 } se3di_tree_loops;
 
-/* On failure nothing is held; `error` (NULL: none) is kept. @return OK, NO_MEMORY */
+/* On failure nothing is held; `error` (NULL: none) is kept. The model's frames are used as scratch
+ * and come back, the tree is placed there in the end. @return OK, NO_MEMORY */
 se3d_status se3di_tree_loops_init(se3di_tree_loops *loops, se3di_tree *tree,
                                   se3di_assembly *assembly, se3di_error *error);
 void se3di_tree_loops_destroy(se3di_tree_loops *loops);
+
+/* Solve as another solver with these settings does, whatever it has against light bodies. */
+void se3di_tree_loops_filter(se3di_tree_loops *loops, const se3di_kkt_settings *settings);
 
 /* Take the accelerations that drivers of tree coordinates prescribe; functions evaluated. */
 void se3di_tree_take_given(se3di_tree *tree, const se3di_assembly *assembly);
@@ -66,6 +74,10 @@ se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *targ
 /* Add what the loops do with `lambda` [rows of the model] to wrenches [nodes * 6] about P. */
 void se3di_tree_loops_add_wrenches(const se3di_tree_loops *loops, const double *lambda,
                                    double *wrench);
+/* Add a row of a loop, rows evaluated, to the Jacobian's [velocities]. */
+void se3di_tree_loops_row(const se3di_tree_loops *loops, uint32_t loop, size_t row, double *G);
+/* Find the rows that the tree does not imply (tree/loop_rows.c). */
+void se3di_tree_loops_keep_rows(se3di_tree_loops *loops);
 /* G [rows of the loops x velocities], row-major: the Jacobian to the velocities of the tree. */
 void se3di_tree_loops_jacobian(const se3di_tree_loops *loops, double *G);
 

@@ -71,7 +71,11 @@ static void start(mechanism *s, size_t bodies, int32_t n, bool symmetric, uint64
                                      .coupling = s->coupling,
                                      .body_size = n,
                                      .symmetric = symmetric};
-    s->values = (se3di_kkt_values){s->body, s->upper, s->lower, s->joint, s->joint_b};
+    s->values = (se3di_kkt_values){.body = s->body,
+                                   .coupling_upper = s->upper,
+                                   .coupling_lower = s->lower,
+                                   .joint = s->joint,
+                                   .joint_b = s->joint_b};
     s->seed = seed * UINT64_C(2654435761) + 88172645463325252;
 }
 
