@@ -73,7 +73,7 @@ SE3D_API se3d_status se3d_coordinates_get(se3d_coordinates *coordinates, double 
 
 /* Set poses and velocities of all moving bodies from coordinates. Quaternions are made unit ones,
  * angles keep their turns; equations of loops are not solved (an analysis does). NULL ones stay as
- * they are.
+ * they are: with q NULL no body moves, also where poses violate joints of the tree.
  * @param[in] q     [positions] [rad, m]
  * @param[in] qdot  [velocities] [rad/s, m/s]
  * @return OK, NULL, STATE, NOT_FINITE (also of what follows for the bodies), INVALID_ARGUMENT (a

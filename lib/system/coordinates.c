@@ -296,6 +296,18 @@ static void set_turns(se3d_coordinates *c, const double *q)
     }
 }
 
+/* The velocities of tree->frames; poses, which may violate joints of the tree, stay. */
+static void set_velocities(se3d_coordinates *c)
+{
+    for (uint32_t k = 0; k < c->tree.count; ++k) {
+        const uint32_t body = c->tree.nodes[k].body;
+        se3di_frame *frame = &c->system->model.frames[body];
+        se3di_copy(c->tree.frames[body].v, frame->v);
+        se3di_copy(c->tree.frames[body].w, frame->w);
+        se3di_frame_update(frame);
+    }
+}
+
 se3d_status se3d_coordinates_set(se3d_coordinates *coordinates, const double *q, const double *qdot)
 {
     se3d_coordinates *c = coordinates;
@@ -316,11 +328,12 @@ se3d_status se3d_coordinates_set(se3d_coordinates *coordinates, const double *q,
     }
     se3di_tree_place(&c->tree, c->q, c->qdot, c->tree.frames);
     SE3DI_TRY(check_frames(c));
-    se3di_tree_place(&c->tree, c->q, c->qdot, c->system->model.frames);
-    set_turns(c, c->q);
     if (q) {
+        se3di_tree_place(&c->tree, c->q, c->qdot, c->system->model.frames);
+        set_turns(c, c->q);
         se3di_model_touch_poses(&c->system->model);
     } else {
+        set_velocities(c);
         se3di_model_touch_state(&c->system->model);
     }
     c->history_stamp = c->system->model.history_stamp;
@@ -640,10 +653,12 @@ se3d_status se3d_coordinates_compute_null_space(se3d_coordinates *coordinates, d
                                                 size_t *freedoms)
 {
     se3d_coordinates *c = coordinates;
+    if (freedoms) {
+        *freedoms = 0;
+    }
     SE3DI_EDIT_OF(c);
     SE3DI_TRY(se3di_check_pointer(c->system, "N", N));
     SE3DI_TRY(se3di_check_pointer(c->system, "freedoms", freedoms));
-    *freedoms = 0;
     const size_t count = (c->loops.row_count + c->tree.given_count) * c->velocities;
     double *G = se3di_alloc(&c->allocator, count, sizeof *G);
     if (!G) {

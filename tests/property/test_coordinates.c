@@ -385,6 +385,30 @@ static void what_cannot_be_set_leaves_the_state_alone(void)
     CHECK(lengths > 0 && rates > 0);
 }
 
+/* Bodies that are off their joints by a setter are not moved onto the tree by new velocities. */
+static void velocities_alone_move_no_body(void)
+{
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        setting s;
+        double q[SIZE], qdot[SIZE], r[3], p[4], r_after[3], p_after[4];
+        begin(&s, seed, 0);
+        const se3d_body body = s.world.bodies[s.world.count - 1];
+        CHECK(!se3d_body_get_position(s.system, body, r));
+        CHECK(!se3d_body_get_orientation(s.system, body, p));
+        r[0] += 0.01;
+        CHECK(!se3d_body_set_position(s.system, body, r));
+        CHECK(!se3d_coordinates_get(s.c, q, qdot));
+        for (size_t k = 0; k < s.n; ++k) {
+            qdot[k] = 0.1 * (double)(k + 1);
+        }
+        CHECK(!se3d_coordinates_set(s.c, NULL, qdot));
+        CHECK(!se3d_body_get_position(s.system, body, r_after));
+        CHECK(!se3d_body_get_orientation(s.system, body, p_after));
+        CHECK(memcmp(r, r_after, sizeof r) == 0 && memcmp(p, p_after, sizeof p) == 0);
+        end(&s);
+    }
+}
+
 static void every_velocity_has_its_joint_and_body(void)
 {
     for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
@@ -459,7 +483,9 @@ static void what_is_made_once_allocates_no_more_and_is_given_back(void)
     CHECK_NEAR(x[2], 9.81, 1e-12);
     CHECK(counting.calls == calls);
     se3d_system_destroy(system);
+    size_t freedoms = 7;
     CHECK(se3d_coordinates_get(c, q, x) == SE3D_ERR_STATE);
+    CHECK(se3d_coordinates_compute_null_space(c, x, &freedoms) == SE3D_ERR_STATE && freedoms == 0);
     CHECK(se3d_coordinates_count_loop_rows(c) == 0);
     se3d_coordinates_destroy(c);
     CHECK(counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);
@@ -477,6 +503,7 @@ int main(void)
     RUN(accelerations_of_closed_loops_are_those_of_the_bodies);
     RUN(a_joint_that_is_there_twice_changes_nothing);
     RUN(what_cannot_be_set_leaves_the_state_alone);
+    RUN(velocities_alone_move_no_body);
     RUN(every_velocity_has_its_joint_and_body);
     RUN(calls_see_setters_and_leave_the_state_alone);
     RUN(what_is_made_once_allocates_no_more_and_is_given_back);
