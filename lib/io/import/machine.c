@@ -35,6 +35,7 @@ bool se3di_machine_fail(se3di_machine *m, size_t line, size_t column, const char
     return false;
 }
 
+SE3DI_IO_FORMAT(2, 0)
 static const char *format_text(se3di_machine *m, const char *format, va_list list)
 {
     va_list again;
