@@ -17,7 +17,7 @@
 #include "io/read/parameters.h"
 #include "io/read/sections.h"
 
-enum { DEPTH_MAX = 16, PARTS_MAX = 100000, BYTES_MAX = 64 * 1024 * 1024 };
+enum { DEPTH_MAX = 16, PARTS_MAX = 100000, BYTES_MAX = 64 * 1024 * 1024, FILES_MAX = 1000 };
 
 typedef struct se3di_library_entry {
     const char *file;
@@ -120,6 +120,9 @@ static bool parse(expansion *x, const se3di_node *node, const char *path, const 
         return se3di_reader_fail(reader, node, "all included files are larger than %d bytes",
                                  (int)BYTES_MAX);
     }
+    if (x->library->count >= FILES_MAX) {
+        return se3di_reader_fail(reader, node, "more than %d files are included", (int)FILES_MAX);
+    }
     reader->status = se3di_document_parse(pool, path, text, length, &made->root, reader->error);
     if (reader->status < 0) {
         reader->fault = se3di_fault_of(node);
@@ -130,6 +133,7 @@ static bool parse(expansion *x, const se3di_node *node, const char *path, const 
     made->next = x->library->first;
     x->library->first = made;
     x->library->bytes += length;
+    ++x->library->count;
     *entry = made;
     return true;
 }
@@ -312,9 +316,6 @@ static bool add_part(expansion *x, const se3di_node *map, const char *index, dou
         return se3di_reader_fail(reader, map, "is included %d levels deep, at most %d are allowed",
                                  (int)part->depth, (int)DEPTH_MAX);
     }
-    if (++x->count > PARTS_MAX) {
-        return se3di_reader_fail(reader, map, "makes more than %d parts", (int)PARTS_MAX);
-    }
     if (!read_prefix(reader, map, &part->prefix) || !read_place(reader, map, &part->place) ||
         !read_given(reader, map, index, i, &given) || !find_root(x, map, part)) {
         return false;
@@ -329,6 +330,13 @@ static bool add_part(expansion *x, const se3di_node *map, const char *index, dou
     x->last->next = part;
     x->last = part;
     return true;
+}
+
+/* Also of those that `when` leaves out: they take time and memory, too. */
+static bool count_part(expansion *x, const se3di_node *map)
+{
+    return ++x->count <= PARTS_MAX ||
+           se3di_reader_fail(x->reader, map, "makes more than %d parts", (int)PARTS_MAX);
 }
 
 /* The scope of the caller with the number of the part. */
@@ -372,7 +380,8 @@ static bool read_entry(expansion *x, const se3di_node *map)
     }
     if (!se3di_node_get(map, "repeat")) {
         bool wanted = true;
-        return se3di_read_when(reader, map, &wanted) && (!wanted || add_part(x, map, NULL, 0.0));
+        return count_part(x, map) && se3di_read_when(reader, map, &wanted) &&
+               (!wanted || add_part(x, map, NULL, 0.0));
     }
     if (!read_index(reader, map, &index)) {
         return false;
@@ -381,7 +390,7 @@ static bool read_entry(expansion *x, const se3di_node *map)
     for (double i = 0.0; i < count; i += 1.0) {
         se3di_scope scope;
         bool wanted = true;
-        if (!add_index(reader, outer, index, i, &scope)) {
+        if (!count_part(x, map) || !add_index(reader, outer, index, i, &scope)) {
             return false;
         }
         reader->scope = &scope;

@@ -10,7 +10,7 @@
 typedef struct se3di_library {
     se3di_iopool *pool;
     struct se3di_library_entry *first;
-    size_t bytes;
+    size_t bytes, count;
 } se3di_library;
 
 /* Begin with the part of the model itself, which the reader is at then. */
