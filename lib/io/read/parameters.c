@@ -384,7 +384,7 @@ static bool find_maps(se3di_reader *reader, const se3di_component *part, se3di_s
 static se3di_units first_units(const se3di_component *part)
 {
     const se3di_component *file = part;
-    while (file->root->parent && file->parent) {
+    while (file->parent && (file->root->parent || file->file != part->file)) {
         file = file->parent;
     }
     return file != part && file->scope ? file->scope->units : se3di_units_si();

@@ -14,6 +14,7 @@
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
+#include "io/read/include.h"
 #include "io/read/mesh_file.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
@@ -201,7 +202,14 @@ static bool read_material(se3di_reader *reader, const se3di_node *node, double *
          material = material->next) {
         const char *known = se3di_node_get(material, "name")->text;
         if (strcmp(known, name) == 0) {
-            return se3di_read_key_number(reader, material, "density", SE3DI_POSITIVE, density);
+            const se3di_component *part = reader->part;
+            se3di_reader_enter(reader, reader->model->parts); /* materials are the model's */
+            const bool good =
+                se3di_read_key_number(reader, material, "density", SE3DI_POSITIVE, density);
+            if (good) {
+                se3di_reader_enter(reader, part);
+            }
+            return good;
         }
         se3di_guess_offer(&guess, known);
     }
