@@ -19,6 +19,14 @@ bool se3di_placement_is_none(const se3di_placement *p)
     return !p->moves && !p->turns;
 }
 
+bool se3di_component_is_mirrored(const se3di_component *part)
+{
+    while (part && part->place.mirror < 0) {
+        part = part->parent;
+    }
+    return part != NULL;
+}
+
 /* a * b, exact if a is 0, 1 or -1, and never -0. */
 static double times(double a, double b)
 {

@@ -160,6 +160,16 @@ bool se3di_ground_to_body(se3di_reader *reader, se3d_body body, const double gro
     return true;
 }
 
+bool se3di_check_frame(se3di_reader *reader, const se3di_node *node, const se3di_body_entry *body)
+{
+    return body == &reader->model->bodies[0] || body->part == reader->part ||
+           !se3di_component_is_mirrored(reader->part) ||
+           se3di_reader_fail(reader, node,
+                             "is said in the frame of `%.60s`, which is no body of this part: "
+                             "a part that is mirrored must say it in the ground frame",
+                             body->name);
+}
+
 /* Vectors that are said in the frame of a body: of one of the part it turns with it, on the ground
  * it is put where the part is. */
 static bool place_on_body(se3di_reader *reader, const se3di_node *node,
@@ -172,11 +182,8 @@ static bool place_on_body(se3di_reader *reader, const se3di_node *node,
         on_ground(place, v);
     } else if (body->part == reader->part) {
         on_body(place, v);
-    } else if (place->mirror >= 0) {
-        return se3di_reader_fail(reader, node,
-                                 "is said in the frame of `%.60s`, which is no body of this part: "
-                                 "a part that is mirrored must say it in the ground frame",
-                                 body->name);
+    } else if (!se3di_check_frame(reader, node, body)) {
+        return false;
     }
     return true;
 }
@@ -414,8 +421,10 @@ static bool read_body_name(se3di_reader *reader, const se3di_node *node, const c
     if (se3di_keys_contain(words, *name)) {
         return se3di_reader_fail(reader, child, "the name `%s` is taken by a channel", *name);
     }
-    if (strcmp(*name, "ground") != 0 &&
-        se3di_ionames_find(&reader->model->body_names, *name, NULL)) {
+    if (strcmp(*name, "ground") == 0) {
+        return se3di_reader_fail(reader, child, "the name with its prefix is that of the ground");
+    }
+    if (se3di_ionames_find(&reader->model->body_names, *name, NULL)) {
         return se3di_reader_fail(reader, child, "`%.60s` is the name of two bodies", *name);
     }
     return true;

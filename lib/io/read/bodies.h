@@ -26,6 +26,8 @@ bool se3di_read_key_ground_direction(se3di_reader *reader, const se3di_node *map
 /* The same in the frame of a body. */
 bool se3di_read_key_body_direction(se3di_reader *reader, const se3di_node *map, const char *key,
                                    const se3di_body_entry *body, bool is_axial, double v[3]);
+/* What is said in the frame of a body: of another part it is an error in one that is mirrored. */
+bool se3di_check_frame(se3di_reader *reader, const se3di_node *node, const se3di_body_entry *body);
 bool se3di_place_on_body(se3di_reader *reader, const se3di_node *node, const se3di_body_entry *body,
                          double point[3]);
 /* A point of the ground frame in the frame of a body, as it stands. */

@@ -140,7 +140,8 @@ bool se3di_read_key_coordinate(se3di_reader *reader, const se3di_node *node, se3
 bool se3di_check_angle(se3di_reader *reader, const se3di_node *node, se3d_constraint joint)
 {
     const se3d_model *model = reader->model;
-    for (size_t k = 0; reader->part->place.mirror >= 0 && k < model->element_count; ++k) {
+    const bool mirrored = se3di_component_is_mirrored(reader->part);
+    for (size_t k = 0; mirrored && k < model->element_count; ++k) {
         const se3di_element_entry *entry = &model->elements[k];
         if (entry->is_turned && entry->constraint.index1 == joint.index1) {
             return se3di_reader_fail(reader, node,

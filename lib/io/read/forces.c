@@ -279,7 +279,8 @@ static bool read_rsda_place(se3di_reader *reader, const se3di_node *node, se3d_r
                                      "cannot be combined with `joint`, which has it");
         }
     }
-    return se3di_read_key_joint(reader, node, "joint", &def->joint);
+    return se3di_read_key_joint(reader, node, "joint", &def->joint) &&
+           se3di_check_angle(reader, node, def->joint);
 }
 
 static bool read_rsda(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
@@ -394,6 +395,9 @@ static bool read_placed_load(se3di_reader *reader, const se3di_node *value,
 {
     const se3di_placement *place = &reader->part->place;
     const bool own = def->in_body_frame && body->part == reader->part;
+    if (def->in_body_frame && !se3di_check_frame(reader, value, body)) {
+        return false;
+    }
     for (size_t i = 0; i < 3; ++i) {
         se3di_node sum = *value->first;
         char text[SE3D_EXPRESSION_TEXT_MAX + 1] = "0";
@@ -413,6 +417,7 @@ static bool read_placed_load(se3di_reader *reader, const se3di_node *value,
                                          se3di_node_describe(part));
             }
             if (column[i] != 0.0 && used < sizeof text) {
+                sum = used == 1 ? *part : sum;
                 used += (size_t)snprintf(text + used, sizeof text - used, "+%.17g*(%s)", column[i],
                                          part->text);
             }

@@ -100,7 +100,9 @@ static bool read_axes(se3di_reader *reader, const se3di_node *node, const char *
                       const se3di_body_entry *body, double p[4])
 {
     const bool is_ground = body == &reader->model->bodies[0];
-    if (!se3di_read_orientation(reader, se3di_node_get(node, key), p)) {
+    const se3di_node *child = se3di_node_get(node, key);
+    if (!se3di_read_orientation(reader, child, p) ||
+        !se3di_check_frame(reader, child ? child : node, body)) {
         return false;
     }
     (is_ground ? se3di_place_orientation : se3di_flip_orientation)(&reader->part->place, p);
