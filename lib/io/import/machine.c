@@ -310,12 +310,7 @@ static bool marker_is_taken(const se3di_machine_body *body, const char *name)
             return true;
         }
     }
-    for (const se3di_machine_marker *at = body->markers; at; at = at->next) {
-        if (strcmp(at->name, name) == 0) {
-            return true;
-        }
-    }
-    return false;
+    return is_taken(&body->marker_names, name);
 }
 
 se3di_machine_marker *se3di_machine_add_marker(se3di_machine *m, size_t body, const char *name,
@@ -329,7 +324,7 @@ se3di_machine_marker *se3di_machine_add_marker(se3di_machine *m, size_t body, co
     while (free_name && marker_is_taken(b, free_name)) {
         free_name = se3di_machine_text(m, "%s_%zu", valid[0] ? valid : "marker", ++m->counter);
     }
-    if (!marker || !free_name) {
+    if (!marker || !free_name || !se3di_ionames_add(&b->marker_names, m->pool, free_name, 0)) {
         se3di_machine_fail_memory(m);
         return NULL;
     }

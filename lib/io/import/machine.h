@@ -40,6 +40,7 @@ typedef struct se3di_machine_body {
     double w[3];       /* body frame */
     se3di_machine_shape *shapes, *last_shape;
     se3di_machine_marker *markers, *last_marker;
+    se3di_ionames marker_names; /* that are taken */
 } se3di_machine_body;
 
 typedef enum se3di_section {
