@@ -110,6 +110,9 @@ bool se3di_adams_springdamper(se3di_adams *a, se3di_adams_statement *s)
     if (i->body == j->body) {
         return se3di_adams_lose(a, s, "both markers are on one part");
     }
+    if (!turns && free < 0.0) {
+        return se3di_adams_lose(a, s, "its LENGTH is negative");
+    }
     se3di_entry *entry = add_spring(a, s, turns, i, j);
     se3di_entry_put_number(a->m, entry, "k", k);
     se3di_entry_put_number(a->m, entry, "c", c);

@@ -2,11 +2,13 @@
 /* Expressions of Adams as expressions of a model file. Operators are the same but for **; calls are
  * taken apart, and what they mean is written with ours. The units of the file are taken away where
  * a quantity enters: TIME is t over the unit of time. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "io/import/adams.h"
 #include "io/import/scan.h"
+#include "se3d/expression.h"
 
 enum { TEXT_MAX = 3800, DEPTH_MAX = 40, ARGUMENTS_MAX = 40 };
 
@@ -342,11 +344,58 @@ static const char *translate(translator *t, const char *text)
     return se3di_machine_text(t->a->m, "%s", out);
 }
 
+/* Whether a model file takes it, also with a unit and brackets around it. */
+static bool is_expression(translator *t, const char *text)
+{
+    se3di_machine *m = t->a->m;
+    const se3di_adams_meaning *of = t->meaning;
+    const char *const known[] = {of->distance, of->speed, of->angle, of->turning};
+    const char *names[5] = {"t"};
+    const double x[5] = {0.0};
+    size_t count = 1;
+    double value = 0.0;
+    se3d_expression *made = NULL;
+    se3d_expression_error error;
+    se3d_expression_def def = se3d_expression_def_default();
+    for (size_t k = 0; k < 4; ++k) {
+        if (known[k]) {
+            names[count++] = known[k];
+        }
+    }
+    def.text = se3di_machine_text(m, "-1.00000000000000e+00*((%s)*t)", text);
+    def.variables = names;
+    def.variable_count = count;
+    def.allocator = m->options->allocator;
+    se3d_status status =
+        def.text ? se3d_expression_create(&def, &made, &error) : SE3D_ERR_NO_MEMORY;
+    se3d_expression_destroy(made);
+    if (status >= 0) { /* without the time a constant shows */
+        def.text = text;
+        status = se3d_expression_create(&def, &made, &error);
+    }
+    if (status >= 0 && se3d_expression_is_constant(made)) {
+        se3d_expression_eval(made, x, &value);
+    }
+    if (status >= 0) {
+        se3d_expression_destroy(made);
+    }
+    if (status == SE3D_ERR_NO_MEMORY) {
+        return se3di_machine_fail_memory(m);
+    }
+    if (status < 0 || !(fabs(value) <= 1e30)) {
+        give_up(t, status < 0 ? se3di_machine_text(m, "its function: %s", error.message)
+                              : "its function is larger than 1e30");
+        return false;
+    }
+    return true;
+}
+
 const char *se3di_adams_translate(se3di_adams *a, const char *text,
                                   const se3di_adams_meaning *meaning, const char **why)
 {
     translator t = {.a = a, .meaning = meaning};
     const char *out = translate(&t, text);
+    out = out && is_expression(&t, out) ? out : NULL;
     *why = out ? NULL : t.why ? t.why : "no memory";
     return out;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Joints of Adams. I moves relative to J, so that J is our body i and I our body j: angles,
  * displacements and reactions are those of the I marker. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -95,8 +96,13 @@ bool se3di_adams_joint(se3di_adams *a, se3di_adams_statement *s)
         }
         s->turns = types[k].turns;
         s->slides = types[k].slides;
-        if (!join(a, s, types[k].type, types[k].axis_i, types[k].axis_j, &entry) ||
-            !se3di_adams_number(a, s, "PITCH", a->length, &pitch)) {
+        if (!se3di_adams_number(a, s, "PITCH", a->length, &pitch)) {
+            return false;
+        }
+        if (strcmp(types[k].type, "screw") == 0 && !(fabs(pitch) > 0.0)) {
+            return se3di_adams_lose(a, s, "a screw without PITCH");
+        }
+        if (!join(a, s, types[k].type, types[k].axis_i, types[k].axis_j, &entry)) {
             return false;
         }
         if (strcmp(types[k].type, "screw") == 0) {
@@ -243,9 +249,28 @@ typedef struct term {
     double ratio;
 } term;
 
+/* Whether each joint is there once and takes part. */
+static bool are_different(const term *terms, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        for (int i = 0; i < k; ++i) {
+            if (terms[i].joint == terms[k].joint && terms[i].slides == terms[k].slides) {
+                return false;
+            }
+        }
+        if (!(fabs(terms[k].ratio) > 0.0)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool put_coupler(se3di_adams *a, se3di_adams_statement *s, const term *terms, int count)
 {
     const char *text = "[";
+    if (!are_different(terms, count)) {
+        return se3di_adams_lose(a, s, "a joint takes part twice, or with the ratio 0");
+    }
     s->made = se3di_adams_name(a, s);
     for (int k = 0; text && k < count; ++k) {
         const char *name = se3di_machine_quote(a->m, terms[k].joint->made);
@@ -404,6 +429,9 @@ bool se3di_adams_rackpin(se3di_adams *a, se3di_adams_statement *s)
     if (!pinion || !rack) {
         return a->m->status >= 0 &&
                se3di_adams_lose(a, s, "no joints turn its pinion and slide its rack");
+    }
+    if (!(fabs(diameter) > 0.0)) {
+        return se3di_adams_lose(a, s, "its PD is 0");
     }
     s->made = se3di_adams_name(a, s);
     se3di_entry *entry = s->made ? se3di_machine_add(a->m, SE3DI_SECTION_JOINTS) : NULL;

@@ -240,10 +240,16 @@ static const char *take_name(se3di_machine *m, se3di_ionames *names, const char 
 const char *se3di_machine_name_body(se3di_machine *m, const char *text, const char *kind,
                                     size_t line)
 {
-    if (!is_taken(&m->body_names, "ground") &&
-        !se3di_ionames_add(&m->body_names, m->pool, "ground", 0)) {
-        se3di_machine_fail_memory(m);
-        return NULL;
+    /* the ground and the channels of the whole model */
+    static const char *const words[] = {"ground",    "energy",     "work",
+                                        "violation", "contacts",   "particles",
+                                        "steps",     "iterations", "time"};
+    for (size_t k = 0; k < sizeof words / sizeof *words; ++k) {
+        if (!is_taken(&m->body_names, words[k]) &&
+            !se3di_ionames_add(&m->body_names, m->pool, words[k], 0)) {
+            se3di_machine_fail_memory(m);
+            return NULL;
+        }
     }
     return take_name(m, &m->body_names, text, kind, line);
 }

@@ -265,7 +265,8 @@ static bool place_all(tree *t)
             at = t->links.joints[t->to_parent[at]].parent;
         }
         if (depth > count) {
-            return se3di_machine_fail(m, t->links.list[k].line, 0,
+            const se3di_xml *node = t->joint_nodes[t->to_parent[k]];
+            return se3di_machine_fail(m, node->line, node->column,
                                       "the link `%.80s` is in a circle of joints: URDF has trees",
                                       t->links.list[k].name);
         }

@@ -156,6 +156,16 @@ bool se3di_urdf_dynamics(se3di_machine *m, const se3di_xml *node, se3di_link_joi
     return read_limits(m, node, joint);
 }
 
+/* A joint that follows another by the factor 0 stays where it is. */
+static bool hold(se3di_machine *m, const char *name, const se3di_link_joint *joint, double value)
+{
+    se3di_entry *entry = se3di_machine_add(m, SE3DI_SECTION_DRIVERS);
+    se3di_entry_put_text(m, entry, "name", name);
+    se3di_entry_put_text(m, entry, "joint", joint->made);
+    se3di_entry_put_number(m, entry, "value", value);
+    return m->status >= 0;
+}
+
 bool se3di_urdf_couple(se3di_machine *m, const se3di_link_joint *joint,
                        const se3di_link_joint *other, const se3di_urdf_mimic *mimic)
 {
@@ -169,6 +179,9 @@ bool se3di_urdf_couple(se3di_machine *m, const se3di_link_joint *joint,
     }
     const char *name =
         se3di_machine_name(m, se3di_machine_text(m, "%s_mimic", joint->made), "joint", joint->line);
+    if (name && !(fabs(mimic->ratio) > 0.0)) {
+        return hold(m, name, joint, mimic->offset);
+    }
     se3di_entry *entry = name ? se3di_machine_add(m, SE3DI_SECTION_JOINTS) : NULL;
     const char *a = se3di_machine_quote(m, joint->made);
     const char *b = se3di_machine_quote(m, other->made);

@@ -172,6 +172,15 @@ static void put_marker(writer *w, const se3di_machine_marker *marker)
     put(w, "}\n");
 }
 
+/* Each edge for itself: none may round to 0 beside the others. */
+static const char *edges_text(se3di_machine *m, const double size[3])
+{
+    const char *a = se3di_machine_number(m, size[0]);
+    const char *b = se3di_machine_number(m, size[1]);
+    const char *c = se3di_machine_number(m, size[2]);
+    return a && b && c ? se3di_machine_text(m, "[%s, %s, %s]", a, b, c) : NULL;
+}
+
 static void put_shape(writer *w, const se3di_machine_shape *shape)
 {
     static const char indent[] = "         ";
@@ -179,7 +188,7 @@ static void put_shape(writer *w, const se3di_machine_shape *shape)
     put(w, "      - {");
     put_pair(w, indent, "type", shape->type, true);
     if (strcmp(shape->type, "box") == 0) {
-        put_pair(w, indent, "size", se3di_machine_numbers(m, shape->size, 3), false);
+        put_pair(w, indent, "size", edges_text(m, shape->size), false);
     }
     if (shape->radius > 0.0) {
         put_pair(w, indent, "radius", se3di_machine_number(m, shape->radius), false);
