@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """URDF: the efforts of a driven arm against Newton's and Euler's laws for the file itself, summed over the
 links that a joint carries, and what else becomes of the file."""
+import json
 import math
+import subprocess
 import xml.etree.ElementTree as xml
 
 import tool
@@ -172,8 +174,8 @@ def meshes():
     folder = tool.WORK / "ws" / "arm_description"
     (folder / "urdf").mkdir(parents=True, exist_ok=True)
     (folder / "meshes").mkdir(exist_ok=True)
-    (folder / "meshes" / "a.obj").write_text(
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+    mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
+    (folder / "meshes" / "a.obj").write_text(mesh)
     path = folder / "urdf" / "part.urdf"
     visual = "<visual><geometry><mesh filename='package://arm_description/meshes/{}' scale='{}'/></geometry></visual>"
     path.write_text("<robot name='r'><link name='a'>" + visual.format("a.obj", "2 2 2") +
@@ -184,6 +186,14 @@ def meshes():
     tool.check([n["kind"] for n in notes] == ["lost"] * 3, f"notes are {notes}")
     tool.check("assimp" in notes[2]["message"], "how to convert it")
     tool.convert(path, "--partial")
+    (folder / "meshes" / "a.obj").write_text("v 0 0 0\n")
+    out = tool.WORK / "broken.yaml"
+    done = subprocess.run([tool.PROGRAM, "import", str(path), "-o", str(out), "--json", "--partial"],
+                          capture_output=True, text=True, check=False)
+    tool.check(done.returncode == 1, f"a broken mesh: exit code {done.returncode}, not 1")
+    tool.check("no triangles" in json.loads(done.stdout)["message"], f"a broken mesh: {done.stdout}")
+    tool.check("broken.yaml:" in done.stderr, f"the place of a broken mesh: {done.stderr}")
+    (folder / "meshes" / "a.obj").write_text(mesh)
     tool.run("urdf_mesh", text + "output: [{file: results.csv, channels: [a.position]}]\n")
 
 

@@ -83,6 +83,23 @@ static int write_model(const options *o, const se3d_model_import *import)
     return EXIT_DONE;
 }
 
+/* Read what was made, with its meshes: a file that cannot be read is no import. */
+static int read_back(const options *o, const se3d_model_import *import)
+{
+    size_t length = 0;
+    const char *text = se3d_model_import_get_text(import, &length);
+    const char *name = o->directory ? o->directory : "model.yaml";
+    se3d_model *model = NULL;
+    se3d_model_error error;
+    if (SE3D_FAILED(se3d_model_read_text(text, length, name, NULL, &model, &error))) {
+        fputs("what was made cannot be read, change it by hand:\n", stderr);
+        report_failure(o, "", error.message);
+        return EXIT_FAILED;
+    }
+    se3d_model_destroy(model);
+    return EXIT_DONE;
+}
+
 static int import_model(const options *o, const char *folder)
 {
     se3d_model_import_options how = se3d_model_import_options_default();
@@ -99,6 +116,9 @@ static int import_model(const options *o, const char *folder)
     int code = write_model(o, import);
     if (code == EXIT_DONE) {
         print_text(o, import);
+        code = read_back(o, import);
+    }
+    if (code == EXIT_DONE) {
         if (o->json) {
             print_json(import);
         }
@@ -156,5 +176,6 @@ const command_entry import_entry = {
             {"import robot.urdf --merge-fixed -o robot.yaml", "with fewer bodies"},
             {0}},
     .exits = "0 done; 1 something could not be carried (the model file is written all the same), "
-             "or the model file could not be written; 2 bad usage or malformed file.",
+             "or the model file could not be written, or not be read again; 2 bad usage or "
+             "malformed file.",
 };
