@@ -38,7 +38,8 @@ typedef enum se3d_method {
     SE3D_METHOD_RADAU = 6,
     SE3D_METHOD_RATTLE = 7,
     SE3D_METHOD_VERLET = 8,
-    SE3D_METHOD_RK4 = 9
+    SE3D_METHOD_RK4 = 9,
+    SE3D_METHOD_CONVEX = 10
 } se3d_method;
 
 /* Get the name of a method as in a model file ("auto", "dop853"). The methods have the numbers from
@@ -61,11 +62,11 @@ typedef struct se3d_solver_def {
     int32_t formulation; /* se3d_formulation, default ROMEGA */
     int32_t method;      /* se3d_method, dynamics only, default AUTO */
     int32_t order;       /* bdf: 1..5, rattle: 2, 4, others: the one they have; 0: the default */
-    /* Of generalized_alpha, hht, rattle, verlet: fixed; of the others: the largest one; >= 1e-15
-     * [s]; 0: chosen by the error. rattle and verlet choose equal steps once, to the tolerance, by
-     * trial steps ahead (se3d_solver_get_step); contacts and stops shorten them, and where they
-     * turn out to be too long they are halved and the log is warned. Beside particles verlet
-     * takes at most 1 ms. */
+    /* Of generalized_alpha, hht, rattle, verlet, convex: fixed; of the others: the largest one;
+     * >= 1e-15 [s]; 0: chosen by the error. rattle and verlet choose equal steps once, to the
+     * tolerance, by trial steps ahead (se3d_solver_get_step); contacts and stops shorten them, and
+     * where they turn out to be too long they are halved and the log is warned. Beside particles
+     * verlet takes at most 1 ms. convex: 1 ms, less if force elements are stiff. */
     double step;
     double tolerance;       /* relative error if steps are chosen, 1e-14..0.1; 0: 1e-6. Below what a
                                method reaches it works at that (se3d_solver_get_tolerance) */

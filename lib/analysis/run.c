@@ -12,6 +12,7 @@
 #include "assembly/user.h"
 #include "base/log.h"
 #include "contact/bodies/pace.h"
+#include "integrator/convex.h"
 #include "integrator/kink_step.h"
 #include "integrator/turns.h"
 #include "math/steps.h"
@@ -44,6 +45,8 @@ static void release(se3di_run *run)
     run->integration.work = NULL;
     run->work_count = 0;
     se3di_newton_destroy(&run->integration.newton);
+    se3di_convex_destroy(run->integration.convex, &run->model->allocator);
+    run->integration.convex = NULL;
     if (run->prepared) {
         se3di_counters counters = run->equations.counters;
         se3di_equations_destroy(&run->equations);
@@ -506,6 +509,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
     step = remaining / se3di_steps_count(remaining, step, t_end);
     SE3DI_TRY(begin_dynamics(run, step));
     se3di_run_tell_bodies(run);
+    se3di_run_tell_step(run);
     if (has_step_control(integration)) {
         se3di_run_tell_reach(run);
     }

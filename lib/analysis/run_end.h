@@ -16,6 +16,8 @@ se3d_status se3di_run_fail(se3di_run *run, se3d_status status, double t_end);
 void se3di_run_tell_reach(se3di_run *run);
 /* ... if joint coordinates are asked for and the method does not integrate them. */
 void se3di_run_tell_bodies(se3di_run *run);
+/* The log is told of the step of a method that controls no error, if none was given. */
+void se3di_run_tell_step(se3di_run *run);
 /* What was found of redundant equations goes to the log. @return OK, INFO_REDUNDANT */
 se3d_status se3di_run_inform(se3di_run *run);
 

@@ -35,6 +35,19 @@ void se3di_run_tell_bodies(se3di_run *run)
     }
 }
 
+void se3di_run_tell_step(se3di_run *run)
+{
+    const se3di_integration *integration = &run->integration;
+    const se3di_integrator *method = integration->method;
+    if (method == &se3di_integrator_convex && !(integration->settings.step > 0.0) &&
+        run->told_step != method) {
+        run->told_step = method;
+        se3di_log_write(run->error, SE3D_LOG_WARNING,
+                        "t = %g s: no step is given: %s takes %g s and estimates no error",
+                        run->model->time, method->name, integration->settings.step_most);
+    }
+}
+
 /* A row that was left out constrains the mechanism after all. */
 static void warn_of_rows(se3di_run *run)
 {

@@ -81,7 +81,9 @@ void se3di_assembly_eval_mass(se3di_assembly *assembly);
 void se3di_assembly_level(se3di_assembly *assembly);
 /* out [unknowns] -= M x, M the mass whatever H is. */
 void se3di_assembly_subtract_inertia(const se3di_assembly *assembly, const double *x, double *out);
-/* What acts on the bodies: `wrench`. */
+/* What gravity and force elements do to the bodies: `wrench`. */
+se3d_status se3di_assembly_eval_elements(se3di_assembly *assembly, double t, se3di_error *error);
+/* What acts on the bodies, contacts included: `wrench`. */
 se3d_status se3di_assembly_eval_wrenches(se3di_assembly *assembly, double t, se3di_error *error);
 /* The same, and velocity terms, into b [unknowns]. */
 se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, double *b,

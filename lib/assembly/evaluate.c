@@ -245,11 +245,11 @@ void se3di_assembly_level(se3di_assembly *assembly)
     assembly->levels = 1;
 }
 
-se3d_status se3di_assembly_eval_wrenches(se3di_assembly *assembly, double t, se3di_error *error)
+se3d_status se3di_assembly_eval_elements(se3di_assembly *assembly, double t, se3di_error *error)
 {
     const se3di_model *model = assembly->model;
     uint32_t failed = 0;
-    se3d_status status = se3di_loads_eval(model, t, assembly->wrench, &failed);
+    se3d_status status = se3di_forces_eval(model, t, assembly->wrench, &failed);
     if (status < 0) {
         int is_gravity = failed >= model->force_slots.count;
         const char *name = is_gravity ? "gravity" : model->forces[failed].name;
@@ -259,6 +259,13 @@ se3d_status se3di_assembly_eval_wrenches(se3di_assembly *assembly, double t, se3
             status == SE3D_ERR_SINGULAR ? "its two points coincide, it has no direction"
                                         : "its function is not finite or failed");
     }
+    return SE3D_OK;
+}
+
+se3d_status se3di_assembly_eval_wrenches(se3di_assembly *assembly, double t, se3di_error *error)
+{
+    SE3DI_TRY(se3di_assembly_eval_elements(assembly, t, error));
+    se3di_contacts_add_wrenches(assembly->model, assembly->wrench);
     for (size_t k = 0; assembly->push && k < 6 * (size_t)assembly->dense_count; ++k) {
         assembly->wrench[k] += assembly->push[k];
     }

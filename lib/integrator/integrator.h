@@ -29,6 +29,7 @@ typedef struct se3di_integrator_settings {
 typedef struct se3di_integration se3di_integration;
 struct se3di_rk_tableau;
 struct se3di_newmark;
+struct se3di_convex;
 
 /* The history of a method with `advance` begins with this. */
 typedef struct se3di_adaptive_history {
@@ -94,10 +95,11 @@ struct se3di_integration {
     double error;        /* of the last step, relative to the tolerance, if it is controlled */
     double fraction;     /* of a step that was refused, to where an impact begins; 0: none */
     se3di_newton newton; /* of implicit methods */
-    se3di_saved before_trials; /* of steps whose length is chosen */
-    int32_t is_paced;          /* contacts or stops have shortened the step under way */
-    se3di_kink kink;           /* where the accepted state is, if */
-    int32_t at_kink;           /* no step can be made before it was passed */
+    struct se3di_convex *convex; /* of that method; NULL: none yet */
+    se3di_saved before_trials;   /* of steps whose length is chosen */
+    int32_t is_paced;            /* contacts or stops have shortened the step under way */
+    se3di_kink kink;             /* where the accepted state is, if */
+    int32_t at_kink;             /* no step can be made before it was passed */
     int32_t reserved;
 };
 
@@ -112,7 +114,8 @@ struct se3di_integration {
     X(RADAU, radau)                                                                                \
     X(RATTLE, rattle)                                                                              \
     X(VERLET, verlet)                                                                              \
-    X(RK4, rk4)
+    X(RK4, rk4)                                                                                    \
+    X(CONVEX, convex)
 
 #define SE3DI_METHOD_DECLARE(METHOD, name) extern const se3di_integrator se3di_integrator_##name;
 SE3DI_METHOD_LIST(SE3DI_METHOD_DECLARE)

@@ -7,11 +7,19 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* What the force and the springs of a contact are. */
+enum {
+    SE3DI_CONTACT_LAWFUL = 0,  /* those of the law at the state */
+    SE3DI_CONTACT_NEW = 1,     /* none yet: it begins with the next step, */
+    SE3DI_CONTACT_STEPPED = 2, /* the impulse of the last step over its length (method convex) */
+    SE3DI_CONTACT_PARTING = 3  /* none more: an impact of one step has parted the two */
+};
+
 /* A point of contact, named by (shape_i, shape_j, feature). */
 typedef struct se3di_body_contact {
     uint32_t shape_i, shape_j; /* dense, i < j */
     uint32_t feature;
-    uint32_t reserved;
+    int32_t kind;                    /* SE3DI_CONTACT_ */
     double anchor_i[3], anchor_j[3]; /* body frames; j's minus i's is the stretch of the spring */
     double roll[3], twist;           /* R* times the angle of rolling (ground frame), of torsion */
     double turn[4];                  /* orientation of body j in body i */
@@ -19,6 +27,7 @@ typedef struct se3di_body_contact {
     double overlap;
     double inverse_mass;        /* 1/m* along the normal, of the points that share the load */
     double force[3], torque[3]; /* on j: at the point, of rolling and torsion; ground frame */
+    double energy;              /* of its springs [J], if it is not lawful */
 } se3di_body_contact;
 
 typedef struct se3di_body_contacts {

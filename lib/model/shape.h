@@ -46,6 +46,7 @@ typedef struct se3di_pair {
     double kn, kt, dn, dt;
     double friction, rolling, torsion, dr;
     double cohesion, pull_off;
+    double restitution;
 } se3di_pair;
 
 #define SE3DI_PAIR_SIZE 10 /* doubles in an se3di_pair */

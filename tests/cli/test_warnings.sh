@@ -49,6 +49,12 @@ is "$(lines 'equal steps of ')" 1
 expect 'and in the report' 0 "$program" run "$dir/long.yaml" -o "$dir/r" --json
 has "$dir/out" '"step": '
 
+model steps "analysis: {type: dynamics, duration: 0.01, method: convex}" ''
+expect 'steps that nobody chose' 0 "$program" run "$dir/steps.yaml" -o "$dir/r"
+is "$(lines 'no step is given: convex takes 0.001 s and estimates no error')" 1
+expect 'a step that was given' 0 "$program" run "$dir/steps.yaml" -o "$dir/r" --step 1e-3
+is "$(lines 'no step is given')" 0
+
 # What the report shows anyway is not warned of beside it.
 model start "$dynamics" ', velocity: [0, 0, 1]'
 expect 'velocities that do not fit' 0 "$program" run "$dir/start.yaml" -o "$dir/r"

@@ -279,9 +279,9 @@ static void fill_table(void)
     }
     add("elementary", 0, 0, 0)->run = run_elementary;
     static const int32_t methods[] = {SE3D_METHOD_VERLET, SE3D_METHOD_DOP853,
-                                      SE3D_METHOD_GENERALIZED_ALPHA};
+                                      SE3D_METHOD_GENERALIZED_ALPHA, SE3D_METHOD_CONVEX};
     static const int32_t laws[] = {SE3D_CONTACT_LAW_HOOKE, SE3D_CONTACT_LAW_HERTZ_MINDLIN};
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < 8; ++k) {
         add("contacts", laws[k % 2], methods[k / 2], k % 2)->run = run_scene;
     }
     for (int k = 0; k < 4; ++k) {

@@ -228,6 +228,20 @@ static void quarter_car_settles_and_its_tyre_never_pulls(void)
     close_example(&e);
 }
 
+/* What falls comes to rest. What was dissipated is what the boxes have lost, but for the order of
+ * the method; box12 lies on the floor, on four corners. */
+static void heap_comes_to_rest(void)
+{
+    example e = run_example("heap", NULL, NULL, NULL);
+    const double first = 12.0 * 0.5 * 9.81 * 0.26;
+    const double now = channel_of(&e, "energy.potential", 0);
+    CHECK(channel_of(&e, "energy.kinetic", 0) < 1e-12);
+    CHECK(now < 0.6 * first && now > 12.0 * 0.5 * 9.81 * 0.0499);
+    CHECK_NEAR(now + channel_of(&e, "energy.dissipated", 0), first, 0.02 * first);
+    CHECK_NEAR(channel_of(&e, "box12.position", 2), 0.05 - 0.5 * 9.81 / 4e5, 1e-8);
+    close_example(&e);
+}
+
 /* Wheel and contact point at t = 0.3 s, from the distances between the ball joints alone: eleven
  * equations for the angles of the arms and three points of the upright, by a program of its own. */
 static void suspension_steers_and_travels_as_its_distances_say(void)
@@ -347,6 +361,7 @@ int main(void)
     RUN(bar_comes_to_rest_where_its_moments_balance);
     RUN(governor_finds_its_steady_motion);
     RUN(quarter_car_settles_and_its_tyre_never_pulls);
+    RUN(heap_comes_to_rest);
     RUN(suspension_steers_and_travels_as_its_distances_say);
     RUN(axle_of_one_corner_is_symmetric);
     RUN(andrews_squeezer_ends_at_the_published_angles);

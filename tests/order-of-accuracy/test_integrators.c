@@ -258,6 +258,12 @@ static void verlet_is_of_order_2(void)
     check_method(&row);
 }
 
+static void convex_is_of_order_1(void)
+{
+    const method_row row = {SE3D_METHOD_CONVEX, 0, 1.0, 1.0, {1600, 400, 400}, 1e-12};
+    check_method(&row);
+}
+
 static void rattle_is_of_order_4_by_composition(void)
 {
     const method_row row = {SE3D_METHOD_RATTLE, 4, 4.0, 4.0, {100, 24, 40}, 1e-11};
@@ -403,6 +409,7 @@ int main(void)
     RUN(generalized_alpha_controls_its_error);
     RUN(rattle_is_of_order_2);
     RUN(verlet_is_of_order_2);
+    RUN(convex_is_of_order_1);
     RUN(rattle_is_of_order_4_by_composition);
     RUN(dop853_is_of_order_8);
     RUN(rk45_is_of_order_5);

@@ -38,7 +38,8 @@ static void contact_forces_are_those_of_the_state_that_is_shown(void)
                 worst = fmax(worst, fmax(find_gap(&m, 0, 2.0), find_gap(&m, 1, 0.5)));
                 largest = fmax(largest, text_model_get(&m, 1, 2));
             }
-            CHECK(largest > 50.0);
+            /* impacts of one step lie between the outputs: of convex these show the weight */
+            CHECK(largest > (method == SE3D_METHOD_CONVEX ? 19.0 : 50.0));
             CHECK(worst < 1e-7 * largest);
             if (!(worst < 1e-7 * largest)) {
                 fprintf(stderr, "%s %d: off by %.2e of %.3g N\n", se3d_method_get_name(method),

@@ -68,6 +68,7 @@ static const row rows[] = {
     {SE3D_METHOD_RATTLE, 2},
     {SE3D_METHOD_RATTLE, 4},
     {SE3D_METHOD_VERLET, 0},
+    {SE3D_METHOD_CONVEX, 0},
     {SE3D_METHOD_AUTO, 0},
 };
 
@@ -150,7 +151,8 @@ static void whoever_continues_gets_the_same_bits(void)
         for (size_t k = 0; k < sizeof rows / sizeof rows[0]; ++k) {
             for (int adaptive = 0; adaptive < 2; ++adaptive) {
                 const trial t = {mechanism, adaptive, rows[k]};
-                if (mechanism < FRICTION || rows[k].order != 4) { /* which steps back in time */
+                const int refuses = mechanism == FRICTION && rows[k].method == SE3D_METHOD_CONVEX;
+                if (!refuses && (mechanism < FRICTION || rows[k].order != 4)) { /* back in time */
                     check_trial(&t);
                 }
             }

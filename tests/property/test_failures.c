@@ -254,7 +254,7 @@ static void make(world *w, int scene, int32_t analysis, int32_t method)
     def.tolerance = 1e-5;
     def.step = method == SE3D_METHOD_GENERALIZED_ALPHA || method == SE3D_METHOD_HHT ||
                        method == SE3D_METHOD_RATTLE || method == SE3D_METHOD_VERLET ||
-                       analysis != SE3D_ANALYSIS_DYNAMICS
+                       method == SE3D_METHOD_CONVEX || analysis != SE3D_ANALYSIS_DYNAMICS
                    ? length_of(scene)
                    : 0.0;
     CHECK(!se3d_solver_create(w->system, &def, &w->solver));
@@ -390,6 +390,9 @@ static void a_failure_leaves_the_last_accepted_step_in_every_method(void)
 {
     for (int32_t method = 0; method < method_count(); ++method) {
         for (int scene = 0; scene < SCENES; ++scene) {
+            if (method == SE3D_METHOD_CONVEX && scene == SCENE_MEMORY) {
+                continue; /* it refuses friction in joints */
+            }
             fail_everywhere(scene, SE3D_ANALYSIS_DYNAMICS, method);
         }
     }

@@ -416,7 +416,7 @@ static void change_and_compare(const bars *w, se3d_solver *solver, const se3d_so
     compare(&there, twin, 12, 1e-7);
     CHECK(se3d_solver_step(exact, SHORT) >= 0);
     CHECK(se3d_solver_step(solver, SHORT) >= 0);
-    compare(w, twin, 6, 5e-6);
+    compare(w, twin, 6, def->method == SE3D_METHOD_CONVEX ? 2e-5 : 5e-6); /* of order 1 */
     se3d_solver_destroy(exact);
     se3d_solver_destroy(same);
     se3d_system_destroy(twin);

@@ -154,7 +154,9 @@ static void cross(const crossing *c, const char *value)
     CHECK_CONTAINS(said.text, "t = 0.5 s: the rate of push.");
     CHECK_NEAR(said.impulse, 2.0 + 1.0 / 11.0, 1e-5);
     CHECK_NEAR(said.work, 1.0 + 0.5 / 11.0, 1e-5);
-    CHECK_NEAR(get_gap(system, start.total), 0.0, c->step > 0.0 || c->steps > 0 ? 2e-4 : 2e-5);
+    const double most = c->step > 0.0 || c->steps > 0 ? 2e-4 : 2e-5;
+    CHECK_NEAR(get_gap(system, start.total), 0.0,
+               c->method == SE3D_METHOD_CONVEX ? 2.0 * most : most); /* of order 1 */
     if (check_failures > before) {
         fprintf(stderr, "  %s, formulation %d, %d steps, %d runs, step %g\n",
                 se3d_method_get_name(c->method), (int)c->formulation, c->steps, c->runs, c->step);

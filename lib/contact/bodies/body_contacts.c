@@ -91,8 +91,36 @@ static se3d_status add_wrench(void *ctx, const se3di_encounter *e)
     return SE3D_OK;
 }
 
+/* The forces of the state are impulses of the step that led to it. */
+static int are_stepped(const se3di_model *model)
+{
+    return model->contacts.count > 0 && model->contacts.list[0].kind != SE3DI_CONTACT_LAWFUL &&
+           model->history_tag != 0;
+}
+
+static void add_stepped_wrench(const se3di_model *model, const se3di_body_contact *c,
+                               double *wrench)
+{
+    for (int k = 0; k < 2; ++k) {
+        const uint32_t body = model->shapes[k ? c->shape_j : c->shape_i].body;
+        const se3di_frame *frame = &model->frames[body];
+        double *on = wrench + 6 * (size_t)body, arm[3], torque[3], turned[3];
+        se3di_sub(c->point, frame->r, arm);
+        se3di_cross(arm, c->force, torque);
+        se3di_mul_transposed(frame->A, torque, turned);
+        se3di_add_scaled(k ? 1.0 : -1.0, c->force, on);
+        se3di_add_scaled(k ? 1.0 : -1.0, turned, on + 3);
+    }
+}
+
 void se3di_contacts_add_wrenches(const se3di_model *model, double *wrench)
 {
+    if (are_stepped(model)) {
+        for (size_t k = 0; k < model->contacts.count; ++k) {
+            add_stepped_wrench(model, &model->contacts.list[k], wrench);
+        }
+        return;
+    }
     (void)se3di_contacts_visit(model, add_wrench, wrench);
 }
 
@@ -105,6 +133,12 @@ static se3d_status add_energy(void *ctx, const se3di_encounter *e)
 double se3di_contacts_potential(const se3di_model *model)
 {
     double sum = 0.0;
+    if (are_stepped(model)) {
+        for (size_t k = 0; k < model->contacts.count; ++k) {
+            sum += model->contacts.list[k].energy;
+        }
+        return sum;
+    }
     (void)se3di_contacts_visit(model, add_energy, &sum);
     return sum;
 }
@@ -118,6 +152,9 @@ static se3d_status add_power(void *ctx, const se3di_encounter *e)
 double se3di_contacts_power(const se3di_model *model)
 {
     double sum = 0.0;
+    if (are_stepped(model)) { /* the step has counted what its impulses did */
+        return sum;
+    }
     (void)se3di_contacts_visit(model, add_power, &sum);
     return sum;
 }

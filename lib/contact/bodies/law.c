@@ -52,6 +52,7 @@ void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_
     } else {
         hertz(a, b, e, pair);
     }
+    pair->restitution = e;
     pair->friction = choose(o->friction, sqrt(a->friction * b->friction));
     if (law == SE3DI_LAW_CALLBACK) {
         return;

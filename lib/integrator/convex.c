@@ -1,0 +1,346 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* convex: order 1, for many contacts of bodies at steps of milliseconds. Forces of elements are
+ * taken at the start of a step, contacts and constraints at its end: the velocities there are the
+ * optimum of a convex problem (convex.h), and the bodies move by them,
+ *
+ *     r_1 = r_0 + h v_1,   p_1 = p_0 exp(h w_1),
+ *
+ * those that nothing touches by the mean of both ends. Then positions and velocities are projected
+ * onto their constraints. The turning without loads keeps its energy: J (w - w_0) = h (n - w_m x J
+ * w_m), w_m = (w_0 + w)/2.                                             docs/theory/convex.md */
+#include "integrator/convex.h"
+
+#include "assembly/energy.h"
+#include "assembly/loads.h"
+#include "assembly/user.h"
+#include "contact/bodies/pace.h"
+#include "contact/bodies/pace_stop.h"
+#include "integrator/kink_step.h"
+#include "integrator/state.h"
+#include "integrator/turns.h"
+#include "math/inertia.h"
+#include "math/quaternion.h"
+#include "math/steps.h"
+#include "math/vec3.h"
+#include "particles/sets.h"
+#include "primitive/turn_counter.h"
+
+#include <math.h>
+#include <string.h>
+
+#define VECTORS     7 /* of unknowns */
+#define ROW_VECTORS 2
+#define TURN_MAX    3.0 /* rad, of a body in a step */
+
+static size_t history_count(const se3di_assembly *assembly)
+{
+    (void)assembly;
+    return 1; /* the length of the last step */
+}
+
+static size_t work_count(const se3di_assembly *assembly)
+{
+    (void)assembly;
+    return 1;
+}
+
+static void share_work(se3di_convex *c, const se3di_assembly *assembly)
+{
+    double **vectors[VECTORS] = {&c->start,    &c->aim,   &c->v,      &c->change,
+                                 &c->gradient, &c->moved, &c->carried};
+    double *next = c->work;
+    for (int k = 0; k < VECTORS; ++k) {
+        *vectors[k] = next;
+        next += assembly->unknown_count;
+    }
+    c->lambda = next;
+    c->aimed = next + assembly->row_count;
+}
+
+/* The room of a step, which lasts as long as the run is prepared. */
+static se3d_status open_room(se3di_integration *integration)
+{
+    const se3di_assembly *assembly = &integration->equations->assembly;
+    const se3d_allocator *allocator = &assembly->model->allocator;
+    if (!integration->convex) {
+        integration->convex = se3di_alloc(allocator, 1, sizeof *integration->convex);
+    }
+    se3di_convex *c = integration->convex;
+    if (!c) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    void *work = c->work, *touched = c->touched;
+    const size_t count =
+        VECTORS * (size_t)assembly->unknown_count + ROW_VECTORS * (size_t)assembly->row_count;
+    se3d_status status =
+        se3di_array_reserve(allocator, &work, &c->work_capacity, count, sizeof(double));
+    c->work = work;
+    SE3DI_TRY(status);
+    status = se3di_array_reserve(allocator, &touched, &c->touched_capacity, assembly->body_count,
+                                 sizeof *c->touched);
+    c->touched = touched;
+    SE3DI_TRY(status);
+    if (c->work) {
+        share_work(c, assembly);
+    }
+    return SE3D_OK;
+}
+
+static se3d_status open_convex(se3di_integration *integration)
+{
+    se3di_equations *equations = integration->equations;
+    const se3di_model *model = equations->assembly.model;
+    const char *what = model->sets                                ? "particles beside bodies"
+                       : equations->friction.count > 0            ? "friction in joints"
+                       : model->contact.law == SE3DI_LAW_CALLBACK ? "user-defined laws of contact"
+                                                                  : NULL;
+    if (what) {
+        return se3di_error_set(equations->error, SE3D_ERR_UNSUPPORTED,
+                               "method convex does not know %s; try verlet, or auto", what);
+    }
+    return open_room(integration) < 0
+               ? se3di_error_set(equations->error, SE3D_ERR_NO_MEMORY, "no memory for a step")
+               : SE3D_OK;
+}
+
+/* J (w - w_0) + h w_m x J w_m = h n, for w. */
+static void turn_freely(const double J[9], const double w0[3], const double torque[3], double h,
+                        double w[3])
+{
+    double wm[3];
+    se3di_copy(w0, wm);
+    for (int k = 0; k < 30; ++k) {
+        double L[3], gyro[3], f[3], D[9], W[9], tilde[9], WJ[9], dw[3], turn[3];
+        se3di_mul(J, wm, L);
+        se3di_cross(wm, L, gyro);
+        se3di_sub(wm, w0, turn);
+        se3di_mul(J, turn, f);
+        se3di_tilde(wm, W);
+        se3di_tilde(L, tilde);
+        se3di_mat_mul(W, J, WJ);
+        for (int e = 0; e < 9; ++e) {
+            D[e] = 2.0 * J[e] + h * (WJ[e] - tilde[e]);
+        }
+        for (int e = 0; e < 3; ++e) {
+            f[e] = h * torque[e] - 2.0 * f[e] - h * gyro[e];
+        }
+        se3di_solve3(D, f, dw);
+        se3di_add(wm, dw, wm);
+        if (!(se3di_norm(dw) > 1e-15 * se3di_norm(wm))) {
+            break;
+        }
+    }
+    for (int e = 0; e < 3; ++e) {
+        w[e] = 2.0 * wm[e] - w0[e];
+    }
+}
+
+/* The velocities at the start, and what loads make of them. */
+static se3d_status aim(se3di_convex *c, se3di_equations *equations)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    const se3di_model *model = assembly->model;
+    SE3DI_TRY(se3di_assembly_eval_elements(assembly, model->time, equations->error));
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const uint32_t body = assembly->free_body[k];
+        const se3di_frame *frame = &model->frames[body];
+        const double *wrench = assembly->wrench + 6 * (size_t)body;
+        double *v0 = c->start + 6 * (size_t)k, *v = c->aim + 6 * (size_t)k, J[9];
+        se3di_copy(frame->v, v0);
+        se3di_copy(frame->w, v0 + 3);
+        se3di_copy(v0, v);
+        se3di_add_scaled(c->h / model->bodies[body].mass, wrench, v);
+        se3di_inertia_matrix(model->bodies[body].J, J);
+        turn_freely(J, v0 + 3, wrench + 3, c->h, v + 3);
+    }
+    return SE3D_OK;
+}
+
+/* C at the start, and the rates that are prescribed at t1. */
+static se3d_status aim_rows(se3di_convex *c, se3di_equations *equations, double t1)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t1, equations->error));
+    se3di_assembly_eval_mass(assembly);
+    se3di_assembly_eval_jacobian(assembly);
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        c->aimed[k] = assembly->f[3 * (size_t)k + 1];
+    }
+    return SE3D_OK;
+}
+
+/* The bodies to the end of the step. */
+static void move(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        const double *v0 = c->start + 6 * (size_t)k, *v = c->v + 6 * (size_t)k;
+        const double part = c->touched[k] ? 1.0 : 0.5;
+        double turn[3], p[4];
+        se3di_scale(part * c->h, v + 3, turn);
+        se3di_add_scaled((1.0 - part) * c->h, v0 + 3, turn);
+        se3di_add_scaled(part * c->h, v, frame->r);
+        se3di_add_scaled((1.0 - part) * c->h, v0, frame->r);
+        memcpy(p, frame->p, sizeof p);
+        se3di_quat_rotate(p, turn, frame->p);
+        se3di_quat_normalize(frame->p, frame->p);
+        se3di_copy(v, frame->v);
+        se3di_copy(v + 3, frame->w);
+        se3di_frame_update(frame);
+        se3di_quat_rate(frame->p, frame->w, frame->pdot);
+    }
+}
+
+static se3d_status project(se3di_equations *equations, double t1)
+{
+    const se3di_model *model = equations->assembly.model;
+    se3di_state_scale scale = {.length = se3di_state_length(model), .speed = 1e-12, .spin = 1e-12};
+    for (uint32_t k = 0; k < equations->assembly.body_count; ++k) {
+        const se3di_frame *frame = &model->frames[equations->assembly.free_body[k]];
+        scale.speed = fmax(scale.speed, se3di_norm(frame->v));
+        scale.spin = fmax(scale.spin, se3di_norm(frame->w));
+    }
+    return se3di_state_project(equations, t1, &scale, 1e-15, 0);
+}
+
+/* What the step has become, at t1. */
+static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double t1)
+{
+    se3di_model *model = equations->assembly.model;
+    se3di_contacts_begin(model, 0.0, 1.0, 0);
+    SE3DI_TRY(se3di_state_prepare(equations, t1));
+    se3di_convex_record(c, model);
+    model->time = t1;
+    se3di_angles_accept(model);
+    se3di_loads_accept(model);
+    SE3DI_TRY(se3di_acceleration_solve(equations, t1));
+    SE3DI_TRY(se3di_user_report(model, equations->error));
+    model->work[0] -= se3di_convex_work(c);
+    SE3DI_TRY(se3di_work_accept(model, c->h));
+    model->history[0] = c->h;
+    return SE3D_OK;
+}
+
+static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double t1)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    SE3DI_TRY(aim(c, equations));
+    SE3DI_TRY(aim_rows(c, equations, t1));
+    SE3DI_TRY(se3di_convex_collect(c, assembly, equations->error));
+    SE3DI_TRY(se3di_convex_solve(c, equations));
+    move(c, assembly);
+    SE3DI_TRY(project(equations, t1));
+    return conclude(c, equations, t1);
+}
+
+static se3d_status advance(se3di_integration *integration, double t1)
+{
+    se3di_equations *equations = integration->equations;
+    se3di_convex *c = integration->convex;
+    c->h = t1 - equations->assembly.model->time;
+    se3d_status status = se3di_equations_keep(equations);
+    status = status < 0 ? status : try_step(c, equations, t1);
+    if (status < 0) {
+        se3di_equations_come_back(equations);
+        return status;
+    }
+    ++equations->counters.steps;
+    return SE3D_OK;
+}
+
+/* Whether anything may move so fast that a look at all pairs is due. */
+static int is_fast(const se3di_model *model, double h)
+{
+    double fastest = 0.0, smallest = HUGE_VAL;
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        const se3di_shape *shape = &model->shapes[k];
+        const se3di_frame *frame = &model->frames[shape->body];
+        const double reach = shape->bound + se3di_norm(shape->x);
+        const double turning = reach < HUGE_VAL ? reach * se3di_norm(frame->w) : 0.0;
+        fastest = fmax(fastest, se3di_norm(frame->v) + turning);
+        smallest = fmin(smallest, se3di_shape_contact_size(shape));
+    }
+    return 2.0 * fastest * h > smallest;
+}
+
+static se3d_status check_step(se3di_integration *integration, double h)
+{
+    const se3di_equations *equations = integration->equations;
+    const se3di_model *model = equations->assembly.model;
+    SE3DI_TRY(se3di_turns_check(equations, h, TURN_MAX));
+    return is_fast(model, h)
+               ? se3di_contacts_check_step(model, SE3DI_PACE_IMPLICIT, h, equations->error)
+               : se3di_stops_check_step(model, SE3DI_PACE_IMPLICIT, h, equations->error);
+}
+
+/* Equal steps of at most `most`. */
+static se3d_status run_steps(se3di_integration *integration, double t_end, double most)
+{
+    const se3di_model *model = integration->equations->assembly.model;
+    se3d_status status = open_convex(integration);
+    while (model->time < t_end && status >= 0 && status != SE3D_INFO_EVENT) {
+        const double rest = t_end - model->time;
+        double h = rest / se3di_steps_count(rest, most, t_end);
+        double t1 = rest > (1.0 + 1e-9) * h ? model->time + h : t_end;
+        h = se3di_kink_step(integration, model->time, h, fmin(2.0 * h, rest), &t1);
+        if (integration->at_kink) {
+            break;
+        }
+        status = se3di_equations_try_step(integration->equations, model->time);
+        status = status < 0 ? status : check_step(integration, h);
+        status = status < 0 ? status : se3di_watch_begin(integration->equations);
+        status = status < 0 ? status : advance(integration, t1);
+        status = status < 0 ? status : se3di_watch_end(integration->equations);
+    }
+    return status;
+}
+
+/* What contacts do is counted by steps, not by powers. */
+static se3d_status renew(se3di_integration *integration)
+{
+    se3di_model *model = integration->equations->assembly.model;
+    model->power[0] -= se3di_contacts_power(model);
+    return SE3D_OK;
+}
+
+static se3d_status start(se3di_integration *integration, double h)
+{
+    integration->equations->assembly.model->history[0] = h;
+    SE3DI_TRY(open_convex(integration));
+    return renew(integration);
+}
+
+static se3d_status step(se3di_integration *integration, double h)
+{
+    return run_steps(integration, integration->equations->assembly.model->time + h, h);
+}
+
+static se3d_status run(se3di_integration *integration, double t_end)
+{
+    const se3di_model *model = integration->equations->assembly.model;
+    double h = integration->settings.step > 0.0 ? integration->settings.step
+                                                : integration->settings.step_most;
+    h = model->contact.step > 0.0 ? fmin(h, model->contact.step) : h;
+    const double count = se3di_steps_count(t_end - model->time, h, t_end);
+    if (count > SE3DI_STEPS_MOST) {
+        return se3di_error_set(integration->equations->error, SE3D_ERR_STEP_COUNT,
+                               "a step of %g s needs %g steps from t = %g s to %g s, must be at "
+                               "most %g; try another step",
+                               h, count, model->time, t_end, SE3DI_STEPS_MOST);
+    }
+    return run_steps(integration, t_end, h);
+}
+
+const se3di_integrator se3di_integrator_convex = {
+    .name = "convex",
+    .tag = SE3D_METHOD_CONVEX,
+    .history_count = history_count,
+    .work_count = work_count,
+    .start = start,
+    .renew = renew,
+    .step = step,
+    .run = run,
+    .is_reduced = 1,
+    .fixes_step = 1,
+    .orders = 1u << 1,
+};

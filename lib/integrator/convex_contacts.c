@@ -1,0 +1,390 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Contacts in a step of convex: from what is remembered of them to their impulses, and back.
+ *
+ * A contact that lasts many steps follows its law; what the implicit step damps by itself, as a
+ * damper h k/2 would, is taken from the law's damper. One that lasts few steps is an impact of one
+ * step if it begins fast: its points leave with the restitution times their approach. If it is
+ * slow, the contact rests: it is damped in a few steps, on the law's spring. docs/theory/convex.md
+ */
+#include "integrator/convex.h"
+
+#include "contact/bodies/body_contacts.h"
+#include "math/elementary.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI         3.1415926535897932384626433832795
+#define FEW_STEPS  32.0 /* the time of a contact that is an impact of one step */
+#define SETTLING   4.0  /* steps in which a resting contact comes to rest */
+#define RIGID      1e3  /* an impact of one step, over what moves its bodies as one */
+#define FAST_TIMES 2.0  /* an impact approaches so much faster than loads make it in a step */
+
+void se3di_convex_velocity(const se3di_convex_contact *contact, const double *v, double out[3])
+{
+    out[0] = out[1] = out[2] = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        if (contact->free[k] >= 0) {
+            const double *body = v + 6 * (size_t)contact->free[k];
+            double turning[3];
+            se3di_mul(contact->lever[k], body + 3, turning);
+            se3di_add(turning, body, turning);
+            se3di_add_scaled(k ? 1.0 : -1.0, turning, out);
+        }
+    }
+}
+
+/* p_n and -dp_n/dv_n. */
+static double normal_impulse(const se3di_convex_contact *c, double h, double vn, double *slope)
+{
+    *slope = 0.0;
+    if (c->way == SE3DI_CONVEX_IMPACT) {
+        *slope = c->rebound > vn ? c->damping : 0.0;
+        return fmax(0.0, c->damping * (c->rebound - vn));
+    }
+    const double depth = c->overlap - h * vn;
+    double force = c->stiffness * depth, rate = c->stiffness;
+    if (c->power > 1.0) {
+        const double root = sqrt(fmax(0.0, depth));
+        force *= root;
+        rate *= 1.5 * root;
+    }
+    force -= c->damping * vn;
+    if (!(force > 0.0)) {
+        return 0.0;
+    }
+    *slope = h * (h * rate + c->damping);
+    return h * force;
+}
+
+void se3di_convex_impulse(const se3di_convex_contact *c, double h, const double v[3],
+                          double impulse[3], double *slope)
+{
+    const double *n = c->normal;
+    const double vn = se3di_dot(v, n);
+    double normal_slope, pull[3];
+    const double normal = normal_impulse(c, h, vn, &normal_slope);
+    for (int k = 0; k < 3; ++k) {
+        pull[k] = -h * c->tangential * c->xi[k] - c->drag * (v[k] - vn * n[k]);
+    }
+    const double size = se3di_norm(pull);
+    const double give = size > c->bound ? c->bound / size : 1.0;
+    se3di_scale(give, pull, impulse);
+    se3di_add_scaled(normal, n, impulse);
+    if (!slope) {
+        return;
+    }
+    const double across = c->drag * give, along = give < 1.0 ? across / (size * size) : 0.0;
+    for (int r = 0; r < 3; ++r) {
+        for (int k = 0; k < 3; ++k) {
+            slope[3 * r + k] = (normal_slope - across) * n[r] * n[k] - along * pull[r] * pull[k];
+        }
+        slope[3 * r + r] += across;
+    }
+}
+
+double se3di_convex_normal(const se3di_convex_contact *c, double h, const double v[3])
+{
+    double slope;
+    return normal_impulse(c, h, se3di_dot(v, c->normal), &slope);
+}
+
+double se3di_convex_along(const se3di_convex_contact *c, double h, const double v[3], double *bend)
+{
+    const double *n = c->normal, *d = c->change;
+    const double vn = se3di_dot(v, n), dn = se3di_dot(d, n);
+    double slope, pull[3], along = 0.0, size2 = 0.0, across = 0.0;
+    const double normal = normal_impulse(c, h, vn, &slope);
+    for (int k = 0; k < 3; ++k) {
+        const double dt = d[k] - dn * n[k];
+        pull[k] = -h * c->tangential * c->xi[k] - c->drag * (v[k] - vn * n[k]);
+        along += pull[k] * dt;
+        size2 += pull[k] * pull[k];
+        across += dt * dt;
+    }
+    const int slips = size2 > c->bound * c->bound;
+    const double give = slips ? c->bound / sqrt(size2) : 1.0;
+    *bend = slope * dn * dn + c->drag * give * (across - (slips ? along * along / size2 : 0.0));
+    return normal * dn + give * along;
+}
+
+/* The longest time in which a contact may be over, from its stiffness k and the mass it moves. */
+static int is_short(double k, double inverse_mass, double h)
+{
+    return k * inverse_mass * (FEW_STEPS * h) * (FEW_STEPS * h) > PI * PI;
+}
+
+typedef struct collecting {
+    se3di_convex *convex;
+    const se3di_assembly *assembly;
+    se3di_error *error;
+} collecting;
+
+/* The stiffness of a Hertzian spring that meets an approach u, or carries an overlap. */
+static double hertz_stiffness(double k, double overlap, double inverse_mass, double u)
+{
+    const double depth =
+        u > 0.0 ? se3di_pow(1.25 * u * u / (inverse_mass * k), 0.4) : 0.0; /* k sqrt(R) */
+    return 1.5 * k * sqrt(fmax(overlap, depth));
+}
+
+/* How it acts, and its dampers, for an approach `u` at the start of the step and what loads alone
+ * add to it in the step. */
+static void choose_way(se3di_convex_contact *c, const se3di_pair *pair, double h, double u,
+                       double added)
+{
+    const se3di_body_contact *record = c->record;
+    const double k = c->power > 1.0
+                         ? hertz_stiffness(c->stiffness, c->overlap, record->inverse_mass, u)
+                         : c->stiffness;
+    const double middle = c->overlap + 0.5 * h * fmax(u, 0.0);
+    const double now =
+        c->power > 1.0 ? hertz_stiffness(c->stiffness, middle, record->inverse_mass, 0.0) : k;
+    const double root =
+        sqrt(now / (pair->kn * (c->power > 1.0 ? 1.5 : 1.0)) / record->inverse_mass);
+    const double damping = pair->dn * root, drag = pair->dt * root; /* of the law */
+    c->way = SE3DI_CONVEX_SPRING;
+    if (!is_short(k, record->inverse_mass, h)) {
+        c->damping = fmax(0.0, damping - 0.5 * h * now);
+        c->drag = h * (h * c->tangential + fmax(0.0, drag - 0.5 * h * c->tangential));
+        return;
+    }
+    c->damping = fmax(damping, SETTLING * h * k);
+    c->drag = h * (h * c->tangential + fmax(drag, SETTLING * h * c->tangential));
+    const int parts = record->kind == SE3DI_CONTACT_PARTING && -u > FAST_TIMES * added;
+    if (parts || u > FAST_TIMES * added) {
+        c->way = SE3DI_CONVEX_IMPACT;
+        c->damping = RIGID / record->inverse_mass;
+        c->drag = pair->friction > 0.0 ? RIGID / record->inverse_mass : 0.0;
+        c->tangential = 0.0;
+        c->rebound *= parts ? 0.0 : u;
+    }
+}
+
+/* The law, of which the stretch may be. */
+static void set_law(se3di_convex_contact *c, const se3di_model *model, const se3di_pair *pair)
+{
+    const se3di_body_contact *r = c->record;
+    const int hertz = model->contact.law == SE3DI_LAW_HERTZ_MINDLIN;
+    const double radius =
+        se3di_shapes_contact_radius(&model->shapes[r->shape_i], &model->shapes[r->shape_j]);
+    c->overlap = r->overlap;
+    c->power = hertz ? 1.5 : 1.0;
+    c->stiffness = pair->kn * (hertz ? sqrt(radius) : 1.0);
+    c->tangential = pair->kt * (hertz ? sqrt(radius * r->overlap) : 1.0);
+    c->friction = pair->friction;
+    c->rebound = pair->restitution;
+}
+
+static void set_geometry(se3di_convex_contact *c, const se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    const se3di_body_contact *r = c->record;
+    double anchor[2][3];
+    se3di_copy(r->normal, c->normal);
+    for (int k = 0; k < 2; ++k) {
+        const uint32_t body = model->shapes[k ? r->shape_j : r->shape_i].body;
+        const se3di_frame *frame = &model->frames[body];
+        double arm[3], tilde[9];
+        c->free[k] = assembly->free_index[body];
+        se3di_sub(r->point, frame->r, arm);
+        se3di_tilde(arm, tilde);
+        se3di_mat_mul(tilde, frame->A, c->lever[k]);
+        for (int e = 0; e < 9; ++e) {
+            c->lever[k][e] = -c->lever[k][e];
+        }
+        se3di_mul(frame->A, k ? r->anchor_j : r->anchor_i, anchor[k]);
+        se3di_add(anchor[k], frame->r, anchor[k]);
+    }
+    se3di_sub(anchor[1], anchor[0], c->xi);
+    se3di_add_scaled(-se3di_dot(c->xi, c->normal), c->normal, c->xi);
+}
+
+/* What loads alone make of the velocities of the two points in the step, along the normal: of each
+ * body by itself, since what carries one of them lets the other go on. */
+static double loads_change(const se3di_convex *convex, const se3di_convex_contact *c)
+{
+    double sum = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        if (c->free[k] >= 0) {
+            const size_t at = 6 * (size_t)c->free[k];
+            double turn[3], change[3];
+            se3di_sub(convex->aim + at + 3, convex->start + at + 3, turn);
+            se3di_mul(c->lever[k], turn, change);
+            se3di_add(change, convex->aim + at, change);
+            se3di_sub(change, convex->start + at, change);
+            sum += fabs(se3di_dot(change, c->normal));
+        }
+    }
+    return sum;
+}
+
+static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
+                        const se3di_body_contact *record)
+{
+    const se3di_model *model = assembly->model;
+    const size_t material = (size_t)model->shapes[record->shape_i].material;
+    const se3di_pair *pair = &model->pairs[material * model->material_slots.count +
+                                           (size_t)model->shapes[record->shape_j].material];
+    se3di_convex_contact *c = &convex->contacts[convex->contact_count];
+    *c = (se3di_convex_contact){.record = record, .coupling = -1};
+    set_geometry(c, assembly);
+    if (c->free[0] < 0 && c->free[1] < 0) {
+        return;
+    }
+    set_law(c, model, pair);
+    se3di_convex_velocity(c, convex->start, c->before);
+    choose_way(c, pair, convex->h, -se3di_dot(c->before, c->normal), loads_change(convex, c));
+    c->bound = convex->h * c->friction * fmax(0.0, se3di_dot(record->force, c->normal));
+    for (int k = 0; k < 2; ++k) {
+        if (c->free[k] >= 0) {
+            convex->touched[c->free[k]] = 1;
+        }
+    }
+    ++convex->contact_count;
+}
+
+static se3d_status refuse(const collecting *c, const se3di_body_contact *record, const char *what)
+{
+    return se3di_error_set(c->error, SE3D_ERR_UNSUPPORTED,
+                           "the shapes %.60s and %.60s have %s, which method convex does not know; "
+                           "try verlet or auto",
+                           se3di_shape_describe(c->assembly->model, record->shape_i),
+                           se3di_shape_describe(c->assembly->model, record->shape_j), what);
+}
+
+static se3d_status check_pair(const collecting *c, const se3di_body_contact *record)
+{
+    const se3di_model *model = c->assembly->model;
+    const se3di_pair *pair =
+        &model
+             ->pairs[(size_t)model->shapes[record->shape_i].material * model->material_slots.count +
+                     (size_t)model->shapes[record->shape_j].material];
+    if (pair->rolling > 0.0 || pair->torsion > 0.0) {
+        return refuse(c, record, "rolling or torsional friction");
+    }
+    if (pair->cohesion > 0.0 || pair->pull_off > 0.0) {
+        return refuse(c, record, "cohesion or adhesion");
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_convex_collect(se3di_convex *convex, const se3di_assembly *assembly,
+                                 se3di_error *error)
+{
+    const se3di_model *model = assembly->model;
+    const collecting c = {convex, assembly, error};
+    const size_t count = model->contacts.count;
+    void *contacts = convex->contacts;
+    const se3d_status status = se3di_array_reserve(
+        &model->allocator, &contacts, &convex->contact_capacity, count, sizeof *convex->contacts);
+    convex->contacts = contacts;
+    if (status < 0) {
+        return se3di_error_set(error, status, "t = %g s: no memory for %zu contacts", model->time,
+                               count);
+    }
+    convex->contact_count = 0;
+    memset(convex->touched, 0, assembly->body_count);
+    for (size_t k = 0; k < count; ++k) {
+        SE3DI_TRY(check_pair(&c, &model->contacts.list[k]));
+        collect_one(convex, assembly, &model->contacts.list[k]);
+    }
+    return SE3D_OK;
+}
+
+double se3di_convex_work(const se3di_convex *convex)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < convex->contact_count; ++k) {
+        const se3di_convex_contact *c = &convex->contacts[k];
+        sum += 0.5 * (se3di_dot(c->impulse, c->before) + se3di_dot(c->impulse, c->v));
+    }
+    return sum;
+}
+
+/* The stretch at the end of the step, no longer than what friction holds. */
+static void stretch_after(const se3di_convex_contact *c, double h, double xi[3])
+{
+    const double vn = se3di_dot(c->v, c->normal);
+    double held[3];
+    xi[0] = xi[1] = xi[2] = 0.0;
+    if (!(c->tangential > 0.0)) {
+        return;
+    }
+    for (int k = 0; k < 3; ++k) {
+        xi[k] = c->xi[k] + h * (c->v[k] - vn * c->normal[k]);
+    }
+    se3di_copy(c->impulse, held);
+    se3di_add_scaled(-se3di_dot(c->impulse, c->normal), c->normal, held);
+    const double cap = c->bound / (h * c->tangential);
+    const double size = se3di_norm(held), length = se3di_norm(xi);
+    if (size >= (1.0 - 1e-9) * c->bound) { /* it slips: the spring pulls as friction does */
+        se3di_scale(size > 0.0 ? -fmin(cap, length) / size : 0.0, held, xi);
+    } else if (length > cap) {
+        se3di_scale(cap / length, xi, xi);
+    }
+}
+
+static void set_anchors(const se3di_model *model, se3di_body_contact *r, const double xi[3])
+{
+    for (int k = 0; k < 2; ++k) {
+        const se3di_frame *frame = &model->frames[model->shapes[k ? r->shape_j : r->shape_i].body];
+        double at[3];
+        se3di_sub(r->point, frame->r, at);
+        se3di_add_scaled(k ? 0.5 : -0.5, xi, at);
+        se3di_mul_transposed(frame->A, at, k ? r->anchor_j : r->anchor_i);
+    }
+}
+
+/* A contact that acted in the step. */
+static void record_one(const se3di_convex *convex, const se3di_convex_contact *c,
+                       const se3di_model *model, se3di_body_contact *r)
+{
+    double xi[3] = {0.0, 0.0, 0.0};
+    r->kind = c->way == SE3DI_CONVEX_SPRING ? SE3DI_CONTACT_STEPPED : SE3DI_CONTACT_PARTING;
+    se3di_scale(1.0 / convex->h, c->impulse, r->force);
+    if (c->way == SE3DI_CONVEX_SPRING) {
+        stretch_after(c, convex->h, xi);
+        se3di_add_scaled(-se3di_dot(xi, r->normal), r->normal, xi);
+        const double force = c->stiffness * r->overlap * (c->power > 1.0 ? sqrt(r->overlap) : 1.0);
+        r->energy = force * r->overlap / (1.0 + c->power) + 0.5 * c->tangential * se3di_dot(xi, xi);
+    }
+    set_anchors(model, r, xi);
+}
+
+static int is_same(const se3di_body_contact *a, const se3di_body_contact *b)
+{
+    return a->shape_i == b->shape_i && a->shape_j == b->shape_j && a->feature == b->feature;
+}
+
+/* Both lists are in the order of their pairs of shapes. */
+static int is_before(const se3di_body_contact *a, const se3di_body_contact *b)
+{
+    return a->shape_i < b->shape_i || (a->shape_i == b->shape_i && a->shape_j < b->shape_j);
+}
+
+void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
+{
+    const double none[3] = {0.0, 0.0, 0.0};
+    size_t first = 0;
+    for (size_t k = 0; k < model->contacts.next_count; ++k) {
+        se3di_body_contact *r = &model->contacts.next[k];
+        r->kind = SE3DI_CONTACT_NEW;
+        r->energy = r->twist = 0.0;
+        memset(r->force, 0, sizeof r->force);
+        memset(r->torque, 0, sizeof r->torque);
+        memset(r->roll, 0, sizeof r->roll);
+        set_anchors(model, r, none);
+        while (first < convex->contact_count && is_before(convex->contacts[first].record, r)) {
+            ++first;
+        }
+        for (size_t at = first;
+             at < convex->contact_count && !is_before(r, convex->contacts[at].record); ++at) {
+            if (is_same(convex->contacts[at].record, r)) {
+                record_one(convex, &convex->contacts[at], model, r);
+                break;
+            }
+        }
+    }
+}

@@ -1,0 +1,381 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Method convex at steps of milliseconds against closed forms and against verlet at small steps:
+ * rest, sticking, sliding, impacts, stacks, dominoes, heaps, contact of what joints hold. */
+#include "support/scene.h"
+
+#define STEP 1e-3
+
+static const double about_y[3] = {0.0, 1.0, 0.0};
+
+static void get(const scene *s, se3d_body body, double r[3], double v[3])
+{
+    CHECK(se3d_body_get_position(s->system, body, r) == SE3D_OK);
+    CHECK(se3d_body_get_velocity(s->system, body, v) == SE3D_OK);
+}
+
+static double distance(const double a[3], const double b[3])
+{
+    return sqrt(pow(a[0] - b[0], 2.0) + pow(a[1] - b[1], 2.0) + pow(a[2] - b[2], 2.0));
+}
+
+static double get_energy(const scene *s)
+{
+    se3d_energy energy;
+    CHECK(se3d_system_get_energy(s->system, &energy) == SE3D_OK);
+    return energy.kinetic + energy.potential;
+}
+
+/* Four corners carry the weight: as deep as the law's springs say, with any stiffness. */
+static void a_box_rests_as_deep_as_its_springs_say(void)
+{
+    static const double stiffness[3] = {2e3, 1e5, 1e8};
+    const double size[3] = {0.2, 0.2, 0.2}, start[3] = {0.0, 0.0, 0.1};
+    for (int k = 0; k < 12; ++k) {
+        double r[3], v[3], force[3], torque[3];
+        const double stiff = stiffness[k % 3], h = k < 6 ? STEP : 5e-3;
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, stiff);
+        se3d_body box = scene_box(&s, size, 2.0, start, scene_zero);
+        scene_floor(&s, 0.0);
+        scene_solve(&s, SE3D_METHOD_CONVEX, k / 3 % 2, h, 0.0);
+        scene_run(&s, 3.0);
+        get(&s, box, r, v);
+        CHECK_NEAR(r[2], 0.1 - 2.0 * G / (4.0 * stiff), 1e-9);
+        CHECK(fabs(v[2]) < 1e-9);
+        CHECK(se3d_body_get_contact_wrench(s.system, box, force, torque) == SE3D_OK);
+        CHECK_NEAR(force[2], 2.0 * G, 2e-6 * G);
+        CHECK(se3d_system_count_contacts(s.system) == 4);
+        scene_end(&s);
+    }
+}
+
+/* A cylinder or a hull that stands on four corners, leant by an angle. */
+static se3d_body stand(scene *s, int is_hull, double angle)
+{
+    static const double corners[24] = {-0.1, -0.1, -0.1, 0.1,  -0.1,  -0.1, -0.1,  0.1,
+                                       -0.1, 0.1,  0.1,  -0.1, -0.05, 0.0,  0.1,   0.05,
+                                       0.0,  0.1,  0.0,  0.05, 0.1,   0.0,  -0.05, 0.1};
+    const double J[3] = {0.01, 0.01, 0.01};
+    const double r[3] = {0.02, -0.01, 0.1 * cos(angle) + 0.1 * sin(angle)};
+    se3d_body body = scene_body(s, 2.0, J, r, scene_zero);
+    se3d_shape_def def = scene_shape(s, body);
+    se3d_shape shape;
+    scene_turn(s, body, about_y, angle);
+    def.radius = 0.1;
+    def.length = 0.2;
+    def.vertices = corners;
+    def.vertex_count = 8;
+    CHECK((is_hull ? se3d_shape_create_hull(s->system, &def, &shape)
+                   : se3d_shape_create_cylinder(s->system, &def, &shape)) == SE3D_OK);
+    return body;
+}
+
+/* Let go on an edge, they fall onto a mesh and come to rest as deep as the law says. */
+static void cylinders_and_hulls_come_to_rest_on_meshes(void)
+{
+    static const double points[15] = {-1.0, -1.0, 0.0, 1.0, -1.1, 0.0,  1.2, 1.0,
+                                      0.0,  -0.9, 1.0, 0.0, 0.01, 0.02, 0.0};
+    static const uint32_t faces[12] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
+    for (int k = 0; k < 8; ++k) {
+        double r[3], v[3];
+        se3d_energy energy;
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e5);
+        se3d_body body = stand(&s, k % 2, k / 4 ? 0.2 : 0.0);
+        scene_mesh_on(&s, scene_ground(&s), points, 5, faces, 4);
+        scene_solve(&s, SE3D_METHOD_CONVEX, k / 2 % 2, k % 3 ? STEP : 5e-3, 0.0);
+        scene_run(&s, 3.0);
+        get(&s, body, r, v);
+        const double count = (double)se3d_system_count_contacts(s.system);
+        CHECK(count > 3.5);
+        CHECK_NEAR(r[2], 0.1 - 2.0 * G / (count * 1e5), 3e-6);
+        CHECK(se3d_system_get_energy(s.system, &energy) == SE3D_OK);
+        CHECK(energy.kinetic < 1e-12);
+        scene_end(&s);
+    }
+}
+
+static void a_ball_rests_as_deep_as_hertz_says(void)
+{
+    const double start[3] = {0.0, 0.0, 0.0502};
+    for (int k = 0; k < 2; ++k) {
+        double r[3], v[3];
+        scene s = scene_begin(SE3D_CONTACT_LAW_HERTZ_MINDLIN, 0.5, 0.3, 1e5);
+        se3d_body ball = scene_ball(&s, 0.05, 0.5, start, scene_zero);
+        scene_floor(&s, 0.0);
+        scene_solve(&s, k ? SE3D_METHOD_CONVEX : SE3D_METHOD_VERLET, SE3D_FORMULATION_ROMEGA,
+                    k ? STEP : 0.0, 0.0);
+        scene_run(&s, 2.0);
+        get(&s, ball, r, v);
+        const double young = 1e7 / (2.0 * (1.0 - 0.3 * 0.3));
+        const double depth = pow(0.5 * G / (4.0 / 3.0 * young * sqrt(0.05)), 2.0 / 3.0);
+        CHECK_NEAR(r[2], 0.05 - depth, k ? 1e-3 * depth : 0.1 * depth);
+        scene_end(&s);
+    }
+}
+
+/* A cube on a plane that leans, and where it is after a time. */
+static void lean(double angle, double mu, double until, double r[3], double v[3])
+{
+    const double size[3] = {0.2, 0.2, 0.2};
+    const double height = 0.1 - 2.0 * G * cos(angle) / (4.0 * 1e5);
+    const double start[3] = {height * sin(angle), 0.0, height * cos(angle)};
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, mu, 0.3, 1e5);
+    se3d_body box = scene_box(&s, size, 2.0, start, scene_zero);
+    scene_turn(&s, box, about_y, angle);
+    scene_floor(&s, angle);
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
+    scene_run(&s, until);
+    get(&s, box, r, v);
+    scene_end(&s);
+}
+
+static void a_box_on_a_slope_slips_at_the_angle_of_friction(void)
+{
+    const double limit = atan(0.5);
+    double before[3], after[3], v[3];
+    lean(0.99 * limit, 0.5, 2.0, before, v);
+    lean(0.99 * limit, 0.5, 12.0, after, v);
+    CHECK(distance(before, after) < 1e-6);
+    lean(1.01 * limit, 0.5, 2.0, before, v);
+    CHECK(sqrt(v[0] * v[0] + v[2] * v[2]) > 0.05);
+    const double slope = 20.0 * PI / 180.0;
+    lean(slope, 0.2, 1.0, after, v);
+    CHECK_NEAR(sqrt(v[0] * v[0] + v[2] * v[2]), G * (sin(slope) - 0.2 * cos(slope)), 0.01);
+}
+
+/* A ball thrown at the floor; how it leaves. */
+static void bounce(int32_t law, double e, double mu, double stiffness, const double v0[3],
+                   double v[3], double height)
+{
+    const double start[3] = {0.0, 0.0, 0.05 + height};
+    double r[3];
+    se3d_material_def stuff = scene_stuff(mu, e, stiffness);
+    stuff.young = 5e4 * sqrt(stiffness);
+    scene s = scene_begin_with(NULL, law, &stuff);
+    CHECK(se3d_system_set_gravity(s.system, scene_zero) == SE3D_OK);
+    se3d_body ball = scene_ball(&s, 0.05, 0.5, start, v0);
+    scene_floor(&s, 0.0);
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
+    scene_run(&s, 0.6);
+    get(&s, ball, r, v);
+    scene_end(&s);
+}
+
+/* Impacts of one step, slow and fast; they are as rigid as to give 1e-3 of the change of speed. */
+static void short_impacts_have_the_restitution_typed(void)
+{
+    const double speeds[4] = {0.02, 0.2, 1.0, 6.0};
+    for (int k = 0; k < 32; ++k) {
+        const double e = 0.2 + 0.2 * (k % 4), v0[3] = {0.0, 0.0, -speeds[k / 4 % 4]};
+        double v[3];
+        bounce(k / 16 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE, e, 0.3, 1e7, v0, v,
+               fmin(0.0102, 0.3 * speeds[k / 4 % 4]));
+        CHECK_NEAR(v[2] / -v0[2], e, 1.01e-3 * (1.0 + e));
+    }
+}
+
+/* Stiff: an impact of one step; soft: its time is 100 steps. */
+static void impacts_have_the_restitution_typed(void)
+{
+    const double stiffness[3] = {1e7, 1e5, 490.0};
+    for (int k = 0; k < 24; ++k) {
+        const double e = 0.2 + 0.2 * (k % 4), v0[3] = {0.0, 0.0, -0.2};
+        double v[3];
+        bounce(k / 12 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE, e, 0.3,
+               stiffness[k / 4 % 3], v0, v, 0.0102 + 3e-5 * (k % 5));
+        CHECK_NEAR(v[2] / 0.2, e, 0.05 * e);
+    }
+}
+
+/* The friction impulse of a gross slide is mu times that of the normal force. */
+static void sliding_impacts_take_mu_times_the_normal_impulse(void)
+{
+    for (int k = 0; k < 4; ++k) {
+        const double e = 0.2 + 0.2 * k, v0[3] = {5.0, 0.0, -1.0};
+        double v[3];
+        bounce(SE3D_CONTACT_LAW_HOOKE, e, 0.3, 1e6, v0, v, 0.0102);
+        CHECK_NEAR((v0[0] - v[0]) / (0.3 * (v[2] - v0[2])), 1.0, 0.01);
+    }
+}
+
+static void a_stack_of_ten_stands_without_creep(void)
+{
+    const double size[3] = {0.1, 0.1, 0.1};
+    se3d_body boxes[10];
+    double before[10][3], after[3], v[3];
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e6);
+    scene_floor(&s, 0.0);
+    for (int k = 0; k < 10; ++k) {
+        const double r[3] = {0.004 * (k % 2), 0.0, 0.05 + 0.1 * k};
+        boxes[k] = scene_box(&s, size, 1.0, r, scene_zero);
+    }
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
+    scene_run(&s, 2.0);
+    for (int k = 0; k < 10; ++k) {
+        get(&s, boxes[k], before[k], v);
+    }
+    scene_run(&s, 12.0);
+    for (int k = 0; k < 10; ++k) {
+        get(&s, boxes[k], after, v);
+        CHECK(distance(before[k], after) < 1e-6);
+    }
+    double sink = 0.0; /* contact k carries 10 - k boxes on four corners */
+    for (int k = 0; k < 10; ++k) {
+        sink += (10 - k) * G / (4.0 * 1e6);
+    }
+    CHECK_NEAR(after[2], 0.95 - sink, 1e-6);
+    scene_end(&s);
+}
+
+static void twenty_dominoes_fall(void)
+{
+    const double size[3] = {0.01, 0.05, 0.1};
+    se3d_body stones[20];
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.4, 0.1, 1e5);
+    scene_floor(&s, 0.0);
+    for (int k = 0; k < 20; ++k) {
+        const double r[3] = {0.05 * k, 0.0, 0.05};
+        stones[k] = scene_box(&s, size, 0.05, r, scene_zero);
+    }
+    const double push[3] = {0.0, 4.0, 0.0}, forth[3] = {0.2, 0.0, 0.0};
+    CHECK(se3d_body_set_velocity(s.system, stones[0], forth) == SE3D_OK);
+    CHECK(se3d_body_set_angular_velocity(s.system, stones[0], push) == SE3D_OK);
+    double energy = get_energy(&s);
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
+    for (int k = 1; k <= 60; ++k) {
+        scene_run(&s, 0.05 * k);
+        CHECK(get_energy(&s) < energy + 1e-4);
+        energy = get_energy(&s);
+    }
+    for (int k = 0; k < 20; ++k) {
+        double r[3], v[3];
+        get(&s, stones[k], r, v);
+        CHECK(r[2] < 0.04);
+    }
+    scene_end(&s);
+}
+
+/* Boxes that fall on each other come to rest, and no step makes energy. */
+static void a_heap_of_27_boxes_settles(void)
+{
+    const double size[3] = {0.1, 0.1, 0.1};
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e5);
+    scene_floor(&s, 0.0);
+    for (int k = 0; k < 27; ++k) {
+        const double r[3] = {0.13 * (k % 3) + 0.011 * (k / 9), 0.13 * (k / 3 % 3) - 0.017 * (k / 9),
+                             0.12 + 0.18 * (k / 9)};
+        const double axis[3] = {0.6, 0.0, 0.8};
+        scene_turn(&s, scene_box(&s, size, 0.5, r, scene_zero), axis, 0.02 * k);
+    }
+    const double first = get_energy(&s);
+    double energy = first;
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
+    for (int k = 1; k <= 150; ++k) {
+        scene_run(&s, 0.02 * k);
+        CHECK(get_energy(&s) < energy + 1e-3 * first);
+        energy = get_energy(&s);
+    }
+    se3d_energy last;
+    CHECK(se3d_system_get_energy(s.system, &last) == SE3D_OK);
+    CHECK(last.kinetic < 1e-6);
+    scene_end(&s);
+}
+
+/* A pendulum that hits a box, which slides: where both are then. */
+static void strike(int32_t method, int32_t formulation, double h, double r[2][3])
+{
+    const double size[3] = {0.1, 0.1, 0.1}, at[3] = {0.12, 0.0, 0.05};
+    const double up[3] = {-0.4, 0.0, 0.46};
+    double v[3];
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.3, 0.4, 1e6);
+    scene_floor(&s, 0.0);
+    se3d_body box = scene_box(&s, size, 0.5, at, scene_zero);
+    se3d_body bob = scene_ball(&s, 0.05, 1.0, up, scene_zero);
+    se3d_joint_def def = se3d_joint_def_default();
+    se3d_constraint pin;
+    const double pivot[3] = {0.0, 0.0, 0.46}, arm[3] = {0.4, 0.0, 0.0};
+    def.body_i = scene_ground(&s);
+    def.body_j = bob;
+    memcpy(def.point_i, pivot, sizeof pivot);
+    memcpy(def.point_j, arm, sizeof arm);
+    memcpy(def.axis_i, about_y, sizeof about_y);
+    memcpy(def.axis_j, about_y, sizeof about_y);
+    CHECK(se3d_joint_create_revolute(s.system, &def, &pin) == SE3D_OK);
+    scene_solve(&s, method, formulation, h, 0.0);
+    scene_run(&s, 0.8);
+    get(&s, box, r[0], v);
+    get(&s, bob, r[1], v);
+    double violation[3];
+    CHECK(se3d_system_get_violation(s.system, violation) == SE3D_OK);
+    CHECK(violation[0] < 1e-9 && violation[1] < 1e-9);
+    scene_end(&s);
+}
+
+static void what_joints_hold_touches_as_with_verlet(void)
+{
+    double exact[2][3], r[2][3];
+    strike(SE3D_METHOD_VERLET, SE3D_FORMULATION_ROMEGA, 1e-5, exact);
+    CHECK(exact[0][0] > 0.2);
+    for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_JOINT; ++f) {
+        strike(SE3D_METHOD_CONVEX, f, STEP, r);
+        CHECK(distance(r[0], exact[0]) < 0.05 * (exact[0][0] - 0.12));
+        CHECK(distance(r[1], exact[1]) < 0.02);
+    }
+}
+
+/* The energy of a moving heap and what was dissipated. */
+static void the_audit_balances(void)
+{
+    const double size[3] = {0.1, 0.1, 0.1}, r[3] = {0.0, 0.0, 0.3}, v[3] = {1.0, 0.3, 0.0};
+    const double axis[3] = {0.6, 0.0, 0.8};
+    double rest[2];
+    for (int fine = 0; fine < 2; ++fine) {
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e5);
+        se3d_work work;
+        scene_floor(&s, 0.0);
+        scene_turn(&s, scene_box(&s, size, 0.5, r, v), axis, 0.4);
+        const double first = get_energy(&s);
+        scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, fine ? STEP / 8.0 : STEP, 0.0);
+        scene_run(&s, 1.5);
+        CHECK(se3d_system_get_work(s.system, &work) == SE3D_OK);
+        CHECK(work.dissipated > 0.5 * first);
+        rest[fine] = fabs(get_energy(&s) + work.dissipated - first) / first;
+        scene_end(&s);
+    }
+    CHECK(rest[0] < 0.02 && rest[1] < 0.3 * rest[0]);
+}
+
+static void what_it_does_not_know_is_refused(void)
+{
+    const double r[3] = {0.0, 0.0, 0.0499};
+    for (int k = 0; k < 2; ++k) {
+        se3d_material_def stuff = scene_stuff(0.5, 0.3, 1e5);
+        stuff.rolling_friction = k ? 0.0 : 0.1;
+        stuff.cohesion = k ? 100.0 : 0.0;
+        scene s = scene_begin_with(NULL, SE3D_CONTACT_LAW_HOOKE, &stuff);
+        (void)scene_ball(&s, 0.05, 0.5, r, scene_zero);
+        scene_floor(&s, 0.0);
+        scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
+        CHECK(se3d_solver_run(s.solver, 0.1) == SE3D_ERR_UNSUPPORTED);
+        CHECK_CONTAINS(se3d_system_get_error(s.system), k ? "cohesion" : "rolling");
+        CHECK_CONTAINS(se3d_system_get_error(s.system), "floor");
+        scene_end(&s);
+    }
+}
+
+int main(void)
+{
+    RUN(a_box_rests_as_deep_as_its_springs_say);
+    RUN(cylinders_and_hulls_come_to_rest_on_meshes);
+    RUN(a_ball_rests_as_deep_as_hertz_says);
+    RUN(a_box_on_a_slope_slips_at_the_angle_of_friction);
+    RUN(short_impacts_have_the_restitution_typed);
+    RUN(impacts_have_the_restitution_typed);
+    RUN(sliding_impacts_take_mu_times_the_normal_impulse);
+    RUN(a_stack_of_ten_stands_without_creep);
+    RUN(twenty_dominoes_fall);
+    RUN(a_heap_of_27_boxes_settles);
+    RUN(what_joints_hold_touches_as_with_verlet);
+    RUN(the_audit_balances);
+    RUN(what_it_does_not_know_is_refused);
+    return check_finish();
+}
