@@ -43,45 +43,6 @@ se3di_link_joint *se3di_links_join(se3di_links *links, const char *name, size_t 
     return joint;
 }
 
-se3di_machine_shape *se3di_links_add_shape(se3di_links *links, size_t link)
-{
-    se3di_link *l = &links->list[link];
-    se3di_machine_shape *shape = se3di_iopool_alloc(links->m->pool, sizeof *shape);
-    if (!shape) {
-        se3di_machine_fail_memory(links->m);
-        return NULL;
-    }
-    shape->frame = se3di_frame_identity();
-    shape->scale = 1.0;
-    shape->color[0] = -1.0;
-    if (l->last_shape) {
-        l->last_shape->next = shape;
-    } else {
-        l->shapes = shape;
-    }
-    l->last_shape = shape;
-    return shape;
-}
-
-bool se3di_links_add_marker(se3di_links *links, size_t link, const char *name,
-                            const se3di_frame *frame)
-{
-    se3di_link *l = &links->list[link];
-    se3di_machine_marker *marker = se3di_iopool_alloc(links->m->pool, sizeof *marker);
-    if (!marker) {
-        return se3di_machine_fail_memory(links->m);
-    }
-    marker->name = name;
-    marker->frame = *frame;
-    if (l->last_marker) {
-        l->last_marker->next = marker;
-    } else {
-        l->markers = marker;
-    }
-    l->last_marker = marker;
-    return true;
-}
-
 size_t se3di_links_leader(const se3di_links *links, size_t link)
 {
     while (links->list[link].group != link) {

@@ -22,15 +22,14 @@ typedef struct se3di_link {
     const char *name; /* NULL: one is made up */
     const char *comment;
     size_t line;
-    bool anchored;                            /* does not move */
-    bool is_ground;                           /* is the ground itself */
-    se3di_frame frame;                        /* in the ground */
-    se3di_mass mass;                          /* in the link */
-    double v[3], w[3];                        /* of its origin, ground frame */
-    se3di_machine_shape *shapes, *last_shape; /* frames in the link */
-    se3di_machine_marker *markers, *last_marker;
-    size_t group; /* the link that it is merged into; its own index: none */
-    size_t body;  /* index in the machine, when they are made; SE3DI_GROUND for the ground */
+    bool anchored;             /* does not move */
+    bool is_ground;            /* is the ground itself */
+    se3di_frame frame;         /* in the ground */
+    se3di_mass mass;           /* in the link */
+    double v[3], w[3];         /* of its origin, ground frame */
+    se3di_machine_parts parts; /* frames in the link */
+    size_t group;              /* the link that it is merged into; its own index: none */
+    size_t body; /* index in the machine, when they are made; SE3DI_GROUND for the ground */
 } se3di_link;
 
 typedef struct se3di_link_joint {
@@ -60,9 +59,6 @@ typedef struct se3di_links {
 /* Each returns NULL if there is no memory; valid until the next is added. */
 se3di_link *se3di_links_add(se3di_links *links, const char *name, size_t line);
 se3di_link_joint *se3di_links_join(se3di_links *links, const char *name, size_t line);
-se3di_machine_shape *se3di_links_add_shape(se3di_links *links, size_t link);
-bool se3di_links_add_marker(se3di_links *links, size_t link, const char *name,
-                            const se3di_frame *frame);
 /* Make bodies, joints, stops, dampers and friction of all. */
 bool se3di_links_emit(se3di_links *links);
 

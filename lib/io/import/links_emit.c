@@ -96,13 +96,13 @@ static bool put_parts(se3di_links *links, size_t k)
     if (!put_origin(links, k)) {
         return false;
     }
-    for (const se3di_machine_marker *from = link->markers; from; from = from->next) {
+    for (const se3di_machine_marker *from = link->parts.markers; from; from = from->next) {
         const se3di_frame frame = se3di_frame_of(&in, &from->frame);
         if (!se3di_machine_add_marker(m, link->body, from->name, &frame)) {
             return false;
         }
     }
-    for (const se3di_machine_shape *from = link->shapes; from; from = from->next) {
+    for (const se3di_machine_shape *from = link->parts.shapes; from; from = from->next) {
         se3di_machine_shape *to = se3di_machine_add_shape(m, link->body);
         if (!to) {
             return false;

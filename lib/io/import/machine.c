@@ -285,9 +285,8 @@ const char *se3di_machine_body_name(se3di_machine *m, size_t index)
     return se3di_machine_body_at(m, index)->name;
 }
 
-se3di_machine_shape *se3di_machine_add_shape(se3di_machine *m, size_t body)
+se3di_machine_shape *se3di_parts_add_shape(se3di_machine *m, se3di_machine_parts *parts)
 {
-    se3di_machine_body *b = se3di_machine_body_at(m, body);
     se3di_machine_shape *shape = se3di_iopool_alloc(m->pool, sizeof *shape);
     if (!shape) {
         se3di_machine_fail_memory(m);
@@ -296,13 +295,37 @@ se3di_machine_shape *se3di_machine_add_shape(se3di_machine *m, size_t body)
     shape->frame = se3di_frame_identity();
     shape->scale = 1.0;
     shape->color[0] = -1.0;
-    if (b->last_shape) {
-        b->last_shape->next = shape;
+    if (parts->last_shape) {
+        parts->last_shape->next = shape;
     } else {
-        b->shapes = shape;
+        parts->shapes = shape;
     }
-    b->last_shape = shape;
+    parts->last_shape = shape;
     return shape;
+}
+
+se3di_machine_shape *se3di_machine_add_shape(se3di_machine *m, size_t body)
+{
+    return se3di_parts_add_shape(m, &se3di_machine_body_at(m, body)->parts);
+}
+
+se3di_machine_marker *se3di_parts_add_marker(se3di_machine *m, se3di_machine_parts *parts,
+                                             const char *name, const se3di_frame *frame)
+{
+    se3di_machine_marker *marker = se3di_iopool_alloc(m->pool, sizeof *marker);
+    if (!marker) {
+        se3di_machine_fail_memory(m);
+        return NULL;
+    }
+    marker->name = name;
+    marker->frame = *frame;
+    if (parts->last_marker) {
+        parts->last_marker->next = marker;
+    } else {
+        parts->markers = marker;
+    }
+    parts->last_marker = marker;
+    return marker;
 }
 
 /* Whether the body has a marker of this name, or what is called so on every body. */
@@ -323,26 +346,17 @@ se3di_machine_marker *se3di_machine_add_marker(se3di_machine *m, size_t body, co
                                                const se3di_frame *frame)
 {
     se3di_machine_body *b = se3di_machine_body_at(m, body);
-    se3di_machine_marker *marker = se3di_iopool_alloc(m->pool, sizeof *marker);
     char valid[NAME_MAX_LENGTH + 1];
     make_valid(name ? name : "", valid);
     const char *free_name = se3di_machine_text(m, "%s", valid[0] ? valid : "marker");
     while (free_name && marker_is_taken(b, free_name)) {
         free_name = se3di_machine_text(m, "%s_%zu", valid[0] ? valid : "marker", ++m->counter);
     }
-    if (!marker || !free_name || !se3di_ionames_add(&b->marker_names, m->pool, free_name, 0)) {
+    if (!free_name || !se3di_ionames_add(&b->marker_names, m->pool, free_name, 0)) {
         se3di_machine_fail_memory(m);
         return NULL;
     }
-    marker->name = free_name;
-    marker->frame = *frame;
-    if (b->last_marker) {
-        b->last_marker->next = marker;
-    } else {
-        b->markers = marker;
-    }
-    b->last_marker = marker;
-    return marker;
+    return se3di_parts_add_marker(m, &b->parts, free_name, frame);
 }
 
 se3di_entry *se3di_machine_add(se3di_machine *m, se3di_section section)

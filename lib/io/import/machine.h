@@ -29,6 +29,12 @@ typedef struct se3di_machine_marker {
     struct se3di_machine_marker *next;
 } se3di_machine_marker;
 
+/* What is on a body, in the order of the file. */
+typedef struct se3di_machine_parts {
+    se3di_machine_shape *shapes, *last_shape;
+    se3di_machine_marker *markers, *last_marker;
+} se3di_machine_parts;
+
 typedef struct se3di_machine_body {
     const char *name;
     const char *comment; /* NULL: none */
@@ -38,8 +44,7 @@ typedef struct se3di_machine_body {
     se3di_frame frame; /* at the centre of mass, in the ground */
     double v[3];       /* ground frame */
     double w[3];       /* body frame */
-    se3di_machine_shape *shapes, *last_shape;
-    se3di_machine_marker *markers, *last_marker;
+    se3di_machine_parts parts;
     se3di_ionames marker_names; /* that are taken */
 } se3di_machine_body;
 
@@ -125,6 +130,10 @@ se3di_machine_body *se3di_machine_add_body(se3di_machine *m, const char *name);
 se3di_machine_body *se3di_machine_body_at(se3di_machine *m, size_t index);
 const char *se3di_machine_body_name(se3di_machine *m, size_t index);
 se3di_machine_shape *se3di_machine_add_shape(se3di_machine *m, size_t body);
+/* The same for lists that are no body's yet; the name is taken as it is. */
+se3di_machine_shape *se3di_parts_add_shape(se3di_machine *m, se3di_machine_parts *parts);
+se3di_machine_marker *se3di_parts_add_marker(se3di_machine *m, se3di_machine_parts *parts,
+                                             const char *name, const se3di_frame *frame);
 /* Its name is made valid and unique on the body. */
 se3di_machine_marker *se3di_machine_add_marker(se3di_machine *m, size_t body, const char *name,
                                                const se3di_frame *frame);

@@ -214,18 +214,18 @@ static void put_shape(writer *w, const se3di_machine_shape *shape)
     put(w, "}\n");
 }
 
-static void put_parts(writer *w, const se3di_machine_body *body)
+static void put_parts(writer *w, const se3di_machine_parts *parts)
 {
-    if (body->markers) {
+    if (parts->markers) {
         put(w, "    markers:\n");
     }
-    for (const se3di_machine_marker *at = body->markers; at; at = at->next) {
+    for (const se3di_machine_marker *at = parts->markers; at; at = at->next) {
         put_marker(w, at);
     }
-    if (body->shapes) {
+    if (parts->shapes) {
         put(w, "    shapes:\n");
     }
-    for (const se3di_machine_shape *at = body->shapes; at; at = at->next) {
+    for (const se3di_machine_shape *at = parts->shapes; at; at = at->next) {
         put_shape(w, at);
     }
 }
@@ -267,19 +267,19 @@ static void put_body(writer *w, const se3di_machine_body *body)
     if (!is_zero(body->w)) {
         put_line(w, "angular_velocity", se3di_machine_numbers(m, body->w, 3));
     }
-    put_parts(w, body);
+    put_parts(w, &body->parts);
 }
 
 static void put_bodies(writer *w)
 {
     se3di_machine *m = w->m;
-    const bool ground = m->ground.shapes || m->ground.markers;
+    const bool ground = m->ground.parts.shapes || m->ground.parts.markers;
     if (m->body_count > 0 || ground) {
         put(w, "\nbodies:\n");
     }
     if (ground) {
         put(w, "  - name: ground\n");
-        put_parts(w, &m->ground);
+        put_parts(w, &m->ground.parts);
     }
     for (size_t k = 0; k < m->body_count; ++k) {
         put_body(w, &m->bodies[k]);
