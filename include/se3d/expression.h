@@ -16,7 +16,7 @@ extern "C" {
 /* Limits: an expression that exceeds one is rejected with SE3D_ERR_EXPRESSION. */
 #define SE3D_EXPRESSION_TEXT_MAX     4096 /* characters */
 #define SE3D_EXPRESSION_DEPTH_MAX    64   /* parentheses, calls and '^' inside each other */
-#define SE3D_EXPRESSION_VARIABLE_MAX 4
+#define SE3D_EXPRESSION_VARIABLE_MAX 16
 
 /* A named constant. Its value is compiled in. @since 0.1 */
 typedef struct se3d_expression_symbol {

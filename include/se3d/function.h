@@ -13,7 +13,7 @@ extern "C" {
 #endif
 
 /* The most variables of a function. @since 0.1 */
-#define SE3D_FUNCTION_VARIABLES_MAX 4
+#define SE3D_FUNCTION_VARIABLES_MAX 16
 
 /* Compute a function of x[0..variable_count): jet = {value, d/dx0, d2/dx0^2}; gradient (NULL or
  * [variable_count]) = first derivatives. It must be a pure function of x: methods keep and

@@ -396,6 +396,39 @@ static inline se3d_status se3d_run_get_file(const se3d_run *run, size_t index, s
     return se3d_run_get_file_sized(run, index, file, sizeof *file);
 }
 
+/* What a column of a channel was over a run: an entry `summary` of the `output` asks for it. Of the
+ * rows that it names; between them a number counts as a straight line. @since 0.1 */
+typedef struct se3d_run_summary {
+    const char *file;    /* of the table, as in the model file; owned by the model */
+    const char *channel; /* the column, such as bar.position.z; owned by the run */
+    double min;          /* the smallest value [unit of the channel] */
+    double min_time;     /* the first time of it [s] */
+    double max;          /* the largest [unit of the channel] */
+    double max_time;     /* [s] */
+    double mean;         /* integral over time [unit of the channel] */
+    double rms;          /* root of the mean of squares [unit of the channel] */
+    double integral;     /* over the time of all analyses [unit of the channel times s] */
+    double last;         /* at the end [unit of the channel] */
+} se3d_run_summary;
+
+/* Count the columns that summaries of a run have. @return the number; 0 for NULL. @since 0.1 */
+SE3D_API size_t se3d_run_count_summaries(const se3d_run *run);
+
+/* As se3d_run_get_summary, told the size of *summary in bytes. @return as se3d_run_get_summary, and
+ * INVALID_ARGUMENT (size). @since 0.1 */
+SE3D_API se3d_status se3d_run_get_summary_sized(const se3d_run *run, size_t index,
+                                                se3d_run_summary *summary, size_t size);
+
+/* Get a column of a summary.
+ * @param[in] index  from 0, below se3d_run_count_summaries
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
+static inline se3d_status se3d_run_get_summary(const se3d_run *run, size_t index,
+                                               se3d_run_summary *summary)
+{
+    return se3d_run_get_summary_sized(run, index, summary, sizeof *summary);
+}
+
 /* A picture that the `output` of a model asks for. libse3d-io describes it only; the program `se3d`
  * makes it after the run, from the files that the run leaves. @since 0.1 */
 typedef struct se3d_model_picture {

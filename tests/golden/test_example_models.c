@@ -225,6 +225,9 @@ static void quarter_car_settles_and_its_tyre_never_pulls(void)
     CHECK_NEAR(channel_of(&e, "strut.displacement", 0), 0.0, 1e-5);
     CHECK_NEAR(channel_of(&e, "spring.force", 0), -300.0 * 9.81, 1.0);
     CHECK_NEAR(channel_of(&e, "tyre.force", 0), -340.0 * 9.81, 1.0);
+    CHECK_NEAR(channel_of(&e, "travel", 0), channel_of(&e, "spring.length", 0) - 0.5, 1e-15);
+    CHECK_NEAR(file_number(&e, "ride.csv", 1, 3), largest, 0.0); /* max of tyre.force */
+    CHECK_NEAR(file_number(&e, "ride.csv", 2, 8), channel_of(&e, "travel", 0), 1e-12);
     close_example(&e);
 }
 

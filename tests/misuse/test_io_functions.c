@@ -12,7 +12,8 @@ static const char text[] =
     "bodies: [{name: block, mass: m, inertia: [1, 1, 1], shapes: [{type: sphere, radius: 1}]}]\n"
     "analysis: [{type: dynamics, duration: 0.01}, {type: modes}]\n"
     "events: [{name: low, channel: block.position.z, value: -1e-4}]\n"
-    "output: [{file: a.csv, channels: [block.position]}, {plot: a.svg}]\n";
+    "output: [{file: a.csv, channels: [block.position]}, {plot: a.svg},\n"
+    "  {summary: s.csv, channels: [block.position, {twice: 2*block.position.z}]}]\n";
 
 /* A model that was read, and its run. */
 typedef struct world {
@@ -141,12 +142,13 @@ static void model_texts(const world *w)
 static void counters(const world *w)
 {
     CHECK(se3d_model_count_analyses(NULL) == 0 && se3d_model_count_analyses(w->model) == 2);
-    CHECK(se3d_model_count_outputs(NULL) == 0 && se3d_model_count_outputs(w->model) == 1);
+    CHECK(se3d_model_count_outputs(NULL) == 0 && se3d_model_count_outputs(w->model) == 2);
     CHECK(se3d_model_count_pictures(NULL) == 0 && se3d_model_count_pictures(w->model) == 1);
     CHECK(se3d_model_count_shapes(NULL) == 0 && se3d_model_count_shapes(w->model) == 1);
     CHECK(se3d_run_count_analyses(NULL) == 0 && se3d_run_count_analyses(w->run) == 2);
     CHECK(se3d_run_count_files(NULL) == 0 && se3d_run_count_files(w->run) >= 2);
     CHECK(se3d_run_count_particles(NULL) == 0 && se3d_run_count_particles(w->run) == 0);
+    CHECK(se3d_run_count_summaries(NULL) == 0 && se3d_run_count_summaries(w->run) == 4);
     CHECK(se3d_run_count_events(NULL) == 0 && se3d_run_count_events(w->run) == 1);
 }
 
@@ -175,12 +177,13 @@ static void model_get_parameter(const world *w)
     }
 
 GETTER(model_get_analysis, model, se3d_model_analysis, 2)
-GETTER(model_get_output, model, se3d_model_output, 1)
+GETTER(model_get_output, model, se3d_model_output, 2)
 GETTER(model_get_picture, model, se3d_model_picture, 1)
 GETTER(model_get_shape, model, se3d_model_shape, 1)
 GETTER(run_get_analysis, run, se3d_run_analysis, 2)
 GETTER(run_get_file, run, se3d_run_file, se3d_run_count_files(w->run))
 GETTER(run_get_event, run, se3d_run_event, 1)
+GETTER(run_get_summary, run, se3d_run_summary, 4)
 
 /* The model has none. */
 static void check_run_get_particles(const world *w)
@@ -244,7 +247,7 @@ static void model_get_channel(const world *w)
     const char *name = NULL;
     IS(se3d_model_get_channel(NULL, 0, 0, &name), SE3D_ERR_NULL);
     IS(se3d_model_get_channel(w->model, 0, 0, NULL), SE3D_ERR_NULL);
-    IS(se3d_model_get_channel(w->model, 1, 0, &name), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_model_get_channel(w->model, 2, 0, &name), SE3D_ERR_INVALID_ARGUMENT);
     IS(se3d_model_get_channel(w->model, 0, 1, &name), SE3D_ERR_INVALID_ARGUMENT);
     IS(se3d_model_get_channel(w->model, 0, 0, &name), SE3D_OK);
     CHECK_CONTAINS(name, "block.position");
@@ -257,7 +260,7 @@ static void model_get_channel_value(const world *w)
     IS(se3d_model_get_channel_value(NULL, 0, 0, NULL, value, &width), SE3D_ERR_NULL);
     IS(se3d_model_get_channel_value(w->model, 0, 0, NULL, NULL, &width), SE3D_ERR_NULL);
     IS(se3d_model_get_channel_value(w->model, 0, 0, NULL, value, NULL), SE3D_ERR_NULL);
-    IS(se3d_model_get_channel_value(w->model, 1, 0, NULL, value, &width),
+    IS(se3d_model_get_channel_value(w->model, 2, 0, NULL, value, &width),
        SE3D_ERR_INVALID_ARGUMENT);
     IS(se3d_model_get_channel_value(w->model, 0, 1, NULL, value, &width),
        SE3D_ERR_INVALID_ARGUMENT);
@@ -376,7 +379,7 @@ static const struct {
     {" se3d_model_get_system se3d_model_get_name se3d_model_get_title ", model_texts},
     {" se3d_model_count_analyses se3d_model_count_outputs se3d_model_count_pictures "
      "se3d_model_count_shapes se3d_run_count_analyses se3d_run_count_files se3d_run_count_events "
-     "se3d_run_count_particles ",
+     "se3d_run_count_particles se3d_run_count_summaries ",
      counters},
     {" se3d_model_get_parameter ", model_get_parameter},
     {" se3d_model_get_analysis ", check_model_get_analysis},
@@ -387,6 +390,7 @@ static const struct {
     {" se3d_run_get_file ", check_run_get_file},
     {" se3d_run_get_particles ", check_run_get_particles},
     {" se3d_run_get_event ", check_run_get_event},
+    {" se3d_run_get_summary ", check_run_get_summary},
     {" se3d_model_create_event ", model_create_event},
     {" se3d_model_get_solver ", model_get_solver},
     {" se3d_model_get_channel ", model_get_channel},

@@ -51,6 +51,7 @@ FILL(run_get_event, se3d_run_event, p->run, 0)
 FILL(model_import_get_note, se3d_model_import_note, p->import, 0)
 #endif
 FILL(run_get_file, se3d_run_file, p->run, 0)
+FILL(run_get_summary, se3d_run_summary, p->run, 0)
 
 typedef struct filler {
     const char *name;
@@ -84,6 +85,7 @@ static const filler fillers[] = {
     ROW(run_get_particles, se3d_run_particles),
     ROW(run_get_event, se3d_run_event),
     ROW(run_get_file, se3d_run_file),
+    ROW(run_get_summary, se3d_run_summary),
 #if defined(SE3D_HAS_EXPAT)
     ROW(model_import_get_note, se3d_model_import_note),
 #endif
@@ -97,7 +99,8 @@ static const char text[] =
     "upper: [6, 6, 6]}]\n"
     "analysis: {type: dynamics, method: verlet, duration: 0.02}\n"
     "events: [{name: low, channel: block.position.z, value: -1e-4}]\n"
-    "output: [{file: a.csv, channels: [block.position]}, {plot: a.svg}]\n";
+    "output: [{file: a.csv, channels: [block.position]}, {plot: a.svg},\n"
+    "  {summary: s.csv, channels: [block.position, {twice: 2*block.position.z}]}]\n";
 
 static void open_pair(place *p)
 {

@@ -627,15 +627,16 @@ static void check_definition(se3d_expression_def def, se3d_status expected, cons
 
 static void bad_variables_are_rejected(void)
 {
-    static const char *const five[] = {"a", "b", "c", "d", "f"};
+    static const char *const seventeen[] = {"a", "b", "c", "d", "f", "g", "h", "i", "j",
+                                            "k", "l", "m", "n", "o", "p", "q", "r"};
     static const char *const twice[] = {"a", "b", "a"};
     static const char *const reserved[] = {"t", "step", "x"};
     static const char *const empty[] = {"t", "", NULL};
     se3d_expression_def def = define("1");
     def.symbol_count = 0;
-    def.variables = five;
-    def.variable_count = 5;
-    check_definition(def, SE3D_ERR_INVALID_ARGUMENT, "5 variables, at most 4");
+    def.variables = seventeen;
+    def.variable_count = 17;
+    check_definition(def, SE3D_ERR_INVALID_ARGUMENT, "17 variables, at most 16");
     def.variables = NULL;
     def.variable_count = 1;
     check_definition(def, SE3D_ERR_NULL, "list of variables");

@@ -281,6 +281,36 @@ static void json_put_particles(const se3d_run *run)
     }
 }
 
+static void json_put_value(const char *name, double value)
+{
+    printf(", \"%s\": ", name);
+    json_put_number(value);
+}
+
+static void json_put_summaries(const se3d_run *run)
+{
+    fputs("], \"summary\": [", stdout);
+    for (size_t k = 0; k < se3d_run_count_summaries(run); ++k) {
+        se3d_run_summary s;
+        if (SE3D_FAILED(se3d_run_get_summary(run, k, &s))) {
+            continue;
+        }
+        fputs(k > 0 ? ", {\"channel\": " : "{\"channel\": ", stdout);
+        json_put_text(s.channel);
+        fputs(", \"file\": ", stdout);
+        json_put_text(s.file);
+        json_put_value("min", s.min);
+        json_put_value("min_time", s.min_time);
+        json_put_value("max", s.max);
+        json_put_value("max_time", s.max_time);
+        json_put_value("mean", s.mean);
+        json_put_value("rms", s.rms);
+        json_put_value("integral", s.integral);
+        json_put_value("last", s.last);
+        putchar('}');
+    }
+}
+
 /* The pictures that come afterwards. */
 static void json_put_pictures(const se3d_model *model)
 {
@@ -325,6 +355,7 @@ static void print_json(const options *o, const se3d_model *model, const se3d_run
     }
     json_put_events(run);
     json_put_particles(run);
+    json_put_summaries(run);
     json_put_pictures(model);
     fputs("]", stdout);
     json_put_count("passing_meshes",

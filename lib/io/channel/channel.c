@@ -341,6 +341,24 @@ static bool find_flow(const se3d_model *model, const char *head, se3di_channel *
     return true;
 }
 
+/* What a coordinate of the element is. */
+static se3di_motion motion_of(const se3di_element_entry *entry)
+{
+    const se3di_node *type = se3di_node_get(entry->node, "type");
+    const char *text = type ? type->text : "";
+    if (entry->kind == SE3DI_ELEMENT_CONSTRAINT) {
+        return strcmp(text, "d") == 0 || strcmp(text, "cd") == 0 ? SE3DI_TRANSLATION
+                                                                 : SE3DI_MOTION_UNKNOWN;
+    }
+    if (entry->kind == SE3DI_ELEMENT_JOINT) {
+        return SE3DI_MOTION_UNKNOWN;
+    }
+    if (strcmp(text, "tsda") == 0 || strcmp(text, "rsda") == 0) {
+        return text[0] == 't' ? SE3DI_TRANSLATION : SE3DI_ROTATION;
+    }
+    return entry->coordinate == SE3D_JOINT_COORDINATE_ANGLE ? SE3DI_ROTATION : SE3DI_TRANSLATION;
+}
+
 static bool find_element(const se3d_model *model, const char *head, const char *tail,
                          se3di_channel *channel, offer *offered)
 {
@@ -353,6 +371,7 @@ static bool find_element(const se3d_model *model, const char *head, const char *
     channel->constraint = entry->constraint;
     channel->force = entry->force;
     channel->body = entry->body;
+    channel->motion = motion_of(entry);
     memcpy(channel->point, entry->point, sizeof channel->point);
     return pick(offered, tail, &channel->quantity);
 }

@@ -4,6 +4,7 @@
 #define SE3D_IO_CHANNEL_H
 
 #include "io/base/pool.h"
+#include "io/document/unit.h"
 #include "se3d/io.h"
 
 /* What a channel may give: columns; the question that is asked of the system for it, and the first
@@ -102,8 +103,13 @@ typedef enum se3di_quantity_nature {
     SE3DI_NATURE_JUMPS   /* counts, and what is proportional to them */
 } se3di_quantity_nature;
 
+typedef enum se3di_motion { SE3DI_MOTION_UNKNOWN, SE3DI_TRANSLATION, SE3DI_ROTATION } se3di_motion;
+
+struct se3di_combination;
+
 typedef struct se3di_channel {
     const char *name;
+    const struct se3di_combination *combination; /* of other channels; NULL: a quantity */
     se3di_quantity quantity;
     se3d_body body;
     se3d_marker marker;
@@ -112,9 +118,17 @@ typedef struct se3di_channel {
     const se3d_particles *particles;
     const struct se3di_tagged *tagged; /* of sets and sinks */
     uint32_t index;                    /* tag of a set, number of a sink */
-    uint32_t reserved;
-    double point[3]; /* of `body`, where a wrench acts */
+    se3di_motion motion;               /* of the coordinate of an element */
+    double point[3];                   /* of `body`, where a wrench acts */
 } se3di_channel;
+
+/* A number made of others. */
+typedef struct se3di_combination {
+    const se3d_expression *expression; /* of the time and the parts; NULL: the first part itself */
+    const se3di_channel *parts;        /* [count]; none is a combination */
+    const size_t *components;          /* [count] of the parts, which are taken */
+    size_t count;
+} se3di_combination;
 
 /* Find what `name` means. If it means nothing, `problem` gets what is allowed. */
 bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel *channel,
@@ -132,6 +146,8 @@ bool se3di_channel_is_continuous(const se3di_channel *channel);
 bool se3di_channel_is_of_motion(const se3di_channel *channel);
 /* How large its numbers are if they are not small, in the present state. */
 double se3di_channel_get_scale(const se3di_channel *channel, const se3d_system *system);
+/* Of a quantity, as far as its unit is known: what may be a translation or a rotation has none. */
+se3di_dimension se3di_channel_get_dimension(const se3di_channel *channel);
 /* Every channel of the first 100 bodies, constraints and forces. @return NULL: out of memory. */
 se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count);
 

@@ -257,7 +257,8 @@ static se3d_status answer(se3di_question question, const se3di_channel *c, se3di
     return SE3D_OK;
 }
 
-se3d_status se3di_channel_eval(const se3di_channel *channel, se3di_sample *sample, double value[4])
+static se3d_status eval_quantity(const se3di_channel *channel, se3di_sample *sample,
+                                 double value[4])
 {
     double numbers[SE3DI_ANSWER_NUMBERS];
     size_t first = 0;
@@ -269,4 +270,25 @@ se3d_status se3di_channel_eval(const se3di_channel *channel, se3di_sample *sampl
     const se3d_status status = answer(question, channel, sample, numbers);
     memcpy(value, numbers + first, se3di_channel_get_width(channel) * sizeof *value);
     return status;
+}
+
+se3d_status se3di_channel_eval(const se3di_channel *channel, se3di_sample *sample, double value[4])
+{
+    const se3di_combination *c = channel->combination;
+    double x[SE3D_EXPRESSION_VARIABLE_MAX] = {0.0};
+    if (!c) {
+        return eval_quantity(channel, sample, value);
+    }
+    memset(value, 0, 4 * sizeof *value);
+    se3d_status status = se3d_system_get_time(sample->system, x);
+    for (size_t k = 0; k < c->count && status >= 0; ++k) {
+        double numbers[4];
+        status = eval_quantity(&c->parts[k], sample, numbers);
+        x[k + 1] = numbers[c->components[k]];
+    }
+    if (status < 0) {
+        return status;
+    }
+    value[0] = x[1];
+    return c->expression ? se3d_expression_eval(c->expression, x, value) : SE3D_OK;
 }

@@ -64,17 +64,45 @@ typedef struct quantity {
 static const quantity quantities[SE3DI_QUANTITY_COUNT] = {SE3DI_QUANTITY_LIST(QUANTITY)};
 #undef QUANTITY
 
+static double quantity_scale(const se3di_channel *channel, const sizes *s)
+{
+    const quantity *q = &quantities[channel->quantity];
+    const double lever = q->lever ? fmax(1.0, s->length) : 1.0;
+    return io_pow(s->length, q->length) * io_pow(s->rate, q->rate) * io_pow(s->mass, q->mass) *
+           lever;
+}
+
+/* How much an expression changes if each part changes by its scale, where they are as large. */
+static double combination_scale(const se3di_combination *c, const sizes *s)
+{
+    double x[SE3D_EXPRESSION_VARIABLE_MAX] = {0.0};
+    double gradient[SE3D_EXPRESSION_VARIABLE_MAX];
+    double value = 0.0;
+    double sum = 0.0;
+    for (size_t k = 0; k < c->count; ++k) {
+        x[k + 1] = quantity_scale(&c->parts[k], s);
+        sum = fmax(sum, x[k + 1]);
+    }
+    if (!c->expression || se3d_expression_eval_gradient(c->expression, x, &value, gradient) < 0) {
+        return sum;
+    }
+    sum = 0.0;
+    for (size_t k = 1; k <= c->count; ++k) {
+        sum += fabs(gradient[k]) * x[k];
+    }
+    return sum > 0.0 ? sum : 1.0;
+}
+
 double se3di_channel_get_scale(const se3di_channel *channel, const se3d_system *system)
 {
     const sizes s = measure(system);
-    const quantity *q = &quantities[channel->quantity];
-    const double lever = q->lever ? fmax(1.0, s.length) : 1.0;
-    return io_pow(s.length, q->length) * io_pow(s.rate, q->rate) * io_pow(s.mass, q->mass) * lever;
+    return channel->combination ? combination_scale(channel->combination, &s)
+                                : quantity_scale(channel, &s);
 }
 
 size_t se3di_channel_get_width(const se3di_channel *channel)
 {
-    return (size_t)quantities[channel->quantity].width;
+    return channel->combination ? 1 : (size_t)quantities[channel->quantity].width;
 }
 
 se3di_question se3di_channel_get_question(const se3di_channel *channel, size_t *first)
@@ -83,12 +111,44 @@ se3di_question se3di_channel_get_question(const se3di_channel *channel, size_t *
     return quantities[channel->quantity].question;
 }
 
+/* The least smooth of what it is made of. */
+static se3di_quantity_nature nature_of(const se3di_channel *channel)
+{
+    const se3di_combination *c = channel->combination;
+    se3di_quantity_nature nature = SE3DI_NATURE_MOTION;
+    if (!c) {
+        return quantities[channel->quantity].nature;
+    }
+    for (size_t k = 0; k < c->count; ++k) {
+        const se3di_quantity_nature part = quantities[c->parts[k].quantity].nature;
+        nature = part > nature ? part : nature;
+    }
+    return nature;
+}
+
 bool se3di_channel_is_continuous(const se3di_channel *channel)
 {
-    return quantities[channel->quantity].nature != SE3DI_NATURE_JUMPS;
+    return nature_of(channel) != SE3DI_NATURE_JUMPS;
 }
 
 bool se3di_channel_is_of_motion(const se3di_channel *channel)
 {
-    return quantities[channel->quantity].nature == SE3DI_NATURE_MOTION;
+    return nature_of(channel) == SE3DI_NATURE_MOTION;
+}
+
+se3di_dimension se3di_channel_get_dimension(const se3di_channel *channel)
+{
+    const quantity *q = &quantities[channel->quantity];
+    const bool turns = channel->quantity == SE3DI_JOINT_ANGLE ||
+                       channel->quantity == SE3DI_JOINT_ANGLE_RATE ||
+                       channel->quantity == SE3DI_BODY_ANGULAR_VELOCITY ||
+                       channel->quantity == SE3DI_BODY_ANGULAR_ACCELERATION;
+    se3di_dimension d = {(int8_t)q->length, (int8_t)q->mass, (int8_t)-q->rate, (int8_t)turns};
+    if (!q->lever) {
+        return d;
+    }
+    const bool rotates = channel->motion == SE3DI_ROTATION;
+    d.length = (int8_t)(q->mass ? 1 + rotates : !rotates);
+    d.angle = (int8_t)(!q->mass && rotates);
+    return channel->motion == SE3DI_MOTION_UNKNOWN ? (se3di_dimension){0, 0, 0, 0} : d;
 }

@@ -9,6 +9,7 @@
 #include "io/base/pool.h"
 #include "io/base/sized.h"
 #include "io/channel/channel.h"
+#include "io/channel/combine.h"
 #include "io/channel/sample.h"
 #include "io/document/document.h"
 #include "io/model/model.h"
@@ -35,8 +36,14 @@ bool se3di_event_source_find(se3d_model *model, const char *channel, se3di_event
         snprintf(problem, size, "is longer than any channel's name");
         return false;
     }
-    if (!se3di_channel_find_number(model, channel, &source->channel, &source->component, problem,
-                                   size)) {
+    if (source->channel.combination) {
+        source->component = 0;
+    } else if (se3di_text_is_combination(model, channel)) {
+        if (!se3di_combination_find(model, channel, &source->channel, problem, size)) {
+            return false;
+        }
+    } else if (!se3di_channel_find_number(model, channel, &source->channel, &source->component,
+                                          problem, size)) {
         return false;
     }
     if (!se3di_channel_is_continuous(&source->channel)) {

@@ -25,7 +25,8 @@ typedef struct se3di_event_entry {
     int32_t action;    /* se3d_event_action */
 } se3di_event_entry;
 
-/* Find what an event looks at. If it cannot, `problem` gets what is allowed. */
+/* Find what an event looks at, unless source->channel is an expression that has been read. If it
+ * cannot, `problem` gets what is allowed. */
 bool se3di_event_source_find(se3d_model *model, const char *channel, se3di_event_source *source,
                              char *problem, size_t size);
 /* The model's events on a solver, whose analysis has a motion. */

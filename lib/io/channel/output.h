@@ -12,6 +12,7 @@ typedef struct se3di_output_entry {
     bool contacts;  /* lists of them, no channels */
     int32_t set;    /* of whose particles; -1: all */
     bool vtk;       /* a series for ParaView, no channels */
+    bool summary;   /* of the channels over the run, in place of rows */
     double every;   /* 0: the analysis's step */
     se3di_channel *channels;
     size_t count;

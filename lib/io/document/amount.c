@@ -500,6 +500,12 @@ bool se3di_amount_take(se3di_reader *reader, const se3di_node *node, const se3di
     return !find_wanted(reader, key, &unit) || take_unit(reader, node, &unit, q);
 }
 
+bool se3di_amount_take_plain(se3di_reader *reader, const se3di_node *node, se3di_amount *q)
+{
+    const se3di_measure unit = {q->dimension, 1.0, 1.0};
+    return take_unit(reader, node, &unit, q);
+}
+
 bool se3di_amount_take_variable(se3di_reader *reader, const se3di_node *node, const char *variable,
                                 se3di_amount *q)
 {

@@ -17,6 +17,8 @@ bool se3di_amount_eval(se3di_reader *reader, const se3di_node *node, const char 
  * that of the file; another dimension is an error. The result is in the unit of the key. */
 bool se3di_amount_take(se3di_reader *reader, const se3di_node *node, const se3di_node *key,
                        se3di_amount *q);
+/* What has no unit is in that of the file for its own dimension; the result is in SI units. */
+bool se3di_amount_take_plain(se3di_reader *reader, const se3di_node *node, se3di_amount *q);
 /* The same for the dimension of a variable, in SI units. */
 bool se3di_amount_take_variable(se3di_reader *reader, const se3di_node *node, const char *variable,
                                 se3di_amount *q);

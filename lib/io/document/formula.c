@@ -61,6 +61,12 @@ se3di_dimension se3di_formula_variable_dimension(const se3di_reader *reader, con
             return variables[k].dimension[reader->alternative == 1];
         }
     }
+    const se3di_measured *m = &reader->measured;
+    for (size_t k = 0; m->names && m->names[k]; ++k) {
+        if (strcmp(m->names[k], name) == 0) {
+            return m->dimensions[k];
+        }
+    }
     return (se3di_dimension){0, 0, 0, 0};
 }
 

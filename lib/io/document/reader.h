@@ -10,6 +10,12 @@
 #include "io/document/recovery.h"
 #include "io/document/scope.h"
 
+/* Variables of an expression that stand for channels, see io/channel/combine.h. */
+typedef struct se3di_measured {
+    const char *const *names;          /* NULL at the end */
+    const se3di_dimension *dimensions; /* of each */
+} se3di_measured;
+
 typedef struct se3di_reader {
     se3d_model *model; /* what the sections fill; below only what values need of it */
     se3di_iopool *pool;
@@ -18,6 +24,7 @@ typedef struct se3di_reader {
     const se3di_component *part; /* where it stands; NULL: not known yet */
     const se3di_scope *scope;    /* names and units of the file */
     int alternative;             /* of the units of a key, "[m, rad]": 0, 1, ...; negative: any */
+    se3di_measured measured;     /* in the expression at hand; names NULL: none */
     const se3d_model_options *options;
     se3d_model_error *error;
     se3d_status status;

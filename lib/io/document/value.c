@@ -108,8 +108,8 @@ bool se3di_read_compile(se3di_reader *reader, const se3di_node *node, se3d_expre
     if (!se3di_check_expression(reader, node)) {
         return false;
     }
-    def->text = node->text;
-    def->allocator = &reader->pool->allocator;
+    def->text = def->text ? def->text : node->text; /* the node's has names of channels */
+    def->allocator = def->allocator ? def->allocator : &reader->pool->allocator;
     if (!def->symbols) {
         def->symbols = reader->scope->symbols;
         def->symbol_count = reader->scope->symbol_count;

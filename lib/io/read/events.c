@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "io/base/pool.h"
+#include "io/channel/combine.h"
 #include "io/channel/event.h"
 #include "io/channel/output.h"
 #include "io/document/document.h"
@@ -25,8 +26,9 @@ static const se3di_key event_keys[] = {
     {"name", SE3DI_KIND_NAME, SE3DI_INTO(se3di_event_entry, name), .required = true,
      .text = "unique among the events"},
     {"channel", SE3DI_KIND_TEXT, SE3DI_INTO(se3di_event_entry, channel), .required = true,
-     .text = "a [channel](#output) of one number, or a component (.x .y .z, .e0 ... .e3), such "
-         "as pin.angle or bar.tip.position.z; not channels of particles, nor counts"},
+     .text = "a [channel](#output) of one number, a component (.x .y .z, .e0 ... .e3), such as "
+         "pin.angle or bar.tip.position.z, or an expression of them; not channels of particles, "
+         "nor counts"},
     {"value", SE3DI_KIND_NUMBER, SE3DI_INTO(se3di_event_entry, level), .standard = "0",
      .text = "the level"},
     {"direction", SE3DI_KIND_WORD, SE3DI_INTO(se3di_event_entry, direction), .words = directions,
@@ -76,6 +78,10 @@ static bool read_event(se3di_reader *reader, const se3di_node *node, se3di_event
         }
     }
     event->direction = direction_values[event->direction];
+    if (se3di_text_is_combination(model, event->channel) &&
+        !se3di_combination_read(reader, channel, event->channel, &event->source.channel)) {
+        return false;
+    }
     if (!se3di_event_source_find(model, event->channel, &event->source, problem, sizeof problem)) {
         return se3di_reader_fail(reader, channel, "%s", problem);
     }

@@ -6,6 +6,7 @@
 
 #include "io/base/pool.h"
 #include "io/channel/channel.h"
+#include "io/channel/combine.h"
 #include "io/channel/output.h"
 #include "io/document/document.h"
 #include "io/document/fields.h"
@@ -18,11 +19,16 @@
 #include "io/read/sections.h"
 
 /* What an entry makes: the key that says so and names the file. */
-enum { KIND_FILE = 0, KIND_VTK = 1, KIND_COUNT = 5 };
-static const char *const output_types[KIND_COUNT + 1] = {
-    [KIND_FILE] = "file", [KIND_VTK] = "vtk", "plot", "scene", "video", NULL};
-static const char *const examples[KIND_COUNT] = {"results.csv", "motion.pvd", "results.svg",
-                                                 "motion.html", "motion.mp4"};
+enum { KIND_FILE = 0, KIND_VTK = 1, KIND_SUMMARY = 2, KIND_COUNT = 6 };
+static const char *const output_types[KIND_COUNT + 1] = {[KIND_FILE] = "file",
+                                                         [KIND_VTK] = "vtk",
+                                                         [KIND_SUMMARY] = "summary",
+                                                         "plot",
+                                                         "scene",
+                                                         "video",
+                                                         NULL};
+static const char *const examples[KIND_COUNT] = {"results.csv", "motion.pvd",  "summary.csv",
+                                                 "results.svg", "motion.html", "motion.mp4"};
 static const char *const vtk_endings[] = {".pvd", NULL};
 static const char *const plot_endings[] = {".svg", ".png", NULL};
 static const char *const scene_endings[] = {".html", ".glb", NULL};
@@ -32,10 +38,12 @@ static const char *const video_endings[] = {".mp4", NULL};
 static const se3di_key output_keys[] = {
     {"file", SE3DI_KIND_FILE, .types = " file ", .text = "results as CSV"},
     {"every", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_output_entry, every),
-     .types = " file vtk ", .standard = "the step; without one a 500th of the duration",
+     .types = " file vtk summary ", .standard = "the step; without one a 500th of the duration",
      .text = "time between rows [s]"},
-    {"channels", SE3DI_KIND_CHANNELS, .types = " file ",
-     .standard = "every channel of up to 100 bodies", .text = "what is written, a row each time"},
+    {"channels", SE3DI_KIND_CHANNELS, .types = " file summary ",
+     .standard = "every channel of up to 100 bodies",
+     .text = "what is written, a row each time: channels, components of them, and "
+         "[expressions](#expressions-of-channels)"},
     {"channels", SE3DI_KIND_CHANNELS, .types = " plot ", .standard = "the usual ones",
      .text = "channels, components of them, or elements"},
     {"particles", SE3DI_KIND_SNAPSHOTS, .types = " file ", .standard = "false",
@@ -45,6 +53,8 @@ static const se3di_key output_keys[] = {
     {"vtk", SE3DI_KIND_FILE, .types = " vtk ", .words = vtk_endings,
      .text = "surfaces of the bodies and points of the particles for ParaView, see "
          "[VTK](../scene.md#vtk)"},
+    {"summary", SE3DI_KIND_FILE, .types = " summary ",
+     .text = "minimum, maximum, mean, rms and integral of each channel over all rows, as CSV"},
     {"plot", SE3DI_KIND_FILE, .types = " plot ", .words = plot_endings,
      .text = "SVG, PNG and the script .gp, as [se3d plot](../plots.md)"},
     {"from", SE3DI_KIND_TEXT, .types = " plot ", .standard = "the first with channels",
@@ -66,8 +76,84 @@ const se3di_object se3di_object_output = {
     "A file of results, or a picture of them. Its first key says which.",
     output_keys, output_types,
     "\"oneOf\": [{\"required\": [\"file\"]}, {\"required\": [\"vtk\"]}, {\"required\": "
+         "[\"summary\"]}, {\"required\": "
          "[\"plot\"]}, {\"required\": [\"scene\"]}, {\"required\": [\"video\"]}]"};
 /* clang-format on */
+
+/* {name: expression} */
+static bool read_named(se3di_reader *reader, const se3di_node *node, se3di_channel *channel)
+{
+    const se3di_node *child = node->first;
+    const char *name = NULL;
+    if (node->count != 1) {
+        return se3di_reader_fail(reader, node,
+                                 "has %zu keys, must be a channel, an expression, or a name with "
+                                 "one: {load: 2*pin.angle}",
+                                 node->count);
+    }
+    se3di_node key = *child;
+    key.kind = SE3DI_NODE_SCALAR;
+    key.text = child->key;
+    return se3di_read_name(reader, &key, &name) &&
+           se3di_combination_read(reader, child, name, channel);
+}
+
+/* The name of a column, in which a comma would end it. */
+static const char *without_commas(se3di_reader *reader, const char *text)
+{
+    char *copy = se3di_iopool_copy(reader->pool, text, strlen(text));
+    size_t k = 0;
+    for (const char *at = text; copy && *at; ++at) {
+        if (*at != ',' && *at != '"' && *at != '\n') {
+            copy[k++] = *at;
+        }
+    }
+    if (copy) {
+        copy[k] = '\0';
+    }
+    return copy ? copy : text;
+}
+
+/* A channel, a component of one, or an expression, which may have a name: {load: 2*pin.angle}. */
+static bool find_channel(se3di_reader *reader, const se3di_node *node, se3di_channel *channel)
+{
+    se3d_model *model = reader->model;
+    char problem[480] = "";
+    const char *name = NULL;
+    if (node->kind == SE3DI_NODE_MAP) {
+        return read_named(reader, node, channel);
+    }
+    if (!se3di_read_text(reader, node, &name)) {
+        return false;
+    }
+    if (se3di_text_is_combination(model, name)) {
+        return se3di_combination_read(reader, node, without_commas(reader, name), channel);
+    }
+    if (strlen(name) > 310) {
+        return se3di_reader_fail(reader, node, "is longer than any channel's name");
+    }
+    if (se3di_channel_find(model, name, channel, problem, sizeof problem)) {
+        return true;
+    }
+    char unused[480];
+    return se3di_component_find(model, name, channel, unused, sizeof unused) ||
+           se3di_reader_fail(reader, node, "%s", problem);
+}
+
+static bool read_channel(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
+{
+    se3di_channel *channel = &output->channels[output->count];
+    if (!find_channel(reader, node, channel)) {
+        return false;
+    }
+    for (size_t k = 0; k < output->count; ++k) {
+        if (strcmp(output->channels[k].name, channel->name) == 0) {
+            return se3di_reader_fail(reader, node, "`%s` is listed twice", channel->name);
+        }
+    }
+    ++output->count;
+    return true;
+}
 
 static bool read_channels(se3di_reader *reader, const se3di_node *node, se3di_output_entry *output)
 {
@@ -85,24 +171,9 @@ static bool read_channels(se3di_reader *reader, const se3di_node *node, se3di_ou
         return se3di_reader_fail_memory(reader);
     }
     for (const se3di_node *child = list->first; child; child = child->next) {
-        char problem[480] = "";
-        const char *name = NULL;
-        if (!se3di_read_text(reader, child, &name)) {
+        if (!read_channel(reader, child, output)) {
             return false;
         }
-        if (strlen(name) > 310) {
-            return se3di_reader_fail(reader, child, "is longer than any channel's name");
-        }
-        if (!se3di_channel_find(model, name, &output->channels[output->count], problem,
-                                sizeof problem)) {
-            return se3di_reader_fail(reader, child, "%s", problem);
-        }
-        for (size_t k = 0; k < output->count; ++k) {
-            if (strcmp(output->channels[k].name, name) == 0) {
-                return se3di_reader_fail(reader, child, "`%s` is listed twice", name);
-            }
-        }
-        ++output->count;
     }
     return true;
 }
@@ -252,8 +323,8 @@ static bool find_kind(se3di_reader *reader, const se3di_node *node, size_t *kind
     }
     if (found == KIND_COUNT) {
         return se3di_reader_fail_key(reader, node, "file",
-                                     "is missing, such as results.csv (or one of vtk, plot, "
-                                     "scene, video)");
+                                     "is missing, such as results.csv (or one of vtk, summary, "
+                                     "plot, scene, video)");
     }
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (!se3di_object_find(&se3di_object_output, output_types[found], child->key)) {
@@ -273,6 +344,7 @@ static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kin
     se3di_output_entry *output = &model->outputs[model->output_count];
     const se3di_node *file = se3di_node_get(node, output_types[kind]);
     output->vtk = kind == KIND_VTK;
+    output->summary = kind == KIND_SUMMARY;
     output->node = node;
     if (!read_file_name(reader, file, kind, &output->file) ||
         !se3di_read_fields(reader, node, &se3di_object_output, NULL, "se3di_output_entry",
@@ -322,7 +394,7 @@ static bool find_results(se3di_reader *reader, const se3di_node *node,
     }
     for (size_t k = 0; k < model->output_count; ++k) {
         const se3di_output_entry *output = &model->outputs[k];
-        if (output->channels && (!name || strcmp(output->file, name) == 0)) {
+        if (output->channels && !output->summary && (!name || strcmp(output->file, name) == 0)) {
             *from = output;
             return true;
         }
@@ -414,7 +486,7 @@ static bool read_entries(se3di_reader *reader, const se3di_node *list, bool pict
         if (!find_kind(reader, node, &kind)) {
             return false;
         }
-        if ((kind > KIND_VTK) == pictures &&
+        if ((kind > KIND_SUMMARY) == pictures &&
             !(pictures ? read_picture(reader, node, kind) : read_output(reader, node, kind))) {
             return false;
         }
@@ -440,7 +512,7 @@ bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root)
     }
     bool results = false;
     for (size_t k = 0; k < model->output_count; ++k) {
-        results = results || !model->outputs[k].vtk;
+        results = results || !(model->outputs[k].vtk || model->outputs[k].summary);
     }
     return (results || add_default(reader)) && check_rows(reader) &&
            read_entries(reader, list, true);

@@ -30,12 +30,14 @@
 #include "io/write/contact_list.h"
 #include "io/write/csv.h"
 #include "io/write/particle_list.h"
+#include "io/write/summary.h"
 #include "io/write/vtk.h"
 
 typedef struct output_file {
     const se3di_output_entry *entry;
     se3di_csv csv;
-    se3di_vtk *vtk; /* NULL: it is a CSV file */
+    se3di_vtk *vtk;         /* NULL: it is a CSV file */
+    se3di_summary *summary; /* NULL: it has rows */
     double *row;
     double every; /* in this analysis */
     double count; /* number of the last row, the one at the end */
@@ -51,6 +53,8 @@ struct se3d_run {
     se3d_run_particles *particles;
     size_t particles_count;
     se3di_event_list events;
+    se3d_run_summary *summaries;
+    size_t summary_count, summary_capacity;
 };
 
 typedef struct runner {
@@ -132,6 +136,13 @@ static se3d_status join(runner *r, const char *file, char *path, size_t size)
     return fail(r, SE3D_ERR_IO, text);
 }
 
+static void put_summary_head(output_file *file)
+{
+    for (size_t k = 0; k < SE3DI_SUMMARY_COLUMNS; ++k) {
+        se3di_csv_put_name(&file->csv, se3di_summary_get_column(k), k + 1 == SE3DI_SUMMARY_COLUMNS);
+    }
+}
+
 static se3d_status open_file(runner *r, const se3di_output_entry *entry)
 {
     output_file *file = &r->files[r->file_count];
@@ -151,6 +162,12 @@ static se3d_status open_file(runner *r, const se3di_output_entry *entry)
     for (size_t k = 0; k < entry->count; ++k) {
         columns += se3di_channel_get_width(&entry->channels[k]);
     }
+    if (entry->summary) {
+        file->summary = se3di_summary_create(&r->run->pool, entry);
+        if (!file->summary) {
+            return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+        }
+    }
     file->entry = entry;
     file->row = se3di_iopool_array(&r->run->pool, columns, sizeof *file->row);
     const se3d_status status = se3di_csv_open(&file->csv, &r->run->pool, path, columns);
@@ -160,6 +177,10 @@ static se3d_status open_file(runner *r, const se3di_output_entry *entry)
         return result;
     }
     ++r->file_count;
+    if (entry->summary) {
+        put_summary_head(file);
+        return SE3D_OK;
+    }
     for (size_t k = 0; k < columns && (entry->particles || entry->contacts); ++k) {
         se3di_csv_put_name(&file->csv,
                            entry->particles ? se3di_tagged_get_column(k)
@@ -290,6 +311,10 @@ static se3d_status sample(runner *r, output_file *file, double time)
         const size_t width = se3di_channel_get_width(channel);
         memcpy(row, value, width * sizeof *row);
         row += width;
+    }
+    if (file->summary) {
+        se3di_summary_add(file->summary, time, file->row + 1);
+        return SE3D_OK;
     }
     se3di_csv_put_row(&file->csv, file->row);
     return file->csv.failure ? fail_file(r, file) : SE3D_OK;
@@ -618,6 +643,24 @@ static se3d_status close_csv(runner *r, se3di_csv *csv, se3d_run_file *about)
     return status < 0 ? fail_csv(r, csv) : SE3D_OK;
 }
 
+/* Its rows, and the columns for those who ask the run. */
+static se3d_status close_summary(runner *r, output_file *file)
+{
+    se3d_run *run = r->run;
+    se3di_summary_finish(file->summary);
+    se3di_summary_write(file->summary, &file->csv);
+    for (size_t k = 0; k < file->summary->count && file->summary->begun; ++k) {
+        se3d_run_summary *grown = se3di_iopool_grow(&run->pool, run->summaries, run->summary_count,
+                                                    &run->summary_capacity, sizeof *grown);
+        if (!grown) {
+            return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+        }
+        run->summaries = grown;
+        run->summaries[run->summary_count++] = file->summary->columns[k];
+    }
+    return SE3D_OK;
+}
+
 /* Complete one file. */
 static se3d_status close_file(runner *r, output_file *file, se3d_run_file *about)
 {
@@ -627,6 +670,14 @@ static se3d_status close_file(runner *r, output_file *file, se3d_run_file *about
         about->path = se3di_vtk_get_path(file->vtk);
         about->rows = se3di_vtk_count(file->vtk);
         return status < 0 ? fail_path(r, about->path, why) : SE3D_OK;
+    }
+    if (file->summary) {
+        const se3d_status status = close_summary(r, file);
+        if (status < 0) {
+            se3di_csv_abandon(&file->csv);
+            return status;
+        }
+        file->csv.columns = SE3DI_SUMMARY_COLUMNS;
     }
     return close_csv(r, &file->csv, about);
 }
@@ -818,4 +869,21 @@ se3d_status se3d_run_get_event_sized(const se3d_run *run, size_t index, se3d_run
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     return se3di_io_give(event, size, &run->events.list[index], sizeof *event);
+}
+
+size_t se3d_run_count_summaries(const se3d_run *run)
+{
+    return run ? run->summary_count : 0;
+}
+
+se3d_status se3d_run_get_summary_sized(const se3d_run *run, size_t index, se3d_run_summary *summary,
+                                       size_t size)
+{
+    if (!run || !summary) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= run->summary_count) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    return se3di_io_give(summary, size, &run->summaries[index], sizeof *summary);
 }
