@@ -285,6 +285,28 @@ size_t se3di_byte_order_mark_length(const char *text, size_t length)
     return length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
 }
 
+se3d_status se3di_document_read(se3di_iopool *pool, FILE *file, char **text, size_t *length)
+{
+    size_t capacity = 65536;
+    char *bytes = se3di_iopool_alloc(pool, capacity);
+    size_t used = 0;
+    while (bytes) {
+        used += fread(bytes + used, 1, capacity - used, file);
+        if (used < capacity || capacity > SE3DI_DOCUMENT_BYTES_MAX) {
+            *text = bytes;
+            *length = used;
+            return ferror(file) ? SE3D_ERR_IO : SE3D_OK;
+        }
+        char *larger = se3di_iopool_alloc(pool, 2 * capacity);
+        if (larger) {
+            memcpy(larger, bytes, used);
+        }
+        bytes = larger;
+        capacity *= 2;
+    }
+    return SE3D_ERR_NO_MEMORY;
+}
+
 se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const char *text,
                                  size_t length, se3di_node **root, se3d_model_error *error)
 {

@@ -3,6 +3,8 @@
 #ifndef SE3D_IO_DOCUMENT_H
 #define SE3D_IO_DOCUMENT_H
 
+#include <stdio.h>
+
 #include "io/base/pool.h"
 #include "se3d/io.h"
 
@@ -38,6 +40,9 @@ typedef struct se3di_node {
     struct se3di_node *next; /* sibling */
 } se3di_node;
 
+/* Read a whole file into memory of `pool`, or more of it than a document may have.
+ * @return OK, IO (errno may say why), NO_MEMORY. */
+se3d_status se3di_document_read(se3di_iopool *pool, FILE *file, char **text, size_t *length);
 /* Parse one document. @return OK, MODEL, NO_MEMORY, with `error` filled. */
 se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const char *text,
                                  size_t length, se3di_node **root, se3d_model_error *error);

@@ -14,11 +14,6 @@ se3di_placement se3di_placement_none(void)
     return none;
 }
 
-bool se3di_placement_is_none(const se3di_placement *p)
-{
-    return !p->moves && !p->turns;
-}
-
 bool se3di_component_is_mirrored(const se3di_component *part)
 {
     while (part && part->place.mirror < 0) {

@@ -31,7 +31,6 @@ typedef struct se3di_component {
 se3di_placement se3di_placement_none(void);
 /* First `inner`, then `outer`. */
 se3di_placement se3di_placement_join(const se3di_placement *outer, const se3di_placement *inner);
-bool se3di_placement_is_none(const se3di_placement *p);
 /* Whether it, or one that it is in, mirrors: also twice, which leaves the part as it is, but not in
  * the frames of the bodies between. */
 bool se3di_component_is_mirrored(const se3di_component *part);

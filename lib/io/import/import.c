@@ -186,29 +186,6 @@ se3d_status se3d_model_import_text(const char *text, size_t length, const char *
     return SE3D_OK;
 }
 
-/* Read a whole file into memory of `pool`. */
-static se3d_status read_bytes(se3di_iopool *pool, FILE *file, char **text, size_t *length)
-{
-    size_t capacity = 65536;
-    char *bytes = se3di_iopool_alloc(pool, capacity);
-    size_t used = 0;
-    while (bytes) {
-        used += fread(bytes + used, 1, capacity - used, file);
-        if (used < capacity || capacity > SE3DI_DOCUMENT_BYTES_MAX) {
-            *text = bytes;
-            *length = used;
-            return ferror(file) ? SE3D_ERR_IO : SE3D_OK;
-        }
-        char *larger = se3di_iopool_alloc(pool, 2 * capacity);
-        if (larger) {
-            memcpy(larger, bytes, used);
-        }
-        bytes = larger;
-        capacity *= 2;
-    }
-    return SE3D_ERR_NO_MEMORY;
-}
-
 se3d_status se3d_model_import_file(const char *path, const se3d_model_import_options *options,
                                    se3d_model_import **out, se3d_model_error *error)
 {
@@ -233,7 +210,7 @@ se3d_status se3d_model_import_file(const char *path, const se3d_model_import_opt
         return fail_early(error, SE3D_ERR_IO, path, strerror(errno));
     }
     se3di_iopool_init(&pool, used.allocator);
-    se3d_status status = read_bytes(&pool, file, &text, &length);
+    se3d_status status = se3di_document_read(&pool, file, &text, &length);
     fclose(file);
     if (status < 0) {
         fail_early(error, status, path, status == SE3D_ERR_IO ? "cannot be read" : "out of memory");

@@ -271,29 +271,6 @@ se3d_status se3d_model_read_text(const char *text, size_t length, const char *na
     return SE3D_OK;
 }
 
-/* Read a whole file into memory of `pool`. */
-static se3d_status read_bytes(se3di_iopool *pool, FILE *file, char **text, size_t *length)
-{
-    size_t capacity = 65536;
-    char *bytes = se3di_iopool_alloc(pool, capacity);
-    size_t used = 0;
-    while (bytes) {
-        used += fread(bytes + used, 1, capacity - used, file);
-        if (used < capacity || capacity > SE3DI_DOCUMENT_BYTES_MAX) {
-            *text = bytes;
-            *length = used;
-            return ferror(file) ? SE3D_ERR_IO : SE3D_OK;
-        }
-        char *larger = se3di_iopool_alloc(pool, 2 * capacity);
-        if (larger) {
-            memcpy(larger, bytes, used);
-        }
-        bytes = larger;
-        capacity *= 2;
-    }
-    return SE3D_ERR_NO_MEMORY;
-}
-
 se3d_status se3d_model_read_file(const char *path, const se3d_model_options *options,
                                  se3d_model **out, se3d_model_error *error)
 {
@@ -319,7 +296,7 @@ se3d_status se3d_model_read_file(const char *path, const se3d_model_options *opt
     se3di_iopool pool;
     se3di_iopool_init(&pool, used.allocator);
     errno = 0;
-    se3d_status status = read_bytes(&pool, file, &text, &length);
+    se3d_status status = se3di_document_read(&pool, file, &text, &length);
     if (status == SE3D_ERR_IO) {
         fail_early(error, status, path, errno ? strerror(errno) : "cannot be read");
     } else if (status < 0) {
