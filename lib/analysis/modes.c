@@ -12,37 +12,31 @@
 
 #define MODES_ARRAYS 10
 
-typedef struct modes_array {
-    double **data;
-    size_t count;
-} modes_array;
-
-static void list_arrays(se3di_modes *m, modes_array list[MODES_ARRAYS])
+static void list_arrays(se3di_modes *m, se3di_array list[MODES_ARRAYS])
 {
     size_t f = m->f;
-    const modes_array arrays[MODES_ARRAYS] = {
-        {&m->M, f * f},
-        {&m->D, f * f},
-        {&m->K, f * f},
-        {&m->Z, f * m->n},
-        {&m->b, m->inputs * f},
-        {&m->c, m->outputs * f},
-        {&m->A, 4 * f * f},
-        {&m->B, m->inputs * 2 * f},
-        {&m->rotation, m->bodies * 9},
-        {&m->largest, 4 * f},
+    const se3di_array arrays[] = {
+        {(void **)&m->M, f * f, sizeof *m->M},
+        {(void **)&m->D, f * f, sizeof *m->D},
+        {(void **)&m->K, f * f, sizeof *m->K},
+        {(void **)&m->Z, f * m->n, sizeof *m->Z},
+        {(void **)&m->b, m->inputs * f, sizeof *m->b},
+        {(void **)&m->c, m->outputs * f, sizeof *m->c},
+        {(void **)&m->A, 4 * f * f, sizeof *m->A},
+        {(void **)&m->B, m->inputs * 2 * f, sizeof *m->B},
+        {(void **)&m->rotation, m->bodies * 9, sizeof *m->rotation},
+        {(void **)&m->largest, 4 * f, sizeof *m->largest},
     };
+    _Static_assert(sizeof arrays == MODES_ARRAYS * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
 }
 
 void se3di_modes_destroy(se3di_modes *modes)
 {
     const se3d_allocator *allocator = &modes->allocator;
-    modes_array arrays[MODES_ARRAYS];
+    se3di_array arrays[MODES_ARRAYS];
     list_arrays(modes, arrays);
-    for (int k = 0; k < MODES_ARRAYS; ++k) {
-        se3di_free(allocator, *arrays[k].data, arrays[k].count, sizeof(double));
-    }
+    se3di_arrays_free(allocator, arrays, MODES_ARRAYS);
     se3di_free(allocator, modes->quantity, modes->outputs, sizeof *modes->quantity);
     se3di_free(allocator, modes->free, modes->bodies, sizeof *modes->free);
     se3di_eigen_destroy(allocator, &modes->eigen);
@@ -50,14 +44,9 @@ void se3di_modes_destroy(se3di_modes *modes)
 
 static se3d_status allocate(se3di_modes *m)
 {
-    modes_array arrays[MODES_ARRAYS];
+    se3di_array arrays[MODES_ARRAYS];
     list_arrays(m, arrays);
-    for (int k = 0; k < MODES_ARRAYS; ++k) {
-        *arrays[k].data = se3di_alloc(&m->allocator, arrays[k].count, sizeof(double));
-        if (!*arrays[k].data) {
-            return SE3D_ERR_NO_MEMORY;
-        }
-    }
+    SE3DI_TRY(se3di_arrays_alloc(&m->allocator, arrays, MODES_ARRAYS));
     m->quantity = se3di_alloc(&m->allocator, m->outputs, sizeof *m->quantity);
     m->free = se3di_alloc(&m->allocator, m->bodies, sizeof *m->free);
     return m->quantity && m->free ? SE3D_OK : SE3D_ERR_NO_MEMORY;

@@ -74,18 +74,12 @@ static void place_blocks(se3di_assembly *assembly)
     }
 }
 
-/* Sizes of every array, so that making and destroying agree. */
-typedef struct assembly_array {
-    void **data;
-    size_t count, size;
-} assembly_array;
-
 #define STRUCTURE_ARRAYS 9
 #define VALUE_ARRAYS     4
 
-static void list_structure(se3di_assembly *a, assembly_array list[STRUCTURE_ARRAYS])
+static void list_structure(se3di_assembly *a, se3di_array list[STRUCTURE_ARRAYS])
 {
-    assembly_array arrays[STRUCTURE_ARRAYS] = {
+    const se3di_array arrays[] = {
         {(void **)&a->free_body, a->dense_count, sizeof *a->free_body},
         {(void **)&a->free_index, a->dense_count, sizeof *a->free_index},
         {(void **)&a->joint_rows, a->constraint_count, sizeof *a->joint_rows},
@@ -96,38 +90,21 @@ static void list_structure(se3di_assembly *a, assembly_array list[STRUCTURE_ARRA
         {(void **)&a->is_fused, a->constraint_count, sizeof *a->is_fused},
         {(void **)&a->timed_rows, a->row_count, sizeof *a->timed_rows},
     };
+    _Static_assert(sizeof arrays == STRUCTURE_ARRAYS * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
 }
 
-static void list_values(se3di_assembly *a, assembly_array list[VALUE_ARRAYS])
+static void list_values(se3di_assembly *a, se3di_array list[VALUE_ARRAYS])
 {
     size_t block = (size_t)a->formulation->block;
-    assembly_array arrays[VALUE_ARRAYS] = {
+    const se3di_array arrays[] = {
         {(void **)&a->H, a->body_count * block * block, sizeof *a->H},
         {(void **)&a->C, a->joint_value_count, sizeof *a->C},
         {(void **)&a->f, 3 * (size_t)a->row_count, sizeof *a->f},
         {(void **)&a->wrench, 6 * (size_t)a->dense_count, sizeof *a->wrench},
     };
+    _Static_assert(sizeof arrays == VALUE_ARRAYS * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
-}
-
-static se3d_status allocate(const se3d_allocator *allocator, assembly_array *arrays, int count)
-{
-    for (int k = 0; k < count; ++k) {
-        *arrays[k].data = se3di_alloc(allocator, arrays[k].count, arrays[k].size);
-        if (!*arrays[k].data) {
-            return SE3D_ERR_NO_MEMORY;
-        }
-    }
-    return SE3D_OK;
-}
-
-static void release(const se3d_allocator *allocator, assembly_array *arrays, int count)
-{
-    for (int k = 0; k < count; ++k) {
-        se3di_free(allocator, *arrays[k].data, arrays[k].count, arrays[k].size);
-        *arrays[k].data = NULL;
-    }
 }
 
 void se3di_assembly_take_values(se3di_assembly *assembly)
@@ -163,17 +140,17 @@ static void count_users(se3di_assembly *assembly)
 static se3d_status build(se3di_assembly *assembly)
 {
     const se3d_allocator *allocator = &assembly->model->allocator;
-    assembly_array structure[STRUCTURE_ARRAYS];
-    assembly_array values[VALUE_ARRAYS];
+    se3di_array structure[STRUCTURE_ARRAYS];
+    se3di_array values[VALUE_ARRAYS];
     count_users(assembly);
     list_structure(assembly, structure);
-    SE3DI_TRY(allocate(allocator, structure, STRUCTURE_ARRAYS));
+    SE3DI_TRY(se3di_arrays_alloc(allocator, structure, STRUCTURE_ARRAYS));
     number_bodies(assembly);
     build_pattern(assembly);
     assembly->unknown_count = assembly->body_count * (uint32_t)assembly->formulation->block;
     place_blocks(assembly);
     list_values(assembly, values);
-    SE3DI_TRY(allocate(allocator, values, VALUE_ARRAYS));
+    SE3DI_TRY(se3di_arrays_alloc(allocator, values, VALUE_ARRAYS));
     sort_rows(assembly);
     return SE3D_OK;
 }
@@ -207,12 +184,12 @@ void se3di_assembly_destroy(se3di_assembly *assembly)
         return;
     }
     const se3d_allocator *allocator = &assembly->model->allocator;
-    assembly_array structure[STRUCTURE_ARRAYS];
-    assembly_array values[VALUE_ARRAYS];
+    se3di_array structure[STRUCTURE_ARRAYS];
+    se3di_array values[VALUE_ARRAYS];
     list_values(assembly, values);
-    release(allocator, values, VALUE_ARRAYS);
+    se3di_arrays_free(allocator, values, VALUE_ARRAYS);
     list_structure(assembly, structure);
-    release(allocator, structure, STRUCTURE_ARRAYS);
+    se3di_arrays_free(allocator, structure, STRUCTURE_ARRAYS);
     memset(assembly, 0, sizeof *assembly);
 }
 

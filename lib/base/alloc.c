@@ -74,6 +74,25 @@ se3d_status se3di_array_reserve(const se3d_allocator *allocator, void **data, si
     return SE3D_OK;
 }
 
+se3d_status se3di_arrays_alloc(const se3d_allocator *allocator, const se3di_array *list, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        *list[k].data = se3di_alloc(allocator, list[k].count, list[k].size);
+        if (!*list[k].data) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+    }
+    return SE3D_OK;
+}
+
+void se3di_arrays_free(const se3d_allocator *allocator, const se3di_array *list, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        se3di_free(allocator, *list[k].data, list[k].count, list[k].size);
+        *list[k].data = NULL;
+    }
+}
+
 char *se3di_text_copy(const se3d_allocator *allocator, const char *text)
 {
     size_t length = strlen(text) + 1;

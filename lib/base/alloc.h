@@ -20,6 +20,17 @@ void se3di_free(const se3d_allocator *allocator, void *memory, size_t count, siz
 se3d_status se3di_array_reserve(const se3d_allocator *allocator, void **data, size_t *capacity,
                                 size_t needed, size_t size);
 
+/* An array that is made once: where its address is kept, its elements and their bytes. */
+typedef struct se3di_array {
+    void **data;
+    size_t count, size;
+} se3di_array;
+
+/* Make all arrays of a list, zeroed. @return NO_MEMORY: some may be there, se3di_arrays_free gives
+ * them back. */
+se3d_status se3di_arrays_alloc(const se3d_allocator *allocator, const se3di_array *list, int count);
+void se3di_arrays_free(const se3d_allocator *allocator, const se3di_array *list, int count);
+
 /* A copy of `text` with its terminating zero, or NULL; free with se3di_text_free. */
 char *se3di_text_copy(const se3d_allocator *allocator, const char *text);
 void se3di_text_free(const se3d_allocator *allocator, char *text);

@@ -69,7 +69,7 @@ static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
     size_t bodies = m->body_slots.count;
     se3di_body_contacts *c = &m->contacts;
     size_t materials = m->material_slots.count;
-    model_array arrays[MODEL_ARRAYS] = {
+    model_array arrays[] = {
         {(void **)&m->bodies, &m->body_capacity, bodies, sizeof *m->bodies},
         {(void **)&m->frames, &m->frame_capacity, bodies, sizeof *m->frames},
         {(void **)&m->acceleration, &m->acceleration_capacity, bodies, 6 * sizeof *m->acceleration},
@@ -95,6 +95,7 @@ static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
         {(void **)&c->order, &c->order_capacity, 0, sizeof *c->order},
         {(void **)&m->history, &m->history_capacity, m->history_count, sizeof *m->history},
     };
+    _Static_assert(sizeof arrays == MODEL_ARRAYS * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
 }
 

@@ -32,7 +32,7 @@ static void list_parts(const se3di_particles *set, part parts[PARTS])
     const size_t loads = set->list_valid ? (set->count + 1) * sizeof *set->loads : 0;
     const size_t rolls = set->rolls ? set->block_count * sizeof *set->rolls : 0;
     const size_t old = set->list_valid ? 0 : set->mesh_old_count;
-    const part all[PARTS] = {
+    const part all[] = {
         {set->list, set->list_count * sizeof *set->list},
         {set->first, set->list_valid ? (set->count + 1) * sizeof *set->first : 0},
         {set->near_walls, set->near_count * sizeof *set->near_walls},
@@ -55,6 +55,7 @@ static void list_parts(const se3di_particles *set, part parts[PARTS])
         {set->sources, set->source_count * sizeof *set->sources},
         {set->sinks, set->sink_count * sizeof *set->sinks},
     };
+    _Static_assert(sizeof all == PARTS * sizeof *all, "all of them");
     memcpy(parts, all, sizeof all);
 }
 

@@ -17,18 +17,13 @@
 #define TOLERANCE   1e-15
 #define REFINEMENTS 3
 
-typedef struct loops_array {
-    void **data;
-    size_t count, size;
-} loops_array;
-
 #define LOOPS_STRUCTURE 11
-#define LOOPS_VALUES    13
+#define LOOPS_VALUES    12
 
-static void list_structure(se3di_tree_loops *l, loops_array list[LOOPS_STRUCTURE])
+static void list_structure(se3di_tree_loops *l, se3di_array list[LOOPS_STRUCTURE])
 {
     const size_t n = l->tree->constraint_count;
-    const loops_array arrays[LOOPS_STRUCTURE] = {
+    const se3di_array arrays[] = {
         {(void **)&l->constraints, n, sizeof *l->constraints},
         {(void **)&l->rows, n, sizeof *l->rows},
         {(void **)&l->row_begin, n + 1, sizeof *l->row_begin},
@@ -41,18 +36,18 @@ static void list_structure(se3di_tree_loops *l, loops_array list[LOOPS_STRUCTURE
         {(void **)&l->member, l->member_count, sizeof *l->member},
         {(void **)&l->place_of, l->tree->count, sizeof *l->place_of},
     };
+    _Static_assert(sizeof arrays == LOOPS_STRUCTURE * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
 }
 
-static void list_values(se3di_tree_loops *l, loops_array list[LOOPS_VALUES])
+static void list_values(se3di_tree_loops *l, se3di_array list[LOOPS_VALUES])
 {
     const size_t size = sizeof(double), v = l->tree->v_count;
-    const loops_array arrays[LOOPS_VALUES] = {
+    const se3di_array arrays[] = {
         {(void **)&l->Y, l->value_count, size},
         {(void **)&l->gamma, l->assembly->row_count, size},
         {(void **)&l->lambda, l->assembly->row_count, size},
         {(void **)&l->c, l->row_count, size},
-        {(void **)&l->target, l->row_count, size},
         {(void **)&l->l, l->row_count, size},
         {(void **)&l->weight, l->row_count, size},
         {(void **)&l->y, v, size},
@@ -62,26 +57,8 @@ static void list_values(se3di_tree_loops *l, loops_array list[LOOPS_VALUES])
         {(void **)&l->size, l->scratch_count / 3, size},
         {(void **)&l->noise, v, size},
     };
+    _Static_assert(sizeof arrays == LOOPS_VALUES * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
-}
-
-static se3d_status allocate(const se3d_allocator *allocator, const loops_array *arrays, int count)
-{
-    for (int k = 0; k < count; ++k) {
-        *arrays[k].data = se3di_alloc(allocator, arrays[k].count, arrays[k].size);
-        if (!*arrays[k].data) {
-            return SE3D_ERR_NO_MEMORY;
-        }
-    }
-    return SE3D_OK;
-}
-
-static void release(const se3d_allocator *allocator, const loops_array *arrays, int count)
-{
-    for (int k = 0; k < count; ++k) {
-        se3di_free(allocator, *arrays[k].data, arrays[k].count, arrays[k].size);
-        *arrays[k].data = NULL;
-    }
 }
 
 /* ---- structure ---- */
@@ -186,7 +163,7 @@ static se3d_status build(se3di_tree_loops *loops)
 {
     se3di_tree *tree = loops->tree;
     const se3d_allocator *allocator = &tree->model->allocator;
-    loops_array structure[LOOPS_STRUCTURE], values[LOOPS_VALUES];
+    se3di_array structure[LOOPS_STRUCTURE], values[LOOPS_VALUES];
     int32_t *mark = se3di_alloc(allocator, tree->count, sizeof *mark);
     if (!mark) {
         return SE3D_ERR_NO_MEMORY;
@@ -194,7 +171,7 @@ static se3d_status build(se3di_tree_loops *loops)
     measure_paths(loops, mark);
     memset(mark, 0, tree->count * sizeof *mark);
     list_structure(loops, structure);
-    se3d_status status = allocate(allocator, structure, LOOPS_STRUCTURE);
+    se3d_status status = se3di_arrays_alloc(allocator, structure, LOOPS_STRUCTURE);
     for (uint32_t k = 0; status >= 0 && k < tree->constraint_count; ++k) {
         if (tree->tree_of[k] < 0) {
             add_loop(loops, k, mark);
@@ -203,7 +180,7 @@ static se3d_status build(se3di_tree_loops *loops)
     se3di_free(allocator, mark, tree->count, sizeof *mark);
     SE3DI_TRY(status);
     list_values(loops, values);
-    SE3DI_TRY(allocate(allocator, values, LOOPS_VALUES));
+    SE3DI_TRY(se3di_arrays_alloc(allocator, values, LOOPS_VALUES));
     se3di_tree_loops_keep_rows(loops);
     return create_kkt(loops);
 }
@@ -226,12 +203,12 @@ void se3di_tree_loops_destroy(se3di_tree_loops *loops)
         return;
     }
     const se3d_allocator *allocator = &loops->tree->model->allocator;
-    loops_array structure[LOOPS_STRUCTURE], values[LOOPS_VALUES];
+    se3di_array structure[LOOPS_STRUCTURE], values[LOOPS_VALUES];
     se3di_kkt_destroy(loops->kkt);
     list_values(loops, values);
-    release(allocator, values, LOOPS_VALUES);
+    se3di_arrays_free(allocator, values, LOOPS_VALUES);
     list_structure(loops, structure);
-    release(allocator, structure, LOOPS_STRUCTURE);
+    se3di_arrays_free(allocator, structure, LOOPS_STRUCTURE);
     memset(loops, 0, sizeof *loops);
 }
 
@@ -471,15 +448,6 @@ se3d_status se3di_tree_loops_accelerate(se3di_tree_loops *loops, double *qddot)
         loops->b[v] = tree->D[v] * loops->y[v];
     }
     se3di_tree_accelerate(tree, loops->b, qddot);
-    return status;
-}
-
-se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *target, double *dq)
-{
-    gather_rows(loops, target, loops->target);
-    const se3d_status status = solve(loops, NULL, loops->target);
-    SE3DI_TRY(status);
-    se3di_tree_spread(loops->tree, loops->y, dq);
     return status;
 }
 

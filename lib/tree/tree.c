@@ -62,17 +62,12 @@ typedef struct builder {
     uint32_t bodies, constraints;
 } builder;
 
-typedef struct builder_array {
-    void **data;
-    size_t count, size;
-} builder_array;
-
 #define BUILDER_ARRAYS 11
 
-static void list_builder(builder *b, builder_array list[BUILDER_ARRAYS])
+static void list_builder(builder *b, se3di_array list[BUILDER_ARRAYS])
 {
     const size_t n = b->bodies, m = b->constraints;
-    const builder_array arrays[BUILDER_ARRAYS] = {
+    const se3di_array arrays[] = {
         {(void **)&b->begin, n + 1, sizeof *b->begin},
         {(void **)&b->list, 2 * m, sizeof *b->list},
         {(void **)&b->queue, (FREEDOMS_MAX + 1) * m, sizeof *b->queue},
@@ -85,6 +80,7 @@ static void list_builder(builder *b, builder_array list[BUILDER_ARRAYS])
         {(void **)&b->is_queued, m, sizeof *b->is_queued},
         {(void **)&b->type, m, sizeof *b->type},
     };
+    _Static_assert(sizeof arrays == BUILDER_ARRAYS * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
 }
 
@@ -271,20 +267,21 @@ static void find_drivers(se3di_tree *tree)
 #define TREE_STRUCTURE 3
 #define TREE_VALUES    17
 
-static void list_structure(se3di_tree *t, builder_array list[TREE_STRUCTURE])
+static void list_structure(se3di_tree *t, se3di_array list[TREE_STRUCTURE])
 {
-    const builder_array arrays[TREE_STRUCTURE] = {
+    const se3di_array arrays[] = {
         {(void **)&t->nodes, t->body_count, sizeof *t->nodes},
         {(void **)&t->node_of, t->body_count, sizeof *t->node_of},
         {(void **)&t->tree_of, t->constraint_count, sizeof *t->tree_of},
     };
+    _Static_assert(sizeof arrays == TREE_STRUCTURE * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
 }
 
-static void list_values(se3di_tree *t, builder_array list[TREE_VALUES])
+static void list_values(se3di_tree *t, se3di_array list[TREE_VALUES])
 {
     const size_t v = t->v_count, number_size = sizeof(double);
-    const builder_array arrays[TREE_VALUES] = {
+    const se3di_array arrays[] = {
         {(void **)&t->links, t->count, sizeof *t->links},
         {(void **)&t->S, 6 * v, number_size},
         {(void **)&t->U, 6 * v, number_size},
@@ -303,26 +300,8 @@ static void list_values(se3di_tree *t, builder_array list[TREE_VALUES])
         {(void **)&t->scratch, 12 * (size_t)t->count, number_size},
         {(void **)&t->frames, t->body_count, sizeof *t->frames},
     };
+    _Static_assert(sizeof arrays == TREE_VALUES * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
-}
-
-static se3d_status allocate(const se3d_allocator *allocator, const builder_array *arrays, int count)
-{
-    for (int k = 0; k < count; ++k) {
-        *arrays[k].data = se3di_alloc(allocator, arrays[k].count, arrays[k].size);
-        if (!*arrays[k].data) {
-            return SE3D_ERR_NO_MEMORY;
-        }
-    }
-    return SE3D_OK;
-}
-
-static void release(const se3d_allocator *allocator, const builder_array *arrays, int count)
-{
-    for (int k = 0; k < count; ++k) {
-        se3di_free(allocator, *arrays[k].data, arrays[k].count, arrays[k].size);
-        *arrays[k].data = NULL;
-    }
 }
 
 static void choose_core(se3di_tree *tree)
@@ -335,13 +314,13 @@ static se3d_status build(se3di_tree *tree)
 {
     const se3d_allocator *allocator = &tree->model->allocator;
     builder b = {.tree = tree, .bodies = tree->body_count, .constraints = tree->constraint_count};
-    builder_array arrays[BUILDER_ARRAYS];
-    builder_array structure[TREE_STRUCTURE];
-    builder_array values[TREE_VALUES];
+    se3di_array arrays[BUILDER_ARRAYS];
+    se3di_array structure[TREE_STRUCTURE];
+    se3di_array values[TREE_VALUES];
     list_structure(tree, structure);
-    SE3DI_TRY(allocate(allocator, structure, TREE_STRUCTURE));
+    SE3DI_TRY(se3di_arrays_alloc(allocator, structure, TREE_STRUCTURE));
     list_builder(&b, arrays);
-    const se3d_status status = allocate(allocator, arrays, BUILDER_ARRAYS);
+    const se3d_status status = se3di_arrays_alloc(allocator, arrays, BUILDER_ARRAYS);
     if (status >= 0) {
         forget_all(&b);
         list_joints(&b, tree->model);
@@ -349,10 +328,10 @@ static se3d_status build(se3di_tree *tree)
         number(&b);
         find_drivers(tree);
     }
-    release(allocator, arrays, BUILDER_ARRAYS);
+    se3di_arrays_free(allocator, arrays, BUILDER_ARRAYS);
     SE3DI_TRY(status);
     list_values(tree, values);
-    return allocate(allocator, values, TREE_VALUES);
+    return se3di_arrays_alloc(allocator, values, TREE_VALUES);
 }
 
 se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, se3di_error *error)
@@ -378,11 +357,11 @@ void se3di_tree_destroy(se3di_tree *tree)
         return;
     }
     const se3d_allocator *allocator = &tree->model->allocator;
-    builder_array structure[TREE_STRUCTURE];
-    builder_array values[TREE_VALUES];
+    se3di_array structure[TREE_STRUCTURE];
+    se3di_array values[TREE_VALUES];
     list_values(tree, values);
-    release(allocator, values, TREE_VALUES);
+    se3di_arrays_free(allocator, values, TREE_VALUES);
     list_structure(tree, structure);
-    release(allocator, structure, TREE_STRUCTURE);
+    se3di_arrays_free(allocator, structure, TREE_STRUCTURE);
     memset(tree, 0, sizeof *tree);
 }
