@@ -43,9 +43,9 @@ typedef struct se3di_adaptive_history {
 _Static_assert(sizeof(se3di_adaptive_history) == 6 * sizeof(double),
                "it is an array of double in the model");
 
-/* The places of time and begin. */
 /* The tag of a history is that of its method times this, plus the number of its formulation. */
 #define SE3DI_HISTORY_TAGS 4
+/* The places of time and begin. */
 enum { SE3DI_HISTORY_TIME = 0, SE3DI_HISTORY_BEGIN = 1 };
 
 typedef struct se3di_integrator {

@@ -137,8 +137,8 @@ void se3di_kkt_destroy(se3di_kkt *kkt); /* NULL is fine */
 se3di_kkt_settings se3di_kkt_get_settings(const se3di_kkt *kkt);
 void se3di_kkt_set_settings(se3di_kkt *kkt, const se3di_kkt_settings *settings);
 
-/* Estimated cost of factor and one solve, in vector operations; for the choice of orders. */
 int32_t se3di_kkt_get_dependent_rows(const se3di_kkt *kkt); /* of the last factorisation */
+/* Estimated cost of factor and one solve, in vector operations; for the choice of orders. */
 double se3di_kkt_get_cost(const se3di_kkt *kkt);
 
 /* Whether bodies, the ground and joints make a loop: rows may be dependent. */

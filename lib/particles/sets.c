@@ -24,8 +24,9 @@ static const char *set_name(const se3di_particles *set, const char **of)
     return set->name ? set->name : "";
 }
 
-se3d_status se3di_particles_check_step(const se3di_particles *set, const se3di_model *model,
-                                       double h, se3di_error *error)
+/* A step beyond stability fails with STEP_SIZE. */
+static se3d_status check_step(const se3di_particles *set, const se3di_model *model, double h,
+                              se3di_error *error)
 {
     const char *of;
     const char *name = set_name(set, &of);
@@ -66,8 +67,8 @@ static se3d_status report_overlap(const se3di_particles *set, se3di_error *error
                            : "try a smaller step or a stiffer material");
 }
 
-se3d_status se3di_particles_report(const se3di_particles *set, se3d_status status,
-                                   se3di_error *error)
+/* Record why a step of particles failed; returns `status`. */
+static se3d_status report(const se3di_particles *set, se3d_status status, se3di_error *error)
 {
     const char *of;
     const char *name = set_name(set, &of);
@@ -102,20 +103,21 @@ se3d_status se3di_particles_report(const se3di_particles *set, se3d_status statu
     }
 }
 
-se3d_status se3di_particles_place(se3di_particles *set, const se3di_model *model,
-                                  se3di_error *error)
+/* What a set touches, where the model has it now. */
+static se3d_status place_set(se3di_particles *set, const se3di_model *model, se3di_error *error)
 {
     se3d_status status = se3di_particles_sync(set, model);
     if (status < 0) {
-        return se3di_particles_report(set, status, error);
+        return report(set, status, error);
     }
     se3di_particles_move_walls(set, model->frames);
     se3di_particles_free_walls(set, NULL);
     return SE3D_OK;
 }
 
-se3d_status se3di_particles_aim(se3di_particles *set, const se3di_model *model, double h,
-                                se3di_error *error)
+/* Before a step of length h begins: what its sources give. */
+static se3d_status aim_set(se3di_particles *set, const se3di_model *model, double h,
+                           se3di_error *error)
 {
     se3d_status status = se3di_sources_aim(set, model, h);
     if (status < 0) {
@@ -140,18 +142,18 @@ double se3di_particles_want_step(const se3di_particles *set, const se3di_model *
 se3d_status se3di_particles_run(se3di_particles *set, const se3di_model *model, double h,
                                 double length, size_t steps, se3di_error *error)
 {
-    SE3DI_TRY(se3di_particles_check_step(set, model, h, error));
-    SE3DI_TRY(se3di_particles_place(set, model, error));
+    SE3DI_TRY(check_step(set, model, h, error));
+    SE3DI_TRY(place_set(set, model, error));
     const int varies = set->source_count > 0 || model->gravity_function[0] >= 0 ||
                        model->gravity_function[1] >= 0 || model->gravity_function[2] >= 0;
     size_t done = 0;
     do {
         const size_t now = varies ? 1 : steps;
         SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
-        SE3DI_TRY(se3di_particles_aim(set, model, length, error));
+        SE3DI_TRY(aim_set(set, model, length, error));
         const se3d_status status = se3di_particles_advance(set, length, now, NULL);
         if (status < 0) {
-            return se3di_particles_report(set, status, error);
+            return report(set, status, error);
         }
         done += now;
     } while (done < steps);
@@ -165,12 +167,12 @@ static se3d_status begin(se3di_particles *set, const se3di_model *model, double 
     if (se3di_particles_is_idle(set)) {
         return SE3D_OK;
     }
-    SE3DI_TRY(se3di_particles_check_step(set, model, h, error));
+    SE3DI_TRY(check_step(set, model, h, error));
     SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
-    SE3DI_TRY(se3di_particles_place(set, model, error));
+    SE3DI_TRY(place_set(set, model, error));
     se3di_particles_free_walls(set, model);
     se3d_status status = se3di_particles_prepare(set);
-    return status < 0 ? se3di_particles_report(set, status, error) : SE3D_OK;
+    return status < 0 ? report(set, status, error) : SE3D_OK;
 }
 
 se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error)
@@ -208,7 +210,7 @@ void se3di_sets_move(se3di_model *model, int kicks, double h)
 se3d_status se3di_sets_aim(se3di_model *model, double h, se3di_error *error)
 {
     for (se3di_particles *set = model->sets; set; set = set->next) {
-        SE3DI_TRY(se3di_particles_aim(set, model, h, error));
+        SE3DI_TRY(aim_set(set, model, h, error));
     }
     return SE3D_OK;
 }
@@ -228,10 +230,10 @@ se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_erro
         se3di_particles_free_walls(set, model);
         se3d_status status = se3di_particles_forces(set, h);
         if (status < 0 && !se3di_particles_is_complete(set, status)) {
-            return se3di_particles_report(set, status, error);
+            return report(set, status, error);
         }
         if (status < 0 && *late == SE3D_OK) {
-            *late = se3di_particles_report(set, status, error);
+            *late = report(set, status, error);
         }
     }
     return SE3D_OK;

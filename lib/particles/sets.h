@@ -12,18 +12,8 @@
 /* Of one run: more would never end, and time would not advance by them. */
 #define SE3DI_STEPS_MOST 1e12
 
-/* What a set touches, where the model has it now. */
-se3d_status se3di_particles_place(se3di_particles *set, const se3di_model *model,
-                                  se3di_error *error);
 /* The step that a set wants; 0: any. */
 double se3di_particles_want_step(const se3di_particles *set, const se3di_model *model);
-/* A step beyond stability fails with STEP_SIZE. */
-se3d_status se3di_particles_check_step(const se3di_particles *set, const se3di_model *model,
-                                       double h, se3di_error *error);
-/* Record why a step of particles failed; returns `status`. */
-se3d_status se3di_particles_report(const se3di_particles *set, se3d_status status,
-                                   se3di_error *error);
-
 /* Steps of length `length` of one set beside resting bodies; h is the one that it wanted, which is
  * looked at. */
 se3d_status se3di_particles_run(se3di_particles *set, const se3di_model *model, double h,
@@ -35,9 +25,7 @@ se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error);
 se3d_status se3di_sets_keep(se3di_model *model, se3di_error *error);
 void se3di_sets_come_back(se3di_model *model);
 void se3di_sets_move(se3di_model *model, int kicks, double h);
-/* Before a step of length h begins: what its sources give. */
-se3d_status se3di_particles_aim(se3di_particles *set, const se3di_model *model, double h,
-                                se3di_error *error);
+/* Before a step of length h begins: what the sources give. */
 se3d_status se3di_sets_aim(se3di_model *model, double h, se3di_error *error);
 /* Forces at t. *late: the first failure in spite of which they are complete (too large an overlap,
  * memory for longer lists). */

@@ -36,18 +36,18 @@ typedef struct se3di_tree_loops {
     int32_t *member_begin; /* [count + 1] freedoms of those nodes that are not prescribed */
     int32_t *member;
     size_t path_count, member_count, value_count, scratch_count;
-    double *Y;              /* [values]: rows x 1 for each member */
-    double *gamma;          /* [rows of the model] */
-    double *lambda;         /* [rows of the model]: of loops, others 0 */
-    double *c, *target, *l; /* [rows of the loops]: of those that are kept */
-    double *weight;         /* [rows of the loops]: sizes of C M^-1 C^T of the bodies, which, unlike
+    double *Y;         /* [values]: rows x 1 for each member */
+    double *gamma;     /* [rows of the model] */
+    double *lambda;    /* [rows of the model]: of loops, others 0 */
+    double *c, *l;     /* [rows of the loops]: of those that are kept */
+    double *weight;    /* [rows of the loops]: sizes of C M^-1 C^T of the bodies, which, unlike
                                those of Y D^-1 Y^T, do not vanish at singular positions */
-    double *y;              /* [velocities] */
-    double *H, *b;          /* [velocities] */
-    double *K;              /* rows on the nodes of one path, */
-    double *size;           /* and the sizes of their halves before parts cancel */
-    double *noise;          /* [velocities]: rounding of a row */
-    int32_t *place_of;      /* [nodes]: scratch of the building */
+    double *y;         /* [velocities] */
+    double *H, *b;     /* [velocities] */
+    double *K;         /* rows on the nodes of one path, */
+    double *size;      /* and the sizes of their halves before parts cancel */
+    double *noise;     /* [velocities]: rounding of a row */
+    int32_t *place_of; /* [nodes]: scratch of the building */
 } se3di_tree_loops;
 
 /* On failure nothing is held; `error` (NULL: none) is kept. The model's frames are used as scratch
@@ -67,10 +67,6 @@ void se3di_tree_take_given(se3di_tree *tree, const se3di_assembly *assembly);
 se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops);
 /* Accelerations, and the multipliers of the loops. @return as se3di_kkt_solve */
 se3d_status se3di_tree_loops_accelerate(se3di_tree_loops *loops, double *qddot);
-/* The least dq in the metric of the masses whose rows are `target` [rows of the model]:
- * corrections of positions and velocities. Prescribed coordinates stay. @return as
- * se3di_kkt_solve */
-se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *target, double *dq);
 /* Add what the loops do with `lambda` [rows of the model] to wrenches [nodes * 6] about P. */
 void se3di_tree_loops_add_wrenches(const se3di_tree_loops *loops, const double *lambda,
                                    double *wrench);

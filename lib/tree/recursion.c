@@ -66,7 +66,8 @@ static void add_up(const se3di_tree *tree, double *force)
 
 /* ---- with articulated inertias ---- */
 
-void se3di_tree_gather(se3di_tree *tree, const double *effort, double *y)
+/* y from efforts with articulated inertias, D y = effort - S.p. */
+static void gather(se3di_tree *tree, const double *effort, double *y)
 {
     double *p = tree->scratch;
     memset(p, 0, 6 * (size_t)tree->count * sizeof *p);
@@ -90,7 +91,9 @@ void se3di_tree_gather(se3di_tree *tree, const double *effort, double *y)
     }
 }
 
-void se3di_tree_spread(const se3di_tree *tree, const double *y, double *x)
+/* With articulated inertias: x [velocities] where y = D^-1 times what the freedoms add, without
+ * biases; prescribed coordinates 0. */
+static void spread(const se3di_tree *tree, const double *y, double *x)
 {
     double *motion = tree->scratch;
     for (uint32_t i = 0; i < tree->count; ++i) {
@@ -110,8 +113,8 @@ void se3di_tree_spread(const se3di_tree *tree, const double *y, double *x)
 
 void se3di_tree_solve(se3di_tree *tree, const double *effort, double *x)
 {
-    se3di_tree_gather(tree, effort, x);
-    se3di_tree_spread(tree, x, x);
+    gather(tree, effort, x);
+    spread(tree, x, x);
 }
 
 /* ---- with the bodies' own inertias ---- */

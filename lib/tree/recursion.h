@@ -9,11 +9,6 @@
 /* c of a node, with the acceleration of a prescribed coordinate. */
 void se3di_tree_bias(const se3di_tree *tree, uint32_t node, double bias[6]);
 
-/* With articulated inertias: x [velocities] where y = D^-1 times what the freedoms add, without
- * biases; prescribed coordinates 0. */
-void se3di_tree_spread(const se3di_tree *tree, const double *y, double *x);
-/* The same: y from efforts, D y = effort - S.p. */
-void se3di_tree_gather(se3di_tree *tree, const double *effort, double *y);
 /* x = M^-1 effort; x may be effort. Prescribed coordinates: 0. */
 void se3di_tree_solve(se3di_tree *tree, const double *effort, double *x);
 
