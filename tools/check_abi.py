@@ -86,7 +86,7 @@ def declared(headers):
     return exported, forgotten
 
 
-IO_HEADERS = ("io.h", "import.h")  # of libse3d-io
+IO_HEADERS = ("io.h", "import.h", "study.h")  # of libse3d-io
 
 
 def public_functions():

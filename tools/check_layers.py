@@ -15,7 +15,7 @@ LAYERS = ("base math expression model primitive joint force contact particles fo
           "linsol tree nonlinear integrator analysis system").split()
 # Folders that have folders of their own, in their order.
 ROOMS = {"contact": "shape narrow bodies".split(),
-         "io": "base document model channel read write run import".split()}
+         "io": "base document model channel read write run study import".split()}
 # What the program in tools/se3d shares with libse3d-io, to whose static library it is linked.
 SHARED = ("io/base/file.h", "io/document/guess.h", "io/read/objects.h")
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
@@ -29,7 +29,7 @@ def complaint(folder, place, quoted, name):
     """
     parts = name.split("/")
     if parts[0] == "se3d" and len(parts) > 1:
-        if name in ("se3d/io.h", "se3d/import.h") and place and place[0] != "io":
+        if name in ("se3d/io.h", "se3d/import.h", "se3d/study.h") and place and place[0] != "io":
             return "libse3d does not know libse3d-io"
         return None
     if not quoted or (len(parts) == 1 and (folder / name).exists()):

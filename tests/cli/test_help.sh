@@ -3,7 +3,7 @@
 set -u
 . "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
 
-commands='run check evaluate explain plot view video import help completion'
+commands='run check evaluate explain plot view video study import help completion'
 expect 'overview' 0 "$program" help
 cp "$dir/out" "$dir/overview"
 expect 'the same by -h' 0 "$program" -h

@@ -136,6 +136,12 @@ static const char *const kinds[SE3DI_KIND_END] = {
                                                                "\"items\": {" REFERENCE("%s") "}}]",
     [SE3DI_KIND_TERMS] = "\"type\": \"array\", \"minItems\": 1, \"maxItems\": 4, \"items\": "
                          "{" REFERENCE("%s") "}",
+    [SE3DI_KIND_VARIED] =
+        "\"type\": \"object\", \"additionalProperties\": {\"anyOf\": "
+        "[{" REFERENCE("number") "}, {\"type\": \"array\", \"items\": {" REFERENCE(
+            "number") "}}, {" REFERENCE("%s") "}]}",
+    [SE3DI_KIND_MEASURES] = "\"type\": \"object\", \"additionalProperties\": {\"anyOf\": "
+                            "[{\"type\": \"string\"}, {" REFERENCE("%s") "}]}",
 };
 
 /* A text in JSON, without the addresses of its links. */

@@ -6,6 +6,7 @@
 #include "check.h"
 #include "se3d/import.h"
 #include "se3d/io.h"
+#include "se3d/study.h"
 
 static const char text[] =
     "se3d: 1\ntitle: A block\nparameters: {m: 2}\n"
@@ -361,6 +362,8 @@ static void model_import_nothing(const world *w)
     se3d_model_import_destroy(NULL);
 }
 
+#include "misuse/misuse_studies.h"
+
 static const struct {
     const char *names; /* with a blank at each end */
     void (*check)(const world *w);
@@ -399,6 +402,17 @@ static const struct {
     {" se3d_scene_create ", scene_create},
     {" se3d_scene_record ", scene_record},
     {" se3d_scene_write ", scene_write},
+    {" se3d_study_create se3d_study_destroy ", study_create},
+    {" se3d_study_count_samples se3d_study_count_parameters se3d_study_count_measures "
+     "se3d_study_get_parameter_name se3d_study_get_measure_name se3d_study_get_sample ",
+     study_getters},
+    {" se3d_study_eval se3d_study_run_sample se3d_study_answer se3d_study_set_interrupt ",
+     study_runs},
+    {" se3d_study_table_def_init se3d_study_table_open ", study_table_definitions},
+    {" se3d_study_table_append se3d_study_table_has se3d_study_table_count_failed "
+     "se3d_study_table_close ",
+     study_tables},
+    {" se3d_study_merge se3d_study_merge_options_init ", study_merge},
 };
 
 static void every_function_rejects_bad_arguments(void)

@@ -43,7 +43,8 @@ static const char **value_target(options *o, const char *name)
                  {"--method", &o->method},     {"--step", &o->step},
                  {"--duration", &o->duration}, {"--tolerance", &o->tolerance},
                  {"--time", &o->time},         {"--speed", &o->speed},
-                 {"--view", &o->view},         {"--format", &o->format}};
+                 {"--view", &o->view},         {"--format", &o->format},
+                 {"--shard", &o->shard},       {"--jobs", &o->jobs}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;
@@ -74,6 +75,15 @@ static int *flag_target(options *o, const char *name)
     }
     if (strcmp(name, "--free-base") == 0) {
         return &o->free_base;
+    }
+    if (strcmp(name, "--resume") == 0) {
+        return &o->resume;
+    }
+    if (strcmp(name, "--merge") == 0) {
+        return &o->merge;
+    }
+    if (strcmp(name, "--server") == 0) {
+        return &o->server;
     }
     return strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 ? &o->help : NULL;
 }

@@ -24,6 +24,8 @@ typedef struct options {
     const char *speed;
     const char *view;
     const char *format;
+    const char *shard;
+    const char *jobs;
     se3d_model_setting settings[SETTINGS_MAX];
     char names[SETTINGS_MAX][64];
     size_t setting_count;
@@ -34,6 +36,9 @@ typedef struct options {
     int partial;
     int merge_fixed;
     int free_base;
+    int resume;
+    int merge;
+    int server;
     int help; /* it was printed */
 } options;
 

@@ -15,6 +15,16 @@ static inline double io_cos(double x)
     return se3d_elementary_eval(SE3D_ELEMENTARY_COS, x, 0.0);
 }
 
+static inline double io_exp(double x)
+{
+    return se3d_elementary_eval(SE3D_ELEMENTARY_EXP, x, 0.0);
+}
+
+static inline double io_log(double x)
+{
+    return se3d_elementary_eval(SE3D_ELEMENTARY_LOG, x, 0.0);
+}
+
 static inline double io_log10(double x)
 {
     return se3d_elementary_eval(SE3D_ELEMENTARY_LOG10, x, 0.0);

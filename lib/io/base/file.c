@@ -40,6 +40,12 @@ static bool cut(FILE *file, uint64_t size)
     return _chsize_s(_fileno(file), (long long)size) == 0;
 }
 
+FILE *se3di_file_continue(const char *path)
+{
+    FILE *file = fopen(path, "r+b");
+    return file ? file : fopen(path, "w+b");
+}
+
 static bool is_link(const char *path)
 {
     (void)path;
@@ -95,6 +101,26 @@ static bool is_folder(const char *path)
 {
     struct stat about;
     return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
+}
+
+FILE *se3di_file_continue(const char *path)
+{
+    struct stat about;
+    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    const int number =
+        open(path, O_RDWR | O_CREAT | O_NONBLOCK | O_NOCTTY | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (number < 0) {
+        return NULL;
+    }
+    const bool regular = fstat(number, &about) == 0 && S_ISREG(about.st_mode);
+    const bool locked = regular && fcntl(number, F_SETLK, &lock) == 0;
+    const bool busy = regular && !locked && (errno == EACCES || errno == EAGAIN);
+    FILE *file = regular && !busy ? fdopen(number, "r+b") : NULL; /* some disks have no locks */
+    if (!file) {
+        close(number);
+        errno = busy ? EAGAIN : !regular ? EINVAL : ENOMEM;
+    }
+    return file;
 }
 
 static bool cut(FILE *file, uint64_t size)
@@ -190,6 +216,11 @@ FILE *se3di_partial_open(const char *path)
     take_away(partial); /* of a run that was ended; or a link, which must not be followed */
     errno = 0;
     return open_new(partial);
+}
+
+bool se3di_file_cut(FILE *file, uint64_t size)
+{
+    return fflush(file) == 0 && cut(file, size) && fseek(file, 0, SEEK_END) == 0;
 }
 
 /* The file takes its name, in place of one that has it. */

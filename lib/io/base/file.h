@@ -16,6 +16,11 @@ bool se3di_file_make_folders(const char *path);
 /* Open a regular file for reading: a folder is EISDIR, a pipe or device EINVAL. @return NULL: errno
  * says why. */
 FILE *se3di_file_open(const char *path);
+/* Open a regular file, made if it is not there, for reading and writing, and lock it: if another
+ * program has it open in this way it is EAGAIN. @return NULL: errno says why. */
+FILE *se3di_file_continue(const char *path);
+/* Cut an open file to its first `size` bytes and go on there. */
+bool se3di_file_cut(FILE *file, uint64_t size);
 /* Open a file under a temporary name; complete it and give it its name. @return NULL, false: errno
  * says why, and nothing is left. */
 FILE *se3di_partial_open(const char *path);

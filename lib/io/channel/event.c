@@ -114,7 +114,8 @@ se3d_status se3d_model_create_event(se3d_model *model, se3d_solver *solver, cons
     return status < 0 ? report(error, model, se3d_system_get_error(model->system), status) : status;
 }
 
-se3d_status se3di_events_create(const se3d_model *model, se3d_solver *solver)
+se3d_status se3di_events_create(const se3d_model *model, se3d_solver *solver,
+                                se3d_event_callback callback, void *ctx)
 {
     se3d_status status = SE3D_OK;
     for (size_t k = 0; k < model->event_count && status >= 0; ++k) {
@@ -126,6 +127,8 @@ se3d_status se3di_events_create(const se3d_model *model, se3d_solver *solver)
         def.hysteresis = entry->hysteresis;
         def.direction = entry->direction;
         def.action = entry->action;
+        def.callback = callback;
+        def.callback_ctx = ctx;
         status = create_event(solver, &entry->source, &def, &event);
     }
     return status;

@@ -29,7 +29,9 @@ typedef struct se3di_event_entry {
  * cannot, `problem` gets what is allowed. */
 bool se3di_event_source_find(se3d_model *model, const char *channel, se3di_event_source *source,
                              char *problem, size_t size);
-/* The model's events on a solver, whose analysis has a motion. */
-se3d_status se3di_events_create(const se3d_model *model, se3d_solver *solver);
+/* The model's events on a solver, whose analysis has a motion. `callback` (NULL: none) is called at
+ * each that happens. */
+se3d_status se3di_events_create(const se3d_model *model, se3d_solver *solver,
+                                se3d_event_callback callback, void *ctx);
 
 #endif

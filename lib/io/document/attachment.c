@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "io/base/file.h"
+#include "io/base/hash.h"
 #include "io/base/pool.h"
 #include "io/document/document.h"
 #include "io/document/reader.h"
@@ -59,5 +60,6 @@ bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const ch
     }
     *size = good ? (size_t)length : 0;
     reader->attached += *size;
+    reader->content = se3di_hash_bytes(reader->content, *text, *size);
     return good || fail(reader, map, key, file, "is empty, too large or cannot be read");
 }

@@ -51,7 +51,9 @@ typedef enum se3di_kind {
     SE3DI_KIND_OBJECT,    /* an `object` */
     SE3DI_KIND_LIST,      /* of objects */
     SE3DI_KIND_ONE_OR_LIST,
-    SE3DI_KIND_TERMS, /* a list of 1 to 4 objects */
+    SE3DI_KIND_TERMS,    /* a list of 1 to 4 objects */
+    SE3DI_KIND_VARIED,   /* names and texts, lists of numbers or objects */
+    SE3DI_KIND_MEASURES, /* names and texts or objects */
     SE3DI_KIND_END
 } se3di_kind;
 

@@ -43,6 +43,8 @@ static const char *const kind_texts[SE3DI_KIND_END] = {
     [SE3DI_KIND_LIST] = "list",
     [SE3DI_KIND_ONE_OR_LIST] = "map or list",
     [SE3DI_KIND_TERMS] = "1 to 4 maps",
+    [SE3DI_KIND_VARIED] = "map",
+    [SE3DI_KIND_MEASURES] = "map",
 };
 
 const char *se3di_range_get_text(se3di_range range)

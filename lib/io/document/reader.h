@@ -28,8 +28,12 @@ typedef struct se3di_reader {
     const se3d_model_options *options;
     se3d_model_error *error;
     se3d_status status;
-    se3di_fault fault; /* what the report is about */
-    size_t attached;   /* bytes of other files that were read */
+    se3di_fault fault;         /* what the report is about */
+    size_t attached;           /* bytes of other files that were read */
+    uint64_t content;          /* hash of them */
+    const se3di_named *values; /* [value_count] in place of parameters of the model */
+    size_t value_count;
+    bool is_sample; /* of a study: outputs and `study` itself are passed over */
 } se3di_reader;
 
 /* Report about a node: "file:line:column: path: text". Always false. */

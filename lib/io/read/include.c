@@ -107,13 +107,14 @@ bool se3di_read_main_part(se3di_reader *reader, const se3di_node *root)
 
 /* ---- what is included -----------------------------------------------------------------------*/
 
-static bool parse(expansion *x, const se3di_node *node, const char *path, const char *text,
+static bool parse(expansion *x, const se3di_node *node, const char *file, const char *text,
                   size_t length, se3di_library_entry **entry)
 {
     se3di_reader *reader = x->reader;
     se3di_iopool *pool = x->library->pool;
     se3di_library_entry *made = se3di_iopool_alloc(pool, sizeof *made);
-    if (!made) {
+    const char *path = se3di_iopool_copy(pool, file, strlen(file)); /* it outlives the reading */
+    if (!made || !path) {
         return se3di_reader_fail_memory(reader);
     }
     if (length > BYTES_MAX - x->library->bytes) {
@@ -149,7 +150,7 @@ static bool find_file(expansion *x, const se3di_node *map, const se3di_node *nod
     if (!se3di_read_reference(reader, node, &file)) {
         return false;
     }
-    const char *path = se3di_find_attachment(reader, x->library->pool, file);
+    const char *path = se3di_find_attachment(reader, reader->pool, file);
     if (!path) {
         return se3di_reader_fail_memory(reader);
     }

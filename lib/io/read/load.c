@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/base/hash.h"
 #include "io/base/pool.h"
 #include "io/base/sized.h"
 #include "io/document/document.h"
@@ -79,6 +80,8 @@ static const se3di_key model_keys[] = {
     {"events", SE3DI_KIND_LIST, .object = "event",
      .text = "crossings of levels, looked for in every step"},
     {"output", SE3DI_KIND_LIST, .object = "output", .text = "results files and pictures"},
+    {"study", SE3DI_KIND_OBJECT, .object = "study",
+     .text = "many runs with other parameters, for `se3d study`"},
     {.key = NULL}};
 const se3di_object se3di_object_model = {
     "model",
@@ -176,8 +179,9 @@ static bool read_model(se3di_reader *reader, se3di_library *library, const se3di
            read_section(reader, se3di_read_constraints) &&
            read_section(reader, se3di_read_drivers) && read_section(reader, se3di_read_forces) &&
            se3di_read_analyses(reader, root) && se3di_read_contact(reader, root) &&
-           se3di_read_particles(reader, root) && se3di_read_outputs(reader, root) &&
-           se3di_read_events(reader, root);
+           se3di_read_particles(reader, root) &&
+           (reader->is_sample || se3di_read_outputs(reader, root)) &&
+           se3di_read_events(reader, root) && (reader->is_sample || se3di_read_study(reader, root));
 }
 
 se3d_status se3di_model_fill(se3di_attempt *attempt)
@@ -189,10 +193,15 @@ se3d_status se3di_model_fill(se3di_attempt *attempt)
                            .pool = &model->pool,
                            .file = model->file,
                            .options = attempt->options,
-                           .error = attempt->error};
+                           .error = attempt->error,
+                           .content = model->content,
+                           .values = attempt->values,
+                           .value_count = attempt->value_count,
+                           .is_sample = attempt->is_sample};
     const bool good = read_model(&reader, attempt->library, model->root);
     attempt->fault = reader.fault;
     attempt->attached = reader.attached;
+    model->content = reader.content;
     return good ? SE3D_OK : reader.status < 0 ? reader.status : SE3D_ERR_MODEL;
 }
 
@@ -253,8 +262,16 @@ se3d_status se3d_model_read_text(const char *text, size_t length, const char *na
     } else {
         status = se3di_document_parse(&model->pool, model->file, text, length, &model->root, error);
     }
-    se3di_library library = {.pool = &model->pool};
-    se3di_attempt attempt = {.model = model, .options = &used, .error = error, .library = &library};
+    model->library = se3di_iopool_alloc(&model->pool, sizeof *model->library);
+    if (status >= 0 && !model->library) {
+        status = fail_early(error, SE3D_ERR_NO_MEMORY, "", "out of memory");
+    }
+    se3di_attempt attempt = {
+        .model = model, .options = &used, .error = error, .library = model->library};
+    if (model->library) {
+        model->library->pool = &model->pool;
+    }
+    model->content = se3di_hash_bytes(SE3DI_HASH_START, text, length);
     if (status < 0) {
         se3di_mistakes_report_one(&attempt, status);
     } else {

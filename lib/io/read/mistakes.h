@@ -12,10 +12,13 @@
 typedef struct se3di_attempt {
     se3d_model *model; /* with its file, name and root */
     const se3d_model_options *options;
-    se3d_model_error *error; /* not NULL; of the first mistake */
-    se3di_library *library;  /* files that were included */
-    se3di_fault fault;       /* what it is about */
-    size_t attached;         /* bytes of other files that were read */
+    se3d_model_error *error;   /* not NULL; of the first mistake */
+    se3di_library *library;    /* files that were included */
+    se3di_fault fault;         /* what it is about */
+    size_t attached;           /* bytes of other files that were read */
+    const se3di_named *values; /* [value_count] in place of parameters; NULL: none */
+    size_t value_count;
+    bool is_sample; /* of a study: outputs and `study` are passed over */
 } se3di_attempt;
 
 /* load.c: an empty model with its own memory (NULL: out of memory), and a model from its root. */

@@ -33,7 +33,10 @@
     X(modes_input)                                                                                 \
     X(modes_output)                                                                                \
     X(frequencies)                                                                                 \
-    X(output)
+    X(output)                                                                                      \
+    X(study)                                                                                       \
+    X(varied)                                                                                      \
+    X(measure)
 
 #define SE3DI_OBJECT(name) extern const se3di_object se3di_object_##name;
 SE3DI_OBJECT_LIST(SE3DI_OBJECT)

@@ -293,6 +293,20 @@ static bool apply_settings(resolver *r)
     return true;
 }
 
+/* Put the values of a sample in the place of the model's. */
+static void apply_values(resolver *r)
+{
+    const se3di_reader *reader = r->reader;
+    for (size_t k = 0; k < reader->value_count; ++k) {
+        size_t index = 0;
+        if (se3di_ionames_find(&r->names, reader->values[k].name, &index)) {
+            r->list[index].given = &reader->values[k].value;
+            r->list[index].text = "";
+            r->list[index].place = NULL;
+        }
+    }
+}
+
 static bool collect(resolver *r, const se3di_node *map, bool is_point)
 {
     if (!map) {
@@ -417,6 +431,9 @@ bool se3di_read_parameters(se3di_reader *reader, se3di_component *part, const se
     if (!collect(&r, maps[0], false) || !collect(&r, maps[1], true) ||
         !collect(&r, maps[2], true) || !(given ? apply_given(&r, given) : apply_settings(&r))) {
         return false;
+    }
+    if (!given) {
+        apply_values(&r);
     }
     for (size_t k = 0; k < r.count; ++k) {
         if (r.list[k].state == NEW && !resolve(&r, k)) {

@@ -22,8 +22,7 @@ static bool fail(table *t, const char *what)
     return se3di_reader_fail(t->reader, t->node, "%.200s:%zu: %s", t->file, t->line, what);
 }
 
-/* Cut a cell off at *at, without blanks and quotes around it. @return NULL: the row has ended. */
-static char *next_cell(char **at)
+char *se3di_table_next_cell(char **at)
 {
     if (!*at) {
         return NULL;
@@ -86,7 +85,7 @@ static bool read_line(table *t, char *line)
         return true;
     }
     for (size_t k = 0; k < COLUMNS; ++k) {
-        cells[k] = next_cell(&at);
+        cells[k] = se3di_table_next_cell(&at);
         if (!cells[k] || !*cells[k]) {
             return fail(t, "must have a name and three coordinates: name, x, y, z");
         }

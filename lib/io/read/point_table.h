@@ -8,4 +8,8 @@
 /* The points of the file that `point_table` names, as a map like that of `points`; NULL: none. */
 bool se3di_read_point_table(se3di_reader *reader, const se3di_node *root, const se3di_node **map);
 
+/* Cut a cell off at *at, a row of a CSV file, without blanks and quotes around it. @return NULL:
+ * the row has ended. */
+char *se3di_table_next_cell(char **at);
+
 #endif

@@ -17,5 +17,6 @@ bool se3di_read_contact(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_particles(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_events(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_study(se3di_reader *reader, const se3di_node *root);
 
 #endif

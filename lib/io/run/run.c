@@ -27,6 +27,7 @@
 #include "io/run/run_events.h"
 #include "io/run/run_modes.h"
 #include "io/run/run_particles.h"
+#include "io/run/watch.h"
 #include "io/write/contact_list.h"
 #include "io/write/csv.h"
 #include "io/write/particle_list.h"
@@ -59,6 +60,8 @@ struct se3d_run {
 
 typedef struct runner {
     se3d_model *model;
+    const se3di_watch *watch; /* gets the rows in place of files; NULL: there are files */
+    size_t analysis;          /* that runs */
     const se3d_run_options *options;
     se3d_run *run;
     se3d_model_error *error;
@@ -247,9 +250,28 @@ static se3d_status open_files(runner *r)
     return has_events(model) ? open_events(r) : SE3D_OK;
 }
 
+/* Whether the rows of this analysis are what the watch wants. */
+static bool is_watched(const runner *r)
+{
+    return r->watch && r->watch->analysis == r->analysis;
+}
+
+/* An analysis that is run for the state at its end only. */
+static void plan_passing(runner *r, const se3di_analysis_entry *entry)
+{
+    output_file *file = &r->files[0];
+    file->next = 0.0;
+    file->every = entry->analysis.duration;
+    file->count = file->every > 0.0 ? 1.0 : 0.0;
+}
+
 /* Number of rows of each file in this analysis. */
 static void plan(runner *r, const se3di_analysis_entry *entry)
 {
+    if (r->watch && !is_watched(r)) {
+        plan_passing(r, entry);
+        return;
+    }
     for (size_t k = 0; k < r->file_count; ++k) {
         output_file *file = &r->files[k];
         file->next = 0.0;
@@ -289,6 +311,9 @@ static void begin_rows(runner *r)
 static se3d_status sample(runner *r, output_file *file, double time)
 {
     double *row = file->row;
+    if (r->watch && !is_watched(r)) {
+        return SE3D_OK;
+    }
     if (file->vtk) {
         se3di_vtk_record(file->vtk, &r->sample,
                          time); /* a failure is reported at the end: others go on */
@@ -315,6 +340,10 @@ static se3d_status sample(runner *r, output_file *file, double time)
     if (file->summary) {
         se3di_summary_add(file->summary, time, file->row + 1);
         return SE3D_OK;
+    }
+    if (r->watch) {
+        const se3d_status status = r->watch->take(r->watch->ctx, file->row);
+        return status < 0 ? fail(r, status, "out of memory") : status;
     }
     se3di_csv_put_row(&file->csv, file->row);
     return file->csv.failure ? fail_file(r, file) : SE3D_OK;
@@ -601,6 +630,7 @@ static se3d_status create_solver(runner *r, const se3di_analysis_entry *entry, d
 static se3d_status run_analysis(runner *r, size_t index)
 {
     const se3di_analysis_entry *entry = &r->model->analyses[index];
+    r->analysis = index;
     se3d_run_analysis *done = &r->run->analyses[r->run->analysis_count++];
     const double start = isnan(entry->analysis.start) ? r->time : entry->analysis.start;
     const clock_t begin = clock();
@@ -618,7 +648,9 @@ static se3d_status run_analysis(runner *r, size_t index)
             status = create_solver(r, entry, start);
         }
         if (status >= 0 && se3di_analysis_has_motion(entry)) {
-            status = se3di_events_create(r->model, r->solver);
+            const bool watched = is_watched(r);
+            status = se3di_events_create(r->model, r->solver, watched ? r->watch->event : NULL,
+                                         watched ? r->watch->ctx : NULL);
         }
         status = status < 0          ? fail_analysis(r, entry, status, start)
                  : entry->modes.file ? run_modes(r, entry, start)
@@ -801,6 +833,46 @@ void se3d_run_destroy(se3d_run *run)
         se3di_iopool pool = run->pool; /* the run itself lies in it */
         se3di_iopool_destroy(&pool);
     }
+}
+
+/* One "file" that hands its rows on. */
+static se3d_status open_watch(runner *r)
+{
+    const se3di_output_entry *output = r->watch->output;
+    size_t columns = 1;
+    for (size_t k = 0; k < output->count; ++k) {
+        columns += se3di_channel_get_width(&output->channels[k]);
+    }
+    r->files = se3di_iopool_alloc(&r->run->pool, sizeof *r->files);
+    double *row = se3di_iopool_array(&r->run->pool, columns, sizeof *row);
+    if (!r->files || !row) {
+        return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    r->files->entry = output;
+    r->files->row = row;
+    r->file_count = 1;
+    return SE3D_OK;
+}
+
+se3d_status se3di_model_watch(se3d_model *model, const se3di_watch *watch,
+                              const se3d_run_options *options, se3d_model_error *error)
+{
+    runner r = {.model = model, .watch = watch, .options = options, .error = error};
+    r.run = create_run(model);
+    if (!r.run) {
+        return fail(&r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    model->running = 1;
+    se3di_sample_init(&r.sample, model->system, &model->pool.allocator);
+    se3d_status status = open_watch(&r);
+    se3d_system_get_time(model->system, &r.time);
+    for (size_t k = 0; k <= watch->analysis && status >= 0; ++k) {
+        status = model->analyses[k].modes.file ? status : run_analysis(&r, k);
+    }
+    se3di_sample_destroy(&r.sample);
+    model->running = 0;
+    se3d_run_destroy(r.run);
+    return status;
 }
 
 size_t se3d_run_count_analyses(const se3d_run *run)

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* FNV-1a, 64 bits, of what a model was read from. */
+#ifndef SE3D_IO_HASH_H
+#define SE3D_IO_HASH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define SE3DI_HASH_START UINT64_C(14695981039346656037)
+
+static inline uint64_t se3di_hash_bytes(uint64_t hash, const void *data, size_t size)
+{
+    const unsigned char *bytes = data;
+    for (size_t k = 0; k < size; ++k) {
+        hash = (hash ^ bytes[k]) * UINT64_C(1099511628211);
+    }
+    return hash;
+}
+
+#endif

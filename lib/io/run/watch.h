@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A run whose rows go to a function, not to files. */
+#ifndef SE3D_IO_WATCH_H
+#define SE3D_IO_WATCH_H
+
+#include "io/channel/output.h"
+#include "io/model/model.h"
+
+typedef struct se3di_watch {
+    const se3di_output_entry *output; /* channels of the rows, and how often */
+    size_t analysis;                  /* index of that whose rows are wanted */
+    /* Take a row: the time, then the numbers of the channels. @return OK, NO_MEMORY */
+    se3d_status (*take)(void *ctx, const double *row);
+    se3d_event_callback event; /* of the events of that analysis; NULL: none */
+    void *ctx;                 /* of both */
+} se3di_watch;
+
+/* Run the analyses of a model up to the one that is wanted, but for modes; nothing is written.
+ * @return as se3d_model_run; `error` (may be NULL) says why not. */
+se3d_status se3di_model_watch(se3d_model *model, const se3di_watch *watch,
+                              const se3d_run_options *options, se3d_model_error *error);
+
+#endif

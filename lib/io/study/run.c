@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One run of the model of a study: read again from its tree with other parameters, run without
+ * files, measured on the way. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/channel/event.h"
+#include "io/channel/sample.h"
+#include "io/document/document.h"
+#include "io/document/value.h"
+#include "io/read/include.h"
+#include "io/read/mistakes.h"
+#include "io/run/watch.h"
+#include "io/study/study.h"
+
+typedef struct trial {
+    se3d_study *study;
+    se3d_model *model;
+    se3di_channel *channels; /* [channel_count], of this model */
+    size_t *components;      /* of the channels */
+    size_t *places;          /* of the channels in a row */
+    se3d_model_error *error;
+} trial;
+
+static se3d_status fail(const trial *t, se3d_status status, const char *text)
+{
+    se3di_document_report(t->error, "", 0, 0, "", text);
+    return status;
+}
+
+/* The model with these parameters. */
+static se3d_status read_model(trial *t, const se3di_named *values, size_t count)
+{
+    const se3d_model *like = t->study->model;
+    t->model = se3di_model_create(&like->pool.allocator);
+    if (!t->model) {
+        return fail(t, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    t->model->file = like->file;
+    t->model->name = like->name;
+    t->model->root = like->root;
+    se3di_attempt attempt = {.model = t->model,
+                             .options = &t->study->entry->options,
+                             .error = t->error,
+                             .library = like->library,
+                             .values = values,
+                             .value_count = count,
+                             .is_sample = true};
+    return se3di_model_fill(&attempt);
+}
+
+/* What the names of the channels mean in this model, and what a row is made of. */
+static se3d_status find_channels(trial *t, se3di_output_entry *output)
+{
+    const se3d_study *study = t->study;
+    const size_t count = study->channel_count;
+    size_t place = 1;
+    t->channels = se3di_iopool_array(&t->model->pool, count, sizeof *t->channels);
+    t->components = se3di_iopool_array(&t->model->pool, count, sizeof *t->components);
+    t->places = se3di_iopool_array(&t->model->pool, count, sizeof *t->places);
+    if (!t->channels || !t->components || !t->places) {
+        return fail(t, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    for (size_t k = 0; k < count; ++k) {
+        char problem[480] = "";
+        if (!se3di_channel_find_number(t->model, study->channels[k], &t->channels[k],
+                                       &t->components[k], problem, sizeof problem)) {
+            const bool memory = strcmp(problem, "out of memory") == 0;
+            return fail(t, memory ? SE3D_ERR_NO_MEMORY : SE3D_ERR_MODEL, problem);
+        }
+        t->places[k] = place + t->components[k];
+        place += se3di_channel_get_width(&t->channels[k]);
+    }
+    *output = (se3di_output_entry){
+        .every = study->entry->every, .channels = t->channels, .count = count, .set = -1};
+    return SE3D_OK;
+}
+
+static se3d_status take_row(void *ctx, const double *row)
+{
+    const trial *t = ctx;
+    se3d_study *study = t->study;
+    for (size_t k = 0; k < study->entry->measure_count; ++k) {
+        se3di_tally *tally = &study->tallies[k];
+        if (tally->measure->channel &&
+            !se3di_tally_add(tally, &study->pool, row[0], row[t->places[study->columns[k]]])) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status take_event(void *ctx, se3d_system *system, const se3d_event_record *record)
+{
+    const trial *t = ctx;
+    const se3d_study *study = t->study;
+    se3d_status status = SE3D_OK;
+    se3di_sample sample;
+    se3di_sample_init(&sample, system, &t->model->pool.allocator);
+    for (size_t k = 0; k < study->entry->measure_count && status >= 0; ++k) {
+        const se3di_study_measure *m = &study->entry->measures[k];
+        double value[4] = {0.0, 0.0, 0.0, 0.0};
+        const size_t column = study->columns[k];
+        if (!m->event || strcmp(m->event, record->name) != 0) {
+            continue;
+        }
+        if (m->channel) {
+            status = se3di_channel_eval(&t->channels[column], &sample, value);
+        }
+        if (status >= 0) {
+            se3di_tally_find(&study->tallies[k],
+                             m->channel ? value[t->components[column]] : record->time);
+        }
+    }
+    se3di_sample_destroy(&sample);
+    return status;
+}
+
+/* An expression over the measures above it and the parameters of this model. */
+static se3d_status eval_expression(const trial *t, size_t index, const double *measures,
+                                   double *value)
+{
+    const se3di_study_entry *entry = t->study->entry;
+    const se3di_scope *scope = t->model->scope;
+    const size_t count = index + scope->symbol_count;
+    se3d_expression_def def = se3d_expression_def_default();
+    se3d_expression *expression = NULL;
+    se3d_expression_symbol *symbols = se3di_iopool_array(&t->model->pool, count, sizeof *symbols);
+    *value = (double)NAN;
+    if (!symbols) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    size_t used = 0;
+    for (size_t k = 0; k < index;
+         ++k) { /* without a value it is unknown, and so is what needs it */
+        if (isfinite(measures[k])) {
+            symbols[used++] = (se3d_expression_symbol){entry->measures[k].name, measures[k]};
+        }
+    }
+    for (size_t k = 0; k < scope->symbol_count; ++k) {
+        symbols[used++] = scope->symbols[k];
+    }
+    def.text = entry->measures[index].node->text;
+    def.symbols = symbols;
+    def.symbol_count = used;
+    def.allocator = &t->model->pool.allocator;
+    const se3d_status status = se3d_expression_create(&def, &expression, NULL);
+    if (status >= 0) {
+        (void)se3d_expression_eval(expression, NULL, value); /* not finite is told below */
+    }
+    se3d_expression_destroy(expression);
+    return status == SE3D_ERR_NO_MEMORY ? status : SE3D_OK;
+}
+
+/* All measures at the end of the run. */
+static se3d_status conclude(const trial *t, double *measures)
+{
+    const se3d_study *study = t->study;
+    se3d_status result = SE3D_OK;
+    for (size_t k = 0; k < study->entry->measure_count; ++k) {
+        const se3di_study_measure *m = &study->entry->measures[k];
+        const char *problem = "is not finite";
+        se3d_status status = SE3D_OK;
+        if (m->reduction == SE3DI_REDUCE_EXPRESSION) {
+            status = eval_expression(t, k, measures, &measures[k]);
+        } else {
+            measures[k] = se3di_tally_get(&study->tallies[k], &problem);
+        }
+        if (status < 0) {
+            return fail(t, status, "out of memory");
+        }
+        if (!isfinite(measures[k])) {
+            char text[200];
+            measures[k] = (double)NAN;
+            snprintf(text, sizeof text, "`%.60s` %s", m->name, problem);
+            result = result < 0 ? result : fail(t, SE3D_ERR_NOT_FINITE, text);
+        }
+    }
+    return result;
+}
+
+static se3d_status run(trial *t, const se3di_named *values, size_t count, double *measures)
+{
+    se3d_study *study = t->study;
+    se3di_output_entry output;
+    se3d_run_options how = se3d_run_options_default();
+    how.interrupt = study->interrupt;
+    how.interrupt_ctx = study->interrupt_ctx;
+    se3d_status status = read_model(t, values, count);
+    if (status >= 0) {
+        status = find_channels(t, &output);
+    }
+    if (status < 0) {
+        return status;
+    }
+    for (size_t k = 0; k < study->entry->measure_count; ++k) {
+        se3di_tally_begin(&study->tallies[k], &study->entry->measures[k]);
+    }
+    const se3di_watch watch = {.output = &output,
+                               .analysis = study->analysis,
+                               .take = take_row,
+                               .event = take_event,
+                               .ctx = t};
+    status = se3di_model_watch(t->model, &watch, &how, t->error);
+    return status < 0 ? status : conclude(t, measures);
+}
+
+se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t count,
+                            double *measures, se3d_model_error *error)
+{
+    trial t = {.study = study, .error = error};
+    memset(error, 0, sizeof *error);
+    for (size_t k = 0; k < study->entry->measure_count; ++k) {
+        measures[k] = (double)NAN;
+    }
+    const se3d_status status = run(&t, values, count, measures);
+    se3d_model_destroy(t.model);
+    return status > 0 ? SE3D_OK : status;
+}

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A study, and one run of its model. */
+#ifndef SE3D_IO_STUDY_STUDY_H
+#define SE3D_IO_STUDY_STUDY_H
+
+#include <stdbool.h>
+
+#include "io/base/pool.h"
+#include "io/channel/channel.h"
+#include "io/channel/study.h"
+#include "io/model/model.h"
+#include "io/study/tally.h"
+#include "se3d/study.h"
+
+/* Room for one number and its comma. */
+enum { SE3DI_STUDY_CELL = 48, SE3DI_STUDY_REASON = 400 };
+
+struct se3d_study {
+    se3di_iopool pool; /* of the study itself and all below */
+    se3d_model *model; /* as it was read, with the tree of its file */
+    const se3di_study_entry *entry;
+    size_t analysis; /* index of that which is measured */
+    const char **channels;
+    size_t channel_count;
+    size_t *columns; /* [measure_count] which channel each is made of */
+    se3di_tally *tallies;
+    double *parameters; /* of a sample */
+    double *measures;
+    se3di_named *values; /* of the parameters, for the reader */
+    se3d_interrupt interrupt;
+    void *interrupt_ctx;
+    const char *head; /* first lines of its tables, without the shard */
+    char *row;
+    size_t row_size;
+    se3di_iopool reply_pool; /* of the last answer */
+};
+
+/* Run the model with some parameters of it. @return as se3d_study_eval. */
+se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t count,
+                            double *measures, se3d_model_error *error);
+/* "# se3d study ...": what all tables of the study begin with, then the rest of the first line and
+ * the names of the columns. */
+const char *se3di_study_get_columns(const se3d_study *study);
+
+#endif

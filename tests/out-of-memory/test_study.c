@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The k-th allocation of a study fails, once or for ever: the failure is reported, nothing leaks,
+ * and the study goes on when there is memory again. */
+#include <stdlib.h>
+
+#include "check.h"
+#include "se3d/study.h"
+#include "support/counting.h"
+
+static const char text[] =
+    "se3d: 1\n"
+    "parameters: {h: 1, m: 2}\n"
+    "parts: {p: {parameters: {a: 1}, bodies: [{name: b, mass: a, inertia: [1, 1, 1]}]}}\n"
+    "instances: [{part: p, parameters: {a: m}}]\n"
+    "bodies: [{name: block, mass: m, inertia: [1, 1, 1], position: [0, 0, h]}]\n"
+    "events: [{name: low, channel: block.position.z, value: 0.99}]\n"
+    "analysis: [{type: assembly}, {type: dynamics, duration: 0.2, step: 0.05}]\n"
+    "study: {parameters: {h: \"normal(1, 0.001)\", m: {from: 1, to: 2}}, samples: 3,\n"
+    "  measures: {z: {min: block.position.z}, s: {settling: block.position.z, band: 1},\n"
+    "    v: {at: b.velocity.z, event: low}, e: z + m}}\n";
+
+typedef struct attempt {
+    se3d_status status;
+    size_t failed;
+    char rows[600];
+} attempt;
+
+static se3d_status use_table(se3d_study *study, const char *path, const char *row,
+                             se3d_model_error *error)
+{
+    const char *const paths[] = {path};
+    char merged[900];
+    se3d_study_merge_options how = se3d_study_merge_options_default();
+    se3d_study_table_def def = se3d_study_table_def_default();
+    se3d_study_table *table = NULL;
+    def.path = path;
+    remove(path);
+    snprintf(merged, sizeof merged, "%s.merged", path);
+    se3d_status status = se3d_study_table_open(study, &def, &table, error);
+    if (status >= 0) {
+        status = se3d_study_table_append(table, row, error);
+    }
+    se3d_study_table_close(table);
+    def.resume = 1;
+    table = NULL;
+    if (status >= 0) {
+        status = se3d_study_table_open(study, &def, &table, error);
+    }
+    se3d_study_table_close(table);
+    if (status >= 0) {
+        how.partial = 1;
+        status = se3d_study_merge(study, paths, 1, merged, &how, NULL, error);
+        status = status == SE3D_ERR_STATE ? SE3D_OK : status; /* two samples are missing */
+    }
+    remove(path);
+    remove(merged);
+    return status;
+}
+
+static se3d_status use_study(se3d_study *study, char *rows, se3d_model_error *error)
+{
+    static const char request[] = "{\"id\": \"a\", \"parameters\": {\"m\": 3}}";
+    const char *build = getenv("SE3D_BUILD_DIR");
+    const char *row = "";
+    const char *reply = "";
+    char path[800];
+    snprintf(error->message, sizeof error->message, "out of memory");
+    se3d_status status = se3d_study_run_sample(study, 1, &row);
+    snprintf(rows, 600, "%s", row);
+    if (status >= 0) {
+        status = se3d_study_answer(study, request, strlen(request), &reply);
+    }
+    if (status >= 0) {
+        CHECK_CONTAINS(reply, "{\"id\": \"a\", \"measures\": {\"z\": ");
+        snprintf(rows + strlen(rows), 600 - strlen(rows), "%s", reply);
+        snprintf(path, sizeof path, "%s/out-of-memory-study.csv", build ? build : "/tmp");
+        char kept[300];
+        snprintf(kept, sizeof kept, "%.*s", (int)(strchr(rows, '\n') + 1 - rows), rows);
+        status = use_table(study, path, kept, error);
+    }
+    return status;
+}
+
+static attempt try_once(size_t k, int for_ever)
+{
+    support_counting counting = {.fail_at = k, .for_ever = for_ever};
+    const se3d_allocator allocator = support_counting_allocator(&counting);
+    se3d_model_options options = se3d_model_options_default();
+    se3d_model *model = NULL;
+    se3d_study *study = NULL;
+    se3d_model_error error = {0, 0, ""};
+    attempt a = {SE3D_OK, 0, ""};
+    options.allocator = &allocator;
+    a.status = se3d_model_read_text(text, strlen(text), "m.yaml", &options, &model, &error);
+    if (a.status >= 0) {
+        a.status = se3d_study_create(model, &study, &error);
+    }
+    if (a.status >= 0) {
+        a.status = use_study(study, a.rows, &error);
+        CHECK(a.status < 0 || a.rows[0]);
+    }
+    a.failed = counting.failed;
+    CHECK(a.status >= 0 || error.message[0] != '\0');
+    counting.fail_at = 0;
+    if (a.status < 0 && study) { /* there is memory again */
+        CHECK(use_study(study, a.rows, &error) == SE3D_OK);
+    }
+    se3d_study_destroy(study);
+    se3d_model_destroy(model);
+    CHECK(counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);
+    return a;
+}
+
+static void a_study_survives_every_failed_allocation(void)
+{
+    const attempt whole = try_once(0, 0);
+    CHECK(whole.status >= 0 && whole.rows[0]);
+    for (int for_ever = 0; for_ever < 2; ++for_ever) {
+        size_t k = 1;
+        for (attempt a = {.failed = 1}; k < 5000 && a.failed > 0; ++k) {
+            a = try_once(k, for_ever);
+            CHECK(a.status == SE3D_ERR_NO_MEMORY || (a.status >= 0 && a.failed == 0));
+            CHECK(!a.rows[0] || strcmp(a.rows, whole.rows) == 0);
+        }
+        CHECK(k > 200 && k < 5000);
+    }
+}
+
+int main(void)
+{
+    RUN(a_study_survives_every_failed_allocation);
+    return check_finish();
+}

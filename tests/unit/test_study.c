@@ -1,0 +1,494 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Studies: the generator, the layouts, the measures of a run that is known, and what is refused. */
+#include <stdlib.h>
+
+#include "check.h"
+#include "io/study/design.h"
+#include "io/study/quantile.h"
+#include "io/study/random.h"
+#include "se3d/study.h"
+
+/* The known answers that the authors of the generator publish with it (Random123, kat_vectors). */
+static void the_generator_gives_the_known_answers(void)
+{
+    static const struct {
+        uint32_t counter[4], key[2], out[4];
+    } rows[] = {
+        {{0, 0, 0, 0}, {0, 0}, {0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}},
+        {{0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff},
+         {0xffffffff, 0xffffffff},
+         {0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}},
+        {{0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344},
+         {0xa4093822, 0x299f31d0},
+         {0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        uint32_t out[4];
+        se3di_philox(rows[k].counter, rows[k].key, out);
+        CHECK(memcmp(out, rows[k].out, sizeof out) == 0);
+    }
+    CHECK(se3di_random_uniform(0) > 0.0 && se3di_random_uniform(UINT64_MAX) < 1.0);
+}
+
+static void a_random_order_has_every_place_once(void)
+{
+    static const uint64_t counts[] = {1, 2, 3, 4, 5, 16, 17, 100, 1000, 4097};
+    static unsigned char seen[5000];
+    for (size_t k = 0; k < sizeof counts / sizeof *counts; ++k) {
+        const uint64_t count = counts[k];
+        uint64_t fixed = 0;
+        memset(seen, 0, sizeof seen);
+        for (uint64_t i = 0; i < count; ++i) {
+            const uint64_t place = se3di_random_place(7, 3, count, i);
+            CHECK(place < count && !seen[place]);
+            seen[place < count ? place : 0] = 1;
+            fixed += place == i;
+        }
+        CHECK(count < 100 || fixed < 10);
+    }
+}
+
+static void quantiles_invert_their_distributions(void)
+{
+    for (double z = -8.0; z <= 5.0; z += 0.37) {
+        const double u = 0.5 * erfc(-z * sqrt(0.5));
+        CHECK_NEAR(se3di_quantile_normal(u), z, 1e-13 + 1e-15 / exp(-0.5 * z * z));
+    }
+    CHECK_NEAR(se3di_quantile_normal(0.975), 1.9599639845400542355, 1e-15);
+    CHECK_NEAR(0.5 * erfc(-se3di_quantile_normal(1e-300) * sqrt(0.5)) * 1e300, 1.0, 1e-11);
+    CHECK(!(fabs(se3di_quantile_normal(0.5)) > 0.0));
+    const double a[3] = {1.0, 2.0, 5.0};
+    for (double x = 1.05; x < 5.0; x += 0.21) {
+        const double u =
+            x < a[1] ? (x - 1.0) * (x - 1.0) / 4.0 : 1.0 - (5.0 - x) * (5.0 - x) / 12.0;
+        CHECK_NEAR(se3di_quantile_triangular(a, u), x, 1e-13);
+    }
+    const double corner[3] = {1.0, 1.0, 2.0};
+    CHECK_NEAR(se3di_quantile_triangular(corner, 0.75), 1.5, 1e-15);
+    CHECK_NEAR(se3di_quantile_exponential(1.0 - exp(-2.0)), 2.0, 1e-14);
+}
+
+/* A point in each of 2^j equal parts, for every j: what makes a dimension of Sobol's sequence. In
+ * the first two dimensions every box of area 2^-j has one of 2^j points. */
+static void points_of_sobol_fill_every_part(void)
+{
+    static unsigned char seen[1024];
+    for (size_t k = 0; k < 21; ++k) {
+        for (uint32_t j = 1; j <= 10; ++j) {
+            memset(seen, 0, sizeof seen);
+            for (uint32_t i = 0; i < 1u << j; ++i) {
+                unsigned char *part = &seen[se3di_design_sobol(k, i) >> (32 - j)];
+                CHECK(!*part);
+                *part = 1;
+            }
+        }
+    }
+    for (uint32_t j = 0; j <= 10; ++j) {
+        memset(seen, 0, sizeof seen);
+        for (uint32_t i = 0; i < 1024; ++i) {
+            const uint64_t x = se3di_design_sobol(0, i), y = se3di_design_sobol(1, i);
+            unsigned char *box = &seen[(x >> (32 - j)) << (10 - j) | y >> (22 + j)];
+            CHECK(!*box);
+            *box = 1;
+        }
+    }
+}
+
+/* Integrals of x_i x_j by 4096 points: a wrong direction number in one dimension shows here. */
+static void points_of_sobol_integrate_products(void)
+{
+    enum { COUNT = 4096 };
+    for (size_t a = 0; a < 21; ++a) {
+        for (size_t b = 0; b < a; ++b) {
+            double sum = 0.0;
+            for (uint32_t i = 0; i < COUNT; ++i) {
+                sum += (se3di_design_sobol(a, i) + 0.5) * 0x1p-32 *
+                       ((se3di_design_sobol(b, i) + 0.5) * 0x1p-32);
+            }
+            CHECK_NEAR(sum / COUNT, 0.25, 1e-3);
+        }
+    }
+}
+
+/* ---- a run that is known ---------------------------------------------------------------------*/
+
+/* A block that falls from the height h with the speed v: z = h + v t - g t^2 / 2. */
+#define BLOCK                                                                                      \
+    "se3d: 1\nparameters: {h: 5, v: 3, g: 10, m: 2 kg, w: 3*h}\ngravity: [0, 0, -g]\n"             \
+    "bodies: [{name: block, mass: m, inertia: [1, 1, 1], position: [w, 0, h], velocity: [0, 0, "   \
+    "v]}]\n"                                                                                       \
+    "events: [{name: low, channel: block.position.z, value: 0, direction: falling}]\n"             \
+    "analysis: [{type: assembly}, {type: dynamics, duration: 2, tolerance: 1e-10}]\n"
+#define MEASURES                                                                                   \
+    "  measures:\n"                                                                                \
+    "    top: {max: block.position.z}\n"                                                           \
+    "    bottom: {min: block.position.z}\n"                                                        \
+    "    range: {range: block.position.z}\n"                                                       \
+    "    mean: {mean: block.position.z}\n"                                                         \
+    "    rms: {rms: block.velocity.z}\n"                                                           \
+    "    area: {integral: block.position.z}\n"                                                     \
+    "    begin: {initial: block.velocity.z}\n"                                                     \
+    "    end: {final: block.velocity.z}\n"                                                         \
+    "    early: {at: block.velocity.z, time: 100 ms}\n"                                            \
+    "    hit: {at: block.velocity.z, event: low}\n"                                                \
+    "    when: {time_of: low}\n"                                                                   \
+    "    slow: {settling: block.velocity.z, band: 4, target: -17}\n"                               \
+    "    last: {settling: block.velocity.z, band: 4}\n"                                            \
+    "    sum: top + 2*bottom + w\n"
+
+static se3d_model *read_model(const char *text)
+{
+    se3d_model *model = NULL;
+    se3d_model_error error;
+    if (se3d_model_read_text(text, strlen(text), "a.yaml", NULL, &model, &error) < 0) {
+        fprintf(stderr, "%s\n", error.message);
+    }
+    return model;
+}
+
+typedef struct opened {
+    se3d_model *model;
+    se3d_study *study;
+} opened;
+
+static opened open_study(const char *text)
+{
+    opened s = {read_model(text), NULL};
+    CHECK(s.model && se3d_study_create(s.model, &s.study, NULL) == SE3D_OK);
+    return s;
+}
+
+static void close_study(opened s)
+{
+    se3d_study_destroy(s.study);
+    se3d_model_destroy(s.model);
+}
+
+static void measures_are_those_of_the_motion(void)
+{
+    const opened s = open_study(BLOCK "study:\n  parameters: {h: [5, 6], v: {from: 2, to: 4, "
+                                      "count: 3}, m: [2 kg, 3 kg]}\n" MEASURES);
+    CHECK(se3d_study_count_samples(s.study) == 12 && se3d_study_count_parameters(s.study) == 3);
+    CHECK(se3d_study_count_measures(s.study) == 14);
+    for (uint64_t i = 0; i < 12; ++i) {
+        double p[3], y[14];
+        se3d_model_error error;
+        CHECK(se3d_study_get_sample(s.study, i, p) == SE3D_OK);
+        CHECK_NEAR(p[0], i < 6 ? 5.0 : 6.0, 0.0); /* the last one is the fastest */
+        CHECK_NEAR(p[1], 2.0 + (double)(i / 2 % 3), 0.0);
+        CHECK_NEAR(p[2], i % 2 ? 3.0 : 2.0, 0.0);
+        CHECK(se3d_study_eval(s.study, p, y, &error) == SE3D_OK);
+        const double h = p[0], v = p[1], g = 10.0, T = 2.0;
+        const double end = h + v * T - 0.5 * g * T * T;
+        const double hit = (v + sqrt(v * v + 2.0 * g * h)) / g;
+        const double area = h * T + v * T * T / 2.0 - g * T * T * T / 6.0;
+        CHECK_NEAR(y[0], h + v * v / (2.0 * g), 1e-8 + 0.5 * g * 0.002 * 0.002);
+        CHECK_NEAR(y[1], end, 1e-8);
+        CHECK_NEAR(y[2], y[0] - y[1], 0.0);
+        CHECK_NEAR(y[3], area / T, 1e-4);
+        CHECK_NEAR(y[4], sqrt((pow(v, 3.0) - pow(v - g * T, 3.0)) / (3.0 * g * T)), 1e-8);
+        CHECK_NEAR(y[5], area, 1e-4);
+        CHECK_NEAR(y[6], v, 1e-12);
+        CHECK_NEAR(y[7], v - g * T, 1e-8);
+        CHECK_NEAR(y[8], v - g * 0.1, 1e-8);
+        CHECK_NEAR(y[9], v - g * hit, 1e-7);
+        CHECK_NEAR(y[10], hit, 1e-8);
+        CHECK_NEAR(y[11], (v + 13.0) / g, 1e-8);
+        CHECK_NEAR(y[12], T - 4.0 / g, 1e-8);
+        CHECK_NEAR(y[13], y[0] + 2.0 * y[1] + 3.0 * h, 1e-12);
+    }
+    close_study(s);
+}
+
+/* What an event or a band does not reach has no value; the others have theirs. */
+static void a_measure_without_a_value_is_told(void)
+{
+    const opened s = open_study(BLOCK "study:\n  parameters: {h: [500]}\n" MEASURES);
+    const char *row = "";
+    double p[1], y[14];
+    se3d_model_error error;
+    CHECK(se3d_study_get_sample(s.study, 0, p) == SE3D_OK);
+    CHECK(se3d_study_eval(s.study, p, y, &error) == SE3D_ERR_NOT_FINITE);
+    CHECK_CONTAINS(error.message, "`hit` the event did not happen");
+    CHECK(isnan(y[9]) && isnan(y[10]) && isfinite(y[0]) && isfinite(y[13]));
+    CHECK(se3d_study_run_sample(s.study, 0, &row) == SE3D_ERR_NOT_FINITE);
+    CHECK_CONTAINS(row, ",,,");
+    CHECK_CONTAINS(row, ",\"`hit` the event did not happen\"\n");
+    p[0] = (double)NAN;
+    CHECK(se3d_study_eval(s.study, p, y, &error) < 0 && isnan(y[0]));
+    CHECK_CONTAINS(error.message, "h = nan, must be finite");
+    close_study(s);
+}
+
+/* ---- layouts ---------------------------------------------------------------------------------*/
+
+#define LAYOUT                                                                                     \
+    "%sstudy: {parameters: {h: \"~ normal(5, 0.5)\", v: \"uniform(2, 4)\", w: {from: 1, to: 2}, "  \
+    "m: \"triangular(1 kg, 2 kg, 3000 g)\"}, samples: 64, method: %s, seed: %s, "                  \
+    "measures: {z: {max: block.position.z}}}\n"
+static const char *const methods[] = {"monte_carlo", "latin_hypercube", "sobol"};
+
+static opened open_layout(const char *method, const char *seed)
+{
+    char text[2000];
+    snprintf(text, sizeof text, LAYOUT, BLOCK, method, seed);
+    return open_study(text);
+}
+
+/* Sample i is the same alone, in any order, and with another seed another one. */
+static void a_sample_depends_on_the_seed_and_its_number_only(void)
+{
+    for (size_t k = 0; k < 3; ++k) {
+        const opened a = open_layout(methods[k], "3"), b = open_layout(methods[k], "3"),
+                     c = open_layout(methods[k], "4");
+        int same = 0;
+        for (uint64_t i = 0; i < 64; ++i) {
+            double p[4], q[4], r[4];
+            const char *row = "";
+            char kept[400];
+            CHECK(!se3d_study_get_sample(a.study, i, p) && !se3d_study_get_sample(c.study, i, r));
+            CHECK(se3d_study_run_sample(a.study, i, &row) == SE3D_OK);
+            snprintf(kept, sizeof kept, "%s", row);
+            CHECK(!se3d_study_get_sample(b.study, 63 - i, q));
+            CHECK(!se3d_study_run_sample(b.study, 63 - i, &row));
+            CHECK(!se3d_study_get_sample(b.study, i, q) &&
+                  !se3d_study_run_sample(b.study, i, &row));
+            CHECK(memcmp(p, q, sizeof p) == 0 && strcmp(kept, row) == 0);
+            same += memcmp(p, r, sizeof p) == 0;
+        }
+        CHECK(same == 0);
+        close_study(a), close_study(b), close_study(c);
+    }
+}
+
+/* Every stratum of a Latin hypercube, and of 64 points of Sobol, has one sample; random ones miss
+ * some. Means and deviations are those asked for. */
+static void layouts_fill_their_strata(void)
+{
+    for (size_t k = 0; k < 3; ++k) {
+        const opened s = open_layout(methods[k], "3");
+        int seen[64] = {0};
+        double sum = 0.0, squares = 0.0;
+        int missed = 0;
+        for (uint64_t i = 0; i < 64; ++i) {
+            double p[4];
+            CHECK(!se3d_study_get_sample(s.study, i, p));
+            CHECK(p[1] > 2.0 && p[1] < 4.0 && p[2] > 1.0 && p[2] < 2.0);
+            CHECK(p[3] > 1.0 && p[3] < 3.0); /* kilograms, however they are written */
+            ++seen[(int)((p[1] - 2.0) * 32.0)];
+            sum += p[0];
+            squares += (p[0] - 5.0) * (p[0] - 5.0);
+        }
+        for (int i = 0; i < 64; ++i) {
+            missed += seen[i] == 0;
+        }
+        CHECK(k == 0 ? missed > 5 : missed == 0);
+        CHECK_NEAR(sum / 64.0, 5.0, k == 0 ? 0.2 : 0.02);
+        CHECK_NEAR(sqrt(squares / 64.0), 0.5, k == 0 ? 0.15 : 0.03);
+        close_study(s);
+    }
+}
+
+/* ---- what is refused -------------------------------------------------------------------------*/
+
+static const struct {
+    const char *study;
+    const char *message;
+} bad[] = {
+    {"study: 3", "study: is a single value"},
+    {"study: {measures: {a: {max: block.position.z}}}", "study.parameters: is missing"},
+    {"study: {parameters: {h: [1]}}", "study.measures: is missing"},
+    {"study: {parameters: {h: [1]}, measures: {}}", "study.measures: is empty"},
+    {"study: {parameters: {h: [1]}, measures: [1]}", "study.measures: is a list"},
+    {"study: {parameters: {}, measures: {a: {max: block.position.z}}}",
+     "study.parameters: is empty"},
+    {"study: {parameters: {H: [1]}, "
+     "measures: {a: 1}}",
+     "no parameter `H`, did you mean `h`?"},
+    {"study: {parameters: {h: []}, measures: {a: 1}}", "is empty, must have at least one value"},
+    {"study: {parameters: {h: 3}, measures: {a: 1}}", "must be {from: 1, to: 2}"},
+    {"study: {parameters: {h: normal(2}, measures: {a: 1}}", "must be normal(mean, deviation)"},
+    {"study: {parameters: {h: \"normal(2)\"}, samples: 1, measures: {a: 1}}",
+     "must be normal(mean, deviation)"},
+    {"study: {parameters: {h: \"normal(2, 0)\"}, samples: 1, measures: {a: 1}}",
+     "the deviation must be > 0"},
+    {"study: {parameters: {h: \"normal(2, 1,,)\"}, samples: 1, measures: {a: 1}}",
+     "must be normal(mean, deviation)"},
+    {"study: {parameters: {h: \"gauss(2, 1)\"}, samples: 1, measures: {a: 1}}", "normal(mean, dev"},
+    {"study: {parameters: {h: \"uniform(2, 1)\"}, samples: 1, measures: {a: 1}}",
+     "lower must be less than upper"},
+    {"study: {parameters: {h: \"triangular(1, 4, 3)\"}, samples: 1, measures: {a: 1}}",
+     "must be lower <= mode <= upper"},
+    {"study: {parameters: {h: \"weibull(1, 0)\"}, samples: 1, measures: {a: 1}}",
+     "scale and shape must be > 0"},
+    {"study: {parameters: {h: \"exponential(-1)\"}, samples: 1, measures: {a: 1}}",
+     "the mean must be > 0"},
+    {"study: {parameters: {m: \"normal(2 kg, 1 m)\"}, samples: 1, measures: {a: 1}}", "mass"},
+    {"study: {parameters: {m: \"lognormal(2 kg, 1)\"}, samples: 1, measures: {a: 1}}",
+     "must have no unit"},
+    {"study: {parameters: {h: \"normal(2, 1)\"}, measures: {a: 1}}", "needs `samples`"},
+    {"study: {parameters: {h: \"normal(2, 1)\"}, samples: 0, measures: {a: 1}}", "is 0, must be"},
+    {"study: {parameters: {h: \"normal(2, 1)\"}, samples: -1, measures: {a: 1}}", "samples: is -1"},
+    {"study: {parameters: {h: \"normal(2, 1)\"}, samples: 1.5, measures: {a: 1}}",
+     "must be a whole number"},
+    {"study: {parameters: {h: \"normal(2, 1)\"}, samples: 1e9, measures: {a: 1}}", "to 1e+08"},
+    {"study: {parameters: {h: \"normal(2, 1)\"}, method: sobol, measures: {a: 1}}",
+     "samples: is missing"},
+    {"study: {parameters: {h: [1]}, method: grid, samples: 3, measures: {a: 1}}", "not for a grid"},
+    {"study: {parameters: {h: {from: 1, to: 2}}, measures: {a: 1}}", "needs {from, to, count}"},
+    {"study: {parameters: {h: {from: 1, to: 2, count: 0}}, measures: {a: 1}}", "at least 1"},
+    {"study: {parameters: {h: {from: 1}}, measures: {a: 1}}", "to: is missing"},
+    {"study: {parameters: {h: {from: 1, to: 2, count: 1e6}, v: {from: 1, to: 2, count: 1e6}}, "
+     "measures: {a: 1}}",
+     "at most 1e+08"},
+    {"study: {parameters: {h: [1]}, seed: -1, measures: {a: 1}}", "seed: is -1"},
+    {"study: {parameters: {h: [1]}, analysis: 3, measures: {a: 1}}", "must be from 1 to 2"},
+    {"study: {parameters: {h: [1]}, every: 0, measures: {a: 1}}", "every: is 0"},
+    {"study: {parameters: {h: [1]}, table: a.csv, measures: {a: 1}}", "not for a `table`"},
+    {"study: {table: /no/such.csv, measures: {a: 1}}", "cannot be opened"},
+    {"study: {parameters: {h: [1]}, measures: {a: {max: blok.position.z}}}", "blok"},
+    {"study: {parameters: {h: [1]}, measures: {a: {max: block.position}}}", "not a single number"},
+    {"study: {parameters: {h: [1]}, measures: {a: {}}}", "must have one of max"},
+    {"study: {parameters: {h: [1]}, measures: {a: {max: block.position.z, min: block.position.z}}}",
+     "is there already"},
+    {"study: {parameters: {h: [1]}, measures: {a: {max: block.position.z, time: 1}}}",
+     "belongs to `at`, not to `max`"},
+    {"study: {parameters: {h: [1]}, measures: {a: {at: block.position.z}}}", "`time` or `event`"},
+    {"study: {parameters: {h: [1]}, measures: {a: {at: block.position.z, event: lo}}}",
+     "did you mean `low`"},
+    {"study: {parameters: {h: [1]}, measures: {a: {settling: block.position.z}}}",
+     "band: is missing"},
+    {"study: {parameters: {h: [1]}, measures: {h: 1}}", "needs a name of its own"},
+    {"study: {parameters: {h: [1]}, measures: {sin: 1}}", "the name is not allowed"},
+    {"study: {parameters: {h: [1]}, measures: {status: 1}}", "the name is not allowed"},
+    {"study: {parameters: {h: [1]}, measures: {\"a,b\": 1}}", "the name is not allowed"},
+    {"study: {parameters: {h: [1]}, measures: {a: b + 1, b: 1}}", "b"},
+    {"study: {parameters: {h: [1]}, measures: {a: 1, a: 2}}", "a"},
+    {"study: {parameters: {h: [1]}, mesures: {a: 1}}", "did you mean `measures`"},
+};
+
+static void mistakes_are_refused_with_what_is_allowed(void)
+{
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
+        char text[2000];
+        se3d_model *model = NULL;
+        se3d_model_error error;
+        snprintf(text, sizeof text, "%s%s\n", BLOCK, bad[k].study);
+        const se3d_status status =
+            se3d_model_read_text(text, strlen(text), "a.yaml", NULL, &model, &error);
+        if (status != SE3D_ERR_MODEL) {
+            fprintf(stderr, "%s\n", bad[k].study);
+        }
+        CHECK(status == SE3D_ERR_MODEL && model == NULL);
+        CHECK_CONTAINS(error.message, bad[k].message);
+        se3d_model_destroy(model);
+    }
+}
+
+static void write_file(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "wb");
+    CHECK(file && fputs(text, file) >= 0 && fclose(file) == 0);
+}
+
+static void tables_have_a_row_for_each_sample(void)
+{
+    static const struct {
+        const char *text, *message;
+    } rows[] = {{"h,v\n1,2\n3,-4e0\n\n# x\n5,6\r\n", NULL},
+                {"", "empty"},
+                {"h,v\n", "has no samples"},
+                {"h,h\n1,2\n", "the column `h` is there twice"},
+                {"h,x\n1,2\n", "no parameter `x`"},
+                {"h,v\n1\n", ":2: has 1 numbers, must have 2"},
+                {"h,v\n1,2,3\n", ":2: has more than 2 numbers"},
+                {"h,v\n1,nan\n", ":2: v is `nan`, must be a finite number"},
+                {"h,v\n1,1e999\n", ":2: v is `1e999`"},
+                {"h,v\n1,\n", ":2: v is ``"}};
+    const char *build = getenv("SE3D_BUILD_DIR");
+    char path[800], text[2000];
+    snprintf(path, sizeof path, "%s/study_table.csv", build ? build : "/tmp");
+    snprintf(text, sizeof text,
+             "%sstudy: {table: %s, measures: {z: {initial: block.position.z}}}\n", BLOCK, path);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        se3d_model *model = NULL;
+        se3d_study *study = NULL;
+        se3d_model_error error;
+        write_file(path, rows[k].text);
+        const se3d_status status =
+            se3d_model_read_text(text, strlen(text), "a.yaml", NULL, &model, &error);
+        CHECK(status == (rows[k].message ? SE3D_ERR_MODEL : SE3D_OK));
+        if (rows[k].message) {
+            CHECK_CONTAINS(error.message, rows[k].message);
+        } else if (se3d_study_create(model, &study, &error) == SE3D_OK) {
+            const char *row = "";
+            CHECK(se3d_study_count_samples(study) == 3);
+            CHECK(se3d_study_run_sample(study, 1, &row) == SE3D_OK);
+            CHECK(strcmp(row, "1,3,-4,3,ok\n") == 0);
+        }
+        se3d_study_destroy(study);
+        se3d_model_destroy(model);
+    }
+    remove(path);
+}
+
+/* ---- requests --------------------------------------------------------------------------------*/
+
+static void requests_are_answered(void)
+{
+    static const struct {
+        const char *request, *reply;
+    } rows[] = {
+        {"{\"id\": 7, \"parameters\": {\"h\": 4, \"w\": 1e0}}",
+         "{\"id\": 7, \"measures\": {\"z\": 4"},
+        {"{\"id\": \"a\\\"\\n\", \"parameters\": {}}",
+         "{\"id\": \"a\\\"\\u000a\", \"measures\": {"},
+        {"{\"id\": 07, \"sample\": 0}", "{\"id\": \"07\", \"measures\": {\"z\": 1"},
+        {"{\"sample\": 1}", "{\"id\": null, \"measures\": {\"z\": 2"},
+        {"{\"id\": 1, \"sample\": 2}", "whole number from 0 to 1"},
+        {"{\"id\": 1, \"sample\": -1}", "whole number from 0 to 1"},
+        {"{\"id\": 1, \"sample\": 0.5}", "whole number from 0 to 1"},
+        {"{\"id\": 1, \"sample\": \"0\"}", "sample must be a finite number"},
+        {"{\"id\": 1}", "a request is an object"},
+        {"{\"id\": 1, \"sample\": 0, \"parameters\": {}}", "a request is an object"},
+        {"{\"id\": 1, \"sample\": 0, \"x\": 0}", "`x` is unknown"},
+        {"{\"id\": 1, \"parameters\": 3}", "parameters must be an object"},
+        {"{\"id\": 1, \"parameters\": {\"q\": 3}}", "no number `q`"},
+        {"{\"id\": 1, \"parameters\": {\"h\": \"3\"}}", "h must be a finite number"},
+        {"{\"id\": 1, \"parameters\": {\"h\": 1e999}}", "h must be a finite number"},
+        {"{\"id\": 1, \"parameters\": {\"h\": [3]}}", "h must be a finite number"},
+        {"{\"id\": 1, \"parameters\": {\"m\": -3}}", "must be finite and > 0"},
+        {"{\"id\": 1, \"parameters\": {\"h\": 1, \"h\": 2}}", "\"error\": "},
+        {"[1, 2]", "a request is an object"},
+        {"{", "\"error\": \"request:"},
+        {"", "\"error\": "},
+        {"\xff", "\"error\": "},
+    };
+    const opened s = open_study(
+        BLOCK "study: {parameters: {h: [1, 2]}, measures: {z: {initial: block.position.z}}}\n");
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        const char *reply = NULL;
+        CHECK(se3d_study_answer(s.study, rows[k].request, strlen(rows[k].request), &reply) ==
+              SE3D_OK);
+        CHECK_CONTAINS(reply, rows[k].reply);
+        CHECK(reply && !strpbrk(reply, "\r\n"));
+    }
+    close_study(s);
+}
+
+int main(void)
+{
+    RUN(the_generator_gives_the_known_answers);
+    RUN(a_random_order_has_every_place_once);
+    RUN(quantiles_invert_their_distributions);
+    RUN(points_of_sobol_fill_every_part);
+    RUN(points_of_sobol_integrate_products);
+    RUN(measures_are_those_of_the_motion);
+    RUN(a_measure_without_a_value_is_told);
+    RUN(a_sample_depends_on_the_seed_and_its_number_only);
+    RUN(layouts_fill_their_strata);
+    RUN(mistakes_are_refused_with_what_is_allowed);
+    RUN(tables_have_a_row_for_each_sample);
+    RUN(requests_are_answered);
+    return check_finish();
+}
