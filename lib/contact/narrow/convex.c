@@ -461,6 +461,30 @@ static int has_rims(const se3di_solid *solid)
     return se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS);
 }
 
+static int is_line(const se3di_solid *solid)
+{
+    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SWEPT) &&
+           !se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_BALL);
+}
+
+/* The overlap of a box or line and a cylinder or line, <= 0 if they are apart; minus infinity: they
+ * are other shapes, or two lines. */
+static double known_overlap(const se3di_solid *i, const se3di_solid *j, double normal[3],
+                            double on_i[3], double on_j[3])
+{
+    for (int k = 0; k < 2; ++k) {
+        const se3di_solid *one = k ? j : i, *other = k ? i : j;
+        const int is_box = se3di_shape_class_of(one->shape)->flats == SE3DI_AXES_ALL;
+        if ((is_box && is_line(other)) || ((is_box || is_line(one)) && has_rims(other))) {
+            const double overlap =
+                se3di_cylinder_overlap(one, other, normal, k ? on_j : on_i, k ? on_i : on_j);
+            se3di_scale(k ? -1.0 : 1.0, normal, normal);
+            return overlap;
+        }
+    }
+    return -HUGE_VAL;
+}
+
 static double size_of(const se3di_solid *solid)
 {
     return solid->shape->bound;
@@ -481,12 +505,28 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
     difference D = {i, j, size_of(i) + size_of(j), has_rims(i) != has_rims(j)};
     simplex s;
     double point[3];
+    const double least = APART * D.size;
+    const double known =
+        has_rims(i) || has_rims(j) ? known_overlap(i, j, normal, on_i, on_j) : -HUGE_VAL;
+    if (known > least) {
+        return known;
+    }
     memset(&s, 0, sizeof s);
     double distance = walk(&D, &s, point);
     witness(s.v, s.weight, s.count, on_i, on_j);
-    if (distance > APART * D.size) {
+    if (distance > least) {
         se3di_scale(-1.0 / distance, point, normal); /* point = a - b, from j to i */
         return -distance;
+    }
+    if (!has_rims(i) && !has_rims(j)) {
+        double n[3], a[3], b[3];
+        const double overlap = known_overlap(i, j, n, a, b);
+        if (overlap > 0.0) {
+            se3di_copy(n, normal);
+            se3di_copy(a, on_i);
+            se3di_copy(b, on_j);
+            return overlap;
+        }
     }
     if (!complete(&D, &s)) {
         return flat_normal(&D, &s, normal);

@@ -22,6 +22,13 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
 /* Whether the cores of two are apart by more than a distance. */
 int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double distance);
 
+/* How far a box, or the line of a capsule, overlaps a cylinder, or such a line (not two lines), the
+ * normal from the first to the second, and the places that are farthest in each other. <= 0: the
+ * box and the cylinder are apart, and no more is set; a line and a box may be apart in spite of an
+ * overlap. */
+double se3di_cylinder_overlap(const se3di_solid *block, const se3di_solid *cylinder, double n[3],
+                              double on_block[3], double on_cylinder[3]);
+
 /* Replace a direction that is near the one of the least overlap, the points of the cores that are
  * farthest in each other and the overlap by those to rounding. Returns whether there is one. */
 int se3di_convex_polish(const se3di_solid *i, const se3di_solid *j, double n[3], double a[3],

@@ -11,6 +11,7 @@
  *   its slope changes its sign, or, of two rims, where the nearest points v = a - b lie along n:
  *       (v - (n.v) n) = 0,   Newton:  U^T (dv/dn - (n.v) 1) U x = -U^T v.
  *   Those near the polytope's direction are tried, the least is taken. */
+#include "contact/narrow/bracket.h"
 #include "contact/narrow/internal.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
@@ -21,64 +22,14 @@
 #define TIE     1e-15 /* of the size: of equal directions the first */
 #define LOOSE   1e-11 /* of the size: by how much the polytope's own may be less */
 #define EDGES   12
-#define SLIGHT  1e-4  /* sine; lines that are more nearly parallel cross nowhere in particular */
-#define SKEW    1e-9  /* sine; edges that are more nearly parallel have no product */
-#define EXACT   1e-15 /* of the first bracket */
-#define LOOKS   200
+#define SLIGHT  1e-4 /* sine; lines that are more nearly parallel cross nowhere in particular */
+#define SKEW    1e-9 /* sine; edges that are more nearly parallel have no product */
 #define NEWTONS 30
 #define SHORTER 20
 #define LAST    1e-6  /* rad; steps so small are taken as they are */
 #define DONE    1e-12 /* rad; the step after is below rounding */
 #define FLAT    1e-6  /* of the size: a curvature below which the overlap is not convex */
 #define APART   1e-9  /* of the size: cores that are */
-
-/* The place where a slope is zero, between one where it is negative and one where it is positive:
- * by secants that keep both (the Illinois rule), by halves if these do not close in (a slope that
- * jumps). */
-typedef struct bracket {
-    double low, high, slope_low, slope_high;
-    double next, width; /* where to look; what was left two looks ago */
-    double exact;       /* a step so small is none */
-    int count, last;    /* -1: the lower end moved last, 1: the upper */
-} bracket;
-
-/* Returns 0 if there is no other place to look at. */
-static int bracket_look(bracket *b)
-{
-    const double before = b->next;
-    const double secant =
-        b->low + (b->high - b->low) * (b->slope_low / (b->slope_low - b->slope_high));
-    const int slow = b->count % 3 == 2 && b->high - b->low > 0.25 * b->width;
-    if (b->count == 0) {
-        b->exact = EXACT * (b->high - b->low);
-    }
-    if (b->count % 3 == 2) {
-        b->width = b->high - b->low;
-    }
-    b->next = slow || !(secant > b->low && secant < b->high) ? 0.5 * (b->low + b->high) : secant;
-    ++b->count;
-    return b->count < 2 || fabs(b->next - before) > b->exact;
-}
-
-/* Take the slope at `next`; returns 0 if there is nothing between the ends, or it is the place. */
-static int bracket_take(bracket *b, double slope)
-{
-    if (!(b->low < b->next && b->next < b->high) || !(fabs(slope) > 0.0)) {
-        return 0;
-    }
-    if (slope < 0.0) {
-        b->slope_high *= b->last < 0 ? 0.5 : 1.0;
-        b->low = b->next;
-        b->slope_low = slope;
-        b->last = -1;
-    } else {
-        b->slope_low *= b->last > 0 ? 0.5 : 1.0;
-        b->high = b->next;
-        b->slope_high = slope;
-        b->last = 1;
-    }
-    return 1;
-}
 
 static int has_rims(const se3di_solid *solid)
 {
@@ -119,7 +70,7 @@ static double line_distance(const se3di_solid *line, const se3di_solid *j, doubl
                             double on_line[3], double on_j[3])
 {
     const double half = line->shape->half_length;
-    bracket b = {.low = -half, .high = half, .width = 2.0 * half};
+    se3di_bracket b = {.low = -half, .high = half, .width = 2.0 * half};
     double slope, distance = line_look(line, j, b.low, n, on_line, on_j, &b.slope_low);
     if (b.slope_low >= 0.0) {
         return distance;
@@ -128,9 +79,9 @@ static double line_distance(const se3di_solid *line, const se3di_solid *j, doubl
     if (b.slope_high <= 0.0) {
         return distance;
     }
-    while (b.count < LOOKS && bracket_look(&b)) {
+    while (se3di_bracket_look(&b)) {
         distance = line_look(line, j, b.next, n, on_line, on_j, &slope);
-        if (!bracket_take(&b, slope)) {
+        if (!se3di_bracket_take(&b, slope)) {
             break;
         }
     }
@@ -326,7 +277,7 @@ static double look_along(const search *s, const double u[3], const double w[3], 
 /* The place where the slope changes its sign on the directions perpendicular to an edge. */
 static void try_circle(search *s, const double e[3], int of_j)
 {
-    bracket b = {.low = -NEAR, .high = NEAR, .width = 2.0 * NEAR};
+    se3di_bracket b = {.low = -NEAR, .high = NEAR, .width = 2.0 * NEAR};
     double u[3], w[3], n[3];
     se3di_copy(s->about, u);
     se3di_add_scaled(-se3di_dot(u, e), e, u);
@@ -337,8 +288,7 @@ static void try_circle(search *s, const double e[3], int of_j)
     if (!(b.slope_low < 0.0 && b.slope_high > 0.0)) {
         return;
     }
-    while (b.count < LOOKS && bracket_look(&b) &&
-           bracket_take(&b, look_along(s, u, w, b.next, n))) {
+    while (se3di_bracket_look(&b) && se3di_bracket_take(&b, look_along(s, u, w, b.next, n))) {
     }
     if (try_direction(s, n)) {
         touch_lowest(s, of_j);
