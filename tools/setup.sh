@@ -8,9 +8,11 @@
 
 SE3D_BUILD_PACKAGES="gcc libc6-dev make cmake pkg-config libsuitesparse-dev libyaml-dev libexpat1-dev"
 SE3D_TEST_PACKAGES="$SE3D_BUILD_PACKAGES g++ binutils python3"
+SE3D_PYTHON_PACKAGES="python3-cffi python3-numpy python3-dev"
 SE3D_PICTURE_PACKAGES="gnuplot-nox chromium ffmpeg nodejs npm python3-vtk9"
 SE3D_CI_PACKAGES="$SE3D_TEST_PACKAGES clang clang-format-14 valgrind libmpfr-dev \
-gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static $SE3D_PICTURE_PACKAGES"
+gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static $SE3D_PYTHON_PACKAGES \
+$SE3D_PICTURE_PACKAGES"
 
 se3d_jobs() {
     nproc 2>/dev/null || getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2
