@@ -12,6 +12,15 @@
     ROBOT(LINKS "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/>" x    \
                 "</joint>")
 
+#define CHRONO(x) "chrono-version: 10.0\nmodel:\n " x
+#define CHRONO_BODY(name)                                                                          \
+    "bodies:\n  - {name: " name ", location: [0, 0, 0], mass: 1, inertia: {moments: [1, 1, 1]}}\n"
+#define MOTOR(function)                                                                            \
+    CHRONO(CHRONO_BODY(                                                                            \
+        "a") "  - {name: b, location: [0, 0, 0], fixed: true}\n motors:\n  - {name: m, "           \
+             "type: LINEAR, body1: a, body2: b, location: [0, 0, 0], axis: [1, 0, 0], "            \
+             "actuation_type: SPEED, actuation_function: " function "}\n")
+
 typedef struct bad_file {
     const char *name, *text;
     size_t line;
@@ -35,6 +44,36 @@ static const bad_file table[] = {
     {"a.adm", "title\nPART/2\nJOINT/1, REVOLUTE, I=1, J=2\n", 3, {"JOINT/1", "MARKER"}},
     {"a.adm", "title\nPART/2\nMARKER/1\nJOINT/1, REVOLUTE, I=1, J=1\n", 4, {"one part", NULL}},
     {"a.adm", "title\nPART/2\nMOTION/1, JOINT=7, FUNCTION=1\n", 3, {"no JOINT/7", NULL}},
+    {"a.yaml", "se3d: 1\n", 1, {"model file already", NULL}},
+    {"a.yaml", "a: 1\n", 1, {"chrono-version", NULL}},
+    {"a.yaml", "a: [1\n", 0, {"a.yaml", NULL}},
+    {"a.yaml", "chrono-version: 10.0\n", 1, {"no key `model`", NULL}},
+    {"a.yaml", "chrono-version: 10.0\nmodel: [1]\n", 2, {"must be a map", NULL}},
+    {"a.yaml", "chrono-version: 10.0\ntype: FSI\nmodel: b.yaml\n", 2, {"FSI", "MBS"}},
+    {"a.yaml", "chrono-version: 10.0\ntype: MBS\nmodel: none.yaml\n", 0, {"none.yaml", NULL}},
+    {"a.yaml", CHRONO("bodies: 7\n"), 3, {"must be a list", NULL}},
+    {"a.yaml", CHRONO("bodies:\n  - 7\n"), 4, {"no key `name`", NULL}},
+    {"a.yaml", CHRONO("bodies:\n  - {name: a}\n"), 4, {"no key `location`", NULL}},
+    {"a.yaml", CHRONO("bodies:\n  - {name: a, location: [0, 0]}\n"), 4, {"3 numbers", NULL}},
+    {"a.yaml", CHRONO("bodies:\n  - {name: a, location: [0, 0, 1e99]}\n"), 4, {"number", NULL}},
+    {"a.yaml", CHRONO("bodies:\n  - {name: a, location: [0, 0, 0]}\n"), 4, {"no key `mass`", NULL}},
+    {"a.yaml",
+     CHRONO(CHRONO_BODY("a") "  - {name: a, location: [0, 0, 0], fixed: true}\n"),
+     5,
+     {"two bodies `a`", NULL}},
+    {"a.yaml",
+     CHRONO(CHRONO_BODY("a") " joints:\n  - {name: j, type: HINGE}\n"),
+     6,
+     {"HINGE", "REVOLUTE"}},
+    {"a.yaml",
+     CHRONO(
+         CHRONO_BODY("a") " joints:\n  - {name: j, type: LOCK, location: [0, 0, 0], body1: z}\n"),
+     6,
+     {"no body `z`", NULL}},
+    {"a.yaml", MOTOR("{type: COSINE}"), 7, {"COSINE", "SINE"}},
+    {"a.yaml", MOTOR("{type: DATA, data: [[0, 1], [0, 2]]}"), 7, {"ascending", NULL}},
+    {"a.yaml", MOTOR("{type: DATA, data: []}"), 7, {"no point", NULL}},
+    {"a.yaml", MOTOR("{type: RAMP, slope: 1, repeat: {width: 0}}"), 7, {"width", NULL}},
 #if defined(SE3D_HAS_EXPAT)
     {"a.urdf", "<robot>", 1, {"no valid XML", NULL}},
     {"a.urdf", "<robot></robots>", 1, {"no valid XML", "mismatched"}},

@@ -56,3 +56,12 @@ def replace_analysis(text, analysis):
 
 def near(what, value, wanted, tolerance):
     check(abs(value - wanted) <= tolerance, f"{what} is {value!r}, not {wanted!r}")
+
+
+def freedoms(name, text):
+    """How many degrees of freedom the program finds in a model."""
+    path = WORK / f"{name}.yaml"
+    path.write_text(text)
+    done = subprocess.run([PROGRAM, "check", str(path), "--json"], capture_output=True, text=True, check=False)
+    check(done.returncode == 0, f"{name}: the check failed: {done.stderr}")
+    return json.loads(done.stdout)["freedoms"]

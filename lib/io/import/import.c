@@ -33,7 +33,7 @@ typedef struct xml_format {
 
 static const xml_format xml_formats[] = {{"urdf", "URDF", "robot", se3di_import_urdf}};
 
-#define FORMATS "urdf (.urdf) or adams (.adm)"
+#define FORMATS "urdf (.urdf), adams (.adm) or chrono (.yaml)"
 
 void se3d_model_import_options_init(se3d_model_import_options *options, size_t size)
 {
@@ -79,23 +79,61 @@ static bool has_ending(const char *name, const char *ending)
     return length > size && se3di_scan_equal(name + length - size, ending);
 }
 
-static bool import_any(se3di_machine *m, const char *text, size_t length)
+/* A YAML text, which says itself what it is. */
+static bool import_document(se3di_machine *m, const char *text, size_t length)
 {
-    const char *format = m->options->format;
-    const char first = first_character(text, length);
-    bool known = !format || se3di_scan_equal(format, "adams");
+    se3di_node *root = NULL;
+    const se3d_status status =
+        se3di_document_parse(m->pool, m->file, text, length, &root, m->error);
+    if (status < 0) {
+        m->status = status;
+        return false;
+    }
+    if (se3di_import_is_chrono(root) || m->options->format) {
+        m->format = "Chrono";
+        return se3di_import_chrono(m, root);
+    }
+    return se3di_machine_fail(m, 1, 1, "%s",
+                              se3di_node_get(root, "se3d")
+                                  ? "this is a model file already"
+                                  : "this YAML has no `chrono-version`: it is no format that is "
+                                    "known, which are " FORMATS);
+}
+
+static bool is_known(const char *format)
+{
+    static const char *const others[] = {"adams", "chrono"};
+    bool known = !format;
+    for (size_t k = 0; k < 2; ++k) {
+        known = known || se3di_scan_equal(format, others[k]);
+    }
     for (size_t k = 0; k < sizeof xml_formats / sizeof *xml_formats; ++k) {
         known = known || se3di_scan_equal(format, xml_formats[k].option);
     }
-    if (!known) {
+    return known;
+}
+
+static bool is_format(const se3di_machine *m, const char *format, const char *ending)
+{
+    return m->options->format ? se3di_scan_equal(m->options->format, format)
+                              : has_ending(m->file, ending);
+}
+
+static bool import_any(se3di_machine *m, const char *text, size_t length)
+{
+    const char *format = m->options->format;
+    if (!is_known(format)) {
         return se3di_machine_fail(m, 0, 0, "the format `%.40s` is not known, must be " FORMATS,
                                   format);
     }
-    if (format ? se3di_scan_equal(format, "adams") : has_ending(m->file, ".adm")) {
+    if (is_format(m, "adams", ".adm")) {
         m->format = "Adams";
         return se3di_import_adams(m, text, length);
     }
-    if (first == '<' || format) {
+    if (is_format(m, "chrono", ".yaml") || is_format(m, "chrono", ".yml")) {
+        return import_document(m, text, length);
+    }
+    if (first_character(text, length) == '<' || format) {
         return import_xml(m, text, length);
     }
     return se3di_machine_fail(m, 1, 1, "this is no format that is known, which are " FORMATS);
@@ -184,6 +222,36 @@ se3d_status se3d_model_import_text(const char *text, size_t length, const char *
     }
     *out = import;
     return SE3D_OK;
+}
+
+bool se3di_import_read(se3di_machine *m, const char *path, char **text, size_t *length)
+{
+    FILE *file = se3di_file_open(path);
+    if (!file) {
+        return se3di_machine_fail(m, 0, 0, "%.300s: %s", path, strerror(errno));
+    }
+    const se3d_status status = se3di_document_read(m->pool, file, text, length);
+    fclose(file);
+    if (status == SE3D_ERR_NO_MEMORY) {
+        return se3di_machine_fail_memory(m);
+    }
+    if (status < 0 || *length > SE3DI_DOCUMENT_BYTES_MAX) {
+        return se3di_machine_fail(m, 0, 0, "%.300s: %s", path,
+                                  status < 0 ? "cannot be read" : "has more than 64 MB");
+    }
+    return true;
+}
+
+bool se3di_import_document(se3di_machine *m, const char *path, se3di_node **root)
+{
+    char *text = NULL;
+    size_t length = 0;
+    if (!se3di_import_read(m, path, &text, &length)) {
+        return false;
+    }
+    const se3d_status status = se3di_document_parse(m->pool, path, text, length, root, m->error);
+    m->status = status < 0 ? status : m->status;
+    return status >= 0;
 }
 
 se3d_status se3d_model_import_file(const char *path, const se3d_model_import_options *options,

@@ -30,7 +30,8 @@ bool se3di_machine_fail(se3di_machine *m, size_t line, size_t column, const char
         vsnprintf(text, sizeof text, format, list);
         va_end(list);
         m->status = SE3D_ERR_MODEL;
-        se3di_document_report(m->error, m->file, line, column, line > 0 ? "" : m->file, text);
+        const char *file = m->part ? m->part : m->file;
+        se3di_document_report(m->error, file, line, column, line > 0 ? "" : file, text);
     }
     return false;
 }
@@ -85,7 +86,12 @@ void se3di_machine_note_of(se3di_machine *m, int32_t kind, size_t line, const ch
         return;
     }
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    size_t used = 0;
+    if (m->part && line > 0) {
+        used = (size_t)snprintf(text, sizeof text, "%.400s:%zu: ", m->part, line);
+        line = 0;
+    }
+    vsnprintf(text + used, sizeof text - used, format, list);
     va_end(list);
     se3di_machine_clean(text);
     se3di_machine_note *note = se3di_iopool_alloc(m->pool, sizeof *note);
@@ -140,6 +146,28 @@ const char *se3di_machine_numbers(se3di_machine *m, const double *values, size_t
             (size_t)snprintf(text + used, sizeof text - used, "%s%s", k > 0 ? ", " : "", number);
     }
     return se3di_machine_text(m, "%s]", text);
+}
+
+const char *se3di_machine_turn_text(se3di_machine *m, const double A[9])
+{
+    double rpy[3];
+    const char *part[3];
+    se3di_turn_to_rpy(A, rpy);
+    for (int k = 0; k < 3; ++k) {
+        const double degrees = rpy[k] * 180.0 / 3.14159265358979323846;
+        const double whole = nearbyint(degrees);
+        if (fabs(degrees) < 1e-13) {
+            part[k] = "0";
+        } else if (fabs(degrees - whole) < 1e-13 * fabs(whole)) {
+            part[k] = se3di_machine_text(m, "%.0f*deg", whole);
+        } else {
+            part[k] = se3di_machine_number(m, rpy[k]);
+        }
+        if (!part[k]) {
+            return NULL;
+        }
+    }
+    return se3di_machine_text(m, "{rpy: [%s, %s, %s]}", part[0], part[1], part[2]);
 }
 
 const char *se3di_machine_quote(se3di_machine *m, const char *text)

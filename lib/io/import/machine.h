@@ -80,6 +80,7 @@ typedef struct se3di_machine {
     se3di_iopool *pool;
     const se3d_model_import_options *options;
     const char *file; /* for messages */
+    const char *part; /* the file that the lines are of, if it is another one */
     const char *format;
     const char *title;
     se3d_status status; /* of the first failure */
@@ -114,6 +115,8 @@ const char *se3di_machine_text(se3di_machine *m, const char *format, ...) SE3DI_
 const char *se3di_machine_number(se3di_machine *m, double value);
 /* "[a, b, c]"; what is only rounding beside the largest is 0. */
 const char *se3di_machine_numbers(se3di_machine *m, const double *values, size_t count);
+/* An orientation: angles, those of whole degrees as such where that is what they are. */
+const char *se3di_machine_turn_text(se3di_machine *m, const double A[9]);
 /* A text in quotes, if it needs them. */
 const char *se3di_machine_quote(se3di_machine *m, const char *text);
 

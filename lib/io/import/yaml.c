@@ -121,29 +121,6 @@ static bool is_turned(const double A[9])
     return far > 1e-15;
 }
 
-/* Angles, those of whole degrees as such where that is what they are. */
-static const char *orientation_text(se3di_machine *m, const double A[9])
-{
-    double rpy[3];
-    const char *part[3];
-    se3di_turn_to_rpy(A, rpy);
-    for (int k = 0; k < 3; ++k) {
-        const double degrees = rpy[k] * 180.0 / 3.14159265358979323846;
-        const double whole = nearbyint(degrees);
-        if (fabs(degrees) < 1e-13) {
-            part[k] = "0";
-        } else if (fabs(degrees - whole) < 1e-13 * fabs(whole)) {
-            part[k] = se3di_machine_text(m, "%.0f*deg", whole);
-        } else {
-            part[k] = se3di_machine_number(m, rpy[k]);
-        }
-        if (!part[k]) {
-            return NULL;
-        }
-    }
-    return se3di_machine_text(m, "{rpy: [%s, %s, %s]}", part[0], part[1], part[2]);
-}
-
 static bool is_zero(const double v[3])
 {
     return v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0;
@@ -167,7 +144,7 @@ static void put_marker(writer *w, const se3di_machine_marker *marker)
         put_pair(w, "         ", "position", se3di_machine_numbers(m, marker->frame.r, 3), false);
     }
     if (is_turned(marker->frame.A)) {
-        put_pair(w, "         ", "orientation", orientation_text(m, marker->frame.A), false);
+        put_pair(w, "         ", "orientation", se3di_machine_turn_text(m, marker->frame.A), false);
     }
     put(w, "}\n");
 }
@@ -206,7 +183,7 @@ static void put_shape(writer *w, const se3di_machine_shape *shape)
         put_pair(w, indent, "position", se3di_machine_numbers(m, shape->frame.r, 3), false);
     }
     if (is_turned(shape->frame.A)) {
-        put_pair(w, indent, "orientation", orientation_text(m, shape->frame.A), false);
+        put_pair(w, indent, "orientation", se3di_machine_turn_text(m, shape->frame.A), false);
     }
     if (shape->color[0] >= 0.0) {
         put_pair(w, indent, "color", se3di_machine_numbers(m, shape->color, 3), false);
@@ -259,7 +236,7 @@ static void put_body(writer *w, const se3di_machine_body *body)
         put_line(w, "position", se3di_machine_numbers(m, body->frame.r, 3));
     }
     if (is_turned(body->frame.A)) {
-        put_line(w, "orientation", orientation_text(m, body->frame.A));
+        put_line(w, "orientation", se3di_machine_turn_text(m, body->frame.A));
     }
     if (!is_zero(body->v)) {
         put_line(w, "velocity", se3di_machine_numbers(m, body->v, 3));
