@@ -16,7 +16,8 @@ extern "C" {
 typedef enum se3d_formulation {
     SE3D_FORMULATION_ROMEGA = 0, /* unknowns: position and virtual rotation (angular velocity) */
     SE3D_FORMULATION_RP = 1,     /* unknowns: position and Euler parameters with p.p - 1 = 0 */
-    SE3D_FORMULATION_JOINT = 2 /* the coordinates of a tree of joints are integrated (dop853, rk45,
+    SE3D_FORMULATION_JOINT =
+        2 /* the coordinates of a tree of joints are integrated (dop853, gauss, rk45,
                                     rk4); elsewhere as ROMEGA */
 } se3d_formulation;
 

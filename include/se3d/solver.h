@@ -39,7 +39,8 @@ typedef enum se3d_method {
     SE3D_METHOD_RATTLE = 7,
     SE3D_METHOD_VERLET = 8,
     SE3D_METHOD_RK4 = 9,
-    SE3D_METHOD_CONVEX = 10
+    SE3D_METHOD_CONVEX = 10,
+    SE3D_METHOD_GAUSS = 11
 } se3d_method;
 
 /* Get the name of a method as in a model file ("auto", "dop853"). The methods have the numbers from
@@ -61,7 +62,8 @@ typedef struct se3d_solver_def {
     int32_t analysis;    /* se3d_analysis, default DYNAMICS */
     int32_t formulation; /* se3d_formulation, default ROMEGA */
     int32_t method;      /* se3d_method, dynamics only, default AUTO */
-    int32_t order;       /* bdf: 1..5, rattle: 2, 4, others: the one they have; 0: the default */
+    int32_t order;       /* bdf: 1..5, rattle: 2, 4, gauss: 8, 16, others: the one they have; 0: the
+                            default, of gauss 16 for tolerances below 1e-6, else 8 */
     /* Of generalized_alpha, hht, rattle, verlet, convex: fixed; of the others: the largest one;
      * >= 1e-15 [s]; 0: chosen by the error. rattle and verlet choose equal steps once, to the
      * tolerance, by trial steps ahead (se3d_solver_get_step); contacts and stops shorten them, and
@@ -171,8 +173,8 @@ static inline se3d_status se3d_solver_get_start_change(const se3d_solver *solver
 }
 
 /* Get the tolerance to which the steps of a run are controlled: the one asked for, or the smallest
- * one that the method in use reaches if that is larger (dop853, rk45, rk4 6.7e-12, bdf 1e-12,
- * radau 1e-13, generalized_alpha, hht 1e-11); the log is told of that.
+ * one that the method in use reaches if that is larger (dop853, gauss, rk45, rk4 6.7e-12, bdf
+ * 1e-12, radau 1e-13, generalized_alpha, hht 1e-11); the log is told of that.
  * @param[out] tolerance  [relative] 0: errors are not controlled (other analyses, rattle, verlet,
  *                        generalized_alpha and hht with a step)
  * @return OK, NULL.

@@ -143,7 +143,7 @@ static se3d_status build(se3di_run *run)
     SE3DI_TRY(se3di_equations_init(&run->equations, run->model, formulation, run->error));
     run->equations.counters = counters;
     run->equations.friction.is_rigid =
-        run->analysis == SE3D_ANALYSIS_DYNAMICS && method->tableau != NULL;
+        run->analysis == SE3D_ANALYSIS_DYNAMICS && method->is_explicit;
     run->equations.audits = run->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS;
     run->equations.iterations_max = run->integration.settings.iterations_max;
     run->integration.equations = &run->equations;
@@ -539,6 +539,7 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
         SE3DI_TRY(switch_method(run));
         status = run_method(run, t_end);
     }
+    se3di_run_tell_held(run);
     if (status < 0 || status == SE3D_INFO_EVENT) { /* whose callback may have changed the model */
         return status;
     }

@@ -36,7 +36,8 @@ typedef struct se3di_run {
     int32_t told_left_out;               /* and that rows that are left out are off */
     const se3di_integrator *told_reach;  /* the log was told what this method reaches, */
     const se3di_integrator *told_bodies; /* that it integrates bodies, not joint coordinates, */
-    const se3di_integrator *told_step;   /* which step it takes if none is given */
+    const se3di_integrator *told_step;   /* which step it takes if none is given, */
+    const se3di_integrator *told_held;   /* that the motion is stiff */
 } se3di_run;
 
 /* Set up for an analysis; allocates nothing yet. `system`: for the callbacks of events. */

@@ -25,12 +25,12 @@ void se3di_run_tell_reach(se3di_run *run)
 void se3di_run_tell_bodies(se3di_run *run)
 {
     const se3di_integrator *method = run->integration.method;
-    if (run->formulation->id == SE3D_FORMULATION_JOINT && !method->tableau &&
+    if (run->formulation->id == SE3D_FORMULATION_JOINT && !method->is_explicit &&
         run->told_bodies != method) {
         run->told_bodies = method;
         se3di_log_write(run->error, SE3D_LOG_WARNING,
                         "t = %g s: %s works with the coordinates of bodies, as r-omega: joint "
-                        "coordinates are integrated by dop853, rk45 and rk4",
+                        "coordinates are integrated by dop853, gauss, rk45 and rk4",
                         run->model->time, method->name);
     }
 }
@@ -45,6 +45,21 @@ void se3di_run_tell_step(se3di_run *run)
         se3di_log_write(run->error, SE3D_LOG_WARNING,
                         "t = %g s: no step is given: %s takes %g s and estimates no error",
                         run->model->time, method->name, integration->settings.step_most);
+    }
+}
+
+void se3di_run_tell_held(se3di_run *run)
+{
+    const se3di_integration *integration = &run->integration;
+    const se3di_integrator *method = integration->method;
+    if (method == &se3di_integrator_gauss && integration->settings.leaves_stiff == 0 &&
+        run->model->history_tag == se3di_run_get_history_tag(run) && run->told_held != method &&
+        method->is_held(integration)) {
+        run->told_held = method;
+        se3di_log_write(run->error, SE3D_LOG_WARNING,
+                        "t = %g s: the iterations of %s limit its steps: the motion is stiff; "
+                        "radau takes longer ones",
+                        run->model->time, method->name);
     }
 }
 

@@ -1,253 +1,42 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/explicit_rk.h"
-#include "integrator/adaptive.h"
-#include "integrator/memory.h"
 
-#include "assembly/energy.h"
-#include "assembly/loads.h"
-#include "contact/bodies/pace.h"
-#include "integrator/motion.h"
+#include "force/force.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
-#include "primitive/turn_counter.h"
 
 #include <math.h>
 #include <string.h>
 
-/* The history begins with this, then y_1 (at at.time), y'_1, y_0 (at at.begin) and the coefficients
- * of the interpolation. */
-typedef struct rk_past {
-    se3di_adaptive_history at;
-    se3di_state_scale scale;
-    double energy_least; /* what the potential at the start says of the size of energies */
-    double dense;        /* 1: the interpolation is ready */
-    double forced;       /* steps that only a jump of the accelerations explained */
-    double redundant;    /* the fewest dependent rows so far */
-    double held;         /* signs in a row that stability limits the steps */
-    double free;         /* signs against it since */
-    double since;        /* steps since the last look */
-} rk_past;
+#define SLOW_MAX  0.01 /* most of a step times the rate of the motion, */
+#define DECAY_MIN 0.5  /* and least of it times a decay, if decays limit the step */
+#define HELD_EACH 8.0  /* steps between looks if there is no sign */
+#define SAFETY    0.8  /* a rejected step costs more than several that are this much shorter */
+#define GROWTH    3.0  /* largest, of a step: one small error may be chance */
 
-#define RK_PAST (sizeof(rk_past) / sizeof(double))
-_Static_assert(sizeof(rk_past) == 17 * sizeof(double), "it is an array of double in the model");
-
-#define HELD_MIN    15.0 /* signs that are enough, and signs against that take them back */
-#define FREE_MIN    6.0
-#define SLOW_MAX    0.01 /* most of a step times the rate of the motion, */
-#define DECAY_MIN   0.5  /* and least of it times a decay, if decays limit the step */
-#define HELD_EACH   8.0  /* steps between looks if there is no sign */
-#define FORCED_MAX  3
-#define LEAST_STEP  3e-14 /* of the time */
-#define SAFETY      0.8   /* a rejected step costs more than several that are this much shorter */
-#define GROWTH      3.0   /* largest, of a step: one small error may be chance */
-#define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
-
-#define RK_FORMS   (3 + SE3DI_RK_DENSE_MAX)
-#define RK_VECTORS (3 + RK_FORMS)
-
-size_t se3di_rk_history_count(const se3di_assembly *assembly)
+static se3d_status evaluate_stage(se3di_explicit *m, double t, double h, int stage)
 {
-    return RK_PAST + RK_VECTORS * se3di_state_count(assembly);
-}
-
-/* Work: the stages, the state of a stage, what the force elements remember, and two changes of the
- * state as the bodies see them. */
-size_t se3di_rk_work_count(const se3di_assembly *assembly)
-{
-    size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
-    return (SE3DI_RK_MAX + 5) * se3di_state_count(assembly) + memories;
-}
-
-typedef struct rk {
-    se3di_adaptive step; /* first, so that it is found from the loop's */
-    const se3di_rk_tableau *tableau;
-    const se3di_motion *motion;
-    se3di_equations *equations;
-    se3di_assembly *assembly;
-    size_t count; /* numbers of a state */
-    rk_past *past;
-    double *y1, *f1, *y0, *forms;
-    double *K;          /* [total][count] */
-    double *y;          /* state of a stage */
-    double *sum, *sum3; /* error estimates */
-    double *memory;     /* [forces * SE3DI_FORCE_STATES] */
-    double *bodies[2];  /* a change of the state as the bodies see it */
-    double *next;       /* derivative that the next step begins with */
-    double tolerance;
-    se3di_kkt_settings kkt; /* of the model's linear solver, to come back to */
-} rk;
-
-/* Local errors add up; what the user asks for is about the error of a run of some ten motions. Not
- * below what rounding allows. */
-static double inner_tolerance(double tolerance)
-{
-    return fmax(SE3DI_RK_PART * tolerance, SE3DI_RK_LEAST);
-}
-
-/* See se3di_state_begin. The tightest tolerances need accelerations with less noise near singular
- * positions; elsewhere a wider filter costs steps and accuracy. */
-static double regularisation(double tolerance)
-{
-    return fmin(1e-9, fmax(1e-10, 1e-10 * (1e-11 / tolerance)));
-}
-
-/* The violation of constraints that does not matter: near a singular position velocities magnify it
- * by the inverse of the distance, accelerations by its cube. */
-static double projection_accuracy(double tolerance)
-{
-    return fmin(1e-13, fmax(1e-15, 1e-6 * tolerance));
-}
-
-static rk_past *past_of(const se3di_model *model)
-{
-    return (rk_past *)(void *)model->history;
-}
-
-/* The parts of history and work. */
-static rk point(const se3di_integration *integration)
-{
-    se3di_assembly *assembly = &integration->equations->assembly;
-    const se3di_motion *motion = se3di_motion_find(integration->equations);
-    const size_t count = motion->count(integration->equations);
-    const size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
-    double *history = assembly->model->history;
-    double *memory = integration->work + (SE3DI_RK_MAX + 3) * count;
-    return (rk){
-        .tableau = integration->method->tableau,
-        .motion = motion,
-        .equations = integration->equations,
-        .assembly = assembly,
-        .count = count,
-        .past = past_of(assembly->model),
-        .y1 = history + RK_PAST,
-        .f1 = history + RK_PAST + count,
-        .y0 = history + RK_PAST + 2 * count,
-        .forms = history + RK_PAST + 3 * count,
-        .K = integration->work,
-        .y = integration->work + SE3DI_RK_MAX * count,
-        .sum = integration->work + (SE3DI_RK_MAX + 1) * count,
-        .sum3 = integration->work + (SE3DI_RK_MAX + 2) * count,
-        .memory = memory,
-        .bodies = {memory + memories, memory + memories + se3di_state_count(assembly)},
-        .tolerance = inner_tolerance(integration->settings.tolerance),
-    };
-}
-
-static rk begin(se3di_integration *integration)
-{
-    rk m = point(integration);
-    m.step.integration = integration;
-    se3di_contacts_begin(m.assembly->model, 0.0, 1.0, 0);
-    m.kkt =
-        se3di_state_begin(m.equations, regularisation(m.tolerance), fmin(1e-6, 1e-3 * m.tolerance));
-    return m;
-}
-
-/* y'_1 as the bodies see it; y_1 was set last. */
-static const double *get_rates(const rk *m)
-{
-    return m->motion->get_rates(m->equations, m->f1, m->bodies[0]);
-}
-
-static void grow_scale(rk *m)
-{
-    se3di_state_scale *scale = &m->past->scale;
-    se3di_state_scale_grow(m->assembly, get_rates(m), scale);
-    scale->energy = fmax(scale->energy, m->past->energy_least);
-}
-
-typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
-
-#define PAIRS 4 /* stay in registers */
-
-/* out = base + h sum_k coefficients_k K_k over the first `limit` derivatives; base may be NULL. */
-static void combine(const rk *m, const double *base, double h, const double *coefficients,
-                    int limit, double *out)
-{
-    const double *stage[SE3DI_RK_MAX];
-    double factor[SE3DI_RK_MAX];
-    int used = 0;
-    for (int k = 0; k < limit; ++k) {
-        if (coefficients[k] != 0.0) {
-            stage[used] = m->K + (size_t)k * m->count;
-            factor[used++] = h * coefficients[k];
-        }
-    }
-    size_t c = 0;
-    for (; c + 2 * PAIRS <= m->count; c += 2 * PAIRS) {
-        pair sum[PAIRS] = {{0.0, 0.0}};
-        if (base) {
-            memcpy(sum, base + c, sizeof sum);
-        }
-        for (int k = 0; k < used; ++k) {
-            const pair *part = (const pair *)(const void *)(stage[k] + c);
-            const pair f = {factor[k], factor[k]};
-            sum[0] += f * part[0];
-            sum[1] += f * part[1];
-            sum[2] += f * part[2];
-            sum[3] += f * part[3];
-        }
-        memcpy(out + c, sum, sizeof sum);
-    }
-    for (; c < m->count; ++c) {
-        double sum = base ? base[c] : 0.0;
-        for (int k = 0; k < used; ++k) {
-            sum += factor[k] * stage[k][c];
-        }
-        out[c] = sum;
-    }
-}
-
-/* Derivative at the state that was set last. */
-static se3d_status evaluate(rk *m, double t, double *derivative)
-{
-    return m->motion->evaluate(m->equations, t, derivative);
-}
-
-static se3d_status evaluate_stage(rk *m, double t, double h, int stage)
-{
-    combine(m, m->y0, h, m->tableau->a[stage], stage, m->y);
-    m->motion->set(m->equations, m->y);
-    return evaluate(m, t + m->tableau->c[stage] * h, m->K + (size_t)stage * m->count);
-}
-
-/* The largest part of an error vector, relative to tolerance and scales. */
-static double measure(const rk *m, const double *error)
-{
-    double r = 0.0, p = 0.0, v = 0.0, w = 0.0;
-    const double *end = m->motion->spread(m->equations, error, m->bodies[0]);
-    for (size_t k = 0; k < m->assembly->body_count; ++k, end += SE3DI_STATE_SIZE) {
-        const double *e = end;
-        double turn = e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6];
-        double parts[4] = {se3di_dot(e, e), turn, se3di_dot(e + 7, e + 7),
-                           se3di_dot(e + 10, e + 10)};
-        r = parts[0] <= r ? r : parts[0]; /* NaN stays */
-        p = parts[1] <= p ? p : parts[1];
-        v = parts[2] <= v ? v : parts[2];
-        w = parts[3] <= w ? w : parts[3];
-    }
-    r = sqrt(r) / m->past->scale.length + 2.0 * sqrt(p);
-    v = sqrt(v) / m->past->scale.speed + sqrt(w) / m->past->scale.spin;
-    double e = se3di_norm(end) / m->past->scale.energy;
-    return (r + v + WORK_WEIGHT * e) / m->tolerance;
+    se3di_explicit_combine(m, m->K, m->y0, h, m->tableau->a[stage], stage, m->y);
+    return se3di_explicit_evaluate(m, t + m->tableau->c[stage] * h, m->y,
+                                   m->K + (size_t)stage * m->count);
 }
 
 /* The error of the step, relative to the tolerance. */
-static double estimate_error(rk *m, double h)
+static double estimate_error(se3di_explicit *m, double h)
 {
     const se3di_rk_tableau *tableau = m->tableau;
-    combine(m, NULL, h, tableau->error, tableau->stages + tableau->uses_end, m->sum);
-    double error = measure(m, m->sum);
+    se3di_explicit_combine(m, m->K, NULL, h, tableau->error, tableau->stages + tableau->uses_end,
+                           m->sum);
+    double error = se3di_explicit_measure(m, m->sum);
     if (tableau->error3) {
-        combine(m, NULL, h, tableau->error3, tableau->stages, m->sum3);
-        double error3 = measure(m, m->sum3);
+        se3di_explicit_combine(m, m->K, NULL, h, tableau->error3, tableau->stages, m->sum3);
+        double error3 = se3di_explicit_measure(m, m->sum3);
         error = error > 0.0 ? error * error / sqrt(error * error + 0.01 * error3 * error3) : error;
     }
     return error;
 }
 
-/* From (t_1, y_1, y'_1) by h: the stages. The history is changed only by accept. */
-static se3d_status make_stages(rk *m, double h)
+static se3d_status make_stages(se3di_explicit *m, double h, double *error)
 {
     memcpy(m->y0, m->y1, m->count * sizeof *m->y0);
     memcpy(m->K, m->f1, m->count * sizeof *m->K);
@@ -255,130 +44,33 @@ static se3d_status make_stages(rk *m, double h)
     for (int k = 1; k < m->tableau->stages; ++k) {
         SE3DI_TRY(evaluate_stage(m, m->past->at.time, h, k));
     }
+    *error = m->tableau->uses_end ? 0.0 : estimate_error(m, h);
     return SE3D_OK;
 }
 
-static double *end_derivative(const rk *m)
+static double estimate_end(se3di_explicit *m, double h, double error)
 {
-    return m->K + (size_t)m->tableau->stages * m->count;
+    return m->tableau->uses_end ? estimate_error(m, h) : error;
 }
 
-/* The frames at the end, before the projection. */
-static void arrive(rk *m, double h)
+static int get_end(const se3di_explicit *m)
+{
+    return m->tableau->stages;
+}
+
+static int get_order(const se3di_explicit *m)
+{
+    return m->tableau->order;
+}
+
+static void arrive(se3di_explicit *m, double h)
 {
     const int stages = m->tableau->stages;
-    combine(m, m->y0, h, m->tableau->a[stages], stages, m->y);
-    m->motion->set(m->equations, m->y);
-}
-
-/* The factorisation of the last evaluation, which was here or near, serves. */
-static se3d_status project(rk *m, double t)
-{
-    return m->motion->project(m->equations, t, &m->past->scale, projection_accuracy(m->tolerance),
-                              1);
-}
-
-/* Stages, error, projection. The derivative at the end is that before the projection, which moves
- * the state by its error: the order is the same. *error is infinite if the step cannot be made
- * at all. */
-static se3d_status attempt(rk *m, double h, double *error)
-{
-    const int uses_end = m->tableau->uses_end;
-    const double t = m->past->at.time + h;
-    *error = HUGE_VAL;
-    m->step.fraction = 0.0;
-    SE3DI_TRY(make_stages(m, h));
-    *error = uses_end ? 0.0 : estimate_error(m, h);
-    if (!(*error <= 1.0) && isfinite(m->tolerance)) {
-        return SE3D_OK;
-    }
-    arrive(m, h);
-    SE3DI_TRY(evaluate(m, t, end_derivative(m)));
-    *error = uses_end ? estimate_error(m, h) : *error;
-    if (!(*error <= 1.0) && isfinite(m->tolerance)) {
-        return SE3D_OK;
-    }
-    SE3DI_TRY(project(m, t));
-    /* near a singular position (more rows are dependent than have been all along) accelerations at
-     * a state that violates the constraints are others */
-    const double dependent = m->motion->count_dependent(m->equations);
-    return dependent > m->past->redundant ? evaluate(m, t, end_derivative(m)) : SE3D_OK;
-}
-
-/* The frames hold the projected y_1, at t. */
-static void accept(rk *m, double t)
-{
-    m->past->at.begin = m->past->at.time;
-    m->past->at.time = t;
-    m->past->dense = m->past->at.renewed = 0.0;
-    const size_t work = m->count - SE3DI_STATE_WORK;
-    m->motion->keep(m->equations, m->y1);
-    memcpy(m->y1 + work, m->y + work, SE3DI_STATE_WORK * sizeof *m->y);
-    memcpy(m->f1, m->next, m->count * sizeof *m->f1);
-    grow_scale(m);
-    double dependent = m->motion->count_dependent(m->equations);
-    m->past->redundant = fmin(m->past->redundant, dependent);
-    se3di_angles_accept(m->assembly->model);
-    se3di_contacts_accept(m->assembly->model); /* force elements: settle_memory */
-    ++m->equations->counters.steps;
-}
-
-/* Elements with a memory (stick or slip, stops) change it between steps: *error is raised to what
- * that says of the step, and the memory stays as it was if that is too much. The derivative after
- * the change is the next step's; the interpolation of this one ends with that before. */
-static se3d_status settle_memory(rk *m, double h, double *error)
-{
-    se3di_model *model = m->assembly->model;
-    const double t = m->past->at.time + h;
-    m->step.fraction = 0.0;
-    m->next = end_derivative(m);
-    if (!se3di_forces_have_memory(model)) {
-        return SE3D_OK;
-    }
-    se3di_memory_end end;
-    const se3di_memory_step step = {
-        t, h, m->tolerance, model->lambda, &m->past->scale, m->memory, m->bodies[0]};
-    SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
-    *error = fmax(*error, end.error);
-    m->step.fraction = end.fraction;
-    if (!(*error <= 1.0)) {
-        se3di_model_restore_memory(model, m->memory);
-        return SE3D_OK;
-    }
-    m->next = end.has_changed ? m->sum : m->next;
-    return end.has_changed ? m->motion->derive(m->equations, t, m->equations->l, m->next) : SE3D_OK;
-}
-
-/* All that may fail before the state is accepted; *error as from settle_memory. */
-static se3d_status prepare(rk *m, double h, double *error)
-{
-    se3di_model *model = m->assembly->model;
-    SE3DI_TRY(settle_memory(m, h, error));
-    if (!(*error <= 1.0)) {
-        return SE3D_OK;
-    }
-    se3d_status status = se3di_state_prepare(m->equations, m->past->at.time + h);
-    if (status < 0 && se3di_forces_have_memory(model)) {
-        se3di_model_restore_memory(model, m->memory);
-    }
-    return status;
-}
-
-static se3d_status fail_small(rk *m, double h)
-{
-    double t = m->past->at.time;
-    const se3d_status status =
-        se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
-                        "t = %g s: the step fell to %.3g s: the tolerance %g cannot be met here; "
-                        "the motion is not smooth, or stiff (try generalized_alpha or radau)",
-                        t, h, m->tolerance);
-    m->motion->set(m->equations, m->y1);
-    se3di_contacts_blame(m->assembly->model, m->equations->error);
-    return status;
+    se3di_explicit_combine(m, m->K, m->y0, h, m->tableau->a[stages], stages, m->y);
 }
 
 /* The next step: PI control of the error (Gustafsson 1991). */
-static double next_step(const rk *m, double h, double error)
+static double next_step(const se3di_explicit *m, double h, double error)
 {
     double exponent = 1.0 / m->tableau->order;
     double before = fmax(m->past->at.error, 1e-4);
@@ -389,45 +81,17 @@ static double next_step(const rk *m, double h, double error)
     return se3di_adaptive_limit(m->step.integration, h);
 }
 
-/* If the accelerations jump, as under a driver or a load that is switched, no step is short
- * enough for a tight tolerance. One of the least length crosses the jump; what it makes of error is
- * the jump times h. If no ordinary step follows, it was no jump. */
-static se3d_status cross_jump(rk *m, double h, double error)
+static double shrink(const se3di_explicit *m, se3d_status status, double error)
 {
-    const double t = m->past->at.time + h, tolerance = m->tolerance;
-    if (!(error * tolerance < 1e-3) || m->past->forced >= FORCED_MAX) {
-        return fail_small(m, h);
-    }
-    m->tolerance = HUGE_VAL; /* no error control */
-    se3d_status status = attempt(m, h, &error);
-    status = status < 0 ? status : prepare(m, h, &error);
-    m->tolerance = tolerance;
-    SE3DI_TRY(status);
-    if (!(error <= 1.0)) { /* nor is what it leads to a number */
-        return fail_small(m, h);
-    }
-    accept(m, t);
-    m->past->forced += 1.0;
-    m->past->at.next = se3di_adaptive_limit(m->step.integration, 1e6 * h);
-    m->past->at.error = 1e-2;
-    return SE3D_OK;
-}
-
-/* Bound on how fast a relative angular velocity grows at the forward state. */
-static double largest_growth(const rk *m)
-{
-    const se3di_assembly *assembly = m->assembly;
-    double largest = 0.0;
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        const size_t body = assembly->free_body[k];
-        largest = fmax(largest, se3di_norm(assembly->model->acceleration + 6 * body + 3));
-    }
-    return 2.0 * largest;
+    const double exponent = 1.0 / m->tableau->order;
+    const double factor =
+        status < 0 || !isfinite(error) ? 0.25 : SAFETY * se3di_pow(error, -exponent);
+    return fmax(0.2, fmin(0.9, factor));
 }
 
 /* h lambda of a decay that is in the differences `y` of velocities and `f` of accelerations times
  * h: what oscillates has none on the average. */
-static double decay_of(const rk *m, const double *y_change, const double *f_change)
+static double decay_of(const se3di_explicit *m, const double *y_change, const double *f_change)
 {
     const double *y = m->motion->spread(m->equations, y_change, m->bodies[0]);
     const double *f = m->motion->spread(m->equations, f_change, m->bodies[1]);
@@ -443,7 +107,7 @@ static double decay_of(const rk *m, const double *y_change, const double *f_chan
 
 /* The step is far below what the motion asks for, and of the size of a decay. Disturbances of each
  * step (its projection) keep such a decay alive long before stability is lost. */
-static int is_held_by_decay(const rk *m, double h)
+static int is_held_by_decay(const se3di_explicit *m, double h)
 {
     const double rate = fmax(m->past->scale.speed / m->past->scale.length, m->past->scale.spin);
     return h * rate < SLOW_MAX && decay_of(m, m->sum, m->sum3) > DECAY_MIN;
@@ -453,119 +117,36 @@ static int is_held_by_decay(const rk *m, double h)
  * time: |y'(end) - y'(stage)|/|y(end) - y(stage)| (Hairer, Wanner 1996, sec. IV.2). What is far
  * below the tolerance tells nothing; nor does what is near a singular position, where accelerations
  * change fast with how far the constraints are violated. */
-static void watch_stability(rk *m, double h)
+static void watch_stability(se3di_explicit *m, double h)
 {
     const se3di_rk_tableau *tableau = m->tableau;
     const int last = tableau->stages - 1, end = tableau->stages;
-    double difference[SE3DI_RK_MAX], *held = &m->past->held, *free = &m->past->free;
+    double difference[SE3DI_RK_MAX];
     m->past->since += 1.0;
     if (m->motion->count_dependent(m->equations) > m->past->redundant) {
         return;
     }
-    if (!(*held > 0.0) && m->past->since < HELD_EACH) {
+    if (!(m->past->held > 0.0) && m->past->since < HELD_EACH) {
         return;
     }
     m->past->since = 0.0;
     for (int k = 0; k < SE3DI_RK_MAX; ++k) {
         difference[k] = tableau->a[end][k] - tableau->a[last][k];
     }
-    combine(m, NULL, h, difference, end, m->sum);
+    se3di_explicit_combine(m, m->K, NULL, h, difference, end, m->sum);
     for (size_t k = 0; k < m->count; ++k) {
         m->sum3[k] = h * (m->K[(size_t)end * m->count + k] - m->K[(size_t)last * m->count + k]);
     }
     memset(m->sum + m->count - SE3DI_STATE_WORK, 0, SE3DI_STATE_WORK * sizeof *m->sum);
     memset(m->sum3 + m->count - SE3DI_STATE_WORK, 0, SE3DI_STATE_WORK * sizeof *m->sum3);
-    const double apart = measure(m, m->sum);
-    if (apart > 0.01 && (measure(m, m->sum3) > tableau->stable * apart || is_held_by_decay(m, h))) {
-        *held += 1.0;
-        *free = 0.0;
-    } else if (*held > 0.0) {
-        *free += 1.0;
-        *held = *free < FREE_MIN ? *held : 0.0;
-        *free = *free < FREE_MIN ? *free : 0.0;
-    }
-}
-
-int se3di_rk_is_held(const se3di_integration *integration)
-{
-    return past_of(integration->equations->assembly.model)->held >= HELD_MIN;
-}
-
-/* The run is to end at the forward state. */
-static int must_leave(const rk *m)
-{
-    return m->step.integration->settings.leaves_stiff && m->past->held >= HELD_MIN;
-}
-
-/* ---- in the loop of all methods ---- */
-
-static rk *get_rk(se3di_adaptive *step)
-{
-    return (rk *)(void *)step;
-}
-
-static double pace(se3di_adaptive *step, double h)
-{
-    const rk *m = get_rk(step);
-    h = se3di_state_limit_turn(m->assembly->model, largest_growth(m), h);
-    return se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
-}
-
-static se3d_status try_step(se3di_adaptive *step, double h, double *error)
-{
-    SE3DI_TRY(attempt(get_rk(step), h, error));
-    return *error <= 1.0 ? prepare(get_rk(step), h, error) : SE3D_OK;
-}
-
-/* The step h has met the tolerance: what follows for the next ones. */
-static se3d_status take(se3di_adaptive *step, double h, double error)
-{
-    rk *m = get_rk(step);
-    const double least = LEAST_STEP * fmax(1e-3, fabs(step->t));
-    accept(m, step->t);
-    if (step->integration->settings.leaves_stiff) {
-        watch_stability(m, h);
-    }
-    step->at->next = next_step(m, h, error);
-    step->at->error = error;
-    m->past->forced = h > 1e3 * least ? 0.0 : m->past->forced;
-    return SE3D_OK;
-}
-
-static double shrink(se3di_adaptive *step, double h, se3d_status status, double error)
-{
-    (void)h;
-    const double exponent = 1.0 / get_rk(step)->tableau->order;
-    const double factor =
-        status < 0 || !isfinite(error) ? 0.25 : SAFETY * se3di_pow(error, -exponent);
-    return fmax(0.2, fmin(0.9, factor));
-}
-
-static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status, double error)
-{
-    return status < 0 ? status : cross_jump(get_rk(step), h, error);
-}
-
-/* One accepted step with error control. What contacts remember belongs to the end of a step, and
- * cannot be interpolated: if shapes are near each other steps end at t_end. So does the first
- * one after a change of what acts, which may soon change again. */
-static se3d_status advance(rk *m, double t_end)
-{
-    static const se3di_adaptive_class methods = {pace,   try_step,  take,
-                                                 shrink, surrender, LEAST_STEP};
-    se3di_model *model = m->assembly->model;
-    m->step.methods = &methods;
-    m->step.at = &m->past->at;
-    m->step.ends = se3di_adaptive_ends(m->step.integration, &m->past->at);
-    se3di_forces_show(model, 0);
-    m->motion->set(m->equations, m->y1);
-    se3di_state_set_rates(m->assembly, get_rates(m));
-    se3di_angles_accept(model); /* turns count from step to step, not from an output */
-    return se3di_adaptive_advance(&m->step, t_end);
+    const double apart = se3di_explicit_measure(m, m->sum);
+    se3di_explicit_count_sign(
+        m, apart > 0.01 && (se3di_explicit_measure(m, m->sum3) > tableau->stable * apart ||
+                            is_held_by_decay(m, h)));
 }
 
 /* The interpolation of the last step; K still holds its stages. */
-static se3d_status build_dense(rk *m)
+static se3d_status build_dense(se3di_explicit *m)
 {
     const se3di_rk_tableau *tableau = m->tableau;
     double h = m->past->at.time - m->past->at.begin;
@@ -573,7 +154,7 @@ static se3d_status build_dense(rk *m)
     for (int k = tableau->stages + 1; k < tableau->total; ++k) {
         SE3DI_TRY(evaluate_stage(m, m->past->at.begin, h, k));
     }
-    const double *f0 = m->K, *f1 = end_derivative(m);
+    const double *f0 = m->K, *f1 = se3di_explicit_end(m);
     double *F0 = m->forms, *F1 = F0 + m->count, *F2 = F1 + m->count;
     for (size_t k = 0; k < m->count; ++k) {
         F0[k] = m->y1[k] - m->y0[k];
@@ -581,13 +162,14 @@ static se3d_status build_dense(rk *m)
         F2[k] = 2.0 * F0[k] - h * (f0[k] + f1[k]);
     }
     for (int row = 0; row < tableau->dense_rows; ++row) {
-        combine(m, NULL, h, tableau->d[row], tableau->total, F2 + (size_t)(row + 1) * m->count);
+        se3di_explicit_combine(m, m->K, NULL, h, tableau->d[row], tableau->total,
+                               F2 + (size_t)(row + 1) * m->count);
     }
     m->past->dense = 1.0;
     return SE3D_OK;
 }
 
-static void interpolate(const rk *m, double t, double *y)
+static void interpolate(const se3di_explicit *m, double t, double *y)
 {
     double s = (t - m->past->at.begin) / (m->past->at.time - m->past->at.begin);
     int forms = 3 + m->tableau->dense_rows;
@@ -600,195 +182,15 @@ static void interpolate(const rk *m, double t, double *y)
     }
 }
 
-/* The forward state is the model's own. */
-static se3d_status adopt(rk *m)
-{
-    se3di_assembly *assembly = m->assembly;
-    se3di_forces_stay(assembly->model);
-    m->past->at.time = m->past->at.begin = assembly->model->time;
-    m->past->dense = 0.0;
-    m->motion->get(m->equations, m->y1);
-    se3di_assembly_get_acceleration(assembly, m->equations->x);
-    SE3DI_TRY(
-        m->motion->derive(m->equations, assembly->model->time, assembly->model->lambda, m->f1));
-    grow_scale(m);
-    return SE3D_OK;
-}
-
-/* The model's state is y, at t. */
-static se3d_status show(rk *m, const double *y, double t, int project)
-{
-    m->motion->set(m->equations, y);
-    if (project) {
-        SE3DI_TRY(m->motion->project(m->equations, t, &m->past->scale, 1e-15, 0));
-    }
-    SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
-    se3di_contacts_renew_forces(m->assembly->model);
-    return se3di_state_conclude(m->equations, y + m->count - SE3DI_STATE_WORK, t);
-}
-
-/* The model's state is that at an end of the last step. */
-static se3d_status publish(rk *m, int at_end)
-{
-    const double t = at_end ? m->past->at.time : m->past->at.begin;
-    se3di_forces_show(m->assembly->model, !at_end);
-    return show(m, at_end ? m->y1 : m->y0, t, 0);
-}
-
-/* Hairer, Norsett, Wanner 1993, sec. II.4: from the derivative and its change over a small step. */
-static double choose_first(rk *m)
-{
-    double d1 = measure(m, m->f1);
-    double limit = m->step.integration->settings.step;
-    double h0 = 0.01 / (fmax(d1 * m->tolerance, 1e-5));
-    h0 = limit > 0.0 ? fmin(h0, limit) : h0;
-    se3di_error ignored = {0};
-    se3di_error *error = m->equations->error;
-    m->equations->error = &ignored;
-    for (size_t k = 0; k < m->count; ++k) {
-        m->y[k] = m->y1[k] + h0 * m->f1[k];
-    }
-    m->motion->set(m->equations, m->y);
-    double d2 = 0.0;
-    if (evaluate(m, m->past->at.time + h0, m->K) >= 0) {
-        for (size_t k = 0; k < m->count; ++k) {
-            m->K[k] -= m->f1[k];
-        }
-        d2 = measure(m, m->K) / h0;
-    }
-    m->motion->set(m->equations, m->y1);
-    m->equations->error = error;
-    double d = fmax(d1 * m->tolerance, 1e-3 / h0);
-    double h1 = se3di_pow(0.01 / (fmax(d, sqrt(fmax(d2, 0.0) * m->tolerance)) / m->tolerance),
-                          1.0 / m->tableau->order);
-    double h = isfinite(h1) && h1 > 0.0 ? fmin(100.0 * h0, h1) : h0;
-    return limit > 0.0 ? fmin(h, limit) : h;
-}
-
-se3d_status se3di_rk_start(se3di_integration *integration, double h)
-{
-    (void)h; /* the first step is chosen */
-    rk m = begin(integration);
-    memset(m.past, 0, sizeof *m.past);
-    memset(m.y0, 0, (RK_FORMS + 1) * m.count * sizeof *m.y0);
-    m.past->scale.length = se3di_state_length(m.assembly->model);
-    m.past->at.error = 1e-2;
-    m.past->redundant = (double)m.assembly->row_count;
-    double potential, springs;
-    const se3di_model *model = m.assembly->model;
-    se3d_status status = se3di_loads_potential(model, model->time, &potential, &springs);
-    if (status >= 0) {
-        m.past->energy_least = 1e-3 * fabs(potential);
-        status = adopt(&m);
-    }
-    if (status >= 0) {
-        m.past->at.next = choose_first(&m);
-    }
-    se3di_state_end(m.equations, &m.kkt);
-    return status;
-}
-
-se3d_status se3di_rk_renew(se3di_integration *integration)
-{
-    rk m = begin(integration);
-    const se3d_status status = adopt(&m);
-    m.past->at.renewed = 1.0;
-    se3di_state_end(m.equations, &m.kkt);
-    return status;
-}
-
-/* The accelerations that are reported can be those that the next step begins with: nothing changes
- * at the end of a step, and nothing there is nearly singular, where those of the method are
- * smoother.
- */
-static int reports_end(const rk *m)
-{
-    const se3di_model *model = m->assembly->model;
-    return !se3di_forces_have_memory(model) && model->shape_slots.count <= 1 &&
-           m->motion->count_dependent(m->equations) == 0;
-}
-
-/* One step of h without error control; *reported: the accelerations at its end are the model's. */
-static se3d_status step_once(rk *m, double h, int *reported)
-{
-    const double t = m->past->at.time + h;
-    double error = 0.0; /* none is asked for: what settle_memory adds decides */
-    SE3DI_TRY(make_stages(m, h));
-    *reported = reports_end(m);
-    arrive(m, h);
-    if (*reported) {
-        SE3DI_TRY(project(m, t));
-        se3di_state_end(m->equations, &m->kkt);
-        SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
-        SE3DI_TRY(
-            m->motion->derive(m->equations, t, m->assembly->model->lambda, end_derivative(m)));
-    } else {
-        SE3DI_TRY(evaluate(m, t, end_derivative(m)));
-        SE3DI_TRY(project(m, t));
-    }
-    SE3DI_TRY(prepare(m, h, &error));
-    accept(m, t);
-    return SE3D_OK;
-}
-
-se3d_status se3di_rk_step(se3di_integration *integration, double h)
-{
-    rk m = begin(integration);
-    int reported = 0;
-    se3d_status status = SE3D_OK;
-    if (m.past->at.time != m.assembly->model->time) {
-        status = adopt(&m);
-    }
-    se3di_forces_show(m.assembly->model, 0);
-    m.tolerance = HUGE_VAL; /* no error control */
-    status = status < 0 ? status : step_once(&m, h, &reported);
-    se3di_state_end(m.equations, &m.kkt);
-    if (status >= 0 && reported) {
-        return se3di_state_conclude(m.equations, m.y1 + m.count - SE3DI_STATE_WORK,
-                                    m.past->at.time);
-    }
-    return status < 0 ? status : publish(&m, 1);
-}
-
-/* Forward steps until t_end is reached, and the interpolation where it is passed. */
-static se3d_status advance_to(rk *m, double t_end)
-{
-    while (m->past->at.time < t_end && !must_leave(m) && !m->step.integration->at_kink) {
-        SE3DI_TRY(advance(m, t_end));
-    }
-    return m->past->at.time > t_end && m->past->dense == 0.0 ? build_dense(m) : SE3D_OK;
-}
-
-se3d_status se3di_rk_advance(se3di_integration *integration, double t_end)
-{
-    rk m = begin(integration);
-    se3d_status status = advance(&m, t_end);
-    status = status < 0 || integration->at_kink ? status : build_dense(&m);
-    se3di_state_end(m.equations, &m.kkt);
-    return status;
-}
-
-void se3di_rk_interpolate(const se3di_integration *integration, double t, double *y)
-{
-    const rk m = point(integration);
-    const int is_within = t < m.past->at.time;
-    if (is_within) {
-        interpolate(&m, t, m.y);
-    }
-    m.motion->show(m.equations, is_within ? m.y : m.y1, y);
-}
-
-se3d_status se3di_rk_run(se3di_integration *integration, double t_end)
-{
-    rk m = begin(integration);
-    const int at_begin = !(t_end > m.past->at.begin);
-    se3d_status status = at_begin ? SE3D_OK : advance_to(&m, t_end);
-    se3di_state_end(m.equations, &m.kkt);
-    SE3DI_TRY(status);
-    if (at_begin || m.past->at.time <= t_end) { /* earlier if it leaves a stiff motion */
-        return publish(&m, m.past->at.time <= t_end);
-    }
-    interpolate(&m, t_end, m.y);
-    se3di_forces_show(m.assembly->model, 1);
-    return show(&m, m.y, t_end, 1);
-}
+const se3di_explicit_class se3di_rk_class = {
+    .make_stages = make_stages,
+    .arrive = arrive,
+    .estimate_end = estimate_end,
+    .next_step = next_step,
+    .shrink = shrink,
+    .watch_stability = watch_stability,
+    .build_dense = build_dense,
+    .interpolate = interpolate,
+    .get_order = get_order,
+    .get_end = get_end,
+};

@@ -28,6 +28,7 @@ typedef struct se3di_integrator_settings {
 
 typedef struct se3di_integration se3di_integration;
 struct se3di_rk_tableau;
+struct se3di_explicit_class;
 struct se3di_newmark;
 struct se3di_convex;
 
@@ -75,7 +76,8 @@ typedef struct se3di_integrator {
     /* Whether stability, not accuracy, has held its last steps so short; NULL: it never does. With
      * settings.leaves_stiff `run` then ends where that was seen. */
     int (*is_held)(const se3di_integration *integration);
-    const struct se3di_rk_tableau *tableau; /* of Runge-Kutta methods */
+    const struct se3di_explicit_class *explicit_class; /* of explicit methods, */
+    const struct se3di_rk_tableau *tableau;            /* and of those of Runge-Kutta */
     /* Of the Newmark family: its coefficients. */
     struct se3di_newmark (*newmark)(const se3di_integrator_settings *settings);
     int32_t is_implicit;  /* not 0: integration->newton is made */
@@ -115,7 +117,8 @@ struct se3di_integration {
     X(RATTLE, rattle)                                                                              \
     X(VERLET, verlet)                                                                              \
     X(RK4, rk4)                                                                                    \
-    X(CONVEX, convex)
+    X(CONVEX, convex)                                                                              \
+    X(GAUSS, gauss)
 
 #define SE3DI_METHOD_DECLARE(METHOD, name) extern const se3di_integrator se3di_integrator_##name;
 SE3DI_METHOD_LIST(SE3DI_METHOD_DECLARE)

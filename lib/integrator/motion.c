@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The state of explicit methods as that of the bodies. */
 #include "integrator/motion.h"
+#include "math/quaternion.h"
+#include "math/vec3.h"
 
 #include <string.h>
 
@@ -30,6 +32,18 @@ static se3d_status evaluate(se3di_equations *equations, double t, double *deriva
     return derive(equations, t, equations->l, derivative);
 }
 
+static void move(const se3di_equations *equations, const double *y, double *derivative)
+{
+    for (uint32_t k = 0; k < equations->assembly.body_count; ++k) {
+        double p[4];
+        se3di_quat_normalize(y + 3, p);
+        se3di_copy(y + 7, derivative);
+        se3di_quat_rate(p, y + 10, derivative + 3);
+        y += SE3DI_STATE_SIZE;
+        derivative += SE3DI_STATE_SIZE;
+    }
+}
+
 /* Changes and rates are those of the bodies already. */
 static const double *pass(se3di_equations *equations, const double *y, double *out)
 {
@@ -54,6 +68,7 @@ const se3di_motion se3di_motion_bodies = {
     .get_rates = pass,
     .evaluate = evaluate,
     .derive = derive,
+    .move = move,
     .spread = pass,
     .project = se3di_state_project,
     .keep = get,

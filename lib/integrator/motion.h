@@ -26,6 +26,8 @@ typedef struct se3di_motion {
     /* The same from accelerations in equations->x and multipliers l [rows]. */
     se3d_status (*derive)(se3di_equations *equations, double t, const double *l,
                           double *derivative);
+    /* The rates of positions of a state y, in their places of `derivative`; the rest stays. */
+    void (*move)(const se3di_equations *equations, const double *y, double *derivative);
     /* What a small change of y, at the state that was set last, is for the bodies: (dr, turn / 2
      * as of p, dv, dw) in the places of state.h; `out` [se3di_state_count] may not be needed. */
     const double *(*spread)(se3di_equations *equations, const double *change, double *out);

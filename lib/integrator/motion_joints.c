@@ -29,12 +29,18 @@ static size_t count(const se3di_equations *equations)
     return (size_t)tree->q_count + tree->v_count + SE3DI_STATE_WORK;
 }
 
-/* The quaternion in the positions of a node, NULL: it has none. */
+/* The place of the quaternion of a node among the positions, < 0: it has none. */
+static ptrdiff_t place_of_quaternion(const se3di_tree_node *node)
+{
+    return node->type == SE3DI_TREE_FREE        ? (ptrdiff_t)node->q + 3
+           : node->type == SE3DI_TREE_SPHERICAL ? (ptrdiff_t)node->q
+                                                : -1;
+}
+
 static double *quaternion_of(const se3di_tree_node *node, double *q)
 {
-    return node->type == SE3DI_TREE_FREE        ? q + node->q + 3
-           : node->type == SE3DI_TREE_SPHERICAL ? q + node->q
-                                                : NULL;
+    const ptrdiff_t at = place_of_quaternion(node);
+    return at < 0 ? NULL : q + at;
 }
 
 static void normalise(const se3di_tree *tree, double *q)
@@ -114,6 +120,24 @@ static se3d_status complete(se3di_equations *equations, double t, const double *
     se3di_tree_rates(tree, tree->q, tree->qdot, derivative);
     return se3di_state_powers(&equations->assembly, t, l,
                               derivative + tree->q_count + tree->v_count);
+}
+
+/* Rates of quaternions that are not normalised are as much too large. */
+static void move(const se3di_equations *equations, const double *y, double *derivative)
+{
+    const se3di_tree *tree = equations->tree;
+    se3di_tree_rates(tree, y, y + tree->q_count, derivative);
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const ptrdiff_t at = place_of_quaternion(&tree->nodes[k]);
+        if (at >= 0) {
+            const double *p = y + at;
+            const double size = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+            double *rate = derivative + at;
+            for (int c = 0; c < 4; ++c) {
+                rate[c] /= size;
+            }
+        }
+    }
 }
 
 /* ---- accelerations of bodies -> joints ---- */
@@ -428,6 +452,7 @@ const se3di_motion se3di_motion_joints = {
     .get_rates = get_rates,
     .evaluate = evaluate,
     .derive = derive,
+    .move = move,
     .spread = spread,
     .project = project,
     .keep = keep,

@@ -40,6 +40,6 @@ const se3di_integrator se3di_integrator_rk45 = {
     .name = "rk45",
     .tag = SE3D_METHOD_RK45,
     SE3DI_RK_METHOD,
-    .is_held = se3di_rk_is_held,
+    .is_held = se3di_explicit_is_held,
     .orders = 1u << 5,
 };

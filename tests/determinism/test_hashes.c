@@ -239,6 +239,7 @@ static const support_analysis more[] = {
     {"four_bar", 3, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_GENERALIZED_ALPHA, 0.005, 0.1},
     {"chain_revolute", 40, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_HHT, 0.005, 0.05},
     {"slider_crank", 1, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_RK45, 0.01, 0.5},
+    {"slider_crank", 1, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_GAUSS, 0.01, 0.5},
     {"driven_pendulum", 1, SE3D_ANALYSIS_INVERSE_DYNAMICS, SE3D_METHOD_AUTO, 0.01, 1.0},
 };
 #define MORE (sizeof more / sizeof more[0])

@@ -58,6 +58,7 @@ static const method fall_methods[] = {
     {SE3D_METHOD_HHT, 0.013, 0.0, 1e-12},    {SE3D_METHOD_GENERALIZED_ALPHA, 0.0, 1e-6, 1e-12},
     {SE3D_METHOD_BDF, 0.0, 1e-9, 1e-6},      {SE3D_METHOD_RADAU, 0.0, 1e-8, 1e-12},
     {SE3D_METHOD_RATTLE, 0.013, 0.0, 1e-12}, {SE3D_METHOD_VERLET, 0.013, 0.0, 1e-12},
+    {SE3D_METHOD_GAUSS, 0.0, 1e-5, 1e-12},   {SE3D_METHOD_GAUSS, 0.0, 1e-8, 1e-12},
 };
 #define FALL_METHODS (sizeof fall_methods / sizeof fall_methods[0])
 
@@ -377,7 +378,7 @@ static const method swing_methods[] = {
     {SE3D_METHOD_RK4, 0.0, 1e-10, 1e-9},    {SE3D_METHOD_GENERALIZED_ALPHA, 1e-3, 0.0, 1e-5},
     {SE3D_METHOD_HHT, 1e-3, 0.0, 1e-4},     {SE3D_METHOD_BDF, 0.0, 1e-9, 1e-6},
     {SE3D_METHOD_RADAU, 0.0, 1e-10, 1e-9},  {SE3D_METHOD_RATTLE, 1e-3, 0.0, 1e-5},
-    {SE3D_METHOD_VERLET, 1e-3, 0.0, 1e-5},
+    {SE3D_METHOD_VERLET, 1e-3, 0.0, 1e-5},  {SE3D_METHOD_GAUSS, 0.0, 1e-10, 1e-9},
 };
 #define SWING_METHODS (sizeof swing_methods / sizeof swing_methods[0])
 

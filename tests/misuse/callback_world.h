@@ -259,7 +259,10 @@ static void world_add_solver(world *w, int32_t method)
     se3d_solver_def solver = se3d_solver_def_default();
     se3d_event_def event = se3d_event_def_default();
     solver.method = method;
-    solver.step = method == SE3D_METHOD_DOP853 || method == SE3D_METHOD_RADAU ? 0.0 : 5e-4;
+    solver.step =
+        method == SE3D_METHOD_DOP853 || method == SE3D_METHOD_RADAU || method == SE3D_METHOD_GAUSS
+            ? 0.0
+            : 5e-4;
     solver.interrupt = world_interrupt;
     solver.interrupt_ctx = w;
     CHECK(!se3d_solver_create(w->system, &solver, &w->solver));

@@ -140,9 +140,9 @@ static uint64_t run_with(int32_t method, kind which, void (*meddle)(world *w), i
     return hash;
 }
 
-static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RADAU,
-                                  SE3D_METHOD_BDF,    SE3D_METHOD_GENERALIZED_ALPHA,
-                                  SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET};
+static const int32_t methods[] = {
+    SE3D_METHOD_DOP853, SE3D_METHOD_RADAU,  SE3D_METHOD_BDF,  SE3D_METHOD_GENERALIZED_ALPHA,
+    SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET, SE3D_METHOD_GAUSS};
 
 static void no_callback_changes_what_is_being_solved(void)
 {

@@ -81,6 +81,7 @@ static void a_method_takes_only_the_orders_it_has(void)
         {SE3D_METHOD_RATTLE, {0, 2, 4}, {1, 3, 32, 34}, "0, 2, 4 with method rattle"},
         {SE3D_METHOD_RADAU, {0, 5, 5}, {9, 4, 37, -5}, "0, 5 with method radau"},
         {SE3D_METHOD_DOP853, {0, 8, 8}, {7, 5, 40, -8}, "0, 8 with method dop853"},
+        {SE3D_METHOD_GAUSS, {0, 8, 16}, {4, 12, 32, -8}, "0, 8, 16 with method gauss"},
         {SE3D_METHOD_RK45, {0, 5, 5}, {4, 8, 31, -1}, "0, 5 with method rk45"},
         {SE3D_METHOD_RK4, {0, 4, 4}, {5, 3, 36, -4}, "0, 4 with method rk4"},
         {SE3D_METHOD_HHT, {0, 2, 2}, {1, 3, 4, -2}, "0, 2 with method hht"},

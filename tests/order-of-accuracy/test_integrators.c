@@ -189,7 +189,8 @@ static const struct {
                  {"loop", build_loop, 0.6, 192},
                  {"driven", build_driven, 1.0, 256}};
 
-static void check_method(const method_row *row)
+/* Steps and `finer` times as many; the slope may be less by `slack`. */
+static void check_refined(const method_row *row, double finer, double slack)
 {
     static const char *const names[GROUPS] = {"r", "p", "v", "w", "reactions"};
     const method_row exact = {.method = SE3D_METHOD_DOP853};
@@ -198,13 +199,14 @@ static void check_method(const method_row *row)
                                problems[p].duration, problems[p].reference_steps);
         for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_JOINT; ++f) {
             sample coarse = run(problems[p].build, row, f, problems[p].duration, row->steps[p]);
-            sample fine = run(problems[p].build, row, f, problems[p].duration, 2 * row->steps[p]);
+            sample fine = run(problems[p].build, row, f, problems[p].duration,
+                              (int)(finer * row->steps[p] + 0.5));
             for (int group = 0; group < GROUPS; ++group) {
                 double e1 = difference(&coarse, &reference, group);
                 double e2 = difference(&fine, &reference, group);
                 double order = group == 4 ? row->reactions : row->order;
-                double slope = log2(e1 / e2);
-                int holds = slope > order - 0.35 || e2 < row->floor;
+                double slope = log2(e1 / e2) / log2(finer);
+                int holds = slope > order - slack || e2 < row->floor;
                 CHECK(e1 < 0.2 && e1 > e2);
                 CHECK(holds);
                 if (!holds || !(e1 < 0.2) || getenv("SE3D_TEST_VERBOSE")) {
@@ -216,10 +218,27 @@ static void check_method(const method_row *row)
     }
 }
 
+static void check_method(const method_row *row)
+{
+    check_refined(row, 2.0, 0.35);
+}
+
 static void dop853_is_of_order_8(void)
 {
     const method_row row = {SE3D_METHOD_DOP853, 0, 8.0, 8.0, {12, 6, 10}, 2e-12};
     check_method(&row);
+}
+
+static void gauss_is_of_order_8(void)
+{
+    const method_row row = {SE3D_METHOD_GAUSS, 8, 8.0, 8.0, {12, 6, 10}, 2e-12};
+    check_method(&row);
+}
+
+static void gauss_is_of_order_16(void)
+{
+    const method_row row = {SE3D_METHOD_GAUSS, 16, 16.0, 16.0, {4, 4, 4}, 2.5e-12};
+    check_refined(&row, 1.5, 1.5); /* twice as many leave rounding */
 }
 
 static void rk45_is_of_order_5(void)
@@ -381,6 +400,12 @@ static void radau_controls_its_error_at_high_order(void)
     check_control(SE3D_METHOD_RADAU, 4.0, (const double[2]){1e-5, 1e-9}, 30.0);
 }
 
+static void gauss_controls_its_error_at_high_order(void)
+{
+    check_control(SE3D_METHOD_GAUSS, 4.5, (const double[2]){1e-4, 1e-6}, 3.0);
+    check_control(SE3D_METHOD_GAUSS, 8.0, (const double[2]){1e-7, 1e-10}, 3.0);
+}
+
 static void rk45_controls_its_error(void)
 {
     check_control(SE3D_METHOD_RK45, 4.0, (const double[2]){1e-4, 1e-8}, 3.0);
@@ -412,6 +437,9 @@ int main(void)
     RUN(convex_is_of_order_1);
     RUN(rattle_is_of_order_4_by_composition);
     RUN(dop853_is_of_order_8);
+    RUN(gauss_is_of_order_8);
+    RUN(gauss_is_of_order_16);
+    RUN(gauss_controls_its_error_at_high_order);
     RUN(rk45_is_of_order_5);
     RUN(rk4_is_of_order_4);
     RUN(generalized_alpha_is_of_order_2);

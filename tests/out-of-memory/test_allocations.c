@@ -586,8 +586,9 @@ static int fail_events(int32_t method, size_t k, int for_ever)
 
 static void events_survive_every_failed_allocation(void)
 {
-    const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_GENERALIZED_ALPHA, SE3D_METHOD_RADAU,
-                               SE3D_METHOD_VERLET, SE3D_METHOD_CONVEX};
+    const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_GENERALIZED_ALPHA,
+                               SE3D_METHOD_RADAU,  SE3D_METHOD_VERLET,
+                               SE3D_METHOD_CONVEX, SE3D_METHOD_GAUSS};
     for (size_t m = 0; m < 2 * sizeof methods / sizeof *methods; ++m) {
         size_t k = 1;
         while (k < 1000 && fail_events(methods[m / 2], k, (int)(m % 2))) {

@@ -69,6 +69,8 @@ static const row rows[] = {
     {SE3D_METHOD_RATTLE, 4},
     {SE3D_METHOD_VERLET, 0},
     {SE3D_METHOD_CONVEX, 0},
+    {SE3D_METHOD_GAUSS, 8},
+    {SE3D_METHOD_GAUSS, 16},
     {SE3D_METHOD_AUTO, 0},
 };
 

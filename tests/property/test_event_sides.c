@@ -47,7 +47,7 @@ static const struct {
 } methods[] = {
     {SE3D_METHOD_DOP853, 0.01}, {SE3D_METHOD_RADAU, 0.01},  {SE3D_METHOD_BDF, 0.01},
     {SE3D_METHOD_HHT, 0.01},    {SE3D_METHOD_RATTLE, 0.01}, {SE3D_METHOD_VERLET, 0.01},
-    {SE3D_METHOD_DOP853, 0.0},
+    {SE3D_METHOD_GAUSS, 0.01},  {SE3D_METHOD_DOP853, 0.0},
 };
 #define METHODS (sizeof methods / sizeof methods[0])
 

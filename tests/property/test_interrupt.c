@@ -26,13 +26,14 @@ static const int32_t methods[] = {SE3D_METHOD_GENERALIZED_ALPHA,
                                   SE3D_METHOD_BDF,
                                   SE3D_METHOD_RADAU,
                                   SE3D_METHOD_RATTLE,
-                                  SE3D_METHOD_VERLET};
+                                  SE3D_METHOD_VERLET,
+                                  SE3D_METHOD_GAUSS};
 enum { METHODS = sizeof methods / sizeof methods[0] };
 
 static int has_fixed_steps(int32_t method)
 {
     return method != SE3D_METHOD_DOP853 && method != SE3D_METHOD_RK45 &&
-           method != SE3D_METHOD_BDF && method != SE3D_METHOD_RADAU;
+           method != SE3D_METHOD_GAUSS && method != SE3D_METHOD_BDF && method != SE3D_METHOD_RADAU;
 }
 
 /* Counts how often it is asked, and wants an end after `patience` times. */

@@ -6,7 +6,7 @@
 #include "check.h"
 #include "se3d/io.h"
 
-static const int32_t methods[2] = {SE3D_METHOD_DOP853, SE3D_METHOD_RK45};
+static const int32_t methods[3] = {SE3D_METHOD_DOP853, SE3D_METHOD_RK45, SE3D_METHOD_GAUSS};
 
 /* A pendulum on a cart that is driven: at rest, 2 m/s^2, constant speed. */
 static const char pushed[] =
@@ -101,7 +101,7 @@ static void drivers_may_jump_in_their_second_derivative(void)
     double state[2] = {0.0, 0.0};
     swing(2.0, 0.2, state);
     swing(0.0, 0.5, state);
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < 3; ++k) {
         for (double tolerance = 1e-6; tolerance > 1e-13; tolerance *= 1e-3) {
             for (int steps = 1; steps <= 100; steps += 9) { /* 10, 100: outputs at the jumps */
                 result out = run(pushed, "bob", methods[k], tolerance, steps, 1.0);
@@ -115,7 +115,7 @@ static void drivers_may_jump_in_their_second_derivative(void)
 
 static void loads_may_be_switched(void)
 {
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < 3; ++k) {
         for (double tolerance = 1e-6; tolerance > 1e-13; tolerance *= 1e-3) {
             result out = run(switched, "cart", methods[k], tolerance, 10, 1.0);
             CHECK(out.status >= 0);
@@ -131,7 +131,7 @@ static void friction_turns_with_the_motion(void)
     const double up = 9.81 * (sin(slope) + 0.3 * cos(slope));
     const double down = 9.81 * (sin(slope) - 0.3 * cos(slope));
     const double v = down * (1.0 - 2.0 / up);
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < 3; ++k) {
         result coarse = run(thrown, "block", methods[k], 1e-6, 1, 1.0);
         result fine = run(thrown, "block", methods[k], 1e-8, 7, 1.0);
         CHECK(coarse.status >= 0 && fine.status >= 0);
@@ -143,7 +143,7 @@ static void friction_turns_with_the_motion(void)
 
 static void what_runs_away_is_no_jump(void)
 {
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < 3; ++k) {
         result out = run(runaway, "cart", methods[k], 1e-6, 1, 1.0);
         CHECK(out.status < 0);
     }

@@ -14,10 +14,11 @@
 
 enum { TEXT = 8192 };
 
-static const int32_t methods[] = {
-    SE3D_METHOD_DOP853, SE3D_METHOD_RK45,   SE3D_METHOD_RK4,
-    SE3D_METHOD_RADAU,  SE3D_METHOD_BDF,    SE3D_METHOD_GENERALIZED_ALPHA,
-    SE3D_METHOD_HHT,    SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET};
+static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RK45,
+                                  SE3D_METHOD_RK4,    SE3D_METHOD_RADAU,
+                                  SE3D_METHOD_BDF,    SE3D_METHOD_GENERALIZED_ALPHA,
+                                  SE3D_METHOD_HHT,    SE3D_METHOD_RATTLE,
+                                  SE3D_METHOD_VERLET, SE3D_METHOD_GAUSS};
 
 static void append(char *text, const char *part)
 {

@@ -5,14 +5,14 @@
 static const int32_t methods[] = {
     SE3D_METHOD_AUTO, SE3D_METHOD_DOP853, SE3D_METHOD_RK45,  SE3D_METHOD_GENERALIZED_ALPHA,
     SE3D_METHOD_HHT,  SE3D_METHOD_BDF,    SE3D_METHOD_RADAU, SE3D_METHOD_RATTLE,
-    SE3D_METHOD_RK4,  SE3D_METHOD_VERLET,
+    SE3D_METHOD_RK4,  SE3D_METHOD_VERLET, SE3D_METHOD_GAUSS,
 };
 
 static int has_error_control(int32_t method)
 {
     return method == SE3D_METHOD_AUTO || method == SE3D_METHOD_DOP853 ||
            method == SE3D_METHOD_RK45 || method == SE3D_METHOD_RK4 || method == SE3D_METHOD_BDF ||
-           method == SE3D_METHOD_RADAU;
+           method == SE3D_METHOD_RADAU || method == SE3D_METHOD_GAUSS;
 }
 
 static int is_newmark(int32_t method)

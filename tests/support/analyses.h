@@ -25,6 +25,7 @@ static const support_analysis support_analyses[] = {
     {"four_bar", 1, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_DOP853, 0.02, 0.4},
     {"chain_ball", 4, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_RK45, 0.01, 0.3},
     {"chain_revolute", 3, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_RK4, 0.01, 0.2},
+    {"chain_ball", 3, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_GAUSS, 0.01, 0.3},
     {"heavy_top", 1, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_RATTLE, 0.001, 0.1},
     {"driven_double_pendulum", 1, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_VERLET, 0.001, 0.1},
     {"slider_crank", 1, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_BDF, 0.0005, 0.02},

@@ -115,8 +115,9 @@ static void a_method_without_joint_coordinates_is_logged_once(void)
     static const struct {
         int32_t method;
         int warnings;
-    } cases[] = {{SE3D_METHOD_DOP853, 0}, {SE3D_METHOD_RK4, 0}, {SE3D_METHOD_BDF, 1},
-                 {SE3D_METHOD_RADAU, 1},  {SE3D_METHOD_HHT, 1}, {SE3D_METHOD_RATTLE, 1}};
+    } cases[] = {{SE3D_METHOD_DOP853, 0}, {SE3D_METHOD_RK4, 0},   {SE3D_METHOD_GAUSS, 0},
+                 {SE3D_METHOD_BDF, 1},    {SE3D_METHOD_RADAU, 1}, {SE3D_METHOD_HHT, 1},
+                 {SE3D_METHOD_RATTLE, 1}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
         sheet s;
         open_sheet(&s, 0);
@@ -146,6 +147,7 @@ static void a_tolerance_that_is_not_reached_is_logged_once(void)
                 {SE3D_METHOD_DOP853, 1e-14, 1e-3, 2e-13 / 0.03, "dop853"},
                 {SE3D_METHOD_RK45, 1e-12, 0.0, 2e-13 / 0.03, "rk45"},
                 {SE3D_METHOD_RK4, 1e-12, 0.0, 2e-13 / 0.03, "rk4"},
+                {SE3D_METHOD_GAUSS, 1e-12, 0.0, 2e-13 / 0.03, "gauss"},
                 {SE3D_METHOD_BDF, 1e-13, 0.0, 1e-12, "bdf"},
                 {SE3D_METHOD_RADAU, 1e-14, 0.0, 1e-13, "radau"},
                 {SE3D_METHOD_GENERALIZED_ALPHA, 1e-12, 0.0, 1e-11, "generalized_alpha"},

@@ -34,21 +34,22 @@ static const se3di_key analysis_keys[] = {
     {"type", SE3DI_KIND_WORD, .name_of = name_of_type, .required = true, .text = ""},
     {"formulation", SE3DI_KIND_WORD, .name_of = se3d_formulation_get_name, .standard = "romega",
      .text = "what describes the motion: angular velocities, Euler parameters, or coordinates of "
-         "joints (dop853, rk45, rk4; elsewhere as romega)"},
+         "joints (dop853, gauss, rk45, rk4; elsewhere as romega)"},
     {"method", SE3DI_KIND_WORD, .name_of = se3d_method_get_name, .standard = "auto",
      .text = "of dynamics; convex: for many bodies that touch, at steps of 0.001 to 0.005; "
+         "gauss: smooth motions, to tight tolerances; "
          "auto: verlet with particles, radau if a damper's decay is 20000 "
          "times faster than the motion, else dop853, which it leaves for radau if stability "
          "limits its steps"},
     {"order", SE3DI_KIND_COUNT, .most = 20.0, .standard = "chosen",
-     .text = "of bdf (1 to 5) and rattle (2, 4)"},
+     .text = "of bdf (1 to 5), rattle (2, 4) and gauss (8, 16)"},
     {"step", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
      .standard = "chosen by the error; rattle and verlet choose equal steps; convex: 0.001",
      .text = "the fixed step of generalized_alpha, hht, rattle, verlet, convex, or the largest one "
          "[s]"},
     {"tolerance", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
      .text = "relative error, 1e-14 to 0.1, replaced by --tolerance; a method works at the least "
-         "tolerance that it can reach: dop853, rk45, rk4 7e-12, bdf 1e-12, radau 1e-13, "
+         "tolerance that it can reach: dop853, gauss, rk45, rk4 7e-12, bdf 1e-12, radau 1e-13, "
          "generalized_alpha, hht 1e-11, and the report says so"},
     {"duration", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
      .text = "[s], at most 1e9; required in kinematics, inverse_dynamics and dynamics"},

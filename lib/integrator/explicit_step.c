@@ -1,0 +1,638 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "integrator/explicit_step.h"
+#include "integrator/memory.h"
+
+#include "assembly/energy.h"
+#include "assembly/loads.h"
+#include "contact/bodies/pace.h"
+#include "integrator/motion.h"
+#include "math/elementary.h"
+#include "math/vec3.h"
+#include "primitive/turn_counter.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PAST (sizeof(se3di_explicit_past) / sizeof(double))
+
+#define FORCED_MAX  3
+#define LEAST_STEP  3e-14 /* of the time */
+#define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
+
+#define VECTORS (3 + SE3DI_EXPLICIT_FORMS)
+
+size_t se3di_explicit_history_count(const se3di_assembly *assembly)
+{
+    return PAST + VECTORS * se3di_state_count(assembly);
+}
+
+/* Work: that of the method, the state of a stage, what the force elements remember, and two changes
+ * of the state as the bodies see them. */
+size_t se3di_explicit_work_count(const se3di_assembly *assembly)
+{
+    const size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
+    return (SE3DI_EXPLICIT_ROWS + 5) * se3di_state_count(assembly) + memories;
+}
+
+/* Local errors add up; what the user asks for is about the error of a run of some ten motions. Not
+ * below what rounding allows. */
+static double inner_tolerance(double tolerance)
+{
+    return fmax(SE3DI_EXPLICIT_PART * tolerance, SE3DI_EXPLICIT_LEAST);
+}
+
+/* See se3di_state_begin. The tightest tolerances need accelerations with less noise near singular
+ * positions; elsewhere a wider filter costs steps and accuracy. */
+static double regularisation(double tolerance)
+{
+    return fmin(1e-9, fmax(1e-10, 1e-10 * (1e-11 / tolerance)));
+}
+
+/* The violation of constraints that does not matter: near a singular position velocities magnify it
+ * by the inverse of the distance, accelerations by its cube. */
+static double projection_accuracy(double tolerance)
+{
+    return fmin(1e-13, fmax(1e-15, 1e-6 * tolerance));
+}
+
+static se3di_explicit_past *past_of(const se3di_model *model)
+{
+    return (se3di_explicit_past *)(void *)model->history;
+}
+
+/* The parts of history and work. */
+static se3di_explicit point(const se3di_integration *integration)
+{
+    se3di_assembly *assembly = &integration->equations->assembly;
+    const se3di_motion *motion = se3di_motion_find(integration->equations);
+    const size_t count = motion->count(integration->equations);
+    const size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
+    double *history = assembly->model->history;
+    double *memory = integration->work + (SE3DI_EXPLICIT_ROWS + 3) * count;
+    return (se3di_explicit){
+        .methods = integration->method->explicit_class,
+        .tableau = integration->method->tableau,
+        .motion = motion,
+        .equations = integration->equations,
+        .assembly = assembly,
+        .count = count,
+        .past = past_of(assembly->model),
+        .y1 = history + PAST,
+        .f1 = history + PAST + count,
+        .y0 = history + PAST + 2 * count,
+        .forms = history + PAST + 3 * count,
+        .K = integration->work,
+        .y = integration->work + SE3DI_EXPLICIT_ROWS * count,
+        .sum = integration->work + (SE3DI_EXPLICIT_ROWS + 1) * count,
+        .sum3 = integration->work + (SE3DI_EXPLICIT_ROWS + 2) * count,
+        .memory = memory,
+        .bodies = {memory + memories, memory + memories + se3di_state_count(assembly)},
+        .tolerance = inner_tolerance(integration->settings.tolerance),
+    };
+}
+
+static se3di_explicit begin(se3di_integration *integration)
+{
+    se3di_explicit m = point(integration);
+    m.step.integration = integration;
+    se3di_contacts_begin(m.assembly->model, 0.0, 1.0, 0);
+    m.kkt =
+        se3di_state_begin(m.equations, regularisation(m.tolerance), fmin(1e-6, 1e-3 * m.tolerance));
+    return m;
+}
+
+/* y'_1 as the bodies see it; y_1 was set last. */
+static const double *get_rates(const se3di_explicit *m)
+{
+    return m->motion->get_rates(m->equations, m->f1, m->bodies[0]);
+}
+
+static void grow_scale(se3di_explicit *m)
+{
+    se3di_state_scale *scale = &m->past->scale;
+    se3di_state_scale_grow(m->assembly, get_rates(m), scale);
+    scale->energy = fmax(scale->energy, m->past->energy_least);
+}
+
+typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
+
+#define PAIRS 4 /* stay in registers */
+
+void se3di_explicit_combine(const se3di_explicit *m, const double *rows, const double *base,
+                            double h, const double *coefficients, int limit, double *out)
+{
+    const double *stage[SE3DI_EXPLICIT_ROWS];
+    double factor[SE3DI_EXPLICIT_ROWS];
+    int used = 0;
+    for (int k = 0; k < limit; ++k) {
+        if (coefficients[k] != 0.0) {
+            stage[used] = rows + (size_t)k * m->count;
+            factor[used++] = h * coefficients[k];
+        }
+    }
+    size_t c = 0;
+    for (; c + 2 * PAIRS <= m->count; c += 2 * PAIRS) {
+        pair sum[PAIRS] = {{0.0, 0.0}};
+        if (base) {
+            memcpy(sum, base + c, sizeof sum);
+        }
+        for (int k = 0; k < used; ++k) {
+            const pair *part = (const pair *)(const void *)(stage[k] + c);
+            const pair f = {factor[k], factor[k]};
+            sum[0] += f * part[0];
+            sum[1] += f * part[1];
+            sum[2] += f * part[2];
+            sum[3] += f * part[3];
+        }
+        memcpy(out + c, sum, sizeof sum);
+    }
+    for (; c < m->count; ++c) {
+        double sum = base ? base[c] : 0.0;
+        for (int k = 0; k < used; ++k) {
+            sum += factor[k] * stage[k][c];
+        }
+        out[c] = sum;
+    }
+}
+
+/* Derivative at the state that was set last. */
+static se3d_status evaluate(se3di_explicit *m, double t, double *derivative)
+{
+    return m->motion->evaluate(m->equations, t, derivative);
+}
+
+se3d_status se3di_explicit_evaluate(se3di_explicit *m, double t, const double *y,
+                                    double *derivative)
+{
+    m->motion->set(m->equations, y);
+    return evaluate(m, t, derivative);
+}
+
+double se3di_explicit_size(const se3di_explicit *m, const double *error)
+{
+    double r = 0.0, p = 0.0, v = 0.0, w = 0.0;
+    const double *end = m->motion->spread(m->equations, error, m->bodies[0]);
+    for (size_t k = 0; k < m->assembly->body_count; ++k, end += SE3DI_STATE_SIZE) {
+        const double *e = end;
+        double turn = e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6];
+        double parts[4] = {se3di_dot(e, e), turn, se3di_dot(e + 7, e + 7),
+                           se3di_dot(e + 10, e + 10)};
+        r = parts[0] <= r ? r : parts[0]; /* NaN stays */
+        p = parts[1] <= p ? p : parts[1];
+        v = parts[2] <= v ? v : parts[2];
+        w = parts[3] <= w ? w : parts[3];
+    }
+    r = sqrt(r) / m->past->scale.length + 2.0 * sqrt(p);
+    v = sqrt(v) / m->past->scale.speed + sqrt(w) / m->past->scale.spin;
+    double e = se3di_norm(end) / m->past->scale.energy;
+    return r + v + WORK_WEIGHT * e;
+}
+
+double se3di_explicit_measure(const se3di_explicit *m, const double *error)
+{
+    return se3di_explicit_size(m, error) / m->tolerance;
+}
+
+double *se3di_explicit_end(const se3di_explicit *m)
+{
+    return m->K + (size_t)m->methods->get_end(m) * m->count;
+}
+
+/* The factorisation of the last evaluation, which was here or near, serves. */
+static se3d_status project(se3di_explicit *m, double t)
+{
+    return m->motion->project(m->equations, t, &m->past->scale, projection_accuracy(m->tolerance),
+                              1);
+}
+
+static int is_too_large(const se3di_explicit *m, double error)
+{
+    return !(error <= 1.0) && isfinite(m->tolerance);
+}
+
+/* The frames at the end, before the projection. */
+static void arrive(se3di_explicit *m, double h)
+{
+    m->methods->arrive(m, h);
+    m->motion->set(m->equations, m->y);
+}
+
+/* Stages, error, projection. The derivative at the end is that before the projection, which moves
+ * the state by its error: the order is the same. *error is infinite if the step cannot be made
+ * at all. */
+static se3d_status attempt(se3di_explicit *m, double h, double *error)
+{
+    const double t = m->past->at.time + h;
+    double of_stages = 0.0;
+    *error = HUGE_VAL;
+    m->step.fraction = 0.0;
+    SE3DI_TRY(m->methods->make_stages(m, h, &of_stages));
+    *error = of_stages;
+    if (is_too_large(m, *error)) {
+        return SE3D_OK;
+    }
+    arrive(m, h);
+    SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
+    *error = m->methods->estimate_end(m, h, of_stages);
+    if (is_too_large(m, *error)) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(project(m, t));
+    /* near a singular position (more rows are dependent than have been all along) accelerations at
+     * a state that violates the constraints are others */
+    const double dependent = m->motion->count_dependent(m->equations);
+    return dependent > m->past->redundant ? evaluate(m, t, se3di_explicit_end(m)) : SE3D_OK;
+}
+
+/* The frames hold the projected y_1, at t. */
+static void accept(se3di_explicit *m, double t)
+{
+    if (m->methods->accept) {
+        m->methods->accept(m, t - m->past->at.time);
+    }
+    m->past->at.begin = m->past->at.time;
+    m->past->at.time = t;
+    m->past->dense = m->past->at.renewed = 0.0;
+    const size_t work = m->count - SE3DI_STATE_WORK;
+    m->motion->keep(m->equations, m->y1);
+    memcpy(m->y1 + work, m->y + work, SE3DI_STATE_WORK * sizeof *m->y);
+    memcpy(m->f1, m->next, m->count * sizeof *m->f1);
+    grow_scale(m);
+    double dependent = m->motion->count_dependent(m->equations);
+    m->past->redundant = fmin(m->past->redundant, dependent);
+    se3di_angles_accept(m->assembly->model);
+    se3di_contacts_accept(m->assembly->model); /* force elements: settle_memory */
+    ++m->equations->counters.steps;
+}
+
+/* Elements with a memory (stick or slip, stops) change it between steps: *error is raised to what
+ * that says of the step, and the memory stays as it was if that is too much. The derivative after
+ * the change is the next step's; the interpolation of this one ends with that before. */
+static se3d_status settle_memory(se3di_explicit *m, double h, double *error)
+{
+    se3di_model *model = m->assembly->model;
+    const double t = m->past->at.time + h;
+    m->step.fraction = 0.0;
+    m->next = se3di_explicit_end(m);
+    if (!se3di_forces_have_memory(model)) {
+        return SE3D_OK;
+    }
+    se3di_memory_end end;
+    const se3di_memory_step step = {
+        t, h, m->tolerance, model->lambda, &m->past->scale, m->memory, m->bodies[0]};
+    SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
+    *error = fmax(*error, end.error);
+    m->step.fraction = end.fraction;
+    if (!(*error <= 1.0)) {
+        se3di_model_restore_memory(model, m->memory);
+        return SE3D_OK;
+    }
+    m->next = end.has_changed ? m->sum : m->next;
+    return end.has_changed ? m->motion->derive(m->equations, t, m->equations->l, m->next) : SE3D_OK;
+}
+
+/* All that may fail before the state is accepted; *error as from settle_memory. */
+static se3d_status prepare(se3di_explicit *m, double h, double *error)
+{
+    se3di_model *model = m->assembly->model;
+    SE3DI_TRY(settle_memory(m, h, error));
+    if (!(*error <= 1.0)) {
+        return SE3D_OK;
+    }
+    se3d_status status = se3di_state_prepare(m->equations, m->past->at.time + h);
+    if (status < 0 && se3di_forces_have_memory(model)) {
+        se3di_model_restore_memory(model, m->memory);
+    }
+    return status;
+}
+
+static se3d_status fail_small(se3di_explicit *m, double h)
+{
+    double t = m->past->at.time;
+    const se3d_status status =
+        se3di_error_set(m->equations->error, SE3D_ERR_STEP_SIZE,
+                        "t = %g s: the step fell to %.3g s: the tolerance %g cannot be met here; "
+                        "the motion is not smooth, or stiff (try generalized_alpha or radau)",
+                        t, h, m->tolerance);
+    m->motion->set(m->equations, m->y1);
+    se3di_contacts_blame(m->assembly->model, m->equations->error);
+    return status;
+}
+
+/* If the accelerations jump, as under a driver or a load that is switched, no step is short
+ * enough for a tight tolerance. One of the least length crosses the jump; what it makes of error is
+ * the jump times h. If no ordinary step follows, it was no jump. */
+static se3d_status cross_jump(se3di_explicit *m, double h, double error)
+{
+    const double t = m->past->at.time + h, tolerance = m->tolerance;
+    if (!(error * tolerance < 1e-3) || m->past->forced >= FORCED_MAX) {
+        return fail_small(m, h);
+    }
+    m->tolerance = HUGE_VAL; /* no error control */
+    se3d_status status = attempt(m, h, &error);
+    status = status < 0 ? status : prepare(m, h, &error);
+    m->tolerance = tolerance;
+    SE3DI_TRY(status);
+    if (!(error <= 1.0)) { /* nor is what it leads to a number */
+        return fail_small(m, h);
+    }
+    accept(m, t);
+    m->past->forced += 1.0;
+    m->past->at.next = se3di_adaptive_limit(m->step.integration, 1e6 * h);
+    m->past->at.error = 1e-2;
+    return SE3D_OK;
+}
+
+/* Bound on how fast a relative angular velocity grows at the forward state. */
+static double largest_growth(const se3di_explicit *m)
+{
+    const se3di_assembly *assembly = m->assembly;
+    double largest = 0.0;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const size_t body = assembly->free_body[k];
+        largest = fmax(largest, se3di_norm(assembly->model->acceleration + 6 * body + 3));
+    }
+    return 2.0 * largest;
+}
+
+int se3di_explicit_is_held(const se3di_integration *integration)
+{
+    return past_of(integration->equations->assembly.model)->held >= SE3DI_HELD_MIN;
+}
+
+void se3di_explicit_count_sign(se3di_explicit *m, int is_held)
+{
+    double *held = &m->past->held, *free = &m->past->free;
+    if (is_held) {
+        *held += 1.0;
+        *free = 0.0;
+    } else if (*held > 0.0) {
+        *free += 1.0;
+        *held = *free < SE3DI_FREE_MIN ? *held : 0.0;
+        *free = *free < SE3DI_FREE_MIN ? *free : 0.0;
+    }
+}
+
+/* The run is to end at the forward state. */
+static int must_leave(const se3di_explicit *m)
+{
+    return m->step.integration->settings.leaves_stiff && m->past->held >= SE3DI_HELD_MIN;
+}
+
+/* ---- in the loop of all methods ---- */
+
+static se3di_explicit *get_explicit(se3di_adaptive *step)
+{
+    return (se3di_explicit *)(void *)step;
+}
+
+static double pace(se3di_adaptive *step, double h)
+{
+    const se3di_explicit *m = get_explicit(step);
+    h = se3di_state_limit_turn(m->assembly->model, largest_growth(m), h);
+    return se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
+}
+
+static se3d_status try_step(se3di_adaptive *step, double h, double *error)
+{
+    SE3DI_TRY(attempt(get_explicit(step), h, error));
+    return *error <= 1.0 ? prepare(get_explicit(step), h, error) : SE3D_OK;
+}
+
+/* The step h has met the tolerance: what follows for the next ones. */
+static se3d_status take(se3di_adaptive *step, double h, double error)
+{
+    se3di_explicit *m = get_explicit(step);
+    const double least = LEAST_STEP * fmax(1e-3, fabs(step->t));
+    accept(m, step->t);
+    if (step->integration->settings.leaves_stiff || m->methods->is_watched) {
+        m->methods->watch_stability(m, h);
+    }
+    step->at->next = m->methods->next_step(m, h, error);
+    step->at->error = error;
+    m->past->forced = h > 1e3 * least ? 0.0 : m->past->forced;
+    return SE3D_OK;
+}
+
+static double shrink(se3di_adaptive *step, double h, se3d_status status, double error)
+{
+    (void)h;
+    return get_explicit(step)->methods->shrink(get_explicit(step), status, error);
+}
+
+static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status, double error)
+{
+    return status < 0 ? status : cross_jump(get_explicit(step), h, error);
+}
+
+/* One accepted step with error control. What contacts remember belongs to the end of a step, and
+ * cannot be interpolated: if shapes are near each other steps end at t_end. So does the first
+ * one after a change of what acts, which may soon change again. */
+static se3d_status advance(se3di_explicit *m, double t_end)
+{
+    static const se3di_adaptive_class methods = {pace,   try_step,  take,
+                                                 shrink, surrender, LEAST_STEP};
+    se3di_model *model = m->assembly->model;
+    m->step.methods = &methods;
+    m->step.at = &m->past->at;
+    m->step.ends = se3di_adaptive_ends(m->step.integration, &m->past->at);
+    se3di_forces_show(model, 0);
+    m->motion->set(m->equations, m->y1);
+    se3di_state_set_rates(m->assembly, get_rates(m));
+    se3di_angles_accept(model); /* turns count from step to step, not from an output */
+    return se3di_adaptive_advance(&m->step, t_end);
+}
+
+/* The forward state is the model's own. */
+static se3d_status adopt(se3di_explicit *m)
+{
+    se3di_assembly *assembly = m->assembly;
+    se3di_forces_stay(assembly->model);
+    m->past->at.time = m->past->at.begin = assembly->model->time;
+    m->past->dense = 0.0;
+    m->motion->get(m->equations, m->y1);
+    se3di_assembly_get_acceleration(assembly, m->equations->x);
+    SE3DI_TRY(
+        m->motion->derive(m->equations, assembly->model->time, assembly->model->lambda, m->f1));
+    grow_scale(m);
+    return SE3D_OK;
+}
+
+/* The model's state is y, at t. */
+static se3d_status show(se3di_explicit *m, const double *y, double t, int project)
+{
+    m->motion->set(m->equations, y);
+    if (project) {
+        SE3DI_TRY(m->motion->project(m->equations, t, &m->past->scale, 1e-15, 0));
+    }
+    SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
+    se3di_contacts_renew_forces(m->assembly->model);
+    return se3di_state_conclude(m->equations, y + m->count - SE3DI_STATE_WORK, t);
+}
+
+/* The model's state is that at an end of the last step. */
+static se3d_status publish(se3di_explicit *m, int at_end)
+{
+    const double t = at_end ? m->past->at.time : m->past->at.begin;
+    se3di_forces_show(m->assembly->model, !at_end);
+    return show(m, at_end ? m->y1 : m->y0, t, 0);
+}
+
+/* Hairer, Norsett, Wanner 1993, sec. II.4: from the derivative and its change over a small step. */
+static double choose_first(se3di_explicit *m)
+{
+    double d1 = se3di_explicit_measure(m, m->f1);
+    double limit = m->step.integration->settings.step;
+    double h0 = 0.01 / (fmax(d1 * m->tolerance, 1e-5));
+    h0 = limit > 0.0 ? fmin(h0, limit) : h0;
+    se3di_error ignored = {0};
+    se3di_error *error = m->equations->error;
+    m->equations->error = &ignored;
+    for (size_t k = 0; k < m->count; ++k) {
+        m->y[k] = m->y1[k] + h0 * m->f1[k];
+    }
+    m->motion->set(m->equations, m->y);
+    double d2 = 0.0;
+    if (evaluate(m, m->past->at.time + h0, m->K) >= 0) {
+        for (size_t k = 0; k < m->count; ++k) {
+            m->K[k] -= m->f1[k];
+        }
+        d2 = se3di_explicit_measure(m, m->K) / h0;
+    }
+    m->motion->set(m->equations, m->y1);
+    m->equations->error = error;
+    double d = fmax(d1 * m->tolerance, 1e-3 / h0);
+    double h1 = se3di_pow(0.01 / (fmax(d, sqrt(fmax(d2, 0.0) * m->tolerance)) / m->tolerance),
+                          1.0 / m->methods->get_order(m));
+    double h = isfinite(h1) && h1 > 0.0 ? fmin(100.0 * h0, h1) : h0;
+    return limit > 0.0 ? fmin(h, limit) : h;
+}
+
+se3d_status se3di_explicit_start(se3di_integration *integration, double h)
+{
+    (void)h; /* the first step is chosen */
+    se3di_explicit m = begin(integration);
+    memset(m.past, 0, sizeof *m.past);
+    memset(m.y0, 0, (SE3DI_EXPLICIT_FORMS + 1) * m.count * sizeof *m.y0);
+    m.past->scale.length = se3di_state_length(m.assembly->model);
+    m.past->at.error = 1e-2;
+    m.past->redundant = (double)m.assembly->row_count;
+    double potential, springs;
+    const se3di_model *model = m.assembly->model;
+    se3d_status status = se3di_loads_potential(model, model->time, &potential, &springs);
+    if (status >= 0) {
+        m.past->energy_least = 1e-3 * fabs(potential);
+        status = adopt(&m);
+    }
+    if (status >= 0) {
+        m.past->at.next = choose_first(&m);
+    }
+    se3di_state_end(m.equations, &m.kkt);
+    return status;
+}
+
+se3d_status se3di_explicit_renew(se3di_integration *integration)
+{
+    se3di_explicit m = begin(integration);
+    const se3d_status status = adopt(&m);
+    m.past->at.renewed = 1.0;
+    se3di_state_end(m.equations, &m.kkt);
+    return status;
+}
+
+/* The accelerations that are reported can be those that the next step begins with: nothing changes
+ * at the end of a step, and nothing there is nearly singular, where those of the method are
+ * smoother.
+ */
+static int reports_end(const se3di_explicit *m)
+{
+    const se3di_model *model = m->assembly->model;
+    return !se3di_forces_have_memory(model) && model->shape_slots.count <= 1 &&
+           m->motion->count_dependent(m->equations) == 0;
+}
+
+/* One step of h without error control; *reported: the accelerations at its end are the model's. */
+static se3d_status step_once(se3di_explicit *m, double h, int *reported)
+{
+    const double t = m->past->at.time + h;
+    double error = 0.0; /* none is asked for: what settle_memory adds decides */
+    SE3DI_TRY(m->methods->make_stages(m, h, &error));
+    error = 0.0;
+    *reported = reports_end(m);
+    arrive(m, h);
+    if (*reported) {
+        SE3DI_TRY(project(m, t));
+        se3di_state_end(m->equations, &m->kkt);
+        SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
+        SE3DI_TRY(
+            m->motion->derive(m->equations, t, m->assembly->model->lambda, se3di_explicit_end(m)));
+    } else {
+        SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
+        SE3DI_TRY(project(m, t));
+    }
+    SE3DI_TRY(prepare(m, h, &error));
+    accept(m, t);
+    return SE3D_OK;
+}
+
+se3d_status se3di_explicit_step(se3di_integration *integration, double h)
+{
+    se3di_explicit m = begin(integration);
+    int reported = 0;
+    se3d_status status = SE3D_OK;
+    if (m.past->at.time != m.assembly->model->time) {
+        status = adopt(&m);
+    }
+    se3di_forces_show(m.assembly->model, 0);
+    m.tolerance = HUGE_VAL; /* no error control */
+    status = status < 0 ? status : step_once(&m, h, &reported);
+    se3di_state_end(m.equations, &m.kkt);
+    if (status >= 0 && reported) {
+        return se3di_state_conclude(m.equations, m.y1 + m.count - SE3DI_STATE_WORK,
+                                    m.past->at.time);
+    }
+    return status < 0 ? status : publish(&m, 1);
+}
+
+/* Forward steps until t_end is reached, and the interpolation where it is passed. */
+static se3d_status advance_to(se3di_explicit *m, double t_end)
+{
+    while (m->past->at.time < t_end && !must_leave(m) && !m->step.integration->at_kink) {
+        SE3DI_TRY(advance(m, t_end));
+    }
+    return m->past->at.time > t_end && m->past->dense == 0.0 ? m->methods->build_dense(m) : SE3D_OK;
+}
+
+se3d_status se3di_explicit_advance(se3di_integration *integration, double t_end)
+{
+    se3di_explicit m = begin(integration);
+    se3d_status status = advance(&m, t_end);
+    status = status < 0 || integration->at_kink ? status : m.methods->build_dense(&m);
+    se3di_state_end(m.equations, &m.kkt);
+    return status;
+}
+
+void se3di_explicit_interpolate(const se3di_integration *integration, double t, double *y)
+{
+    const se3di_explicit m = point(integration);
+    const int is_within = t < m.past->at.time;
+    if (is_within) {
+        m.methods->interpolate(&m, t, m.y);
+    }
+    m.motion->show(m.equations, is_within ? m.y : m.y1, y);
+}
+
+se3d_status se3di_explicit_run(se3di_integration *integration, double t_end)
+{
+    se3di_explicit m = begin(integration);
+    const int at_begin = !(t_end > m.past->at.begin);
+    se3d_status status = at_begin ? SE3D_OK : advance_to(&m, t_end);
+    se3di_state_end(m.equations, &m.kkt);
+    SE3DI_TRY(status);
+    if (at_begin || m.past->at.time <= t_end) { /* earlier if it leaves a stiff motion */
+        return publish(&m, m.past->at.time <= t_end);
+    }
+    m.methods->interpolate(&m, t_end, m.y);
+    se3di_forces_show(m.assembly->model, 1);
+    return show(&m, m.y, t_end, 1);
+}

@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* gauss: collocation at the zeros of Legendre's polynomials, with 4 stages (order 8) or 8 (order
+ * 16). The stages are found by fixed-point iterations that begin with the continuation of the last
+ * step's polynomial:
+ *
+ *     Y_i = y + h sum_j a_ij K_j,   K_i = y'(t + c_i h, Y_i),   y_1 = y + h sum_i b_i K_i
+ *
+ * Positions follow from the velocities of the same iteration, so that an iteration gains as much as
+ * one of the equations of second order. Symmetric, and symplectic where the iterations are
+ * converged. The derivatives at both ends say what the polynomial lacks: its error, the step, and
+ * an interpolation of two orders more. docs/theory/gauss.md */
+#include "integrator/explicit_step.h"
+#include "integrator/gauss_rule.h"
+#include "math/elementary.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MANY_FROM       1e-6 /* 8 stages for tolerances below */
+#define CONTRACTION_AIM 0.3  /* of the iterations: fewer, longer steps cost more iterations */
+#define CONTRACTION_MAX 0.7  /* above, the step is given up */
+#define ITERATIONS_MAX  12
+#define EXACT_MAX       100   /* iterations to rounding, for a step that is not controlled */
+#define ROUNDING        1e-14 /* a relative change that is only noise */
+#define LEFT            0.1   /* of the local tolerance may be left of the iterations */
+#define GUESS           0.5   /* contraction of a step that nothing is known of */
+#define SAFETY          0.8
+#define GROWTH          2.0
+#define EASY            0.01 /* an error that would allow far longer steps */
+#define SLOW_MAX        0.05 /* step times the rate of the motion, if stiffness holds it */
+#define STATES          (SE3DI_GAUSS_MAX + 1) /* first vector of work for the states of stages */
+
+static double *stage_rate(const se3di_explicit *m, int i)
+{
+    return m->K + (size_t)i * m->count;
+}
+
+static double *stage_state(const se3di_explicit *m, int i)
+{
+    return m->K + (size_t)(STATES + i) * m->count;
+}
+
+/* The stages of the next step; the history decides, so that clones go on alike. */
+static int choose_stages(const se3di_explicit *m)
+{
+    const se3di_integrator_settings *settings = &m->step.integration->settings;
+    if (settings->order > 0) {
+        return settings->order / 2;
+    }
+    return settings->tolerance < MANY_FROM && m->past->lost == 0.0 ? 8 : 4;
+}
+
+/* The motion goes on as in the last step: nothing that acts has jumped. */
+static int is_continued(const se3di_explicit *m)
+{
+    const double *end = m->forms + (SE3DI_GAUSS_MAX + 1) * m->count;
+    return m->past->stages > 0.0 && m->past->at.time > m->past->at.begin &&
+           memcmp(end, m->f1, m->count * sizeof *end) == 0;
+}
+
+/* The derivatives of the stages as the last step's polynomial goes on, or all as at its start. */
+static void predict(se3di_explicit *m, const se3di_gauss_rule *rule, double h)
+{
+    const double before = m->past->at.time - m->past->at.begin;
+    const se3di_gauss_rule *last = se3di_gauss_find((int)m->past->stages);
+    for (int i = 0; i < rule->stages; ++i) {
+        double weights[SE3DI_GAUSS_NODES];
+        if (is_continued(m)) {
+            se3di_gauss_value(last, 1.0 + rule->c[i] * h / before, weights);
+            se3di_explicit_combine(m, m->forms, NULL, 1.0, weights, SE3DI_GAUSS_NODES,
+                                   stage_rate(m, i));
+        } else {
+            memcpy(stage_rate(m, i), m->f1, m->count * sizeof *m->f1);
+        }
+    }
+}
+
+static void place_stages(se3di_explicit *m, const se3di_gauss_rule *rule, double h)
+{
+    for (int i = 0; i < rule->stages; ++i) {
+        se3di_explicit_combine(m, m->K, m->y1, h, rule->A + i * rule->stages, rule->stages,
+                               stage_state(m, i));
+    }
+}
+
+/* States of the stages from the derivatives: positions from velocities that are new already. */
+static void renew_stages(se3di_explicit *m, const se3di_gauss_rule *rule, double h)
+{
+    place_stages(m, rule, h);
+    for (int i = 0; i < rule->stages; ++i) {
+        m->motion->move(m->equations, stage_state(m, i), stage_rate(m, i));
+    }
+}
+
+/* All derivatives at the present states; *change, relative to the scales, of a step by them. */
+static se3d_status sweep(se3di_explicit *m, const se3di_gauss_rule *rule, double h, double *change)
+{
+    double sum = 0.0;
+    for (int i = 0; i < rule->stages; ++i) {
+        double *rate = stage_rate(m, i);
+        memcpy(m->sum, rate, m->count * sizeof *rate);
+        SE3DI_TRY(
+            se3di_explicit_evaluate(m, m->past->at.time + rule->c[i] * h, stage_state(m, i), rate));
+        for (size_t k = 0; k < m->count; ++k) {
+            m->sum[k] = h * (rate[k] - m->sum[k]);
+        }
+        const double size = se3di_explicit_size(m, m->sum);
+        sum += rule->b[i] * size * size;
+    }
+    *change = sqrt(sum);
+    return SE3D_OK;
+}
+
+/* What an iteration says: 1 converged, -1 it will not, 0 go on. `rate`: of its change to that of
+ * the one before. */
+static int judge(const se3di_explicit *m, int iteration, double change, double rate)
+{
+    const int is_controlled = isfinite(m->tolerance);
+    if (!isfinite(change)) {
+        return -1;
+    }
+    if (!is_controlled) {
+        const int has_settled =
+            iteration > 0 && (change == 0.0 || (change < ROUNDING && rate > 0.5));
+        return has_settled ? 1 : iteration + 1 < EXACT_MAX ? 0 : -1;
+    }
+    const double left = rate < 0.9 ? change * rate / (1.0 - rate) : HUGE_VAL;
+    if (left <= LEFT * m->tolerance || change <= ROUNDING) {
+        return 1;
+    }
+    return (iteration > 0 && rate > CONTRACTION_MAX) || iteration + 1 >= ITERATIONS_MAX ? -1 : 0;
+}
+
+/* *judgement as above. */
+static se3d_status iterate(se3di_explicit *m, const se3di_gauss_rule *rule, double h,
+                           int *judgement)
+{
+    double change, before = 0.0, rate = GUESS;
+    if (is_continued(m) && m->past->contraction > 0.0) {
+        const double part = h / (m->past->at.time - m->past->at.begin);
+        rate = fmin(GUESS, m->past->contraction * part * part);
+    }
+    m->contraction = 0.0;
+    *judgement = 0;
+    for (int k = 0; *judgement == 0; ++k) {
+        renew_stages(m, rule, h);
+        place_stages(m, rule, h);
+        SE3DI_TRY(sweep(m, rule, h, &change));
+        if (k > 0) {
+            rate = change / before;
+            m->contraction = before > ROUNDING ? fmax(m->contraction, rate) : m->contraction;
+        }
+        before = change;
+        *judgement = judge(m, k, change, rate);
+    }
+    renew_stages(m, rule, h);
+    return SE3D_OK;
+}
+
+static se3d_status make_stages(se3di_explicit *m, double h, double *error)
+{
+    int judgement;
+    m->stages = choose_stages(m);
+    const se3di_gauss_rule *rule = se3di_gauss_find(m->stages);
+    se3di_state_begin_step(m->equations, m->past->redundant);
+    predict(m, rule, h);
+    SE3DI_TRY(iterate(m, rule, h, &judgement));
+    if (judgement < 0 && !isfinite(m->tolerance)) {
+        return se3di_error_set(m->equations->error, SE3D_ERR_NO_CONVERGENCE,
+                               "t = %g s: the stages of a step of %g s do not converge; take a "
+                               "shorter one, or radau if the motion is stiff",
+                               m->past->at.time, h);
+    }
+    *error = judgement < 0 ? HUGE_VAL : 0.0;
+    return SE3D_OK;
+}
+
+static void arrive(se3di_explicit *m, double h)
+{
+    const se3di_gauss_rule *rule = se3di_gauss_find(m->stages);
+    se3di_explicit_combine(m, m->K, m->y1, h, rule->b, rule->stages, m->y);
+}
+
+/* The size of what `weights` say of the derivatives of this step, times h. */
+static double weigh(se3di_explicit *m, double h, const double *weights)
+{
+    se3di_explicit_combine(m, m->K, NULL, h, weights, SE3DI_GAUSS_MAX, m->sum);
+    const double *end = se3di_explicit_end(m);
+    for (size_t k = 0; k < m->count; ++k) {
+        m->sum[k] +=
+            h * (weights[SE3DI_GAUSS_MAX] * m->f1[k] + weights[SE3DI_GAUSS_MAX + 1] * end[k]);
+    }
+    return se3di_explicit_size(m, m->sum);
+}
+
+/* The defects at both ends, integrated, are the error of u within the step, of local order s + 1;
+ * that of the interpolation through both ends is less by a factor that their size tells. */
+static double estimate_end(se3di_explicit *m, double h, double error)
+{
+    (void)error;
+    const se3di_gauss_rule *rule = se3di_gauss_find(m->stages);
+    double begin[SE3DI_GAUSS_NODES], end[SE3DI_GAUSS_NODES], mean[SE3DI_GAUSS_NODES] = {0.0};
+    se3di_gauss_defects(rule, begin, end);
+    memcpy(mean, rule->b, (size_t)rule->stages * sizeof *mean);
+    const double defect = fmax(weigh(m, h, begin), weigh(m, h, end));
+    const double whole = weigh(m, h, mean);
+    if (!(defect > 0.0)) {
+        return defect == 0.0 ? 0.0 : HUGE_VAL;
+    }
+    const double part = fmin(1.0, defect / whole);
+    return rule->largest * defect * se3di_pow(part, 1.0 / (rule->stages + 1)) / m->tolerance;
+}
+
+/* What the next step is predicted and this one interpolated from. */
+static void accept(se3di_explicit *m, double h)
+{
+    (void)h;
+    memcpy(m->y0, m->y1, m->count * sizeof *m->y0);
+    memcpy(m->forms, m->K, (size_t)m->stages * m->count * sizeof *m->K);
+    memcpy(m->forms + SE3DI_GAUSS_MAX * m->count, m->f1, m->count * sizeof *m->f1);
+    memcpy(m->forms + (SE3DI_GAUSS_MAX + 1) * m->count, se3di_explicit_end(m),
+           m->count * sizeof *m->f1);
+    m->past->stages = m->stages;
+    m->past->contraction = m->contraction;
+    m->past->lost = m->motion->count_dependent(m->equations) > m->past->redundant;
+}
+
+static int get_order(const se3di_explicit *m)
+{
+    return choose_stages(m) + 2;
+}
+
+static int get_end(const se3di_explicit *m)
+{
+    (void)m;
+    return SE3DI_GAUSS_MAX;
+}
+
+/* The factor for a step whose iterations contract by `rate` to one by CONTRACTION_AIM. */
+static double contract(double rate)
+{
+    return rate > 0.0 ? sqrt(CONTRACTION_AIM / rate) : HUGE_VAL;
+}
+
+static double next_step(const se3di_explicit *m, double h, double error)
+{
+    const double exponent = 1.0 / (m->stages + 2);
+    const double factor = SAFETY * se3di_pow(fmax(error, 1e-10), -exponent);
+    const double largest = m->past->at.rejected != 0.0 ? 1.0 : GROWTH;
+    h *= fmin(fmin(largest, fmax(0.2, factor)), fmax(0.3, contract(m->contraction)));
+    return se3di_adaptive_limit(m->step.integration, h);
+}
+
+static double shrink(const se3di_explicit *m, se3d_status status, double error)
+{
+    if (status < 0) {
+        return 0.25;
+    }
+    const double factor = isfinite(error) && error > 0.0
+                              ? SAFETY * se3di_pow(error, -1.0 / (m->stages + 2))
+                              : fmin(0.6, contract(m->contraction));
+    return fmax(0.2, fmin(0.8, factor));
+}
+
+/* Contraction limits the steps to far below what errors allow, and what the motion asks for. */
+static void watch_stability(se3di_explicit *m, double h)
+{
+    const double rate = fmax(m->past->scale.speed / m->past->scale.length, m->past->scale.spin);
+    se3di_explicit_count_sign(m, m->contraction > 0.5 * CONTRACTION_AIM && h * rate < SLOW_MAX &&
+                                     m->past->at.error < EASY);
+}
+
+static se3d_status build_dense(se3di_explicit *m)
+{
+    m->past->dense = 1.0;
+    return SE3D_OK;
+}
+
+/* At the end it is y_1 after the projection. */
+static void interpolate(const se3di_explicit *m, double t, double *y)
+{
+    const se3di_gauss_rule *rule = se3di_gauss_find((int)m->past->stages);
+    const double h = m->past->at.time - m->past->at.begin, x = (t - m->past->at.begin) / h;
+    const double ramp = x * x * (3.0 - 2.0 * x);
+    double weights[SE3DI_GAUSS_NODES];
+    se3di_gauss_integral(rule, x, weights);
+    for (int i = 0; i < rule->stages; ++i) {
+        weights[i] -= ramp * rule->b[i];
+    }
+    for (size_t k = 0; k < m->count; ++k) {
+        m->sum[k] = m->y0[k] + ramp * (m->y1[k] - m->y0[k]);
+    }
+    se3di_explicit_combine(m, m->forms, m->sum, h, weights, SE3DI_GAUSS_NODES, y);
+}
+
+static const se3di_explicit_class gauss_class = {
+    .make_stages = make_stages,
+    .arrive = arrive,
+    .estimate_end = estimate_end,
+    .accept = accept,
+    .next_step = next_step,
+    .shrink = shrink,
+    .watch_stability = watch_stability,
+    .build_dense = build_dense,
+    .interpolate = interpolate,
+    .get_order = get_order,
+    .get_end = get_end,
+    .is_watched = 1,
+};
+
+const se3di_integrator se3di_integrator_gauss = {
+    .name = "gauss",
+    .tag = SE3D_METHOD_GAUSS,
+    SE3DI_EXPLICIT_METHOD,
+    .explicit_class = &gauss_class,
+    .is_held = se3di_explicit_is_held,
+    .orders = 1u << 8 | 1u << 16,
+};

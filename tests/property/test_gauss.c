@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* gauss: what its theory page says of it. The error follows the tolerance on mechanisms of all
+ * kinds, also between the ends of steps, with few rejected steps; it steps back to where it came
+ * from; the energy does not drift; a stiff motion is reported. */
+#include "check.h"
+#include "support/models.h"
+#include "support/text_model.h"
+#include "support/world.h"
+
+#include <math.h>
+#include <string.h>
+
+#define OUTPUTS 23
+#define BODIES  8
+
+typedef struct track {
+    double r[OUTPUTS][BODIES][3];
+    se3d_solver_stats stats;
+} track;
+
+static const struct {
+    const char *name;
+    int count;
+    double duration;
+} mechanisms[] = {{"pendulum", 1, 2.0},     {"double_pendulum", 1, 1.0},
+                  {"heavy_top", 1, 0.3},    {"four_bar", 1, 0.6},
+                  {"slider_crank", 1, 0.6}, {"chain_revolute", 5, 0.7},
+                  {"chain_ball", 4, 0.7},   {"driven_double_pendulum", 1, 1.0}};
+#define MECHANISMS ((int)(sizeof mechanisms / sizeof mechanisms[0]))
+
+static se3d_solver *make_solver(const support_model *model, int32_t method, int32_t formulation,
+                                double tolerance)
+{
+    se3d_solver *solver = NULL;
+    se3d_solver_def def = se3d_solver_def_default();
+    def.method = method;
+    def.formulation = formulation;
+    def.tolerance = tolerance;
+    CHECK(se3d_solver_create(model->system, &def, &solver) == SE3D_OK);
+    return solver;
+}
+
+static void run(int mechanism, int32_t method, int32_t formulation, double tolerance, track *out)
+{
+    support_model model;
+    support_model_make(&model, mechanisms[mechanism].name, mechanisms[mechanism].count);
+    se3d_solver *solver = make_solver(&model, method, formulation, tolerance);
+    CHECK(model.body_count <= BODIES);
+    memset(out, 0, sizeof *out);
+    for (int k = 0; k < OUTPUTS; ++k) {
+        CHECK(se3d_solver_run(solver, mechanisms[mechanism].duration * (k + 1) / OUTPUTS) >= 0);
+        for (int b = 0; b < model.body_count; ++b) {
+            CHECK(!se3d_body_get_position(model.system, model.bodies[b], out->r[k][b]));
+        }
+    }
+    CHECK(!se3d_solver_get_stats(solver, &out->stats));
+    se3d_solver_destroy(solver);
+    support_model_destroy(&model);
+}
+
+/* The largest difference of positions, relative to the largest position. */
+static double compare(const track *a, const track *b)
+{
+    const double *x = &a->r[0][0][0], *y = &b->r[0][0][0];
+    double worst = 0.0, size = 0.0;
+    for (int k = 0; k < OUTPUTS * BODIES * 3; ++k) {
+        worst = fmax(worst, fabs(x[k] - y[k]));
+        size = fmax(size, fabs(y[k]));
+    }
+    return worst / size;
+}
+
+static void errors_follow_the_tolerance_and_few_steps_are_rejected(void)
+{
+    static track exact, out;
+    double steps = 0.0, rejected = 0.0;
+    for (int m = 0; m < MECHANISMS; ++m) {
+        for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_JOINT; f += 2) {
+            double error[2] = {1.0, 1.0};
+            run(m, SE3D_METHOD_DOP853, f, 7e-12, &exact);
+            for (int k = 3; k <= 12; ++k) {
+                const double tolerance = pow(10.0, -k);
+                run(m, SE3D_METHOD_GAUSS, f, tolerance, &out);
+                const double now = compare(&out, &exact);
+                CHECK(now < 10.0 * tolerance + 1e-12);
+                CHECK(now < error[0] || now < 1e-11); /* two decades apart */
+                error[0] = error[1];
+                error[1] = now;
+                steps += (double)out.stats.steps;
+                rejected += (double)out.stats.rejected;
+                if (getenv("SE3D_TEST_VERBOSE")) {
+                    fprintf(stderr,
+                            "%s %d 1e-%d: error %.1e, steps %d, rejected %d, %d evaluations\n",
+                            mechanisms[m].name, (int)f, k, now, (int)out.stats.steps,
+                            (int)out.stats.rejected, (int)out.stats.evaluations);
+                }
+            }
+        }
+    }
+    CHECK(rejected < 0.1 * steps);
+}
+
+static double get_energy(const support_model *model)
+{
+    se3d_energy energy;
+    CHECK(se3d_system_get_energy(model->system, &energy) == SE3D_OK);
+    return energy.kinetic + energy.potential;
+}
+
+/* Turn all velocities round. */
+static void reverse(const support_model *model)
+{
+    for (int b = 0; b < model->body_count; ++b) {
+        double v[3], w[3];
+        CHECK(!se3d_body_get_velocity(model->system, model->bodies[b], v));
+        CHECK(!se3d_body_get_angular_velocity(model->system, model->bodies[b], w));
+        for (int c = 0; c < 3; ++c) {
+            v[c] = -v[c];
+            w[c] = -w[c];
+        }
+        CHECK(!se3d_body_set_velocity(model->system, model->bodies[b], v));
+        CHECK(!se3d_body_set_angular_velocity(model->system, model->bodies[b], w));
+    }
+}
+
+/* How far ten steps forth and ten back end from the start, of what one step is in error by. */
+static double go_forth_and_back(int32_t method, int32_t formulation, double h)
+{
+    support_model model;
+    double before[3], after[3];
+    support_model_make(&model, "double_pendulum", 1);
+    se3d_solver *solver = make_solver(&model, method, formulation, 0.0);
+    CHECK(!se3d_body_get_position(model.system, model.bodies[1], before));
+    for (int k = 0; k < 20; ++k) {
+        if (k == 10) {
+            reverse(&model);
+        }
+        CHECK(se3d_solver_step(solver, h) >= 0);
+    }
+    CHECK(!se3d_body_get_position(model.system, model.bodies[1], after));
+    se3d_solver_destroy(solver);
+    support_model_destroy(&model);
+    return hypot(hypot(after[0] - before[0], after[1] - before[1]), after[2] - before[2]);
+}
+
+static void steps_back_lead_to_where_it_came_from(void)
+{
+    for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_JOINT; ++f) {
+        const double gauss = go_forth_and_back(SE3D_METHOD_GAUSS, f, 0.1);
+        const double dop853 = go_forth_and_back(SE3D_METHOD_DOP853, f, 0.1);
+        CHECK(dop853 > 1e-7);
+        CHECK(gauss < (f == SE3D_FORMULATION_JOINT ? 1e-12 : 0.1 * dop853)); /* projection */
+    }
+}
+
+/* The largest deviation of the energy in each half of many steps of a pendulum. */
+static void swing(int32_t method, int32_t formulation, double h, int steps, double worst[2])
+{
+    support_model model;
+    support_model_make(&model, "pendulum", 1);
+    se3d_solver *solver = make_solver(&model, method, formulation, 0.0);
+    CHECK(se3d_solver_step(solver, h) >= 0);
+    const double first = get_energy(&model);
+    worst[0] = worst[1] = 0.0;
+    for (int k = 0; k < steps; ++k) {
+        CHECK(se3d_solver_step(solver, h) >= 0);
+        double *half = &worst[2 * k / steps];
+        *half = fmax(*half, fabs(get_energy(&model) - first));
+    }
+    se3d_solver_destroy(solver);
+    support_model_destroy(&model);
+}
+
+static void the_energy_does_not_drift(void)
+{
+    double gauss[2], dop853[2];
+    swing(SE3D_METHOD_GAUSS, SE3D_FORMULATION_JOINT, 0.25, 4000, gauss);
+    swing(SE3D_METHOD_DOP853, SE3D_FORMULATION_JOINT, 0.25, 4000, dop853);
+    if (getenv("SE3D_TEST_VERBOSE")) {
+        fprintf(stderr, "gauss %.3e %.3e J, dop853 %.3e %.3e J\n", gauss[0], gauss[1], dop853[0],
+                dop853[1]);
+    }
+    CHECK(gauss[0] > 1e-9); /* it is not rounding that is compared */
+    CHECK(gauss[1] < 1.05 * gauss[0]);
+    CHECK(dop853[1] > 1.5 * dop853[0]);
+}
+
+static void a_step_that_does_not_converge_is_refused(void)
+{
+    text_model m = text_model_open(
+        "{se3d: 1, gravity: [0, 0, 0], bodies: [{name: a, mass: 1, inertia: [1, 1, 1]}],"
+        " forces: [{type: tsda, body_i: ground, point_i: [-1, 0, 0], body_j: a, k: 1e4, l0: 0.9}],"
+        " analysis: {type: dynamics, duration: 1}}",
+        SE3D_METHOD_GAUSS, 0, 0.0);
+    double t = -1.0;
+    CHECK(se3d_solver_step(m.solver, 0.5) == SE3D_ERR_NO_CONVERGENCE);
+    CHECK_CONTAINS(se3d_system_get_error(m.system), "a step of 0.5 s");
+    CHECK(!se3d_system_get_time(m.system, &t));
+    CHECK(t == 0.0);
+    CHECK(se3d_solver_step(m.solver, 0.002) >= 0);
+    text_model_close(&m);
+}
+
+static int warnings;
+static char last_warning[512];
+
+static void note(void *ctx, se3d_log_level level, const char *message)
+{
+    (void)ctx;
+    if (level == SE3D_LOG_WARNING) {
+        ++warnings;
+        (void)snprintf(last_warning, sizeof last_warning, "%s", message);
+    }
+}
+
+/* A body on a spring whose damper decays 1e4 times faster than it moves. */
+static void a_stiff_motion_is_told_of_once(void)
+{
+    const double J[3] = {1.0, 1.0, 1.0}, r[3] = {0.0, 0.0, 0.0};
+    se3d_system_def def = se3d_system_def_default();
+    se3d_tsda_def damper = se3d_tsda_def_default();
+    se3d_system *system;
+    se3d_force force;
+    def.log = note;
+    CHECK(!se3d_system_create(&def, &system));
+    CHECK(!se3d_system_get_ground(system, &damper.body_i));
+    damper.body_j = world_add_body(system, 1.0, J, r);
+    damper.point_i[0] = -1.0;
+    damper.k = 1e3;
+    damper.c = 1e4;
+    damper.l0 = 0.9;
+    CHECK(!se3d_force_create_tsda(system, &damper, &force));
+    se3d_solver *solver = world_solver(system, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_GAUSS,
+                                       SE3D_FORMULATION_ROMEGA, 0.0);
+    warnings = 0;
+    CHECK(!se3d_solver_run(solver, 0.5));
+    CHECK(!se3d_solver_run(solver, 1.0));
+    CHECK(warnings == 1);
+    CHECK_CONTAINS(last_warning, "stiff");
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(system);
+}
+
+int main(void)
+{
+    RUN(errors_follow_the_tolerance_and_few_steps_are_rejected);
+    RUN(steps_back_lead_to_where_it_came_from);
+    RUN(the_energy_does_not_drift);
+    RUN(a_step_that_does_not_converge_is_refused);
+    RUN(a_stiff_motion_is_told_of_once);
+    return check_finish();
+}
