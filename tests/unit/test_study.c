@@ -134,7 +134,9 @@ static void points_of_sobol_integrate_products(void)
     "    when: {time_of: low}\n"                                                                   \
     "    slow: {settling: block.velocity.z, band: 4, target: -17}\n"                               \
     "    last: {settling: block.velocity.z, band: 4}\n"                                            \
-    "    sum: top + 2*bottom + w\n"
+    "    sum: top + 2*bottom + w\n"                                                                \
+    "    high: {max: block.position.z - h + 1 m}\n"                                                \
+    "    far: {at: \"hypot(block.position.x, block.position.z)\", event: low}\n"
 
 static se3d_model *read_model(const char *text)
 {
@@ -169,9 +171,9 @@ static void measures_are_those_of_the_motion(void)
     const opened s = open_study(BLOCK "study:\n  parameters: {h: [5, 6], v: {from: 2, to: 4, "
                                       "count: 3}, m: [2 kg, 3 kg]}\n" MEASURES);
     CHECK(se3d_study_count_samples(s.study) == 12 && se3d_study_count_parameters(s.study) == 3);
-    CHECK(se3d_study_count_measures(s.study) == 14);
+    CHECK(se3d_study_count_measures(s.study) == 16);
     for (uint64_t i = 0; i < 12; ++i) {
-        double p[3], y[14];
+        double p[3], y[16];
         se3d_model_error error;
         CHECK(se3d_study_get_sample(s.study, i, p) == SE3D_OK);
         CHECK_NEAR(p[0], i < 6 ? 5.0 : 6.0, 0.0); /* the last one is the fastest */
@@ -196,6 +198,8 @@ static void measures_are_those_of_the_motion(void)
         CHECK_NEAR(y[11], (v + 13.0) / g, 1e-8);
         CHECK_NEAR(y[12], T - 4.0 / g, 1e-8);
         CHECK_NEAR(y[13], y[0] + 2.0 * y[1] + 3.0 * h, 1e-12);
+        CHECK_NEAR(y[14], y[0] - h + 1.0, 1e-12);
+        CHECK_NEAR(y[15], 3.0 * h, 1e-7);
     }
     close_study(s);
 }
@@ -205,7 +209,7 @@ static void a_measure_without_a_value_is_told(void)
 {
     const opened s = open_study(BLOCK "study:\n  parameters: {h: [500]}\n" MEASURES);
     const char *row = "";
-    double p[1], y[14];
+    double p[1], y[16];
     se3d_model_error error;
     CHECK(se3d_study_get_sample(s.study, 0, p) == SE3D_OK);
     CHECK(se3d_study_eval(s.study, p, y, &error) == SE3D_ERR_NOT_FINITE);
@@ -348,6 +352,8 @@ static const struct {
     {"study: {table: /no/such.csv, measures: {a: 1}}", "cannot be opened"},
     {"study: {parameters: {h: [1]}, measures: {a: {max: blok.position.z}}}", "blok"},
     {"study: {parameters: {h: [1]}, measures: {a: {max: block.position}}}", "not a single number"},
+    {"study: {parameters: {h: [1]}, measures: {a: {max: 2*blok.position.z}}}", "blok"},
+    {"study: {parameters: {h: [1]}, measures: {a: {max: 2*h + 1}}}", "names no channel"},
     {"study: {parameters: {h: [1]}, measures: {a: {}}}", "must have one of max"},
     {"study: {parameters: {h: [1]}, measures: {a: {max: block.position.z, min: block.position.z}}}",
      "is there already"},

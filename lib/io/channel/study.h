@@ -58,12 +58,20 @@ typedef struct se3di_study_measure {
     const char *name;
     const se3di_node *node; /* of the expression */
     se3di_reduction reduction;
-    const char *channel; /* with its component; NULL: none */
-    const char *event;   /* NULL: none */
+    size_t source;     /* index of what it is made of, SE3DI_STUDY_NO_SOURCE: of no channel */
+    const char *event; /* NULL: none */
     double time;         /* AT: since the beginning of the analysis [s] */
     double band, target; /* SETTLING, in the unit of the channel */
     bool has_target;     /* else its last value */
 } se3di_study_measure;
+
+#define SE3DI_STUDY_NO_SOURCE SIZE_MAX
+
+/* The number that a source is in one model. */
+typedef struct se3di_study_channel {
+    se3di_channel channel;
+    size_t component;
+} se3di_study_channel;
 
 typedef struct se3di_study_entry {
     int32_t method; /* se3di_study_method */
@@ -77,6 +85,8 @@ typedef struct se3di_study_entry {
     size_t variable_count;
     se3di_study_measure *measures;
     size_t measure_count;
+    const se3di_node **sources; /* channels and expressions of them, each once */
+    size_t source_count;
     se3d_model_options options; /* with which the model was read, copied */
 } se3di_study_entry;
 

@@ -33,7 +33,8 @@ typedef struct se3di_reader {
     uint64_t content;          /* hash of them */
     const se3di_named *values; /* [value_count] in place of parameters of the model */
     size_t value_count;
-    bool is_sample; /* of a study: outputs and `study` itself are passed over */
+    const struct se3di_study_entry *study; /* that the model is a sample of: outputs and `study`
+                                              itself are passed over; NULL: it is none */
 } se3di_reader;
 
 /* Report about a node: "file:line:column: path: text". Always false. */

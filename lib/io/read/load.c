@@ -180,8 +180,9 @@ static bool read_model(se3di_reader *reader, se3di_library *library, const se3di
            read_section(reader, se3di_read_drivers) && read_section(reader, se3di_read_forces) &&
            se3di_read_analyses(reader, root) && se3di_read_contact(reader, root) &&
            se3di_read_particles(reader, root) &&
-           (reader->is_sample || se3di_read_outputs(reader, root)) &&
-           se3di_read_events(reader, root) && (reader->is_sample || se3di_read_study(reader, root));
+           (reader->study || se3di_read_outputs(reader, root)) && se3di_read_events(reader, root) &&
+           (reader->study ? se3di_read_measured(reader, reader->study)
+                          : se3di_read_study(reader, root));
 }
 
 se3d_status se3di_model_fill(se3di_attempt *attempt)
@@ -197,7 +198,7 @@ se3d_status se3di_model_fill(se3di_attempt *attempt)
                            .content = model->content,
                            .values = attempt->values,
                            .value_count = attempt->value_count,
-                           .is_sample = attempt->is_sample};
+                           .study = attempt->study};
     const bool good = read_model(&reader, attempt->library, model->root);
     attempt->fault = reader.fault;
     attempt->attached = reader.attached;

@@ -18,7 +18,7 @@ typedef struct se3di_attempt {
     size_t attached;           /* bytes of other files that were read */
     const se3di_named *values; /* [value_count] in place of parameters; NULL: none */
     size_t value_count;
-    bool is_sample; /* of a study: outputs and `study` are passed over */
+    const struct se3di_study_entry *study; /* that it is a sample of; NULL: none */
 } se3di_attempt;
 
 /* load.c: an empty model with its own memory (NULL: out of memory), and a model from its root. */

@@ -18,5 +18,7 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_events(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_study(se3di_reader *reader, const se3di_node *root);
+/* What the sources of a study are in the model. */
+bool se3di_read_measured(se3di_reader *reader, const struct se3di_study_entry *study);
 
 #endif

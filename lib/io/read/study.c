@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "io/base/pool.h"
+#include "io/channel/combine.h"
 #include "io/channel/event.h"
 #include "io/channel/study.h"
 #include "io/document/document.h"
@@ -55,7 +56,7 @@ const se3di_object se3di_object_study = {
     study_keys, NULL,
     "\"oneOf\": [{\"required\": [\"parameters\"]}, {\"required\": [\"table\"]}]"};
 
-#define CHANNEL "a [channel](#output) of one number: "
+#define CHANNEL "a [channel](#output) of one number or an [expression](#expressions-of-channels): "
 static const se3di_key measure_keys[] = {
     {"max", SE3DI_KIND_TEXT, .text = CHANNEL "its largest row"},
     {"min", SE3DI_KIND_TEXT, .text = CHANNEL "its smallest row"},
@@ -103,17 +104,48 @@ static bool check_event(se3di_reader *reader, const se3di_node *node, const char
                              meant ? meant : "", meant ? "`?" : "");
 }
 
-static bool check_channel(se3di_reader *reader, const se3di_node *node, const char *name)
+/* The number that a text stands for: a channel, a component of one, or an expression of some. */
+static bool read_number_of(se3di_reader *reader, const se3di_node *node, se3di_study_channel *to)
 {
-    se3di_channel channel;
-    size_t component = 0;
+    const char *name = node->text;
     char problem[480] = "is longer than any channel's name";
-    if (strlen(name) <= 310 && se3di_channel_find_number(reader->model, name, &channel, &component,
-                                                         problem, sizeof problem)) {
+    if (se3di_text_is_combination(reader->model, name)) {
+        return se3di_combination_read(reader, node, name, &to->channel);
+    }
+    if (strlen(name) <= 310 && se3di_channel_find_number(reader->model, name, &to->channel,
+                                                         &to->component, problem, sizeof problem)) {
         return true;
     }
     return strcmp(problem, "out of memory") == 0 ? se3di_reader_fail_memory(reader)
                                                  : se3di_reader_fail(reader, node, "%s", problem);
+}
+
+bool se3di_read_measured(se3di_reader *reader, const se3di_study_entry *study)
+{
+    se3d_model *model = reader->model;
+    model->measured =
+        se3di_iopool_array(&model->pool, study->source_count, sizeof *model->measured);
+    if (!model->measured) {
+        return se3di_reader_fail_memory(reader);
+    }
+    for (size_t k = 0; k < study->source_count; ++k) {
+        if (!read_number_of(reader, study->sources[k], &model->measured[k])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* A source, once however many measures are made of it. */
+static size_t add_source(se3di_study_entry *entry, const se3di_node *node)
+{
+    size_t k = 0;
+    while (k < entry->source_count && strcmp(entry->sources[k]->text, node->text) != 0) {
+        ++k;
+    }
+    entry->sources[k] = node;
+    entry->source_count += k == entry->source_count;
+    return k;
 }
 
 /* The key that says which measure it is: exactly one. */
@@ -163,7 +195,8 @@ static bool check_belongings(se3di_reader *reader, const se3di_node *node,
            se3di_reader_fail_key(reader, node, "band", "is missing, `settling` needs it");
 }
 
-static bool read_reduction(se3di_reader *reader, const se3di_node *node, se3di_study_measure *m)
+static bool read_reduction(se3di_reader *reader, const se3di_node *node, se3di_study_entry *entry,
+                           se3di_study_measure *m)
 {
     const se3di_node *what = NULL;
     const char *text = NULL;
@@ -181,9 +214,8 @@ static bool read_reduction(se3di_reader *reader, const se3di_node *node, se3di_s
         m->event = text;
         return check_event(reader, what, text);
     }
-    m->channel = text;
-    return check_channel(reader, what, text) &&
-           (!m->event || check_event(reader, se3di_node_get(node, "event"), m->event));
+    m->source = add_source(entry, what);
+    return !m->event || check_event(reader, se3di_node_get(node, "event"), m->event);
 }
 
 /* Compile once with other numbers in the place of the measures above it. */
@@ -254,20 +286,22 @@ static bool read_measures(se3di_reader *reader, const se3di_node *map, se3di_stu
                                  (int)SE3DI_STUDY_MEASURES_MAX);
     }
     entry->measures = se3di_iopool_array(reader->pool, map->count, sizeof *entry->measures);
-    if (!entry->measures) {
+    entry->sources = se3di_iopool_array(reader->pool, map->count, sizeof *entry->sources);
+    if (!entry->measures || !entry->sources) {
         return se3di_reader_fail_memory(reader);
     }
     for (const se3di_node *node = map->first; node; node = node->next) {
         se3di_study_measure *m = &entry->measures[entry->measure_count];
         m->name = node->key;
+        m->source = SE3DI_STUDY_NO_SOURCE;
         if (!check_name(reader, node) ||
-            !(node->kind == SE3DI_NODE_MAP ? read_reduction(reader, node, m)
+            !(node->kind == SE3DI_NODE_MAP ? read_reduction(reader, node, entry, m)
                                            : read_expression(reader, node, entry, m))) {
             return false;
         }
         ++entry->measure_count;
     }
-    return true;
+    return se3di_read_measured(reader, entry);
 }
 
 /* ---- samples ---------------------------------------------------------------------------------*/

@@ -17,9 +17,7 @@
 typedef struct trial {
     se3d_study *study;
     se3d_model *model;
-    se3di_channel *channels; /* [channel_count], of this model */
-    size_t *components;      /* of the channels */
-    size_t *places;          /* of the channels in a row */
+    size_t *places; /* [source_count] in a row */
     se3d_model_error *error;
 } trial;
 
@@ -46,34 +44,28 @@ static se3d_status read_model(trial *t, const se3di_named *values, size_t count)
                              .library = like->library,
                              .values = values,
                              .value_count = count,
-                             .is_sample = true};
+                             .study = t->study->entry};
     return se3di_model_fill(&attempt);
 }
 
-/* What the names of the channels mean in this model, and what a row is made of. */
+/* What a row is made of. */
 static se3d_status find_channels(trial *t, se3di_output_entry *output)
 {
-    const se3d_study *study = t->study;
-    const size_t count = study->channel_count;
+    const size_t count = t->study->entry->source_count;
+    const se3di_study_channel *measured = t->model->measured;
+    se3di_channel *channels = se3di_iopool_array(&t->model->pool, count, sizeof *channels);
     size_t place = 1;
-    t->channels = se3di_iopool_array(&t->model->pool, count, sizeof *t->channels);
-    t->components = se3di_iopool_array(&t->model->pool, count, sizeof *t->components);
     t->places = se3di_iopool_array(&t->model->pool, count, sizeof *t->places);
-    if (!t->channels || !t->components || !t->places) {
+    if (!channels || !t->places) {
         return fail(t, SE3D_ERR_NO_MEMORY, "out of memory");
     }
     for (size_t k = 0; k < count; ++k) {
-        char problem[480] = "";
-        if (!se3di_channel_find_number(t->model, study->channels[k], &t->channels[k],
-                                       &t->components[k], problem, sizeof problem)) {
-            const bool memory = strcmp(problem, "out of memory") == 0;
-            return fail(t, memory ? SE3D_ERR_NO_MEMORY : SE3D_ERR_MODEL, problem);
-        }
-        t->places[k] = place + t->components[k];
-        place += se3di_channel_get_width(&t->channels[k]);
+        channels[k] = measured[k].channel;
+        t->places[k] = place + measured[k].component;
+        place += se3di_channel_get_width(&channels[k]);
     }
     *output = (se3di_output_entry){
-        .every = study->entry->every, .channels = t->channels, .count = count, .set = -1};
+        .every = t->study->entry->every, .channels = channels, .count = count, .set = -1};
     return SE3D_OK;
 }
 
@@ -83,8 +75,9 @@ static se3d_status take_row(void *ctx, const double *row)
     se3d_study *study = t->study;
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
         se3di_tally *tally = &study->tallies[k];
-        if (tally->measure->channel &&
-            !se3di_tally_add(tally, &study->pool, row[0], row[t->places[study->columns[k]]])) {
+        const size_t source = tally->measure->source;
+        if (source != SE3DI_STUDY_NO_SOURCE &&
+            !se3di_tally_add(tally, &study->pool, row[0], row[t->places[source]])) {
             return SE3D_ERR_NO_MEMORY;
         }
     }
@@ -101,16 +94,17 @@ static se3d_status take_event(void *ctx, se3d_system *system, const se3d_event_r
     for (size_t k = 0; k < study->entry->measure_count && status >= 0; ++k) {
         const se3di_study_measure *m = &study->entry->measures[k];
         double value[4] = {0.0, 0.0, 0.0, 0.0};
-        const size_t column = study->columns[k];
         if (!m->event || strcmp(m->event, record->name) != 0) {
             continue;
         }
-        if (m->channel) {
-            status = se3di_channel_eval(&t->channels[column], &sample, value);
+        if (m->source == SE3DI_STUDY_NO_SOURCE) {
+            se3di_tally_find(&study->tallies[k], record->time);
+            continue;
         }
+        const se3di_study_channel *from = &t->model->measured[m->source];
+        status = se3di_channel_eval(&from->channel, &sample, value);
         if (status >= 0) {
-            se3di_tally_find(&study->tallies[k],
-                             m->channel ? value[t->components[column]] : record->time);
+            se3di_tally_find(&study->tallies[k], value[from->component]);
         }
     }
     se3di_sample_destroy(&sample);

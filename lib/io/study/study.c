@@ -41,20 +41,6 @@ static uint64_t hash_study(const se3d_study *study)
     return hash;
 }
 
-/* A channel of a measure, once however many are made of it. */
-static void add_channel(se3d_study *study, size_t measure)
-{
-    const char *name = study->entry->measures[measure].channel;
-    size_t k = 0;
-    while (name && k < study->channel_count && strcmp(study->channels[k], name) != 0) {
-        ++k;
-    }
-    study->columns[measure] = k;
-    if (name && k == study->channel_count) {
-        study->channels[study->channel_count++] = name;
-    }
-}
-
 static bool make_head(se3d_study *study)
 {
     const se3di_study_entry *entry = study->entry;
@@ -97,20 +83,15 @@ static bool fill(se3d_study *study)
     const size_t variables = entry->variable_count;
     const size_t measures = entry->measure_count;
     se3di_iopool *pool = &study->pool;
-    study->channels = se3di_iopool_array(pool, measures, sizeof *study->channels);
-    study->columns = se3di_iopool_array(pool, measures, sizeof *study->columns);
     study->tallies = se3di_iopool_array(pool, measures, sizeof *study->tallies);
     study->measures = se3di_iopool_array(pool, measures, sizeof *study->measures);
     study->parameters = se3di_iopool_array(pool, variables, sizeof *study->parameters);
     study->values = se3di_iopool_array(pool, variables, sizeof *study->values);
     study->row_size = (variables + measures + 2) * SE3DI_STUDY_CELL + 2 * SE3DI_STUDY_REASON;
     study->row = se3di_iopool_array(pool, study->row_size, 1);
-    if (!study->channels || !study->columns || !study->tallies || !study->measures ||
-        !study->parameters || !study->values || !study->row) {
+    if (!study->tallies || !study->measures || !study->parameters || !study->values ||
+        !study->row) {
         return false;
-    }
-    for (size_t k = 0; k < measures; ++k) {
-        add_channel(study, k);
     }
     for (size_t k = 0; k < variables; ++k) {
         study->values[k].name = entry->variables[k].name;

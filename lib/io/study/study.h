@@ -20,10 +20,7 @@ struct se3d_study {
     se3d_model *model; /* as it was read, with the tree of its file */
     const se3di_study_entry *entry;
     size_t analysis; /* index of that which is measured */
-    const char **channels;
-    size_t channel_count;
-    size_t *columns; /* [measure_count] which channel each is made of */
-    se3di_tally *tallies;
+    se3di_tally *tallies; /* [measure_count] */
     double *parameters; /* of a sample */
     double *measures;
     se3di_named *values; /* of the parameters, for the reader */
