@@ -247,6 +247,14 @@ uint64_t se3di_run_get_history_tag(const se3di_run *run)
     return SE3DI_HISTORY_TAGS * run->integration.method->tag + (uint64_t)run->formulation->id;
 }
 
+/* The method under way has written the history. */
+static int has_history(const se3di_run *run)
+{
+    const se3di_model *model = run->model;
+    return model->history_tag == se3di_run_get_history_tag(run) &&
+           model->history_count == run->integration.method->history_count(&run->equations.assembly);
+}
+
 /* The history belongs to what acts on the model now. */
 static void mark_history(se3di_model *model)
 {
@@ -352,17 +360,17 @@ static se3d_status keep_state(se3di_run *run)
 static se3d_status begin_dynamics(se3di_run *run, double h)
 {
     se3di_model *model = run->model;
-    const int has_history = model->history_tag == se3di_run_get_history_tag(run);
-    const int goes_on = has_history && model->history_inputs == model->inputs_version;
-    run->equations.redundant |= has_history && model->history_redundant > 0; /* whoever made it */
+    const int is_there = has_history(run);
+    const int goes_on = is_there && model->history_inputs == model->inputs_version;
+    run->equations.redundant |= is_there && model->history_redundant > 0; /* whoever made it */
     if (!goes_on || run->integration.method->advance) {
         SE3DI_TRY(keep_state(run));
     }
     if (goes_on) {
         return SE3D_OK;
     }
-    return has_history ? renew(run, model->history_values != model->values_version)
-                       : start_history(run, h);
+    return is_there ? renew(run, model->history_values != model->values_version)
+                    : start_history(run, h);
 }
 
 static int has_step_control(const se3di_integration *integration)
@@ -441,8 +449,7 @@ static se3d_status run_fixed_steps(se3di_run *run, double t_end)
 static int must_switch(const se3di_run *run)
 {
     const se3di_integration *integration = &run->integration;
-    return integration->settings.leaves_stiff && integration->method->is_held &&
-           run->model->history_tag == se3di_run_get_history_tag(run) &&
+    return integration->settings.leaves_stiff && integration->method->is_held && has_history(run) &&
            integration->method->is_held(integration);
 }
 
@@ -527,7 +534,7 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
 {
     if (!(t_end > run->model->time)) {
         SE3DI_TRY(keep_state(run));
-        if (run->model->history_tag == se3di_run_get_history_tag(run)) {
+        if (has_history(run)) {
             return renew(run, 1);
         }
         SE3DI_TRY(settle(run, t_end));

@@ -561,6 +561,19 @@ static se3d_status run(se3di_integration *integration, double t_end)
     return publish(&m, t_end, m.past->at.time > t_end && t_end > m.past->at.begin);
 }
 
+static int is_within(double value, int most)
+{
+    return value >= 1.0 && value <= most && value == floor(value);
+}
+
+static int is_sound(const double *history, size_t count)
+{
+    const se3di_bdf_past *past = (const se3di_bdf_past *)history;
+    return count >= SE3DI_BDF_PAST && is_within(past->order, SE3DI_BDF_ORDER_MAX) &&
+           is_within(past->used, SE3DI_BDF_ORDER_MAX) &&
+           is_within(past->count, SE3DI_BDF_POINTS_MAX);
+}
+
 const se3di_integrator se3di_integrator_bdf = {
     .name = "bdf",
     .tag = SE3D_METHOD_BDF,
@@ -572,6 +585,7 @@ const se3di_integrator se3di_integrator_bdf = {
     .run = run,
     .advance = advance,
     .interpolate = interpolate,
+    .is_sound = is_sound,
     .is_implicit = 1,
     .is_reduced = 1,
     .orders = 0x3E, /* 1 to 5 */

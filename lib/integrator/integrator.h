@@ -60,6 +60,9 @@ typedef struct se3di_integrator {
      * with its new accelerations, and nothing that was computed with the old ones is used again.
      * NULL: nothing is kept of accelerations. */
     se3d_status (*renew)(se3di_integration *integration);
+    /* Whether a history that somebody else wrote may be gone on with: its counts and orders are in
+     * their ranges. NULL: it has none. */
+    int (*is_sound)(const double *history, size_t count);
     /* Accelerations and multipliers at the model's state. NULL: se3di_acceleration_solve. */
     se3d_status (*accelerate)(se3di_integration *integration);
     /* One step of length h. */

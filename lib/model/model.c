@@ -69,6 +69,7 @@ static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
     size_t bodies = m->body_slots.count;
     se3di_body_contacts *c = &m->contacts;
     size_t materials = m->material_slots.count;
+    const size_t listed = c->version == m->topology_version ? m->shape_slots.count : 0;
     model_array arrays[] = {
         {(void **)&m->bodies, &m->body_capacity, bodies, sizeof *m->bodies},
         {(void **)&m->frames, &m->frame_capacity, bodies, sizeof *m->frames},
@@ -90,9 +91,10 @@ static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
         {(void **)&m->shapes, &m->shape_capacity, m->shape_slots.count, sizeof *m->shapes},
         {(void **)&c->list, &c->capacity, c->count, sizeof *c->list},
         {(void **)&c->next, &c->next_capacity, 0, sizeof *c->next},
-        {(void **)&c->pairs, &c->pair_capacity, 0, 2 * sizeof *c->pairs},
-        {(void **)&c->reference, &c->reference_capacity, 0, 3 * sizeof *c->reference},
-        {(void **)&c->order, &c->order_capacity, 0, sizeof *c->order},
+        {(void **)&c->pairs, &c->pair_capacity, listed > 0 ? c->pair_count : 0,
+         2 * sizeof *c->pairs},
+        {(void **)&c->reference, &c->reference_capacity, listed, 3 * sizeof *c->reference},
+        {(void **)&c->order, &c->order_capacity, listed, sizeof *c->order},
         {(void **)&m->history, &m->history_capacity, m->history_count, sizeof *m->history},
     };
     _Static_assert(sizeof arrays == MODEL_ARRAYS * sizeof *arrays, "all of them");
@@ -149,8 +151,8 @@ static void disown(se3di_model *copy)
     se3di_slots_init(&copy->shape_slots, 0);
     copy->sets = NULL;
     copy->row_count = copy->term_count = copy->angle_count = copy->history_count = 0;
-    copy->contacts.count = 0;
-    copy->contacts.version = 0; /* its pairs are listed anew */
+    copy->contacts.count = copy->contacts.pair_count = 0;
+    copy->contacts.version = 0;
 }
 
 static se3d_status copy_name(const se3d_allocator *allocator, char **name)
@@ -257,6 +259,10 @@ static se3d_status clone_arrays(const se3di_model *model, se3di_model *copy)
     copy->angle_count = model->angle_count;
     copy->history_count = model->history_count;
     copy->contacts.count = model->contacts.count;
+    if (model->contacts.version == model->topology_version) {
+        copy->contacts.pair_count = model->contacts.pair_count;
+        copy->contacts.version = model->contacts.version;
+    }
     return SE3D_OK;
 }
 

@@ -1,15 +1,121 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Snapshots: everything that a step reads and writes, the integrator's history included. */
-#include "model/saved.h"
-#include "particles/chain.h"
+#include "system/snapshot.h"
+
+#include "base/hash.h"
 #include "system/particles.h"
 
-struct se3d_snapshot {
-    se3d_allocator allocator;
-    uint64_t topology_version;
-    se3di_saved state;
-    se3di_particles *sets; /* copies of the particle sets */
-};
+#include <string.h>
+
+static uint64_t add_words(uint64_t hash, const uint32_t *words, size_t count)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const unsigned char bytes[4] = {(unsigned char)words[k], (unsigned char)(words[k] >> 8),
+                                        (unsigned char)(words[k] >> 16),
+                                        (unsigned char)(words[k] >> 24)};
+        hash = se3di_hash_bytes(hash, bytes, sizeof bytes);
+    }
+    return hash;
+}
+
+uint64_t se3di_snapshot_structure(const se3di_model *model)
+{
+    uint64_t hash = SE3DI_HASH_START;
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        hash = add_words(hash, &(uint32_t){model->bodies[k].fixed != 0}, 1);
+    }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *c = &model->constraints[k];
+        hash = se3di_hash_bytes(hash, c->type, strlen(c->type) + 1);
+        hash = add_words(hash, &c->row_count, 1);
+        hash = add_words(hash, c->bodies, c->body_count);
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force *f = &model->forces[k];
+        const uint32_t words[] = {(uint32_t)f->type, f->body_i, f->body_j};
+        hash = add_words(hash, words, 3);
+    }
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        const uint32_t words[] = {(uint32_t)model->shapes[k].kind, model->shapes[k].body};
+        hash = add_words(hash, words, 2);
+    }
+    return hash;
+}
+
+/* ---- the list of shapes that may touch: methods ask whether there are any ---- */
+
+static se3d_status resize(se3di_saved_array *array, const se3d_allocator *allocator, size_t count,
+                          size_t size)
+{
+    array->count = count;
+    return se3di_array_reserve(allocator, &array->data, &array->capacity, count, size);
+}
+
+static void copy(void *to, const void *from, size_t size)
+{
+    if (size > 0) {
+        memcpy(to, from, size);
+    }
+}
+
+static se3d_status save_near(se3di_snapshot_near *near, const se3di_model *model)
+{
+    const se3di_body_contacts *c = &model->contacts;
+    const int is_listed = c->version == model->topology_version && model->shape_slots.count > 0;
+    const size_t shapes = is_listed ? model->shape_slots.count : 0;
+    const size_t pairs = is_listed ? c->pair_count : 0;
+    near->margin = is_listed ? c->margin : 0.0;
+    SE3DI_TRY(resize(&near->pairs, &model->allocator, 2 * pairs, sizeof *c->pairs));
+    SE3DI_TRY(resize(&near->reference, &model->allocator, 3 * shapes, sizeof *c->reference));
+    SE3DI_TRY(resize(&near->order, &model->allocator, shapes, sizeof *c->order));
+    copy(near->pairs.data, c->pairs, near->pairs.count * sizeof *c->pairs);
+    copy(near->reference.data, c->reference, near->reference.count * sizeof *c->reference);
+    copy(near->order.data, c->order, near->order.count * sizeof *c->order);
+    return SE3D_OK;
+}
+
+static se3d_status reserve_one(se3di_model *model, void **data, size_t *capacity, size_t count,
+                               size_t size)
+{
+    return se3di_array_reserve(&model->allocator, data, capacity, count, size);
+}
+
+/* Room for the list, so that restore_near cannot fail. */
+static se3d_status reserve_near(const se3di_snapshot_near *near, se3di_model *model)
+{
+    se3di_body_contacts *c = &model->contacts;
+    const size_t shapes = near->order.count;
+    void *pairs = c->pairs, *reference = c->reference, *order = c->order;
+    se3d_status status =
+        reserve_one(model, &pairs, &c->pair_capacity, near->pairs.count / 2, 2 * sizeof *c->pairs);
+    c->pairs = pairs;
+    SE3DI_TRY(status);
+    status =
+        reserve_one(model, &reference, &c->reference_capacity, shapes, 3 * sizeof *c->reference);
+    c->reference = reference;
+    SE3DI_TRY(status);
+    status = reserve_one(model, &order, &c->order_capacity, shapes, sizeof *c->order);
+    c->order = order;
+    return status;
+}
+
+static void restore_near(const se3di_snapshot_near *near, se3di_model *model)
+{
+    se3di_body_contacts *c = &model->contacts;
+    copy(c->pairs, near->pairs.data, near->pairs.count * sizeof *c->pairs);
+    copy(c->reference, near->reference.data, near->reference.count * sizeof *c->reference);
+    copy(c->order, near->order.data, near->order.count * sizeof *c->order);
+    c->pair_count = near->pairs.count / 2;
+    c->margin = near->margin;
+    c->version = near->order.count > 0 ? model->topology_version : 0;
+}
+
+static void release_near(se3di_snapshot_near *near, const se3d_allocator *allocator)
+{
+    se3di_free(allocator, near->pairs.data, near->pairs.capacity, sizeof(uint32_t));
+    se3di_free(allocator, near->reference.data, near->reference.capacity, sizeof(double));
+    se3di_free(allocator, near->order.data, near->order.capacity, sizeof(uint32_t));
+}
 
 se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out)
 {
@@ -29,7 +135,11 @@ se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out)
     }
     snapshot->allocator = model->allocator;
     snapshot->topology_version = model->topology_version;
+    snapshot->inputs_version = model->inputs_version;
+    snapshot->values_version = model->values_version;
+    snapshot->structure = se3di_snapshot_structure(model);
     if (se3di_saved_fill(&snapshot->state, model, &model->allocator) < 0 ||
+        save_near(&snapshot->near, model) < 0 ||
         se3di_sets_save(model->sets, &model->allocator, &snapshot->sets) < 0) {
         se3d_snapshot_destroy(snapshot);
         return SE3D_ERR_NO_MEMORY;
@@ -53,6 +163,7 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
                           model->row_count, (unsigned long long)model->topology_version);
     }
     se3d_status status = se3di_saved_reserve(state, model);
+    status = status < 0 ? status : reserve_near(&snapshot->near, model);
     if (status < 0) {
         return SE3DI_FAIL(system, status, "no memory for the integrator's history");
     }
@@ -62,6 +173,7 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
     }
     se3di_sets_take(model, sets);
     se3di_saved_restore(state, model);
+    restore_near(&snapshot->near, model);
     ++model->history_stamp;
     return SE3D_OK;
 }
@@ -71,6 +183,7 @@ void se3d_snapshot_destroy(se3d_snapshot *snapshot)
     if (snapshot) {
         se3d_allocator allocator = snapshot->allocator;
         se3di_saved_destroy(&snapshot->state, &allocator);
+        release_near(&snapshot->near, &allocator);
         se3di_sets_forget(snapshot->sets, &allocator);
         se3di_free(&allocator, snapshot, 1, sizeof *snapshot);
     }

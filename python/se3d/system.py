@@ -460,6 +460,20 @@ class System:
         """Put a saved state back: what follows has the same bits."""
         self.check(lib.se3d_snapshot_restore(snapshot, self.pointer))
 
+    def save(self):
+        """Return the state as bytes, for another run of a program that builds the same system."""
+        snapshot, size = self.snapshot(), ffi.new("size_t *")
+        check(lib.se3d_snapshot_write(snapshot, ffi.NULL, 0, size))
+        data = bytearray(size[0])
+        check(lib.se3d_snapshot_write(snapshot, ffi.from_buffer(data), len(data), size))
+        return bytes(data)
+
+    def load(self, data):
+        """Put back what `save` returned: what follows has the same bits."""
+        out = ffi.new("se3d_snapshot **")
+        self.check(lib.se3d_snapshot_read(self.pointer, data, len(data), out))
+        self.restore(ffi.gc(out[0], lib.se3d_snapshot_destroy))
+
     def report(self):
         """Return counts and findings of the constraints: rank, redundant ones, contradictions."""
         out = ffi.new("se3d_check **")

@@ -250,6 +250,22 @@ static se3d_status call_snapshot_create(arguments *a)
     return status;
 }
 CALL(snapshot_restore, a->snapshot, a->system)
+CALL(snapshot_write, a->snapshot, NULL, 0, a->out[0])
+static se3d_status call_snapshot_read(arguments *a)
+{
+    static unsigned char bytes[20000];
+    size_t size = 0;
+    se3d_snapshot *made = NULL, *read = NULL;
+    CHECK(!a->system || !se3d_snapshot_create(a->system, &made));
+    CHECK(!a->system || !se3d_snapshot_write(made, bytes, sizeof bytes, &size));
+    se3d_snapshot_destroy(made);
+    const se3d_status status = se3d_snapshot_read(a->system, a->in ? bytes : NULL, size, a->out[0]);
+    if (status >= 0) {
+        memcpy(&read, a->out[0], sizeof read);
+        se3d_snapshot_destroy(read);
+    }
+    return status;
+}
 static se3d_status call_system_clone(arguments *a)
 {
     se3d_status status = se3d_system_clone(a->system, a->out[0]);
@@ -640,6 +656,8 @@ static const row rows[] = {
     {"se3d_check_get_message", call_check_get_message, "ko0", NULL, NULL},
     {"se3d_snapshot_create", call_snapshot_create, "sh0", NULL, NULL},
     {"se3d_snapshot_restore", call_snapshot_restore, "Sp", NULL, NULL},
+    {"se3d_snapshot_write", call_snapshot_write, "po0", NULL, NULL},
+    {"se3d_snapshot_read", call_snapshot_read, "Sjh0", NULL, NULL},
     {"se3d_system_clone", call_system_clone, "sh0", NULL, NULL},
     {"se3d_system_set_gravity", call_system_set_gravity, "Si3", NULL, NULL},
     {"se3d_system_get_gravity", call_system_get_gravity, "so0", NULL, NULL},

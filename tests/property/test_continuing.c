@@ -108,6 +108,26 @@ static course follow(se3d_system *system, se3d_solver *solver)
     return c;
 }
 
+/* What a program that is started anew does: the same model, the state from bytes. */
+static course continue_elsewhere(const se3d_snapshot *snapshot, const trial *t)
+{
+    static unsigned char bytes[100000];
+    se3d_system *system = make(t->mechanism);
+    se3d_snapshot *read = NULL;
+    size_t size = 0;
+    CHECK(se3d_snapshot_write(snapshot, NULL, 0, &size) == SE3D_OK && size <= sizeof bytes);
+    CHECK(se3d_snapshot_write(snapshot, bytes, size - 1, &size) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_snapshot_write(snapshot, bytes, sizeof bytes, &size) == SE3D_OK);
+    CHECK(se3d_snapshot_read(system, bytes, size, &read) == SE3D_OK);
+    CHECK(se3d_snapshot_restore(read, system) == SE3D_OK);
+    se3d_snapshot_destroy(read);
+    se3d_solver *solver = solver_of(system, t);
+    const course found = follow(system, solver);
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(system);
+    return found;
+}
+
 static int is_same(const course *a, const course *b)
 {
     return a->hash == b->hash && memcmp(a->status, b->status, sizeof a->status) == 0;
@@ -130,15 +150,19 @@ static void check_trial(const trial *t)
     CHECK(se3d_snapshot_restore(snapshot, system) == SE3D_OK);
     solver = solver_of(system, t);
     const course renewed = follow(system, solver);
+    const course elsewhere = continue_elsewhere(snapshot, t);
     const int holds = is_same(&first, &cloned) && is_same(&first, &again) &&
-                      is_same(&first, &renewed) && first.status[0] >= 0;
+                      is_same(&first, &renewed) && is_same(&first, &elsewhere) &&
+                      first.status[0] >= 0;
     CHECK(holds);
     CHECK(t->mechanism != REDUNDANT || cloned.status[2] == SE3D_INFO_REDUNDANT);
     if (!holds) {
-        fprintf(stderr, "%s, method %d, adaptive %d: clone %d, restored %d, new %d, status %d\n",
+        fprintf(stderr,
+                "%s, method %d, adaptive %d: clone %d, restored %d, new %d, elsewhere %d, "
+                "status %d\n",
                 mechanisms[t->mechanism], (int)t->method.method, t->adaptive,
                 is_same(&first, &cloned), is_same(&first, &again), is_same(&first, &renewed),
-                (int)first.status[0]);
+                is_same(&first, &elsewhere), (int)first.status[0]);
     }
     se3d_solver_destroy(solver);
     se3d_solver_destroy(other);

@@ -169,6 +169,19 @@ class State(unittest.TestCase):
             numpy.testing.assert_array_equal(copy.element_of(bar).position, bar.position)
             copy.close()
 
+    def test_a_state_in_bytes_goes_on_in_another_system(self):
+        with se3d.System() as system, se3d.System() as other:
+            pendulum(system)
+            pendulum(other)
+            solver = se3d.Solver(system)
+            solver.run(0.2)
+            data = system.save()
+            solver.run(0.4)
+            other.load(data)
+            se3d.Solver(other).run(0.4)
+            self.assertEqual(other.hash(), system.hash())
+            self.assertRaises(se3d.Error, other.load, data[:-1])
+
     def test_states_of_all_bodies_are_filled_in_place(self):
         with se3d.System() as system:
             bar, _ = pendulum(system)

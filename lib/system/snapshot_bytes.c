@@ -1,0 +1,414 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Snapshots as bytes: the same on every machine (64-bit words, least byte first), with a mark, a
+ * version, the structure of the model that they belong to, and a checksum. Only the format is
+ * versioned: what methods keep is read by the version of the library that wrote it. */
+#include "system/snapshot.h"
+
+#include "base/hash.h"
+#include "integrator/integrator.h"
+#include "math/quaternion.h"
+#include "system/system_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MARK    UINT64_C(0x50414E5344334553) /* "SE3DSNAP" */
+#define VERSION UINT64_C(1)
+/* Rotation matrices are those of the Euler parameters to this. */
+#define SAME_ROTATION 1e-9
+
+/* One way through the format: measuring (`out` and `in` NULL), writing or reading. */
+typedef struct coder {
+    unsigned char *out;
+    const unsigned char *in;
+    size_t at, size; /* what does not fit is counted only */
+    int failed;      /* reading: the bytes end too early, or a number is out of its range */
+} coder;
+
+static void code_word(coder *c, uint64_t *word)
+{
+    if (c->size - c->at < 8 || c->at > c->size) {
+        c->failed = 1;
+        *word = c->in ? 0 : *word;
+    } else if (c->in) {
+        *word = 0;
+        for (int k = 0; k < 8; ++k) {
+            *word |= (uint64_t)c->in[c->at + (size_t)k] << (8 * k);
+        }
+    } else if (c->out) {
+        for (int k = 0; k < 8; ++k) {
+            c->out[c->at + (size_t)k] = (unsigned char)(*word >> (8 * k));
+        }
+    }
+    c->at += 8;
+}
+
+static void code_numbers(coder *c, double *values, size_t count)
+{
+    for (size_t k = 0; k < count; ++k) {
+        uint64_t word;
+        memcpy(&word, values + k, sizeof word);
+        code_word(c, &word);
+        memcpy(values + k, &word, sizeof word);
+    }
+}
+
+static void code_int32(coder *c, int32_t *value)
+{
+    uint64_t word = (uint32_t)*value;
+    code_word(c, &word);
+    c->failed |= word > UINT32_MAX;
+    *value = (int32_t)(uint32_t)word;
+}
+
+static void code_uint32(coder *c, uint32_t *value)
+{
+    uint64_t word = *value;
+    code_word(c, &word);
+    c->failed |= word > UINT32_MAX;
+    *value = (uint32_t)word;
+}
+
+static void code_scalars(coder *c, se3di_saved *s)
+{
+    uint64_t redundant = (uint64_t)s->history_redundant;
+    code_numbers(c, &s->time, 1);
+    code_numbers(c, &s->time_rest, 1);
+    code_numbers(c, &s->rest_time, 1);
+    code_numbers(c, s->work, 3);
+    code_numbers(c, s->power, 3);
+    code_numbers(c, &s->contact_step, 1);
+    code_numbers(c, &s->left_out_gap, 1);
+    code_word(c, &s->history_tag);
+    code_word(c, &redundant);
+    code_word(c, &s->history_inputs);
+    code_word(c, &s->history_values);
+    code_int32(c, &s->settled);
+    code_int32(c, &s->work_valid);
+    code_int32(c, &s->ranks_known);
+    code_int32(c, &s->shows_before);
+    code_uint32(c, &s->left_out_count);
+    code_uint32(c, &s->left_out_row);
+    s->history_redundant = (int64_t)redundant;
+}
+
+/* Every array: where it is, bytes of an element, numbers in it. */
+typedef struct saved_array {
+    se3di_saved_array *array;
+    size_t size;
+} saved_array;
+
+#define ARRAYS 12
+
+static void list_arrays(se3d_snapshot *snapshot, saved_array list[ARRAYS])
+{
+    se3di_saved *s = &snapshot->state;
+    se3di_snapshot_near *near = &snapshot->near;
+    const saved_array arrays[] = {
+        {&s->frames, sizeof(se3di_frame)},
+        {&s->acceleration, sizeof(double)},
+        {&s->lambda, sizeof(double)},
+        {&s->turns, sizeof(double)},
+        {&s->memory, sizeof(double)},
+        {&s->history, sizeof(double)},
+        {&s->wrench, sizeof(double)},
+        {&s->left_out, sizeof(uint8_t)},
+        {&s->contacts, sizeof(se3di_body_contact)},
+        {&near->reference, sizeof(double)},
+        {&near->pairs, sizeof(uint32_t)},
+        {&near->order, sizeof(uint32_t)},
+    };
+    _Static_assert(sizeof arrays == ARRAYS * sizeof *arrays, "all of them");
+    memcpy(list, arrays, sizeof arrays);
+}
+
+static void code_contact(coder *c, se3di_body_contact *contact)
+{
+    code_uint32(c, &contact->shape_i);
+    code_uint32(c, &contact->shape_j);
+    code_uint32(c, &contact->feature);
+    code_int32(c, &contact->kind);
+    code_numbers(c, contact->anchor_i, 3);
+    code_numbers(c, contact->anchor_j, 3);
+    code_numbers(c, contact->roll, 3);
+    code_numbers(c, &contact->twist, 1);
+    code_numbers(c, contact->turn, 4);
+    code_numbers(c, contact->point, 3);
+    code_numbers(c, contact->normal, 3);
+    code_numbers(c, &contact->overlap, 1);
+    code_numbers(c, &contact->inverse_mass, 1);
+    code_numbers(c, contact->force, 3);
+    code_numbers(c, contact->torque, 3);
+    code_numbers(c, &contact->energy, 1);
+}
+
+static void code_array(coder *c, const saved_array *a, size_t numbers)
+{
+    uint8_t *bytes = a->array->data;
+    se3di_body_contact *contacts = a->array->data;
+    uint32_t *indices = a->array->data;
+    for (size_t k = 0; k < a->array->count; ++k) {
+        if (a->size == sizeof *contacts) {
+            code_contact(c, contacts + k);
+        } else if (a->size == sizeof *indices) {
+            code_uint32(c, indices + k);
+        } else if (a->size == sizeof *bytes) {
+            int32_t flag = bytes[k];
+            code_int32(c, &flag);
+            c->failed |= flag != 0 && flag != 1;
+            bytes[k] = flag != 0;
+        } else {
+            code_numbers(c, (double *)a->array->data + k * numbers, numbers);
+        }
+    }
+}
+
+_Static_assert(sizeof(se3di_frame) == 26 * sizeof(double) &&
+                   sizeof(se3di_frame) != sizeof(se3di_body_contact),
+               "frames are written as numbers");
+
+/* Give the arrays, which are empty, the lengths that were read. */
+static se3d_status make_room(const coder *c, saved_array arrays[ARRAYS],
+                             const uint64_t count[ARRAYS], const se3d_allocator *allocator)
+{
+    for (int k = 0; k < ARRAYS; ++k) {
+        if (count[k] > (c->size - c->at) / 8) { /* an element has a word at least */
+            return SE3D_ERR_INVALID_ARGUMENT;
+        }
+        se3di_saved_array *a = arrays[k].array;
+        SE3DI_TRY(se3di_array_reserve(allocator, &a->data, &a->capacity, (size_t)count[k],
+                                      arrays[k].size));
+        a->count = (size_t)count[k];
+    }
+    return SE3D_OK;
+}
+
+static se3d_status code_state(coder *c, se3d_snapshot *snapshot)
+{
+    saved_array arrays[ARRAYS];
+    uint64_t count[ARRAYS];
+    list_arrays(snapshot, arrays);
+    code_word(c, &snapshot->structure);
+    code_scalars(c, &snapshot->state);
+    code_numbers(c, &snapshot->near.margin, 1);
+    for (int k = 0; k < ARRAYS; ++k) {
+        count[k] = arrays[k].array->count;
+        code_word(c, &count[k]);
+    }
+    SE3DI_TRY(c->in ? make_room(c, arrays, count, &snapshot->allocator) : SE3D_OK);
+    for (int k = 0; k < ARRAYS; ++k) {
+        code_array(c, &arrays[k], arrays[k].size / sizeof(double));
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_snapshot_write(const se3d_snapshot *snapshot, void *bytes, size_t capacity,
+                                size_t *size)
+{
+    if (size) {
+        *size = 0;
+    }
+    if (!snapshot || !size) {
+        return SE3D_ERR_NULL;
+    }
+    if (snapshot->sets) {
+        return SE3D_ERR_UNSUPPORTED;
+    }
+    se3d_snapshot copy = *snapshot; /* writing changes nothing of what it points to */
+    copy.state.history_inputs = snapshot->inputs_version - snapshot->state.history_inputs;
+    copy.state.history_values = snapshot->values_version - snapshot->state.history_values;
+    coder measure = {.size = SIZE_MAX};
+    uint64_t mark = MARK, version = VERSION, sum = 0;
+    (void)code_state(&measure, &copy);
+    *size = measure.at + 3 * sizeof(uint64_t);
+    if (!bytes || capacity < *size) {
+        return bytes ? SE3D_ERR_INVALID_ARGUMENT : SE3D_OK;
+    }
+    coder c = {.out = bytes, .size = *size};
+    code_word(&c, &mark);
+    code_word(&c, &version);
+    (void)code_state(&c, &copy);
+    sum = se3di_hash_bytes(SE3DI_HASH_START, bytes, c.at);
+    code_word(&c, &sum);
+    return SE3D_OK;
+}
+
+/* ---- reading ---- */
+
+static int are_finite(const se3di_saved_array *array, size_t numbers)
+{
+    const double *values = array->data;
+    for (size_t k = 0; k < array->count * numbers; ++k) {
+        if (!isfinite(values[k])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int are_poses(const se3di_saved_array *array)
+{
+    const se3di_frame *frames = array->data;
+    for (size_t k = 0; k < array->count; ++k) {
+        double A[9];
+        se3di_quat_to_matrix(frames[k].p, A);
+        for (int i = 0; i < 9; ++i) {
+            if (!(fabs(A[i] - frames[k].A[i]) <= SAME_ROTATION)) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+static int are_contacts(const se3di_saved *state, const se3di_model *model)
+{
+    const se3di_body_contact *list = state->contacts.data;
+    for (size_t k = 0; k < state->contacts.count; ++k) {
+        if (list[k].shape_i >= list[k].shape_j || list[k].shape_j >= model->shape_slots.count ||
+            list[k].kind < SE3DI_CONTACT_LAWFUL || list[k].kind > SE3DI_CONTACT_PARTING) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int are_near(const se3di_snapshot_near *near, const se3di_model *model)
+{
+    const uint32_t *pairs = near->pairs.data, *order = near->order.data;
+    const size_t shapes = near->order.count;
+    if (near->reference.count != 3 * shapes || near->pairs.count % 2 != 0 ||
+        (shapes != model->shape_slots.count && (shapes != 0 || near->pairs.count != 0))) {
+        return 0;
+    }
+    for (size_t k = 0; k < near->pairs.count; k += 2) {
+        if (pairs[k] >= pairs[k + 1] || pairs[k + 1] >= shapes) {
+            return 0;
+        }
+    }
+    for (size_t k = 0; k < shapes; ++k) {
+        if (order[k] >= shapes) {
+            return 0;
+        }
+    }
+    return isfinite(near->margin) && are_finite(&near->reference, 1);
+}
+
+static int are_left_out(const se3di_saved *state, const se3di_model *model)
+{
+    const uint8_t *flags = state->left_out.data;
+    size_t count = 0;
+    for (size_t k = 0; k < state->left_out.count; ++k) {
+        count += flags[k];
+    }
+    return count == state->left_out_count &&
+           (state->left_out.count == 0 || state->left_out.count == model->row_count) &&
+           (count == 0 || state->left_out_row < model->row_count);
+}
+
+/* Numbers that lists are found by are what they must be, whoever wrote the bytes. */
+static int is_sound(const se3d_snapshot *snapshot, const se3di_model *model)
+{
+    const se3di_saved *state = &snapshot->state;
+    const uint64_t method = state->history_tag / SE3DI_HISTORY_TAGS;
+    const se3di_integrator *integrator =
+        method <= INT32_MAX ? se3di_integrator_find((int32_t)method) : NULL;
+    const int is_known = state->history_tag == 0 ? state->history.count == 0
+                                                 : integrator && method != SE3D_METHOD_AUTO;
+    return isfinite(state->time) && is_known && are_finite(&state->frames, 26) &&
+           are_finite(&state->acceleration, 1) && are_finite(&state->lambda, 1) &&
+           are_finite(&state->turns, 1) && are_poses(&state->frames) &&
+           are_contacts(state, model) && are_near(&snapshot->near, model) &&
+           are_left_out(state, model) &&
+           (!integrator || !integrator->is_sound ||
+            integrator->is_sound(state->history.data, state->history.count));
+}
+
+static se3d_status fail(se3d_system *system, const char *why)
+{
+    return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "bytes = %s", why);
+}
+
+static se3d_status check_frame(se3d_system *system, coder *c)
+{
+    uint64_t mark = 0, version = 0, sum = 0;
+    if (c->size < 3 * sizeof(uint64_t)) {
+        return fail(system, "too few, must be those of a snapshot");
+    }
+    code_word(c, &mark);
+    code_word(c, &version);
+    if (mark != MARK) {
+        return fail(system, "no snapshot, must begin with SE3DSNAP");
+    }
+    if (version != VERSION) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "bytes = a snapshot of version %llu, must be of version %llu",
+                          (unsigned long long)version, (unsigned long long)VERSION);
+    }
+    coder end = {.in = c->in + c->size - 8, .size = 8};
+    code_word(&end, &sum);
+    c->size -= 8;
+    return sum == se3di_hash_bytes(SE3DI_HASH_START, c->in, c->size)
+               ? SE3D_OK
+               : fail(system, "damaged or cut, their checksum is another one");
+}
+
+/* The versions of what acts, which are written relative to those of the model. */
+static void take_versions(se3d_snapshot *snapshot, const se3di_model *model)
+{
+    snapshot->topology_version = model->topology_version;
+    snapshot->inputs_version = model->inputs_version;
+    snapshot->values_version = model->values_version;
+    snapshot->state.history_inputs = model->inputs_version - snapshot->state.history_inputs;
+    snapshot->state.history_values = model->values_version - snapshot->state.history_values;
+}
+
+static se3d_status read_state(se3d_system *system, coder *c, se3d_snapshot *snapshot)
+{
+    const se3di_model *model = &system->model;
+    const se3d_status status = code_state(c, snapshot);
+    if (status == SE3D_ERR_NO_MEMORY) {
+        return SE3DI_FAIL(system, status, "no memory for a snapshot");
+    }
+    if (status < 0 || c->failed || c->at != c->size) {
+        return fail(system, "malformed, lengths do not add up");
+    }
+    if (snapshot->structure != se3di_snapshot_structure(model) || model->sets ||
+        !se3di_saved_fits(&snapshot->state, model)) {
+        return SE3DI_FAIL(system, SE3D_ERR_STATE,
+                          "the snapshot is of another model (%zu bodies, %zu equations; here %zu "
+                          "and %zu): elements must be the same and made in the same order",
+                          snapshot->state.frames.count, snapshot->state.lambda.count,
+                          model->body_slots.count, (size_t)model->row_count);
+    }
+    if (!is_sound(snapshot, model)) {
+        return fail(system, "malformed, they hold numbers that no state has");
+    }
+    take_versions(snapshot, model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_snapshot_read(se3d_system *system, const void *bytes, size_t size,
+                               se3d_snapshot **out)
+{
+    if (out) {
+        *out = NULL;
+    }
+    SE3DI_EDIT(system);
+    SE3DI_TRY(se3di_check_pointer(system, "bytes", bytes));
+    SE3DI_TRY(se3di_check_pointer(system, "out", out));
+    coder c = {.in = bytes, .size = size};
+    SE3DI_TRY(check_frame(system, &c));
+    se3d_snapshot *snapshot = se3di_alloc(&system->model.allocator, 1, sizeof *snapshot);
+    if (!snapshot) {
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a snapshot");
+    }
+    snapshot->allocator = system->model.allocator;
+    const se3d_status status = read_state(system, &c, snapshot);
+    if (status < 0) {
+        se3d_snapshot_destroy(snapshot);
+        return status;
+    }
+    *out = snapshot;
+    return SE3D_OK;
+}

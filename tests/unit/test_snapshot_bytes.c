@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Snapshots as bytes: what is cut, changed or of another model is refused; bytes that were made up
+ * with a right checksum do no harm. */
+#include <string.h>
+
+#include "base/hash.h"
+#include "check.h"
+#include "support/models.h"
+
+enum { ROOM = 20000 };
+
+typedef struct world {
+    support_model model;
+    se3d_solver *solver;
+    unsigned char bytes[ROOM];
+    size_t size;
+} world;
+
+static void add_ball(se3d_system *system, double height)
+{
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_shape_def shape = se3d_shape_def_default();
+    se3d_body_def ball = se3d_body_def_default();
+    se3d_shape made;
+    stuff.density = 1000.0;
+    stuff.stiffness = 1e4;
+    CHECK(!se3d_material_create(system, &stuff, &shape.material));
+    CHECK(!se3d_shape_create_plane(system, &shape, &made));
+    ball.mass = 1.0;
+    ball.inertia[0] = ball.inertia[1] = ball.inertia[2] = 0.01;
+    ball.position[2] = height;
+    CHECK(!se3d_body_create(system, &ball, &shape.body));
+    shape.radius = 0.1;
+    CHECK(!se3d_shape_create_sphere(system, &shape, &made));
+}
+
+static void open_world(world *w, int32_t method)
+{
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_snapshot *snapshot = NULL;
+    support_model_make(&w->model, "four_bar", 1);
+    add_ball(w->model.system, 0.0995);
+    def.method = method;
+    CHECK(!se3d_solver_create(w->model.system, &def, &w->solver));
+    CHECK(se3d_solver_run(w->solver, 0.02) >= 0);
+    CHECK(se3d_system_count_contacts(w->model.system) == 1);
+    CHECK(!se3d_snapshot_create(w->model.system, &snapshot));
+    CHECK(!se3d_snapshot_write(snapshot, w->bytes, ROOM, &w->size));
+    se3d_snapshot_destroy(snapshot);
+}
+
+static void close_world(world *w)
+{
+    se3d_solver_destroy(w->solver);
+    support_model_destroy(&w->model);
+}
+
+static se3d_status read_bytes(world *w, const unsigned char *bytes, size_t size,
+                              se3d_snapshot **snapshot)
+{
+    return se3d_snapshot_read(w->model.system, bytes, size, snapshot);
+}
+
+static int is_refused(world *w, const unsigned char *bytes, size_t size, const char *why)
+{
+    se3d_snapshot *snapshot = NULL;
+    const se3d_status status = read_bytes(w, bytes, size, &snapshot);
+    const char *message = se3d_system_get_error(w->model.system);
+    const int holds = status < 0 && !snapshot && strstr(message, why) != NULL;
+    if (!holds) {
+        fprintf(stderr, "status %d, `%s` should have: %s\n", (int)status, message, why);
+    }
+    return holds;
+}
+
+static void sign(unsigned char *bytes, size_t size)
+{
+    const uint64_t sum = se3di_hash_bytes(SE3DI_HASH_START, bytes, size - 8);
+    for (int k = 0; k < 8; ++k) {
+        bytes[size - 8 + (size_t)k] = (unsigned char)(sum >> (8 * k));
+    }
+}
+
+static void cut_and_changed_bytes_are_refused(void)
+{
+    static world w;
+    static unsigned char bytes[ROOM];
+    open_world(&w, SE3D_METHOD_AUTO);
+    for (size_t size = 0; size < w.size; ++size) {
+        se3d_snapshot *snapshot = NULL;
+        CHECK(read_bytes(&w, w.bytes, size, &snapshot) == SE3D_ERR_INVALID_ARGUMENT && !snapshot);
+    }
+    for (size_t k = 0; k < w.size; ++k) {
+        se3d_snapshot *snapshot = NULL;
+        memcpy(bytes, w.bytes, w.size);
+        bytes[k] ^= 0x10;
+        CHECK(read_bytes(&w, bytes, w.size, &snapshot) == SE3D_ERR_INVALID_ARGUMENT && !snapshot);
+    }
+    CHECK(is_refused(&w, w.bytes, 10, "too few"));
+    CHECK(is_refused(&w, w.bytes, w.size - 8, "damaged or cut"));
+    memcpy(bytes, w.bytes, w.size);
+    bytes[8] = 2;
+    CHECK(is_refused(&w, bytes, w.size, "version 2"));
+    bytes[0] = 'X';
+    CHECK(is_refused(&w, bytes, w.size, "must begin with SE3DSNAP"));
+    close_world(&w);
+}
+
+static void another_model_is_refused(void)
+{
+    static world w, other;
+    open_world(&w, SE3D_METHOD_AUTO);
+    open_world(&other, SE3D_METHOD_AUTO);
+    add_ball(other.model.system, 3.0);
+    CHECK(is_refused(&other, w.bytes, w.size, "of another model"));
+    close_world(&other);
+    close_world(&w);
+}
+
+/* Whatever one word says, nothing is read or written that is not there, and what is taken can be
+ * gone on with: the run ends well or with a message. */
+static void made_up_words_do_no_harm(void)
+{
+    static const uint64_t words[] = {0,
+                                     1,
+                                     UINT64_C(0x7FF8000000000000),
+                                     UINT64_C(0x4014000000000000),
+                                     UINT64_C(0x43E0000000000000),
+                                     UINT64_C(0xFFFFFFFF),
+                                     UINT64_MAX};
+    static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_BDF,
+                                      SE3D_METHOD_RADAU,  SE3D_METHOD_GENERALIZED_ALPHA,
+                                      SE3D_METHOD_RATTLE, SE3D_METHOD_CONVEX};
+    static world w;
+    static unsigned char bytes[ROOM];
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
+        size_t taken = 0, refused = 0;
+        open_world(&w, methods[m]);
+        for (size_t at = 16; at + 16 <= w.size; at += 8) {
+            const uint64_t word = words[(at / 8) % (sizeof words / sizeof *words)];
+            se3d_snapshot *snapshot = NULL;
+            memcpy(bytes, w.bytes, w.size);
+            for (int k = 0; k < 8; ++k) {
+                bytes[at + (size_t)k] = (unsigned char)(word >> (8 * k));
+            }
+            sign(bytes, w.size);
+            const se3d_status status = read_bytes(&w, bytes, w.size, &snapshot);
+            CHECK((status >= 0) == (snapshot != NULL));
+            refused += status < 0;
+            if (status >= 0 && at % 24 == 0) {
+                double time;
+                ++taken;
+                CHECK(!se3d_snapshot_restore(snapshot, w.model.system));
+                CHECK(!se3d_system_get_time(w.model.system, &time));
+                (void)se3d_solver_step(w.solver, 1e-3);
+            }
+            se3d_snapshot_destroy(snapshot);
+        }
+        CHECK(taken > 20 && refused > 20);
+        close_world(&w);
+    }
+}
+
+int main(void)
+{
+    RUN(cut_and_changed_bytes_are_refused);
+    RUN(another_model_is_refused);
+    RUN(made_up_words_do_no_harm);
+    return check_finish();
+}
