@@ -120,9 +120,9 @@ static bool put_laws(se3di_chrono *c, const se3di_node *map, se3di_entry *entry,
 /* The ends of a spring's range, at which Chrono has a curve of its own. */
 static bool put_stops(se3di_chrono *c, const se3di_node *map, se3di_entry *entry)
 {
-    static double curve[] = {0.0,  0.0,    2e-3, 200.0,   4e-3, 400.0,   6e-3, 600.0,
-                             8e-3, 800.0,  1e-2, 1000.0,  2e-2, 2500.0,  3e-2, 4500.0,
-                             4e-2, 7500.0, 5e-2, 12500.0, 6e-2, 125000.0};
+    double curve[] = {0.0,  0.0,    2e-3, 200.0,   4e-3, 400.0,   6e-3, 600.0,
+                      8e-3, 800.0,  1e-2, 1000.0,  2e-2, 2500.0,  3e-2, 4500.0,
+                      4e-2, 7500.0, 5e-2, 12500.0, 6e-2, 125000.0};
     const se3di_chrono_function f = {
         .kind = SE3DI_CHRONO_DATA, .values = curve, .count = sizeof curve / sizeof *curve / 2};
     se3di_machine *m = c->m;

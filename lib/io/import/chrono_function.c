@@ -12,6 +12,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/base/elementary.h"
 #include "io/import/chrono.h"
 #include "io/import/scan.h"
 
@@ -224,9 +225,9 @@ static void add_sine(sum *s, const se3di_chrono_function *f, const char *u, bool
     }
     s->text = wave ? s->text : NULL;
     if (f->rate == 0.0) {
-        add(s, f->amplitude * sin(f->phase) + f->shift, integral ? u : NULL);
+        add(s, f->amplitude * io_sin(f->phase) + f->shift, integral ? u : NULL);
     } else if (integral) {
-        add(s, f->amplitude / f->rate * cos(f->phase), NULL);
+        add(s, f->amplitude / f->rate * io_cos(f->phase), NULL);
         add(s, -f->amplitude / f->rate, wave);
         add(s, f->shift, u);
     } else {
@@ -273,13 +274,13 @@ static double integral_at(const se3di_chrono_function *f, double u)
     double value = 0.0;
     if (f->kind == SE3DI_CHRONO_POLYNOMIAL) {
         for (size_t k = 0; k < f->count; ++k) {
-            value += f->values[k] * pow(u, (double)(k + 1)) / (double)(k + 1);
+            value += f->values[k] * io_pow(u, (double)(k + 1)) / (double)(k + 1);
         }
     } else if (f->kind == SE3DI_CHRONO_SINE) {
         value = f->shift * u;
         value += f->rate == 0.0
-                     ? f->amplitude * sin(f->phase) * u
-                     : f->amplitude / f->rate * (cos(f->phase) - cos(f->rate * u + f->phase));
+                     ? f->amplitude * io_sin(f->phase) * u
+                     : f->amplitude / f->rate * (io_cos(f->phase) - io_cos(f->rate * u + f->phase));
     } else if (f->kind == SE3DI_CHRONO_DATA) {
         value = f->values[1] * u;
         for (size_t k = 0; k + 1 < f->count; ++k) {
