@@ -304,6 +304,16 @@ static void andrews_squeezer_ends_at_the_published_angles(void)
     }
 }
 
+/* After whole periods of the elliptic integral it is where it began. */
+static void many_swings_end_where_they_began(void)
+{
+    example e = run_example("many_swings", NULL, NULL, NULL);
+    CHECK_NEAR(channel_of(&e, "pin.angle", 0), 0.0, 1e-9);
+    CHECK_NEAR(channel_of(&e, "pin.rate", 0), 0.0, 5e-7);
+    CHECK_NEAR(channel_of(&e, "energy.total", 0), 0.0, 1e-8);
+    close_example(&e);
+}
+
 /* Behind the kerb everything is as before: the tyre carries the weight and never pulled. */
 static void suspension_settles_behind_the_kerb(void)
 {
@@ -369,6 +379,7 @@ int main(void)
     RUN(axle_of_one_corner_is_symmetric);
     RUN(andrews_squeezer_ends_at_the_published_angles);
     RUN(suspension_settles_behind_the_kerb);
+    RUN(many_swings_end_where_they_began);
     RUN(overconstrained_loop_has_the_same_reactions_by_every_method);
     return check_finish();
 }

@@ -128,9 +128,9 @@ static void made_up_words_do_no_harm(void)
                                      UINT64_C(0x43E0000000000000),
                                      UINT64_C(0xFFFFFFFF),
                                      UINT64_MAX};
-    static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_BDF,
-                                      SE3D_METHOD_RADAU,  SE3D_METHOD_GENERALIZED_ALPHA,
-                                      SE3D_METHOD_RATTLE, SE3D_METHOD_CONVEX};
+    static const int32_t methods[] = {
+        SE3D_METHOD_DOP853, SE3D_METHOD_BDF,    SE3D_METHOD_RADAU, SE3D_METHOD_GENERALIZED_ALPHA,
+        SE3D_METHOD_RATTLE, SE3D_METHOD_CONVEX, SE3D_METHOD_GAUSS};
     static world w;
     static unsigned char bytes[ROOM];
     for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
