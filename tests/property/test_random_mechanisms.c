@@ -298,6 +298,18 @@ static const struct fixed {
                    {"rattle", SE3D_METHOD_RATTLE, 5e-4, 2e-3},
                    {"verlet", SE3D_METHOD_VERLET, 5e-4, 2e-3}};
 
+/* To a loose tolerance in r-omega, and to a tight one in joint coordinates. */
+static void try_gauss(uint64_t seed, const outcome *exact)
+{
+    const outcome loose = run(seed, SE3D_FORMULATION_ROMEGA, SE3D_METHOD_GAUSS, 1e-5, 0.0);
+    const outcome tight = run(seed, SE3D_FORMULATION_JOINT, SE3D_METHOD_GAUSS, 1e-9, 0.0);
+    CHECK(loose.status >= 0 && tight.status >= 0);
+    expect(seed, "gauss against dop853", gap(exact, &loose), 1e-4);
+    expect(seed, "gauss in joint coordinates", gap(exact, &tight), 1e-7);
+    expect(seed, "energy with gauss", tight.balance, 1e-8);
+    expect(seed, "momentum with gauss", tight.drift, 1e-8);
+}
+
 /* Returns 1 if the mechanism moves: one that locks at once is of no use here. */
 static int try_mechanism(uint64_t seed)
 {
@@ -313,6 +325,7 @@ static int try_mechanism(uint64_t seed)
     expect(seed, "joint coordinates against r-omega", gap(&a, &j), 1e-7);
     expect(seed, "energy in joint coordinates", j.balance, 1e-8);
     expect(seed, "momentum in joint coordinates", j.drift, 1e-9);
+    try_gauss(seed, &a);
     const outcome c = run(seed, SE3D_FORMULATION_ROMEGA, SE3D_METHOD_RADAU, 1e-9, 0.0);
     const outcome d = run(seed, SE3D_FORMULATION_RP, SE3D_METHOD_RADAU, 1e-9, 0.0);
     CHECK(c.status >= 0 && d.status >= 0);
