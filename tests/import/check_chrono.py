@@ -291,3 +291,4 @@ if __name__ == "__main__":
     loads()
     joints_leave_what_they_should()
     simulation_with_a_model()
+    print("import.chrono: passed")

@@ -21,6 +21,8 @@
              "type: LINEAR, body1: a, body2: b, location: [0, 0, 0], axis: [1, 0, 0], "            \
              "actuation_type: SPEED, actuation_function: " function "}\n")
 
+#define MUJOCO(x) "<mujoco><worldbody><body>" x "</body></worldbody></mujoco>"
+
 typedef struct bad_file {
     const char *name, *text;
     size_t line;
@@ -79,6 +81,22 @@ static const bad_file table[] = {
     {"a.urdf", "<robot></robots>", 1, {"no valid XML", "mismatched"}},
     {"a.urdf", "<robot/><robot/>", 1, {"no valid XML", NULL}},
     {"a.urdf", "<html/>", 1, {"<html>", "<robot>"}},
+    {"a.xml", "<mujoco/>", 1, {"no <body>", NULL}},
+    {"a.xml", "<mujoco><include file=\"none.xml\"/></mujoco>", 0, {"none.xml", NULL}},
+    {"a.xml", "<mujoco><include/></mujoco>", 1, {"file", NULL}},
+    {"a.xml", "<mujoco><compiler eulerseq=\"abc\"/></mujoco>", 1, {"eulerseq", NULL}},
+    {"a.xml", "<mujoco><compiler coordinate=\"global\"/></mujoco>", 1, {"coordinate", "local"}},
+    {"a.xml", MUJOCO("<joint type=\"screw\"/>"), 1, {"screw", "hinge"}},
+    {"a.xml", MUJOCO("<joint axis=\"0 0 0\"/>"), 1, {"axis", "zero"}},
+    {"a.xml", MUJOCO("<joint axis=\"0 0 nan\"/>"), 1, {"axis", "numbers"}},
+    {"a.xml", MUJOCO("<inertial pos=\"0 0 0\"/>"), 1, {"mass", NULL}},
+    {"a.xml", MUJOCO("<inertial pos=\"0 0 0\" mass=\"1\"/>"), 1, {"diaginertia", NULL}},
+    {"a.xml", MUJOCO("<geom quat=\"0 0 0 0\"/>"), 1, {"quat", NULL}},
+    {"a.xml", MUJOCO("<geom fromto=\"0 0 0 0 0 0\"/>"), 1, {"fromto", NULL}},
+    {"a.xml",
+     "<mujoco><worldbody><body/></worldbody><equality><connect body1=\"z\"/></equality></mujoco>",
+     1,
+     {"no `z`", NULL}},
     {"a.urdf", "<robot/>", 1, {"no <link>", NULL}},
     {"a.urdf",
      "<!DOCTYPE r [<!ENTITY a \"aaaa\"><!ENTITY b \"&a;&a;&a;\">]>\n<robot name=\"&b;\"/>",

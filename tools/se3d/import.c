@@ -163,7 +163,7 @@ const command_entry import_entry = {
         (const command_option[]){
             {"--output", "-o", "MODEL.yaml", "the model file; without it, it is printed"},
             {"--partial", NULL, NULL, "exit code 0 although something could not be carried"},
-            {"--format", NULL, "FORMAT", "urdf, adams or chrono, where the file does not tell"},
+            {"--format", NULL, "FORMAT", "urdf, mjcf, adams or chrono, if not told"},
             {"--merge-fixed", NULL, NULL, "links on fixed joints become one body"},
             {"--free-base", NULL, NULL, "the root of a robot may move; otherwise it is fixed"},
             {"--quiet", "-q", NULL, "list only what could not be carried"},

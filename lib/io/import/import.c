@@ -28,12 +28,13 @@ typedef struct xml_format {
     const char *option;
     const char *format;
     const char *root;
-    bool (*import)(se3di_machine *m, const se3di_xml *root);
+    bool (*import)(se3di_machine *m, se3di_xml *root);
 } xml_format;
 
-static const xml_format xml_formats[] = {{"urdf", "URDF", "robot", se3di_import_urdf}};
+static const xml_format xml_formats[] = {{"urdf", "URDF", "robot", se3di_import_urdf},
+                                         {"mjcf", "MJCF", "mujoco", se3di_import_mjcf}};
 
-#define FORMATS "urdf (.urdf), adams (.adm) or chrono (.yaml)"
+#define FORMATS "urdf (.urdf), mjcf (.xml), adams (.adm) or chrono (.yaml)"
 
 void se3d_model_import_options_init(se3d_model_import_options *options, size_t size)
 {
@@ -56,9 +57,11 @@ static bool import_xml(se3di_machine *m, const char *text, size_t length)
             return f->import(m, root);
         }
     }
-    return se3di_machine_fail(m, root->line, root->column,
-                              "<%.60s> begins no format that is known: it must be <robot> (URDF)",
-                              root->name);
+    return se3di_machine_fail(
+        m, root->line, root->column,
+        "<%.60s> begins no format that is known: it must be <robot> (URDF) or "
+        "<mujoco> (MJCF)",
+        root->name);
 }
 
 /* The first character that is no blank, '\0' if there is none. */

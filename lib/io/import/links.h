@@ -23,6 +23,7 @@ typedef struct se3di_link {
     const char *comment;
     size_t line;
     bool anchored;             /* does not move */
+    bool between;              /* two joints of one body: has no mass by intent */
     bool is_ground;            /* is the ground itself */
     se3di_frame frame;         /* in the ground */
     se3di_mass mass;           /* in the link */

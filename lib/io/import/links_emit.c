@@ -7,7 +7,8 @@
 
 /* A body between moving joints must have some mass; this much changes no result that is rounded to
  * eight digits. */
-#define LIGHT 1e-9
+#define LIGHT    1e-9
+#define LIGHTEST 1e-12 /* the other format has no body there at all */
 
 static double total_mass(const se3di_links *links)
 {
@@ -24,9 +25,12 @@ static bool give_mass(se3di_links *links, se3di_link *link, const char *name, do
 {
     se3di_machine *m = links->m;
     if (!(link->mass.mass > 0.0)) {
-        link->mass.mass = LIGHT * total;
+        link->mass.mass = (link->between ? LIGHTEST : LIGHT) * total;
         memset(link->mass.J, 0, sizeof link->mass.J);
-        link->mass.J[0] = link->mass.J[4] = link->mass.J[8] = LIGHT * total * 1e-2;
+        link->mass.J[0] = link->mass.J[4] = link->mass.J[8] = link->mass.mass * 1e-2;
+        if (link->between) {
+            return true;
+        }
         se3di_machine_note_of(m, SE3D_IMPORT_CHANGED, link->line,
                               "`%.80s` moves and has no mass; it gets %g kg, 1e-9 of all", name,
                               link->mass.mass);

@@ -351,7 +351,7 @@ static bool allocate(tree *t, const se3di_xml *root)
     return true;
 }
 
-bool se3di_import_urdf(se3di_machine *m, const se3di_xml *root)
+bool se3di_import_urdf(se3di_machine *m, se3di_xml *root)
 {
     tree t = {.links = {.m = m}};
     m->title = se3di_xml_get(root, "name");

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* MJCF: geoms, which are drawn, and weigh if their body has no mass of its own. */
+#include <string.h>
+
+#include "io/import/inertia.h"
+#include "io/import/mesh.h"
+#include "io/import/mjcf.h"
+
+#define PI 3.14159265358979323846
+
+typedef struct geom {
+    const char *type;
+    double size[3]; /* as in the file: radius, half lengths */
+    se3di_frame frame;
+} geom;
+
+/* The ends of the axis in place of pos and an orientation. */
+static bool read_ends(se3di_mjcf *f, const se3di_mjcf_element *e, geom *g)
+{
+    double ends[6];
+    double d[3];
+    int count;
+    if (!se3di_mjcf_numbers(f, e, "fromto", ends, 6, &count) || count == 0) {
+        return count == 0 && f->links.m->status >= 0;
+    }
+    for (int k = 0; k < 3; ++k) {
+        g->frame.r[k] = 0.5 * (ends[k] + ends[k + 3]);
+        d[k] = ends[k + 3] - ends[k];
+    }
+    const bool flat = strcmp(g->type, "box") == 0 || strcmp(g->type, "ellipsoid") == 0;
+    if (count != 6 || !se3di_turn_along(d, g->frame.A)) {
+        return se3di_machine_fail(f->links.m, e->node->line, e->node->column,
+                                  "fromto: must be two points that differ");
+    }
+    g->size[2] = flat ? 0.5 * se3di_length(d) : g->size[2];
+    g->size[1] = flat ? g->size[0] : 0.5 * se3di_length(d);
+    return true;
+}
+
+/* The shape with the same volume; its type is NULL if ours has no such shape. */
+static se3di_machine_shape solid_of(const geom *g)
+{
+    se3di_machine_shape shape = {.scale = 1.0, .color = {-1.0, 0.0, 0.0}, .frame = g->frame};
+    const double *s = g->size;
+    if (strcmp(g->type, "box") == 0) {
+        shape.type = "box";
+        for (int k = 0; k < 3; ++k) {
+            shape.size[k] = 2.0 * s[k];
+        }
+    } else if (strcmp(g->type, "sphere") == 0) {
+        shape.type = "sphere";
+        shape.radius = s[0];
+    } else if (strcmp(g->type, "capsule") == 0 || strcmp(g->type, "cylinder") == 0) {
+        shape.type = g->type;
+        shape.radius = s[0];
+        shape.length = 2.0 * s[1];
+    } else if (strcmp(g->type, "plane") == 0) {
+        shape.type = "plane";
+    }
+    return shape;
+}
+
+static se3di_mass ellipsoid(const double s[3], double density)
+{
+    se3di_mass mass = {.mass = density * 4.0 / 3.0 * PI * s[0] * s[1] * s[2]};
+    for (int k = 0; k < 3; ++k) {
+        const double a = s[(k + 1) % 3];
+        const double b = s[(k + 2) % 3];
+        mass.J[4 * k] = 0.2 * mass.mass * (a * a + b * b);
+    }
+    return mass;
+}
+
+static bool weigh(se3di_mjcf *f, size_t link, const se3di_mjcf_element *e, const geom *g,
+                  const se3di_machine_shape *shape)
+{
+    double density = 1000.0;
+    double given = -1.0;
+    if (!se3di_mjcf_number(f, e, "density", &density) || !se3di_mjcf_number(f, e, "mass", &given)) {
+        return false;
+    }
+    if (se3di_mjcf_is(f, e, "shellinertia", "true")) {
+        se3di_machine_note_of(f->links.m, SE3D_IMPORT_LOST, e->node->line,
+                              "shellinertia: the geom weighs as a solid");
+    }
+    const bool is_ellipsoid = strcmp(g->type, "ellipsoid") == 0;
+    density = given >= 0.0 ? 1.0 : density;
+    if (!is_ellipsoid && !shape->type && density > 0.0 && (given > 0.0 || given < 0.0)) {
+        se3di_machine_note_of(f->links.m, SE3D_IMPORT_LOST, e->node->line,
+                              "the mass of a geom of type %.40s: give the body <inertial>",
+                              g->type);
+    }
+    if (!is_ellipsoid && (!shape->type || strcmp(shape->type, "plane") == 0)) {
+        return true;
+    }
+    se3di_mass mass = is_ellipsoid ? ellipsoid(g->size, density) : se3di_solid_mass(shape, density);
+    if (given >= 0.0 && mass.mass > 0.0) {
+        for (int k = 0; k < 9; ++k) {
+            mass.J[k] *= given / mass.mass;
+        }
+        mass.mass = given;
+    }
+    if (mass.mass > 0.0) {
+        se3di_mass *whole = &f->links.list[link].mass;
+        mass = se3di_mass_of(&g->frame, &mass);
+        *whole = whole->mass > 0.0 ? se3di_mass_sum(whole, &mass) : mass;
+    }
+    return true;
+}
+
+/* The mesh of an asset: by its name, or by its file without the ending. */
+static const se3di_xml *find_mesh(const se3di_mjcf *f, const char *wanted)
+{
+    for (const se3di_xml *asset = se3di_xml_child(f->root, "asset"); asset;
+         asset = se3di_xml_again(asset)) {
+        for (const se3di_xml *at = se3di_xml_child(asset, "mesh"); at; at = se3di_xml_again(at)) {
+            const char *name = se3di_xml_get(at, "name");
+            const char *file = se3di_xml_get(at, "file");
+            const char *base = file && strrchr(file, '/') ? strrchr(file, '/') + 1 : file;
+            const char *dot = base ? strrchr(base, '.') : NULL;
+            const size_t length = dot ? (size_t)(dot - base) : 0;
+            if (name ? strcmp(name, wanted) == 0
+                     : length == strlen(wanted) && strncmp(base, wanted, length) == 0) {
+                return at;
+            }
+        }
+    }
+    return NULL;
+}
+
+static bool take_mesh(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_machine_shape *shape)
+{
+    const char *name = se3di_mjcf_get(f, e, "mesh");
+    const se3di_xml *mesh = name ? find_mesh(f, name) : NULL;
+    const char *file = mesh ? se3di_xml_get(mesh, "file") : NULL;
+    double scale[3] = {1.0, 1.0, 1.0};
+    int count;
+    if (!file) {
+        se3di_machine_note_of(f->links.m, SE3D_IMPORT_NOTE, e->node->line,
+                              "the mesh `%.80s` has no file: it is not drawn", name ? name : "");
+        return f->links.m->status >= 0;
+    }
+    const se3di_mjcf_element of = {.node = mesh};
+    if (!se3di_mjcf_numbers(f, &of, "scale", scale, 3, &count)) {
+        return false;
+    }
+    se3di_mesh_take(f->links.m, mesh->line, f->mesh_folder, file, scale, shape);
+    return f->links.m->status >= 0;
+}
+
+static bool read_geom(se3di_mjcf *f, const se3di_mjcf_element *e, geom *g)
+{
+    const char *type = se3di_mjcf_get(f, e, "type");
+    int count;
+    g->type = type ? type : se3di_mjcf_get(f, e, "mesh") ? "mesh" : "sphere";
+    return se3di_mjcf_numbers(f, e, "size", g->size, 3, &count) &&
+           se3di_mjcf_frame(f, e, &g->frame) && read_ends(f, e, g);
+}
+
+static bool is_zero(se3di_mjcf *f, const se3di_mjcf_element *e, const char *name)
+{
+    const char *text = se3di_mjcf_get(f, e, name);
+    return text && strcmp(text, "0") == 0;
+}
+
+static void color(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_machine_shape *shape)
+{
+    double rgba[4];
+    int count;
+    if (se3di_mjcf_numbers(f, e, "rgba", rgba, 4, &count) && count >= 3) {
+        for (int k = 0; k < 3; ++k) {
+            shape->color[k] = rgba[k] < 0.0 ? 0.0 : rgba[k] > 1.0 ? 1.0 : rgba[k];
+        }
+    }
+}
+
+bool se3di_mjcf_geom(se3di_mjcf *f, size_t link, const se3di_mjcf_element *e,
+                     const se3di_frame *around, bool weighs)
+{
+    geom g = {.size = {0.0, 0.0, 0.0}};
+    if (!read_geom(f, e, &g)) {
+        return false;
+    }
+    g.frame = se3di_frame_of(around, &g.frame);
+    se3di_machine_shape shape = solid_of(&g);
+    if (weighs && !weigh(f, link, e, &g, &shape)) {
+        return false;
+    }
+    f->touching += !is_zero(f, e, "contype") || !is_zero(f, e, "conaffinity") ? 1 : 0;
+    if (strcmp(g.type, "mesh") == 0 && !take_mesh(f, e, &shape)) {
+        return false;
+    }
+    const bool is_plane = shape.type && strcmp(shape.type, "plane") == 0;
+    const bool is_box = shape.type && strcmp(shape.type, "box") == 0;
+    const bool has_size = is_box ? shape.size[0] > 0.0 && shape.size[1] > 0.0 && shape.size[2] > 0.0
+                                 : is_plane || shape.file || shape.radius > 0.0;
+    if (!shape.type || !has_size) {
+        return true; /* nothing that can be drawn */
+    }
+    color(f, e, &shape);
+    se3di_machine_shape *to = se3di_parts_add_shape(f->links.m, &f->links.list[link].parts);
+    if (to) {
+        *to = shape; /* the last of its list: it has no next */
+    }
+    return to != NULL;
+}
