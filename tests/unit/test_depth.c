@@ -296,6 +296,12 @@ static void meshes_that_bulge_are_as_deep_as_what_is_below_them(void)
     }
 }
 
+/* Beneath an edge of the dome that it leaves last, overlapping only triangles about it. */
+static void sharp_hulls_are_as_deep_as_what_is_below_the_dome(void)
+{
+    check_surface(1, SURFACE_DOME, poses_count(600), 0);
+}
+
 /* Edges at an angle of 1e-8 have a product, and the nearest face of the polytope is a sliver. A way
  * off a corner of the ridge that leads into its other half by 5e-7 rad is not a way off it. */
 static void solids_nearly_parallel_to_a_ridge_are_as_deep_as_others(void)
@@ -334,6 +340,7 @@ int main(void)
     RUN(convex_meshes_are_as_deep_as_what_they_enclose);
     RUN(overlaps_and_normals_are_those_of_the_least_translation);
     RUN(meshes_that_bulge_are_as_deep_as_what_is_below_them);
+    RUN(sharp_hulls_are_as_deep_as_what_is_below_the_dome);
     RUN(solids_nearly_parallel_to_a_ridge_are_as_deep_as_others);
     RUN(a_cylinder_along_a_block_is_not_held_by_a_sliver);
     return check_finish();

@@ -374,25 +374,42 @@ static int is_shown(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
     return 1;
 }
 
+/* Whether a contact is with the piece that a way leads off. */
+static int is_of_piece(const se3di_mesh_meeting *m, const se3di_mesh_way *way,
+                       const se3di_contact_point *p)
+{
+    se3di_mesh_face f;
+    double d[3];
+    se3di_sub(p->point, m->mesh->at->x, d);
+    se3di_mul_transposed(m->mesh->at->R, d, f.corner);
+    se3di_copy(f.corner, f.middle);
+    se3di_mul_transposed(m->mesh->at->R, p->normal, d);
+    se3di_scale(-1.0, d, f.n);
+    return are_one(m, &way->face, way->at, &f, f.corner);
+}
+
 /* No contact with a piece is deeper than its least way. */
 static void limit(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
 {
     for (uint32_t k = 0; k < m->manifold->count; ++k) {
         se3di_contact_point *p = &m->manifold->points[k];
-        se3di_mesh_face f;
-        double d[3];
-        if (!(p->overlap > way->depth)) {
-            continue;
-        }
-        se3di_sub(p->point, m->mesh->at->x, d);
-        se3di_mul_transposed(m->mesh->at->R, d, f.corner);
-        se3di_copy(f.corner, f.middle);
-        se3di_mul_transposed(m->mesh->at->R, p->normal, d);
-        se3di_scale(-1.0, d, f.n);
-        if (are_one(m, &way->face, way->at, &f, f.corner)) {
+        if (p->overlap > way->depth && is_of_piece(m, way, p)) {
             p->overlap = way->depth;
         }
     }
+}
+
+/* Whether all that touches is of the piece that a way leads off, and none is as deep: a sharp solid
+ * may be beneath the place that it leaves last and overlap only what is about it. */
+static int is_beyond_all(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
+{
+    for (uint32_t k = 0; k < m->manifold->count; ++k) {
+        const se3di_contact_point *p = &m->manifold->points[k];
+        if (!(p->overlap < way->depth && is_of_piece(m, way, p))) {
+            return 0;
+        }
+    }
+    return m->manifold->count > 0;
 }
 
 /* Off parts of the surface that the solid overlaps: a face, or one of those at an edge. */
@@ -402,7 +419,8 @@ static void keep_met(se3di_mesh_meeting *m)
     for (int k = 0; k < m->way_count; ++k) {
         const se3di_mesh_way way = m->ways[k];
         if (se3di_mesh_overlaps(m, way.triangle) ||
-            (way.beyond != way.triangle && se3di_mesh_overlaps(m, way.beyond))) {
+            (way.beyond != way.triangle && se3di_mesh_overlaps(m, way.beyond)) ||
+            is_beyond_all(m, &way)) {
             m->ways[kept++] = way;
         }
     }
