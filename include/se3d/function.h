@@ -23,6 +23,31 @@ extern "C" {
 typedef se3d_status (*se3d_function_callback)(void *ctx, const double *x, double jet[3],
                                               double *gradient);
 
+/* What a number of the state may be. @since 0.1 */
+typedef enum se3d_signal_kind {
+    SE3D_SIGNAL_JOINT_COORDINATE = 1, /* of `joint`; `component`: se3d_joint_coordinate [rad, m] */
+    SE3D_SIGNAL_JOINT_RATE = 2,       /* its rate [rad/s, m/s] */
+    SE3D_SIGNAL_FORCE_COORDINATE = 3, /* of `force`: length of a tsda, angle of an rsda, what a
+                                         friction, stop or effort acts along [m, rad] */
+    SE3D_SIGNAL_FORCE_RATE = 4,       /* its rate [m/s, rad/s] */
+    SE3D_SIGNAL_POINT_POSITION = 5,   /* of `point` of `body`, `component` 0 ... 2: x, y, z in the
+                                         ground frame [m] */
+    SE3D_SIGNAL_POINT_VELOCITY = 6,   /* its velocity [m/s] */
+    SE3D_SIGNAL_ANGULAR_VELOCITY = 7, /* of `body`, body frame, `component` 0 ... 2 [rad/s] */
+    SE3D_SIGNAL_ORIENTATION = 8       /* of `body`, `component` 0 ... 3: Euler parameter */
+} se3d_signal_kind;
+
+/* A number of the state that a function depends on: a coordinate, a position, or a rate of one.
+ * Members that the kind does not name are not looked at. @since 0.1 */
+typedef struct se3d_signal {
+    int32_t kind;          /* se3d_signal_kind */
+    int32_t component;     /* which of its numbers */
+    se3d_body body;        /* of a point, an angular velocity, an orientation */
+    se3d_constraint joint; /* of a coordinate, or its rate */
+    se3d_force force;      /* of a coordinate, or its rate */
+    double point[3];       /* body frame [m] */
+} se3d_signal;
+
 /* The definition of a function: exactly one of `expression`, `compiled`, `callback`, a table, or
  * the constant. @since 0.1 */
 typedef struct se3d_function_def {
@@ -39,6 +64,10 @@ typedef struct se3d_function_def {
     size_t table_count;    /* at least 2 */
     double constant;       /* [any unit], used if nothing else is given */
     const se3d_expression *compiled; /* copied; as `expression`, of variable_count variables */
+    const se3d_signal *signals; /* [signal_count] numbers of the state, copied: the last variables
+                                   of the function, which may only be the law of a force element (h,
+                                   function). Its elements live as long as it. */
+    size_t signal_count;        /* default 0, at most variable_count */
 } se3d_function_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_function_def_default. @since 0.1 */
@@ -53,7 +82,7 @@ static inline se3d_function_def se3d_function_def_default(void)
 }
 
 /* Create a function. @return OK, NULL, INVALID_ARGUMENT, EXPRESSION (the message has the
- * column), NO_MEMORY. @since 0.1 */
+ * column), STALE_HANDLE (of a signal), NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *def,
                                           se3d_function *function);
 

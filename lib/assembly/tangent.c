@@ -6,6 +6,7 @@
 #include "assembly/left_out.h"
 #include "assembly/loads.h"
 #include "base/sort.h"
+#include "force/signal.h"
 #include "joint/user.h"
 #include "math/inertia.h"
 #include "math/quaternion.h"
@@ -68,6 +69,23 @@ static void list_contacts(se3di_tangent *tangent, size_t *count)
     }
 }
 
+/* Bodies of a force element with those that its functions depend on. */
+static void note_signals(se3di_tangent *tangent, const se3di_force *force, size_t *count)
+{
+    const se3di_model *model = tangent->assembly->model;
+    for (int c = 0; c < 3; ++c) {
+        const se3di_function *function =
+            force->function[c] >= 0 ? &model->functions[force->function[c]] : NULL;
+        for (uint32_t s = 0; function && s < function->signal_count; ++s) {
+            uint32_t bodies[2];
+            se3di_signal_bodies(model, &function->signals[s], bodies);
+            for (size_t k = 0; k < 4; ++k) {
+                note_pair(tangent, k < 2 ? force->body_i : force->body_j, bodies[k % 2], count);
+            }
+        }
+    }
+}
+
 /* Count the pairs, and write them if there is room. */
 static size_t list_pairs(se3di_tangent *tangent)
 {
@@ -76,6 +94,7 @@ static size_t list_pairs(se3di_tangent *tangent)
     list_contacts(tangent, &count);
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         note_pair(tangent, model->forces[k].body_i, model->forces[k].body_j, &count);
+        note_signals(tangent, &model->forces[k], &count);
     }
     for (size_t k = 0; k < model->term_count; ++k) {
         if (model->terms[k].type != SE3DI_PRIMITIVE_CD) {
@@ -335,6 +354,23 @@ static void add_load(se3di_tangent *tangent, const uint32_t bodies[2], const dou
     }
 }
 
+/* What one function of the element depends on elsewhere. */
+static se3d_status add_signals(se3di_tangent *tangent, const se3di_force *force, int c, double t)
+{
+    const se3di_model *model = tangent->assembly->model;
+    const se3di_function *function = &model->functions[force->function[c]];
+    const uint32_t rows[2] = {force->body_i, force->body_j};
+    for (uint32_t s = 0; s < function->signal_count; ++s) {
+        double K[288], D[288];
+        uint32_t columns[2];
+        SE3DI_TRY(se3di_signal_tangent(model, force, c, s, t, columns, K, D));
+        for (size_t k = 0; k < 4; ++k) {
+            add_force_block(tangent, rows[k / 2], columns[k % 2], K + 72 * k, D + 72 * k);
+        }
+    }
+    return SE3D_OK;
+}
+
 static se3d_status add_forces(se3di_tangent *tangent, double t)
 {
     const se3di_model *model = tangent->assembly->model;
@@ -345,6 +381,11 @@ static se3d_status add_forces(se3di_tangent *tangent, double t)
         effect.wants_derivative = 1;
         SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
         add_load(tangent, bodies, effect.wrench, effect.K, effect.D);
+        for (int c = 0; c < 3 && !tangent->is_convex; ++c) {
+            if (force->function[c] >= 0) {
+                SE3DI_TRY(add_signals(tangent, force, c, t));
+            }
+        }
     }
     return SE3D_OK;
 }

@@ -6,7 +6,7 @@
  *
  * u is a number that is set between steps, or a function of (t, x, xdot). A number needs no
  * coordinate: no angle is measured and no turn counted, only g.  docs/theory/springs.md */
-#include "force/measure.h"
+#include "force/signal.h"
 
 static se3d_status eval_effort(const se3di_model *model, const se3di_force *force, double t,
                                se3di_effect *effect)
@@ -21,9 +21,10 @@ static se3d_status eval_effort(const se3di_model *model, const se3di_force *forc
     if (force->function[0] >= 0) {
         const double variables[3] = {t, measure.value, measure.rate};
         double jet[3] = {0.0, 0.0, 0.0};
-        double gradient[SE3D_FUNCTION_VARIABLES_MAX] = {0.0, 0.0, 0.0, 0.0};
-        SE3DI_TRY(se3di_function_eval(&model->functions[force->function[0]], variables, jet,
-                                      effect->wants_derivative ? gradient : NULL));
+        double gradient[SE3D_FUNCTION_VARIABLES_MAX] = {0.0};
+        SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], variables, jet,
+                                 effect->wants_derivative ? gradient : NULL));
+        se3di_law_keep_own(&model->functions[force->function[0]], gradient);
         law = (se3di_law){-jet[0], -gradient[1], -gradient[2]};
     }
     se3di_effect_add(effect, &measure, &law);

@@ -6,7 +6,7 @@
  *     derivatives to dtheta:  A^T y -> tilde(A^T y),  A y -> -A tilde(y)
  *
  * docs/theory/loads.md */
-#include "force/force.h"
+#include "force/signal.h"
 #include "math/vec3.h"
 
 static se3d_status get_value(const se3di_model *model, const se3di_force *force, double t,
@@ -15,7 +15,7 @@ static se3d_status get_value(const se3di_model *model, const se3di_force *force,
     for (int c = 0; c < 3; ++c) {
         double jet[3] = {force->value[c], 0.0, 0.0};
         if (force->function[c] >= 0) {
-            SE3DI_TRY(se3di_function_eval(&model->functions[force->function[c]], &t, jet, NULL));
+            SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[c]], &t, jet, NULL));
         }
         value[c] = jet[0];
     }

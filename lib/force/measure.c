@@ -120,6 +120,21 @@ int se3di_measure_force(const se3di_model *model, const se3di_force *force, int 
     return 1;
 }
 
+void se3di_measure_joint(const se3di_model *model, uint32_t joint, int32_t coordinate, int wants_H,
+                         se3di_measure *measure)
+{
+    const se3di_constraint *constraint = &model->constraints[joint];
+    se3di_term term;
+    if (coordinate == SE3D_JOINT_COORDINATE_ANGLE) {
+        term = model->angles[constraint->angle].term;
+        term.angle = constraint->angle;
+        term.coefficient = 1.0;
+    } else {
+        se3di_displacement_term_init(&term, &constraint->frames, constraint->bodies);
+    }
+    se3di_measure_term(model, &term, wants_H, measure);
+}
+
 /* g . qddot of the bodies of the element. */
 static double along(const se3di_model *model, const se3di_force *force, const double g[12])
 {

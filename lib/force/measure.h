@@ -35,6 +35,10 @@ void se3di_measure_gradient(const se3di_model *model, const se3di_force *force,
 int se3di_measure_force(const se3di_model *model, const se3di_force *force, int wants_H,
                         se3di_measure *measure);
 
+/* The coordinate of a joint (se3d_joint_coordinate). */
+void se3di_measure_joint(const se3di_model *model, uint32_t joint, int32_t coordinate, int wants_H,
+                         se3di_measure *measure);
+
 /* Second derivative of the coordinate of a friction or stop on a joint, at the accelerations of the
  * model. */
 double se3di_measure_acceleration(const se3di_model *model, const se3di_force *force);

@@ -52,7 +52,8 @@ static double shorten(const se3di_model *model, int32_t index, double t, double 
     const se3di_function *function = index >= 0 ? &model->functions[index] : NULL;
     double part = h;
     int halves = 0;
-    if (!function || function->callback || !(function->expression || function->table)) {
+    if (!function || function->callback || function->signal_count > 0 ||
+        !(function->expression || function->table)) {
         return h;
     }
     while (halves < HALVES_MAX && t + part > t && !is_told(function, t, part)) {

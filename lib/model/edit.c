@@ -5,6 +5,7 @@
 #include "model/model.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 /* Grow one typed array of the model. */
@@ -159,6 +160,37 @@ static void lower_signed(int32_t *index, uint32_t removed)
     *index -= *index >= 0 && (uint32_t)*index > removed;
 }
 
+/* The same in all signals of functions: the index at `offset`. */
+static void lower_signals(se3di_model *model, size_t offset, uint32_t removed)
+{
+    for (size_t k = 0; k < model->function_slots.count; ++k) {
+        for (uint32_t s = 0; s < model->functions[k].signal_count; ++s) {
+            uint32_t index;
+            char *at = (char *)&model->functions[k].signals[s] + offset;
+            memcpy(&index, at, sizeof index);
+            if (index != SE3DI_NO_INDEX) {
+                lower(&index, removed);
+                memcpy(at, &index, sizeof index);
+            }
+        }
+    }
+}
+
+/* Count (+1) or discount (-1) the elements that the signals of a function are of. */
+static void count_signal_users(se3di_model *model, const se3di_function *function, uint32_t by)
+{
+    for (uint32_t k = 0; k < function->signal_count; ++k) {
+        const se3di_signal *s = &function->signals[k];
+        model->bodies[s->body].users += by;
+        if (s->joint != SE3DI_NO_INDEX) {
+            model->constraints[s->joint].users += by;
+        }
+        if (s->force != SE3DI_NO_INDEX) {
+            model->forces[s->force].users += by;
+        }
+    }
+}
+
 void se3di_model_remove_body(se3di_model *model, uint32_t body)
 {
     size_t count = model->body_slots.count;
@@ -190,6 +222,7 @@ void se3di_model_remove_body(se3di_model *model, uint32_t body)
     for (size_t k = 0; k < model->shape_slots.count; ++k) {
         lower(&model->shapes[k].body, body);
     }
+    lower_signals(model, offsetof(se3di_signal, body), body);
     se3di_model_touch(model);
 }
 
@@ -226,12 +259,14 @@ se3d_status se3di_model_add_function(se3di_model *model, const se3di_function *f
     SE3DI_TRY(se3di_slots_reserve(&model->function_slots, &model->allocator));
     model->functions[count] = *function;
     model->functions[count].users = 0;
+    count_signal_users(model, function, 1);
     *handle = se3di_slots_add(&model->function_slots);
     return SE3D_OK;
 }
 
 void se3di_model_remove_function(se3di_model *model, uint32_t function)
 {
+    count_signal_users(model, &model->functions[function], UINT32_MAX);
     se3di_function_release(&model->allocator, &model->functions[function]);
     close_gap(model->functions, model->function_slots.count, function, 1, sizeof *model->functions);
     se3di_slots_remove(&model->function_slots, function);
@@ -366,6 +401,7 @@ void se3di_model_remove_constraint(se3di_model *model, uint32_t index)
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         lower_signed(&model->forces[k].joint, index);
     }
+    lower_signals(model, offsetof(se3di_signal, joint), index);
     if (gone.angle >= 0) {
         remove_angle(model, (uint32_t)gone.angle);
     }
@@ -422,6 +458,7 @@ void se3di_model_remove_force(se3di_model *model, uint32_t force)
     char *name = model->forces[force].name;
     close_gap(model->forces, model->force_slots.count, force, 1, sizeof *model->forces);
     remove_named(model, &model->force_slots, force, 0, name);
+    lower_signals(model, offsetof(se3di_signal, force), force);
     if (own >= 0) {
         remove_angle(model, (uint32_t)own);
     }

@@ -11,6 +11,8 @@ void se3di_function_release(const se3d_allocator *allocator, se3di_function *fun
 {
     se3d_expression_destroy(function->expression);
     se3di_free(allocator, function->table, 3 * function->table_count, sizeof *function->table);
+    se3di_free(allocator, function->signals, function->signal_count, sizeof *function->signals);
+    function->signals = NULL;
     function->expression = NULL;
     function->table = NULL;
 }
@@ -19,8 +21,10 @@ se3d_status se3di_function_own(const se3d_allocator *allocator, se3di_function *
 {
     const se3d_expression *expression = function->expression;
     const double *table = function->table;
+    const se3di_signal *signals = function->signals;
     function->expression = NULL;
     function->table = NULL;
+    function->signals = NULL;
     if (expression) {
         SE3DI_TRY(se3di_expression_clone(expression, allocator, &function->expression));
     }
@@ -30,6 +34,13 @@ se3d_status se3di_function_own(const se3d_allocator *allocator, se3di_function *
             return SE3D_ERR_NO_MEMORY;
         }
         memcpy(function->table, table, 3 * function->table_count * sizeof *table);
+    }
+    if (signals) {
+        function->signals = se3di_alloc(allocator, function->signal_count, sizeof *signals);
+        if (!function->signals) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+        memcpy(function->signals, signals, function->signal_count * sizeof *signals);
     }
     return SE3D_OK;
 }

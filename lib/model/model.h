@@ -44,6 +44,16 @@ typedef struct se3di_marker {
     double p[4]; /* marker -> body */
 } se3di_marker;
 
+/* A number of the state, see se3d_signal. */
+typedef struct se3di_signal {
+    int32_t kind, component;
+    uint32_t body;  /* dense, as the others; 0 if the kind has none */
+    uint32_t joint; /* constraint, SE3DI_NO_INDEX: none */
+    uint32_t force; /* SE3DI_NO_INDEX: none */
+    uint32_t reserved;
+    double point[3];
+} se3di_signal;
+
 typedef struct se3di_function {
     se3d_expression *expression; /* NULL: another kind */
     se3d_function_callback callback;
@@ -53,6 +63,9 @@ typedef struct se3di_function {
     double constant;
     uint32_t variable_count;
     uint32_t users;
+    se3di_signal *signals; /* [signal_count] the last of its variables; NULL: none */
+    uint32_t signal_count;
+    uint32_t reserved;
 } se3di_function;
 
 typedef struct se3di_row {

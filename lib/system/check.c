@@ -135,8 +135,8 @@ se3d_status se3di_find_force(se3d_system *system, const char *what, se3d_force h
     return find(system, &system->model.force_slots, what, SE3DI_HANDLE(handle), index);
 }
 
-se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_function function,
-                                uint32_t variables, int32_t *index)
+static se3d_status find_function(se3d_system *system, const char *what, se3d_function function,
+                                 uint32_t variables, int takes_signals, int32_t *index)
 {
     *index = -1;
     if (function.index1 == 0 && function.generation == 0) {
@@ -144,7 +144,14 @@ se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_func
     }
     uint32_t dense;
     SE3DI_TRY(find(system, &system->model.function_slots, what, SE3DI_HANDLE(function), &dense));
-    uint32_t count = system->model.functions[dense].variable_count;
+    const se3di_function *found = &system->model.functions[dense];
+    const uint32_t count = found->variable_count - found->signal_count;
+    if (found->signal_count > 0 && !takes_signals) {
+        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
+                             " is a function of %u signals, which only the law of a force element "
+                             "(h, function) may be",
+                             found->signal_count);
+    }
     if (count > variables) {
         return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
                              " is a function of %u variables, at most %u are allowed here", count,
@@ -152,6 +159,18 @@ se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_func
     }
     *index = (int32_t)dense;
     return SE3D_OK;
+}
+
+se3d_status se3di_find_function(se3d_system *system, const char *what, se3d_function function,
+                                uint32_t variables, int32_t *index)
+{
+    return find_function(system, what, function, variables, 0, index);
+}
+
+se3d_status se3di_find_law(se3d_system *system, const char *what, se3d_function function,
+                           uint32_t variables, int32_t *index)
+{
+    return find_function(system, what, function, variables, 1, index);
 }
 
 se3d_status se3di_check_name(se3d_system *system, const char *name)

@@ -64,7 +64,7 @@ se3d_status se3d_force_create_tsda(se3d_system *system, const se3d_tsda_def *def
     SE3DI_TRY(se3di_find_body(system, "body_j", full.body_j, &data.body_j));
     SE3DI_TRY(se3di_check_finites(system, "point_i", full.point_i, 3));
     SE3DI_TRY(se3di_check_finites(system, "point_j", full.point_j, 3));
-    SE3DI_TRY(se3di_find_function(system, "h", full.h, 3, &data.function[0]));
+    SE3DI_TRY(se3di_find_law(system, "h", full.h, 3, &data.function[0]));
     SE3DI_TRY(se3di_find_function(system, "spring", full.spring, 1, &data.function[3]));
     SE3DI_TRY(se3di_find_function(system, "damper", full.damper, 1, &data.function[4]));
     data.preload = full.preload;
@@ -153,7 +153,7 @@ se3d_status se3d_force_create_rsda(se3d_system *system, const se3d_rsda_def *def
     SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
     se3di_force data = se3di_force_blank(SE3DI_FORCE_RSDA, full.name);
     se3di_angle angle;
-    SE3DI_TRY(se3di_find_function(system, "h", full.h, 3, &data.function[0]));
+    SE3DI_TRY(se3di_find_law(system, "h", full.h, 3, &data.function[0]));
     SE3DI_TRY(se3di_find_function(system, "spring", full.spring, 1, &data.function[3]));
     SE3DI_TRY(se3di_find_function(system, "damper", full.damper, 1, &data.function[4]));
     data.k = full.k;
@@ -181,7 +181,7 @@ static se3d_status create_load(se3d_system *system, const se3d_load_def *def, in
     SE3DI_TRY(se3di_check_finites(system, "point", full.point, 3));
     SE3DI_TRY(se3di_check_finites(system, "value", full.value, 3));
     for (int c = 0; c < 3; ++c) {
-        SE3DI_TRY(se3di_find_function(system, "function", full.function[c], 1, &data.function[c]));
+        SE3DI_TRY(se3di_find_law(system, "function", full.function[c], 1, &data.function[c]));
     }
     data.body_i = 0;
     data.in_body_frame = full.in_body_frame != 0;
@@ -206,6 +206,10 @@ se3d_status se3d_force_destroy(se3d_system *system, se3d_force force)
     SE3DI_EDIT(system);
     uint32_t index;
     SE3DI_TRY(se3di_find_force(system, "force", force, &index));
+    if (system->model.forces[index].users > 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_IN_USE, "the force is used by %u signals of functions",
+                          system->model.forces[index].users);
+    }
     se3di_model_remove_force(&system->model, index);
     return SE3D_OK;
 }

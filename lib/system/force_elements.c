@@ -152,7 +152,7 @@ se3d_status se3d_force_create_effort(se3d_system *system, const se3d_effort_def 
     se3di_force data = se3di_force_blank(SE3DI_FORCE_EFFORT, full.name);
     SE3DI_TRY(find_coordinate(system, full.joint, full.coordinate, &data));
     SE3DI_TRY(se3di_check_finite(system, "value", full.value));
-    SE3DI_TRY(se3di_find_function(system, "function", full.function, 3, &data.function[0]));
+    SE3DI_TRY(se3di_find_law(system, "function", full.function, 3, &data.function[0]));
     data.value[0] = full.value;
     return se3di_force_add(system, &data, force);
 }

@@ -2,6 +2,7 @@
 /* Functions of time and of force variables. */
 #include "model/function.h"
 #include "expression/expression.h"
+#include "force/force.h"
 #include "system/system_internal.h"
 
 #include <math.h>
@@ -30,6 +31,11 @@ static se3d_status check_kind(se3d_system *system, const se3d_function_def *def)
     if (def->variable_count > 1 && !def->variables && def->expression) {
         return SE3DI_FAIL(system, SE3D_ERR_NULL, "variables is NULL, must name %zu variables",
                           def->variable_count);
+    }
+    if (def->signal_count > def->variable_count) {
+        return SE3DI_FAIL_OF(system, "signal_count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be at most variable_count = %zu", def->signal_count,
+                             def->variable_count);
     }
     if (def->compiled && se3di_expression_variable_count(def->compiled) != def->variable_count) {
         return SE3DI_FAIL_OF(system, "compiled", SE3D_ERR_INVALID_ARGUMENT,
@@ -114,6 +120,114 @@ static se3d_status make_table(se3d_system *system, const se3d_function_def *def,
     return SE3D_OK;
 }
 
+/* Numbers that a kind of signals has; 0: there is no such kind. */
+static int32_t component_count(const se3d_signal *signal)
+{
+    switch (signal->kind) {
+    case SE3D_SIGNAL_JOINT_COORDINATE:
+    case SE3D_SIGNAL_JOINT_RATE:
+        return 2;
+    case SE3D_SIGNAL_FORCE_COORDINATE:
+    case SE3D_SIGNAL_FORCE_RATE:
+        return INT32_MAX;
+    case SE3D_SIGNAL_POINT_POSITION:
+    case SE3D_SIGNAL_POINT_VELOCITY:
+    case SE3D_SIGNAL_ANGULAR_VELOCITY:
+        return 3;
+    case SE3D_SIGNAL_ORIENTATION:
+        return 4;
+    default:
+        return 0;
+    }
+}
+
+static se3d_status take_joint(se3d_system *system, const se3d_signal *signal, se3di_signal *out)
+{
+    SE3DI_TRY(se3di_find_constraint(system, "signal joint", signal->joint, &out->joint));
+    const se3di_constraint *joint = &system->model.constraints[out->joint];
+    const int angle = signal->component == SE3D_JOINT_COORDINATE_ANGLE;
+    if (angle ? joint->angle < 0 : !joint->has_displacement) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "signal joint %s is a %s, must have %s",
+                          joint->name ? joint->name : "without a name", joint->type,
+                          angle ? "an angle" : "a displacement");
+    }
+    return SE3D_OK;
+}
+
+static se3d_status take_force(se3d_system *system, const se3d_signal *signal, se3di_signal *out)
+{
+    SE3DI_TRY(se3di_find_force(system, "signal force", signal->force, &out->force));
+    const se3di_force *force = &system->model.forces[out->force];
+    if (!(se3di_force_class_of(force)->traits & SE3DI_FORCE_IS_SCALAR)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "signal force is a %s, must be one along a coordinate: tsda, rsda, "
+                          "friction, stop, effort",
+                          se3di_force_class_of(force)->name);
+    }
+    return SE3D_OK;
+}
+
+static se3d_status take_signal(se3d_system *system, const se3d_signal *signal, se3di_signal *out)
+{
+    const int32_t count = component_count(signal);
+    *out = (se3di_signal){.kind = signal->kind,
+                          .component = signal->component,
+                          .joint = SE3DI_NO_INDEX,
+                          .force = SE3DI_NO_INDEX};
+    if (count == 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "signal kind = %d, must be an se3d_signal_kind, 1 to %d", signal->kind,
+                          SE3D_SIGNAL_ORIENTATION);
+    }
+    if (count < INT32_MAX && (signal->component < 0 || signal->component >= count)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "signal component = %d, must be from 0 to %d", signal->component,
+                          count - 1);
+    }
+    if (signal->kind <= SE3D_SIGNAL_JOINT_RATE) {
+        return take_joint(system, signal, out);
+    }
+    if (signal->kind <= SE3D_SIGNAL_FORCE_RATE) {
+        return take_force(system, signal, out);
+    }
+    memcpy(out->point, signal->point, sizeof out->point);
+    SE3DI_TRY(se3di_find_body(system, "signal body", signal->body, &out->body));
+    return se3di_check_finites(system, "signal point", signal->point, 3);
+}
+
+static se3d_status make_signals(se3d_system *system, const se3d_function_def *def,
+                                se3di_function *function)
+{
+    if (def->signal_count == 0) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_check_pointer(system, "signals", def->signals));
+    function->signals =
+        se3di_alloc(&system->model.allocator, def->signal_count, sizeof *function->signals);
+    if (!function->signals) {
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for %zu signals",
+                          def->signal_count);
+    }
+    function->signal_count = (uint32_t)def->signal_count;
+    for (size_t k = 0; k < def->signal_count; ++k) {
+        SE3DI_TRY(take_signal(system, &def->signals[k], &function->signals[k]));
+    }
+    return SE3D_OK;
+}
+
+static se3d_status make_content(se3d_system *system, const se3d_function_def *def,
+                                se3di_function *function)
+{
+    if (def->expression) {
+        return make_expression(system, def, function);
+    }
+    if (def->compiled) {
+        return copy_expression(system, def, function);
+    }
+    return def->table_x ? make_table(system, def, function) : SE3D_OK;
+}
+
 se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *def,
                                  se3d_function *function)
 {
@@ -125,12 +239,13 @@ se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *d
                            .ctx = full.ctx,
                            .constant = full.constant,
                            .variable_count = (uint32_t)full.variable_count};
-    if (full.expression) {
-        SE3DI_TRY(make_expression(system, &full, &data));
-    } else if (full.compiled) {
-        SE3DI_TRY(copy_expression(system, &full, &data));
-    } else if (full.table_x) {
-        SE3DI_TRY(make_table(system, &full, &data));
+    se3d_status status = make_signals(system, &full, &data);
+    if (status >= 0) {
+        status = make_content(system, &full, &data);
+    }
+    if (status < 0) {
+        se3di_function_release(&system->model.allocator, &data);
+        return status;
     }
     se3di_handle handle;
     if (se3di_model_add_function(&system->model, &data, &handle) < 0) {

@@ -23,6 +23,73 @@ static void random_vector(double *v, int count, double scale)
     }
 }
 
+/* Of another sequence: the elements beside them stay as they are. */
+static void law_vector(double *v, int count, double scale)
+{
+    static uint64_t law_seed = 987654321987654321u;
+    for (int k = 0; k < count; ++k) {
+        v[k] = scale * check_random(&law_seed);
+    }
+}
+
+/* A law of time, of `own` variables of its element, and of two kinds of signals, with a product of
+ * both. */
+static se3d_function make_law(se3d_system *system, const se3d_body body[BODIES + 1], int32_t kind,
+                              size_t own, se3d_force spring)
+{
+    static const char *const names[] = {"t", "x", "v"};
+    const char *variables[5] = {"a", "b", "a", "b", "b"};
+    se3d_signal signals[2];
+    se3d_function function;
+    se3d_function_def def = se3d_function_def_default();
+    memset(signals, 0, sizeof signals);
+    for (int32_t s = 0; s < 2; ++s) {
+        signals[s].kind = (kind + 3 * s) % SE3D_SIGNAL_ORIENTATION + 1;
+        signals[s].component = signals[s].kind <= SE3D_SIGNAL_JOINT_RATE ? s : (kind + s) % 3;
+        signals[s].body = body[1 + (kind + s) % BODIES];
+        signals[s].force = spring;
+        law_vector(signals[s].point, 3, 0.5);
+        CHECK(se3d_system_get_constraint(system, 2, &signals[s].joint) == SE3D_OK);
+    }
+    for (size_t k = 0; k < own + 2; ++k) {
+        variables[k] = k < own ? names[k] : k == own ? "a" : "b";
+    }
+    def.expression = own == 3 ? "0.3*sin(t) + 0.2*a*b + 0.1*a^2*x + 0.1*b*v - 0.04*b^2"
+                              : "0.3*sin(t) + 0.2*a*b + 0.1*a^2 - 0.04*b^2 + 0.1*b";
+    def.variables = variables;
+    def.variable_count = own + 2;
+    def.signals = signals;
+    def.signal_count = 2;
+    CHECK(se3d_function_create(system, &def, &function) == SE3D_OK);
+    return function;
+}
+
+/* Every kind of signals in every element whose law may have them. */
+static void add_laws(se3d_system *system, const se3d_body body[BODIES + 1], se3d_force spring)
+{
+    se3d_force force;
+    for (int32_t kind = 0; kind < SE3D_SIGNAL_ORIENTATION; ++kind) {
+        se3d_load_def load = se3d_load_def_default();
+        se3d_tsda_def actuator = se3d_tsda_def_default();
+        se3d_effort_def effort = se3d_effort_def_default();
+        load.body = body[1 + kind % BODIES];
+        load.in_body_frame = kind % 2;
+        law_vector(load.point, 3, 0.5);
+        load.function[kind % 3] = make_law(system, body, kind, 1, spring);
+        CHECK(se3d_force_create_load(system, &load, &force) == SE3D_OK);
+        CHECK(se3d_force_create_torque(system, &load, &force) == SE3D_OK);
+        actuator.body_i = body[kind % 2]; /* one of them is the ground */
+        actuator.body_j = body[2];
+        law_vector(actuator.point_i, 3, 0.5);
+        actuator.h = make_law(system, body, kind, 3, spring);
+        CHECK(se3d_force_create_tsda(system, &actuator, &force) == SE3D_OK);
+        CHECK(se3d_system_get_constraint(system, 2, &effort.joint) == SE3D_OK);
+        effort.coordinate = kind % 2;
+        effort.function = make_law(system, body, kind, 3, spring);
+        CHECK(se3d_force_create_effort(system, &effort, &force) == SE3D_OK);
+    }
+}
+
 static void add_elements(se3d_system *system, const se3d_body body[BODIES + 1])
 {
     se3d_force force;
@@ -90,6 +157,7 @@ static void add_user_constraint(se3d_system *system, const se3d_body body[BODIES
     CHECK(se3d_user_constraint_create(system, &user, &joint) == SE3D_OK);
 }
 
+/* With laws of signals and a constraint by callback, too; without, Newton has an easier start. */
 static se3d_system *build(int with_callback)
 {
     se3d_system *system;
@@ -116,6 +184,11 @@ static se3d_system *build(int with_callback)
         add_user_constraint(system, body);
     }
     add_elements(system, body);
+    if (with_callback) {
+        se3d_force spring;
+        CHECK(se3d_system_get_force(system, 0, &spring) == SE3D_OK);
+        add_laws(system, body, spring);
+    }
     /* leave the pose at which the joints were made: every curvature counts */
     for (int k = 1; k <= BODIES; ++k) {
         double turn[3];

@@ -231,6 +231,17 @@ static void quarter_car_settles_and_its_tyre_never_pulls(void)
     close_example(&e);
 }
 
+/* The tube stands still where the star is; the mount is found by its own motor. */
+static void servo_finds_its_star(void)
+{
+    example e = run_example("servo", NULL, NULL, NULL);
+    CHECK_NEAR(channel_of(&e, "pointing", 0), 0.2, 1e-6);
+    CHECK_NEAR(channel_of(&e, "error", 0), 0.2 - channel_of(&e, "pointing", 0), 1e-15);
+    CHECK_NEAR(channel_of(&e, "tube.eye.position.y", 0), sin(channel_of(&e, "pointing", 0)), 1e-9);
+    CHECK_NEAR(channel_of(&e, "motor.effort", 0), 0.0, 1e-3);
+    close_example(&e);
+}
+
 /* What falls comes to rest. What was dissipated is what the boxes have lost, but for the order of
  * the method; box12 lies on the floor, on four corners. */
 static void heap_comes_to_rest(void)
@@ -374,6 +385,7 @@ int main(void)
     RUN(bar_comes_to_rest_where_its_moments_balance);
     RUN(governor_finds_its_steady_motion);
     RUN(quarter_car_settles_and_its_tyre_never_pulls);
+    RUN(servo_finds_its_star);
     RUN(heap_comes_to_rest);
     RUN(suspension_steers_and_travels_as_its_distances_say);
     RUN(axle_of_one_corner_is_symmetric);

@@ -199,6 +199,25 @@ static se3d_status make_load_of_time(workshop *w)
     return se3d_force_create_load(w->system, &def, &force);
 }
 
+static se3d_status make_signals(workshop *w)
+{
+    const char *const names[3] = {"t", "a", "x"};
+    se3d_signal signals[2];
+    se3d_function law;
+    se3d_function_def def = se3d_function_def_default();
+    memset(signals, 0, sizeof signals);
+    signals[0].kind = SE3D_SIGNAL_JOINT_COORDINATE;
+    signals[0].joint = w->pin;
+    signals[1].kind = SE3D_SIGNAL_POINT_POSITION;
+    signals[1].body = w->body[0];
+    def.expression = "sin(t) - a*x";
+    def.variables = names;
+    def.variable_count = 3;
+    def.signals = signals;
+    def.signal_count = 2;
+    return se3d_function_create(w->system, &def, &law);
+}
+
 static se3d_status make_expression(workshop *w)
 {
     const char *const names[3] = {"t", "l", "v"};
@@ -366,6 +385,7 @@ static const operation_row operations[] = {
     {"coupler", make_coupler},
     {"rack_pinion", make_rack_pinion},
     {"load of time", make_load_of_time},
+    {"signals", make_signals},
     {"expression", make_expression},
     {"table", make_table},
     {"clone", make_clone},

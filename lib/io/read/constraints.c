@@ -2,8 +2,8 @@
 /* `constraints`: the primitives DP1, DP2, D, CD and the intermediate constraints of ME751. */
 #include <string.h>
 
+#include "io/channel/law.h"
 #include "io/document/document.h"
-#include "io/document/function.h"
 #include "io/document/keys.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
@@ -98,7 +98,7 @@ static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_primit
         return def->type != SE3D_PRIMITIVE_D || require(reader, node, "value", "d");
     }
     reader->alternative = def->type;
-    if (!se3di_read_function(reader, value, time_only, &def->value, &def->function)) {
+    if (!se3di_read_law(reader, value, time_only, &def->value, &def->function)) {
         return false;
     }
     if (def->type == SE3D_PRIMITIVE_D && def->function.index1 == 0 && !(def->value > 0.0)) {

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
+#include "io/channel/law.h"
 #include "io/document/document.h"
-#include "io/document/function.h"
 #include "io/document/keys.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
@@ -101,7 +101,7 @@ bool se3di_read_coupler(se3di_reader *reader, const se3di_node *node, se3di_elem
         }
     }
     reader->alternative = -1; /* of sums of angles and displacements */
-    if (value && !se3di_read_function(reader, value, time_only, &def.value, &def.function)) {
+    if (value && !se3di_read_law(reader, value, time_only, &def.value, &def.function)) {
         return false;
     }
     def.name = entry->name;

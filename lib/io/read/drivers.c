@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `drivers`: joint coordinates that follow a function of time. */
-#include "io/document/function.h"
+#include "io/channel/law.h"
 #include "io/read/elements.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
@@ -41,7 +41,7 @@ static bool read_driver(se3di_reader *reader, const se3di_node *node)
                                      "is missing, must be a number, an expression in t or "
                                      "{spline: [[t, value], ...]}");
     }
-    if (!se3di_read_function(reader, value, time_only, &def.value, &def.function)) {
+    if (!se3di_read_law(reader, value, time_only, &def.value, &def.function)) {
         return false;
     }
     def.name = entry->name;

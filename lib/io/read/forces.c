@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "io/base/rotation.h"
+#include "io/channel/law.h"
 #include "io/document/document.h"
 #include "io/document/fields.h"
 #include "io/document/function.h"
@@ -42,7 +43,8 @@ static const se3di_key force_keys[] = {
     {"l0", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_tsda_def, l0), .types = " tsda ",
      .standard = "0", .text = "free length [m]"},
     {"h", SE3DI_KIND_FUNCTION, .types = " tsda rsda ",
-     .text = "actuator [N, N m]: a function of t, l, ldot (tsda) or t, theta, thetadot (rsda)"},
+     .text = "actuator [N, N m]: a function of t, l, ldot (tsda) or t, theta, thetadot (rsda), "
+         "and of [channels](#laws-of-channels)"},
     {"spring", SE3DI_KIND_FUNCTION, .types = " tsda rsda ",
      .text = "elastic force [N, N m] of x = l - l0 or theta - theta0, beside k"},
     {"damper", SE3DI_KIND_FUNCTION, .types = " tsda rsda ",
@@ -117,9 +119,9 @@ static const se3di_key force_keys[] = {
      .words = frames, .standard = "ground", .text = "of value"},
     {"value", SE3DI_KIND_FUNCTION, .types = " effort ", .standard = "0",
      .text = "along the coordinate [N, N m]: a number, or a function of t, q, qdot: the "
-         "coordinate and its rate"},
+         "coordinate and its rate, and of [channels](#laws-of-channels)"},
     {"value", SE3DI_KIND_FUNCTIONS, .types = " force torque ",
-     .text = "numbers or functions of t [N, N m]"},
+     .text = "numbers or functions of t and of [channels](#laws-of-channels) [N, N m]"},
     {.key = NULL}};
 const se3di_object se3di_object_force = {
     "force",
@@ -137,7 +139,7 @@ static bool read_function(se3di_reader *reader, const se3di_node *node, const ch
     if (!child) {
         return true;
     }
-    if (!se3di_read_function(reader, child, variables, &def.constant, function)) {
+    if (!se3di_read_law(reader, child, variables, &def.constant, function)) {
         return false;
     }
     if (function->index1 != 0 || def.constant == 0.0) {
@@ -333,10 +335,11 @@ static bool read_effort(se3di_reader *reader, const se3di_node *node, se3di_elem
     se3d_effort_def def = se3d_effort_def_default();
     if (!se3di_read_key_joint(reader, node, "joint", &def.joint) ||
         !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
-        (value && !se3di_read_function(reader, value, variables, &def.value, &def.function))) {
+        (value && !se3di_read_law(reader, value, variables, &def.value, &def.function))) {
         return false;
     }
     def.name = entry->name;
+    entry->coordinate = def.coordinate;
     entry->coordinate = def.coordinate;
     const se3d_status status = se3d_force_create_effort(reader->system, &def, &entry->force);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
@@ -428,7 +431,7 @@ static bool read_placed_load(se3di_reader *reader, const se3di_node *value,
         }
         sum.text = text[1] == '+' ? text + 2 : text;
         sum.one_line = false;
-        if (!se3di_read_function(reader, &sum, time_only, &def->value[i], &def->function[i])) {
+        if (!se3di_read_law(reader, &sum, time_only, &def->value[i], &def->function[i])) {
             return false;
         }
     }
@@ -459,7 +462,7 @@ static bool read_load(se3di_reader *reader, const se3di_node *node, const char *
         }
     } else {
         for (size_t k = 0; k < 3; ++k, part = part->next) {
-            if (!se3di_read_function(reader, part, time_only, &def.value[k], &def.function[k])) {
+            if (!se3di_read_law(reader, part, time_only, &def.value[k], &def.function[k])) {
                 return false;
             }
         }
