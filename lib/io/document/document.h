@@ -32,7 +32,9 @@ typedef struct se3di_node {
     const char *key;   /* child of a map, or the name of an option */
     size_t index;      /* child of a list */
     size_t count;      /* children */
-    const char *file;  /* of the root of a document; NULL: another node */
+    const char *number_text; /* whose value is `number`; valid while it is `text` */
+    double number;
+    const char *file;            /* of the root of a document; NULL: another node */
     const struct se3di_key *row; /* of the table of its map; NULL: not checked yet, or in a list */
     struct se3di_node *parent;
     struct se3di_node *first;

@@ -162,7 +162,8 @@ bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_o
                                  se3di_node_describe(node), object->keys[0].key);
     }
     for (se3di_node *child = node->first; child; child = child->next) {
-        child->row = se3di_object_find(object, NULL, child->key);
+        const bool known = reader->study && child->row; /* by the reading of the model itself */
+        child->row = known ? child->row : se3di_object_find(object, NULL, child->key);
         if (!child->row) {
             return fail_unknown_key(reader, child, object);
         }

@@ -93,7 +93,9 @@ bool se3di_check_expression(se3di_reader *reader, const se3di_node *node)
     static const char *const special[] = {".nan", ".NaN",  ".NAN",  "nan",      "NaN",      "NAN",
                                           ".inf", "-.inf", "+.inf", ".Inf",     "-.Inf",    ".INF",
                                           "inf",  "-inf",  "+inf",  "Infinity", "-Infinity"};
-    for (size_t k = 0; k < sizeof special / sizeof *special; ++k) {
+    const char first = node->text[strspn(node->text, "+-.")];
+    const bool may_be = first && strchr("niNI", first);
+    for (size_t k = 0; may_be && k < sizeof special / sizeof *special; ++k) {
         if (strcmp(node->text, special[k]) == 0) {
             return se3di_reader_fail(reader, node, "is %s, must be a finite number", node->text);
         }
@@ -133,8 +135,25 @@ bool se3di_read_constant(se3di_reader *reader, const se3di_node *node,
     return true;
 }
 
+static bool is_literal(const char *text)
+{
+    return text[strspn(text, "+-0123456789.eE")] == '\0';
+}
+
+/* A number that is written out is compiled once, however often the tree is read. */
+static void keep_number(const se3di_node *node, double value)
+{
+    se3di_node *kept = (se3di_node *)(uintptr_t)node; /* the tree is the reader's */
+    kept->number = value;
+    kept->number_text = node->text;
+}
+
 static bool read_plain(se3di_reader *reader, const se3di_node *node, double *value)
 {
+    if (node->number_text == node->text && node->text) {
+        *value = node->number;
+        return true;
+    }
     se3d_expression_def def = se3d_expression_def_default();
     se3d_expression *expression = NULL;
     if (!se3di_read_compile(reader, node, &def, &expression)) {
@@ -142,6 +161,9 @@ static bool read_plain(se3di_reader *reader, const se3di_node *node, double *val
     }
     const bool good = se3di_read_constant(reader, node, expression, value);
     se3d_expression_destroy(expression);
+    if (good && is_literal(node->text)) {
+        keep_number(node, *value);
+    }
     return good;
 }
 
@@ -160,8 +182,7 @@ bool se3di_read_amount(se3di_reader *reader, const se3di_node *node, se3di_amoun
 /* "-1", or "2*q = -1" if the text is not the number itself. */
 static void format_value(const se3di_node *node, double value, char *text, size_t size)
 {
-    const bool literal = node->text[strspn(node->text, "+-0123456789.eE")] == '\0';
-    if (literal) {
+    if (is_literal(node->text)) {
         snprintf(text, size, "%.60s", node->text);
     } else {
         snprintf(text, size, "%.120s = %g", node->text, value);
