@@ -19,6 +19,7 @@
 #define STEP_LONG   1e-3 /* s: not longer, unless the trials came to the end of a long run */
 #define SPAN_PART   1e-2 /* of that run */
 #define TURN_MOST   1.0  /* rad, of a body in a step */
+#define ADD_UP      20.0 /* rad of the motion, over which the errors of steps add up */
 #define FACTOR_4    5.0  /* the error of order 4 over the square of that of order 2 */
 #define MUCH        4.0  /* over the tolerance, */
 #define PHASE       0.3  /* rad of the motion that it is so in: the step was too long */
@@ -95,15 +96,17 @@ static double measure(const se3di_equations *equations, double h, double *speed,
     return h / 12.0 * fmax(most[0] / *speed, most[1] / *spin);
 }
 
+/* Of the motion, relative to the tolerance, if its steps have the error e2 in order 2. */
 static double error_of(const se3di_integration *integration, double e2)
 {
-    return integration->settings.order == 4 ? FACTOR_4 * e2 * e2 : e2;
+    const double e = integration->settings.order == 4 ? FACTOR_4 * e2 * e2 : e2;
+    return ADD_UP * e / integration->settings.tolerance;
 }
 
 /* By how much a step with this error may be longer. */
 static double factor_of(const se3di_integration *integration, double e2)
 {
-    const double ratio = integration->settings.tolerance / fmax(error_of(integration, e2), 1e-30);
+    const double ratio = 1.0 / fmax(error_of(integration, e2), 1e-30);
     return integration->settings.order == 4 ? sqrt(sqrt(ratio)) : sqrt(ratio);
 }
 
@@ -304,7 +307,7 @@ static void shorten(se3di_integration *integration, double part)
  * steps of h, it has the error (w h)^2/12. Singular positions are passed in less. */
 static double steps_of_phase(const se3di_integration *integration)
 {
-    const double tolerance = integration->settings.tolerance;
+    const double tolerance = integration->settings.tolerance / ADD_UP;
     const double e2 = integration->settings.order == 4 ? sqrt(tolerance / FACTOR_4) : tolerance;
     return fmax(3.0, PHASE / sqrt(12.0 * MUCH * e2));
 }
@@ -317,7 +320,7 @@ void se3di_equal_steps_watch(se3di_integration *integration, double h)
         return;
     }
     const double e2 = measure(equations, h, &header[SE3DI_EQUAL_SPEED], &header[SE3DI_EQUAL_SPIN]);
-    const double part = error_of(integration, e2) / integration->settings.tolerance;
+    const double part = error_of(integration, e2);
     const double is_over = part > MUCH && !integration->is_paced ? 1.0 : -1.0;
     header[SE3DI_EQUAL_OVER] = fmax(0.0, header[SE3DI_EQUAL_OVER] + is_over);
     if (header[SE3DI_EQUAL_OVER] >= steps_of_phase(integration)) {

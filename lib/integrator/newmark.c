@@ -20,7 +20,8 @@
 #define SPAN_LEAST  0.5  /* from a_n to a, over the step */
 #define FIRST_STEP  0.3  /* of the root of the tolerance, over the rates */
 #define PART_LEAST  0.01 /* of an equal step that does not converge */
-#define JUMP_ERROR  30.0 /* over the tolerance, if the acceleration jumps */
+#define PHASE       12.0 /* rad of the motion over which local errors add up */
+#define JUMP_ERROR  360. /* over the tolerance, if the acceleration jumps: 30 a radian */
 
 /* memcpy if count may be zero and the pointers NULL. */
 static void copy(double *to, const double *from, size_t count)
@@ -334,8 +335,9 @@ static se3di_newmark_step begin_step(se3di_integration *integration, double h)
     return step;
 }
 
-/* The local error of velocities in a unit of time in which they change by themselves, relative to
- * the tolerance: from the third derivative of the motion, by differences of velocities. */
+/* The local error of velocities in a unit of time in which they change by themselves, added up over
+ * PHASE such units, relative to the tolerance: from the third derivative of the motion, by
+ * differences of velocities. */
 static double estimate_error(const se3di_newmark_step *step)
 {
     const se3di_newmark_history past = se3di_newmark_get_history(step->assembly);
@@ -357,7 +359,7 @@ static double estimate_error(const se3di_newmark_step *step)
             jerk / fmax(scale[kind], kind ? header->scale.spin : header->scale.speed);
         worst = size <= worst ? worst : size; /* NaN stays */
     }
-    return constant * h * h * worst /
+    return PHASE * constant * h * h * worst /
            fmax(step->integration->settings.tolerance, SE3DI_NEWMARK_REACH);
 }
 

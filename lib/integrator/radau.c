@@ -63,7 +63,7 @@ static history get_history(const se3di_assembly *assembly)
 /* The estimate is of order 3, the result of order 5 (Hairer, Wanner 1996, sec. IV.8). */
 static double inner_tolerance(double tolerance)
 {
-    return 0.1 * se3di_pow(fmax(tolerance, REACH), 2.0 / 3.0);
+    return 0.34 * se3di_pow(fmax(tolerance, REACH), 0.8);
 }
 
 /* The iteration stops if it does not show in the result. If stages are projected it

@@ -40,9 +40,10 @@ typedef struct se3di_radau {
     double *ul;     /* of multipliers, transformed [rows] */
     double *C1;     /* constraints of the Newton matrix */
     double *vdot, *none, *sum, *sum_q;
-    double *normal;      /* what is projected away of a correction; 0 if stages are not */
-    double fraction;     /* of the step, that a turn of friction asks for; 0: none does */
-    double size, before; /* of the last two corrections, relative to the tolerance */
+    double *normal;  /* what is projected away of a correction; 0 if stages are not */
+    double fraction; /* of the step, that a turn of friction asks for; 0: none does */
+    double size;     /* of the last correction, relative to the tolerance, */
+    double past[3];  /* and of those before, newest first: they fall in turns of three */
     int iterations, iterations_max;
     int projects; /* not 0: accelerations of stages are those of the states projected onto the
                      constraints, each with rows of its own: where bodies and joints make loops,

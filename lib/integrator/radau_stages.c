@@ -21,6 +21,8 @@
 
 #define STAGES   SE3DI_RADAU_STAGES
 #define RATE_MIN 1e-3
+#define STAYS    0.5 /* of the correction three iterations ago: it is rounding that remains */
+
 const double se3di_radau_c[3] = {0.15505102572168219, 0.64494897427831781, 1.0};
 const double se3di_radau_a[3][3] = {
     {0.19681547722366042586, -0.0655354258501983881, 0.02377097434822015242},
@@ -456,7 +458,9 @@ static se3d_status iterate(se3di_radau *m, int refactor)
     }
     ++m->equations->counters.iterations;
     ++m->iterations;
-    m->before = m->size;
+    m->past[2] = m->past[1];
+    m->past[1] = m->past[0];
+    m->past[0] = m->size;
     m->size = 0.0;
     apply_corrections(m);
     if (!m->projects) {
@@ -472,7 +476,8 @@ static se3d_status iterate(se3di_radau *m, int refactor)
 static int has_converged(const se3di_radau *m, double rate)
 {
     if (rate > 0.8) {
-        return m->size <= 0.1 || (m->iterations > 1 && m->size * m->tolerance <= SE3DI_STATE_NOISE);
+        const int stays = m->iterations > 3 && m->size > STAYS * m->past[2];
+        return m->size <= 0.1 || (stays && m->size * m->tolerance <= SE3DI_STATE_NOISE);
     }
     return m->size * fmax(rate, RATE_MIN) / (1.0 - rate) <= 1.0;
 }
@@ -483,21 +488,19 @@ static se3d_status iterate_to_convergence(se3di_radau *m)
     memset(m->normal, 0, m->assembly->unknown_count * sizeof *m->normal);
     se3di_assembly_eval_mass(m->assembly); /* constant in the unknowns of this method */
     update_positions(m);
-    double earlier = HUGE_VAL; /* corrections fall in turns: rates are .3, .3, 1, .3, .3, 1 */
-    m->size = HUGE_VAL;
+    m->size = m->past[0] = m->past[1] = HUGE_VAL;
     m->iterations = 0;
     for (int k = 0; k < m->iterations_max; ++k) {
         SE3DI_TRY(se3di_equations_ask(m->equations));
         SE3DI_TRY(iterate(m, k == 0));
         (void)se3di_newton_note(&m->integration->newton, m->size * m->tolerance);
-        const double rate = k == 0 ? 1.0 : m->size / m->before;
+        const double rate = k == 0 ? 1.0 : m->size / m->past[0]; /* .3, .3, 1, .3, .3, 1 */
         if (has_converged(m, rate)) {
             return SE3D_OK;
         }
-        if (k > 3 && rate > 1.0 && m->size > earlier) {
+        if (k > 3 && rate > 1.0 && m->size > m->past[1]) {
             break;
         }
-        earlier = m->before;
     }
     return se3di_error_set(m->equations->error, SE3D_ERR_NO_CONVERGENCE,
                            "t = %g s: Newton did not converge in a step of %g s; try a smaller "

@@ -98,7 +98,7 @@ static void what_comes_down_to_rest_at_the_level_crosses_once(void)
     double t;
     for (size_t k = 0; k + 1 < METHODS; ++k) {
         CHECK(count_crossings(k, down_into_noise, 1e-12, &t) == 1);
-        CHECK_NEAR(t, 0.5, 0.0026); /* a sample of the step at which the noise is beyond zero */
+        CHECK_NEAR(t, 0.5, 0.0051); /* one of the next two samples, a quarter of a step each */
     }
 }
 

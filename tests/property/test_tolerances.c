@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A tolerance means something: after some turns of a smooth mechanism the error of every method
+ * that chooses its steps is about the tolerance that it was given, or the log says that it cannot.
+ *
+ * The error is the largest of positions, velocities and angular velocities of all bodies, each over
+ * the largest of its kind, at twenty times of the run, against dop853 at 1e-13.
+ *
+ *     test_tolerances METHOD LAST [MECHANISM]   prints errors over tolerances of 1e-4 to 1e-LAST,
+ *                                               and steps */
+#include "support/text_model.h"
+
+enum { SAMPLES = 20, BODIES_MAX = 9 };
+
+typedef struct mechanism {
+    const char *name, *text;
+    double duration;
+} mechanism;
+
+#define HEAD "se3d: 1\ngravity: [0, 0, -9.81]\nanalysis: {type: dynamics, duration: 1}\n"
+
+static const mechanism mechanisms[] = {
+    {"double pendulum in space",
+     HEAD "bodies:\n"
+          "  - {name: a, mass: 1, inertia: [0.1, 0.1, 0.02], position: [0.5, 0, 0], "
+          "angular_velocity: [1, 0, 2]}\n"
+          "  - {name: b, mass: 0.7, inertia: [0.03, 0.06, 0.06], position: [1, 0.4, 0]}\n"
+          "joints:\n"
+          "  - {type: spherical, body_i: ground, body_j: a, at: [0, 0, 0]}\n"
+          "  - {type: spherical, body_i: a, body_j: b, at: [1, 0, 0]}\n",
+     3.0},
+    {"squeezer", "examples/models/andrews.yaml", 0.02},
+    {"slider-crank",
+     HEAD "bodies:\n"
+          "  - {name: crank, mass: 1, inertia: [0.02, 0.02, 0.02], position: [0.1, 0, 0], "
+          "velocity: [0, 0, -0.6], angular_velocity: [0, 6, 0]}\n"
+          "  - {name: rod, mass: 0.5, inertia: [0.01, 0.02, 0.02], position: [0.45, 0, 0], "
+          "velocity: [0, 0, -0.6], angular_velocity: [0, -2.4, 0]}\n"
+          "  - {name: slider, mass: 1, inertia: [0.01, 0.01, 0.01], position: [0.7, 0, 0]}\n"
+          "joints:\n"
+          "  - {type: revolute, body_i: ground, body_j: crank, at: [0, 0, 0], axis: [0, 1, 0]}\n"
+          "  - {type: revolute, body_i: crank, body_j: rod, at: [0.2, 0, 0], axis: [0, 1, 0]}\n"
+          "  - {type: spherical, body_i: rod, body_j: slider, at: [0.7, 0, 0]}\n"
+          "  - {type: prismatic, body_i: ground, body_j: slider, at: [0.7, 0, 0], axis: "
+          "[1, 0, 0]}\n",
+     3.0},
+    {"four-bar",
+     HEAD "bodies:\n"
+          "  - {name: a, mass: 1, inertia: [0.01, 0.08, 0.08], position: [0, 0, 0.5], "
+          "velocity: [1.5, 0, 0], angular_velocity: [0, 3, 0]}\n"
+          "  - {name: b, mass: 2, inertia: [0.02, 0.7, 0.7], position: [1, 0, 1.25], "
+          "velocity: [3, 0, 0]}\n"
+          "  - {name: c, mass: 1.5, inertia: [0.02, 0.3, 0.3], position: [2, 0, 0.75], "
+          "velocity: [1.5, 0, 0], angular_velocity: [0, 2, 0]}\n"
+          "joints:\n"
+          "  - {type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, 0]}\n"
+          "  - {type: spherical, body_i: a, body_j: b, at: [0, 0, 1]}\n"
+          "  - {type: universal, body_i: b, body_j: c, at: [2, 0, 1.5], axis: [0, 1, 0], axis_2: "
+          "[1, 0, 0]}\n"
+          "  - {type: revolute, body_i: ground, body_j: c, at: [2, 0, 0], axis: [0, 1, 0]}\n",
+     3.0},
+    {"masses on springs",
+     HEAD "bodies:\n"
+          "  - {name: a, mass: 1, inertia: [0.1, 0.1, 0.1], position: [0, 0, -1]}\n"
+          "  - {name: b, mass: 0.4, inertia: [0.1, 0.2, 0.1], position: [0.2, 0, -2]}\n"
+          "forces:\n"
+          "  - {type: tsda, body_i: ground, body_j: a, point_j: [0, 0.1, 0.2], k: 90, c: 0.2, l0: "
+          "0.8}\n"
+          "  - {type: tsda, body_i: a, body_j: b, point_i: [0, 0.1, 0], point_j: [0.1, 0, 0.2], "
+          "k: 40, l0: 0.6}\n",
+     3.0},
+    {"gyroscope",
+     HEAD "bodies:\n"
+          "  - {name: disk, mass: 1, inertia: [0.004, 0.002, 0.002], position: [0.2, 0, 0], "
+          "angular_velocity: [60, 0, 0]}\n"
+          "joints:\n"
+          "  - {type: spherical, body_i: ground, body_j: disk, at: [0, 0, 0]}\n",
+     1.5},
+};
+
+enum { MECHANISMS = sizeof mechanisms / sizeof *mechanisms };
+
+typedef struct path {
+    size_t bodies;                            /* with the ground */
+    double state[SAMPLES][3][3 * BODIES_MAX]; /* r, v, w */
+    double tolerance;                         /* that the method works at */
+    uint64_t steps;
+    int32_t is_told; /* that the tolerance is not reached */
+    int32_t has_failed;
+} path;
+
+static void on_log(void *ctx, se3d_log_level level, const char *message)
+{
+    path *p = ctx;
+    p->is_told |= level >= SE3D_LOG_WARNING && strstr(message, "reaches") != NULL;
+}
+
+static se3d_model *open_model(const mechanism *m, path *p)
+{
+    se3d_model_options options = se3d_model_options_default();
+    se3d_model *model = NULL;
+    se3d_model_error error = {0};
+    options.log = on_log;
+    options.log_ctx = p;
+    const int is_file = strncmp(m->text, "examples", 8) == 0;
+    const se3d_status status =
+        is_file ? se3d_model_read_file(m->text, &options, &model, &error)
+                : se3d_model_read_text(m->text, strlen(m->text), m->name, &options, &model, &error);
+    CHECK(!status);
+    if (status < 0) {
+        fprintf(stderr, "%s\n", error.message);
+        exit(check_finish());
+    }
+    return model;
+}
+
+static void run(const mechanism *m, const se3d_solver_def *def, path *p)
+{
+    se3d_solver *solver = NULL;
+    se3d_solver_stats stats;
+    memset(p, 0, sizeof *p);
+    se3d_model *model = open_model(m, p);
+    se3d_system *system = se3d_model_get_system(model);
+    p->bodies = se3d_system_count_bodies(system);
+    CHECK(p->bodies <= BODIES_MAX && !se3d_solver_create(system, def, &solver));
+    for (int k = 0; k < SAMPLES && !p->has_failed; ++k) {
+        p->has_failed = se3d_solver_run(solver, m->duration * (k + 1) / SAMPLES) < 0;
+        CHECK(!se3d_body_get_all(system, p->bodies, p->state[k][0], NULL, p->state[k][1],
+                                 p->state[k][2]));
+    }
+    CHECK(!se3d_solver_get_stats(solver, &stats));
+    CHECK(!se3d_solver_get_tolerance(solver, &p->tolerance));
+    p->steps = stats.steps + stats.rejected;
+    if (p->has_failed) {
+        fprintf(stderr, "%s: %s\n", m->name, se3d_system_get_error(system));
+    }
+    se3d_solver_destroy(solver);
+    se3d_model_destroy(model);
+}
+
+static double compare(const path *a, const path *b)
+{
+    double worst = 0.0;
+    for (int kind = 0; kind < 3; ++kind) {
+        double gap = 0.0, size = 0.0;
+        for (size_t c = 0; c < 3 * b->bodies * SAMPLES; ++c) {
+            const size_t row = c / (3 * b->bodies), column = c % (3 * b->bodies);
+            const double x = a->state[row][kind][column], y = b->state[row][kind][column];
+            gap = fabs(x - y) <= gap ? gap : fabs(x - y);
+            size = fmax(size, fabs(y));
+        }
+        worst = gap <= worst * size ? worst : gap / size;
+    }
+    return a->has_failed ? HUGE_VAL : worst;
+}
+
+static void find_truth(const mechanism *m, path *truth)
+{
+    se3d_solver_def def = se3d_solver_def_default();
+    def.method = SE3D_METHOD_DOP853;
+    def.tolerance = 1e-13;
+    run(m, &def, truth);
+}
+
+/* What the error over the tolerance that the method works at may be, down to 10^-least. */
+static const struct bound {
+    int32_t method, order, least, reserved;
+    double most;
+} bounds[] = {
+    {SE3D_METHOD_GENERALIZED_ALPHA, 0, 6, 0, 5.0},
+    {SE3D_METHOD_HHT, 0, 6, 0, 5.0},
+    {SE3D_METHOD_RATTLE, 0, 6, 0, 5.0},
+    {SE3D_METHOD_RATTLE, 4, 8, 0, 1.0},
+    {SE3D_METHOD_VERLET, 0, 6, 0, 5.0},
+    {SE3D_METHOD_BDF, 0, 12, 0, 5.0},
+    {SE3D_METHOD_RADAU, 0, 12, 0, 5.0},
+    {SE3D_METHOD_DOP853, 0, 10, 0, 0.1},
+    {SE3D_METHOD_RK45, 0, 10, 0, 1.0},
+    {SE3D_METHOD_RK4, 0, 10, 0, 1.0},
+    {SE3D_METHOD_GAUSS, 0, 10, 0, 1.0},
+    {SE3D_METHOD_AUTO, 0, 10, 0, 1.0},
+};
+enum { BOUNDS = sizeof bounds / sizeof *bounds };
+
+/* @return the error over the tolerance that the method says it works at */
+static double get_ratio(const mechanism *m, const struct bound *bound, int power, const path *truth,
+                        path *got)
+{
+    se3d_solver_def def = se3d_solver_def_default();
+    def.method = bound->method;
+    def.order = bound->order;
+    def.formulation = (m - mechanisms) % 2 ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA;
+    def.tolerance = pow(10.0, -power);
+    run(m, &def, got);
+    return compare(got, truth) / fmax(def.tolerance, got->tolerance);
+}
+
+static void check_ratio(const mechanism *m, const struct bound *bound, int power, const path *truth)
+{
+    static path got;
+    const double ratio = get_ratio(m, bound, power, truth, &got);
+    if (!(ratio <= bound->most)) {
+        fprintf(stderr, "%s by %s: error %.2g times the tolerance of 1e-%d\n", m->name,
+                se3d_method_get_name(bound->method), ratio, power);
+    }
+    CHECK(ratio <= bound->most);
+    CHECK(got.is_told == (got.tolerance > 1.01 * pow(10.0, -power)));
+}
+
+static void the_error_is_about_the_tolerance(void)
+{
+    static path truth;
+    for (size_t k = 0; k < MECHANISMS; ++k) {
+        find_truth(&mechanisms[k], &truth);
+        for (size_t b = 0; b < BOUNDS; ++b) {
+            for (int power = 4; power <= bounds[b].least; power += 2) {
+                check_ratio(&mechanisms[k], &bounds[b], power, &truth);
+            }
+        }
+    }
+}
+
+/* Errors over tolerances from 1e-4 on, and steps. */
+static void print_row(const mechanism *m, const struct bound *bound, int last, const path *truth)
+{
+    static path got;
+    printf("%-24s %-17s %d", m->name, se3d_method_get_name(bound->method), (int)bound->order);
+    for (int power = 4; power <= last; ++power) {
+        const double ratio = get_ratio(m, bound, power, truth, &got);
+        printf(got.is_told ? " (%.2g/%llu)" : " %.2g/%llu", ratio, (unsigned long long)got.steps);
+        fflush(stdout);
+    }
+    printf("\n");
+}
+
+static void print_table(const char *method, int last, const char *name)
+{
+    static path truth;
+    for (size_t k = 0; k < MECHANISMS; ++k) {
+        if (strstr(mechanisms[k].name, name)) {
+            find_truth(&mechanisms[k], &truth);
+            for (size_t b = 0; b < BOUNDS; ++b) {
+                if (strcmp(method, se3d_method_get_name(bounds[b].method)) == 0) {
+                    print_row(&mechanisms[k], &bounds[b], last, &truth);
+                }
+            }
+        }
+    }
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 2) {
+        print_table(argv[1], atoi(argv[2]), argc > 3 ? argv[3] : "");
+        return 0;
+    }
+    RUN(the_error_is_about_the_tolerance);
+    return check_finish();
+}
