@@ -72,9 +72,10 @@ static void get_change(const se3di_model *model, uint32_t body, const double *be
     change[1] = se3di_norm(d + 3);
 }
 
-/* Speeds of late, or what accelerations make on the way of the mechanism's length and a turn of
- * 1 rad. @return the error of a step of order 2 */
-static double measure(const se3di_equations *equations, double h, double *speed, double *spin)
+/* The largest speeds so far, or what accelerations make on the way of the mechanism's length and a
+ * turn of 1 rad; and the third derivatives of the motion in the step, of centres and of turns.
+ * @return the error of a step of order 2 */
+static double measure(const se3di_equations *equations, double h, double speed[2], double jerk[2])
 {
     const se3di_assembly *assembly = &equations->assembly;
     const se3di_model *model = assembly->model;
@@ -91,9 +92,11 @@ static double measure(const se3di_equations *equations, double h, double *speed,
         a = fmax(a, se3di_norm(acceleration));
         wdot = fmax(wdot, se3di_norm(acceleration + 3));
     }
-    *speed = fmax(0.95 * *speed, fmax(v, sqrt(a * se3di_state_length(model))));
-    *spin = fmax(0.95 * *spin, fmax(w, sqrt(wdot)));
-    return h / 12.0 * fmax(most[0] / *speed, most[1] / *spin);
+    speed[0] = fmax(speed[0], fmax(v, sqrt(a * se3di_state_length(model))));
+    speed[1] = fmax(speed[1], fmax(w, sqrt(wdot)));
+    jerk[0] = most[0] / h;
+    jerk[1] = most[1] / h;
+    return h * h / 12.0 * fmax(jerk[0] / speed[0], jerk[1] / speed[1]);
 }
 
 /* Of the motion, relative to the tolerance, if its steps have the error e2 in order 2. */
@@ -103,11 +106,11 @@ static double error_of(const se3di_integration *integration, double e2)
     return ADD_UP * e / integration->settings.tolerance;
 }
 
-/* By how much a step with this error may be longer. */
-static double factor_of(const se3di_integration *integration, double e2)
+/* The error e2 that a step may have. */
+static double most_of(const se3di_integration *integration)
 {
-    const double ratio = 1.0 / fmax(error_of(integration, e2), 1e-30);
-    return integration->settings.order == 4 ? sqrt(sqrt(ratio)) : sqrt(ratio);
+    const double e = integration->settings.tolerance / ADD_UP;
+    return integration->settings.order == 4 ? sqrt(e / FACTOR_4) : e;
 }
 
 /* 1, 2 or 5 times a power of ten: rows at round times then divide into equal steps. */
@@ -126,8 +129,7 @@ static double round_down(double h)
 typedef struct trial {
     se3di_integration *integration;
     double begin, t_end, h;
-    double wanted;      /* the step that the errors so far ask for */
-    double speed, spin; /* of late */
+    double speed[2], jerk[2]; /* the largest so far */
     double most_spin;
     double last, last_h; /* error and length of the attempt before, which was refused; 0: none */
 } trial;
@@ -145,8 +147,8 @@ static double largest_spin(const se3di_model *model)
 static void judge(trial *t, double h)
 {
     se3di_equations *equations = t->integration->equations;
-    double speed = t->speed, spin = t->spin;
-    const double e = measure(equations, h, &speed, &spin);
+    double speed[2] = {t->speed[0], t->speed[1]}, jerk[2];
+    const double e = measure(equations, h, speed, jerk);
     const int jumps =
         t->last_h > 0.0 && e * t->last_h > t->last * h * sqrt(h / t->last_h) && h < 0.5 * t->last_h;
     if (e > TRIAL_ERROR && !jumps && h > SHORTEST * (t->t_end - t->begin)) {
@@ -156,12 +158,12 @@ static void judge(trial *t, double h)
         se3di_equations_come_back(equations);
         return;
     }
-    t->speed = speed;
-    t->spin = spin;
+    memcpy(t->speed, speed, sizeof speed);
     t->most_spin = fmax(t->most_spin, largest_spin(equations->assembly.model));
     t->last_h = 0.0;
     if (!jumps) {
-        t->wanted = fmin(t->wanted, h * factor_of(t->integration, e));
+        t->jerk[0] = fmax(t->jerk[0], jerk[0]);
+        t->jerk[1] = fmax(t->jerk[1], jerk[1]);
         t->h = fmin(2.0 * h, 0.8 * h * sqrt(TRIAL_ERROR / fmax(e, 1e-30)));
     }
 }
@@ -195,7 +197,7 @@ static se3d_status try_steps(trial *t)
         const double most = t->h * spin > TURN_MOST ? TURN_MOST / spin : t->h;
         const double next = se3di_equal_steps_next(integration, most, t->t_end);
         const double h = se3di_pulse_step(&integration->equations->assembly, model->time, next);
-        const double wanted = t->wanted, longest = t->h;
+        const double longest = t->h, jerk[2] = {t->jerk[0], t->jerk[1]};
         if (!(model->time + h > model->time)) {
             return SE3D_OK;
         }
@@ -204,7 +206,7 @@ static se3d_status try_steps(trial *t)
             return status;
         }
         if (integration->is_paced) { /* by contacts or stops, in which accelerations jump */
-            t->wanted = wanted;
+            memcpy(t->jerk, jerk, sizeof jerk);
             t->h = status < 0 ? t->h : longest;
         }
         if (status < 0 && !(h > SHORTEST * (t->t_end - t->begin))) {
@@ -240,6 +242,13 @@ static se3d_status choose(trial *t)
                : SE3D_OK;
 }
 
+/* The longest step that has no larger error than it may have, relative to the largest speeds. */
+static double wanted_step(const trial *t)
+{
+    const double rate = fmax(t->jerk[0] / t->speed[0], t->jerk[1] / t->speed[1]); /* squared */
+    return sqrt(12.0 * most_of(t->integration) / fmax(rate, 1e-300));
+}
+
 /* What the trials say, as a round number. */
 static double conclude(const trial *t, int came_to_end)
 {
@@ -248,7 +257,7 @@ static double conclude(const trial *t, int came_to_end)
     double longest = came_to_end ? fmax(STEP_LONG, SPAN_PART * span) : STEP_LONG;
     longest = fmin(longest, stable);
     longest = t->most_spin * longest > TURN_MOST ? TURN_MOST / t->most_spin : longest;
-    return round_down(fmax(fmin(t->wanted, longest), SHORTEST * span));
+    return round_down(fmax(fmin(wanted_step(t), longest), SHORTEST * span));
 }
 
 se3d_status se3di_equal_steps_choose(se3di_integration *integration, double t_end)
@@ -265,7 +274,7 @@ se3d_status se3di_equal_steps_choose(se3di_integration *integration, double t_en
                .begin = model->time,
                .t_end = t_end,
                .h = fmin(STEP_LONG, integration->settings.step_most),
-               .wanted = HUGE_VAL};
+               .speed = {1e-12, 1e-12}};
     const se3d_status status = choose(&t);
     const int came_to_end = !(model->time < t_end);
     const se3d_status room = se3di_saved_reserve(&integration->before_trials, model);
@@ -277,6 +286,8 @@ se3d_status se3di_equal_steps_choose(se3di_integration *integration, double t_en
     se3di_user_begin(model);
     model->history[SE3DI_EQUAL_STEP] = model->history[SE3DI_EQUAL_FIRST] =
         conclude(&t, came_to_end);
+    model->history[SE3DI_EQUAL_SPEED] = t.speed[0];
+    model->history[SE3DI_EQUAL_SPIN] = t.speed[1];
     return SE3D_OK;
 }
 
@@ -307,9 +318,7 @@ static void shorten(se3di_integration *integration, double part)
  * steps of h, it has the error (w h)^2/12. Singular positions are passed in less. */
 static double steps_of_phase(const se3di_integration *integration)
 {
-    const double tolerance = integration->settings.tolerance / ADD_UP;
-    const double e2 = integration->settings.order == 4 ? sqrt(tolerance / FACTOR_4) : tolerance;
-    return fmax(3.0, PHASE / sqrt(12.0 * MUCH * e2));
+    return fmax(3.0, PHASE / sqrt(12.0 * MUCH * most_of(integration)));
 }
 
 void se3di_equal_steps_watch(se3di_integration *integration, double h)
@@ -319,7 +328,10 @@ void se3di_equal_steps_watch(se3di_integration *integration, double h)
     if (!se3di_equal_steps_are_chosen(integration) || !(header[SE3DI_EQUAL_STEP] > 0.0)) {
         return;
     }
-    const double e2 = measure(equations, h, &header[SE3DI_EQUAL_SPEED], &header[SE3DI_EQUAL_SPIN]);
+    double speed[2] = {header[SE3DI_EQUAL_SPEED], header[SE3DI_EQUAL_SPIN]}, jerk[2];
+    const double e2 = measure(equations, h, speed, jerk);
+    header[SE3DI_EQUAL_SPEED] = speed[0];
+    header[SE3DI_EQUAL_SPIN] = speed[1];
     const double part = error_of(integration, e2);
     const double is_over = part > MUCH && !integration->is_paced ? 1.0 : -1.0;
     header[SE3DI_EQUAL_OVER] = fmax(0.0, header[SE3DI_EQUAL_OVER] + is_over);

@@ -2,7 +2,8 @@
 /* The length of the equal steps of rattle and verlet where nobody has given one. It is chosen once,
  * by trial steps ahead from the state that the run begins with, and is part of the history: clones
  * and snapshots go on with it. The error of a step is that of velocities in a unit of time in which
- * they change by themselves, relative to them, by the change of accelerations a over the step,
+ * they change by themselves, relative to the largest ones, by the change of accelerations a over
+ * the step,
  *
  *     order 2   e = h |a_1 - a_0| / (12 |v|)        order 4   e = 5 e_2^2
  *
@@ -19,7 +20,7 @@
 enum {
     SE3DI_EQUAL_STEP,  /* in use [s]; 0: none was chosen */
     SE3DI_EQUAL_FIRST, /* the one that was chosen [s] */
-    SE3DI_EQUAL_SPEED, /* the largest of late [m/s], */
+    SE3DI_EQUAL_SPEED, /* the largest so far [m/s], */
     SE3DI_EQUAL_SPIN,  /* [rad/s] */
     SE3DI_EQUAL_OVER,  /* steps of late with too large an error */
     SE3DI_EQUAL_TOLD,  /* as much was told of, over the tolerance */

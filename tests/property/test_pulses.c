@@ -26,8 +26,7 @@ static void a_push_of_a_moment_is_not_stepped_over(void)
     for (size_t k = 0; k < sizeof pushes / sizeof *pushes; ++k) {
         for (int32_t run = 0; run < 2 * method_count(); ++run) {
             const int is_equal = run / 2 == SE3D_METHOD_RATTLE || run / 2 == SE3D_METHOD_VERLET;
-            text_model m =
-                text_model_open(pushes[k], run / 2, run % 2, is_equal ? k ? 1e-4 : 1e-3 : 0.0);
+            text_model m = text_model_open(pushes[k], run / 2, run % 2, k && is_equal ? 1e-4 : 0.0);
             CHECK(text_model_run(&m, 6.0));
             CHECK_NEAR(text_model_get(&m, 0, 0), 2.5, 1e-3);
             CHECK_NEAR(text_model_get(&m, 1, 0), 5.0, 2e-3);
