@@ -113,13 +113,26 @@ typedef enum se3d_log_level {
     SE3D_LOG_ERROR = 2
 } se3d_log_level;
 
+/* What a log message is about, for programs: its words may change. @since 0.1 */
+typedef enum se3d_log_kind {
+    SE3D_LOG_FAILURE = 0,   /* the message of a failure (ERROR) */
+    SE3D_LOG_START = 1,     /* the start was changed: se3d_solver_get_start_change */
+    SE3D_LOG_REDUNDANT = 2, /* constraints are redundant */
+    SE3D_LOG_LEFT_OUT = 3,  /* equations were left out: se3d_system_describe_left_out */
+    SE3D_LOG_TOLERANCE = 4, /* the tolerance is not reached: se3d_solver_get_tolerance */
+    SE3D_LOG_METHOD = 5,    /* another method or formulation works: se3d_solver_get_switch */
+    SE3D_LOG_STEP = 6,      /* the step is one that nobody chose, or is too long */
+    SE3D_LOG_KINK = 7       /* a prescribed rate has jumped: an impulse */
+} se3d_log_kind;
+
 /* Receives what happens to a system, one sentence a call: every message of a failure (ERROR);
  * starts that were projected, redundant constraints (WARNING); starts of driven motions and
  * assemblies that were moved, changes of method (INFO). It is called in the thread of the call that
  * works, never by two threads at a time; results do not depend on it. From within, the system may
  * be read as from a force callback (docs/api.md). The text is valid during the call only. @since
  * 0.1 */
-typedef void (*se3d_log_callback)(void *ctx, se3d_log_level level, const char *message);
+typedef void (*se3d_log_callback)(void *ctx, se3d_log_level level, se3d_log_kind kind,
+                                  const char *message);
 
 #ifdef __cplusplus
 }

@@ -460,7 +460,7 @@ static se3d_status switch_method(se3di_run *run)
     run->left_at = run->model->time;
     run->integration.method = se3di_integrator_find(SE3D_METHOD_RADAU);
     run->integration.settings.leaves_stiff = 0;
-    se3di_log_write(run->error, SE3D_LOG_INFO,
+    se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,
                     "t = %g s: stability limits the steps of %s, %s takes over", run->left_at,
                     run->left->name, run->integration.method->name);
     SE3DI_TRY(build(run));

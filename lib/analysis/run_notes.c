@@ -15,7 +15,7 @@ void se3di_run_tell_reach(se3di_run *run)
         se3di_integrator_get_tolerance(integration->method, &integration->settings);
     if (tolerance > integration->settings.tolerance && run->told_reach != integration->method) {
         run->told_reach = integration->method;
-        se3di_log_write(run->error, SE3D_LOG_WARNING,
+        se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_TOLERANCE,
                         "t = %g s: the tolerance %g is smaller than what %s reaches; %.3g is used",
                         run->model->time, integration->settings.tolerance,
                         integration->method->name, tolerance);
@@ -28,7 +28,7 @@ void se3di_run_tell_bodies(se3di_run *run)
     if (run->formulation->id == SE3D_FORMULATION_JOINT && !method->is_explicit &&
         run->told_bodies != method) {
         run->told_bodies = method;
-        se3di_log_write(run->error, SE3D_LOG_WARNING,
+        se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_METHOD,
                         "t = %g s: %s works with the coordinates of bodies, as r-omega: joint "
                         "coordinates are integrated by dop853, gauss, rk45 and rk4",
                         run->model->time, method->name);
@@ -42,7 +42,7 @@ void se3di_run_tell_step(se3di_run *run)
     if (method == &se3di_integrator_convex && !(integration->settings.step > 0.0) &&
         run->told_step != method) {
         run->told_step = method;
-        se3di_log_write(run->error, SE3D_LOG_WARNING,
+        se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_STEP,
                         "t = %g s: no step is given: %s takes %g s and estimates no error",
                         run->model->time, method->name, integration->settings.step_most);
     }
@@ -56,7 +56,7 @@ void se3di_run_tell_held(se3di_run *run)
         run->model->history_tag == se3di_run_get_history_tag(run) && run->told_held != method &&
         method->is_held(integration)) {
         run->told_held = method;
-        se3di_log_write(run->error, SE3D_LOG_WARNING,
+        se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_STEP,
                         "t = %g s: the iterations of %s limit its steps: the motion is stiff; "
                         "radau takes longer ones",
                         run->model->time, method->name);
@@ -73,7 +73,7 @@ static void warn_of_rows(se3di_run *run)
     }
     run->told_left_out = 1;
     se3di_row_name(model, model->left_out_row, name, sizeof name);
-    se3di_log_write(run->error, SE3D_LOG_WARNING,
+    se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_LEFT_OUT,
                     "t = %g s: the equation %s was left out, as it seemed to be redundant but for "
                     "the digits of its data, but the mechanism has left it by %.2g of its size: "
                     "give positions, axes and dimensions more digits",
@@ -90,7 +90,7 @@ static void tell_rows(se3di_run *run)
     run->told_redundant = 1;
     se3di_ranks_describe(run->model, rows, sizeof rows);
     se3di_log_write(
-        run->error, SE3D_LOG_INFO,
+        run->error, SE3D_LOG_INFO, SE3D_LOG_LEFT_OUT,
         "t = %g s: %u equation%s redundant but for the digits of %s data, and left out: "
         "%s",
         run->model->time, (unsigned)run->model->left_out_count,
@@ -105,7 +105,7 @@ se3d_status se3di_run_inform(se3di_run *run)
     run->equations.redundant |= run->model->left_out_count > 0;
     if (run->equations.redundant && !run->told_redundant) {
         run->told_redundant = 1;
-        se3di_log_write(run->error, SE3D_LOG_WARNING,
+        se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_REDUNDANT,
                         "t = %g s: there are redundant constraints; their reactions are the "
                         "minimum-norm ones; se3d_check names them",
                         run->model->time);

@@ -114,7 +114,7 @@ void se3di_start_change_log(const se3di_model *model, const se3di_start_change *
     char text[32];
     if (change->moved.index1 != 0) {
         se3di_log_write(
-            error, level,
+            error, level, SE3D_LOG_START,
             "t = %g s: the given positions do not fit the constraints and were moved by "
             "%.3g m and %.3g rad in all, body %.64s most, by %.3g m and %.3g rad",
             change->time, change->position, change->rotation, name_of(model, change->moved, text),
@@ -122,7 +122,7 @@ void se3di_start_change_log(const se3di_model *model, const se3di_start_change *
     }
     if (change->deflected.index1 != 0) {
         se3di_log_write(
-            error, level,
+            error, level, SE3D_LOG_START,
             "t = %g s: the given velocities do not fit the constraints and were changed "
             "by %.3g m/s and %.3g rad/s in all, of body %.64s most, by %.3g m/s and "
             "%.3g rad/s",

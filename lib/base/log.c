@@ -6,7 +6,7 @@
 
 /* From within, all calls on the system but readers are refused. What they record there is not left
  * behind. */
-static void tell(se3di_error *error, se3d_log_level level, const char *text)
+static void tell(se3di_error *error, se3d_log_level level, se3d_log_kind kind, const char *text)
 {
     se3di_logger *log = error->log;
     if (!log || !log->callback || atomic_exchange(&log->writing, 1) != 0) {
@@ -14,13 +14,14 @@ static void tell(se3di_error *error, se3d_log_level level, const char *text)
     }
     const se3di_error before = *error;
     const int32_t busy = se3di_busy_raise(log->busy, SE3DI_BUSY_CALL);
-    log->callback(log->ctx, level, text);
+    log->callback(log->ctx, level, kind, text);
     atomic_store(&log->writing, 0);
     se3di_busy_restore(log->busy, busy);
     *error = before;
 }
 
-void se3di_log_write(se3di_error *error, se3d_log_level level, const char *format, ...)
+void se3di_log_write(se3di_error *error, se3d_log_level level, se3d_log_kind kind,
+                     const char *format, ...)
 {
     if (!error || !error->log || !error->log->callback) {
         return;
@@ -30,7 +31,7 @@ void se3di_log_write(se3di_error *error, se3d_log_level level, const char *forma
     va_start(arguments, format);
     se3di_error_format(text, sizeof text, format, arguments);
     va_end(arguments);
-    tell(error, level, text);
+    tell(error, level, kind, text);
 }
 
 se3d_status se3di_log_error(se3di_error *error, se3d_status status)
@@ -38,7 +39,7 @@ se3d_status se3di_log_error(se3di_error *error, se3d_status status)
     if (error->log && error->log->callback &&
         se3di_busy_allows(error->log->busy, SE3DI_BUSY_EVENT)) {
         const se3di_error copy = *error;
-        tell(error, SE3D_LOG_ERROR, copy.message);
+        tell(error, SE3D_LOG_ERROR, SE3D_LOG_FAILURE, copy.message);
     }
     return status;
 }

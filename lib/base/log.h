@@ -17,10 +17,11 @@ typedef struct se3di_logger {
 
 /* Write a printf-like sentence, cut to the size of an error's. `error` or its log may be NULL. */
 #if defined(__GNUC__)
-__attribute__((format(printf, 3, 4)))
+__attribute__((format(printf, 4, 5)))
 #endif
 void
-se3di_log_write(se3di_error *error, se3d_log_level level, const char *format, ...);
+se3di_log_write(se3di_error *error, se3d_log_level level, se3d_log_kind kind, const char *format,
+                ...);
 
 /* Write the message that was recorded, and return `status`. Not while a call works: what is
  * recorded then may have been overcome; its end writes what has not. */

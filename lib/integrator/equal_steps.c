@@ -306,7 +306,7 @@ static void shorten(se3di_integration *integration, double part)
         return;
     }
     header[SE3DI_EQUAL_TOLD] = told;
-    se3di_log_write(integration->equations->error, SE3D_LOG_WARNING,
+    se3di_log_write(integration->equations->error, SE3D_LOG_WARNING, SE3D_LOG_STEP,
                     "t = %g s: the step of %.3g s that %s chose at its start is too long here: the "
                     "error of a step is %.2g, the tolerance %g; steps of %.3g s follow",
                     model->time, before, integration->method->name,

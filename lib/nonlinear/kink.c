@@ -50,7 +50,7 @@ static void tell(const se3di_equations *equations, const se3di_kink *kink, doubl
             continue;
         }
         se3di_row_name(model, row, name, sizeof name);
-        se3di_log_write(equations->error, SE3D_LOG_WARNING,
+        se3di_log_write(equations->error, SE3D_LOG_WARNING, SE3D_LOG_KINK,
                         "t = %.9g s: the rate of %s jumps: an impulse of %.6g %s acts, a reaction "
                         "without bound for no time, and all impulses do the work %.6g J",
                         kink->t, name, -equations->l[row], turns ? "N m s" : "N s", work);

@@ -15,7 +15,8 @@ static void say_refused(se3d_system *system, const char *function)
             &system->error, SE3D_ERR_STATE,
             "%s is not allowed in %s: the system is at work until that call returns", function,
             where[level]);
-        se3di_log_write(&system->error, SE3D_LOG_ERROR, "%s", system->error.message);
+        se3di_log_write(&system->error, SE3D_LOG_ERROR, SE3D_LOG_FAILURE, "%s",
+                        system->error.message);
         atomic_flag_clear(&busy->messaging);
     }
 }

@@ -218,6 +218,21 @@ has "$dir/err" "$(($(wc -l <"$dir/full/pendulum.csv") - 1)) rows are kept"
 has "$dir/out" "wrote $dir/full/pendulum.csv: $(($(wc -l <"$dir/full/pendulum.csv") - 1)) rows, 28 columns"
 rows_are_whole "$dir/full/pendulum.csv"
 is "$(ls "$dir/full")" 'pendulum.csv'
+# A scene that has no room: the results stay, the error names the scene, and the next one is tried.
+cat >"$dir/drawn.yaml" <<EOF
+se3d: 1
+bodies:
+  - {name: a, mass: 1, inertia: [0.01, 0.1, 0.1], position: [0.5, 0, 0], shapes: [{type: sphere, radius: 0.1}]}
+joints: [{name: s, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, 0]}]
+analysis: {type: dynamics, duration: 1}
+output: [{file: a.csv, every: 0.05, channels: [s.angle]}, {scene: other.glb}]
+EOF
+expect 'a scene on a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 4; exec "$@"' sh \
+    "$program" run "$dir/drawn.yaml" -o "$dir/drawn"
+has "$dir/err" "$dir/drawn/scene.glb: cannot be written: File too large"
+has "$dir/err" "$dir/drawn/other.glb: cannot be written: File too large"
+has "$dir/out" "wrote $dir/drawn/a.csv: 21 rows, 2 columns"
+is "$(ls "$dir/drawn")" 'a.csv'
 expect 'a limit that nobody asked to survive' 1 sh -c 'ulimit -f 16; exec "$@"' sh \
     "$program" run "$models/pendulum.yaml" -o "$dir/limit"
 rows_are_whole "$dir/limit/pendulum.csv"

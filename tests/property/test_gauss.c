@@ -204,9 +204,10 @@ static void a_step_that_does_not_converge_is_refused(void)
 static int warnings;
 static char last_warning[512];
 
-static void note(void *ctx, se3d_log_level level, const char *message)
+static void note(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
 {
     (void)ctx;
+    CHECK(level != SE3D_LOG_WARNING || kind != SE3D_LOG_FAILURE);
     if (level == SE3D_LOG_WARNING) {
         ++warnings;
         (void)snprintf(last_warning, sizeof last_warning, "%s", message);

@@ -10,10 +10,10 @@ typedef struct notes {
     char text[600];
 } notes;
 
-static void note(void *ctx, se3d_log_level level, const char *message)
+static void note(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
 {
     notes *n = ctx;
-    if (level == SE3D_LOG_WARNING && strstr(message, "impulse")) {
+    if (level == SE3D_LOG_WARNING && kind == SE3D_LOG_KINK) {
         double impulse = 0.0, work = 0.0;
         CHECK(sscanf(strstr(message, "impulse of"), "impulse of %lf", &impulse) == 1);
         CHECK(sscanf(strstr(message, "the work"), "the work %lf", &work) == 1);

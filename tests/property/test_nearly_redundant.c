@@ -468,10 +468,10 @@ typedef struct notes {
     char text[600];
 } notes;
 
-static void note(void *ctx, se3d_log_level level, const char *message)
+static void note(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
 {
     notes *n = ctx;
-    if (strstr(message, "left out")) {
+    if (kind == SE3D_LOG_LEFT_OUT) {
         n->warnings += level == SE3D_LOG_WARNING;
         snprintf(n->text, sizeof n->text, "%s", message);
     }

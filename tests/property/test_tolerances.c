@@ -88,10 +88,11 @@ typedef struct path {
     int32_t has_failed;
 } path;
 
-static void on_log(void *ctx, se3d_log_level level, const char *message)
+static void on_log(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
 {
     path *p = ctx;
-    p->is_told |= level >= SE3D_LOG_WARNING && strstr(message, "reaches") != NULL;
+    (void)message;
+    p->is_told |= level >= SE3D_LOG_WARNING && kind == SE3D_LOG_TOLERANCE;
 }
 
 static se3d_model *open_model(const mechanism *m, path *p)

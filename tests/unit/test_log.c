@@ -11,12 +11,14 @@ typedef struct sheet {
     int refused;  /* calls from within that were */
     int meddles;
     char last[3][600];
+    se3d_log_kind kind[3];
 } sheet;
 
-static void write_line(void *ctx, se3d_log_level level, const char *message)
+static void write_line(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
 {
     sheet *s = ctx;
     ++s->lines[level];
+    s->kind[level] = kind;
     snprintf(s->last[level], sizeof s->last[level], "%s", message);
     if (s->meddles) {
         se3d_body body;
@@ -81,6 +83,7 @@ static void every_failure_is_logged_once(void)
     CHECK(s.lines[SE3D_LOG_ERROR] == 1 && total(&s) == 1);
     CHECK(strcmp(s.last[SE3D_LOG_ERROR], se3d_system_get_error(s.system)) == 0);
     CHECK_CONTAINS(s.last[SE3D_LOG_ERROR], "mass = -1");
+    CHECK(s.kind[SE3D_LOG_ERROR] == SE3D_LOG_FAILURE);
     CHECK(se3d_function_create_expression(s.system, "cos(t", &function) < 0);
     CHECK(s.lines[SE3D_LOG_ERROR] == 2 && total(&s) == 2);
     add_pin(&s, add_bar(&s, "bar", 1.0), "pin");
@@ -106,6 +109,7 @@ static void redundant_constraints_are_logged_once(void)
     CHECK(se3d_solver_run(solver, 0.2) == SE3D_INFO_REDUNDANT);
     CHECK(s.lines[SE3D_LOG_WARNING] == 1 && total(&s) == 1);
     CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "redundant");
+    CHECK(s.kind[SE3D_LOG_WARNING] == SE3D_LOG_REDUNDANT);
     se3d_solver_destroy(solver);
     se3d_system_destroy(s.system);
 }
@@ -129,6 +133,7 @@ static void a_method_without_joint_coordinates_is_logged_once(void)
         CHECK(s.lines[SE3D_LOG_WARNING] == cases[k].warnings);
         if (cases[k].warnings) {
             CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "works with the coordinates of bodies");
+            CHECK(s.kind[SE3D_LOG_WARNING] == SE3D_LOG_METHOD);
         }
         se3d_solver_destroy(solver);
         se3d_system_destroy(s.system);
@@ -175,6 +180,7 @@ static void a_tolerance_that_is_not_reached_is_logged_once(void)
         CHECK(total(&s) == (rows[k].name != NULL));
         if (rows[k].name) {
             CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], rows[k].name);
+            CHECK(s.kind[SE3D_LOG_WARNING] == SE3D_LOG_TOLERANCE);
             CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "tolerance");
         }
         se3d_solver_destroy(solver);
@@ -210,6 +216,7 @@ static void a_change_of_method_is_logged(void)
     CHECK(strcmp(left, "dop853") == 0);
     CHECK(s.lines[SE3D_LOG_INFO] == 1 && total(&s) == 1);
     CHECK_CONTAINS(s.last[SE3D_LOG_INFO], "radau");
+    CHECK(s.kind[SE3D_LOG_INFO] == SE3D_LOG_METHOD);
     se3d_solver_destroy(solver);
     se3d_system_destroy(s.system);
 }
@@ -237,6 +244,7 @@ static void velocities_that_do_not_fit_are_told(void)
     CHECK(!(change.position > 0.0) && !(change.rotation > 0.0));
     CHECK(s.lines[SE3D_LOG_WARNING] == 1 && total(&s) == 1);
     CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "given velocities");
+    CHECK(s.kind[SE3D_LOG_WARNING] == SE3D_LOG_START);
     CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "body bar");
     CHECK(!se3d_solver_run(solver, 0.1)); /* the same start: nothing new */
     CHECK(!se3d_solver_get_start_change(solver, &change) && change.velocity > 0.1);
@@ -267,6 +275,7 @@ static void positions_that_do_not_fit_are_told(void)
     CHECK_NEAR(change.most_position, 2.0, 1e-9);
     CHECK(s.lines[SE3D_LOG_WARNING] == 1 && total(&s) == 1);
     CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "moved by 2 m");
+    CHECK(s.kind[SE3D_LOG_WARNING] == SE3D_LOG_START);
     CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "number 1");
     se3d_solver_destroy(solver);
     solver = solver_of(&s, SE3D_ANALYSIS_ASSEMBLY); /* is meant to move: information */
@@ -330,6 +339,7 @@ static void equal_steps_that_are_too_long_are_told(void)
             CHECK(size && sscanf(size, "the step of %lf s", &told) == 1);
             CHECK(told > 0.0 && told <= chosen * (1.0 + 1e-3));
             CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "is too long here: the error of a step is ");
+            CHECK(s.kind[SE3D_LOG_WARNING] == SE3D_LOG_STEP);
         }
         se3d_solver_destroy(solver);
         se3d_system_destroy(s.system);

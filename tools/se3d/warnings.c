@@ -5,21 +5,9 @@
 #include <string.h>
 
 /* The report shows these, too, with more of them: as the outcome of an analysis or below it. */
-static const char *const reported[] = {
-    "there are redundant constraints",
-    "the given positions do not fit",
-    "the given velocities do not fit",
-    "is smaller than what ",
-};
-
-static int is_reported(const char *message)
+static int is_reported(se3d_log_kind kind)
 {
-    for (size_t k = 0; k < sizeof reported / sizeof *reported; ++k) {
-        if (strstr(message, reported[k])) {
-            return 1;
-        }
-    }
-    return 0;
+    return kind == SE3D_LOG_REDUNDANT || kind == SE3D_LOG_START || kind == SE3D_LOG_TOLERANCE;
 }
 
 /* Without the time at which it was said. */
@@ -39,7 +27,7 @@ static int is_known(const warnings *w, const char *message)
     return 0;
 }
 
-void warnings_add(void *ctx, se3d_log_level level, const char *message)
+void warnings_add(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
 {
     warnings *w = ctx;
     if (level != SE3D_LOG_WARNING || is_known(w, message)) {
@@ -50,7 +38,7 @@ void warnings_add(void *ctx, se3d_log_level level, const char *message)
         return;
     }
     snprintf(w->text[w->count++], WARNING_SIZE, "%s", message);
-    if (!w->o->quiet && !w->o->json && !is_reported(message)) {
+    if (!w->o->quiet && !w->o->json && !is_reported(kind)) {
         progress_clear();
         fprintf(stderr, "%s: warning: %s\n", w->o->model, message);
     }

@@ -16,7 +16,7 @@ typedef struct warnings {
 } warnings;
 
 /* A se3d_log_callback; ctx: the warnings. */
-void warnings_add(void *ctx, se3d_log_level level, const char *message);
+void warnings_add(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message);
 /* After the run, how many were not shown. */
 void warnings_conclude(const warnings *w);
 
