@@ -411,8 +411,8 @@ SE3D_API se3d_status se3d_force_get_wrench(const se3d_system *system, se3d_force
 SE3D_API se3d_status se3d_force_get_power(const se3d_system *system, se3d_force force,
                                           double *potential, double *dissipated, double *actuator);
 
-/* Destroy a force element. @return OK, NULL, STALE_HANDLE, IN_USE (signals of functions). @since
- * 0.1 */
+/* Destroy a force element. @return OK, NULL, STALE_HANDLE, IN_USE (by a wheel or a signal).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_force_destroy(se3d_system *system, se3d_force force);
 
 /* Find a force element by its name.

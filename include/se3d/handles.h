@@ -84,6 +84,12 @@ typedef struct se3d_shape {
     uint32_t generation;
 } se3d_shape;
 
+/* A wheel on its upright. @since 0.1 */
+typedef struct se3d_wheel {
+    uint32_t index1;
+    uint32_t generation;
+} se3d_wheel;
+
 /* An event of one solver. @since 0.1 */
 typedef struct se3d_event {
     uint32_t index1;

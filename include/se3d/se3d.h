@@ -44,5 +44,6 @@
 #include "se3d/shape.h"
 #include "se3d/solver.h"
 #include "se3d/system.h"
+#include "se3d/wheel.h"
 
 #endif

@@ -223,6 +223,10 @@ void se3di_model_remove_body(se3di_model *model, uint32_t body)
         lower(&model->shapes[k].body, body);
     }
     lower_signals(model, offsetof(se3di_signal, body), body);
+    for (size_t k = 0; k < model->wheel_slots.count; ++k) {
+        lower(&model->wheels[k].body, body);
+        lower(&model->wheels[k].chassis, body);
+    }
     se3di_model_touch(model);
 }
 
@@ -402,6 +406,10 @@ void se3di_model_remove_constraint(se3di_model *model, uint32_t index)
         lower_signed(&model->forces[k].joint, index);
     }
     lower_signals(model, offsetof(se3di_signal, joint), index);
+    for (size_t k = 0; k < model->wheel_slots.count; ++k) {
+        lower_signed(&model->wheels[k].travel, index);
+        lower_signed(&model->wheels[k].steering, index);
+    }
     if (gone.angle >= 0) {
         remove_angle(model, (uint32_t)gone.angle);
     }
@@ -459,8 +467,57 @@ void se3di_model_remove_force(se3di_model *model, uint32_t force)
     close_gap(model->forces, model->force_slots.count, force, 1, sizeof *model->forces);
     remove_named(model, &model->force_slots, force, 0, name);
     lower_signals(model, offsetof(se3di_signal, force), force);
+    for (size_t k = 0; k < model->wheel_slots.count; ++k) {
+        lower_signed(&model->wheels[k].spring, force);
+    }
     if (own >= 0) {
         remove_angle(model, (uint32_t)own);
     }
     se3di_model_touch(model);
+}
+
+static void count_wheel_users(se3di_model *model, const se3di_wheel *wheel, uint32_t by)
+{
+    model->bodies[wheel->body].users += by;
+    model->bodies[wheel->chassis].users += by;
+    if (wheel->travel >= 0) {
+        model->constraints[wheel->travel].users += by;
+    }
+    if (wheel->steering >= 0) {
+        model->constraints[wheel->steering].users += by;
+    }
+    if (wheel->spring >= 0) {
+        model->forces[wheel->spring].users += by;
+    }
+}
+
+se3d_status se3di_model_add_wheel(se3di_model *model, const se3di_wheel *wheel,
+                                  se3di_handle *handle)
+{
+    size_t count = model->wheel_slots.count;
+    char *name;
+    RESERVE(model, wheels, wheel_capacity, count + 1, sizeof *model->wheels);
+    SE3DI_TRY(se3di_slots_reserve(&model->wheel_slots, &model->allocator));
+    SE3DI_TRY(copy_name(model, &model->wheel_slots, wheel->name, &name));
+    model->wheels[count] = *wheel;
+    model->wheels[count].name = name;
+    if (wheel->opposite >= 0) {
+        model->wheels[wheel->opposite].opposite = (int32_t)count;
+    }
+    count_wheel_users(model, wheel, 1);
+    *handle = add_named(&model->wheel_slots, 0, name);
+    return SE3D_OK;
+}
+
+void se3di_model_remove_wheel(se3di_model *model, uint32_t wheel)
+{
+    count_wheel_users(model, &model->wheels[wheel], UINT32_MAX);
+    char *name = model->wheels[wheel].name;
+    close_gap(model->wheels, model->wheel_slots.count, wheel, 1, sizeof *model->wheels);
+    remove_named(model, &model->wheel_slots, wheel, 0, name);
+    for (size_t k = 0; k < model->wheel_slots.count; ++k) {
+        int32_t *opposite = &model->wheels[k].opposite;
+        *opposite = *opposite == (int32_t)wheel ? -1 : *opposite;
+        lower_signed(opposite, wheel);
+    }
 }

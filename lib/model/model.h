@@ -18,6 +18,7 @@
 #include "model/body_contact.h"
 #include "model/shape.h"
 #include "model/term.h"
+#include "model/wheel.h"
 #include "se3d/constraint.h"
 #include "se3d/expression.h"
 #include "se3d/force.h"
@@ -247,6 +248,10 @@ typedef struct se3di_model {
     se3di_shape *shapes;
     size_t shape_capacity;
 
+    se3di_slots wheel_slots;
+    se3di_wheel *wheels;
+    size_t wheel_capacity;
+
     se3di_body_contacts contacts;
 
     double *history; /* what an integrator carries from step to step */
@@ -301,6 +306,9 @@ se3d_status se3di_model_add_shape(se3di_model *model, const se3di_shape *shape,
 se3d_status se3di_model_add_material(se3di_model *model, const se3di_material *material,
                                      se3di_handle *handle);
 
+se3d_status se3di_model_add_wheel(se3di_model *model, const se3di_wheel *wheel,
+                                  se3di_handle *handle);
+
 /* The same with a turn counter of its own. */
 se3d_status se3di_model_add_force_with_angle(se3di_model *model, const se3di_force *force,
                                              const se3di_angle *angle, se3di_handle *handle);
@@ -312,6 +320,7 @@ void se3di_model_remove_function(se3di_model *model, uint32_t function);
 void se3di_model_remove_constraint(se3di_model *model, uint32_t constraint);
 void se3di_model_remove_force(se3di_model *model, uint32_t force);
 void se3di_model_remove_shape(se3di_model *model, uint32_t shape);
+void se3di_model_remove_wheel(se3di_model *model, uint32_t wheel);
 void se3di_model_remove_material(se3di_model *model, uint32_t material);
 
 /* What holds between two materials, and for all contacts. */

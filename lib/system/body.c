@@ -87,10 +87,10 @@ se3d_status se3d_body_destroy(se3d_system *system, se3d_body body)
     }
     const se3di_body *data = &system->model.bodies[index];
     if (data->users > 0) {
-        return SE3DI_FAIL(
-            system, SE3D_ERR_IN_USE,
-            "body %s is used by %u markers, constraints, forces or shapes; destroy them first",
-            data->name ? data->name : "without a name", data->users);
+        return SE3DI_FAIL(system, SE3D_ERR_IN_USE,
+                          "body %s is used by %u markers, constraints, forces, shapes or wheels; "
+                          "destroy them first",
+                          data->name ? data->name : "without a name", data->users);
     }
     se3di_model_remove_body(&system->model, index);
     return SE3D_OK;

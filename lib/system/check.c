@@ -123,6 +123,12 @@ se3d_status se3di_find_material(se3d_system *system, const char *what, se3d_mate
     return find(system, &system->model.material_slots, what, SE3DI_HANDLE(handle), index);
 }
 
+se3d_status se3di_find_wheel(se3d_system *system, const char *what, se3d_wheel handle,
+                             uint32_t *index)
+{
+    return find(system, &system->model.wheel_slots, what, SE3DI_HANDLE(handle), index);
+}
+
 se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_constraint handle,
                                   uint32_t *index)
 {

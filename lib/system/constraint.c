@@ -21,8 +21,8 @@ se3d_status se3d_constraint_destroy(se3d_system *system, se3d_constraint constra
     const se3di_constraint *found = &system->model.constraints[index];
     if (found->users > 0) {
         return SE3DI_FAIL(system, SE3D_ERR_IN_USE,
-                          "'%.64s' (%s) is used by %u driver(s), coupler(s) or force(s), destroy "
-                          "them first",
+                          "'%.64s' (%s) is used by %u driver(s), coupler(s), force(s) or wheel(s), "
+                          "destroy them first",
                           found->name ? found->name : "", found->type, found->users);
     }
     se3di_model_remove_constraint(&system->model, index);

@@ -206,9 +206,11 @@ se3d_status se3d_force_destroy(se3d_system *system, se3d_force force)
     SE3DI_EDIT(system);
     uint32_t index;
     SE3DI_TRY(se3di_find_force(system, "force", force, &index));
-    if (system->model.forces[index].users > 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_IN_USE, "the force is used by %u signals of functions",
-                          system->model.forces[index].users);
+    const se3di_force *found = &system->model.forces[index];
+    if (found->users > 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_IN_USE,
+                          "'%.64s' is used by %u wheels or signals of functions",
+                          found->name ? found->name : "", found->users);
     }
     se3di_model_remove_force(&system->model, index);
     return SE3D_OK;

@@ -27,6 +27,7 @@ typedef struct world {
     se3d_snapshot *snapshot;
     se3d_body ball, bar, kite;
     se3d_marker marker;
+    se3d_wheel wheel;
     se3d_constraint pin, motor, guide, rail;
     se3d_force push, load, spring, mount, turn;
     se3d_function value, constant, no_functions[3];
@@ -158,6 +159,11 @@ static void world_add_bodies(world *w)
     marker.name = "name";
     marker.body = w->bar;
     CHECK(!se3d_marker_create(w->system, &marker, &w->marker));
+    se3d_wheel_def wheel = se3d_wheel_def_default();
+    wheel.body = w->bar;
+    wheel.chassis = ground;
+    wheel.radius = 0.3;
+    CHECK(!se3d_wheel_create(w->system, &wheel, &w->wheel));
 }
 
 static void world_add_callbacks(world *w)

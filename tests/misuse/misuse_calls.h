@@ -34,6 +34,34 @@ static const field marker_fields[] = {NAME(se3d_marker_def), BODY(se3d_marker_de
                                       NUMBERS(se3d_marker_def, position),
                                       NUMBERS(se3d_marker_def, orientation), FIELDS_END};
 
+static void define_wheel(arguments *a)
+{
+    se3d_wheel_def def = se3d_wheel_def_default();
+    def.body = a->use.body;
+    def.chassis = ground_of(a);
+    def.radius = 0.3;
+    def.travel = a->use.primitive;
+    def.steering = a->use.pin;
+    def.spring = a->use.force;
+    STORE(def);
+}
+static const field wheel_fields[] = {NAME(se3d_wheel_def),
+                                     BODY(se3d_wheel_def, body),
+                                     BODY(se3d_wheel_def, chassis),
+                                     NUMBERS(se3d_wheel_def, center),
+                                     NUMBERS(se3d_wheel_def, axis),
+                                     NUMBERS(se3d_wheel_def, forward),
+                                     NUMBERS(se3d_wheel_def, up),
+                                     NUMBERS(se3d_wheel_def, radius),
+                                     NUMBERS(se3d_wheel_def, width),
+                                     NUMBERS(se3d_wheel_def, steer_lower),
+                                     NUMBERS(se3d_wheel_def, steer_upper),
+                                     NUMBERS(se3d_wheel_def, wheelbase),
+                                     NUMBERS(se3d_wheel_def, cg_height),
+                                     NUMBERS(se3d_wheel_def, brake_share),
+                                     NUMBERS(se3d_wheel_def, drive_share),
+                                     FIELDS_END};
+
 static void define_primitive(arguments *a)
 {
     se3d_primitive_def def = se3d_primitive_def_default();
@@ -285,6 +313,11 @@ CALL(system_get_body, a->system, a->index, a->out[0])
 CALL(system_get_marker, a->system, a->index, a->out[0])
 CALL(system_get_constraint, a->system, a->index, a->out[0])
 CALL(system_get_force, a->system, a->index, a->out[0])
+CALL(system_get_wheel, a->system, a->index, a->out[0])
+CALL(wheel_create, a->system, a->def, a->out[0])
+CALL(wheel_destroy, a->system, a->use.wheel)
+CALL(wheel_get_name, a->system, a->use.wheel, a->out[0])
+CALL(wheel_get_measures, a->system, a->use.wheel, a->index, SE3D_WHEEL_MEASURES, a->out[0])
 CALL(system_get_energy, a->system, a->out[0])
 CALL(system_get_violation, a->system, a->out[0])
 CALL(expression_eval, a->expression, a->in, a->out[0])
@@ -477,6 +510,7 @@ static se3d_status counting_null_gives_zero(arguments *a)
     CHECK(se3d_system_count_constraints(NULL) == 0 &&
           se3d_system_count_constraints(a->system) == 4);
     CHECK(se3d_system_count_forces(NULL) == 0 && se3d_system_count_forces(a->system) == 1);
+    CHECK(se3d_system_count_wheels(NULL) == 0 && se3d_system_count_wheels(a->system) == 1);
     CHECK(se3d_check_count_messages(NULL) == 0 && se3d_check_count_messages(a->check) > 0);
     CHECK(se3d_system_hash(NULL) == 0 && se3d_system_hash(a->system) != 0);
     CHECK(se3d_expression_is_constant(NULL) == 0);
@@ -546,6 +580,7 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(system);
     CHECK_INIT(body);
     CHECK_INIT(marker);
+    CHECK_INIT(wheel);
     CHECK_INIT(primitive);
     CHECK_INIT(user_constraint);
     CHECK_INIT(joint);
@@ -668,6 +703,11 @@ static const row rows[] = {
     {"se3d_system_get_marker", call_system_get_marker, "sxh0", NULL, NULL},
     {"se3d_system_get_constraint", call_system_get_constraint, "sxh0", NULL, NULL},
     {"se3d_system_get_force", call_system_get_force, "sxh0", NULL, NULL},
+    {"se3d_system_get_wheel", call_system_get_wheel, "sxh0", NULL, NULL},
+    {"se3d_wheel_create", call_wheel_create, "SDh0", define_wheel, wheel_fields},
+    {"se3d_wheel_destroy", call_wheel_destroy, "Sw", NULL, NULL},
+    {"se3d_wheel_get_name", call_wheel_get_name, "swo0", NULL, NULL},
+    {"se3d_wheel_get_measures", call_wheel_get_measures, "swxo0", NULL, NULL},
     {"se3d_system_get_energy", call_system_get_energy, "so0", NULL, NULL},
     {"se3d_system_get_violation", call_system_get_violation, "so0", NULL, NULL},
     {"se3d_expression_eval", call_expression_eval, "ejo0", NULL, NULL},
@@ -706,6 +746,7 @@ static const row rows[] = {
     {"se3d_system_count_markers", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_count_constraints", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_count_forces", counting_null_gives_zero, "", NULL, NULL},
+    {"se3d_system_count_wheels", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_check_count_messages", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_hash", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_is_busy", counting_null_gives_zero, "", NULL, NULL},
@@ -724,6 +765,7 @@ static const row rows[] = {
     {"se3d_system_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_body_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_marker_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_wheel_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_primitive_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_user_constraint_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_joint_def_init", definitions_are_never_overrun, "", NULL, NULL},

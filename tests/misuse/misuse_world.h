@@ -13,6 +13,7 @@ typedef struct handles {
     se3d_constraint pin, slide, driver, primitive;
     se3d_function function;
     se3d_force force;
+    se3d_wheel wheel;
 } handles;
 
 typedef union def_storage {
@@ -82,10 +83,17 @@ static void add_elements(se3d_system *system, handles *h, const char *name)
     spring.point_j[0] = 1.0;
     spring.k = 1.0;
     CHECK(!se3d_force_create_tsda(system, &spring, &h->force));
+    se3d_wheel_def wheel = se3d_wheel_def_default();
+    wheel.name = name;
+    wheel.body = h->body;
+    wheel.chassis = ground;
+    wheel.radius = 0.3;
+    CHECK(!se3d_wheel_create(system, &wheel, &h->wheel));
 }
 
 static void remove_elements(se3d_system *system, const handles *h)
 {
+    CHECK(!se3d_wheel_destroy(system, h->wheel));
     CHECK(!se3d_force_destroy(system, h->force));
     CHECK(!se3d_constraint_destroy(system, h->primitive));
     CHECK(!se3d_constraint_destroy(system, h->driver));

@@ -3,8 +3,8 @@
  *
  * The letters of `needs` say which arguments a case spoils, one at a time:
  *     S s  the system: NULL. S: not const, so that every failure records a message
- *     b m c d f F  a handle (body, marker, joint, second joint, function, force): null, stale and
- *                  of another system
+ *     b m c d f F w  a handle (body, marker, joint, second joint, function, force, wheel): null,
+ *                  stale and of another system
  *     i<n> a vector of n numbers: NULL; NaN and infinity in every place
  *     j    a pointer to numbers that may hold anything: NULL     n  a number: NaN, infinity
  *     t    a text: NULL        x  an index: too large
@@ -140,6 +140,9 @@ static void spoil_handle(arguments *a, const misuse_world *w, const spoiled *s)
     case 'm':
         a->use.marker = bad->marker;
         break;
+    case 'w':
+        a->use.wheel = bad->wheel;
+        break;
     case 'c':
         a->use.pin = bad->pin;
         a->use.driver = bad->driver;
@@ -216,6 +219,7 @@ static se3d_status spoil(arguments *a, const misuse_world *w, const spoiled *s)
         return SE3D_ERR_INVALID_ARGUMENT;
     case 'b':
     case 'm':
+    case 'w':
     case 'c':
     case 'd':
     case 'f':

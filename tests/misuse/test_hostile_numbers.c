@@ -67,6 +67,18 @@ CREATE(se3d_marker_def, marker_create, se3d_marker)
 static const field marker_fields[] = {NUMBERS(se3d_marker_def, position),
                                       NUMBERS(se3d_marker_def, orientation), FIELDS_END};
 
+FILL_IN(se3d_wheel_def, wheel)
+{
+    def->body = w->ball;
+    def->chassis = w->ground;
+    def->radius = 0.3;
+}
+CREATE(se3d_wheel_def, wheel_create, se3d_wheel)
+static const field wheel_fields[] = {
+    NUMBERS(se3d_wheel_def, center),    NUMBERS(se3d_wheel_def, axis),
+    NUMBERS(se3d_wheel_def, radius),    NUMBERS(se3d_wheel_def, steer_upper),
+    NUMBERS(se3d_wheel_def, wheelbase), FIELDS_END};
+
 #define PRIMITIVE(what, TYPE)                                                                      \
     FILL_IN(se3d_primitive_def, what)                                                              \
     {                                                                                              \
@@ -324,6 +336,7 @@ static const subject subjects[] = {
     SE3DI_JOINT_LIST(JOINT_SUBJECT) FORCE_LIST(FORCE_SUBJECT) FORCE_VARIANT_LIST(FORCE_SUBJECT)
         SE3DI_SHAPE_LIST(SHAPE_SUBJECT){"body", body_fields, fill_in_body, create_body_create, 0},
     {"marker", marker_fields, fill_in_marker, create_marker_create, 0},
+    {"wheel", wheel_fields, fill_in_wheel, create_wheel_create, 0},
     {"dp1", primitive_fields, fill_in_dp1, create_primitive_create, 0},
     {"dp2", primitive_fields, fill_in_dp2, create_primitive_create, 0},
     {"d", primitive_fields, fill_in_d, create_primitive_create, 0},

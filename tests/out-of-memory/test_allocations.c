@@ -99,6 +99,25 @@ static se3d_status make_marker(workshop *w)
     return se3d_marker_create(w->system, &def, &marker);
 }
 
+static se3d_status make_wheel(workshop *w)
+{
+    double values[SE3D_WHEEL_MEASURES];
+    se3d_wheel_def def = se3d_wheel_def_default();
+    se3d_wheel wheel;
+    def.name = "wheel";
+    def.body = w->body[0];
+    def.chassis = w->ground;
+    def.radius = 0.3;
+    se3d_status status = se3d_wheel_create(w->system, &def, &wheel);
+    if (status >= 0) {
+        status = se3d_wheel_get_measures(w->system, wheel, 0, SE3D_WHEEL_MEASURES, values);
+        if (status < 0) {
+            CHECK(!se3d_wheel_destroy(w->system, wheel));
+        }
+    }
+    return status;
+}
+
 static se3d_status make_primitive(workshop *w, int32_t type)
 {
     se3d_primitive_def def = se3d_primitive_def_default();
@@ -376,6 +395,7 @@ typedef struct operation_row {
 static const operation_row operations[] = {
     SE3DI_JOINT_LIST(ROW) FORCE_LIST(ROW){"body", make_body},
     {"marker", make_marker},
+    {"wheel", make_wheel},
     {"dp1", make_dp1},
     {"dp2", make_dp2},
     {"d", make_d},

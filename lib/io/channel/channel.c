@@ -55,6 +55,37 @@ static const quantity_name effort_names[] = {{"coordinate", SE3DI_FORCE_COORDINA
                                              {NULL, SE3DI_STEPS}};
 static const quantity_name wrench_names[] = {
     {"force", SE3DI_WRENCH_FORCE}, {"torque", SE3DI_WRENCH_TORQUE}, {NULL, SE3DI_STEPS}};
+static const quantity_name wheel_names[] = {
+    {"camber", SE3DI_WHEEL_CAMBER},
+    {"inclination", SE3DI_WHEEL_INCLINATION},
+    {"steer", SE3DI_WHEEL_STEER},
+    {"toe", SE3DI_WHEEL_TOE},
+    {"travel", SE3DI_WHEEL_TRAVEL},
+    {"wheelbase_change", SE3DI_WHEELBASE_CHANGE},
+    {"track_change", SE3DI_WHEEL_TRACK_CHANGE},
+    {"ackermann_error", SE3DI_WHEEL_ACKERMANN_ERROR},
+    {"contact", SE3DI_WHEEL_CONTACT},
+    {"caster", SE3DI_WHEEL_CASTER},
+    {"kingpin_inclination", SE3DI_WHEEL_KINGPIN_INCLINATION},
+    {"scrub_radius", SE3DI_WHEEL_SCRUB_RADIUS},
+    {"mechanical_trail", SE3DI_WHEEL_MECHANICAL_TRAIL},
+    {"camber_gradient", SE3DI_WHEEL_CAMBER_GRADIENT},
+    {"toe_gradient", SE3DI_WHEEL_TOE_GRADIENT},
+    {"track_gradient", SE3DI_WHEEL_TRACK_GRADIENT},
+    {"wheelbase_gradient", SE3DI_WHEELBASE_GRADIENT},
+    {"front_swing_arm", SE3DI_WHEEL_FRONT_SWING_ARM},
+    {"front_center_height", SE3DI_WHEEL_FRONT_CENTER_HEIGHT},
+    {"side_swing_arm", SE3DI_WHEEL_SIDE_SWING_ARM},
+    {"side_center_height", SE3DI_WHEEL_SIDE_CENTER_HEIGHT},
+    {"roll_center_height", SE3DI_WHEEL_ROLL_CENTER_HEIGHT},
+    {"anti_dive", SE3DI_WHEEL_ANTI_DIVE},
+    {"anti_lift", SE3DI_WHEEL_ANTI_LIFT},
+    {"anti_squat", SE3DI_WHEEL_ANTI_SQUAT},
+    {"motion_ratio", SE3DI_WHEEL_MOTION_RATIO},
+    {"wheel_load", SE3DI_WHEEL_LOAD},
+    {"wheel_rate", SE3DI_WHEEL_RATE},
+    {"roll_rate", SE3DI_WHEEL_ROLL_RATE},
+    {NULL, SE3DI_STEPS}};
 static const struct {
     const char *type;
     const quantity_name *names;
@@ -96,7 +127,7 @@ static const quantity_name set_names[] = {{"count", SE3DI_SET_COUNT},
                                           {NULL, SE3DI_STEPS}};
 static const quantity_name sink_names[] = {{"count", SE3DI_SINK_COUNT}, {NULL, SE3DI_STEPS}};
 
-enum { QUANTITIES_MAX = 12 };
+enum { QUANTITIES_MAX = 32 };
 
 /* What one thing offers: at most QUANTITIES_MAX names. */
 typedef struct offer {
@@ -162,10 +193,14 @@ static void offer_element(offer *o, const se3d_model *model, const se3di_element
             offer_names(o, driver_names);
         }
         break;
+    case SE3DI_ELEMENT_WHEEL:
+        offer_names(o, wheel_names);
+        break;
     case SE3DI_ELEMENT_DRIVER:
         offer_names(o, driver_names);
         break;
     case SE3DI_ELEMENT_FORCE:
+    default:
         for (size_t k = 0; k < sizeof force_names / sizeof *force_names; ++k) {
             if (strcmp(text, force_names[k].type) == 0) {
                 offer_names(o, force_names[k].names);
@@ -226,10 +261,10 @@ static void explain_unknown(const se3d_model *model, const char *name, char *pro
     }
     const char *meant = se3di_guess_get(&guess);
     snprintf(problem, size, "`%.60s` is unknown%s%s%s", name,
-             meant
-                 ? ", did you mean `"
-                 : ", must be a body, joint, driver, constraint or force, or one of energy, work, "
-                   "violation, steps, iterations",
+             meant ? ", did you mean `"
+                   : ", must be a body, joint, driver, constraint, force or wheel, or one of "
+                     "energy, work, "
+                     "violation, steps, iterations",
              meant ? meant : "", meant ? "`?" : "");
 }
 
@@ -370,6 +405,7 @@ static bool find_element(const se3d_model *model, const char *head, const char *
     offer_element(offered, model, entry);
     channel->constraint = entry->constraint;
     channel->force = entry->force;
+    channel->wheel = entry->wheel;
     channel->body = entry->body;
     channel->motion = motion_of(entry);
     memcpy(channel->point, entry->point, sizeof channel->point);
@@ -539,7 +575,7 @@ static void list_bodies(channel_list *c)
 static void list_elements(channel_list *c)
 {
     const se3d_model *model = c->model;
-    size_t listed[4] = {0, 0, 0, 0};
+    size_t listed[SE3DI_ELEMENT_KINDS] = {0};
     for (size_t k = 0; k < model->element_count && !c->failed; ++k) {
         const se3di_element_entry *entry = &model->elements[k];
         offer o;
@@ -552,6 +588,7 @@ static void list_elements(channel_list *c)
             se3di_channel channel = {.quantity = o.list[i].quantity,
                                      .constraint = entry->constraint,
                                      .force = entry->force,
+                                     .wheel = entry->wheel,
                                      .body = entry->body};
             memcpy(channel.point, entry->point, sizeof channel.point);
             list_one(c, channel, parts);

@@ -36,6 +36,35 @@
     X(FORCE_COORDINATE, 1, FORCE, 0, MOTION, 0, 0, 0, 1)                                           \
     X(FORCE_RATE, 1, FORCE, 1, MOTION, 0, 1, 0, 1)                                                 \
     X(FORCE_VALUE, 1, FORCE, 2, SOLVED, 1, 2, 1, 1)                                                \
+    X(WHEEL_CAMBER, 1, WHEEL_POSE, 0, MOTION, 0, 0, 0, 0)                                          \
+    X(WHEEL_INCLINATION, 1, WHEEL_POSE, 1, MOTION, 0, 0, 0, 0)                                     \
+    X(WHEEL_STEER, 1, WHEEL_POSE, 2, MOTION, 0, 0, 0, 0)                                           \
+    X(WHEEL_TOE, 1, WHEEL_POSE, 3, MOTION, 0, 0, 0, 0)                                             \
+    X(WHEEL_TRAVEL, 1, WHEEL_POSE, 4, MOTION, 1, 0, 0, 0)                                          \
+    X(WHEELBASE_CHANGE, 1, WHEEL_POSE, 5, MOTION, 1, 0, 0, 0)                                      \
+    X(WHEEL_TRACK_CHANGE, 1, WHEEL_POSE, 6, MOTION, 1, 0, 0, 0)                                    \
+    X(WHEEL_ACKERMANN_ERROR, 1, WHEEL_POSE, 7, MOTION, 0, 0, 0, 0)                                 \
+    X(WHEEL_CONTACT, 3, WHEEL_POSE, 8, MOTION, 1, 0, 0, 0)                                         \
+    X(WHEEL_CASTER, 1, WHEEL_AXIS, 0, MOTION, 0, 0, 0, 0)                                          \
+    X(WHEEL_KINGPIN_INCLINATION, 1, WHEEL_AXIS, 1, MOTION, 0, 0, 0, 0)                             \
+    X(WHEEL_SCRUB_RADIUS, 1, WHEEL_AXIS, 2, MOTION, 1, 0, 0, 0)                                    \
+    X(WHEEL_MECHANICAL_TRAIL, 1, WHEEL_AXIS, 3, MOTION, 1, 0, 0, 0)                                \
+    X(WHEEL_CAMBER_GRADIENT, 1, WHEEL_RIDE, 0, MOTION, -1, 0, 0, 0)                                \
+    X(WHEEL_TOE_GRADIENT, 1, WHEEL_RIDE, 1, MOTION, -1, 0, 0, 0)                                   \
+    X(WHEEL_TRACK_GRADIENT, 1, WHEEL_RIDE, 2, MOTION, 0, 0, 0, 0)                                  \
+    X(WHEELBASE_GRADIENT, 1, WHEEL_RIDE, 3, MOTION, 0, 0, 0, 0)                                    \
+    X(WHEEL_FRONT_SWING_ARM, 1, WHEEL_RIDE, 4, MOTION, 1, 0, 0, 0)                                 \
+    X(WHEEL_FRONT_CENTER_HEIGHT, 1, WHEEL_RIDE, 5, MOTION, 1, 0, 0, 0)                             \
+    X(WHEEL_SIDE_SWING_ARM, 1, WHEEL_RIDE, 6, MOTION, 1, 0, 0, 0)                                  \
+    X(WHEEL_SIDE_CENTER_HEIGHT, 1, WHEEL_RIDE, 7, MOTION, 1, 0, 0, 0)                              \
+    X(WHEEL_ROLL_CENTER_HEIGHT, 1, WHEEL_RIDE, 8, MOTION, 1, 0, 0, 0)                              \
+    X(WHEEL_ANTI_DIVE, 1, WHEEL_RIDE, 9, MOTION, 0, 0, 0, 0)                                       \
+    X(WHEEL_ANTI_LIFT, 1, WHEEL_RIDE, 10, MOTION, 0, 0, 0, 0)                                      \
+    X(WHEEL_ANTI_SQUAT, 1, WHEEL_RIDE, 11, MOTION, 0, 0, 0, 0)                                     \
+    X(WHEEL_MOTION_RATIO, 1, WHEEL_RIDE, 12, MOTION, 0, 0, 0, 0)                                   \
+    X(WHEEL_LOAD, 1, WHEEL_LOAD, 0, MOTION, 1, 2, 1, 0)                                            \
+    X(WHEEL_RATE, 1, WHEEL_LOAD, 1, MOTION, 0, 2, 1, 0)                                            \
+    X(WHEEL_ROLL_RATE, 1, WHEEL_LOAD, 2, MOTION, 2, 2, 1, 0)                                       \
     X(ENERGY_KINETIC, 1, ENERGY, 0, MOTION, 2, 2, 1, 0)                                            \
     X(ENERGY_POTENTIAL, 1, ENERGY, 1, MOTION, 2, 2, 1, 0)                                          \
     X(ENERGY_TOTAL, 1, ENERGY, 2, MOTION, 2, 2, 1, 0)                                              \
@@ -82,6 +111,10 @@ typedef enum se3di_question {
     SE3DI_ASK_DRIVER_VALUE,
     SE3DI_ASK_DRIVER_EFFORT,
     SE3DI_ASK_FORCE,
+    SE3DI_ASK_WHEEL_POSE, /* the groups of se3d_wheel_measure */
+    SE3DI_ASK_WHEEL_AXIS,
+    SE3DI_ASK_WHEEL_RIDE,
+    SE3DI_ASK_WHEEL_LOAD,
     SE3DI_ASK_ENERGY,
     SE3DI_ASK_WORK,
     SE3DI_ASK_VIOLATION,
@@ -115,6 +148,7 @@ typedef struct se3di_channel {
     se3d_marker marker;
     se3d_constraint constraint;
     se3d_force force;
+    se3d_wheel wheel;
     const se3d_particles *particles;
     const struct se3di_tagged *tagged; /* of sets and sinks */
     uint32_t index;                    /* tag of a set, number of a sink */

@@ -62,7 +62,7 @@ static se3d_status ask_wrench(const se3di_channel *c, const se3d_system *system,
 }
 
 static se3d_status ask_element(se3di_question question, const se3di_channel *c,
-                               const se3d_system *system, double numbers[6])
+                               const se3d_system *system, double numbers[SE3DI_ANSWER_NUMBERS])
 {
     switch (question) {
     case SE3DI_ASK_REACTION:
@@ -79,6 +79,18 @@ static se3d_status ask_element(se3di_question question, const se3di_channel *c,
         return se3d_driver_get_effort(system, c->constraint, numbers);
     case SE3DI_ASK_WRENCH:
         return ask_wrench(c, system, numbers);
+    case SE3DI_ASK_WHEEL_POSE:
+        return se3d_wheel_get_measures(system, c->wheel, SE3D_WHEEL_CAMBER,
+                                       SE3D_WHEEL_CASTER - SE3D_WHEEL_CAMBER, numbers);
+    case SE3DI_ASK_WHEEL_AXIS:
+        return se3d_wheel_get_measures(system, c->wheel, SE3D_WHEEL_CASTER,
+                                       SE3D_WHEEL_CAMBER_GRADIENT - SE3D_WHEEL_CASTER, numbers);
+    case SE3DI_ASK_WHEEL_RIDE:
+        return se3d_wheel_get_measures(system, c->wheel, SE3D_WHEEL_CAMBER_GRADIENT,
+                                       SE3D_WHEEL_WHEEL_LOAD - SE3D_WHEEL_CAMBER_GRADIENT, numbers);
+    case SE3DI_ASK_WHEEL_LOAD:
+        return se3d_wheel_get_measures(system, c->wheel, SE3D_WHEEL_WHEEL_LOAD,
+                                       SE3D_WHEEL_MEASURES - SE3D_WHEEL_WHEEL_LOAD, numbers);
     default:
         return se3d_force_get_state(system, c->force, numbers, numbers + 1, numbers + 2);
     }
@@ -218,6 +230,11 @@ static size_t element_of(se3di_question question, const se3di_channel *c)
     case SE3DI_ASK_WRENCH:
     case SE3DI_ASK_FORCE:
         return c->force.index1;
+    case SE3DI_ASK_WHEEL_POSE:
+    case SE3DI_ASK_WHEEL_AXIS:
+    case SE3DI_ASK_WHEEL_RIDE:
+    case SE3DI_ASK_WHEEL_LOAD:
+        return c->wheel.index1;
     case SE3DI_ASK_REACTION:
     case SE3DI_ASK_JOINT_ANGLE:
     case SE3DI_ASK_JOINT_DISPLACEMENT:

@@ -28,21 +28,25 @@ typedef enum se3di_element_kind {
     SE3DI_ELEMENT_JOINT = 0,
     SE3DI_ELEMENT_CONSTRAINT = 1,
     SE3DI_ELEMENT_DRIVER = 2,
-    SE3DI_ELEMENT_FORCE = 3
+    SE3DI_ELEMENT_FORCE = 3,
+    SE3DI_ELEMENT_WHEEL = 4,
+    SE3DI_ELEMENT_KINDS = 5
 } se3di_element_kind;
 
-/* A joint, constraint, driver or force: their names are unique together. */
+/* A joint, constraint, driver, force or wheel: their names are unique together. */
 typedef struct se3di_element_entry {
     const char *name;
     const se3di_node *node;
     se3di_element_kind kind;
     se3d_constraint constraint;
     se3d_force force;
+    se3d_wheel wheel;
     se3d_body body;  /* bushing, force, torque: the body acted on, */
     double point[3]; /* where */
     /* How it is drawn: a pair with points (1), also with an axis (2), a spring (3); 0: not. */
     int32_t drawn;
     bool is_turned;     /* mirrored joint whose angle counts the other way round */
+    bool is_paired;     /* wheel that has an opposite one */
     int32_t coordinate; /* se3d_joint_coordinate of a driver, friction or stop */
     se3d_body body_i;
     se3d_body body_j;

@@ -15,7 +15,7 @@ const char *const se3di_coordinates[] = {[SE3D_JOINT_COORDINATE_ANGLE] = "angle"
                                          [SE3D_JOINT_COORDINATE_DISPLACEMENT] = "displacement",
                                          NULL};
 
-static const char *const kind_texts[] = {"joint", "constraint", "driver", "force"};
+static const char *const kind_texts[] = {"joint", "constraint", "driver", "force", "wheel"};
 
 bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_element_kind kind,
                         se3di_element_entry **entry)
@@ -38,7 +38,7 @@ bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_elem
     if (se3di_ionames_find(&model->element_names, name, NULL)) {
         return se3di_reader_fail_key(reader, node, "name",
                                      "`%.60s` is the name of two elements: joints, constraints, "
-                                     "drivers and forces must have different names",
+                                     "drivers, forces and wheels must have different names",
                                      name);
     }
     se3di_element_entry *grown =

@@ -31,7 +31,7 @@ static const char *const mirrors[] = {"x", "y", "z", NULL};
 static const se3di_key instance_keys[] = {
     {"file", SE3DI_KIND_TEXT,
      .text = "another model file, relative to this one; its points, bodies, joints, constraints, "
-         "drivers and forces are taken"},
+         "drivers, forces and wheels are taken"},
     {"part", SE3DI_KIND_TEXT, .text = "in place of a file: one of `parts`"},
     {"when", SE3DI_KIND_CONDITION, .text = "it is there only if this holds"},
     {"repeat", SE3DI_KIND_COUNT, .most = 100000.0, .standard = "1", .text = "how many there are"},
@@ -62,6 +62,7 @@ static const se3di_key part_keys[] = {
     {"drivers", SE3DI_KIND_LIST, .object = "driver", .text = "as of a model"},
     {"constraints", SE3DI_KIND_LIST, .object = "constraint", .text = "as of a model"},
     {"forces", SE3DI_KIND_LIST, .object = "force", .text = "as of a model"},
+    {"wheels", SE3DI_KIND_LIST, .object = "wheel", .text = "as of a model"},
     {"include", SE3DI_KIND_LIST, .object = "instance", .text = "as of a model"},
     {"instances", SE3DI_KIND_LIST, .object = "instance", .text = "as of a model"},
     {.key = NULL}};

@@ -68,6 +68,7 @@ static const se3di_key model_keys[] = {
     {"constraints", SE3DI_KIND_LIST, .object = "constraint", .text = "constraint primitives"},
     {"forces", SE3DI_KIND_LIST, .object = "force",
      .text = "springs, dampers, friction, stops, loads"},
+    {"wheels", SE3DI_KIND_LIST, .object = "wheel", .text = "what measures a suspension"},
     {"contact", SE3DI_KIND_OBJECT, .object = "contact",
      .text = "how shapes and particles touch; may be empty"},
     {"particles", SE3DI_KIND_LIST, .object = "particles",
@@ -178,8 +179,8 @@ static bool read_model(se3di_reader *reader, se3di_library *library, const se3di
            read_section(reader, se3di_read_joints) &&
            read_section(reader, se3di_read_constraints) &&
            read_section(reader, se3di_read_drivers) && read_section(reader, se3di_read_forces) &&
-           se3di_read_analyses(reader, root) && se3di_read_contact(reader, root) &&
-           se3di_read_particles(reader, root) &&
+           read_section(reader, se3di_read_wheels) && se3di_read_analyses(reader, root) &&
+           se3di_read_contact(reader, root) && se3di_read_particles(reader, root) &&
            (reader->study || se3di_read_outputs(reader, root)) && se3di_read_events(reader, root) &&
            (reader->study ? se3di_read_measured(reader, reader->study)
                           : se3di_read_study(reader, root));

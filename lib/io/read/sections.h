@@ -11,6 +11,7 @@ bool se3di_read_joints(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_constraints(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_drivers(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_forces(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_wheels(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_analyses(se3di_reader *reader, const se3di_node *root);
 /* `contact` and `particles`, after the analyses. */
 bool se3di_read_contact(se3di_reader *reader, const se3di_node *root);

@@ -334,7 +334,7 @@ static void put_units(drawing *d)
         } else if (entry->kind == SE3DI_ELEMENT_FORCE) {
             turns = strcmp(text, "rsda") == 0;
         }
-        if (entry->kind != SE3DI_ELEMENT_DRIVER && entry->kind != SE3DI_ELEMENT_CONSTRAINT) {
+        if (entry->kind == SE3DI_ELEMENT_JOINT || entry->kind == SE3DI_ELEMENT_FORCE) {
             put_unit(d, entry, "rate", turns ? "rad/s" : "m/s");
         }
     }
