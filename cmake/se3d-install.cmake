@@ -85,7 +85,7 @@ foreach(name LICENSE README.md CHANGELOG.md)
     install(FILES "${PROJECT_SOURCE_DIR}/${name}" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
 endforeach()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/examples/models" DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples"
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/examples/models" "${PROJECT_SOURCE_DIR}/examples/fsae" DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples"
         COMPONENT documentation)
 install(FILES "${PROJECT_SOURCE_DIR}/docs/se3d.schema.json" DESTINATION "${CMAKE_INSTALL_DATADIR}/se3d"
         COMPONENT program)

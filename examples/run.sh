@@ -67,6 +67,17 @@ for model in examples/models/pendulum.yaml examples/models/*.yaml; do
     fi
 done
 
+# The Formula SAE car: rigs of its suspension, and the car on its tyres with its modes.
+for name in travel roll steer car; do
+    echo
+    echo "se3d run examples/fsae/$name.yaml -o results/fsae_$name"
+    if "$program" run "examples/fsae/$name.yaml" -o "results/fsae_$name"; then
+        show "results/fsae_$name/$name.csv"
+    else
+        failed="$failed fsae/$name"
+    fi
+done
+
 echo
 if [ -n "$failed" ]; then
     echo "These models failed:$failed"
