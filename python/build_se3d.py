@@ -29,7 +29,8 @@ extern "Python" se3d_status se3d_python_constraint(void *, double, const se3d_bo
                                                    double *, double *, double *, double *);
 extern "Python" se3d_status se3d_python_event_value(void *, const se3d_system *, double *);
 extern "Python" se3d_status se3d_python_event(void *, se3d_system *, const se3d_event_record *);
-extern "Python" void se3d_python_log(void *, se3d_log_level, const char *);
+extern "Python" void se3d_python_log(void *, se3d_log_level, se3d_log_kind,
+                                     const char *);
 extern "Python" int se3d_python_interrupt(void *);
 extern "Python" int se3d_python_progress(void *, size_t, double, double);
 extern "Python" void se3d_python_mistake(void *, const se3d_model_error *);

@@ -42,13 +42,6 @@ static size_t work_count(const se3di_assembly *assembly)
            2 * (size_t)assembly->unknown_count + assembly->row_count;
 }
 
-/* Of the error of a step: those of all steps of a run add up, and they are the more the smaller it
- * is, h^(k+1) in each of 1/h at order k, 5 if it is small. */
-static double local_tolerance(double tolerance)
-{
-    return 0.06 * se3di_pow(fmax(tolerance, SE3DI_BDF_REACH), 1.2);
-}
-
 /* Its arrays: behind the first `before` numbers of the work. */
 static void point_into(se3di_bdf *m, const se3di_integration *integration, size_t before)
 {
@@ -61,8 +54,7 @@ static void point_into(se3di_bdf *m, const se3di_integration *integration, size_
                      .past = (se3di_bdf_past *)(void *)assembly->model->history,
                      .base = integration->work + before,
                      .iterations_max = ITERATIONS_CONTROLLED,
-                     .tolerance = local_tolerance(integration->settings.tolerance)};
-    m->iteration = 0.1 * fmax(integration->settings.tolerance, SE3DI_BDF_REACH);
+                     .tolerance = 0.1 * fmax(integration->settings.tolerance, SE3DI_BDF_REACH)};
     m->accuracy = fmin(1e-13, fmax(1e-15, 1e-6 * m->tolerance));
     m->times = m->past->times;
     m->points = assembly->model->history + SE3DI_BDF_PAST;

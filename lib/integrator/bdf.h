@@ -7,7 +7,7 @@
 
 #include "integrator/state.h"
 
-#define SE3DI_BDF_REACH      1e-10 /* below it rounding; smallest tolerance of a run */
+#define SE3DI_BDF_REACH      1e-12 /* smallest tolerance of a run */
 #define SE3DI_BDF_ORDER_MAX  5
 #define SE3DI_BDF_POINTS_MAX (SE3DI_BDF_ORDER_MAX + 2)
 
@@ -41,8 +41,7 @@ typedef struct se3di_bdf {
     double *acceleration; /* a, wdot of each free body [6] */
     double *work;         /* [unknowns] */
     double *lambda;       /* [rows] */
-    double tolerance;     /* of the local error, */
-    double iteration;     /* and that Newton's corrections are compared with */
+    double tolerance;     /* of the local error */
     double fraction;      /* of the step, that a turn of friction asks for; 0: none does */
     double accuracy;      /* violation of constraints that does not matter: near a singular position
                              velocities magnify it by the square of the inverse distance */

@@ -82,7 +82,7 @@ static double measure(const se3di_bdf *m, const double *change)
                             angular * (1.0 / m->past->scale.spin + m->c);
         largest = part <= largest ? largest : part; /* NaN stays */
     }
-    return m->c * largest / m->iteration;
+    return m->c * largest / m->tolerance;
 }
 
 /* Right-hand sides of a Newton correction of accelerations and multipliers. */
@@ -165,9 +165,9 @@ static se3d_status iterate_to_convergence(se3di_bdf *m)
     for (int k = 0; k < m->iterations_max; ++k) {
         SE3DI_TRY(se3di_equations_ask(m->equations));
         SE3DI_TRY(iterate(m, refactor, &size));
-        const int is_traced = se3di_newton_note(&m->integration->newton, size * m->iteration);
+        const int is_traced = se3di_newton_note(&m->integration->newton, size * m->tolerance);
         if (size <= 1e-3 || (k > 0 && size <= 1.0 && size * size / before <= 1e-3) ||
-            (k > 1 && size > 0.8 * before && size * m->iteration <= SE3DI_STATE_NOISE)) {
+            (k > 1 && size > 0.8 * before && size * m->tolerance <= SE3DI_STATE_NOISE)) {
             return SE3D_OK;
         }
         if (k > 1 && size > 2.0 * before) {

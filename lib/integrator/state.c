@@ -18,6 +18,9 @@
  * that of rows on the tree is larger, all of the violation being in few of them. */
 #define ROWS_EPS 1.5e-10
 
+/* Of the speed at which other points move: what is slower is measured by that. */
+#define LEAST_PART 1e-4
+
 size_t se3di_state_count(const se3di_assembly *assembly)
 {
     return SE3DI_STATE_SIZE * (size_t)assembly->body_count + SE3DI_STATE_WORK;
@@ -408,6 +411,10 @@ void se3di_state_scale_grow(const se3di_assembly *assembly, const double *deriva
     }
     v = fmax(sqrt(v), sqrt(sqrt(a) * scale->length));
     w = fmax(sqrt(w), sqrt(sqrt(wdot)));
+    /* centres of mass that stay where they are, or bodies that do not turn: their rounding is
+     * measured by what moves */
+    v = fmax(v, LEAST_PART * w * scale->length);
+    w = fmax(w, LEAST_PART * v / scale->length);
     scale->speed = fmax(0.95 * scale->speed, v);
     scale->spin = fmax(0.95 * scale->spin, w);
     scale->energy = fmax(0.95 * scale->energy, energy);

@@ -227,7 +227,7 @@ def se3d_python_event(ctx, _system, record):
 
 
 @ffi.def_extern()
-def se3d_python_log(ctx, level, message):
+def se3d_python_log(ctx, level, _kind, message):
     try:
         ffi.from_handle(ctx)(("info", "warning", "error")[level], text(message))
     except BaseException as exception:  # pylint: disable=broad-exception-caught

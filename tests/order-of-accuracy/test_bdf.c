@@ -158,8 +158,8 @@ static void kinks_of_the_acceleration_are_passed(void)
     const double truth = bounce(SE3D_METHOD_DOP853, 1e-11, &steps);
     static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10};
     for (size_t k = 0; k < sizeof tolerances / sizeof *tolerances; ++k) {
-        CHECK_NEAR(bounce(SE3D_METHOD_BDF, tolerances[k], &steps), truth, 20.0 * tolerances[k]);
-        CHECK(steps < 7000);
+        CHECK_NEAR(bounce(SE3D_METHOD_BDF, tolerances[k], &steps), truth, 300.0 * tolerances[k]);
+        CHECK(steps < 6000);
     }
 }
 
