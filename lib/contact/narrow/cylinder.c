@@ -290,7 +290,7 @@ static void try_shadow(search *s, const shadow *w, int edge, const double mirror
                               {-x, -y},   {0.0, -1.0}, {y, -x},    {1.0, 0.0}};
     for (int k = 0; k < 8; ++k) {
         quarter q = {.rim = sign[k][2], .side = sign[k][3]};
-        double n[2];
+        double n[2] = {0.0, 0.0};
         for (int a = 0; a < 2; ++a) {
             q.from[a] = end[k][a];
             q.to[a] = end[k + 1][a];
