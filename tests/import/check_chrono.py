@@ -165,13 +165,17 @@ def frames_of_bodies():
 def springs():
     """m x'' = P - k (l - l0) - c x', and the same about an axis with angles in degrees; a curve of the same k."""
     text = (HEAD + "  bodies:\n" + GROUND + body("a", [1.3, 0, 0], mass=2) + body("b", [1.3, 2, 0], mass=2) +
+            body("c", [1.3, 6, 0], mass=2) +
             body("w", [0, 4, 0], moments="[0.5, 0.5, 0.5]") + "  joints:\n"
             "    - {name: ja, type: PRISMATIC, body1: a, body2: ground, location: [0, 0, 0], axis: [1, 0, 0]}\n"
             "    - {name: jb, type: PRISMATIC, body1: ground, body2: b, location: [0, 2, 0], axis: [1, 0, 0]}\n"
+            "    - {name: jc, type: PRISMATIC, body1: c, body2: ground, location: [0, 6, 0], axis: [1, 0, 0]}\n"
             "    - {name: jw, type: REVOLUTE, body1: ground, body2: w, location: [0, 4, 0], axis: [0, 0, 1]}\n"
             "  tsdas:\n"
             "    - {name: sa, type: TSDA, body1: ground, body2: a, point1: [0, 0, 0], point2: [1.3, 0, 0],"
             " spring_coefficient: 50, damping_coefficient: 3, free_length: 1, preload: 4}\n"
+            "    - {name: sc, type: TSDA, body1: ground, body2: c, point1: [0, 6, 0], point2: [1.3, 6, 0],"
+            " spring_coefficient: 50, damping_coefficient: 3, free_length: -0.5, preload: 79}\n"
             "    - {name: sb, body1: b, body2: ground, point1: [1.3, 2, 0], point2: [0, 2, 0], free_length: 1,"
             " spring_curve_data: [[-5, -250], [0, 0], [7, 350]], damping_curve_data: [[-10, -30], [10, 30]], preload: 4}\n"
             "  rsdas:\n"
@@ -179,7 +183,7 @@ def springs():
             " damping_coefficient: 0.4, preload: 1}\n")
     model, notes = convert("springs", text)
     tool.check(len(notes) == 1, f"notes are {notes}")
-    table = run("springs", model, dynamics(2), ["a.position.x", "b.position.x", "jw.angle", "w.angular_velocity.z"])
+    table = run("springs", model, dynamics(2), ["a.position.x", "b.position.x", "c.position.x", "jw.angle", "w.angular_velocity.z"])
 
     def oscillate(t, m, k, c, rest, start):
         s, w = c / (2 * m), math.sqrt(k / m - (c / (2 * m))**2)
@@ -189,6 +193,7 @@ def springs():
         x = oscillate(t, 2, 50, 3, 1 + 4 / 50, 1.3)
         tool.near(f"a at {t}", table["a.position.x"][i], x, 1e-9)
         tool.near(f"b at {t}", table["b.position.x"][i], x, 1e-9)
+        tool.near(f"c at {t}", table["c.position.x"][i], x, 1e-9)
         # the joint's angle is that of body 1 relative to body 2
         tool.near(f"w at {t}", -table["jw.angle"][i], oscillate(t, .5, 8, .4, math.pi / 6 + 1 / 8, 0), 1e-9)
 

@@ -100,6 +100,13 @@ static bool put_laws(se3di_chrono *c, const se3di_node *map, se3di_entry *entry,
         return false;
     }
     const bool elastic = l.spring || l.spring_curve;
+    if (l.rest < 0.0 && strcmp(ours, "l0") == 0) { /* a length is not negative: the same force */
+        if (l.spring_curve) {
+            return se3di_chrono_lose(c, map, "element", "a curve from a negative free length");
+        }
+        l.preload += l.k * l.rest;
+        l.rest = 0.0;
+    }
     if (elastic && l.rest != 0.0) {
         se3di_entry_put_number(m, entry, ours, l.rest);
     }

@@ -94,8 +94,13 @@ static bool read_named(se3di_reader *reader, const se3di_node *node, se3di_chann
     se3di_node key = *child;
     key.kind = SE3DI_NODE_SCALAR;
     key.text = child->key;
-    return se3di_read_name(reader, &key, &name) &&
-           se3di_combination_read(reader, child, name, channel);
+    if (!se3di_read_name(reader, &key, &name)) {
+        return false;
+    }
+    if (strcmp(name, "time") == 0) {
+        return se3di_reader_fail(reader, child, "`time` is the first column, use another name");
+    }
+    return se3di_combination_read(reader, child, name, channel);
 }
 
 /* The name of a column, in which a comma would end it. */
