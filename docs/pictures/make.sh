@@ -44,6 +44,8 @@ for name in suspension flyball_governor quarter_car pushed_grains; do
 done
 plot suspension suspension -x travel.value -y rocker_pivot.angle -y coil.length -y travel.effort
 look suspension suspension 0.3 0.5 62,22
+"$program" run --quiet examples/fsae/car.yaml -o "$results/car"
+look fsae car 0.5 8
 look governor flyball_governor 0.5 10
 look quarter_car quarter_car 0.25 1
 look grains pushed_grains 0.8 0.1

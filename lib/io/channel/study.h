@@ -58,8 +58,8 @@ typedef struct se3di_study_measure {
     const char *name;
     const se3di_node *node; /* of the expression */
     se3di_reduction reduction;
-    size_t source;     /* index of what it is made of, SE3DI_STUDY_NO_SOURCE: of no channel */
-    const char *event; /* NULL: none */
+    size_t source;       /* index of what it is made of, SE3DI_STUDY_NO_SOURCE: of no channel */
+    const char *event;   /* NULL: none */
     double time;         /* AT: since the beginning of the analysis [s] */
     double band, target; /* SETTLING, in the unit of the channel */
     bool has_target;     /* else its last value */

@@ -120,11 +120,11 @@ struct se3d_model {
     size_t event_count;
     se3d_model_picture *pictures;
     size_t picture_count;
-    struct se3di_library *library;   /* io/read/include.h: files that it includes */
+    struct se3di_library *library;        /* io/read/include.h: files that it includes */
     struct se3di_study_entry *study;      /* io/channel/study.h; NULL: none */
     struct se3di_study_channel *measured; /* [study->source_count] of it, or of the study that the
                                              model is a sample of */
-    uint64_t content;                /* hash of the bytes of all its files */
+    uint64_t content;                     /* hash of the bytes of all its files */
 };
 
 #endif

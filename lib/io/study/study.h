@@ -19,9 +19,9 @@ struct se3d_study {
     se3di_iopool pool; /* of the study itself and all below */
     se3d_model *model; /* as it was read, with the tree of its file */
     const se3di_study_entry *entry;
-    size_t analysis; /* index of that which is measured */
+    size_t analysis;      /* index of that which is measured */
     se3di_tally *tallies; /* [measure_count] */
-    double *parameters; /* of a sample */
+    double *parameters;   /* of a sample */
     double *measures;
     se3di_named *values; /* of the parameters, for the reader */
     se3d_interrupt interrupt;
