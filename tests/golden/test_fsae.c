@@ -28,6 +28,7 @@ static int open_rig(const char *name, rig *r)
         fprintf(stderr, "%s\n", error.message);
         return 0;
     }
+    CHECK(se3d_model_count_pictures(r->model) == 0); /* examples run where there is no gnuplot */
     r->system = se3d_model_get_system(r->model);
     CHECK(!se3d_model_get_solver(r->model, 0, &def));
     CHECK(!se3d_solver_create(r->system, &def, &r->solver));
