@@ -323,6 +323,25 @@ bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **
     return true;
 }
 
+bool se3di_reader_try_symbol(se3di_reader *reader, const char *name, bool *is_good)
+{
+    *is_good = se3di_text_is_identifier(name) && strlen(name) <= 60;
+    if (!*is_good) {
+        return true;
+    }
+    const se3d_expression_symbol symbol = {name, 1.0};
+    se3d_expression_def def = se3d_expression_def_default();
+    se3d_expression *expression = NULL;
+    def.text = "1";
+    def.symbols = &symbol;
+    def.symbol_count = 1;
+    def.allocator = &reader->pool->allocator;
+    const se3d_status status = se3d_expression_create(&def, &expression, NULL);
+    se3d_expression_destroy(expression);
+    *is_good = status >= 0;
+    return status != SE3D_ERR_NO_MEMORY || se3di_reader_fail_memory(reader);
+}
+
 const char *se3di_reader_prefix(se3di_reader *reader, const char *name)
 {
     const char *prefix = reader->part ? reader->part->prefix : "";

@@ -66,6 +66,9 @@ bool se3di_read_text(se3di_reader *reader, const se3di_node *node, const char **
 bool se3di_read_bool(se3di_reader *reader, const se3di_node *node, int32_t *value);
 /* A name that other things refer to: not empty, without blanks at its ends, dots, commas, ... */
 bool se3di_read_name(se3di_reader *reader, const se3di_node *node, const char **name);
+/* Whether an expression can have a symbol of this name: an identifier of at most 60 characters that
+ * is not a constant or function of expressions. @return false: out of memory. */
+bool se3di_reader_try_symbol(se3di_reader *reader, const char *name, bool *is_good);
 
 /* A text in which expressions in braces stand for whole numbers: "link{i - 1}". */
 bool se3di_read_reference(se3di_reader *reader, const se3di_node *node, const char **name);

@@ -43,27 +43,14 @@ typedef struct resolver {
 
 static const char *const reserved[] = {"t", "pi", "deg", "ground", NULL};
 
-/* Parameters of the expression library's own names are found by compiling one. */
 static bool check_name(se3di_reader *reader, const se3di_node *node)
 {
-    bool good = se3di_text_is_identifier(node->key) && strlen(node->key) <= 60;
+    bool good = true;
+    if (!se3di_reader_try_symbol(reader, node->key, &good)) {
+        return false;
+    }
     for (const char *const *word = reserved; *word; ++word) {
         good = good && strcmp(*word, node->key) != 0;
-    }
-    if (good) {
-        const se3d_expression_symbol symbol = {node->key, 1.0};
-        se3d_expression_def def = se3d_expression_def_default();
-        se3d_expression *expression = NULL;
-        def.text = "1";
-        def.symbols = &symbol;
-        def.symbol_count = 1;
-        def.allocator = &reader->pool->allocator;
-        const se3d_status status = se3d_expression_create(&def, &expression, NULL);
-        se3d_expression_destroy(expression);
-        if (status == SE3D_ERR_NO_MEMORY) {
-            return se3di_reader_fail_memory(reader);
-        }
-        good = status >= 0;
     }
     if (!good) {
         se3di_node place = *node;

@@ -248,21 +248,11 @@ static bool read_expression(se3di_reader *reader, const se3di_node *node,
 /* A name that expressions and the table of samples can have. */
 static bool check_name(se3di_reader *reader, const se3di_node *node)
 {
-    se3d_expression_symbol symbol = {node->key, 1.0};
-    se3d_expression_def def = se3d_expression_def_default();
-    se3d_expression *expression = NULL;
-    def.text = "1";
-    def.symbols = &symbol;
-    def.symbol_count = 1;
-    def.allocator = &reader->pool->allocator;
-    const bool word = se3di_text_is_identifier(node->key) && strlen(node->key) <= 60;
-    const se3d_status status =
-        word ? se3d_expression_create(&def, &expression, NULL) : SE3D_ERR_EXPRESSION;
-    se3d_expression_destroy(expression);
-    if (status == SE3D_ERR_NO_MEMORY) {
-        return se3di_reader_fail_memory(reader);
+    bool good = false;
+    if (!se3di_reader_try_symbol(reader, node->key, &good)) {
+        return false;
     }
-    if (status < 0 || strcmp(node->key, "sample") == 0 || strcmp(node->key, "status") == 0) {
+    if (!good || strcmp(node->key, "sample") == 0 || strcmp(node->key, "status") == 0) {
         return se3di_reader_fail(reader, node,
                                  "the name is not allowed: letters, digits and _, not beginning "
                                  "with a digit, and not sample, status, or the name of a constant "

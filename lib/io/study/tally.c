@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Between two rows a channel is taken for a straight line:
- *
- *     integral  = sum h (a + b) / 2,   mean = integral / T
- *     rms^2     = sum h (a^2 + a b + b^2) / 3 / T
- *
- * and a band or a time is reached where the line reaches it. docs/theory/studies.md */
+/* Between two rows a channel is taken for a straight line (io/channel/rows.h); a band or a time is
+ * reached where the line reaches it. docs/theory/studies.md */
 #include "io/study/tally.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "io/channel/rows.h"
 
 void se3di_tally_begin(se3di_tally *tally, const se3di_study_measure *measure)
 {
@@ -64,8 +62,8 @@ bool se3di_tally_add(se3di_tally *t, se3di_iopool *pool, double time, double val
     }
     t->most = value > t->most || isnan(value) ? value : t->most;
     t->least = value < t->least || isnan(value) ? value : t->least;
-    t->sum += h * 0.5 * (before + value);
-    t->squares += h * (before * before + before * value + value * value) / 3.0;
+    t->sum += se3di_rows_integral(h, before, value);
+    t->squares += se3di_rows_squares(h, before, value);
     const double wanted = t->start + m->time;
     if (m->reduction == SE3DI_REDUCE_AT && !m->event && !t->has_found &&
         wanted <= time + 1e-9 * h) {

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Extremes are those of the rows. Between rows a number is taken for a straight line from a to b:
- *
- *     integral: h (a + b)/2        integral of squares: h (a^2 + a b + b^2)/3
- *
- * whose errors are h^2/12 times the change of the rate. */
+/* Extremes are those of the rows. */
 #include "io/write/summary.h"
 
 #include <math.h>
@@ -11,6 +7,7 @@
 
 #include "io/base/pool.h"
 #include "io/channel/channel.h"
+#include "io/channel/rows.h"
 
 se3di_summary *se3di_summary_create(se3di_iopool *pool, const se3di_output_entry *entry)
 {
@@ -50,8 +47,8 @@ static void add_value(se3d_run_summary *c, double time, double value, double las
         c->max = value;
         c->max_time = time;
     }
-    c->integral += h * 0.5 * (last + value);
-    c->rms += h * (last * last + last * value + value * value) / 3.0; /* squares until the end */
+    c->integral += se3di_rows_integral(h, last, value);
+    c->rms += se3di_rows_squares(h, last, value); /* squares until the end */
 }
 
 void se3di_summary_add(se3di_summary *summary, double time, const double *values)
