@@ -17,6 +17,7 @@
 
 #define FORCED_MAX  3
 #define LEAST_STEP  3e-14 /* of the time */
+#define ROUNDING    2e-15 /* of a velocity of one kind, relative to those of the other */
 #define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
 
 #define VECTORS (3 + SE3DI_EXPLICIT_FORMS)
@@ -182,9 +183,13 @@ double se3di_explicit_size(const se3di_explicit *m, const double *error)
         v = parts[2] <= v ? v : parts[2];
         w = parts[3] <= w ? w : parts[3];
     }
-    r = sqrt(r) / m->past->scale.length + 2.0 * sqrt(p);
-    v = sqrt(v) / m->past->scale.speed + sqrt(w) / m->past->scale.spin;
-    double e = se3di_norm(end) / m->past->scale.energy;
+    const se3di_state_scale *scale = &m->past->scale;
+    const double least = ROUNDING / m->tolerance;
+    const double speed = fmax(scale->speed, least * scale->spin * scale->length);
+    const double spin = fmax(scale->spin, least * scale->speed / scale->length);
+    r = sqrt(r) / scale->length + 2.0 * sqrt(p);
+    v = sqrt(v) / speed + sqrt(w) / spin;
+    double e = se3di_norm(end) / scale->energy;
     return r + v + WORK_WEIGHT * e;
 }
 

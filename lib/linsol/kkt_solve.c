@@ -13,6 +13,7 @@
 static const double pivot_vanishes = 1e-12; /* relative; then E = 0 is given up */
 static const double pivot_is_good = 1e-4;   /* relative; then a solve with E = 0 needs no check */
 static const double pivot_is_safe = 1e-11;  /* the same if bodies go before their joints */
+static const double row_rounding = 4e-16;   /* of the terms of a row */
 static const double noise_matters = 1e3;    /* times the tolerance of solutions: rounding / pivot */
 static const double weight_range = 1e4;
 
@@ -275,6 +276,37 @@ static bool is_filter(const se3di_kkt_settings *s)
     return s->eps_min >= s->eps;
 }
 
+/* The largest term C_rc x_c of the motion that b would make without constraints. Rounding of x is
+ * of its size where they hold nearly all of it: at rest, or in steady motion. */
+static double find_unheld(const se3di_kkt *kkt, const kkt_problem *p)
+{
+    const se3di_kkt_pattern *pattern = &kkt->pattern;
+    const size_t n = (size_t)pattern->body_size;
+    double top = 0.0;
+    for (size_t j = 0; j < pattern->joint_count; ++j) {
+        const size_t rows = (size_t)pattern->joint_rows[j];
+        for (int32_t e = pattern->joint_begin[j]; e < pattern->joint_begin[j + 1]; ++e) {
+            const size_t body = (size_t)pattern->joint_body[e];
+            const double *C = p->values->joint + kkt->block_offset[e];
+            const double *b = p->b + body * n, *mobility = kkt->mobility + body * KKT_LANES;
+            for (size_t k = 0; k < rows * n; ++k) {
+                top = fmax(top, fabs(C[k] * mobility[k % n] * b[k % n]));
+            }
+        }
+    }
+    return top;
+}
+
+/* What is left of the rows is rounding: that of the motion that they hold, and no part of what a
+ * filter leaves out. Another solution would only replace it by other rounding. */
+static bool is_rounding(const se3di_kkt *kkt, const kkt_problem *p,
+                        const se3di_kkt_solve_info *info)
+{
+    return is_filter(&kkt->settings) && !kkt->settings.iterated && p->b && !p->values->weight &&
+           !(info->residual_b > kkt->settings.tolerance) &&
+           info->residual_c * kkt->scale_c <= row_rounding * find_unheld(kkt, p);
+}
+
 /* Refine until the residual is small or no longer falls. */
 static kkt_ending refine(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
                          se3di_kkt_solve_info *info)
@@ -287,7 +319,7 @@ static kkt_ending refine(se3di_kkt *kkt, const kkt_problem *p, double *x, double
         if (step > 0) {
             info->rate = before > 0.0 ? now / before : 0.0;
         }
-        if (!(now > kkt->settings.tolerance)) {
+        if (!(now > kkt->settings.tolerance) || is_rounding(kkt, p, info)) {
             return KKT_CONVERGED;
         }
         if (step > 0 && now > before) { /* take back what made it worse */
@@ -345,7 +377,9 @@ static int32_t count_refinements(const se3di_kkt *kkt)
     if (!(kkt->eps > 0.0)) {
         return kkt->min_pivot > least_good_pivot(kkt) ? 0 : -1;
     }
-    if (!s->any_multipliers || kkt->dependent_rows + kkt->near_dependent > s->redundant_rows) {
+    const int32_t dependent = kkt->dependent_rows + kkt->near_dependent;
+    if (dependent > (s->any_multipliers ? s->redundant_rows : 0) ||
+        !(s->any_multipliers || is_filter(s))) {
         return -1;
     }
     double rate = kkt->eps / kkt->least_clear, error = rate;

@@ -883,8 +883,11 @@ static void motions_that_obey_the_constraints_are_exact(void)
         add_joint(&m, 2, 0, -1);
         add_joint(&m, 2, -1, 0);
         fill(&m);
-        se3di_kkt_settings settings = {
-            .eps = 1e-8, .eps_min = 1e-8, .tolerance = 3e-15, .max_refinements = 10};
+        se3di_kkt_settings settings = {.eps = 1e-8,
+                                       .eps_min = 1e-8,
+                                       .tolerance = 3e-15,
+                                       .max_refinements = 10,
+                                       .always_check = true};
         se3di_kkt *kkt = create(&m, SE3DI_KKT_STRUCTURED);
         se3di_kkt_solve_info info;
         se3di_kkt_set_settings(kkt, &settings);
