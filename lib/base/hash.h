@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* FNV-1a, 64 bits: the determinism hash of a state. */
+/* FNV-1a, 64 bits: the determinism hash of a state, and of what a model was read from. */
 #ifndef SE3DI_BASE_HASH_H
 #define SE3DI_BASE_HASH_H
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Rows of studies have the same bits with every compiler and on every machine: the hashes of all
  * layouts, distributions and measures, to be written anew only if a definition changes. */
+#include "base/hash.h"
 #include "check.h"
-#include "io/base/hash.h"
 #include "se3d/study.h"
 
 #define MODEL                                                                                      \

@@ -96,9 +96,8 @@ const command_entry check_entry = {
             "has at its present pose, and names redundant and inconsistent constraints "
             "and bodies that nothing holds.",
     .options =
-        (const command_option[]){{"--set", NULL, "NAME=VALUE",
-                                  "replace a parameter; VALUE is an expression; may be repeated"},
-                                 {"--quiet", "-q", NULL, "print nothing but errors"},
+        (const command_option[]){COMMAND_OPTION_SET,
+                                 COMMAND_OPTION_QUIET,
                                  {"--json", NULL, NULL, "print the counts and messages as JSON"},
                                  {0}},
     .examples = (const command_example[]){{"check suspension.yaml", "what the joints leave free"},

@@ -15,6 +15,24 @@ typedef struct command_option {
     const char *text;  /* what it does; "{methods}" and the like stand for the names of a list */
 } command_option;
 
+/* Options that several commands have in common. */
+#define COMMAND_OPTION_SET                                                                         \
+    {                                                                                              \
+        "--set", NULL, "NAME=VALUE",                                                               \
+            "replace a parameter; VALUE is an expression; may be repeated"                         \
+    }
+#define COMMAND_OPTION_QUIET                                                                       \
+    {                                                                                              \
+        "--quiet", "-q", NULL, "print nothing but errors"                                          \
+    }
+#define COMMAND_OPTIONS_OF_SOLVERS                                                                 \
+    {"--formulation", NULL, "F", "{formulations}"}, {"--method", NULL, "M", "{methods}"},          \
+        {"--step", NULL, "H", "step [s]"},                                                         \
+        {"--tolerance", NULL, "E", "relative error of methods that control it"},                   \
+    {                                                                                              \
+        "--duration", NULL, "T", "duration [s]"                                                    \
+    }
+
 typedef struct command_example {
     const char *words; /* after "se3d "; NULL ends a table */
     const char *text;

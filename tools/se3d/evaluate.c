@@ -313,8 +313,7 @@ const command_entry evaluate_entry = {
             "every movable body, which belong to r-p only. Bodies need no mass here.",
     .options =
         (const command_option[]){
-            {"--set", NULL, "NAME=VALUE",
-             "replace a parameter; VALUE is an expression; may be repeated"},
+            COMMAND_OPTION_SET,
             {"--time", NULL, "T", "the time of the functions of time [s] (default 0)"},
             {"--csv", NULL, NULL,
              "one line an equation: constraint, type, equation, phi, nu, gamma_rp, gamma_romega, "

@@ -286,7 +286,7 @@ const command_entry plot_entry = {
              "reactions)"},
             {"-o", NULL, "FILE", "name of the picture; .svg or .png is replaced by each"},
             {"--fft", NULL, NULL, "amplitude over frequency; the spectrum is kept as FILE.fft.csv"},
-            {"--quiet", "-q", NULL, "print nothing but errors"},
+            COMMAND_OPTION_QUIET,
             {0}},
     .examples =
         (const command_example[]){

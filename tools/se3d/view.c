@@ -335,7 +335,7 @@ const command_entry view_entry = {
             "traces, d is for dark; drag turns, shift-drag moves, the wheel zooms.",
     .options = (const command_option[]){{"--output", "-o", "FILE.html",
                                          "where to (default: DIR/scene.html)"},
-                                        {"--quiet", "-q", NULL, "print nothing but errors"},
+                                        COMMAND_OPTION_QUIET,
                                         {0}},
     .examples = (const command_example[]){{"view results/pendulum", "results/pendulum/scene.html"},
                                           {"view results/pendulum -o page.html", "another file"},

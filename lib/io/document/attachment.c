@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "io/base/file.h"
-#include "io/base/hash.h"
 #include "io/base/pool.h"
 #include "io/document/document.h"
 #include "io/document/reader.h"

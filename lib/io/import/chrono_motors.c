@@ -71,6 +71,14 @@ static bool read_words(se3di_chrono *c, const se3di_node *map, motor *m)
         "the actuation `%.60s` is not known, must be POSITION, SPEED or FORCE", acts);
 }
 
+static void put_bodies(se3di_machine *machine, se3di_entry *entry, const motor *m)
+{
+    se3di_entry_put_text(machine, entry, "body_i",
+                         se3di_machine_body_name(machine, m->bodies[1]->body));
+    se3di_entry_put_text(machine, entry, "body_j",
+                         se3di_machine_body_name(machine, m->bodies[0]->body));
+}
+
 /* A constraint along z of body 2, where no joint has this coordinate. */
 static bool add_distance(se3di_chrono *c, const motor *m, const char *name)
 {
@@ -83,10 +91,7 @@ static bool add_distance(se3di_chrono *c, const motor *m, const char *name)
     const double z[3] = {i.A[2], i.A[5], i.A[8]};
     se3di_entry_put_text(machine, entry, "name", name);
     se3di_entry_put(machine, entry, "type", "dp2");
-    se3di_entry_put_text(machine, entry, "body_i",
-                         se3di_machine_body_name(machine, m->bodies[1]->body));
-    se3di_entry_put_text(machine, entry, "body_j",
-                         se3di_machine_body_name(machine, m->bodies[0]->body));
+    put_bodies(machine, entry, m);
     se3di_entry_put_vector(machine, entry, "a_i", z);
     se3di_entry_put_vector(machine, entry, "point_i", i.r);
     se3di_entry_put_vector(machine, entry, "point_j", j.r);
@@ -102,10 +107,7 @@ static bool add_torque(se3di_chrono *c, const motor *m, const char *name)
     se3di_entry *entry = se3di_machine_add(machine, SE3DI_SECTION_FORCES);
     se3di_entry_put_text(machine, entry, "name", name);
     se3di_entry_put(machine, entry, "type", "rsda");
-    se3di_entry_put_text(machine, entry, "body_i",
-                         se3di_machine_body_name(machine, m->bodies[1]->body));
-    se3di_entry_put_text(machine, entry, "body_j",
-                         se3di_machine_body_name(machine, m->bodies[0]->body));
+    put_bodies(machine, entry, m);
     se3di_entry_put_vector(machine, entry, "axis", axis);
     const char *h = se3di_machine_text(machine, "-(%s)", m->value);
     se3di_entry_put_text(machine, entry, "h", h);

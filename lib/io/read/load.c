@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "io/base/hash.h"
+#include "base/hash.h"
 #include "io/base/pool.h"
 #include "io/base/sized.h"
 #include "io/document/document.h"

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "io/base/hash.h"
+#include "base/hash.h"
 #include "io/document/document.h"
 #include "io/study/design.h"
 #include "io/write/csv.h"
