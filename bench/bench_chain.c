@@ -166,7 +166,7 @@ int main(int argc, char **argv)
     bench_case c = {.kind = argc > 1 ? argv[1][0] : 'a', .n = argc > 2 ? atoi(argv[2]) : 8};
     se3d_solver_def def = se3d_solver_def_default();
     def.method = argc > 3 ? atoi(argv[3]) : SE3D_METHOD_DOP853;
-    def.formulation = argc > 4 ? atoi(argv[4]) : SE3D_FORMULATION_ROMEGA;
+    def.formulation = argc > 4 ? atoi(argv[4]) : SE3D_FORMULATION_AUTO;
     compare(&c, def, argc > 5 ? atoi(argv[5]) : 3);
     return 0;
 }

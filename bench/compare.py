@@ -226,7 +226,7 @@ class Bench:
             ("simbody", "euler", True, "Simbody Euler"), ("ode", "direct", True, "ODE direct")])
         print("\n## Cost of one acceleration evaluation, ns per link")
         print("(ours: alone, and everything that dop853 spends in a run of tolerance 1e-6, per evaluation;")
-        print(" peers: one step of 1 ms; Runge-Kutta: a quarter of it; ratio: romega alone / best)")
+        print(" peers: one step of 1 ms; Runge-Kutta: a quarter of it; ratio: joint alone / best)")
         names = ["ours romega", "ours rp", "ours joint", "in dop853", "rp/romega"] + [way.label for way in ways] + ["ratio"]
         print(f"{'chain':>8} " + " ".join(f"{name:>14}" for name in names))
         for kind in "ab":
@@ -237,7 +237,7 @@ class Bench:
     def cost_row(self, kind, n, ways, before):
         ours, peers = {}, {}
         for _ in range(ROUNDS):
-            for formulation in ("", "/rp", "/joint"):
+            for formulation in ("/romega", "/rp", "/joint"):
                 answer = self.inside.ask(kind, n, "evaluation" + formulation, 0.0, 0.0)
                 if answer:
                     each = answer["seconds"] / answer["evaluations"]
@@ -258,12 +258,12 @@ class Bench:
                     peers[way.label] = min(each, peers.get(way.label, 1e300))
         before.update({label: (n, seconds) for label, seconds in peers.items()})
         shares = {label: s / (4 if "/ 4" in label else 1) for label, s in peers.items()}
-        cells = [f"{1e9 * ours[f] / n:14.0f}" if f in ours else f"{'-':>14}" for f in ("", "/rp", "/joint", "run")]
-        cells.append(f"{ours['/rp'] / ours['']:14.2f}" if len(ours) == 4 else f"{'-':>14}")
+        cells = [f"{1e9 * ours[f] / n:14.0f}" if f in ours else f"{'-':>14}" for f in ("/romega", "/rp", "/joint", "run")]
+        cells.append(f"{ours['/rp'] / ours['/romega']:14.2f}" if len(ours) == 4 else f"{'-':>14}")
         cells += [f"{1e9 * shares[way.label] / n:14.0f}" if way.label in shares else f"{'-':>14}"
                   for way in ways]
-        if shares and "" in ours:
-            cells.append(f"{ours[''] / min(shares.values()):14.2f}")
+        if shares and "/joint" in ours:
+            cells.append(f"{ours['/joint'] / min(shares.values()):14.2f}")
         print(f"{kind + ' ' + str(n):>8} " + " ".join(cells), flush=True)
 
     def work(self):

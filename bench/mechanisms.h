@@ -127,7 +127,7 @@ static inline bench_mechanism bench_build(char kind, int n)
     return m;
 }
 
-/* Of METHOD/FORMULATION. */
+/* Of METHOD/FORMULATION; METHOD alone: what users get. */
 static inline int32_t bench_formulation(const char *method)
 {
     const char *slash = strchr(method, '/');
@@ -136,7 +136,7 @@ static inline int32_t bench_formulation(const char *method)
             return k;
         }
     }
-    return SE3D_FORMULATION_ROMEGA;
+    return SE3D_FORMULATION_AUTO;
 }
 
 #endif

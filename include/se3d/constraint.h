@@ -16,9 +16,12 @@ extern "C" {
 typedef enum se3d_formulation {
     SE3D_FORMULATION_ROMEGA = 0, /* unknowns: position and virtual rotation (angular velocity) */
     SE3D_FORMULATION_RP = 1,     /* unknowns: position and Euler parameters with p.p - 1 = 0 */
-    SE3D_FORMULATION_JOINT =
-        2 /* the coordinates of a tree of joints are integrated (dop853, gauss, rk45,
-                                    rk4); elsewhere as ROMEGA */
+    SE3D_FORMULATION_JOINT = 2,  /* the coordinates of a tree of joints are integrated (dop853,
+                                    gauss, rk45, rk4); elsewhere as ROMEGA */
+    SE3D_FORMULATION_AUTO = 3    /* of solvers: JOINT where joint coordinates are the whole motion
+                                    (an open tree of joints, nothing prescribed, no friction that
+                                    needs the load of a joint) and a method above integrates them;
+                                    else ROMEGA */
 } se3d_formulation;
 
 /* The primitives, with d_ij = r_j + A_j s_j - r_i - A_i s_i, directions a_i and a_j in body frames,

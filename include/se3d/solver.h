@@ -50,7 +50,7 @@ typedef enum se3d_method {
  * @since 0.1 */
 SE3D_API const char *se3d_method_get_name(int32_t method);
 
-/* Get the name of a formulation as in a model file ("romega", "rp").
+/* Get the name of a formulation as in a model file ("romega", "rp", "joint", "auto").
  * @param[in] formulation  se3d_formulation, or any number
  * @return the name, static; "" if no formulation has that number.
  * @since 0.1 */
@@ -60,7 +60,7 @@ SE3D_API const char *se3d_formulation_get_name(int32_t formulation);
 typedef struct se3d_solver_def {
     size_t struct_size;
     int32_t analysis;    /* se3d_analysis, default DYNAMICS */
-    int32_t formulation; /* se3d_formulation, default ROMEGA */
+    int32_t formulation; /* se3d_formulation, default AUTO */
     int32_t method;      /* se3d_method, dynamics only, default AUTO */
     int32_t order;       /* bdf: 1..5, rattle: 2, 4, gauss: 8, 16, others: the one they have; 0: the
                             default, of gauss 16 for tolerances below 1e-6, else 8 */
@@ -194,6 +194,13 @@ SE3D_API se3d_status se3d_solver_get_step(const se3d_solver *solver, double *ste
  * @return OK, NULL.
  * @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name);
+
+/* Get the formulation in use; of AUTO the one that it picked for the system as it was when the last
+ * run or step began, "romega" before the first.
+ * @param[out] name  "romega", "rp", "joint"; static
+ * @return OK, NULL.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_solver_get_formulation(const se3d_solver *solver, const char **name);
 
 /* Get when AUTO changed the method during a run because stability kept the steps of the first
  * method short.

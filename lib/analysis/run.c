@@ -130,17 +130,49 @@ static int is_driven(const se3di_run *run)
     return se3di_analysis_is(run->analysis, SE3DI_ANALYSIS_IS_DRIVEN);
 }
 
+static se3d_status build_equations(se3di_run *run)
+{
+    const se3di_integrator *method = run->integration.method;
+    const int reduces =
+        run->analysis == SE3D_ANALYSIS_DYNAMICS && (method->is_explicit || method->is_reduced);
+    const se3di_formulation *formulation =
+        reduces ? se3di_formulation_reduce(run->formulation) : run->formulation;
+    return se3di_equations_init(&run->equations, run->model, formulation, run->error);
+}
+
+/* The formulation of `auto`. *picked: the equations are built, in joint coordinates, which are the
+ * whole motion; with loops, prescribed motion or friction under load they cost more than bodies. */
+static se3d_status try_joints(se3di_run *run, int *picked)
+{
+    const se3di_model *model = run->model;
+    const size_t joints = model->constraint_slots.count;
+    *picked = 0;
+    run->formulation = &se3di_formulation_romega;
+    if (run->analysis != SE3D_ANALYSIS_DYNAMICS || !run->integration.method->is_explicit ||
+        joints == 0 || joints > model->body_slots.count) {
+        return SE3D_OK;
+    }
+    run->formulation = &se3di_formulation_joint;
+    const se3d_status status = build_equations(run);
+    *picked = status >= 0 && run->equations.is_open_tree;
+    if (!*picked) {
+        run->formulation = &se3di_formulation_romega;
+    }
+    if (!*picked && status >= 0) {
+        se3di_equations_destroy(&run->equations);
+    }
+    return status < 0 ? status : SE3D_OK;
+}
+
 /* Build what the model's structure decides. */
 static se3d_status build(se3di_run *run)
 {
     release(run);
     se3di_counters counters = run->equations.counters;
     const se3di_integrator *method = run->integration.method;
-    int reduces =
-        run->analysis == SE3D_ANALYSIS_DYNAMICS && (method->is_explicit || method->is_reduced);
-    const se3di_formulation *formulation =
-        reduces ? se3di_formulation_reduce(run->formulation) : run->formulation;
-    SE3DI_TRY(se3di_equations_init(&run->equations, run->model, formulation, run->error));
+    int picked = 0;
+    SE3DI_TRY(run->picks_formulation ? try_joints(run, &picked) : SE3D_OK);
+    SE3DI_TRY(picked ? SE3D_OK : build_equations(run));
     run->equations.counters = counters;
     run->equations.friction.is_rigid =
         run->analysis == SE3D_ANALYSIS_DYNAMICS && method->is_explicit;

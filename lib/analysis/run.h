@@ -18,7 +18,8 @@ typedef struct se3di_run {
     size_t work_count;
     int32_t prepared;             /* the equations fit the model */
     int32_t determined;           /* kinematics: the drivers determine the motion (checked once) */
-    int32_t automatic;            /* the method is chosen from what the model holds */
+    int32_t automatic;            /* the method is chosen from what the model holds, */
+    int32_t picks_formulation;    /* and so is the formulation */
     int32_t refused;              /* a prescribed value jumps in the run that is asked for */
     const se3di_integrator *left; /* the method that was left on the way, NULL: none */
     double left_at;               /* when [s] */

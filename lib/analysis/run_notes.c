@@ -25,8 +25,8 @@ void se3di_run_tell_reach(se3di_run *run)
 void se3di_run_tell_bodies(se3di_run *run)
 {
     const se3di_integrator *method = run->integration.method;
-    if (run->formulation->id == SE3D_FORMULATION_JOINT && !method->is_explicit &&
-        run->told_bodies != method) {
+    if (run->formulation->id == SE3D_FORMULATION_JOINT && !run->picks_formulation &&
+        !method->is_explicit && run->told_bodies != method) {
         run->told_bodies = method;
         se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_METHOD,
                         "t = %g s: %s works with the coordinates of bodies, as r-omega: joint "

@@ -16,6 +16,7 @@ void se3d_solver_def_init(se3d_solver_def *def, size_t size)
     se3d_solver_def defaults = {
         .struct_size = size,
         .analysis = SE3D_ANALYSIS_DYNAMICS,
+        .formulation = SE3D_FORMULATION_AUTO,
         .spectral_radius = 0.9,
         .alpha = -0.1,
     };
@@ -68,7 +69,7 @@ const char *se3d_analysis_get_name(int32_t analysis)
 const char *se3d_formulation_get_name(int32_t formulation)
 {
     const se3di_formulation *found = se3di_formulation_find(formulation);
-    return found ? found->name : "";
+    return formulation == SE3D_FORMULATION_AUTO ? "auto" : found ? found->name : "";
 }
 
 /* The order must be one that the method has. */
@@ -97,9 +98,9 @@ static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def
         return SE3DI_FAIL_OF(system, "analysis", SE3D_ERR_INVALID_ARGUMENT,
                              " = %d, must be one of se3d_analysis", (int)def->analysis);
     }
-    if (!se3di_formulation_find(def->formulation)) {
+    if (!*se3d_formulation_get_name(def->formulation)) {
         return SE3DI_FAIL_OF(system, "formulation", SE3D_ERR_INVALID_ARGUMENT,
-                             " = %d, must be SE3D_FORMULATION_ROMEGA, _RP or _JOINT",
+                             " = %d, must be SE3D_FORMULATION_ROMEGA, _RP, _JOINT or _AUTO",
                              (int)def->formulation);
     }
     if (!se3di_integrator_find(def->method)) {
@@ -112,9 +113,11 @@ static se3d_status check_choices(se3d_system *system, const se3d_solver_def *def
 static void configure(se3di_run *run, const se3d_solver_def *def)
 {
     run->analysis = def->analysis;
-    run->formulation = def->analysis == SE3D_ANALYSIS_EQUILIBRIUM /* it knows no velocities */
-                           ? &se3di_formulation_romega
-                           : se3di_formulation_find(def->formulation);
+    run->picks_formulation = def->formulation == SE3D_FORMULATION_AUTO;
+    run->formulation =
+        run->picks_formulation || def->analysis == SE3D_ANALYSIS_EQUILIBRIUM /* no velocities */
+            ? &se3di_formulation_romega
+            : se3di_formulation_find(def->formulation);
     run->automatic = def->method == SE3D_METHOD_AUTO;
     run->guard = (se3di_guard){.interrupt = def->interrupt,
                                .ctx = def->interrupt_ctx,
@@ -288,6 +291,15 @@ se3d_status se3d_solver_get_method(const se3d_solver *solver, const char **name)
         return SE3D_ERR_NULL;
     }
     *name = solver->run.integration.method->name;
+    return SE3D_OK;
+}
+
+se3d_status se3d_solver_get_formulation(const se3d_solver *solver, const char **name)
+{
+    if (!solver || !name) {
+        return SE3D_ERR_NULL;
+    }
+    *name = solver->run.formulation->name;
     return SE3D_OK;
 }
 

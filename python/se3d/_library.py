@@ -44,7 +44,7 @@ STATUS.update({name[4:]: value for name, value in STATUS.items() if name.startsw
 COORDINATES = _names("SE3D_JOINT_COORDINATE_", "se3d_joint_coordinate")
 PARAMETERS = _names("SE3D_FORCE_PARAMETER_", "se3d_force_parameter")
 FORMULATIONS = {"romega": lib.SE3D_FORMULATION_ROMEGA, "rp": lib.SE3D_FORMULATION_RP,
-                "joint": lib.SE3D_FORMULATION_JOINT}
+                "joint": lib.SE3D_FORMULATION_JOINT, "auto": lib.SE3D_FORMULATION_AUTO}
 
 # Members of definitions that a name may stand for.
 _WORDS = {

@@ -252,6 +252,7 @@ CALL(solver_step, a->solver, a->number)
 CALL(solver_get_stats, a->solver, a->out[0])
 CALL(solver_get_start_change, a->solver, a->out[0])
 CALL(solver_get_method, a->solver, a->out[0])
+CALL(solver_get_formulation, a->solver, a->out[0])
 CALL(solver_get_tolerance, a->solver, a->out[0])
 CALL(solver_get_step, a->solver, a->out[0])
 CALL(solver_get_switch, a->solver, a->out[0], a->out[1])
@@ -683,6 +684,7 @@ static const row rows[] = {
     {"se3d_solver_get_stats", call_solver_get_stats, "vo0", NULL, NULL},
     {"se3d_solver_get_start_change", call_solver_get_start_change, "vo0", NULL, NULL},
     {"se3d_solver_get_method", call_solver_get_method, "vo0", NULL, NULL},
+    {"se3d_solver_get_formulation", call_solver_get_formulation, "vo0", NULL, NULL},
     {"se3d_solver_get_tolerance", call_solver_get_tolerance, "vo0", NULL, NULL},
     {"se3d_solver_get_step", call_solver_get_step, "vo0", NULL, NULL},
     {"se3d_solver_get_switch", call_solver_get_switch, "vo0o1", NULL, NULL},

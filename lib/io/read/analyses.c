@@ -32,9 +32,11 @@ static const char *name_of_type(int32_t type)
 /* clang-format off */
 static const se3di_key analysis_keys[] = {
     {"type", SE3DI_KIND_WORD, .name_of = name_of_type, .required = true, .text = ""},
-    {"formulation", SE3DI_KIND_WORD, .name_of = se3d_formulation_get_name, .standard = "romega",
+    {"formulation", SE3DI_KIND_WORD, .name_of = se3d_formulation_get_name, .standard = "auto",
      .text = "what describes the motion: angular velocities, Euler parameters, or coordinates of "
-         "joints (dop853, gauss, rk45, rk4; elsewhere as romega)"},
+         "joints (dop853, gauss, rk45, rk4; elsewhere as romega); auto: joint where a method above "
+         "integrates an open tree of joints in which nothing is prescribed and no friction needs "
+         "the load of a joint, else romega"},
     {"method", SE3DI_KIND_WORD, .name_of = se3d_method_get_name, .standard = "auto",
      .text = "of dynamics; convex: for many bodies that touch, at steps of 0.001 to 0.005; "
          "gauss: smooth motions, to tight tolerances; "
@@ -134,7 +136,7 @@ static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analy
     }
     entry->analysis.type = name_of_type((int32_t)word);
     solver->analysis = entry->analysis.type == modes ? SE3D_ANALYSIS_EQUILIBRIUM : (int32_t)word;
-    word = SE3D_FORMULATION_ROMEGA;
+    word = SE3D_FORMULATION_AUTO;
     if (formulation && !read_word(reader, formulation, "formulation", &word)) {
         return false;
     }

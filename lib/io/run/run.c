@@ -571,6 +571,7 @@ static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analys
     done->cpu_time = (double)(clock() - begin) / (double)CLOCKS_PER_SEC;
     if (r->solver) {
         se3d_solver_get_stats(r->solver, &done->stats);
+        se3d_solver_get_formulation(r->solver, &done->formulation);
         if (entry->solver.analysis == SE3D_ANALYSIS_DYNAMICS) {
             se3d_solver_get_method(r->solver, &method);
             se3d_solver_get_switch(r->solver, &done->left_at, &left);
@@ -635,7 +636,7 @@ static se3d_status run_analysis(runner *r, size_t index)
     const double start = isnan(entry->analysis.start) ? r->time : entry->analysis.start;
     const clock_t begin = clock();
     done->type = copy_text(r, entry->analysis.type);
-    done->formulation = se3d_formulation_get_name(entry->solver.formulation);
+    done->formulation = se3d_formulation_get_name(SE3D_FORMULATION_ROMEGA);
     done->method = "";
     done->start = start;
     done->end = start;

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `auto` integrates joint coordinates where they are the whole motion, the coordinates of bodies
+ * elsewhere, and decides again when the structure of the system has changed. */
+#include "check.h"
+
+#include "math/vec3.h"
+#include "support/world.h"
+
+typedef struct arm {
+    se3d_system *system;
+    se3d_body links[3];
+    se3d_constraint joints[3];
+} arm;
+
+static const double y[3] = {0.0, 1.0, 0.0};
+
+static arm make_arm(void)
+{
+    static const double J[3] = {0.2, 0.3, 0.1}, gravity[3] = {1.0, 2.0, -9.81};
+    static se3d_status (*const create[3])(se3d_system *, const se3d_joint_def *,
+                                          se3d_constraint *) = {
+        se3d_joint_create_revolute, se3d_joint_create_spherical, se3d_joint_create_prismatic};
+    arm a;
+    world_must(NULL, se3d_system_create(NULL, &a.system), "create");
+    world_must(a.system, se3d_system_set_gravity(a.system, gravity), "gravity");
+    se3d_body before;
+    world_must(a.system, se3d_system_get_ground(a.system, &before), "ground");
+    for (int k = 0; k < 3; ++k) {
+        const double r[3] = {0.1, 0.0, k + 0.5}, at[3] = {0.0, 0.0, k};
+        a.links[k] = world_add_body(a.system, 1.0 + k, J, r);
+        a.joints[k] = world_join(a.system, create[k], NULL, before, a.links[k], at, y);
+        before = a.links[k];
+    }
+    return a;
+}
+
+static const char *name_of(const se3d_solver *solver)
+{
+    const char *name = NULL;
+    CHECK(!se3d_solver_get_formulation(solver, &name));
+    return name ? name : "";
+}
+
+static int is_named(const se3d_solver *solver, const char *name)
+{
+    const int same = strcmp(name_of(solver), name) == 0;
+    if (!same) {
+        fprintf(stderr, "%s, not %s\n", name_of(solver), name);
+    }
+    return same;
+}
+
+/* What a new solver takes. */
+static int takes(arm *a, int32_t method, int32_t formulation, const char *name)
+{
+    se3d_solver *solver = world_solver(a->system, SE3D_ANALYSIS_DYNAMICS, method, formulation, 0.0);
+    double now;
+    CHECK(!se3d_system_get_time(a->system, &now));
+    CHECK(se3d_solver_run(solver, now + 1e-3) >= 0);
+    const int same = is_named(solver, name);
+    se3d_solver_destroy(solver);
+    return same;
+}
+
+static void open_trees_are_integrated_in_joint_coordinates(void)
+{
+    static const int32_t explicit_methods[] = {
+        SE3D_METHOD_AUTO, SE3D_METHOD_DOP853, SE3D_METHOD_RK45, SE3D_METHOD_RK4, SE3D_METHOD_GAUSS};
+    arm a = make_arm();
+    for (size_t k = 0; k < sizeof explicit_methods / sizeof *explicit_methods; ++k) {
+        CHECK(takes(&a, explicit_methods[k], SE3D_FORMULATION_AUTO, "joint"));
+        CHECK(takes(&a, explicit_methods[k], SE3D_FORMULATION_ROMEGA, "romega"));
+        CHECK(takes(&a, explicit_methods[k], SE3D_FORMULATION_RP, "rp"));
+    }
+    CHECK(takes(&a, SE3D_METHOD_RADAU, SE3D_FORMULATION_AUTO, "romega"));
+    CHECK(takes(&a, SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_AUTO, "romega"));
+    const se3d_solver_def def = se3d_solver_def_default();
+    CHECK(def.formulation == SE3D_FORMULATION_AUTO);
+    se3d_system_destroy(a.system);
+}
+
+static void the_motion_is_that_of_bodies(void)
+{
+    arm a = make_arm();
+    se3d_system *other = NULL;
+    CHECK(!se3d_system_clone(a.system, &other));
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_solver *one = NULL, *two = NULL;
+    def.tolerance = 1e-10;
+    CHECK(!se3d_solver_create(a.system, &def, &one));
+    def.formulation = SE3D_FORMULATION_ROMEGA;
+    CHECK(!se3d_solver_create(other, &def, &two));
+    CHECK(is_named(one, "romega")); /* before the first run */
+    for (int k = 1; k <= 10; ++k) {
+        double r[2][12], v[2][12];
+        CHECK(!se3d_solver_run(one, 0.1 * k) && !se3d_solver_run(two, 0.1 * k));
+        CHECK(!se3d_body_get_all(a.system, 4, r[0], NULL, v[0], NULL));
+        CHECK(!se3d_body_get_all(other, 4, r[1], NULL, v[1], NULL));
+        for (int c = 0; c < 12; ++c) {
+            CHECK_NEAR(r[0][c], r[1][c], 1e-8);
+            CHECK_NEAR(v[0][c], v[1][c], 1e-7);
+        }
+    }
+    CHECK(is_named(one, "joint") && is_named(two, "romega"));
+    se3d_solver_destroy(one);
+    se3d_solver_destroy(two);
+    se3d_system_destroy(a.system);
+    se3d_system_destroy(other);
+}
+
+/* One solver, while a loop, a driver and a friction come and go. */
+static void it_is_chosen_again_when_the_structure_changes(void)
+{
+    arm a = make_arm();
+    se3d_solver *solver = world_solver(a.system, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_AUTO,
+                                       SE3D_FORMULATION_AUTO, 0.0);
+    se3d_joint_def rod = se3d_joint_def_default();
+    se3d_constraint loop, driver;
+    se3d_force friction;
+    CHECK(!se3d_solver_run(solver, 0.1) && is_named(solver, "joint"));
+    rod.body_i = a.links[0];
+    rod.body_j = a.links[2];
+    double r[12], d[3];
+    CHECK(!se3d_body_get_all(a.system, 4, r, NULL, NULL, NULL));
+    se3di_sub(r + 9, r + 3, d);
+    rod.distance = se3di_norm(d);
+    CHECK(!se3d_joint_create_distance(a.system, &rod, &loop));
+    CHECK(se3d_solver_run(solver, 0.2) >= 0 && is_named(solver, "romega"));
+    CHECK(!se3d_constraint_destroy(a.system, loop));
+    CHECK(!se3d_solver_run(solver, 0.3) && is_named(solver, "joint"));
+    se3d_driver_def drive = se3d_driver_def_default();
+    drive.joint = a.joints[0];
+    CHECK(!se3d_joint_get_coordinate(a.system, a.joints[0], SE3D_JOINT_COORDINATE_ANGLE,
+                                     &drive.value, NULL, NULL));
+    CHECK(!se3d_driver_create(a.system, &drive, &driver));
+    CHECK(se3d_solver_run(solver, 0.4) >= 0 && is_named(solver, "romega"));
+    CHECK(!se3d_constraint_destroy(a.system, driver));
+    CHECK(!se3d_solver_run(solver, 0.5) && is_named(solver, "joint"));
+    se3d_friction_def rub = se3d_friction_def_default();
+    rub.joint = a.joints[0];
+    rub.mu = 0.1;
+    rub.radius = 0.02;
+    CHECK(!se3d_force_create_friction(a.system, &rub, &friction));
+    CHECK(se3d_solver_run(solver, 0.6) >= 0 && is_named(solver, "romega"));
+    CHECK(!se3d_force_destroy(a.system, friction));
+    CHECK(!se3d_solver_run(solver, 0.7) && is_named(solver, "joint"));
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(a.system);
+}
+
+int main(void)
+{
+    RUN(open_trees_are_integrated_in_joint_coordinates);
+    RUN(the_motion_is_that_of_bodies);
+    RUN(it_is_chosen_again_when_the_structure_changes);
+    return check_finish();
+}
