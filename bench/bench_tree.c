@@ -2,13 +2,15 @@
 /* What the recursions of joint coordinates cost, in ns a link, with no solver around them: chains
  * of revolutes (a) and of balls (b). `state`: coordinates to poses and velocities of all bodies;
  * `acceleration`: that, and from wrenches on the bodies to accelerations of the coordinates;
- * `reactions`: multipliers of all joints on top of it. Arguments: counts of links. */
+ * `reactions`: multipliers of all joints on top of it; `lanes`: accelerations under gravity of 4
+ * and of 8 states at once, a link and state. Arguments: counts of links. */
 #define _POSIX_C_SOURCE 200809L
 #include "mechanisms.h"
 
 #include "assembly/loads.h"
 #include "system/system_internal.h"
 #include "tree/core.h"
+#include "tree/lanes.h"
 #include "tree/recursion.h"
 
 #include <math.h>
@@ -51,6 +53,49 @@ static void find_reactions(work *w)
     se3di_tree_multipliers(&w->tree, w->joint, NULL, w->lambda);
 }
 
+static double *take(size_t count)
+{
+    double *memory = calloc(count + 1, sizeof *memory);
+    if (!memory) {
+        exit(1);
+    }
+    return memory;
+}
+
+/* The same under gravity for `width` states at once [ns a link and state]; 0: not here. */
+static double measure_lanes(const work *w, int width)
+{
+    const se3di_lane_core *core = se3di_lane_core_find(width);
+    const int count = 20 + 10000 / (int)w->tree.count;
+    const size_t size = 7 * (size_t)w->tree.count * SE3DI_LANES_MAX + SE3DI_LANES_ALIGN;
+    double least = 1e300;
+    se3di_lanes lanes;
+    if (!core || se3di_lanes_init(&lanes, &w->tree, core, 0) < 0) {
+        return 0.0;
+    }
+    double *memory = take(4 * size), *q = se3di_lanes_align(memory), *qdot = q + size;
+    double *qddot = qdot + size, *gravity = qddot + size;
+    for (size_t k = 0; k < (size_t)width * w->tree.q_count; ++k) {
+        q[k] = w->q[k / (size_t)width];
+    }
+    for (int k = 0; k < width; ++k) {
+        gravity[width + k] = -9.81;
+    }
+    for (int round = 0; round < ROUNDS; ++round) {
+        const double begin = cpu_time();
+        for (int k = 0; k < count; ++k) {
+            core->place(&lanes, q, qdot);
+            core->weigh(&lanes, gravity);
+            se3di_lanes_accelerate(&lanes, NULL, qddot);
+            qdot[0] += 1e-12 * qddot[0];
+        }
+        least = fmin(least, cpu_time() - begin);
+    }
+    free(memory);
+    se3di_lanes_destroy(&lanes);
+    return 1e9 * least / count / w->tree.count / width;
+}
+
 /* Least time of some rounds [ns a link]; what is computed enters what comes next. */
 static double measure(work *w, void (*compute)(work *))
 {
@@ -65,15 +110,6 @@ static double measure(work *w, void (*compute)(work *))
         least = fmin(least, cpu_time() - begin);
     }
     return 1e9 * least / count / w->tree.count;
-}
-
-static double *take(size_t count)
-{
-    double *memory = calloc(count + 1, sizeof *memory);
-    if (!memory) {
-        exit(1);
-    }
-    return memory;
 }
 
 static void run(char kind, int n)
@@ -95,8 +131,10 @@ static void run(char kind, int n)
     const double state = measure(&w, find_state);
     const double acceleration = measure(&w, find_acceleration);
     const double reactions = measure(&w, find_reactions);
-    printf("%c %4d links: state %6.1f, acceleration %6.1f, reactions %6.1f ns a link\n", kind, n,
-           state, acceleration, reactions - acceleration);
+    printf("%c %4d links: state %6.1f, acceleration %6.1f, reactions %6.1f ns a link, "
+           "lanes of 4: %5.1f, of 8: %5.1f\n",
+           kind, n, state, acceleration, reactions - acceleration, measure_lanes(&w, 4),
+           measure_lanes(&w, 8));
     free(w.q);
     free(w.qdot);
     free(w.qddot);

@@ -11,7 +11,7 @@ SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX2)
 
 #define fma_of(a, b, c) __builtin_fma(a, b, c)
 
-#include "tree/core.inc"
+#include "tree/core_one.inc"
 
 SE3DI_TARGET_END
 

@@ -6,7 +6,7 @@
 
 #define fma_of(a, b, c) fma(a, b, c)
 
-#include "tree/core.inc"
+#include "tree/core_one.inc"
 
 const se3di_tree_core *se3di_tree_core_portable(void)
 {

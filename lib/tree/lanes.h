@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Several states of one tree side by side: the recursions of tree/core.inc with the lanes of a
+ * vector register for numbers. Every number is an array of `width` doubles, one for each state, so
+ * that q is [positions][width] and so on. A state has the same bits in every lane, at every width
+ * and alone.                                                             docs/theory/lanes.md */
+#ifndef SE3DI_TREE_LANES_H
+#define SE3DI_TREE_LANES_H
+
+#include "tree/tree.h"
+
+#define SE3DI_LANES_MAX   8
+#define SE3DI_LANES_ALIGN 64 /* bytes */
+
+typedef struct se3di_lanes se3di_lanes;
+
+/* Compiled once for each width. All arrays are aligned to SE3DI_LANES_ALIGN. */
+typedef struct se3di_lane_core {
+    int32_t width;
+    /* Links, S and biases of the states; frames of the bodies if the lanes have any. */
+    void (*place)(const se3di_lanes *lanes, const double *q, const double *qdot);
+    /* Weights on the nodes, instead of all else: gravity [3]. */
+    void (*weigh)(const se3di_lanes *lanes, const double *gravity);
+    /* What acts on the bodies in lanes->loads, with weights, as se3di_tree_take_wrenches. */
+    void (*take_wrenches)(const se3di_lanes *lanes);
+    /* Articulated inertias; effort [velocities], NULL: none. */
+    void (*factor)(const se3di_lanes *lanes, const double *effort);
+    /* After it: accelerations [velocities]; not a number where a coordinate has no inertia. */
+    void (*accelerate)(const se3di_lanes *lanes, double *qddot);
+    /* Efforts [velocities] that give accelerations [velocities] against the wrenches. */
+    void (*find_efforts)(const se3di_lanes *lanes, const double *qddot, double *effort);
+    /* Rates of the positions. */
+    void (*find_rates)(const se3di_lanes *lanes, const double *q, const double *qdot,
+                       double *rates);
+    /* Quaternions among the positions get unit length. */
+    void (*normalise)(const se3di_lanes *lanes, double *q);
+    /* out = base + factor x: [count] numbers each; out may be either. */
+    void (*add)(size_t count, const double *base, double factor, const double *x, double *out);
+    /* 1.0 where all [count] numbers are finite, else not a number. */
+    void (*check)(size_t count, const double *x, double *verdict);
+} se3di_lane_core;
+
+/* The core for `width` states (1, 4 or 8), NULL: this processor has none. */
+const se3di_lane_core *se3di_lane_core_find(int32_t width);
+/* The widest one. */
+const se3di_lane_core *se3di_lane_core_widest(void);
+
+const se3di_lane_core *se3di_lane_core_portable(void);
+const se3di_lane_core *se3di_lane_core_avx2(void);   /* NULL: not here */
+const se3di_lane_core *se3di_lane_core_avx512(void); /* the same */
+
+/* Work of the recursions for one group of states. */
+struct se3di_lanes {
+    const se3di_tree *tree; /* structure and constants */
+    const se3di_lane_core *core;
+    double *links, *S, *U, *D, *R, *e, *V, *k; /* as in se3di_tree; */
+    double *given, *wrench, *branches, *joint;
+    double *frames;         /* [bodies] se3di_frame, NULL: not wanted; */
+    double *loads;          /* [bodies * 6] what acts on them, as force/force.h has it */
+    const double *inertias; /* [nodes * 7] mass and J of each state's own; NULL: the tree's */
+    double *memory;         /* all of it, as allocated */
+    size_t memory_count;
+};
+
+/* Memory for `core`; with frames and loads of bodies if wanted. @return OK, NO_MEMORY */
+se3d_status se3di_lanes_init(se3di_lanes *lanes, const se3di_tree *tree,
+                             const se3di_lane_core *core, int wants_frames);
+void se3di_lanes_destroy(se3di_lanes *lanes);
+
+/* Accelerations of the states, with lanes->wrench as it is; effort may be NULL. */
+void se3di_lanes_accelerate(const se3di_lanes *lanes, const double *effort, double *qddot);
+
+/* An aligned array within memory that has SE3DI_LANES_ALIGN bytes more. */
+double *se3di_lanes_align(double *memory);
+
+#endif

@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Several states of a tree in lanes against the same states one after the other, on random trees of
+ * all joint types: the same bits at every width, in every lane, whatever is in the others. */
+#include "support/tree_world.h"
+
+#include "assembly/loads.h"
+#include "tree/core.h"
+#include "tree/lanes.h"
+#include "tree/recursion.h"
+
+enum { MECHANISMS = 60, STATES = SE3DI_LANES_MAX, NUMBERS = 7 * TREE_BODIES_MAX };
+enum { LOADS = 6 * (TREE_BODIES_MAX + 1), LANE_NUMBERS = SE3DI_LANES_MAX * LOADS };
+
+static const int32_t widths[] = {1, 4, 8};
+
+/* States of one tree, and what each of them gives alone. */
+typedef struct states_of {
+    tree_world world;
+    se3di_model *model;
+    se3di_tree tree;
+    double q[STATES][NUMBERS], qdot[STATES][NUMBERS], effort[STATES][NUMBERS];
+    double loads[STATES][LOADS];
+    double qddot[STATES][NUMBERS], held[STATES][NUMBERS], rates[STATES][NUMBERS];
+} states_of;
+
+static void solve_alone(states_of *s, int k)
+{
+    double joint[6 * TREE_BODIES_MAX];
+    uint32_t failed;
+    se3di_tree *tree = &s->tree;
+    se3di_tree_place(tree, s->q[k], s->qdot[k], s->model->frames);
+    CHECK(!se3di_loads_eval(s->model, 0.0, s->loads[k], &failed));
+    se3di_tree_take_wrenches(tree, s->model->frames, s->loads[k]);
+    CHECK(!se3di_tree_factor(tree, s->effort[k]));
+    se3di_tree_accelerate(tree, tree->e, s->qddot[k]);
+    se3di_tree_propagate(tree, s->effort[k]);
+    se3di_tree_efforts(tree, s->effort[k], joint, s->held[k]);
+    se3di_tree_rates(tree, s->q[k], s->qdot[k], s->rates[k]);
+}
+
+static void begin(states_of *s, uint64_t seed)
+{
+    double dq[NUMBERS];
+    tree_world_init(&s->world, seed, 1 + (int)(seed % TREE_BODIES_MAX), 0);
+    s->model = &s->world.system->model;
+    CHECK(!se3di_tree_init(&s->tree, s->model, NULL));
+    for (uint32_t v = 0; seed % 3 == 0 && v < s->tree.v_count; ++v) {
+        s->tree.armature[v] = 0.1 * v;
+    }
+    for (int k = 0; k < STATES; ++k) {
+        se3di_tree_get(&s->tree, s->q[k], NULL);
+        tree_vector(&s->world, dq, (int)s->tree.v_count, k == 3 ? 4e5 : 4.0);
+        tree_vector(&s->world, s->qdot[k], (int)s->tree.v_count, 2.0);
+        tree_vector(&s->world, s->effort[k], (int)s->tree.v_count, 5.0);
+        se3di_tree_move(&s->tree, s->q[k], dq, s->q[k]);
+        solve_alone(s, k);
+    }
+}
+
+static void end(states_of *s)
+{
+    se3di_tree_destroy(&s->tree);
+    tree_world_destroy(&s->world);
+}
+
+/* State (lane + shift) mod STATES of each number into the lanes. */
+static void pack(const double *from, size_t stride, size_t count, int width, int shift, double *to)
+{
+    for (size_t c = 0; c < count; ++c) {
+        for (int lane = 0; lane < width; ++lane) {
+            to[c * (size_t)width + (size_t)lane] =
+                from[(size_t)((lane + shift) % STATES) * stride + c];
+        }
+    }
+}
+
+static int are_equal(const double *lanes, const double *alone, size_t stride, size_t count,
+                     int width, int shift)
+{
+    double expected[LANE_NUMBERS];
+    pack(alone, stride, count, width, shift, expected);
+    for (size_t k = 0; k < count * (size_t)width; ++k) {
+        if (lanes[k] != expected[k]) { /* zeros of either sign are the same */
+            return 0;
+        }
+    }
+    return 1;
+}
+
+#define PACK(what, count, to)                                                                      \
+    pack(s->what[0], sizeof *s->what / sizeof(double), count, w, shift, to)
+#define EQUAL(lanes, what, count)                                                                  \
+    are_equal(lanes, s->what[0], sizeof *s->what / sizeof(double), count, w, shift)
+
+static void compare(states_of *s, const se3di_lane_core *core, int shift)
+{
+    _Alignas(SE3DI_LANES_ALIGN) double q[LANE_NUMBERS], qdot[LANE_NUMBERS], effort[LANE_NUMBERS];
+    _Alignas(SE3DI_LANES_ALIGN) double out[LANE_NUMBERS], verdict[SE3DI_LANES_MAX];
+    const int w = core->width;
+    const size_t v = s->tree.v_count;
+    se3di_lanes lanes;
+    CHECK(!se3di_lanes_init(&lanes, &s->tree, core, 1));
+    PACK(q, s->tree.q_count, q);
+    PACK(qdot, v, qdot);
+    PACK(effort, v, effort);
+    core->place(&lanes, q, qdot);
+    PACK(loads, 6 * s->tree.body_count, lanes.loads);
+    core->take_wrenches(&lanes);
+    se3di_lanes_accelerate(&lanes, effort, out);
+    CHECK(EQUAL(out, qddot, v));
+    core->find_efforts(&lanes, effort, out);
+    CHECK(EQUAL(out, held, v));
+    core->find_rates(&lanes, q, qdot, out);
+    CHECK(EQUAL(out, rates, s->tree.q_count));
+    core->check(v, effort, verdict);
+    for (int lane = 0; lane < w; ++lane) {
+        CHECK(verdict[lane] == 1.0);
+    }
+    se3di_lanes_destroy(&lanes);
+}
+
+static void a_state_has_the_same_bits_in_every_lane_and_alone(void)
+{
+    static states_of s;
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        begin(&s, seed);
+        for (size_t k = 0; k < sizeof widths / sizeof *widths; ++k) {
+            const se3di_lane_core *core = se3di_lane_core_find(widths[k]);
+            for (int shift = 0; core && shift < STATES; shift += 1 + (int)seed % 3) {
+                compare(&s, core, shift);
+            }
+        }
+        end(&s);
+    }
+}
+
+/* With nothing but gravity, which may differ between the lanes, and masses that do. */
+static void lanes_may_have_gravity_and_masses_of_their_own(void)
+{
+    static states_of s;
+    const se3di_lane_core *core = se3di_lane_core_widest();
+    const int w = core->width;
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        _Alignas(SE3DI_LANES_ALIGN) double q[LANE_NUMBERS], qdot[LANE_NUMBERS], out[LANE_NUMBERS];
+        _Alignas(SE3DI_LANES_ALIGN) double gravity[3 * SE3DI_LANES_MAX];
+        _Alignas(SE3DI_LANES_ALIGN) double inertias[7 * TREE_BODIES_MAX * SE3DI_LANES_MAX];
+        se3di_lanes lanes;
+        begin(&s, seed);
+        CHECK(!se3di_lanes_init(&lanes, &s.tree, core, 0));
+        pack(s.q[0], NUMBERS, s.tree.q_count, w, 0, q);
+        pack(s.qdot[0], NUMBERS, s.tree.v_count, w, 0, qdot);
+        for (int lane = 0; lane < w; ++lane) {
+            for (int c = 0; c < 3; ++c) {
+                gravity[c * w + lane] = (1.0 + lane) * s.model->gravity[c];
+            }
+            for (uint32_t k = 0; k < s.tree.count; ++k) {
+                double *to = inertias + 7 * (size_t)k * (size_t)w + lane;
+                to[0] = (1.0 + lane) * s.tree.nodes[k].mass;
+                for (int c = 0; c < 6; ++c) {
+                    to[(1 + c) * w] = (1.0 + lane) * s.tree.nodes[k].J[c];
+                }
+            }
+        }
+        lanes.inertias = inertias;
+        core->place(&lanes, q, qdot);
+        core->weigh(&lanes, gravity);
+        se3di_lanes_accelerate(&lanes, NULL, out);
+        for (int lane = 0; lane < w; ++lane) {
+            se3di_tree_place(&s.tree, s.q[lane], s.qdot[lane], s.model->frames);
+            double *f = s.tree.wrench;
+            for (uint32_t k = 0; k < s.tree.count; ++k) {
+                s.tree.nodes[k].mass *= 1.0 + lane;
+                for (int c = 0; c < 6; ++c) {
+                    s.tree.nodes[k].J[c] *= 1.0 + lane;
+                }
+                double g[3];
+                se3di_scale(1.0 + lane, s.model->gravity, g);
+                se3di_scale(s.tree.nodes[k].mass, g, f + 6 * k + 3);
+                se3di_cross(s.tree.links[k].s, f + 6 * k + 3, f + 6 * k);
+            }
+            CHECK(!se3di_tree_factor(&s.tree, NULL));
+            se3di_tree_accelerate(&s.tree, s.tree.e, s.tree.qddot);
+            double largest = 1.0;
+            for (uint32_t v = 0; v < s.tree.v_count; ++v) {
+                largest = fmax(largest, fabs(s.tree.qddot[v]));
+            }
+            for (uint32_t v = 0; v < s.tree.v_count; ++v) {
+                CHECK_NEAR(out[v * (uint32_t)w + (uint32_t)lane] / largest,
+                           s.tree.qddot[v] / largest, 1e-12);
+            }
+            se3di_tree_refresh(&s.tree);
+        }
+        se3di_lanes_destroy(&lanes);
+        end(&s);
+    }
+}
+
+/* A lane that is not finite, or whose coordinates have no inertia, leaves the others alone. */
+static void what_fails_stays_in_its_lane(void)
+{
+    static states_of s;
+    const se3di_lane_core *core = se3di_lane_core_widest();
+    const int w = core->width, shift = 0;
+    states_of *const all = &s;
+    for (uint64_t seed = 1; seed < MECHANISMS; ++seed) {
+        _Alignas(SE3DI_LANES_ALIGN) double q[LANE_NUMBERS], qdot[LANE_NUMBERS], out[LANE_NUMBERS];
+        _Alignas(SE3DI_LANES_ALIGN) double effort[LANE_NUMBERS], verdict[SE3DI_LANES_MAX];
+        se3di_lanes lanes;
+        begin(&s, seed);
+        const size_t v = s.tree.v_count;
+        const int bad = (int)seed % w;
+        CHECK(!se3di_lanes_init(&lanes, &s.tree, core, 1));
+        pack(all->q[0], NUMBERS, s.tree.q_count, w, shift, q);
+        pack(all->qdot[0], NUMBERS, v, w, shift, qdot);
+        pack(all->effort[0], NUMBERS, v, w, shift, effort);
+        for (size_t k = 0; k < s.tree.q_count; ++k) {
+            q[k * (size_t)w + (size_t)bad] = k % 2 ? (double)INFINITY : (double)NAN;
+        }
+        core->place(&lanes, q, qdot);
+        pack(all->loads[0], LOADS, 6 * s.tree.body_count, w, shift, lanes.loads);
+        core->take_wrenches(&lanes);
+        se3di_lanes_accelerate(&lanes, effort, out);
+        core->check(v, out, verdict);
+        for (int lane = 0; lane < w; ++lane) {
+            for (size_t k = 0; lane != bad && k < v; ++k) {
+                CHECK(out[k * (size_t)w + (size_t)lane] == s.qddot[lane][k]);
+            }
+            CHECK(lane == bad ? v == 0 || verdict[lane] != 1.0 : verdict[lane] == 1.0);
+        }
+        se3di_lanes_destroy(&lanes);
+        end(&s);
+    }
+}
+
+static void a_coordinate_without_inertia_is_told_in_its_lane(void)
+{
+    static states_of s;
+    const se3di_lane_core *core = se3di_lane_core_widest();
+    const int w = core->width;
+    _Alignas(SE3DI_LANES_ALIGN) double q[LANE_NUMBERS], qdot[LANE_NUMBERS], out[LANE_NUMBERS];
+    _Alignas(SE3DI_LANES_ALIGN) double inertias[7 * TREE_BODIES_MAX * SE3DI_LANES_MAX];
+    _Alignas(SE3DI_LANES_ALIGN) double gravity[3 * SE3DI_LANES_MAX] = {0.0};
+    _Alignas(SE3DI_LANES_ALIGN) double verdict[SE3DI_LANES_MAX];
+    se3di_lanes lanes;
+    begin(&s, 11);
+    CHECK(s.tree.v_count > 0);
+    CHECK(!se3di_lanes_init(&lanes, &s.tree, core, 0));
+    pack(s.q[0], NUMBERS, s.tree.q_count, w, 0, q);
+    pack(s.qdot[0], NUMBERS, s.tree.v_count, w, 0, qdot);
+    for (uint32_t k = 0; k < s.tree.count; ++k) {
+        for (int lane = 0; lane < w; ++lane) {
+            double *to = inertias + 7 * (size_t)k * (size_t)w + lane;
+            const double sign = lane == w - 1 ? -1.0 : 1.0; /* nothing that would move */
+            to[0] = sign * s.tree.nodes[k].mass;
+            for (int c = 0; c < 6; ++c) {
+                to[(1 + c) * w] = sign * s.tree.nodes[k].J[c];
+            }
+        }
+    }
+    lanes.inertias = inertias;
+    core->place(&lanes, q, qdot);
+    core->weigh(&lanes, gravity);
+    se3di_lanes_accelerate(&lanes, NULL, out);
+    core->check(s.tree.v_count, out, verdict);
+    for (int lane = 0; lane < w; ++lane) {
+        CHECK((verdict[lane] == 1.0) == (lane != w - 1));
+    }
+    se3di_lanes_destroy(&lanes);
+    end(&s);
+}
+
+static void sums_and_unit_quaternions_are_those_of_doubles(void)
+{
+    _Alignas(SE3DI_LANES_ALIGN) double a[24], b[24], out[24];
+    for (size_t k = 0; k < sizeof widths / sizeof *widths; ++k) {
+        const se3di_lane_core *core = se3di_lane_core_find(widths[k]);
+        for (int c = 0; core && c < 24; ++c) {
+            a[c] = 0.1 * c;
+            b[c] = 1.0 / (c + 1);
+        }
+        if (core) {
+            core->add(24u / (size_t)widths[k], a, 0.3, b, out);
+        }
+        for (int c = 0; core && c < 24; ++c) {
+            CHECK(out[c] == a[c] + 0.3 * b[c]);
+        }
+    }
+}
+
+int main(void)
+{
+    RUN(a_state_has_the_same_bits_in_every_lane_and_alone);
+    RUN(lanes_may_have_gravity_and_masses_of_their_own);
+    RUN(what_fails_stays_in_its_lane);
+    RUN(a_coordinate_without_inertia_is_told_in_its_lane);
+    RUN(sums_and_unit_quaternions_are_those_of_doubles);
+    return check_finish();
+}
