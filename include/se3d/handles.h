@@ -24,6 +24,9 @@ typedef struct se3d_modes se3d_modes;
 /* Joint coordinates of a system, and what follows from them without a step; destroy with
  * se3d_coordinates_destroy. @since 0.1 */
 typedef struct se3d_coordinates se3d_coordinates;
+/* Many states of one system side by side; destroy with se3d_batch_destroy. It keeps nothing of its
+ * system. @since 0.1 */
+typedef struct se3d_batch se3d_batch;
 /* A report on the constraints of a system; destroy with se3d_check_destroy. @since 0.1 */
 typedef struct se3d_check se3d_check;
 /* A compiled expression, immutable; destroy with se3d_expression_destroy. @since 0.1 */

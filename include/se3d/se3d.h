@@ -26,6 +26,7 @@
 #define SE3D_SE3D_H
 
 #include "se3d/base.h"
+#include "se3d/batch.h"
 #include "se3d/body.h"
 #include "se3d/check.h"
 #include "se3d/constraint.h"

@@ -14,7 +14,7 @@ void se3d_body_def_init(se3d_body_def *def, size_t size)
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
-static se3d_status check_mass(se3d_system *system, double mass, const double inertia[6])
+se3d_status se3di_check_mass(se3d_system *system, double mass, const double inertia[6])
 {
     if (!(isfinite(mass) && mass > 0.0)) {
         return SE3DI_FAIL_OF(system, "mass", SE3D_ERR_INVALID_ARGUMENT,
@@ -46,7 +46,7 @@ se3d_status se3d_body_create(se3d_system *system, const se3d_body_def *def, se3d
     SE3DI_TRY(se3di_check_new_name(system, &system->model.body_slots, 0, "body", full.name));
     se3di_frame frame = {0};
     if (!full.fixed) {
-        SE3DI_TRY(check_mass(system, full.mass, full.inertia));
+        SE3DI_TRY(se3di_check_mass(system, full.mass, full.inertia));
     }
     SE3DI_TRY(se3di_check_finites(system, "position", full.position, 3));
     SE3DI_TRY(se3di_check_orientation(system, "orientation", full.orientation, frame.p));
@@ -169,7 +169,7 @@ se3d_status se3d_body_set_mass(se3d_system *system, se3d_body body, double mass,
     if (system->model.bodies[index].fixed) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "a fixed body has no mass to set");
     }
-    SE3DI_TRY(check_mass(system, mass, inertia));
+    SE3DI_TRY(se3di_check_mass(system, mass, inertia));
     se3di_model *model = &system->model;
     const double before = se3di_audit_forces(model);
     model->bodies[index].mass = mass;

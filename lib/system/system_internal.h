@@ -88,6 +88,8 @@ se3d_status se3di_check_direction(se3d_system *system, const char *what, const d
 /* `p` has unit length to 1e-6; writes it normalised. */
 se3d_status se3di_check_orientation(se3d_system *system, const char *what, const double p[4],
                                     double unit[4]);
+/* A mass > 0 and the inertia of some body. */
+se3d_status se3di_check_mass(se3d_system *system, double mass, const double inertia[6]);
 /* `pointer` is not NULL. */
 se3d_status se3di_check_pointer(se3d_system *system, const char *what, const void *pointer);
 /* A def struct: copies its struct_size bytes over the defaults already in `copy`; fails if def is

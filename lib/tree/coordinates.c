@@ -177,12 +177,13 @@ static void place_on_parent(const se3di_tree *tree, se3di_tree_node *n, const do
     se3di_quat_from_matrix(relative, n->C);
 }
 
-/* Inertia about the joint point, in the triad T; s is set. */
-static void take_inertia(const se3di_body *body, se3di_tree_node *n, const double T[9])
+/* Moments of inertia about the joint point, in the triad T; s is set. */
+static void turn_inertia(const se3di_tree_node *n, const double T[9], double m, const double own[6],
+                         double moments[6])
 {
     double J[9], JT[9], turned[9], X[9];
     const double *s = n->s;
-    se3di_inertia_matrix(body->J, J);
+    se3di_inertia_matrix(own, J);
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c) {
             turned[3 * r + c] = T[3 * c + r];
@@ -190,13 +191,27 @@ static void take_inertia(const se3di_body *body, se3di_tree_node *n, const doubl
     }
     se3di_mat_mul(J, T, JT);
     se3di_mat_mul(turned, JT, X);
-    const double m = n->mass = body->mass, square = se3di_dot(s, s);
+    const double square = se3di_dot(s, s);
     for (int k = 0; k < 3; ++k) {
-        n->J[k] = X[4 * k] + m * (square - s[k] * s[k]);
+        moments[k] = X[4 * k] + m * (square - s[k] * s[k]);
     }
-    n->J[3] = X[1] - m * s[0] * s[1];
-    n->J[4] = X[2] - m * s[0] * s[2];
-    n->J[5] = X[5] - m * s[1] * s[2];
+    moments[3] = X[1] - m * s[0] * s[1];
+    moments[4] = X[2] - m * s[0] * s[2];
+    moments[5] = X[5] - m * s[1] * s[2];
+}
+
+void se3di_tree_inertia_of(const se3di_tree_node *node, double mass, const double own[6],
+                           double moments[6])
+{
+    double T[9];
+    own_triad(node, T);
+    turn_inertia(node, T, mass, own, moments);
+}
+
+static void take_inertia(const se3di_body *body, se3di_tree_node *n, const double T[9])
+{
+    n->mass = body->mass;
+    turn_inertia(n, T, body->mass, body->J, n->J);
     n->flags &= ~SE3DI_TREE_DIAGONAL;
     n->flags |= n->J[3] == 0.0 && n->J[4] == 0.0 && n->J[5] == 0.0 ? SE3DI_TREE_DIAGONAL : 0;
 }

@@ -24,7 +24,7 @@ typedef struct se3di_lane_core {
     void (*take_wrenches)(const se3di_lanes *lanes);
     /* Articulated inertias; effort [velocities], NULL: none. */
     void (*factor)(const se3di_lanes *lanes, const double *effort);
-    /* After it: accelerations [velocities]; not a number where a coordinate has no inertia. */
+    /* After it: accelerations [velocities]; not a number if a coordinate has no inertia. */
     void (*accelerate)(const se3di_lanes *lanes, double *qddot);
     /* Efforts [velocities] that give accelerations [velocities] against the wrenches. */
     void (*find_efforts)(const se3di_lanes *lanes, const double *qddot, double *effort);

@@ -140,6 +140,11 @@ void se3di_tree_destroy(se3di_tree *tree);
  * is meant, from the model: after setters, and where a run begins. */
 void se3di_tree_refresh(se3di_tree *tree);
 
+/* Moments of inertia about a node's joint point, in its triad, of a body with `own` ones about the
+ * centre of mass: xx yy zz xy xz yz each, but `own` as the body's. */
+void se3di_tree_inertia_of(const se3di_tree_node *node, double mass, const double own[6],
+                           double moments[6]);
+
 /* Coordinates of the model's frames; refreshed. NULL: not wanted. */
 void se3di_tree_get(se3di_tree *tree, double *q, double *qdot);
 

@@ -4,6 +4,7 @@
 #ifndef SE3D_TESTS_MISUSE_CALLS_H
 #define SE3D_TESTS_MISUSE_CALLS_H
 
+#include "misuse/misuse_batch.h"
 #include "misuse/misuse_events.h"
 #include "misuse/misuse_fields.h"
 #include "misuse/misuse_inputs.h"
@@ -790,6 +791,24 @@ static const row rows[] = {
     {"se3d_solver_get_event_record", events_reject_misuse, "", NULL, NULL},
     {"se3d_solver_clear_event_records", events_reject_misuse, "", NULL, NULL},
     {"se3d_event_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_batch_create", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_destroy", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_count", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_count_positions", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_count_velocities", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_count_lanes", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_get_error", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_set_state", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_get_state", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_set_time", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_get_time", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_set_efforts", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_set_gravity", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_set_mass", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_step", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_get_status", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_compute_accelerations", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_compute_efforts", batch_rejects_misuse, "", NULL, NULL},
     {"se3d_coordinates_create", coordinates_reject_misuse, "", NULL, NULL},
     {"se3d_coordinates_destroy", coordinates_reject_misuse, "", NULL, NULL},
     {"se3d_coordinates_count", coordinates_reject_misuse, "", NULL, NULL},

@@ -386,6 +386,19 @@ static se3d_status make_coordinates(workshop *w)
     return status;
 }
 
+static se3d_status make_batch(workshop *w)
+{
+    se3d_batch *batch = NULL;
+    const double mass = 2.0, inertia[6] = {1.0, 1.0, 1.0};
+    se3d_status status = se3d_batch_create(w->system, 3, 2, &batch);
+    CHECK((status >= 0) == (batch != NULL));
+    if (status >= 0) {
+        status = se3d_batch_set_mass(batch, w->body[0], 1, 1, &mass, inertia);
+    }
+    se3d_batch_destroy(batch);
+    return status;
+}
+
 typedef struct operation_row {
     const char *name;
     operation run;
@@ -414,6 +427,7 @@ static const operation_row operations[] = {
     {"source and sink", make_source_and_sink},
     {"check", make_check},
     {"coordinates", make_coordinates},
+    {"batch", make_batch},
 };
 
 typedef struct census {

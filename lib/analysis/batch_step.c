@@ -1,0 +1,276 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Batches: accelerations, efforts and steps of groups, shared by threads. Who does a group does not
+ * change the bits.                                                      docs/theory/lanes.md */
+#include "analysis/batch.h"
+
+#include "force/force.h"
+
+#include <math.h>
+#include <string.h>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+/* A group in the hands of a worker. */
+typedef struct task {
+    const se3di_batch *batch;
+    se3di_batch_worker *worker;
+    size_t group, width;
+    const double *effort;
+} task;
+
+/* What is done with each group. */
+typedef struct errand {
+    void (*run)(const task *t, const struct errand *e);
+    double h;
+    uint64_t steps;
+    const double *in; /* [count][velocities] */
+    double *out;
+} errand;
+
+/* ---- what acts ---- */
+
+static int32_t *status_of(const task *t, size_t lane)
+{
+    return &t->batch->status[t->group * t->width + lane];
+}
+
+/* The state of a lane becomes that of the worker's model. */
+static void show_lane(const task *t, const double *q, size_t lane)
+{
+    const se3di_batch *b = t->batch;
+    se3di_batch_worker *w = t->worker;
+    const size_t bodies = b->tree.body_count, size = sizeof(se3di_frame) / sizeof(double);
+    se3di_frame *frames = w->frames + lane * bodies;
+    se3di_angle *angles = w->angles + lane * b->model->angle_count;
+    for (uint32_t k = 0; k < b->tree.count; ++k) {
+        const se3di_tree_node *n = &b->tree.nodes[k];
+        const double *from = w->lanes.frames + n->body * size * t->width + lane;
+        double *to = (double *)(void *)&frames[n->body];
+        for (size_t c = 0; c < size; ++c) {
+            to[c] = from[c * t->width];
+        }
+        if (n->angle >= 0) {
+            const size_t at = n->q + (n->type == SE3DI_TREE_PLANAR ? 2 : 0);
+            angles[n->angle].theta = q[at * t->width + lane];
+        }
+        if (b->inertias) {
+            w->model.bodies[n->body].mass =
+                b->inertias[((t->group * b->tree.count + k) * 7) * t->width + lane];
+        }
+    }
+    for (size_t c = 0; c < 3; ++c) {
+        w->model.gravity[c] = b->gravity[(3 * t->group + c) * t->width + lane];
+    }
+}
+
+/* Force elements state by state; one that fails makes its lane not a number. */
+static void load_lane(const task *t, const double *q, double dt, size_t lane)
+{
+    const se3di_batch *b = t->batch;
+    se3di_batch_worker *w = t->worker;
+    se3di_model *model = &w->model;
+    se3di_frame *frames = model->frames;
+    se3di_angle *angles = model->angles;
+    uint32_t failed;
+    show_lane(t, q, lane);
+    model->frames = w->frames + lane * b->tree.body_count;
+    model->angles = w->angles + lane * b->model->angle_count;
+    const double time = b->time[t->group * t->width + lane] + dt;
+    const se3d_status status = se3di_forces_eval(model, time, w->scalars, &failed);
+    model->frames = frames;
+    model->angles = angles;
+    if (status < 0 && *status_of(t, lane) >= 0) {
+        *status_of(t, lane) = status;
+    }
+    for (size_t k = 0; k < 6 * (size_t)b->tree.body_count; ++k) {
+        w->lanes.loads[k * t->width + lane] = status < 0 ? (double)NAN : w->scalars[k];
+    }
+}
+
+static void load(const task *t, const double *q, double dt)
+{
+    const se3di_batch *b = t->batch;
+    const se3di_lanes *lanes = &t->worker->lanes;
+    if (b->is_weighed) {
+        b->core->weigh(lanes, b->gravity + 3 * t->group * t->width);
+        return;
+    }
+    for (size_t lane = 0; lane < t->width && t->group * t->width + lane < b->count; ++lane) {
+        load_lane(t, q, dt, lane);
+    }
+    b->core->take_wrenches(lanes);
+}
+
+/* ---- steps ---- */
+
+/* y' at the time of the states and dt. */
+static void evaluate(const task *t, const double *y, double dt, double *rates)
+{
+    const se3di_lane_core *core = t->batch->core;
+    const se3di_lanes *lanes = &t->worker->lanes;
+    const size_t positions = t->batch->tree.q_count * t->width;
+    core->place(lanes, y, y + positions);
+    load(t, y, dt);
+    se3di_lanes_accelerate(lanes, t->effort, rates + positions);
+    core->find_rates(lanes, y, y + positions, rates);
+}
+
+/* worker->sum: y after a step of the method of Kutta. */
+static void make_step(const task *t, const double *y, double h)
+{
+    static const double node[3] = {0.5, 0.5, 1.0};
+    static const double weight[4] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
+    const se3di_lane_core *core = t->batch->core;
+    se3di_batch_worker *w = t->worker;
+    const size_t count = (size_t)t->batch->tree.q_count + t->batch->tree.v_count;
+    evaluate(t, y, 0.0, w->rates);
+    core->add(count, y, h * weight[0], w->rates, w->sum);
+    for (int k = 0; k < 3; ++k) {
+        core->add(count, y, h * node[k], w->rates, w->y);
+        core->normalise(&w->lanes, w->y);
+        evaluate(t, w->y, h * node[k], w->rates);
+        core->add(count, w->sum, h * weight[k + 1], w->rates, w->sum);
+    }
+    core->normalise(&w->lanes, w->sum);
+    core->check(count, w->sum, w->verdict);
+}
+
+/* Lanes whose step is finite take it. */
+static void accept(const task *t, double *y, const double *begin, double elapsed)
+{
+    const se3di_batch_worker *w = t->worker;
+    const size_t count = (size_t)t->batch->tree.q_count + t->batch->tree.v_count;
+    int fine = 1;
+    for (size_t lane = 0; lane < t->width; ++lane) {
+        int32_t *status = status_of(t, lane);
+        if (*status >= 0 && w->verdict[lane] != 1.0) {
+            *status = SE3D_ERR_NOT_FINITE;
+        }
+        fine &= *status >= 0;
+        if (*status >= 0) {
+            t->batch->time[t->group * t->width + lane] = begin[lane] + elapsed;
+        }
+    }
+    if (fine) {
+        memcpy(y, w->sum, count * t->width * sizeof *y);
+        return;
+    }
+    for (size_t k = 0; k < count * t->width; ++k) {
+        y[k] = *status_of(t, k % t->width) >= 0 ? w->sum[k] : y[k];
+    }
+}
+
+static void step_group(const task *t, const errand *e)
+{
+    const se3di_batch *b = t->batch;
+    const size_t count = (size_t)b->tree.q_count + b->tree.v_count;
+    double *y = b->states + t->group * count * t->width;
+    double begin[SE3DI_LANES_MAX];
+    memcpy(begin, b->time + t->group * t->width, t->width * sizeof *begin);
+    for (uint64_t k = 0; k < e->steps; ++k) {
+        make_step(t, y, e->h);
+        accept(t, y, begin, (double)(k + 1) * e->h);
+    }
+}
+
+/* ---- queries ---- */
+
+/* The lanes' numbers to their states; zero, with a status, where they are not finite. */
+static void hand_out(const task *t, const double *values, double *out)
+{
+    const se3di_batch *b = t->batch;
+    const size_t count = b->tree.v_count;
+    b->core->check(count, values, t->worker->verdict);
+    for (size_t lane = 0; lane < t->width; ++lane) {
+        const size_t state = t->group * t->width + lane;
+        const int fine = t->worker->verdict[lane] == 1.0;
+        if (!fine && b->status[state] >= 0) {
+            b->status[state] = SE3D_ERR_NOT_FINITE;
+        }
+        for (size_t k = 0; state < b->count && k < count; ++k) {
+            out[state * count + k] = fine ? values[k * t->width + lane] : 0.0;
+        }
+    }
+}
+
+static const double *place_group(const task *t)
+{
+    const se3di_batch *b = t->batch;
+    const size_t count = (size_t)b->tree.q_count + b->tree.v_count;
+    const double *y = b->states + t->group * count * t->width;
+    b->core->place(&t->worker->lanes, y, y + b->tree.q_count * t->width);
+    load(t, y, 0.0);
+    return y;
+}
+
+static void accelerate_group(const task *t, const errand *e)
+{
+    double *out = t->worker->rates;
+    (void)place_group(t);
+    se3di_lanes_accelerate(&t->worker->lanes, t->effort, out);
+    hand_out(t, out, e->out);
+}
+
+static void find_group_efforts(const task *t, const errand *e)
+{
+    const se3di_batch *b = t->batch;
+    double *in = t->worker->effort, *out = t->worker->rates;
+    const size_t count = b->tree.v_count;
+    (void)place_group(t);
+    for (size_t k = 0; k < count * t->width; ++k) {
+        const size_t state = t->group * t->width + k % t->width;
+        in[k] = e->in && state < b->count ? e->in[state * count + k / t->width] : 0.0;
+    }
+    b->core->find_efforts(&t->worker->lanes, in, out);
+    hand_out(t, out, e->out);
+}
+
+/* ---- threads ---- */
+
+static void run_group(const se3di_batch *b, int32_t worker, size_t group, const errand *e)
+{
+    const size_t width = (size_t)b->core->width;
+    task t = {.batch = b,
+              .worker = &b->workers[worker],
+              .group = group,
+              .width = width,
+              .effort = b->efforts + group * b->tree.v_count * width};
+    t.worker->lanes.inertias = b->inertias ? b->inertias + group * b->tree.count * 7 * width : NULL;
+    e->run(&t, e);
+}
+
+static void run_all(const se3di_batch *b, const errand *e)
+{
+#ifdef _OPENMP
+    if (b->worker_count > 1) {
+#pragma omp parallel for num_threads(b->worker_count) schedule(static)
+        for (size_t group = 0; group < b->groups; ++group) {
+            run_group(b, omp_get_thread_num(), group, e);
+        }
+        return;
+    }
+#endif
+    for (size_t group = 0; group < b->groups; ++group) {
+        run_group(b, 0, group, e);
+    }
+}
+
+void se3di_batch_step(se3di_batch *batch, double h, uint64_t steps)
+{
+    const errand e = {.run = step_group, .h = h, .steps = steps};
+    run_all(batch, &e);
+}
+
+void se3di_batch_accelerate(se3di_batch *batch, double *qddot)
+{
+    const errand e = {.run = accelerate_group, .out = qddot};
+    run_all(batch, &e);
+}
+
+void se3di_batch_find_efforts(se3di_batch *batch, const double *qddot, double *effort)
+{
+    const errand e = {.run = find_group_efforts, .in = qddot, .out = effort};
+    run_all(batch, &e);
+}
