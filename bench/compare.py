@@ -4,7 +4,7 @@
 
 FOLDER holds the drivers: bench_serve and bench_evaluation (this library), and what there is of
 mujoco, bullet, simbody, ode.
-SECTION: cost work fourbar pendulum implicit; all by default. Times are CPU times that the drivers
+SECTION: cost work fourbar pendulum implicit lanes batch; all by default. Times are CPU times that the drivers
 measure inside; engines take turns, and the least of several runs counts.
 """
 import math
@@ -201,6 +201,7 @@ def show_time(entry):
 
 class Bench:
     def __init__(self, folder):
+        self.folder = folder
         self.ours = Engine(folder, "bench_serve")
         self.inside = Engine(folder, "bench_evaluation")
         self.peers = {name: Engine(folder, name)
@@ -375,6 +376,23 @@ class Bench:
         for way in ways:
             print(f"{way.label:>14} {show_time(times.get(way))} ms", flush=True)
 
+    def show_program(self, name, *arguments):
+        """The output of a program that searches nothing."""
+        path = os.path.join(self.folder, name)
+        if os.path.exists(path):
+            print(subprocess.run([path, *arguments], text=True, check=False,
+                                 stdout=subprocess.PIPE).stdout, end="", flush=True)
+
+    def lanes(self):
+        print("\n## Recursions of joint coordinates, ns a link: one state, and 4 or 8 in lanes",
+              flush=True)
+        self.show_program("bench_tree", "1", "2", "8", "32", "512")
+
+    def batch(self):
+        print("\n## Batches: arms of six revolutes, 1 ms steps with new efforts", flush=True)
+        self.show_program("bench_batch", "4096", "1")
+        self.show_program("mujoco_batch", "64")
+
     def implicit(self):
         """Implicit methods on a long chain."""
         print("\n## Implicit methods, chain of 400 bars (revolutes), 1 ms steps: us per link")
@@ -404,7 +422,8 @@ def main():
         sys.exit(__doc__)
     bench = Bench(sys.argv[1])
     try:
-        for section in sys.argv[2:] or ("cost", "work", "fourbar", "pendulum", "implicit"):
+        for section in sys.argv[2:] or ("cost", "work", "fourbar", "pendulum", "implicit",
+                                        "lanes", "batch"):
             getattr(bench, section)()
     finally:
         bench.close()
