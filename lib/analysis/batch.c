@@ -108,8 +108,8 @@ typedef struct room {
     size_t count;
 } room;
 
-/* One block for all rooms, each aligned; NULL if nothing is in it. @return the block, its numbers in
- * *count */
+/* One block for all rooms, each aligned; NULL if nothing is in it. @return the block; *count: its
+ * numbers */
 static double *take_rooms(const se3d_allocator *allocator, const room *rooms, int rooms_count,
                           size_t *count)
 {
