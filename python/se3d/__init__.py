@@ -12,6 +12,7 @@ Units are SI, orientations Euler parameters with the scalar first, as in the C h
 """
 
 from se3d._library import STATUS, Error, EventRecord, ModelError, Motion, ffi, lib, text
+from se3d.batch import Batch
 from se3d.coordinates import Coordinates
 from se3d.elements import (Body, Constraint, Force, Function, Marker, Material, Shape)
 from se3d.model import Analysis, Model, Run, Statistics
@@ -19,7 +20,7 @@ from se3d.solver import Solver, Stats
 from se3d.system import Contact, Energy, State, System, Work
 
 __version__ = text(lib.se3d_version_get_text())
-__all__ = ["Analysis", "Body", "Constraint", "Contact", "Coordinates", "Energy", "Error",
+__all__ = ["Analysis", "Batch", "Body", "Constraint", "Contact", "Coordinates", "Energy", "Error",
            "EventRecord", "Force", "Function", "Marker", "Material", "Model", "ModelError",
            "Motion", "Run", "STATUS", "Shape", "Solver", "State", "Statistics", "Stats", "System",
            "Work", "ffi", "lib"]

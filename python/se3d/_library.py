@@ -76,6 +76,11 @@ def word(words, value, what):
     return words[value]
 
 
+def method_number(method):
+    """Return the number of a method that is named."""
+    return word(_WORDS["method"], method, "method")
+
+
 def vector(values, count, what):
     """Return `count` numbers as an array of C."""
     array = numpy.ascontiguousarray(values, dtype=float).reshape(-1)

@@ -117,6 +117,32 @@ class Motion(unittest.TestCase):
             self.assertAlmostEqual(q[0], 0.5, delta=1e-12)
             self.assertAlmostEqual(qdot[0], 2.0, delta=1e-12)
 
+    def test_states_of_a_batch_move_on_their_own(self):
+        with se3d.System() as system:
+            bar, _ = pendulum(system)
+            batch = se3d.Batch(system, 11, threads=2)
+        weights = numpy.zeros((11, 3))
+        weights[:, 2] = -numpy.arange(11.0)
+        batch.set_gravity(weights)
+        batch.set_efforts(numpy.full((11, 1), 0.5))
+        self.assertEqual((batch.velocity_count, batch.position_count), (1, 1))
+        expected = (0.5 + 0.5 * numpy.arange(11.0)) * 3
+        numpy.testing.assert_allclose(batch.accelerations()[:, 0], expected, rtol=1e-12)
+        numpy.testing.assert_allclose(batch.efforts(batch.accelerations()), 0.5, atol=1e-12)
+        batch.set_mass(bar, [2.0], [2e-4, 2 / 12, 2 / 12, 0, 0, 0], first=3)
+        self.assertAlmostEqual(batch.accelerations()[3, 0], 0.75 + 4.5, delta=1e-12)
+        batch.set(q=[[0.1]], qdot=[[0.2]], first=7)
+        batch.time = 1.0
+        batch.step(0.01, 10)
+        numpy.testing.assert_allclose(batch.time, 1.1, rtol=1e-15)
+        q, qdot = batch.get()
+        self.assertEqual(q.shape, (11, 1))
+        self.assertAlmostEqual(q[0, 0], 0.5 * 1.5 * 0.1**2, delta=1e-15)
+        self.assertGreater(qdot[7, 0], 0.2)
+        self.assertFalse(batch.status.any())
+        with self.assertRaisesRegex(se3d.Error, "within the 11 states"):
+            batch.set(q=[[0.0]], first=11)
+
     def test_events_are_found_and_may_stop(self):
         with se3d.System() as system:
             _, pin = pendulum(system)
