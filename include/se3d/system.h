@@ -207,20 +207,21 @@ SE3D_API se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapsh
  * @since 0.1 */
 SE3D_API se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *system);
 
-/* Write a saved state as bytes, which are the same on every machine. They hold the state, not the
- * elements, nor their values.
+/* Write a saved state as bytes, which are the same on every machine. They hold the state, particles
+ * and their contacts included, not the elements, nor their values.
  * @param[out] bytes    [*size]; NULL: only *size is told
  * @param[in] capacity  of `bytes`
  * @param[out] size     how many bytes it takes
- * @return OK, NULL, INVALID_ARGUMENT (capacity), UNSUPPORTED (the system has particles).
+ * @return OK, NULL, INVALID_ARGUMENT (capacity).
  * @since 0.1 */
 SE3D_API se3d_status se3d_snapshot_write(const se3d_snapshot *snapshot, void *bytes,
                                          size_t capacity, size_t *size);
 
 /* Read what se3d_snapshot_write wrote, in this program or another, for a system with the same
  * elements, made in the same order. After se3d_snapshot_restore it continues with the same bits if
- * the values of its elements are the same, too, and the library is of the same version. Bytes that
- * are damaged or malformed are refused.
+ * the values of its elements are the same, too, and the library is of the same version; sets of
+ * particles may have another number of threads, and get the particles that were there then,
+ * whatever they hold. Bytes that are damaged or malformed are refused.
  * @param[in] bytes  [size]
  * @param[in] size   of `bytes`
  * @return OK, NULL, INVALID_ARGUMENT (no such bytes), STATE (of another model), NO_MEMORY.

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "particles/chain.h"
 
+#include "particles/sync.h"
+
 #include <string.h>
 
 void se3di_sets_link(se3di_model *model, se3di_particles *set)
@@ -71,6 +73,28 @@ void se3di_sets_forget(se3di_particles *saved, const se3d_allocator *allocator)
     }
 }
 
+se3d_status se3di_sets_sync(se3di_particles *saved, const se3di_model *model)
+{
+    for (se3di_particles *set = saved; set; set = set->next) {
+        SE3DI_TRY(se3di_particles_sync(set, model));
+    }
+    return SE3D_OK;
+}
+
+int se3di_sets_can_take(const se3di_model *model, const se3di_particles *saved)
+{
+    for (const se3di_particles *set = saved; set; set = set->next) {
+        for (size_t k = 0; k < set->stuff_count; ++k) {
+            const se3di_handle handle = set->stuffs[k].handle;
+            if (set->stuffs[k].held && se3di_slots_find(&model->material_slots, handle.index1,
+                                                        handle.generation) == SE3DI_NO_INDEX) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
 se3d_status se3di_sets_save(const se3di_particles *sets, const se3d_allocator *allocator,
                             se3di_particles **saved)
 {
@@ -95,7 +119,9 @@ void se3di_sets_take(se3di_model *model, se3di_particles *saved)
     for (se3di_particles *set = model->sets; set; set = set->next) {
         se3di_particles *from = saved;
         saved = from->next;
+        se3di_particles_count_users(set, model, 0);
         se3di_particles_replace(set, from);
+        se3di_particles_count_users(set, model, 1);
         se3di_free(&model->allocator, from, 1, sizeof *from);
     }
 }

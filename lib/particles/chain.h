@@ -20,6 +20,10 @@ void se3di_particles_count_users(const se3di_particles *set, se3di_model *model,
 se3d_status se3di_sets_save(const se3di_particles *sets, const se3d_allocator *allocator,
                             se3di_particles **saved);
 void se3di_sets_forget(se3di_particles *saved, const se3d_allocator *allocator);
+/* Let copies take from the model what they touch, as the next step would. @return OK, NO_MEMORY */
+se3d_status se3di_sets_sync(se3di_particles *saved, const se3di_model *model);
+/* Whether the materials of their particles are still there. */
+int se3di_sets_can_take(const se3di_model *model, const se3di_particles *saved);
 /* Give the model's sets what a chain of as many copies holds, and free the chain. */
 void se3di_sets_take(se3di_model *model, se3di_particles *saved);
 

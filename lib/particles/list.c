@@ -58,13 +58,13 @@ static int lane_moved(const se3di_particles *set, uint32_t b, int lane)
     return moved && block->i[lane] != set->capacity;
 }
 
-/* Room for the history of `count` pairs; what waits there stays. */
-static se3d_status reserve_carry(se3di_particles *set, size_t count)
+/* What waits there stays. */
+se3d_status se3di_particles_reserve_carry(se3di_particles *set, size_t count, int rolling)
 {
     const se3d_allocator *a = &set->allocator;
     size_t grown = count + count / 32 + 16;
     size_t waiting = set->carry_count;
-    if (set->rolls && 4 * count > set->carry_roll_capacity) {
+    if (rolling && 4 * count > set->carry_roll_capacity) {
         double *rolls = se3di_alloc(a, 4 * grown, sizeof *rolls);
         if (!rolls) {
             return SE3D_ERR_NO_MEMORY;
@@ -133,7 +133,7 @@ se3d_status se3di_particles_collect(se3di_particles *set)
         set->slabs[s].moved = count;
         count += here;
     }
-    SE3DI_TRY(reserve_carry(set, count));
+    SE3DI_TRY(se3di_particles_reserve_carry(set, count, set->rolls != NULL));
     set->carry_count = count;
     set->carry_rolling = set->rolls != NULL;
     se3di_particles_each_slab(set, collect_slab);
@@ -380,7 +380,7 @@ static se3d_status choose_active(se3di_particles *set)
         size_t count = place_slabs(set, &pairs);
         se3d_status status = reserve_blocks(set, count);
         if (status == SE3D_OK) {
-            status = reserve_carry(set, pairs + set->count / 2);
+            status = se3di_particles_reserve_carry(set, pairs + set->count / 2, set->rolls != NULL);
         }
         if (status == SE3D_OK) {
             status = se3di_particles_mesh_activate(set);

@@ -39,6 +39,12 @@ uint64_t se3di_snapshot_structure(const se3di_model *model)
         const uint32_t words[] = {(uint32_t)model->shapes[k].kind, model->shapes[k].body};
         hash = add_words(hash, words, 2);
     }
+    for (const se3di_particles *set = model->sets; set; set = set->next) {
+        const uint32_t words[] = {(uint32_t)set->boundary[0], (uint32_t)set->boundary[1],
+                                  (uint32_t)set->boundary[2], (uint32_t)set->source_count,
+                                  (uint32_t)set->sink_count};
+        hash = add_words(hash, words, 5);
+    }
     return hash;
 }
 
@@ -140,7 +146,8 @@ se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out)
     snapshot->structure = se3di_snapshot_structure(model);
     if (se3di_saved_fill(&snapshot->state, model, &model->allocator) < 0 ||
         save_near(&snapshot->near, model) < 0 ||
-        se3di_sets_save(model->sets, &model->allocator, &snapshot->sets) < 0) {
+        se3di_sets_save(model->sets, &model->allocator, &snapshot->sets) < 0 ||
+        se3di_sets_sync(snapshot->sets, model) < 0) {
         se3d_snapshot_destroy(snapshot);
         return SE3D_ERR_NO_MEMORY;
     }
@@ -154,7 +161,8 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
     SE3DI_TRY(se3di_check_pointer(system, "snapshot", snapshot));
     se3di_model *model = &system->model;
     const se3di_saved *state = &snapshot->state;
-    if (snapshot->topology_version != model->topology_version || !se3di_saved_fits(state, model)) {
+    if (snapshot->topology_version != model->topology_version || !se3di_saved_fits(state, model) ||
+        !se3di_sets_can_take(model, snapshot->sets)) {
         return SE3DI_FAIL(system, SE3D_ERR_STATE,
                           "the snapshot has %zu bodies and %zu equations at edit %llu, the system "
                           "%zu and %zu at edit %llu; only the same model can be restored",

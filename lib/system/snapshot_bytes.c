@@ -4,91 +4,41 @@
  * versioned: what methods keep is read by the version of the library that wrote it. */
 #include "system/snapshot.h"
 
+#include "base/coder.h"
 #include "base/hash.h"
 #include "integrator/integrator.h"
 #include "math/quaternion.h"
+#include "particles/bytes.h"
 #include "system/system_internal.h"
 
 #include <math.h>
 #include <string.h>
 
 #define MARK    UINT64_C(0x50414E5344334553) /* "SE3DSNAP" */
-#define VERSION UINT64_C(1)
+#define VERSION UINT64_C(2)
 /* Rotation matrices are those of the Euler parameters to this. */
 #define SAME_ROTATION 1e-9
 
-/* One way through the format: measuring (`out` and `in` NULL), writing or reading. */
-typedef struct coder {
-    unsigned char *out;
-    const unsigned char *in;
-    size_t at, size; /* what does not fit is counted only */
-    int failed;      /* reading: the bytes end too early, or a number is out of its range */
-} coder;
-
-static void code_word(coder *c, uint64_t *word)
-{
-    if (c->size - c->at < 8 || c->at > c->size) {
-        c->failed = 1;
-        *word = c->in ? 0 : *word;
-    } else if (c->in) {
-        *word = 0;
-        for (int k = 0; k < 8; ++k) {
-            *word |= (uint64_t)c->in[c->at + (size_t)k] << (8 * k);
-        }
-    } else if (c->out) {
-        for (int k = 0; k < 8; ++k) {
-            c->out[c->at + (size_t)k] = (unsigned char)(*word >> (8 * k));
-        }
-    }
-    c->at += 8;
-}
-
-static void code_numbers(coder *c, double *values, size_t count)
-{
-    for (size_t k = 0; k < count; ++k) {
-        uint64_t word;
-        memcpy(&word, values + k, sizeof word);
-        code_word(c, &word);
-        memcpy(values + k, &word, sizeof word);
-    }
-}
-
-static void code_int32(coder *c, int32_t *value)
-{
-    uint64_t word = (uint32_t)*value;
-    code_word(c, &word);
-    c->failed |= word > UINT32_MAX;
-    *value = (int32_t)(uint32_t)word;
-}
-
-static void code_uint32(coder *c, uint32_t *value)
-{
-    uint64_t word = *value;
-    code_word(c, &word);
-    c->failed |= word > UINT32_MAX;
-    *value = (uint32_t)word;
-}
-
-static void code_scalars(coder *c, se3di_saved *s)
+static void code_scalars(se3di_coder *c, se3di_saved *s)
 {
     uint64_t redundant = (uint64_t)s->history_redundant;
-    code_numbers(c, &s->time, 1);
-    code_numbers(c, &s->time_rest, 1);
-    code_numbers(c, &s->rest_time, 1);
-    code_numbers(c, s->work, 3);
-    code_numbers(c, s->power, 3);
-    code_numbers(c, &s->contact_step, 1);
-    code_numbers(c, &s->left_out_gap, 1);
-    code_word(c, &s->history_tag);
-    code_word(c, &redundant);
-    code_word(c, &s->history_inputs);
-    code_word(c, &s->history_values);
-    code_int32(c, &s->settled);
-    code_int32(c, &s->work_valid);
-    code_int32(c, &s->ranks_known);
-    code_int32(c, &s->shows_before);
-    code_uint32(c, &s->left_out_count);
-    code_uint32(c, &s->left_out_row);
+    se3di_code_numbers(c, &s->time, 1);
+    se3di_code_numbers(c, &s->time_rest, 1);
+    se3di_code_numbers(c, &s->rest_time, 1);
+    se3di_code_numbers(c, s->work, 3);
+    se3di_code_numbers(c, s->power, 3);
+    se3di_code_numbers(c, &s->contact_step, 1);
+    se3di_code_numbers(c, &s->left_out_gap, 1);
+    se3di_code_word(c, &s->history_tag);
+    se3di_code_word(c, &redundant);
+    se3di_code_word(c, &s->history_inputs);
+    se3di_code_word(c, &s->history_values);
+    se3di_code_int32(c, &s->settled);
+    se3di_code_int32(c, &s->work_valid);
+    se3di_code_int32(c, &s->ranks_known);
+    se3di_code_int32(c, &s->shows_before);
+    se3di_code_uint32(c, &s->left_out_count);
+    se3di_code_uint32(c, &s->left_out_row);
     s->history_redundant = (int64_t)redundant;
 }
 
@@ -122,27 +72,27 @@ static void list_arrays(se3d_snapshot *snapshot, saved_array list[ARRAYS])
     memcpy(list, arrays, sizeof arrays);
 }
 
-static void code_contact(coder *c, se3di_body_contact *contact)
+static void code_contact(se3di_coder *c, se3di_body_contact *contact)
 {
-    code_uint32(c, &contact->shape_i);
-    code_uint32(c, &contact->shape_j);
-    code_uint32(c, &contact->feature);
-    code_int32(c, &contact->kind);
-    code_numbers(c, contact->anchor_i, 3);
-    code_numbers(c, contact->anchor_j, 3);
-    code_numbers(c, contact->roll, 3);
-    code_numbers(c, &contact->twist, 1);
-    code_numbers(c, contact->turn, 4);
-    code_numbers(c, contact->point, 3);
-    code_numbers(c, contact->normal, 3);
-    code_numbers(c, &contact->overlap, 1);
-    code_numbers(c, &contact->inverse_mass, 1);
-    code_numbers(c, contact->force, 3);
-    code_numbers(c, contact->torque, 3);
-    code_numbers(c, &contact->energy, 1);
+    se3di_code_uint32(c, &contact->shape_i);
+    se3di_code_uint32(c, &contact->shape_j);
+    se3di_code_uint32(c, &contact->feature);
+    se3di_code_int32(c, &contact->kind);
+    se3di_code_numbers(c, contact->anchor_i, 3);
+    se3di_code_numbers(c, contact->anchor_j, 3);
+    se3di_code_numbers(c, contact->roll, 3);
+    se3di_code_numbers(c, &contact->twist, 1);
+    se3di_code_numbers(c, contact->turn, 4);
+    se3di_code_numbers(c, contact->point, 3);
+    se3di_code_numbers(c, contact->normal, 3);
+    se3di_code_numbers(c, &contact->overlap, 1);
+    se3di_code_numbers(c, &contact->inverse_mass, 1);
+    se3di_code_numbers(c, contact->force, 3);
+    se3di_code_numbers(c, contact->torque, 3);
+    se3di_code_numbers(c, &contact->energy, 1);
 }
 
-static void code_array(coder *c, const saved_array *a, size_t numbers)
+static void code_array(se3di_coder *c, const saved_array *a, size_t numbers)
 {
     uint8_t *bytes = a->array->data;
     se3di_body_contact *contacts = a->array->data;
@@ -151,14 +101,15 @@ static void code_array(coder *c, const saved_array *a, size_t numbers)
         if (a->size == sizeof *contacts) {
             code_contact(c, contacts + k);
         } else if (a->size == sizeof *indices) {
-            code_uint32(c, indices + k);
+            se3di_code_uint32(c, indices + k);
         } else if (a->size == sizeof *bytes) {
             int32_t flag = bytes[k];
-            code_int32(c, &flag);
-            c->failed |= flag != 0 && flag != 1;
-            bytes[k] = flag != 0;
+            se3di_code_flag(c, &flag);
+            if (c->in) {
+                bytes[k] = flag != 0;
+            }
         } else {
-            code_numbers(c, (double *)a->array->data + k * numbers, numbers);
+            se3di_code_numbers(c, (double *)a->array->data + k * numbers, numbers);
         }
     }
 }
@@ -168,7 +119,7 @@ _Static_assert(sizeof(se3di_frame) == 26 * sizeof(double) &&
                "frames are written as numbers");
 
 /* Give the arrays, which are empty, the lengths that were read. */
-static se3d_status make_room(const coder *c, saved_array arrays[ARRAYS],
+static se3d_status make_room(const se3di_coder *c, saved_array arrays[ARRAYS],
                              const uint64_t count[ARRAYS], const se3d_allocator *allocator)
 {
     for (int k = 0; k < ARRAYS; ++k) {
@@ -183,17 +134,17 @@ static se3d_status make_room(const coder *c, saved_array arrays[ARRAYS],
     return SE3D_OK;
 }
 
-static se3d_status code_state(coder *c, se3d_snapshot *snapshot)
+static se3d_status code_state(se3di_coder *c, se3d_snapshot *snapshot)
 {
     saved_array arrays[ARRAYS];
     uint64_t count[ARRAYS];
     list_arrays(snapshot, arrays);
-    code_word(c, &snapshot->structure);
+    se3di_code_word(c, &snapshot->structure);
     code_scalars(c, &snapshot->state);
-    code_numbers(c, &snapshot->near.margin, 1);
+    se3di_code_numbers(c, &snapshot->near.margin, 1);
     for (int k = 0; k < ARRAYS; ++k) {
         count[k] = arrays[k].array->count;
-        code_word(c, &count[k]);
+        se3di_code_word(c, &count[k]);
     }
     SE3DI_TRY(c->in ? make_room(c, arrays, count, &snapshot->allocator) : SE3D_OK);
     for (int k = 0; k < ARRAYS; ++k) {
@@ -211,25 +162,24 @@ se3d_status se3d_snapshot_write(const se3d_snapshot *snapshot, void *bytes, size
     if (!snapshot || !size) {
         return SE3D_ERR_NULL;
     }
-    if (snapshot->sets) {
-        return SE3D_ERR_UNSUPPORTED;
-    }
     se3d_snapshot copy = *snapshot; /* writing changes nothing of what it points to */
     copy.state.history_inputs = snapshot->inputs_version - snapshot->state.history_inputs;
     copy.state.history_values = snapshot->values_version - snapshot->state.history_values;
-    coder measure = {.size = SIZE_MAX};
+    se3di_coder measure = {.size = SIZE_MAX};
     uint64_t mark = MARK, version = VERSION, sum = 0;
     (void)code_state(&measure, &copy);
+    se3di_sets_write(&measure, snapshot->sets);
     *size = measure.at + 3 * sizeof(uint64_t);
     if (!bytes || capacity < *size) {
         return bytes ? SE3D_ERR_INVALID_ARGUMENT : SE3D_OK;
     }
-    coder c = {.out = bytes, .size = *size};
-    code_word(&c, &mark);
-    code_word(&c, &version);
+    se3di_coder c = {.out = bytes, .size = *size};
+    se3di_code_word(&c, &mark);
+    se3di_code_word(&c, &version);
     (void)code_state(&c, &copy);
+    se3di_sets_write(&c, snapshot->sets);
     sum = se3di_hash_bytes(SE3DI_HASH_START, bytes, c.at);
-    code_word(&c, &sum);
+    se3di_code_word(&c, &sum);
     return SE3D_OK;
 }
 
@@ -329,14 +279,14 @@ static se3d_status fail(se3d_system *system, const char *why)
     return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "bytes = %s", why);
 }
 
-static se3d_status check_frame(se3d_system *system, coder *c)
+static se3d_status check_frame(se3d_system *system, se3di_coder *c)
 {
     uint64_t mark = 0, version = 0, sum = 0;
     if (c->size < 3 * sizeof(uint64_t)) {
         return fail(system, "too few, must be those of a snapshot");
     }
-    code_word(c, &mark);
-    code_word(c, &version);
+    se3di_code_word(c, &mark);
+    se3di_code_word(c, &version);
     if (mark != MARK) {
         return fail(system, "no snapshot, must begin with SE3DSNAP");
     }
@@ -345,8 +295,8 @@ static se3d_status check_frame(se3d_system *system, coder *c)
                           "bytes = a snapshot of version %llu, must be of version %llu",
                           (unsigned long long)version, (unsigned long long)VERSION);
     }
-    coder end = {.in = c->in + c->size - 8, .size = 8};
-    code_word(&end, &sum);
+    se3di_coder end = {.in = c->in + c->size - 8, .size = 8};
+    se3di_code_word(&end, &sum);
     c->size -= 8;
     return sum == se3di_hash_bytes(SE3DI_HASH_START, c->in, c->size)
                ? SE3D_OK
@@ -363,23 +313,46 @@ static void take_versions(se3d_snapshot *snapshot, const se3di_model *model)
     snapshot->state.history_values = model->values_version - snapshot->state.history_values;
 }
 
-static se3d_status read_state(se3d_system *system, coder *c, se3d_snapshot *snapshot)
+static se3d_status fail_other(se3d_system *system, const se3d_snapshot *snapshot)
+{
+    return SE3DI_FAIL(system, SE3D_ERR_STATE,
+                      "the snapshot is of another model (%zu bodies, %zu equations; here %zu and "
+                      "%zu): elements must be the same and made in the same order",
+                      snapshot->state.frames.count, snapshot->state.lambda.count,
+                      system->model.body_slots.count, (size_t)system->model.row_count);
+}
+
+static se3d_status fail_read(se3d_system *system, const se3d_snapshot *snapshot, se3d_status status)
+{
+    switch (status) {
+    case SE3D_ERR_NO_MEMORY:
+        return SE3DI_FAIL(system, status, "no memory for a snapshot");
+    case SE3D_ERR_STATE:
+        return fail_other(system, snapshot);
+    default:
+        return fail(system, "malformed, lengths do not add up or lists name what is not there");
+    }
+}
+
+static se3d_status read_state(se3d_system *system, se3di_coder *c, se3d_snapshot *snapshot)
 {
     const se3di_model *model = &system->model;
-    const se3d_status status = code_state(c, snapshot);
-    if (status == SE3D_ERR_NO_MEMORY) {
-        return SE3DI_FAIL(system, status, "no memory for a snapshot");
+    se3d_status status = code_state(c, snapshot);
+    if (status >= 0 && c->failed) {
+        status = SE3D_ERR_INVALID_ARGUMENT;
     }
-    if (status < 0 || c->failed || c->at != c->size) {
-        return fail(system, "malformed, lengths do not add up");
+    if (status >= 0 && (snapshot->structure != se3di_snapshot_structure(model) ||
+                        !se3di_saved_fits(&snapshot->state, model))) {
+        status = SE3D_ERR_STATE;
     }
-    if (snapshot->structure != se3di_snapshot_structure(model) || model->sets ||
-        !se3di_saved_fits(&snapshot->state, model)) {
-        return SE3DI_FAIL(system, SE3D_ERR_STATE,
-                          "the snapshot is of another model (%zu bodies, %zu equations; here %zu "
-                          "and %zu): elements must be the same and made in the same order",
-                          snapshot->state.frames.count, snapshot->state.lambda.count,
-                          model->body_slots.count, (size_t)model->row_count);
+    if (status >= 0) {
+        status = se3di_sets_read(c, model, &snapshot->sets);
+    }
+    if (status >= 0 && (c->failed || c->at != c->size)) {
+        status = SE3D_ERR_INVALID_ARGUMENT;
+    }
+    if (status < 0) {
+        return fail_read(system, snapshot, status);
     }
     if (!is_sound(snapshot, model)) {
         return fail(system, "malformed, they hold numbers that no state has");
@@ -397,7 +370,7 @@ se3d_status se3d_snapshot_read(se3d_system *system, const void *bytes, size_t si
     SE3DI_EDIT(system);
     SE3DI_TRY(se3di_check_pointer(system, "bytes", bytes));
     SE3DI_TRY(se3di_check_pointer(system, "out", out));
-    coder c = {.in = bytes, .size = size};
+    se3di_coder c = {.in = bytes, .size = size};
     SE3DI_TRY(check_frame(system, &c));
     se3d_snapshot *snapshot = se3di_alloc(&system->model.allocator, 1, sizeof *snapshot);
     if (!snapshot) {

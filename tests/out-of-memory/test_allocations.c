@@ -282,9 +282,9 @@ static se3d_status make_snapshot(workshop *w)
     if (status >= 0) {
         status = se3d_snapshot_restore(snapshot, w->system);
     }
-    unsigned char bytes[20000];
+    static unsigned char bytes[200000];
     size_t size = 0;
-    if (status >= 0 && se3d_system_count_particles(w->system) == 0) {
+    if (status >= 0) {
         CHECK(se3d_snapshot_write(snapshot, bytes, sizeof bytes, &size) == SE3D_OK);
         se3d_snapshot_destroy(snapshot);
         status = se3d_snapshot_read(w->system, bytes, size, &snapshot);

@@ -283,8 +283,39 @@ static void steady_steps_of_verlet_allocate_nothing(void)
     close_world(&w);
 }
 
+/* Whichever allocation fails, nothing of the bed that is read is left, and the system stays as it
+ * was. */
+static void reading_a_bed_survives_failed_allocations(void)
+{
+    static unsigned char bytes[2000000];
+    double z[2];
+    size_t size = 0;
+    se3d_snapshot *snapshot = NULL;
+    world w;
+    open_world(&w, 1);
+    CHECK(run_world(&w, 1, 0, 0, z) == 0);
+    CHECK(!se3d_snapshot_create(w.system, &snapshot));
+    CHECK(!se3d_snapshot_write(snapshot, bytes, sizeof bytes, &size));
+    se3d_snapshot_destroy(snapshot);
+    const uint64_t hash = se3d_system_hash(w.system);
+    se3d_status status = SE3D_ERR_NO_MEMORY;
+    size_t k = 0;
+    while (status < 0 && k < 1000) {
+        w.counting.calls = 0;
+        w.counting.fail_at = ++k;
+        status = se3d_snapshot_read(w.system, bytes, size, &snapshot);
+        w.counting.fail_at = 0;
+        CHECK(status == SE3D_OK || (status == SE3D_ERR_NO_MEMORY && !snapshot));
+        CHECK(se3d_system_hash(w.system) == hash);
+    }
+    CHECK(status == SE3D_OK && k > 20);
+    se3d_snapshot_destroy(snapshot);
+    close_world(&w);
+}
+
 int main(void)
 {
+    RUN(reading_a_bed_survives_failed_allocations);
     RUN(failed_step_of_a_free_fall_is_exact);
     RUN(steps_of_particles_survive_failed_allocations);
     RUN(steps_of_verlet_survive_failed_allocations);

@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Small worlds of particles that together have all that a set can hold: springs of pairs, walls and
+ * meshes, rolling, cohesion, periods, sources, sinks, tags, walls that move and that give way. */
+#ifndef SE3D_TESTS_SUPPORT_PARTICLE_WORLDS_H
+#define SE3D_TESTS_SUPPORT_PARTICLE_WORLDS_H
+
+#include "check.h"
+#include "se3d/se3d.h"
+
+enum {
+    PARTICLES_HEAP,
+    PARTICLES_MESH,
+    PARTICLES_PERIOD,
+    PARTICLES_BODY,
+    PARTICLES_TWO_SETS,
+    PARTICLES_WORLDS
+};
+
+static const char *const particle_world_names[PARTICLES_WORLDS] = {"heap", "mesh", "period", "body",
+                                                                   "two sets"};
+
+static inline se3d_material particle_material(se3d_system *system, double rolling, double cohesion)
+{
+    se3d_material_def def = se3d_material_def_default();
+    se3d_material material;
+    def.density = 2500.0;
+    def.stiffness = 2e4;
+    def.young = 5e6;
+    def.rolling_friction = rolling;
+    def.torsional_friction = rolling;
+    def.cohesion = cohesion;
+    CHECK(!se3d_material_create(system, &def, &material));
+    return material;
+}
+
+static inline void particle_plane(se3d_system *system, se3d_material material)
+{
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape shape;
+    def.material = material;
+    CHECK(!se3d_shape_create_plane(system, &def, &shape));
+}
+
+/* A gutter along y. */
+static inline void particle_mesh(se3d_system *system, se3d_material material)
+{
+    static const double vertices[] = {-0.2, -0.2, 0.1, -0.2, 0.2,  0.1, 0.0, -0.2, 0.0,
+                                      0.0,  0.2,  0.0, 0.2,  -0.2, 0.1, 0.2, 0.2,  0.1};
+    static const uint32_t triangles[] = {0, 2, 1, 1, 2, 3, 2, 4, 3, 3, 4, 5};
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape shape;
+    def.material = material;
+    def.vertices = vertices;
+    def.vertex_count = 6;
+    def.triangles = triangles;
+    def.triangle_count = 4;
+    CHECK(!se3d_shape_create_mesh(system, &def, &shape));
+}
+
+static inline se3d_particles *particle_set(se3d_system *system, int32_t threads, int periodic)
+{
+    se3d_particles_def def = se3d_particles_def_default();
+    se3d_particles *set = NULL;
+    def.threads = threads;
+    for (int a = 0; a < 3 && periodic; ++a) {
+        def.boundary[a] = a < 2 ? SE3D_DOMAIN_BOUNDARY_PERIODIC : SE3D_DOMAIN_BOUNDARY_OPEN;
+        def.lower[a] = -0.1;
+        def.upper[a] = a < 2 ? 0.1 : 2.0;
+    }
+    CHECK(!se3d_particles_create(system, &def, &set));
+    return set;
+}
+
+static inline se3d_fill_def particle_fill(se3d_material material, double low, double high)
+{
+    se3d_fill_def fill = se3d_fill_def_default();
+    fill.material = material;
+    fill.lower[0] = fill.lower[1] = -0.08;
+    fill.upper[0] = fill.upper[1] = 0.08;
+    fill.lower[2] = low;
+    fill.upper[2] = high;
+    fill.radius_min = 0.008;
+    fill.radius_max = 0.014;
+    fill.jitter = 0.001;
+    fill.velocity[0] = 0.3;
+    fill.velocity[2] = -0.5;
+    return fill;
+}
+
+static inline void particle_flow(se3d_particles *set, se3d_material material)
+{
+    static const double radii[3] = {0.006, 0.009, 0.011};
+    se3d_fill_def fill = particle_fill(material, 0.3, 0.36);
+    se3d_particles_source_def source = se3d_particles_source_def_default();
+    se3d_particles_sink_def sink = se3d_particles_sink_def_default();
+    fill.radii = radii;
+    fill.radius_count = 3;
+    fill.tag = 7;
+    fill.seed = 3;
+    source.fill = &fill;
+    source.rate = 2000.0;
+    CHECK(!se3d_particles_add_source(set, &source, NULL));
+    sink.normal[2] = 1.0;
+    sink.point[2] = 0.01;
+    CHECK(!se3d_particles_add_sink(set, &sink, NULL));
+}
+
+/* A box that falls onto the particles, and a ram that moves as it is told. */
+static inline void particle_bodies(se3d_system *system, se3d_material material)
+{
+    static const char *const variables[] = {"t"};
+    se3d_body_def body = se3d_body_def_default();
+    se3d_shape_def shape = se3d_shape_def_default();
+    se3d_joint_def joint = se3d_joint_def_default();
+    se3d_function_def f = se3d_function_def_default();
+    se3d_driver_def driver = se3d_driver_def_default();
+    se3d_constraint slide;
+    se3d_shape made;
+    body.mass = 0.5;
+    body.inertia[0] = body.inertia[1] = body.inertia[2] = 1e-3;
+    body.position[2] = 0.16;
+    CHECK(!se3d_body_create(system, &body, &shape.body));
+    shape.material = material;
+    shape.size[0] = shape.size[1] = shape.size[2] = 0.06;
+    CHECK(!se3d_shape_create_box(system, &shape, &made));
+    body.position[0] = -0.15;
+    CHECK(!se3d_body_create(system, &body, &shape.body));
+    CHECK(!se3d_shape_create_box(system, &shape, &made));
+    CHECK(!se3d_system_get_ground(system, &joint.body_i));
+    joint.body_j = shape.body;
+    joint.point_i[2] = 0.16;
+    joint.point_i[0] = -0.15;
+    joint.axis_i[0] = joint.axis_j[0] = 1.0;
+    joint.axis_i[2] = joint.axis_j[2] = 0.0;
+    CHECK(!se3d_joint_create_prismatic(system, &joint, &slide));
+    f.expression = "0.5*t";
+    f.variables = variables;
+    f.variable_count = 1;
+    driver.joint = slide;
+    driver.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
+    CHECK(!se3d_function_create(system, &f, &driver.function));
+    CHECK(!se3d_driver_create(system, &driver, &slide));
+}
+
+/* The same model each time, but for the threads. */
+static inline se3d_system *particle_world(int kind, int32_t threads)
+{
+    se3d_system *system = NULL;
+    se3d_contact_settings law = se3d_contact_settings_default();
+    CHECK(!se3d_system_create(NULL, &system));
+    law.law = kind == PARTICLES_HEAP ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
+    CHECK(!se3d_system_set_contact(system, &law));
+    const se3d_material floor = particle_material(system, 0.0, 0.0);
+    const se3d_material stone =
+        particle_material(system, kind == PARTICLES_HEAP || kind == PARTICLES_MESH ? 0.1 : 0.0,
+                          kind == PARTICLES_PERIOD ? 1e3 : 0.0);
+    if (kind == PARTICLES_MESH) {
+        particle_mesh(system, floor);
+    } else {
+        particle_plane(system, floor);
+    }
+    se3d_particles *set = particle_set(system, threads, kind == PARTICLES_PERIOD);
+    se3d_fill_def fill = particle_fill(stone, kind == PARTICLES_MESH ? 0.11 : 0.0,
+                                       kind == PARTICLES_MESH ? 0.18 : 0.1);
+    CHECK(!se3d_particles_fill_lattice(set, &fill, NULL));
+    if (kind == PARTICLES_MESH) {
+        particle_flow(set, stone);
+    }
+    if (kind == PARTICLES_BODY) {
+        particle_bodies(system, floor);
+    }
+    if (kind == PARTICLES_TWO_SETS) {
+        set = particle_set(system, threads, 0);
+        fill.material = floor;
+        CHECK(!se3d_particles_fill_lattice(set, &fill, NULL));
+    }
+    return system;
+}
+
+#endif
