@@ -211,6 +211,27 @@ SE3D_API se3d_status se3d_solver_get_formulation(const se3d_solver *solver, cons
 SE3D_API se3d_status se3d_solver_get_switch(const se3d_solver *solver, double *time,
                                             const char **left);
 
+/* Write what a solver knows beside the state of its system (se3d_snapshot_write) as bytes, which
+ * are the same on every machine: what it has counted, the records of its events and what it has
+ * seen of them in the step under way, the start that it has changed, the method it has left.
+ * @param[out] bytes    [*size]; NULL: only *size is told
+ * @param[in] capacity  of `bytes`
+ * @param[out] size     how many bytes it takes
+ * @return OK, NULL, INVALID_ARGUMENT (capacity), STATE (its system is gone).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_solver_write(const se3d_solver *solver, void *bytes, size_t capacity,
+                                       size_t *size);
+
+/* Read what se3d_solver_write wrote into a new solver of the same definition, with the same events,
+ * made in the same order, of a system whose state was restored (se3d_snapshot_restore). It goes on
+ * as if it had run from the beginning. After a failure it is as new.
+ * @param[in] bytes  [size]
+ * @param[in] size   of `bytes`
+ * @return OK, NULL, INVALID_ARGUMENT (no such bytes), STATE (of another analysis), NO_MEMORY, or a
+ *         failure to prepare a run.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_solver_read(se3d_solver *solver, const void *bytes, size_t size);
+
 #ifdef __cplusplus
 }
 #endif

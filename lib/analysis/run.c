@@ -214,6 +214,11 @@ static se3d_status prepare(se3di_run *run)
                : SE3D_OK;
 }
 
+se3d_status se3di_run_prepare(se3di_run *run)
+{
+    return prepare(run);
+}
+
 /* Contacts are taken up as they are. */
 static se3d_status start_contacts(const se3di_run *run, double t)
 {

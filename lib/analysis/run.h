@@ -45,6 +45,8 @@ typedef struct se3di_run {
 void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error, se3d_system *system);
 void se3di_run_destroy(se3di_run *run);
 
+/* Build what a run builds before its first step. */
+se3d_status se3di_run_prepare(se3di_run *run);
 /* Bring the model to t_end >= its time. @return OK or INFO_REDUNDANT, or an error with the model at
  * the last accepted state. */
 se3d_status se3di_run_to(se3di_run *run, double t_end);

@@ -257,6 +257,14 @@ CALL(solver_get_formulation, a->solver, a->out[0])
 CALL(solver_get_tolerance, a->solver, a->out[0])
 CALL(solver_get_step, a->solver, a->out[0])
 CALL(solver_get_switch, a->solver, a->out[0], a->out[1])
+CALL(solver_write, a->solver, NULL, 0, a->out[0])
+static se3d_status call_solver_read(arguments *a)
+{
+    static unsigned char bytes[10000];
+    size_t size = 0;
+    CHECK(!a->solver || se3d_solver_write(a->solver, bytes, sizeof bytes, &size) <= 0);
+    return se3d_solver_read(a->solver, a->in ? bytes : NULL, size);
+}
 static se3d_status call_check_create(arguments *a)
 {
     se3d_status status = se3d_check_create(a->system, a->out[0]);
@@ -689,6 +697,8 @@ static const row rows[] = {
     {"se3d_solver_get_tolerance", call_solver_get_tolerance, "vo0", NULL, NULL},
     {"se3d_solver_get_step", call_solver_get_step, "vo0", NULL, NULL},
     {"se3d_solver_get_switch", call_solver_get_switch, "vo0o1", NULL, NULL},
+    {"se3d_solver_write", call_solver_write, "vo0", NULL, NULL},
+    {"se3d_solver_read", call_solver_read, "vj", NULL, NULL},
     {"se3d_check_create", call_check_create, "Sh0", NULL, NULL},
     {"se3d_check_get_summary", call_check_get_summary, "k", define_summary, NULL},
     {"se3d_check_get_message", call_check_get_message, "ko0", NULL, NULL},

@@ -294,6 +294,22 @@ static se3d_status make_snapshot(workshop *w)
     return status;
 }
 
+/* A solver that takes over what another one knew. */
+static se3d_status read_solver(workshop *w)
+{
+    static unsigned char bytes[2000];
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_solver *solver = NULL;
+    size_t size = 0;
+    se3d_status status = se3d_solver_create(w->system, &def, &solver);
+    if (status >= 0) {
+        CHECK(se3d_solver_write(solver, bytes, sizeof bytes, &size) == SE3D_OK);
+        status = se3d_solver_read(solver, bytes, size);
+    }
+    se3d_solver_destroy(solver);
+    return status;
+}
+
 /* A set with a name, and copies of it in a clone and a snapshot. */
 static se3d_status make_particles(workshop *w)
 {
@@ -423,6 +439,7 @@ static const operation_row operations[] = {
     {"table", make_table},
     {"clone", make_clone},
     {"snapshot", make_snapshot},
+    {"solver bytes", read_solver},
     {"particles", make_particles},
     {"source and sink", make_source_and_sink},
     {"check", make_check},
