@@ -24,72 +24,22 @@
 #include "io/channel/sample.h"
 #include "io/document/document.h"
 #include "io/model/model.h"
-#include "io/run/run_events.h"
 #include "io/run/run_modes.h"
 #include "io/run/run_particles.h"
-#include "io/run/watch.h"
+#include "io/run/runner.h"
 #include "io/write/contact_list.h"
-#include "io/write/csv.h"
 #include "io/write/particle_list.h"
-#include "io/write/summary.h"
-#include "io/write/vtk.h"
 
-typedef struct output_file {
-    const se3di_output_entry *entry;
-    se3di_csv csv;
-    se3di_vtk *vtk;         /* NULL: it is a CSV file */
-    se3di_summary *summary; /* NULL: it has rows */
-    double *row;
-    double every; /* in this analysis */
-    double count; /* number of the last row, the one at the end */
-    double next;  /* number of the next row */
-} output_file;
+#define FLUSH_EVERY 1.0 /* s */
 
-struct se3d_run {
-    se3di_iopool pool;
-    se3d_run_analysis *analyses;
-    size_t analysis_count;
-    se3d_run_file *files;
-    size_t file_count, file_capacity;
-    se3d_run_particles *particles;
-    size_t particles_count;
-    se3di_event_list events;
-    se3d_run_summary *summaries;
-    size_t summary_count, summary_capacity;
-};
-
-typedef struct runner {
-    se3d_model *model;
-    const se3di_watch *watch; /* gets the rows in place of files; NULL: there are files */
-    size_t analysis;          /* that runs */
-    const se3d_run_options *options;
-    se3d_run *run;
-    se3d_model_error *error;
-    output_file *files;
-    size_t file_count; /* open ones */
-    se3d_solver *solver;
-    se3di_sample sample; /* what the rows of one time ask for */
-    se3d_solver_stats stats;
-    double time; /* where the analysis before ended */
-    bool stopped;
-} runner;
-
-void se3d_run_options_init(se3d_run_options *options, size_t size)
-{
-    if (options && size >= sizeof options->struct_size) {
-        memset(options, 0, size);
-        options->struct_size = size;
-    }
-}
-
-static se3d_status fail(runner *r, se3d_status status, const char *text)
+static se3d_status fail(se3di_runner *r, se3d_status status, const char *text)
 {
     se3di_document_report(r->error, "", 0, 0, "", text);
     return status;
 }
 
 /* `why`: errno, 0 if memory is missing. */
-static se3d_status fail_path(runner *r, const char *path, int why)
+static se3d_status fail_path(se3di_runner *r, const char *path, int why)
 {
     char text[800];
     const bool memory = why == 0 || why == ENOMEM;
@@ -99,7 +49,7 @@ static se3d_status fail_path(runner *r, const char *path, int why)
 }
 
 /* The rows that are on the disk stay there. */
-static se3d_status fail_csv(runner *r, const se3di_csv *csv)
+static se3d_status fail_csv(se3di_runner *r, const se3di_csv *csv)
 {
     char text[800];
     if (csv->failure == 0 || csv->failure == ENOMEM || csv->lines < 2) {
@@ -110,14 +60,14 @@ static se3d_status fail_csv(runner *r, const se3di_csv *csv)
     return fail(r, SE3D_ERR_IO, text);
 }
 
-static se3d_status fail_file(runner *r, const output_file *file)
+static se3d_status fail_file(se3di_runner *r, const se3di_output_file *file)
 {
     return fail_csv(r, &file->csv);
 }
 
-static se3d_status open_vtk(runner *r, const se3di_output_entry *entry, const char *path)
+static se3d_status open_vtk(se3di_runner *r, const se3di_output_entry *entry, const char *path)
 {
-    output_file *file = &r->files[r->file_count];
+    se3di_output_file *file = &r->files[r->file_count];
     file->entry = entry;
     file->vtk = se3di_vtk_open(r->model, &r->run->pool, path);
     if (!file->vtk) {
@@ -128,7 +78,7 @@ static se3d_status open_vtk(runner *r, const se3di_output_entry *entry, const ch
 }
 
 /* The path of a file of the results, which lies in their folder. */
-static se3d_status join(runner *r, const char *file, char *path, size_t size)
+static se3d_status join(se3di_runner *r, const char *file, char *path, size_t size)
 {
     char text[800];
     if (se3di_file_join(r->options->directory, file, path, size)) {
@@ -139,16 +89,16 @@ static se3d_status join(runner *r, const char *file, char *path, size_t size)
     return fail(r, SE3D_ERR_IO, text);
 }
 
-static void put_summary_head(output_file *file)
+static void put_summary_head(se3di_output_file *file)
 {
     for (size_t k = 0; k < SE3DI_SUMMARY_COLUMNS; ++k) {
         se3di_csv_put_name(&file->csv, se3di_summary_get_column(k), k + 1 == SE3DI_SUMMARY_COLUMNS);
     }
 }
 
-static se3d_status open_file(runner *r, const se3di_output_entry *entry)
+static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
 {
-    output_file *file = &r->files[r->file_count];
+    se3di_output_file *file = &r->files[r->file_count];
     char path[4096];
     char name[400];
     size_t columns = 1;
@@ -205,7 +155,7 @@ static se3d_status open_file(runner *r, const se3di_output_entry *entry)
     return SE3D_OK;
 }
 
-static se3d_status open_events(runner *r)
+static se3d_status open_events(se3di_runner *r)
 {
     char path[4096];
     se3di_event_list *events = &r->run->events;
@@ -227,7 +177,7 @@ static bool has_events(const se3d_model *model)
     return moves && model->event_count > 0;
 }
 
-static se3d_status open_files(runner *r)
+static se3d_status open_files(se3di_runner *r)
 {
     se3d_model *model = r->model;
     r->files = se3di_iopool_array(&r->run->pool, model->output_count, sizeof *r->files);
@@ -251,42 +201,42 @@ static se3d_status open_files(runner *r)
 }
 
 /* Whether the rows of this analysis are what the watch wants. */
-static bool is_watched(const runner *r)
+static bool is_watched(const se3di_runner *r)
 {
     return r->watch && r->watch->analysis == r->analysis;
 }
 
 /* An analysis that is run for the state at its end only. */
-static void plan_passing(runner *r, const se3di_analysis_entry *entry)
+static void plan_passing(se3di_runner *r, const se3di_analysis_entry *entry)
 {
-    output_file *file = &r->files[0];
+    se3di_output_file *file = &r->files[0];
     file->next = 0.0;
     file->every = entry->analysis.duration;
     file->count = file->every > 0.0 ? 1.0 : 0.0;
 }
 
 /* Number of rows of each file in this analysis. */
-static void plan(runner *r, const se3di_analysis_entry *entry)
+static void plan(se3di_runner *r, const se3di_analysis_entry *entry)
 {
     if (r->watch && !is_watched(r)) {
         plan_passing(r, entry);
         return;
     }
     for (size_t k = 0; k < r->file_count; ++k) {
-        output_file *file = &r->files[k];
+        se3di_output_file *file = &r->files[k];
         file->next = 0.0;
         file->count = se3di_output_count_rows(file->entry, entry, &file->every);
     }
 }
 
 /* The time of row `number` of a file. */
-static double row_time(const output_file *file, double number, double start, double duration)
+static double row_time(const se3di_output_file *file, double number, double start, double duration)
 {
     return number < file->count ? start + number * file->every : start + duration;
 }
 
 /* One row for each particle, or for each contact. */
-static se3d_status sample_list(runner *r, output_file *file)
+static se3d_status sample_list(se3di_runner *r, se3di_output_file *file)
 {
     se3di_iopool pool;
     se3di_iopool_init(&pool, &r->model->pool.allocator);
@@ -301,14 +251,14 @@ static se3d_status sample_list(runner *r, output_file *file)
 }
 
 /* The rows that follow are of the present state. */
-static void begin_rows(runner *r)
+static void begin_rows(se3di_runner *r)
 {
     memset(&r->stats, 0, sizeof r->stats);
     se3d_solver_get_stats(r->solver, &r->stats);
     se3di_sample_renew(&r->sample, &r->stats);
 }
 
-static se3d_status sample(runner *r, output_file *file, double time)
+static se3d_status sample(se3di_runner *r, se3di_output_file *file, double time)
 {
     double *row = file->row;
     if (r->watch && !is_watched(r)) {
@@ -392,8 +342,8 @@ static const char *advise(se3d_status status, int32_t analysis)
     }
 }
 
-static se3d_status fail_analysis(runner *r, const se3di_analysis_entry *entry, se3d_status status,
-                                 double target)
+static se3d_status fail_analysis(se3di_runner *r, const se3di_analysis_entry *entry,
+                                 se3d_status status, double target)
 {
     char text[1000];
     char way[80] = "";
@@ -415,11 +365,11 @@ static se3d_status fail_analysis(runner *r, const se3di_analysis_entry *entry, s
 }
 
 /* The earliest time at which a file wants its next row; false: all have theirs. */
-static bool next_time(const runner *r, double start, double duration, double *time)
+static bool next_time(const se3di_runner *r, double start, double duration, double *time)
 {
     bool found = false;
     for (size_t k = 0; k < r->file_count; ++k) {
-        const output_file *file = &r->files[k];
+        const se3di_output_file *file = &r->files[k];
         if (file->next <= file->count) {
             const double wanted = row_time(file, file->next, start, duration);
             *time = found ? fmin(*time, wanted) : wanted;
@@ -429,11 +379,11 @@ static bool next_time(const runner *r, double start, double duration, double *ti
     return found;
 }
 
-static se3d_status sample_files(runner *r, double start, double duration, double time)
+static se3d_status sample_files(se3di_runner *r, double start, double duration, double time)
 {
     begin_rows(r);
     for (size_t k = 0; k < r->file_count; ++k) {
-        output_file *file = &r->files[k];
+        se3di_output_file *file = &r->files[k];
         if (file->next > file->count) {
             continue;
         }
@@ -450,11 +400,11 @@ static se3d_status sample_files(runner *r, double start, double duration, double
 }
 
 /* Times of two files that differ by rounding only are one time: the later is asked for first. */
-static double merge_times(const runner *r, double start, double duration, double time)
+static double merge_times(const se3di_runner *r, double start, double duration, double time)
 {
     double merged = time;
     for (size_t k = 0; k < r->file_count; ++k) {
-        const output_file *file = &r->files[k];
+        const se3di_output_file *file = &r->files[k];
         if (file->next <= file->count) {
             const double wanted = row_time(file, file->next, start, duration);
             if (wanted - time <= 1e-9 * file->every && wanted > merged) {
@@ -466,7 +416,7 @@ static double merge_times(const runner *r, double start, double duration, double
 }
 
 /* Rows of all files where an event, or the user, has ended the analysis. */
-static se3d_status sample_stop(runner *r, double time)
+static se3d_status sample_stop(se3di_runner *r, double time)
 {
     se3d_status status = SE3D_OK;
     begin_rows(r);
@@ -476,7 +426,7 @@ static se3d_status sample_stop(runner *r, double time)
     return status;
 }
 
-static void show_progress(runner *r, size_t index, double time, double start, double duration)
+static void show_progress(se3di_runner *r, size_t index, double time, double start, double duration)
 {
     if (r->options->progress &&
         r->options->progress(r->options->ctx, index, time,
@@ -485,7 +435,45 @@ static void show_progress(runner *r, size_t index, double time, double start, do
     }
 }
 
-static se3d_status run_rows(runner *r, size_t index, const se3di_analysis_entry *entry,
+static se3d_status collect_events(se3di_runner *r, size_t index, se3d_status status)
+{
+    se3d_run *run = r->run;
+    if (!run->events.is_open || !r->solver) {
+        return status;
+    }
+    const se3d_status collected =
+        se3di_event_list_collect(&run->events, &run->pool, r->model, r->solver, index);
+    return collected < 0 && status >= 0 ? fail(r, collected, "out of memory") : status;
+}
+
+/* The time of the day [s]. */
+static double clock_now(void)
+{
+    struct timespec now = {0, 0};
+    return timespec_get(&now, TIME_UTC) == TIME_UTC
+               ? (double)now.tv_sec + 1e-9 * (double)now.tv_nsec
+               : 0.0;
+}
+
+/* Whoever watches the files sees what there is, about once a second. */
+static void flush_files(se3di_runner *r)
+{
+    const double now = clock_now();
+    if (now - r->flushed < FLUSH_EVERY && now >= r->flushed) {
+        return;
+    }
+    r->flushed = now;
+    for (size_t k = 0; k < r->file_count; ++k) {
+        if (r->files[k].csv.file) {
+            se3di_csv_flush(&r->files[k].csv);
+        }
+    }
+    if (r->run->events.is_open) {
+        se3di_csv_flush(&r->run->events.csv);
+    }
+}
+
+static se3d_status run_rows(se3di_runner *r, size_t index, const se3di_analysis_entry *entry,
                             double start)
 {
     const double duration = entry->analysis.duration;
@@ -511,6 +499,10 @@ static se3d_status run_rows(runner *r, size_t index, const se3di_analysis_entry 
             return status;
         }
         reached = time;
+        if (collect_events(r, index, SE3D_OK) < 0) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+        flush_files(r);
         show_progress(r, index, time, start, duration);
         if (ends) {
             break;
@@ -519,13 +511,13 @@ static se3d_status run_rows(runner *r, size_t index, const se3di_analysis_entry 
     return last < 0 ? fail_analysis(r, entry, last, time) : last;
 }
 
-static const char *copy_text(runner *r, const char *text)
+static const char *copy_text(se3di_runner *r, const char *text)
 {
     const char *copy = se3di_iopool_copy(&r->run->pool, text, strlen(text));
     return copy ? copy : "";
 }
 
-static const char *name_of_body(runner *r, se3d_body body)
+static const char *name_of_body(se3di_runner *r, se3d_body body)
 {
     const char *name = "";
     if (SE3D_FAILED(se3d_body_get_name(r->model->system, body, &name))) {
@@ -534,7 +526,7 @@ static const char *name_of_body(runner *r, se3d_body body)
     return copy_text(r, name[0] ? name : "without a name");
 }
 
-static const char *copy_left_out(runner *r)
+static const char *copy_left_out(se3di_runner *r)
 {
     char rows[600] = "";
     se3d_system_describe_left_out(r->model->system, rows, sizeof rows);
@@ -542,7 +534,7 @@ static const char *copy_left_out(runner *r)
 }
 
 /* How the start was changed, and which equations do not count. */
-static void record_start(runner *r, se3d_run_analysis *done)
+static void record_start(se3di_runner *r, se3d_run_analysis *done)
 {
     se3d_start_change change;
     memset(&change, 0, sizeof change);
@@ -560,7 +552,7 @@ static void record_start(runner *r, se3d_run_analysis *done)
 }
 
 /* What the solver did, for the summary. */
-static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analysis *done,
+static void record(se3di_runner *r, const se3di_analysis_entry *entry, se3d_run_analysis *done,
                    clock_t begin)
 {
     const char *method = "";
@@ -587,7 +579,7 @@ static void record(runner *r, const se3di_analysis_entry *entry, se3d_run_analys
 }
 
 /* The files of the modes, and the state at which they are. */
-static se3d_status run_modes(runner *r, const se3di_analysis_entry *entry, double start)
+static se3d_status run_modes(se3di_runner *r, const se3di_analysis_entry *entry, double start)
 {
     se3di_modes_run modes = {.model = r->model,
                              .entry = &entry->modes,
@@ -609,16 +601,8 @@ static se3d_status run_modes(runner *r, const se3di_analysis_entry *entry, doubl
     return status < 0 ? fail_analysis(r, entry, status, start) : sample_files(r, start, 0.0, start);
 }
 
-static se3d_status collect_events(runner *r, size_t index, se3d_status status)
-{
-    se3d_run *run = r->run;
-    const se3d_status collected =
-        se3di_event_list_collect(&run->events, &run->pool, r->model, r->solver, index);
-    return collected < 0 && status >= 0 ? fail(r, collected, "out of memory") : status;
-}
-
 /* The solver of an analysis: of its whole duration, and it can be interrupted. */
-static se3d_status create_solver(runner *r, const se3di_analysis_entry *entry, double start)
+static se3d_status create_solver(se3di_runner *r, const se3di_analysis_entry *entry, double start)
 {
     se3d_solver_def def = entry->solver;
     const double end = start + entry->analysis.duration;
@@ -628,10 +612,11 @@ static se3d_status create_solver(runner *r, const se3di_analysis_entry *entry, d
     return se3d_solver_create(r->model->system, &def, &r->solver);
 }
 
-static se3d_status run_analysis(runner *r, size_t index)
+static se3d_status run_analysis(se3di_runner *r, size_t index)
 {
     const se3di_analysis_entry *entry = &r->model->analyses[index];
     r->analysis = index;
+    r->run->events.collected = 0;
     se3d_run_analysis *done = &r->run->analyses[r->run->analysis_count++];
     const double start = isnan(entry->analysis.start) ? r->time : entry->analysis.start;
     const clock_t begin = clock();
@@ -657,9 +642,7 @@ static se3d_status run_analysis(runner *r, size_t index)
                  : entry->modes.file ? run_modes(r, entry, start)
                                      : run_rows(r, index, entry, start);
     }
-    if (r->run->events.is_open && r->solver) {
-        status = collect_events(r, index, status);
-    }
+    status = collect_events(r, index, status);
     record(r, entry, done, begin);
     done->status = (int32_t)status;
     se3d_solver_destroy(r->solver);
@@ -667,7 +650,7 @@ static se3d_status run_analysis(runner *r, size_t index)
     return status;
 }
 
-static se3d_status close_csv(runner *r, se3di_csv *csv, se3d_run_file *about)
+static se3d_status close_csv(se3di_runner *r, se3di_csv *csv, se3d_run_file *about)
 {
     about->path = csv->path;
     about->columns = csv->columns;
@@ -677,7 +660,7 @@ static se3d_status close_csv(runner *r, se3di_csv *csv, se3d_run_file *about)
 }
 
 /* Its rows, and the columns for those who ask the run. */
-static se3d_status close_summary(runner *r, output_file *file)
+static se3d_status close_summary(se3di_runner *r, se3di_output_file *file)
 {
     se3d_run *run = r->run;
     se3di_summary_finish(file->summary);
@@ -695,7 +678,7 @@ static se3d_status close_summary(runner *r, output_file *file)
 }
 
 /* Complete one file. */
-static se3d_status close_file(runner *r, output_file *file, se3d_run_file *about)
+static se3d_status close_file(se3di_runner *r, se3di_output_file *file, se3d_run_file *about)
 {
     int why = 0;
     if (file->vtk) {
@@ -717,7 +700,7 @@ static se3d_status close_file(runner *r, output_file *file, se3d_run_file *about
 
 /* One more file of the results, which `closed` says is complete, or which has rows that were kept;
  * the first failure is reported. */
-static se3d_status list_file(runner *r, const se3d_run_file *file, se3d_status closed,
+static se3d_status list_file(se3di_runner *r, const se3d_run_file *file, se3d_status closed,
                              se3d_status status)
 {
     se3d_run *run = r->run;
@@ -735,7 +718,7 @@ static se3d_status list_file(runner *r, const se3d_run_file *file, se3d_status c
 
 /* Complete every file, also after a failure: the rows so far are kept. The first failure is
  * reported. */
-static se3d_status close_files(runner *r, se3d_status status)
+static se3d_status close_files(se3di_runner *r, se3d_status status)
 {
     se3d_model_error *reported = r->error;
     const size_t count = r->file_count + (r->run->events.is_open ? 1 : 0);
@@ -766,7 +749,7 @@ static se3d_run *create_run(const se3d_model *model)
     return run;
 }
 
-static se3d_status run_all(runner *r)
+static se3d_status run_all(se3di_runner *r)
 {
     se3d_status status = open_files(r);
     if (status < 0) {
@@ -794,7 +777,7 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
                            se3d_model_error *error)
 {
     se3d_run_options used = se3d_run_options_default();
-    runner r = {.model = model, .options = &used, .error = error};
+    se3di_runner r = {.model = model, .options = &used, .error = error};
     if (out) {
         *out = NULL;
     }
@@ -828,16 +811,8 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
     return status;
 }
 
-void se3d_run_destroy(se3d_run *run)
-{
-    if (run) {
-        se3di_iopool pool = run->pool; /* the run itself lies in it */
-        se3di_iopool_destroy(&pool);
-    }
-}
-
 /* One "file" that hands its rows on. */
-static se3d_status open_watch(runner *r)
+static se3d_status open_watch(se3di_runner *r)
 {
     const se3di_output_entry *output = r->watch->output;
     size_t columns = 1;
@@ -858,7 +833,7 @@ static se3d_status open_watch(runner *r)
 se3d_status se3di_model_watch(se3d_model *model, const se3di_watch *watch,
                               const se3d_run_options *options, se3d_model_error *error)
 {
-    runner r = {.model = model, .watch = watch, .options = options, .error = error};
+    se3di_runner r = {.model = model, .watch = watch, .options = options, .error = error};
     r.run = create_run(model);
     if (!r.run) {
         return fail(&r, SE3D_ERR_NO_MEMORY, "out of memory");
@@ -874,89 +849,4 @@ se3d_status se3di_model_watch(se3d_model *model, const se3di_watch *watch,
     model->running = 0;
     se3d_run_destroy(r.run);
     return status;
-}
-
-size_t se3d_run_count_analyses(const se3d_run *run)
-{
-    return run ? run->analysis_count : 0;
-}
-
-se3d_status se3d_run_get_analysis_sized(const se3d_run *run, size_t index,
-                                        se3d_run_analysis *analysis, size_t size)
-{
-    if (!run || !analysis) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= run->analysis_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(analysis, size, &run->analyses[index], sizeof *analysis);
-}
-
-size_t se3d_run_count_particles(const se3d_run *run)
-{
-    return run ? run->particles_count : 0;
-}
-
-se3d_status se3d_run_get_particles_sized(const se3d_run *run, size_t index,
-                                         se3d_run_particles *particles, size_t size)
-{
-    if (!run || !particles) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= run->particles_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(particles, size, &run->particles[index], sizeof *particles);
-}
-
-size_t se3d_run_count_files(const se3d_run *run)
-{
-    return run ? run->file_count : 0;
-}
-
-se3d_status se3d_run_get_file_sized(const se3d_run *run, size_t index, se3d_run_file *file,
-                                    size_t size)
-{
-    if (!run || !file) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= run->file_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(file, size, &run->files[index], sizeof *file);
-}
-
-size_t se3d_run_count_events(const se3d_run *run)
-{
-    return run ? run->events.count : 0;
-}
-
-se3d_status se3d_run_get_event_sized(const se3d_run *run, size_t index, se3d_run_event *event,
-                                     size_t size)
-{
-    if (!run || !event) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= run->events.count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(event, size, &run->events.list[index], sizeof *event);
-}
-
-size_t se3d_run_count_summaries(const se3d_run *run)
-{
-    return run ? run->summary_count : 0;
-}
-
-se3d_status se3d_run_get_summary_sized(const se3d_run *run, size_t index, se3d_run_summary *summary,
-                                       size_t size)
-{
-    if (!run || !summary) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= run->summary_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(summary, size, &run->summaries[index], sizeof *summary);
 }

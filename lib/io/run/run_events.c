@@ -48,7 +48,7 @@ se3d_status se3di_event_list_collect(se3di_event_list *events, se3di_iopool *poo
                                      const se3d_model *model, se3d_solver *solver, size_t analysis)
 {
     const size_t count = se3d_solver_count_event_records(solver);
-    for (size_t k = 0; k < count; ++k) {
+    for (size_t k = events->collected; k < count; ++k) {
         se3d_event_record record;
         se3d_run_event *grown =
             se3di_iopool_grow(pool, events->list, events->count, &events->capacity, sizeof *grown);
@@ -66,6 +66,7 @@ se3d_status se3di_event_list_collect(se3di_event_list *events, se3di_iopool *poo
                                                        .direction = record.direction,
                                                        .stopped = record.action == SE3D_EVENT_STOP};
         write_row(&events->csv, &events->list[events->count++]);
+        events->collected = k + 1;
     }
     return SE3D_OK;
 }

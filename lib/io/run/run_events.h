@@ -9,13 +9,14 @@
 typedef struct se3di_event_list {
     se3d_run_event *list;
     size_t count, capacity;
+    size_t collected; /* of the records of the present solver */
     se3di_csv csv;
     bool is_open;
 } se3di_event_list;
 
 /* Open the file: as se3di_csv_open. */
 se3d_status se3di_event_list_open(se3di_event_list *events, se3di_iopool *pool, const char *path);
-/* What is on the solver's record, to the list and the file. @return OK, NO_MEMORY */
+/* What is new on the solver's record, to the list and the file. @return OK, NO_MEMORY */
 se3d_status se3di_event_list_collect(se3di_event_list *events, se3di_iopool *pool,
                                      const se3d_model *model, se3d_solver *solver, size_t analysis);
 

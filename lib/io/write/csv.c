@@ -36,7 +36,7 @@ static void remember(se3di_csv *csv)
     }
 }
 
-static void flush(se3di_csv *csv)
+void se3di_csv_flush(se3di_csv *csv)
 {
     errno = 0;
     if (csv->failure == 0 && csv->used > 0) {
@@ -59,7 +59,7 @@ static void put(se3di_csv *csv, const char *text, size_t length)
 {
     while (length > 0) {
         if (csv->used == BUFFER_SIZE) {
-            flush(csv);
+            se3di_csv_flush(csv);
         }
         const size_t room = BUFFER_SIZE - csv->used;
         const size_t part = length < room ? length : room;
@@ -141,7 +141,7 @@ void se3di_csv_put_cells(se3di_csv *csv, const se3di_csv_cell *cells, size_t cou
 se3d_status se3di_csv_close(se3di_csv *csv)
 {
     write_pending(csv);
-    flush(csv);
+    se3di_csv_flush(csv);
     FILE *file = csv->file;
     csv->file = NULL;
     if (csv->failure != 0) { /* lines: the names of the columns are one */

@@ -36,6 +36,8 @@ typedef struct se3di_csv_cell {
 
 /* Write one row as it is, whatever its time. */
 void se3di_csv_put_cells(se3di_csv *csv, const se3di_csv_cell *cells, size_t count);
+/* Let others see the rows so far, but for the last one. A failure is reported at the end. */
+void se3di_csv_flush(se3di_csv *csv);
 /* Complete the file and give it its name. @return OK, or IO: then the rows that are whole on the
  * disk are kept, and `rows` is their number; if there is none nothing is left, and a file of
  * that name stays as it was. */

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A run that is under way. */
+#ifndef SE3D_IO_RUNNER_H
+#define SE3D_IO_RUNNER_H
+
+#include "io/channel/output.h"
+#include "io/channel/sample.h"
+#include "io/model/model.h"
+#include "io/run/run_events.h"
+#include "io/run/watch.h"
+#include "io/write/csv.h"
+#include "io/write/summary.h"
+#include "io/write/vtk.h"
+
+typedef struct se3di_output_file {
+    const se3di_output_entry *entry;
+    se3di_csv csv;
+    se3di_vtk *vtk;         /* NULL: it is a CSV file */
+    se3di_summary *summary; /* NULL: it has rows */
+    double *row;
+    double every; /* in this analysis */
+    double count; /* number of the last row, the one at the end */
+    double next;  /* number of the next row */
+} se3di_output_file;
+
+struct se3d_run {
+    se3di_iopool pool;
+    se3d_run_analysis *analyses;
+    size_t analysis_count;
+    se3d_run_file *files;
+    size_t file_count, file_capacity;
+    se3d_run_particles *particles;
+    size_t particles_count;
+    se3di_event_list events;
+    se3d_run_summary *summaries;
+    size_t summary_count, summary_capacity;
+};
+
+typedef struct se3di_runner {
+    se3d_model *model;
+    const se3di_watch *watch; /* gets the rows in place of files; NULL: there are files */
+    size_t analysis;          /* that runs */
+    const se3d_run_options *options;
+    se3d_run *run;
+    se3d_model_error *error;
+    se3di_output_file *files;
+    size_t file_count; /* open ones */
+    se3d_solver *solver;
+    se3di_sample sample; /* what the rows of one time ask for */
+    se3d_solver_stats stats;
+    double time;    /* where the analysis before ended */
+    double flushed; /* when the rows so far were last written to the disk, by the clock [s] */
+    bool stopped;
+} se3di_runner;
+
+#endif
