@@ -344,22 +344,22 @@ SE3D_API se3d_status se3d_effort_set_all(se3d_system *system, size_t count, cons
 
 /* A number that a force element has, with the unit and the range of its definition. @since 0.1 */
 typedef enum se3d_force_parameter {
-    SE3D_FORCE_PARAMETER_K = 0,           /* tsda, rsda, stop */
-    SE3D_FORCE_PARAMETER_C = 1,           /* tsda, rsda */
+    SE3D_FORCE_PARAMETER_K = 0,           /* tsda, rsda, stop, tyre */
+    SE3D_FORCE_PARAMETER_C = 1,           /* tsda, rsda, tyre */
     SE3D_FORCE_PARAMETER_REST = 2,        /* tsda: l0, rsda: theta0 */
     SE3D_FORCE_PARAMETER_PRELOAD = 3,     /* tsda, rsda: also the value of a constant actuator */
     SE3D_FORCE_PARAMETER_LOWER = 4,       /* stop */
     SE3D_FORCE_PARAMETER_UPPER = 5,       /* stop */
     SE3D_FORCE_PARAMETER_RESTITUTION = 6, /* stop */
-    SE3D_FORCE_PARAMETER_MU = 7,          /* friction; mu_static goes along if it is the same */
-    SE3D_FORCE_PARAMETER_MU_STATIC = 8,   /* friction; 0: mu */
-    SE3D_FORCE_PARAMETER_RADIUS = 9,      /* friction */
-    SE3D_FORCE_PARAMETER_LIMIT = 10,      /* friction */
-    SE3D_FORCE_PARAMETER_VISCOUS = 11,    /* friction */
-    SE3D_FORCE_PARAMETER_PRESLIDING = 12  /* friction */
+    SE3D_FORCE_PARAMETER_MU = 7,        /* tyre; friction, mu_static goes along if it is the same */
+    SE3D_FORCE_PARAMETER_MU_STATIC = 8, /* friction; 0: mu */
+    SE3D_FORCE_PARAMETER_RADIUS = 9,    /* friction */
+    SE3D_FORCE_PARAMETER_LIMIT = 10,    /* friction */
+    SE3D_FORCE_PARAMETER_VISCOUS = 11,  /* friction */
+    SE3D_FORCE_PARAMETER_PRESLIDING = 12 /* friction */
 } se3d_force_parameter;
 
-/* Set a number of a tsda, rsda, stop or friction element. What the change makes of the stored
+/* Set a number of a tsda, rsda, stop, friction or tyre element. What the change makes of the stored
  * energy counts as work of actuators.
  * @param[in] parameter  se3d_force_parameter
  * @param[in] value      with the unit and the range of the definition [N, m, s, rad]
@@ -368,7 +368,7 @@ typedef enum se3d_force_parameter {
 SE3D_API se3d_status se3d_force_set_parameter(se3d_system *system, se3d_force force,
                                               int32_t parameter, double value);
 
-/* Get a number of a tsda, rsda, stop or friction element.
+/* Get a number of a tsda, rsda, stop, friction or tyre element.
  * @param[in] parameter  se3d_force_parameter
  * @param[out] value     with the unit of the definition [N, m, s, rad]
  * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (the element has no such parameter).
@@ -431,7 +431,7 @@ SE3D_API se3d_status se3d_force_get_name(const se3d_system *system, se3d_force f
 
 /* Get the type of a force element as in the model file.
  * @param[out] type  "tsda", "rsda", "force", "torque", "bushing", "friction", "stop", "callback",
- *                   "effort"; static
+ *                   "effort", "tyre"; static
  * @return OK, NULL, STALE_HANDLE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_type(const se3d_system *system, se3d_force force,

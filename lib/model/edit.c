@@ -430,15 +430,42 @@ static void count_force_users(se3di_model *model, const se3di_force *force, uint
     }
 }
 
+se3d_status se3di_force_own(const se3d_allocator *allocator, se3di_force *force)
+{
+    const se3di_tyre *original = force->tyre;
+    force->tyre = NULL;
+    if (original) {
+        force->tyre = se3di_alloc(allocator, 1, sizeof *original);
+        if (!force->tyre) {
+            return SE3D_ERR_NO_MEMORY;
+        }
+        *force->tyre = *original;
+    }
+    return SE3D_OK;
+}
+
+void se3di_force_release(const se3d_allocator *allocator, se3di_force *force)
+{
+    if (force->tyre) {
+        se3di_free(allocator, force->tyre, 1, sizeof *force->tyre);
+    }
+    force->tyre = NULL;
+}
+
 se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
                                   se3di_handle *handle)
 {
     size_t count = model->force_slots.count;
-    char *name;
+    se3di_force own = *force;
     RESERVE(model, forces, force_capacity, count + 1, sizeof *model->forces);
     SE3DI_TRY(se3di_slots_reserve(&model->force_slots, &model->allocator));
-    SE3DI_TRY(copy_name(model, &model->force_slots, force->name, &name));
-    model->forces[count] = *force;
+    SE3DI_TRY(se3di_force_own(&model->allocator, &own));
+    char *name;
+    if (copy_name(model, &model->force_slots, force->name, &name) < 0) {
+        se3di_force_release(&model->allocator, &own);
+        return SE3D_ERR_NO_MEMORY;
+    }
+    model->forces[count] = own;
     model->forces[count].name = name;
     model->forces[count].users = 0;
     count_force_users(model, force, 1);
@@ -464,6 +491,7 @@ void se3di_model_remove_force(se3di_model *model, uint32_t force)
     int32_t own = model->forces[force].owns_angle ? model->forces[force].angle : -1;
     count_force_users(model, &model->forces[force], UINT32_MAX);
     char *name = model->forces[force].name;
+    se3di_force_release(&model->allocator, &model->forces[force]);
     close_gap(model->forces, model->force_slots.count, force, 1, sizeof *model->forces);
     remove_named(model, &model->force_slots, force, 0, name);
     lower_signals(model, offsetof(se3di_signal, force), force);

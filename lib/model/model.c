@@ -127,6 +127,9 @@ void se3di_model_destroy(se3di_model *model)
     for (size_t k = 0; k < model->shape_slots.count; ++k) {
         se3di_shape_release(allocator, &model->shapes[k]);
     }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        se3di_force_release(allocator, &model->forces[k]);
+    }
     model_array arrays[MODEL_ARRAYS];
     list_arrays(model, arrays);
     for (int k = 0; k < MODEL_ARRAYS; ++k) {
@@ -192,6 +195,7 @@ static se3d_status copy_names(se3di_model *copy)
     }
     for (size_t k = 0; k < copy->force_slots.count; ++k) {
         status = copy_name(allocator, &copy->forces[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
+        status = se3di_force_own(allocator, &copy->forces[k]) < 0 ? SE3D_ERR_NO_MEMORY : status;
     }
     for (size_t k = 0; k < copy->wheel_slots.count; ++k) {
         status = copy_name(allocator, &copy->wheels[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;

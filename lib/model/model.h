@@ -18,6 +18,7 @@
 #include "model/body_contact.h"
 #include "model/shape.h"
 #include "model/term.h"
+#include "model/tyre.h"
 #include "model/wheel.h"
 #include "se3d/constraint.h"
 #include "se3d/expression.h"
@@ -138,7 +139,8 @@ typedef struct se3di_angle {
     X(FRICTION, friction)                                                                          \
     X(STOP, stop)                                                                                  \
     X(CALLBACK, callback)                                                                          \
-    X(EFFORT, effort)
+    X(EFFORT, effort)                                                                              \
+    X(TYRE, tyre)
 
 typedef enum se3di_force_type {
 #define SE3DI_FORCE_ENUM(TYPE, name) SE3DI_FORCE_##TYPE,
@@ -177,6 +179,7 @@ typedef struct se3di_force {
     double K[36], C[36];                                      /* bushing, in frame i */
     se3d_force_callback callback;
     void *ctx;
+    se3di_tyre *tyre;                 /* owned; NULL: no tyre */
     double state[SE3DI_FORCE_STATES]; /* friction, stop: see their files */
 } se3di_force;
 
@@ -280,6 +283,10 @@ typedef struct se3di_draft {
     int32_t has_angle; /* a turn counter is made from `angle` */
     se3di_angle angle;
 } se3di_draft;
+
+/* Give an element a copy of its own of its tyre; on failure it has none. */
+se3d_status se3di_force_own(const se3d_allocator *allocator, se3di_force *force);
+void se3di_force_release(const se3d_allocator *allocator, se3di_force *force);
 
 /* Initialise an empty model with the ground; on failure nothing is held. */
 se3d_status se3di_model_init(se3di_model *model, const se3d_allocator *allocator, uint32_t salt);

@@ -13,6 +13,7 @@
 #define SPRINGS   (BIT(SE3DI_FORCE_TSDA) | BIT(SE3DI_FORCE_RSDA))
 #define STOP      BIT(SE3DI_FORCE_STOP)
 #define FRICTION  BIT(SE3DI_FORCE_FRICTION)
+#define TYRE      BIT(SE3DI_FORCE_TYRE)
 
 #define PRESLIDING 1e-9 /* [m, rad] if none is given */
 
@@ -25,15 +26,15 @@ typedef struct parameter {
 } parameter;
 
 static const parameter parameters[] = {
-    [SE3D_FORCE_PARAMETER_K] = {"k", SPRINGS | STOP, 0, offsetof(se3di_force, k)},
-    [SE3D_FORCE_PARAMETER_C] = {"c", SPRINGS, 0, offsetof(se3di_force, c)},
+    [SE3D_FORCE_PARAMETER_K] = {"k", SPRINGS | STOP | TYRE, 0, offsetof(se3di_force, k)},
+    [SE3D_FORCE_PARAMETER_C] = {"c", SPRINGS | TYRE, 0, offsetof(se3di_force, c)},
     [SE3D_FORCE_PARAMETER_REST] = {"rest", SPRINGS, 0, offsetof(se3di_force, rest)},
     [SE3D_FORCE_PARAMETER_PRELOAD] = {"preload", SPRINGS, 0, offsetof(se3di_force, preload)},
     [SE3D_FORCE_PARAMETER_LOWER] = {"lower", STOP, 0, offsetof(se3di_force, low)},
     [SE3D_FORCE_PARAMETER_UPPER] = {"upper", STOP, 0, offsetof(se3di_force, high)},
     [SE3D_FORCE_PARAMETER_RESTITUTION] = {"restitution", STOP, 0,
                                           offsetof(se3di_force, restitution)},
-    [SE3D_FORCE_PARAMETER_MU] = {"mu", FRICTION, 0, offsetof(se3di_force, mu)},
+    [SE3D_FORCE_PARAMETER_MU] = {"mu", FRICTION | TYRE, 0, offsetof(se3di_force, mu)},
     [SE3D_FORCE_PARAMETER_MU_STATIC] = {"mu_static", FRICTION, 0, offsetof(se3di_force, mu_static)},
     [SE3D_FORCE_PARAMETER_RADIUS] = {"radius", FRICTION, 0, offsetof(se3di_force, radius)},
     [SE3D_FORCE_PARAMETER_LIMIT] = {"limit", FRICTION, 0, offsetof(se3di_force, limit)},
@@ -107,10 +108,27 @@ static se3d_status check_stop(se3d_system *system, se3di_force *data)
     return SE3D_OK;
 }
 
+static se3d_status check_tyre(se3d_system *system, const se3di_force *data)
+{
+    if (!(isfinite(data->k) && data->k > 0.0)) {
+        return SE3DI_FAIL_OF(system, "k", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be finite and > 0", data->k);
+    }
+    if (!(isfinite(data->mu) && data->mu > 0.0 && data->mu >= data->tyre->mu_min)) {
+        return SE3DI_FAIL_OF(system, "mu", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be finite, > 0 and at least mu_min = %g", data->mu,
+                             data->tyre->mu_min);
+    }
+    return check_not_negative(system, "c", data->c);
+}
+
 se3d_status se3di_force_check_values(se3d_system *system, se3di_force *data)
 {
     if (data->type == SE3DI_FORCE_STOP) {
         return check_stop(system, data);
+    }
+    if (data->type == SE3DI_FORCE_TYRE) {
+        return check_tyre(system, data);
     }
     return data->type == SE3DI_FORCE_FRICTION ? check_friction(system, data)
                                               : check_spring(system, data);
@@ -206,7 +224,8 @@ se3d_status se3d_force_set_parameter(se3d_system *system, se3d_force force, int3
     if (!(p->types & BIT(data.type))) {
         return fail_type(system, &data, p->name);
     }
-    const int follows = which == SE3D_FORCE_PARAMETER_MU && !(data.mu_static > data.mu);
+    const int follows = which == SE3D_FORCE_PARAMETER_MU && data.type == SE3DI_FORCE_FRICTION &&
+                        !(data.mu_static > data.mu);
     double *at = (double *)(void *)((char *)&data + p->offset);
     if (memcmp(at, &value, sizeof value) == 0) {
         return SE3D_OK;

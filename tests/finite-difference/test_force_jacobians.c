@@ -297,6 +297,64 @@ static void create_law_of_effort(world *w)
     create_effort(w, SE3D_JOINT_COORDINATE_DISPLACEMENT, "5*sin(q) - 2*qdot*(1 + q^2) + t");
 }
 
+/* A wheel somewhere in the road, inclined; its slip is what the random motion gives, made smaller
+ * or larger by the speed below which it is regularised. */
+static void create_tyre(world *w, int32_t law, double low_speed, double mu)
+{
+    se3d_force force;
+    se3d_tyre_def def = se3d_tyre_def_default();
+    double n[3], across[3], center[3], arm[3];
+    const se3di_frame *i = &w->model->frames[1], *j = &w->model->frames[2];
+    def.road = w->i;
+    def.wheel = w->j;
+    random_vector(def.center, 3, 0.2);
+    random_vector(n, 3, 1.0);
+    n[2] += 1.5;
+    (void)se3di_unit(n, n);
+    se3di_perpendicular(n, across);
+    se3di_add_scaled(0.4 * check_random(&seed), n, across);
+    se3di_mul_transposed(j->A, across, def.axis);
+    se3di_mul_transposed(i->A, n, def.normal);
+    se3di_mul(j->A, def.center, center);
+    se3di_add(center, j->r, center);
+    se3di_sub(center, i->r, arm);
+    se3di_add_scaled(-0.24, n, arm);
+    se3di_mul_transposed(i->A, arm, def.point);
+    def.side = check_random(&seed) > 0.0 ? SE3D_TYRE_RIGHT : SE3D_TYRE_LEFT;
+    def.law = law;
+    def.radius = 0.3;
+    def.k = 200.0;
+    def.c = 0.5;
+    def.mu = mu;
+    def.mu_min = 0.5 * mu;
+    def.slip_stiffness = 50.0;
+    def.cornering_stiffness = 40.0;
+    def.patch_length = 0.2;
+    def.rolling_resistance = 0.02;
+    def.low_speed = low_speed;
+    finish(w, se3d_force_create_tyre(w->system, &def, &force));
+}
+
+static void create_sticking_brush(world *w)
+{
+    create_tyre(w, SE3D_TYRE_BRUSH, 40.0, 3.0);
+}
+
+static void create_sliding_brush(world *w)
+{
+    create_tyre(w, SE3D_TYRE_BRUSH, 1e-3, 0.1);
+}
+
+static void create_rolling_fiala(world *w)
+{
+    create_tyre(w, SE3D_TYRE_FIALA, 40.0, 3.0);
+}
+
+static void create_sliding_fiala(world *w)
+{
+    create_tyre(w, SE3D_TYRE_FIALA, 12.0, 0.2);
+}
+
 /* A drag that depends on everything. */
 static se3d_status drag(void *ctx, double t, const se3d_body_motion motion[2], double wrench[12],
                         double *K, double *D)
@@ -395,10 +453,11 @@ static void jacobians_agree_with_differences(void (*create)(world *), double flo
 static void jacobians_of_every_element(void)
 {
     void (*const create[])(world *) = {
-        create_tsda,          create_rsda,           create_rsda_on_axes,    create_ground_load,
-        create_follower_load, create_ground_torque,  create_follower_torque, create_bushing,
-        create_small_bushing, create_sticking_hinge, create_slipping_slide,  create_upper_stop,
-        create_lower_stop,    create_torque_effort,  create_push_effort,     create_law_of_effort,
+        create_tsda,           create_rsda,           create_rsda_on_axes,    create_ground_load,
+        create_follower_load,  create_ground_torque,  create_follower_torque, create_bushing,
+        create_small_bushing,  create_sticking_hinge, create_slipping_slide,  create_upper_stop,
+        create_lower_stop,     create_torque_effort,  create_push_effort,     create_law_of_effort,
+        create_sticking_brush, create_sliding_brush,  create_rolling_fiala,   create_sliding_fiala,
     };
     for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
         jacobians_agree_with_differences(create[k], 1e-10);
@@ -491,6 +550,10 @@ static void power_balances_for_every_element(void)
                                        create_lower_stop,
                                        create_torque_effort,
                                        create_law_of_effort,
+                                       create_sticking_brush,
+                                       create_sliding_brush,
+                                       create_rolling_fiala,
+                                       create_sliding_fiala,
                                        create_callback};
     for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
         for (int trial = 0; trial < 10; ++trial) {

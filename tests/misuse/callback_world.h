@@ -29,7 +29,7 @@ typedef struct world {
     se3d_marker marker;
     se3d_wheel wheel;
     se3d_constraint pin, motor, guide, rail;
-    se3d_force push, load, spring, mount, turn;
+    se3d_force push, load, spring, mount, turn, tyre;
     se3d_function value, constant, no_functions[3];
     se3d_shape pad;
     se3d_material stuff;
@@ -211,6 +211,12 @@ static void world_add_values(world *w)
     se3d_effort_def turn = se3d_effort_def_default();
     turn.joint = w->pin;
     CHECK(!se3d_force_create_effort(w->system, &turn, &w->turn));
+    se3d_tyre_def tyre = se3d_tyre_def_default();
+    tyre.road = ground;
+    tyre.wheel = w->kite;
+    tyre.point[2] = -100.0;
+    tyre.radius = tyre.k = tyre.mu = tyre.slip_stiffness = tyre.cornering_stiffness = 1.0;
+    CHECK(!se3d_force_create_tyre(w->system, &tyre, &w->tyre));
     rail.type = SE3D_PRIMITIVE_CD;
     rail.c[1] = 1.0;
     CHECK(!se3d_primitive_create(w->system, &rail, &w->rail));

@@ -70,12 +70,14 @@ typedef struct field {
     X(friction, friction)                                                                          \
     X(stop, stop)                                                                                  \
     X(effort, effort)                                                                              \
+    X(tyre, tyre)                                                                                  \
     X(callback, force_callback)
 
 /* X(variant, name): other definitions of the same elements. */
 #define FORCE_VARIANT_LIST(X)                                                                      \
     X(rsda_between, rsda)                                                                          \
-    X(stop_between, stop)
+    X(stop_between, stop)                                                                          \
+    X(tyre_fiala, tyre)
 
 FILL(se3d_tsda_def, tsda)
 {
@@ -224,6 +226,50 @@ FIELDS(effort) = {NAME(se3d_effort_def),
                   NUMBERS(se3d_effort_def, value),
                   FUNCTION(se3d_effort_def, function),
                   FIELDS_END};
+
+FILL(se3d_tyre_def, tyre)
+{
+    def->road = at->ground;
+    def->wheel = at->body;
+    def->point[2] = -0.2;
+    def->radius = 0.3;
+    def->k = 1000.0;
+    def->c = 10.0;
+    def->mu = 0.8;
+    def->slip_stiffness = 500.0;
+    def->cornering_stiffness = 400.0;
+    def->patch_length = 0.1;
+    def->rolling_resistance = 0.01;
+}
+FIELDS(tyre) = {NAME(se3d_tyre_def),
+                BODY(se3d_tyre_def, road),
+                BODY(se3d_tyre_def, wheel),
+                NUMBERS(se3d_tyre_def, point),
+                NUMBERS(se3d_tyre_def, normal),
+                NUMBERS(se3d_tyre_def, center),
+                NUMBERS(se3d_tyre_def, axis),
+                INTEGER(se3d_tyre_def, side),
+                INTEGER(se3d_tyre_def, law),
+                NUMBERS(se3d_tyre_def, radius),
+                NUMBERS(se3d_tyre_def, k),
+                NUMBERS(se3d_tyre_def, c),
+                NUMBERS(se3d_tyre_def, mu),
+                NUMBERS(se3d_tyre_def, mu_min),
+                NUMBERS(se3d_tyre_def, slip_stiffness),
+                NUMBERS(se3d_tyre_def, cornering_stiffness),
+                NUMBERS(se3d_tyre_def, patch_length),
+                NUMBERS(se3d_tyre_def, rolling_resistance),
+                NUMBERS(se3d_tyre_def, rolling_radius),
+                NUMBERS(se3d_tyre_def, low_speed),
+                FIELDS_END};
+
+FILL(se3d_tyre_def, tyre_fiala)
+{
+    set_tyre(at, def);
+    def->law = SE3D_TYRE_FIALA;
+    def->mu_min = 0.6;
+}
+FIELDS(tyre_fiala) = {NUMBERS(se3d_tyre_def, mu), NUMBERS(se3d_tyre_def, mu_min), FIELDS_END};
 
 static inline se3d_status no_force(void *ctx, double t, const se3d_body_motion motion[2],
                                    double wrench[12], double *K, double *D)

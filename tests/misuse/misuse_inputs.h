@@ -160,6 +160,36 @@ static void check_efforts(arguments *a, const settable *m)
     CHECK(se3d_effort_get(a->system, (se3d_force){0, 0}, &value) == SE3D_ERR_STALE_HANDLE);
 }
 
+static void check_tyre(arguments *a, const settable *m)
+{
+    double values[SE3D_TYRE_VALUES], k = 0.0;
+    se3d_tyre_def def = se3d_tyre_def_default();
+    se3d_force tyre;
+    CHECK(!se3d_system_get_ground(a->system, &def.road));
+    def.wheel = a->use.body;
+    def.radius = def.k = def.mu = def.slip_stiffness = def.cornering_stiffness = 1.0;
+    CHECK(!se3d_force_create_tyre(a->system, &def, &tyre));
+    CHECK(!se3d_tyre_get_values(a->system, tyre, 0, SE3D_TYRE_VALUES, values));
+    CHECK(!se3d_tyre_get_values(a->system, tyre, SE3D_TYRE_CONTACT_Z, 1, values));
+    INVALID(se3d_tyre_get_values(a->system, tyre, SE3D_TYRE_CONTACT_Z, 2, values));
+    INVALID(se3d_tyre_get_values(a->system, tyre, SE3D_TYRE_VALUES, 1, values));
+    INVALID(se3d_tyre_get_values(a->system, tyre, 0, 0, values));
+    INVALID(se3d_tyre_get_values(a->system, tyre, 1, SIZE_MAX, values));
+    INVALID(se3d_tyre_get_values(a->system, m->spring, 0, 1, values));
+    CHECK(se3d_tyre_get_values(NULL, tyre, 0, 1, values) == SE3D_ERR_NULL);
+    CHECK(se3d_tyre_get_values(a->system, tyre, 0, 1, NULL) == SE3D_ERR_NULL);
+    CHECK(!se3d_force_set_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_K, 7.0));
+    CHECK(!se3d_force_get_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_K, &k));
+    CHECK_NEAR(k, 7.0, 0.0);
+    CHECK(!se3d_force_set_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_MU, 0.5));
+    INVALID(se3d_force_set_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_MU, 0.0));
+    INVALID(se3d_force_set_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_K, 0.0));
+    INVALID(se3d_force_set_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_C, -1.0));
+    INVALID(se3d_force_set_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_REST, 1.0));
+    CHECK(!se3d_force_destroy(a->system, tyre));
+    CHECK(se3d_tyre_get_values(a->system, tyre, 0, 1, values) == SE3D_ERR_STALE_HANDLE);
+}
+
 static void check_prescribed(arguments *a)
 {
     se3d_function_def def = se3d_function_def_default();
@@ -191,6 +221,7 @@ static se3d_status setters_reject_misuse(arguments *a)
     check_values(a, &made);
     check_efforts(a, &made);
     check_prescribed(a);
+    check_tyre(a, &made);
     CHECK(se3d_force_set_value(a->system, none, value) == SE3D_ERR_STALE_HANDLE);
     CHECK(se3d_force_get_value(a->system, none, value) == SE3D_ERR_STALE_HANDLE);
     CHECK(se3d_force_set_parameter(a->system, none, 0, 1.0) == SE3D_ERR_STALE_HANDLE);

@@ -55,6 +55,21 @@ static const quantity_name effort_names[] = {{"coordinate", SE3DI_FORCE_COORDINA
                                              {NULL, SE3DI_STEPS}};
 static const quantity_name wrench_names[] = {
     {"force", SE3DI_WRENCH_FORCE}, {"torque", SE3DI_WRENCH_TORQUE}, {NULL, SE3DI_STEPS}};
+static const quantity_name tyre_names[] = {{"fx", SE3DI_TYRE_FX},
+                                           {"fy", SE3DI_TYRE_FY},
+                                           {"fz", SE3DI_TYRE_FZ},
+                                           {"mx", SE3DI_TYRE_MX},
+                                           {"my", SE3DI_TYRE_MY},
+                                           {"mz", SE3DI_TYRE_MZ},
+                                           {"slip_ratio", SE3DI_TYRE_SLIP_RATIO},
+                                           {"slip_angle", SE3DI_TYRE_SLIP_ANGLE},
+                                           {"inclination", SE3DI_TYRE_INCLINATION},
+                                           {"deflection", SE3DI_TYRE_DEFLECTION},
+                                           {"loaded_radius", SE3DI_TYRE_LOADED_RADIUS},
+                                           {"rolling_radius", SE3DI_TYRE_ROLLING_RADIUS},
+                                           {"speed", SE3DI_TYRE_SPEED},
+                                           {"contact", SE3DI_TYRE_CONTACT},
+                                           {NULL, SE3DI_STEPS}};
 static const quantity_name wheel_names[] = {
     {"camber", SE3DI_WHEEL_CAMBER},
     {"inclination", SE3DI_WHEEL_INCLINATION},
@@ -91,7 +106,7 @@ static const struct {
     const quantity_name *names;
 } force_names[] = {{"tsda", tsda_names},    {"rsda", rsda_names},     {"friction", range_names},
                    {"stop", range_names},   {"effort", effort_names}, {"bushing", wrench_names},
-                   {"force", wrench_names}, {"torque", wrench_names}};
+                   {"force", wrench_names}, {"torque", wrench_names}, {"tyre", tyre_names}};
 static const quantity_name system_names[] = {
     {"energy.kinetic", SE3DI_ENERGY_KINETIC},
     {"energy.potential", SE3DI_ENERGY_POTENTIAL},

@@ -65,6 +65,20 @@
     X(WHEEL_LOAD, 1, WHEEL_LOAD, 0, MOTION, 1, 2, 1, 0)                                            \
     X(WHEEL_RATE, 1, WHEEL_LOAD, 1, MOTION, 0, 2, 1, 0)                                            \
     X(WHEEL_ROLL_RATE, 1, WHEEL_LOAD, 2, MOTION, 2, 2, 1, 0)                                       \
+    X(TYRE_FX, 1, TYRE, 0, MOTION, 1, 2, 1, 0)                                                     \
+    X(TYRE_FY, 1, TYRE, 1, MOTION, 1, 2, 1, 0)                                                     \
+    X(TYRE_FZ, 1, TYRE, 2, MOTION, 1, 2, 1, 0)                                                     \
+    X(TYRE_MX, 1, TYRE, 3, MOTION, 2, 2, 1, 0)                                                     \
+    X(TYRE_MY, 1, TYRE, 4, MOTION, 2, 2, 1, 0)                                                     \
+    X(TYRE_MZ, 1, TYRE, 5, MOTION, 2, 2, 1, 0)                                                     \
+    X(TYRE_SLIP_RATIO, 1, TYRE, 6, MOTION, 0, 0, 0, 0)                                             \
+    X(TYRE_SLIP_ANGLE, 1, TYRE, 7, MOTION, 0, 0, 0, 0)                                             \
+    X(TYRE_INCLINATION, 1, TYRE, 8, MOTION, 0, 0, 0, 0)                                            \
+    X(TYRE_DEFLECTION, 1, TYRE, 9, MOTION, 1, 0, 0, 0)                                             \
+    X(TYRE_LOADED_RADIUS, 1, TYRE, 10, MOTION, 1, 0, 0, 0)                                         \
+    X(TYRE_ROLLING_RADIUS, 1, TYRE, 11, MOTION, 1, 0, 0, 0)                                        \
+    X(TYRE_SPEED, 1, TYRE, 12, MOTION, 1, 1, 0, 0)                                                 \
+    X(TYRE_CONTACT, 3, TYRE, 13, MOTION, 1, 0, 0, 0)                                               \
     X(ENERGY_KINETIC, 1, ENERGY, 0, MOTION, 2, 2, 1, 0)                                            \
     X(ENERGY_POTENTIAL, 1, ENERGY, 1, MOTION, 2, 2, 1, 0)                                          \
     X(ENERGY_TOTAL, 1, ENERGY, 2, MOTION, 2, 2, 1, 0)                                              \
@@ -115,6 +129,7 @@ typedef enum se3di_question {
     SE3DI_ASK_WHEEL_AXIS,
     SE3DI_ASK_WHEEL_RIDE,
     SE3DI_ASK_WHEEL_LOAD,
+    SE3DI_ASK_TYRE, /* se3d_tyre_value */
     SE3DI_ASK_ENERGY,
     SE3DI_ASK_WORK,
     SE3DI_ASK_VIOLATION,

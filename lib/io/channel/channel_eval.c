@@ -91,6 +91,8 @@ static se3d_status ask_element(se3di_question question, const se3di_channel *c,
     case SE3DI_ASK_WHEEL_LOAD:
         return se3d_wheel_get_measures(system, c->wheel, SE3D_WHEEL_WHEEL_LOAD,
                                        SE3D_WHEEL_MEASURES - SE3D_WHEEL_WHEEL_LOAD, numbers);
+    case SE3DI_ASK_TYRE:
+        return se3d_tyre_get_values(system, c->force, 0, SE3D_TYRE_VALUES, numbers);
     default:
         return se3d_force_get_state(system, c->force, numbers, numbers + 1, numbers + 2);
     }
@@ -229,6 +231,7 @@ static size_t element_of(se3di_question question, const se3di_channel *c)
     switch (question) {
     case SE3DI_ASK_WRENCH:
     case SE3DI_ASK_FORCE:
+    case SE3DI_ASK_TYRE:
         return c->force.index1;
     case SE3DI_ASK_WHEEL_POSE:
     case SE3DI_ASK_WHEEL_AXIS:

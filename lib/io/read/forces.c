@@ -15,13 +15,14 @@
 #include "io/read/bodies.h"
 #include "io/read/elements.h"
 #include "io/read/forces_bushing.h"
+#include "io/read/forces_tyre.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
 
 static const char *const time_only[] = {"t", NULL};
 static const char *const frames[] = {"ground", "body", NULL}; /* of se3d_load_def.in_body_frame */
 static const char *const force_types[] = {"tsda",   "rsda",  "bushing", "friction", "stop",
-                                          "effort", "force", "torque",  NULL};
+                                          "effort", "force", "torque",  "tyre",     NULL};
 
 /* clang-format off */
 static const se3di_key force_keys[] = {
@@ -122,6 +123,51 @@ static const se3di_key force_keys[] = {
          "coordinate and its rate, and of [channels](#laws-of-channels)"},
     {"value", SE3DI_KIND_FUNCTIONS, .types = " force torque ",
      .text = "numbers or functions of t and of [channels](#laws-of-channels) [N, N m]"},
+    {"body", SE3DI_KIND_BODY, .types = " tyre ", .text = "that turns with the tyre: the rim"},
+    {"point", SE3DI_KIND_POINT, .types = " tyre ", .standard = "the centre of mass",
+     .text = "wheel centre, frame of the body [m]"},
+    {"at", SE3DI_KIND_VECTOR, .types = " tyre ",
+     .text = "in place of point: at the given pose, ground frame [m]"},
+    {"axis", SE3DI_KIND_DIRECTION, .types = " tyre ", .standard = "[0, 1, 0]",
+     .text = "spin axis out of the vehicle, to the left on a left wheel, ground frame"},
+    {"side", SE3DI_KIND_WORD, SE3DI_INTO(se3d_tyre_def, side), .types = " tyre ",
+     .words = se3di_tyre_sides, .standard = "left",
+     .text = "of the vehicle, where axis points; a part that is mirrored has the other one"},
+    {"road", SE3DI_KIND_BODY, .types = " tyre ", .standard = "ground",
+     .text = "that the road is fixed to"},
+    {"road_point", SE3DI_KIND_VECTOR, .types = " tyre ", .standard = "[0, 0, 0]",
+     .text = "of the road's plane at the given pose, ground frame [m]"},
+    {"normal", SE3DI_KIND_DIRECTION, .types = " tyre ", .standard = "[0, 0, 1]",
+     .text = "of the road, up, at the given pose, ground frame"},
+    {"model", SE3DI_KIND_WORD, SE3DI_INTO(se3d_tyre_def, law), .types = " tyre ",
+     .words = se3di_tyre_laws, .standard = "brush", .text = "of the forces in the road"},
+    {"radius", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_tyre_def, radius),
+     .types = " tyre ", .text = "without load [m]"},
+    {"k", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_tyre_def, k), .types = " tyre ",
+     .text = "vertical stiffness [N/m]"},
+    {"c", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_tyre_def, c), .types = " tyre ",
+     .standard = "0", .text = "vertical damping [N s/m]"},
+    {"mu", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_tyre_def, mu), .types = " tyre ",
+     .text = "coefficient of friction"},
+    {"mu_min", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_tyre_def, mu_min),
+     .types = " tyre ", .standard = "mu", .text = "fiala: at full sliding, at most mu"},
+    {"slip_stiffness", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
+     SE3DI_INTO(se3d_tyre_def, slip_stiffness), .types = " tyre ",
+     .text = "dFx / d(slip ratio) at 0 [N]"},
+    {"cornering_stiffness", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
+     SE3DI_INTO(se3d_tyre_def, cornering_stiffness), .types = " tyre ",
+     .text = "-dFy / d(tangent of the slip angle) at 0 [N]"},
+    {"patch_length", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_tyre_def, patch_length), .types = " tyre ", .standard = "0",
+     .text = "of the contact patch, for the aligning moment [m]"},
+    {"rolling_resistance", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_tyre_def, rolling_resistance), .types = " tyre ", .standard = "0",
+     .text = "resistance over load"},
+    {"rolling_radius", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
+     SE3DI_INTO(se3d_tyre_def, rolling_radius), .types = " tyre ",
+     .standard = "radius - deflection/3", .text = "effective [m]"},
+    {"low_speed", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_tyre_def, low_speed),
+     .types = " tyre ", .standard = "1", .text = "below it slip is regularised [m/s]"},
     {.key = NULL}};
 const se3di_object se3di_object_force = {
     "force",
@@ -487,7 +533,8 @@ static bool read_force(se3di_reader *reader, const se3di_node *node)
         read_element read;
     } readers[] = {
         {"tsda", read_tsda},         {"rsda", read_rsda},     {"bushing", se3di_read_bushing},
-        {"friction", read_friction}, {"effort", read_effort}, {"stop", read_stop}};
+        {"friction", read_friction}, {"effort", read_effort}, {"stop", read_stop},
+        {"tyre", se3di_read_tyre}};
     const char *type = NULL;
     se3di_element_entry *entry = NULL;
     if (!se3di_read_type(reader, node, &se3di_object_force, &type) ||

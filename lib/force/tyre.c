@@ -1,0 +1,364 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Tyre: a wheel (body j, centre c, spin axis a to the left, radius R) on a plane road (body i,
+ * point P, normal n). With sin g = a . n:
+ *
+ *     x = a x n / cos g,  y = n x x,  d = (sin g a - n) / cos g       d: down, in the wheel's plane
+ *     l = n . (c - P) / cos g,  C = c + l d,  rho = R - l
+ *     v = velocity of the wheel less that of the road at C,  W = relative spin about a
+ *     rhodot = -n . v / cos g,  V_x = x . v + W l,  V_sx = V_x - W r_e,  V_sy = y . v
+ *     Fz = (k rho + c rhodot) / cos g, never below 0
+ *
+ * F = Fx x + Fy y + Fz n acts at C, with Mx x + My a + Mz n. My holds Fx (l - r_e): the moment of
+ * Fx about the axis is -r_e Fx, so that what is lost in the road is -Fx V_sx - Fy V_sy.
+ * docs/theory/tyre.md */
+#include "force/tyre.h"
+
+#include "force/measure.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define UPRIGHT 1e-3 /* cos g: a wheel that lies touches nothing */
+
+typedef struct patch {
+    double n[3], a[3], x[3], y[3], d[3];
+    double s[3], p[3], e[3]; /* c - r_j, P - r_i, c - P */
+    double q[3], b[3];       /* C - r_j, C - r_i */
+    double omega_i[3], omega_j[3], v[3];
+    double cosine, length, radius; /* cos g, l, R */
+    double input[SE3DI_PATCH_INPUTS];
+    int touches;
+} patch;
+
+static void take_velocity(const se3di_frame *i, const se3di_frame *j, patch *c)
+{
+    double turned[3], omega[3];
+    se3di_mul(i->A, i->w, c->omega_i);
+    se3di_mul(j->A, j->w, c->omega_j);
+    se3di_cross(c->omega_j, c->q, c->v);
+    se3di_add(c->v, j->v, c->v);
+    se3di_sub(c->v, i->v, c->v);
+    se3di_cross(c->omega_i, c->b, turned);
+    se3di_sub(c->v, turned, c->v);
+    se3di_sub(c->omega_j, c->omega_i, omega);
+    const double spin = se3di_dot(omega, c->a);
+    c->input[SE3DI_PATCH_RATE] = -se3di_dot(c->n, c->v) / c->cosine;
+    c->input[SE3DI_PATCH_SPEED] = se3di_dot(c->x, c->v) + spin * c->length;
+    c->input[SE3DI_PATCH_SIDE_SPEED] = se3di_dot(c->y, c->v);
+    c->input[SE3DI_PATCH_SPIN] = spin;
+}
+
+static void take_patch(const se3di_model *model, const se3di_force *force, patch *c)
+{
+    const se3di_frame *i = &model->frames[force->body_i], *j = &model->frames[force->body_j];
+    memset(c, 0, sizeof *c);
+    se3di_mul(i->A, force->tyre->normal, c->n);
+    se3di_mul(j->A, force->tyre->axis, c->a);
+    se3di_mul(j->A, force->s_j, c->s);
+    se3di_mul(i->A, force->s_i, c->p);
+    se3di_add(j->r, c->s, c->e);
+    se3di_sub(c->e, i->r, c->e);
+    se3di_sub(c->e, c->p, c->e);
+    const double sine = se3di_dot(c->a, c->n);
+    c->cosine = sqrt(fmax(0.0, 1.0 - sine * sine));
+    c->radius = force->rest;
+    c->input[SE3DI_PATCH_SINE] = sine;
+    if (c->cosine < UPRIGHT) {
+        c->length = c->radius;
+        return;
+    }
+    c->length = se3di_dot(c->n, c->e) / c->cosine;
+    c->input[SE3DI_PATCH_DEFLECTION] = c->radius - c->length;
+    c->touches = c->length < c->radius;
+    se3di_cross(c->a, c->n, c->x);
+    se3di_scale(1.0 / c->cosine, c->x, c->x);
+    se3di_cross(c->n, c->x, c->y);
+    se3di_scale(sine / c->cosine, c->a, c->d);
+    se3di_add_scaled(-1.0 / c->cosine, c->n, c->d);
+    se3di_copy(c->s, c->q);
+    se3di_add_scaled(c->length, c->d, c->q);
+    se3di_add(c->q, j->r, c->b);
+    se3di_sub(c->b, i->r, c->b);
+    take_velocity(i, j, c);
+}
+
+/* ---- Forces by the inputs ------------------------------------------------------------------*/
+
+/* (k rho + c rhodot) / cos g, at least 0 */
+static se3di_dual find_load(const se3di_force *force, const patch *c, se3di_dual deflection)
+{
+    const double *in = c->input;
+    const double radial = force->k * deflection.v + force->c * in[SE3DI_PATCH_RATE];
+    const double sine = in[SE3DI_PATCH_SINE];
+    se3di_dual load = se3di_dual_of(radial / c->cosine);
+    if (!(radial > 0.0)) {
+        return se3di_dual_of(0.0);
+    }
+    load.d[SE3DI_PATCH_DEFLECTION] = force->k / c->cosine;
+    load.d[SE3DI_PATCH_RATE] = force->c / c->cosine;
+    load.d[SE3DI_PATCH_SINE] = load.v * sine / (c->cosine * c->cosine);
+    return load;
+}
+
+static se3di_dual find_rolling_radius(const se3di_force *force, se3di_dual deflection)
+{
+    const double given = force->tyre->rolling_radius;
+    return given > 0.0 ? se3di_dual_of(given)
+                       : se3di_dual_line(force->rest, -1.0 / 3.0, deflection);
+}
+
+static void take_slip(const se3di_force *force, const patch *c, se3di_tyre_slip *slip)
+{
+    const se3di_tyre *tyre = force->tyre;
+    const double side = tyre->mirrored ? -1.0 : 1.0, *in = c->input;
+    const se3di_dual deflection =
+        se3di_dual_seed(in[SE3DI_PATCH_DEFLECTION], SE3DI_PATCH_DEFLECTION, 1.0);
+    const se3di_dual spin = se3di_dual_seed(in[SE3DI_PATCH_SPIN], SE3DI_PATCH_SPIN, 1.0);
+    slip->load = find_load(force, c, deflection);
+    slip->rolling_radius = find_rolling_radius(force, deflection);
+    slip->speed = se3di_dual_seed(in[SE3DI_PATCH_SPEED], SE3DI_PATCH_SPEED, 1.0);
+    slip->sine = se3di_dual_seed(side * in[SE3DI_PATCH_SINE], SE3DI_PATCH_SINE, side);
+    const se3di_dual rolled = se3di_dual_mul(spin, slip->rolling_radius);
+    slip->slide[0] = se3di_dual_sub(slip->speed, rolled);
+    slip->slide[1] =
+        se3di_dual_seed(side * in[SE3DI_PATCH_SIDE_SPEED], SE3DI_PATCH_SIDE_SPEED, side);
+    slip->roll = se3di_tyre_regular(rolled, tyre->low_speed);
+    const se3di_dual speed = se3di_tyre_regular(slip->speed, tyre->low_speed);
+    slip->ratio = se3di_dual_scale(-1.0, se3di_dual_div(slip->slide[0], speed));
+    slip->tangent = se3di_dual_div(slip->slide[1], speed);
+}
+
+static void find_forces(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
+                        se3di_tyre_forces *forces)
+{
+    memset(forces, 0, sizeof *forces);
+    take_slip(force, c, slip);
+    if (!(slip->load.v > 0.0)) {
+        return;
+    }
+    forces->of[2] = slip->load;
+    (force->tyre->law == SE3D_TYRE_FIALA ? se3di_tyre_fiala : se3di_tyre_brush)(force, slip,
+                                                                                forces);
+    for (int k = 1; k < 6 && force->tyre->mirrored; k += 2) { /* Fy, Mx, Mz */
+        forces->of[k] = se3di_dual_scale(-1.0, forces->of[k]);
+    }
+    const se3di_dual length =
+        se3di_dual_seed(c->length, SE3DI_PATCH_DEFLECTION, -1.0); /* R - deflection */
+    forces->of[4] = se3di_dual_add(
+        forces->of[4], se3di_dual_mul(forces->of[0], se3di_dual_sub(length, slip->rolling_radius)));
+}
+
+/* ---- Wrench and its derivatives ------------------------------------------------------------*/
+
+/* F and M in the ground frame. */
+static void compose(const patch *c, const double of[6], double F[3], double M[3])
+{
+    se3di_scale(of[0], c->x, F);
+    se3di_add_scaled(of[1], c->y, F);
+    se3di_add_scaled(of[2], c->n, F);
+    se3di_scale(of[3], c->x, M);
+    se3di_add_scaled(of[4], c->a, M);
+    se3di_add_scaled(of[5], c->n, M);
+}
+
+/* b x F + M */
+static void moment_about(const double b[3], const double F[3], const double M[3], double T[3])
+{
+    se3di_cross(b, F, T);
+    se3di_add(T, M, T);
+}
+
+/* Virtual displacements and changes of velocities, ground frame. */
+typedef struct turn {
+    double r_i[3], f_i[3], r_j[3], f_j[3]; /* f: rotations */
+    double v_i[3], w_i[3], v_j[3], w_j[3];
+} turn;
+
+/* How the patch changes; `out` holds changes in place of values. */
+static void vary_pose(const patch *c, const turn *t, patch *out)
+{
+    double part[3];
+    se3di_cross(t->f_i, c->n, out->n);
+    se3di_cross(t->f_j, c->a, out->a);
+    se3di_cross(t->f_j, c->s, out->s);
+    se3di_cross(t->f_i, c->p, out->p);
+    se3di_add(t->r_j, out->s, out->e);
+    se3di_sub(out->e, t->r_i, out->e);
+    se3di_sub(out->e, out->p, out->e);
+    const double sine = c->input[SE3DI_PATCH_SINE];
+    const double dsine = se3di_dot(out->a, c->n) + se3di_dot(c->a, out->n);
+    out->input[SE3DI_PATCH_SINE] = dsine;
+    out->cosine = -sine * dsine / c->cosine;
+    const double height = se3di_dot(out->n, c->e) + se3di_dot(c->n, out->e);
+    out->length = (height - c->length * out->cosine) / c->cosine;
+    out->input[SE3DI_PATCH_DEFLECTION] = -out->length;
+    se3di_cross(out->a, c->n, out->x);
+    se3di_cross(c->a, out->n, part);
+    se3di_add(out->x, part, out->x);
+    se3di_add_scaled(-out->cosine, c->x, out->x);
+    se3di_scale(1.0 / c->cosine, out->x, out->x);
+    se3di_cross(out->n, c->x, out->y);
+    se3di_cross(c->n, out->x, part);
+    se3di_add(out->y, part, out->y);
+    se3di_scale(dsine, c->a, out->d);
+    se3di_add_scaled(sine, out->a, out->d);
+    se3di_sub(out->d, out->n, out->d);
+    se3di_add_scaled(-out->cosine, c->d, out->d);
+    se3di_scale(1.0 / c->cosine, out->d, out->d);
+    se3di_copy(out->s, out->q);
+    se3di_add_scaled(out->length, c->d, out->q);
+    se3di_add_scaled(c->length, out->d, out->q);
+    se3di_add(out->q, t->r_j, out->b);
+    se3di_sub(out->b, t->r_i, out->b);
+}
+
+static void vary_velocity(const patch *c, const turn *t, patch *out)
+{
+    double part[3], omega[3];
+    se3di_cross(t->f_i, c->omega_i, out->omega_i);
+    se3di_add(out->omega_i, t->w_i, out->omega_i);
+    se3di_cross(t->f_j, c->omega_j, out->omega_j);
+    se3di_add(out->omega_j, t->w_j, out->omega_j);
+    se3di_sub(t->v_j, t->v_i, out->v);
+    se3di_cross(out->omega_j, c->q, part);
+    se3di_add(out->v, part, out->v);
+    se3di_cross(c->omega_j, out->q, part);
+    se3di_add(out->v, part, out->v);
+    se3di_cross(out->omega_i, c->b, part);
+    se3di_sub(out->v, part, out->v);
+    se3di_cross(c->omega_i, out->b, part);
+    se3di_sub(out->v, part, out->v);
+    se3di_sub(c->omega_j, c->omega_i, omega);
+    se3di_sub(out->omega_j, out->omega_i, part);
+    const double spin = se3di_dot(part, c->a) + se3di_dot(omega, out->a);
+    const double approach = se3di_dot(out->n, c->v) + se3di_dot(c->n, out->v);
+    out->input[SE3DI_PATCH_SPIN] = spin;
+    out->input[SE3DI_PATCH_RATE] =
+        -(approach + c->input[SE3DI_PATCH_RATE] * out->cosine) / c->cosine;
+    out->input[SE3DI_PATCH_SPEED] = se3di_dot(out->x, c->v) + se3di_dot(c->x, out->v) +
+                                    spin * c->length + c->input[SE3DI_PATCH_SPIN] * out->length;
+    out->input[SE3DI_PATCH_SIDE_SPEED] = se3di_dot(out->y, c->v) + se3di_dot(c->y, out->v);
+}
+
+/* One column of K or D: what the wrench changes by. */
+static void vary_wrench(const se3di_frame *const frames[2], const patch *c,
+                        const se3di_tyre_forces *forces, const turn *t, double column[12])
+{
+    patch out;
+    double of[6], change[6], F[3], M[3], dF[3], dM[3], T[3], dT[3], part[3];
+    vary_pose(c, t, &out);
+    vary_velocity(c, t, &out);
+    for (int k = 0; k < 6; ++k) {
+        of[k] = forces->of[k].v;
+        change[k] = 0.0;
+        for (int m = 0; m < SE3DI_PATCH_INPUTS; ++m) {
+            change[k] += forces->of[k].d[m] * out.input[m];
+        }
+    }
+    compose(c, of, F, M);
+    compose(c, change, dF, dM);
+    compose(&out, of, T, dT);
+    se3di_add(dF, T, dF);
+    se3di_add(dM, dT, dM);
+    for (int side = 0; side < 2; ++side) {
+        const double sign = side ? 1.0 : -1.0;
+        const double *arm = side ? c->q : c->b, *arm_change = side ? out.q : out.b;
+        moment_about(arm, F, M, T);
+        moment_about(arm, dF, dM, dT);
+        se3di_cross(arm_change, F, part);
+        se3di_add(dT, part, dT);
+        se3di_cross(side ? t->f_j : t->f_i, T, part);
+        se3di_sub(dT, part, dT); /* of A^T */
+        se3di_scale(sign, dF, column + 6 * side);
+        se3di_mul_transposed(frames[side]->A, dT, part);
+        se3di_scale(sign, part, column + 6 * side + 3);
+    }
+}
+
+static void add_derivatives(const se3di_frame *const frames[2], const patch *c,
+                            const se3di_tyre_forces *forces, se3di_effect *effect)
+{
+    for (int k = 0; k < 24; ++k) {
+        turn t = {.r_i = {0.0, 0.0, 0.0}};
+        double *const parts[8] = {t.r_i, t.f_i, t.r_j, t.f_j, t.v_i, t.w_i, t.v_j, t.w_j};
+        const double *A = frames[k % 12 / 6]->A;
+        double *part = parts[k / 3], column[12];
+        for (int m = 0; m < 3; ++m) {
+            part[m] = k / 3 % 2 ? A[3 * m + k % 3] : m == k % 3;
+        }
+        vary_wrench(frames, c, forces, &t, column);
+        for (int r = 0; r < 12; ++r) {
+            (k < 12 ? effect->K : effect->D)[12 * r + k % 12] = column[r];
+        }
+    }
+}
+
+static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force, double t,
+                             se3di_effect *effect)
+{
+    (void)t;
+    const se3di_frame *const frames[2] = {&model->frames[force->body_i],
+                                          &model->frames[force->body_j]};
+    patch c;
+    se3di_tyre_slip slip;
+    se3di_tyre_forces forces;
+    double of[6], F[3], M[3], T[3], u[12];
+    take_patch(model, force, &c);
+    if (!c.touches) {
+        return SE3D_OK;
+    }
+    find_forces(force, &c, &slip, &forces);
+    for (int k = 0; k < 6; ++k) {
+        of[k] = forces.of[k].v;
+    }
+    compose(&c, of, F, M);
+    se3di_scale(-1.0, F, effect->wrench);
+    se3di_copy(F, effect->wrench + 6);
+    moment_about(c.b, F, M, T);
+    se3di_mul_transposed(frames[0]->A, T, effect->wrench + 3);
+    se3di_scale(-1.0, effect->wrench + 3, effect->wrench + 3);
+    moment_about(c.q, F, M, T);
+    se3di_mul_transposed(frames[1]->A, T, effect->wrench + 9);
+    const double *in = c.input;
+    effect->potential = 0.5 * force->k * in[SE3DI_PATCH_DEFLECTION] * in[SE3DI_PATCH_DEFLECTION];
+    effect->power[0] = -force->k * in[SE3DI_PATCH_DEFLECTION] * in[SE3DI_PATCH_RATE];
+    se3di_velocity_pair(model, force, u);
+    for (int k = 0; k < 12; ++k) {
+        effect->power[0] -= effect->wrench[k] * u[k];
+    }
+    if (effect->wants_derivative) {
+        add_derivatives(frames, &c, &forces, effect);
+    }
+    return SE3D_OK;
+}
+
+void se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
+                     double values[SE3D_TYRE_VALUES])
+{
+    patch c;
+    se3di_tyre_slip slip = {.load = {.v = 0.0}};
+    se3di_tyre_forces forces = {.of = {{.v = 0.0}}};
+    const double side = force->tyre->mirrored ? -1.0 : 1.0;
+    take_patch(model, force, &c);
+    if (c.touches) {
+        find_forces(force, &c, &slip, &forces);
+    }
+    for (int k = 0; k < 6; ++k) {
+        values[SE3D_TYRE_FX + k] = forces.of[k].v;
+    }
+    values[SE3D_TYRE_SLIP_RATIO] = slip.ratio.v;
+    values[SE3D_TYRE_SLIP_ANGLE] = side * se3di_atan(slip.tangent.v);
+    values[SE3D_TYRE_INCLINATION] = se3di_asin(fmax(-1.0, fmin(1.0, c.input[SE3DI_PATCH_SINE])));
+    values[SE3D_TYRE_DEFLECTION] = c.input[SE3DI_PATCH_DEFLECTION];
+    values[SE3D_TYRE_LOADED_RADIUS] = c.length;
+    values[SE3D_TYRE_ROLLING_RADIUS] = slip.rolling_radius.v;
+    values[SE3D_TYRE_SPEED] = c.input[SE3DI_PATCH_SPEED];
+    se3di_add(model->frames[force->body_j].r, c.q, values + SE3D_TYRE_CONTACT_X);
+}
+
+const se3di_force_class se3di_force_class_tyre = {
+    .name = "tyre",
+    .eval = eval_tyre,
+    .traits = SE3DI_FORCE_IS_ELASTIC | SE3DI_FORCE_HOLDS,
+};

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Tyres: where they touch the road, and what their laws make of it. docs/theory/tyre.md */
+#ifndef SE3DI_FORCE_TYRE_H
+#define SE3DI_FORCE_TYRE_H
+
+#include "force/force.h"
+#include "math/dual.h"
+
+/* What forces depend on. */
+enum {
+    SE3DI_PATCH_DEFLECTION = 0, /* [m] */
+    SE3DI_PATCH_RATE = 1,       /* of it [m/s] */
+    SE3DI_PATCH_SPEED = 2,      /* of the contact point, forward [m/s] */
+    SE3DI_PATCH_SIDE_SPEED = 3, /* of the wheel there, to the left [m/s] */
+    SE3DI_PATCH_SINE = 4,       /* of the inclination */
+    SE3DI_PATCH_SPIN = 5,       /* about the axis [rad/s] */
+    SE3DI_PATCH_INPUTS = SE3DI_DUALS
+};
+
+/* What a law is asked for. */
+typedef struct se3di_tyre_slip {
+    se3di_dual load;           /* Fz > 0 */
+    se3di_dual rolling_radius; /* effective */
+    se3di_dual ratio;          /* kappa = -V_sx / V */
+    se3di_dual tangent;        /* tan alpha = V_sy / V */
+    se3di_dual slide[2];       /* V_sx, V_sy */
+    se3di_dual roll;           /* |spin| times the rolling radius, regularised */
+    se3di_dual speed;          /* V_x */
+    se3di_dual sine;           /* of the inclination */
+} se3di_tyre_slip;
+
+/* Forces Fx, Fy, Fz and moments Mx, My (about the axis), Mz by the inputs. */
+typedef struct se3di_tyre_forces {
+    se3di_dual of[6];
+} se3di_tyre_forces;
+
+/* |x|, and (x^2 + v^2) / 2v below v: its slope is continuous. */
+se3di_dual se3di_tyre_regular(se3di_dual x, double v);
+
+/* Each law adds Fx, Fy, Mx, My, Mz; Fz is there. */
+void se3di_tyre_brush(const se3di_force *force, const se3di_tyre_slip *slip,
+                      se3di_tyre_forces *forces);
+void se3di_tyre_fiala(const se3di_force *force, const se3di_tyre_slip *slip,
+                      se3di_tyre_forces *forces);
+
+/* What it tells at the present state, see se3d_tyre_value. */
+void se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
+                     double values[SE3D_TYRE_VALUES]);
+
+#endif

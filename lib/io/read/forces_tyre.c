@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "io/read/forces_tyre.h"
+
+#include <string.h>
+
+#include "io/document/document.h"
+#include "io/document/fields.h"
+#include "io/document/keys.h"
+#include "io/read/bodies.h"
+#include "io/read/objects.h"
+
+const char *const se3di_tyre_laws[] = {"brush", "fiala", NULL};
+const char *const se3di_tyre_sides[] = {"left", "right", NULL};
+
+/* A direction in the ground frame in that of a body. */
+static bool turn_into(se3di_reader *reader, se3d_body body, const double ground[3], double local[3])
+{
+    double r[3];
+    if (SE3D_FAILED(se3d_body_get_position(reader->system, body, r))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    const double end[3] = {r[0] + ground[0], r[1] + ground[1], r[2] + ground[2]};
+    const double from[3] = {r[0], r[1], r[2]};
+    double start[3];
+    if (!se3di_ground_to_body(reader, body, end, local) ||
+        !se3di_ground_to_body(reader, body, from, start)) {
+        return false;
+    }
+    for (size_t k = 0; k < 3; ++k) {
+        local[k] -= start[k];
+    }
+    return true;
+}
+
+/* In a part that is mirrored the left side is on the right. */
+static bool is_mirrored(const double M[9])
+{
+    return M[0] * (M[4] * M[8] - M[5] * M[7]) - M[1] * (M[3] * M[8] - M[5] * M[6]) +
+               M[2] * (M[3] * M[7] - M[4] * M[6]) <
+           0.0;
+}
+
+static bool read_road(se3di_reader *reader, const se3di_node *node, se3d_tyre_def *def)
+{
+    double point[3] = {0.0, 0.0, 0.0}, normal[3] = {0.0, 0.0, 1.0};
+    const se3di_body_entry *road = NULL;
+    if (se3di_node_get(node, "road")) {
+        if (!se3di_read_key_body(reader, node, "road", &road)) {
+            return false;
+        }
+        def->road = road->body;
+    } else if (SE3D_FAILED(se3d_system_get_ground(reader->system, &def->road))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    return se3di_read_key_ground_point(reader, node, "road_point", point) &&
+           se3di_read_key_ground_direction(reader, node, "normal", false, normal) &&
+           se3di_ground_to_body(reader, def->road, point, def->point) &&
+           turn_into(reader, def->road, normal, def->normal);
+}
+
+/* What a tyre cannot do without. */
+static bool check_given(se3di_reader *reader, const se3di_node *node)
+{
+    static const struct {
+        const char *key, *what;
+    } needed[] = {{"radius", "the radius without load [m] > 0"},
+                  {"k", "the vertical stiffness [N/m] > 0"},
+                  {"mu", "the coefficient of friction > 0"},
+                  {"slip_stiffness", "dFx / d(slip ratio) [N] > 0"},
+                  {"cornering_stiffness", "-dFy / d(slip angle) [N] > 0"}};
+    for (size_t k = 0; k < sizeof needed / sizeof *needed; ++k) {
+        if (!se3di_node_get(node, needed[k].key)) {
+            return se3di_reader_fail_key(reader, node, needed[k].key, "is missing, a tyre needs %s",
+                                         needed[k].what);
+        }
+    }
+    return true;
+}
+
+bool se3di_read_tyre(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+{
+    const se3di_body_entry *body = NULL;
+    se3d_tyre_def def = se3d_tyre_def_default();
+    double axis[3] = {0.0, 1.0, 0.0};
+    if (!se3di_read_key_body(reader, node, "body", &body) || !check_given(reader, node) ||
+        !se3di_read_key_place(reader, node, "point", "at", body, def.center) ||
+        !se3di_read_key_ground_direction(reader, node, "axis", false, axis) ||
+        !turn_into(reader, body->body, axis, def.axis) || !read_road(reader, node, &def) ||
+        !se3di_read_fields(reader, node, &se3di_object_force, "tyre", "se3d_tyre_def", &def)) {
+        return false;
+    }
+    if (is_mirrored(reader->part->place.M)) {
+        def.side = def.side == SE3D_TYRE_LEFT ? SE3D_TYRE_RIGHT : SE3D_TYRE_LEFT;
+    }
+    def.name = entry->name;
+    def.wheel = body->body;
+    entry->body = def.wheel;
+    memcpy(entry->point, def.center, sizeof entry->point);
+    const se3d_status status = se3d_force_create_tyre(reader->system, &def, &entry->force);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a tyre is made of. Data only; its forces are in force/tyre.c. */
+#ifndef SE3DI_MODEL_TYRE_H
+#define SE3DI_MODEL_TYRE_H
+
+#include "se3d/tyre.h"
+
+/* Beside what the force element has: the bodies (road i, wheel j), a point of the road s_i, the
+ * wheel's centre s_j, the radius `rest`, k, c and mu. */
+typedef struct se3di_tyre {
+    int32_t law;           /* se3d_tyre_law */
+    int32_t mirrored;      /* 1: used on the other side than the one it was measured on */
+    double normal[3];      /* unit, frame of the road */
+    double axis[3];        /* unit, to the left of the vehicle, frame of the wheel */
+    double rolling_radius; /* [m]; 0: follows from the deflection */
+    double mu_min;         /* 0: mu */
+    double slip_stiffness, cornering_stiffness;
+    double patch_length;
+    double rolling_resistance;
+    double low_speed;
+} se3di_tyre;
+
+#endif

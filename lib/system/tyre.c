@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Public layer: tyres. */
+#include "se3d/tyre.h"
+
+#include "force/tyre.h"
+#include "math/vec3.h"
+#include "system/force_internal.h"
+
+#include <string.h>
+
+#define LARGE    1e40
+#define POSITIVE 1e-40
+
+void se3d_tyre_def_init(se3d_tyre_def *def, size_t size)
+{
+    se3d_tyre_def defaults = {
+        .struct_size = size, .normal = {0.0, 0.0, 1.0}, .axis = {0.0, 1.0, 0.0}, .low_speed = 1.0};
+    se3di_def_init(def, size, &defaults, sizeof defaults);
+}
+
+static se3d_status check_choice(se3d_system *system, const char *what, int32_t value, int32_t last)
+{
+    if (value < 0 || value > last) {
+        return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT, " = %d, must be 0 to %d",
+                             (int)value, (int)last);
+    }
+    return SE3D_OK;
+}
+
+/* Of brush and Fiala. */
+static se3d_status check_stiffness(se3d_system *system, const se3d_tyre_def *def)
+{
+    SE3DI_TRY(se3di_check_range(system, "mu", def->mu, POSITIVE, LARGE));
+    SE3DI_TRY(se3di_check_range(system, "mu_min", def->mu_min, 0.0, def->mu));
+    SE3DI_TRY(se3di_check_range(system, "slip_stiffness", def->slip_stiffness, POSITIVE, LARGE));
+    return se3di_check_range(system, "cornering_stiffness", def->cornering_stiffness, POSITIVE,
+                             LARGE);
+}
+
+static se3d_status take_numbers(se3d_system *system, const se3d_tyre_def *def, se3di_force *data)
+{
+    se3di_tyre *tyre = data->tyre;
+    SE3DI_TRY(se3di_check_finites(system, "point", def->point, 3));
+    SE3DI_TRY(se3di_check_finites(system, "center", def->center, 3));
+    SE3DI_TRY(se3di_check_direction(system, "normal", def->normal, tyre->normal));
+    SE3DI_TRY(se3di_check_direction(system, "axis", def->axis, tyre->axis));
+    SE3DI_TRY(check_choice(system, "side", def->side, SE3D_TYRE_RIGHT));
+    SE3DI_TRY(check_choice(system, "law", def->law, SE3D_TYRE_FIALA));
+    SE3DI_TRY(se3di_check_range(system, "radius", def->radius, POSITIVE, LARGE));
+    SE3DI_TRY(se3di_check_range(system, "patch_length", def->patch_length, 0.0, LARGE));
+    SE3DI_TRY(se3di_check_range(system, "rolling_resistance", def->rolling_resistance, 0.0, LARGE));
+    SE3DI_TRY(se3di_check_range(system, "rolling_radius", def->rolling_radius, 0.0, LARGE));
+    SE3DI_TRY(se3di_check_range(system, "low_speed", def->low_speed, POSITIVE, LARGE));
+    SE3DI_TRY(check_stiffness(system, def));
+    se3di_copy(def->point, data->s_i);
+    se3di_copy(def->center, data->s_j);
+    se3di_scale(def->side == SE3D_TYRE_RIGHT ? -1.0 : 1.0, tyre->axis, tyre->axis);
+    data->rest = def->radius;
+    data->k = def->k;
+    data->c = def->c;
+    data->mu = def->mu;
+    tyre->law = def->law;
+    tyre->mu_min = def->mu_min;
+    tyre->slip_stiffness = def->slip_stiffness;
+    tyre->cornering_stiffness = def->cornering_stiffness;
+    tyre->patch_length = def->patch_length;
+    tyre->rolling_resistance = def->rolling_resistance;
+    tyre->rolling_radius = def->rolling_radius;
+    tyre->low_speed = def->low_speed;
+    return se3di_force_check_values(system, data);
+}
+
+se3d_status se3d_force_create_tyre(se3d_system *system, const se3d_tyre_def *def, se3d_force *force)
+{
+    SE3DI_TRY(se3di_force_begin(system, force));
+    se3d_tyre_def full = se3d_tyre_def_default();
+    se3di_tyre tyre = {.law = 0};
+    SE3DI_TRY(se3di_check_def(system, "tyre def", def, &full, sizeof full));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
+    se3di_force data = se3di_force_blank(SE3DI_FORCE_TYRE, full.name);
+    SE3DI_TRY(se3di_find_body(system, "road", full.road, &data.body_i));
+    SE3DI_TRY(se3di_find_body(system, "wheel", full.wheel, &data.body_j));
+    if (data.body_i == data.body_j) {
+        return SE3DI_FAIL_OF(system, "wheel", SE3D_ERR_INVALID_ARGUMENT,
+                             " is the road's own body, must be another one");
+    }
+    data.tyre = &tyre; /* copied by the model */
+    SE3DI_TRY(take_numbers(system, &full, &data));
+    return se3di_force_add(system, &data, force);
+}
+
+se3d_status se3d_tyre_get_values(const se3d_system *system, se3d_force force, size_t first,
+                                 size_t count, double *values)
+{
+    const se3di_force *data;
+    double all[SE3D_TYRE_VALUES];
+    SE3DI_TRY(se3di_force_find_reader(system, force, values, &data));
+    if (data->type != SE3DI_FORCE_TYRE || count == 0 || first >= SE3D_TYRE_VALUES ||
+        count > SE3D_TYRE_VALUES - first) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    se3di_tyre_tell(&system->model, data, all);
+    memcpy(values, all + first, count * sizeof *values);
+    return SE3D_OK;
+}

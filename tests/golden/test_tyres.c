@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Tyres: forces by an independent program (tyre_reference.py), and wheels that coast, brake, corner
+ * and stand. */
+#include "golden/tyre_reference.h"
+#include "support/text_model.h"
+
+#include <math.h>
+
+#define G 9.81
+
+/* A wheel in the state {h, g, u, v, W} over the road z = 0. */
+static void get_forces(const se3d_tyre_def *given, const double state[5], int on_right,
+                       double values[SE3D_TYRE_VALUES])
+{
+    se3d_system *system;
+    se3d_force tyre;
+    se3d_tyre_def def = *given;
+    se3d_body_def body = se3d_body_def_default();
+    const double side = on_right ? -1.0 : 1.0;
+    const double half = 0.5 * side * state[1];
+    CHECK(!se3d_system_create(NULL, &system));
+    body.mass = body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+    body.position[2] = state[0];
+    body.orientation[0] = cos(half);
+    body.orientation[1] = sin(half);
+    body.velocity[0] = state[2];
+    body.velocity[1] = side * state[3];
+    body.angular_velocity[1] = state[4];
+    CHECK(!se3d_body_create(system, &body, &def.wheel));
+    CHECK(!se3d_system_get_ground(system, &def.road));
+    def.side = on_right ? SE3D_TYRE_RIGHT : SE3D_TYRE_LEFT;
+    def.axis[1] = side;
+    CHECK(!se3d_force_create_tyre(system, &def, &tyre));
+    CHECK(!se3d_tyre_get_values(system, tyre, 0, SE3D_TYRE_VALUES, values));
+    se3d_system_destroy(system);
+}
+
+static se3d_tyre_def simple_tyre(int32_t law)
+{
+    se3d_tyre_def def = se3d_tyre_def_default();
+    def.law = law;
+    def.radius = 0.31;
+    def.k = 1.8e5;
+    def.c = 400.0;
+    def.mu = 1.1;
+    def.mu_min = law == SE3D_TYRE_FIALA ? 0.7 : 0.0;
+    def.slip_stiffness = 4.5e4;
+    def.cornering_stiffness = 3.2e4;
+    def.patch_length = 0.14;
+    def.rolling_resistance = 0.012;
+    return def;
+}
+
+static void compare(const se3d_tyre_def *def, const double expected[][6])
+{
+    double values[SE3D_TYRE_VALUES], right[SE3D_TYRE_VALUES];
+    for (int k = 0; k < TYRE_STATES; ++k) {
+        get_forces(def, tyre_states[k], 0, values);
+        for (int c = 0; c < 6; ++c) {
+            CHECK_NEAR(values[c], expected[k][c], 1e-9 * (1.0 + fabs(expected[k][c])));
+        }
+        get_forces(def, tyre_states[k], 1, right);
+        for (int c = 0; c < 6; ++c) { /* the other side is its mirror image */
+            const double mirrored = c == SE3D_TYRE_FY || c == SE3D_TYRE_MX || c == SE3D_TYRE_MZ
+                                        ? -values[c]
+                                        : values[c];
+            CHECK_NEAR(right[c], mirrored, 1e-9 * (1.0 + fabs(mirrored)));
+        }
+    }
+}
+
+static void forces_agree_with_an_independent_program(void)
+{
+    const se3d_tyre_def brush = simple_tyre(SE3D_TYRE_BRUSH);
+    const se3d_tyre_def fiala = simple_tyre(SE3D_TYRE_FIALA);
+    compare(&brush, tyre_brush);
+    compare(&fiala, tyre_fiala);
+}
+
+/* A box that stays level at the height h, and its wheel on a load of k 7.5 mm = 1500 N; %s: the
+ * law, the resistance to rolling, and what comes on top. */
+#define CARRIAGE                                                                                   \
+    "se3d: 1\n"                                                                                    \
+    "parameters: {u: 20, h: 0.2925}\n"                                                             \
+    "bodies:\n"                                                                                    \
+    "  - {name: box, mass: 200, inertia: [5, 5, 5], position: [0, 0, h], velocity: [u, 0, 0]}\n"   \
+    "  - {name: rim, mass: 20, inertia: [0.5, 0.9, 0.5], position: [0, 0, h],\n"                   \
+    "     velocity: [u, 0, 0], angular_velocity: [0, u/0.2975, 0]}\n"                              \
+    "constraints:\n"                                                                               \
+    "  - {type: dp1, body_i: ground, body_j: box, a_i: [1, 0, 0], a_j: [0, 1, 0]}\n"               \
+    "  - {type: dp1, body_i: ground, body_j: box, a_i: [1, 0, 0], a_j: [0, 0, 1]}\n"               \
+    "  - {type: dp1, body_i: ground, body_j: box, a_i: [0, 1, 0], a_j: [0, 0, 1]}\n"               \
+    "  - {name: level, type: cd, body_i: ground, body_j: box, c: [0, 0, 1], value: h}\n"           \
+    "joints:\n"                                                                                    \
+    "  - {name: hub, type: revolute, body_i: box, body_j: rim, at: [0, 0, h], axis: [0, 1, 0]}\n"  \
+    "forces:\n"                                                                                    \
+    "  - {name: tyre, type: tyre, body: rim, radius: 0.3, k: 2e5, mu: 0.9, model: %s,\n"           \
+    "     slip_stiffness: 5e4, cornering_stiffness: 4e4, rolling_resistance: %s}\n"                \
+    "%s"                                                                                           \
+    "analysis: {type: dynamics, duration: 10}\n"                                                   \
+    "output: [{file: o.csv, every: 0.1, channels: [box.position, box.velocity, "                   \
+    "rim.angular_velocity, tyre.fx, tyre.slip_ratio, energy.balance, energy.dissipated]}]\n"
+enum { POSITION, VELOCITY, SPIN, FX, SLIP, BALANCE, LOST };
+
+static text_model open_carriage(const char *law, const char *resistance, const char *more)
+{
+    char text[4000];
+    snprintf(text, sizeof text, CARRIAGE, law, resistance, more);
+    return text_model_open(text, -1, -1, 0.0);
+}
+
+/* u^2 m / (2 |Fx|), but for what is left of the speed where slip is regularised. */
+static void a_locked_wheel_stops_in_the_distance_of_mu(void)
+{
+    static const char *const laws[2] = {"brush", "fiala"};
+    for (int k = 0; k < 2; ++k) {
+        text_model m =
+            open_carriage(laws[k], "0", "drivers: [{name: lock, joint: hub, value: 0}]\n");
+        text_model_run(&m, 0.0); /* the lock stops the spin at once */
+        const double balance = text_model_get(&m, BALANCE, 0);
+        text_model_run(&m, 10.0);
+        const double whole = 0.9 * 1500.0; /* fiala: at kappa = -1 it does not slide wholly */
+        const double force = k == 0 ? whole : whole - whole * whole / (4.0 * 5e4);
+        const double distance = 20.0 * 20.0 * 220.0 / (2.0 * force);
+        CHECK_NEAR(text_model_get(&m, POSITION, 0), distance, 2e-3 * distance);
+        CHECK_NEAR(text_model_get(&m, VELOCITY, 0), 0.0, 1e-6);
+        CHECK_NEAR(text_model_get(&m, BALANCE, 0), balance, 1e-3 * 0.5 * 220.0 * 400.0);
+        text_model_close(&m);
+    }
+}
+
+static void a_wheel_without_resistance_rolls_on(void)
+{
+    text_model m = open_carriage("brush", "0", "");
+    CHECK(text_model_run(&m, 4.0));
+    CHECK_NEAR(text_model_get(&m, VELOCITY, 0), 20.0, 2e-5);
+    CHECK_NEAR(text_model_get(&m, SPIN, 1), 20.0 / 0.2975, 1e-3);
+    CHECK_NEAR(text_model_get(&m, LOST, 0), 0.0, 1e-3);
+    text_model_close(&m);
+}
+
+/* By the energies, the speed falls by f Fz / (m + J / r_e^2), but for the little slip. */
+static void a_wheel_slows_by_its_resistance_to_rolling(void)
+{
+    text_model m = open_carriage("brush", "0.02", "");
+    CHECK(text_model_run(&m, 4.0));
+    const double slowing = 0.02 * 1500.0 / (220.0 + 0.9 / (0.2975 * 0.2975));
+    CHECK_NEAR(text_model_get(&m, VELOCITY, 0), 20.0 - 4.0 * slowing, 1e-3);
+    CHECK(text_model_get(&m, SLIP, 0) < 0.0);
+    text_model_close(&m);
+}
+
+/* J W' = T - r_e Fx and m u' = Fx, with W r_e = u but for the little slip. */
+static void a_driven_wheel_pushes_with_its_torque(void)
+{
+    text_model m =
+        open_carriage("brush", "0", "  - {name: engine, type: effort, joint: hub, value: 300}\n");
+    CHECK(text_model_run(&m, 3.0));
+    const double force = 300.0 / (0.2975 + 0.9 / (220.0 * 0.2975));
+    CHECK_NEAR(text_model_get(&m, FX, 0), force, 2e-3 * force);
+    CHECK(text_model_get(&m, SLIP, 0) > 0.0);
+    text_model_close(&m);
+}
+
+#define DROP                                                                                       \
+    "se3d: 1\n"                                                                                    \
+    "bodies:\n"                                                                                    \
+    "  - {name: rim, mass: 50, inertia: [0.5, 0.9, 0.5], position: [0, 0, 0.5],\n"                 \
+    "     velocity: [0, 0, 0]}\n"                                                                  \
+    "forces:\n"                                                                                    \
+    "  - {name: tyre, type: tyre, body: rim, radius: 0.3, k: 2e5, c: 1500, mu: 0.9,\n"             \
+    "     slip_stiffness: 5e4, cornering_stiffness: 4e4}\n"                                        \
+    "analysis: {type: dynamics, duration: 4}\n"                                                    \
+    "output: [{file: o.csv, every: 0.1, channels: [rim.position, tyre.fz, energy.balance]}]\n"
+
+/* A wheel that falls, bounces, comes to rest and stays there. */
+static void the_road_never_pulls_and_what_rests_stays(void)
+{
+    text_model m = text_model_open(DROP, -1, -1, 0.0);
+    const double balance = text_model_get(&m, 2, 0);
+    int flies_again = 0;
+    for (int k = 1; k <= 400; ++k) {
+        CHECK(text_model_run(&m, 0.01 * k));
+        const double force = text_model_get(&m, 1, 0), height = text_model_get(&m, 0, 2);
+        CHECK(force >= 0.0);
+        CHECK(!(height > 0.3 && force > 0.0));
+        flies_again |= k > 25 && height > 0.3;
+    }
+    CHECK(flies_again);
+    CHECK_NEAR(text_model_get(&m, 0, 2), 0.3 - 50.0 * G / 2e5, 1e-6);
+    CHECK_NEAR(text_model_get(&m, 0, 0), 0.0, 1e-12);
+    CHECK_NEAR(text_model_get(&m, 1, 0), 50.0 * G, 1e-3);
+    CHECK_NEAR(text_model_get(&m, 2, 0), balance, 1e-3 * 50.0 * G * 0.2);
+    text_model_close(&m);
+}
+
+int main(void)
+{
+    RUN(forces_agree_with_an_independent_program);
+    RUN(a_locked_wheel_stops_in_the_distance_of_mu);
+    RUN(a_wheel_without_resistance_rolls_on);
+    RUN(a_wheel_slows_by_its_resistance_to_rolling);
+    RUN(a_driven_wheel_pushes_with_its_torque);
+    RUN(the_road_never_pulls_and_what_rests_stays);
+    return check_finish();
+}
