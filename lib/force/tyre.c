@@ -101,9 +101,18 @@ static se3di_dual find_load(const se3di_force *force, const patch *c, se3di_dual
     return load;
 }
 
-static se3di_dual find_rolling_radius(const se3di_force *force, se3di_dual deflection)
+static int is_magic(const se3di_force *force)
+{
+    return force->tyre->law == SE3D_TYRE_MF52 || force->tyre->law == SE3D_TYRE_MF61;
+}
+
+static se3di_dual find_rolling_radius(const se3di_force *force, se3di_dual deflection,
+                                      se3di_dual spin)
 {
     const double given = force->tyre->rolling_radius;
+    if (is_magic(force) && !(given > 0.0)) {
+        return se3di_tyre_magic_radius(force, deflection, spin);
+    }
     return given > 0.0 ? se3di_dual_of(given)
                        : se3di_dual_line(force->rest, -1.0 / 3.0, deflection);
 }
@@ -116,7 +125,7 @@ static void take_slip(const se3di_force *force, const patch *c, se3di_tyre_slip 
         se3di_dual_seed(in[SE3DI_PATCH_DEFLECTION], SE3DI_PATCH_DEFLECTION, 1.0);
     const se3di_dual spin = se3di_dual_seed(in[SE3DI_PATCH_SPIN], SE3DI_PATCH_SPIN, 1.0);
     slip->load = find_load(force, c, deflection);
-    slip->rolling_radius = find_rolling_radius(force, deflection);
+    slip->rolling_radius = find_rolling_radius(force, deflection, spin);
     slip->speed = se3di_dual_seed(in[SE3DI_PATCH_SPEED], SE3DI_PATCH_SPEED, 1.0);
     slip->sine = se3di_dual_seed(side * in[SE3DI_PATCH_SINE], SE3DI_PATCH_SINE, side);
     const se3di_dual rolled = se3di_dual_mul(spin, slip->rolling_radius);
@@ -127,6 +136,7 @@ static void take_slip(const se3di_force *force, const patch *c, se3di_tyre_slip 
     const se3di_dual speed = se3di_tyre_regular(slip->speed, tyre->low_speed);
     slip->ratio = se3di_dual_scale(-1.0, se3di_dual_div(slip->slide[0], speed));
     slip->tangent = se3di_dual_div(slip->slide[1], speed);
+    slip->way = se3di_dual_div(slip->speed, speed);
 }
 
 static void find_forces(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
@@ -138,8 +148,13 @@ static void find_forces(const se3di_force *force, const patch *c, se3di_tyre_sli
         return;
     }
     forces->of[2] = slip->load;
-    (force->tyre->law == SE3D_TYRE_FIALA ? se3di_tyre_fiala : se3di_tyre_brush)(force, slip,
-                                                                                forces);
+    if (is_magic(force)) {
+        se3di_tyre_magic(force, slip, forces);
+    } else if (force->tyre->law == SE3D_TYRE_FIALA) {
+        se3di_tyre_fiala(force, slip, forces);
+    } else {
+        se3di_tyre_brush(force, slip, forces);
+    }
     for (int k = 1; k < 6 && force->tyre->mirrored; k += 2) { /* Fy, Mx, Mz */
         forces->of[k] = se3di_dual_scale(-1.0, forces->of[k]);
     }

@@ -26,6 +26,7 @@ typedef struct se3di_tyre_slip {
     se3di_dual slide[2];       /* V_sx, V_sy */
     se3di_dual roll;           /* |spin| times the rolling radius, regularised */
     se3di_dual speed;          /* V_x */
+    se3di_dual way;            /* V_x / V: 1 ahead, -1 back */
     se3di_dual sine;           /* of the inclination */
 } se3di_tyre_slip;
 
@@ -42,6 +43,12 @@ void se3di_tyre_brush(const se3di_force *force, const se3di_tyre_slip *slip,
                       se3di_tyre_forces *forces);
 void se3di_tyre_fiala(const se3di_force *force, const se3di_tyre_slip *slip,
                       se3di_tyre_forces *forces);
+
+void se3di_tyre_magic(const se3di_force *force, const se3di_tyre_slip *slip,
+                      se3di_tyre_forces *forces);
+/* The effective rolling radius of a Magic Formula. */
+se3di_dual se3di_tyre_magic_radius(const se3di_force *force, se3di_dual deflection,
+                                   se3di_dual spin);
 
 /* What it tells at the present state, see se3d_tyre_value. */
 void se3di_tyre_tell(const se3di_model *model, const se3di_force *force,

@@ -18,6 +18,7 @@ typedef struct se3di_tyre {
     double patch_length;
     double rolling_resistance;
     double low_speed;
+    double coefficients[SE3D_TYRE_COEFFICIENTS]; /* of the Magic Formula */
 } se3di_tyre;
 
 #endif

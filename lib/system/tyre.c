@@ -6,6 +6,7 @@
 #include "math/vec3.h"
 #include "system/force_internal.h"
 
+#include <math.h>
 #include <string.h>
 
 #define LARGE    1e40
@@ -37,6 +38,82 @@ static se3d_status check_stiffness(se3d_system *system, const se3d_tyre_def *def
                              LARGE);
 }
 
+static const char *const coefficient_names[SE3D_TYRE_COEFFICIENTS] = {
+#define NAME(NAME, number, value) #NAME,
+    SE3D_TYRE_COEFFICIENT_LIST(NAME)
+#undef NAME
+};
+
+void se3d_tyre_coefficients_init(double *coefficients, size_t count)
+{
+    static const double values[SE3D_TYRE_COEFFICIENTS] = {
+#define VALUE(NAME, number, value) (double)(value),
+        SE3D_TYRE_COEFFICIENT_LIST(VALUE)
+#undef VALUE
+    };
+    for (size_t k = 0; coefficients && k < count && k < SE3D_TYRE_COEFFICIENTS; ++k) {
+        coefficients[k] = values[k];
+    }
+}
+
+se3d_status se3d_tyre_coefficient_find(const char *name, size_t *index)
+{
+    if (index) {
+        *index = 0;
+    }
+    if (!name || !index) {
+        return SE3D_ERR_NULL;
+    }
+    for (size_t k = 0; k < SE3D_TYRE_COEFFICIENTS; ++k) {
+        if (strcmp(coefficient_names[k], name) == 0) {
+            *index = k;
+            return SE3D_OK;
+        }
+    }
+    return SE3D_ERR_INVALID_ARGUMENT;
+}
+
+/* What the formulas divide by. */
+static se3d_status check_divisors(se3d_system *system, const double *c)
+{
+    static const int divisors[] = {SE3D_TYRE_PCX1, SE3D_TYRE_PDX1, SE3D_TYRE_PKX1, SE3D_TYRE_PCY1,
+                                   SE3D_TYRE_PDY1, SE3D_TYRE_PKY1, SE3D_TYRE_PKY2, SE3D_TYRE_LCX,
+                                   SE3D_TYRE_LCY,  SE3D_TYRE_LMUX, SE3D_TYRE_LMUY, SE3D_TYRE_LKY};
+    static const int positive[] = {SE3D_TYRE_FNOMIN, SE3D_TYRE_LONGVL, SE3D_TYRE_LFZO};
+    for (size_t k = 0; k < sizeof positive / sizeof *positive; ++k) {
+        SE3DI_TRY(se3di_check_range(system, coefficient_names[positive[k]], c[positive[k]],
+                                    POSITIVE, LARGE));
+    }
+    for (size_t k = 0; k < sizeof divisors / sizeof *divisors; ++k) {
+        if (!(fabs(c[divisors[k]]) > 0.0)) {
+            return SE3DI_FAIL_OF(system, coefficient_names[divisors[k]], SE3D_ERR_INVALID_ARGUMENT,
+                                 " = 0, must not be 0");
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status take_coefficients(se3d_system *system, const se3d_tyre_def *def,
+                                     se3di_tyre *tyre)
+{
+    double *c = tyre->coefficients;
+    se3d_tyre_coefficients_init(c, SE3D_TYRE_COEFFICIENTS);
+    if (def->coefficient_count > SE3D_TYRE_COEFFICIENTS) {
+        return SE3DI_FAIL_OF(system, "coefficient_count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be at most %d", def->coefficient_count,
+                             SE3D_TYRE_COEFFICIENTS);
+    }
+    if (def->coefficient_count > 0) {
+        SE3DI_TRY(se3di_check_pointer(system, "coefficients", def->coefficients));
+        memcpy(c, def->coefficients, def->coefficient_count * sizeof *c);
+    }
+    for (int k = 0; k < SE3D_TYRE_COEFFICIENTS; ++k) {
+        SE3DI_TRY(se3di_check_range(system, coefficient_names[k], c[k], -LARGE, LARGE));
+    }
+    tyre->mirrored = def->side != def->measured_side;
+    return check_divisors(system, c);
+}
+
 static se3d_status take_numbers(se3d_system *system, const se3d_tyre_def *def, se3di_force *data)
 {
     se3di_tyre *tyre = data->tyre;
@@ -45,20 +122,22 @@ static se3d_status take_numbers(se3d_system *system, const se3d_tyre_def *def, s
     SE3DI_TRY(se3di_check_direction(system, "normal", def->normal, tyre->normal));
     SE3DI_TRY(se3di_check_direction(system, "axis", def->axis, tyre->axis));
     SE3DI_TRY(check_choice(system, "side", def->side, SE3D_TYRE_RIGHT));
-    SE3DI_TRY(check_choice(system, "law", def->law, SE3D_TYRE_FIALA));
+    SE3DI_TRY(check_choice(system, "law", def->law, SE3D_TYRE_MF61));
     SE3DI_TRY(se3di_check_range(system, "radius", def->radius, POSITIVE, LARGE));
     SE3DI_TRY(se3di_check_range(system, "patch_length", def->patch_length, 0.0, LARGE));
     SE3DI_TRY(se3di_check_range(system, "rolling_resistance", def->rolling_resistance, 0.0, LARGE));
     SE3DI_TRY(se3di_check_range(system, "rolling_radius", def->rolling_radius, 0.0, LARGE));
     SE3DI_TRY(se3di_check_range(system, "low_speed", def->low_speed, POSITIVE, LARGE));
-    SE3DI_TRY(check_stiffness(system, def));
+    SE3DI_TRY(check_choice(system, "measured_side", def->measured_side, SE3D_TYRE_RIGHT));
+    const int is_magic = def->law == SE3D_TYRE_MF52 || def->law == SE3D_TYRE_MF61;
+    SE3DI_TRY(is_magic ? take_coefficients(system, def, tyre) : check_stiffness(system, def));
     se3di_copy(def->point, data->s_i);
     se3di_copy(def->center, data->s_j);
     se3di_scale(def->side == SE3D_TYRE_RIGHT ? -1.0 : 1.0, tyre->axis, tyre->axis);
     data->rest = def->radius;
     data->k = def->k;
     data->c = def->c;
-    data->mu = def->mu;
+    data->mu = is_magic && memcmp(&def->mu, &(double){0.0}, sizeof def->mu) == 0 ? 1.0 : def->mu;
     tyre->law = def->law;
     tyre->mu_min = def->mu_min;
     tyre->slip_stiffness = def->slip_stiffness;

@@ -12,6 +12,8 @@
 #include "se3d/se3d.h"
 #include "system/system_internal.h"
 
+#include "golden/tyre_reference.h"
+
 static uint64_t seed = 88172645463325252u;
 
 typedef struct world {
@@ -305,6 +307,12 @@ static void create_tyre(world *w, int32_t law, double low_speed, double mu)
     se3d_tyre_def def = se3d_tyre_def_default();
     double n[3], across[3], center[3], arm[3];
     const se3di_frame *i = &w->model->frames[1], *j = &w->model->frames[2];
+    double c[SE3D_TYRE_COEFFICIENTS];
+    se3d_tyre_coefficients_init(c, SE3D_TYRE_COEFFICIENTS);
+    for (size_t k = 0; k < sizeof tyre_coefficients / sizeof *tyre_coefficients; ++k) {
+        c[tyre_coefficients[k].at] = tyre_coefficients[k].value;
+    }
+    c[SE3D_TYRE_FNOMIN] = 10.0;
     def.road = w->i;
     def.wheel = w->j;
     random_vector(def.center, 3, 0.2);
@@ -332,6 +340,8 @@ static void create_tyre(world *w, int32_t law, double low_speed, double mu)
     def.patch_length = 0.2;
     def.rolling_resistance = 0.02;
     def.low_speed = low_speed;
+    def.coefficients = c;
+    def.coefficient_count = SE3D_TYRE_COEFFICIENTS;
     finish(w, se3d_force_create_tyre(w->system, &def, &force));
 }
 
@@ -353,6 +363,16 @@ static void create_rolling_fiala(world *w)
 static void create_sliding_fiala(world *w)
 {
     create_tyre(w, SE3D_TYRE_FIALA, 12.0, 0.2);
+}
+
+static void create_mf52(world *w)
+{
+    create_tyre(w, SE3D_TYRE_MF52, 20.0, 1.1);
+}
+
+static void create_mf61(world *w)
+{
+    create_tyre(w, SE3D_TYRE_MF61, 20.0, 1.1);
 }
 
 /* A drag that depends on everything. */
@@ -458,6 +478,7 @@ static void jacobians_of_every_element(void)
         create_small_bushing,  create_sticking_hinge, create_slipping_slide,  create_upper_stop,
         create_lower_stop,     create_torque_effort,  create_push_effort,     create_law_of_effort,
         create_sticking_brush, create_sliding_brush,  create_rolling_fiala,   create_sliding_fiala,
+        create_mf52,           create_mf61,
     };
     for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
         jacobians_agree_with_differences(create[k], 1e-10);
@@ -554,6 +575,8 @@ static void power_balances_for_every_element(void)
                                        create_sliding_brush,
                                        create_rolling_fiala,
                                        create_sliding_fiala,
+                                       create_mf52,
+                                       create_mf61,
                                        create_callback};
     for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
         for (int trial = 0; trial < 10; ++trial) {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Tyres: forces by an independent program (tyre_reference.py), and wheels that coast, brake, corner
  * and stand. */
-#include "golden/tyre_reference.h"
 #include "support/text_model.h"
+
+#include "golden/tyre_reference.h"
 
 #include <math.h>
 
@@ -29,6 +30,7 @@ static void get_forces(const se3d_tyre_def *given, const double state[5], int on
     CHECK(!se3d_body_create(system, &body, &def.wheel));
     CHECK(!se3d_system_get_ground(system, &def.road));
     def.side = on_right ? SE3D_TYRE_RIGHT : SE3D_TYRE_LEFT;
+    def.measured_side = SE3D_TYRE_LEFT;
     def.axis[1] = side;
     CHECK(!se3d_force_create_tyre(system, &def, &tyre));
     CHECK(!se3d_tyre_get_values(system, tyre, 0, SE3D_TYRE_VALUES, values));
@@ -73,6 +75,18 @@ static void forces_agree_with_an_independent_program(void)
 {
     const se3d_tyre_def brush = simple_tyre(SE3D_TYRE_BRUSH);
     const se3d_tyre_def fiala = simple_tyre(SE3D_TYRE_FIALA);
+    se3d_tyre_def magic = brush;
+    double c[SE3D_TYRE_COEFFICIENTS];
+    se3d_tyre_coefficients_init(c, SE3D_TYRE_COEFFICIENTS);
+    for (size_t k = 0; k < sizeof tyre_coefficients / sizeof *tyre_coefficients; ++k) {
+        c[tyre_coefficients[k].at] = tyre_coefficients[k].value;
+    }
+    magic.coefficients = c;
+    magic.coefficient_count = SE3D_TYRE_COEFFICIENTS;
+    magic.law = SE3D_TYRE_MF52;
+    compare(&magic, tyre_mf52);
+    magic.law = SE3D_TYRE_MF61;
+    compare(&magic, tyre_mf61);
     compare(&brush, tyre_brush);
     compare(&fiala, tyre_fiala);
 }

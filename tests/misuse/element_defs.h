@@ -77,7 +77,8 @@ typedef struct field {
 #define FORCE_VARIANT_LIST(X)                                                                      \
     X(rsda_between, rsda)                                                                          \
     X(stop_between, stop)                                                                          \
-    X(tyre_fiala, tyre)
+    X(tyre_fiala, tyre)                                                                            \
+    X(tyre_magic, tyre)
 
 FILL(se3d_tsda_def, tsda)
 {
@@ -249,7 +250,6 @@ FIELDS(tyre) = {NAME(se3d_tyre_def),
                 NUMBERS(se3d_tyre_def, center),
                 NUMBERS(se3d_tyre_def, axis),
                 INTEGER(se3d_tyre_def, side),
-                INTEGER(se3d_tyre_def, law),
                 NUMBERS(se3d_tyre_def, radius),
                 NUMBERS(se3d_tyre_def, k),
                 NUMBERS(se3d_tyre_def, c),
@@ -270,6 +270,28 @@ FILL(se3d_tyre_def, tyre_fiala)
     def->mu_min = 0.6;
 }
 FIELDS(tyre_fiala) = {NUMBERS(se3d_tyre_def, mu), NUMBERS(se3d_tyre_def, mu_min), FIELDS_END};
+
+FILL(se3d_tyre_def, tyre_magic)
+{
+    static const struct {
+        int32_t at, reserved;
+        double value;
+    } given[] = {{SE3D_TYRE_FNOMIN, 0, 100.0}, {SE3D_TYRE_PCX1, 0, 1.6}, {SE3D_TYRE_PDX1, 0, 1.1},
+                 {SE3D_TYRE_PKX1, 0, 20.0},    {SE3D_TYRE_PCY1, 0, 1.3}, {SE3D_TYRE_PDY1, 0, 1.0},
+                 {SE3D_TYRE_PKY1, 0, -15.0},   {SE3D_TYRE_PKY2, 0, 2.0}};
+    static double c[SE3D_TYRE_COEFFICIENTS];
+    se3d_tyre_coefficients_init(c, SE3D_TYRE_COEFFICIENTS);
+    for (size_t k = 0; k < sizeof given / sizeof *given; ++k) {
+        c[given[k].at] = given[k].value;
+    }
+    set_tyre(at, def);
+    def->law = SE3D_TYRE_MF61;
+    def->coefficients = c;
+    def->coefficient_count = SE3D_TYRE_COEFFICIENTS;
+}
+FIELDS(tyre_magic) = {INTEGER(se3d_tyre_def, law), SIZE(se3d_tyre_def, coefficient_count),
+                      INTEGER(se3d_tyre_def, measured_side), NUMBERS(se3d_tyre_def, mu),
+                      FIELDS_END};
 
 static inline se3d_status no_force(void *ctx, double t, const se3d_body_motion motion[2],
                                    double wrench[12], double *K, double *D)

@@ -187,6 +187,21 @@ static void check_tyre(arguments *a, const settable *m)
     INVALID(se3d_force_set_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_C, -1.0));
     INVALID(se3d_force_set_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_REST, 1.0));
     CHECK(!se3d_force_destroy(a->system, tyre));
+    size_t index = 7;
+    double c[2] = {-1.0, -1.0};
+    se3d_tyre_coefficients_init(NULL, 3);
+    se3d_tyre_coefficients_init(c, 1);
+    CHECK(c[0] >= 0.0 && c[1] < 0.0);
+    CHECK(!se3d_tyre_coefficient_find("PDY1", &index) && index == SE3D_TYRE_PDY1);
+    CHECK(se3d_tyre_coefficient_find("PDY", &index) == SE3D_ERR_INVALID_ARGUMENT && index == 0);
+    CHECK(se3d_tyre_coefficient_find(NULL, &index) == SE3D_ERR_NULL);
+    CHECK(se3d_tyre_coefficient_find("PDY1", NULL) == SE3D_ERR_NULL);
+    def.law = SE3D_TYRE_MF61; /* without coefficients */
+    INVALID(se3d_force_create_tyre(a->system, &def, &tyre));
+    def.coefficient_count = 1;
+    CHECK(se3d_force_create_tyre(a->system, &def, &tyre) == SE3D_ERR_NULL);
+    def.coefficient_count = SE3D_TYRE_COEFFICIENTS + 1;
+    INVALID(se3d_force_create_tyre(a->system, &def, &tyre));
     CHECK(se3d_tyre_get_values(a->system, tyre, 0, 1, values) == SE3D_ERR_STALE_HANDLE);
 }
 
