@@ -30,8 +30,26 @@ static const se3di_contact_point *deepest(const se3di_manifold *m)
 
 typedef struct accuracy {
     int counted, wrong, outside, less, phantom;
+    int kinds[3][3]; /* by what touches of i and of j */
     double depth, normal, beyond;
 } accuracy;
+
+/* What of a shape is farthest along n: 0 a corner or a point of a rim, 1 an edge or a side, 2 a
+ * face or a cap. */
+static int feature_of(const poly *p, const double n[3])
+{
+    int count = 0;
+    double at[3];
+    if (p->is_cylinder) {
+        const double along = fabs(se3di_dot(n, p->z));
+        return along > 1.0 - 1e-12 ? 2 : along < SAME;
+    }
+    const double most = poly_reach(p, n, at);
+    for (int k = 0; k < p->points; ++k) {
+        count += se3di_dot(p->point[k], n) > most - SAME;
+    }
+    return count > 2 ? 2 : count - 1;
+}
 
 /* How far a place is outside a shape. */
 static double outside(const se3di_shape *s, const se3di_shape_pose *at, const double x[3])
@@ -72,23 +90,25 @@ static void show(const se3di_shape *i, const se3di_shape *j, double wanted, cons
     }
 }
 
-/* Along any direction the overlap bounds the least one: one that is less than that found here is
+/* `convex`: j, or the convex solid whose surface it is. Along any direction the overlap bounds the
+ * least one: one that is less than that found here is
  * right if it is that along its own normal. Normals may differ where these are equal to rounding.
  */
 static void compare(const se3di_shape *i, const se3di_shape_pose *at, const se3di_shape *j,
-                    const se3di_shape_pose *of, double wanted, const double n[3], accuracy *a)
+                    const se3di_shape_pose *of, const se3di_shape *convex, double wanted,
+                    const double n[3], accuracy *a)
 {
+    static poly one, two;
     se3di_manifold m;
-    poly one, two;
-    double turn[3] = {1.0, 0.0, 0.0}, v[3], off = 1.0, along = HUGE_VAL;
+    double turn[3] = {1.0, 0.0, 0.0}, back[3], v[3], off = 1.0, along = HUGE_VAL;
     se3di_narrow_find(i, at, j, of, &m);
     const se3di_contact_point *p = m.count > 0 ? deepest(&m) : NULL;
-    if (p && j->kind != SE3DI_SHAPE_MESH) {
-        poly_of(i, at, &one);
-        poly_of(j, of, &two);
-        along = overlap_along(&one, &two, p->normal, v) + one.radius + two.radius;
-    }
+    poly_of(i, at, &one);
+    poly_of(convex, of, &two);
+    se3di_scale(-1.0, n, back);
+    ++a->kinds[feature_of(&one, n)][feature_of(&two, back)];
     if (p) {
+        along = overlap_along(&one, &two, p->normal, v) + one.radius + two.radius;
         se3di_sub(p->normal, n, turn);
         off = fabs(p->overlap - wanted);
     }
@@ -138,7 +158,21 @@ static void report(const char *one, const char *two, const accuracy *a)
                "phantom %d\n",
                one, two, a->counted, a->wrong, a->depth, a->normal, a->outside, a->beyond, a->less,
                a->phantom);
+        printf("    corner, edge, face of the one on those of the other:");
+        for (int k = 0; k < 9; ++k) {
+            printf("%s %d", k % 3 == 0 ? ";" : "", a->kinds[k / 3][k % 3]);
+        }
+        printf("\n");
     }
+}
+
+/* Every way in which two polyhedra touch in a single point was had often. */
+static void check_kinds(int one, int two, const accuracy *a)
+{
+    const int are_flat = one < 2 && two < 2; /* boxes and hulls */
+    CHECK(!are_flat || 20 * a->kinds[0][2] > a->counted);
+    CHECK(!are_flat || 20 * a->kinds[2][0] > a->counted);
+    CHECK(!are_flat || 20 * a->kinds[1][1] > a->counted);
 }
 
 static void check_pair(int one, int two, int poses)
@@ -161,7 +195,7 @@ static void check_pair(int one, int two, int poses)
             continue;
         }
         se3di_add_scaled(wanted - least, n, at.x);
-        compare(&i.shape, &at, &j.shape, &of, wanted, n, &a);
+        compare(&i.shape, &at, &j.shape, &of, &j.shape, wanted, n, &a);
         part(&i.shape, &at, &j.shape, &of, wanted, n, &a);
     }
     report(names[one], names[two], &a);
@@ -170,6 +204,7 @@ static void check_pair(int one, int two, int poses)
     CHECK(a.phantom == 0);
     CHECK(a.outside == 0);
     CHECK(a.less * 200 < a.counted);
+    check_kinds(one, two, &a);
 }
 
 /* A convex mesh is what it encloses. */
@@ -192,7 +227,7 @@ static void check_block(int kind, int poses)
         const double least = separation_of(&i.shape, &at, &block, &of, n);
         if (least > (least > radius ? wanted : -HUGE_VAL)) {
             se3di_add_scaled(wanted - least, n, at.x);
-            compare(&i.shape, &at, &s.shape, &of, wanted, n, &a);
+            compare(&i.shape, &at, &s.shape, &of, &block, wanted, n, &a);
             part(&i.shape, &at, &s.shape, &of, wanted, n, &a);
         }
     }
@@ -277,7 +312,7 @@ static void check_surface(int kind, int which, int poses, int parallel)
         if (outside(&below, &of, local) < 0.0) {
             continue; /* the surface is seen from below */
         }
-        compare(&solid.shape, &at, &s.shape, &of, wanted, n, &a);
+        compare(&solid.shape, &at, &s.shape, &of, &below, wanted, n, &a);
         part(&solid.shape, &at, &s.shape, &of, wanted, n, &a);
     }
     report(names[kind], s.name, &a);
