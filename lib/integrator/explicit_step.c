@@ -169,28 +169,33 @@ se3d_status se3di_explicit_evaluate(se3di_explicit *m, double t, const double *y
     return evaluate(m, t, derivative);
 }
 
+double se3di_explicit_size_of(const se3di_explicit *m, const double parts[4],
+                              const double work[SE3DI_STATE_WORK])
+{
+    const se3di_state_scale *scale = &m->past->scale;
+    const double least = ROUNDING / m->tolerance;
+    const double speed = fmax(scale->speed, least * scale->spin * scale->length);
+    const double spin = fmax(scale->spin, least * scale->speed / scale->length);
+    const double r = sqrt(parts[0]) / scale->length + 2.0 * sqrt(parts[1]);
+    const double v = sqrt(parts[2]) / speed + sqrt(parts[3]) / spin;
+    const double e = se3di_norm(work) / scale->energy;
+    return r + v + WORK_WEIGHT * e;
+}
+
 double se3di_explicit_size(const se3di_explicit *m, const double *error)
 {
-    double r = 0.0, p = 0.0, v = 0.0, w = 0.0;
+    double most[4] = {0.0, 0.0, 0.0, 0.0};
     const double *end = m->motion->spread(m->equations, error, m->bodies[0]);
     for (size_t k = 0; k < m->assembly->body_count; ++k, end += SE3DI_STATE_SIZE) {
         const double *e = end;
         double turn = e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6];
         double parts[4] = {se3di_dot(e, e), turn, se3di_dot(e + 7, e + 7),
                            se3di_dot(e + 10, e + 10)};
-        r = parts[0] <= r ? r : parts[0]; /* NaN stays */
-        p = parts[1] <= p ? p : parts[1];
-        v = parts[2] <= v ? v : parts[2];
-        w = parts[3] <= w ? w : parts[3];
+        for (int c = 0; c < 4; ++c) {
+            most[c] = parts[c] <= most[c] ? most[c] : parts[c]; /* NaN stays */
+        }
     }
-    const se3di_state_scale *scale = &m->past->scale;
-    const double least = ROUNDING / m->tolerance;
-    const double speed = fmax(scale->speed, least * scale->spin * scale->length);
-    const double spin = fmax(scale->spin, least * scale->speed / scale->length);
-    r = sqrt(r) / scale->length + 2.0 * sqrt(p);
-    v = sqrt(v) / speed + sqrt(w) / spin;
-    double e = se3di_norm(end) / scale->energy;
-    return r + v + WORK_WEIGHT * e;
+    return se3di_explicit_size_of(m, most, end);
 }
 
 double se3di_explicit_measure(const se3di_explicit *m, const double *error)

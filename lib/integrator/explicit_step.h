@@ -93,6 +93,10 @@ void se3di_explicit_combine(const se3di_explicit *m, const double *rows, const d
                             double h, const double *coefficients, int limit, double *out);
 /* The largest part of an error vector, relative to the scales; and to the tolerance. */
 double se3di_explicit_size(const se3di_explicit *m, const double *error);
+/* The same from the largest squares of its parts (way, half the turn, changes of velocities) and
+ * the works. */
+double se3di_explicit_size_of(const se3di_explicit *m, const double parts[4],
+                              const double work[SE3DI_STATE_WORK]);
 double se3di_explicit_measure(const se3di_explicit *m, const double *error);
 /* Derivative at t at the state y. */
 se3d_status se3di_explicit_evaluate(se3di_explicit *m, double t, const double *y,
@@ -120,9 +124,10 @@ int se3di_explicit_is_held(const se3di_integration *integration);
 #define SE3DI_EXPLICIT_LEAST 2e-13
 #define SE3DI_EXPLICIT_REACH (SE3DI_EXPLICIT_LEAST / SE3DI_EXPLICIT_PART)
 
-/* What the entries of all of them in the table of methods have. */
-#define SE3DI_EXPLICIT_METHOD                                                                      \
-    .history_count = se3di_explicit_history_count, .work_count = se3di_explicit_work_count,        \
+/* What the entries of all of them in the table of methods have; with more work. */
+#define SE3DI_EXPLICIT_METHOD SE3DI_EXPLICIT_METHOD_WITH(se3di_explicit_work_count)
+#define SE3DI_EXPLICIT_METHOD_WITH(count)                                                          \
+    .history_count = se3di_explicit_history_count, .work_count = (count),                          \
     .start = se3di_explicit_start, .renew = se3di_explicit_renew, .step = se3di_explicit_step,     \
     .run = se3di_explicit_run, .advance = se3di_explicit_advance,                                  \
     .interpolate = se3di_explicit_interpolate, .is_explicit = 1, .reach = SE3DI_EXPLICIT_REACH

@@ -8,8 +8,10 @@
  * Positions follow from the velocities of the same iteration, so that an iteration gains as much as
  * one of the equations of second order. Symmetric, and symplectic where the iterations are
  * converged. The derivatives at both ends say what the polynomial lacks: its error, the step, and
- * an interpolation of two orders more. docs/theory/gauss.md */
+ * an interpolation of two orders more. Stages of a tree without force elements are computed in the
+ * lanes of registers, to the same bits (gauss_lanes.h).  docs/theory/gauss.md */
 #include "integrator/explicit_step.h"
+#include "integrator/gauss_lanes.h"
 #include "integrator/gauss_rule.h"
 #include "math/elementary.h"
 
@@ -131,30 +133,71 @@ static int judge(const se3di_explicit *m, int iteration, double change, double r
     return (iteration > 0 && rate > CONTRACTION_MAX) || iteration + 1 >= ITERATIONS_MAX ? -1 : 0;
 }
 
+/* What the contraction of the first iteration is likely to be. */
+static double guess_rate(const se3di_explicit *m, double h)
+{
+    if (is_continued(m) && m->past->contraction > 0.0) {
+        const double part = h / (m->past->at.time - m->past->at.begin);
+        return fmin(GUESS, m->past->contraction * part * part);
+    }
+    return GUESS;
+}
+
+/* Iteration k has made `change`. */
+static void follow(se3di_explicit *m, int k, double change, double *before, double *rate)
+{
+    if (k > 0) {
+        *rate = change / *before;
+        m->contraction = *before > ROUNDING ? fmax(m->contraction, *rate) : m->contraction;
+    }
+    *before = change;
+}
+
 /* *judgement as above. */
 static se3d_status iterate(se3di_explicit *m, const se3di_gauss_rule *rule, double h,
                            int *judgement)
 {
-    double change, before = 0.0, rate = GUESS;
-    if (is_continued(m) && m->past->contraction > 0.0) {
-        const double part = h / (m->past->at.time - m->past->at.begin);
-        rate = fmin(GUESS, m->past->contraction * part * part);
-    }
+    double change, before = 0.0, rate = guess_rate(m, h);
     m->contraction = 0.0;
     *judgement = 0;
     for (int k = 0; *judgement == 0; ++k) {
         renew_stages(m, rule, h);
         place_stages(m, rule, h);
         SE3DI_TRY(sweep(m, rule, h, &change));
-        if (k > 0) {
-            rate = change / before;
-            m->contraction = before > ROUNDING ? fmax(m->contraction, rate) : m->contraction;
-        }
-        before = change;
+        follow(m, k, change, &before, &rate);
         *judgement = judge(m, k, change, rate);
     }
     renew_stages(m, rule, h);
     return SE3D_OK;
+}
+
+/* The same with the stages in lanes; 0 if a stage fails: nothing has changed then. */
+static int iterate_lanes(se3di_explicit *m, const se3di_gauss_rule *rule, double h,
+                         se3di_gauss_lanes *lanes, int *judgement)
+{
+    double change = 0.0, before = 0.0, rate = guess_rate(m, h);
+    se3di_gauss_lanes_begin(lanes, m, rule, h);
+    m->contraction = 0.0;
+    *judgement = 0;
+    for (int k = 0; *judgement == 0; ++k) {
+        if (!se3di_gauss_lanes_sweep(lanes, m, rule, h, &change)) {
+            return 0;
+        }
+        follow(m, k, change, &before, &rate);
+        *judgement = judge(m, k, change, rate);
+    }
+    se3di_gauss_lanes_end(lanes, m);
+    return 1;
+}
+
+static se3d_status find_stages(se3di_explicit *m, const se3di_gauss_rule *rule, double h,
+                               int *judgement)
+{
+    se3di_gauss_lanes lanes;
+    if (se3di_gauss_lanes_init(&lanes, m, rule) && iterate_lanes(m, rule, h, &lanes, judgement)) {
+        return SE3D_OK;
+    }
+    return iterate(m, rule, h, judgement);
 }
 
 static se3d_status make_stages(se3di_explicit *m, double h, double *error)
@@ -164,7 +207,7 @@ static se3d_status make_stages(se3di_explicit *m, double h, double *error)
     const se3di_gauss_rule *rule = se3di_gauss_find(m->stages);
     se3di_state_begin_step(m->equations, m->past->redundant);
     predict(m, rule, h);
-    SE3DI_TRY(iterate(m, rule, h, &judgement));
+    SE3DI_TRY(find_stages(m, rule, h, &judgement));
     if (judgement < 0 && !isfinite(m->tolerance)) {
         return se3di_error_set(m->equations->error, SE3D_ERR_NO_CONVERGENCE,
                                "t = %g s: the stages of a step of %g s do not converge; take a "
@@ -311,7 +354,7 @@ static const se3di_explicit_class gauss_class = {
 const se3di_integrator se3di_integrator_gauss = {
     .name = "gauss",
     .tag = SE3D_METHOD_GAUSS,
-    SE3DI_EXPLICIT_METHOD,
+    SE3DI_EXPLICIT_METHOD_WITH(se3di_gauss_work_count),
     .explicit_class = &gauss_class,
     .is_held = se3di_explicit_is_held,
     .orders = 1u << 8 | 1u << 16,

@@ -36,17 +36,22 @@ typedef struct part {
     size_t count;
 } part;
 
+/* What the work of a tree is for. */
+typedef struct extent {
+    size_t nodes, velocities, branches, bodies;
+} extent;
+
 #define PARTS      14
 #define LINK_SIZE  (sizeof(se3di_tree_link) / sizeof(double))
 #define INERTIA    (sizeof(se3di_tree_inertia) / sizeof(double))
 #define FRAME_SIZE (sizeof(se3di_frame) / sizeof(double))
 
-static size_t list_parts(se3di_lanes *l, int wants_frames, part parts[PARTS])
+/* @return numbers of all */
+static size_t list_parts(se3di_lanes *l, extent of, part parts[PARTS])
 {
-    const se3di_tree *tree = l->tree;
-    const size_t n = tree->count, v = tree->v_count, b = wants_frames ? tree->body_count : 0;
+    const size_t v = of.velocities;
     const part list[] = {
-        {&l->links, LINK_SIZE * n},
+        {&l->links, LINK_SIZE * of.nodes},
         {&l->S, 6 * v},
         {&l->U, 6 * v},
         {&l->D, v},
@@ -55,11 +60,11 @@ static size_t list_parts(se3di_lanes *l, int wants_frames, part parts[PARTS])
         {&l->V, 6 * v},
         {&l->k, v},
         {&l->given, v},
-        {&l->wrench, 6 * n},
-        {&l->branches, INERTIA * tree->branch_count},
-        {&l->joint, 6 * n},
-        {&l->frames, FRAME_SIZE * b},
-        {&l->loads, 6 * b},
+        {&l->wrench, 6 * of.nodes},
+        {&l->branches, INERTIA * of.branches},
+        {&l->joint, 12 * of.nodes},
+        {&l->frames, FRAME_SIZE * of.bodies},
+        {&l->loads, 6 * of.bodies},
     };
     size_t total = 0;
     _Static_assert(sizeof list == PARTS * sizeof *list, "all of them");
@@ -70,25 +75,51 @@ static size_t list_parts(se3di_lanes *l, int wants_frames, part parts[PARTS])
     return total;
 }
 
+static void lay_out(const part parts[PARTS], size_t width, double *at)
+{
+    for (int k = 0; k < PARTS; ++k) {
+        *parts[k].to = parts[k].count > 0 ? at : NULL;
+        at += parts[k].count * width;
+    }
+}
+
+static extent extent_of(const se3di_tree *tree, int wants_frames)
+{
+    return (extent){tree->count, tree->v_count, tree->branch_count,
+                    wants_frames ? tree->body_count : 0};
+}
+
 se3d_status se3di_lanes_init(se3di_lanes *lanes, const se3di_tree *tree,
                              const se3di_lane_core *core, int wants_frames)
 {
     part parts[PARTS];
     *lanes = (se3di_lanes){.tree = tree, .core = core};
-    const size_t width = (size_t)core->width;
     const size_t count =
-        list_parts(lanes, wants_frames, parts) * width + SE3DI_LANES_ALIGN / sizeof(double);
+        list_parts(lanes, extent_of(tree, wants_frames), parts) * (size_t)core->width +
+        SE3DI_LANES_ALIGN / sizeof(double);
     lanes->memory = se3di_alloc(&tree->model->allocator, count, sizeof *lanes->memory);
     if (!lanes->memory) {
         return SE3D_ERR_NO_MEMORY;
     }
     lanes->memory_count = count;
-    double *at = se3di_lanes_align(lanes->memory);
-    for (int k = 0; k < PARTS; ++k) {
-        *parts[k].to = parts[k].count > 0 ? at : NULL;
-        at += parts[k].count * width;
-    }
+    lay_out(parts, (size_t)core->width, se3di_lanes_align(lanes->memory));
     return SE3D_OK;
+}
+
+void se3di_lanes_lay_out(se3di_lanes *lanes, const se3di_tree *tree, const se3di_lane_core *core,
+                         double *memory)
+{
+    part parts[PARTS];
+    *lanes = (se3di_lanes){.tree = tree, .core = core};
+    (void)list_parts(lanes, extent_of(tree, 0), parts);
+    lay_out(parts, (size_t)core->width, memory);
+}
+
+size_t se3di_lanes_room(size_t nodes, size_t velocities, size_t branches, size_t width)
+{
+    part parts[PARTS];
+    se3di_lanes lanes;
+    return list_parts(&lanes, (extent){nodes, velocities, branches, 0}, parts) * width;
 }
 
 void se3di_lanes_destroy(se3di_lanes *lanes)

@@ -35,7 +35,19 @@ typedef struct se3di_lane_core {
     void (*normalise)(const se3di_lanes *lanes, double *q);
     /* out = base + factor x: [count] numbers each; out may be either. */
     void (*add)(size_t count, const double *base, double factor, const double *x, double *out);
-    /* 1.0 where all [count] numbers are finite, else not a number. */
+    /* out = base [count doubles] + sum over the lanes k of x[.][k] weights[k]: [width][width]. */
+    void (*combine)(size_t count, const double *base, const double *weights, const double *x,
+                    double *out);
+    /* Rates of positions of which quaternions are not unit ones. */
+    void (*find_free_rates)(const se3di_lanes *lanes, const double *q, const double *qdot,
+                            double *rates);
+    /* The largest squares over all bodies of what a small change of q and qdot [positions +
+     * velocities], at the state that was placed, is for a body: of the way of its centre of mass,
+     * of half the turn, of the changes of its velocities; parts [4]. */
+    void (*measure)(const se3di_lanes *lanes, const double *q, const double *change, double *parts);
+    /* change = factor (next - x), x = next: [count] numbers each. */
+    void (*replace)(size_t count, double factor, const double *next, double *x, double *change);
+    /* 1.0 if all [count] numbers are finite, else not a number. */
     void (*check)(size_t count, const double *x, double *verdict);
 } se3di_lane_core;
 
@@ -65,6 +77,11 @@ struct se3di_lanes {
 se3d_status se3di_lanes_init(se3di_lanes *lanes, const se3di_tree *tree,
                              const se3di_lane_core *core, int wants_frames);
 void se3di_lanes_destroy(se3di_lanes *lanes);
+/* The same without frames in memory that somebody else has, aligned, of se3di_lanes_room doubles
+ * for a tree of so many nodes, velocities and branches. Nothing has to be destroyed. */
+void se3di_lanes_lay_out(se3di_lanes *lanes, const se3di_tree *tree, const se3di_lane_core *core,
+                         double *memory);
+size_t se3di_lanes_room(size_t nodes, size_t velocities, size_t branches, size_t width);
 
 /* Accelerations of the states, with lanes->wrench as it is; effort may be NULL. */
 void se3di_lanes_accelerate(const se3di_lanes *lanes, const double *effort, double *qddot);

@@ -23,6 +23,8 @@ typedef int64_t verdict __attribute__((vector_size(32)));
     (_mm256_movemask_pd(_mm256_cmp_pd(_mm256_andnot_pd(_mm256_set1_pd(-0.0), a),                   \
                                       _mm256_set1_pd(1e5), _CMP_LT_OQ)) != 15)
 #define KEEP_IF(verdict, a) ((number)((integers)(a) | ~(integers)(verdict)))
+#define PICK(verdict, a, b)                                                                        \
+    ((number)(((integers)(a) & (integers)(verdict)) | ((integers)(b) & ~(integers)(verdict))))
 
 #include "tree/lanes.inc"
 

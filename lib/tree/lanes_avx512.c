@@ -22,6 +22,8 @@ typedef int64_t verdict __attribute__((vector_size(64)));
 #define within_far(a)       _mm512_cmp_pd_mask(_mm512_abs_pd(a), _mm512_set1_pd(1e5), _CMP_LT_OQ)
 #define is_far(a)           (within_far(a) != 255)
 #define KEEP_IF(verdict, a) ((number)((integers)(a) | ~(integers)(verdict)))
+#define PICK(verdict, a, b)                                                                        \
+    ((number)(((integers)(a) & (integers)(verdict)) | ((integers)(b) & ~(integers)(verdict))))
 
 #include "tree/lanes.inc"
 

@@ -14,6 +14,7 @@ typedef int verdict;
 #define root_of(a)          sqrt(a)
 #define is_far(a)           (!((a) > -1e5 && (a) < 1e5))
 #define KEEP_IF(verdict, a) ((verdict) ? (a) : (double)NAN)
+#define PICK(verdict, a, b) ((verdict) ? (a) : (b))
 
 #include "tree/lanes.inc"
 

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* gauss: what its theory page says of it. The error follows the tolerance on mechanisms of all
  * kinds, also between the ends of steps, with few rejected steps; it steps back to where it came
- * from; the energy does not drift; a stiff motion is reported. */
+ * from; the energy does not drift; a stiff motion is reported; stages in lanes have the same bits.
+ */
 #include "check.h"
 #include "support/models.h"
 #include "support/text_model.h"
+#include "support/tree_world.h"
 #include "support/world.h"
 
 #include <math.h>
@@ -242,6 +244,64 @@ static void a_stiff_motion_is_told_of_once(void)
     se3d_system_destroy(system);
 }
 
+/* A random tree on which nothing but gravity acts, moving as its joints allow. */
+static void make_bare(tree_world *w, uint64_t seed)
+{
+    se3d_coordinates *c;
+    se3d_force force;
+    double q[7 * TREE_BODIES_MAX], qdot[6 * TREE_BODIES_MAX];
+    tree_world_init(w, seed, 1 + (int)(seed % TREE_BODIES_MAX), 0);
+    while (se3d_system_count_forces(w->system) > 0) {
+        CHECK(!se3d_system_get_force(w->system, 0, &force));
+        CHECK(!se3d_force_destroy(w->system, force));
+    }
+    CHECK(!se3d_coordinates_create(w->system, &c));
+    CHECK(!se3d_coordinates_get(c, q, qdot));
+    CHECK(!se3d_coordinates_set(c, q, qdot));
+    se3d_coordinates_destroy(c);
+}
+
+static uint64_t run_bare(se3d_system *system, double tolerance)
+{
+    se3d_solver *solver;
+    se3d_solver_stats stats;
+    se3d_solver_def def = se3d_solver_def_default();
+    def.method = SE3D_METHOD_GAUSS;
+    def.formulation = SE3D_FORMULATION_JOINT;
+    def.tolerance = tolerance;
+    CHECK(!se3d_solver_create(system, &def, &solver));
+    CHECK(se3d_solver_run(solver, 0.3) >= 0);
+    CHECK(!se3d_solver_get_stats(solver, &stats));
+    se3d_solver_destroy(solver);
+    return stats.evaluations;
+}
+
+/* A force element, though it does nothing, has the stages computed one after the other. */
+static void stages_in_lanes_have_the_same_bits_as_one_by_one(void)
+{
+    for (uint64_t seed = 0; seed < 24; ++seed) {
+        tree_world w;
+        se3d_system *other;
+        se3d_force force;
+        se3d_load_def load = se3d_load_def_default();
+        const double tolerance = seed % 2 ? 1e-4 : 1e-8; /* 4 stages, 8 stages */
+        make_bare(&w, seed);
+        CHECK(!se3d_system_clone(w.system, &other));
+        load.body = w.bodies[1];
+        CHECK(!se3d_force_create_torque(other, &load, &force));
+        CHECK(run_bare(w.system, tolerance) == run_bare(other, tolerance));
+        for (int k = 1; k < w.count; ++k) {
+            const se3di_frame *a = &w.system->model.frames[k], *b = &other->model.frames[k];
+            for (int c = 0; c < 3; ++c) {
+                CHECK(a->r[c] == b->r[c] && a->p[c] == b->p[c]);
+                CHECK(a->v[c] == b->v[c] && a->w[c] == b->w[c]);
+            }
+        }
+        se3d_system_destroy(other);
+        tree_world_destroy(&w);
+    }
+}
+
 int main(void)
 {
     RUN(errors_follow_the_tolerance_and_few_steps_are_rejected);
@@ -249,5 +309,6 @@ int main(void)
     RUN(the_energy_does_not_drift);
     RUN(a_step_that_does_not_converge_is_refused);
     RUN(a_stiff_motion_is_told_of_once);
+    RUN(stages_in_lanes_have_the_same_bits_as_one_by_one);
     return check_finish();
 }
