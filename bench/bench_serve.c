@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The bench's driver of this library. METHOD: dop853, rk45, rk4, generalized_alpha, hht, bdf,
- * radau, rattle, gauss, with /romega, /rp or /joint behind it for a formulation, else that of `auto`;
- * step_dop853, step_rk45 and step_rk4 make equal steps without error control, as the other engines'
- * RK4 does. */
+ * radau, rattle, gauss, with /romega, /rp or /joint behind it for a formulation, else that of
+ * `auto`; step_dop853, step_rk45 and step_rk4 make equal steps without error control, as the other
+ * engines' RK4 does. */
 #define _POSIX_C_SOURCE 200809L
 #include "driver.h"
 #include "mechanisms.h"

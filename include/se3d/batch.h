@@ -8,9 +8,11 @@
  * efforts along the coordinates, and may have gravity and masses of its own. A state has the same
  * bits for any number of states and threads, wherever it stands.
  *
- * Arrays of several states are row-major: those of one state lie together. Gravity alone, and
- * efforts, cost least; other force elements are evaluated state by state. Functions and callbacks
- * of force elements are called by several threads at a time if the batch has several.
+ * Arrays of several states are row-major: those of one state lie together. Gravity, efforts,
+ * springs with dampers between points and on coordinates of joints, and loads are computed in lanes
+ * if no function of time or of the state is in them; if one force element is something else, all
+ * are evaluated state by state, which is slower. Functions and callbacks of force elements are
+ * called by several threads at a time if the batch has several.
  * docs/theory/lanes.md
  *
  * Threads: the rule of se3d/se3d.h; a batch is independent of its system. */
@@ -53,6 +55,12 @@ SE3D_API size_t se3d_batch_count_velocities(const se3d_batch *batch);
  * @return the number; 0 for NULL.
  * @since 0.1 */
 SE3D_API size_t se3d_batch_count_lanes(const se3d_batch *batch);
+
+/* Count the force elements that are evaluated state by state because lanes cannot compute one of
+ * them: all of them, or 0.
+ * @return the number; 0 for NULL.
+ * @since 0.1 */
+SE3D_API size_t se3d_batch_count_single_forces(const se3d_batch *batch);
 
 /* Get the message of the last failure. @return the text, "" if none failed; valid until the next
  * call on this batch. @since 0.1 */

@@ -91,16 +91,6 @@ static se3d_status check_model(const se3di_tree *tree, se3di_error *error)
     return check_shapes(tree->model, error);
 }
 
-/* Nothing but gravity that does not change. */
-static int is_weighed(const se3di_model *model)
-{
-    int found = model->force_slots.count > 0;
-    for (int c = 0; c < 3; ++c) {
-        found |= model->gravity_function[c] >= 0;
-    }
-    return !found;
-}
-
 /* ---- memory ---- */
 
 typedef struct room {
@@ -188,17 +178,17 @@ static se3d_status init_worker(se3di_batch *b, se3di_batch_worker *w)
     const room rooms[] = {{&w->y, y},
                           {&w->sum, y},
                           {&w->rates, y},
-                          {&w->gravity, 3 * width},
                           {&w->effort, width * b->tree.v_count},
+                          {&w->acting, width * b->tree.v_count},
                           {&w->verdict, width},
                           {&w->scalars, 6 * (size_t)b->tree.body_count}};
-    SE3DI_TRY(se3di_lanes_init(&w->lanes, &b->tree, b->core, !b->is_weighed));
+    SE3DI_TRY(se3di_lanes_init(&w->lanes, &b->tree, b->core, !b->is_in_lanes));
     w->memory =
         take_rooms(&b->model->allocator, rooms, sizeof rooms / sizeof *rooms, &w->memory_count);
     if (!w->memory) {
         return SE3D_ERR_NO_MEMORY;
     }
-    return b->is_weighed ? SE3D_OK : take_model(b, w);
+    return b->is_in_lanes ? SE3D_OK : take_model(b, w);
 }
 
 static void destroy_worker(const se3di_batch *b, se3di_batch_worker *w)
@@ -252,7 +242,7 @@ static se3d_status build(se3di_batch *b, int32_t threads)
 {
     SE3DI_TRY(se3di_tree_init(&b->tree, b->model, b->error));
     SE3DI_TRY(check_model(&b->tree, b->error));
-    b->is_weighed = is_weighed(b->model);
+    SE3DI_TRY(se3di_batch_take_forces(b));
     SE3DI_TRY(take_numbers(b));
     SE3DI_TRY(take_workers(b, threads));
     se3di_tree_get(&b->tree, b->tree.q, b->tree.qdot);
@@ -298,6 +288,7 @@ void se3di_batch_destroy(se3di_batch *batch)
     se3di_free(allocator, b->memory, b->memory_count, sizeof *b->memory);
     se3di_free(allocator, b->inertia_memory, count_inertias(b), sizeof(double));
     se3di_free(allocator, b->status, b->groups * (size_t)b->core->width, sizeof *b->status);
+    se3di_batch_drop_forces(b);
     se3di_tree_destroy(&b->tree);
     memset(b, 0, sizeof *b);
 }

@@ -18,8 +18,8 @@ typedef struct se3di_batch_worker {
     double *y;           /* state of a stage [positions + velocities][width] */
     double *sum;         /* the step so far */
     double *rates;       /* y' */
-    double *gravity;     /* [3][width] at the time of a stage */
     double *effort;      /* [velocities][width] */
+    double *acting;      /* [velocities][width] efforts and what follows laws */
     double *verdict;     /* [width] 1, or not a number */
     double *scalars;     /* [6 bodies]: a wrench */
     se3di_frame *frames; /* [width][bodies] */
@@ -32,7 +32,12 @@ typedef struct se3di_batch {
     se3di_tree tree;
     const se3di_lane_core *core;
     size_t count, groups; /* states */
-    int32_t is_weighed;   /* nothing but gravity that does not change acts */
+    int32_t is_in_lanes;  /* all that acts is gravity that does not change, and what follows: */
+    int32_t reserved;
+    se3di_lane_spring *springs; /* [forces] as the model's; used: */
+    se3di_lane_load *loads;     /* the same */
+    se3di_lane_law *laws;       /* the same */
+    size_t spring_count, load_count, law_count;
     int32_t worker_count;
     se3di_batch_worker *workers;
     double *memory; /* what follows, as allocated */
@@ -58,6 +63,11 @@ typedef struct se3di_batch_part {
 se3d_status se3di_batch_init(se3di_batch *batch, se3di_model *model, size_t count, int32_t threads,
                              se3di_error *error);
 void se3di_batch_destroy(se3di_batch *batch);
+
+/* Find out what acts on the states, and whether lanes can compute it: springs, loads and laws.
+ * @return OK, NO_MEMORY */
+se3d_status se3di_batch_take_forces(se3di_batch *batch);
+void se3di_batch_drop_forces(se3di_batch *batch);
 
 /* All states have q (and so on) in `values` [count][part.size]; from state `first`. */
 void se3di_batch_write(const se3di_batch *batch, const se3di_batch_part *part, size_t first,

@@ -93,14 +93,34 @@ static void load(const task *t, const double *q, double dt)
 {
     const se3di_batch *b = t->batch;
     const se3di_lanes *lanes = &t->worker->lanes;
-    if (b->is_weighed) {
+    if (b->is_in_lanes) {
         b->core->weigh(lanes, b->gravity + 3 * t->group * t->width);
+        b->core->add_springs(lanes, b->springs, b->spring_count);
+        b->core->add_loads(lanes, b->loads, b->load_count);
         return;
     }
     for (size_t lane = 0; lane < t->width && t->group * t->width + lane < b->count; ++lane) {
         load_lane(t, q, dt, lane);
     }
     b->core->take_wrenches(lanes);
+}
+
+/* Efforts that were set (NULL: none) and what follows laws, of the positions and velocities y. */
+static const double *find_acting(const task *t, const double *effort, const double *y)
+{
+    const se3di_batch *b = t->batch;
+    double *acting = t->worker->acting;
+    const size_t size = b->tree.v_count * t->width * sizeof *acting;
+    if (b->law_count == 0 && effort) {
+        return effort;
+    }
+    if (effort) {
+        memcpy(acting, effort, size);
+    } else {
+        memset(acting, 0, size);
+    }
+    b->core->add_laws(b->laws, b->law_count, y, y + b->tree.q_count * t->width, acting);
+    return acting;
 }
 
 /* ---- steps ---- */
@@ -113,7 +133,7 @@ static void evaluate(const task *t, const double *y, double dt, double *rates)
     const size_t positions = t->batch->tree.q_count * t->width;
     core->place(lanes, y, y + positions);
     load(t, y, dt);
-    se3di_lanes_accelerate(lanes, t->effort, rates + positions);
+    se3di_lanes_accelerate(lanes, find_acting(t, t->effort, y), rates + positions);
     core->find_rates(lanes, y, y + positions, rates);
 }
 
@@ -208,8 +228,8 @@ static const double *place_group(const task *t)
 static void accelerate_group(const task *t, const errand *e)
 {
     double *out = t->worker->rates;
-    (void)place_group(t);
-    se3di_lanes_accelerate(&t->worker->lanes, t->effort, out);
+    const double *y = place_group(t);
+    se3di_lanes_accelerate(&t->worker->lanes, find_acting(t, t->effort, y), out);
     hand_out(t, out, e->out);
 }
 
@@ -218,12 +238,13 @@ static void find_group_efforts(const task *t, const errand *e)
     const se3di_batch *b = t->batch;
     double *in = t->worker->effort, *out = t->worker->rates;
     const size_t count = b->tree.v_count;
-    (void)place_group(t);
+    const double *y = place_group(t);
     for (size_t k = 0; k < count * t->width; ++k) {
         const size_t state = t->group * t->width + k % t->width;
         in[k] = e->in && state < b->count ? e->in[state * count + k / t->width] : 0.0;
     }
     b->core->find_efforts(&t->worker->lanes, in, out);
+    b->core->add(count, out, -1.0, find_acting(t, NULL, y), out);
     hand_out(t, out, e->out);
 }
 

@@ -87,6 +87,11 @@ size_t se3d_batch_count_lanes(const se3d_batch *batch)
     return batch ? (size_t)batch->of.core->width : 0;
 }
 
+size_t se3d_batch_count_single_forces(const se3d_batch *batch)
+{
+    return batch && !batch->of.is_in_lanes ? batch->system->model.force_slots.count : 0;
+}
+
 const char *se3d_batch_get_error(const se3d_batch *batch)
 {
     return batch ? batch->system->error.message : "the batch is NULL";

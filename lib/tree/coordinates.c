@@ -208,6 +208,13 @@ void se3di_tree_inertia_of(const se3di_tree_node *node, double mass, const doubl
     turn_inertia(node, T, mass, own, moments);
 }
 
+void se3di_tree_to_triad(const se3di_tree_node *node, const double local[3], double x[3])
+{
+    double T[9];
+    own_triad(node, T);
+    se3di_mul_transposed(T, local, x);
+}
+
 static void take_inertia(const se3di_body *body, se3di_tree_node *n, const double T[9])
 {
     n->mass = body->mass;

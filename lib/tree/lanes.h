@@ -13,6 +13,32 @@
 
 typedef struct se3di_lanes se3di_lanes;
 
+/* What acts along a coordinate: -(preload + k (q - rest) + c qdot). */
+typedef struct se3di_lane_law {
+    uint32_t q, v; /* the coordinate among positions and velocities */
+    double k, c, rest, preload;
+} se3di_lane_law;
+
+/* A point of a node, from its joint point in its triad; node -1: of the ground, from its origin. */
+typedef struct se3di_lane_point {
+    int32_t node, reserved;
+    double at[3];
+} se3di_lane_point;
+
+/* Points that attract each other with preload + k (l - rest) + c ldot, l their distance; not
+ * a number if that is zero and the direction matters. */
+typedef struct se3di_lane_spring {
+    se3di_lane_point i, j;
+    double k, c, rest, preload;
+} se3di_lane_spring;
+
+/* A force at a point and a torque, with components in the ground frame or in the triad. */
+typedef struct se3di_lane_load {
+    se3di_lane_point point;
+    int32_t in_triad, reserved;
+    double force[3], torque[3];
+} se3di_lane_load;
+
 /* Compiled once for each width. All arrays are aligned to SE3DI_LANES_ALIGN. */
 typedef struct se3di_lane_core {
     int32_t width;
@@ -20,6 +46,11 @@ typedef struct se3di_lane_core {
     void (*place)(const se3di_lanes *lanes, const double *q, const double *qdot);
     /* Weights on the nodes, instead of all else: gravity [3]. */
     void (*weigh)(const se3di_lanes *lanes, const double *gravity);
+    /* Besides: springs, loads; along coordinates, to effort [velocities]. */
+    void (*add_springs)(const se3di_lanes *lanes, const se3di_lane_spring *springs, size_t count);
+    void (*add_loads)(const se3di_lanes *lanes, const se3di_lane_load *loads, size_t count);
+    void (*add_laws)(const se3di_lane_law *laws, size_t count, const double *q, const double *qdot,
+                     double *effort);
     /* What acts on the bodies in lanes->loads, with weights, as se3di_tree_take_wrenches. */
     void (*take_wrenches)(const se3di_lanes *lanes);
     /* Articulated inertias; effort [velocities], NULL: none. */

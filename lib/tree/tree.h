@@ -145,6 +145,9 @@ void se3di_tree_refresh(se3di_tree *tree);
 void se3di_tree_inertia_of(const se3di_tree_node *node, double mass, const double own[6],
                            double moments[6]);
 
+/* A direction of the body's frame in its node's triad. */
+void se3di_tree_to_triad(const se3di_tree_node *node, const double local[3], double x[3]);
+
 /* Coordinates of the model's frames; refreshed. NULL: not wanted. */
 void se3di_tree_get(se3di_tree *tree, double *q, double *qdot);
 

@@ -16,7 +16,8 @@ static void no_batch_is_no_batch(double *x, int32_t *status)
 {
     const se3d_body none = {0, 0};
     CHECK(se3d_batch_count(NULL) == 0 && se3d_batch_count_positions(NULL) == 0 &&
-          se3d_batch_count_velocities(NULL) == 0 && se3d_batch_count_lanes(NULL) == 0);
+          se3d_batch_count_velocities(NULL) == 0 && se3d_batch_count_lanes(NULL) == 0 &&
+          se3d_batch_count_single_forces(NULL) == 0);
     CHECK(se3d_batch_get_error(NULL)[0] != '\0');
     CHECK(se3d_batch_set_state(NULL, 0, 1, x, x) == SE3D_ERR_NULL);
     CHECK(se3d_batch_get_state(NULL, 0, 1, x, x) == SE3D_ERR_NULL);

@@ -810,6 +810,7 @@ static const row rows[] = {
     {"se3d_batch_count_positions", batch_rejects_misuse, "", NULL, NULL},
     {"se3d_batch_count_velocities", batch_rejects_misuse, "", NULL, NULL},
     {"se3d_batch_count_lanes", batch_rejects_misuse, "", NULL, NULL},
+    {"se3d_batch_count_single_forces", batch_rejects_misuse, "", NULL, NULL},
     {"se3d_batch_get_error", batch_rejects_misuse, "", NULL, NULL},
     {"se3d_batch_set_state", batch_rejects_misuse, "", NULL, NULL},
     {"se3d_batch_get_state", batch_rejects_misuse, "", NULL, NULL},

@@ -148,18 +148,52 @@ static void bits_do_not_depend_on_count_lane_and_threads(void)
     }
 }
 
+/* Springs and efforts on the coordinates of joints, loads at points of the last body. */
+static void add_elements(tree_world *w)
+{
+    se3d_force force;
+    const se3d_body last = w->bodies[w->count - 1];
+    for (int k = 0; k < w->joint_count; ++k) {
+        se3d_rsda_def spring = se3d_rsda_def_default();
+        se3d_effort_def effort = se3d_effort_def_default();
+        spring.joint = effort.joint = w->joints[k];
+        spring.k = tree_uniform(w, 0.0, 5.0);
+        spring.c = tree_uniform(w, 0.0, 1.0);
+        spring.theta0 = tree_uniform(w, -1.0, 1.0);
+        effort.value = tree_uniform(w, -2.0, 2.0);
+        const se3d_status status = se3d_force_create_rsda(w->system, &spring, &force);
+        CHECK(status == SE3D_OK || status == SE3D_ERR_INVALID_ARGUMENT); /* it has no angle */
+        effort.coordinate = status ? SE3D_JOINT_COORDINATE_DISPLACEMENT : effort.coordinate;
+        (void)se3d_force_create_effort(w->system, &effort, &force);
+    }
+    for (int in_body = 0; in_body < 2; ++in_body) {
+        se3d_load_def load = se3d_load_def_default();
+        load.body = last;
+        load.in_body_frame = in_body;
+        tree_vector(w, load.point, 3, 1.0);
+        tree_vector(w, load.value, 3, 5.0);
+        CHECK(!se3d_force_create_load(w->system, &load, &force));
+        CHECK(!se3d_force_create_torque(w->system, &load, &force));
+    }
+}
+
 /* Accelerations of the states are those of a system with their gravity and masses. */
 static void gravity_and_masses_are_those_of_the_state(void)
 {
     static states_of s;
     static double qddot[STATES * NUMBERS], effort[STATES * NUMBERS], alone[NUMBERS];
-    for (uint64_t seed = 0; seed < 12; ++seed) {
+    int in_lanes = 0;
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
         tree_world w;
         se3d_batch *b;
         se3d_coordinates *c;
         tree_world_init(&w, seed, 1 + (int)(seed % TREE_BODIES_MAX), 0);
+        if (seed % 2) {
+            add_elements(&w);
+        }
         make_states(&w, &s);
         CHECK(!se3d_batch_create(w.system, STATES, 2, &b));
+        in_lanes += se3d_batch_count_single_forces(b) == 0;
         CHECK(!se3d_batch_set_state(b, 0, STATES, s.q, s.qdot));
         CHECK(!se3d_batch_set_efforts(b, 0, STATES, s.effort));
         CHECK(!se3d_batch_set_gravity(b, 0, STATES, s.gravity));
@@ -189,6 +223,7 @@ static void gravity_and_masses_are_those_of_the_state(void)
         se3d_batch_destroy(b);
         tree_world_destroy(&w);
     }
+    CHECK(in_lanes > MECHANISMS / 2);
 }
 
 /* A bar on a revolute about z that hangs down, and its batch. */
