@@ -521,7 +521,9 @@ static se3d_status run_smoothly(se3di_run *run, double t_end)
 static double longest_step(const se3di_integration *integration)
 {
     const se3di_model *model = integration->equations->assembly.model;
-    const double stable = integration->method->is_implicit ? HUGE_VAL : se3di_stiffness_step(model);
+    const int is_controlled =
+        integration->method->is_implicit || integration->method->explicit_class;
+    const double stable = is_controlled ? HUGE_VAL : se3di_stiffness_step(model);
     return se3di_equal_steps_are_chosen(integration) ? stable : fmin(STEP_DEFAULT, stable);
 }
 
