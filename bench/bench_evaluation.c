@@ -45,7 +45,7 @@ static void run(const bench_request *request, bench_answer *answer)
     const se3di_formulation *formulation =
         se3di_formulation_reduce(se3di_formulation_find(bench_formulation(request->method)));
     if (m.status < 0 ||
-        se3di_equations_init(&equations, &m.system->model, formulation, &m.system->error) < 0) {
+        se3di_equations_init(&equations, &m.system->model, formulation, 1, &m.system->error) < 0) {
         bench_fail(answer, se3d_system_get_error(m.system));
     } else {
         if (se3di_state_solve(&equations, 0.0) < 0) {

@@ -117,7 +117,7 @@ static void run(char kind, int n)
     bench_mechanism m = bench_build(kind, n);
     work w = {.model = &m.system->model};
     uint32_t failed;
-    if (m.status < 0 || se3di_tree_init(&w.tree, w.model, NULL) < 0) {
+    if (m.status < 0 || se3di_tree_init(&w.tree, w.model, 1, NULL) < 0) {
         exit(1);
     }
     w.q = take(w.tree.q_count);

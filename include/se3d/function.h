@@ -34,8 +34,17 @@ typedef enum se3d_signal_kind {
                                          ground frame [m] */
     SE3D_SIGNAL_POINT_VELOCITY = 6,   /* its velocity [m/s] */
     SE3D_SIGNAL_ANGULAR_VELOCITY = 7, /* of `body`, body frame, `component` 0 ... 2 [rad/s] */
-    SE3D_SIGNAL_ORIENTATION = 8       /* of `body`, `component` 0 ... 3: Euler parameter */
+    SE3D_SIGNAL_ORIENTATION = 8,      /* of `body`, `component` 0 ... 3: Euler parameter */
+    SE3D_SIGNAL_STATE = 9 /* of `state`, `component` se3d_state_part: value, output, input
+                                         (se3d/state.h) */
 } se3d_signal_kind;
+
+/* What a state gives. @since 0.1 */
+typedef enum se3d_state_part {
+    SE3D_STATE_VALUE = 0,  /* z */
+    SE3D_STATE_OUTPUT = 1, /* y, its output; z if it has none */
+    SE3D_STATE_INPUT = 2   /* u, its input; 0 if it has none */
+} se3d_state_part;
 
 /* A number of the state that a function depends on: a coordinate, a position, or a rate of one.
  * Members that the kind does not name are not looked at. @since 0.1 */
@@ -46,6 +55,7 @@ typedef struct se3d_signal {
     se3d_constraint joint; /* of a coordinate, or its rate */
     se3d_force force;      /* of a coordinate, or its rate */
     double point[3];       /* body frame [m] */
+    se3d_state state;      /* whose value, output or input it is */
 } se3d_signal;
 
 /* The definition of a function: exactly one of `expression`, `compiled`, `callback`, a table, or
@@ -66,7 +76,8 @@ typedef struct se3d_function_def {
     const se3d_expression *compiled; /* copied; as `expression`, of variable_count variables */
     const se3d_signal *signals; /* [signal_count] numbers of the state, copied: the last variables
                                    of the function, which may only be the law of a force element (h,
-                                   function). Its elements live as long as it. */
+                                   function) or the rate of a state. Its elements live as long as
+                                   it. */
     size_t signal_count;        /* default 0, at most variable_count */
 } se3d_function_def;
 

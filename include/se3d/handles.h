@@ -93,6 +93,12 @@ typedef struct se3d_wheel {
     uint32_t generation;
 } se3d_wheel;
 
+/* A user-defined state. @since 0.1 */
+typedef struct se3d_state {
+    uint32_t index1;
+    uint32_t generation;
+} se3d_state;
+
 /* An event of one solver. @since 0.1 */
 typedef struct se3d_event {
     uint32_t index1;

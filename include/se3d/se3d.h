@@ -44,6 +44,7 @@
 #include "se3d/particles.h"
 #include "se3d/shape.h"
 #include "se3d/solver.h"
+#include "se3d/state.h"
 #include "se3d/system.h"
 #include "se3d/tyre.h"
 #include "se3d/wheel.h"

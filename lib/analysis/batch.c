@@ -86,6 +86,9 @@ static se3d_status check_model(const se3di_tree *tree, se3di_error *error)
     if (tree->model->sets) {
         return se3di_error_set(error, SE3D_ERR_UNSUPPORTED, "a batch has no particles");
     }
+    if (tree->model->state_count > 0) {
+        return se3di_error_set(error, SE3D_ERR_UNSUPPORTED, "a batch has no user-defined states");
+    }
     SE3DI_TRY(check_constraints(tree, error));
     SE3DI_TRY(check_forces(tree, error));
     return check_shapes(tree->model, error);
@@ -240,7 +243,7 @@ static void fill(se3di_batch *b)
 
 static se3d_status build(se3di_batch *b, int32_t threads)
 {
-    SE3DI_TRY(se3di_tree_init(&b->tree, b->model, b->error));
+    SE3DI_TRY(se3di_tree_init(&b->tree, b->model, 0, b->error));
     SE3DI_TRY(check_model(&b->tree, b->error));
     SE3DI_TRY(se3di_batch_take_forces(b));
     SE3DI_TRY(take_numbers(b));

@@ -637,7 +637,7 @@ se3d_status se3di_check_init(se3di_check *check, se3di_model *model, se3di_error
     se3di_error own = {0};
     se3di_equations equations;
     *check = (se3di_check){.allocator = model->allocator};
-    SE3DI_TRY(se3di_equations_init(&equations, model, &se3di_formulation_romega, error));
+    SE3DI_TRY(se3di_equations_init(&equations, model, &se3di_formulation_romega, 0, error));
     equations.error = &own;
     check->bodies = equations.assembly.body_count;
     check->equations = model->row_count;

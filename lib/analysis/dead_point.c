@@ -28,7 +28,9 @@ static double measure_speed(const se3di_equations *equations)
     double square = 0.0;
     for (size_t k = 0; k < model->body_slots.count; ++k) {
         const se3di_frame *frame = &model->frames[k];
-        square += se3di_dot(frame->v, frame->v) / (size * size) + se3di_dot(frame->w, frame->w);
+        if (model->bodies[k].state == 0) {
+            square += se3di_dot(frame->v, frame->v) / (size * size) + se3di_dot(frame->w, frame->w);
+        }
     }
     return sqrt(square);
 }

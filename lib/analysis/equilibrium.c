@@ -65,7 +65,7 @@ static double model_size(const se3di_model *model)
                               : 0.0);
     }
     for (size_t k = 0; k < model->body_slots.count; ++k) {
-        size = fmax(size, se3di_norm(model->frames[k].r));
+        size = fmax(size, model->bodies[k].state == 0 ? se3di_norm(model->frames[k].r) : 0.0);
     }
     return size;
 }

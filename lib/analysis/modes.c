@@ -205,7 +205,7 @@ se3d_status se3di_modes_init(se3di_modes *modes, se3di_model *model, se3di_error
                            .inputs = inputs,
                            .outputs = outputs,
                            .bodies = model->body_slots.count};
-    SE3DI_TRY(se3di_equations_init(&equations, model, &se3di_formulation_romega, error));
+    SE3DI_TRY(se3di_equations_init(&equations, model, &se3di_formulation_romega, 0, error));
     se3di_error_clear(error);
     const se3d_status status = make(modes, &equations, ports, quantity);
     se3di_equations_destroy(&equations);

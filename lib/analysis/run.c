@@ -137,7 +137,8 @@ static se3d_status build_equations(se3di_run *run)
         run->analysis == SE3D_ANALYSIS_DYNAMICS && (method->is_explicit || method->is_reduced);
     const se3di_formulation *formulation =
         reduces ? se3di_formulation_reduce(run->formulation) : run->formulation;
-    return se3di_equations_init(&run->equations, run->model, formulation, run->error);
+    return se3di_equations_init(&run->equations, run->model, formulation,
+                                run->analysis == SE3D_ANALYSIS_DYNAMICS, run->error);
 }
 
 /* The formulation of `auto`. *picked: the equations are built, in joint coordinates, which are the

@@ -43,7 +43,9 @@ static double choose_eta(const se3di_equations *equations, double t)
     double rate = 0.0;
     for (size_t k = 0; k < model->body_slots.count; ++k) {
         const se3di_frame *frame = &model->frames[k];
-        rate = fmax(rate, fmax(se3di_norm(frame->w), se3di_norm(frame->v) / size));
+        if (model->bodies[k].state == 0) {
+            rate = fmax(rate, fmax(se3di_norm(frame->w), se3di_norm(frame->v) / size));
+        }
     }
     double half = 0.5 * (t - model->time);
     return rate * half > TURN_SIDE ? TURN_SIDE / rate : half;

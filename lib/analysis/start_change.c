@@ -38,6 +38,9 @@ static double largest_speed(const se3di_model *model, const se3di_frame *given, 
     double speed = 0.0;
     for (size_t k = 0; k < model->body_slots.count; ++k) {
         const se3di_frame *now = &model->frames[k];
+        if (model->bodies[k].state != 0) {
+            continue;
+        }
         speed = fmax(speed, se3di_norm(given[k].v) + length * se3di_norm(given[k].w));
         speed = fmax(speed, se3di_norm(now->v) + length * se3di_norm(now->w));
     }
@@ -61,7 +64,7 @@ static int has_velocities(const se3di_model *model, const se3di_frame *given)
 {
     double sum = 0.0;
     for (size_t k = 0; k < model->body_slots.count; ++k) {
-        sum += se3di_norm(given[k].v) + se3di_norm(given[k].w);
+        sum += model->bodies[k].state == 0 ? se3di_norm(given[k].v) + se3di_norm(given[k].w) : 0.0;
     }
     return sum > 0.0;
 }

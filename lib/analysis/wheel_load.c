@@ -118,6 +118,9 @@ static se3d_status add_at_rest(const se3di_wheel_motion *motion, double sums[2])
     memcpy(rest.frames, motion->model->frames, bodies * sizeof *rest.frames);
     for (size_t k = 0; k < bodies; ++k) {
         const double zero[3] = {0.0, 0.0, 0.0};
+        if (motion->model->bodies[k].state != 0) {
+            continue;
+        }
         se3di_copy(zero, rest.frames[k].v);
         se3di_copy(zero, rest.frames[k].w);
         se3di_frame_update(&rest.frames[k]);

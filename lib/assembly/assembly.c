@@ -4,6 +4,7 @@
 
 #include "assembly/fused.h"
 #include "joint/user.h"
+#include "model/state.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -18,7 +19,7 @@ static void number_bodies(se3di_assembly *assembly)
 {
     for (uint32_t k = 0; k < assembly->dense_count; ++k) {
         assembly->free_index[k] = -1;
-        if (!assembly->model->bodies[k].fixed) {
+        if (se3di_body_moves(&assembly->model->bodies[k], assembly->moves_states)) {
             assembly->free_index[k] = (int32_t)assembly->body_count;
             assembly->free_body[assembly->body_count++] = k;
         }
@@ -156,10 +157,12 @@ static se3d_status build(se3di_assembly *assembly)
 }
 
 se3d_status se3di_assembly_init(se3di_assembly *assembly, se3di_model *model,
-                                const se3di_formulation *formulation, se3di_error *error)
+                                const se3di_formulation *formulation, int moves_states,
+                                se3di_error *error)
 {
     *assembly = (se3di_assembly){
         .model = model,
+        .moves_states = moves_states,
         .formulation = formulation,
         .topology_version = model->topology_version,
         .row_count = (uint32_t)model->row_count,

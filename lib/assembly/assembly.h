@@ -49,14 +49,16 @@ typedef struct se3di_assembly {
     uint32_t user_count; /* constraints with a callback */
     uint32_t reserved;
     int32_t levels; /* H weighs all bodies alike: for motions that the constraints determine */
-    int32_t reserved2;
-    double like_mass;    /* [kg] of each body then: the mean, */
-    double like_inertia; /* [kg m^2] */
+    int32_t moves_states; /* carriers of states are among the free bodies */
+    double like_mass;     /* [kg] of each body then: the mean, */
+    double like_inertia;  /* [kg m^2] */
 } se3di_assembly;
 
-/* Build the structure; on failure nothing is held. */
+/* Build the structure; moves_states 0: user-defined states stay as they are. On failure nothing is
+ * held. */
 se3d_status se3di_assembly_init(se3di_assembly *assembly, se3di_model *model,
-                                const se3di_formulation *formulation, se3di_error *error);
+                                const se3di_formulation *formulation, int moves_states,
+                                se3di_error *error);
 void se3di_assembly_destroy(se3di_assembly *assembly);
 
 /* Functions of time at t, for all that follows. */

@@ -16,7 +16,7 @@ double se3di_kinetic_energy(const se3di_model *model)
         const se3di_frame *frame = &model->frames[k];
         const double *J = body->J;
         const double *w = frame->w;
-        if (!body->fixed) {
+        if (!body->fixed && body->state == 0) {
             energy += 0.5 * body->mass * se3di_dot(frame->v, frame->v);
             energy += 0.5 * (J[0] * w[0] * w[0] + J[1] * w[1] * w[1] + J[2] * w[2] * w[2]);
             energy += J[3] * w[0] * w[1] + J[4] * w[1] * w[2] + J[5] * w[0] * w[2];
@@ -33,7 +33,9 @@ se3d_status se3di_forces_potential(const se3di_model *model, double t, double *p
     *potential = 0.0;
     SE3DI_TRY(se3di_gravity_eval(model, t, g, NULL));
     for (size_t b = 0; b < model->body_slots.count; ++b) {
-        *potential -= model->bodies[b].mass * se3di_dot(g, model->frames[b].r);
+        if (model->bodies[b].state == 0) {
+            *potential -= model->bodies[b].mass * se3di_dot(g, model->frames[b].r);
+        }
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         SE3DI_TRY(se3di_force_eval(model, &model->forces[k], t, &effect));
@@ -81,7 +83,7 @@ static se3d_status eval_power(const se3di_model *model, double t, double power[3
     power[0] = power[1] = power[2] = 0.0;
     SE3DI_TRY(se3di_gravity_eval(model, t, g, g_t));
     for (size_t b = 0; b < model->body_slots.count; ++b) {
-        if (!model->bodies[b].fixed) {
+        if (!model->bodies[b].fixed && model->bodies[b].state == 0) {
             power[1] -= model->bodies[b].mass * se3di_dot(g_t, model->frames[b].r);
         }
     }

@@ -76,9 +76,10 @@ static void note_signals(se3di_tangent *tangent, const se3di_force *force, size_
     for (int c = 0; c < 3; ++c) {
         const se3di_function *function =
             force->function[c] >= 0 ? &model->functions[force->function[c]] : NULL;
-        for (uint32_t s = 0; function && s < function->signal_count; ++s) {
+        const uint32_t leaves = function ? se3di_law_count_leaves(model, function) : 0;
+        for (uint32_t s = 0; s < leaves; ++s) {
             uint32_t bodies[2];
-            se3di_signal_bodies(model, &function->signals[s], bodies);
+            se3di_signal_bodies(model, se3di_law_get_leaf(model, function, s), bodies);
             for (size_t k = 0; k < 4; ++k) {
                 note_pair(tangent, k < 2 ? force->body_i : force->body_j, bodies[k % 2], count);
             }
@@ -360,7 +361,8 @@ static se3d_status add_signals(se3di_tangent *tangent, const se3di_force *force,
     const se3di_model *model = tangent->assembly->model;
     const se3di_function *function = &model->functions[force->function[c]];
     const uint32_t rows[2] = {force->body_i, force->body_j};
-    for (uint32_t s = 0; s < function->signal_count; ++s) {
+    const uint32_t leaves = se3di_law_count_leaves(model, function);
+    for (uint32_t s = 0; s < leaves; ++s) {
         double K[288], D[288];
         uint32_t columns[2];
         SE3DI_TRY(se3di_signal_tangent(model, force, c, s, t, columns, K, D));

@@ -4,6 +4,7 @@
 
 #include "force/friction.h"
 #include "math/vec3.h"
+#include "model/state.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -38,7 +39,9 @@ se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench
     *failed = (uint32_t)model->force_slots.count;
     SE3DI_TRY(se3di_gravity_eval(model, t, g, NULL));
     for (size_t b = 0; b < model->body_slots.count; ++b) {
-        se3di_add_scaled(model->bodies[b].mass, g, wrench + 6 * b);
+        if (model->bodies[b].state == 0) {
+            se3di_add_scaled(model->bodies[b].mass, g, wrench + 6 * b);
+        }
     }
     for (uint32_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *force = &model->forces[k];
@@ -92,6 +95,9 @@ void se3di_forces_accept(se3di_model *model)
         memcpy(state + SE3DI_FORCE_BEFORE, state, SE3DI_FORCE_BEFORE * sizeof *state);
         if (type->accept) {
             type->accept(model, &model->forces[k]);
+        }
+        if (model->forces[k].type == SE3DI_FORCE_STATE) {
+            state[0] = se3di_state_size(model, model->forces[k].body_j);
         }
     }
 }

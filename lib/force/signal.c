@@ -11,12 +11,17 @@
  *     point r + A s                    e . dr - e . A s~ dtheta
  *     its velocity v + A w~ s          -e . A (w~ s)~ dtheta      e . dv - e . A s~ dw
  *     Euler parameter p_k              1/2 (G^T dtheta)_k
+ *     state z of a carrier             0                          (1, 0, 0) . dv
+ *
+ * Outputs and inputs of states are functions of signals themselves: what they depend on in the end
+ * are the leaves of a law, with the products of the slopes on the way.
  *
  * docs/theory/signals.md */
 #include "force/signal.h"
 
 #include "math/quaternion.h"
 #include "math/vec3.h"
+#include "model/state.h"
 
 #include <string.h>
 
@@ -96,7 +101,34 @@ static void eval_point(const se3di_frame *frame, const se3di_signal *signal,
     lever_row(frame->A, signal->point, axis, out->u + 9);
 }
 
-se3d_status se3di_signal_eval(const se3di_model *model, const se3di_signal *signal,
+const se3di_function *se3di_signal_function(const se3di_model *model, const se3di_signal *signal)
+{
+    if (signal->kind != SE3D_SIGNAL_STATE || signal->component == SE3D_STATE_VALUE) {
+        return NULL;
+    }
+    const int32_t function =
+        model->forces[signal->force].function[SE3DI_FORCE_OUTPUT - 1 + signal->component];
+    return function >= 0 ? &model->functions[function] : NULL;
+}
+
+/* The value of a state, or its output or input; without a function the output is the value, the
+ * input 0. */
+static se3d_status eval_state(const se3di_model *model, const se3di_signal *signal, double t,
+                              se3di_signal_value *out)
+{
+    const se3di_function *function = se3di_signal_function(model, signal);
+    double jet[3];
+    if (function) {
+        SE3DI_TRY(se3di_law_eval(model, function, &t, jet, NULL));
+        out->value = jet[0];
+    } else if (signal->component != SE3D_STATE_INPUT) {
+        out->value = model->frames[signal->body].v[0];
+        out->u[6] = 1.0;
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_signal_eval(const se3di_model *model, const se3di_signal *signal, double t,
                               int wants_derivative, se3di_signal_value *out)
 {
     memset(out, 0, sizeof *out);
@@ -108,6 +140,8 @@ se3d_status se3di_signal_eval(const se3di_model *model, const se3di_signal *sign
     if (signal->kind == SE3D_SIGNAL_ANGULAR_VELOCITY) {
         out->value = frame->w[signal->component];
         out->u[9 + signal->component] = 1.0;
+    } else if (signal->kind == SE3D_SIGNAL_STATE) {
+        return eval_state(model, signal, t, out);
     } else if (signal->kind == SE3D_SIGNAL_ORIENTATION) {
         double G[12];
         se3di_g_matrix(frame->p, G);
@@ -132,7 +166,7 @@ se3d_status se3di_law_eval(const se3di_model *model, const se3di_function *funct
     memcpy(x, own, first * sizeof *x);
     for (uint32_t k = 0; k < function->signal_count; ++k) {
         se3di_signal_value s;
-        SE3DI_TRY(se3di_signal_eval(model, &function->signals[k], 0, &s));
+        SE3DI_TRY(se3di_signal_eval(model, &function->signals[k], own[0], 0, &s));
         x[first + k] = s.value;
     }
     SE3DI_TRY(se3di_function_eval(function, x, jet, gradient));
@@ -181,6 +215,10 @@ void se3di_force_gain(const se3di_model *model, const se3di_force *force, int c,
 {
     se3di_measure measure;
     memset(gain, 0, 12 * sizeof *gain);
+    if (force->type == SE3DI_FORCE_STATE) {
+        gain[6] = SE3DI_CARRIER_MASS;
+        return;
+    }
     if (force->type == SE3DI_FORCE_LOAD || force->type == SE3DI_FORCE_TORQUE) {
         load_gain(model, force, c, gain);
         return;
@@ -198,7 +236,8 @@ static void own_variables(const se3di_model *model, const se3di_force *force, do
                           double own[3])
 {
     se3di_measure m = {.value = 0.0, .rate = 0.0};
-    if (force->type != SE3DI_FORCE_LOAD && force->type != SE3DI_FORCE_TORQUE) {
+    if (force->type != SE3DI_FORCE_LOAD && force->type != SE3DI_FORCE_TORQUE &&
+        force->type != SE3DI_FORCE_STATE) {
         (void)se3di_measure_force(model, force, 0, &m);
     }
     own[0] = t;
@@ -206,19 +245,62 @@ static void own_variables(const se3di_model *model, const se3di_force *force, do
     own[2] = m.rate;
 }
 
+uint32_t se3di_law_count_leaves(const se3di_model *model, const se3di_function *function)
+{
+    uint32_t count = 0;
+    for (uint32_t s = 0; s < function->signal_count; ++s) {
+        const se3di_function *inner = se3di_signal_function(model, &function->signals[s]);
+        count += inner ? se3di_law_count_leaves(model, inner) : 1;
+    }
+    return count;
+}
+
+const se3di_signal *se3di_law_get_leaf(const se3di_model *model, const se3di_function *function,
+                                       uint32_t k)
+{
+    for (uint32_t s = 0; s < function->signal_count; ++s) {
+        const se3di_function *inner = se3di_signal_function(model, &function->signals[s]);
+        const uint32_t count = inner ? se3di_law_count_leaves(model, inner) : 1;
+        if (k < count) {
+            return inner ? se3di_law_get_leaf(model, inner, k) : &function->signals[s];
+        }
+        k -= count;
+    }
+    return NULL;
+}
+
+/* The derivative of a function to its leaf k. */
+static se3d_status leaf_slope(const se3di_model *model, const se3di_function *function,
+                              const double *own, uint32_t k, double *slope)
+{
+    double jet[3], gradient[SE3D_FUNCTION_VARIABLES_MAX];
+    SE3DI_TRY(se3di_law_eval(model, function, own, jet, gradient));
+    for (uint32_t s = 0; s < function->signal_count; ++s) {
+        const se3di_function *inner = se3di_signal_function(model, &function->signals[s]);
+        const uint32_t count = inner ? se3di_law_count_leaves(model, inner) : 1;
+        if (k < count) {
+            double factor = 1.0;
+            SE3DI_TRY(inner ? leaf_slope(model, inner, own, k, &factor) : SE3D_OK);
+            *slope = factor * gradient[function->variable_count - function->signal_count + s];
+            return SE3D_OK;
+        }
+        k -= count;
+    }
+    *slope = 0.0;
+    return SE3D_OK;
+}
+
 se3d_status se3di_signal_tangent(const se3di_model *model, const se3di_force *force, int c,
-                                 uint32_t s, double t, uint32_t bodies[2], double K[288],
+                                 uint32_t leaf, double t, uint32_t bodies[2], double K[288],
                                  double D[288])
 {
     const se3di_function *function = &model->functions[force->function[c]];
-    double own[3], jet[3], gain[12];
-    double gradient[SE3D_FUNCTION_VARIABLES_MAX];
+    double own[3], gain[12], slope;
     se3di_signal_value signal;
     own_variables(model, force, t, own);
-    SE3DI_TRY(se3di_law_eval(model, function, own, jet, gradient));
-    SE3DI_TRY(se3di_signal_eval(model, &function->signals[s], 1, &signal));
+    SE3DI_TRY(leaf_slope(model, function, own, leaf, &slope));
+    SE3DI_TRY(se3di_signal_eval(model, se3di_law_get_leaf(model, function, leaf), t, 1, &signal));
     se3di_force_gain(model, force, c, gain);
-    const double slope = gradient[function->variable_count - function->signal_count + s];
     memcpy(bodies, signal.bodies, sizeof signal.bodies);
     for (int k = 0; k < 4; ++k) {
         for (int r = 0; r < 6; ++r) {

@@ -87,6 +87,12 @@ static double measure(const se3di_bdf *m)
     double r = 0.0, v = 0.0;
     for (size_t k = 0; k + SE3DI_STATE_WORK < m->count; k += SE3DI_STATE_SIZE) {
         const double *e = m->difference + k;
+        if (se3di_state_is_carrier(m->assembly, k / SE3DI_STATE_SIZE)) {
+            const double z =
+                se3di_state_part(m->assembly, k / SE3DI_STATE_SIZE, &m->past->scale, e + 7);
+            v = z <= v ? v : z;
+            continue;
+        }
         const double turn = sqrt(e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6]);
         const double q = se3di_norm(e) / m->past->scale.length + 2.0 * turn;
         const double s =
@@ -134,6 +140,11 @@ static se3d_status measure_tangent(se3di_bdf *m, double *error)
         }
         SE3DI_TRY(leave_tangent(m, m->work));
         for (size_t k = 0; k < m->assembly->unknown_count; k += 6) {
+            if (se3di_state_is_carrier(m->assembly, k / 6)) {
+                const double z = se3di_state_part(m->assembly, k / 6, scale, m->work + k);
+                largest[1] = !level || z <= largest[1] ? largest[1] : z;
+                continue;
+            }
             const double part = se3di_norm(m->work + k) / (level ? scale->speed : scale->length) +
                                 se3di_norm(m->work + k + 3) / (level ? scale->spin : 1.0);
             largest[level] = part <= largest[level] ? largest[level] : part;

@@ -77,6 +77,11 @@ static double measure(const se3di_bdf *m, const double *change)
 {
     double largest = 0.0;
     for (size_t k = 0; k < 6 * (size_t)m->assembly->body_count; k += 6) {
+        if (se3di_state_is_carrier(m->assembly, k / 6)) {
+            const double z = se3di_state_part(m->assembly, k / 6, &m->past->scale, change + k);
+            largest = z <= largest ? largest : z;
+            continue;
+        }
         const double linear = se3di_norm(change + k), angular = se3di_norm(change + k + 3);
         const double part = linear * (1.0 / m->past->scale.speed + m->c / m->past->scale.length) +
                             angular * (1.0 / m->past->scale.spin + m->c);

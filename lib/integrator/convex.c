@@ -197,6 +197,9 @@ static se3d_status project(se3di_equations *equations, double t1)
     se3di_state_scale scale = {.length = se3di_state_length(model), .speed = 1e-12, .spin = 1e-12};
     for (uint32_t k = 0; k < equations->assembly.body_count; ++k) {
         const se3di_frame *frame = &model->frames[equations->assembly.free_body[k]];
+        if (se3di_state_is_carrier(&equations->assembly, k)) {
+            continue;
+        }
         scale.speed = fmax(scale.speed, se3di_norm(frame->v));
         scale.spin = fmax(scale.spin, se3di_norm(frame->w));
     }

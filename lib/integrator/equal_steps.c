@@ -9,6 +9,7 @@
 #include "integrator/state.h"
 #include "math/steps.h"
 #include "math/vec3.h"
+#include "model/state.h"
 
 #include <math.h>
 #include <string.h>
@@ -73,18 +74,23 @@ static void get_change(const se3di_model *model, uint32_t body, const double *be
 }
 
 /* The largest speeds so far, or what accelerations make on the way of the mechanism's length and a
- * turn of 1 rad; and the third derivatives of the motion in the step, of centres and of turns.
+ * turn of 1 rad; and the third derivatives of the motion in the step, of centres, of turns, and of
+ * user-defined states relative to their sizes.
  * @return the error of a step of order 2 */
-static double measure(const se3di_equations *equations, double h, double speed[2], double jerk[2])
+static double measure(const se3di_equations *equations, double h, double speed[2], double jerk[3])
 {
     const se3di_assembly *assembly = &equations->assembly;
     const se3di_model *model = assembly->model;
-    double v = 1e-12, w = 1e-12, a = 0.0, wdot = 0.0, most[2] = {0.0, 0.0};
+    double v = 1e-12, w = 1e-12, a = 0.0, wdot = 0.0, z = 0.0, most[2] = {0.0, 0.0};
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         const uint32_t body = assembly->free_body[k];
         const double *acceleration = model->acceleration + 6 * (size_t)body;
         double change[2];
         get_change(model, body, equations->kept.acceleration.data, change);
+        if (model->bodies[body].state != 0) {
+            z = fmax(z, change[0] / h / se3di_state_size(model, body));
+            continue;
+        }
         most[0] = fmax(most[0], change[0]);
         most[1] = fmax(most[1], change[1]);
         v = fmax(v, se3di_norm(model->frames[body].v));
@@ -96,7 +102,8 @@ static double measure(const se3di_equations *equations, double h, double speed[2
     speed[1] = fmax(speed[1], fmax(w, sqrt(wdot)));
     jerk[0] = most[0] / h;
     jerk[1] = most[1] / h;
-    return h * h / 12.0 * fmax(jerk[0] / speed[0], jerk[1] / speed[1]);
+    jerk[2] = z;
+    return h * h / 12.0 * fmax(fmax(jerk[0] / speed[0], jerk[1] / speed[1]), z);
 }
 
 /* Of the motion, relative to the tolerance, if its steps have the error e2 in order 2. */
@@ -129,7 +136,7 @@ static double round_down(double h)
 typedef struct trial {
     se3di_integration *integration;
     double begin, t_end, h;
-    double speed[2], jerk[2]; /* the largest so far */
+    double speed[2], jerk[3]; /* the largest so far */
     double most_spin;
     double last, last_h; /* error and length of the attempt before, which was refused; 0: none */
 } trial;
@@ -147,7 +154,7 @@ static double largest_spin(const se3di_model *model)
 static void judge(trial *t, double h)
 {
     se3di_equations *equations = t->integration->equations;
-    double speed[2] = {t->speed[0], t->speed[1]}, jerk[2];
+    double speed[2] = {t->speed[0], t->speed[1]}, jerk[3];
     const double e = measure(equations, h, speed, jerk);
     const int jumps =
         t->last_h > 0.0 && e * t->last_h > t->last * h * sqrt(h / t->last_h) && h < 0.5 * t->last_h;
@@ -164,6 +171,7 @@ static void judge(trial *t, double h)
     if (!jumps) {
         t->jerk[0] = fmax(t->jerk[0], jerk[0]);
         t->jerk[1] = fmax(t->jerk[1], jerk[1]);
+        t->jerk[2] = fmax(t->jerk[2], jerk[2]);
         t->h = fmin(2.0 * h, 0.8 * h * sqrt(TRIAL_ERROR / fmax(e, 1e-30)));
     }
 }
@@ -197,7 +205,7 @@ static se3d_status try_steps(trial *t)
         const double most = t->h * spin > TURN_MOST ? TURN_MOST / spin : t->h;
         const double next = se3di_equal_steps_next(integration, most, t->t_end);
         const double h = se3di_pulse_step(&integration->equations->assembly, model->time, next);
-        const double longest = t->h, jerk[2] = {t->jerk[0], t->jerk[1]};
+        const double longest = t->h, jerk[3] = {t->jerk[0], t->jerk[1], t->jerk[2]};
         if (!(model->time + h > model->time)) {
             return SE3D_OK;
         }
@@ -245,7 +253,8 @@ static se3d_status choose(trial *t)
 /* The longest step that has no larger error than it may have, relative to the largest speeds. */
 static double wanted_step(const trial *t)
 {
-    const double rate = fmax(t->jerk[0] / t->speed[0], t->jerk[1] / t->speed[1]); /* squared */
+    const double motion = fmax(t->jerk[0] / t->speed[0], t->jerk[1] / t->speed[1]);
+    const double rate = fmax(motion, t->jerk[2]); /* squared */
     return sqrt(12.0 * most_of(t->integration) / fmax(rate, 1e-300));
 }
 
@@ -328,7 +337,7 @@ void se3di_equal_steps_watch(se3di_integration *integration, double h)
     if (!se3di_equal_steps_are_chosen(integration) || !(header[SE3DI_EQUAL_STEP] > 0.0)) {
         return;
     }
-    double speed[2] = {header[SE3DI_EQUAL_SPEED], header[SE3DI_EQUAL_SPIN]}, jerk[2];
+    double speed[2] = {header[SE3DI_EQUAL_SPEED], header[SE3DI_EQUAL_SPIN]}, jerk[3];
     const double e2 = measure(equations, h, speed, jerk);
     header[SE3DI_EQUAL_SPEED] = speed[0];
     header[SE3DI_EQUAL_SPIN] = speed[1];

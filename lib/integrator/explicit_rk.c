@@ -99,6 +99,14 @@ static double decay_of(const se3di_explicit *m, const double *y_change, const do
     const double w = 1.0 / (m->past->scale.spin * m->past->scale.spin);
     double product = 0.0, square = 0.0;
     for (size_t k = 7; k < SE3DI_STATE_SIZE * m->assembly->body_count; k += SE3DI_STATE_SIZE) {
+        if (se3di_state_is_carrier(m->assembly, k / SE3DI_STATE_SIZE)) {
+            const double one[6] = {1.0};
+            const double z =
+                se3di_state_part(m->assembly, k / SE3DI_STATE_SIZE, &m->past->scale, one);
+            product += z * z * y[k] * f[k];
+            square += z * z * y[k] * y[k];
+            continue;
+        }
         product += v * se3di_dot(y + k, f + k) + w * se3di_dot(y + k + 3, f + k + 3);
         square += v * se3di_dot(y + k, y + k) + w * se3di_dot(y + k + 3, y + k + 3);
     }

@@ -184,10 +184,15 @@ double se3di_explicit_size_of(const se3di_explicit *m, const double parts[4],
 
 double se3di_explicit_size(const se3di_explicit *m, const double *error)
 {
-    double most[4] = {0.0, 0.0, 0.0, 0.0};
+    double most[4] = {0.0, 0.0, 0.0, 0.0}, z = 0.0;
     const double *end = m->motion->spread(m->equations, error, m->bodies[0]);
     for (size_t k = 0; k < m->assembly->body_count; ++k, end += SE3DI_STATE_SIZE) {
         const double *e = end;
+        if (se3di_state_is_carrier(m->assembly, k)) {
+            const double part = se3di_state_part(m->assembly, k, &m->past->scale, e + 7);
+            z = part <= z ? z : part;
+            continue;
+        }
         double turn = e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6];
         double parts[4] = {se3di_dot(e, e), turn, se3di_dot(e + 7, e + 7),
                            se3di_dot(e + 10, e + 10)};
@@ -195,7 +200,7 @@ double se3di_explicit_size(const se3di_explicit *m, const double *error)
             most[c] = parts[c] <= most[c] ? most[c] : parts[c]; /* NaN stays */
         }
     }
-    return se3di_explicit_size_of(m, most, end);
+    return se3di_explicit_size_of(m, most, end) + z;
 }
 
 double se3di_explicit_measure(const se3di_explicit *m, const double *error)

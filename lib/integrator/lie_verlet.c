@@ -8,6 +8,7 @@
 #include "math/inertia.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
+#include "model/state.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
@@ -318,12 +319,29 @@ static se3d_status project_velocities(se3di_lie_verlet *m)
     return SE3D_OK;
 }
 
+/* How much an iteration has changed states, relative to their sizes. */
+static double largest_state_change(const se3di_lie_verlet *m)
+{
+    const se3di_assembly *assembly = m->assembly;
+    const size_t block = (size_t)assembly->formulation->block;
+    double change = 0.0;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const uint32_t body = assembly->free_body[k];
+        if (se3di_state_is_carrier(assembly, k)) {
+            const double difference = m->equations->x[k * block] - m->last[k * block];
+            change = fmax(change, fabs(difference) / se3di_state_size(assembly->model, body));
+        }
+    }
+    return change;
+}
+
 /* v_1 and w_1; iterated if forces depend on them. */
 static se3d_status solve_velocities(se3di_lie_verlet *m)
 {
     se3di_equations *equations = m->equations;
     se3di_assembly *assembly = m->assembly;
     size_t unknowns = assembly->unknown_count;
+    const size_t block = (size_t)assembly->formulation->block;
     for (int iteration = 0; iteration < m->force_iterations; ++iteration) {
         SE3DI_TRY(se3di_equations_ask(equations));
         SE3DI_TRY(se3di_assembly_eval_forces(assembly, m->t1, equations->b, equations->error));
@@ -337,11 +355,15 @@ static se3d_status solve_velocities(se3di_lie_verlet *m)
             SE3DI_TRY(project_velocities(m));
         }
         double change = 0.0, size = 0.0;
+        const double state = largest_state_change(m);
         for (size_t k = 0; k < unknowns; ++k) {
+            if (se3di_state_is_carrier(assembly, k / block)) {
+                continue;
+            }
             change = fmax(change, fabs(equations->x[k] - m->last[k]));
             size = fmax(size, fabs(equations->x[k]));
         }
-        if (!se3di_loads_are_stiff(assembly->model) || change <= 1e-13 * size) {
+        if (!se3di_loads_are_stiff(assembly->model) || (change <= 1e-13 * size && state <= 1e-13)) {
             break;
         }
     }

@@ -3,6 +3,7 @@
 #include "integrator/adaptive.h"
 #include "integrator/kink_step.h"
 #include "integrator/memory.h"
+#include "integrator/state.h"
 
 #include "assembly/energy.h"
 #include "assembly/loads.h"
@@ -171,6 +172,9 @@ static void find_scales(const se3di_assembly *assembly, const double *vdot, doub
     scale[0] = scale[1] = 1e-12;
     for (size_t k = 0; k < assembly->body_count; ++k) {
         const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        if (se3di_state_is_carrier(assembly, k)) {
+            continue;
+        }
         scale[0] = fmax(scale[0], se3di_norm(frame->v));
         scale[1] = fmax(scale[1], se3di_norm(frame->w));
         a = fmax(a, se3di_norm(vdot + 6 * k));
@@ -355,8 +359,11 @@ static double estimate_error(const se3di_newmark_step *step)
         const double mean = last > 0.0 ? (step->v_n[k] - before) / last : step->vdot_n[k];
         const double jerk = 2.0 * fabs((v - step->v_n[k]) / h - mean) / (h + last);
         const size_t kind = k % 6 / 3;
+        const double change[6] = {jerk};
         const double size =
-            jerk / fmax(scale[kind], kind ? header->scale.spin : header->scale.speed);
+            se3di_state_is_carrier(step->assembly, k / 6)
+                ? se3di_state_part(step->assembly, k / 6, &header->scale, change)
+                : jerk / fmax(scale[kind], kind ? header->scale.spin : header->scale.speed);
         worst = size <= worst ? worst : size; /* NaN stays */
     }
     return PHASE * constant * h * h * worst /

@@ -5,7 +5,9 @@
 #include "assembly/loads.h"
 #include "contact/bodies/pace.h"
 #include "force/friction.h"
+#include "integrator/state.h"
 #include "math/quaternion.h"
+#include "model/state.h"
 
 #include <math.h>
 #include <string.h>
@@ -107,6 +109,26 @@ static double largest(const double *values, uint32_t count)
     return most;
 }
 
+/* The largest of accelerations. States have no part in it, or, if they `count`, as much as their
+ * change in the step is of their size, times `unit`. */
+static double largest_acceleration(const se3di_newmark_step *step, const double *values,
+                                   double unit)
+{
+    const se3di_assembly *assembly = step->assembly;
+    double most = 0.0;
+    if (assembly->model->state_count == 0) {
+        return largest(values, assembly->unknown_count);
+    }
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        const uint32_t body = assembly->free_body[k / 6];
+        const int is_state = assembly->model->bodies[body].state != 0;
+        const double part =
+            is_state ? step->h * unit / se3di_state_size(assembly->model, body) : 1.0;
+        most = fmax(most, part * fabs(values[k]));
+    }
+    return most;
+}
+
 static void add(double *to, const double *what, size_t count)
 {
     for (size_t k = 0; k < count; ++k) {
@@ -121,7 +143,8 @@ static void take_solution(se3di_newmark_step *step)
     const uint32_t n = step->assembly->unknown_count;
     add(step->vdot, equations->x, n);
     add(step->lambda, equations->l, step->assembly->row_count);
-    step->correction = fmax(step->correction, largest(equations->x, n));
+    const double unit = 1.0 + largest_acceleration(step, step->vdot, 0.0);
+    step->correction = fmax(step->correction, largest_acceleration(step, equations->x, unit));
     step->is_finite = step->is_finite && isfinite(equations->x[0]);
     for (uint32_t k = 1; k < n; ++k) {
         step->is_finite = step->is_finite && isfinite(equations->x[k]);
@@ -268,8 +291,7 @@ static se3d_status check_state(const se3di_newmark_step *step)
  * rounding of velocities or positions. */
 static int has_converged(const se3di_newmark_step *step)
 {
-    const uint32_t n = step->assembly->unknown_count;
-    const double scale = 1.0 + largest(step->vdot, n);
+    const double scale = 1.0 + largest_acceleration(step, step->vdot, 0.0);
     const double rate = step->correction / step->previous; /* 0 in the first iteration */
     const double missing = rate < 0.5 ? 2.0 * rate * step->correction : HUGE_VAL;
     const double shift = step->position * step->correction;
@@ -279,7 +301,8 @@ static int has_converged(const se3di_newmark_step *step)
     }
     return step->correction <= 1e-11 * scale ||
            (step->previous < HUGE_VAL && missing <= 1e-11 * scale) || shift <= 1e-15 ||
-           change <= 1e-15 * largest(step->v_n, n) || (shift <= 1e-11 && rate > 0.3);
+           change <= 1e-15 * largest_acceleration(step, step->v_n, 0.0) ||
+           (shift <= 1e-11 && rate > 0.3);
 }
 
 /* Newton with the mass matrix alone if there are no force elements; with the exact matrix if

@@ -78,6 +78,9 @@ double se3di_pulse_step(const se3di_assembly *assembly, double t, double h)
         for (int c = 0; is_load && c < 3; ++c) {
             h = shorten(model, force->function[c], t, h);
         }
+        for (int c = 0; force->type == SE3DI_FORCE_STATE && c < SE3DI_FORCE_FUNCTIONS; ++c) {
+            h = shorten(model, force->function[c], t, h);
+        }
     }
     for (int c = 0; c < 3; ++c) {
         h = shorten(model, model->gravity_function[c], t, h);

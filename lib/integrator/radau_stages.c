@@ -339,9 +339,12 @@ static se3d_status solve_stage(se3di_radau *m, int i, double W[STAGES][STAGES])
 }
 
 /* The size of a change of position and velocity of a body. */
-static double measure(const se3di_radau *m, const double q[6], const double v[6])
+static double measure(const se3di_radau *m, size_t body, const double q[6], const double v[6])
 {
     const se3di_state_scale *scale = &m->scale;
+    if (se3di_state_is_carrier(m->assembly, body)) {
+        return se3di_state_part(m->assembly, body, scale, v);
+    }
     return se3di_norm(q) / scale->length + se3di_norm(q + 3) + se3di_norm(v) / scale->speed +
            se3di_norm(v + 3) / scale->spin;
 }
@@ -363,7 +366,7 @@ static void apply_corrections(se3di_radau *m)
             double *y = at(m->Y, i, m->count) + k * SE3DI_STATE_SIZE;
             se3di_add(y + 7, v, y + 7);
             se3di_add(y + 10, v + 3, y + 10);
-            const double part = measure(m, q, v) / m->tolerance;
+            const double part = measure(m, k, q, v) / m->tolerance;
             m->size = part <= m->size ? m->size : part;
         }
     }
@@ -419,7 +422,7 @@ static se3d_status correct_positions(se3di_radau *m)
             const double none[6] = {0.0};
             const double *six = equations->x + 6 * k;
             double *shift = at(m->shift, i, 6 * bodies) + 6 * k;
-            const double part = measure(m, six, none) / m->tolerance;
+            const double part = measure(m, k, six, none) / m->tolerance;
             m->size = part <= m->size ? m->size : part;
             se3di_add(shift, six, shift);
             se3di_add(shift + 3, six + 3, shift + 3);
@@ -578,7 +581,7 @@ se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error)
         for (size_t j = 0; j < 6; ++j) {
             q[j] += c * v[j];
         }
-        const double part = measure(m, q, v);
+        const double part = measure(m, k, q, v);
         *error = part <= *error ? *error : part;
     }
     return SE3D_OK;

@@ -9,6 +9,7 @@
 #include "force/measure.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
+#include "model/state.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
@@ -65,7 +66,7 @@ void se3di_state_set_rates(se3di_assembly *assembly, const double *derivative)
 static int has_power(const se3di_assembly *assembly)
 {
     const se3di_model *model = assembly->model;
-    return model->force_slots.count > 0 || model->shape_slots.count > 1 ||
+    return model->force_slots.count > model->state_count || model->shape_slots.count > 1 ||
            assembly->timed_count > 0 || assembly->user_count > 0 ||
            model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
            model->gravity_function[2] >= 0;
@@ -307,6 +308,21 @@ void se3di_state_split_force(const se3di_assembly *assembly, const se3di_frame *
     se3di_scale(0.5, torque, torque);
 }
 
+double se3di_state_part(const se3di_assembly *assembly, size_t k, const se3di_state_scale *scale,
+                        const double change[6])
+{
+    const uint32_t body = assembly->free_body[k];
+    if (assembly->model->bodies[body].state != 0) {
+        return fabs(change[0]) / se3di_state_size(assembly->model, body);
+    }
+    return se3di_norm(change) / scale->speed + se3di_norm(change + 3) / scale->spin;
+}
+
+int se3di_state_is_carrier(const se3di_assembly *assembly, size_t k)
+{
+    return assembly->model->bodies[assembly->free_body[k]].state != 0;
+}
+
 double se3di_state_limit_turn(const se3di_model *model, double growth, double h)
 {
     for (size_t k = 0; k < model->angle_count; ++k) {
@@ -335,7 +351,7 @@ double se3di_state_length(const se3di_model *model)
         length = fmax(length, force->body_j > 0 ? se3di_norm(force->s_j) : 0.0);
     }
     for (size_t k = 0; k < model->body_slots.count && length == 0.0; ++k) {
-        length = se3di_norm(model->frames[k].r);
+        length = model->bodies[k].state == 0 ? se3di_norm(model->frames[k].r) : 0.0;
     }
     return length > 1e-9 ? length : 1.0;
 }
@@ -378,8 +394,9 @@ static void grow_by_holds(const se3di_model *model, double *a, double *wdot)
     double mass = 0.0, J = 0.0;
     for (size_t k = 0; k < model->body_slots.count; ++k) {
         const se3di_body *body = &model->bodies[k];
-        mass += body->fixed ? 0.0 : body->mass;
-        J += body->fixed ? 0.0 : fmax(body->J[0], fmax(body->J[1], body->J[2]));
+        const int moves = !body->fixed && body->state == 0;
+        mass += !moves ? 0.0 : body->mass;
+        J += !moves ? 0.0 : fmax(body->J[0], fmax(body->J[1], body->J[2]));
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *force = &model->forces[k];
@@ -403,6 +420,9 @@ void se3di_state_scale_grow(const se3di_assembly *assembly, const double *deriva
     }
     for (uint32_t k = 0; k < assembly->body_count; ++k, derivative += SE3DI_STATE_SIZE) {
         const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        if (assembly->model->bodies[assembly->free_body[k]].state != 0) {
+            continue;
+        }
         v = fmax(v, se3di_dot(frame->v, frame->v));
         w = fmax(w, se3di_dot(frame->w, frame->w));
         a = fmax(a, se3di_dot(derivative + 7, derivative + 7));

@@ -83,6 +83,14 @@ double se3di_state_length(const se3di_model *model);
 void se3di_state_scale_grow(const se3di_assembly *assembly, const double *derivative,
                             se3di_state_scale *scale);
 
+/* Whether free body k carries a user-defined state: of its six velocities the first is one, and its
+ * position means nothing. */
+int se3di_state_is_carrier(const se3di_assembly *assembly, size_t k);
+/* A change (v, w) of the velocities of free body k, relative to the scales, or to the size of the
+ * state that it carries. */
+double se3di_state_part(const se3di_assembly *assembly, size_t k, const se3di_state_scale *scale,
+                        const double change[6]);
+
 /* The state at t is about to be accepted: all that can fail. What a callback computed last may have
  * failed without anybody asking yet. */
 se3d_status se3di_state_prepare(se3di_equations *equations, double t);

@@ -3,6 +3,7 @@
 #include "math/quaternion.h"
 #include "model/function.h"
 #include "model/model.h"
+#include "model/state.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -494,6 +495,9 @@ void se3di_model_remove_force(se3di_model *model, uint32_t force)
     se3di_force_release(&model->allocator, &model->forces[force]);
     close_gap(model->forces, model->force_slots.count, force, 1, sizeof *model->forces);
     remove_named(model, &model->force_slots, force, 0, name);
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        model->bodies[k].state -= model->bodies[k].state > (int32_t)force + 1;
+    }
     lower_signals(model, offsetof(se3di_signal, force), force);
     for (size_t k = 0; k < model->wheel_slots.count; ++k) {
         lower_signed(&model->wheels[k].spring, force);
@@ -502,6 +506,67 @@ void se3di_model_remove_force(se3di_model *model, uint32_t force)
         remove_angle(model, (uint32_t)own);
     }
     se3di_model_touch(model);
+}
+
+se3d_status se3di_model_add_state(se3di_model *model, const se3di_force *state, double z,
+                                  se3di_handle *handle)
+{
+    const double m = SE3DI_CARRIER_MASS;
+    const se3di_body body = {.mass = m,
+                             .J = {m, m, m, 0.0, 0.0, 0.0},
+                             .held = 1,
+                             .state = (int32_t)model->force_slots.count + 1};
+    se3di_frame frame = {.p = {1.0, 0.0, 0.0, 0.0}, .v = {z, 0.0, 0.0}};
+    se3di_force data = *state;
+    se3di_handle carrier;
+    se3di_frame_update(&frame);
+    SE3DI_TRY(se3di_model_add_body(model, &body, &frame, &carrier));
+    data.body_j = (uint32_t)model->body_slots.count - 1;
+    const se3d_status status = se3di_model_add_force(model, &data, handle);
+    if (status < 0) {
+        se3di_model_remove_body(model, data.body_j);
+        return status;
+    }
+    ++model->state_count;
+    return SE3D_OK;
+}
+
+void se3di_model_remove_state(se3di_model *model, uint32_t force)
+{
+    const uint32_t body = model->forces[force].body_j;
+    --model->state_count;
+    se3di_model_remove_force(model, force);
+    se3di_model_remove_body(model, body);
+}
+
+void se3di_model_set_state_function(se3di_model *model, uint32_t force, int place, int32_t function)
+{
+    count_force_users(model, &model->forces[force], UINT32_MAX);
+    model->forces[force].function[place] = function;
+    count_force_users(model, &model->forces[force], 1);
+    se3di_model_touch(model);
+}
+
+uint32_t se3di_model_nth_body(const se3di_model *model, size_t index)
+{
+    size_t passed = 0;
+    for (uint32_t k = 0; k < model->body_slots.count; ++k) {
+        if (model->bodies[k].state == 0 && passed++ == index) {
+            return k;
+        }
+    }
+    return SE3DI_NO_INDEX;
+}
+
+uint32_t se3di_model_nth_force(const se3di_model *model, size_t index)
+{
+    size_t passed = 0;
+    for (uint32_t k = 0; k < model->force_slots.count; ++k) {
+        if (model->forces[k].type != SE3DI_FORCE_STATE && passed++ == index) {
+            return k;
+        }
+    }
+    return SE3DI_NO_INDEX;
 }
 
 static void count_wheel_users(se3di_model *model, const se3di_wheel *wheel, uint32_t by)

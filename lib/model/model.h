@@ -35,7 +35,7 @@ typedef struct se3di_body {
     int32_t fixed;  /* the ground is */
     uint32_t users; /* markers, constraints, forces on it */
     int32_t held;   /* the assembly analysis leaves its pose and velocity alone */
-    int32_t reserved;
+    int32_t state; /* 1 + the index of the state that it carries (model/state.h), 0: it is a body */
 } se3di_body;
 
 typedef struct se3di_marker {
@@ -51,7 +51,7 @@ typedef struct se3di_signal {
     int32_t kind, component;
     uint32_t body;  /* dense, as the others; 0 if the kind has none */
     uint32_t joint; /* constraint, SE3DI_NO_INDEX: none */
-    uint32_t force; /* SE3DI_NO_INDEX: none */
+    uint32_t force; /* or state; SE3DI_NO_INDEX: none */
     uint32_t reserved;
     double point[3];
 } se3di_signal;
@@ -130,7 +130,7 @@ typedef struct se3di_angle {
 
 /* The types of force elements, X(TYPE, name): each has a se3di_force_class_<name> in lib/force. New
  * ones go to the end: the numbers are part of what a run's bits depend on. */
-#define SE3DI_FORCE_LIST(X)                                                                        \
+#define SE3DI_ELEMENT_LIST(X)                                                                      \
     X(TSDA, tsda)                                                                                  \
     X(RSDA, rsda)                                                                                  \
     X(LOAD, load)                                                                                  \
@@ -142,6 +142,11 @@ typedef struct se3di_angle {
     X(EFFORT, effort)                                                                              \
     X(TYRE, tyre)
 
+/* The same with the rates of states (model/state.h). */
+#define SE3DI_FORCE_LIST(X)                                                                        \
+    SE3DI_ELEMENT_LIST(X)                                                                          \
+    X(STATE, state)
+
 typedef enum se3di_force_type {
 #define SE3DI_FORCE_ENUM(TYPE, name) SE3DI_FORCE_##TYPE,
     SE3DI_FORCE_LIST(SE3DI_FORCE_ENUM)
@@ -150,7 +155,9 @@ typedef enum se3di_force_type {
 } se3di_force_type;
 
 #define SE3DI_FORCE_FUNCTIONS                                                                      \
-    5 /* h or the components of a load (0, 1, 2), spring (3), damper (4) */
+    5 /* h or the components of a load (0, 1, 2), spring (3), damper (4);                          \
+         of a state: rate (0), output (3), input (4) */
+#define SE3DI_FORCE_OUTPUT 3 /* and input, the next one */
 #define SE3DI_FORCE_STATES                                                                         \
     16 /* what an element remembers of the accepted states: of the last one, */
 #define SE3DI_FORCE_BEFORE 8 /* and from here on, of the way there from the one before */
@@ -162,7 +169,7 @@ typedef struct se3di_force {
     int32_t has_jacobian;    /* callbacks */
     uint32_t body_i, body_j; /* loads: body_j */
     double s_i[3], s_j[3];
-    double k, c, rest;                       /* stiffness, damping, l0 or theta0 */
+    double k, c, rest;                       /* stiffness, damping, l0 or theta0; a state's size */
     double preload;                          /* of springs: value at rest */
     int32_t function[SE3DI_FORCE_FUNCTIONS]; /* -1: none */
     int32_t joint;      /* rsda, friction, stop, effort: whose coordinate; -1: none */
@@ -240,6 +247,7 @@ typedef struct se3di_model {
     se3di_slots force_slots;
     se3di_force *forces;
     size_t force_capacity;
+    size_t state_count; /* of the user's states: so many bodies and forces are no others */
 
     se3di_contact_settings contact;
     se3di_slots material_slots;

@@ -35,6 +35,9 @@ static int has_light_body(const se3di_assembly *assembly)
     double most[2] = {0.0, 0.0};
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         const se3di_body *body = &assembly->model->bodies[assembly->free_body[k]];
+        if (body->state != 0) {
+            continue;
+        }
         least[0] = fmin(least[0], body->mass);
         most[0] = fmax(most[0], body->mass);
         for (int c = 0; c < 3; ++c) {
@@ -83,7 +86,8 @@ static se3d_status create_tree(se3di_equations *equations)
     if (!tree) {
         return SE3D_ERR_NO_MEMORY;
     }
-    const se3d_status status = se3di_tree_init(tree, model, equations->error);
+    const se3d_status status =
+        se3di_tree_init(tree, model, equations->assembly.moves_states, equations->error);
     if (status < 0) {
         se3di_free(&model->allocator, tree, 1, sizeof *tree);
         return status;
@@ -142,11 +146,12 @@ static se3d_status allocate(se3di_equations *equations)
 }
 
 se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
-                                 const se3di_formulation *formulation, se3di_error *error)
+                                 const se3di_formulation *formulation, int moves_states,
+                                 se3di_error *error)
 {
     *equations = (se3di_equations){.error = error, .iterations_max = 25};
     model->remembers = 1;
-    SE3DI_TRY(se3di_assembly_init(&equations->assembly, model, formulation, error));
+    SE3DI_TRY(se3di_assembly_init(&equations->assembly, model, formulation, moves_states, error));
     se3d_status status = allocate(equations);
     if (status < 0) {
         se3di_equations_destroy(equations);

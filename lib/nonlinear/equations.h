@@ -65,8 +65,10 @@ typedef struct se3di_equations {
     int32_t takes_rows;      /* stages take the loops' rows on the tree, not all equations */
 } se3di_equations;
 
+/* moves_states: whether user-defined states are integrated; else they stay as they are. */
 se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
-                                 const se3di_formulation *formulation, se3di_error *error);
+                                 const se3di_formulation *formulation, int moves_states,
+                                 se3di_error *error);
 void se3di_equations_destroy(se3di_equations *equations);
 /* Masses or poses may have changed: rows of light bodies are told from dependent ones by
  * elimination without regularisation, and the tree takes them. */

@@ -209,7 +209,8 @@ static se3d_status find_candidates(decision *d)
 {
     se3di_assembly flat;
     const se3di_user_failure failure = d->model->user_failure;
-    SE3DI_TRY(se3di_assembly_init(&flat, d->model, &se3di_formulation_romega, d->equations->error));
+    SE3DI_TRY(se3di_assembly_init(&flat, d->model, &se3di_formulation_romega,
+                                  d->equations->assembly.moves_states, d->equations->error));
     se3d_status status = allocate(d, &flat);
     if (status >= 0) {
         se3di_assembly_eval_jacobian(&flat);

@@ -16,7 +16,9 @@ double se3di_model_get_size(const se3di_model *model)
         }
     }
     for (size_t k = 0; k < model->body_slots.count; ++k) {
-        size = fmax(size, fmin(1e3 * size, se3di_norm(model->frames[k].r)));
+        if (model->bodies[k].state == 0) {
+            size = fmax(size, fmin(1e3 * size, se3di_norm(model->frames[k].r)));
+        }
     }
     return size;
 }

@@ -316,17 +316,28 @@ se3d_status se3d_body_set_angular_velocity(se3d_system *system, se3d_body body, 
     return SE3D_OK;
 }
 
+/* The next body from `dense` on that is not a state's. */
+static size_t skip_carriers(const se3di_model *model, size_t dense)
+{
+    while (model->bodies[dense].state != 0) {
+        ++dense;
+    }
+    return dense;
+}
+
 se3d_status se3d_body_get_all(const se3d_system *system, size_t count, double *r, double *p,
                               double *v, double *w)
 {
     if (!system) {
         return SE3D_ERR_NULL;
     }
-    if (count != system->model.body_slots.count) {
+    const se3di_model *model = &system->model;
+    if (count != model->body_slots.count - model->state_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    for (size_t k = 0; k < count; ++k) {
-        const se3di_frame *frame = &system->model.frames[k];
+    for (size_t k = 0, dense = 0; k < count; ++k, ++dense) {
+        dense = skip_carriers(model, dense);
+        const se3di_frame *frame = &model->frames[dense];
         if (r) {
             se3di_copy(frame->r, r + 3 * k);
         }
@@ -360,9 +371,12 @@ static se3d_status check_of_body(se3d_system *system, size_t k, const char *what
 static se3d_status check_all(se3d_system *system, const double *r, const double *p, const double *v,
                              const double *w)
 {
-    for (size_t k = 0; k < system->model.body_slots.count; ++k) {
+    const se3di_model *model = &system->model;
+    const size_t count = model->body_slots.count - model->state_count;
+    for (size_t k = 0, dense = 0; k < count; ++k, ++dense) {
         double unit[4];
-        if (system->model.bodies[k].fixed) {
+        dense = skip_carriers(model, dense);
+        if (model->bodies[dense].fixed) {
             continue;
         }
         SE3DI_TRY(check_of_body(system, k, "position", r));
@@ -379,15 +393,17 @@ se3d_status se3d_body_set_all(se3d_system *system, size_t count, const double *r
                               const double *v, const double *w)
 {
     SE3DI_SET(system);
-    if (count != system->model.body_slots.count) {
+    const se3di_model *model = &system->model;
+    if (count != model->body_slots.count - model->state_count) {
         return SE3DI_FAIL_OF(system, "count", SE3D_ERR_INVALID_ARGUMENT,
                              " = %zu, must be the number of bodies, %zu", count,
-                             system->model.body_slots.count);
+                             model->body_slots.count - model->state_count);
     }
     SE3DI_TRY(check_all(system, r, p, v, w));
-    for (size_t k = 0; k < count; ++k) {
-        se3di_frame *frame = &system->model.frames[k];
-        if (system->model.bodies[k].fixed) {
+    for (size_t k = 0, dense = 0; k < count; ++k, ++dense) {
+        dense = skip_carriers(model, dense);
+        se3di_frame *frame = &model->frames[dense];
+        if (model->bodies[dense].fixed) {
             continue;
         }
         if (r) {

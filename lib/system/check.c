@@ -138,7 +138,11 @@ se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_co
 se3d_status se3di_find_force(se3d_system *system, const char *what, se3d_force handle,
                              uint32_t *index)
 {
-    return find(system, &system->model.force_slots, what, SE3DI_HANDLE(handle), index);
+    SE3DI_TRY(find(system, &system->model.force_slots, what, SE3DI_HANDLE(handle), index));
+    return system->model.forces[*index].type == SE3DI_FORCE_STATE
+               ? SE3DI_FAIL_OF(system, what, SE3D_ERR_STALE_HANDLE,
+                               " is a state, must be a force element")
+               : SE3D_OK;
 }
 
 static se3d_status find_function(se3d_system *system, const char *what, se3d_function function,

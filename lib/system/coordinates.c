@@ -55,8 +55,8 @@ static void take_versions(se3d_coordinates *c)
 static se3d_status build(se3d_coordinates *c)
 {
     se3d_system *system = c->system;
-    SE3DI_TRY(se3di_tree_init(&c->tree, &system->model, &system->error));
-    SE3DI_TRY(se3di_assembly_init(&c->assembly, &system->model, &se3di_formulation_romega,
+    SE3DI_TRY(se3di_tree_init(&c->tree, &system->model, 0, &system->error));
+    SE3DI_TRY(se3di_assembly_init(&c->assembly, &system->model, &se3di_formulation_romega, 0,
                                   &system->error));
     SE3DI_TRY(se3di_tree_loops_init(&c->loops, &c->tree, &c->assembly, &system->error));
     c->bodies = c->tree.body_count;

@@ -218,7 +218,13 @@ se3d_status se3d_force_destroy(se3d_system *system, se3d_force force)
 
 se3d_status se3d_force_find(const se3d_system *system, const char *name, se3d_force *force)
 {
-    return se3di_read_named(SE3DI_SLOTS(system, force), name, force);
+    const se3di_force *data;
+    SE3DI_TRY(se3di_read_named(SE3DI_SLOTS(system, force), name, force));
+    if (se3di_force_find_reader(system, *force, force, &data) < 0) {
+        *force = (se3d_force){0, 0};
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    return SE3D_OK;
 }
 
 se3d_status se3di_force_find_reader(const se3d_system *system, se3d_force force, const void *out,
@@ -227,7 +233,7 @@ se3d_status se3di_force_find_reader(const se3d_system *system, se3d_force force,
     uint32_t index;
     SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, force), SE3DI_HANDLE(force), out, &index));
     *data = &system->model.forces[index];
-    return SE3D_OK;
+    return (*data)->type == SE3DI_FORCE_STATE ? SE3D_ERR_STALE_HANDLE : SE3D_OK;
 }
 
 se3d_status se3d_force_get_name(const se3d_system *system, se3d_force force, const char **name)

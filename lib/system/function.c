@@ -133,6 +133,7 @@ static int32_t component_count(const se3d_signal *signal)
     case SE3D_SIGNAL_POINT_POSITION:
     case SE3D_SIGNAL_POINT_VELOCITY:
     case SE3D_SIGNAL_ANGULAR_VELOCITY:
+    case SE3D_SIGNAL_STATE:
         return 3;
     case SE3D_SIGNAL_ORIENTATION:
         return 4;
@@ -178,7 +179,7 @@ static se3d_status take_signal(se3d_system *system, const se3d_signal *signal, s
     if (count == 0) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "signal kind = %d, must be an se3d_signal_kind, 1 to %d", signal->kind,
-                          SE3D_SIGNAL_ORIENTATION);
+                          SE3D_SIGNAL_STATE);
     }
     if (count < INT32_MAX && (signal->component < 0 || signal->component >= count)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
@@ -190,6 +191,11 @@ static se3d_status take_signal(se3d_system *system, const se3d_signal *signal, s
     }
     if (signal->kind <= SE3D_SIGNAL_FORCE_RATE) {
         return take_force(system, signal, out);
+    }
+    if (signal->kind == SE3D_SIGNAL_STATE) {
+        SE3DI_TRY(se3di_find_state(system, "signal state", signal->state, &out->force));
+        out->body = system->model.forces[out->force].body_j;
+        return SE3D_OK;
     }
     memcpy(out->point, signal->point, sizeof out->point);
     SE3DI_TRY(se3di_find_body(system, "signal body", signal->body, &out->body));

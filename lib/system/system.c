@@ -9,6 +9,7 @@
 #include "contact/bodies/body_contacts.h"
 #include "joint/equation.h"
 #include "math/vec3.h"
+#include "model/state.h"
 #include "particles/step.h"
 
 #include <math.h>
@@ -224,7 +225,7 @@ se3d_status se3d_system_get_ground(const se3d_system *system, se3d_body *ground)
 
 size_t se3d_system_count_bodies(const se3d_system *system)
 {
-    return system ? system->model.body_slots.count : 0;
+    return system ? system->model.body_slots.count - system->model.state_count : 0;
 }
 
 size_t se3d_system_count_markers(const se3d_system *system)
@@ -239,12 +240,14 @@ size_t se3d_system_count_constraints(const se3d_system *system)
 
 size_t se3d_system_count_forces(const se3d_system *system)
 {
-    return system ? system->model.force_slots.count : 0;
+    return system ? system->model.force_slots.count - system->model.state_count : 0;
 }
 
 se3d_status se3d_system_get_body(const se3d_system *system, size_t index, se3d_body *body)
 {
-    return se3di_read_handle(SE3DI_SLOTS(system, body), index, body);
+    const int has_states = system && system->model.state_count > 0;
+    const size_t dense = has_states ? se3di_model_nth_body(&system->model, index) : index;
+    return se3di_read_handle(SE3DI_SLOTS(system, body), dense, body);
 }
 
 se3d_status se3d_system_get_marker(const se3d_system *system, size_t index, se3d_marker *marker)
@@ -260,7 +263,9 @@ se3d_status se3d_system_get_constraint(const se3d_system *system, size_t index,
 
 se3d_status se3d_system_get_force(const se3d_system *system, size_t index, se3d_force *force)
 {
-    return se3di_read_handle(SE3DI_SLOTS(system, force), index, force);
+    const int has_states = system && system->model.state_count > 0;
+    const size_t dense = has_states ? se3di_model_nth_force(&system->model, index) : index;
+    return se3di_read_handle(SE3DI_SLOTS(system, force), dense, force);
 }
 
 se3d_status se3d_system_get_energy_sized(const se3d_system *system, se3d_energy *energy,

@@ -109,6 +109,8 @@ se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_co
                                   uint32_t *index);
 se3d_status se3di_find_force(se3d_system *system, const char *what, se3d_force force,
                              uint32_t *index);
+se3d_status se3di_find_state(se3d_system *system, const char *what, se3d_state state,
+                             uint32_t *index);
 se3d_status se3di_find_material(se3d_system *system, const char *what, se3d_material material,
                                 uint32_t *index);
 se3d_status se3di_find_wheel(se3d_system *system, const char *what, se3d_wheel wheel,

@@ -7,6 +7,7 @@
 #include "tree/tree.h"
 
 #include "joint/joint.h"
+#include "model/state.h"
 #include "tree/core.h"
 
 #include <string.h>
@@ -173,7 +174,7 @@ static void span(builder *b)
 {
     const se3di_model *model = b->tree->model;
     for (uint32_t k = 0; k < b->bodies; ++k) {
-        if (model->bodies[k].fixed) {
+        if (!se3di_body_moves(&model->bodies[k], b->tree->moves_states)) {
             reach(b, k);
         }
     }
@@ -334,10 +335,12 @@ static se3d_status build(se3di_tree *tree)
     return se3di_arrays_alloc(allocator, values, TREE_VALUES);
 }
 
-se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, se3di_error *error)
+se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, int moves_states,
+                            se3di_error *error)
 {
     *tree = (se3di_tree){.model = model,
                          .topology_version = model->topology_version,
+                         .moves_states = moves_states,
                          .body_count = (uint32_t)model->body_slots.count,
                          .constraint_count = (uint32_t)model->constraint_slots.count};
     const se3d_status status = build(tree);

@@ -113,7 +113,7 @@ typedef struct se3di_tree {
     int32_t *node_of; /* [bodies] -1: fixed */
     int32_t *tree_of; /* [constraints]: node of a joint or driver, -1: a loop's */
     uint32_t constraint_count;
-    uint32_t reserved;
+    int32_t moves_states; /* carriers of states are nodes */
     /* at the state that was placed last: */
     se3di_tree_link *links;
     double *S;                /* [velocities * 6]: angular, of P; ground axes */
@@ -133,7 +133,8 @@ typedef struct se3di_tree {
 
 /* Build the tree of a model; on failure nothing is held. Coordinates can be read at once.
  * @return OK, NO_MEMORY */
-se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, se3di_error *error);
+se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, int moves_states,
+                            se3di_error *error);
 void se3di_tree_destroy(se3di_tree *tree);
 
 /* Take masses, the poses of fixed bodies, and which of the poses that satisfy a joint (half turns)

@@ -339,7 +339,7 @@ static void check_formulation(const se3di_formulation *formulation)
         se3di_tangent tangent;
         double vdot[8 * BODIES];
         double lambda[64];
-        CHECK(se3di_assembly_init(&assembly, &system->model, formulation, NULL) == SE3D_OK);
+        CHECK(se3di_assembly_init(&assembly, &system->model, formulation, 1, NULL) == SE3D_OK);
         CHECK(se3di_tangent_init(&tangent, &assembly) == SE3D_OK);
         CHECK(tangent.coupling_count == 3);
         CHECK(se3di_assembly_eval_functions(&assembly, 0.3, NULL) == SE3D_OK);
@@ -353,6 +353,97 @@ static void check_formulation(const se3di_formulation *formulation)
         if (formulation->block == 6) {
             check_product(&tangent);
         }
+        se3di_tangent_destroy(&tangent);
+        se3di_assembly_destroy(&assembly);
+        se3d_system_destroy(system);
+    }
+}
+
+/* A number of `a`, of time, and of two signals. */
+static se3d_function make_rate(se3d_system *system, const char *text, const se3d_signal signals[2])
+{
+    static const char *const names[] = {"t", "a", "b"};
+    se3d_function function;
+    se3d_function_def def = se3d_function_def_default();
+    def.expression = text;
+    def.variables = names;
+    def.variable_count = 3;
+    def.signals = signals;
+    def.signal_count = 2;
+    CHECK(se3d_function_create(system, &def, &function) == SE3D_OK);
+    return function;
+}
+
+/* A body that a law of two states pushes, whose rates, outputs and inputs depend on it, on each
+ * other and on themselves; carriers are bodies to the assembly. */
+static se3d_system *build_states(void)
+{
+    se3d_system *system;
+    se3d_body_def def = se3d_body_def_default();
+    se3d_state_def state = se3d_state_def_default();
+    se3d_load_def load = se3d_load_def_default();
+    se3d_signal own[2], mixed[2], parts[2];
+    se3d_state z[2];
+    se3d_force force;
+    CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
+    def.mass = 2.0;
+    random_vector(def.position, 3, 1.0);
+    random_vector(def.velocity, 3, 1.0);
+    random_vector(def.angular_velocity, 3, 1.0);
+    def.inertia[0] = 1.0;
+    def.inertia[1] = 1.3;
+    def.inertia[2] = 1.7;
+    CHECK(se3d_body_create(system, &def, &load.body) == SE3D_OK);
+    for (int k = 0; k < 2; ++k) {
+        state.initial = 0.4 + 0.3 * k;
+        CHECK(se3d_state_create(system, &state, &z[k]) == SE3D_OK);
+    }
+    memset(own, 0, sizeof own);
+    memset(mixed, 0, sizeof mixed);
+    memset(parts, 0, sizeof parts);
+    for (int k = 0; k < 2; ++k) {
+        own[k] = (se3d_signal){.kind = SE3D_SIGNAL_STATE, .state = z[k]};
+        parts[k] = (se3d_signal){.kind = SE3D_SIGNAL_STATE,
+                                 .component = k ? SE3D_STATE_INPUT : SE3D_STATE_OUTPUT,
+                                 .state = z[0]};
+    }
+    mixed[0] = own[1];
+    mixed[1].kind = SE3D_SIGNAL_POINT_VELOCITY;
+    mixed[1].body = load.body;
+    mixed[1].point[1] = 0.4;
+    CHECK(!se3d_state_set_input(system, z[0], make_rate(system, "a*b + 0.2*b^2", mixed)));
+    parts[0].state = z[1]; /* its value: it has no output */
+    CHECK(!se3d_state_set_output(system, z[0], make_rate(system, "a*b - sin(a) + b^2", parts)));
+    parts[0].state = z[0];
+    CHECK(!se3d_state_set_rate(system, z[0], make_rate(system, "1e12*(b*a + a^2)", parts)));
+    CHECK(!se3d_state_set_rate(system, z[1], make_rate(system, "1e12*(b - a*b + 0.1*a^3)", own)));
+    load.function[1] = make_rate(system, "a^2*b + 0.3*b*t", parts);
+    load.point[2] = 0.3;
+    CHECK(se3d_force_create_load(system, &load, &force) == SE3D_OK);
+    CHECK(se3d_force_create_torque(system, &load, &force) == SE3D_OK);
+    return system;
+}
+
+/* In rates of 1e12/s a carrier's force is about as large as the others. */
+static void the_tangent_of_states_agrees_with_differences(void)
+{
+    static const se3di_formulation *const formulations[] = {&se3di_formulation_romega,
+                                                            &se3di_formulation_rp};
+    for (int k = 0; k < 2; ++k) {
+        se3d_system *system = build_states();
+        se3di_assembly assembly;
+        se3di_tangent tangent;
+        double vdot[8 * BODIES], lambda[1] = {0.0};
+        CHECK(!se3di_assembly_init(&assembly, &system->model, formulations[k], 1, NULL));
+        CHECK(assembly.body_count == BODIES);
+        CHECK(!se3di_tangent_init(&tangent, &assembly));
+        CHECK(tangent.coupling_count == 3);
+        random_vector(vdot, 8 * BODIES, 1.0);
+        CHECK(!se3di_tangent_eval(&tangent, 0.3, vdot, lambda));
+        const double coarse = tangent_error(&assembly, &tangent, vdot, lambda, 1e-2);
+        const double fine = tangent_error(&assembly, &tangent, vdot, lambda, 2.5e-3);
+        CHECK(coarse < 2e-3);
+        CHECK(fine < coarse / 12.0);
         se3di_tangent_destroy(&tangent);
         se3di_assembly_destroy(&assembly);
         se3d_system_destroy(system);
@@ -384,7 +475,7 @@ static void bodies_of_many_shapes_are_coupled(void)
         def.body = bodies[k % 2];
         CHECK(se3d_shape_create_sphere(system, &def, &shape) == SE3D_OK);
     }
-    CHECK(!se3di_assembly_init(&assembly, &system->model, &se3di_formulation_romega, NULL));
+    CHECK(!se3di_assembly_init(&assembly, &system->model, &se3di_formulation_romega, 1, NULL));
     CHECK(se3di_tangent_init(&tangent, &assembly) == SE3D_OK);
     CHECK(tangent.coupling_count == 1);
     se3di_tangent_destroy(&tangent);
@@ -446,7 +537,7 @@ static void newton_corrections(const se3di_formulation *formulation, double e[12
     const double h = 0.1;
     memset(e, 0, 12 * sizeof *e);
     const se3di_newton_weights weights = {.velocity = 0.5 * h, .position = 0.25 * h * h};
-    CHECK(se3di_equations_init(&equations, &system->model, formulation, &error) == SE3D_OK);
+    CHECK(se3di_equations_init(&equations, &system->model, formulation, 1, &error) == SE3D_OK);
     CHECK(se3di_newton_init(&newton, &equations) == SE3D_OK);
     CHECK(se3di_position_solve(&equations, 0.0) == SE3D_OK);
     CHECK(se3di_velocity_solve(&equations, 0.0) == SE3D_OK);
@@ -499,5 +590,6 @@ int main(void)
     RUN(the_tangent_of_rp_agrees_with_differences);
     RUN(newton_of_an_implicit_step_converges_quadratically);
     RUN(newton_in_rp_converges_superlinearly);
+    RUN(the_tangent_of_states_agrees_with_differences);
     return check_finish();
 }

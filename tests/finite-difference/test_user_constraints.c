@@ -105,7 +105,7 @@ static void check_formulation(const se3di_formulation *formulation)
         se3di_assembly assembly;
         double t = 1.0 + check_random(&seed), coarse[2], fine[2];
         build(&w, &seed);
-        CHECK(!se3di_assembly_init(&assembly, &w.system->model, formulation, &w.error));
+        CHECK(!se3di_assembly_init(&assembly, &w.system->model, formulation, 1, &w.error));
         measure(&w, &assembly, t, 2e-2, coarse);
         measure(&w, &assembly, t, 1e-2, fine);
         for (int k = 0; k < 2; ++k) {

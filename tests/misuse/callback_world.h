@@ -28,6 +28,7 @@ typedef struct world {
     se3d_body ball, bar, kite;
     se3d_marker marker;
     se3d_wheel wheel;
+    se3d_state state;
     se3d_constraint pin, motor, guide, rail;
     se3d_force push, load, spring, mount, turn, tyre;
     se3d_function value, constant, no_functions[3];
@@ -164,6 +165,8 @@ static void world_add_bodies(world *w)
     wheel.chassis = ground;
     wheel.radius = 0.3;
     CHECK(!se3d_wheel_create(w->system, &wheel, &w->wheel));
+    se3d_state_def state = se3d_state_def_default();
+    CHECK(!se3d_state_create(w->system, &state, &w->state));
 }
 
 static void world_add_callbacks(world *w)

@@ -35,6 +35,20 @@ static const field marker_fields[] = {NAME(se3d_marker_def), BODY(se3d_marker_de
                                       NUMBERS(se3d_marker_def, position),
                                       NUMBERS(se3d_marker_def, orientation), FIELDS_END};
 
+static void define_state(arguments *a)
+{
+    se3d_state_def def = se3d_state_def_default();
+    def.rate = a->use.function;
+    STORE(def);
+}
+static const field state_fields[] = {NAME(se3d_state_def),
+                                     FUNCTION(se3d_state_def, rate),
+                                     FUNCTION(se3d_state_def, output),
+                                     FUNCTION(se3d_state_def, input),
+                                     NUMBERS(se3d_state_def, initial),
+                                     NUMBERS(se3d_state_def, size),
+                                     FIELDS_END};
+
 static void define_wheel(arguments *a)
 {
     se3d_wheel_def def = se3d_wheel_def_default();
@@ -324,6 +338,15 @@ CALL(system_get_marker, a->system, a->index, a->out[0])
 CALL(system_get_constraint, a->system, a->index, a->out[0])
 CALL(system_get_force, a->system, a->index, a->out[0])
 CALL(system_get_wheel, a->system, a->index, a->out[0])
+CALL(state_create, a->system, a->def, a->out[0])
+CALL(state_destroy, a->system, a->use.state)
+CALL(state_find, a->system, a->text ? "taken state" : NULL, a->out[0])
+CALL(state_set_rate, a->system, a->use.state, a->use.function)
+CALL(state_set_output, a->system, a->use.state, a->use.function)
+CALL(state_set_input, a->system, a->use.state, a->use.function)
+CALL(state_set_value, a->system, a->use.state, a->number)
+CALL(state_get_value, a->system, a->use.state, (int32_t)a->index, a->out[0])
+CALL(state_get_rate, a->system, a->use.state, a->out[0])
 CALL(wheel_create, a->system, a->def, a->out[0])
 CALL(wheel_destroy, a->system, a->use.wheel)
 CALL(wheel_get_name, a->system, a->use.wheel, a->out[0])
@@ -520,6 +543,7 @@ static se3d_status counting_null_gives_zero(arguments *a)
     CHECK(se3d_system_count_constraints(NULL) == 0 &&
           se3d_system_count_constraints(a->system) == 4);
     CHECK(se3d_system_count_forces(NULL) == 0 && se3d_system_count_forces(a->system) == 1);
+    CHECK(se3d_system_count_states(NULL) == 0 && se3d_system_count_states(a->system) == 1);
     CHECK(se3d_system_count_wheels(NULL) == 0 && se3d_system_count_wheels(a->system) == 1);
     CHECK(se3d_check_count_messages(NULL) == 0 && se3d_check_count_messages(a->check) > 0);
     CHECK(se3d_system_hash(NULL) == 0 && se3d_system_hash(a->system) != 0);
@@ -591,6 +615,7 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(body);
     CHECK_INIT(marker);
     CHECK_INIT(wheel);
+    CHECK_INIT(state);
     CHECK_INIT(primitive);
     CHECK_INIT(user_constraint);
     CHECK_INIT(joint);
@@ -717,6 +742,15 @@ static const row rows[] = {
     {"se3d_system_get_constraint", call_system_get_constraint, "sxh0", NULL, NULL},
     {"se3d_system_get_force", call_system_get_force, "sxh0", NULL, NULL},
     {"se3d_system_get_wheel", call_system_get_wheel, "sxh0", NULL, NULL},
+    {"se3d_state_create", call_state_create, "SDh0", define_state, state_fields},
+    {"se3d_state_destroy", call_state_destroy, "Sz", NULL, NULL},
+    {"se3d_state_find", call_state_find, "sth0", NULL, NULL},
+    {"se3d_state_set_rate", call_state_set_rate, "Sz", NULL, NULL},
+    {"se3d_state_set_output", call_state_set_output, "Sz", NULL, NULL},
+    {"se3d_state_set_input", call_state_set_input, "Sz", NULL, NULL},
+    {"se3d_state_set_value", call_state_set_value, "Szn", NULL, NULL},
+    {"se3d_state_get_value", call_state_get_value, "szxo0", NULL, NULL},
+    {"se3d_state_get_rate", call_state_get_rate, "szo0", NULL, NULL},
     {"se3d_wheel_create", call_wheel_create, "SDh0", define_wheel, wheel_fields},
     {"se3d_wheel_destroy", call_wheel_destroy, "Sw", NULL, NULL},
     {"se3d_wheel_get_name", call_wheel_get_name, "swo0", NULL, NULL},
@@ -762,6 +796,7 @@ static const row rows[] = {
     {"se3d_system_count_markers", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_count_constraints", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_count_forces", counting_null_gives_zero, "", NULL, NULL},
+    {"se3d_system_count_states", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_count_wheels", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_check_count_messages", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_hash", counting_null_gives_zero, "", NULL, NULL},
@@ -781,6 +816,7 @@ static const row rows[] = {
     {"se3d_system_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_body_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_marker_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_state_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_wheel_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_primitive_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_user_constraint_def_init", definitions_are_never_overrun, "", NULL, NULL},

@@ -7,6 +7,8 @@
 #include "check.h"
 #include "se3d/se3d.h"
 
+#include <stdio.h>
+
 typedef struct handles {
     se3d_body body;
     se3d_marker marker;
@@ -14,6 +16,7 @@ typedef struct handles {
     se3d_function function;
     se3d_force force;
     se3d_wheel wheel;
+    se3d_state state;
 } handles;
 
 typedef union def_storage {
@@ -89,10 +92,16 @@ static void add_elements(se3d_system *system, handles *h, const char *name)
     wheel.chassis = ground;
     wheel.radius = 0.3;
     CHECK(!se3d_wheel_create(system, &wheel, &h->wheel));
+    se3d_state_def state = se3d_state_def_default();
+    char text[32];
+    snprintf(text, sizeof text, "%s state", name); /* forces and states have names of one kind */
+    state.name = text;
+    CHECK(!se3d_state_create(system, &state, &h->state));
 }
 
 static void remove_elements(se3d_system *system, const handles *h)
 {
+    CHECK(!se3d_state_destroy(system, h->state));
     CHECK(!se3d_wheel_destroy(system, h->wheel));
     CHECK(!se3d_force_destroy(system, h->force));
     CHECK(!se3d_constraint_destroy(system, h->primitive));

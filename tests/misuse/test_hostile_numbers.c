@@ -67,6 +67,15 @@ CREATE(se3d_marker_def, marker_create, se3d_marker)
 static const field marker_fields[] = {NUMBERS(se3d_marker_def, position),
                                       NUMBERS(se3d_marker_def, orientation), FIELDS_END};
 
+FILL_IN(se3d_state_def, state)
+{
+    (void)w;
+    def->initial = 1.0;
+}
+CREATE(se3d_state_def, state_create, se3d_state)
+static const field state_fields[] = {NUMBERS(se3d_state_def, initial),
+                                     NUMBERS(se3d_state_def, size), FIELDS_END};
+
 FILL_IN(se3d_wheel_def, wheel)
 {
     def->body = w->ball;
@@ -336,6 +345,7 @@ static const subject subjects[] = {
     SE3DI_JOINT_LIST(JOINT_SUBJECT) FORCE_LIST(FORCE_SUBJECT) FORCE_VARIANT_LIST(FORCE_SUBJECT)
         SE3DI_SHAPE_LIST(SHAPE_SUBJECT){"body", body_fields, fill_in_body, create_body_create, 0},
     {"marker", marker_fields, fill_in_marker, create_marker_create, 0},
+    {"state", state_fields, fill_in_state, create_state_create, 0},
     {"wheel", wheel_fields, fill_in_wheel, create_wheel_create, 0},
     {"dp1", primitive_fields, fill_in_dp1, create_primitive_create, 0},
     {"dp2", primitive_fields, fill_in_dp2, create_primitive_create, 0},

@@ -99,6 +99,33 @@ static se3d_status make_marker(workshop *w)
     return se3d_marker_create(w->system, &def, &marker);
 }
 
+/* A state that depends on itself. */
+static se3d_status make_state(workshop *w)
+{
+    static const char *const names[] = {"t", "z"};
+    se3d_state_def def = se3d_state_def_default();
+    se3d_function_def law = se3d_function_def_default();
+    se3d_signal signal;
+    se3d_function rate;
+    se3d_state state;
+    def.name = "state";
+    se3d_status status = se3d_state_create(w->system, &def, &state);
+    if (status < 0) {
+        return status;
+    }
+    memset(&signal, 0, sizeof signal);
+    signal.kind = SE3D_SIGNAL_STATE;
+    signal.state = state;
+    law.expression = "-z";
+    law.variables = names;
+    law.variable_count = 2;
+    law.signals = &signal;
+    law.signal_count = 1;
+    status = se3d_function_create(w->system, &law, &rate);
+    return status < 0 ? (CHECK(!se3d_state_destroy(w->system, state)), status)
+                      : se3d_state_set_rate(w->system, state, rate);
+}
+
 static se3d_status make_wheel(workshop *w)
 {
     double values[SE3D_WHEEL_MEASURES];
@@ -424,6 +451,7 @@ typedef struct operation_row {
 static const operation_row operations[] = {
     SE3DI_JOINT_LIST(ROW) FORCE_LIST(ROW){"body", make_body},
     {"marker", make_marker},
+    {"state", make_state},
     {"wheel", make_wheel},
     {"dp1", make_dp1},
     {"dp2", make_dp2},

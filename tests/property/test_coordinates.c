@@ -278,7 +278,7 @@ static void accelerations_of_closed_loops_are_those_of_the_bodies(void)
         se3di_equations e;
         double qddot[SIZE], a[3];
         begin(&s, seed, 1 + (int)(seed % 2));
-        CHECK(!se3di_equations_init(&e, &s.system->model, &se3di_formulation_romega, NULL));
+        CHECK(!se3di_equations_init(&e, &s.system->model, &se3di_formulation_romega, 1, NULL));
         if (se3di_acceleration_solve(&e, 0.0) == SE3D_OK && !e.redundant) {
             CHECK(!se3d_coordinates_compute_accelerations(s.c, NULL, qddot));
             CHECK(!se3d_coordinates_compute_jacobian(s.c, s.marker, J, rate));

@@ -43,7 +43,7 @@ static void begin(states_of *s, uint64_t seed)
     double dq[NUMBERS];
     tree_world_init(&s->world, seed, 1 + (int)(seed % TREE_BODIES_MAX), 0);
     s->model = &s->world.system->model;
-    CHECK(!se3di_tree_init(&s->tree, s->model, NULL));
+    CHECK(!se3di_tree_init(&s->tree, s->model, 1, NULL));
     for (uint32_t v = 0; seed % 3 == 0 && v < s->tree.v_count; ++v) {
         s->tree.armature[v] = 0.1 * v;
     }

@@ -64,7 +64,7 @@ static void begin_closed(case_of *c, uint64_t seed, int loops)
 {
     tree_world_init(&c->world, seed, 1 + (int)(seed % TREE_BODIES_MAX), loops);
     c->model = &c->world.system->model;
-    CHECK(!se3di_tree_init(&c->tree, c->model, NULL));
+    CHECK(!se3di_tree_init(&c->tree, c->model, 1, NULL));
     shake(&c->world, &c->tree, c->q, c->qdot);
     follow_turns(&c->tree, c->q);
 }
@@ -100,7 +100,7 @@ static void coordinates_give_states_that_meet_the_joints(void)
         case_of c;
         se3di_equations e;
         begin(&c, seed);
-        CHECK(!se3di_equations_init(&e, c.model, &se3di_formulation_romega, NULL));
+        CHECK(!se3di_equations_init(&e, c.model, &se3di_formulation_romega, 1, NULL));
         CHECK(!se3di_assembly_eval_functions(&e.assembly, 0.0, NULL));
         se3di_assembly_eval_phi(&e.assembly, e.c);
         CHECK_NEAR(largest(e.c, e.assembly.row_count), 0.0, 1e-11);
@@ -205,7 +205,7 @@ static void accelerations_are_those_of_the_maximal_equations(void)
         double acceleration[6 * (TREE_BODIES_MAX + 1)];
         begin(&c, seed);
         accelerate(&c, acceleration);
-        CHECK(!se3di_equations_init(&e, c.model, &se3di_formulation_romega, NULL));
+        CHECK(!se3di_equations_init(&e, c.model, &se3di_formulation_romega, 1, NULL));
         CHECK(se3di_acceleration_solve(&e, 0.0) >= 0);
         const size_t count = 6 * c.model->body_slots.count;
         const double scale = 1.0 + largest(c.model->acceleration, count);
@@ -228,7 +228,7 @@ static int compare_closed(case_of *c, double time, double *accelerations, double
     double wrench[6 * (TREE_BODIES_MAX + 1)], lambda[16 * TREE_BODIES_MAX] = {0.0};
     uint32_t failed;
     const size_t count = 6 * c->model->body_slots.count, rows = c->model->row_count;
-    CHECK(!se3di_equations_init(&e, c->model, &se3di_formulation_romega, NULL));
+    CHECK(!se3di_equations_init(&e, c->model, &se3di_formulation_romega, 1, NULL));
     if (se3di_acceleration_solve(&e, time) != SE3D_OK || e.redundant) {
         se3di_equations_destroy(&e);
         return 0;
@@ -313,7 +313,7 @@ static void prescribed_coordinates_move_as_their_drivers_say(void)
         begin_closed(&c, seed, seed % 3 == 0);
         drive(&c.world, &c.tree);
         se3di_tree_destroy(&c.tree);
-        CHECK(!se3di_tree_init(&c.tree, c.model, NULL));
+        CHECK(!se3di_tree_init(&c.tree, c.model, 1, NULL));
         shake(&c.world, &c.tree, c.q, c.qdot);
         follow_turns(&c.tree, c.q);
         uint32_t rows = c.tree.given_count;
@@ -378,9 +378,9 @@ static void redundant_loops_and_singular_positions_give_the_same_accelerations(v
         uint32_t failed;
         build_window(&w, angles[k]);
         se3di_model *model = &w.system->model;
-        CHECK(!se3di_tree_init(&tree, model, NULL));
+        CHECK(!se3di_tree_init(&tree, model, 1, NULL));
         CHECK(tree.v_count == 3);
-        CHECK(!se3di_equations_init(&e, model, &se3di_formulation_romega, NULL));
+        CHECK(!se3di_equations_init(&e, model, &se3di_formulation_romega, 1, NULL));
         CHECK(se3di_acceleration_solve(&e, 0.0) >= 0);
         CHECK(!se3di_tree_loops_init(&loops, &tree, &e.assembly, NULL));
         CHECK(loops.row_count == 5);

@@ -50,7 +50,8 @@ static void compare(const se3di_formulation *formulation)
     double together[16], apart[16], C[200];
     CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
     build(system);
-    CHECK(se3di_assembly_init(&assembly, &system->model, formulation, &system->error) == SE3D_OK);
+    CHECK(se3di_assembly_init(&assembly, &system->model, formulation, 1, &system->error) ==
+          SE3D_OK);
     CHECK(assembly.row_count == 16 && assembly.joint_value_count <= 200);
     se3di_assembly_eval_rows(&assembly, together);
     memcpy(C, assembly.C, assembly.joint_value_count * sizeof *C);
@@ -84,9 +85,9 @@ static void tangent_of_r_p_has_the_equations_of_r_omega(void)
     double gamma[16], gamma_p[16];
     CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
     build(system);
-    CHECK(se3di_assembly_init(&romega, &system->model, &se3di_formulation_romega, &system->error) ==
-          SE3D_OK);
-    CHECK(se3di_assembly_init(&tangent, &system->model, &se3di_formulation_rp_tangent,
+    CHECK(se3di_assembly_init(&romega, &system->model, &se3di_formulation_romega, 1,
+                              &system->error) == SE3D_OK);
+    CHECK(se3di_assembly_init(&tangent, &system->model, &se3di_formulation_rp_tangent, 1,
                               &system->error) == SE3D_OK);
     se3di_assembly_eval_rows(&romega, gamma);
     se3di_assembly_eval_rows(&tangent, gamma_p);

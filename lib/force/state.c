@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* State: the rate z' = f(t, s_1, s_2, ...) of a user-defined state, as a force on the carrier whose
+ * velocity z is:
+ *
+ *     wrench on j = (m f, 0, 0, 0, 0, 0)       D of a signal s = z:  dz/dv = (1, 0, 0)
+ *
+ * No work is done and nothing dissipated.  docs/theory/states.md */
+#include "model/state.h"
+#include "force/signal.h"
+
+static se3d_status eval_state(const se3di_model *model, const se3di_force *force, double t,
+                              se3di_effect *effect)
+{
+    double jet[3] = {0.0, 0.0, 0.0};
+    if (force->function[0] >= 0) {
+        SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], &t, jet, NULL));
+    }
+    effect->coordinate = se3di_state_value(model, force);
+    effect->value = jet[0];
+    effect->wrench[6] = SE3DI_CARRIER_MASS * jet[0];
+    return SE3D_OK;
+}
+
+const se3di_force_class se3di_force_class_state = {
+    .name = "state",
+    .eval = eval_state,
+};
