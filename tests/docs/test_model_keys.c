@@ -126,6 +126,7 @@ static const char *const kinds[SE3DI_KIND_END] = {
     [SE3DI_KIND_BOUNDARY] = NULL,
     [SE3DI_KIND_POINTS] = ITEMS("pair_of_numbers", "\"minItems\": 2"),
     [SE3DI_KIND_PAIRS] = ITEMS("pair_of_numbers", "\"minItems\": 1"),
+    [SE3DI_KIND_NUMBERS] = ITEMS("number", "\"minItems\": 1"),
     [SE3DI_KIND_CHANNELS] =
         LIST("{\"anyOf\": [{\"type\": \"string\"}, {\"type\": \"object\", \"minProperties\": 1, "
              "\"maxProperties\": 1, \"additionalProperties\": {\"type\": \"string\"}}]}"),

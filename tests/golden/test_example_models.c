@@ -243,6 +243,17 @@ static void servo_finds_its_star(void)
     close_example(&e);
 }
 
+/* The cart is where it should be; without anti-windup it overshoots by a third. */
+static void controller_brings_its_cart(void)
+{
+    example e = run_example("controller", NULL, NULL, NULL);
+    CHECK_NEAR(channel_of(&e, "rail.displacement", 0), 1.0, 2e-3);
+    CHECK_NEAR(channel_of(&e, "motor.value", 0), 6.0, 0.05);
+    CHECK(channel_of(&e, "spent.value", 0) > 6.0); /* the work against the slope */
+    CHECK(file_number(&e, "controller.csv", 151, 1) < 0.7);
+    close_example(&e);
+}
+
 /* What falls comes to rest. What was dissipated is what the boxes have lost, but for the order of
  * the method; box12 lies on the floor, on four corners. */
 static void heap_comes_to_rest(void)
@@ -387,6 +398,7 @@ int main(void)
     RUN(governor_finds_its_steady_motion);
     RUN(quarter_car_settles_and_its_tyre_never_pulls);
     RUN(servo_finds_its_star);
+    RUN(controller_brings_its_cart);
     RUN(heap_comes_to_rest);
     RUN(suspension_steers_and_travels_as_its_distances_say);
     RUN(axle_of_one_corner_is_symmetric);

@@ -101,6 +101,9 @@ static const quantity_name wheel_names[] = {
     {"wheel_rate", SE3DI_WHEEL_RATE},
     {"roll_rate", SE3DI_WHEEL_ROLL_RATE},
     {NULL, SE3DI_STEPS}};
+static const quantity_name state_names[] = {{"value", SE3DI_STATE_VALUE}, {NULL, SE3DI_STEPS}};
+static const quantity_name input_names[] = {{"input", SE3DI_STATE_INPUT}, {NULL, SE3DI_STEPS}};
+static const quantity_name rate_names[] = {{"rate", SE3DI_STATE_RATE}, {NULL, SE3DI_STEPS}};
 static const struct {
     const char *type;
     const quantity_name *names;
@@ -214,6 +217,15 @@ static void offer_element(offer *o, const se3d_model *model, const se3di_element
     case SE3DI_ELEMENT_DRIVER:
         offer_names(o, driver_names);
         break;
+    case SE3DI_ELEMENT_STATE:
+        offer_names(o, state_names);
+        if (strcmp(text, "ode") != 0) {
+            offer_names(o, input_names);
+        }
+        if (se3di_keys_contain(" ode integrator lag ", text)) {
+            offer_names(o, rate_names);
+        }
+        break;
     case SE3DI_ELEMENT_FORCE:
     default:
         for (size_t k = 0; k < sizeof force_names / sizeof *force_names; ++k) {
@@ -277,7 +289,8 @@ static void explain_unknown(const se3d_model *model, const char *name, char *pro
     const char *meant = se3di_guess_get(&guess);
     snprintf(problem, size, "`%.60s` is unknown%s%s%s", name,
              meant ? ", did you mean `"
-                   : ", must be a body, joint, driver, constraint, force or wheel, or one of "
+                   : ", must be a body, joint, driver, constraint, force, state or wheel, or "
+                     "one of "
                      "energy, work, "
                      "violation, steps, iterations",
              meant ? meant : "", meant ? "`?" : "");
@@ -421,6 +434,7 @@ static bool find_element(const se3d_model *model, const char *head, const char *
     channel->constraint = entry->constraint;
     channel->force = entry->force;
     channel->wheel = entry->wheel;
+    channel->state = entry->states ? entry->states[0] : (se3d_state){0, 0};
     channel->body = entry->body;
     channel->motion = motion_of(entry);
     memcpy(channel->point, entry->point, sizeof channel->point);
@@ -604,6 +618,7 @@ static void list_elements(channel_list *c)
                                      .constraint = entry->constraint,
                                      .force = entry->force,
                                      .wheel = entry->wheel,
+                                     .state = entry->states ? entry->states[0] : (se3d_state){0, 0},
                                      .body = entry->body};
             memcpy(channel.point, entry->point, sizeof channel.point);
             list_one(c, channel, parts);

@@ -36,6 +36,9 @@
     X(FORCE_COORDINATE, 1, FORCE, 0, MOTION, 0, 0, 0, 1)                                           \
     X(FORCE_RATE, 1, FORCE, 1, MOTION, 0, 1, 0, 1)                                                 \
     X(FORCE_VALUE, 1, FORCE, 2, SOLVED, 1, 2, 1, 1)                                                \
+    X(STATE_VALUE, 1, STATE_VALUE, 0, MOTION, 0, 0, 0, 0)                                          \
+    X(STATE_INPUT, 1, STATE_INPUT, 0, MOTION, 0, 0, 0, 0)                                          \
+    X(STATE_RATE, 1, STATE_RATE, 0, MOTION, 0, 1, 0, 0)                                            \
     X(WHEEL_CAMBER, 1, WHEEL_POSE, 0, MOTION, 0, 0, 0, 0)                                          \
     X(WHEEL_INCLINATION, 1, WHEEL_POSE, 1, MOTION, 0, 0, 0, 0)                                     \
     X(WHEEL_STEER, 1, WHEEL_POSE, 2, MOTION, 0, 0, 0, 0)                                           \
@@ -125,6 +128,9 @@ typedef enum se3di_question {
     SE3DI_ASK_DRIVER_VALUE,
     SE3DI_ASK_DRIVER_EFFORT,
     SE3DI_ASK_FORCE,
+    SE3DI_ASK_STATE_VALUE,
+    SE3DI_ASK_STATE_INPUT,
+    SE3DI_ASK_STATE_RATE,
     SE3DI_ASK_WHEEL_POSE, /* the groups of se3d_wheel_measure */
     SE3DI_ASK_WHEEL_AXIS,
     SE3DI_ASK_WHEEL_RIDE,
@@ -164,6 +170,7 @@ typedef struct se3di_channel {
     se3d_constraint constraint;
     se3d_force force;
     se3d_wheel wheel;
+    se3d_state state;
     const se3d_particles *particles;
     const struct se3di_tagged *tagged; /* of sets and sinks */
     uint32_t index;                    /* tag of a set, number of a sink */

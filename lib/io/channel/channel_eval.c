@@ -79,6 +79,12 @@ static se3d_status ask_element(se3di_question question, const se3di_channel *c,
         return se3d_driver_get_effort(system, c->constraint, numbers);
     case SE3DI_ASK_WRENCH:
         return ask_wrench(c, system, numbers);
+    case SE3DI_ASK_STATE_VALUE:
+        return se3d_state_get_value(system, c->state, SE3D_STATE_OUTPUT, numbers);
+    case SE3DI_ASK_STATE_INPUT:
+        return se3d_state_get_value(system, c->state, SE3D_STATE_INPUT, numbers);
+    case SE3DI_ASK_STATE_RATE:
+        return se3d_state_get_rate(system, c->state, numbers);
     case SE3DI_ASK_WHEEL_POSE:
         return se3d_wheel_get_measures(system, c->wheel, SE3D_WHEEL_CAMBER,
                                        SE3D_WHEEL_CASTER - SE3D_WHEEL_CAMBER, numbers);
@@ -233,6 +239,10 @@ static size_t element_of(se3di_question question, const se3di_channel *c)
     case SE3DI_ASK_FORCE:
     case SE3DI_ASK_TYRE:
         return c->force.index1;
+    case SE3DI_ASK_STATE_VALUE:
+    case SE3DI_ASK_STATE_INPUT:
+    case SE3DI_ASK_STATE_RATE:
+        return c->state.index1;
     case SE3DI_ASK_WHEEL_POSE:
     case SE3DI_ASK_WHEEL_AXIS:
     case SE3DI_ASK_WHEEL_RIDE:

@@ -41,6 +41,8 @@ static bool take_signal(const se3d_model *model, const se3di_channel *channel, s
         {SE3DI_JOINT_DISPLACEMENT_RATE, SE3D_SIGNAL_JOINT_RATE, SE3D_JOINT_COORDINATE_DISPLACEMENT},
         {SE3DI_FORCE_COORDINATE, SE3D_SIGNAL_FORCE_COORDINATE, 0},
         {SE3DI_FORCE_RATE, SE3D_SIGNAL_FORCE_RATE, 0},
+        {SE3DI_STATE_VALUE, SE3D_SIGNAL_STATE, SE3D_STATE_OUTPUT},
+        {SE3DI_STATE_INPUT, SE3D_SIGNAL_STATE, SE3D_STATE_INPUT},
         {SE3DI_BODY_POSITION, SE3D_SIGNAL_POINT_POSITION, -1},
         {SE3DI_BODY_VELOCITY, SE3D_SIGNAL_POINT_VELOCITY, -1},
         {SE3DI_BODY_ANGULAR_VELOCITY, SE3D_SIGNAL_ANGULAR_VELOCITY, -1},
@@ -56,7 +58,8 @@ static bool take_signal(const se3d_model *model, const se3di_channel *channel, s
                                                                      : kinds[k].coordinate,
                                 .body = channel->body,
                                 .joint = channel->constraint,
-                                .force = channel->force};
+                                .force = channel->force,
+                                .state = channel->state};
         const bool marker = channel->quantity == SE3DI_MARKER_POSITION ||
                             channel->quantity == SE3DI_MARKER_VELOCITY;
         return !marker || take_marker(model, channel, signal);
@@ -67,6 +70,9 @@ static bool take_signal(const se3d_model *model, const se3di_channel *channel, s
 /* What the part of another side would say with a sign. */
 static bool is_same_mirrored(const se3di_channel *channel)
 {
+    if (channel->quantity == SE3DI_STATE_VALUE || channel->quantity == SE3DI_STATE_INPUT) {
+        return true; /* what it is fed by is checked where it is */
+    }
     return (channel->quantity == SE3DI_FORCE_COORDINATE || channel->quantity == SE3DI_FORCE_RATE) &&
            channel->motion == SE3DI_TRANSLATION;
 }

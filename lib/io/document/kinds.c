@@ -37,6 +37,7 @@ static const char *const kind_texts[SE3DI_KIND_END] = {
     [SE3DI_KIND_RADIUS] = "number, 2 numbers or `{table: [[radius, frequency], ...]}`",
     [SE3DI_KIND_POINTS] = "pairs of numbers",
     [SE3DI_KIND_PAIRS] = "pairs of numbers",
+    [SE3DI_KIND_NUMBERS] = "list of numbers",
     [SE3DI_KIND_CHANNELS] = "list of [channels](#output)",
     [SE3DI_KIND_SNAPSHOTS] = "`true` or name of a set",
     [SE3DI_KIND_OBJECT] = "map",

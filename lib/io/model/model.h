@@ -30,10 +30,11 @@ typedef enum se3di_element_kind {
     SE3DI_ELEMENT_DRIVER = 2,
     SE3DI_ELEMENT_FORCE = 3,
     SE3DI_ELEMENT_WHEEL = 4,
-    SE3DI_ELEMENT_KINDS = 5
+    SE3DI_ELEMENT_STATE = 5,
+    SE3DI_ELEMENT_KINDS = 6
 } se3di_element_kind;
 
-/* A joint, constraint, driver, force or wheel: their names are unique together. */
+/* A joint, constraint, driver, force, wheel or state: their names are unique together. */
 typedef struct se3di_element_entry {
     const char *name;
     const se3di_node *node;
@@ -41,8 +42,11 @@ typedef struct se3di_element_entry {
     se3d_constraint constraint;
     se3d_force force;
     se3d_wheel wheel;
-    se3d_body body;  /* bushing, force, torque: the body acted on, */
-    double point[3]; /* where */
+    se3d_state *states; /* [order], the first with input and output */
+    size_t order;
+    const se3di_component *part; /* of a state */
+    se3d_body body;              /* bushing, force, torque: the body acted on, */
+    double point[3];             /* where */
     /* How it is drawn: a pair with points (1), also with an axis (2), a spring (3); 0: not. */
     int32_t drawn;
     bool is_turned;     /* mirrored joint whose angle counts the other way round */

@@ -68,6 +68,8 @@ static const se3di_key model_keys[] = {
     {"constraints", SE3DI_KIND_LIST, .object = "constraint", .text = "constraint primitives"},
     {"forces", SE3DI_KIND_LIST, .object = "force",
      .text = "springs, dampers, friction, stops, loads"},
+    {"states", SE3DI_KIND_LIST, .object = "state",
+     .text = "numbers that are integrated with the motion: filters, controllers"},
     {"wheels", SE3DI_KIND_LIST, .object = "wheel", .text = "what measures a suspension"},
     {"contact", SE3DI_KIND_OBJECT, .object = "contact",
      .text = "how shapes and particles touch; may be empty"},
@@ -171,16 +173,23 @@ static bool read_section(se3di_reader *reader,
     return true;
 }
 
+/* What moves and what acts on it. */
+static bool read_mechanism(se3di_reader *reader)
+{
+    return read_section(reader, se3di_read_bodies) && read_section(reader, se3di_read_joints) &&
+           read_section(reader, se3di_read_constraints) &&
+           read_section(reader, se3di_read_drivers) && read_section(reader, se3di_read_states) &&
+           read_section(reader, se3di_read_forces) && se3di_read_state_laws(reader) &&
+           read_section(reader, se3di_read_wheels);
+}
+
 static bool read_model(se3di_reader *reader, se3di_library *library, const se3di_node *root)
 {
     return read_head(reader, root) && se3di_read_main_part(reader, root) &&
            create_system(reader, root) && se3di_read_materials(reader, root) &&
-           se3di_read_parts(reader, library) && read_section(reader, se3di_read_bodies) &&
-           read_section(reader, se3di_read_joints) &&
-           read_section(reader, se3di_read_constraints) &&
-           read_section(reader, se3di_read_drivers) && read_section(reader, se3di_read_forces) &&
-           read_section(reader, se3di_read_wheels) && se3di_read_analyses(reader, root) &&
-           se3di_read_contact(reader, root) && se3di_read_particles(reader, root) &&
+           se3di_read_parts(reader, library) && read_mechanism(reader) &&
+           se3di_read_analyses(reader, root) && se3di_read_contact(reader, root) &&
+           se3di_read_particles(reader, root) &&
            (reader->study || se3di_read_outputs(reader, root)) && se3di_read_events(reader, root) &&
            (reader->study ? se3di_read_measured(reader, reader->study)
                           : se3di_read_study(reader, root));

@@ -28,6 +28,7 @@
     X(driver)                                                                                      \
     X(constraint)                                                                                  \
     X(force)                                                                                       \
+    X(state)                                                                                       \
     X(wheel)                                                                                       \
     X(analysis)                                                                                    \
     X(event)                                                                                       \
