@@ -21,6 +21,7 @@
 
 static const char *const time_only[] = {"t", NULL};
 static const char *const frames[] = {"ground", "body", NULL}; /* of se3d_load_def.in_body_frame */
+static const char *const tyre_files[] = {".tir", NULL};
 static const char *const force_types[] = {"tsda",   "rsda",  "bushing", "friction", "stop",
                                           "effort", "force", "torque",  "tyre",     NULL};
 
@@ -140,7 +141,10 @@ static const se3di_key force_keys[] = {
     {"normal", SE3DI_KIND_DIRECTION, .types = " tyre ", .standard = "[0, 0, 1]",
      .text = "of the road, up, at the given pose, ground frame"},
     {"model", SE3DI_KIND_WORD, SE3DI_INTO(se3d_tyre_def, law), .types = " tyre ",
-     .words = se3di_tyre_laws, .standard = "brush", .text = "of the forces in the road"},
+     .words = se3di_tyre_laws, .standard = "brush, or that of the file",
+     .text = "of the forces in the road: brush, Fiala, Magic Formula 5.2 or 6.1"},
+    {"file", SE3DI_KIND_FILE, .types = " tyre ", .words = tyre_files,
+     .text = "tyre property file of a Magic Formula, relative to the model"},
     {"radius", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_tyre_def, radius),
      .types = " tyre ", .text = "without load [m]"},
     {"k", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_tyre_def, k), .types = " tyre ",

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "io/read/forces_tyre.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "io/document/document.h"
@@ -8,8 +9,9 @@
 #include "io/document/keys.h"
 #include "io/read/bodies.h"
 #include "io/read/objects.h"
+#include "io/read/tir.h"
 
-const char *const se3di_tyre_laws[] = {"brush", "fiala", NULL};
+const char *const se3di_tyre_laws[] = {"brush", "fiala", "mf52", "mf61", NULL};
 const char *const se3di_tyre_sides[] = {"left", "right", NULL};
 
 /* A direction in the ground frame in that of a body. */
@@ -58,18 +60,30 @@ static bool read_road(se3di_reader *reader, const se3di_node *node, se3d_tyre_de
            turn_into(reader, def->road, normal, def->normal);
 }
 
-/* What a tyre cannot do without. */
-static bool check_given(se3di_reader *reader, const se3di_node *node)
+/* What a tyre cannot do without, which its file may have. */
+static bool check_given(se3di_reader *reader, const se3di_node *node, const se3d_tyre_def *def)
 {
-    static const struct {
+    const bool is_magic = def->law == SE3D_TYRE_MF52 || def->law == SE3D_TYRE_MF61;
+    const struct {
         const char *key, *what;
-    } needed[] = {{"radius", "the radius without load [m] > 0"},
-                  {"k", "the vertical stiffness [N/m] > 0"},
-                  {"mu", "the coefficient of friction > 0"},
-                  {"slip_stiffness", "dFx / d(slip ratio) [N] > 0"},
-                  {"cornering_stiffness", "-dFy / d(slip angle) [N] > 0"}};
+        double value;
+        bool of_all;
+    } needed[] = {
+        {"radius", "the radius without load [m] > 0", def->radius, true},
+        {"k", "the vertical stiffness [N/m] > 0", def->k, true},
+        {"mu", "the coefficient of friction > 0", def->mu, false},
+        {"slip_stiffness", "dFx / d(slip ratio) [N] > 0", def->slip_stiffness, false},
+        {"cornering_stiffness", "-dFy / d(slip angle) [N] > 0", def->cornering_stiffness, false}};
+    if (is_magic && !def->coefficients) {
+        return se3di_reader_fail_key(reader, node, "file",
+                                     "is missing, a Magic Formula needs a file of coefficients");
+    }
+    if (!is_magic && def->coefficients) {
+        return se3di_reader_fail_key(reader, node, "model",
+                                     "has no file, only mf52 and mf61 have one");
+    }
     for (size_t k = 0; k < sizeof needed / sizeof *needed; ++k) {
-        if (!se3di_node_get(node, needed[k].key)) {
+        if ((needed[k].of_all || !is_magic) && !(fabs(needed[k].value) > 0.0)) {
             return se3di_reader_fail_key(reader, node, needed[k].key, "is missing, a tyre needs %s",
                                          needed[k].what);
         }
@@ -77,16 +91,28 @@ static bool check_given(se3di_reader *reader, const se3di_node *node)
     return true;
 }
 
+static bool read_file(se3di_reader *reader, const se3di_node *node, double *coefficients,
+                      se3d_tyre_def *def)
+{
+    const se3di_node *file = se3di_node_get(node, "file");
+    const char *name = NULL;
+    return !file || (se3di_read_text(reader, file, &name) &&
+                     se3di_read_tir(reader, node, name, coefficients, def));
+}
+
 bool se3di_read_tyre(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
 {
     const se3di_body_entry *body = NULL;
     se3d_tyre_def def = se3d_tyre_def_default();
     double axis[3] = {0.0, 1.0, 0.0};
-    if (!se3di_read_key_body(reader, node, "body", &body) || !check_given(reader, node) ||
+    double coefficients[SE3D_TYRE_COEFFICIENTS];
+    if (!se3di_read_key_body(reader, node, "body", &body) ||
+        !read_file(reader, node, coefficients, &def) ||
         !se3di_read_key_place(reader, node, "point", "at", body, def.center) ||
         !se3di_read_key_ground_direction(reader, node, "axis", false, axis) ||
         !turn_into(reader, body->body, axis, def.axis) || !read_road(reader, node, &def) ||
-        !se3di_read_fields(reader, node, &se3di_object_force, "tyre", "se3d_tyre_def", &def)) {
+        !se3di_read_fields(reader, node, &se3di_object_force, "tyre", "se3d_tyre_def", &def) ||
+        !check_given(reader, node, &def)) {
         return false;
     }
     if (is_mirrored(reader->part->place.M)) {

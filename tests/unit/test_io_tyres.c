@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Tyre property files: units, what is missing or unknown, and files that are refused. */
+#include "support/scratch.h"
+
+#include <math.h>
+
+#define FILE_NAME "se3d_test_tyre.tir"
+#define MODEL(more)                                                                                \
+    "se3d: 1\n"                                                                                    \
+    "bodies: [{name: rim, mass: 10, inertia: [1, 1, 1], position: [0, 0, 0.29],\n"                 \
+    "  velocity: [20, -1, 0], angular_velocity: [0, 70, 0]}]\n"                                    \
+    "forces: [{name: t, type: tyre, body: rim, file: " FILE_NAME more "}]\n"
+#define NEEDED "PCX1 = 1.6\nPDX1=1.2\nPKX1=20\nPCY1= 1.3\nPDY1 =1.1\nPKY1=-15\nPKY2=1.5 $ peak\n"
+#define SI                                                                                         \
+    "$ comment\n! another\n[MODEL]\nFITTYP = 61\n[UNITS]\nLENGTH='meter'\nFORCE = 'newton'\n"      \
+    "[VERTICAL]\nFNOMIN = +4e3\nUNLOADED_RADIUS=.3\nVERTICAL_STIFFNESS = 2.0E+5\n" NEEDED
+
+typedef struct heard {
+    char text[2000];
+} heard;
+
+static void listen(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
+{
+    heard *h = ctx;
+    if (level == SE3D_LOG_WARNING && kind == SE3D_LOG_FILE) {
+        const size_t used = strlen(h->text);
+        snprintf(h->text + used, sizeof h->text - used, "%s\n", message);
+    }
+}
+
+static se3d_model *open(const char *tir, const char *text, heard *h, se3d_model_error *error)
+{
+    se3d_model *model = NULL;
+    se3d_model_options options = se3d_model_options_default();
+    options.log = listen;
+    options.log_ctx = h;
+    h->text[0] = '\0';
+    scratch_write(FILE_NAME, tir, strlen(tir));
+    (void)se3d_model_read_text(text, strlen(text), SCRATCH_FOLDER "se3d_test.yaml", &options,
+                               &model, error);
+    scratch_remove(FILE_NAME);
+    return model;
+}
+
+/* All that it tells. */
+static void tell(const char *tir, const char *text, double values[SE3D_TYRE_VALUES])
+{
+    heard h;
+    se3d_model_error error = {0, 0, ""};
+    se3d_force force;
+    se3d_model *model = open(tir, text, &h, &error);
+    CHECK(model != NULL);
+    memset(values, 0, SE3D_TYRE_VALUES * sizeof *values);
+    if (!model) {
+        fprintf(stderr, "%s\n", error.message);
+        return;
+    }
+    se3d_system *system = se3d_model_get_system(model);
+    CHECK(!se3d_force_find(system, "t", &force));
+    CHECK(!se3d_tyre_get_values(system, force, 0, SE3D_TYRE_VALUES, values));
+    se3d_model_destroy(model);
+}
+
+static void the_same_tyre_in_other_units_does_the_same(void)
+{
+    static const char other[] =
+        "[MODEL]\nFITTYP=61\n[UNITS]\nLENGTH='mm'\nFORCE='kilonewton'\nANGLE='degrees'\n"
+        "FNOMIN=4\nALPMAX=60\nALPMIN=-60\nUNLOADED_RADIUS=300\nVERTICAL_STIFFNESS=0.2\n" NEEDED;
+    double si[SE3D_TYRE_VALUES], mm[SE3D_TYRE_VALUES];
+    tell(SI, MODEL(""), si);
+    tell(other, MODEL(""), mm);
+    CHECK_NEAR(si[SE3D_TYRE_FZ], 2000.0, 1e-9);
+    CHECK(si[SE3D_TYRE_FX] > 10.0 && si[SE3D_TYRE_FY] > 10.0);
+    for (int k = 0; k < SE3D_TYRE_VALUES; ++k) {
+        CHECK_NEAR(mm[k], si[k], 1e-9 * (1.0 + fabs(si[k])));
+    }
+}
+
+static void the_model_file_goes_before_the_tyre_file(void)
+{
+    double given[SE3D_TYRE_VALUES], file[SE3D_TYRE_VALUES];
+    tell(SI, MODEL(""), file);
+    tell(SI, MODEL(", k: 1e5, mu: 0.5, model: mf52"), given);
+    CHECK_NEAR(given[SE3D_TYRE_FZ], 1000.0, 1e-9);
+    CHECK(fabs(given[SE3D_TYRE_FX]) < fabs(file[SE3D_TYRE_FX]));
+}
+
+static void what_is_unknown_or_missing_is_told(void)
+{
+    heard h;
+    se3d_model_error error = {0, 0, ""};
+    se3d_model *model =
+        open(SI "QUARK = 3\n[SHAPE]\n{radial width}\n1.0 0.0\n", MODEL(""), &h, &error);
+    CHECK(model != NULL);
+    CHECK(strstr(h.text, "QUARK") && strstr(h.text, "has no effect here"));
+    CHECK(strstr(h.text, "PDX2") && strstr(h.text, "missing"));
+    CHECK(!strstr(h.text, "PHY3") && !strstr(h.text, "PCX1"));
+    se3d_model_destroy(model);
+}
+
+static void refuse(const char *tir, const char *text, const char *part)
+{
+    heard h;
+    se3d_model_error error = {0, 0, ""};
+    se3d_model *model = open(tir, text, &h, &error);
+    CHECK(!model);
+    CHECK(error.line >= 4);
+    if (!strstr(error.message, part)) {
+        fprintf(stderr, "%s\n  lacks: %s\n", error.message, part);
+        CHECK(0);
+    }
+    se3d_model_destroy(model);
+}
+
+static void files_of_other_kinds_are_refused(void)
+{
+    refuse(SI "PDX2 = 1.2.3\n", MODEL(""), "line 19: PDX2 must be a number");
+    refuse(SI "PDX2 = nan\n", MODEL(""), "must be a number");
+    refuse(SI "PDX2 = 1e999\n", MODEL(""), "PDX2");
+    refuse(SI "PDX2 = 0x10\n", MODEL(""), "must be a number");
+    refuse(SI "PDX2 =\n", MODEL(""), "must be a number");
+    refuse(SI "PDX2 1\n", MODEL(""), "must be KEY = value");
+    refuse(SI "= 1\n", MODEL(""), "must have a key");
+    refuse(SI "[OPEN\n", MODEL(""), "must be a section");
+    refuse(SI "FORCE = 'ounce'\n", MODEL(""), "`ounce` is no unit, allowed are: newton");
+    refuse(SI "FITTYP = 94\n", MODEL(""), "FITTYP must be 5, 6");
+    refuse("[MODEL]\nFITTYP=6\nFNOMIN=1\n", MODEL(""), "PCX1, PDX1, PKX1");
+    refuse("FNOMIN=4000\n" NEEDED, MODEL(""), "FITTYP");
+    refuse("FITTYP=6\nFNOMIN=4000\n" NEEDED, MODEL(""), "radius");
+    refuse("FITTYP=6\nFNOMIN=-4000\nUNLOADED_RADIUS=.3\nVERTICAL_STIFFNESS=1e5\n" NEEDED, MODEL(""),
+           "FNOMIN");
+    refuse(SI, MODEL(", model: brush"), "only mf52 and mf61");
+    refuse(SI "PDX1 = 0\n", MODEL(""), "PDX1 = 0, must not be 0");
+}
+
+int main(void)
+{
+    RUN(the_same_tyre_in_other_units_does_the_same);
+    RUN(the_model_file_goes_before_the_tyre_file);
+    RUN(what_is_unknown_or_missing_is_told);
+    RUN(files_of_other_kinds_are_refused);
+    return check_finish();
+}
