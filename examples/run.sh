@@ -67,8 +67,8 @@ for model in examples/models/pendulum.yaml examples/models/*.yaml; do
     fi
 done
 
-# The Formula SAE car: rigs of its suspension, and the car on its tyres with its modes.
-for name in travel roll steer car; do
+# The Formula SAE car: rigs of its suspension, its modes on linear tyres, and braking on tyres that slip.
+for name in travel roll steer car brake; do
     echo
     echo "se3d run examples/fsae/$name.yaml -o results/fsae_$name"
     if "$program" run "examples/fsae/$name.yaml" -o "results/fsae_$name"; then

@@ -238,6 +238,64 @@ static void the_corner_weights_sum_to_the_weight(void)
     close_rig(&r);
 }
 
+/* The sum over the tyres of one of what they tell. */
+static double sum_tyres(const rig *r, size_t which)
+{
+    static const char *const names[4] = {"fl_tyre", "fr_tyre", "rl_tyre", "rr_tyre"};
+    double sum = 0.0, value = 0.0;
+    for (int k = 0; k < 4; ++k) {
+        se3d_force tyre;
+        CHECK(!se3d_force_find(r->system, names[k], &tyre));
+        CHECK(!se3d_tyre_get_values(r->system, tyre, which, 1, &value));
+        sum += value;
+    }
+    return sum;
+}
+
+static double speed_of_chassis(const rig *r)
+{
+    double v[3] = {0.0, 0.0, 0.0};
+    se3d_body chassis;
+    CHECK(!se3d_body_find(r->system, "chassis", &chassis));
+    CHECK(!se3d_body_get_velocity(r->system, chassis, v));
+    return v[0];
+}
+
+/* The tyres' forces are the mass times the deceleration, but for the little that the wheels' spins
+ * and the pitch take; at a stand the loads are the weight. */
+static void the_car_brakes_in_a_straight_line(void)
+{
+    double mass = 0.0, position[3];
+    se3d_body chassis;
+    rig r;
+    if (!open_rig("brake", &r)) {
+        return;
+    }
+    for (size_t k = 1; k < se3d_system_count_bodies(r.system); ++k) {
+        se3d_body body;
+        double own = 0.0, inertia[6];
+        CHECK(!se3d_system_get_body(r.system, k, &body));
+        CHECK(!se3d_body_get_mass(r.system, body, &own, inertia));
+        mass += own;
+    }
+    run(&r, 2.95);
+    const double before = speed_of_chassis(&r);
+    run(&r, 3.0);
+    const double force = sum_tyres(&r, SE3D_TYRE_FX);
+    run(&r, 3.05);
+    const double slowing = (before - speed_of_chassis(&r)) / 0.1;
+    CHECK(slowing > 8.0);
+    CHECK_NEAR(-force / mass, slowing, 0.01 * slowing);
+    run(&r, 4.5);
+    CHECK_NEAR(speed_of_chassis(&r), 0.0, 1e-4);
+    CHECK_NEAR(sum_tyres(&r, SE3D_TYRE_FZ), mass * G, 1e-3 * mass * G);
+    CHECK(!se3d_body_find(r.system, "chassis", &chassis));
+    CHECK(!se3d_body_get_position(r.system, chassis, position));
+    CHECK(position[0] > 8.0);
+    CHECK_NEAR(position[1], 0.0, 1e-3);
+    close_rig(&r);
+}
+
 int main(void)
 {
     RUN(gradients_are_the_slopes_of_the_travel_rig);
@@ -246,5 +304,6 @@ int main(void)
     RUN(the_hand_wheel_steers_to_its_side);
     RUN(the_roll_rate_is_the_slope_of_the_roll_rig);
     RUN(the_corner_weights_sum_to_the_weight);
+    RUN(the_car_brakes_in_a_straight_line);
     return check_finish();
 }
