@@ -138,7 +138,7 @@ SE3D_API se3d_status se3d_batch_set_mass(se3d_batch *batch, se3d_body body, size
 
 /* Take equal steps with all states that have not failed. A state whose step fails keeps the one
  * before it and is left alone from then on, until it is set; the others do not notice.
- * @param[in] method  SE3D_METHOD_RK4
+ * @param[in] method  SE3D_METHOD_RK4, SE3D_METHOD_RK45 or SE3D_METHOD_DOP853: of order 4, 5 and 8
  * @param[in] step    length [s], > 0
  * @param[in] steps   their number
  * @return OK, or that of the first state that has failed, also before (the message says which), of

@@ -179,8 +179,8 @@ static se3d_status init_worker(se3di_batch *b, se3di_batch_worker *w)
 {
     const size_t width = (size_t)b->core->width, y = width * state_size(b);
     const room rooms[] = {{&w->y, y},
-                          {&w->sum, y},
-                          {&w->rates, y},
+                          {&w->end, y},
+                          {&w->rates, SE3DI_BATCH_STAGES * y},
                           {&w->effort, width * b->tree.v_count},
                           {&w->acting, width * b->tree.v_count},
                           {&w->verdict, width},

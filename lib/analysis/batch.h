@@ -6,7 +6,10 @@
 #ifndef SE3DI_ANALYSIS_BATCH_H
 #define SE3DI_ANALYSIS_BATCH_H
 
+#include "integrator/explicit_rk.h"
 #include "tree/lanes.h"
+
+#define SE3DI_BATCH_STAGES 12 /* of a step, the most */
 
 /* What a thread works with. */
 typedef struct se3di_batch_worker {
@@ -16,8 +19,8 @@ typedef struct se3di_batch_worker {
     double *memory; /* what follows, as allocated */
     size_t memory_count;
     double *y;           /* state of a stage [positions + velocities][width] */
-    double *sum;         /* the step so far */
-    double *rates;       /* y' */
+    double *end;         /* that at the end of a step */
+    double *rates;       /* y' of the stages [SE3DI_BATCH_STAGES] */
     double *effort;      /* [velocities][width] */
     double *acting;      /* [velocities][width] efforts and what follows laws */
     double *verdict;     /* [width] 1, or not a number */
@@ -90,9 +93,10 @@ void se3di_batch_revive(const se3di_batch *batch, size_t first, size_t count);
 se3d_status se3di_batch_set_inertia(se3di_batch *batch, uint32_t body, size_t first, size_t count,
                                     const double *mass, const double *J);
 
-/* `steps` steps of length h by the method of Kutta. States that fail keep what they were before the
- * step and have a status; the others go on. */
-void se3di_batch_step(se3di_batch *batch, double h, uint64_t steps);
+/* `steps` steps of length h by an explicit method of at most SE3DI_BATCH_STAGES stages. States that
+ * fail keep what they were before the step and have a status; the others go on. */
+void se3di_batch_step(se3di_batch *batch, const se3di_rk_tableau *tableau, double h,
+                      uint64_t steps);
 
 /* Accelerations of all states [count][velocities]; of those that fail: zero, with a status. */
 void se3di_batch_accelerate(se3di_batch *batch, double *qddot);

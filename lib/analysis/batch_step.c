@@ -23,6 +23,7 @@ typedef struct task {
 /* What is done with each group. */
 typedef struct errand {
     void (*run)(const task *t, const struct errand *e);
+    const se3di_rk_tableau *tableau;
     double h;
     uint64_t steps;
     const double *in; /* [count][velocities] */
@@ -137,24 +138,38 @@ static void evaluate(const task *t, const double *y, double dt, double *rates)
     core->find_rates(lanes, y, y + positions, rates);
 }
 
-/* worker->sum: y after a step of the method of Kutta. */
-static void make_step(const task *t, const double *y, double h)
+/* out = y + h sum of coefficients times the rates of the first stages. */
+static void combine(const task *t, const double *y, double h, const double *coefficients,
+                    int stages, double *out)
 {
-    static const double node[3] = {0.5, 0.5, 1.0};
-    static const double weight[4] = {1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
-    const se3di_lane_core *core = t->batch->core;
+    const se3di_batch_worker *w = t->worker;
+    const size_t count = (size_t)t->batch->tree.q_count + t->batch->tree.v_count;
+    const double *rates[SE3DI_BATCH_STAGES];
+    double factors[SE3DI_BATCH_STAGES];
+    int used = 0;
+    for (int k = 0; k < stages; ++k) {
+        if (coefficients[k] != 0.0) {
+            factors[used] = h * coefficients[k];
+            rates[used++] = w->rates + (size_t)k * count * t->width;
+        }
+    }
+    t->batch->core->sum(count, y, used, factors, rates, out);
+    t->batch->core->normalise(&w->lanes, out);
+}
+
+/* worker->end: y after a step. */
+static void make_step(const task *t, const double *y, const errand *e)
+{
+    const se3di_rk_tableau *tableau = e->tableau;
     se3di_batch_worker *w = t->worker;
     const size_t count = (size_t)t->batch->tree.q_count + t->batch->tree.v_count;
     evaluate(t, y, 0.0, w->rates);
-    core->add(count, y, h * weight[0], w->rates, w->sum);
-    for (int k = 0; k < 3; ++k) {
-        core->add(count, y, h * node[k], w->rates, w->y);
-        core->normalise(&w->lanes, w->y);
-        evaluate(t, w->y, h * node[k], w->rates);
-        core->add(count, w->sum, h * weight[k + 1], w->rates, w->sum);
+    for (int k = 1; k < tableau->stages; ++k) {
+        combine(t, y, e->h, tableau->a[k], k, w->y);
+        evaluate(t, w->y, e->h * tableau->c[k], w->rates + (size_t)k * count * t->width);
     }
-    core->normalise(&w->lanes, w->sum);
-    core->check(count, w->sum, w->verdict);
+    combine(t, y, e->h, tableau->a[tableau->stages], tableau->stages, w->end);
+    t->batch->core->check(count, w->end, w->verdict);
 }
 
 /* Lanes whose step is finite take it. */
@@ -174,11 +189,11 @@ static void accept(const task *t, double *y, const double *begin, double elapsed
         }
     }
     if (fine) {
-        memcpy(y, w->sum, count * t->width * sizeof *y);
+        memcpy(y, w->end, count * t->width * sizeof *y);
         return;
     }
     for (size_t k = 0; k < count * t->width; ++k) {
-        y[k] = *status_of(t, k % t->width) >= 0 ? w->sum[k] : y[k];
+        y[k] = *status_of(t, k % t->width) >= 0 ? w->end[k] : y[k];
     }
 }
 
@@ -190,7 +205,7 @@ static void step_group(const task *t, const errand *e)
     double begin[SE3DI_LANES_MAX];
     memcpy(begin, b->time + t->group * t->width, t->width * sizeof *begin);
     for (uint64_t k = 0; k < e->steps; ++k) {
-        make_step(t, y, e->h);
+        make_step(t, y, e);
         accept(t, y, begin, (double)(k + 1) * e->h);
     }
 }
@@ -278,9 +293,9 @@ static void run_all(const se3di_batch *b, const errand *e)
     }
 }
 
-void se3di_batch_step(se3di_batch *batch, double h, uint64_t steps)
+void se3di_batch_step(se3di_batch *batch, const se3di_rk_tableau *tableau, double h, uint64_t steps)
 {
-    const errand e = {.run = step_group, .h = h, .steps = steps};
+    const errand e = {.run = step_group, .tableau = tableau, .h = h, .steps = steps};
     run_all(batch, &e);
 }
 

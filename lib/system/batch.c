@@ -299,17 +299,20 @@ static se3d_status report(se3d_batch *batch)
 se3d_status se3d_batch_step(se3d_batch *batch, se3d_method method, double step, uint64_t steps)
 {
     SE3DI_EDIT_OF(batch);
-    if (method != SE3D_METHOD_RK4) {
-        return SE3DI_FAIL_OF(batch->system, "method", SE3D_ERR_UNSUPPORTED,
-                             " = %d, must be SE3D_METHOD_RK4 (%d)", (int)method,
-                             (int)SE3D_METHOD_RK4);
+    const se3di_integrator *integrator = se3di_integrator_find((int32_t)method);
+    const se3di_rk_tableau *tableau = integrator ? integrator->tableau : NULL;
+    if (!tableau || tableau->stages > SE3DI_BATCH_STAGES) {
+        return SE3DI_FAIL_OF(
+            batch->system, "method", SE3D_ERR_UNSUPPORTED,
+            " = %d, must be SE3D_METHOD_RK4 (%d), SE3D_METHOD_RK45 (%d) or SE3D_METHOD_DOP853 (%d)",
+            (int)method, (int)SE3D_METHOD_RK4, (int)SE3D_METHOD_RK45, (int)SE3D_METHOD_DOP853);
     }
     if (!(step > 0.0 && step < HUGE_VAL)) {
         return SE3DI_FAIL_OF(batch->system, "step", SE3D_ERR_INVALID_ARGUMENT,
                              " = %g s, must be finite and > 0", step);
     }
     se3di_work_begin(batch->system);
-    se3di_batch_step(&batch->of, step, steps);
+    se3di_batch_step(&batch->of, tableau, step, steps);
     return report(batch);
 }
 

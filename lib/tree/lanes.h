@@ -66,6 +66,9 @@ typedef struct se3di_lane_core {
     void (*normalise)(const se3di_lanes *lanes, double *q);
     /* out = base + factor x: [count] numbers each; out may be either. */
     void (*add)(size_t count, const double *base, double factor, const double *x, double *out);
+    /* out = base + sum of factors[k] x[k], k < used: [count] numbers each; out may be base. */
+    void (*sum)(size_t count, const double *base, int used, const double *factors,
+                const double *const *x, double *out);
     /* out = base [count doubles] + sum over the lanes k of x[.][k] weights[k]: [width][width]. */
     void (*combine)(size_t count, const double *base, const double *weights, const double *x,
                     double *out);

@@ -93,7 +93,7 @@ class Batch:
                                             inertias))
 
     def step(self, h, steps=1, method="rk4"):
-        """Take equal steps with all states that have not failed."""
+        """Take equal steps (rk4, rk45, dop853) with all states that have not failed."""
         return self._check(lib.se3d_batch_step(self.pointer, method_number(method), h, steps))
 
     def accelerations(self):

@@ -20,12 +20,12 @@ static void use_coordinates(se3d_system *system, double *q, double *qdot, int se
 }
 
 /* The system after `steps` steps of a solver in joint coordinates. */
-static void run_alone(se3d_system *system, int steps)
+static void run_alone(se3d_system *system, se3d_method method, int steps)
 {
     se3d_solver *solver;
     se3d_solver_def def = se3d_solver_def_default();
     def.formulation = SE3D_FORMULATION_JOINT;
-    def.method = SE3D_METHOD_RK4;
+    def.method = (int32_t)method;
     CHECK(!se3d_solver_create(system, &def, &solver));
     for (int k = 0; k < steps; ++k) {
         CHECK(se3d_solver_step(solver, STEP) >= 0);
@@ -45,7 +45,9 @@ static double difference(const double *a, const double *b, size_t count)
 /* Positions and velocities of all bodies, to rounding. */
 static void a_batch_moves_as_a_solver_does(void)
 {
+    static const se3d_method methods[] = {SE3D_METHOD_RK4, SE3D_METHOD_RK45, SE3D_METHOD_DOP853};
     for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        const se3d_method method = methods[seed % 3];
         tree_world w;
         se3d_system *other;
         se3d_batch *batch;
@@ -55,10 +57,10 @@ static void a_batch_moves_as_a_solver_does(void)
         use_coordinates(w.system, q, qdot, 1); /* velocities that joints allow */
         CHECK(!se3d_system_clone(w.system, &other));
         CHECK(!se3d_batch_create(w.system, 3, 1, &batch));
-        CHECK(!se3d_batch_step(batch, SE3D_METHOD_RK4, STEP, 20));
+        CHECK(!se3d_batch_step(batch, method, STEP, 20));
         CHECK(!se3d_batch_get_state(batch, 2, 1, q, qdot));
         use_coordinates(other, q, qdot, 1);
-        run_alone(w.system, 20);
+        run_alone(w.system, method, 20);
         for (int k = 1; k < w.count; ++k) {
             const se3di_frame *a = &w.system->model.frames[k], *b = &other->model.frames[k];
             CHECK_NEAR(difference(a->r, b->r, 3), 0.0, 1e-11);
