@@ -95,7 +95,7 @@ static se3d_status batch_rejects_misuse(arguments *a)
 {
     se3d_system *system = NULL;
     se3d_batch *b = NULL;
-    se3d_body ball, ground;
+    se3d_body ball = {0, 0}, ground = {0, 0};
     se3d_body_def def = body_def("ball");
     double q[21], other[21], x[18], mass = 1.0, inertia[6] = {1.0, 1.0, 1.0};
     int32_t status[3];
