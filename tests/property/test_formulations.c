@@ -44,9 +44,10 @@ static void observe(const se3d_system *system, double *row)
     }
 }
 
-static int has_stops(const se3di_model *model)
+/* Stops, or controllers with limits. */
+static int has_kinks(const se3di_model *model)
 {
-    int found = 0;
+    int found = model->state_count > 0;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         found |= model->forces[k].type == SE3DI_FORCE_STOP;
     }
@@ -61,7 +62,7 @@ static double bound_of(const se3di_model *model, int touches, int32_t formulatio
     if (formulation != SE3D_FORMULATION_JOINT) {
         return touches ? 1e-5 : 1e-10;
     }
-    return touches ? 1e-3 : has_stops(model) ? 1e-6 : 1e-10;
+    return touches ? 1e-3 : has_kinks(model) ? 1e-6 : 1e-10;
 }
 
 static int is_dynamics(const char *type)
