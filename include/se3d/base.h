@@ -123,7 +123,8 @@ typedef enum se3d_log_kind {
     SE3D_LOG_METHOD = 5,    /* another method or formulation works: se3d_solver_get_switch */
     SE3D_LOG_STEP = 6,      /* the step is one that nobody chose, or is too long */
     SE3D_LOG_KINK = 7,      /* a prescribed rate has jumped: an impulse */
-    SE3D_LOG_FILE = 8       /* a file that a model names has or lacks something */
+    SE3D_LOG_FILE = 8,      /* a file that a model names has or lacks something */
+    SE3D_LOG_CHECKPOINT = 9 /* a checkpoint could not be written: se3d_run_options */
 } se3d_log_kind;
 
 /* Receives what happens to a system, one sentence a call: every message of a failure (ERROR);

@@ -246,6 +246,11 @@ typedef struct se3d_run_options {
     void *ctx;                  /* of `progress` */
     se3d_interrupt interrupt;   /* asked within rows too whether the run is to end; NULL: none */
     void *interrupt_ctx;        /* of `interrupt` */
+    double checkpoint; /* > 0: at the first row so long after the last checkpoint, by the clock, the
+                           file run.checkpoint is written to `directory` [s] */
+    int32_t resume;    /* not 0: go on from run.checkpoint in `directory`, if it is there */
+    int32_t reserved;  /* 0 */
+    se3d_scene *scene; /* that `progress` records, kept in checkpoints; NULL: none */
 } se3d_run_options;
 
 /* Fill `options`, of `size` bytes, with the defaults: see se3d_run_options_default. @since 0.1 */
@@ -259,14 +264,19 @@ static inline se3d_run_options se3d_run_options_default(void)
     return options;
 }
 
-/* Run every analysis of a model and write its results. A file is written under a temporary name and
- * gets its own when the run is over. If an analysis fails, the rows so far are kept; if it is
- * interrupted, they end with one at the time that was reached.
+/* Run every analysis of a model and write its results. A file is written under a temporary name,
+ * where its rows can be seen after about a second, and gets its own when the run is over. If an
+ * analysis fails, the rows so far are kept; if it is interrupted, they end with one at the time
+ * that was reached. A run that resumes leaves the same files as one that was never ended, to the
+ * byte; it must be of the same model files, options and version of the library, and the results
+ * must be as they were left. The checkpoint is removed when a run is complete, or when one begins
+ * anew. One that cannot be written is told to the log, and the one before stays.
  * @param[in] options  NULL: the defaults
  * @param[out] error   filled on failure: when, where, why and what to try; may be NULL
  * @return OK or INFO_* of the last analysis, NULL, INVALID_ARGUMENT (options), STATE (no analysis,
- *         or within a run of the model), IO, NO_MEMORY, or the status of the analysis that failed;
- *         *out tells what was done, also then, and is NULL if nothing ran.
+ *         within a run of the model, or a checkpoint or results that do not fit), IO, NO_MEMORY, or
+ *         the status of the analysis that failed; *out tells what was done, also then, and is NULL
+ *         if nothing ran.
  * @since 0.1 */
 SE3D_API se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options,
                                     se3d_run **out, se3d_model_error *error);

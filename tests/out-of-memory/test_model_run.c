@@ -167,6 +167,82 @@ static void reading_and_running_survives_every_failed_allocation(void)
     remove(MESH);
 }
 
+static const char swing[] =
+    "se3d: 1\nbodies: [{name: a, mass: 1, inertia: [0.01, 0.1, 0.1], position: [0.5, 0, 0]}]\n"
+    "joints: [{name: s, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, 0]}]"
+    "\nevents: [{name: e, channel: a.position.x, value: 0.4}]\n"
+    "analysis: [{type: equilibrium}, {type: dynamics, duration: 0.05}]\n"
+    "output: [{file: r.csv, every: 0.01, channels: [a.position]},\n"
+    "  {summary: s.csv, every: 0.01, channels: [a.position]}]\n";
+
+typedef struct stop {
+    int rows, asked;
+} stop;
+
+/* The user ends the run after some rows. */
+static int end_after(void *ctx, size_t analysis, double time, double fraction)
+{
+    stop *s = ctx;
+    (void)analysis, (void)time, (void)fraction;
+    return s->rows > 0 && ++s->asked >= s->rows;
+}
+
+/* A run with checkpoints, of which allocation k fails; `rows`: it is ended then, 0: never. */
+static attempt resume_once(size_t k, int resume, int rows)
+{
+    support_counting counting = {.fail_at = 0};
+    const se3d_allocator allocator = support_counting_allocator(&counting);
+    const char *build = getenv("SE3D_BUILD_DIR");
+    char folder[800];
+    se3d_model *model = NULL;
+    se3d_run *run = NULL;
+    se3d_scene *scene = NULL;
+    se3d_model_error error = {0, 0, ""};
+    se3d_model_options options = se3d_model_options_default();
+    se3d_run_options how = se3d_run_options_default();
+    stop s = {rows, 0};
+    snprintf(folder, sizeof folder, "%s/out-of-memory-resume", build ? build : "/tmp");
+    options.allocator = &allocator;
+    how.directory = folder;
+    how.checkpoint = 1e-9;
+    how.resume = resume;
+    how.progress = end_after;
+    how.ctx = &s;
+    CHECK(!se3d_model_read_text(swing, strlen(swing), "m.yaml", &options, &model, &error));
+    CHECK(!se3d_scene_create(model, &scene));
+    how.scene = scene;
+    counting.calls = 0;
+    counting.fail_at = k;
+    attempt a = {SE3D_OK, 0, 0};
+    a.status = se3d_model_run(model, &how, &run, &error);
+    a.files = se3d_run_count_files(run);
+    a.reached = counting.failed > 0;
+    CHECK(a.status >= 0 || error.message[0] != '\0');
+    se3d_scene_destroy(scene);
+    se3d_run_destroy(run);
+    se3d_model_destroy(model);
+    CHECK(counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);
+    return a;
+}
+
+/* Writing a checkpoint may fail, and the run goes on; going on with one fails or succeeds. */
+static void checkpoints_survive_failed_allocations(void)
+{
+    const size_t files = resume_once(0, 0, 0).files;
+    for (int resume = 0; resume < 2; ++resume) {
+        attempt a = {SE3D_OK, 1, 0};
+        size_t k = 1;
+        for (; a.reached; k += 1 + k / 40) {
+            CHECK(!resume || resume_once(0, 0, 2).status >= 0);
+            a = resume_once(k, resume, 0);
+            CHECK(a.status == SE3D_ERR_NO_MEMORY || (resume && a.status == SE3D_ERR_STATE) ||
+                  (a.status >= 0 && a.files == files));
+        }
+        CHECK(k > 30);
+        CHECK(a.status >= 0);
+    }
+}
+
 static void count_mistake(void *ctx, const se3d_model_error *error)
 {
     size_t *count = ctx;
@@ -202,6 +278,7 @@ static void mistakes_are_reported_with_any_memory(void)
 
 int main(void)
 {
+    RUN(checkpoints_survive_failed_allocations);
     RUN(reading_and_running_survives_every_failed_allocation);
     RUN(mistakes_are_reported_with_any_memory);
     return check_finish();

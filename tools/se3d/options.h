@@ -26,6 +26,7 @@ typedef struct options {
     const char *format;
     const char *shard;
     const char *jobs;
+    const char *checkpoint;
     se3d_model_setting settings[SETTINGS_MAX];
     char names[SETTINGS_MAX][64];
     size_t setting_count;

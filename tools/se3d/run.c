@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* se3d run MODEL: every analysis of a model, results into files. */
+#include <float.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +12,8 @@
 #include "options.h"
 #include "pictures.h"
 #include "warnings.h"
+
+#define EVERY_ROW 1e-9 /* s between checkpoints: less than a row takes */
 
 static const char *outcome(const se3d_run_analysis *a)
 {
@@ -455,6 +459,18 @@ static void print_result(const warnings *warned, se3d_model *model, const se3d_r
     }
 }
 
+static const char *advice_to_resume(const options *o)
+{
+    return o->checkpoint ? "; --resume goes on" : "";
+}
+
+static void ask_checkpoints(const options *o, se3d_scene *scene, se3d_run_options *how)
+{
+    how->checkpoint = o->checkpoint ? fmax(strtod(o->checkpoint, NULL), EVERY_ROW) : 0.0;
+    how->resume = o->resume;
+    how->scene = scene;
+}
+
 /* Run, and leave the results and the scene in `folder`. */
 static int run_into(const warnings *warned, se3d_model *model, const char *folder,
                     se3d_scene **scene)
@@ -473,13 +489,14 @@ static int run_into(const warnings *warned, se3d_model *model, const char *folde
     how.progress = watch;
     how.ctx = &w;
     how.interrupt = is_over;
+    ask_checkpoints(o, *scene, &how);
     const se3d_status status = se3d_model_run(model, &how, &run, &error);
     const int ended = (!SE3D_FAILED(status) || status == SE3D_ERR_INTERRUPTED) && interrupt_came();
     progress_end(&bar);
     if (ended) {
         snprintf(error.message, sizeof error.message,
-                 "ended by the user at t = %.9g s; the results so far are in %.200s", end_of(run),
-                 folder);
+                 "ended by the user at t = %.9g s; the results so far are in %.200s%s", end_of(run),
+                 folder, advice_to_resume(o));
     }
     const int failed = SE3D_FAILED(status) || ended;
     const int nothing = se3d_run_count_files(run) == 0;
@@ -571,6 +588,19 @@ int run_for_plots(const char *path, int quiet, int draw, char *csv, size_t size)
     return code;
 }
 
+/* The seconds between checkpoints. @return false, after a message: it is no such number */
+static int is_checkpoint(const options *o)
+{
+    char *end = NULL;
+    const double seconds = o->checkpoint ? strtod(o->checkpoint, &end) : 0.0;
+    if (!o->checkpoint || (end != o->checkpoint && !*end && seconds >= 0.0 && seconds <= DBL_MAX)) {
+        return 1;
+    }
+    fprintf(stderr, "se3d run: --checkpoint %s: must be a number of seconds, 0 or more\n",
+            o->checkpoint);
+    return 0;
+}
+
 static int command_run(int count, char *const *words)
 {
     options o;
@@ -578,6 +608,9 @@ static int command_run(int count, char *const *words)
     int code = options_read(&o, &run_entry, count, words);
     if (code != EXIT_DONE || o.help) {
         return code;
+    }
+    if (!is_checkpoint(&o)) {
+        return EXIT_USAGE;
     }
     warnings warned = {.o = &o};
     se3d_model_options how = options_get_model(&o);
@@ -614,6 +647,12 @@ const command_entry run_entry = {
             COMMAND_OPTION_SET,
             {"--analysis", NULL, "T", "instead of those of the model: {analyses}, modes"},
             COMMAND_OPTIONS_OF_SOLVERS,
+            {"--checkpoint", NULL, "T",
+             "every T seconds of the clock, write all that is needed to go on to run.checkpoint, "
+             "beside the results; 0: at every row"},
+            {"--resume", NULL, NULL,
+             "go on with a run that was ended, from its last checkpoint, or begin if there is "
+             "none: the results are the same to the byte"},
             COMMAND_OPTION_QUIET,
             {"--json", NULL, NULL, "print the summary as JSON, with the warnings"},
             {0}},
@@ -622,6 +661,8 @@ const command_entry run_entry = {
                                            "another length, results in short"},
                                           {"run car.yaml --method radau --tolerance 1e-8 --json",
                                            "another method and tolerance, a summary for programs"},
+                                          {"run hopper.yaml --checkpoint 60 --resume",
+                                           "a long run: the same command again goes on with it"},
                                           {0}},
     .exits = "0 done; 1 the analysis failed or was ended by Ctrl-C or SIGTERM (results so "
              "far are on disk); 2 bad usage or model.",

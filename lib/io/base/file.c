@@ -9,6 +9,8 @@
 #include <errno.h>
 #include <string.h>
 
+#include "base/hash.h"
+
 enum { PATH_SIZE = 4300 };
 
 #if defined(_WIN32)
@@ -44,6 +46,11 @@ FILE *se3di_file_continue(const char *path)
 {
     FILE *file = fopen(path, "r+b");
     return file ? file : fopen(path, "w+b");
+}
+
+bool se3di_file_sync(FILE *file)
+{
+    return fflush(file) == 0 && _commit(_fileno(file)) == 0;
 }
 
 static bool is_link(const char *path)
@@ -126,6 +133,11 @@ FILE *se3di_file_continue(const char *path)
 static bool cut(FILE *file, uint64_t size)
 {
     return ftruncate(fileno(file), (off_t)size) == 0;
+}
+
+bool se3di_file_sync(FILE *file)
+{
+    return fflush(file) == 0 && (fsync(fileno(file)) == 0 || errno == EINVAL); /* no disk */
 }
 
 static bool is_link(const char *path)
@@ -216,6 +228,87 @@ FILE *se3di_partial_open(const char *path)
     take_away(partial); /* of a run that was ended; or a link, which must not be followed */
     errno = 0;
     return open_new(partial);
+}
+
+/* Whether a file begins with bytes of this hash, which go to `to` if it is not NULL. */
+static bool begins_with(FILE *file, uint64_t size, uint64_t hash, FILE *to)
+{
+    unsigned char block[4096];
+    uint64_t found = SE3DI_HASH_START;
+    while (size > 0) {
+        const size_t wanted = size < sizeof block ? (size_t)size : sizeof block;
+        const size_t count = fread(block, 1, wanted, file);
+        if (count == 0 || (to && fwrite(block, 1, count, to) != count)) {
+            return false;
+        }
+        found = se3di_hash_bytes(found, block, count);
+        size -= count;
+    }
+    return found == hash;
+}
+
+/* The file that has its name already, as one that has not. */
+static FILE *copy_whole(const char *path, uint64_t size, uint64_t hash)
+{
+    FILE *whole = se3di_file_open(path);
+    const bool known = whole && begins_with(whole, size, hash, NULL);
+    FILE *file = known ? se3di_partial_open(path) : NULL;
+    if (file) {
+        rewind(whole);
+        if (!begins_with(whole, size, hash, file) || fflush(file) != 0) {
+            const int why = errno;
+            se3di_partial_abandon(file, path);
+            file = NULL;
+            errno = why ? why : EIO;
+        }
+    } else if (!known) {
+        errno = ESTALE;
+    }
+    const int why = errno;
+    if (whole) {
+        fclose(whole);
+    }
+    errno = why;
+    return file;
+}
+
+FILE *se3di_partial_continue(const char *path, uint64_t size, uint64_t hash)
+{
+    char partial[PATH_SIZE];
+    if (!format_partial(path, partial)) {
+        errno = ENAMETOOLONG;
+        return NULL;
+    }
+    FILE *there = se3di_file_open(partial);
+    const bool known = there && begins_with(there, size, hash, NULL);
+    if (there) {
+        fclose(there);
+    }
+    if (!known) {
+        return copy_whole(path, size, hash);
+    }
+    FILE *file = se3di_file_continue(partial);
+    if (file && !se3di_file_cut(file, size)) {
+        const int why = errno;
+        fclose(file);
+        errno = why;
+        return NULL;
+    }
+    return file;
+}
+
+void se3di_file_remove(const char *path)
+{
+    char partial[PATH_SIZE];
+    take_away(path);
+    if (format_partial(path, partial)) {
+        take_away(partial);
+    }
+}
+
+void se3di_partial_leave(FILE *file)
+{
+    fclose(file);
 }
 
 bool se3di_file_cut(FILE *file, uint64_t size)

@@ -25,6 +25,16 @@ bool se3di_file_cut(FILE *file, uint64_t size);
  * says why, and nothing is left. */
 FILE *se3di_partial_open(const char *path);
 bool se3di_partial_close(FILE *file, const char *path);
+/* Go on with a file that se3di_partial_open had begun, after its first `size` bytes: with the one
+ * of the temporary name, or a copy of the one that has its name already, if their hash is that one.
+ * @return NULL: errno says why; ESTALE: neither begins with these bytes. What is there stays. */
+FILE *se3di_partial_continue(const char *path, uint64_t size, uint64_t hash);
+/* Let a file survive that the machine stops. */
+bool se3di_file_sync(FILE *file);
+/* Take a file away, and what was left of it under its temporary name; folders stay. */
+void se3di_file_remove(const char *path);
+/* Close a file that others go on with later. */
+void se3di_partial_leave(FILE *file);
 /* Cut the file to its first `size` bytes and give it its name, after a write has failed; if it
  * cannot have it, it keeps the temporary one. @return false: nothing is left. */
 bool se3di_partial_keep(FILE *file, const char *path, uint64_t size);

@@ -128,7 +128,12 @@ struct se3d_model {
     struct se3di_study_entry *study;      /* io/channel/study.h; NULL: none */
     struct se3di_study_channel *measured; /* [study->source_count] of it, or of the study that the
                                              model is a sample of */
-    uint64_t content;                     /* hash of the bytes of all its files */
+    uint64_t content;                     /* hash of the bytes of all its files, */
+    uint64_t asked;                       /* of the options that it was read with */
+    se3d_log_callback log;                /* the user's; NULL: none */
+    void *log_ctx;
+    se3d_log_callback listener; /* a run that keeps what is said; NULL: none */
+    void *listener_ctx;
 };
 
 #endif

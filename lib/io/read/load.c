@@ -146,11 +146,25 @@ static bool read_gravity(se3di_reader *reader, const se3di_node *root)
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
+/* The log of the system: to the user, and to a run that keeps it. */
+static void tell(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
+{
+    const se3d_model *model = ctx;
+    if (model->log) {
+        model->log(model->log_ctx, level, kind, message);
+    }
+    if (model->listener) {
+        model->listener(model->listener_ctx, level, kind, message);
+    }
+}
+
 static bool create_system(se3di_reader *reader, const se3di_node *root)
 {
     se3d_system_def def = se3d_system_def_default();
-    def.log = reader->options->log;
-    def.log_ctx = reader->options->log_ctx;
+    reader->model->log = reader->options->log;
+    reader->model->log_ctx = reader->options->log_ctx;
+    def.log = tell;
+    def.log_ctx = reader->model;
     def.allocator = &reader->pool->allocator;
     if (SE3D_FAILED(se3d_system_create(&def, &reader->model->system))) {
         return se3di_reader_fail_memory(reader);
@@ -230,6 +244,27 @@ se3d_model *se3di_model_create(const se3d_allocator *allocator)
     return model;
 }
 
+static uint64_t hash_text(uint64_t hash, const char *text)
+{
+    return text ? se3di_hash_bytes(hash, text, strlen(text) + 1) : se3di_hash_bytes(hash, "\1", 1);
+}
+
+/* Of what makes another model of the same files. */
+static uint64_t hash_options(const se3d_model_options *o)
+{
+    const char *const texts[] = {o->analysis, o->formulation, o->method,
+                                 o->step,     o->duration,    o->tolerance};
+    const char *const mass = o->mass_optional ? "mass" : NULL;
+    uint64_t hash = hash_text(SE3DI_HASH_START, mass);
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; ++k) {
+        hash = hash_text(hash, texts[k]);
+    }
+    for (size_t k = 0; k < o->setting_count; ++k) {
+        hash = hash_text(hash_text(hash, o->settings[k].name), o->settings[k].value);
+    }
+    return hash;
+}
+
 static se3d_status fail_early(se3d_model_error *error, se3d_status status, const char *path,
                               const char *text)
 {
@@ -283,6 +318,7 @@ se3d_status se3d_model_read_text(const char *text, size_t length, const char *na
         model->library->pool = &model->pool;
     }
     model->content = se3di_hash_bytes(SE3DI_HASH_START, text, length);
+    model->asked = hash_options(&used);
     if (status < 0) {
         se3di_mistakes_report_one(&attempt, status);
     } else {

@@ -24,6 +24,7 @@
 #include "io/channel/sample.h"
 #include "io/document/document.h"
 #include "io/model/model.h"
+#include "io/run/checkpoint.h"
 #include "io/run/run_modes.h"
 #include "io/run/run_particles.h"
 #include "io/run/runner.h"
@@ -43,6 +44,11 @@ static se3d_status fail_path(se3di_runner *r, const char *path, int why)
 {
     char text[800];
     const bool memory = why == 0 || why == ENOMEM;
+    if (why == ESTALE) {
+        snprintf(text, sizeof text,
+                 "%.500s: cannot be resumed: it is not as the checkpoint has left it", path);
+        return fail(r, SE3D_ERR_STATE, text);
+    }
     snprintf(text, sizeof text, "%.500s: cannot be written: %s", path,
              memory ? "out of memory" : strerror(why));
     return fail(r, memory ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO, text);
@@ -52,7 +58,7 @@ static se3d_status fail_path(se3di_runner *r, const char *path, int why)
 static se3d_status fail_csv(se3di_runner *r, const se3di_csv *csv)
 {
     char text[800];
-    if (csv->failure == 0 || csv->failure == ENOMEM || csv->lines < 2) {
+    if (csv->failure == 0 || csv->failure == ENOMEM || csv->failure == ESTALE || csv->lines < 2) {
         return fail_path(r, csv->path, csv->failure);
     }
     snprintf(text, sizeof text, "%.500s: cannot be written: %s; the first %" PRIu64 " row%s kept",
@@ -96,6 +102,25 @@ static void put_summary_head(se3di_output_file *file)
     }
 }
 
+/* The file of the next output. */
+static se3d_status open_csv(const se3di_runner *r, se3di_csv *csv, const char *path, size_t columns)
+{
+    se3di_iopool *pool = &r->run->pool;
+    return r->resume ? se3di_csv_continue(csv, pool, path, columns,
+                                          se3di_checkpoint_get_mark(r, r->file_count))
+                     : se3di_csv_open(csv, pool, path, columns);
+}
+
+/* What a run cannot begin with; what was there of one that is gone on with stays. */
+static void give_up(const se3di_runner *r, se3di_csv *csv)
+{
+    if (r->resume) {
+        se3di_csv_leave(csv);
+    } else {
+        se3di_csv_abandon(csv);
+    }
+}
+
 static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
 {
     se3di_output_file *file = &r->files[r->file_count];
@@ -123,13 +148,16 @@ static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
     }
     file->entry = entry;
     file->row = se3di_iopool_array(&r->run->pool, columns, sizeof *file->row);
-    const se3d_status status = se3di_csv_open(&file->csv, &r->run->pool, path, columns);
+    const se3d_status status = open_csv(r, &file->csv, path, columns);
     if (status < 0 || !file->row) {
         const se3d_status result = fail_file(r, file);
-        se3di_csv_abandon(&file->csv);
+        give_up(r, &file->csv);
         return result;
     }
     ++r->file_count;
+    if (r->resume) {
+        return SE3D_OK; /* its first line is there */
+    }
     if (entry->summary) {
         put_summary_head(file);
         return SE3D_OK;
@@ -163,7 +191,8 @@ static se3d_status open_events(se3di_runner *r)
     if (joined < 0) {
         return joined;
     }
-    const se3d_status status = se3di_event_list_open(events, &r->run->pool, path);
+    const se3d_status status = se3di_event_list_open(
+        events, &r->run->pool, path, r->resume ? se3di_checkpoint_get_events(r) : NULL);
     return status < 0 ? fail_path(r, path, events->csv.failure) : SE3D_OK;
 }
 
@@ -473,13 +502,34 @@ static void flush_files(se3di_runner *r)
     }
 }
 
+/* CPU time of the analysis so far [s]. */
+static double cpu_time(const se3di_runner *r)
+{
+    return r->cpu_before + (double)(clock() - r->begin) / (double)CLOCKS_PER_SEC;
+}
+
+/* A checkpoint, if it is time for one. */
+static void save(se3di_runner *r, double start, double reached, se3d_status last)
+{
+    const double now = clock_now();
+    if (!(r->options->checkpoint > 0.0) || r->stopped ||
+        (now - r->saved < r->options->checkpoint && now >= r->saved)) {
+        return;
+    }
+    se3di_checkpoint_write(
+        r, &(se3di_place){
+               .start = start, .reached = reached, .cpu = cpu_time(r), .last = (int32_t)last});
+    r->saved = clock_now();
+}
+
 static se3d_status run_rows(se3di_runner *r, size_t index, const se3di_analysis_entry *entry,
-                            double start)
+                            const se3di_place *place)
 {
     const double duration = entry->analysis.duration;
-    se3d_status last = SE3D_OK;
+    const double start = place->start;
+    se3d_status last = (se3d_status)place->last;
     double time = start;
-    double reached = -HUGE_VAL; /* the last rows are of then */
+    double reached = place->reached;
     while (next_time(r, start, duration, &time) && !r->stopped) {
         time = merge_times(r, start, duration, time);
         last = r->model->particles ? se3di_tagged_advance(r->model, &entry->solver, r->solver, time)
@@ -507,6 +557,7 @@ static se3d_status run_rows(se3di_runner *r, size_t index, const se3di_analysis_
         if (ends) {
             break;
         }
+        save(r, start, reached, last);
     }
     return last < 0 ? fail_analysis(r, entry, last, time) : last;
 }
@@ -552,15 +603,14 @@ static void record_start(se3di_runner *r, se3d_run_analysis *done)
 }
 
 /* What the solver did, for the summary. */
-static void record(se3di_runner *r, const se3di_analysis_entry *entry, se3d_run_analysis *done,
-                   clock_t begin)
+static void record(se3di_runner *r, const se3di_analysis_entry *entry, se3d_run_analysis *done)
 {
     const char *method = "";
     const char *left = "";
     done->left_at = (double)NAN;
     se3d_system_get_time(r->model->system, &r->time);
     done->end = r->time;
-    done->cpu_time = (double)(clock() - begin) / (double)CLOCKS_PER_SEC;
+    done->cpu_time = cpu_time(r);
     if (r->solver) {
         se3d_solver_get_stats(r->solver, &done->stats);
         se3d_solver_get_formulation(r->solver, &done->formulation);
@@ -612,38 +662,62 @@ static se3d_status create_solver(se3di_runner *r, const se3di_analysis_entry *en
     return se3d_solver_create(r->model->system, &def, &r->solver);
 }
 
+/* The solver and its events, at the start or where the run that is gone on with was. */
+static se3d_status begin_analysis(se3di_runner *r, const se3di_analysis_entry *entry,
+                                  se3di_place *place)
+{
+    const bool watched = is_watched(r);
+    const double start = place->start;
+    se3d_status status = r->resume ? SE3D_OK : se3d_system_set_time(r->model->system, start);
+    if (status >= 0 && !entry->modes.file) {
+        status = create_solver(r, entry, start);
+    }
+    if (status >= 0 && se3di_analysis_has_motion(entry)) {
+        status = se3di_events_create(r->model, r->solver, watched ? r->watch->event : NULL,
+                                     watched ? r->watch->ctx : NULL);
+    }
+    if (status < 0) {
+        return fail_analysis(r, entry, status, start);
+    }
+    if (r->resume) {
+        status = se3di_checkpoint_restore(r, place);
+        r->cpu_before = place->cpu;
+    }
+    return status;
+}
+
+/* Its beginning: at a time that is given, or where the one before has ended. */
+static double start_of(const se3di_runner *r, const se3di_analysis_entry *entry)
+{
+    return r->resume                      ? se3di_checkpoint_get_start(r)
+           : isnan(entry->analysis.start) ? r->time
+                                          : entry->analysis.start;
+}
+
 static se3d_status run_analysis(se3di_runner *r, size_t index)
 {
     const se3di_analysis_entry *entry = &r->model->analyses[index];
-    r->analysis = index;
-    r->run->events.collected = 0;
     se3d_run_analysis *done = &r->run->analyses[r->run->analysis_count++];
-    const double start = isnan(entry->analysis.start) ? r->time : entry->analysis.start;
-    const clock_t begin = clock();
+    se3di_place place = {.start = start_of(r, entry), .reached = -HUGE_VAL, .last = SE3D_OK};
+    r->analysis = index;
+    r->run->events.collected = r->resume ? r->run->events.collected : 0;
+    r->begin = clock();
+    r->cpu_before = 0.0;
     done->type = copy_text(r, entry->analysis.type);
     done->formulation = se3d_formulation_get_name(SE3D_FORMULATION_ROMEGA);
     done->method = "";
-    done->start = start;
-    done->end = start;
+    done->start = place.start;
+    done->end = place.start;
     se3d_status status =
         done->type[0] != '\0' ? SE3D_OK : fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
     plan(r, entry);
+    status = status < 0 ? status : begin_analysis(r, entry, &place);
     if (status >= 0) {
-        status = se3d_system_set_time(r->model->system, start);
-        if (status >= 0 && !entry->modes.file) {
-            status = create_solver(r, entry, start);
-        }
-        if (status >= 0 && se3di_analysis_has_motion(entry)) {
-            const bool watched = is_watched(r);
-            status = se3di_events_create(r->model, r->solver, watched ? r->watch->event : NULL,
-                                         watched ? r->watch->ctx : NULL);
-        }
-        status = status < 0          ? fail_analysis(r, entry, status, start)
-                 : entry->modes.file ? run_modes(r, entry, start)
-                                     : run_rows(r, index, entry, start);
+        status = entry->modes.file ? run_modes(r, entry, place.start)
+                                   : run_rows(r, index, entry, &place);
     }
     status = collect_events(r, index, status);
-    record(r, entry, done, begin);
+    record(r, entry, done);
     done->status = (int32_t)status;
     se3d_solver_destroy(r->solver);
     r->solver = NULL;
@@ -749,18 +823,35 @@ static se3d_run *create_run(const se3d_model *model)
     return run;
 }
 
+/* What is there of a run that is gone on with, and the files. */
+static se3d_status begin_files(se3di_runner *r)
+{
+    if (r->options->checkpoint > 0.0 || r->options->resume) {
+        if (!se3di_checkpoint_listen(r)) {
+            return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+        }
+    }
+    se3d_status status = r->options->resume ? se3di_checkpoint_open(r) : SE3D_OK;
+    status = status < 0 ? status : open_files(r);
+    return status >= 0 && r->resume ? se3di_checkpoint_take(r) : status;
+}
+
 static se3d_status run_all(se3di_runner *r)
 {
-    se3d_status status = open_files(r);
+    se3d_status status = begin_files(r);
     if (status < 0) {
         for (size_t k = 0; k < r->file_count; ++k) {
-            se3di_csv_abandon(&r->files[k].csv);
+            give_up(r, &r->files[k].csv);
         }
-        se3di_csv_abandon(&r->run->events.csv);
+        give_up(r, &r->run->events.csv);
         return status;
     }
-    se3d_system_get_time(r->model->system, &r->time);
-    for (size_t k = 0; k < r->model->analysis_count && status >= 0 && !r->stopped; ++k) {
+    if (!r->resume) {
+        se3di_checkpoint_remove(r);
+        se3d_system_get_time(r->model->system, &r->time);
+    }
+    for (size_t k = r->resume ? r->analysis : 0;
+         k < r->model->analysis_count && status >= 0 && !r->stopped; ++k) {
         status = run_analysis(r, k);
     }
     const se3d_status summed =
@@ -770,7 +861,11 @@ static se3d_status run_all(se3di_runner *r)
     if (summed < 0 && status >= 0) {
         status = fail(r, summed, "out of memory");
     }
-    return close_files(r, status);
+    status = close_files(r, status);
+    if (status >= 0 && !r->stopped) {
+        se3di_checkpoint_remove(r);
+    }
+    return status;
 }
 
 se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, se3d_run **out,
@@ -803,9 +898,11 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
         return fail(&r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
     model->running = 1;
+    r.saved = clock_now();
     se3di_sample_init(&r.sample, model->system, &model->pool.allocator);
     const se3d_status status = run_all(&r);
     se3di_sample_destroy(&r.sample);
+    se3di_checkpoint_ignore(&r);
     model->running = 0;
     *out = r.run;
     return status;

@@ -6,16 +6,18 @@
 
 #include "io/channel/event.h"
 
-se3d_status se3di_event_list_open(se3di_event_list *events, se3di_iopool *pool, const char *path)
+se3d_status se3di_event_list_open(se3di_event_list *events, se3di_iopool *pool, const char *path,
+                                  const se3di_csv_mark *mark)
 {
     static const char *const columns[] = {"time", "event", "channel", "value", "direction"};
     enum { COUNT = sizeof columns / sizeof *columns };
-    const se3d_status status = se3di_csv_open(&events->csv, pool, path, COUNT);
+    const se3d_status status = mark ? se3di_csv_continue(&events->csv, pool, path, COUNT, mark)
+                                    : se3di_csv_open(&events->csv, pool, path, COUNT);
     if (status < 0) {
         return status;
     }
     events->is_open = true;
-    for (size_t k = 0; k < COUNT; ++k) {
+    for (size_t k = 0; k < COUNT && !mark; ++k) {
         se3di_csv_put_name(&events->csv, columns[k], k + 1 == COUNT);
     }
     return SE3D_OK;

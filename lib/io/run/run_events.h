@@ -14,8 +14,9 @@ typedef struct se3di_event_list {
     bool is_open;
 } se3di_event_list;
 
-/* Open the file: as se3di_csv_open. */
-se3d_status se3di_event_list_open(se3di_event_list *events, se3di_iopool *pool, const char *path);
+/* Open the file: as se3di_csv_open, or, with a mark, se3di_csv_continue. */
+se3d_status se3di_event_list_open(se3di_event_list *events, se3di_iopool *pool, const char *path,
+                                  const se3di_csv_mark *mark);
 /* What is new on the solver's record, to the list and the file. @return OK, NO_MEMORY */
 se3d_status se3di_event_list_collect(se3di_event_list *events, se3di_iopool *pool,
                                      const se3d_model *model, se3d_solver *solver, size_t analysis);

@@ -3,6 +3,8 @@
 #ifndef SE3D_IO_RUNNER_H
 #define SE3D_IO_RUNNER_H
 
+#include <time.h>
+
 #include "io/channel/output.h"
 #include "io/channel/sample.h"
 #include "io/model/model.h"
@@ -36,6 +38,9 @@ struct se3d_run {
     size_t summary_count, summary_capacity;
 };
 
+struct se3di_resume;
+struct se3di_told;
+
 typedef struct se3di_runner {
     se3d_model *model;
     const se3di_watch *watch; /* gets the rows in place of files; NULL: there are files */
@@ -48,7 +53,12 @@ typedef struct se3di_runner {
     se3d_solver *solver;
     se3di_sample sample; /* what the rows of one time ask for */
     se3d_solver_stats stats;
-    double time;    /* where the analysis before ended */
+    double time;                 /* where the analysis before ended */
+    struct se3di_resume *resume; /* a checkpoint that the run goes on from; NULL: none, or done */
+    struct se3di_told *told;     /* warnings of the run, for checkpoints */
+    double saved;                /* when the last checkpoint was written, by the clock [s] */
+    double cpu_before;           /* of the analysis that runs, in the programs before [s] */
+    clock_t begin;               /* of that in this one */
     double flushed; /* when the rows so far were last written to the disk, by the clock [s] */
     bool stopped;
 } se3di_runner;

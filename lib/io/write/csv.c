@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "io/base/file.h"
 #include "io/base/pool.h"
 
@@ -50,6 +51,7 @@ void se3di_csv_flush(se3di_csv *csv)
             ++csv->lines;
             csv->whole = csv->written + (uint64_t)(end - csv->buffer);
         }
+        csv->hash = se3di_hash_bytes(csv->hash, csv->buffer, written);
         csv->written += written;
     }
     csv->used = 0;
@@ -70,24 +72,76 @@ static void put(se3di_csv *csv, const char *text, size_t length)
     }
 }
 
-se3d_status se3di_csv_open(se3di_csv *csv, se3di_iopool *pool, const char *path, size_t columns)
+static bool begin(se3di_csv *csv, se3di_iopool *pool, const char *path, size_t columns)
 {
     memset(csv, 0, sizeof *csv);
     csv->columns = columns;
+    csv->hash = SE3DI_HASH_START;
     csv->path = se3di_iopool_copy(pool, path, strlen(path));
     csv->buffer = se3di_iopool_alloc(pool, BUFFER_SIZE);
     csv->pending = se3di_iopool_array(pool, columns, sizeof *csv->pending);
-    if (!csv->path || !csv->buffer || !csv->pending) {
-        return SE3D_ERR_NO_MEMORY;
-    }
-    errno = 0;
-    csv->file = se3di_file_make_folders(path) ? se3di_partial_open(path) : NULL;
+    return csv->path && csv->buffer && csv->pending;
+}
+
+static se3d_status take_file(se3di_csv *csv, FILE *file)
+{
+    csv->file = file;
     if (!csv->file) {
         remember(csv);
         return SE3D_ERR_IO;
     }
     setvbuf(csv->file, NULL, _IONBF, 0);
     return SE3D_OK;
+}
+
+se3d_status se3di_csv_open(se3di_csv *csv, se3di_iopool *pool, const char *path, size_t columns)
+{
+    if (!begin(csv, pool, path, columns)) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    errno = 0;
+    return take_file(csv, se3di_file_make_folders(path) ? se3di_partial_open(path) : NULL);
+}
+
+se3d_status se3di_csv_continue(se3di_csv *csv, se3di_iopool *pool, const char *path, size_t columns,
+                               const se3di_csv_mark *mark)
+{
+    if (!begin(csv, pool, path, columns)) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    errno = 0;
+    csv->written = csv->whole = mark->bytes;
+    csv->lines = mark->lines;
+    csv->rows = mark->rows;
+    csv->hash = mark->hash;
+    return take_file(csv, se3di_partial_continue(path, mark->bytes, mark->hash));
+}
+
+bool se3di_csv_mark_here(se3di_csv *csv, bool sync, se3di_csv_mark *mark)
+{
+    se3di_csv_flush(csv);
+    *mark = (se3di_csv_mark){csv->written, csv->lines, csv->rows, csv->hash};
+    return csv->failure == 0 && (!sync || se3di_file_sync(csv->file));
+}
+
+void se3di_csv_pack_pending(se3di_csv *csv, se3di_pack *pack)
+{
+    size_t columns = csv->columns;
+    se3di_pack_size(pack, &columns);
+    se3di_pack_flag(pack, &csv->has_pending);
+    if (columns != csv->columns) {
+        pack->failed = true;
+    } else if (csv->has_pending) {
+        se3di_pack_numbers(pack, csv->pending, columns);
+    }
+}
+
+void se3di_csv_leave(se3di_csv *csv)
+{
+    if (csv->file) {
+        se3di_partial_leave(csv->file);
+        csv->file = NULL;
+    }
 }
 
 /* Names with commas or quotes cannot occur: the reader does not allow them. */

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "io/base/pack.h"
 #include "io/base/pool.h"
 
 typedef struct se3di_csv {
@@ -20,10 +21,27 @@ typedef struct se3di_csv {
     uint64_t written; /* bytes on disk */
     uint64_t whole;   /* of them, bytes of whole lines */
     uint64_t lines;   /* that are whole */
+    uint64_t hash;    /* of what is on disk */
 } se3di_csv;
+
+/* How far a file has come: it can be gone on with from there. */
+typedef struct se3di_csv_mark {
+    uint64_t bytes, lines, rows, hash;
+} se3di_csv_mark;
 
 /* Open for `columns` numbers a row. @return OK, IO, NO_MEMORY. */
 se3d_status se3di_csv_open(se3di_csv *csv, se3di_iopool *pool, const char *path, size_t columns);
+/* Go on with a file that was open before, at a mark: the header is there. @return OK, IO,
+ * NO_MEMORY; on failure what is there stays. */
+se3d_status se3di_csv_continue(se3di_csv *csv, se3di_iopool *pool, const char *path, size_t columns,
+                               const se3di_csv_mark *mark);
+/* Write what is there, with `sync` so that it survives a machine that stops, and say how far it is.
+ * @return false: that failed. */
+bool se3di_csv_mark_here(se3di_csv *csv, bool sync, se3di_csv_mark *mark);
+/* The last row, which may still be replaced: the same for each file of as many columns. */
+void se3di_csv_pack_pending(se3di_csv *csv, se3di_pack *pack);
+/* Close for those who continue. */
+void se3di_csv_leave(se3di_csv *csv);
 /* Write one name of the header; the last one ends the line. */
 void se3di_csv_put_name(se3di_csv *csv, const char *name, bool last);
 /* Write one row; row[0] is the time. A row at the time of the one before takes its place. */

@@ -15,6 +15,7 @@
 #include "io/model/model.h"
 #include "io/write/drawing.h"
 #include "io/write/glb.h"
+#include "io/write/scene.h"
 
 enum { SAMPLES_MAX = 1250 }; /* a page of 20 bodies stays below 1.5 MB */
 
@@ -114,6 +115,25 @@ se3d_status se3d_scene_record(se3d_scene *scene)
     status = se3di_drawing_get_poses(scene->model, pose_of(scene, scene->poses.count, 0));
     scene->poses.count += status >= 0;
     return status;
+}
+
+void se3di_scene_pack(se3d_scene *scene, se3di_pack *pack)
+{
+    size_t bodies = scene->poses.bodies, count = scene->poses.count;
+    se3di_pack_size(pack, &bodies);
+    se3di_pack_size(pack, &count);
+    se3di_pack_size(pack, &scene->stride);
+    se3di_pack_size(pack, &scene->skipped);
+    if (bodies != scene->poses.bodies || count > SAMPLES_MAX || scene->stride == 0) {
+        scene->stride = 1;
+        pack->failed = true;
+        return;
+    }
+    if (pack->in) {
+        scene->poses.count = count;
+    }
+    se3di_pack_numbers(pack, scene->times, count);
+    se3di_pack_numbers(pack, scene->poses.values, count * bodies * SE3DI_POSE);
 }
 
 static void put_list(drawing *d, const char *name, const double *values, size_t count)

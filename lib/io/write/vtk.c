@@ -385,6 +385,19 @@ void se3di_vtk_record(se3di_vtk *vtk, se3di_sample *sample, double time)
     vtk->times[vtk->count++] = time;
 }
 
+void se3di_vtk_pack(se3di_vtk *vtk, se3di_pack *pack)
+{
+    size_t count = vtk->count;
+    se3di_pack_count(pack, &count);
+    if (pack->in) {
+        vtk->times = se3di_iopool_array(vtk->pool, count + 1, sizeof *vtk->times);
+        vtk->capacity = vtk->times ? count + 1 : 0;
+        vtk->count = vtk->times ? count : 0;
+        pack->failed = pack->failed || !vtk->times;
+    }
+    se3di_pack_numbers(pack, vtk->times, vtk->count);
+}
+
 /* An attribute of the list. */
 static void put_path(FILE *file, const char *path)
 {
