@@ -128,13 +128,13 @@ static size_t state_size(const se3di_batch *b)
 
 static se3d_status take_numbers(se3di_batch *b)
 {
-    const size_t all = b->groups * (size_t)b->core->width;
+    const size_t width = (size_t)b->core->width, all = b->groups * width;
     const room rooms[] = {{&b->states, all * state_size(b)},
                           {&b->efforts, all * b->tree.v_count},
                           {&b->gravity, all * 3},
                           {&b->time, all}};
     const size_t widest = SIZE_MAX / (16 + state_size(b) + b->tree.v_count) / sizeof(double);
-    if (all > widest) {
+    if (b->groups > widest / width) {
         return SE3D_ERR_NO_MEMORY;
     }
     b->memory =

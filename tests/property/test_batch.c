@@ -4,6 +4,7 @@
 #include "support/counting.h"
 #include "support/tree_world.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 
 enum { MECHANISMS = 40, NUMBERS = 7 * TREE_BODIES_MAX, STATES = 21 };
@@ -419,6 +420,22 @@ static void what_a_batch_cannot_have_is_named(void)
     se3d_system_destroy(system);
 }
 
+static void counts_beyond_memory_are_refused(void)
+{
+    static const size_t counts[] = {SIZE_MAX, SIZE_MAX - 1, SIZE_MAX - 8, SIZE_MAX / 8 + 1};
+    se3d_constraint joint;
+    se3d_body bar;
+    se3d_system *systems[2] = {make_pendulum(&joint, &bar), NULL};
+    CHECK(!se3d_system_create(NULL, &systems[1])); /* without bodies */
+    for (int s = 0; s < 2; ++s) {
+        for (size_t k = 0; k < sizeof counts / sizeof *counts; ++k) {
+            se3d_batch *b;
+            CHECK(se3d_batch_create(systems[s], counts[k], 1, &b) == SE3D_ERR_NO_MEMORY && !b);
+        }
+        se3d_system_destroy(systems[s]);
+    }
+}
+
 int main(void)
 {
     RUN(a_batch_moves_as_a_solver_does);
@@ -429,5 +446,6 @@ int main(void)
     RUN(steps_and_queries_take_no_memory);
     RUN(callbacks_work_but_do_not_reach_the_batch);
     RUN(what_a_batch_cannot_have_is_named);
+    RUN(counts_beyond_memory_are_refused);
     return check_finish();
 }
