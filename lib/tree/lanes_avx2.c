@@ -6,6 +6,7 @@
 
 #if defined(SE3DI_TARGETS)
 #include <immintrin.h>
+#include <math.h>
 #include <stdint.h>
 
 SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX2)

@@ -283,6 +283,49 @@ static void a_state_that_fails_hurts_no_other(void)
     se3d_system_destroy(system);
 }
 
+/* Ends that coincide: a damper between them resists in every direction, as for a solver; a law that
+ * needs a direction makes the state fail. */
+static void springs_may_have_no_length(void)
+{
+    static const struct {
+        double k, c, l0;
+    } laws[] = {{10.0, 0.0, 0.0}, {10.0, 1.0, 0.0}, {0.0, 3.0, 0.0}, {10.0, 1.0, 0.5}};
+    for (size_t k = 0; k < sizeof laws / sizeof *laws; ++k) {
+        se3d_system *system;
+        se3d_batch *b;
+        se3d_force force;
+        se3d_body_def body = se3d_body_def_default();
+        se3d_tsda_def spring = se3d_tsda_def_default();
+        const double down[3] = {0.0, 0.0, -9.81};
+        double q[5 * 7], qdot[5 * 6], r[3];
+        CHECK(!se3d_system_create(NULL, &system));
+        CHECK(!se3d_system_set_gravity(system, down));
+        CHECK(!se3d_system_get_ground(system, &spring.body_i));
+        body.mass = 2.0;
+        body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+        body.velocity[0] = 0.5;
+        body.angular_velocity[1] = 2.0;
+        CHECK(!se3d_body_create(system, &body, &spring.body_j));
+        spring.k = laws[k].k;
+        spring.c = laws[k].c;
+        spring.l0 = laws[k].l0;
+        CHECK(!se3d_force_create_tsda(system, &spring, &force));
+        CHECK(!se3d_batch_create(system, 5, 1, &b) && se3d_batch_count_single_forces(b) == 0);
+        if (laws[k].l0 > 0.0) {
+            CHECK(se3d_batch_step(b, SE3D_METHOD_RK4, STEP, 1) == SE3D_ERR_NOT_FINITE);
+        } else {
+            CHECK(!se3d_batch_step(b, SE3D_METHOD_RK4, STEP, 20));
+            CHECK(!se3d_batch_get_state(b, 0, 5, q, qdot));
+            run_alone(system, SE3D_METHOD_RK4, 20);
+            CHECK(!se3d_body_get_position(system, spring.body_j, r));
+            CHECK_NEAR(difference(q, r, 3), 0.0, 1e-13);
+            CHECK(memcmp(q, q + 4 * 7, 7 * sizeof *q) == 0);
+        }
+        se3d_batch_destroy(b);
+        se3d_system_destroy(system);
+    }
+}
+
 /* Against a torque in time that is known, from each state's own time. */
 static void functions_see_the_time_of_the_state(void)
 {
@@ -442,6 +485,7 @@ int main(void)
     RUN(bits_do_not_depend_on_count_lane_and_threads);
     RUN(gravity_and_masses_are_those_of_the_state);
     RUN(a_state_that_fails_hurts_no_other);
+    RUN(springs_may_have_no_length);
     RUN(functions_see_the_time_of_the_state);
     RUN(steps_and_queries_take_no_memory);
     RUN(callbacks_work_but_do_not_reach_the_batch);
