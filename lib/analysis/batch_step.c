@@ -101,7 +101,9 @@ static void load(const task *t, const double *q, double dt)
         return;
     }
     for (size_t lane = 0; lane < t->width && t->group * t->width + lane < b->count; ++lane) {
-        load_lane(t, q, dt, lane);
+        if (*status_of(t, lane) >= 0) {
+            load_lane(t, q, dt, lane);
+        }
     }
     b->core->take_wrenches(lanes);
 }
@@ -220,10 +222,11 @@ static void hand_out(const task *t, const double *values, double *out)
     b->core->check(count, values, t->worker->verdict);
     for (size_t lane = 0; lane < t->width; ++lane) {
         const size_t state = t->group * t->width + lane;
-        const int fine = t->worker->verdict[lane] == 1.0;
-        if (!fine && b->status[state] >= 0) {
-            b->status[state] = SE3D_ERR_NOT_FINITE;
+        int32_t *status = status_of(t, lane);
+        if (*status >= 0 && t->worker->verdict[lane] != 1.0) {
+            *status = SE3D_ERR_NOT_FINITE;
         }
+        const int fine = *status >= 0;
         for (size_t k = 0; state < b->count && k < count; ++k) {
             out[state * count + k] = fine ? values[k * t->width + lane] : 0.0;
         }

@@ -434,6 +434,42 @@ static void callbacks_work_but_do_not_reach_the_batch(void)
     se3d_system_destroy(system);
 }
 
+/* Counts its calls, and fails from 0.05 s on. */
+static se3d_status count_calls(void *ctx, double t, const se3d_body_motion motion[2],
+                               double wrench[12], double *K, double *D)
+{
+    (void)motion, (void)K, (void)D;
+    wrench[6] = 1.0;
+    ++*(int *)ctx;
+    return t > 0.05 ? SE3D_ERR_CALLBACK : SE3D_OK;
+}
+
+static void callbacks_are_not_called_for_states_that_failed(void)
+{
+    int calls = 0;
+    se3d_constraint joint;
+    se3d_body bar;
+    se3d_force force;
+    se3d_batch *b;
+    se3d_system *system = make_pendulum(&joint, &bar);
+    se3d_force_callback_def def = se3d_force_callback_def_default();
+    double time[3] = {0.0, 1.0, 0.0}, qddot[3];
+    CHECK(!se3d_system_get_ground(system, &def.body_i));
+    def.body_j = bar;
+    def.callback = count_calls;
+    def.ctx = &calls;
+    CHECK(!se3d_force_create_callback(system, &def, &force));
+    CHECK(!se3d_batch_create(system, 3, 1, &b));
+    CHECK(!se3d_batch_set_time(b, 0, 3, time));
+    CHECK(se3d_batch_step(b, SE3D_METHOD_RK4, 0.01, 2) == SE3D_ERR_CALLBACK);
+    CHECK(calls == 2 * 8 + 1);
+    calls = 0;
+    CHECK(se3d_batch_compute_accelerations(b, qddot) == SE3D_ERR_CALLBACK);
+    CHECK(calls == 2 && qddot[0] != 0.0 && qddot[1] == 0.0 && qddot[2] == qddot[0]);
+    se3d_batch_destroy(b);
+    se3d_system_destroy(system);
+}
+
 static void what_a_batch_cannot_have_is_named(void)
 {
     se3d_constraint joint, driver;
@@ -489,6 +525,7 @@ int main(void)
     RUN(functions_see_the_time_of_the_state);
     RUN(steps_and_queries_take_no_memory);
     RUN(callbacks_work_but_do_not_reach_the_batch);
+    RUN(callbacks_are_not_called_for_states_that_failed);
     RUN(what_a_batch_cannot_have_is_named);
     RUN(counts_beyond_memory_are_refused);
     return check_finish();
