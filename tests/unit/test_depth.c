@@ -370,6 +370,37 @@ static void a_cylinder_along_a_block_is_not_held_by_a_sliver(void)
     surface_release(&s);
 }
 
+/* It overlaps one triangle, with no corner of its own and no edge, and leaves last over an edge
+ * that is two triangles away, 4.4 mm deeper. */
+static void a_sliver_below_a_dome_leaves_over_an_edge_that_it_does_not_overlap(void)
+{
+    static surface s;
+    static const double corners[12] = {
+        -0.026664984413101587, 0.051007433825427148, -0.24328423767435844,  -0.077000714791830016,
+        -0.084360202084774252, 0.22238310688036375,  0.18147538948843667,   -0.058146661363484085,
+        -0.16181980343054592,  -0.04176530245663377, 0.0086114322855532915, -0.24633615801318576};
+    const double wanted = 0.0177999649729829;
+    const se3d_allocator allocator = se3di_alloc_default();
+    const se3di_shape_pose at = {
+        .x = {0.19129464393561502, 0.44506416007592614, -0.19873342664312296},
+        .R = {0.18580458381941489, 0.97678454280636962, -0.10662370077166515, -0.93566906708767938,
+              0.14275688231049344, -0.32271329295252132, -0.30000008921159665, 0.15972610772049595,
+              0.94047196501835972}};
+    const se3di_shape_pose of = {.R = {0.26189707252486361, 0.3346854366287364, 0.90520471823314008,
+                                       -0.024415773945427294, 0.93994036960378058,
+                                       -0.34046434699062744, -0.96478691605221945,
+                                       0.06706534200122008, 0.25433923511072221}};
+    se3di_shape sliver = {.kind = SE3DI_SHAPE_HULL};
+    se3di_manifold m;
+    surface_make(SURFACE_DOME, &s);
+    CHECK(!se3di_hull_build(&allocator, corners, 4, &sliver));
+    sliver.bound = se3di_shape_bound(&sliver);
+    se3di_narrow_find(&sliver, &at, &s.shape, &of, &m);
+    CHECK(m.count > 0 && fabs(deepest(&m)->overlap - wanted) < SAME);
+    se3di_shape_release(&allocator, &sliver);
+    surface_release(&s);
+}
+
 int main(void)
 {
     RUN(convex_meshes_are_as_deep_as_what_they_enclose);
@@ -378,5 +409,6 @@ int main(void)
     RUN(sharp_hulls_are_as_deep_as_what_is_below_the_dome);
     RUN(solids_nearly_parallel_to_a_ridge_are_as_deep_as_others);
     RUN(a_cylinder_along_a_block_is_not_held_by_a_sliver);
+    RUN(a_sliver_below_a_dome_leaves_over_an_edge_that_it_does_not_overlap);
     return check_finish();
 }

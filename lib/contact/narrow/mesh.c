@@ -626,6 +626,9 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
     }
     if (manifold->count == 0) {
         se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_rest, &m);
+        if (manifold->count > 0 && !m.has_pieces) {
+            se3di_mesh_add_ways(&m); /* off what is about it */
+        }
     }
     if (manifold->count == 0) {
         se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_through, &m);

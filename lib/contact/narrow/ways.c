@@ -412,8 +412,9 @@ static int is_beyond_all(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
     return m->manifold->count > 0;
 }
 
-/* Off parts of the surface that the solid overlaps: a face, or one of those at an edge. */
-static void keep_met(se3di_mesh_meeting *m)
+/* Off parts of the surface that the solid overlaps: a face, or one of those at an edge. All stay
+ * while nothing is known to touch. */
+static int keep_met(se3di_mesh_meeting *m)
 {
     int kept = 0;
     for (int k = 0; k < m->way_count; ++k) {
@@ -424,13 +425,16 @@ static void keep_met(se3di_mesh_meeting *m)
             m->ways[kept++] = way;
         }
     }
-    m->way_count = kept;
+    m->way_count = kept > 0 || m->manifold->count > 0 ? kept : m->way_count;
+    return kept > 0;
 }
 
 void se3di_mesh_add_ways(se3di_mesh_meeting *m)
 {
     int least[SE3DI_MESH_WAYS];
-    keep_met(m);
+    if (!keep_met(m)) {
+        return;
+    }
     for (int k = 0; k < m->way_count; ++k) {
         least[k] = is_least(m, k);
         if (least[k] && !is_shown(m, &m->ways[k])) {
