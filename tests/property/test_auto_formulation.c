@@ -148,10 +148,34 @@ static void it_is_chosen_again_when_the_structure_changes(void)
     se3d_system_destroy(a.system);
 }
 
+/* A new solver of a clone, in the middle of a step, goes on with the same bits. */
+static void clones_continue_bit_by_bit(void)
+{
+    arm a = make_arm();
+    se3d_system *other = NULL;
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_solver *one = NULL, *two = NULL;
+    double r[2][12], v[2][12];
+    CHECK(!se3d_solver_create(a.system, &def, &one));
+    CHECK(!se3d_solver_run(one, 0.3337));
+    CHECK(!se3d_system_clone(a.system, &other));
+    CHECK(!se3d_solver_create(other, &def, &two));
+    CHECK(!se3d_solver_run(one, 2.0) && !se3d_solver_run(two, 2.0));
+    CHECK(is_named(one, "joint") && is_named(two, "joint"));
+    CHECK(!se3d_body_get_all(a.system, 4, r[0], NULL, v[0], NULL));
+    CHECK(!se3d_body_get_all(other, 4, r[1], NULL, v[1], NULL));
+    CHECK(memcmp(r[0], r[1], sizeof r[0]) == 0 && memcmp(v[0], v[1], sizeof v[0]) == 0);
+    se3d_solver_destroy(one);
+    se3d_solver_destroy(two);
+    se3d_system_destroy(a.system);
+    se3d_system_destroy(other);
+}
+
 int main(void)
 {
     RUN(open_trees_are_integrated_in_joint_coordinates);
     RUN(the_motion_is_that_of_bodies);
     RUN(it_is_chosen_again_when_the_structure_changes);
+    RUN(clones_continue_bit_by_bit);
     return check_finish();
 }
