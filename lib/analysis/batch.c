@@ -149,8 +149,9 @@ static void spread_frames(const se3di_model *model, const se3di_batch_worker *w,
     const size_t bodies = model->body_slots.count, size = sizeof(se3di_frame) / sizeof(double);
     for (size_t lane = 0; lane < width; ++lane) {
         memcpy(w->frames + lane * bodies, model->frames, bodies * sizeof *w->frames);
-        memcpy(w->angles + lane * model->angle_count, model->angles,
-               model->angle_count * sizeof *w->angles);
+        for (size_t k = 0; k < model->angle_count; ++k) {
+            w->angles[lane * model->angle_count + k] = model->angles[k];
+        }
     }
     for (size_t k = 0; k < bodies * size; ++k) {
         const double *from = (const double *)(const void *)model->frames;

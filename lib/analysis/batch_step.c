@@ -113,14 +113,12 @@ static const double *find_acting(const task *t, const double *effort, const doub
 {
     const se3di_batch *b = t->batch;
     double *acting = t->worker->acting;
-    const size_t size = b->tree.v_count * t->width * sizeof *acting;
+    const size_t count = b->tree.v_count * t->width;
     if (b->law_count == 0 && effort) {
         return effort;
     }
-    if (effort) {
-        memcpy(acting, effort, size);
-    } else {
-        memset(acting, 0, size);
+    for (size_t k = 0; k < count; ++k) {
+        acting[k] = effort ? effort[k] : 0.0;
     }
     b->core->add_laws(b->laws, b->law_count, y, y + b->tree.q_count * t->width, acting);
     return acting;
