@@ -46,6 +46,14 @@ SE3D_API void se3d_system_destroy(se3d_system *system);
  * NO_MEMORY, STATE (within a callback that sees a trial state). @since 0.1 */
 SE3D_API se3d_status se3d_system_clone(const se3d_system *system, se3d_system **out);
 
+/* Let another log be told from now on, in place of that of se3d_system_def; a clone begins with the
+ * log of its system, which has to live as long.
+ * @param[in] log  NULL: silent
+ * @param[in] ctx  of `log`
+ * @return OK, NULL (system), STATE.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_system_set_log(se3d_system *system, se3d_log_callback log, void *ctx);
+
 /* Get the message of the last call on this system that failed. @return the text, "" if none
  * failed; valid until the next call. @since 0.1 */
 SE3D_API const char *se3d_system_get_error(const se3d_system *system);

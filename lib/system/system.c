@@ -82,6 +82,14 @@ se3d_status se3d_system_create(const se3d_system_def *def, se3d_system **out)
     return SE3D_OK;
 }
 
+se3d_status se3d_system_set_log(se3d_system *system, se3d_log_callback log, void *ctx)
+{
+    SE3DI_EDIT(system);
+    system->log.callback = log;
+    system->log.ctx = ctx;
+    return SE3D_OK;
+}
+
 void se3d_system_destroy(se3d_system *system)
 {
     if (!system || se3di_enter(system, SE3DI_BUSY_FREE, __func__) < 0) {

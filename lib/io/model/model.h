@@ -132,8 +132,6 @@ struct se3d_model {
     uint64_t asked;                       /* of the options that it was read with */
     se3d_log_callback log;                /* the user's; NULL: none */
     void *log_ctx;
-    se3d_log_callback listener; /* a run that keeps what is said; NULL: none */
-    void *listener_ctx;
 };
 
 #endif

@@ -146,25 +146,13 @@ static bool read_gravity(se3di_reader *reader, const se3di_node *root)
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
-/* The log of the system: to the user, and to a run that keeps it. */
-static void tell(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
-{
-    const se3d_model *model = ctx;
-    if (model->log) {
-        model->log(model->log_ctx, level, kind, message);
-    }
-    if (model->listener) {
-        model->listener(model->listener_ctx, level, kind, message);
-    }
-}
-
 static bool create_system(se3di_reader *reader, const se3di_node *root)
 {
     se3d_system_def def = se3d_system_def_default();
     reader->model->log = reader->options->log;
     reader->model->log_ctx = reader->options->log_ctx;
-    def.log = tell;
-    def.log_ctx = reader->model;
+    def.log = reader->options->log;
+    def.log_ctx = reader->options->log_ctx;
     def.allocator = &reader->pool->allocator;
     if (SE3D_FAILED(se3d_system_create(&def, &reader->model->system))) {
         return se3di_reader_fail_memory(reader);

@@ -57,6 +57,10 @@ struct se3di_resume {
 static void listen(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
 {
     struct se3di_told *told = ctx;
+    const se3d_model *model = told->runner->model;
+    if (model->log) {
+        model->log(model->log_ctx, level, kind, message);
+    }
     for (size_t k = 0; k < told->count; ++k) {
         if (strcmp(told->list[k].text, message) == 0) {
             return;
@@ -74,15 +78,15 @@ bool se3di_checkpoint_listen(se3di_runner *r)
     r->told = se3di_iopool_alloc(&r->run->pool, sizeof *r->told);
     if (r->told) {
         r->told->runner = r;
-        r->model->listener = listen;
-        r->model->listener_ctx = r->told;
     }
-    return r->told != NULL;
+    return r->told && se3d_system_set_log(r->model->system, listen, r->told) >= 0;
 }
 
 void se3di_checkpoint_ignore(se3di_runner *r)
 {
-    r->model->listener = NULL;
+    if (r->told) {
+        (void)se3d_system_set_log(r->model->system, r->model->log, r->model->log_ctx);
+    }
 }
 
 /* ---- the content, both ways ---- */
