@@ -188,7 +188,7 @@ static void accept(const task *t, double *y, const double *begin, double elapsed
             t->batch->time[t->group * t->width + lane] = begin[lane] + elapsed;
         }
     }
-    if (fine) {
+    if (fine && count > 0) {
         memcpy(y, w->end, count * t->width * sizeof *y);
         return;
     }
