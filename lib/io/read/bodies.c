@@ -160,6 +160,17 @@ bool se3di_ground_to_body(se3di_reader *reader, se3d_body body, const double gro
     return true;
 }
 
+bool se3di_ground_to_body_direction(se3di_reader *reader, se3d_body body, const double ground[3],
+                                    double local[3])
+{
+    double r[3];
+    if (SE3D_FAILED(se3d_body_get_position(reader->system, body, r))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    const double end[3] = {r[0] + ground[0], r[1] + ground[1], r[2] + ground[2]};
+    return se3di_ground_to_body(reader, body, end, local);
+}
+
 bool se3di_check_frame(se3di_reader *reader, const se3di_node *node, const se3di_body_entry *body)
 {
     return body == &reader->model->bodies[0] || body->part == reader->part ||

@@ -30,9 +30,11 @@ bool se3di_read_key_body_direction(se3di_reader *reader, const se3di_node *map, 
 bool se3di_check_frame(se3di_reader *reader, const se3di_node *node, const se3di_body_entry *body);
 bool se3di_place_on_body(se3di_reader *reader, const se3di_node *node, const se3di_body_entry *body,
                          double point[3]);
-/* A point of the ground frame in the frame of a body, as it stands. */
+/* A point, or a direction, of the ground frame in the frame of a body, as it stands. */
 bool se3di_ground_to_body(se3di_reader *reader, se3d_body body, const double ground[3],
                           double local[3]);
+bool se3di_ground_to_body_direction(se3di_reader *reader, se3d_body body, const double ground[3],
+                                    double local[3]);
 /* The point under `key`, in the frame of a body, or under `at`, in the ground frame. */
 bool se3di_read_key_place(se3di_reader *reader, const se3di_node *map, const char *key,
                           const char *at, const se3di_body_entry *body, double point[3]);

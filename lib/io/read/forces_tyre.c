@@ -14,26 +14,6 @@
 const char *const se3di_tyre_laws[] = {"brush", "fiala", "mf52", "mf61", NULL};
 const char *const se3di_tyre_sides[] = {"left", "right", NULL};
 
-/* A direction in the ground frame in that of a body. */
-static bool turn_into(se3di_reader *reader, se3d_body body, const double ground[3], double local[3])
-{
-    double r[3];
-    if (SE3D_FAILED(se3d_body_get_position(reader->system, body, r))) {
-        return se3di_reader_fail_memory(reader);
-    }
-    const double end[3] = {r[0] + ground[0], r[1] + ground[1], r[2] + ground[2]};
-    const double from[3] = {r[0], r[1], r[2]};
-    double start[3];
-    if (!se3di_ground_to_body(reader, body, end, local) ||
-        !se3di_ground_to_body(reader, body, from, start)) {
-        return false;
-    }
-    for (size_t k = 0; k < 3; ++k) {
-        local[k] -= start[k];
-    }
-    return true;
-}
-
 /* In a part that is mirrored the left side is on the right. */
 static bool is_mirrored(const double M[9])
 {
@@ -57,7 +37,7 @@ static bool read_road(se3di_reader *reader, const se3di_node *node, se3d_tyre_de
     return se3di_read_key_ground_point(reader, node, "road_point", point) &&
            se3di_read_key_ground_direction(reader, node, "normal", false, normal) &&
            se3di_ground_to_body(reader, def->road, point, def->point) &&
-           turn_into(reader, def->road, normal, def->normal);
+           se3di_ground_to_body_direction(reader, def->road, normal, def->normal);
 }
 
 /* What a tyre cannot do without, which its file may have. */
@@ -110,7 +90,8 @@ bool se3di_read_tyre(se3di_reader *reader, const se3di_node *node, se3di_element
         !read_file(reader, node, coefficients, &def) ||
         !se3di_read_key_place(reader, node, "point", "at", body, def.center) ||
         !se3di_read_key_ground_direction(reader, node, "axis", false, axis) ||
-        !turn_into(reader, body->body, axis, def.axis) || !read_road(reader, node, &def) ||
+        !se3di_ground_to_body_direction(reader, body->body, axis, def.axis) ||
+        !read_road(reader, node, &def) ||
         !se3di_read_fields(reader, node, &se3di_object_force, "tyre", "se3d_tyre_def", &def) ||
         !check_given(reader, node, &def)) {
         return false;

@@ -135,17 +135,6 @@ static bool read_steer_axis(se3di_reader *reader, const se3di_node *node,
                       read_point_on_body(reader, node, "upper", body, def->steer_upper));
 }
 
-/* A direction in the ground frame in that of a body. */
-static bool turn_into(se3di_reader *reader, se3d_body body, const double ground[3], double local[3])
-{
-    double r[3];
-    if (SE3D_FAILED(se3d_body_get_position(reader->system, body, r))) {
-        return se3di_reader_fail_memory(reader);
-    }
-    const double end[3] = {r[0] + ground[0], r[1] + ground[1], r[2] + ground[2]};
-    return se3di_ground_to_body(reader, body, end, local);
-}
-
 static double dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -209,9 +198,9 @@ static bool read_seat(se3di_reader *reader, const se3di_node *node,
     }
     return !SE3D_FAILED(
                se3d_body_get_point(reader->system, bodies[0]->body, def->center, seat->at)) &&
-           turn_into(reader, bodies[0]->body, seat->axis, def->axis) &&
-           turn_into(reader, bodies[1]->body, seat->forward, def->forward) &&
-           turn_into(reader, bodies[1]->body, seat->up, def->up);
+           se3di_ground_to_body_direction(reader, bodies[0]->body, seat->axis, def->axis) &&
+           se3di_ground_to_body_direction(reader, bodies[1]->body, seat->forward, def->forward) &&
+           se3di_ground_to_body_direction(reader, bodies[1]->body, seat->up, def->up);
 }
 
 static bool read_wheel(se3di_reader *reader, const se3di_node *node)
