@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Code for x86-64 processors with more than the baseline, in a binary for all: what stands between
  * SE3DI_TARGET_BEGIN(features) and SE3DI_TARGET_END may use them, and is called only where
- * se3di_has_avx2 or se3di_has_avx512 say so. Without SE3DI_TARGETS there is no such code. */
+ * se3di_has_avx2 or se3di_has_avx512 say so. Without SE3DI_TARGETS there is no such code.
+ * SE3DI_TARGET_FINDER(type, finder, has, table) defines the function through which a file with such
+ * code shows its table: NULL if the processor has() not what it needs, or there is no such code. */
 #ifndef SE3DI_BASE_TARGET_H
 #define SE3DI_BASE_TARGET_H
+
+#include <stddef.h>
 
 #if defined(__x86_64__) && defined(__GNUC__)
 
@@ -39,6 +43,20 @@ static inline int se3di_has_avx512(void)
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
            __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("fma");
 }
+
+#define SE3DI_TARGET_FINDER(type, finder, has, table)                                              \
+    const type *finder(void)                                                                       \
+    {                                                                                              \
+        return has() ? &(table) : NULL;                                                            \
+    }
+
+#else
+
+#define SE3DI_TARGET_FINDER(type, finder, has, table)                                              \
+    const type *finder(void)                                                                       \
+    {                                                                                              \
+        return NULL;                                                                               \
+    }
 
 #endif
 #endif

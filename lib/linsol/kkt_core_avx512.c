@@ -100,16 +100,6 @@ V8_INLINE double s_fnma(double acc, double a, double b)
 
 SE3DI_TARGET_END
 
-const se3di_kkt_core *se3di_kkt_core_avx512(void)
-{
-    return se3di_has_avx512() ? &core_table : NULL;
-}
-
-#else
-
-const se3di_kkt_core *se3di_kkt_core_avx512(void)
-{
-    return NULL;
-}
-
 #endif
+
+SE3DI_TARGET_FINDER(se3di_kkt_core, se3di_kkt_core_avx512, se3di_has_avx512, core_table)

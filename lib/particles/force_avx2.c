@@ -134,19 +134,10 @@ V_INLINE void add_held(se3di_load *load, const se3di_load *held)
 
 #include "particles/force.inc"
 
+static const se3di_kernels core_table = {"avx2", pairs, walls};
+
 SE3DI_TARGET_END
 
-const se3di_kernels *se3di_particle_kernels_avx2(void)
-{
-    static const se3di_kernels table = {"avx2", pairs, walls};
-    return se3di_has_avx2() ? &table : NULL;
-}
-
-#else
-
-const se3di_kernels *se3di_particle_kernels_avx2(void)
-{
-    return NULL;
-}
-
 #endif
+
+SE3DI_TARGET_FINDER(se3di_kernels, se3di_particle_kernels_avx2, se3di_has_avx2, core_table)

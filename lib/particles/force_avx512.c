@@ -128,19 +128,10 @@ V_INLINE void add_loads(se3di_load *loads, const uint32_t *i, const V force[3], 
 
 #include "particles/force.inc"
 
+static const se3di_kernels core_table = {"avx512", pairs, walls};
+
 SE3DI_TARGET_END
 
-const se3di_kernels *se3di_particle_kernels_avx512(void)
-{
-    static const se3di_kernels table = {"avx512", pairs, walls};
-    return se3di_has_avx512() ? &table : NULL;
-}
-
-#else
-
-const se3di_kernels *se3di_particle_kernels_avx512(void)
-{
-    return NULL;
-}
-
 #endif
+
+SE3DI_TARGET_FINDER(se3di_kernels, se3di_particle_kernels_avx512, se3di_has_avx512, core_table)

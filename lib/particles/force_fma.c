@@ -11,19 +11,10 @@ SE3DI_TARGET_BEGIN(SE3DI_TARGET_FMA)
 
 #include "particles/force_plain.inc"
 
+static const se3di_kernels core_table = {"fma", pairs, walls};
+
 SE3DI_TARGET_END
 
-const se3di_kernels *se3di_particle_kernels_fma(void)
-{
-    static const se3di_kernels table = {"fma", pairs, walls};
-    return se3di_has_fma() ? &table : NULL;
-}
-
-#else
-
-const se3di_kernels *se3di_particle_kernels_fma(void)
-{
-    return NULL;
-}
-
 #endif
+
+SE3DI_TARGET_FINDER(se3di_kernels, se3di_particle_kernels_fma, se3di_has_fma, core_table)

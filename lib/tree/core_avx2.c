@@ -15,16 +15,6 @@ SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX2)
 
 SE3DI_TARGET_END
 
-const se3di_tree_core *se3di_tree_core_avx2(void)
-{
-    return se3di_has_avx2() ? &core_table : NULL;
-}
-
-#else
-
-const se3di_tree_core *se3di_tree_core_avx2(void)
-{
-    return NULL;
-}
-
 #endif
+
+SE3DI_TARGET_FINDER(se3di_tree_core, se3di_tree_core_avx2, se3di_has_avx2, core_table)

@@ -15,16 +15,6 @@ SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX512)
 
 SE3DI_TARGET_END
 
-const se3di_tree_core *se3di_tree_core_avx512(void)
-{
-    return se3di_has_avx512() ? &core_table : NULL;
-}
-
-#else
-
-const se3di_tree_core *se3di_tree_core_avx512(void)
-{
-    return NULL;
-}
-
 #endif
+
+SE3DI_TARGET_FINDER(se3di_tree_core, se3di_tree_core_avx512, se3di_has_avx512, core_table)

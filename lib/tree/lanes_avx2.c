@@ -31,16 +31,6 @@ typedef int64_t verdict __attribute__((vector_size(32)));
 
 SE3DI_TARGET_END
 
-const se3di_lane_core *se3di_lane_core_avx2(void)
-{
-    return se3di_has_avx2() ? &lane_table : NULL;
-}
-
-#else
-
-const se3di_lane_core *se3di_lane_core_avx2(void)
-{
-    return NULL;
-}
-
 #endif
+
+SE3DI_TARGET_FINDER(se3di_lane_core, se3di_lane_core_avx2, se3di_has_avx2, lane_table)
