@@ -46,7 +46,7 @@ typedef struct blob {
 } blob;
 
 struct se3di_resume {
-    se3di_pack pack; /* at what the run knows, later at its end */
+    se3di_coder coder; /* at what the run knows, later at its end */
     se3di_csv_mark *marks;
     se3di_csv_mark events;
     blob state, solver, scene;
@@ -91,18 +91,18 @@ void se3di_checkpoint_ignore(se3di_runner *r)
 
 /* ---- the content, both ways ---- */
 
-static void pack_mark(se3di_pack *p, se3di_csv_mark *mark)
+static void pack_mark(se3di_coder *p, se3di_csv_mark *mark)
 {
-    se3di_pack_word(p, &mark->bytes);
-    se3di_pack_word(p, &mark->lines);
-    se3di_pack_word(p, &mark->rows);
-    se3di_pack_word(p, &mark->hash);
+    se3di_code_word(p, &mark->bytes);
+    se3di_code_word(p, &mark->lines);
+    se3di_code_word(p, &mark->rows);
+    se3di_code_word(p, &mark->hash);
 }
 
-static void pack_marks(se3di_pack *p, const se3di_runner *r, struct se3di_resume *c)
+static void pack_marks(se3di_coder *p, const se3di_runner *r, struct se3di_resume *c)
 {
     size_t count = r->model->output_count;
-    se3di_pack_size(p, &count);
+    se3di_code_size(p, &count);
     p->failed = p->failed || count != r->model->output_count;
     for (size_t k = 0; k < r->model->output_count; ++k) {
         pack_mark(p, &c->marks[k]);
@@ -113,7 +113,7 @@ static void pack_marks(se3di_pack *p, const se3di_runner *r, struct se3di_resume
     se3di_pack_bytes(p, &c->scene.bytes, &c->scene.size);
 }
 
-static void pack_analysis(se3di_pack *p, se3d_run_analysis *a)
+static void pack_analysis(se3di_coder *p, se3di_iopool *pool, se3d_run_analysis *a)
 {
     const char **const texts[] = {&a->type,  &a->formulation, &a->method,  &a->left,
                                   &a->moved, &a->deflected,   &a->left_out};
@@ -123,65 +123,65 @@ static void pack_analysis(se3di_pack *p, se3d_run_analysis *a)
                                 &a->stats.iterations,     &a->stats.evaluations,
                                 &a->stats.factorizations, &a->stats.solves};
     for (size_t k = 0; k < sizeof texts / sizeof *texts; ++k) {
-        se3di_pack_text(p, texts[k]);
-        se3di_pack_numbers(p, numbers[k], 1);
+        se3di_pack_text(p, pool, texts[k]);
+        se3di_code_numbers(p, numbers[k], 1);
     }
     for (size_t k = 0; k < sizeof counts / sizeof *counts; ++k) {
-        se3di_pack_word(p, counts[k]);
+        se3di_code_word(p, counts[k]);
     }
-    se3di_pack_numbers(p, a->start_change, 8);
-    se3di_pack_int(p, &a->status);
+    se3di_code_numbers(p, a->start_change, 8);
+    se3di_code_int32(p, &a->status);
 }
 
 /* The analyses before the one under way. */
-static void pack_analyses(se3di_pack *p, se3di_runner *r)
+static void pack_analyses(se3di_coder *p, se3di_runner *r)
 {
     size_t done = r->run->analysis_count > 0 ? r->run->analysis_count - 1 : 0;
-    se3di_pack_size(p, &r->analysis);
-    se3di_pack_size(p, &done);
+    se3di_code_size(p, &r->analysis);
+    se3di_code_size(p, &done);
     if (done > r->analysis || r->analysis >= r->model->analysis_count) {
-        p->failed = true;
+        p->failed = 1;
         return;
     }
     for (size_t k = 0; k < done; ++k) {
-        pack_analysis(p, &r->run->analyses[k]);
+        pack_analysis(p, &r->run->pool, &r->run->analyses[k]);
     }
     if (p->in) {
         r->run->analysis_count = done;
     }
 }
 
-static void pack_event(se3di_pack *p, const se3d_model *model, se3d_run_event *event)
+static void pack_event(se3di_coder *p, const se3d_model *model, se3d_run_event *event)
 {
     size_t entry = 0;
     while (!p->in && entry + 1 < model->event_count && model->events[entry].name != event->name) {
         ++entry;
     }
-    se3di_pack_size(p, &entry);
-    se3di_pack_numbers(p, &event->time, 1);
-    se3di_pack_numbers(p, &event->value, 1);
-    se3di_pack_size(p, &event->analysis);
-    se3di_pack_int(p, &event->direction);
-    se3di_pack_int(p, &event->stopped);
+    se3di_code_size(p, &entry);
+    se3di_code_numbers(p, &event->time, 1);
+    se3di_code_numbers(p, &event->value, 1);
+    se3di_code_size(p, &event->analysis);
+    se3di_code_int32(p, &event->direction);
+    se3di_code_int32(p, &event->stopped);
     if (entry >= model->event_count) {
-        p->failed = true;
+        p->failed = 1;
     } else if (p->in) {
         event->name = model->events[entry].name;
         event->channel = model->events[entry].channel;
     }
 }
 
-static void pack_events(se3di_pack *p, se3di_runner *r)
+static void pack_events(se3di_coder *p, se3di_runner *r)
 {
     se3di_event_list *events = &r->run->events;
-    se3di_pack_size(p, &events->collected);
-    se3di_pack_count(p, &events->count);
+    se3di_code_size(p, &events->collected);
+    se3di_code_count(p, &events->count, 1.0);
     if (p->in) {
         events->list = se3di_iopool_array(&r->run->pool, events->count + 1, sizeof *events->list);
         events->capacity = events->count + 1;
         if (!events->list) {
             events->count = events->capacity = 0;
-            p->failed = true;
+            p->failed = 1;
         }
     }
     for (size_t k = 0; k < events->count; ++k) {
@@ -190,29 +190,29 @@ static void pack_events(se3di_pack *p, se3di_runner *r)
 }
 
 /* Files that are complete: of modes. */
-static void pack_files(se3di_pack *p, se3d_run *run)
+static void pack_files(se3di_coder *p, se3d_run *run)
 {
-    se3di_pack_count(p, &run->file_count);
+    se3di_code_count(p, &run->file_count, 1.0);
     if (p->in) {
         run->files = se3di_iopool_array(&run->pool, run->file_count + 1, sizeof *run->files);
         run->file_capacity = run->file_count + 1;
         if (!run->files) {
             run->file_count = run->file_capacity = 0;
-            p->failed = true;
+            p->failed = 1;
         }
     }
     for (size_t k = 0; k < run->file_count; ++k) {
-        se3di_pack_text(p, &run->files[k].path);
-        se3di_pack_word(p, &run->files[k].rows);
-        se3di_pack_size(p, &run->files[k].columns);
+        se3di_pack_text(p, &run->pool, &run->files[k].path);
+        se3di_code_word(p, &run->files[k].rows);
+        se3di_code_size(p, &run->files[k].columns);
     }
 }
 
-static void pack_outputs(se3di_pack *p, const se3di_runner *r, double *next)
+static void pack_outputs(se3di_coder *p, const se3di_runner *r, double *next)
 {
     for (size_t k = 0; k < r->file_count; ++k) {
         se3di_output_file *file = &r->files[k];
-        se3di_pack_numbers(p, &next[k], 1);
+        se3di_code_numbers(p, &next[k], 1);
         if (file->vtk) {
             se3di_vtk_pack(file->vtk, p);
         } else {
@@ -224,28 +224,28 @@ static void pack_outputs(se3di_pack *p, const se3di_runner *r, double *next)
     }
 }
 
-static void pack_told(se3di_pack *p, struct se3di_told *told)
+static void pack_told(se3di_coder *p, struct se3di_told *told)
 {
-    se3di_pack_count(p, &told->count);
+    se3di_code_count(p, &told->count, 1.0);
     if (told->count > TOLD_MAX) {
         told->count = 0;
-        p->failed = true;
+        p->failed = 1;
     }
     for (size_t k = 0; k < told->count; ++k) {
-        se3di_pack_text(p, &told->list[k].text);
-        se3di_pack_int(p, &told->list[k].level);
-        se3di_pack_int(p, &told->list[k].kind);
+        se3di_pack_text(p, &told->runner->run->pool, &told->list[k].text);
+        se3di_code_int32(p, &told->list[k].level);
+        se3di_code_int32(p, &told->list[k].kind);
     }
 }
 
-static void pack_rest(se3di_pack *p, se3di_runner *r, struct se3di_resume *c)
+static void pack_rest(se3di_coder *p, se3di_runner *r, struct se3di_resume *c)
 {
     pack_analyses(p, r);
-    se3di_pack_numbers(p, &c->place.start, 1);
-    se3di_pack_numbers(p, &c->place.reached, 1);
-    se3di_pack_numbers(p, &c->place.cpu, 1);
-    se3di_pack_int(p, &c->place.last);
-    se3di_pack_numbers(p, &r->time, 1);
+    se3di_code_numbers(p, &c->place.start, 1);
+    se3di_code_numbers(p, &c->place.reached, 1);
+    se3di_code_numbers(p, &c->place.cpu, 1);
+    se3di_code_int32(p, &c->place.last);
+    se3di_code_numbers(p, &r->time, 1);
     pack_events(p, r);
     pack_files(p, r->run);
     pack_outputs(p, r, c->next);
@@ -260,12 +260,12 @@ static void list_frame(const se3di_runner *r, uint64_t words[FRAME_WORDS])
     memcpy(words, frame, sizeof frame);
 }
 
-static void pack_all(se3di_pack *p, se3di_runner *r, struct se3di_resume *c)
+static void pack_all(se3di_coder *p, se3di_runner *r, struct se3di_resume *c)
 {
     uint64_t frame[FRAME_WORDS];
     list_frame(r, frame);
     for (int k = 0; k < FRAME_WORDS; ++k) {
-        se3di_pack_word(p, &frame[k]);
+        se3di_code_word(p, &frame[k]);
     }
     pack_marks(p, r, c);
     pack_rest(p, r, c);
@@ -309,13 +309,13 @@ static se3d_status write_solver(const se3di_runner *r, se3di_iopool *pool, blob 
 
 static se3d_status write_scene(const se3di_runner *r, se3di_iopool *pool, blob *scene)
 {
-    se3di_pack measure = {.size = SIZE_MAX};
+    se3di_coder measure = {.size = SIZE_MAX};
     if (!r->options->scene) {
         return SE3D_OK;
     }
     se3di_scene_pack(r->options->scene, &measure);
     unsigned char *bytes = se3di_iopool_alloc(pool, measure.at);
-    se3di_pack p = {.out = bytes, .size = measure.at};
+    se3di_coder p = {.out = bytes, .size = measure.at};
     if (bytes) {
         se3di_scene_pack(r->options->scene, &p);
     }
@@ -363,17 +363,17 @@ static bool write_file(const char *path, const unsigned char *bytes, size_t size
 static se3d_status write_bytes(se3di_runner *r, se3di_iopool *pool, struct se3di_resume *c,
                                const char *path)
 {
-    se3di_pack measure = {.size = SIZE_MAX};
+    se3di_coder measure = {.size = SIZE_MAX};
     pack_all(&measure, r, c);
     const size_t size = measure.at + WORD;
     unsigned char *bytes = se3di_iopool_alloc(pool, size);
     if (!bytes) {
         return SE3D_ERR_NO_MEMORY;
     }
-    se3di_pack p = {.out = bytes, .size = size};
+    se3di_coder p = {.out = bytes, .size = size};
     pack_all(&p, r, c);
     uint64_t sum = se3di_hash_bytes(SE3DI_HASH_START, bytes, p.at);
-    se3di_pack_word(&p, &sum);
+    se3di_code_word(&p, &sum);
     return write_file(path, bytes, size, syncs(r)) ? SE3D_OK : SE3D_ERR_IO;
 }
 
@@ -445,18 +445,18 @@ static se3d_status read_file(se3di_runner *r, const char *path, char **bytes, si
 }
 
 /* Why not; NULL: it is one of this model. */
-static const char *check_frame(const se3di_runner *r, se3di_pack *p)
+static const char *check_frame(const se3di_runner *r, se3di_coder *p)
 {
     uint64_t expected[FRAME_WORDS], found[FRAME_WORDS], sum = 0;
     list_frame(r, expected);
     if (p->size < (FRAME_WORDS + 1) * WORD) {
         return "it is damaged or cut: too short";
     }
-    se3di_pack end = {.in = p->in + p->size - WORD, .size = WORD};
-    se3di_pack_word(&end, &sum);
+    se3di_coder end = {.in = p->in + p->size - WORD, .size = WORD};
+    se3di_code_word(&end, &sum);
     p->size -= WORD;
     for (int k = 0; k < FRAME_WORDS; ++k) {
-        se3di_pack_word(p, &found[k]);
+        se3di_code_word(p, &found[k]);
     }
     return found[0] != expected[0]   ? "it is no checkpoint"
            : found[1] != expected[1] ? "it has another format, of another version of the program"
@@ -501,11 +501,11 @@ se3d_status se3di_checkpoint_open(se3di_runner *r)
     if (!c || !c->marks || !c->next) {
         return refuse(r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
-    c->pack = (se3di_pack){.in = (const unsigned char *)bytes, .size = size, .pool = &r->run->pool};
-    const char *why = check_frame(r, &c->pack);
+    c->coder = (se3di_coder){.in = (const unsigned char *)bytes, .size = size};
+    const char *why = check_frame(r, &c->coder);
     if (!why) {
-        pack_marks(&c->pack, r, c);
-        why = c->pack.failed ? "it is malformed, or there is no memory for it" : check_state(r, c);
+        pack_marks(&c->coder, r, c);
+        why = c->coder.failed ? "it is malformed, or there is no memory for it" : check_state(r, c);
     }
     r->resume = why ? NULL : c;
     return why ? refuse(r, SE3D_ERR_STATE, why) : SE3D_OK;
@@ -538,13 +538,13 @@ static void tell_again(const se3di_runner *r)
 se3d_status se3di_checkpoint_take(se3di_runner *r)
 {
     struct se3di_resume *c = r->resume;
-    pack_rest(&c->pack, r, c);
-    if (!c->pack.failed && r->options->scene && c->scene.size > 0) {
-        se3di_pack scene = {.in = c->scene.bytes, .size = c->scene.size};
+    pack_rest(&c->coder, r, c);
+    if (!c->coder.failed && r->options->scene && c->scene.size > 0) {
+        se3di_coder scene = {.in = c->scene.bytes, .size = c->scene.size};
         se3di_scene_pack(r->options->scene, &scene);
-        c->pack.failed = scene.failed;
+        c->coder.failed = scene.failed;
     }
-    if (c->pack.failed || c->pack.at != c->pack.size) {
+    if (c->coder.failed || c->coder.at != c->coder.size) {
         return refuse(r, SE3D_ERR_STATE, "it is malformed, or there is no memory for it");
     }
     tell_again(r);

@@ -124,15 +124,15 @@ bool se3di_csv_mark_here(se3di_csv *csv, bool sync, se3di_csv_mark *mark)
     return csv->failure == 0 && (!sync || se3di_file_sync(csv->file));
 }
 
-void se3di_csv_pack_pending(se3di_csv *csv, se3di_pack *pack)
+void se3di_csv_pack_pending(se3di_csv *csv, se3di_coder *coder)
 {
     size_t columns = csv->columns;
-    se3di_pack_size(pack, &columns);
-    se3di_pack_flag(pack, &csv->has_pending);
+    se3di_code_size(coder, &columns);
+    se3di_pack_flag(coder, &csv->has_pending);
     if (columns != csv->columns) {
-        pack->failed = true;
+        coder->failed = 1;
     } else if (csv->has_pending) {
-        se3di_pack_numbers(pack, csv->pending, columns);
+        se3di_code_numbers(coder, csv->pending, columns);
     }
 }
 

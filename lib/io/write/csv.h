@@ -39,7 +39,7 @@ se3d_status se3di_csv_continue(se3di_csv *csv, se3di_iopool *pool, const char *p
  * @return false: that failed. */
 bool se3di_csv_mark_here(se3di_csv *csv, bool sync, se3di_csv_mark *mark);
 /* The last row, which may still be replaced: the same for each file of as many columns. */
-void se3di_csv_pack_pending(se3di_csv *csv, se3di_pack *pack);
+void se3di_csv_pack_pending(se3di_csv *csv, se3di_coder *coder);
 /* Close for those who continue. */
 void se3di_csv_leave(se3di_csv *csv);
 /* Write one name of the header; the last one ends the line. */

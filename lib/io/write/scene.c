@@ -117,23 +117,23 @@ se3d_status se3d_scene_record(se3d_scene *scene)
     return status;
 }
 
-void se3di_scene_pack(se3d_scene *scene, se3di_pack *pack)
+void se3di_scene_pack(se3d_scene *scene, se3di_coder *coder)
 {
     size_t bodies = scene->poses.bodies, count = scene->poses.count;
-    se3di_pack_size(pack, &bodies);
-    se3di_pack_size(pack, &count);
-    se3di_pack_size(pack, &scene->stride);
-    se3di_pack_size(pack, &scene->skipped);
+    se3di_code_size(coder, &bodies);
+    se3di_code_size(coder, &count);
+    se3di_code_size(coder, &scene->stride);
+    se3di_code_size(coder, &scene->skipped);
     if (bodies != scene->poses.bodies || count > SAMPLES_MAX || scene->stride == 0) {
         scene->stride = 1;
-        pack->failed = true;
+        coder->failed = 1;
         return;
     }
-    if (pack->in) {
+    if (coder->in) {
         scene->poses.count = count;
     }
-    se3di_pack_numbers(pack, scene->times, count);
-    se3di_pack_numbers(pack, scene->poses.values, count * bodies * SE3DI_POSE);
+    se3di_code_numbers(coder, scene->times, count);
+    se3di_code_numbers(coder, scene->poses.values, count * bodies * SE3DI_POSE);
 }
 
 static void put_list(drawing *d, const char *name, const double *values, size_t count)
@@ -237,7 +237,7 @@ static void add_children(drawing *d, size_t k, se3di_bytes *children)
     const se3d_model *model = d->scene->model;
     se3di_parts parts = {NULL, 0, 0};
     if (!se3di_drawing_list(model, k, d->extent, d->glb.pool, &parts)) {
-        d->glb.failed = true;
+        d->glb.failed = 1;
     }
     for (size_t i = 0; i < parts.count; ++i) {
         add_child(d, children, add_part(d, &parts.list[i]));

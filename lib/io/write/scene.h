@@ -3,10 +3,10 @@
 #ifndef SE3D_IO_SCENE_H
 #define SE3D_IO_SCENE_H
 
-#include "io/base/pack.h"
+#include "base/coder.h"
 #include "io/model/model.h"
 
 /* The records so far, of a scene of the same model. */
-void se3di_scene_pack(se3d_scene *scene, se3di_pack *pack);
+void se3di_scene_pack(se3d_scene *scene, se3di_coder *coder);
 
 #endif

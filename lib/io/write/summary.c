@@ -69,21 +69,21 @@ void se3di_summary_add(se3di_summary *summary, double time, const double *values
     summary->span += h;
 }
 
-void se3di_summary_pack(se3di_summary *summary, se3di_pack *pack)
+void se3di_summary_pack(se3di_summary *summary, se3di_coder *coder)
 {
     size_t count = summary->count;
-    se3di_pack_size(pack, &count);
-    pack->failed = pack->failed || count != summary->count;
-    se3di_pack_numbers(pack, summary->last, summary->count);
-    se3di_pack_numbers(pack, &summary->time, 1);
-    se3di_pack_numbers(pack, &summary->span, 1);
-    se3di_pack_flag(pack, &summary->begun);
+    se3di_code_size(coder, &count);
+    coder->failed = coder->failed || count != summary->count;
+    se3di_code_numbers(coder, summary->last, summary->count);
+    se3di_code_numbers(coder, &summary->time, 1);
+    se3di_code_numbers(coder, &summary->span, 1);
+    se3di_pack_flag(coder, &summary->begun);
     for (size_t k = 0; k < summary->count; ++k) {
         se3d_run_summary *c = &summary->columns[k];
         double *const numbers[] = {&c->min,  &c->min_time, &c->max,      &c->max_time,
                                    &c->mean, &c->rms,      &c->integral, &c->last};
         for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i) {
-            se3di_pack_numbers(pack, numbers[i], 1);
+            se3di_code_numbers(coder, numbers[i], 1);
         }
     }
 }

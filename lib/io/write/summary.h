@@ -21,7 +21,7 @@ se3di_summary *se3di_summary_create(se3di_iopool *pool, const se3di_output_entry
 /* One more row, [count] values. A row before the last in time begins anew. */
 void se3di_summary_add(se3di_summary *summary, double time, const double *values);
 /* What is known so far. */
-void se3di_summary_pack(se3di_summary *summary, se3di_pack *pack);
+void se3di_summary_pack(se3di_summary *summary, se3di_coder *coder);
 /* Means of what has been added. */
 void se3di_summary_finish(se3di_summary *summary);
 /* The name of a column of the file. */

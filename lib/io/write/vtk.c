@@ -385,17 +385,17 @@ void se3di_vtk_record(se3di_vtk *vtk, se3di_sample *sample, double time)
     vtk->times[vtk->count++] = time;
 }
 
-void se3di_vtk_pack(se3di_vtk *vtk, se3di_pack *pack)
+void se3di_vtk_pack(se3di_vtk *vtk, se3di_coder *coder)
 {
     size_t count = vtk->count;
-    se3di_pack_count(pack, &count);
-    if (pack->in) {
+    se3di_code_count(coder, &count, 1.0);
+    if (coder->in) {
         vtk->times = se3di_iopool_array(vtk->pool, count + 1, sizeof *vtk->times);
         vtk->capacity = vtk->times ? count + 1 : 0;
         vtk->count = vtk->times ? count : 0;
-        pack->failed = pack->failed || !vtk->times;
+        coder->failed = coder->failed || !vtk->times;
     }
-    se3di_pack_numbers(pack, vtk->times, vtk->count);
+    se3di_code_numbers(coder, vtk->times, vtk->count);
 }
 
 /* An attribute of the list. */

@@ -4,7 +4,7 @@
 #ifndef SE3D_IO_VTK_H
 #define SE3D_IO_VTK_H
 
-#include "io/base/pack.h"
+#include "base/coder.h"
 #include "io/channel/sample.h"
 #include "io/model/model.h"
 
@@ -16,7 +16,7 @@ se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *pat
  * After a failure nothing more is written. */
 void se3di_vtk_record(se3di_vtk *vtk, se3di_sample *sample, double time);
 /* The times so far; reading: the states of these times have been written before. */
-void se3di_vtk_pack(se3di_vtk *vtk, se3di_pack *pack);
+void se3di_vtk_pack(se3di_vtk *vtk, se3di_coder *coder);
 /* Write the list; on a full disk of as many states as there is room for. @return OK, NO_MEMORY, or
  * IO: errno of the first failure in *why. */
 se3d_status se3di_vtk_close(se3di_vtk *vtk, int *why);
