@@ -7,6 +7,7 @@
 
 #include "particles/chain.h"
 #include "particles/list.h"
+#include "particles/memory.h"
 #include "particles/sync.h"
 
 #include <string.h>

@@ -3,7 +3,7 @@
 
 #include "math/vec3.h"
 #include "particles/draw.h"
-#include "particles/grid.h"
+#include "particles/wall.h"
 
 #include <math.h>
 #include <string.h>

@@ -10,7 +10,6 @@
 
 #include "math/vec3.h"
 #include "particles/draw.h"
-#include "particles/grid.h"
 #include "particles/wall.h"
 
 #include <math.h>

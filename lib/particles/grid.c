@@ -10,6 +10,7 @@
 #include "particles/grid.h"
 #include "particles/flow.h"
 #include "particles/list.h"
+#include "particles/memory.h"
 #include "particles/reach.h"
 #include "particles/wall.h"
 
@@ -35,16 +36,6 @@ typedef struct grid {
     uint32_t per_slab; /* cells */
     grid_class classes[SE3DI_PARTICLE_CLASSES];
 } grid;
-
-void se3di_particles_wrap(const se3di_particles *set, double d[3])
-{
-    for (int a = 0; a < 3; ++a) {
-        if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
-            double length = set->upper[a] - set->lower[a];
-            d[a] -= length * nearbyint(d[a] / length);
-        }
-    }
-}
 
 /* Size class: 0 holds radii in (largest/2, largest], each next one half of that. */
 static int class_of(double radius, double largest)

@@ -6,7 +6,5 @@
 #include "particles/set.h"
 
 se3d_status se3di_particles_rebuild(se3di_particles *set); /* sort, list, active blocks */
-/* The vector between centres, to the nearest image. */
-void se3di_particles_wrap(const se3di_particles *set, double d[3]);
 
 #endif

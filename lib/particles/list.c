@@ -6,47 +6,16 @@
  * no valid lists. If memory fails they stay there, and nothing is lost. */
 #include "particles/list.h"
 
-#include "particles/grid.h"
+#include "particles/memory.h"
 #include "particles/mesh.h"
 #include "particles/reach.h"
+#include "particles/slabs.h"
 #include "particles/wall.h"
 
 #include <string.h>
 
 /* Of small reaches, if memory is missing; less is nothing. */
 #define SCALE_LEAST 1e-3
-
-se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, size_t *capacity,
-                                 size_t needed)
-{
-    if (needed <= *capacity) {
-        return SE3D_OK;
-    }
-    size_t grown = needed + needed / 32 + 16;
-    uint32_t *memory = se3di_alloc(&set->allocator, grown, sizeof *memory);
-    if (!memory) {
-        return SE3D_ERR_NO_MEMORY;
-    }
-    if (*capacity > 0) {
-        memcpy(memory, *data, *capacity * sizeof *memory);
-    }
-    se3di_free(&set->allocator, *data, *capacity, sizeof *memory);
-    *data = memory;
-    *capacity = grown;
-    return SE3D_OK;
-}
-
-void se3di_particles_each_slab(se3di_particles *set, void (*work)(se3di_particles *, uint32_t))
-{
-    const long slabs = (long)set->slab_count;
-#ifdef _OPENMP
-    const int32_t team = se3di_particles_team(set);
-#pragma omp parallel for if (team > 1) num_threads(team) schedule(dynamic)
-#endif
-    for (long s = 0; s < slabs; ++s) {
-        work(set, (uint32_t)s);
-    }
-}
 
 static int lane_moved(const se3di_particles *set, uint32_t b, int lane)
 {

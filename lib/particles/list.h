@@ -14,10 +14,5 @@ se3d_status se3di_particles_reserve_carry(se3di_particles *set, size_t count, in
 void se3di_particles_remap(se3di_particles *set, const uint32_t *new_index);
 /* Active blocks from the list and what was collected. */
 se3d_status se3di_particles_activate(se3di_particles *set);
-/* Do something for every slab, on all threads at a time. */
-void se3di_particles_each_slab(se3di_particles *set, void (*work)(se3di_particles *, uint32_t));
-/* Grow an array to hold `needed` elements, a little more. */
-se3d_status se3di_particles_grow(const se3di_particles *set, uint32_t **data, size_t *capacity,
-                                 size_t needed);
 
 #endif

@@ -7,7 +7,7 @@
 #include "particles/reach.h"
 
 #include "math/vec3.h"
-#include "particles/list.h"
+#include "particles/slabs.h"
 
 #include <math.h>
 #include <string.h>

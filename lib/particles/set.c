@@ -3,44 +3,10 @@
 #include "particles/set.h"
 #include "particles/kept.h"
 #include "particles/list.h"
+#include "particles/memory.h"
 
 #include <math.h>
 #include <string.h>
-
-#define ALIGNMENT 64
-
-se3d_status se3di_aligned_reserve(const se3d_allocator *allocator, se3di_aligned *memory,
-                                  size_t bytes, size_t keep)
-{
-    if (bytes <= memory->bytes) {
-        return SE3D_OK;
-    }
-    if (bytes > SIZE_MAX - 2 * ALIGNMENT) {
-        return SE3D_ERR_NO_MEMORY;
-    }
-    void *raw = se3di_alloc(allocator, bytes + ALIGNMENT, 1);
-    if (!raw) {
-        return SE3D_ERR_NO_MEMORY;
-    }
-    size_t offset = (size_t)((uintptr_t)raw % ALIGNMENT);
-    void *data = (char *)raw + (ALIGNMENT - offset);
-    if (keep > 0) {
-        memcpy(data, memory->data, keep);
-    }
-    if (memory->raw) {
-        se3di_free(allocator, memory->raw, memory->bytes + ALIGNMENT, 1);
-    }
-    *memory = (se3di_aligned){data, raw, bytes};
-    return SE3D_OK;
-}
-
-static void aligned_free(const se3d_allocator *allocator, se3di_aligned *memory)
-{
-    if (memory->raw) {
-        se3di_free(allocator, memory->raw, memory->bytes + ALIGNMENT, 1);
-    }
-    *memory = (se3di_aligned){NULL, NULL, 0};
-}
 
 const se3di_kernels *se3di_particle_kernels_choose(int32_t portable)
 {
@@ -71,11 +37,11 @@ void se3di_particles_destroy(se3di_particles *set)
     se3di_free(a, set->stuffs, set->stuff_capacity, sizeof *set->stuffs);
     se3di_free(a, set->pairs, set->pair_capacity, sizeof *set->pairs);
     se3di_free(a, set->walls, set->wall_capacity, sizeof *set->walls);
-    aligned_free(a, &set->particle_memory);
-    aligned_free(a, &set->spin_memory);
-    aligned_free(a, &set->load_memory);
-    aligned_free(a, &set->block_memory);
-    aligned_free(a, &set->roll_memory);
+    se3di_aligned_free(a, &set->particle_memory);
+    se3di_aligned_free(a, &set->spin_memory);
+    se3di_aligned_free(a, &set->load_memory);
+    se3di_aligned_free(a, &set->block_memory);
+    se3di_aligned_free(a, &set->roll_memory);
     se3di_free(a, set->origin, SE3DI_ORIGIN_SIZE * set->capacity, sizeof(double));
     se3di_free(a, set->order, set->capacity, sizeof *set->order);
     se3di_free(a, set->key, set->capacity, sizeof *set->key);

@@ -412,9 +412,6 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
 void se3di_particles_filter(se3di_particles *set, const unsigned char *keep);
 /* Remove `count` live particles by their ids. */
 se3d_status se3di_particles_remove(se3di_particles *set, size_t count, const uint32_t *ids);
-/* Grow an aligned block to hold `bytes`, keeping the first `keep` bytes. */
-se3d_status se3di_aligned_reserve(const se3d_allocator *allocator, se3di_aligned *memory,
-                                  size_t bytes, size_t keep);
 size_t se3di_particles_memory(const se3di_particles *set);
 
 #endif

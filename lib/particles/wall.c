@@ -5,7 +5,7 @@
 
 #include "contact/shape/mesh.h"
 #include "math/vec3.h"
-#include "particles/list.h"
+#include "particles/memory.h"
 
 #include <math.h>
 
@@ -74,6 +74,16 @@ void se3di_wall_image(const se3di_wall *wall, const double length[3], double rea
         if (is_within(wall, there, reach)) {
             se3di_copy(there, x);
             return;
+        }
+    }
+}
+
+void se3di_particles_wrap(const se3di_particles *set, double d[3])
+{
+    for (int a = 0; a < 3; ++a) {
+        if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
+            double length = set->upper[a] - set->lower[a];
+            d[a] -= length * nearbyint(d[a] / length);
         }
     }
 }

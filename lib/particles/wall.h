@@ -19,5 +19,7 @@ void se3di_wall_image(const se3di_wall *wall, const double length[3], double rea
 /* The same with the periods of a set, to `out`. */
 void se3di_particles_image(const se3di_particles *set, const se3di_wall *wall, const double x[3],
                            double reach, double out[3]);
+/* The vector between centres, to the nearest image. */
+void se3di_particles_wrap(const se3di_particles *set, double d[3]);
 
 #endif

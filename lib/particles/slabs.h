@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Slabs: what can be done to all of them at a time. */
+#ifndef SE3DI_PARTICLES_SLABS_H
+#define SE3DI_PARTICLES_SLABS_H
+
+#include "particles/set.h"
+
+/* Do something for every slab, on all threads at a time. */
+void se3di_particles_each_slab(se3di_particles *set, void (*work)(se3di_particles *, uint32_t));
+
+#endif
