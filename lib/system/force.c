@@ -227,15 +227,6 @@ se3d_status se3d_force_find(const se3d_system *system, const char *name, se3d_fo
     return SE3D_OK;
 }
 
-se3d_status se3di_force_find_reader(const se3d_system *system, se3d_force force, const void *out,
-                                    const se3di_force **data)
-{
-    uint32_t index;
-    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, force), SE3DI_HANDLE(force), out, &index));
-    *data = &system->model.forces[index];
-    return (*data)->type == SE3DI_FORCE_STATE ? SE3D_ERR_STALE_HANDLE : SE3D_OK;
-}
-
 se3d_status se3d_force_get_name(const se3d_system *system, se3d_force force, const char **name)
 {
     if (name) {

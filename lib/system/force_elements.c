@@ -37,15 +37,6 @@ void se3d_force_callback_def_init(se3d_force_callback_def *def, size_t size)
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
-se3d_status se3di_force_check_pair(se3d_system *system, const se3di_force *data)
-{
-    if (data->body_i == data->body_j) {
-        return SE3DI_FAIL_OF(system, "body_i", SE3D_ERR_INVALID_ARGUMENT,
-                             " and body_j are the same body, must differ");
-    }
-    return SE3D_OK;
-}
-
 static se3d_status find_pair(se3d_system *system, se3d_body i, se3d_body j, se3di_force *data)
 {
     SE3DI_TRY(se3di_find_body(system, "body_i", i, &data->body_i));

@@ -377,3 +377,21 @@ se3d_status se3d_force_get_bushing(const se3d_system *system, se3d_force force, 
     memcpy(C, data->C, sizeof data->C);
     return SE3D_OK;
 }
+
+se3d_status se3di_force_check_pair(se3d_system *system, const se3di_force *data)
+{
+    if (data->body_i == data->body_j) {
+        return SE3DI_FAIL_OF(system, "body_i", SE3D_ERR_INVALID_ARGUMENT,
+                             " and body_j are the same body, must differ");
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_force_find_reader(const se3d_system *system, se3d_force force, const void *out,
+                                    const se3di_force **data)
+{
+    uint32_t index;
+    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, force), SE3DI_HANDLE(force), out, &index));
+    *data = &system->model.forces[index];
+    return (*data)->type == SE3DI_FORCE_STATE ? SE3D_ERR_STALE_HANDLE : SE3D_OK;
+}

@@ -192,6 +192,15 @@ se3d_status se3di_particles_make_room(se3d_particles *particles, size_t count)
     return SE3D_OK;
 }
 
+se3d_status se3di_check_tag(se3d_particles *particles, uint32_t tag)
+{
+    if (tag >= SE3D_PARTICLES_TAGS) {
+        return SE3DI_FAIL_OF(particles->system, "tag", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %u, must be less than %d", tag, SE3D_PARTICLES_TAGS);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3di_check_period(se3d_particles *particles, double radius)
 {
     const se3di_particles *set = &particles->set;

@@ -22,15 +22,6 @@ void se3d_particles_sink_def_init(se3d_particles_sink_def *def, size_t size)
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
-se3d_status se3di_check_tag(se3d_particles *particles, uint32_t tag)
-{
-    if (tag >= SE3D_PARTICLES_TAGS) {
-        return SE3DI_FAIL_OF(particles->system, "tag", SE3D_ERR_INVALID_ARGUMENT,
-                             " = %u, must be less than %d", tag, SE3D_PARTICLES_TAGS);
-    }
-    return SE3D_OK;
-}
-
 static se3d_status check_source(se3d_particles *p, const se3d_particles_source_def *def,
                                 se3d_particles_source_def *full, int32_t *function)
 {

@@ -19,30 +19,6 @@ typedef struct tree {
     size_t room;                   /* of joints */
 } tree;
 
-bool se3di_urdf_origin(se3di_machine *m, const se3di_xml *node, se3di_frame *frame)
-{
-    double rpy[3] = {0.0, 0.0, 0.0};
-    double p[4] = {1.0, 0.0, 0.0, 0.0};
-    const se3di_xml *origin = se3di_xml_child(node, "origin");
-    *frame = se3di_frame_identity();
-    if (!origin) {
-        return true;
-    }
-    if (!se3di_xml_numbers(m, origin, "xyz", frame->r, 3) ||
-        !se3di_xml_numbers(m, origin, "rpy", rpy, 3) ||
-        !se3di_xml_numbers(m, origin, "quat_xyzw", p, 4)) {
-        return false;
-    }
-    se3di_turn_from_rpy(rpy, frame->A);
-    if (se3di_xml_get(origin, "quat_xyzw")) {
-        const double scalar_first[4] = {p[3], p[0], p[1], p[2]};
-        if (!se3di_turn_from_parameters(scalar_first, frame->A)) {
-            return se3di_machine_fail(m, origin->line, origin->column, "quat_xyzw has no length");
-        }
-    }
-    return true;
-}
-
 static bool read_inertial(se3di_machine *m, const se3di_xml *link, se3di_mass *mass)
 {
     static const char *const keys[6] = {"ixx", "iyy", "izz", "ixy", "iyz", "ixz"};
