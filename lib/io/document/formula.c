@@ -3,29 +3,12 @@
 #include "io/document/formula.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "io/base/pool.h"
 #include "io/document/formula_text.h"
-
-bool se3di_formula_fail(se3di_formula *f, const char *place, const char *format, ...)
-{
-    char text[480];
-    se3di_node node = *f->node;
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    const uintptr_t from = (uintptr_t)f->text;
-    const uintptr_t at = (uintptr_t)place; /* of another text: of a function made of others */
-    if (node.one_line && at >= from && at - from <= strlen(f->text)) {
-        node.column += (size_t)(at - from) + (node.plain ? 0 : 1);
-    }
-    return se3di_reader_fail(f->reader, &node, "`%.120s`: %s", f->text, text);
-}
 
 bool se3di_formula_number(se3di_formula *f, const char *text, size_t length, double *value)
 {

@@ -1,118 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Reports with place and path, keys, words and names. */
+/* Keys, words and names. */
 #include "io/document/reader.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "io/document/document.h"
 #include "io/document/guess.h"
 #include "io/document/keys.h"
-
-static const se3di_node *root_of(const se3di_node *node, const se3di_node *stop)
-{
-    while (node->parent && node != stop) {
-        node = node->parent;
-    }
-    return node;
-}
-
-/* Behind a message about a node of a part: where the part is included, and that where. */
-static void append_chain(const se3di_reader *reader, const se3di_node *node, char *text,
-                         size_t size)
-{
-    const se3di_component *part = reader->part;
-    if (!part || root_of(node, part->root) != part->root) {
-        return;
-    }
-    for (; part->caller; part = part->parent) {
-        const size_t used = strlen(text);
-        snprintf(text + used, size - used, "%s%.200s:%zu:%zu",
-                 part == reader->part ? "; included at " : ", ", part->parent->file,
-                 part->caller->line, part->caller->column);
-    }
-}
-
-static bool fail_at(se3di_reader *reader, const se3di_node *node, size_t line, size_t column,
-                    const char *path, const char *text)
-{
-    char whole[900];
-    const char *file = root_of(node, NULL)->file;
-    reader->status = SE3D_ERR_MODEL;
-    snprintf(whole, sizeof whole, "%s", text);
-    append_chain(reader, node, whole, sizeof whole);
-    se3di_document_report(reader->error, file ? file : reader->file, line, column, path, whole);
-    return false;
-}
-
-bool se3di_reader_propose(se3di_reader *reader, const char *meant)
-{
-    reader->fault.meant = meant;
-    return false;
-}
-
-bool se3di_reader_fail(se3di_reader *reader, const se3di_node *node, const char *format, ...)
-{
-    char path[256];
-    char text[640];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    se3di_node_format_path(node, path, sizeof path);
-    reader->fault = se3di_fault_of(node);
-    return fail_at(reader, node, node->line, node->column, path, text);
-}
-
-bool se3di_reader_fail_key(se3di_reader *reader, const se3di_node *map, const char *key,
-                           const char *format, ...)
-{
-    char path[256];
-    char text[640];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    const se3di_node *child = se3di_node_get(map, key);
-    reader->fault = se3di_fault_of(child ? child : map);
-    if (child) {
-        se3di_node_format_path(child, path, sizeof path);
-        return fail_at(reader, child, child->line, child->column, path, text);
-    }
-    se3di_node_format_path(map, path, sizeof path);
-    const size_t used = strlen(path);
-    snprintf(path + used, sizeof path - used, "%s%.80s", used > 0 ? "." : "", key);
-    return fail_at(reader, map, map->line, map->column, path, text);
-}
-
-bool se3di_reader_fail_memory(se3di_reader *reader)
-{
-    reader->status = SE3D_ERR_NO_MEMORY;
-    reader->fault = (se3di_fault){.node = NULL};
-    se3di_document_report(reader->error, "", 0, 0, "", "out of memory");
-    return false;
-}
-
-/* What is about the mass, "mass = -1 kg, must be > 0", at bodies[0] becomes "bodies[0].mass: is -1
- * kg, must be > 0". */
-bool se3di_reader_fail_system(se3di_reader *reader, const se3di_node *map, se3d_status status)
-{
-    const char *message = se3d_system_get_error(reader->system);
-    const char *field = se3d_system_get_error_field(reader->system);
-    if (status == SE3D_ERR_NO_MEMORY) {
-        return se3di_reader_fail_memory(reader);
-    }
-    if (!se3di_node_get(map, field)) {
-        return se3di_reader_fail(reader, map, "%s",
-                                 message[0] ? message : se3d_status_get_text(status));
-    }
-    const char *rest = message + strlen(field);
-    if (strncmp(rest, " = ", 3) == 0) {
-        return se3di_reader_fail_key(reader, map, field, "is %s", rest + 3);
-    }
-    return se3di_reader_fail_key(reader, map, field, "%s", rest[0] == ' ' ? rest + 1 : message);
-}
 
 /* Append "a, b, c" to `text`. */
 static void append_word(char *text, size_t size, const char *word)
@@ -152,7 +47,7 @@ static bool fail_unknown_key(se3di_reader *reader, const se3di_node *child,
         snprintf(text, sizeof text, "the key `%.60s` is unknown, allowed are: %s", child->key,
                  list);
     }
-    return fail_at(reader, child, child->key_line, child->key_column, path, text);
+    return se3di_reader_fail_at(reader, child, child->key_line, child->key_column, path, text);
 }
 
 bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_object *object)
@@ -185,7 +80,8 @@ static bool check_type_keys(se3di_reader *reader, const se3di_node *node,
             se3di_object_list(object, type, ", ", list, sizeof list);
             reader->fault = se3di_fault_of(child);
             snprintf(text, sizeof text, "`%s` has no such key, allowed are: %s", type, list);
-            return fail_at(reader, child, child->key_line, child->key_column, path, text);
+            return se3di_reader_fail_at(reader, child, child->key_line, child->key_column, path,
+                                        text);
         }
     }
     return true;

@@ -44,6 +44,9 @@ bool se3di_reader_fail(se3di_reader *reader, const se3di_node *node, const char 
 SE3DI_IO_FORMAT(4, 5)
 bool se3di_reader_fail_key(se3di_reader *reader, const se3di_node *map, const char *key,
                            const char *format, ...);
+/* Report about a place in the file of a node, under a path of its own. */
+bool se3di_reader_fail_at(se3di_reader *reader, const se3di_node *node, size_t line, size_t column,
+                          const char *path, const char *text);
 /* Say what was meant in place of the text of the node that was reported; NULL: not known. Always
  * false. */
 bool se3di_reader_propose(se3di_reader *reader, const char *meant);
