@@ -280,11 +280,6 @@ static se3d_status settle(se3di_run *run, double t)
     return SE3D_OK;
 }
 
-uint64_t se3di_run_get_history_tag(const se3di_run *run)
-{
-    return SE3DI_HISTORY_TAGS * run->integration.method->tag + (uint64_t)run->formulation->id;
-}
-
 /* The method under way has written the history. */
 static int has_history(const se3di_run *run)
 {

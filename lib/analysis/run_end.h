@@ -6,7 +6,10 @@
 #include "analysis/run.h"
 
 /* Who writes the history: the method in the formulation. */
-uint64_t se3di_run_get_history_tag(const se3di_run *run);
+static inline uint64_t se3di_run_get_history_tag(const se3di_run *run)
+{
+    return SE3DI_HISTORY_TAGS * run->integration.method->tag + (uint64_t)run->formulation->id;
+}
 
 /* A run to t_end has failed: the message says why, and the model comes back to the last accepted
  * state. @return the status */

@@ -45,21 +45,6 @@ size_t se3di_newmark_work_count(const se3di_assembly *assembly)
            se3di_state_count(assembly);
 }
 
-se3di_newmark_history se3di_newmark_get_history(const se3di_assembly *assembly)
-{
-    const size_t count = se3di_state_count(assembly), n = assembly->unknown_count;
-    double *numbers = assembly->model->history;
-    se3di_newmark_history past = {.header = (se3di_newmark_header *)(void *)numbers};
-    past.y = numbers + SE3DI_NEWMARK_HEADER;
-    past.y_begin = past.y + count;
-    past.a = past.y_begin + count;
-    past.vdot = past.a + n;
-    past.vdot_begin = past.vdot + n;
-    past.lambda = past.vdot_begin + n;
-    past.lambda_begin = past.lambda + assembly->row_count;
-    return past;
-}
-
 /* The third derivative of the motion at the start, from accelerations at h/2 and h along the
  * parabola; zero if they cannot be evaluated. */
 static se3d_status estimate_jerk(se3di_integration *integration, double h, const double *vdot,

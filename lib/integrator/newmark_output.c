@@ -55,6 +55,21 @@ static void interpolate_body(const double *y0, const double *y1, double h, doubl
     se3di_scale(1.0 / h, y + 10, y + 10);
 }
 
+se3di_newmark_history se3di_newmark_get_history(const se3di_assembly *assembly)
+{
+    const size_t count = se3di_state_count(assembly), n = assembly->unknown_count;
+    double *numbers = assembly->model->history;
+    se3di_newmark_history past = {.header = (se3di_newmark_header *)(void *)numbers};
+    past.y = numbers + SE3DI_NEWMARK_HEADER;
+    past.y_begin = past.y + count;
+    past.a = past.y_begin + count;
+    past.vdot = past.a + n;
+    past.vdot_begin = past.vdot + n;
+    past.lambda = past.vdot_begin + n;
+    past.lambda_begin = past.lambda + assembly->row_count;
+    return past;
+}
+
 void se3di_newmark_interpolate(const se3di_integration *integration, double t, double *y)
 {
     const se3di_assembly *assembly = &integration->equations->assembly;

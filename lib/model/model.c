@@ -8,12 +8,6 @@
 
 #include <string.h>
 
-void se3di_frame_update(se3di_frame *frame)
-{
-    se3di_quat_to_matrix(frame->p, frame->A);
-    se3di_quat_rate(frame->p, frame->w, frame->pdot);
-}
-
 se3d_status se3di_model_init(se3di_model *model, const se3d_allocator *allocator, uint32_t salt)
 {
     memset(model, 0, sizeof *model);
@@ -172,11 +166,6 @@ static se3d_status copy_name(const se3d_allocator *allocator, char **name)
         *name = se3di_text_copy(allocator, original);
     }
     return original && !*name ? SE3D_ERR_NO_MEMORY : SE3D_OK;
-}
-
-uint32_t se3di_model_owner(const se3di_model *model, uint32_t body)
-{
-    return se3di_slots_handle(&model->body_slots, body).index1;
 }
 
 /* The arrays hold the original's names: replace each by a copy; those not reached become NULL. */

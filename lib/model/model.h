@@ -348,7 +348,10 @@ se3d_status se3di_shape_own(const se3d_allocator *allocator, se3di_shape *shape)
 void se3di_shape_release(const se3d_allocator *allocator, se3di_shape *shape);
 
 /* Whose name a marker's is: names of markers are unique on their body. */
-uint32_t se3di_model_owner(const se3di_model *model, uint32_t body);
+static inline uint32_t se3di_model_owner(const se3di_model *model, uint32_t body)
+{
+    return se3di_slots_handle(&model->body_slots, body).index1;
+}
 
 /* Keep, put back what force elements remember: memory [forces * SE3DI_FORCE_STATES]. */
 void se3di_model_save_memory(const se3di_model *model, double *memory);
