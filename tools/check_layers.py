@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A file includes only its own folder, those before it, and public headers.
 
-The folders of lib/ are layers, those of lib/io and lib/contact their rooms. LAYERS and ROOMS give their orders, and the
-tables of docs/architecture.md must give the same. No headers include each other in a circle. libse3d-io,
-the programs in tools/ and the examples see public headers only. With a folder as argument, that tree
-is checked instead of this one.
+The folders of lib/ are layers, those of lib/io and lib/contact their rooms. LAYERS and ROOMS give
+their orders, and the tables of docs/architecture.md must give the same. No headers include each
+other in a circle, and no files call each other in one but those of CIRCLES, where a sentence says
+why. A function is defined in the folder of the header that declares it. libse3d-io, the programs in
+tools/ and the examples see public headers only. With a folder as argument, that tree is checked
+instead of this one.
 """
 import re
 import sys
@@ -20,6 +22,36 @@ ROOMS = {"contact": "shape narrow bodies".split(),
 SHARED = ("io/base/file.h", "io/document/guess.h", "io/read/objects.h")
 # Functions that are complete in a header, which libse3d-io may have too: nothing is linked.
 INLINE = ("base/hash.h", "base/coder.h")
+# Files that call each other, and why they are not one after the other.
+CIRCLES = {
+    "primitive/scale primitive/turn_counter":
+        "an accepted state is looked at for rows left out, whose gap is measured as every row's",
+    "contact/narrow/convex contact/narrow/least":
+        "the least way out of an overlap begins at a distance, and a distance ends polished by it",
+    "contact/narrow/hollow contact/narrow/mesh contact/narrow/pieces contact/narrow/ways":
+        "a mesh is taken apart into pieces, which are meshes, and the whole judges their ways out",
+    "tree/loop_rows tree/loops":
+        "which rows of a loop are kept is found by evaluating all of them",
+    "nonlinear/equations nonlinear/friction_system nonlinear/position":
+        "solving with friction, and for positions, is solving the equations several times",
+    "analysis/kinematics analysis/singular":
+        "a singular position is passed by the steps that could not pass it, made shorter",
+    "analysis/events analysis/run analysis/run_failure":
+        "a run looks for events after each step, and a search for events makes steps",
+    "io/document/reader io/document/reference io/document/value":
+        "a text may hold numbers in braces, and a number may be written as a text",
+    "io/import/chrono io/import/import io/import/mjcf io/import/mjcf_acts io/import/mjcf_body "
+    "io/import/mjcf_geom":
+        "formats include files by the function that chose them; a tree of bodies is read as it is "
+        "written, body in body",
+    "io/read/load io/read/mistakes":
+        "the mistakes behind the first one are found by reading the model again without it",
+}
+HEAD = r"^(?!static\b|typedef\b)[A-Za-z][\w *]*?\b(se3di?_\w+)\([^;{}]*\)"
+DEFINITION = re.compile(HEAD + r"\s*\{", re.M)
+DECLARATION = re.compile(HEAD + ";", re.M)
+NAME = re.compile(r"\bse3di?_\w+")
+NOISE = re.compile(r'/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.S)
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 TABLE_ROW = re.compile(r"^\| `([\w/]+)` \|", re.M)
 
@@ -76,6 +108,58 @@ def find_circles(headers):
     return circles
 
 
+def read_code(root):
+    """{name below lib/: its text without comments and literals} of all C files and headers."""
+    return {path.relative_to(root / "lib").as_posix(): NOISE.sub("", path.read_text())
+            for path in sorted((root / "lib").rglob("*.[ch]"))}
+
+
+def join_callers(calls):
+    """Sets of files that call each other, directly or through others, among {file: files}."""
+    index, low, stack, found = {}, {}, [], []
+
+    def visit(name):
+        index[name] = low[name] = len(index)
+        stack.append(name)
+        for other in sorted(calls.get(name, ())):
+            if other not in index:
+                visit(other)
+                low[name] = min(low[name], low[other])
+            elif other in stack:
+                low[name] = min(low[name], index[other])
+        if low[name] == index[name]:
+            at = stack.index(name)
+            found.append(sorted(stack[at:]))
+            del stack[at:]
+
+    for name in sorted(calls):
+        if name not in index:
+            visit(name)
+    return sorted(group for group in found if len(group) > 1)
+
+
+def check_calls(code):
+    """Circles of calls between files, and functions that another folder declares."""
+    owner, calls, problems = {}, {}, []
+    for name, text in code.items():
+        if name.endswith(".c"):
+            owner.update({function: name for function in DEFINITION.findall(text)})
+    for name, text in code.items():
+        if name.endswith(".c"):
+            used = {owner[word] for word in NAME.findall(text) if word in owner} - {name}
+            calls[name[:-2]] = {other[:-2] for other in used}
+            continue
+        for function in DECLARATION.findall(text):
+            place = owner.get(function, name)
+            if place.rpartition("/")[0] != name.rpartition("/")[0]:
+                problems.append(f"{name}: declares {function}, which {place} defines")
+    circles = {" ".join(group) for group in join_callers(calls)}
+    problems += [f"files call each other: {circle}" for circle in sorted(circles - set(CIRCLES))]
+    problems += [f"CIRCLES lists files that do not call each other: {circle}"
+                 for circle in sorted(set(CIRCLES) - circles) if circle.split()[0] in calls]
+    return problems
+
+
 def check_documents(root):
     """The tables of layers and rooms against the orders above."""
     path = root / "docs" / "architecture.md"
@@ -126,6 +210,7 @@ def main():
                 why = complaint(folder, place, bracket == '"', name)
                 if why:
                     problems.append(f'{where}: #include "{name}": {why}')
+    problems += check_calls(read_code(root))
     problems += [f"includes in a circle: {' -> '.join(circle)}" for circle in find_circles(headers)]
     for path in sorted((root / "include" / "se3d").glob("*.h")):
         for bracket, name in INCLUDE.findall(path.read_text()):

@@ -95,6 +95,11 @@ reject 'lib/attic: in no list' python3 tools/check_layers.py
 printf '%s\n' '#include "io/model/b.h"' >lib/io/model/a.h
 printf '%s\n' '#include "io/model/a.h"' >lib/io/model/b.h
 reject 'circle: io/model/a.h -> io/model/b.h -> io/model/a.h' python3 tools/check_layers.py
+printf '%s\n' 'int se3di_to(int n)' '{' '    return se3di_fro(n);' '}' >lib/math/to.c
+printf '%s\n' 'int se3di_fro(int n)' '{' '    return n > 0 ? se3di_to(n - 1) : 0;' '}' >lib/math/fro.c
+printf '%s\n' 'int se3di_to(int n);' >lib/base/to.h
+reject 'files call each other: math/fro math/to' python3 tools/check_layers.py
+reject 'base/to.h: declares se3di_to, which math/to.c defines' python3 tools/check_layers.py
 printf '%s\n' '| `math` | x |' '| `base` | y |' >docs/architecture.md
 reject 'architecture.md lists math base, the tree has base math' python3 tools/check_layers.py
 
