@@ -34,7 +34,8 @@ extern "C" {
 
 /* Build the tree of a system, with all memory that the functions below need. It is for the system's
  * present structure: after an element came, went or was changed, make it anew (functions return
- * STATE until then). @return OK, NULL, STATE, NO_MEMORY. @since 0.1 */
+ * STATE until then). @return OK, NULL, STATE, NO_MEMORY, UNSUPPORTED (armatures on all joints of a
+ * loop). @since 0.1 */
 SE3D_API se3d_status se3d_coordinates_create(se3d_system *system, se3d_coordinates **coordinates);
 
 /* Destroy joint coordinates, before or after their system; NULL is fine. @since 0.1 */

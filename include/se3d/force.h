@@ -342,6 +342,36 @@ SE3D_API se3d_status se3d_effort_count(const se3d_system *system, size_t *count)
  * @since 0.1 */
 SE3D_API se3d_status se3d_effort_set_all(se3d_system *system, size_t count, const double *values);
 
+/* Armature: the inertia of what turns with a coordinate of a joint beside its bodies, a rotor
+ * behind a gear: kinetic energy 1/2 inertia rate^2, no weight, no momentum of its own. For a rotor
+ * of inertia J behind a gear of ratio n it is n^2 J. It is a part of the mass matrix in all
+ * formulations; the methods verlet, rattle and convex, which need bodies alone in it, refuse it.
+ * docs/theory/armature.md @since 0.1 */
+typedef struct se3d_armature_def {
+    size_t struct_size;
+    const char *name;      /* copied; NULL or unique among force elements */
+    se3d_constraint joint; /* required: a joint with the coordinate */
+    int32_t coordinate;    /* se3d_joint_coordinate; of a screw the angle */
+    int32_t reserved;
+    double inertia; /* >= 0: of an angle [kg m^2], of a displacement [kg] */
+} se3d_armature_def;
+
+/* Fill `def`, of `size` bytes, with the defaults: see se3d_armature_def_default. @since 0.1 */
+SE3D_API void se3d_armature_def_init(se3d_armature_def *def, size_t size);
+
+/* Return the defaults. @since 0.1 */
+static inline se3d_armature_def se3d_armature_def_default(void)
+{
+    se3d_armature_def def;
+    se3d_armature_def_init(&def, sizeof def);
+    return def;
+}
+
+/* Create an armature on a joint coordinate. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT,
+ * NO_MEMORY. @since 0.1 */
+SE3D_API se3d_status se3d_force_create_armature(se3d_system *system, const se3d_armature_def *def,
+                                                se3d_force *force);
+
 /* A number that a force element has, with the unit and the range of its definition. @since 0.1 */
 typedef enum se3d_force_parameter {
     SE3D_FORCE_PARAMETER_K = 0,           /* tsda, rsda, stop, tyre */
@@ -356,11 +386,12 @@ typedef enum se3d_force_parameter {
     SE3D_FORCE_PARAMETER_RADIUS = 9,    /* friction */
     SE3D_FORCE_PARAMETER_LIMIT = 10,    /* friction */
     SE3D_FORCE_PARAMETER_VISCOUS = 11,  /* friction */
-    SE3D_FORCE_PARAMETER_PRESLIDING = 12 /* friction */
+    SE3D_FORCE_PARAMETER_PRESLIDING = 12, /* friction */
+    SE3D_FORCE_PARAMETER_INERTIA = 13     /* armature */
 } se3d_force_parameter;
 
-/* Set a number of a tsda, rsda, stop, friction or tyre element. What the change makes of the stored
- * energy counts as work of actuators.
+/* Set a number of a tsda, rsda, stop, friction, tyre or armature element. What the change makes of
+ * the stored energy counts as work of actuators.
  * @param[in] parameter  se3d_force_parameter
  * @param[in] value      with the unit and the range of the definition [N, m, s, rad]
  * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT.
@@ -431,14 +462,14 @@ SE3D_API se3d_status se3d_force_get_name(const se3d_system *system, se3d_force f
 
 /* Get the type of a force element as in the model file.
  * @param[out] type  "tsda", "rsda", "force", "torque", "bushing", "friction", "stop", "callback",
- *                   "effort", "tyre"; static
+ *                   "effort", "tyre", "armature"; static
  * @return OK, NULL, STALE_HANDLE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_force_get_type(const se3d_system *system, se3d_force force,
                                          const char **type);
 
 /* Get the coordinate of a tsda, rsda, friction or stop and what acts against it, or of an effort
- * and what acts along it, at the present state. NULL ones are skipped.
+ * or armature and what acts along it, at the present state. NULL ones are skipped.
  * @param[out] coordinate  length or displacement [m], angle [rad]
  * @param[out] rate        of the coordinate [m/s, rad/s]
  * @param[out] value       force f [N] or torque n [N m]

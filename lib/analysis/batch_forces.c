@@ -6,26 +6,6 @@
 
 #include "math/vec3.h"
 
-/* The velocity among those of a node that a coordinate of its joint is, -1: none of them. */
-static int32_t find_component(const se3di_tree_node *n, int32_t coordinate)
-{
-    const int is_angle = coordinate == SE3D_JOINT_COORDINATE_ANGLE;
-    switch (n->type) {
-    case SE3DI_TREE_REVOLUTE:
-        return is_angle ? 0 : -1;
-    case SE3DI_TREE_SCREW:
-        return is_angle ? 0 : -1;
-    case SE3DI_TREE_PRISMATIC:
-        return is_angle ? -1 : 0;
-    case SE3DI_TREE_CYLINDRICAL:
-        return is_angle ? 0 : 1;
-    case SE3DI_TREE_PLANAR:
-        return is_angle ? 2 : -1;
-    default:
-        return -1;
-    }
-}
-
 static int has_functions(const se3di_force *force)
 {
     int found = 0;
@@ -43,7 +23,7 @@ static int add_law(se3di_batch *b, const se3di_force *force)
         const se3di_tree_node *n = &tree->nodes[k];
         const int is_its = force->joint >= 0 ? n->constraint == force->joint
                                              : force->angle >= 0 && n->angle == force->angle;
-        const int32_t component = is_its ? find_component(n, force->coordinate) : -1;
+        const int32_t component = is_its ? se3di_tree_component(n, force->coordinate) : -1;
         if (component < 0) {
             continue;
         }
@@ -117,6 +97,8 @@ static int add_force(se3di_batch *b, const se3di_force *force)
         return 0;
     }
     switch (force->type) {
+    case SE3DI_FORCE_ARMATURE:
+        return 1; /* the tree has it */
     case SE3DI_FORCE_RSDA:
     case SE3DI_FORCE_EFFORT:
         return add_law(b, force);

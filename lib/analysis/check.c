@@ -482,7 +482,7 @@ static se3d_status count_by_factor(inspection *in, size_t rows)
 {
     se3di_equations *equations = in->equations;
     se3di_assembly_eval_mass(&equations->assembly);
-    se3di_kkt_values values = {.body = equations->assembly.H, .joint = equations->assembly.C};
+    const se3di_kkt_values values = se3di_equations_values(equations);
     se3di_kkt_factor_info info = {0};
     SE3DI_TRY(se3di_kkt_factor(equations->kkt, &values, &info));
     in->check->rank = in->model->row_count - (size_t)info.dependent_rows;

@@ -124,8 +124,7 @@ static se3d_status find_freedoms(se3di_linear *linear)
 static se3d_status balance(se3di_linear *linear)
 {
     se3di_equations *equations = linear->equations;
-    const se3di_assembly *assembly = &equations->assembly;
-    const se3di_kkt_values values = {.body = linear->unit, .joint = assembly->C};
+    const se3di_kkt_values values = se3di_equations_values_of(equations, linear->unit);
     se3di_kkt_solve_info info = {0};
     if (linear->rows == 0) {
         return SE3D_OK;
@@ -318,7 +317,8 @@ se3d_status se3di_linear_eval_matrices(se3di_linear *linear, double t, const dou
 {
     se3di_tangent *tangent = &linear->tangent;
     SE3DI_TRY(se3di_tangent_eval(tangent, t, vdot, lambda));
-    fill_dense(linear, linear->M, tangent->M, NULL, NULL);
+    const int coupled = linear->equations->assembly.armature_count > 0;
+    fill_dense(linear, linear->M, tangent->M, coupled ? tangent->M_upper : NULL, tangent->M_lower);
     fill_dense(linear, linear->D, tangent->D, tangent->D_upper, tangent->D_lower);
     fill_dense(linear, linear->K, tangent->K, tangent->K_upper, tangent->K_lower);
     turn_matrix(linear, linear->M);

@@ -165,6 +165,23 @@ static se3d_status try_joints(se3di_run *run, int *picked)
     return status < 0 ? status : SE3D_OK;
 }
 
+/* Methods that take bodies one by one. */
+static se3d_status check_armatures(se3di_run *run)
+{
+    const se3di_assembly *assembly = &run->equations.assembly;
+    const se3di_integrator *method = run->integration.method;
+    if (run->analysis != SE3D_ANALYSIS_DYNAMICS || !method->weighs_bodies ||
+        assembly->armature_count == 0) {
+        return SE3D_OK;
+    }
+    const char *name = run->model->forces[assembly->armature[0].force].name;
+    release(run);
+    return se3di_error_set(run->error, SE3D_ERR_UNSUPPORTED,
+                           "method %s takes no armatures ('%.64s'): they couple the bodies of a "
+                           "joint in the mass matrix",
+                           method->name, name ? name : "");
+}
+
 /* Build what the model's structure decides. */
 static se3d_status build(se3di_run *run)
 {
@@ -181,6 +198,7 @@ static se3d_status build(se3di_run *run)
     run->equations.iterations_max = run->integration.settings.iterations_max;
     run->integration.equations = &run->equations;
     run->prepared = 1;
+    SE3DI_TRY(check_armatures(run));
     run->told_redundant = run->told_left_out = 0;
     run->determined = 0;
     run->values_version = run->model->values_version;

@@ -202,7 +202,7 @@ se3d_status se3di_static_newton_balance(se3di_static_newton *newton, const doubl
 {
     se3di_equations *equations = newton->equations;
     const se3di_assembly *assembly = &equations->assembly;
-    const se3di_kkt_values values = {.body = newton->unit, .joint = assembly->C};
+    const se3di_kkt_values values = se3di_equations_values_of(equations, newton->unit);
     se3di_kkt_solve_info info = {0};
     memcpy(rho, load, assembly->unknown_count * sizeof *rho);
     if (assembly->row_count == 0) {

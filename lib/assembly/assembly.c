@@ -2,6 +2,7 @@
 /* Numbering and pattern of the equations. */
 #include "assembly/assembly.h"
 
+#include "assembly/armature.h"
 #include "assembly/fused.h"
 #include "joint/user.h"
 #include "model/state.h"
@@ -75,8 +76,8 @@ static void place_blocks(se3di_assembly *assembly)
     }
 }
 
-#define STRUCTURE_ARRAYS 9
-#define VALUE_ARRAYS     4
+#define STRUCTURE_ARRAYS 11
+#define VALUE_ARRAYS     5
 
 static void list_structure(se3di_assembly *a, se3di_array list[STRUCTURE_ARRAYS])
 {
@@ -90,6 +91,8 @@ static void list_structure(se3di_assembly *a, se3di_array list[STRUCTURE_ARRAYS]
         {(void **)&a->block_offset, 2 * (size_t)a->place_count, sizeof *a->block_offset},
         {(void **)&a->is_fused, a->constraint_count, sizeof *a->is_fused},
         {(void **)&a->timed_rows, a->row_count, sizeof *a->timed_rows},
+        {(void **)&a->armature, a->armature_count, sizeof *a->armature},
+        {(void **)&a->armature_pair, 2 * (size_t)a->armature_count, sizeof *a->armature_pair},
     };
     _Static_assert(sizeof arrays == STRUCTURE_ARRAYS * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
@@ -100,6 +103,7 @@ static void list_values(se3di_assembly *a, se3di_array list[VALUE_ARRAYS])
     size_t block = (size_t)a->formulation->block;
     const se3di_array arrays[] = {
         {(void **)&a->H, a->body_count * block * block, sizeof *a->H},
+        {(void **)&a->H_pair, a->armature_count * block * block, sizeof *a->H_pair},
         {(void **)&a->C, a->joint_value_count, sizeof *a->C},
         {(void **)&a->f, 3 * (size_t)a->row_count, sizeof *a->f},
         {(void **)&a->wrench, 6 * (size_t)a->dense_count, sizeof *a->wrench},
@@ -144,10 +148,12 @@ static se3d_status build(se3di_assembly *assembly)
     se3di_array structure[STRUCTURE_ARRAYS];
     se3di_array values[VALUE_ARRAYS];
     count_users(assembly);
+    se3di_armatures_count(assembly);
     list_structure(assembly, structure);
     SE3DI_TRY(se3di_arrays_alloc(allocator, structure, STRUCTURE_ARRAYS));
     number_bodies(assembly);
     build_pattern(assembly);
+    se3di_armatures_list(assembly);
     assembly->unknown_count = assembly->body_count * (uint32_t)assembly->formulation->block;
     place_blocks(assembly);
     list_values(assembly, values);

@@ -21,6 +21,13 @@ typedef struct se3di_term_place {
     int32_t slot_i, slot_j; /* block within its joint */
 } se3di_term_place;
 
+/* An armature among the force elements, and which of the coupled pairs its bodies are, -1: one of
+ * them is fixed. */
+typedef struct se3di_armature_place {
+    uint32_t force;
+    int32_t pair;
+} se3di_armature_place;
+
 typedef struct se3di_assembly {
     se3di_model *model;
     const se3di_formulation *formulation;
@@ -41,6 +48,8 @@ typedef struct se3di_assembly {
     uint32_t timed_count;
     uint32_t constraint_count, place_count, dense_count, joint_body_count;
     double *H;           /* body blocks */
+    double *H_pair;      /* of the bodies that armatures couple: rows of the first, columns of the
+                            second */
     double *C;           /* joint blocks */
     double *f;           /* [rows * 3] jets of the functions of time */
     double *wrench;      /* [dense bodies * 6] */
@@ -52,6 +61,9 @@ typedef struct se3di_assembly {
     int32_t moves_states; /* carriers of states are among the free bodies */
     double like_mass;     /* [kg] of each body then: the mean, */
     double like_inertia;  /* [kg m^2] */
+    uint32_t armature_count, armature_pair_count;
+    se3di_armature_place *armature;
+    int32_t *armature_pair; /* [2 * pairs] free bodies i < j, increasing */
 } se3di_assembly;
 
 /* Build the structure; moves_states 0: user-defined states stay as they are. On failure nothing is
@@ -78,6 +90,13 @@ void se3di_assembly_eval_some_rows(se3di_assembly *assembly, const uint32_t *con
                                    uint32_t count, double *gamma);
 /* Mass blocks into H, or equal ones if it `levels`. */
 void se3di_assembly_eval_mass(se3di_assembly *assembly);
+/* H does not change with the state: blocks of bodies in r-omega alone. */
+static inline int se3di_assembly_is_plain(const se3di_assembly *assembly)
+{
+    return assembly->formulation->block == 6 && assembly->armature_count == 0;
+}
+/* The same for methods whose H is constant without armatures. */
+void se3di_assembly_follow_mass(se3di_assembly *assembly);
 /* From now on H weighs all bodies alike: by their mean mass, and by how far joints are from the
  * centres of the bodies that move (1 m if they are at the centres). */
 void se3di_assembly_level(se3di_assembly *assembly);

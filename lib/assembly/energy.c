@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "assembly/energy.h"
 
+#include "assembly/armature.h"
 #include "contact/bodies/body_contacts.h"
 #include "force/force.h"
 #include "joint/user.h"
@@ -22,7 +23,7 @@ double se3di_kinetic_energy(const se3di_model *model)
             energy += J[3] * w[0] * w[1] + J[4] * w[1] * w[2] + J[5] * w[0] * w[2];
         }
     }
-    return energy;
+    return energy + se3di_armatures_energy(model);
 }
 
 se3d_status se3di_forces_potential(const se3di_model *model, double t, double *potential)

@@ -2,6 +2,7 @@
 /* Evaluation of the equations at the state of the model. */
 #include "assembly/assembly.h"
 
+#include "assembly/armature.h"
 #include "assembly/fused.h"
 #include "assembly/left_out.h"
 #include "assembly/loads.h"
@@ -219,6 +220,16 @@ void se3di_assembly_eval_mass(se3di_assembly *assembly)
         assembly->formulation->mass(weight, &assembly->model->frames[body],
                                     assembly->H + k * block * block);
     }
+    if (assembly->armature_count > 0) {
+        se3di_armatures_add_mass(assembly);
+    }
+}
+
+void se3di_assembly_follow_mass(se3di_assembly *assembly)
+{
+    if (assembly->armature_count > 0) {
+        se3di_assembly_eval_mass(assembly);
+    }
 }
 
 /* Independent of the poses, so that a run goes on with the same bits wherever it stands. */
@@ -286,6 +297,7 @@ se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, doubl
         assembly->formulation->add_wrench(&model->frames[body], wrench, wrench + 3,
                                           b + k * (uint32_t)block);
     }
+    se3di_armatures_add_terms(assembly, b);
     return SE3D_OK;
 }
 
@@ -302,6 +314,7 @@ void se3di_assembly_mul_mass(const se3di_assembly *assembly, const double *x, do
             out[k * n + r] = sum;
         }
     }
+    se3di_armatures_add_coupled(assembly, 1.0, x, out);
 }
 
 /* out [n] -= B x, B an n x n block of one body. */
@@ -320,6 +333,7 @@ void se3di_assembly_subtract_mass(const se3di_assembly *assembly, const double *
     for (size_t k = 0; k < assembly->body_count; ++k) {
         subtract_block(assembly->H + k * n * n, n, x + k * n, out + k * n);
     }
+    se3di_armatures_add_coupled(assembly, -1.0, x, out);
 }
 
 void se3di_assembly_subtract_inertia(const se3di_assembly *assembly, const double *x, double *out)
@@ -332,6 +346,7 @@ void se3di_assembly_subtract_inertia(const se3di_assembly *assembly, const doubl
                                     M);
         subtract_block(M, n, x + k * n, out + k * n);
     }
+    se3di_armatures_subtract(assembly, x, out);
 }
 
 void se3di_assembly_mul(const se3di_assembly *assembly, const double *x, double *out)

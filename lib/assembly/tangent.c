@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "assembly/tangent.h"
 
+#include "assembly/armature.h"
 #include "assembly/convex.h"
 #include "assembly/fused.h"
 #include "assembly/left_out.h"
@@ -134,17 +135,19 @@ static size_t remove_duplicates(int32_t *pairs, size_t count)
     return kept;
 }
 
-#define TANGENT_ARRAYS 7
+#define TANGENT_ARRAYS 9
 
 static void list_arrays(se3di_tangent *t, double **list[TANGENT_ARRAYS],
                         size_t count[TANGENT_ARRAYS])
 {
     size_t block = (size_t)t->assembly->formulation->block;
-    double **arrays[TANGENT_ARRAYS] = {&t->M,       &t->K,       &t->D,      &t->K_upper,
-                                       &t->K_lower, &t->D_upper, &t->D_lower};
+    double **arrays[TANGENT_ARRAYS] = {&t->M,       &t->K,       &t->D,
+                                       &t->K_upper, &t->K_lower, &t->D_upper,
+                                       &t->D_lower, &t->M_upper, &t->M_lower};
     for (int k = 0; k < TANGENT_ARRAYS; ++k) {
         list[k] = arrays[k];
         count[k] = (k < 3 ? t->assembly->body_count : t->coupling_count) * block * block;
+        count[k] = k < 7 || t->assembly->armature_count > 0 ? count[k] : 0;
     }
 }
 
@@ -240,6 +243,27 @@ static double *find_block(const se3di_tangent *tangent, int which, int32_t row, 
     double *upper = which ? tangent->D_upper : tangent->K_upper;
     double *lower = which ? tangent->D_lower : tangent->K_lower;
     return (row < column ? upper : lower) + (size_t)pair * n * n;
+}
+
+/* M of the couplings of armatures, beside its blocks of bodies; `n` of the block. */
+static void add_armature_mass(se3di_tangent *tangent, const se3di_armature *a, size_t n)
+{
+    const int32_t pair =
+        a->body[0] >= 0 && a->body[1] >= 0 ? find_pair(tangent, a->body[0], a->body[1]) : -1;
+    for (size_t e = 0; e < n * n; ++e) {
+        const size_t r = e / n, c = e % n;
+        for (int b = 0; b < 2; ++b) {
+            if (a->body[b] >= 0) {
+                tangent->M[(size_t)a->body[b] * n * n + e] += a->inertia * a->g[b][r] * a->g[b][c];
+            }
+        }
+        if (pair >= 0) {
+            const int first = a->body[0] < a->body[1] ? 0 : 1;
+            const double *g = a->g[first], *other = a->g[1 - first];
+            tangent->M_upper[(size_t)pair * n * n + e] += a->inertia * g[r] * other[c];
+            tangent->M_lower[(size_t)pair * n * n + e] += a->inertia * other[r] * g[c];
+        }
+    }
 }
 
 /* block += s (6 x 6 of a 12 x 12) */
@@ -390,6 +414,33 @@ static se3d_status add_forces(se3di_tangent *tangent, double t)
         }
     }
     return SE3D_OK;
+}
+
+/* M, and what accelerations and velocities make of the rates of coordinates. */
+static void add_armatures(se3di_tangent *tangent, const double *vdot)
+{
+    const se3di_assembly *assembly = tangent->assembly;
+    const se3di_model *model = assembly->model;
+    const size_t n = (size_t)assembly->formulation->block;
+    for (uint32_t k = 0; k < assembly->armature_count; ++k) {
+        const se3di_force *force = &model->forces[assembly->armature[k].force];
+        const uint32_t bodies[2] = {force->body_i, force->body_j};
+        double acceleration[12] = {0.0};
+        se3di_armature a;
+        se3di_effect effect;
+        se3di_armature_eval(assembly, k, &a);
+        add_armature_mass(tangent, &a, n);
+        for (int b = 0; b < 2; ++b) {
+            if (a.body[b] >= 0) {
+                assembly->formulation->get_acceleration(
+                    &model->frames[bodies[b]], vdot + n * (size_t)a.body[b], acceleration + 6 * b);
+            }
+        }
+        se3di_armature_effect(model, force, acceleration, &effect);
+        if (!tangent->is_convex) {
+            add_load(tangent, bodies, effect.wrench, effect.K, effect.D);
+        }
+    }
 }
 
 static se3d_status add_contact(void *ctx, const se3di_encounter *encounter)
@@ -627,6 +678,7 @@ se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *v
             add_rp_terms(body, frame, vdot + n * k, tangent->K + k * n * n, tangent->D + k * n * n);
         }
     }
+    add_armatures(tangent, vdot);
     add_curvature(tangent, lambda);
     SE3DI_TRY(add_user_curvatures(tangent, t, lambda));
     if (tangent->is_convex) {

@@ -23,7 +23,7 @@ typedef struct se3di_tangent {
     int32_t reserved;
     /* Blocks [block * block]: of the bodies; of the couplings: rows of i, columns of j, and rows of
      * j, columns of i. */
-    double *M; /* bodies only */
+    double *M, *M_upper, *M_lower; /* couplings: NULL without armatures */
     double *K, *K_upper, *K_lower;
     double *D, *D_upper, *D_lower;
 } se3di_tangent;

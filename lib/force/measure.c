@@ -87,7 +87,7 @@ int se3di_measure_length(const se3di_model *model, const se3di_force *force, int
     return 1;
 }
 
-static void init_term(const se3di_model *model, const se3di_force *force, se3di_term *term)
+void se3di_measure_begin(const se3di_model *model, const se3di_force *force, se3di_term *term)
 {
     if (force->coordinate == SE3D_JOINT_COORDINATE_ANGLE) {
         *term = model->angles[force->angle].term;
@@ -103,7 +103,7 @@ void se3di_measure_gradient(const se3di_model *model, const se3di_force *force,
                             se3di_measure *measure)
 {
     se3di_term term;
-    init_term(model, force, &term);
+    se3di_measure_begin(model, force, &term);
     measure->value = 0.0;
     measure_rate(model, &term, measure);
 }
@@ -115,7 +115,7 @@ int se3di_measure_force(const se3di_model *model, const se3di_force *force, int 
     if (force->coordinate == SE3DI_FORCE_LENGTH) {
         return se3di_measure_length(model, force, wants_H, measure);
     }
-    init_term(model, force, &term);
+    se3di_measure_begin(model, force, &term);
     se3di_measure_term(model, &term, wants_H, measure);
     return 1;
 }
@@ -164,7 +164,7 @@ double se3di_measure_curve(const se3di_model *model, const se3di_force *force)
     if (force->coordinate == SE3DI_FORCE_LENGTH) {
         return se3di_measure_length(model, force, 1, &measure) ? length_curve(&measure) : 0.0;
     }
-    init_term(model, force, &term);
+    se3di_measure_begin(model, force, &term);
     return -se3di_primitives[term.type].gamma_romega(&term, &model->frames[term.body_i],
                                                      &model->frames[term.body_j]);
 }

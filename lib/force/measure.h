@@ -28,6 +28,8 @@ void se3di_measure_term(const se3di_model *model, const se3di_term *term, int wa
 /* The distance of two points. Returns 0 if they coincide: g is then zero, the value exact. */
 int se3di_measure_length(const se3di_model *model, const se3di_force *force, int wants_H,
                          se3di_measure *measure);
+/* The term whose value is the coordinate of a joint that an element acts on. */
+void se3di_measure_begin(const se3di_model *model, const se3di_force *force, se3di_term *term);
 /* Only g, u and the rate of the coordinate of a joint, which cost no angle. */
 void se3di_measure_gradient(const se3di_model *model, const se3di_force *force,
                             se3di_measure *measure);

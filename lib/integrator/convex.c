@@ -346,4 +346,5 @@ const se3di_integrator se3di_integrator_convex = {
     .is_reduced = 1,
     .fixes_step = 1,
     .orders = 1u << 1,
+    .weighs_bodies = 1,
 };

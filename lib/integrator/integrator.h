@@ -83,13 +83,15 @@ typedef struct se3di_integrator {
     const struct se3di_rk_tableau *tableau;            /* and of those of Runge-Kutta */
     /* Of the Newmark family: its coefficients. */
     struct se3di_newmark (*newmark)(const se3di_integrator_settings *settings);
-    int32_t is_implicit;  /* not 0: integration->newton is made */
-    int32_t is_explicit;  /* not 0: works with formulations in the fewest unknowns, */
-    int32_t is_reduced;   /* and so do these implicit ones */
-    uint32_t orders;      /* bit k: settings.order may be k; 0, the default one, always may */
-    double reach;         /* smallest tolerance that its control of errors meets; 0: it has none */
-    int32_t fixes_step;   /* not 0: with settings.step, errors are not controlled */
-    int32_t chooses_step; /* not 0: without one, equal steps are chosen (equal_steps.h) */
+    int32_t is_implicit;   /* not 0: integration->newton is made */
+    int32_t is_explicit;   /* not 0: works with formulations in the fewest unknowns, */
+    int32_t is_reduced;    /* and so do these implicit ones */
+    uint32_t orders;       /* bit k: settings.order may be k; 0, the default one, always may */
+    double reach;          /* smallest tolerance that its control of errors meets; 0: it has none */
+    int32_t fixes_step;    /* not 0: with settings.step, errors are not controlled */
+    int32_t chooses_step;  /* not 0: without one, equal steps are chosen (equal_steps.h) */
+    int32_t weighs_bodies; /* not 0: needs a mass matrix of bodies alone, without armatures */
+    int32_t reserved;
 } se3di_integrator;
 
 struct se3di_integration {

@@ -240,11 +240,12 @@ static int is_open(const se3di_equations *equations)
     return equations->is_open_tree;
 }
 
-/* Accelerations come from the equations of the bodies: friction needs the loads of joints, or loops
- * are to have the least noise. */
+/* Accelerations come from the equations of the bodies: friction needs the loads of joints, loops
+ * are to have the least noise, or there is an armature on no coordinate of the tree. */
 static int is_loaded(const se3di_equations *equations)
 {
-    return equations->friction.count > 0 || (equations->has_loops && !equations->takes_rows);
+    return equations->friction.count > 0 || equations->tree->foreign_armature >= 0 ||
+           (equations->has_loops && !equations->takes_rows);
 }
 
 /* Multipliers of all rows into equations->l, if drivers have a power. */

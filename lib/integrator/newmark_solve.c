@@ -58,6 +58,7 @@ static se3d_status eval_residual(se3di_newmark_step *step)
 {
     se3di_equations *equations = step->equations;
     se3di_assembly *assembly = step->assembly;
+    se3di_assembly_follow_mass(assembly);
     se3di_assembly_eval_jacobian(assembly);
     se3di_frictions_take_loads(assembly->model, step->lambda);
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, step->t, equations->b, equations->error));
@@ -85,7 +86,7 @@ static se3d_status factor(se3di_newmark_step *step)
         return se3di_newton_factor_velocities(&step->integration->newton, step->t, step->vdot,
                                               step->lambda, step->x, &weights);
     }
-    se3di_kkt_values values = {.body = step->assembly->H, .joint = step->assembly->C};
+    const se3di_kkt_values values = se3di_equations_values(equations);
     ++equations->counters.factorizations;
     const se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
     return status < 0

@@ -232,6 +232,7 @@ static se3d_status eval_stage(se3di_radau *m, int i)
     double *b = at(m->b, i, assembly->unknown_count);
     se3di_state_set(assembly, at(m->Y, i, m->count));
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+    se3di_assembly_follow_mass(assembly);
     se3di_assembly_eval_jacobian(assembly);
     se3di_frictions_take_loads(assembly->model, at(m->lambda, i, rows));
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, b, equations->error));

@@ -79,4 +79,5 @@ const se3di_integrator se3di_integrator_rattle = {
     .step = step,
     .chooses_step = 1,
     .orders = 1u << 2 | 1u << 4,
+    .weighs_bodies = 1,
 };

@@ -124,7 +124,7 @@ void se3di_state_begin_step(se3di_equations *equations, double redundant)
     if (equations->takes_rows) {
         se3di_tree_loops_filter(&equations->loops, &settings);
     }
-    se3di_kkt_hold(equations->kkt, equations->assembly.formulation->block == 6);
+    se3di_kkt_hold(equations->kkt, se3di_assembly_is_plain(&equations->assembly));
 }
 
 se3di_kkt_settings se3di_state_regularise(const se3di_assembly *assembly, se3di_kkt *kkt,
@@ -150,7 +150,7 @@ void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *setti
 /* The solver keeps blocks that do not change. */
 static void eval_mass(se3di_assembly *assembly)
 {
-    if (assembly->formulation->block != 6) {
+    if (!se3di_assembly_is_plain(assembly)) {
         se3di_assembly_eval_mass(assembly);
     }
 }

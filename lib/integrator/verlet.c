@@ -249,4 +249,5 @@ const se3di_integrator se3di_integrator_verlet = {
     .run = run,
     .chooses_step = 1,
     .orders = 1u << 2,
+    .weighs_bodies = 1,
 };

@@ -140,7 +140,8 @@ typedef struct se3di_angle {
     X(STOP, stop)                                                                                  \
     X(CALLBACK, callback)                                                                          \
     X(EFFORT, effort)                                                                              \
-    X(TYRE, tyre)
+    X(TYRE, tyre)                                                                                  \
+    X(ARMATURE, armature)
 
 /* The same with the rates of states (model/state.h). */
 #define SE3DI_FORCE_LIST(X)                                                                        \
@@ -172,12 +173,12 @@ typedef struct se3di_force {
     double k, c, rest;                       /* stiffness, damping, l0 or theta0; a state's size */
     double preload;                          /* of springs: value at rest */
     int32_t function[SE3DI_FORCE_FUNCTIONS]; /* -1: none */
-    int32_t joint;      /* rsda, friction, stop, effort: whose coordinate; -1: none */
+    int32_t joint;      /* rsda, friction, stop, effort, armature: whose coordinate; -1: none */
     int32_t angle;      /* its turn counter; -1: none */
     int32_t owns_angle; /* the turn counter is the element's own */
-    int32_t coordinate; /* friction, stop, effort: se3d_joint_coordinate, or SE3DI_FORCE_LENGTH */
+    int32_t coordinate; /* of the joint: se3d_joint_coordinate, or SE3DI_FORCE_LENGTH */
     uint32_t users;
-    double value[3];    /* loads; effort: [0] */
+    double value[3];    /* loads; effort, armature: [0] */
     double low, high;   /* stop: free between; infinite: none */
     double restitution; /* stop */
     double mu, mu_static, radius, limit, viscous, presliding; /* friction, */

@@ -19,9 +19,11 @@ static se3d_status create_kkt(se3di_equations *equations)
         .joint_rows = assembly->joint_rows,
         .joint_begin = assembly->joint_begin,
         .joint_body = assembly->joint_body,
+        .coupling_count = assembly->armature_pair_count,
+        .coupling = assembly->armature_pair,
         .body_size = assembly->formulation->block,
         .symmetric = true,
-        .body_kind = assembly->formulation->block == 6 ? SE3DI_KKT_BODY_MASS : SE3DI_KKT_BODY_FULL,
+        .body_kind = se3di_assembly_is_plain(assembly) ? SE3DI_KKT_BODY_MASS : SE3DI_KKT_BODY_FULL,
     };
     return se3di_kkt_create(&assembly->model->allocator, &pattern, SE3DI_KKT_STRUCTURED,
                             &equations->kkt);
@@ -62,6 +64,16 @@ void se3di_equations_suit_masses(se3di_equations *equations)
     se3di_kkt_set_settings(equations->kkt, &settings);
 }
 
+/* H with other weights of the bodies, which are alone: nothing couples them. */
+se3di_kkt_values se3di_equations_values_of(se3di_equations *equations, const double *body)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    const size_t n = (size_t)assembly->formulation->block;
+    memset(assembly->H_pair, 0, assembly->armature_pair_count * n * n * sizeof *assembly->H_pair);
+    return (se3di_kkt_values){
+        .body = body, .coupling_upper = assembly->H_pair, .joint = assembly->C};
+}
+
 static double *alloc_doubles(const se3di_equations *equations, size_t count)
 {
     return se3di_alloc(&equations->assembly.model->allocator, count, sizeof(double));
@@ -95,8 +107,8 @@ static se3d_status create_tree(se3di_equations *equations)
     equations->tree = tree;
     equations->has_loops = has_loops(tree);
     /* nothing but the tree constrains the motion, and nothing that acts depends on multipliers */
-    equations->is_open_tree =
-        tree->given_count == 0 && equations->friction.count == 0 && !equations->has_loops;
+    equations->is_open_tree = tree->given_count == 0 && equations->friction.count == 0 &&
+                              !equations->has_loops && tree->foreign_armature < 0;
     equations->masses_version = model->masses_version;
     if (equations->has_loops) {
         SE3DI_TRY(
@@ -317,11 +329,10 @@ static se3d_status check_values(se3di_equations *equations)
 
 se3d_status se3di_equations_factor_values(se3di_equations *equations, double t, int is_checked)
 {
-    const se3di_assembly *assembly = &equations->assembly;
     if (is_checked) {
         SE3DI_TRY(check_values(equations));
     }
-    const se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
+    const se3di_kkt_values values = se3di_equations_values(equations);
     ++equations->counters.factorizations;
     const se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
     if (status < 0) {
@@ -363,8 +374,7 @@ se3d_status se3di_equations_solve_by(se3di_equations *equations, se3di_kkt *kkt,
 
 se3d_status se3di_equations_solve(se3di_equations *equations)
 {
-    const se3di_assembly *assembly = &equations->assembly;
-    const se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
+    const se3di_kkt_values values = se3di_equations_values(equations);
     return se3di_equations_solve_by(equations, equations->kkt, &values);
 }
 
@@ -521,7 +531,7 @@ se3d_status se3di_multipliers_reduce(se3di_equations *equations)
     SE3DI_TRY(status);
     if (status != SE3D_INFO_REDUNDANT && assembly->row_count <= MIN_NORM_ROWS_MAX) {
         /* near a singular position the fast solver does not tell dependent rows apart */
-        se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
+        const se3di_kkt_values values = se3di_equations_values(equations);
         se3di_assembly_get_acceleration(assembly, equations->x);
         SE3DI_TRY(se3di_kkt_min_norm(equations->kkt, &values, equations->b, equations->x, 1e-10,
                                      equations->l, NULL));

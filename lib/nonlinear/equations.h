@@ -78,6 +78,15 @@ void se3di_equations_suit_masses(se3di_equations *equations);
 se3d_status se3di_equations_factor(se3di_equations *equations);
 /* Factor mass and Jacobian as they have been evaluated. Checked: callbacks have not failed, held
  * bodies stay, the message names the cause. A stage of a step, which may fail, is not checked. */
+/* The numbers of equations->kkt: H and C as they are. */
+static inline se3di_kkt_values se3di_equations_values(const se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    return (se3di_kkt_values){
+        .body = assembly->H, .coupling_upper = assembly->H_pair, .joint = assembly->C};
+}
+/* The same with other blocks of bodies in the place of H. */
+se3di_kkt_values se3di_equations_values_of(se3di_equations *equations, const double *body);
 se3d_status se3di_equations_factor_values(se3di_equations *equations, double t, int is_checked);
 /* Accelerations and multipliers, x and l, of the state and its mass as evaluated; friction that may
  * stick remains to be added. */

@@ -102,16 +102,17 @@ static void combine_all(se3di_newton *newton, const se3di_newton_weights *weight
     se3di_tangent *tangent = &newton->tangent;
     size_t n = (size_t)assembly->formulation->block;
     size_t size = n * n;
+    const int coupled = assembly->armature_count > 0;
     for (size_t k = 0; k < assembly->body_count; ++k) {
         combine(tangent->D + k * size, tangent->M + k * size, tangent->K + k * size,
                 newton->Tinv + 9 * k, weights, n);
     }
     for (size_t k = 0; k < tangent->coupling_count; ++k) {
         const int32_t *pair = tangent->coupling + 2 * k;
-        combine(tangent->D_upper + k * size, NULL, tangent->K_upper + k * size,
-                newton->Tinv + 9 * (size_t)pair[1], weights, n);
-        combine(tangent->D_lower + k * size, NULL, tangent->K_lower + k * size,
-                newton->Tinv + 9 * (size_t)pair[0], weights, n);
+        combine(tangent->D_upper + k * size, coupled ? tangent->M_upper + k * size : NULL,
+                tangent->K_upper + k * size, newton->Tinv + 9 * (size_t)pair[1], weights, n);
+        combine(tangent->D_lower + k * size, coupled ? tangent->M_lower + k * size : NULL,
+                tangent->K_lower + k * size, newton->Tinv + 9 * (size_t)pair[0], weights, n);
     }
 }
 

@@ -74,7 +74,7 @@ static se3d_status suspect(const decision *d, int *suspicious)
 {
     se3di_equations *equations = d->equations;
     se3di_assembly *assembly = &equations->assembly;
-    const se3di_kkt_values values = {.body = assembly->H, .joint = assembly->C};
+    const se3di_kkt_values values = se3di_equations_values(equations);
     const double like[2] = {assembly->like_mass, assembly->like_inertia};
     const int32_t levels = assembly->levels;
     se3di_kkt_factor_info info = {.min_pivot = 1.0};

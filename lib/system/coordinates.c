@@ -52,10 +52,26 @@ static void take_versions(se3d_coordinates *c)
     c->history_stamp = c->system->model.history_stamp;
 }
 
+/* One that is on no coordinate of the tree is not a part of its mass matrix. */
+static se3d_status check_armatures(const se3d_coordinates *c)
+{
+    const int32_t foreign = c->tree.foreign_armature;
+    if (foreign < 0) {
+        return SE3D_OK;
+    }
+    const char *name = c->system->model.forces[foreign].name;
+    return se3di_error_set(&c->system->error, SE3D_ERR_UNSUPPORTED,
+                           "the joint of the armature '%.64s' closes a loop, all of whose other "
+                           "joints have armatures or are not on the tree: joint coordinates have "
+                           "no place for it",
+                           name ? name : "");
+}
+
 static se3d_status build(se3d_coordinates *c)
 {
     se3d_system *system = c->system;
     SE3DI_TRY(se3di_tree_init(&c->tree, &system->model, 0, &system->error));
+    SE3DI_TRY(check_armatures(c));
     SE3DI_TRY(se3di_assembly_init(&c->assembly, &system->model, &se3di_formulation_romega, 0,
                                   &system->error));
     SE3DI_TRY(se3di_tree_loops_init(&c->loops, &c->tree, &c->assembly, &system->error));

@@ -262,12 +262,16 @@ static se3d_status eval_reader(const se3d_system *system, se3d_force force, cons
                           se3di_force_eval(&system->model, data, system->model.time, effect));
 }
 
-/* The coordinate of an effort, which does not need it. */
-static double measure_coordinate(const se3d_system *system, const se3di_force *data)
+/* Of an effort, which does not need its coordinate, and of an armature, which needs nothing. */
+static void measure(const se3d_system *system, const se3di_force *data, se3di_effect *effect)
 {
     se3di_measure measure;
     (void)se3di_measure_force(&system->model, data, 0, &measure);
-    return measure.value;
+    effect->coordinate = measure.value;
+    effect->rate = measure.rate;
+    if (data->type == SE3DI_FORCE_ARMATURE) {
+        effect->value = -data->value[0] * se3di_measure_acceleration(&system->model, data);
+    }
 }
 
 se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force, double *coordinate,
@@ -280,9 +284,11 @@ se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force, do
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     SE3DI_TRY(eval_reader(system, force, system, &effect));
+    if (data->type == SE3DI_FORCE_EFFORT || data->type == SE3DI_FORCE_ARMATURE) {
+        measure(system, data, &effect);
+    }
     if (coordinate) {
-        *coordinate =
-            data->type == SE3DI_FORCE_EFFORT ? measure_coordinate(system, data) : effect.coordinate;
+        *coordinate = effect.coordinate;
     }
     if (rate) {
         *rate = effect.rate;

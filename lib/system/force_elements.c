@@ -148,6 +148,39 @@ se3d_status se3d_force_create_effort(se3d_system *system, const se3d_effort_def 
     return se3di_force_add(system, &data, force);
 }
 
+void se3d_armature_def_init(se3d_armature_def *def, size_t size)
+{
+    se3d_armature_def defaults = {.struct_size = size};
+    se3di_def_init(def, size, &defaults, sizeof defaults);
+}
+
+/* A screw has one freedom: its displacement goes with the angle. */
+static se3d_status check_screw(se3d_system *system, const se3di_force *data)
+{
+    const se3di_constraint *joint = &system->model.constraints[data->joint];
+    if (strcmp(joint->type, "screw") == 0 && data->coordinate != SE3D_JOINT_COORDINATE_ANGLE) {
+        return SE3DI_FAIL_OF(system, "coordinate", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be SE3D_JOINT_COORDINATE_ANGLE (%d) on a screw",
+                             (int)data->coordinate, (int)SE3D_JOINT_COORDINATE_ANGLE);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_force_create_armature(se3d_system *system, const se3d_armature_def *def,
+                                       se3d_force *force)
+{
+    SE3DI_TRY(se3di_force_begin(system, force));
+    se3d_armature_def full = se3d_armature_def_default();
+    SE3DI_TRY(se3di_check_def(system, "armature def", def, &full, sizeof full));
+    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
+    se3di_force data = se3di_force_blank(SE3DI_FORCE_ARMATURE, full.name);
+    SE3DI_TRY(find_coordinate(system, full.joint, full.coordinate, &data));
+    SE3DI_TRY(check_screw(system, &data));
+    data.value[0] = full.inertia;
+    SE3DI_TRY(se3di_force_check_values(system, &data));
+    return se3di_force_add(system, &data, force);
+}
+
 se3d_status se3d_force_create_callback(se3d_system *system, const se3d_force_callback_def *def,
                                        se3d_force *force)
 {

@@ -14,6 +14,7 @@
 #define STOP      BIT(SE3DI_FORCE_STOP)
 #define FRICTION  BIT(SE3DI_FORCE_FRICTION)
 #define TYRE      BIT(SE3DI_FORCE_TYRE)
+#define ARMATURE  BIT(SE3DI_FORCE_ARMATURE)
 
 #define PRESLIDING 1e-9 /* [m, rad] if none is given */
 
@@ -41,6 +42,7 @@ static const parameter parameters[] = {
     [SE3D_FORCE_PARAMETER_VISCOUS] = {"viscous", FRICTION, 0, offsetof(se3di_force, viscous)},
     [SE3D_FORCE_PARAMETER_PRESLIDING] = {"presliding", FRICTION, 0,
                                          offsetof(se3di_force, presliding)},
+    [SE3D_FORCE_PARAMETER_INERTIA] = {"inertia", ARMATURE, 0, offsetof(se3di_force, value)},
 };
 
 #define PARAMETERS ((int32_t)(sizeof parameters / sizeof parameters[0]))
@@ -130,6 +132,9 @@ se3d_status se3di_force_check_values(se3d_system *system, se3di_force *data)
     if (data->type == SE3DI_FORCE_TYRE) {
         return check_tyre(system, data);
     }
+    if (data->type == SE3DI_FORCE_ARMATURE) {
+        return check_not_negative(system, "inertia", data->value[0]);
+    }
     return data->type == SE3DI_FORCE_FRICTION ? check_friction(system, data)
                                               : check_spring(system, data);
 }
@@ -165,9 +170,16 @@ se3d_status se3di_force_take_bushing(se3d_system *system, const double K[36], co
 static void replace(se3di_model *model, uint32_t index, const se3di_force *changed)
 {
     se3di_force *force = &model->forces[index];
-    const double before = se3di_audit_force(model, force);
-    *force = *changed;
-    se3di_audit_force_change(model, force, before);
+    if (force->type == SE3DI_FORCE_ARMATURE) {
+        const double energy = se3di_audit_forces(model);
+        *force = *changed;
+        se3di_audit_change(model, energy);
+        ++model->masses_version;
+    } else {
+        const double before = se3di_audit_force(model, force);
+        *force = *changed;
+        se3di_audit_force_change(model, force, before);
+    }
     se3di_model_touch_inputs(model);
 }
 

@@ -287,8 +287,54 @@ static void match_signs(se3di_tree *tree)
     }
 }
 
+int32_t se3di_tree_component(const se3di_tree_node *node, int32_t coordinate)
+{
+    const int is_angle = coordinate == SE3D_JOINT_COORDINATE_ANGLE;
+    switch (node->type) {
+    case SE3DI_TREE_REVOLUTE:
+        return is_angle ? 0 : -1;
+    case SE3DI_TREE_SCREW:
+        return is_angle ? 0 : -1;
+    case SE3DI_TREE_PRISMATIC:
+        return is_angle ? -1 : 0;
+    case SE3DI_TREE_CYLINDRICAL:
+        return is_angle ? 0 : 1;
+    case SE3DI_TREE_PLANAR:
+        return is_angle ? 2 : -1;
+    default:
+        return -1;
+    }
+}
+
+static int moves(const se3di_tree *tree, const se3di_force *force)
+{
+    return tree->node_of[force->body_i] >= 0 || tree->node_of[force->body_j] >= 0;
+}
+
+static void take_armatures(se3di_tree *tree)
+{
+    const se3di_model *model = tree->model;
+    memset(tree->armature, 0, tree->v_count * sizeof *tree->armature);
+    tree->foreign_armature = -1;
+    for (uint32_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force *force = &model->forces[k];
+        if (force->type != SE3DI_FORCE_ARMATURE) {
+            continue;
+        }
+        const int32_t place = tree->tree_of[force->joint];
+        const se3di_tree_node *n = place >= 0 ? &tree->nodes[place] : NULL;
+        const int32_t component = n ? se3di_tree_component(n, force->coordinate) : -1;
+        if (component >= 0) {
+            tree->armature[n->v + (uint32_t)component] += force->value[0];
+        } else if (moves(tree, force)) {
+            tree->foreign_armature = (int32_t)k;
+        }
+    }
+}
+
 void se3di_tree_refresh(se3di_tree *tree)
 {
+    take_armatures(tree);
     for (uint32_t k = 0; k < tree->count; ++k) {
         refresh_node(tree, &tree->nodes[k]);
     }

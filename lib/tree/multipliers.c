@@ -10,7 +10,7 @@
  *     dp1_c               lambda = (third_i . third_j) axis . N
  *     dp1 (universal)     lambda = (axis_i x axis_j) . N
  *     screw               lambda = -axis . F
- *     driver              lambda = -(S . (N, F) - effort) / coefficient
+ *     driver              lambda = -(S . (N, F) + armature qddot - effort) / coefficient
  *                                                             docs/theory/joint_coordinates.md */
 #include "math/vec3.h"
 #include "tree/recursion.h"
@@ -135,7 +135,8 @@ void se3di_tree_multipliers(const se3di_tree *tree, const double *joint, const d
             const uint32_t row = model->constraints[n->driver].row_begin;
             const double *S = tree->S + 6 * (size_t)n->v;
             const double along = se3di_dot(S, f) + se3di_dot(S + 3, f + 3);
-            lambda[row] = -(along - (effort ? effort[n->v] : 0.0)) /
+            const double rotor = tree->armature[n->v] * tree->given[n->v];
+            lambda[row] = -(along + rotor - (effort ? effort[n->v] : 0.0)) /
                           model->terms[model->rows[row].term_begin].coefficient;
         }
     }

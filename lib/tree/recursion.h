@@ -27,7 +27,7 @@ void se3di_tree_efforts(const se3di_tree *tree, const double *qddot, double *joi
 
 /* Multipliers of the joints on the tree and of drivers of its coordinates, into `lambda` [rows of
  * the model], from what the joints exert. `effort` (NULL: none): the part along the freedoms that
- * is not theirs, armature times qddot taken off. */
+ * is neither theirs nor an armature's. */
 void se3di_tree_multipliers(const se3di_tree *tree, const double *joint, const double *effort,
                             double *lambda);
 

@@ -59,11 +59,11 @@ typedef struct builder {
     int32_t *parent, *joint;                  /* [bodies]: -1 not reached, or the ground; */
     int32_t *first_child, *last_child, *next; /* [bodies]: in the order of reaching */
     int8_t *is_reached;
-    int8_t *is_queued, *type; /* [constraints] */
+    int8_t *is_queued, *type, *is_heavy; /* [constraints]; heavy: there is an armature on it */
     uint32_t bodies, constraints;
 } builder;
 
-#define BUILDER_ARRAYS 11
+#define BUILDER_ARRAYS 12
 
 static void list_builder(builder *b, se3di_array list[BUILDER_ARRAYS])
 {
@@ -80,6 +80,7 @@ static void list_builder(builder *b, se3di_array list[BUILDER_ARRAYS])
         {(void **)&b->is_reached, n, sizeof *b->is_reached},
         {(void **)&b->is_queued, m, sizeof *b->is_queued},
         {(void **)&b->type, m, sizeof *b->type},
+        {(void **)&b->is_heavy, m, sizeof *b->is_heavy},
     };
     _Static_assert(sizeof arrays == BUILDER_ARRAYS * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
@@ -114,13 +115,17 @@ static void forget_all(builder *b)
     for (uint32_t k = 0; k < b->bodies; ++k) {
         b->parent[k] = b->joint[k] = b->next[k] = -1;
         b->tree->node_of[k] = -1;
+        b->is_reached[k] = 0;
     }
     for (uint32_t k = 0; k <= b->bodies; ++k) {
         b->first_child[k] = b->last_child[k] = -1;
     }
     for (uint32_t k = 0; k < b->constraints; ++k) {
         b->tree->tree_of[k] = -1;
+        b->is_queued[k] = 0;
     }
+    memset(b->head, 0, sizeof b->head);
+    memset(b->tail, 0, sizeof b->tail);
 }
 
 static void reach(builder *b, uint32_t body)
@@ -129,7 +134,7 @@ static void reach(builder *b, uint32_t body)
     for (uint32_t k = b->begin[body]; k < b->begin[body + 1]; ++k) {
         const uint32_t joint = b->list[k];
         if (!b->is_queued[joint]) {
-            const int32_t freedoms = velocity_count[b->type[joint]];
+            const int32_t freedoms = b->is_heavy[joint] ? 0 : velocity_count[b->type[joint]];
             b->is_queued[joint] = 1;
             b->queue[(uint32_t)freedoms * b->constraints + b->tail[freedoms]++] = joint;
         }
@@ -184,6 +189,39 @@ static void span(builder *b)
             adopt(b, k, -1, -1);
             spread(b);
         }
+    }
+}
+
+/* The joint of an armature is on the tree, or between bodies that do not move. */
+static int has_joint(const builder *b, const se3di_force *force)
+{
+    const uint32_t sides[2] = {force->body_i, force->body_j};
+    int found = 1;
+    for (int k = 0; k < 2; ++k) {
+        found &= !se3di_body_moves(&b->tree->model->bodies[sides[k]], b->tree->moves_states);
+    }
+    for (int k = 0; k < 2; ++k) {
+        found |= b->joint[sides[k]] == force->joint;
+    }
+    return found;
+}
+
+/* Armatures are parts of the mass matrix of the tree only where their joints are on it: if the tree
+ * lacks one it is made again with these joints first, which leaves as few as there can be. */
+static void span_armatures(builder *b)
+{
+    const se3di_model *model = b->tree->model;
+    int lacks = 0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force *force = &model->forces[k];
+        if (force->type == SE3DI_FORCE_ARMATURE) {
+            b->is_heavy[force->joint] = 1;
+            lacks |= !has_joint(b, force);
+        }
+    }
+    if (lacks) {
+        forget_all(b);
+        span(b);
     }
 }
 
@@ -326,6 +364,7 @@ static se3d_status build(se3di_tree *tree)
         forget_all(&b);
         list_joints(&b, tree->model);
         span(&b);
+        span_armatures(&b);
         number(&b);
         find_drivers(tree);
     }

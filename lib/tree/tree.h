@@ -3,9 +3,10 @@
  *
  * Every moving body is a node. Its parent is the body on the other side of its joint, or the ground
  * (all fixed bodies), to which bodies that no joint reaches are joined by six freedoms. Joints with
- * the most equations come first, then the nearest to the ground, then the oldest. Parents have
- * smaller numbers than their children. Constraints that are not on the tree are loop constraints
- * (tree/loops.h); a driver of a joint with one freedom prescribes it.
+ * the most equations come first, then the nearest to the ground, then the oldest; if that leaves
+ * out one with an armature, those with armatures come first of all. Parents have smaller numbers
+ * than their children. Constraints that are not on the tree are loop constraints (tree/loops.h); a
+ * driver of a joint with one freedom prescribes it.
  *
  *     a = X a_parent + c + S qddot         a: of the node's point, ground axes
  *     M qddot + h = S^T wrench + effort    without loops; bodies come from articulated inertias
@@ -122,7 +123,9 @@ typedef struct se3di_tree {
     double *V, *k;            /* revolutes: U / D about the parent's point; U . c / D */
                               /* balls: V[j] of a turn is U . S_j / D of those before it */
     double *given;            /* [velocities]: prescribed accelerations */
-    double *armature;         /* [velocities]: reflected inertia */
+    double *armature;         /* [velocities]: inertia that turns with the coordinate alone */
+    int32_t foreign_armature; /* a force element: armature on no coordinate of the tree; -1: none */
+    int32_t reserved;
     double *wrench;           /* [nodes * 6]: what acts on each: moment about P, force; ground */
     double *q, *qdot, *qddot; /* scratch of the caller */
     se3di_tree_inertia *branches;
@@ -140,6 +143,9 @@ void se3di_tree_destroy(se3di_tree *tree);
 /* Take masses, the poses of fixed bodies, and which of the poses that satisfy a joint (half turns)
  * is meant, from the model: after setters, and where a run begins. */
 void se3di_tree_refresh(se3di_tree *tree);
+
+/* The place of a joint's coordinate (se3d_joint_coordinate) among its node's, -1: it is none. */
+int32_t se3di_tree_component(const se3di_tree_node *node, int32_t coordinate);
 
 /* Moments of inertia about a node's joint point, in its triad, of a body with `own` ones about the
  * centre of mass: xx yy zz xy xz yz each, but `own` as the body's. */

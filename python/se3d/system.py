@@ -222,6 +222,11 @@ class System:
         values.update(joint=joint, coordinate=coordinate)
         return self._force(lib.se3d_force_create_effort, "se3d_effort_def", values)
 
+    def armature(self, joint, coordinate="angle", **values):
+        """Create an armature on a joint coordinate: inertia."""
+        values.update(joint=joint, coordinate=coordinate)
+        return self._force(lib.se3d_force_create_armature, "se3d_armature_def", values)
+
     def force_callback(self, call, body_i, body_j, *, name=None, has_jacobian=False):
         """Create an element from call(time, motion_i, motion_j) -> 12 numbers: force (ground
         frame) and torque (body frame) on i and on j. With has_jacobian it gets K and D, arrays of

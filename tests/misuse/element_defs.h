@@ -70,6 +70,7 @@ typedef struct field {
     X(friction, friction)                                                                          \
     X(stop, stop)                                                                                  \
     X(effort, effort)                                                                              \
+    X(armature, armature)                                                                          \
     X(tyre, tyre)                                                                                  \
     X(callback, force_callback)
 
@@ -227,6 +228,15 @@ FIELDS(effort) = {NAME(se3d_effort_def),
                   NUMBERS(se3d_effort_def, value),
                   FUNCTION(se3d_effort_def, function),
                   FIELDS_END};
+
+FILL(se3d_armature_def, armature)
+{
+    def->joint = at->pin;
+    def->inertia = 0.5;
+}
+FIELDS(armature) = {NAME(se3d_armature_def), JOINT(se3d_armature_def, joint),
+                    INTEGER(se3d_armature_def, coordinate), NUMBERS(se3d_armature_def, inertia),
+                    FIELDS_END};
 
 FILL(se3d_tyre_def, tyre)
 {

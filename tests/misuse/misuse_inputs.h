@@ -8,7 +8,7 @@
 #include <math.h>
 
 typedef struct settable {
-    se3d_force spring, load, bushing, stop, friction, effort;
+    se3d_force spring, load, bushing, stop, friction, effort, armature;
 } settable;
 
 static settable add_settable(arguments *a)
@@ -36,6 +36,9 @@ static settable add_settable(arguments *a)
     se3d_effort_def effort = se3d_effort_def_default();
     effort.joint = a->use.pin;
     CHECK(!se3d_force_create_effort(a->system, &effort, &made.effort));
+    se3d_armature_def armature = se3d_armature_def_default();
+    armature.joint = a->use.pin;
+    CHECK(!se3d_force_create_armature(a->system, &armature, &made.armature));
     return made;
 }
 
@@ -46,6 +49,7 @@ static void remove_settable(arguments *a, const settable *made)
     CHECK(!se3d_force_destroy(a->system, made->stop));
     CHECK(!se3d_force_destroy(a->system, made->friction));
     CHECK(!se3d_force_destroy(a->system, made->effort));
+    CHECK(!se3d_force_destroy(a->system, made->armature));
 }
 
 #define INVALID(call) CHECK((call) == SE3D_ERR_INVALID_ARGUMENT)
@@ -72,7 +76,8 @@ static void check_parameters(arguments *a, const settable *m)
                 {m->friction, SE3D_FORCE_PARAMETER_RADIUS, 0, nan, 0.01},
                 {m->friction, SE3D_FORCE_PARAMETER_LIMIT, 0, -1.0, 0.0},
                 {m->friction, SE3D_FORCE_PARAMETER_VISCOUS, 0, infinite, 0.5},
-                {m->friction, SE3D_FORCE_PARAMETER_PRESLIDING, 0, -1e-9, 1e-6}};
+                {m->friction, SE3D_FORCE_PARAMETER_PRESLIDING, 0, -1e-9, 1e-6},
+                {m->armature, SE3D_FORCE_PARAMETER_INERTIA, 0, -1.0, 0.5}};
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; ++k) {
         double before = 0.0, after = 1.0;
         CHECK(!se3d_force_get_parameter(a->system, rows[k].force, rows[k].parameter, &before));
@@ -92,9 +97,9 @@ static void check_parameters(arguments *a, const settable *m)
     INVALID(se3d_force_set_parameter(a->system, m->spring, SE3D_FORCE_PARAMETER_MU, 0.1));
     CHECK_CONTAINS(se3d_system_get_error(a->system), "a tsda element has no mu");
     INVALID(se3d_force_set_parameter(a->system, m->load, SE3D_FORCE_PARAMETER_K, 0.1));
-    INVALID(se3d_force_set_parameter(a->system, m->spring, 13, 0.1));
+    INVALID(se3d_force_set_parameter(a->system, m->spring, 14, 0.1));
     INVALID(se3d_force_set_parameter(a->system, m->spring, -1, 0.1));
-    INVALID(se3d_force_get_parameter(a->system, m->spring, 13, &mu_static));
+    INVALID(se3d_force_get_parameter(a->system, m->spring, 14, &mu_static));
     INVALID(se3d_force_get_parameter(a->system, m->stop, SE3D_FORCE_PARAMETER_C, &mu_static));
     CHECK(se3d_force_set_parameter(NULL, m->spring, 0, 1.0) == SE3D_ERR_NULL);
     CHECK(se3d_force_get_parameter(NULL, m->spring, 0, &mu_static) == SE3D_ERR_NULL);

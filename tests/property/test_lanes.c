@@ -38,15 +38,21 @@ static void solve_alone(states_of *s, int k)
     se3di_tree_rates(tree, s->q[k], s->qdot[k], s->rates[k]);
 }
 
+/* Which the tree takes from the model whenever it is refreshed. */
+static void set_armatures(states_of *s, uint64_t seed)
+{
+    for (uint32_t v = 0; seed % 3 == 0 && v < s->tree.v_count; ++v) {
+        s->tree.armature[v] = 0.1 * v;
+    }
+}
+
 static void begin(states_of *s, uint64_t seed)
 {
     double dq[NUMBERS];
     tree_world_init(&s->world, seed, 1 + (int)(seed % TREE_BODIES_MAX), 0);
     s->model = &s->world.system->model;
     CHECK(!se3di_tree_init(&s->tree, s->model, 1, NULL));
-    for (uint32_t v = 0; seed % 3 == 0 && v < s->tree.v_count; ++v) {
-        s->tree.armature[v] = 0.1 * v;
-    }
+    set_armatures(s, seed);
     for (int k = 0; k < STATES; ++k) {
         se3di_tree_get(&s->tree, s->q[k], NULL);
         tree_vector(&s->world, dq, (int)s->tree.v_count, k == 3 ? 4e5 : 4.0);
@@ -189,6 +195,7 @@ static void lanes_may_have_gravity_and_masses_of_their_own(void)
                            s.tree.qddot[v] / largest, 1e-12);
             }
             se3di_tree_refresh(&s.tree);
+            set_armatures(&s, seed);
         }
         se3di_lanes_destroy(&lanes);
         end(&s);

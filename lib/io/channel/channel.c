@@ -107,9 +107,10 @@ static const quantity_name rate_names[] = {{"rate", SE3DI_STATE_RATE}, {NULL, SE
 static const struct {
     const char *type;
     const quantity_name *names;
-} force_names[] = {{"tsda", tsda_names},    {"rsda", rsda_names},     {"friction", range_names},
-                   {"stop", range_names},   {"effort", effort_names}, {"bushing", wrench_names},
-                   {"force", wrench_names}, {"torque", wrench_names}, {"tyre", tyre_names}};
+} force_names[] = {{"tsda", tsda_names},      {"rsda", rsda_names},     {"friction", range_names},
+                   {"stop", range_names},     {"effort", effort_names}, {"bushing", wrench_names},
+                   {"force", wrench_names},   {"torque", wrench_names}, {"tyre", tyre_names},
+                   {"armature", effort_names}};
 static const quantity_name system_names[] = {
     {"energy.kinetic", SE3DI_ENERGY_KINETIC},
     {"energy.potential", SE3DI_ENERGY_POTENTIAL},

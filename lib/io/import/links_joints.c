@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Joints of links, and what acts along them: stops, springs, dampers, friction, rotors. */
+/* Joints of links, and what acts along them: stops, springs, dampers, friction, armatures. */
 #include <math.h>
 #include <string.h>
 
@@ -98,67 +98,12 @@ static void add_friction(se3di_machine *m, const se3di_link_joint *joint)
     }
 }
 
-/* A rotor beside the machine that turns with the joint: 1/2 a qdot^2 and nothing else, for its
- * axis stands still. One that slides does so perpendicular to gravity. */
-static bool add_rotor(se3di_machine *m, const se3di_link_joint *joint)
+static void add_armature(se3di_machine *m, const se3di_link_joint *joint)
 {
-    if (!(joint->armature > 0.0)) {
-        return true;
+    if (joint->armature > 0.0) {
+        se3di_entry *entry = add_force(m, joint, "armature", "armature");
+        se3di_entry_put_number(m, entry, "inertia", joint->armature);
     }
-    const bool linear = is_linear(joint);
-    const double J = linear ? 1.0 : joint->armature;
-    static const double up[3] = {0.0, 0.0, 1.0};
-    const char *name =
-        se3di_machine_name_body(m, se3di_machine_text(m, "%s_rotor", joint->made), "body", 0);
-    const char *turning =
-        se3di_machine_name(m, se3di_machine_text(m, "%s_rotor_joint", joint->made), "joint", 0);
-    const char *coupler =
-        se3di_machine_name(m, se3di_machine_text(m, "%s_armature", joint->made), "joint", 0);
-    const size_t index = m->body_count;
-    se3di_machine_body *body = name ? se3di_machine_add_body(m, name) : NULL;
-    if (!body || !turning || !coupler) {
-        return false;
-    }
-    body->mass = linear ? joint->armature : 1.0;
-    body->J[0] = body->J[4] = body->J[8] = J;
-    body->comment = se3di_machine_text(m, "armature of the joint %s", joint->made);
-    se3di_machine_joint own = {.name = turning,
-                               .type = linear ? "prismatic" : "revolute",
-                               .body_i = SE3DI_GROUND,
-                               .body_j = index,
-                               .frame_i = se3di_frame_identity(),
-                               .frame_j = se3di_frame_identity()};
-    if (linear) {
-        double across[9];
-        const double down = se3di_length(m->gravity);
-        se3di_turn_along(down > 0.0 ? m->gravity : up, across);
-        const double x[3] = {across[0], across[3], across[6]};
-        se3di_turn_along(x, own.frame_i.A);
-        memcpy(own.frame_j.A, own.frame_i.A, sizeof own.frame_j.A);
-    } else {
-        own.angle0 = joint->angle0 + se3di_turn_angle(joint->frame_i.A, joint->frame_j.A);
-    }
-    se3di_machine_add_joint(m, &own);
-    se3di_entry *entry = se3di_machine_add(m, SE3DI_SECTION_JOINTS);
-    se3di_entry_put_text(m, entry, "name", coupler);
-    se3di_entry_put(m, entry, "type", "coupler");
-    const char *a = se3di_machine_quote(m, turning);
-    const char *b = se3di_machine_quote(m, joint->made);
-    se3di_entry_put(m, entry, "terms",
-                    a && b ? se3di_machine_text(m, "[{joint: %s}, {joint: %s, ratio: -1}]", a, b)
-                           : NULL);
-    if (linear) {
-        double d[3];
-        for (int k = 0; k < 3; ++k) {
-            d[k] = joint->frame_j.r[k] - joint->frame_i.r[k];
-        }
-        const double z[3] = {joint->frame_i.A[2], joint->frame_i.A[5], joint->frame_i.A[8]};
-        const double start = se3di_dot(d, z);
-        if (start != 0.0) {
-            se3di_entry_put_number(m, entry, "value", -start);
-        }
-    }
-    return m->status >= 0;
 }
 
 static bool emit(se3di_links *links, se3di_link_joint *joint)
@@ -200,7 +145,8 @@ static bool emit(se3di_links *links, se3di_link_joint *joint)
         add_stop(m, joint);
         add_spring(m, joint);
         add_friction(m, joint);
-        return add_rotor(m, joint);
+        add_armature(m, joint);
+        return m->status >= 0;
     }
     if (joint->damping != 0.0 || joint->friction != 0.0 || joint->stiffness != 0.0 ||
         joint->armature != 0.0) {

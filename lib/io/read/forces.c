@@ -22,8 +22,9 @@
 static const char *const time_only[] = {"t", NULL};
 static const char *const frames[] = {"ground", "body", NULL}; /* of se3d_load_def.in_body_frame */
 static const char *const tyre_files[] = {".tir", NULL};
-static const char *const force_types[] = {"tsda",   "rsda",  "bushing", "friction", "stop",
-                                          "effort", "force", "torque",  "tyre",     NULL};
+static const char *const force_types[] = {"tsda", "rsda",     "bushing", "friction",
+                                          "stop", "effort",   "force",   "torque",
+                                          "tyre", "armature", NULL};
 
 /* clang-format off */
 static const se3di_key force_keys[] = {
@@ -54,7 +55,7 @@ static const se3di_key force_keys[] = {
     {"preload", SE3DI_KIND_NUMBER, .types = " tsda rsda ", .standard = "0",
      .text = "force at l = l0 (torque at theta = theta0) and rest [N, N m]"},
     {"joint", SE3DI_KIND_JOINT, .types = " rsda ", .text = "a joint with an angle"},
-    {"joint", SE3DI_KIND_JOINT, .types = " friction stop effort ",
+    {"joint", SE3DI_KIND_JOINT, .types = " friction stop effort armature ",
      .text = "a joint with the coordinate"},
     {"theta0", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_rsda_def, theta0), .types = " rsda ",
      .standard = "0", .text = "free angle [rad]"},
@@ -84,7 +85,8 @@ static const se3di_key force_keys[] = {
          "rows of six"},
     {"C", SE3DI_KIND_MATRIX6, .types = " bushing ", .standard = "0",
      .text = "damping [N s/m, N s, N m s/rad]"},
-    {"coordinate", SE3DI_KIND_WORD, .types = " friction stop effort ", .words = se3di_coordinates,
+    {"coordinate", SE3DI_KIND_WORD, .types = " friction stop effort armature ",
+     .words = se3di_coordinates,
      .text = "may be left out if the joint has one only"},
     {"mu", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_friction_def, mu),
      .types = " friction ", .standard = "0", .text = "coefficient of sliding"},
@@ -119,6 +121,10 @@ static const se3di_key force_keys[] = {
      .text = "frame of the body [m]"},
     {"frame", SE3DI_KIND_WORD, SE3DI_INTO(se3d_load_def, in_body_frame), .types = " force torque ",
      .words = frames, .standard = "ground", .text = "of value"},
+    {"inertia", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_armature_def, inertia),
+     .types = " armature ", .required = true,
+     .text = "that turns or moves with the coordinate [kg m^2, kg]: of a rotor behind a gear, "
+         "ratio squared times its own"},
     {"value", SE3DI_KIND_FUNCTION, .types = " effort ", .standard = "0",
      .text = "along the coordinate [N, N m]: a number, or a function of t, q, qdot: the "
          "coordinate and its rate, and of [channels](#laws-of-channels)"},
@@ -378,6 +384,21 @@ static bool read_friction(se3di_reader *reader, const se3di_node *node, se3di_el
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
+static bool read_armature(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
+{
+    se3d_armature_def def = se3d_armature_def_default();
+    if (!se3di_read_key_joint(reader, node, "joint", &def.joint) ||
+        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
+        !se3di_read_fields(reader, node, &se3di_object_force, "armature", "se3d_armature_def",
+                           &def)) {
+        return false;
+    }
+    def.name = entry->name;
+    entry->coordinate = def.coordinate;
+    const se3d_status status = se3d_force_create_armature(reader->system, &def, &entry->force);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
 static bool read_effort(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
 {
     static const char *const variables[] = {"t", "q", "qdot", NULL};
@@ -389,7 +410,6 @@ static bool read_effort(se3di_reader *reader, const se3di_node *node, se3di_elem
         return false;
     }
     def.name = entry->name;
-    entry->coordinate = def.coordinate;
     entry->coordinate = def.coordinate;
     const se3d_status status = se3d_force_create_effort(reader->system, &def, &entry->force);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
@@ -536,9 +556,9 @@ static bool read_force(se3di_reader *reader, const se3di_node *node)
         const char *type;
         read_element read;
     } readers[] = {
-        {"tsda", read_tsda},         {"rsda", read_rsda},     {"bushing", se3di_read_bushing},
-        {"friction", read_friction}, {"effort", read_effort}, {"stop", read_stop},
-        {"tyre", se3di_read_tyre}};
+        {"tsda", read_tsda},         {"rsda", read_rsda},        {"bushing", se3di_read_bushing},
+        {"friction", read_friction}, {"effort", read_effort},    {"stop", read_stop},
+        {"tyre", se3di_read_tyre},   {"armature", read_armature}};
     const char *type = NULL;
     se3di_element_entry *entry = NULL;
     if (!se3di_read_type(reader, node, &se3di_object_force, &type) ||
