@@ -119,7 +119,7 @@ double se3di_stop_review(const se3di_model *model, const se3di_force *force, dou
     }
     (void)eval_cubic(begin, end, h, inside, &slope);
     *part = inside;
-    return fabs(fabs(slope) - fmax(force->state[0], SPEED_MIN));
+    return fabs(fmax(fabs(slope), SPEED_MIN) - fmax(force->state[0], SPEED_MIN));
 }
 
 const se3di_force_class se3di_force_class_stop = {

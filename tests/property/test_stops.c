@@ -106,6 +106,41 @@ static void the_speed_of_an_impact_is_that_where_it_begins(void)
     }
 }
 
+/* A leg that falls straight, its knee at the end of its range, moves by rounding only; an arm that
+ * its weight presses against the end from the first moment goes in by at most twice what it rests
+ * at. Both begin with no speed at all. */
+static void what_begins_at_rest_at_its_end_is_no_impact(void)
+{
+    static const char text[] =
+        "se3d: 1\nbodies:\n"
+        "  - {name: thigh, mass: 4, inertia: [0.1, 0.1, 0.01], position: [0, 0, 1]}\n"
+        "  - {name: leg, mass: 3, inertia: [0.1, 0.1, 0.01], position: [0, 0, 0.5]}\n"
+        "  - {name: arm, mass: 1, inertia: [0.1, 0.1, 0.1], position: [2.5, 0, 0]}\n"
+        "joints:\n"
+        "  - {name: fall, type: prismatic, body_i: ground, body_j: thigh, at: [0, 0, 1], axis: [0, "
+        "0, 1]}\n"
+        "  - {name: knee, type: revolute, body_i: thigh, body_j: leg, at: [0, 0, 0.75], axis: [0, "
+        "1, 0]}\n"
+        "  - {name: pin, type: revolute, body_i: ground, body_j: arm, at: [2, 0, 0], axis: [0, 1, "
+        "0]}\n"
+        "forces:\n"
+        "  - {type: stop, joint: knee, lower: -2, upper: 0, k: 1.0e+4}\n"
+        "  - {type: stop, joint: pin, lower: -1, upper: 0, k: 1.0e+4, restitution: 0.5}\n"
+        "analysis: {type: dynamics, duration: 0.1}\n"
+        "output: [{file: r.csv, channels: [fall.displacement, knee.angle, pin.angle]}]\n";
+    for (size_t run = 0; run < 2 * sizeof methods / sizeof methods[0]; ++run) {
+        const int32_t method = methods[run / 2];
+        const double step = has_error_control(method) || is_newmark(method) ? 0.0 : 5e-4;
+        text_model m = text_model_open(text, method, (int32_t)(run % 2), step);
+        CHECK(text_model_run(&m, 0.1));
+        CHECK_NEAR(text_model_get(&m, 0, 0), -9.81 * 0.1 * 0.1 / 2.0, 1e-5);
+        CHECK_NEAR(text_model_get(&m, 1, 0), 0.0, 1e-8);
+        const double rest = 9.81 * 0.5 / 1e4;
+        CHECK_NEAR(text_model_get(&m, 2, 0), rest, 1.01 * rest);
+        text_model_close(&m);
+    }
+}
+
 /* If a step is asked for that the impact does not fit in, that is an error before the impact. */
 static void a_step_that_jumps_over_an_impact_is_refused_by_the_name_of_the_stop(void)
 {
@@ -130,6 +165,7 @@ int main(void)
 {
     RUN(a_hard_stop_returns_what_it_should_at_the_defaults_of_every_method);
     RUN(a_step_that_jumps_over_an_impact_is_refused_by_the_name_of_the_stop);
+    RUN(what_begins_at_rest_at_its_end_is_no_impact);
     RUN(the_speed_of_an_impact_is_that_where_it_begins);
     RUN(what_falls_onto_a_stop_bounces_as_high_as_the_restitution_says);
     return check_finish();
