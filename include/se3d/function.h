@@ -79,6 +79,13 @@ typedef struct se3d_function_def {
                                    function) or the rate of a state. Its elements live as long as
                                    it. */
     size_t signal_count;        /* default 0, at most variable_count */
+    int32_t integrate; /* 1: what is given above is the rate f; the function is the integral F(t) =
+                          start + integral of f over the time from start_time to t, with the exact
+                          rate and acceleration. Of one variable, without signals; of an
+                          expression or callback up to 1e6 s from start_time. */
+    int32_t reserved;
+    double start;      /* F(start_time) [m, rad] */
+    double start_time; /* [s], default 0 */
 } se3d_function_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_function_def_default. @since 0.1 */
@@ -106,7 +113,8 @@ SE3D_API se3d_status se3d_function_create_expression(se3d_system *system, const 
 
 /* Change the value of a constant between steps. The handle stays, and the next step begins with the
  * new value. If it prescribes a coordinate, that step begins with a state that meets it, with the
- * same velocity: a jump.
+ * same velocity: a jump. If the function is the integral of a constant, this is its rate from the
+ * present time on; the position goes on from where it is, and the velocity jumps.
  * @param[in] value  [unit of what the function is used for]
  * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (not finite, or the function is not a constant).
  * @since 0.1 */

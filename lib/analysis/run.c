@@ -17,6 +17,7 @@
 #include "integrator/turns.h"
 #include "math/steps.h"
 #include "math/vec3.h"
+#include "model/integral.h"
 #include "nonlinear/jump.h"
 #include "nonlinear/kink.h"
 #include "nonlinear/ranks.h"
@@ -710,6 +711,17 @@ se3d_status se3di_run_make_step(se3di_run *run, double h)
     return status;
 }
 
+/* Room for what integrals of rates are on the way to t_end; steps fill it. */
+static se3d_status prepare_integrals(se3di_run *run, double t_end)
+{
+    se3di_model *model = run->model;
+    if (se3di_integrals_reserve(model, fmax(t_end, run->horizon)) < 0) {
+        return se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for integrals of rates");
+    }
+    se3di_integrals_advance(model, run->analysis == SE3D_ANALYSIS_DYNAMICS ? model->time : t_end);
+    return SE3D_OK;
+}
+
 /* @return the status of the message that is there; it is taken off, to see whether one comes. */
 static se3d_status begin(se3di_run *run)
 {
@@ -759,6 +771,7 @@ static se3d_status run_again(se3di_run *run, double t_end)
         run->refused = 0;
         run->events.goes_on = 0;
         SE3DI_TRY(prepare(run));
+        SE3DI_TRY(prepare_integrals(run, t_end));
         const se3d_status told = begin(run);
         status = conclude(run, run_to(run, t_end), t_end, told);
     } while (status == SE3D_INFO_EVENT && run->events.goes_on);
@@ -802,6 +815,7 @@ se3d_status se3di_run_step(se3di_run *run, double h)
     run->refused = 0;
     run->events.goes_on = 0;
     SE3DI_TRY(prepare(run));
+    SE3DI_TRY(prepare_integrals(run, t_end));
     const se3d_status told = begin(run);
     run->steps_once = 1;
     const se3d_status status = conclude(run, run_step(run, length), t_end, told);

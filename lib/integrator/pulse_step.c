@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/pulse_step.h"
 
+#include "model/integral.h"
+
 #include <math.h>
 
 #define CELL       0.0078125 /* s between places, if there are not more than */
@@ -50,8 +52,13 @@ static int is_told(const se3di_function *function, double t, double h)
 static double shorten(const se3di_model *model, int32_t index, double t, double h)
 {
     const se3di_function *function = index >= 0 ? &model->functions[index] : NULL;
+    se3di_function rate;
     double part = h;
     int halves = 0;
+    if (function && function->integral) { /* what has a pulse there */
+        rate = se3di_integral_rate(function);
+        function = &rate;
+    }
     if (!function || function->callback || function->signal_count > 0 ||
         !(function->expression || function->table)) {
         return h;

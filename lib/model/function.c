@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Functions: expressions, callbacks, natural cubic splines, constants.  docs/theory/functions.md */
+/* Functions: expressions, callbacks, natural cubic splines, constants; integrals of them.  docs/theory/functions.md */
 #include "model/function.h"
 
 #include "expression/expression.h"
+#include "model/integral.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,7 +13,9 @@ void se3di_function_release(const se3d_allocator *allocator, se3di_function *fun
     se3d_expression_destroy(function->expression);
     se3di_free(allocator, function->table, 3 * function->table_count, sizeof *function->table);
     se3di_free(allocator, function->signals, function->signal_count, sizeof *function->signals);
+    se3di_integral_release(allocator, function->integral);
     function->signals = NULL;
+    function->integral = NULL;
     function->expression = NULL;
     function->table = NULL;
 }
@@ -22,6 +25,8 @@ se3d_status se3di_function_own(const se3d_allocator *allocator, se3di_function *
     const se3d_expression *expression = function->expression;
     const double *table = function->table;
     const se3di_signal *signals = function->signals;
+    const se3di_integral *integral = function->integral;
+    function->integral = NULL;
     function->expression = NULL;
     function->table = NULL;
     function->signals = NULL;
@@ -42,7 +47,7 @@ se3d_status se3di_function_own(const se3d_allocator *allocator, se3di_function *
         }
         memcpy(function->signals, signals, function->signal_count * sizeof *signals);
     }
-    return SE3D_OK;
+    return integral ? se3di_integral_clone(allocator, integral, &function->integral) : SE3D_OK;
 }
 
 /* Second derivatives m of the natural spline: the tridiagonal system
@@ -66,8 +71,7 @@ void se3di_spline_build(const double *x, const double *y, size_t n, double *m, d
     }
 }
 
-/* Index of the interval that holds u. */
-static size_t find_interval(const double *x, size_t n, double u)
+size_t se3di_spline_find(const double *x, size_t n, double u)
 {
     size_t low = 0;
     size_t high = n - 1;
@@ -88,7 +92,7 @@ static void spline_eval(const se3di_function *function, double u, double jet[3])
     const double *x = function->table;
     const double *y = x + n;
     const double *m = y + n;
-    size_t k = find_interval(x, n, u);
+    size_t k = se3di_spline_find(x, n, u);
     double h = x[k + 1] - x[k];
     double inside = fmin(fmax(u, x[0]), x[n - 1]);
     double a = (x[k + 1] - inside) / h;
@@ -115,7 +119,7 @@ static se3d_status expression_eval(const se3di_function *function, const double 
     return status;
 }
 
-se3d_status se3di_function_eval(const se3di_function *function, const double *x, double jet[3],
+static se3d_status eval_content(const se3di_function *function, const double *x, double jet[3],
                                 double *gradient)
 {
     if (gradient) {
@@ -139,4 +143,23 @@ se3d_status se3di_function_eval(const se3di_function *function, const double *x,
         jet[1] = jet[2] = 0.0;
     }
     return isfinite(jet[0]) && isfinite(jet[1]) && isfinite(jet[2]) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
+}
+
+se3d_status se3di_function_eval(const se3di_function *function, const double *x, double jet[3],
+                                double *gradient)
+{
+    const se3d_status status = eval_content(function, x, jet, gradient);
+    if (!function->integral) {
+        return status;
+    }
+    jet[2] = jet[1];
+    jet[1] = jet[0];
+    if (!se3di_integral_eval(function, x[0], &jet[0])) {
+        jet[0] = (double)NAN;
+        return status < 0 ? status : SE3D_ERR_NOT_FINITE;
+    }
+    if (gradient) {
+        gradient[0] = jet[1];
+    }
+    return status;
 }

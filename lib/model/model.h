@@ -68,6 +68,8 @@ typedef struct se3di_function {
     se3di_signal *signals; /* [signal_count] the last of its variables; NULL: none */
     uint32_t signal_count;
     uint32_t reserved;
+    struct se3di_integral *integral; /* NULL: it is what the members above say; else their integral
+                                        over the time (model/integral.h) */
 } se3di_function;
 
 typedef struct se3di_row {
@@ -382,5 +384,7 @@ se3d_status se3di_function_eval(const se3di_function *function, const double *x,
                                 double *gradient);
 /* Second derivatives of the natural cubic spline through x, y into m [n]; scratch [n]. */
 void se3di_spline_build(const double *x, const double *y, size_t n, double *m, double *scratch);
+/* Index of the interval of x [n] that holds u; outside the first or last one. */
+size_t se3di_spline_find(const double *x, size_t n, double u);
 
 #endif

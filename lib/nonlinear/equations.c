@@ -3,6 +3,7 @@
 #include "nonlinear/equations.h"
 
 #include "assembly/user.h"
+#include "model/integral.h"
 
 #include <math.h>
 #include <string.h>
@@ -211,6 +212,7 @@ se3d_status se3di_equations_try_step(const se3di_equations *equations, double t)
 {
     const se3di_guard *guard = equations->guard;
     se3di_guard_pace pace;
+    se3di_integrals_advance(equations->assembly.model, t);
     SE3DI_TRY(se3di_equations_ask(equations));
     if (!guard || !se3di_guard_count(equations->guard, t, &pace)) {
         return SE3D_OK;

@@ -5,6 +5,7 @@
 #include "nonlinear/jump.h"
 
 #include "expression/expression.h"
+#include "model/integral.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -31,11 +32,15 @@ typedef struct search {
 /* A value that cannot be computed ends the search. */
 static int eval(const search *s, double t, point *p)
 {
+    const int of_rate = s->function->integral && s->derivative > 0;
+    const se3di_function rate =
+        of_rate ? se3di_integral_rate(s->function) : (se3di_function){.expression = NULL};
+    const int derivative = s->derivative - of_rate;
     double jet[3];
-    if (se3di_function_eval(s->function, &t, jet, NULL) < 0) {
+    if (se3di_function_eval(of_rate ? &rate : s->function, &t, jet, NULL) < 0) {
         return 0;
     }
-    *p = (point){t, jet[s->derivative], jet[s->derivative + 1]};
+    *p = (point){t, jet[derivative], jet[derivative + 1]};
     return 1;
 }
 
@@ -74,6 +79,9 @@ static int look(const search *s, const double range[2], int parts, se3di_jump *j
 {
     point a;
     point b;
+    if (s->function->integral && s->derivative == 0) { /* it has none, its rate may have */
+        return 0;
+    }
     if (!eval(s, range[0], &a)) {
         return 0;
     }

@@ -3,6 +3,7 @@
 #include "model/function.h"
 #include "expression/expression.h"
 #include "force/force.h"
+#include "model/integral.h"
 #include "system/system_internal.h"
 
 #include <math.h>
@@ -43,6 +44,21 @@ static se3d_status check_kind(se3d_system *system, const se3d_function_def *def)
                              se3di_expression_variable_count(def->compiled), def->variable_count);
     }
     return se3di_check_finite(system, "constant", def->constant);
+}
+
+static se3d_status check_integral(se3d_system *system, const se3d_function_def *def)
+{
+    if (def->integrate != 0 && def->integrate != 1) {
+        return SE3DI_FAIL_OF(system, "integrate", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be 0 or 1", def->integrate);
+    }
+    if (def->integrate && (def->variable_count != 1 || def->signal_count > 0)) {
+        return SE3DI_FAIL_OF(system, "integrate", SE3D_ERR_INVALID_ARGUMENT,
+                             " = 1: the rate has %zu variables, must have one, the time",
+                             def->variable_count);
+    }
+    SE3DI_TRY(se3di_check_finite(system, "start", def->start));
+    return se3di_check_finite(system, "start_time", def->start_time);
 }
 
 static se3d_status make_expression(se3d_system *system, const se3d_function_def *def,
@@ -234,6 +250,16 @@ static se3d_status make_content(se3d_system *system, const se3d_function_def *de
     return def->table_x ? make_table(system, def, function) : SE3D_OK;
 }
 
+static se3d_status make_integral(se3d_system *system, const se3d_function_def *def,
+                                 se3di_function *function)
+{
+    if (!def->integrate || se3di_integral_create(&system->model.allocator, function, def->start,
+                                                 def->start_time) >= 0) {
+        return SE3D_OK;
+    }
+    return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for an integral");
+}
+
 se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *def,
                                  se3d_function *function)
 {
@@ -241,6 +267,7 @@ se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *d
     se3d_function_def full = se3d_function_def_default();
     SE3DI_TRY(se3di_check_def(system, "function def", def, &full, sizeof full));
     SE3DI_TRY(check_kind(system, &full));
+    SE3DI_TRY(check_integral(system, &full));
     se3di_function data = {.callback = full.callback,
                            .ctx = full.ctx,
                            .constant = full.constant,
@@ -248,6 +275,9 @@ se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *d
     se3d_status status = make_signals(system, &full, &data);
     if (status >= 0) {
         status = make_content(system, &full, &data);
+    }
+    if (status >= 0) {
+        status = make_integral(system, &full, &data);
     }
     if (status < 0) {
         se3di_function_release(&system->model.allocator, &data);
@@ -337,6 +367,9 @@ se3d_status se3d_function_set_constant(se3d_system *system, se3d_function handle
     }
     const int holds = holds_energy(model, index);
     const double before = holds ? se3di_audit_forces(model) : 0.0;
+    if (function->integral) {
+        se3di_integral_move(function, model->time);
+    }
     function->constant = value;
     if (holds) {
         se3di_audit_change(model, before);

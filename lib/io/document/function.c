@@ -19,20 +19,16 @@ const se3di_object se3di_object_spline = {
     NULL};
 /* clang-format on */
 
-static bool create_expression(se3di_reader *reader, const se3di_node *node,
-                              const se3d_expression *compiled, size_t count,
-                              se3d_function *function)
+static bool create(se3di_reader *reader, const se3di_node *node, const se3d_function_def *def,
+                   se3d_function *function)
 {
-    se3d_function_def def = se3d_function_def_default();
-    def.compiled = compiled;
-    def.variable_count = count;
-    const se3d_status status = se3d_function_create(reader->system, &def, function);
+    const se3d_status status = se3d_function_create(reader->system, def, function);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
 /* {spline: [[x, y], ...]}: C2 through the points. */
 static bool read_spline(se3di_reader *reader, const se3di_node *node, const char *variable,
-                        se3d_function *function)
+                        se3d_function_def *def, se3d_function *function)
 {
     if (!se3di_read_keys(reader, node, &se3di_object_spline)) {
         return false;
@@ -60,12 +56,10 @@ static bool read_spline(se3di_reader *reader, const se3di_node *node, const char
         x[k] = pair[0];
         y[k] = pair[1];
     }
-    se3d_function_def def = se3d_function_def_default();
-    def.table_x = x;
-    def.table_y = y;
-    def.table_count = list->count;
-    const se3d_status status = se3d_function_create(reader->system, &def, function);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    def->table_x = x;
+    def->table_y = y;
+    def->table_count = list->count;
+    return create(reader, node, def, function);
 }
 
 /* A number or a function with vectors or units, in the unit of its key. */
@@ -82,15 +76,36 @@ static bool read_quantity(se3di_reader *reader, const se3di_node *node,
     return se3di_amount_take(reader, node, node, q);
 }
 
-bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const char *const *variables,
-                         double *value, se3d_function *function)
+/* A number of the text, or NULL and *value. */
+static bool read_number(se3di_reader *reader, const se3di_node *node, const char *const *variables,
+                        se3di_node *plain, double *value)
 {
-    size_t count = 0;
-    while (variables[count]) {
-        ++count;
+    *plain = *node;
+    if (!se3di_amount_is_needed(reader, node->text)) {
+        return true;
     }
+    se3di_amount q;
+    if (!read_quantity(reader, node, variables, &q)) {
+        return false;
+    }
+    plain->text = q.text[0];
+    plain->one_line = false;
+    if (q.text[0]) {
+        return true;
+    }
+    *value = q.v[0];
+    return se3di_check_number(reader, node, SE3DI_ANY, *value);
+}
+
+/* *value, or the kind of a function in `def`, and the function. */
+static bool read_any(se3di_reader *reader, const se3di_node *node, const char *const *variables,
+                     se3d_function_def *def, double *value, se3d_function *function)
+{
+    se3d_expression_def text = se3d_expression_def_default();
+    se3d_expression *expression = NULL;
+    se3di_node plain;
     if (node->kind == SE3DI_NODE_MAP) {
-        return read_spline(reader, node, variables[0], function);
+        return read_spline(reader, node, variables[0], def, function);
     }
     if (node->kind != SE3DI_NODE_SCALAR || se3di_node_is_null(node)) {
         return se3di_reader_fail(reader, node,
@@ -98,31 +113,47 @@ bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const cha
                                  "value], ...]}",
                                  se3di_node_describe(node), variables[0], variables[0]);
     }
-    se3d_expression_def def = se3d_expression_def_default();
-    se3d_expression *expression = NULL;
-    se3di_node plain = *node;
-    def.variables = variables;
-    def.variable_count = count;
-    if (se3di_amount_is_needed(reader, node->text)) {
-        se3di_amount q;
-        if (!read_quantity(reader, node, variables, &q)) {
-            return false;
-        }
-        if (!q.text[0]) {
-            *value = q.v[0];
-            return se3di_check_number(reader, node, SE3DI_ANY, *value);
-        }
-        plain.text = q.text[0];
-        plain.one_line = false;
+    text.variables = variables;
+    while (variables[text.variable_count]) {
+        ++text.variable_count;
     }
-    node = &plain;
-    if (!se3di_read_compile(reader, node, &def, &expression)) {
+    if (!read_number(reader, node, variables, &plain, value)) {
         return false;
     }
+    if (!plain.text) {
+        return true;
+    }
+    if (!se3di_read_compile(reader, &plain, &text, &expression)) {
+        return false;
+    }
+    def->compiled = expression;
+    def->variable_count = text.variable_count;
     const bool good = se3d_expression_is_constant(expression)
-                          ? se3di_read_constant(reader, node, expression, value) &&
-                                se3di_check_number(reader, node, SE3DI_ANY, *value)
-                          : create_expression(reader, node, expression, count, function);
+                          ? se3di_read_constant(reader, &plain, expression, value) &&
+                                se3di_check_number(reader, &plain, SE3DI_ANY, *value)
+                          : create(reader, &plain, def, function);
     se3d_expression_destroy(expression);
+    def->compiled = NULL;
     return good;
+}
+
+bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const char *const *variables,
+                         double *value, se3d_function *function)
+{
+    se3d_function_def def = se3d_function_def_default();
+    return read_any(reader, node, variables, &def, value, function);
+}
+
+bool se3di_read_rate(se3di_reader *reader, const se3di_node *node, double start,
+                     se3d_function *function)
+{
+    static const char *const time_only[] = {"t", NULL};
+    se3d_function_def def = se3d_function_def_default();
+    def.integrate = 1;
+    def.start = start;
+    *function = (se3d_function){0, 0};
+    if (!read_any(reader, node, time_only, &def, &def.constant, function)) {
+        return false;
+    }
+    return function->index1 != 0 || create(reader, node, &def, function);
 }

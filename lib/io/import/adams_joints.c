@@ -185,29 +185,41 @@ static se3di_adams_statement *joint_by_id(se3di_adams *a, const se3di_adams_stat
     return joint;
 }
 
-/* A function of time times the unit of what it gives; a rate that does not change becomes a
- * displacement. */
+/* A function of time times the unit of what it gives. */
 static const char *motion_value(se3di_adams *a, const se3di_adams_statement *s, double unit,
                                 const char **why)
 {
     const char *text = se3di_adams_get(s, "FUNCTION");
     const char *value = text ? se3di_adams_translate(a, text, &of_time, why) : NULL;
-    const bool rate = se3di_adams_has(s, "VELOCITY");
     if (!text) {
         *why = "it has no FUNCTION";
     }
     if (!value) {
         return NULL;
     }
-    if (se3di_adams_has(s, "ACCELERATION") || (rate && strchr(value, 't'))) {
-        *why = "a rate that changes: write its integral as the value";
+    if (se3di_adams_has(s, "ACCELERATION")) {
+        *why = "an acceleration: write the integral of it as the rate";
         return NULL;
     }
-    unit = rate ? unit / a->time : unit;
-    if (rate) {
-        value = se3di_machine_text(a->m, "(%s)*t", value);
+    return unit == 1.0 ? value : se3di_machine_text(a->m, "%.15g*(%s)", unit, value);
+}
+
+/* `value`, or `rate` and what it starts from. */
+static bool put_motion(se3di_adams *a, const se3di_adams_statement *s, se3di_entry *entry,
+                       double unit, const char *value)
+{
+    double start = 0.0;
+    const char *quoted = se3di_machine_text(a->m, "'%s'", value);
+    if (!se3di_adams_has(s, "VELOCITY")) {
+        se3di_entry_put(a->m, entry, "value", quoted);
+        return a->m->status >= 0;
     }
-    return unit == 1.0 || !value ? value : se3di_machine_text(a->m, "%.15g*(%s)", unit, value);
+    if (se3di_adams_has(s, "ICDISP") && !se3di_adams_number(a, s, "ICDISP", 1.0, &start)) {
+        return false;
+    }
+    se3di_entry_put(a->m, entry, "rate", quoted);
+    se3di_entry_put_number(a->m, entry, "start", start * unit);
+    return a->m->status >= 0;
 }
 
 bool se3di_adams_motion(se3di_adams *a, se3di_adams_statement *s)
@@ -228,7 +240,9 @@ bool se3di_adams_motion(se3di_adams *a, se3di_adams_statement *s)
     if (!joint->made || !(slides ? joint->slides : joint->turns)) {
         return se3di_adams_lose(a, s, "its joint has no such coordinate");
     }
-    const char *value = motion_value(a, s, slides ? a->length : 1.0, &why);
+    const double unit = slides ? a->length : 1.0;
+    const char *value =
+        motion_value(a, s, se3di_adams_has(s, "VELOCITY") ? unit / a->time : unit, &why);
     if (!value) {
         return a->m->status >= 0 && se3di_adams_lose(a, s, why);
     }
@@ -239,8 +253,7 @@ bool se3di_adams_motion(se3di_adams *a, se3di_adams_statement *s)
     if (joint->turns && joint->slides) {
         se3di_entry_put(a->m, entry, "coordinate", slides ? "displacement" : "angle");
     }
-    se3di_entry_put(a->m, entry, "value", se3di_machine_text(a->m, "'%s'", value));
-    return a->m->status >= 0;
+    return put_motion(a, s, entry, unit, value);
 }
 
 typedef struct term {

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `drivers`: joint coordinates that follow a function of time. */
 #include "io/channel/law.h"
+#include "io/document/function.h"
+#include "io/document/fields.h"
 #include "io/read/elements.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
@@ -15,8 +17,12 @@ static const se3di_key driver_keys[] = {
     {"joint", SE3DI_KIND_JOINT, .required = true, .text = ""},
     {"coordinate", SE3DI_KIND_WORD, .words = se3di_coordinates,
      .text = "may be left out if the joint has one only"},
-    {"value", SE3DI_KIND_FUNCTION, .required = true,
-     .text = "a number or a function of t [m, rad]"},
+    {"value", SE3DI_KIND_FUNCTION, .text = "a number or a function of t [m, rad]"},
+    {"rate", SE3DI_KIND_FUNCTION,
+     .text = "in place of value: its rate, a number or a function of t [m/s, rad/s], such as 600 "
+             "rpm; the coordinate is start plus the integral of it"},
+    {"start", SE3DI_KIND_NUMBER, .standard = "as at the given pose",
+     .text = "with rate: the coordinate at t = 0 [m, rad]"},
     {.key = NULL}};
 const se3di_object se3di_object_driver = {
     "driver",
@@ -25,23 +31,50 @@ const se3di_object se3di_object_driver = {
     NULL};
 /* clang-format on */
 
-static bool read_driver(se3di_reader *reader, const se3di_node *node)
+/* What the coordinate follows, from its rate. */
+static bool read_rate(se3di_reader *reader, const se3di_node *node, se3d_driver_def *def)
 {
-    se3d_driver_def def = se3d_driver_def_default();
-    se3di_element_entry *entry = NULL;
+    const se3di_node *rate = se3di_node_get(node, "rate");
+    double start = 0.0;
+    if (se3di_node_get(node, "value")) {
+        return se3di_reader_fail(reader, rate, "stands beside value, must be one of them");
+    }
+    const se3d_status status = se3d_joint_get_coordinate(
+        reader->system, def->joint, (se3d_joint_coordinate)def->coordinate, &start, NULL, NULL);
+    if (status < 0) {
+        return se3di_reader_fail_system(reader, rate, status);
+    }
+    return se3di_read_key(reader, node, &se3di_object_driver, NULL, "start", &start) &&
+           se3di_read_rate(reader, rate, start, &def->function);
+}
+
+static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_driver_def *def)
+{
     const se3di_node *value = se3di_node_get(node, "value");
-    if (!se3di_read_keys(reader, node, &se3di_object_driver) ||
-        !se3di_read_element(reader, node, SE3DI_ELEMENT_DRIVER, &entry) ||
-        !se3di_read_key_joint(reader, node, "joint", &def.joint) ||
-        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate)) {
-        return false;
+    const se3di_node *start = se3di_node_get(node, "start");
+    if (se3di_node_get(node, "rate")) {
+        return read_rate(reader, node, def);
+    }
+    if (start) {
+        return se3di_reader_fail(reader, start, "is for a driver with a rate");
     }
     if (!value) {
         return se3di_reader_fail_key(reader, node, "value",
                                      "is missing, must be a number, an expression in t or "
-                                     "{spline: [[t, value], ...]}");
+                                     "{spline: [[t, value], ...]}; or give its rate");
     }
-    if (!se3di_read_law(reader, value, time_only, &def.value, &def.function)) {
+    return se3di_read_law(reader, value, time_only, &def->value, &def->function);
+}
+
+static bool read_driver(se3di_reader *reader, const se3di_node *node)
+{
+    se3d_driver_def def = se3d_driver_def_default();
+    se3di_element_entry *entry = NULL;
+    if (!se3di_read_keys(reader, node, &se3di_object_driver) ||
+        !se3di_read_element(reader, node, SE3DI_ELEMENT_DRIVER, &entry) ||
+        !se3di_read_key_joint(reader, node, "joint", &def.joint) ||
+        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
+        !read_value(reader, node, &def)) {
         return false;
     }
     def.name = entry->name;
