@@ -2,14 +2,15 @@
 /* F(t) = start + integral of f from `origin` to t, a pure function of t.
  *
  * A constant and a spline have closed forms. Anything else is integrated by the Gauss-Kronrod rule
- * of 15 points over panels whose ends depend on the origin only: of 1/64 s up to 256 s from it, then
- * twice as long in each doubling of the distance. Within a panel a rule is halved until it agrees
- * with the Gauss rule of its 7 points to rounding, so that jumps and kinks of f cost time and not
- * digits. The sums over whole panels are kept, as high and low parts; what is not kept is computed
- * in the same order, with the same bits.  docs/theory/functions.md */
+ * of 15 points over panels whose ends depend on the origin only: of 1/64 s up to 256 s from it,
+ * then twice as long in each doubling of the distance. Within a panel a rule is halved until it
+ * agrees with the Gauss rule of its 7 points to rounding, so that jumps and kinks of f cost time
+ * and not digits. The sums over whole panels are kept, as high and low parts; what is not kept is
+ * computed in the same order, with the same bits.                    docs/theory/functions.md */
 #include "model/integral.h"
 
 #include "expression/expression.h"
+#include "model/spline.h"
 
 #include <math.h>
 #include <string.h>

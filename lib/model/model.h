@@ -382,9 +382,5 @@ void se3di_frame_update(se3di_frame *frame);
 /* Jet {f, f', f''} of a function at x (variable 0 is time); gradient [variable_count] or NULL. */
 se3d_status se3di_function_eval(const se3di_function *function, const double *x, double jet[3],
                                 double *gradient);
-/* Second derivatives of the natural cubic spline through x, y into m [n]; scratch [n]. */
-void se3di_spline_build(const double *x, const double *y, size_t n, double *m, double *scratch);
-/* Index of the interval of x [n] that holds u; outside the first or last one. */
-size_t se3di_spline_find(const double *x, size_t n, double u);
 
 #endif

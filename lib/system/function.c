@@ -4,6 +4,7 @@
 #include "expression/expression.h"
 #include "force/force.h"
 #include "model/integral.h"
+#include "model/spline.h"
 #include "system/system_internal.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `drivers`: joint coordinates that follow a function of time. */
 #include "io/channel/law.h"
-#include "io/document/function.h"
 #include "io/document/fields.h"
+#include "io/document/function.h"
 #include "io/read/elements.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
