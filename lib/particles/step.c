@@ -341,12 +341,16 @@ se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps
 
 uint64_t se3di_particles_hash(const se3di_particles *set)
 {
-    uint64_t hash = se3di_hash_bytes(SE3DI_HASH_START, &set->time, sizeof set->time);
+    uint64_t hash = se3di_hash_numbers(SE3DI_HASH_START, &set->time, 1);
     for (size_t id = 0; id < set->id_count; ++id) {
         uint32_t k = set->index_of[id];
         if (k != SE3DI_NO_INDEX) {
-            hash = se3di_hash_bytes(hash, &set->particles[k], sizeof set->particles[k]);
-            hash = se3di_hash_bytes(hash, set->spins[k].w, sizeof set->spins[k].w);
+            const se3di_particle *p = &set->particles[k];
+            hash = se3di_hash_numbers(hash, p->x, 3);
+            hash = se3di_hash_numbers(hash, &p->radius, 1);
+            hash = se3di_hash_numbers(hash, p->v, 3);
+            hash = se3di_hash_numbers(hash, &p->inverse_mass, 1);
+            hash = se3di_hash_numbers(hash, set->spins[k].w, 3);
         }
     }
     return hash;

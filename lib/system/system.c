@@ -330,19 +330,18 @@ uint64_t se3d_system_hash(const se3d_system *system)
         return 0;
     }
     const se3di_model *model = &system->model;
-    uint64_t hash = se3di_hash_bytes(SE3DI_HASH_START, &model->time, sizeof model->time);
+    uint64_t hash = se3di_hash_numbers(SE3DI_HASH_START, &model->time, 1);
     for (size_t k = 0; k < model->body_slots.count; ++k) {
         const se3di_frame *frame = &model->frames[k];
-        hash = se3di_hash_bytes(hash, frame->r, sizeof frame->r);
-        hash = se3di_hash_bytes(hash, frame->p, sizeof frame->p);
-        hash = se3di_hash_bytes(hash, frame->v, sizeof frame->v);
-        hash = se3di_hash_bytes(hash, frame->w, sizeof frame->w);
-        hash = se3di_hash_bytes(hash, model->acceleration + 6 * k, 6 * sizeof(double));
+        hash = se3di_hash_numbers(hash, frame->r, 3);
+        hash = se3di_hash_numbers(hash, frame->p, 4);
+        hash = se3di_hash_numbers(hash, frame->v, 3);
+        hash = se3di_hash_numbers(hash, frame->w, 3);
+        hash = se3di_hash_numbers(hash, model->acceleration + 6 * k, 6);
     }
-    hash = se3di_hash_bytes(hash, model->lambda, model->row_count * sizeof(double));
+    hash = se3di_hash_numbers(hash, model->lambda, model->row_count);
     for (const se3di_particles *set = model->sets; set; set = set->next) {
-        const uint64_t particles = se3di_particles_hash(set);
-        hash = se3di_hash_bytes(hash, &particles, sizeof particles);
+        hash = se3di_hash_word(hash, se3di_particles_hash(set));
     }
     return hash;
 }

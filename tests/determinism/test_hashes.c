@@ -69,7 +69,7 @@ static uint64_t hash_reactions(const support_model *model, uint64_t hash)
         for (int c = 0; c < 6; ++c) {
             wrench[c] += 0.0; /* -0 is 0 */
         }
-        hash = se3di_hash_bytes(hash, wrench, sizeof wrench);
+        hash = se3di_hash_numbers(hash, wrench, 6);
     }
     return hash;
 }
@@ -103,7 +103,7 @@ static uint64_t run_elementary(const row *r, int32_t threads)
         for (int32_t f = SE3D_ELEMENTARY_SIN; f <= SE3D_ELEMENTARY_POW; ++f) {
             double value = se3d_elementary_eval(f, x, y);
             value = isnan(value) ? 0.0 : value; /* of which there are many */
-            hash = se3di_hash_bytes(hash, &value, sizeof value);
+            hash = se3di_hash_numbers(hash, &value, 1);
         }
     }
     return hash;
@@ -226,8 +226,8 @@ static uint64_t run_pushed(const row *r, int32_t threads)
     scene_solve(&s, SE3D_METHOD_VERLET, r->formulation, 1e-4, 0.0);
     (void)scene_run(&s, 0.005);
     CHECK(se3d_particles_count_contacts(b.particles) > 50);
-    uint64_t part = se3d_particles_hash(b.particles);
-    uint64_t hash = se3di_hash_bytes(se3d_system_hash(s.system), &part, sizeof part);
+    const uint64_t hash =
+        se3di_hash_word(se3d_system_hash(s.system), se3d_particles_hash(b.particles));
     se3d_solver_destroy(s.solver);
     bed_destroy(&b);
     return hash;
