@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The KKT kernels in plain C. fma() stands where the other levels fuse, so that all give the same
- * bits; it is one instruction on arm64.                                      docs/theory/kkt.md */
+/* The KKT kernels in plain C. se3di_fma stands where the other levels fuse, so that all give the
+ * same bits; it is one instruction on arm64.                                 docs/theory/kkt.md */
 #include "linsol/kkt_internal.h"
-
-#include <math.h>
+#include "math/fma.h"
 
 typedef double v2 __attribute__((vector_size(16)));
 typedef double v2_anywhere __attribute__((vector_size(16), aligned(8), may_alias));
@@ -78,7 +77,7 @@ V8_INLINE v8 v8_mul(v8 v, double s)
 
 V8_INLINE v2 v2_fma(v2 a, v2 b, v2 c)
 {
-    return (v2){fma(a[0], b[0], c[0]), fma(a[1], b[1], c[1])};
+    return (v2){se3di_fma(a[0], b[0], c[0]), se3di_fma(a[1], b[1], c[1])};
 }
 
 V8_INLINE v8 v8_madd(v8 acc, v8 u, v8 v)
@@ -122,7 +121,7 @@ V8_INLINE void v8_transpose(v8 v[8])
 
 V8_INLINE double s_fnma(double acc, double a, double b)
 {
-    return fma(-a, b, acc);
+    return se3di_fma(-a, b, acc);
 }
 
 #include "linsol/kkt_core.inc"

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels in plain C, for every machine.                     docs/theory/particles.md */
+#include "math/fma.h"
 #include "particles/wall.h"
 
+#define FMA(a, b, c) se3di_fma(a, b, c)
 #include "particles/force_plain.inc"
 
 const se3di_kernels *se3di_particle_kernels_portable(void)

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The recursions of the tree in plain C.                    docs/theory/joint_coordinates.md */
+#include "math/fma.h"
 #include "tree/core.h"
 
-#include <math.h>
-
-#define fma_of(a, b, c) fma(a, b, c)
+#define fma_of(a, b, c) se3di_fma(a, b, c)
 
 #include "tree/core_one.inc"
 

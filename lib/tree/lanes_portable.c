@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* States one by one, in plain C, where the processor has no lanes.      docs/theory/lanes.md */
-#include <math.h>
+#include "math/fma.h"
+
 #include <stdint.h>
 
 typedef double number;
@@ -10,7 +11,7 @@ typedef int verdict;
 #define FINE                1
 #define LANES               1
 #define NUMBER(x)           (x)
-#define fma_of(a, b, c)     fma(a, b, c)
+#define fma_of(a, b, c)     se3di_fma(a, b, c)
 #define root_of(a)          sqrt(a)
 #define is_far(a)           (!((a) > -1e5 && (a) < 1e5))
 #define KEEP_IF(verdict, a) ((verdict) ? (a) : (double)NAN)
