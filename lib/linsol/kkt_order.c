@@ -4,8 +4,8 @@
  * Candidates: leaf to root, joints as soon as they may go (kkt_greedy.c), and all bodies first with
  * AMD on what is left, S = C H^-1 C^T. The cheaper one by estimated vector operations is taken and
  * put in postorder, so that each node's neighbours are still in the cache.   docs/theory/kkt.md */
+#include <amd.h>
 #include <stddef.h>
-#include <suitesparse/amd.h>
 
 #include "linsol/kkt_internal.h"
 
