@@ -115,16 +115,18 @@ typedef enum se3d_log_level {
 
 /* What a log message is about, for programs: its words may change. @since 0.1 */
 typedef enum se3d_log_kind {
-    SE3D_LOG_FAILURE = 0,   /* the message of a failure (ERROR) */
-    SE3D_LOG_START = 1,     /* the start was changed: se3d_solver_get_start_change */
-    SE3D_LOG_REDUNDANT = 2, /* constraints are redundant */
-    SE3D_LOG_LEFT_OUT = 3,  /* equations were left out: se3d_system_describe_left_out */
-    SE3D_LOG_TOLERANCE = 4, /* the tolerance is not reached: se3d_solver_get_tolerance */
-    SE3D_LOG_METHOD = 5,    /* another method or formulation works: se3d_solver_get_switch */
-    SE3D_LOG_STEP = 6,      /* the step is one that nobody chose, or is too long */
-    SE3D_LOG_KINK = 7,      /* a prescribed rate has jumped: an impulse */
-    SE3D_LOG_FILE = 8,      /* a file that a model names has or lacks something */
-    SE3D_LOG_CHECKPOINT = 9 /* a checkpoint could not be written: se3d_run_options */
+    SE3D_LOG_FAILURE = 0,    /* the message of a failure (ERROR) */
+    SE3D_LOG_START = 1,      /* the start was changed: se3d_solver_get_start_change */
+    SE3D_LOG_REDUNDANT = 2,  /* constraints are redundant */
+    SE3D_LOG_LEFT_OUT = 3,   /* equations were left out: se3d_system_describe_left_out */
+    SE3D_LOG_TOLERANCE = 4,  /* the tolerance is not reached: se3d_solver_get_tolerance */
+    SE3D_LOG_METHOD = 5,     /* another method or formulation works: se3d_solver_get_switch */
+    SE3D_LOG_STEP = 6,       /* the step is one that nobody chose, or is too long */
+    SE3D_LOG_KINK = 7,       /* a prescribed rate has jumped: an impulse */
+    SE3D_LOG_FILE = 8,       /* a file that a model names has or lacks something */
+    SE3D_LOG_CHECKPOINT = 9, /* a checkpoint could not be written: se3d_run_options */
+    SE3D_LOG_MOVED = 10,     /* the assembly moved a body by more than its size */
+    SE3D_LOG_MODEL = 11      /* a model file says what is probably a mistake */
 } se3d_log_kind;
 
 /* Receives what happens to a system, one sentence a call: every message of a failure (ERROR);

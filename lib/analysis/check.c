@@ -12,7 +12,9 @@
  * docs/theory/redundancy.md */
 #include "analysis/check.h"
 
+#include "analysis/start_moved.h"
 #include "assembly/user.h"
+#include "base/log.h"
 #include "base/text.h"
 #include "contact/bodies/body_contacts.h"
 #include "force/force.h"
@@ -38,6 +40,7 @@ typedef struct inspection {
     se3di_check *check;
     se3di_equations *equations;
     const se3di_model *model;
+    se3di_error *told;    /* with the log */
     double size;          /* of the model [m] */
     double tolerance;     /* of ranks */
     uint32_t *component;  /* [bodies] representative of each free body's component */
@@ -539,8 +542,13 @@ static se3d_status settle_poses(inspection *in)
         return add_message(in->check, "%s", equations->error->message);
     }
     SE3DI_TRY(status);
-    return add_message(
-        in->check, "the given poses do not fit (%s); what follows holds at assembled ones", gap);
+    SE3DI_TRY(add_message(
+        in->check, "the given poses do not fit (%s); what follows holds at assembled ones", gap));
+    if (!se3di_start_moved_describe(in->model, equations->accepted, gap, sizeof gap)) {
+        return SE3D_OK;
+    }
+    se3di_log_write(in->told, SE3D_LOG_WARNING, SE3D_LOG_MOVED, "%s", gap);
+    return add_message(in->check, "%s", gap);
 }
 
 static se3d_status inspect_model(inspection *in)
@@ -644,6 +652,7 @@ se3d_status se3di_check_init(se3di_check *check, se3di_model *model, se3di_error
     inspection in = {.check = check,
                      .equations = &equations,
                      .model = model,
+                     .told = error,
                      .size = se3di_model_get_size(model)};
     const int32_t was_known = model->ranks_known;
     se3di_state_accept(&equations);

@@ -6,6 +6,7 @@
 #include "analysis/dead_point.h"
 #include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
+#include "analysis/start_moved.h"
 #include "analysis/stiffness.h"
 #include "assembly/energy.h"
 #include "assembly/loads.h"
@@ -268,6 +269,11 @@ static void note_start(se3di_run *run, double t)
     run->start.time = t;
     se3di_start_change_log(run->model, &run->start, free ? SE3D_LOG_WARNING : SE3D_LOG_INFO,
                            run->error);
+    char far[400];
+    if (run->start.moved.index1 != 0 &&
+        se3di_start_moved_describe(run->model, run->equations.accepted, far, sizeof far)) {
+        se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_MOVED, "t = %g s: %s", t, far);
+    }
 }
 
 /* A new state: positions, velocities, accelerations and multipliers made consistent at the model's

@@ -67,4 +67,60 @@ is "$(lines 'is smaller than what')" 1
 expect 'redundant constraints' 0 "$program" run "$models/andrews.yaml" -o "$dir/r" --duration 0.001
 is "$(lines 'redundant')" 1
 is "$(cat "$dir/err")" ''
+
+# What a model says that is probably a mistake is told with its place; --strict makes it a failure.
+cat >"$dir/doubtful.yaml" <<'END'
+se3d: 1
+parameters:
+  used: 2
+  length: 3
+  chain: used*1
+points:
+  hub: [chain, 0, 0]
+  spare: [0, 1, 0]
+materials: [{name: steel, density: 7800, stiffness: 1e5}]
+contact: {}
+bodies:
+  - {name: a, mass: 1, inertia: [0.1, 0.1, 0.1], position: hub}
+  - {name: b, mass: 1e9, inertia: [1, 1, 1], shapes: [{type: sphere, radius: 1, material: steel}]}
+  - {name: c, mass: 1, inertia: [1, 1, 1], shapes: [{type: sphere, radius: 1}, {type: sphere, radius: 2}]}
+  - {name: d, mass: 1, inertia: [1, 1, 1], position: [9, 0, 0]}
+joints:
+  - {name: pin, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, 0]}
+  - {name: tie, type: spherical, body_i: c, body_j: d, at: [5, 0, 0]}
+drivers: [{name: m1, joint: pin, value: t}, {name: m2, joint: pin, value: t}]
+analysis: {type: dynamics, duration: 0.01}
+END
+expect 'doubtful' 0 "$program" check "$dir/doubtful.yaml"
+has "$dir/err" "warning: $dir/doubtful.yaml:4:11: parameters.length: the parameter is used nowhere"
+has "$dir/err" ':8:10: points.spare: the point is used nowhere'
+has "$dir/err" ':14:5: bodies[2]: nothing holds c: no joint, constraint, force or contact leads to the ground'
+has "$dir/err" ': bodies[2].shapes[0]: has no material: nothing touches it'
+has "$dir/err" ':19:45: drivers[1]: m2 drives what m1 drives already'
+has "$dir/err" 'bodies[0].mass: a has 1 kg and b has 1e+09 kg'
+is "$(wc -l <"$dir/err" | tr -d ' ')" 6
+expect 'strict' 1 "$program" check --strict "$dir/doubtful.yaml"
+has "$dir/err" "$dir/doubtful.yaml: --strict: 6 warnings, must be none"
+expect 'strict json' 1 "$program" check --strict --json "$dir/doubtful.yaml"
+has "$dir/out" '"warnings": ["'
+expect 'strict run' 1 "$program" run --strict "$dir/doubtful.yaml" -o "$dir/strict"
+is "$(ls "$dir/strict" 2>/dev/null)" ''
+sed -e '/length: 3/d' -e '/spare/d' -e 's/gravity.*//' -e 's/, {name: m2.*t}\]/]/' -e 's/1e9/1e8/' \
+    -e 's/radius: 1}/radius: 1, contact: false}/' -e 's/name: c, mass: 1/name: c, fixed: true/' \
+    -e 's/true, inertia: .1, 1, 1./true/' "$dir/doubtful.yaml" >"$dir/sound.yaml"
+expect 'no warnings' 0 "$program" check --strict "$dir/sound.yaml"
+is "$(cat "$dir/err")" ''
+expect 'weightless, nothing falls' 0 "$program" check "$dir/doubtful.yaml" --set used=3
+cat >"$dir/far.yaml" <<'END'
+se3d: 1
+bodies: [{name: a, mass: 1, inertia: [0.1, 0.1, 0.1], position: [9, 0, 0]}]
+joints: [{name: pin, type: spherical, body_i: ground, body_j: a, point_i: [0, 0, 0], point_j: [0.5, 0, 0]}]
+analysis: {type: dynamics, duration: 0.01}
+END
+for command in "check" "run -o $dir/far"; do
+    expect 'moved far' 0 "$program" $command "$dir/far.yaml"
+    has "$dir/err" 'body a was moved by 9.'
+    has "$dir/err" 'more than its size, 1'
+    expect 'moved far, strict' 1 "$program" $command "$dir/far.yaml" --strict
+done
 finish

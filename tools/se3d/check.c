@@ -5,6 +5,7 @@
 
 #include "options.h"
 #include "text.h"
+#include "warnings.h"
 
 static void print_text(const se3d_model *model, const se3d_check_summary *s,
                        const se3d_check *check)
@@ -30,10 +31,10 @@ static void print_text(const se3d_model *model, const se3d_check_summary *s,
     }
 }
 
-static void print_json(const options *o, const se3d_check_summary *s, const se3d_check *check)
+static void print_json(const warnings *warned, const se3d_check_summary *s, const se3d_check *check)
 {
     fputs("{\"status\": \"done\", \"model\": ", stdout);
-    json_put_text(o->model);
+    json_put_text(warned->o->model);
     printf(", \"bodies\": %zu, \"equations\": %zu, \"rank\": %zu, \"redundant\": %zu, "
            "\"inconsistent\": %zu, \"freedoms\": %zu, \"gruebler\": %" PRId64 ", \"messages\": [",
            s->bodies, s->equations, s->rank, s->redundant, s->inconsistent, s->freedoms,
@@ -45,11 +46,14 @@ static void print_json(const options *o, const se3d_check_summary *s, const se3d
             json_put_text(text);
         }
     }
-    fputs("]}\n", stdout);
+    fputs("], ", stdout);
+    warnings_put_json(warned);
+    fputs("}\n", stdout);
 }
 
-static int check_model(const options *o, se3d_model *model)
+static int check_model(const warnings *warned, se3d_model *model)
 {
+    const options *o = warned->o;
     se3d_system *system = se3d_model_get_system(model);
     se3d_check *check = NULL;
     se3d_check_summary summary = {.struct_size = sizeof summary};
@@ -60,12 +64,12 @@ static int check_model(const options *o, se3d_model *model)
         return EXIT_FAILED;
     }
     if (o->json) {
-        print_json(o, &summary, check);
+        print_json(warned, &summary, check);
     } else if (!o->quiet) {
         print_text(model, &summary, check);
     }
     se3d_check_destroy(check);
-    return summary.inconsistent > 0 ? EXIT_FAILED : EXIT_DONE;
+    return summary.inconsistent > 0 ? EXIT_FAILED : warnings_forbid(warned, EXIT_DONE);
 }
 
 static int command_check(int count, char *const *words)
@@ -77,10 +81,13 @@ static int command_check(int count, char *const *words)
         return code;
     }
     se3d_model_options how = options_get_model(&o);
+    warnings warned = {.o = &o};
     how.mass_optional = 1; /* constraints know no mass */
+    how.log = warnings_add;
+    how.log_ctx = &warned;
     code = options_read_model(&o, &how, &model);
     if (code == EXIT_DONE) {
-        code = check_model(&o, model);
+        code = check_model(&warned, model);
     }
     se3d_model_destroy(model);
     return code;
@@ -94,14 +101,19 @@ const command_entry check_entry = {
     .summary = "count equations and freedoms, name redundant constraints",
     .text = "Reads a model and says how many bodies, equations and degrees of freedom it "
             "has at its present pose, and names redundant and inconsistent constraints "
-            "and bodies that nothing holds.",
+            "and bodies that nothing holds. Warns of what is probably a mistake: parameters and "
+            "points that nothing uses, bodies that fall, shapes that touch nothing, masses far "
+            "apart, and bodies that the assembly moves by more than their size.",
     .options =
         (const command_option[]){COMMAND_OPTION_SET,
+                                 COMMAND_OPTION_STRICT,
                                  COMMAND_OPTION_QUIET,
                                  {"--json", NULL, NULL, "print the counts and messages as JSON"},
                                  {0}},
     .examples = (const command_example[]){{"check suspension.yaml", "what the joints leave free"},
                                           {"check suspension.yaml --json", "the same for programs"},
                                           {0}},
-    .exits = "0 done; 1 constraints contradict each other; 2 bad usage or model.",
+    .exits =
+        "0 done; 1 constraints contradict each other, or warnings with --strict; 2 bad usage or "
+        "model.",
 };

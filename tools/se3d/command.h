@@ -25,6 +25,10 @@ typedef struct command_option {
     {                                                                                              \
         "--quiet", "-q", NULL, "print nothing but errors"                                          \
     }
+#define COMMAND_OPTION_STRICT                                                                      \
+    {                                                                                              \
+        "--strict", NULL, NULL, "a model that is warned of has failed"                             \
+    }
 #define COMMAND_OPTIONS_OF_SOLVERS                                                                 \
     {"--formulation", NULL, "F", "{formulations}"}, {"--method", NULL, "M", "{methods}"},          \
         {"--step", NULL, "H", "step [s]"},                                                         \

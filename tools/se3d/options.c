@@ -87,6 +87,9 @@ static int *flag_target(options *o, const char *name)
     if (strcmp(name, "--resume") == 0) {
         return &o->resume;
     }
+    if (strcmp(name, "--strict") == 0) {
+        return &o->strict;
+    }
     if (strcmp(name, "--merge") == 0) {
         return &o->merge;
     }

@@ -38,6 +38,7 @@ typedef struct options {
     int merge_fixed;
     int free_base;
     int resume;
+    int strict;
     int merge;
     int server;
     int help; /* it was printed */

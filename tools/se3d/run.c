@@ -626,7 +626,8 @@ static int command_run(int count, char *const *words)
                        "the model, or give --analysis and --duration");
         code = EXIT_USAGE;
     } else {
-        code = run_model(&warned, model, NULL);
+        code = warnings_forbid(&warned, EXIT_DONE);
+        code = code == EXIT_DONE ? warnings_forbid(&warned, run_model(&warned, model, NULL)) : code;
     }
     se3d_model_destroy(model);
     return code;
@@ -653,6 +654,7 @@ const command_entry run_entry = {
             {"--resume", NULL, NULL,
              "go on with a run that was ended, from its last checkpoint, or begin if there is "
              "none: the results are the same to the byte"},
+            COMMAND_OPTION_STRICT,
             COMMAND_OPTION_QUIET,
             {"--json", NULL, NULL, "print the summary as JSON, with the warnings"},
             {0}},

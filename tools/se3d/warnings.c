@@ -40,7 +40,11 @@ void warnings_add(void *ctx, se3d_log_level level, se3d_log_kind kind, const cha
     snprintf(w->text[w->count++], WARNING_SIZE, "%s", message);
     if (!w->o->quiet && !w->o->json && !is_reported(kind)) {
         progress_clear();
-        fprintf(stderr, "%s: warning: %s\n", w->o->model, message);
+        if (kind == SE3D_LOG_MODEL) { /* it begins with its place */
+            fprintf(stderr, "warning: %s\n", message);
+        } else {
+            fprintf(stderr, "%s: warning: %s\n", w->o->model, message);
+        }
     }
 }
 
@@ -49,4 +53,25 @@ void warnings_conclude(const warnings *w)
     if (w->more > 0 && !w->o->quiet && !w->o->json) {
         fprintf(stderr, "%s: warning: %zu more warnings like these\n", w->o->model, w->more);
     }
+}
+
+int warnings_forbid(const warnings *w, int code)
+{
+    const size_t count = w->count + w->more;
+    if (!w->o->strict || count == 0 || code != EXIT_DONE) {
+        return code;
+    }
+    fprintf(stderr, "%s: --strict: %zu warning%s, must be none\n", w->o->model, count,
+            count == 1 ? "" : "s");
+    return EXIT_FAILED;
+}
+
+void warnings_put_json(const warnings *w)
+{
+    fputs("\"warnings\": [", stdout);
+    for (size_t k = 0; k < w->count; ++k) {
+        fputs(k > 0 ? ", " : "", stdout);
+        json_put_text(w->text[k]);
+    }
+    fputs("]", stdout);
 }

@@ -19,5 +19,10 @@ typedef struct warnings {
 void warnings_add(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message);
 /* After the run, how many were not shown. */
 void warnings_conclude(const warnings *w);
+/* With --strict, a command that would end well fails if anything was warned of, after a message.
+ * @return the exit code */
+int warnings_forbid(const warnings *w, int code);
+/* "warnings": [...] */
+void warnings_put_json(const warnings *w);
 
 #endif

@@ -33,6 +33,7 @@ typedef struct se3di_reader {
     uint64_t content;          /* hash of them */
     const se3di_named *values; /* [value_count] in place of parameters of the model */
     size_t value_count;
+    bool is_geometric;                     /* nothing that is asked for depends on masses */
     const struct se3di_study_entry *study; /* that the model is a sample of: outputs and `study`
                                               itself are passed over; NULL: it is none */
 } se3di_reader;
@@ -56,6 +57,8 @@ bool se3di_reader_fail_system(se3di_reader *reader, const se3di_node *map, se3d_
 
 /* `node` must be a map whose keys are those of `object` (and, if it has types, of its type). */
 bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_object *object);
+/* Not a value that YAML has cut at its commas. */
+bool se3di_check_whole(se3di_reader *reader, const se3di_node *node);
 /* The `type` of a map, one of `types`; `what` is "a joint type", ... */
 bool se3di_read_type(se3di_reader *reader, const se3di_node *node, const se3di_object *object,
                      const char **type);

@@ -49,9 +49,10 @@ typedef struct se3di_element_entry {
     double point[3];             /* where */
     /* How it is drawn: a pair with points (1), also with an axis (2), a spring (3); 0: not. */
     int32_t drawn;
-    bool is_turned;     /* mirrored joint whose angle counts the other way round */
-    bool is_paired;     /* wheel that has an opposite one */
-    int32_t coordinate; /* se3d_joint_coordinate of a driver, friction or stop */
+    bool is_turned;         /* mirrored joint whose angle counts the other way round */
+    bool is_paired;         /* wheel that has an opposite one */
+    int32_t coordinate;     /* se3d_joint_coordinate of a driver, friction or stop */
+    se3d_constraint driven; /* the joint of a driver */
     se3d_body body_i;
     se3d_body body_j;
     double point_i[3]; /* body frames */

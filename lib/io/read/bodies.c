@@ -266,8 +266,8 @@ static bool read_inertia(se3di_reader *reader, const se3di_node *node, double in
     }
     if (node->kind != SE3DI_NODE_LIST || node->count != 3) {
         return se3di_reader_fail(reader, node,
-                                 "must be [Ixx, Iyy, Izz], [Ixx, Iyy, Izz, Ixy, Ixz, Iyz in the "
-                                 "order xx yy zz xy yz xz] or three rows of three numbers");
+                                 "must be [Ixx, Iyy, Izz], [Ixx, Iyy, Izz, Ixy, Iyz, Ixz] or three "
+                                 "rows of three numbers");
     }
     if (node->first->kind != SE3DI_NODE_LIST) {
         return se3di_read_vector(reader, node, 3, inertia);
@@ -304,7 +304,8 @@ static bool read_mass(se3di_reader *reader, const se3di_node *node, se3d_body_de
     if (def->fixed || (mass && inertia)) {
         return true;
     }
-    const bool optional = reader->options->mass_optional || node->incomplete;
+    const bool optional =
+        reader->options->mass_optional || reader->is_geometric || node->incomplete;
     if (mass && !optional) {
         return se3di_reader_fail_key(reader, node, "inertia",
                                      "is missing, must be given with the mass [kg m^2]");

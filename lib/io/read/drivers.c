@@ -79,6 +79,7 @@ static bool read_driver(se3di_reader *reader, const se3di_node *node)
     }
     def.name = entry->name;
     entry->coordinate = def.coordinate;
+    entry->driven = def.joint;
     const se3d_status status = se3d_driver_create(reader->system, &def, &entry->constraint);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }

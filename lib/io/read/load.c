@@ -16,6 +16,7 @@
 #include "io/read/mistakes.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
+#include "io/read/warn.h"
 
 void se3d_model_options_init(se3d_model_options *options, size_t size)
 {
@@ -185,8 +186,28 @@ static bool read_mechanism(se3di_reader *reader)
            read_section(reader, se3di_read_wheels);
 }
 
+/* Whether the analyses, of which there is one, compute motions from constraints alone. */
+static bool is_geometric(const se3di_reader *reader, const se3di_node *root)
+{
+    static const char kinds[] = " assembly kinematics ";
+    const se3di_node *all = se3di_node_get(root, "analysis");
+    const bool is_list = all && all->kind == SE3DI_NODE_LIST;
+    if (reader->options->analysis) {
+        return se3di_keys_contain(kinds, reader->options->analysis);
+    }
+    for (const se3di_node *one = is_list ? all->first : all; one;
+         one = is_list ? one->next : NULL) {
+        const se3di_node *type = one->kind == SE3DI_NODE_MAP ? se3di_node_get(one, "type") : NULL;
+        if (!type || !type->text || !se3di_keys_contain(kinds, type->text)) {
+            return false;
+        }
+    }
+    return is_list ? all->count > 0 : all != NULL;
+}
+
 static bool read_model(se3di_reader *reader, se3di_library *library, const se3di_node *root)
 {
+    reader->is_geometric = is_geometric(reader, root);
     return read_head(reader, root) && se3di_read_main_part(reader, root) &&
            create_system(reader, root) && se3di_read_materials(reader, root) &&
            se3di_read_parts(reader, library) && read_mechanism(reader) &&
@@ -211,7 +232,8 @@ se3d_status se3di_model_fill(se3di_attempt *attempt)
                            .values = attempt->values,
                            .value_count = attempt->value_count,
                            .study = attempt->study};
-    const bool good = read_model(&reader, attempt->library, model->root);
+    const bool good = read_model(&reader, attempt->library, model->root) &&
+                      (!attempt->warns || se3di_warn_of_model(&reader));
     attempt->fault = reader.fault;
     attempt->attached = reader.attached;
     model->content = reader.content;
@@ -301,7 +323,7 @@ se3d_status se3d_model_read_text(const char *text, size_t length, const char *na
         status = fail_early(error, SE3D_ERR_NO_MEMORY, "", "out of memory");
     }
     se3di_attempt attempt = {
-        .model = model, .options = &used, .error = error, .library = model->library};
+        .model = model, .options = &used, .error = error, .library = model->library, .warns = true};
     if (model->library) {
         model->library->pool = &model->pool;
     }

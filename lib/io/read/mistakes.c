@@ -90,6 +90,7 @@ static void look_further(search *s, const se3di_attempt *first, size_t length)
     se3d_status status = SE3D_ERR_MODEL;
     size_t work = 0;
     next.error = &error;
+    next.warns = false;
     for (int k = 0; k < READINGS_MAX && work < WORK_MAX && status == SE3D_ERR_MODEL; ++k) {
         const bool new = !se3di_recovery_expects(&s->recovery, &next.fault) &&
                          !is_repeated(s, &error, &next.fault);

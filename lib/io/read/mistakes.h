@@ -19,6 +19,7 @@ typedef struct se3di_attempt {
     const se3di_named *values; /* [value_count] in place of parameters; NULL: none */
     size_t value_count;
     const struct se3di_study_entry *study; /* that it is a sample of; NULL: none */
+    bool warns;                            /* of what is probably a mistake, to the log */
 } se3di_attempt;
 
 /* load.c: an empty model with its own memory (NULL: out of memory), and a model from its root. */
