@@ -347,6 +347,13 @@ static const bad_input table[] = {
     {WITH("drivers: [{joint: pin, rate: 2 mm}]"), 4, 30, {"is a length [m], must be"}},
     {WITH("drivers: [{joint: pin, rate: 2*pin.angle}]"), 4, 32, {"drivers[0].rate"}},
     {WITH("drivers: [{joint: pin, rate: 1, start: 2 kg}]"), 4, 40, {"must be an angle [rad]"}},
+    {WITH("drivers: [{joint: pin, speed: 2}]"), 4, 24, {"did you mean `rate`"}},
+    {WITH("drivers: [{joint: pin, value: step(t,0,0,1,1)}]"),
+     4,
+     31,
+     {"`step(t, 0, 0, 1, 1)` is cut at its commas", "needs quotes"}},
+    {WITH("parameters: {a: hypot(3, 4)}"), 4, 17, {"`hypot(3, 4)` is cut at its commas"}},
+    {WITH("drivers: [{joint: pin, value: sin(t, name: x}]"), 4, 0, {"no closing parenthesis"}},
     {WITH("drivers: [{joint: pin, coordinate: displacement, value: t}]"),
      4,
      36,
@@ -779,7 +786,8 @@ static void all_mistakes_of_a_draft_are_reported(void)
         "at: [L, 0, 0], axis: [0, 0, 0]}\n"
         "  - {name: c, type: prismatic, body_i: ground, body_j: blok, "
         "at: [L, 0, 0], axis: [1, 0, 0]}\n"
-        "drivers: [{name: motor, joint: a, value: \"2*pi*T\"}]\n"
+        "drivers: [{name: motor, joint: a, value: \"2*pi*T\"}, "
+        "{joint: c, value: step(t,0,0,1,1)}]\n"
         "forces: [{type: tsda, body_i: ground, body_j: block, k: 1e3}]\n"
         "analysis: {type: dynamic, time: 2}\n"
         "output: [{file: a.csv, channels: [block.postion, rod.position]}]\n";
@@ -797,6 +805,7 @@ static void all_mistakes_of_a_draft_are_reported(void)
                                            ":11:80: joints[1].axis: is [0, 0, 0]",
                                            ":12:56: joints[2].body_j: ",
                                            ":13:48: drivers[0].value: `2*pi*T`: unknown name 'T'",
+                                           ":13:71: drivers[1].value: `step(t, 0, 0, 1, 1)` is",
                                            ":15:18: analysis.type: ",
                                            ":15:27: analysis: the key `time`",
                                            ":16:35: output[0].channels[0]: ",

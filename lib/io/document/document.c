@@ -11,6 +11,8 @@
 
 #include "io/base/pool.h"
 
+enum { SHOWN = 120 }; /* characters of a value that was cut */
+
 typedef struct builder {
     se3di_iopool *pool;
     const char *file;
@@ -21,6 +23,7 @@ typedef struct builder {
     size_t nodes;
     const char *key; /* of the value that comes next, in a map */
     yaml_mark_t key_mark;
+    bool at_rest; /* of an expression that was cut: the value that comes next is none */
     se3d_status status;
 } builder;
 
@@ -128,6 +131,57 @@ static bool check_key(builder *b, const char *key, yaml_mark_t mark)
     return true;
 }
 
+/* The value of an open map that a comma in braces has cut, as in {value: hypot(3, 4)}; NULL: the
+ * last one is whole. */
+static se3di_node *find_cut(const builder *b)
+{
+    se3di_node *last = b->open->flow ? b->open->last : NULL;
+    int open = 0;
+    if (!last || last->kind != SE3DI_NODE_SCALAR || !last->plain) {
+        return NULL;
+    }
+    for (const char *at = last->text; *at; ++at) {
+        open += (*at == '(') - (*at == ')');
+    }
+    return open > 0 ? last : NULL;
+}
+
+/* The rest of the expression, which YAML takes for a key without a value; as much as is shown. */
+static bool join(builder *b, se3di_node *cut, const char *text)
+{
+    const size_t length = strlen(cut->text), rest = strlen(text);
+    cut->is_cut = true;
+    b->at_rest = true;
+    if (length + rest > SHOWN) {
+        return true;
+    }
+    char *whole = se3di_iopool_alloc(b->pool, length + rest + 3);
+    if (!whole) {
+        return fail_memory(b);
+    }
+    memcpy(whole, cut->text, length);
+    memcpy(whole + length, ", ", 2);
+    memcpy(whole + length + 2, text, rest);
+    cut->text = whole;
+    cut->one_line = false;
+    return true;
+}
+
+/* What was taken for the rest of an expression is a key with a value. */
+static bool fail_cut(builder *b, const yaml_event_t *event)
+{
+    return fail_at(b, event->start_mark, b->open,
+                   "`%.80s` has no closing parenthesis, or was cut at a comma: inside { } an "
+                   "expression with a comma needs quotes",
+                   b->open->last->text);
+}
+
+static bool on_key(builder *b, const char *text, const yaml_event_t *event)
+{
+    se3di_node *cut = event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE ? find_cut(b) : NULL;
+    return cut ? join(b, cut, text) : check_key(b, text, event->start_mark);
+}
+
 static bool on_scalar(builder *b, const yaml_event_t *event)
 {
     const char *value = (const char *)event->data.scalar.value;
@@ -140,12 +194,19 @@ static bool on_scalar(builder *b, const yaml_event_t *event)
     if (memchr(value, 0, length)) {
         return fail_at(b, event->start_mark, b->open, "a text with a NUL character in it");
     }
+    if (b->at_rest && length == 0) {
+        b->at_rest = false;
+        return true;
+    }
+    if (b->at_rest) {
+        return fail_cut(b, event);
+    }
     const char *text = se3di_iopool_copy(b->pool, value, length);
     if (!text) {
         return fail_memory(b);
     }
     if (b->open && b->open->kind == SE3DI_NODE_MAP && !b->key) {
-        return check_key(b, text, event->start_mark);
+        return on_key(b, text, event);
     }
     se3di_node *node = add_node(b, SE3DI_NODE_SCALAR, event);
     if (!node) {
@@ -162,6 +223,9 @@ static bool on_scalar(builder *b, const yaml_event_t *event)
 
 static bool on_open(builder *b, const yaml_event_t *event, se3di_node_kind kind)
 {
+    if (b->at_rest) {
+        return fail_cut(b, event);
+    }
     if (b->open && b->open->kind == SE3DI_NODE_MAP && !b->key) {
         return fail_at(b, event->start_mark, b->open, "a key must be a plain text");
     }
@@ -173,6 +237,8 @@ static bool on_open(builder *b, const yaml_event_t *event, se3di_node_kind kind)
     if (!node) {
         return false;
     }
+    node->flow =
+        kind == SE3DI_NODE_MAP && event->data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
     b->open = node;
     ++b->depth;
     return true;

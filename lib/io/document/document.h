@@ -23,6 +23,8 @@ typedef struct se3di_node {
     se3di_node_kind kind;
     bool plain;        /* scalar without quotes */
     bool incomplete;   /* a part of it was taken out, see recovery.h */
+    bool flow;         /* map in braces */
+    bool is_cut;       /* scalar without quotes that commas have cut: `text` is the whole */
     bool one_line;     /* scalar whose characters stand in the file as in `text`, on one line */
     size_t line;       /* 1-based; 0: not from the file (an option of the command line) */
     size_t column;     /* 1-based, in characters */

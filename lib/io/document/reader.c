@@ -50,6 +50,14 @@ static bool fail_unknown_key(se3di_reader *reader, const se3di_node *child,
     return se3di_reader_fail_at(reader, child, child->key_line, child->key_column, path, text);
 }
 
+bool se3di_check_whole(se3di_reader *reader, const se3di_node *node)
+{
+    return !node->is_cut || se3di_reader_fail(reader, node,
+                                              "`%.120s` is cut at its commas: inside { } an "
+                                              "expression with a comma needs quotes",
+                                              node->text);
+}
+
 bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_object *object)
 {
     if (node->kind != SE3DI_NODE_MAP) {
@@ -57,6 +65,9 @@ bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_o
                                  se3di_node_describe(node), object->keys[0].key);
     }
     for (se3di_node *child = node->first; child; child = child->next) {
+        if (!se3di_check_whole(reader, child)) {
+            return false;
+        }
         const bool known = reader->study && child->row; /* by the reading of the model itself */
         child->row = known ? child->row : se3di_object_find(object, NULL, child->key);
         if (!child->row) {

@@ -90,6 +90,9 @@ bool se3di_check_expression(se3di_reader *reader, const se3di_node *node)
         return se3di_reader_fail(reader, node, "is %s, must be a number or an expression",
                                  se3di_node_describe(node));
     }
+    if (!se3di_check_whole(reader, node)) {
+        return false;
+    }
     static const char *const special[] = {".nan", ".NaN",  ".NAN",  "nan",      "NaN",      "NAN",
                                           ".inf", "-.inf", "+.inf", ".Inf",     "-.Inf",    ".INF",
                                           "inf",  "-inf",  "+inf",  "Infinity", "-Infinity"};
