@@ -174,7 +174,7 @@ has "$dir/err" ':2:90: bodies[1]: the key `omega` is unknown, did you mean `angu
 has "$dir/err" ':3:17: joints[0].type: the joint type `hinge` is not supported, did you mean `revolute`?'
 has "$dir/err" '       |                 ^'
 has "$dir/err" '4 mistakes'
-has "$dir/out" '"mistakes": [{"line": 2, "column": 42, "message": '
+has "$dir/out" "\"mistakes\": [{\"file\": \"$dir/worse.yaml\", \"line\": 2, \"column\": 42, \"message\": "
 printf '\357\273\277se3d: 2\n' >"$dir/worse.yaml"
 expect 'a mark of the byte order' 2 "$program" check "$dir/worse.yaml"
 has "$dir/err" '     1 | se3d: 2'

@@ -131,14 +131,18 @@ static void show(const options *o, const mistakes *m)
     }
 }
 
-static void print_json(const mistakes *m, const char *message)
+static void print_json(const options *o, const mistakes *m, const char *message)
 {
+    char file[1024];
     fputs("{\"status\": \"error\", \"message\": ", stdout);
     json_put_text(message);
     fputs(", \"mistakes\": [", stdout);
     for (size_t k = 0; k < m->count; ++k) {
-        printf("%s{\"line\": %zu, \"column\": %zu, \"message\": ", k > 0 ? ", " : "",
-               m->list[k].line, m->list[k].column);
+        get_file(o, &m->list[k], file, sizeof file);
+        fputs(k > 0 ? ", {\"file\": " : "{\"file\": ", stdout);
+        json_put_text(file);
+        printf(", \"line\": %zu, \"column\": %zu, \"message\": ", m->list[k].line,
+               m->list[k].column);
         json_put_text(m->list[k].message);
         fputs("}", stdout);
     }
@@ -161,7 +165,7 @@ int options_read_model(const options *o, const se3d_model_options *how, se3d_mod
     }
     show(o, &m);
     if (o->json) {
-        print_json(&m, error.message);
+        print_json(o, &m, error.message);
     }
     return EXIT_USAGE;
 }
