@@ -172,4 +172,22 @@ for channel in particles.energy sand.energy contacts.force_max energy.dissipated
         "$dir/grains.yaml" >"$dir/event.yaml"
     expect "an event on $channel" 0 "$program" run "$dir/event.yaml" -o "$dir/o"
 done
+
+# Kinematics knows no masses; two drivers of one coordinate are both named, and a time is told once.
+cat >"$dir/light.yaml" <<'END'
+se3d: 1
+bodies: [{name: a}]
+joints: [{name: pin, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, 1]}]
+drivers: [{name: m1, joint: pin, rate: 60 rpm, start: 90 deg}]
+analysis: {type: kinematics, duration: 1, step: 0.25}
+output: [{file: r.csv, channels: [pin.angle]}]
+END
+expect 'kinematics without masses' 0 "$program" run "$dir/light.yaml" -o "$dir/o"
+is "$(tail -1 "$dir/o/r.csv" | cut -c 1-10)" '1,7.853981'
+expect 'dynamics without masses' 2 "$program" run "$dir/light.yaml" -o "$dir/o" --analysis dynamics
+says 'bodies[0].mass: is missing'
+sed 's/90 deg}/90 deg}, {name: m2, joint: pin, value: t}/' "$dir/light.yaml" >"$dir/both.yaml"
+expect 'two drivers' 1 "$program" run "$dir/both.yaml" -o "$dir/o"
+says 'm2 drives what m1 drives already'
+says 'failed at t = 0 s: the constraints'
 finish

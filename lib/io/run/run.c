@@ -371,14 +371,27 @@ static const char *advise(se3d_status status, int32_t analysis)
     }
 }
 
+/* A message without the time that it begins with, if that is told already. */
+static const char *without_time(const char *message, double now)
+{
+    char head[64];
+    for (int digits = 6; digits <= 9; digits += 3) {
+        const int length = snprintf(head, sizeof head, "t = %.*g s: ", digits, now);
+        if (strncmp(message, head, (size_t)length) == 0) {
+            return message + length;
+        }
+    }
+    return message;
+}
+
 static se3d_status fail_analysis(se3di_runner *r, const se3di_analysis_entry *entry,
                                  se3d_status status, double target)
 {
     char text[1000];
     char way[80] = "";
-    const char *why = se3d_system_get_error(r->model->system);
     double now = r->time;
     se3d_system_get_time(r->model->system, &now);
+    const char *why = without_time(se3d_system_get_error(r->model->system), now);
     if (target > now) {
         snprintf(way, sizeof way, " on the way to t = %.9g", target);
     }
