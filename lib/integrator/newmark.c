@@ -21,7 +21,6 @@
 #define SPAN_LEAST  0.5  /* from a_n to a, over the step */
 #define FIRST_STEP  0.3  /* of the root of the tolerance, over the rates */
 #define PART_LEAST  0.01 /* of an equal step that does not converge */
-#define PHASE       12.0 /* rad of the motion over which local errors add up */
 #define JUMP_ERROR  360. /* over the tolerance, if the acceleration jumps: 30 a radian */
 
 /* memcpy if count may be zero and the pointers NULL. */
@@ -148,32 +147,11 @@ static se3d_status restart(se3di_integration *integration, double h)
     return SE3D_OK;
 }
 
-/* The largest velocities of the model's state, or what its accelerations make on the way of its
- * length and a turn of 1 rad: [0] of translation, [1] of rotation. */
-static void find_scales(const se3di_assembly *assembly, const double *vdot, double scale[2])
-{
-    const double length = se3di_newmark_get_history(assembly).header->scale.length;
-    double a = 0.0, wdot = 0.0;
-    scale[0] = scale[1] = 1e-12;
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
-        if (se3di_state_is_carrier(assembly, k)) {
-            continue;
-        }
-        scale[0] = fmax(scale[0], se3di_norm(frame->v));
-        scale[1] = fmax(scale[1], se3di_norm(frame->w));
-        a = fmax(a, se3di_norm(vdot + 6 * k));
-        wdot = fmax(wdot, se3di_norm(vdot + 6 * k + 3));
-    }
-    scale[0] = fmax(scale[0], sqrt(a * length));
-    scale[1] = fmax(scale[1], sqrt(wdot));
-}
-
 /* Grow the scales of velocities to those of the accepted state, which is the model's. */
 static void grow_scales(const se3di_assembly *assembly, const se3di_newmark_history *past)
 {
     double scale[2];
-    find_scales(assembly, past->vdot, scale);
+    se3di_newmark_find_scales(assembly, past->vdot, scale);
     se3di_state_scale *kept = &past->header->scale;
     kept->speed = fmax(0.95 * kept->speed, scale[0]);
     kept->spin = fmax(0.95 * kept->spin, scale[1]);
@@ -282,8 +260,7 @@ static void move_history(const se3di_assembly *assembly, const se3di_newmark_his
     *place *= ratio;
 }
 
-/* vdot goes on as in the last step. */
-static void predict(se3di_newmark_step *step)
+void se3di_newmark_predict(se3di_newmark_step *step)
 {
     const se3di_newmark_history past = se3di_newmark_get_history(step->assembly);
     const double last = past.header->last;
@@ -320,39 +297,8 @@ static se3di_newmark_step begin_step(se3di_integration *integration, double h)
     set_coefficients(&step, past.header->place);
     integration->equations->redundant |= past.header->redundant > 0.0;
     se3di_assembly_get_velocity(assembly, step.v_n);
-    predict(&step);
+    se3di_newmark_predict(&step);
     return step;
-}
-
-/* The local error of velocities in a unit of time in which they change by themselves, added up over
- * PHASE such units, relative to the tolerance: from the third derivative of the motion, by
- * differences of velocities. */
-static double estimate_error(const se3di_newmark_step *step)
-{
-    const se3di_newmark_history past = se3di_newmark_get_history(step->assembly);
-    const se3di_newmark_header *header = past.header;
-    const double last = header->last, h = step->h;
-    const double place = header->place / h;
-    const double span = (0.5 - place) / step->gamma;
-    const double constant = fabs(0.5 * place + step->beta * span - 1.0 / 6.0) + 1.0 / 12.0;
-    double worst = 0.0, scale[2];
-    find_scales(step->assembly, step->vdot, scale);
-    for (size_t k = 0; k < step->assembly->unknown_count; ++k) {
-        const se3di_frame *frame = &step->assembly->model->frames[step->assembly->free_body[k / 6]];
-        const double v = k % 6 < 3 ? frame->v[k % 6] : frame->w[k % 6 - 3];
-        const double before = past.y_begin[SE3DI_STATE_SIZE * (k / 6) + 7 + k % 6];
-        const double mean = last > 0.0 ? (step->v_n[k] - before) / last : step->vdot_n[k];
-        const double jerk = 2.0 * fabs((v - step->v_n[k]) / h - mean) / (h + last);
-        const size_t kind = k % 6 / 3;
-        const double change[6] = {jerk};
-        const double size =
-            se3di_state_is_carrier(step->assembly, k / 6)
-                ? se3di_state_part(step->assembly, k / 6, &header->scale, change)
-                : jerk / fmax(scale[kind], kind ? header->scale.spin : header->scale.speed);
-        worst = size <= worst ? worst : size; /* NaN stays */
-    }
-    return PHASE * constant * h * h * worst /
-           fmax(step->integration->settings.tolerance, SE3DI_NEWMARK_REACH);
 }
 
 /* All that may fail is done. */
@@ -427,7 +373,9 @@ static se3d_status step_to(se3di_integration *integration, double h, double t, d
     integration->error = HUGE_VAL;
     integration->fraction = 0.0;
     if (status >= 0) {
-        integration->error = most > 0.0 ? estimate_error(&step) : 0.0;
+        status = se3di_newmark_estimate(&step, most, &integration->error);
+    }
+    if (status >= 0) {
         const int misses = most > 0.0 && misses_impact(&step);
         const int is_refused = misses || !(integration->error <= most);
         status = is_refused ? SE3D_ERR_STEP_SIZE : se3di_state_prepare(equations, t);

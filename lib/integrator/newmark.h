@@ -76,8 +76,19 @@ size_t se3di_newmark_history_count(const se3di_assembly *assembly);
 size_t se3di_newmark_work_count(const se3di_assembly *assembly);
 se3di_newmark_history se3di_newmark_get_history(const se3di_assembly *assembly);
 
+/* A first guess: vdot goes on as in the last step. */
+void se3di_newmark_predict(se3di_newmark_step *step);
 /* From a first guess of vdot and lambda. On success the frames are those of the end of the step. */
 se3d_status se3di_newmark_solve(se3di_newmark_step *step);
+
+/* Factor the Newton matrix at the state of the model, whose Jacobian is in the assembly. */
+se3d_status se3di_newmark_factor(se3di_newmark_step *step);
+
+/* The largest velocities of the model's state, or what its accelerations make on the way of its
+ * length and a turn of 1 rad: [0] of translation, [1] of rotation. */
+void se3di_newmark_find_scales(const se3di_assembly *assembly, const double *vdot, double scale[2]);
+/* *error of the solved step, relative to the tolerance; 0 if any is accepted (`most` 0). */
+se3d_status se3di_newmark_estimate(se3di_newmark_step *step, double most, double *error);
 
 #define SE3DI_NEWMARK_SAME_TIME 1e-9 /* of a step: two times are one */
 

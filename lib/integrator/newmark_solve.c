@@ -13,6 +13,7 @@
 #include <string.h>
 
 #define PLAIN_ITERATIONS 6     /* with the mass matrix alone */
+#define GOES_ASTRAY      30.0  /* a correction over the one before */
 #define REVISIONS_MAX    30    /* of elements with a memory, per step */
 #define GAP_ROUNDING     1e-14 /* relative violation of positions that is left as it is */
 #define GAP_CLOSES       1e-8  /* one correction makes such a gap rounding */
@@ -77,7 +78,7 @@ static se3d_status eval_residual(se3di_newmark_step *step)
     return SE3D_OK;
 }
 
-static se3d_status factor(se3di_newmark_step *step)
+se3d_status se3di_newmark_factor(se3di_newmark_step *step)
 {
     se3di_equations *equations = step->equations;
     if (step->exact) {
@@ -256,7 +257,7 @@ static se3d_status iterate(se3di_newmark_step *step, int refactor)
     const se3di_assembly *assembly = step->assembly;
     SE3DI_TRY(eval_residual(step));
     if (refactor) {
-        SE3DI_TRY(factor(step));
+        SE3DI_TRY(se3di_newmark_factor(step));
     }
     memcpy(step->b, equations->b, assembly->unknown_count * sizeof *step->b);
     if (assembly->row_count > 0) {
@@ -306,15 +307,35 @@ static int has_converged(const se3di_newmark_step *step)
            (shift <= 1e-11 && rate > 0.3);
 }
 
+/* Else rounding adds up in the directions of multipliers of dependent rows. */
+static void forget_dependent(se3di_newmark_step *step)
+{
+    if (step->equations->redundant) {
+        memset(step->lambda, 0, step->assembly->row_count * sizeof *step->lambda);
+    }
+}
+
+/* Where the iteration begins stiff springs are out of balance, and their force times the curvature
+ * of their length may make the matrix singular: corrections grow, and what z has taken of that
+ * stays there. From the first guess again, by matrices without negative curvature. */
+static void begin_again(se3di_newmark_step *step)
+{
+    step->integration->newton.tangent.is_convex = 1;
+    se3di_newmark_predict(step);
+    forget_dependent(step);
+    memset(step->z, 0, step->assembly->unknown_count * sizeof *step->z);
+    step->correction = HUGE_VAL;
+    update_state(step);
+}
+
 /* Newton with the mass matrix alone if there are no force elements; with the exact matrix if
  * there are, or if the other one does not do. */
 static se3d_status iterate_to_convergence(se3di_newmark_step *step)
 {
     const int32_t limit = step->integration->settings.iterations_max;
+    const int32_t *is_convex = &step->integration->newton.tangent.is_convex;
     int refactor = 1;
-    if (step->equations->redundant) { /* else rounding adds up in the dependent directions */
-        memset(step->lambda, 0, step->assembly->row_count * sizeof *step->lambda);
-    }
+    forget_dependent(step);
     step->correction = HUGE_VAL;
     for (int32_t k = 0; k < limit; ++k) {
         SE3DI_TRY(se3di_equations_ask(step->equations));
@@ -323,8 +344,12 @@ static se3d_status iterate_to_convergence(se3di_newmark_step *step)
         if (has_converged(step)) {
             return check_state(step);
         }
-        refactor = is_traced || step->equations->redundant ||
-                   (k > 0 && step->correction > (step->exact ? 0.05 : 0.25) * step->previous);
+        const double grown = step->correction / step->previous;
+        refactor = is_traced || step->equations->redundant || *is_convex ||
+                   (k > 0 && grown > (step->exact ? 0.05 : 0.25));
+        if (step->exact && !*is_convex && grown > GOES_ASTRAY) {
+            begin_again(step);
+        }
         if (k == PLAIN_ITERATIONS && !step->exact) {
             step->exact = refactor = 1;
         }
@@ -372,6 +397,7 @@ se3d_status se3di_newmark_solve(se3di_newmark_step *step)
     memset(step->z, 0, step->assembly->unknown_count * sizeof *step->z);
     update_state(step);
     const se3d_status status = iterate_with_memory(step);
+    step->integration->newton.tangent.is_convex = 0;
     se3di_kkt_set_settings(kkt, &before);
     return status;
 }

@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A spring so stiff that the joint across which it acts is as good as fixed: rounding of positions
+ * makes forces, and vibrations are a million times too fast for the step. The methods for stiff
+ * motions choose steps as if there were none, and the motion is that of the fixed joint. */
+#include "support/text_model.h"
+
+#define HEAD                                                                                       \
+    "gravity: [0, 0, -9.81]\n"                                                                     \
+    "bodies:\n"                                                                                    \
+    "  - {name: a, mass: 1, inertia: [0.01, 0.1, 0.1], position: [0.5, 0, 0]}\n"                   \
+    "  - {name: b, mass: 0.7, inertia: [0.005, 0.06, 0.06], position: [1.4, 0, 0]}\n"
+#define PIN                                                                                        \
+    "joints:\n"                                                                                    \
+    "  - {type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, 0]}\n"
+#define HINGE                                                                                      \
+    "  - {name: q, type: revolute, body_i: a, body_j: b, at: [1, 0, 0], axis: [0, 1, 0]}\n"
+#define TAIL "analysis: {type: dynamics, duration: 1}\n"
+
+static const struct link {
+    const char *name, *text;
+} links[] = {
+    {"rsda", HEAD PIN HINGE "forces: [{type: rsda, joint: q, k: k}]\n" TAIL},
+    {"tsda", HEAD PIN HINGE "forces: [{type: tsda, body_i: a, body_j: b, point_i: [0.5, 0, -0.1], "
+                            "point_j: [-0.2, 0, 0.1], k: k, l0: 0.28284271247461906}]\n" TAIL},
+    {"bushing", HEAD PIN "forces: [{type: bushing, body_i: a, body_j: b, at: [1, 0, 0], K: [k, k, "
+                         "k, k, k, k]}]\n" TAIL},
+};
+
+#define FIXED "se3d: 1\n" HEAD PIN "  - {type: fixed, body_i: a, body_j: b, at: [1, 0, 0]}\n" TAIL
+enum { LINKS = sizeof links / sizeof *links, TIMES = 4 };
+#define DURATION 0.3
+
+typedef struct path {
+    double position[TIMES][9], velocity[TIMES][9], spin[TIMES][9];
+    uint64_t steps;
+} path;
+
+static int follow(const char *text, int32_t method, double step, double tolerance, path *p)
+{
+    se3d_model *model = NULL;
+    se3d_model_error error = {0};
+    se3d_solver *solver = NULL;
+    se3d_solver_stats stats;
+    se3d_solver_def def = se3d_solver_def_default();
+    CHECK(!se3d_model_read_text(text, strlen(text), "m.yaml", NULL, &model, &error));
+    se3d_system *system = se3d_model_get_system(model);
+    def.method = method;
+    def.step = step;
+    def.tolerance = tolerance;
+    def.steps_max = 20000;
+    CHECK(!se3d_solver_create(system, &def, &solver));
+    int runs = 1;
+    for (int k = 0; k < TIMES && runs; ++k) {
+        runs = se3d_solver_run(solver, DURATION * (k + 1) / TIMES) >= 0;
+        CHECK(!se3d_body_get_all(system, 3, p->position[k], NULL, p->velocity[k], p->spin[k]));
+    }
+    if (!runs) {
+        fprintf(stderr, "%s\n", se3d_system_get_error(system));
+    }
+    CHECK(!se3d_solver_get_stats(solver, &stats));
+    p->steps = stats.steps + stats.rejected;
+    se3d_solver_destroy(solver);
+    se3d_model_destroy(model);
+    return runs;
+}
+
+static double compare(const path *a, const path *b)
+{
+    double worst = 0.0;
+    for (int k = 0; k < TIMES; ++k) {
+        for (int c = 0; c < 9; ++c) {
+            worst = fmax(worst, fabs(a->position[k][c] - b->position[k][c]));
+            worst = fmax(worst, fabs(a->velocity[k][c] - b->velocity[k][c]));
+            worst = fmax(worst, fabs(a->spin[k][c] - b->spin[k][c]));
+        }
+    }
+    return worst;
+}
+
+static void check(const struct link *link, double k, int32_t method, double step, double most)
+{
+    char text[1500];
+    static path got, truth;
+    (void)snprintf(text, sizeof text, "se3d: 1\nparameters: {k: %g}\n%s", k, link->text);
+    CHECK(follow(FIXED, SE3D_METHOD_DOP853, 0.0, 1e-12, &truth));
+    const int runs = follow(text, method, step, step > 0.0 ? 0.0 : 1e-5, &got);
+    const double error = runs ? compare(&got, &truth) : HUGE_VAL;
+    const int holds = runs && error <= most;
+    CHECK(holds);
+    if (!holds) {
+        fprintf(stderr, "%s of %g by %s, step %g: off by %.2g after %llu steps\n", link->name, k,
+                se3d_method_get_name(method), step, error, (unsigned long long)got.steps);
+    }
+}
+
+static void check_all(int32_t method, double step, double most)
+{
+    for (size_t link = 0; link < LINKS; ++link) {
+        for (int power = 13; power <= 16; ++power) {
+            check(&links[link], pow(10.0, power), method, step, most);
+        }
+    }
+}
+
+static void chosen_steps_of_the_newmark_family_are_those_of_the_slow_motion(void)
+{
+    check_all(SE3D_METHOD_GENERALIZED_ALPHA, 0.0, 1e-4);
+    check_all(SE3D_METHOD_HHT, 0.0, 1e-4);
+}
+
+static void equal_steps_of_the_newmark_family_follow_the_slow_motion(void)
+{
+    check_all(SE3D_METHOD_GENERALIZED_ALPHA, 1e-3, 1e-3);
+    check_all(SE3D_METHOD_HHT, 1e-3, 1e-3);
+}
+
+int main(void)
+{
+    RUN(chosen_steps_of_the_newmark_family_are_those_of_the_slow_motion);
+    RUN(equal_steps_of_the_newmark_family_follow_the_slow_motion);
+    return check_finish();
+}
