@@ -237,6 +237,9 @@ static se3d_status accept(se3di_radau *m, const history *past, double t)
     }
     memcpy(past->start, m->y0, m->count * sizeof *m->y0);
     set_defect(m, past->d);
+    if (m->is_stiff) { /* but for the works */
+        memcpy(past->d, m->d, bodies * sizeof *m->d);
+    }
     for (size_t k = 0; k < STAGES * m->count; ++k) {
         past->Z[k] = m->Y[k] - m->y0[k % m->count];
     }
@@ -282,6 +285,9 @@ static se3d_status attempt(se3di_radau *m, const history *past, double inner, do
     set_defect(m, m->d);
     SE3DI_TRY(se3di_radau_filter(m, m->d, error));
     *error /= inner;
+    if (m->is_stiff && !m->projects) {
+        SE3DI_TRY(se3di_radau_close(m));
+    }
     return inner == 0.0 || isfinite(*error) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 

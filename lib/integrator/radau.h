@@ -42,9 +42,11 @@ typedef struct se3di_radau {
     double *vdot, *none, *sum, *sum_q;
     double *normal;  /* what is projected away of a correction; 0 if stages are not */
     double fraction; /* of the step, that a turn of friction asks for; 0: none does */
+    double z2;       /* (frequency times step)^2 of the stiffest forces */
     double size;     /* of the last correction, relative to the tolerance, */
     double past[3];  /* and of those before, newest first: they fall in turns of three */
     int iterations, iterations_max;
+    int is_stiff; /* d is filtered */
     int projects; /* not 0: accelerations of stages are those of the states projected onto the
                      constraints, each with rows of its own: where bodies and joints make loops,
                      rows may be dependent */
@@ -59,8 +61,13 @@ se3d_status se3di_radau_prepare(se3di_radau *m);
 /* The stages, from the predictions of Y (velocities) and lambda. */
 se3d_status se3di_radau_solve(se3di_radau *m);
 /* The error estimate of the solved step, filtered by the Newton matrix, from d = h f_0 - h u'(0):
- * relative to the scales. */
-se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error);
+ * relative to the scales. If stiff forces at the start make nearly all of d, which the motion does
+ * not follow, d is what the filter has left. */
+se3d_status se3di_radau_filter(se3di_radau *m, double *d, double *error);
+
+/* Put the end of the solved step onto the constraints of positions along the Newton matrix: the
+ * projection, which knows masses only, would stretch stiff springs by what is open. */
+se3d_status se3di_radau_close(se3di_radau *m);
 
 /* Accelerations of a stage [unknowns]. */
 void se3di_radau_get_acceleration(const se3di_radau *m, int stage, double *vdot);

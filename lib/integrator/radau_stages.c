@@ -19,9 +19,14 @@
 #include <math.h>
 #include <string.h>
 
-#define STAGES   SE3DI_RADAU_STAGES
-#define RATE_MIN 1e-3
-#define STAYS    0.5 /* of the correction three iterations ago: it is rounding that remains */
+#define STAGES     SE3DI_RADAU_STAGES
+#define RATE_MIN   1e-3
+#define RATE_STIFF 0.37 /* of the iteration where forces are much stiffer than the step is short */
+#define MOST_STIFF 0.03 /* may be missing: what positions are off by, over the step, is velocity */
+#define Z2_STIFF   1e4  /* (frequency times step)^2 of such forces */
+#define CLOSINGS   3    /* of positions at the end, until rounding is left */
+#define STIFF      2.0  /* the defect at the start over what the filter leaves of it */
+#define STAYS      0.5  /* of the correction three iterations ago: it is rounding that remains */
 
 const double se3di_radau_c[3] = {0.15505102572168219, 0.64494897427831781, 1.0};
 const double se3di_radau_a[3][3] = {
@@ -445,6 +450,22 @@ static void set_weights(double W[STAGES][STAGES])
     }
 }
 
+/* The largest (frequency times step)^2 of a body held by its stiffness. */
+static double get_stiffness(const se3di_radau *m)
+{
+    const se3di_tangent *tangent = &m->integration->newton.tangent;
+    const size_t block = (size_t)m->assembly->formulation->block;
+    double largest = 0.0;
+    for (size_t k = 0; k < m->assembly->body_count; ++k) {
+        for (size_t j = 0; j < block; ++j) {
+            const size_t place = k * block * block + j * (block + 1);
+            const double part = fabs(tangent->K[place]) / tangent->M[place];
+            largest = part > largest ? part : largest;
+        }
+    }
+    return largest * m->h * m->h;
+}
+
 static se3d_status iterate(se3di_radau *m, int refactor)
 {
     static const int order[STAGES] = {0, 2, 1};
@@ -455,6 +476,7 @@ static se3d_status iterate(se3di_radau *m, int refactor)
     }
     if (refactor) {
         SE3DI_TRY(factor(m));
+        m->z2 = get_stiffness(m);
     }
     copy(m->assembly->C, m->C1, m->assembly->joint_value_count);
     for (int i = 0; i < STAGES; ++i) {
@@ -476,14 +498,17 @@ static se3d_status iterate(se3di_radau *m, int refactor)
 }
 
 /* A faster fall than RATE_MIN says nothing of what remains: if a stop or a contact comes and
- * goes between iterations, corrections blow up and fall back by many orders. */
+ * goes between iterations, corrections blow up and fall back by many orders; and if forces are
+ * stiff what is soft falls fast, and what is stiff remains. */
 static int has_converged(const se3di_radau *m, double rate)
 {
+    const int is_stiff = m->z2 > Z2_STIFF;
+    const double least = is_stiff ? RATE_STIFF : RATE_MIN, most = is_stiff ? MOST_STIFF : 1.0;
     if (rate > 0.8) {
         const int stays = m->iterations > 3 && m->size > STAYS * m->past[2];
         return m->size <= 0.1 || (stays && m->size * m->tolerance <= SE3DI_STATE_NOISE);
     }
-    return m->size * fmax(rate, RATE_MIN) / (1.0 - rate) <= 1.0;
+    return m->size * fmax(rate, least) / (1.0 - rate) <= most;
 }
 
 static se3d_status iterate_to_convergence(se3di_radau *m)
@@ -548,13 +573,32 @@ static se3d_status project_defect(se3di_radau *m)
     return status;
 }
 
-se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error)
+/* d from what the filter has left of gamma d: velocities in equations->x, positions in m->sum_q. */
+static void set_filtered(const se3di_radau *m, double *d)
+{
+    const double by = 1.0 / se3di_radau_gamma;
+    for (size_t k = 0; k < m->assembly->body_count; ++k) {
+        const double *q = m->sum_q + 6 * k, *v = m->equations->x + 6 * k;
+        double *out = d + k * SE3DI_STATE_SIZE;
+        se3di_scale(by, q, out);
+        se3di_quat_rate(m->y0 + k * SE3DI_STATE_SIZE + 3, q + 3, out + 3);
+        for (size_t j = 3; j < 7; ++j) {
+            out[j] *= by;
+        }
+        for (size_t j = 0; j < 6; ++j) {
+            out[7 + j] = by * v[j];
+        }
+    }
+}
+
+se3d_status se3di_radau_filter(se3di_radau *m, double *d, double *error)
 {
     se3di_equations *equations = m->equations;
     se3di_assembly *assembly = m->assembly;
     const size_t n = assembly->unknown_count;
     const double gamma = se3di_radau_gamma;
     const double c = gamma * m->h;
+    double whole = 0.0; /* without the filter */
     for (size_t k = 0; k < assembly->body_count; ++k) {
         const double *raw = d + k * SE3DI_STATE_SIZE;
         const double *p0 = m->y0 + k * SE3DI_STATE_SIZE + 3;
@@ -565,6 +609,7 @@ se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error)
             q[j] *= gamma;
             m->sum[6 * k + j] = -gamma * raw[7 + j];
         }
+        whole = fmax(whole, measure(m, k, q, m->sum + 6 * k));
     }
     copy(assembly->C, m->C1, assembly->joint_value_count);
     if (m->projects) {
@@ -584,6 +629,34 @@ se3d_status se3di_radau_filter(se3di_radau *m, const double *d, double *error)
         }
         const double part = measure(m, k, q, v);
         *error = part <= *error ? *error : part;
+    }
+    m->is_stiff = whole > STIFF * *error;
+    if (m->is_stiff) {
+        set_filtered(m, d);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_radau_close(se3di_radau *m)
+{
+    se3di_equations *equations = m->equations;
+    se3di_assembly *assembly = m->assembly;
+    const size_t n = assembly->unknown_count;
+    double *shift = at(m->shift, STAGES - 1, n);
+    SE3DI_TRY(se3di_assembly_eval_functions(assembly, m->t + m->h, equations->error));
+    for (int round = 0; round < CLOSINGS && assembly->row_count > 0; ++round) {
+        se3di_state_set(assembly, at(m->Y, STAGES - 1, m->count));
+        se3di_assembly_eval_phi(assembly, equations->c);
+        for (size_t k = 0; k < assembly->row_count; ++k) {
+            equations->c[k] *= -1.0;
+        }
+        memset(equations->b, 0, n * sizeof *equations->b);
+        copy(assembly->C, m->C1, assembly->joint_value_count);
+        SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
+        for (size_t k = 0; k < n; ++k) {
+            shift[k] += equations->x[k];
+        }
+        update_positions(m);
     }
     return SE3D_OK;
 }

@@ -114,8 +114,14 @@ static void equal_steps_of_the_newmark_family_follow_the_slow_motion(void)
     check_all(SE3D_METHOD_HHT, 1e-3, 1e-3);
 }
 
+static void states_within_steps_of_radau_do_not_feel_what_the_spring_is_off_by(void)
+{
+    check_all(SE3D_METHOD_RADAU, 0.0, 2e-3); /* what positions are off by, over the step */
+}
+
 int main(void)
 {
+    RUN(states_within_steps_of_radau_do_not_feel_what_the_spring_is_off_by);
     RUN(chosen_steps_of_the_newmark_family_are_those_of_the_slow_motion);
     RUN(equal_steps_of_the_newmark_family_follow_the_slow_motion);
     return check_finish();
