@@ -109,15 +109,17 @@ static int is_history_of(const se3di_model *model, int32_t method)
 }
 
 /* auto: particles move by verlet only; strong dampers hold explicit methods to small steps, or have
- * done so before. */
+ * done so before. A motion under way goes on by its method: the state would now decide otherwise. */
 static void choose_method(se3di_run *run)
 {
     const se3di_model *model = run->model;
     if (!run->automatic) {
         return;
     }
-    int stiff = run->analysis == SE3D_ANALYSIS_DYNAMICS &&
-                (is_history_of(model, SE3D_METHOD_RADAU) || se3di_stiffness_is_stiff(model));
+    const int stiff =
+        run->analysis == SE3D_ANALYSIS_DYNAMICS &&
+        (is_history_of(model, SE3D_METHOD_RADAU) ||
+         (!is_history_of(model, SE3D_METHOD_DOP853) && se3di_stiffness_is_stiff(model)));
     int32_t method = stiff ? SE3D_METHOD_RADAU : SE3D_METHOD_DOP853;
     if (model->sets) {
         method = SE3D_METHOD_VERLET;

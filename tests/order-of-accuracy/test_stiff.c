@@ -297,11 +297,58 @@ static void auto_leaves_dop853_where_decays_hold_it(void)
     }
 }
 
+/* A bar under a damper comes to rest without gravity: the slower it turns, the stiffer it seems. */
+static se3d_system *build_slowing(void)
+{
+    se3d_system *system = NULL;
+    se3d_body_def body = se3d_body_def_default();
+    se3d_joint_def joint = se3d_joint_def_default();
+    se3d_rsda_def damper = se3d_rsda_def_default();
+    se3d_force force;
+    const double none[3] = {0.0, 0.0, 0.0};
+    CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
+    CHECK(se3d_system_set_gravity(system, none) == SE3D_OK);
+    body.mass = 1.0;
+    body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+    body.angular_velocity[2] = 1.0;
+    CHECK(se3d_body_create(system, &body, &joint.body_j) == SE3D_OK);
+    CHECK(se3d_system_get_ground(system, &joint.body_i) == SE3D_OK);
+    CHECK(se3d_joint_create_revolute(system, &joint, &damper.joint) == SE3D_OK);
+    damper.c = 4.0;
+    CHECK(se3d_force_create_rsda(system, &damper, &force) == SE3D_OK);
+    return system;
+}
+
+static void new_solvers_of_auto_go_on_by_the_method_under_way(void)
+{
+    se3d_system *system = build_slowing(), *other = NULL;
+    se3d_solver *one = NULL, *two = NULL;
+    const se3d_solver_def def = se3d_solver_def_default();
+    const char *method[2] = {"", ""};
+    CHECK(se3d_solver_create(system, &def, &one) == SE3D_OK);
+    CHECK(se3d_solver_run(one, 3.0) == SE3D_OK);
+    CHECK(se3d_system_clone(system, &other) == SE3D_OK);
+    CHECK(se3d_solver_create(other, &def, &two) == SE3D_OK);
+    for (int k = 1; k <= 3; ++k) {
+        CHECK(se3d_solver_run(one, 3.0 + 0.1 * k) == SE3D_OK);
+        CHECK(se3d_solver_run(two, 3.0 + 0.1 * k) == SE3D_OK);
+        CHECK(se3d_system_hash(system) == se3d_system_hash(other));
+    }
+    CHECK(se3d_solver_get_method(one, &method[0]) == SE3D_OK);
+    CHECK(se3d_solver_get_method(two, &method[1]) == SE3D_OK);
+    CHECK(strcmp(method[0], "dop853") == 0 && strcmp(method[1], "dop853") == 0);
+    se3d_solver_destroy(one);
+    se3d_solver_destroy(two);
+    se3d_system_destroy(system);
+    se3d_system_destroy(other);
+}
+
 int main(void)
 {
     RUN(auto_looks_at_stiffness_and_says_what_it_picked);
     RUN(auto_leaves_dop853_where_the_motion_becomes_stiff);
     RUN(auto_leaves_dop853_where_decays_hold_it);
+    RUN(new_solvers_of_auto_go_on_by_the_method_under_way);
     RUN(radau_takes_no_more_steps_where_stiff);
     RUN(bdf_takes_no_more_steps_where_stiff);
     RUN(generalized_alpha_takes_no_more_steps_where_stiff);
