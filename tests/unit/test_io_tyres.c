@@ -76,6 +76,26 @@ static void the_same_tyre_in_other_units_does_the_same(void)
     }
 }
 
+/* Of editors of Windows. */
+static void marks_and_ends_of_lines_make_no_difference(void)
+{
+    double plain[SE3D_TYRE_VALUES], other[SE3D_TYRE_VALUES];
+    char text[2 * sizeof SI];
+    size_t used = 0;
+    for (const char *c = SI; *c; ++c) {
+        if (*c == '\n') {
+            text[used++] = '\r';
+        }
+        text[used++] = *c;
+    }
+    text[used] = '\0';
+    tell(SI, MODEL(""), plain);
+    tell("\xEF\xBB\xBF" SI, MODEL(""), other);
+    CHECK(memcmp(plain, other, sizeof plain) == 0);
+    tell(text, MODEL(""), other);
+    CHECK(memcmp(plain, other, sizeof plain) == 0);
+}
+
 static void the_model_file_goes_before_the_tyre_file(void)
 {
     double given[SE3D_TYRE_VALUES], file[SE3D_TYRE_VALUES];
@@ -136,6 +156,7 @@ static void files_of_other_kinds_are_refused(void)
 int main(void)
 {
     RUN(the_same_tyre_in_other_units_does_the_same);
+    RUN(marks_and_ends_of_lines_make_no_difference);
     RUN(the_model_file_goes_before_the_tyre_file);
     RUN(what_is_unknown_or_missing_is_told);
     RUN(files_of_other_kinds_are_refused);

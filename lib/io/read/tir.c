@@ -303,7 +303,7 @@ static bool read_lines(tir *t, char *text, size_t size)
     if (memchr(text, '\0', size)) {
         return fail(t, "", "has a zero byte, must be text");
     }
-    for (char *at = text; at; ++t->line) {
+    for (char *at = text + se3di_byte_order_mark_length(text, size); at; ++t->line) {
         char *end = strchr(at, '\n');
         if (end) {
             *end = '\0';
