@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "check.h"
-#include "io/write/csv.h"
+#include "io/base/number.h"
 #include "se3d/io.h"
 
 /* A model with one body `b` made of `keys`. */
@@ -175,6 +175,43 @@ static void numbers_have_a_point_in_every_locale(void)
     setlocale(LC_ALL, "C");
 }
 
+/* Limits of a controller and a law in a part that is turned are put together from numbers. */
+static void laws_are_put_together_alike_in_every_locale(void)
+{
+    static const char text[] =
+        "se3d: 1\n"
+        "bodies: [{name: b, mass: 1, inertia: [1, 1, 1]}]\n"
+        "states:\n"
+        "  - {name: s, type: pid, input: t + 9, kp: 1.5, ki: 0.5, lower: -1.5, upper: 2.5}\n"
+        "parts:\n"
+        "  p:\n"
+        "    bodies: [{name: c, mass: 1, inertia: [1, 1, 1]}]\n"
+        "    forces: [{name: f, type: force, body: c, value: [1.5*t, 2*t, 0]}]\n"
+        "instances: [{part: p, prefix: q_, orientation: {axis: [0, 0, 1], angle: 0.3}}]\n";
+    static const char *const locales[] = {"C", "de_DE.UTF-8", "fr_FR.UTF-8", "ps_AF.UTF-8"};
+    for (size_t k = 0; k < sizeof locales / sizeof *locales; ++k) {
+        se3d_model *model = NULL;
+        se3d_model_error error = {0, 0, ""};
+        se3d_state state;
+        double value = 0.0;
+        if (!setlocale(LC_ALL, locales[k])) {
+            continue;
+        }
+        if (SE3D_FAILED(se3d_model_read_text(text, strlen(text), "m", NULL, &model, &error))) {
+            fprintf(stderr, "%s: %s\n", locales[k], error.message);
+        }
+        CHECK(model != NULL);
+        if (model) {
+            const se3d_system *system = se3d_model_get_system(model);
+            CHECK(!se3d_state_find(system, "s", &state));
+            CHECK(!se3d_state_get_value(system, state, SE3D_STATE_OUTPUT, &value));
+            CHECK_NEAR(value, 2.5, 0.0);
+        }
+        se3d_model_destroy(model);
+    }
+    setlocale(LC_ALL, "C");
+}
+
 int main(void)
 {
     RUN(four_ways_to_say_an_orientation_agree);
@@ -183,5 +220,6 @@ int main(void)
     RUN(shapes_give_mass_and_inertia);
     RUN(inertia_is_read_in_three_forms);
     RUN(numbers_have_a_point_in_every_locale);
+    RUN(laws_are_put_together_alike_in_every_locale);
     return check_finish();
 }

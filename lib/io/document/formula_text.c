@@ -7,9 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/base/number.h"
 #include "io/base/pool.h"
-
-enum { NUMBER_SIZE = 40 };
 
 bool se3di_formula_fail(se3di_formula *f, const char *place, const char *format, ...)
 {
@@ -38,15 +37,12 @@ se3di_amount se3di_formula_part(const se3di_amount *a, size_t k)
 }
 
 /* An operand: its text, or the number with all its digits. */
-static const char *operand(const se3di_amount *a, char number[NUMBER_SIZE])
+static const char *operand(const se3di_amount *a, char number[SE3DI_NUMBER_SIZE])
 {
     if (a->text[0]) {
         return a->text[0];
     }
-    snprintf(number, NUMBER_SIZE, "%.17g", a->v[0]);
-    for (char *c = number; *c; ++c) {
-        *c = *c == ',' ? '.' : *c; /* the point of some locales */
-    }
+    number[se3di_number_format(a->v[0], number)] = '\0';
     return number;
 }
 
@@ -76,8 +72,8 @@ bool se3di_formula_join(se3di_formula *f, const char *mark, const se3di_amount *
         out->v[0] = *mark == '+' ? x + y : *mark == '-' ? x - y : *mark == '*' ? x * y : x / y;
         return true;
     }
-    char left[NUMBER_SIZE];
-    char right[NUMBER_SIZE];
+    char left[SE3DI_NUMBER_SIZE];
+    char right[SE3DI_NUMBER_SIZE];
     const char *l = operand(a, left);
     const char *r = operand(b, right);
     const size_t length = strlen(l) + strlen(r) + 7;
@@ -146,7 +142,7 @@ bool se3di_formula_apply(se3di_formula *f, const char *place, const char *const 
     for (size_t k = 0; k < count; ++k) {
         const char *text = arguments[k].text[0];
         constant = constant && !text;
-        length += (text ? strlen(text) : NUMBER_SIZE) + strlen(pieces[1]) + 2;
+        length += (text ? strlen(text) : SE3DI_NUMBER_SIZE) + strlen(pieces[1]) + 2;
     }
     if (constant) {
         return apply_constants(f, place, pieces, arguments, count, out);
@@ -157,7 +153,7 @@ bool se3di_formula_apply(se3di_formula *f, const char *place, const char *const 
     }
     size_t used = (size_t)snprintf(text, length + 1, "(%s", pieces[0]);
     for (size_t k = 0; k < count; ++k) {
-        char number[NUMBER_SIZE];
+        char number[SE3DI_NUMBER_SIZE];
         used += (size_t)snprintf(text + used, length + 1 - used, "%s(%s)", k > 0 ? pieces[1] : "",
                                  operand(&arguments[k], number));
     }

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/base/number.h"
 #include "io/base/rotation.h"
 #include "io/channel/law.h"
 #include "io/document/document.h"
@@ -474,6 +475,7 @@ static bool read_placed_load(se3di_reader *reader, const se3di_node *value,
     for (size_t i = 0; i < 3; ++i) {
         se3di_node sum = *value->first;
         char text[SE3D_EXPRESSION_TEXT_MAX + 1] = "0";
+        char factor[SE3DI_NUMBER_SIZE];
         size_t used = 1;
         const se3di_node *part = value->first;
         for (size_t j = 0; j < 3; ++j, part = part->next) {
@@ -491,7 +493,8 @@ static bool read_placed_load(se3di_reader *reader, const se3di_node *value,
             }
             if (column[i] != 0.0 && used < sizeof text) {
                 sum = used == 1 ? *part : sum;
-                used += (size_t)snprintf(text + used, sizeof text - used, "+%.17g*(%s)", column[i],
+                (void)se3di_number_format(column[i], factor);
+                used += (size_t)snprintf(text + used, sizeof text - used, "+%s*(%s)", factor,
                                          part->text);
             }
         }

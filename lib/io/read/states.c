@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/base/number.h"
 #include "io/base/pool.h"
 #include "io/channel/law.h"
 #include "io/document/document.h"
@@ -18,7 +19,7 @@
 #include "io/read/objects.h"
 #include "io/read/sections.h"
 
-enum { ORDER_MAX = 12, NUMBER_SIZE = 40 };
+enum { ORDER_MAX = 12, TERM_SIZE = SE3DI_NUMBER_SIZE + 8 };
 
 static const char *const time_only[] = {"t", NULL};
 static const char *const state_types[] = {"ode", "integrator", "lag", "transfer", "pid", NULL};
@@ -240,17 +241,16 @@ static void add_term(char *text, size_t size, double factor, const char *name)
 {
     const size_t used = strlen(text);
     if (factor != 0.0) {
-        snprintf(text + used, size - used, "%s%.17g*%s", used > 0 ? "+" : "", factor, name);
-        for (char *c = text + used; *c; ++c) {
-            *c = *c == ',' ? '.' : *c; /* the point of some locales */
-        }
+        char number[SE3DI_NUMBER_SIZE];
+        (void)se3di_number_format(factor, number);
+        snprintf(text + used, size - used, "%s%s*%s", used > 0 ? "+" : "", number, name);
     }
 }
 
 static bool read_lag(se3di_reader *reader, const se3di_node *node, const se3di_element_entry *entry,
                      const state_values *v)
 {
-    char text[3 * NUMBER_SIZE] = "";
+    char text[3 * TERM_SIZE] = "";
     const bool lags = v->time_constant > 0.0;
     if (!lags && strcmp(se3di_node_get(node, "type")->text, "lag") == 0) {
         return se3di_reader_fail_key(reader, node, "time_constant",
@@ -293,8 +293,8 @@ static bool read_transfer(se3di_reader *reader, const se3di_node *node,
     const size_t n = entry->order;
     double a[ORDER_MAX + 1] = {0.0};
     double b[ORDER_MAX + 1] = {0.0};
-    char rate[(ORDER_MAX + 1) * NUMBER_SIZE] = "";
-    char output[(ORDER_MAX + 1) * NUMBER_SIZE] = "";
+    char rate[(ORDER_MAX + 1) * TERM_SIZE] = "";
+    char output[(ORDER_MAX + 1) * TERM_SIZE] = "";
     if (!read_polynomial(reader, node, "denominator", n + 1, a) ||
         !read_polynomial(reader, node, "numerator", n + 1, b)) {
         return false;
@@ -345,10 +345,11 @@ static bool check_pid(se3di_reader *reader, const se3di_node *node, state_values
 static bool read_pid(se3di_reader *reader, const se3di_node *node, const se3di_element_entry *entry,
                      state_values *v)
 {
-    char sum[5 * NUMBER_SIZE] = "";
-    char least[7 * NUMBER_SIZE];
-    char output[9 * NUMBER_SIZE];
-    char rate[20 * NUMBER_SIZE] = "";
+    char sum[5 * TERM_SIZE] = "";
+    char least[7 * TERM_SIZE];
+    char output[9 * TERM_SIZE];
+    char rate[20 * TERM_SIZE] = "";
+    char number[SE3DI_NUMBER_SIZE];
     const bool is_limited = isfinite(v->lower) || isfinite(v->upper);
     if (!check_pid(reader, node, v)) {
         return false;
@@ -357,7 +358,7 @@ static bool read_pid(se3di_reader *reader, const se3di_node *node, const se3di_e
     add_term(sum, sizeof sum, filters ? v->kp + v->kd / v->filter_time : v->kp, "u");
     add_term(sum, sizeof sum, 1.0, "x1");
     if (filters) {
-        char filter[3 * NUMBER_SIZE] = "";
+        char filter[3 * TERM_SIZE] = "";
         add_term(sum, sizeof sum, -v->kd / v->filter_time, "x2");
         add_term(filter, sizeof filter, 1.0 / v->filter_time, "u");
         add_term(filter, sizeof filter, -1.0 / v->filter_time, "x2");
@@ -365,13 +366,15 @@ static bool read_pid(se3di_reader *reader, const se3di_node *node, const se3di_e
             return false;
         }
     }
-    snprintf(least, sizeof least, isfinite(v->upper) ? "min(%s,%.17g)" : "%s", sum, v->upper);
-    snprintf(output, sizeof output, isfinite(v->lower) ? "max(%s,%.17g)" : "%s", least, v->lower);
+    (void)se3di_number_format(v->upper, number);
+    snprintf(least, sizeof least, isfinite(v->upper) ? "min(%s,%s)" : "%s", sum, number);
+    (void)se3di_number_format(v->lower, number);
+    snprintf(output, sizeof output, isfinite(v->lower) ? "max(%s,%s)" : "%s", least, number);
     add_term(rate, sizeof rate, v->ki, "u");
     if (is_limited && v->ki != 0.0) {
         const size_t used = strlen(rate);
-        snprintf(rate + used, sizeof rate - used, "+(%s-(%s))/%.17g", output, sum,
-                 v->tracking_time);
+        (void)se3di_number_format(v->tracking_time, number);
+        snprintf(rate + used, sizeof rate - used, "+(%s-(%s))/%s", output, sum, number);
     }
     return set_output(reader, node, entry, output) &&
            set_rate(reader, node, entry, 0, rate[0] ? rate : "0*u");

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "io/base/number.h"
 #include "io/channel/event.h"
 
 se3d_status se3di_event_list_open(se3di_event_list *events, se3di_iopool *pool, const char *path,
@@ -25,7 +26,7 @@ se3d_status se3di_event_list_open(se3di_event_list *events, se3di_iopool *pool, 
 
 static void write_row(se3di_csv *csv, const se3d_run_event *event)
 {
-    char number[41];
+    char number[SE3DI_NUMBER_SIZE];
     number[se3di_number_format(event->time, number)] = '\0';
     se3di_csv_put_name(csv, number, false);
     se3di_csv_put_name(csv, event->name, false);

@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/base/number.h"
 #include "io/document/document.h"
 #include "io/study/design.h"
 #include "io/study/study.h"
-#include "io/write/csv.h"
 
 enum { REQUEST_MAX = 1 << 20 };
 

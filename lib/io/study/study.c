@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "io/base/number.h"
 #include "io/document/document.h"
 #include "io/study/design.h"
-#include "io/write/csv.h"
 
 static se3d_status fail(se3d_model_error *error, const char *file, se3d_status status,
                         const char *text)

@@ -8,27 +8,10 @@
 
 #include "base/hash.h"
 #include "io/base/file.h"
+#include "io/base/number.h"
 #include "io/base/pool.h"
 
-enum { BUFFER_SIZE = 1 << 16, NUMBER_SIZE = 40 };
-
-size_t se3di_number_format(double value, char *text)
-{
-    const char *const special = isnan(value) ? "nan" : value < 0.0 ? "-inf" : "inf";
-    if (!isfinite(value)) {
-        strcpy(text, special);
-        return strlen(text);
-    }
-    const int length = snprintf(text, NUMBER_SIZE, "%.17g", value);
-    const size_t head = strspn(text, "-0123456789");
-    const size_t point = strcspn(text + head, "0123456789e"); /* bytes of the decimal point */
-    if (text[head] == 'e' || text[head] == '\0') {
-        return (size_t)length;
-    }
-    text[head] = '.';
-    memmove(text + head + 1, text + head + point, (size_t)length - head - point + 1);
-    return (size_t)length - point + 1;
-}
+enum { BUFFER_SIZE = 1 << 16 };
 
 static void remember(se3di_csv *csv)
 {
@@ -153,7 +136,7 @@ void se3di_csv_put_name(se3di_csv *csv, const char *name, bool last)
 
 static void write_pending(se3di_csv *csv)
 {
-    char text[NUMBER_SIZE + 1];
+    char text[SE3DI_NUMBER_SIZE + 1];
     if (!csv->has_pending) {
         return;
     }
@@ -179,7 +162,7 @@ void se3di_csv_put_row(se3di_csv *csv, const double *row)
 
 void se3di_csv_put_cells(se3di_csv *csv, const se3di_csv_cell *cells, size_t count)
 {
-    char text[NUMBER_SIZE + 1];
+    char text[SE3DI_NUMBER_SIZE + 1];
     write_pending(csv);
     for (size_t k = 0; k < count; ++k) {
         if (cells[k].text) {

@@ -63,8 +63,4 @@ se3d_status se3di_csv_close(se3di_csv *csv);
 /* Close without keeping anything. */
 void se3di_csv_abandon(se3di_csv *csv);
 
-/* Write a number as "%.17g" with a point in every locale; `text` has at least 40 bytes. @return its
- * length. */
-size_t se3di_number_format(double value, char *text);
-
 #endif

@@ -10,9 +10,9 @@
 #include <string.h>
 
 #include "io/base/file.h"
+#include "io/base/number.h"
 #include "io/base/pool.h"
 #include "io/model/mesh.h"
-#include "io/write/csv.h"
 #include "io/write/drawing.h"
 #include "io/write/unit_mesh.h"
 

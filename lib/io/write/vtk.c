@@ -6,12 +6,12 @@
 #include <string.h>
 
 #include "io/base/file.h"
+#include "io/base/number.h"
 #include "io/base/pool.h"
 #include "io/document/document.h"
 #include "io/model/mesh.h"
 #include "io/model/model.h"
 #include "io/write/contact_list.h"
-#include "io/write/csv.h"
 #include "io/write/drawing.h"
 #include "io/write/particle_list.h"
 #include "io/write/unit_mesh.h"

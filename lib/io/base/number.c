@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "io/base/number.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+size_t se3di_number_format(double value, char *text)
+{
+    const char *const special = isnan(value) ? "nan" : value < 0.0 ? "-inf" : "inf";
+    if (!isfinite(value)) {
+        strcpy(text, special);
+        return strlen(text);
+    }
+    const int length = snprintf(text, SE3DI_NUMBER_SIZE, "%.17g", value);
+    const size_t head = strspn(text, "-0123456789");
+    const size_t point = strcspn(text + head, "0123456789e"); /* bytes of the decimal point */
+    if (text[head] == 'e' || text[head] == '\0') {
+        return (size_t)length;
+    }
+    text[head] = '.';
+    memmove(text + head + 1, text + head + point, (size_t)length - head - point + 1);
+    return (size_t)length - point + 1;
+}
