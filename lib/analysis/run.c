@@ -108,8 +108,9 @@ static int is_history_of(const se3di_model *model, int32_t method)
     return model->history_tag / SE3DI_HISTORY_TAGS == (uint64_t)method;
 }
 
-/* auto: particles move by verlet only; strong dampers hold explicit methods to small steps, or have
- * done so before. A motion under way goes on by its method: the state would now decide otherwise. */
+/* auto: particles move by verlet only; strong dampers hold explicit methods to small steps, or
+ * have done so before. A motion under way goes on by its method: the state would now decide
+ * otherwise. */
 static void choose_method(se3di_run *run)
 {
     const se3di_model *model = run->model;

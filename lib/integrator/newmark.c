@@ -260,17 +260,6 @@ static void move_history(const se3di_assembly *assembly, const se3di_newmark_his
     *place *= ratio;
 }
 
-void se3di_newmark_predict(se3di_newmark_step *step)
-{
-    const se3di_newmark_history past = se3di_newmark_get_history(step->assembly);
-    const double last = past.header->last;
-    const double ratio = last > 0.0 ? step->h / last : 0.0;
-    for (uint32_t k = 0; k < step->assembly->unknown_count; ++k) {
-        step->vdot[k] = past.vdot[k] + ratio * (past.vdot[k] - past.vdot_begin[k]);
-    }
-    copy(step->lambda, past.lambda, step->assembly->row_count);
-}
-
 static se3di_newmark_step begin_step(se3di_integration *integration, double h)
 {
     se3di_assembly *assembly = &integration->equations->assembly;

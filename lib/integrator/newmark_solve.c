@@ -315,9 +315,20 @@ static void forget_dependent(se3di_newmark_step *step)
     }
 }
 
-/* Where the iteration begins stiff springs are out of balance, and their force times the curvature
- * of their length may make the matrix singular: corrections grow, and what z has taken of that
- * stays there. From the first guess again, by matrices without negative curvature. */
+void se3di_newmark_predict(se3di_newmark_step *step)
+{
+    const se3di_newmark_history past = se3di_newmark_get_history(step->assembly);
+    const double last = past.header->last;
+    const double ratio = last > 0.0 ? step->h / last : 0.0;
+    for (uint32_t k = 0; k < step->assembly->unknown_count; ++k) {
+        step->vdot[k] = past.vdot[k] + ratio * (past.vdot[k] - past.vdot_begin[k]);
+    }
+    memcpy(step->lambda, past.lambda, step->assembly->row_count * sizeof *step->lambda);
+}
+
+/* At the beginning of the iteration stiff springs are out of balance, and their force times the
+ * curvature of their length may make the matrix singular: corrections grow, and what z has taken
+ * of that stays there. From the first guess again, by matrices without negative curvature. */
 static void begin_again(se3di_newmark_step *step)
 {
     step->integration->newton.tangent.is_convex = 1;

@@ -3,6 +3,7 @@
 #include "check.h"
 #include "contact/bodies/restitution.h"
 #include "particles/grid.h"
+#include "particles/wall.h"
 #include "se3d/se3d.h"
 #include "support/bed.h"
 #include "system/particles.h"

@@ -7,8 +7,8 @@
 
 enum { SE3DI_NUMBER_SIZE = 40 };
 
-/* Write a number as "%.17g" with a point in every locale; `text` has SE3DI_NUMBER_SIZE bytes. printf
- * alone takes the decimal point of the host program. @return its length. */
+/* Write a number as "%.17g" with a point in every locale; `text` has SE3DI_NUMBER_SIZE bytes.
+ * printf alone takes the decimal point of the host program. @return its length. */
 size_t se3di_number_format(double value, char *text);
 
 #endif
