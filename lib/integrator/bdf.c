@@ -24,7 +24,8 @@
 #include <math.h>
 #include <string.h>
 
-#define GROWTH 2.0 /* of a step at most */
+#define GROWTH 2.0  /* of a step at most */
+#define LOOSE  1e-4 /* a tolerance at which so few steps are made that their errors hardly add up */
 
 /* Newton iterations: a shorter step is worth more than many, if it can be had. */
 #define ITERATIONS_CONTROLLED 10
@@ -42,6 +43,14 @@ static size_t work_count(const se3di_assembly *assembly)
            2 * (size_t)assembly->unknown_count + assembly->row_count;
 }
 
+/* What a step may err by: local errors of order 5 add up over a number of steps that grows with
+ * tolerance^(-1/5). */
+static double local_tolerance(double tolerance)
+{
+    tolerance = fmax(tolerance, SE3DI_BDF_REACH);
+    return 0.1 * tolerance * se3di_pow(fmin(1.0, tolerance / LOOSE), 0.2);
+}
+
 /* Its arrays: behind the first `before` numbers of the work. */
 static void point_into(se3di_bdf *m, const se3di_integration *integration, size_t before)
 {
@@ -54,7 +63,7 @@ static void point_into(se3di_bdf *m, const se3di_integration *integration, size_
                      .past = (se3di_bdf_past *)(void *)assembly->model->history,
                      .base = integration->work + before,
                      .iterations_max = ITERATIONS_CONTROLLED,
-                     .tolerance = 0.1 * fmax(integration->settings.tolerance, SE3DI_BDF_REACH)};
+                     .tolerance = local_tolerance(integration->settings.tolerance)};
     m->accuracy = fmin(1e-13, fmax(1e-15, 1e-6 * m->tolerance));
     m->times = m->past->times;
     m->points = assembly->model->history + SE3DI_BDF_PAST;

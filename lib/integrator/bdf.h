@@ -7,7 +7,7 @@
 
 #include "integrator/state.h"
 
-#define SE3DI_BDF_REACH      1e-12 /* smallest tolerance of a run */
+#define SE3DI_BDF_REACH      1e-11 /* smallest tolerance of a run */
 #define SE3DI_BDF_ORDER_MAX  5
 #define SE3DI_BDF_POINTS_MAX (SE3DI_BDF_ORDER_MAX + 2)
 

@@ -51,7 +51,7 @@ static const se3di_key analysis_keys[] = {
          "[s]"},
     {"tolerance", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
      .text = "relative error, 1e-14 to 0.1, replaced by --tolerance; a method works at the least "
-         "tolerance that it can reach: dop853, gauss, rk45, rk4 7e-12, bdf 1e-12, radau 1e-13, "
+         "tolerance that it can reach: dop853, gauss, rk45, rk4 7e-12, bdf 1e-11, radau 1e-13, "
          "generalized_alpha, hht 1e-11, and the report says so"},
     {"duration", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
      .text = "[s], at most 1e9; required in kinematics, inverse_dynamics and dynamics"},
