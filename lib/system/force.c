@@ -55,11 +55,7 @@ se3d_status se3di_force_add(se3d_system *system, const se3di_force *data, se3d_f
 
 se3d_status se3d_force_create_tsda(se3d_system *system, const se3d_tsda_def *def, se3d_force *force)
 {
-    SE3DI_TRY(se3di_force_begin(system, force));
-    se3d_tsda_def full = se3d_tsda_def_default();
-    SE3DI_TRY(se3di_check_def(system, "tsda def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
-    se3di_force data = se3di_force_blank(SE3DI_FORCE_TSDA, full.name);
+    SE3DI_FORCE_BEGIN(se3d_tsda_def, "tsda def", SE3DI_FORCE_TSDA);
     SE3DI_TRY(se3di_find_body(system, "body_i", full.body_i, &data.body_i));
     SE3DI_TRY(se3di_find_body(system, "body_j", full.body_j, &data.body_j));
     SE3DI_TRY(se3di_check_finites(system, "point_i", full.point_i, 3));
@@ -147,11 +143,7 @@ static se3d_status add_with_angle(se3d_system *system, const se3di_force *data,
 
 se3d_status se3d_force_create_rsda(se3d_system *system, const se3d_rsda_def *def, se3d_force *force)
 {
-    SE3DI_TRY(se3di_force_begin(system, force));
-    se3d_rsda_def full = se3d_rsda_def_default();
-    SE3DI_TRY(se3di_check_def(system, "rsda def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
-    se3di_force data = se3di_force_blank(SE3DI_FORCE_RSDA, full.name);
+    SE3DI_FORCE_BEGIN(se3d_rsda_def, "rsda def", SE3DI_FORCE_RSDA);
     se3di_angle angle;
     SE3DI_TRY(se3di_find_law(system, "h", full.h, 3, &data.function[0]));
     SE3DI_TRY(se3di_find_function(system, "spring", full.spring, 1, &data.function[3]));
@@ -172,11 +164,7 @@ se3d_status se3d_force_create_rsda(se3d_system *system, const se3d_rsda_def *def
 static se3d_status create_load(se3d_system *system, const se3d_load_def *def, int32_t type,
                                se3d_force *force)
 {
-    SE3DI_TRY(se3di_force_begin(system, force));
-    se3d_load_def full = se3d_load_def_default();
-    SE3DI_TRY(se3di_check_def(system, "load def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
-    se3di_force data = se3di_force_blank(type, full.name);
+    SE3DI_FORCE_BEGIN(se3d_load_def, "load def", type);
     SE3DI_TRY(se3di_find_body(system, "body", full.body, &data.body_j));
     SE3DI_TRY(se3di_check_finites(system, "point", full.point, 3));
     SE3DI_TRY(se3di_check_finites(system, "value", full.value, 3));

@@ -47,11 +47,7 @@ static se3d_status find_pair(se3d_system *system, se3d_body i, se3d_body j, se3d
 se3d_status se3d_force_create_bushing(se3d_system *system, const se3d_bushing_def *def,
                                       se3d_force *force)
 {
-    SE3DI_TRY(se3di_force_begin(system, force));
-    se3d_bushing_def full = se3d_bushing_def_default();
-    SE3DI_TRY(se3di_check_def(system, "bushing def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
-    se3di_force data = se3di_force_blank(SE3DI_FORCE_BUSHING, full.name);
+    SE3DI_FORCE_BEGIN(se3d_bushing_def, "bushing def", SE3DI_FORCE_BUSHING);
     SE3DI_TRY(find_pair(system, full.body_i, full.body_j, &data));
     SE3DI_TRY(se3di_check_finites(system, "point_i", full.point_i, 3));
     SE3DI_TRY(se3di_check_finites(system, "point_j", full.point_j, 3));
@@ -83,11 +79,7 @@ static se3d_status find_coordinate(se3d_system *system, se3d_constraint handle, 
 se3d_status se3d_force_create_friction(se3d_system *system, const se3d_friction_def *def,
                                        se3d_force *force)
 {
-    SE3DI_TRY(se3di_force_begin(system, force));
-    se3d_friction_def full = se3d_friction_def_default();
-    SE3DI_TRY(se3di_check_def(system, "friction def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
-    se3di_force data = se3di_force_blank(SE3DI_FORCE_FRICTION, full.name);
+    SE3DI_FORCE_BEGIN(se3d_friction_def, "friction def", SE3DI_FORCE_FRICTION);
     SE3DI_TRY(find_coordinate(system, full.joint, full.coordinate, &data));
     data.mu = full.mu;
     data.mu_static = full.mu_static;
@@ -104,11 +96,7 @@ se3d_status se3d_force_create_friction(se3d_system *system, const se3d_friction_
 
 se3d_status se3d_force_create_stop(se3d_system *system, const se3d_stop_def *def, se3d_force *force)
 {
-    SE3DI_TRY(se3di_force_begin(system, force));
-    se3d_stop_def full = se3d_stop_def_default();
-    SE3DI_TRY(se3di_check_def(system, "stop def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
-    se3di_force data = se3di_force_blank(SE3DI_FORCE_STOP, full.name);
+    SE3DI_FORCE_BEGIN(se3d_stop_def, "stop def", SE3DI_FORCE_STOP);
     if (full.joint.index1 == 0 && full.joint.generation == 0 && full.body_j.index1 != 0) {
         data.coordinate = SE3DI_FORCE_LENGTH;
         SE3DI_TRY(find_pair(system, full.body_i, full.body_j, &data));
@@ -136,11 +124,7 @@ void se3d_effort_def_init(se3d_effort_def *def, size_t size)
 se3d_status se3d_force_create_effort(se3d_system *system, const se3d_effort_def *def,
                                      se3d_force *force)
 {
-    SE3DI_TRY(se3di_force_begin(system, force));
-    se3d_effort_def full = se3d_effort_def_default();
-    SE3DI_TRY(se3di_check_def(system, "effort def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
-    se3di_force data = se3di_force_blank(SE3DI_FORCE_EFFORT, full.name);
+    SE3DI_FORCE_BEGIN(se3d_effort_def, "effort def", SE3DI_FORCE_EFFORT);
     SE3DI_TRY(find_coordinate(system, full.joint, full.coordinate, &data));
     SE3DI_TRY(se3di_check_finite(system, "value", full.value));
     SE3DI_TRY(se3di_find_law(system, "function", full.function, 3, &data.function[0]));
@@ -184,11 +168,7 @@ se3d_status se3d_force_create_armature(se3d_system *system, const se3d_armature_
 se3d_status se3d_force_create_callback(se3d_system *system, const se3d_force_callback_def *def,
                                        se3d_force *force)
 {
-    SE3DI_TRY(se3di_force_begin(system, force));
-    se3d_force_callback_def full = se3d_force_callback_def_default();
-    SE3DI_TRY(se3di_check_def(system, "callback def", def, &full, sizeof full));
-    SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
-    se3di_force data = se3di_force_blank(SE3DI_FORCE_CALLBACK, full.name);
+    SE3DI_FORCE_BEGIN(se3d_force_callback_def, "callback def", SE3DI_FORCE_CALLBACK);
     SE3DI_TRY(find_pair(system, full.body_i, full.body_j, &data));
     if (!full.callback) {
         return SE3DI_FAIL(system, SE3D_ERR_NULL, "callback is NULL");
