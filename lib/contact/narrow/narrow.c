@@ -142,23 +142,41 @@ int se3di_narrow_is_known(const se3di_shape *i, const se3di_shape *j)
     return general[a][b].find || general[b][a].find;
 }
 
+/* Two solids in the order of the tables. */
+typedef struct ordered {
+    se3di_shape hull_i, hull_j; /* in place of meshes that are convex */
+    se3di_solid first, second;
+    int is_turned;
+} ordered;
+
+static void put_in_order(ordered *two, const se3di_shape *i, const se3di_shape_pose *at_i,
+                         const se3di_shape *j, const se3di_shape_pose *at_j)
+{
+    const se3di_solid a = {as_hull(i, j, &two->hull_i), at_i};
+    const se3di_solid b = {as_hull(j, i, &two->hull_j), at_j};
+    two->is_turned = group_of(a.shape) > group_of(b.shape);
+    two->first = two->is_turned ? b : a;
+    two->second = two->is_turned ? a : b;
+}
+
+static const pair *pair_of(const ordered *two)
+{
+    return &general[group_of(two->first.shape)][group_of(two->second.shape)];
+}
+
 void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
                        const se3di_shape_pose *at_j, se3di_manifold *manifold)
 {
-    se3di_shape hull_i, hull_j;
-    const se3di_solid a = {as_hull(i, j, &hull_i), at_i};
-    const se3di_solid b = {as_hull(j, i, &hull_j), at_j};
-    const int is_turned = group_of(a.shape) > group_of(b.shape);
-    const se3di_solid *first = is_turned ? &b : &a;
-    const se3di_solid *second = is_turned ? &a : &b;
-    const finder own = special[first->shape->kind][second->shape->kind];
-    const finder find = own ? own : general[group_of(first->shape)][group_of(second->shape)].find;
+    ordered two;
+    put_in_order(&two, i, at_i, j, at_j);
+    const finder own = special[two.first.shape->kind][two.second.shape->kind];
+    const finder find = own ? own : pair_of(&two)->find;
     manifold->count = 0;
     manifold->reserved = 0;
     if (find) {
-        find(first, second, manifold);
+        find(&two.first, &two.second, manifold);
     }
-    if (is_turned) {
+    if (two.is_turned) {
         se3di_manifold_mirror(manifold);
     }
 }
@@ -166,19 +184,15 @@ void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const
 double se3di_narrow_gap(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
                         const se3di_shape_pose *at_j, double normal[3])
 {
-    se3di_shape hull_i, hull_j;
-    const se3di_solid a = {as_hull(i, j, &hull_i), at_i};
-    const se3di_solid b = {as_hull(j, i, &hull_j), at_j};
-    const int is_turned = group_of(a.shape) > group_of(b.shape);
-    const se3di_solid *first = is_turned ? &b : &a;
-    const se3di_solid *second = is_turned ? &a : &b;
-    const measurer measure = general[group_of(first->shape)][group_of(second->shape)].gap;
+    ordered two;
+    put_in_order(&two, i, at_i, j, at_j);
+    const measurer measure = pair_of(&two)->gap;
     double gap = 0.0;
     memset(normal, 0, 3 * sizeof *normal);
     if (measure) {
-        gap = measure(first, second, normal);
+        gap = measure(&two.first, &two.second, normal);
     }
-    if (is_turned) {
+    if (two.is_turned) {
         se3di_scale(-1.0, normal, normal);
     }
     return fmax(gap, 0.0);
