@@ -47,22 +47,27 @@ static se3di_term term_between(const se3di_draft *draft, se3di_primitive_type ty
     return term;
 }
 
+/* A row of one term. */
+static void add_row_of(se3di_draft *draft, const char *name, double value, const se3di_term *term)
+{
+    se3di_draft_add_row(draft, name, value);
+    se3di_draft_add_term(draft, term, 1.0);
+}
+
 void se3di_row_add_dp1(se3di_draft *draft, const char *name, const double a_i[3],
                        const double a_j[3])
 {
     se3di_term term = term_between(draft, SE3DI_PRIMITIVE_DP1);
     se3di_copy(a_i, term.a_i);
     se3di_copy(a_j, term.a_j);
-    se3di_draft_add_row(draft, name, 0.0);
-    se3di_draft_add_term(draft, &term, 1.0);
+    add_row_of(draft, name, 0.0, &term);
 }
 
 void se3di_row_add_dp2(se3di_draft *draft, const char *name, const double a_i[3])
 {
     se3di_term term = term_between(draft, SE3DI_PRIMITIVE_DP2);
     se3di_copy(a_i, term.a_i);
-    se3di_draft_add_row(draft, name, 0.0);
-    se3di_draft_add_term(draft, &term, 1.0);
+    add_row_of(draft, name, 0.0, &term);
 }
 
 void se3di_row_add_triple(se3di_draft *draft, const char *name, const double a_i[3],
@@ -71,15 +76,13 @@ void se3di_row_add_triple(se3di_draft *draft, const char *name, const double a_i
     se3di_term term = term_between(draft, SE3DI_PRIMITIVE_TRIPLE);
     se3di_copy(a_i, term.a_i);
     se3di_copy(a_j, term.a_j);
-    se3di_draft_add_row(draft, name, 0.0);
-    se3di_draft_add_term(draft, &term, 1.0);
+    add_row_of(draft, name, 0.0, &term);
 }
 
 void se3di_row_add_d(se3di_draft *draft, double distance)
 {
     se3di_term term = term_between(draft, SE3DI_PRIMITIVE_D);
-    se3di_draft_add_row(draft, "d", distance * distance);
-    se3di_draft_add_term(draft, &term, 1.0);
+    add_row_of(draft, "d", distance * distance, &term);
 }
 
 void se3di_row_add_spherical(se3di_draft *draft)
@@ -89,8 +92,7 @@ void se3di_row_add_spherical(se3di_draft *draft)
     for (int k = 0; k < 3; ++k) {
         se3di_term term = term_between(draft, SE3DI_PRIMITIVE_CD);
         term.c[k] = 1.0;
-        se3di_draft_add_row(draft, names[k], 0.0);
-        se3di_draft_add_term(draft, &term, 1.0);
+        add_row_of(draft, names[k], 0.0, &term);
     }
     draft->constraint.pattern = is_first ? SE3DI_PATTERN_POINT : SE3DI_PATTERN_NONE;
 }

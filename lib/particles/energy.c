@@ -68,13 +68,18 @@ static int is_same(se3di_handle a, se3di_handle b)
     return a.index1 == b.index1 && a.generation == b.generation;
 }
 
+static void push(const se3di_wall *wall, double force[3], double torque[3])
+{
+    se3di_add(force, wall->force, force);
+    se3di_add(torque, wall->torque, torque);
+}
+
 void se3di_particles_push_body(const se3di_particles *set, se3di_handle body, double force[3],
                                double torque[3])
 {
     for (size_t k = 0; k < set->wall_count; ++k) {
         if (is_same(set->walls[k].body, body)) {
-            se3di_add(force, set->walls[k].force, force);
-            se3di_add(torque, set->walls[k].torque, torque);
+            push(&set->walls[k], force, torque);
         }
     }
 }
@@ -84,8 +89,7 @@ void se3di_particles_push_shape(const se3di_particles *set, se3di_handle shape, 
 {
     for (size_t k = 0; k < set->wall_count; ++k) {
         if (is_same(set->walls[k].handle, shape)) {
-            se3di_add(force, set->walls[k].force, force);
-            se3di_add(torque, set->walls[k].torque, torque);
+            push(&set->walls[k], force, torque);
         }
     }
 }
