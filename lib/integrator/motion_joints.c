@@ -87,18 +87,6 @@ static void get(se3di_equations *equations, double *y)
     memcpy(y + tree->q_count + tree->v_count, model->work, sizeof model->work);
 }
 
-/* Of a body: a (ground), wdot (body), from those of its node's point. */
-static void body_acceleration(const se3di_tree_link *link, const se3di_frame *frame, double *out)
-{
-    double turning[3], x[3];
-    se3di_cross(link->a, link->s, x);
-    se3di_add(link->a + 3, x, out);
-    se3di_cross(link->w, link->s, turning);
-    se3di_cross(link->w, turning, x);
-    se3di_add(out, x, out);
-    se3di_mul_transposed(frame->A, link->a, out + 3);
-}
-
 static const double *get_rates(se3di_equations *equations, const double *derivative, double *out)
 {
     se3di_tree *tree = equations->tree;
@@ -106,8 +94,9 @@ static const double *get_rates(se3di_equations *equations, const double *derivat
     se3di_tree_propagate(tree, derivative + tree->q_count);
     for (uint32_t k = 0; k < tree->count; ++k) {
         const uint32_t body = tree->nodes[k].body;
-        body_acceleration(&tree->links[k], &assembly->model->frames[body],
-                          out + SE3DI_STATE_SIZE * (size_t)assembly->free_index[body] + 7);
+        se3di_tree_link_acceleration(&tree->links[k], &assembly->model->frames[body],
+                                     out + SE3DI_STATE_SIZE * (size_t)assembly->free_index[body] +
+                                         7);
     }
     return out;
 }

@@ -579,20 +579,25 @@ void se3di_tree_propagate(se3di_tree *tree, const double *qddot)
     }
 }
 
+void se3di_tree_link_acceleration(const se3di_tree_link *link, const se3di_frame *frame,
+                                  double out[6])
+{
+    double turning[3], x[3];
+    se3di_cross(link->a, link->s, x);
+    se3di_add(link->a + 3, x, out);
+    se3di_cross(link->w, link->s, turning);
+    se3di_cross(link->w, turning, x);
+    se3di_add(out, x, out);
+    se3di_mul_transposed(frame->A, link->a, out + 3);
+}
+
 void se3di_tree_get_accelerations(const se3di_tree *tree, const se3di_frame *frames,
                                   double *acceleration)
 {
     memset(acceleration, 0, 6 * (size_t)tree->body_count * sizeof *acceleration);
     for (uint32_t i = 0; i < tree->count; ++i) {
-        const se3di_tree_link *link = &tree->links[i];
         const uint32_t body = tree->nodes[i].body;
-        double *out = acceleration + 6 * (size_t)body;
-        double x[3], y[3];
-        se3di_cross(link->a, link->s, x);
-        se3di_add(link->a + 3, x, out);
-        se3di_cross(link->w, link->s, x);
-        se3di_cross(link->w, x, y);
-        se3di_add(out, y, out);
-        se3di_mul_transposed(frames[body].A, link->a, out + 3);
+        se3di_tree_link_acceleration(&tree->links[i], &frames[body],
+                                     acceleration + 6 * (size_t)body);
     }
 }

@@ -180,5 +180,8 @@ void se3di_tree_propagate(se3di_tree *tree, const double *qddot);
 /* Accelerations of links -> bodies, [dense bodies * 6] a (ground), wdot (body); fixed: zero. */
 void se3di_tree_get_accelerations(const se3di_tree *tree, const se3di_frame *frames,
                                   double *acceleration);
+/* The same of one body: a (ground), wdot (body), from those of its node's point. */
+void se3di_tree_link_acceleration(const se3di_tree_link *link, const se3di_frame *frame,
+                                  double out[6]);
 
 #endif
