@@ -281,16 +281,23 @@ static se3d_status parse_unary(parser *p, se3di_operand *out)
     return negative ? se3di_program_negate(p->program, out) : SE3D_OK;
 }
 
+/* The sign at hand and what stands to its right, joined to what stands to its left. */
+static se3d_status parse_right(parser *p, se3d_status (*parse)(parser *, se3di_operand *),
+                               se3di_op op, se3di_operand *out)
+{
+    const se3di_token sign = p->lexer.token;
+    se3di_operand right;
+    SE3DI_TRY(next(p));
+    SE3DI_TRY(parse(p, &right));
+    return check_finite(p, &sign, se3di_program_binary(p->program, op, 0, out, right));
+}
+
 static se3d_status parse_product(parser *p, se3di_operand *out)
 {
     SE3DI_TRY(parse_unary(p, out));
     while (at_mark(p, '*') || at_mark(p, '/')) {
-        const se3di_token sign = p->lexer.token;
         se3di_op op = at_mark(p, '*') ? SE3DI_OP_MULTIPLY : SE3DI_OP_DIVIDE;
-        se3di_operand right;
-        SE3DI_TRY(next(p));
-        SE3DI_TRY(parse_unary(p, &right));
-        SE3DI_TRY(check_finite(p, &sign, se3di_program_binary(p->program, op, 0, out, right)));
+        SE3DI_TRY(parse_right(p, parse_unary, op, out));
     }
     return SE3D_OK;
 }
@@ -299,12 +306,8 @@ static se3d_status parse_sum(parser *p, se3di_operand *out)
 {
     SE3DI_TRY(parse_product(p, out));
     while (at_mark(p, '+') || at_mark(p, '-')) {
-        const se3di_token sign = p->lexer.token;
         se3di_op op = at_mark(p, '+') ? SE3DI_OP_ADD : SE3DI_OP_SUBTRACT;
-        se3di_operand right;
-        SE3DI_TRY(next(p));
-        SE3DI_TRY(parse_product(p, &right));
-        SE3DI_TRY(check_finite(p, &sign, se3di_program_binary(p->program, op, 0, out, right)));
+        SE3DI_TRY(parse_right(p, parse_product, op, out));
     }
     return SE3D_OK;
 }
