@@ -257,21 +257,27 @@ static bool fill(se3d_model *model, const se3di_mentions *m, const char *name,
     return true;
 }
 
+bool se3di_mentions_eval(se3di_reader *reader, const se3di_node *node, const se3di_mentions *m,
+                         const se3di_node *plain, se3di_amount *q)
+{
+    reader->measured = (se3di_measured){m->variables, m->dimensions};
+    const bool good = se3di_amount_eval(reader, plain, m->variables, q);
+    reader->measured = (se3di_measured){NULL, NULL};
+    if (good && q->rank != 1) {
+        return se3di_reader_fail(reader, node, "`%.120s` is a vector, must be a number",
+                                 node->text);
+    }
+    return good;
+}
+
 /* In SI units, from those of the file. */
 static bool make_plain(se3di_reader *reader, const se3di_node *node, const se3di_mentions *m,
                        se3di_node *plain)
 {
     se3di_amount q;
-    reader->measured = (se3di_measured){m->variables, m->dimensions};
-    const bool good = se3di_amount_eval(reader, plain, m->variables, &q) &&
-                      se3di_amount_take_plain(reader, plain, &q);
-    reader->measured = (se3di_measured){NULL, NULL};
-    if (!good) {
+    if (!se3di_mentions_eval(reader, node, m, plain, &q) ||
+        !se3di_amount_take_plain(reader, plain, &q)) {
         return false;
-    }
-    if (q.rank != 1) {
-        return se3di_reader_fail(reader, node, "`%.120s` is a vector, must be a number",
-                                 node->text);
     }
     if (!q.text[0]) {
         return se3di_reader_fail(reader, node, "`%.120s` is a constant, must name a channel",

@@ -28,6 +28,9 @@ bool se3di_mentions_find(se3d_model *model, const se3di_component *part, const c
 /* The same of a node: it reports. */
 bool se3di_mentions_read(se3di_reader *reader, const se3di_node *node, const char *const *taken,
                          se3di_mentions *mentions);
+/* The number that the text of `plain`, which is the node's, stands for with these channels. */
+bool se3di_mentions_eval(se3di_reader *reader, const se3di_node *node, const se3di_mentions *m,
+                         const se3di_node *plain, se3di_amount *q);
 /* The channel that an expression is, as the model file has it: with parameters, points and units.
  * @return false after a report */
 bool se3di_combination_read(se3di_reader *reader, const se3di_node *node, const char *name,

@@ -110,17 +110,8 @@ static bool convert(se3di_reader *reader, const se3di_node *node, const se3di_me
         *text = m->text;
         return true;
     }
-    reader->measured = (se3di_measured){m->variables, m->dimensions};
-    const bool good = se3di_amount_eval(reader, &plain, m->variables, &q);
-    reader->measured = (se3di_measured){NULL, NULL};
-    if (!good) {
-        return false;
-    }
-    if (q.rank != 1) {
-        return se3di_reader_fail(reader, node, "`%.120s` is a vector, must be a number",
-                                 node->text);
-    }
-    if (!se3di_amount_take(reader, node, node, &q)) {
+    if (!se3di_mentions_eval(reader, node, m, &plain, &q) ||
+        !se3di_amount_take(reader, node, node, &q)) {
         return false;
     }
     if (!q.text[0]) {

@@ -406,6 +406,17 @@ se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const cha
     return b.status;
 }
 
+se3di_node *se3di_node_of_text(se3di_iopool *pool, const char *key, const char *text)
+{
+    se3di_node *node = se3di_iopool_alloc(pool, sizeof *node);
+    if (node) {
+        node->kind = SE3DI_NODE_SCALAR;
+        node->key = key;
+        node->text = text;
+    }
+    return node;
+}
+
 se3di_node *se3di_node_get(const se3di_node *map, const char *key)
 {
     if (!map || map->kind != SE3DI_NODE_MAP) {

@@ -85,16 +85,7 @@ const se3di_object se3di_object_analysis = {
 static const se3di_node *replaced(se3di_reader *reader, const se3di_node *node, const char *option,
                                   const char *text)
 {
-    if (!text) {
-        return node;
-    }
-    se3di_node *made = se3di_iopool_alloc(reader->pool, sizeof *made);
-    if (made) {
-        made->kind = SE3DI_NODE_SCALAR;
-        made->key = option;
-        made->text = text;
-    }
-    return made;
+    return text ? se3di_node_of_text(reader->pool, option, text) : node;
 }
 
 /* A word of a row, wherever it stands. */

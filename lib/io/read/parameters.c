@@ -233,24 +233,12 @@ static bool resolve(resolver *r, size_t start)
     return true;
 }
 
-/* The node that an option of the command line stands for. */
-static se3di_node *setting_node(se3di_reader *reader, const char *name, const char *value)
-{
-    se3di_node *node = se3di_iopool_alloc(reader->pool, sizeof *node);
-    if (node) {
-        node->kind = SE3DI_NODE_SCALAR;
-        node->key = name;
-        node->text = value;
-    }
-    return node;
-}
-
 static bool apply_settings(resolver *r)
 {
     se3di_reader *reader = r->reader;
     for (size_t k = 0; k < reader->options->setting_count; ++k) {
         const se3d_model_setting *setting = &reader->options->settings[k];
-        se3di_node *node = setting_node(reader, setting->name, setting->value);
+        se3di_node *node = se3di_node_of_text(reader->pool, setting->name, setting->value);
         size_t index = 0;
         if (!node) {
             return se3di_reader_fail_memory(reader);
