@@ -152,14 +152,14 @@ SE3D_API se3d_status se3d_body_set_angular_velocity(se3d_system *system, se3d_bo
 
 /* Get the acceleration of the centre of mass that the last analysis computed.
  * @param[out] a  ground frame [m/s^2]
- * @return OK, NULL, STALE_HANDLE.
+ * @return OK, NULL, STALE_HANDLE, STATE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_body_get_acceleration(const se3d_system *system, se3d_body body,
                                                 double a[3]);
 
 /* Get the angular acceleration of a body that the last analysis computed.
  * @param[out] alpha  body frame [rad/s^2]
- * @return OK, NULL, STALE_HANDLE.
+ * @return OK, NULL, STALE_HANDLE, STATE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_body_get_angular_acceleration(const se3d_system *system, se3d_body body,
                                                         double alpha[3]);
@@ -260,7 +260,7 @@ SE3D_API se3d_status se3d_marker_get_velocity(const se3d_system *system, se3d_ma
 /* Get the acceleration of the origin of a marker, by the accelerations that the last analysis
  * computed.
  * @param[out] a  ground frame [m/s^2]
- * @return OK, NULL, STALE_HANDLE.
+ * @return OK, NULL, STALE_HANDLE, STATE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_marker_get_acceleration(const se3d_system *system, se3d_marker marker,
                                                   double a[3]);

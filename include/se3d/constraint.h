@@ -221,7 +221,7 @@ SE3D_API se3d_status se3d_constraint_eval_jacobian(const se3d_system *system,
 /* Get the multipliers of the last analysis. The generalised force of the constraint on the bodies
  * is -Phi_q^T lambda.
  * @param[out] lambda  [equations] in N or N m over the unit of d Phi / d q
- * @return OK, NULL, STALE_HANDLE.
+ * @return OK, NULL, STALE_HANDLE, STATE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_constraint_get_multipliers(const se3d_system *system,
                                                      se3d_constraint constraint, double *lambda);
@@ -229,7 +229,7 @@ SE3D_API se3d_status se3d_constraint_get_multipliers(const se3d_system *system,
 /* Get the reaction of the last analysis on body j at its joint point. NULL arrays are skipped.
  * @param[out] force   ground frame [N]
  * @param[out] torque  about the joint point, ground frame [N m]
- * @return OK, NULL, STALE_HANDLE, NOT_FINITE.
+ * @return OK, NULL, STALE_HANDLE, STATE, NOT_FINITE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_constraint_get_reaction(const se3d_system *system,
                                                   se3d_constraint constraint, double force[3],
@@ -240,7 +240,7 @@ SE3D_API se3d_status se3d_constraint_get_reaction(const se3d_system *system,
  * @param[in] point    about which the torque is taken, ground frame [m]
  * @param[in] marker   in whose frame the result is; null: the ground frame
  * @param[out] wrench  force [N] and torque [N m], in the frame of `marker`
- * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (slot, point), NOT_FINITE.
+ * @return OK, NULL, STALE_HANDLE, STATE, INVALID_ARGUMENT (slot, point), NOT_FINITE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_constraint_get_reaction_at(const se3d_system *system,
                                                      se3d_constraint constraint, size_t slot,

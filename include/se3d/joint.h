@@ -156,7 +156,7 @@ typedef enum se3d_joint_coordinate {
  * @param[out] value         [rad] or [m]
  * @param[out] rate          [rad/s] or [m/s]
  * @param[out] acceleration  that the last analysis computed [rad/s^2] or [m/s^2]
- * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (the joint has no such coordinate), NOT_FINITE.
+ * @return OK, NULL, STALE_HANDLE, STATE, INVALID_ARGUMENT (it has no such coordinate), NOT_FINITE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_joint_get_coordinate(const se3d_system *system, se3d_constraint joint,
                                                se3d_joint_coordinate coordinate, double *value,
@@ -255,7 +255,7 @@ SE3D_API se3d_status se3d_driver_get_value(const se3d_system *system, se3d_const
  * or rack acts with ratio[k] times its effort on coordinate k: on body j of that joint about or
  * along its axis, and on its body i with the opposite.
  * @param[out] effort  torque about the joint axis [N m] or force along it [N]
- * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (more than one equation).
+ * @return OK, NULL, STALE_HANDLE, STATE, INVALID_ARGUMENT (more than one equation).
  * @since 0.1 */
 SE3D_API se3d_status se3d_driver_get_effort(const se3d_system *system, se3d_constraint driver,
                                             double *effort);

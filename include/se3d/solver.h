@@ -114,6 +114,23 @@ SE3D_API void se3d_solver_destroy(se3d_solver *solver);
  * @since 0.1 */
 SE3D_API se3d_status se3d_solver_run(se3d_solver *solver, double t_end);
 
+/* What a run computes of the state that it ends in. @since 0.1 */
+typedef enum se3d_shown {
+    SE3D_SHOWN_ALL = 0, /* everything, constraints to rounding */
+    SE3D_SHOWN_MOTION =
+        1 /* positions, velocities, works, constraints to a tenth of the tolerance */
+} se3d_shown;
+
+/* Set what later runs of a solver compute of the state that they end in; at first it is all. If
+ * many states are wanted, most of what they cost is accelerations and multipliers: with MOTION
+ * they are left out, and the functions that read them, or reactions, efforts and violations, return
+ * STATE until a run with ALL, or a step, has moved on. Steps are the same. Runs of dynamics whose
+ * method interpolates leave them out, unless there are contacts, friction, stops or particles.
+ * @param[in] shown  se3d_shown
+ * @return OK, NULL, INVALID_ARGUMENT, STATE (the system is gone).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_solver_set_shown(se3d_solver *solver, int32_t shown);
+
 /* Make one step that moves the time on; n steps come to n h, to rounding.
  * @param[in] h  length of the step, >= 1e-15 [s]
  * @return as se3d_solver_run.

@@ -199,7 +199,7 @@ static inline se3d_status se3d_system_get_work(const se3d_system *system, se3d_w
 /* Get the largest violation over all equations at the present state, in the units of the equations.
  * @param[out] violation  [0] |Phi| [m, m^2, 1, rad], [1] |Phi_q qdot - nu|, [2] |Phi_q qddot -
  *                        gamma|; in no frame
- * @return OK, NULL, CALLBACK, NOT_FINITE.
+ * @return OK, NULL, STATE, CALLBACK, NOT_FINITE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_system_get_violation(const se3d_system *system, double violation[3]);
 

@@ -636,7 +636,7 @@ se3d_status se3di_events_run(se3di_events *events, double t_end)
         t = fmin(t_end, history[SE3DI_HISTORY_TIME]);
         events->reached = history[SE3DI_HISTORY_TIME] > t_end ? events->reached : t;
     }
-    return method->run(&run->integration, t_end);
+    return se3di_run_show(run, t_end);
 }
 
 se3d_status se3di_events_begin_step(void *ctx)

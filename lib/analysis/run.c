@@ -294,7 +294,7 @@ static se3d_status settle(se3di_run *run, double t)
         run->determined = status >= 0;
     }
     status = status < 0 ? status : se3di_state_solve(equations, t);
-    if (status >= 0 && !run->model->settled) {
+    if (status >= 0 && !(run->model->settled & SE3DI_SETTLED)) {
         note_start(run, t);
     }
     status = status < 0 ? status : start_contacts(run, t);
@@ -303,7 +303,7 @@ static se3d_status settle(se3di_run *run, double t)
         return status;
     }
     run->model->time = t;
-    run->model->settled = 1;
+    run->model->settled = SE3DI_SETTLED;
     se3di_angles_accept(run->model);
     return SE3D_OK;
 }
@@ -427,6 +427,10 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
     if (!goes_on || run->integration.method->advance) {
         SE3DI_TRY(keep_state(run));
     }
+    const int lacks = (model->settled & SE3DI_LACKING) != 0;
+    if (is_there && lacks && (!goes_on || run->steps_once)) { /* what begins here needs them */
+        SE3DI_TRY(run->integration.method->run(&run->integration, model->time));
+    }
     if (goes_on) {
         return SE3D_OK;
     }
@@ -528,6 +532,15 @@ static se3d_status switch_method(se3di_run *run)
     return prepare(run);
 }
 
+se3d_status se3di_run_show(se3di_run *run, double t_end)
+{
+    se3di_integration *integration = &run->integration;
+    integration->shows_motion = run->shows_motion;
+    const se3d_status status = integration->method->run(integration, t_end);
+    integration->shows_motion = 0;
+    return status;
+}
+
 /* To t_end, or to where a prescribed rate jumps. */
 static se3d_status run_smoothly(se3di_run *run, double t_end)
 {
@@ -538,7 +551,7 @@ static se3d_status run_smoothly(se3di_run *run, double t_end)
     }
     return run->equations.watch && integration->method->advance
                ? se3di_events_run(&run->events, t_end)
-               : integration->method->run(integration, t_end);
+               : se3di_run_show(run, t_end);
 }
 
 /* The longest step of methods that control no error, if none was given; stable, and exact. */
@@ -613,12 +626,14 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
     if (status < 0 || status == SE3D_INFO_EVENT) { /* whose callback may have changed the model */
         return status;
     }
-    return run->equations.redundant ? se3di_multipliers_reduce(&run->equations) : SE3D_OK;
+    return run->equations.redundant && !(run->model->settled & SE3DI_LACKING)
+               ? se3di_multipliers_reduce(&run->equations)
+               : SE3D_OK;
 }
 
 static se3d_status run_kinematics(se3di_run *run, double t_end)
 {
-    if (!run->model->settled || !run->determined || !(t_end > run->model->time)) {
+    if (run->model->settled != SE3DI_SETTLED || !run->determined || !(t_end > run->model->time)) {
         SE3DI_TRY(settle(run, run->model->time));
     }
     se3di_contacts_begin(run->model, 0.0, 1.0, 0);

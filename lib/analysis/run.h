@@ -30,8 +30,10 @@ typedef struct se3di_run {
     double horizon;          /* runs go on to here [s] */
     se3di_saved before;      /* the state that the call under way began with, where */
     uint64_t before_version;
-    int32_t has_before;                  /* it was kept */
-    int32_t steps_once;                  /* the call is one step */
+    int32_t has_before;   /* it was kept */
+    int32_t steps_once;   /* the call is one step */
+    int32_t shows_motion; /* runs may end without accelerations and multipliers */
+    int32_t reserved;
     se3di_start_change start;            /* of the last start that the user gave */
     int32_t told_redundant;              /* the log was told of these equations, */
     int32_t told_left_out;               /* and that rows that are left out are off */
@@ -54,6 +56,10 @@ se3d_status se3di_run_to(se3di_run *run, double t_end);
 int se3di_run_is_now(const se3di_run *run, double t);
 /* One step of length h > 0, to rounding: n steps come to n h. */
 se3d_status se3di_run_step(se3di_run *run, double h);
+
+/* By the method in use to t_end, nobody watching; what it shows there is as much as was asked
+ * for. */
+se3d_status se3di_run_show(se3di_run *run, double t_end);
 
 /* The bare step of length h of the analysis' method, which nobody watches; on failure the old
  * state. */

@@ -517,7 +517,12 @@ static se3d_status publish(se3di_bdf *m, double t, int project)
     } else {
         memcpy(m->y, m->points, m->count * sizeof *m->y);
     }
-    return se3di_state_publish(m->equations, m->y, t, &m->past->scale, project);
+    const double rough = se3di_state_rough(m->assembly->model, m->integration->shows_motion,
+                                           m->integration->settings.tolerance);
+    return se3di_state_publish(
+        m->equations,
+        &(se3di_shown){
+            .y = m->y, .t = t, .scale = &m->past->scale, .rough = rough, .project = project});
 }
 
 /* y_1, accelerations and multipliers by a step of radau. */

@@ -476,13 +476,21 @@ static se3d_status adopt(se3di_explicit *m)
 /* The model's state is y, at t. */
 static se3d_status show(se3di_explicit *m, const double *y, double t, int project)
 {
+    const se3di_integration *integration = m->step.integration;
+    const double *work = y + m->count - SE3DI_STATE_WORK;
+    const double rough = se3di_state_rough(m->assembly->model, integration->shows_motion,
+                                           integration->settings.tolerance);
     m->motion->set(m->equations, y);
     if (project) {
-        SE3DI_TRY(m->motion->project(m->equations, t, &m->past->scale, 1e-15, 0));
+        SE3DI_TRY(m->motion->project(m->equations, t, &m->past->scale, fmax(1e-15, rough), 0));
+    }
+    if (rough > 0.0) {
+        se3di_state_conclude_motion(m->equations, work, t);
+        return SE3D_OK;
     }
     SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
     se3di_contacts_renew_forces(m->assembly->model);
-    return se3di_state_conclude(m->equations, y + m->count - SE3DI_STATE_WORK, t);
+    return se3di_state_conclude(m->equations, work, t);
 }
 
 /* The model's state is that at an end of the last step. */

@@ -107,7 +107,7 @@ struct se3di_integration {
     int32_t is_paced;            /* contacts or stops have shortened the step under way */
     se3di_kink kink;             /* where the accepted state is, if */
     int32_t at_kink;             /* no step can be made before it was passed */
-    int32_t reserved;
+    int32_t shows_motion;        /* what `run` shows may be without accelerations and multipliers */
 };
 
 /* The methods but AUTO, X(METHOD, name): se3di_integrator_<name> is the table of

@@ -163,9 +163,16 @@ se3d_status se3di_newmark_publish(se3di_integration *integration, double t)
     se3di_newmark_interpolate(integration, is_end ? end : t, y);
     se3di_forces_show(assembly->model, !is_end);
     se3di_state_set(assembly, y);
+    const double rough = se3di_state_rough(assembly->model, integration->shows_motion,
+                                           integration->settings.tolerance);
+    const double *work = y + se3di_state_count(assembly) - SE3DI_STATE_WORK;
     if (!is_end && t > header->at.begin) { /* not the end of the step before */
-        SE3DI_TRY(se3di_state_project(equations, t, &header->scale, 1e-15, 0));
+        SE3DI_TRY(se3di_state_project(equations, t, &header->scale, fmax(1e-15, rough), 0));
+    }
+    if (rough > 0.0) {
+        se3di_state_conclude_motion(equations, work, t);
+        return SE3D_OK;
     }
     SE3DI_TRY(set_accelerations(integration, t, is_end ? 1.0 : (t - header->at.begin) / last));
-    return se3di_state_conclude(equations, y + se3di_state_count(assembly) - SE3DI_STATE_WORK, t);
+    return se3di_state_conclude(equations, work, t);
 }

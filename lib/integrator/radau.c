@@ -451,7 +451,12 @@ static se3d_status publish(se3di_integration *integration, double t)
     } else {
         t = t < header->at.time ? header->at.begin : header->at.time;
     }
-    return se3di_state_publish(equations, y, t, &header->scale, is_within);
+    const double rough = se3di_state_rough(equations->assembly.model, integration->shows_motion,
+                                           integration->settings.tolerance);
+    return se3di_state_publish(
+        equations,
+        &(se3di_shown){
+            .y = y, .t = t, .scale = &header->scale, .rough = rough, .project = is_within});
 }
 
 /* One step of length h, solved to rounding. */

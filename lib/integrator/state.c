@@ -254,7 +254,7 @@ static se3d_status project_positions(se3di_equations *equations, double t,
             break;
         }
     }
-    if (gap > 1e-8) {
+    if (gap > fmax(1e-8, accuracy)) {
         return se3di_error_set(equations->error, SE3D_ERR_NO_CONVERGENCE,
                                "t = %g s: the positions did not converge: the constraints are off "
                                "by %.3g; the step is too large or the mechanism is locked",
@@ -447,25 +447,49 @@ se3d_status se3di_state_prepare(se3di_equations *equations, double t)
     return se3di_loads_prepare(model, t, equations->error);
 }
 
-se3d_status se3di_state_conclude(se3di_equations *equations, const double *work, double t)
+/* Of what was integrated beside the frames. */
+static void conclude(se3di_model *model, const double *work, double t)
 {
-    se3di_model *model = equations->assembly.model;
     se3di_angles_accept(model);
     model->time = t;
     memcpy(model->work, work, sizeof model->work);
     model->work_valid = 1;
+}
+
+se3d_status se3di_state_conclude(se3di_equations *equations, const double *work, double t)
+{
+    se3di_model *model = equations->assembly.model;
+    conclude(model, work, t);
+    model->settled = SE3DI_SETTLED;
     return se3di_loads_power(model, t, model->power);
 }
 
-se3d_status se3di_state_publish(se3di_equations *equations, const double *y, double t,
-                                const se3di_state_scale *scale, int project)
+void se3di_state_conclude_motion(se3di_equations *equations, const double *work, double t)
 {
-    se3di_state_set(&equations->assembly, y);
-    if (project) {
-        SE3DI_TRY(se3di_state_project(equations, t, scale, 1e-15, 0));
+    conclude(equations->assembly.model, work, t);
+    equations->assembly.model->settled = SE3DI_SETTLED | SE3DI_LACKING;
+}
+
+double se3di_state_rough(const se3di_model *model, int shows_motion, double tolerance)
+{
+    const int can = shows_motion && model->contacts.pair_count == 0 && !model->sets &&
+                    !se3di_forces_have_memory(model);
+    return can ? SE3DI_STATE_ROUGH * tolerance : 0.0;
+}
+
+se3d_status se3di_state_publish(se3di_equations *equations, const se3di_shown *shown)
+{
+    const double *work = shown->y + SE3DI_STATE_SIZE * (size_t)equations->assembly.body_count;
+    se3di_state_set(&equations->assembly, shown->y);
+    if (shown->project) {
+        SE3DI_TRY(
+            se3di_state_project(equations, shown->t, shown->scale, fmax(1e-15, shown->rough), 0));
     }
-    SE3DI_TRY(se3di_acceleration_solve(equations, t));
+    if (shown->rough > 0.0) {
+        se3di_state_conclude_motion(equations, work, shown->t);
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_acceleration_solve(equations, shown->t));
     se3di_contacts_renew_forces(equations->assembly.model);
-    return se3di_state_conclude(equations,
-                                y + SE3DI_STATE_SIZE * (size_t)equations->assembly.body_count, t);
+    return se3di_state_conclude(equations, work, shown->t);
 }

@@ -95,11 +95,30 @@ double se3di_state_part(const se3di_assembly *assembly, size_t k, const se3di_st
  * failed without anybody asking yet. */
 se3d_status se3di_state_prepare(se3di_equations *equations, double t);
 
-/* The model's state from y at t, with accelerations and multipliers: an accepted or an interpolated
- * one. */
-se3d_status se3di_state_publish(se3di_equations *equations, const double *y, double t,
-                                const se3di_state_scale *scale, int project);
+/* A state to be shown: an accepted one, or an interpolated one, which is projected. */
+typedef struct se3di_shown {
+    const double *y;
+    double t;
+    const se3di_state_scale *scale;
+    double
+        rough; /* 0: with accelerations and multipliers, the constraints to rounding; else without
+                     them, the constraints to this */
+    int32_t project;
+    int32_t reserved;
+} se3di_shown;
+
+/* Within which violation constraints are left in rows of the motion alone, of the tolerance. */
+#define SE3DI_STATE_ROUGH 0.1
+
+/* The `rough` of what a run shows in its present model, to `tolerance`: nothing that acts needs
+ * multipliers, nothing else than the motion was asked for. */
+double se3di_state_rough(const se3di_model *model, int shows_motion, double tolerance);
+
+/* The model's state from y at t. */
+se3d_status se3di_state_publish(se3di_equations *equations, const se3di_shown *shown);
 /* The last part of it: frames, accelerations and multipliers are those at t already. */
 se3d_status se3di_state_conclude(se3di_equations *equations, const double *work, double t);
+/* The same where there are frames only. */
+void se3di_state_conclude_motion(se3di_equations *equations, const double *work, double t);
 
 #endif

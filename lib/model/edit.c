@@ -65,7 +65,7 @@ static void remove_named(se3di_model *model, se3di_slots *slots, uint32_t dense,
 
 void se3di_model_touch_state(se3di_model *model)
 {
-    model->settled = 0;
+    model->settled &= ~SE3DI_SETTLED;
     model->history_tag = 0;
     ++model->history_stamp;
     model->work_valid = 0;
@@ -116,7 +116,7 @@ static void renew(const se3di_model *model, uint64_t *version)
 void se3di_model_touch_inputs(se3di_model *model)
 {
     renew(model, &model->inputs_version);
-    model->settled = 0;
+    model->settled &= ~SE3DI_SETTLED;
 }
 
 void se3di_model_touch_contact(se3di_model *model)

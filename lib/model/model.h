@@ -195,6 +195,8 @@ typedef struct se3di_force {
 
 #define SE3DI_FORCE_LENGTH 2 /* se3di_force.coordinate */
 
+enum { SE3DI_SETTLED = 1, SE3DI_LACKING = 2 }; /* bits of se3di_model.settled */
+
 typedef struct se3di_model {
     se3d_allocator allocator;
     double gravity[3];
@@ -212,13 +214,14 @@ typedef struct se3di_model {
     uint64_t contact_version;  /* changes when materials or the law of contact do */
     uint64_t masses_version;   /* changes when a mass or an inertia does */
     uint64_t values_version;   /* changes when prescribed values do: positions have to follow */
-    int32_t settled;           /* the state is an analysis' own; 0 after the user set one */
-    int32_t remembers;         /* an analysis may have left something in forces, shapes, contacts */
-    int32_t ranks_known;       /* which rows are left out was decided; 0 after edits, new poses */
-    uint32_t left_out_count;   /* rows that are */
-    double left_out_gap;       /* the largest violation of those in an accepted state, relative, */
-    uint32_t left_out_row;     /* its row; 0 after it was told */
-    int32_t shows_before;      /* 1: the halves of what force elements remember are exchanged, see
+    int32_t settled;         /* SE3DI_SETTLED: the state is an analysis' own, nothing was set since;
+                                  SE3DI_LACKING: without accelerations and multipliers */
+    int32_t remembers;       /* an analysis may have left something in forces, shapes, contacts */
+    int32_t ranks_known;     /* which rows are left out was decided; 0 after edits, new poses */
+    uint32_t left_out_count; /* rows that are */
+    double left_out_gap;     /* the largest violation of those in an accepted state, relative, */
+    uint32_t left_out_row;   /* its row; 0 after it was told */
+    int32_t shows_before;    /* 1: the halves of what force elements remember are exchanged, see
                                   se3di_forces_show */
 
     se3di_slots body_slots; /* count = bodies, [0] the ground */

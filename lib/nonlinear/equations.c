@@ -55,7 +55,7 @@ void se3di_equations_suit_masses(se3di_equations *equations)
 {
     const se3di_model *model = equations->assembly.model;
     if (equations->tree &&
-        (equations->masses_version != model->masses_version || !model->settled)) {
+        (equations->masses_version != model->masses_version || !(model->settled & SE3DI_SETTLED))) {
         se3di_tree_refresh(equations->tree);
         equations->masses_version = model->masses_version;
     }

@@ -216,6 +216,7 @@ se3d_status se3d_body_get_acceleration(const se3d_system *system, se3d_body body
 {
     uint32_t index;
     SE3DI_TRY(find_reader(system, body, a, &index));
+    SE3DI_TRY(se3di_check_solved(system));
     se3di_copy(system->model.acceleration + 6 * (size_t)index, a);
     return SE3D_OK;
 }
@@ -225,6 +226,7 @@ se3d_status se3d_body_get_angular_acceleration(const se3d_system *system, se3d_b
 {
     uint32_t index;
     SE3DI_TRY(find_reader(system, body, alpha, &index));
+    SE3DI_TRY(se3di_check_solved(system));
     se3di_copy(system->model.acceleration + 6 * (size_t)index + 3, alpha);
     return SE3D_OK;
 }

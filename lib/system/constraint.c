@@ -206,6 +206,7 @@ se3d_status se3d_constraint_get_multipliers(const se3d_system *system, se3d_cons
 {
     const se3di_constraint *found;
     SE3DI_TRY(find_for(system, constraint, lambda, &found));
+    SE3DI_TRY(se3di_check_solved(system));
     memcpy(lambda, system->model.lambda + found->row_begin, found->row_count * sizeof *lambda);
     return SE3D_OK;
 }

@@ -75,6 +75,7 @@ se3d_status se3d_driver_get_effort(const se3d_system *system, se3d_constraint dr
     }
     uint32_t index;
     SE3DI_TRY(find_row(system, driver, effort, &index));
+    SE3DI_TRY(se3di_check_solved(system));
     *effort = -system->model.lambda[index];
     return SE3D_OK;
 }

@@ -100,6 +100,7 @@ se3d_status se3d_marker_get_acceleration(const se3d_system *system, se3d_marker 
 {
     const se3di_marker *data;
     SE3DI_TRY(find_reader(system, marker, a, &data));
+    SE3DI_TRY(se3di_check_solved(system));
     const se3di_frame *frame = &system->model.frames[data->body];
     const double *acceleration = system->model.acceleration + 6 * (size_t)data->body;
     double turning[3];

@@ -25,6 +25,7 @@ se3d_status se3d_constraint_get_reaction(const se3d_system *system, se3d_constra
     if (index == SE3DI_NO_INDEX) {
         return SE3D_ERR_STALE_HANDLE;
     }
+    SE3DI_TRY(se3di_check_solved(system));
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
     se3di_constraint_reaction(model, &model->constraints[index], 1, NULL, wrench);
@@ -74,6 +75,7 @@ se3d_status se3d_constraint_get_reaction_at(const se3d_system *system, se3d_cons
     if (slot >= model->constraints[index].body_count || !se3di_is_finite(point, 3)) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
+    SE3DI_TRY(se3di_check_solved(system));
     double result[6];
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));

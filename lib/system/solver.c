@@ -185,6 +185,17 @@ void se3di_solvers_orphan(se3d_system *system)
     system->solvers = NULL;
 }
 
+se3d_status se3d_solver_set_shown(se3d_solver *solver, int32_t shown)
+{
+    SE3DI_EDIT_OF(solver);
+    if (shown != SE3D_SHOWN_ALL && shown != SE3D_SHOWN_MOTION) {
+        return SE3DI_FAIL_OF(solver->system, "shown", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be SE3D_SHOWN_ALL or SE3D_SHOWN_MOTION", (int)shown);
+    }
+    solver->run.shows_motion = shown == SE3D_SHOWN_MOTION;
+    return SE3D_OK;
+}
+
 se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
 {
     SE3DI_EDIT_OF(solver);

@@ -319,6 +319,7 @@ se3d_status se3d_system_get_violation(const se3d_system *system, double violatio
         return SE3D_ERR_NULL;
     }
     violation[0] = violation[1] = violation[2] = 0.0;
+    SE3DI_TRY(se3di_check_solved(system));
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
     return se3di_read_end(&reading, se3di_violation_measure(&system->model, violation));

@@ -74,6 +74,13 @@ se3d_status se3di_read_end(se3di_reading *reading, se3d_status status);
 /* Whether the state is one that may be copied: not that of a trial. */
 int se3di_is_settled(const se3d_system *system);
 
+/* @return OK, or STATE: the last run was asked for the motion alone, without accelerations and
+ * multipliers. */
+static inline se3d_status se3di_check_solved(const se3d_system *system)
+{
+    return system->model.settled & SE3DI_LACKING ? SE3D_ERR_STATE : SE3D_OK;
+}
+
 /* `value` is finite; `what` names it ("mass"). */
 se3d_status se3di_check_finite(se3d_system *system, const char *what, double value);
 /* All of `values` are finite: "position[1] = nan, must be finite". */

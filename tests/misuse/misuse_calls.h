@@ -263,6 +263,7 @@ static se3d_status call_solver_create(arguments *a)
     return status;
 }
 CALL(solver_run, a->solver, a->number)
+CALL(solver_set_shown, a->solver, (int32_t)a->index)
 CALL(solver_step, a->solver, a->number)
 CALL(solver_get_stats, a->solver, a->out[0])
 CALL(solver_get_start_change, a->solver, a->out[0])
@@ -715,6 +716,7 @@ static const row rows[] = {
     {"se3d_function_eval", call_function_eval, "sfjo0", NULL, NULL},
     {"se3d_solver_create", call_solver_create, "SDh0", define_solver, solver_fields},
     {"se3d_solver_run", call_solver_run, "vn", NULL, NULL},
+    {"se3d_solver_set_shown", call_solver_set_shown, "vx", NULL, NULL},
     {"se3d_solver_step", call_solver_step, "vn", NULL, NULL},
     {"se3d_solver_get_stats", call_solver_get_stats, "vo0", NULL, NULL},
     {"se3d_solver_get_start_change", call_solver_get_start_change, "vo0", NULL, NULL},

@@ -23,8 +23,8 @@
     X(MARKER_POSITION, 3, ITSELF, 0, MOTION, 1, 0, 0, 0)                                           \
     X(MARKER_VELOCITY, 3, ITSELF, 0, MOTION, 1, 1, 0, 0)                                           \
     X(MARKER_ACCELERATION, 3, ITSELF, 0, SOLVED, 1, 2, 0, 0)                                       \
-    X(WRENCH_FORCE, 3, WRENCH, 0, SOLVED, 1, 2, 1, 0)                                              \
-    X(WRENCH_TORQUE, 3, WRENCH, 3, SOLVED, 2, 2, 1, 0)                                             \
+    X(WRENCH_FORCE, 3, WRENCH, 0, LOADED, 1, 2, 1, 0)                                              \
+    X(WRENCH_TORQUE, 3, WRENCH, 3, LOADED, 2, 2, 1, 0)                                             \
     X(REACTION_FORCE, 3, REACTION, 0, SOLVED, 1, 2, 1, 0)                                          \
     X(REACTION_TORQUE, 3, REACTION, 3, SOLVED, 2, 2, 1, 0)                                         \
     X(JOINT_ANGLE, 1, JOINT_ANGLE, 0, MOTION, 0, 0, 0, 0)                                          \
@@ -35,7 +35,7 @@
     X(DRIVER_EFFORT, 1, DRIVER_EFFORT, 0, SOLVED, 1, 2, 1, 1)                                      \
     X(FORCE_COORDINATE, 1, FORCE, 0, MOTION, 0, 0, 0, 1)                                           \
     X(FORCE_RATE, 1, FORCE, 1, MOTION, 0, 1, 0, 1)                                                 \
-    X(FORCE_VALUE, 1, FORCE, 2, SOLVED, 1, 2, 1, 1)                                                \
+    X(FORCE_VALUE, 1, FORCE, 2, LOADED, 1, 2, 1, 1)                                                \
     X(STATE_VALUE, 1, STATE_VALUE, 0, MOTION, 0, 0, 0, 0)                                          \
     X(STATE_INPUT, 1, STATE_INPUT, 0, MOTION, 0, 0, 0, 0)                                          \
     X(STATE_RATE, 1, STATE_RATE, 0, MOTION, 0, 1, 0, 0)                                            \
@@ -85,10 +85,10 @@
     X(ENERGY_KINETIC, 1, ENERGY, 0, MOTION, 2, 2, 1, 0)                                            \
     X(ENERGY_POTENTIAL, 1, ENERGY, 1, MOTION, 2, 2, 1, 0)                                          \
     X(ENERGY_TOTAL, 1, ENERGY, 2, MOTION, 2, 2, 1, 0)                                              \
-    X(ENERGY_DISSIPATED, 1, ENERGY, 3, SOLVED, 2, 2, 1, 0)                                         \
-    X(ENERGY_BALANCE, 1, WORK, 2, SOLVED, 2, 2, 1, 0)                                              \
-    X(WORK_ACTUATORS, 1, WORK, 0, SOLVED, 2, 2, 1, 0)                                              \
-    X(WORK_DRIVERS, 1, WORK, 1, SOLVED, 2, 2, 1, 0)                                                \
+    X(ENERGY_DISSIPATED, 1, ENERGY, 3, LOADED, 2, 2, 1, 0)                                         \
+    X(ENERGY_BALANCE, 1, WORK, 2, LOADED, 2, 2, 1, 0)                                              \
+    X(WORK_ACTUATORS, 1, WORK, 0, LOADED, 2, 2, 1, 0)                                              \
+    X(WORK_DRIVERS, 1, WORK, 1, LOADED, 2, 2, 1, 0)                                                \
     X(VIOLATION_POSITION, 1, VIOLATION, 0, SOLVED, 1, 0, 0, 0)                                     \
     X(VIOLATION_VELOCITY, 1, VIOLATION, 1, SOLVED, 1, 1, 0, 0)                                     \
     X(VIOLATION_ACCELERATION, 1, VIOLATION, 2, SOLVED, 1, 2, 0, 0)                                 \
@@ -152,8 +152,9 @@ typedef enum se3di_question {
 /* How it changes. */
 typedef enum se3di_quantity_nature {
     SE3DI_NATURE_MOTION, /* follows from time, positions and velocities */
-    SE3DI_NATURE_SOLVED, /* continuously, but forces or accelerations must be solved for, or work
-                            summed */
+    SE3DI_NATURE_LOADED, /* continuously: forces of elements (without friction) and works, if a run
+                            shows the motion */
+    SE3DI_NATURE_SOLVED, /* continuously, but forces or accelerations must be solved for */
     SE3DI_NATURE_JUMPS   /* counts, and what is proportional to them */
 } se3di_quantity_nature;
 
@@ -200,6 +201,8 @@ se3di_question se3di_channel_get_question(const se3di_channel *channel, size_t *
 bool se3di_channel_is_continuous(const se3di_channel *channel);
 /* Whether they follow from time, positions and velocities. */
 bool se3di_channel_is_of_motion(const se3di_channel *channel);
+/* Whether a state that a run shows without accelerations and multipliers has them. */
+bool se3di_channel_is_shown(const se3di_channel *channel);
 /* How large its numbers are if they are not small, in the present state. */
 double se3di_channel_get_scale(const se3di_channel *channel, const se3d_system *system);
 /* Of a quantity, as far as its unit is known: what may be a translation or a rotation has none. */

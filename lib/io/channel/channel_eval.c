@@ -69,10 +69,10 @@ static se3d_status ask_element(se3di_question question, const se3di_channel *c,
         return se3d_constraint_get_reaction(system, c->constraint, numbers, numbers + 3);
     case SE3DI_ASK_JOINT_ANGLE:
         return se3d_joint_get_coordinate(system, c->constraint, SE3D_JOINT_COORDINATE_ANGLE,
-                                         numbers, numbers + 1, numbers + 2);
+                                         numbers, numbers + 1, NULL);
     case SE3DI_ASK_JOINT_DISPLACEMENT:
         return se3d_joint_get_coordinate(system, c->constraint, SE3D_JOINT_COORDINATE_DISPLACEMENT,
-                                         numbers, numbers + 1, numbers + 2);
+                                         numbers, numbers + 1, NULL);
     case SE3DI_ASK_DRIVER_VALUE:
         return se3d_driver_get_value(system, c->constraint, numbers);
     case SE3DI_ASK_DRIVER_EFFORT:

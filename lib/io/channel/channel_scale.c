@@ -136,6 +136,12 @@ bool se3di_channel_is_of_motion(const se3di_channel *channel)
     return nature_of(channel) == SE3DI_NATURE_MOTION;
 }
 
+bool se3di_channel_is_shown(const se3di_channel *channel)
+{
+    const se3di_quantity_nature nature = nature_of(channel);
+    return nature == SE3DI_NATURE_MOTION || nature == SE3DI_NATURE_LOADED;
+}
+
 se3di_dimension se3di_channel_get_dimension(const se3di_channel *channel)
 {
     const quantity *q = &quantities[channel->quantity];

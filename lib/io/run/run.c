@@ -244,6 +244,15 @@ static void plan_passing(se3di_runner *r, const se3di_analysis_entry *entry)
     file->count = file->every > 0.0 ? 1.0 : 0.0;
 }
 
+static bool needs_more_than_motion(const se3di_output_entry *entry)
+{
+    bool more = entry->vtk || entry->particles || entry->contacts;
+    for (size_t k = 0; k < entry->count && !more; ++k) {
+        more = !se3di_channel_is_shown(&entry->channels[k]);
+    }
+    return more;
+}
+
 /* Number of rows of each file in this analysis. */
 static void plan(se3di_runner *r, const se3di_analysis_entry *entry)
 {
@@ -254,6 +263,7 @@ static void plan(se3di_runner *r, const se3di_analysis_entry *entry)
     for (size_t k = 0; k < r->file_count; ++k) {
         se3di_output_file *file = &r->files[k];
         file->next = 0.0;
+        file->solves = needs_more_than_motion(file->entry);
         file->count = se3di_output_count_rows(file->entry, entry, &file->every);
     }
 }
@@ -421,16 +431,35 @@ static bool next_time(const se3di_runner *r, double start, double duration, doub
     return found;
 }
 
+static bool has_row_at(const se3di_output_file *file, double start, double duration, double time)
+{
+    return file->next <= file->count &&
+           row_time(file, file->next, start, duration) - time <= 1e-9 * file->every;
+}
+
+/* What the rows at `time` need; the last state of an analysis, where others begin, is whole. */
+static int32_t shown_at(const se3di_runner *r, double start, double duration, double time)
+{
+    bool more = time >= start + duration;
+    for (size_t k = 0; k < r->file_count && !more; ++k) {
+        more = r->files[k].solves && has_row_at(&r->files[k], start, duration, time);
+    }
+    return more ? SE3D_SHOWN_ALL : SE3D_SHOWN_MOTION;
+}
+
+/* To `time`, as far as the rows there need it. */
+static se3d_status run_to(se3di_runner *r, double start, double duration, double time)
+{
+    const se3d_status status = se3d_solver_set_shown(r->solver, shown_at(r, start, duration, time));
+    return status < 0 ? status : se3d_solver_run(r->solver, time);
+}
+
 static se3d_status sample_files(se3di_runner *r, double start, double duration, double time)
 {
     begin_rows(r);
     for (size_t k = 0; k < r->file_count; ++k) {
         se3di_output_file *file = &r->files[k];
-        if (file->next > file->count) {
-            continue;
-        }
-        const double wanted = row_time(file, file->next, start, duration);
-        if (wanted - time <= 1e-9 * file->every) {
+        if (has_row_at(file, start, duration, time)) {
             const se3d_status status = sample(r, file, time);
             if (status < 0) {
                 return status;
@@ -546,7 +575,7 @@ static se3d_status run_rows(se3di_runner *r, size_t index, const se3di_analysis_
     while (next_time(r, start, duration, &time) && !r->stopped) {
         time = merge_times(r, start, duration, time);
         last = r->model->particles ? se3di_tagged_advance(r->model, &entry->solver, r->solver, time)
-                                   : se3d_solver_run(r->solver, time);
+                                   : run_to(r, start, duration, time);
         if (last < 0 && last != SE3D_ERR_INTERRUPTED) {
             return fail_analysis(r, entry, last, time);
         }

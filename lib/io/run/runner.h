@@ -23,6 +23,7 @@ typedef struct se3di_output_file {
     double every; /* in this analysis */
     double count; /* number of the last row, the one at the end */
     double next;  /* number of the next row */
+    bool solves;  /* its rows need accelerations or multipliers */
 } se3di_output_file;
 
 struct se3d_run {
