@@ -296,6 +296,30 @@ static void the_car_brakes_in_a_straight_line(void)
     close_rig(&r);
 }
 
+/* A tyre turns about the axis of its bearing: its camber is that of the hub wherever it has turned
+ * to. */
+static void tyres_do_not_wobble(void)
+{
+    double m[SE3D_WHEEL_MEASURES], inclination = 0.0;
+    se3d_force left, right;
+    rig r;
+    if (!open_rig("brake", &r)) {
+        return;
+    }
+    CHECK(!se3d_force_find(r.system, "fl_tyre", &left));
+    CHECK(!se3d_force_find(r.system, "rr_tyre", &right));
+    for (int k = 0; k < 4; ++k) { /* a turn of the wheels takes 0.9 s at first */
+        run(&r, 1.0 + 0.2 * k);
+        measure(&r, 0, m);
+        CHECK(!se3d_tyre_get_values(r.system, left, SE3D_TYRE_INCLINATION, 1, &inclination));
+        CHECK_NEAR(inclination, -m[SE3D_WHEEL_CAMBER], 3e-5); /* of the road, of the vehicle */
+        measure(&r, 3, m);
+        CHECK(!se3d_tyre_get_values(r.system, right, SE3D_TYRE_INCLINATION, 1, &inclination));
+        CHECK_NEAR(inclination, m[SE3D_WHEEL_CAMBER], 3e-5); /* of the road, of the vehicle */
+    }
+    close_rig(&r);
+}
+
 int main(void)
 {
     RUN(gradients_are_the_slopes_of_the_travel_rig);
@@ -304,6 +328,7 @@ int main(void)
     RUN(the_hand_wheel_steers_to_its_side);
     RUN(the_roll_rate_is_the_slope_of_the_roll_rig);
     RUN(the_corner_weights_sum_to_the_weight);
+    RUN(tyres_do_not_wobble);
     RUN(the_car_brakes_in_a_straight_line);
     return check_finish();
 }
