@@ -557,6 +557,11 @@ static const bad_input table[] = {
      4,
      76,
      {"coefficient of s^1"}},
+    {WITH("states: [{name: z, type: transfer, input: 1, numerator: [1], denominator: [-1e-310, "
+          "2]}]"),
+     4,
+     76,
+     {"-1e-310, must be at least 1e-40"}},
     {WITH("states: [{name: z, type: transfer, input: 1 - z.value, numerator: [2, 1], denominator: "
           "[1, 1]}]"),
      4,

@@ -299,9 +299,13 @@ static bool read_transfer(se3di_reader *reader, const se3di_node *node,
         !read_polynomial(reader, node, "numerator", n + 1, b)) {
         return false;
     }
+    const se3di_node *first = se3di_node_get(node, "denominator")->first;
     if (!(fabs(a[n]) > 0.0)) {
-        return se3di_reader_fail(reader, se3di_node_get(node, "denominator")->first,
-                                 "is 0, must not be: it is the coefficient of s^%zu", n);
+        return se3di_reader_fail(reader, first, "is 0, must not be: it is the coefficient of s^%zu",
+                                 n);
+    }
+    if (!se3di_check_number(reader, first, SE3DI_POSITIVE, fabs(a[n]))) {
+        return false; /* others over it would not be finite */
     }
     add_term(rate, sizeof rate, 1.0, "u");
     add_term(output, sizeof output, b[n] / a[n], "u");
