@@ -179,8 +179,8 @@ static void auto_takes_no_singular_position_for_stiffness(void)
 
 /* As many as without singular positions, however many windows. Measured: 1140 (two windows: 52293
  * and 28501 rejected when redundant rows were taken at positions that were open by the error of the
- * prediction; 40 never passed), 2450, 3650, 5300, 7900, before steps allowed for their number: now 1.2 to 1.7
- * times as many. */
+ * prediction; 40 never passed), 2450, 3650, 5300, 7900, before steps allowed for their number: now
+ * 1.2 to 1.7 times as many. */
 static void bdf_takes_no_more_steps_for_more_windows(void)
 {
     static const expectation rows[] = {{1, 1e-6, 1500.0, 5e-4},  {2, 1e-6, 1500.0, 5e-4},
