@@ -312,6 +312,15 @@ static void set_turns(se3d_coordinates *c, const double *q)
     }
 }
 
+/* Poses and velocities of tree->frames. */
+static void set_frames(se3d_coordinates *c)
+{
+    for (uint32_t k = 0; k < c->tree.count; ++k) {
+        const uint32_t body = c->tree.nodes[k].body;
+        c->system->model.frames[body] = c->tree.frames[body];
+    }
+}
+
 /* The velocities of tree->frames; poses, which may violate joints of the tree, stay. */
 static void set_velocities(se3d_coordinates *c)
 {
@@ -335,7 +344,9 @@ se3d_status se3d_coordinates_set(se3d_coordinates *coordinates, const double *q,
     if (!q && !qdot) {
         return SE3D_OK;
     }
-    se3di_tree_get(&c->tree, c->q, c->qdot);
+    if (!q || !qdot) {
+        se3di_tree_get(&c->tree, c->q, c->qdot);
+    }
     if (q) {
         memcpy(c->q, q, c->positions * sizeof *q);
     }
@@ -345,7 +356,7 @@ se3d_status se3d_coordinates_set(se3d_coordinates *coordinates, const double *q,
     se3di_tree_place(&c->tree, c->q, c->qdot, c->tree.frames);
     SE3DI_TRY(check_frames(c));
     if (q) {
-        se3di_tree_place(&c->tree, c->q, c->qdot, c->system->model.frames);
+        set_frames(c);
         set_turns(c, c->q);
         se3di_model_touch_poses(&c->system->model);
     } else {
