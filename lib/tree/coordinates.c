@@ -235,6 +235,19 @@ static void take_screw(const se3di_model *model, se3di_tree_node *n)
     n->base = row->value / terms[0].coefficient;
 }
 
+/* Which of the two ways a revolute is put together; no motion changes it. */
+static void take_side(const se3di_model *model, se3di_tree_node *n)
+{
+    n->sigma = 1.0;
+    if (n->type == SE3DI_TREE_REVOLUTE) {
+        const se3di_constraint *c = &model->constraints[n->constraint];
+        double i[3], j[3];
+        se3di_mul(model->frames[c->bodies[0]].A, c->frames.axis_i, i);
+        se3di_mul(model->frames[c->bodies[1]].A, c->frames.axis_j, j);
+        n->sigma = se3di_dot(i, j) < 0.0 ? -1.0 : 1.0;
+    }
+}
+
 static void refresh_node(se3di_tree *tree, se3di_tree_node *n)
 {
     const se3di_model *model = tree->model;
@@ -270,6 +283,7 @@ static void refresh_node(se3di_tree *tree, se3di_tree_node *n)
     take_inertia(&model->bodies[n->body], n, on_child);
     place_on_parent(tree, n, on_parent, at_parent);
     take_screw(model, n);
+    take_side(model, n);
 }
 
 /* p and -p are the same pose: the body keeps the one that it has. */

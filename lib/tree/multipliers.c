@@ -57,10 +57,28 @@ static void measure(const se3di_tree *tree, const se3di_tree_node *n, const doub
     }
 }
 
+static double *write_force(const double F[3], double *l)
+{
+    se3di_scale(-1.0, F, l);
+    return l + 3;
+}
+
 static double *write_point(const exertion *x, double *l)
 {
-    se3di_scale(-1.0, x->F, l);
-    return l + 3;
+    return write_force(x->F, l);
+}
+
+/* The rows of a revolute that is not reversed, in the frame of body i, where its directions are
+ * constant. */
+static void write_revolute(const se3di_tree *tree, const se3di_tree_node *n, const double *joint,
+                           double *l)
+{
+    const se3di_constraint *c = &tree->model->constraints[n->constraint];
+    double N[3];
+    se3di_mul_transposed(tree->model->frames[c->bodies[0]].A, joint, N);
+    l = write_force(joint + 3, l);
+    l[0] = -n->sigma * se3di_dot(c->frames.third_i, N);
+    l[1] = n->sigma * se3di_dot(c->frames.ref_i, N);
 }
 
 static double *write_parallel(const exertion *x, double *l)
@@ -129,8 +147,15 @@ void se3di_tree_multipliers(const se3di_tree *tree, const double *joint, const d
         if (n->constraint < 0) {
             continue;
         }
-        measure(tree, n, f, &x);
-        write_joint(n->type, &x, lambda + model->constraints[n->constraint].row_begin);
+        double *l = lambda + model->constraints[n->constraint].row_begin;
+        if (!n->is_reversed && n->type == SE3DI_TREE_REVOLUTE) {
+            write_revolute(tree, n, f, l);
+        } else if (!n->is_reversed && n->type == SE3DI_TREE_SPHERICAL) {
+            (void)write_force(f + 3, l);
+        } else {
+            measure(tree, n, f, &x);
+            write_joint(n->type, &x, l);
+        }
         if (n->driver >= 0) {
             const uint32_t row = model->constraints[n->driver].row_begin;
             const double *S = tree->S + 6 * (size_t)n->v;

@@ -72,6 +72,7 @@ typedef struct se3di_tree_node {
     int32_t flags;
     int32_t branch;    /* where children other than the next node add up, -1: there are none */
     double zero;       /* the triads coincide at this angle */
+    double sigma;      /* axis_i . axis_j of a revolute: 1 or -1 */
     double lead, base; /* screw: displacement = base + lead angle */
     double C[4];       /* triad at angle zero -> parent's triad */
     double r[3];       /* the parent's point -> the joint point on it, parent's triad */
