@@ -4,7 +4,7 @@
 
 FOLDER holds the drivers: bench_serve and bench_evaluation (this library), and what there is of
 mujoco, bullet, simbody, ode.
-SECTION: cost work fourbar pendulum implicit lanes batch; all by default. Times are CPU times that the drivers
+SECTION: cost work fourbar pendulum implicit lanes batch query; all by default. Times are CPU times that the drivers
 measure inside; engines take turns, and the least of several runs counts.
 """
 import math
@@ -393,6 +393,12 @@ class Bench:
         self.show_program("bench_batch", "4096", "1")
         self.show_program("mujoco_batch", "64")
 
+    def query(self):
+        print("\n## Queries of one robot: set the state, forward or inverse dynamics", flush=True)
+        for _ in range(2):
+            self.show_program("bench_query")
+            self.show_program("mujoco_query")
+
     def implicit(self):
         """Implicit methods on a long chain."""
         print("\n## Implicit methods, chain of 400 bars (revolutes), 1 ms steps: us per link")
@@ -423,7 +429,7 @@ def main():
     bench = Bench(sys.argv[1])
     try:
         for section in sys.argv[2:] or ("cost", "work", "fourbar", "pendulum", "implicit",
-                                        "lanes", "batch"):
+                                        "lanes", "batch", "query"):
             getattr(bench, section)()
     finally:
         bench.close()
