@@ -264,7 +264,8 @@ static void add_armatures(tree_world *w)
             CHECK(!se3d_constraint_get_type(w->system, w->joints[k], &type));
             const int is_screw = strcmp(type, "screw") == 0 && c != SE3D_JOINT_COORDINATE_ANGLE;
             if (!is_screw &&
-                se3d_joint_get_coordinate(w->system, w->joints[k], c, &x, &rate, &second) >= 0) {
+                se3d_joint_get_coordinate(w->system, w->joints[k], (se3d_joint_coordinate)c, &x,
+                                          &rate, &second) >= 0) {
                 (void)add_armature(w->system, w->joints[k], c, tree_uniform(w, 0.0, 10.0));
             }
         }
