@@ -232,7 +232,8 @@ se3di_mass se3di_mass_sum(const se3di_mass *a, const se3di_mass *b)
     return sum;
 }
 
-/* The roots of the characteristic polynomial of a symmetric matrix, by turns in its planes. */
+/* The roots of the characteristic polynomial of a symmetric matrix, by turns in its planes of at
+ * most 45 degrees: larger ones, which make the entry zero as well, may go round in circles. */
 void se3di_mass_moments(const double J[9], double moments[3])
 {
     double M[9];
@@ -245,8 +246,10 @@ void se3di_mass_moments(const double J[9], double moments[3])
         if (M[3 * r + s] == 0.0) {
             continue;
         }
+        const double difference = M[4 * r] - M[4 * s];
+        const double twice = difference < 0.0 ? -2.0 * M[3 * r + s] : 2.0 * M[3 * r + s];
         axis[3 - r - s] = 1.0;
-        se3di_turn_about(axis, -0.5 * io_atan2(2.0 * M[3 * r + s], M[4 * r] - M[4 * s]), A);
+        se3di_turn_about(axis, -0.5 * io_atan2(twice, fabs(difference)), A);
         turn_inertia(A, M, M);
     }
     for (int k = 0; k < 3; ++k) {

@@ -174,6 +174,17 @@ static void color(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_machine_shap
     }
 }
 
+static bool has_size(const se3di_machine_shape *shape)
+{
+    if (strcmp(shape->type, "box") == 0) {
+        return shape->size[0] > 0.0 && shape->size[1] > 0.0 && shape->size[2] > 0.0;
+    }
+    if (strcmp(shape->type, "capsule") == 0 || strcmp(shape->type, "cylinder") == 0) {
+        return shape->radius > 0.0 && shape->length > 0.0;
+    }
+    return strcmp(shape->type, "plane") == 0 || shape->file || shape->radius > 0.0;
+}
+
 bool se3di_mjcf_geom(se3di_mjcf *f, size_t link, const se3di_mjcf_element *e,
                      const se3di_frame *around, bool weighs)
 {
@@ -190,11 +201,11 @@ bool se3di_mjcf_geom(se3di_mjcf *f, size_t link, const se3di_mjcf_element *e,
     if (strcmp(g.type, "mesh") == 0 && !take_mesh(f, e, &shape)) {
         return false;
     }
-    const bool is_plane = shape.type && strcmp(shape.type, "plane") == 0;
-    const bool is_box = shape.type && strcmp(shape.type, "box") == 0;
-    const bool has_size = is_box ? shape.size[0] > 0.0 && shape.size[1] > 0.0 && shape.size[2] > 0.0
-                                 : is_plane || shape.file || shape.radius > 0.0;
-    if (!shape.type || !has_size) {
+    if (shape.type && !has_size(&shape) && !se3di_mjcf_get(f, e, "mesh")) {
+        return se3di_machine_fail(f->links.m, e->node->line, e->node->column,
+                                  "size: of a %s, must be numbers > 0", g.type);
+    }
+    if (!shape.type || !has_size(&shape)) {
         return true; /* nothing that can be drawn */
     }
     color(f, e, &shape);
