@@ -27,6 +27,29 @@ static se3d_joint_def joint_between(const workshop *w, se3d_body i, se3d_body j)
     return def;
 }
 
+static se3d_status make_integral(workshop *w)
+{
+    const double x[3] = {0.0, 1.0, 2.0}, y[3] = {1.0, 0.0, 3.0};
+    se3d_function_def def = se3d_function_def_default();
+    se3d_function function;
+    def.table_x = x;
+    def.table_y = y;
+    def.table_count = 3;
+    def.integrate = 1;
+    return se3d_function_create(w->system, &def, &function);
+}
+
+/* Of an expression: the run makes room for its sums. */
+static void add_rate(workshop *w)
+{
+    se3d_function_def def = se3d_function_def_default();
+    se3d_function function;
+    def.expression = "cos(t)";
+    def.integrate = 1;
+    CHECK(se3d_function_create(w->system, &def, &function) == SE3D_OK);
+    CHECK(make_integral(w) == SE3D_OK);
+}
+
 static void workshop_open(workshop *w)
 {
     *w = (workshop){0};
@@ -48,6 +71,7 @@ static void workshop_open(workshop *w)
     slide.name = "slide";
     CHECK(se3d_joint_create_prismatic(w->system, &slide, &w->slide) == SE3D_OK);
     CHECK(se3d_function_create_expression(w->system, "sin(t)", &w->of_time) == SE3D_OK);
+    add_rate(w);
 }
 
 static void workshop_close(workshop *w)
@@ -465,6 +489,7 @@ static const operation_row operations[] = {
     {"signals", make_signals},
     {"expression", make_expression},
     {"table", make_table},
+    {"integral", make_integral},
     {"clone", make_clone},
     {"snapshot", make_snapshot},
     {"solver bytes", read_solver},
