@@ -270,12 +270,13 @@ static void note_start(se3di_run *run, double t)
     const int free = run->analysis == SE3D_ANALYSIS_DYNAMICS;
     se3di_start_change_measure(run->model, run->equations.accepted, is_driven(run), &run->start);
     run->start.time = t;
-    se3di_start_change_log(run->model, &run->start, free ? SE3D_LOG_WARNING : SE3D_LOG_INFO,
-                           run->error);
     char far[400];
     if (run->start.moved.index1 != 0 &&
         se3di_start_moved_describe(run->model, run->equations.accepted, far, sizeof far)) {
         se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_MOVED, "t = %g s: %s", t, far);
+    } else {
+        se3di_start_change_log(run->model, &run->start, free ? SE3D_LOG_WARNING : SE3D_LOG_INFO,
+                               run->error);
     }
 }
 

@@ -275,7 +275,7 @@ static void positions_that_do_not_fit_are_told(void)
     CHECK_NEAR(change.most_position, 2.0, 1e-9);
     CHECK(s.lines[SE3D_LOG_WARNING] == 1 && total(&s) == 1);
     CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "moved by 2 m");
-    CHECK(s.kind[SE3D_LOG_WARNING] == SE3D_LOG_START);
+    CHECK(s.kind[SE3D_LOG_WARNING] == SE3D_LOG_MOVED);
     CHECK_CONTAINS(s.last[SE3D_LOG_WARNING], "number 1");
     se3d_solver_destroy(solver);
     solver = solver_of(&s, SE3D_ANALYSIS_ASSEMBLY); /* is meant to move: information */
