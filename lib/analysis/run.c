@@ -108,6 +108,12 @@ static int is_history_of(const se3di_model *model, int32_t method)
     return model->history_tag / SE3DI_HISTORY_TAGS == (uint64_t)method;
 }
 
+static void use_method(se3di_run *run, const se3di_integrator *method)
+{
+    run->integration.method = method;
+    run->integration.settings.leaves_stiff = method->tag == SE3D_METHOD_DOP853;
+}
+
 /* auto: particles move by verlet only; strong dampers hold explicit methods to small steps, or
  * have done so before. A motion under way goes on by its method: the state would now decide
  * otherwise. */
@@ -125,8 +131,7 @@ static void choose_method(se3di_run *run)
     if (model->sets) {
         method = SE3D_METHOD_VERLET;
     }
-    run->integration.method = se3di_integrator_find(method);
-    run->integration.settings.leaves_stiff = method == SE3D_METHOD_DOP853;
+    use_method(run, se3di_integrator_find(method));
 }
 
 /* The motion is to follow from constraints and drivers alone. */
@@ -236,6 +241,15 @@ static se3d_status prepare(se3di_run *run)
     return se3di_events_prepare(&run->events) < 0
                ? se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for events")
                : SE3D_OK;
+}
+
+se3d_status se3di_run_take_method(se3di_run *run, const se3di_integrator *method)
+{
+    if (!run->automatic || method == run->integration.method) {
+        return SE3D_OK;
+    }
+    use_method(run, method);
+    return build(run);
 }
 
 se3d_status se3di_run_prepare(se3di_run *run)
@@ -524,8 +538,7 @@ static se3d_status switch_method(se3di_run *run)
 {
     run->left = run->integration.method;
     run->left_at = run->model->time;
-    run->integration.method = se3di_integrator_find(SE3D_METHOD_RADAU);
-    run->integration.settings.leaves_stiff = 0;
+    use_method(run, se3di_integrator_find(SE3D_METHOD_RADAU));
     se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,
                     "t = %g s: stability limits the steps of %s, %s takes over", run->left_at,
                     run->left->name, run->integration.method->name);

@@ -49,6 +49,8 @@ void se3di_run_destroy(se3di_run *run);
 
 /* Build what a run builds before its first step. */
 se3d_status se3di_run_prepare(se3di_run *run);
+/* Go on by a method that `auto` came to before; prepared. @return OK, NO_MEMORY, UNSUPPORTED */
+se3d_status se3di_run_take_method(se3di_run *run, const se3di_integrator *method);
 /* Bring the model to t_end >= its time. @return OK or INFO_REDUNDANT, or an error with the model at
  * the last accepted state. */
 se3d_status se3di_run_to(se3di_run *run, double t_end);

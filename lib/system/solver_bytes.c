@@ -8,7 +8,7 @@
 #include <math.h>
 
 #define MARK    UINT64_C(0x564C4F5344334553) /* "SE3DSOLV" */
-#define VERSION UINT64_C(1)
+#define VERSION UINT64_C(2)
 #define FRAME   (3 * sizeof(uint64_t)) /* mark, version, checksum */
 
 static void code_counters(se3di_coder *c, se3di_run *run)
@@ -35,6 +35,14 @@ static void code_method(se3di_coder *c, const se3di_integrator **method)
         *method = has && tag <= INT32_MAX ? se3di_integrator_find((int32_t)tag) : NULL;
         c->failed |= has && !*method;
     }
+}
+
+/* The method in use, which `auto` would now choose by another state. */
+static se3d_status code_method_in_use(se3di_coder *c, se3di_run *run)
+{
+    const se3di_integrator *method = run->integration.method;
+    code_method(c, &method);
+    return c->in && method ? se3di_run_take_method(run, method) : SE3D_OK;
 }
 
 /* A body by its place; none: as many as there are. */
@@ -156,6 +164,7 @@ static se3d_status code_solver(se3di_coder *c, se3di_run *run)
     if (analysis != run->analysis) {
         return SE3D_ERR_STATE;
     }
+    SE3DI_TRY(code_method_in_use(c, run));
     code_counters(c, run);
     code_method(c, &run->left);
     se3di_code_numbers(c, &run->left_at, 1);

@@ -343,12 +343,44 @@ static void new_solvers_of_auto_go_on_by_the_method_under_way(void)
     se3d_system_destroy(other);
 }
 
+/* Where nothing of its history is left. */
+static void a_solver_that_is_read_goes_on_by_its_method(void)
+{
+    static unsigned char bytes[4096];
+    se3d_system *system = build_slowing(), *other = NULL;
+    se3d_solver *one = NULL, *two = NULL;
+    const se3d_solver_def def = se3d_solver_def_default();
+    const double spin[3] = {0.0, 0.0, 1e-6};
+    const char *method[2] = {"", ""};
+    se3d_body body;
+    size_t size = 0;
+    CHECK(se3d_solver_create(system, &def, &one) == SE3D_OK);
+    CHECK(se3d_solver_run(one, 3.0) == SE3D_OK);
+    CHECK(se3d_system_get_body(system, 1, &body) == SE3D_OK);
+    CHECK(se3d_body_set_angular_velocity(system, body, spin) == SE3D_OK);
+    CHECK(se3d_solver_write(one, bytes, sizeof bytes, &size) == SE3D_OK);
+    CHECK(se3d_system_clone(system, &other) == SE3D_OK);
+    CHECK(se3d_solver_create(other, &def, &two) == SE3D_OK);
+    CHECK(se3d_solver_read(two, bytes, size) == SE3D_OK);
+    CHECK(se3d_solver_run(one, 3.1) == SE3D_OK);
+    CHECK(se3d_solver_run(two, 3.1) == SE3D_OK);
+    CHECK(se3d_system_hash(system) == se3d_system_hash(other));
+    CHECK(se3d_solver_get_method(one, &method[0]) == SE3D_OK);
+    CHECK(se3d_solver_get_method(two, &method[1]) == SE3D_OK);
+    CHECK(strcmp(method[0], "dop853") == 0 && strcmp(method[1], "dop853") == 0);
+    se3d_solver_destroy(one);
+    se3d_solver_destroy(two);
+    se3d_system_destroy(system);
+    se3d_system_destroy(other);
+}
+
 int main(void)
 {
     RUN(auto_looks_at_stiffness_and_says_what_it_picked);
     RUN(auto_leaves_dop853_where_the_motion_becomes_stiff);
     RUN(auto_leaves_dop853_where_decays_hold_it);
     RUN(new_solvers_of_auto_go_on_by_the_method_under_way);
+    RUN(a_solver_that_is_read_goes_on_by_its_method);
     RUN(radau_takes_no_more_steps_where_stiff);
     RUN(bdf_takes_no_more_steps_where_stiff);
     RUN(generalized_alpha_takes_no_more_steps_where_stiff);
