@@ -346,6 +346,7 @@ static const bad_input table[] = {
     {WITH("drivers: [{joint: pin, value: 1, start: 2}]"), 4, 41, {"for a driver with a rate"}},
     {WITH("drivers: [{joint: pin, rate: 2 mm}]"), 4, 30, {"is a length [m], must be"}},
     {WITH("drivers: [{joint: pin, rate: 2*pin.angle}]"), 4, 32, {"drivers[0].rate"}},
+    {WITH("drivers: [{joint: pin, rate: 2*u, start: 1}]"), 4, 32, {"drivers[0].rate"}},
     {WITH("drivers: [{joint: pin, rate: 1, start: 2 kg}]"), 4, 40, {"must be an angle [rad]"}},
     {WITH("drivers: [{joint: pin, speed: 2}]"), 4, 24, {"did you mean `rate`"}},
     {WITH("drivers: [{joint: pin, value: step(t,0,0,1,1)}]"),

@@ -55,7 +55,7 @@ static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_driver
     if (se3di_node_get(node, "rate")) {
         return read_rate(reader, node, def);
     }
-    if (start) {
+    if (start && !node->incomplete) { /* else its rate was wrong */
         return se3di_reader_fail(reader, start, "is for a driver with a rate");
     }
     if (!value) {
