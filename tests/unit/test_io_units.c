@@ -46,6 +46,7 @@ static void expressions_have_these_values(void)
                  {"15 deg + 1 rad", 15.0 * 3.14159265358979323846 / 180.0 + 1.0},
                  {"n/2", 62.83185307179586 / 2.0},
                  {"1 rev", 6.283185307179586},
+                 {"60 rpm*min(1, 2)", 6.283185307179586}, /* a function, not a minute */
                  {"norm(b - a)", 5.0},
                  {"distance(a, b)/d", 5.0 / 0.03},
                  {"dot(a, b)", 25.0},

@@ -126,13 +126,13 @@ static const se3di_measure *find_word(const char *text, size_t length)
     return NULL;
 }
 
-/* A word with its exponent, "m^2". @return the length, 0 if it is none. */
+/* A word with its exponent, "m^2", and no function, "min(". @return the length, 0 if it is none. */
 static size_t parse_factor(const char *text, int sign, se3di_measure *unit)
 {
     size_t length = word_length(text);
     const se3di_measure *word = find_word(text, length);
     int exponent = 1;
-    if (!word) {
+    if (!word || text[length] == '(') {
         return 0;
     }
     if (text[length] == '^' && text[length + 1] >= '1' && text[length + 1] <= '9' &&
