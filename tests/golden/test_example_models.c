@@ -390,6 +390,22 @@ static void overconstrained_loop_has_the_same_reactions_by_every_method(void)
     close_example(&exact);
 }
 
+/* M x'' + c x' + k x = m e w^2 cos(angle) at constant speed; what began before has died away. */
+static void rotor_whirls_as_its_imbalance_says(void)
+{
+    const double w = 20.0 * acos(-1.0), mass = 5.0, k = 2000.0, c = 20.0, push = 0.02 * w * w;
+    const double stiff = k - mass * w * w, damp = c * w, angle = w * (12.0 - 2.0);
+    const double x =
+        push * (stiff * cos(angle) + damp * sin(angle)) / (stiff * stiff + damp * damp);
+    for (int f = 0; f < 3; ++f) {
+        example e = run_example("run_up", NULL, NULL, formulations[f]);
+        CHECK_NEAR(channel_of(&e, "rail.displacement", 0), x, 1e-9);
+        CHECK_NEAR(channel_of(&e, "bearing.rate", 0), w, 1e-9);
+        CHECK_NEAR(channel_of(&e, "energy.balance", 0), 0.0, 1e-5);
+        close_example(&e);
+    }
+}
+
 int main(void)
 {
     RUN(block_above_the_friction_angle_slides_as_coulomb_says);
@@ -399,6 +415,7 @@ int main(void)
     RUN(quarter_car_settles_and_its_tyre_never_pulls);
     RUN(servo_finds_its_star);
     RUN(controller_brings_its_cart);
+    RUN(rotor_whirls_as_its_imbalance_says);
     RUN(heap_comes_to_rest);
     RUN(suspension_steers_and_travels_as_its_distances_say);
     RUN(axle_of_one_corner_is_symmetric);
