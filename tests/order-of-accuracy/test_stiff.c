@@ -343,7 +343,7 @@ static void new_solvers_of_auto_go_on_by_the_method_under_way(void)
     se3d_system_destroy(other);
 }
 
-/* Where nothing of its history is left. */
+/* Also if nothing of its history is left. */
 static void a_solver_that_is_read_goes_on_by_its_method(void)
 {
     static unsigned char bytes[4096];
