@@ -10,6 +10,7 @@ if [ $# -eq 0 ]; then
     set -- $(find lib tools/se3d -name '*.c' | grep -Ev '_(avx2|avx512|fma|portable)\.c$' | sort)
 fi
 flags="-std=c11 -D_POSIX_C_SOURCE=200809L -O2 -fopenmp -ffp-contract=off -Iinclude -Ilib -Itools/se3d
+-isystem /usr/include/suitesparse
 -finline-functions -Werror=uninitialized -Werror=maybe-uninitialized"
 for parameter in max-inline-insns-auto max-inline-insns-single large-function-growth large-function-insns \
     large-stack-frame-growth inline-unit-growth; do
