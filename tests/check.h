@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static int check_failures;
@@ -50,6 +51,12 @@ static inline int check_finish(void)
 {
     printf("%d checks, %d failed\n", check_count, check_failures);
     return check_failures > 0 || check_count == 0;
+}
+
+/* Whether all rows of long tables are wanted (SE3D_LONG in the environment), not a part of them. */
+static inline int check_is_long(void)
+{
+    return getenv("SE3D_LONG") != NULL;
 }
 
 /* A reproducible random number in [-1, 1): xorshift64*. */

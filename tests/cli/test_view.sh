@@ -32,6 +32,7 @@ for pair in pendulum:bar spatial_slider_crank:rod tsda_mass:block; do
     has "$dir/$model/scene.html" 'Copyright © 2010-20'
     [ "$(wc -c <"$dir/$model/scene.html")" -lt 1000000 ] || fail "$model is too large"
     [ "$model" = pendulum ] || opens "$model" "$dir/$model/scene.html" "$dir/$model/$model.csv" "${pair#*:}"
+    [ "$model" = pendulum ] || [ -n "${SE3D_LONG:-}" ] || export SE3D_BRIEF=1 # keys and mouse once
 done
 # 20 bodies over 10 s, more rows than a scene has samples: still exact, still small.
 {

@@ -84,7 +84,8 @@ static double obtained(const impact *m)
 
 static void check_method(int32_t method)
 {
-    for (int k = 0; k < 8 * KINDS * 4; ++k) {
+    const int stride = check_is_long() ? 1 : 5; /* each value of each, not all pairs */
+    for (int k = method % stride; k < 8 * KINDS * 4; k += stride) {
         impact m = {.method = method,
                     .law = k & 1 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE,
                     .pair = k >> 1 & 1,

@@ -21,10 +21,19 @@ static const char *const pushes[] = {
           "4))^2, 0)\", 0, 0]}]\n" OUTPUT,
 };
 
+/* Every method in one formulation at least: the even ones in one, the odd ones in the other. */
+static int is_wanted(int32_t run)
+{
+    return check_is_long() || run % 2 == run / 2 % 2;
+}
+
 static void a_push_of_a_moment_is_not_stepped_over(void)
 {
     for (size_t k = 0; k < sizeof pushes / sizeof *pushes; ++k) {
         for (int32_t run = 0; run < 2 * method_count(); ++run) {
+            if (!is_wanted(run)) {
+                continue;
+            }
             const int is_equal = run / 2 == SE3D_METHOD_RATTLE || run / 2 == SE3D_METHOD_VERLET;
             text_model m = text_model_open(pushes[k], run / 2, run % 2, k && is_equal ? 1e-4 : 0.0);
             CHECK(text_model_run(&m, 6.0));
@@ -54,6 +63,9 @@ static void a_driver_that_moves_for_a_moment_is_not_stepped_over(void)
     CHECK(fabs(v) > 0.03);
     text_model_close(&m);
     for (int32_t run = 0; run < 2 * method_count(); ++run) {
+        if (!is_wanted(run)) {
+            continue;
+        }
         m = text_model_open(text, run / 2, run % 2, 0.0);
         CHECK(text_model_run(&m, 6.0));
         CHECK_NEAR(text_model_get(&m, 0, 0), v, 2e-3 * fabs(v));
