@@ -319,12 +319,19 @@ static se3d_system *build_slowing(void)
     return system;
 }
 
+static void check_both_explicit(const se3d_solver *one, const se3d_solver *two)
+{
+    const char *method[2] = {"", ""};
+    CHECK(se3d_solver_get_method(one, &method[0]) == SE3D_OK);
+    CHECK(se3d_solver_get_method(two, &method[1]) == SE3D_OK);
+    CHECK(strcmp(method[0], "dop853") == 0 && strcmp(method[1], "dop853") == 0);
+}
+
 static void new_solvers_of_auto_go_on_by_the_method_under_way(void)
 {
     se3d_system *system = build_slowing(), *other = NULL;
     se3d_solver *one = NULL, *two = NULL;
     const se3d_solver_def def = se3d_solver_def_default();
-    const char *method[2] = {"", ""};
     CHECK(se3d_solver_create(system, &def, &one) == SE3D_OK);
     CHECK(se3d_solver_run(one, 3.0) == SE3D_OK);
     CHECK(se3d_system_clone(system, &other) == SE3D_OK);
@@ -334,9 +341,7 @@ static void new_solvers_of_auto_go_on_by_the_method_under_way(void)
         CHECK(se3d_solver_run(two, 3.0 + 0.1 * k) == SE3D_OK);
         CHECK(se3d_system_hash(system) == se3d_system_hash(other));
     }
-    CHECK(se3d_solver_get_method(one, &method[0]) == SE3D_OK);
-    CHECK(se3d_solver_get_method(two, &method[1]) == SE3D_OK);
-    CHECK(strcmp(method[0], "dop853") == 0 && strcmp(method[1], "dop853") == 0);
+    check_both_explicit(one, two);
     se3d_solver_destroy(one);
     se3d_solver_destroy(two);
     se3d_system_destroy(system);
@@ -351,7 +356,6 @@ static void a_solver_that_is_read_goes_on_by_its_method(void)
     se3d_solver *one = NULL, *two = NULL;
     const se3d_solver_def def = se3d_solver_def_default();
     const double spin[3] = {0.0, 0.0, 1e-6};
-    const char *method[2] = {"", ""};
     se3d_body body;
     size_t size = 0;
     CHECK(se3d_solver_create(system, &def, &one) == SE3D_OK);
@@ -365,9 +369,7 @@ static void a_solver_that_is_read_goes_on_by_its_method(void)
     CHECK(se3d_solver_run(one, 3.1) == SE3D_OK);
     CHECK(se3d_solver_run(two, 3.1) == SE3D_OK);
     CHECK(se3d_system_hash(system) == se3d_system_hash(other));
-    CHECK(se3d_solver_get_method(one, &method[0]) == SE3D_OK);
-    CHECK(se3d_solver_get_method(two, &method[1]) == SE3D_OK);
-    CHECK(strcmp(method[0], "dop853") == 0 && strcmp(method[1], "dop853") == 0);
+    check_both_explicit(one, two);
     se3d_solver_destroy(one);
     se3d_solver_destroy(two);
     se3d_system_destroy(system);
