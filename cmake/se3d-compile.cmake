@@ -18,10 +18,14 @@ if(NOT MSVC)
 endif()
 
 # C11 without extensions, no contraction of a*b+c into one rounding (results must not depend on the
-# machine), hidden symbols.
+# machine), hidden symbols. With sanitizers the tests take internal symbols from one shared library.
+set(se3d_visibility hidden)
+if(SE3D_SANITIZE)
+    set(se3d_visibility default)
+endif()
 function(se3d_compile_options target)
     set_target_properties(${target} PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON
-                          C_EXTENSIONS OFF C_VISIBILITY_PRESET hidden)
+                          C_EXTENSIONS OFF C_VISIBILITY_PRESET ${se3d_visibility})
     if(MSVC)
         target_compile_options(${target} PRIVATE /fp:precise)
         return()
