@@ -68,6 +68,7 @@ void se3di_model_touch_state(se3di_model *model)
     model->settled &= ~SE3DI_SETTLED;
     model->history_tag = 0;
     ++model->history_stamp;
+    ++model->poses_version;
     model->work_valid = 0;
     if (!model->remembers) {
         return;

@@ -213,6 +213,7 @@ typedef struct se3di_model {
                                   callbacks compute: what acts on the state, not the state itself */
     uint64_t contact_version;  /* changes when materials or the law of contact do */
     uint64_t masses_version;   /* changes when a mass or an inertia does */
+    uint64_t poses_version;    /* changes when a state is set; not when an analysis moves it */
     uint64_t values_version;   /* changes when prescribed values do: positions have to follow */
     int32_t settled;         /* SE3DI_SETTLED: the state is an analysis' own, nothing was set since;
                                   SE3DI_LACKING: without accelerations and multipliers */

@@ -59,7 +59,8 @@ typedef struct se3di_equations {
     se3di_tree_loops loops;  /* its loop constraints, if there are any */
     double *joint_before;    /* [positions of the tree] */
     double *joint_moves;     /* [nodes of the tree * 12] */
-    uint64_t masses_version; /* that the tree has */
+    uint64_t masses_version; /* that the tree has, */
+    uint64_t poses_version;  /* the same */
     int32_t is_open_tree;    /* nothing else constrains it, no force needs a multiplier */
     int32_t has_loops;       /* some constraint is not on the tree */
     int32_t takes_rows;      /* stages take the loops' rows on the tree, not all equations */

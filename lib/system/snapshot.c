@@ -183,6 +183,7 @@ se3d_status se3d_snapshot_restore(const se3d_snapshot *snapshot, se3d_system *sy
     se3di_saved_restore(state, model);
     restore_near(&snapshot->near, model);
     ++model->history_stamp;
+    ++model->poses_version;
     return SE3D_OK;
 }
 
