@@ -14,6 +14,7 @@
 #ifndef SE3DI_ASSEMBLY_H
 #define SE3DI_ASSEMBLY_H
 
+#include "force/force.h"
 #include "formulation/formulation.h"
 
 /* The places of a term's blocks in the joint's row of the KKT matrix; -1: the body is fixed. */
@@ -106,6 +107,10 @@ void se3di_assembly_subtract_inertia(const se3di_assembly *assembly, const doubl
 se3d_status se3di_assembly_eval_elements(se3di_assembly *assembly, double t, se3di_error *error);
 /* What acts on the bodies, contacts included: `wrench`. */
 se3d_status se3di_assembly_eval_wrenches(se3di_assembly *assembly, double t, se3di_error *error);
+/* The same with the powers of elements, and with efforts along known coordinates apart from
+ * `wrench`, which sums->wrench becomes. */
+se3d_status se3di_assembly_sum_loads(se3di_assembly *assembly, double t, se3di_force_sums *sums,
+                                     se3di_error *error);
 /* The same, and velocity terms, into b [unknowns]. */
 se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, double *b,
                                        se3di_error *error);

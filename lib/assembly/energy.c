@@ -112,10 +112,24 @@ se3d_status se3di_loads_power(const se3di_model *model, double t, double power[3
     return SE3D_OK;
 }
 
+se3d_status se3di_loads_complete_power(const se3di_model *model, double t, double power[3])
+{
+    power[2] = 0.0;
+    SE3DI_TRY(driver_power(model, t, &power[2]));
+    power[0] += se3di_contacts_power(model);
+    return SE3D_OK;
+}
+
 se3d_status se3di_work_accept(se3di_model *model, double h)
 {
     double power[3];
     SE3DI_TRY(se3di_loads_power(model, model->time, power));
+    se3di_work_take(model, h, power);
+    return SE3D_OK;
+}
+
+void se3di_work_take(se3di_model *model, double h, const double power[3])
+{
     if (model->work_valid <= 0) {
         memset(model->work, 0, sizeof model->work);
         model->work[0] = se3di_contacts_potential(model);
@@ -125,7 +139,6 @@ se3d_status se3di_work_accept(se3di_model *model, double h)
         model->power[k] = power[k];
     }
     model->work_valid = 1;
-    return SE3D_OK;
 }
 
 double se3di_work_lost(const se3di_model *model, double springs)

@@ -17,9 +17,13 @@ se3d_status se3di_loads_potential(const se3di_model *model, double t, double *po
  * changes, fed in by drivers (from model->lambda)}. All that goes into contacts counts as
  * dissipated; what their springs hold of it is subtracted when energies are reported. */
 se3d_status se3di_loads_power(const se3di_model *model, double t, double power[3]);
+/* The same where power[0] and power[1] hold those of gravity and elements. */
+se3d_status se3di_loads_complete_power(const se3di_model *model, double t, double power[3]);
 /* Add the work since the last accepted state, over a step h, by the trapezoidal rule to model->work
  * (h = 0: only note the present power, and begin the audit if it is void). */
 se3d_status se3di_work_accept(se3di_model *model, double h);
+/* The same with the present power. */
+void se3di_work_take(se3di_model *model, double h, const double power[3]);
 /* Energy lost since the audit began [J]; `springs` of contacts hold energy now. */
 double se3di_work_lost(const se3di_model *model, double springs);
 

@@ -256,12 +256,15 @@ void se3di_assembly_level(se3di_assembly *assembly)
     assembly->levels = 1;
 }
 
-se3d_status se3di_assembly_eval_elements(se3di_assembly *assembly, double t, se3di_error *error)
+/* Into assembly->wrench. */
+static se3d_status sum_elements(se3di_assembly *assembly, double t, se3di_force_sums *sums,
+                                se3di_error *error)
 {
     const se3di_model *model = assembly->model;
-    uint32_t failed = 0;
-    se3d_status status = se3di_forces_eval(model, t, assembly->wrench, &failed);
+    sums->wrench = assembly->wrench;
+    const se3d_status status = se3di_forces_sum(model, t, sums);
     if (status < 0) {
+        const uint32_t failed = sums->failed;
         int is_gravity = failed >= model->force_slots.count;
         const char *name = is_gravity ? "gravity" : model->forces[failed].name;
         return se3di_error_set(
@@ -273,14 +276,27 @@ se3d_status se3di_assembly_eval_elements(se3di_assembly *assembly, double t, se3
     return SE3D_OK;
 }
 
-se3d_status se3di_assembly_eval_wrenches(se3di_assembly *assembly, double t, se3di_error *error)
+se3d_status se3di_assembly_eval_elements(se3di_assembly *assembly, double t, se3di_error *error)
 {
-    SE3DI_TRY(se3di_assembly_eval_elements(assembly, t, error));
+    se3di_force_sums sums = {.along = NULL};
+    return sum_elements(assembly, t, &sums, error);
+}
+
+se3d_status se3di_assembly_sum_loads(se3di_assembly *assembly, double t, se3di_force_sums *sums,
+                                     se3di_error *error)
+{
+    SE3DI_TRY(sum_elements(assembly, t, sums, error));
     se3di_contacts_add_wrenches(assembly->model, assembly->wrench);
     for (size_t k = 0; assembly->push && k < 6 * (size_t)assembly->dense_count; ++k) {
         assembly->wrench[k] += assembly->push[k];
     }
     return SE3D_OK;
+}
+
+se3d_status se3di_assembly_eval_wrenches(se3di_assembly *assembly, double t, se3di_error *error)
+{
+    se3di_force_sums sums = {.along = NULL};
+    return se3di_assembly_sum_loads(assembly, t, &sums, error);
 }
 
 se3d_status se3di_assembly_eval_forces(se3di_assembly *assembly, double t, double *b,

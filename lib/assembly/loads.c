@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "assembly/loads.h"
 
+se3d_status se3di_loads_sum(const se3di_model *model, double t, se3di_force_sums *sums)
+{
+    SE3DI_TRY(se3di_forces_sum(model, t, sums));
+    se3di_contacts_add_wrenches(model, sums->wrench);
+    return SE3D_OK;
+}
+
 se3d_status se3di_loads_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed)
 {
     SE3DI_TRY(se3di_forces_eval(model, t, wrench, failed));

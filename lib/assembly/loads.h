@@ -10,6 +10,8 @@
 
 /* Wrenches on all bodies, see se3di_forces_eval. */
 se3d_status se3di_loads_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed);
+/* The same with powers and efforts, those of contacts left out: se3di_forces_sum. */
+se3d_status se3di_loads_sum(const se3di_model *model, double t, se3di_force_sums *sums);
 /* The state of the model at t is about to be accepted (all that can fail), and is. */
 se3d_status se3di_loads_prepare(se3di_model *model, double t, se3di_error *error);
 void se3di_loads_accept(se3di_model *model);

@@ -30,29 +30,70 @@ se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force,
     return classes[force->type]->eval(model, force, t, effect);
 }
 
-se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed)
+int se3di_force_is_number(const se3di_force *force)
 {
-    double g[3];
-    se3di_effect effect;
-    effect.wants_derivative = 0;
-    memset(wrench, 0, 6 * model->body_slots.count * sizeof *wrench);
-    *failed = (uint32_t)model->force_slots.count;
-    SE3DI_TRY(se3di_gravity_eval(model, t, g, NULL));
+    return force->type == SE3DI_FORCE_EFFORT && force->function[0] < 0;
+}
+
+static se3d_status sum_gravity(const se3di_model *model, double t, se3di_force_sums *sums)
+{
+    double g[3], g_t[3];
+    const int changes = model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
+                        model->gravity_function[2] >= 0;
+    SE3DI_TRY(se3di_gravity_eval(model, t, g, g_t));
     for (size_t b = 0; b < model->body_slots.count; ++b) {
-        if (model->bodies[b].state == 0) {
-            se3di_add_scaled(model->bodies[b].mass, g, wrench + 6 * b);
+        const se3di_body *body = &model->bodies[b];
+        if (body->state == 0) {
+            se3di_add_scaled(body->mass, g, sums->wrench + 6 * b);
         }
-    }
-    for (uint32_t k = 0; k < model->force_slots.count; ++k) {
-        const se3di_force *force = &model->forces[k];
-        *failed = k;
-        SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
-        for (int c = 0; c < 6; ++c) {
-            wrench[6 * force->body_i + (uint32_t)c] += effect.wrench[c];
-            wrench[6 * force->body_j + (uint32_t)c] += effect.wrench[6 + c];
+        if (changes && !body->fixed && body->state == 0) {
+            sums->power[1] -= body->mass * se3di_dot(g_t, model->frames[b].r);
         }
     }
     return SE3D_OK;
+}
+
+static se3d_status sum_element(const se3di_model *model, uint32_t k, double t,
+                               se3di_force_sums *sums)
+{
+    const se3di_force *force = &model->forces[k];
+    const int32_t along = sums->along ? sums->along[k] : -1;
+    if (along >= 0 && se3di_force_is_number(force)) {
+        sums->effort[along] += force->value[0];
+        sums->power[1] += force->value[0] * sums->rate[along];
+        return SE3D_OK;
+    }
+    se3di_effect effect;
+    effect.wants_derivative = 0;
+    SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
+    for (int c = 0; c < 6; ++c) {
+        sums->wrench[6 * force->body_i + (uint32_t)c] += effect.wrench[c];
+        sums->wrench[6 * force->body_j + (uint32_t)c] += effect.wrench[6 + c];
+    }
+    sums->power[0] += effect.power[0];
+    sums->power[1] += effect.power[1];
+    return SE3D_OK;
+}
+
+se3d_status se3di_forces_sum(const se3di_model *model, double t, se3di_force_sums *sums)
+{
+    memset(sums->wrench, 0, 6 * model->body_slots.count * sizeof *sums->wrench);
+    sums->power[0] = sums->power[1] = 0.0;
+    sums->failed = (uint32_t)model->force_slots.count;
+    SE3DI_TRY(sum_gravity(model, t, sums));
+    for (uint32_t k = 0; k < model->force_slots.count; ++k) {
+        sums->failed = k;
+        SE3DI_TRY(sum_element(model, k, t, sums));
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed)
+{
+    se3di_force_sums sums = {.wrench = wrench};
+    const se3d_status status = se3di_forces_sum(model, t, &sums);
+    *failed = sums.failed;
+    return status;
 }
 
 int se3di_forces_have_memory(const se3di_model *model)

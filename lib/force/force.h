@@ -59,9 +59,24 @@ const se3di_force_class *se3di_force_class_of(const se3di_force *force);
 /* Gravity at t and its rate (NULL: not wanted). */
 se3d_status se3di_gravity_eval(const se3di_model *model, double t, double g[3], double *g_t);
 
-/* Wrenches of gravity and all elements on all bodies, [bodies * 6]. On failure *failed is the
- * element (the count of elements: gravity). */
+/* What gravity and all elements do together. An effort that is a number may act along a coordinate
+ * whose rate is known, instead of on bodies. */
+typedef struct se3di_force_sums {
+    double *wrench;       /* [bodies * 6] */
+    double power[2];      /* dissipated, fed in, as of an effect; gravity that changes included */
+    const int32_t *along; /* [elements] the coordinate of each, -1: none; NULL: of none */
+    const double *rate;   /* [coordinates] */
+    double *effort;       /* [coordinates] takes them; zero before */
+    uint32_t failed;      /* on failure: the element (the count of elements: gravity) */
+    uint32_t reserved;
+} se3di_force_sums;
+
+se3d_status se3di_forces_sum(const se3di_model *model, double t, se3di_force_sums *sums);
+
+/* Wrenches of gravity and all elements on all bodies, [bodies * 6]; *failed as above. */
 se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed);
+/* Whether an element is an effort that needs nothing but its number. */
+int se3di_force_is_number(const se3di_force *force);
 
 /* Elements with a memory (friction, stops). After a trial step from the last accepted state:
  * compare what they assumed with what came out, correct it and return how many changed; the step is

@@ -101,7 +101,7 @@ static const double *get_rates(se3di_equations *equations, const double *derivat
     return out;
 }
 
-/* Rates of positions and works beside the accelerations. */
+/* Rates of positions and works beside the accelerations of bodies. */
 static se3d_status complete(se3di_equations *equations, double t, const double *l,
                             double *derivative)
 {
@@ -252,7 +252,7 @@ static const double *find_multipliers(se3di_equations *equations)
         se3di_tree_loops_add_wrenches(&equations->loops, lambda, wrench);
     }
     tree->core->transmit(tree, wrench, joint);
-    se3di_tree_multipliers(tree, joint, NULL, equations->l);
+    se3di_tree_multipliers(tree, joint, se3di_tree_effort(tree), equations->l);
     return equations->l;
 }
 
@@ -260,13 +260,24 @@ static const double *find_multipliers(se3di_equations *equations)
 static se3d_status solve_motion(se3di_equations *equations, double *qddot)
 {
     se3di_tree *tree = equations->tree;
-    SE3DI_TRY(se3di_tree_factor(tree, NULL));
+    SE3DI_TRY(se3di_tree_factor(tree, se3di_tree_effort(tree)));
     if (!equations->has_loops) {
         se3di_tree_accelerate(tree, tree->e, qddot);
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_tree_loops_factor(&equations->loops));
     return se3di_tree_loops_accelerate(&equations->loops, qddot);
+}
+
+/* Rates of positions and works beside the accelerations of the tree; `power`: of elements. */
+static se3d_status complete_tree(se3di_equations *equations, double t, const double power[2],
+                                 double *derivative)
+{
+    const se3di_tree *tree = equations->tree;
+    double *works = derivative + tree->q_count + tree->v_count;
+    se3di_tree_rates(tree, tree->q, tree->qdot, derivative);
+    memcpy(works, power, 2 * sizeof *works);
+    return se3di_state_complete_powers(&equations->assembly, t, find_multipliers(equations), works);
 }
 
 static se3d_status evaluate_tree(se3di_equations *equations, double t, double *derivative)
@@ -278,7 +289,8 @@ static se3d_status evaluate_tree(se3di_equations *equations, double t, double *d
         SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
         se3di_tree_take_given(tree, assembly);
     }
-    SE3DI_TRY(se3di_assembly_eval_wrenches(assembly, t, equations->error));
+    se3di_force_sums sums = se3di_tree_sums(tree, tree->qdot);
+    SE3DI_TRY(se3di_assembly_sum_loads(assembly, t, &sums, equations->error));
     se3di_tree_take_wrenches(tree, assembly->model->frames, assembly->wrench);
     ++equations->counters.evaluations;
     se3d_status status = solve_motion(equations, qddot);
@@ -289,7 +301,7 @@ static se3d_status evaluate_tree(se3di_equations *equations, double t, double *d
         return se3di_error_set(equations->error, status,
                                "t = %g s: the equations are singular or not finite", t);
     }
-    return complete(equations, t, find_multipliers(equations), derivative);
+    return complete_tree(equations, t, sums.power, derivative);
 }
 
 static se3d_status evaluate(se3di_equations *equations, double t, double *derivative)

@@ -85,6 +85,18 @@ se3d_status se3di_state_powers(se3di_assembly *assembly, double t, const double 
     return se3di_loads_power(model, t, power);
 }
 
+se3d_status se3di_state_complete_powers(se3di_assembly *assembly, double t, const double *l,
+                                        double power[3])
+{
+    se3di_model *model = assembly->model;
+    if (l && assembly->row_count > 0 && l != model->lambda) {
+        memcpy(model->lambda, l, assembly->row_count * sizeof *l);
+    }
+    power[2] = 0.0;
+    return l || model->shape_slots.count > 1 ? se3di_loads_complete_power(model, t, power)
+                                             : SE3D_OK;
+}
+
 se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const double *qddot,
                                    const double *l, double *derivative)
 {

@@ -36,6 +36,10 @@ se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const dou
 se3d_status se3di_state_powers(se3di_assembly *assembly, double t, const double *l,
                                double power[3]);
 
+/* The same where power[0] and power[1] hold those of gravity and elements. */
+se3d_status se3di_state_complete_powers(se3di_assembly *assembly, double t, const double *l,
+                                        double power[3]);
+
 /* Before a series of evaluations: the mass if it is constant, and the linear solver's settings
  * for the regularisation `eps`; after it: the settings as they were. Near singular positions an
  * acceleration is then a smooth function of the state: eps and the two refinements act as a filter,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Public layer: joint coordinates. The poses of the bodies stay the truth: every call reads the
- * coordinates from them. */
+ * coordinates from them, unless they are, to the bit, what the last call has read or set. */
 #include "se3d/coordinates.h"
 
 #include "assembly/loads.h"
@@ -25,10 +25,14 @@ struct se3d_coordinates {
     se3di_tree_loops loops;
     double *wrench;                         /* [bodies * 6] */
     double *joint;                          /* [nodes * 6] */
-    double *q, *qdot;                       /* of the caller: set */
     double *given;                          /* [velocities] */
-    uint64_t inputs_version, history_stamp; /* what the tree was refreshed for */
-    size_t bodies, nodes, positions, velocities;
+    uint64_t masses_version, poses_version; /* what the tree was refreshed for */
+    se3di_frame *seen;                      /* [bodies], and turns [angles]: where tree->q and */
+    double *turns;                          /* tree->qdot are from, if it is placed */
+    int32_t is_placed;
+    int32_t reserved;
+    size_t bodies, nodes, velocities, angles;
+    size_t positions;
 };
 
 /* ---- life ---- */
@@ -40,16 +44,17 @@ static void release(se3d_coordinates *c)
     se3di_tree_destroy(&c->tree);
     se3di_free(&c->allocator, c->wrench, 6 * c->bodies, sizeof(double));
     se3di_free(&c->allocator, c->joint, 6 * c->nodes, sizeof(double));
-    se3di_free(&c->allocator, c->q, c->positions, sizeof(double));
-    se3di_free(&c->allocator, c->qdot, c->velocities, sizeof(double));
     se3di_free(&c->allocator, c->given, c->velocities, sizeof(double));
-    c->wrench = c->joint = c->q = c->qdot = c->given = NULL;
+    se3di_free(&c->allocator, c->seen, c->bodies, sizeof *c->seen);
+    se3di_free(&c->allocator, c->turns, c->angles, sizeof(double));
+    c->wrench = c->joint = c->given = c->turns = NULL;
+    c->seen = NULL;
 }
 
 static void take_versions(se3d_coordinates *c)
 {
-    c->inputs_version = c->system->model.inputs_version;
-    c->history_stamp = c->system->model.history_stamp;
+    c->masses_version = c->system->model.masses_version;
+    c->poses_version = c->system->model.poses_version;
 }
 
 /* One that is on no coordinate of the tree is not a part of its mass matrix. */
@@ -81,10 +86,11 @@ static se3d_status build(se3d_coordinates *c)
     c->velocities = c->tree.v_count;
     c->wrench = se3di_alloc(&c->allocator, 6 * c->bodies, sizeof(double));
     c->joint = se3di_alloc(&c->allocator, 6 * c->nodes, sizeof(double));
-    c->q = se3di_alloc(&c->allocator, c->positions, sizeof(double));
-    c->qdot = se3di_alloc(&c->allocator, c->velocities, sizeof(double));
+    c->angles = system->model.angle_count;
+    c->seen = se3di_alloc(&c->allocator, c->bodies, sizeof *c->seen);
+    c->turns = se3di_alloc(&c->allocator, c->angles, sizeof(double));
     c->given = se3di_alloc(&c->allocator, c->velocities, sizeof(double));
-    if (!c->wrench || !c->joint || !c->q || !c->qdot || !c->given) {
+    if (!c->wrench || !c->joint || !c->seen || !c->turns || !c->given) {
         return se3di_error_set(&system->error, SE3D_ERR_NO_MEMORY,
                                "no memory for joint coordinates");
     }
@@ -230,11 +236,33 @@ static se3d_status begin(se3d_coordinates *c)
 {
     SE3DI_TRY(check_structure(c));
     const se3di_model *model = &c->system->model;
-    if (c->inputs_version != model->inputs_version || c->history_stamp != model->history_stamp) {
+    if (c->masses_version != model->masses_version || c->poses_version != model->poses_version) {
         se3di_tree_refresh(&c->tree);
         take_versions(c);
+        c->is_placed = 0;
     }
     return SE3D_OK;
+}
+
+/* The tree is placed where the bodies are. */
+static void see(se3d_coordinates *c)
+{
+    const se3di_model *model = &c->system->model;
+    memcpy(c->seen, model->frames, c->bodies * sizeof *c->seen);
+    for (size_t k = 0; k < c->angles; ++k) {
+        c->turns[k] = model->angles[k].theta;
+    }
+    c->is_placed = 1;
+}
+
+static int is_placed(const se3d_coordinates *c)
+{
+    const se3di_model *model = &c->system->model;
+    int same = c->is_placed && memcmp(c->seen, model->frames, c->bodies * sizeof *c->seen) == 0;
+    for (size_t k = 0; same && k < c->angles; ++k) {
+        same = memcmp(&c->turns[k], &model->angles[k].theta, sizeof *c->turns) == 0;
+    }
+    return same;
 }
 
 /* And placed at the present state. */
@@ -242,8 +270,11 @@ static se3d_status place(se3d_coordinates *c)
 {
     se3di_tree *tree = &c->tree;
     SE3DI_TRY(begin(c));
-    se3di_tree_get(tree, tree->q, tree->qdot);
-    se3di_tree_place(tree, tree->q, tree->qdot, tree->frames);
+    if (!is_placed(c)) {
+        se3di_tree_get(tree, tree->q, tree->qdot);
+        se3di_tree_place(tree, tree->q, tree->qdot, tree->frames);
+        see(c);
+    }
     return SE3D_OK;
 }
 
@@ -344,26 +375,29 @@ se3d_status se3d_coordinates_set(se3d_coordinates *coordinates, const double *q,
     if (!q && !qdot) {
         return SE3D_OK;
     }
+    se3di_tree *tree = &c->tree;
+    c->is_placed = 0;
     if (!q || !qdot) {
-        se3di_tree_get(&c->tree, c->q, c->qdot);
+        se3di_tree_get(tree, tree->q, tree->qdot);
     }
     if (q) {
-        memcpy(c->q, q, c->positions * sizeof *q);
+        memcpy(tree->q, q, c->positions * sizeof *q);
     }
     if (qdot) {
-        memcpy(c->qdot, qdot, c->velocities * sizeof *qdot);
+        memcpy(tree->qdot, qdot, c->velocities * sizeof *qdot);
     }
-    se3di_tree_place(&c->tree, c->q, c->qdot, c->tree.frames);
+    se3di_tree_place(tree, tree->q, tree->qdot, tree->frames);
     SE3DI_TRY(check_frames(c));
     if (q) {
         set_frames(c);
-        set_turns(c, c->q);
+        set_turns(c, tree->q);
+        see(c);
         se3di_model_touch_poses(&c->system->model);
     } else {
         set_velocities(c);
         se3di_model_touch_state(&c->system->model);
     }
-    c->history_stamp = c->system->model.history_stamp;
+    c->poses_version = c->system->model.poses_version;
     return SE3D_OK;
 }
 
@@ -385,11 +419,12 @@ se3d_status se3d_coordinates_move(se3d_coordinates *coordinates, const double *q
 static se3d_status load(se3d_coordinates *c)
 {
     se3d_system *system = c->system;
-    uint32_t failed = 0;
     const double t = system->model.time;
-    se3d_status status = se3di_loads_eval(&system->model, t, c->wrench, &failed);
+    se3di_force_sums sums = se3di_tree_sums(&c->tree, c->tree.qdot);
+    sums.wrench = c->wrench;
+    se3d_status status = se3di_loads_sum(&system->model, t, &sums);
     if (status < 0) {
-        return SE3DI_FAIL(system, status, "t = %g s: force element %u: %s", t, failed,
+        return SE3DI_FAIL(system, status, "t = %g s: force element %u: %s", t, sums.failed,
                           se3d_status_get_text(status));
     }
     se3di_tree_take_wrenches(&c->tree, system->model.frames, c->wrench);
@@ -405,6 +440,16 @@ static se3d_status factor(se3d_coordinates *c, const double *effort)
     return SE3D_OK;
 }
 
+/* The efforts of the caller (NULL: none) and those of elements along coordinates. */
+static const double *add_efforts(se3d_coordinates *c, const double *effort)
+{
+    double *sum = c->tree.effort;
+    for (size_t k = 0; c->tree.has_efforts && effort && k < c->velocities; ++k) {
+        sum[k] += effort[k];
+    }
+    return c->tree.has_efforts ? sum : effort;
+}
+
 static se3d_status accelerate(se3d_coordinates *c, const double *effort, double *qddot)
 {
     se3d_system *system = c->system;
@@ -413,7 +458,7 @@ static se3d_status accelerate(se3d_coordinates *c, const double *effort, double 
     se3di_assembly_take_values(&c->assembly);
     SE3DI_TRY(se3di_assembly_eval_functions(&c->assembly, system->model.time, &system->error));
     se3di_tree_take_given(&c->tree, &c->assembly);
-    SE3DI_TRY(factor(c, effort));
+    SE3DI_TRY(factor(c, add_efforts(c, effort)));
     if (c->loops.count == 0) {
         se3di_tree_accelerate(&c->tree, c->tree.e, qddot);
         return SE3D_OK;
@@ -457,6 +502,9 @@ static se3d_status find_efforts(se3d_coordinates *c, const double *qddot, double
     const double *rates = qddot ? qddot : c->given;
     se3di_tree_propagate(&c->tree, rates);
     se3di_tree_efforts(&c->tree, rates, c->joint, effort);
+    for (size_t k = 0; c->tree.has_efforts && k < c->velocities; ++k) {
+        effort[k] -= c->tree.effort[k];
+    }
     return SE3D_OK;
 }
 

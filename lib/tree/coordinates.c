@@ -544,6 +544,15 @@ void se3di_tree_place(se3di_tree *tree, const double *q, const double *qdot, se3
     tree->core->place(tree, q, qdot, frames);
 }
 
+se3di_force_sums se3di_tree_sums(se3di_tree *tree, const double *qdot)
+{
+    if (!tree->has_efforts) {
+        return (se3di_force_sums){.along = NULL};
+    }
+    memset(tree->effort, 0, tree->v_count * sizeof *tree->effort);
+    return (se3di_force_sums){.along = tree->along, .rate = qdot, .effort = tree->effort};
+}
+
 void se3di_tree_take_wrenches(se3di_tree *tree, const se3di_frame *frames, const double *wrench)
 {
     for (uint32_t k = 0; k < tree->count; ++k) {

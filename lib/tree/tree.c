@@ -301,10 +301,24 @@ static void find_drivers(se3di_tree *tree)
     }
 }
 
+/* The coordinates of the tree that efforts act on. */
+static void find_efforts(se3di_tree *tree)
+{
+    for (uint32_t k = 0; k < tree->force_count; ++k) {
+        const se3di_force *force = &tree->model->forces[k];
+        const int is_effort = force->type == SE3DI_FORCE_EFFORT;
+        const int32_t place = is_effort ? tree->tree_of[force->joint] : -1;
+        const se3di_tree_node *n = place >= 0 ? &tree->nodes[place] : NULL;
+        const int32_t component = n ? se3di_tree_component(n, force->coordinate) : -1;
+        tree->along[k] = component < 0 ? -1 : (int32_t)n->v + component;
+        tree->has_efforts |= component >= 0;
+    }
+}
+
 /* ---- memory ---- */
 
-#define TREE_STRUCTURE 3
-#define TREE_VALUES    17
+#define TREE_STRUCTURE 4
+#define TREE_VALUES    18
 
 static void list_structure(se3di_tree *t, se3di_array list[TREE_STRUCTURE])
 {
@@ -312,6 +326,7 @@ static void list_structure(se3di_tree *t, se3di_array list[TREE_STRUCTURE])
         {(void **)&t->nodes, t->body_count, sizeof *t->nodes},
         {(void **)&t->node_of, t->body_count, sizeof *t->node_of},
         {(void **)&t->tree_of, t->constraint_count, sizeof *t->tree_of},
+        {(void **)&t->along, t->force_count, sizeof *t->along},
     };
     _Static_assert(sizeof arrays == TREE_STRUCTURE * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
@@ -330,6 +345,7 @@ static void list_values(se3di_tree *t, se3di_array list[TREE_VALUES])
         {(void **)&t->k, v, number_size},
         {(void **)&t->e, v, number_size},
         {(void **)&t->given, v, number_size},
+        {(void **)&t->effort, v, number_size},
         {(void **)&t->armature, v, number_size},
         {(void **)&t->wrench, 6 * (size_t)t->count, number_size},
         {(void **)&t->q, t->q_count, number_size},
@@ -367,6 +383,7 @@ static se3d_status build(se3di_tree *tree)
         span_armatures(&b);
         number(&b);
         find_drivers(tree);
+        find_efforts(tree);
     }
     se3di_arrays_free(allocator, arrays, BUILDER_ARRAYS);
     SE3DI_TRY(status);
@@ -381,7 +398,8 @@ se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, int moves_stat
                          .topology_version = model->topology_version,
                          .moves_states = moves_states,
                          .body_count = (uint32_t)model->body_slots.count,
-                         .constraint_count = (uint32_t)model->constraint_slots.count};
+                         .constraint_count = (uint32_t)model->constraint_slots.count,
+                         .force_count = (uint32_t)model->force_slots.count};
     const se3d_status status = build(tree);
     if (status < 0) {
         se3di_tree_destroy(tree);

@@ -17,7 +17,7 @@
 #ifndef SE3DI_TREE_H
 #define SE3DI_TREE_H
 
-#include "model/model.h"
+#include "force/force.h"
 
 /* X(NAME, name, positions, velocities). Of the child relative to the parent. Angles and
  * displacements of revolute, prismatic, screw and cylindrical joints and the angle of a planar one
@@ -115,6 +115,9 @@ typedef struct se3di_tree {
     int32_t *node_of; /* [bodies] -1: fixed */
     int32_t *tree_of; /* [constraints]: node of a joint or driver, -1: a loop's */
     uint32_t constraint_count;
+    uint32_t force_count; /* elements */
+    int32_t *along;       /* [elements]: velocity of the coordinate that an effort acts on, or -1 */
+    int32_t has_efforts;  /* some effort acts on a coordinate of the tree */
     int32_t moves_states; /* carriers of states are nodes */
     /* at the state that was placed last: */
     se3di_tree_link *links;
@@ -124,6 +127,7 @@ typedef struct se3di_tree {
     double *V, *k;            /* revolutes: U / D about the parent's point; U . c / D */
                               /* balls: V[j] of a turn is U . S_j / D of those before it */
     double *given;            /* [velocities]: prescribed accelerations */
+    double *effort;           /* [velocities]: of the elements in `along`, at the last sums */
     double *armature;         /* [velocities]: inertia that turns with the coordinate alone */
     int32_t foreign_armature; /* a force element: armature on no coordinate of the tree; -1: none */
     int32_t reserved;
@@ -167,6 +171,15 @@ void se3di_tree_place(se3di_tree *tree, const double *q, const double *qdot, se3
 void se3di_tree_rates(const se3di_tree *tree, const double *q, const double *qdot, double *rates);
 /* out = q moved by the displacement dq [velocities]; out may be q. */
 void se3di_tree_move(const se3di_tree *tree, const double *q, const double *dq, double *out);
+
+/* For se3di_forces_sum at the velocities `qdot` of the state that is placed: efforts along
+ * coordinates of the tree go to tree->effort, where they stay until the next sums. */
+se3di_force_sums se3di_tree_sums(se3di_tree *tree, const double *qdot);
+/* tree->effort, NULL: no element acts along a coordinate. */
+static inline const double *se3di_tree_effort(const se3di_tree *tree)
+{
+    return tree->has_efforts ? tree->effort : NULL;
+}
 
 /* With the state placed: take what acts on bodies, [dense bodies * 6] force (ground) and torque
  * (body) as force/force.h has it; frames as placed. */

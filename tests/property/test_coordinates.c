@@ -461,6 +461,37 @@ static void calls_see_setters_and_leave_the_state_alone(void)
     end(&s);
 }
 
+/* What others move is read again, to the bit as by coordinates that have seen nothing. */
+static void calls_see_what_others_have_moved(void)
+{
+    setting s;
+    se3d_coordinates *other, *fresh;
+    double x[SIZE], y[SIZE], before[SIZE];
+    begin(&s, 5, 0);
+    CHECK(!se3d_coordinates_create(s.system, &other));
+    CHECK(!se3d_coordinates_compute_accelerations(s.c, NULL, before));
+    for (int way = 0; way < 2; ++way) {
+        for (size_t k = 0; k < s.n; ++k) {
+            s.qdot[k] += 0.5;
+        }
+        if (way == 0) {
+            CHECK(!se3d_coordinates_set(other, NULL, s.qdot));
+        } else {
+            const double v[3] = {0.3, -0.2, 0.1};
+            CHECK(!se3d_body_set_angular_velocity(s.system, s.world.bodies[s.world.count - 1], v));
+        }
+        CHECK(!se3d_coordinates_create(s.system, &fresh));
+        CHECK(!se3d_coordinates_compute_accelerations(s.c, NULL, x));
+        CHECK(!se3d_coordinates_compute_accelerations(fresh, NULL, y));
+        CHECK(difference(x, y, s.n) == 0.0);
+        CHECK(difference(x, before, s.n) > 1e-6);
+        memcpy(before, x, sizeof before);
+        se3d_coordinates_destroy(fresh);
+    }
+    se3d_coordinates_destroy(other);
+    end(&s);
+}
+
 static void what_is_made_once_allocates_no_more_and_is_given_back(void)
 {
     support_counting counting = {0};
@@ -506,6 +537,7 @@ int main(void)
     RUN(velocities_alone_move_no_body);
     RUN(every_velocity_has_its_joint_and_body);
     RUN(calls_see_setters_and_leave_the_state_alone);
+    RUN(calls_see_what_others_have_moved);
     RUN(what_is_made_once_allocates_no_more_and_is_given_back);
     return check_finish();
 }
