@@ -15,7 +15,7 @@ from pathlib import Path
 
 LINES, KERNEL_LINES, COMPLEXITY, PARAMETERS, FILE_LINES, EXAMPLE_LINES = 100, 160, 20, 8, 1000, 120
 COLUMNS = 100
-FOLDERS = ("include", "lib", "tools", "examples", "tests", "bench")
+FOLDERS = ("include", "lib", "tools", "examples", "tests", "fuzz", "bench")
 TOKEN = re.compile(r"[A-Za-z_]\w*|\n|&&|\|\||\.?\d(?:[eEpP][+-]|[\w.])*|\S")
 NOISE = re.compile(r"/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.S)
 DECISIONS = {"if", "for", "while", "case", "&&", "||", "?"}
