@@ -190,8 +190,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (size < HEAD) {
         return 0;
     }
-    const size_t which = data[0] % MODELS;
     const int32_t method = methods[data[1] % (sizeof methods / sizeof *methods)];
+    const size_t all = data[0] % MODELS;
+    const size_t which = method == SE3D_METHOD_CONVEX && all == 0 ? 1 : all; /* it has friction */
     const int of_solver = data[2] % 2;
     size_t length = write_bytes(which, method, of_solver, bytes);
     for (size_t at = HEAD; at + 4 <= size; at += 4) {

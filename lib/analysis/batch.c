@@ -101,7 +101,7 @@ typedef struct room {
     size_t count;
 } room;
 
-/* One block for all rooms, each aligned; NULL if nothing is in it. @return the block; *count: its
+/* One block for all rooms, each aligned, also for those that nothing is in. @return the block; *count: its
  * numbers */
 static double *take_rooms(const se3d_allocator *allocator, const room *rooms, int rooms_count,
                           size_t *count)
@@ -114,7 +114,7 @@ static double *take_rooms(const se3d_allocator *allocator, const room *rooms, in
     double *block = se3di_alloc(allocator, total, sizeof *block);
     double *at = block ? se3di_lanes_align(block) : NULL;
     for (int k = 0; block && k < rooms_count; ++k) {
-        *rooms[k].to = rooms[k].count > 0 ? at : NULL;
+        *rooms[k].to = at;
         at += (rooms[k].count + step - 1) / step * step;
     }
     *count = block ? total : 0;

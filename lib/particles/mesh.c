@@ -132,6 +132,9 @@ static se3di_mesh_pair *evaluate_batch(se3di_particles *set, se3di_mesh_pair *fi
 void se3di_particles_mesh_forces(se3di_particles *set, const se3di_slab *slab,
                                  se3di_force_task *task)
 {
+    if (slab->mesh_begin == slab->mesh_end) {
+        return; /* there may be no pairs at all, and no memory of them */
+    }
     se3di_force_task local = *task;
     se3di_mesh_pair *at = set->mesh_pairs + slab->mesh_begin;
     se3di_mesh_pair *end = set->mesh_pairs + slab->mesh_end;
