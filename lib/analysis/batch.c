@@ -101,8 +101,8 @@ typedef struct room {
     size_t count;
 } room;
 
-/* One block for all rooms, each aligned, also for those that nothing is in. @return the block; *count: its
- * numbers */
+/* One block for all rooms, each aligned, also for those that nothing is in. @return the block;
+ * *count: its numbers */
 static double *take_rooms(const se3d_allocator *allocator, const room *rooms, int rooms_count,
                           size_t *count)
 {
