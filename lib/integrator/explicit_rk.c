@@ -36,14 +36,29 @@ static double estimate_error(se3di_explicit *m, double h)
     return error;
 }
 
+/* In the history: the derivative that the last step began with. */
+static double *first_derivative(const se3di_explicit *m)
+{
+    return m->forms + (size_t)(SE3DI_EXPLICIT_FORMS - 1) * m->count;
+}
+
+/* From y0 at t and the first derivative. */
+static se3d_status evaluate_stages(se3di_explicit *m, double t, double h)
+{
+    memcpy(m->K, first_derivative(m), m->count * sizeof *m->K);
+    se3di_state_begin_step(m->equations, m->past->redundant);
+    for (int k = 1; k < m->tableau->stages; ++k) {
+        SE3DI_TRY(evaluate_stage(m, t, h, k));
+    }
+    return SE3D_OK;
+}
+
 static se3d_status make_stages(se3di_explicit *m, double h, double *error)
 {
     memcpy(m->y0, m->y1, m->count * sizeof *m->y0);
-    memcpy(m->K, m->f1, m->count * sizeof *m->K);
-    se3di_state_begin_step(m->equations, m->past->redundant);
-    for (int k = 1; k < m->tableau->stages; ++k) {
-        SE3DI_TRY(evaluate_stage(m, m->past->at.time, h, k));
-    }
+    memcpy(first_derivative(m), m->f1, m->count * sizeof *m->f1);
+    m->past->length = h;
+    SE3DI_TRY(evaluate_stages(m, m->past->at.time, h));
     *error = m->tableau->uses_end ? 0.0 : estimate_error(m, h);
     return SE3D_OK;
 }
@@ -153,12 +168,25 @@ static void watch_stability(se3di_explicit *m, double h)
                             is_held_by_decay(m, h)));
 }
 
-/* The interpolation of the last step; K still holds its stages. */
+/* The stages of the last step once more: what was to be done after them failed, and they are not a
+ * part of the history. */
+static se3d_status remake_stages(se3di_explicit *m)
+{
+    const double h = m->past->length;
+    SE3DI_TRY(evaluate_stages(m, m->past->at.begin, h));
+    arrive(m, h);
+    return se3di_explicit_evaluate(m, m->past->at.time, m->y, se3di_explicit_end(m));
+}
+
+/* The interpolation of the last step. */
 static se3d_status build_dense(se3di_explicit *m)
 {
     const se3di_rk_tableau *tableau = m->tableau;
     double h = m->past->at.time - m->past->at.begin;
     se3di_forces_show(m->assembly->model, 1);
+    if (!m->has_stages) {
+        SE3DI_TRY(remake_stages(m));
+    }
     for (int k = tableau->stages + 1; k < tableau->total; ++k) {
         SE3DI_TRY(evaluate_stage(m, m->past->at.begin, h, k));
     }
@@ -173,7 +201,8 @@ static se3d_status build_dense(se3di_explicit *m)
         se3di_explicit_combine(m, m->K, NULL, h, tableau->d[row], tableau->total,
                                F2 + (size_t)(row + 1) * m->count);
     }
-    m->past->dense = 1.0;
+    /* rows of users that failed are told of later: what was made of them is not kept */
+    m->past->dense = m->assembly->model->user_failure.status < 0 ? 0.0 : 1.0;
     return SE3D_OK;
 }
 

@@ -268,6 +268,7 @@ static void accept(se3di_explicit *m, double t)
     m->past->at.begin = m->past->at.time;
     m->past->at.time = t;
     m->past->dense = m->past->at.renewed = 0.0;
+    m->has_stages = 1;
     const size_t work = m->count - SE3DI_STATE_WORK;
     m->motion->keep(m->equations, m->y1);
     memcpy(m->y1 + work, m->y + work, SE3DI_STATE_WORK * sizeof *m->y);

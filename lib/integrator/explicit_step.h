@@ -31,8 +31,9 @@ typedef struct se3di_explicit_past {
     double stages;       /* gauss: of the last step, which the next one continues; 0: none */
     double contraction;  /* gauss: of the iterations of the last step */
     double lost;         /* gauss: 1: rows were dependent at its end that are not all along */
+    double length;       /* Runge-Kutta: of the last step, as its stages were made */
 } se3di_explicit_past;
-_Static_assert(sizeof(se3di_explicit_past) == 20 * sizeof(double),
+_Static_assert(sizeof(se3di_explicit_past) == 21 * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct se3di_explicit se3di_explicit;
@@ -82,6 +83,7 @@ struct se3di_explicit {
     double tolerance;
     double contraction;     /* gauss: of the iterations of this step; 0: unknown */
     int stages;             /* gauss: of this step */
+    int has_stages;         /* K is that of the last step: it was made in this call */
     se3di_kkt_settings kkt; /* of the model's linear solver, to come back to */
 };
 
