@@ -12,6 +12,7 @@
 #define DECAY_MIN 0.5  /* and least of it times a decay, if decays limit the step */
 #define HELD_EACH 8.0  /* steps between looks if there is no sign */
 #define SAFETY    0.8  /* a rejected step costs more than several that are this much shorter */
+#define CAUTION   0.01 /* of a first step that nothing is remembered for */
 #define GROWTH    3.0  /* largest, of a step: one small error may be chance */
 
 static se3d_status evaluate_stage(se3di_explicit *m, double t, double h, int stage)
@@ -63,8 +64,17 @@ static se3d_status make_stages(se3di_explicit *m, double h, double *error)
     return SE3D_OK;
 }
 
+/* What the last step's estimate says of one of length h. */
+static double promised_error(const se3di_explicit *m, double h)
+{
+    const double last = m->past->at.time - m->past->at.begin;
+    return last > 0.0 ? m->past->at.error * se3di_pow(h / last, m->tableau->order) : 0.0;
+}
+
 static double estimate_end(se3di_explicit *m, double h, double error)
 {
+    const double memory = m->tableau->memory;
+    m->remembered = memory > 0.0 ? memory * promised_error(m, h) : 0.0;
     return m->tableau->uses_end ? estimate_error(m, h) : error;
 }
 
@@ -94,6 +104,12 @@ static double next_step(const se3di_explicit *m, double h, double error)
     double largest = m->past->at.rejected != 0.0 ? 1.0 : GROWTH;
     h *= fmin(largest, fmax(0.2, factor));
     return se3di_adaptive_limit(m->step.integration, h);
+}
+
+/* A choice of steps that remembers has nothing to remember yet. */
+static double shorten_first(const se3di_explicit *m, double h)
+{
+    return m->tableau->memory > 0.0 ? CAUTION * h : h;
 }
 
 static double shrink(const se3di_explicit *m, se3d_status status, double error)
@@ -224,6 +240,7 @@ const se3di_explicit_class se3di_rk_class = {
     .arrive = arrive,
     .estimate_end = estimate_end,
     .next_step = next_step,
+    .shorten_first = shorten_first,
     .shrink = shrink,
     .watch_stability = watch_stability,
     .build_dense = build_dense,

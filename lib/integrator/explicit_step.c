@@ -424,6 +424,7 @@ static se3d_status take(se3di_adaptive *step, double h, double error)
     if (step->integration->settings.leaves_stiff || m->methods->is_watched) {
         m->methods->watch_stability(m, h);
     }
+    error = fmax(error, m->remembered);
     step->at->next = m->methods->next_step(m, h, error);
     step->at->error = error;
     m->past->forced = h > 1e3 * least ? 0.0 : m->past->forced;
@@ -529,6 +530,7 @@ static double choose_first(se3di_explicit *m)
     double h1 = se3di_pow(0.01 / (fmax(d, sqrt(fmax(d2, 0.0) * m->tolerance)) / m->tolerance),
                           1.0 / m->methods->get_order(m));
     double h = isfinite(h1) && h1 > 0.0 ? fmin(100.0 * h0, h1) : h0;
+    h = m->methods->shorten_first ? m->methods->shorten_first(m, h) : h;
     return limit > 0.0 ? fmin(h, limit) : h;
 }
 

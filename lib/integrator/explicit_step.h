@@ -51,6 +51,8 @@ struct se3di_explicit_class {
     void (*accept)(se3di_explicit *m, double h);
     /* The next step, if errors alone decide. */
     double (*next_step)(const se3di_explicit *m, double h, double error);
+    /* The first step, of the h that derivatives suggest. NULL: h. */
+    double (*shorten_first)(const se3di_explicit *m, double h);
     /* As of se3di_adaptive_class. */
     double (*shrink)(const se3di_explicit *m, se3d_status status, double error);
     /* After a step: whether stability holds them short (past->held, past->free). */
@@ -82,6 +84,7 @@ struct se3di_explicit {
     double *next;       /* derivative that the next step begins with */
     double tolerance;
     double contraction;     /* gauss: of the iterations of this step; 0: unknown */
+    double remembered;      /* the least error that the choice of the next step counts with */
     int stages;             /* gauss: of this step */
     int has_stages;         /* K is that of the last step: it was made in this call */
     se3di_kkt_settings kkt; /* of the model's linear solver, to come back to */

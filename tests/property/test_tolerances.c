@@ -308,6 +308,37 @@ static void rounding_makes_no_steps_short(void)
 }
 
 /* Errors over tolerances from 1e-4 on, and steps. */
+/* At rest with its arm horizontal, and there again, the estimate of rk4 is zero to higher order
+ * than the error. */
+static const mechanism swing = {
+    "pendulum from horizontal",
+    HEAD "bodies:\n"
+         "  - {name: bar, mass: 1, inertia: [0.01, 0.1, 0.1], position: [0.5, 0, 0]}\n"
+         "joints:\n"
+         "  - {type: revolute, body_i: ground, body_j: bar, at: [0, 0, 0], axis: [0, 1, 0]}\n",
+    3.0};
+
+static void zeros_of_an_estimate_make_no_steps_long(void)
+{
+    static const struct {
+        double tolerance, bound; /* error over tolerance */
+    } rows[] = {{1e-6, 4.0}, {1e-8, 20.0}, {1e-10, 120.0}};
+    static path truth, p;
+    find_truth(&swing, &truth);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        se3d_solver_def def = se3d_solver_def_default();
+        def.method = SE3D_METHOD_RK4;
+        def.formulation = SE3D_FORMULATION_JOINT;
+        def.tolerance = rows[k].tolerance;
+        run(&swing, &def, &p);
+        const double ratio = compare(&p, &truth) / rows[k].tolerance;
+        if (!(ratio <= rows[k].bound)) {
+            fprintf(stderr, "%s: error %.3g times %g\n", swing.name, ratio, rows[k].tolerance);
+        }
+        CHECK(ratio <= rows[k].bound);
+    }
+}
+
 static void print_row(const mechanism *m, const struct bound *bound, int last, const path *truth)
 {
     static path got;
@@ -343,5 +374,6 @@ int main(int argc, char **argv)
     }
     RUN(the_error_is_about_the_tolerance);
     RUN(rounding_makes_no_steps_short);
+    RUN(zeros_of_an_estimate_make_no_steps_long);
     return check_finish();
 }
