@@ -106,6 +106,14 @@ se3di_handle se3di_slots_handle(const se3di_slots *slots, uint32_t dense)
     return (se3di_handle){slot + 1, slots->slots[slot].generation};
 }
 
+/* Lists without elements may have no memory. */
+static void copy_list(void *to, const void *from, size_t count, size_t size)
+{
+    if (count > 0) {
+        memcpy(to, from, count * size);
+    }
+}
+
 se3d_status se3di_slots_clone(const se3di_slots *slots, const se3d_allocator *allocator,
                               se3di_slots *copy)
 {
@@ -120,9 +128,9 @@ se3d_status se3di_slots_clone(const se3di_slots *slots, const se3d_allocator *al
             se3di_slots_destroy(copy, allocator);
             return status;
         }
-        memcpy(copy->slots, slots->slots, slots->slot_count * sizeof *copy->slots);
-        memcpy(copy->slot_of, slots->slot_of, slots->count * sizeof *copy->slot_of);
-        memcpy(copy->free_list, slots->free_list, slots->free_count * sizeof *copy->free_list);
+        copy_list(copy->slots, slots->slots, slots->slot_count, sizeof *copy->slots);
+        copy_list(copy->slot_of, slots->slot_of, slots->count, sizeof *copy->slot_of);
+        copy_list(copy->free_list, slots->free_list, slots->free_count, sizeof *copy->free_list);
     }
     copy->slot_count = slots->slot_count;
     copy->count = slots->count;
