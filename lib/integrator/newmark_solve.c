@@ -147,8 +147,7 @@ static void take_solution(se3di_newmark_step *step)
     add(step->lambda, equations->l, step->assembly->row_count);
     const double unit = 1.0 + largest_acceleration(step, step->vdot, 0.0);
     step->correction = fmax(step->correction, largest_acceleration(step, equations->x, unit));
-    step->is_finite = step->is_finite && isfinite(equations->x[0]);
-    for (uint32_t k = 1; k < n; ++k) {
+    for (uint32_t k = 0; k < n; ++k) {
         step->is_finite = step->is_finite && isfinite(equations->x[k]);
     }
 }
