@@ -253,7 +253,8 @@ static int are_left_out(const se3di_saved *state, const se3di_model *model)
     }
     return count == state->left_out_count &&
            (state->left_out.count == 0 || state->left_out.count == model->row_count) &&
-           (count == 0 || state->left_out_row < model->row_count);
+           (state->left_out_row < model->row_count ||
+            (state->left_out_row == 0 && !(state->left_out_gap > 0.0)));
 }
 
 /* Numbers that lists are found by are what they must be, whoever wrote the bytes. */
