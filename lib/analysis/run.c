@@ -432,6 +432,11 @@ static se3d_status keep_state(se3di_run *run)
     return SE3D_OK;
 }
 
+static int has_step_control(const se3di_integration *integration)
+{
+    return integration->method->run != NULL;
+}
+
 /* Dynamics goes on from its own history, or starts anew. */
 static se3d_status begin_dynamics(se3di_run *run, double h)
 {
@@ -442,7 +447,7 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
     if (!goes_on || run->integration.method->advance) {
         SE3DI_TRY(keep_state(run));
     }
-    const int lacks = (model->settled & SE3DI_LACKING) != 0;
+    const int lacks = (model->settled & SE3DI_LACKING) != 0 && has_step_control(&run->integration);
     if (is_there && lacks && (!goes_on || run->steps_once)) { /* what begins here needs them */
         SE3DI_TRY(run->integration.method->run(&run->integration, model->time));
     }
@@ -451,11 +456,6 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
     }
     return is_there ? renew(run, model->history_values != model->values_version)
                     : start_history(run, h);
-}
-
-static int has_step_control(const se3di_integration *integration)
-{
-    return integration->method->run != NULL;
 }
 
 /* By h, to t. */
