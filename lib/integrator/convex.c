@@ -70,14 +70,14 @@ static se3d_status open_room(se3di_integration *integration)
         return SE3D_ERR_NO_MEMORY;
     }
     void *work = c->work, *touched = c->touched;
-    const size_t count =
-        VECTORS * (size_t)assembly->unknown_count + ROW_VECTORS * (size_t)assembly->row_count;
+    const size_t count = /* there is memory, also where nothing is free */
+        1 + VECTORS * (size_t)assembly->unknown_count + ROW_VECTORS * (size_t)assembly->row_count;
     se3d_status status =
         se3di_array_reserve(allocator, &work, &c->work_capacity, count, sizeof(double));
     c->work = work;
     SE3DI_TRY(status);
-    status = se3di_array_reserve(allocator, &touched, &c->touched_capacity, assembly->body_count,
-                                 sizeof *c->touched);
+    status = se3di_array_reserve(allocator, &touched, &c->touched_capacity,
+                                 assembly->body_count + 1, sizeof *c->touched);
     c->touched = touched;
     SE3DI_TRY(status);
     if (c->work) {

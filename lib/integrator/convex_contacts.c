@@ -285,9 +285,7 @@ se3d_status se3di_convex_collect(se3di_convex *convex, const se3di_assembly *ass
                                count);
     }
     convex->contact_count = 0;
-    if (assembly->body_count > 0) {
-        memset(convex->touched, 0, assembly->body_count);
-    }
+    memset(convex->touched, 0, assembly->body_count);
     for (size_t k = 0; k < count; ++k) {
         SE3DI_TRY(check_pair(&c, &model->contacts.list[k]));
         collect_one(convex, assembly, &model->contacts.list[k]);

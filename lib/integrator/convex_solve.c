@@ -232,7 +232,7 @@ static void subtract_impulse(const se3di_convex_contact *contact, double *gradie
 static void evaluate(se3di_convex *c, const se3di_assembly *assembly, int is_wanted)
 {
     memcpy(c->gradient, c->moved, assembly->unknown_count * sizeof *c->gradient);
-    if (is_wanted) {
+    if (is_wanted && assembly->body_count > 0) {
         memcpy(c->body, assembly->H, 36 * (size_t)assembly->body_count * sizeof *c->body);
         if (c->pair_count > 0) {
             memset(c->coupling, 0, 36 * c->pair_count * sizeof *c->coupling);
