@@ -662,3 +662,14 @@ se3d_status se3di_explicit_run(se3di_integration *integration, double t_end)
     se3di_forces_show(m.assembly->model, 1);
     return show(&m, m.y, t_end, 1);
 }
+
+static int is_count(double value)
+{
+    return value >= 0.0 && value <= INT32_MAX && value == floor(value);
+}
+
+int se3di_explicit_is_sound(const double *history, size_t count)
+{
+    const se3di_explicit_past *past = (const se3di_explicit_past *)history;
+    return count >= PAST && is_count(past->redundant) && is_count(past->stages);
+}

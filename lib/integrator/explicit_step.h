@@ -120,6 +120,8 @@ se3d_status se3di_explicit_renew(se3di_integration *integration);
 se3d_status se3di_explicit_step(se3di_integration *integration, double h);
 /* To t_end with step control. */
 se3d_status se3di_explicit_run(se3di_integration *integration, double t_end);
+/* Counts in the history are counts, whoever wrote it. */
+int se3di_explicit_is_sound(const double *history, size_t count);
 se3d_status se3di_explicit_advance(se3di_integration *integration, double t_end);
 void se3di_explicit_interpolate(const se3di_integration *integration, double t, double *y);
 int se3di_explicit_is_held(const se3di_integration *integration);
@@ -135,6 +137,7 @@ int se3di_explicit_is_held(const se3di_integration *integration);
     .history_count = se3di_explicit_history_count, .work_count = (count),                          \
     .start = se3di_explicit_start, .renew = se3di_explicit_renew, .step = se3di_explicit_step,     \
     .run = se3di_explicit_run, .advance = se3di_explicit_advance,                                  \
-    .interpolate = se3di_explicit_interpolate, .is_explicit = 1, .reach = SE3DI_EXPLICIT_REACH
+    .interpolate = se3di_explicit_interpolate, .is_sound = se3di_explicit_is_sound,                \
+    .is_explicit = 1, .reach = SE3DI_EXPLICIT_REACH
 
 #endif

@@ -271,7 +271,7 @@ static int is_sound(const se3d_snapshot *snapshot, const se3di_model *model)
            are_finite(&state->turns, 1) && are_poses(&state->frames) &&
            are_contacts(state, model) && are_near(&snapshot->near, model) &&
            are_left_out(state, model) &&
-           (!integrator || !integrator->is_sound ||
+           (state->history_tag == 0 || !integrator->is_sound ||
             integrator->is_sound(state->history.data, state->history.count));
 }
 
