@@ -74,7 +74,7 @@ static se3d_status driver_power(const se3di_model *model, double t, double *powe
     return user_power(model, t, power);
 }
 
-/* Without contacts. */
+/* Of gravity and elements. */
 static se3d_status eval_power(const se3di_model *model, double t, double power[3])
 {
     double g[3];
@@ -93,7 +93,7 @@ static se3d_status eval_power(const se3di_model *model, double t, double power[3
         power[0] += effect.power[0];
         power[1] += effect.power[1];
     }
-    return driver_power(model, t, &power[2]);
+    return SE3D_OK;
 }
 
 se3d_status se3di_loads_potential(const se3di_model *model, double t, double *potential,
@@ -105,19 +105,18 @@ se3d_status se3di_loads_potential(const se3di_model *model, double t, double *po
     return SE3D_OK;
 }
 
-se3d_status se3di_loads_power(const se3di_model *model, double t, double power[3])
-{
-    SE3DI_TRY(eval_power(model, t, power));
-    power[0] += se3di_contacts_power(model);
-    return SE3D_OK;
-}
-
 se3d_status se3di_loads_complete_power(const se3di_model *model, double t, double power[3])
 {
     power[2] = 0.0;
     SE3DI_TRY(driver_power(model, t, &power[2]));
     power[0] += se3di_contacts_power(model);
     return SE3D_OK;
+}
+
+se3d_status se3di_loads_power(const se3di_model *model, double t, double power[3])
+{
+    SE3DI_TRY(eval_power(model, t, power));
+    return se3di_loads_complete_power(model, t, power);
 }
 
 se3d_status se3di_work_accept(se3di_model *model, double h)

@@ -10,9 +10,10 @@ se3d_status se3di_loads_sum(const se3di_model *model, double t, se3di_force_sums
 
 se3d_status se3di_loads_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed)
 {
-    SE3DI_TRY(se3di_forces_eval(model, t, wrench, failed));
-    se3di_contacts_add_wrenches(model, wrench);
-    return SE3D_OK;
+    se3di_force_sums sums = {.wrench = wrench};
+    const se3d_status status = se3di_loads_sum(model, t, &sums);
+    *failed = sums.failed;
+    return status;
 }
 
 se3d_status se3di_loads_prepare(se3di_model *model, double t, se3di_error *error)
