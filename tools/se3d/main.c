@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The `se3d` program: which command is meant. */
+#if !defined(_WIN32)
+#define _POSIX_C_SOURCE 200809L
+#include <fcntl.h>
+#endif
 #include <stdio.h>
 #include <string.h>
 
@@ -41,8 +45,23 @@ static int dispatch(int count, char *const *words)
     return command_report_unknown(name);
 }
 
+/* The next file that is opened would take the number of a closed standard stream, and get its
+ * messages. What can be neither read nor written takes it before. */
+static void hold_closed_streams(void)
+{
+#if !defined(_WIN32)
+    for (int number = 0; number < 3; ++number) {
+        if (fcntl(number, F_GETFD) < 0 &&
+            open("/dev/null", number == 0 ? O_WRONLY : O_RDONLY) != number) {
+            return;
+        }
+    }
+#endif
+}
+
 int main(int argc, char **argv)
 {
+    hold_closed_streams();
     if (argc < 2) {
         command_print_overview(stderr);
         return EXIT_USAGE;
