@@ -4,6 +4,7 @@
 #     se3d_install PACKAGE...      on Debian and Ubuntu, as root or with sudo; does nothing where all
 #                                  is there, and only says what is needed on other systems; fails
 #                                  if one could not be had, after installing the others
+#     se3d_make_locales            locales that tests try, once the package `locales` is there
 #     se3d_jobs                    prints the number of processors
 
 SE3D_BUILD_PACKAGES="gcc libc6-dev make cmake pkg-config libsuitesparse-dev libyaml-dev libexpat1-dev"
@@ -11,7 +12,7 @@ SE3D_TEST_PACKAGES="$SE3D_BUILD_PACKAGES g++ binutils python3"
 SE3D_PYTHON_PACKAGES="python3-cffi python3-numpy python3-dev"
 SE3D_PICTURE_PACKAGES="gnuplot-nox chromium ffmpeg nodejs npm python3-vtk9"
 SE3D_CI_PACKAGES="$SE3D_TEST_PACKAGES clang clang-format-14 valgrind libmpfr-dev \
-gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static $SE3D_PYTHON_PACKAGES \
+gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static locales $SE3D_PYTHON_PACKAGES \
 $SE3D_PICTURE_PACKAGES"
 
 se3d_jobs() {
@@ -47,6 +48,14 @@ se3d_as_root() {
 
 se3d_apt() {
     se3d_as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "$@"
+}
+
+# Locales with a decimal comma and with one of two bytes, which tests try.
+se3d_make_locales() {
+    for se3d_locale in de_DE ps_AF; do
+        locale -a 2>/dev/null | grep -qi "^$se3d_locale.utf" ||
+            se3d_as_root localedef -i "$se3d_locale" -f UTF-8 "$se3d_locale.UTF-8" || return
+    done
 }
 
 se3d_install() {
