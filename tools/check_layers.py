@@ -21,7 +21,7 @@ ROOMS = {"contact": "shape narrow bodies".split(),
 # What the program in tools/se3d shares with libse3d-io, to whose static library it is linked.
 SHARED = ("io/base/file.h", "io/document/guess.h", "io/read/objects.h")
 # Functions that are complete in a header, which libse3d-io may have too: nothing is linked.
-INLINE = ("base/hash.h", "base/coder.h")
+INLINE = ("base/hash.h", "base/coder.h", "base/floats.h")
 # Files that call each other, and why they are not one after the other.
 CIRCLES = {
     "primitive/scale primitive/turn_counter":

@@ -3,14 +3,12 @@
  * change the bits.                                                      docs/theory/lanes.md */
 #include "analysis/batch.h"
 
+#include "base/floats.h"
+#include "base/threads.h"
 #include "force/force.h"
 
 #include <math.h>
 #include <string.h>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 /* A group in the hands of a worker. */
 typedef struct task {
@@ -275,7 +273,9 @@ static void run_group(const se3di_batch *b, int32_t worker, size_t group, const 
               .width = width,
               .effort = b->efforts + group * b->tree.v_count * width};
     t.worker->lanes.inertias = b->inertias ? b->inertias + group * b->tree.count * 7 * width : NULL;
+    const se3di_floats host = se3di_floats_set();
     e->run(&t, e);
+    se3di_floats_restore(host);
 }
 
 static void run_all(const se3di_batch *b, const errand *e)
@@ -284,7 +284,7 @@ static void run_all(const se3di_batch *b, const errand *e)
     if (b->worker_count > 1) {
 #pragma omp parallel for num_threads(b->worker_count) schedule(static)
         for (size_t group = 0; group < b->groups; ++group) {
-            run_group(b, omp_get_thread_num(), group, e);
+            run_group(b, se3di_threads_get_own(), group, e);
         }
         return;
     }

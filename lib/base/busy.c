@@ -49,14 +49,12 @@ static int is_listed(se3di_busy *busy, uintptr_t thread)
 int se3di_busy_read(se3di_busy *busy, se3di_reading *reading)
 {
     const uintptr_t thread = this_thread();
-    *reading = (se3di_reading){busy, NULL};
-    if (!busy) {
-        return 1;
-    }
-    if (atomic_load(&busy->level) >= (int)SE3DI_BUSY_CALL || is_listed(busy, thread)) {
+    *reading = (se3di_reading){busy, NULL, {0, 0}};
+    if (busy && (atomic_load(&busy->level) >= (int)SE3DI_BUSY_CALL || is_listed(busy, thread))) {
         return 0;
     }
-    for (int k = 0; k < SE3DI_BUSY_READERS && !reading->place; ++k) {
+    reading->host = se3di_floats_set();
+    for (int k = 0; busy && k < SE3DI_BUSY_READERS && !reading->place; ++k) {
         uintptr_t none = 0;
         if (atomic_compare_exchange_strong(&busy->readers[k], &none, thread)) {
             reading->place = &busy->readers[k];
@@ -68,6 +66,7 @@ int se3di_busy_read(se3di_busy *busy, se3di_reading *reading)
 
 void se3di_busy_unread(se3di_reading *reading)
 {
+    se3di_floats_restore(reading->host);
     if (reading->place) {
         atomic_fetch_sub(&reading->busy->reading, 1);
         atomic_store(reading->place, 0);

@@ -9,6 +9,8 @@
 #ifndef SE3DI_BASE_BUSY_H
 #define SE3DI_BASE_BUSY_H
 
+#include "base/floats.h"
+
 #include <stdatomic.h>
 #include <stdint.h>
 
@@ -33,6 +35,7 @@ typedef struct se3di_busy {
 typedef struct se3di_reading {
     se3di_busy *busy;
     atomic_uintptr_t *place; /* NULL: not on it */
+    se3di_floats host;       /* how its host rounds */
 } se3di_reading;
 
 void se3di_busy_init(se3di_busy *busy);

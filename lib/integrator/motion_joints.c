@@ -11,6 +11,7 @@
 #include "integrator/motion.h"
 
 #include "assembly/energy.h"
+#include "base/floats.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "tree/core.h"
@@ -328,7 +329,8 @@ static void continue_turns(const se3di_tree *tree, double *q, double *before)
         }
         for (int c = 0; node->type == SE3DI_TREE_UNIVERSAL && c < 2; ++c) {
             q[node->q + (uint32_t)c] +=
-                TURN * nearbyint((before[node->q + (uint32_t)c] - q[node->q + (uint32_t)c]) / TURN);
+                TURN *
+                se3di_nearest((before[node->q + (uint32_t)c] - q[node->q + (uint32_t)c]) / TURN);
         }
     }
 }

@@ -2,6 +2,7 @@
 /* Joint frames: the triads (ref, third, axis) on both bodies, and the start of the joint angle. */
 #include "joint/joint.h"
 
+#include "base/floats.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
 #include "primitive/primitive.h"
@@ -78,5 +79,5 @@ double se3di_joint_angle_start(const se3di_angle *angle, const se3di_frame *i, c
 {
     double principal =
         angle->offset + se3di_primitives[SE3DI_PRIMITIVE_ANGLE].value(&angle->term, i, j);
-    return principal + TWO_PI * nearbyint((near - principal) / TWO_PI);
+    return principal + TWO_PI * se3di_nearest((near - principal) / TWO_PI);
 }

@@ -4,6 +4,7 @@
  * as the times are resolved. */
 #include "nonlinear/jump.h"
 
+#include "base/floats.h"
 #include "expression/expression.h"
 #include "model/integral.h"
 
@@ -47,7 +48,7 @@ static int eval(const search *s, double t, point *p)
 static double change(const search *s, const point *a, const point *b)
 {
     const double d = b->f - a->f;
-    return s->wraps && s->derivative == 0 ? d - TWO_PI * nearbyint(d / TWO_PI) : d;
+    return s->wraps && s->derivative == 0 ? d - TWO_PI * se3di_nearest(d / TWO_PI) : d;
 }
 
 static double miss(const search *s, const point *a, const point *b)

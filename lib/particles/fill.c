@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "particles/fill.h"
 
+#include "base/floats.h"
 #include "math/vec3.h"
 #include "particles/draw.h"
 #include "particles/wall.h"
@@ -134,7 +135,7 @@ static void enter(packing *p, size_t k)
         if (p->set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) { /* the image nearest to the region */
             const double period = p->set->upper[a] - p->set->lower[a];
             const double off = x[a] - 0.5 * (p->def->lower[a] + p->def->upper[a]);
-            x[a] -= period * nearbyint(off / period);
+            x[a] -= period * se3di_nearest(off / period);
         }
         if (x[a] < p->def->lower[a] - p->size || x[a] > p->def->upper[a] + p->size) {
             return; /* too far to matter; those just outside are in the border cells */

@@ -2,6 +2,7 @@
 /* Forces of particles by a user-defined law: contact by contact, geometry and momentum as in
  * force.inc. The first of the two is j (or the wall), the second i.
  *                                                                   docs/theory/contact-laws.md */
+#include "base/floats.h"
 #include "math/vec3.h"
 #include "particles/set.h"
 #include "particles/wall.h"
@@ -114,7 +115,7 @@ static void pair_lane(se3di_force_task *task, se3di_block *block, int lane)
     double d[3], xi[3], force[3], lever[3], moment[3];
     for (int a = 0; a < 3; ++a) {
         d[a] = gi->x[a] - gj->x[a];
-        d[a] -= task->length[a] * nearbyint(d[a] * task->rate[a]);
+        d[a] -= task->length[a] * se3di_nearest(d[a] * task->rate[a]);
     }
     double distance = se3di_norm(d), reach = gi->radius + gj->radius;
     if (!(distance < reach && distance > 0.0)) {

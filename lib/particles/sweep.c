@@ -10,16 +10,15 @@
  * processor. Who evaluates or moves a slab does not change the bits.   docs/theory/particles.md */
 
 #include "particles/sweep.h"
+#include "base/floats.h"
+#include "base/threads.h"
 #include "particles/mesh.h"
 
 #include <math.h>
 #include <string.h>
 
-#ifdef _OPENMP
-#include <omp.h>
-#ifndef __STDC_NO_THREADS__
+#if defined(_OPENMP) && !defined(__STDC_NO_THREADS__)
 #include <threads.h>
-#endif
 #endif
 
 double se3di_larger(double a, double b)
@@ -112,7 +111,9 @@ static void pass(se3di_particles *set, const se3di_motion *motion)
     for (size_t c = 0; c < PASS_PARTS; ++c) {
         size_t begin = c * part < set->count ? c * part : set->count;
         size_t end = begin + part < set->count ? begin + part : set->count;
+        const se3di_floats host = se3di_floats_set();
         most_of[c] = move_range(set, begin, end, motion);
+        se3di_floats_restore(host);
     }
     haste most = {0.0, 0.0};
     for (size_t c = 0; c < PASS_PARTS; ++c) {
@@ -326,8 +327,10 @@ static void sweep_together(const sweep *w)
 #ifdef _OPENMP
 #pragma omp parallel num_threads(se3di_particles_team(w->set))
     {
-        int team = omp_get_num_threads();
-        sweep_share(w, omp_get_thread_num(), team);
+        const int team = se3di_threads_count();
+        const se3di_floats host = se3di_floats_set();
+        sweep_share(w, se3di_threads_get_own(), team);
+        se3di_floats_restore(host);
 #pragma omp master
         w->set->team = team;
     }

@@ -3,6 +3,7 @@
  * is built anew. */
 #include "particles/wall.h"
 
+#include "base/floats.h"
 #include "contact/shape/mesh.h"
 #include "math/vec3.h"
 #include "particles/memory.h"
@@ -83,7 +84,7 @@ void se3di_particles_wrap(const se3di_particles *set, double d[3])
     for (int a = 0; a < 3; ++a) {
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
             double length = set->upper[a] - set->lower[a];
-            d[a] -= length * nearbyint(d[a] / length);
+            d[a] -= length * se3di_nearest(d[a] / length);
         }
     }
 }

@@ -5,6 +5,7 @@
 #define SE3DI_SYSTEM_INTERNAL_H
 
 #include "base/busy.h"
+#include "base/floats.h"
 #include "base/log.h"
 #include "base/sized.h"
 #include "model/model.h"
@@ -15,6 +16,7 @@ struct se3d_system {
     se3di_error error;
     se3di_logger log;
     se3di_busy busy;                      /* the model points to it */
+    se3di_floats host;                    /* how the host of the call at work rounds */
     struct se3d_solver *solvers;          /* that live, in a chain */
     struct se3d_coordinates *coordinates; /* that live, in a chain */
     struct se3d_particles *copies;        /* clones of particle sets that live, in a chain */

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/floats.h"
 #include "base/hash.h"
 #include "io/base/pool.h"
 #include "io/base/sized.h"
@@ -289,9 +290,9 @@ static int take_options(const se3d_model_options *options, se3d_model_options *u
     return !options || se3di_io_take(options, used, sizeof *used);
 }
 
-se3d_status se3d_model_read_text(const char *text, size_t length, const char *name,
-                                 const se3d_model_options *options, se3d_model **out,
-                                 se3d_model_error *error)
+static se3d_status read_text(const char *text, size_t length, const char *name,
+                             const se3d_model_options *options, se3d_model **out,
+                             se3d_model_error *error)
 {
     se3d_model_options used;
     se3d_model_error own; /* reports are made of it */
@@ -343,6 +344,16 @@ se3d_status se3d_model_read_text(const char *text, size_t length, const char *na
     }
     *out = model;
     return SE3D_OK;
+}
+
+se3d_status se3d_model_read_text(const char *text, size_t length, const char *name,
+                                 const se3d_model_options *options, se3d_model **out,
+                                 se3d_model_error *error)
+{
+    const se3di_floats host = se3di_floats_set();
+    const se3d_status status = read_text(text, length, name, options, out, error);
+    se3di_floats_restore(host);
+    return status;
 }
 
 se3d_status se3d_model_read_file(const char *path, const se3d_model_options *options,
