@@ -4,8 +4,8 @@
  * and if nothing has negative curvature it is nearly the stiffness itself (Teran, Sifakis,
  * Irving and Fedkiw 2005). In r-omega.
  * docs/theory/equilibrium.md */
-#ifndef SE3DI_CONVEX_H
-#define SE3DI_CONVEX_H
+#ifndef SE3DI_ASSEMBLY_CONVEX_H
+#define SE3DI_ASSEMBLY_CONVEX_H
 
 #include "assembly/tangent.h"
 

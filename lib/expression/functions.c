@@ -239,7 +239,7 @@ static void eval_not_equal(double a, double b, se3di_partials *d)
         name, name arguments, SE3DI_FUNCTION_BINARY, flat, 2, 2, NULL, eval                        \
     }
 
-const se3di_function se3di_functions[] = {
+const se3di_named_function se3di_functions[] = {
     UNARY("abs", 0, eval_abs),
     UNARY("sqrt", 0, eval_sqrt),
     UNARY("exp", 0, eval_exp),

@@ -19,7 +19,7 @@ typedef struct se3di_partials {
     double f, a, b, aa, ab, bb;
 } se3di_partials;
 
-typedef struct se3di_function {
+typedef struct se3di_named_function {
     const char *name;      /* as written in a text */
     const char *signature; /* for messages */
     uint8_t kind;          /* se3di_function_kind */
@@ -28,9 +28,9 @@ typedef struct se3di_function {
     uint8_t max_arguments;
     void (*unary)(double u, double d[3]); /* f, f', f'' at u */
     void (*binary)(double a, double b, se3di_partials *d);
-} se3di_function;
+} se3di_named_function;
 
-extern const se3di_function se3di_functions[];
+extern const se3di_named_function se3di_functions[];
 extern const size_t se3di_function_count;
 
 #define SE3DI_FUNCTION_NONE SIZE_MAX

@@ -88,7 +88,7 @@ static se3d_status parse_name(parser *p, se3di_operand *out)
     return next(p);
 }
 
-static se3d_status fail_count(const parser *p, const se3di_function *function,
+static se3d_status fail_count(const parser *p, const se3di_named_function *function,
                               const se3di_token *name, size_t count)
 {
     unsigned least = function->min_arguments;
@@ -99,8 +99,8 @@ static se3d_status fail_count(const parser *p, const se3di_function *function,
 }
 
 /* After argument number `count`: step over ',' or fail. */
-static se3d_status pass_comma(parser *p, const se3di_function *function, const se3di_token *name,
-                              size_t count)
+static se3d_status pass_comma(parser *p, const se3di_named_function *function,
+                              const se3di_token *name, size_t count)
 {
     if (at_mark(p, ',')) {
         return next(p);
@@ -123,8 +123,8 @@ static se3d_status parse_branch(parser *p, int live, se3di_operand *out)
     return status;
 }
 
-static se3d_status parse_if(parser *p, const se3di_function *function, const se3di_token *name,
-                            se3di_operand *out)
+static se3d_status parse_if(parser *p, const se3di_named_function *function,
+                            const se3di_token *name, se3di_operand *out)
 {
     se3di_operand condition, a, b;
     size_t over_a = 0, over_b = 0;
@@ -156,7 +156,7 @@ static se3d_status parse_if(parser *p, const se3di_function *function, const se3
 static se3d_status parse_arguments(parser *p, size_t function, const se3di_token *name,
                                    se3di_operand *out)
 {
-    const se3di_function *row = &se3di_functions[function];
+    const se3di_named_function *row = &se3di_functions[function];
     se3di_operand arguments[5];
     size_t count = 0;
     for (;;) {
@@ -207,7 +207,7 @@ static se3d_status parse_call(parser *p, const se3di_token *name, se3di_operand 
         }
         return se3di_name_fail(p->def, &p->lexer, name, 1);
     }
-    const se3di_function *row = &se3di_functions[function];
+    const se3di_named_function *row = &se3di_functions[function];
     SE3DI_TRY(enter(p));
     SE3DI_TRY(next(p));
     if (at_mark(p, ')')) {

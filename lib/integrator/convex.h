@@ -12,8 +12,8 @@
  *     bound = mu p_n, as it was in the iteration before: at the end of the iterations it is p_n's
  *
  * docs/theory/convex.md */
-#ifndef SE3DI_CONVEX_H
-#define SE3DI_CONVEX_H
+#ifndef SE3DI_INTEGRATOR_CONVEX_H
+#define SE3DI_INTEGRATOR_CONVEX_H
 
 #include "integrator/integrator.h"
 

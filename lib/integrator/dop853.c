@@ -177,7 +177,7 @@ static const se3di_rk_tableau tableau = {
 const se3di_integrator se3di_integrator_dop853 = {
     .name = "dop853",
     .tag = SE3D_METHOD_DOP853,
-    SE3DI_RK_METHOD,
+    SE3DI_RK_METHOD(&tableau),
     .is_held = se3di_explicit_is_held,
     .orders = 1u << 8,
 };

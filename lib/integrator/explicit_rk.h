@@ -35,8 +35,8 @@ typedef struct se3di_rk_tableau {
 
 extern const se3di_explicit_class se3di_rk_class;
 
-/* What the entries of all of them in the table of methods have, beside their own `tableau`. */
-#define SE3DI_RK_METHOD                                                                            \
-    SE3DI_EXPLICIT_METHOD, .explicit_class = &se3di_rk_class, .tableau = &tableau
+/* What the entries of all of them in the table of methods have; `table` points to their own. */
+#define SE3DI_RK_METHOD(table)                                                                     \
+    SE3DI_EXPLICIT_METHOD, .explicit_class = &se3di_rk_class, .tableau = (table)
 
 #endif

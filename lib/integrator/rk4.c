@@ -39,6 +39,6 @@ static const se3di_rk_tableau tableau = {
 const se3di_integrator se3di_integrator_rk4 = {
     .name = "rk4",
     .tag = SE3D_METHOD_RK4,
-    SE3DI_RK_METHOD,
+    SE3DI_RK_METHOD(&tableau),
     .orders = 1u << 4,
 };

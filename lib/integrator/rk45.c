@@ -39,7 +39,7 @@ static const se3di_rk_tableau tableau = {
 const se3di_integrator se3di_integrator_rk45 = {
     .name = "rk45",
     .tag = SE3D_METHOD_RK45,
-    SE3DI_RK_METHOD,
+    SE3DI_RK_METHOD(&tableau),
     .is_held = se3di_explicit_is_held,
     .orders = 1u << 5,
 };

@@ -189,7 +189,7 @@ static void code_blocks(se3di_coder *c, se3di_particles *set, const lengths *n)
         while (s + 1 < n->slabs && b >= set->slabs[s].wall_end) {
             ++s;
         }
-        se3di_block *block = &set->blocks[b];
+        se3di_particle_block *block = &set->blocks[b];
         code_lanes(c, set, block->i, 0);
         code_lanes(c, set, block->j, n->slabs > 0 && b >= set->slabs[s].wall_begin);
         for (int a = 0; a < 3; ++a) {

@@ -183,7 +183,7 @@ static int is_near_list(const se3di_particles *set, const se3di_slab *slab)
 static int are_lanes(const se3di_particles *set, uint32_t s, uint32_t b)
 {
     const uint32_t unused = (uint32_t)set->capacity;
-    const se3di_block *block = &set->blocks[b];
+    const se3di_particle_block *block = &set->blocks[b];
     const int wall = b >= set->slabs[s].wall_begin;
     if (wall && (block->j[0] >= set->wall_count || is_surface(set, block->j[0]))) {
         return 0;

@@ -16,15 +16,15 @@
 typedef struct couple {
     _Alignas(64) se3di_particle particles[3];
     _Alignas(64) se3di_load loads[3];
-    _Alignas(64) se3di_block block;
+    _Alignas(64) se3di_particle_block block;
     _Alignas(64) se3di_spin spins[3];
     se3di_roll roll;
     double sums[6];
     se3di_wall wall;
 } couple;
 
-static void copy_lane(const se3di_particles *set, const se3di_block *block, const se3di_roll *roll,
-                      int lane, couple *c)
+static void copy_lane(const se3di_particles *set, const se3di_particle_block *block,
+                      const se3di_roll *roll, int lane, couple *c)
 {
     memset(c, 0, sizeof *c);
     for (int k = 0; k < SE3DI_PARTICLE_LANES; ++k) {
@@ -165,7 +165,7 @@ static void append(contact_list *list, int touches, const se3d_particles_contact
 static void list_blocks(const se3di_particles *set, const se3di_slab *slab, contact_list *list)
 {
     for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
-        const se3di_block *block = &set->blocks[b];
+        const se3di_particle_block *block = &set->blocks[b];
         for (int lane = 0; lane < SE3DI_PARTICLE_LANES; ++lane) {
             se3d_particles_contact contact;
             if (block->i[lane] >= set->count) {

@@ -92,14 +92,14 @@ static void load(se3di_load *to, double sign, double arm, const double force[3],
     }
 }
 
-static void take_xi(const se3di_block *block, int lane, double xi[3])
+static void take_xi(const se3di_particle_block *block, int lane, double xi[3])
 {
     for (int a = 0; a < 3; ++a) {
         xi[a] = block->xi[a][lane];
     }
 }
 
-static void put_xi(se3di_block *block, int lane, const double xi[3])
+static void put_xi(se3di_particle_block *block, int lane, const double xi[3])
 {
     for (int a = 0; a < 3; ++a) {
         block->xi[a][lane] = xi[a];
@@ -108,7 +108,7 @@ static void put_xi(se3di_block *block, int lane, const double xi[3])
 
 static const double zero[3] = {0.0, 0.0, 0.0};
 
-static void pair_lane(se3di_force_task *task, se3di_block *block, int lane)
+static void pair_lane(se3di_force_task *task, se3di_particle_block *block, int lane)
 {
     const uint32_t i = block->i[lane], j = block->j[lane];
     const se3di_particle *gi = &task->particles[i], *gj = &task->particles[j];
@@ -148,7 +148,7 @@ static void pair_lane(se3di_force_task *task, se3di_block *block, int lane)
 static void pairs(se3di_force_task *task)
 {
     for (uint32_t b = task->begin; b < task->end; ++b) {
-        se3di_block *block = &task->blocks[b];
+        se3di_particle_block *block = &task->blocks[b];
         for (int lane = 0; lane < SE3DI_PARTICLE_LANES; ++lane) {
             if (block->i[lane] != block->j[lane]) {
                 pair_lane(task, block, lane);
@@ -171,7 +171,7 @@ static double wall_response(const se3di_wall *wall, const double lever[3], const
 
 static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
 {
-    se3di_block *block = &task->blocks[b];
+    se3di_particle_block *block = &task->blocks[b];
     const uint32_t i = block->i[lane];
     const se3di_wall *wall = &task->walls[block->j[0]];
     const se3di_particle *g = &task->particles[i];

@@ -198,7 +198,7 @@ void se3di_particles_come_back(se3di_particles *set)
         set->particles[set->capacity] = (se3di_particle){.inverse_mass = 1.0}; /* of unused lanes */
     }
     for (uint32_t b = 0; now.capacity != set->kept->set.capacity && b < set->block_count; ++b) {
-        se3di_block *block = &set->blocks[b];
+        se3di_particle_block *block = &set->blocks[b];
         const uint32_t unused = (uint32_t)set->kept->set.capacity;
         for (int k = 0; k < SE3DI_PARTICLE_LANES; ++k) { /* they point behind the others */
             block->i[k] = block->i[k] == unused ? (uint32_t)set->capacity : block->i[k];

@@ -19,7 +19,7 @@
 
 static int lane_moved(const se3di_particles *set, uint32_t b, int lane)
 {
-    const se3di_block *block = &set->blocks[b];
+    const se3di_particle_block *block = &set->blocks[b];
     int moved = block->xi[0][lane] != 0.0 || block->xi[1][lane] != 0.0 || block->xi[2][lane] != 0.0;
     for (int a = 0; set->rolls && !moved && a < 4; ++a) {
         moved = set->rolls[b].rho[a][lane] != 0.0;
@@ -57,7 +57,7 @@ se3d_status se3di_particles_reserve_carry(se3di_particles *set, size_t count, in
 
 static void collect_lane(se3di_particles *set, size_t k, uint32_t b, int lane, int wall)
 {
-    const se3di_block *block = &set->blocks[b];
+    const se3di_particle_block *block = &set->blocks[b];
     uint32_t j = wall ? SE3DI_CARRY_WALL | block->j[0] : block->j[lane];
     set->carry[k] = (se3di_carry){
         block->i[lane], j, {block->xi[0][lane], block->xi[1][lane], block->xi[2][lane]}};
@@ -164,8 +164,9 @@ static se3d_status reserve_blocks(se3di_particles *set, size_t count)
         SE3DI_TRY(se3di_aligned_reserve(a, &set->roll_memory, grown * sizeof(se3di_roll), 0));
         set->rolls = set->roll_memory.data;
     }
-    if (count * sizeof(se3di_block) > set->block_memory.bytes) {
-        SE3DI_TRY(se3di_aligned_reserve(a, &set->block_memory, grown * sizeof(se3di_block), 0));
+    if (count * sizeof(se3di_particle_block) > set->block_memory.bytes) {
+        SE3DI_TRY(
+            se3di_aligned_reserve(a, &set->block_memory, grown * sizeof(se3di_particle_block), 0));
         set->blocks = set->block_memory.data;
     }
     return SE3D_OK;
@@ -179,7 +180,7 @@ typedef struct cursor {
 
 static void open_block(se3di_particles *set, cursor *at)
 {
-    se3di_block *block = &set->blocks[at->next];
+    se3di_particle_block *block = &set->blocks[at->next];
     memset(block, 0, sizeof *block);
     for (int k = 0; k < SE3DI_PARTICLE_LANES; ++k) {
         block->i[k] = block->j[k] = (uint32_t)set->capacity;
@@ -197,7 +198,7 @@ static void push(se3di_particles *set, uint32_t i, uint32_t j, cursor *where)
     if (where->lane == SE3DI_PARTICLE_LANES) {
         open_block(set, where);
     }
-    se3di_block *block = &set->blocks[where->next - 1];
+    se3di_particle_block *block = &set->blocks[where->next - 1];
     int at = where->lane++;
     block->i[at] = i;
     if (j < SE3DI_CARRY_WALL) {

@@ -46,10 +46,10 @@ typedef struct se3di_load {
 
 /* Pairs i, j (force on i along x_i - x_j); unused lanes are i = j = capacity, a particle that
  * nothing touches. Walls: j[0] is the wall. */
-typedef struct se3di_block {
+typedef struct se3di_particle_block {
     uint32_t i[SE3DI_PARTICLE_LANES], j[SE3DI_PARTICLE_LANES];
     double xi[3][SE3DI_PARTICLE_LANES]; /* displacement of i relative to j while touching */
-} se3di_block;
+} se3di_particle_block;
 
 /* Rolling displacement [0..2] and twist [3], beside a block where a material resists rolling. */
 typedef struct se3di_roll {
@@ -119,7 +119,7 @@ typedef struct se3di_given {
 
 /* The touches of a few pairs with one mesh as they are now, for a kernel. */
 typedef struct se3di_mesh_batch {
-    _Alignas(64) se3di_block block;
+    _Alignas(64) se3di_particle_block block;
     _Alignas(64) se3di_given given;
     se3di_roll roll;
     double local[SE3DI_PARTICLE_LANES][3]; /* normals, mesh frame */
@@ -271,7 +271,7 @@ typedef struct se3di_particles {
     se3di_slab slabs[SE3DI_PARTICLE_SLABS_MAX];
     uint32_t slab_count;
     se3di_aligned block_memory, roll_memory;
-    se3di_block *blocks;
+    se3di_particle_block *blocks;
     se3di_roll *rolls;
     uint32_t block_count;
     se3di_near_wall *near_walls; /* by slab and wall */
@@ -326,7 +326,7 @@ typedef struct se3di_force_task {
     const se3di_particle *particles;
     const se3di_spin *spins;
     se3di_load *loads;
-    se3di_block *blocks;
+    se3di_particle_block *blocks;
     se3di_roll *rolls; /* NULL: no rolling resistance */
     const se3di_pair *pairs;
     const se3di_wall *walls;
@@ -347,11 +347,11 @@ typedef struct se3di_force_task {
 } se3di_force_task;
 
 /* `kicks` half kicks (0, 1 or 2) of h/2 from the loads and gravity, then a drift. */
-typedef struct se3di_motion {
+typedef struct se3di_particle_motion {
     int kicks;
     double h;
     double drift; /* 0: none; else the loads become zero */
-} se3di_motion;
+} se3di_particle_motion;
 
 struct se3di_kernels {
     const char *name;

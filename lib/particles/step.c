@@ -104,7 +104,7 @@ static void find_overlap(se3di_particles *set, double back, int placed)
     for (uint32_t s = 0; s < set->slab_count; ++s) {
         const se3di_slab *slab = &set->slabs[s];
         for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
-            const se3di_block *block = &set->blocks[b];
+            const se3di_particle_block *block = &set->blocks[b];
             for (int k = 0; k < SE3DI_PARTICLE_LANES && block->i[k] < set->count; ++k) {
                 const se3di_particle *i = &set->particles[block->i[k]];
                 if (b >= slab->wall_begin) {
@@ -196,7 +196,7 @@ static se3di_force_task prepare(se3di_particles *set, double h)
 
 /* Forces with lists that hold everything, and then the motion; without its drift if memory is
  * missing. STEP_SIZE: an overlap is too large, but all is done. */
-static se3d_status evaluate(se3di_particles *set, double h, se3di_motion *motion)
+static se3d_status evaluate(se3di_particles *set, double h, se3di_particle_motion *motion)
 {
     if (!isfinite(set->worn)) {
         SE3DI_TRY(find_not_finite(set));
@@ -207,7 +207,7 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_motion *motion
     }
     SE3DI_TRY(update_lists(set));
     if (set->starved && motion->drift != 0.0) {
-        *motion = (se3di_motion){1, h, 0.0};
+        *motion = (se3di_particle_motion){1, h, 0.0};
     }
     set->touching = 0;
     set->law_failure = (se3di_law_failure){0, 0, 0, 0};
@@ -237,7 +237,7 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_motion *motion
 
 se3d_status se3di_particles_forces(se3di_particles *set, double h)
 {
-    se3di_motion none = {0, 0.0, 0.0};
+    se3di_particle_motion none = {0, 0.0, 0.0};
     se3d_status status = evaluate(set, h, &none);
     if (status == SE3D_ERR_STEP_SIZE) {
         find_overlap(set, 0.0, !(h > 0.0));
@@ -323,7 +323,7 @@ se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps
         set->time += h;
         ++set->steps;
         int on = steps > 0 && failure == SE3D_OK;
-        se3di_motion motion = {on ? 2 : 1, h, on ? h : 0.0};
+        se3di_particle_motion motion = {on ? 2 : 1, h, on ? h : 0.0};
         se3d_status status = evaluate(set, h, &motion);
         if (status < 0 && !se3di_particles_is_complete(set, status)) {
             return status;

@@ -39,7 +39,7 @@ static haste hastier(haste a, haste b)
 
 /* Of particles [begin, end). `kicks` is a constant at every call: the loop over it is unrolled. */
 static inline haste move_kicked(se3di_particles *set, size_t begin, size_t end, int kicks,
-                                const se3di_motion *motion)
+                                const se3di_particle_motion *motion)
 {
     const double half = 0.5 * motion->h, drift = motion->drift;
     const int drifts = drift != 0.0;
@@ -75,7 +75,8 @@ static inline haste move_kicked(se3di_particles *set, size_t begin, size_t end, 
     return most;
 }
 
-static haste move_range(se3di_particles *set, size_t begin, size_t end, const se3di_motion *motion)
+static haste move_range(se3di_particles *set, size_t begin, size_t end,
+                        const se3di_particle_motion *motion)
 {
     switch (motion->kicks) {
     case 0:
@@ -88,7 +89,7 @@ static haste move_range(se3di_particles *set, size_t begin, size_t end, const se
 }
 
 /* What the lists and forces must know of a drift. */
-static void note_motion(se3di_particles *set, const se3di_motion *motion, haste most)
+static void note_motion(se3di_particles *set, const se3di_particle_motion *motion, haste most)
 {
     if (motion->drift != 0.0) {
         set->drift = fabs(motion->drift);
@@ -100,7 +101,7 @@ static void note_motion(se3di_particles *set, const se3di_motion *motion, haste 
 
 #define PASS_PARTS 64
 
-static void pass(se3di_particles *set, const se3di_motion *motion)
+static void pass(se3di_particles *set, const se3di_particle_motion *motion)
 {
     haste most_of[PASS_PARTS];
     size_t part = set->count / PASS_PARTS + 1;
@@ -124,18 +125,18 @@ static void pass(se3di_particles *set, const se3di_motion *motion)
 
 void se3di_particles_kick(se3di_particles *set, double h)
 {
-    pass(set, &(se3di_motion){1, h, 0.0});
+    pass(set, &(se3di_particle_motion){1, h, 0.0});
 }
 
 void se3di_particles_move(se3di_particles *set, int kicks, double h)
 {
-    pass(set, &(se3di_motion){kicks, h, h});
+    pass(set, &(se3di_particle_motion){kicks, h, h});
 }
 
 typedef struct sweep {
     se3di_particles *set;
     const se3di_force_task *task;
-    const se3di_motion *motion;
+    const se3di_particle_motion *motion;
 } sweep;
 
 /* Until another thread has evaluated the forces of slab s. */
@@ -340,7 +341,7 @@ static void sweep_together(const sweep *w)
 }
 
 void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
-                           const se3di_motion *motion)
+                           const se3di_particle_motion *motion)
 {
     const sweep w = {set, task, motion};
     set->team = 1;

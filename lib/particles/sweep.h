@@ -12,7 +12,7 @@ void se3di_particles_move(se3di_particles *set, int kicks, double h);
 /* The forces of all slabs, and for every slab, as soon as its forces are complete and nobody looks
  * at where it was, its motion. */
 void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
-                           const se3di_motion *motion);
+                           const se3di_particle_motion *motion);
 /* The larger one; NaN if one is NaN. */
 double se3di_larger(double a, double b);
 

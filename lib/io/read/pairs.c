@@ -15,9 +15,6 @@
 
 typedef se3d_status (*create_joint)(se3d_system *, const se3d_joint_def *, se3d_constraint *);
 
-/* What a type needs to be said about it. */
-enum { POINT = 1, AXIS_I = 2, AXIS_J = 4, AXIS_2 = 8, DISTANCE = 16, PITCH = 32 };
-
 typedef struct joint_type {
     const char *name;
     create_joint create;

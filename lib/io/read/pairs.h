@@ -6,6 +6,9 @@
 #include "io/document/reader.h"
 #include "io/model/model.h"
 
+/* What a type needs to be said about it. */
+enum { POINT = 1, AXIS_I = 2, AXIS_J = 4, AXIS_2 = 8, DISTANCE = 16, PITCH = 32 };
+
 /* Joint types, with what must be said of them: those that have axes, those of points only, and the
  * intermediate constraints that are made like joints. */
 #define SE3DI_TURNING_LIST(X)                                                                      \
