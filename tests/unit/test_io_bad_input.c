@@ -507,6 +507,10 @@ static const bad_input table[] = {
      4,
      52,
      {"analysis.tolerance: is 1e-30", "must be from 1e-14 to 0.1"}},
+    {WITH("analysis: {type: dynamics, duration: 1, tolerance: 0}"),
+     4,
+     52,
+     {"analysis.tolerance: is 0, must be from 1e-14 to 0.1"}},
     {WITH("analysis: {type: dynamics, duration: 1, tolerance: 1e10}"), 4, 52, {"is 1e+10", "to"}},
     {WITH("analysis: {type: dynamics, duration: 1, step: 1e-20}"), 4, 47, {"at least 1e-15"}},
     {WITH("analysis: {type: dynamics, duration: 1, step: 1e-12}"),
@@ -870,33 +874,44 @@ static void a_report_ends_at_the_largest_number(void)
 
 static void options_are_checked_like_the_file(void)
 {
-    static const char text[] = "se3d: 1\nparameters: {L: 1}\n" BAR RUN_IT;
+    static const char text[] =
+        "se3d: 1\nparameters: {L: 1}\n" BAR
+        "analysis: {type: dynamics, duration: 1, start: 1e5, step: 0.01, tolerance: 1e-7}\n";
     static const struct {
         se3d_model_setting setting;
-        const char *step, *duration, *method, *formulation, *analysis, *part;
+        const char *step, *duration, *tolerance, *method, *formulation, *analysis, *part;
     } cases[] = {
-        {{"M", "1"}, NULL, NULL, NULL, NULL, NULL, "M: the model has no such parameter"},
-        {{"L", "1/"}, NULL, NULL, NULL, NULL, NULL, "L: `1/`"},
-        {{"L", "1"}, "-1", NULL, NULL, NULL, NULL, "--step: is -1, must be finite and > 0"},
-        {{"L", "1"}, NULL, "x", NULL, NULL, NULL, "--duration: `x`"},
-        {{"L", "1"}, NULL, NULL, "euler", NULL, NULL, "--method: is `euler`"},
-        {{"L", "1"}, NULL, NULL, NULL, "rq", NULL, "--formulation: is `rq`"},
-        {{"L", "1"}, NULL, NULL, NULL, NULL, "kinematic", "did you mean `kinematics`"},
+        {.setting = {"M", "1"}, .part = "M: the model has no such parameter"},
+        {.setting = {"L", "1/"}, .part = "L: `1/`"},
+        {.step = "-1", .part = "--step: is -1, must be finite and > 0"},
+        {.step = "1e-16", .part = "--step: is 1e-16, must be at least 1e-15"},
+        {.step = "1e-10", .duration = "0.01", .part = "--step: is 1e-10 s, which does not move"},
+        {.duration = "x", .part = "--duration: `x`"},
+        {.duration = "2e9", .part = "--duration: is 2e+09, must be at most 1e+09"},
+        {.tolerance = "0.5", .part = "--tolerance: is 0.5, must be from 1e-14 to 0.1"},
+        {.tolerance = "0", .part = "--tolerance: is 0, must be from 1e-14 to 0.1"},
+        {.tolerance = "-1e-6", .part = "--tolerance: is -1e-06, must be from 1e-14 to 0.1"},
+        {.tolerance = "1/0", .part = "--tolerance: `1/0`"},
+        {.method = "euler", .part = "--method: is `euler`"},
+        {.formulation = "rq", .part = "--formulation: is `rq`"},
+        {.analysis = "kinematic", .part = "did you mean `kinematics`"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
         se3d_model *model = NULL;
         se3d_model_error error;
         se3d_model_options options = se3d_model_options_default();
         options.settings = &cases[k].setting;
-        options.setting_count = 1;
+        options.setting_count = cases[k].setting.name != NULL;
         options.step = cases[k].step;
         options.duration = cases[k].duration;
+        options.tolerance = cases[k].tolerance;
         options.method = cases[k].method;
         options.formulation = cases[k].formulation;
         options.analysis = cases[k].analysis;
         CHECK(se3d_model_read_text(text, strlen(text), "m.yaml", &options, &model, &error) ==
               SE3D_ERR_MODEL);
         CHECK_CONTAINS(error.message, cases[k].part);
+        CHECK(cases[k].setting.name || error.line == 0); /* the file is not to blame */
         se3d_model_destroy(model);
     }
 }

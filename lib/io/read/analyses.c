@@ -15,6 +15,8 @@
 #include "io/read/sections.h"
 
 #define STEP_MIN       1e-15 /* s */
+#define TOLERANCE_MIN  1e-14 /* as of se3d_solver_def, */
+#define TOLERANCE_MAX  0.1   /* but for 0, which asks for the default */
 #define STEP_DEFAULT   1e-3  /* s, of methods with fixed steps */
 #define STEPS_MAX      1e9   /* if the file says nothing */
 #define STEPS_MAX_MOST 1e15
@@ -81,11 +83,50 @@ const se3di_object se3di_object_analysis = {
     NULL};
 /* clang-format on */
 
-/* A value that an option of the command line gives, in place of the file's. */
-static const se3di_node *replaced(se3di_reader *reader, const se3di_node *node, const char *option,
-                                  const char *text)
+/* The text that an option of the command line gives in place of a key of the file, and the option;
+ * NULL: none is given, or can be. */
+static const char *option_text(const se3d_model_options *o, const char *key, const char **option)
 {
-    return text ? se3di_node_of_text(reader->pool, option, text) : node;
+    const struct {
+        const char *key, *option, *text;
+    } table[] = {
+        {"type", "--analysis", o->analysis},
+        {"formulation", "--formulation", o->formulation},
+        {"method", "--method", o->method},
+        {"step", "--step", o->step},
+        {"tolerance", "--tolerance", o->tolerance},
+        {"duration", "--duration", o->duration},
+    };
+    for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+        if (strcmp(table[k].key, key) == 0) {
+            *option = table[k].option;
+            return table[k].text;
+        }
+    }
+    return NULL;
+}
+
+/* *value: of an option, else of the file; NULL: not given. */
+static bool get_value(se3di_reader *reader, const se3di_node *node, const char *key,
+                      const se3di_node **value)
+{
+    const char *option = NULL;
+    const char *text = option_text(reader->options, key, &option);
+    *value = text ? se3di_node_of_text(reader->pool, option, text) : se3di_node_get(node, key);
+    return !text || *value || se3di_reader_fail_memory(reader);
+}
+
+/* Blames the option or the key that says it, or the place where the key is missing. */
+static bool fail_value(se3di_reader *reader, const se3di_node *node, const char *key,
+                       const char *text)
+{
+    const se3di_node *value;
+    if (!get_value(reader, node, key, &value)) {
+        return false;
+    }
+    return value
+               ? se3di_reader_fail(reader, value, "%s", text)
+               : se3di_reader_fail_key(reader, node ? node : reader->model->root, key, "%s", text);
 }
 
 /* A word of a row, wherever it stands. */
@@ -111,14 +152,13 @@ static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analy
                        int32_t *chosen)
 {
     se3d_solver_def *solver = &entry->solver;
-    const se3d_model_options *options = reader->options;
-    const se3di_node *type =
-        replaced(reader, se3di_node_get(node, "type"), "--analysis", options->analysis);
-    const se3di_node *formulation = replaced(reader, se3di_node_get(node, "formulation"),
-                                             "--formulation", options->formulation);
-    const se3di_node *method =
-        replaced(reader, se3di_node_get(node, "method"), "--method", options->method);
+    const se3di_node *type, *formulation, *method;
     size_t word = SE3D_ANALYSIS_DYNAMICS;
+    if (!get_value(reader, node, "type", &type) ||
+        !get_value(reader, node, "formulation", &formulation) ||
+        !get_value(reader, node, "method", &method)) {
+        return false;
+    }
     if (node && !type) {
         return fail_missing_type(reader, node);
     }
@@ -149,28 +189,59 @@ static bool check_solver(se3di_reader *reader, const se3di_node *node,
 {
     se3d_solver_def tried = *solver;
     se3d_solver *made = NULL;
+    const char *option;
     tried.method = method;
     const se3d_status status = se3d_solver_create(reader->system, &tried, &made);
     se3d_solver_destroy(made);
-    if (status < 0 && node) {
-        return se3di_reader_fail_system(reader, node, status);
+    if (status >= 0) {
+        return true;
     }
-    return status >= 0 || se3di_reader_fail(reader, reader->model->root, "%s",
-                                            se3d_system_get_error(reader->system));
+    const char *message = se3d_system_get_error(reader->system);
+    const char *field = se3d_system_get_error_field(reader->system);
+    const size_t length = strlen(field);
+    if (status == SE3D_ERR_NO_MEMORY) {
+        return se3di_reader_fail_memory(reader);
+    }
+    if (option_text(reader->options, field, &option) && strncmp(message + length, " = ", 3) == 0) {
+        char text[300];
+        snprintf(text, sizeof text, "is %s", message + length + 3);
+        return fail_value(reader, node, field, text);
+    }
+    return node ? se3di_reader_fail_system(reader, node, status)
+                : se3di_reader_fail(reader, reader->model->root, "%s", message);
+}
+
+static bool read_step(se3di_reader *reader, const se3di_node *node, double *value)
+{
+    const se3di_node *step;
+    if (!get_value(reader, node, "step", &step) ||
+        (step && !se3di_read_number(reader, step, SE3DI_POSITIVE, value))) {
+        return false;
+    }
+    return !step || *value >= STEP_MIN ||
+           se3di_reader_fail(reader, step, "is %g, must be at least %g [s]", *value, STEP_MIN);
+}
+
+static bool read_tolerance(se3di_reader *reader, const se3di_node *node, double *value)
+{
+    const se3di_node *tolerance;
+    if (!get_value(reader, node, "tolerance", &tolerance) ||
+        (tolerance && !se3di_read_number(reader, tolerance, SE3DI_ANY, value))) {
+        return false;
+    }
+    return !tolerance || (*value >= TOLERANCE_MIN && *value <= TOLERANCE_MAX) ||
+           se3di_reader_fail(reader, tolerance, "is %g, must be from %g to %g", *value,
+                             TOLERANCE_MIN, TOLERANCE_MAX);
 }
 
 static bool read_numbers(se3di_reader *reader, const se3di_node *node, se3d_solver_def *solver)
 {
-    const se3di_node *step =
-        replaced(reader, se3di_node_get(node, "step"), "--step", reader->options->step);
-    const se3di_node *tolerance = replaced(reader, se3di_node_get(node, "tolerance"), "--tolerance",
-                                           reader->options->tolerance);
     const se3di_object *object = &se3di_object_analysis;
     double order = 0.0;
     double iterations = 25.0;
     double steps = STEPS_MAX;
-    if ((step && !se3di_read_number(reader, step, SE3DI_POSITIVE, &solver->step)) ||
-        (tolerance && !se3di_read_number(reader, tolerance, SE3DI_POSITIVE, &solver->tolerance)) ||
+    if (!read_step(reader, node, &solver->step) ||
+        !read_tolerance(reader, node, &solver->tolerance) ||
         !se3di_read_fields(reader, node, object, NULL, "se3d_solver_def", solver) ||
         !se3di_read_key(reader, node, object, NULL, "order", &order) ||
         !se3di_read_key(reader, node, object, NULL, "iterations_max", &iterations) ||
@@ -184,10 +255,6 @@ static bool read_numbers(se3di_reader *reader, const se3di_node *node, se3d_solv
     if (iterations < 1.0) {
         return se3di_reader_fail_key(reader, node, "iterations_max",
                                      "is 0, must be a whole number from 1 to 1000000");
-    }
-    if (step && solver->step < STEP_MIN) {
-        return se3di_reader_fail(reader, step, "is %g, must be at least %g [s]", solver->step,
-                                 STEP_MIN);
     }
     solver->order = reader->options->method ? 0 : (int32_t)order; /* the order of another method */
     solver->iterations_max = (size_t)iterations;
@@ -231,18 +298,19 @@ static bool check_times(se3di_reader *reader, const se3di_node *node, const se3d
                                  length, end);
     }
     if (length > 0.0 && step > 0.0 && step < 1e-14 * fabs(end)) {
-        return se3di_reader_fail_key(reader, node ? node : reader->model->root, "step",
-                                     "is %g s, which does not move the time %g s on", step, end);
+        char text[100];
+        snprintf(text, sizeof text, "is %g s, which does not move the time %g s on", step, end);
+        return fail_value(reader, node, "step", text);
     }
     return true;
 }
 
 static bool read_times(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry)
 {
-    const se3di_node *duration =
-        replaced(reader, se3di_node_get(node, "duration"), "--duration", reader->options->duration);
+    const se3di_node *duration;
     entry->analysis.start = (double)NAN;
-    if (!se3di_read_key(reader, node, &se3di_object_analysis, NULL, "start",
+    if (!get_value(reader, node, "duration", &duration) ||
+        !se3di_read_key(reader, node, &se3di_object_analysis, NULL, "start",
                         &entry->analysis.start)) {
         return false;
     }
