@@ -83,7 +83,7 @@ static void get(se3di_equations *equations, double *y)
     const se3di_model *model = equations->assembly.model;
     se3di_tree_get(tree, tree->q, tree->qdot);
     normalise(tree, tree->q);
-    se3di_tree_place(tree, tree->q, tree->qdot, tree->frames);
+    se3di_tree_match_turns(tree, tree->q);
     keep(equations, y);
     memcpy(y + tree->q_count + tree->v_count, model->work, sizeof model->work);
 }

@@ -106,6 +106,8 @@ static se3d_status create_tree(se3di_equations *equations)
         se3di_free(&model->allocator, tree, 1, sizeof *tree);
         return status;
     }
+    tree->keeps_turns = 1;
+    se3di_tree_refresh(tree);
     equations->tree = tree;
     equations->has_loops = has_loops(tree);
     /* nothing but the tree constrains the motion, and nothing that acts depends on multipliers */

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #define SAME 1e-15 /* of components of unit vectors */
+#define TURN 6.283185307179586
 
 /* ---- joint frames ---- */
 
@@ -286,17 +287,41 @@ static void refresh_node(se3di_tree *tree, se3di_tree_node *n)
     take_side(model, n);
 }
 
+/* Whether the frame that was placed has -p where the model's has p. */
+static int is_opposite(const se3di_tree *tree, const se3di_tree_node *n)
+{
+    const double *p = tree->model->frames[n->body].p, *own = tree->frames[n->body].p;
+    return p[0] * own[0] + p[1] * own[1] + p[2] * own[2] + p[3] * own[3] < 0.0;
+}
+
+void se3di_tree_match_turns(se3di_tree *tree, double *q)
+{
+    double *carried = tree->scratch; /* 1: a joint on the way to the node has been turned */
+    int has_turned = 0;
+    se3di_tree_place(tree, q, tree->qdot, tree->frames);
+    for (uint32_t k = 0; tree->keeps_turns && k < tree->count; ++k) {
+        const se3di_tree_node *n = &tree->nodes[k];
+        carried[k] = n->parent >= 0 ? carried[n->parent] : 0.0;
+        if (n->type == SE3DI_TREE_UNIVERSAL && is_opposite(tree, n) != (carried[k] > 0.0)) {
+            q[n->q] += q[n->q] > 0.0 ? -TURN : TURN;
+            carried[k] = 1.0 - carried[k];
+            has_turned = 1;
+        }
+    }
+    if (has_turned) {
+        se3di_tree_place(tree, q, tree->qdot, tree->frames);
+    }
+}
+
 /* p and -p are the same pose: the body keeps the one that it has. */
 static void match_signs(se3di_tree *tree)
 {
-    const se3di_model *model = tree->model;
-    se3di_tree_place(tree, tree->q, tree->qdot, tree->frames);
+    se3di_tree_match_turns(tree, tree->q);
     for (uint32_t k = 0; k < tree->count; ++k) {
         se3di_tree_node *n = &tree->nodes[k];
-        const double *p = model->frames[n->body].p, *own = tree->frames[n->body].p;
-        const double along = p[0] * own[0] + p[1] * own[1] + p[2] * own[2] + p[3] * own[3];
-        for (int c = 0; along < 0.0 && c < 4; ++c) {
-            n->B[c] = -n->B[c];
+        const double sign = is_opposite(tree, n) ? -1.0 : 1.0;
+        for (int c = 0; c < 4; ++c) {
+            n->B[c] *= sign;
         }
     }
 }

@@ -130,7 +130,7 @@ typedef struct se3di_tree {
     double *effort;           /* [velocities]: of the elements in `along`, at the last sums */
     double *armature;         /* [velocities]: inertia that turns with the coordinate alone */
     int32_t foreign_armature; /* a force element: armature on no coordinate of the tree; -1: none */
-    int32_t reserved;
+    int32_t keeps_turns;      /* q is integrated: see se3di_tree_match_turns */
     double *wrench;           /* [nodes * 6]: what acts on each: moment about P, force; ground */
     double *q, *qdot, *qddot; /* scratch of the caller */
     se3di_tree_inertia *branches;
@@ -162,6 +162,11 @@ void se3di_tree_to_triad(const se3di_tree_node *node, const double local[3], dou
 
 /* Coordinates of the model's frames; refreshed. NULL: not wanted. */
 void se3di_tree_get(se3di_tree *tree, double *q, double *qdot);
+
+/* Place tree->frames by q, as it was got. If the tree keeps turns, universal joints are given those
+ * of 2 pi in q with which the bodies that they carry have the sign of p that they have in the model:
+ * it goes on from there. Of a revolute the turns are counted, and the sign is its body's own. */
+void se3di_tree_match_turns(se3di_tree *tree, double *q);
 
 /* Coordinates -> frames [dense bodies], those of fixed bodies are left alone; links, S and biases
  * follow. `frames` may be the model's. */

@@ -8,9 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PLAIN, REDUNDANT, FRICTION, CONTACT, MECHANISMS };
+enum { PLAIN, REDUNDANT, FRICTION, CONTACT, TURNS, MECHANISMS };
 
-static const char *const mechanisms[MECHANISMS] = {"plain", "redundant", "friction", "contact"};
+static const char *const mechanisms[MECHANISMS] = {"plain", "redundant", "friction", "contact",
+                                                   "turns"};
 
 static void add_ball(se3d_system *system)
 {
@@ -31,10 +32,45 @@ static void add_ball(se3d_system *system)
     CHECK(se3d_shape_create_sphere(system, &def, &shape) == SE3D_OK);
 }
 
+/* Two shafts behind each other on universal joints, a third on a ball, which turn many times. */
+static void add_shafts(se3d_system *system, se3d_body shafts[3])
+{
+    se3d_body before;
+    CHECK(!se3d_system_get_ground(system, &before));
+    for (int k = 0; k < 3; ++k) {
+        se3d_body_def def = se3d_body_def_default();
+        se3d_joint_def joint = se3d_joint_def_default();
+        se3d_constraint made;
+        def.mass = 1.0;
+        def.inertia[0] = 0.01;
+        def.inertia[1] = 0.02;
+        def.inertia[2] = 0.025;
+        def.position[0] = 0.2 * (k + 1);
+        def.angular_velocity[1] = 300.0;
+        def.velocity[2] = -300.0 * def.position[0];
+        CHECK(!se3d_body_create(system, &def, &shafts[k]));
+        joint.body_i = before;
+        joint.body_j = shafts[k];
+        joint.point_i[0] = k > 0 ? 0.1 : 0.0;
+        joint.point_j[0] = k > 0 ? -0.1 : -0.2;
+        joint.axis_i[1] = joint.axis_j[0] = 1.0;
+        joint.axis_i[2] = joint.axis_j[2] = 0.0;
+        CHECK(!(k < 2 ? se3d_joint_create_universal(system, &joint, &made)
+                      : se3d_joint_create_spherical(system, &joint, &made)));
+        before = shafts[k];
+    }
+}
+
 static se3d_system *make(int mechanism)
 {
     support_model model;
     se3d_system *system = NULL;
+    if (mechanism == TURNS) {
+        se3d_body shafts[3];
+        CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
+        add_shafts(system, shafts);
+        return system;
+    }
     if (mechanism == CONTACT) {
         CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
         add_ball(system);
@@ -186,8 +222,51 @@ static void whoever_continues_gets_the_same_bits(void)
     }
 }
 
+static void get_signs(const se3d_system *system, const se3d_body shafts[3], double p[12])
+{
+    for (int k = 0; k < 3; ++k) {
+        CHECK(!se3d_body_get_orientation(system, shafts[k], p + 4 * k));
+    }
+}
+
+/* p and -p are the same pose; whatever begins anew on the way keeps the one that was shown. */
+static void bodies_keep_the_sign_of_p(void)
+{
+    for (int32_t method = 0; *se3d_method_get_name(method); ++method) {
+        for (int start = 0; start < 2; ++start) {
+            const trial t = {TURNS, 1, {method, 0}};
+            se3d_system *system = NULL;
+            se3d_body shafts[3];
+            double before[12], after[12];
+            CHECK(se3d_system_create(NULL, &system) == SE3D_OK);
+            add_shafts(system, shafts);
+            for (int k = 0; start > 0 && k < 3; ++k) {
+                static const double other[4] = {-1.0, 0.0, 0.0, 0.0};
+                CHECK(!se3d_body_set_orientation(system, shafts[k], other));
+            }
+            get_signs(system, shafts, before);
+            for (int k = 1; k < 50; ++k) {
+                se3d_solver *solver = solver_of(system, &t);
+                CHECK(se3d_solver_run(solver, 1e-3 * k) >= 0);
+                get_signs(system, shafts, after);
+                for (int b = 0; b < 3; ++b) {
+                    const double *p = before + 4 * b, *q = after + 4 * b;
+                    CHECK(p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3] > 0.5);
+                }
+                memcpy(before, after, sizeof before);
+                if (k % 3 == 0) {
+                    CHECK(!se3d_system_touch(system));
+                }
+                se3d_solver_destroy(solver);
+            }
+            se3d_system_destroy(system);
+        }
+    }
+}
+
 int main(void)
 {
     RUN(whoever_continues_gets_the_same_bits);
+    RUN(bodies_keep_the_sign_of_p);
     return check_finish();
 }
