@@ -61,7 +61,7 @@ double se3di_stiffness_step(const se3di_model *model)
 }
 
 /* The rate of the motion that one wants to see [1/s]: of a pendulum as long as the model is large,
- * and of the spins; 1 if there is neither. */
+ * and of the spins; 1 at least, as a spin by rounding is none. */
 static double rate_of_motion(const se3di_model *model)
 {
     double spin = 0.0;
@@ -69,7 +69,7 @@ static double rate_of_motion(const se3di_model *model)
         spin = fmax(spin, se3di_norm(model->frames[k].w));
     }
     const double pendulum = sqrt(se3di_norm(model->gravity) / se3di_model_get_size(model));
-    return fmax(fmax(spin, pendulum), spin + pendulum > 0.0 ? 0.0 : 1.0);
+    return fmax(fmax(spin, pendulum), 1.0);
 }
 
 int se3di_stiffness_is_stiff(const se3di_model *model)
