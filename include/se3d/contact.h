@@ -57,7 +57,8 @@ typedef struct se3d_contact_output {
 /* Compute the force of a contact. It must be a pure function of its input (call
  * se3d_system_touch if it has to change between steps), may be called from several threads at a
  * time, and also by queries and for derivatives (of implicit methods, by differences).
- * @return OK, or a negative status: the step ends, and CALLBACK names the two. @since 0.1 */
+ * @return OK, or a negative status: the analysis ends with CALLBACK, whose message names the two.
+ * @since 0.1 */
 typedef se3d_status (*se3d_contact_callback)(void *ctx, const se3d_contact_input *input,
                                              se3d_contact_output *output);
 

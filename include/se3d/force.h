@@ -262,6 +262,7 @@ SE3D_API se3d_status se3d_force_create_effort(se3d_system *system, const se3d_ef
  * It must be a pure function of its arguments: methods keep and interpolate what it gave. What
  * changes between steps is the value of an element (se3d_force_set_value,
  * se3d_function_set_constant, ...); if it cannot be, call se3d_system_touch after every change.
+ * Numbers that are not finite end the analysis with NOT_FINITE, unless a shorter step avoids them.
  * @return OK, or a negative status: the analysis ends with CALLBACK.
  * @since 0.1 */
 typedef se3d_status (*se3d_force_callback)(void *ctx, double t, const se3d_body_motion motion[2],

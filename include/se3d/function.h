@@ -18,7 +18,8 @@ extern "C" {
 /* Compute a function of x[0..variable_count): jet = {value, d/dx0, d2/dx0^2}; gradient (NULL or
  * [variable_count]) = first derivatives. It must be a pure function of x: methods keep and
  * interpolate what it gave. A value that changes between steps is a constant with
- * se3d_function_set_constant; if it cannot be, call se3d_system_touch after every change.
+ * se3d_function_set_constant; if it cannot be, call se3d_system_touch after every change. Numbers
+ * that are not finite end the analysis with NOT_FINITE, unless a shorter step avoids them.
  * @return OK, or a negative status: the analysis ends with CALLBACK. @since 0.1 */
 typedef se3d_status (*se3d_function_callback)(void *ctx, const double *x, double jet[3],
                                               double *gradient);

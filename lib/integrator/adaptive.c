@@ -40,10 +40,12 @@ se3d_status se3di_adaptive_blame(const se3di_integration *integration, double t,
     return cause;
 }
 
-/* Whether a shorter step may do what this one did not. */
+/* Whether a shorter step may do what this one did not; a callback that returns a failure ends the
+ * run, one that writes a number that is not finite asks for a shorter step. */
 static int may_shrink(se3d_status status)
 {
-    return status != SE3D_ERR_INTERRUPTED && status != SE3D_ERR_NO_MEMORY;
+    return status != SE3D_ERR_INTERRUPTED && status != SE3D_ERR_NO_MEMORY &&
+           status != SE3D_ERR_CALLBACK;
 }
 
 /* The step is tried once. @return OK with *error above 1: it is rejected */

@@ -504,7 +504,7 @@ static se3d_status publish(se3di_explicit *m, int at_end)
 }
 
 /* Hairer, Norsett, Wanner 1993, sec. II.4: from the derivative and its change over a small step. */
-static double choose_first(se3di_explicit *m)
+static se3d_status choose_first(se3di_explicit *m, double *first)
 {
     double d1 = se3di_explicit_measure(m, m->f1);
     double limit = m->step.integration->settings.step;
@@ -518,7 +518,8 @@ static double choose_first(se3di_explicit *m)
     }
     m->motion->set(m->equations, m->y);
     double d2 = 0.0;
-    if (evaluate(m, m->past->at.time + h0, m->K) >= 0) {
+    const se3d_status status = evaluate(m, m->past->at.time + h0, m->K);
+    if (status >= 0) {
         for (size_t k = 0; k < m->count; ++k) {
             m->K[k] -= m->f1[k];
         }
@@ -526,12 +527,16 @@ static double choose_first(se3di_explicit *m)
     }
     m->motion->set(m->equations, m->y1);
     m->equations->error = error;
+    if (status == SE3D_ERR_CALLBACK) {
+        return se3di_error_set(error, status, "%s", ignored.message);
+    }
     double d = fmax(d1 * m->tolerance, 1e-3 / h0);
     double h1 = se3di_pow(0.01 / (fmax(d, sqrt(fmax(d2, 0.0) * m->tolerance)) / m->tolerance),
                           1.0 / m->methods->get_order(m));
     double h = isfinite(h1) && h1 > 0.0 ? fmin(100.0 * h0, h1) : h0;
     h = m->methods->shorten_first ? m->methods->shorten_first(m, h) : h;
-    return limit > 0.0 ? fmin(h, limit) : h;
+    *first = limit > 0.0 ? fmin(h, limit) : h;
+    return SE3D_OK;
 }
 
 se3d_status se3di_explicit_start(se3di_integration *integration, double h)
@@ -551,7 +556,7 @@ se3d_status se3di_explicit_start(se3di_integration *integration, double h)
         status = adopt(&m);
     }
     if (status >= 0) {
-        m.past->at.next = choose_first(&m);
+        status = choose_first(&m, &m.past->at.next);
     }
     se3di_state_end(m.equations, &m.kkt);
     return status;

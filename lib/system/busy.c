@@ -37,13 +37,16 @@ void se3di_work_begin(se3d_system *system)
 {
     (void)se3di_busy_raise(&system->busy, SE3DI_BUSY_CALL);
     system->host = se3di_floats_set();
+    se3di_error_clear(&system->found);
 }
 
 se3d_status se3di_work_end(se3d_system *system, se3d_status status)
 {
     se3di_floats_restore(system->host);
     se3di_busy_restore(&system->busy, SE3DI_BUSY_FREE);
-    if (status < 0 && system->error.status != status) {
+    if (status < 0 && system->found.status == status) {
+        system->error = system->found;
+    } else if (status < 0 && system->error.status != status) {
         return SE3DI_FAIL(system, status, "%s", se3d_status_get_text(status));
     }
     return status < 0 ? se3di_log_error(&system->error, status) : status;

@@ -24,7 +24,7 @@ se3d_status se3d_check_create(se3d_system *system, se3d_check **out)
     }
     se3di_work_begin(system);
     se3d_status status =
-        se3di_work_end(system, se3di_check_init(&check->report, &system->model, &system->error));
+        se3di_work_end(system, se3di_check_init(&check->report, &system->model, &system->found));
     if (status < 0) {
         se3di_free(&system->model.allocator, check, 1, sizeof *check);
         return status;

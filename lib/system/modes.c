@@ -79,7 +79,7 @@ static se3d_status linearise(se3d_system *system, const se3d_modes_def *def,
     }
     se3di_work_begin(system);
     const se3d_status status = se3di_work_end(
-        system, se3di_modes_init(&modes->of, &system->model, &system->error, def->input_count,
+        system, se3di_modes_init(&modes->of, &system->model, &system->found, def->input_count,
                                  def->output_count, ports, quantity));
     if (status < 0) {
         se3di_free(&system->model.allocator, modes, 1, sizeof *modes);

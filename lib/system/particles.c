@@ -447,7 +447,7 @@ static se3d_status advance(se3d_particles *particles, double h, double length, s
     se3d_system *system = particles->system;
     se3di_work_begin(system);
     return se3di_work_end(system, se3di_particles_run(&particles->set, &system->model, h, length,
-                                                      steps, &system->error));
+                                                      steps, &system->found));
 }
 
 se3d_status se3d_particles_step(se3d_particles *particles, size_t steps)

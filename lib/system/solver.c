@@ -153,7 +153,7 @@ se3d_status se3d_solver_create(se3d_system *system, const se3d_solver_def *def, 
     solver->allocator = system->model.allocator;
     solver->next = system->solvers;
     system->solvers = solver;
-    se3di_run_init(&solver->run, &system->model, &system->error, system);
+    se3di_run_init(&solver->run, &system->model, &system->found, system);
     configure(&solver->run, &full);
     *out = solver;
     return SE3D_OK;

@@ -49,7 +49,7 @@ static void begin_life(se3d_system *system)
     se3di_busy_init(&system->busy);
     system->model.busy = &system->busy;
     system->log.busy = &system->busy;
-    system->error.log = &system->log;
+    system->error.log = system->found.log = &system->log;
     system->solvers = NULL;
     system->coordinates = NULL;
     system->copies = NULL;

@@ -13,7 +13,8 @@
 
 struct se3d_system {
     se3di_model model;
-    se3di_error error;
+    se3di_error error; /* of the last public call that failed */
+    se3di_error found; /* of the work under way: it may be mended, and is no call's then */
     se3di_logger log;
     se3di_busy busy;                      /* the model points to it */
     se3di_floats host;                    /* how the host of the call at work rounds */
@@ -65,7 +66,8 @@ se3d_status se3di_enter(se3d_system *system, se3di_busy_level most, const char *
         }                                                                                          \
     } while (0)
 
-/* Around the work of a call that evaluates callbacks or solves; the end passes its status on. */
+/* Around the work of a call that evaluates callbacks or solves, which may record its failures in
+ * `found`; the end makes that of `status` the call's, and passes the status on. */
 void se3di_work_begin(se3d_system *system);
 se3d_status se3di_work_end(se3d_system *system, se3d_status status);
 
