@@ -487,8 +487,7 @@ static se3d_status show(se3di_explicit *m, const double *y, double t, int projec
         SE3DI_TRY(m->motion->project(m->equations, t, &m->past->scale, fmax(1e-15, rough), 0));
     }
     if (rough > 0.0) {
-        se3di_state_conclude_motion(m->equations, work, t);
-        return SE3D_OK;
+        return se3di_state_conclude_motion(m->equations, work, t);
     }
     SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
     se3di_contacts_renew_forces(m->assembly->model);

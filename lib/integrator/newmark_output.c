@@ -170,8 +170,7 @@ se3d_status se3di_newmark_publish(se3di_integration *integration, double t)
         SE3DI_TRY(se3di_state_project(equations, t, &header->scale, fmax(1e-15, rough), 0));
     }
     if (rough > 0.0) {
-        se3di_state_conclude_motion(equations, work, t);
-        return SE3D_OK;
+        return se3di_state_conclude_motion(equations, work, t);
     }
     SE3DI_TRY(set_accelerations(integration, t, is_end ? 1.0 : (t - header->at.begin) / last));
     return se3di_state_conclude(equations, work, t);

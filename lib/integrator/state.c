@@ -22,6 +22,8 @@
 /* Of the speed at which other points move: what is slower is measured by that. */
 #define LEAST_PART 1e-4
 
+#define UNIT 1e-9 /* that the square of Euler parameters may be off 1 */
+
 size_t se3di_state_count(const se3di_assembly *assembly)
 {
     return SE3DI_STATE_SIZE * (size_t)assembly->body_count + SE3DI_STATE_WORK;
@@ -452,10 +454,38 @@ void se3di_state_scale_grow(const se3di_assembly *assembly, const double *deriva
     scale->energy = fmax(0.95 * scale->energy, energy);
 }
 
+/* Sums that overflow, and Euler parameters that vanish. */
+static int is_finite(const se3di_frame *frame)
+{
+    const double *p = frame->p;
+    const double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3];
+    double sum = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        sum += 0.0 * (frame->r[k] + frame->v[k] + frame->w[k]);
+    }
+    return sum == 0.0 && fabs(square - 1.0) <= UNIT;
+}
+
+se3d_status se3di_state_check(const se3di_equations *equations, double t)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const uint32_t body = assembly->free_body[k];
+        if (!is_finite(&assembly->model->frames[body])) {
+            const char *name = assembly->model->bodies[body].name;
+            return se3di_error_set(equations->error, SE3D_ERR_NOT_FINITE,
+                                   "t = %g s: the state of body %.80s is not finite", t,
+                                   name ? name : "without a name");
+        }
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3di_state_prepare(se3di_equations *equations, double t)
 {
     se3di_model *model = equations->assembly.model;
     SE3DI_TRY(se3di_user_report(model, equations->error));
+    SE3DI_TRY(se3di_state_check(equations, t));
     return se3di_loads_prepare(model, t, equations->error);
 }
 
@@ -473,13 +503,15 @@ se3d_status se3di_state_conclude(se3di_equations *equations, const double *work,
     se3di_model *model = equations->assembly.model;
     conclude(model, work, t);
     model->settled = SE3DI_SETTLED;
+    SE3DI_TRY(se3di_state_check(equations, t));
     return se3di_loads_power(model, t, model->power);
 }
 
-void se3di_state_conclude_motion(se3di_equations *equations, const double *work, double t)
+se3d_status se3di_state_conclude_motion(se3di_equations *equations, const double *work, double t)
 {
     conclude(equations->assembly.model, work, t);
     equations->assembly.model->settled = SE3DI_SETTLED | SE3DI_LACKING;
+    return se3di_state_check(equations, t);
 }
 
 double se3di_state_rough(const se3di_model *model, int shows_motion, double tolerance)
@@ -498,8 +530,7 @@ se3d_status se3di_state_publish(se3di_equations *equations, const se3di_shown *s
             se3di_state_project(equations, shown->t, shown->scale, fmax(1e-15, shown->rough), 0));
     }
     if (shown->rough > 0.0) {
-        se3di_state_conclude_motion(equations, work, shown->t);
-        return SE3D_OK;
+        return se3di_state_conclude_motion(equations, work, shown->t);
     }
     SE3DI_TRY(se3di_acceleration_solve(equations, shown->t));
     se3di_contacts_renew_forces(equations->assembly.model);

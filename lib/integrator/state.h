@@ -95,6 +95,8 @@ int se3di_state_is_carrier(const se3di_assembly *assembly, size_t k);
 double se3di_state_part(const se3di_assembly *assembly, size_t k, const se3di_state_scale *scale,
                         const double change[6]);
 
+/* Whether the frames of free bodies are finite. @return OK, NOT_FINITE */
+se3d_status se3di_state_check(const se3di_equations *equations, double t);
 /* The state at t is about to be accepted: all that can fail. What a callback computed last may have
  * failed without anybody asking yet. */
 se3d_status se3di_state_prepare(se3di_equations *equations, double t);
@@ -123,6 +125,6 @@ se3d_status se3di_state_publish(se3di_equations *equations, const se3di_shown *s
 /* The last part of it: frames, accelerations and multipliers are those at t already. */
 se3d_status se3di_state_conclude(se3di_equations *equations, const double *work, double t);
 /* The same where there are frames only. */
-void se3di_state_conclude_motion(se3di_equations *equations, const double *work, double t);
+se3d_status se3di_state_conclude_motion(se3di_equations *equations, const double *work, double t);
 
 #endif

@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "integrator/integrator.h"
 #include "math/quaternion.h"
+#include "math/vec3.h"
 #include "particles/bytes.h"
 #include "system/system_internal.h"
 
@@ -196,27 +197,50 @@ static int are_finite(const se3di_saved_array *array, size_t numbers)
     return 1;
 }
 
+/* Matrices and rates of the Euler parameters, which are of unit length. */
 static int are_poses(const se3di_saved_array *array)
 {
     const se3di_frame *frames = array->data;
     for (size_t k = 0; k < array->count; ++k) {
-        double A[9];
-        se3di_quat_to_matrix(frames[k].p, A);
+        se3di_frame own = frames[k];
+        se3di_frame_update(&own);
+        const double size = se3di_quat_normalize(own.p, own.p);
+        const double fast = 1.0 + se3di_norm(own.w);
+        int holds = fabs(size - 1.0) <= SAME_ROTATION;
         for (int i = 0; i < 9; ++i) {
-            if (!(fabs(A[i] - frames[k].A[i]) <= SAME_ROTATION)) {
-                return 0;
-            }
+            holds &= fabs(own.A[i] - frames[k].A[i]) <= SAME_ROTATION;
+        }
+        for (int i = 0; i < 4; ++i) {
+            holds &= fabs(own.pdot[i] - frames[k].pdot[i]) <= SAME_ROTATION * fast;
+        }
+        if (!holds) {
+            return 0;
         }
     }
     return 1;
+}
+
+static double sum_of(const double *x, int count)
+{
+    double sum = 0.0;
+    for (int k = 0; k < count; ++k) {
+        sum += fabs(x[k]);
+    }
+    return sum;
 }
 
 static int are_contacts(const se3di_saved *state, const se3di_model *model)
 {
     const se3di_body_contact *list = state->contacts.data;
     for (size_t k = 0; k < state->contacts.count; ++k) {
-        if (list[k].shape_i >= list[k].shape_j || list[k].shape_j >= model->shape_slots.count ||
-            list[k].kind < SE3DI_CONTACT_LAWFUL || list[k].kind > SE3DI_CONTACT_PARTING) {
+        const se3di_body_contact *c = &list[k];
+        const double sum = sum_of(c->anchor_i, 3) + sum_of(c->anchor_j, 3) + sum_of(c->roll, 3) +
+                           sum_of(c->turn, 4) + sum_of(c->point, 3) + sum_of(c->normal, 3) +
+                           sum_of(c->force, 3) + sum_of(c->torque, 3) + fabs(c->twist) +
+                           fabs(c->overlap) + fabs(c->inverse_mass) + fabs(c->energy);
+        if (!isfinite(sum) || list[k].shape_i >= list[k].shape_j ||
+            list[k].shape_j >= model->shape_slots.count || list[k].kind < SE3DI_CONTACT_LAWFUL ||
+            list[k].kind > SE3DI_CONTACT_PARTING) {
             return 0;
         }
     }
@@ -257,6 +281,15 @@ static int are_left_out(const se3di_saved *state, const se3di_model *model)
             (state->left_out_row == 0 && !(state->left_out_gap > 0.0)));
 }
 
+static int are_numbers(const se3di_saved *s)
+{
+    return isfinite(s->time + s->time_rest + s->rest_time + s->contact_step + s->left_out_gap) &&
+           isfinite(sum_of(s->work, 3) + sum_of(s->power, 3)) && are_finite(&s->frames, 26) &&
+           are_finite(&s->acceleration, 1) && are_finite(&s->lambda, 1) &&
+           are_finite(&s->turns, 1) && are_finite(&s->memory, 1) && are_finite(&s->wrench, 1) &&
+           are_finite(&s->history, 1);
+}
+
 /* Numbers that lists are found by are what they must be, whoever wrote the bytes. */
 static int is_sound(const se3d_snapshot *snapshot, const se3di_model *model)
 {
@@ -266,9 +299,7 @@ static int is_sound(const se3d_snapshot *snapshot, const se3di_model *model)
         method <= INT32_MAX ? se3di_integrator_find((int32_t)method) : NULL;
     const int is_known = state->history_tag == 0 ? state->history.count == 0
                                                  : integrator && method != SE3D_METHOD_AUTO;
-    return isfinite(state->time) && is_known && are_finite(&state->frames, 26) &&
-           are_finite(&state->acceleration, 1) && are_finite(&state->lambda, 1) &&
-           are_finite(&state->turns, 1) && are_poses(&state->frames) &&
+    return is_known && are_numbers(state) && are_poses(&state->frames) &&
            are_contacts(state, model) && are_near(&snapshot->near, model) &&
            are_left_out(state, model) &&
            (state->history_tag == 0 || !integrator->is_sound ||

@@ -158,8 +158,39 @@ static void no_horizon_is_none_at_negative_times(void)
     destroy(&f);
 }
 
+/* A way that overflows, and a spin so fast that Euler parameters vanish. */
+static void states_that_are_not_finite_are_not_accepted(void)
+{
+    static const double fast[2] = {1.7e308, 1e300};
+    for (int32_t method = 0; *se3d_method_get_name(method); ++method) {
+        for (int kind = 0; kind < 4; ++kind) {
+            const double v[3] = {fast[kind % 2], 0.0, 0.0};
+            se3d_solver_def def = se3d_solver_def_default();
+            se3d_status status = SE3D_OK;
+            fall f;
+            double r[3], p[4];
+            def.method = method;
+            def.steps_max = 1000;
+            make(&f, &def, 0.0);
+            CHECK(!(kind % 2 ? se3d_body_set_angular_velocity(f.system, f.body, v)
+                             : se3d_body_set_velocity(f.system, f.body, v)));
+            for (int k = 1; k <= 4 && status >= 0; ++k) {
+                status =
+                    kind < 2 ? se3d_solver_run(f.solver, 0.5 * k) : se3d_solver_step(f.solver, 0.5);
+                CHECK(!se3d_body_get_position(f.system, f.body, r));
+                CHECK(!se3d_body_get_orientation(f.system, f.body, p));
+                CHECK(isfinite(r[0]));
+                CHECK_NEAR(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3], 1.0, 1e-12);
+            }
+            CHECK(status < 0 || kind % 2 == 1);
+            destroy(&f);
+        }
+    }
+}
+
 int main(void)
 {
+    RUN(states_that_are_not_finite_are_not_accepted);
     RUN(a_run_may_go_to_where_steps_have_led);
     RUN(runs_at_late_times_take_as_many_steps_as_early_ones);
     RUN(motion_follows_the_rounded_times);

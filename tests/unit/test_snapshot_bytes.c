@@ -161,8 +161,39 @@ static void made_up_words_do_no_harm(void)
     }
 }
 
+static void put(unsigned char *bytes, size_t at, uint64_t word)
+{
+    for (int k = 0; k < 8; ++k) {
+        bytes[at + (size_t)k] = (unsigned char)(word >> (8 * k));
+    }
+}
+
+/* Every number of every method, whatever it is of: but for the number of redundant rows and the ages
+ * of what acts, whole numbers of which any will do. */
+static void numbers_that_are_not_finite_are_refused(void)
+{
+    static const uint64_t words[] = {UINT64_C(0x7FF8000000000000), UINT64_C(0xFFF0000000000000)};
+    static world w;
+    static unsigned char bytes[ROOM];
+    for (int32_t method = 1; *se3d_method_get_name(method); ++method) {
+        size_t taken = 0;
+        open_world(&w, method);
+        for (size_t at = 16; at + 16 <= w.size; at += 8) {
+            se3d_snapshot *snapshot = NULL;
+            memcpy(bytes, w.bytes, w.size);
+            put(bytes, at, words[at / 8 % 2]);
+            sign(bytes, w.size);
+            taken += read_bytes(&w, bytes, w.size, &snapshot) >= 0;
+            se3d_snapshot_destroy(snapshot);
+        }
+        CHECK(taken == 3);
+        close_world(&w);
+    }
+}
+
 int main(void)
 {
+    RUN(numbers_that_are_not_finite_are_refused);
     RUN(cut_and_changed_bytes_are_refused);
     RUN(another_model_is_refused);
     RUN(made_up_words_do_no_harm);
