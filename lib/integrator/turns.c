@@ -8,6 +8,7 @@
 #include <math.h>
 
 #define COUNTED_MAX 3.0 /* rad, less than half a turn */
+#define FAR_BELOW   0.1 /* of it: an angle whose bodies turn less is not measured */
 
 /* Of the joint, or of the element that has a counter of its own. */
 static const char *name_of_angle(const se3di_model *model, size_t angle)
@@ -43,10 +44,35 @@ static se3d_status fail(const se3di_equations *equations, const char *what, cons
         equations->assembly.model->time, what, name, turn, h, most, round_down(h * most / turn));
 }
 
+/* The bodies of an angle turn far too little for it to turn by too much: it turns as they do where
+ * its directions are in one plane, faster by the inverse cosine where they have left it. */
+static int turns_little(const se3di_model *model, const se3di_term *term, double h)
+{
+    const double *w_i = model->frames[term->body_i].w, *w_j = model->frames[term->body_j].w;
+    const double square = 2.0 * h * h * (se3di_dot(w_i, w_i) + se3di_dot(w_j, w_j));
+    return square < FAR_BELOW * FAR_BELOW * COUNTED_MAX * COUNTED_MAX;
+}
+
+static se3d_status check_bodies(const se3di_equations *equations, double h, double most)
+{
+    const se3di_model *model = equations->assembly.model;
+    for (size_t k = 0; most < HUGE_VAL && k < model->body_slots.count; ++k) {
+        const double turn = fabs(h) * se3di_norm(model->frames[k].w);
+        if (turn > most) {
+            const char *name = model->bodies[k].name;
+            return fail(equations, "body", name ? name : "without a name", turn, fabs(h), most);
+        }
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3di_turns_check(const se3di_equations *equations, double h, double most)
 {
     const se3di_model *model = equations->assembly.model;
     for (size_t k = 0; k < model->angle_count; ++k) {
+        if (turns_little(model, &model->angles[k].term, h)) {
+            continue;
+        }
         se3di_term term = model->angles[k].term;
         se3di_measure measure;
         term.angle = -1;
@@ -56,12 +82,5 @@ se3d_status se3di_turns_check(const se3di_equations *equations, double h, double
             return fail(equations, "joint", name_of_angle(model, k), turn, fabs(h), COUNTED_MAX);
         }
     }
-    for (size_t k = 0; k < model->body_slots.count; ++k) {
-        const double turn = fabs(h) * se3di_norm(model->frames[k].w);
-        if (turn > most) {
-            const char *name = model->bodies[k].name;
-            return fail(equations, "body", name ? name : "without a name", turn, fabs(h), most);
-        }
-    }
-    return SE3D_OK;
+    return check_bodies(equations, h, most);
 }
