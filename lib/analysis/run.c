@@ -80,6 +80,14 @@ static se3d_status reserve_kept(se3di_run *run, size_t history)
     return SE3D_OK;
 }
 
+/* Which rows are left out, and with them the state of explicit methods, is decided later. */
+static size_t largest_history(const se3di_run *run)
+{
+    se3di_assembly of_bodies = run->equations.assembly;
+    of_bodies.tree_count = 0;
+    return run->integration.method->history_count(&of_bodies);
+}
+
 static se3d_status allocate_work(se3di_run *run)
 {
     const se3di_integrator *method = run->integration.method;
@@ -87,7 +95,7 @@ static se3d_status allocate_work(se3di_run *run)
     if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
         return SE3D_OK;
     }
-    size_t count = method->history_count(&run->equations.assembly);
+    const size_t count = largest_history(run);
     void *history = model->history;
     se3d_status status = se3di_array_reserve(&model->allocator, &history, &model->history_capacity,
                                              count, sizeof(double));
@@ -352,6 +360,14 @@ static se3d_status recall(se3di_run *run)
                                           : SE3D_OK;
 }
 
+/* And what friction holds with, which knows no particles. */
+static se3d_status renew_accelerations(se3di_run *run)
+{
+    SE3DI_TRY(accelerate(run));
+    SE3DI_TRY(se3di_friction_renew(&run->equations));
+    return run->model->sets ? accelerate(run) : SE3D_OK;
+}
+
 /* Something else acts on the present state than did on the way to it (`whole`: it may not be
  * consistent any more). All that follows from what acts is computed anew, so that it does so from
  * the very start of the next step; what is remembered of the motion stays. */
@@ -359,15 +375,15 @@ static se3d_status renew(se3di_run *run, int whole)
 {
     se3di_model *model = run->model;
     const se3di_integrator *method = run->integration.method;
+    const int renews_all = method->renews_all && method->renews_all(&run->integration);
     SE3DI_TRY(recall(run));
     SE3DI_TRY(whole ? settle(run, model->time) : SE3D_OK);
-    SE3DI_TRY(accelerate(run));
-    SE3DI_TRY(se3di_friction_renew(&run->equations));
-    SE3DI_TRY(model->sets ? accelerate(run) : SE3D_OK);   /* friction knows no particles */
+    SE3DI_TRY(renews_all ? SE3D_OK : renew_accelerations(run));
     if (model->history_values != model->values_version) { /* who did the work is not known */
         model->work_valid = 0;
     }
-    SE3DI_TRY(se3di_work_accept(model, 0.0));
+    SE3DI_TRY(renews_all ? SE3D_OK : se3di_work_accept(model, 0.0));
+    run->integration.is_moved = whole;
     SE3DI_TRY(method->renew ? method->renew(&run->integration) : SE3D_OK);
     mark_history(model);
     const uint64_t stamp = model->history_stamp++;

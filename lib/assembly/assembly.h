@@ -60,6 +60,7 @@ typedef struct se3di_assembly {
     uint32_t reserved;
     int32_t levels; /* H weighs all bodies alike: for motions that the constraints determine */
     int32_t moves_states; /* carriers of states are among the free bodies */
+    size_t tree_count;    /* positions and velocities of the tree of joints; 0: there is none */
     double like_mass;     /* [kg] of each body then: the mean, */
     double like_inertia;  /* [kg m^2] */
     uint32_t armature_count, armature_pair_count;

@@ -22,9 +22,13 @@
 
 #define VECTORS (3 + SE3DI_EXPLICIT_FORMS)
 
+/* As motion->count has it. */
 size_t se3di_explicit_history_count(const se3di_assembly *assembly)
 {
-    return PAST + VECTORS * se3di_state_count(assembly);
+    const int has_tree = assembly->tree_count > 0 && assembly->model->left_out_count == 0;
+    const size_t count =
+        has_tree ? assembly->tree_count + SE3DI_STATE_WORK : se3di_state_count(assembly);
+    return PAST + VECTORS * count;
 }
 
 /* Work: that of the method, the state of a stage, what the force elements remember, and two changes
@@ -111,7 +115,7 @@ static const double *get_rates(const se3di_explicit *m)
 static void grow_scale(se3di_explicit *m)
 {
     se3di_state_scale *scale = &m->past->scale;
-    se3di_state_scale_grow(m->assembly, get_rates(m), scale);
+    se3di_state_scale_grow(m->assembly, m->is_reported ? NULL : get_rates(m), scale);
     scale->energy = fmax(scale->energy, m->past->energy_least);
 }
 
@@ -276,7 +280,7 @@ static void accept(se3di_explicit *m, double t)
     grow_scale(m);
     double dependent = m->motion->count_dependent(m->equations);
     m->past->redundant = fmin(m->past->redundant, dependent);
-    se3di_angles_accept(m->assembly->model);
+    m->motion->accept_angles(m->equations);
     se3di_contacts_accept(m->assembly->model); /* force elements: settle_memory */
     ++m->equations->counters.steps;
 }
@@ -460,14 +464,31 @@ static se3d_status advance(se3di_explicit *m, double t_end)
     return se3di_adaptive_advance(&m->step, t_end);
 }
 
-/* The forward state is the model's own. */
+/* The forward state is the model's own; its derivative remains to be found. `stands`: y_1 is it. */
+static void take_state(se3di_explicit *m, int stands)
+{
+    se3di_forces_stay(m->assembly->model);
+    m->past->at.time = m->past->at.begin = m->assembly->model->time;
+    m->past->dense = 0.0;
+    if (stands) {
+        m->motion->stand(m->equations, m->y1);
+    } else {
+        m->motion->get(m->equations, m->y1);
+    }
+}
+
+/* The model still is where the last step has ended. */
+static int is_at_end(const se3di_explicit *m)
+{
+    const double t = m->assembly->model->time;
+    return !m->step.integration->is_moved && !(m->past->at.time < t) && !(m->past->at.time > t);
+}
+
+/* With the accelerations and multipliers that the model has. */
 static se3d_status adopt(se3di_explicit *m)
 {
     se3di_assembly *assembly = m->assembly;
-    se3di_forces_stay(assembly->model);
-    m->past->at.time = m->past->at.begin = assembly->model->time;
-    m->past->dense = 0.0;
-    m->motion->get(m->equations, m->y1);
+    take_state(m, 0);
     se3di_assembly_get_acceleration(assembly, m->equations->x);
     SE3DI_TRY(
         m->motion->derive(m->equations, assembly->model->time, assembly->model->lambda, m->f1));
@@ -561,10 +582,30 @@ se3d_status se3di_explicit_start(se3di_integration *integration, double h)
     return status;
 }
 
+/* Where one evaluation finds all: it is the derivative, and what the model shows. */
+static se3d_status adopt_evaluated(se3di_explicit *m)
+{
+    se3di_model *model = m->assembly->model;
+    const size_t work = m->count - SE3DI_STATE_WORK;
+    take_state(m, is_at_end(m));
+    SE3DI_TRY(evaluate(m, model->time, m->f1));
+    m->motion->report(m->equations);
+    m->is_reported = 1;
+    se3di_work_take(model, 0.0, m->f1 + work);
+    memcpy(m->y1 + work, model->work, sizeof model->work);
+    grow_scale(m);
+    return SE3D_OK;
+}
+
+int se3di_explicit_renews_all(const se3di_integration *integration)
+{
+    return se3di_motion_find(integration->equations)->finds_all(integration->equations);
+}
+
 se3d_status se3di_explicit_renew(se3di_integration *integration)
 {
     se3di_explicit m = begin(integration);
-    const se3d_status status = adopt(&m);
+    const se3d_status status = m.motion->finds_all(m.equations) ? adopt_evaluated(&m) : adopt(&m);
     m.past->at.renewed = 1.0;
     se3di_state_end(m.equations, &m.kkt);
     return status;
@@ -581,6 +622,25 @@ static int reports_end(const se3di_explicit *m)
            m->motion->count_dependent(m->equations) == 0;
 }
 
+/* The state at the end, projected, with the accelerations and multipliers that the model shows, and
+ * the derivative that they are. */
+static se3d_status solve_end(se3di_explicit *m, double t)
+{
+    SE3DI_TRY(project(m, t));
+    se3di_state_end(m->equations, &m->kkt);
+    SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
+    return m->motion->derive(m->equations, t, m->assembly->model->lambda, se3di_explicit_end(m));
+}
+
+/* The same by an evaluation that finds all. */
+static se3d_status evaluate_end(se3di_explicit *m, double t)
+{
+    SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
+    m->motion->report(m->equations);
+    m->is_reported = 1;
+    return SE3D_OK;
+}
+
 /* One step of h without error control; *reported: the accelerations at its end are the model's. */
 static se3d_status step_once(se3di_explicit *m, double h, int *reported)
 {
@@ -591,11 +651,7 @@ static se3d_status step_once(se3di_explicit *m, double h, int *reported)
     *reported = reports_end(m);
     arrive(m, h);
     if (*reported) {
-        SE3DI_TRY(project(m, t));
-        se3di_state_end(m->equations, &m->kkt);
-        SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
-        SE3DI_TRY(
-            m->motion->derive(m->equations, t, m->assembly->model->lambda, se3di_explicit_end(m)));
+        SE3DI_TRY(m->motion->finds_all(m->equations) ? evaluate_end(m, t) : solve_end(m, t));
     } else {
         SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
         SE3DI_TRY(project(m, t));
@@ -617,9 +673,14 @@ se3d_status se3di_explicit_step(se3di_integration *integration, double h)
     m.tolerance = HUGE_VAL; /* no error control */
     status = status < 0 ? status : step_once(&m, h, &reported);
     se3di_state_end(m.equations, &m.kkt);
+    const double *work = m.y1 + m.count - SE3DI_STATE_WORK;
+    if (status >= 0 && reported && m.motion->finds_all(m.equations)) {
+        se3di_state_conclude_step(m.equations, work, m.f1 + m.count - SE3DI_STATE_WORK,
+                                  m.past->at.time);
+        return SE3D_OK;
+    }
     if (status >= 0 && reported) {
-        return se3di_state_conclude(m.equations, m.y1 + m.count - SE3DI_STATE_WORK,
-                                    m.past->at.time);
+        return se3di_state_conclude(m.equations, work, m.past->at.time);
     }
     return status < 0 ? status : publish(&m, 1);
 }

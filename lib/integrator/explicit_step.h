@@ -87,6 +87,7 @@ struct se3di_explicit {
     double remembered;      /* the least error that the choice of the next step counts with */
     int stages;             /* gauss: of this step */
     int has_stages;         /* K is that of the last step: it was made in this call */
+    int is_reported;        /* the accelerations of the model are those of y'_1 */
     se3di_kkt_settings kkt; /* of the model's linear solver, to come back to */
 };
 
@@ -116,6 +117,7 @@ size_t se3di_explicit_history_count(const se3di_assembly *assembly);
 size_t se3di_explicit_work_count(const se3di_assembly *assembly);
 se3d_status se3di_explicit_start(se3di_integration *integration, double h);
 se3d_status se3di_explicit_renew(se3di_integration *integration);
+int se3di_explicit_renews_all(const se3di_integration *integration);
 /* One step of length h without error control. */
 se3d_status se3di_explicit_step(se3di_integration *integration, double h);
 /* To t_end with step control. */
@@ -135,7 +137,8 @@ int se3di_explicit_is_held(const se3di_integration *integration);
 #define SE3DI_EXPLICIT_METHOD SE3DI_EXPLICIT_METHOD_WITH(se3di_explicit_work_count)
 #define SE3DI_EXPLICIT_METHOD_WITH(count)                                                          \
     .history_count = se3di_explicit_history_count, .work_count = (count),                          \
-    .start = se3di_explicit_start, .renew = se3di_explicit_renew, .step = se3di_explicit_step,     \
+    .start = se3di_explicit_start, .renew = se3di_explicit_renew,                                  \
+    .renews_all = se3di_explicit_renews_all, .step = se3di_explicit_step,                          \
     .run = se3di_explicit_run, .advance = se3di_explicit_advance,                                  \
     .interpolate = se3di_explicit_interpolate, .is_sound = se3di_explicit_is_sound,                \
     .is_explicit = 1, .reach = SE3DI_EXPLICIT_REACH

@@ -60,6 +60,9 @@ typedef struct se3di_integrator {
      * with its new accelerations, and nothing that was computed with the old ones is used again.
      * NULL: nothing is kept of accelerations. */
     se3d_status (*renew)(se3di_integration *integration);
+    /* Whether `renew` itself finds what the model shows of accelerations, multipliers and powers,
+     * so that nobody has to do so before. NULL: it does not. */
+    int (*renews_all)(const se3di_integration *integration);
     /* Whether a history that somebody else wrote may be gone on with: its counts and orders are in
      * their ranges. NULL: it has none. */
     int (*is_sound)(const double *history, size_t count);
@@ -108,6 +111,8 @@ struct se3di_integration {
     se3di_kink kink;             /* where the accepted state is, if */
     int32_t at_kink;             /* no step can be made before it was passed */
     int32_t shows_motion;        /* what `run` shows may be without accelerations and multipliers */
+    int32_t is_moved;            /* for `renew`: the state was settled since the last step */
+    int32_t reserved;
 };
 
 /* The methods but AUTO, X(METHOD, name): se3di_integrator_<name> is the table of

@@ -3,6 +3,7 @@
 #include "integrator/motion.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
+#include "primitive/turn_counter.h"
 
 #include <string.h>
 
@@ -51,9 +52,25 @@ static const double *pass(se3di_equations *equations, const double *y, double *o
     return y;
 }
 
+static void stand(se3di_equations *equations, const double *y)
+{
+    (void)equations, (void)y;
+}
+
+static void accept_angles(se3di_equations *equations)
+{
+    se3di_angles_accept(equations->assembly.model);
+}
+
 static void show(se3di_equations *equations, const double *y, double *bodies)
 {
     memcpy(bodies, y, se3di_state_count(&equations->assembly) * sizeof *y);
+}
+
+static int finds_all(const se3di_equations *equations)
+{
+    (void)equations;
+    return 0;
 }
 
 static double count_dependent(const se3di_equations *equations)
@@ -72,7 +89,10 @@ const se3di_motion se3di_motion_bodies = {
     .spread = pass,
     .project = se3di_state_project,
     .keep = get,
+    .stand = stand,
+    .accept_angles = accept_angles,
     .show = show,
+    .finds_all = finds_all,
     .count_dependent = count_dependent,
 };
 

@@ -36,8 +36,16 @@ typedef struct se3di_motion {
                            double accuracy, int is_factored);
     /* That state as a vector: all but the works. */
     void (*keep)(se3di_equations *equations, double *y);
+    /* The frames of the model are at y, as kept: it becomes the state that was set last. */
+    void (*stand)(se3di_equations *equations, const double *y);
+    /* That state is accepted: turns are counted from its angles. */
+    void (*accept_angles)(se3di_equations *equations);
     /* y in the places of state.h; the model is left alone. */
     void (*show)(se3di_equations *equations, const double *y, double *bodies);
+    /* Whether `evaluate` finds all that a model shows of its accelerations and multipliers, */
+    int (*finds_all)(const se3di_equations *equations);
+    /* and then: those of the last evaluation become the model's. NULL: it never does. */
+    void (*report)(se3di_equations *equations);
     /* Rows that were dependent in the last evaluation. */
     double (*count_dependent)(const se3di_equations *equations);
 } se3di_motion;

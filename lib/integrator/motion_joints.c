@@ -14,6 +14,7 @@
 #include "base/floats.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
+#include "primitive/turn_counter.h"
 #include "tree/core.h"
 #include "tree/loops.h"
 #include "tree/recursion.h"
@@ -59,6 +60,7 @@ static void place(se3di_equations *equations)
 {
     se3di_tree *tree = equations->tree;
     se3di_tree_place(tree, tree->q, tree->qdot, equations->assembly.model->frames);
+    equations->is_placed = 1;
 }
 
 static void set(se3di_equations *equations, const double *y)
@@ -77,6 +79,45 @@ static void keep(se3di_equations *equations, double *y)
     memcpy(y + tree->q_count, tree->qdot, tree->v_count * sizeof *y);
 }
 
+/* The same, but the frames of the model stay. */
+static void place_aside(se3di_equations *equations)
+{
+    se3di_tree *tree = equations->tree;
+    se3di_tree_place(tree, tree->q, tree->qdot, tree->frames);
+    equations->is_placed = 1;
+}
+
+/* Nothing is placed twice: a step ends where the next one begins. */
+static void stand(se3di_equations *equations, const double *y)
+{
+    se3di_tree *tree = equations->tree;
+    const size_t q_size = tree->q_count * sizeof *y, v_size = tree->v_count * sizeof *y;
+    if (equations->is_placed && memcmp(tree->q, y, q_size) == 0 &&
+        memcmp(tree->qdot, y + tree->q_count, v_size) == 0) {
+        return;
+    }
+    memcpy(tree->q, y, q_size);
+    memcpy(tree->qdot, y + tree->q_count, v_size);
+    place_aside(equations);
+}
+
+/* On an open tree the coordinates are the angles. */
+static void accept_angles(se3di_equations *equations)
+{
+    const se3di_tree *tree = equations->tree;
+    se3di_model *model = equations->assembly.model;
+    if (!equations->is_open_tree || tree->angle_count < model->angle_count) {
+        se3di_angles_accept(model);
+        return;
+    }
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const se3di_tree_node *n = &tree->nodes[k];
+        if (n->angle >= 0) {
+            model->angles[n->angle].theta = tree->q[n->q + (n->type == SE3DI_TREE_PLANAR ? 2 : 0)];
+        }
+    }
+}
+
 static void get(se3di_equations *equations, double *y)
 {
     se3di_tree *tree = equations->tree;
@@ -84,6 +125,7 @@ static void get(se3di_equations *equations, double *y)
     se3di_tree_get(tree, tree->q, tree->qdot);
     normalise(tree, tree->q);
     se3di_tree_match_turns(tree, tree->q);
+    place_aside(equations);
     keep(equations, y);
     memcpy(y + tree->q_count + tree->v_count, model->work, sizeof model->work);
 }
@@ -435,11 +477,21 @@ static void show(se3di_equations *equations, const double *y, double *bodies)
     memcpy(tree->q, y, tree->q_count * sizeof *y);
     memcpy(tree->qdot, y + tree->q_count, tree->v_count * sizeof *y);
     normalise(tree, tree->q);
-    se3di_tree_place(tree, tree->q, tree->qdot, tree->frames);
+    place_aside(equations);
     for (uint32_t k = 0; k < assembly->body_count; ++k, bodies += SE3DI_STATE_SIZE) {
         se3di_state_pack(&tree->frames[assembly->free_body[k]], bodies);
     }
     memcpy(bodies, y + tree->q_count + tree->v_count, SE3DI_STATE_WORK * sizeof *bodies);
+}
+
+static void report(se3di_equations *equations)
+{
+    const se3di_tree *tree = equations->tree;
+    se3di_model *model = equations->assembly.model;
+    double *joint = equations->joint_moves;
+    se3di_tree_get_accelerations(tree, model->frames, model->acceleration);
+    tree->core->transmit(tree, tree->wrench, joint);
+    se3di_tree_multipliers(tree, joint, se3di_tree_effort(tree), model->lambda);
 }
 
 static double count_dependent(const se3di_equations *equations)
@@ -460,6 +512,10 @@ const se3di_motion se3di_motion_joints = {
     .spread = spread,
     .project = project,
     .keep = keep,
+    .stand = stand,
+    .accept_angles = accept_angles,
     .show = show,
+    .finds_all = is_open,
+    .report = report,
     .count_dependent = count_dependent,
 };

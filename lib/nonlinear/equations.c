@@ -54,12 +54,17 @@ static int has_light_body(const se3di_assembly *assembly)
 void se3di_equations_suit_masses(se3di_equations *equations)
 {
     const se3di_model *model = equations->assembly.model;
-    if (equations->tree && (equations->masses_version != model->masses_version ||
-                            equations->poses_version != model->poses_version)) {
-        se3di_tree_refresh(equations->tree);
-        equations->masses_version = model->masses_version;
-        equations->poses_version = model->poses_version;
+    if (equations->is_suited && equations->masses_version == model->masses_version &&
+        equations->poses_version == model->poses_version) {
+        return;
     }
+    if (equations->tree) {
+        se3di_tree_refresh(equations->tree);
+        equations->is_placed = 0;
+    }
+    equations->masses_version = model->masses_version;
+    equations->poses_version = model->poses_version;
+    equations->is_suited = 1;
     se3di_kkt_settings settings = se3di_kkt_get_settings(equations->kkt);
     settings.regularise = has_light_body(&equations->assembly) ? SE3DI_KKT_REGULARISE_LATE
                                                                : SE3DI_KKT_REGULARISE_AUTO;
@@ -109,12 +114,11 @@ static se3d_status create_tree(se3di_equations *equations)
     tree->keeps_turns = 1;
     se3di_tree_refresh(tree);
     equations->tree = tree;
+    equations->assembly.tree_count = (size_t)tree->q_count + tree->v_count;
     equations->has_loops = has_loops(tree);
     /* nothing but the tree constrains the motion, and nothing that acts depends on multipliers */
     equations->is_open_tree = tree->given_count == 0 && equations->friction.count == 0 &&
                               !equations->has_loops && tree->foreign_armature < 0;
-    equations->masses_version = model->masses_version;
-    equations->poses_version = model->poses_version;
     if (equations->has_loops) {
         SE3DI_TRY(
             se3di_tree_loops_init(&equations->loops, tree, &equations->assembly, equations->error));

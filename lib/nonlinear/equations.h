@@ -59,11 +59,14 @@ typedef struct se3di_equations {
     se3di_tree_loops loops;  /* its loop constraints, if there are any */
     double *joint_before;    /* [positions of the tree] */
     double *joint_moves;     /* [nodes of the tree * 12] */
-    uint64_t masses_version; /* that the tree has, */
+    uint64_t masses_version; /* that tree and solver have, */
     uint64_t poses_version;  /* the same */
     int32_t is_open_tree;    /* nothing else constrains it, no force needs a multiplier */
     int32_t has_loops;       /* some constraint is not on the tree */
     int32_t takes_rows;      /* stages take the loops' rows on the tree, not all equations */
+    int32_t is_suited;       /* masses_version and poses_version were looked at */
+    int32_t is_placed;       /* the links of the tree are at its q and qdot */
+    int32_t reserved_too;
 } se3di_equations;
 
 /* moves_states: whether user-defined states are integrated; else they stay as they are. */

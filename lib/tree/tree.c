@@ -406,6 +406,9 @@ se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, int moves_stat
         return se3di_error_set(error, status, "no memory for the tree of %zu bodies",
                                model->body_slots.count);
     }
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        tree->angle_count += tree->nodes[k].angle >= 0;
+    }
     choose_core(tree);
     se3di_tree_refresh(tree);
     return SE3D_OK;

@@ -131,6 +131,7 @@ typedef struct se3di_tree {
     double *armature;         /* [velocities]: inertia that turns with the coordinate alone */
     int32_t foreign_armature; /* a force element: armature on no coordinate of the tree; -1: none */
     int32_t keeps_turns;      /* q is integrated: see se3di_tree_match_turns */
+    uint32_t angle_count;     /* nodes with a turn counter */
     double *wrench;           /* [nodes * 6]: what acts on each: moment about P, force; ground */
     double *q, *qdot, *qddot; /* scratch of the caller */
     se3di_tree_inertia *branches;
