@@ -12,8 +12,10 @@
 #include "assembly/loads.h"
 #include "assembly/user.h"
 #include "base/log.h"
+#include "base/pending.h"
 #include "contact/bodies/pace.h"
 #include "integrator/convex.h"
+#include "integrator/explicit_step.h"
 #include "integrator/kink_step.h"
 #include "integrator/turns.h"
 #include "math/steps.h"
@@ -457,11 +459,20 @@ static int has_step_control(const se3di_integration *integration)
 static se3d_status begin_dynamics(se3di_run *run, double h)
 {
     se3di_model *model = run->model;
+    const int waits = model->history_inputs != model->inputs_version && has_history(run) &&
+                      se3di_pending_is_of(model->pending, &run->integration);
+    if (!waits) {
+        se3di_pending_complete(model->pending);
+    }
     const int is_there = has_history(run);
     const int goes_on = is_there && model->history_inputs == model->inputs_version;
     run->equations.redundant |= is_there && model->history_redundant > 0; /* whoever made it */
     if (!goes_on || run->integration.method->advance) {
         SE3DI_TRY(keep_state(run));
+    }
+    if (waits) { /* efforts have changed since, nothing else: all is found anew */
+        se3di_explicit_put_off(&run->integration);
+        run->before_waits = 1;
     }
     const int lacks = (model->settled & SE3DI_LACKING) != 0 && has_step_control(&run->integration);
     if (is_there && lacks && (!goes_on || run->steps_once)) { /* what begins here needs them */
@@ -781,7 +792,7 @@ static se3d_status begin(se3di_run *run)
 {
     const se3d_status told = run->error->status;
     run->error->status = SE3D_OK;
-    run->has_before = run->steps_once = 0;
+    run->has_before = run->steps_once = run->before_waits = 0;
     run->events.reached = run->model->time; /* not where an earlier call has come to */
     run->model->remembers = 1;
     se3di_user_begin(run->model);
@@ -860,10 +871,14 @@ static double step_length(const se3di_model *model, double h, double *rest)
 se3d_status se3di_run_step(se3di_run *run, double h)
 {
     if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
+        se3di_pending_complete(run->model->pending);
         return se3di_run_to(run, run->model->time + h);
     }
     double rest;
     se3di_model *model = run->model;
+    if (!se3di_pending_is_of(model->pending, &run->integration)) {
+        se3di_pending_complete(model->pending); /* of another solver */
+    }
     const double length = step_length(model, h, &rest), t_end = model->time + length;
     begin_guard(run, t_end);
     run->refused = 0;
@@ -872,7 +887,10 @@ se3d_status se3di_run_step(se3di_run *run, double h)
     SE3DI_TRY(prepare_integrals(run, t_end));
     const se3d_status told = begin(run);
     run->steps_once = 1;
-    const se3d_status status = conclude(run, run_step(run, length), t_end, told);
+    run->integration.may_wait = model->pending && !run->equations.watch;
+    const se3d_status reached = run_step(run, length);
+    run->integration.may_wait = 0;
+    const se3d_status status = conclude(run, reached, t_end, told);
     if (status >= 0 && status != SE3D_INFO_EVENT) {
         model->rest_time = model->time;
         model->time_rest = rest;

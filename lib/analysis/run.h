@@ -30,13 +30,13 @@ typedef struct se3di_run {
     double horizon;          /* runs go on to here [s] */
     se3di_saved before;      /* the state that the call under way began with, where */
     uint64_t before_version;
-    int32_t has_before;   /* it was kept */
-    int32_t steps_once;   /* the call is one step */
-    int32_t shows_motion; /* runs may end without accelerations and multipliers */
-    int32_t reserved;
-    se3di_start_change start;            /* of the last start that the user gave */
-    int32_t told_redundant;              /* the log was told of these equations, */
-    int32_t told_left_out;               /* and that rows that are left out are off */
+    int32_t has_before;       /* it was kept */
+    int32_t steps_once;       /* the call is one step */
+    int32_t shows_motion;     /* runs may end without accelerations and multipliers */
+    int32_t before_waits;     /* what it shows remains to be computed, see base/pending.h */
+    se3di_start_change start; /* of the last start that the user gave */
+    int32_t told_redundant;   /* the log was told of these equations, */
+    int32_t told_left_out;    /* and that rows that are left out are off */
     const se3di_integrator *told_reach;  /* the log was told what this method reaches, */
     const se3di_integrator *told_bodies; /* that it integrates bodies, not joint coordinates, */
     const se3di_integrator *told_step;   /* which step it takes if none is given, */

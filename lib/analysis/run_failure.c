@@ -3,6 +3,7 @@
 #include "analysis/run_end.h"
 
 #include "assembly/user.h"
+#include "integrator/explicit_step.h"
 #include "nonlinear/jump.h"
 
 #include <math.h>
@@ -44,6 +45,9 @@ static void restore_before(se3di_run *run)
     if (run->before_version == model->topology_version && se3di_saved_fits(&run->before, model) &&
         se3di_saved_reserve(&run->before, model) >= 0) {
         se3di_saved_restore(&run->before, model);
+        if (run->before_waits) {
+            se3di_explicit_come_back(&run->integration);
+        }
         se3di_events_forget(&run->events, model->time);
     }
 }

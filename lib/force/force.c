@@ -59,6 +59,9 @@ static se3d_status sum_element(const se3di_model *model, uint32_t k, double t,
     const se3di_force *force = &model->forces[k];
     const int32_t along = sums->along ? sums->along[k] : -1;
     if (along >= 0 && se3di_force_is_number(force)) {
+        if (sums->has_efforts) {
+            return SE3D_OK;
+        }
         sums->effort[along] += force->value[0];
         sums->power[1] += force->value[0] * sums->rate[along];
         return SE3D_OK;

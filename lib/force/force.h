@@ -68,7 +68,7 @@ typedef struct se3di_force_sums {
     const double *rate;   /* [coordinates] */
     double *effort;       /* [coordinates] takes them; zero before */
     uint32_t failed;      /* on failure: the element (the count of elements: gravity) */
-    uint32_t reserved;
+    int32_t has_efforts;  /* `effort` has them already: their values are others by now */
 } se3di_force_sums;
 
 se3d_status se3di_forces_sum(const se3di_model *model, double t, se3di_force_sums *sums);

@@ -4,6 +4,7 @@
 
 #include "assembly/energy.h"
 #include "assembly/loads.h"
+#include "base/pending.h"
 #include "contact/bodies/pace.h"
 #include "integrator/motion.h"
 #include "math/elementary.h"
@@ -18,6 +19,7 @@
 #define FORCED_MAX  3
 #define LEAST_STEP  3e-14 /* of the time */
 #define ROUNDING    2e-15 /* of a velocity of one kind, relative to those of the other */
+#define LARGEST     1e50  /* coordinate or velocity whose squares are far from infinite */
 #define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
 
 #define VECTORS (3 + SE3DI_EXPLICIT_FORMS)
@@ -115,7 +117,7 @@ static const double *get_rates(const se3di_explicit *m)
 static void grow_scale(se3di_explicit *m)
 {
     se3di_state_scale *scale = &m->past->scale;
-    se3di_state_scale_grow(m->assembly, m->is_reported ? NULL : get_rates(m), scale);
+    se3di_state_scale_grow(m->assembly, get_rates(m), scale);
     scale->energy = fmax(scale->energy, m->past->energy_least);
 }
 
@@ -276,8 +278,13 @@ static void accept(se3di_explicit *m, double t)
     const size_t work = m->count - SE3DI_STATE_WORK;
     m->motion->keep(m->equations, m->y1);
     memcpy(m->y1 + work, m->y + work, SE3DI_STATE_WORK * sizeof *m->y);
-    memcpy(m->f1, m->next, m->count * sizeof *m->f1);
-    grow_scale(m);
+    if (!m->waits) {
+        memcpy(m->f1, m->next, m->count * sizeof *m->f1);
+    }
+    m->past->unscaled = m->leaves_scale;
+    if (!m->leaves_scale) {
+        grow_scale(m);
+    }
     double dependent = m->motion->count_dependent(m->equations);
     m->past->redundant = fmin(m->past->redundant, dependent);
     m->motion->accept_angles(m->equations);
@@ -446,6 +453,15 @@ static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status,
     return status < 0 ? status : cross_jump(get_explicit(step), h, error);
 }
 
+/* The scale, after steps without error control. */
+static se3d_status catch_up(se3di_explicit *m)
+{
+    SE3DI_TRY(evaluate(m, m->past->at.time, m->sum));
+    grow_scale(m);
+    m->past->unscaled = 0.0;
+    return SE3D_OK;
+}
+
 /* One accepted step with error control. What contacts remember belongs to the end of a step, and
  * cannot be interpolated: if shapes are near each other steps end at t_end. So does the first
  * one after a change of what acts, which may soon change again. */
@@ -459,6 +475,7 @@ static se3d_status advance(se3di_explicit *m, double t_end)
     m->step.ends = se3di_adaptive_ends(m->step.integration, &m->past->at);
     se3di_forces_show(model, 0);
     m->motion->set(m->equations, m->y1);
+    SE3DI_TRY(m->past->unscaled > 0.0 ? catch_up(m) : SE3D_OK);
     se3di_state_set_rates(m->assembly, get_rates(m));
     se3di_angles_accept(model); /* turns count from step to step, not from an output */
     return se3di_adaptive_advance(&m->step, t_end);
@@ -582,18 +599,26 @@ se3d_status se3di_explicit_start(se3di_integration *integration, double h)
     return status;
 }
 
-/* Where one evaluation finds all: it is the derivative, and what the model shows. */
+/* What the model shows of accelerations is not looked at before somebody reads it. */
+static int waits_for_readers(const se3di_explicit *m)
+{
+    return m->step.integration->may_wait && m->motion->can_wait(m->equations);
+}
+
+/* By the one evaluation that finds all: it is the derivative, and what the model shows. */
 static se3d_status adopt_evaluated(se3di_explicit *m)
 {
     se3di_model *model = m->assembly->model;
     const size_t work = m->count - SE3DI_STATE_WORK;
     take_state(m, is_at_end(m));
+    m->step.integration->owes = 0;
     SE3DI_TRY(evaluate(m, model->time, m->f1));
-    m->motion->report(m->equations);
-    m->is_reported = 1;
+    if (!waits_for_readers(m)) { /* else a step follows at once, which ends elsewhere */
+        m->motion->report(m->equations);
+    }
     se3di_work_take(model, 0.0, m->f1 + work);
     memcpy(m->y1 + work, model->work, sizeof model->work);
-    grow_scale(m);
+    m->past->unscaled = 1.0;
     return SE3D_OK;
 }
 
@@ -637,8 +662,51 @@ static se3d_status evaluate_end(se3di_explicit *m, double t)
 {
     SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
     m->motion->report(m->equations);
-    m->is_reported = 1;
     return SE3D_OK;
+}
+
+/* So that no evaluation there can fail. */
+static int is_moderate(const double *y, size_t count)
+{
+    int moderate = 1;
+    for (size_t k = 0; k < count; ++k) {
+        moderate &= fabs(y[k]) < LARGEST;
+    }
+    return moderate;
+}
+
+/* What a step has left to be computed; the state is still that of its end. */
+static void complete(void *ctx)
+{
+    se3di_integration *integration = ctx;
+    se3di_explicit m = point(integration);
+    se3di_model *model = m.assembly->model;
+    se3di_error ignored = {0}, *const error = m.equations->error;
+    m.equations->error = &ignored; /* it may be a reader who asks */
+    m.motion->stand(m.equations, m.y1);
+    const se3d_status status = m.motion->evaluate_again(m.equations, m.past->at.time, m.f1);
+    m.equations->error = error;
+    if (status < 0) { /* the next step begins anew, and says why it cannot */
+        model->settled |= SE3DI_LACKING;
+        model->history_tag = 0;
+        return;
+    }
+    m.motion->report(m.equations);
+    memcpy(model->power, m.f1 + m.count - SE3DI_STATE_WORK, sizeof model->power);
+}
+
+void se3di_explicit_put_off(se3di_integration *integration)
+{
+    const se3di_explicit m = point(integration);
+    m.motion->keep_efforts(m.equations);
+    se3di_pending_drop(m.assembly->model->pending);
+}
+
+void se3di_explicit_come_back(se3di_integration *integration)
+{
+    const se3di_explicit m = point(integration);
+    m.motion->come_back(m.equations);
+    complete(integration);
 }
 
 /* One step of h without error control; *reported: the accelerations at its end are the model's. */
@@ -650,7 +718,11 @@ static se3d_status step_once(se3di_explicit *m, double h, int *reported)
     error = 0.0;
     *reported = reports_end(m);
     arrive(m, h);
-    if (*reported) {
+    m->leaves_scale = *reported && m->motion->finds_all(m->equations);
+    m->waits = m->leaves_scale && waits_for_readers(m) && is_moderate(m->y, m->count);
+    if (m->waits) {
+        m->next = se3di_explicit_end(m);
+    } else if (*reported) {
         SE3DI_TRY(m->motion->finds_all(m->equations) ? evaluate_end(m, t) : solve_end(m, t));
     } else {
         SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
@@ -666,17 +738,26 @@ se3d_status se3di_explicit_step(se3di_integration *integration, double h)
     se3di_explicit m = begin(integration);
     int reported = 0;
     se3d_status status = SE3D_OK;
+    se3di_pending_complete(m.assembly->model->pending);
+    m.equations->counters.evaluations += integration->owes != 0;
+    integration->owes = 0;
     if (m.past->at.time != m.assembly->model->time) {
         status = adopt(&m);
+    } else {
+        m.motion->stand(m.equations, m.y1);
     }
     se3di_forces_show(m.assembly->model, 0);
     m.tolerance = HUGE_VAL; /* no error control */
     status = status < 0 ? status : step_once(&m, h, &reported);
     se3di_state_end(m.equations, &m.kkt);
     const double *work = m.y1 + m.count - SE3DI_STATE_WORK;
-    if (status >= 0 && reported && m.motion->finds_all(m.equations)) {
-        se3di_state_conclude_step(m.equations, work, m.f1 + m.count - SE3DI_STATE_WORK,
-                                  m.past->at.time);
+    const double *power = m.f1 + m.count - SE3DI_STATE_WORK;
+    if (status >= 0 && m.leaves_scale) {
+        se3di_state_conclude_step(m.equations, work, m.waits ? NULL : power, m.past->at.time);
+        integration->owes = m.waits;
+        if (m.waits) {
+            se3di_pending_open(m.assembly->model->pending, complete, integration);
+        }
         return SE3D_OK;
     }
     if (status >= 0 && reported) {

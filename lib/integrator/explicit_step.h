@@ -32,8 +32,9 @@ typedef struct se3di_explicit_past {
     double contraction;  /* gauss: of the iterations of the last step */
     double lost;         /* gauss: 1: rows were dependent at its end that are not all along */
     double length;       /* Runge-Kutta: of the last step, as its stages were made */
+    double unscaled;     /* 1: steps without error control have not grown the scale */
 } se3di_explicit_past;
-_Static_assert(sizeof(se3di_explicit_past) == 21 * sizeof(double),
+_Static_assert(sizeof(se3di_explicit_past) == 22 * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct se3di_explicit se3di_explicit;
@@ -83,11 +84,12 @@ struct se3di_explicit {
     double *bodies[2];  /* a change of the state as the bodies see it */
     double *next;       /* derivative that the next step begins with */
     double tolerance;
-    double contraction;     /* gauss: of the iterations of this step; 0: unknown */
-    double remembered;      /* the least error that the choice of the next step counts with */
-    int stages;             /* gauss: of this step */
-    int has_stages;         /* K is that of the last step: it was made in this call */
-    int is_reported;        /* the accelerations of the model are those of y'_1 */
+    double contraction; /* gauss: of the iterations of this step; 0: unknown */
+    double remembered;  /* the least error that the choice of the next step counts with */
+    int stages;         /* gauss: of this step */
+    int has_stages;     /* K is that of the last step: it was made in this call */
+    int leaves_scale;   /* the scale grows when errors are measured again */
+    int waits;          /* y'_1, and what the model shows of it, is computed when it is needed */
     se3di_kkt_settings kkt; /* of the model's linear solver, to come back to */
 };
 
@@ -118,6 +120,10 @@ size_t se3di_explicit_work_count(const se3di_assembly *assembly);
 se3d_status se3di_explicit_start(se3di_integration *integration, double h);
 se3d_status se3di_explicit_renew(se3di_integration *integration);
 int se3di_explicit_renews_all(const se3di_integration *integration);
+/* What the last step has left to be computed (base/pending.h) is not computed unless the state
+ * comes back to its end; it does, and is. */
+void se3di_explicit_put_off(se3di_integration *integration);
+void se3di_explicit_come_back(se3di_integration *integration);
 /* One step of length h without error control. */
 se3d_status se3di_explicit_step(se3di_integration *integration, double h);
 /* To t_end with step control. */

@@ -112,6 +112,8 @@ struct se3di_integration {
     int32_t at_kink;             /* no step can be made before it was passed */
     int32_t shows_motion;        /* what `run` shows may be without accelerations and multipliers */
     int32_t is_moved;            /* for `renew`: the state was settled since the last step */
+    int32_t may_wait; /* nobody reads the accelerations that the step under way ends with at once */
+    int32_t owes;     /* the evaluation that the last step has left is not counted yet */
     int32_t reserved;
 };
 

@@ -87,7 +87,8 @@ static void place_aside(se3di_equations *equations)
     equations->is_placed = 1;
 }
 
-/* Nothing is placed twice: a step ends where the next one begins. */
+/* Nothing is placed twice: a step ends where the next one begins. Else the coordinates may be some
+ * turns from those that a tree which has just been made reads from the frames. */
 static void stand(se3di_equations *equations, const double *y)
 {
     se3di_tree *tree = equations->tree;
@@ -98,7 +99,8 @@ static void stand(se3di_equations *equations, const double *y)
     }
     memcpy(tree->q, y, q_size);
     memcpy(tree->qdot, y + tree->q_count, v_size);
-    place_aside(equations);
+    se3di_tree_match_signs(tree);
+    equations->is_placed = 1;
 }
 
 /* On an open tree the coordinates are the angles. */
@@ -323,19 +325,15 @@ static se3d_status complete_tree(se3di_equations *equations, double t, const dou
     return se3di_state_complete_powers(&equations->assembly, t, find_multipliers(equations), works);
 }
 
-static se3d_status evaluate_tree(se3di_equations *equations, double t, double *derivative)
+/* With what acts in `sums`. */
+static se3d_status evaluate_sums(se3di_equations *equations, double t, se3di_force_sums *sums,
+                                 double *derivative)
 {
     se3di_tree *tree = equations->tree;
     se3di_assembly *assembly = &equations->assembly;
     double *qddot = derivative + tree->q_count;
-    if (!is_open(equations)) {
-        SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
-        se3di_tree_take_given(tree, assembly);
-    }
-    se3di_force_sums sums = se3di_tree_sums(tree, tree->qdot);
-    SE3DI_TRY(se3di_assembly_sum_loads(assembly, t, &sums, equations->error));
+    SE3DI_TRY(se3di_assembly_sum_loads(assembly, t, sums, equations->error));
     se3di_tree_take_wrenches(tree, assembly->model->frames, assembly->wrench);
-    ++equations->counters.evaluations;
     se3d_status status = solve_motion(equations, qddot);
     for (uint32_t k = 0; k < tree->v_count && status >= 0; ++k) {
         status = isfinite(qddot[k]) ? status : SE3D_ERR_NOT_FINITE;
@@ -344,7 +342,19 @@ static se3d_status evaluate_tree(se3di_equations *equations, double t, double *d
         return se3di_error_set(equations->error, status,
                                "t = %g s: the equations are singular or not finite", t);
     }
-    return complete_tree(equations, t, sums.power, derivative);
+    return complete_tree(equations, t, sums->power, derivative);
+}
+
+static se3d_status evaluate_tree(se3di_equations *equations, double t, double *derivative)
+{
+    se3di_tree *tree = equations->tree;
+    if (!is_open(equations)) {
+        SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
+        se3di_tree_take_given(tree, &equations->assembly);
+    }
+    se3di_force_sums sums = se3di_tree_sums(tree, tree->qdot);
+    ++equations->counters.evaluations;
+    return evaluate_sums(equations, t, &sums, derivative);
 }
 
 static se3d_status evaluate(se3di_equations *equations, double t, double *derivative)
@@ -494,6 +504,58 @@ static void report(se3di_equations *equations)
     se3di_tree_multipliers(tree, joint, se3di_tree_effort(tree), model->lambda);
 }
 
+/* A force element without functions and memory. */
+static int is_plain(const se3di_force *force)
+{
+    const int32_t type = force->type;
+    int plain = type == SE3DI_FORCE_EFFORT || type == SE3DI_FORCE_ARMATURE ||
+                type == SE3DI_FORCE_TSDA || type == SE3DI_FORCE_RSDA ||
+                type == SE3DI_FORCE_BUSHING || type == SE3DI_FORCE_LOAD ||
+                type == SE3DI_FORCE_TORQUE;
+    for (int k = 0; plain && k < SE3DI_FORCE_FUNCTIONS; ++k) {
+        plain = force->function[k] < 0;
+    }
+    return plain;
+}
+
+static int can_wait(const se3di_equations *equations)
+{
+    const se3di_model *model = equations->assembly.model;
+    int can = is_open(equations) && !equations->tree->has_others && !equations->assembly.push &&
+              model->shape_slots.count <= 1 && model->wheel_slots.count == 0;
+    for (int k = 0; can && k < 3; ++k) {
+        can = model->gravity_function[k] < 0;
+    }
+    for (size_t k = 0; can && k < model->force_slots.count; ++k) {
+        can = is_plain(&model->forces[k]);
+    }
+    return can;
+}
+
+static se3d_status evaluate_again(se3di_equations *equations, double t, double *derivative)
+{
+    se3di_tree *tree = equations->tree;
+    double *power = derivative + tree->q_count + tree->v_count;
+    se3di_force_sums sums = se3di_tree_sums_again(tree, tree->qdot);
+    SE3DI_TRY(evaluate_sums(equations, t, &sums, derivative));
+    for (uint32_t v = 0; tree->has_efforts && v < tree->v_count; ++v) {
+        power[1] += tree->effort[v] * tree->qdot[v];
+    }
+    return SE3D_OK;
+}
+
+static void keep_efforts(se3di_equations *equations)
+{
+    const se3di_tree *tree = equations->tree;
+    memcpy(tree->effort_before, tree->effort, tree->v_count * sizeof *tree->effort);
+}
+
+static void come_back(se3di_equations *equations)
+{
+    const se3di_tree *tree = equations->tree;
+    memcpy(tree->effort, tree->effort_before, tree->v_count * sizeof *tree->effort);
+}
+
 static double count_dependent(const se3di_equations *equations)
 {
     return is_loaded(equations)   ? se3di_kkt_get_dependent_rows(equations->kkt)
@@ -516,6 +578,10 @@ const se3di_motion se3di_motion_joints = {
     .accept_angles = accept_angles,
     .show = show,
     .finds_all = is_open,
+    .can_wait = can_wait,
     .report = report,
+    .evaluate_again = evaluate_again,
+    .keep_efforts = keep_efforts,
+    .come_back = come_back,
     .count_dependent = count_dependent,
 };

@@ -373,15 +373,15 @@ double se3di_state_length(const se3di_model *model)
 
 /* Kinetic energy, what the acceleration makes of it on the way `length` and a turn of 1 rad, and a
  * little of what the applied forces could. */
-static double body_energy(const se3di_assembly *assembly, uint32_t body, const double *rates,
+static double body_energy(const se3di_assembly *assembly, uint32_t body, const double *derivative,
                           double length)
 {
     const se3di_body *b = &assembly->model->bodies[body];
     const se3di_frame *frame = &assembly->model->frames[body];
     const double *wrench = assembly->wrench + 6 * (size_t)body;
     double J = fmax(b->J[0], fmax(b->J[1], b->J[2]));
-    double v2 = se3di_dot(frame->v, frame->v) + se3di_norm(rates) * length;
-    double w2 = se3di_dot(frame->w, frame->w) + se3di_norm(rates + 3);
+    double v2 = se3di_dot(frame->v, frame->v) + se3di_norm(derivative + 7) * length;
+    double w2 = se3di_dot(frame->w, frame->w) + se3di_norm(derivative + 10);
     double applied = se3di_norm(wrench) * length + se3di_norm(wrench + 3);
     return 0.5 * (b->mass * v2 + J * w2) + 1e-3 * applied;
 }
@@ -425,13 +425,6 @@ static void grow_by_holds(const se3di_model *model, double *a, double *wdot)
     }
 }
 
-/* Accelerations of free body k, at (a, wdot) of its part of `derivative`. */
-static const double *rates_of(const se3di_assembly *assembly, const double *derivative, uint32_t k)
-{
-    return derivative ? derivative + SE3DI_STATE_SIZE * (size_t)k + 7
-                      : assembly->model->acceleration + 6 * (size_t)assembly->free_body[k];
-}
-
 void se3di_state_scale_grow(const se3di_assembly *assembly, const double *derivative,
                             se3di_state_scale *scale)
 {
@@ -440,17 +433,16 @@ void se3di_state_scale_grow(const se3di_assembly *assembly, const double *deriva
     if (se3di_forces_have_memory(assembly->model)) {
         grow_by_holds(assembly->model, &a, &wdot);
     }
-    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+    for (uint32_t k = 0; k < assembly->body_count; ++k, derivative += SE3DI_STATE_SIZE) {
         const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
-        const double *rates = rates_of(assembly, derivative, k);
         if (assembly->model->bodies[assembly->free_body[k]].state != 0) {
             continue;
         }
         v = fmax(v, se3di_dot(frame->v, frame->v));
         w = fmax(w, se3di_dot(frame->w, frame->w));
-        a = fmax(a, se3di_dot(rates, rates));
-        wdot = fmax(wdot, se3di_dot(rates + 3, rates + 3));
-        energy += body_energy(assembly, assembly->free_body[k], rates, scale->length);
+        a = fmax(a, se3di_dot(derivative + 7, derivative + 7));
+        wdot = fmax(wdot, se3di_dot(derivative + 10, derivative + 10));
+        energy += body_energy(assembly, assembly->free_body[k], derivative, scale->length);
     }
     v = fmax(sqrt(v), sqrt(sqrt(a) * scale->length));
     w = fmax(sqrt(w), sqrt(sqrt(wdot)));
@@ -512,13 +504,15 @@ static void conclude(se3di_model *model, const double *work, double t)
     take_works(model, work, t);
 }
 
-void se3di_state_conclude_step(se3di_equations *equations, const double *work,
-                               const double power[3], double t)
+void se3di_state_conclude_step(se3di_equations *equations, const double *work, const double *power,
+                               double t)
 {
     se3di_model *model = equations->assembly.model;
     take_works(model, work, t);
     model->settled = SE3DI_SETTLED;
-    memcpy(model->power, power, sizeof model->power);
+    if (power) {
+        memcpy(model->power, power, sizeof model->power);
+    }
 }
 
 se3d_status se3di_state_conclude(se3di_equations *equations, const double *work, double t)

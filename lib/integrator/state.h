@@ -83,8 +83,7 @@ double se3di_state_limit_turn(const se3di_model *model, double growth, double h)
 
 /* Length of the mechanism's parts. */
 double se3di_state_length(const se3di_model *model);
-/* Grow speed, spin and energy to those of the present state with derivative `derivative`; NULL:
- * with the accelerations of the model. */
+/* Grow speed, spin and energy to those of the present state with derivative `derivative`. */
 void se3di_state_scale_grow(const se3di_assembly *assembly, const double *derivative,
                             se3di_state_scale *scale);
 
@@ -125,9 +124,9 @@ double se3di_state_rough(const se3di_model *model, int shows_motion, double tole
 se3d_status se3di_state_publish(se3di_equations *equations, const se3di_shown *shown);
 /* The last part of it: frames, accelerations and multipliers are those at t already. */
 se3d_status se3di_state_conclude(se3di_equations *equations, const double *work, double t);
-/* The same with the powers there; joint angles have been accepted. */
-void se3di_state_conclude_step(se3di_equations *equations, const double *work,
-                               const double power[3], double t);
+/* The same with the powers there, NULL: they follow; joint angles have been accepted. */
+void se3di_state_conclude_step(se3di_equations *equations, const double *work, const double *power,
+                               double t);
 /* The same where there are frames only. */
 se3d_status se3di_state_conclude_motion(se3di_equations *equations, const double *work, double t);
 

@@ -153,6 +153,7 @@ static void disown(se3di_model *copy)
     se3di_slots_init(&copy->shape_slots, 0);
     se3di_slots_init(&copy->wheel_slots, 0);
     copy->sets = NULL;
+    copy->pending = NULL;
     copy->row_count = copy->term_count = copy->angle_count = copy->history_count = 0;
     copy->contacts.count = copy->contacts.pair_count = 0;
     copy->contacts.version = 0;

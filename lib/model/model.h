@@ -281,9 +281,11 @@ typedef struct se3di_model {
 
     se3di_user_failure user_failure; /* see assembly/user.h */
 
-    struct se3di_particles *sets; /* particle sets in creation order, see particles/sets.h;
+    struct se3di_particles *sets;  /* particle sets in creation order, see particles/sets.h;
                                      not copied by se3di_model_clone */
-    struct se3di_busy *busy;      /* of the system, see base/busy.h; NULL: no system */
+    struct se3di_busy *busy;       /* of the system, see base/busy.h; NULL: no system */
+    struct se3di_pending *pending; /* the same, see base/pending.h: accelerations, multipliers,
+                                      powers and what the history has of them */
 } se3di_model;
 
 /* A constraint under construction: joints and primitives fill it, se3di_model_add_constraint copies

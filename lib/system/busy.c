@@ -23,6 +23,13 @@ static void say_refused(se3d_system *system, const char *function)
 
 se3d_status se3di_enter(se3d_system *system, se3di_busy_level most, const char *function)
 {
+    SE3DI_TRY(se3di_enter_past(system, most, function));
+    se3di_pending_complete(&system->pending);
+    return SE3D_OK;
+}
+
+se3d_status se3di_enter_past(se3d_system *system, se3di_busy_level most, const char *function)
+{
     if (!system) {
         return SE3D_ERR_NULL;
     }

@@ -487,7 +487,7 @@ se3d_status se3d_coordinates_compute_accelerations(se3d_coordinates *coordinates
                                                    const double *effort, double *qddot)
 {
     se3d_coordinates *c = coordinates;
-    SE3DI_EDIT_OF(c);
+    SE3DI_EDIT_PAST_OF(c);
     SE3DI_TRY(se3di_check_pointer(c->system, "qddot", qddot));
     SE3DI_TRY(check_numbers(c->system, "effort", effort, c->velocities));
     se3di_work_begin(c->system);
@@ -512,7 +512,7 @@ se3d_status se3d_coordinates_compute_efforts(se3d_coordinates *coordinates, cons
                                              double *effort)
 {
     se3d_coordinates *c = coordinates;
-    SE3DI_EDIT_OF(c);
+    SE3DI_EDIT_PAST_OF(c);
     SE3DI_TRY(se3di_check_pointer(c->system, "effort", effort));
     SE3DI_TRY(check_numbers(c->system, "qddot", qddot, c->velocities));
     se3di_work_begin(c->system);
@@ -539,7 +539,7 @@ static se3d_status find_gravity(se3d_coordinates *c, double *effort)
 se3d_status se3d_coordinates_compute_gravity(se3d_coordinates *coordinates, double *effort)
 {
     se3d_coordinates *c = coordinates;
-    SE3DI_EDIT_OF(c);
+    SE3DI_EDIT_PAST_OF(c);
     SE3DI_TRY(se3di_check_pointer(c->system, "effort", effort));
     se3di_work_begin(c->system);
     return finish(c, find_gravity(c, effort), "effort", effort);
@@ -549,7 +549,7 @@ se3d_status se3d_coordinates_compute_gravity(se3d_coordinates *coordinates, doub
 
 se3d_status se3d_coordinates_compute_mass_matrix(se3d_coordinates *coordinates, double *M)
 {
-    SE3DI_EDIT_OF(coordinates);
+    SE3DI_EDIT_PAST_OF(coordinates);
     SE3DI_TRY(se3di_check_pointer(coordinates->system, "M", M));
     SE3DI_TRY(place(coordinates));
     se3di_tree_mass_matrix(&coordinates->tree, M);
@@ -559,7 +559,7 @@ se3d_status se3d_coordinates_compute_mass_matrix(se3d_coordinates *coordinates, 
 se3d_status se3d_coordinates_multiply_mass(se3d_coordinates *coordinates, const double *x,
                                            double *out)
 {
-    SE3DI_EDIT_OF(coordinates);
+    SE3DI_EDIT_PAST_OF(coordinates);
     SE3DI_TRY(se3di_check_pointer(coordinates->system, "x", x));
     SE3DI_TRY(se3di_check_pointer(coordinates->system, "out", out));
     SE3DI_TRY(place(coordinates));
@@ -580,7 +580,7 @@ static void prescribe(se3di_tree *tree, int given)
 se3d_status se3d_coordinates_solve_mass(se3d_coordinates *coordinates, const double *x, double *out)
 {
     se3d_coordinates *c = coordinates;
-    SE3DI_EDIT_OF(c);
+    SE3DI_EDIT_PAST_OF(c);
     SE3DI_TRY(se3di_check_pointer(c->system, "x", x));
     SE3DI_TRY(se3di_check_pointer(c->system, "out", out));
     SE3DI_TRY(place(c));
@@ -613,7 +613,7 @@ se3d_status se3d_coordinates_compute_jacobian(se3d_coordinates *coordinates, se3
 {
     uint32_t body;
     double point[3];
-    SE3DI_EDIT_OF(coordinates);
+    SE3DI_EDIT_PAST_OF(coordinates);
     SE3DI_TRY(place_marker(coordinates, marker, &body, point));
     if (J) {
         se3di_tree_jacobian(&coordinates->tree, body, point, J);
@@ -629,7 +629,7 @@ se3d_status se3d_coordinates_compute_transposed(se3d_coordinates *coordinates, s
 {
     uint32_t body;
     double point[3];
-    SE3DI_EDIT_OF(coordinates);
+    SE3DI_EDIT_PAST_OF(coordinates);
     SE3DI_TRY(se3di_check_pointer(coordinates->system, "wrench", wrench));
     SE3DI_TRY(se3di_check_pointer(coordinates->system, "effort", effort));
     SE3DI_TRY(place_marker(coordinates, marker, &body, point));
@@ -666,7 +666,7 @@ se3d_status se3d_coordinates_compute_momentum(se3d_coordinates *coordinates, dou
                                               double *H)
 {
     double centre[3];
-    SE3DI_EDIT_OF(coordinates);
+    SE3DI_EDIT_PAST_OF(coordinates);
     SE3DI_TRY(place(coordinates));
     (void)se3di_tree_centre(&coordinates->tree, centre);
     if (momentum) {
@@ -693,7 +693,7 @@ static se3d_status find_loop_jacobian(se3d_coordinates *c, double *G)
 se3d_status se3d_coordinates_compute_loop_jacobian(se3d_coordinates *coordinates, double *G)
 {
     se3d_coordinates *c = coordinates;
-    SE3DI_EDIT_OF(c);
+    SE3DI_EDIT_PAST_OF(c);
     SE3DI_TRY(se3di_check_pointer(c->system, "G", G));
     se3di_work_begin(c->system);
     return se3di_work_end(c->system, find_loop_jacobian(c, G));
@@ -731,7 +731,7 @@ se3d_status se3d_coordinates_compute_null_space(se3d_coordinates *coordinates, d
     if (freedoms) {
         *freedoms = 0;
     }
-    SE3DI_EDIT_OF(c);
+    SE3DI_EDIT_PAST_OF(c);
     SE3DI_TRY(se3di_check_pointer(c->system, "N", N));
     SE3DI_TRY(se3di_check_pointer(c->system, "freedoms", freedoms));
     const size_t count = (c->loops.row_count + c->tree.given_count) * c->velocities;

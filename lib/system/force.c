@@ -258,6 +258,7 @@ static void measure(const se3d_system *system, const se3di_force *data, se3di_ef
     effect->coordinate = measure.value;
     effect->rate = measure.rate;
     if (data->type == SE3DI_FORCE_ARMATURE) {
+        se3di_pending_complete(system->model.pending);
         effect->value = -data->value[0] * se3di_measure_acceleration(&system->model, data);
     }
 }

@@ -309,7 +309,7 @@ static int take_effort(se3di_model *model, uint32_t index, double value)
 
 se3d_status se3d_effort_set(se3d_system *system, se3d_force force, double value)
 {
-    SE3DI_SET(system);
+    SE3DI_TRY(se3di_enter_past(system, SE3DI_BUSY_EVENT, __func__));
     uint32_t index;
     SE3DI_TRY(find_effort(system, force, &index));
     SE3DI_TRY(se3di_check_finite(system, "value", value));
@@ -353,7 +353,7 @@ se3d_status se3d_effort_count(const se3d_system *system, size_t *count)
 
 se3d_status se3d_effort_set_all(se3d_system *system, size_t count, const double *values)
 {
-    SE3DI_SET(system);
+    SE3DI_TRY(se3di_enter_past(system, SE3DI_BUSY_EVENT, __func__));
     se3di_model *model = &system->model;
     const size_t efforts = count_efforts(model);
     if (count != efforts) {

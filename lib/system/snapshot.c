@@ -135,6 +135,7 @@ se3d_status se3d_snapshot_create(const se3d_system *system, se3d_snapshot **out)
         return SE3D_ERR_STATE;
     }
     const se3di_model *model = &system->model;
+    se3di_pending_complete(model->pending);
     se3d_snapshot *snapshot = se3di_alloc(&model->allocator, 1, sizeof *snapshot);
     if (!snapshot) {
         return SE3D_ERR_NO_MEMORY;

@@ -220,7 +220,7 @@ se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
 
 se3d_status se3d_solver_step(se3d_solver *solver, double h)
 {
-    SE3DI_EDIT_OF(solver);
+    SE3DI_EDIT_PAST_OF(solver);
     const double now = solver->system->model.time;
     if (!(isfinite(h) && h >= STEP_MIN && now + h > now)) {
         return SE3DI_FAIL_OF(solver->system, "h", SE3D_ERR_INVALID_ARGUMENT,

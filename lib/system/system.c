@@ -48,6 +48,8 @@ static void begin_life(se3d_system *system)
 {
     se3di_busy_init(&system->busy);
     system->model.busy = &system->busy;
+    se3di_pending_init(&system->pending);
+    system->model.pending = &system->pending;
     system->log.busy = &system->busy;
     system->error.log = system->found.log = &system->log;
     system->solvers = NULL;
@@ -115,6 +117,7 @@ se3d_status se3d_system_clone(const se3d_system *system, se3d_system **out)
     if (!se3di_is_settled(system)) {
         return SE3D_ERR_STATE;
     }
+    se3di_pending_complete(system->model.pending);
     se3d_system *copy = se3di_alloc(&system->model.allocator, 1, sizeof *copy);
     if (!copy) {
         return SE3D_ERR_NO_MEMORY;
@@ -331,6 +334,7 @@ uint64_t se3d_system_hash(const se3d_system *system)
         return 0;
     }
     const se3di_model *model = &system->model;
+    se3di_pending_complete(model->pending);
     uint64_t hash = se3di_hash_numbers(SE3DI_HASH_START, &model->time, 1);
     for (size_t k = 0; k < model->body_slots.count; ++k) {
         const se3di_frame *frame = &model->frames[k];

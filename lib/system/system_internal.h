@@ -7,6 +7,7 @@
 #include "base/busy.h"
 #include "base/floats.h"
 #include "base/log.h"
+#include "base/pending.h"
 #include "base/sized.h"
 #include "model/model.h"
 #include "se3d/se3d.h"
@@ -16,7 +17,8 @@ struct se3d_system {
     se3di_error error; /* of the last public call that failed */
     se3di_error found; /* of the work under way: it may be mended, and is no call's then */
     se3di_logger log;
-    se3di_busy busy;                      /* the model points to it */
+    se3di_busy busy;                      /* the model points to it, */
+    se3di_pending pending;                /* and to this */
     se3di_floats host;                    /* how the host of the call at work rounds */
     struct se3d_solver *solvers;          /* that live, in a chain */
     struct se3d_coordinates *coordinates; /* that live, in a chain */
@@ -34,6 +36,9 @@ struct se3d_system {
 /* What a public function that changes something begins with: `system` is not NULL, and not at work
  * unless with what allows `most`. A refusal leaves a message that names `function`. */
 se3d_status se3di_enter(se3d_system *system, se3di_busy_level most, const char *function);
+/* The same, but what the last step has left to be computed (base/pending.h) is left still: the call
+ * changes nothing that it depends on. */
+se3d_status se3di_enter_past(se3d_system *system, se3di_busy_level most, const char *function);
 /* It changes the structure, or works for long: not from callbacks. */
 #define SE3DI_EDIT(system) SE3DI_TRY(se3di_enter(system, SE3DI_BUSY_FREE, __func__))
 /* It creates an element, whose handle is null until it exists. */
@@ -58,6 +63,12 @@ se3d_status se3di_enter(se3d_system *system, se3di_busy_level most, const char *
         SE3DI_OWNED(owner);                                                                        \
         SE3DI_SET((owner)->system);                                                                \
     } while (0)
+/* The same with se3di_enter_past. */
+#define SE3DI_EDIT_PAST_OF(owner)                                                                  \
+    do {                                                                                           \
+        SE3DI_OWNED(owner);                                                                        \
+        SE3DI_TRY(se3di_enter_past((owner)->system, SE3DI_BUSY_FREE, __func__));                   \
+    } while (0)
 /* `owner` is not NULL and its system lives. */
 #define SE3DI_OWNED(owner)                                                                         \
     do {                                                                                           \
@@ -78,10 +89,11 @@ se3d_status se3di_read_end(se3di_reading *reading, se3d_status status);
 /* Whether the state is one that may be copied: not that of a trial. */
 int se3di_is_settled(const se3d_system *system);
 
-/* @return OK, or STATE: the last run was asked for the motion alone, without accelerations and
- * multipliers. */
+/* Accelerations and multipliers are there.
+ * @return OK, or STATE: the last run was asked for the motion alone, without them. */
 static inline se3d_status se3di_check_solved(const se3d_system *system)
 {
+    se3di_pending_complete(system->model.pending);
     return system->model.settled & SE3DI_LACKING ? SE3D_ERR_STATE : SE3D_OK;
 }
 

@@ -314,7 +314,7 @@ void se3di_tree_match_turns(se3di_tree *tree, double *q)
 }
 
 /* p and -p are the same pose: the body keeps the one that it has. */
-static void match_signs(se3di_tree *tree)
+void se3di_tree_match_signs(se3di_tree *tree)
 {
     se3di_tree_match_turns(tree, tree->q);
     for (uint32_t k = 0; k < tree->count; ++k) {
@@ -378,7 +378,7 @@ void se3di_tree_refresh(se3di_tree *tree)
         refresh_node(tree, &tree->nodes[k]);
     }
     se3di_tree_get(tree, tree->q, tree->qdot);
-    match_signs(tree);
+    se3di_tree_match_signs(tree);
 }
 
 /* ---- frames -> coordinates ---- */
@@ -576,6 +576,14 @@ se3di_force_sums se3di_tree_sums(se3di_tree *tree, const double *qdot)
     }
     memset(tree->effort, 0, tree->v_count * sizeof *tree->effort);
     return (se3di_force_sums){.along = tree->along, .rate = qdot, .effort = tree->effort};
+}
+
+se3di_force_sums se3di_tree_sums_again(se3di_tree *tree, const double *qdot)
+{
+    return (se3di_force_sums){.along = tree->has_efforts ? tree->along : NULL,
+                              .rate = qdot,
+                              .effort = tree->effort,
+                              .has_efforts = 1};
 }
 
 void se3di_tree_take_wrenches(se3di_tree *tree, const se3di_frame *frames, const double *wrench)

@@ -312,13 +312,14 @@ static void find_efforts(se3di_tree *tree)
         const int32_t component = n ? se3di_tree_component(n, force->coordinate) : -1;
         tree->along[k] = component < 0 ? -1 : (int32_t)n->v + component;
         tree->has_efforts |= component >= 0;
+        tree->has_others |= is_effort && component < 0;
     }
 }
 
 /* ---- memory ---- */
 
 #define TREE_STRUCTURE 4
-#define TREE_VALUES    18
+#define TREE_VALUES    19
 
 static void list_structure(se3di_tree *t, se3di_array list[TREE_STRUCTURE])
 {
@@ -346,6 +347,7 @@ static void list_values(se3di_tree *t, se3di_array list[TREE_VALUES])
         {(void **)&t->e, v, number_size},
         {(void **)&t->given, v, number_size},
         {(void **)&t->effort, v, number_size},
+        {(void **)&t->effort_before, v, number_size},
         {(void **)&t->armature, v, number_size},
         {(void **)&t->wrench, 6 * (size_t)t->count, number_size},
         {(void **)&t->q, t->q_count, number_size},

@@ -117,8 +117,10 @@ typedef struct se3di_tree {
     uint32_t constraint_count;
     uint32_t force_count; /* elements */
     int32_t *along;       /* [elements]: velocity of the coordinate that an effort acts on, or -1 */
-    int32_t has_efforts;  /* some effort acts on a coordinate of the tree */
+    int32_t has_efforts;  /* some effort acts on a coordinate of the tree, */
+    int32_t has_others;   /* and some on none */
     int32_t moves_states; /* carriers of states are nodes */
+    int32_t reserved;
     /* at the state that was placed last: */
     se3di_tree_link *links;
     double *S;                /* [velocities * 6]: angular, of P; ground axes */
@@ -128,6 +130,7 @@ typedef struct se3di_tree {
                               /* balls: V[j] of a turn is U . S_j / D of those before it */
     double *given;            /* [velocities]: prescribed accelerations */
     double *effort;           /* [velocities]: of the elements in `along`, at the last sums */
+    double *effort_before;    /* [velocities]: of the caller, to come back to */
     double *armature;         /* [velocities]: inertia that turns with the coordinate alone */
     int32_t foreign_armature; /* a force element: armature on no coordinate of the tree; -1: none */
     int32_t keeps_turns;      /* q is integrated: see se3di_tree_match_turns */
@@ -173,6 +176,10 @@ void se3di_tree_match_turns(se3di_tree *tree, double *q);
  * follow. `frames` may be the model's. */
 void se3di_tree_place(se3di_tree *tree, const double *q, const double *qdot, se3di_frame *frames);
 
+/* With tree->q and tree->qdot those of the model's frames: place them in tree->frames; from now on
+ * such coordinates give a body the Euler parameters that it has, not their opposite. */
+void se3di_tree_match_signs(se3di_tree *tree);
+
 /* Rates of the positions. */
 void se3di_tree_rates(const se3di_tree *tree, const double *q, const double *qdot, double *rates);
 /* out = q moved by the displacement dq [velocities]; out may be q. */
@@ -181,6 +188,9 @@ void se3di_tree_move(const se3di_tree *tree, const double *q, const double *dq, 
 /* For se3di_forces_sum at the velocities `qdot` of the state that is placed: efforts along
  * coordinates of the tree go to tree->effort, where they stay until the next sums. */
 se3di_force_sums se3di_tree_sums(se3di_tree *tree, const double *qdot);
+/* The same with the efforts of the last sums, whatever elements say now; `power` is without
+ * theirs. */
+se3di_force_sums se3di_tree_sums_again(se3di_tree *tree, const double *qdot);
 /* tree->effort, NULL: no element acts along a coordinate. */
 static inline const double *se3di_tree_effort(const se3di_tree *tree)
 {

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "base/pending.h"
+
+#include "base/floats.h"
+
+#include <stddef.h>
+
+void se3di_pending_init(se3di_pending *pending)
+{
+    atomic_init(&pending->is_open, 0);
+    atomic_flag_clear(&pending->working);
+    pending->complete = NULL;
+    pending->ctx = NULL;
+}
+
+void se3di_pending_open(se3di_pending *pending, void (*complete)(void *ctx), void *ctx)
+{
+    pending->complete = complete;
+    pending->ctx = ctx;
+    atomic_store_explicit(&pending->is_open, 1, memory_order_release);
+}
+
+void se3di_pending_drop(se3di_pending *pending)
+{
+    if (pending) {
+        atomic_store_explicit(&pending->is_open, 0, memory_order_release);
+    }
+}
+
+int se3di_pending_is_of(se3di_pending *pending, const void *ctx)
+{
+    return pending && atomic_load_explicit(&pending->is_open, memory_order_acquire) &&
+           pending->ctx == ctx;
+}
+
+void se3di_pending_complete(se3di_pending *pending)
+{
+    /* a microsecond or two: who comes second waits without sleeping */
+    while (pending && atomic_load_explicit(&pending->is_open, memory_order_acquire)) {
+        if (!atomic_flag_test_and_set_explicit(&pending->working, memory_order_acquire)) {
+            if (atomic_load_explicit(&pending->is_open, memory_order_acquire)) {
+                const se3di_floats host = se3di_floats_set();
+                pending->complete(pending->ctx);
+                se3di_floats_restore(host);
+                atomic_store_explicit(&pending->is_open, 0, memory_order_release);
+            }
+            atomic_flag_clear_explicit(&pending->working, memory_order_release);
+        }
+    }
+}
