@@ -59,6 +59,15 @@ typedef struct se3d_signal {
     se3d_state state;      /* whose value, output or input it is */
 } se3d_signal;
 
+/* Curves through the points of a table. @since 0.1 */
+typedef enum se3d_table_kind {
+    SE3D_TABLE_CUBIC = 0,  /* cubic spline: two continuous derivatives; natural, or periodic */
+    SE3D_TABLE_LINEAR = 1, /* straight lines: the rate jumps at the points, so that it cannot be the
+                              value of a driver, constraint or coupler, but a rate of one */
+    SE3D_TABLE_AKIMA = 2   /* Akima (1970): one continuous derivative, without overshoot of flat
+                              parts; the second one jumps at the points */
+} se3d_table_kind;
+
 /* The definition of a function: exactly one of `expression`, `compiled`, `callback`, a table, or
  * the constant. @since 0.1 */
 typedef struct se3d_function_def {
@@ -70,10 +79,11 @@ typedef struct se3d_function_def {
     size_t symbol_count;                   /* default 0 */
     se3d_function_callback callback;       /* NULL: not a callback */
     void *ctx;                             /* of `callback` */
-    const double *table_x; /* [table_count] of x[0], increasing; natural cubic spline, copied */
-    const double *table_y; /* [table_count] values */
-    size_t table_count;    /* at least 2 */
-    double constant;       /* [any unit], used if nothing else is given */
+    const double
+        *table_x; /* [table_count] of x[0], increasing; a curve through the points, copied */
+    const double *table_y;           /* [table_count] values */
+    size_t table_count;              /* at least 2 */
+    double constant;                 /* [any unit], used if nothing else is given */
     const se3d_expression *compiled; /* copied; as `expression`, of variable_count variables */
     const se3d_signal *signals; /* [signal_count] numbers of the state, copied: the last variables
                                    of the function, which may only be the law of a force element (h,
@@ -85,8 +95,11 @@ typedef struct se3d_function_def {
                           rate and acceleration. Of one variable, without signals; of an
                           expression or callback up to 1e6 s from start_time. */
     int32_t reserved;
-    double start;      /* F(start_time) [m, rad] */
-    double start_time; /* [s], default 0 */
+    double start;           /* F(start_time) [m, rad] */
+    double start_time;      /* [s], default 0 */
+    int32_t table_kind;     /* se3d_table_kind, default CUBIC */
+    int32_t table_periodic; /* 1: it repeats, the last point is the first one a period later; at
+                               least 3 points. Default 0: straight outside */
 } se3d_function_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_function_def_default. @since 0.1 */
@@ -126,7 +139,7 @@ SE3D_API se3d_status se3d_function_set_constant(se3d_system *system, se3d_functi
 SE3D_API se3d_status se3d_function_destroy(se3d_system *system, se3d_function function);
 
 /* Compute a function with its first two derivatives with respect to variable 0. Outside the range
- * of a table the spline goes on as a straight line.
+ * of a table the curve goes on as a straight line, or repeats.
  * @param[in] x     [variable_count] the variables
  * @param[out] jet  [3] value, first and second derivative [any unit]; in no frame
  * @return OK, NULL, STALE_HANDLE, NOT_FINITE, CALLBACK.

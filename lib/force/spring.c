@@ -29,9 +29,36 @@ static se3d_status integrate_panel(const se3di_function *function, double a, dou
     return SE3D_OK;
 }
 
+/* The integral from the first point of a table that repeats to x: whole periods, and a part. */
+static se3d_status integrate_periodic(const se3di_function *function, double x, double *sum)
+{
+    const double *knot = function->table;
+    const size_t last = function->table_count - 1;
+    const double period = knot[last] - knot[0];
+    const double periods = floor((x - knot[0]) / period);
+    const double end = x - periods * period;
+    double whole = 0.0;
+    for (size_t k = 0; k < last; ++k) {
+        SE3DI_TRY(integrate_panel(function, knot[k], knot[k + 1], &whole));
+        if (knot[k] < end) {
+            SE3DI_TRY(integrate_panel(function, knot[k], fmin(end, knot[k + 1]), sum));
+        }
+    }
+    *sum += periods * whole;
+    return SE3D_OK;
+}
+
 /* The integral from 0 to x: exact for tables (cubic between their points). */
 static se3d_status integrate(const se3di_function *function, double x, double *sum)
 {
+    if (function->table && function->table_periodic) {
+        double from_zero = 0.0;
+        *sum = 0.0;
+        SE3DI_TRY(integrate_periodic(function, 0.0, &from_zero));
+        SE3DI_TRY(integrate_periodic(function, x, sum));
+        *sum -= from_zero;
+        return SE3D_OK;
+    }
     double low = fmin(x, 0.0);
     double high = fmax(x, 0.0);
     double total = 0.0;

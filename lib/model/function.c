@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Functions: expressions, callbacks, natural cubic splines, constants; integrals of them.
+/* Functions: expressions, callbacks, tables, constants; integrals of them.
  * docs/theory/functions.md */
 #include "model/function.h"
 
 #include "expression/expression.h"
 #include "model/integral.h"
-#include "model/spline.h"
 
 #include <math.h>
 #include <string.h>
@@ -78,7 +77,8 @@ static se3d_status eval_content(const se3di_function *function, const double *x,
             return SE3D_ERR_CALLBACK;
         }
     } else if (function->table) {
-        se3di_spline_eval(function->table, function->table_count, x[0], jet);
+        const se3di_spline table = se3di_function_table(function);
+        se3di_spline_eval(&table, x[0], jet);
         if (gradient) {
             gradient[0] = jet[1];
         }

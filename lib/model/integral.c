@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* F(t) = start + integral of f from `origin` to t, a pure function of t.
  *
- * A constant and a spline have closed forms. Anything else is integrated by the Gauss-Kronrod rule
+ * A constant and a table have closed forms. Anything else is integrated by the Gauss-Kronrod rule
  * of 15 points over panels whose ends depend on the origin only: of 1/64 s up to 256 s from it,
  * then twice as long in each doubling of the distance. Within a panel a rule is halved until it
  * agrees with the Gauss rule of its 7 points to rounding, so that jumps and kinks of f cost time
@@ -10,7 +10,7 @@
 #include "model/integral.h"
 
 #include "expression/expression.h"
-#include "model/spline.h"
+#include "model/function.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,14 +25,6 @@
 #define PARTS_MAX   4000  /* of a piece: f is noise, or far too fast */
 #define AGREEMENT   1e-14 /* of a piece: what two rules may differ by over the integral of |f| */
 #define NOISE       1e-15 /* relative, of times */
-
-static void add(se3di_sum *s, double x)
-{
-    const double total = s->high + x;
-    const double part = total - s->high;
-    s->low += (s->high - (total - part)) + (x - part);
-    s->high = total;
-}
 
 se3di_function se3di_integral_rate(const se3di_function *function)
 {
@@ -118,7 +110,7 @@ static int add_piece(const se3di_function *function, double a, double b, se3di_s
         size = parts == 0 ? r.size : size;
         if (agrees(&r, size, end) || depth == DEPTH_MAX || parts > PARTS_MAX || middle == a ||
             middle == end) {
-            add(s, r.whole);
+            se3di_sum_add(s, r.whole);
             a = end;
             --depth;
         } else {
@@ -184,39 +176,9 @@ static int eval_panels(const se3di_function *function, double t, double *value)
             return 0;
         }
     }
-    add(&total, integral->start);
+    se3di_sum_add(&total, integral->start);
     *value = total.high + total.low;
     return 1;
-}
-
-/* From point k of a natural spline: y + s u + m u^2/2 + ..., with second derivatives m, m_next that
- * change linearly. */
-static double spline_part(const se3di_function *function, size_t k, double u)
-{
-    const size_t n = function->table_count;
-    const double *x = function->table, *y = x + n, *m = y + n;
-    const double h = x[k + 1] - x[k];
-    const double slope = (y[k + 1] - y[k]) / h - h * (2.0 * m[k] + m[k + 1]) / 6.0;
-    return u * (y[k] + u * (slope / 2.0 + u * (m[k] / 6.0 + u * (m[k + 1] - m[k]) / (24.0 * h))));
-}
-
-/* From the first point of the spline, straight outside. */
-static double spline_integral(const se3di_function *function, double t)
-{
-    const size_t n = function->table_count;
-    const double *x = function->table, *y = x + n, *m = y + n;
-    const double *knots = function->integral->knots;
-    if (t < x[0]) {
-        const double h = x[1] - x[0], u = t - x[0];
-        return u * (y[0] + 0.5 * u * ((y[1] - y[0]) / h - h * m[1] / 6.0));
-    }
-    if (t > x[n - 1]) {
-        const double h = x[n - 1] - x[n - 2], u = t - x[n - 1];
-        return knots[n - 1] +
-               u * (y[n - 1] + 0.5 * u * ((y[n - 1] - y[n - 2]) / h + h * m[n - 2] / 6.0));
-    }
-    const size_t k = se3di_spline_find(x, n, t);
-    return knots[k] + spline_part(function, k, t - x[k]);
 }
 
 int se3di_integral_eval(const se3di_function *function, double t, double *value)
@@ -228,9 +190,14 @@ int se3di_integral_eval(const se3di_function *function, double t, double *value)
     if (function->expression || function->callback) {
         return eval_panels(function, t, value);
     }
-    *value = integral->start + (function->table ? spline_integral(function, t) -
-                                                      spline_integral(function, integral->origin)
-                                                : function->constant * (t - integral->origin));
+    if (function->table) {
+        const se3di_spline table = se3di_function_table(function);
+        *value =
+            integral->start + (se3di_spline_integral(&table, integral->knots, t) -
+                               se3di_spline_integral(&table, integral->knots, integral->origin));
+    } else {
+        *value = integral->start + function->constant * (t - integral->origin);
+    }
     return 1;
 }
 
@@ -247,17 +214,13 @@ static se3d_status make_knots(const se3d_allocator *allocator, const se3di_funct
 {
     se3di_integral *integral = function->integral;
     const size_t n = function->table_count;
-    se3di_sum total = {0.0, 0.0};
     integral->knots = se3di_alloc(allocator, n, sizeof(double));
     if (!integral->knots) {
         return SE3D_ERR_NO_MEMORY;
     }
     integral->knot_count = n;
-    integral->knots[0] = 0.0;
-    for (size_t k = 1; k < n; ++k) {
-        add(&total, spline_part(function, k - 1, function->table[k] - function->table[k - 1]));
-        integral->knots[k] = total.high + total.low;
-    }
+    const se3di_spline table = se3di_function_table(function);
+    se3di_spline_integrate(&table, integral->knots);
     return SE3D_OK;
 }
 

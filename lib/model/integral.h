@@ -4,11 +4,8 @@
 #ifndef SE3DI_MODEL_INTEGRAL_H
 #define SE3DI_MODEL_INTEGRAL_H
 
+#include "math/sum.h"
 #include "model/model.h"
-
-typedef struct se3di_sum {
-    double high, low;
-} se3di_sum;
 
 /* The sums over whole panels on one side of the origin. */
 typedef struct se3di_panel_sums {

@@ -60,8 +60,9 @@ typedef struct se3di_function {
     se3d_expression *expression; /* NULL: another kind */
     se3d_function_callback callback;
     void *ctx;
-    double *table; /* x [n], y [n], second derivative [n] */
+    double *table; /* x [n], y [n], m [n], see model/spline.h */
     size_t table_count;
+    int32_t table_kind, table_periodic;
     double constant;
     uint32_t variable_count;
     uint32_t users;

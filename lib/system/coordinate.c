@@ -40,7 +40,13 @@ se3d_status se3di_check_distinct(se3d_system *system, const uint32_t bodies[2])
 
 se3d_status se3di_check_prescribed(se3d_system *system, double value, int32_t function)
 {
-    return function >= 0 ? SE3D_OK : se3di_check_finite(system, "value", value);
+    const se3di_function *f = function >= 0 ? &system->model.functions[function] : NULL;
+    if (f && f->table && f->table_kind == SE3D_TABLE_LINEAR && !f->integral) {
+        return SE3DI_FAIL_OF(system, "function", SE3D_ERR_INVALID_ARGUMENT,
+                             " is a linear table, whose rate jumps at its points: give a cubic or "
+                             "Akima table, or a linear one of its rate");
+    }
+    return f ? SE3D_OK : se3di_check_finite(system, "value", value);
 }
 
 se3d_status se3di_constraint_add(se3d_system *system, const se3di_draft *draft,

@@ -4,11 +4,12 @@
 #include "expression/expression.h"
 #include "force/force.h"
 #include "model/integral.h"
-#include "model/spline.h"
 #include "system/system_internal.h"
 
 #include <math.h>
 #include <string.h>
+
+#define PERIOD_AGREEMENT 1e-9 /* of the largest value: the ends of a table that repeats */
 
 void se3d_function_def_init(se3d_function_def *def, size_t size)
 {
@@ -93,6 +94,41 @@ static se3d_status copy_expression(se3d_system *system, const se3d_function_def 
     return status < 0 ? SE3DI_FAIL(system, status, "no memory for an expression") : status;
 }
 
+/* The ends of a period agree to rounding of the data. */
+static se3d_status check_period(se3d_system *system, const se3d_function_def *def)
+{
+    const double first = def->table_y[0], last = def->table_y[def->table_count - 1];
+    double size = 0.0;
+    if (def->table_count < 3) {
+        return SE3DI_FAIL_OF(system, "table_count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be at least 3 for a table that repeats",
+                             def->table_count);
+    }
+    for (size_t k = 0; k < def->table_count; ++k) {
+        size = fmax(size, fabs(def->table_y[k]));
+    }
+    if (!(fabs(last - first) <= PERIOD_AGREEMENT * size)) {
+        return SE3DI_FAIL_OF(system, "table_y", SE3D_ERR_INVALID_ARGUMENT,
+                             " ends with %.9g, must end with %.9g, as it begins: the table repeats",
+                             last, first);
+    }
+    return SE3D_OK;
+}
+
+static se3d_status check_table_kind(se3d_system *system, const se3d_function_def *def)
+{
+    if (def->table_kind < SE3D_TABLE_CUBIC || def->table_kind > SE3D_TABLE_AKIMA) {
+        return SE3DI_FAIL_OF(system, "table_kind", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be an se3d_table_kind, 0 to %d", (int)def->table_kind,
+                             (int)SE3D_TABLE_AKIMA);
+    }
+    if (def->table_periodic != 0 && def->table_periodic != 1) {
+        return SE3DI_FAIL_OF(system, "table_periodic", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be 0 or 1", (int)def->table_periodic);
+    }
+    return def->table_periodic ? check_period(system, def) : SE3D_OK;
+}
+
 static se3d_status check_table(se3d_system *system, const se3d_function_def *def)
 {
     SE3DI_TRY(se3di_check_pointer(system, "table_y", def->table_y));
@@ -112,7 +148,7 @@ static se3d_status check_table(se3d_system *system, const se3d_function_def *def
                                  def->table_x[k - 1]);
         }
     }
-    return SE3D_OK;
+    return check_table_kind(system, def);
 }
 
 static se3d_status make_table(se3d_system *system, const se3d_function_def *def,
@@ -121,19 +157,24 @@ static se3d_status make_table(se3d_system *system, const se3d_function_def *def,
     size_t n = def->table_count;
     const se3d_allocator *allocator = &system->model.allocator;
     SE3DI_TRY(check_table(system, def));
+    const size_t scratch_size = se3di_spline_scratch_size(n);
     double *table = se3di_alloc(allocator, 3 * n, sizeof *table);
-    double *scratch = se3di_alloc(allocator, n, sizeof *scratch);
+    double *scratch = se3di_alloc(allocator, scratch_size, sizeof *scratch);
     if (!table || !scratch) {
         se3di_free(allocator, table, 3 * n, sizeof *table);
-        se3di_free(allocator, scratch, n, sizeof *scratch);
+        se3di_free(allocator, scratch, scratch_size, sizeof *scratch);
         return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a table of %zu points", n);
     }
     memcpy(table, def->table_x, n * sizeof *table);
     memcpy(table + n, def->table_y, n * sizeof *table);
-    se3di_spline_build(table, table + n, n, table + 2 * n, scratch);
-    se3di_free(allocator, scratch, n, sizeof *scratch);
+    table[2 * n - 1] = def->table_periodic ? table[n] : table[2 * n - 1];
     function->table = table;
     function->table_count = n;
+    function->table_kind = def->table_kind;
+    function->table_periodic = def->table_periodic;
+    const se3di_spline view = se3di_function_table(function);
+    se3di_spline_build(&view, table + 2 * n, scratch);
+    se3di_free(allocator, scratch, scratch_size, sizeof *scratch);
     return SE3D_OK;
 }
 
