@@ -60,7 +60,7 @@ static const char *const schema_head =
     "      \"anyOf\": [{\"$ref\": \"#/$defs/vector\"}, {\"type\": \"string\"}]\n"
     "    },\n"
     "    \"function\": {\n"
-    "      \"description\": \"A number, an expression in t, or a spline through points.\",\n"
+    "      \"description\": \"A number, an expression in t, or a table.\",\n"
     "      \"anyOf\": [{\"$ref\": \"#/$defs/number\"}, {\"$ref\": \"#/$defs/spline\"}]\n"
     "    },\n"
     "    \"coefficient\": {\n"
@@ -124,8 +124,11 @@ static const char *const kinds[SE3DI_KIND_END] = {
     [SE3DI_KIND_RADIUS] = "\"anyOf\": [{" REFERENCE("radius") "}, {" REFERENCE(
         "number") "}, {" REFERENCE("pair_of_numbers") "}]",
     [SE3DI_KIND_BOUNDARY] = NULL,
-    [SE3DI_KIND_POINTS] = ITEMS("pair_of_numbers", "\"minItems\": 2"),
+    [SE3DI_KIND_CURVE] =
+        "\"anyOf\": [{\"type\": \"string\"}, {" ITEMS("pair_of_numbers", "\"minItems\": 2") "}]",
+    [SE3DI_KIND_TEXTS] = "\"type\": \"array\", \"items\": {\"type\": \"string\"}, " EXACTLY(2),
     [SE3DI_KIND_PAIRS] = ITEMS("pair_of_numbers", "\"minItems\": 1"),
+    [SE3DI_KIND_VECTORS] = ITEMS("vector", "\"minItems\": 3"),
     [SE3DI_KIND_NUMBERS] = ITEMS("number", "\"minItems\": 1"),
     [SE3DI_KIND_CHANNELS] =
         LIST("{\"anyOf\": [{\"type\": \"string\"}, {\"type\": \"object\", \"minProperties\": 1, "

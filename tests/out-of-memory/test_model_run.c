@@ -7,7 +7,8 @@
 #include "se3d/io.h"
 #include "support/counting.h"
 
-#define MESH "/tmp/se3d_test_model_run.obj"
+#define MESH  "/tmp/se3d_test_model_run.obj"
+#define TABLE "/tmp/se3d_test_model_run.csv"
 #define HEAD                                                                                       \
     "se3d: 1\n"                                                                                    \
     "gravity: [0, \"0*t\", -9.81]\n"                                                               \
@@ -20,7 +21,7 @@
     "  - {name: slide, type: cylindrical, body_i: a, body_j: b, at: [1, 0, 0], axis: [1, 0, 0]}\n" \
     "forces:\n"                                                                                    \
     "  - {type: rsda, joint: pin, k: 100, c: 1}\n"                                                 \
-    "  - {type: rsda, joint: slide, k: {spline: [[-1, -9], [1, 9]]}, damper: 0.1*v}\n"             \
+    "  - {type: rsda, joint: slide, k: {spline: " TABLE "}, damper: 0.1*v}\n"                      \
     "  - {type: tsda, body_i: a, body_j: b, k: 50, c: 1, l0: 1, spring: 5*x^3, h: \"0*t\"}\n"      \
     "  - {type: bushing, body_i: ground, body_j: b, at: [1.5, 0, 0], K: [1, 1, 1, 1, 1, 1]}\n"     \
     "  - {type: effort, joint: pin, value: 1}\n"                                                   \
@@ -143,6 +144,9 @@ static attempt try_once(const char *text, size_t k, int for_ever)
 
 static void reading_and_running_survives_every_failed_allocation(void)
 {
+    FILE *table = fopen(TABLE, "wb");
+    CHECK(table && fputs("x,force\n-1,-9\n1,9\n", table) >= 0);
+    CHECK(!table || fclose(table) == 0);
     FILE *mesh = fopen(MESH, "wb");
     CHECK(mesh && fputs("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n",
                         mesh) >= 0);
@@ -165,6 +169,7 @@ static void reading_and_running_survives_every_failed_allocation(void)
         }
     }
     remove(MESH);
+    remove(TABLE);
 }
 
 static const char swing[] =

@@ -361,6 +361,7 @@ static const bad_input table[] = {
      {"which this joint does not have"}},
     {WITH("drivers: [{joint: pin, value: \"sin(tt)\"}]"), 4, 36, {"drivers[0].value", "tt"}},
     {WITH("drivers: [{joint: pin, value: {spline: [[0, 0], [0, 1]]}}]"), 4, 0, {"must increase"}},
+#include "bad_tables.inc"
     {WITH("drivers: [{name: pin, joint: pin, value: t}]"), 4, 18, {"name of two elements"}},
     /* constraints */
     {WITH("constraints: [{type: dp3, body_i: bar}]"), 4, 22, {"`dp3` is not supported", "dp1"}},

@@ -215,12 +215,12 @@ static void tables_are_refused_with_line_and_column(void)
         {"x,y,z,r\n", "line 1, column 4: `r` is not a column"},
         {"x,y,z,x,radius\n", "line 1, column 4: `x` appears twice"},
         {"x,y,z,radius\n0,0,0,0.1\n0,0,zero,0.1\n", "line 3, column 3: `zero` is not a number"},
-        {"x,y,z,radius\n0,0,1e999,0.1\n", "line 2, column 3: `1e999` is not a finite"},
+        {"x,y,z,radius\n0,0,1e999,0.1\n", "line 2, column 3: `1e999` is not a number"},
         {"x,y,z,radius\n\n0,0,0,-0.1\n", "line 3, column 4: `-0.1` is a radius, must be > 0"},
         {"x,y,z,radius\n0,0,0\n", "line 2, column 4: `radius` is missing: the row is too short"},
         {"x,y,z,radius\n0,0,0,1,5\n", "line 2, column 5: `5` is beyond the last"},
         {"x,y,z,radius,material\n0,0,0,1,wood\n", "line 2, column 5: `wood` is not a material"},
-        {"x,y,z,radius\n0,0,0,\n", "line 2, column 4: `` is not a finite number"}};
+        {"x,y,z,radius\n0,0,0,\n", "line 2, column 4: `` is not a number"}};
     char text[2000];
     for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
         se3d_model *model = NULL;

@@ -1,23 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Values that may be functions: expressions and splines. */
+/* Values that may be functions: expressions and tables. */
 #include "io/document/function.h"
 
-#include "io/base/pool.h"
 #include "io/document/amount.h"
+#include "io/document/curve.h"
 #include "io/document/document.h"
 #include "io/document/reader.h"
 #include "io/document/value.h"
-
-/* clang-format off */
-static const se3di_key spline_keys[] = {
-    {"spline", SE3DI_KIND_POINTS, .required = true, .text = "points [x, y], x increasing"},
-    {.key = NULL}};
-const se3di_object se3di_object_spline = {
-    "spline",
-    "A natural cubic spline through points, straight outside.",
-    spline_keys, NULL,
-    NULL};
-/* clang-format on */
 
 static bool create(se3di_reader *reader, const se3di_node *node, const se3d_function_def *def,
                    se3d_function *function)
@@ -26,40 +15,11 @@ static bool create(se3di_reader *reader, const se3di_node *node, const se3d_func
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
 
-/* {spline: [[x, y], ...]}: C2 through the points. */
-static bool read_spline(se3di_reader *reader, const se3di_node *node, const char *variable,
-                        se3d_function_def *def, se3d_function *function)
+/* Errors of the table as a whole are told at what says it. */
+static bool read_table(se3di_reader *reader, const se3di_node *node, const char *variable,
+                       se3d_function_def *def, se3d_function *function)
 {
-    if (!se3di_read_keys(reader, node, &se3di_object_spline)) {
-        return false;
-    }
-    const se3di_node *list = se3di_node_get(node, "spline");
-    if (!list || list->kind != SE3DI_NODE_LIST || list->count < 2) {
-        return se3di_reader_fail(reader, list ? list : node,
-                                 "must be a list of at least two points [x, y]");
-    }
-    double *x = se3di_iopool_array(reader->pool, list->count, sizeof *x);
-    double *y = se3di_iopool_array(reader->pool, list->count, sizeof *y);
-    if (!x || !y) {
-        return se3di_reader_fail_memory(reader);
-    }
-    size_t k = 0;
-    for (const se3di_node *point = list->first; point; point = point->next, ++k) {
-        double pair[2];
-        if (!se3di_read_pair_of(reader, point, variable, node, pair)) {
-            return false;
-        }
-        if (k > 0 && !(pair[0] > x[k - 1])) {
-            return se3di_reader_fail(reader, point, "begins with %g after %g, must increase",
-                                     pair[0], x[k - 1]);
-        }
-        x[k] = pair[0];
-        y[k] = pair[1];
-    }
-    def->table_x = x;
-    def->table_y = y;
-    def->table_count = list->count;
-    return create(reader, node, def, function);
+    return se3di_read_curve(reader, node, variable, def) && create(reader, node, def, function);
 }
 
 /* A number or a function with vectors or units, in the unit of its key. */
@@ -105,7 +65,7 @@ static bool read_any(se3di_reader *reader, const se3di_node *node, const char *c
     se3d_expression *expression = NULL;
     se3di_node plain;
     if (node->kind == SE3DI_NODE_MAP) {
-        return read_spline(reader, node, variables[0], def, function);
+        return read_table(reader, node, variables[0], def, function);
     }
     if (node->kind != SE3DI_NODE_SCALAR || se3di_node_is_null(node)) {
         return se3di_reader_fail(reader, node,

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Values that may be functions: expressions and splines. */
+/* Values that may be functions: expressions and tables. */
 #ifndef SE3D_IO_FUNCTION_H
 #define SE3D_IO_FUNCTION_H
 
 #include "io/document/reader.h"
-
-extern const se3di_object se3di_object_spline;
 
 /* A number, or a function of `variables` (NULL at the end, the first is the time): then *function
  * is not null. */

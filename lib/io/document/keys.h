@@ -44,8 +44,10 @@ typedef enum se3di_kind {
     SE3DI_KIND_INERTIA,
     SE3DI_KIND_RADIUS,
     SE3DI_KIND_BOUNDARY, /* 3 of `words` */
-    SE3DI_KIND_POINTS,   /* a list of two pairs of numbers or more */
+    SE3DI_KIND_CURVE,    /* a list of two pairs of numbers or more, or the name of a file */
+    SE3DI_KIND_TEXTS,    /* a list of two texts */
     SE3DI_KIND_PAIRS,    /* a list of one pair of numbers or more */
+    SE3DI_KIND_VECTORS,  /* a list of three vectors or more */
     SE3DI_KIND_NUMBERS,  /* a list of one number or more */
     SE3DI_KIND_CHANNELS,
     SE3DI_KIND_SNAPSHOTS, /* true, or the name of a set */

@@ -4,11 +4,10 @@
  * the column. */
 #include "io/read/particle_table.h"
 
-#include <locale.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "io/base/number.h"
 #include "io/base/pool.h"
 #include "io/document/attachment.h"
 #include "io/document/document.h"
@@ -25,7 +24,6 @@ enum {
     FIELD_ID = 12,
     FIELD_COUNT = 13,
     COLUMNS_MAX = 32,
-    CELL_SIZE = 200,
     QUOTE_MAX = 24 /* of a file that may not have been meant to be shown */
 };
 
@@ -98,34 +96,9 @@ static bool read_header(table *t)
     return true;
 }
 
-/* A decimal number, with a point in every locale. */
 static bool read_number(const table *t, const char *cell, double *value)
 {
-    char text[CELL_SIZE + 20];
-    const char *point = localeconv()->decimal_point;
-    size_t length = 0;
-    if (strlen(cell) >= CELL_SIZE - strlen(point) ||
-        strspn(cell, "+-.0123456789eE") != strlen(cell)) {
-        return fail(t, cell, "is not a number");
-    }
-    for (const char *c = cell; *c; ++c) {
-        if (*c == '.') {
-            memcpy(text + length, point, strlen(point));
-            length += strlen(point);
-        } else {
-            text[length++] = *c;
-        }
-        if (length > CELL_SIZE) {
-            return fail(t, cell, "is not a number");
-        }
-    }
-    text[length] = '\0';
-    char *end = text;
-    *value = strtod(text, &end);
-    if (length == 0 || *end != '\0' || !isfinite(*value)) {
-        return fail(t, cell, "is not a finite number");
-    }
-    return true;
+    return se3di_number_parse(cell, value) || fail(t, cell, "is not a number");
 }
 
 static bool read_material(table *t, const char *cell)
