@@ -299,8 +299,8 @@ static void axle_of_one_corner_is_symmetric(void)
             CHECK_NEAR(channel_of(&e, "right_upright.position", k), left[k], 0.0);
         }
         CHECK_NEAR(left[2], 0.25, 1e-12);
-        CHECK_NEAR(channel_of(&e, "left_upper_pin.angle", 0),
-                   channel_of(&e, "right_upper_pin.angle", 0), 1e-14);
+        CHECK_NEAR(channel_of(&e, "left_upper_arm_from.angle", 0),
+                   channel_of(&e, "right_upper_arm_from.angle", 0), 1e-14);
         CHECK_NEAR(channel_of(&e, "left_spring.force", 0), channel_of(&e, "right_spring.force", 0),
                    1e-9);
         close_example(&e);

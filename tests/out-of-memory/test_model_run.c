@@ -66,6 +66,14 @@ static const char *const texts[] = {
     "[0.5, 0.5, 0.5]}]\nbodies: [{name: ground, shapes: [{type: plane, material: m}]}]\n"
     "analysis: {type: dynamics, duration: 0.01}\noutput: [{file: s.csv, every: 0.01, channels: "
     "[contacts.count]}, {file: g.csv, every: 0.01, particles: true}]\n",
+    /* Bars and plates with their joints, mirrored; a table that repeats. */
+    "se3d: 1\nmaterials: [{name: steel, density: 7850}]\nparts:\n  side:\n    bodies:\n"
+    "      - {name: bar, from: [0, 0, 0], to: [1, 0, 0], radius: 0.1, material: steel, body_from: "
+    "ground, body_to: web}\n      - {name: web, plate: [[1, 0, 0], [2, 0, 0], [1, 1, 0]], "
+    "thickness: 0.1, density: 1}\n"
+    "instances: [{part: side, prefix: l_}, {part: side, prefix: r_, mirror: y}]\n"
+    "gravity: [0, 0, {akima: [[0, 1], [1, 2], [2, 1]], periodic: true}]\n"
+    "analysis: {type: dynamics, duration: 0.01, step: 0.005}\n",
     /* Points, units and parts. */
     "se3d: 1\n"
     "units: {length: mm}\n"

@@ -41,6 +41,7 @@ static const bad_input table[] = {
     {"se3d: 1\ntitle: \xff\xfe\n", 2, 0, {"not a text in UTF-8"}},
     {"- 1\n", 1, 1, {"is a list", "must be a map"}},
     {"just text\n", 1, 1, {"must be a map"}},
+#include "bad_bars.inc"
 /* points, vectors and units */
 #define POINTS(x) "se3d: 1\npoints: {a: [1, 2, 3], " x "}\n"
     {POINTS("b: c"), 2, 27, {"points.b: `c`", "unknown name 'c'"}},

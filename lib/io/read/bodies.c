@@ -14,9 +14,12 @@
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
+#include "io/read/bars.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
 #include "io/read/shapes.h"
+
+static const char *const spins[] = {"removed", "kept", NULL};
 
 /* clang-format off */
 static const se3di_key body_keys[] = {
@@ -31,7 +34,7 @@ static const se3di_key body_keys[] = {
      .text = "about the centre of mass, body frame [kg m^2]: [xx, yy, zz], [xx, yy, zz, xy, "
          "yz, xz] or three rows; xy is the entry of the matrix"},
     {"density", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
-     .text = "of its shapes [kg/m^3], if there is no mass"},
+     .text = "of its shapes, or of a bar or plate [kg/m^3], if there is no mass"},
     {"position", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_body_def, position),
      .standard = "[0, 0, 0]", .text = "centre of mass, ground frame [m]"},
     {"orientation", SE3DI_KIND_ORIENTATION, SE3DI_INTO(se3d_body_def, orientation),
@@ -43,6 +46,30 @@ static const se3di_key body_keys[] = {
     {"shapes", SE3DI_KIND_LIST, .object = "shape",
      .text = "for drawing and contact, and for mass if none is given"},
     {"markers", SE3DI_KIND_LIST, .object = "marker", .text = "points with names"},
+    {"from", SE3DI_KIND_VECTOR,
+     .text = "where a bar begins, ground frame [m], see [bars](#bars-and-plates)"},
+    {"to", SE3DI_KIND_VECTOR, SE3DI_INTO(se3di_bar, to), .text = "where a bar ends [m]"},
+    {"from_2", SE3DI_KIND_VECTOR,
+     .text = "where a second bar with the same end begins: both are an arm [m]"},
+    {"plate", SE3DI_KIND_VECTORS,
+     .text = "in place of a bar: 3 to 64 corners of a flat convex plate, in the order around it, "
+         "ground frame [m]"},
+    {"radius", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_bar, radius),
+     .text = "of a round bar, outside [m]"},
+    {"width", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_bar, width),
+     .text = "of a flat bar, along `across` [m]"},
+    {"thickness", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_bar, thickness),
+     .text = "of a flat bar, perpendicular to its width; of a plate, half on each side [m]"},
+    {"wall", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_bar, wall), .standard = "solid",
+     .text = "of a tube, round or flat [m]"},
+    {"across", SE3DI_KIND_DIRECTION, SE3DI_INTO(se3di_bar, across), .standard = "horizontal",
+     .text = "of a flat bar: where its width points, ground frame"},
+    {"material", SE3DI_KIND_MATERIAL,
+     .text = "of a bar or plate: gives its density, and if there is contact it touches"},
+    {"body_from", SE3DI_KIND_BODY, .text = "body at the beginning of a bar: they get a joint"},
+    {"body_to", SE3DI_KIND_BODY, .text = "body at the end of a bar: they get a ball joint"},
+    {"spin", SE3DI_KIND_WORD, .words = spins, .standard = "removed",
+     .text = "of a bar with `body_from`: whether it may turn about itself"},
     {.key = NULL}};
 const se3di_object se3di_object_body = {
     "body",
@@ -291,12 +318,57 @@ static bool read_inertia(se3di_reader *reader, const se3di_node *node, double in
     return true;
 }
 
-static bool read_mass(se3di_reader *reader, const se3di_node *node, se3d_body_def *def)
+/* Without a mass: one that does not count, where nothing that is asked for depends on masses. */
+static bool do_without_mass(se3di_reader *reader, const se3di_node *node, const char *has,
+                            se3d_body_def *def)
+{
+    const bool optional =
+        reader->options->mass_optional || reader->is_geometric || node->incomplete;
+    const bool any = se3di_node_get(node, "inertia") != NULL;
+    if (!optional) {
+        return se3di_reader_fail_key(reader, node, "mass",
+                                     "is missing, must be finite and > 0 [kg] unless the body is "
+                                     "fixed or %s a density",
+                                     has);
+    }
+    def->mass = se3di_node_get(node, "mass") ? def->mass : 1.0;
+    for (int k = 0; !any && k < 3; ++k) {
+        def->inertia[k] = 1.0;
+    }
+    return true;
+}
+
+static bool read_bar_mass(se3di_reader *reader, const se3di_node *node, const se3di_bar *bar,
+                          se3d_body_def *def)
+{
+    const se3di_node *material = se3di_node_get(node, "material");
+    double density = 0.0;
+    double inertia[6];
+    const double volume = se3di_bar_weigh(bar, def->position, inertia);
+    if ((material && !se3di_read_material_density(reader, material, &density)) ||
+        !se3di_read_key(reader, node, &se3di_object_body, NULL, "density", &density)) {
+        return false;
+    }
+    if (!se3di_node_get(node, "mass")) {
+        def->mass = density * volume;
+    }
+    for (int k = 0; k < 6; ++k) {
+        def->inertia[k] = def->mass * inertia[k];
+    }
+    return def->fixed || def->mass > 0.0 ||
+           do_without_mass(reader, node, "it or its material has", def);
+}
+
+static bool read_mass(se3di_reader *reader, const se3di_node *node, const se3di_bar *bar,
+                      se3d_body_def *def)
 {
     const se3di_node *mass = se3di_node_get(node, "mass");
     const se3di_node *inertia = se3di_node_get(node, "inertia");
     if (!se3di_read_key(reader, node, &se3di_object_body, NULL, "mass", &def->mass)) {
         return false;
+    }
+    if (se3di_is_bar(node)) {
+        return read_bar_mass(reader, node, bar, def);
     }
     if (inertia && !read_inertia(reader, inertia, def->inertia)) {
         return false;
@@ -304,9 +376,7 @@ static bool read_mass(se3di_reader *reader, const se3di_node *node, se3d_body_de
     if (def->fixed || (mass && inertia)) {
         return true;
     }
-    const bool optional =
-        reader->options->mass_optional || reader->is_geometric || node->incomplete;
-    if (mass && !optional) {
+    if (mass && !reader->options->mass_optional && !reader->is_geometric && !node->incomplete) {
         return se3di_reader_fail_key(reader, node, "inertia",
                                      "is missing, must be given with the mass [kg m^2]");
     }
@@ -318,16 +388,7 @@ static bool read_mass(se3di_reader *reader, const se3di_node *node, se3d_body_de
             return true;
         }
     }
-    if (!optional) {
-        return se3di_reader_fail_key(reader, node, "mass",
-                                     "is missing, must be finite and > 0 [kg] unless the body is "
-                                     "fixed or its shapes have a density");
-    }
-    def->mass = mass ? def->mass : 1.0;
-    for (int k = 0; !inertia && k < 3; ++k) {
-        def->inertia[k] = 1.0;
-    }
-    return true;
+    return do_without_mass(reader, node, "its shapes have", def);
 }
 
 static bool read_markers(se3di_reader *reader, const se3di_node *body, size_t entry)
@@ -465,9 +526,10 @@ static bool read_body(se3di_reader *reader, const se3di_node *node)
         return read_ground(reader, node);
     }
     int32_t is_held = 0;
+    se3di_bar bar;
     if (!se3di_read_key(reader, node, &se3di_object_body, NULL, "held", &is_held) ||
         !se3di_read_fields(reader, node, &se3di_object_body, NULL, "se3d_body_def", &def) ||
-        !read_mass(reader, node, &def)) {
+        !se3di_read_bar(reader, node, &bar) || !read_mass(reader, node, &bar, &def)) {
         return false;
     }
     place_body(reader, &def);
@@ -481,6 +543,7 @@ static bool read_body(se3di_reader *reader, const se3di_node *node)
     }
     const size_t entry = reader->model->body_count;
     return add_body(reader, name, node, body) && read_markers(reader, node, entry) &&
+           (!se3di_is_bar(node) || se3di_add_bar_shapes(reader, node, &bar, entry)) &&
            se3di_read_shapes(reader, node, entry);
 }
 

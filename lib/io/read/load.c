@@ -13,6 +13,7 @@
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
+#include "io/read/bars.h"
 #include "io/read/include.h"
 #include "io/read/mistakes.h"
 #include "io/read/objects.h"
@@ -180,7 +181,8 @@ static bool read_section(se3di_reader *reader,
 /* What moves and what acts on it. */
 static bool read_mechanism(se3di_reader *reader)
 {
-    return read_section(reader, se3di_read_bodies) && read_section(reader, se3di_read_joints) &&
+    return read_section(reader, se3di_read_bodies) && read_section(reader, se3di_read_bar_joints) &&
+           read_section(reader, se3di_read_joints) &&
            read_section(reader, se3di_read_constraints) &&
            read_section(reader, se3di_read_drivers) && read_section(reader, se3di_read_states) &&
            read_section(reader, se3di_read_forces) && se3di_read_state_laws(reader) &&

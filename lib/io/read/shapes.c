@@ -160,37 +160,41 @@ static bool place_shape(se3di_reader *reader, bool on_ground, se3di_shape_entry 
     return true;
 }
 
-bool se3di_read_shapes(se3di_reader *reader, const se3di_node *body, size_t entry)
+bool se3di_add_shape(se3di_reader *reader, const se3di_node *node, size_t entry,
+                     const se3di_shape_entry *shape)
 {
     se3d_model *model = reader->model;
+    se3di_shape_entry *grown = se3di_iopool_grow(&model->pool, model->shapes, model->shape_count,
+                                                 &model->shape_capacity, sizeof *grown);
+    if (!grown) {
+        return se3di_reader_fail_memory(reader);
+    }
+    model->shapes = grown;
+    grown += model->shape_count++;
+    *grown = *shape;
+    grown->node = node;
+    grown->part = reader->part;
+    grown->shape.body = model->bodies[entry].body;
+    return true;
+}
+
+bool se3di_read_shapes(se3di_reader *reader, const se3di_node *body, size_t entry)
+{
     const se3di_node *list = NULL;
     if (!se3di_read_list(reader, body, "shapes", &list)) {
         return false;
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
         se3di_shape_entry made;
-        if (!read_shape(reader, node, &made)) {
+        if (!read_shape(reader, node, &made) || !place_shape(reader, entry == 0, &made) ||
+            !se3di_add_shape(reader, node, entry, &made)) {
             return false;
         }
-        if (!place_shape(reader, entry == 0, &made)) {
-            return false;
-        }
-        made.node = node;
-        made.part = reader->part;
-        made.shape.body = model->bodies[entry].body;
-        se3di_shape_entry *grown = se3di_iopool_grow(
-            &model->pool, model->shapes, model->shape_count, &model->shape_capacity, sizeof *grown);
-        if (!grown) {
-            return se3di_reader_fail_memory(reader);
-        }
-        model->shapes = grown;
-        model->shapes[model->shape_count++] = made;
     }
     return true;
 }
 
-/* The density of a material, 0 if it has none. */
-static bool read_material(se3di_reader *reader, const se3di_node *node, double *density)
+bool se3di_read_material_density(se3di_reader *reader, const se3di_node *node, double *density)
 {
     const se3di_node *list = se3di_node_get(reader->model->root, "materials");
     const char *name = NULL;
@@ -226,7 +230,7 @@ static bool read_density(se3di_reader *reader, const se3di_node *body, const se3
 {
     const se3di_node *material = se3di_node_get(shape, "material");
     *density = 0.0;
-    if (material && !read_material(reader, material, density)) {
+    if (material && !se3di_read_material_density(reader, material, density)) {
         return false;
     }
     return se3di_read_key(reader, body, &se3di_object_body, NULL, "density", density) &&
