@@ -31,6 +31,7 @@ static const seed_text seeds[] = {
      "frequency: 3, phase: 0.1}}\n"},
 #if defined(SE3D_HAS_EXPAT)
     {"x.urdf", "tests/import/arm.urdf", NULL},
+    {"x.sdf", "tests/import/loop.sdf", NULL},
     {"x.xml", NULL,
      "<mujoco model=\"m\"><compiler angle=\"degree\"/><default><joint damping=\"0.5\" "
      "armature=\"0.1\"/><default class=\"c\"><geom density=\"500\"/></default></default>\n"

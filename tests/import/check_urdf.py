@@ -225,4 +225,5 @@ def main():
     print("import.urdf: passed")
 
 
-main()
+if __name__ == "__main__":
+    main()

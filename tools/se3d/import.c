@@ -155,7 +155,8 @@ const command_entry import_entry = {
     .operands = "FILE",
     .files = "urdf adm",
     .summary = "make a model file of a model of another program",
-    .text = "Makes a model file of a robot in URDF, or an Adams data set. What cannot be carried, "
+    .text = "Makes a model file of a robot in URDF, SDF or MJCF, of an Adams data set or a Chrono "
+            "model. What cannot be carried, "
             "was changed or has "
             "another name is listed with its line, and stands at the beginning of the model file, "
             "too. docs/import.md says what becomes of what.",
@@ -163,7 +164,7 @@ const command_entry import_entry = {
         (const command_option[]){
             {"--output", "-o", "MODEL.yaml", "the model file; without it, it is printed"},
             {"--partial", NULL, NULL, "exit code 0 although something could not be carried"},
-            {"--format", NULL, "FORMAT", "urdf, mjcf, adams or chrono, if not told"},
+            {"--format", NULL, "FORMAT", "urdf, sdf, mjcf, adams or chrono, if not told"},
             {"--merge-fixed", NULL, NULL, "links on fixed joints become one body"},
             {"--free-base", NULL, NULL, "the root of a robot may move; otherwise it is fixed"},
             {"--quiet", "-q", NULL, "list only what could not be carried"},

@@ -9,6 +9,7 @@
 #include "io/import/xml.h"
 
 bool se3di_import_urdf(se3di_machine *m, se3di_xml *root);
+bool se3di_import_sdf(se3di_machine *m, se3di_xml *root);
 /* The tree is changed: files that it includes are put into it. */
 bool se3di_import_mjcf(se3di_machine *m, se3di_xml *root);
 bool se3di_import_chrono(se3di_machine *m, const se3di_node *root);

@@ -32,9 +32,10 @@ typedef struct xml_format {
 } xml_format;
 
 static const xml_format xml_formats[] = {{"urdf", "URDF", "robot", se3di_import_urdf},
+                                         {"sdf", "SDF", "sdf", se3di_import_sdf},
                                          {"mjcf", "MJCF", "mujoco", se3di_import_mjcf}};
 
-#define FORMATS "urdf (.urdf), mjcf (.xml), adams (.adm) or chrono (.yaml)"
+#define FORMATS "urdf (.urdf), sdf (.sdf), mjcf (.xml), adams (.adm) or chrono (.yaml)"
 
 void se3d_model_import_options_init(se3d_model_import_options *options, size_t size)
 {
@@ -59,7 +60,7 @@ static bool import_xml(se3di_machine *m, const char *text, size_t length)
     }
     return se3di_machine_fail(
         m, root->line, root->column,
-        "<%.60s> begins no format that is known: it must be <robot> (URDF) or "
+        "<%.60s> begins no format that is known: it must be <robot> (URDF), <sdf> or "
         "<mujoco> (MJCF)",
         root->name);
 }
