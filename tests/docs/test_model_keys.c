@@ -130,6 +130,7 @@ static const char *const kinds[SE3DI_KIND_END] = {
     [SE3DI_KIND_PAIRS] = ITEMS("pair_of_numbers", "\"minItems\": 1"),
     [SE3DI_KIND_VECTORS] = ITEMS("vector", "\"minItems\": 3"),
     [SE3DI_KIND_NUMBERS] = ITEMS("number", "\"minItems\": 1"),
+    [SE3DI_KIND_COLOR] = ITEMS("number", "\"minItems\": 3, \"maxItems\": 4"),
     [SE3DI_KIND_CHANNELS] =
         LIST("{\"anyOf\": [{\"type\": \"string\"}, {\"type\": \"object\", \"minProperties\": 1, "
              "\"maxProperties\": 1, \"additionalProperties\": {\"type\": \"string\"}}]}"),

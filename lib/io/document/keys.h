@@ -49,6 +49,7 @@ typedef enum se3di_kind {
     SE3DI_KIND_PAIRS,    /* a list of one pair of numbers or more */
     SE3DI_KIND_VECTORS,  /* a list of three vectors or more */
     SE3DI_KIND_NUMBERS,  /* a list of one number or more */
+    SE3DI_KIND_COLOR,    /* 3 numbers or 4 */
     SE3DI_KIND_CHANNELS,
     SE3DI_KIND_SNAPSHOTS, /* true, or the name of a set */
     SE3DI_KIND_OBJECT,    /* an `object` */

@@ -40,6 +40,7 @@ static const char *const kind_texts[SE3DI_KIND_END] = {
     [SE3DI_KIND_PAIRS] = "pairs of numbers",
     [SE3DI_KIND_VECTORS] = "list of [vectors](#points)",
     [SE3DI_KIND_NUMBERS] = "list of numbers",
+    [SE3DI_KIND_COLOR] = "3 or 4 numbers",
     [SE3DI_KIND_CHANNELS] = "list of [channels](#output)",
     [SE3DI_KIND_SNAPSHOTS] = "`true` or name of a set",
     [SE3DI_KIND_OBJECT] = "map",

@@ -57,6 +57,7 @@ typedef struct se3di_element_entry {
     se3d_body body_j;
     double point_i[3]; /* body frames */
     double point_j[3];
+    double axis_i[3]; /* 0: it has none */
     double axis_j[3];
 } se3di_element_entry;
 
@@ -83,13 +84,24 @@ bool se3di_solver_takes_time(const se3d_solver_def *solver);
 /* Whether time passes in it, so that there can be events. */
 bool se3di_analysis_has_motion(const se3di_analysis_entry *entry);
 
+/* What a shape looks made of, as se3di_shape_styles names it. */
+typedef enum se3di_style {
+    SE3DI_STYLE_PAINT = 0,
+    SE3DI_STYLE_STEEL = 1,
+    SE3DI_STYLE_RUBBER = 2,
+    SE3DI_STYLE_GLASS = 3,
+    SE3DI_STYLE_SAND = 4,
+    SE3DI_STYLE_WIRE = 5
+} se3di_style;
+
 typedef struct se3di_shape_entry {
     se3d_model_shape shape;
     const se3di_mesh *mesh; /* NULL: the shape is another one */
     const se3di_node *node;
     const se3di_component *part; /* that has it */
     int32_t convex;              /* mesh: its hull touches */
-    int32_t reserved;
+    int32_t style;               /* se3di_style */
+    double opacity;
 } se3di_shape_entry;
 
 struct se3d_model {

@@ -210,6 +210,7 @@ bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *n
     entry->drawn = (type->needs & AXIS_J) ? 2 : 1;
     memcpy(entry->point_i, def.point_i, sizeof def.point_i);
     memcpy(entry->point_j, def.point_j, sizeof def.point_j);
+    memcpy(entry->axis_i, def.axis_i, sizeof def.axis_i);
     memcpy(entry->axis_j, def.axis_j, sizeof def.axis_j);
     const se3d_status status = type->create(reader->system, &def, &entry->constraint);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;

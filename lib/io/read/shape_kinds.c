@@ -17,6 +17,14 @@ static const double pi = 3.14159265358979323846;
     X(PLANE, plane)                                                                                \
     X(MESH, mesh)
 
+const char *const se3di_shape_styles[] = {[SE3DI_STYLE_PAINT] = "paint",
+                                          [SE3DI_STYLE_STEEL] = "steel",
+                                          [SE3DI_STYLE_RUBBER] = "rubber",
+                                          [SE3DI_STYLE_GLASS] = "glass",
+                                          [SE3DI_STYLE_SAND] = "sand",
+                                          [SE3DI_STYLE_WIRE] = "wire",
+                                          NULL};
+
 const char *const se3di_shape_names[] = {
 #define NAME(KIND, name) #name,
     KIND_LIST(NAME)
@@ -60,7 +68,10 @@ static const se3di_key shape_keys[] = {
      .standard = "[0, 0, 0]", .text = "centre, body frame [m]"},
     {"orientation", SE3DI_KIND_ORIENTATION, SE3DI_INTO(se3d_model_shape, orientation),
      .standard = "that of the body", .text = "shape -> body"},
-    {"color", SE3DI_KIND_VECTOR, .text = "red, green, blue, 0 to 1"},
+    {"color", SE3DI_KIND_COLOR, .standard = "that of the body",
+     .text = "red, green, blue and, of what is seen through, opacity: each 0 to 1, as on a screen"},
+    {"style", SE3DI_KIND_WORD, SE3DI_INTO(se3di_shape_entry, style), .words = se3di_shape_styles,
+     .standard = "paint", .text = "what it looks made of; wire: its edges alone"},
     {.key = NULL}};
 const se3di_object se3di_object_shape = {
     "shape",

@@ -42,6 +42,8 @@ typedef struct se3di_shape_row {
 } se3di_shape_row;
 
 /* What a model file calls its kinds, NULL at the end; their se3d_shape_type. */
+/* What a shape looks made of: se3di_style by its number, NULL at the end. */
+extern const char *const se3di_shape_styles[];
 extern const char *const se3di_shape_names[];
 extern const int32_t se3di_shape_types[];
 const se3di_shape_row *se3di_shape_row_of(const se3d_model_shape *shape);

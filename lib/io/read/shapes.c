@@ -75,8 +75,7 @@ static bool read_triangles(se3di_reader *reader, const se3di_node *node, se3di_s
 {
     se3d_model_shape *shape = &entry->shape;
     if (!require(reader, node, "file") ||
-        !se3di_read_key(reader, node, &se3di_object_shape, NULL, "file", (void *)&shape->file) ||
-        !se3di_read_fields(reader, node, &se3di_object_shape, "mesh", "se3di_shape_entry", entry)) {
+        !se3di_read_key(reader, node, &se3di_object_shape, NULL, "file", (void *)&shape->file)) {
         return false;
     }
     entry->mesh = se3di_read_mesh(reader, node, shape->file, shape->scale);
@@ -101,18 +100,24 @@ static bool read_dimensions(se3di_reader *reader, const se3di_node *node, se3di_
            (!(keys & SE3DI_SHAPE_NEEDS_FILE) || read_triangles(reader, node, entry));
 }
 
-static bool read_color(se3di_reader *reader, const se3di_node *node, double color[3])
+static bool read_color(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
 {
-    if (!se3di_read_key(reader, node, &se3di_object_shape, NULL, "color", color)) {
+    const se3di_node *given = se3di_node_get(node, "color");
+    double value[4] = {-1.0, -1.0, -1.0, 1.0};
+    const size_t count = given && given->count == 4 ? 4 : 3;
+    if (given && !se3di_read_vector(reader, given, count, value)) {
         return false;
     }
-    for (int k = 0; k < 3; ++k) {
-        if (se3di_node_get(node, "color") && !(color[k] >= 0.0 && color[k] <= 1.0)) {
+    for (size_t k = 0; k < count && given; ++k) {
+        if (!(value[k] >= 0.0 && value[k] <= 1.0)) {
             return se3di_reader_fail_key(reader, node, "color",
-                                         "is [%g, %g, %g], must be red, green, blue from 0 to 1",
-                                         color[0], color[1], color[2]);
+                                         "has %g, must be red, green, blue and, of what is seen "
+                                         "through, opacity, each from 0 to 1",
+                                         value[k]);
         }
     }
+    memcpy(entry->shape.color, value, sizeof entry->shape.color);
+    entry->opacity = value[3];
     return true;
 }
 
@@ -128,13 +133,15 @@ static bool read_shape(se3di_reader *reader, const se3di_node *node, se3di_shape
     }
     entry->mesh = NULL;
     entry->convex = 0;
+    entry->style = SE3DI_STYLE_PAINT;
     *shape = standard;
     if (!se3di_read_word(reader, se3di_node_get(node, "type"), se3di_shape_names, &index)) {
         return false;
     }
     shape->type = se3di_shape_types[index];
     return se3di_read_fields(reader, node, &se3di_object_shape, type, "se3d_model_shape", shape) &&
-           read_dimensions(reader, node, entry) && read_color(reader, node, shape->color);
+           se3di_read_fields(reader, node, &se3di_object_shape, type, "se3di_shape_entry", entry) &&
+           read_dimensions(reader, node, entry) && read_color(reader, node, entry);
 }
 
 /* The place of its part. A plane that is mirrored along its normal keeps the side it is on: its x

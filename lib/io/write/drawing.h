@@ -15,7 +15,10 @@ typedef struct se3di_part {
     double position[3];     /* body frame */
     double orientation[4];  /* Euler parameters, to the body frame */
     double scale[3];
-    double color[4]; /* red, green, blue, opacity: 0 to 1 */
+    double color[4]; /* red, green, blue, of light (linear); opacity: 0 to 1 */
+    int32_t style;   /* se3di_style */
+    int32_t reserved;
+    size_t element1; /* the element that it shows, from 1 in the order of the model; 0: none */
 } se3di_part;
 
 typedef struct se3di_parts {
@@ -30,19 +33,27 @@ typedef struct se3di_poses {
     size_t count; /* of samples */
 } se3di_poses;
 
+/* How large what is seen is, and how large things without a size of their own are drawn [m]. */
+typedef struct se3di_sizes {
+    double extent; /* half of its diagonal, > 0 */
+    double radius; /* of a pin */
+    double floor;  /* height where a floor belongs */
+} se3di_sizes;
+
 enum { SE3DI_POSE = 7 };
 
 /* Get the present poses of all bodies: one sample, to `pose`. */
 se3d_status se3di_drawing_get_poses(const se3d_model *model, double *pose);
-/* Half the size of what is seen, > 0, and where a floor belongs. */
-double se3di_drawing_measure(const se3d_model *model, const se3di_poses *poses, double *floor);
-/* The parts of body `k`: its shapes and joints; bars to its joints if it has no shapes.
- * @return false: out of memory. */
-bool se3di_drawing_list(const se3d_model *model, size_t k, double extent, se3di_iopool *pool,
-                        se3di_parts *parts);
-/* A spring at the given poses of all bodies, in the ground frame. */
-se3di_part se3di_drawing_get_spring(const se3d_model *model, const se3di_element_entry *spring,
-                                    double extent, const double *poses);
+void se3di_drawing_measure(const se3d_model *model, const se3di_poses *poses, se3di_sizes *sizes);
+/* The parts of body `k`: its shapes and joints, and bars to what lies beside its shapes. `poses`
+ * tell how far its joints move. @return false: out of memory. */
+bool se3di_drawing_list(const se3d_model *model, size_t k, const se3di_sizes *sizes,
+                        const se3di_poses *poses, se3di_iopool *pool, se3di_parts *parts);
+/* Parts that an element has between two bodies: springs, dampers and rods. */
+size_t se3di_drawing_count_between(const se3di_element_entry *entry);
+/* One of them at the given poses of all bodies, in the ground frame. */
+se3di_part se3di_drawing_get_between(const se3d_model *model, size_t element, size_t which,
+                                     const se3di_sizes *sizes, const double *poses);
 /* A point of a body in the ground frame. */
 void se3di_drawing_to_ground(const double pose[SE3DI_POSE], const double local[3],
                              double ground[3]);

@@ -270,10 +270,59 @@ static const long *find_surface(se3di_glb *glb, const se3di_part *part)
     return glb->surfaces[glb->surface_count++].accessors;
 }
 
+/* The number of a mesh that looks so, or of all. */
+static size_t find_look(const se3di_glb *glb, const struct se3di_glb_look *look)
+{
+    size_t k = 0;
+    while (k < glb->mesh_count &&
+           (glb->looks[k].surface != look->surface || glb->looks[k].style != look->style ||
+            memcmp(glb->looks[k].color, look->color, sizeof look->color))) {
+        ++k;
+    }
+    return k;
+}
+
+static void put_material(se3di_glb *glb, const struct se3di_glb_look *look)
+{
+    static const double metals[] = {
+        [SE3DI_STYLE_PAINT] = 0.1, [SE3DI_STYLE_STEEL] = 0.8, [SE3DI_STYLE_RUBBER] = 0.0,
+        [SE3DI_STYLE_GLASS] = 0.0, [SE3DI_STYLE_SAND] = 0.0,  [SE3DI_STYLE_WIRE] = 0.0};
+    static const double roughs[] = {
+        [SE3DI_STYLE_PAINT] = 0.6,  [SE3DI_STYLE_STEEL] = 0.35, [SE3DI_STYLE_RUBBER] = 0.95,
+        [SE3DI_STYLE_GLASS] = 0.05, [SE3DI_STYLE_SAND] = 1.0,   [SE3DI_STYLE_WIRE] = 1.0};
+    se3di_glb_put(glb, &glb->materials, "%s{\"pbrMetallicRoughness\":{\"metallicFactor\":",
+                  glb->mesh_count > 0 ? "," : "");
+    se3di_glb_put_number(glb, &glb->materials, metals[look->style]);
+    se3di_glb_put(glb, &glb->materials, ",\"roughnessFactor\":");
+    se3di_glb_put_number(glb, &glb->materials, roughs[look->style]);
+    se3di_glb_put(glb, &glb->materials, ",\"baseColorFactor\":[");
+    for (size_t k = 0; k < 4; ++k) {
+        se3di_glb_put(glb, &glb->materials, k > 0 ? "," : "");
+        se3di_glb_put_number(glb, &glb->materials, look->color[k]);
+    }
+    se3di_glb_put(glb, &glb->materials, "]},\"doubleSided\":true%s%s}",
+                  look->color[3] < 1.0 ? ",\"alphaMode\":\"BLEND\"" : "",
+                  look->style == SE3DI_STYLE_WIRE ? ",\"extras\":{\"style\":\"wire\"}" : "");
+}
+
+/* Parts of one surface, colour and style share a mesh. */
 size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part)
 {
     const long *surface = find_surface(glb, part);
-    const size_t index = glb->mesh_count++;
+    struct se3di_glb_look look = {surface[0], {0.0}, part->style, 0};
+    memcpy(look.color, part->color, sizeof look.color);
+    const size_t index = find_look(glb, &look);
+    if (index < glb->mesh_count) {
+        return index;
+    }
+    struct se3di_glb_look *grown = se3di_iopool_grow(glb->pool, glb->looks, glb->mesh_count,
+                                                     &glb->look_capacity, sizeof *grown);
+    if (!grown) {
+        glb->failed = true;
+        return 0;
+    }
+    glb->looks = grown;
+    glb->looks[index] = look;
     se3di_glb_put(glb, &glb->meshes, "%s{\"primitives\":[{\"attributes\":{\"POSITION\":%ld",
                   index > 0 ? "," : "", surface[0]);
     if (surface[2] >= 0) {
@@ -285,17 +334,8 @@ size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part)
         se3di_glb_put(glb, &glb->meshes, "},\"mode\":1");
     }
     se3di_glb_put(glb, &glb->meshes, ",\"material\":%zu}]}", index);
-    se3di_glb_put(glb, &glb->materials,
-                  "%s{\"pbrMetallicRoughness\":{\"metallicFactor\":0.1,\"roughnessFactor\":0.6,"
-                  "\"baseColorFactor\":[",
-                  index > 0 ? "," : "");
-    for (size_t k = 0; k < 4; ++k) {
-        se3di_glb_put(glb, &glb->materials, k > 0 ? "," : "");
-        se3di_glb_put_number(glb, &glb->materials, part->color[k]);
-    }
-    se3di_glb_put(glb, &glb->materials, "]},\"doubleSided\":true%s}",
-                  part->color[3] < 1.0 ? ",\"alphaMode\":\"BLEND\"" : "");
-    return index;
+    put_material(glb, &look);
+    return glb->mesh_count++;
 }
 
 static void put_head(unsigned char *at, uint32_t value)

@@ -34,6 +34,12 @@ typedef struct se3di_glb {
         long accessors[3]; /* as of a unit mesh */
     } * surfaces;
     size_t surface_count, surface_capacity;
+    struct se3di_glb_look {
+        long surface; /* accessor of its positions */
+        double color[4];
+        int32_t style, reserved;
+    } * looks; /* of the meshes, in their order */
+    size_t look_capacity;
     bool failed; /* out of memory */
 } se3di_glb;
 

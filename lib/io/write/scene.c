@@ -14,6 +14,7 @@
 #include "io/document/keys.h"
 #include "io/model/model.h"
 #include "io/write/drawing.h"
+#include "io/write/drawing_part.h"
 #include "io/write/glb.h"
 #include "io/write/scene.h"
 
@@ -37,7 +38,7 @@ typedef struct drawing {
     se3di_bytes rest;
     size_t node_count;
     size_t sampler_count;
-    double extent; /* half the size of what is seen */
+    se3di_sizes sizes;
 } drawing;
 
 se3d_status se3d_scene_create(se3d_model *model, se3d_scene **out)
@@ -162,7 +163,11 @@ static size_t add_part(drawing *d, const se3di_part *part)
 {
     const size_t node = open_node(d, part->name, part->position, part->orientation);
     put_list(d, "scale", part->scale, 3);
-    se3di_glb_put(&d->glb, &d->nodes, ",\"mesh\":%zu}", se3di_glb_add_mesh(&d->glb, part));
+    se3di_glb_put(&d->glb, &d->nodes, ",\"mesh\":%zu", se3di_glb_add_mesh(&d->glb, part));
+    if (part->element1 > 0) {
+        se3di_glb_put(&d->glb, &d->nodes, ",\"extras\":{\"element\":%zu}", part->element1 - 1);
+    }
+    se3di_glb_put(&d->glb, &d->nodes, "}");
     return node;
 }
 
@@ -236,7 +241,7 @@ static void add_children(drawing *d, size_t k, se3di_bytes *children)
     static const double identity[4] = {1.0, 0.0, 0.0, 0.0};
     const se3d_model *model = d->scene->model;
     se3di_parts parts = {NULL, 0, 0};
-    if (!se3di_drawing_list(model, k, d->extent, d->glb.pool, &parts)) {
+    if (!se3di_drawing_list(model, k, &d->sizes, &d->scene->poses, d->glb.pool, &parts)) {
         d->glb.failed = 1;
     }
     for (size_t i = 0; i < parts.count; ++i) {
@@ -265,11 +270,18 @@ static void add_body(drawing *d, size_t k, se3di_bytes *roots)
     const se3d_model *model = d->scene->model;
     const double *pose = pose_of(d->scene, 0, k);
     se3di_bytes children = {NULL, 0, 0};
+    double mass = 0.0;
     int32_t fixed = 0;
     add_children(d, k, &children);
     const size_t node = open_node(d, model->bodies[k].name, pose, pose + 3);
     put_children(d, &children);
-    se3di_glb_put(&d->glb, &d->nodes, ",\"extras\":{\"body\":%zu}}", k);
+    se3di_glb_put(&d->glb, &d->nodes, ",\"extras\":{\"body\":%zu", k);
+    if (k > 0 &&
+        !SE3D_FAILED(se3d_body_get_mass(model->system, model->bodies[k].body, &mass, NULL))) {
+        se3di_glb_put(&d->glb, &d->nodes, ",\"mass\":");
+        se3di_glb_put_number(&d->glb, &d->nodes, mass);
+    }
+    se3di_glb_put(&d->glb, &d->nodes, "}}");
     add_child(d, roots, node);
     se3d_body_get_fixed(model->system, model->bodies[k].body, &fixed);
     if (k > 0 && !fixed && d->scene->poses.count > 1) {
@@ -277,20 +289,21 @@ static void add_body(drawing *d, size_t k, se3di_bytes *roots)
     }
 }
 
-static void add_spring(drawing *d, const se3di_element_entry *entry, se3di_bytes *roots)
+/* What an element has between two bodies: it moves and stretches. */
+static void add_between(drawing *d, size_t element, size_t which, se3di_bytes *roots)
 {
     const se3d_scene *scene = d->scene;
     track t;
     const se3di_part first =
-        se3di_drawing_get_spring(scene->model, entry, d->extent, pose_of(scene, 0, 0));
+        se3di_drawing_get_between(scene->model, element, which, &d->sizes, pose_of(scene, 0, 0));
     const size_t node = add_part(d, &first);
     add_child(d, roots, node);
     if (scene->poses.count < 2 || !make_track(d, &t)) {
         return;
     }
     for (size_t s = 0; s < scene->poses.count; ++s) {
-        const se3di_part now =
-            se3di_drawing_get_spring(scene->model, entry, d->extent, pose_of(scene, s, 0));
+        const se3di_part now = se3di_drawing_get_between(scene->model, element, which, &d->sizes,
+                                                         pose_of(scene, s, 0));
         put_sample(&t, s, now.position, now.orientation);
         memcpy(t.scale + 3 * s, now.scale, sizeof now.scale);
     }
@@ -299,9 +312,10 @@ static void add_spring(drawing *d, const se3di_element_entry *entry, se3di_bytes
                 se3di_glb_add_floats(&d->glb, t.scale, scene->poses.count, SE3DI_GLB_VEC3, 0));
 }
 
-static void add_grid(drawing *d, double height, se3di_bytes *roots)
+static void add_grid(drawing *d, se3di_bytes *roots)
 {
-    const double least = d->extent / 5.0;
+    const double height = d->sizes.floor;
+    const double least = d->sizes.extent / 5.0;
     const double ten = io_pow(10.0, floor(io_log10(least)));
     const double step = least <= ten         ? ten
                         : least <= 2.0 * ten ? 2.0 * ten
@@ -361,6 +375,26 @@ static void put_units(drawing *d)
     se3di_glb_put(&d->glb, &d->rest, "}");
 }
 
+/* Name, type and bodies of every element, in the order that nodes refer to. */
+static void put_elements(drawing *d)
+{
+    const se3d_model *model = d->scene->model;
+    for (size_t k = 0; k < model->element_count; ++k) {
+        const se3di_element_entry *entry = &model->elements[k];
+        const se3di_node *type = se3di_node_get(entry->node, "type");
+        se3di_glb_put(&d->glb, &d->rest, k > 0 ? ",{\"name\":" : "{\"name\":");
+        se3di_glb_put_text(&d->glb, &d->rest, entry->name);
+        se3di_glb_put(&d->glb, &d->rest, ",\"type\":");
+        se3di_glb_put_text(&d->glb, &d->rest, type && type->text ? type->text : "");
+        if (entry->drawn > 0) {
+            se3di_glb_put(&d->glb, &d->rest, ",\"bodies\":[%zu,%zu]",
+                          se3di_drawing_find_body(model, entry->body_i),
+                          se3di_drawing_find_body(model, entry->body_j));
+        }
+        se3di_glb_put(&d->glb, &d->rest, "}");
+    }
+}
+
 /* All that comes after the nodes. */
 static void put_rest(drawing *d, size_t root)
 {
@@ -369,7 +403,9 @@ static void put_rest(drawing *d, size_t root)
     se3di_glb_put_text(&d->glb, &d->rest, model->title[0] ? model->title : model->name);
     se3di_glb_put(&d->glb, &d->rest, ",\"extras\":{\"units\":");
     put_units(d);
-    se3di_glb_put(&d->glb, &d->rest, "},\"nodes\":[%zu]}],\"nodes\":[", root);
+    se3di_glb_put(&d->glb, &d->rest, ",\"elements\":[");
+    put_elements(d);
+    se3di_glb_put(&d->glb, &d->rest, "]},\"nodes\":[%zu]}],\"nodes\":[", root);
     se3di_glb_put_bytes(&d->glb, &d->rest, d->nodes.data, d->nodes.count);
     se3di_glb_put(&d->glb, &d->rest, "]");
     if (d->sampler_count > 0) {
@@ -385,21 +421,20 @@ static void draw(drawing *d)
 {
     static const double origin[3] = {0.0, 0.0, 0.0};
     static const double upright[4] = {0.70710678118654752, -0.70710678118654752, 0.0, 0.0};
-    double height = 0.0;
     const se3d_scene *scene = d->scene;
     const se3d_model *model = scene->model;
     se3di_bytes roots = {NULL, 0, 0};
-    d->extent = se3di_drawing_measure(model, &scene->poses, &height);
+    se3di_drawing_measure(model, &scene->poses, &d->sizes);
     if (scene->poses.count > 1) {
         se3di_glb_add_floats(&d->glb, scene->times, scene->poses.count, SE3DI_GLB_SCALAR, 0);
     }
-    add_grid(d, height, &roots);
+    add_grid(d, &roots);
     for (size_t k = 0; k < model->body_count; ++k) {
         add_body(d, k, &roots);
     }
     for (size_t e = 0; e < model->element_count; ++e) {
-        if (model->elements[e].drawn == 3) {
-            add_spring(d, &model->elements[e], &roots);
+        for (size_t w = 0; w < se3di_drawing_count_between(&model->elements[e]); ++w) {
+            add_between(d, e, w, &roots);
         }
     }
     const size_t root = open_node(d, "scene", origin, upright);

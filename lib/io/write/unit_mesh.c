@@ -98,6 +98,28 @@ static void make_cylinder(se3di_unit_mesh *m)
     }
 }
 
+static void make_cone(se3di_unit_mesh *m)
+{
+    const double down[3] = {0.0, 0.0, -1.0};
+    const double slope = sqrt(0.5); /* the normal of a cone as high as its radius */
+    for (int i = 0; i < 2; ++i) {
+        for (int k = 0; k <= AROUND; ++k) {
+            const double turn = 2.0 * pi * k / AROUND;
+            const double n[3] = {slope * io_cos(turn), slope * io_sin(turn), slope};
+            put_vertex(m, (1 - i) * io_cos(turn), (1 - i) * io_sin(turn), i - 0.5, n);
+        }
+    }
+    put_quads(m, 0, 1);
+    const size_t first = m->points_count;
+    for (int k = 0; k < AROUND; ++k) {
+        const double turn = 2.0 * pi * k / AROUND;
+        put_vertex(m, io_cos(turn), io_sin(turn), -0.5, down);
+    }
+    for (size_t k = 1; k + 1 < AROUND; ++k) {
+        put_triangle(m, first, first + k + 1, first + k);
+    }
+}
+
 /* A ring of the wire around a point of its middle line. */
 static void put_ring(se3di_unit_mesh *m, double radius, double z, double turn)
 {
@@ -141,7 +163,7 @@ static void make_grid(se3di_unit_mesh *m)
 
 void se3di_unit_mesh_make(se3di_unit_mesh *mesh, se3di_unit unit)
 {
-    static void (*const make[])(se3di_unit_mesh *) = {make_box, make_sphere, make_cylinder,
-                                                      make_spring, make_grid};
+    static void (*const make[])(se3di_unit_mesh *) = {make_box,    make_sphere, make_cylinder,
+                                                      make_spring, make_grid,   make_cone};
     make[unit](mesh);
 }

@@ -12,7 +12,8 @@ typedef enum se3di_unit {
     SE3DI_UNIT_CYLINDER = 2, /* of radius 1 and length 1 along z */
     SE3DI_UNIT_SPRING = 3,   /* a coil of radius 1 and length 1 along z */
     SE3DI_UNIT_GRID = 4,     /* 20 x 20 squares of 1: lines of two points each */
-    SE3DI_UNIT_COUNT = 5
+    SE3DI_UNIT_CONE = 5,     /* of radius 1 at z = -1/2, its tip at z = 1/2 */
+    SE3DI_UNIT_COUNT = 6
 } se3di_unit;
 
 enum { SE3DI_UNIT_VERTICES_MAX = 1024 };

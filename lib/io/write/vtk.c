@@ -25,18 +25,18 @@ typedef struct surface {
     size_t points_count, indices_count;
 } surface;
 
-/* A part, and whose it is: a body's, or a spring. */
+/* A part, and whose it is: a body's, or one between two bodies, as of a spring. */
 typedef struct piece {
     se3di_part part;
     size_t body;
-    const se3di_element_entry *spring; /* NULL: none */
+    size_t between1; /* which of its element, from 1; 0: of a body */
 } piece;
 
 struct se3di_vtk {
     se3d_model *model;
     se3di_iopool *pool;
     const char *path;
-    double extent;
+    se3di_sizes sizes;
     piece *pieces;
     size_t piece_count, piece_capacity;
     const se3di_unit_mesh *units; /* [SE3DI_UNIT_COUNT] */
@@ -44,7 +44,7 @@ struct se3di_vtk {
     size_t points_count, triangles_count;
     double *points, *velocities; /* [points_count][3] */
     double *triangles;           /* [triangles_count][3] */
-    double *bodies;              /* of every triangle; -1: a spring */
+    double *bodies;              /* of every triangle; -1: between two */
     double *times;
     size_t count, capacity;
     int failure; /* errno of the first failure; ENOMEM also if memory is missing */
@@ -61,7 +61,7 @@ static surface surface_of(const se3di_vtk *vtk, const se3di_part *part)
 }
 
 static bool list_pieces(se3di_vtk *vtk, const se3di_part *parts, size_t count, size_t body,
-                        const se3di_element_entry *spring)
+                        size_t between1)
 {
     for (size_t k = 0; k < count; ++k) {
         const surface s = surface_of(vtk, &parts[k]);
@@ -71,7 +71,7 @@ static bool list_pieces(se3di_vtk *vtk, const se3di_part *parts, size_t count, s
             return false;
         }
         vtk->pieces = grown;
-        const piece added = {parts[k], body, spring};
+        const piece added = {parts[k], body, between1};
         vtk->pieces[vtk->piece_count++] = added;
         vtk->points_count += s.points_count;
         vtk->triangles_count += s.indices_count / 3;
@@ -82,18 +82,18 @@ static bool list_pieces(se3di_vtk *vtk, const se3di_part *parts, size_t count, s
 static bool list_all(se3di_vtk *vtk)
 {
     const se3d_model *model = vtk->model;
+    const se3di_poses poses = {vtk->poses, model->body_count, 1};
     for (size_t k = 0; k < model->body_count; ++k) {
         se3di_parts parts = {NULL, 0, 0};
-        if (!se3di_drawing_list(model, k, vtk->extent, vtk->pool, &parts) ||
-            !list_pieces(vtk, parts.list, parts.count, k, NULL)) {
+        if (!se3di_drawing_list(model, k, &vtk->sizes, &poses, vtk->pool, &parts) ||
+            !list_pieces(vtk, parts.list, parts.count, k, 0)) {
             return false;
         }
     }
     for (size_t e = 0; e < model->element_count; ++e) {
-        const se3di_element_entry *entry = &model->elements[e];
-        if (entry->drawn == 3) {
-            const se3di_part part = se3di_drawing_get_spring(model, entry, vtk->extent, vtk->poses);
-            if (!list_pieces(vtk, &part, 1, 0, entry)) {
+        for (size_t w = 0; w < se3di_drawing_count_between(&model->elements[e]); ++w) {
+            const se3di_part part = se3di_drawing_get_between(model, e, w, &vtk->sizes, vtk->poses);
+            if (!list_pieces(vtk, &part, 1, 0, w + 1)) {
                 return false;
             }
         }
@@ -110,7 +110,7 @@ static void connect(se3di_vtk *vtk)
         const surface s = surface_of(vtk, &p->part);
         for (size_t i = 0; i < s.indices_count; ++i) {
             vtk->triangles[corner] = (double)(first + s.indices[i]);
-            vtk->bodies[corner++ / 3] = p->spring ? -1.0 : (double)p->body;
+            vtk->bodies[corner++ / 3] = p->between1 > 0 ? -1.0 : (double)p->body;
         }
         first += s.points_count;
     }
@@ -130,8 +130,7 @@ static bool prepare(se3di_vtk *vtk)
     vtk->units = units;
     se3di_drawing_get_poses(vtk->model, vtk->poses);
     const se3di_poses poses = {vtk->poses, vtk->model->body_count, 1};
-    double floor_height = 0.0;
-    vtk->extent = se3di_drawing_measure(vtk->model, &poses, &floor_height);
+    se3di_drawing_measure(vtk->model, &poses, &vtk->sizes);
     if (!list_all(vtk)) {
         return false;
     }
@@ -208,9 +207,10 @@ static void move_points(se3di_vtk *vtk)
         const surface s = surface_of(vtk, &p->part);
         motion m = {{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
         const se3di_part part =
-            p->spring ? se3di_drawing_get_spring(model, p->spring, vtk->extent, vtk->poses)
-                      : p->part;
-        if (!p->spring) {
+            p->between1 > 0 ? se3di_drawing_get_between(model, p->part.element1 - 1,
+                                                        p->between1 - 1, &vtk->sizes, vtk->poses)
+                            : p->part;
+        if (p->between1 == 0) {
             const se3d_body body = model->bodies[p->body].body;
             memcpy(m.pose, vtk->poses + SE3DI_POSE * p->body, sizeof m.pose);
             se3d_body_get_velocity(model->system, body, m.v);
