@@ -3,6 +3,8 @@
 //     node page.js PAGE CSV BODY [PICTURE]        a mechanism, whose results are in CSV
 //     node page.js PAGE CSV grains                particles: snapshots in CSV; the time of a picture is reported
 //     node page.js PAGE none                      that it loads
+//     node page.js PAGE joints                    that every joint and spring is seen, also on a telephone's screen
+//     node page.js PAGE beads                     that a third of the grains is seen
 // With SE3D_BRIEF in the environment without keys and mouse.
 "use strict";
 const fs = require("fs"), os = require("os"), path = require("path"), { spawn } = require("child_process");
@@ -115,7 +117,57 @@ const checkKeys = async () => {
   await wait(300);
   check((await evaluate("se3d.state.playing")) && (await time()) !== now, "it plays");
   check((await evaluate("document.body.className")) === "dark", "dark is dark");
+  for (const [name, state, value] of [["x", "solid", true], ["x", "solid", false], ["l", "labels", true], ["l", "labels", false], ["c", "cut", 1], ["h", "help", true], ["?", "help", false]]) {
+    await key(name);
+    check((await evaluate("se3d.state." + state)) === value, `key ${name} makes ${state} ${value}`);
+  }
+  await evaluate("se3d.set({cut: 0})");
   await evaluate("se3d.set({playing: false, frames: false, traces: false, dark: false})");
+};
+// A click names what is there; a link brings the view back.
+const checkPicks = async () => {
+  await key("0");
+  await evaluate("se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))");
+  const [x, y] = await evaluate(`se3d.project(se3d.position(${JSON.stringify(body)}))`);
+  await press("mousePressed", x, y);
+  await press("mouseReleased", x, y, { buttons: 0 });
+  await wait(200);
+  const text = await evaluate('document.getElementById("info").textContent');
+  check((await evaluate("!!se3d.state.picked")) && text.length > 5, `a click says what is there: ${text}`);
+  await evaluate("se3d.set({colour: 'speed', labels: true}); se3d.orbit.azimuth = 1.25");
+  const link = await evaluate("se3d.share()");
+  check(["t=", "view=1.25", "colour=speed", "show=", "picked="].every((word) => link.includes(word)), `the link has all: ${link}`);
+  const picked = await evaluate("JSON.stringify(se3d.state.picked)");
+  await call("Page.navigate", { url: "about:blank" });
+  await call("Page.navigate", { url: link });
+  await start();
+  const now = await evaluate("({ azimuth: se3d.orbit.azimuth, part: (se3d.state.time - se3d.start) / (se3d.end - se3d.start), picked: JSON.stringify(se3d.state.picked), ...se3d.state })");
+  check(now.azimuth === 1.25 && Math.abs(now.part - 0.3) < 1e-5 && now.colour === "speed" && now.labels && now.picked, `the link brings it back: ${JSON.stringify(now)}`);
+  check(picked === (await evaluate("JSON.stringify(se3d.state.picked)")), "and what was picked");
+  await evaluate("se3d.set({colour: '', labels: false, picked: null})");
+};
+const checkJoints = async () => {
+  for (const [width, height, dark] of process.env.SE3D_BRIEF ? [[480, 720, true]] : [[800, 450, false], [480, 720, true]]) {
+    await call("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });
+    await evaluate(`se3d.set({dark: ${dark}})`);
+    await wait(300);
+    check(!(await evaluate("se3d.clipped()")), `at ${width} x ${height} all is in the picture`);
+    const least = Math.round(8 * Math.min(width, height) / 450);
+    for (const part of process.env.SE3D_BRIEF ? [0.3] : [0, 0.3, 0.62]) {
+      const seen = await evaluate(`se3d.seen(se3d.start + ${part} * (se3d.end - se3d.start))`);
+      check(seen.length > 0, "there are joints");
+      for (const [name, points] of seen) check(points >= least, `at ${width} x ${height}, ${part} of the motion: ${points} points of ${name}`);
+    }
+    const wide = await evaluate("document.documentElement.scrollWidth");
+    check(wide <= width, `nothing is wider than the screen: ${wide}`);
+  }
+};
+const checkBeads = async () => {
+  for (const part of process.env.SE3D_BRIEF ? [0.2] : [0, 0.2, 0.7]) {
+    const { there, seen } = await evaluate(`se3d.seenGrains(se3d.start + ${part} * (se3d.end - se3d.start))`);
+    console.log(`${seen} of ${there} grains: seen`);
+    check(there > 100 && 3 * seen >= there, `${seen} of ${there} grains are seen`);
+  }
 };
 // Arrows point where the CSV says, at the times whose results a page keeps.
 const checkReactions = async ({ names, rows }) => {
@@ -180,6 +232,11 @@ const checkGrains = async ({ rows }) => {
   console.log(`${new Set(ids).size} grains: ${time.toFixed(1)} ms a picture, drawn by the processor alone`);
   check(time < 2000, "grains stay interactive");
 };
+const start = async () => {
+  let ready = false;
+  for (let k = 0; k < 200 && !ready; ++k) { await wait(100); ready = await evaluate("!!window.se3d"); }
+  check(ready, "the page starts");
+};
 
 (async () => {
   const { targetInfos } = await call("Target.getTargets");
@@ -187,10 +244,12 @@ const checkGrains = async ({ rows }) => {
   session = attached.sessionId;
   for (const domain of ["Page", "Runtime", "Log"]) await call(domain + ".enable");
   await call("Page.navigate", { url: "file://" + path.resolve(page) });
-  let ready = false;
-  for (let k = 0; k < 200 && !ready; ++k) { await wait(100); ready = await evaluate("!!window.se3d"); }
-  check(ready, "the page starts");
-  if (body === "grains") {
+  await start();
+  if (csv === "joints") {
+    await checkJoints();
+  } else if (csv === "beads") {
+    await checkBeads();
+  } else if (body === "grains") {
     await checkGrains(read(csv));
   } else if (csv !== "none") {
     const results = read(csv);
@@ -200,6 +259,7 @@ const checkGrains = async ({ rows }) => {
     if (!process.env.SE3D_BRIEF) {
       await checkKeys();
       await checkMouse();
+      await checkPicks();
     }
   }
   await evaluate("se3d.set({dark: false}); se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the viewer uses of three.js: only this is bundled.
 export {
-  AxesHelper, ArrowHelper, BufferAttribute, BufferGeometry, Color, DirectionalLight, Group,
+  AxesHelper, ArrowHelper, BufferAttribute, BufferGeometry, Color, DirectionalLight, EdgesGeometry, Group,
   HemisphereLight, InstancedBufferAttribute, InstancedBufferGeometry, Line, LineBasicMaterial, LineSegments, Mesh,
-  MeshStandardMaterial, PerspectiveCamera, Quaternion, REVISION, Scene, ShaderMaterial, Vector3, WebGLRenderer,
+  MeshBasicMaterial, MeshStandardMaterial, PCFShadowMap, PerspectiveCamera, Plane, PlaneGeometry, Quaternion, Raycaster,
+  REVISION, Scene, ShaderMaterial, ShadowMaterial, Vector2, Vector3, WebGLRenderer,
 } from "three";

@@ -35,16 +35,30 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     return geometries.get(key);
   };
   const drawn = (mesh) => {
-    const p = mesh.primitives[0];
-    const c = gltf.materials[p.material].pbrMetallicRoughness.baseColorFactor;
-    const look = { color: new THREE.Color(c[0], c[1], c[2]), transparent: c[3] < 1, opacity: c[3] };
+    const p = mesh.primitives[0], { pbrMetallicRoughness: m, extras } = gltf.materials[p.material];
+    const c = m.baseColorFactor;
+    const look = { color: new THREE.Color(c[0], c[1], c[2]), transparent: c[3] < 1, opacity: c[3], depthWrite: c[3] === 1 };
     if (p.mode === 1) return new THREE.LineSegments(geometry(p), new THREE.LineBasicMaterial(look));
     if (p.mode === 3) return new THREE.Line(geometry(p), new THREE.LineBasicMaterial(look));
-    return new THREE.Mesh(geometry(p), new THREE.MeshStandardMaterial({ ...look, metalness: 0.1, roughness: 0.6, side: 2 }));
+    const made = new THREE.Mesh(geometry(p), new THREE.MeshStandardMaterial({ ...look, metalness: m.metallicFactor, roughness: m.roughnessFactor, side: 2 }));
+    made.userData.wire = !!extras && extras.style === "wire";
+    return made;
+  };
+  // Dark lines where a surface bends: given shapes stand out, also those that are seen through.
+  const edges = new Map(), lineworks = [];
+  const outline = (o) => {
+    if (!edges.has(o.geometry)) edges.set(o.geometry, new THREE.EdgesGeometry(o.geometry, 30));
+    const lines = new THREE.LineSegments(edges.get(o.geometry), new THREE.LineBasicMaterial({ color: 0x10161c, transparent: true, opacity: o.userData.wire ? 0.9 : 0.35 }));
+    if (o.userData.wire) { o.material.colorWrite = o.material.depthWrite = false; lines.material.color.copy(o.material.color); }
+    o.add(lines);
+    lineworks.push(lines);
   };
   const nodes = gltf.nodes.map((n) => {
     const o = n.mesh === undefined ? new THREE.Group() : drawn(gltf.meshes[n.mesh]);
     o.name = n.name;
+    if (n.extras) Object.assign(o.userData, n.extras);
+    if (o.isMesh && o.name === "shape" && o.geometry.attributes.position.count < 60000) outline(o);
+    if (o.isMesh && o.material.opacity === 1 && !o.userData.wire) o.castShadow = o.receiveShadow = true;
     if (n.translation) o.position.fromArray(n.translation);
     if (n.rotation) o.quaternion.fromArray(n.rotation);
     if (n.scale) o.scale.fromArray(n.scale);
@@ -108,20 +122,30 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     return at(a, column) + part * (at(b, column) - at(a, column));
   };
 
+  // Joints, springs and rods: their names and types, and what they are drawn with. `place`: the part at their point of body j.
+  const elements = ((gltf.scenes[0].extras || {}).elements || []).map((e) => ({ ...e, parts: [], place: null }));
+  nodes.forEach((o) => {
+    const e = elements[o.userData.element];
+    if (e && o.isMesh) { e.parts.push(o); if (!e.place && o.name === e.name) e.place = o; }
+  });
+  const shown = elements.filter((e) => e.place);
+
   const scene = new THREE.Scene();
   const old = parseInt(THREE.REVISION, 10) < 155, unit = old ? 1 / Math.PI : 1; // Debian's: other units of light, no gamma
   scene.add(root, new THREE.HemisphereLight(0xffffff, 0x777788, 1.6 * unit));
   const sun = new THREE.DirectionalLight(0xffffff, 2.2 * unit);
-  sun.position.set(3, -5, 8);
-  scene.add(sun);
+  scene.add(sun, sun.target);
   const camera = new THREE.PerspectiveCamera(40, 1, 0.001, 1000);
   camera.up.set(0, 0, 1);
   const renderer = new THREE.WebGLRenderer({ canvas: $("view"), antialias: true, preserveDrawingBuffer: true });
   if (old) renderer.gammaOutput = true;
+  renderer.shadowMap.enabled = sun.castShadow = true;
+  renderer.shadowMap.type = THREE.PCFShadowMap;
   renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
 
   // Grains: one quad each, drawn as a sphere that faces the camera.
   let grains = null;
+  const self = { cut: null };
   if (packed) {
     const { count, low, high } = packed;
     const place = new Float32Array(4 * count), shade = new Float32Array(count), radii = new Float32Array(decode(packed.radii));
@@ -133,21 +157,25 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     const places = new THREE.InstancedBufferAttribute(place, 4);
     shape.setAttribute("place", places);
     shape.setAttribute("shade", new THREE.InstancedBufferAttribute(shade, 1));
+    const paints = new Float32Array(3 * count).map((v, k) => [0.93, 0.72, 0.42][k % 3]), paint = new THREE.InstancedBufferAttribute(paints, 3);
+    shape.setAttribute("paint", paint);
+    const flat = { value: 0 }; // 1: the colours as they are, to count what is seen
     shape.instanceCount = shape.maxInstancedCount = count;
     const cloud = new THREE.Mesh(shape, new THREE.ShaderMaterial({
-      vertexShader: `attribute vec4 place; attribute float shade; varying vec2 corner; varying float tone;
+      uniforms: { flat_: flat },
+      vertexShader: `attribute vec4 place; attribute float shade; attribute vec3 paint; varying vec2 corner; varying float tone; varying vec3 tint;
         void main() {
-          corner = position.xy; tone = shade;
+          corner = position.xy; tone = shade; tint = paint;
           vec4 at = modelViewMatrix * vec4(place.xyz, 1.0);
           at.xy += place.w * corner;
           gl_Position = projectionMatrix * at;
         }`,
-      fragmentShader: `varying vec2 corner; varying float tone;
+      fragmentShader: `varying vec2 corner; varying float tone; varying vec3 tint; uniform float flat_;
         void main() {
           float d = dot(corner, corner);
           if (d > 1.0) discard;
           float light = 0.4 + 0.6 * max(0.0, dot(vec3(corner, sqrt(1.0 - d)), vec3(0.42, 0.52, 0.74)));
-          gl_FragColor = vec4(light * tone * vec3(0.93, 0.72, 0.42), 1.0);
+          gl_FragColor = vec4(flat_ > 0.5 ? tint : light * tone * tint, 1.0);
         }`,
     }));
     cloud.frustumCulled = false;
@@ -160,11 +188,45 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
       for (let k = 0; k < count; ++k) {
         place[4 * k + 3] = from[3 * k] === 65535 ? 0 : radii[k];
         const way = to[3 * k] === 65535 ? 0 : part;
+        if (self.cut && place[4 * k + 3] > 0 && self.cut.distanceToPoint(va.set(...[0, 1, 2].map((i) => low[i] + scale[i] * from[3 * k + i]))) < 0) place[4 * k + 3] = 0;
         for (let i = 0; i < 3; ++i) place[4 * k + i] = low[i] + scale[i] * (from[3 * k + i] + way * (to[3 * k + i] - from[3 * k + i]));
       }
       places.needsUpdate = true;
     };
-    grains = { move, place, count };
+    const speed = (k, a, b) => (a === b || frames[a][3 * k] === 65535 || frames[b][3 * k] === 65535 ? 0
+      : Math.hypot(...[0, 1, 2].map((i) => scale[i] * (frames[b][3 * k + i] - frames[a][3 * k + i]))) / (grainTimes[b] - grainTimes[a]));
+    let shownAt = [0, 0];
+    const sizes = () => [radii.reduce((a, b) => Math.min(a, b)), radii.reduce((a, b) => Math.max(a, b))];
+    self.move = (t) => { const [a, b] = locate((k) => grainTimes[k], grainTimes.length, t); shownAt = [a, b]; move(t); };
+    self.fastest = () => { let most = 0; for (let k = 0; k < count; ++k) most = Math.max(most, speed(k, ...shownAt)); return most; };
+    self.paint = (what, span) => {
+      for (let k = 0; k < count; ++k) {
+        const part = what === "size" ? (radii[k] - span[0]) / (span[1] - span[0] || 1) : what ? speed(k, ...shownAt) / (span[1] || 1) : 0;
+        const c = what ? ramp(part).map((v) => v / 255) : [0.93, 0.72, 0.42];
+        for (let i = 0; i < 3; ++i) paints[3 * k + i] = c[i];
+      }
+      paint.needsUpdate = true;
+    };
+    self.seen = () => {
+      const kept = Float32Array.from(paints), found = new Map(), w = renderer.domElement.width, h = renderer.domElement.height, gl = renderer.getContext();
+      const back = scene.background, all = new Uint8Array(4 * w * h);
+      // Numbers as colours; what is seen through is no colour of its own, so that it is left out here.
+      const through = []; root.traverse((o) => { if (o.visible && o.material && o.material.transparent) { through.push(o); o.visible = false; } });
+      floor.visible = false;
+      for (let k = 0; k < count; ++k) { const id = k + 1; paints.set([id & 255, id >> 8 & 255, id >> 16 & 255].map((v) => v / 255), 3 * k); }
+      paint.needsUpdate = true; flat.value = 1; scene.background = new THREE.Color(0);
+      solids.forEach((o) => { o.userData.lit = o.material; if (o.visible) o.material = new THREE.MeshBasicMaterial({ color: 0 }); });
+      renderer.render(scene, camera);
+      gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, all);
+      for (let k = 0; k < all.length; k += 4) { const id = all[k] + 256 * all[k + 1] + 65536 * all[k + 2]; if (id > 0 && id <= count) found.set(id, (found.get(id) || 0) + 1); }
+      solids.forEach((o) => { o.material = o.userData.lit; });
+      through.forEach((o) => { o.visible = true; });
+      paints.set(kept); paint.needsUpdate = true; flat.value = 0; scene.background = back; floor.visible = true;
+      let there = 0;
+      for (let k = 0; k < count; ++k) there += place[4 * k + 3] > 0;
+      return { there, seen: [...found.values()].filter((points) => points > 1).length }; // a single point may be the edge of two
+    };
+    grains = Object.assign(self, { place, count, sizes });
   }
 
   // What the camera looks at: the box around the bodies at a few times.
@@ -173,7 +235,7 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     pose(start + (end - start) * k / 23);
     root.updateMatrixWorld(true);
     root.traverse((o) => {
-      if (!o.isMesh || o.material.opacity < 1) return;
+      if (!o.isMesh || (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z)) return; // a plane has no ends
       if (!o.geometry.boundingBox) o.geometry.computeBoundingBox();
       const { min, max } = o.geometry.boundingBox;
       for (let k = 0; k < 8; ++k) {
@@ -188,8 +250,91 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   const size = Math.max(1e-6, high.distanceTo(low));
   const orbit = { azimuth: -0.9, height: 0.35, distance: 1.35 * size, target: center.clone() };
   camera.near = size / 500; camera.far = size * 50;
+  // The sun's shadow falls on bodies and on the floor, which is where the grid is.
+  sun.position.set(0.3, -0.5, 0.8).multiplyScalar(2 * size).add(center);
+  sun.target.position.copy(center);
+  sun.shadow.mapSize.set(1024, 1024);
+  Object.assign(sun.shadow.camera, { left: -0.7 * size, right: 0.7 * size, bottom: -0.7 * size, top: 0.7 * size, near: 0.1 * size, far: 6 * size });
+  sun.shadow.bias = -0.0005; sun.shadow.normalBias = 0.002 * size;
+  const floor = new THREE.Mesh(new THREE.PlaneGeometry(20 * size, 20 * size), new THREE.ShadowMaterial({ opacity: 0.16 }));
+  floor.position.set(center.x, center.y, grid ? grid.position.z : low.z);
+  floor.receiveShadow = true;
+  scene.add(floor);
 
-  const state = { time: start, playing: true, speed: 1, follow: -1, frames: false, reactions: false, traces: false, dark: false };
+  let film = null; // width and height of the pictures of a film
+  // Where the camera is, and so far away that the box around all is in the picture.
+  const direction = (azimuth, height) => new THREE.Vector3(Math.cos(azimuth) * Math.cos(height), Math.sin(azimuth) * Math.cos(height), Math.sin(height));
+  const fit = () => {
+    const [width, height] = film || [innerWidth, innerHeight], bar = film ? 0 : Math.min(0.4 * height, $("bar").offsetHeight + 8);
+    camera.aspect = width / height;
+    if (bar) camera.setViewOffset(width, height, 0, 0.5 * bar, width, height); // the middle is above the bar
+    else camera.clearViewOffset();
+    camera.updateProjectionMatrix();
+    const aspect = width / (height - bar);
+    const back = direction(orbit.azimuth, orbit.height), right = new THREE.Vector3(-Math.sin(orbit.azimuth), Math.cos(orbit.azimuth), 0);
+    const up = back.clone().cross(right), tan = Math.tan(camera.fov * Math.PI / 360) * (1 - bar / height);
+    let most = 0;
+    for (let k = 0; k < 8; ++k) {
+      va.set(k & 1 ? low.x : high.x, k & 2 ? low.y : high.y, k & 4 ? low.z : high.z).sub(center);
+      most = Math.max(most, va.dot(back) + Math.max(Math.abs(va.dot(right)) / (tan * aspect), Math.abs(va.dot(up)) / tan));
+    }
+    orbit.distance = 1.06 * most;
+  };
+
+  // What hides a joint or a grain from the camera is seen through ("x"): rays tell.
+  const ray = new THREE.Raycaster(), solids = [];
+  root.traverse((o) => { if (o.isMesh && !o.userData.wire && o.geometry.attributes.normal) solids.push(o); });
+  const pin = shown.reduce((least, e) => Math.min(least, e.place.scale.x), 0.02 * size);
+  const blockers = (eye, point, own) => {
+    vb.copy(point).sub(eye);
+    const way = vb.length();
+    ray.set(eye, vb.normalize());
+    ray.near = 0; ray.far = Math.max(0, way - 1.05 * pin);
+    return ray.intersectObjects(solids, false).map((hit) => hit.object).filter((o) => o.material.opacity === 1 && !own.includes(o));
+  };
+  // For each joint and some grains the fewest things before one of its points; none: it is seen.
+  const hidden = (azimuth, height, count) => {
+    const found = [], eye = direction(azimuth, height).multiplyScalar(orbit.distance).add(orbit.target), at = new THREE.Vector3();
+    const stride = Math.ceil(shown.length / 60);
+    for (let k = 0; k < count; ++k) {
+      const t = start + (end - start) * (count > 1 ? k / (count - 1) : 0);
+      pose(t);
+      root.updateMatrixWorld(true);
+      shown.forEach((e, i) => {
+        if (i % stride) return;
+        const around = [[0, 0, 0], [0, 0, 0.45], [0, 0, -0.45], [0.9, 0, 0], [-0.9, 0, 0], [0, 0.9, 0], [0, -0.9, 0]]
+          .map((p) => blockers(eye, at.fromArray(p).applyMatrix4(e.place.matrixWorld), e.parts));
+        const free = around.filter((list) => !list.length).length;
+        if (free < 2) found.push(around[0].length ? around[0] : around.find((list) => list.length));
+      });
+      if (grains) {
+        grains.move(t);
+        for (let g = 0; g < grains.count; g += Math.ceil(grains.count / 150)) {
+          if (grains.place[4 * g + 3] > 0) { const list = blockers(eye, at.fromArray(grains.place, 4 * g), []); if (list.length) found.push(list); }
+        }
+      }
+    }
+    return found;
+  };
+  const clear = new Set();
+  const glaze = () => solids.forEach((o) => {
+    if (!clear.has(o)) return;
+    Object.assign(o.material, state.solid ? { opacity: 1, transparent: false, depthWrite: true } : { opacity: 0.22, transparent: true, depthWrite: false });
+    o.castShadow = state.solid;
+    o.material.needsUpdate = true;
+  });
+  // Only given shapes are seen through, never a bar or another joint.
+  const see = () => {
+    if (state.solid) return;
+    for (let round = 0; round < 4; ++round) {
+      const some = hidden(orbit.azimuth, orbit.height, 4).flat().filter((o) => o.name === "shape" && !clear.has(o));
+      if (!some.length) return;
+      some.forEach((o) => clear.add(o));
+      glaze();
+    }
+  };
+
+  const state = { time: start, playing: true, speed: 1, follow: -1, frames: false, reactions: false, traces: false, dark: false, solid: false, labels: false, cut: 0, picked: null };
   const axes = bodies.map((b) => { const a = new THREE.AxesHelper(0.15 * size); a.visible = false; b.add(a); return a; });
   // Reactions: arrows at the nodes named as joints.
   const arrows = [];
@@ -198,7 +343,8 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     if (!joint) return;
     let largest = 1e-12;
     for (let r = 0; r < rows; ++r) largest = Math.max(largest, Math.hypot(at(r, k), at(r, k + 1), at(r, k + 2)));
-    const arrow = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), center, 1, 0xd1495b);
+    const arrow = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), center, 1, 0xcc1166);
+    [arrow.line, arrow.cone].forEach((o) => { Object.assign(o.material, { depthTest: false, transparent: true }); o.renderOrder = 2; });
     arrow.visible = false; scene.add(arrow);
     arrows.push({ arrow, joint, column: k, largest });
   });
@@ -222,14 +368,16 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     });
   };
 
-  let film = null; // width and height of the pictures of a film
   const draw = () => {
     const [width, height] = film || [innerWidth, innerHeight];
     if (renderer.domElement.width !== Math.round(width * renderer.getPixelRatio()) || camera.aspect !== width / height) {
-      renderer.setSize(width, height, false); camera.aspect = width / height; camera.updateProjectionMatrix();
+      const { distance } = orbit;
+      renderer.setSize(width, height, false); fit();
+      if (state.zoomed) orbit.distance = distance;
     }
     pose(state.time);
     if (grains) grains.move(state.time);
+    shade();
     if (state.follow > 0) orbit.target.copy(bodies[state.follow].position);
     root.updateMatrixWorld(true);
     const c = Math.cos(orbit.height);
@@ -241,15 +389,101 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
       const length = va.length();
       arrow.visible = state.reactions && length > 1e-6 * largest;
       if (arrow.visible) {
-        arrow.position.setFromMatrixPosition(joint.matrixWorld);
         arrow.setDirection(va.normalize());
+        arrow.position.setFromMatrixPosition(joint.matrixWorld).addScaledVector(va, 1.6 * pin); // from its surface on
         arrow.setLength(Math.max(0.02, 0.4 * length / largest) * size, 0.05 * size, 0.025 * size);
       }
     }
     renderer.render(scene, camera);
+    write();
     $("time").value = state.time;
     $("clock").textContent = state.time.toFixed(3) + " s";
     plot();
+  };
+
+  // Colours by speed, or of grains by size: from blue over green to yellow (viridis, which all tell apart and which prints well).
+  const scale5 = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+  const ramp = (part) => {
+    const x = 4 * Math.min(1, Math.max(0, part || 0)), k = Math.min(3, Math.floor(x));
+    return scale5[k].map((c, i) => c + (x - k) * (scale5[k + 1][i] - c));
+  };
+  const painted = bodies.map((b, k) => {
+    const list = [];
+    if (k > 0) b.children.forEach((o) => { if (o.isMesh && (o.name === "shape" || o.name === "link" || o.name === "center")) list.push({ o, own: o.material.color.clone() }); });
+    return list;
+  });
+  // Speeds of bodies from the positions just before and after.
+  const speeds = (t) => {
+    const step = (end - start) / Math.max(2000, times.length), a = Math.max(start, t - step), b = Math.min(end, t + step);
+    pose(a);
+    const from = bodies.map((o) => o.position.clone());
+    pose(b);
+    return bodies.map((o, k) => (b > a ? o.position.distanceTo(from[k]) / (b - a) : 0));
+  };
+  let range = null;
+  const measureRange = () => {
+    if (state.colour === "size") return grains.sizes();
+    let most = 0;
+    for (let k = 0; k <= 40; ++k) {
+      const t = start + (end - start) * k / 40;
+      most = Math.max(most, ...speeds(t));
+      if (grains) { grains.move(t); most = Math.max(most, grains.fastest()); }
+    }
+    return [0, most];
+  };
+  const shade = () => {
+    if (!state.colour && range === null) return;
+    range = state.colour ? range || measureRange() : null;
+    const now = state.colour === "speed" ? speeds(state.time) : null;
+    pose(state.time);
+    if (grains) { grains.move(state.time); grains.paint(state.colour, range); }
+    painted.forEach((list, k) => list.forEach(({ o, own }) => {
+      o.material.color.copy(own);
+      if (now) { const [r, g, b] = ramp(now[k] / (range[1] || 1)).map((v) => v / 255); o.material.color.setRGB(r, g, b); if (o.material.color.convertSRGBToLinear) o.material.color.convertSRGBToLinear(); }
+    }));
+    $("legend").style.display = state.colour ? "block" : "none";
+    if (state.colour) {
+      $("legend-what").textContent = state.colour === "size" ? "radius [m]" : "speed [m/s]";
+      $("legend-low").textContent = range[0].toPrecision(3); $("legend-high").textContent = range[1].toPrecision(3);
+    }
+  };
+
+  // Names beside joints and bodies, and what was clicked, in words.
+  const named = [...bodies.slice(1).map((o) => ({ o, name: o.name })), ...shown.map((e) => ({ o: e.place, name: e.name }))].slice(0, 120);
+  named.forEach((l) => { l.tag = document.createElement("span"); l.tag.textContent = l.name; $("labels").append(l.tag); });
+  const digits = (v) => (Math.abs(v) < 1e-9 ? "0" : v.toPrecision(4));
+  const describe = () => {
+    const { body, element } = state.picked, e = element !== undefined ? elements[element] : null, o = e ? null : bodies[body];
+    const name = e ? e.name : o.name, lines = [];
+    if (e) lines.push(e.type + (e.bodies ? " between " + e.bodies.map((k) => bodies[k].name).join(" and ") : ""));
+    else lines.push(body === 0 ? "the ground" : "body" + (o.userData.mass ? ", " + digits(o.userData.mass) + " kg" : ""), "at " + o.position.toArray().map(digits).join(", ") + " m");
+    results.names.forEach((channel, k) => {
+      if (channel.startsWith(name + ".") && !channel.includes(".orientation.")) lines.push(channel.slice(name.length + 1) + " " + digits(value(k, state.time)) + " " + (results.units[k] || ""));
+    });
+    return [name, ...lines.slice(0, 14)];
+  };
+  const write = () => {
+    const [width, height] = film || [innerWidth, innerHeight];
+    $("labels").style.display = state.labels ? "block" : "none";
+    if (state.labels) named.forEach(({ o, tag }) => {
+      va.setFromMatrixPosition(o.matrixWorld).project(camera);
+      tag.style.transform = `translate(${(va.x + 1) / 2 * width + 6}px,${(1 - va.y) / 2 * height - 8}px)`;
+      tag.style.display = va.z < 1 ? "block" : "none";
+    });
+    $("info").style.display = state.picked ? "block" : "none";
+    if (state.picked) $("info").textContent = describe().join("\n");
+  };
+  const pick = (x, y) => {
+    ray.near = 0; ray.far = Infinity;
+    ray.setFromCamera(new THREE.Vector2(2 * x / innerWidth - 1, 1 - 2 * y / innerHeight), camera);
+    const hits = ray.intersectObjects(solids, false), hit = hits.find((h) => h.object.userData.element !== undefined) || hits.find((h) => h.object.material.opacity === 1) || hits[0];
+    let o = hit && hit.object;
+    // A joint is picked through what is seen through, not through what is solid.
+    if (hit && o.userData.element !== undefined) { const first = hits.find((h) => h.object.material.opacity === 1); if (first && first.distance < hit.distance - 3 * pin) o = first.object; }
+    if (!o) return null;
+    if (o.userData.element !== undefined) return { element: o.userData.element };
+    while (o && o.userData.body === undefined) o = o.parent;
+    return o ? { body: o.userData.body } : null;
   };
 
   const canvas = $("plot"), pen = canvas.getContext("2d");
@@ -286,9 +520,25 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     if (state.traces && !traces.length) makeTraces();
     traces.forEach((t) => { t.visible = state.traces; });
     document.body.classList.toggle("dark", state.dark);
+    if (grid) { grid.material.color.set(state.dark ? 0x4a5560 : 0xb4bcc6); }
+    lineworks.forEach((o) => { if (!o.parent.userData.wire) o.material.color.set(state.dark ? 0xaab4be : 0x10161c); });
     scene.background = new THREE.Color(state.dark ? 0x161b20 : 0xf4f6f8);
-    $("speed").value = String(state.speed); $("follow").value = String(state.follow);
+    $("speed").value = String(state.speed); $("follow").value = String(state.follow); $("colour").value = state.colour || "";
+    if ("colour" in change) range = state.colour ? null : range;
+    if ("solid" in change) { glaze(); see(); }
+    if ("cut" in change) {
+      const axis = state.cut ? [0, 0, 0].map((v, i) => (i === state.cut - 1 ? 1 : 0)) : null;
+      // The half nearer to the camera is cut away.
+      const away = axis ? -Math.sign(va.fromArray(axis).dot(direction(orbit.azimuth, orbit.height)) || 1) : 1;
+      const plane = axis ? new THREE.Plane(new THREE.Vector3().fromArray(axis).multiplyScalar(away), 0) : null;
+      if (plane) plane.constant = -plane.normal.dot(center);
+      renderer.clippingPlanes = plane ? [plane] : [];
+      if (grains) grains.cut = plane;
+    }
+    $("help").style.display = state.help ? "block" : "none";
   };
+  for (const [key, text] of [["", "material"], ["speed", "speed"], ...(packed ? [["size", "size"]] : [])]) $("colour").add(new Option(text, key));
+  $("colour").onchange = () => { set({ colour: $("colour").value }); draw(); };
   bodies.forEach((b, k) => { if (k > 0) $("follow").add(new Option(b.name, String(k))); });
   results.names.forEach((name, k) => { if (k > 0) $("channel").add(new Option(name, String(k))); });
   // The plot begins with the first channel that is more than rounding.
@@ -304,6 +554,41 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   $("play").onclick = () => set({ playing: !state.playing, time: state.time >= end ? start : state.time });
   $("speed").onchange = () => set({ speed: Number($("speed").value) });
   $("follow").onchange = () => { set({ follow: Number($("follow").value) }); if (state.follow < 0) orbit.target.copy(center); };
+  // A link that keeps camera, time and what is chosen.
+  const round = (v) => Number(v.toPrecision(6));
+  const share = () => {
+    const part = new URLSearchParams({ t: round(state.time), view: [orbit.azimuth, orbit.height, orbit.distance, ...orbit.target.toArray()].map(round).join(","),
+      plot: results.names[Number($("channel").value)] || "", show: ["frames", "reactions", "traces", "dark", "solid", "labels"].filter((key) => state[key]).join(",") });
+    if (state.follow > 0) part.set("follow", bodies[state.follow].name);
+    if (state.colour) part.set("colour", state.colour);
+    if (state.picked) part.set("picked", state.picked.element !== undefined ? elements[state.picked.element].name : bodies[state.picked.body].name);
+    location.hash = part.toString();
+    return location.href;
+  };
+  const recall = () => {
+    const part = new URLSearchParams(location.hash.slice(1)), change = {};
+    const view = (part.get("view") || "").split(",").map(Number);
+    if (view.length === 6 && view.every(Number.isFinite) && view[2] > 0) {
+      Object.assign(orbit, { azimuth: view[0], height: Math.min(1.55, Math.max(-1.55, view[1])), distance: view[2] });
+      orbit.target.fromArray(view, 3); change.zoomed = true;
+    }
+    if (part.has("t") && Number.isFinite(Number(part.get("t")))) Object.assign(change, { time: Number(part.get("t")), playing: false });
+    (part.get("show") || "").split(",").forEach((key) => { if (["frames", "reactions", "traces", "dark", "solid", "labels"].includes(key)) change[key] = true; });
+    const follow = bodies.findIndex((b) => b.name === part.get("follow"));
+    if (follow > 0) change.follow = follow;
+    if (["speed", ...(packed ? ["size"] : [])].includes(part.get("colour"))) change.colour = part.get("colour");
+    const element = elements.findIndex((e) => e.name === part.get("picked")), body = bodies.findIndex((b) => b.name === part.get("picked"));
+    if (element >= 0) change.picked = { element }; else if (body >= 0) change.picked = { body };
+    const channel = results.names.indexOf(part.get("plot"));
+    if (channel > 0) $("channel").value = String(channel);
+    return change;
+  };
+  $("share").onclick = () => {
+    const link = share();
+    if (navigator.clipboard) navigator.clipboard.writeText(link).catch(() => {}); // else it is in the address
+  };
+  $("questions").onclick = () => set({ help: !state.help });
+  $("labelled").onclick = () => { set({ labels: !state.labels }); draw(); };
   for (const key of ["frames", "reactions", "traces", "dark"]) $(key).onclick = () => set({ [key]: !state[key] });
   $("channel").onchange = draw;
   addEventListener("keydown", (e) => {
@@ -313,19 +598,39 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
       ArrowLeft: () => set({ time: state.time - step, playing: false }), Home: () => set({ time: start }), End: () => set({ time: end, playing: false }),
       "+": () => set({ speed: Math.min(8, state.speed * 2) }), "-": () => set({ speed: Math.max(0.125, state.speed / 2) }),
       f: () => set({ frames: !state.frames }), r: () => set({ reactions: !state.reactions }), t: () => set({ traces: !state.traces }),
-      d: () => set({ dark: !state.dark }), b: () => { set({ follow: state.follow < 0 ? Math.min(1, bodies.length - 1) : state.follow + 1 < bodies.length ? state.follow + 1 : -1 }); },
+      d: () => set({ dark: !state.dark }), x: () => set({ solid: !state.solid }), l: () => set({ labels: !state.labels }),
+      c: () => set({ cut: (state.cut + 1) % 4 }), "?": () => set({ help: !state.help }), h: () => set({ help: !state.help }),
+      Escape: () => set({ help: false, picked: null }), 0: () => { orbit.target.copy(center); state.zoomed = false; fit(); },
+      b: () => { set({ follow: state.follow < 0 ? Math.min(1, bodies.length - 1) : state.follow + 1 < bodies.length ? state.follow + 1 : -1 }); },
     };
-    if (keys[e.key] && e.target.tagName !== "SELECT") { keys[e.key](); e.preventDefault(); }
+    if (keys[e.key] && e.target.tagName !== "SELECT" && !e.ctrlKey && !e.metaKey) { keys[e.key](); e.preventDefault(); }
   });
+  // One finger or the mouse turns; two fingers zoom and move; a click picks.
   let grabbed = null;
-  const view = $("view");
-  view.onpointerdown = (e) => { grabbed = { x: e.clientX, y: e.clientY, pan: e.button === 2 || e.shiftKey }; view.setPointerCapture(e.pointerId); };
-  view.onpointerup = () => { grabbed = null; };
+  const view = $("view"), fingers = new Map();
+  const spread = () => { const [a, b] = [...fingers.values()]; return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, apart: Math.max(1, Math.hypot(a.x - b.x, a.y - b.y)) }; };
+  view.onpointerdown = (e) => {
+    fingers.set(e.pointerId, { x: e.clientX, y: e.clientY });
+    grabbed = { x: e.clientX, y: e.clientY, way: fingers.size > 1 ? 99 : 0, pan: e.button === 2 || e.shiftKey || fingers.size > 1 };
+    if (fingers.size === 2) Object.assign(grabbed, spread());
+    view.setPointerCapture(e.pointerId);
+  };
+  view.onpointerup = view.onpointercancel = (e) => {
+    fingers.delete(e.pointerId);
+    if (!grabbed || fingers.size) { grabbed = null; return; }
+    if (grabbed.way < 4 && e.type === "pointerup") set({ picked: pick(e.clientX, e.clientY) });
+    else if (!grabbed.pan) see();
+    grabbed = null;
+  };
   view.oncontextmenu = (e) => e.preventDefault();
   view.onpointermove = (e) => {
     if (!grabbed) return;
-    const dx = e.clientX - grabbed.x, dy = e.clientY - grabbed.y;
-    Object.assign(grabbed, { x: e.clientX, y: e.clientY });
+    if (fingers.has(e.pointerId)) fingers.set(e.pointerId, { x: e.clientX, y: e.clientY });
+    const now = fingers.size === 2 ? spread() : { x: e.clientX, y: e.clientY };
+    const dx = now.x - grabbed.x, dy = now.y - grabbed.y;
+    if (now.apart && grabbed.apart) { orbit.distance *= grabbed.apart / now.apart; state.zoomed = true; }
+    Object.assign(grabbed, now);
+    grabbed.way += Math.abs(dx) + Math.abs(dy);
     if (grabbed.pan) {
       const k = orbit.distance / innerHeight;
       va.set(1, 0, 0).applyQuaternion(camera.quaternion); orbit.target.addScaledVector(va, -dx * k);
@@ -334,9 +639,17 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
       orbit.azimuth -= dx * 0.008; orbit.height = Math.min(1.55, Math.max(-1.55, orbit.height + dy * 0.008));
     }
   };
-  view.onwheel = (e) => { orbit.distance *= Math.exp(0.001 * e.deltaY); e.preventDefault(); };
+  view.onwheel = (e) => { orbit.distance *= Math.exp(0.001 * e.deltaY); state.zoomed = true; e.preventDefault(); };
 
-  set({ dark: matchMedia("(prefers-color-scheme: dark)").matches });
+  // From the side from which most joints are seen; what still hides one is seen through.
+  fit();
+  if (shown.length) {
+    const around = [-0.9, 0.9, 2.2, -2.2].map((azimuth) => [hidden(azimuth, 0.35, 2).length, azimuth]);
+    orbit.azimuth = around.reduce((a, b) => (b[0] < a[0] ? b : a))[1];
+    fit();
+  }
+  set({ dark: matchMedia("(prefers-color-scheme: dark)").matches, ...recall() });
+  see();
   let before = performance.now();
   const frame = (now) => {
     const passed = Math.min(0.25, (now - before) / 1000);
@@ -359,6 +672,7 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     film: (width, height, azimuth, elevation) => {
       film = [width, height]; renderer.setPixelRatio(1);
       Object.assign(orbit, { azimuth: azimuth * Math.PI / 180, height: elevation * Math.PI / 180 });
+      state.zoomed = false; orbit.target.copy(center); fit(); see();
       set({ playing: false, dark: false });
       return `${start} ${end}`;
     },
@@ -375,6 +689,35 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     },
     // Where grain k (from 0 in the order of ids) is, and its radius.
     grain: (k) => Array.from(grains.place.subarray(4 * k, 4 * k + 4)),
+    share, pick: (x, y) => { set({ picked: pick(x, y) }); draw(); return $("info").textContent; },
+    elements: () => shown.map((e) => e.name),
+    // How many points of the picture show each joint or spring: those that change when it has another colour.
+    seen: (t) => {
+      set({ time: t, playing: false }); draw();
+      const w = renderer.domElement.width, h = renderer.domElement.height, gl = renderer.getContext();
+      const look = () => { renderer.render(scene, camera); const all = new Uint8Array(4 * w * h); gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, all); return all; };
+      const plain = look();
+      return shown.map((e) => {
+        const own = e.parts.map((o) => o.material);
+        e.parts.forEach((o) => { o.material = new THREE.MeshBasicMaterial({ color: 0xff00ff }); });
+        const other = look();
+        e.parts.forEach((o, k) => { o.material = own[k]; });
+        let points = 0;
+        for (let k = 0; k < plain.length; k += 4) points += Math.abs(plain[k] - other[k]) + Math.abs(plain[k + 1] - other[k + 1]) + Math.abs(plain[k + 2] - other[k + 2]) > 60;
+        return [e.name, points];
+      });
+    },
+    // How many grains are there, and of how many at least a point is seen.
+    seenGrains: (t) => { set({ time: t, playing: false }); draw(); return grains.seen(); },
+    // Whether a corner of the box around all is out of the picture.
+    clipped: () => {
+      draw();
+      for (let k = 0; k < 8; ++k) {
+        va.set(k & 1 ? low.x : high.x, k & 2 ? low.y : high.y, k & 4 ? low.z : high.z).project(camera);
+        if (Math.max(Math.abs(va.x), Math.abs(va.y)) > 1) return true;
+      }
+      return false;
+    },
     // Milliseconds a picture takes, all of it drawn, over some times of the motion.
     measure: (count) => {
       const gl = renderer.getContext(), pixel = new Uint8Array(4), begin = performance.now();
