@@ -153,7 +153,7 @@ if command -v gnuplot >/dev/null 2>&1; then
     done
     holds 'the phase plot has another axis' grep -qF "set xlabel 'pin.angle [rad]'" "$dir/plots/phase.gp"
     holds 'the default results are not the first' grep -qF "'a.csv'" "$dir/plots/parts.gp"
-    holds 'not all of the pin' grep -qF 'pin.force.y' "$dir/plots/parts.gp"
+    holds 'not all of the pin' grep -qF "'pin: force [N]'" "$dir/plots/parts.gp"
     holds 'a film is left' [ ! -e "$dir/plots/motion.mp4" ]
     (cd "$dir" && "$program" plot -q plots.yaml >out 2>err)
     name='a plot straight from a model'

@@ -47,7 +47,36 @@ expect 'phase plot' 0 "$program" plot "$dir/tsda_mass.csv" -x block.position.x -
 has "$dir/phase.svg" 'block.position.x [m]'
 cp "$dir/tsda_mass.csv" "$dir/other.csv"
 expect 'compare files' 0 "$program" plot "$dir/tsda_mass.csv" "$dir/other.csv" -y block.position.x -o "$dir/two.svg"
-has "$dir/two.svg" 'block.position.x (other)'
+for text in other tsda_mass 'block: position [m]'; do
+    has "$dir/two.svg" "$text"
+done
+! grep -q 'block.position.x' "$dir/two.svg" || fail 'the name of the channel is repeated'
+
+# Rounding is left out, with a word, but for what was named in full; short names, and one frame as wide as another.
+awk 'BEGIN { print "time,a.position.x,a.position.y,a.position.z,b.position.x"; for (k = 0; k < 50; ++k) print k ",1e-22," k "," 2 * k ",3" }' >"$dir/near.csv"
+expect 'rounding' 0 "$program" plot "$dir/near.csv"
+has "$dir/out" 'left out, zero: a.position.x'
+for text in 'a y' 'a z' 'b x' 'position [m]'; do
+    has "$dir/near.svg" ">$text<"
+done
+! grep -qF '>a x<' "$dir/near.svg" || fail 'what is rounding is drawn'
+expect 'rounding on demand' 0 "$program" plot "$dir/near.csv" -y a.position.x -y a.position.y
+! grep -q 'left out' "$dir/out" || fail 'what was asked for is left out'
+has "$dir/near.svg" '>a: position [m]<'
+has "$dir/near.svg" '>x<'
+
+# Figures of papers: as wide as asked for.
+expect 'a width in words' 2 "$program" plot "$dir/near.csv" --width wide
+has "$dir/err" 'the width is `wide`, must be 30mm to 1000mm'
+expect 'a width of a mile' 2 "$program" plot "$dir/near.csv" --width 1609344mm
+expect 'a style' 2 "$program" plot "$dir/near.csv" --style cubist
+has "$dir/err" 'the style is `cubist`, must be screen or paper'
+expect 'no style' 2 "$program" plot "$dir/near.csv" --style
+expect 'paper' 0 "$program" plot "$dir/near.csv" --style paper --width 85mm -o "$dir/paper.pdf"
+has "$dir/out" "wrote $dir/paper.pdf"
+[ "$(head -c 5 "$dir/paper.pdf")" = '%PDF-' ] || fail 'no PDF'
+has "$dir/paper.svg" 'width="321"'
+[ "$(od -An -tu1 -j16 -N4 "$dir/paper.png" | awk '{ print $1 * 16777216 + $2 * 65536 + $3 * 256 + $4 }')" = 1004 ] || fail 'the PNG has no 300 points in an inch'
 
 # A sine of amplitude 3 at 5 Hz has a peak of 3 at 5 Hz.
 awk 'BEGIN { print "time,a.position"; for (k = 0; k <= 2000; ++k) printf "%.17g,%.17g\n", k / 100, 1 + 3 * sin(2 * 3.14159265358979 * 5 * k / 100) }' >"$dir/sine.csv"

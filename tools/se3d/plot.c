@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* se3d plot FILE.csv...: results as SVG and PNG, by way of gnuplot. */
+/* se3d plot FILE.csv...: results as SVG, PNG and PDF, by way of gnuplot. */
 #include "plot.h"
 
 #include <errno.h>
@@ -17,6 +17,28 @@
 
 enum { PATH_SIZE = 4096 };
 
+static int take_style(plot *p, const char *value)
+{
+    p->paper = strcmp(value, "paper") == 0;
+    if (!p->paper && strcmp(value, "screen") != 0) {
+        fprintf(stderr, "se3d plot: the style is `%s`, must be screen or paper\n", value);
+        return EXIT_USAGE;
+    }
+    return EXIT_DONE;
+}
+
+static int take_width(plot *p, const char *value)
+{
+    char *rest = NULL;
+    p->width = strtod(value, &rest);
+    if (rest == value || (*rest && strcmp(rest, "mm") != 0) ||
+        !(p->width >= 30.0 && p->width <= 1000.0)) {
+        fprintf(stderr, "se3d plot: the width is `%s`, must be 30mm to 1000mm\n", value);
+        return EXIT_USAGE;
+    }
+    return EXIT_DONE;
+}
+
 static int take_value(plot *p, const char *name, const char *value)
 {
     if (!value) {
@@ -25,6 +47,10 @@ static int take_value(plot *p, const char *name, const char *value)
     }
     if (strcmp(name, "-x") == 0) {
         p->x = value;
+    } else if (strcmp(name, "--style") == 0) {
+        return take_style(p, value);
+    } else if (strcmp(name, "--width") == 0) {
+        return take_width(p, value);
     } else if (strcmp(name, "-y") != 0) {
         p->output = value;
     } else if (p->channel_count < PLOT_CHANNELS_MAX) {
@@ -63,6 +89,17 @@ static int read_word(plot *p, const char *word)
     return EXIT_DONE;
 }
 
+static int takes_value(const char *word)
+{
+    static const char *const names[] = {"-x", "-y", "-o", "--style", "--width"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
+        if (strcmp(word, names[k]) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 static int read_words(plot *p, int count, const char *const *words)
 {
     int names = 0; /* after "--" no word is an option */
@@ -72,8 +109,7 @@ static int read_words(plot *p, int count, const char *const *words)
             code = add_file(p, words[k]);
         } else if (strcmp(words[k], "--") == 0) {
             names = 1;
-        } else if (strcmp(words[k], "-x") == 0 || strcmp(words[k], "-y") == 0 ||
-                   strcmp(words[k], "-o") == 0) {
+        } else if (takes_value(words[k])) {
             code = take_value(p, words[k], k + 1 < count ? words[k + 1] : NULL);
             ++k;
         } else {
@@ -92,7 +128,7 @@ static int read_words(plot *p, int count, const char *const *words)
 
 static int name_output(plot *p)
 {
-    static const char *const endings[] = {".svg", ".png", ".gp"};
+    static const char *const endings[] = {".svg", ".png", ".pdf", ".gp"};
     if (!path_cut(p->output ? p->output : p->files[0], p->output ? "" : ".csv", p->base,
                   sizeof p->base - 64)) {
         fputs("se3d plot: the name of the picture is too long\n", stderr);
@@ -168,12 +204,14 @@ static int draw_in(plot *p, const char *folder)
     int whole = code == 0 && is_whole(path, "</svg>");
     snprintf(path, sizeof path, "%s/plot.png", folder);
     whole = whole && is_whole(path, "IEND");
+    snprintf(path, sizeof path, "%s/plot.pdf", folder);
+    whole = whole && is_whole(path, "%%EOF");
     if (!whole || interrupt_came()) {
         fprintf(stderr, "se3d plot: %s on %s.gp\n",
                 interrupt_came() ? "interrupted" : "gnuplot failed", p->base);
         return 0;
     }
-    return keep(p, folder, ".svg") && keep(p, folder, ".png");
+    return keep(p, folder, ".svg") && keep(p, folder, ".png") && keep(p, folder, ".pdf");
 }
 
 static int draw(plot *p)
@@ -271,9 +309,9 @@ const command_entry plot_entry = {
     .run = command_plot,
     .operands = "FILE.csv|MODEL...",
     .files = "csv yaml yml json",
-    .summary = "draw results as SVG and PNG",
-    .text = "Draws results as FILE.svg and FILE.png, beside the first CSV file; the "
-            "gnuplot script is kept as FILE.gp. Curves of one quantity share a frame; "
+    .summary = "draw results as SVG, PNG and PDF",
+    .text = "Draws results as FILE.svg, FILE.png and FILE.pdf, beside the first CSV file; "
+            "the gnuplot script is kept as FILE.gp. Curves of one quantity share a frame; "
             "several files are compared in it. A channel is a column (pin.force.z), all "
             "components of one (pin.force) or all of an element (pin). A model is run "
             "first, into results/<model>; without options, the plots that its `output` "
@@ -284,13 +322,16 @@ const command_entry plot_entry = {
             {"-y", NULL, "CHANNEL",
              "what to draw; may be repeated (default: position, velocity, acceleration and the "
              "reactions)"},
-            {"-o", NULL, "FILE", "name of the picture; .svg or .png is replaced by each"},
+            {"-o", NULL, "FILE", "name of the picture; .svg, .png or .pdf is replaced by each"},
             {"--fft", NULL, NULL, "amplitude over frequency; the spectrum is kept as FILE.fft.csv"},
+            {"--style", NULL, "STYLE", "screen (default), or paper: small letters, thin lines"},
+            {"--width", NULL, "WIDTH", "of the picture, 30mm to 1000mm (of paper: 85mm)"},
             COMMAND_OPTION_QUIET,
             {0}},
     .examples =
         (const command_example[]){
             {"plot results/pendulum/pendulum.csv -y pin.force", "the reaction over time"},
+            {"plot a.csv -y pin.force --style paper --width 85mm", "a figure of a paper"},
             {"plot a.csv b.csv -y bar.position.z -o compared", "two runs in one frame"},
             {0}},
     .exits = "0 done; 1 a file or program failed; 2 bad usage.",

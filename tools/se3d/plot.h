@@ -11,6 +11,7 @@ enum { PLOT_FILES_MAX = 8, PLOT_CHANNELS_MAX = 64, PLOT_PANELS_MAX = 6, PLOT_CUR
 typedef struct plot_panel {
     char title[160]; /* of the y axis, with its unit */
     const char *names[PLOT_CURVES_MAX];
+    int asked[PLOT_CURVES_MAX]; /* named in full: drawn also if it is zero */
     size_t count;
     size_t dropped;  /* curves that had no room */
     double range[2]; /* of all its numbers */
@@ -31,6 +32,8 @@ typedef struct plot {
     char base[4096];                    /* of the files written, without extension */
     char spectra[PLOT_FILES_MAX][4200]; /* files of --fft */
     char csv[PLOT_FILES_MAX][4096];     /* results of models that were run */
+    int paper;                          /* --style paper: for print */
+    double width;                       /* of the picture [mm]; 0: as it comes */
     int fft;
     int quiet;
     int help;

@@ -36,7 +36,8 @@ static void make_title(const plot *p, const char *name, char *title, size_t size
     snprintf(title, size, text[0] ? "%.90s [%.40s]" : "%.90s%s", quantity, text);
 }
 
-static void add_curve(plot *p, const char *name)
+/* `asked`: the user has named it in full. */
+static void add_curve(plot *p, const char *name, int asked)
 {
     char title[160];
     size_t k = 0;
@@ -60,6 +61,7 @@ static void add_curve(plot *p, const char *name)
     if (panel->count == PLOT_CURVES_MAX) {
         ++panel->dropped;
     } else {
+        panel->asked[panel->count] = asked;
         panel->names[panel->count++] = name;
     }
 }
@@ -71,7 +73,7 @@ static int choose_named(plot *p)
         int found = 0;
         for (size_t k = 0; k < t->count; ++k) {
             if (is_part(t->names[k], p->channels[c])) {
-                add_curve(p, t->names[k]);
+                add_curve(p, t->names[k], strcmp(t->names[k], p->channels[c]) == 0);
                 found = 1;
             }
         }
@@ -95,13 +97,82 @@ static void choose_usual(plot *p)
             char quantity[400];
             table_get_quantity(t->names[k], quantity, sizeof quantity);
             if (strcmp(quantity, usual[q]) == 0) {
-                add_curve(p, t->names[k]);
+                add_curve(p, t->names[k], 0);
             }
         }
     }
     for (size_t k = 1; k < t->count && p->panel_count == 0; ++k) {
-        add_curve(p, t->names[k]);
+        add_curve(p, t->names[k], 0);
     }
+}
+
+/* Read one column of file k; texts that are no numbers and columns that it lacks are NaN. */
+static void load_column(const plot *p, size_t k, const char *name, double *values)
+{
+    const table *t = &p->tables[k];
+    const size_t stride = (t->rows + POINTS_MAX - 1) / POINTS_MAX;
+    const size_t column = table_find(t, name);
+    const size_t count =
+        column < t->count ? table_read_column(t, column, stride, values, ROWS_MAX) : 0;
+    for (size_t row = count; row < ROWS_MAX; ++row) {
+        values[row] = (double)NAN;
+    }
+}
+
+/* The largest absolute value of a column, of all files. */
+static double find_largest(const plot *p, const char *name, double *values)
+{
+    double most = 0.0;
+    for (size_t k = 0; k < p->file_count; ++k) {
+        load_column(p, k, name, values);
+        for (size_t row = 0; row < ROWS_MAX; ++row) {
+            most = isfinite(values[row]) ? fmax(most, fabs(values[row])) : most;
+        }
+    }
+    return most;
+}
+
+/* Leave out what is rounding: curves that stay below 1e-9 of the largest of their frame, unless the
+ * user named them in full. A frame of which nothing else is left stays as it is. */
+static void drop_of(const plot *p, plot_panel *panel, double *values, size_t *dropped)
+{
+    double most[PLOT_CURVES_MAX];
+    double largest = 0.0;
+    size_t kept = 0;
+    for (size_t k = 0; k < panel->count; ++k) {
+        most[k] = find_largest(p, panel->names[k], values);
+        largest = fmax(largest, most[k]);
+    }
+    for (size_t k = 0; k < panel->count; ++k) {
+        if (largest > 0.0 && most[k] <= 1e-9 * largest && !panel->asked[k]) {
+            if (!p->quiet) {
+                printf("%s%s", *dropped > 0 ? ", " : "left out, zero: ", panel->names[k]);
+            }
+            ++*dropped;
+        } else {
+            panel->asked[kept] = panel->asked[k];
+            panel->names[kept++] = panel->names[k];
+        }
+    }
+    panel->count = kept;
+}
+
+static int drop_zeros(plot *p)
+{
+    size_t dropped = 0;
+    double *values = malloc(ROWS_MAX * sizeof *values);
+    if (!values) {
+        fputs("se3d plot: out of memory\n", stderr);
+        return 0;
+    }
+    for (size_t k = 0; k < p->panel_count; ++k) {
+        drop_of(p, &p->panels[k], values, &dropped);
+    }
+    if (dropped > 0 && !p->quiet) {
+        putchar('\n');
+    }
+    free(values);
+    return 1;
 }
 
 int plot_choose(plot *p)
@@ -127,6 +198,9 @@ int plot_choose(plot *p)
     }
     if (p->panel_count == 0) {
         fprintf(stderr, "se3d plot: %s has no column but `%s`\n", t->path, t->names[0]);
+        return 0;
+    }
+    if (!drop_zeros(p)) {
         return 0;
     }
     for (size_t k = 0; k < p->panel_count && !p->quiet; ++k) {
@@ -164,19 +238,6 @@ static size_t count_columns(const plot *p)
         count += p->panels[k].count;
     }
     return count;
-}
-
-/* Read one column of file k; texts that are no numbers and columns that it lacks are NaN. */
-static void load_column(const plot *p, size_t k, const char *name, double *values)
-{
-    const table *t = &p->tables[k];
-    const size_t stride = (t->rows + POINTS_MAX - 1) / POINTS_MAX;
-    const size_t column = table_find(t, name);
-    const size_t count =
-        column < t->count ? table_read_column(t, column, stride, values, ROWS_MAX) : 0;
-    for (size_t row = count; row < ROWS_MAX; ++row) {
-        values[row] = (double)NAN;
-    }
 }
 
 /* The numbers that are drawn of file k: values[column * ROWS_MAX + row]. @return NULL: no memory */
@@ -258,27 +319,87 @@ static int put_data(plot *p, FILE *file, size_t k)
     return 1;
 }
 
-/* Curve number `column` of all. */
-static void put_curve(const plot *p, FILE *file, const char *name, size_t curve, size_t column,
-                      size_t k)
+/* What a channel is of: "bar" of bar.position.x, "bar.tip" of bar.tip.velocity. */
+static size_t get_owner(const char *name)
 {
-    static const char *const colors[PLOT_CURVES_MAX] = {"#1f6fb4", "#d1495b", "#2e8b57",
-                                                        "#e08e0b", "#7b4fa3", "#17a2b8",
-                                                        "#8c5a3c", "#c2185b", "#555555"};
+    char quantity[400];
+    const size_t whole = strlen(name);
+    table_get_quantity(name, quantity, sizeof quantity);
+    const size_t length = strlen(quantity);
+    for (size_t k = whole > length ? whole - length : 0; k > 0; --k) {
+        if (name[k - 1] == '.' && strncmp(name + k, quantity, length) == 0) {
+            return k - 1;
+        }
+    }
+    return 0;
+}
+
+/* Whether all curves of a frame are of one body, joint or force. */
+static int has_one_owner(const plot_panel *panel)
+{
+    const size_t length = get_owner(panel->names[0]);
+    for (size_t k = 1; k < panel->count; ++k) {
+        if (get_owner(panel->names[k]) != length ||
+            strncmp(panel->names[0], panel->names[k], length) != 0) {
+            return 0;
+        }
+    }
+    return length > 0;
+}
+
+/* A name without what the title of the axis says: its owner and its component. */
+static void shorten(const plot_panel *panel, const char *name, char *text, size_t size)
+{
+    char quantity[400];
+    const size_t owner = get_owner(name);
+    table_get_quantity(name, quantity, sizeof quantity);
+    const char *part = name + owner + (owner > 0) + strlen(quantity);
+    part += *part == '.';
+    if (has_one_owner(panel)) {
+        snprintf(text, size, "%.200s", *part ? part : quantity);
+    } else if (owner > 0) {
+        snprintf(text, size, *part ? "%.*s %.90s" : "%.*s%.90s", (int)(owner < 200 ? owner : 200),
+                 name, part);
+    } else {
+        snprintf(text, size, "%.290s", name);
+    }
+}
+
+/* The title of the axis; with whose it is if all curves are of one. */
+static void entitle(const plot_panel *panel, char *text, size_t size)
+{
+    const size_t owner = panel->count > 0 && has_one_owner(panel) ? get_owner(panel->names[0]) : 0;
+    snprintf(text, size, owner > 0 ? "%.*s: %s" : "%.*s%s", (int)(owner < 60 ? owner : 60),
+             owner > 0 ? panel->names[0] : "", panel->title);
+}
+
+/* Curve number `column` of all. */
+static void put_curve(const plot *p, FILE *file, const plot_panel *panel, size_t curve,
+                      size_t column, size_t k)
+{
+    /* Those of the scene (Okabe and Ito), the yellow darker, and black. */
+    static const char *const colors[PLOT_CURVES_MAX] = {"#0072b2", "#d55e00", "#009e73",
+                                                        "#e69f00", "#cc79a7", "#56b4e9",
+                                                        "#b8a800", "#000000", "#777777"};
     const table *t = &p->tables[k];
+    const char *name = panel->names[curve];
     char title[600];
+    char brief[300];
     if (table_find(t, p->x) == t->count || table_find(t, name) == t->count) {
         return;
     }
     if (p->file_count > 1) {
         char of[240];
         path_cut(path_get_name(p->files[k]), ".csv", of, sizeof of);
-        snprintf(title, sizeof title, "%.300s (%.200s)", name, of);
+        shorten(panel, name, brief, sizeof brief);
+        snprintf(title, sizeof title, panel->count > 1 ? "%s%s%.200s" : "%.0s%.0s%.200s", brief,
+                 ", ", of);
     } else {
-        snprintf(title, sizeof title, "%.300s", name);
+        shorten(panel, name, title, sizeof title);
     }
-    fprintf(file, "        $file%zu using 1:%zu with %s lw 1.6 dt %zu lc rgb '%s' title ", k + 1,
-            column, t->rows == 1 ? "points pt 7" : "lines", k + 1, colors[curve]);
+    fprintf(file, "        $file%zu using 1:%zu with %s lw %s dt %zu lc rgb '%s' title ", k + 1,
+            column, t->rows == 1 ? "points pt 7" : "lines", p->paper ? "1" : "1.6", k + 1,
+            colors[curve]);
     put_title(file, "", title, ", \\\n");
 }
 
@@ -311,9 +432,12 @@ static void put_range(FILE *file, const char *axis, const double range[2])
 /* `column`: of its first curve. */
 static void put_panel(const plot *p, FILE *file, const plot_panel *panel, size_t column, int last)
 {
+    char title[300];
     put_range(file, "y", panel->range);
     fprintf(file, "    set format y '%%.%dg'\n", count_digits(panel->range));
-    put_title(file, "    set ylabel ", panel->title, "\n");
+    entitle(panel, title, sizeof title);
+    put_title(file, "    set ylabel ", title, "\n");
+    fputs(panel->count > 1 || p->file_count > 1 ? "    set key\n" : "    unset key\n", file);
     if (last) {
         put_title(file, "    set xlabel ", p->x_title, "\n");
     } else {
@@ -322,28 +446,10 @@ static void put_panel(const plot *p, FILE *file, const plot_panel *panel, size_t
     fputs("    plot \\\n", file);
     for (size_t curve = 0; curve < panel->count; ++curve) {
         for (size_t k = 0; k < p->file_count; ++k) {
-            put_curve(p, file, panel->names[curve], curve, column + curve, k);
+            put_curve(p, file, panel, curve, column + curve, k);
         }
     }
     fputs("        NaN notitle\n", file);
-}
-
-/* The longest name in a key, so that all frames have one width. */
-static size_t key_width(const plot *p)
-{
-    size_t width = 0;
-    size_t file = 0;
-    for (size_t k = 0; k < p->panel_count; ++k) {
-        for (size_t i = 0; i < p->panels[k].count; ++i) {
-            const size_t length = strlen(p->panels[k].names[i]);
-            width = length > width ? length : width;
-        }
-    }
-    for (size_t k = 0; k < p->file_count && p->file_count > 1; ++k) {
-        const size_t length = strlen(path_get_name(p->files[k]));
-        file = length > file ? length : file;
-    }
-    return width + file;
 }
 
 /* What comes before every frame: margins that all share. */
@@ -355,7 +461,7 @@ static void put_margins(const plot *p, FILE *file)
         digits = needed > digits ? needed : digits;
     }
     put_range(file, "x", p->x_range);
-    fprintf(file, "    set lmargin %d\n    set rmargin %zu\n%s", digits + 7, key_width(p) + 6,
+    fprintf(file, "    set lmargin %d\n    set rmargin 3\n%s", digits + 7,
             p->fft ? "    set logscale x\n" : "");
 }
 
@@ -371,7 +477,7 @@ static int put_head(plot *p, FILE *file)
     }
     fputs(
         "# Written by `se3d plot`. Change what comes after the numbers, and run it by gnuplot: it\n"
-        "# makes an SVG and a PNG in the folder in which it is run.\n",
+        "# makes an SVG, a PNG and a PDF in the folder in which it is run.\n",
         file);
     for (size_t k = 0; k < p->file_count && good; ++k) {
         good = put_data(p, file, k);
@@ -382,36 +488,55 @@ static int put_head(plot *p, FILE *file)
     return good;
 }
 
+/* Size and letters of every picture: of a screen in its points, of paper in millimetres. PNG has 96
+ * or 300 points in an inch. */
+static void put_terminals(const plot *p, FILE *file, size_t rows, size_t columns)
+{
+    const double inch = 25.4;
+    const double screen_wide = p->width > 0.0 ? p->width / inch * 96.0 : columns == 2 ? 1280 : 760;
+    const double mm = p->width > 0.0 ? p->width : 85.0;
+    const double wide = p->paper ? mm / inch * 96.0 : screen_wide; /* at 96 points in an inch */
+    const double high = p->paper ? (rows == 1 ? 0.68 : 0.46 * (double)rows) * wide
+                                 : (rows == 1 ? 440.0 : 270.0 * (double)rows);
+    const double fine = p->paper ? 300.0 / 96.0 : 1.0;
+    const int letters = p->paper ? 8 : 10; /* as printed, in points of 1/72 inch */
+    fprintf(
+        file,
+        "    if (picture eq 'svg') {\n"
+        "        set terminal svg noenhanced size %.0f,%.0f dynamic font 'sans-serif,%d' "
+        "background rgb 'white'\n"
+        "    } else { if (picture eq 'png') {\n"
+        "        set terminal pngcairo noenhanced size %.0f,%.0f font 'sans,%d' fontscale %.4g "
+        "linewidth %.4g background rgb 'white'\n"
+        "    } else {\n"
+        "        set terminal pdfcairo noenhanced size %.4fin,%.4fin font 'sans,%d' fontscale 1 "
+        "background rgb 'white'\n"
+        "    } }\n",
+        wide, high, p->paper ? 11 : 13, wide * fine, high * fine, letters + (p->paper ? 0 : 1),
+        fine, fine, wide / 96.0, high / 96.0, letters);
+}
+
 static void put_look(const plot *p, FILE *file, size_t rows, size_t columns)
 {
-    const size_t key = 8 * (key_width(p) + 6);
-    const int width = (int)(columns * ((columns == 2 ? 480 : 600) + (key < 1000 ? key : 1000)));
-    const int height = (int)(rows == 1 ? 440 : 270 * rows);
-    fputs("set encoding utf8\n"
-          "set grid lc rgb '#d8d8d8' lt 1\n"
-          "set key noenhanced outside right top vertical samplen 1.5 spacing 1.1\n"
+    fputs("set encoding utf8\n", file);
+    fputs(p->paper ? "unset grid\n" : "set grid lc rgb '#d8d8d8' lt 1\n", file);
+    fputs("set key noenhanced outside center top horizontal samplen 1.5 spacing 1.1\n"
           "set border lc rgb '#404040'\n"
           "set xlabel noenhanced\nset ylabel noenhanced\n"
           "set tics nomirror out\n"
           "set offsets 0, 0, graph 0.05, graph 0.05\n"
-          "do for [picture in 'svg png'] {\n",
+          "do for [picture in 'svg png pdf'] {\n",
           file);
+    put_terminals(p, file, rows, columns);
     fprintf(file,
-            "    if (picture eq 'svg') {\n"
-            "        set terminal svg noenhanced size %d,%d dynamic font 'sans-serif,13' "
-            "background rgb 'white'\n"
-            "    } else {\n"
-            "        set terminal pngcairo noenhanced size %d,%d font 'sans,11' "
-            "background rgb 'white'\n"
-            "    }\n"
             "    set output base.'.'.picture\n"
             "    set multiplot layout %zu,%zu columnsfirst\n",
-            width, height, width, height, rows, columns);
+            rows, columns);
 }
 
 int plot_write_script(plot *p, const char *path)
 {
-    const size_t columns = p->panel_count > 3 ? 2 : 1;
+    const size_t columns = p->panel_count > 3 && !p->paper ? 2 : 1;
     const size_t rows = (p->panel_count + columns - 1) / columns;
     size_t column = 2;
     errno = 0;

@@ -30,7 +30,7 @@ static const char *const output_types[KIND_COUNT + 1] = {[KIND_FILE] = "file",
 static const char *const examples[KIND_COUNT] = {"results.csv", "motion.pvd",  "summary.csv",
                                                  "results.svg", "motion.html", "motion.mp4"};
 static const char *const vtk_endings[] = {".pvd", NULL};
-static const char *const plot_endings[] = {".svg", ".png", NULL};
+static const char *const plot_endings[] = {".svg", ".png", ".pdf", NULL};
 static const char *const scene_endings[] = {".html", ".glb", NULL};
 static const char *const video_endings[] = {".mp4", NULL};
 
@@ -247,7 +247,7 @@ static bool ends_with(const char *text, const char *ending)
 /* What an entry writes beside its file: a plot has a picture of each kind and a script. */
 static bool writes(const char *type, const char *file, const char *name)
 {
-    static const char *const endings[] = {".svg", ".png", ".gp"};
+    static const char *const endings[] = {".svg", ".png", ".pdf", ".gp"};
     const char *dot = strrchr(file, '.');
     if (strcmp(type, "plot") != 0 || !dot) {
         return strcmp(file, name) == 0;
