@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "analysis/driver_step.h"
 
+#include "base/floats.h"
 #include "nonlinear/jump.h"
 
 #include <math.h>
@@ -23,7 +24,7 @@ static double measure(const se3di_model *model, uint32_t row, double h, double s
     }
     const double way = jet_end[0] - jet[0];
     const double apart = jet_end[0] - (jet[0] + h * (jet[1] + 0.5 * h * jet[2]));
-    const double turns = TWO_PI * nearbyint(apart / TWO_PI);
+    const double turns = TWO_PI * se3di_nearest(apart / TWO_PI);
     const int is_tooth = model->rows[row].wrap && fabs(turns) > 0.0 &&
                          fabs(apart - turns) <= APART_MAX &&
                          se3di_jump_is_between(function, model->time, end);

@@ -3,6 +3,7 @@
  * angle of the last accepted state. */
 #include "primitive/turn_counter.h"
 
+#include "base/floats.h"
 #include "primitive/primitive.h"
 #include "primitive/scale.h"
 
@@ -17,7 +18,7 @@ double se3di_angle_value(const se3di_model *model, uint32_t angle)
     double principal =
         counter->offset + se3di_primitives[SE3DI_PRIMITIVE_ANGLE].value(
                               term, &model->frames[term->body_i], &model->frames[term->body_j]);
-    return principal + TWO_PI * nearbyint((counter->theta - principal) / TWO_PI);
+    return principal + TWO_PI * se3di_nearest((counter->theta - principal) / TWO_PI);
 }
 
 double se3di_term_value(const se3di_model *model, const se3di_term *term)
@@ -36,7 +37,7 @@ double se3di_row_violation(const se3di_model *model, const se3di_row *row, doubl
     for (uint32_t k = 0; k < row->term_count; ++k) {
         sum += se3di_term_value(model, &model->terms[row->term_begin + k]);
     }
-    return row->wrap ? sum - TWO_PI * nearbyint(sum / TWO_PI) : sum;
+    return row->wrap ? sum - TWO_PI * se3di_nearest(sum / TWO_PI) : sum;
 }
 
 void se3di_angles_accept(se3di_model *model)
