@@ -12,7 +12,7 @@
 #define DECAY_MIN 0.5  /* and least of it times a decay, if decays limit the step */
 #define HELD_EACH 8.0  /* steps between looks if there is no sign */
 #define SAFETY    0.8  /* a rejected step costs more than several that are this much shorter */
-#define CAUTION   0.01 /* of a first step that nothing is remembered for */
+#define CAUTION   0.01 /* of a first step that has one estimate of two */
 #define GROWTH    3.0  /* largest, of a step: one small error may be chance */
 
 static se3d_status evaluate_stage(se3di_explicit *m, double t, double h, int stage)
@@ -64,18 +64,62 @@ static se3d_status make_stages(se3di_explicit *m, double h, double *error)
     return SE3D_OK;
 }
 
-/* What the last step's estimate says of one of length h. */
-static double promised_error(const se3di_explicit *m, double h)
+/* In the history, of methods with a second estimate: what the last step added to the state, before
+ * the projection, and the derivative that it began with. */
+static double *last_change(const se3di_explicit *m)
 {
-    const double last = m->past->at.time - m->past->at.begin;
-    return last > 0.0 ? m->past->at.error * se3di_pow(h / last, m->tableau->order) : 0.0;
+    return m->forms + (size_t)(SE3DI_EXPLICIT_FORMS - 3) * m->count;
+}
+
+static double *last_derivative(const se3di_explicit *m)
+{
+    return m->forms + (size_t)(SE3DI_EXPLICIT_FORMS - 2) * m->count;
+}
+
+/* h^5/120 of the fifth derivative of the motion, relative to the tolerance: the divided difference
+ * of states and derivatives at the ends of this step and of the one before. With the times in
+ * steps, x = -r, 0, 1, and p_i the product of x_i - x_j,
+ *
+ *     sum_i h y'_i / p_i^2 - 2 y_i / p_i^2 sum_(j != i) 1 / (x_i - x_j)
+ *
+ * 0 where no step came before. */
+static double measure_fifth(se3di_explicit *m, double h)
+{
+    const double r = (m->past->at.time - m->past->at.begin) / h;
+    if (!(r > 0.0)) {
+        return 0.0;
+    }
+    const double p[3] = {r * (1.0 + r), r, 1.0 + r};
+    const double before = -2.0 * (1.0 / r + 1.0 / (1.0 + r)) / (p[0] * p[0]);
+    const double here = -2.0 * (1.0 + 1.0 / (1.0 + r)) / (p[2] * p[2]);
+    const double rate[3] = {h / (p[0] * p[0]), h / (p[1] * p[1]), h / (p[2] * p[2])};
+    const double *last = last_change(m), *f0 = last_derivative(m), *f1 = m->f1;
+    const double *f2 = se3di_explicit_end(m);
+    for (size_t k = 0; k < m->count; ++k) {
+        m->sum3[k] = here * (m->y[k] - m->y0[k]) + before * last[k] + rate[0] * f0[k] +
+                     rate[1] * f1[k] + rate[2] * f2[k];
+    }
+    return se3di_explicit_measure(m, m->sum3);
 }
 
 static double estimate_end(se3di_explicit *m, double h, double error)
 {
-    const double memory = m->tableau->memory;
-    m->remembered = memory > 0.0 ? memory * promised_error(m, h) : 0.0;
+    const double second = m->tableau->second;
+    m->remembered = second > 0.0 ? second * measure_fifth(m, h) : 0.0;
     return m->tableau->uses_end ? estimate_error(m, h) : error;
+}
+
+static void accept(se3di_explicit *m, double h)
+{
+    double *change = last_change(m);
+    (void)h;
+    if (!(m->tableau->second > 0.0)) {
+        return;
+    }
+    for (size_t k = 0; k < m->count; ++k) {
+        change[k] = m->y[k] - m->y1[k];
+    }
+    memcpy(last_derivative(m), m->f1, m->count * sizeof *m->f1);
 }
 
 static int get_end(const se3di_explicit *m)
@@ -106,10 +150,10 @@ static double next_step(const se3di_explicit *m, double h, double error)
     return se3di_adaptive_limit(m->step.integration, h);
 }
 
-/* A choice of steps that remembers has nothing to remember yet. */
+/* There is no second estimate of the first step. */
 static double shorten_first(const se3di_explicit *m, double h)
 {
-    return m->tableau->memory > 0.0 ? CAUTION * h : h;
+    return m->tableau->second > 0.0 ? CAUTION * h : h;
 }
 
 static double shrink(const se3di_explicit *m, se3d_status status, double error)
@@ -239,6 +283,7 @@ const se3di_explicit_class se3di_rk_class = {
     .make_stages = make_stages,
     .arrive = arrive,
     .estimate_end = estimate_end,
+    .accept = accept,
     .next_step = next_step,
     .shorten_first = shorten_first,
     .shrink = shrink,

@@ -24,7 +24,8 @@ typedef struct se3di_rk_tableau {
     int order;      /* of the error estimate's root: err^(-1/order) */
     double stable;  /* |h lambda| from which the step is held by stability */
     int uses_end;   /* the error estimate uses K[stages] */
-    double memory;  /* least part of the last estimate that counts for the next step */
+    double second;  /* weight of the second estimate for the next step, h^5/120 of the fifth
+                       derivative of the motion; 0: there is none */
     int dense_rows; /* rows of d */
     const double (*a)[SE3DI_RK_MAX];
     const double *c;

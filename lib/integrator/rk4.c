@@ -7,7 +7,8 @@
  *     error = h/6 (K_4 - K_5)
  *
  * In a motion of one freedom it passes through zero while the error does not (a pendulum at rest
- * with its arm horizontal): the choice of steps remembers the estimates before.
+ * with its arm horizontal): the choice of steps counts with the fifth derivative of the motion over
+ * two steps, too.
  *
  * Dense output: the cubic through both ends and their derivatives.
  * docs/theory/explicit-runge-kutta.md */
@@ -27,7 +28,7 @@ static const se3di_rk_tableau tableau = {
     .total = 5,
     .order = 4,
     .uses_end = 1,
-    .memory = 0.8,
+    .second = 1.0,
     .dense_rows = 0,
     .a = a,
     .c = c,
