@@ -191,9 +191,10 @@ static inline se3d_status se3d_solver_get_start_change(const se3d_solver *solver
 
 /* Get the tolerance to which the steps of a run are controlled: the one asked for, or the smallest
  * one that the method in use reaches if that is larger (dop853, gauss, rk45, rk4 6.7e-12, bdf
- * 1e-11, radau 1e-13, generalized_alpha, hht 1e-11); the log is told of that.
- * @param[out] tolerance  [relative] 0: errors are not controlled (other analyses, rattle, verlet,
- *                        generalized_alpha and hht with a step)
+ * 1e-11, radau 1e-13, or 1e-10 with redundant equations, generalized_alpha, hht 1e-11, rattle,
+ * verlet 1e-10, of order 4 1e-11); the log is told of that.
+ * @param[out] tolerance  [relative] 0: errors are not controlled (other analyses, and
+ *                        generalized_alpha, hht, rattle and verlet with a step)
  * @return OK, NULL.
  * @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_tolerance(const se3d_solver *solver, double *tolerance);

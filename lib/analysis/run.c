@@ -634,9 +634,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
     SE3DI_TRY(begin_dynamics(run, step));
     se3di_run_tell_bodies(run);
     se3di_run_tell_step(run);
-    if (has_step_control(integration)) {
-        se3di_run_tell_reach(run);
-    }
+    se3di_run_tell_reach(run);
     for (;;) {
         SE3DI_TRY(choose_steps(run, t_end));
         const se3d_status status = run_smoothly(run, t_end);

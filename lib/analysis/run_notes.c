@@ -11,8 +11,7 @@
 void se3di_run_tell_reach(se3di_run *run)
 {
     const se3di_integration *integration = &run->integration;
-    const double tolerance =
-        se3di_integrator_get_tolerance(integration->method, &integration->settings);
+    const double tolerance = se3di_integration_get_tolerance(integration, run->model);
     if (tolerance > integration->settings.tolerance && run->told_reach != integration->method) {
         run->told_reach = integration->method;
         se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_TOLERANCE,

@@ -14,17 +14,20 @@
 #include <math.h>
 #include <string.h>
 
-#define TRIALS_MAX  2000 /* steps that are tried */
-#define TRIAL_ERROR 1e-4 /* of a trial step */
-#define SHORTEST    1e-9 /* trial, of the run */
-#define STEP_LONG   1e-3 /* s: not longer, unless the trials came to the end of a long run */
-#define SPAN_PART   1e-2 /* of that run */
-#define TURN_MOST   1.0  /* rad, of a body in a step */
-#define ADD_UP      20.0 /* rad of the motion, over which the errors of steps add up */
-#define FACTOR_4    5.0  /* the error of order 4 over the square of that of order 2 */
-#define MUCH        4.0  /* over the tolerance, */
-#define PHASE       0.3  /* rad of the motion that it is so in: the step was too long */
-#define PART_LEAST  1e-3 /* of the first step */
+#define TRIALS_MAX  2000  /* steps that are tried */
+#define TRIAL_ERROR 1e-4  /* of a trial step */
+#define SHORTEST    1e-9  /* trial, of the run */
+#define STEP_LONG   1e-3  /* s: not longer, unless the trials came to the end of a long run */
+#define SPAN_PART   1e-2  /* of that run */
+#define TURN_MOST   1.0   /* rad, of a body in a step */
+#define ADD_UP      20.0  /* rad of the motion, over which the errors of steps add up */
+#define FACTOR_4    5.0   /* the error of order 4 over the square of that of order 2 */
+#define MUCH        4.0   /* over the tolerance, */
+#define PHASE       0.3   /* rad of the motion that it is so in: the step was too long */
+#define CALM        6.3   /* rad of that motion without it: the step may be longer again */
+#define PART_LEAST  1e-3  /* of the first step */
+#define REACH_2     1e-10 /* of order 2, */
+#define REACH_4     1e-11 /* and of order 4 */
 
 static int are_chosen(const se3di_integration *integration, const se3di_model *model)
 {
@@ -35,6 +38,18 @@ static int are_chosen(const se3di_integration *integration, const se3di_model *m
 int se3di_equal_steps_are_chosen(const se3di_integration *integration)
 {
     return are_chosen(integration, integration->equations->assembly.model);
+}
+
+double se3di_equal_steps_reach(const se3di_integration *integration, const se3di_model *model)
+{
+    return !are_chosen(integration, model)    ? 0.0
+           : integration->settings.order == 4 ? REACH_4
+                                              : REACH_2;
+}
+
+static double tolerance_of(const se3di_integration *integration)
+{
+    return se3di_integration_get_tolerance(integration, integration->equations->assembly.model);
 }
 
 double se3di_equal_steps_get(const se3di_integration *integration, const se3di_model *model)
@@ -110,13 +125,13 @@ static double measure(const se3di_equations *equations, double h, double speed[2
 static double error_of(const se3di_integration *integration, double e2)
 {
     const double e = integration->settings.order == 4 ? FACTOR_4 * e2 * e2 : e2;
-    return ADD_UP * e / integration->settings.tolerance;
+    return ADD_UP * e / tolerance_of(integration);
 }
 
 /* The error e2 that a step may have. */
 static double most_of(const se3di_integration *integration)
 {
-    const double e = integration->settings.tolerance / ADD_UP;
+    const double e = tolerance_of(integration) / ADD_UP;
     return integration->settings.order == 4 ? sqrt(e / FACTOR_4) : e;
 }
 
@@ -300,6 +315,15 @@ se3d_status se3di_equal_steps_choose(se3di_integration *integration, double t_en
     return SE3D_OK;
 }
 
+/* Twice the step from here on, at most the first one. */
+static void lengthen(se3di_integration *integration)
+{
+    double *header = integration->equations->assembly.model->history;
+    header[SE3DI_EQUAL_OVER] = 0.0;
+    header[SE3DI_EQUAL_STEP] = integration->settings.step_most =
+        fmin(2.0 * header[SE3DI_EQUAL_STEP], header[SE3DI_EQUAL_FIRST]);
+}
+
 /* Half the step from here on, if it is not very short already. */
 static void shorten(se3di_integration *integration, double part)
 {
@@ -319,15 +343,31 @@ static void shorten(se3di_integration *integration, double part)
                     "t = %g s: the step of %.3g s that %s chose at its start is too long here: the "
                     "error of a step is %.2g, the tolerance %g; steps of %.3g s follow",
                     model->time, before, integration->method->name,
-                    part * integration->settings.tolerance, integration->settings.tolerance,
+                    part * tolerance_of(integration), tolerance_of(integration),
                     header[SE3DI_EQUAL_STEP]);
 }
 
 /* How many steps that are MUCH too long a motion of so much phase is: of frequency w, in equal
  * steps of h, it has the error (w h)^2/12. Singular positions are passed in less. */
-static double steps_of_phase(const se3di_integration *integration)
+static double steps_of_phase(const se3di_integration *integration, double phase)
 {
-    return fmax(3.0, PHASE / sqrt(12.0 * MUCH * most_of(integration)));
+    return fmax(3.0, phase / sqrt(12.0 * MUCH * most_of(integration)));
+}
+
+/* Steps of late that were too long, or, below zero, that could have been of twice the length if
+ * they were shortened before. */
+static double count_step(const se3di_integration *integration, const double *header, double part)
+{
+    const double over = header[SE3DI_EQUAL_OVER];
+    const double of_twice = integration->settings.order == 4 ? 16.0 : 4.0;
+    const int can_grow = header[SE3DI_EQUAL_STEP] < header[SE3DI_EQUAL_FIRST];
+    if (part > MUCH && !integration->is_paced) {
+        return fmax(0.0, over) + 1.0;
+    }
+    if (over > 0.0) {
+        return fmax(0.0, over - 1.0);
+    }
+    return can_grow && of_twice * part <= 1.0 ? over - 1.0 : 0.0;
 }
 
 void se3di_equal_steps_watch(se3di_integration *integration, double h)
@@ -342,9 +382,10 @@ void se3di_equal_steps_watch(se3di_integration *integration, double h)
     header[SE3DI_EQUAL_SPEED] = speed[0];
     header[SE3DI_EQUAL_SPIN] = speed[1];
     const double part = error_of(integration, e2);
-    const double is_over = part > MUCH && !integration->is_paced ? 1.0 : -1.0;
-    header[SE3DI_EQUAL_OVER] = fmax(0.0, header[SE3DI_EQUAL_OVER] + is_over);
-    if (header[SE3DI_EQUAL_OVER] >= steps_of_phase(integration)) {
+    header[SE3DI_EQUAL_OVER] = count_step(integration, header, part);
+    if (header[SE3DI_EQUAL_OVER] >= steps_of_phase(integration, PHASE)) {
         shorten(integration, part);
+    } else if (-header[SE3DI_EQUAL_OVER] >= steps_of_phase(integration, CALM)) {
+        lengthen(integration);
     }
 }

@@ -22,7 +22,7 @@ enum {
     SE3DI_EQUAL_FIRST, /* the one that was chosen [s] */
     SE3DI_EQUAL_SPEED, /* the largest so far [m/s], */
     SE3DI_EQUAL_SPIN,  /* [rad/s] */
-    SE3DI_EQUAL_OVER,  /* steps of late with too large an error */
+    SE3DI_EQUAL_OVER,  /* steps of late with too large an error; below 0: with a very small one */
     SE3DI_EQUAL_TOLD,  /* as much was told of, over the tolerance */
     SE3DI_EQUAL_HEADER
 };
@@ -32,6 +32,10 @@ struct se3di_model;
 
 /* Nobody has given a step, neither of the method nor of contacts; nor do particles choose it. */
 int se3di_equal_steps_are_chosen(const struct se3di_integration *integration);
+/* The smallest tolerance that chosen steps meet: below it they would be so many that their rounding
+ * adds up to more. 0: none are chosen. */
+double se3di_equal_steps_reach(const struct se3di_integration *integration,
+                               const struct se3di_model *model);
 /* Choose the step of a run to t_end, if that is to be done: the model, its history and memories
  * are as they were but for the choice. @return OK, NO_MEMORY, INTERRUPTED */
 se3d_status se3di_equal_steps_choose(struct se3di_integration *integration, double t_end);

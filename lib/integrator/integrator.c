@@ -21,9 +21,12 @@ const se3di_integrator *se3di_integrator_find(int32_t method)
     return method >= 0 && method < count ? methods[method] : NULL;
 }
 
-double se3di_integrator_get_tolerance(const se3di_integrator *method,
-                                      const se3di_integrator_settings *settings)
+double se3di_integration_get_tolerance(const se3di_integration *integration,
+                                       const se3di_model *model)
 {
-    const int is_controlled = method->reach > 0.0 && !(method->fixes_step && settings->step > 0.0);
-    return is_controlled ? fmax(settings->tolerance, method->reach) : 0.0;
+    const se3di_integrator *method = integration->method;
+    const double reach = method->get_reach ? method->get_reach(integration, model) : method->reach;
+    const int is_controlled =
+        reach > 0.0 && !(method->fixes_step && integration->settings.step > 0.0);
+    return is_controlled ? fmax(integration->settings.tolerance, reach) : 0.0;
 }

@@ -86,11 +86,14 @@ typedef struct se3di_integrator {
     const struct se3di_rk_tableau *tableau;            /* and of those of Runge-Kutta */
     /* Of the Newmark family: its coefficients. */
     struct se3di_newmark (*newmark)(const se3di_integrator_settings *settings);
-    int32_t is_implicit;   /* not 0: integration->newton is made */
-    int32_t is_explicit;   /* not 0: works with formulations in the fewest unknowns, */
-    int32_t is_reduced;    /* and so do these implicit ones */
-    uint32_t orders;       /* bit k: settings.order may be k; 0, the default one, always may */
-    double reach;          /* smallest tolerance that its control of errors meets; 0: it has none */
+    int32_t is_implicit; /* not 0: integration->newton is made */
+    int32_t is_explicit; /* not 0: works with formulations in the fewest unknowns, */
+    int32_t is_reduced;  /* and so do these implicit ones */
+    uint32_t orders;     /* bit k: settings.order may be k; 0, the default one, always may */
+    double reach;        /* smallest tolerance that its control of errors meets; 0: it has none */
+    /* The same where it depends on order, model or what is chosen; NULL: it does not. */
+    double (*get_reach)(const struct se3di_integration *integration,
+                        const struct se3di_model *model);
     int32_t fixes_step;    /* not 0: with settings.step, errors are not controlled */
     int32_t chooses_step;  /* not 0: without one, equal steps are chosen (equal_steps.h) */
     int32_t weighs_bodies; /* not 0: needs a mass matrix of bodies alone, without armatures */
@@ -136,10 +139,10 @@ struct se3di_integration {
 SE3DI_METHOD_LIST(SE3DI_METHOD_DECLARE)
 #undef SE3DI_METHOD_DECLARE
 
-/* The tolerance that the steps of a run are controlled to: the one that is asked for, or what the
- * method reaches; 0: errors are not controlled. */
-double se3di_integrator_get_tolerance(const se3di_integrator *method,
-                                      const se3di_integrator_settings *settings);
+/* The tolerance that the steps of a run on the model are controlled to: the one that is asked for,
+ * or what the method reaches; 0: errors are not controlled. */
+double se3di_integration_get_tolerance(const se3di_integration *integration,
+                                       const se3di_model *model);
 
 /* By se3d_method, AUTO: the one with which a run begins; NULL: there is none of that number. */
 const se3di_integrator *se3di_integrator_find(int32_t method);

@@ -78,6 +78,7 @@ const se3di_integrator se3di_integrator_rattle = {
     .renew = se3di_lie_verlet_renew,
     .step = step,
     .chooses_step = 1,
+    .get_reach = se3di_equal_steps_reach,
     .orders = 1u << 2 | 1u << 4,
     .weighs_bodies = 1,
 };

@@ -248,6 +248,7 @@ const se3di_integrator se3di_integrator_verlet = {
     .step = step,
     .run = run,
     .chooses_step = 1,
+    .get_reach = se3di_equal_steps_reach,
     .orders = 1u << 2,
     .weighs_bodies = 1,
 };

@@ -279,8 +279,8 @@ se3d_status se3d_solver_get_tolerance(const se3d_solver *solver, double *toleran
         return SE3D_ERR_NULL;
     }
     const se3di_integration *integration = &solver->run.integration;
-    *tolerance = solver->run.analysis == SE3D_ANALYSIS_DYNAMICS
-                     ? se3di_integrator_get_tolerance(integration->method, &integration->settings)
+    *tolerance = solver->system && solver->run.analysis == SE3D_ANALYSIS_DYNAMICS
+                     ? se3di_integration_get_tolerance(integration, &solver->system->model)
                      : 0.0;
     return SE3D_OK;
 }

@@ -18,6 +18,15 @@ static const char double_pendulum[] =
     "joints: [{name: s, type: spherical, body_i: ground, body_j: a, at: [0, 0, 0]},"
     "         {name: t, type: spherical, body_i: a, body_j: b, at: [1, 0, 0]}],"
     "analysis: {type: dynamics, duration: 1}}";
+static const char kicked[] =
+    "{se3d: 1, bodies: [{name: a, mass: 1, inertia: [0.01, 0.0833, 0.0833], position: [0.5, 0, "
+    "0]}],"
+    "joints: [{name: s, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, "
+    "0]}],"
+    "forces: [{name: m, type: torque, body: a, value: [\"0\", "
+    "\"60*exp(-((t-0.5)/0.04)^8)*sin(300*t)\", "
+    "\"0\"]}],"
+    "analysis: {type: dynamics, duration: 2}}";
 static const char spun_up[] =
     "{se3d: 1, bodies: [{name: a, mass: 1, inertia: [0.01, 0.0833, 0.0833], position: [0.5, 0, "
     "0]}],"
@@ -246,6 +255,36 @@ static void a_choice_that_turns_out_wrong_is_mended(void)
     text_model_close(&m);
 }
 
+/* In frames that do not know of it: steps are short in a pulse and long again behind it, where they
+ * stayed as short. */
+static void steps_are_long_again_behind_a_pulse(void)
+{
+    double first = 0.0, step = 0.0, shortest = HUGE_VAL;
+    motion end[2] = {{{{0.0}}}, {{{0.0}}}};
+    for (int k = 0; k < 2; ++k) {
+        se3d_solver_def def = se3d_solver_def_default();
+        se3d_solver *solver = NULL;
+        se3d_system *system = open_copy(kicked);
+        def.method = k ? SE3D_METHOD_DOP853 : SE3D_METHOD_RATTLE;
+        def.tolerance = k ? 1e-11 : 1e-5;
+        CHECK(!se3d_solver_create(system, &def, &solver));
+        for (int frame = 1; frame <= 120; ++frame) {
+            CHECK(se3d_solver_run(solver, frame / 60.0) >= 0);
+            if (k == 0) {
+                CHECK(!se3d_solver_get_step(solver, frame == 1 ? &first : &step));
+                shortest = frame > 1 ? fmin(shortest, step) : shortest;
+            }
+        }
+        look(system, end[k].value[0]);
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(system);
+    }
+    CHECK(shortest < 0.2 * first && step > 0.4 * first);
+    for (int c = 0; c < 6; ++c) {
+        CHECK_NEAR(end[0].value[0][c], end[1].value[0][c], 1e-3 * (c < 3 ? 0.5 : 5.0));
+    }
+}
+
 int main(void)
 {
     RUN(every_method_is_near_the_truth_without_step_and_tolerance);
@@ -253,5 +292,6 @@ int main(void)
     RUN(the_choice_goes_on_in_clones_and_snapshots);
     RUN(steps_are_equal_and_a_given_one_is_reported);
     RUN(a_choice_that_turns_out_wrong_is_mended);
+    RUN(steps_are_long_again_behind_a_pulse);
     return check_finish();
 }

@@ -161,6 +161,9 @@ static void a_tolerance_that_is_not_reached_is_logged_once(void)
                 {SE3D_METHOD_BDF, 0.0, 0.0, 1e-6, NULL},
                 {SE3D_METHOD_RADAU, 1e-12, 0.0, 1e-12, NULL},
                 {SE3D_METHOD_GENERALIZED_ALPHA, 1e-12, 1e-4, 0.0, NULL},
+                {SE3D_METHOD_RATTLE, 1e-14, 0.0, 1e-10, "rattle"},
+                {SE3D_METHOD_VERLET, 1e-14, 0.0, 1e-10, "verlet"},
+                {SE3D_METHOD_RATTLE, 1e-9, 0.0, 1e-9, NULL},
                 {SE3D_METHOD_RATTLE, 1e-14, 1e-4, 0.0, NULL},
                 {SE3D_METHOD_VERLET, 1e-14, 1e-4, 0.0, NULL}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
