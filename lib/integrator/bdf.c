@@ -14,6 +14,7 @@
 #include "integrator/radau.h"
 
 #include "assembly/energy.h"
+#include "assembly/loads.h"
 #include "contact/bodies/pace.h"
 #include "force/force.h"
 #include "math/elementary.h"
@@ -24,8 +25,10 @@
 #include <math.h>
 #include <string.h>
 
-#define GROWTH 2.0  /* of a step at most */
-#define LOOSE  1e-4 /* a tolerance at which so few steps are made that their errors hardly add up */
+#define GROWTH   2.0  /* of a step at most */
+#define VIBRATES 0.5  /* (frequency times step)^2 from which orders above 2 are not stable */
+#define STIFF    1e3  /* and up to which */
+#define LOOSE    1e-4 /* a tolerance of so few steps that their errors hardly add up */
 
 /* Newton iterations: a shorter step is worth more than many, if it can be had. */
 #define ITERATIONS_CONTROLLED 10
@@ -40,7 +43,7 @@ static size_t history_count(const se3di_assembly *assembly)
 static size_t work_count(const se3di_assembly *assembly)
 {
     return se3di_radau_work_count(assembly) + 4 * se3di_state_count(assembly) +
-           2 * (size_t)assembly->unknown_count + assembly->row_count;
+           4 * (size_t)assembly->unknown_count + 2 * assembly->row_count;
 }
 
 /* What a step may err by: local errors of order 5 add up over a number of steps that grows with
@@ -73,6 +76,7 @@ static void point_into(se3di_bdf *m, const se3di_integration *integration, size_
     m->acceleration = m->difference + count;
     m->work = m->acceleration + n;
     m->lambda = m->work + n;
+    m->relaxation = m->lambda + assembly->row_count;
 }
 
 static se3di_bdf begin(se3di_integration *integration)
@@ -83,11 +87,20 @@ static se3di_bdf begin(se3di_integration *integration)
     return m;
 }
 
+/* Undamped vibrations of the step's own speed would grow by orders above 2. */
+static int is_unstable(const se3di_bdf *m)
+{
+    const se3di_fastness *fast = &m->past->fast;
+    return se3di_loads_are_stiff(m->assembly->model) && fast->spring2 > VIBRATES &&
+           fast->spring2 < STIFF && fast->damper2 < fast->spring2;
+}
+
 /* The highest order that may be used. */
 static int get_top(const se3di_bdf *m)
 {
     const int top = m->integration->settings.order;
-    return top >= 1 && top <= SE3DI_BDF_ORDER_MAX ? top : SE3DI_BDF_ORDER_MAX;
+    const int most = is_unstable(m) ? 2 : SE3DI_BDF_ORDER_MAX;
+    return top >= 1 && top <= most ? top : most;
 }
 
 /* The largest part of m->difference, relative to tolerance and scales. */
@@ -201,7 +214,10 @@ static se3d_status project_end(se3di_bdf *m)
 {
     const size_t bodies = m->count - SE3DI_STATE_WORK;
     double work[SE3DI_STATE_WORK];
+    const se3di_relaxation relaxation = {m->t, m->c, m->fast, m->acceleration, m->relaxation};
+    SE3DI_TRY(se3di_bdf_close(m));
     SE3DI_TRY(se3di_state_project(m->equations, m->t, &m->past->scale, m->accuracy, 0));
+    SE3DI_TRY(se3di_relax(m->integration, &relaxation));
     memcpy(work, m->y + bodies, sizeof work);
     se3di_state_get(m->assembly, m->y);
     memcpy(m->y + bodies, work, sizeof work);
@@ -219,6 +235,8 @@ static void take(se3di_bdf *m, const double *power, int order, int is_bdf)
     m->past->at.begin = m->past->at.time;
     m->past->at.time = m->t;
     m->past->used = order;
+    m->past->c = m->c;
+    m->past->fast = m->fast;
     m->past->since += 1.0;
     m->past->at.renewed = 0.0;
     se3di_angles_accept(m->assembly->model);
@@ -337,6 +355,10 @@ static void adapt(se3di_bdf *m, int order, const errors *e)
     if (m->past->since > order && isfinite(e->higher) && factor_of(e->higher, order + 1) > best) {
         best = factor_of(e->higher, order + 1);
         chosen = order + 1;
+    }
+    if (chosen > get_top(m)) {
+        chosen = get_top(m);
+        best = fmin(best, 1.0);
     }
     set_order(m, chosen);
     double factor = 1.0;
@@ -506,6 +528,18 @@ static se3d_status renew(se3di_integration *integration)
     return SE3D_OK;
 }
 
+/* m->y, interpolated at t, onto the constraints, and relaxed. */
+static se3d_status relax_within(se3di_bdf *m, double t)
+{
+    const se3di_relaxation relaxation = {t, m->past->c, m->past->fast, m->acceleration,
+                                         m->relaxation};
+    se3di_bdf_eval_rate(m, t, m->difference);
+    for (size_t k = 0; k < m->assembly->unknown_count; ++k) {
+        m->acceleration[k] = m->difference[k / 6 * SE3DI_STATE_SIZE + 7 + k % 6];
+    }
+    return se3di_relax_state(m->integration, &relaxation, &m->past->scale, m->y);
+}
+
 static se3d_status publish(se3di_bdf *m, double t, int project)
 {
     const int at_begin = !(t > m->past->at.begin) && m->past->count > 1.0;
@@ -519,6 +553,10 @@ static se3d_status publish(se3di_bdf *m, double t, int project)
     }
     const double rough = se3di_state_rough(m->assembly->model, m->integration->shows_motion,
                                            m->integration->settings.tolerance);
+    if (project && !(rough > 0.0) && se3di_is_fast(&m->past->fast)) {
+        SE3DI_TRY(relax_within(m, t));
+        project = 0;
+    }
     return se3di_state_publish(
         m->equations,
         &(se3di_shown){

@@ -5,7 +5,7 @@
 #ifndef SE3DI_BDF_H
 #define SE3DI_BDF_H
 
-#include "integrator/state.h"
+#include "integrator/relax.h"
 
 #define SE3DI_BDF_REACH      1e-11 /* smallest tolerance of a run */
 #define SE3DI_BDF_ORDER_MAX  5
@@ -20,11 +20,13 @@ typedef struct se3di_bdf_past {
     double since;  /* steps since the order changed */
     double starts; /* 1: no step was rejected and no order found too high yet */
     double count;  /* states that there are, */
+    double c;      /* the weight of the last step, */
+    se3di_fastness fast;
     double times[SE3DI_BDF_POINTS_MAX];
 } se3di_bdf_past;
 
 #define SE3DI_BDF_PAST (sizeof(se3di_bdf_past) / sizeof(double))
-_Static_assert(sizeof(se3di_bdf_past) == (15 + SE3DI_BDF_POINTS_MAX) * sizeof(double),
+_Static_assert(sizeof(se3di_bdf_past) == (18 + SE3DI_BDF_POINTS_MAX) * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct se3di_bdf {
@@ -46,6 +48,8 @@ typedef struct se3di_bdf {
     double accuracy;      /* violation of constraints that does not matter: near a singular position
                              velocities magnify it by the square of the inverse distance */
     double t, h, c;       /* the end of the step, its length, its weight */
+    double *relaxation;   /* [2 * unknowns + rows] */
+    se3di_fastness fast;
     int32_t iterations_max;
     int32_t reserved;
 } se3di_bdf;
@@ -76,5 +80,9 @@ void se3di_bdf_bend(se3di_bdf *m, const double *jump, const double work[SE3DI_ST
 
 /* y_1 and the multipliers of a prepared step. */
 se3d_status se3di_bdf_solve(se3di_bdf *m);
+
+/* Put its positions onto their constraints along the Newton matrix, if springs are far faster than
+ * it: the projection, which knows masses only, would stretch them by what is open. */
+se3d_status se3di_bdf_close(se3di_bdf *m);
 
 #endif

@@ -21,6 +21,7 @@
 #include <string.h>
 
 #define REGULARISATION 1e-9
+#define CLOSINGS       3 /* until rounding is left */
 
 /* y_1 from the accelerations, and the frames. */
 static void update_state(se3di_bdf *m)
@@ -124,6 +125,7 @@ static se3d_status iterate(se3di_bdf *m, int refactor, double *size)
             se3di_kkt_expect(newton->kkt, NULL, NULL);
             return status;
         }
+        m->fast = se3di_relax_trust(equations, se3di_relax_measure(newton, m->c, m->h));
     }
     SE3DI_TRY(se3di_newton_solve(newton));
     ++equations->counters.iterations;
@@ -218,4 +220,33 @@ se3d_status se3di_bdf_solve(se3di_bdf *m)
     const se3d_status status = iterate_to_convergence(m);
     se3di_kkt_set_settings(kkt, &before);
     return status;
+}
+
+se3d_status se3di_bdf_close(se3di_bdf *m)
+{
+    se3di_equations *equations = m->equations;
+    se3di_assembly *assembly = m->assembly;
+    const double weight = 1.0 / (m->c * m->c);
+    if (!se3di_is_fast(&m->fast)) {
+        return SE3D_OK;
+    }
+    for (int round = 0; round < CLOSINGS && assembly->row_count > 0; ++round) {
+        se3di_assembly_eval_jacobian(assembly);
+        se3di_assembly_eval_phi(assembly, equations->c);
+        for (uint32_t k = 0; k < assembly->row_count; ++k) {
+            equations->c[k] *= -weight;
+        }
+        memset(equations->b, 0, assembly->unknown_count * sizeof *equations->b);
+        SE3DI_TRY(se3di_newton_solve_displacement(&m->integration->newton));
+        for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+            m->work[k] = equations->x[k] / weight;
+        }
+        for (uint32_t k = 0; k < assembly->body_count; ++k) {
+            se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+            assembly->formulation->move(frame, m->work + 6 * (size_t)k);
+            se3di_quat_normalize(frame->p, frame->p);
+            se3di_frame_update(frame);
+        }
+    }
+    return SE3D_OK;
 }

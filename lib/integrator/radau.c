@@ -26,16 +26,26 @@
 #define STAGES SE3DI_RADAU_STAGES
 #define REACH  1e-13 /* smallest tolerance of a run */
 
+/* The same where rows are redundant: at singular positions nearer stages are noise. */
+#define REACH_REDUNDANT 1e-10
+
+#define UNTRUSTED 0.7 /* of a step whose iteration did not converge: from there on they are tried */
+#define TRUST     1.02 /* again, longer and longer with every step */
+
 /* The history: this header, the accepted state, then of the last step: its start, the increments of
  * the stages, d = h f_0 - h u'(0). */
 typedef struct radau_header {
     se3di_adaptive_history at;
     se3di_state_scale scale;
     double last; /* the last step [s], 0: none */
+    se3di_fastness fast;
+    double
+        trusted;  /* the longest step in which the iteration is expected to converge [s], 0: any */
+    double since; /* steps since one did not */
 } radau_header;
 
 #define RADAU_HEADER (sizeof(radau_header) / sizeof(double))
-_Static_assert(sizeof(radau_header) == 11 * sizeof(double),
+_Static_assert(sizeof(radau_header) == 15 * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct history {
@@ -60,10 +70,18 @@ static history get_history(const se3di_assembly *assembly)
     return past;
 }
 
-/* The estimate is of order 3, the result of order 5 (Hairer, Wanner 1996, sec. IV.8). */
-static double inner_tolerance(double tolerance)
+static double get_reach(const se3di_integration *integration, const se3di_model *model)
 {
-    return 0.34 * se3di_pow(fmax(tolerance, REACH), 0.8);
+    (void)model;
+    const int is_redundant = integration->equations && integration->equations->redundant;
+    return is_redundant ? REACH_REDUNDANT : REACH;
+}
+
+/* The estimate is of order 3, the result of order 5 (Hairer, Wanner 1996, sec. IV.8). */
+static double inner_tolerance(const se3di_integration *integration)
+{
+    const se3di_model *model = integration->equations->assembly.model;
+    return 0.34 * se3di_pow(se3di_integration_get_tolerance(integration, model), 0.8);
 }
 
 /* The iteration stops if it does not show in the result. If stages are projected it
@@ -156,7 +174,7 @@ static se3d_status set_stage(se3di_radau *m, int i)
     if (equations->friction.count > 0) {
         const double t = m->t + se3di_radau_c[i] * m->h;
         if (m->projects) {
-            SE3DI_TRY(se3di_state_project(equations, t, &m->scale, 1e-13, 0));
+            SE3DI_TRY(se3di_state_project(equations, t, &m->scale, m->accuracy, 0));
         }
         SE3DI_TRY(se3di_state_evaluate(equations, t));
         lambda = equations->l;
@@ -165,6 +183,16 @@ static se3d_status set_stage(se3di_radau *m, int i)
         memcpy(m->assembly->model->lambda, lambda, rows * sizeof *lambda);
     }
     return SE3D_OK;
+}
+
+/* With the accelerations m->vdot. */
+static se3di_relaxation get_relaxation(const se3di_radau *m, double t)
+{
+    return (se3di_relaxation){.t = t,
+                              .c = se3di_radau_gamma * m->h,
+                              .fast = se3di_relax_trust(m->equations, m->fast),
+                              .vdot = m->vdot,
+                              .work = m->relaxation};
 }
 
 /* The work done, as a part of the states of the stages. */
@@ -221,6 +249,9 @@ static se3d_status project_end(se3di_radau *m)
 {
     const double accuracy = m->projects ? 1e-15 : 1e-13; /* accelerations magnify it */
     SE3DI_TRY(se3di_state_project(m->equations, m->t + m->h, &m->scale, accuracy, 0));
+    se3di_radau_get_acceleration(m, STAGES - 1, m->vdot);
+    const se3di_relaxation relaxation = get_relaxation(m, m->t + m->h);
+    SE3DI_TRY(se3di_relax(m->integration, &relaxation));
     return se3di_state_prepare(m->equations, m->t + m->h);
 }
 
@@ -248,6 +279,9 @@ static se3d_status accept(se3di_radau *m, const history *past, double t)
     past->header->at.begin = m->t;
     past->header->at.time = t;
     past->header->last = m->h;
+    past->header->fast = se3di_relax_trust(m->equations, m->fast);
+    past->header->since += 1.0;
+    past->header->trusted *= se3di_pow(TRUST, past->header->since);
     past->header->at.renewed = 0.0;
     se3di_state_scale_grow(m->assembly, m->f0, &m->scale);
     past->header->scale = m->scale;
@@ -277,6 +311,7 @@ static se3d_status attempt(se3di_radau *m, const history *past, double inner, do
     m->h = h;
     m->fraction = 0.0;
     m->tolerance = inner > 0.0 ? iteration_tolerance(m, inner) : 1e-12;
+    m->accuracy = inner > 0.0 ? fmin(1e-13, fmax(1e-15, 1e-6 * inner)) : 1e-13;
     m->iterations_max = inner > 0.0 ? 12 : 50;
     *error = HUGE_VAL;
     se3di_contacts_begin(m->assembly->model, inner > 0.0 ? 0.0 : h, 1.0, 0);
@@ -325,7 +360,8 @@ static double next_step(const se3di_radau *m, const history *past, double error)
         factor = fmin(factor, predicted);
     }
     factor = fmin(header->at.rejected > 0.0 ? 1.0 : 8.0, fmax(0.2, factor));
-    return se3di_adaptive_limit(m->integration, factor * m->h);
+    const double next = se3di_adaptive_limit(m->integration, factor * m->h);
+    return header->trusted > 0.0 ? fmin(next, header->trusted) : next;
 }
 
 /* ---- in the loop of all methods ---- */
@@ -364,10 +400,14 @@ static se3d_status take(se3di_adaptive *step, double h, double error)
     return SE3D_OK;
 }
 
+/* Stiff forces whose directions turn limit the step by the one matrix of all stages: where the
+ * iteration has failed once it would again. */
 static double shrink(se3di_adaptive *step, double h, se3d_status status, double error)
 {
-    (void)step;
-    (void)h;
+    if (status == SE3D_ERR_NO_CONVERGENCE) {
+        get_step(step)->past.header->trusted = UNTRUSTED * h;
+        get_step(step)->past.header->since = 0.0;
+    }
     return status < 0 ? 0.5 : fmin(0.9, fmax(0.1, 0.9 * se3di_pow(error, -0.25)));
 }
 
@@ -385,7 +425,7 @@ static se3d_status advance(se3di_integration *integration, double t_end)
     static const se3di_adaptive_class methods = {se3di_adaptive_pace, try_step, take, shrink,
                                                  surrender,           1e-12};
     controlled_step s = {.past = get_history(&integration->equations->assembly),
-                         .inner = inner_tolerance(integration->settings.tolerance)};
+                         .inner = inner_tolerance(integration)};
     s.step = (se3di_adaptive){.methods = &methods,
                               .integration = integration,
                               .at = &s.past.header->at,
@@ -424,7 +464,7 @@ static se3d_status start(se3di_integration *integration, double h)
     const double limit = integration->settings.step;
     (void)h;
     SE3DI_TRY(adopt(integration));
-    const double first = fmin(1e-3, sqrt(inner_tolerance(integration->settings.tolerance)));
+    const double first = fmin(1e-3, sqrt(inner_tolerance(integration)));
     past.header->at.next = limit > 0.0 ? fmin(limit, first) : first;
     return SE3D_OK;
 }
@@ -437,26 +477,66 @@ static se3d_status renew(se3di_integration *integration)
     return SE3D_OK;
 }
 
+/* The accelerations that the interpolation has at t [unknowns]. */
+static void eval_accelerations(const history *past, size_t count, double t, double *vdot)
+{
+    const double h = past->header->last;
+    const double *c = se3di_radau_c;
+    const double s = (t - past->header->at.time) / h + 1.0;
+    const double quartic = (s - c[0]) * (s - c[1]) * (1.0 - s) / (c[0] * c[1]);
+    double rate[STAGES];
+    for (int j = 0; j < STAGES; ++j) { /* l_j'(s) */
+        const double a = c[(j + 1) % STAGES], b = c[(j + 2) % STAGES];
+        rate[j] = ((s - a) * (s - b) + s * (2.0 * s - a - b)) / (c[j] * (c[j] - a) * (c[j] - b));
+    }
+    for (size_t k = 0; k < 6 * (count / SE3DI_STATE_SIZE); ++k) {
+        const size_t at = k / 6 * SE3DI_STATE_SIZE + 7 + k % 6;
+        const double *Z = past->Z + at;
+        vdot[k] =
+            (rate[0] * Z[0] + rate[1] * Z[count] + rate[2] * Z[2 * count] + quartic * past->d[at]) /
+            h;
+    }
+}
+
+/* y, interpolated at t, onto the constraints, and relaxed. */
+static se3d_status relax_within(se3di_integration *integration, const history *past, double t,
+                                double *y)
+{
+    se3di_radau m;
+    se3di_radau_begin(&m, integration);
+    m.h = past->header->last;
+    m.fast = past->header->fast;
+    eval_accelerations(past, m.count, t, m.vdot);
+    const se3di_relaxation relaxation = get_relaxation(&m, t);
+    return se3di_relax_state(integration, &relaxation, &past->header->scale, y);
+}
+
 static se3d_status publish(se3di_integration *integration, double t)
 {
     se3di_equations *equations = integration->equations;
     const history past = get_history(&equations->assembly);
     const radau_header *header = past.header;
     const int is_within = t > header->at.begin && t < header->at.time;
+    const size_t count = se3di_state_count(&equations->assembly);
     double *y = t < header->at.time ? past.start : past.y1;
     se3di_forces_show(equations->assembly.model, t < header->at.time);
     if (is_within) {
         y = integration->work;
-        eval_polynomial(&past, se3di_state_count(&equations->assembly), t, y);
+        eval_polynomial(&past, count, t, y);
     } else {
         t = t < header->at.time ? header->at.begin : header->at.time;
     }
     const double rough = se3di_state_rough(equations->assembly.model, integration->shows_motion,
                                            integration->settings.tolerance);
-    return se3di_state_publish(
-        equations,
-        &(se3di_shown){
-            .y = y, .t = t, .scale = &header->scale, .rough = rough, .project = is_within});
+    const int relaxes = is_within && !(rough > 0.0) && se3di_is_fast(&header->fast);
+    if (relaxes) {
+        SE3DI_TRY(relax_within(integration, &past, t, y));
+    }
+    return se3di_state_publish(equations, &(se3di_shown){.y = y,
+                                                         .t = t,
+                                                         .scale = &header->scale,
+                                                         .rough = rough,
+                                                         .project = is_within && !relaxes});
 }
 
 /* One step of length h, solved to rounding. */
@@ -514,4 +594,5 @@ const se3di_integrator se3di_integrator_radau = {
     .is_reduced = 1,
     .orders = 1u << 5,
     .reach = REACH,
+    .get_reach = get_reach,
 };

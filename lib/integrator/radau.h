@@ -4,7 +4,7 @@
 #ifndef SE3DI_RADAU_H
 #define SE3DI_RADAU_H
 
-#include "integrator/state.h"
+#include "integrator/relax.h"
 
 #define SE3DI_RADAU_STAGES 3
 
@@ -25,6 +25,7 @@ typedef struct se3di_radau {
     size_t count;     /* numbers of a state */
     double t, h;      /* of the step */
     double tolerance; /* of the iteration: relative size of what may be missing */
+    double accuracy;  /* of the projection of stages */
     double *y0;       /* the state at t */
     double *f0;       /* its derivative */
     double *lambda0;  /* its multipliers [rows] */
@@ -40,11 +41,12 @@ typedef struct se3di_radau {
     double *ul;     /* of multipliers, transformed [rows] */
     double *C1;     /* constraints of the Newton matrix */
     double *vdot, *none, *sum, *sum_q;
-    double *normal;  /* what is projected away of a correction; 0 if stages are not */
-    double fraction; /* of the step, that a turn of friction asks for; 0: none does */
-    double z2;       /* (frequency times step)^2 of the stiffest forces */
-    double size;     /* of the last correction, relative to the tolerance, */
-    double past[3];  /* and of those before, newest first: they fall in turns of three */
+    double *relaxation; /* [2 * unknowns + rows] */
+    double *normal;     /* what is projected away of a correction; 0 if stages are not */
+    double fraction;    /* of the step, that a turn of friction asks for; 0: none does */
+    se3di_fastness fast;
+    double size;    /* of the last correction, relative to the tolerance, */
+    double past[3]; /* and of those before, newest first: they fall in turns of three */
     int iterations, iterations_max;
     int is_stiff; /* d is filtered */
     int projects; /* not 0: accelerations of stages are those of the states projected onto the

@@ -23,7 +23,6 @@
 #define RATE_MIN   1e-3
 #define RATE_STIFF 0.37 /* of the iteration where forces are much stiffer than the step is short */
 #define MOST_STIFF 0.03 /* may be missing: what positions are off by, over the step, is velocity */
-#define Z2_STIFF   1e4  /* (frequency times step)^2 of such forces */
 #define CLOSINGS   3    /* of positions at the end, until rounding is left */
 #define STIFF      2.0  /* the defect at the start over what the filter leaves of it */
 #define STAYS      0.5  /* of the correction three iterations ago: it is rounding that remains */
@@ -57,7 +56,7 @@ size_t se3di_radau_work_count(const se3di_assembly *assembly)
     size_t n = assembly->unknown_count;
     size_t rows = assembly->row_count;
     size_t count = se3di_state_count(assembly);
-    return STAGES * (count + 4 * rows + 4 * n) + 2 * count + rows + 5 * n +
+    return STAGES * (count + 4 * rows + 4 * n) + 2 * count + 2 * rows + 7 * n +
            assembly->joint_value_count;
 }
 
@@ -95,6 +94,7 @@ void se3di_radau_begin(se3di_radau *m, se3di_integration *integration)
         {&m->sum, n},
         {&m->sum_q, n},
         {&m->C1, assembly->joint_value_count},
+        {&m->relaxation, 2 * n + rows},
     };
     for (size_t k = 0; k < sizeof parts / sizeof parts[0]; ++k) {
         *parts[k].place = work;
@@ -217,7 +217,7 @@ static se3d_status eval_projected(se3di_radau *m, int i)
     const double t = m->t + se3di_radau_c[i] * m->h;
     double *b = at(m->b, i, n);
     se3di_state_set(assembly, at(m->Y, i, m->count));
-    SE3DI_TRY(se3di_state_project(equations, t, &m->scale, 1e-13, 0));
+    SE3DI_TRY(se3di_state_project(equations, t, &m->scale, m->accuracy, 0));
     SE3DI_TRY(se3di_state_evaluate(equations, t));
     se3di_radau_get_acceleration(m, i, m->vdot);
     for (size_t k = 0; k < n; ++k) {
@@ -450,22 +450,6 @@ static void set_weights(double W[STAGES][STAGES])
     }
 }
 
-/* The largest (frequency times step)^2 of a body held by its stiffness. */
-static double get_stiffness(const se3di_radau *m)
-{
-    const se3di_tangent *tangent = &m->integration->newton.tangent;
-    const size_t block = (size_t)m->assembly->formulation->block;
-    double largest = 0.0;
-    for (size_t k = 0; k < m->assembly->body_count; ++k) {
-        for (size_t j = 0; j < block; ++j) {
-            const size_t place = k * block * block + j * (block + 1);
-            const double part = fabs(tangent->K[place]) / tangent->M[place];
-            largest = part > largest ? part : largest;
-        }
-    }
-    return largest * m->h * m->h;
-}
-
 static se3d_status iterate(se3di_radau *m, int refactor)
 {
     static const int order[STAGES] = {0, 2, 1};
@@ -476,7 +460,7 @@ static se3d_status iterate(se3di_radau *m, int refactor)
     }
     if (refactor) {
         SE3DI_TRY(factor(m));
-        m->z2 = get_stiffness(m);
+        m->fast = se3di_relax_measure(&m->integration->newton, se3di_radau_gamma * m->h, m->h);
     }
     copy(m->assembly->C, m->C1, m->assembly->joint_value_count);
     for (int i = 0; i < STAGES; ++i) {
@@ -502,7 +486,7 @@ static se3d_status iterate(se3di_radau *m, int refactor)
  * stiff what is soft falls fast, and what is stiff remains. */
 static int has_converged(const se3di_radau *m, double rate)
 {
-    const int is_stiff = m->z2 > Z2_STIFF;
+    const int is_stiff = se3di_is_fast(&m->fast);
     const double least = is_stiff ? RATE_STIFF : RATE_MIN, most = is_stiff ? MOST_STIFF : 1.0;
     if (rate > 0.8) {
         const int stays = m->iterations > 3 && m->size > STAYS * m->past[2];

@@ -8,7 +8,7 @@
 #include <math.h>
 
 #define MARK    UINT64_C(0x564C4F5344334553) /* "SE3DSOLV" */
-#define VERSION UINT64_C(3)
+#define VERSION UINT64_C(4)
 #define FRAME   (3 * sizeof(uint64_t)) /* mark, version, checksum */
 
 static void code_counters(se3di_coder *c, se3di_run *run)

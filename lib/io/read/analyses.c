@@ -53,9 +53,9 @@ static const se3di_key analysis_keys[] = {
          "[s]"},
     {"tolerance", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
      .text = "relative error, 1e-14 to 0.1, replaced by --tolerance; a method works at the least "
-         "tolerance that it can reach: dop853, gauss, rk45, rk4 7e-12, bdf 1e-11, radau 1e-13 (1e-10 "
-         "with redundant equations), generalized_alpha, hht 1e-11, rattle, verlet 1e-10 (rattle of "
-         "order 4: 1e-11), and the report says so"},
+         "tolerance that it can reach: dop853, gauss, rk45, rk4 7e-12, bdf 1e-11, radau 1e-13 "
+         "(1e-10 with redundant equations), generalized_alpha, hht 1e-11, rattle, verlet 1e-10 "
+         "(rattle of order 4: 1e-11), and the report says so"},
     {"duration", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
      .text = "[s], at most 1e9; required in kinematics, inverse_dynamics and dynamics"},
     {"start", SE3DI_KIND_NUMBER, .standard = "the end of the analysis before, 0 for the first",
