@@ -724,9 +724,7 @@ static se3d_status run_to(se3di_run *run, double t_end)
         break;
     case SE3D_ANALYSIS_DYNAMICS:
         status = run_dynamics(run, t_end);
-        if (status < 0) {
-            return se3di_dead_point_explain(&run->equations, t_end, status);
-        }
+        SE3DI_TRY(status);
         break;
     default:
         status = run_kinematics(run, t_end);

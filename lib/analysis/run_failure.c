@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* After a run that failed: why, and back to the last accepted state. */
+#include "analysis/dead_point.h"
 #include "analysis/run_end.h"
 
 #include "assembly/user.h"
@@ -127,5 +128,9 @@ se3d_status se3di_run_fail(se3di_run *run, se3d_status status, double t_end)
                         run->model->time);
     }
     recover(run, t_end);
+    if (run->analysis == SE3D_ANALYSIS_DYNAMICS && run->prepared &&
+        run->equations.assembly.topology_version == run->model->topology_version) {
+        return se3di_dead_point_explain(&run->equations, t_end, status); /* from where it is now */
+    }
     return status;
 }

@@ -40,6 +40,21 @@ sed 's/value: 2\*t/value: "if(t > 0.3, 9, t)"/' "$dir/slider.yaml" >"$dir/jump.y
 expect 'a jump is no dead point' 1 "$program" run "$dir/jump.yaml" -o "$dir/o"
 holds 'it is called one' [ "$(grep -c 'dead point' "$dir/err")" = 0 ]
 
+# An actuator of length sqrt(5) + t/2 from (2, 0) to a crank of 1 m is in line with it at 3 m: every method says when, also
+# those that had come near it by then.
+cat >"$dir/actuator.yaml" <<'END'
+se3d: 1
+bodies: [{name: a, mass: 1, inertia: [0.1, 0.1, 0.1], position: [0, 1, 0]}]
+joints: [{name: pin, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, 1]}]
+constraints: [{name: piston, type: d, body_i: ground, body_j: a, point_i: [2, 0, 0], value: "(sqrt(5) + 0.5*t)^2"}]
+analysis: {type: dynamics, duration: 5, step: 0.05}
+output: [{file: a.csv, every: 0.05, channels: [a.position]}]
+END
+for method in dop853 rk45 rk4 gauss bdf radau rattle verlet generalized_alpha hht; do
+    expect "an actuator beyond its dead point: $method" 1 "$program" run "$dir/actuator.yaml" -o "$dir/o" --method $method
+    says 'd piston has reached a dead point of the mechanism at t = 1.52786 s, where its value is 9 m^2'
+done
+
 # A tolerance that the method does not reach.
 printf 'se3d: 1\nbodies: [%s]\njoints: [%s]\nanalysis: {type: dynamics, duration: 1e-3}\n' "$body" "$slide" >"$dir/fine.yaml"
 for row in 'bdf 1e-13 1e-11' 'dop853 1e-14 6.67e-12' 'auto 1e-14 6.67e-12'; do
