@@ -17,7 +17,7 @@
 #define DAMPED_ITERATIONS 200
 #define GAP_MAX           100.0 /* sizes; a larger one is the size */
 #define CORRECTIONS       10
-#define DIGITS            1e-5 /* of the size: what rounding of dimensions leaves open */
+#define DIGITS            1e-4 /* of the size: what dimensions of four digits leave open */
 
 typedef struct position_problem {
     se3di_equations *equations;
@@ -360,15 +360,14 @@ static int describe_held(const se3di_equations *equations, char *text, size_t si
     return 0;
 }
 
-/* Violations that dimensions of six digits leave. */
+/* Violations that dimensions of few digits leave. */
 static se3d_status report_digits(const position_problem *problem, double t, const char *gap)
 {
     return se3di_error_set(
         problem->equations->error, SE3D_ERR_INCONSISTENT,
         "t = %g s: the constraints fit to %.2g of the size of the mechanism, but not exactly: %s; "
         "give positions, axes and dimensions more digits, or put a joint with more freedom into "
-        "the "
-        "loop, such as a spherical one",
+        "the loop, such as a spherical one",
         t, problem->worst, gap);
 }
 

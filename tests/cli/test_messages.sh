@@ -123,7 +123,7 @@ for soft in 1e-3 0; do
     prints "$([ $soft = 0 ] && echo 'is neutral' || echo 'is stable')"
 done
 
-# Dimensions of six digits in a loop that has no freedom to spare: the diagonal of a square.
+# Dimensions of four to six digits in a loop that has no freedom to spare: the diagonal of a square.
 cat >"$dir/digits.yaml" <<'END'
 se3d: 1
 bodies:
@@ -136,9 +136,15 @@ joints:
 analysis: {type: assembly}
 END
 sed -i 's/position: \[0.5, 0.5, 0\]}/position: [0.5, 0.5, 0], orientation: {axis: [0, 0, 1], angle: -pi\/4}}/; s/point_j: \[-0.707107, 0, 0\]}/point_j: [-0.707107, 0, 0], axis_i: [1, -1, 0], axis_j: [1, 0, 0]}/' "$dir/digits.yaml"
-expect 'six digits' 1 "$program" run "$dir/digits.yaml" -o "$dir/o"
-says 'but not exactly'
-says 'more digits'
+for length in 0.707107 0.70708 0.70700; do
+    sed "s/0.707107/$length/g" "$dir/digits.yaml" >"$dir/few.yaml"
+    expect "a diagonal of $length" 1 "$program" run "$dir/few.yaml" -o "$dir/o"
+    says 'but not exactly'
+    says 'more digits'
+done
+sed 's/0.707107/0.7/g' "$dir/digits.yaml" >"$dir/few.yaml"
+expect 'a diagonal that is too short' 1 "$program" run "$dir/few.yaml" -o "$dir/o"
+says 'cannot reach each other'
 
 # What a run leaves out.
 printf 'se3d: 1\nbodies: [%s]\njoints:\n  - {name: p, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, 1]}\n  - {name: q, type: revolute, body_i: ground, body_j: a, at: [1, 0, 0], axis: [0, 0, 1]}\nanalysis: {type: dynamics, duration: 0.1}\n' \
