@@ -186,6 +186,16 @@ def placements():
     tool.check(not notes and "fixed: true" in text and "joints:" not in text, f"a static model: {text}")
 
 
+def names():
+    """Names of 100 characters stay; the ends of those that are made of them, too."""
+    name = "j" * 100
+    text, notes = one("sdf_names", joint("revolute", "<axis><limit><lower>-1</lower></limit></axis>").replace(
+        "name='j'", f"name='{name}'"))
+    tool.check(f"name: {name}," in text and f"joint: {name}," in text, f"the name of the joint: {text}")
+    tool.check(f"name: {'j' * 95}_stop," in text, f"the name of the stop: {text}")
+    tool.check(not notes, f"notes are {notes}")
+
+
 def lost():
     for what, parts in {"gearbox": joint("gearbox", AXIS), "gravity": "<link name='b'>" + BODY +
                         "<gravity>false</gravity></link>", "velocity_decay": "<link name='b'>" + BODY +
@@ -209,6 +219,7 @@ def main():
     four_bar()
     joint_types()
     placements()
+    names()
     lost()
     print("import.sdf: passed")
 

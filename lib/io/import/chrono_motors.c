@@ -119,7 +119,7 @@ static bool add_drive(se3di_chrono *c, const motor *m, const char *joint)
 {
     se3di_machine *machine = c->m;
     const char *name = se3di_machine_name(
-        machine, joint ? se3di_machine_text(machine, "%s_actuation", joint) : m->name, "driver",
+        machine, joint ? se3di_machine_extend(machine, joint, "_actuation") : m->name, "driver",
         m->map->line);
     if (!name) {
         return false;

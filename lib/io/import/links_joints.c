@@ -27,7 +27,7 @@ static bool is_linear(const se3di_link_joint *joint)
 static se3di_entry *add_force(se3di_machine *m, const se3di_link_joint *joint, const char *suffix,
                               const char *type)
 {
-    const char *wanted = se3di_machine_text(m, "%s_%s", joint->made, suffix);
+    const char *wanted = se3di_machine_extend(m, joint->made, suffix);
     const char *name = wanted ? se3di_machine_name(m, wanted, "force", joint->line) : NULL;
     se3di_entry *entry = name ? se3di_machine_add(m, SE3DI_SECTION_FORCES) : NULL;
     if (!entry) {
@@ -59,7 +59,7 @@ static void add_stop(se3di_machine *m, const se3di_link_joint *joint)
     se3di_machine_parameter(m, k,
                             is_linear(joint) ? "1e6 # of the ends of ranges [N/m]"
                                              : "1e4 # of the ends of ranges [N m/rad]");
-    se3di_entry *entry = add_force(m, joint, "stop", "stop");
+    se3di_entry *entry = add_force(m, joint, "_stop", "stop");
     if (joint->has_lower) {
         se3di_entry_put_number(m, entry, "lower", joint->lower);
     }
@@ -76,7 +76,7 @@ static void add_spring(se3di_machine *m, const se3di_link_joint *joint)
     if (!spring && !damper) {
         return;
     }
-    se3di_entry *entry = add_force(m, joint, spring ? "spring" : "damping", "effort");
+    se3di_entry *entry = add_force(m, joint, spring ? "_spring" : "_damping", "effort");
     const char *k = se3di_machine_number(m, joint->stiffness);
     const char *rest = se3di_machine_number(m, joint->rest);
     const char *c = se3di_machine_number(m, joint->damping);
@@ -93,7 +93,7 @@ static void add_spring(se3di_machine *m, const se3di_link_joint *joint)
 static void add_friction(se3di_machine *m, const se3di_link_joint *joint)
 {
     if (joint->friction > 0.0) {
-        se3di_entry *entry = add_force(m, joint, "friction", "friction");
+        se3di_entry *entry = add_force(m, joint, "_friction", "friction");
         se3di_entry_put_number(m, entry, "limit", joint->friction);
     }
 }
@@ -101,7 +101,7 @@ static void add_friction(se3di_machine *m, const se3di_link_joint *joint)
 static void add_armature(se3di_machine *m, const se3di_link_joint *joint)
 {
     if (joint->armature > 0.0) {
-        se3di_entry *entry = add_force(m, joint, "armature", "armature");
+        se3di_entry *entry = add_force(m, joint, "_armature", "armature");
         se3di_entry_put_number(m, entry, "inertia", joint->armature);
     }
 }

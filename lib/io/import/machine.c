@@ -10,7 +10,7 @@
 
 #include "io/document/document.h"
 
-enum { TEXT_SIZE = 65536, NOTES_MAX = 1000, NAME_MAX_LENGTH = 80 };
+enum { TEXT_SIZE = 65536, NOTES_MAX = 1000, NAME_MAX_LENGTH = 100 };
 
 bool se3di_machine_fail_memory(se3di_machine *m)
 {
@@ -236,6 +236,28 @@ static bool is_taken(const se3di_ionames *names, const char *name)
     return se3di_ionames_find(names, name, &index);
 }
 
+const char *se3di_machine_extend(se3di_machine *m, const char *name, const char *end)
+{
+    const size_t room = NAME_MAX_LENGTH - strlen(end);
+    size_t length = 0;
+    while (name[length] && length < room) {
+        const size_t size = se3d_text_get_character(name + length);
+        if (length + (size > 0 ? size : 1) > room) {
+            break;
+        }
+        length += size > 0 ? size : 1;
+    }
+    return se3di_machine_text(m, "%.*s%s", (int)length, name, end);
+}
+
+/* With a number that makes it another name. */
+static const char *count_up(se3di_machine *m, const char *name, size_t number)
+{
+    char end[32];
+    snprintf(end, sizeof end, "_%zu", number);
+    return se3di_machine_extend(m, name, end);
+}
+
 /* `text` made valid, with a number at its end if it is taken. */
 static const char *take_name(se3di_machine *m, se3di_ionames *names, const char *text,
                              const char *kind, size_t line)
@@ -250,9 +272,8 @@ static const char *take_name(se3di_machine *m, se3di_ionames *names, const char 
     }
     while (name && is_taken(names, name)) {
         /* names that are made up grow with their number: the search does not begin anew */
-        name = valid[0] && number < 20
-                   ? se3di_machine_text(m, "%s_%zu", valid, number++)
-                   : se3di_machine_text(m, "%s_%zu", valid[0] ? valid : kind, ++m->counter);
+        name = valid[0] && number < 20 ? count_up(m, valid, number++)
+                                       : count_up(m, valid[0] ? valid : kind, ++m->counter);
     }
     if (!name || !se3di_ionames_add(names, m->pool, name, 0)) {
         se3di_machine_fail_memory(m);
@@ -378,7 +399,7 @@ se3di_machine_marker *se3di_machine_add_marker(se3di_machine *m, size_t body, co
     make_valid(name ? name : "", valid);
     const char *free_name = se3di_machine_text(m, "%s", valid[0] ? valid : "marker");
     while (free_name && marker_is_taken(b, free_name)) {
-        free_name = se3di_machine_text(m, "%s_%zu", valid[0] ? valid : "marker", ++m->counter);
+        free_name = count_up(m, valid[0] ? valid : "marker", ++m->counter);
     }
     if (!free_name || !se3di_ionames_add(&b->marker_names, m->pool, free_name, 0)) {
         se3di_machine_fail_memory(m);

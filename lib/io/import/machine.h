@@ -126,6 +126,9 @@ const char *se3di_machine_name_body(se3di_machine *m, const char *text, const ch
                                     size_t line);
 const char *se3di_machine_name(se3di_machine *m, const char *text, const char *kind, size_t line);
 
+/* A name with an end, which stays whole: a long name is cut. */
+const char *se3di_machine_extend(se3di_machine *m, const char *name, const char *end);
+
 /* Each returns NULL if there is no memory, after the machine has failed. A body is valid until the
  * next is added. */
 se3di_machine_body *se3di_machine_add_body(se3di_machine *m, const char *name);

@@ -281,7 +281,7 @@ static bool read_actuator(se3di_mjcf *f, const se3di_xml *node)
         return lose(f, node, "it acts on no hinge or slide");
     }
     const char *joint = f->links.joints[index].made;
-    const char *wanted = own ? own : se3di_machine_text(m, "%s_effort", joint);
+    const char *wanted = own ? own : se3di_machine_extend(m, joint, "_effort");
     const char *name = wanted ? se3di_machine_name(m, wanted, "effort", node->line) : NULL;
     se3di_entry *entry = name ? se3di_machine_add(m, SE3DI_SECTION_FORCES) : NULL;
     if (!entry) {

@@ -203,7 +203,7 @@ bool se3di_urdf_couple(se3di_machine *m, const se3di_link_joint *joint,
         return true;
     }
     const char *name =
-        se3di_machine_name(m, se3di_machine_text(m, "%s_mimic", joint->made), "joint", joint->line);
+        se3di_machine_name(m, se3di_machine_extend(m, joint->made, "_mimic"), "joint", joint->line);
     if (name && !(fabs(mimic->ratio) > 0.0)) {
         return hold(m, name, joint, mimic->offset);
     }
