@@ -166,3 +166,34 @@ bool se3di_read_law(se3di_reader *reader, const se3di_node *node, const char *co
     return m->count == own ? se3di_read_function(reader, node, variables, value, function)
                            : create(reader, node, m, own, function);
 }
+
+static const char *const time_only[] = {"t", NULL};
+
+bool se3di_check_of_time(se3di_reader *reader, const se3di_node *node)
+{
+    if (node->kind != SE3DI_NODE_SCALAR || se3di_node_is_null(node) || !strchr(node->text, '.')) {
+        return true;
+    }
+    se3di_mentions *m = se3di_iopool_alloc(reader->pool, sizeof *m);
+    if (!m) {
+        return se3di_reader_fail_memory(reader);
+    }
+    if (!se3di_mentions_read(reader, node, time_only, m)) {
+        return false;
+    }
+    if (m->count == 1) {
+        return true;
+    }
+    return se3di_reader_fail(reader, node,
+                             "depends on `%.80s`: what is prescribed is a function of t alone. A "
+                             "`coupler` ties coordinates of joints to each other; what reacts to "
+                             "the motion is an `effort` or another force, such as kp*(%.80s - q)",
+                             m->channels[1].name, m->channels[1].name);
+}
+
+bool se3di_read_prescribed(se3di_reader *reader, const se3di_node *node, double *value,
+                           se3d_function *function)
+{
+    return se3di_check_of_time(reader, node) &&
+           se3di_read_function(reader, node, time_only, value, function);
+}

@@ -9,5 +9,11 @@
  * velocities: pin.angle, spring.length, car.velocity.x. */
 bool se3di_read_law(se3di_reader *reader, const se3di_node *node, const char *const *variables,
                     double *value, se3d_function *function);
+/* The same for what is prescribed or integrated beforehand, a function of time alone: a text that
+ * names channels is refused with what may take its place. */
+bool se3di_read_prescribed(se3di_reader *reader, const se3di_node *node, double *value,
+                           se3d_function *function);
+/* Whether a text, of a function of time alone, names no channel; reports one that does. */
+bool se3di_check_of_time(se3di_reader *reader, const se3di_node *node);
 
 #endif

@@ -14,8 +14,6 @@
 #include "io/read/pairs.h"
 #include "io/read/sections.h"
 
-static const char *const time_only[] = {"t", NULL};
-
 #define PRIMITIVES                                                                                 \
     [SE3D_PRIMITIVE_DP1] = "dp1", [SE3D_PRIMITIVE_DP2] = "dp2", [SE3D_PRIMITIVE_D] = "d",          \
     [SE3D_PRIMITIVE_CD] = "cd"
@@ -98,7 +96,7 @@ static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_primit
         return def->type != SE3D_PRIMITIVE_D || require(reader, node, "value", "d");
     }
     reader->alternative = def->type;
-    if (!se3di_read_law(reader, value, time_only, &def->value, &def->function)) {
+    if (!se3di_read_prescribed(reader, value, &def->value, &def->function)) {
         return false;
     }
     if (def->type == SE3D_PRIMITIVE_D && def->function.index1 == 0 && !(def->value > 0.0)) {

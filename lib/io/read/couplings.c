@@ -14,8 +14,6 @@
 #include "io/read/objects.h"
 #include "io/read/sections.h"
 
-static const char *const time_only[] = {"t", NULL};
-
 /* clang-format off */
 static const se3di_key term_keys[] = {
     {"joint", SE3DI_KIND_JOINT, .required = true, .text = ""},
@@ -101,7 +99,7 @@ bool se3di_read_coupler(se3di_reader *reader, const se3di_node *node, se3di_elem
         }
     }
     reader->alternative = -1; /* of sums of angles and displacements */
-    if (value && !se3di_read_law(reader, value, time_only, &def.value, &def.function)) {
+    if (value && !se3di_read_prescribed(reader, value, &def.value, &def.function)) {
         return false;
     }
     def.name = entry->name;

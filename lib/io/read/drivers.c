@@ -7,8 +7,6 @@
 #include "io/read/objects.h"
 #include "io/read/sections.h"
 
-static const char *const time_only[] = {"t", NULL};
-
 /* clang-format off */
 static const se3di_key driver_keys[] = {
     {"name", SE3DI_KIND_NAME, .standard = "driver1, driver2, ...",
@@ -45,6 +43,7 @@ static bool read_rate(se3di_reader *reader, const se3di_node *node, se3d_driver_
         return se3di_reader_fail_system(reader, rate, status);
     }
     return se3di_read_key(reader, node, &se3di_object_driver, NULL, "start", &start) &&
+           se3di_check_of_time(reader, rate) &&
            se3di_read_rate(reader, rate, start, &def->function);
 }
 
@@ -63,7 +62,7 @@ static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_driver
                                      "is missing, must be a number, an expression in t or "
                                      "{spline: [[t, value], ...]}; or give its rate");
     }
-    return se3di_read_law(reader, value, time_only, &def->value, &def->function);
+    return se3di_read_prescribed(reader, value, &def->value, &def->function);
 }
 
 static bool read_driver(se3di_reader *reader, const se3di_node *node)
