@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Models of other programs as model files: URDF, SDF, MJCF, Adams data sets, Chrono
- * YAML.
+ * YAML, ME751 JSON.
  *
  * An import is the text of a model file and notes on what is different from the file it was made
  * of. docs/import.md says what becomes of what.
@@ -30,7 +30,8 @@ typedef enum se3d_model_import_note_kind {
 typedef struct se3d_model_import_options {
     size_t struct_size;
     const se3d_allocator *allocator; /* copied; NULL: malloc. expat uses malloc in any case */
-    const char *format;  /* "urdf", "sdf", "mjcf", "adams", "chrono"; NULL: by the file */
+    const char *format;  /* "urdf", "sdf", "mjcf", "adams", "chrono", "me751"; NULL: by the
+                            file */
     const char *folder;  /* of the model file, for paths of meshes; NULL: the file's */
     int32_t merge_fixed; /* not 0: links on fixed joints are one body */
     int32_t free_base;   /* not 0: the root of a robot may move */

@@ -29,6 +29,12 @@ static const seed_text seeds[] = {
      "  motors:\n    - {name: m, type: ROTATION, actuation_type: SPEED, body1: a, body2: g, "
      "location: [0, 0, 0], axis: [0, 0, 1], actuation_function: {type: SINE, amplitude: 2, "
      "frequency: 3, phase: 0.1}}\n"},
+    {"x.mdl", NULL,
+     "{\"name\": \"m\", \"gravity\": [0, 0, -9.81],\n \"bodies\": [{\"id\": 1, \"mass\": 2, "
+     "\"jbar\": [1, 2, 2], \"q0\": [0, 1, 0, 1, 0, 0, 0], \"qd0\": [0, 0, 0, 0, 0, 0, 0]}],\n "
+     "\"constraints\": [{\"type\": \"cons_dp1\", \"body1\": 1, \"body2\": \"ground\", \"aiBAR\": "
+     "[1, 0, 0], \"ajBAR\": [0, 1, 0], \"fun\": \"@(t)(sin(t).*2)\"},\n {\"type\": \"CD\", "
+     "\"body_i\": 0, \"body_j\": 1, \"si\": [0, 0, 1], \"c\": [0, 1, 0], \"f\": 1, \"df\": 2}]}\n"},
 #if defined(SE3D_HAS_EXPAT)
     {"x.urdf", "tests/import/arm.urdf", NULL},
     {"x.sdf", "tests/import/loop.sdf", NULL},

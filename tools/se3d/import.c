@@ -164,7 +164,7 @@ const command_entry import_entry = {
         (const command_option[]){
             {"--output", "-o", "MODEL.yaml", "the model file; without it, it is printed"},
             {"--partial", NULL, NULL, "exit code 0 although something could not be carried"},
-            {"--format", NULL, "FORMAT", "urdf, sdf, mjcf, adams or chrono, if not told"},
+            {"--format", NULL, "FORMAT", "urdf, sdf, mjcf, adams, chrono or me751, if not told"},
             {"--merge-fixed", NULL, NULL, "links on fixed joints become one body"},
             {"--free-base", NULL, NULL, "the root of a robot may move; otherwise it is fixed"},
             {"--quiet", "-q", NULL, "list only what could not be carried"},

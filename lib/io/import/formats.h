@@ -14,6 +14,8 @@ bool se3di_import_sdf(se3di_machine *m, se3di_xml *root);
 bool se3di_import_mjcf(se3di_machine *m, se3di_xml *root);
 bool se3di_import_chrono(se3di_machine *m, const se3di_node *root);
 bool se3di_import_is_chrono(const se3di_node *root);
+bool se3di_import_me751(se3di_machine *m, const se3di_node *root);
+bool se3di_import_is_me751(const se3di_node *root);
 bool se3di_import_adams(se3di_machine *m, const char *text, size_t length);
 
 /* Another file that a file names: its text, and what a document in it says. */

@@ -35,7 +35,8 @@ static const xml_format xml_formats[] = {{"urdf", "URDF", "robot", se3di_import_
                                          {"sdf", "SDF", "sdf", se3di_import_sdf},
                                          {"mjcf", "MJCF", "mujoco", se3di_import_mjcf}};
 
-#define FORMATS "urdf (.urdf), sdf (.sdf), mjcf (.xml), adams (.adm) or chrono (.yaml)"
+#define FORMATS                                                                                    \
+    "urdf (.urdf), sdf (.sdf), mjcf (.xml), adams (.adm), chrono (.yaml) or me751 (.mdl)"
 
 void se3d_model_import_options_init(se3d_model_import_options *options, size_t size)
 {
@@ -93,22 +94,28 @@ static bool import_document(se3di_machine *m, const char *text, size_t length)
         m->status = status;
         return false;
     }
+    if (m->options->format ? se3di_scan_equal(m->options->format, "me751")
+                           : se3di_import_is_me751(root)) {
+        m->format = "ME751";
+        return se3di_import_me751(m, root);
+    }
     if (se3di_import_is_chrono(root) || m->options->format) {
         m->format = "Chrono";
         return se3di_import_chrono(m, root);
     }
-    return se3di_machine_fail(m, 1, 1, "%s",
-                              se3di_node_get(root, "se3d")
-                                  ? "this is a model file already"
-                                  : "this YAML has no `chrono-version`: it is no format that is "
-                                    "known, which are " FORMATS);
+    return se3di_machine_fail(
+        m, 1, 1, "%s",
+        se3di_node_get(root, "se3d")
+            ? "this is a model file already"
+            : "this has no `chrono-version`, nor `bodies` and "
+              "`constraints`: it is no format that is known, which are " FORMATS);
 }
 
 static bool is_known(const char *format)
 {
-    static const char *const others[] = {"adams", "chrono"};
+    static const char *const others[] = {"adams", "chrono", "me751"};
     bool known = !format;
-    for (size_t k = 0; k < 2; ++k) {
+    for (size_t k = 0; k < sizeof others / sizeof *others; ++k) {
         known = known || se3di_scan_equal(format, others[k]);
     }
     for (size_t k = 0; k < sizeof xml_formats / sizeof *xml_formats; ++k) {
@@ -129,6 +136,10 @@ static bool import_any(se3di_machine *m, const char *text, size_t length)
     if (!is_known(format)) {
         return se3di_machine_fail(m, 0, 0, "the format `%.40s` is not known, must be " FORMATS,
                                   format);
+    }
+    const bool is_json = !format && first_character(text, length) == '{';
+    if (is_json || is_format(m, "me751", ".mdl")) {
+        return import_document(m, text, length);
     }
     if (is_format(m, "adams", ".adm")) {
         m->format = "Adams";
