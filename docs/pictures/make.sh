@@ -25,12 +25,13 @@ plot() {
     mv "$results/$picture.png" "docs/pictures/$picture.png"
 }
 
-# look PICTURE MODEL PART SPEED VIEW: a picture of its film, from 0 at the start to 1 at the end.
+# look PICTURE MODEL PART [MORE]: what its page shows, from 0 at the start to 1 at the end; MORE of its address.
 look() {
-    "$program" video --quiet "$results/$2" -o "$results/$2.mp4" --speed "$4" --view "${5:--52,20}"
-    count=$(ffprobe -v error -count_frames -of csv=p=0 -show_entries stream=nb_read_frames "$results/$2.mp4" | tr -d ,)
-    frame=$(awk -v n="$count" -v part="$3" 'BEGIN { print int(part * (n - 1)) }')
-    ffmpeg -v error -y -i "$results/$2.mp4" -vf "select=eq(n\\,$frame),scale=640:-1" -frames:v 1 -q:v 5 "docs/pictures/$1.jpg"
+    "$program" view --quiet "$results/$2"
+    "${SE3D_CHROMIUM:-chromium}" --headless --no-sandbox --disable-gpu --enable-unsafe-swiftshader --hide-scrollbars \
+        --window-size=1280,720 --virtual-time-budget=4000 --user-data-dir="$results/profile" \
+        --screenshot="$results/$1.png" "file://$results/$2/scene.html#bare&part=$3${4:+&$4}" 2>/dev/null
+    ffmpeg -v error -y -i "$results/$1.png" -vf scale=960:-1:flags=lanczos -frames:v 1 -q:v 3 "docs/pictures/$1.jpg"
 }
 
 run pendulum
@@ -38,14 +39,18 @@ run spatial_slider_crank --duration 2 --step 0.02
 plot pendulum pendulum -y bar.position.y -y bar.position.z -y bar.velocity.y -y bar.velocity.z \
     -y bar.acceleration.y -y bar.acceleration.z -y drive.effort
 plot slider_crank spatial_slider_crank -y slider.position.x -y slider.velocity.x -y motor.effort
-look slider_crank_3d spatial_slider_crank 0.35 0.5
-for name in suspension flyball_governor quarter_car pushed_grains; do
+look slider_crank_3d spatial_slider_crank 0.35
+for name in suspension flyball_governor quarter_car pushed_grains hopper landing_gear geared_arm rotating_drum; do
     run $name
 done
 plot suspension suspension -x travel.value -y rocker_pivot.angle -y coil.length -y travel.effort
-look suspension suspension 0.3 0.5 62,22
+look suspension suspension 0.3
 "$program" run --quiet examples/fsae/car.yaml -o "$results/car"
-look fsae car 0.5 8
-look governor flyball_governor 0.5 10
-look quarter_car quarter_car 0.25 1
-look grains pushed_grains 0.8 0.1
+look fsae car 0.5 show=solid
+look governor flyball_governor 0.508
+look quarter_car quarter_car 0.25
+look grains pushed_grains 0.8
+look hopper hopper 0.55
+look landing_gear landing_gear 0.4
+look geared_arm geared_arm 0.3
+look drum rotating_drum 0.9 colour=speed

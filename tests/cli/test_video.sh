@@ -72,6 +72,11 @@ nothing_left "$dir/none.mp4"
 expect 'four times as fast' 0 "$program" video "$dir/run" -q --speed 4 --view 120,-20 -o "$dir/fast.mp4"
 holds 'quiet, but it speaks' [ ! -s "$dir/out" ]
 holds 'not 24 pictures' [ "$(ffprobe -v error -count_frames -of csv=p=0 -show_entries stream=nb_read_frames "$dir/fast.mp4")" = 24 ]
+for ending in gif webp; do
+    expect "a loop as $ending" 0 "$program" video "$dir/run" -q --speed 8 -o "$dir/loop.$ending"
+done
+[ "$(ffprobe -v error -of csv=p=0 -show_entries stream=codec_name,width,height "$dir/loop.gif" | tr -d '\n')" = gif,640,360 ] || fail "the loop is $(ffprobe -v error -of csv=p=0 -show_entries stream=codec_name,width,height "$dir/loop.gif")"
+holds 'no loop in the WebP' grep -qa 'ANIM' "$dir/loop.webp"
 expect 'too long' 1 "$program" video "$dir/run" --speed 1e-6 -o "$dir/long.mp4"
 says 'more than an hour'
 nothing_left "$dir/long.mp4"

@@ -80,15 +80,49 @@ static int plan(film *f)
     return 1;
 }
 
+enum { WORDS_MOST = 32 };
+
+/* What ffmpeg is told of each kind of film. Loops are half as large, with 15 pictures a second. */
+static const struct {
+    const char *ending;
+    const char *words[14]; /* NULL at the end */
+} kinds[] = {{".mp4",
+              {"-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-vf", "scale=out_range=tv",
+               "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4"}},
+             {".gif",
+              {"-vf",
+               "fps=15,scale=640:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=96[p];"
+               "[b][p]paletteuse=dither=none:diff_mode=rectangle",
+               "-loop", "0", "-f", "gif"}},
+             {".webp",
+              {"-vf", "fps=15,scale=640:-1:flags=lanczos", "-c:v", "libwebp", "-quality", "60",
+               "-loop", "0", "-f", "webp"}}};
+
+/* The kind of film by the end of its name; MP4 if it is another. */
+static size_t find_kind(const char *path)
+{
+    const size_t length = strlen(path);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
+        const size_t tail = strlen(kinds[k].ending);
+        if (length > tail && strcmp(path + length - tail, kinds[k].ending) == 0) {
+            return k;
+        }
+    }
+    return 0;
+}
+
 static int start_encoder(film *f)
 {
-    const char *const words[] = {"ffmpeg",   "-v",         "error",      "-y",
-                                 "-f",       "image2pipe", "-framerate", "30",
-                                 "-c:v",     "mjpeg",      "-i",         "pipe:0",
-                                 "-c:v",     "libx264",    "-preset",    "veryfast",
-                                 "-crf",     "20",         "-vf",        "scale=out_range=tv",
-                                 "-pix_fmt", "yuv420p",    "-movflags",  "+faststart",
-                                 "-f",       "mp4",        f->made,      NULL};
+    static const char *const head[] = {"ffmpeg",     "-v", "error", "-y",    "-f", "image2pipe",
+                                       "-framerate", "30", "-c:v",  "mjpeg", "-i", "pipe:0"};
+    const size_t kind = find_kind(f->path);
+    const char *words[WORDS_MOST] = {NULL};
+    size_t count = sizeof head / sizeof *head;
+    memcpy(words, head, sizeof head);
+    for (size_t k = 0; k < 14 && kinds[kind].words[k]; ++k) {
+        words[count++] = kinds[kind].words[k];
+    }
+    words[count] = f->made;
     return child_start(&f->encoder, words, 0, -1, 0) ||
            fail("ffmpeg cannot be started: ", strerror(errno));
 }
@@ -275,13 +309,14 @@ const command_entry video_entry = {
     .run = command_video,
     .operands = "DIR",
     .files = "",
-    .summary = "make an MP4 film of results in 3-D",
+    .summary = "make a film of results in 3-D",
     .text = "Makes a film (default DIR/motion.mp4; 1280 x 720, 30 pictures a second, "
             "H.264) of the results in DIR, as `se3d run` left them: what `se3d view` "
-            "shows. It needs chromium and ffmpeg.",
+            "shows. A name that ends with .gif or .webp makes a loop for a web page: 640 x "
+            "360, 15 pictures a second. It needs chromium and ffmpeg.",
     .options =
         (const command_option[]){
-            {"--output", "-o", "FILE.mp4", "where to (default: DIR/motion.mp4)"},
+            {"--output", "-o", "FILE", "where to, .mp4, .gif or .webp (default: DIR/motion.mp4)"},
             {"--speed", NULL, "S", "seconds of motion in a second of film (default 1: real time)"},
             {"--view", NULL, "A,E",
              "from where: azimuth from x to y and elevation [degrees] (default -52,20)"},
@@ -290,6 +325,7 @@ const command_entry video_entry = {
     .examples = (const command_example[]){{"video results/pendulum", "results/pendulum/motion.mp4"},
                                           {"video results/drum --speed 0.1 --view 0,10",
                                            "ten times slower, from the side"},
+                                          {"video results/drum -o drum.webp", "a loop"},
                                           {0}},
     .exits = "0 done; 1 a file or program failed; 2 bad usage.",
 };

@@ -235,7 +235,11 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     pose(start + (end - start) * k / 23);
     root.updateMatrixWorld(true);
     root.traverse((o) => {
-      if (!o.isMesh || (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z)) return; // a plane has no ends
+      if (!o.isMesh) return;
+      if (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z) { // a plane has no ends; one that stands is hardly seen
+        if (Math.abs(va.set(0, 0, 1).applyQuaternion(o.getWorldQuaternion(qa)).z) < 0.5) o.material.opacity = 0.08;
+        return;
+      }
       if (!o.geometry.boundingBox) o.geometry.computeBoundingBox();
       const { min, max } = o.geometry.boundingBox;
       for (let k = 0; k < 8; ++k) {
@@ -409,7 +413,7 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   };
   const painted = bodies.map((b, k) => {
     const list = [];
-    if (k > 0) b.children.forEach((o) => { if (o.isMesh && (o.name === "shape" || o.name === "link" || o.name === "center")) list.push({ o, own: o.material.color.clone() }); });
+    if (k > 0) b.children.forEach((o) => { if (o.isMesh && o.material.opacity === 1 && (o.name === "shape" || o.name === "link" || o.name === "center")) list.push({ o, own: o.material.color.clone() }); });
     return list;
   });
   // Speeds of bodies from the positions just before and after.
@@ -572,6 +576,9 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
       Object.assign(orbit, { azimuth: view[0], height: Math.min(1.55, Math.max(-1.55, view[1])), distance: view[2] });
       orbit.target.fromArray(view, 3); change.zoomed = true;
     }
+    if (view.length === 2 && view.every(Number.isFinite)) { Object.assign(orbit, { azimuth: view[0], height: Math.min(1.55, Math.max(-1.55, view[1])) }); fit(); }
+    if (part.has("part")) Object.assign(change, { time: start + Number(part.get("part")) * (end - start) || start, playing: false });
+    if (part.has("bare")) { document.body.classList.add("bare"); fit(); }
     if (part.has("t") && Number.isFinite(Number(part.get("t")))) Object.assign(change, { time: Number(part.get("t")), playing: false });
     (part.get("show") || "").split(",").forEach((key) => { if (["frames", "reactions", "traces", "dark", "solid", "labels"].includes(key)) change[key] = true; });
     const follow = bodies.findIndex((b) => b.name === part.get("follow"));
