@@ -73,8 +73,9 @@ const checkMotion = async ({ names, rows }) => {
     const length = names.indexOf("spring.length");
     if (length > 0) check(Math.abs((await evaluate('se3d.scale("spring")'))[2] - row[length]) < 1e-4, "the spring stretches");
     // The marker of the plot is at the time.
+    const scale = await evaluate('document.getElementById("plot").clientWidth / 380');
     const x = 62 + 308 * (row[0] - rows[0][0]) / (rows[rows.length - 1][0] - rows[0][0]);
-    const shades = await Promise.all([0, -1, 1].map((d) => pixel("plot", x + d, 30)));
+    const shades = await Promise.all([0, -1, 1].map((d) => pixel("plot", (x + d) * scale, 30 * scale)));
     check(shades.some((c) => c[0] > c[2] + 25), `the plot shows t = ${row[0]}: ${shades}`);
   }
   const first = await evaluate("se3d.picture(se3d.start)");
@@ -127,6 +128,7 @@ const checkKeys = async () => {
 // A click names what is there; a link brings the view back.
 const checkPicks = async () => {
   await key("0");
+  await evaluate(`se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start)); se3d.orbit.target.fromArray(se3d.position(${JSON.stringify(body)}))`); // away from what lies over the picture
   await evaluate("se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))");
   const [x, y] = await evaluate(`se3d.project(se3d.position(${JSON.stringify(body)}))`);
   await press("mousePressed", x, y);
