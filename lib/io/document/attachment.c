@@ -34,11 +34,26 @@ static bool fail(se3di_reader *reader, const se3di_node *map, const char *key, c
     return se3di_reader_fail_key(reader, map, key, "`%.200s`: the file %s", file, what);
 }
 
+/* Keep what the file was. */
+static bool note(se3di_reader *reader, const char *path, const char *file)
+{
+    se3di_iopool *pool = reader->pool;
+    se3di_attached_file *made = se3di_iopool_alloc(pool, sizeof *made);
+    if (!made) {
+        return false;
+    }
+    made->path = se3di_iopool_copy(pool, path, strlen(path));
+    made->name = se3di_iopool_copy(pool, file, strlen(file));
+    made->next = reader->files;
+    reader->files = made;
+    return made->path && made->name;
+}
+
 bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const char *key,
                            const char *file, se3di_iopool *pool, char **text, size_t *size)
 {
     const char *path = se3di_find_attachment(reader, pool, file);
-    if (!path) {
+    if (!path || !note(reader, path, file)) {
         return se3di_reader_fail_memory(reader);
     }
     errno = 0;

@@ -44,6 +44,13 @@ typedef struct se3di_node {
     struct se3di_node *next; /* sibling */
 } se3di_node;
 
+/* A file that a model file names. */
+typedef struct se3di_attached_file {
+    const char *path;
+    const char *name; /* as the model file says it */
+    const struct se3di_attached_file *next;
+} se3di_attached_file;
+
 /* Read a whole file into memory of `pool`, or more of it than a document may have.
  * @return OK, IO (errno may say why), NO_MEMORY. */
 se3d_status se3di_document_read(se3di_iopool *pool, FILE *file, char **text, size_t *length);

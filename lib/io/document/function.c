@@ -104,8 +104,8 @@ bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const cha
     return read_any(reader, node, variables, &def, value, function);
 }
 
-bool se3di_read_rate(se3di_reader *reader, const se3di_node *node, double start,
-                     se3d_function *function)
+bool se3di_read_rate(se3di_reader *reader, const se3di_node *node, double start, double *value,
+                     bool *is_number, se3d_function *function)
 {
     static const char *const time_only[] = {"t", NULL};
     se3d_function_def def = se3d_function_def_default();
@@ -115,5 +115,7 @@ bool se3di_read_rate(se3di_reader *reader, const se3di_node *node, double start,
     if (!read_any(reader, node, time_only, &def, &def.constant, function)) {
         return false;
     }
-    return function->index1 != 0 || create(reader, node, &def, function);
+    *is_number = function->index1 == 0;
+    *value = def.constant;
+    return !*is_number || create(reader, node, &def, function);
 }

@@ -10,8 +10,9 @@
 bool se3di_read_function(se3di_reader *reader, const se3di_node *node, const char *const *variables,
                          double *value, se3d_function *function);
 
-/* The integral over the time of a number or a function of it, from `start` at t = 0. */
-bool se3di_read_rate(se3di_reader *reader, const se3di_node *node, double start,
-                     se3d_function *function);
+/* The integral over the time of a number, which *value gets, or a function of it, from `start` at
+ * t = 0. */
+bool se3di_read_rate(se3di_reader *reader, const se3di_node *node, double start, double *value,
+                     bool *is_number, se3d_function *function);
 
 #endif

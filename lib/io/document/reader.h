@@ -28,10 +28,11 @@ typedef struct se3di_reader {
     const se3d_model_options *options;
     se3d_model_error *error;
     se3d_status status;
-    se3di_fault fault;         /* what the report is about */
-    size_t attached;           /* bytes of other files that were read */
-    uint64_t content;          /* hash of them */
-    const se3di_named *values; /* [value_count] in place of parameters of the model */
+    se3di_fault fault;                /* what the report is about */
+    size_t attached;                  /* bytes of other files that were read */
+    uint64_t content;                 /* hash of them */
+    const se3di_attached_file *files; /* these, the last first; one may be there several times */
+    const se3di_named *values;        /* [value_count] in place of parameters of the model */
     size_t value_count;
     bool is_geometric;                     /* nothing that is asked for depends on masses */
     const struct se3di_study_entry *study; /* that the model is a sample of: outputs and `study`

@@ -52,6 +52,9 @@ typedef struct se3di_element_entry {
     bool is_turned;         /* mirrored joint whose angle counts the other way round */
     bool is_paired;         /* wheel that has an opposite one */
     int32_t coordinate;     /* se3d_joint_coordinate of a driver, friction or stop */
+    uint32_t settable;      /* bit k: component k of a load, effort or driver is a number, */
+    double value[3];        /* this one */
+    se3d_function rate;     /* driver whose number is a rate; null: it is a value */
     se3d_constraint driven; /* the joint of a driver */
     se3d_body body_i;
     se3d_body body_j;
@@ -141,6 +144,7 @@ struct se3d_model {
     struct se3di_study_entry *study;      /* io/channel/study.h; NULL: none */
     struct se3di_study_channel *measured; /* [study->source_count] of it, or of the study that the
                                              model is a sample of */
+    const se3di_attached_file *attached;  /* files that were read beside its own, the last first */
     uint64_t content;                     /* hash of the bytes of all its files, */
     uint64_t asked;                       /* of the options that it was read with */
     se3d_log_callback log;                /* the user's; NULL: none */

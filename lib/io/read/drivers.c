@@ -3,6 +3,7 @@
 #include "io/channel/law.h"
 #include "io/document/fields.h"
 #include "io/document/function.h"
+#include "io/model/model.h"
 #include "io/read/elements.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
@@ -30,10 +31,12 @@ const se3di_object se3di_object_driver = {
 /* clang-format on */
 
 /* What the coordinate follows, from its rate. */
-static bool read_rate(se3di_reader *reader, const se3di_node *node, se3d_driver_def *def)
+static bool read_rate(se3di_reader *reader, const se3di_node *node, se3d_driver_def *def,
+                      se3di_element_entry *entry)
 {
     const se3di_node *rate = se3di_node_get(node, "rate");
     double start = 0.0;
+    bool is_number = false;
     if (se3di_node_get(node, "value")) {
         return se3di_reader_fail(reader, rate, "stands beside value, must be one of them");
     }
@@ -42,17 +45,23 @@ static bool read_rate(se3di_reader *reader, const se3di_node *node, se3d_driver_
     if (status < 0) {
         return se3di_reader_fail_system(reader, rate, status);
     }
-    return se3di_read_key(reader, node, &se3di_object_driver, NULL, "start", &start) &&
-           se3di_check_of_time(reader, rate) &&
-           se3di_read_rate(reader, rate, start, &def->function);
+    if (!se3di_read_key(reader, node, &se3di_object_driver, NULL, "start", &start) ||
+        !se3di_check_of_time(reader, rate) ||
+        !se3di_read_rate(reader, rate, start, &entry->value[0], &is_number, &def->function)) {
+        return false;
+    }
+    entry->settable = is_number;
+    entry->rate = def->function;
+    return true;
 }
 
-static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_driver_def *def)
+static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_driver_def *def,
+                       se3di_element_entry *entry)
 {
     const se3di_node *value = se3di_node_get(node, "value");
     const se3di_node *start = se3di_node_get(node, "start");
     if (se3di_node_get(node, "rate")) {
-        return read_rate(reader, node, def);
+        return read_rate(reader, node, def, entry);
     }
     if (start && !node->incomplete) { /* else its rate was wrong */
         return se3di_reader_fail(reader, start, "is for a driver with a rate");
@@ -62,7 +71,12 @@ static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_driver
                                      "is missing, must be a number, an expression in t or "
                                      "{spline: [[t, value], ...]}; or give its rate");
     }
-    return se3di_read_prescribed(reader, value, &def->value, &def->function);
+    if (!se3di_read_prescribed(reader, value, &def->value, &def->function)) {
+        return false;
+    }
+    entry->settable = def->function.index1 == 0;
+    entry->value[0] = def->value;
+    return true;
 }
 
 static bool read_driver(se3di_reader *reader, const se3di_node *node)
@@ -73,7 +87,7 @@ static bool read_driver(se3di_reader *reader, const se3di_node *node)
         !se3di_read_element(reader, node, SE3DI_ELEMENT_DRIVER, &entry) ||
         !se3di_read_key_joint(reader, node, "joint", &def.joint) ||
         !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
-        !read_value(reader, node, &def)) {
+        !read_value(reader, node, &def, entry)) {
         return false;
     }
     def.name = entry->name;

@@ -412,6 +412,8 @@ static bool read_effort(se3di_reader *reader, const se3di_node *node, se3di_elem
     }
     def.name = entry->name;
     entry->coordinate = def.coordinate;
+    entry->settable = def.function.index1 == 0;
+    entry->value[0] = def.value;
     const se3d_status status = se3d_force_create_effort(reader->system, &def, &entry->force);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }
@@ -542,6 +544,10 @@ static bool read_load(se3di_reader *reader, const se3di_node *node, const char *
     }
     entry->body = body->body;
     memcpy(entry->point, def.point, sizeof entry->point);
+    for (size_t k = 0; k < 3; ++k) {
+        entry->settable |= def.function[k].index1 == 0 ? 1U << k : 0;
+        entry->value[k] = def.value[k];
+    }
     def.name = entry->name;
     def.body = body->body;
     const se3d_status status = strcmp(type, "force") == 0

@@ -240,6 +240,7 @@ se3d_status se3di_model_fill(se3di_attempt *attempt)
     attempt->fault = reader.fault;
     attempt->attached = reader.attached;
     model->content = reader.content;
+    model->attached = reader.files;
     return good ? SE3D_OK : reader.status < 0 ? reader.status : SE3D_ERR_MODEL;
 }
 
