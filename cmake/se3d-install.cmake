@@ -94,6 +94,9 @@ install(FILES "${PROJECT_SOURCE_DIR}/docs/se3d.schema.json" DESTINATION "${CMAKE
 # needs an emulator for that (CMAKE_CROSSCOMPILING_EMULATOR).
 if(TARGET se3d_program)
     install(TARGETS se3d_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
+    if(TARGET se3d_fmu)
+        install(TARGETS se3d_fmu LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/se3d" COMPONENT program)
+    endif()
 endif()
 if(TARGET se3d_program AND UNIX AND (NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR))
     set(se3d_manual_dir "${PROJECT_BINARY_DIR}/manual")

@@ -50,6 +50,7 @@ static const char **value_target(options *o, const char *name)
                  {"--speed", &o->speed},
                  {"--view", &o->view},
                  {"--format", &o->format},
+                 {"--fmi", &o->fmi},
                  {"--shard", &o->shard},
                  {"--jobs", &o->jobs},
                  {"--checkpoint", &o->checkpoint}};

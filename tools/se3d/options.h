@@ -24,6 +24,7 @@ typedef struct options {
     const char *speed;
     const char *view;
     const char *format;
+    const char *fmi;
     const char *shard;
     const char *jobs;
     const char *checkpoint;

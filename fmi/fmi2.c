@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* FMI 2.0, co-simulation. Steps are finished when the call returns; inputs stay as they are between
+ * communication points. */
+#include "fmi2.h"
+
+#include <math.h>
+
+#include "instance.h"
+
+#define INSTANCE(c)                                                                                \
+    fmi_instance *i = (c);                                                                         \
+    if (!i) {                                                                                      \
+        return fmi2Error;                                                                          \
+    }
+
+static void say(const fmi_instance *instance, int status, const char *category, const char *message)
+{
+    const fmi2CallbackFunctions *functions = instance->callback;
+    if (functions->logger) {
+        functions->logger(functions->componentEnvironment, instance->name ? instance->name : "",
+                          (fmi2Status)status, category, "%s", message);
+    }
+}
+
+static fmi2Status done(bool good)
+{
+    return good ? fmi2OK : fmi2Error;
+}
+
+const char *fmi2GetTypesPlatform(void)
+{
+    return "default";
+}
+
+const char *fmi2GetVersion(void)
+{
+    return "2.0";
+}
+
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
+                              const fmi2CallbackFunctions *functions, fmi2Boolean visible,
+                              fmi2Boolean logging)
+{
+    (void)visible;
+    if (!functions) {
+        return NULL;
+    }
+    union {
+        const void *constant;
+        void *pointer;
+    } callback = {.constant = functions};
+    const fmi_instance model = {.say = say,
+                                .callback = callback.pointer,
+                                .environment = functions->componentEnvironment,
+                                .logs_events = logging != 0,
+                                .logs_warnings = logging != 0};
+    if (type != fmi2CoSimulation) {
+        fmi_refuse(&model, "fmi2Instantiate", "the unit is for co-simulation only");
+        return NULL;
+    }
+    return fmi_create(&model, name, guid, resources);
+}
+
+void fmi2FreeInstance(fmi2Component c)
+{
+    fmi_destroy(c);
+}
+
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
+                               const fmi2String *names)
+{
+    INSTANCE(c)
+    return (fmi2Status)fmi_set_logging(i, on != 0, count, names);
+}
+
+/* ---- life -----------------------------------------------------------------------------------*/
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance,
+                               fmi2Real start, fmi2Boolean has_stop, fmi2Real stop)
+{
+    INSTANCE(c)
+    if (isnan(start) || (has_stop && isnan(stop)) || (has_tolerance && isnan(tolerance))) {
+        return (fmi2Status)fmi_refuse(i, "fmi2SetupExperiment", "a number is NaN");
+    }
+    return done(se3di_fmi_unit_begin(i->unit, start, has_stop ? stop : (double)NAN,
+                                     has_tolerance ? tolerance : (double)NAN));
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c)
+{
+    INSTANCE(c)
+    return done(se3di_fmi_unit_enter(i->unit));
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component c)
+{
+    INSTANCE(c)
+    return done(se3di_fmi_unit_start(i->unit));
+}
+
+fmi2Status fmi2Terminate(fmi2Component c)
+{
+    INSTANCE(c)
+    return done(se3di_fmi_unit_terminate(i->unit));
+}
+
+fmi2Status fmi2Reset(fmi2Component c)
+{
+    INSTANCE(c)
+    return done(se3di_fmi_unit_reset(i->unit));
+}
+
+/* ---- variables ------------------------------------------------------------------------------*/
+
+fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference *vr, size_t count,
+                       fmi2Real *values)
+{
+    INSTANCE(c)
+    return (fmi2Status)fmi_get(i, vr, count, values, count);
+}
+
+fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference *vr, size_t count,
+                       const fmi2Real *values)
+{
+    INSTANCE(c)
+    return (fmi2Status)fmi_set(i, vr, count, values, count);
+}
+
+/* Types that no variable has. */
+#define OTHER_TYPE(type, get, set)                                                                 \
+    fmi2Status fmi2Get##type(fmi2Component c, const fmi2ValueReference *vr, size_t count,          \
+                             get *values)                                                          \
+    {                                                                                              \
+        INSTANCE(c)                                                                                \
+        (void)vr;                                                                                  \
+        (void)values;                                                                              \
+        return (fmi2Status)fmi_refuse_type(i, count, #type);                                       \
+    }                                                                                              \
+    fmi2Status fmi2Set##type(fmi2Component c, const fmi2ValueReference *vr, size_t count,          \
+                             set *values)                                                          \
+    {                                                                                              \
+        INSTANCE(c)                                                                                \
+        (void)vr;                                                                                  \
+        (void)values;                                                                              \
+        return (fmi2Status)fmi_refuse_type(i, count, #type);                                       \
+    }
+OTHER_TYPE(Integer, fmi2Integer, const fmi2Integer)
+OTHER_TYPE(Boolean, fmi2Boolean, const fmi2Boolean)
+OTHER_TYPE(String, fmi2String, const fmi2String)
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference *unknowns,
+                                        size_t unknown_count, const fmi2ValueReference *knowns,
+                                        size_t known_count, const fmi2Real *seed,
+                                        fmi2Real *sensitivity)
+{
+    INSTANCE(c)
+    (void)unknowns;
+    (void)unknown_count;
+    (void)knowns;
+    (void)known_count;
+    (void)seed;
+    (void)sensitivity;
+    return (fmi2Status)fmi_refuse(i, "fmi2GetDirectionalDerivative", "the unit does not have it");
+}
+
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference *vr, size_t count,
+                                       const fmi2Integer *orders, const fmi2Real *values)
+{
+    INSTANCE(c)
+    (void)vr;
+    (void)count;
+    (void)orders;
+    (void)values;
+    return (fmi2Status)fmi_refuse(i, "fmi2SetRealInputDerivatives", "inputs are not interpolated");
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference *vr, size_t count,
+                                        const fmi2Integer *orders, fmi2Real *values)
+{
+    INSTANCE(c)
+    (void)vr;
+    (void)count;
+    (void)orders;
+    (void)values;
+    return (fmi2Status)fmi_refuse(i, "fmi2GetRealOutputDerivatives",
+                                  "the unit does not have derivatives of outputs");
+}
+
+/* ---- steps ----------------------------------------------------------------------------------*/
+
+fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real h, fmi2Boolean no_state_before)
+{
+    INSTANCE(c)
+    (void)no_state_before;
+    if (!se3di_fmi_unit_step(i->unit, time, h)) {
+        return fmi2Error;
+    }
+    return se3di_fmi_unit_get_mode(i->unit) == SE3DI_FMI_ENDED ? fmi2Discard : fmi2OK;
+}
+
+fmi2Status fmi2CancelStep(fmi2Component c)
+{
+    INSTANCE(c)
+    return (fmi2Status)fmi_refuse(i, "fmi2CancelStep", "no step is under way");
+}
+
+/* A question that has no answer here. */
+static fmi2Status discard(const fmi_instance *i, const void *value)
+{
+    if (!value) {
+        return (fmi2Status)fmi_refuse(i, "fmi2GetStatus", "the place for the answer is NULL");
+    }
+    return fmi2Discard;
+}
+
+fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value)
+{
+    INSTANCE(c)
+    (void)kind;
+    return discard(i, value);
+}
+
+fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value)
+{
+    INSTANCE(c)
+    if (!value || kind != fmi2LastSuccessfulTime) {
+        return discard(i, value);
+    }
+    *value = se3di_fmi_unit_get_time(i->unit);
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value)
+{
+    INSTANCE(c)
+    (void)kind;
+    return discard(i, value);
+}
+
+fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value)
+{
+    INSTANCE(c)
+    if (!value || kind != fmi2Terminated) {
+        return discard(i, value);
+    }
+    *value = se3di_fmi_unit_get_mode(i->unit) == SE3DI_FMI_ENDED ? fmi2True : fmi2False;
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String *value)
+{
+    INSTANCE(c)
+    (void)kind;
+    return discard(i, value);
+}
+
+/* ---- states ---------------------------------------------------------------------------------*/
+
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
+{
+    INSTANCE(c)
+    fmi_state *s = state ? *state : NULL;
+    const int status = fmi_get_state(i, state ? &s : NULL);
+    if (state) {
+        *state = s;
+    }
+    return (fmi2Status)status;
+}
+
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
+{
+    INSTANCE(c)
+    return (fmi2Status)fmi_set_state(i, state);
+}
+
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state)
+{
+    INSTANCE(c)
+    if (state) {
+        fmi_free_state(*state);
+        *state = NULL;
+    }
+    return fmi2OK;
+}
+
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size)
+{
+    INSTANCE(c)
+    if (!state || !size) {
+        return (fmi2Status)fmi_refuse(i, "fmi2SerializedFMUstateSize",
+                                      "the state or the place for the size is NULL");
+    }
+    *size = ((const fmi_state *)state)->size;
+    return fmi2OK;
+}
+
+fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte *bytes, size_t size)
+{
+    INSTANCE(c)
+    return (fmi2Status)fmi_write_state(i, state, (unsigned char *)bytes, size);
+}
+
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte *bytes, size_t size,
+                                   fmi2FMUstate *state)
+{
+    INSTANCE(c)
+    fmi_state *s = state ? *state : NULL;
+    const int status = fmi_read_state(i, (const unsigned char *)bytes, size, state ? &s : NULL);
+    if (state) {
+        *state = s;
+    }
+    return (fmi2Status)status;
+}

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What both versions of the standard have in common: instances, states, paths. */
+#ifndef SE3D_FMI_INSTANCE_H
+#define SE3D_FMI_INSTANCE_H
+
+#include <stdbool.h>
+
+#include "io/fmi/unit.h"
+
+/* Statuses have the same numbers in both: OK, Warning, Discard, Error, Fatal. */
+enum { FMI_OK = 0, FMI_WARNING = 1, FMI_DISCARD = 2, FMI_ERROR = 3 };
+
+typedef struct fmi_instance fmi_instance;
+typedef void (*fmi_say)(const fmi_instance *instance, int status, const char *category,
+                        const char *message);
+
+struct fmi_instance {
+    se3di_fmi_unit *unit;
+    fmi_say say; /* hands on to the caller */
+    void *callback;
+    void *environment;
+    char *name;
+    bool logs_events; /* these are told; errors always are */
+    bool logs_warnings;
+};
+
+/* A state of a unit as bytes. */
+typedef struct fmi_state {
+    size_t size;
+    unsigned char *bytes;
+} fmi_state;
+
+/* `callback` and `environment` stay with the caller. `folder`: of the resources, or a URI of it.
+ * @return NULL: `say` was told why */
+fmi_instance *fmi_create(const fmi_instance *model, const char *name, const char *token,
+                         const char *folder);
+void fmi_destroy(fmi_instance *instance);
+/* Say why a call is refused. @return FMI_ERROR */
+int fmi_refuse(const fmi_instance *instance, const char *call, const char *why);
+/* Switch categories on or off, all if there are none. @return a status */
+int fmi_set_logging(fmi_instance *instance, bool on, size_t count, const char *const *categories);
+
+int fmi_get(fmi_instance *instance, const uint32_t *references, size_t count, double *values,
+            size_t value_count);
+int fmi_set(fmi_instance *instance, const uint32_t *references, size_t count, const double *values,
+            size_t value_count);
+/* Of another type than the variables have: fine for none of them. */
+int fmi_refuse_type(const fmi_instance *instance, size_t count, const char *type);
+
+/* One that *state has is used again. */
+int fmi_get_state(fmi_instance *instance, fmi_state **state);
+int fmi_set_state(fmi_instance *instance, const fmi_state *state);
+void fmi_free_state(fmi_state *state);
+int fmi_write_state(const fmi_instance *instance, const fmi_state *state, unsigned char *bytes,
+                    size_t size);
+int fmi_read_state(const fmi_instance *instance, const unsigned char *bytes, size_t size,
+                   fmi_state **state);
+
+#endif

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* FMI 2.0 behind the table of unit.h. */
+#include <dlfcn.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fmi2.h"
+#include "unit.h"
+
+int told_errors;
+char told_last[2000];
+
+void told_clear(void)
+{
+    told_errors = 0;
+    told_last[0] = '\0';
+}
+
+#define POINTER(name, parameters) static fmi2##name##TYPE *p_##name;
+FMI2_STATUS_FUNCTIONS(POINTER)
+static fmi2InstantiateTYPE *p_Instantiate;
+static fmi2FreeInstanceTYPE *p_FreeInstance;
+
+static void hear(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
+                 fmi2String category, fmi2String message, ...)
+{
+    va_list arguments;
+    (void)environment;
+    if (status < fmi2Error || strcmp(category, "logStatusError") != 0 || !name) {
+        return;
+    }
+    va_start(arguments, message);
+    vsnprintf(told_last, sizeof told_last, message, arguments);
+    va_end(arguments);
+    ++told_errors;
+}
+
+static void *instantiate(const char *name, const char *token, const char *folder, int logging)
+{
+    static const fmi2CallbackFunctions callbacks = {hear, calloc, free, NULL, NULL};
+    char uri[3000];
+    snprintf(uri, sizeof uri, "file://%s", folder ? folder : "");
+    return p_Instantiate(name, fmi2CoSimulation, token, folder ? uri : NULL, &callbacks, 0,
+                         logging);
+}
+
+static void free_instance(void *c)
+{
+    p_FreeInstance(c);
+}
+
+static int setup(void *c, int has_tolerance, double tolerance, double start, int has_stop,
+                 double stop)
+{
+    return p_SetupExperiment(c, has_tolerance, tolerance, start, has_stop, stop);
+}
+
+static int enter(void *c)
+{
+    return p_EnterInitializationMode(c);
+}
+
+static int leave(void *c)
+{
+    return p_ExitInitializationMode(c);
+}
+
+static int terminate(void *c)
+{
+    return p_Terminate(c);
+}
+
+static int reset(void *c)
+{
+    return p_Reset(c);
+}
+
+static int get(void *c, const uint32_t *vr, size_t count, double *values)
+{
+    return p_GetReal(c, vr, count, values);
+}
+
+static int set(void *c, const uint32_t *vr, size_t count, const double *values)
+{
+    return p_SetReal(c, vr, count, values);
+}
+
+static int step(void *c, double time, double h, double *reached, int *ended)
+{
+    const fmi2Status status = p_DoStep(c, time, h, fmi2True);
+    *reached = time + h;
+    *ended = 0;
+    if (status == fmi2Discard) {
+        p_GetRealStatus(c, fmi2LastSuccessfulTime, reached);
+        p_GetBooleanStatus(c, fmi2Terminated, ended);
+    }
+    return status;
+}
+
+static int get_state(void *c, void **state)
+{
+    return p_GetFMUstate(c, state);
+}
+
+static int set_state(void *c, void *state)
+{
+    return p_SetFMUstate(c, state);
+}
+
+static int free_state(void *c, void **state)
+{
+    return p_FreeFMUstate(c, state);
+}
+
+static int state_size(void *c, void *state, size_t *size)
+{
+    return p_SerializedFMUstateSize(c, state, size);
+}
+
+static int write_state(void *c, void *state, unsigned char *bytes, size_t size)
+{
+    return p_SerializeFMUstate(c, state, (fmi2Byte *)bytes, size);
+}
+
+static int read_state(void *c, const unsigned char *bytes, size_t size, void **state)
+{
+    return p_DeSerializeFMUstate(c, (const fmi2Byte *)bytes, size, state);
+}
+
+static int other_type(void *c, size_t count)
+{
+    const fmi2ValueReference vr = 0;
+    fmi2Integer value = 0;
+    return p_GetInteger(c, &vr, count, &value);
+}
+
+static int directional(void *c)
+{
+    const fmi2ValueReference vr = 0;
+    double value = 1.0;
+    return p_GetDirectionalDerivative(c, &vr, 1, &vr, 1, &value, &value);
+}
+
+static int logging(void *c, const char *category)
+{
+    return p_SetDebugLogging(c, fmi2True, 1, &category);
+}
+
+/* A function as what it is. */
+#define LOAD(pointer, name)                                                                        \
+    do {                                                                                           \
+        void *found = dlsym(f->object, name);                                                      \
+        missing += found == NULL;                                                                  \
+        memcpy(&pointer, &found, sizeof found);                                                    \
+    } while (0)
+
+int functions_load_2(functions *f, const char *object)
+{
+    int missing = 0;
+    const char *(*version)(void) = NULL;
+    *f = (functions){dlopen(object, RTLD_NOW | RTLD_LOCAL),
+                     instantiate,
+                     free_instance,
+                     setup,
+                     enter,
+                     leave,
+                     terminate,
+                     reset,
+                     get,
+                     set,
+                     step,
+                     get_state,
+                     set_state,
+                     free_state,
+                     state_size,
+                     write_state,
+                     read_state,
+                     other_type,
+                     directional,
+                     logging};
+    if (!f->object) {
+        fprintf(stderr, "%s\n", dlerror());
+        return -1;
+    }
+#define LOAD_NAMED(name, parameters) LOAD(p_##name, "fmi2" #name);
+    FMI2_STATUS_FUNCTIONS(LOAD_NAMED)
+    LOAD(p_Instantiate, "fmi2Instantiate");
+    LOAD(p_FreeInstance, "fmi2FreeInstance");
+    LOAD(version, "fmi2GetTypesPlatform");
+    missing += !version || strcmp(version(), "default") != 0;
+    LOAD(version, "fmi2GetVersion");
+    return missing + (!version || strcmp(version(), "2.0") != 0);
+}

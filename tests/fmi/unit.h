@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What the checker knows of a mock-up unit: its description, and its functions behind one table,
+ * whatever the version of the standard. */
+#ifndef SE3D_TESTS_FMI_UNIT_H
+#define SE3D_TESTS_FMI_UNIT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { NAME_SIZE = 200, VARIABLES_MAX = 2000 };
+
+typedef struct variable {
+    char name[NAME_SIZE], causality[40], variability[40], unit[60];
+    uint32_t reference;
+    int has_start;
+    double start;
+} variable;
+
+typedef struct description {
+    char version[20], token[80], identifier[NAME_SIZE], model[NAME_SIZE];
+    variable variables[VARIABLES_MAX];
+    size_t count;
+    size_t outputs[VARIABLES_MAX], output_count; /* indices of variables */
+    size_t unknowns[VARIABLES_MAX], unknown_count;
+    char units[100][60];
+    size_t unit_count, category_count;
+    double start, stop;
+    int can_save, can_serialize, has_derivatives;
+    int malformed;
+} description;
+
+/* Read modelDescription.xml of an unpacked unit. @return 0: it cannot be read. */
+int description_read(const char *path, description *d);
+
+enum { GOOD = 0, DISCARD = 2, BAD = 3 };
+
+/* Statuses as in the standard; GOOD, BAD and DISCARD have the same numbers in both versions. */
+typedef struct functions {
+    void *object;
+    void *(*instantiate)(const char *name, const char *token, const char *folder, int logging);
+    void (*free)(void *c);
+    int (*setup)(void *c, int has_tolerance, double tolerance, double start, int has_stop,
+                 double stop);
+    int (*enter)(void *c);
+    int (*leave)(void *c);
+    int (*terminate)(void *c);
+    int (*reset)(void *c);
+    int (*get)(void *c, const uint32_t *vr, size_t count, double *values);
+    int (*set)(void *c, const uint32_t *vr, size_t count, const double *values);
+    /* *reached: where it ended; *ended: the unit goes no further */
+    int (*step)(void *c, double time, double h, double *reached, int *ended);
+    int (*get_state)(void *c, void **state);
+    int (*set_state)(void *c, void *state);
+    int (*free_state)(void *c, void **state);
+    int (*state_size)(void *c, void *state, size_t *size);
+    int (*write_state)(void *c, void *state, unsigned char *bytes, size_t size);
+    int (*read_state)(void *c, const unsigned char *bytes, size_t size, void **state);
+    int (*other_type)(void *c, size_t count);      /* get integers */
+    int (*directional)(void *c);                   /* its derivative */
+    int (*logging)(void *c, const char *category); /* switch one on */
+} functions;
+
+/* What the units have told, since the last `told_clear`. */
+extern int told_errors;
+extern char told_last[2000];
+void told_clear(void);
+
+/* Functions that cannot be found are counted. @return the number missing, -1: no such object. */
+int functions_load_2(functions *f, const char *object);
+int functions_load_3(functions *f, const char *object);
+
+#endif
