@@ -457,7 +457,11 @@ static void parameters_change_the_model(void)
     double got = 0.0;
     size_t changed = 0;
     size_t count = 0;
-    the_whole_run(expected);
+    const size_t part = row_count < 20 ? row_count - 2 : 18; /* the model is read often */
+    void *plain = begin();
+    CHECK(go(plain, 0, part) == GOOD);
+    get_row(plain, expected);
+    f.free(plain);
     for (size_t k = 0; k < d.count; ++k) {
         const variable *v = &d.variables[k];
         const double more = 1.001 * v->start;
@@ -469,14 +473,14 @@ static void parameters_change_the_model(void)
         CHECK(f.get(c, &v->reference, 1, &got) == GOOD);
         CHECK_NEAR(got, v->start, 0.0);
         CHECK(f.set(c, &v->reference, 1, &v->start) == GOOD);
-        CHECK(f.enter(c) == GOOD && f.leave(c) == GOOD && go(c, 0, row_count - 2) == GOOD);
+        CHECK(f.enter(c) == GOOD && f.leave(c) == GOOD && go(c, 0, part) == GOOD);
         get_row(c, values);
         CHECK(same_bits(values, expected));
         CHECK(f.reset(c) == GOOD && f.enter(c) == GOOD);
         CHECK(f.set(c, &v->reference, 1, &more) == GOOD);
         CHECK(f.get(c, &v->reference, 1, &got) == GOOD);
         CHECK_NEAR(got, more, 0.0);
-        if (f.leave(c) == GOOD && go(c, 0, row_count - 2) == GOOD) {
+        if (f.leave(c) == GOOD && go(c, 0, part) == GOOD) {
             get_row(c, values);
             changed += !same_bits(values, expected);
         } else {

@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* FMI 3.0, co-simulation without event mode: steps are finished when the call returns, and end
+ * early only where an event of the model ends it. */
+#include "fmi3.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "instance.h"
+
+#define INSTANCE(c)                                                                                \
+    fmi_instance *i = (c);                                                                         \
+    if (!i) {                                                                                      \
+        return fmi3Error;                                                                          \
+    }
+
+static void say(const fmi_instance *instance, int status, const char *category, const char *message)
+{
+    fmi3LogMessageCallback log = NULL;
+    memcpy(&log, &instance->callback, sizeof log);
+    if (log) {
+        log(instance->environment, (fmi3Status)status, category, message);
+    }
+}
+
+static fmi3Status done(bool good)
+{
+    return good ? fmi3OK : fmi3Error;
+}
+
+const char *fmi3GetVersion(void)
+{
+    return "3.0";
+}
+
+/* Who hears what the unit says. */
+static fmi_instance model_of(fmi3LogMessageCallback log, fmi3InstanceEnvironment environment,
+                             bool logging)
+{
+    fmi_instance model = {
+        .say = say, .environment = environment, .logs_events = logging, .logs_warnings = logging};
+    memcpy(&model.callback, &log, sizeof log);
+    return model;
+}
+
+fmi3Instance
+fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources,
+                            fmi3Boolean visible, fmi3Boolean logging, fmi3Boolean event_mode,
+                            fmi3Boolean early_return, const fmi3ValueReference intermediate[],
+                            size_t intermediate_count, fmi3InstanceEnvironment environment,
+                            fmi3LogMessageCallback log, fmi3IntermediateUpdateCallback update)
+{
+    const fmi_instance model = model_of(log, environment, logging);
+    (void)visible;
+    (void)early_return;
+    (void)intermediate;
+    (void)update;
+    if (event_mode) {
+        fmi_refuse(&model, "fmi3InstantiateCoSimulation", "the unit has no event mode");
+        return NULL;
+    }
+    if (intermediate_count > 0) {
+        fmi_refuse(&model, "fmi3InstantiateCoSimulation", "the unit has no intermediate variables");
+        return NULL;
+    }
+    return fmi_create(&model, name, token, resources);
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
+                                          fmi3Boolean visible, fmi3Boolean logging,
+                                          fmi3InstanceEnvironment environment,
+                                          fmi3LogMessageCallback log)
+{
+    const fmi_instance model = model_of(log, environment, logging);
+    (void)name;
+    (void)token;
+    (void)resources;
+    (void)visible;
+    fmi_refuse(&model, "fmi3InstantiateModelExchange", "the unit is for co-simulation only");
+    return NULL;
+}
+
+fmi3Instance
+fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources,
+                                  fmi3Boolean visible, fmi3Boolean logging,
+                                  fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
+                                  fmi3ClockUpdateCallback update, fmi3LockPreemptionCallback lock,
+                                  fmi3UnlockPreemptionCallback unlock)
+{
+    const fmi_instance model = model_of(log, environment, logging);
+    (void)name;
+    (void)token;
+    (void)resources;
+    (void)visible;
+    (void)update;
+    (void)lock;
+    (void)unlock;
+    fmi_refuse(&model, "fmi3InstantiateScheduledExecution", "the unit is for co-simulation only");
+    return NULL;
+}
+
+void fmi3FreeInstance(fmi3Instance c)
+{
+    fmi_destroy(c);
+}
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t count,
+                               const fmi3String names[])
+{
+    INSTANCE(c)
+    return (fmi3Status)fmi_set_logging(i, on, count, names);
+}
+
+/* ---- life -----------------------------------------------------------------------------------*/
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_tolerance,
+                                       fmi3Float64 tolerance, fmi3Float64 start,
+                                       fmi3Boolean has_stop, fmi3Float64 stop)
+{
+    INSTANCE(c)
+    if (isnan(start) || (has_stop && isnan(stop)) || (has_tolerance && isnan(tolerance))) {
+        return (fmi3Status)fmi_refuse(i, "fmi3EnterInitializationMode", "a number is NaN");
+    }
+    return done(se3di_fmi_unit_begin(i->unit, start, has_stop ? stop : (double)NAN,
+                                     has_tolerance ? tolerance : (double)NAN) &&
+                se3di_fmi_unit_enter(i->unit));
+}
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance c)
+{
+    INSTANCE(c)
+    return done(se3di_fmi_unit_start(i->unit));
+}
+
+fmi3Status fmi3Terminate(fmi3Instance c)
+{
+    INSTANCE(c)
+    return done(se3di_fmi_unit_terminate(i->unit));
+}
+
+fmi3Status fmi3Reset(fmi3Instance c)
+{
+    INSTANCE(c)
+    return done(se3di_fmi_unit_reset(i->unit));
+}
+
+/* ---- variables ------------------------------------------------------------------------------*/
+
+fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t count,
+                          fmi3Float64 values[], size_t value_count)
+{
+    INSTANCE(c)
+    return (fmi3Status)fmi_get(i, vr, count, values, value_count);
+}
+
+fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t count,
+                          const fmi3Float64 values[], size_t value_count)
+{
+    INSTANCE(c)
+    return (fmi3Status)fmi_set(i, vr, count, values, value_count);
+}
+
+/* Types that no variable has. */
+#define OTHER_TYPE(name, type)                                                                     \
+    fmi3Status fmi3Get##name(fmi3Instance c, const fmi3ValueReference vr[], size_t count,          \
+                             type values[], size_t value_count)                                    \
+    {                                                                                              \
+        INSTANCE(c)                                                                                \
+        (void)vr;                                                                                  \
+        (void)values;                                                                              \
+        (void)value_count;                                                                         \
+        return (fmi3Status)fmi_refuse_type(i, count, #name);                                       \
+    }                                                                                              \
+    fmi3Status fmi3Set##name(fmi3Instance c, const fmi3ValueReference vr[], size_t count,          \
+                             const type values[], size_t value_count)                              \
+    {                                                                                              \
+        INSTANCE(c)                                                                                \
+        (void)vr;                                                                                  \
+        (void)values;                                                                              \
+        (void)value_count;                                                                         \
+        return (fmi3Status)fmi_refuse_type(i, count, #name);                                       \
+    }
+OTHER_TYPE(Float32, fmi3Float32)
+OTHER_TYPE(Int8, fmi3Int8)
+OTHER_TYPE(UInt8, fmi3UInt8)
+OTHER_TYPE(Int16, fmi3Int16)
+OTHER_TYPE(UInt16, fmi3UInt16)
+OTHER_TYPE(Int32, fmi3Int32)
+OTHER_TYPE(UInt32, fmi3UInt32)
+OTHER_TYPE(Int64, fmi3Int64)
+OTHER_TYPE(UInt64, fmi3UInt64)
+OTHER_TYPE(Boolean, fmi3Boolean)
+OTHER_TYPE(String, fmi3String)
+
+fmi3Status fmi3GetBinary(fmi3Instance c, const fmi3ValueReference vr[], size_t count,
+                         size_t sizes[], fmi3Binary values[], size_t value_count)
+{
+    INSTANCE(c)
+    (void)vr;
+    (void)sizes;
+    (void)values;
+    (void)value_count;
+    return (fmi3Status)fmi_refuse_type(i, count, "Binary");
+}
+
+fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference vr[], size_t count,
+                         const size_t sizes[], const fmi3Binary values[], size_t value_count)
+{
+    INSTANCE(c)
+    (void)vr;
+    (void)sizes;
+    (void)values;
+    (void)value_count;
+    return (fmi3Status)fmi_refuse_type(i, count, "Binary");
+}
+
+fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference vr[], size_t count,
+                        fmi3Clock values[])
+{
+    INSTANCE(c)
+    (void)vr;
+    (void)values;
+    return (fmi3Status)fmi_refuse_type(i, count, "Clock");
+}
+
+fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference vr[], size_t count,
+                        const fmi3Clock values[])
+{
+    INSTANCE(c)
+    (void)vr;
+    (void)values;
+    return (fmi3Status)fmi_refuse_type(i, count, "Clock");
+}
+
+/* What every output depends on is not told: on everything. */
+fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, fmi3ValueReference vr, size_t *count)
+{
+    INSTANCE(c)
+    (void)vr;
+    if (!count) {
+        return (fmi3Status)fmi_refuse(i, "fmi3GetNumberOfVariableDependencies",
+                                      "the place for the number is NULL");
+    }
+    *count = 0;
+    return fmi3OK;
+}
+
+/* ---- steps ----------------------------------------------------------------------------------*/
+
+fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 h, fmi3Boolean no_state_before,
+                      fmi3Boolean *event_needed, fmi3Boolean *terminate, fmi3Boolean *early_return,
+                      fmi3Float64 *last_time)
+{
+    INSTANCE(c)
+    (void)no_state_before;
+    if (!event_needed || !terminate || !early_return || !last_time) {
+        return (fmi3Status)fmi_refuse(i, "fmi3DoStep", "a place for an answer is NULL");
+    }
+    const bool good = se3di_fmi_unit_step(i->unit, time, h);
+    const bool ended = se3di_fmi_unit_get_mode(i->unit) == SE3DI_FMI_ENDED;
+    *event_needed = false;
+    *terminate = good && ended;
+    *last_time = se3di_fmi_unit_get_time(i->unit);
+    *early_return = good && ended && *last_time < time + h;
+    return done(good);
+}
+
+/* ---- states ---------------------------------------------------------------------------------*/
+
+fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state)
+{
+    INSTANCE(c)
+    fmi_state *s = state ? *state : NULL;
+    const int status = fmi_get_state(i, state ? &s : NULL);
+    if (state) {
+        *state = s;
+    }
+    return (fmi3Status)status;
+}
+
+fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state)
+{
+    INSTANCE(c)
+    return (fmi3Status)fmi_set_state(i, state);
+}
+
+fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state)
+{
+    INSTANCE(c)
+    if (state) {
+        fmi_free_state(*state);
+        *state = NULL;
+    }
+    return fmi3OK;
+}
+
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size)
+{
+    INSTANCE(c)
+    if (!state || !size) {
+        return (fmi3Status)fmi_refuse(i, "fmi3SerializedFMUStateSize",
+                                      "the state or the place for the size is NULL");
+    }
+    *size = ((const fmi_state *)state)->size;
+    return fmi3OK;
+}
+
+fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size)
+{
+    INSTANCE(c)
+    return (fmi3Status)fmi_write_state(i, state, bytes, size);
+}
+
+fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size,
+                                   fmi3FMUState *state)
+{
+    INSTANCE(c)
+    fmi_state *s = state ? *state : NULL;
+    const int status = fmi_read_state(i, bytes, size, state ? &s : NULL);
+    if (state) {
+        *state = s;
+    }
+    return (fmi3Status)status;
+}
+
+/* ---- what the unit does not have --------------------------------------------------------------*/
+
+static fmi3Status refuse(fmi3Instance c, const char *call)
+{
+    INSTANCE(c)
+    return (fmi3Status)fmi_refuse(i, call, "the unit does not have it");
+}
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+#define MISSING(name, parameters)                                                                  \
+    fmi3Status fmi3##name parameters                                                               \
+    {                                                                                              \
+        return refuse(c, "fmi3" #name);                                                            \
+    }
+FMI3_MISSING_FUNCTIONS(MISSING)
