@@ -13,12 +13,23 @@
         return fmi2Error;                                                                          \
     }
 
+/* The message is a format of printf without arguments, which not all callers look at; in it # begins
+ * the name of a variable. Both marks stand for themselves where they are twice. */
 static void say(const fmi_instance *instance, int status, const char *category, const char *message)
 {
     const fmi2CallbackFunctions *functions = instance->callback;
+    char text[2 * FMI_MESSAGE_SIZE];
+    size_t used = 0;
+    for (size_t k = 0; message[k] && k < FMI_MESSAGE_SIZE - 1; ++k) {
+        text[used++] = message[k];
+        if (message[k] == '%' || message[k] == '#') {
+            text[used++] = message[k];
+        }
+    }
+    text[used] = '\0';
     if (functions->logger) {
         functions->logger(functions->componentEnvironment, instance->name ? instance->name : "",
-                          (fmi2Status)status, category, "%s", message);
+                          (fmi2Status)status, category, text);
     }
 }
 

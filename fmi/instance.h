@@ -9,6 +9,7 @@
 
 /* Statuses have the same numbers in both: OK, Warning, Discard, Error, Fatal. */
 enum { FMI_OK = 0, FMI_WARNING = 1, FMI_DISCARD = 2, FMI_ERROR = 3 };
+enum { FMI_MESSAGE_SIZE = 2000 };
 
 typedef struct fmi_instance fmi_instance;
 typedef void (*fmi_say)(const fmi_instance *instance, int status, const char *category,
