@@ -13,8 +13,8 @@
         return fmi2Error;                                                                          \
     }
 
-/* The message is a format of printf without arguments, which not all callers look at; in it # begins
- * the name of a variable. Both marks stand for themselves where they are twice. */
+/* The message is a format of printf without arguments, which not all callers look at; in it a #
+ * begins the name of a variable. Both marks stand for themselves if they are twice. */
 static void say(const fmi_instance *instance, int status, const char *category, const char *message)
 {
     const fmi2CallbackFunctions *functions = instance->callback;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The functions of FMI 3.0, written down from the text of the standard (Functional Mock-up Interface
- * Specification 3.0, sections 2.2 and 4). A unit exports them all; those of kinds that it is not
- * say so. */
+/* The functions of FMI 3.0, written down from the text of the standard (Functional Mock-up
+ * Interface Specification 3.0, sections 2.2 and 4). A unit exports them all; those of kinds that it
+ * is not say so. */
 #ifndef SE3D_FMI3_H
 #define SE3D_FMI3_H
 

@@ -527,7 +527,7 @@ static void inputs_act_and_are_restored(void)
     }
 }
 
-/* Where the experiment ends it ends. */
+/* No step goes beyond the end of the experiment. */
 static void the_end_of_the_experiment_holds(void)
 {
     double value = 0.0;

@@ -81,7 +81,7 @@ static bool normalize(const char *path, char *out, size_t *up)
     return used > 0 && *up <= UP_MAX;
 }
 
-/* Where a file of the model lies from its folder. */
+/* The path of a file of the model from the model's folder. */
 static se3d_status place(packer *k, const se3di_attached_file *f, char *out, size_t *up)
 {
     const size_t folder = length_of_folder(k->p->path);

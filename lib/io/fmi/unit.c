@@ -5,7 +5,7 @@
  * runs as `se3d run` does between rows, so that both have the same bits.
  *
  * A state as bytes has what the caller has set, the snapshot of the system and what the solver
- * knows beside it. Where it is put back, elements get their values first: a value that changes ends
+ * knows beside it. When it is put back, elements get their values first: a value that changes ends
  * the step under way, which the snapshot has. Of a driver with a rate they also have where its
  * coordinate was when the rate was set: it goes on from there. */
 #include "io/fmi/unit.h"

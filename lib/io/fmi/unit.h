@@ -9,7 +9,7 @@
 
 typedef struct se3di_fmi_unit se3di_fmi_unit;
 
-/* Where an instance is in its life. */
+/* How far an instance is in its life. */
 typedef enum se3di_fmi_mode {
     SE3DI_FMI_INSTANTIATED,
     SE3DI_FMI_INITIALIZING,
