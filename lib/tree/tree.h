@@ -167,9 +167,9 @@ void se3di_tree_to_triad(const se3di_tree_node *node, const double local[3], dou
 /* Coordinates of the model's frames; refreshed. NULL: not wanted. */
 void se3di_tree_get(se3di_tree *tree, double *q, double *qdot);
 
-/* Place tree->frames by q, as it was got. If the tree keeps turns, universal joints are given those
- * of 2 pi in q with which the bodies that they carry have the sign of p that they have in the model:
- * it goes on from there. Of a revolute the turns are counted, and the sign is its body's own. */
+/* Place tree->frames by q, as it was got. If the tree keeps turns, universal joints are given
+ * those of 2 pi in q with which the bodies that they carry have the model's sign of p:
+ * it goes on from there. The turns of a revolute are counted, and the sign is its body's. */
 void se3di_tree_match_turns(se3di_tree *tree, double *q);
 
 /* Coordinates -> frames [dense bodies], those of fixed bodies are left alone; links, S and biases

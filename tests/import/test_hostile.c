@@ -24,7 +24,7 @@
 #define SDF(x) "<sdf version=\"1.10\">\n<model name=\"m\"><link name=\"a\"/>" x "</model></sdf>"
 #define SDF_JOINT(type, x)                                                                         \
     SDF("\n<joint name=\"j\" type=\"" type "\"><parent>world</parent><child>a</child>" x "</"      \
-                                                                                         "joint>")
+        "joint>")
 
 #define MUJOCO(x) "<mujoco><worldbody><body>" x "</body></worldbody></mujoco>"
 

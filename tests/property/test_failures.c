@@ -461,8 +461,8 @@ static void a_failure_leaves_the_last_accepted_step_in_every_method(void)
     }
 }
 
-/* The calls until one fails, with a number that is not finite at call n of a callback; how many went
- * well although one was met. A message is that of a call that failed. */
+/* The calls until one fails, with a number that is not finite at call n of a callback; how many
+ * went well although one was met. A message is that of a call that failed. */
 static int run_with_spoilt(int scene, int32_t method, long n)
 {
     world w;

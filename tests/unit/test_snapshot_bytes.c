@@ -168,8 +168,8 @@ static void put(unsigned char *bytes, size_t at, uint64_t word)
     }
 }
 
-/* Every number of every method, whatever it is of: but for the number of redundant rows and the ages
- * of what acts, whole numbers of which any will do. */
+/* Every number of every method, whatever it is of: but for the number of redundant rows and the
+ * ages of what acts, whole numbers of which any will do. */
 static void numbers_that_are_not_finite_are_refused(void)
 {
     static const uint64_t words[] = {UINT64_C(0x7FF8000000000000), UINT64_C(0xFFF0000000000000)};

@@ -133,42 +133,78 @@ static se3di_link_joint *add(se3di_sdf_model *s, const se3di_sdf_place *place, c
     return joint;
 }
 
+/* Read the two axes of a cross and what acts along them. @return whether it could be read */
+static bool read_two(se3di_sdf_model *s, const se3di_sdf_place *place, double z[2][3],
+                     se3di_link_joint halves[2])
+{
+    se3di_machine *m = s->links->m;
+    static const char *const names[2] = {"axis", "axis2"};
+    memset(halves, 0, 2 * sizeof *halves);
+    for (int k = 0; k < 2; ++k) {
+        const se3di_xml *axis = se3di_xml_child(place->node, names[k]);
+        halves[k].name = place->name;
+        halves[k].line = place->node->line;
+        if (!axis) {
+            return se3di_machine_fail(m, place->node->line, place->node->column,
+                                      "the joint `%.80s` has no <%s>", place->name, names[k]);
+        }
+        if (!read_axis(s, place, axis, z[k]) || !read_dynamics(m, axis, false, &halves[k])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether nothing acts along an axis but the joint itself. */
+static bool is_bare(const se3di_link_joint *half)
+{
+    return !half->has_lower && !half->has_upper && !(fabs(half->damping) > 0.0) &&
+           !(half->friction > 0.0) && !(fabs(half->stiffness) > 0.0);
+}
+
+static bool add_universal(se3di_sdf_model *s, const se3di_sdf_place *place, const size_t ends[2],
+                          double z[2][3])
+{
+    se3di_link_joint *joint = add(s, place, place->name, ends[0], ends[1]);
+    if (joint) {
+        joint->type = SE3DI_LINK_UNIVERSAL;
+        joint->frame_i = frame_of(s, place, z[0]);
+        joint->frame_j = frame_of(s, place, z[1]);
+    }
+    return joint != NULL;
+}
+
+/* One of the two joints of a cross, about its axis z. */
+static bool add_half(se3di_sdf_model *s, const se3di_sdf_place *place, const char *name,
+                     const size_t ends[2], const se3di_link_joint *half, const double z[3])
+{
+    se3di_link_joint *joint = add(s, place, name, ends[0], ends[1]);
+    if (!joint) {
+        return false;
+    }
+    const char *own = joint->name;
+    *joint = *half;
+    joint->name = own;
+    joint->parent = ends[0];
+    joint->child = ends[1];
+    joint->type = SE3DI_LINK_REVOLUTE;
+    joint->frame_i = joint->frame_j = frame_of(s, place, z);
+    return true;
+}
+
 /* A cross: a universal joint, or two joints with a link between that says what acts along its axes,
  * or whose axes have another angle. */
 static bool add_two(se3di_sdf_model *s, const se3di_sdf_place *place, const size_t ends[2])
 {
     se3di_machine *m = s->links->m;
-    const se3di_xml *axes[2] = {se3di_xml_child(place->node, "axis"),
-                                se3di_xml_child(place->node, "axis2")};
     se3di_link_joint halves[2];
     double z[2][3];
-    bool plain = true;
-    memset(halves, 0, sizeof halves);
-    for (int k = 0; k < 2; ++k) {
-        halves[k].name = place->name;
-        halves[k].line = place->node->line;
-        if (!axes[k]) {
-            return se3di_machine_fail(m, place->node->line, place->node->column,
-                                      "the joint `%.80s` has no <%s>", place->name,
-                                      k ? "axis2" : "axis");
-        }
-        if (!read_axis(s, place, axes[k], z[k]) || !read_dynamics(m, axes[k], false, &halves[k])) {
-            return false;
-        }
-        const se3di_link_joint *h = &halves[k];
-        plain = plain && !h->has_lower && !h->has_upper && !(fabs(h->damping) > 0.0) &&
-                !(h->friction > 0.0) && !(fabs(h->stiffness) > 0.0);
+    if (!read_two(s, place, z, halves)) {
+        return false;
     }
-    plain =
-        plain && fabs(se3di_dot(z[0], z[1])) <= SQUARE * se3di_length(z[0]) * se3di_length(z[1]);
-    if (plain) {
-        se3di_link_joint *joint = add(s, place, place->name, ends[0], ends[1]);
-        if (joint) {
-            joint->type = SE3DI_LINK_UNIVERSAL;
-            joint->frame_i = frame_of(s, place, z[0]);
-            joint->frame_j = frame_of(s, place, z[1]);
-        }
-        return joint != NULL;
+    if (is_bare(&halves[0]) && is_bare(&halves[1]) &&
+        fabs(se3di_dot(z[0], z[1])) <= SQUARE * se3di_length(z[0]) * se3di_length(z[1])) {
+        return add_universal(s, place, ends, z);
     }
     const char *cross = se3di_machine_text(m, "%s_cross", name_of(s, place->name));
     const size_t middle = s->links->count;
@@ -178,22 +214,9 @@ static bool add_two(se3di_sdf_model *s, const se3di_sdf_place *place, const size
     }
     link->between = true;
     link->frame = frame_of(s, place, NULL);
-    for (int k = 0; k < 2; ++k) {
-        const char *name = k ? se3di_machine_text(m, "%s_2", place->name) : place->name;
-        se3di_link_joint *joint = add(s, place, name, k ? middle : ends[0], k ? ends[1] : middle);
-        if (!joint) {
-            return false;
-        }
-        const char *own = joint->name;
-        const size_t parent = joint->parent, child = joint->child;
-        *joint = halves[k];
-        joint->name = own;
-        joint->parent = parent;
-        joint->child = child;
-        joint->type = SE3DI_LINK_REVOLUTE;
-        joint->frame_i = joint->frame_j = frame_of(s, place, z[k]);
-    }
-    return true;
+    const char *second = se3di_machine_text(m, "%s_2", place->name);
+    return add_half(s, place, place->name, (const size_t[2]){ends[0], middle}, &halves[0], z[0]) &&
+           add_half(s, place, second, (const size_t[2]){middle, ends[1]}, &halves[1], z[1]);
 }
 
 /* Advance per turn, right-handed; the older element says radians per metre, left-handed. */
