@@ -24,8 +24,12 @@ FMI2_STATUS_FUNCTIONS(POINTER)
 static fmi2InstantiateTYPE *p_Instantiate;
 static fmi2FreeInstanceTYPE *p_FreeInstance;
 
-static void hear(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
-                 fmi2String category, fmi2String message, ...)
+#if defined(__GNUC__)
+__attribute__((__format__(__printf__, 5, 6)))
+#endif
+static void
+hear(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
+     fmi2String message, ...)
 {
     va_list arguments;
     (void)environment;
@@ -55,37 +59,37 @@ static void free_instance(void *c)
 static int setup(void *c, int has_tolerance, double tolerance, double start, int has_stop,
                  double stop)
 {
-    return p_SetupExperiment(c, has_tolerance, tolerance, start, has_stop, stop);
+    return (int)p_SetupExperiment(c, has_tolerance, tolerance, start, has_stop, stop);
 }
 
 static int enter(void *c)
 {
-    return p_EnterInitializationMode(c);
+    return (int)p_EnterInitializationMode(c);
 }
 
 static int leave(void *c)
 {
-    return p_ExitInitializationMode(c);
+    return (int)p_ExitInitializationMode(c);
 }
 
 static int terminate(void *c)
 {
-    return p_Terminate(c);
+    return (int)p_Terminate(c);
 }
 
 static int reset(void *c)
 {
-    return p_Reset(c);
+    return (int)p_Reset(c);
 }
 
 static int get(void *c, const uint32_t *vr, size_t count, double *values)
 {
-    return p_GetReal(c, vr, count, values);
+    return (int)p_GetReal(c, vr, count, values);
 }
 
 static int set(void *c, const uint32_t *vr, size_t count, const double *values)
 {
-    return p_SetReal(c, vr, count, values);
+    return (int)p_SetReal(c, vr, count, values);
 }
 
 static int step(void *c, double time, double h, double *reached, int *ended)
@@ -97,56 +101,56 @@ static int step(void *c, double time, double h, double *reached, int *ended)
         p_GetRealStatus(c, fmi2LastSuccessfulTime, reached);
         p_GetBooleanStatus(c, fmi2Terminated, ended);
     }
-    return status;
+    return (int)status;
 }
 
 static int get_state(void *c, void **state)
 {
-    return p_GetFMUstate(c, state);
+    return (int)p_GetFMUstate(c, state);
 }
 
 static int set_state(void *c, void *state)
 {
-    return p_SetFMUstate(c, state);
+    return (int)p_SetFMUstate(c, state);
 }
 
 static int free_state(void *c, void **state)
 {
-    return p_FreeFMUstate(c, state);
+    return (int)p_FreeFMUstate(c, state);
 }
 
 static int state_size(void *c, void *state, size_t *size)
 {
-    return p_SerializedFMUstateSize(c, state, size);
+    return (int)p_SerializedFMUstateSize(c, state, size);
 }
 
 static int write_state(void *c, void *state, unsigned char *bytes, size_t size)
 {
-    return p_SerializeFMUstate(c, state, (fmi2Byte *)bytes, size);
+    return (int)p_SerializeFMUstate(c, state, (fmi2Byte *)bytes, size);
 }
 
 static int read_state(void *c, const unsigned char *bytes, size_t size, void **state)
 {
-    return p_DeSerializeFMUstate(c, (const fmi2Byte *)bytes, size, state);
+    return (int)p_DeSerializeFMUstate(c, (const fmi2Byte *)bytes, size, state);
 }
 
 static int other_type(void *c, size_t count)
 {
     const fmi2ValueReference vr = 0;
     fmi2Integer value = 0;
-    return p_GetInteger(c, &vr, count, &value);
+    return (int)p_GetInteger(c, &vr, count, &value);
 }
 
 static int directional(void *c)
 {
     const fmi2ValueReference vr = 0;
     double value = 1.0;
-    return p_GetDirectionalDerivative(c, &vr, 1, &vr, 1, &value, &value);
+    return (int)p_GetDirectionalDerivative(c, &vr, 1, &vr, 1, &value, &value);
 }
 
 static int logging(void *c, const char *category)
 {
-    return p_SetDebugLogging(c, fmi2True, 1, &category);
+    return (int)p_SetDebugLogging(c, fmi2True, 1, &category);
 }
 
 /* A function as what it is. */

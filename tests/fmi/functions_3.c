@@ -52,8 +52,9 @@ static void free_instance(void *c)
 
 static int enter(void *c)
 {
-    return p_EnterInitializationMode(c, experiment.has_tolerance != 0, experiment.tolerance,
-                                     experiment.start, experiment.has_stop != 0, experiment.stop);
+    return (int)p_EnterInitializationMode(c, experiment.has_tolerance != 0, experiment.tolerance,
+                                          experiment.start, experiment.has_stop != 0,
+                                          experiment.stop);
 }
 
 /* What is wrong is refused when it is handed over. */
@@ -77,27 +78,27 @@ static int setup(void *c, int has_tolerance, double tolerance, double start, int
 
 static int leave(void *c)
 {
-    return p_ExitInitializationMode(c);
+    return (int)p_ExitInitializationMode(c);
 }
 
 static int terminate(void *c)
 {
-    return p_Terminate(c);
+    return (int)p_Terminate(c);
 }
 
 static int reset(void *c)
 {
-    return p_Reset(c);
+    return (int)p_Reset(c);
 }
 
 static int get(void *c, const uint32_t *vr, size_t count, double *values)
 {
-    return p_GetFloat64(c, vr, count, values, count);
+    return (int)p_GetFloat64(c, vr, count, values, count);
 }
 
 static int set(void *c, const uint32_t *vr, size_t count, const double *values)
 {
-    return p_SetFloat64(c, vr, count, values, count);
+    return (int)p_SetFloat64(c, vr, count, values, count);
 }
 
 static int step(void *c, double time, double h, double *reached, int *ended)
@@ -105,58 +106,58 @@ static int step(void *c, double time, double h, double *reached, int *ended)
     bool event = true;
     bool end = false;
     bool early = false;
-    const int status = p_DoStep(c, time, h, true, &event, &end, &early, reached);
+    const int status = (int)p_DoStep(c, time, h, true, &event, &end, &early, reached);
     *ended = end;
     return status == fmi3OK && (event || (early && !end)) ? BAD : status;
 }
 
 static int get_state(void *c, void **state)
 {
-    return p_GetFMUState(c, state);
+    return (int)p_GetFMUState(c, state);
 }
 
 static int set_state(void *c, void *state)
 {
-    return p_SetFMUState(c, state);
+    return (int)p_SetFMUState(c, state);
 }
 
 static int free_state(void *c, void **state)
 {
-    return p_FreeFMUState(c, state);
+    return (int)p_FreeFMUState(c, state);
 }
 
 static int state_size(void *c, void *state, size_t *size)
 {
-    return p_SerializedFMUStateSize(c, state, size);
+    return (int)p_SerializedFMUStateSize(c, state, size);
 }
 
 static int write_state(void *c, void *state, unsigned char *bytes, size_t size)
 {
-    return p_SerializeFMUState(c, state, bytes, size);
+    return (int)p_SerializeFMUState(c, state, bytes, size);
 }
 
 static int read_state(void *c, const unsigned char *bytes, size_t size, void **state)
 {
-    return p_DeserializeFMUState(c, bytes, size, state);
+    return (int)p_DeserializeFMUState(c, bytes, size, state);
 }
 
 static int other_type(void *c, size_t count)
 {
     const fmi3ValueReference vr = 0;
     fmi3Int32 value = 0;
-    return p_GetInt32(c, &vr, count, &value, count);
+    return (int)p_GetInt32(c, &vr, count, &value, count);
 }
 
 static int directional(void *c)
 {
     const fmi3ValueReference vr = 0;
     double value = 1.0;
-    return p_GetDirectionalDerivative(c, &vr, 1, &vr, 1, &value, 1, &value, 1);
+    return (int)p_GetDirectionalDerivative(c, &vr, 1, &vr, 1, &value, 1, &value, 1);
 }
 
 static int logging(void *c, const char *category)
 {
-    return p_SetDebugLogging(c, true, 1, &category);
+    return (int)p_SetDebugLogging(c, true, 1, &category);
 }
 
 /* A function as what it is. */

@@ -38,22 +38,14 @@ static const char **value_target(options *o, const char *name)
     const struct {
         const char *name;
         const char **target;
-    } table[] = {{"-o", &o->directory},
-                 {"--output", &o->directory},
-                 {"--analysis", &o->analysis},
-                 {"--formulation", &o->formulation},
-                 {"--method", &o->method},
-                 {"--step", &o->step},
-                 {"--duration", &o->duration},
-                 {"--tolerance", &o->tolerance},
-                 {"--time", &o->time},
-                 {"--speed", &o->speed},
-                 {"--view", &o->view},
-                 {"--format", &o->format},
-                 {"--fmi", &o->fmi},
-                 {"--shard", &o->shard},
-                 {"--jobs", &o->jobs},
-                 {"--checkpoint", &o->checkpoint}};
+    } table[] = {{"-o", &o->directory},        {"--output", &o->directory},
+                 {"--analysis", &o->analysis}, {"--formulation", &o->formulation},
+                 {"--method", &o->method},     {"--step", &o->step},
+                 {"--duration", &o->duration}, {"--tolerance", &o->tolerance},
+                 {"--time", &o->time},         {"--speed", &o->speed},
+                 {"--view", &o->view},         {"--format", &o->format},
+                 {"--fmi", &o->fmi},           {"--shard", &o->shard},
+                 {"--jobs", &o->jobs},         {"--checkpoint", &o->checkpoint}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;
