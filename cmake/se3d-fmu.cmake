@@ -55,6 +55,7 @@ function(se3d_add_fmu)
     se3d_compile_options(se3d_fmu)
     set(map "${PROJECT_SOURCE_DIR}/fmi/se3d_fmu.map")
     set_target_properties(se3d_fmu PROPERTIES PREFIX "" OUTPUT_NAME se3d_fmu LINK_DEPENDS "${map}"
+                          LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib"
                           C_VISIBILITY_PRESET hidden)
     target_compile_definitions(se3d_fmu PRIVATE SE3D_BUILD)
     target_include_directories(se3d_fmu PRIVATE "${PROJECT_SOURCE_DIR}/lib" "${PROJECT_SOURCE_DIR}/include"
@@ -67,4 +68,7 @@ function(se3d_add_fmu)
         target_link_options(se3d_fmu PRIVATE -Wl,--no-undefined)
     endif()
     add_dependencies(se3d_fmu se3d_io_static se3d_static)
+    file(READ "${PROJECT_SOURCE_DIR}/LICENSE" se3d_fmu_license)
+    configure_file("${PROJECT_SOURCE_DIR}/fmi/licenses.txt.in"
+                   "${PROJECT_BINARY_DIR}/lib/se3d_fmu_licenses.txt" @ONLY)
 endfunction()

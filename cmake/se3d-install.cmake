@@ -96,6 +96,8 @@ if(TARGET se3d_program)
     install(TARGETS se3d_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
     if(TARGET se3d_fmu)
         install(TARGETS se3d_fmu LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/se3d" COMPONENT program)
+        install(FILES "${PROJECT_BINARY_DIR}/lib/se3d_fmu_licenses.txt"
+                DESTINATION "${CMAKE_INSTALL_LIBDIR}/se3d" COMPONENT program)
     endif()
 endif()
 if(TARGET se3d_program AND UNIX AND (NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR))

@@ -20,6 +20,8 @@ unit '2 3' ends "$dir/ends.yaml" --duration 3
 
 holds 'python finds the archive damaged' python3 -m zipfile -t "$dir/pendulum.3.fmu" >/dev/null
 
+has "$dir/pendulum.3/documentation/licenses/license.txt" 'Kirill Simonov'
+
 # The same model makes the same bytes, wherever it lies; nothing but libc and libm is needed.
 cp "$models/pendulum.yaml" "$dir/pendulum.yaml"
 expect 'again' 0 "$program" fmu "$dir/pendulum.yaml" --duration 3 -o "$dir/again.fmu"

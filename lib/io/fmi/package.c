@@ -220,6 +220,20 @@ static void count(se3di_fmi_package *p, const se3di_fmi_variables *variables)
     }
 }
 
+/* Those of all that the shared object has in it, which lie beside it. */
+static se3d_status add_licenses(packer *k)
+{
+    static const char file[] = "se3d_fmu_licenses.txt";
+    const size_t folder = length_of_folder(k->p->object);
+    char *path = se3di_iopool_alloc(&k->pool, folder + sizeof file);
+    if (!path) {
+        return fail_memory(k);
+    }
+    memcpy(path, k->p->object, folder);
+    memcpy(path + folder, file, sizeof file);
+    return add_file(k, path, "documentation/licenses/license.txt");
+}
+
 static se3d_status add_all(packer *k, const se3di_fmi_variables *variables)
 {
     char name[SE3DI_FMI_IDENTIFIER_SIZE + 60];
@@ -234,7 +248,8 @@ static se3d_status add_all(packer *k, const se3di_fmi_variables *variables)
     se3di_zip_add(&k->zip, "modelDescription.xml", text, size);
     snprintf(name, sizeof name, "binaries/%s/%s.so", k->p->version == 3 ? PLATFORM3 : PLATFORM2,
              d.identifier);
-    const se3d_status status = add_file(k, k->p->object, name);
+    se3d_status status = add_file(k, k->p->object, name);
+    status = status < 0 ? status : add_licenses(k);
     return status < 0 ? status : add_model(k);
 }
 
