@@ -26,6 +26,7 @@ typedef struct se3di_radau {
     double t, h;      /* of the step */
     double tolerance; /* of the iteration: relative size of what may be missing */
     double accuracy;  /* of the projection of stages */
+    double inner;     /* the tolerance of the estimate; 0: errors are not controlled */
     double *y0;       /* the state at t */
     double *f0;       /* its derivative */
     double *lambda0;  /* its multipliers [rows] */

@@ -162,10 +162,53 @@ static void kinematics_has_no_works_and_says_so(void)
     text_model_close(&m);
 }
 
+/* Drivers prescribe all of the motion: only the works can be wrong, and steps follow them. */
+static const char driven[] =
+    "se3d: 1\ngravity: [0, 0, -9.81]\n"
+    "bodies:\n"
+    "  - {name: crank, mass: 2, inertia: [0.02, 0.03, 0.03], position: [0.1, 0, 0]}\n"
+    "  - {name: rod, mass: 1, inertia: [0.01, 0.03, 0.03], position: [0.4, 0.02, 0]}\n"
+    "  - {name: slider, mass: 3, inertia: [0.01, 0.01, 0.01], position: [0.7, 0, 0]}\n"
+    "joints:\n"
+    "  - {name: q, type: revolute, body_i: ground, body_j: crank, at: [0, 0, 0], axis: [0, 1, 0]}\n"
+    "  - {type: universal, body_i: crank, body_j: rod, at: [0.2, 0, 0], axis: [0, 1, 0], axis_2: "
+    "[0, 0, 1]}\n"
+    "  - {type: spherical, body_i: rod, body_j: slider, at: [0.7, 0, 0]}\n"
+    "  - {type: prismatic, body_i: ground, body_j: slider, at: [0.7, 0, 0], axis: [1, 0, 0]}\n"
+    "drivers: [{joint: q, value: \"4*t^3+0.3*sin(9*t)-2.7*t\"}]\n"
+    "analysis: {type: dynamics, duration: 1}\n";
+
+static void steps_of_a_driven_motion_follow_its_works(void)
+{
+    static const int32_t methods[] = {SE3D_METHOD_RADAU, SE3D_METHOD_BDF, SE3D_METHOD_DOP853,
+                                      SE3D_METHOD_RK45, SE3D_METHOD_GAUSS};
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k) {
+        text_model m = text_model_open(driven, methods[k], -1, 0.0);
+        se3d_energy energy;
+        se3d_work work;
+        double first = 0.0, worst = 0.0, size = 0.0;
+        for (int row = 1; row <= 20; ++row) {
+            CHECK(se3d_solver_run(m.solver, 0.05 * row) >= 0);
+            CHECK(!se3d_system_get_energy(m.system, &energy));
+            CHECK(!se3d_system_get_work(m.system, &work));
+            const double balance = energy.total + work.dissipated - work.actuators - work.drivers;
+            first = row == 1 ? balance : first;
+            worst = fmax(worst, fabs(balance - first));
+            size = fmax(size, fabs(energy.kinetic));
+        }
+        if (!(worst < 1e-4 * size)) {
+            fprintf(stderr, "%s: %g J of %g J\n", se3d_method_get_name(methods[k]), worst, size);
+        }
+        CHECK(worst < 1e-4 * size);
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
     RUN(energy_audit_closes_on_every_example);
     RUN(inverse_dynamics_closes_the_balance);
     RUN(kinematics_has_no_works_and_says_so);
+    RUN(steps_of_a_driven_motion_follow_its_works);
     return check_finish();
 }
