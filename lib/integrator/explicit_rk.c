@@ -82,7 +82,7 @@ static double *last_derivative(const se3di_explicit *m)
  *
  *     sum_i h y'_i / p_i^2 - 2 y_i / p_i^2 sum_(j != i) 1 / (x_i - x_j)
  *
- * 0 where no step came before. */
+ * 0 if no step came before. */
 static double measure_fifth(se3di_explicit *m, double h)
 {
     const double r = (m->past->at.time - m->past->at.begin) / h;

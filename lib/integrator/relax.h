@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Where forces are far faster than the step (stiff springs, strong dampers), what a state is off
+/* If forces are far faster than the step (stiff springs, strong dampers), what a state is off
  * by, far below the tolerance, would make accelerations that the motion does not have. With those
  * of the method, a', one step of Newton's method from frames that fulfil the constraints,
  *
