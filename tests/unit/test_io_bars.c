@@ -301,6 +301,36 @@ static void ends_have_joints(void)
     }
 }
 
+/* A rod that falls on a plate stays there, unless it says that nothing touches it. */
+static void bars_touch_by_their_material(void)
+{
+    static const char *const says[] = {"", ", contact: false"};
+    for (int k = 0; k < 2; ++k) {
+        char text[800];
+        double r[3];
+        se3d_body body;
+        se3d_solver *solver = NULL;
+        se3d_solver_def def = se3d_solver_def_default();
+        snprintf(
+            text, sizeof text,
+            "se3d: 1\ncontact: {}\nmaterials: [{name: steel, density: 1000, stiffness: 1e5, "
+            "restitution: 0.1}]\nbodies:\n  - {name: table, fixed: true, plate: [[-1, -1, 0], [1, "
+            "-1, 0], [1, 1, 0], [-1, 1, 0]], thickness: 0.2, material: steel}\n"
+            "  - {name: rod, from: [-0.5, 0, 0.21], to: [0.5, 0, 0.21], radius: 0.1, material: "
+            "steel%s}\n",
+            says[k]);
+        se3d_model *model = read_text(text);
+        se3d_system *system = se3d_model_get_system(model);
+        CHECK(!se3d_solver_create(system, &def, &solver));
+        CHECK(se3d_solver_run(solver, 0.5) >= 0);
+        CHECK(!se3d_body_find(system, "rod", &body));
+        CHECK(!se3d_body_get_position(system, body, r));
+        CHECK(k == 0 ? r[2] > 0.19 && r[2] < 0.22 : r[2] < -0.9);
+        se3d_solver_destroy(solver);
+        se3d_model_destroy(model);
+    }
+}
+
 /* A chain of bars by number, each on the one before: names with braces, and prefixes. */
 static void repeated_bars_find_each_other(void)
 {
@@ -326,6 +356,7 @@ int main(void)
     RUN(the_drawing_of_a_plate_is_closed);
     RUN(a_mirrored_bar_is_that_of_the_other_side);
     RUN(ends_have_joints);
+    RUN(bars_touch_by_their_material);
     RUN(repeated_bars_find_each_other);
     return check_finish();
 }

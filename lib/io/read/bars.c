@@ -390,11 +390,12 @@ static bool read_plate(se3di_reader *reader, const se3di_node *node, se3di_bar *
 
 bool se3di_read_bar(se3di_reader *reader, const se3di_node *body, se3di_bar *bar)
 {
-    static const char *const own[] = {"to",      "from_2",    "radius",  "wall",
-                                      "width",   "thickness", "across",  "body_from",
-                                      "body_to", "spin",      "material"};
+    static const char *const own[] = {"to",      "from_2",    "radius",   "wall",
+                                      "width",   "thickness", "across",   "body_from",
+                                      "body_to", "spin",      "material", "contact"};
     static const char *const placed[] = {"position", "orientation", NULL};
     static const char *const weighed[] = {"inertia", NULL};
+    int32_t touches = 1; /* is asked for by the shapes */
     memset(bar, 0, sizeof *bar);
     for (size_t k = 0; !se3di_is_bar(body) && k < sizeof own / sizeof *own; ++k) {
         if (has(body, own[k]) && !body->incomplete) {
@@ -412,6 +413,7 @@ bool se3di_read_bar(se3di_reader *reader, const se3di_node *body, se3di_bar *bar
                   "ground") &&
            refuse(reader, body, weighed, by,
                   "it follows from the points, the section and the mass") &&
+           se3di_read_key(reader, body, &se3di_object_body, NULL, "contact", &touches) &&
            se3di_read_fields(reader, body, &se3di_object_body, NULL, "se3di_bar", bar) &&
            (has(body, "plate") ? read_plate(reader, body, bar) : read_legs(reader, body, bar));
 }
@@ -421,11 +423,11 @@ bool se3di_read_bar(se3di_reader *reader, const se3di_node *body, se3di_bar *bar
 static const se3d_model_shape plain_shape = {
     .scale = 1.0, .orientation = {1.0, 0.0, 0.0, 0.0}, .color = {-1.0, -1.0, -1.0}, .file = ""};
 
-/* A map with the material of the body alone: what contact asks of a shape. */
+/* A map with what contact asks of a shape, as the body says it. */
 static const se3di_node *describe(se3di_reader *reader, const se3di_node *body)
 {
-    const se3di_node *material = se3di_node_get(body, "material");
-    se3di_node *map = se3di_iopool_array(reader->pool, 2, sizeof *map);
+    static const char *const keys[] = {"material", "contact"};
+    se3di_node *map = se3di_iopool_array(reader->pool, 3, sizeof *map);
     if (!map) {
         se3di_reader_fail_memory(reader);
         return NULL;
@@ -433,11 +435,19 @@ static const se3di_node *describe(se3di_reader *reader, const se3di_node *body)
     map[0] = *body;
     map[0].first = map[0].last = NULL;
     map[0].count = 0;
-    if (material) {
-        map[1] = *material;
-        map[1].next = NULL;
-        map[0].first = map[0].last = &map[1];
-        map[0].count = 1;
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k) {
+        const se3di_node *said = se3di_node_get(body, keys[k]);
+        if (said) {
+            se3di_node *child = &map[++map[0].count];
+            *child = *said;
+            child->next = NULL;
+            if (map[0].last) {
+                map[0].last->next = child;
+            } else {
+                map[0].first = child;
+            }
+            map[0].last = child;
+        }
     }
     return map;
 }

@@ -66,6 +66,8 @@ static const se3di_key body_keys[] = {
      .text = "of a flat bar: where its width points, ground frame"},
     {"material", SE3DI_KIND_MATERIAL,
      .text = "of a bar or plate: gives its density, and if there is contact it touches"},
+    {"contact", SE3DI_KIND_BOOL, .standard = "true",
+     .text = "of a bar or plate: false: nothing touches it, though it has a material"},
     {"body_from", SE3DI_KIND_BODY, .text = "body at the beginning of a bar: they get a joint"},
     {"body_to", SE3DI_KIND_BODY, .text = "body at the end of a bar: they get a ball joint"},
     {"spin", SE3DI_KIND_WORD, .words = spins, .standard = "removed",
