@@ -13,6 +13,8 @@
 #define HELD_EACH 8.0  /* steps between looks if there is no sign */
 #define SAFETY    0.8  /* a rejected step costs more than several that are this much shorter */
 #define CAUTION   0.01 /* of a first step that has one estimate of two */
+#define TIMES     1e-8 /* of the time: shorter steps are not known to the digits that this takes */
+#define SHORTEST  0.05 /* of steps in this one, before which the second estimate is rounding */
 #define GROWTH    3.0  /* largest, of a step: one small error may be chance */
 
 static se3d_status evaluate_stage(se3di_explicit *m, double t, double h, int stage)
@@ -82,11 +84,11 @@ static double *last_derivative(const se3di_explicit *m)
  *
  *     sum_i h y'_i / p_i^2 - 2 y_i / p_i^2 sum_(j != i) 1 / (x_i - x_j)
  *
- * 0 if no step came before. */
+ * 0 if no step came before, or steps are so short that the differences or r are rounding. */
 static double measure_fifth(se3di_explicit *m, double h)
 {
     const double r = (m->past->at.time - m->past->at.begin) / h;
-    if (!(r > 0.0)) {
+    if (!(r > SHORTEST) || h < TIMES * fabs(m->past->at.time)) {
         return 0.0;
     }
     const double p[3] = {r * (1.0 + r), r, 1.0 + r};

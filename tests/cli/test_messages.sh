@@ -53,6 +53,8 @@ END
 for method in dop853 rk45 rk4 gauss bdf radau rattle verlet generalized_alpha hht; do
     expect "an actuator beyond its dead point: $method" 1 "$program" run "$dir/actuator.yaml" -o "$dir/o" --method $method
     says 'd piston has reached a dead point of the mechanism at t = 1.52786 s, where its value is 9 m^2'
+    steps=$(sed -n 's/.* s, \([0-9]*\) steps.*/\1/p' "$dir/out")
+    holds "$steps steps" [ "${steps:-9999}" -lt 5000 ]
 done
 
 # A tolerance that the method does not reach.
