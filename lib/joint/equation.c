@@ -30,7 +30,8 @@ int se3di_coordinate_term(const se3di_model *model, uint32_t joint, int32_t coor
     return 0;
 }
 
-void se3di_term_motion(const se3di_model *model, const se3di_term *term, double motion[3])
+void se3di_term_motion(const se3di_model *model, const se3di_term *term, int count,
+                       double motion[3])
 {
     const se3di_primitive *primitive = &se3di_primitives[term->type];
     const uint32_t bodies[2] = {term->body_i, term->body_j};
@@ -40,12 +41,14 @@ void se3di_term_motion(const se3di_model *model, const se3di_term *term, double 
     primitive->jacobian_romega(term, i, j, phi[0], phi[1]);
     motion[0] = se3di_term_value(model, term);
     motion[1] = 0.0;
-    motion[2] = -primitive->gamma_romega(term, i, j);
+    motion[2] = count > 2 ? -primitive->gamma_romega(term, i, j) : 0.0;
     for (int b = 0; b < 2; ++b) {
         const se3di_frame *frame = &model->frames[bodies[b]];
         const double *a = &model->acceleration[6 * bodies[b]];
         motion[1] += se3di_dot(phi[b], frame->v) + se3di_dot(phi[b] + 3, frame->w);
-        motion[2] += se3di_dot(phi[b], a) + se3di_dot(phi[b] + 3, a + 3);
+        if (count > 2) { /* else another reader may be at the accelerations */
+            motion[2] += se3di_dot(phi[b], a) + se3di_dot(phi[b] + 3, a + 3);
+        }
     }
 }
 

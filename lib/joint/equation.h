@@ -10,8 +10,10 @@
  * counter. Returns 0 if the constraint has no such coordinate. */
 int se3di_coordinate_term(const se3di_model *model, uint32_t joint, int32_t coordinate,
                           se3di_term *term);
-/* {value, rate, acceleration} of a term of coefficient 1 at the present motion. */
-void se3di_term_motion(const se3di_model *model, const se3di_term *term, double motion[3]);
+/* {value, rate, acceleration} of a term of coefficient 1 at the present motion; with `count` 2 the
+ * third is 0, and no acceleration is read. */
+void se3di_term_motion(const se3di_model *model, const se3di_term *term, int count,
+                       double motion[3]);
 
 /* {f, f_t, f_tt} of an equation at the present time. */
 se3d_status se3di_row_prescribed(const se3di_model *model, const se3di_row *row, double jet[3]);

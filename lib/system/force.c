@@ -251,16 +251,18 @@ static se3d_status eval_reader(const se3d_system *system, se3d_force force, cons
 }
 
 /* Of an effort, which does not need its coordinate, and of an armature, which needs nothing. */
-static void measure(const se3d_system *system, const se3di_force *data, se3di_effect *effect)
+static se3d_status measure(const se3d_system *system, const se3di_force *data, int wants_value,
+                           se3di_effect *effect)
 {
     se3di_measure measure;
     (void)se3di_measure_force(&system->model, data, 0, &measure);
     effect->coordinate = measure.value;
     effect->rate = measure.rate;
-    if (data->type == SE3DI_FORCE_ARMATURE) {
-        se3di_pending_complete(system->model.pending);
+    if (data->type == SE3DI_FORCE_ARMATURE && wants_value) {
+        SE3DI_TRY(se3di_check_solved(system));
         effect->value = -data->value[0] * se3di_measure_acceleration(&system->model, data);
     }
+    return SE3D_OK;
 }
 
 se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force, double *coordinate,
@@ -274,7 +276,7 @@ se3d_status se3d_force_get_state(const se3d_system *system, se3d_force force, do
     }
     SE3DI_TRY(eval_reader(system, force, system, &effect));
     if (data->type == SE3DI_FORCE_EFFORT || data->type == SE3DI_FORCE_ARMATURE) {
-        measure(system, data, &effect);
+        SE3DI_TRY(measure(system, data, value != NULL, &effect));
     }
     if (coordinate) {
         *coordinate = effect.coordinate;

@@ -163,7 +163,7 @@ se3d_status se3d_joint_get_coordinate(const se3d_system *system, se3d_constraint
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     SE3DI_TRY(acceleration ? se3di_check_solved(system) : SE3D_OK);
-    se3di_term_motion(model, &term, results);
+    se3di_term_motion(model, &term, acceleration ? 3 : 2, results);
     if (!se3di_is_finite(results, 3)) {
         return SE3D_ERR_NOT_FINITE;
     }
