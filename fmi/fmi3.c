@@ -232,19 +232,6 @@ fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference vr[], size_t co
     return (fmi3Status)fmi_refuse_type(i, count, "Clock");
 }
 
-/* What every output depends on is not told: on everything. */
-fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, fmi3ValueReference vr, size_t *count)
-{
-    INSTANCE(c)
-    (void)vr;
-    if (!count) {
-        return (fmi3Status)fmi_refuse(i, "fmi3GetNumberOfVariableDependencies",
-                                      "the place for the number is NULL");
-    }
-    *count = 0;
-    return fmi3OK;
-}
-
 /* ---- steps ----------------------------------------------------------------------------------*/
 
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 h, fmi3Boolean no_state_before,

@@ -101,7 +101,6 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
     X(SerializeFMUState, (fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size))      \
     X(DeserializeFMUState,                                                                         \
       (fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *state))                  \
-    X(GetNumberOfVariableDependencies, (fmi3Instance c, fmi3ValueReference vr, size_t * count))    \
     X(DoStep, (fmi3Instance c, fmi3Float64 time, fmi3Float64 h, fmi3Boolean no_state_before,       \
                fmi3Boolean * event_needed, fmi3Boolean * terminate, fmi3Boolean * early_return,    \
                fmi3Float64 * last_time))
@@ -114,6 +113,7 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
     X(ExitConfigurationMode, (fmi3Instance c))                                                     \
     X(EvaluateDiscreteStates, (fmi3Instance c))                                                    \
     X(EnterContinuousTimeMode, (fmi3Instance c))                                                   \
+    X(GetNumberOfVariableDependencies, (fmi3Instance c, fmi3ValueReference a, size_t * b))         \
     X(GetVariableDependencies,                                                                     \
       (fmi3Instance c, fmi3ValueReference a, size_t b[], fmi3ValueReference d[], size_t e[],       \
        fmi3DependencyKind f[], size_t g))                                                          \

@@ -678,8 +678,9 @@ static bool set_one(se3di_fmi_unit *u, size_t k, double value)
     }
     u->values[k] = value;
     u->given[k] = true;
-    if (u->variables.list[k].role == SE3DI_FMI_PARAMETER) {
-        u->model_stale = true;
+    const bool begins = u->solver && u->mode == SE3DI_FMI_INITIALIZING && old != value;
+    if (u->variables.list[k].role == SE3DI_FMI_PARAMETER || begins) {
+        u->model_stale = true; /* the analyses before see it, too */
         return true;
     }
     if (!u->solver || u->model_stale || !(old != value)) {
@@ -723,7 +724,8 @@ bool se3di_fmi_unit_step(se3di_fmi_unit *unit, double time, double h)
         return fail(unit, "the step begins at t = %.17g s, but the unit is at t = %.17g s", time,
                     unit->time);
     }
-    if (!isnan(unit->stop) && time + h > unit->stop + slack) {
+    const double late = 1e-6 * h; /* of callers that add up steps */
+    if (!isnan(unit->stop) && time + h > unit->stop + slack + late) {
         return fail(unit, "the step goes to t = %.17g s, beyond the end of the experiment, %.17g s",
                     time + h, unit->stop);
     }
@@ -793,6 +795,8 @@ static se3d_status write_state(se3di_fmi_unit *u, const se3d_snapshot *snapshot,
     }
     code_image(&c, &i);
     code_values(&c, i.count, u->values, u->places, u->given);
+    uint64_t sum = bytes && c.at <= *size ? se3di_hash_bytes(SE3DI_HASH_START, bytes, c.at) : 0;
+    se3di_code_word(&c, &sum);
     const size_t whole = c.at + i.snapshot + i.solver;
     if (bytes && i.started) {
         status = *size < whole
@@ -908,6 +912,10 @@ bool se3di_fmi_unit_read(se3di_fmi_unit *unit, const unsigned char *bytes, size_
         fail_memory(unit);
     } else {
         code_values(&c, i.count, values, values + i.count, given);
+        const uint64_t sum = c.at <= size ? se3di_hash_bytes(SE3DI_HASH_START, bytes, c.at) : 0;
+        uint64_t written = 0;
+        se3di_code_word(&c, &written);
+        c.failed |= written != sum;
         const size_t rest = c.at <= size ? size - c.at : 0;
         good = !c.failed && i.snapshot <= rest && i.solver == rest - i.snapshot;
         good = good ? take_state(unit, &i, values, given, bytes + c.at)
