@@ -306,7 +306,7 @@ bool se3di_sdf_find_link(se3di_sdf_model *s, const se3di_xml *node, const char *
         }
     }
     size_t other = 0;
-    for (at = name; steps > 0; --steps) { /* the whole way knows it now */
+    for (at = name; steps > 0 && at; --steps) { /* the whole way knows it now */
         is_known(s, at, &index, &other);
         s->places[index].link = *link;
         s->places[index].is_attached = true;

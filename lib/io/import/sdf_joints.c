@@ -206,7 +206,8 @@ static bool add_two(se3di_sdf_model *s, const se3di_sdf_place *place, const size
         fabs(se3di_dot(z[0], z[1])) <= SQUARE * se3di_length(z[0]) * se3di_length(z[1])) {
         return add_universal(s, place, ends, z);
     }
-    const char *cross = se3di_machine_text(m, "%s_cross", name_of(s, place->name));
+    const char *own = name_of(s, place->name);
+    const char *cross = own ? se3di_machine_text(m, "%s_cross", own) : NULL;
     const size_t middle = s->links->count;
     se3di_link *link = cross ? se3di_links_add(s->links, cross, place->node->line) : NULL;
     if (!link) {
@@ -304,7 +305,7 @@ bool se3di_sdf_joints(se3di_sdf_model *s)
 
 static const se3di_link_joint *find_joint(const se3di_sdf_model *s, const char *name)
 {
-    for (size_t k = s->first_joint; k < s->links->joint_count; ++k) {
+    for (size_t k = s->first_joint; name && k < s->links->joint_count; ++k) {
         if (strcmp(s->links->joints[k].name, name) == 0) {
             return &s->links->joints[k];
         }
@@ -333,6 +334,9 @@ bool se3di_sdf_mimics(se3di_sdf_model *s)
         }
         const se3di_link_joint *joint = find_joint(s, name_of(s, place->name));
         const se3di_link_joint *other = find_joint(s, name_of(s, leader));
+        if (m->status < 0) {
+            return false;
+        }
         if (!joint || !other) {
             return se3di_machine_fail(m, mimic->line, mimic->column, "there is no joint `%.80s`",
                                       leader);
