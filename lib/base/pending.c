@@ -5,6 +5,22 @@
 
 #include <stddef.h>
 
+#if !defined(__STDC_NO_THREADS__) && !defined(_WIN32)
+#include <threads.h>
+#include <time.h>
+#endif
+
+#define PATIENCE 10000 /* tries, some microseconds */
+
+/* The thread that completes may wait for the processor that this one holds. */
+static void give_way(void)
+{
+#if !defined(__STDC_NO_THREADS__) && !defined(_WIN32)
+    const struct timespec pause = {0, 10000};
+    (void)thrd_sleep(&pause, NULL);
+#endif
+}
+
 void se3di_pending_init(se3di_pending *pending)
 {
     atomic_init(&pending->is_open, 0);
@@ -35,7 +51,8 @@ int se3di_pending_is_of(se3di_pending *pending, const void *ctx)
 
 void se3di_pending_complete(se3di_pending *pending)
 {
-    /* a microsecond or two: who comes second waits without sleeping */
+    int tries = 0;
+    /* a microsecond or two: who comes second waits without sleeping, but not for ever */
     while (pending && atomic_load_explicit(&pending->is_open, memory_order_acquire)) {
         if (!atomic_flag_test_and_set_explicit(&pending->working, memory_order_acquire)) {
             if (atomic_load_explicit(&pending->is_open, memory_order_acquire)) {
@@ -45,6 +62,8 @@ void se3di_pending_complete(se3di_pending *pending)
                 atomic_store_explicit(&pending->is_open, 0, memory_order_release);
             }
             atomic_flag_clear_explicit(&pending->working, memory_order_release);
+        } else if (++tries > PATIENCE) {
+            give_way();
         }
     }
 }

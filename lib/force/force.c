@@ -59,11 +59,7 @@ static se3d_status sum_element(const se3di_model *model, uint32_t k, double t,
     const se3di_force *force = &model->forces[k];
     const int32_t along = sums->along ? sums->along[k] : -1;
     if (along >= 0 && se3di_force_is_number(force)) {
-        if (sums->has_efforts) {
-            return SE3D_OK;
-        }
-        sums->effort[along] += force->value[0];
-        sums->power[1] += force->value[0] * sums->rate[along];
+        sums->effort[along] += sums->has_efforts ? 0.0 : force->value[0];
         return SE3D_OK;
     }
     se3di_effect effect;

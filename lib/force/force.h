@@ -60,12 +60,11 @@ const se3di_force_class *se3di_force_class_of(const se3di_force *force);
 se3d_status se3di_gravity_eval(const se3di_model *model, double t, double g[3], double *g_t);
 
 /* What gravity and all elements do together. An effort that is a number may act along a coordinate
- * whose rate is known, instead of on bodies. */
+ * instead of on bodies; its power is left to the caller. */
 typedef struct se3di_force_sums {
     double *wrench;       /* [bodies * 6] */
     double power[2];      /* dissipated, fed in, as of an effect; gravity that changes included */
     const int32_t *along; /* [elements] the coordinate of each, -1: none; NULL: of none */
-    const double *rate;   /* [coordinates] */
     double *effort;       /* [coordinates] takes them; zero before */
     uint32_t failed;      /* on failure: the element (the count of elements: gravity) */
     int32_t has_efforts;  /* `effort` has them already: their values are others by now */

@@ -602,7 +602,8 @@ se3d_status se3di_explicit_start(se3di_integration *integration, double h)
 /* What the model shows of accelerations is not looked at before somebody reads it. */
 static int waits_for_readers(const se3di_explicit *m)
 {
-    return m->step.integration->may_wait && m->motion->can_wait(m->equations);
+    return m->step.integration->may_wait && !m->methods->keeps_end &&
+           m->motion->can_wait(m->equations);
 }
 
 /* By the one evaluation that finds all: it is the derivative, and what the model shows. */
@@ -665,7 +666,7 @@ static se3d_status evaluate_end(se3di_explicit *m, double t)
     return SE3D_OK;
 }
 
-/* So that no evaluation there can fail. */
+/* So that no number of an evaluation there overflows. */
 static int is_moderate(const double *y, size_t count)
 {
     int moderate = 1;

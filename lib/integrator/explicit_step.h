@@ -65,6 +65,7 @@ struct se3di_explicit_class {
     int (*get_order)(const se3di_explicit *m);
     int (*get_end)(const se3di_explicit *m);
     int is_watched; /* not 0: stability is watched although the method is not left for it */
+    int keeps_end;  /* not 0: `accept` takes the derivative at the end, which cannot wait */
 };
 
 struct se3di_explicit {

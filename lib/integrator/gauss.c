@@ -349,6 +349,7 @@ static const se3di_explicit_class gauss_class = {
     .get_order = get_order,
     .get_end = get_end,
     .is_watched = 1,
+    .keeps_end = 1,
 };
 
 const se3di_integrator se3di_integrator_gauss = {

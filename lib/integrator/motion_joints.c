@@ -333,6 +333,9 @@ static se3d_status evaluate_sums(se3di_equations *equations, double t, se3di_for
     se3di_assembly *assembly = &equations->assembly;
     double *qddot = derivative + tree->q_count;
     SE3DI_TRY(se3di_assembly_sum_loads(assembly, t, sums, equations->error));
+    for (uint32_t v = 0; tree->has_efforts && v < tree->v_count; ++v) {
+        sums->power[1] += tree->effort[v] * tree->qdot[v];
+    }
     se3di_tree_take_wrenches(tree, assembly->model->frames, assembly->wrench);
     se3d_status status = solve_motion(equations, qddot);
     for (uint32_t k = 0; k < tree->v_count && status >= 0; ++k) {
@@ -352,7 +355,7 @@ static se3d_status evaluate_tree(se3di_equations *equations, double t, double *d
         SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
         se3di_tree_take_given(tree, &equations->assembly);
     }
-    se3di_force_sums sums = se3di_tree_sums(tree, tree->qdot);
+    se3di_force_sums sums = se3di_tree_sums(tree);
     ++equations->counters.evaluations;
     return evaluate_sums(equations, t, &sums, derivative);
 }
@@ -534,14 +537,8 @@ static int can_wait(const se3di_equations *equations)
 
 static se3d_status evaluate_again(se3di_equations *equations, double t, double *derivative)
 {
-    se3di_tree *tree = equations->tree;
-    double *power = derivative + tree->q_count + tree->v_count;
-    se3di_force_sums sums = se3di_tree_sums_again(tree, tree->qdot);
-    SE3DI_TRY(evaluate_sums(equations, t, &sums, derivative));
-    for (uint32_t v = 0; tree->has_efforts && v < tree->v_count; ++v) {
-        power[1] += tree->effort[v] * tree->qdot[v];
-    }
-    return SE3D_OK;
+    se3di_force_sums sums = se3di_tree_sums_again(equations->tree);
+    return evaluate_sums(equations, t, &sums, derivative);
 }
 
 static void keep_efforts(se3di_equations *equations)

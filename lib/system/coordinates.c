@@ -420,7 +420,7 @@ static se3d_status load(se3d_coordinates *c)
 {
     se3d_system *system = c->system;
     const double t = system->model.time;
-    se3di_force_sums sums = se3di_tree_sums(&c->tree, c->tree.qdot);
+    se3di_force_sums sums = se3di_tree_sums(&c->tree);
     sums.wrench = c->wrench;
     se3d_status status = se3di_loads_sum(&system->model, t, &sums);
     if (status < 0) {

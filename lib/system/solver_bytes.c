@@ -8,7 +8,7 @@
 #include <math.h>
 
 #define MARK    UINT64_C(0x564C4F5344334553) /* "SE3DSOLV" */
-#define VERSION UINT64_C(4)
+#define VERSION UINT64_C(5)
 #define FRAME   (3 * sizeof(uint64_t)) /* mark, version, checksum */
 
 static void code_counters(se3di_coder *c, se3di_run *run)
@@ -22,6 +22,7 @@ static void code_counters(se3di_coder *c, se3di_run *run)
         se3di_code_word(c, words[k]);
         se3di_code_numbers(c, numbers[k], 1);
     }
+    se3di_code_flag(c, &run->integration.owes);
 }
 
 /* A method by its number; 0: none. */
@@ -184,6 +185,7 @@ se3d_status se3d_solver_write(const se3d_solver *solver, void *bytes, size_t cap
     if (!solver->system) {
         return SE3D_ERR_STATE;
     }
+    se3di_pending_complete(solver->system->model.pending);
     se3di_run copy = solver->run; /* what it points to is only looked at */
     se3di_coder measure = {.size = SIZE_MAX};
     uint64_t mark = MARK, version = VERSION;

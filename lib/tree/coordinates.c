@@ -569,21 +569,19 @@ void se3di_tree_place(se3di_tree *tree, const double *q, const double *qdot, se3
     tree->core->place(tree, q, qdot, frames);
 }
 
-se3di_force_sums se3di_tree_sums(se3di_tree *tree, const double *qdot)
+se3di_force_sums se3di_tree_sums(se3di_tree *tree)
 {
     if (!tree->has_efforts) {
         return (se3di_force_sums){.along = NULL};
     }
     memset(tree->effort, 0, tree->v_count * sizeof *tree->effort);
-    return (se3di_force_sums){.along = tree->along, .rate = qdot, .effort = tree->effort};
+    return (se3di_force_sums){.along = tree->along, .effort = tree->effort};
 }
 
-se3di_force_sums se3di_tree_sums_again(se3di_tree *tree, const double *qdot)
+se3di_force_sums se3di_tree_sums_again(se3di_tree *tree)
 {
-    return (se3di_force_sums){.along = tree->has_efforts ? tree->along : NULL,
-                              .rate = qdot,
-                              .effort = tree->effort,
-                              .has_efforts = 1};
+    return (se3di_force_sums){
+        .along = tree->has_efforts ? tree->along : NULL, .effort = tree->effort, .has_efforts = 1};
 }
 
 void se3di_tree_take_wrenches(se3di_tree *tree, const se3di_frame *frames, const double *wrench)

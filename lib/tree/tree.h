@@ -187,10 +187,10 @@ void se3di_tree_move(const se3di_tree *tree, const double *q, const double *dq, 
 
 /* For se3di_forces_sum at the velocities `qdot` of the state that is placed: efforts along
  * coordinates of the tree go to tree->effort, where they stay until the next sums. */
-se3di_force_sums se3di_tree_sums(se3di_tree *tree, const double *qdot);
+se3di_force_sums se3di_tree_sums(se3di_tree *tree);
 /* The same with the efforts of the last sums, whatever elements say now; `power` is without
  * theirs. */
-se3di_force_sums se3di_tree_sums_again(se3di_tree *tree, const double *qdot);
+se3di_force_sums se3di_tree_sums_again(se3di_tree *tree);
 /* tree->effort, NULL: no element acts along a coordinate. */
 static inline const double *se3di_tree_effort(const se3di_tree *tree)
 {

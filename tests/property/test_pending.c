@@ -12,6 +12,7 @@ enum { TREES = 24, STEPS = 12, NUMBERS = 6 * TREE_BODIES_MAX + 6 * TREE_BODIES_M
 
 static uint64_t tree; /* the mechanism that is looked at */
 static int failures;  /* steps that failed on purpose */
+static int32_t stepper = SE3D_METHOD_RK4;
 
 typedef struct setting {
     tree_world world;
@@ -32,11 +33,11 @@ static void add_effort(setting *s, se3d_constraint joint)
     }
 }
 
-static se3d_solver *make_solver(se3d_system *system, int32_t formulation)
+static se3d_solver *make_solver(se3d_system *system, int32_t method, int32_t formulation)
 {
     se3d_solver *solver;
     se3d_solver_def def = se3d_solver_def_default();
-    def.method = SE3D_METHOD_RK4;
+    def.method = method;
     def.formulation = formulation;
     CHECK(!se3d_solver_create(system, &def, &solver));
     return solver;
@@ -50,7 +51,7 @@ static void begin(setting *s, uint64_t seed)
     for (int k = 0; k < s->world.joint_count; ++k) {
         add_effort(s, s->world.joints[k]);
     }
-    s->solver = make_solver(s->system, SE3D_FORMULATION_JOINT);
+    s->solver = make_solver(s->system, stepper, SE3D_FORMULATION_JOINT);
 }
 
 static void end(setting *s)
@@ -168,7 +169,7 @@ static void clones_and_snapshots_go_on(void)
     }
     b = a;
     CHECK(!se3d_system_clone(a.system, &b.system));
-    b.solver = make_solver(b.system, SE3D_FORMULATION_JOINT);
+    b.solver = make_solver(b.system, stepper, SE3D_FORMULATION_JOINT);
     b.world.system = b.system;
     CHECK(!se3d_snapshot_create(a.system, &snapshot));
     for (int k = 0; k < STEPS; ++k) {
@@ -205,7 +206,7 @@ static void they_are_those_of_the_bodies(void)
         step(&a);
     }
     CHECK(!se3d_system_clone(a.system, &copy));
-    se3d_solver *solver = make_solver(copy, SE3D_FORMULATION_ROMEGA);
+    se3d_solver *solver = make_solver(copy, stepper, SE3D_FORMULATION_ROMEGA);
     CHECK(!se3d_system_get_time(copy, &t));
     CHECK(!se3d_solver_run(solver, t));
     const size_t count = read_all(a.system, &a.world, x);
@@ -258,7 +259,8 @@ static void solvers_take_turns(void)
     setting a, b;
     begin(&a, tree);
     begin(&b, tree);
-    se3d_solver *const solvers[2] = {b.solver, make_solver(b.system, SE3D_FORMULATION_JOINT)};
+    se3d_solver *const solvers[2] = {b.solver,
+                                     make_solver(b.system, stepper, SE3D_FORMULATION_JOINT)};
     for (int k = 0; k < STEPS; ++k) {
         if (k % 3 != 2) {
             push(&a, 5.0);
@@ -293,6 +295,52 @@ static void what_is_left_outlives_its_solver(void)
     end(&b);
 }
 
+/* Of a value at a level that is never reached. */
+static se3d_status find_time(void *ctx, const se3d_system *system, double *value)
+{
+    (void)ctx;
+    return se3d_system_get_time(system, value);
+}
+
+static void watch(setting *s)
+{
+    se3d_event_def def = se3d_event_def_default();
+    se3d_event event;
+    def.value = find_time;
+    def.level = 1e9;
+    CHECK(!se3d_event_create(s->solver, &def, &event));
+}
+
+/* A step that is watched leaves nothing, one that is not does; works are summed alike. */
+static void events_change_no_bit(void)
+{
+    static const int32_t methods[] = {SE3D_METHOD_RK4, SE3D_METHOD_RK45, SE3D_METHOD_DOP853,
+                                      SE3D_METHOD_GAUSS};
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
+        setting a, b;
+        se3d_work done[2];
+        stepper = methods[m];
+        begin(&a, tree);
+        begin(&b, tree);
+        watch(&b);
+        for (int k = 0; k < STEPS; ++k) {
+            if (k % 3 == 0) {
+                push(&a, 5.0);
+                push(&b, 5.0);
+            }
+            step(&a);
+            step(&b);
+        }
+        check_same(&a, &b);
+        CHECK(!se3d_system_get_work(a.system, &done[0]));
+        CHECK(!se3d_system_get_work(b.system, &done[1]));
+        CHECK(memcmp(&done[0], &done[1], sizeof done[0]) == 0);
+        end(&a);
+        end(&b);
+    }
+    stepper = SE3D_METHOD_RK4;
+}
+
 int main(void)
 {
     for (tree = 1; tree <= TREES; ++tree) {
@@ -303,6 +351,7 @@ int main(void)
         RUN(a_failure_comes_back);
         RUN(solvers_take_turns);
         RUN(what_is_left_outlives_its_solver);
+        RUN(events_change_no_bit);
     }
     CHECK(failures > TREES / 2);
     return check_finish();
