@@ -527,6 +527,32 @@ static void inputs_act_and_are_restored(void)
     }
 }
 
+/* An input that is set after outputs were read in the initialization acts on the analyses before
+ * as one that is set at once. */
+static void inputs_act_on_the_beginning(void)
+{
+    double values[2][COLUMNS_MAX];
+    for (size_t k = 0; k < d.count; ++k) {
+        const variable *v = &d.variables[k];
+        const double other = v->start + 0.125;
+        if (!is(v->causality, "input")) {
+            continue;
+        }
+        for (int reads = 0; reads < 2; ++reads) {
+            void *c = make();
+            CHECK(f.enter(c) == GOOD);
+            if (reads) {
+                get_row(c, values[1]);
+            }
+            CHECK(f.set(c, &v->reference, 1, &other) == GOOD);
+            CHECK(f.leave(c) == GOOD);
+            get_row(c, values[reads]);
+            f.free(c);
+        }
+        CHECK(same_bits(values[0], values[1]));
+    }
+}
+
 /* No step goes beyond the end of the experiment. */
 static void the_end_of_the_experiment_holds(void)
 {
@@ -579,6 +605,7 @@ int main(int argc, char **argv)
     RUN(damaged_states_are_refused);
     RUN(parameters_change_the_model);
     RUN(inputs_act_and_are_restored);
+    RUN(inputs_act_on_the_beginning);
     RUN(the_end_of_the_experiment_holds);
     return check_finish();
 }
