@@ -42,6 +42,16 @@ printf 'se3d: 1\nbodies: [{name: b, mass: 1, inertia: [1, 1, 1]}]\n' >"$dir/part
 printf 'se3d: 1\ninclude: [{file: %s/part.yaml}]\nanalysis: {type: dynamics, duration: 1}\n' "$dir" >"$dir/root.yaml"
 expect 'a path from the root' 2 "$program" fmu "$dir/root.yaml" -o "$dir/no.fmu"
 says 'name it from the model'
+# A file that is named in two ways lies there once; two that would lie at one place do not.
+mkdir -p "$dir/c/model" "$dir/c/other"
+for folder in model other; do cp "$dir/part.yaml" "$dir/c/$folder/x.yaml"; done
+motion='analysis: {type: dynamics, duration: 1}'
+printf 'se3d: 1\ninclude: [{file: x.yaml, prefix: p_}, {file: ./x.yaml, prefix: q_}]\n%s\n' "$motion" >"$dir/c/other/twice.yaml"
+expect 'a file that is named in two ways' 0 "$program" fmu "$dir/c/other/twice.yaml" -o "$dir/twice.fmu"
+is "$(python3 -m zipfile -l "$dir/twice.fmu" | grep -c x.yaml)" 1
+printf 'se3d: 1\ninclude: [{file: x.yaml, prefix: p_}, {file: ../model/x.yaml, prefix: q_}]\n%s\n' "$motion" >"$dir/c/other/one.yaml"
+expect 'two files for one place' 2 "$program" fmu "$dir/c/other/one.yaml" -o "$dir/no.fmu"
+says 'another file would have its place'
 expect 'no object' 1 env SE3D_FMU_OBJECT="$dir/none.so" "$program" fmu "$models/pendulum.yaml" -o "$dir/no.fmu"
 says 'none.so'
 holds 'something is left of a unit that could not be made' [ -z "$(ls "$dir" | grep '^no\.fmu')" ]

@@ -29,12 +29,21 @@ enum { PATH_SIZE = 2048, UP_MAX = 32 };
 #define PLATFORM3 "linux"
 #endif
 
+/* A file that is in the archive, and where the model has it. */
+typedef struct packed {
+    const char *name;
+    const char *path; /* from the model's folder, and so many folders above it */
+    size_t up;
+    struct packed *next;
+} packed;
+
 typedef struct packer {
     se3di_fmi_package *p;
     se3di_iopool pool;
     se3di_zip zip;
     se3d_model_error *error;
     size_t up; /* folders that the model lies down among the resources */
+    packed *resources;
 } packer;
 
 static se3d_status fail(packer *k, se3d_status status, const char *path, const char *text)
@@ -131,6 +140,32 @@ static void name_resource(const packer *k, const char *path, size_t up, char *na
     snprintf(name + used, size - used, "%s", path);
 }
 
+/* Note that a name is taken. *again: by the same file. */
+static se3d_status take_name(packer *k, const char *name, const char *path, size_t up, bool *again)
+{
+    *again = false;
+    for (const packed *p = k->resources; p; p = p->next) {
+        if (strcmp(p->name, name) == 0) {
+            *again = p->up == up && strcmp(p->path, path) == 0;
+            return *again ? SE3D_OK
+                          : fail(k, SE3D_ERR_UNSUPPORTED, path,
+                                 "another file would have its place among the resources; give one "
+                                 "of the two another name");
+        }
+    }
+    packed *p = se3di_iopool_alloc(&k->pool, sizeof *p);
+    if (!p) {
+        return fail_memory(k);
+    }
+    *p = (packed){se3di_iopool_copy(&k->pool, name, strlen(name)),
+                  se3di_iopool_copy(&k->pool, path, strlen(path)), up, k->resources};
+    if (!p->name || !p->path) {
+        return fail_memory(k);
+    }
+    k->resources = p;
+    return SE3D_OK;
+}
+
 static se3d_status add_attached(packer *k)
 {
     char path[PATH_SIZE] = "";
@@ -138,12 +173,12 @@ static se3d_status add_attached(packer *k)
     for (const se3di_attached_file *f = k->p->model->attached; f; f = f->next) {
         bool again = false;
         size_t up = 0;
-        for (const se3di_attached_file *g = f->next; g && !again; g = g->next) {
-            again = strcmp(g->path, f->path) == 0;
-        }
-        se3d_status status = again ? SE3D_OK : place(k, f, path, &up);
-        if (status >= 0 && !again) {
+        se3d_status status = place(k, f, path, &up);
+        if (status >= 0) {
             name_resource(k, path, up, name, sizeof name);
+            status = take_name(k, name, path, up, &again);
+        }
+        if (status >= 0 && !again) {
             status = add_file(k, f->path, name);
         }
         if (status < 0) {
@@ -203,8 +238,11 @@ static se3d_status add_model(packer *k)
     if (!text) {
         return fail_memory(k);
     }
+    bool again = false;
+    status = take_name(k, "resources/" SE3DI_FMI_RECIPE_FILE, "", SIZE_MAX, &again);
+    status = status < 0 ? status : take_name(k, name, file, 0, &again);
     se3di_zip_add(&k->zip, "resources/" SE3DI_FMI_RECIPE_FILE, text, strlen(text));
-    status = add_file(k, k->p->path, name);
+    status = status < 0 ? status : add_file(k, k->p->path, name);
     return status < 0 ? status : add_attached(k);
 }
 
