@@ -51,4 +51,27 @@ assert len(solved) == 9
 for k, row in enumerate(solved):
     assert all(row[c] == rows['all'][64 * k][c] for c in row), (row, rows['all'][64 * k])
 EOF
+# What an armature takes needs accelerations, whatever else a row shows.
+cat >"$dir/rotor.yaml" <<'EOF'
+se3d: 1
+bodies: [{name: b, mass: 1, inertia: [0.1, 0.1, 0.1], position: [1, 0, 0]}]
+joints: [{name: pin, type: revolute, body_i: ground, body_j: b, at: [0, 0, 0], axis: [0, 1, 0]}]
+forces: [{name: rotor, type: armature, joint: pin, inertia: 0.4}]
+gravity: [0, 0, -9.81]
+analysis: {type: dynamics, duration: 1}
+output:
+  - {file: all.csv, every: 0.01, channels: [rotor.effort, rotor.rate, b.angular_acceleration]}
+EOF
+sed 's/, b.angular_acceleration//' "$dir/rotor.yaml" >"$dir/alone.yaml"
+for kind in rotor alone; do
+    expect "an armature: $kind" 0 "$program" run -q "$dir/$kind.yaml" -o "$dir/$kind"
+done
+expect 'the same effort' 0 python3 - "$dir" <<'EOF'
+import csv, sys
+rotor, alone = (list(csv.DictReader(open(f'{sys.argv[1]}/{n}/all.csv'))) for n in ('rotor', 'alone'))
+assert len(rotor) == len(alone) == 101
+for a, b in zip(rotor, alone):
+    assert a['rotor.effort'] == b['rotor.effort'] and a['rotor.rate'] == b['rotor.rate']
+    assert abs(float(a['rotor.effort']) + 0.4 * float(a['b.angular_acceleration.y'])) < 1e-12
+EOF
 finish

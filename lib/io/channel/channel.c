@@ -53,6 +53,10 @@ static const quantity_name effort_names[] = {{"coordinate", SE3DI_FORCE_COORDINA
                                              {"rate", SE3DI_FORCE_RATE},
                                              {"effort", SE3DI_FORCE_VALUE},
                                              {NULL, SE3DI_STEPS}};
+static const quantity_name armature_names[] = {{"coordinate", SE3DI_ARMATURE_COORDINATE},
+                                               {"rate", SE3DI_ARMATURE_RATE},
+                                               {"effort", SE3DI_ARMATURE_EFFORT},
+                                               {NULL, SE3DI_STEPS}};
 static const quantity_name wrench_names[] = {
     {"force", SE3DI_WRENCH_FORCE}, {"torque", SE3DI_WRENCH_TORQUE}, {NULL, SE3DI_STEPS}};
 static const quantity_name tyre_names[] = {{"fx", SE3DI_TYRE_FX},
@@ -107,10 +111,10 @@ static const quantity_name rate_names[] = {{"rate", SE3DI_STATE_RATE}, {NULL, SE
 static const struct {
     const char *type;
     const quantity_name *names;
-} force_names[] = {{"tsda", tsda_names},      {"rsda", rsda_names},     {"friction", range_names},
-                   {"stop", range_names},     {"effort", effort_names}, {"bushing", wrench_names},
-                   {"force", wrench_names},   {"torque", wrench_names}, {"tyre", tyre_names},
-                   {"armature", effort_names}};
+} force_names[] = {{"tsda", tsda_names},        {"rsda", rsda_names},     {"friction", range_names},
+                   {"stop", range_names},       {"effort", effort_names}, {"bushing", wrench_names},
+                   {"force", wrench_names},     {"torque", wrench_names}, {"tyre", tyre_names},
+                   {"armature", armature_names}};
 static const quantity_name system_names[] = {
     {"energy.kinetic", SE3DI_ENERGY_KINETIC},
     {"energy.potential", SE3DI_ENERGY_POTENTIAL},

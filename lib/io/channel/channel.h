@@ -36,6 +36,9 @@
     X(FORCE_COORDINATE, 1, FORCE, 0, MOTION, 0, 0, 0, 1)                                           \
     X(FORCE_RATE, 1, FORCE, 1, MOTION, 0, 1, 0, 1)                                                 \
     X(FORCE_VALUE, 1, FORCE, 2, LOADED, 1, 2, 1, 1)                                                \
+    X(ARMATURE_COORDINATE, 1, ARMATURE_MOTION, 0, MOTION, 0, 0, 0, 1)                              \
+    X(ARMATURE_RATE, 1, ARMATURE_MOTION, 1, MOTION, 0, 1, 0, 1)                                    \
+    X(ARMATURE_EFFORT, 1, FORCE, 2, SOLVED, 1, 2, 1, 1)                                            \
     X(STATE_VALUE, 1, STATE_VALUE, 0, MOTION, 0, 0, 0, 0)                                          \
     X(STATE_INPUT, 1, STATE_INPUT, 0, MOTION, 0, 0, 0, 0)                                          \
     X(STATE_RATE, 1, STATE_RATE, 0, MOTION, 0, 1, 0, 0)                                            \
@@ -127,6 +130,7 @@ typedef enum se3di_question {
     SE3DI_ASK_JOINT_DISPLACEMENT,
     SE3DI_ASK_DRIVER_VALUE,
     SE3DI_ASK_DRIVER_EFFORT,
+    SE3DI_ASK_ARMATURE_MOTION,
     SE3DI_ASK_FORCE,
     SE3DI_ASK_STATE_VALUE,
     SE3DI_ASK_STATE_INPUT,

@@ -77,6 +77,8 @@ static se3d_status ask_element(se3di_question question, const se3di_channel *c,
         return se3d_driver_get_value(system, c->constraint, numbers);
     case SE3DI_ASK_DRIVER_EFFORT:
         return se3d_driver_get_effort(system, c->constraint, numbers);
+    case SE3DI_ASK_ARMATURE_MOTION:
+        return se3d_force_get_state(system, c->force, numbers, numbers + 1, NULL);
     case SE3DI_ASK_WRENCH:
         return ask_wrench(c, system, numbers);
     case SE3DI_ASK_STATE_VALUE:
@@ -237,6 +239,7 @@ static size_t element_of(se3di_question question, const se3di_channel *c)
     switch (question) {
     case SE3DI_ASK_WRENCH:
     case SE3DI_ASK_FORCE:
+    case SE3DI_ASK_ARMATURE_MOTION:
     case SE3DI_ASK_TYRE:
         return c->force.index1;
     case SE3DI_ASK_STATE_VALUE:
