@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Every example model begins to run by the program, with all its outputs.
+set -u
+. "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
+for model in "$models"/*.yaml; do
+    name=$(basename "$model" .yaml)
+    [ "$name" = me751_jacobian ] || # to evaluate, not to run
+        expect "$name" 0 "$program" run -q "$model" --duration 0.06 -o "$dir/$name"
+done
+finish
