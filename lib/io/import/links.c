@@ -26,6 +26,15 @@ se3di_link *se3di_links_add(se3di_links *links, const char *name, size_t line)
     return link;
 }
 
+bool se3di_links_add_shape(se3di_links *links, size_t link, const se3di_machine_shape *shape)
+{
+    se3di_machine_shape *added = se3di_parts_add_shape(links->m, &links->list[link].parts);
+    if (added) {
+        *added = *shape; /* the last of its list: it has no next */
+    }
+    return added != NULL;
+}
+
 se3di_link_joint *se3di_links_join(se3di_links *links, const char *name, size_t line)
 {
     se3di_link_joint *grown = se3di_iopool_grow(links->m->pool, links->joints, links->joint_count,

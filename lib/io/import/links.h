@@ -59,6 +59,8 @@ typedef struct se3di_links {
 
 /* Each returns NULL if there is no memory; valid until the next is added. */
 se3di_link *se3di_links_add(se3di_links *links, const char *name, size_t line);
+/* Add a shape to a link. */
+bool se3di_links_add_shape(se3di_links *links, size_t link, const se3di_machine_shape *shape);
 se3di_link_joint *se3di_links_join(se3di_links *links, const char *name, size_t line);
 /* Make bodies, joints, stops, dampers and friction of all. */
 bool se3di_links_emit(se3di_links *links);

@@ -177,13 +177,8 @@ bool se3di_sdf_shapes(se3di_links *links, size_t link, const se3di_xml *node)
         if (geometry && geometry->first && !read_shape(m, geometry->first, &read, &good)) {
             return false;
         }
-        se3di_machine_parts *parts = &links->list[link].parts;
-        se3di_machine_shape *shape = good ? se3di_parts_add_shape(m, parts) : NULL;
-        if (good && !shape) {
+        if (good && !se3di_links_add_shape(links, link, &read)) {
             return false;
-        }
-        if (shape) {
-            *shape = read; /* the last of its list: it has no next */
         }
     }
     return true;
