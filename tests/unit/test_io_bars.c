@@ -6,19 +6,9 @@
 #include "check.h"
 #include "io/model/model.h"
 #include "se3d/io.h"
+#include "support/read_text.h"
 
 #define PI 3.14159265358979323846
-
-static se3d_model *read_text(const char *text)
-{
-    se3d_model *model = NULL;
-    se3d_model_error error = {0};
-    if (SE3D_FAILED(se3d_model_read_text(text, strlen(text), "m", NULL, &model, &error))) {
-        fprintf(stderr, "%s\n", error.message);
-    }
-    CHECK(model != NULL);
-    return model;
-}
 
 typedef struct body_data {
     double r[3], p[4], mass, inertia[6];

@@ -6,23 +6,13 @@
 
 #include "check.h"
 #include "se3d/io.h"
+#include "support/read_text.h"
 
 #define BALL                                                                                       \
     "se3d: 1\nparameters: {twice: 2, ball_position_z: 100}\ngravity: [0, 0, -10]\n"                \
     "bodies:\n  - {name: ball, mass: 2, inertia: [1, 1, 1], position: [1, 2, 3], "                 \
     "velocity: [3, 0, 4]}\n  - {name: left-arm, mass: 1, inertia: [1, 1, 1], position: [0, 0, "    \
     "7]}\nanalysis: {type: dynamics, duration: 1, step: 0.01, tolerance: 1e-10}\n"
-
-static se3d_model *read_text(const char *text)
-{
-    se3d_model *model = NULL;
-    se3d_model_error error = {0};
-    if (SE3D_FAILED(se3d_model_read_text(text, strlen(text), "m", NULL, &model, &error))) {
-        fprintf(stderr, "%s\n", error.message);
-    }
-    CHECK(model != NULL);
-    return model;
-}
 
 static double value_of(const se3d_model *model, size_t k, const char *name)
 {

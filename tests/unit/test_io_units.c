@@ -2,20 +2,10 @@
 /* Points, vectors and units of model files: what they are worth. */
 #include "check.h"
 #include "se3d/io.h"
+#include "support/read_text.h"
 #include "support/scratch.h"
 
 #define HEAD "se3d: 1\nparameters: {L: 2, up: [0, 0, 1], d: 30 mm, n: 600 rpm}\n"
-
-static se3d_model *read_text(const char *text)
-{
-    se3d_model *model = NULL;
-    se3d_model_error error;
-    if (SE3D_FAILED(se3d_model_read_text(text, strlen(text), "m", NULL, &model, &error))) {
-        fprintf(stderr, "%s\n", error.message);
-    }
-    CHECK(model != NULL);
-    return model;
-}
 
 /* The value of an expression as the parameter `v`. */
 static double value_of(const char *expression)
