@@ -21,11 +21,12 @@ typedef struct se3d_model_error {
     char message[1024]; /* the text, UTF-8 */
 } se3d_model_error;
 
-/* One parameter to replace; both texts as on the command line, `value` is an expression. @since 0.1
- */
+/* What to replace in a model; both texts as on the command line. @since 0.1 */
 typedef struct se3d_model_setting {
-    const char *name;  /* of the parameter */
-    const char *value; /* an expression */
+    const char *name;  /* of a parameter, or a path with a dot or bracket in it: keys and names of
+                        * entries, as in bodies.bar.mass, entries also as in output[0].every */
+    const char *value; /* of a parameter: an expression; at a path: any value as in the file. A key
+                        * that is not there is added. */
 } se3d_model_setting;
 
 /* Called for each mistake of a model, in the order of the lines. `error` is valid during the call.
@@ -178,6 +179,34 @@ static inline se3d_status se3d_model_get_output(const se3d_model *model, size_t 
  * @since 0.1 */
 SE3D_API se3d_status se3d_model_get_channel(const se3d_model *model, size_t output, size_t k,
                                             const char **name);
+
+/* A channel that a model file may name. @since 0.1 */
+typedef struct se3d_model_channel {
+    const char *name; /* "bar.position", ...; owned by the model */
+    const char *unit; /* "m/s^2", "" for plain numbers; owned by the model */
+    size_t width;     /* columns, at most 4 */
+} se3d_model_channel;
+
+/* List what a model can show: all channels of its elements, of at most 10,000 of each kind.
+ * @param[out] count  the number of channels
+ * @return OK, NULL, NO_MEMORY.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_model_list_channels(se3d_model *model, size_t *count);
+
+/* As se3d_model_get_listed_channel, told the size of *channel in bytes. @return as
+ * se3d_model_get_listed_channel, and INVALID_ARGUMENT (size). @since 0.1 */
+SE3D_API se3d_status se3d_model_get_listed_channel_sized(const se3d_model *model, size_t k,
+                                                         se3d_model_channel *channel, size_t size);
+
+/* Get a channel of the list that se3d_model_list_channels has made.
+ * @param[in] k  from 0, below the number that it said
+ * @return OK, NULL, INVALID_ARGUMENT (k).
+ * @since 0.1 */
+static inline se3d_status se3d_model_get_listed_channel(const se3d_model *model, size_t k,
+                                                        se3d_model_channel *channel)
+{
+    return se3d_model_get_listed_channel_sized(model, k, channel, sizeof *channel);
+}
 
 /* Compute a channel of a results file at the present state.
  * @param[in] output  index of the results file

@@ -97,6 +97,10 @@ static void model_read_text(const world *w)
     IS(se3d_model_read_text(text, 8, "a", NULL, NULL, &error), SE3D_ERR_NULL);
     options.setting_count = 1; /* and settings NULL */
     IS(se3d_model_read_text(text, 8, "a", &options, &model, NULL), SE3D_ERR_NULL);
+    options.settings = &(se3d_model_setting){NULL, "1"};
+    IS(se3d_model_read_text(text, 8, "a", &options, &model, NULL), SE3D_ERR_NULL);
+    options.settings = &(se3d_model_setting){"title", NULL};
+    IS(se3d_model_read_text(text, 8, "a", &options, &model, NULL), SE3D_ERR_NULL);
     model = w->model;
     IS(se3d_model_read_text(text, 0, "a", NULL, &model, &error), SE3D_ERR_MODEL);
     CHECK(model == NULL && error.message[0]);
@@ -254,6 +258,26 @@ static void model_get_channel(const world *w)
     CHECK_CONTAINS(name, "block.position");
 }
 
+static void model_list_channels(const world *w)
+{
+    size_t count = 0;
+    se3d_model_channel c = {.name = NULL};
+    IS(se3d_model_list_channels(NULL, &count), SE3D_ERR_NULL);
+    IS(se3d_model_list_channels(w->model, NULL), SE3D_ERR_NULL);
+    IS(se3d_model_list_channels(w->model, &count), SE3D_OK);
+    const size_t again = count;
+    IS(se3d_model_list_channels(w->model, &count), SE3D_OK);
+    CHECK(count == again && count > 10);
+    IS(se3d_model_get_listed_channel(NULL, 0, &c), SE3D_ERR_NULL);
+    IS(se3d_model_get_listed_channel(w->model, 0, NULL), SE3D_ERR_NULL);
+    IS(se3d_model_get_listed_channel(w->model, count, &c), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_model_get_listed_channel(w->model, SIZE_MAX, &c), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_model_get_listed_channel(w->model, 0, &c), SE3D_OK);
+    CHECK_CONTAINS(c.name, "block.position");
+    CHECK_CONTAINS(c.unit, "m");
+    CHECK(c.width == 3);
+}
+
 static void model_get_channel_value(const world *w)
 {
     double value[4];
@@ -397,6 +421,7 @@ static const struct {
     {" se3d_model_create_event ", model_create_event},
     {" se3d_model_get_solver ", model_get_solver},
     {" se3d_model_get_channel ", model_get_channel},
+    {" se3d_model_list_channels se3d_model_get_listed_channel ", model_list_channels},
     {" se3d_model_get_channel_value ", model_get_channel_value},
     {" se3d_model_run ", model_run},
     {" se3d_scene_create ", scene_create},

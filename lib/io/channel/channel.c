@@ -13,8 +13,6 @@
 #include "io/model/model.h"
 #include "io/model/tagged.h"
 
-enum { DEFAULT_ELEMENTS_MAX = 100 };
-
 typedef struct quantity_name {
     const char *name;
     se3di_quantity quantity;
@@ -553,6 +551,7 @@ bool se3di_channel_find_number(se3d_model *model, const char *name, se3di_channe
 /* A growing list of channels with names made up of two or three parts. */
 typedef struct channel_list {
     se3d_model *model;
+    size_t most; /* elements of a kind */
     se3di_channel *list;
     size_t count;
     size_t capacity;
@@ -583,7 +582,7 @@ static bool has_contacts(const se3d_model *model)
 static void list_bodies(channel_list *c)
 {
     const se3d_model *model = c->model;
-    for (size_t k = 1; k < model->body_count && k <= DEFAULT_ELEMENTS_MAX && !c->failed; ++k) {
+    for (size_t k = 1; k < model->body_count && k <= c->most && !c->failed; ++k) {
         for (const quantity_name *q = body_names; q->name && !c->failed; ++q) {
             if (q->quantity == SE3DI_BODY_CONTACT_FORCE && !has_contacts(model)) {
                 continue;
@@ -595,7 +594,7 @@ static void list_bodies(channel_list *c)
     }
     for (size_t k = 0; k < model->marker_count && !c->failed; ++k) {
         const se3di_marker_entry *marker = &model->markers[k];
-        if (marker->body == 0 || marker->body > DEFAULT_ELEMENTS_MAX) {
+        if (marker->body == 0 || marker->body > c->most) {
             continue;
         }
         for (const quantity_name *q = marker_names; q->name && !c->failed; ++q) {
@@ -613,7 +612,7 @@ static void list_elements(channel_list *c)
     for (size_t k = 0; k < model->element_count && !c->failed; ++k) {
         const se3di_element_entry *entry = &model->elements[k];
         offer o;
-        if (++listed[entry->kind] > DEFAULT_ELEMENTS_MAX) {
+        if (++listed[entry->kind] > c->most) {
             continue;
         }
         offer_element(&o, model, entry);
@@ -631,9 +630,9 @@ static void list_elements(channel_list *c)
     }
 }
 
-se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count)
+se3di_channel *se3di_channel_list_all(se3d_model *model, size_t most, size_t *count)
 {
-    channel_list c = {.model = model};
+    channel_list c = {.model = model, .most = most};
     list_bodies(&c);
     list_elements(&c);
     for (const quantity_name *q = system_names; q->name && !c.failed; ++q) {

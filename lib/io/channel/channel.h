@@ -211,8 +211,10 @@ bool se3di_channel_is_shown(const se3di_channel *channel);
 double se3di_channel_get_scale(const se3di_channel *channel, const se3d_system *system);
 /* Of a quantity, as far as its unit is known: what may be a translation or a rotation has none. */
 se3di_dimension se3di_channel_get_dimension(const se3di_channel *channel);
-/* Every channel of the first 100 bodies, constraints and forces. @return NULL: out of memory. */
-se3di_channel *se3di_channel_list_all(se3d_model *model, size_t *count);
+/* What a results file shows of which nothing else is said: elements of a kind. */
+enum { SE3DI_CHANNEL_ELEMENTS = 100 };
+/* Every channel of the first `most` bodies, constraints and forces. @return NULL: out of memory. */
+se3di_channel *se3di_channel_list_all(se3d_model *model, size_t most, size_t *count);
 
 size_t se3di_channel_get_width(const se3di_channel *channel);
 /* Write the name of column k to `text`. */

@@ -373,8 +373,9 @@ se3d_status se3di_document_read(se3di_iopool *pool, FILE *file, char **text, siz
     return SE3D_ERR_NO_MEMORY;
 }
 
-se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const char *text,
-                                 size_t length, se3di_node **root, se3d_model_error *error)
+/* The value that a text holds; *root NULL, OK: none. */
+static se3d_status parse(se3di_iopool *pool, const char *file, const char *text, size_t length,
+                         se3di_node **root, se3d_model_error *error)
 {
     const yaml_mark_t start = {0, 0, 0};
     builder b = {.pool = pool, .file = file, .error = error, .status = SE3D_OK};
@@ -396,14 +397,37 @@ se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const cha
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
     parse_events(&b, &parser, text, length);
     yaml_parser_delete(&parser);
-    if (b.status == SE3D_OK && (!b.root || se3di_node_is_null(b.root))) {
-        fail_at(&b, start, NULL, "is empty, must be a map that begins with `se3d: 1`");
-    }
     *root = b.status == SE3D_OK ? b.root : NULL;
     if (*root) {
         (*root)->file = file;
     }
     return b.status;
+}
+
+/* What must be there is not. */
+static se3d_status fail_empty(const char *file, se3d_model_error *error, const char *text)
+{
+    se3di_document_report(error, file, 1, 1, "", text);
+    return SE3D_ERR_MODEL;
+}
+
+se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const char *text,
+                                 size_t length, se3di_node **root, se3d_model_error *error)
+{
+    const se3d_status status = parse(pool, file, text, length, root, error);
+    if (status == SE3D_OK && (!*root || se3di_node_is_null(*root))) {
+        *root = NULL;
+        return fail_empty(file, error, "is empty, must be a map that begins with `se3d: 1`");
+    }
+    return status;
+}
+
+se3d_status se3di_document_parse_value(se3di_iopool *pool, const char *name, const char *text,
+                                       size_t length, se3di_node **root, se3d_model_error *error)
+{
+    const se3d_status status = parse(pool, name, text, length, root, error);
+    return status == SE3D_OK && !*root ? fail_empty(name, error, "is empty, must be a value")
+                                       : status;
 }
 
 se3di_node *se3di_node_of_text(se3di_iopool *pool, const char *key, const char *text)

@@ -58,6 +58,10 @@ se3d_status se3di_document_read(se3di_iopool *pool, FILE *file, char **text, siz
 se3d_status se3di_document_parse(se3di_iopool *pool, const char *file, const char *text,
                                  size_t length, se3di_node **root, se3d_model_error *error);
 
+/* The same for a text of one value, which may also stand for nothing. */
+se3d_status se3di_document_parse_value(se3di_iopool *pool, const char *name, const char *text,
+                                       size_t length, se3di_node **root, se3d_model_error *error);
+
 /* The child of a map, or NULL (also if `map` is NULL or not a map). */
 se3di_node *se3di_node_get(const se3di_node *map, const char *key);
 /* A text that no file holds, an option of the command line; NULL: out of memory. */

@@ -144,6 +144,8 @@ struct se3d_model {
     struct se3di_study_entry *study;      /* io/channel/study.h; NULL: none */
     struct se3di_study_channel *measured; /* [study->source_count] of it, or of the study that the
                                              model is a sample of */
+    se3d_model_channel *listed;           /* [listed_count]; NULL: not asked for yet */
+    size_t listed_count;
     const se3di_attached_file *attached;  /* files that were read beside its own, the last first */
     uint64_t content;                     /* hash of the bytes of all its files, */
     uint64_t asked;                       /* of the options that it was read with */

@@ -11,6 +11,7 @@
 #include "io/document/document.h"
 #include "io/document/function.h"
 #include "io/document/reader.h"
+#include "io/document/setting.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/read/bars.h"
@@ -279,6 +280,29 @@ static uint64_t hash_options(const se3d_model_options *o)
     return hash;
 }
 
+static bool has_settings(const se3d_model_options *o)
+{
+    for (size_t k = 0; k < o->setting_count; ++k) {
+        if (!o->settings || !o->settings[k].name || !o->settings[k].value) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Replace in the tree what the options name by path. */
+static se3d_status apply_paths(se3d_model *model, const se3d_model_options *o,
+                               se3d_model_error *error)
+{
+    se3d_status status = SE3D_OK;
+    for (size_t k = 0; k < o->setting_count && status >= 0; ++k) {
+        if (se3di_setting_is_path(&o->settings[k])) {
+            status = se3di_setting_apply(&model->pool, model->root, &o->settings[k], error);
+        }
+    }
+    return status;
+}
+
 static se3d_status fail_early(se3d_model_error *error, se3d_status status, const char *path,
                               const char *text)
 {
@@ -307,8 +331,8 @@ static se3d_status read_text(const char *text, size_t length, const char *name,
     if (!take_options(options, &used)) {
         return fail_early(error, SE3D_ERR_INVALID_ARGUMENT, "", "options: " SE3DI_IO_SIZE_TEXT);
     }
-    if (!text || !name || !out || (used.setting_count > 0 && !used.settings)) {
-        return fail_early(error, SE3D_ERR_NULL, "", "text, name or out is NULL");
+    if (!text || !name || !out || !has_settings(&used)) {
+        return fail_early(error, SE3D_ERR_NULL, "", "text, name, out or a setting is NULL");
     }
     se3d_model *model = se3di_model_create(used.allocator);
     if (!model) {
@@ -321,6 +345,7 @@ static se3d_status read_text(const char *text, size_t length, const char *name,
         fail_early(error, status, "", "out of memory");
     } else {
         status = se3di_document_parse(&model->pool, model->file, text, length, &model->root, error);
+        status = status < 0 ? status : apply_paths(model, &used, error);
     }
     model->library = se3di_iopool_alloc(&model->pool, sizeof *model->library);
     if (status >= 0 && !model->library) {

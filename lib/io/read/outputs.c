@@ -168,7 +168,7 @@ static bool read_channels(se3di_reader *reader, const se3di_node *node, se3di_ou
         return false;
     }
     if (!list) {
-        output->channels = se3di_channel_list_all(model, &output->count);
+        output->channels = se3di_channel_list_all(model, SE3DI_CHANNEL_ELEMENTS, &output->count);
         return output->channels ? true : se3di_reader_fail_memory(reader);
     }
     output->channels = se3di_iopool_array(&model->pool, list->count, sizeof *output->channels);
@@ -479,7 +479,7 @@ static bool add_default(se3di_reader *reader)
     se3d_model *model = reader->model;
     se3di_output_entry *output = &model->outputs[model->output_count];
     output->file = "results.csv";
-    output->channels = se3di_channel_list_all(model, &output->count);
+    output->channels = se3di_channel_list_all(model, SE3DI_CHANNEL_ELEMENTS, &output->count);
     ++model->output_count;
     return output->channels ? true : se3di_reader_fail_memory(reader);
 }

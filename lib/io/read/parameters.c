@@ -12,6 +12,7 @@
 #include "io/document/formula.h"
 #include "io/document/guess.h"
 #include "io/document/reader.h"
+#include "io/document/setting.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/read/parameters.h"
@@ -240,6 +241,9 @@ static bool apply_settings(resolver *r)
         const se3d_model_setting *setting = &reader->options->settings[k];
         se3di_node *node = se3di_node_of_text(reader->pool, setting->name, setting->value);
         size_t index = 0;
+        if (se3di_setting_is_path(setting)) {
+            continue; /* it was put in its place already */
+        }
         if (!node) {
             return se3di_reader_fail_memory(reader);
         }
