@@ -3,7 +3,7 @@
 set -u
 . "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
 
-commands='run check evaluate explain plot view video study import help completion'
+commands='run check evaluate explain channels new plot view video study import fmu help completion'
 expect 'overview' 0 "$program" help
 cp "$dir/out" "$dir/overview"
 expect 'the same by -h' 0 "$program" -h
@@ -79,7 +79,7 @@ completes() {
 if command -v bash >/dev/null 2>&1; then
     expect 'bash' 0 "$program" completion bash
     cp "$dir/out" "$dir/se3d.bash"
-    completes 'commands' 'check' se3d ch
+    completes 'commands' 'check' se3d che
     completes 'options' '--tolerance' se3d run --to
     completes 'methods' 'rk45 rk4' se3d run --method rk
     completes 'analyses' 'modes' se3d run --analysis mo

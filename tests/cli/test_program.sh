@@ -54,6 +54,47 @@ expect 'parameters' 0 "$program" run "$models/pendulum_free.yaml" -o "$dir/f" \
     --set theta0=30*deg --set L=1 --step 0.01 --duration 0.055
 is "$(sed -n 2p "$dir/f/pendulum_free.csv" | cut -d, -f2)" 0.5235987755982987
 is "$(tail -1 "$dir/f/pendulum_free.csv" | cut -d, -f1)" 0.055
+expect 'a place of the document' 0 "$program" run "$models/fourbar.yaml" -o "$dir/s" -q \
+    --set bodies.coupler.mass='2 kg' --set 'bodies[1].inertia=[1/10, 1e-3, 1/10]' \
+    --set analysis.duration=0.05 --set analysis.step=2e-3
+sed -e '/name: coupler/s/mass: 1,/mass: 2,/' -e '/name: right/s|\[1/12, 1e-3, 1/12\]|[1/10, 1e-3, 1/10]|' \
+    -e 's/duration: 10, step: 0.001/duration: 0.05, step: 2e-3/' \
+    "$models/fourbar.yaml" >"$dir/fourbar.yaml"
+expect 'the same written out' 0 "$program" run "$dir/fourbar.yaml" -o "$dir/w" -q
+is "$(cat "$dir/s/fourbar.csv")" "$(cat "$dir/w/fourbar.csv")"
+expect 'a model from standard input' 0 sh -c '"$0" run - -o "$2" -q <"$1"' "$program" \
+    "$dir/fourbar.yaml" "$dir/i"
+is "$(cat "$dir/i/fourbar.csv")" "$(cat "$dir/w/fourbar.csv")"
+expect 'a wrong one' 2 sh -c 'echo "se3d: 2" | "$0" check -' "$program"
+has "$dir/err" 'stdin:1:7: se3d: is 2, must be 1'
+expect 'an empty one' 2 sh -c '"$0" check - </dev/null' "$program"
+has "$dir/err" 'stdin:1:1: is empty'
+
+for command in fmu study; do
+    expect "a file for $command" 2 "$program" $command -
+    has "$dir/err" 'the model must be a file, not standard input'
+done
+
+expect 'channels' 0 "$program" channels "$models/fourbar.yaml" --match coupler
+has "$dir/out" 'coupler.acceleration          [m/s^2]  x, y, z'
+is "$(grep -vc coupler "$dir/out")" 0
+for kind in pendulum slider-crank contact; do
+    expect "a new $kind" 0 "$program" new "$dir/$kind.yaml" --kind $kind
+    expect "runs" 0 "$program" run "$dir/$kind.yaml" -o "$dir/$kind" --strict
+done
+expect 'what is there stays' 1 "$program" new "$dir/pendulum.yaml"
+has "$dir/err" 'pendulum.yaml: is there already'
+expect 'no such kind' 2 "$program" new "$dir/other.yaml" --kind car
+has "$dir/err" 'the kind is `car`, must be pendulum, slider-crank or contact'
+expect 'no model' 2 "$program" new "$dir/other.txt"
+has "$dir/err" 'must end with .yaml or .yml'
+expect 'import without a file' 2 "$program" import
+has "$dir/err" 'which model? Give a file'
+expect 'JSON, line by line' 0 "$program" run "$dir/pendulum.yaml" -o "$dir/pendulum" --json-lines
+is "$(head -1 "$dir/out")" '{"analysis": 0, "time": 0, "fraction": 0}'
+is "$(wc -l <"$dir/out" | awk '{ print ($1 > 90 && $1 < 110) }')" 1
+is "$(tail -1 "$dir/out" | cut -c1-18)" '{"status": "done",'
+
 expect 'an unknown parameter' 2 "$program" run "$models/pendulum_free.yaml" --set theta=1
 has "$dir/err" 'did you mean `theta0`?'
 expect 'an event stops' 0 "$program" run "$models/pendulum_events.yaml" -o "$dir/e"

@@ -25,6 +25,9 @@ opens() {
         echo "SKIPPED: no chromium or no node: the page of $1 was not opened" >&2
     fi
 }
+expect 'a model is run first' 0 sh -c 'cd "$1" && "$0" view "$2" -q' "$program" "$dir" \
+    "$source/examples/models/tsda_mass.yaml"
+holds 'its page is there' [ -s "$dir/results/tsda_mass/scene.html" ]
 for pair in pendulum:bar spatial_slider_crank:rod tsda_mass:block; do
     model=${pair%:*}
     "$program" run -q "$source/examples/models/$model.yaml" -o "$dir/$model"

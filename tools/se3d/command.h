@@ -19,7 +19,8 @@ typedef struct command_option {
 #define COMMAND_OPTION_SET                                                                         \
     {                                                                                              \
         "--set", NULL, "NAME=VALUE",                                                               \
-            "replace a parameter; VALUE is an expression; may be repeated"                         \
+            "replace a parameter, or anything by its path, as in bodies.bar.mass; VALUE is what "  \
+            "the file could say there; may be repeated"                                            \
     }
 #define COMMAND_OPTION_QUIET                                                                       \
     {                                                                                              \
@@ -54,8 +55,9 @@ typedef struct command_entry {
     const char *exits; /* what the exit codes mean */
 } command_entry;
 
-extern const command_entry run_entry, check_entry, evaluate_entry, plot_entry, view_entry,
-    video_entry, import_entry, fmu_entry, study_entry, explain_entry, completion_entry, help_entry;
+extern const command_entry new_entry, channels_entry, run_entry, check_entry, evaluate_entry,
+    plot_entry, view_entry, video_entry, import_entry, fmu_entry, study_entry, explain_entry,
+    completion_entry, help_entry;
 
 /* The k-th command, NULL behind the last. */
 const command_entry *command_get(size_t k);

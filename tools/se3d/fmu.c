@@ -135,7 +135,8 @@ static int command_fmu(int count, char *const *words)
     if (code != EXIT_DONE || o.help) {
         return code;
     }
-    code = read_version(&o, &version);
+    code = options_check_file(&o, &fmu_entry);
+    code = code == EXIT_DONE ? read_version(&o, &version) : code;
     if (code != EXIT_DONE) {
         return code;
     }

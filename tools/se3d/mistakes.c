@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Reading a model: its mistakes with the lines they are on. */
+/* Reading a model: its mistakes with the lines they are on. A model called "-" comes from standard
+ * input. */
+#include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "file.h"
@@ -9,6 +12,8 @@
 #include "text.h"
 
 enum { LINE_MAX = 4096, WIDTH = 100 /* characters of a line that are shown */ };
+enum { BYTES_MAX = 64 * 1024 * 1024 /* of standard input; the reader allows no more */ };
+static const char input_name[] = "stdin";
 
 typedef struct mistakes {
     se3d_model_error list[SE3D_MODEL_MISTAKES_MAX];
@@ -88,6 +93,11 @@ static void show_line(const se3d_model_error *error, const char *line)
     fprintf(stderr, "\n       | %*s^\n", (int)(error->column - first), "");
 }
 
+static int is_input(const options *o)
+{
+    return strcmp(o->model, "-") == 0;
+}
+
 /* The file that a message begins with: that of the model, or one that it includes. */
 static void get_file(const options *o, const se3d_model_error *error, char *file, size_t size)
 {
@@ -97,7 +107,7 @@ static void get_file(const options *o, const se3d_model_error *error, char *file
     if (end && (size_t)(end - error->message) < size) {
         snprintf(file, size, "%.*s", (int)(end - error->message), error->message);
     } else {
-        snprintf(file, size, "%s", o->model);
+        snprintf(file, size, "%s", is_input(o) ? input_name : o->model);
     }
 }
 
@@ -111,6 +121,9 @@ static void show_mistake(const options *o, const se3d_model_error *error)
         return;
     }
     get_file(o, error, path, sizeof path);
+    if (is_input(o) && strcmp(path, input_name) == 0) {
+        return; /* it has been read */
+    }
     FILE *file = se3di_file_open(path); /* what is no regular file cannot be read twice */
     if (file && find_line(file, error->line, &at, line)) {
         show_line(error, line);
@@ -149,6 +162,49 @@ static void print_json(const options *o, const mistakes *m, const char *message)
     fputs("]}\n", stdout);
 }
 
+/* All of standard input; free it. @return NULL: errno says why. */
+static char *read_input(size_t *length)
+{
+    size_t capacity = 65536;
+    char *text = malloc(capacity);
+    *length = 0;
+    while (text) {
+        *length += fread(text + *length, 1, capacity - *length, stdin);
+        if (*length < capacity || capacity > BYTES_MAX) {
+            break;
+        }
+        char *larger = realloc(text, 2 * capacity);
+        if (!larger) {
+            free(text);
+        }
+        text = larger;
+        capacity *= 2;
+    }
+    if (text && ferror(stdin)) {
+        free(text);
+        text = NULL;
+    }
+    return text;
+}
+
+static se3d_status read_model(const options *o, const se3d_model_options *how, se3d_model **model,
+                              se3d_model_error *error)
+{
+    size_t length = 0;
+    if (!is_input(o)) {
+        return se3d_model_read_file(o->model, how, model, error);
+    }
+    char *text = read_input(&length);
+    if (!text) {
+        memset(error, 0, sizeof *error);
+        snprintf(error->message, sizeof error->message, "%s: %s", input_name, strerror(errno));
+        return SE3D_ERR_IO;
+    }
+    const se3d_status status = se3d_model_read_text(text, length, input_name, how, model, error);
+    free(text);
+    return status;
+}
+
 int options_read_model(const options *o, const se3d_model_options *how, se3d_model **model)
 {
     mistakes m = {.count = 0};
@@ -156,7 +212,7 @@ int options_read_model(const options *o, const se3d_model_options *how, se3d_mod
     se3d_model_options with = *how;
     with.report = keep;
     with.report_ctx = &m;
-    if (!SE3D_FAILED(se3d_model_read_file(o->model, &with, model, &error))) {
+    if (!SE3D_FAILED(read_model(o, &with, model, &error))) {
         return EXIT_DONE;
     }
     if (m.count == 0) {

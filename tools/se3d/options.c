@@ -45,7 +45,8 @@ static const char **value_target(options *o, const char *name)
                  {"--time", &o->time},         {"--speed", &o->speed},
                  {"--view", &o->view},         {"--format", &o->format},
                  {"--fmi", &o->fmi},           {"--shard", &o->shard},
-                 {"--jobs", &o->jobs},         {"--checkpoint", &o->checkpoint}};
+                 {"--jobs", &o->jobs},         {"--checkpoint", &o->checkpoint},
+                 {"--match", &o->match},       {"--kind", &o->kind}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;
@@ -61,6 +62,9 @@ static int *flag_target(options *o, const char *name)
     }
     if (strcmp(name, "--json") == 0) {
         return &o->json;
+    }
+    if (strcmp(name, "--json-lines") == 0) {
+        return &o->json_lines;
     }
     if (strcmp(name, "--csv") == 0) {
         return &o->csv;
@@ -143,7 +147,9 @@ static int report_no_operand(const command_entry *c)
         const char *operands;
         const char *text;
     } table[] = {{"MODEL", "which model? Give a file"},
-                 {"DIR", "which results? Give the folder that `se3d run` wrote"},
+                 {"DIR|MODEL", "which results? Give the folder that `se3d run` wrote, or a model"},
+                 {"FILE", "which model? Give a file"},
+                 {"FILE.yaml", "which file? Give a name such as first.yaml"},
                  {"SHELL", "which shell? Give bash, zsh or fish"}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].operands, c->operands) == 0) {
@@ -175,11 +181,21 @@ int options_read(options *o, const command_entry *c, int count, char *const *wor
             ++k;
         }
     }
+    o->json = o->json || o->json_lines;
     if (o->help) {
         command_print_help(c);
         return EXIT_DONE;
     }
     return o->model || c->operands[0] == '[' ? EXIT_DONE : report_no_operand(c);
+}
+
+int options_check_file(const options *o, const command_entry *c)
+{
+    if (strcmp(o->model, "-") != 0) {
+        return EXIT_DONE;
+    }
+    fprintf(stderr, "se3d %s: the model must be a file, not standard input\n", c->name);
+    return EXIT_USAGE;
 }
 
 se3d_model_options options_get_model(const options *o)

@@ -28,11 +28,14 @@ typedef struct options {
     const char *shard;
     const char *jobs;
     const char *checkpoint;
+    const char *match;
+    const char *kind;
     se3d_model_setting settings[SETTINGS_MAX];
-    char names[SETTINGS_MAX][64];
+    char names[SETTINGS_MAX][200];
     size_t setting_count;
     int quiet;
     int json;
+    int json_lines;
     int csv;
     int man;
     int partial;
@@ -49,6 +52,8 @@ typedef struct options {
  * @return EXIT_DONE, or EXIT_USAGE after a message. */
 int options_read(options *o, const command_entry *c, int count, char *const *words);
 
+/* Not standard input. @return EXIT_DONE, or EXIT_USAGE after a message. */
+int options_check_file(const options *o, const command_entry *c);
 /* The model options that the command line asks for. */
 se3d_model_options options_get_model(const options *o);
 
@@ -66,6 +71,9 @@ int plot_files(int count, const char *const *words);
 /* Run a model, results into results/<model>, and draw the plots it asks for. `csv`: where its first
  * results with channels are. @return the exit code, after a message if it failed. */
 int run_for_plots(const char *model, int quiet, int draw, char *csv, size_t size);
+/* The folder of results that `path` is; a model is run first, into results/<model>, which draws
+ * nothing. @return the exit code, after a message if it failed. */
+int run_for_view(const char *command, const char *path, int quiet, char *folder, size_t size);
 
 /* Write a text as a JSON string, a number as JSON (null if it is not finite). */
 void json_put_text(const char *text);
@@ -74,15 +82,25 @@ void json_put_number(double value);
 /* Print "1 body" or "2 bodies"; `after` follows. */
 void put_count(uint64_t count, const char *one, const char *many, const char *after);
 
-/* A progress bar on standard error, shown on a terminal only. */
+/* How far a run is: a bar on standard error if that is a terminal, else a line every ten seconds.
+ */
 typedef struct progress {
-    int active;
-    int percent;  /* shown last; -1: none */
-    size_t count; /* of analyses */
+    int is_quiet;
+    int is_bar;
+    int is_lines;    /* objects of JSON on standard output in place of them */
+    int percent;     /* shown last; -1: none */
+    size_t count;    /* of analyses */
+    size_t analysis; /* the one at hand, from 0 */
+    double time;     /* of the model [s] */
+    double fraction; /* of the analysis */
+    int64_t begun;   /* when the analysis was first heard of [s of the clock] */
+    int64_t told;    /* the last line */
 } progress;
 
 void progress_begin(progress *p, int quiet, size_t count);
 int progress_show(void *ctx, size_t analysis, double time, double fraction);
+/* Nothing new, but it goes on. */
+void progress_wait(progress *p);
 void progress_end(progress *p);
 /* Make its line free for a message. */
 void progress_clear(void);

@@ -245,23 +245,11 @@ static int plot_all(plot *p)
     return draw(p);
 }
 
-static int is_model(const char *path)
-{
-    static const char *const endings[] = {".yaml", ".yml", ".json"};
-    char without[4096];
-    for (size_t k = 0; k < sizeof endings / sizeof *endings; ++k) {
-        if (path_cut(path, endings[k], without, sizeof without) && strcmp(path, without) != 0) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
 /* Models are run, and their results drawn. */
 static int run_models(plot *p)
 {
     for (size_t k = 0; k < p->file_count; ++k) {
-        if (is_model(p->files[k])) {
+        if (path_is_model(p->files[k])) {
             const int alone = p->file_count == 1 && p->channel_count == 0 && !p->x && !p->fft;
             const int code =
                 run_for_plots(p->files[k], p->quiet, alone, p->csv[k], sizeof p->csv[k]);

@@ -159,6 +159,19 @@ int path_cut(const char *path, const char *extension, char *out, size_t size)
     return 1;
 }
 
+int path_is_model(const char *path)
+{
+    static const char *const endings[] = {".yaml", ".yml", ".json"};
+    const size_t length = strlen(path);
+    for (size_t k = 0; k < sizeof endings / sizeof *endings; ++k) {
+        const size_t tail = strlen(endings[k]);
+        if (length > tail && strcmp(path + length - tail, endings[k]) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 int path_is_absolute(const char *path)
 {
     return is_separator(path[0]) || (path[0] && path[1] == ':');

@@ -21,6 +21,8 @@ int path_get_folder(const char *path, char *folder, size_t size);
 const char *path_get_name(const char *path);
 /* Copy a path without its extension, if that is `extension` (".csv"). */
 int path_cut(const char *path, const char *extension, char *out, size_t size);
+/* True for the names of model files. */
+int path_is_model(const char *path);
 /* True if the path begins at the root. */
 int path_is_absolute(const char *path);
 /* The absolute form of a path of something that exists. @return false: there is none. */

@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <time.h>
 
 #include "options.h"
 #include "text.h"
@@ -24,6 +25,8 @@ static int is_terminal(void)
     return isatty(2);
 }
 #endif
+
+enum { TELL_EVERY = 10 /* s */ };
 
 void json_put_text(const char *text)
 {
@@ -56,27 +59,91 @@ void report_failure(const options *o, const char *command, const char *message)
 
 void progress_begin(progress *p, int quiet, size_t count)
 {
-    p->active = !quiet && is_terminal();
-    p->percent = -1;
-    p->count = count;
+    const int64_t now = (int64_t)time(NULL);
+    *p = (progress){.is_quiet = quiet,
+                    .is_bar = !quiet && is_terminal(),
+                    .percent = -1,
+                    .count = count,
+                    .begun = now,
+                    .told = now};
 }
 
-int progress_show(void *ctx, size_t analysis, double time, double fraction)
+static void show_bar(progress *p)
 {
     enum { WIDTH = 40 };
-    progress *p = ctx;
-    const int percent = (int)(100.0 * fraction);
-    if (!p->active || percent == p->percent) {
-        return 0;
+    const int percent = (int)(100.0 * p->fraction);
+    if (percent == p->percent) {
+        return;
     }
     p->percent = percent;
-    fprintf(stderr, "\r%zu/%zu [", analysis + 1, p->count);
+    fprintf(stderr, "\r%zu/%zu [", p->analysis + 1, p->count);
     for (int k = 0; k < WIDTH; ++k) {
         fputc(k * 100 < percent * WIDTH ? '#' : ' ', stderr);
     }
-    fprintf(stderr, "] %3d %%  t = %-10.4g", percent, time);
+    fprintf(stderr, "] %3d %%  t = %-10.4g", percent, p->time);
     fflush(stderr);
+}
+
+/* {"analysis": 0, "time": 1.25, "fraction": 0.34}, once a percent. */
+static void put_line(progress *p)
+{
+    const int percent = (int)(100.0 * p->fraction);
+    if (percent == p->percent) {
+        return;
+    }
+    p->percent = percent;
+    printf("{\"analysis\": %zu, \"time\": ", p->analysis);
+    json_put_number(p->time);
+    printf(", \"fraction\": ");
+    json_put_number(p->fraction);
+    fputs("}\n", stdout);
+    fflush(stdout);
+}
+
+/* "1/2: 34 %, t = 1.25 s, about 50 s left" */
+static void tell(progress *p)
+{
+    const int64_t now = (int64_t)time(NULL);
+    const double passed = (double)(now - p->begun);
+    if (now - p->told < TELL_EVERY && now >= p->told) {
+        return;
+    }
+    p->told = now;
+    fprintf(stderr, "%zu/%zu: %.0f %%, t = %.4g s", p->analysis + 1, p->count, 100.0 * p->fraction,
+            p->time);
+    if (p->fraction > 0.0 && passed >= 1.0) {
+        const double left = passed * (1.0 - p->fraction) / p->fraction;
+        fprintf(stderr, left < 120.0 ? ", about %.0f s left" : ", about %.0f min left",
+                left < 120.0 ? left : left / 60.0);
+    }
+    fputc('\n', stderr);
+    fflush(stderr);
+}
+
+int progress_show(void *ctx, size_t analysis, double time_now, double fraction)
+{
+    progress *p = ctx;
+    if (analysis != p->analysis) {
+        p->begun = (int64_t)time(NULL);
+    }
+    p->analysis = analysis;
+    p->time = time_now;
+    p->fraction = fraction;
+    if (p->is_lines) {
+        put_line(p);
+    } else if (p->is_bar) {
+        show_bar(p);
+    } else {
+        progress_wait(p);
+    }
     return 0;
+}
+
+void progress_wait(progress *p)
+{
+    if (!p->is_quiet && !p->is_bar) {
+        tell(p);
+    }
 }
 
 void progress_clear(void)
@@ -88,7 +155,7 @@ void progress_clear(void)
 
 void progress_end(progress *p)
 {
-    if (p->active && p->percent >= 0) {
+    if (p->is_bar && p->percent >= 0) {
         progress_clear();
     }
 }

@@ -11,6 +11,7 @@
 #include "notes.h"
 #include "options.h"
 #include "pictures.h"
+#include "process.h"
 #include "warnings.h"
 
 #define EVERY_ROW 1e-9 /* s between checkpoints: less than a row takes */
@@ -411,7 +412,8 @@ static int watch(void *ctx, size_t analysis, double time, double fraction)
 /* Also asked between two rows, which may be far from each other. */
 static int is_over(void *ctx)
 {
-    (void)ctx;
+    const watcher *w = ctx;
+    progress_wait(w->bar);
     return interrupt_came();
 }
 
@@ -481,6 +483,7 @@ static int run_into(const warnings *warned, se3d_model *model, const char *folde
     se3d_model_error error = {.message = ""};
     progress bar;
     progress_begin(&bar, o->quiet || o->json, se3d_model_count_analyses(model));
+    bar.is_lines = o->json_lines;
     how.directory = folder;
     watcher w = {&bar, NULL, SE3D_OK};
     w.status = se3d_scene_create(model, scene);
@@ -489,6 +492,7 @@ static int run_into(const warnings *warned, se3d_model *model, const char *folde
     how.progress = watch;
     how.ctx = &w;
     how.interrupt = is_over;
+    how.interrupt_ctx = &w;
     ask_checkpoints(o, *scene, &how);
     const se3d_status status = se3d_model_run(model, &how, &run, &error);
     const int ended = (!SE3D_FAILED(status) || status == SE3D_ERR_INTERRUPTED) && interrupt_came();
@@ -554,35 +558,82 @@ static int find_csv(const options *o, const se3d_model *model, char *csv, size_t
     return 0;
 }
 
-int run_for_plots(const char *path, int quiet, int draw, char *csv, size_t size)
+static int has_plots(const se3d_model *model)
 {
-    options o;
-    se3d_model *model = NULL;
-    memset(&o, 0, sizeof o);
-    o.model = path;
-    o.quiet = quiet;
-    warnings warned = {.o = &o};
-    se3d_model_options how = options_get_model(&o);
-    how.log = warnings_add;
-    how.log_ctx = &warned;
-    int code = options_read_model(&o, &how, &model);
-    if (code != EXIT_DONE) {
-        return code;
-    }
-    int asked = 0;
     for (size_t k = 0; k < se3d_model_count_pictures(model); ++k) {
         se3d_model_picture picture;
         se3d_model_get_picture(model, k, &picture);
-        asked = asked || strcmp(picture.type, "plot") == 0;
+        if (strcmp(picture.type, "plot") == 0) {
+            return 1;
+        }
     }
+    return 0;
+}
+
+/* Read a model for another command; `warned` and what it points to outlive it. */
+static int read_for(const char *path, int quiet, options *o, warnings *warned, se3d_model **model)
+{
+    memset(o, 0, sizeof *o);
+    o->model = path;
+    o->quiet = quiet;
+    *warned = (warnings){.o = o};
+    se3d_model_options how = options_get_model(o);
+    how.log = warnings_add;
+    how.log_ctx = warned;
+    return options_read_model(o, &how, model);
+}
+
+static int fail_nothing(const char *command, const char *path)
+{
+    fprintf(stderr, "se3d %s: %s: there is nothing to run and draw\n", command, path);
+    return EXIT_USAGE;
+}
+
+int run_for_plots(const char *path, int quiet, int draw, char *csv, size_t size)
+{
+    options o;
+    warnings warned;
+    se3d_model *model = NULL;
+    int code = read_for(path, quiet, &o, &warned, &model);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    const int asked = draw && has_plots(model);
     if (se3d_model_count_analyses(model) == 0 || !find_csv(&o, model, csv, size)) {
-        fprintf(stderr, "se3d plot: %s: there is nothing to run and draw\n", path);
-        code = EXIT_USAGE;
+        code = fail_nothing("plot", path);
     } else {
-        code = run_model(&warned, model, draw && asked ? "plot" : "");
+        code = run_model(&warned, model, asked ? "plot" : "");
     }
-    if (draw && asked) {
+    if (asked) {
         csv[0] = '\0'; /* drawn already */
+    }
+    se3d_model_destroy(model);
+    return code;
+}
+
+int run_for_view(const char *command, const char *path, int quiet, char *folder, size_t size)
+{
+    options o;
+    warnings warned;
+    se3d_model *model = NULL;
+    if (!path_is_model(path)) {
+        snprintf(folder, size, "%s", path);
+        return EXIT_DONE;
+    }
+    int code = read_for(path, quiet, &o, &warned, &model);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    char *made = results_folder(&o, model);
+    const int length = made ? snprintf(folder, size, "%s", made) : -1;
+    free(made);
+    if (se3d_model_count_analyses(model) == 0) {
+        code = fail_nothing(command, path);
+    } else if (length < 0 || (size_t)length >= size) {
+        report_failure(&o, path, "out of memory, or the name is too long");
+        code = EXIT_FAILED;
+    } else {
+        code = run_model(&warned, model, "");
     }
     se3d_model_destroy(model);
     return code;
@@ -657,10 +708,14 @@ const command_entry run_entry = {
             COMMAND_OPTION_STRICT,
             COMMAND_OPTION_QUIET,
             {"--json", NULL, NULL, "print the summary as JSON, with the warnings"},
+            {"--json-lines", NULL, NULL,
+             "print JSON, an object a line: how far the run is, at last the summary"},
             {0}},
     .examples = (const command_example[]){{"run pendulum.yaml", "results in results/pendulum"},
                                           {"run fourbar.yaml --set l=0.3 -o short",
                                            "another length, results in short"},
+                                          {"run fourbar.yaml --set bodies.coupler.mass=\"30 g\"",
+                                           "another mass, whatever the file says there"},
                                           {"run car.yaml --method radau --tolerance 1e-8 --json",
                                            "another method and tolerance, a summary for programs"},
                                           {"run hopper.yaml --checkpoint 60 --resume",

@@ -402,7 +402,8 @@ static int command_study(int count, char *const *words)
               stderr);
         return EXIT_USAGE;
     }
-    code = read_shard(&j);
+    code = options_check_file(&o, &study_entry);
+    code = code == EXIT_DONE ? read_shard(&j) : code;
     code = code == EXIT_DONE ? read_jobs(&j) : code;
     if (code != EXIT_DONE) {
         return code;

@@ -285,10 +285,11 @@ static int read_view(const char *text, double view[2])
 static int command_video(int count, char *const *words)
 {
     double view[2] = {usual_view[0], usual_view[1]};
+    char folder[PATH_SIZE];
     char path[PATH_SIZE + 64];
     char *rest = NULL;
     options o;
-    const int code = options_read(&o, &video_entry, count, words);
+    int code = options_read(&o, &video_entry, count, words);
     if (code != EXIT_DONE || o.help) {
         return code;
     }
@@ -300,19 +301,24 @@ static int command_video(int count, char *const *words)
     if (!read_view(o.view, view)) {
         return EXIT_USAGE;
     }
-    snprintf(path, sizeof path, "%.4000s/motion.mp4", o.model);
-    return write_film(o.model, o.directory ? o.directory : path, speed, view, o.quiet);
+    code = run_for_view("video", o.model, o.quiet, folder, sizeof folder);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    snprintf(path, sizeof path, "%.4000s/motion.mp4", folder);
+    return write_film(folder, o.directory ? o.directory : path, speed, view, o.quiet);
 }
 
 const command_entry video_entry = {
     .name = "video",
     .run = command_video,
-    .operands = "DIR",
-    .files = "",
+    .operands = "DIR|MODEL",
+    .files = "yaml yml json",
     .summary = "make a film of results in 3-D",
     .text = "Makes a film (default DIR/motion.mp4; 1280 x 720, 30 pictures a second, "
             "H.264) of the results in DIR, as `se3d run` left them: what `se3d view` "
-            "shows. A name that ends with .gif or .webp makes a loop for a web page: 640 x "
+            "shows. A model is run first. A name that ends with .gif or .webp makes a loop for a "
+            "web page: 640 x "
             "360, 15 pictures a second. It needs chromium and ffmpeg.",
     .options =
         (const command_option[]){

@@ -307,6 +307,7 @@ int view_write(const char *command, const char *folder, const char *path)
 
 static int command_view(int count, char *const *words)
 {
+    char folder[PATH_SIZE];
     char path[PATH_SIZE + 64];
     options o;
     interrupt_begin();
@@ -314,8 +315,12 @@ static int command_view(int count, char *const *words)
     if (code != EXIT_DONE || o.help) {
         return code;
     }
-    snprintf(path, sizeof path, "%.4000s/scene.html", o.model);
-    code = view_write("view", o.model, o.directory ? o.directory : path);
+    code = run_for_view("view", o.model, o.quiet, folder, sizeof folder);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    snprintf(path, sizeof path, "%.4000s/scene.html", folder);
+    code = view_write("view", folder, o.directory ? o.directory : path);
     if (code == EXIT_DONE && !o.quiet) {
         printf("wrote %s\n", o.directory ? o.directory : path);
     }
@@ -325,12 +330,13 @@ static int command_view(int count, char *const *words)
 const command_entry view_entry = {
     .name = "view",
     .run = command_view,
-    .operands = "DIR",
-    .files = "",
+    .operands = "DIR|MODEL",
+    .files = "yaml yml json",
     .summary = "make one HTML file that shows results in 3-D",
     .text = "Writes one HTML file (default DIR/scene.html) that shows the results in "
             "DIR, as `se3d run` left them, in any browser and without a network: the "
-            "motion in 3-D beside a plot of a channel. Keys: space plays, arrows step, + "
+            "motion in 3-D beside a plot of a channel. A model is run first, into "
+            "results/<model>. Keys: space plays, arrows step, + "
             "and - change the speed, b follows a body, f shows frames, r reactions, t "
             "traces, d is for dark; drag turns, shift-drag moves, the wheel zooms.",
     .options = (const command_option[]){{"--output", "-o", "FILE.html",
@@ -338,6 +344,7 @@ const command_entry view_entry = {
                                         COMMAND_OPTION_QUIET,
                                         {0}},
     .examples = (const command_example[]){{"view results/pendulum", "results/pendulum/scene.html"},
+                                          {"view pendulum.yaml", "run, then show"},
                                           {"view results/pendulum -o page.html", "another file"},
                                           {0}},
     .exits = "0 done; 1 a file or program failed; 2 bad usage.",
