@@ -148,7 +148,8 @@ add_subdirectory() {
     mkdir -p "$work/embedded"
     cp "$here/consumer.c" "$work/embedded/consumer.c"
     cp "$here/embedded_CMakeLists.txt" "$work/embedded/CMakeLists.txt"
-    "$CMAKE" -S "$work/embedded" -B "$work/embedded/build" -DCMAKE_C_COMPILER="$CC" -DCMAKE_BUILD_TYPE=Debug "-DSE3D_SOURCE_DIR=$SE3D_SOURCE_DIR" \
+    "$CMAKE" -S "$work/embedded" -B "$work/embedded/build" -DCMAKE_C_COMPILER="$CC" \
+        -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG=-O0 "-DSE3D_SOURCE_DIR=$SE3D_SOURCE_DIR" \
         >"$work/embedded/log" 2>&1 || { cat "$work/embedded/log"; exit 1; }
     "$CMAKE" --build "$work/embedded/build" --parallel 2 >"$work/embedded/log" 2>&1 || { cat "$work/embedded/log"; exit 1; }
     "$CMAKE" -E chdir "$work/embedded/build" ctest --output-on-failure --no-tests=error
