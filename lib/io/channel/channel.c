@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "io/base/pool.h"
+#include "io/channel/relative.h"
 #include "io/document/document.h"
 #include "io/document/guess.h"
 #include "io/document/keys.h"
@@ -31,6 +32,12 @@ static const quantity_name marker_names[] = {{"position", SE3DI_MARKER_POSITION}
                                              {"velocity", SE3DI_MARKER_VELOCITY},
                                              {"acceleration", SE3DI_MARKER_ACCELERATION},
                                              {NULL, SE3DI_STEPS}};
+/* What one may ask for besides. */
+static const quantity_name marker_asked_names[] = {
+    {"orientation", SE3DI_MARKER_ORIENTATION},
+    {"angular_velocity", SE3DI_MARKER_ANGULAR_VELOCITY},
+    {"angular_acceleration", SE3DI_MARKER_ANGULAR_ACCELERATION},
+    {NULL, SE3DI_STEPS}};
 static const quantity_name reaction_names[] = {
     {"force", SE3DI_REACTION_FORCE}, {"torque", SE3DI_REACTION_TORQUE}, {NULL, SE3DI_STEPS}};
 static const quantity_name driver_names[] = {
@@ -384,6 +391,7 @@ static bool find_marker(const se3d_model *model, const se3di_body_entry *body, c
         return false;
     }
     offer_names(&o, marker_names);
+    offer_names(&o, marker_asked_names);
     channel->marker = model->markers[index].marker;
     if (!pick(&o, dot + 1, &channel->quantity)) {
         explain(&o, tail, dot + 1, problem, size);
@@ -444,8 +452,8 @@ static bool find_element(const se3d_model *model, const char *head, const char *
     return pick(offered, tail, &channel->quantity);
 }
 
-bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel *channel,
-                        char *problem, size_t problem_size)
+static bool find_absolute(const se3d_model *model, const char *name, se3di_channel *channel,
+                          char *problem, size_t problem_size)
 {
     char head[320];
     offer o = {.count = 0};
@@ -500,6 +508,34 @@ bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel
     }
     explain(&o, head, tail, problem, problem_size);
     return false;
+}
+
+/* "wheel.position@chassis" */
+static bool find_relative(const se3d_model *model, const char *name, const char *at,
+                          se3di_channel *channel, char *problem, size_t problem_size)
+{
+    char base[320];
+    snprintf(base, sizeof base, "%.*s", (int)(at - name), name);
+    if (!find_absolute(model, base, channel, problem, problem_size)) {
+        return false;
+    }
+    channel->name = name;
+    if (!se3di_channel_can_be_relative(channel)) {
+        snprintf(problem, problem_size,
+                 "`%.100s` cannot be relative (@): positions, orientations, velocities and "
+                 "accelerations of bodies and markers can",
+                 base);
+        return false;
+    }
+    return se3di_reference_find(model, at + 1, &channel->reference, problem, problem_size);
+}
+
+bool se3di_channel_find(const se3d_model *model, const char *name, se3di_channel *channel,
+                        char *problem, size_t problem_size)
+{
+    const char *at = strrchr(name, '@');
+    return find_absolute(model, name, channel, problem, problem_size) ||
+           (at && find_relative(model, name, at, channel, problem, problem_size));
 }
 
 /* The length of `name` without a component at its end, 0 if there is none. */

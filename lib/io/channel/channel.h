@@ -23,6 +23,9 @@
     X(MARKER_POSITION, 3, ITSELF, 0, MOTION, 1, 0, 0, 0)                                           \
     X(MARKER_VELOCITY, 3, ITSELF, 0, MOTION, 1, 1, 0, 0)                                           \
     X(MARKER_ACCELERATION, 3, ITSELF, 0, SOLVED, 1, 2, 0, 0)                                       \
+    X(MARKER_ORIENTATION, 4, ITSELF, 0, MOTION, 0, 0, 0, 0)                                        \
+    X(MARKER_ANGULAR_VELOCITY, 3, ITSELF, 0, MOTION, 0, 1, 0, 0)                                   \
+    X(MARKER_ANGULAR_ACCELERATION, 3, ITSELF, 0, SOLVED, 0, 2, 0, 0)                               \
     X(WRENCH_FORCE, 3, WRENCH, 0, LOADED, 1, 2, 1, 0)                                              \
     X(WRENCH_TORQUE, 3, WRENCH, 3, LOADED, 2, 2, 1, 0)                                             \
     X(REACTION_FORCE, 3, REACTION, 0, SOLVED, 1, 2, 1, 0)                                          \
@@ -166,6 +169,14 @@ typedef enum se3di_motion { SE3DI_MOTION_UNKNOWN, SE3DI_TRANSLATION, SE3DI_ROTAT
 
 struct se3di_combination;
 
+/* The body or marker that a motion is relative to (io/channel/relative.h). */
+typedef struct se3di_reference {
+    bool given;
+    bool is_marker;
+    se3d_body body;
+    se3d_marker marker;
+} se3di_reference;
+
 typedef struct se3di_channel {
     const char *name;
     const struct se3di_combination *combination; /* of other channels; NULL: a quantity */
@@ -181,6 +192,7 @@ typedef struct se3di_channel {
     uint32_t index;                    /* tag of a set, number of a sink */
     se3di_motion motion;               /* of the coordinate of an element */
     double point[3];                   /* of `body`, where a wrench acts */
+    se3di_reference reference;         /* of a motion */
 } se3di_channel;
 
 /* A number made of others. */

@@ -3,9 +3,39 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/base/rotation.h"
 #include "io/channel/channel.h"
 #include "io/channel/channel_flow.h"
+#include "io/channel/relative.h"
 #include "io/channel/sample.h"
+
+/* Of a marker, in its own frame. */
+static se3d_status eval_turning(const se3di_channel *c, const se3d_system *system, double value[4])
+{
+    double p[4];
+    double q[4];
+    double w[3];
+    double ground[3];
+    double A[9];
+    se3d_body body;
+    se3d_status status = se3d_marker_get_body(system, c->marker, &body);
+    status = status < 0 ? status : se3d_body_get_orientation(system, body, p);
+    status = status < 0 ? status : se3d_marker_get_orientation(system, c->marker, q);
+    if (status >= 0) {
+        status = c->quantity == SE3DI_MARKER_ANGULAR_VELOCITY
+                     ? se3d_body_get_angular_velocity(system, body, w)
+                     : se3d_body_get_angular_acceleration(system, body, w);
+    }
+    if (status < 0) {
+        return status;
+    }
+    se3di_rotation_to_matrix(p, A);
+    for (size_t k = 0; k < 3; ++k) {
+        ground[k] = A[3 * k] * w[0] + A[3 * k + 1] * w[1] + A[3 * k + 2] * w[2];
+    }
+    se3di_rotation_apply_inverse(q, ground, value);
+    return SE3D_OK;
+}
 
 static se3d_status eval_body(const se3di_channel *c, const se3d_system *system, double value[4])
 {
@@ -29,6 +59,11 @@ static se3d_status eval_body(const se3di_channel *c, const se3d_system *system, 
         return se3d_marker_get_position(system, c->marker, value);
     case SE3DI_MARKER_VELOCITY:
         return se3d_marker_get_velocity(system, c->marker, value);
+    case SE3DI_MARKER_ORIENTATION:
+        return se3d_marker_get_orientation(system, c->marker, value);
+    case SE3DI_MARKER_ANGULAR_VELOCITY:
+    case SE3DI_MARKER_ANGULAR_ACCELERATION:
+        return eval_turning(c, system, value);
     default:
         return se3d_marker_get_acceleration(system, c->marker, value);
     }
@@ -297,6 +332,9 @@ static se3d_status eval_quantity(const se3di_channel *channel, se3di_sample *sam
     size_t first = 0;
     const se3di_question question = se3di_channel_get_question(channel, &first);
     memset(value, 0, 4 * sizeof *value);
+    if (channel->reference.given) {
+        return se3di_relative_eval(channel, sample->system, value);
+    }
     if (question == SE3DI_ASK_ITSELF) {
         return eval_body(channel, sample->system, value);
     }

@@ -57,7 +57,8 @@ static const char *find_mention(const char *at, const se3di_scope *scope, size_t
             at += skip_number(at);
             continue;
         }
-        while (is_word(at[n]) || (n > 0 && at[n] == '.' && is_word(at[n + 1]))) {
+        while (is_word(at[n]) || (n > 0 && at[n] == '.' && is_word(at[n + 1])) ||
+               (at[n] == '@' && memchr(at, '.', n) && is_word(at[n + 1]))) {
             ++n;
         }
         snprintf(head, sizeof head, "%.*s", (int)strcspn(at, "."), at);
@@ -76,12 +77,17 @@ static const char *find_mention(const char *at, const se3di_scope *scope, size_t
 static bool find_in_parts(se3d_model *model, const se3di_component *part, const char *name,
                           se3di_channel *channel, size_t *component, char *problem, size_t size)
 {
-    char whole[2 * NAME_MAX_LENGTH];
+    char whole[4 * NAME_MAX_LENGTH];
     for (; part && part->prefix[0]; part = part->parent) {
-        snprintf(whole, sizeof whole, "%.200s%.310s", part->prefix, name);
-        const char *copy = se3di_iopool_copy(&model->pool, whole, strlen(whole));
-        if (copy && se3di_channel_find_number(model, copy, channel, component, problem, size)) {
-            return true;
+        const size_t head = strcspn(name, "@");
+        const char *behind = name[head] ? name + head + 1 : "";
+        for (int both = name[head] ? 1 : 0; both >= 0; --both) { /* the reference may be outside */
+            snprintf(whole, sizeof whole, "%.200s%.*s%s%.100s%.310s", part->prefix, (int)head, name,
+                     name[head] ? "@" : "", both ? part->prefix : "", behind);
+            const char *copy = se3di_iopool_copy(&model->pool, whole, strlen(whole));
+            if (copy && se3di_channel_find_number(model, copy, channel, component, problem, size)) {
+                return true;
+            }
         }
     }
     return se3di_channel_find_number(model, name, channel, component, problem, size);

@@ -82,6 +82,14 @@ static bool take_signals(se3di_reader *reader, const se3di_node *node, const se3
 {
     for (size_t k = own; k < m->count; ++k) {
         const se3di_channel *channel = &m->channels[k];
+        if (channel->reference.given) {
+            return se3di_reader_fail(
+                reader, node,
+                "`%.100s` is relative to a frame that moves, which a law "
+                "cannot depend on: use a joint's coordinate, or a length or angle "
+                "of a spring without stiffness",
+                channel->name);
+        }
         if (!take_signal(reader->model, channel, m->components[k], &signals[k - own])) {
             return se3di_reader_fail(reader, node,
                                      "`%.100s` is known only when the motion has been solved for: "
