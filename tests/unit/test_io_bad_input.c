@@ -42,6 +42,13 @@ static const bad_input table[] = {
     {"- 1\n", 1, 1, {"is a list", "must be a map"}},
     {"just text\n", 1, 1, {"must be a map"}},
 #include "bad_bars.inc"
+/* what a channel is in, and what it is set against */
+#define LAG(x) WITH("states: [{name: s, type: lag, time_constant: 1, input: \"" x "\"}]")
+    {LAG("30 kg - pin.angle"),
+     4,
+     63,
+     {"`30 kg - pin.angle`: a mass [kg] and an angle [rad] do not go together"}},
+    {LAG("max(bar.velocity.x, 3 m)"), 4, 0, {"a velocity [m/s] and a length [m]"}},
 /* points, vectors and units */
 #define POINTS(x) "se3d: 1\npoints: {a: [1, 2, 3], " x "}\n"
     {POINTS("b: c"), 2, 27, {"points.b: `c`", "unknown name 'c'"}},

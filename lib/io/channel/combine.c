@@ -266,9 +266,9 @@ static bool fill(se3d_model *model, const se3di_mentions *m, const char *name,
 bool se3di_mentions_eval(se3di_reader *reader, const se3di_node *node, const se3di_mentions *m,
                          const se3di_node *plain, se3di_amount *q)
 {
-    reader->measured = (se3di_measured){m->variables, m->dimensions};
+    reader->measured = (se3di_measured){m->variables, m->dimensions, node->text};
     const bool good = se3di_amount_eval(reader, plain, m->variables, q);
-    reader->measured = (se3di_measured){NULL, NULL};
+    reader->measured = (se3di_measured){NULL, NULL, NULL};
     if (good && q->rank != 1) {
         return se3di_reader_fail(reader, node, "`%.120s` is a vector, must be a number",
                                  node->text);

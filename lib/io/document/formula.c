@@ -100,19 +100,35 @@ static bool is_constant(const se3di_amount *a)
     return !a->text[0] && !a->text[1] && !a->text[2];
 }
 
+/* A channel by itself, whose unit is known; times a number it is what the number makes of it. */
+static bool is_channel(const se3di_formula *f, const se3di_amount *a)
+{
+    const se3di_measured *m = &f->reader->measured;
+    if (a->rank != 1 || !a->text[0] || se3di_dimension_is_none(a->dimension)) {
+        return false;
+    }
+    for (size_t k = 0; m->names && m->names[k]; ++k) {
+        if (strcmp(m->names[k], a->text[0]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool se3di_formula_unify(se3di_formula *f, const char *place, se3di_amount *a, se3di_amount *b)
 {
     char is[80];
     char other[80];
-    if (a->hard != b->hard) {
+    const bool fits = se3di_dimension_fits(a->dimension, b->dimension);
+    if (a->hard != b->hard && (fits || !is_channel(f, a->hard ? b : a))) {
         return a->hard ? harden(f, b, a->dimension) : harden(f, a, b->dimension);
     }
-    if (!a->hard) {
+    if (!a->hard && !b->hard) {
         se3di_amount *plain = is_constant(a) ? a : b;
         plain->dimension = plain == a ? b->dimension : a->dimension;
         return true;
     }
-    if (se3di_dimension_fits(a->dimension, b->dimension)) {
+    if (fits) {
         return true;
     }
     se3di_dimension_describe(a->dimension, is, sizeof is);

@@ -23,7 +23,9 @@ bool se3di_formula_fail(se3di_formula *f, const char *place, const char *format,
     if (node.one_line && at >= from && at - from <= strlen(f->text)) {
         node.column += (size_t)(at - from) + (node.plain ? 0 : 1);
     }
-    return se3di_reader_fail(f->reader, &node, "`%.120s`: %s", f->text, text);
+    const char *written = f->reader->measured.written;
+    const bool same = written && strlen(written) == strlen(f->text);
+    return se3di_reader_fail(f->reader, &node, "`%.120s`: %s", same ? written : f->text, text);
 }
 
 se3di_amount se3di_formula_part(const se3di_amount *a, size_t k)

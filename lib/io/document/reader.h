@@ -14,6 +14,7 @@
 typedef struct se3di_measured {
     const char *const *names;          /* NULL at the end */
     const se3di_dimension *dimensions; /* of each */
+    const char *written; /* the text before its channels became variables, of the same length */
 } se3di_measured;
 
 typedef struct se3di_reader {
