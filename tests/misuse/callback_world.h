@@ -14,17 +14,19 @@ typedef enum kind {
     KIND_INTERRUPT = 4,
     KIND_VALUE = 5, /* of an event */
     KIND_EVENT = 6, /* the callback of one */
-    KIND_COUNT = 7
+    KIND_LOG = 7,   /* which is told that a row is redundant, if there is one */
+    KIND_COUNT = 8
 } kind;
 
 static const char *const kind_names[KIND_COUNT] = {"force",     "function", "constraint", "law",
-                                                   "interrupt", "value",    "event"};
+                                                   "interrupt", "value",    "event",      "log"};
 
 typedef struct world {
     se3d_system *system;
     se3d_solver *solver;
     se3d_particles *particles; /* NULL: none */
     se3d_snapshot *snapshot;
+    se3d_coordinates *coordinates;
     se3d_body ball, bar, kite;
     se3d_marker marker;
     se3d_wheel wheel;
@@ -128,6 +130,14 @@ static se3d_status world_event(void *ctx, se3d_system *system, const se3d_event_
     (void)system, (void)record;
     world_note(ctx, KIND_EVENT);
     return SE3D_OK;
+}
+
+static void world_log(void *ctx, se3d_log_level level, se3d_log_kind what, const char *message)
+{
+    (void)level, (void)what, (void)message;
+    if (!((const world *)ctx)->meddling) { /* else of what was refused */
+        world_note(ctx, KIND_LOG);
+    }
 }
 
 static void world_add_bodies(world *w)
@@ -288,20 +298,39 @@ static void world_add_solver(world *w, int32_t method)
     CHECK(!se3d_event_create(w->solver, &event, &w->event));
 }
 
-static void world_open(world *w, int32_t method)
+/* What the rail says, once more: runs tell the log. */
+static void world_add_redundant(world *w)
 {
+    se3d_constraint twin;
+    se3d_primitive_def rail = se3d_primitive_def_default();
+    CHECK(!se3d_system_get_ground(w->system, &rail.body_i));
+    rail.body_j = w->kite;
+    rail.type = SE3D_PRIMITIVE_CD;
+    rail.c[1] = 1.0;
+    CHECK(!se3d_primitive_create(w->system, &rail, &twin));
+}
+
+static void world_open_with(world *w, int32_t method, int redundant)
+{
+    se3d_system_def def = se3d_system_def_default();
     *w = (world){.p = {1.0}, .pair = se3d_material_pair_def_default(), .time = 0.25};
     w->frame = se3d_joint_def_default();
-    CHECK(!se3d_system_create(NULL, &w->system));
+    def.log = world_log;
+    def.log_ctx = w;
+    CHECK(!se3d_system_create(&def, &w->system));
     world_add_bodies(w);
     world_add_callbacks(w);
     world_add_values(w);
+    if (redundant) {
+        world_add_redundant(w);
+    }
     world_add_contact(w);
     if (method == SE3D_METHOD_VERLET) {
         world_add_particles(w);
     }
     world_add_solver(w, method);
     CHECK(!se3d_snapshot_create(w->system, &w->snapshot));
+    CHECK(!se3d_coordinates_create(w->system, &w->coordinates));
     w->frame.body_i = w->ball;
     w->frame.body_j = w->bar;
     w->r[0] = 1.0;
@@ -314,9 +343,15 @@ static void world_open(world *w, int32_t method)
     }
 }
 
+static inline void world_open(world *w, int32_t method)
+{
+    world_open_with(w, method, 0);
+}
+
 static inline void world_close(world *w)
 {
     se3d_snapshot_destroy(w->snapshot);
+    se3d_coordinates_destroy(w->coordinates);
     se3d_solver_destroy(w->solver);
     se3d_system_destroy(w->system);
 }
