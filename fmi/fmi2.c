@@ -9,7 +9,7 @@
 
 #define INSTANCE(c)                                                                                \
     fmi_instance *i = (c);                                                                         \
-    if (!i) {                                                                                      \
+    if (!i || i->is_telling) {                                                                     \
         return fmi2Error;                                                                          \
     }
 
@@ -60,11 +60,11 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         const void *constant;
         void *pointer;
     } callback = {.constant = functions};
-    const fmi_instance model = {.say = say,
-                                .callback = callback.pointer,
-                                .environment = functions->componentEnvironment,
-                                .logs_events = logging != 0,
-                                .logs_warnings = logging != 0};
+    fmi_instance model = {.say = say,
+                          .callback = callback.pointer,
+                          .environment = functions->componentEnvironment,
+                          .logs_events = logging != 0,
+                          .logs_warnings = logging != 0};
     if (type != fmi2CoSimulation) {
         fmi_refuse(&model, "fmi2Instantiate", "the unit is for co-simulation only");
         return NULL;
@@ -216,7 +216,7 @@ fmi2Status fmi2CancelStep(fmi2Component c)
 }
 
 /* A question that has no answer here. */
-static fmi2Status discard(const fmi_instance *i, const void *value)
+static fmi2Status discard(fmi_instance *i, const void *value)
 {
     if (!value) {
         return (fmi2Status)fmi_refuse(i, "fmi2GetStatus", "the place for the answer is NULL");

@@ -10,7 +10,7 @@
 
 #define INSTANCE(c)                                                                                \
     fmi_instance *i = (c);                                                                         \
-    if (!i) {                                                                                      \
+    if (!i || i->is_telling) {                                                                     \
         return fmi3Error;                                                                          \
     }
 
@@ -50,7 +50,7 @@ fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resour
                             size_t intermediate_count, fmi3InstanceEnvironment environment,
                             fmi3LogMessageCallback log, fmi3IntermediateUpdateCallback update)
 {
-    const fmi_instance model = model_of(log, environment, logging);
+    fmi_instance model = model_of(log, environment, logging);
     (void)visible;
     (void)early_return;
     (void)intermediate;
@@ -71,7 +71,7 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi
                                           fmi3InstanceEnvironment environment,
                                           fmi3LogMessageCallback log)
 {
-    const fmi_instance model = model_of(log, environment, logging);
+    fmi_instance model = model_of(log, environment, logging);
     (void)name;
     (void)token;
     (void)resources;
@@ -87,7 +87,7 @@ fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String 
                                   fmi3ClockUpdateCallback update, fmi3LockPreemptionCallback lock,
                                   fmi3UnlockPreemptionCallback unlock)
 {
-    const fmi_instance model = model_of(log, environment, logging);
+    fmi_instance model = model_of(log, environment, logging);
     (void)name;
     (void)token;
     (void)resources;

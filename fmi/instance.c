@@ -5,15 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void say(fmi_instance *i, int status, const char *category, const char *message)
+{
+    const bool before = i->is_telling;
+    i->is_telling = true;
+    i->say(i, status, category, message);
+    i->is_telling = before;
+}
+
 static void tell(void *ctx, se3d_log_level level, const char *message)
 {
-    const fmi_instance *i = ctx;
+    fmi_instance *i = ctx;
     if (level == SE3D_LOG_ERROR) {
-        i->say(i, FMI_ERROR, "logStatusError", message);
+        say(i, FMI_ERROR, "logStatusError", message);
     } else if (level == SE3D_LOG_WARNING && i->logs_warnings) {
-        i->say(i, FMI_WARNING, "logStatusWarning", message);
+        say(i, FMI_WARNING, "logStatusWarning", message);
     } else if (level == SE3D_LOG_INFO && i->logs_events) {
-        i->say(i, FMI_OK, "logEvents", message);
+        say(i, FMI_OK, "logEvents", message);
     }
 }
 
@@ -92,18 +100,18 @@ fmi_instance *fmi_create(const fmi_instance *model, const char *name, const char
 
 void fmi_destroy(fmi_instance *instance)
 {
-    if (instance) {
+    if (instance && !instance->is_telling) {
         se3di_fmi_unit_destroy(instance->unit);
         free(instance->name);
         free(instance);
     }
 }
 
-int fmi_refuse(const fmi_instance *instance, const char *call, const char *why)
+int fmi_refuse(fmi_instance *instance, const char *call, const char *why)
 {
     char text[300];
     snprintf(text, sizeof text, "%s: %s", call, why);
-    instance->say(instance, FMI_ERROR, "logStatusError", text);
+    say(instance, FMI_ERROR, "logStatusError", text);
     return FMI_ERROR;
 }
 
@@ -137,7 +145,7 @@ int fmi_set_logging(fmi_instance *instance, bool on, size_t count, const char *c
 
 /* ---- variables ------------------------------------------------------------------------------*/
 
-static int check_arrays(const fmi_instance *instance, const char *call, const void *references,
+static int check_arrays(fmi_instance *instance, const char *call, const void *references,
                         size_t count, const void *values, size_t value_count)
 {
     if (count > 0 && (!references || !values)) {
@@ -168,7 +176,7 @@ int fmi_set(fmi_instance *instance, const uint32_t *references, size_t count, co
     return se3di_fmi_unit_set(instance->unit, references, count, values) ? FMI_OK : FMI_ERROR;
 }
 
-int fmi_refuse_type(const fmi_instance *instance, size_t count, const char *type)
+int fmi_refuse_type(fmi_instance *instance, size_t count, const char *type)
 {
     if (count == 0) {
         return FMI_OK;
@@ -234,7 +242,7 @@ void fmi_free_state(fmi_state *state)
     }
 }
 
-int fmi_write_state(const fmi_instance *instance, const fmi_state *state, unsigned char *bytes,
+int fmi_write_state(fmi_instance *instance, const fmi_state *state, unsigned char *bytes,
                     size_t size)
 {
     if (!state || !bytes) {
@@ -247,7 +255,7 @@ int fmi_write_state(const fmi_instance *instance, const fmi_state *state, unsign
     return FMI_OK;
 }
 
-int fmi_read_state(const fmi_instance *instance, const unsigned char *bytes, size_t size,
+int fmi_read_state(fmi_instance *instance, const unsigned char *bytes, size_t size,
                    fmi_state **state)
 {
     if (!state || !bytes || size == 0) {

@@ -23,6 +23,7 @@ struct fmi_instance {
     char *name;
     bool logs_events; /* these are told; errors always are */
     bool logs_warnings;
+    bool is_telling; /* the caller is told something: from there no call is let in */
 };
 
 /* A state of a unit as bytes. */
@@ -35,9 +36,10 @@ typedef struct fmi_state {
  * @return NULL: `say` was told why */
 fmi_instance *fmi_create(const fmi_instance *model, const char *name, const char *token,
                          const char *folder);
+/* From within `say` nothing is destroyed. */
 void fmi_destroy(fmi_instance *instance);
 /* Say why a call is refused. @return FMI_ERROR */
-int fmi_refuse(const fmi_instance *instance, const char *call, const char *why);
+int fmi_refuse(fmi_instance *instance, const char *call, const char *why);
 /* Switch categories on or off, all if there are none. @return a status */
 int fmi_set_logging(fmi_instance *instance, bool on, size_t count, const char *const *categories);
 
@@ -46,15 +48,15 @@ int fmi_get(fmi_instance *instance, const uint32_t *references, size_t count, do
 int fmi_set(fmi_instance *instance, const uint32_t *references, size_t count, const double *values,
             size_t value_count);
 /* Of another type than the variables have: fine for none of them. */
-int fmi_refuse_type(const fmi_instance *instance, size_t count, const char *type);
+int fmi_refuse_type(fmi_instance *instance, size_t count, const char *type);
 
 /* One that *state has is used again. */
 int fmi_get_state(fmi_instance *instance, fmi_state **state);
 int fmi_set_state(fmi_instance *instance, const fmi_state *state);
 void fmi_free_state(fmi_state *state);
-int fmi_write_state(const fmi_instance *instance, const fmi_state *state, unsigned char *bytes,
+int fmi_write_state(fmi_instance *instance, const fmi_state *state, unsigned char *bytes,
                     size_t size);
-int fmi_read_state(const fmi_instance *instance, const unsigned char *bytes, size_t size,
+int fmi_read_state(fmi_instance *instance, const unsigned char *bytes, size_t size,
                    fmi_state **state);
 
 #endif

@@ -421,6 +421,44 @@ static void wrong_numbers_are_refused(void)
     f.free(c);
 }
 
+static void *meddled; /* the instance whose logger calls it */
+
+static void meddle(void)
+{
+    double value = 0.0;
+    int ended = 0;
+    void *state = NULL;
+    const uint32_t vr = d.variables[d.outputs[0]].reference;
+    CHECK(f.get(meddled, &vr, 1, &value) == BAD && f.set(meddled, &vr, 1, &value) == BAD);
+    CHECK(f.step(meddled, rows[1][0], 0.01, &value, &ended) == BAD);
+    CHECK(f.reset(meddled) == BAD && f.terminate(meddled) == BAD);
+    CHECK(f.get_state(meddled, &state) == BAD && !state);
+    CHECK(f.logging(meddled, "logAll") == BAD);
+    f.free(meddled);
+}
+
+/* Nothing of it has an effect, nor is it told of. */
+static void a_logger_does_not_come_back_in(void)
+{
+    double expected[COLUMNS_MAX];
+    double values[COLUMNS_MAX];
+    void *c = begin();
+    CHECK(go(c, 0, 2) == GOOD);
+    get_row(c, expected);
+    f.free(c);
+    meddled = begin();
+    CHECK(go(meddled, 0, 1) == GOOD);
+    told_meddle = meddle;
+    told_clear();
+    CHECK(f.logging(meddled, "no such category") == BAD && told_errors == 1);
+    CHECK(f.get(meddled, NULL, 1, values) == BAD && told_errors == 2);
+    told_meddle = NULL;
+    CHECK(go(meddled, 1, 2) == GOOD);
+    get_row(meddled, values);
+    CHECK(same_bits(values, expected));
+    f.free(meddled);
+}
+
 /* A state cut anywhere, or changed, is refused or fails, and the instance can be started again. */
 static void damaged_states_are_refused(void)
 {
@@ -602,6 +640,7 @@ int main(int argc, char **argv)
     RUN(null_is_refused);
     RUN(calls_out_of_order_are_refused);
     RUN(wrong_numbers_are_refused);
+    RUN(a_logger_does_not_come_back_in);
     RUN(damaged_states_are_refused);
     RUN(parameters_change_the_model);
     RUN(inputs_act_and_are_restored);

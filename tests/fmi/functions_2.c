@@ -12,6 +12,7 @@
 
 int told_errors;
 char told_last[2000];
+void (*told_meddle)(void);
 
 void told_clear(void)
 {
@@ -40,6 +41,9 @@ hear(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, f
     vsnprintf(told_last, sizeof told_last, message, arguments);
     va_end(arguments);
     ++told_errors;
+    if (told_meddle) {
+        told_meddle();
+    }
 }
 
 static void *instantiate(const char *name, const char *token, const char *folder, int logging)

@@ -30,6 +30,9 @@ static void hear(fmi3InstanceEnvironment environment, fmi3Status status, fmi3Str
     if (status >= fmi3Error && strcmp(category, "logStatusError") == 0) {
         snprintf(told_last, sizeof told_last, "%s", message);
         ++told_errors;
+        if (told_meddle) {
+            told_meddle();
+        }
     }
 }
 

@@ -64,6 +64,7 @@ typedef struct functions {
 extern int told_errors;
 extern char told_last[2000];
 void told_clear(void);
+extern void (*told_meddle)(void); /* called from within, unless NULL */
 
 /* Functions that cannot be found are counted. @return the number missing, -1: no such object. */
 int functions_load_2(functions *f, const char *object);
