@@ -505,7 +505,8 @@ static inline se3d_status se3d_model_get_picture(const se3d_model *model, size_t
  * @return OK, NULL, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_scene_create(se3d_model *model, se3d_scene **out);
 
-/* Destroy a scene; NULL is fine. @since 0.1 */
+/* Destroy a scene; NULL is fine. Within the se3d_model_run that was given it nothing is destroyed.
+ * @since 0.1 */
 SE3D_API void se3d_scene_destroy(se3d_scene *scene);
 
 /* Record the present poses, for example in the progress callback of a run. Times at or before

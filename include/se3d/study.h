@@ -28,7 +28,8 @@ typedef struct se3d_study_table se3d_study_table;
 SE3D_API se3d_status se3d_study_create(se3d_model *model, se3d_study **out,
                                        se3d_model_error *error);
 
-/* Destroy a study; NULL is fine. @since 0.1 */
+/* Destroy a study; NULL is fine. While a sample runs (from its interrupt) nothing is destroyed.
+ * @since 0.1 */
 SE3D_API void se3d_study_destroy(se3d_study *study);
 
 /* Count the samples. @return the number; 0 for NULL. @since 0.1 */
@@ -65,9 +66,9 @@ SE3D_API se3d_status se3d_study_get_sample(const se3d_study *study, uint64_t sam
  * @param[in] parameters  [se3d_study_count_parameters], as in se3d_study_get_sample
  * @param[out] measures   [se3d_study_count_measures], each in SI units; NaN: it has none
  * @param[out] error      filled on failure: why; may be NULL
- * @return OK, NULL, INVALID_ARGUMENT (a parameter is not finite), NO_MEMORY, NOT_FINITE (a measure
- *         has no value: `error` says which, the others are good), or why the model could not be
- *         read or run: then all are NaN.
+ * @return OK, NULL, INVALID_ARGUMENT (a parameter is not finite), STATE (while a sample runs),
+ *         NO_MEMORY, NOT_FINITE (a measure has no value: `error` says which, the others are good),
+ *         or why the model could not be read or run: then all are NaN.
  * @since 0.1 */
 SE3D_API se3d_status se3d_study_eval(se3d_study *study, const double *parameters, double *measures,
                                      se3d_model_error *error);
@@ -76,8 +77,8 @@ SE3D_API se3d_status se3d_study_eval(se3d_study *study, const double *parameters
  * failed, with commas between them and a line break at the end.
  * @param[in] sample  from 0, below se3d_study_count_samples
  * @param[out] row    the text, owned by the study until the next call
- * @return OK, NULL, INVALID_ARGUMENT (sample), or as se3d_study_eval: then there is a row, too, but
- *         for NO_MEMORY and INTERRUPTED.
+ * @return OK, NULL, INVALID_ARGUMENT (sample), STATE (while a sample runs), or as se3d_study_eval:
+ *         then there is a row, too, but for NO_MEMORY and INTERRUPTED.
  * @since 0.1 */
 SE3D_API se3d_status se3d_study_run_sample(se3d_study *study, uint64_t sample, const char **row);
 
@@ -92,7 +93,7 @@ SE3D_API se3d_status se3d_study_set_interrupt(se3d_study *study, se3d_interrupt 
  * @param[in] request  [length] one object, UTF-8
  * @param[in] length   in bytes
  * @param[out] reply   the text, without a line break, owned by the study until the next call
- * @return OK, also if the reply is an error; NULL, NO_MEMORY.
+ * @return OK, also if the reply is an error; NULL, STATE (while a sample runs), NO_MEMORY.
  * @since 0.1 */
 SE3D_API se3d_status se3d_study_answer(se3d_study *study, const char *request, size_t length,
                                        const char **reply);

@@ -16,15 +16,19 @@ typedef struct study_world {
     char path[900];
 } study_world;
 
-static study_world open_study(const world *w)
+static study_world open_study_of(const world *w, const char *of)
 {
     study_world s = {NULL, NULL, ""};
     snprintf(s.path, sizeof s.path, "%s/study.csv", w->folder);
     remove(s.path);
-    IS(se3d_model_read_text(study_text, strlen(study_text), "s.yaml", NULL, &s.model, NULL),
-       SE3D_OK);
+    IS(se3d_model_read_text(of, strlen(of), "s.yaml", NULL, &s.model, NULL), SE3D_OK);
     IS(se3d_study_create(s.model, &s.study, NULL), SE3D_OK);
     return s;
+}
+
+static study_world open_study(const world *w)
+{
+    return open_study_of(w, study_text);
 }
 
 static void close_study(study_world *s)
@@ -98,6 +102,45 @@ static void study_runs(const world *w)
     IS(se3d_study_set_interrupt(s.study, NULL, NULL), SE3D_OK);
     IS(se3d_study_run_sample(s.study, 0, &line), SE3D_OK);
     CHECK(strcmp(line, "0,1,1,ok\n") == 0);
+    close_study(&s);
+}
+
+static const char study_motion[] =
+    "se3d: 1\nparameters: {h: 1}\n"
+    "bodies: [{name: block, mass: 1, inertia: [1, 1, 1], position: [0, 0, h]}]\n"
+    "analysis: {type: dynamics, duration: 0.01, step: 0.01}\n"
+    "study: {parameters: {h: [1, 2, 3]}, measures: {z: {initial: block.position.z}}}\n";
+static int study_meddled;
+
+/* From the interrupt of a sample the study can neither be run again nor taken away. */
+static int meddle_with_study(void *ctx)
+{
+    se3d_study *study = *(se3d_study **)ctx;
+    double h = 4.0, z = 0.0;
+    const char *line = NULL;
+    se3d_model_error error;
+    IS(se3d_study_eval(study, &h, &z, &error), SE3D_ERR_STATE);
+    CHECK_CONTAINS(error.message, "is being run");
+    IS(se3d_study_run_sample(study, 0, &line), SE3D_ERR_STATE);
+    IS(se3d_study_answer(study, "{\"sample\": 0}", 13, &line), SE3D_ERR_STATE);
+    se3d_study_destroy(study);
+    ++study_meddled;
+    return 0;
+}
+
+static void study_keeps_its_sample(const world *w)
+{
+    study_world s = open_study_of(w, study_motion);
+    double h = 4.0, z = 0.0;
+    const char *line = NULL;
+    IS(se3d_study_set_interrupt(s.study, meddle_with_study, &s.study), SE3D_OK);
+    IS(se3d_study_eval(s.study, &h, &z, NULL), SE3D_OK);
+    CHECK_NEAR(z, 4.0, 0.0);
+    IS(se3d_study_run_sample(s.study, 0, &line), SE3D_OK);
+    CHECK(strcmp(line, "0,1,1,ok\n") == 0);
+    IS(se3d_study_answer(s.study, "{\"id\": 1, \"sample\": 1}", 22, &line), SE3D_OK);
+    CHECK_CONTAINS(line, "\"z\": 2");
+    CHECK(study_meddled >= 3);
     close_study(&s);
 }
 

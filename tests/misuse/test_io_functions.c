@@ -55,6 +55,8 @@ static int meddle(void *ctx, size_t analysis, double time, double fraction)
     IS(se3d_model_run(w->model, NULL, &run, NULL), SE3D_ERR_STATE);
     CHECK(run == NULL);
     se3d_model_destroy(w->model);
+    se3d_scene_destroy(w->scene);
+    IS(se3d_scene_record(w->scene), SE3D_OK);
     return 0;
 }
 
@@ -66,6 +68,7 @@ static void a_run_keeps_its_model(void)
     how.directory = w.folder;
     how.progress = meddle;
     how.ctx = &w;
+    how.scene = w.scene;
     IS(se3d_model_run(w.model, &how, &run, NULL), SE3D_OK);
     CHECK(se3d_run_count_analyses(run) == 2);
     se3d_run_destroy(run);
@@ -487,9 +490,17 @@ static void every_function_of_the_map_has_a_row(void)
     }
 }
 
+static void a_sample_keeps_its_study(void)
+{
+    world w = open_world();
+    study_keeps_its_sample(&w);
+    close_world(&w);
+}
+
 int main(void)
 {
     RUN(a_run_keeps_its_model);
+    RUN(a_sample_keeps_its_study);
     RUN(every_function_of_the_map_has_a_row);
     RUN(every_function_rejects_bad_arguments);
     return check_finish();

@@ -112,6 +112,7 @@ struct se3d_model {
     se3d_system *system;
     int32_t running; /* se3d_model_run is at work */
     int32_t reserved;
+    const se3d_scene *kept; /* which that run keeps in its checkpoints; NULL: none */
     const char *file;
     const char *name;
     const char *title;

@@ -940,12 +940,14 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
         return fail(&r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
     model->running = 1;
+    model->kept = used.scene;
     r.saved = clock_now();
     se3di_sample_init(&r.sample, model->system, &model->pool.allocator);
     const se3d_status status = run_all(&r);
     se3di_sample_destroy(&r.sample);
     se3di_checkpoint_ignore(&r);
     model->running = 0;
+    model->kept = NULL;
     *out = r.run;
     return status;
 }

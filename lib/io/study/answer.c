@@ -238,6 +238,9 @@ se3d_status se3d_study_answer(se3d_study *study, const char *text, size_t length
     if (!study || !text || !out) {
         return SE3D_ERR_NULL;
     }
+    if (study->is_running) {
+        return SE3D_ERR_STATE;
+    }
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
         study->measures[k] = (double)NAN;
     }

@@ -208,7 +208,9 @@ se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
         measures[k] = (double)NAN;
     }
+    study->is_running = true;
     const se3d_status status = run(&t, values, count, measures);
     se3d_model_destroy(t.model);
+    study->is_running = false;
     return status > 0 ? SE3D_OK : status;
 }

@@ -149,7 +149,7 @@ se3d_status se3d_study_create(se3d_model *model, se3d_study **out, se3d_model_er
 
 void se3d_study_destroy(se3d_study *study)
 {
-    if (study) {
+    if (study && !study->is_running) {
         se3di_iopool_destroy(&study->reply_pool);
         se3di_iopool pool = study->pool; /* the study itself lies in it */
         se3di_iopool_destroy(&pool);
@@ -211,6 +211,10 @@ se3d_status se3d_study_eval(se3d_study *study, const double *parameters, double 
     if (!study || !parameters || !measures) {
         return fail(error, "", SE3D_ERR_NULL, "study, parameters or measures is NULL");
     }
+    if (study->is_running) {
+        return fail(error, study->model->file, SE3D_ERR_STATE,
+                    "a sample of the study is being run");
+    }
     const size_t count = study->entry->variable_count;
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
         measures[k] = (double)NAN;
@@ -270,6 +274,9 @@ se3d_status se3d_study_run_sample(se3d_study *study, uint64_t sample, const char
     }
     if (!study || !row) {
         return SE3D_ERR_NULL;
+    }
+    if (study->is_running) {
+        return SE3D_ERR_STATE;
     }
     se3d_status status = se3d_study_get_sample(study, sample, study->parameters);
     if (status < 0) {

@@ -26,6 +26,7 @@ struct se3d_study {
     se3di_named *values; /* of the parameters, for the reader */
     se3d_interrupt interrupt;
     void *interrupt_ctx;
+    bool is_running;  /* a sample: what it calls back may neither begin another nor destroy it */
     const char *head; /* first lines of its tables, without the shard */
     char *row;
     size_t row_size;

@@ -71,7 +71,7 @@ se3d_status se3d_scene_create(se3d_model *model, se3d_scene **out)
 
 void se3d_scene_destroy(se3d_scene *scene)
 {
-    if (scene) {
+    if (scene && scene->model->kept != scene) {
         se3di_iopool pool = scene->pool; /* the scene itself lies in it */
         se3di_iopool_destroy(&pool);
     }
