@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* How the processor rounds, whatever the host has set: work is done with rounding to nearest and
- * with small numbers kept, so that the host's setting changes no bit of it. */
+ * with small numbers kept, so that the host's setting changes no bit of it. What the host traps is
+ * not trapped there: NaN is a value that is compared and told. Only its trap of divisions by zero
+ * stays, since there are none. */
 #ifndef SE3DI_BASE_FLOATS_H
 #define SE3DI_BASE_FLOATS_H
 
@@ -16,10 +18,12 @@ typedef struct se3di_floats {
     unsigned int control; /* of x86's vector unit */
 } se3di_floats;
 
-/* Rounding, flush to zero and denormals are zero in the control word of x86's vector unit. */
-#define SE3DI_FLOATS_MASK 0xe040u
+/* Rounding, flush to zero and denormals are zero in the control word of x86's vector unit, and what
+ * it does not trap: all but divisions by zero. */
+#define SE3DI_FLOATS_MODES 0xe040u
+#define SE3DI_FLOATS_QUIET 0x1d80u
 
-/* Round to nearest and keep small numbers. @return the setting before */
+/* Round to nearest, keep small numbers and trap nothing. @return the setting before */
 static inline se3di_floats se3di_floats_set(void)
 {
     se3di_floats before = {.control = 0};
@@ -27,7 +31,7 @@ static inline se3di_floats se3di_floats_set(void)
     before.rounding = fegetround();
 #endif
 #if defined(__SSE2__)
-    before.control = _mm_getcsr() & SE3DI_FLOATS_MASK;
+    before.control = _mm_getcsr() & (SE3DI_FLOATS_MODES | SE3DI_FLOATS_QUIET);
 #endif
 #if defined(FE_TONEAREST)
     if (before.rounding != FE_TONEAREST) {
@@ -35,8 +39,8 @@ static inline se3di_floats se3di_floats_set(void)
     }
 #endif
 #if defined(__SSE2__)
-    if (before.control) {
-        _mm_setcsr(_mm_getcsr() & ~SE3DI_FLOATS_MASK);
+    if (before.control != SE3DI_FLOATS_QUIET) {
+        _mm_setcsr((_mm_getcsr() & ~SE3DI_FLOATS_MODES) | SE3DI_FLOATS_QUIET);
     }
 #endif
     return before;
@@ -50,8 +54,8 @@ static inline void se3di_floats_restore(se3di_floats before)
     }
 #endif
 #if defined(__SSE2__)
-    if (before.control) { /* flags raised meanwhile stay */
-        _mm_setcsr((_mm_getcsr() & ~SE3DI_FLOATS_MASK) | before.control);
+    if (before.control != SE3DI_FLOATS_QUIET) { /* flags raised meanwhile stay */
+        _mm_setcsr((_mm_getcsr() & ~(SE3DI_FLOATS_MODES | SE3DI_FLOATS_QUIET)) | before.control);
     }
 #endif
 }

@@ -148,6 +148,18 @@ static void divisions_are_not_by_zero(void)
 #endif
 }
 
+/* NaN, what is too large and what is too small are values inside. */
+static void traps_change_nothing(void)
+{
+#if defined(__GLIBC__) && defined(__SSE2__)
+    const int traps = FE_INVALID | FE_OVERFLOW | FE_UNDERFLOW;
+    CHECK(feenableexcept(traps) >= 0);
+    run_all(2, expect_same);
+    CHECK((fegetexcept() & traps) == traps);
+    fedisableexcept(traps);
+#endif
+}
+
 static void other_roundings_change_nothing(void)
 {
 #if defined(FE_UPWARD) && defined(FE_DOWNWARD) && defined(FE_TOWARDZERO)
@@ -297,6 +309,7 @@ int main(void)
 {
     run_all(-1, NULL);
     RUN(divisions_are_not_by_zero);
+    RUN(traps_change_nothing);
     RUN(other_roundings_change_nothing);
     RUN(zeros_for_small_numbers_change_nothing);
     RUN(stacks_of_64_kilobytes_suffice);

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/floats.h"
 #include "io/base/file.h"
 #include "io/base/sized.h"
 #include "io/document/document.h"
@@ -230,7 +231,9 @@ se3d_status se3d_model_import_text(const char *text, size_t length, const char *
         return fail_early(error, SE3D_ERR_NO_MEMORY, "", "out of memory");
     }
     import->pool = pool;
+    const se3di_floats host = se3di_floats_set();
     const se3d_status status = fill(import, &used, text, length, name, error);
+    se3di_floats_restore(host);
     if (status < 0) {
         se3d_model_import_destroy(import);
         return status;

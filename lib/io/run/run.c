@@ -15,6 +15,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/floats.h"
 #include "io/base/file.h"
 #include "io/base/pool.h"
 #include "io/base/sized.h"
@@ -942,10 +943,12 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
     model->running = 1;
     model->kept = used.scene;
     r.saved = clock_now();
+    const se3di_floats host = se3di_floats_set();
     se3di_sample_init(&r.sample, model->system, &model->pool.allocator);
     const se3d_status status = run_all(&r);
     se3di_sample_destroy(&r.sample);
     se3di_checkpoint_ignore(&r);
+    se3di_floats_restore(host);
     model->running = 0;
     model->kept = NULL;
     *out = r.run;

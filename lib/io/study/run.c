@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/floats.h"
 #include "io/channel/event.h"
 #include "io/channel/sample.h"
 #include "io/document/document.h"
@@ -208,9 +209,11 @@ se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
         measures[k] = (double)NAN;
     }
+    const se3di_floats host = se3di_floats_set();
     study->is_running = true;
     const se3d_status status = run(&t, values, count, measures);
     se3d_model_destroy(t.model);
     study->is_running = false;
+    se3di_floats_restore(host);
     return status > 0 ? SE3D_OK : status;
 }
