@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "io/base/file.h"
 #include "io/base/number.h"
 #include "io/base/pool.h"
 #include "io/model/mesh.h"
@@ -354,22 +353,17 @@ static void write_chunk(FILE *file, const se3di_bytes *bytes, const char *type)
     fwrite(bytes->data, 1, bytes->count, file);
 }
 
-static bool write_file(const char *path, const se3di_bytes *json, const se3di_bytes *binary)
+static void write_file(FILE *file, const se3di_bytes *json, const se3di_bytes *binary)
 {
     unsigned char head[12] = {'g', 'l', 'T', 'F'};
-    FILE *file = se3di_partial_open(path);
-    if (!file) {
-        return false;
-    }
     put_head(head + 4, 2);
     put_head(head + 8, (uint32_t)(28 + json->count + binary->count));
     fwrite(head, 1, sizeof head, file);
     write_chunk(file, json, "JSON");
     write_chunk(file, binary, "BIN\0");
-    return se3di_partial_close(file, path);
 }
 
-bool se3di_glb_write(se3di_glb *glb, const se3di_bytes *rest, const char *path)
+bool se3di_glb_write(se3di_glb *glb, const se3di_bytes *rest, FILE *file)
 {
     static const char *const names[] = {",\"bufferViews\":[", "],\"accessors\":[", "],\"meshes\":[",
                                         "],\"materials\":["};
@@ -401,5 +395,6 @@ bool se3di_glb_write(se3di_glb *glb, const se3di_bytes *rest, const char *path)
         errno = EFBIG;
         return false;
     }
-    return write_file(path, &json, &glb->binary);
+    write_file(file, &json, &glb->binary);
+    return true;
 }

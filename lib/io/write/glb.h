@@ -3,6 +3,8 @@
 #ifndef SE3D_IO_GLB_H
 #define SE3D_IO_GLB_H
 
+#include <stdio.h>
+
 #include "io/base/pool.h"
 #include "io/write/drawing.h"
 
@@ -61,8 +63,8 @@ long se3di_glb_add_rotations(se3di_glb *glb, const double *values, size_t count)
 /* Add a part's mesh in its colour. @return its index. */
 size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part);
 
-/* Write the file: `rest` is the JSON besides buffers, meshes and materials, beginning with a comma.
- * @return false: errno says why. */
-bool se3di_glb_write(se3di_glb *glb, const se3di_bytes *rest, const char *path);
+/* Write all to a file that is open: `rest` is the JSON besides buffers, meshes and materials,
+ * beginning with a comma. @return false: errno says why, unless the file does (ferror). */
+bool se3di_glb_write(se3di_glb *glb, const se3di_bytes *rest, FILE *file);
 
 #endif

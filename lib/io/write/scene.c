@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "io/base/elementary.h"
+#include "io/base/file.h"
 #include "io/base/pool.h"
 #include "io/document/document.h"
 #include "io/document/keys.h"
@@ -443,11 +444,45 @@ static void draw(drawing *d)
     put_rest(d, root);
 }
 
+bool se3di_scene_put(se3d_scene *scene, FILE *file)
+{
+    drawing d = {.scene = scene};
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &scene->model->pool.allocator);
+    se3di_glb_init(&d.glb, &pool);
+    draw(&d);
+    const bool good = se3di_glb_write(&d.glb, &d.rest, file);
+    const int why = errno;
+    se3di_iopool_destroy(&pool);
+    errno = why;
+    return good;
+}
+
+bool se3di_scene_put_at(se3d_scene *scene, const double *poses, FILE *file)
+{
+    memcpy(scene->poses.values, poses, SE3DI_POSE * scene->poses.bodies * sizeof *poses);
+    scene->poses.count = 1;
+    return se3di_scene_put(scene, file);
+}
+
+static bool write_file(se3d_scene *scene, const char *path)
+{
+    FILE *file = se3di_partial_open(path);
+    if (!file) {
+        return false;
+    }
+    if (se3di_scene_put(scene, file)) {
+        return se3di_partial_close(file, path);
+    }
+    const int why = errno;
+    se3di_partial_abandon(file, path);
+    errno = why;
+    return false;
+}
+
 se3d_status se3d_scene_write(se3d_scene *scene, const char *path, se3d_model_error *error)
 {
     char text[800];
-    drawing d = {.scene = scene};
-    se3di_iopool pool;
     if (error) {
         memset(error, 0, sizeof *error);
     }
@@ -461,14 +496,9 @@ se3d_status se3d_scene_write(se3d_scene *scene, const char *path, se3d_model_err
             return status;
         }
     }
-    se3di_iopool_init(&pool, &scene->model->pool.allocator);
-    se3di_glb_init(&d.glb, &pool);
-    draw(&d);
     errno = 0;
-    const bool good = se3di_glb_write(&d.glb, &d.rest, path);
-    const int why = errno;
-    se3di_iopool_destroy(&pool);
-    if (!good) {
+    if (!write_file(scene, path)) {
+        const int why = errno;
         snprintf(text, sizeof text, "%.500s: cannot be written: %s", path, strerror(why));
         se3di_document_report(error, "", 0, 0, "", text);
         return why == ENOMEM ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO;
