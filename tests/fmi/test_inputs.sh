@@ -22,7 +22,7 @@ END_OF_YAML
 cat >"$dir/a/models/inputs.yaml" <<'END_OF_YAML'
 se3d: 1
 title: what can be set & <more>
-parameters: {m: 3, arm: 500 mm, J: m*arm^2, tilt: 5*deg}
+parameters: {m: 3, arm: 500 mm, J: m*arm^2, tilt: 5*deg, stiff: 4 N*m/rad, spin: 2 rad/s}
 include:
   - {file: ../parts/weight.yaml}
 bodies:
@@ -34,13 +34,13 @@ joints:
   - {name: slide, type: prismatic, body_i: ground, body_j: cart, at: [1, 0, 0], axis: [1, 0, 0]}
   - {name: pin, type: revolute, body_i: ground, body_j: wheel, at: [4, 0, 0], axis: [0, 0, 1]}
 drivers:
-  - {name: turn, joint: pin, rate: 2}
+  - {name: turn, joint: pin, rate: spin}
   - {name: place, joint: slide, value: 0.25}
 forces:
   - {name: motor, type: effort, joint: axle, value: 0.5}
   - {name: twist, type: torque, body: disc, value: [0, 0, 0.1]}
   - {name: push, type: force, body: "w<&>", value: [0, "sin(t)", 1]}
-  - {name: spring, type: rsda, joint: axle, k: 4, c: 0.1}
+  - {name: spring, type: rsda, joint: axle, k: stiff, c: 0.1}
 analysis:
   - {type: equilibrium}
   - {type: dynamics, duration: 0.6, step: 0.01, method: METHOD}

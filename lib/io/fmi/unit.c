@@ -18,7 +18,6 @@
 
 #include "base/coder.h"
 #include "base/hash.h"
-#include "io/base/number.h"
 #include "io/channel/channel.h"
 #include "io/channel/event.h"
 #include "io/channel/output.h"
@@ -129,27 +128,10 @@ static void drop_model(se3di_fmi_unit *u)
     u->model = NULL;
 }
 
-/* A parameter as an expression, with its unit in SI. */
 static char *format_value(const se3di_fmi_unit *u, size_t k, se3di_iopool *pool)
 {
-    const se3di_fmi_variable *v = &u->variables.list[k];
-    const struct {
-        const char *name;
-        int exponent;
-    } units[] = {{"m", v->dimension.length},
-                 {"kg", v->dimension.mass},
-                 {"s", v->dimension.time},
-                 {"rad", v->dimension.angle}};
-    char text[200];
-    size_t used = se3di_number_format(u->values[k], text);
-    const char *mark = " ";
-    for (size_t i = 0; i < 4 && v->has_unit; ++i) {
-        if (units[i].exponent != 0) {
-            used += (size_t)snprintf(text + used, sizeof text - used, "%s%s^%d", mark,
-                                     units[i].name, units[i].exponent);
-            mark = "*";
-        }
-    }
+    char text[SE3DI_FMI_VALUE_SIZE];
+    const size_t used = se3di_fmi_format_value(&u->variables.list[k], u->values[k], text);
     return se3di_iopool_copy(pool, text, used);
 }
 
@@ -244,25 +226,9 @@ static bool renew_model(se3di_fmi_unit *u)
 
 /* ---- values ---------------------------------------------------------------------------------*/
 
-static se3d_status apply_load(const se3di_fmi_unit *u, const se3di_element_entry *e, size_t k)
-{
-    se3d_system *system = u->model->system;
-    double value[3];
-    const se3d_status status = se3d_force_get_value(system, e->force, value);
-    value[u->variables.list[k].component] = value_of(u, k);
-    return status < 0 ? status : se3d_force_set_value(system, e->force, value);
-}
-
 static se3d_status apply_input(const se3di_fmi_unit *u, size_t k)
 {
-    se3d_system *system = u->model->system;
-    const se3di_element_entry *e = &u->model->elements[u->variables.list[k].element];
-    if (e->kind == SE3DI_ELEMENT_DRIVER) {
-        return e->rate.index1 ? se3d_function_set_constant(system, e->rate, value_of(u, k))
-                              : se3d_constraint_set_value(system, e->constraint, value_of(u, k));
-    }
-    return e->body.index1 == 0 ? se3d_effort_set(system, e->force, value_of(u, k))
-                               : apply_load(u, e, k);
+    return se3di_fmi_apply_input(u->model, &u->variables.list[k], value_of(u, k));
 }
 
 /* The function of an input that is a rate; null: it is none. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "io/base/number.h"
 #include "io/channel/channel.h"
 #include "io/channel/output.h"
 
@@ -223,6 +224,59 @@ se3d_status se3di_fmi_variables_create(se3d_model *model, se3di_fmi_variables *v
     status = status < 0 ? status : add_inputs(&c);
     status = status < 0 ? status : add_parameters(&c);
     return status < 0 ? status : add_outputs(&c);
+}
+
+static se3d_status apply_load(const se3d_model *model, const se3di_fmi_variable *input, double to)
+{
+    const se3d_force force = model->elements[input->element].force;
+    double value[3];
+    const se3d_status status = se3d_force_get_value(model->system, force, value);
+    value[input->component] = to;
+    return status < 0 ? status : se3d_force_set_value(model->system, force, value);
+}
+
+se3d_status se3di_fmi_apply_input(const se3d_model *model, const se3di_fmi_variable *input,
+                                  double value)
+{
+    const se3di_element_entry *e = &model->elements[input->element];
+    if (e->kind == SE3DI_ELEMENT_DRIVER) {
+        return e->rate.index1 ? se3d_function_set_constant(model->system, e->rate, value)
+                              : se3d_constraint_set_value(model->system, e->constraint, value);
+    }
+    return e->body.index1 == 0 ? se3d_effort_set(model->system, e->force, value)
+                               : apply_load(model, input, value);
+}
+
+/* Units of model files have no negative exponents: "kg/s^2", and "s/s^2" where nothing is above. */
+size_t se3di_fmi_format_value(const se3di_fmi_variable *parameter, double value,
+                              char text[SE3DI_FMI_VALUE_SIZE])
+{
+    static const char *const names[4] = {"m", "kg", "s", "rad"};
+    const se3di_dimension d = parameter->dimension;
+    int over[4] = {d.length, d.mass, d.time, d.angle};
+    int under[4] = {0, 0, 0, 0};
+    bool has_over = false;
+    size_t used = se3di_number_format(value, text);
+    const char *mark = " ";
+    for (size_t i = 0; i < 4; ++i) {
+        under[i] = over[i] < 0 ? -over[i] : 0;
+        over[i] += under[i];
+        has_over = has_over || over[i] > 0;
+    }
+    for (size_t i = 0; i < 4 && !has_over; ++i) {
+        has_over = under[i] > 0;
+        over[i] = under[i] > 0;
+        under[i] += over[i];
+    }
+    for (size_t i = 0; i < 8 && parameter->has_unit; ++i) {
+        const int exponent = i < 4 ? over[i] : under[i - 4];
+        if (exponent > 0) {
+            used += (size_t)snprintf(text + used, SE3DI_FMI_VALUE_SIZE - used, "%s%s^%d",
+                                     i < 4 ? mark : "/", names[i % 4], exponent);
+            mark = "*";
+        }
+    }
+    return used;
 }
 
 void se3di_fmi_variables_destroy(se3di_fmi_variables *variables)

@@ -30,6 +30,8 @@ typedef struct se3di_fmi_variable {
     const char *parameter; /* its own name */
 } se3di_fmi_variable;
 
+enum { SE3DI_FMI_VALUE_SIZE = 200 };
+
 typedef struct se3di_fmi_variables {
     se3di_iopool pool;
     se3di_fmi_variable *list; /* the first is the time */
@@ -42,6 +44,12 @@ typedef struct se3di_fmi_variables {
 se3d_status se3di_fmi_variables_create(se3d_model *model, se3di_fmi_variables *variables,
                                        char *problem, size_t problem_size);
 void se3di_fmi_variables_destroy(se3di_fmi_variables *variables);
+/* Set an input of the model that the list is of. */
+se3d_status se3di_fmi_apply_input(const se3d_model *model, const se3di_fmi_variable *input,
+                                  double value);
+/* Write a value of a parameter as an expression, with its unit in SI. @return its length. */
+size_t se3di_fmi_format_value(const se3di_fmi_variable *parameter, double value,
+                              char text[SE3DI_FMI_VALUE_SIZE]);
 /* Whether two lists have the same names in the same roles. */
 bool se3di_fmi_variables_are_alike(const se3di_fmi_variables *a, const se3di_fmi_variables *b);
 /* The analysis that a unit steps through: the last one in which time passes. @return false: there
