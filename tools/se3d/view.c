@@ -9,38 +9,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "child.h"
 #include "file.h"
 #include "interrupt.h"
 #include "options.h"
-#include "process.h"
+#include "page.h"
 #include "snapshots.h"
 #include "table.h"
 #include "text.h"
 
 enum { RESULTS_SIZE = 120 * 1024, PATH_SIZE = 4096 };
-
-static char *read_whole(const char *path, size_t *size)
-{
-    FILE *file = se3di_file_open(path);
-    char *data = NULL;
-    *size = 0;
-    if (file && fseek(file, 0, SEEK_END) == 0) {
-        const long length = ftell(file);
-        rewind(file);
-        data = length >= 0 ? malloc((size_t)length + 1) : NULL;
-        if (data) {
-            *size = fread(data, 1, (size_t)length, file);
-            data[*size] = '\0';
-        }
-    }
-    if (file) {
-        fclose(file);
-    }
-    return data;
-}
 
 /* True if a file begins with a column of times. */
 static int has_times(const char *path)
@@ -114,164 +92,40 @@ static int put_table(FILE *file, const table *t)
     return rows > 0;
 }
 
-/* The folder of the page's parts: SE3D_VIEWER, beside an installed program, or in the sources. */
-static int find_viewer(char *folder, size_t size)
-{
-    static const char *const places[] = {"../share/se3d/viewer", "../../../tools/viewer",
-                                         "../../tools/viewer"};
-    char program[PATH_SIZE];
-    char self[PATH_SIZE];
-    char file[PATH_SIZE + 64];
-    const char *given = getenv("SE3D_VIEWER");
-    if (given) {
-        snprintf(folder, size, "%s", given);
-        return 1;
-    }
-    if (!path_get_absolute("/proc/self/exe", self, sizeof self) ||
-        !path_get_folder(self, program, sizeof program)) {
-        return 0;
-    }
-    for (size_t k = 0; k < sizeof places / sizeof *places; ++k) {
-        const int used = snprintf(folder, size, "%s/%s", program, places[k]);
-        snprintf(file, sizeof file, "%.4000s/viewer.js", folder);
-        if (used > 0 && (size_t)used < size && access(file, R_OK) == 0) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* The place where three.js is kept. @return false: the user has no place for it. */
-static int find_cache(char *folder, size_t size)
-{
-    const char *given = getenv("SE3D_CACHE");
-    const char *user = getenv("XDG_CACHE_HOME");
-    const char *home = getenv("HOME");
-    const int used = given               ? snprintf(folder, size, "%s", given)
-                     : (user && user[0]) ? snprintf(folder, size, "%s/se3d", user)
-                     : (home && home[0]) ? snprintf(folder, size, "%s/.cache/se3d", home)
-                                         : 0;
-    return used > 0 && (size_t)used < size;
-}
-
-static int put_file(FILE *out, const char *folder, const char *name)
-{
-    char path[PATH_SIZE + 64];
-    size_t size = 0;
-    snprintf(path, sizeof path, "%.4000s/%s", folder, name);
-    char *data = read_whole(path, &size);
-    if (!data) {
-        fprintf(stderr, "se3d: %s: cannot be read\n", path);
-        return 0;
-    }
-    fwrite(data, 1, size, out);
-    free(data);
-    return 1;
-}
-
 typedef struct page {
-    char viewer[PATH_SIZE];
-    char cache[PATH_SIZE];
-    int is_passing; /* the cache is a folder of this page alone */
+    page_parts parts;
     char *glb;
     size_t glb_size;
     table results;                   /* empty: there are none */
     char particles[PATH_SIZE + 300]; /* file of snapshots; "": none */
-    const char *command;
 } page;
 
 static int put_page(FILE *file, const page *p)
 {
-    fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-          "<meta name=\"viewport\" content=\"width=device-width\">"
-          "<link rel=\"icon\" href=\"data:,\">\n<title>se3d</title>\n<style>\n",
-          file);
-    int good = put_file(file, p->viewer, "viewer.css");
-    fputs("</style></head><body>\n", file);
-    good = good && put_file(file, p->viewer, "viewer.html");
+    int good = page_put_begin(file, &p->parts);
     fputs("<script type=\"text/plain\" id=\"glb\">", file);
     base64_put(file, p->glb, p->glb_size);
     fputs("</script>\n<script type=\"application/json\" id=\"results\">", file);
     good = good && put_table(file, &p->results);
     fputs("</script>\n<script type=\"application/json\" id=\"grains\">", file);
     if (p->particles[0]) {
-        good = good && snapshots_put(file, p->command, p->particles);
+        good = good && snapshots_put(file, p->parts.command, p->particles);
     } else {
         fputs("null", file);
     }
-    fputs("</script>\n<script>\n", file);
-    good = good && put_file(file, p->cache, "three.js");
-    fputs("\n</script>\n<script>\n", file);
-    good = good && put_file(file, p->viewer, "viewer.js");
-    fputs("</script>\n</body></html>\n", file);
-    return good;
+    fputs("</script>\n", file);
+    return good && page_put_end(file, &p->parts, NULL);
 }
 
 static int write_page(const page *p, const char *path)
 {
     FILE *file = se3di_partial_open(path);
     if (!file || !file_end(file, path, put_page(file, p) && !interrupt_came())) {
-        fprintf(stderr, "se3d %s: %s: cannot be written: %s\n", p->command, path,
+        fprintf(stderr, "se3d %s: %s: cannot be written: %s\n", p->parts.command, path,
                 interrupt_came() ? "interrupted" : strerror(errno ? errno : ENOSPC));
         return EXIT_FAILED;
     }
     return EXIT_DONE;
-}
-
-/* Whether what is at `path` may be run or shown: if not, says so. */
-static int check_own(const page *p, const char *path)
-{
-    if (file_is_own(path)) {
-        return 1;
-    }
-    fprintf(stderr,
-            "se3d %s: %s belongs to another user, or others can change it; set SE3D_CACHE to a "
-            "folder of your own\n",
-            p->command, path);
-    return 0;
-}
-
-/* Make three.js in the cache, if it is not. What others could have put there is not taken, and
- * nothing is run where they could. */
-static int make_three(const page *p)
-{
-    char script[PATH_SIZE + 64];
-    snprintf(script, sizeof script, "%.4000s/build.sh", p->viewer);
-    const char *const words[] = {"sh", script, p->cache, NULL};
-    if (!file_is_missing(p->cache) && !check_own(p, p->cache)) {
-        return EXIT_FAILED;
-    }
-    if (process_run(NULL, words) != 0) {
-        fprintf(stderr, "se3d %s: three.js could not be made, see above\n", p->command);
-        return EXIT_FAILED;
-    }
-    snprintf(script, sizeof script, "%.4000s/three.js", p->cache);
-    return check_own(p, p->cache) && check_own(p, script) ? EXIT_DONE : EXIT_FAILED;
-}
-
-static int prepare(page *p, const char *command)
-{
-    char script[PATH_SIZE + 64];
-    if (!find_viewer(p->viewer, sizeof p->viewer)) {
-        fprintf(stderr,
-                "se3d %s: the parts of the page are not found; set SE3D_VIEWER to the folder "
-                "tools/viewer of the source\n",
-                command);
-        return EXIT_FAILED;
-    }
-    snprintf(script, sizeof script, "%.4000s/three.js", p->viewer);
-    if (access(script, R_OK) == 0) { /* installed with the program */
-        strcpy(p->cache, p->viewer);
-        return EXIT_DONE;
-    }
-    if (!find_cache(p->cache, sizeof p->cache)) {
-        p->is_passing = folder_make_temporary(p->cache, sizeof p->cache);
-        if (!p->is_passing) {
-            fprintf(stderr, "se3d %s: no temporary folder: %s\n", command, strerror(errno));
-            return EXIT_FAILED;
-        }
-    }
-    return make_three(p);
 }
 
 int view_write(const char *command, const char *folder, const char *path)
@@ -282,9 +136,8 @@ int view_write(const char *command, const char *folder, const char *path)
     if (!p) {
         return EXIT_FAILED;
     }
-    p->command = command;
     snprintf(name, sizeof name, "%.4000s/scene.glb", folder);
-    p->glb = read_whole(name, &p->glb_size);
+    p->glb = page_read_whole(name, &p->glb_size);
     if (!p->glb || p->glb_size < 28) {
         fprintf(stderr, "se3d %s: %s: cannot be read; `se3d run MODEL -o %s` makes it\n", command,
                 name, folder);
@@ -293,12 +146,10 @@ int view_write(const char *command, const char *folder, const char *path)
         if (!find_results(folder, 1, p->particles, sizeof p->particles)) {
             p->particles[0] = '\0';
         }
-        code = prepare(p, command);
+        code = page_begin(&p->parts, command);
         code = code == EXIT_DONE ? write_page(p, path) : code;
         table_destroy(&p->results);
-        if (p->is_passing) {
-            folder_remove(p->cache);
-        }
+        page_end(&p->parts);
     }
     free(p->glb);
     free(p);
