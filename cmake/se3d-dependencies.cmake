@@ -108,3 +108,18 @@ function(se3d_find_expat wanted)
     endif()
     set(SE3D_HAS_EXPAT ${SE3D_HAS_EXPAT} PARENT_SCOPE)
 endfunction()
+
+# se3d_find_microhttpd(<wanted>): the server of `se3d live`. SE3D_HAS_MICROHTTPD says whether it is
+# there.
+function(se3d_find_microhttpd wanted)
+    set(SE3D_HAS_MICROHTTPD OFF)
+    if(wanted AND UNIX)
+        se3d_find_library(microhttpd microhttpd microhttpd.h libmicrohttpd-dev)
+        if(TARGET se3d_deps::microhttpd)
+            set(SE3D_HAS_MICROHTTPD ON)
+        else()
+            message(STATUS "No libmicrohttpd: `se3d live` has no page (Debian: libmicrohttpd-dev)")
+        endif()
+    endif()
+    set(SE3D_HAS_MICROHTTPD ${SE3D_HAS_MICROHTTPD} PARENT_SCOPE)
+endfunction()

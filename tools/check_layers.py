@@ -17,10 +17,10 @@ LAYERS = ("base math expression model primitive joint force contact particles fo
           "linsol tree nonlinear integrator analysis system").split()
 # Folders that have folders of their own, in their order.
 ROOMS = {"contact": "shape narrow bodies".split(),
-         "io": "base document model channel read write run study import fmi".split()}
+         "io": "base document model channel read write run study import fmi live".split()}
 # What the program in tools/se3d shares with libse3d-io, to whose static library it is linked.
 SHARED = ("io/base/file.h", "io/document/guess.h", "io/read/objects.h",
-          "io/fmi/package.h")
+          "io/fmi/package.h", "io/live/live.h")
 # Functions that are complete in a header, which libse3d-io may have too: nothing is linked.
 INLINE = ("base/hash.h", "base/coder.h", "base/floats.h")
 # Files that call each other, and why they are not one after the other.

@@ -36,6 +36,7 @@ class Se3d(ConanFile):
         chain.cache_variables["SE3D_BUILD_TESTS"] = False
         chain.cache_variables["SE3D_BUILD_EXAMPLES"] = False
         chain.cache_variables["SE3D_BUNDLE_VIEWER"] = False
+        chain.cache_variables["SE3D_LIVE"] = False
         chain.cache_variables["SE3D_FMU"] = False
         chain.cache_variables["SE3D_OPENMP"] = bool(self.options.openmp)
         chain.cache_variables["CMAKE_PREFIX_PATH"] = ";".join(

@@ -14,7 +14,8 @@ class Se3d < Formula
 
   def install
     system "cmake", "-S", ".", "-B", "build", "-DSE3D_BUILD_TESTS=OFF",
-           "-DSE3D_BUILD_EXAMPLES=OFF", "-DSE3D_BUNDLE_VIEWER=OFF", "-DSE3D_FMU=OFF", *std_cmake_args
+           "-DSE3D_BUILD_EXAMPLES=OFF", "-DSE3D_BUNDLE_VIEWER=OFF", "-DSE3D_LIVE=OFF",
+           "-DSE3D_FMU=OFF", *std_cmake_args
     system "cmake", "--build", "build"
     system "cmake", "--install", "build"
   end

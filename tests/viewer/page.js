@@ -5,6 +5,7 @@
 //     node page.js PAGE none                      that it loads
 //     node page.js PAGE joints                    that every joint and spring is seen, also on a telephone's screen
 //     node page.js PAGE beads                     that a third of the grains is seen
+//     node page.js ADDRESS live MODEL             the page of `se3d live MODEL`, where it is; MODEL is changed
 // With SE3D_BRIEF in the environment without keys and mouse.
 "use strict";
 const fs = require("fs"), os = require("os"), path = require("path"), { spawn } = require("child_process");
@@ -234,6 +235,54 @@ const checkGrains = async ({ rows }) => {
   console.log(`${new Set(ids).size} grains: ${time.toFixed(1)} ms a picture, drawn by the processor alone`);
   check(time < 2000, "grains stay interactive");
 };
+const until = async (expression) => {
+  for (let k = 0; k < 200; ++k) { const value = await evaluate(expression); if (value) return value; await wait(25); }
+  check(false, `${expression} never came`);
+};
+// A page in which a model runs that has a body, a spring and a parameter `k`.
+const checkLive = async (model) => {
+  const text = fs.readFileSync(model, "utf8"), place = "se3d.position('block')[0]";
+  await until("se3dLive.state && se3dLive.state.t > 0.1");
+  const first = await evaluate(place);
+  await until(`${place} !== ${first}`);
+  check(await evaluate("se3d.state.playing"), "it moves at once");
+  check((await evaluate("document.getElementById('plot').offsetWidth")) > 0 && (await evaluate("se3d.end - se3d.state.time")) < 0.5, "the plot goes along");
+  await key(" ");
+  await until("!se3d.state.playing");
+  const still = await evaluate("se3d.state.time");
+  await key("ArrowRight");
+  await until(`se3d.state.time > ${still}`);
+  check(Math.abs((await evaluate("se3d.state.time")) - still - 1 / 60) < 1e-6, "the arrow makes a step");
+  await key("Home");
+  await until("se3d.state.time === 0");
+  // A slider: another number in the program.
+  const sliders = await evaluate("[...document.querySelectorAll('#sliders label')].map((l) => l.textContent.trim())"), k = sliders.findIndex((s) => s.startsWith("k "));
+  check(k >= 0, `sliders: ${sliders}`);
+  await evaluate(`(() => { const r = document.querySelectorAll('#sliders input[type=range]')[${k}]; r.value = 80; r.dispatchEvent(new Event('input')); })()`);
+  await until(`Math.abs(se3dLive.state.numbers[${k}] - 80) < 1e-3`);
+  await click("defaults");
+  await until(`se3dLive.state.numbers[${k}] === 50`);
+  // Ctrl and the mouse pull; the line to the mouse is seen.
+  await key("0");
+  const from = await evaluate("se3d.project(se3d.position('block'))"), to = await evaluate("se3d.project([se3d.position('block')[0] + 1, 0, 0])");
+  await key(" ");
+  await press("mousePressed", from[0], from[1], { modifiers: 2 });
+  await press("mouseMoved", to[0], to[1], { modifiers: 2 });
+  await until(`${place} > 0.45`);
+  await press("mouseReleased", to[0], to[1], { modifiers: 2, buttons: 0 });
+  // A saved file is shown; of a wrong one the message, and the old picture.
+  const camera = await evaluate("se3d.orbit.azimuth = 0.77");
+  const version = await evaluate("se3dLive.version"), begin = Date.now();
+  fs.writeFileSync(model, text.replace("[0.3, 0, 0]", "[0.2, 0, 0]").replace(/title: .*/, "title: Saved <b>"));
+  await until(`se3dLive.version > ${version} && document.title === "Saved <b>" && (se3d.picture(se3d.start), true)`);
+  console.log(`${Date.now() - begin} ms from saving to the new picture, seen by the test`);
+  check((await evaluate("se3d.orbit.azimuth")) === camera, "the camera stays");
+  fs.writeFileSync(model, text.replace("type: prismatic", "type: prismatik"));
+  const trouble = await until("document.getElementById('trouble').textContent");
+  check(/:7:\d+: .*prismatik/.test(trouble) && (await evaluate("document.title")) === "Saved <b>", `the message: ${trouble}`);
+  fs.writeFileSync(model, text);
+  await until("!document.getElementById('trouble').textContent && document.title !== 'Saved <b>'");
+};
 const start = async () => {
   let ready = false;
   for (let k = 0; k < 200 && !ready; ++k) { await wait(100); ready = await evaluate("!!window.se3d"); }
@@ -245,10 +294,12 @@ const start = async () => {
   const attached = await call("Target.attachToTarget", { targetId: targetInfos.find((t) => t.type === "page").targetId, flatten: true });
   session = attached.sessionId;
   for (const domain of ["Page", "Runtime", "Log"]) await call(domain + ".enable");
-  await call("Page.navigate", { url: "file://" + path.resolve(page) });
+  await call("Page.navigate", { url: page.startsWith("http:") ? page : "file://" + path.resolve(page) });
   await start();
   if (csv === "joints") {
     await checkJoints();
+  } else if (csv === "live") {
+    await checkLive(body);
   } else if (csv === "beads") {
     await checkBeads();
   } else if (body === "grains") {
@@ -264,7 +315,7 @@ const start = async () => {
       await checkPicks();
     }
   }
-  await evaluate("se3d.set({dark: false}); se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))");
+  if (csv !== "live") await evaluate("se3d.set({dark: false}); se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))");
   if (picture) {
     const shot = await call("Page.captureScreenshot", { format: "png" });
     fs.writeFileSync(picture, Buffer.from(shot.data, "base64"));

@@ -46,7 +46,8 @@ static const char **value_target(options *o, const char *name)
                  {"--view", &o->view},         {"--format", &o->format},
                  {"--fmi", &o->fmi},           {"--shard", &o->shard},
                  {"--jobs", &o->jobs},         {"--checkpoint", &o->checkpoint},
-                 {"--match", &o->match},       {"--kind", &o->kind}};
+                 {"--match", &o->match},       {"--kind", &o->kind},
+                 {"--port", &o->port}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;

@@ -30,6 +30,7 @@ typedef struct options {
     const char *checkpoint;
     const char *match;
     const char *kind;
+    const char *port;
     se3d_model_setting settings[SETTINGS_MAX];
     char names[SETTINGS_MAX][200];
     size_t setting_count;

@@ -2,12 +2,16 @@
 // The viewer: reads the embedded glTF (as libse3d-io writes it) and results; z is upwards inside.
 "use strict";
 addEventListener("error", (e) => { window.se3dProblem = String(e.message).replace(/["\\]/g, "'"); });
-(() => {
+const se3dDecode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
+let se3dRenderer = null; // one for all that is shown in this page
+// Shows a scene: `glb` with its motion, `results` {names, units, values} beside it, `packed` grains or null. With `live`
+// ({post}, see live.js) there is no motion: what `feed` gets is shown. `close` takes all away again.
+const se3dView = ({ glb, results, packed, live }) => {
   const $ = (id) => document.getElementById(id);
-  const decode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
-  const glb = decode($("glb").textContent.trim());
-  const results = JSON.parse($("results").textContent);
-  results.values = new Float32Array(decode(results.data));
+  const decode = se3dDecode;
+  const closing = new AbortController();
+  for (const id of ["follow", "colour", "channel", "labels"]) $(id).replaceChildren();
+  $("follow").add(new Option("nothing", "-1"));
   const head = new DataView(glb);
   const jsonLength = head.getUint32(12, true);
   const gltf = JSON.parse(new TextDecoder().decode(new Uint8Array(glb, 20, jsonLength)));
@@ -77,9 +81,8 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   const tracks = motion.channels.map((c) => ({
     node: nodes[c.target.node], path: c.target.path, values: accessor(motion.samplers[c.sampler].output).values,
   }));
-  const packed = JSON.parse($("grains").textContent);
   const grainTimes = packed ? packed.times : [];
-  const start = Math.min(times[0], ...grainTimes.slice(0, 1)), end = Math.max(times[times.length - 1], ...grainTimes.slice(-1));
+  let start = Math.min(times[0], ...grainTimes.slice(0, 1)), end = Math.max(times[times.length - 1], ...grainTimes.slice(-1));
   const qa = new THREE.Quaternion(), qb = new THREE.Quaternion(), va = new THREE.Vector3(), vb = new THREE.Vector3();
   // A long motion was thinned out to more than half of the most samples: then a curve through its points.
   const curved = times.length > 625;
@@ -101,7 +104,17 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     const width = list(high) - list(low);
     return [low, high, width > 0 ? Math.min(1, Math.max(0, (t - list(low)) / width)) : 0];
   };
+  // Live: bodies (position, Euler parameters), then what is between them, with scales, as they came last.
+  let places = null;
+  const between = root.children.filter((o) => o.userData.element !== undefined);
+  const put = () => {
+    const turn = (o, k) => o.quaternion.set(places[k + 1], places[k + 2], places[k + 3], places[k]);
+    let k = 0;
+    bodies.forEach((o) => { o.position.fromArray(places, k); turn(o, k + 3); k += 7; });
+    between.forEach((o) => { o.position.fromArray(places, k); turn(o, k + 3); o.scale.fromArray(places, k + 7); k += 10; });
+  };
   const pose = (t) => {
+    if (places) { put(); return; }
     const [a, b, part] = locate((k) => times[k], times.length, t);
     for (const { node, path, values } of tracks) {
       if (path === "rotation") {
@@ -115,7 +128,8 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   };
 
   // Results beside the motion.
-  const n = results.names.length, rows = n > 0 ? results.values.length / n : 0;
+  const n = results.names.length;
+  let rows = n > 0 ? results.values.length / n : 0;
   const at = (row, column) => results.values[row * n + column];
   const value = (column, t) => {
     const [a, b, part] = locate((k) => at(k, 0), rows, t);
@@ -137,7 +151,8 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   scene.add(sun, sun.target);
   const camera = new THREE.PerspectiveCamera(40, 1, 0.001, 1000);
   camera.up.set(0, 0, 1);
-  const renderer = new THREE.WebGLRenderer({ canvas: $("view"), antialias: true, preserveDrawingBuffer: true });
+  const renderer = se3dRenderer || (se3dRenderer = new THREE.WebGLRenderer({ canvas: $("view"), antialias: true, preserveDrawingBuffer: true }));
+  renderer.clippingPlanes = [];
   if (old) renderer.gammaOutput = true;
   renderer.shadowMap.enabled = sun.castShadow = true;
   renderer.shadowMap.type = THREE.PCFShadowMap;
@@ -352,7 +367,7 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     arrow.visible = false; scene.add(arrow);
     arrows.push({ arrow, joint, column: k, largest });
   });
-  const largest = Math.max(1e-12, ...arrows.map((a) => a.largest));
+  let largest = Math.max(1e-12, ...arrows.map((a) => a.largest));
   // Traces of bodies' origins and of markers.
   const traced = bodies.slice(1).flatMap((b) => [b, ...b.children.filter((o) => o.isGroup)]);
   const traces = [];
@@ -370,6 +385,38 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
       line.renderOrder = 1; // seen through the bodies
       scene.add(line); traces.push(line);
     });
+  };
+
+  // Live: a body is pulled at a point of it, in the plane of that point across the view.
+  let pull = null;
+  const rubber = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0xd1495b, depthTest: false, transparent: true }));
+  rubber.visible = rubber.frustumCulled = false; rubber.renderOrder = 3;
+  rubber.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(6), 3));
+  scene.add(rubber);
+  const stretch = () => {
+    rubber.visible = !!pull;
+    if (!pull) return;
+    const line = rubber.geometry.attributes.position;
+    va.copy(pull.point).applyMatrix4(bodies[pull.body].matrixWorld).toArray(line.array, 0);
+    pull.place.toArray(line.array, 3);
+    line.needsUpdate = true;
+  };
+  const grab = (x, y) => {
+    ray.near = 0; ray.far = Infinity;
+    ray.setFromCamera(new THREE.Vector2(2 * x / innerWidth - 1, 1 - 2 * y / innerHeight), camera);
+    for (const hit of ray.intersectObjects(solids, false)) {
+      let o = hit.object;
+      while (o && o.userData.body === undefined) o = o.parent;
+      if (o && o.userData.body > 0) return { body: o.userData.body, point: o.worldToLocal(hit.point.clone()), place: hit.point.clone() };
+    }
+    return null;
+  };
+  const haul = (x, y) => {
+    const normal = camera.getWorldDirection(new THREE.Vector3());
+    ray.setFromCamera(new THREE.Vector2(2 * x / innerWidth - 1, 1 - 2 * y / innerHeight), camera);
+    ray.ray.intersectPlane(new THREE.Plane().setFromNormalAndCoplanarPoint(normal, pull.place), va);
+    pull.place.copy(va);
+    live.post("pull", `${pull.body} ${[...pull.point.toArray(), ...pull.place.toArray()].join(" ")}`);
   };
 
   const draw = () => {
@@ -398,6 +445,7 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
         arrow.setLength(Math.max(0.02, 0.4 * length / largest) * size, 0.05 * size, 0.025 * size);
       }
     }
+    stretch();
     renderer.render(scene, camera);
     write();
     $("time").value = state.time;
@@ -546,17 +594,20 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   bodies.forEach((b, k) => { if (k > 0) $("follow").add(new Option(b.name, String(k))); });
   results.names.forEach((name, k) => { if (k > 0) $("channel").add(new Option(name, String(k))); });
   // The plot begins with the first channel that is more than rounding.
-  for (let k = 1; k < n; ++k) {
-    let least = Infinity, most = -Infinity;
-    for (let r = 0; r < rows; ++r) { least = Math.min(least, at(r, k)); most = Math.max(most, at(r, k)); }
-    if (most - least > 1e-9 && !results.names[k].includes(".orientation.")) { $("channel").value = String(k); break; }
-  }
+  const choose = () => {
+    for (let k = 1; k < n; ++k) {
+      let least = Infinity, most = -Infinity;
+      for (let r = 0; r < rows; ++r) { least = Math.min(least, at(r, k)); most = Math.max(most, at(r, k)); }
+      if (most - least > 1e-9 && !results.names[k].includes(".orientation.")) { $("channel").value = String(k); break; }
+    }
+  };
+  choose();
   if (n < 2) canvas.style.display = $("channel").parentElement.style.display = "none";
   $("reactions").disabled = !arrows.length;
   $("time").min = start; $("time").max = end; $("time").step = "any";
   $("time").oninput = () => { set({ time: Number($("time").value), playing: false }); draw(); };
-  $("play").onclick = () => set({ playing: !state.playing, time: state.time >= end ? start : state.time });
-  $("speed").onchange = () => set({ speed: Number($("speed").value) });
+  $("play").onclick = () => (live ? live.post(state.playing ? "pause" : "run") : set({ playing: !state.playing, time: state.time >= end ? start : state.time }));
+  $("speed").onchange = () => (live ? live.post("speed", $("speed").value) : set({ speed: Number($("speed").value) }));
   $("follow").onchange = () => { set({ follow: Number($("follow").value) }); if (state.follow < 0) orbit.target.copy(center); };
   // A link that keeps camera, time and what is chosen.
   const round = (v) => Number(v.toPrecision(6));
@@ -579,7 +630,7 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     if (view.length === 2 && view.every(Number.isFinite)) { Object.assign(orbit, { azimuth: view[0], height: Math.min(1.55, Math.max(-1.55, view[1])) }); fit(); }
     if (part.has("part")) Object.assign(change, { time: start + Number(part.get("part")) * (end - start) || start, playing: false });
     if (part.has("bare")) { document.body.classList.add("bare"); fit(); }
-    if (part.has("t") && Number.isFinite(Number(part.get("t")))) Object.assign(change, { time: Number(part.get("t")), playing: false });
+    if (part.has("t") && !live && Number.isFinite(Number(part.get("t")))) Object.assign(change, { time: Number(part.get("t")), playing: false });
     (part.get("show") || "").split(",").forEach((key) => { if (["frames", "reactions", "traces", "dark", "solid", "labels"].includes(key)) change[key] = true; });
     const follow = bodies.findIndex((b) => b.name === part.get("follow"));
     if (follow > 0) change.follow = follow;
@@ -597,7 +648,8 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   $("questions").onclick = () => set({ help: !state.help });
   $("labelled").onclick = () => { set({ labels: !state.labels }); draw(); };
   for (const key of ["frames", "reactions", "traces", "dark"]) $(key).onclick = () => set({ [key]: !state[key] });
-  $("channel").onchange = draw;
+  let chosen = new URLSearchParams(location.hash.slice(1)).has("plot"); // by the user
+  $("channel").onchange = () => { chosen = true; draw(); };
   addEventListener("keydown", (e) => {
     const step = (end - start) / 100;
     const keys = {
@@ -610,27 +662,31 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
       Escape: () => set({ help: false, picked: null }), 0: () => { orbit.target.copy(center); state.zoomed = false; fit(); },
       b: () => { set({ follow: state.follow < 0 ? Math.min(1, bodies.length - 1) : state.follow + 1 < bodies.length ? state.follow + 1 : -1 }); },
     };
-    if (keys[e.key] && e.target.tagName !== "SELECT" && !e.ctrlKey && !e.metaKey) { keys[e.key](); e.preventDefault(); }
-  });
+    if (live) Object.assign(keys, { ArrowRight: () => live.post("step"), Home: () => live.post("reset"), "+": null, "-": null, ArrowLeft: null, End: null });
+    if (keys[e.key] && !(e.target.closest && e.target.closest("select, #sliders")) && !e.ctrlKey && !e.metaKey) { keys[e.key](); e.preventDefault(); }
+  }, { signal: closing.signal });
   // One finger or the mouse turns; two fingers zoom and move; a click picks.
   let grabbed = null;
   const view = $("view"), fingers = new Map();
   const spread = () => { const [a, b] = [...fingers.values()]; return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, apart: Math.max(1, Math.hypot(a.x - b.x, a.y - b.y)) }; };
   view.onpointerdown = (e) => {
+    view.setPointerCapture(e.pointerId);
+    if (live && (e.ctrlKey || live.pulls()) && (pull = grab(e.clientX, e.clientY))) { haul(e.clientX, e.clientY); return; }
     fingers.set(e.pointerId, { x: e.clientX, y: e.clientY });
     grabbed = { x: e.clientX, y: e.clientY, way: fingers.size > 1 ? 99 : 0, pan: e.button === 2 || e.shiftKey || fingers.size > 1 };
     if (fingers.size === 2) Object.assign(grabbed, spread());
-    view.setPointerCapture(e.pointerId);
   };
   view.onpointerup = view.onpointercancel = (e) => {
+    if (pull) { pull = null; live.post("release"); return; }
     fingers.delete(e.pointerId);
     if (!grabbed || fingers.size) { grabbed = null; return; }
     if (grabbed.way < 4 && e.type === "pointerup") set({ picked: pick(e.clientX, e.clientY) });
-    else if (!grabbed.pan) see();
+    else if (!grabbed.pan) { see(); fresh = true; }
     grabbed = null;
   };
   view.oncontextmenu = (e) => e.preventDefault();
   view.onpointermove = (e) => {
+    if (pull) { haul(e.clientX, e.clientY); return; }
     if (!grabbed) return;
     if (fingers.has(e.pointerId)) fingers.set(e.pointerId, { x: e.clientX, y: e.clientY });
     const now = fingers.size === 2 ? spread() : { x: e.clientX, y: e.clientY };
@@ -657,18 +713,48 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
   }
   set({ dark: matchMedia("(prefers-color-scheme: dark)").matches, ...recall() });
   see();
+  // Live: whether there is another picture than the last one.
+  let fresh = true, last = "";
+  const isOther = () => {
+    if (!live) return true;
+    const what = [innerWidth, innerHeight, JSON.stringify(orbit), JSON.stringify(state), pull ? JSON.stringify(pull.place) : ""].join();
+    const other = fresh || what !== last;
+    last = what; fresh = false;
+    return other;
+  };
   let before = performance.now();
   const frame = (now) => {
+    if (closing.signal.aborted) return;
     const passed = Math.min(0.25, (now - before) / 1000);
     before = now;
-    if (state.playing && end > start) {
+    if (state.playing && end > start && !live) {
       state.time += state.speed * passed;
       if (state.time > end) state.time = start + (state.time - end) % (end - start);
     }
-    if (!film) draw();
+    if (!film && isOther()) draw();
     requestAnimationFrame(frame);
   };
   requestAnimationFrame(frame);
+  // Live: what came last; the plot keeps the last rows.
+  const feed = ({ t, running, speed, places: now, values }) => {
+    if (now.length !== 7 * bodies.length + 10 * between.length) return;
+    places = now;
+    fresh = true;
+    if (rows > 0 && t < at(rows - 1, 0)) { rows = 0; results.values = []; }
+    if (rows === 0 || t > at(rows - 1, 0)) {
+      results.values.push(t, ...values.map((v) => (v === null ? NaN : v)));
+      if (++rows > 4000) { results.values.splice(0, 1000 * n); rows -= 1000; }
+      for (const a of arrows) a.largest = Math.max(a.largest, Math.hypot(...[0, 1, 2].map((i) => at(rows - 1, a.column + i))) || 0);
+      largest = Math.max(largest, ...arrows.map((a) => a.largest));
+      if (rows === 40 && !chosen) choose();
+    }
+    start = at(0, 0); end = Math.max(t, start);
+    set({ time: t, playing: running, speed });
+  };
+  const close = () => {
+    closing.abort();
+    scene.traverse((o) => { if (o.geometry) o.geometry.dispose(); if (o.material && o.material.dispose) o.material.dispose(); });
+  };
   // For tests and films.
   window.se3d = {
     state, start, end, orbit, set,
@@ -744,4 +830,9 @@ addEventListener("error", (e) => { window.se3dProblem = String(e.message).replac
     scale: (name) => nodes.find((o) => o.name === name).scale.toArray(),
     position: (name) => bodies.find((b) => b.name === name).position.toArray(),
   };
-})();
+  return { feed, close, share };
+};
+if (document.getElementById("glb")) {
+  const text = (id) => document.getElementById(id).textContent, results = JSON.parse(text("results"));
+  se3dView({ glb: se3dDecode(text("glb").trim()), results: { ...results, values: new Float32Array(se3dDecode(results.data)) }, packed: JSON.parse(text("grains")), live: null });
+}

@@ -1,0 +1,418 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "io/live/session.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "io/channel/event.h"
+
+enum { COLUMNS_MAX = 1000 };
+
+static bool say(char *message, const char *text)
+{
+    snprintf(message, SE3DI_LIVE_MESSAGE_SIZE, "%s", text);
+    return false;
+}
+
+static bool say_memory(char *message)
+{
+    return say(message, "out of memory");
+}
+
+/* "WHAT: why", with the message of the system if it has one. */
+bool se3di_session_say(char *message, const se3di_session *s, const char *what, se3d_status status)
+{
+    const char *why = se3d_system_get_error(s->model->system);
+    snprintf(message, SE3DI_LIVE_MESSAGE_SIZE, "%.200s: %.1000s", what,
+             why[0] ? why : se3d_status_get_text(status));
+    return false;
+}
+
+/* ---- reading --------------------------------------------------------------------------------*/
+
+void se3di_session_destroy(se3di_session *s)
+{
+    if (!s) {
+        return;
+    }
+    se3di_iopool pool = s->pool; /* the session itself lies in it */
+    se3d_solver_destroy(s->solver);
+    if (s->is_prepared) {
+        se3di_sample_destroy(&s->sample);
+        se3di_fmi_variables_destroy(&s->variables);
+    }
+    se3d_model_destroy(s->model);
+    se3di_iopool_destroy(&pool);
+}
+
+/* The mistakes of a file, one a line. */
+static void collect(void *ctx, const se3d_model_error *error)
+{
+    char *message = ctx;
+    const size_t used = strlen(message);
+    snprintf(message + used, SE3DI_LIVE_MESSAGE_SIZE - used, "%s%s", used > 0 ? "\n" : "",
+             error->message);
+}
+
+/* The options with the parameters that were set in `before` (NULL: none). */
+static bool make_options(const se3di_session_source *from, const se3di_session *before,
+                         se3di_iopool *pool, se3d_model_options *options)
+{
+    *options = *from->options;
+    const size_t count = before ? before->slider_count : 0;
+    se3d_model_setting *settings =
+        se3di_iopool_array(pool, options->setting_count + count + 1, sizeof *settings);
+    if (!settings) {
+        return false;
+    }
+    for (size_t k = 0; k < options->setting_count; ++k) {
+        settings[k] = options->settings[k];
+    }
+    options->settings = settings;
+    for (size_t k = 0; k < count; ++k) {
+        const se3di_fmi_variable *v = &before->variables.list[before->slider_variables[k]];
+        char text[SE3DI_FMI_VALUE_SIZE];
+        if (!before->is_set[k] || v->role != SE3DI_FMI_PARAMETER) {
+            continue;
+        }
+        const size_t length = se3di_fmi_format_value(v, before->sliders[k].value, text);
+        se3d_model_setting *s = &settings[options->setting_count++];
+        s->name = v->parameter;
+        s->value = se3di_iopool_copy(pool, text, length);
+        if (!s->value) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Read the model, or say why it cannot be. */
+static bool read_model(const se3di_session_source *from, const se3di_session *before,
+                       se3di_session *s, char *message)
+{
+    se3di_iopool pool;
+    se3d_model_options options;
+    se3d_model_error error;
+    se3di_iopool_init(&pool, NULL);
+    message[0] = '\0';
+    bool good = make_options(from, before, &pool, &options);
+    if (!good) {
+        say_memory(message);
+    } else {
+        options.report = collect;
+        options.report_ctx = message;
+        options.log = NULL;
+        good = se3d_model_read_file(from->path, &options, &s->model, &error) >= 0;
+        if (!good && !message[0]) {
+            say(message, error.message);
+        }
+    }
+    se3di_iopool_destroy(&pool);
+    return good;
+}
+
+static bool list_sliders(se3di_session *s)
+{
+    const size_t most = s->variables.count + 1;
+    s->sliders = se3di_iopool_array(&s->pool, most, sizeof *s->sliders);
+    s->slider_variables = se3di_iopool_array(&s->pool, most, sizeof *s->slider_variables);
+    s->is_set = se3di_iopool_array(&s->pool, most, sizeof *s->is_set);
+    if (!s->sliders || !s->slider_variables || !s->is_set) {
+        return false;
+    }
+    for (size_t k = 0; k < s->variables.count; ++k) {
+        const se3di_fmi_variable *v = &s->variables.list[k];
+        const bool is_parameter = v->role == SE3DI_FMI_PARAMETER;
+        if (!is_parameter && v->role != SE3DI_FMI_INPUT) {
+            continue;
+        }
+        se3di_live_slider *slider = &s->sliders[s->slider_count];
+        slider->name = is_parameter ? v->parameter : v->name;
+        slider->start = v->start;
+        slider->value = v->start;
+        slider->is_parameter = is_parameter;
+        if (v->has_unit) {
+            se3di_fmi_format_unit(v->dimension, slider->unit, sizeof slider->unit);
+        }
+        s->slider_variables[s->slider_count++] = k;
+    }
+    return true;
+}
+
+static bool add_column(se3di_session *s, const se3di_channel *channel, size_t component)
+{
+    char name[400];
+    se3di_channel_format_column(channel, component, name, sizeof name);
+    s->columns[s->column_count] = se3di_iopool_copy(&s->pool, name, strlen(name));
+    return s->columns[s->column_count++] != NULL;
+}
+
+/* The channels of the first output that has some. */
+static bool list_columns(se3di_session *s)
+{
+    const se3d_model *model = s->model;
+    for (size_t k = 0; k < model->output_count && !s->output; ++k) {
+        s->output = model->outputs[k].count > 0 ? &model->outputs[k] : NULL;
+    }
+    s->columns = se3di_iopool_array(&s->pool, COLUMNS_MAX + 4, sizeof *s->columns);
+    if (!s->columns) {
+        return false;
+    }
+    for (size_t i = 0; s->output && i < s->output->count && s->column_count < COLUMNS_MAX; ++i) {
+        const se3di_channel *channel = &s->output->channels[i];
+        s->shows_all = s->shows_all || !se3di_channel_is_shown(channel);
+        for (size_t j = 0; j < se3di_channel_get_width(channel); ++j) {
+            if (!add_column(s, channel, j)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* Poses and sizes as the scene has them, which is drawn where the bodies are now. */
+static bool measure(se3di_session *s)
+{
+    const se3d_model *model = s->model;
+    s->start.bodies = model->body_count;
+    s->start.count = 1;
+    s->start.values = se3di_iopool_array(&s->pool, model->body_count, SE3DI_POSE * sizeof(double));
+    s->poses = se3di_iopool_array(&s->pool, model->body_count, SE3DI_POSE * sizeof(double));
+    if (!s->start.values || !s->poses ||
+        se3di_drawing_get_poses(model, s->start.values) != SE3D_OK) {
+        return false;
+    }
+    se3di_drawing_measure(model, &s->start, &s->sizes);
+    for (size_t e = 0; e < model->element_count; ++e) {
+        s->between_count += se3di_drawing_count_between(&model->elements[e]);
+    }
+    return true;
+}
+
+/* ---- starting -------------------------------------------------------------------------------*/
+
+/* Run analysis `index` from its start; with time in it only if it comes before the one shown. */
+static se3d_status run_analysis(const se3di_session_source *from, se3di_session *s, size_t index)
+{
+    const se3di_analysis_entry *entry = &s->model->analyses[index];
+    const double start = se3di_fmi_get_start(s->model, index);
+    se3d_solver_def def = entry->solver;
+    se3d_solver *solver = NULL;
+    if (entry->modes.file) {
+        return SE3D_OK;
+    }
+    def.interrupt = from->interrupt;
+    def.interrupt_ctx = from->ctx;
+    def.horizon = start + entry->analysis.duration;
+    se3d_status status = se3d_system_set_time(s->model->system, start);
+    status = status < 0 ? status : se3d_solver_create(s->model->system, &def, &solver);
+    status = status < 0 ? status : se3d_solver_run(solver, start + entry->analysis.duration);
+    se3d_solver_destroy(solver);
+    return status;
+}
+
+/* To the state that the analysis `index` begins with. */
+static bool run_before(const se3di_session_source *from, se3di_session *s, size_t index,
+                       char *message)
+{
+    for (size_t k = 0; k < index; ++k) {
+        const se3d_status status = run_analysis(from, s, k);
+        if (status < 0) {
+            char what[100];
+            snprintf(what, sizeof what, "the %.40s analysis failed",
+                     s->model->analyses[k].analysis.type);
+            return se3di_session_say(message, s, what, status);
+        }
+    }
+    return true;
+}
+
+static const se3di_element_entry *find_element(const se3d_model *model, const char *name)
+{
+    size_t index = 0;
+    return se3di_ionames_find(&model->element_names, name, &index) ? &model->elements[index] : NULL;
+}
+
+static void move_body(const se3di_session *from, const se3di_body_entry *entry, se3d_system *to)
+{
+    double r[3];
+    double p[4];
+    double v[3];
+    double w[3];
+    size_t index = 0;
+    int32_t fixed = 0;
+    if (!se3di_ionames_find(&from->model->body_names, entry->name, &index)) {
+        return;
+    }
+    const se3d_system *system = from->model->system;
+    const se3d_body body = from->model->bodies[index].body;
+    const bool is_fixed = se3d_body_get_fixed(to, entry->body, &fixed) < 0 || fixed;
+    if (is_fixed || se3d_body_get_position(system, body, r) < 0 ||
+        se3d_body_get_orientation(system, body, p) < 0 ||
+        se3d_body_get_velocity(system, body, v) < 0 ||
+        se3d_body_get_angular_velocity(system, body, w) < 0) {
+        return;
+    }
+    (void)se3d_body_set_position(to, entry->body, r);
+    (void)se3d_body_set_orientation(to, entry->body, p);
+    (void)se3d_body_set_velocity(to, entry->body, v);
+    (void)se3d_body_set_angular_velocity(to, entry->body, w);
+}
+
+/* Bodies and states of `to` take what those of the same names in `from` have. */
+static void move_state(const se3di_session *from, se3di_session *to)
+{
+    const se3d_model *model = to->model;
+    double time = 0.0;
+    double value = 0.0;
+    for (size_t k = 1; k < model->body_count; ++k) {
+        move_body(from, &model->bodies[k], model->system);
+    }
+    for (size_t k = 0; k < model->element_count; ++k) {
+        const se3di_element_entry *e = &model->elements[k];
+        const se3di_element_entry *old =
+            e->kind == SE3DI_ELEMENT_STATE ? find_element(from->model, e->name) : NULL;
+        for (size_t i = 0; old && old->kind == e->kind && i < e->order && i < old->order; ++i) {
+            if (se3d_state_get_value(from->model->system, old->states[i], SE3D_STATE_VALUE,
+                                     &value) >= 0) {
+                (void)se3d_state_set_value(model->system, e->states[i], value);
+            }
+        }
+    }
+    se3d_system_get_time(from->model->system, &time);
+    (void)se3d_system_set_time(model->system, time);
+}
+
+/* Numbers that were set in `before` are set in `s`, if it has them. */
+static void take_values(const se3di_session *before, se3di_session *s)
+{
+    for (size_t k = 0; k < s->slider_count; ++k) {
+        for (size_t i = 0; before && i < before->slider_count; ++i) {
+            if (before->is_set[i] && strcmp(before->sliders[i].name, s->sliders[k].name) == 0) {
+                s->is_set[k] = true;
+                s->sliders[k].value = before->sliders[i].value;
+                s->sliders[k].start = before->sliders[i].start;
+                if (!s->sliders[k].is_parameter) {
+                    (void)se3di_fmi_apply_input(
+                        s->model, &s->variables.list[s->slider_variables[k]], s->sliders[k].value);
+                }
+            }
+        }
+    }
+}
+
+void se3di_session_renew(se3di_session *s)
+{
+    memset(&s->stats, 0, sizeof s->stats);
+    if (s->solver) {
+        (void)se3d_solver_get_stats(s->solver, &s->stats);
+    }
+    se3di_sample_renew(&s->sample, &s->stats);
+}
+
+/* The solver, at a state that fits. */
+static bool make_solver(const se3di_session_source *from, se3di_session *s, size_t index,
+                        char *message)
+{
+    se3d_solver_def def = s->model->analyses[index].solver;
+    double time = 0.0;
+    def.interrupt = from->interrupt;
+    def.interrupt_ctx = from->ctx;
+    se3d_system_get_time(s->model->system, &time);
+    se3d_status status = se3d_solver_create(s->model->system, &def, &s->solver);
+    status = status < 0 ? status : se3di_events_create(s->model, s->solver, NULL, NULL);
+    status = status < 0 ? status : se3d_solver_run(s->solver, time);
+    se3di_session_renew(s);
+    return status >= 0 || status == SE3D_ERR_INTERRUPTED ||
+           se3di_session_say(message, s, "the model cannot start", status);
+}
+
+/* What a model is shown with: everything that is made of it once. */
+static bool prepare(const se3di_session *before, se3di_session *s, char *message)
+{
+    char problem[500];
+    se3d_status status =
+        se3di_fmi_variables_create(s->model, &s->variables, problem, sizeof problem);
+    se3di_sample_init(&s->sample, s->model->system, &s->model->pool.allocator);
+    s->is_prepared = true;
+    if (s->model->particles) {
+        return say(message, "the model has particles, which are not shown live: `se3d run` and "
+                            "`se3d view` show them");
+    }
+    if (status == SE3D_ERR_NO_MEMORY || !list_sliders(s) || !list_columns(s)) {
+        return say_memory(message);
+    }
+    take_values(before, s);
+    return true;
+}
+
+/* Bring a model that was read to where it begins. `before` NULL: all is as in the file. */
+static bool start(const se3di_session_source *from, const se3di_session *before, bool goes_on,
+                  se3di_session *s, char *message)
+{
+    size_t index = 0;
+    if (!prepare(before, s, message)) {
+        return false;
+    }
+    const bool moves = se3di_fmi_find_analysis(s->model, &index);
+    const size_t count = moves ? index : s->model->analysis_count;
+    if (!run_before(from, s, count, message)) {
+        return false;
+    }
+    if (moves) {
+        (void)se3d_system_set_time(s->model->system, se3di_fmi_get_start(s->model, index));
+        if (!make_solver(from, s, index, message)) {
+            return false;
+        }
+    }
+    se3di_session_renew(s);
+    if (!measure(s)) {
+        return say_memory(message);
+    }
+    if (goes_on && moves) {
+        double time = 0.0;
+        move_state(before, s);
+        se3d_system_get_time(s->model->system, &time);
+        const se3d_status status = se3d_solver_run(s->solver, time);
+        se3di_session_renew(s);
+        if (status < 0 && status != SE3D_ERR_INTERRUPTED) {
+            return se3di_session_say(message, s, "the model cannot go on", status);
+        }
+    }
+    return true;
+}
+
+static se3di_session *create_session(char *message)
+{
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, NULL);
+    se3di_session *s = se3di_iopool_alloc(&pool, sizeof *s);
+    if (s) {
+        s->pool = pool;
+        return s;
+    }
+    se3di_iopool_destroy(&pool);
+    say_memory(message);
+    return NULL;
+}
+
+se3di_session *se3di_session_make(const se3di_session_source *from, se3di_session *now,
+                                  se3di_live_beginning beginning, char *message)
+{
+    const bool anew = beginning == SE3DI_LIVE_ANEW || beginning == SE3DI_LIVE_CHANGED;
+    const se3di_session *before = anew ? NULL : now;
+    se3di_session *s = create_session(message);
+    if (!s || !read_model(from, before, s, message)) {
+        se3di_session_destroy(s);
+        return NULL;
+    }
+    if (beginning == SE3DI_LIVE_CHANGED && s->model->content == now->model->content) {
+        se3di_session_destroy(s);
+        return now;
+    }
+    if (!start(from, before, beginning == SE3DI_LIVE_GOING_ON, s, message)) {
+        se3di_session_destroy(s);
+        return NULL;
+    }
+    return s;
+}

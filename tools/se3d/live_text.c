@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#define _XOPEN_SOURCE 700
+
+#include "live_text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "snapshots.h"
+#include "table.h"
+#include "text.h"
+
+static void put_numbers(FILE *file, const char *name, const double *values, size_t count)
+{
+    fprintf(file, ",\"%s\":[", name);
+    for (size_t k = 0; k < count; ++k) {
+        fprintf(file, isfinite(values[k]) ? "%s%.7g" : "%snull", k > 0 ? "," : "", values[k]);
+    }
+    fputs("]", file);
+}
+
+char *live_text_take(FILE *file, char **data)
+{
+    const int good = !ferror(file);
+    if (fclose(file) == 0 && good) {
+        return *data;
+    }
+    free(*data);
+    return NULL;
+}
+
+static void put_state(FILE *file, se3di_live *model, const live_status *s, double *numbers)
+{
+    const size_t places = se3di_live_count_places(model);
+    const size_t columns = se3di_live_count_columns(model);
+    const size_t sliders = se3di_live_count_sliders(model);
+    fprintf(file, "{\"sequence\":%llu,\"version\":%llu,\"t\":%.12g,\"running\":%s,\"speed\":%.9g",
+            (unsigned long long)s->sequence, (unsigned long long)s->version,
+            se3di_live_get_time(model), s->running ? "true" : "false", s->speed);
+    fputs(",\"trouble\":", file);
+    text_put_json(file, s->trouble);
+    se3di_live_get_places(model, numbers);
+    put_numbers(file, "places", numbers, places);
+    se3di_live_get_values(model, numbers);
+    put_numbers(file, "values", numbers, columns);
+    for (size_t k = 0; k < sliders; ++k) {
+        numbers[k] = se3di_live_get_slider(model, k)->value;
+    }
+    put_numbers(file, "numbers", numbers, sliders);
+    fputs("}", file);
+}
+
+char *live_text_of_state(se3di_live *model, const live_status *s, size_t *size)
+{
+    char *data = NULL;
+    double *numbers = calloc(se3di_live_count_places(model) + se3di_live_count_columns(model) +
+                                 se3di_live_count_sliders(model) + 1,
+                             sizeof *numbers);
+    FILE *file = numbers ? open_memstream(&data, size) : NULL;
+    if (file) {
+        put_state(file, model, s, numbers);
+        data = live_text_take(file, &data);
+    }
+    free(numbers);
+    return data;
+}
+
+/* The JSON of binary glTF, for the units that it names. @return NULL: out of memory. */
+static char *copy_json(const char *glb, size_t size)
+{
+    size_t length = 0;
+    for (int k = 3; k >= 0 && size > 20; --k) {
+        length = length << 8 | (unsigned char)glb[12 + k];
+    }
+    length = length < size - 20 ? length : 0;
+    char *json = malloc(length + 1);
+    if (json) {
+        memcpy(json, glb + 20, length);
+        json[length] = '\0';
+    }
+    return json;
+}
+
+static void put_results(FILE *file, const se3di_live *model, char *json)
+{
+    const table units = {.scene = json};
+    char unit[60];
+    fputs(",\"results\":{\"names\":[\"time\"", file);
+    for (size_t k = 0; k < se3di_live_count_columns(model); ++k) {
+        fputs(",", file);
+        text_put_json(file, se3di_live_get_column(model, k));
+    }
+    fputs("],\"units\":[\"s\"", file);
+    for (size_t k = 0; k < se3di_live_count_columns(model); ++k) {
+        fputs(",", file);
+        text_put_json(file,
+                      table_get_unit(&units, se3di_live_get_column(model, k), unit, sizeof unit));
+    }
+    fputs("]},\"sliders\":[", file);
+    for (size_t k = 0; k < se3di_live_count_sliders(model); ++k) {
+        const se3di_live_slider *slider = se3di_live_get_slider(model, k);
+        fputs(k > 0 ? ",{\"name\":" : "{\"name\":", file);
+        text_put_json(file, slider->name);
+        fputs(",\"unit\":", file);
+        text_put_json(file, slider->unit);
+        fprintf(file, ",\"start\":%.12g}", slider->start);
+    }
+    fputs("]}", file);
+}
+
+char *live_text_of_scene(se3di_live *model)
+{
+    char *glb = NULL;
+    char *data = NULL;
+    size_t glb_size = 0;
+    size_t size = 0;
+    FILE *binary = open_memstream(&glb, &glb_size);
+    const int good = binary && se3di_live_put_scene(model, binary);
+    if (!binary || fclose(binary) != 0 || !good || glb_size <= 20) {
+        free(glb);
+        return NULL;
+    }
+    char *json = copy_json(glb, glb_size);
+    FILE *file = json ? open_memstream(&data, &size) : NULL;
+    if (file) {
+        fputs("\"glb\":\"", file);
+        base64_put(file, glb, glb_size);
+        fputs("\"", file);
+        put_results(file, model, json);
+        data = live_text_take(file, &data);
+    }
+    free(json);
+    free(glb);
+    return data;
+}

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page of `se3d live`: asks the program for the state of the model again and again, and tells it what the user wants.
+"use strict";
+(() => {
+  const $ = (id) => document.getElementById(id);
+  document.body.classList.add("living");
+  $("speed").add(new Option("as fast as it goes", "0"));
+
+  // Words to the program, one after the other; of the same kind the last one counts.
+  const waiting = new Map();
+  let busy = false;
+  const post = async (kind, words = "") => {
+    waiting.delete(kind);
+    waiting.set(kind, `${kind.split(" ")[0]} ${words}`.trim());
+    if (busy) return;
+    busy = true;
+    while (waiting.size) {
+      const [first, body] = waiting.entries().next().value;
+      waiting.delete(first);
+      try { await fetch("do", { method: "POST", headers: { "Content-Type": "text/plain" }, body }); } catch (e) { /* `follow` says it */ }
+    }
+    busy = false;
+  };
+  let version = -1, viewer = null, sliders = [];
+  // What names a body or a number is said of a version of the model.
+  const live = { post: (kind, words) => post(kind, kind === "pull" ? `${version} ${words}` : words), pulls: () => $("pull").getAttribute("aria-pressed") === "true" };
+
+  const show = (text) => { $("trouble").textContent = text; $("trouble").style.display = text ? "block" : "none"; };
+  const digits = (v) => String(Number(v.toPrecision(6)));
+  const units = { "kg.m.s-2": "N", "kg.m2.s-2": "N m", "kg.s-2": "N/m", "kg.s-1": "N s/m", "m.s-1": "m/s", "rad.s-1": "rad/s", "s-1": "1/s" };
+  const makeSliders = (list) => {
+    sliders = list.map(({ name, unit, start }, k) => {
+      const label = document.createElement("label"), range = document.createElement("input"), number = document.createElement("input");
+      const width = Math.abs(start) || 1;
+      range.type = "range"; number.type = "number"; number.step = "any";
+      Object.assign(range, { min: start - width, max: start + width, step: "any" });
+      range.setAttribute("aria-label", name); number.setAttribute("aria-label", name);
+      const tell = (text) => { if (text !== "" && Number.isFinite(Number(text))) post(`set ${k}`, `${version} ${k} ${text}`); };
+      range.oninput = () => { number.value = digits(Number(range.value)); tell(range.value); };
+      number.onchange = () => tell(number.value);
+      label.append(name + (unit && unit !== "1" ? ` [${units[unit] || unit}]` : ""), document.createElement("br"), range, " ", number);
+      return { label, range, number };
+    });
+    $("sliders").replaceChildren(...sliders.map((s) => s.label));
+  };
+  const showNumbers = (values) => values.forEach((value, k) => {
+    const { range, number } = sliders[k];
+    if (document.activeElement !== range) {
+      if (value < Number(range.min)) range.min = value;
+      if (value > Number(range.max)) range.max = value;
+      range.value = value;
+    }
+    if (document.activeElement !== number && document.activeElement !== range) number.value = digits(value);
+  });
+
+  let named = ""; // the sliders that are there
+  const open = async () => {
+    const scene = await (await fetch("scene")).json();
+    if (viewer) { viewer.share(); viewer.close(); }
+    viewer = se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: null, live });
+    const names = JSON.stringify(scene.sliders);
+    if (names !== named) makeSliders(scene.sliders);
+    named = names;
+    version = scene.version;
+  };
+  const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+  const follow = async () => {
+    let sequence = 0;
+    for (;;) {
+      try {
+        const answer = await fetch(`state?after=${sequence}`);
+        if (!answer.ok) throw new Error(answer.statusText);
+        const state = await answer.json();
+        sequence = state.sequence;
+        if (state.version !== version) await open();
+        if (state.version === version) {
+          viewer.feed(state);
+          showNumbers(state.numbers);
+          show(state.trouble);
+          Object.assign(window.se3dLive, { state, version });
+        }
+      } catch (e) {
+        show(`${viewer ? "the program has ended, or does not answer" : "no answer from the program"} (${e.message})`);
+        sequence = 0;
+        await pause(1000);
+      }
+    }
+  };
+  for (const kind of ["step", "reset"]) $(kind).onclick = () => post(kind);
+  $("defaults").onclick = () => post("anew");
+  $("pull").onclick = () => $("pull").setAttribute("aria-pressed", String(!live.pulls()));
+  window.se3dLive = { post, state: null, version };
+  follow();
+})();
