@@ -54,8 +54,8 @@ echo "20 bodies over 10 s: $size bytes"
 checks=$((checks + 1))
 [ "$size" -lt 1500000 ] || fail "20 bodies: $size bytes"
 opens '20 bodies' "$dir/twenty/scene.html" "$dir/twenty/results.csv" b2
-# 10,000 grains, or 3,000 if there is not much time: some come late, some leave early.
-many=3000
+# 10,000 grains, or 1,200 if there is not much time: some come late, some leave early.
+many=1200
 [ -z "${SE3D_LONG:-}" ] || many=10000
 "$program" run -q "$source/examples/models/pushed_grains.yaml" -o "$dir/grains"
 opens_grains() {
