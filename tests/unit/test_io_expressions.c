@@ -9,7 +9,7 @@
 #include "support/read_text.h"
 
 #define BALL                                                                                       \
-    "se3d: 1\nparameters: {twice: 2, ball_position_z: 100}\ngravity: [0, 0, -10]\n"                \
+    "se3d: 1\nparameters: {twice: 2, ball: 7, ball_position_z: 100}\ngravity: [0, 0, -10]\n"       \
     "bodies:\n  - {name: ball, mass: 2, inertia: [1, 1, 1], position: [1, 2, 3], "                 \
     "velocity: [3, 0, 4]}\n  - {name: left-arm, mass: 1, inertia: [1, 1, 1], position: [0, 0, "    \
     "7]}\nanalysis: {type: dynamics, duration: 1, step: 0.01, tolerance: 1e-10}\n"

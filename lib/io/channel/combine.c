@@ -42,11 +42,21 @@ static size_t skip_number(const char *at)
     return length;
 }
 
+/* Whether a word with dots, pin.x, is a component of a point or vector that is called pin; a joint
+ * may have the same name, but pin.force.x is none. */
+static bool is_component(const se3di_scope *scope, const char *word, size_t length)
+{
+    char head[64];
+    const size_t dot = strcspn(word, ".");
+    snprintf(head, sizeof head, "%.*s", (int)dot, word);
+    return dot + 2 == length && strchr("xyz", word[dot + 1]) && scope &&
+           se3di_scope_find(scope, head);
+}
+
 /* The next name at or behind `at` that is a channel's: in ' ', or with a dot. @return NULL: none */
 static const char *find_mention(const char *at, const se3di_scope *scope, size_t *length)
 {
     while (*at) {
-        char head[64];
         size_t n = 0;
         if (*at == '\'') {
             const char *end = strchr(at + 1, '\'');
@@ -61,8 +71,7 @@ static const char *find_mention(const char *at, const se3di_scope *scope, size_t
                (at[n] == '@' && memchr(at, '.', n) && is_word(at[n + 1]))) {
             ++n;
         }
-        snprintf(head, sizeof head, "%.*s", (int)strcspn(at, "."), at);
-        if (memchr(at, '.', n) && !(scope && se3di_scope_find(scope, head))) {
+        if (memchr(at, '.', n) && !is_component(scope, at, n)) {
             *length = n;
             return at;
         }
