@@ -180,7 +180,7 @@ static bool parse_number(se3di_formula *f, size_t length, se3di_amount *out)
         return true;
     }
     f->at += blanks;
-    const size_t used = se3di_unit_parse(f->at, false, &unit);
+    const size_t used = se3di_unit_parse(f->at, true, &unit);
     if (used == 0) {
         return fail_unit(f, word);
     }

@@ -38,7 +38,7 @@ static bool read_unit(se3di_reader *reader, const se3di_node *map, const char *k
     if (!se3di_read_text(reader, node, &text)) {
         return false;
     }
-    const size_t length = se3di_unit_parse(text, false, &found);
+    const size_t length = se3di_unit_parse(text, true, &found);
     if (length == 0 || text[length]) {
         return se3di_reader_fail(reader, node,
                                  "`%.60s` is no unit, must be one such as mm, kg, s, "
