@@ -534,6 +534,7 @@ static se3d_status settle_poses(inspection *in)
     if (worst <= FITS) {
         return SE3D_OK;
     }
+    equations->unfolds = 1;
     se3d_status status = se3di_position_solve(equations, t);
     if (status == SE3D_ERR_INCONSISTENT || status == SE3D_ERR_NO_CONVERGENCE) {
         in->tolerance = RANK_VIOLATED;

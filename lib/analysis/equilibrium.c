@@ -330,7 +330,10 @@ static se3d_status solve(statics *s)
     int converged;
     stop_motion(&s->equations->assembly);
     SE3DI_TRY(se3di_ranks_decide(s->equations, s->t));
-    SE3DI_TRY(se3di_position_solve(s->equations, s->t));
+    s->equations->unfolds = 1;
+    const se3d_status met = se3di_position_solve(s->equations, s->t);
+    s->equations->unfolds = 0;
+    SE3DI_TRY(met);
     SE3DI_TRY(evaluate(s, 0));
     SE3DI_TRY(iterate(s, &converged));
     if (converged) {

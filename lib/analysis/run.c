@@ -311,6 +311,7 @@ static se3d_status settle(se3di_run *run, double t)
     se3di_equations *equations = &run->equations;
     se3di_state_accept(equations);
     equations->hold = run->analysis == SE3D_ANALYSIS_ASSEMBLY;
+    equations->unfolds = 1;
     se3d_status status = se3di_ranks_decide(equations, t);
     if (status >= 0 && is_driven(run) &&
         !run->determined) { /* before levels that may have no solution there */
@@ -319,6 +320,7 @@ static se3d_status settle(se3di_run *run, double t)
         run->determined = status >= 0;
     }
     status = status < 0 ? status : se3di_state_solve(equations, t);
+    equations->unfolds = 0;
     if (status >= 0 && !(run->model->settled & SE3DI_SETTLED)) {
         note_start(run, t);
     }

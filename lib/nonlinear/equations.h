@@ -53,7 +53,7 @@ typedef struct se3di_equations {
     int32_t hold;                  /* positions and velocities of held bodies stay (assembly) */
     int32_t audits;                /* kinematic steps integrate powers to works */
     int32_t keeps;                 /* `kept` is what a failure has to come back to */
-    int32_t reserved;
+    int32_t unfolds; /* poses are assembled: they may leave a stretched chain's line */
     se3di_friction_system friction;
     se3di_tree *tree;        /* joint coordinates, NULL: another formulation */
     se3di_tree_loops loops;  /* its loop constraints, if there are any */

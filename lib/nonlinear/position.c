@@ -17,6 +17,7 @@
 #define DAMPED_ITERATIONS 200
 #define GAP_MAX           100.0 /* sizes; a larger one is the size */
 #define CORRECTIONS       10
+#define DISTURBANCE       0.03 /* [rad], of the size */
 #define DIGITS            1e-4 /* of the size: what dimensions of four digits leave open */
 
 typedef struct position_problem {
@@ -426,21 +427,74 @@ static void update_frames(se3di_equations *equations)
     }
 }
 
+/* Newton, and where it stalls damped steps. */
+static se3d_status approach(position_problem *problem, int *converged, int *stationary)
+{
+    se3di_equations *equations = problem->equations;
+    *stationary = 0;
+    SE3DI_TRY(run_newton(problem, equations->iterations_max, converged));
+    for (int round = 0; round < 3 && !*converged && !*stationary; ++round) {
+        SE3DI_TRY(run_damped(problem, round == 0 ? 1e-4 : 1e-11, stationary));
+        if (problem->worst < 1e-2) {
+            SE3DI_TRY(run_newton(problem, equations->iterations_max, converged));
+        }
+    }
+    return SE3D_OK;
+}
+
+/* All bodies a little aside, each in another direction. */
+static void disturb(position_problem *problem)
+{
+    se3di_equations *equations = problem->equations;
+    const size_t n = (size_t)equations->assembly.formulation->block;
+    uint64_t seed = 88172645463325252u;
+    for (size_t k = 0; k < equations->assembly.unknown_count; ++k) {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        const double part = (double)(seed >> 11) * 0x1p-52 - 1.0;
+        equations->x[k] = DISTURBANCE * part * (k % n < 3 ? problem->size : 1.0);
+    }
+    se3di_equations_save(equations);
+    move(problem, 1.0);
+    measure(problem);
+}
+
+/* The poses of least violation may be so along a line only: a chain that is given exactly stretched
+ * and must fold. From beside it there is a way on; if not, the poses stay. */
+static se3d_status unfold(position_problem *problem, int *converged)
+{
+    const se3di_assembly *assembly = &problem->equations->assembly;
+    const size_t count = assembly->dense_count;
+    se3di_frame *found = se3di_alloc(&assembly->model->allocator, count, sizeof *found);
+    int stationary;
+    if (!found) {
+        return se3di_error_set(problem->equations->error, SE3D_ERR_NO_MEMORY,
+                               "no memory for poses");
+    }
+    memcpy(found, assembly->model->frames, count * sizeof *found);
+    disturb(problem);
+    const se3d_status status = approach(problem, converged, &stationary);
+    if (status < 0 || !*converged) {
+        *converged = 0;
+        memcpy(assembly->model->frames, found, count * sizeof *found);
+        measure(problem);
+    }
+    se3di_free(&assembly->model->allocator, found, count, sizeof *found);
+    return status == SE3D_ERR_CALLBACK ? status : SE3D_OK;
+}
+
 se3d_status se3di_position_solve(se3di_equations *equations, double t)
 {
     position_problem problem = {.equations = equations};
-    int converged;
-    int stationary = 0;
+    int converged, stationary;
     problem.size = se3di_model_get_size(equations->assembly.model);
     SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
     measure(&problem);
     widen(&problem);
-    SE3DI_TRY(run_newton(&problem, equations->iterations_max, &converged));
-    for (int round = 0; round < 3 && !converged && !stationary; ++round) {
-        SE3DI_TRY(run_damped(&problem, round == 0 ? 1e-4 : 1e-11, &stationary));
-        if (problem.worst < 1e-2) {
-            SE3DI_TRY(run_newton(&problem, equations->iterations_max, &converged));
-        }
+    SE3DI_TRY(approach(&problem, &converged, &stationary));
+    if (stationary && !converged && equations->unfolds) {
+        SE3DI_TRY(unfold(&problem, &converged));
     }
     update_frames(equations);
     return converged ? SE3D_OK : report_gap(&problem, t, stationary);

@@ -64,8 +64,62 @@ static void check_tells_open_poses_from_links_that_do_not_reach(void)
     text_model_close(&m);
 }
 
+/* Given exactly stretched, the poses of least violation are so along their line: two links of 1 m
+ * with 1.8 m between their ends, and three over 2.2 m in space. */
+static const char *const stretched[] = {
+    "se3d: 1\nbodies:\n"
+    "  - {name: a, mass: 1, inertia: [1, 1, 1], position: [0.5, 0, 0]}\n"
+    "  - {name: b, mass: 1, inertia: [1, 1, 1], position: [1.5, 0, 0]}\njoints:\n"
+    "  - {type: revolute, body_i: ground, body_j: a, point_i: [0, 0, 0], point_j: [-0.5, 0, 0], "
+    "axis_i: [0, 1, 0], axis_j: [0, 1, 0]}\n"
+    "  - {type: revolute, body_i: a, body_j: b, point_i: [0.5, 0, 0], point_j: [-0.5, 0, 0], "
+    "axis_i: [0, 1, 0], axis_j: [0, 1, 0]}\n"
+    "  - {type: revolute, body_i: ground, body_j: b, point_i: [1.8, 0, 0], point_j: [0.5, 0, 0], "
+    "axis_i: [0, 1, 0], axis_j: [0, 1, 0]}\n"
+    "analysis: {type: assembly}\noutput: []\n",
+    "se3d: 1\nbodies:\n"
+    "  - {name: a, mass: 1, inertia: [1, 1, 1], position: [0, 0, 0.5]}\n"
+    "  - {name: b, mass: 1, inertia: [1, 1, 1], position: [0, 0, 1.5]}\n"
+    "  - {name: c, mass: 1, inertia: [1, 1, 1], position: [0, 0, 2.5]}\njoints:\n"
+    "  - {type: spherical, body_i: ground, body_j: a, point_i: [0, 0, 0], point_j: [0, 0, -0.5]}\n"
+    "  - {type: spherical, body_i: a, body_j: b, point_i: [0, 0, 0.5], point_j: [0, 0, -0.5]}\n"
+    "  - {type: spherical, body_i: b, body_j: c, point_i: [0, 0, 0.5], point_j: [0, 0, -0.5]}\n"
+    "  - {type: spherical, body_i: ground, body_j: c, point_i: [0, 0, 2.2], point_j: [0, 0, 0.5]}\n"
+    "analysis: {type: assembly}\noutput: []\n"};
+
+static void a_chain_that_is_given_stretched_folds(void)
+{
+    static const int32_t analyses[] = {SE3D_ANALYSIS_ASSEMBLY, SE3D_ANALYSIS_DYNAMICS,
+                                       SE3D_ANALYSIS_EQUILIBRIUM};
+    for (size_t k = 0; k < sizeof stretched / sizeof *stretched; ++k) {
+        for (size_t a = 0; a < sizeof analyses / sizeof *analyses; ++a) {
+            for (int32_t f = 0; f <= SE3D_FORMULATION_JOINT; ++f) {
+                text_model m = text_model_open(stretched[k], -1, f, 0.0);
+                se3d_solver_def def = se3d_solver_def_default();
+                double off[3];
+                def.analysis = analyses[a];
+                def.formulation = f;
+                se3d_solver_destroy(m.solver);
+                CHECK(!se3d_solver_create(m.system, &def, &m.solver));
+                CHECK(se3d_solver_run(m.solver, 0.0) >= 0);
+                CHECK(!se3d_system_get_violation(m.system, off));
+                CHECK(off[0] < 1e-10);
+                text_model_close(&m);
+            }
+        }
+        text_model m = text_model_open(stretched[k], -1, 0, 0.0);
+        se3d_check *check = NULL;
+        se3d_check_summary sum = {.struct_size = sizeof sum, .inconsistent = 1};
+        CHECK(se3d_check_create(m.system, &check) >= 0 && !se3d_check_get_summary(check, &sum));
+        CHECK(sum.inconsistent == 0);
+        se3d_check_destroy(check);
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
+    RUN(a_chain_that_is_given_stretched_folds);
     RUN(links_that_do_not_reach_are_named_with_what_is_missing);
     RUN(check_tells_open_poses_from_links_that_do_not_reach);
     return check_finish();
