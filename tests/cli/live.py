@@ -143,10 +143,14 @@ def check_guards(live):
             ("DELETE", 405, "DELETE", path, {}), ("PUT", 405, "PUT", path + "do", {}),
             ("a word to the page", 404, "POST", path, {}), ("no such thing", 404, "GET", path + "other", {}),
             ("a file", 404, "GET", path + "../../etc/passwd", {}), ("an argument", 200, "GET", path + "state?after=x", {}),
+            ("a later state", 200, "GET", path + "state?after=123456789", {}),
             ("words without end", 413, "POST", path + "do", {"body": "set " + "1" * 300}),
             ("a zero", 400, "POST", path + "do", {"body": "run\0"})]:
         answer, text, _ = live.ask(method, place, head.pop("body", None), **head)
         check(answer == status, f"{what}: {answer} in place of {status}: {text[:80]}")
+    for _ in range(80): # clients who go at once do not fill the places of others
+        check(live.raw(f"POST {path}do HTTP/1.1\r\nHost: {own}\r\nContent-Length: 5\r\n\r\npause".encode()) == 200, "it answers at once")
+    live.say("run")
     lines = f"GET {path} HTTP/1.1\r\n"
     check(live.raw(f"GET {path} HTTP/1.0\r\n\r\n".encode()) == 403, "no host")
     check(live.raw(f"{lines}Host: {own}\r\nHost: {own}\r\n\r\n".encode()) in (400, 403), "two hosts")

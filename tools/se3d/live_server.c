@@ -207,7 +207,7 @@ static enum MHD_Result answer_state(live_server *s, request *r)
     s->seen = now();
     if (s->is_closing) {
         result = refuse(r->connection, MHD_HTTP_SERVICE_UNAVAILABLE, "the program ends\n");
-    } else if (s->state.data && (s->sequence > after || r->is_due)) {
+    } else if (s->state.data && (s->sequence != after || r->is_due)) {
         result =
             answer(r->connection, MHD_HTTP_OK, "application/json", s->state.data, s->state.size);
     } else {
@@ -362,8 +362,10 @@ static int listen_at(live_server *s, int port)
     place.sin_family = AF_INET;
     place.sin_port = htons((uint16_t)port);
     place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    /* poll, not epoll: that overlooks clients who have gone until they are timed out, and these fill
+     * the places of others */
     s->daemon = MHD_start_daemon(
-        MHD_USE_AUTO | MHD_USE_INTERNAL_POLLING_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
+        MHD_USE_POLL | MHD_USE_INTERNAL_POLLING_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
         handle, s, MHD_OPTION_SOCK_ADDR, (struct sockaddr *)&place, MHD_OPTION_NOTIFY_COMPLETED,
         forget, NULL, MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS_MAX,
         MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)CONNECTION_BYTES, MHD_OPTION_CONNECTION_TIMEOUT,
