@@ -142,7 +142,11 @@ typedef struct se3d_fill_def {
     const double *weights;         /* [radius_count] with frequencies like these; NULL: all alike */
     size_t radius_count;           /* of `radii`; 0: the range */
     uint32_t tag;                  /* of the particles, below SE3D_PARTICLES_TAGS */
-    uint32_t reserved;
+    uint32_t clump;                /* 0: spheres; else clumps of template clump - 1 (se3d/clump.h):
+                                    * a radius is that of the sphere about the centre of mass that
+                                    * holds a clump, all 0: as the template says */
+    double orientation[4];         /* of clumps: template -> ground, Euler parameters, unit to 1e-6;
+                                    * all 0: at random */
 } se3d_fill_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_fill_def_default. @since 0.1 */
@@ -281,7 +285,7 @@ SE3D_API se3d_status se3d_particles_get_sink_count(const se3d_particles *particl
  * @since 0.1 */
 SE3D_API se3d_status se3d_particles_remove_sink(se3d_particles *particles, uint32_t sink);
 
-/* Give particles a tag.
+/* Give particles a tag; the spheres of a clump have one.
  * @param[in] count  of ids
  * @param[in] ids    [count] of the particles
  * @param[in] tag    below SE3D_PARTICLES_TAGS
@@ -315,7 +319,7 @@ static inline se3d_status se3d_particles_get_tally(const se3d_particles *particl
     return se3d_particles_get_tally_sized(particles, tag, tally, sizeof *tally);
 }
 
-/* Remove particles.
+/* Remove particles. With a sphere of a clump its clump goes.
  * @param[in] count  of ids
  * @param[in] ids    [count] of the particles
  * @return OK, NULL, INVALID_ARGUMENT (an id of no particle; nothing changed), NO_MEMORY.
@@ -368,7 +372,8 @@ SE3D_API se3d_status se3d_particles_get_radii(const se3d_particles *particles, s
 SE3D_API se3d_status se3d_particles_get_all(const se3d_particles *particles, size_t count,
                                             double *r, double *v, double *w);
 
-/* Set the states of the particles. Arrays that are NULL leave their quantity alone.
+/* Set the states of the particles. Arrays that are NULL leave their quantity alone. Spheres of
+ * clumps stay with their clump: se3d_particles_set_clumps.
  * @param[in] count  must be se3d_particles_count
  * @param[in] r      [count * 3] centres, ground frame [m]
  * @param[in] v      [count * 3] ground frame [m/s]
@@ -483,6 +488,7 @@ typedef struct se3d_particles_stats {
     uint64_t bytes;    /* memory held */
     uint64_t threads;  /* that worked on the last step: 1 if the library knows no OpenMP */
     uint64_t left;     /* lost, and those that are there but outside, as in se3d_particles_tally */
+    uint64_t clumps;   /* that are there (se3d/clump.h) */
 } se3d_particles_stats;
 
 /* As se3d_particles_get_stats, told the size of *stats in bytes. @return as

@@ -5,6 +5,8 @@
 #include "math/elementary.h"
 #include "math/vec3.h"
 
+#include <string.h>
+
 /* Data sheets round their figures: a plate (c = a + b) must pass. */
 #define RELATIVE_TOLERANCE 1e-9
 
@@ -22,9 +24,10 @@ void se3di_inertia_matrix(const double J[6], double M[9])
 }
 
 /* Turn in the plane (r, s) so that the symmetric M loses its element (r, s); o is the third axis.
- */
-static void rotate_away(double M[9], int r, int s, int o)
+ * The columns of R turn along. */
+static void rotate_away(double M[9], double R[9], int r, int s)
 {
+    const int o = 3 - r - s;
     const double off = M[3 * r + s];
     if (off == 0.0) {
         return;
@@ -41,6 +44,11 @@ static void rotate_away(double M[9], int r, int s, int o)
     M[3 * r + s] = M[3 * s + r] = 0.0;
     M[3 * r + o] = M[3 * o + r] = cosine * ro - sine * so;
     M[3 * s + o] = M[3 * o + s] = sine * ro + cosine * so;
+    for (int row = 0; row < 9; row += 3) {
+        const double before = R[row + r];
+        R[row + r] = cosine * before - sine * R[row + s];
+        R[row + s] = sine * before + cosine * R[row + s];
+    }
 }
 
 static void order(double *low, double *high)
@@ -52,18 +60,26 @@ static void order(double *low, double *high)
     }
 }
 
-void se3di_inertia_principal(const double J[6], double moments[3])
+void se3di_inertia_axes(const double J[6], double moments[3], double R[9])
 {
+    static const double identity[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     double M[9];
     se3di_inertia_matrix(J, M);
+    memcpy(R, identity, sizeof identity);
     for (int sweep = 0; sweep < SWEEPS; ++sweep) {
-        rotate_away(M, 0, 1, 2);
-        rotate_away(M, 0, 2, 1);
-        rotate_away(M, 1, 2, 0);
+        rotate_away(M, R, 0, 1);
+        rotate_away(M, R, 0, 2);
+        rotate_away(M, R, 1, 2);
     }
     for (int k = 0; k < 3; ++k) {
         moments[k] = M[4 * k];
     }
+}
+
+void se3di_inertia_principal(const double J[6], double moments[3])
+{
+    double R[9];
+    se3di_inertia_axes(J, moments, R);
     order(&moments[0], &moments[1]);
     order(&moments[1], &moments[2]);
     order(&moments[0], &moments[1]);

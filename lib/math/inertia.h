@@ -20,6 +20,10 @@ void se3di_inertia_matrix(const double J[6], double M[9]);
 /* The principal moments, ascending. */
 void se3di_inertia_principal(const double J[6], double moments[3]);
 
+/* Principal moments and their axes, the columns of the rotation R, as near to the axes of J as
+ * successive turns leave them: J = R diag(moments) R^T. */
+void se3di_inertia_axes(const double J[6], double moments[3], double R[9]);
+
 /* An se3di_inertia_verdict: 0 if J is physical up to 1e-9 of its largest moment (NOT a truth
  * value: zero means yes). */
 int se3di_inertia_is_physical(const double J[6]);

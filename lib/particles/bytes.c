@@ -6,9 +6,12 @@
 #include "particles/bytes.h"
 
 #include "particles/chain.h"
+#include "particles/clump.h"
 #include "particles/list.h"
 #include "particles/memory.h"
 #include "particles/sync.h"
+
+#include "math/quaternion.h"
 
 #include <string.h>
 
@@ -16,6 +19,7 @@
 typedef struct lengths {
     size_t stuffs, walls, particles, ids, slabs;
     size_t list, near, faces, blocks, mesh, mesh_old, carry;
+    size_t templates, clumps;
     int32_t has_rolls; /* beside the blocks */
 } lengths;
 
@@ -34,6 +38,8 @@ static lengths measure(const se3di_particles *set)
                      .mesh = valid ? set->mesh_count : 0,
                      .mesh_old = valid ? 0 : set->mesh_old_count,
                      .carry = valid ? 0 : set->carry_count,
+                     .templates = set->template_count,
+                     .clumps = set->clump_count,
                      .has_rolls = valid && set->block_count > 0 && set->rolls};
 }
 
@@ -52,6 +58,8 @@ static void code_lengths(se3di_coder *c, lengths *n)
     se3di_code_count(c, &n->mesh_old, 5.0);
     se3di_code_count(c, &n->carry, 4.0);
     se3di_code_flag(c, &n->has_rolls);
+    se3di_code_count(c, &n->templates, 0.0);
+    se3di_code_count(c, &n->clumps, 17.0);
 }
 
 static void code_record(se3di_coder *c, se3di_particles *set)
@@ -142,6 +150,27 @@ static void code_particles(se3di_coder *c, se3di_particles *set)
             spin->material = (uint16_t)kind[0];
             spin->tag = (uint16_t)kind[1];
             spin->id = kind[2];
+        }
+    }
+}
+
+static void code_clumps(se3di_coder *c, se3di_particles *set)
+{
+    for (size_t k = 0; k < set->clump_count; ++k) {
+        se3di_clump *clump = &set->clumps[k];
+        uint32_t names[2] = {clump->first, clump->template_index};
+        se3di_code_numbers(c, clump->x, 3);
+        se3di_code_numbers(c, clump->q, 4);
+        se3di_code_numbers(c, clump->v, 3);
+        se3di_code_numbers(c, clump->spin, 3);
+        se3di_code_numbers(c, &clump->scale, 1);
+        se3di_code_numbers(c, &clump->factor, 1);
+        se3di_code_uint32(c, &names[0]);
+        se3di_code_uint32(c, &names[1]);
+        if (c->in) {
+            clump->first = names[0];
+            clump->template_index = names[1];
+            se3di_quat_to_matrix(clump->q, clump->A);
         }
     }
 }
@@ -259,6 +288,7 @@ static void code_lists(se3di_coder *c, se3di_particles *set, const lengths *n)
 static void code_arrays(se3di_coder *c, se3di_particles *set, const lengths *n)
 {
     code_particles(c, set);
+    code_clumps(c, set);
     se3di_code_indices(c, set->index_of, n->ids);
     if (set->list_valid) {
         code_lists(c, set, n);
@@ -310,7 +340,7 @@ static void empty(se3di_particles *set)
 {
     set->count = set->id_count = set->list_count = set->near_count = set->face_count = 0;
     set->mesh_count = set->mesh_old_count = set->carry_count = set->stuff_count = 0;
-    set->wall_count = 0;
+    set->wall_count = set->clump_count = 0;
     set->block_count = set->slab_count = 0;
     set->list_valid = set->force_valid = set->carry_rolling = 0;
     set->topology_version = 0;
@@ -404,6 +434,7 @@ static se3d_status make_room(se3di_particles *set, const lengths *n)
 {
     SE3DI_TRY(se3di_particles_reserve(set, n->particles));
     SE3DI_TRY(se3di_particles_grow(set, &set->index_of, &set->index_capacity, n->ids));
+    SE3DI_TRY(se3di_clumps_reserve(set, n->ids, n->clumps));
     SE3DI_TRY(reserve_lists(set, n));
     SE3DI_TRY(reserve_blocks(set, n));
     SE3DI_TRY(se3di_particles_reserve_carry(set, n->carry, set->carry_rolling));
@@ -417,6 +448,7 @@ static se3d_status make_room(se3di_particles *set, const lengths *n)
     set->mesh_count = n->mesh;
     set->mesh_old_count = n->mesh_old;
     set->carry_count = n->carry;
+    set->clump_count = n->clumps;
     return SE3D_OK;
 }
 
@@ -425,6 +457,7 @@ static int fit(const se3di_particles *set, const lengths *n)
 {
     const int here = set->list_valid;
     return n->slabs <= SE3DI_PARTICLE_SLABS_MAX && n->particles <= n->ids &&
+           n->clumps <= n->particles && (n->clumps == 0 || n->templates > 0) &&
            n->ids < SE3DI_CARRY_WALL && n->list < UINT32_MAX && n->blocks < UINT32_MAX &&
            (here ? n->mesh_old + n->carry == 0
                  : n->slabs + n->list + n->near + n->faces + n->blocks + n->mesh == 0);
@@ -437,7 +470,7 @@ static se3d_status read_set(se3di_coder *c, const se3di_model *model, se3di_part
     code_lengths(c, &n);
     SE3DI_TRY(read_stuffs(c, model, set, n.stuffs));
     SE3DI_TRY(se3di_particles_sync(set, model));
-    if (set->wall_count != n.walls) {
+    if (set->wall_count != n.walls || set->template_count != n.templates) {
         return SE3D_ERR_STATE;
     }
     code_record(c, set);

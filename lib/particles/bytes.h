@@ -14,7 +14,7 @@ void se3di_sets_write(se3di_coder *coder, const se3di_particles *sets);
 se3d_status se3di_sets_read(se3di_coder *coder, const se3di_model *model, se3di_particles **sets);
 
 /* bytes_check.c: whether the lists of a set that was read name what is there, whatever the bytes
- * say, and are such that threads do not meet. */
-int se3di_particles_are_sound(const se3di_particles *set);
+ * say, and are such that threads do not meet; the spheres of clumps get to know these. */
+int se3di_particles_are_sound(se3di_particles *set);
 
 #endif

@@ -4,6 +4,8 @@
  * particle. What no run would write, but does no harm, passes. */
 #include "particles/bytes.h"
 
+#include "particles/clump.h"
+
 #include <math.h>
 
 #define ROUNDING 1e-12 /* of a radius that is drawn */
@@ -245,8 +247,30 @@ static int is_history(const se3di_particles *set)
     return 1;
 }
 
-int se3di_particles_are_sound(const se3di_particles *set)
+static int is_clump(const se3di_particles *set, const se3di_clump *clump)
 {
-    return are_numbers(set) && are_particles(set) && are_sources(set) && are_walls(set) &&
-           (set->list_valid ? are_lists(set) : is_history(set));
+    double square = 0.0;
+    for (int k = 0; k < 4; ++k) {
+        square += clump->q[k] * clump->q[k];
+    }
+    return are_finite(clump->x, 3) && are_finite(clump->v, 3) && are_finite(clump->spin, 3) &&
+           fabs(square - 1.0) < 1e-6 && clump->scale > 0.0 && isfinite(clump->scale) &&
+           clump->factor > 0.0 && isfinite(clump->factor) &&
+           clump->template_index < set->template_count;
+}
+
+static int are_clumps(se3di_particles *set)
+{
+    for (size_t k = 0; k < set->clump_count; ++k) {
+        if (!is_clump(set, &set->clumps[k])) {
+            return 0;
+        }
+    }
+    return se3di_clumps_index(set);
+}
+
+int se3di_particles_are_sound(se3di_particles *set)
+{
+    return are_numbers(set) && are_particles(set) && are_clumps(set) && are_sources(set) &&
+           are_walls(set) && (set->list_valid ? are_lists(set) : is_history(set));
 }

@@ -61,6 +61,7 @@ static se3di_force_task task_of(const se3di_particles *set, couple *c)
         .stuffs = set->stuffs,
         .callback = set->callback,
         .ctx = set->ctx,
+        .clumped = set->clump_count > 0 ? set : NULL,
     };
 }
 

@@ -2,17 +2,31 @@
 #include "particles/energy.h"
 
 #include "math/vec3.h"
+#include "particles/clump.h"
 #include "particles/flow.h"
 
-/* Of particle k: translation, rotation, potential. */
-static void eval(const se3di_particles *set, size_t k, const double g[3], double energy[3])
+/* Of particle k: translation, rotation, potential; returns the mass. Those of a clump are its first
+ * sphere's. */
+static double eval(const se3di_particles *set, size_t k, const double g[3], double energy[3])
 {
     const se3di_particle *particle = &set->particles[k];
+    const se3di_clump *clump = se3di_clump_find(set, k);
     const double *w = set->spins[k].w;
     double mass = 1.0 / particle->inverse_mass;
+    if (clump && clump->first != set->spins[k].id) {
+        energy[0] = energy[1] = energy[2] = 0.0;
+        return 0.0;
+    }
+    if (clump) {
+        mass = se3di_clump_mass(set, clump);
+        se3di_clump_energy(set, clump, energy);
+        energy[2] = -mass * se3di_dot(g, clump->x);
+        return mass;
+    }
     energy[0] = 0.5 * mass * se3di_dot(particle->v, particle->v);
     energy[1] = 0.2 * mass * particle->radius * particle->radius * se3di_dot(w, w);
     energy[2] = -mass * se3di_dot(g, particle->x);
+    return mass;
 }
 
 se3d_particles_energy se3di_particles_energy(const se3di_particles *set, const double g[3])
@@ -21,7 +35,7 @@ se3d_particles_energy se3di_particles_energy(const se3di_particles *set, const d
     size_t id = 0;
     for (size_t k = 0; k < set->count; ++k) {
         double share[3];
-        eval(set, se3di_particles_next(set, &id), g, share);
+        (void)eval(set, se3di_particles_next(set, &id), g, share);
         sum.translation += share[0];
         sum.rotation += share[1];
         sum.potential += share[2];
@@ -38,10 +52,9 @@ se3d_particles_tally se3di_particles_tally(const se3di_particles *set, uint32_t 
         const size_t k = se3di_particles_next(set, &id);
         if (set->spins[k].tag == tag) {
             double share[3];
-            eval(set, k, g, share);
+            tally.mass += eval(set, k, g, share);
             ++tally.count;
             tally.outside += (uint64_t)se3di_particles_is_out(set, k);
-            tally.mass += 1.0 / set->particles[k].inverse_mass;
             tally.energy += share[0] + share[1] + share[2];
         }
     }
@@ -56,7 +69,8 @@ se3d_particles_stats se3di_particles_stats(const se3di_particles *set)
                                   .lost = set->lost,
                                   .bytes = se3di_particles_memory(set),
                                   .threads = (uint64_t)set->team,
-                                  .left = set->lost};
+                                  .left = set->lost,
+                                  .clumps = set->clump_count};
     for (size_t k = 0; k < set->count; ++k) {
         stats.left += (uint64_t)se3di_particles_is_out(set, k);
     }

@@ -3,7 +3,9 @@
 
 #include "base/floats.h"
 #include "math/vec3.h"
+#include "particles/clump.h"
 #include "particles/draw.h"
+#include "particles/piece.h"
 #include "particles/wall.h"
 
 #include <math.h>
@@ -25,11 +27,16 @@ se3di_region se3di_fill_region(const se3d_fill_def *def)
     return region;
 }
 
-static void append(se3di_particles *set, uint32_t material, const se3d_fill_def *def, double radius,
-                   const double x[3])
+/* The piece of this number, which has no place yet. */
+static se3di_piece piece_of(const se3d_fill_def *def, uint32_t material, double radius,
+                            size_t number)
 {
-    (void)se3di_particles_append(set, material, radius, x, def->velocity, NULL);
-    set->spins[set->count - 1].tag = (uint16_t)def->tag;
+    se3di_piece piece = {
+        .clump = def->clump, .material = material, .tag = def->tag, .radius = radius};
+    if (piece.clump > 0) {
+        se3di_piece_turn(&piece, def->orientation, def->seed, number);
+    }
+    return piece;
 }
 
 typedef struct lattice {
@@ -89,6 +96,7 @@ void se3di_lattice_fill(se3di_particles *set, const se3d_fill_def *def, uint32_t
     double x[3];
     uint64_t state = def->seed;
     const se3di_radii radii = se3di_fill_radii(def);
+    size_t number = 0;
     (void)lattice_init(&l, def);
     for (size_t k = 0; k < points; ++k) {
         if (lattice_point(&l, def, k, x)) {
@@ -96,18 +104,24 @@ void se3di_lattice_fill(se3di_particles *set, const se3d_fill_def *def, uint32_t
             for (int a = 0; a < 3; ++a) {
                 x[a] += def->jitter * (2.0 * se3di_random_draw(&state) - 1.0);
             }
-            append(set, material, def, radius, x);
+            se3di_piece piece = piece_of(def, material, radius, number++);
+            se3di_copy(x, piece.x);
+            se3di_piece_append(set, &piece, def->velocity);
         }
     }
 }
 
-double se3di_fill_most(const se3d_fill_def *def)
+double se3di_fill_most(const se3di_particles *set, const se3d_fill_def *def)
 {
-    double most = 1.0;
+    double most = 1.0, volume = 4.0 / 3.0 * 3.1415926535897932384626433832795; /* over radius^3 */
     for (int a = 0; a < 3; ++a) {
         most *= (def->upper[a] - def->lower[a]) / def->radius_min;
     }
-    return most / (4.0 / 3.0 * 3.1415926535897932384626433832795);
+    if (def->clump > 0) {
+        const se3di_clump_template *of = &set->templates[def->clump - 1];
+        volume = of->volume / (of->bound * of->bound * of->bound);
+    }
+    return most / volume;
 }
 
 /* Cells over the region with chains of the particles in them. */
@@ -163,7 +177,7 @@ static int cell_is_free(const packing *p, size_t cell, const double x[3], double
     return 1;
 }
 
-static int is_free(const packing *p, const double x[3], double radius)
+static int has_room(const packing *p, const double x[3], double radius)
 {
     int low[3], high[3];
     for (int a = 0; a < 3; ++a) {
@@ -192,6 +206,19 @@ static int is_free(const packing *p, const double x[3], double radius)
     return 1;
 }
 
+static int is_free(const packing *p, const se3di_piece *piece)
+{
+    const size_t spheres = se3di_piece_count(p->set, piece->clump);
+    for (size_t k = 0; k < spheres; ++k) {
+        double x[3];
+        const double radius = se3di_piece_sphere(p->set, piece, k, x);
+        if (!has_room(p, x, radius)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 static se3d_status packing_init(packing *p, se3di_particles *set, const se3d_fill_def *def)
 {
     double largest = def->radius_max;
@@ -199,7 +226,7 @@ static se3d_status packing_init(packing *p, se3di_particles *set, const se3d_fil
         largest = fmax(largest, set->particles[k].radius);
     }
     *p = (packing){.set = set, .def = def, .size = 2.0 * largest, .head_count = 1};
-    p->room = set->count + def->count;
+    p->room = set->count + def->count * se3di_piece_count(set, def->clump);
     for (int a = 0; a < 3; ++a) {
         double parts = floor((def->upper[a] - def->lower[a]) / p->size);
         p->cells[a] = parts < 1.0 ? 1 : (int)fmin(parts, 400.0);
@@ -222,18 +249,20 @@ static se3d_status packing_init(packing *p, se3di_particles *set, const se3d_fil
     return SE3D_OK;
 }
 
-static int place(packing *p, uint32_t material, uint64_t *state)
+static int place(packing *p, uint32_t material, size_t number, uint64_t *state)
 {
     const se3d_fill_def *def = p->def;
     const se3di_radii radii = se3di_fill_radii(def);
     const se3di_region region = se3di_fill_region(def);
-    double radius = se3di_radii_draw(&radii, state);
+    se3di_piece piece = piece_of(def, material, se3di_radii_draw(&radii, state), number);
     for (int try = 0; try < TRIES; ++try) {
-        double x[3];
-        se3di_region_draw(&region, radius, state, x);
-        if (se3di_region_holds(&region, x, radius) && is_free(p, x, radius)) {
-            append(p->set, material, def, radius, x);
-            enter(p, p->set->count - 1);
+        se3di_region_draw(&region, piece.radius, state, piece.x);
+        if (se3di_region_holds(&region, piece.x, piece.radius) && is_free(p, &piece)) {
+            const size_t before = p->set->count;
+            se3di_piece_append(p->set, &piece, def->velocity);
+            for (size_t k = before; k < p->set->count; ++k) {
+                enter(p, k);
+            }
             return 1;
         }
     }
@@ -244,12 +273,12 @@ se3d_status se3di_random_fill(se3di_particles *set, const se3d_fill_def *def, ui
                               size_t *placed)
 {
     const size_t count = set->count;
-    const size_t ids = set->id_count;
+    const size_t ids = set->id_count, clumps = set->clump_count;
     packing p;
     se3d_status status = packing_init(&p, set, def);
     uint64_t state = def->seed;
     for (*placed = 0; *placed < def->count && status == SE3D_OK; ++*placed) {
-        if (!place(&p, material, &state)) {
+        if (!place(&p, material, *placed, &state)) {
             status = SE3D_ERR_NO_CONVERGENCE;
             break;
         }
@@ -257,6 +286,8 @@ se3d_status se3di_random_fill(se3di_particles *set, const se3d_fill_def *def, ui
     if (status < 0) { /* nothing changed */
         set->count = count;
         set->id_count = ids;
+        set->clump_count = clumps;
+        (void)se3di_clumps_index(set); /* ids are used again */
     }
     se3di_free(&set->allocator, p.head, p.head_count, sizeof *p.head);
     se3di_free(&set->allocator, p.next, p.room, sizeof *p.next);

@@ -20,7 +20,7 @@ void se3di_lattice_fill(se3di_particles *set, const se3d_fill_def *def, uint32_t
                         size_t points);
 
 /* More particles than this have more volume than the box of the region. */
-double se3di_fill_most(const se3d_fill_def *def);
+double se3di_fill_most(const se3di_particles *set, const se3d_fill_def *def);
 /* Add def->count particles where there is room for them. If one finds none, nothing changes and
  * *placed is how many did. @return OK, NO_MEMORY, NO_CONVERGENCE */
 se3d_status se3di_random_fill(se3di_particles *set, const se3d_fill_def *def, uint32_t material,

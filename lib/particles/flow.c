@@ -9,13 +9,14 @@
 #include "particles/flow.h"
 
 #include "math/vec3.h"
+#include "particles/clump.h"
 #include "particles/draw.h"
+#include "particles/piece.h"
 #include "particles/wall.h"
 
 #include <math.h>
 
 #define TRIES 100
-#define PI    3.1415926535897932384626433832795
 
 se3d_status se3di_sources_aim(se3di_particles *set, const se3di_model *model, double h)
 {
@@ -55,7 +56,7 @@ static size_t gather(se3di_particles *set, const se3di_source *source)
     return count;
 }
 
-static int is_free(const se3di_particles *set, const double x[3], double radius, size_t near)
+static int has_room(const se3di_particles *set, const double x[3], double radius, size_t near)
 {
     for (size_t k = 0; k < near; ++k) {
         const se3di_particle *g = &set->particles[set->order[k]];
@@ -76,28 +77,53 @@ static int is_free(const se3di_particles *set, const double x[3], double radius,
     return 1;
 }
 
-static int find_place(const se3di_particles *set, se3di_source *source, size_t near, double x[3])
+static int is_free(const se3di_particles *set, const se3di_piece *piece, size_t near)
+{
+    const size_t spheres = se3di_piece_count(set, piece->clump);
+    for (size_t k = 0; k < spheres; ++k) {
+        double x[3];
+        const double radius = se3di_piece_sphere(set, piece, k, x);
+        if (!has_room(set, x, radius, near)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int find_place(const se3di_particles *set, se3di_source *source, size_t near,
+                      se3di_piece *piece)
 {
     for (int try = 0; try < TRIES; ++try) {
-        se3di_region_draw(&source->region, source->next, &source->seed, x);
-        if (se3di_region_holds(&source->region, x, source->next) &&
-            is_free(set, x, source->next, near)) {
+        se3di_region_draw(&source->region, piece->radius, &source->seed, piece->x);
+        if (se3di_region_holds(&source->region, piece->x, piece->radius) &&
+            is_free(set, piece, near)) {
             return 1;
         }
     }
     return 0;
 }
 
-/* What the next particle takes from what is owed. */
-static double price(const se3di_particles *set, se3di_source *source)
+/* The next one, which has no place yet. */
+static se3di_piece next_of(se3di_source *source)
 {
     if (!(source->next > 0.0)) {
         source->next = se3di_radii_draw(&source->radii, &source->seed);
     }
-    double density = set->stuffs[source->material].material.density;
-    return source->per_mass
-               ? density * (4.0 / 3.0 * PI * source->next * source->next * source->next)
-               : 1.0;
+    se3di_piece piece = {.clump = source->clump,
+                         .material = source->material,
+                         .tag = source->tag,
+                         .radius = source->next};
+    if (piece.clump > 0) {
+        se3di_piece_turn(&piece, source->turn, source->turns, source->inserted);
+    }
+    return piece;
+}
+
+/* What the next one takes from what is owed. */
+static double price(const se3di_particles *set, se3di_source *source)
+{
+    const se3di_piece next = next_of(source);
+    return source->per_mass ? se3di_piece_mass(set, &next) : 1.0;
 }
 
 static int is_due(const se3di_particles *set, se3di_source *source)
@@ -106,13 +132,14 @@ static int is_due(const se3di_particles *set, se3di_source *source)
            source->owed >= price(set, source) * (1.0 - 1e-9);
 }
 
-/* Room for one more; a quarter more than that if memory has to grow. */
-static se3d_status make_room(se3di_particles *set)
+/* Room for one more of `spheres`; a quarter more than that if memory has to grow. */
+static se3d_status make_room(se3di_particles *set, size_t spheres)
 {
-    size_t wanted = set->count + 1;
-    if (wanted > set->capacity || set->id_count + 1 > set->index_capacity) {
+    size_t wanted = set->count + spheres;
+    if (wanted > set->capacity || set->id_count + spheres > set->index_capacity) {
         wanted += set->count / 4 + 32;
     }
+    SE3DI_TRY(se3di_clumps_reserve(set, set->id_count + spheres, 1));
     return se3di_particles_reserve(set, wanted);
 }
 
@@ -121,21 +148,23 @@ static se3d_status insert(se3di_particles *set, se3di_source *source, double h)
     size_t capacity = set->capacity;
     size_t near = gather(set, source);
     while (is_due(set, source)) {
-        double x[3], v[3];
-        double cost = price(set, source);
-        if (!find_place(set, source, near, x)) {
+        double v[3];
+        se3di_piece piece = next_of(source);
+        const double cost = price(set, source), mass = se3di_piece_mass(set, &piece);
+        const size_t spheres = se3di_piece_count(set, piece.clump);
+        if (!find_place(set, source, near, &piece)) {
             source->deferred += source->waiting ? 0u : 1u;
             source->waiting = 1;
             return SE3D_OK;
         }
-        SE3DI_TRY(make_room(set));
+        SE3DI_TRY(make_room(set, spheres));
         for (int a = 0; a < 3; ++a) { /* half a kick is still to come */
             v[a] = source->velocity[a] - 0.5 * h * set->gravity[a];
         }
-        (void)se3di_particles_append(set, source->material, source->next, x, v, NULL);
-        set->spins[set->count - 1].tag = (uint16_t)source->tag;
+        se3di_piece_append(set, &piece, v);
         source->owed -= cost;
-        source->mass += 1.0 / set->particles[set->count - 1].inverse_mass;
+        source->mass +=
+            source->clump > 0 ? mass : 1.0 / set->particles[set->count - 1].inverse_mass;
         source->next = 0.0;
         source->waiting = 0;
         ++source->inserted;
@@ -143,7 +172,9 @@ static se3d_status insert(se3di_particles *set, se3di_source *source, double h)
             capacity = set->capacity;
             near = gather(set, source);
         } else {
-            set->order[near++] = (uint32_t)(set->count - 1);
+            for (size_t k = spheres; k > 0; --k) {
+                set->order[near++] = (uint32_t)(set->count - k);
+            }
         }
     }
     return SE3D_OK;

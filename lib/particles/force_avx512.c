@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels for x86-64 with AVX-512, chosen at run time.       docs/theory/particles.md */
+#include "particles/clump.h"
 #include "particles/wall.h"
 
 #include "base/target.h"

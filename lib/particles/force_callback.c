@@ -4,7 +4,7 @@
  *                                                                   docs/theory/contact-laws.md */
 #include "base/floats.h"
 #include "math/vec3.h"
-#include "particles/set.h"
+#include "particles/clump.h"
 #include "particles/wall.h"
 
 #include <math.h>
@@ -108,6 +108,13 @@ static void put_xi(se3di_particle_block *block, int lane, const double xi[3])
 
 static const double zero[3] = {0.0, 0.0, 0.0};
 
+/* What a unit force along n moves particle i by. */
+static double mobility_of(const se3di_force_task *task, uint32_t i, const double n[3])
+{
+    const double alone = task->particles[i].inverse_mass;
+    return task->clumped ? se3di_clump_mobility(task->clumped, task->spins[i].id, n, alone) : alone;
+}
+
 static void pair_lane(se3di_force_task *task, se3di_particle_block *block, int lane)
 {
     const uint32_t i = block->i[lane], j = block->j[lane];
@@ -124,12 +131,12 @@ static void pair_lane(se3di_force_task *task, se3di_particle_block *block, int l
     }
     touch t = {.delta = reach - distance,
                .radius = gi->radius * gj->radius / reach,
-               .mass = 1.0 / (gi->inverse_mass + gj->inverse_mass),
                .w_i = task->spins[i].w,
                .w_j = task->spins[j].w,
                .material_i = task->spins[i].material,
                .material_j = task->spins[j].material};
     se3di_scale(1.0 / distance, d, t.n);
+    t.mass = 1.0 / (mobility_of(task, i, t.n) + mobility_of(task, j, t.n));
     se3di_sub(gi->v, gj->v, t.v);
     t.arm_i = gi->radius - 0.5 * t.delta;
     t.arm_j = gj->radius - 0.5 * t.delta;
@@ -203,7 +210,7 @@ static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
     }
     se3di_sub(x, wall->pose.c, side); /* from the centre of mass to the point */
     se3di_add_scaled(-distance, t.n, side);
-    t.mass = 1.0 / (g->inverse_mass + wall_response(wall, side, t.n));
+    t.mass = 1.0 / (mobility_of(task, i, t.n) + wall_response(wall, side, t.n));
     se3di_cross(wall->pose.w, side, at);
     for (int a = 0; a < 3; ++a) {
         t.v[a] = g->v[a] - wall->pose.v[a] - at[a];

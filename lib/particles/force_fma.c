@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels in plain C for x86-64 with FMA, where fma() is one instruction and not a call:
  * what is chosen if no vectors are wanted.                          docs/theory/particles.md */
+#include "particles/clump.h"
 #include "particles/wall.h"
 
 #include "base/target.h"

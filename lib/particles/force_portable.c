@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels in plain C, for every machine.                     docs/theory/particles.md */
 #include "math/fma.h"
+#include "particles/clump.h"
 #include "particles/wall.h"
 
 #define FMA(a, b, c) se3di_fma(a, b, c)

@@ -8,6 +8,7 @@
  * next one: every pair is found once and belongs to the lower slab.   docs/theory/particles.md */
 
 #include "particles/grid.h"
+#include "particles/clump.h"
 #include "particles/flow.h"
 #include "particles/list.h"
 #include "particles/memory.h"
@@ -48,22 +49,42 @@ static int class_of(double radius, double largest)
     return c;
 }
 
-/* Periodic positions back into the period; particles beyond a sink are marked in order[]. */
+/* Into the period along those axes that have one. */
+static void come_home(const se3di_particles *set, double x[3])
+{
+    for (int a = 0; a < 3; ++a) {
+        const double length = set->upper[a] - set->lower[a];
+        if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
+            x[a] -= length * floor((x[a] - set->lower[a]) / length);
+        }
+    }
+}
+
+/* Whether x is beyond an end of the domain that is a sink. */
+static int is_beyond(const se3di_particles *set, const double x[3])
+{
+    for (int a = 0; a < 3; ++a) {
+        if (set->boundary[a] == SE3DI_BOUNDARY_SINK &&
+            !(x[a] >= set->lower[a] && x[a] <= set->upper[a])) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Periodic positions back into the period; particles beyond a sink are marked in order[]. Spheres
+ * of a clump leave together, when its centre of mass does. */
 static size_t leave(se3di_particles *set)
 {
     size_t gone = 0;
+    for (size_t k = 0; k < set->clump_count; ++k) {
+        come_home(set, set->clumps[k].x);
+    }
     for (size_t k = 0; k < set->count; ++k) {
-        double *x = set->particles[k].x;
-        set->order[k] = 1;
-        for (int a = 0; a < 3; ++a) {
-            double length = set->upper[a] - set->lower[a];
-            if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
-                x[a] -= length * floor((x[a] - set->lower[a]) / length);
-            } else if (set->boundary[a] == SE3DI_BOUNDARY_SINK &&
-                       !(x[a] >= set->lower[a] && x[a] <= set->upper[a])) {
-                set->order[k] = 0;
-            }
-        }
+        come_home(set, set->particles[k].x);
+        const se3di_clump *clump = se3di_clump_find(set, k);
+        const double *x = clump ? clump->x : set->particles[k].x;
+        set->order[k] = !is_beyond(set, x);
         uint32_t sink = set->order[k] ? se3di_sinks_find(set, x) : SE3DI_NO_INDEX;
         if (sink != SE3DI_NO_INDEX) {
             ++set->sinks[sink].count;
@@ -95,7 +116,7 @@ static double measure(se3di_particles *set, grid *g)
 {
     double largest = 0.0;
     double sum = 0.0;
-    set->uniform = set->stuff_count == 1;
+    set->uniform = set->stuff_count == 1 && set->clump_count == 0;
     for (size_t k = 0; k < set->count; ++k) {
         const se3di_particle *particle = &set->particles[k];
         largest = fmax(largest, particle->radius);
@@ -266,6 +287,7 @@ static void append(se3di_particles *set, const search *q, uint32_t begin, uint32
     const double *stretch = se3di_particles_reach(set);
     double border = gi->radius + stretch[q->i];
     int wraps = q->g->periodic[0] || q->g->periodic[1] || q->g->periodic[2];
+    const se3di_clump *own = se3di_clump_find(set, q->i);
     for (uint32_t j = begin; j < end; ++j) {
         const se3di_particle *gj = &set->particles[j];
         double d[3] = {gi->x[0] - gj->x[0], gi->x[1] - gj->x[1], gi->x[2] - gj->x[2]};
@@ -273,7 +295,8 @@ static void append(se3di_particles *set, const search *q, uint32_t begin, uint32
             se3di_particles_wrap(set, d);
         }
         double reach = border + gj->radius + stretch[j];
-        if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach) {
+        if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach &&
+            !(own && se3di_clump_find(set, j) == own)) {
             set->list[set->list_count++] = j;
         }
     }

@@ -23,7 +23,7 @@ typedef struct part {
     size_t bytes;
 } part;
 
-enum { PARTS_SLOW = 11, PARTS = 21 };
+enum { PARTS_SLOW = 12, PARTS = 23 };
 
 /* The arrays in use of a set: those that change with the lists, then the others. */
 static void list_parts(const se3di_particles *set, part parts[PARTS])
@@ -41,9 +41,11 @@ static void list_parts(const se3di_particles *set, part parts[PARTS])
         {se3di_particles_reach(set), set->count * sizeof *set->origin},
         {se3di_particles_wear(set), set->count * sizeof *set->origin},
         {set->index_of, set->id_count * sizeof *set->index_of},
+        {set->clump_of, set->clump_of ? set->id_count * sizeof *set->clump_of : 0},
         {set->mesh_old, old * sizeof *set->mesh_old},
         {set->carry_next, carry * sizeof *set->carry_next},
         {set->carry_roll, set->carry_rolling ? 4 * carry * sizeof *set->carry_roll : 0},
+        {set->clumps, set->clump_count * sizeof *set->clumps},
         {set->particles, set->count * sizeof *set->particles},
         {set->spins, set->count * sizeof *set->spins},
         {set->loads, loads},
@@ -84,9 +86,11 @@ static void copy_parts(const part *parts, int count, unsigned char *data, int ba
 /* As much as the arrays can hold: what is in use changes from step to step. */
 static size_t room_of(const se3di_particles *set)
 {
-    return sizeof(uint32_t) * (set->list_capacity + set->first_capacity + set->face_capacity +
-                               set->index_capacity + set->carry_next_capacity) +
+    return sizeof(uint32_t) *
+               (set->list_capacity + set->first_capacity + set->face_capacity +
+                set->index_capacity + set->carry_next_capacity + set->clump_of_capacity) +
            sizeof(double) * (SE3DI_ORIGIN_SIZE * set->capacity + set->carry_roll_capacity) +
+           set->clump_capacity * sizeof *set->clumps +
            set->near_capacity * sizeof *set->near_walls + set->particle_memory.bytes +
            set->spin_memory.bytes + set->load_memory.bytes + set->block_memory.bytes +
            set->roll_memory.bytes +
@@ -160,6 +164,10 @@ se3d_status se3di_particles_keep(se3di_particles *set)
     X(key)                                                                                         \
     X(index_of)                                                                                    \
     X(index_capacity)                                                                              \
+    X(clumps)                                                                                      \
+    X(clump_capacity)                                                                              \
+    X(clump_of)                                                                                    \
+    X(clump_of_capacity)                                                                           \
     X(cells)                                                                                       \
     X(cell_capacity)                                                                               \
     X(first)                                                                                       \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Life time and editing of particle sets; nothing here moves a particle. */
-#include "particles/set.h"
+#include "particles/clump.h"
 #include "particles/kept.h"
 #include "particles/list.h"
 #include "particles/memory.h"
@@ -46,6 +46,10 @@ void se3di_particles_destroy(se3di_particles *set)
     se3di_free(a, set->order, set->capacity, sizeof *set->order);
     se3di_free(a, set->key, set->capacity, sizeof *set->key);
     se3di_free(a, set->index_of, set->index_capacity, sizeof *set->index_of);
+    se3di_free(a, set->templates, set->template_capacity, sizeof *set->templates);
+    se3di_free(a, set->balls, set->ball_capacity, sizeof *set->balls);
+    se3di_free(a, set->clumps, set->clump_capacity, sizeof *set->clumps);
+    se3di_free(a, set->clump_of, set->clump_of_capacity, sizeof *set->clump_of);
     se3di_free(a, set->cells, set->cell_capacity, sizeof *set->cells);
     se3di_free(a, set->first, set->first_capacity, sizeof *set->first);
     se3di_free(a, set->list, set->list_capacity, sizeof *set->list);
@@ -86,6 +90,9 @@ size_t se3di_particles_memory(const se3di_particles *set)
            set->near_capacity * sizeof *set->near_walls +
            sizeof(double) * (set->carry_roll_capacity + set->wall_sum_capacity) +
            (set->mesh_capacity + set->mesh_old_capacity) * sizeof *set->mesh_pairs +
+           set->template_capacity * sizeof *set->templates +
+           set->ball_capacity * sizeof *set->balls + set->clump_capacity * sizeof *set->clumps +
+           set->clump_of_capacity * sizeof *set->clump_of +
            set->wall_capacity * sizeof *set->walls + set->source_capacity * sizeof *set->sources +
            set->sink_capacity * sizeof *set->sinks + se3di_particles_kept_memory(set) + sizeof *set;
 }
@@ -175,6 +182,7 @@ se3d_status se3di_particles_reserve(se3di_particles *set, size_t count)
         set->index_of = index_of;
         set->index_capacity = ids;
     }
+    SE3DI_TRY(se3di_clumps_reserve(set, ids, 0));
     SE3DI_TRY(se3di_particles_collect(set));
     SE3DI_TRY(se3di_particles_grow(set, &set->first, &set->first_capacity, count + 1));
     return count <= set->capacity ? SE3D_OK : reserve_arrays(set, count);
@@ -219,6 +227,7 @@ void se3di_particles_filter(se3di_particles *set, const unsigned char *keep)
         ++to;
     }
     set->count = to;
+    se3di_clumps_filter(set);
     se3di_particles_remap(set, set->order);
 }
 
@@ -234,6 +243,10 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         {&to->order, from->order, from->capacity, sizeof(uint32_t)},
         {&to->key, from->key, from->capacity, sizeof(uint32_t)},
         {&to->index_of, from->index_of, from->index_capacity, sizeof(uint32_t)},
+        {&to->templates, from->templates, from->template_capacity, sizeof(se3di_clump_template)},
+        {&to->balls, from->balls, from->ball_capacity, sizeof(se3di_clump_ball)},
+        {&to->clumps, from->clumps, from->clump_capacity, sizeof(se3di_clump)},
+        {&to->clump_of, from->clump_of, from->clump_of_capacity, sizeof(uint32_t)},
         {&to->cells, from->cells, from->cell_capacity, sizeof(uint32_t)},
         {&to->first, from->first, from->first_capacity, sizeof(uint32_t)},
         {&to->list, from->list, from->list_capacity, sizeof(uint32_t)},
@@ -360,7 +373,10 @@ se3d_status se3di_particles_remove(se3di_particles *set, size_t count, const uin
     }
     memset(keep, 1, size);
     for (size_t k = 0; k < count; ++k) {
-        keep[set->index_of[ids[k]]] = 0;
+        uint32_t id, end;
+        for (se3di_clump_range(set, ids[k], &id, &end); id < end; ++id) {
+            keep[set->index_of[id]] = 0;
+        }
     }
     se3di_particles_filter(set, keep);
     se3di_free(&set->allocator, keep, size, 1);

@@ -202,7 +202,9 @@ typedef struct se3di_source {
     uint64_t inserted, deferred;
     double mass;     /* inserted */
     int32_t waiting; /* the next one was put off already */
-    int32_t reserved;
+    uint32_t clump;  /* 1 + template; 0: spheres */
+    double turn[4];  /* orientation of clumps; all 0: at random */
+    uint64_t turns;  /* seed of that */
 } se3di_source;
 
 /* Removes particles whose centre is in it. */
@@ -213,6 +215,40 @@ typedef struct se3di_sink {
     int32_t stopped;
     uint64_t count;
 } se3di_sink;
+
+/* A sphere of a template: place in the principal axes, from the centre of mass. */
+typedef struct se3di_clump_ball {
+    double r[3], radius; /* at scale 1 */
+    double mobility[6]; /* {xx, yy, zz, xy, yz, xz}: n.M n is what a unit force along n moves it by,
+                          * for the mass of the template [1/kg] */
+    double most;        /* the largest of these */
+} se3di_clump_ball;
+
+/* What clumps are made like: spheres that are held together, at scale 1, of density 1 unless the
+ * mass is given.                                                               clump_mass.c */
+typedef struct se3di_clump_template {
+    uint32_t begin, count; /* of its balls */
+    int32_t given;         /* mass and inertia are: no density counts */
+    int32_t reserved;
+    double volume; /* of the union */
+    double mass, inertia[3];
+    double centre[3]; /* of mass, in the frame of the definition */
+    double axes[4];   /* principal axes -> frame of the definition */
+    double bound;     /* radius about the centre of mass that holds all */
+    double smallest;  /* radius of a ball, */
+    double most;      /* mobility of one */
+} se3di_clump_template;
+
+/* A rigid body whose spheres are particles of the set. */
+typedef struct se3di_clump {
+    double x[3], q[4];    /* centre of mass; principal axes -> ground, */
+    double A[9];          /* the same as a matrix */
+    double v[3], spin[3]; /* angular momentum, in the principal axes */
+    double scale;         /* of lengths, */
+    double factor;        /* and of masses, over those of the template */
+    uint32_t first;       /* id of its first sphere; the others follow */
+    uint32_t template_index;
+} se3di_clump;
 
 typedef struct se3di_particles_kept se3di_particles_kept;
 
@@ -255,6 +291,14 @@ typedef struct se3di_particles {
                          * se3di_particles_reach(), se3di_particles_wear() */
     uint32_t *index_of; /* id -> index, SE3DI_NO_INDEX: gone */
     size_t id_count, index_capacity;
+    se3di_clump_template *templates;
+    size_t template_count, template_capacity;
+    se3di_clump_ball *balls; /* of the templates */
+    size_t ball_count, ball_capacity;
+    se3di_clump *clumps;
+    size_t clump_count, clump_capacity;
+    uint32_t *clump_of; /* id -> clump, SE3DI_NO_INDEX: a free sphere; NULL without templates */
+    size_t clump_of_capacity;
     uint32_t *order; /* [capacity] scratch of sorting */
     uint32_t *key;   /* [capacity] */
 
@@ -330,7 +374,8 @@ typedef struct se3di_force_task {
     se3di_roll *rolls; /* NULL: no rolling resistance */
     const se3di_pair *pairs;
     const se3di_wall *walls;
-    const se3di_given *given; /* walls: of every block, instead of the shape; NULL: none */
+    const se3di_given *given;       /* walls: of every block, instead of the shape; NULL: none */
+    const se3di_particles *clumped; /* whose clumps some particles are of; NULL: none */
     uint32_t materials;
     uint32_t begin, end; /* blocks */
     int32_t law, periodic, uniform, cohesive;
@@ -410,7 +455,7 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
 /* Remove those with keep[index] 0; the order of the others stays. The history must have been
  * collected. */
 void se3di_particles_filter(se3di_particles *set, const unsigned char *keep);
-/* Remove `count` live particles by their ids. */
+/* Remove `count` live particles by their ids, and with one of a clump the others. */
 se3d_status se3di_particles_remove(se3di_particles *set, size_t count, const uint32_t *ids);
 size_t se3di_particles_memory(const se3di_particles *set);
 

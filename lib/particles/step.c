@@ -10,6 +10,7 @@
 #include "particles/flow.h"
 #include "particles/grid.h"
 #include "particles/list.h"
+#include "particles/piece.h"
 #include "particles/reach.h"
 #include "particles/sweep.h"
 #include "particles/sync.h"
@@ -183,6 +184,7 @@ static se3di_force_task prepare(se3di_particles *set, double h)
         .stuffs = set->stuffs,
         .callback = set->callback,
         .ctx = set->ctx,
+        .clumped = set->clump_count > 0 ? set : NULL,
     };
     for (int a = 0; a < 3; ++a) {
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
@@ -263,7 +265,6 @@ static double pair_steps(const se3di_model *model, size_t a, double radius, doub
 
 double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *model)
 {
-    const double pi = 3.1415926535897932384626433832795;
     const double body = se3di_particles_lightest_body(set, model);
     double step = HUGE_VAL;
     for (size_t s = 0; s < set->stuff_count; ++s) {
@@ -277,11 +278,12 @@ double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *
             }
         }
         for (size_t k = 0; stuff->held && k < set->source_count; ++k) {
-            double radius = set->sources[k].radii.smallest;
             if (set->sources[k].material == s && !set->sources[k].stopped) {
-                smallest = fmin(smallest, radius);
-                lightest = fmin(lightest, stuff->material.density * 4.0 / 3.0 * pi * radius *
-                                              radius * radius);
+                const se3di_piece least = {.clump = set->sources[k].clump,
+                                           .material = set->sources[k].material,
+                                           .radius = set->sources[k].radii.smallest};
+                smallest = fmin(smallest, se3di_piece_smallest(set, &least));
+                lightest = fmin(lightest, se3di_piece_lightest(set, &least));
             }
         }
         if (smallest < HUGE_VAL) {
@@ -352,6 +354,10 @@ uint64_t se3di_particles_hash(const se3di_particles *set)
             hash = se3di_hash_numbers(hash, &p->inverse_mass, 1);
             hash = se3di_hash_numbers(hash, set->spins[k].w, 3);
         }
+    }
+    for (size_t k = 0; k < set->clump_count; ++k) {
+        hash = se3di_hash_numbers(hash, set->clumps[k].q, 4);
+        hash = se3di_hash_numbers(hash, set->clumps[k].spin, 3);
     }
     return hash;
 }

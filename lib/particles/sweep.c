@@ -12,6 +12,7 @@
 #include "particles/sweep.h"
 #include "base/floats.h"
 #include "base/threads.h"
+#include "particles/clump.h"
 #include "particles/mesh.h"
 
 #include <math.h>
@@ -37,15 +38,19 @@ static haste hastier(haste a, haste b)
     return (haste){se3di_larger(a.fastest, b.fastest), se3di_larger(a.hasty, b.hasty)};
 }
 
-/* Of particles [begin, end). `kicks` is a constant at every call: the loop over it is unrolled. */
+/* Of particles [begin, end). `kicks` is a constant at every call: the loop over it is unrolled;
+ * `clumped`, too: then spheres of clumps are left alone. */
 static inline haste move_kicked(se3di_particles *set, size_t begin, size_t end, int kicks,
-                                const se3di_particle_motion *motion)
+                                int clumped, const se3di_particle_motion *motion)
 {
     const double half = 0.5 * motion->h, drift = motion->drift;
     const int drifts = drift != 0.0;
     const double *wear = se3di_particles_wear(set);
     haste most = {0.0, 0.0};
     for (size_t k = begin; k < end; ++k) {
+        if (clumped && se3di_clump_find(set, k)) {
+            continue;
+        }
         se3di_particle *particle = &set->particles[k];
         se3di_spin *spin = &set->spins[k];
         se3di_load *load = &set->loads[k];
@@ -78,13 +83,16 @@ static inline haste move_kicked(se3di_particles *set, size_t begin, size_t end, 
 static haste move_range(se3di_particles *set, size_t begin, size_t end,
                         const se3di_particle_motion *motion)
 {
+    if (set->clump_count > 0) {
+        return move_kicked(set, begin, end, motion->kicks, 1, motion);
+    }
     switch (motion->kicks) {
     case 0:
-        return move_kicked(set, begin, end, 0, motion);
+        return move_kicked(set, begin, end, 0, 0, motion);
     case 1:
-        return move_kicked(set, begin, end, 1, motion);
+        return move_kicked(set, begin, end, 1, 0, motion);
     default:
-        return move_kicked(set, begin, end, 2, motion);
+        return move_kicked(set, begin, end, 2, 0, motion);
     }
 }
 
@@ -101,19 +109,26 @@ static void note_motion(se3di_particles *set, const se3di_particle_motion *motio
 
 #define PASS_PARTS 64
 
+/* The first of `count` things in part c, which ends before that of part c + 1. */
+static size_t part_begin(size_t count, size_t c)
+{
+    const size_t begin = c * (count / PASS_PARTS + 1);
+    return begin < count ? begin : count;
+}
+
 static void pass(se3di_particles *set, const se3di_particle_motion *motion)
 {
     haste most_of[PASS_PARTS];
-    size_t part = set->count / PASS_PARTS + 1;
+    const size_t count = set->count, clumps = set->clump_count;
 #ifdef _OPENMP
     const int32_t team = se3di_particles_team(set);
 #pragma omp parallel for if (team > 1) num_threads(team) schedule(static)
 #endif
     for (size_t c = 0; c < PASS_PARTS; ++c) {
-        size_t begin = c * part < set->count ? c * part : set->count;
-        size_t end = begin + part < set->count ? begin + part : set->count;
         const se3di_floats host = se3di_floats_set();
-        most_of[c] = move_range(set, begin, end, motion);
+        most_of[c] = move_range(set, part_begin(count, c), part_begin(count, c + 1), motion);
+        se3di_clumps_move(set, part_begin(clumps, c), part_begin(clumps, c + 1), motion,
+                          &most_of[c].fastest, &most_of[c].hasty);
         se3di_floats_restore(host);
     }
     haste most = {0.0, 0.0};
@@ -343,7 +358,9 @@ static void sweep_together(const sweep *w)
 void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
                            const se3di_particle_motion *motion)
 {
-    const sweep w = {set, task, motion};
+    static const se3di_particle_motion still = {0, 0.0, 0.0};
+    const int clumped = set->clump_count > 0; /* they move when all of their spheres are done */
+    const sweep w = {set, task, clumped ? &still : motion};
     set->team = 1;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
         set->slabs[s].done = set->slabs[s].begun = set->slabs[s].moving = 0;
@@ -352,6 +369,12 @@ void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
         sweep_together(&w);
     } else {
         sweep_share(&w, 0, 1);
+    }
+    if (clumped) {
+        if (motion->kicks > 0) {
+            pass(set, motion);
+        }
+        return;
     }
     haste most = {0.0, 0.0};
     for (uint32_t s = 0; s < set->slab_count; ++s) {

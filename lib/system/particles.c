@@ -5,6 +5,7 @@
 #include "force/force.h"
 #include "math/vec3.h"
 #include "particles/chain.h"
+#include "particles/clump.h"
 #include "particles/energy.h"
 #include "particles/list.h"
 #include "particles/step.h"
@@ -299,8 +300,12 @@ se3d_status se3d_particles_set_tags(se3d_particles *particles, size_t count, con
     }
     SE3DI_TRY(se3di_check_tag(particles, tag));
     SE3DI_TRY(check_ids(particles, count, ids));
+    const se3di_particles *set = &particles->set;
     for (size_t k = 0; k < count; ++k) {
-        particles->set.spins[particles->set.index_of[ids[k]]].tag = (uint16_t)tag;
+        uint32_t id, end;
+        for (se3di_clump_range(set, ids[k], &id, &end); id < end; ++id) {
+            set->spins[set->index_of[id]].tag = (uint16_t)tag;
+        }
     }
     return SE3D_OK;
 }
@@ -409,6 +414,9 @@ se3d_status se3d_particles_set_all(se3d_particles *particles, size_t count, cons
     size_t id = 0;
     for (size_t k = 0; k < count; ++k) {
         size_t index = se3di_particles_next(set, &id);
+        if (se3di_clump_find(set, index)) {
+            continue;
+        }
         if (r) {
             se3di_copy(r + 3 * k, set->particles[index].x);
         }

@@ -38,6 +38,11 @@ se3d_status se3di_owners_clone(const se3d_system *system, se3d_system *copy);
 /* `system` goes: calls of the clones of its sets are refused from now on. */
 void se3di_copies_orphan(se3d_system *system);
 
+/* clump.c: a template of this number; room for `count` more spheres (clump 0) or clumps of template
+ * clump - 1. */
+se3d_status se3di_check_template(se3d_particles *particles, const char *what, uint32_t index);
+se3d_status se3di_clumps_make_room(se3d_particles *particles, uint32_t clump, size_t count);
+
 /* Room for `count` more particles. */
 se3d_status se3di_particles_make_room(se3d_particles *particles, size_t count);
 

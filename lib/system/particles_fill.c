@@ -13,6 +13,23 @@ void se3d_fill_def_init(se3d_fill_def *def, size_t size)
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
+/* The template of clumps, whose size they have if no radius is given. */
+static se3d_status check_clump(se3d_particles *p, se3d_fill_def *def)
+{
+    if (def->clump == 0) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_check_template(p, "clump - 1", def->clump - 1));
+    double unit[4], *e = def->orientation;
+    if (e[0] != 0.0 || e[1] != 0.0 || e[2] != 0.0 || e[3] != 0.0) {
+        SE3DI_TRY(se3di_check_orientation(p->system, "orientation", e, unit));
+    }
+    if (def->radius_count == 0 && def->radius_min == 0.0 && def->radius_max == 0.0) {
+        def->radius_min = def->radius_max = p->set.templates[def->clump - 1].bound;
+    }
+    return SE3D_OK;
+}
+
 /* The range of the radii of a table. */
 static se3d_status check_radii(se3d_particles *p, se3d_fill_def *def)
 {
@@ -56,6 +73,7 @@ se3d_status se3di_check_fill(se3d_particles *p, const se3d_fill_def *def, se3d_f
 {
     SE3DI_TRY(se3di_check_def(p->system, "fill def", def, full, sizeof *full));
     SE3DI_TRY(se3di_check_finites(p->system, "velocity", full->velocity, 3));
+    SE3DI_TRY(check_clump(p, full));
     if (full->radius_count > 0) {
         SE3DI_TRY(check_radii(p, full));
     }
@@ -85,7 +103,7 @@ se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fi
     SE3DI_TRY(se3di_check_range(particles->system, "points of the lattice from lower to upper",
                                 looked_at, 0.0, POINTS_MAX));
     const size_t wanted = se3di_lattice_measure(&full, &points);
-    SE3DI_TRY(se3di_particles_make_room(particles, wanted));
+    SE3DI_TRY(se3di_clumps_make_room(particles, full.clump, wanted));
     se3di_lattice_fill(&particles->set, &full, material, points);
     if (added) {
         *added = wanted;
@@ -96,7 +114,7 @@ se3d_status se3d_particles_fill_lattice(se3d_particles *particles, const se3d_fi
 /* Far too many are found before there is memory for them. */
 static se3d_status check_volume(se3d_particles *p, const se3d_fill_def *def)
 {
-    const double most = se3di_fill_most(def);
+    const double most = se3di_fill_most(&p->set, def);
     if ((double)def->count > most) {
         return SE3DI_FAIL_OF(p->system, "count", SE3D_ERR_NO_CONVERGENCE,
                              " = %zu, the region has the volume of %.3g particles only", def->count,
@@ -113,7 +131,7 @@ se3d_status se3d_particles_fill_random(se3d_particles *particles, const se3d_fil
     se3d_fill_def full = se3d_fill_def_default();
     SE3DI_TRY(se3di_check_fill(particles, def, &full, &material));
     SE3DI_TRY(check_volume(particles, &full));
-    SE3DI_TRY(se3di_particles_make_room(particles, full.count));
+    SE3DI_TRY(se3di_clumps_make_room(particles, full.clump, full.count));
     const se3d_status status = se3di_random_fill(&particles->set, &full, material, &placed);
     if (status == SE3D_ERR_NO_CONVERGENCE) {
         return SE3DI_FAIL(particles->system, status,

@@ -93,8 +93,11 @@ se3d_status se3d_particles_add_source(se3d_particles *particles,
                            .every = full.every,
                            .due = -HUGE_VAL,
                            .maximum = fill.count > 0 ? fill.count : UINT64_MAX,
-                           .seed = fill.seed};
+                           .seed = fill.seed,
+                           .clump = fill.clump,
+                           .turns = fill.seed};
     se3di_copy(fill.velocity, source.velocity);
+    memcpy(source.turn, fill.orientation, sizeof source.turn);
     SE3DI_TRY(copy_radii(particles, &fill, &source));
     if (function >= 0) {
         source.function = (se3di_handle){full.function.index1, full.function.generation};

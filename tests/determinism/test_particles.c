@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Particles give the same bits for any number of threads, on every run, and from a copy in the
  * middle. */
+#include <stdlib.h>
+
 #include "check.h"
 #include "se3d/se3d.h"
 #include "support/avalanche.h"
@@ -74,6 +76,73 @@ static void bits_of_a_large_set_do_not_depend_on_the_number_of_threads(void)
     }
 }
 
+static se3d_material material_of(const bed *b)
+{
+    const size_t count = se3d_particles_count(b->particles);
+    se3d_material *all = malloc(count * sizeof *all), one = {0, 0};
+    CHECK(all && se3d_particles_get_materials(b->particles, count, all) == SE3D_OK);
+    one = all ? all[0] : one;
+    free(all);
+    return one;
+}
+
+/* Clumps between the spheres of an avalanche. */
+static void open_clumps(bed *b, int32_t threads, int32_t portable, int32_t law)
+{
+    static const double r[9] = {0.0, 0.0, 0.0, 0.004, 0.0, 0.0, 0.0, 0.003, 0.002},
+                        radii[3] = {0.004, 0.003, 0.0025};
+    se3d_clump_def def = se3d_clump_def_default();
+    se3d_fill_def fill = se3d_fill_def_default();
+    uint32_t index;
+    avalanche_open(b, threads, portable, law);
+    def.count = 3;
+    def.r = r;
+    def.radius = radii;
+    CHECK(se3d_particles_add_clump_template(b->particles, &def, &index) == SE3D_OK);
+    fill.material = material_of(b);
+    fill.clump = index + 1;
+    fill.lower[2] = 0.12;
+    fill.upper[0] = 0.24;
+    fill.upper[1] = 0.06;
+    fill.upper[2] = 0.22;
+    fill.velocity[2] = -2.0;
+    CHECK(se3d_particles_fill_lattice(b->particles, &fill, NULL) == SE3D_OK);
+    CHECK(se3d_particles_count_clumps(b->particles) > 100);
+}
+
+/* In one piece, or cut, with a copy that goes on from the middle. */
+static uint64_t run_clumps(int32_t threads, int32_t portable, int32_t law, size_t piece)
+{
+    bed b;
+    open_clumps(&b, threads, portable, law);
+    for (size_t k = 0; k < 1200; k += piece) {
+        CHECK(se3d_particles_step(b.particles, piece) == SE3D_OK);
+    }
+    if (piece < 1200) {
+        se3d_particles *copy;
+        CHECK(se3d_particles_clone(b.particles, &copy) == SE3D_OK);
+        CHECK(se3d_particles_step(b.particles, 77) == SE3D_OK);
+        CHECK(se3d_particles_restore(b.particles, copy) == SE3D_OK);
+        se3d_particles_destroy(copy);
+    }
+    CHECK(se3d_particles_step(b.particles, 600) == SE3D_OK);
+    const uint64_t hash = se3d_particles_hash(b.particles);
+    bed_destroy(&b);
+    return hash;
+}
+
+static void clumps_have_the_same_bits(void)
+{
+    for (int32_t law = 0; law < 2; ++law) {
+        const uint64_t one = run_clumps(1, 0, law, 1200);
+        CHECK(run_clumps(1, 1, law, 1200) == one); /* another level of instructions */
+        CHECK(run_clumps(1, 0, law, 40) == one);
+        for (int32_t threads = 2; threads <= 4; ++threads) {
+            CHECK(run_clumps(threads, 0, law, 1200) == one);
+        }
+    }
+}
+
 static void bits_do_not_depend_on_how_a_run_is_cut(void)
 {
     bed a, b;
@@ -133,6 +202,7 @@ int main(void)
 {
     RUN(bits_do_not_depend_on_the_number_of_threads);
     RUN(bits_of_a_large_set_do_not_depend_on_the_number_of_threads);
+    RUN(clumps_have_the_same_bits);
     RUN(bits_do_not_depend_on_how_a_run_is_cut);
     RUN(copies_and_restored_states_continue_with_the_same_bits);
     RUN(queries_change_nothing);

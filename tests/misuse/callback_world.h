@@ -265,6 +265,11 @@ static void world_add_particles(world *w)
     se3d_particles_sink_def sink = se3d_particles_sink_def_default();
     CHECK(!se3d_particles_create(w->system, NULL, &w->particles));
     CHECK(!se3d_particles_add(w->particles, w->stuff, 3, r, radius, NULL, NULL, NULL));
+    se3d_clump_def clump = se3d_clump_def_default();
+    clump.count = 3;
+    clump.r = r;
+    clump.radius = radius;
+    CHECK(!se3d_particles_add_clump_template(w->particles, &clump, &w->ids[0]));
     fill.material = w->stuff;
     fill.lower[0] = fill.lower[1] = fill.lower[2] = 5.0;
     fill.upper[0] = fill.upper[1] = fill.upper[2] = 6.0;

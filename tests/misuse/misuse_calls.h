@@ -631,6 +631,7 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(particles);
     CHECK_INIT(particles_source);
     CHECK_INIT(particles_sink);
+    CHECK_INIT(clump);
     CHECK_INIT(material);
     CHECK_INIT(material_pair);
     CHECK_INIT(shape);
@@ -946,6 +947,16 @@ static const row rows[] = {
     {"se3d_particles_get_tags", flows_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_materials", flows_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_tally", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_add_clump_template", clumps_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_clump_template", clumps_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_add_clumps", clumps_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_count_clumps", clumps_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_clump_ids", clumps_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_clump_of", clumps_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_clumps", clumps_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_set_clumps", clumps_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_clump_forces", clumps_reject_misuse, "", NULL, NULL},
+    {"se3d_clump_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_particles_source_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_particles_sink_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_particles_fill_lattice", fills_reject_misuse, "", NULL, NULL},

@@ -439,6 +439,97 @@ static se3d_status fills_reject_misuse(arguments *a)
     return SE3D_OK;
 }
 
+static se3d_status clumps_reject_misuse(arguments *a)
+{
+    const double nan = (double)NAN, two[6] = {0.0, 0.0, 0.0, 0.1, 0.0, 0.0}, radii[2] = {0.1, 0.1};
+    const double bad[2] = {0.1, -0.1}, e[4] = {2.0, 0.0, 0.0, 0.0}, vast[2] = {1e-29, 1e-29};
+    se3d_material material;
+    uint32_t index = 7, ids[4];
+    size_t added;
+    double x[12];
+    se3d_particles *p = particles_open(a, &material);
+    se3d_clump_def def = se3d_clump_def_default();
+    se3d_clump_template_info info;
+    se3d_fill_def fill = se3d_fill_def_default();
+    CHECK(se3d_particles_add_clump_template(NULL, &def, &index) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_clump_template(p, NULL, &index), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_clump_template(p, &def, &index), SE3D_ERR_INVALID_ARGUMENT);
+    def.count = 2;
+    REJECTED(se3d_particles_add_clump_template(p, &def, &index), SE3D_ERR_NULL);
+    def.r = two;
+    REJECTED(se3d_particles_add_clump_template(p, &def, &index), SE3D_ERR_NULL);
+    def.radius = bad;
+    REJECTED(se3d_particles_add_clump_template(p, &def, &index), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "-0.1");
+    def.radius = vast;
+    REJECTED(se3d_particles_add_clump_template(p, &def, &index), SE3D_ERR_INVALID_ARGUMENT);
+    def.radius = radii;
+    def.r = (double[6]){nan, 0.0, 0.0, 0.0, 0.0, 0.0};
+    REJECTED(se3d_particles_add_clump_template(p, &def, &index), SE3D_ERR_INVALID_ARGUMENT);
+    def.r = two;
+    def.mass = -1.0;
+    REJECTED(se3d_particles_add_clump_template(p, &def, &index), SE3D_ERR_INVALID_ARGUMENT);
+    def.mass = 1.0;
+    REJECTED(se3d_particles_add_clump_template(p, &def, &index), SE3D_ERR_INVALID_ARGUMENT);
+    def.inertia[0] = def.inertia[1] = 1.0; /* a rod without a moment about its axis */
+    REJECTED(se3d_particles_add_clump_template(p, &def, &index), SE3D_ERR_INVALID_ARGUMENT);
+    def.inertia[2] = 3.0;
+    REJECTED(se3d_particles_add_clump_template(p, &def, &index), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "3");
+    def.centre[1] = nan;
+    REJECTED(se3d_particles_add_clump_template(p, &def, &index), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(index == 7);
+    def = se3d_clump_def_default();
+    def.count = 2;
+    def.r = two;
+    def.radius = radii;
+    CHECK(se3d_particles_get_clump_template(p, 0, &info) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_particles_add_clump_template(p, &def, &index) && index == 0);
+    CHECK(se3d_particles_get_clump_template(NULL, 0, &info) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_clump_template(p, 0, NULL) == SE3D_ERR_NULL);
+    const uint64_t hash = se3d_particles_hash(p);
+    CHECK(se3d_particles_add_clumps(NULL, 0, material, 1, two, NULL, NULL, NULL) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_clumps(p, 1, material, 1, two, NULL, NULL, NULL),
+             SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_add_clumps(p, 0, (se3d_material){0, 0}, 1, two, NULL, NULL, NULL),
+             SE3D_ERR_STALE_HANDLE);
+    REJECTED(se3d_particles_add_clumps(p, 0, material, 1, NULL, NULL, NULL, NULL), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_clumps(p, 0, material, 1, two, e, NULL, NULL),
+             SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_add_clumps(p, 0, material, 1, two, NULL, NULL, &nan),
+             SE3D_ERR_INVALID_ARGUMENT);
+    fill.material = material;
+    fill.upper[0] = fill.upper[1] = fill.upper[2] = 1.0;
+    fill.clump = 2;
+    REJECTED(se3d_particles_fill_lattice(p, &fill, &added), SE3D_ERR_INVALID_ARGUMENT);
+    fill.clump = 1;
+    fill.orientation[1] = nan;
+    REJECTED(se3d_particles_fill_random(p, &fill), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_hash(p) == hash && se3d_particles_count(p) == 2);
+    const double at[6] = {5.0, 0.0, 0.0, 6.0, 0.0, 0.0};
+    CHECK(!se3d_particles_add_clumps(p, 0, material, 2, at, NULL, NULL, NULL));
+    CHECK(se3d_particles_count(p) == 6 && se3d_particles_count_clumps(p) == 2);
+    CHECK(se3d_particles_count_clumps(NULL) == 0);
+    CHECK(se3d_particles_get_clump_ids(NULL, 2, ids, NULL, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_clump_ids(p, 1, ids, NULL, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_clump_of(NULL, 6, ids) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_clump_of(p, 6, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_clump_of(p, 2, ids) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_clumps(NULL, 2, x, NULL, NULL, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_clumps(p, 6, x, NULL, NULL, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_set_clumps(NULL, 2, x, NULL, NULL, NULL) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_set_clumps(p, 6, x, NULL, NULL, NULL), SE3D_ERR_INVALID_ARGUMENT);
+    memcpy(x, at, sizeof at);
+    x[3] = nan;
+    REJECTED(se3d_particles_set_clumps(p, 2, x, NULL, NULL, NULL), SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_set_clumps(p, 2, NULL, x, NULL, NULL), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_clump_forces(NULL, 2, x, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_clump_forces(p, 6, x, NULL) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_particles_get_clump_forces(p, 2, x, x) && !(x[0] > 0.0 || x[0] < 0.0));
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
 static se3d_status flows_reject_misuse(arguments *a)
 {
     se3d_material material;

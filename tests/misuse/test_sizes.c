@@ -37,6 +37,7 @@ FILL(modes_get_eigenvalue, se3d_eigenvalue, p->modes, 0)
 FILL(system_get_contacts, se3d_contact, p->w.system, 1)
 FILL(particles_get_source_stats, se3d_particles_source_stats, p->w.particles, 0)
 FILL(particles_get_tally, se3d_particles_tally, p->w.particles, 0)
+FILL(particles_get_clump_template, se3d_clump_template_info, p->w.particles, 0)
 FILL(particles_get_contacts, se3d_particles_contact, p->particles, 1)
 FILL(particles_get_energy, se3d_particles_energy, p->w.particles)
 FILL(particles_get_stats, se3d_particles_stats, p->w.particles)
@@ -74,6 +75,7 @@ static const filler fillers[] = {
     ROW(system_get_contacts, se3d_contact),
     ROW(particles_get_source_stats, se3d_particles_source_stats),
     ROW(particles_get_tally, se3d_particles_tally),
+    ROW(particles_get_clump_template, se3d_clump_template_info),
     ROW(particles_get_contacts, se3d_particles_contact),
     ROW(particles_get_energy, se3d_particles_energy),
     ROW(particles_get_stats, se3d_particles_stats),

@@ -421,6 +421,38 @@ static se3d_status make_source_and_sink(workshop *w)
     return status;
 }
 
+/* A template of clumps, two of them and a source, and copies of all. */
+static se3d_status make_clumps(workshop *w)
+{
+    static const double r[6] = {0.0, 0.0, 0.0, 0.01, 0.0, 0.0}, radii[2] = {0.01, 0.01};
+    static const double at[6] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0};
+    se3d_particles *set = NULL;
+    se3d_material material = {0, 0};
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_clump_def def = se3d_clump_def_default();
+    uint32_t index;
+    stuff.density = 2500.0;
+    stuff.stiffness = 1e4;
+    def.count = 2;
+    def.r = r;
+    def.radius = radii;
+    se3d_status status = se3d_particles_create(w->system, NULL, &set);
+    status = status < 0 ? status : se3d_material_create(w->system, &stuff, &material);
+    status = status < 0 ? status : se3d_particles_add_clump_template(set, &def, &index);
+    if (status >= 0) {
+        status = se3d_particles_add_clumps(set, 0, material, 2, at, NULL, NULL, NULL);
+        CHECK(se3d_particles_count(set) == (status < 0 ? 0 : 4));
+        CHECK(se3d_particles_count_clumps(set) == (status < 0 ? 0 : 2));
+    }
+    status = status < 0 ? status : make_clone(w);
+    status = status < 0 ? status : make_snapshot(w);
+    se3d_particles_destroy(set);
+    if (material.index1 > 0) {
+        CHECK(se3d_material_destroy(w->system, material) == SE3D_OK);
+    }
+    return status;
+}
+
 static se3d_status make_check(workshop *w)
 {
     se3d_check *check = NULL;
@@ -495,6 +527,7 @@ static const operation_row operations[] = {
     {"solver bytes", read_solver},
     {"particles", make_particles},
     {"source and sink", make_source_and_sink},
+    {"clumps", make_clumps},
     {"check", make_check},
     {"coordinates", make_coordinates},
     {"batch", make_batch},

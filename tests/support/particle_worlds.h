@@ -13,11 +13,12 @@ enum {
     PARTICLES_PERIOD,
     PARTICLES_BODY,
     PARTICLES_TWO_SETS,
+    PARTICLES_CLUMPS,
     PARTICLES_WORLDS
 };
 
-static const char *const particle_world_names[PARTICLES_WORLDS] = {"heap", "mesh", "period", "body",
-                                                                   "two sets"};
+static const char *const particle_world_names[PARTICLES_WORLDS] = {"heap", "mesh",     "period",
+                                                                   "body", "two sets", "clumps"};
 
 static inline se3d_material particle_material(se3d_system *system, double rolling, double cohesion)
 {
@@ -105,6 +106,39 @@ static inline void particle_flow(se3d_particles *set, se3d_material material)
     CHECK(!se3d_particles_add_sink(set, &sink, NULL));
 }
 
+/* Lumps of three spheres that overlap, of several sizes, between the free spheres and from a
+ * source; some leave. */
+static inline void particle_clumps(se3d_particles *set, se3d_material material)
+{
+    static const double r[9] = {0.0, 0.0, 0.0, 0.009, 0.0, 0.0, 0.0, 0.007, 0.004},
+                        radii[3] = {0.008, 0.006, 0.005};
+    se3d_clump_def def = se3d_clump_def_default();
+    se3d_fill_def fill = particle_fill(material, 0.12, 0.3);
+    se3d_particles_source_def source = se3d_particles_source_def_default();
+    se3d_particles_sink_def sink = se3d_particles_sink_def_default();
+    uint32_t index;
+    def.count = 3;
+    def.r = r;
+    def.radius = radii;
+    CHECK(!se3d_particles_add_clump_template(set, &def, &index));
+    fill.clump = index + 1;
+    fill.radius_min = 0.012;
+    fill.radius_max = 0.017;
+    fill.count = 60;
+    fill.tag = 4;
+    CHECK(!se3d_particles_fill_random(set, &fill));
+    fill.lower[2] = 0.32;
+    fill.upper[2] = 0.4;
+    fill.count = 0;
+    fill.tag = 5;
+    source.fill = &fill;
+    source.rate = 500.0;
+    CHECK(!se3d_particles_add_source(set, &source, NULL));
+    sink.normal[0] = -1.0;
+    sink.point[0] = 0.083;
+    CHECK(!se3d_particles_add_sink(set, &sink, NULL));
+}
+
 /* A box that falls onto the particles, and a ram that moves as it is told. */
 static inline void particle_bodies(se3d_system *system, se3d_material material)
 {
@@ -165,6 +199,9 @@ static inline se3d_system *particle_world(int kind, int32_t threads)
     CHECK(!se3d_particles_fill_lattice(set, &fill, NULL));
     if (kind == PARTICLES_MESH) {
         particle_flow(set, stone);
+    }
+    if (kind == PARTICLES_CLUMPS) {
+        particle_clumps(set, stone);
     }
     if (kind == PARTICLES_BODY) {
         particle_bodies(system, floor);
