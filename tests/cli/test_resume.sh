@@ -38,6 +38,9 @@ materials: [{name: stone, density: 2500, stiffness: 2e4, rolling_friction: 0.05}
 particles:
   - {material: stone, radius: [0.008, 0.014], lower: [-0.1, -0.1, 0], upper: [0.1, 0.1, 0.15],
      packing: lattice, jitter: 1e-3}
+  - {clump: rod, material: stone, lower: [-0.1, -0.1, 0.15], upper: [0.1, 0.1, 0.25], count: 10}
+clumps:
+  - {name: rod, spheres: [{position: [-0.008, 0, 0], radius: 0.009}, {position: [0.008, 0, 0], radius: 0.01}]}
 bodies:
   - {name: ground, shapes: [{type: plane, material: stone}]}
   - {name: box, mass: 0.5, inertia: [1e-3, 1e-3, 1e-3], position: [0, 0, 0.3],

@@ -292,12 +292,62 @@ static void chute_counts_what_flows(void)
     se3d_model_destroy(model);
 }
 
+/* A rod that stands upright and one that lies, as they are turned; the rows say which spheres are
+ * together, and the energy is that of two rods and a sphere. */
+static void clumps_are_read_and_written(void)
+{
+    static const char text[] =
+        "se3d: 1\ngravity: [0, 0, -10]\n"
+        "materials: [{name: m, density: 1000, stiffness: 1e4}]\n"
+        "clumps:\n"
+        "  - {name: rod, spheres: [{position: [-0.02, 0, 0], radius: 0.02}, {position: [0.02, 0, "
+        "0], "
+        "radius: 0.02}]}\n"
+        "  - {name: disc, spheres: [{position: [0, 0, 0], radius: 0.01}], mass: 2, centre: [0, 0, "
+        "0.005], inertia: [1e-3, 1e-3, 1e-3]}\n"
+        "particles:\n"
+        "  - {material: m, clump: rod, orientation: {axis: [0, 1, 0], angle: -90*deg}, count: 1, "
+        "lower: [0, 0, 1], upper: [0.1, 0.1, 1.1]}\n"
+        "  - {name: big, material: m, clump: rod, radius: 0.08, orientation: {rpy: [0, 0, 0]}, "
+        "count: 1, lower: [0.5, 0, 1], upper: [0.7, 0.2, 1.2]}\n"
+        "  - {name: one, material: m, radius: 0.01, count: 1, lower: [1, 0, 1], upper: [1.1, 0.1, "
+        "1.1]}\n"
+        "  - {name: heavy, material: m, clump: disc, count: 1, lower: [2, 0, 1], upper: [2.1, 0.1, "
+        "1.1]}\n"
+        "analysis: {type: dynamics, duration: 0.1}\n"
+        "output: [{file: s.csv, every: 0.1, channels: [big.energy, big.mass, heavy.mass, "
+        "particles.count]}, {file: grains.csv, every: 0.1, particles: true}, {file: g.pvd, every: "
+        "0.1}]\n";
+    const double V = 4.0 / 3.0 * 3.14159265358979324 * 8e-6, fall = -0.05;
+    se3d_status status;
+    se3d_model *model = run_model(text, results_folder(), &status);
+    CHECK(status >= 0);
+    const double owners[6] = {0, 0, 2, 2, -1, 5}, radius[6] = {.02, .02, .04, .04, .01, .01};
+    for (size_t k = 0; k < 6; ++k) {
+        CHECK_NEAR(particle(7 + k, 0), 0.1, 1e-12);
+        CHECK_NEAR(particle(7 + k, 1), (double)k, 0.0);
+        CHECK_NEAR(particle(7 + k, 2), radius[k], 1e-12);
+        CHECK_NEAR(particle(7 + k, 13), owners[k], 0.0);
+    }
+    CHECK_NEAR(particle(7, 3) - particle(8, 3), 0.0, 1e-12);
+    CHECK_NEAR(particle(8, 5) - particle(7, 5), 0.04, 1e-12); /* upright */
+    CHECK_NEAR(particle(10, 3) - particle(9, 3), 0.08, 1e-12);
+    CHECK_NEAR(particle(7, 5), particle(1, 5) + fall, 1e-9);
+    const double height = 0.5 * (particle(9, 5) + particle(10, 5)), mass = 1000.0 * 16.0 * V;
+    CHECK_NEAR(channel(model, 0) / mass, 10.0 * height + 0.5, 1e-9); /* at 1 m/s */
+    CHECK_NEAR(channel(model, 1), mass, 1e-12);
+    CHECK_NEAR(channel(model, 2), 2.0, 1e-12);
+    CHECK_NEAR(channel(model, 3), 6.0, 0.0);
+    se3d_model_destroy(model);
+}
+
 int main(void)
 {
     RUN(tables_that_were_written_are_read_back);
     RUN(tables_are_refused_with_line_and_column);
     RUN(contacts_are_listed_with_their_forces);
     RUN(chute_counts_what_flows);
+    RUN(clumps_are_read_and_written);
     RUN(particle_falls_and_bounces_with_its_restitution);
     RUN(driven_wall_throws_a_particle);
     RUN(particles_that_leave_through_a_sink_are_counted);

@@ -18,10 +18,13 @@ typedef struct se3di_tagged {
     size_t source_count, source_capacity;
     const char **sinks;
     size_t sink_count;
+    const char **clumps; /* names of the templates of clumps */
+    size_t clump_count;
 } se3di_tagged;
 
 /* The index of a name, SIZE_MAX: none. */
 size_t se3di_tagged_find_set(const se3di_tagged *particles, const char *name);
 size_t se3di_tagged_find_sink(const se3di_tagged *particles, const char *name);
+size_t se3di_tagged_find_clump(const se3di_tagged *particles, const char *name);
 
 #endif

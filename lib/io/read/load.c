@@ -80,6 +80,8 @@ static const se3di_key model_keys[] = {
     {"particles", SE3DI_KIND_LIST, .object = "particles",
      .text = "spheres that touch each other and the walls: regions filled with them, tables, "
          "sources"},
+    {"clumps", SE3DI_KIND_LIST, .object = "clump",
+     .text = "templates of particles of several spheres, which `particles` name"},
     {"sinks", SE3DI_KIND_LIST, .object = "sink",
      .text = "regions that remove particles and count them"},
     {"analysis", SE3DI_KIND_ONE_OR_LIST, .object = "analysis",

@@ -18,6 +18,8 @@
     X(material)                                                                                    \
     X(contact)                                                                                     \
     X(pair)                                                                                        \
+    X(clump)                                                                                       \
+    X(sphere)                                                                                      \
     X(radius)                                                                                      \
     X(particles)                                                                                   \
     X(source)                                                                                      \

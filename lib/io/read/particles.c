@@ -13,6 +13,7 @@
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/model/tagged.h"
+#include "io/read/clumps.h"
 #include "io/read/materials.h"
 #include "io/read/objects.h"
 #include "io/read/particle_table.h"
@@ -34,7 +35,12 @@ static const se3di_key particles_keys[] = {
     {"count", SE3DI_KIND_COUNT, .most = 1e8, .standard = "0",
      .text = "lattice: at most, 0 for all that fit; random: how many"},
     {"radius", SE3DI_KIND_RADIUS,
-     .text = "[m]: a number, [smallest, largest], or a table of radii with how often each comes"},
+     .text = "[m]: a number, [smallest, largest], or a table of radii with how often each comes; "
+         "of clumps: of the sphere about the centre of mass that holds one, without it as they "
+         "are"},
+    {"clump", SE3DI_KIND_TEXT, .text = "what of: one of `clumps` in place of single spheres"},
+    {"orientation", SE3DI_KIND_ORIENTATION, SE3DI_INTO(se3d_fill_def, orientation),
+     .standard = "at random, by the seed", .text = "of clumps"},
     {"lower", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_fill_def, lower),
      .text = "corner of the region [m]"},
     {"upper", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_fill_def, upper),
@@ -61,7 +67,8 @@ const se3di_object se3di_object_particles = {
     "particles",
     "A region that is filled with spheres, a table of them, or a source.",
     particles_keys, NULL,
-    "\"anyOf\": [{\"required\": [\"file\"]}, {\"required\": [\"radius\", \"lower\", \"upper\"]}]"};
+    "\"anyOf\": [{\"required\": [\"file\"]}, {\"required\": [\"radius\", \"lower\", \"upper\"]}, "
+    "{\"required\": [\"clump\", \"lower\", \"upper\"]}]"};
 /* clang-format on */
 
 /* clang-format off */
@@ -223,6 +230,9 @@ static bool read_radius(se3di_reader *reader, const se3di_node *node, se3d_fill_
 {
     const se3di_node *radius = se3di_node_get(node, "radius");
     double range[2];
+    if (!radius && def->clump > 0) {
+        return true;
+    }
     if (!radius) {
         return se3di_reader_fail_key(reader, node, "radius",
                                      "is missing, must be a number, [smallest, largest] or {table: "
@@ -317,8 +327,10 @@ static bool read_source(se3di_reader *reader, const se3di_node *node, se3d_fill_
     se3d_particles_source_def def = se3d_particles_source_def_default();
     double most = 0.0;
     def.fill = fill;
-    if (!check_beside(reader, node, "source",
-                      " name material radius lower upper region axis velocity seed source ") ||
+    if (!check_beside(
+            reader, node, "source",
+            " name material radius clump orientation lower upper region axis velocity seed "
+            "source ") ||
         !se3di_read_keys(reader, child, &se3di_object_source) || !read_rate(reader, child, &def) ||
         !se3di_read_fields(reader, child, &se3di_object_source, NULL, "se3d_particles_source_def",
                            &def) ||
@@ -346,13 +358,17 @@ static bool read_fill(se3di_reader *reader, const se3di_node *node, se3d_fill_de
     double count = 0.0;
     double seed = 0.0;
     int32_t packing = LATTICE;
-    if (!se3di_read_key(reader, node, object, NULL, "packing", &packing) ||
+    if (!se3di_read_key_clump(reader, node, &def->clump) ||
+        !se3di_read_key(reader, node, object, NULL, "packing", &packing) ||
         !se3di_read_key(reader, node, object, NULL, "count", &count) ||
         !read_radius(reader, node, def) ||
         !read_region(reader, node, object, &def->region, &def->axis) ||
         !se3di_read_fields(reader, node, object, NULL, "se3d_fill_def", def) ||
         !se3di_read_key(reader, node, object, NULL, "seed", &seed)) {
         return false;
+    }
+    if (def->clump == 0 && se3di_node_get(node, "orientation")) {
+        return se3di_reader_fail_key(reader, node, "orientation", "is only for a `clump`");
     }
     def->count = (size_t)count;
     def->seed = (uint64_t)seed;
@@ -456,6 +472,11 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
         !se3di_read_list(reader, root, "sinks", &sinks)) {
         return false;
     }
+    const se3di_node *clumps = se3di_node_get(root, "clumps");
+    if (clumps && !list) {
+        return se3di_reader_fail(reader, clumps,
+                                 "needs `particles`, which the model does not have");
+    }
     if (sinks && !list) {
         return se3di_reader_fail(reader, sinks, "needs `particles`, which the model does not have");
     }
@@ -468,7 +489,8 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
     }
     model->particles->moving_walls = model->moving_shapes;
     model->particles->set_count = 1; /* those without a name */
-    if (!create_set(reader, contact) || !read_sinks(reader, sinks)) {
+    if (!create_set(reader, contact) || !se3di_read_clumps(reader, root) ||
+        !read_sinks(reader, sinks)) {
         return false;
     }
     for (const se3di_node *node = list->first; node; node = node->next) {

@@ -135,7 +135,7 @@ static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
     if (entry->vtk) {
         return open_vtk(r, entry, path);
     }
-    columns = entry->particles  ? (size_t)SE3DI_PARTICLE_COLUMNS + 1
+    columns = entry->particles  ? se3di_tagged_count_columns(r->model)
               : entry->contacts ? (size_t)SE3DI_CONTACT_COLUMNS
                                 : columns;
     for (size_t k = 0; k < entry->count; ++k) {

@@ -9,12 +9,19 @@
 #include "io/model/model.h"
 #include "io/model/tagged.h"
 #include "io/write/csv.h"
+#include "se3d/clump.h"
 
 const char *se3di_tagged_get_column(size_t k)
 {
     static const char *const names[SE3DI_PARTICLE_COLUMNS + 1] = {
-        "time", "id", "radius", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "material"};
+        "time", "id", "radius", "x",  "y",  "z",        "vx",
+        "vy",   "vz", "wx",     "wy", "wz", "material", "clump"};
     return names[k];
+}
+
+size_t se3di_tagged_count_columns(const se3d_model *model)
+{
+    return (size_t)SE3DI_PARTICLE_COLUMNS + (model->particles->clump_count > 0 ? 1 : 0);
 }
 
 static const char *name_of(const se3d_model *model, se3d_material material)
@@ -54,6 +61,7 @@ se3d_status se3di_tagged_get_rows(const se3d_model *model, se3di_iopool *pool,
     const se3d_particles *set = model->particles->set;
     const size_t n = se3d_particles_count(set);
     uint32_t *ids = se3di_iopool_array(pool, n + 1, sizeof *ids);
+    uint32_t *clumps = se3di_iopool_array(pool, n + 1, sizeof *clumps);
     double *numbers = se3di_iopool_array(pool, 10 * n + 1, sizeof *numbers);
     se3d_material *materials = se3di_iopool_array(pool, n + 1, sizeof *materials);
     double time = 0.0;
@@ -61,12 +69,15 @@ se3d_status se3di_tagged_get_rows(const se3d_model *model, se3di_iopool *pool,
     out->rows = se3di_iopool_array(pool, WIDTH * n + 1, sizeof *out->rows);
     out->tags = se3di_iopool_array(pool, n + 1, sizeof *out->tags);
     out->materials = se3di_iopool_array(pool, n + 1, sizeof *out->materials);
-    if (!ids || !numbers || !materials || !out->rows || !out->tags || !out->materials) {
+    if (!ids || !clumps || !numbers || !materials || !out->rows || !out->tags || !out->materials) {
         return SE3D_ERR_NO_MEMORY;
     }
     se3d_status status = se3d_particles_get_time(set, &time);
     if (status >= 0) {
         status = read_set(set, n, numbers, ids, out, materials);
+    }
+    if (status >= 0) {
+        status = se3d_particles_get_clump_of(set, n, clumps);
     }
     for (size_t k = 0; k < n && status >= 0; ++k) {
         double *row = out->rows + WIDTH * k;
@@ -76,6 +87,7 @@ se3d_status se3di_tagged_get_rows(const se3d_model *model, se3di_iopool *pool,
         for (size_t v = 0; v < 3; ++v) {
             memcpy(row + 3 + 3 * v, numbers + n + 3 * (v * n + k), 3 * sizeof *row);
         }
+        row[12] = clumps[k] == UINT32_MAX ? -1.0 : (double)clumps[k];
         out->materials[k] = name_of(model, materials[k]);
     }
     out->count = status < 0 ? 0 : n;
@@ -88,15 +100,18 @@ se3d_status se3di_tagged_write(const se3d_model *model, se3di_iopool *pool, int3
     se3di_particle_rows particles;
     se3di_csv_cell cells[SE3DI_PARTICLE_COLUMNS + 1] = {{NULL, 0.0}};
     const se3d_status status = se3di_tagged_get_rows(model, pool, &particles);
+    const size_t numbers = SE3DI_PARTICLE_COLUMNS - 1;
     for (size_t k = 0; k < particles.count; ++k) {
         if (set >= 0 && particles.tags[k] != (uint32_t)set) {
             continue;
         }
-        for (size_t c = 0; c < SE3DI_PARTICLE_COLUMNS; ++c) {
-            cells[c].number = particles.rows[SE3DI_PARTICLE_COLUMNS * k + c];
+        const double *row = particles.rows + SE3DI_PARTICLE_COLUMNS * k;
+        for (size_t c = 0; c < numbers; ++c) {
+            cells[c].number = row[c];
         }
-        cells[SE3DI_PARTICLE_COLUMNS].text = particles.materials[k];
-        se3di_csv_put_cells(csv, cells, SE3DI_PARTICLE_COLUMNS + 1);
+        cells[numbers].text = particles.materials[k];
+        cells[numbers + 1].number = row[numbers];
+        se3di_csv_put_cells(csv, cells, se3di_tagged_count_columns(model));
     }
     return status;
 }

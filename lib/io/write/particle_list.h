@@ -6,17 +6,19 @@
 #include "io/model/model.h"
 #include "io/write/csv.h"
 
-enum { SE3DI_PARTICLE_COLUMNS = 12 };
+enum { SE3DI_PARTICLE_COLUMNS = 13 };
 
 /* Particles as they are, in ascending order of the ids. */
 typedef struct se3di_particle_rows {
-    double *rows; /* [count * SE3DI_PARTICLE_COLUMNS] */
+    double *rows; /* [count * SE3DI_PARTICLE_COLUMNS]; the last one: the clump, -1: none */
     uint32_t *tags;
     const char **materials; /* names */
     size_t count;
 } se3di_particle_rows;
 
-/* Names of the columns of a snapshot; after the numbers the material. */
+/* Columns of a snapshot: numbers, the material, and if the model has clumps, of which one a sphere
+ * is. */
+size_t se3di_tagged_count_columns(const se3d_model *model);
 const char *se3di_tagged_get_column(size_t k);
 /* Copy all particles. */
 se3d_status se3di_tagged_get_rows(const se3d_model *model, se3di_iopool *pool,

@@ -261,36 +261,39 @@ typedef struct column {
     bool is_integer;
 } column;
 
-enum { COLUMNS_MOST = 4 };
+enum { COLUMNS_MOST = 5 }; /* a name NULL: there are fewer */
 
 /* The rows of a table as points with what their columns say; the place is at `place`. */
 static bool write_rows(const char *path, const double *rows, size_t n, size_t width, size_t place,
                        const column columns[COLUMNS_MOST])
 {
     se3di_vtk_array arrays[COLUMNS_MOST + 3];
-    for (size_t k = 0; k < COLUMNS_MOST; ++k) {
+    size_t count = 0;
+    for (size_t k = 0; k < COLUMNS_MOST && columns[k].name; ++k) {
         const column *c = &columns[k];
-        arrays[k] = (se3di_vtk_array){
+        arrays[count++] = (se3di_vtk_array){
             SE3DI_VTK_POINT_DATA, c->name, rows + c->first, n, c->width, width, 0.0, 0.0,
             c->is_integer};
     }
-    se3di_vtk_array *points = arrays + COLUMNS_MOST;
+    se3di_vtk_array *points = arrays + count;
     points[0] =
         (se3di_vtk_array){SE3DI_VTK_POINTS, "points", rows + place, n, 3, width, 0.0, 0.0, false};
     points[1] = (se3di_vtk_array){SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true};
     points[2] = (se3di_vtk_array){SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true};
-    const se3di_vtk_file file = {n, n, 0, arrays, sizeof arrays / sizeof *arrays};
+    const se3di_vtk_file file = {n, n, 0, arrays, count + 3};
     return se3di_vtk_file_write(&file, path);
 }
 
 static bool write_particles(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
                             const char *path)
 {
-    /* The columns of a row: time, id, radius, position, velocity, angular velocity. */
-    static const column columns[COLUMNS_MOST] = {{"radius", 2, 1, false},
-                                                 {"velocity", 6, 3, false},
-                                                 {"angular_velocity", 9, 3, false},
-                                                 {"id", 1, 1, true}};
+    /* The columns of a row: time, id, radius, position, velocity, angular velocity, clump. */
+    const column columns[COLUMNS_MOST] = {
+        {"radius", 2, 1, false},
+        {"velocity", 6, 3, false},
+        {"angular_velocity", 9, 3, false},
+        {"id", 1, 1, true},
+        {model->particles->clump_count > 0 ? "clump" : NULL, 12, 1, true}};
     se3di_particle_rows list;
     (void)sample;
     return se3di_tagged_get_rows(model, pool, &list) >= 0 &&
