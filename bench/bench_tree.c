@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What the recursions of joint coordinates cost, in ns a link, with no solver around them: chains
- * of revolutes (a) and of balls (b). `state`: coordinates to poses and velocities of all bodies;
- * `acceleration`: that, and from wrenches on the bodies to accelerations of the coordinates;
- * `reactions`: multipliers of all joints on top of it; `lanes`: accelerations under gravity of 4
+ * of revolutes (a) and of balls (b). `acceleration`: from coordinates and velocities to
+ * accelerations of the coordinates under gravity, as stages of a run need them; `frames`: poses and
+ * velocities of all bodies; `with frames`: these, and accelerations from wrenches on the bodies;
+ * `reactions`: multipliers of all joints on top of that; `lanes`: accelerations under gravity of 4
  * and of 8 states at once, a link and state. Arguments: counts of links. */
 #define _POSIX_C_SOURCE 200809L
 #include "mechanisms.h"
@@ -40,6 +41,14 @@ static void find_state(work *w)
 
 static void find_acceleration(work *w)
 {
+    se3di_tree_place(&w->tree, w->q, w->qdot, NULL);
+    se3di_tree_pull(&w->tree, w->model->gravity);
+    (void)se3di_tree_factor(&w->tree, NULL);
+    se3di_tree_accelerate(&w->tree, w->tree.e, w->qddot);
+}
+
+static void find_with_frames(work *w)
+{
     find_state(w);
     se3di_tree_take_wrenches(&w->tree, w->model->frames, w->wrench);
     (void)se3di_tree_factor(&w->tree, NULL);
@@ -48,7 +57,7 @@ static void find_acceleration(work *w)
 
 static void find_reactions(work *w)
 {
-    find_acceleration(w);
+    find_with_frames(w);
     w->tree.core->transmit(&w->tree, w->tree.wrench, w->joint);
     se3di_tree_multipliers(&w->tree, w->joint, NULL, w->lambda);
 }
@@ -81,11 +90,11 @@ static double measure_lanes(const work *w, int width)
     for (int k = 0; k < width; ++k) {
         gravity[width + k] = -9.81;
     }
+    se3di_lanes_load(&lanes, gravity, 0);
     for (int round = 0; round < ROUNDS; ++round) {
         const double begin = cpu_time();
         for (int k = 0; k < count; ++k) {
             core->place(&lanes, q, qdot);
-            core->weigh(&lanes, gravity);
             se3di_lanes_accelerate(&lanes, NULL, qddot);
             qdot[0] += 1e-12 * qddot[0];
         }
@@ -130,11 +139,13 @@ static void run(char kind, int n)
     (void)se3di_loads_eval(w.model, 0.0, w.wrench, &failed);
     const double state = measure(&w, find_state);
     const double acceleration = measure(&w, find_acceleration);
+    const double with_frames = measure(&w, find_with_frames);
     const double reactions = measure(&w, find_reactions);
-    printf("%c %4d links: state %6.1f, acceleration %6.1f, reactions %6.1f ns a link, "
-           "lanes of 4: %5.1f, of 8: %5.1f\n",
-           kind, n, state, acceleration, reactions - acceleration, measure_lanes(&w, 4),
-           measure_lanes(&w, 8));
+    printf(
+        "%c %4d links: acceleration %6.1f, frames %6.1f, with frames %6.1f, reactions %6.1f ns a "
+        "link, lanes of 4: %5.1f, of 8: %5.1f\n",
+        kind, n, acceleration, state, with_frames, reactions - with_frames, measure_lanes(&w, 4),
+        measure_lanes(&w, 8));
     free(w.q);
     free(w.qdot);
     free(w.qddot);

@@ -187,6 +187,7 @@ static se3d_status init_worker(se3di_batch *b, se3di_batch_worker *w)
                           {&w->verdict, width},
                           {&w->scalars, 6 * (size_t)b->tree.body_count}};
     SE3DI_TRY(se3di_lanes_init(&w->lanes, &b->tree, b->core, !b->is_in_lanes));
+    w->lanes.wants_points = b->spring_count > 0;
     w->memory =
         take_rooms(&b->model->allocator, rooms, sizeof rooms / sizeof *rooms, &w->memory_count);
     if (!w->memory) {

@@ -91,9 +91,10 @@ static void load_lane(const task *t, const double *q, double dt, size_t lane)
 static void load(const task *t, const double *q, double dt)
 {
     const se3di_batch *b = t->batch;
-    const se3di_lanes *lanes = &t->worker->lanes;
+    se3di_lanes *lanes = &t->worker->lanes;
     if (b->is_in_lanes) {
-        b->core->weigh(lanes, b->gravity + 3 * t->group * t->width);
+        se3di_lanes_load(lanes, b->gravity + 3 * t->group * t->width,
+                         b->spring_count + b->load_count > 0);
         b->core->add_springs(lanes, b->springs, b->spring_count);
         b->core->add_loads(lanes, b->loads, b->load_count);
         return;

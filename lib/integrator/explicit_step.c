@@ -171,8 +171,7 @@ static se3d_status evaluate(se3di_explicit *m, double t, double *derivative)
 se3d_status se3di_explicit_evaluate(se3di_explicit *m, double t, const double *y,
                                     double *derivative)
 {
-    m->motion->set(m->equations, y);
-    return evaluate(m, t, derivative);
+    return m->motion->evaluate_at(m->equations, t, y, derivative);
 }
 
 double se3di_explicit_size_of(const se3di_explicit *m, const double parts[4],

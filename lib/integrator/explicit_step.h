@@ -107,7 +107,7 @@ double se3di_explicit_size(const se3di_explicit *m, const double *error);
 double se3di_explicit_size_of(const se3di_explicit *m, const double parts[4],
                               const double work[SE3DI_STATE_WORK]);
 double se3di_explicit_measure(const se3di_explicit *m, const double *error);
-/* Derivative at t at the state y. */
+/* Derivative at t at the state y; the model's frames may stay behind. */
 se3d_status se3di_explicit_evaluate(se3di_explicit *m, double t, const double *y,
                                     double *derivative);
 /* The vector of work for the derivative at the end of the step. */

@@ -54,6 +54,7 @@ int se3di_gauss_lanes_init(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_
     g->parts = g->gravity + 3 * w;
     g->verdict = g->parts + 4 * w;
     se3di_lanes_lay_out(&g->lanes, tree, core, g->verdict + w);
+    se3di_lanes_load(&g->lanes, g->gravity, 0);
     return 1;
 }
 
@@ -119,7 +120,6 @@ int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di
     core->combine(state, m->y1, g->weights, g->K, g->Y);
     core->normalise(&g->lanes, g->Y);
     core->place(&g->lanes, g->Y, g->Y + at);
-    core->weigh(&g->lanes, g->gravity);
     se3di_lanes_accelerate(&g->lanes, NULL, g->next + at);
     core->find_rates(&g->lanes, g->Y, g->Y + at, g->next);
     if (!is_finite(g)) {

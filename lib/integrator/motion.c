@@ -33,6 +33,13 @@ static se3d_status evaluate(se3di_equations *equations, double t, double *deriva
     return derive(equations, t, equations->l, derivative);
 }
 
+static se3d_status evaluate_at(se3di_equations *equations, double t, const double *y,
+                               double *derivative)
+{
+    set(equations, y);
+    return evaluate(equations, t, derivative);
+}
+
 static void move(const se3di_equations *equations, const double *y, double *derivative)
 {
     for (uint32_t k = 0; k < equations->assembly.body_count; ++k) {
@@ -84,6 +91,7 @@ const se3di_motion se3di_motion_bodies = {
     .set = set,
     .get_rates = pass,
     .evaluate = evaluate,
+    .evaluate_at = evaluate_at,
     .derive = derive,
     .move = move,
     .spread = pass,

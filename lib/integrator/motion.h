@@ -23,6 +23,9 @@ typedef struct se3di_motion {
     const double *(*get_rates)(se3di_equations *equations, const double *derivative, double *out);
     /* y' at t of the state that was set last. */
     se3d_status (*evaluate)(se3di_equations *equations, double t, double *derivative);
+    /* y becomes the state, and the same there; the model's frames may stay behind. */
+    se3d_status (*evaluate_at)(se3di_equations *equations, double t, const double *y,
+                               double *derivative);
     /* The same from accelerations in equations->x and multipliers l [rows]. */
     se3d_status (*derive)(se3di_equations *equations, double t, const double *l,
                           double *derivative);

@@ -63,12 +63,16 @@ static void place(se3di_equations *equations)
     equations->is_placed = 1;
 }
 
-static void set(se3di_equations *equations, const double *y)
+static void take_state(se3di_tree *tree, const double *y)
 {
-    se3di_tree *tree = equations->tree;
     memcpy(tree->q, y, tree->q_count * sizeof *y);
     memcpy(tree->qdot, y + tree->q_count, tree->v_count * sizeof *y);
     normalise(tree, tree->q);
+}
+
+static void set(se3di_equations *equations, const double *y)
+{
+    take_state(equations->tree, y);
     place(equations);
 }
 
@@ -136,10 +140,12 @@ static const double *get_rates(se3di_equations *equations, const double *derivat
 {
     se3di_tree *tree = equations->tree;
     const se3di_assembly *assembly = &equations->assembly;
+    static const double none[3] = {0.0, 0.0, 0.0};
+    se3di_tree_pull(tree, none); /* whatever was evaluated before */
     se3di_tree_propagate(tree, derivative + tree->q_count);
     for (uint32_t k = 0; k < tree->count; ++k) {
         const uint32_t body = tree->nodes[k].body;
-        se3di_tree_link_acceleration(&tree->links[k], &assembly->model->frames[body],
+        se3di_tree_link_acceleration(tree, k, &assembly->model->frames[body],
                                      out + SE3DI_STATE_SIZE * (size_t)assembly->free_index[body] +
                                          7);
     }
@@ -290,7 +296,10 @@ static const double *find_multipliers(se3di_equations *equations)
         return NULL;
     }
     double *joint = equations->joint_moves, *wrench = joint + 6 * (size_t)tree->count;
-    memcpy(wrench, tree->wrench, 6 * (size_t)tree->count * sizeof *wrench);
+    memset(wrench, 0, 6 * (size_t)tree->count * sizeof *wrench);
+    if (tree->acts) {
+        memcpy(wrench, tree->wrench, 6 * (size_t)tree->count * sizeof *wrench);
+    }
     if (equations->has_loops) {
         const double *lambda = equations->loops.lambda;
         memcpy(equations->l, lambda, equations->assembly.row_count * sizeof *lambda);
@@ -325,18 +334,14 @@ static se3d_status complete_tree(se3di_equations *equations, double t, const dou
     return se3di_state_complete_powers(&equations->assembly, t, find_multipliers(equations), works);
 }
 
-/* With what acts in `sums`. */
-static se3d_status evaluate_sums(se3di_equations *equations, double t, se3di_force_sums *sums,
-                                 double *derivative)
+/* With all that acts in the tree. */
+static se3d_status finish(se3di_equations *equations, double t, double power[2], double *derivative)
 {
     se3di_tree *tree = equations->tree;
-    se3di_assembly *assembly = &equations->assembly;
     double *qddot = derivative + tree->q_count;
-    SE3DI_TRY(se3di_assembly_sum_loads(assembly, t, sums, equations->error));
     for (uint32_t v = 0; tree->has_efforts && v < tree->v_count; ++v) {
-        sums->power[1] += tree->effort[v] * tree->qdot[v];
+        power[1] += tree->effort[v] * tree->qdot[v];
     }
-    se3di_tree_take_wrenches(tree, assembly->model->frames, assembly->wrench);
     se3d_status status = solve_motion(equations, qddot);
     for (uint32_t k = 0; k < tree->v_count && status >= 0; ++k) {
         status = isfinite(qddot[k]) ? status : SE3D_ERR_NOT_FINITE;
@@ -345,18 +350,51 @@ static se3d_status evaluate_sums(se3di_equations *equations, double t, se3di_for
         return se3di_error_set(equations->error, status,
                                "t = %g s: the equations are singular or not finite", t);
     }
-    return complete_tree(equations, t, sums->power, derivative);
+    return complete_tree(equations, t, power, derivative);
+}
+
+/* Gravity and efforts are all that acts: no frame of a body is needed. */
+static int falls(const se3di_equations *equations)
+{
+    return is_open(equations) && !equations->assembly.push && se3di_tree_falls(equations->tree);
+}
+
+/* With the efforts of the last sums. */
+static se3d_status fall_again(se3di_equations *equations, double t, double *derivative)
+{
+    double power[2] = {0.0, 0.0};
+    se3di_tree_pull(equations->tree, equations->assembly.model->gravity);
+    return finish(equations, t, power, derivative);
+}
+
+static se3d_status evaluate_fall(se3di_equations *equations, double t, double *derivative)
+{
+    se3di_tree_sum_efforts(equations->tree);
+    return fall_again(equations, t, derivative);
+}
+
+/* With what acts in `sums`. */
+static se3d_status evaluate_sums(se3di_equations *equations, double t, se3di_force_sums *sums,
+                                 double *derivative)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    SE3DI_TRY(se3di_assembly_sum_loads(assembly, t, sums, equations->error));
+    se3di_tree_take_wrenches(equations->tree, assembly->model->frames, assembly->wrench);
+    return finish(equations, t, sums->power, derivative);
 }
 
 static se3d_status evaluate_tree(se3di_equations *equations, double t, double *derivative)
 {
     se3di_tree *tree = equations->tree;
+    ++equations->counters.evaluations;
+    if (falls(equations)) {
+        return evaluate_fall(equations, t, derivative);
+    }
     if (!is_open(equations)) {
         SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
         se3di_tree_take_given(tree, &equations->assembly);
     }
     se3di_force_sums sums = se3di_tree_sums(tree);
-    ++equations->counters.evaluations;
     return evaluate_sums(equations, t, &sums, derivative);
 }
 
@@ -367,6 +405,21 @@ static se3d_status evaluate(se3di_equations *equations, double t, double *deriva
     }
     SE3DI_TRY(se3di_state_evaluate(equations, t));
     return derive(equations, t, equations->l, derivative);
+}
+
+static se3d_status evaluate_at(se3di_equations *equations, double t, const double *y,
+                               double *derivative)
+{
+    if (!falls(equations)) {
+        set(equations, y);
+        return evaluate(equations, t, derivative);
+    }
+    se3di_tree *tree = equations->tree;
+    take_state(tree, y);
+    se3di_tree_place(tree, tree->q, tree->qdot, NULL);
+    equations->is_placed = 0;
+    ++equations->counters.evaluations;
+    return evaluate_fall(equations, t, derivative);
 }
 
 /* ---- projection ---- */
@@ -487,9 +540,7 @@ static void show(se3di_equations *equations, const double *y, double *bodies)
 {
     se3di_tree *tree = equations->tree;
     const se3di_assembly *assembly = &equations->assembly;
-    memcpy(tree->q, y, tree->q_count * sizeof *y);
-    memcpy(tree->qdot, y + tree->q_count, tree->v_count * sizeof *y);
-    normalise(tree, tree->q);
+    take_state(tree, y);
     place_aside(equations);
     for (uint32_t k = 0; k < assembly->body_count; ++k, bodies += SE3DI_STATE_SIZE) {
         se3di_state_pack(&tree->frames[assembly->free_body[k]], bodies);
@@ -503,7 +554,7 @@ static void report(se3di_equations *equations)
     se3di_model *model = equations->assembly.model;
     double *joint = equations->joint_moves;
     se3di_tree_get_accelerations(tree, model->frames, model->acceleration);
-    tree->core->transmit(tree, tree->wrench, joint);
+    tree->core->transmit(tree, tree->acts ? tree->wrench : NULL, joint);
     se3di_tree_multipliers(tree, joint, se3di_tree_effort(tree), model->lambda);
 }
 
@@ -537,6 +588,9 @@ static int can_wait(const se3di_equations *equations)
 
 static se3d_status evaluate_again(se3di_equations *equations, double t, double *derivative)
 {
+    if (falls(equations)) {
+        return fall_again(equations, t, derivative);
+    }
     se3di_force_sums sums = se3di_tree_sums_again(equations->tree);
     return evaluate_sums(equations, t, &sums, derivative);
 }
@@ -566,6 +620,7 @@ const se3di_motion se3di_motion_joints = {
     .set = set,
     .get_rates = get_rates,
     .evaluate = evaluate,
+    .evaluate_at = evaluate_at,
     .derive = derive,
     .move = move,
     .spread = spread,

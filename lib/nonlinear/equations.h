@@ -65,7 +65,7 @@ typedef struct se3di_equations {
     int32_t has_loops;       /* some constraint is not on the tree */
     int32_t takes_rows;      /* stages take the loops' rows on the tree, not all equations */
     int32_t is_suited;       /* masses_version and poses_version were looked at */
-    int32_t is_placed;       /* the links of the tree are at its q and qdot */
+    int32_t is_placed;       /* the links of the tree are at its q and qdot, with poses */
     int32_t reserved_too;
 } se3di_equations;
 

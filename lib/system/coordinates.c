@@ -420,6 +420,11 @@ static se3d_status load(se3d_coordinates *c)
 {
     se3d_system *system = c->system;
     const double t = system->model.time;
+    if (c->loops.count == 0 && se3di_tree_falls(&c->tree)) {
+        se3di_tree_sum_efforts(&c->tree);
+        se3di_tree_pull(&c->tree, system->model.gravity);
+        return SE3D_OK;
+    }
     se3di_force_sums sums = se3di_tree_sums(&c->tree);
     sums.wrench = c->wrench;
     se3d_status status = se3di_loads_sum(&system->model, t, &sums);

@@ -176,6 +176,7 @@ static void place_on_parent(const se3di_tree *tree, se3di_tree_node *n, const do
         n->flags |= is_unit(relative) ? SE3DI_TREE_ALIGNED_PARENT : 0;
     }
     se3di_quat_from_matrix(relative, n->C);
+    se3di_quat_to_matrix(n->C, n->T);
 }
 
 /* Moments of inertia about the joint point, in the triad T; s is set. */
@@ -584,8 +585,45 @@ se3di_force_sums se3di_tree_sums_again(se3di_tree *tree)
         .along = tree->has_efforts ? tree->along : NULL, .effort = tree->effort, .has_efforts = 1};
 }
 
+int se3di_tree_falls(const se3di_tree *tree)
+{
+    const se3di_model *model = tree->model;
+    int falls = !tree->has_states && model->shape_slots.count <= 1 && model->wheel_slots.count == 0;
+    for (int c = 0; c < 3; ++c) {
+        falls &= model->gravity_function[c] < 0;
+    }
+    for (uint32_t k = 0; falls && k < tree->force_count; ++k) {
+        const se3di_force *force = &model->forces[k];
+        falls = force->type == SE3DI_FORCE_ARMATURE ||
+                (tree->along[k] >= 0 && se3di_force_is_number(force));
+    }
+    return falls;
+}
+
+void se3di_tree_sum_efforts(se3di_tree *tree)
+{
+    if (!tree->has_efforts) {
+        return;
+    }
+    memset(tree->effort, 0, tree->v_count * sizeof *tree->effort);
+    for (uint32_t k = 0; k < tree->force_count; ++k) {
+        if (tree->along[k] >= 0) {
+            tree->effort[tree->along[k]] += tree->model->forces[k].value[0];
+        }
+    }
+}
+
+void se3di_tree_pull(se3di_tree *tree, const double g[3])
+{
+    tree->acts = 0;
+    se3di_copy(g, tree->pull);
+}
+
 void se3di_tree_take_wrenches(se3di_tree *tree, const se3di_frame *frames, const double *wrench)
 {
+    static const double none[3] = {0.0, 0.0, 0.0};
+    se3di_tree_pull(tree, none);
+    tree->acts = 1;
     for (uint32_t k = 0; k < tree->count; ++k) {
         const uint32_t body = tree->nodes[k].body;
         const double *from = wrench + 6 * (size_t)body;
@@ -615,7 +653,9 @@ void se3di_tree_propagate(se3di_tree *tree, const double *qddot)
         se3di_tree_link *link = &tree->links[i];
         double *a = link->a;
         memcpy(a, link->c, sizeof link->c);
-        if (n->parent >= 0) {
+        if (n->parent < 0) {
+            se3di_sub(a + 3, tree->pull, a + 3);
+        } else {
             const double *from = tree->links[n->parent].a;
             double x[3];
             se3di_cross(from, link->d, x);
@@ -633,12 +673,14 @@ void se3di_tree_propagate(se3di_tree *tree, const double *qddot)
     }
 }
 
-void se3di_tree_link_acceleration(const se3di_tree_link *link, const se3di_frame *frame,
+void se3di_tree_link_acceleration(const se3di_tree *tree, uint32_t node, const se3di_frame *frame,
                                   double out[6])
 {
+    const se3di_tree_link *link = &tree->links[node];
     double turning[3], x[3];
     se3di_cross(link->a, link->s, x);
     se3di_add(link->a + 3, x, out);
+    se3di_add(out, tree->pull, out);
     se3di_cross(link->w, link->s, turning);
     se3di_cross(link->w, turning, x);
     se3di_add(out, x, out);
@@ -651,7 +693,6 @@ void se3di_tree_get_accelerations(const se3di_tree *tree, const se3di_frame *fra
     memset(acceleration, 0, 6 * (size_t)tree->body_count * sizeof *acceleration);
     for (uint32_t i = 0; i < tree->count; ++i) {
         const uint32_t body = tree->nodes[i].body;
-        se3di_tree_link_acceleration(&tree->links[i], &frames[body],
-                                     acceleration + 6 * (size_t)body);
+        se3di_tree_link_acceleration(tree, i, &frames[body], acceleration + 6 * (size_t)body);
     }
 }

@@ -6,14 +6,15 @@
 #include "tree/tree.h"
 
 typedef struct se3di_tree_core {
-    /* links, S and biases, and the frames of the bodies */
+    /* links, S and biases, and the frames of the bodies; without frames (NULL) links have neither
+     * quaternions nor points */
     void (*place)(se3di_tree *tree, const double *q, const double *qdot, se3di_frame *frames);
     /* articulated inertias from the leaves to the root: U, D, e; returns 0 if some D is not > 0 */
     int (*factor)(se3di_tree *tree, const double *effort);
     /* accelerations from the root to the leaves */
     void (*accelerate)(se3di_tree *tree, const double *e, double *qddot);
     /* [nodes * 6] moment about P and force that the joint of each node exerts on it, at the
-     * accelerations of the links; `external` [nodes * 6] acts on it */
+     * accelerations of the links; `external` [nodes * 6] (NULL: nothing) acts on it */
     void (*transmit)(const se3di_tree *tree, const double *external, double *joint);
 } se3di_tree_core;
 

@@ -93,7 +93,7 @@ se3d_status se3di_lanes_init(se3di_lanes *lanes, const se3di_tree *tree,
                              const se3di_lane_core *core, int wants_frames)
 {
     part parts[PARTS];
-    *lanes = (se3di_lanes){.tree = tree, .core = core};
+    *lanes = (se3di_lanes){.tree = tree, .core = core, .acts = 1};
     const size_t count =
         list_parts(lanes, extent_of(tree, wants_frames), parts) * (size_t)core->width +
         SE3DI_LANES_ALIGN / sizeof(double);
@@ -110,7 +110,7 @@ void se3di_lanes_lay_out(se3di_lanes *lanes, const se3di_tree *tree, const se3di
                          double *memory)
 {
     part parts[PARTS];
-    *lanes = (se3di_lanes){.tree = tree, .core = core};
+    *lanes = (se3di_lanes){.tree = tree, .core = core, .acts = 1};
     (void)list_parts(lanes, extent_of(tree, 0), parts);
     lay_out(parts, (size_t)core->width, memory);
 }
@@ -129,6 +129,16 @@ void se3di_lanes_destroy(se3di_lanes *lanes)
                    sizeof *lanes->memory);
     }
     memset(lanes, 0, sizeof *lanes);
+}
+
+void se3di_lanes_load(se3di_lanes *lanes, const double *gravity, int acts)
+{
+    const size_t count = 6 * (size_t)lanes->tree->count * (size_t)lanes->core->width;
+    lanes->gravity = gravity;
+    lanes->acts = acts;
+    for (size_t k = 0; acts && k < count; ++k) {
+        lanes->wrench[k] = 0.0;
+    }
 }
 
 void se3di_lanes_accelerate(const se3di_lanes *lanes, const double *effort, double *qddot)

@@ -44,9 +44,8 @@ typedef struct se3di_lane_core {
     int32_t width;
     /* Links, S and biases of the states; frames of the bodies if the lanes have any. */
     void (*place)(const se3di_lanes *lanes, const double *q, const double *qdot);
-    /* Weights on the nodes, instead of all else: gravity [3]. */
-    void (*weigh)(const se3di_lanes *lanes, const double *gravity);
-    /* Besides: springs, loads; along coordinates, to effort [velocities]. */
+    /* Wrenches of springs and loads are added; what laws say along coordinates, to effort
+     * [velocities]. Springs need points. */
     void (*add_springs)(const se3di_lanes *lanes, const se3di_lane_spring *springs, size_t count);
     void (*add_loads)(const se3di_lanes *lanes, const se3di_lane_load *loads, size_t count);
     void (*add_laws)(const se3di_lane_law *laws, size_t count, const double *q, const double *qdot,
@@ -103,6 +102,9 @@ struct se3di_lanes {
     double *frames;         /* [bodies] se3di_frame, NULL: not wanted; */
     double *loads;          /* [bodies * 6] what acts on them, as force/force.h has it */
     const double *inertias; /* [nodes * 7] mass and J of each state's own; NULL: the tree's */
+    const double *gravity;  /* [3] of each state, NULL: none but in the wrenches; */
+    int32_t acts;           /* wrenches are read: see se3di_lanes_load */
+    int32_t wants_points;   /* points of links and their velocities, even without frames */
     double *memory;         /* all of it, as allocated */
     size_t memory_count;
 };
@@ -116,6 +118,10 @@ void se3di_lanes_destroy(se3di_lanes *lanes);
 void se3di_lanes_lay_out(se3di_lanes *lanes, const se3di_tree *tree, const se3di_lane_core *core,
                          double *memory);
 size_t se3di_lanes_room(size_t nodes, size_t velocities, size_t branches, size_t width);
+
+/* Gravity [3] pulls at all links (NULL: it does not), and if something else acts, it is added to
+ * wrenches that are zero now. At first there are wrenches and no gravity. */
+void se3di_lanes_load(se3di_lanes *lanes, const double *gravity, int acts);
 
 /* Accelerations of the states, with lanes->wrench as it is; effort may be NULL. */
 void se3di_lanes_accelerate(const se3di_lanes *lanes, const double *effort, double *qddot);

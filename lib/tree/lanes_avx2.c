@@ -15,11 +15,13 @@ typedef double number __attribute__((vector_size(32)));
 typedef uint64_t integers __attribute__((vector_size(32)));
 typedef int64_t verdict __attribute__((vector_size(32)));
 
-#define FINE            (~(verdict){0})
-#define LANES           4
-#define NUMBER(x)       ((number)_mm256_set1_pd(x))
-#define fma_of(a, b, c) ((number)_mm256_fmadd_pd(a, b, c))
-#define root_of(a)      ((number)_mm256_sqrt_pd(a))
+#define FINE             (~(verdict){0})
+#define LANES            4
+#define NUMBER(x)        ((number)_mm256_set1_pd(x))
+#define fma_of(a, b, c)  ((number)_mm256_fmadd_pd(a, b, c))
+#define fnma_of(a, b, c) ((number)_mm256_fnmadd_pd(a, b, c))
+#define fms_of(a, b, c)  ((number)_mm256_fmsub_pd(a, b, c))
+#define root_of(a)       ((number)_mm256_sqrt_pd(a))
 #define is_far(a)                                                                                  \
     (_mm256_movemask_pd(_mm256_cmp_pd(_mm256_andnot_pd(_mm256_set1_pd(-0.0), a),                   \
                                       _mm256_set1_pd(1e5), _CMP_LT_OQ)) != 15)

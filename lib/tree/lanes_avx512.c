@@ -19,6 +19,8 @@ typedef int64_t verdict __attribute__((vector_size(64)));
 #define LANES               8
 #define NUMBER(x)           ((number)_mm512_set1_pd(x))
 #define fma_of(a, b, c)     ((number)_mm512_fmadd_pd(a, b, c))
+#define fnma_of(a, b, c)    ((number)_mm512_fnmadd_pd(a, b, c))
+#define fms_of(a, b, c)     ((number)_mm512_fmsub_pd(a, b, c))
 #define root_of(a)          ((number)_mm512_sqrt_pd(a))
 #define within_far(a)       _mm512_cmp_pd_mask(_mm512_abs_pd(a), _mm512_set1_pd(1e5), _CMP_LT_OQ)
 #define is_far(a)           (within_far(a) != 255)

@@ -249,6 +249,7 @@ static void add_node(builder *b, uint32_t body)
         n->angle = n->type == SE3DI_TREE_PRISMATIC ? -1 : c->angle;
         tree->tree_of[joint] = (int32_t)tree->count;
     }
+    tree->has_states |= model->bodies[body].state != 0;
     n->q_count = position_count[n->type];
     n->v_count = velocity_count[n->type];
     tree->q_count += (uint32_t)n->q_count;
@@ -399,6 +400,7 @@ se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, int moves_stat
     *tree = (se3di_tree){.model = model,
                          .topology_version = model->topology_version,
                          .moves_states = moves_states,
+                         .acts = 1,
                          .body_count = (uint32_t)model->body_slots.count,
                          .constraint_count = (uint32_t)model->constraint_slots.count,
                          .force_count = (uint32_t)model->force_slots.count};

@@ -74,7 +74,7 @@ typedef struct se3di_tree_node {
     double zero;       /* the triads coincide at this angle */
     double sigma;      /* axis_i . axis_j of a revolute: 1 or -1 */
     double lead, base; /* screw: displacement = base + lead angle */
-    double C[4];       /* triad at angle zero -> parent's triad */
+    double C[4], T[9]; /* triad at angle zero -> parent's triad: quaternion and matrix */
     double r[3];       /* the parent's point -> the joint point on it, parent's triad */
     double B[4];       /* body -> triad */
     double s[3];       /* joint point -> centre of mass, triad */
@@ -84,15 +84,16 @@ typedef struct se3di_tree_node {
 
 /* A node at a state, in ground axes. */
 typedef struct se3di_tree_link {
-    double t[4]; /* triad -> ground */
-    double W[9]; /* the same as a matrix */
-    double P[3]; /* joint point on the child */
-    double d[3]; /* from the parent's point to it */
-    double s[3]; /* from it to the centre of mass */
+    double W[9]; /* triad -> ground */
+    double d[3]; /* from the parent's point to P, the joint point on the child */
+    double s[3]; /* from P to the centre of mass */
     double w[3]; /* angular velocity */
-    double v[3]; /* velocity of P */
     double c[6]; /* acceleration at qddot = 0, less what the parent's gives: angular, of P */
-    double a[6]; /* acceleration: angular, of P */
+    double a[6]; /* acceleration: angular, of P, less gravity that pulls at the tree */
+    /* where the frames of bodies were placed, too: */
+    double t[4]; /* triad -> ground: quaternion */
+    double P[3]; /* joint point on the child */
+    double v[3]; /* velocity of P */
 } se3di_tree_link;
 
 /* Articulated inertia [I G^T; G M] and bias p: moments and forces from accelerations, about P. I
@@ -119,8 +120,11 @@ typedef struct se3di_tree {
     int32_t *along;       /* [elements]: velocity of the coordinate that an effort acts on, or -1 */
     int32_t has_efforts;  /* some effort acts on a coordinate of the tree, */
     int32_t has_others;   /* and some on none */
-    int32_t moves_states; /* carriers of states are nodes */
+    int32_t moves_states; /* carriers of states may be nodes, */
+    int32_t has_states;   /* and some are */
+    int32_t acts;         /* wrenches are read, */
     int32_t reserved;
+    double pull[3]; /* and gravity pulls at all links: see se3di_tree_pull */
     /* at the state that was placed last: */
     se3di_tree_link *links;
     double *S;                /* [velocities * 6]: angular, of P; ground axes */
@@ -173,7 +177,7 @@ void se3di_tree_get(se3di_tree *tree, double *q, double *qdot);
 void se3di_tree_match_turns(se3di_tree *tree, double *q);
 
 /* Coordinates -> frames [dense bodies], those of fixed bodies are left alone; links, S and biases
- * follow. `frames` may be the model's. */
+ * follow. `frames` may be the model's. NULL: not wanted; accelerations need none. */
 void se3di_tree_place(se3di_tree *tree, const double *q, const double *qdot, se3di_frame *frames);
 
 /* With tree->q and tree->qdot those of the model's frames: place them in tree->frames; from now on
@@ -200,18 +204,25 @@ static inline const double *se3di_tree_effort(const se3di_tree *tree)
 /* With the state placed: take what acts on bodies, [dense bodies * 6] force (ground) and torque
  * (body) as force/force.h has it; frames as placed. */
 void se3di_tree_take_wrenches(se3di_tree *tree, const se3di_frame *frames, const double *wrench);
+/* Nothing acts but gravity that does not change and efforts on coordinates of the tree, which are
+ * numbers; contact there cannot be. */
+int se3di_tree_falls(const se3di_tree *tree);
+/* Their sums, to tree->effort, as se3di_tree_sums has them. */
+void se3di_tree_sum_efforts(se3di_tree *tree);
+/* Gravity g alone pulls at the links, as if the ground accelerated by -g. */
+void se3di_tree_pull(se3di_tree *tree, const double g[3]);
 /* Articulated inertias with the wrenches taken and efforts [velocities] (NULL: zero): U, D, e.
  * `given` holds accelerations of prescribed coordinates. @return OK, SINGULAR (D <= 0) */
 se3d_status se3di_tree_factor(se3di_tree *tree, const double *effort);
 /* Accelerations qddot [velocities] and those of all links, from U, D and e. */
 void se3di_tree_accelerate(se3di_tree *tree, const double *e, double *qddot);
-/* Accelerations of links that qddot gives. */
+/* Accelerations of links that qddot gives, less gravity that pulls. */
 void se3di_tree_propagate(se3di_tree *tree, const double *qddot);
 /* Accelerations of links -> bodies, [dense bodies * 6] a (ground), wdot (body); fixed: zero. */
 void se3di_tree_get_accelerations(const se3di_tree *tree, const se3di_frame *frames,
                                   double *acceleration);
-/* The same of one body: a (ground), wdot (body), from those of its node's point. */
-void se3di_tree_link_acceleration(const se3di_tree_link *link, const se3di_frame *frame,
+/* The same of the body of one node, in its frame. */
+void se3di_tree_link_acceleration(const se3di_tree *tree, uint32_t node, const se3di_frame *frame,
                                   double out[6]);
 
 #endif
