@@ -512,6 +512,18 @@ static se3d_status adopt(se3di_explicit *m)
     return SE3D_OK;
 }
 
+/* Accelerations and multipliers of the state that was set last are the model's: by the evaluation
+ * that finds all of them, where there is one. */
+static se3d_status find_all(se3di_explicit *m, double t)
+{
+    if (!m->motion->finds_all(m->equations)) {
+        return se3di_acceleration_solve(m->equations, t);
+    }
+    SE3DI_TRY(evaluate(m, t, m->sum));
+    m->motion->report(m->equations);
+    return SE3D_OK;
+}
+
 /* The model's state is y, at t. */
 static se3d_status show(se3di_explicit *m, const double *y, double t, int project)
 {
@@ -526,7 +538,7 @@ static se3d_status show(se3di_explicit *m, const double *y, double t, int projec
     if (rough > 0.0) {
         return se3di_state_conclude_motion(m->equations, work, t);
     }
-    SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
+    SE3DI_TRY(find_all(m, t));
     se3di_contacts_renew_forces(m->assembly->model);
     return se3di_state_conclude(m->equations, work, t);
 }
