@@ -362,8 +362,8 @@ static int listen_at(live_server *s, int port)
     place.sin_family = AF_INET;
     place.sin_port = htons((uint16_t)port);
     place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    /* poll, not epoll: that overlooks clients who have gone until they are timed out, and these fill
-     * the places of others */
+    /* poll, not epoll: that overlooks clients who have gone until they are timed out, and these
+     * fill the places of others */
     s->daemon = MHD_start_daemon(
         MHD_USE_POLL | MHD_USE_INTERNAL_POLLING_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, NULL, NULL,
         handle, s, MHD_OPTION_SOCK_ADDR, (struct sockaddr *)&place, MHD_OPTION_NOTIFY_COMPLETED,
