@@ -275,7 +275,7 @@ static size_t find_look(const se3di_glb *glb, const struct se3di_glb_look *look)
     size_t k = 0;
     while (k < glb->mesh_count &&
            (glb->looks[k].surface != look->surface || glb->looks[k].style != look->style ||
-            memcmp(glb->looks[k].color, look->color, sizeof look->color))) {
+            memcmp(glb->looks[k].color, look->color, sizeof look->color) != 0)) {
         ++k;
     }
     return k;
