@@ -228,6 +228,83 @@ static void curves_and_preload_add_to_the_spring(void)
 }
 
 /* g_x = 2 t on a horizontal slide: x = t^3 / 3; its work is counted as an actuator's. */
+/* What a force that acts in a point `at` of the ground does to the body at r. */
+static void check_wrench(se3d_system *system, se3d_force force, const double r[3],
+                         const double at[3], const double f[3])
+{
+    double wrench[6], opposite[6];
+    const double arm[3] = {at[0] - r[0], at[1] - r[1], at[2] - r[2]};
+    CHECK(!se3d_force_get_wrench(system, force, 1, wrench));
+    CHECK(!se3d_force_get_wrench(system, force, 0, opposite));
+    for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3, m = (k + 2) % 3;
+        CHECK_NEAR(wrench[k], f[k], 1e-13);
+        CHECK_NEAR(opposite[k], -f[k], 1e-13);
+        CHECK_NEAR(wrench[3 + k], arm[l] * f[m] - arm[m] * f[l], 1e-13);
+    }
+}
+
+/* Between points that coincide, without a free length, c acts against the whole velocity of the
+ * point: v + w x arm. */
+static void a_spring_without_length_damps_in_every_direction(void)
+{
+    se3d_system *system = NULL;
+    se3d_force force;
+    se3d_body_def body = se3d_body_def_default();
+    se3d_tsda_def spring = se3d_tsda_def_default();
+    const double at[3] = {0.0, 0.0, 0.0}, c = 3.0;
+    const double rate[3] = {1.0 + -1.0 * -0.3 - 2.0 * 0.2, 2.0 + 2.0 * 0.1 - 0.5 * -0.3,
+                            3.0 + 0.5 * 0.2 - -1.0 * 0.1};
+    double power;
+    CHECK(!se3d_system_create(NULL, &system) && !se3d_system_get_ground(system, &spring.body_i));
+    body.mass = body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+    for (int k = 0; k < 3; ++k) {
+        static const double v[3] = {1.0, 2.0, 3.0}, w[3] = {0.5, -1.0, 2.0};
+        static const double arm[3] = {0.1, 0.2, -0.3};
+        body.velocity[k] = v[k];
+        body.angular_velocity[k] = w[k];
+        body.position[k] = -arm[k];
+        spring.point_j[k] = arm[k];
+    }
+    CHECK(!se3d_body_create(system, &body, &spring.body_j));
+    spring.k = 7.0;
+    spring.c = c;
+    CHECK(!se3d_force_create_tsda(system, &spring, &force));
+    const double f[3] = {-c * rate[0], -c * rate[1], -c * rate[2]};
+    check_wrench(system, force, body.position, at, f);
+    CHECK(!se3d_force_get_power(system, force, NULL, &power, NULL));
+    CHECK_NEAR(power, c * (rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]), 1e-12);
+    se3d_system_destroy(system);
+}
+
+/* Along the axes of its frame on body i, which is turned by 90 degrees about z: its x is y. */
+static void a_bushing_acts_along_its_own_axes(void)
+{
+    static const double at[3] = {0.5, 0.25, -0.25}, moved[3] = {0.01, 0.02, 0.03};
+    se3d_system *system = NULL;
+    se3d_force force;
+    se3d_body_def body = se3d_body_def_default();
+    se3d_bushing_def mount = se3d_bushing_def_default();
+    CHECK(!se3d_system_create(NULL, &system) && !se3d_system_get_ground(system, &mount.body_i));
+    body.mass = body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+    memcpy(body.position, at, sizeof at);
+    CHECK(!se3d_body_create(system, &body, &mount.body_j));
+    for (int k = 0; k < 3; ++k) {
+        mount.point_i[k] = at[k] - moved[k];
+        mount.K[7 * k] = 100.0 * (k + 1);
+    }
+    mount.orientation_i[0] = mount.orientation_j[0] = sqrt(0.5);
+    mount.orientation_i[3] = mount.orientation_j[3] = sqrt(0.5);
+    CHECK(!se3d_force_create_bushing(system, &mount, &force));
+    const double f[3] = {-200.0 * moved[0], -100.0 * moved[1], -300.0 * moved[2]};
+    double wrench[6];
+    CHECK(!se3d_force_get_wrench(system, force, 1, wrench));
+    for (int k = 0; k < 3; ++k) {
+        CHECK_NEAR(wrench[k], f[k], 1e-13);
+    }
+    se3d_system_destroy(system);
+}
+
 static void gravity_may_be_a_function_of_time(void)
 {
     slide s = {0};
@@ -318,6 +395,8 @@ int main(void)
     RUN(a_stop_gives_the_restitution_that_was_asked_for);
     RUN(stiffness_keeps_the_step_and_the_iterations);
     RUN(curves_and_preload_add_to_the_spring);
+    RUN(a_spring_without_length_damps_in_every_direction);
+    RUN(a_bushing_acts_along_its_own_axes);
     RUN(gravity_may_be_a_function_of_time);
     RUN(an_rsda_on_axes_counts_turns);
     RUN(copies_continue_bit_identically);
