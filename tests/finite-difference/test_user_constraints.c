@@ -5,6 +5,7 @@
 #include "check.h"
 
 #include "assembly/assembly.h"
+#include "joint/equation.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "support/two_points.h"
@@ -88,12 +89,22 @@ static void measure(world *w, se3di_assembly *assembly, double t, double h, doub
     se3di_assembly_mul(assembly, q, rate);
     se3di_assembly_get_acceleration(assembly, q);
     se3di_assembly_mul(assembly, q, second);
+    double violation[3], most[3] = {0.0, 0.0, 0.0};
     worst[0] = worst[1] = 0.0;
     for (int e = 0; e < EQUATIONS; ++e) {
+        const double rates = rate[e] - assembly->f[3 * e + 1];
+        most[0] = fmax(most[0], fabs(phi[e]));
+        most[1] = fmax(most[1], fabs(rates));
+        most[2] = fmax(most[2], fabs(second[e] - gamma[e]));
         double first = 0.5 * (after[e] - before[e]) / h;
         double twice = (after[e] - 2.0 * phi[e] + before[e]) / (h * h);
-        worst[0] = fmax(worst[0], fabs(first - (rate[e] - assembly->f[3 * e + 1])));
+        worst[0] = fmax(worst[0], fabs(first - rates));
         worst[1] = fmax(worst[1], fabs(twice - (second[e] - gamma[e])));
+    }
+    w->system->model.time = t;
+    CHECK(!se3di_violation_measure(&w->system->model, violation));
+    for (int level = 0; level < 3; ++level) { /* in both formulations the same numbers */
+        CHECK_NEAR(violation[level], most[level], 1e-12 * fmax(1.0, most[level]));
     }
 }
 

@@ -4,6 +4,8 @@
  * not meet the constraints. */
 #include "property/test_joint_world.h"
 
+#include "joint/equation.h"
+
 #define ROWS 8
 
 /* A motion through the present state: r, p with constant acceleration a, wdot at t = 0. */
@@ -118,6 +120,28 @@ static void check_order(const double coarse[2], const double fine[2], const char
     }
 }
 
+/* What the system calls its violation is the largest of all constraints. */
+static void check_violation(world *w)
+{
+    double violation[3], most[3] = {0.0, 0.0, 0.0};
+    for (size_t k = 0; k < se3d_system_count_constraints(w->system); ++k) {
+        se3d_constraint c;
+        double rate[ROWS], acceleration[ROWS];
+        size_t rows;
+        CHECK(!se3d_system_get_constraint(w->system, k, &c));
+        CHECK(!se3d_constraint_count_equations(w->system, c, &rows));
+        analytic(w, c, SE3D_FORMULATION_ROMEGA, rows, rate, acceleration);
+        for (size_t r = 0; r < rows; ++r) {
+            most[1] = fmax(most[1], fabs(rate[r]));
+            most[2] = fmax(most[2], fabs(acceleration[r]));
+        }
+    }
+    CHECK(!se3di_violation_measure(&w->system->model, violation));
+    for (int level = 1; level < 3; ++level) {
+        CHECK_NEAR(violation[level], most[level], 1e-12 * fmax(1.0, most[level]));
+    }
+}
+
 static void check_constraint(world *w, se3d_constraint c)
 {
     motion motions[WORLD_BODIES + 1];
@@ -137,6 +161,7 @@ static void check_constraint(world *w, se3d_constraint c)
         check_order(coarse, fine, type);
     }
     motion_set(w, motions, 0.7, 0.0);
+    check_violation(w);
 }
 
 /* The function of time is the given one (at the time of check_constraint, 0.7 s). */
