@@ -25,6 +25,7 @@
 #ifndef SE3D_SE3D_H
 #define SE3D_SE3D_H
 
+#include "se3d/average.h"
 #include "se3d/base.h"
 #include "se3d/batch.h"
 #include "se3d/body.h"

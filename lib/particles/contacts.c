@@ -151,6 +151,8 @@ typedef struct contact_list {
     unsigned char *contacts; /* of `size` bytes each; NULL: only counted */
     size_t size, capacity, count;
     double force_max;
+    void (*visit)(void *ctx, const se3d_particles_contact *contact); /* NULL: nobody does */
+    void *ctx;
 } contact_list;
 
 static void append(contact_list *list, int touches, const se3d_particles_contact *contact)
@@ -158,6 +160,9 @@ static void append(contact_list *list, int touches, const se3d_particles_contact
     if (touches && list->contacts && list->count < list->capacity) {
         (void)se3di_sized_give(list->contacts + list->count * list->size, list->size, contact,
                                sizeof *contact);
+    }
+    if (touches && list->visit) {
+        list->visit(list->ctx, contact);
     }
     list->force_max = touches ? fmax(list->force_max, se3di_norm(contact->force)) : list->force_max;
     list->count += (size_t)touches;
@@ -200,14 +205,27 @@ static void list_meshes(const se3di_particles *set, const se3di_slab *slab, cont
     }
 }
 
+static void list_all(const se3di_particles *set, contact_list *list)
+{
+    for (uint32_t s = 0; set && set->list_valid && s < set->slab_count; ++s) {
+        list_blocks(set, &set->slabs[s], list);
+        list_meshes(set, &set->slabs[s], list);
+    }
+}
+
+void se3di_particles_visit_contacts(const se3di_particles *set,
+                                    void (*visit)(void *ctx, const se3d_particles_contact *contact),
+                                    void *ctx)
+{
+    contact_list list = {.visit = visit, .ctx = ctx};
+    list_all(set, &list);
+}
+
 se3d_status se3di_particles_contacts(const se3di_particles *set, size_t capacity, void *contacts,
                                      size_t size, size_t *count, double *force_max)
 {
-    contact_list list = {contacts, size, capacity, 0, 0.0};
-    for (uint32_t s = 0; set && set->list_valid && s < set->slab_count; ++s) {
-        list_blocks(set, &set->slabs[s], &list);
-        list_meshes(set, &set->slabs[s], &list);
-    }
+    contact_list list = {.contacts = contacts, .size = size, .capacity = capacity};
+    list_all(set, &list);
     *count = list.count;
     if (force_max) {
         *force_max = fmax(*force_max, list.force_max);

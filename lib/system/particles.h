@@ -43,6 +43,10 @@ void se3di_copies_orphan(se3d_system *system);
 se3d_status se3di_check_template(se3d_particles *particles, const char *what, uint32_t index);
 se3d_status se3di_clumps_make_room(se3d_particles *particles, uint32_t clump, size_t count);
 
+/* particles_parts.c: the walls are the model's shapes as they are: it was not edited since the last
+ * step. */
+int se3di_particles_are_current(const se3d_particles *particles);
+
 /* Room for `count` more particles. */
 se3d_status se3di_particles_make_room(se3d_particles *particles, size_t count);
 

@@ -23,8 +23,7 @@ se3d_status se3d_particles_get_wrench(const se3d_particles *particles, se3d_body
     return SE3D_OK;
 }
 
-/* The walls are the model's shapes as they are: it was not edited since the last step. */
-static int is_current(const se3d_particles *particles)
+int se3di_particles_are_current(const se3d_particles *particles)
 {
     return particles->set.topology_version == particles->system->model.topology_version;
 }
@@ -42,7 +41,7 @@ static se3d_status list(const se3d_particles *particles, size_t most, void *cont
 size_t se3d_particles_count_contacts(const se3d_particles *particles)
 {
     size_t count = 0;
-    if (particles && particles->system && is_current(particles)) {
+    if (particles && particles->system && se3di_particles_are_current(particles)) {
         (void)list(particles, SIZE_MAX, NULL, 0, &count);
     }
     return count;
@@ -59,7 +58,7 @@ se3d_status se3d_particles_get_contacts_sized(const se3d_particles *particles, s
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     size_t found = 0;
-    if (is_current(particles)) { /* once: every contact calls the law */
+    if (se3di_particles_are_current(particles)) { /* once: every contact calls the law */
         SE3DI_TRY(list(particles, count, contacts, size, &found));
     }
     return found == count ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;

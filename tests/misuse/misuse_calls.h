@@ -947,6 +947,7 @@ static const row rows[] = {
     {"se3d_particles_get_tags", flows_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_materials", flows_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_tally", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_average", averages_reject_misuse, "", NULL, NULL},
     {"se3d_particles_add_clump_template", clumps_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_clump_template", clumps_reject_misuse, "", NULL, NULL},
     {"se3d_particles_add_clumps", clumps_reject_misuse, "", NULL, NULL},

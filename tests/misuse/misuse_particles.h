@@ -439,6 +439,28 @@ static se3d_status fills_reject_misuse(arguments *a)
     return SE3D_OK;
 }
 
+static se3d_status averages_reject_misuse(arguments *a)
+{
+    const double low[3] = {0.0, 0.0, 0.0}, high[3] = {1.0, 1.0, 1.0};
+    const double bad[3] = {1.0, (double)NAN, 1.0}, vast[3] = {1.0, 1e300, 1.0};
+    se3d_average average;
+    se3d_material material;
+    se3d_particles *p = particles_open(a, &material);
+    CHECK(se3d_particles_get_average(NULL, low, high, -1, &average) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_average(p, NULL, high, -1, &average) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_average(p, low, NULL, -1, &average) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_average(p, low, high, -1, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_average(p, high, low, -1, &average) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_average(p, low, low, -1, &average) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_average(p, low, bad, -1, &average) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_average(p, low, vast, -1, &average) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_average(p, low, high, -2, &average) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_average(p, low, high, 256, &average) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_particles_get_average(p, low, high, 0, &average) && average.count == 1);
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
 static se3d_status clumps_reject_misuse(arguments *a)
 {
     const double nan = (double)NAN, two[6] = {0.0, 0.0, 0.0, 0.1, 0.0, 0.0}, radii[2] = {0.1, 0.1};

@@ -76,42 +76,6 @@ static const bad_input table[] = {
      3,
      0,
      {"with `source`"}},
-    {"se3d: 1\nclumps: []\n", 2, 0, {"clumps: needs `particles`"}},
-    {GLASS "clumps: [{name: a}]\n", 4, 0, {"clumps[0].spheres", "is missing"}},
-    {GLASS "clumps: [{spheres: [{position: [0, 0, 0], radius: 1}]}]\n", 4, 0, {"name: is missing"}},
-    {GLASS "clumps: [{name: a, spheres: [{position: [0, 0, 0]}]}]\n", 4, 0, {"`position` and"}},
-    {GLASS "clumps: [{name: a, spheres: [{position: [0, 0, 0], radius: -1}]}]\n", 4, 0, {"> 0"}},
-    {GLASS "clumps: [{name: a, mass: 1, spheres: [{position: [0, 0, 0], radius: 1}]}]\n",
-     4,
-     0,
-     {"inertia: is missing beside `mass`"}},
-    {GLASS "clumps: [{name: a, centre: [0, 0, 0], spheres: [{position: [0, 0, 0], radius: 1}]}]\n",
-     4,
-     0,
-     {"centre: needs `mass`"}},
-    {GLASS
-     "clumps: [{name: a, mass: 1, inertia: [1, 1, 3], spheres: [{position: [0, 0, 0], radius: "
-     "1}]}]\n",
-     4,
-     0,
-     {"that of no body"}},
-    {GLASS "clumps: [{name: a, spheres: [{position: [0, 0, 0], radius: 1}]}, {name: a, spheres: "
-           "[{position: [0, 0, 0], radius: 1}]}]\n",
-     4,
-     0,
-     {"`a` is taken"}},
-    {"se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, clump: "
-     "b, "
-     "lower: [0, 0, 0], upper: [1, 1, 1]}]\n",
-     3,
-     0,
-     {"no clump is named `b`"}},
-    {"se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, radius: "
-     "0.1, "
-     "orientation: {rpy: [0, 0, 0]}, lower: [0, 0, 0], upper: [1, 1, 1]}]\n",
-     3,
-     0,
-     {"orientation: is only for a `clump`"}},
     {"se3d: 1\nsinks: [{normal: [0, 0, 1]}]\n", 2, 0, {"sinks: needs `particles`"}},
     {GLASS "sinks: [{normal: [0, 0, 1], lower: [0, 0, 0]}]\n", 4, 0, {"with `normal`"}},
     {GLASS "sinks: [{lower: [1, 0, 0], upper: [0, 1, 1]}]\n", 4, 0, {"sinks[0]", "upper"}},

@@ -69,6 +69,15 @@ static double channel(const se3d_model *model, size_t k)
     return value[0];
 }
 
+static double column_of(const se3d_model *model, size_t k, size_t column)
+{
+    double value[4] = {0.0, 0.0, 0.0, 0.0};
+    size_t width = 0;
+    CHECK(se3d_model_get_channel_value(model, 0, k, NULL, value, &width) == SE3D_OK);
+    CHECK(width == 3 && column < width);
+    return value[column];
+}
+
 #define OUTPUT                                                                                     \
     "output:\n  - {file: s.csv, every: 0.05, channels: [contacts.count, particles.count, "         \
     "particles.lost, particles.energy]}\n  - {file: grains.csv, every: 0.1, particles: true}\n"
@@ -315,8 +324,10 @@ static void clumps_are_read_and_written(void)
         "  - {name: heavy, material: m, clump: disc, count: 1, lower: [2, 0, 1], upper: [2.1, 0.1, "
         "1.1]}\n"
         "analysis: {type: dynamics, duration: 0.1}\n"
+        "regions: [{name: box, set: big, lower: [0.4, -0.1, 0.8], upper: [0.8, 0.3, 1.2]}]\n"
         "output: [{file: s.csv, every: 0.1, channels: [big.energy, big.mass, heavy.mass, "
-        "particles.count]}, {file: grains.csv, every: 0.1, particles: true}, {file: g.pvd, every: "
+        "particles.count, box.count, box.solid_fraction, box.mass_flux, box.stress, "
+        "box.temperature]}, {file: grains.csv, every: 0.1, particles: true}, {file: g.pvd, every: "
         "0.1}]\n";
     const double V = 4.0 / 3.0 * 3.14159265358979324 * 8e-6, fall = -0.05;
     se3d_status status;
@@ -338,7 +349,80 @@ static void clumps_are_read_and_written(void)
     CHECK_NEAR(channel(model, 1), mass, 1e-12);
     CHECK_NEAR(channel(model, 2), 2.0, 1e-12);
     CHECK_NEAR(channel(model, 3), 6.0, 0.0);
+    const double space = 0.4 * 0.4 * 0.4;
+    CHECK_NEAR(channel(model, 4), 1.0, 0.0);
+    CHECK_NEAR(channel(model, 5) * space / (16.0 * V), 1.0, 1e-9);
+    CHECK_NEAR(column_of(model, 6, 2) * space / -mass, 1.0, 1e-9); /* it falls at 1 m/s */
+    CHECK_NEAR(column_of(model, 7, 2), 0.0, 1e-9);
+    CHECK_NEAR(channel(model, 8), 0.0, 1e-12);
     se3d_model_destroy(model);
+}
+
+#define GRAINS                                                                                     \
+    "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, "        \
+    "radius: "                                                                                     \
+    "0.1, lower: [0, 0, 0], upper: [1, 1, 1]}]\n"
+
+typedef struct refusal {
+    const char *text;
+    size_t line;
+    const char *words[2]; /* of the message */
+} refusal;
+
+static const refusal refusals[] = {
+    {"se3d: 1\nregions: []\n", 2, {"regions: needs `particles`"}},
+    {GRAINS "regions: [{name: a, lower: [0, 0, 0]}]\n", 4, {"regions[0]: must have `name`"}},
+    {GRAINS "regions: [{name: a, lower: [0, 0, 0], upper: [1, 0, 1]}]\n",
+     4,
+     {"upper: is 0 along y, must be greater than `lower`, 0"}},
+    {GRAINS "regions: [{name: a, set: b, lower: [0, 0, 0], upper: [1, 1, 1]}]\n",
+     4,
+     {"no `particles` are named `b`"}},
+    {GRAINS "regions: [{name: energy, lower: [0, 0, 0], upper: [1, 1, 1]}]\n", 4, {"is taken"}},
+    {"se3d: 1\nclumps: []\n", 2, {"clumps: needs `particles`"}},
+    {GRAINS "clumps: [{name: a}]\n", 4, {"clumps[0].spheres", "is missing"}},
+    {GRAINS "clumps: [{spheres: [{position: [0, 0, 0], radius: 1}]}]\n", 4, {"name: is missing"}},
+    {GRAINS "clumps: [{name: a, spheres: [{position: [0, 0, 0]}]}]\n", 4, {"`position` and"}},
+    {GRAINS "clumps: [{name: a, spheres: [{position: [0, 0, 0], radius: -1}]}]\n", 4, {"> 0"}},
+    {GRAINS "clumps: [{name: a, mass: 1, spheres: [{position: [0, 0, 0], radius: 1}]}]\n",
+     4,
+     {"inertia: is missing beside `mass`"}},
+    {GRAINS "clumps: [{name: a, centre: [0, 0, 0], spheres: [{position: [0, 0, 0], radius: 1}]}]\n",
+     4,
+     {"centre: needs `mass`"}},
+    {GLASS
+     "clumps: [{name: a, mass: 1, inertia: [1, 1, 3], spheres: [{position: [0, 0, 0], radius: "
+     "1}]}]\n",
+     4,
+     {"that of no body"}},
+    {GRAINS "clumps: [{name: a, spheres: [{position: [0, 0, 0], radius: 1}]}, {name: a, spheres: "
+            "[{position: [0, 0, 0], radius: 1}]}]\n",
+     4,
+     {"`a` is taken"}},
+    {"se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, clump: "
+     "b, "
+     "lower: [0, 0, 0], upper: [1, 1, 1]}]\n",
+     3,
+     {"no clump is named `b`"}},
+    {"se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, radius: "
+     "0.1, "
+     "orientation: {rpy: [0, 0, 0]}, lower: [0, 0, 0], upper: [1, 1, 1]}]\n",
+     3,
+     {"orientation: is only for a `clump`"}},
+};
+
+static void clumps_and_regions_are_refused_by_name_and_line(void)
+{
+    for (size_t k = 0; k < sizeof refusals / sizeof *refusals; ++k) {
+        const refusal *r = &refusals[k];
+        se3d_model *model = NULL;
+        se3d_model_error error;
+        CHECK(se3d_model_read_text(r->text, strlen(r->text), "m.yaml", NULL, &model, &error) < 0);
+        CHECK(!model && error.line == r->line);
+        for (int w = 0; w < 2 && r->words[w]; ++w) {
+            CHECK_CONTAINS(error.message, r->words[w]);
+        }
+    }
 }
 
 int main(void)
@@ -348,6 +432,7 @@ int main(void)
     RUN(contacts_are_listed_with_their_forces);
     RUN(chute_counts_what_flows);
     RUN(clumps_are_read_and_written);
+    RUN(clumps_and_regions_are_refused_by_name_and_line);
     RUN(particle_falls_and_bounces_with_its_restitution);
     RUN(driven_wall_throws_a_particle);
     RUN(particles_that_leave_through_a_sink_are_counted);

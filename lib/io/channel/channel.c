@@ -155,6 +155,17 @@ static const quantity_name set_names[] = {{"count", SE3DI_SET_COUNT},
                                           {NULL, SE3DI_STEPS}};
 static const quantity_name sink_names[] = {{"count", SE3DI_SINK_COUNT}, {NULL, SE3DI_STEPS}};
 
+static const quantity_name region_names[] = {{"count", SE3DI_REGION_COUNT},
+                                             {"mass", SE3DI_REGION_MASS},
+                                             {"solid_fraction", SE3DI_REGION_SOLID_FRACTION},
+                                             {"coordination", SE3DI_REGION_COORDINATION},
+                                             {"temperature", SE3DI_REGION_TEMPERATURE},
+                                             {"velocity", SE3DI_REGION_VELOCITY},
+                                             {"mass_flux", SE3DI_REGION_MASS_FLUX},
+                                             {"stress", SE3DI_REGION_STRESS},
+                                             {"shear", SE3DI_REGION_SHEAR},
+                                             {NULL, SE3DI_STEPS}};
+
 enum { QUANTITIES_MAX = 32 };
 
 /* What one thing offers: at most QUANTITIES_MAX names. */
@@ -400,18 +411,19 @@ static bool find_marker(const se3d_model *model, const se3di_body_entry *body, c
     return true;
 }
 
-/* A set of particles or a sink; returns whether there is one of that name. */
+/* A set of particles, a sink or a region; returns whether there is one of that name. */
 static bool find_flow(const se3d_model *model, const char *head, se3di_channel *channel, offer *o)
 {
     const size_t set = se3di_tagged_find_set(model->particles, head);
     const size_t sink = se3di_tagged_find_sink(model->particles, head);
-    if (set == SIZE_MAX && sink == SIZE_MAX) {
+    const size_t region = se3di_tagged_find_region(model->particles, head);
+    if (set == SIZE_MAX && sink == SIZE_MAX && region == SIZE_MAX) {
         return false;
     }
     channel->tagged = model->particles;
     channel->particles = model->particles->set;
-    channel->index = (uint32_t)(set != SIZE_MAX ? set : sink);
-    offer_names(o, set != SIZE_MAX ? set_names : sink_names);
+    channel->index = (uint32_t)(set != SIZE_MAX ? set : sink != SIZE_MAX ? sink : region);
+    offer_names(o, set != SIZE_MAX ? set_names : sink != SIZE_MAX ? sink_names : region_names);
     return true;
 }
 

@@ -113,6 +113,15 @@
     X(SET_DEFERRED, 1, SOURCES, 1, JUMPS, 0, 0, 0, 0)                                              \
     X(SET_WAITING, 1, SOURCES, 2, JUMPS, 0, 0, 0, 0)                                               \
     X(SINK_COUNT, 1, SINK, 0, JUMPS, 0, 0, 0, 0)                                                   \
+    X(REGION_COUNT, 1, AVERAGE, 0, JUMPS, 0, 0, 0, 0)                                              \
+    X(REGION_MASS, 1, AVERAGE, 1, JUMPS, 0, 0, 1, 0)                                               \
+    X(REGION_SOLID_FRACTION, 1, AVERAGE, 2, SOLVED, 0, 0, 0, 0)                                    \
+    X(REGION_COORDINATION, 1, AVERAGE, 3, JUMPS, 0, 0, 0, 0)                                       \
+    X(REGION_TEMPERATURE, 1, AVERAGE, 4, JUMPS, 2, 2, 0, 0)                                        \
+    X(REGION_VELOCITY, 3, AVERAGE, 5, JUMPS, 1, 1, 0, 0)                                           \
+    X(REGION_MASS_FLUX, 3, AVERAGE, 8, JUMPS, -2, 1, 1, 0)                                         \
+    X(REGION_STRESS, 3, AVERAGE, 11, JUMPS, -1, 2, 1, 0)                                           \
+    X(REGION_SHEAR, 3, AVERAGE, 14, JUMPS, -1, 2, 1, 0)                                            \
     X(STEPS, 1, SOLVER, 0, JUMPS, 0, 0, 0, 0)                                                      \
     X(ITERATIONS, 1, SOLVER, 1, JUMPS, 0, 0, 0, 0)
 /* clang-format on */
@@ -152,6 +161,7 @@ typedef enum se3di_question {
     SE3DI_ASK_TALLY,   /* of a set */
     SE3DI_ASK_SOURCES, /* of a set */
     SE3DI_ASK_SINK,
+    SE3DI_ASK_AVERAGE, /* of a region */
     SE3DI_ASK_SOLVER,
     SE3DI_QUESTION_COUNT
 } se3di_question;

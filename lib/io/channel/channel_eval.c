@@ -261,6 +261,8 @@ static se3d_status ask(se3di_question question, const se3di_channel *c, se3di_sa
         return se3di_tagged_ask_sources(c, numbers);
     case SE3DI_ASK_SINK:
         return se3di_tagged_ask_sink(c, numbers);
+    case SE3DI_ASK_AVERAGE:
+        return se3di_tagged_ask_average(c, numbers);
     case SE3DI_ASK_SOLVER:
         return ask_solver(sample->stats, numbers);
     default:
@@ -292,12 +294,8 @@ static size_t element_of(se3di_question question, const se3di_channel *c)
     case SE3DI_ASK_DRIVER_VALUE:
     case SE3DI_ASK_DRIVER_EFFORT:
         return c->constraint.index1;
-    case SE3DI_ASK_TALLY:
-    case SE3DI_ASK_SOURCES:
-    case SE3DI_ASK_SINK:
-        return c->index;
-    default:
-        return 0;
+    default: /* of sets, sinks and regions */
+        return c->tagged ? c->index : 0;
     }
 }
 

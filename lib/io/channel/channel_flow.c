@@ -4,6 +4,7 @@
 
 #include "io/channel/channel.h"
 #include "io/model/tagged.h"
+#include "se3d/average.h"
 
 /* What the sources of the set have done. */
 se3d_status se3di_tagged_ask_sources(const se3di_channel *c, double numbers[3])
@@ -43,5 +44,30 @@ se3d_status se3di_tagged_ask_sink(const se3di_channel *c, double *count)
     uint64_t absorbed = 0;
     const se3d_status status = se3d_particles_get_sink_count(c->particles, c->index, &absorbed);
     *count = (double)absorbed;
+    return status;
+}
+
+/* Stress is that of contacts and motion together: xx, yy, zz, then yz, zx, xy. */
+se3d_status se3di_tagged_ask_average(const se3di_channel *c, double numbers[17])
+{
+    static const int order[6] = {0, 1, 2, 4, 5, 3};
+    const se3di_region_entry *region = &c->tagged->regions[c->index];
+    se3d_average average;
+    const se3d_status status = se3d_particles_get_average(c->particles, region->lower,
+                                                          region->upper, region->tag, &average);
+    if (status >= 0) {
+        numbers[0] = (double)average.count;
+        numbers[1] = average.mass;
+        numbers[2] = average.solid_fraction;
+        numbers[3] = average.coordination;
+        numbers[4] = average.temperature;
+        for (int k = 0; k < 3; ++k) {
+            numbers[5 + k] = average.velocity[k];
+            numbers[8 + k] = average.mass_flux[k];
+        }
+        for (int k = 0; k < 6; ++k) {
+            numbers[11 + k] = average.kinetic_stress[order[k]] + average.contact_stress[order[k]];
+        }
+    }
     return status;
 }

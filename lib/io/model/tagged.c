@@ -29,3 +29,13 @@ size_t se3di_tagged_find_clump(const se3di_tagged *particles, const char *name)
 {
     return particles ? find_name(particles->clumps, particles->clump_count, name) : SIZE_MAX;
 }
+
+size_t se3di_tagged_find_region(const se3di_tagged *particles, const char *name)
+{
+    for (size_t k = 0; particles && k < particles->region_count; ++k) {
+        if (strcmp(particles->regions[k].name, name) == 0) {
+            return k;
+        }
+    }
+    return SIZE_MAX;
+}

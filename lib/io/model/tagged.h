@@ -7,6 +7,13 @@
 
 #include "se3d/particles.h"
 
+/* A box whose particles are averaged over. */
+typedef struct se3di_region_entry {
+    const char *name;
+    double lower[3], upper[3];
+    int32_t tag; /* of the set that counts; -1: all */
+} se3di_region_entry;
+
 /* All particles of a model are one set, so that they touch each other; what the file calls a set is
  * a tag in it: sets[0] are those without a name. */
 typedef struct se3di_tagged {
@@ -18,6 +25,8 @@ typedef struct se3di_tagged {
     size_t source_count, source_capacity;
     const char **sinks;
     size_t sink_count;
+    se3di_region_entry *regions;
+    size_t region_count;
     const char **clumps; /* names of the templates of clumps */
     size_t clump_count;
 } se3di_tagged;
@@ -25,6 +34,7 @@ typedef struct se3di_tagged {
 /* The index of a name, SIZE_MAX: none. */
 size_t se3di_tagged_find_set(const se3di_tagged *particles, const char *name);
 size_t se3di_tagged_find_sink(const se3di_tagged *particles, const char *name);
+size_t se3di_tagged_find_region(const se3di_tagged *particles, const char *name);
 size_t se3di_tagged_find_clump(const se3di_tagged *particles, const char *name);
 
 #endif

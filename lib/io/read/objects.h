@@ -24,6 +24,7 @@
     X(particles)                                                                                   \
     X(source)                                                                                      \
     X(sink)                                                                                        \
+    X(region)                                                                                      \
     X(body)                                                                                        \
     X(term)                                                                                        \
     X(joint)                                                                                       \

@@ -125,6 +125,24 @@ const se3di_object se3di_object_sink = {
     NULL};
 /* clang-format on */
 
+/* clang-format off */
+static const se3di_key region_keys[] = {
+    {"name", SE3DI_KIND_NAME, .required = true, .text = "for its channels"},
+    {"lower", SE3DI_KIND_VECTOR, .required = true, SE3DI_INTO(se3di_region_entry, lower),
+     .text = "corner of the box [m]"},
+    {"upper", SE3DI_KIND_VECTOR, .required = true, SE3DI_INTO(se3di_region_entry, upper),
+     .text = "corner of the box [m]"},
+    {"set", SE3DI_KIND_TEXT, .standard = "all particles", 
+     .text = "a name of `particles`: only those"},
+    {.key = NULL}};
+const se3di_object se3di_object_region = {
+    "region",
+    "A box whose particles are averaged over: how densely they lie, how they move, how they "
+    "press.",
+    region_keys, NULL,
+    NULL};
+/* clang-format on */
+
 static bool read_boundaries(se3di_reader *reader, const se3di_node *map, se3d_particles_def *def)
 {
     const char *const *words = se3di_object_find(&se3di_object_contact, NULL, "boundary")->words;
@@ -171,7 +189,8 @@ static bool check_free(se3di_reader *reader, const se3di_node *node, const char 
     if (se3di_keys_contain(words, name) || se3di_ionames_find(&model->body_names, name, NULL) ||
         se3di_ionames_find(&model->element_names, name, NULL) ||
         se3di_tagged_find_set(model->particles, name) != SIZE_MAX ||
-        se3di_tagged_find_sink(model->particles, name) != SIZE_MAX) {
+        se3di_tagged_find_sink(model->particles, name) != SIZE_MAX ||
+        se3di_tagged_find_region(model->particles, name) != SIZE_MAX) {
         return se3di_reader_fail(reader, node, "`%.60s` is taken, must differ from other names",
                                  name);
     }
@@ -436,6 +455,67 @@ static bool read_sinks(se3di_reader *reader, const se3di_node *list)
     return true;
 }
 
+static bool read_region_set(se3di_reader *reader, const se3di_node *node,
+                            se3di_region_entry *region)
+{
+    const se3di_node *set = se3di_node_get(node, "set");
+    const char *name = NULL;
+    region->tag = -1;
+    if (!set) {
+        return true;
+    }
+    if (!se3di_read_text(reader, set, &name)) {
+        return false;
+    }
+    const size_t tag = se3di_tagged_find_set(reader->model->particles, name);
+    if (tag == SIZE_MAX) {
+        return se3di_reader_fail(reader, set, "no `particles` are named `%.60s`", name);
+    }
+    region->tag = (int32_t)tag;
+    return true;
+}
+
+static bool read_box(se3di_reader *reader, const se3di_node *node, se3di_region_entry *region)
+{
+    const se3di_node *name = se3di_node_get(node, "name");
+    if (!se3di_read_keys(reader, node, &se3di_object_region)) {
+        return false;
+    }
+    if (!name || !se3di_node_get(node, "lower") || !se3di_node_get(node, "upper")) {
+        return se3di_reader_fail(reader, node, "must have `name`, `lower` and `upper`");
+    }
+    if (!se3di_read_name(reader, name, &region->name) || !check_free(reader, name, region->name) ||
+        !se3di_read_fields(reader, node, &se3di_object_region, NULL, "se3di_region_entry",
+                           region)) {
+        return false;
+    }
+    for (int a = 0; a < 3; ++a) {
+        if (!(region->upper[a] > region->lower[a])) {
+            return se3di_reader_fail_key(reader, node, "upper",
+                                         "is %g along %c, must be greater than `lower`, %g",
+                                         region->upper[a], "xyz"[a], region -> lower[a]);
+        }
+    }
+    return read_region_set(reader, node, region);
+}
+
+static bool read_regions(se3di_reader *reader, const se3di_node *list)
+{
+    se3di_tagged *particles = reader->model->particles;
+    particles->regions =
+        se3di_iopool_array(reader->pool, list ? list->count : 1, sizeof *particles->regions);
+    if (!particles->regions) {
+        return se3di_reader_fail_memory(reader);
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        if (!read_box(reader, node, &particles->regions[particles->region_count])) {
+            return false;
+        }
+        ++particles->region_count;
+    }
+    return true;
+}
+
 /* Particles push bodies in `verlet` only; in kinematics the motion of the bodies is given. */
 static bool check_analyses(se3di_reader *reader)
 {
@@ -468,17 +548,19 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
     const se3di_node *contact = se3di_node_get(root, "contact");
     const se3di_node *list = NULL;
     const se3di_node *sinks = NULL;
+    const se3di_node *boxes = NULL;
     if (!se3di_read_list(reader, root, "particles", &list) ||
-        !se3di_read_list(reader, root, "sinks", &sinks)) {
+        !se3di_read_list(reader, root, "sinks", &sinks) ||
+        !se3di_read_list(reader, root, "regions", &boxes)) {
         return false;
     }
-    const se3di_node *clumps = se3di_node_get(root, "clumps");
-    if (clumps && !list) {
-        return se3di_reader_fail(reader, clumps,
-                                 "needs `particles`, which the model does not have");
-    }
-    if (sinks && !list) {
-        return se3di_reader_fail(reader, sinks, "needs `particles`, which the model does not have");
+    static const char *const sections[] = {"sinks", "clumps", "regions"};
+    for (size_t k = 0; !list && k < sizeof sections / sizeof *sections; ++k) {
+        const se3di_node *section = se3di_node_get(root, sections[k]);
+        if (section) {
+            return se3di_reader_fail(reader, section,
+                                     "needs `particles`, which the model does not have");
+        }
     }
     if (!list) {
         return true;
@@ -498,5 +580,5 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
             return false;
         }
     }
-    return check_analyses(reader);
+    return read_regions(reader, boxes) && check_analyses(reader);
 }

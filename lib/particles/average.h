@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Averages over the particles in a box. */
+#ifndef SE3DI_PARTICLES_AVERAGE_H
+#define SE3DI_PARTICLES_AVERAGE_H
+
+#include "particles/set.h"
+#include "se3d/average.h"
+
+/* What is averaged over: a box, and the particles of a tag; -1: all. */
+typedef struct se3di_average_box {
+    double lower[3], upper[3];
+    int32_t tag;
+    int32_t contacts; /* 0: without what they give */
+} se3di_average_box;
+
+void se3di_particles_average(const se3di_particles *set, const se3di_average_box *box,
+                             se3d_average *average);
+
+#endif
