@@ -34,6 +34,9 @@ look() {
     ffmpeg -v error -y -i "$results/$1.png" -vf scale=960:-1:flags=lanczos -frames:v 1 -q:v 3 "docs/pictures/$1.jpg"
 }
 
+"$program" sketch --quiet examples/models/suspension.yaml -o docs/pictures/suspension_sketch.svg
+"$program" sketch --quiet examples/models/fourbar_kinematics.yaml -o docs/pictures/fourbar_sketch.svg
+
 run pendulum
 run spatial_slider_crank --duration 2 --step 0.02
 plot pendulum pendulum -y bar.position.y -y bar.position.z -y bar.velocity.y -y bar.velocity.z \

@@ -263,8 +263,7 @@ int video_write(const char *results, const char *path, double speed, int quiet)
     return write_film(results, path, speed, usual_view, quiet);
 }
 
-/* "AZIMUTH,ELEVATION"; NULL: left alone. */
-static int read_view(const char *text, double view[2])
+int view_read_angles(const char *command, const char *text, double view[2])
 {
     char *rest = NULL;
     if (!text) {
@@ -275,8 +274,8 @@ static int read_view(const char *text, double view[2])
     const char *second = good ? rest + 1 : "";
     view[1] = strtod(second, &rest);
     if (!good || rest == second || *rest || !(fabs(view[0]) <= 360.0 && fabs(view[1]) < 90.0)) {
-        fprintf(stderr, "se3d video: the view is `%s`, must be AZIMUTH,ELEVATION in degrees\n",
-                text);
+        fprintf(stderr, "se3d %s: the view is `%s`, must be AZIMUTH,ELEVATION in degrees\n",
+                command, text);
         return 0;
     }
     return 1;
@@ -298,7 +297,7 @@ static int command_video(int count, char *const *words)
         fprintf(stderr, "se3d video: the speed is `%s`, must be a number > 0\n", o.speed);
         return EXIT_USAGE;
     }
-    if (!read_view(o.view, view)) {
+    if (!view_read_angles("video", o.view, view)) {
         return EXIT_USAGE;
     }
     code = run_for_view("video", o.model, o.quiet, folder, sizeof folder);
