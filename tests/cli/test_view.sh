@@ -70,6 +70,27 @@ awk -v many=$many 'BEGIN {
             printf "%.17g,%d,0.006,%.17g,%.17g,%.17g,0,0,0,0,0,0\n", 0.15 * s, k + 7, 0.012 * (k % 25) + 0.01 * s, 0.012 * (int(k / 25) % 20), 0.012 * int(k / 500) - 0.002 * s
 }' >"$dir/grains/grains.csv"
 opens_grains 'very many grains'
+# Shapes of modes are in the page, and move in it.
+cat >"$dir/modes.yaml" <<'END_OF_YAML'
+se3d: 1
+gravity: [0, 0, 0]
+bodies:
+  - {name: a, mass: 1, inertia: [1, 1, 1], position: [1, 0, 0]}
+  - {name: b, mass: 1, inertia: [1, 1, 1], position: [2, 0, 0]}
+joints:
+  - {name: ra, type: prismatic, body_i: ground, body_j: a, at: [1, 0, 0], axis: [1, 0, 0]}
+  - {name: rb, type: prismatic, body_i: ground, body_j: b, at: [2, 0, 0], axis: [1, 0, 0]}
+forces:
+  - {name: s1, type: tsda, body_i: ground, body_j: a, point_i: [0, 0, 0], k: 100, l0: 1}
+  - {name: s2, type: tsda, body_i: a, body_j: b, k: 100, l0: 1, c: 0.2}
+analysis: {type: modes}
+END_OF_YAML
+expect 'a run of modes' 0 "$program" run -q "$dir/modes.yaml" -o "$dir/modes"
+expect 'modes' 0 "$program" view -q "$dir/modes"
+has "$dir/modes/scene.html" '{"names":["mode","real","imag","frequency","damping","a.x",'
+if [ -n "${SE3D_LONG:-}" ]; then
+    opens 'modes' "$dir/modes/scene.html" modes "$dir/modes/modes.csv"
+fi
 # Of a suspension every joint is seen, of a hopper a third of the beads.
 for pair in suspension:joints hopper:beads; do
     model=${pair%:*}

@@ -5,6 +5,7 @@
 //     node page.js PAGE none                      that it loads
 //     node page.js PAGE joints                    that every joint and spring is seen, also on a telephone's screen
 //     node page.js PAGE beads                     that a third of the grains is seen
+//     node page.js PAGE modes CSV                 shapes of the modes in CSV, of two bodies on springs
 //     node page.js ADDRESS live MODEL             the page of `se3d live MODEL`, where it is; MODEL is changed
 // With SE3D_BRIEF in the environment without keys and mouse.
 "use strict";
@@ -235,6 +236,27 @@ const checkGrains = async ({ rows }) => {
   console.log(`${new Set(ids).size} grains: ${time.toFixed(1)} ms a picture, drawn by the processor alone`);
   check(time < 2000, "grains stay interactive");
 };
+// Bodies a and b move as their shapes say, the spring between them goes along, and all comes back.
+const checkModes = async ({ names, rows }) => {
+  const place = async (turns, mode) => { if (mode !== undefined) await evaluate(`se3d.mode(${mode}, ${turns})`); return evaluate("['a', 'b'].map((name) => se3d.position(name))"); };
+  const still = await place(0, 0), column = (name) => names.indexOf(name);
+  for (const [k, row] of rows.entries()) {
+    const label = await evaluate(`document.getElementById("mode").options[${k + 1}].text`);
+    check(label.startsWith(`${k + 1}: ${row[column("frequency")].toPrecision(4)} Hz`), label);
+    for (const turns of [0, 0.2, 0.5, 0.9]) {
+      const now = await place(turns, k + 1), moved = now.map((r, i) => r[0] - still[i][0]);
+      const wanted = ["a", "b"].map((name) => row[column(name + ".x")] * Math.cos(2 * Math.PI * turns) - row[column(name + ".x_imag")] * Math.sin(2 * Math.PI * turns));
+      const much = Math.hypot(...moved) / Math.hypot(...wanted);
+      check(apart(moved, wanted.map((v) => v * much)) < 1e-9, `mode ${k + 1} at ${turns}: ${moved}, not as ${wanted}`);
+      check(Math.hypot(...moved) > 0.01, `mode ${k + 1} is seen to move: ${moved}`);
+      check(Math.abs((await evaluate('se3d.scale("s2")'))[2] - (now[1][0] - now[0][0])) < 1e-6, "the spring goes along");
+    }
+  }
+  check(apart((await place(0, 0)).flat(), still.flat()) < 1e-12, "all comes back");
+  await choose("mode", "1");
+  const first = await place();
+  await until(`se3d.position("a")[0] !== ${first[0][0]}`);
+};
 const until = async (expression) => {
   for (let k = 0; k < 200; ++k) { const value = await evaluate(expression); if (value) return value; await wait(25); }
   check(false, `${expression} never came`);
@@ -298,6 +320,8 @@ const start = async () => {
   await start();
   if (csv === "joints") {
     await checkJoints();
+  } else if (csv === "modes") {
+    await checkModes(read(body));
   } else if (csv === "live") {
     await checkLive(body);
   } else if (csv === "beads") {

@@ -6,6 +6,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,14 +19,21 @@
 #include "table.h"
 #include "text.h"
 
-enum { RESULTS_SIZE = 120 * 1024, PATH_SIZE = 4096 };
+enum { RESULTS_SIZE = 120 * 1024, PATH_SIZE = 4096, MODES_MAX = 60 };
 
-/* True if a file begins with a column of times. */
-static int has_times(const char *path)
+/* What a results file may hold. */
+enum { CHANNELS, PARTICLES, MODES };
+
+static const char modes_head[] = "mode,real,imag,frequency,damping,";
+
+/* True if a file begins with these columns. */
+static int has_head(const char *path, const char *columns)
 {
-    char head[5] = "";
+    char head[40] = "";
+    const size_t length = strlen(columns);
     FILE *file = se3di_file_open(path);
-    const int has = file && fread(head, 1, 5, file) == 5 && memcmp(head, "time,", 5) == 0;
+    const int has =
+        file && fread(head, 1, length, file) == length && memcmp(head, columns, length) == 0;
     if (file) {
         fclose(file);
     }
@@ -33,8 +41,8 @@ static int has_times(const char *path)
 }
 
 /* The first results file of a folder, by name: of channels over time (spectra of plots left out),
- * or of particles. */
-static int find_results(const char *folder, int particles, char *path, size_t size)
+ * of particles, or of modes. */
+static int find_results(const char *folder, int kind, char *path, size_t size)
 {
     char best[300] = "";
     DIR *list = opendir(folder);
@@ -45,7 +53,10 @@ static int find_results(const char *folder, int particles, char *path, size_t si
             continue;
         }
         snprintf(path, size, "%s/%s", folder, d->d_name);
-        if (has_times(path) && snapshots_is(path) == particles) {
+        const int is_kind =
+            kind == MODES ? has_head(path, modes_head)
+                          : has_head(path, "time,") && snapshots_is(path) == (kind == PARTICLES);
+        if (is_kind) {
             strcpy(best, d->d_name);
         }
     }
@@ -98,7 +109,37 @@ typedef struct page {
     size_t glb_size;
     table results;                   /* empty: there are none */
     char particles[PATH_SIZE + 300]; /* file of snapshots; "": none */
+    char modes[PATH_SIZE + 300];     /* "": none */
 } page;
+
+/* The modes of a file: one row each, eigenvalue and shape, as docs/viewer.md has them. */
+static int put_modes(FILE *file, const page *p)
+{
+    table t;
+    if (!table_read(&t, p->parts.command, p->modes)) {
+        return 0;
+    }
+    const size_t most = t.rows < MODES_MAX ? t.rows : MODES_MAX;
+    double *values = malloc((t.rows + 1) * t.count * sizeof *values);
+    const size_t rows = values ? table_read_rows(&t, 1, values, t.rows + 1) : 0;
+    fputs("{\"names\":[", file);
+    for (size_t k = 0; k < t.count; ++k) {
+        fputs(k > 0 ? "," : "", file);
+        text_put_script(file, t.names[k]);
+    }
+    fputs("],\"rows\":[", file);
+    for (size_t row = 0; row < rows && row < most; ++row) {
+        for (size_t k = 0; k < t.count; ++k) {
+            const double value = values[row * t.count + k];
+            fputs(k > 0 ? "," : row > 0 ? "],[" : "[", file);
+            fprintf(file, isfinite(value) ? "%.9g" : "0", value);
+        }
+    }
+    fputs(rows > 0 ? "]]}" : "]}", file);
+    free(values);
+    table_destroy(&t);
+    return rows > 0;
+}
 
 static int put_page(FILE *file, const page *p)
 {
@@ -110,6 +151,12 @@ static int put_page(FILE *file, const page *p)
     fputs("</script>\n<script type=\"application/json\" id=\"grains\">", file);
     if (p->particles[0]) {
         good = good && snapshots_put(file, p->parts.command, p->particles);
+    } else {
+        fputs("null", file);
+    }
+    fputs("</script>\n<script type=\"application/json\" id=\"modes\">", file);
+    if (p->modes[0]) {
+        good = good && put_modes(file, p);
     } else {
         fputs("null", file);
     }
@@ -141,10 +188,13 @@ int view_write(const char *command, const char *folder, const char *path)
     if (!p->glb || p->glb_size < 28) {
         fprintf(stderr, "se3d %s: %s: cannot be read; `se3d run MODEL -o %s` makes it\n", command,
                 name, folder);
-    } else if (!find_results(folder, 0, name, sizeof name) ||
+    } else if (!find_results(folder, CHANNELS, name, sizeof name) ||
                table_read(&p->results, command, name)) {
-        if (!find_results(folder, 1, p->particles, sizeof p->particles)) {
+        if (!find_results(folder, PARTICLES, p->particles, sizeof p->particles)) {
             p->particles[0] = '\0';
+        }
+        if (!find_results(folder, MODES, p->modes, sizeof p->modes)) {
+            p->modes[0] = '\0';
         }
         code = page_begin(&p->parts, command);
         code = code == EXIT_DONE ? write_page(p, path) : code;

@@ -57,7 +57,7 @@
   const open = async () => {
     const scene = await (await fetch("scene")).json();
     if (viewer) { viewer.share(); viewer.close(); }
-    viewer = se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: null, live });
+    viewer = se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: null, modes: null, live });
     const names = JSON.stringify(scene.sliders);
     if (names !== named) makeSliders(scene.sliders);
     named = names;

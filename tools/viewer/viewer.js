@@ -4,13 +4,14 @@
 addEventListener("error", (e) => { window.se3dProblem = String(e.message).replace(/["\\]/g, "'"); });
 const se3dDecode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 let se3dRenderer = null; // one for all that is shown in this page
-// Shows a scene: `glb` with its motion, `results` {names, units, values} beside it, `packed` grains or null. With `live`
+// Shows a scene: `glb` with its motion, `results` {names, units, values} beside it, `packed` grains or null, `modes` of a
+// file {names, rows} or null. With `live`
 // ({post}, see live.js) there is no motion: what `feed` gets is shown. `close` takes all away again.
-const se3dView = ({ glb, results, packed, live }) => {
+const se3dView = ({ glb, results, packed, modes, live }) => {
   const $ = (id) => document.getElementById(id);
   const decode = se3dDecode;
   const closing = new AbortController();
-  for (const id of ["follow", "colour", "channel", "labels"]) $(id).replaceChildren();
+  for (const id of ["follow", "colour", "channel", "mode", "labels"]) $(id).replaceChildren();
   $("follow").add(new Option("nothing", "-1"));
   const head = new DataView(glb);
   const jsonLength = head.getUint32(12, true);
@@ -113,8 +114,58 @@ const se3dView = ({ glb, results, packed, live }) => {
     bodies.forEach((o) => { o.position.fromArray(places, k); turn(o, k + 3); k += 7; });
     between.forEach((o) => { o.position.fromArray(places, k); turn(o, k + 3); o.scale.fromArray(places, k + 7); k += 10; });
   };
+  // Modes: beside the last pose, bodies move by the real part of their shape times exp(i phase); what has no frequency
+  // decays. What lies between two bodies goes along with the points of them where its ends were.
+  const shapes = ((modes || {}).rows || []).map((row) => {
+    const get = (name, kind) => ["x", "y", "z", "rx", "ry", "rz"].map((c) => row[modes.names.indexOf(`${name}.${c}${kind}`)] || 0);
+    const moves = bodies.map((b) => ({ re: get(b.name, ""), im: get(b.name, "_imag") }));
+    const far = (u) => Math.hypot(...u.slice(0, 3));
+    return { real: row[1], imag: row[2], frequency: row[3], damping: row[4], moves, most: Math.max(1e-300, ...moves.flatMap(({ re, im }) => [far(re), far(im)])),
+      turn: Math.max(1e-300, ...moves.flatMap(({ re, im }) => [far(re.slice(3)), far(im.slice(3))])) };
+  });
+  let shape = null, phase = 0, reach = 1; // the mode that is shown; how far bodies go [m]
+  const rest = { bodies: null, lines: [] };
+  const settle = () => {
+    rest.bodies = bodies.map((o) => ({ r: o.position.clone(), q: o.quaternion.clone() }));
+    const local = (k, v) => v.clone().sub(rest.bodies[k].r).applyQuaternion(rest.bodies[k].q.clone().conjugate());
+    const ends = (o) => [-0.5, 0.5].map((s) => new THREE.Vector3(0, 0, s * o.scale.z).applyQuaternion(o.quaternion).add(o.position));
+    rest.lines = [];
+    (((gltf.scenes[0].extras || {}).elements) || []).forEach((e, k) => {
+      const parts = between.filter((o) => o.userData.element === k);
+      if (!parts.length || !e.bodies) return;
+      const from = ends(parts[0])[0], to = ends(parts[parts.length - 1])[1], length = Math.max(1e-12, to.distanceTo(from));
+      rest.lines.push({ i: e.bodies[0], j: e.bodies[1], a: local(e.bodies[0], from), b: local(e.bodies[1], to), parts: parts.map((o) => ({ o, at: ends(o).map((v) => v.distanceTo(from) / length) })) });
+    });
+  };
+  // Move all beside the pose of rest by c times the real and -s times the imaginary part of a shape.
+  const displace = ({ moves }, c, s) => {
+    bodies.forEach((o, k) => {
+      const u = moves[k].re.map((v, i) => c * v - s * moves[k].im[i]), turn = Math.hypot(u[3], u[4], u[5]);
+      o.position.set(u[0], u[1], u[2]).add(rest.bodies[k].r);
+      o.quaternion.copy(rest.bodies[k].q);
+      if (turn > 0) o.quaternion.premultiply(qa.setFromAxisAngle(va.set(u[3] / turn, u[4] / turn, u[5] / turn), turn));
+    });
+    rest.lines.forEach(({ i, j, a, b, parts }) => {
+      const from = a.clone().applyQuaternion(bodies[i].quaternion).add(bodies[i].position), way = b.clone().applyQuaternion(bodies[j].quaternion).add(bodies[j].position).sub(from);
+      parts.forEach(({ o, at }) => {
+        o.position.copy(from).addScaledVector(way, (at[0] + at[1]) / 2);
+        o.scale.z = way.length() * (at[1] - at[0]);
+        o.quaternion.setFromUnitVectors(va.set(0, 0, 1), vb.copy(way).normalize());
+      });
+    });
+  };
+  const shake = () => {
+    const angle = 2 * Math.PI * phase, much = Math.min(reach / shape.most, 0.5 / shape.turn);
+    if (!rest.bodies) { follow(end); settle(); }
+    if (shape.imag > 0) displace(shape, much * Math.cos(angle), much * Math.sin(angle));
+    else displace(shape, much * Math.exp(-4 * phase), 0);
+  };
   const pose = (t) => {
     if (places) { put(); return; }
+    if (shape) { shake(); return; }
+    follow(t);
+  };
+  const follow = (t) => {
     const [a, b, part] = locate((k) => times[k], times.length, t);
     for (const { node, path, values } of tracks) {
       if (path === "rotation") {
@@ -353,7 +404,8 @@ const se3dView = ({ glb, results, packed, live }) => {
     }
   };
 
-  const state = { time: start, playing: true, speed: 1, follow: -1, frames: false, reactions: false, traces: false, dark: false, solid: false, labels: false, cut: 0, picked: null };
+  const state = { time: start, playing: true, speed: 1, follow: -1, frames: false, reactions: false, traces: false, dark: false, solid: false, labels: false, cut: 0, picked: null, mode: 0, phase: 0 };
+  reach = 0.08 * size;
   const axes = bodies.map((b) => { const a = new THREE.AxesHelper(0.15 * size); a.visible = false; b.add(a); return a; });
   // Reactions: arrows at the nodes named as joints.
   const arrows = [];
@@ -449,7 +501,7 @@ const se3dView = ({ glb, results, packed, live }) => {
     renderer.render(scene, camera);
     write();
     $("time").value = state.time;
-    $("clock").textContent = state.time.toFixed(3) + " s";
+    $("clock").textContent = shape ? "mode " + state.mode : state.time.toFixed(3) + " s";
     plot();
   };
 
@@ -466,6 +518,7 @@ const se3dView = ({ glb, results, packed, live }) => {
   });
   // Speeds of bodies from the positions just before and after.
   const speeds = (t) => {
+    if (shape) return bodies.map(() => 0);
     const step = (end - start) / Math.max(2000, times.length), a = Math.max(start, t - step), b = Math.min(end, t + step);
     pose(a);
     const from = bodies.map((o) => o.position.clone());
@@ -587,10 +640,20 @@ const se3dView = ({ glb, results, packed, live }) => {
       renderer.clippingPlanes = plane ? [plane] : [];
       if (grains) grains.cut = plane;
     }
+    if ("mode" in change) {
+      if (shape) displace(shape, 0, 0);
+      shape = shapes[state.mode - 1] || null;
+      $("mode").value = String(state.mode);
+    }
+    phase = state.phase;
     $("help").style.display = state.help ? "block" : "none";
   };
   for (const [key, text] of [["", "material"], ["speed", "speed"], ...(packed ? [["size", "size"]] : [])]) $("colour").add(new Option(text, key));
   $("colour").onchange = () => { set({ colour: $("colour").value }); draw(); };
+  $("mode").add(new Option("none", "0"));
+  shapes.forEach((s, k) => $("mode").add(new Option(`${k + 1}: ` + (s.imag > 0 ? `${s.frequency.toPrecision(4)} Hz, damping ${s.damping.toPrecision(3)}` : `s = ${s.real.toPrecision(3)} 1/s`), String(k + 1))));
+  $("mode").parentElement.style.display = shapes.length ? "" : "none";
+  $("mode").onchange = () => { set({ mode: Number($("mode").value), phase: 0, playing: true }); draw(); };
   bodies.forEach((b, k) => { if (k > 0) $("follow").add(new Option(b.name, String(k))); });
   results.names.forEach((name, k) => { if (k > 0) $("channel").add(new Option(name, String(k))); });
   // The plot begins with the first channel that is more than rounding.
@@ -616,6 +679,7 @@ const se3dView = ({ glb, results, packed, live }) => {
       plot: results.names[Number($("channel").value)] || "", show: ["frames", "reactions", "traces", "dark", "solid", "labels"].filter((key) => state[key]).join(",") });
     if (state.follow > 0) part.set("follow", bodies[state.follow].name);
     if (state.colour) part.set("colour", state.colour);
+    if (state.mode) part.set("mode", String(state.mode));
     if (state.picked) part.set("picked", state.picked.element !== undefined ? elements[state.picked.element].name : bodies[state.picked.body].name);
     location.hash = part.toString();
     return location.href;
@@ -634,6 +698,7 @@ const se3dView = ({ glb, results, packed, live }) => {
     (part.get("show") || "").split(",").forEach((key) => { if (["frames", "reactions", "traces", "dark", "solid", "labels"].includes(key)) change[key] = true; });
     const follow = bodies.findIndex((b) => b.name === part.get("follow"));
     if (follow > 0) change.follow = follow;
+    if (Number(part.get("mode")) > 0 && Number(part.get("mode")) <= shapes.length) change.mode = Math.floor(Number(part.get("mode")));
     if (["speed", ...(packed ? ["size"] : [])].includes(part.get("colour"))) change.colour = part.get("colour");
     const element = elements.findIndex((e) => e.name === part.get("picked")), body = bodies.findIndex((b) => b.name === part.get("picked"));
     if (element >= 0) change.picked = { element }; else if (body >= 0) change.picked = { body };
@@ -725,9 +790,11 @@ const se3dView = ({ glb, results, packed, live }) => {
   let before = performance.now();
   const frame = (now) => {
     if (closing.signal.aborted) return;
-    const passed = Math.min(0.25, (now - before) / 1000);
+    const passed = Math.min(0.25, Math.max(0, (now - before) / 1000));
     before = now;
-    if (state.playing && end > start && !live) {
+    if (shape && state.playing && !live) {
+      set({ phase: (state.phase + 0.7 * state.speed * passed) % 1 });
+    } else if (state.playing && end > start && !live) {
       state.time += state.speed * passed;
       if (state.time > end) state.time = start + (state.time - end) % (end - start);
     }
@@ -827,6 +894,8 @@ const se3dView = ({ glb, results, packed, live }) => {
     },
     arrows: () => arrows.filter((a) => a.arrow.visible).map((a) => ({ joint: a.joint.name, at: a.arrow.position.toArray(),
       along: new THREE.Vector3(0, 1, 0).applyQuaternion(a.arrow.quaternion).toArray() })),
+    // Mode k from 1 at a phase, in turns.
+    mode: (k, turns) => { set({ mode: k, phase: turns, playing: false }); draw(); },
     scale: (name) => nodes.find((o) => o.name === name).scale.toArray(),
     position: (name) => bodies.find((b) => b.name === name).position.toArray(),
   };
@@ -834,5 +903,5 @@ const se3dView = ({ glb, results, packed, live }) => {
 };
 if (document.getElementById("glb")) {
   const text = (id) => document.getElementById(id).textContent, results = JSON.parse(text("results"));
-  se3dView({ glb: se3dDecode(text("glb").trim()), results: { ...results, values: new Float32Array(se3dDecode(results.data)) }, packed: JSON.parse(text("grains")), live: null });
+  se3dView({ glb: se3dDecode(text("glb").trim()), results: { ...results, values: new Float32Array(se3dDecode(results.data)) }, packed: JSON.parse(text("grains")), modes: JSON.parse(text("modes")), live: null });
 }
