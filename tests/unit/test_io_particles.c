@@ -358,7 +358,7 @@ static void clumps_are_read_and_written(void)
     se3d_model_destroy(model);
 }
 
-#define GRAINS                                                                                     \
+#define WITH_SET                                                                                   \
     "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, "        \
     "radius: "                                                                                     \
     "0.1, lower: [0, 0, 0], upper: [1, 1, 1]}]\n"
@@ -371,23 +371,24 @@ typedef struct refusal {
 
 static const refusal refusals[] = {
     {"se3d: 1\nregions: []\n", 2, {"regions: needs `particles`"}},
-    {GRAINS "regions: [{name: a, lower: [0, 0, 0]}]\n", 4, {"regions[0]: must have `name`"}},
-    {GRAINS "regions: [{name: a, lower: [0, 0, 0], upper: [1, 0, 1]}]\n",
+    {WITH_SET "regions: [{name: a, lower: [0, 0, 0]}]\n", 4, {"regions[0]: must have `name`"}},
+    {WITH_SET "regions: [{name: a, lower: [0, 0, 0], upper: [1, 0, 1]}]\n",
      4,
      {"upper: is 0 along y, must be greater than `lower`, 0"}},
-    {GRAINS "regions: [{name: a, set: b, lower: [0, 0, 0], upper: [1, 1, 1]}]\n",
+    {WITH_SET "regions: [{name: a, set: b, lower: [0, 0, 0], upper: [1, 1, 1]}]\n",
      4,
      {"no `particles` are named `b`"}},
-    {GRAINS "regions: [{name: energy, lower: [0, 0, 0], upper: [1, 1, 1]}]\n", 4, {"is taken"}},
+    {WITH_SET "regions: [{name: energy, lower: [0, 0, 0], upper: [1, 1, 1]}]\n", 4, {"is taken"}},
     {"se3d: 1\nclumps: []\n", 2, {"clumps: needs `particles`"}},
-    {GRAINS "clumps: [{name: a}]\n", 4, {"clumps[0].spheres", "is missing"}},
-    {GRAINS "clumps: [{spheres: [{position: [0, 0, 0], radius: 1}]}]\n", 4, {"name: is missing"}},
-    {GRAINS "clumps: [{name: a, spheres: [{position: [0, 0, 0]}]}]\n", 4, {"`position` and"}},
-    {GRAINS "clumps: [{name: a, spheres: [{position: [0, 0, 0], radius: -1}]}]\n", 4, {"> 0"}},
-    {GRAINS "clumps: [{name: a, mass: 1, spheres: [{position: [0, 0, 0], radius: 1}]}]\n",
+    {WITH_SET "clumps: [{name: a}]\n", 4, {"clumps[0].spheres", "is missing"}},
+    {WITH_SET "clumps: [{spheres: [{position: [0, 0, 0], radius: 1}]}]\n", 4, {"name: is missing"}},
+    {WITH_SET "clumps: [{name: a, spheres: [{position: [0, 0, 0]}]}]\n", 4, {"`position` and"}},
+    {WITH_SET "clumps: [{name: a, spheres: [{position: [0, 0, 0], radius: -1}]}]\n", 4, {"> 0"}},
+    {WITH_SET "clumps: [{name: a, mass: 1, spheres: [{position: [0, 0, 0], radius: 1}]}]\n",
      4,
      {"inertia: is missing beside `mass`"}},
-    {GRAINS "clumps: [{name: a, centre: [0, 0, 0], spheres: [{position: [0, 0, 0], radius: 1}]}]\n",
+    {WITH_SET
+     "clumps: [{name: a, centre: [0, 0, 0], spheres: [{position: [0, 0, 0], radius: 1}]}]\n",
      4,
      {"centre: needs `mass`"}},
     {GLASS
@@ -395,8 +396,8 @@ static const refusal refusals[] = {
      "1}]}]\n",
      4,
      {"that of no body"}},
-    {GRAINS "clumps: [{name: a, spheres: [{position: [0, 0, 0], radius: 1}]}, {name: a, spheres: "
-            "[{position: [0, 0, 0], radius: 1}]}]\n",
+    {WITH_SET "clumps: [{name: a, spheres: [{position: [0, 0, 0], radius: 1}]}, {name: a, spheres: "
+              "[{position: [0, 0, 0], radius: 1}]}]\n",
      4,
      {"`a` is taken"}},
     {"se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, clump: "
