@@ -9,7 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-#define STANDING 1e-2 /* of the tolerance: slower is standing still */
+#define STANDING 1e-2  /* of the tolerance: slower is standing still */
+#define ROUNDING 4e-15 /* of a coordinate, over the step, in the mean rate */
 #define LANDING                                                                                    \
     0.5 /* of the tolerance: how far beyond the turn, or before the stop, a step is aimed */
 
@@ -18,12 +19,56 @@ static se3di_force *element_of(const se3di_equations *equations, uint32_t k)
     return &equations->assembly.model->forces[equations->friction.element[k]];
 }
 
-/* It slips against its direction: friction has driven since its motion turned within the step. */
-static int review_slip(const se3di_force *force, double rate, double allowed, se3di_memory_end *end)
+/* The rate along its direction at the part s of a step, of the parabola that has those of its ends
+ * and the way between. */
+typedef struct excursion {
+    double begin, end, mean;
+} excursion;
+
+static double eval_excursion(const excursion *e, double s)
 {
-    const double mode = force->state[SE3DI_FRICTION_MODE], against = -mode * rate;
+    return e->begin * (1.0 - s * (4.0 - 3.0 * s)) + e->end * s * (3.0 * s - 2.0) +
+           6.0 * e->mean * s * (1.0 - s);
+}
+
+/* It has turned within the step, and turned again: it sticks there, or slips the other way. */
+static void review_excursion(const excursion *e, double allowed, se3di_memory_end *end)
+{
+    const double bend = e->begin + e->end - 2.0 * e->mean;
+    const double place = (2.0 * e->begin + e->end - 3.0 * e->mean) / (3.0 * bend);
+    if (!(bend > 0.0) || !(place > 0.0) || !(place < 1.0)) {
+        return;
+    }
+    const double against = -eval_excursion(e, place);
+    double before = 0.0, after = place;
+    if (!(against > allowed)) {
+        return;
+    }
+    for (int k = 0; k < 50; ++k) {
+        const double middle = 0.5 * (before + after);
+        if (eval_excursion(e, middle) > -LANDING * allowed) {
+            before = middle;
+        } else {
+            after = middle;
+        }
+    }
+    end->error = fmax(end->error, against / allowed);
+    end->fraction = end->fraction > 0.0 ? fmin(end->fraction, after) : after;
+}
+
+/* It slips against its direction: friction has driven since its motion turned within the step. */
+static int review_slip(const se3di_force *force, const se3di_measure *measure,
+                       const se3di_memory_step *step, se3di_memory_end *end)
+{
+    const int turns = force->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
+    const double allowed = step->tolerance * (turns ? step->scale->spin : step->scale->speed);
+    const double mode = force->state[SE3DI_FRICTION_MODE], against = -mode * measure->rate;
     const double before = mode * force->state[SE3DI_FRICTION_RATE];
     if (!(against > 0.0)) {
+        const double way = measure->value - force->state[SE3DI_FRICTION_ANCHOR];
+        const double size = fabs(measure->value) + (turns ? 1.0 : step->scale->length);
+        const excursion e = {before, -against, mode * way / step->h};
+        review_excursion(&e, allowed + ROUNDING * size / step->h, end);
         return 0;
     }
     end->error = fmax(end->error, against / allowed);
@@ -56,21 +101,21 @@ static int32_t review_stick(const se3di_equations *equations, uint32_t k, double
 }
 
 /* Which elements may have to change: friction.rests. @return how many */
-static uint32_t review(se3di_equations *equations, const se3di_state_scale *scale, double tolerance,
+static uint32_t review(se3di_equations *equations, const se3di_memory_step *step,
                        se3di_memory_end *end, uint32_t *broken)
 {
+    const se3di_state_scale *scale = step->scale;
+    const double tolerance = step->tolerance;
     const se3di_model *model = equations->assembly.model;
     uint32_t count = 0;
     *broken = 0;
     for (uint32_t k = 0; k < equations->friction.count; ++k) {
         const se3di_force *force = element_of(equations, k);
-        const int turns = force->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
         int32_t changes = 0;
         se3di_measure measure;
         (void)se3di_measure_force(model, force, 0, &measure);
         if (!se3di_friction_sticks(force)) {
-            changes = review_slip(force, measure.rate,
-                                  tolerance * (turns ? scale->spin : scale->speed), end);
+            changes = review_slip(force, &measure, step, end);
         } else if (force->state[SE3DI_FRICTION_SET] > 0.0) {
             changes =
                 review_stick(equations, k, measure.rate, slowness_of(force, scale, tolerance));
@@ -215,7 +260,7 @@ se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_s
             memcpy(model->lambda, lambda, equations->assembly.row_count * sizeof *lambda);
         }
     }
-    const uint32_t count = review(equations, scale, tolerance, end, &broken);
+    const uint32_t count = review(equations, step, end, &broken);
     if (count > 0 && end->error <= 1.0) {
         se3d_status status = se3di_state_evaluate(equations, t);
         memcpy(work, equations->x, equations->assembly.unknown_count * sizeof *work);
