@@ -16,6 +16,7 @@
 #define LEVERAGE_MIN      1e-10 /* of a force on its own coordinate, over that on the free bodies */
 #define ACCURACY          1e-14
 #define ACCURACY_ACCEPTED 1e-10
+#define NEGLIGIBLE        1e-2 /* of a force that would hold its coordinate */
 #define SHARING           1e-7 /* relative stiffness against one element holding all, and */
 #define SHARING_RANGE     1e4  /* the most that a weaker element has of it */
 #define CENTRES           8
@@ -147,6 +148,24 @@ static double eval_held(const se3di_equations *equations, uint32_t u)
     return size > 0.0 ? fabs(s->f[u]) / size : 0.0;
 }
 
+/* A force against the coordinate of an unknown that would be as much as what holds any of them: if
+ * nothing presses a joint its reaction is rounding of such forces, and its size has a kink at 0. */
+static double find_size(const se3di_equations *equations, uint32_t u)
+{
+    const friction *s = &equations->friction;
+    double largest = 0.0;
+    if (!se3di_friction_has_leverage(equations, u)) {
+        return 0.0;
+    }
+    for (uint32_t v = 0; v < s->active; ++v) {
+        const double own = -s->W[(size_t)v * (s->active + 1)];
+        if (se3di_friction_has_leverage(equations, v)) {
+            largest = fmax(largest, fmax(fabs(s->a[v]) / sqrt(own), sqrt(own) * fabs(s->n[v])));
+        }
+    }
+    return largest / sqrt(-s->W[(size_t)u * (s->active + 1)]);
+}
+
 /* The same of one that slips, or stays at the limit of what it can hold. */
 static double eval_slipping(const se3di_equations *equations, uint32_t u, double part)
 {
@@ -156,7 +175,8 @@ static double eval_slipping(const se3di_equations *equations, uint32_t u, double
     const double way = force->state[SE3DI_FRICTION_MODE];
     const double factor = part * way * (s->stays[k] ? force->mu_static : force->mu);
     double *row = s->J + (size_t)u * s->active;
-    double wanted = factor * se3di_friction_eval_load(equations, u, row), size = 0.0;
+    double wanted = factor * se3di_friction_eval_load(equations, u, row);
+    double size = NEGLIGIBLE * find_size(equations, u);
     wanted += s->rests[k] ? way * force->limit : 0.0; /* else in b */
     s->f[u] = wanted - s->n[u];
     for (uint32_t v = 0; v < s->active; ++v) {

@@ -224,6 +224,38 @@ static void a_shoulder_rubs_by_the_axial_force(void)
     }
 }
 
+/* A train of gears with weight along its axes: nothing presses its bearings, and what their
+ * reactions are is rounding. All three hold it, until the torque grows. */
+static void bearings_that_nothing_presses_do_not_jam(void)
+{
+    static const char *const text =
+        "se3d: 1\nbodies:\n  - {name: a, mass: 1, inertia: [0.002, 0.002, 0.003]}\n"
+        "  - {name: b, mass: 3, inertia: [0.01, 0.01, 0.02], position: [0.3, 0, 0]}\n"
+        "  - {name: c, mass: 2, inertia: [0.03, 0.03, 0.05], position: [0.8, 0, 0]}\njoints:\n"
+        "  - {name: i, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, "
+        "1]}\n"
+        "  - {name: j, type: revolute, body_i: ground, body_j: b, at: [0.3, 0, 0], axis: [0, 0, "
+        "1]}\n"
+        "  - {name: k, type: revolute, body_i: ground, body_j: c, at: [0.8, 0, 0], axis: [0, 0, "
+        "1]}\n"
+        "  - {type: gear, joint_1: i, joint_2: j, ratio: 0.5}\n"
+        "  - {type: gear, joint_1: j, joint_2: k, ratio: 0.4}\nforces:\n"
+        "  - {type: torque, body: a, value: [0, 0, \"3*t\"]}\n"
+        "  - {type: friction, joint: i, mu: 0.1, radius: 0.01, limit: 0.05}\n"
+        "  - {type: friction, joint: j, mu: 0.2, radius: 0.02, length: 0.05}\n"
+        "  - {type: friction, joint: k, limit: 1}\n"
+        "analysis: {type: dynamics, duration: 1}\n"
+        "output: [{file: r.csv, channels: [i.rate]}]\n";
+    const double J = 0.003 + 0.02 * 0.25 + 0.05 * 0.04, holds = 0.05 + 0.2, begin = holds / 3.0;
+    for (size_t method = 0; method < CONTROLS; ++method) {
+        text_model m = open_with(text, methods[method], 0.0, 1e-8);
+        const double rest = 1.0 - begin;
+        CHECK(text_model_run(&m, 1.0));
+        CHECK_NEAR(text_model_get(&m, 0, 0), 1.5 * rest * rest / J, 1e-4);
+        text_model_close(&m);
+    }
+}
+
 /* v = (t - 1)^2 - 1e-3 while it slips: it comes to a stand just before t = 1, where the push is
  * 0.94 of what friction holds, and goes on by (t - 1)^2 when the push has grown. A polynomial, and
  * at the end of a long step all is as if it had never turned. */
@@ -250,6 +282,7 @@ static void a_stand_within_a_step_is_not_passed_over(void)
 
 int main(void)
 {
+    RUN(bearings_that_nothing_presses_do_not_jam);
     RUN(a_stand_within_a_step_is_not_passed_over);
     RUN(a_guide_rubs_by_the_moments_that_it_carries);
     RUN(a_shoulder_rubs_by_the_axial_force);
