@@ -7,6 +7,7 @@
 #include "assembly/left_out.h"
 #include "assembly/loads.h"
 #include "base/sort.h"
+#include "force/measure.h"
 #include "force/signal.h"
 #include "joint/user.h"
 #include "math/inertia.h"
@@ -397,6 +398,18 @@ static se3d_status add_signals(se3di_tangent *tangent, const se3di_force *force,
     return SE3D_OK;
 }
 
+/* A force that is out of balance by `excess` turns with its line, too: K -= n H for the rest. */
+static void leave_excess(const se3di_model *model, const se3di_force *force, double excess,
+                         se3di_effect *effect)
+{
+    se3di_measure measure;
+    if (excess != 0.0 && se3di_measure_force(model, force, 1, &measure)) {
+        for (int k = 0; k < 144; ++k) {
+            effect->K[k] += excess * measure.H[k];
+        }
+    }
+}
+
 static se3d_status add_forces(se3di_tangent *tangent, double t)
 {
     const se3di_model *model = tangent->assembly->model;
@@ -406,6 +419,7 @@ static se3d_status add_forces(se3di_tangent *tangent, double t)
         se3di_effect effect;
         effect.wants_derivative = 1;
         SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
+        leave_excess(model, force, tangent->excess ? tangent->excess[k] : 0.0, &effect);
         add_load(tangent, bodies, effect.wrench, effect.K, effect.D);
         for (int c = 0; c < 3 && !tangent->is_convex; ++c) {
             if (force->function[c] >= 0) {

@@ -21,6 +21,7 @@ typedef struct se3di_tangent {
     int32_t *joint_pair; /* [constraints] coupling of the bodies of a fused joint, -1: none */
     int32_t is_convex;   /* K without negative curvature (r-omega): assembly/convex.h */
     int32_t reserved;
+    const double *excess; /* [forces] of n in a wrench -n g, that is no curvature; NULL: none */
     /* Blocks [block * block]: of the bodies; of the couplings: rows of i, columns of j, and rows of
      * j, columns of i. */
     double *M, *M_upper, *M_lower; /* couplings: NULL without armatures */

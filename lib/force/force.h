@@ -18,6 +18,7 @@ typedef struct se3di_effect {
     double power[2];          /* dissipated, fed in by an actuator or load [W] */
     double coordinate, rate;  /* of springs, friction and stops */
     double value;             /* force against the coordinate: f [N] or n [N m] */
+    double slope[2];          /* of n in wrench = -n g: to the coordinate, to its rate */
     int32_t wants_derivative; /* set by the caller: K and D are computed */
     double K[144];            /* d wrench / d (dr, dtheta) */
     double D[144];            /* d wrench / d (v, w) */

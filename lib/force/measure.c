@@ -183,6 +183,8 @@ void se3di_effect_add(se3di_effect *effect, const se3di_measure *measure, const 
     effect->coordinate = measure->value;
     effect->rate = measure->rate;
     effect->value = law->n;
+    effect->slope[0] = law->n_x;
+    effect->slope[1] = law->n_rate;
     for (int k = 0; k < 12; ++k) {
         effect->wrench[k] -= law->n * g[k];
     }

@@ -44,13 +44,15 @@ typedef struct se3di_radau {
     double *vdot, *none, *sum, *sum_q;
     double *relaxation; /* [2 * unknowns + rows] */
     double *normal;     /* what is projected away of a correction; 0 if stages are not */
+    double *lines;      /* of stiff forces: radau_lines.h */
     double fraction;    /* of the step, that a turn of friction asks for; 0: none does */
     se3di_fastness fast;
     double size;    /* of the last correction, relative to the tolerance, */
     double past[3]; /* and of those before, newest first: they fall in turns of three */
     int iterations, iterations_max;
-    int is_stiff; /* d is filtered */
-    int projects; /* not 0: accelerations of stages are those of the states projected onto the
+    int is_stiff;  /* d is filtered */
+    int has_lines; /* some force is stiff */
+    int projects;  /* not 0: accelerations of stages are those of the states projected onto the
                      constraints, each with rows of its own: where bodies and joints make loops,
                      rows may be dependent */
 } se3di_radau;
@@ -71,6 +73,10 @@ se3d_status se3di_radau_filter(se3di_radau *m, double *d, double *error);
 /* Put the end of the solved step onto the constraints of positions along the Newton matrix: the
  * projection, which knows masses only, would stretch stiff springs by what is open. */
 se3d_status se3di_radau_close(se3di_radau *m);
+
+/* A^-1 S (I - N)^-1 u / h: of transformed impulses the forces of the stages. */
+void se3di_radau_untransform(const double u[SE3DI_RADAU_STAGES], double h,
+                             double change[SE3DI_RADAU_STAGES]);
 
 /* Accelerations of a stage [unknowns]. */
 void se3di_radau_get_acceleration(const se3di_radau *m, int stage, double *vdot);

@@ -13,6 +13,7 @@
  * the motion.  docs/theory/radau.md */
 #include "force/friction.h"
 #include "integrator/radau.h"
+#include "integrator/radau_lines.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 
@@ -57,7 +58,7 @@ size_t se3di_radau_work_count(const se3di_assembly *assembly)
     size_t rows = assembly->row_count;
     size_t count = se3di_state_count(assembly);
     return STAGES * (count + 4 * rows + 4 * n) + 2 * count + 2 * rows + 7 * n +
-           assembly->joint_value_count;
+           assembly->joint_value_count + se3di_radau_lines_count(assembly->model);
 }
 
 void se3di_radau_begin(se3di_radau *m, se3di_integration *integration)
@@ -95,6 +96,7 @@ void se3di_radau_begin(se3di_radau *m, se3di_integration *integration)
         {&m->sum_q, n},
         {&m->C1, assembly->joint_value_count},
         {&m->relaxation, 2 * n + rows},
+        {&m->lines, se3di_radau_lines_count(assembly->model)},
     };
     for (size_t k = 0; k < sizeof parts / sizeof parts[0]; ++k) {
         *parts[k].place = work;
@@ -241,6 +243,7 @@ static se3d_status eval_stage(se3di_radau *m, int i)
     se3di_assembly_eval_jacobian(assembly);
     se3di_frictions_take_loads(assembly->model, at(m->lambda, i, rows));
     SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, b, equations->error));
+    SE3DI_TRY(se3di_radau_lines_apply(m, i, t, b));
     se3di_assembly_add_transposed(assembly, -1.0, at(m->lambda, i, rows), b);
     se3di_radau_get_acceleration(m, i, m->vdot);
     se3di_assembly_subtract_mass(assembly, m->vdot, b);
@@ -259,9 +262,14 @@ static se3d_status factor(se3di_radau *m)
 {
     const double c = se3di_radau_gamma * m->h;
     const se3di_newton_weights weights = {.velocity = c, .position = c * c};
+    se3di_newton *newton = &m->integration->newton;
     copy(m->C1, m->assembly->C, m->assembly->joint_value_count);
-    return se3di_newton_factor(&m->integration->newton, m->t + se3di_radau_c[1] * m->h, m->vdot,
-                               at(m->lambda, 1, m->assembly->row_count), m->none, &weights);
+    newton->tangent.excess = se3di_radau_lines_excess(m);
+    const se3d_status status =
+        se3di_newton_factor(newton, m->t + se3di_radau_c[1] * m->h, m->vdot,
+                            at(m->lambda, 1, m->assembly->row_count), m->none, &weights);
+    newton->tangent.excess = NULL;
+    return status;
 }
 
 /* Right-hand sides of a stage of the transformed system from the balance of its forces and what
@@ -378,21 +386,30 @@ static void apply_corrections(se3di_radau *m)
     }
 }
 
-/* lambda += A^-1 S (I - N)^-1 (transformed multipliers) / h: they enter the equations linearly and
- * not through P. */
+void se3di_radau_untransform(const double u[STAGES], double h, double change[STAGES])
+{
+    const double x0 = u[0];
+    const double x1 = u[1] + N[1][0] * x0;
+    const double x2 = u[2] + N[2][0] * x0 + N[2][1] * x1;
+    const double x[STAGES] = {x0 + S[0][1] * x1 + S[0][2] * x2, x1 + S[1][2] * x2, x2};
+    for (int i = 0; i < STAGES; ++i) {
+        change[i] = 0.0;
+        for (int j = 0; j < STAGES; ++j) {
+            change[i] += se3di_radau_inverse[i][j] / h * x[j];
+        }
+    }
+}
+
+/* Multipliers enter the equations linearly and not through P. */
 static void apply_multipliers(se3di_radau *m)
 {
     const size_t rows = m->assembly->row_count;
-    const double *u0 = m->ul, *u1 = u0 + rows, *u2 = u1 + rows;
     for (size_t k = 0; k < rows; ++k) {
-        const double x0 = u0[k];
-        const double x1 = u1[k] + N[1][0] * x0;
-        const double x2 = u2[k] + N[2][0] * x0 + N[2][1] * x1;
-        const double x[STAGES] = {x0 + S[0][1] * x1 + S[0][2] * x2, x1 + S[1][2] * x2, x2};
+        const double u[STAGES] = {m->ul[k], m->ul[rows + k], m->ul[2 * rows + k]};
+        double change[STAGES];
+        se3di_radau_untransform(u, m->h, change);
         for (int i = 0; i < STAGES; ++i) {
-            for (int j = 0; j < STAGES; ++j) {
-                at(m->lambda, i, rows)[k] += se3di_radau_inverse[i][j] / m->h * x[j];
-            }
+            at(m->lambda, i, rows)[k] += change[i];
         }
     }
 }
@@ -474,6 +491,7 @@ static se3d_status iterate(se3di_radau *m, int refactor)
     m->size = 0.0;
     apply_corrections(m);
     if (!m->projects) {
+        se3di_radau_lines_correct(m, W);
         apply_multipliers(m);
         SE3DI_TRY(correct_positions(m));
     }
@@ -501,6 +519,8 @@ static se3d_status iterate_to_convergence(se3di_radau *m)
     memset(m->normal, 0, m->assembly->unknown_count * sizeof *m->normal);
     se3di_assembly_eval_mass(m->assembly); /* constant in the unknowns of this method */
     update_positions(m);
+    m->has_lines = 0;
+    SE3DI_TRY(m->projects ? SE3D_OK : se3di_radau_lines_begin(m));
     m->size = m->past[0] = m->past[1] = HUGE_VAL;
     m->iterations = 0;
     for (int k = 0; k < m->iterations_max; ++k) {

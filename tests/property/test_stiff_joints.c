@@ -150,6 +150,10 @@ static const struct bond {
      TURNS "forces: [{type: tsda, body_i: a, body_j: b, point_i: [0.2, 0, 0.1], point_j: [-0.2, 0, "
            "0.1], c: k}]\n" TAIL,
      1e9, 1e-3, 1, 0},
+    {"spring",
+     TURNS "forces: [{type: tsda, body_i: a, body_j: b, point_i: [0.2, 0, 0.1], point_j: [-0.2, 0, "
+           "0.1], k: k, l0: 0.6}]\n" TAIL,
+     1e14, 1e-2, 1, 0},
     {"torsional spring", TURNS "forces: [{type: rsda, joint: q, k: k}]\n" TAIL, 1e13, 3e-2, 0, 0},
     {"torsional spring and damper", TURNS "forces: [{type: rsda, joint: q, k: k, c: k/1e4}]\n" TAIL,
      1e12, 1e-2, 0, 0},
@@ -223,7 +227,7 @@ static void accelerations_are_those_of_the_motion_however_fast_a_force_is(void)
                bond->value, v, a, got.balance - truth.balance, steps, rejected);
         CHECK(v < 1e-5 && a < bond->rough);
         CHECK_NEAR(got.balance, truth.balance, 1e-4);
-        CHECK(rejected < 0.3 * steps && steps < (bond->turns ? 1500.0 : 200.0));
+        CHECK(rejected < 0.3 * steps && steps < (bond->turns ? 600.0 : 200.0));
     }
 }
 
