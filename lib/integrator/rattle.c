@@ -30,17 +30,26 @@ static se3d_status advance_parts(se3di_lie_verlet *m, double t0, double h, const
 }
 
 /* Order 4. Near a singular position, where constraints have no leverage, going back and forth
- * leaves the branch or loses energy: there the step is one of order 2. */
+ * leaves the branch or loses energy: there the step is made of a few forward ones of order 2, or,
+ * if one of them fails, of fewer. Many would meet the position too closely. */
 static se3d_status advance_composed(se3di_lie_verlet *m, double t0, double h)
 {
     static const double compose4[5] = {0.41449077179437573714, 0.41449077179437573714,
                                        -0.65796308717750294857, 0.41449077179437573714,
                                        0.41449077179437573714};
-    static const double whole = 1.0;
-    const se3d_status status = advance_parts(m, t0, h, compose4, 5);
-    if (status == SE3D_ERR_NO_CONVERGENCE || (status >= 0 && m->is_singular)) {
+    static const double quarters[4] = {0.25, 0.25, 0.25, 0.25}, halves[2] = {0.5, 0.5}, whole = 1.0;
+    static const struct {
+        const double *weights;
+        int parts;
+    } forward[] = {{quarters, 4}, {halves, 2}, {&whole, 1}};
+    se3d_status status = advance_parts(m, t0, h, compose4, 5);
+    if (status >= 0 && !m->is_singular) {
+        return status;
+    }
+    status = status >= 0 ? SE3D_ERR_NO_CONVERGENCE : status;
+    for (int k = 0; k < 3 && status == SE3D_ERR_NO_CONVERGENCE; ++k) {
         se3di_equations_come_back(m->equations);
-        return advance_parts(m, t0, h, &whole, 1);
+        status = advance_parts(m, t0, h, forward[k].weights, forward[k].parts);
     }
     return status;
 }
