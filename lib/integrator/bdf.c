@@ -182,6 +182,42 @@ static void forget(const se3di_bdf *m)
     se3di_model_restore_memory(m->assembly->model, m->integration->newton.memory);
 }
 
+/* The state half way from the last one to y_1, along cubics of the positions. */
+static void set_middle(se3di_bdf *m)
+{
+    double *y = m->predicted; /* not needed any more */
+    for (size_t k = 0; k + SE3DI_STATE_WORK < m->count; k += SE3DI_STATE_SIZE) {
+        const double *y0 = m->points + k, *y1 = m->y + k;
+        double rate0[4], rate1[4];
+        se3di_quat_rate(y0 + 3, y0 + 10, rate0);
+        se3di_quat_rate(y1 + 3, y1 + 10, rate1);
+        for (size_t i = 0; i < SE3DI_STATE_SIZE; ++i) {
+            const double bend = i < 3   ? y0[7 + i] - y1[7 + i]
+                                : i < 7 ? rate0[i - 3] - rate1[i - 3]
+                                        : 0.0;
+            y[k + i] = 0.5 * (y0[i] + y1[i]) + 0.125 * m->h * bend;
+        }
+    }
+    se3di_state_set(m->assembly, y);
+}
+
+/* *error is raised to what contacts would forget of the step, whose end the frames are at. */
+static se3d_status review_contacts(se3di_bdf *m, double *error)
+{
+    const double tolerance = SE3DI_MEMORY_PART * m->integration->settings.tolerance;
+    double of_contacts = 0.0;
+    if (m->assembly->model->contacts.pair_count == 0) {
+        return SE3D_OK;
+    }
+    se3di_equations_save(m->equations);
+    set_middle(m);
+    SE3DI_TRY(se3di_memory_review_contacts(m->equations, m->t - 0.5 * m->h, m->h, tolerance,
+                                           &m->past->scale, &of_contacts));
+    *error = fmax(*error, of_contacts);
+    m->fraction = of_contacts > 1.0 ? se3di_memory_get_fraction(of_contacts) : 0.0;
+    return SE3D_OK;
+}
+
 /* What friction remembers of the end of the step; *error is raised to what that changes. If it is
  * too much for a controlled step, nothing is remembered. */
 static se3d_status settle(se3di_bdf *m, int is_controlled, double *error)
@@ -390,6 +426,9 @@ static se3d_status try_step(se3di_adaptive *step, double h, double *error)
     s->m.h = h;
     s->m.fraction = 0.0;
     SE3DI_TRY(attempt(&s->m, s->order, &s->e));
+    if (s->e.here <= 1.0) {
+        SE3DI_TRY(review_contacts(&s->m, &s->e.here));
+    }
     if (s->e.here <= 1.0) {
         SE3DI_TRY(settle(&s->m, 1, &s->e.here));
     }

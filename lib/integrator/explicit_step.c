@@ -298,7 +298,6 @@ static se3d_status settle_memory(se3di_explicit *m, double h, double *error)
 {
     se3di_model *model = m->assembly->model;
     const double t = m->past->at.time + h;
-    m->step.fraction = 0.0;
     m->next = se3di_explicit_end(m);
     if (!se3di_forces_have_memory(model)) {
         return SE3D_OK;
@@ -317,11 +316,35 @@ static se3d_status settle_memory(se3di_explicit *m, double h, double *error)
     return end.has_changed ? m->motion->derive(m->equations, t, m->equations->l, m->next) : SE3D_OK;
 }
 
+/* The state half way to the projected end, along a cubic, which the contacts look at. */
+static se3d_status review_contacts(se3di_explicit *m, double h, double *error)
+{
+    const se3di_model *model = m->assembly->model;
+    const double *f0 = m->f1, *f = se3di_explicit_end(m);
+    double *end = m->bodies[1], of_contacts = 0.0;
+    if (model->contacts.pair_count == 0 || !isfinite(m->tolerance)) {
+        return SE3D_OK;
+    }
+    m->motion->keep(m->equations, end);
+    se3di_equations_save(m->equations);
+    for (size_t k = 0; k < m->count; ++k) {
+        m->sum3[k] = 0.5 * (m->y1[k] + m->y[k]) + 0.125 * h * (f0[k] - f[k]);
+    }
+    m->motion->set(m->equations, m->sum3);
+    const se3d_status status = se3di_memory_review_contacts(
+        m->equations, m->past->at.time + 0.5 * h, h, m->tolerance, &m->past->scale, &of_contacts);
+    m->motion->stand(m->equations, end);
+    *error = fmax(*error, of_contacts);
+    m->step.fraction = of_contacts > 1.0 ? se3di_memory_get_fraction(of_contacts) : 0.0;
+    return status;
+}
+
 /* All that may fail before the state is accepted; *error as from settle_memory. */
 static se3d_status prepare(se3di_explicit *m, double h, double *error)
 {
     se3di_model *model = m->assembly->model;
-    SE3DI_TRY(settle_memory(m, h, error));
+    SE3DI_TRY(review_contacts(m, h, error));
+    SE3DI_TRY(*error <= 1.0 ? settle_memory(m, h, error) : SE3D_OK);
     if (!(*error <= 1.0)) {
         return SE3D_OK;
     }

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/memory.h"
 
+#include "contact/bodies/body_contacts.h"
 #include "force/friction.h"
 #include "force/measure.h"
 #include "force/stop.h"
+#include "math/inertia.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -241,6 +243,104 @@ double se3di_memory_review_stops(const se3di_model *model, double h, double tole
         worst = error <= worst ? worst : error; /* NaN stays */
     }
     return worst;
+}
+
+/* What the springs of contacts do, as they would be remembered, times a sign. */
+typedef struct springs {
+    double sign, h;
+    double *wrench; /* [bodies * 6] */
+} springs;
+
+/* What a spring is off by makes vibrations of its own frequency: it acts for their time at most. */
+static void add_wrench(const springs *s, const se3di_encounter *e, double scale,
+                       const double wrench[12])
+{
+    scale /= fmax(1.0, s->h * sqrt(e->pair.kt * e->s * e->inverse_mass));
+    for (size_t k = 0; k < 12; ++k) {
+        s->wrench[6 * (size_t)e->body[k / 6] + k % 6] += scale * wrench[k];
+    }
+}
+
+static se3d_status add_spring(void *ctx, const se3di_encounter *e)
+{
+    double wrench[12];
+    se3di_encounter_spring(e, wrench);
+    add_wrench(ctx, e, ((const springs *)ctx)->sign, wrench);
+    return SE3D_OK;
+}
+
+/* A contact at its cap whose friction drives has turned within the step, and its spring should have
+ * begun to unload there: after v/2 (time since then) of the way, at most v h/2. */
+static se3d_status add_overshoot(void *ctx, const se3di_encounter *e)
+{
+    const springs *s = ctx;
+    const double pull = se3di_norm(e->pull);
+    if (!e->memory || !(e->give < 1.0) || !(se3di_dot(e->pull, e->vt) > 0.0)) {
+        return SE3D_OK;
+    }
+    const double way = 0.5 * s->h * se3di_norm(e->vt);
+    const double lost = fmin(e->pair.kt * e->s * way, e->give * pull);
+    se3di_encounter part = *e;
+    double wrench[12];
+    se3di_scale(lost / pull, e->pull, part.force);
+    memset(part.moment, 0, sizeof part.moment);
+    se3di_encounter_wrench(&part, wrench);
+    add_wrench(s, e, 1.0, wrench);
+    return SE3D_OK;
+}
+
+/* What a change of the wrenches on the bodies does to their velocities in h, largest of all. */
+static double effect_of(const se3di_model *model, const double *wrench, double h,
+                        const se3di_state_scale *scale)
+{
+    double worst = 0.0;
+    for (size_t k = 0; k < model->body_slots.count; ++k, wrench += 6) {
+        const se3di_body *body = &model->bodies[k];
+        double J[9], turn[3];
+        if (body->fixed || body->state != 0) {
+            continue;
+        }
+        se3di_inertia_matrix(body->J, J);
+        se3di_solve3(J, wrench + 3, turn);
+        const double part =
+            h * (se3di_norm(wrench) / (body->mass * scale->speed) + se3di_norm(turn) / scale->spin);
+        worst = part <= worst ? worst : part; /* NaN stays */
+    }
+    return worst;
+}
+
+se3d_status se3di_memory_review_contacts(se3di_equations *equations, double t, double h,
+                                         double tolerance, const se3di_state_scale *scale,
+                                         double *error)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    se3di_model *model = assembly->model;
+    double *wrench = assembly->wrench;
+    const size_t count = 6 * model->body_slots.count;
+    se3di_error ignored = {0};
+    const se3d_status status = se3di_contacts_show(model, t, &ignored);
+    se3di_equations_restore(equations);
+    *error = HUGE_VAL;
+    if (status == SE3D_ERR_STEP_SIZE) {
+        return SE3D_OK;
+    }
+    if (status < 0) {
+        return se3di_error_set(equations->error, status, "%s", ignored.message);
+    }
+    memset(wrench, 0, count * sizeof *wrench);
+    springs s = {-1.0, h, wrench};
+    (void)se3di_contacts_visit(model, add_spring, &s);
+    se3di_contacts_hide(model);
+    s.sign = 1.0;
+    (void)se3di_contacts_visit(model, add_spring, &s);
+    (void)se3di_contacts_visit(model, add_overshoot, &s);
+    *error = effect_of(model, wrench, h, scale) / tolerance;
+    return SE3D_OK;
+}
+
+double se3di_memory_get_fraction(double error)
+{
+    return fmax(0.1, 0.9 / sqrt(error));
 }
 
 se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_step *step,

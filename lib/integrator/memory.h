@@ -30,6 +30,19 @@ typedef struct se3di_memory_step {
 double se3di_memory_review_stops(const se3di_model *model, double h, double tolerance,
                                  const se3di_state_scale *scale, double *fraction);
 
+/* What contacts remember of the end of a step of h is made of the beginning and the end alone: what
+ * slips and sticks again on the way, or begins to touch, is forgotten. The frames are those at t,
+ * half way; the ones of the end, in equations->saved, come back. *error is what the forces at the
+ * end would be otherwise, if contacts had been accepted at t, too, times h, relative to the scales
+ * and the tolerance. */
+se3d_status se3di_memory_review_contacts(se3di_equations *equations, double t, double h,
+                                         double tolerance, const se3di_state_scale *scale,
+                                         double *error);
+/* Of the tolerance of a run, for implicit methods: what one step forgets adds up. */
+#define SE3DI_MEMORY_PART 0.03
+/* The part of a step with such an error, above 1, that is tried next: it falls with the square. */
+double se3di_memory_get_fraction(double error);
+
 /* At the end of a step, at the state of the model: let the force elements remember it. What slips
  * and has turned comes to a stand, or slips on the other way: what it went against its direction is
  * error, relative to the scales and the tolerance; and so is what an element that breaks loose

@@ -243,6 +243,23 @@ static void forget(const se3di_radau *m)
     se3di_model_restore_memory(m->assembly->model, m->integration->newton.memory);
 }
 
+/* *error is raised to what contacts would forget of the step, whose end the frames are at: the
+ * second stage lies within it. */
+static se3d_status review_contacts(se3di_radau *m, double tolerance, double *error)
+{
+    double of_contacts = 0.0;
+    if (m->assembly->model->contacts.pair_count == 0 || !(m->inner > 0.0)) {
+        return SE3D_OK;
+    }
+    se3di_equations_save(m->equations);
+    se3di_state_set(m->assembly, m->Y + m->count);
+    SE3DI_TRY(se3di_memory_review_contacts(m->equations, m->t + se3di_radau_c[1] * m->h, m->h,
+                                           SE3DI_MEMORY_PART * tolerance, &m->scale, &of_contacts));
+    *error = fmax(*error, of_contacts);
+    m->fraction = of_contacts > 1.0 ? se3di_memory_get_fraction(of_contacts) : 0.0;
+    return SE3D_OK;
+}
+
 /* The step is solved: its work, and what friction remembers of its end. *error is raised to what
  * that changes, relative to `tolerance`; if it is too much, nothing is remembered. */
 static se3d_status settle(se3di_radau *m, double tolerance, double *error)
@@ -254,6 +271,10 @@ static se3d_status settle(se3di_radau *m, double tolerance, double *error)
         if (!(*error <= 1.0)) {
             return SE3D_OK;
         }
+    }
+    SE3DI_TRY(review_contacts(m, tolerance, error));
+    if (!(*error <= 1.0)) {
+        return SE3D_OK;
     }
     const se3di_memory_step step = {.t = m->t + m->h,
                                     .h = m->h,

@@ -29,7 +29,7 @@ static const struct special {
 } specials[] = {
     {"", SE3D_METHOD_DOP853, 0, 1e-11, 0.0, 1e-5},
     {"suspension_kerb.yaml", SE3D_METHOD_RADAU, 0, 1e-9, 0.0, 1e-5},
-    {"incline.yaml", SE3D_METHOD_DOP853, 0, 1e-8, 3e-5, 5e-4},
+    {"incline.yaml", SE3D_METHOD_DOP853, 0, 1e-8, 3e-5, 5e-5},
 };
 
 static const struct special defaults = {"", SE3D_METHOD_AUTO, 0, 0.0, 0.0, 0.0};

@@ -95,7 +95,8 @@ void se3di_encounter_share(se3di_encounter *points, uint32_t count)
             e->shared += i == j ? 0.0 : weight * response(e, &points[j]);
         }
         e->shared = fmax(e->shared, SHARE_MIN * e->alone);
-        e->inverse_mass = e->memory ? e->memory->inverse_mass : e->shared;
+        e->inverse_mass =
+            e->memory && e->model->contacts.step > 0.0 ? e->memory->inverse_mass : e->shared;
         e->root_mass = 1.0 / sqrt(e->inverse_mass);
     }
 }
@@ -331,6 +332,19 @@ static void settled_roll(const se3di_encounter *e, double rho[3], double *twist)
     settled(k, e->pair.rolling * e->normal, e->yield, e->bend, e->rho, rho);
     settled(k, e->pair.torsion * e->normal, e->slack, wring, now, out);
     *twist = out[0];
+}
+
+void se3di_encounter_spring(const se3di_encounter *e, double wrench[12])
+{
+    const double k = e->pair.kt * e->s;
+    se3di_encounter kept = *e;
+    double xi[3], rho[3], twist;
+    settled_xi(e, xi);
+    settled_roll(e, rho, &twist);
+    se3di_add_scaled(twist, e->at->normal, rho);
+    se3di_scale(-k, xi, kept.force);
+    se3di_scale(-k * e->radius, rho, kept.moment);
+    se3di_encounter_wrench(&kept, wrench);
 }
 
 /* Not every small change of it: each is a jump of the damping. */

@@ -22,7 +22,7 @@ typedef struct se3di_encounter {
     double turned[2][3];        /* J^-1 lever, ground frame */
     double alone;               /* 1/m* of this point alone */
     double shared;              /* 1/m* among the points of its pair of shapes */
-    double inverse_mass;        /* 1/m*: shared, of the last accepted state if it touched then */
+    double inverse_mass;        /* 1/m*: shared; with given steps, of the last accepted state */
     double root_mass;           /* sqrt(m*) */
     double s, root;             /* 1 or sqrt(R* overlap); sqrt(s) */
     double onset;               /* factor of the damping of a new contact */
@@ -59,6 +59,8 @@ void se3di_encounter_share(se3di_encounter *points, uint32_t count);
 void se3di_encounter_eval(se3di_encounter *e);
 /* Forces at the centres (ground frame) and torques (body frames) on i and j. */
 void se3di_encounter_wrench(const se3di_encounter *e, double wrench[12]);
+/* Of the tangential, rolling and torsional springs alone, as they would be remembered. */
+void se3di_encounter_spring(const se3di_encounter *e, double wrench[12]);
 /* d wrench / d (dr, dtheta) and / d (v, w), as those of force elements. */
 void se3di_encounter_derivative(const se3di_encounter *e, double K[144], double D[144]);
 /* encounter_callback.c: the same for a user-defined law. */
