@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What one acceleration costs inside an explicit method, by internal functions: a driver of the
- * bench as bench_serve.c is. METHOD: evaluation, evaluation/rp, evaluation/joint (with the placing
- * of the bodies); SECONDS is for EVALUATIONS of them. */
+ * bench as bench_serve.c is. METHOD: evaluation, evaluation/rp, evaluation/joint (a stage, from
+ * coordinates); SECONDS is for EVALUATIONS of them. */
 #define _POSIX_C_SOURCE 200809L
 #include "driver.h"
 #include "mechanisms.h"
@@ -26,8 +26,7 @@ static void measure(const bench_request *request, se3di_equations *equations, be
                 se3di_state_begin_step(equations, 0.0);
             }
             if (equations->tree) {
-                motion->set(equations, y);
-                (void)motion->evaluate(equations, 0.0, derivative);
+                (void)motion->evaluate_at(equations, 0.0, y, derivative);
             } else {
                 (void)se3di_state_evaluate(equations, 0.0);
             }
