@@ -18,6 +18,8 @@
 #define EXACT       1e-9  /* the normal is that of a face */
 #define LIFT        1e-5  /* of the size: by how much points of a round rim are too shallow */
 #define SKEW        1e-8  /* sine; edges that are more nearly parallel have no product */
+#define CERTAIN     1e-12 /* of the size: boxes that are apart by more are */
+#define ASKEW       0.999 /* cosine; edges that are so, or less parallel have a product */
 #define WITNESS     0x20000001u
 #define EDGES       0x40000000u /* features of edges, by their axes */
 
@@ -294,9 +296,66 @@ static void find_corner(int of_j, parting *p)
     }
 }
 
+/* What the boxes' own axes are to each other: R_ab = u_a . w_b, and the way between the centres in
+ * the frames of both. */
+typedef struct frames {
+    double R[3][3], size[3][3]; /* size: |R_ab| */
+    double along_i[3], along_j[3];
+} frames;
+
+static void compare_frames(const se3di_solid *i, const se3di_solid *j, frames *f)
+{
+    double d[3];
+    se3di_sub(j->at->x, i->at->x, d);
+    se3di_mul_transposed(i->at->R, d, f->along_i);
+    se3di_mul_transposed(j->at->R, d, f->along_j);
+    for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) {
+            const double *u = i->at->R + a, *w = j->at->R + b;
+            f->R[a][b] = u[0] * w[0] + u[3] * w[3] + u[6] * w[6];
+            f->size[a][b] = fabs(f->R[a][b]);
+        }
+    }
+}
+
+/* Whether two boxes are apart for certain, quickly: along a face's normal or a product of edges by
+ * more than rounding. */
+static int are_boxes_apart(const se3di_solid *i, const se3di_solid *j)
+{
+    const double *p = i->shape->half, *q = j->shape->half;
+    const double slack = CERTAIN * (i->shape->bound + j->shape->bound);
+    frames f;
+    compare_frames(i, j, &f);
+    for (int a = 0; a < 3; ++a) {
+        const double *s = f.size[a];
+        const double reach_i = p[a] + q[0] * s[0] + q[1] * s[1] + q[2] * s[2];
+        const double reach_j =
+            q[a] + p[0] * f.size[0][a] + p[1] * f.size[1][a] + p[2] * f.size[2][a];
+        if (fabs(f.along_i[a]) > reach_i + slack || fabs(f.along_j[a]) > reach_j + slack) {
+            return 1;
+        }
+    }
+    for (int a = 0; a < 3; ++a) {
+        const int a1 = (a + 1) % 3, a2 = (a + 2) % 3;
+        for (int b = 0; b < 3; ++b) {
+            const int b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+            const double along = f.along_i[a2] * f.R[a1][b] - f.along_i[a1] * f.R[a2][b];
+            const double reach = p[a1] * f.size[a2][b] + p[a2] * f.size[a1][b] +
+                                 q[b1] * f.size[a][b2] + q[b2] * f.size[a][b1];
+            if (f.size[a][b] < ASKEW && fabs(along) > reach + slack) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
 /* Separating axes: three faces of each, nine pairs of edges. */
 void se3di_narrow_boxes(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
+    if (are_boxes_apart(i, j)) {
+        return;
+    }
     separation face_i = {.depth = HUGE_VAL}, face_j = face_i, edge = face_i;
     for (int a = 0; a < 3; ++a) {
         double u[3], w[3], axis[3];
