@@ -16,6 +16,7 @@
 #define SE3DI_INTEGRATOR_CONVEX_H
 
 #include "integrator/integrator.h"
+#include "linsol/block_cg.h"
 
 /* How a contact acts in a step. */
 enum {
@@ -26,11 +27,13 @@ enum {
 /* A point of contact in the step under way. */
 typedef struct se3di_convex_contact {
     const se3di_body_contact *record; /* of the state that the step begins with */
-    int32_t free[2];                  /* its bodies, -1: fixed */
-    int32_t coupling;                 /* of the two, -1: one is fixed */
-    int32_t way;                      /* SE3DI_CONVEX_ */
+    int32_t free[2];  /* its bodies, -1: fixed; while a step is solved their places */
+    int32_t coupling; /* of the two, -1: one is fixed */
+    int32_t way;      /* SE3DI_CONVEX_ */
     double normal[3];
     double lever[2][9]; /* a turning of the body, in its frame, to the velocity of the point */
+    double turn[2][9];  /* an impulse on the point to the turning of the body: J^-1 lever^T */
+    double response[2]; /* of the velocity to an impulse: along the normal; at most across it */
     double xi[3];       /* stretch of the spring that sticks */
     double overlap, stiffness, power; /* F = stiffness overlap^power */
     double damping, rebound;
@@ -40,6 +43,14 @@ typedef struct se3di_convex_contact {
     double impulse[3];                 /* on j */
 } se3di_convex_contact;
 
+/* Bodies that contacts, or constraints, connect: a problem of its own. */
+typedef struct se3di_convex_island {
+    size_t body, body_end;       /* places */
+    size_t contact, contact_end; /* of `order` */
+    size_t pair, pair_end;
+    double momentum; /* the larger of those of `start` and `aim`, by the mass: 2 T */
+} se3di_convex_island;
+
 typedef struct se3di_convex {
     se3di_convex_contact *contacts;
     size_t contact_count, contact_capacity;
@@ -47,7 +58,8 @@ typedef struct se3di_convex {
     size_t pair_count, pair_capacity;
     int32_t *kkt_pairs; /* those that the solver was made for */
     size_t kkt_pair_count, kkt_pair_capacity;
-    se3di_kkt *kkt;
+    se3di_kkt *kkt;          /* of models with constraints */
+    se3di_block_cg cg;       /* of others */
     double *body, *coupling; /* blocks of the matrix, 6 x 6 each */
     size_t body_capacity, coupling_capacity;
     double *work; /* vectors of unknowns and rows */
@@ -63,8 +75,19 @@ typedef struct se3di_convex {
     double *aimed;    /* c [rows] */
     uint8_t *touched; /* [free bodies] a contact acts on it */
     size_t touched_capacity;
+    /* Bodies have places in which each island's follow each other; vectors of the solver are in
+     * that order, `start`, `aim` and, in the end, `v` are not. */
+    se3di_convex_island *islands;
+    size_t island_count, island_capacity;
+    int32_t *place;   /* [free bodies] */
+    int32_t *root;    /* [free bodies]: the first body of its island */
+    int32_t *number;  /* [free bodies]: of its island */
+    int32_t *order;   /* [contacts]: island by island */
+    double *mobility; /* [10 * free bodies], by places: 1/m, J^-1 */
+    double *own;      /* blocks of the mass, by places, 6 x 6 each */
+    size_t place_capacity, root_capacity, number_capacity, order_capacity, mobility_capacity,
+        own_capacity;
     double h;
-    double momentum;           /* the larger of those of `start` and `aim`, by the mass: 2 T */
     uint64_t topology_version; /* that `kkt` was made for */
 } se3di_convex;
 
@@ -79,8 +102,8 @@ void se3di_convex_velocity(const se3di_convex_contact *contact, const double *v,
 /* The impulse at a velocity of the point, and minus its derivative [3 x 3]; `slope` may be NULL. */
 void se3di_convex_impulse(const se3di_convex_contact *contact, double h, const double v[3],
                           double impulse[3], double *slope);
-/* p_n. */
-double se3di_convex_normal(const se3di_convex_contact *contact, double h, const double v[3]);
+/* p_n and -dp_n/dv_n at a velocity along the normal. */
+double se3di_convex_normal(const se3di_convex_contact *contact, double h, double vn, double *slope);
 /* The impulse along contact->change, and minus its derivative that way. */
 double se3di_convex_along(const se3di_convex_contact *contact, double h, const double v[3],
                           double *bend);
@@ -88,6 +111,18 @@ double se3di_convex_along(const se3di_convex_contact *contact, double h, const d
 void se3di_convex_record(const se3di_convex *c, se3di_model *model);
 /* The work of all impulses on the bodies [J]. */
 double se3di_convex_work(const se3di_convex *c);
+
+/* convex_islands.c: places of bodies, islands, couplings of their bodies. @return OK, NO_MEMORY */
+se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly);
+
+/* convex_sweep.c: velocities near the optimum of an island without constraints, from v*, by the
+ * impulses of one contact after the other. */
+void se3di_convex_sweep(se3di_convex *c, const se3di_convex_island *island);
+/* contact by contact, as `c->order` says */
+static inline se3di_convex_contact *se3di_convex_at(const se3di_convex *c, size_t k)
+{
+    return &c->contacts[c->order[k]];
+}
 
 /* convex_solve.c: v, lambda and the impulses. */
 se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations);

@@ -35,8 +35,7 @@ void se3di_convex_velocity(const se3di_convex_contact *contact, const double *v,
     }
 }
 
-/* p_n and -dp_n/dv_n. */
-static double normal_impulse(const se3di_convex_contact *c, double h, double vn, double *slope)
+double se3di_convex_normal(const se3di_convex_contact *c, double h, double vn, double *slope)
 {
     *slope = 0.0;
     if (c->way == SE3DI_CONVEX_IMPACT) {
@@ -64,7 +63,7 @@ void se3di_convex_impulse(const se3di_convex_contact *c, double h, const double 
     const double *n = c->normal;
     const double vn = se3di_dot(v, n);
     double normal_slope, pull[3];
-    const double normal = normal_impulse(c, h, vn, &normal_slope);
+    const double normal = se3di_convex_normal(c, h, vn, &normal_slope);
     for (int k = 0; k < 3; ++k) {
         pull[k] = -h * c->tangential * c->xi[k] - c->drag * (v[k] - vn * n[k]);
     }
@@ -84,18 +83,12 @@ void se3di_convex_impulse(const se3di_convex_contact *c, double h, const double 
     }
 }
 
-double se3di_convex_normal(const se3di_convex_contact *c, double h, const double v[3])
-{
-    double slope;
-    return normal_impulse(c, h, se3di_dot(v, c->normal), &slope);
-}
-
 double se3di_convex_along(const se3di_convex_contact *c, double h, const double v[3], double *bend)
 {
     const double *n = c->normal, *d = c->change;
     const double vn = se3di_dot(v, n), dn = se3di_dot(d, n);
     double slope, pull[3], along = 0.0, size2 = 0.0, across = 0.0;
-    const double normal = normal_impulse(c, h, vn, &slope);
+    const double normal = se3di_convex_normal(c, h, vn, &slope);
     for (int k = 0; k < 3; ++k) {
         const double dt = d[k] - dn * n[k];
         pull[k] = -h * c->tangential * c->xi[k] - c->drag * (v[k] - vn * n[k]);

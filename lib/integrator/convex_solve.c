@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The velocities of a step of convex, by Newton:
+/* The velocities of a step of convex, island by island, by Newton:
  *
  *     [M + sum J^T G J   C^T] [change]   [-gradient]
  *     [C                  0 ] [lambda] = [c - C v  ]      G = -dp/dv of a contact, 3 x 3, >= 0
@@ -8,19 +8,20 @@
  * The caps of friction follow the normal impulses until they agree.    docs/theory/convex.md */
 #include "integrator/convex.h"
 
-#include "base/sort.h"
 #include "math/vec3.h"
 
 #include <math.h>
 #include <string.h>
 
-#define ITERATIONS 200
-#define FOLLOWING  60   /* iterations in which the caps of friction follow */
-#define ACCURACY   1e-9 /* of impulses */
-#define CAP_CHANGE 1e-4 /* of the largest cap: it needs no other iteration */
-#define ENOUGH     1e-6 /* of impulses, if rounding leaves no better */
-#define LINE_STEPS 60
-#define LINE_SLOPE 1e-6 /* of the cost along the line, relative to that at its beginning */
+#define ITERATIONS  200
+#define FOLLOWING   60   /* iterations in which the caps of friction follow */
+#define ACCURACY    1e-9 /* of impulses */
+#define CAP_CHANGE  1e-4 /* of the largest cap: it needs no other iteration */
+#define ENOUGH      1e-6 /* of impulses, if rounding leaves no better */
+#define SHARE       1e-2 /* of the gradient: what the linear equations may leave */
+#define SOLVES_MOST 500
+#define LINE_STEPS  60
+#define LINE_SLOPE  1e-3 /* of the cost along the line, relative to that at its beginning */
 
 void se3di_convex_destroy(se3di_convex *c, const se3d_allocator *allocator)
 {
@@ -30,11 +31,19 @@ void se3di_convex_destroy(se3di_convex *c, const se3d_allocator *allocator)
     se3di_free(allocator, c->contacts, c->contact_capacity, sizeof *c->contacts);
     se3di_free(allocator, c->pairs, c->pair_capacity, 2 * sizeof *c->pairs);
     se3di_free(allocator, c->kkt_pairs, c->kkt_pair_capacity, 2 * sizeof *c->kkt_pairs);
+    se3di_free(allocator, c->islands, c->island_capacity, sizeof *c->islands);
+    se3di_free(allocator, c->place, c->place_capacity, sizeof *c->place);
+    se3di_free(allocator, c->root, c->root_capacity, sizeof *c->root);
+    se3di_free(allocator, c->number, c->number_capacity, sizeof *c->number);
+    se3di_free(allocator, c->order, c->order_capacity, sizeof *c->order);
+    se3di_free(allocator, c->mobility, c->mobility_capacity, sizeof *c->mobility);
+    se3di_free(allocator, c->own, c->own_capacity, sizeof *c->own);
     se3di_free(allocator, c->body, c->body_capacity, sizeof *c->body);
     se3di_free(allocator, c->coupling, c->coupling_capacity, sizeof *c->coupling);
     se3di_free(allocator, c->work, c->work_capacity, sizeof *c->work);
     se3di_free(allocator, c->touched, c->touched_capacity, sizeof *c->touched);
     se3di_kkt_destroy(c->kkt);
+    se3di_block_cg_destroy(&c->cg, allocator);
     se3di_free(allocator, c, 1, sizeof *c);
 }
 
@@ -46,67 +55,6 @@ static se3d_status reserve_pairs(const se3d_allocator *allocator, int32_t **pair
         se3di_array_reserve(allocator, &data, capacity, count, 2 * sizeof **pairs);
     *pairs = data;
     return status;
-}
-
-static int compare_pairs(const int32_t *a, const int32_t *b)
-{
-    const int first = (a[0] > b[0]) - (a[0] < b[0]);
-    return first ? first : (a[1] > b[1]) - (a[1] < b[1]);
-}
-
-static int is_coupled(const se3di_convex_contact *contact)
-{
-    return contact->free[0] >= 0 && contact->free[1] >= 0;
-}
-
-static int32_t find_pair(const se3di_convex *c, const int32_t pair[2])
-{
-    size_t low = 0, high = c->pair_count;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (compare_pairs(c->pairs + 2 * middle, pair) < 0) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return (int32_t)low;
-}
-
-static void get_pair(const se3di_convex_contact *contact, int32_t pair[2])
-{
-    const int turned = contact->free[0] > contact->free[1];
-    pair[0] = contact->free[turned];
-    pair[1] = contact->free[!turned];
-}
-
-/* The couplings of bodies by contacts. */
-static se3d_status list_pairs(se3di_convex *c, const se3d_allocator *allocator)
-{
-    size_t count = 0;
-    SE3DI_TRY(reserve_pairs(allocator, &c->pairs, &c->pair_capacity, c->contact_count));
-    for (size_t k = 0; k < c->contact_count; ++k) {
-        if (is_coupled(&c->contacts[k])) {
-            get_pair(&c->contacts[k], c->pairs + 2 * count);
-            count += count == 0 || compare_pairs(c->pairs + 2 * count, c->pairs + 2 * count - 2);
-        }
-    }
-    se3di_sort_tuples(c->pairs, count, 2);
-    c->pair_count = 0;
-    for (size_t k = 0; k < count; ++k) {
-        if (c->pair_count == 0 ||
-            compare_pairs(c->pairs + 2 * k, c->pairs + 2 * (c->pair_count - 1)) != 0) {
-            memmove(c->pairs + 2 * c->pair_count++, c->pairs + 2 * k, 2 * sizeof *c->pairs);
-        }
-    }
-    for (size_t k = 0; k < c->contact_count; ++k) {
-        if (is_coupled(&c->contacts[k])) {
-            int32_t pair[2];
-            get_pair(&c->contacts[k], pair);
-            c->contacts[k].coupling = find_pair(c, pair);
-        }
-    }
-    return SE3D_OK;
 }
 
 static int is_same_pattern(const se3di_convex *c, const se3di_assembly *assembly)
@@ -159,22 +107,47 @@ static se3d_status reserve_blocks(const se3d_allocator *allocator, double **bloc
     return status;
 }
 
+/* The mass by places, and its inverse. */
+static void place_mass(se3di_convex *c, const se3di_assembly *assembly)
+{
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const size_t at = (size_t)c->place[k];
+        double *M = c->own + 36 * at, *mobility = c->mobility + 10 * at, J[9];
+        memcpy(M, assembly->H + 36 * k, 36 * sizeof *M);
+        for (size_t r = 0; r < 3; ++r) {
+            memcpy(J + 3 * r, M + 6 * (3 + r) + 3, 3 * sizeof *J);
+        }
+        mobility[0] = 1.0 / M[0];
+        for (size_t r = 0; r < 3; ++r) {
+            const double one[3] = {r == 0, r == 1, r == 2};
+            se3di_solve3(J, one, mobility + 1 + 3 * r);
+        }
+    }
+}
+
 static se3d_status prepare(se3di_convex *c, se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
     const se3d_allocator *allocator = &assembly->model->allocator;
-    se3d_status status = list_pairs(c, allocator);
-    status = status < 0 ? status : suit_solver(c, assembly);
+    se3d_status status = se3di_convex_group(c, assembly);
+    if (status >= 0) {
+        status = assembly->row_count > 0
+                     ? suit_solver(c, assembly)
+                     : se3di_block_cg_reserve(&c->cg, allocator, assembly->body_count);
+    }
     status = status < 0
                  ? status
                  : reserve_blocks(allocator, &c->body, &c->body_capacity, assembly->body_count);
     status = status < 0
                  ? status
                  : reserve_blocks(allocator, &c->coupling, &c->coupling_capacity, c->pair_count);
-    return status < 0 ? se3di_error_set(equations->error, status,
-                                        "t = %g s: no memory for the contacts of a step",
-                                        assembly->model->time)
-                      : status;
+    if (status < 0) {
+        return se3di_error_set(equations->error, status,
+                               "t = %g s: no memory for the contacts of a step",
+                               assembly->model->time);
+    }
+    place_mass(c, assembly);
+    return SE3D_OK;
 }
 
 /* block [6 x 6] += sign (I L_a)^T G (I L_b) */
@@ -229,17 +202,21 @@ static void subtract_impulse(const se3di_convex_contact *contact, double *gradie
 }
 
 /* Impulses, gradient and, if `is_wanted`, the blocks of the matrix at v. */
-static void evaluate(se3di_convex *c, const se3di_assembly *assembly, int is_wanted)
+static void evaluate(se3di_convex *c, const se3di_convex_island *island, int is_wanted)
 {
-    memcpy(c->gradient, c->moved, assembly->unknown_count * sizeof *c->gradient);
-    if (is_wanted && assembly->body_count > 0) {
-        memcpy(c->body, assembly->H, 36 * (size_t)assembly->body_count * sizeof *c->body);
-        if (c->pair_count > 0) {
-            memset(c->coupling, 0, 36 * c->pair_count * sizeof *c->coupling);
-        }
+    const size_t bodies = island->body_end - island->body;
+    const size_t pairs = island->pair_end - island->pair;
+    memcpy(c->gradient + 6 * island->body, c->moved + 6 * island->body,
+           6 * bodies * sizeof *c->gradient);
+    if (is_wanted && bodies > 0) {
+        memcpy(c->body + 36 * island->body, c->own + 36 * island->body,
+               36 * bodies * sizeof *c->body);
     }
-    for (size_t k = 0; k < c->contact_count; ++k) {
-        se3di_convex_contact *contact = &c->contacts[k];
+    if (is_wanted && pairs > 0) {
+        memset(c->coupling + 36 * island->pair, 0, 36 * pairs * sizeof *c->coupling);
+    }
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
         double G[9];
         se3di_convex_impulse(contact, c->h, contact->v, contact->impulse, is_wanted ? G : NULL);
         subtract_impulse(contact, c->gradient);
@@ -250,26 +227,29 @@ static void evaluate(se3di_convex *c, const se3di_assembly *assembly, int is_wan
 }
 
 /* The caps of friction to the normal impulses, if one of them is another. */
-static void follow(se3di_convex *c)
+static void follow(se3di_convex *c, const se3di_convex_island *island)
 {
-    double largest = 0.0, change = 0.0;
-    for (size_t k = 0; k < c->contact_count; ++k) {
-        se3di_convex_contact *contact = &c->contacts[k];
-        contact->wanted = contact->friction * se3di_convex_normal(contact, c->h, contact->v);
+    double largest = 0.0, change = 0.0, slope;
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        const double vn = se3di_dot(contact->v, contact->normal);
+        contact->wanted = contact->friction * se3di_convex_normal(contact, c->h, vn, &slope);
         largest = fmax(largest, contact->wanted);
         change = fmax(change, fabs(contact->wanted - contact->bound));
     }
-    for (size_t k = 0; k < c->contact_count && change > CAP_CHANGE * largest; ++k) {
-        c->contacts[k].bound = c->contacts[k].wanted;
+    for (size_t k = island->contact; k < island->contact_end && change > CAP_CHANGE * largest;
+         ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        contact->bound = contact->wanted;
     }
 }
 
-/* |x|^2 with the inverse of the diagonal of the mass as weight. */
-static double weigh(const se3di_assembly *assembly, const double *x)
+/* |x|^2 with the inverse of the diagonal of the mass as weight; x of the island. */
+static double weigh(const se3di_convex *c, const se3di_convex_island *island, const double *x)
 {
     double sum = 0.0;
-    for (size_t body = 0; body < assembly->body_count; ++body) {
-        const double *M = assembly->H + 36 * body;
+    for (size_t body = island->body; body < island->body_end; ++body) {
+        const double *M = c->own + 36 * body;
         for (size_t k = 0; k < 6; ++k) {
             const double m = M[7 * k], value = x[6 * body + k];
             sum += m > 0.0 ? value * value / m : 0.0;
@@ -278,50 +258,77 @@ static double weigh(const se3di_assembly *assembly, const double *x)
     return sum;
 }
 
-/* The part of the impulses that is not balanced, of those in the step and of all momentum. */
-static double measure(const se3di_convex *c, se3di_equations *equations)
+/* out = M x; with constraints, places are those of the assembly, and armatures couple bodies. */
+static void mul_mass(const se3di_convex *c, const se3di_assembly *assembly,
+                     const se3di_convex_island *island, const double *x, double *out)
 {
-    const se3di_assembly *assembly = &equations->assembly;
-    double *sum = equations->b;
-    for (size_t k = 0; k < assembly->unknown_count; ++k) {
-        sum[k] = c->moved[k] - c->gradient[k];
+    if (assembly->row_count > 0) {
+        se3di_assembly_mul_mass(assembly, x, out);
+        return;
     }
-    const double size = fmax(c->momentum, weigh(assembly, sum));
-    memcpy(sum, c->gradient, assembly->unknown_count * sizeof *sum);
-    se3di_assembly_add_transposed(assembly, 1.0, c->lambda, sum);
-    const double rest = weigh(assembly, sum);
-    return rest > 0.0 ? sqrt(rest / fmax(size, rest)) : 0.0;
-}
-
-/* out [6] += B v, or B^T v */
-static void add_block_product(const double *B, int transposed, const double *v, double *out)
-{
-    for (size_t r = 0; r < 6; ++r) {
-        for (size_t k = 0; k < 6; ++k) {
-            out[r] += (transposed ? B[6 * k + r] : B[6 * r + k]) * v[k];
+    for (size_t body = island->body; body < island->body_end; ++body) {
+        const double *M = c->own + 36 * body, *v = x + 6 * body;
+        double *p = out + 6 * body;
+        for (size_t r = 0; r < 3; ++r) {
+            const double *J = M + 6 * (3 + r) + 3;
+            p[r] = M[0] * v[r];
+            p[3 + r] = J[0] * v[3] + J[1] * v[4] + J[2] * v[5];
         }
     }
 }
 
-/* out += the matrix times v. */
-static void add_product(const se3di_convex *c, const se3di_assembly *assembly, double *out)
+/* The part of the impulses that is not balanced, of those in the step and of all momentum. */
+static double measure(const se3di_convex *c, se3di_equations *equations,
+                      const se3di_convex_island *island)
 {
-    for (size_t body = 0; body < assembly->body_count; ++body) {
-        add_block_product(c->body + 36 * body, 0, c->v + 6 * body, out + 6 * body);
+    const se3di_assembly *assembly = &equations->assembly;
+    const size_t begin = 6 * island->body, end = 6 * island->body_end;
+    double *sum = equations->b;
+    for (size_t k = begin; k < end; ++k) {
+        sum[k] = c->moved[k] - c->gradient[k];
     }
-    for (size_t k = 0; k < c->pair_count; ++k) {
-        const size_t i = 6 * (size_t)c->pairs[2 * k], j = 6 * (size_t)c->pairs[2 * k + 1];
-        add_block_product(c->coupling + 36 * k, 0, c->v + j, out + i);
-        add_block_product(c->coupling + 36 * k, 1, c->v + i, out + j);
+    const double size = fmax(island->momentum, weigh(c, island, sum));
+    memcpy(sum + begin, c->gradient + begin, (end - begin) * sizeof *sum);
+    if (assembly->row_count > 0) {
+        se3di_assembly_add_transposed(assembly, 1.0, c->lambda, sum);
     }
+    const double rest = weigh(c, island, sum);
+    return rest > 0.0 ? sqrt(rest / fmax(size, rest)) : 0.0;
+}
+
+/* The matrix of an island, whose bodies count from 0. */
+static se3di_block_matrix matrix_of(const se3di_convex *c, const se3di_convex_island *island)
+{
+    return (se3di_block_matrix){.count = island->body_end - island->body,
+                                .first = (int32_t)island->body,
+                                .pair_count = island->pair_end - island->pair,
+                                .pairs = c->pairs + 2 * island->pair,
+                                .diagonal = c->body + 36 * island->body,
+                                .coupling = c->coupling + 36 * island->pair};
+}
+
+/* `change` to the accuracy that an iteration needs. */
+static void solve_free(se3di_convex *c, se3di_equations *equations,
+                       const se3di_convex_island *island)
+{
+    const se3di_block_matrix A = matrix_of(c, island);
+    const size_t begin = 6 * island->body;
+    for (size_t k = begin; k < 6 * island->body_end; ++k) {
+        equations->b[k] = -c->gradient[k];
+    }
+    ++equations->counters.solves;
+    (void)se3di_block_cg_solve(&c->cg, &A, equations->b + begin, SHARE, SOLVES_MOST,
+                               c->change + begin);
 }
 
 /* `change`, and lambda. With constraints the velocities themselves are solved for: what is left of
  * them near the end of the iteration is rounding, by which the solver would measure its residual.
  */
-static se3d_status solve_linear(se3di_convex *c, se3di_equations *equations)
+static se3d_status solve_bound(se3di_convex *c, se3di_equations *equations,
+                               const se3di_convex_island *island)
 {
     const se3di_assembly *assembly = &equations->assembly;
+    const se3di_block_matrix A = matrix_of(c, island);
     const se3di_kkt_values values = {
         .body = c->body, .coupling_upper = c->coupling, .joint = assembly->C};
     ++equations->counters.factorizations;
@@ -330,16 +337,14 @@ static se3d_status solve_linear(se3di_convex *c, se3di_equations *equations)
     for (size_t k = 0; k < assembly->unknown_count; ++k) {
         equations->b[k] = -c->gradient[k];
     }
-    if (assembly->row_count > 0) {
-        add_product(c, assembly, equations->b);
-    }
+    se3di_block_cg_add_product(&A, c->v, equations->b);
     status = status < 0 ? status
                         : se3di_kkt_solve(c->kkt, &values, equations->b, c->aimed, c->change,
                                           c->lambda, NULL);
     if (status == SE3D_ERR_NO_CONVERGENCE) { /* where all is at rest; the iteration will tell */
         status = SE3D_OK;
     }
-    for (size_t k = 0; assembly->row_count > 0 && k < assembly->unknown_count; ++k) {
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
         c->change[k] -= c->v[k];
     }
     return status < 0 ? se3di_error_set(equations->error, status,
@@ -349,22 +354,23 @@ static se3d_status solve_linear(se3di_convex *c, se3di_equations *equations)
                       : status;
 }
 
-static double dot(const double *a, const double *b, size_t count)
+static double dot(const double *a, const double *b, size_t begin, size_t end)
 {
     double sum = 0.0;
-    for (size_t k = 0; k < count; ++k) {
+    for (size_t k = begin; k < end; ++k) {
         sum += a[k] * b[k];
     }
     return sum;
 }
 
 /* The derivative of the cost at v + s change, and its derivative. */
-static double slope_at(const se3di_convex *c, const double line[2], double s, double *curvature)
+static double slope_at(const se3di_convex *c, const se3di_convex_island *island,
+                       const double line[2], double s, double *curvature)
 {
     double slope = line[0] + s * line[1];
     *curvature = line[1];
-    for (size_t k = 0; k < c->contact_count; ++k) {
-        const se3di_convex_contact *contact = &c->contacts[k];
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        const se3di_convex_contact *contact = se3di_convex_at(c, k);
         double v[3], bend;
         se3di_copy(contact->v, v);
         se3di_add_scaled(s, contact->change, v);
@@ -375,17 +381,18 @@ static double slope_at(const se3di_convex *c, const double line[2], double s, do
 }
 
 /* The part of `change` after which the cost is least. */
-static double search(const se3di_convex *c, size_t unknowns)
+static double search(const se3di_convex *c, const se3di_convex_island *island)
 {
-    const double line[2] = {dot(c->moved, c->change, unknowns),
-                            dot(c->carried, c->change, unknowns)};
+    const size_t begin = 6 * island->body, end = 6 * island->body_end;
+    const double line[2] = {dot(c->moved, c->change, begin, end),
+                            dot(c->carried, c->change, begin, end)};
     double curvature, low = 0.0, high = HUGE_VAL, s = 1.0;
-    const double first = slope_at(c, line, 0.0, &curvature);
+    const double first = slope_at(c, island, line, 0.0, &curvature);
     if (!(first < 0.0)) {
         return 1.0;
     }
     for (int k = 0; k < LINE_STEPS; ++k) {
-        const double slope = slope_at(c, line, s, &curvature);
+        const double slope = slope_at(c, island, line, s, &curvature);
         if (fabs(slope) <= -LINE_SLOPE * first) {
             break;
         }
@@ -404,34 +411,50 @@ static double search(const se3di_convex *c, size_t unknowns)
 }
 
 /* v + s change, with all that follows from it. */
-static void move(se3di_convex *c, const se3di_assembly *assembly, double s)
+static void move(se3di_convex *c, const se3di_convex_island *island, double s)
 {
-    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+    for (size_t k = 6 * island->body; k < 6 * island->body_end; ++k) {
         c->v[k] += s * c->change[k];
         c->moved[k] += s * c->carried[k];
     }
-    for (size_t k = 0; k < c->contact_count; ++k) {
-        se3di_convex_velocity(&c->contacts[k], c->v, c->contacts[k].v);
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        se3di_convex_velocity(contact, c->v, contact->v);
     }
 }
 
-static void begin(se3di_convex *c, const se3di_assembly *assembly)
+/* `values` of bodies by their places. */
+static void place(const se3di_convex *c, const se3di_assembly *assembly, const double *values,
+                  double *out)
 {
-    memcpy(c->v, c->start, assembly->unknown_count * sizeof *c->v);
-    for (size_t k = 0; k < assembly->unknown_count; ++k) {
-        c->change[k] = c->v[k] - c->aim[k];
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        memcpy(out + 6 * (size_t)c->place[k], values + 6 * k, 6 * sizeof *out);
     }
-    se3di_assembly_mul_mass(assembly, c->aim, c->moved);
-    c->momentum = weigh(assembly, c->moved);
-    se3di_assembly_mul_mass(assembly, c->start, c->moved);
-    c->momentum = fmax(c->momentum, weigh(assembly, c->moved));
-    se3di_assembly_mul_mass(assembly, c->change, c->moved);
-    memset(c->change, 0, assembly->unknown_count * sizeof *c->change);
-    memset(c->carried, 0, assembly->unknown_count * sizeof *c->carried);
-    for (size_t k = 0; k < assembly->row_count; ++k) {
-        c->lambda[k] = 0.0;
+}
+
+/* v by places, M (v - v*), the momentum. */
+static void begin(se3di_convex *c, const se3di_assembly *assembly, se3di_convex_island *island)
+{
+    const size_t first = 6 * island->body, count = 6 * (island->body_end - island->body);
+    double *aim = c->carried, *start = c->gradient;
+    mul_mass(c, assembly, island, aim, c->moved);
+    island->momentum = weigh(c, island, c->moved);
+    mul_mass(c, assembly, island, start, c->moved);
+    island->momentum = fmax(island->momentum, weigh(c, island, c->moved));
+    if (assembly->row_count > 0) {
+        memcpy(c->v + first, start + first, count * sizeof *c->v);
+        memset(c->lambda, 0, assembly->row_count * sizeof *c->lambda);
+    } else {
+        memcpy(c->v + first, aim + first, count * sizeof *c->v);
+        se3di_convex_sweep(c, island);
     }
-    move(c, assembly, 0.0);
+    for (size_t k = first; k < first + count; ++k) {
+        c->change[k] = c->v[k] - aim[k];
+    }
+    mul_mass(c, assembly, island, c->change, c->moved);
+    memset(c->change + first, 0, count * sizeof *c->change);
+    memset(c->carried + first, 0, count * sizeof *c->carried);
+    move(c, island, 0.0);
 }
 
 static se3d_status fail(const se3di_convex *c, se3di_equations *equations, double rest)
@@ -442,33 +465,69 @@ static se3d_status fail(const se3di_convex *c, se3di_equations *equations, doubl
                            equations->assembly.model->time, c->h, c->contact_count, rest);
 }
 
-se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
+static se3d_status iterate(se3di_convex *c, se3di_equations *equations,
+                           const se3di_convex_island *island, int is_first)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    if (assembly->row_count > 0) {
+        SE3DI_TRY(solve_bound(c, equations, island));
+    } else {
+        solve_free(c, equations, island);
+    }
+    ++equations->counters.iterations;
+    mul_mass(c, assembly, island, c->change, c->carried);
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        se3di_convex_velocity(contact, c->change, contact->change);
+    }
+    move(c, island, is_first && assembly->row_count > 0 ? 1.0 : search(c, island));
+    return SE3D_OK;
+}
+
+static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
+                                se3di_convex_island *island)
 {
     const se3di_assembly *assembly = &equations->assembly;
     double rest = HUGE_VAL;
-    SE3DI_TRY(prepare(c, equations));
-    begin(c, assembly);
+    begin(c, assembly, island);
     for (int k = 0; k < ITERATIONS; ++k) {
         SE3DI_TRY(se3di_equations_ask(equations));
         if (k < FOLLOWING) {
-            follow(c);
+            follow(c, island);
         }
-        evaluate(c, assembly, 1);
+        evaluate(c, island, 1);
         const double before = rest;
-        rest = measure(c, equations);
+        rest = measure(c, equations, island);
         const int stays = k >= FOLLOWING && rest <= ENOUGH && rest >= 0.5 * before;
         if ((k > 0 || assembly->row_count == 0) && (rest <= ACCURACY || stays)) {
             return SE3D_OK;
         }
-        SE3DI_TRY(solve_linear(c, equations));
-        ++equations->counters.iterations;
-        se3di_assembly_mul_mass(assembly, c->change, c->carried);
-        for (size_t n = 0; n < c->contact_count; ++n) {
-            se3di_convex_velocity(&c->contacts[n], c->change, c->contacts[n].change);
-        }
-        move(c, assembly,
-             k == 0 && assembly->row_count > 0 ? 1.0 : search(c, assembly->unknown_count));
+        SE3DI_TRY(iterate(c, equations, island, k == 0));
     }
-    evaluate(c, assembly, 0);
+    evaluate(c, island, 0);
     return rest <= ENOUGH ? SE3D_OK : fail(c, equations, rest);
+}
+
+/* The velocities back in the order of the assembly; those that nothing touches as loads say. */
+static void take_back(se3di_convex *c, const se3di_assembly *assembly)
+{
+    memcpy(c->change, c->v, assembly->unknown_count * sizeof *c->v);
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const int is_free = !c->touched[k] && assembly->row_count == 0;
+        const double *from = is_free ? c->aim + 6 * k : c->change + 6 * (size_t)c->place[k];
+        memcpy(c->v + 6 * k, from, 6 * sizeof *from);
+    }
+}
+
+se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    SE3DI_TRY(prepare(c, equations));
+    place(c, assembly, c->start, c->gradient);
+    place(c, assembly, c->aim, c->carried);
+    for (size_t k = 0; k < c->island_count; ++k) {
+        SE3DI_TRY(solve_island(c, equations, &c->islands[k]));
+    }
+    take_back(c, assembly);
+    return SE3D_OK;
 }

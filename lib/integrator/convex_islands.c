@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What touches, directly or by others, is an island: each is solved by itself, with its own search
+ * along lines and its own end. With constraints all are one. Bodies that nothing touches move as
+ * loads say. */
+#include "integrator/convex.h"
+
+#include "base/sort.h"
+
+#include <string.h>
+
+static se3d_status reserve(const se3d_allocator *allocator, void **data, size_t *capacity,
+                           size_t count, size_t size)
+{
+    return se3di_array_reserve(allocator, data, capacity, count, size);
+}
+
+static se3d_status reserve_all(se3di_convex *c, const se3di_assembly *assembly)
+{
+    const se3d_allocator *allocator = &assembly->model->allocator;
+    const size_t bodies = assembly->body_count, contacts = c->contact_count;
+    void *islands = c->islands, *place = c->place, *root = c->root, *order = c->order;
+    void *number = c->number, *pairs = c->pairs, *mobility = c->mobility, *own = c->own;
+    se3d_status status =
+        reserve(allocator, &islands, &c->island_capacity, bodies + 1, sizeof *c->islands);
+    c->islands = islands;
+    SE3DI_TRY(status);
+    status = reserve(allocator, &place, &c->place_capacity, bodies + 1, sizeof *c->place);
+    c->place = place;
+    SE3DI_TRY(status);
+    status = reserve(allocator, &root, &c->root_capacity, bodies + 1, sizeof *c->root);
+    c->root = root;
+    SE3DI_TRY(status);
+    status = reserve(allocator, &number, &c->number_capacity, bodies + 1, sizeof *c->number);
+    c->number = number;
+    SE3DI_TRY(status);
+    status = reserve(allocator, &order, &c->order_capacity, contacts + 1, sizeof *c->order);
+    c->order = order;
+    SE3DI_TRY(status);
+    status = reserve(allocator, &pairs, &c->pair_capacity, contacts + 1, 2 * sizeof *c->pairs);
+    c->pairs = pairs;
+    SE3DI_TRY(status);
+    status = reserve(allocator, &mobility, &c->mobility_capacity, 10 * bodies + 1, sizeof(double));
+    c->mobility = mobility;
+    SE3DI_TRY(status);
+    status = reserve(allocator, &own, &c->own_capacity, 36 * bodies + 1, sizeof(double));
+    c->own = own;
+    return status;
+}
+
+static int32_t find_root(se3di_convex *c, int32_t body)
+{
+    while (c->root[body] != body) {
+        c->root[body] = c->root[c->root[body]];
+        body = c->root[body];
+    }
+    return body;
+}
+
+/* Any of its bodies that is free. */
+static int32_t body_of(const se3di_convex_contact *contact)
+{
+    return contact->free[0] >= 0 ? contact->free[0] : contact->free[1];
+}
+
+/* The first body of each island becomes its root. */
+static void join(se3di_convex *c, const se3di_assembly *assembly)
+{
+    const int32_t bodies = (int32_t)assembly->body_count;
+    for (int32_t k = 0; k < bodies; ++k) {
+        c->root[k] = assembly->row_count > 0 ? 0 : k;
+    }
+    for (size_t k = 0; k < c->contact_count; ++k) {
+        const se3di_convex_contact *contact = &c->contacts[k];
+        if (contact->free[0] >= 0 && contact->free[1] >= 0) {
+            const int32_t i = find_root(c, contact->free[0]), j = find_root(c, contact->free[1]);
+            c->root[i < j ? j : i] = i < j ? i : j;
+        }
+    }
+    for (int32_t k = 0; k < bodies; ++k) {
+        c->root[k] = find_root(c, k);
+    }
+}
+
+/* Whether it is to be solved for. */
+static int takes_part(const se3di_convex *c, const se3di_assembly *assembly, size_t body)
+{
+    return c->touched[body] || assembly->row_count > 0;
+}
+
+static se3di_convex_island *island_of(const se3di_convex *c, const se3di_convex_contact *contact)
+{
+    return &c->islands[c->number[body_of(contact)]];
+}
+
+/* Islands, in the order of their first bodies, with the counts of what is in them. */
+static void count_islands(se3di_convex *c, const se3di_assembly *assembly)
+{
+    c->island_count = 0;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        if (!takes_part(c, assembly, k)) {
+            continue;
+        }
+        if ((size_t)c->root[k] == k) {
+            c->number[k] = (int32_t)c->island_count;
+            c->islands[c->island_count++] = (se3di_convex_island){.body = 0};
+        }
+        c->number[k] = c->number[c->root[k]];
+        ++c->islands[c->number[k]].body_end;
+    }
+    for (size_t k = 0; k < c->contact_count; ++k) {
+        ++island_of(c, &c->contacts[k])->contact_end;
+    }
+}
+
+/* Counts become beginnings. Returns the count of all bodies. */
+static size_t lay_out(se3di_convex *c)
+{
+    size_t body = 0, contact = 0;
+    for (size_t k = 0; k < c->island_count; ++k) {
+        se3di_convex_island *island = &c->islands[k];
+        const size_t bodies = island->body_end, contacts = island->contact_end;
+        island->body = island->body_end = body;
+        island->contact = island->contact_end = contact;
+        body += bodies;
+        contact += contacts;
+    }
+    return body;
+}
+
+/* Fill the islands; bodies that nothing touches come last. */
+static void fill(se3di_convex *c, const se3di_assembly *assembly)
+{
+    size_t last = lay_out(c);
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        c->place[k] = takes_part(c, assembly, k) ? (int32_t)c->islands[c->number[k]].body_end++
+                                                 : (int32_t)last++;
+    }
+    for (size_t k = 0; k < c->contact_count; ++k) {
+        c->order[island_of(c, &c->contacts[k])->contact_end++] = (int32_t)k;
+    }
+    for (size_t k = 0; k < c->contact_count; ++k) {
+        for (int side = 0; side < 2; ++side) {
+            int32_t *free = &c->contacts[k].free[side];
+            *free = *free >= 0 ? c->place[*free] : -1;
+        }
+    }
+}
+
+static int compare_pairs(const int32_t *a, const int32_t *b)
+{
+    const int first = (a[0] > b[0]) - (a[0] < b[0]);
+    return first ? first : (a[1] > b[1]) - (a[1] < b[1]);
+}
+
+static int32_t find_pair(const se3di_convex *c, const int32_t pair[2])
+{
+    size_t low = 0, high = c->pair_count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (compare_pairs(c->pairs + 2 * middle, pair) < 0) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return (int32_t)low;
+}
+
+/* Returns 0 if one of its bodies is fixed. */
+static int get_pair(const se3di_convex_contact *contact, int32_t pair[2])
+{
+    const int turned = contact->free[0] > contact->free[1];
+    pair[0] = contact->free[turned];
+    pair[1] = contact->free[!turned];
+    return pair[0] >= 0;
+}
+
+/* The couplings of bodies by contacts, in the order of places. */
+static void list_pairs(se3di_convex *c)
+{
+    size_t count = 0;
+    int32_t pair[2];
+    for (size_t k = 0; k < c->contact_count; ++k) {
+        if (get_pair(&c->contacts[k], pair) &&
+            (count == 0 || compare_pairs(pair, c->pairs + 2 * count - 2) != 0)) {
+            memcpy(c->pairs + 2 * count++, pair, sizeof pair);
+        }
+    }
+    se3di_sort_tuples(c->pairs, count, 2);
+    c->pair_count = 0;
+    for (size_t k = 0; k < count; ++k) {
+        if (c->pair_count == 0 ||
+            compare_pairs(c->pairs + 2 * k, c->pairs + 2 * (c->pair_count - 1)) != 0) {
+            memmove(c->pairs + 2 * c->pair_count++, c->pairs + 2 * k, 2 * sizeof *c->pairs);
+        }
+    }
+    for (size_t k = 0; k < c->contact_count; ++k) {
+        if (get_pair(&c->contacts[k], pair)) {
+            c->contacts[k].coupling = find_pair(c, pair);
+        }
+    }
+}
+
+static void share_pairs(se3di_convex *c)
+{
+    size_t pair = 0;
+    for (size_t k = 0; k < c->island_count; ++k) {
+        se3di_convex_island *island = &c->islands[k];
+        island->pair = pair;
+        while (pair < c->pair_count && (size_t)c->pairs[2 * pair] < island->body_end) {
+            ++pair;
+        }
+        island->pair_end = pair;
+    }
+}
+
+se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly)
+{
+    SE3DI_TRY(reserve_all(c, assembly));
+    join(c, assembly);
+    count_islands(c, assembly);
+    fill(c, assembly);
+    list_pairs(c);
+    share_pairs(c);
+    return SE3D_OK;
+}

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Near the optimum: one contact after the other is given the impulse that its law asks for while
+ * all others stay, forth and back (projected Gauss-Seidel). What sticks, slides or parts, and which
+ * impacts there are, is so found before Newton's method looks at all of them together. It begins
+ * with the impulses of the step before. */
+#include "integrator/convex.h"
+
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SWEEPS 50
+#define LOOKS  3    /* for an impulse of a spring that is not linear */
+#define CALM   1e-3 /* of the largest impulse: changes that need no other sweep */
+#define NEAR   1e-6 /* of an impulse: what is left of it */
+
+/* What an impulse on the point does to its velocity. */
+static void respond(const se3di_convex *c, se3di_convex_contact *contact)
+{
+    double along = 0.0, all = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        if (contact->free[k] >= 0) {
+            const double *mobility = c->mobility + 10 * (size_t)contact->free[k];
+            double *turn = contact->turn[k], turning[3], turned[3];
+            for (int r = 0; r < 3; ++r) { /* J^-1 is symmetric: its rows times those of the lever */
+                for (int e = 0; e < 3; ++e) {
+                    turn[3 * r + e] = se3di_dot(mobility + 1 + 3 * r, contact->lever[k] + 3 * e);
+                }
+            }
+            se3di_mul(turn, contact->normal, turned);
+            se3di_mul(contact->lever[k], turned, turning);
+            along += mobility[0] + se3di_dot(turning, contact->normal);
+            all += 3.0 * mobility[0];
+            for (int r = 0; r < 3; ++r) {
+                for (int e = 0; e < 3; ++e) {
+                    all += contact->lever[k][3 * r + e] * turn[3 * e + r];
+                }
+            }
+        }
+    }
+    contact->response[0] = along;
+    contact->response[1] = fmax(0.0, all - along);
+}
+
+/* v += M^-1 J^T p */
+static void apply(se3di_convex *c, const se3di_convex_contact *contact, const double p[3])
+{
+    for (int k = 0; k < 2; ++k) {
+        if (contact->free[k] >= 0) {
+            const double sign = k ? 1.0 : -1.0;
+            double *v = c->v + 6 * (size_t)contact->free[k], turned[3];
+            se3di_mul(contact->turn[k], p, turned);
+            se3di_add_scaled(sign * c->mobility[10 * (size_t)contact->free[k]], p, v);
+            se3di_add_scaled(sign, turned, v + 3);
+        }
+    }
+}
+
+/* p_n at the velocity that p_n leaves of vn, the one without it. */
+static double find_normal(const se3di_convex_contact *contact, double h, double vn, double response)
+{
+    double p = 0.0;
+    for (int k = 0; k < LOOKS; ++k) {
+        double slope;
+        const double gap = se3di_convex_normal(contact, h, vn + response * p, &slope) - p;
+        const double change = gap / (1.0 + response * slope);
+        p = fmax(0.0, p + change);
+        if (!(fabs(change) > NEAR * p)) {
+            break;
+        }
+    }
+    return p;
+}
+
+/* The impulse of a contact while all others stay. Returns how much it changed. */
+static double settle(se3di_convex *c, se3di_convex_contact *contact)
+{
+    const double *n = contact->normal;
+    const double *response = contact->response;
+    double v[3], p[3], change[3];
+    se3di_convex_velocity(contact, c->v, v);
+    const double vn = se3di_dot(v, n), before = se3di_dot(contact->impulse, n);
+    const double normal = find_normal(contact, c->h, vn - response[0] * before, response[0]);
+    const double share = 1.0 / (1.0 + contact->drag * response[1]);
+    for (int k = 0; k < 3; ++k) {
+        const double across = contact->impulse[k] - before * n[k];
+        const double vt = v[k] - vn * n[k] - response[1] * across;
+        p[k] = -share * (c->h * contact->tangential * contact->xi[k] + contact->drag * vt);
+    }
+    const double size = se3di_norm(p), cap = contact->friction * normal;
+    se3di_scale(size > cap ? cap / size : 1.0, p, p);
+    se3di_add_scaled(normal, n, p);
+    se3di_sub(p, contact->impulse, change);
+    se3di_copy(p, contact->impulse);
+    apply(c, contact, change);
+    return se3di_norm(change);
+}
+
+/* What the step before did, if it acted by the law then as now. */
+static void remember(se3di_convex *c, const se3di_convex_island *island)
+{
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        const int lasts =
+            contact->way == SE3DI_CONVEX_SPRING && contact->record->kind != SE3DI_CONTACT_PARTING;
+        respond(c, contact);
+        se3di_scale(lasts ? c->h : 0.0, contact->record->force, contact->impulse);
+        apply(c, contact, contact->impulse);
+    }
+}
+
+void se3di_convex_sweep(se3di_convex *c, const se3di_convex_island *island)
+{
+    const size_t count = island->contact_end - island->contact;
+    remember(c, island);
+    for (int sweep = 0; sweep < SWEEPS; ++sweep) {
+        double change = 0.0, largest = 0.0;
+        for (size_t k = 0; k < count; ++k) {
+            const size_t at = sweep % 2 ? count - 1 - k : k;
+            se3di_convex_contact *contact = se3di_convex_at(c, island->contact + at);
+            change = fmax(change, settle(c, contact));
+            largest = fmax(largest, se3di_norm(contact->impulse));
+        }
+        if (!(change > CALM * largest)) {
+            break;
+        }
+    }
+}
