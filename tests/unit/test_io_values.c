@@ -2,6 +2,7 @@
 /* What the reader makes of orientations, shapes, parameters and inertia, and how numbers are
  * written. */
 #include <locale.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "check.h"
@@ -169,10 +170,46 @@ static void numbers_have_a_point_in_every_locale(void)
             expect_number(1e22, "1e+22");
             expect_number(-7.0, "-7");
             expect_number(0.0, "0");
+            expect_number(-0.0, "-0");
             expect_number(HUGE_VAL, "inf");
         }
     }
     setlocale(LC_ALL, "C");
+}
+
+/* The same as printf, for numbers of all sizes: random bits, few digits, powers of ten and of two,
+ * middles between numbers of 17 digits, and what is next to all of them. */
+static void numbers_are_written_as_printf_does(void)
+{
+    uint64_t seed = 88172645463325252u;
+    for (int k = 0; k < 120000; ++k) {
+        char expected[64];
+        double value = 0.0;
+        uint64_t bits = seed ^= seed << 13;
+        seed ^= seed >> 7;
+        bits = seed ^= seed << 17;
+        memcpy(&value, &bits, sizeof value);
+        if (k % 6 == 1) {
+            value = (double)(bits >> 44) / 1000.0;
+        } else if (k % 6 == 2) {
+            value = pow(10.0, (double)(int)(bits % 640) - 320.0);
+        } else if (k % 6 == 3) {
+            value = ldexp((double)(bits % 65536), (int)(bits >> 40) % 64 - 80);
+        } else if (k % 6 == 4) {
+            value = (check_random(&seed) - 0.5) * 100.0;
+        } else if (k % 6 == 5) {
+            value = nextafter(pow(10.0, (double)(int)(bits % 50) - 25.0), k % 4 < 2 ? 0.0 : 1e300);
+        }
+        if (isfinite(value)) {
+            snprintf(expected, sizeof expected, "%.17g", value);
+            expect_number(value, expected);
+        }
+    }
+    for (int k = -1100; k < 1024; ++k) {
+        char expected[64];
+        snprintf(expected, sizeof expected, "%.17g", -ldexp(1.0, k));
+        expect_number(-ldexp(1.0, k), expected);
+    }
 }
 
 /* Limits of a controller and a law in a part that is turned are put together from numbers. */
@@ -220,6 +257,7 @@ int main(void)
     RUN(shapes_give_mass_and_inertia);
     RUN(inertia_is_read_in_three_forms);
     RUN(numbers_have_a_point_in_every_locale);
+    RUN(numbers_are_written_as_printf_does);
     RUN(laws_are_put_together_alike_in_every_locale);
     return check_finish();
 }

@@ -7,12 +7,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/base/digits.h"
+
 size_t se3di_number_format(double value, char *text)
 {
     const char *const special = isnan(value) ? "nan" : value < 0.0 ? "-inf" : "inf";
     if (!isfinite(value)) {
         strcpy(text, special);
         return strlen(text);
+    }
+    const size_t done = se3di_digits_format(value, text);
+    if (done > 0) {
+        return done;
     }
     const int length = snprintf(text, SE3DI_NUMBER_SIZE, "%.17g", value);
     const size_t head = strspn(text, "-0123456789");
